@@ -1,0 +1,56 @@
+#pragma once
+
+// Integer arithmetic that every number format of the core rests on.
+//
+// The core rounds in one way only: a product is formed in 64 bits and shifted right once, rounding half up. Sums wrap
+// only in uint32_t and saturate only where a function says so; signed overflow never happens.
+
+#include <cstdint>
+#include <limits>
+
+namespace proleg {
+
+/// (value + half) >> bits: the nearest multiple of 2^bits, ties towards plus infinity. bits is 1..62; value must be
+/// further than 2^(bits-1) from the ends of int64_t.
+[[nodiscard]] constexpr std::int64_t shift_right_rounding(std::int64_t value, unsigned bits) {
+  return (value + (std::int64_t{1} << (bits - 1))) >> bits;
+}
+
+/// The nearest value that an int32_t can hold.
+[[nodiscard]] constexpr std::int32_t saturate(std::int64_t value) {
+  if (value > std::numeric_limits<std::int32_t>::max()) {
+    return std::numeric_limits<std::int32_t>::max();
+  }
+  if (value < std::numeric_limits<std::int32_t>::min()) {
+    return std::numeric_limits<std::int32_t>::min();
+  }
+  return static_cast<std::int32_t>(value);
+}
+
+[[nodiscard]] constexpr std::int32_t add_saturating(std::int32_t a, std::int32_t b) {
+  return saturate(std::int64_t{a} + b);
+}
+
+/// Product of two fixed-point numbers of which one has `fraction_bits` fraction bits; the result has the format of the
+/// other. The caller keeps the result within int32_t.
+[[nodiscard]] constexpr std::int32_t multiply(std::int32_t a, std::int32_t b, unsigned fraction_bits) {
+  return static_cast<std::int32_t>(shift_right_rounding(std::int64_t{a} * b, fraction_bits));
+}
+
+/// Sum modulo 2^32 of two values that are bit patterns of a wrapping quantity (a phase).
+[[nodiscard]] constexpr std::int32_t add_wrapping(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
+}
+
+/// Difference a - b modulo 2^32: for two phases the shortest arc from b to a; an exact half turn is negative.
+[[nodiscard]] constexpr std::int32_t subtract_wrapping(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
+}
+
+/// Nearest integer to numerator / denominator, ties away from zero. denominator > 0.
+[[nodiscard]] constexpr std::int64_t divide_nearest(std::int64_t numerator, std::int64_t denominator) {
+  const std::int64_t half = denominator / 2;
+  return numerator >= 0 ? (numerator + half) / denominator : (numerator - half) / denominator;
+}
+
+}  // namespace proleg

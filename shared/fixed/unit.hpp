@@ -1,0 +1,58 @@
+#pragma once
+
+// The physical units of everything that has a name: parameters, internal values, joint angles. A value is an int32_t
+// ("raw") and its unit says what one step of it is worth.
+
+#include <cstdint>
+
+namespace proleg {
+
+enum class Unit : std::uint8_t {
+  degree,           ///< angle; 90 degrees = 2^30; saturates
+  phase_degree,     ///< binary angle; 2^32 = one turn; wraps; 180 and -180 are the same phase
+  degree_per_tick,  ///< change of an angle or phase over one tick
+  hertz,            ///< 1 Hz = 2^24
+  per_second,       ///< rate constants; 1/s = 2^24
+  ratio,            ///< dimensionless; 1 = 2^28
+  count,            ///< whole numbers
+};
+
+/// raw = value * numerator / denominator.
+struct UnitScale {
+  const char* symbol;
+  std::uint32_t numerator;
+  std::uint32_t denominator;
+};
+
+[[nodiscard]] constexpr UnitScale scale_of(Unit unit) {
+  switch (unit) {
+    case Unit::degree:
+    case Unit::phase_degree:
+      return {"deg", 1U << 29U, 45};
+    case Unit::degree_per_tick:
+      return {"deg/tick", 1U << 29U, 45};
+    case Unit::hertz:
+      return {"Hz", 1U << 24U, 1};
+    case Unit::per_second:
+      return {"1/s", 1U << 24U, 1};
+    case Unit::ratio:
+      return {"1", 1U << 28U, 1};
+    case Unit::count:
+      break;
+  }
+  return {"", 1, 1};
+}
+
+/// Whether values of the unit are taken modulo 2^32.
+[[nodiscard]] constexpr bool wraps(Unit unit) { return unit == Unit::phase_degree; }
+
+/// Raw value of a quotient of whole numbers, for declarations: raw(Unit::hertz, 1, 2) is half a hertz. The nearest.
+[[nodiscard]] constexpr std::int32_t raw(Unit unit, std::int32_t numerator, std::int32_t denominator = 1) {
+  const UnitScale scale = scale_of(unit);
+  const std::int64_t product = std::int64_t{numerator} * scale.numerator;
+  const std::int64_t divisor = std::int64_t{denominator} * scale.denominator;
+  const std::int64_t half = divisor / 2;
+  return static_cast<std::int32_t>((product >= 0 ? product + half : product - half) / divisor);
+}
+
+}  // namespace proleg

@@ -1,0 +1,97 @@
+#pragma once
+
+// The interface of all actuation algorithms (thesis, section 5.2 and listing A.1, rethought for one joint on one
+// module). An algorithm is a constant object without state of its own: parameters, derived constants and internal
+// values are plain int32_t arrays that the control kernel owns. So reading, changing, logging, saving, distorting and
+// cloning work for every algorithm without a line in it.
+
+#include <cstdint>
+
+#include "shared/fixed/random.hpp"
+#include "shared/gait/contacts.hpp"
+#include "shared/gait/declaration.hpp"
+#include "shared/gait/joint_mask.hpp"
+#include "shared/gait/state_frame.hpp"
+
+namespace proleg {
+
+/// Which joint of which robot an algorithm works for.
+struct Place {
+  std::uint8_t joint;        ///< kernel order: 0 is at the head
+  std::uint8_t joint_count;  ///< of the whole robot
+  JointMask group;           ///< joints that the slot drives
+  std::uint32_t tick_period_us;
+};
+
+/// Constants of a slot on a joint between two commits.
+struct Tuning {
+  const std::int32_t* parameters;  ///< in the order of the declaration
+  const std::int32_t* derived;     ///< what `derive` made of them
+};
+
+/// The state frame of a neighbour at tick k.
+class Neighbour {
+ public:
+  Neighbour() = default;
+  Neighbour(const Declaration& declaration, unsigned joint, const StateFrame& frame)
+      : declaration_(&declaration), frame_(&frame), joint_(joint) {}
+
+  /// False at the ends of the group, and while nothing was heard from the neighbour.
+  [[nodiscard]] bool present() const { return frame_ != nullptr && (frame_->flags() & StateFrame::valid) != 0; }
+  [[nodiscard]] unsigned joint() const { return joint_; }
+  /// Field of the declared frame; present() must hold.
+  [[nodiscard]] std::int32_t value(std::size_t field) const { return unpack(*declaration_, field, *frame_); }
+
+ private:
+  const Declaration* declaration_ = nullptr;
+  const StateFrame* frame_ = nullptr;
+  unsigned joint_ = 0;
+};
+
+/// What a joint knows at SYNC k: everything in it has the age of tick k.
+struct Surroundings {
+  std::uint32_t tick;  ///< k; the step leads to state k + 1
+  const Place& place;
+  const Neighbour& ahead;   ///< nearest joint of the group towards the head
+  const Neighbour& behind;  ///< nearest joint of the group towards the tail
+  const Contacts& contacts;
+};
+
+/// Basic interface: an algorithm that gives one joint an angle.
+class ActuationModule {
+ public:
+  constexpr ActuationModule() = default;
+  ActuationModule(const ActuationModule&) = delete;
+  ActuationModule& operator=(const ActuationModule&) = delete;
+
+  [[nodiscard]] virtual const Declaration& declaration() const = 0;
+
+  /// Computes constants from the parameters. Called after each change of a parameter, never in a tick without one.
+  virtual void derive(const Place& place, const std::int32_t* parameters, std::int32_t* derived) const;
+
+  /// Writes state 0. `noise` is seeded by the robot's seed and the joint. All values are 0 before.
+  virtual void reset(const Place& place, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const;
+
+  /// Computes state k + 1 from state k and what was heard. `state` and `next` never overlap.
+  virtual void advance(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
+                       std::int32_t* next) const = 0;
+
+  /// The joint angle that belongs to a state (90 degrees = 2^30).
+  [[nodiscard]] virtual std::int32_t output(const Tuning& tuning, const std::int32_t* state) const = 0;
+
+  /// Turns the last state frame of a neighbour into the one expected a tick later; called when a frame was missed.
+  /// `state` is the joint's own. The default holds everything.
+  virtual void extrapolate(const Tuning& tuning, const std::int32_t* state, StateFrame& frame) const;
+
+ protected:
+  ~ActuationModule() = default;  // algorithms are static objects, never deleted through the interface
+};
+
+inline void ActuationModule::derive(const Place& /*place*/, const std::int32_t* /*parameters*/,
+                                    std::int32_t* /*derived*/) const {}
+inline void ActuationModule::reset(const Place& /*place*/, const Tuning& /*tuning*/, Pcg32& /*noise*/,
+                                   std::int32_t* /*state*/) const {}
+inline void ActuationModule::extrapolate(const Tuning& /*tuning*/, const std::int32_t* /*state*/,
+                                         StateFrame& /*frame*/) const {}
+
+}  // namespace proleg

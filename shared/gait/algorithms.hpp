@@ -1,0 +1,29 @@
+#pragma once
+
+// The algorithms that ship with the core. Each is one object, in flash, made known to files and tools by registry.hpp.
+
+#include "shared/gait/actuation_module.hpp"
+
+namespace proleg {
+
+/// The angle of a joint as a parameter (thesis listing B.5). Nothing is broadcast.
+[[nodiscard]] const ActuationModule& direct_joint_access();
+
+/// A sin(2 pi f t + Phi_i) + O (thesis equation 3.1), Phi_i = i * phase_difference + phase. The phase is a function of
+/// the tick and the parameters alone: a joint that missed anything is right again at once, and a change of frequency
+/// makes the phase jump. For smooth changes there is the extended form.
+[[nodiscard]] const ActuationModule& pattern_generator_sinusoidal();
+
+/// As above, with phase accumulated over the ticks, so that it is continuous when the frequency changes; amplitude,
+/// phase and offset approach their parameters through critically damped filters (amplitude and offset start at 0); and
+/// a whole multiple of the frequency for each joint: A sin(n Theta + Phi_i) + O.
+[[nodiscard]] const ActuationModule& pattern_generator_sinusoidal_extended();
+
+/// Amplitude-controlled phase oscillators, coupled to both neighbours (A. J. Ijspeert et al., Science 315, 2007;
+/// A. Crespi and A. J. Ijspeert, CLAWAR 2006; without the neighbours' amplitude in the coupling, so that a joint at
+/// rest still hands the wave on):
+///   theta_i' = 2 pi f + sum_j w sin(theta_j - theta_i - (j - i) phase_difference),   out_i = X_i + r_i cos(theta_i)
+/// with r_i and X_i filtered as above. The phases start from noise.
+[[nodiscard]] const ActuationModule& pattern_generator_coupled_oscillator();
+
+}  // namespace proleg

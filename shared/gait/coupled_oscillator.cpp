@@ -1,0 +1,113 @@
+#include "shared/fixed/arithmetic.hpp"
+#include "shared/fixed/sine.hpp"
+#include "shared/gait/algorithms.hpp"
+#include "shared/gait/critical_filter.hpp"
+#include "shared/gait/generator_parameters.hpp"
+#include "shared/gait/pattern_generator.hpp"
+
+namespace proleg {
+namespace {
+
+enum Parameters : std::uint8_t { amplitude, frequency, phase_step, offset, coupling, rate, noise };
+constexpr Parameter parameters[] = {
+    generator_parameters::amplitude,
+    generator_parameters::frequency,
+    generator_parameters::phase_difference,
+    generator_parameters::offset,
+    Parameter{"coupling", Unit::per_second, raw(Unit::per_second, 10), 0, raw(Unit::per_second, 50),
+              "weight w of the coupling to each neighbour; acts as at most 0.5 / tick, where a chain is still stable"},
+    generator_parameters::rate,
+    generator_parameters::noise(raw(Unit::ratio, 1)),
+};
+
+enum Values : std::uint8_t {
+  current_amplitude = PatternGenerator::first_own_value,
+  amplitude_rate,
+  current_offset,
+  offset_rate,
+};
+constexpr InternalValue internal_values[] = {
+    InternalValue{"phase", Unit::phase_degree, raw(Unit::degree, 30), "phase of the oscillator"},
+    PatternGenerator::frequency_value,
+    PatternGenerator::phase_difference_value,
+    InternalValue{"current_amplitude", Unit::degree, raw(Unit::degree, 1), "filtered amplitude"},
+    InternalValue{"amplitude_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
+    InternalValue{"current_offset", Unit::degree, raw(Unit::degree, 1), "filtered offset"},
+    InternalValue{"offset_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
+};
+constexpr FrameField frame[] = {FrameField{PatternGenerator::phase, 4}, FrameField{current_amplitude, 2}};
+
+constexpr Declaration about{4,
+                            "PatternGenerator_coupled_oscillator",
+                            "amplitude-controlled phase oscillators coupled to their neighbours",
+                            parameters,
+                            internal_values,
+                            frame};
+
+class CoupledOscillator final : public PatternGenerator {
+ public:
+  [[nodiscard]] const Declaration& declaration() const override { return about; }
+
+  [[nodiscard]] std::int32_t output(const Tuning& /*tuning*/, const std::int32_t* state) const override {
+    const std::int32_t swing = multiply(state[current_amplitude], cosine(static_cast<std::uint32_t>(state[phase])), 30);
+    return add_saturating(swing, state[current_offset]);
+  }
+
+ private:
+  enum OwnDerived : std::uint8_t { gain = first_own_derived, half_rate, decay, arrived };
+
+  [[nodiscard]] std::int32_t nominal_frequency(const std::int32_t* values) const override {
+    return values[Parameters::frequency];
+  }
+
+  void derive_pattern(const Place& place, const std::int32_t* values, std::int32_t* derived) const override {
+    // The step of phase for a sine of 1: w dt / (2 pi) turns.
+    constexpr std::int64_t inverse_of_two_pi = 170891319;  // Q30
+    const std::int64_t weight =
+        divide_nearest((std::int64_t{values[coupling]} * place.tick_period_us) << 6U, 1'000'000);
+    const std::int64_t stable = weight > (1 << 29) ? 1 << 29 : weight;
+    derived[gain] = static_cast<std::int32_t>(shift_right_rounding(stable * inverse_of_two_pi, 28));
+    const CriticalFilter filter = make_critical_filter(values[rate], place.tick_period_us);
+    derived[half_rate] = filter.half_rate;
+    derived[decay] = filter.decay;
+    derived[arrived] = filter.arrived;
+  }
+
+  void reset_pattern(const Place& /*place*/, const Tuning& /*tuning*/, std::int32_t* /*state*/) const override {}
+
+  void advance_pattern(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
+                       std::int32_t* next) const override {
+    std::int32_t step = tuning.derived[phase_increment];
+    step = add_wrapping(step, pull(surroundings.ahead, surroundings.place, tuning, state));
+    step = add_wrapping(step, pull(surroundings.behind, surroundings.place, tuning, state));
+    next[phase] = add_wrapping(state[phase], step);
+
+    const CriticalFilter filter{tuning.derived[half_rate], tuning.derived[decay], tuning.derived[arrived]};
+    next[amplitude_rate] = state[amplitude_rate];
+    next[current_amplitude] =
+        approach(filter, tuning.parameters[amplitude], state[current_amplitude], next[amplitude_rate]);
+    next[offset_rate] = state[offset_rate];
+    next[current_offset] = approach(filter, tuning.parameters[offset], state[current_offset], next[offset_rate]);
+  }
+
+  /// What a neighbour adds to the phase in a tick.
+  static std::int32_t pull(const Neighbour& neighbour, const Place& place, const Tuning& tuning,
+                           const std::int32_t* state) {
+    if (!neighbour.present()) {
+      return 0;
+    }
+    const std::uint32_t distance = neighbour.joint() - place.joint;
+    const std::uint32_t wanted = distance * static_cast<std::uint32_t>(tuning.parameters[phase_step]);
+    const std::uint32_t lead =
+        static_cast<std::uint32_t>(neighbour.value(phase_field)) - static_cast<std::uint32_t>(state[phase]) - wanted;
+    return multiply(tuning.derived[gain], sine(lead), 30);
+  }
+};
+
+constexpr CoupledOscillator instance;
+
+}  // namespace
+
+const ActuationModule& pattern_generator_coupled_oscillator() { return instance; }
+
+}  // namespace proleg

@@ -1,0 +1,56 @@
+#pragma once
+
+// Critically damped second-order filter with double pole at -a/2, r'' = a (a/4 (R - r) - r'), in its exact step over a
+// tick (no integration error, stable for every a). With e = r - R, h = a/2, q = exp(-h dt) and the rate kept as
+// u = r'/h, an angle like e:
+//   step = h dt (e + u):  e <- (e + step) q,  u <- (u - step) q
+// A rate kept as r' dt would have too few steps left in slow filters; and as u, a change of a in the middle of a motion
+// changes its pace and never makes it overshoot. Source of the filter: A. J. Ijspeert et al., Science 315 (2007).
+
+#include <cstdint>
+
+#include "shared/fixed/arithmetic.hpp"
+#include "shared/fixed/exponential.hpp"
+
+namespace proleg {
+
+struct CriticalFilter {
+  std::int32_t half_rate;  ///< h dt in Q30, at most 1
+  std::int32_t decay;      ///< q in Q30
+  std::int32_t arrived;    ///< closer than this the roundings outweigh the motion
+};
+
+/// rate: a in Q24 1/s, not negative. Rates above 2 / tick act as 2 / tick.
+[[nodiscard]] inline CriticalFilter make_critical_filter(std::int32_t rate, std::uint32_t tick_period_us) {
+  const std::int64_t half_rate = divide_nearest((std::int64_t{rate} * tick_period_us) << 5U, 1'000'000);
+  const auto limited = static_cast<std::int32_t>(half_rate > (1 << 30) ? 1 << 30 : half_rate);
+  // exp(-x) takes Q24; for the bits of Q30 below that, exp(-x) is 1 - x.
+  const std::int32_t coarse = exponential_decay(limited >> 6);
+  const std::int32_t decay = coarse - multiply(coarse, limited & 63, 30);
+  // Two roundings a tick of half a step each can hold e and u together up to 4 / (h dt) steps away.
+  const std::int32_t arrived = saturate(64 + (std::int64_t{1} << 32U) / (limited > 0 ? limited : 1));
+  return {limited, decay, arrived};
+}
+
+/// One tick. distance: value - target, as the caller's quantity wraps or saturates. Returns the new distance.
+/// With distance and rate both below `arrived` (64 + 4 / (h dt) steps) the filter arrives, so that it ends exactly on
+/// the target.
+[[nodiscard]] inline std::int32_t advance(const CriticalFilter& filter, std::int32_t distance, std::int32_t& rate) {
+  const std::int32_t step = multiply(filter.half_rate, add_saturating(distance, rate), 30);
+  const std::int32_t next_distance = saturate(shift_right_rounding((std::int64_t{distance} + step) * filter.decay, 30));
+  rate = saturate(shift_right_rounding((std::int64_t{rate} - step) * filter.decay, 30));
+  if (next_distance > -filter.arrived && next_distance < filter.arrived && rate > -filter.arrived &&
+      rate < filter.arrived) {
+    rate = 0;
+    return 0;
+  }
+  return next_distance;
+}
+
+/// One tick of a filtered value that saturates.
+[[nodiscard]] inline std::int32_t approach(const CriticalFilter& filter, std::int32_t target, std::int32_t value,
+                                           std::int32_t& rate) {
+  return add_saturating(target, advance(filter, saturate(std::int64_t{value} - target), rate));
+}
+
+}  // namespace proleg

@@ -1,0 +1,70 @@
+#pragma once
+
+// What an algorithm says about itself, once: its parameters, its internal values and what it broadcasts. The command
+// line, the scenario reader, recordings, documentation and the object dictionary take names, units, ranges and layout
+// from here.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string_view>
+
+#include "shared/fixed/unit.hpp"
+
+namespace proleg {
+
+/// Capacities of one slot on one joint.
+inline constexpr std::size_t max_parameters = 16;
+inline constexpr std::size_t max_derived = 8;
+inline constexpr std::size_t max_internal_values = 12;
+
+/// A value that a user sets, uniform over the joints of a slot or for each joint.
+struct Parameter {
+  std::string_view name;
+  Unit unit;
+  std::int32_t default_value;
+  std::int32_t minimum;
+  std::int32_t maximum;
+  std::string_view help;
+};
+
+/// A value that the algorithm computes: its state, and what is measured on it.
+struct InternalValue {
+  std::string_view name;
+  Unit unit;
+  /// Standard deviation, in raw steps, of the noise that a pattern generator adds at reset when its parameter `noise`
+  /// is 1; 0 for values that start without noise.
+  std::int32_t noise_scale;
+  std::string_view help;
+};
+
+/// A part of the state frame: the leading bytes of an internal value, little-endian. Values with unit `count` send
+/// their low bytes instead.
+struct FrameField {
+  std::uint8_t internal_value;  ///< index into Declaration::internal_values
+  std::uint8_t bytes;           ///< 1 to 4
+};
+
+struct Declaration {
+  std::uint8_t id;  ///< 1 to 127, never reused: object dictionary index 0x3000 + 32 id + parameter number
+  std::string_view name;
+  std::string_view help;
+  std::span<const Parameter> parameters;
+  std::span<const InternalValue> internal_values;
+  std::span<const FrameField> frame;  ///< at most 6 bytes; empty if nothing is broadcast
+};
+
+/// Position of a parameter or internal value of that name, or -1.
+[[nodiscard]] int find_parameter(const Declaration& declaration, std::string_view name);
+[[nodiscard]] int find_internal_value(const Declaration& declaration, std::string_view name);
+
+/// Range of a phase: all of it.
+inline constexpr std::int32_t phase_minimum = std::numeric_limits<std::int32_t>::min();
+inline constexpr std::int32_t phase_maximum = std::numeric_limits<std::int32_t>::max();
+
+/// 90 degrees, the largest joint angle (thesis, table 3.1).
+inline constexpr std::int32_t quarter_turn = 1 << 30;
+
+}  // namespace proleg

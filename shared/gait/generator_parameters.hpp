@@ -1,0 +1,37 @@
+#pragma once
+
+// Parameters that several pattern generators have in common. Ranges: thesis, table 3.1; defaults: the travelling wave
+// of thesis section 6.1 at the 1 Hz that its servo allows.
+
+#include "shared/gait/declaration.hpp"
+
+namespace proleg::generator_parameters {
+
+inline constexpr Parameter amplitude{"amplitude", Unit::degree, raw(Unit::degree, 40),
+                                     0,           quarter_turn, "amplitude of the joint angle"};
+inline constexpr Parameter frequency{"frequency", Unit::hertz,          raw(Unit::hertz, 1),
+                                     0,           raw(Unit::hertz, 20), "frequency of the gait"};
+inline constexpr Parameter phase_difference{
+    "phase_difference",
+    Unit::phase_degree,
+    raw(Unit::phase_degree, 55),
+    phase_minimum,
+    phase_maximum,
+    "phase of a joint minus phase of the joint before it, counted from the head"};
+inline constexpr Parameter phase{"phase",       Unit::phase_degree, 0,
+                                 phase_minimum, phase_maximum,      "phase added to the joint"};
+inline constexpr Parameter offset{"offset",      Unit::degree, 0,
+                                  -quarter_turn, quarter_turn, "angle around which the joint oscillates"};
+inline constexpr Parameter rate{"rate",
+                                Unit::per_second,
+                                raw(Unit::per_second, 20),
+                                raw(Unit::per_second, 1, 10),
+                                raw(Unit::per_second, 100),
+                                "rate a of the critically damped filters; 95 % of a change takes 9.49/a"};
+
+/// Factor on the noise at reset; the default differs between algorithms.
+[[nodiscard]] constexpr Parameter noise(std::int32_t default_value) {
+  return {"noise", Unit::ratio, default_value, 0, raw(Unit::ratio, 4), "factor on the noise of the start state"};
+}
+
+}  // namespace proleg::generator_parameters

@@ -1,0 +1,54 @@
+#include "shared/gait/pattern_generator.hpp"
+
+#include "shared/fixed/arithmetic.hpp"
+
+namespace proleg {
+
+std::int32_t phase_increment_of(std::int32_t frequency, std::uint32_t tick_period_us) {
+  // 2^32 / 2^24 = 2^8 steps of phase for a step of frequency and a second.
+  return static_cast<std::int32_t>(
+      static_cast<std::uint32_t>(divide_nearest(std::int64_t{frequency} * tick_period_us * 256, 1'000'000)));
+}
+
+void PatternGenerator::derive(const Place& place, const std::int32_t* parameters, std::int32_t* derived) const {
+  derived[phase_increment] = phase_increment_of(nominal_frequency(parameters), place.tick_period_us);
+  derived[ticks_per_second] =
+      saturate(divide_nearest(std::int64_t{1'000'000} << 16U, std::int64_t{place.tick_period_us}));
+  derive_pattern(place, parameters, derived);
+}
+
+void PatternGenerator::reset(const Place& place, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const {
+  reset_pattern(place, tuning, state);
+  const Declaration& about = declaration();
+  const int noise_parameter = find_parameter(about, "noise");
+  if (noise_parameter < 0) {
+    return;
+  }
+  const std::int32_t level = tuning.parameters[noise_parameter];
+  for (std::size_t i = 0; i < about.internal_values.size(); ++i) {
+    const InternalValue& value = about.internal_values[i];
+    if (value.noise_scale != 0) {
+      const std::int32_t deviation = saturate(shift_right_rounding(std::int64_t{value.noise_scale} * level, 28));
+      const std::int64_t sample = shift_right_rounding(std::int64_t{deviation} * noise.gaussian(), 16);
+      state[i] =
+          wraps(value.unit) ? add_wrapping(state[i], static_cast<std::int32_t>(sample)) : saturate(state[i] + sample);
+    }
+  }
+}
+
+void PatternGenerator::advance(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
+                               std::int32_t* next) const {
+  advance_pattern(surroundings, tuning, state, next);
+  // turns/tick in Q32 times ticks/s in Q16 is Q48; Q24 is wanted.
+  next[frequency] = saturate(shift_right_rounding(
+      std::int64_t{subtract_wrapping(next[phase], state[phase])} * tuning.derived[ticks_per_second], 24));
+  next[phase_difference] =
+      surroundings.behind.present() ? subtract_wrapping(surroundings.behind.value(phase_field), state[phase]) : 0;
+}
+
+void PatternGenerator::extrapolate(const Tuning& tuning, const std::int32_t* /*state*/, StateFrame& frame) const {
+  const std::int32_t last = unpack(declaration(), phase_field, frame);
+  repack(declaration(), phase_field, add_wrapping(last, tuning.derived[phase_increment]), frame);
+}
+
+}  // namespace proleg

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "shared/gait/actuation_module.hpp"
+
+namespace proleg {
+
+/// Everything that produces a periodic signal (thesis, section 5.2.1 and listing A.2). An algorithm that derives from
+/// it gets for nothing: its frequency and its phase difference to the next joint, measured in each tick; seeded
+/// Gaussian noise on its internal values at reset; and neighbours that extrapolate its phase when a frame is lost.
+///
+/// In return its declaration starts with the three internal values below, its frame starts with the phase on four
+/// bytes, and its first derived constant is the phase increment.
+class PatternGenerator : public ActuationModule {
+ public:
+  /// The first internal values of every pattern generator.
+  enum Value : std::uint8_t {
+    phase,             ///< argument of the periodic signal
+    frequency,         ///< measured: change of `phase` over the last tick
+    phase_difference,  ///< measured: phase of the next joint of the group minus the own; 0 for the last joint
+    first_own_value
+  };
+  static constexpr InternalValue phase_value{"phase", Unit::phase_degree, 0, "argument of the periodic signal"};
+  static constexpr InternalValue frequency_value{"frequency", Unit::hertz, 0, "measured frequency"};
+  static constexpr InternalValue phase_difference_value{"phase_difference", Unit::phase_degree, 0,
+                                                        "measured phase difference to the next joint towards the tail"};
+  static constexpr std::size_t phase_field = 0;
+
+  /// The first derived constants of every pattern generator.
+  enum Derived : std::uint8_t {
+    phase_increment,   ///< change of the phase in a tick, 2^32 = one turn
+    ticks_per_second,  ///< Q16
+    first_own_derived
+  };
+
+  void derive(const Place& place, const std::int32_t* parameters, std::int32_t* derived) const final;
+  void reset(const Place& place, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const final;
+  void advance(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
+               std::int32_t* next) const final;
+  void extrapolate(const Tuning& tuning, const std::int32_t* state, StateFrame& frame) const final;
+
+ protected:
+  ~PatternGenerator() = default;
+
+ private:
+  /// The generator's nominal frequency, in Q24 hertz.
+  [[nodiscard]] virtual std::int32_t nominal_frequency(const std::int32_t* parameters) const = 0;
+  /// Writes the derived constants from `first_own_derived` on. The phase increment is that of the nominal frequency;
+  /// a generator whose phase runs at a multiple of it corrects it here.
+  virtual void derive_pattern(const Place& place, const std::int32_t* parameters, std::int32_t* derived) const = 0;
+  /// As ActuationModule::reset, without the noise.
+  virtual void reset_pattern(const Place& place, const Tuning& tuning, std::int32_t* state) const = 0;
+  /// As ActuationModule::advance, for all values but the two measured ones.
+  virtual void advance_pattern(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
+                               std::int32_t* next) const = 0;
+};
+
+/// Phase increment of a tick: the integer nearest to 2^32 * frequency * tick. frequency: Q24 hertz.
+/// Without a remainder: the phase drifts by at most half a step a tick (0.0151 degrees an hour at 10 ms), and every
+/// module and the simulator drift alike.
+[[nodiscard]] std::int32_t phase_increment_of(std::int32_t frequency, std::uint32_t tick_period_us);
+
+}  // namespace proleg

@@ -1,0 +1,185 @@
+#pragma once
+
+// The control kernel (thesis, section 4.3.1 and algorithm 1): up to four slots, each an actuation module on a group of
+// joints; groups may overlap, outputs are added joint by joint. The same code runs one joint (in a module) or all
+// joints (in the simulator); joints learn of each other only through state frames.
+//
+// Order of a tick k, at SYNC k: set_contacts, then advance(): commits due at k take effect, every local joint computes
+// state k + 1 from the frames labelled k, then the frames labelled k + 1 are packed and may be sent. Frames of other
+// joints labelled k + 1 are handed to receive() before SYNC k + 1.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "shared/gait/actuation_module.hpp"
+#include "shared/kernel/status.hpp"
+
+namespace proleg {
+
+inline constexpr std::size_t max_slots = 4;
+/// State frames a joint sends in a tick: the first broadcasting slot of the joint and the second.
+inline constexpr std::size_t max_channels = 2;
+
+/// An actuation module on a group of joints.
+struct Slot {
+  const ActuationModule* algorithm = nullptr;  ///< null: the slot is empty
+  JointMask group;
+};
+
+/// What all modules of a robot agree on.
+struct KernelConfiguration {
+  std::uint8_t joint_count = 0;
+  std::uint32_t tick_period_us = 10'000;
+  std::uint64_t seed = 1;  ///< of the noise at reset
+  std::array<Slot, max_slots> slots;
+};
+
+/// What the kernel keeps for a slot on a joint.
+struct SlotMemory {
+  Place place;
+  Neighbour ahead;
+  Neighbour behind;
+  std::array<std::int32_t, max_parameters> parameters;
+  std::array<std::int32_t, max_derived> derived;
+  std::array<std::array<std::int32_t, max_internal_values>, 2> values;  ///< two buffers, never in place
+  std::array<std::int32_t, max_parameters> staged;
+  std::uint32_t staged_mask;
+  const Declaration* broadcast;  ///< what the slot sends; null if it sends nothing
+  std::uint8_t channel;
+  bool active;
+};
+
+/// What the kernel keeps for a joint.
+struct JointMemory {
+  std::array<SlotMemory, max_slots> slots;
+  std::int32_t lower_limit;
+  std::int32_t upper_limit;
+  std::int32_t previous_setpoint;
+  std::int32_t setpoint;
+  std::uint8_t contacts;
+  bool limited;
+};
+
+class Kernel {
+ public:
+  /// memory: one element for each joint that the kernel computes; it must outlive the kernel.
+  explicit Kernel(std::span<JointMemory> memory) : memory_(memory) {}
+  Kernel(const Kernel&) = delete;
+  Kernel& operator=(const Kernel&) = delete;
+
+  /// Takes a configuration, sets all parameters to their defaults and all limits to +-90 degrees, and resets.
+  /// The kernel computes the joints first_joint .. first_joint + size of the memory - 1.
+  Status configure(const KernelConfiguration& configuration, unsigned first_joint);
+
+  /// The sum of the slots is cut to these limits (90 degrees = 2^30).
+  Status set_limits(unsigned joint, std::int32_t lower, std::int32_t upper);
+
+  /// Sets a parameter at once, for use before the first tick; reset() makes the start state follow.
+  Status set_parameter(unsigned slot, unsigned joint, unsigned parameter, std::int32_t value);
+
+  /// Back to tick 0 and state 0. Staged changes are dropped; parameters stay.
+  void reset();
+
+  /// Changing parameters in flight: stage values under a transaction number, then commit the transaction at a tick
+  /// that is not computed yet. Staging under a new number drops what was staged under the old one.
+  Status stage(std::uint16_t transaction, unsigned slot, unsigned joint, unsigned parameter, std::int32_t value);
+  Status commit(std::uint16_t transaction, std::uint32_t tick);
+
+  /// Overwrites an internal value (thesis listing A.2, setDistortion). Neighbours see it one tick later.
+  Status distort(unsigned slot, unsigned joint, unsigned internal_value, std::int32_t value);
+
+  /// Contacts of a local joint as of the coming SYNC: bits 0-1 the link behind the joint, bits 2-3 the link before
+  /// joint 0, as in the state frame.
+  void set_contacts(unsigned joint, std::uint8_t contacts);
+
+  /// Computes state tick() + 1 of all local joints.
+  void advance();
+
+  /// A frame of another joint. Ignored, and so counted as missed, unless it is labelled with the coming tick and holds
+  /// a valid state.
+  /// Returns whether it was taken.
+  bool receive(unsigned joint, unsigned channel, const StateFrame& frame);
+
+  /// The coming tick: number of times that advance() was called since the reset.
+  [[nodiscard]] std::uint32_t tick() const { return tick_; }
+  [[nodiscard]] const KernelConfiguration& configuration() const { return configuration_; }
+  [[nodiscard]] unsigned first_joint() const { return first_joint_; }
+  [[nodiscard]] unsigned local_joint_count() const { return static_cast<unsigned>(memory_.size()); }
+  [[nodiscard]] bool is_local(unsigned joint) const {
+    return joint >= first_joint_ && joint - first_joint_ < memory_.size();
+  }
+
+  // Readings of a local joint.
+  /// out(tick()), towards which the servo moves until the coming SYNC.
+  [[nodiscard]] std::int32_t setpoint(unsigned joint) const { return joint_memory(joint).setpoint; }
+  /// out(tick() - 1), from which it moves.
+  [[nodiscard]] std::int32_t previous_setpoint(unsigned joint) const { return joint_memory(joint).previous_setpoint; }
+  [[nodiscard]] bool drives(unsigned slot, unsigned joint) const;
+  [[nodiscard]] std::int32_t parameter(unsigned slot, unsigned joint, unsigned parameter) const;
+  [[nodiscard]] std::int32_t internal_value(unsigned slot, unsigned joint, unsigned internal_value) const;
+  /// Number of state frames that a joint sends in a tick: 1 or 2.
+  [[nodiscard]] unsigned channel_count(unsigned joint) const { return broadcasters_[1].contains(joint) ? 2 : 1; }
+  /// The frame labelled tick().
+  [[nodiscard]] const StateFrame& frame(unsigned joint, unsigned channel) const { return heard_[channel][joint]; }
+
+  /// Frames of other joints that were missing when they were needed, since the reset.
+  [[nodiscard]] std::uint32_t missed_frames() const { return missed_frames_; }
+
+  /// The whole state, parameters included, in a byte order and layout that is the same everywhere. A kernel with the
+  /// same configuration and the same local joints continues from it bit for bit.
+  [[nodiscard]] std::size_t snapshot_size() const;
+  Status save(std::span<std::uint8_t> snapshot) const;
+  Status restore(std::span<const std::uint8_t> snapshot);
+
+ private:
+  template <typename Archive>
+  void visit_state(Archive& archive);
+
+  [[nodiscard]] JointMemory& joint_memory(unsigned joint) { return memory_[joint - first_joint_]; }
+  [[nodiscard]] const JointMemory& joint_memory(unsigned joint) const { return memory_[joint - first_joint_]; }
+  [[nodiscard]] Tuning tuning(const SlotMemory& slot) const { return {slot.parameters.data(), slot.derived.data()}; }
+  [[nodiscard]] std::array<std::int32_t, max_internal_values>& current(SlotMemory& slot) const {
+    return slot.values[tick_ & 1U];
+  }
+  [[nodiscard]] const std::array<std::int32_t, max_internal_values>& current(const SlotMemory& slot) const {
+    return slot.values[tick_ & 1U];
+  }
+
+  void set_up(unsigned joint);
+  [[nodiscard]] Neighbour neighbour(unsigned slot, int joint) const;
+  void derive(unsigned slot, SlotMemory& memory);
+  Status check_parameter(unsigned slot, unsigned joint, unsigned parameter, std::int32_t value) const;
+  void apply_commit();
+  void close_transaction();
+  void fill_missed_frames();
+  void compute_next_state(JointMemory& joint);
+  void update_setpoint(JointMemory& joint);
+  void pack_frames(unsigned joint);
+
+  std::span<JointMemory> memory_;
+  KernelConfiguration configuration_;
+  unsigned first_joint_ = 0;
+  std::uint32_t tick_ = 0;
+  std::uint32_t missed_frames_ = 0;
+  std::uint32_t commit_tick_ = 0;
+  std::uint16_t transaction_ = 0;
+  bool staged_ = false;
+  bool committed_ = false;
+  std::array<JointMask, max_channels> broadcasters_;  ///< the joints of which a slot sends on the channel
+  /// For each slot the joints of which it uses the second channel.
+  std::array<JointMask, max_slots> second_channel_;
+  std::array<JointMask, max_channels> arrived_;  ///< whose frames with the label tick_ are in heard_
+  std::array<std::array<StateFrame, max_joints>, max_channels> heard_;
+};
+
+/// A kernel with memory for its joints.
+template <std::size_t LocalJoints>
+class KernelOf : private std::array<JointMemory, LocalJoints>, public Kernel {
+ public:
+  KernelOf()
+      : std::array<JointMemory, LocalJoints>{}, Kernel(static_cast<std::array<JointMemory, LocalJoints>&>(*this)) {}
+};
+
+}  // namespace proleg

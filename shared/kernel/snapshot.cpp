@@ -1,0 +1,196 @@
+#include "shared/kernel/kernel.hpp"
+
+// One list of what makes up the state serves counting, writing, checking and reading. Little-endian, no padding.
+
+namespace proleg {
+namespace {
+
+constexpr std::uint32_t snapshot_magic = 0x314B5350;  // "PSK1"
+
+class Counter {
+ public:
+  template <typename Integer>
+  void identity(Integer /*value*/) {
+    size_ += sizeof(Integer);
+  }
+  template <typename Integer>
+  void value(Integer& /*value*/) {
+    size_ += sizeof(Integer);
+  }
+  void ranged(std::int32_t& value, std::int32_t /*lowest*/, std::int32_t /*highest*/) { this->value(value); }
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+ private:
+  std::size_t size_ = 0;
+};
+
+class Writer {
+ public:
+  explicit Writer(std::span<std::uint8_t> bytes) : bytes_(bytes) {}
+
+  template <typename Integer>
+  void identity(Integer value) {
+    for (std::size_t i = 0; i < sizeof(Integer); ++i) {
+      bytes_[position_++] = static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i));
+    }
+  }
+  template <typename Integer>
+  void value(Integer& value) {
+    identity(value);
+  }
+  void ranged(std::int32_t& value, std::int32_t /*lowest*/, std::int32_t /*highest*/) { identity(value); }
+
+ private:
+  std::span<std::uint8_t> bytes_;
+  std::size_t position_ = 0;
+};
+
+/// Reads a snapshot of the right size; `apply` false only looks whether it fits the kernel.
+class Reader {
+ public:
+  Reader(std::span<const std::uint8_t> bytes, bool apply) : bytes_(bytes), apply_(apply) {}
+
+  template <typename Integer>
+  void identity(Integer value) {
+    fits_ = take<Integer>() == value && fits_;
+  }
+  template <typename Integer>
+  void value(Integer& value) {
+    const auto read = take<Integer>();
+    if (apply_) {
+      value = read;
+    }
+  }
+  void value(bool& value) {
+    const auto read = take<std::uint8_t>();
+    fits_ = fits_ && read <= 1;
+    if (apply_) {
+      value = read == 1;
+    }
+  }
+  void ranged(std::int32_t& value, std::int32_t lowest, std::int32_t highest) {
+    const auto read = take<std::int32_t>();
+    fits_ = fits_ && read >= lowest && read <= highest;
+    if (apply_) {
+      value = read;
+    }
+  }
+
+  [[nodiscard]] bool fits() const { return fits_; }
+
+ private:
+  template <typename Integer>
+  Integer take() {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < sizeof(Integer); ++i) {
+      value |= std::uint64_t{bytes_[position_++]} << (8 * i);
+    }
+    return static_cast<Integer>(value);
+  }
+
+  std::span<const std::uint8_t> bytes_;
+  std::size_t position_ = 0;
+  bool apply_;
+  bool fits_ = true;
+};
+
+}  // namespace
+
+template <typename Archive>
+void Kernel::visit_state(Archive& archive) {
+  archive.identity(snapshot_magic);
+  archive.identity(configuration_.joint_count);
+  archive.identity(configuration_.tick_period_us);
+  archive.identity(static_cast<std::uint8_t>(first_joint_));
+  archive.identity(static_cast<std::uint8_t>(memory_.size()));
+  for (const Slot& slot : configuration_.slots) {
+    archive.identity(slot.algorithm == nullptr ? std::uint8_t{0} : slot.algorithm->declaration().id);
+    archive.identity(slot.group.bits());
+  }
+
+  archive.value(tick_);
+  archive.value(missed_frames_);
+  archive.value(commit_tick_);
+  archive.value(transaction_);
+  archive.value(staged_);
+  archive.value(committed_);
+  for (JointMemory& joint : memory_) {
+    archive.value(joint.lower_limit);
+    archive.value(joint.upper_limit);
+    archive.value(joint.previous_setpoint);
+    archive.value(joint.setpoint);
+    archive.value(joint.contacts);
+    archive.value(joint.limited);
+    for (unsigned s = 0; s < max_slots; ++s) {
+      SlotMemory& slot = joint.slots[s];
+      if (!slot.active) {
+        continue;
+      }
+      const Declaration& declaration = configuration_.slots[s].algorithm->declaration();
+      archive.value(slot.staged_mask);
+      for (std::size_t p = 0; p < declaration.parameters.size(); ++p) {
+        const Parameter& parameter = declaration.parameters[p];
+        archive.ranged(slot.parameters[p], parameter.minimum, parameter.maximum);
+        // Only what is staged counts; the rest of the array may hold anything.
+        const bool pending = ((slot.staged_mask >> p) & 1U) != 0;
+        std::int32_t staged = pending ? slot.staged[p] : slot.parameters[p];
+        archive.ranged(staged, parameter.minimum, parameter.maximum);
+        if (pending) {
+          slot.staged[p] = staged;
+        }
+      }
+      for (std::size_t v = 0; v < declaration.internal_values.size(); ++v) {
+        archive.value(current(slot)[v]);
+      }
+    }
+  }
+  for (unsigned channel = 0; channel < max_channels; ++channel) {
+    std::uint64_t arrived = arrived_[channel].bits();
+    archive.value(arrived);
+    arrived_[channel] = JointMask(arrived);
+    for (unsigned joint = 0; joint < configuration_.joint_count; ++joint) {
+      for (std::uint8_t& byte : heard_[channel][joint].bytes) {
+        archive.value(byte);
+      }
+    }
+  }
+}
+
+std::size_t Kernel::snapshot_size() const {
+  Counter counter;
+  const_cast<Kernel*>(this)->visit_state(counter);  // a counter changes nothing
+  return counter.size();
+}
+
+Status Kernel::save(std::span<std::uint8_t> snapshot) const {
+  if (snapshot.size() < snapshot_size()) {
+    return Status::no_room;
+  }
+  Writer writer(snapshot);
+  const_cast<Kernel*>(this)->visit_state(writer);  // neither does a writer
+  return Status::ok;
+}
+
+Status Kernel::restore(std::span<const std::uint8_t> snapshot) {
+  if (snapshot.size() != snapshot_size()) {
+    return Status::bad_snapshot;
+  }
+  Reader check(snapshot, false);
+  visit_state(check);
+  if (!check.fits()) {
+    return Status::bad_snapshot;
+  }
+  Reader reader(snapshot, true);
+  visit_state(reader);
+  for (JointMemory& joint : memory_) {
+    for (unsigned s = 0; s < max_slots; ++s) {
+      if (joint.slots[s].active) {
+        derive(s, joint.slots[s]);
+      }
+    }
+  }
+  return Status::ok;
+}
+
+}  // namespace proleg

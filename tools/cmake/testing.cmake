@@ -1,0 +1,28 @@
+# Tests mirror the tree: tests/shared/fixed holds the tests of shared/fixed, built into one program.
+
+find_package(GTest REQUIRED)
+include(GoogleTest)
+
+# Build folders of several presets are tested in one ctest run; the prefix keeps their tests apart.
+set(PROLEG_TEST_PREFIX "")
+if(PROLEG_SANITIZE)
+  set(PROLEG_TEST_PREFIX "asan.")
+endif()
+
+# proleg_test(<path> SOURCES ... [DEPENDS rooms...] [LIBRARIES targets...] [LABELS ...])
+#   path   the tested room or subject, e.g. shared/fixed; each GoogleTest case becomes a ctest test
+function(proleg_test path)
+  cmake_parse_arguments(PARSE_ARGV 1 test "" "" "SOURCES;DEPENDS;LIBRARIES;LABELS")
+  string(REPLACE "/" "_" name ${path})
+  add_executable(${name}_test ${test_SOURCES})
+  foreach(dependency IN LISTS test_DEPENDS)
+    string(REPLACE "/" "_" dependency_target ${dependency})
+    target_link_libraries(${name}_test PRIVATE proleg::${dependency_target})
+  endforeach()
+  target_link_libraries(${name}_test PRIVATE ${test_LIBRARIES} GTest::gtest GTest::gtest_main)
+  target_compile_definitions(${name}_test PRIVATE PROLEG_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  gtest_discover_tests(${name}_test
+    TEST_PREFIX "${PROLEG_TEST_PREFIX}${path}."
+    DISCOVERY_TIMEOUT 60
+    PROPERTIES LABELS "${test_LABELS}" TIMEOUT 300)
+endfunction()

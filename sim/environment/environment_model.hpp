@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sim/robot/robot_model.hpp"
+
+namespace proleg::sim {
+
+/// Something in the world that does not move: the floor, a wall, a step.
+struct StaticObject {
+  std::string name;
+  Pose pose;  ///< in the world
+  std::vector<Geometry> geometries;
+};
+
+/// The world a robot crawls in.
+struct EnvironmentModel {
+  Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< m/s^2
+  bool self_collision = false;               ///< whether links that are not neighbours collide
+  std::vector<StaticObject> objects;
+  Pose robot_pose;  ///< where the robot starts
+};
+
+}  // namespace proleg::sim

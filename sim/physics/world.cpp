@@ -1,0 +1,308 @@
+#include "sim/physics/world.hpp"
+
+#include <ode/ode.h>
+
+#include <array>
+#include <cmath>
+
+#include "sim/physics/engine.hpp"
+#include "sim/physics/physics_error.hpp"
+
+namespace proleg::sim {
+namespace {
+
+struct DestroyWorld {
+  void operator()(dxWorld* world) const { dWorldDestroy(world); }
+};
+struct DestroySpace {
+  void operator()(dxSpace* space) const { dSpaceDestroy(space); }
+};
+struct DestroyJointGroup {
+  void operator()(dxJointGroup* group) const { dJointGroupDestroy(group); }
+};
+struct FreeThreading {
+  void operator()(dxThreadingImplementation* threading) const { dThreadingFreeImplementation(threading); }
+};
+
+void to_quaternion(const Eigen::Quaterniond& orientation, dQuaternion out) {
+  out[0] = orientation.w();
+  out[1] = orientation.x();
+  out[2] = orientation.y();
+  out[3] = orientation.z();
+}
+
+/// What the collision callback needs to know of a geometry.
+struct GeometryData {
+  int link = -1;  ///< -1: the environment
+  std::optional<double> friction;
+};
+
+/// The sensors of a link: a contact counts for the half on whose side of the middle it lies.
+struct SensorLayout {
+  Eigen::Vector3d middle;   ///< in the frame of the link
+  Eigen::Vector3d forward;  ///< in the frame of the link, towards the head
+};
+
+}  // namespace
+
+class World::Implementation {
+ public:
+  Implementation(const RobotModel& robot, const EnvironmentModel& environment, double step_s, Stepper stepper)
+      : step_s_(step_s), stepper_(stepper), self_collision_(environment.self_collision) {
+    prepare_engine_for_this_thread();
+    messages_before_ = engine_messages();
+    world_.reset(dWorldCreate());
+    // Without a threading implementation of its own, a world stepped beside others crashes.
+    threading_.reset(dThreadingAllocateSelfThreadedImplementation());
+    dWorldSetStepThreadingImplementation(world_.get(), dThreadingImplementationGetFunctions(threading_.get()),
+                                         threading_.get());
+    dRandSetSeed(0);  // dWorldQuickStep shuffles its rows with it
+    robot_space_.reset(dSimpleSpaceCreate(nullptr));
+    environment_space_.reset(dSimpleSpaceCreate(nullptr));
+    contact_group_.reset(dJointGroupCreate(0));
+    dWorldSetGravity(world_.get(), environment.gravity.x(), environment.gravity.y(), environment.gravity.z());
+
+    std::size_t geometry_count = 0;
+    for (const Link& link : robot.links) {
+      geometry_count += link.geometries.size();
+    }
+    for (const StaticObject& object : environment.objects) {
+      geometry_count += object.geometries.size();
+    }
+    geometry_data_.reserve(geometry_count);  // the engine keeps pointers into it
+
+    add_environment(environment);
+    add_links(robot, environment.robot_pose);
+    add_joints(robot, environment.robot_pose);
+  }
+
+  void set_joint_speed(std::size_t joint, double speed) { dJointSetHingeParam(joints_[joint], dParamVel, speed); }
+
+  void step() {
+    link_contacts_.assign(bodies_.size(), 0);
+    contact_count_ = 0;
+    dSpaceCollide2(reinterpret_cast<dGeomID>(robot_space_.get()), reinterpret_cast<dGeomID>(environment_space_.get()),
+                   this, &Implementation::on_near);
+    if (self_collision_) {
+      dSpaceCollide(robot_space_.get(), this, &Implementation::on_near);
+    }
+    if (stepper_ == Stepper::direct) {
+      dWorldStep(world_.get(), step_s_);
+    } else {
+      dWorldQuickStep(world_.get(), step_s_);
+    }
+    dJointGroupEmpty(contact_group_.get());
+    if (!std::isfinite(dBodyGetPosition(bodies_.front())[2])) {
+      throw PhysicsError("the simulation became unstable: the position of the head is no longer a number");
+    }
+  }
+
+  [[nodiscard]] double joint_angle(std::size_t joint) const { return dJointGetHingeAngle(joints_[joint]); }
+
+  [[nodiscard]] Pose link_pose(std::size_t link) const {
+    const dReal* position = dBodyGetPosition(bodies_[link]);
+    const dReal* orientation = dBodyGetQuaternion(bodies_[link]);
+    const Pose body{{position[0], position[1], position[2]},
+                    {orientation[0], orientation[1], orientation[2], orientation[3]}};
+    return body * Pose{-mass_centers_[link], Eigen::Quaterniond::Identity()};
+  }
+
+  [[nodiscard]] Eigen::Vector3d center_of_mass() const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double mass = 0.0;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const dReal* position = dBodyGetPosition(bodies_[i]);
+      sum += masses_[i] * Eigen::Vector3d(position[0], position[1], position[2]);
+      mass += masses_[i];
+    }
+    return sum / mass;
+  }
+
+  [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const { return link_contacts_[link]; }
+  [[nodiscard]] std::size_t contact_count() const { return contact_count_; }
+  [[nodiscard]] std::size_t solver_messages() const { return engine_messages() - messages_before_; }
+
+ private:
+  dGeomID add_geometry(dxSpace* space, const Geometry& geometry, int link) {
+    dGeomID shape = nullptr;
+    switch (geometry.shape) {
+      case Shape::box:
+        shape = dCreateBox(space, 2 * geometry.extents.x(), 2 * geometry.extents.y(), 2 * geometry.extents.z());
+        break;
+      case Shape::sphere:
+        shape = dCreateSphere(space, geometry.extents.x());
+        break;
+      case Shape::cylinder:
+        shape = dCreateCylinder(space, geometry.extents.x(), 2 * geometry.extents.y());
+        break;
+    }
+    geometry_data_.push_back({link, geometry.friction});
+    dGeomSetData(shape, &geometry_data_.back());
+    return shape;
+  }
+
+  /// The engine's cylinders lie along z, those of the model along y.
+  static Eigen::Quaterniond engine_orientation(const Geometry& geometry, const Eigen::Quaterniond& orientation) {
+    if (geometry.shape == Shape::cylinder) {
+      return orientation * Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
+    }
+    return orientation;
+  }
+
+  void add_environment(const EnvironmentModel& environment) {
+    for (const StaticObject& object : environment.objects) {
+      for (const Geometry& geometry : object.geometries) {
+        const dGeomID shape = add_geometry(environment_space_.get(), geometry, -1);
+        const Pose pose = object.pose * geometry.pose;
+        dQuaternion orientation;
+        to_quaternion(engine_orientation(geometry, pose.orientation), orientation);
+        dGeomSetPosition(shape, pose.position.x(), pose.position.y(), pose.position.z());
+        dGeomSetQuaternion(shape, orientation);
+      }
+    }
+  }
+
+  void add_links(const RobotModel& robot, const Pose& robot_pose) {
+    for (std::size_t i = 0; i < robot.links.size(); ++i) {
+      const Link& link = robot.links[i];
+      const dBodyID body = dBodyCreate(world_.get());
+      const Eigen::Matrix3d& inertia = link.mass.inertia;
+      dMass mass;
+      dMassSetParameters(&mass, link.mass.mass, 0, 0, 0, inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1),
+                         inertia(0, 2), inertia(1, 2));
+      dBodySetMass(body, &mass);
+
+      // The engine's body frame has its origin at the centre of mass.
+      const Pose pose = robot_pose * link.pose;
+      const Eigen::Vector3d center = pose * link.mass.center;
+      dQuaternion orientation;
+      to_quaternion(pose.orientation, orientation);
+      dBodySetPosition(body, center.x(), center.y(), center.z());
+      dBodySetQuaternion(body, orientation);
+
+      for (const Geometry& geometry : link.geometries) {
+        const dGeomID shape = add_geometry(robot_space_.get(), geometry, static_cast<int>(i));
+        dGeomSetBody(shape, body);
+        const Eigen::Vector3d offset = geometry.pose.position - link.mass.center;
+        dQuaternion rotation;
+        to_quaternion(engine_orientation(geometry, geometry.pose.orientation), rotation);
+        dGeomSetOffsetPosition(shape, offset.x(), offset.y(), offset.z());
+        dGeomSetOffsetQuaternion(shape, rotation);
+      }
+      bodies_.push_back(body);
+      masses_.push_back(link.mass.mass);
+      mass_centers_.push_back(link.mass.center);
+      sensors_.push_back(sensor_layout(robot, i));
+    }
+    link_contacts_.assign(bodies_.size(), 0);
+  }
+
+  static SensorLayout sensor_layout(const RobotModel& robot, std::size_t link) {
+    const auto in_link = [&](const Eigen::Vector3d& point) -> Eigen::Vector3d {
+      return robot.links[link].pose.orientation.conjugate() * (point - robot.links[link].pose.position);
+    };
+    const bool has_front = link > 0;
+    const bool has_rear = link < robot.joints.size();
+    const Eigen::Vector3d center = robot.links[link].mass.center;
+    const Eigen::Vector3d front = has_front ? in_link(robot.joints[link - 1].anchor) : center;
+    const Eigen::Vector3d rear = has_rear ? in_link(robot.joints[link].anchor) : center;
+    return {center, (front - rear).stableNormalized()};
+  }
+
+  void add_joints(const RobotModel& robot, const Pose& robot_pose) {
+    for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+      const Joint& joint = robot.joints[i];
+      const dJointID hinge = dJointCreateHinge(world_.get(), nullptr);
+      dJointAttach(hinge, bodies_[i], bodies_[i + 1]);
+      const Eigen::Vector3d anchor = robot_pose * joint.anchor;
+      const Eigen::Vector3d axis = robot_pose.orientation * joint.axis;
+      dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
+      dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
+      dJointSetHingeParam(hinge, dParamLoStop, joint.lower_limit);
+      dJointSetHingeParam(hinge, dParamHiStop, joint.upper_limit);
+      dJointSetHingeParam(hinge, dParamFMax, joint.max_torque);
+      dJointSetHingeParam(hinge, dParamVel, 0.0);
+      joints_.push_back(hinge);
+    }
+  }
+
+  static void on_near(void* self, dGeomID a, dGeomID b) { static_cast<Implementation*>(self)->collide(a, b); }
+
+  void collide(dGeomID a, dGeomID b) {
+    const auto& data_a = *static_cast<const GeometryData*>(dGeomGetData(a));
+    const auto& data_b = *static_cast<const GeometryData*>(dGeomGetData(b));
+    // Neighbouring links overlap at their joint by construction.
+    if (data_a.link >= 0 && data_b.link >= 0 && std::abs(data_a.link - data_b.link) <= 1) {
+      return;
+    }
+    constexpr int most_contacts = 8;
+    std::array<dContact, most_contacts> contacts{};
+    const int count = dCollide(a, b, most_contacts, &contacts[0].geom, sizeof(dContact));
+    for (int i = 0; i < count; ++i) {
+      dContact& contact = contacts[static_cast<std::size_t>(i)];
+      // Without this mode mu would be a force.
+      contact.surface.mode = dContactApprox1;
+      contact.surface.mu = friction(data_a, data_b);
+      dJointAttach(dJointCreateContact(world_.get(), contact_group_.get(), &contact), dGeomGetBody(a),
+                   dGeomGetBody(b));
+      note_touch(data_a.link, data_b.link, contact);
+      note_touch(data_b.link, data_a.link, contact);
+    }
+    contact_count_ += static_cast<std::size_t>(count);
+  }
+
+  static double friction(const GeometryData& a, const GeometryData& b) {
+    if (a.friction && b.friction) {
+      return std::sqrt(*a.friction * *b.friction);
+    }
+    return a.friction.value_or(b.friction.value_or(default_friction));
+  }
+
+  void note_touch(int link, int other, const dContact& contact) {
+    if (link < 0 || other >= 0) {
+      return;
+    }
+    const auto index = static_cast<std::size_t>(link);
+    const Eigen::Vector3d point(contact.geom.pos[0], contact.geom.pos[1], contact.geom.pos[2]);
+    const Pose pose = link_pose(index);
+    const Eigen::Vector3d local = pose.orientation.conjugate() * (point - pose.position);
+    const double along = (local - sensors_[index].middle).dot(sensors_[index].forward);
+    link_contacts_[index] = static_cast<std::uint8_t>(link_contacts_[index] | (along < 0.0 ? 1U : 2U));
+  }
+
+  // Declared in the order in which the engine needs them; destroyed in reverse.
+  std::unique_ptr<dxThreadingImplementation, FreeThreading> threading_;
+  std::unique_ptr<dxWorld, DestroyWorld> world_;
+  std::unique_ptr<dxSpace, DestroySpace> robot_space_;
+  std::unique_ptr<dxSpace, DestroySpace> environment_space_;
+  std::unique_ptr<dxJointGroup, DestroyJointGroup> contact_group_;
+  std::vector<GeometryData> geometry_data_;
+  std::vector<dBodyID> bodies_;
+  std::vector<dJointID> joints_;
+  std::vector<double> masses_;
+  std::vector<Eigen::Vector3d> mass_centers_;
+  std::vector<SensorLayout> sensors_;
+  std::vector<std::uint8_t> link_contacts_;
+  std::size_t contact_count_ = 0;
+  std::size_t messages_before_ = 0;
+  double step_s_;
+  Stepper stepper_;
+  bool self_collision_;
+};
+
+World::World(const RobotModel& robot, const EnvironmentModel& environment, double step_s, Stepper stepper)
+    : implementation_(std::make_unique<Implementation>(robot, environment, step_s, stepper)) {}
+World::~World() = default;
+World::World(World&& other) noexcept = default;
+World& World::operator=(World&& other) noexcept = default;
+
+void World::set_joint_speed(std::size_t joint, double speed) { implementation_->set_joint_speed(joint, speed); }
+void World::step() { implementation_->step(); }
+double World::joint_angle(std::size_t joint) const { return implementation_->joint_angle(joint); }
+Pose World::link_pose(std::size_t link) const { return implementation_->link_pose(link); }
+Eigen::Vector3d World::center_of_mass() const { return implementation_->center_of_mass(); }
+std::uint8_t World::link_contacts(std::size_t link) const { return implementation_->link_contacts(link); }
+std::size_t World::contact_count() const { return implementation_->contact_count(); }
+std::size_t World::solver_messages() const { return implementation_->solver_messages(); }
+
+}  // namespace proleg::sim

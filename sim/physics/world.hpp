@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sim/environment/environment_model.hpp"
+#include "sim/robot/robot_model.hpp"
+
+namespace proleg::sim {
+
+/// How contact and joint forces are solved.
+enum class Stepper : std::uint8_t {
+  direct,     ///< dWorldStep: exact, repeatable on every thread; the faster one up to about 8 links
+  iterative,  ///< dWorldQuickStep, 20 iterations: the faster one above. Draws from one random generator for the whole
+              ///< process, so runs that are to be repeatable need a process each.
+};
+
+/// A robot and its environment in the Open Dynamics Engine. Time passes in equal steps; a world of the same models
+/// repeats to the last bit.
+class World {
+ public:
+  /// step_s: length of a step, above 0. The models must be valid (sim/scenario checks them).
+  World(const RobotModel& robot, const EnvironmentModel& environment, double step_s, Stepper stepper);
+  ~World();
+  World(World&& other) noexcept;
+  World& operator=(World&& other) noexcept;
+
+  /// The speed, in rad/s, that the motor of a joint is to reach with the torque it has.
+  void set_joint_speed(std::size_t joint, double speed);
+
+  /// Advances the world by one step. Throws PhysicsError if the solver broke down.
+  void step();
+
+  /// Angle of a joint in rad, as RobotModel defines it.
+  [[nodiscard]] double joint_angle(std::size_t joint) const;
+  /// Pose of the frame of a link in the world.
+  [[nodiscard]] Pose link_pose(std::size_t link) const;
+  /// Centre of mass of the robot in the world.
+  [[nodiscard]] Eigen::Vector3d center_of_mass() const;
+  /// Which sensors of a link touch the environment since the last step: bit 0 the half towards the tail, bit 1 the
+  /// half towards the head.
+  [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const;
+  /// Number of contact points in the last step.
+  [[nodiscard]] std::size_t contact_count() const;
+  /// Complaints of the solver since the world was made ("LCP internal error" and its like).
+  [[nodiscard]] std::size_t solver_messages() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace proleg::sim

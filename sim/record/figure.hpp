@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "sim/record/recording.hpp"
+
+namespace proleg::sim {
+
+/// Part of a run, in seconds from its start; what is not given: the last three seconds.
+struct TimeWindow {
+  std::optional<double> from_s;
+  std::optional<double> to_s;
+};
+
+/// Draws a recording as an SVG picture: set-points and measured angles of the joints and the contacts of the links in
+/// the window, and the path of the chain's centre (mean of the positions of its links) over the whole run, from above.
+/// Throws InputError if less than two ticks lie in the window.
+[[nodiscard]] std::string draw_figure(const Recording& recording, const TimeWindow& window);
+
+}  // namespace proleg::sim

@@ -1,0 +1,33 @@
+#include "sim/record/hash.hpp"
+
+#include <array>
+
+namespace proleg::sim {
+
+// The results of libsodium's SHA-256 functions are not looked at: they are 0 always.
+
+SetpointHash::SetpointHash() { crypto_hash_sha256_init(&state_); }
+
+void SetpointHash::append(std::int32_t value) {
+  const auto bits = static_cast<std::uint32_t>(value);
+  const std::array<unsigned char, 4> bytes{static_cast<unsigned char>(bits), static_cast<unsigned char>(bits >> 8U),
+                                           static_cast<unsigned char>(bits >> 16U),
+                                           static_cast<unsigned char>(bits >> 24U)};
+  crypto_hash_sha256_update(&state_, bytes.data(), bytes.size());
+}
+
+std::string SetpointHash::hex() const {
+  // Finishing destroys the state, so a copy is finished.
+  crypto_hash_sha256_state state = state_;
+  std::array<unsigned char, crypto_hash_sha256_BYTES> digest;
+  crypto_hash_sha256_final(&state, digest.data());
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string text;
+  for (const unsigned char byte : digest) {
+    text += digits[byte >> 4U];
+    text += digits[byte & 15U];
+  }
+  return text;
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <sodium/crypto_hash_sha256.h>
+
+namespace proleg::sim {
+
+/// SHA-256 over a sequence of int32 values, each as four bytes, little-endian: the fingerprint by which two runs, on
+/// whatever machine, are said to be the same.
+class SetpointHash {
+ public:
+  SetpointHash();
+
+  void append(std::int32_t value);
+
+  /// Hash of everything appended so far, 64 lower-case hexadecimal digits. More may be appended afterwards.
+  [[nodiscard]] std::string hex() const;
+
+ private:
+  crypto_hash_sha256_state state_;
+};
+
+}  // namespace proleg::sim

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "shared/kernel/kernel.hpp"
+#include "sim/record/record_error.hpp"
+#include "sim/robot/robot_model.hpp"
+#include "sim/scenario/scenario.hpp"
+
+namespace proleg::sim {
+
+/// What is known after tick k was computed and simulated until SYNC k + 1.
+struct TickSample {
+  std::uint32_t tick;                            ///< k
+  const Kernel& kernel;                          ///< after advance() at SYNC k: setpoint(j) is out(k + 1)
+  std::span<const std::int32_t> servo_commands;  ///< per kernel joint: last command taken before SYNC k + 1
+  std::span<const Pose> link_poses;              ///< in the world, at SYNC k + 1, head to tail
+  std::span<const double> joint_angles;          ///< rad, at SYNC k + 1, measured on the robot
+  std::span<const std::uint8_t> link_contacts;   ///< per link bit 0 rear, bit 1 front sensor, at SYNC k + 1
+};
+
+/// Writes a run into an SQLite file (tables: schema.hpp) as it goes on. Others may read the file at the same time.
+///
+/// When the process is killed, what was recorded up to a second before is in the file: what waits for longer than half
+/// a second is committed by the next record_tick. (A program that stops recording for a while, alive but silent, can
+/// lose the half second before its silence.)
+///
+/// Every failure to write is thrown as RecordError; after one, the recorder takes nothing more.
+class Recorder {
+ public:
+  /// Creates the file. It must not be there yet, unless it is empty or an earlier recording, which is then replaced.
+  /// scenario: must outlive the recorder. build_id: of the program that simulates.
+  Recorder(const std::filesystem::path& path, const Scenario& scenario, const std::string& build_id);
+  /// Commits. A run that was not finished stays marked so. A failure, which cannot be thrown here, goes to standard
+  /// error.
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// A change that takes effect at its tick; call it before the record_tick of that tick.
+  void record_change(const Change& change);
+  /// Ticks come in ascending order. All values must be finite: a simulation that has blown up is an error here.
+  void record_tick(const TickSample& sample);
+  /// Marks the run as finished and closes the file, one file then. summary: names and values for the table `result`.
+  void finish(const std::vector<std::pair<std::string, std::string>>& summary);
+
+ private:
+  class Storage;
+  std::unique_ptr<Storage> storage_;
+};
+
+}  // namespace proleg::sim

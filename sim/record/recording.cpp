@@ -1,0 +1,348 @@
+#include "sim/record/recording.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "shared/gait/joint_mask.hpp"
+#include "sim/record/record_error.hpp"
+#include "sim/record/schema.hpp"
+#include "sim/record/sqlite.hpp"
+#include "sim/scenario/input_error.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr const char* what_is_expected = "a recording of proleg simulate";
+
+// Not a text for people: it becomes an InputError where the path is known.
+class Damage : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+std::int32_t raw(const Statement& row, int column) {
+  const std::int64_t value = row.integer(column);
+  if (!row.is_integer(column) || value < std::numeric_limits<std::int32_t>::min() ||
+      value > std::numeric_limits<std::int32_t>::max()) {
+    throw Damage("a value that is not a 32-bit integer");
+  }
+  return static_cast<std::int32_t>(value);
+}
+
+std::uint32_t natural(const Statement& row, int column) {
+  const std::int32_t value = raw(row, column);
+  if (value < 0) {
+    throw Damage("a negative number where ticks, joints and links are counted");
+  }
+  return static_cast<std::uint32_t>(value);
+}
+
+double finite(const Statement& row, int column) {
+  const double value = row.real(column);
+  if (!row.is_real(column) || !std::isfinite(value)) {
+    throw Damage("a value that is not a finite number");
+  }
+  return value;
+}
+
+/// Degrees and phases share a symbol; they differ in how text is read, not in how a value is written.
+Unit unit_of(const std::string& symbol) {
+  for (const Unit unit :
+       {Unit::degree, Unit::degree_per_tick, Unit::hertz, Unit::per_second, Unit::ratio, Unit::count}) {
+    if (symbol == scale_of(unit).symbol) {
+      return unit;
+    }
+  }
+  throw Damage("the unknown unit '" + symbol + "'");
+}
+
+std::uint32_t number(const std::string& text, const char* name) {
+  std::uint32_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw Damage(std::string("'") + text + "' as " + name);
+  }
+  return value;
+}
+
+/// Runs something that reads, and turns what can go wrong into the one line for a person.
+template <typename Action>
+auto reading(const std::filesystem::path& path, const Action& action) {
+  try {
+    return action();
+  } catch (const Damage& damage) {
+    throw InputError(path.string(), 0, damage.what(), what_is_expected);
+  } catch (const SqliteError& error) {
+    switch (error.code()) {
+      case SQLITE_NOTADB:
+      case SQLITE_CORRUPT:
+        throw InputError(path.string(), 0, std::string("a damaged file (") + error.what() + ")", what_is_expected);
+      case SQLITE_ERROR:  // no such table or column
+        throw InputError(path.string(), 0, error.what(), what_is_expected);
+      case SQLITE_CANTOPEN:
+      case SQLITE_READONLY:
+        throw RecordError(
+            path.string() + ": cannot be read (" + error.what() +
+            "); a recording that was not finished needs its -wal file and a folder with write permission");
+      default:
+        throw RecordError(path.string() + ": cannot be read: " + error.what());
+    }
+  }
+}
+
+}  // namespace
+
+class Recording::Tables {
+ public:
+  explicit Tables(const std::filesystem::path& path) : database(path, SQLITE_OPEN_READONLY) {
+    // One read transaction for all that follows: what a running recorder adds meanwhile stays invisible.
+    database.execute("BEGIN");
+    if (pragma("PRAGMA application_id") != std::int64_t{recording_application_id}) {
+      throw Damage("a database of another program");
+    }
+    if (const std::int64_t format = pragma("PRAGMA user_version"); format != std::int64_t{recording_format}) {
+      throw Damage("recording format " + std::to_string(format) +
+                   ", of another version of this program; this one knows " + std::to_string(recording_format));
+    }
+  }
+
+  [[nodiscard]] std::string run_value(const std::string& key) {
+    Statement query(database, "SELECT value FROM run WHERE key = ?1");
+    query.bind_all(std::string_view(key));
+    return query.step() ? query.text(0) : std::string();
+  }
+
+  Database database;
+
+ private:
+  std::int64_t pragma(const char* sql) {
+    Statement query(database, sql);
+    return query.step() ? query.integer(0) : 0;
+  }
+};
+
+Recording::Recording(const std::filesystem::path& path) : path_(path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    throw InputError(path.string(), 0,
+                     error && error != std::errc::no_such_file_or_directory ? error.message() : "no file",
+                     what_is_expected);
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw InputError(path.string(), 0, "something that is not a file", what_is_expected);
+  }
+  reading(path_, [&] {
+    tables_ = std::make_unique<Tables>(path);
+    read_run();
+    read_robot();
+    read_slots();
+  });
+}
+
+Recording::~Recording() = default;
+
+void Recording::read_run() {
+  finished_ = tables_->run_value("finished") == "1";
+  tick_period_us_ = number(tables_->run_value("tick_us"), "tick_us");
+  if (tick_period_us_ == 0) {
+    throw Damage("a tick of 0 us");
+  }
+  Statement result(tables_->database, "SELECT name, value FROM result ORDER BY position");
+  while (result.step()) {
+    results_.emplace_back(result.text(0), result.text(1));
+  }
+  Statement range(tables_->database, "SELECT min(tick), max(tick) FROM sample");
+  if (!range.step() || !range.is_integer(0)) {
+    throw Damage("no tick at all (the run ended before the first was written)");
+  }
+  first_tick_ = natural(range, 0);
+  last_tick_ = natural(range, 1);
+}
+
+void Recording::read_robot() {
+  Statement joint(tables_->database, "SELECT joint, name, file_index, lower_raw, upper_raw FROM joint ORDER BY joint");
+  while (joint.step()) {
+    if (natural(joint, 0) != joints_.size()) {
+      throw Damage("joints that are not numbered from 0");
+    }
+    joints_.push_back({joint.text(1), natural(joint, 2), raw(joint, 3), raw(joint, 4)});
+  }
+  Statement link(tables_->database, "SELECT link, name FROM link ORDER BY link");
+  while (link.step()) {
+    if (natural(link, 0) != links_.size()) {
+      throw Damage("links that are not numbered from 0");
+    }
+    links_.push_back(link.text(1));
+  }
+  if (joints_.empty() || joints_.size() > max_joints || links_.size() != joints_.size() + 1) {
+    throw Damage(std::to_string(joints_.size()) + " joints and " + std::to_string(links_.size()) + " links");
+  }
+}
+
+void Recording::read_slots() {
+  Statement slot(tables_->database, "SELECT slot, algorithm, joint_group FROM slot ORDER BY slot");
+  Statement name(tables_->database,
+                 "SELECT value_index, name, unit FROM internal_value_name WHERE slot = ?1 ORDER BY value_index");
+  while (slot.step()) {
+    RecordedSlot read{natural(slot, 0), slot.text(1), {}};
+    for (const char c : slot.text(2)) {
+      read.joint_group.push_back(c == '1');
+    }
+    if (read.joint_group.size() != joints_.size()) {
+      throw Damage("a joint group that does not name every joint");
+    }
+    for (std::uint32_t joint = 0; joint < joints_.size(); ++joint) {
+      if (!read.joint_group[joint]) {
+        continue;
+      }
+      std::uint32_t count = 0;
+      for (name.bind_all(read.slot); name.step(); ++count) {
+        if (natural(name, 0) != count) {
+          throw Damage("internal values that are not numbered from 0");
+        }
+        internal_values_.push_back({read.slot, joint, name.text(1), unit_of(name.text(2))});
+      }
+    }
+    slots_.push_back(std::move(read));
+  }
+}
+
+std::string Recording::run_value(const std::string& key) const {
+  return reading(path_, [&] { return tables_->run_value(key); });
+}
+
+std::vector<RecordedSetting> Recording::parameters() const {
+  return read_settings("SELECT tick, slot, joint, name, unit, raw, origin = 'commit' FROM parameter ORDER BY position");
+}
+
+std::vector<RecordedSetting> Recording::distortions() const {
+  return read_settings("SELECT tick, slot, joint, name, unit, raw, 1 FROM distortion ORDER BY position");
+}
+
+std::vector<RecordedSetting> Recording::read_settings(const char* sql) const {
+  return reading(path_, [&] {
+    std::vector<RecordedSetting> settings;
+    Statement row(tables_->database, sql);
+    while (row.step()) {
+      settings.push_back({natural(row, 0), row.integer(6) != 0, natural(row, 1), natural(row, 2), row.text(3),
+                          unit_of(row.text(4)), raw(row, 5)});
+    }
+    return settings;
+  });
+}
+
+std::vector<std::pair<std::string, std::string>> Recording::sources() const {
+  return reading(path_, [&] {
+    std::vector<std::pair<std::string, std::string>> sources;
+    Statement row(tables_->database, "SELECT path, text FROM source ORDER BY position");
+    while (row.step()) {
+      sources.emplace_back(row.text(0), row.text(1));
+    }
+    return sources;
+  });
+}
+
+std::vector<std::uint8_t> Recording::start_contacts() const {
+  return reading(path_, [&] {
+    std::vector<std::uint8_t> contacts(links_.size());
+    Statement row(tables_->database, "SELECT rear, front FROM contact WHERE tick = ?1 - 1 ORDER BY link");
+    row.bind_all(first_tick_);
+    for (std::uint8_t& link : contacts) {
+      if (!row.step()) {
+        throw Damage("no contacts at the start");
+      }
+      link = static_cast<std::uint8_t>((natural(row, 0) & 1U) | (natural(row, 1) & 1U) << 1U);
+    }
+    return contacts;
+  });
+}
+
+namespace {
+
+/// One of the tables that grow with the ticks, read in the order of its key.
+class Rows {
+ public:
+  Rows(Database& database, const char* table, const char* sql, std::uint32_t first, std::uint32_t last)
+      : table_(table), row_(database, sql) {
+    row_.bind_all(first, last);
+  }
+
+  /// Steps to the row of this tick whose further key columns have these values.
+  template <typename... Keys>
+  const Statement& expect(std::uint32_t tick, Keys... keys) {
+    int column = 0;
+    if (!row_.step() || natural(row_, column) != tick || (... || (natural(row_, ++column) != keys))) {
+      throw Damage(std::string("a gap in the table ") + table_ + " at tick " + std::to_string(tick));
+    }
+    return row_;
+  }
+
+ private:
+  const char* table_;
+  Statement row_;
+};
+
+}  // namespace
+
+void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
+                           const std::function<void(const RecordedTick&)>& use) const {
+  Database& database = tables_->database;
+  RecordedTick tick;
+  tick.setpoints.resize(joints_.size());
+  tick.servo_commands.resize(joints_.size());
+  tick.joint_angles.resize(joints_.size());
+  tick.internal_values.resize(internal_values_.size());
+  tick.link_poses.resize(links_.size());
+  tick.link_contacts.resize(links_.size());
+
+  std::optional<Rows> samples;
+  std::optional<Rows> values;
+  std::optional<Rows> poses;
+  std::optional<Rows> contacts;
+  reading(path_, [&] {
+    samples.emplace(database, "sample",
+                    "SELECT tick, joint, setpoint_raw, servo_command, angle_rad FROM sample "
+                    "WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, joint",
+                    first, last);
+    values.emplace(database, "internal_value",
+                   "SELECT tick, slot, joint, raw FROM internal_value "
+                   "WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, slot, joint, value_index",
+                   first, last);
+    poses.emplace(database, "pose",
+                  "SELECT tick, link, x_m, y_m, z_m, qw, qx, qy, qz FROM pose "
+                  "WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, link",
+                  first, last);
+    contacts.emplace(database, "contact",
+                     "SELECT tick, link, rear, front FROM contact WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, link",
+                     first, last);
+  });
+  for (tick.tick = first; tick.tick <= last; ++tick.tick) {
+    reading(path_, [&] {
+      for (std::uint32_t joint = 0; joint < joints_.size(); ++joint) {
+        const Statement& row = samples->expect(tick.tick, joint);
+        tick.setpoints[joint] = raw(row, 2);
+        tick.servo_commands[joint] = raw(row, 3);
+        tick.joint_angles[joint] = finite(row, 4);
+      }
+      for (std::size_t i = 0; i < internal_values_.size(); ++i) {
+        const RecordedInternalValue& value = internal_values_[i];
+        tick.internal_values[i] = raw(values->expect(tick.tick, value.slot, value.joint), 3);
+      }
+      for (std::uint32_t link = 0; link < links_.size(); ++link) {
+        const Statement& pose = poses->expect(tick.tick, link);
+        tick.link_poses[link].position = {finite(pose, 2), finite(pose, 3), finite(pose, 4)};
+        tick.link_poses[link].orientation = {finite(pose, 5), finite(pose, 6), finite(pose, 7), finite(pose, 8)};
+        const Statement& contact = contacts->expect(tick.tick, link);
+        tick.link_contacts[link] =
+            static_cast<std::uint8_t>((natural(contact, 2) & 1U) | (natural(contact, 3) & 1U) << 1U);
+      }
+    });
+    use(tick);
+  }
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,120 @@
+#pragma once
+
+// A recording, read.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "shared/fixed/unit.hpp"
+#include "sim/robot/robot_model.hpp"
+
+namespace proleg::sim {
+
+struct RecordedJoint {
+  std::string name;
+  std::size_t file_index = 0;
+  std::int32_t lower_limit = 0;  ///< 90 degrees = 2^30
+  std::int32_t upper_limit = 0;
+};
+
+struct RecordedSlot {
+  std::uint32_t slot = 0;
+  std::string algorithm;
+  std::vector<bool> joint_group;  ///< for each joint, the head's first
+};
+
+/// An internal value of one joint.
+struct RecordedInternalValue {
+  std::uint32_t slot = 0;
+  std::uint32_t joint = 0;
+  std::string name;
+  Unit unit = Unit::count;
+};
+
+/// A parameter at the start or after a commit, or an internal value that was overwritten.
+struct RecordedSetting {
+  std::uint32_t tick = 0;
+  bool commit = false;  ///< took effect at SYNC tick; otherwise: from the start
+  std::uint32_t slot = 0;
+  std::uint32_t joint = 0;
+  std::string name;
+  Unit unit = Unit::count;
+  std::int32_t raw = 0;
+};
+
+/// What was computed at SYNC `tick` and holds at SYNC tick + 1. Joints and links from the head.
+struct RecordedTick {
+  std::uint32_t tick = 0;
+  std::vector<std::int32_t> setpoints;        ///< 90 degrees = 2^30
+  std::vector<std::int32_t> servo_commands;   ///< twelfths of a microsecond
+  std::vector<double> joint_angles;           ///< rad
+  std::vector<std::int32_t> internal_values;  ///< in the order of Recording::internal_values()
+  std::vector<Pose> link_poses;               ///< in the world
+  std::vector<std::uint8_t> link_contacts;    ///< bit 0 rear, bit 1 front sensor
+};
+
+/// A recording as it was when it was opened; a run may go on and write into the file meanwhile.
+///
+/// Throws InputError if the file is missing or is no recording, is of a newer format, damaged or without a tick, and
+/// RecordError if the system cannot read it. The file is never changed.
+class Recording {
+ public:
+  explicit Recording(const std::filesystem::path& path);
+  ~Recording();
+  Recording(const Recording&) = delete;
+  Recording& operator=(const Recording&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// False for a run that was interrupted or still goes on.
+  [[nodiscard]] bool finished() const { return finished_; }
+  /// Value from the table `run`, e.g. "seed"; empty if it is not there.
+  [[nodiscard]] std::string run_value(const std::string& key) const;
+  [[nodiscard]] const std::vector<std::pair<std::string, std::string>>& results() const { return results_; }
+
+  [[nodiscard]] std::uint32_t tick_period_us() const { return tick_period_us_; }
+  [[nodiscard]] std::uint32_t first_tick() const { return first_tick_; }
+  [[nodiscard]] std::uint32_t last_tick() const { return last_tick_; }
+  /// Seconds from the start to the SYNC at which what is recorded under a tick holds.
+  [[nodiscard]] double time_s(std::uint32_t tick) const { return (tick + 1.0) * tick_period_us_ / 1e6; }
+
+  [[nodiscard]] const std::vector<RecordedJoint>& joints() const { return joints_; }
+  [[nodiscard]] const std::vector<std::string>& links() const { return links_; }
+  [[nodiscard]] const std::vector<RecordedSlot>& slots() const { return slots_; }
+  [[nodiscard]] const std::vector<RecordedInternalValue>& internal_values() const { return internal_values_; }
+  [[nodiscard]] std::vector<RecordedSetting> parameters() const;
+  [[nodiscard]] std::vector<RecordedSetting> distortions() const;
+  /// Path and text of every file that was read.
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> sources() const;
+  /// Contacts from which the first tick was computed.
+  [[nodiscard]] std::vector<std::uint8_t> start_contacts() const;
+
+  /// Calls `use` for the ticks from `first` to `last`, in order. The tick is overwritten by the next.
+  void read_ticks(std::uint32_t first, std::uint32_t last, const std::function<void(const RecordedTick&)>& use) const;
+
+ private:
+  class Tables;
+
+  void read_run();
+  void read_robot();
+  void read_slots();
+  [[nodiscard]] std::vector<RecordedSetting> read_settings(const char* sql) const;
+
+  std::filesystem::path path_;
+  std::unique_ptr<Tables> tables_;
+  bool finished_ = false;
+  std::uint32_t tick_period_us_ = 0;
+  std::uint32_t first_tick_ = 0;
+  std::uint32_t last_tick_ = 0;
+  std::vector<std::pair<std::string, std::string>> results_;
+  std::vector<RecordedJoint> joints_;
+  std::vector<std::string> links_;
+  std::vector<RecordedSlot> slots_;
+  std::vector<RecordedInternalValue> internal_values_;
+};
+
+}  // namespace proleg::sim

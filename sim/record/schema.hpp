@@ -1,0 +1,162 @@
+#pragma once
+
+// The tables of a recording. The comments inside the SQL are kept in the file: `.schema` in the sqlite3 shell shows
+// them.
+
+#include <cstdint>
+
+namespace proleg::sim {
+
+/// "Prol", SQLite's application id, bytes 68 to 71 of the file: how a recording is told from any other database.
+inline constexpr std::uint32_t recording_application_id = 0x50726F6C;
+/// Raised whenever a reader of the older format would misread or miss something. SQLite's user_version.
+inline constexpr std::uint32_t recording_format = 1;
+
+// Choices:
+// - STRICT: a value of the wrong type is an error when it is written, not a surprise when it is read.
+// - WITHOUT ROWID with the natural key: rows lie in the order of time and are found by tick without a second index.
+// - Angles as degrees and pulses as microseconds are generated columns: they cost nothing and cannot disagree with the
+//   raw value beside them.
+inline constexpr const char* recording_schema = R"sql(
+CREATE TABLE run(
+  -- What was run. finished: 1 if the run came to its planned end, 0 if it was interrupted or still goes on.
+  key TEXT PRIMARY KEY,
+  value TEXT NOT NULL
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE result(
+  -- Figures of a finished run: displacement, hashes, ...
+  position INTEGER PRIMARY KEY,
+  name TEXT NOT NULL,
+  value TEXT NOT NULL
+) STRICT;
+
+CREATE TABLE source(
+  -- Every file that was read, the top-level file first.
+  position INTEGER PRIMARY KEY,
+  path TEXT NOT NULL,
+  text TEXT NOT NULL
+) STRICT;
+
+CREATE TABLE joint(
+  -- Joints are counted from the head, from 0; file_index is the place in the robot's file. Set-points stay within
+  -- lower_raw and upper_raw (90 degrees = 2^30).
+  joint INTEGER PRIMARY KEY,
+  name TEXT NOT NULL,
+  file_index INTEGER NOT NULL,
+  lower_raw INTEGER NOT NULL,
+  upper_raw INTEGER NOT NULL
+) STRICT;
+
+CREATE TABLE link(
+  -- Links are counted from the head, from 0; joint j connects links j and j + 1.
+  link INTEGER PRIMARY KEY,
+  name TEXT NOT NULL
+) STRICT;
+
+CREATE TABLE slot(
+  -- An actuation module on a group of joints. joint_group: '1' or '0' for each joint, the head's first.
+  slot INTEGER PRIMARY KEY,
+  algorithm TEXT NOT NULL,
+  algorithm_id INTEGER NOT NULL,
+  joint_group TEXT NOT NULL
+) STRICT;
+
+CREATE TABLE parameter(
+  -- origin 'start': value at the start of the run; 'commit': value that took effect at SYNC tick.
+  -- value_text: the shortest decimal number, in unit, that means exactly raw.
+  position INTEGER PRIMARY KEY,
+  tick INTEGER NOT NULL,
+  origin TEXT NOT NULL,
+  slot INTEGER NOT NULL,
+  joint INTEGER NOT NULL,
+  name TEXT NOT NULL,
+  unit TEXT NOT NULL,
+  raw INTEGER NOT NULL,
+  value_text TEXT NOT NULL
+) STRICT;
+
+CREATE TABLE distortion(
+  -- Internal values that were overwritten before SYNC tick was computed.
+  position INTEGER PRIMARY KEY,
+  tick INTEGER NOT NULL,
+  slot INTEGER NOT NULL,
+  joint INTEGER NOT NULL,
+  name TEXT NOT NULL,
+  unit TEXT NOT NULL,
+  raw INTEGER NOT NULL,
+  value_text TEXT NOT NULL
+) STRICT;
+
+CREATE TABLE internal_value_name(
+  -- What the numbers in internal_value mean: raw * unit_per_step is the value in unit.
+  slot INTEGER NOT NULL,
+  value_index INTEGER NOT NULL,
+  name TEXT NOT NULL,
+  unit TEXT NOT NULL,
+  unit_per_step REAL NOT NULL,
+  PRIMARY KEY(slot, value_index)
+) STRICT, WITHOUT ROWID;
+
+-- In the tables below, tick k is what was computed at SYNC k and holds at SYNC k + 1, which is
+-- (k + 1) * tick_us / 1000000 seconds after the start.
+
+CREATE TABLE sample(
+  -- setpoint: where the joint is to be at SYNC tick + 1. servo_command: last pulse that the servo took before it, in
+  -- twelfths of a microsecond. angle: where the joint was.
+  tick INTEGER NOT NULL,
+  joint INTEGER NOT NULL,
+  setpoint_raw INTEGER NOT NULL,
+  servo_command INTEGER NOT NULL,
+  angle_rad REAL NOT NULL,
+  setpoint_deg REAL AS (setpoint_raw * 45.0 / 536870912.0) VIRTUAL,
+  servo_us REAL AS (servo_command / 12.0) VIRTUAL,
+  angle_deg REAL AS (angle_rad * 57.295779513082323) VIRTUAL,
+  PRIMARY KEY(tick, joint)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE internal_value(
+  tick INTEGER NOT NULL,
+  slot INTEGER NOT NULL,
+  joint INTEGER NOT NULL,
+  value_index INTEGER NOT NULL,
+  raw INTEGER NOT NULL,
+  PRIMARY KEY(tick, slot, joint, value_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE pose(
+  -- Of the frame of a link, in the world; the orientation is a unit quaternion.
+  tick INTEGER NOT NULL,
+  link INTEGER NOT NULL,
+  x_m REAL NOT NULL,
+  y_m REAL NOT NULL,
+  z_m REAL NOT NULL,
+  qw REAL NOT NULL,
+  qx REAL NOT NULL,
+  qy REAL NOT NULL,
+  qz REAL NOT NULL,
+  PRIMARY KEY(tick, link)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE contact(
+  -- Touch sensors under a link: rear is nearer to the tail, front nearer to the head. Tick -1: contacts at SYNC 0,
+  -- from which the first tick was computed.
+  tick INTEGER NOT NULL,
+  link INTEGER NOT NULL,
+  rear INTEGER NOT NULL,
+  front INTEGER NOT NULL,
+  PRIMARY KEY(tick, link)
+) STRICT, WITHOUT ROWID;
+
+CREATE VIEW sample_by_name AS
+  SELECT tick, (tick + 1) * (SELECT value FROM run WHERE key = 'tick_us') / 1e6 AS time_s, joint.name AS joint,
+         setpoint_deg, servo_us, angle_deg
+  FROM sample JOIN joint USING (joint);
+
+CREATE VIEW internal_value_by_name AS
+  SELECT tick, (tick + 1) * (SELECT value FROM run WHERE key = 'tick_us') / 1e6 AS time_s, slot, joint.name AS joint,
+         internal_value_name.name AS name, raw * unit_per_step AS value, unit
+  FROM internal_value JOIN joint USING (joint) JOIN internal_value_name USING (slot, value_index);
+)sql";
+
+}  // namespace proleg::sim

@@ -1,0 +1,147 @@
+#include "sim/record/svg.hpp"
+
+#include <array>
+#include <charconv>
+
+namespace proleg::sim {
+namespace {
+
+std::string coordinate(double value) { return plain_number(value, 2); }
+
+std::string attribute(std::string_view name, double value) {
+  return " " + std::string(name) + "=\"" + coordinate(value) + "\"";
+}
+
+std::string_view anchor_name(TextAnchor anchor) {
+  switch (anchor) {
+    case TextAnchor::start:
+      return "start";
+    case TextAnchor::middle:
+      return "middle";
+    case TextAnchor::end:
+      break;
+  }
+  return "end";
+}
+
+/// Length of the well-formed UTF-8 sequence at the start of `text` (RFC 3629), or 0.
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [text](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : static_cast<unsigned char>(0);
+  };
+  const auto continues = [&byte](std::size_t i) { return (byte(i) & 0xC0U) == 0x80U; };
+  const unsigned first = byte(0);
+  const unsigned second = byte(1);
+  if (first < 0x80) {
+    return 1;
+  }
+  if (first >= 0xC2 && first <= 0xDF) {
+    return continues(1) ? 2 : 0;
+  }
+  if (first >= 0xE0 && first <= 0xEF) {
+    const bool overlong = first == 0xE0 && second < 0xA0;
+    const bool surrogate = first == 0xED && second >= 0xA0;
+    const bool forbidden = first == 0xEF && second == 0xBF && byte(2) >= 0xBE;  // U+FFFE, U+FFFF: not in XML
+    return continues(1) && continues(2) && !overlong && !surrogate && !forbidden ? 3 : 0;
+  }
+  if (first >= 0xF0 && first <= 0xF4) {
+    const bool overlong = first == 0xF0 && second < 0x90;
+    const bool beyond = first == 0xF4 && second >= 0x90;
+    return continues(1) && continues(2) && continues(3) && !overlong && !beyond ? 4 : 0;
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::string plain_number(double value, int decimals) {
+  std::array<char, 400> digits;  // the longest double has 309 digits before the point
+  const auto end =
+      std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed, decimals).ptr;
+  std::string text(digits.data(), end);
+  if (text.find('.') != std::string::npos) {
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') {
+      text.pop_back();
+    }
+  }
+  return text == "-0" ? "0" : text;
+}
+
+std::string xml_text(std::string_view text) {
+  std::string escaped;
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const char c = text.front();
+    if (length == 0 || static_cast<unsigned char>(c) < ' ' || c == 0x7F) {
+      escaped += '?';
+    } else if (c == '<') {
+      escaped += "&lt;";
+    } else if (c == '>') {
+      escaped += "&gt;";
+    } else if (c == '&') {
+      escaped += "&amp;";
+    } else if (c == '"') {
+      escaped += "&quot;";
+    } else {
+      escaped += text.substr(0, length);
+    }
+    text.remove_prefix(length == 0 ? 1 : length);
+  }
+  return escaped;
+}
+
+Svg::Svg(double width, double height, std::string_view title, std::string_view description) {
+  picture_ =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\"" +
+      attribute("width", width) + attribute("height", height) + " viewBox=\"0 0 " + coordinate(width) + " " +
+      coordinate(height) +
+      "\" role=\"img\" font-family=\"Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif\">\n<title>" +
+      xml_text(title) + "</title>\n<desc>" + xml_text(description) + "</desc>\n";
+  rectangle({0, 0}, width, height, "fill=\"#ffffff\"");
+}
+
+void Svg::line(Point from, Point to, std::string_view style) {
+  picture_ += "<line" + attribute("x1", from.x) + attribute("y1", from.y) + attribute("x2", to.x) +
+              attribute("y2", to.y) + " " + std::string(style) + "/>\n";
+}
+
+void Svg::polyline(std::span<const Point> points, std::string_view style) {
+  picture_ += "<polyline points=\"";
+  for (const Point& point : points) {
+    picture_ += coordinate(point.x) + "," + coordinate(point.y) + " ";
+  }
+  picture_ += "\" fill=\"none\" " + std::string(style) + "/>\n";
+}
+
+void Svg::rectangle(Point corner, double width, double height, std::string_view style) {
+  picture_ += "<rect" + attribute("x", corner.x) + attribute("y", corner.y) + attribute("width", width) +
+              attribute("height", height) + " " + std::string(style) + "/>\n";
+}
+
+void Svg::circle(Point center, double radius, std::string_view style) {
+  picture_ += "<circle" + attribute("cx", center.x) + attribute("cy", center.y) + attribute("r", radius) + " " +
+              std::string(style) + "/>\n";
+}
+
+void Svg::text(Point position, std::string_view text, TextAnchor anchor, double size, std::string_view colour,
+               std::string_view style) {
+  picture_ += "<text" + attribute("x", position.x) + attribute("y", position.y) + attribute("font-size", size) +
+              " text-anchor=\"" + std::string(anchor_name(anchor)) + "\" fill=\"" + std::string(colour) + "\" " +
+              std::string(style) + ">" + xml_text(text) + "</text>\n";
+}
+
+void Svg::begin_clipped(Point corner, double width, double height) {
+  const std::string name = "clip" + std::to_string(++clips_);
+  picture_ += "<clipPath id=\"" + name + "\">";
+  rectangle(corner, width, height, "");
+  picture_ += "</clipPath>\n<g clip-path=\"url(#" + name + ")\">\n";
+}
+
+void Svg::begin_group(std::string_view name) { picture_ += "<g class=\"" + xml_text(name) + "\">\n"; }
+
+void Svg::end_group() { picture_ += "</g>\n"; }
+
+std::string Svg::finish() { return picture_ + "</svg>\n"; }
+
+}  // namespace proleg::sim

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace proleg::sim {
+
+/// A place in a picture, in pixels, y downwards.
+struct Point {
+  double x = 0.0;
+  double y = 0.0;
+};
+
+enum class TextAnchor { start, middle, end };
+
+/// Writes an SVG picture: shapes with presentation attributes, in the order in which they are painted. Coordinates must
+/// be finite; they are written with two decimals, independent of the locale.
+class Svg {
+ public:
+  /// description: for those who cannot see the picture.
+  Svg(double width, double height, std::string_view title, std::string_view description);
+
+  /// style: further attributes, e.g. R"(stroke="#333" stroke-width="1")".
+  void line(Point from, Point to, std::string_view style);
+  void polyline(std::span<const Point> points, std::string_view style);
+  void rectangle(Point corner, double width, double height, std::string_view style);
+  void circle(Point center, double radius, std::string_view style);
+  void text(Point position, std::string_view text, TextAnchor anchor, double size, std::string_view colour,
+            std::string_view style = {});
+
+  /// What is drawn between begin_group and end_group; clip: nothing of it is painted outside this rectangle.
+  void begin_clipped(Point corner, double width, double height);
+  void begin_group(std::string_view name);
+  void end_group();
+
+  /// The picture.
+  [[nodiscard]] std::string finish();
+
+ private:
+  std::string picture_;
+  int clips_ = 0;
+};
+
+/// Text as it must be written in XML. What XML cannot hold (control characters, bytes that are not UTF-8) becomes '?'.
+[[nodiscard]] std::string xml_text(std::string_view text);
+
+/// At most `decimals` decimals, without trailing zeros.
+[[nodiscard]] std::string plain_number(double value, int decimals);
+
+}  // namespace proleg::sim

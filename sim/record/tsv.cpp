@@ -1,0 +1,139 @@
+#include "sim/record/tsv.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <numbers>
+#include <set>
+#include <string>
+
+#include "shared/fixed/decimal.hpp"
+#include "shared/kernel/servo_command.hpp"
+
+namespace proleg::sim {
+namespace {
+
+class Line {
+ public:
+  void add(std::string_view field) {
+    if (!text_.empty()) {
+      text_ += '\t';
+    }
+    text_ += field;
+  }
+  void add(double value) {
+    std::array<char, 32> digits;
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
+    add(std::string_view(digits.data(), static_cast<std::size_t>(end - digits.data())));
+  }
+  void add(std::int32_t raw, Unit unit) { add(format_decimal(raw, unit).view()); }
+
+  [[nodiscard]] std::string_view end() { return text_ += '\n'; }
+  void clear() { text_.clear(); }
+
+ private:
+  std::string text_;
+};
+
+std::string unit_suffix(Unit unit) {
+  switch (unit) {
+    case Unit::degree:
+    case Unit::phase_degree:
+      return "_deg";
+    case Unit::degree_per_tick:
+      return "_deg_per_tick";
+    case Unit::hertz:
+      return "_Hz";
+    case Unit::per_second:
+      return "_per_s";
+    case Unit::ratio:
+    case Unit::count:
+      break;
+  }
+  return "";
+}
+
+/// Column names, with each used once.
+class Header {
+ public:
+  /// distinction: appended if the name is taken.
+  void add(std::string name, const std::string& distinction) {
+    for (char& c : name) {
+      if (static_cast<unsigned char>(c) < ' ') {
+        c = ' ';
+      }
+    }
+    while (!used_.insert(name).second) {
+      name += distinction;
+    }
+    line_.add(name);
+  }
+  [[nodiscard]] std::string_view end() { return line_.end(); }
+
+ private:
+  std::set<std::string> used_;
+  Line line_;
+};
+
+void write_header(const Recording& recording, const std::function<void(std::string_view)>& write) {
+  Header header;
+  header.add("tick", "");
+  header.add("time_s", "");
+  for (std::size_t joint = 0; joint < recording.joints().size(); ++joint) {
+    const std::string name = "." + recording.joints()[joint].name;
+    const std::string position = ".joint" + std::to_string(joint);
+    for (const char* quantity : {"setpoint_deg", "servo_us", "angle_deg"}) {
+      header.add(quantity + name, position);
+    }
+    for (const RecordedInternalValue& value : recording.internal_values()) {
+      if (value.joint == joint) {
+        header.add(value.name + unit_suffix(value.unit) + name, ".slot" + std::to_string(value.slot));
+      }
+    }
+  }
+  for (std::size_t link = 0; link < recording.links().size(); ++link) {
+    const std::string name = "." + recording.links()[link];
+    for (const char* quantity : {"x_m", "y_m", "z_m", "contact_rear", "contact_front"}) {
+      header.add(quantity + name, ".link" + std::to_string(link));
+    }
+  }
+  write(header.end());
+}
+
+}  // namespace
+
+void write_tsv(const Recording& recording, const std::function<void(std::string_view)>& write) {
+  write_header(recording, write);
+
+  // Positions of the internal values of each joint in RecordedTick::internal_values.
+  std::vector<std::vector<std::size_t>> values_of(recording.joints().size());
+  for (std::size_t i = 0; i < recording.internal_values().size(); ++i) {
+    values_of[recording.internal_values()[i].joint].push_back(i);
+  }
+
+  Line line;
+  recording.read_ticks(recording.first_tick(), recording.last_tick(), [&](const RecordedTick& tick) {
+    line.clear();
+    line.add(std::to_string(tick.tick));
+    line.add(recording.time_s(tick.tick));
+    for (std::size_t joint = 0; joint < recording.joints().size(); ++joint) {
+      line.add(tick.setpoints[joint], Unit::degree);
+      line.add(static_cast<double>(tick.servo_commands[joint]) / servo_counts_per_us);
+      line.add(tick.joint_angles[joint] * 180.0 / std::numbers::pi);
+      for (const std::size_t i : values_of[joint]) {
+        line.add(tick.internal_values[i], recording.internal_values()[i].unit);
+      }
+    }
+    for (std::size_t link = 0; link < recording.links().size(); ++link) {
+      const Eigen::Vector3d& position = tick.link_poses[link].position;
+      line.add(position.x());
+      line.add(position.y());
+      line.add(position.z());
+      line.add((tick.link_contacts[link] & 1U) != 0 ? "1" : "0");
+      line.add((tick.link_contacts[link] & 2U) != 0 ? "1" : "0");
+    }
+    write(line.end());
+  });
+}
+
+}  // namespace proleg::sim

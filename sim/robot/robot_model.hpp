@@ -1,0 +1,88 @@
+#pragma once
+
+// A robot as data: links, hinge joints and servos, in metres, kilograms, radians and newtons. Nothing here knows a
+// physics engine or a file format.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+namespace proleg::sim {
+
+/// Position and orientation of a frame.
+struct Pose {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
+
+  /// The pose in the outer frame of something that has the pose `inner` in this frame.
+  [[nodiscard]] Pose operator*(const Pose& inner) const {
+    return {position + orientation * inner.position, orientation * inner.orientation};
+  }
+  [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& point) const { return position + orientation * point; }
+};
+
+enum class Shape : std::uint8_t {
+  box,
+  sphere,
+  cylinder,  ///< axis along y, as in OpenRAVE
+};
+
+/// A solid that collides.
+struct Geometry {
+  Shape shape = Shape::box;
+  Pose pose;  ///< in the frame of the link
+  /// box: half the side lengths; sphere: radius in x; cylinder: radius in x, half the height in y. All above 0.
+  Eigen::Vector3d extents = Eigen::Vector3d::Zero();
+  /// Coulomb coefficient, not negative; without one the partner's holds. Two of them: the geometric mean.
+  std::optional<double> friction;
+};
+
+/// Coefficient between two geometries of which neither has one.
+inline constexpr double default_friction = 0.1;
+
+struct MassProperties {
+  double mass = 0.0;                                      ///< kg, above 0
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();       ///< centre of mass in the frame of the link
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< about the centre of mass, positive definite
+};
+
+struct Link {
+  std::string name;
+  Pose pose;  ///< in the robot's frame when all joint angles are 0
+  MassProperties mass;
+  std::vector<Geometry> geometries;
+};
+
+/// Kernel joint j connects link j (towards the head) with link j + 1 (towards the tail).
+struct Joint {
+  std::string name;
+  std::size_t file_index = 0;                        ///< position of the joint in its file, from 0
+  Eigen::Vector3d anchor = Eigen::Vector3d::Zero();  ///< in the robot's frame
+  /// Unit vector in the robot's frame. The joint angle is the rotation of the link towards the head about this axis,
+  /// relative to the link towards the tail.
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();
+  double lower_limit = 0.0;  ///< rad
+  double upper_limit = 0.0;  ///< rad
+  double max_torque = 0.0;   ///< Nm, above 0
+  double max_speed = 0.0;    ///< rad/s, above 0
+};
+
+/// A position servo: a proportional controller on the angle commands a speed, which the motor reaches if its torque
+/// suffices. It takes a new pulse at its own period.
+struct ServoModel {
+  double gain = 8.3;  ///< 1/s, above 0; the default is that of the OpenMR servo plug-in
+  std::uint32_t period_us = 20'000;
+};
+
+struct RobotModel {
+  std::string name;
+  std::vector<Link> links;    ///< from head to tail; one more than joints
+  std::vector<Joint> joints;  ///< kernel order: from head to tail
+  ServoModel servo;
+};
+
+}  // namespace proleg::sim

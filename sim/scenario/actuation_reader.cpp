@@ -1,0 +1,161 @@
+#include "sim/scenario/actuation_reader.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "shared/gait/registry.hpp"
+#include "sim/scenario/settings.hpp"
+#include "sim/scenario/text.hpp"
+#include "sim/scenario/values.hpp"
+
+namespace proleg::sim {
+namespace {
+
+const ActuationModule& read_algorithm(const XmlElement& module) {
+  const std::string name = module.required_attribute("name");
+  const ActuationModule* algorithm = find_algorithm(name);
+  if (algorithm == nullptr) {
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < algorithm_count(); ++i) {
+      known.emplace_back(algorithm_at(i).declaration().name);
+    }
+    module.refuse("unknown algorithm " + in_quotes(name), "one of " + listed(known));
+  }
+  return *algorithm;
+}
+
+JointMask read_group(const XmlElement& module, const RobotModel& robot) {
+  const XmlElement element = module.required_child("jointConfiguration");
+  element.allow({"joints"}, {});
+  const std::string mask = element.required_attribute("joints");
+  if (mask.size() != robot.joints.size() || mask.find_first_not_of("01") != std::string::npos) {
+    element.refuse(
+        "joints " + in_quotes(mask),
+        std::to_string(robot.joints.size()) + " characters 0 or 1, one for each joint in the order of the robot file");
+  }
+  JointMask group;
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    if (mask[robot.joints[j].file_index] == '1') {
+      group.insert(static_cast<unsigned>(j));
+    }
+  }
+  return group;
+}
+
+/// A <parameter>: for which joint of the slot, or all of them, which value.
+struct ParameterEntry {
+  int index = 0;
+  int joint = -1;
+  std::int32_t value = 0;
+};
+
+ParameterEntry read_parameter(const XmlElement& element, const Scenario& scenario, const Slot& slot) {
+  element.allow({"name", "value", "unit", "joint"}, {});
+  const Declaration& declaration = slot.algorithm->declaration();
+  ParameterEntry entry;
+  const std::string name = element.required_attribute("name");
+  entry.index = find_parameter(declaration, name);
+  if (entry.index < 0) {
+    element.refuse("unknown parameter " + in_quotes(name) + " of " + std::string(declaration.name),
+                   "one of " + listed(parameter_names(declaration)));
+  }
+  const Parameter& parameter = declaration.parameters[static_cast<std::size_t>(entry.index)];
+  const std::string symbol = scale_of(parameter.unit).symbol;
+  if (const auto unit = element.attribute("unit"); unit && *unit != symbol) {
+    element.refuse("unit " + in_quotes(*unit) + " for parameter " + in_quotes(name), "unit '" + symbol + "'");
+  }
+  entry.value =
+      parse_parameter(parameter, element.required_attribute("value"), element.document().name(), element.line());
+  if (const auto joint = element.attribute("joint")) {
+    entry.joint = find_joint(scenario.robot, *joint);
+    if (entry.joint < 0 || !slot.group.contains(static_cast<unsigned>(entry.joint))) {
+      element.refuse((entry.joint < 0 ? "unknown joint " : "joint not driven by this module, ") + in_quotes(*joint),
+                     "one of " + listed(joint_names(scenario.robot, slot.group)));
+    }
+  }
+  return entry;
+}
+
+void read_parameters(const XmlElement& module, unsigned slot_number, Scenario& scenario) {
+  const Slot& slot = scenario.kernel.slots[slot_number];
+  std::vector<ParameterEntry> entries;
+  std::set<std::pair<int, int>> seen;
+  for (const XmlElement& child : module.children()) {
+    if (!child.is("parameter")) {
+      continue;
+    }
+    entries.push_back(read_parameter(child, scenario, slot));
+    if (!seen.insert({entries.back().index, entries.back().joint}).second) {
+      child.refuse("parameter " + in_quotes(child.required_attribute("name")) + " twice for the same joints", "it once");
+    }
+  }
+  // Those for all joints first, whatever the order in the file.
+  std::ranges::stable_partition(entries, [](const ParameterEntry& entry) { return entry.joint < 0; });
+  for (const ParameterEntry& entry : entries) {
+    for (unsigned j = 0; j < scenario.kernel.joint_count; ++j) {
+      if (slot.group.contains(j) && (entry.joint < 0 || static_cast<unsigned>(entry.joint) == j)) {
+        Setting setting;
+        setting.slot = static_cast<std::uint8_t>(slot_number);
+        setting.joint = static_cast<std::uint8_t>(j);
+        setting.index = static_cast<std::uint8_t>(entry.index);
+        setting.value = entry.value;
+        set_start_value(scenario, setting);
+      }
+    }
+  }
+}
+
+/// Asks the kernel itself whether it takes the configuration so far.
+void check_with_kernel(const XmlElement& place, const KernelConfiguration& configuration) {
+  std::vector<JointMemory> memory(configuration.joint_count);
+  Kernel kernel(memory);
+  if (const Status status = kernel.configure(configuration, 0); status != Status::ok) {
+    place.refuse(
+        "a configuration that the control kernel refuses with " + place.label() + ": " + std::string(describe(status)),
+        "one that it takes");
+  }
+}
+
+}  // namespace
+
+void read_actuation(const XmlDocument& document, Scenario& scenario, const std::string& robot_file) {
+  const XmlElement root = document.root("actuation");
+  root.allow({}, {"validRobot", "actuationModule"});
+  if (const auto valid = root.child("validRobot")) {
+    valid->allow({"robotName"}, {});
+    const std::string name = valid->required_attribute("robotName");
+    if (name != std::filesystem::path(robot_file).filename().string()) {
+      scenario.remarks.push_back(one_line(document.name() + ":" + std::to_string(valid->line()) +
+                                          ": the actuation was made for robot " + in_quotes(name)));
+    }
+  }
+
+  unsigned slot_number = 0;
+  for (const XmlElement& module : root.children()) {
+    if (!module.is("actuationModule")) {
+      continue;
+    }
+    if (slot_number == max_slots) {
+      module.refuse("a fifth " + module.label(), "at most " + std::to_string(max_slots));
+    }
+    module.allow({"name"}, {"jointConfiguration", "parameter"});
+    Slot& slot = scenario.kernel.slots[slot_number];
+    slot.algorithm = &read_algorithm(module);
+    slot.group = read_group(module, scenario.robot);
+    check_with_kernel(module, scenario.kernel);
+    if (slot.group == JointMask()) {
+      remark_no_effect(scenario.remarks, module, "it drives no joint");
+    }
+    read_parameters(module, slot_number, scenario);
+    ++slot_number;
+  }
+  if (slot_number == 0) {
+    root.refuse("no <actuationModule> in " + root.label(), "1 to " + std::to_string(max_slots));
+  }
+}
+
+}  // namespace proleg::sim

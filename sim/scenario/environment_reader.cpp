@@ -1,0 +1,164 @@
+#include "sim/scenario/environment_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "sim/scenario/geometry_reader.hpp"
+#include "sim/scenario/input_error.hpp"
+#include "sim/scenario/kinbody_reader.hpp"
+#include "sim/scenario/text.hpp"
+#include "sim/scenario/values.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr Range accelerations{-1e3, 1e3, "m/s^2"};
+constexpr double largest_angle = 1e4;  // degrees
+
+/// Tags of OpenRAVE for its viewer.
+constexpr std::array<std::string_view, 5> viewer_tags{"bkgndcolor", "camtrans", "camrotaxis", "camrotationaxis",
+                                                      "camfocal"};
+
+void read_physics(const XmlElement& element, EnvironmentModel& environment) {
+  element.allow({"type"}, {"odeproperties"});
+  if (const std::string type = element.required_attribute("type"); lower_case(type) != "ode") {
+    element.refuse("type " + in_quotes(type) + " in " + element.label(), "'ode'");
+  }
+  const auto properties = element.child("odeproperties");
+  if (!properties) {
+    return;
+  }
+  properties->allow({}, {"gravity", "selfcollision"});
+  if (const auto gravity = properties->child("gravity")) {
+    environment.gravity = read_vector(*gravity, accelerations);
+  }
+  if (const auto collision = properties->child("selfcollision")) {
+    const std::string text = collision->text();
+    if (text != "0" && text != "1") {
+      collision->refuse(in_quotes(text) + " in " + collision->label(), "0 or 1");
+    }
+    environment.self_collision = text == "1";
+  }
+}
+
+/// "x y z" as three numbers of at most that size.
+std::optional<Eigen::Vector3d> parse_triple(std::string_view text, double largest) {
+  const std::vector<std::string_view> tokens = words(text);
+  if (tokens.size() != 3) {
+    return std::nullopt;
+  }
+  Eigen::Vector3d result;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::optional<double> value = parse_number(tokens[i]);
+    if (!value || *value < -largest || *value > largest) {
+      return std::nullopt;
+    }
+    result[static_cast<Eigen::Index>(i)] = *value;
+  }
+  return result;
+}
+
+std::vector<std::string_view> split_at_commas(std::string_view text) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t comma = text.find(',');
+    parts.push_back(trimmed(text.substr(0, comma)));
+    if (comma == std::string_view::npos) {
+      return parts;
+    }
+    text.remove_prefix(comma + 1);
+  }
+}
+
+Pose read_robot_pose(const XmlDocument& document) {
+  std::optional<Pose> pose;
+  for (const XmlDocument::Comment& comment : document.comments()) {
+    const std::string_view text = trimmed(comment.text);
+    if (!lower_case(text).starts_with("pose:")) {
+      continue;
+    }
+    const std::vector<std::string_view> parts = split_at_commas(text);
+    std::optional<Eigen::Vector3d> position;
+    std::optional<Eigen::Vector3d> degrees;
+    if (parts.size() == 4 && lower_case(parts[0]) == "pose:" && parts[3].empty()) {
+      position = parse_triple(parts[1], coordinates.highest);
+      degrees = parse_triple(parts[2], largest_angle);
+    }
+    if (!position || !degrees || pose) {
+      throw InputError(document.name(), comment.line, (pose ? "a second comment " : "the comment ") + in_quotes(text),
+                       "one 'Pose: ,X Y Z,A B C,' with metres and degrees");
+    }
+    const Eigen::Vector3d angles = *degrees * (std::numbers::pi / 180.0);
+    pose = Pose{*position, Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()) *
+                               Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()) *
+                               Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX())};
+  }
+  return pose.value_or(Pose{});
+}
+
+/// Bounds of all geometries of a body; nothing if it has none.
+std::optional<Bounds> bounds_of_body(const std::vector<Geometry>& geometries, const Pose& frame) {
+  std::optional<Bounds> whole;
+  for (const Geometry& geometry : geometries) {
+    const Bounds bounds = bounds_of(geometry, frame);
+    whole = whole ? Bounds{whole->lowest.cwiseMin(bounds.lowest), whole->highest.cwiseMax(bounds.highest)} : bounds;
+  }
+  return whole;
+}
+
+}  // namespace
+
+EnvironmentModel read_environment(const XmlDocument& document, SourceSet& sources, std::vector<std::string>& remarks) {
+  const XmlElement root = document.root("Environment");
+  constexpr std::array<std::string_view, 2> attributes{"name", "type"};
+  constexpr std::array<std::string_view, 2> tags{"physicsengine", "KinBody"};
+  root.allow(attributes, joined({tags, viewer_tags}));
+
+  EnvironmentModel environment;
+  if (const auto physics = root.child("physicsengine")) {
+    read_physics(*physics, environment);
+  }
+  for (const XmlElement& child : root.children()) {
+    if (!child.is("KinBody")) {
+      continue;
+    }
+    KinBodyContents contents = read_kinbody(child, KinBodyUse::environment, sources, remarks);
+    for (BodyEntry& body : contents.bodies) {
+      environment.objects.push_back({std::move(body.link.name), body.link.pose, std::move(body.link.geometries)});
+    }
+  }
+  environment.robot_pose = read_robot_pose(document);
+  return environment;
+}
+
+void lift_onto_ground(const RobotModel& robot, EnvironmentModel& environment, std::vector<std::string>& remarks) {
+  const Eigen::Vector3d& start = environment.robot_pose.position;
+  std::optional<double> top;
+  const StaticObject* ground = nullptr;
+  for (const StaticObject& object : environment.objects) {
+    const std::optional<Bounds> bounds = bounds_of_body(object.geometries, object.pose);
+    if (bounds && (start.head<2>().array() >= bounds->lowest.head<2>().array()).all() &&
+        (start.head<2>().array() <= bounds->highest.head<2>().array()).all() && (!top || bounds->highest.z() > *top)) {
+      top = bounds->highest.z();
+      ground = &object;
+    }
+  }
+  std::optional<double> bottom;
+  for (const Link& link : robot.links) {
+    if (const auto bounds = bounds_of_body(link.geometries, environment.robot_pose * link.pose)) {
+      bottom = bottom ? std::min(*bottom, bounds->lowest.z()) : bounds->lowest.z();
+    }
+  }
+  constexpr double negligible = 1e-9;  // m
+  if (!top || !bottom || *top - *bottom < negligible) {
+    return;
+  }
+  environment.robot_pose.position.z() += *top - *bottom;
+  remarks.push_back(one_line("the robot starts " + number_text((*top - *bottom) * 1000.0) +
+                             " mm higher than the environment file says, so that it rests on " + in_quotes(ground->name)));
+}
+
+}  // namespace proleg::sim

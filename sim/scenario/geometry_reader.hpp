@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sim/robot/robot_model.hpp"
+#include "sim/scenario/xml_document.hpp"
+
+namespace proleg::sim {
+
+/// Reads a <Geom>: box (<extents>: half sides), sphere (<radius>) or cylinder (<radius>, <height>; axis along y), with
+/// its pose in the body and its <friction>.
+[[nodiscard]] Geometry read_geometry(const XmlElement& element);
+
+/// What <Mass> can take from the solids of a body. Overlapping solids count twice.
+struct SolidProperties {
+  double volume = 0.0;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< of volume, in the frame of the body
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre, at density 1
+};
+
+[[nodiscard]] SolidProperties solid_properties(const std::vector<Geometry>& geometries);
+
+/// Inertia about the centre of a box with these half sides and mass 1.
+[[nodiscard]] Eigen::Matrix3d box_inertia(const Eigen::Vector3d& half_sides);
+
+/// An axis-aligned box: what a shape reaches along x, y and z, to the last bit of its surface.
+struct Bounds {
+  Eigen::Vector3d lowest;
+  Eigen::Vector3d highest;
+};
+
+/// Bounds of a geometry; `frame` is the pose of its body.
+[[nodiscard]] Bounds bounds_of(const Geometry& geometry, const Pose& frame);
+
+}  // namespace proleg::sim

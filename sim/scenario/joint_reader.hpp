@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/robot/robot_model.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "sim/scenario/xml_document.hpp"
+
+namespace proleg::sim {
+
+/// What a <Joint> says, with names as in the file.
+struct JointDescription {
+  Joint joint;  ///< anchor and axis in the frame of `offset_from`
+  std::array<std::string, 2> bodies;
+  std::optional<std::string> offset_from;
+  JointLimits kernel_limits;
+};
+
+/// Reads a <Joint type="hinge">: two <body>, <axis>, <anchor> (0 0 0 by default), <offsetfrom>, <limitsdeg> or <limits>
+/// (radians), <maxtorque> (Nm), <maxvel> (rad/s). Limits beyond +-90 degrees stay in the model, and are +-90 degrees
+/// for the kernel, with a remark.
+[[nodiscard]] JointDescription read_joint(const XmlElement& element, std::vector<std::string>& remarks);
+
+}  // namespace proleg::sim

@@ -1,0 +1,212 @@
+#include "sim/scenario/kinbody_reader.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "shared/gait/joint_mask.hpp"
+#include "sim/scenario/geometry_reader.hpp"
+#include "sim/scenario/input_error.hpp"
+#include "sim/scenario/joint_reader.hpp"
+#include "sim/scenario/mass_reader.hpp"
+#include "sim/scenario/text.hpp"
+#include "sim/scenario/values.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr int deepest_kinbody = 32;
+constexpr std::size_t most_static_bodies = 10'000;
+
+/// What the KinBodies around a body say about it.
+struct Scope {
+  Pose pose;
+  std::string prefix;
+  std::string name;  ///< of the innermost KinBody that has one
+  int depth = 0;
+};
+
+/// A joint whose frame is not known yet: the body of its <offsetfrom> may come later in the file.
+struct PendingJoint {
+  JointEntry entry;
+  std::optional<std::string> offset_from;
+  Pose scope_pose;
+};
+
+class KinBodyReader {
+ public:
+  KinBodyReader(KinBodyUse use, SourceSet& sources, std::vector<std::string>& remarks)
+      : use_(use), sources_(&sources), remarks_(&remarks) {}
+
+  void read(const XmlElement& element, Scope scope, std::span<const std::string_view> extra_tags) {
+    if (++scope.depth > deepest_kinbody) {
+      element.refuse("KinBodies nested deeper than " + std::to_string(deepest_kinbody), "at most that");
+    }
+    if (const auto name = element.attribute("name")) {
+      scope.name = checked_name(element, *name);
+    }
+    if (const auto prefix = element.attribute("prefix"); prefix && !prefix->empty()) {
+      scope.prefix += checked_name(element, *prefix);
+    }
+    scope.pose = scope.pose * read_pose(element);
+    if (const auto file = element.attribute("file")) {
+      element.allow(attributes, pose_tags);
+      const auto document = sources_->open(element, *file);
+      read(document->root("KinBody"), scope, {});
+      return;
+    }
+    constexpr std::array<std::string_view, 3> robot_tags{"Body", "KinBody", "Joint"};
+    constexpr std::array<std::string_view, 2> environment_tags{"Body", "KinBody"};
+    const std::span<const std::string_view> tags =
+        use_ == KinBodyUse::robot ? std::span<const std::string_view>(robot_tags) : environment_tags;
+    constexpr std::array<std::string_view, 1> visual_tags{"visible"};
+    element.allow(attributes, joined({tags, pose_tags, extra_tags, visual_tags}));
+    for (const XmlElement& child : element.children()) {
+      if (child.is("KinBody")) {
+        read(child, scope, {});
+      } else if (child.is("Body")) {
+        read_body(child, scope);
+      } else if (child.is("Joint")) {
+        read_joint_element(child, scope);
+      }
+    }
+  }
+
+  KinBodyContents finish() {
+    for (PendingJoint& pending : joints_) {
+      const Pose frame = pending.offset_from
+                             ? find_body(*pending.offset_from, pending.entry.origin, "<offsetfrom>").link.pose
+                             : pending.scope_pose;
+      Joint& joint = pending.entry.joint;
+      joint.anchor = frame * joint.anchor;
+      joint.axis = (frame.orientation * joint.axis).normalized();
+      for (const std::string& body : pending.entry.bodies) {
+        static_cast<void>(find_body(body, pending.entry.origin, "<body>"));
+      }
+      contents_.joints.push_back(std::move(pending.entry));
+    }
+    return std::move(contents_);
+  }
+
+ private:
+  static constexpr std::array<std::string_view, 4> attributes{"name", "prefix", "file", "type"};
+
+  void read_body(const XmlElement& element, const Scope& scope) {
+    constexpr std::array<std::string_view, 2> body_attributes{"name", "type"};
+    constexpr std::array<std::string_view, 3> tags{"Geom", "Mass", "offsetfrom"};
+    element.allow(body_attributes, joined({tags, pose_tags}));
+    check_type(element);
+    const std::size_t most_bodies = use_ == KinBodyUse::robot ? max_joints + 1 : most_static_bodies;
+    if (contents_.bodies.size() == most_bodies) {
+      element.refuse("more than " + std::to_string(most_bodies) + " bodies", "at most that");
+    }
+
+    BodyEntry entry{{element.document().name(), element.line()}, {}};
+    const std::optional<std::string> name = element.attribute("name");
+    if (use_ == KinBodyUse::robot) {
+      entry.link.name = scope.prefix + checked_name(element, element.required_attribute("name"));
+    } else {
+      entry.link.name = name ? scope.prefix + checked_name(element, *name) : scope.prefix + scope.name;
+    }
+    const auto offset = element.child("offsetfrom");
+    const Pose frame =
+        offset ? find_body(scope.prefix + offset->text(), entry.origin, offset->label()).link.pose : scope.pose;
+    entry.link.pose = frame * read_pose(element);
+    for (const XmlElement& child : element.children()) {
+      if (child.is("Geom")) {
+        entry.link.geometries.push_back(read_geometry(child));
+      }
+    }
+    read_body_mass(element, entry.link);
+    if (use_ == KinBodyUse::robot) {
+      const auto same = std::ranges::find(contents_.bodies, entry.link.name, name_of_body);
+      if (same != contents_.bodies.end()) {
+        element.refuse("a second body " + in_quotes(entry.link.name),
+                       "another name; the first is in " + same->origin.file + ":" + std::to_string(same->origin.line));
+      }
+    }
+    contents_.bodies.push_back(std::move(entry));
+  }
+
+  void check_type(const XmlElement& element) const {
+    const std::string type = lower_case(element.attribute("type").value_or("dynamic"));
+    if (use_ == KinBodyUse::robot && type != "dynamic") {
+      element.refuse("type " + in_quotes(type) + " in " + element.label(), "'dynamic', as a robot moves");
+    }
+    if (use_ == KinBodyUse::environment && type != "static") {
+      element.refuse("type " + in_quotes(type) + " in " + element.label(),
+                     "'static', as this version has only static objects in an environment");
+    }
+  }
+
+  void read_body_mass(const XmlElement& element, Link& link) {
+    if (use_ == KinBodyUse::environment) {
+      if (const auto mass = element.child("Mass")) {
+        remark_no_effect(*remarks_, *mass, "a static body does not move");
+      }
+      return;
+    }
+    link.mass = read_mass(element.required_child("Mass"), link.geometries);
+  }
+
+  void read_joint_element(const XmlElement& element, const Scope& scope) {
+    if (joints_.size() == max_joints) {
+      element.refuse("more than " + std::to_string(max_joints) + " joints", "1 to " + std::to_string(max_joints));
+    }
+    JointDescription description = read_joint(element, *remarks_);
+    PendingJoint pending{{{element.document().name(), element.line()},
+                          std::move(description.joint),
+                          std::move(description.bodies),
+                          description.kernel_limits},
+                         std::move(description.offset_from),
+                         scope.pose};
+    JointEntry& entry = pending.entry;
+    entry.joint.name = scope.prefix + entry.joint.name;
+    entry.joint.file_index = joints_.size();
+    for (std::string& body : entry.bodies) {
+      body = scope.prefix + body;
+    }
+    if (pending.offset_from) {
+      pending.offset_from = scope.prefix + *pending.offset_from;
+    }
+    const auto same =
+        std::ranges::find(joints_, entry.joint.name, [](const PendingJoint& other) { return other.entry.joint.name; });
+    if (same != joints_.end()) {
+      element.refuse("a second joint " + in_quotes(entry.joint.name),
+                     "another name; the first is in line " + std::to_string(same->entry.origin.line));
+    }
+    joints_.push_back(std::move(pending));
+  }
+
+  [[nodiscard]] const BodyEntry& find_body(const std::string& name, const Origin& origin,
+                                           const std::string& where) const {
+    const auto body = std::ranges::find(contents_.bodies, name, name_of_body);
+    if (body == contents_.bodies.end()) {
+      std::vector<std::string> known;
+      for (const BodyEntry& entry : contents_.bodies) {
+        known.push_back(entry.link.name);
+      }
+      throw InputError(origin.file, origin.line, "unknown body " + in_quotes(name) + " in " + where,
+                       "one of " + listed(known));
+    }
+    return *body;
+  }
+
+  static const std::string& name_of_body(const BodyEntry& entry) { return entry.link.name; }
+
+  KinBodyUse use_;
+  SourceSet* sources_;
+  std::vector<std::string>* remarks_;
+  KinBodyContents contents_;
+  std::vector<PendingJoint> joints_;
+};
+
+}  // namespace
+
+KinBodyContents read_kinbody(const XmlElement& element, KinBodyUse use, SourceSet& sources,
+                             std::vector<std::string>& remarks, std::span<const std::string_view> extra_tags) {
+  KinBodyReader reader(use, sources, remarks);
+  reader.read(element, {}, extra_tags);
+  return reader.finish();
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,57 @@
+#pragma once
+
+// Kinematic bodies: the OpenRAVE tag <KinBody> with bodies, joints and further KinBodies, in this file or another.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/robot/robot_model.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "sim/scenario/source_set.hpp"
+
+namespace proleg::sim {
+
+/// Where in the input something stands.
+struct Origin {
+  std::string file;
+  int line = 0;
+};
+
+struct BodyEntry {
+  Origin origin;
+  Link link;
+};
+
+struct JointEntry {
+  Origin origin;
+  Joint joint;  ///< anchor and axis in the robot's frame, as the file gives them
+  /// Names of bodies. The angle is the rotation of the second relative to the first about the axis.
+  std::array<std::string, 2> bodies;
+  JointLimits kernel_limits;
+};
+
+/// What a file declares, in its order.
+struct KinBodyContents {
+  std::vector<BodyEntry> bodies;
+  std::vector<JointEntry> joints;
+};
+
+enum class KinBodyUse : std::uint8_t {
+  robot,        ///< named dynamic bodies with mass, and joints
+  environment,  ///< static bodies, no joints
+};
+
+/// Reads a <KinBody>, or a <Robot>, which may hold the same. extra_tags: tags that the caller reads itself.
+///
+/// Nested KinBodies have their pose (<translation>, <rotationaxis>, <quat>) in the frame of the outer one. A `prefix`
+/// goes before the names of all bodies and joints inside; names in a joint are looked for with the prefixes of its
+/// place. <offsetfrom> of a joint names the body in whose frame anchor and axis are, of a body the body in whose frame
+/// its pose is; without it the frame is that of the KinBody. Poses, anchors and axes come out in the outermost frame.
+[[nodiscard]] KinBodyContents read_kinbody(const XmlElement& element, KinBodyUse use, SourceSet& sources,
+                                           std::vector<std::string>& remarks,
+                                           std::span<const std::string_view> extra_tags = {});
+
+}  // namespace proleg::sim

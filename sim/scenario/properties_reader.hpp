@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/scenario/scenario.hpp"
+#include "sim/scenario/xml_document.hpp"
+
+namespace proleg::sim {
+
+/// Reads <simulationProperties> into a scenario: stepWidth (s), and ours: duration (s), tick (ms), seed, solver. What
+/// is left out keeps its default. Tags of the thesis that do nothing here get a remark.
+void read_simulation_properties(const XmlElement& element, Scenario& scenario);
+
+}  // namespace proleg::sim

@@ -1,0 +1,50 @@
+#include "sim/scenario/reader.hpp"
+
+#include <utility>
+
+#include "sim/scenario/actuation_reader.hpp"
+#include "sim/scenario/environment_reader.hpp"
+#include "sim/scenario/properties_reader.hpp"
+#include "sim/scenario/robot_reader.hpp"
+#include "sim/scenario/source_set.hpp"
+#include "sim/scenario/values.hpp"
+
+namespace proleg::sim {
+
+Scenario read_scenario(const std::filesystem::path& path, FileSource& files) {
+  Scenario scenario;
+  scenario.path = path.string();
+  SourceSet sources(files, path, scenario.sources);
+  const auto top = sources.open_top();
+  const XmlElement root = top->root("simulation");
+  root.allow({}, {"robot", "actuation", "environment", "simulationProperties", "sensor", "sensors"});
+  const auto open = [&](std::string_view tag) {
+    const XmlElement mention = root.required_child(tag);
+    return sources.open(mention, mention.text());
+  };
+
+  if (const auto properties = root.child("simulationProperties")) {
+    read_simulation_properties(*properties, scenario);
+  }
+  for (const XmlElement& child : root.children()) {
+    if (child.is("sensor") || child.is("sensors")) {
+      remark_no_effect(scenario.remarks, child, "this version has no attached sensors");
+    }
+  }
+
+  const auto robot_file = open("robot");
+  RobotDescription robot = read_robot(*robot_file, sources, scenario.remarks);
+  scenario.robot = std::move(robot.model);
+  scenario.joint_limits = std::move(robot.kernel_limits);
+  scenario.kernel.joint_count = static_cast<std::uint8_t>(scenario.robot.joints.size());
+
+  const auto actuation_file = open("actuation");
+  read_actuation(*actuation_file, scenario, robot_file->name());
+
+  const auto environment_file = open("environment");
+  scenario.environment = read_environment(*environment_file, sources, scenario.remarks);
+  lift_onto_ground(scenario.robot, scenario.environment, scenario.remarks);
+  return scenario;
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,60 @@
+#include "sim/scenario/robot_reader.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "sim/scenario/chain.hpp"
+#include "sim/scenario/kinbody_reader.hpp"
+#include "sim/scenario/text.hpp"
+#include "sim/scenario/values.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr Range gains{1e-3, 1e4, "1/s"};
+constexpr Range servo_periods{0.1, 100.0, "ms"};
+
+ServoModel read_servo(const XmlElement& element) {
+  element.allow({}, {"gain", "period"});
+  ServoModel servo;
+  if (const auto gain = element.child("gain")) {
+    servo.gain = read_quantity(*gain, gains);
+  }
+  if (const auto period = element.child("period")) {
+    const double microseconds = read_quantity(*period, servo_periods) * 1000.0;
+    if (std::abs(microseconds - std::round(microseconds)) > 1e-6) {
+      period->refuse(in_quotes(period->text({"unit"})) + " in " + period->label(), "a whole number of microseconds");
+    }
+    servo.period_us = static_cast<std::uint32_t>(std::round(microseconds));
+  }
+  return servo;
+}
+
+}  // namespace
+
+RobotDescription read_robot(const XmlDocument& document, SourceSet& sources, std::vector<std::string>& remarks) {
+  const XmlElement root = document.root("Robot");
+  constexpr std::array<std::string_view, 4> extra_tags{"servo", "AttachedSensor", "sensor", "Manipulator"};
+  const KinBodyContents contents = read_kinbody(root, KinBodyUse::robot, sources, remarks, extra_tags);
+  for (const XmlElement& child : root.children()) {
+    if (child.is("AttachedSensor") || child.is("sensor")) {
+      remark_no_effect(remarks, child, "this version has no attached sensors");
+    } else if (child.is("Manipulator")) {
+      remark_no_effect(remarks, child, "a crawling robot has none");
+    }
+  }
+
+  Chain chain = make_chain(contents, {document.name(), root.line()});
+  RobotDescription robot;
+  robot.model.name = root.attribute("name").value_or(document.path().stem().string());
+  if (const auto servo = root.child("servo")) {
+    robot.model.servo = read_servo(*servo);
+  }
+  robot.model.links = std::move(chain.links);
+  robot.model.joints = std::move(chain.joints);
+  robot.kernel_limits = std::move(chain.kernel_limits);
+  remarks.push_back(one_line(chain.joint_map));
+  return robot;
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sim/robot/robot_model.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "sim/scenario/source_set.hpp"
+
+namespace proleg::sim {
+
+struct RobotDescription {
+  RobotModel model;
+  std::vector<JointLimits> kernel_limits;  ///< kernel order
+};
+
+/// Reads a robot file: <Robot> with KinBodies and joints as in OpenRAVE, and our
+///   <servo><gain>50</gain><period unit="ms">1</period></servo>
+/// (gain in 1/s; what is left out is as in ServoModel). Adds the joint map to the remarks.
+[[nodiscard]] RobotDescription read_robot(const XmlDocument& document, SourceSet& sources,
+                                          std::vector<std::string>& remarks);
+
+}  // namespace proleg::sim

@@ -1,0 +1,66 @@
+#pragma once
+
+// Everything that a *.simulation.xml file and the files it names say, checked: whoever holds a Scenario can run it.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "shared/kernel/kernel.hpp"
+#include "sim/environment/environment_model.hpp"
+#include "sim/robot/robot_model.hpp"
+
+namespace proleg::sim {
+
+enum class Solver : std::uint8_t {
+  automatic,  ///< direct up to 8 links, iterative above
+  direct,     ///< dWorldStep
+  iterative,  ///< dWorldQuickStep
+};
+
+/// A parameter (or, from `--set`, an internal value) given a value on one joint.
+struct Setting {
+  std::uint8_t slot = 0;
+  std::uint8_t joint = 0;  ///< kernel order
+  std::uint8_t index = 0;  ///< of the parameter or internal value in the declaration
+  bool internal = false;   ///< an internal value: a distortion
+  std::int32_t value = 0;
+};
+
+/// Settings that take effect together at a tick.
+struct Change {
+  std::uint32_t tick = 0;
+  std::vector<Setting> settings;
+};
+
+/// A file as it was read, kept for the recording.
+struct SourceFile {
+  std::string path;
+  std::string text;
+};
+
+/// What the kernel cuts the set-points of a joint to: 90 degrees = 2^30, within +-90 degrees.
+struct JointLimits {
+  std::int32_t lower = -(1 << 30);
+  std::int32_t upper = 1 << 30;
+};
+
+struct Scenario {
+  std::string path;
+  RobotModel robot;
+  EnvironmentModel environment;
+
+  KernelConfiguration kernel;
+  std::vector<JointLimits> joint_limits;  ///< kernel order, one for each joint
+  std::vector<Setting> settings;          ///< start values that differ from the defaults
+  std::vector<Change> changes;            ///< in flight, by ascending tick
+
+  double duration_s = 30.0;
+  double step_s = 0.001;  ///< of the physics; a tick is a whole number of steps
+  Solver solver = Solver::automatic;
+
+  std::vector<SourceFile> sources;   ///< every file read, the top-level file first
+  std::vector<std::string> remarks;  ///< what a user may want to know: the joint map, tags without effect
+};
+
+}  // namespace proleg::sim

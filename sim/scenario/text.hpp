@@ -1,0 +1,47 @@
+#pragma once
+
+// Small pieces of text work that the readers share.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace proleg::sim {
+
+/// Bytes of the UTF-8 character at the start of `text`, or 0 if there is none.
+[[nodiscard]] std::size_t utf8_character_size(std::string_view text);
+
+/// Position of the first byte that is not UTF-8.
+[[nodiscard]] std::optional<std::size_t> find_invalid_utf8(std::string_view text);
+
+/// The text with control characters and line separators replaced by blanks, and bytes that are not UTF-8 by '?'.
+[[nodiscard]] std::string one_line(std::string_view text);
+
+/// The first 60 characters, with "..." if there are more. For text of the input within a message.
+[[nodiscard]] std::string shortened(std::string_view text);
+
+/// Shortened and between single quotes.
+[[nodiscard]] std::string in_quotes(std::string_view text);
+
+/// ASCII letters in lower case. XML tags and attributes are compared this way.
+[[nodiscard]] std::string lower_case(std::string_view text);
+
+/// Without blanks at both ends. Blanks are those of XML: space, tab and line ends.
+[[nodiscard]] std::string_view trimmed(std::string_view text);
+
+/// The words between blanks.
+[[nodiscard]] std::vector<std::string_view> words(std::string_view text);
+
+/// "a, b, c"; at most 20 items, then "...". "nothing" for an empty list.
+[[nodiscard]] std::string listed(std::span<const std::string> items);
+
+/// The whole word as a finite decimal number, or nothing.
+[[nodiscard]] std::optional<double> parse_number(std::string_view word);
+
+/// Short text of a number for messages.
+[[nodiscard]] std::string number_text(double value);
+
+}  // namespace proleg::sim

@@ -1,0 +1,111 @@
+#include "sim/scenario/values.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "sim/scenario/input_error.hpp"
+#include "sim/scenario/text.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr Range angles{-1e4, 1e4, "degrees"};
+constexpr Range directions{-1e4, 1e4, ""};
+constexpr double shortest_direction = 1e-6;
+
+std::string described(const Range& range) {
+  return number_text(range.lowest) + " to " + number_text(range.highest) +
+         (range.unit.empty() ? "" : " " + std::string(range.unit));
+}
+
+double checked_number(const XmlElement& element, std::string_view word, const Range& range) {
+  const std::optional<double> value = parse_number(word);
+  if (!value || *value < range.lowest || *value > range.highest) {
+    element.refuse(in_quotes(word) + " in " + element.label(), "a number from " + described(range));
+  }
+  return *value;
+}
+
+}  // namespace
+
+double read_number(const XmlElement& element, const Range& range, std::initializer_list<std::string_view> attributes) {
+  return checked_number(element, element.text(attributes), range);
+}
+
+double read_quantity(const XmlElement& element, const Range& range) {
+  const double value = read_number(element, range, {"unit"});
+  if (const auto unit = element.attribute("unit"); unit && *unit != range.unit) {
+    element.refuse("unit " + in_quotes(*unit) + " in " + element.label(), "unit '" + std::string(range.unit) + "'");
+  }
+  return value;
+}
+
+std::vector<double> read_numbers(const XmlElement& element, std::size_t count, const Range& range) {
+  const std::string text = element.text();
+  const std::vector<std::string_view> tokens = words(text);
+  if (tokens.size() != count) {
+    element.refuse(in_quotes(text) + " in " + element.label(), std::to_string(count) + " numbers");
+  }
+  std::vector<double> result;
+  for (const std::string_view token : tokens) {
+    result.push_back(checked_number(element, token, range));
+  }
+  return result;
+}
+
+Eigen::Vector3d read_vector(const XmlElement& element, const Range& range) {
+  const std::vector<double> numbers = read_numbers(element, 3, range);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+std::string checked_name(const XmlElement& element, std::string name) {
+  constexpr std::size_t longest_name = 64;
+  if (name.empty() || name.size() > longest_name) {
+    element.refuse(name.empty() ? "an empty name in " + element.label() : "the long name " + in_quotes(name),
+                   "a name of 1 to " + std::to_string(longest_name) + " characters");
+  }
+  return name;
+}
+
+Pose read_pose(const XmlElement& element) {
+  Pose pose;
+  for (const XmlElement& child : element.children()) {
+    if (child.is("translation")) {
+      pose.position += read_vector(child, coordinates);
+    } else if (child.is("rotationaxis")) {
+      const std::vector<double> numbers = read_numbers(child, 4, angles);
+      const Eigen::Vector3d axis(numbers[0], numbers[1], numbers[2]);
+      if (axis.norm() < shortest_direction) {
+        child.refuse(in_quotes(child.text()) + " in " + child.label(), "an axis that is not 0, and degrees");
+      }
+      const double angle = numbers[3] * std::numbers::pi / 180.0;
+      pose.orientation = Eigen::AngleAxisd(angle, axis.normalized()) * pose.orientation;
+    } else if (child.is("quat")) {
+      const std::vector<double> numbers = read_numbers(child, 4, directions);
+      const Eigen::Quaterniond rotation(numbers[0], numbers[1], numbers[2], numbers[3]);
+      if (rotation.norm() < shortest_direction) {
+        child.refuse(in_quotes(child.text()) + " in " + child.label(), "a quaternion w x y z that is not 0");
+      }
+      pose.orientation = rotation.normalized() * pose.orientation;
+    }
+  }
+  pose.orientation.normalize();
+  return pose;
+}
+
+std::vector<std::string_view> joined(std::initializer_list<std::span<const std::string_view>> lists) {
+  std::vector<std::string_view> result;
+  for (const auto list : lists) {
+    result.insert(result.end(), list.begin(), list.end());
+  }
+  return result;
+}
+
+void remark_no_effect(std::vector<std::string>& remarks, const XmlElement& element, std::string_view reason) {
+  remarks.push_back(one_line(element.document().name() + ":" + std::to_string(element.line()) + ": " + element.label() +
+                             " has no effect: " + std::string(reason)));
+}
+
+}  // namespace proleg::sim

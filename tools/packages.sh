@@ -1,0 +1,33 @@
+# Debian packages, by name, and how to install the missing ones. Read by tools/demo and tools/check.
+
+# Programs for this computer.
+host_packages=(
+  g++ cmake ninja-build pkg-config ccache git ca-certificates
+  libode-dev libeigen3-dev libtinyxml2-dev libsqlite3-dev libsodium-dev libcli11-dev nlohmann-json3-dev
+)
+
+# What the tests need beyond that: the ARM toolchain, the CPU emulator, a second compiler with its sanitizers.
+test_packages=(
+  gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib binutils-arm-none-eabi libunicorn-dev
+  clang libclang-rt-14-dev clang-format clang-tidy libgtest-dev libbenchmark-dev python3 sqlite3
+)
+
+# install_packages NAME...: installs those that are missing, and says which.
+install_packages() {
+  local missing=() name
+  for name in "$@"; do
+    if ! dpkg-query -W -f '${Status}' "$name" 2>/dev/null | grep -q 'ok installed'; then
+      missing+=("$name")
+    fi
+  done
+  if [ ${#missing[@]} -eq 0 ]; then
+    return 0
+  fi
+  echo "Installing Debian packages: ${missing[*]}"
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    as_root=(sudo)
+  fi
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+}

@@ -1,0 +1,129 @@
+// proleg algorithms: what the algorithms of the core declare, for people and, as docs/algorithms.md, for the documentation.
+
+#include <iostream>
+#include <string>
+
+#include "shared/fixed/decimal.hpp"
+#include "shared/gait/registry.hpp"
+#include "sim/scenario/input_error.hpp"
+#include "tools/proleg/command_line.hpp"
+
+namespace {
+
+using namespace proleg;
+
+std::string number(std::int32_t value, Unit unit) { return std::string(format_decimal(value, unit).view()); }
+
+std::string symbol(Unit unit) { return scale_of(unit).symbol; }
+
+std::string range(const Parameter& parameter) {
+  if (wraps(parameter.unit)) {
+    return "any angle";
+  }
+  return number(parameter.minimum, parameter.unit) + " to " + number(parameter.maximum, parameter.unit);
+}
+
+/// "bytes 0-3 phase, bytes 4-5 current_amplitude"
+std::string frame_layout(const Declaration& declaration) {
+  std::string layout;
+  unsigned position = 0;
+  for (const FrameField& field : declaration.frame) {
+    layout += layout.empty() ? "" : ", ";
+    layout += "bytes " + std::to_string(position) + "-" + std::to_string(position + field.bytes - 1) + " " +
+              std::string(declaration.internal_values[field.internal_value].name);
+    position += field.bytes;
+  }
+  return layout.empty() ? "nothing" : layout;
+}
+
+void print_names(std::ostream& out) {
+  for (std::size_t i = 0; i < algorithm_count(); ++i) {
+    const Declaration& declaration = algorithm_at(i).declaration();
+    out << declaration.name << "\n    " << declaration.help << '\n';
+  }
+  out << "\n'proleg algorithms NAME' lists the parameters of one of them.\n";
+}
+
+void print_markdown(std::ostream& out, const Declaration& declaration) {
+  out << "## " << declaration.name << "\n\n"
+      << declaration.help << "; id " << unsigned{declaration.id} << ". Broadcasts " << frame_layout(declaration)
+      << ".\n\n| parameter | unit | default | range | object | what it is |\n| --- | --- | --- | --- | --- | --- |\n";
+  for (std::size_t i = 0; i < declaration.parameters.size(); ++i) {
+    const Parameter& parameter = declaration.parameters[i];
+    constexpr const char* digits = "0123456789ABCDEF";
+    const unsigned index = 0x3000U + 32U * declaration.id + static_cast<unsigned>(i);
+    std::string object = "0x";
+    for (const unsigned shift : {12U, 8U, 4U, 0U}) {
+      object += digits[(index >> shift) & 15U];
+    }
+    out << "| `" << parameter.name << "` | " << symbol(parameter.unit) << " | "
+        << number(parameter.default_value, parameter.unit) << " | " << range(parameter) << " | " << object << " | "
+        << parameter.help << " |\n";
+  }
+  if (!declaration.internal_values.empty()) {
+    out << "\n| internal value | unit | what it is |\n| --- | --- | --- |\n";
+    for (const InternalValue& value : declaration.internal_values) {
+      out << "| `" << value.name << "` | " << symbol(value.unit) << " | " << value.help << " |\n";
+    }
+  }
+}
+
+void print_text(std::ostream& out, const Declaration& declaration) {
+  out << declaration.name << ": " << declaration.help << "\n\nParameters:\n";
+  for (const Parameter& parameter : declaration.parameters) {
+    out << "  " << parameter.name << " [" << symbol(parameter.unit) << "], " << range(parameter) << ", default "
+        << number(parameter.default_value, parameter.unit) << "\n      " << parameter.help << '\n';
+  }
+  if (!declaration.internal_values.empty()) {
+    out << "\nInternal values:\n";
+    for (const InternalValue& value : declaration.internal_values) {
+      out << "  " << value.name << " [" << symbol(value.unit) << "]\n      " << value.help << '\n';
+    }
+  }
+  out << "\nBroadcasts " << frame_layout(declaration) << ".\n";
+}
+
+int print_all_markdown(std::ostream& out) {
+  out << "# Algorithms\n\nWritten by `proleg algorithms --markdown` from the declarations in `shared/gait`; a test keeps "
+         "the two the same.\n\"Object\" is the index in the object dictionary; the sub-index is the slot, 1 to 4.\n";
+  for (std::size_t i = 0; i < algorithm_count(); ++i) {
+    out << '\n';
+    print_markdown(out, algorithm_at(i).declaration());
+  }
+  return tools::exit_success;
+}
+
+int describe(const std::string& name, bool markdown) {
+  if (name.empty()) {
+    if (markdown) {
+      return print_all_markdown(std::cout);
+    }
+    print_names(std::cout);
+    return tools::exit_success;
+  }
+  const ActuationModule* algorithm = find_algorithm(std::string_view(name));
+  if (algorithm == nullptr) {
+    std::string known;
+    for (std::size_t i = 0; i < algorithm_count(); ++i) {
+      known += (known.empty() ? "" : ", ") + std::string(algorithm_at(i).declaration().name);
+    }
+    throw sim::InputError("NAME", 0, "'" + name + "'", "one of " + known);
+  }
+  if (markdown) {
+    print_markdown(std::cout, algorithm->declaration());
+  } else {
+    print_text(std::cout, algorithm->declaration());
+  }
+  return tools::exit_success;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Lists the algorithms that can move a robot, or the parameters of one of them.", "proleg algorithms");
+  std::string name;
+  bool markdown = false;
+  app.add_option("NAME", name, "name of an algorithm");
+  app.add_flag("--markdown", markdown, "as Markdown tables");
+  return proleg::tools::run_command(argc, argv, app, [&] { return describe(name, markdown); });
+}

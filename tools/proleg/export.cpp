@@ -1,0 +1,51 @@
+// proleg export: a recording as a table for other programs.
+
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+#include "sim/record/output.hpp"
+#include "sim/record/recording.hpp"
+#include "sim/record/tsv.hpp"
+#include "sim/scenario/input_error.hpp"
+#include "tools/proleg/command_line.hpp"
+
+using namespace proleg;
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Writes a recording of 'proleg simulate --record' as a table: a header line, then a line for each tick.\n"
+      "Columns: tick; time_s; for each joint setpoint_deg, servo_us, angle_deg and its internal values; for each link\n"
+      "x_m, y_m, z_m, contact_rear, contact_front. Joint and link names follow the dot (setpoint_deg.J1).",
+      "proleg export");
+  std::string recording_path;
+  std::string out;
+  bool tsv = false;
+  app.add_option("RUN", recording_path, "the recording")->required();
+  app.add_flag("--tsv", tsv, "as tab-separated values")->required();
+  app.add_option("--out", out, "write to this file instead of standard output");
+
+  return tools::run_command(argc, argv, app, [&] {
+    const sim::Recording recording(recording_path);
+    if (!out.empty() && std::filesystem::exists(out) && std::filesystem::equivalent(out, recording_path)) {
+      throw sim::InputError("--out", 0, "the recording itself", "another file");
+    }
+    if (!recording.finished()) {
+      std::cerr << app.get_name() << ": " << recording_path << ": the run is not finished; recorded are "
+                << recording.time_s(recording.last_tick()) << " s\n";
+    }
+    try {
+      std::optional<sim::Output> output;
+      if (out.empty()) {
+        output.emplace();
+      } else {
+        output.emplace(out);
+      }
+      sim::write_tsv(recording, [&](std::string_view text) { output->write(text); });
+      output->finish();
+    } catch (const sim::ReaderGone&) {
+      return tools::exit_failed;  // as `head` does to everyone; not worth a word
+    }
+    return tools::exit_success;
+  });
+}

@@ -1,0 +1,74 @@
+// The dispatcher: `proleg simulate ...` runs `proleg-simulate ...`, which lies beside it. Each subcommand is a program of
+// its own, so that none needs the libraries of another.
+
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace {
+
+struct Subcommand {
+  std::string_view name;
+  std::string_view summary;
+};
+
+constexpr std::array subcommands{
+    Subcommand{"algorithms", "list the algorithms that move a robot, and their parameters"},
+    Subcommand{"simulate", "run a scenario in the physics simulation"},
+    Subcommand{"export", "write a recording as a tab-separated table"},
+    Subcommand{"plot", "draw joint angles, contacts and path of a recording"},
+};
+
+void print_help(std::ostream& out) {
+  out << "Usage: proleg SUBCOMMAND [OPTIONS]\n\nSubcommands:\n";
+  for (const Subcommand& subcommand : subcommands) {
+    out << "  " << subcommand.name << std::string(12 - subcommand.name.size(), ' ') << subcommand.summary << '\n';
+  }
+  out << "\n'proleg SUBCOMMAND --help' explains one of them.\n";
+}
+
+std::string names() {
+  std::string list;
+  for (const Subcommand& subcommand : subcommands) {
+    list += (list.empty() ? "" : ", ") + std::string(subcommand.name);
+  }
+  return list;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::cerr << "proleg: found no subcommand, expected one of " << names() << '\n';
+    return 2;
+  }
+  const std::string_view word = argv[1];
+  if (word == "--help" || word == "-h" || word == "help") {
+    print_help(std::cout);
+    return 0;
+  }
+  bool known = false;
+  for (const Subcommand& subcommand : subcommands) {
+    known = known || subcommand.name == word;
+  }
+  if (!known) {
+    std::cerr << "proleg: found unknown subcommand '" << word.substr(0, 60) << "', expected one of " << names() << '\n';
+    return 2;
+  }
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::string program = (self.parent_path() / ("proleg-" + std::string(word))).string();
+  std::vector<char*> arguments(argv + 1, argv + argc);
+  arguments.push_back(nullptr);
+  execv(program.c_str(), arguments.data());
+  std::cerr << "proleg: cannot start " << program << ": " << std::strerror(errno) << '\n';
+  return 1;
+}

@@ -1,0 +1,61 @@
+// proleg plot: a recording as a picture.
+
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+#include "sim/record/figure.hpp"
+#include "sim/record/output.hpp"
+#include "sim/record/recording.hpp"
+#include "sim/scenario/input_error.hpp"
+#include "tools/proleg/command_line.hpp"
+
+using namespace proleg;
+
+namespace {
+
+void require_finite(const char* option, const std::optional<double>& seconds) {
+  if (seconds && !std::isfinite(*seconds)) {
+    throw sim::InputError(option, 0, "something that is not a finite number", "seconds from the start of the run");
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Draws a recording of 'proleg simulate --record' as an SVG picture: the joint angles and the contacts over "
+      "time,\n"
+      "and the path of the robot over the whole run, from above. Prints the name of the picture.",
+      "proleg plot");
+  std::string recording_path;
+  std::string out;
+  sim::TimeWindow window;
+  app.add_option("RUN", recording_path, "the recording")->required();
+  app.add_option("--out", out, "the picture (default: the recording's name with .svg)");
+  app.add_option("--from", window.from_s, "start of what is shown over time, in s (default: 3 s before its end)");
+  app.add_option("--to", window.to_s, "end of what is shown over time, in s (default: the end of the run)");
+
+  return tools::run_command(argc, argv, app, [&] {
+    require_finite("--from", window.from_s);
+    require_finite("--to", window.to_s);
+    const sim::Recording recording(recording_path);
+    const std::filesystem::path picture =
+        out.empty() ? std::filesystem::path(recording_path).replace_extension(".svg") : std::filesystem::path(out);
+    if (std::filesystem::exists(picture) && std::filesystem::equivalent(picture, recording_path)) {
+      throw sim::InputError(out.empty() ? recording_path : "--out", 0, "the recording's own name for the picture",
+                            "another one, with --out FILE");
+    }
+    if (!recording.finished()) {
+      std::cerr << app.get_name() << ": " << recording_path << ": the run is not finished; recorded are "
+                << recording.time_s(recording.last_tick()) << " s\n";
+    }
+    const std::string drawing = sim::draw_figure(recording, window);
+    sim::Output output(picture);
+    output.write(drawing);
+    output.finish();
+    std::cout << picture.string() << std::endl;
+    return tools::exit_success;
+  });
+}

@@ -31,8 +31,7 @@ Simulation::Simulation(const Scenario& scenario)
       joint_memory_(scenario.robot.joints.size()),
       kernel_(joint_memory_),
       world_(scenario.robot, scenario.environment, scenario.step_s, choose_stepper(scenario)),
-      steps_per_tick_(
-          static_cast<std::uint32_t>(std::lround(scenario.kernel.tick_period_us * 1e-6 / scenario.step_s))),
+      steps_per_tick_(static_cast<std::uint32_t>(std::lround(scenario.kernel.tick_period_us * 1e-6 / scenario.step_s))),
       start_(world_.center_of_mass()),
       servo_commands_(scenario.robot.joints.size(), servo_center),
       link_poses_(scenario.robot.links.size()),

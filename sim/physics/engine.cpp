@@ -33,7 +33,7 @@ void prepare_engine_for_this_thread() {
     dSetErrorHandler(raise_error);
     dSetDebugHandler(raise_error);
   });
-  dAllocateODEDataForThread(dAllocateMaskAll);
+  dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
 }
 
 std::size_t engine_messages() { return message_count; }

@@ -243,8 +243,7 @@ class World::Implementation {
       // Without this mode mu would be a force.
       contact.surface.mode = dContactApprox1;
       contact.surface.mu = friction(data_a, data_b);
-      dJointAttach(dJointCreateContact(world_.get(), contact_group_.get(), &contact), dGeomGetBody(a),
-                   dGeomGetBody(b));
+      dJointAttach(dJointCreateContact(world_.get(), contact_group_.get(), &contact), dGeomGetBody(a), dGeomGetBody(b));
       note_touch(data_a.link, data_b.link, contact);
       note_touch(data_b.link, data_a.link, contact);
     }

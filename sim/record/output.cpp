@@ -82,6 +82,6 @@ void Output::flush() {
   buffer_.clear();
 }
 
-void Output::fail(const std::string& what) const { throw RecordError(path_.string() + ": cannot be written: " + what); }
+void Output::fail(const std::string& what) const { throw RecordError(path_, "cannot be written: " + what); }
 
 }  // namespace proleg::sim

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <filesystem>
 #include <stdexcept>
+#include <string>
 
 namespace proleg::sim {
 
@@ -8,7 +10,8 @@ namespace proleg::sim {
 /// error. what() is one line: the path and what happened.
 class RecordError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  RecordError(const std::filesystem::path& path, const std::string& what)
+      : std::runtime_error(path.string() + ": " + what) {}
 };
 
 }  // namespace proleg::sim

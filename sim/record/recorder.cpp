@@ -6,9 +6,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
 #include "shared/fixed/decimal.hpp"
+#include "sim/record/recording_file.hpp"
 #include "sim/record/schema.hpp"
 #include "sim/record/sqlite.hpp"
 
@@ -18,68 +18,10 @@ namespace {
 // Half of the second that may be lost, so that a commit that comes a little late is still in time.
 constexpr std::chrono::milliseconds commit_interval{500};
 
-RecordError error_at(const std::filesystem::path& path, const std::string& what) {
-  return RecordError(path.string() + ": " + what);
-}
-
-/// Whether the file begins as an SQLite database with the application id of a recording.
-bool is_recording(const std::filesystem::path& path) {
-  std::array<char, 72> header{};
-  std::ifstream file(path, std::ios::binary);
-  if (!file.read(header.data(), header.size())) {
-    return false;
-  }
-  std::uint32_t application_id = 0;
-  for (std::size_t i = 68; i < 72; ++i) {
-    application_id = application_id << 8U | static_cast<unsigned char>(header[i]);
-  }
-  // The magic string is 16 bytes long with its terminating zero.
-  return std::equal(header.begin(), header.begin() + 16, "SQLite format 3") &&
-         application_id == recording_application_id;
-}
-
-/// A recorder holds a write transaction all the time, so the lock tells whether a file is being recorded into.
-bool is_being_recorded(const std::filesystem::path& path) {
-  try {
-    Database database(path, SQLITE_OPEN_READWRITE);
-    sqlite3_busy_timeout(database.handle(), 0);
-    database.execute("BEGIN IMMEDIATE; ROLLBACK");
-    return false;
-  } catch (const SqliteError& error) {
-    return error.code() == SQLITE_BUSY;  // anything else: a damaged recording, which may be replaced
-  }
-}
-
-/// Removes what the new recording may replace; throws if something else is there.
-void make_room(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) {
-    return;  // if that is an error (no such folder, no permission), opening the file reports it
-  }
-  if (!std::filesystem::is_regular_file(status)) {
-    throw error_at(path, "is there and is not a file; the recording is not written");
-  }
-  const bool empty = std::filesystem::file_size(path, error) == 0 && !error;
-  if (!empty && !is_recording(path)) {
-    throw error_at(path, "is there and is not a recording; it is left as it is");
-  }
-  if (!empty && is_being_recorded(path)) {
-    throw error_at(path, "another program is recording into it");
-  }
-  for (const char* suffix : {"-wal", "-shm", "-journal", ""}) {
-    std::filesystem::remove(path.string() + suffix, error);
-    if (error) {
-      throw error_at(path, "the earlier recording cannot be replaced: " + error.message());
-    }
-  }
-}
-
-/// A new file with the tables of a recording, in a transaction that is still open.
+/// The empty file, now with the tables of a recording, in a transaction that is still open.
 class NewRecording : public Database {
  public:
-  explicit NewRecording(const std::filesystem::path& path)
-      : Database(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE) {
+  explicit NewRecording(const std::filesystem::path& path) : Database(path, SQLITE_OPEN_READWRITE) {
     // Nothing can be lost yet, so nothing is flushed or journalled. All this goes to the main file, not to the
     // write-ahead log, so that from the first moment the file says what it is.
     execute("PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF; BEGIN IMMEDIATE");
@@ -188,13 +130,13 @@ class Recorder::Storage {
   template <typename Action>
   void guard(const Action& action) {
     if (closed_ || failed_) {
-      throw error_at(path_, closed_ ? "the recording is finished" : "recording stopped at an earlier error");
+      throw RecordError(path_, closed_ ? "the recording is finished" : "recording stopped at an earlier error");
     }
     try {
       action();
     } catch (const SqliteError& error) {
       failed_ = true;
-      throw error_at(path_, std::string("recording stopped: ") + error.what());
+      throw RecordError(path_, std::string("recording stopped: ") + error.what());
     }
   }
 
@@ -331,8 +273,8 @@ class Recorder::Storage {
                                     [](double x) { return std::isfinite(x); }) &&
                         std::all_of(sample.link_poses.begin(), sample.link_poses.end(), is_finite);
     if (!finite) {
-      throw error_at(path_, "at tick " + std::to_string(sample.tick) +
-                                " a pose or joint angle is not a finite number: the simulation has become unstable");
+      throw RecordError(path_, "at tick " + std::to_string(sample.tick) +
+                                   " a pose or joint angle is not a finite number: the simulation has become unstable");
     }
   }
 
@@ -380,13 +322,13 @@ class Recorder::Storage {
 };
 
 Recorder::Recorder(const std::filesystem::path& path, const Scenario& scenario, const std::string& build_id) {
-  make_room(path);
+  claim_recording_file(path);
   try {
     storage_ = std::make_unique<Storage>(path, scenario, build_id);
   } catch (const SqliteError& error) {
-    std::error_code ignored;  // what cannot be removed could not be created either
+    std::error_code ignored;  // the error that is reported is the first
     std::filesystem::remove(path, ignored);
-    throw error_at(path, std::string("cannot be written: ") + error.what());
+    throw RecordError(path, std::string("cannot be written: ") + error.what());
   }
 }
 

@@ -50,8 +50,7 @@ double finite(const Statement& row, int column) {
 
 /// Degrees and phases share a symbol; they differ in how text is read, not in how a value is written.
 Unit unit_of(const std::string& symbol) {
-  for (const Unit unit :
-       {Unit::degree, Unit::degree_per_tick, Unit::hertz, Unit::per_second, Unit::ratio, Unit::count}) {
+  for (const Unit unit : {Unit::degree, Unit::hertz, Unit::per_second, Unit::ratio, Unit::count}) {
     if (symbol == scale_of(unit).symbol) {
       return unit;
     }
@@ -78,6 +77,7 @@ auto reading(const std::filesystem::path& path, const Action& action) {
   } catch (const SqliteError& error) {
     switch (error.code()) {
       case SQLITE_NOTADB:
+        throw InputError(path.string(), 0, "something that is not a database", what_is_expected);
       case SQLITE_CORRUPT:
         throw InputError(path.string(), 0, std::string("a damaged file (") + error.what() + ")", what_is_expected);
       case SQLITE_ERROR:  // no such table or column
@@ -85,10 +85,10 @@ auto reading(const std::filesystem::path& path, const Action& action) {
       case SQLITE_CANTOPEN:
       case SQLITE_READONLY:
         throw RecordError(
-            path.string() + ": cannot be read (" + error.what() +
-            "); a recording that was not finished needs its -wal file and a folder with write permission");
+            path, std::string("cannot be read (") + error.what() +
+                      "); a recording that was not finished needs its -wal file and a folder with write permission");
       default:
-        throw RecordError(path.string() + ": cannot be read: " + error.what());
+        throw RecordError(path, std::string("cannot be read: ") + error.what());
     }
   }
 }
@@ -155,7 +155,7 @@ void Recording::read_run() {
   while (result.step()) {
     results_.emplace_back(result.text(0), result.text(1));
   }
-  Statement range(tables_->database, "SELECT min(tick), max(tick) FROM sample");
+  Statement range(tables_->database, "SELECT (SELECT min(tick) FROM sample), (SELECT max(tick) FROM sample)");
   if (!range.step() || !range.is_integer(0)) {
     throw Damage("no tick at all (the run ended before the first was written)");
   }

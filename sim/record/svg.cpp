@@ -131,13 +131,6 @@ void Svg::text(Point position, std::string_view text, TextAnchor anchor, double 
               std::string(style) + ">" + xml_text(text) + "</text>\n";
 }
 
-void Svg::begin_clipped(Point corner, double width, double height) {
-  const std::string name = "clip" + std::to_string(++clips_);
-  picture_ += "<clipPath id=\"" + name + "\">";
-  rectangle(corner, width, height, "");
-  picture_ += "</clipPath>\n<g clip-path=\"url(#" + name + ")\">\n";
-}
-
 void Svg::begin_group(std::string_view name) { picture_ += "<g class=\"" + xml_text(name) + "\">\n"; }
 
 void Svg::end_group() { picture_ += "</g>\n"; }

@@ -29,8 +29,7 @@ class Svg {
   void text(Point position, std::string_view text, TextAnchor anchor, double size, std::string_view colour,
             std::string_view style = {});
 
-  /// What is drawn between begin_group and end_group; clip: nothing of it is painted outside this rectangle.
-  void begin_clipped(Point corner, double width, double height);
+  /// What is drawn between the two has this class.
   void begin_group(std::string_view name);
   void end_group();
 
@@ -39,7 +38,6 @@ class Svg {
 
  private:
   std::string picture_;
-  int clips_ = 0;
 };
 
 /// Text as it must be written in XML. What XML cannot hold (control characters, bytes that are not UTF-8) becomes '?'.

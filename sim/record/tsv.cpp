@@ -40,8 +40,6 @@ std::string unit_suffix(Unit unit) {
     case Unit::degree:
     case Unit::phase_degree:
       return "_deg";
-    case Unit::degree_per_tick:
-      return "_deg_per_tick";
     case Unit::hertz:
       return "_Hz";
     case Unit::per_second:

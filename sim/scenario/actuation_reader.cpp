@@ -90,11 +90,12 @@ void read_parameters(const XmlElement& module, unsigned slot_number, Scenario& s
     }
     entries.push_back(read_parameter(child, scenario, slot));
     if (!seen.insert({entries.back().index, entries.back().joint}).second) {
-      child.refuse("parameter " + in_quotes(child.required_attribute("name")) + " twice for the same joints", "it once");
+      child.refuse("parameter " + in_quotes(child.required_attribute("name")) + " twice for the same joints",
+                   "it once");
     }
   }
   // Those for all joints first, whatever the order in the file.
-  std::ranges::stable_partition(entries, [](const ParameterEntry& entry) { return entry.joint < 0; });
+  std::stable_partition(entries.begin(), entries.end(), [](const ParameterEntry& entry) { return entry.joint < 0; });
   for (const ParameterEntry& entry : entries) {
     for (unsigned j = 0; j < scenario.kernel.joint_count; ++j) {
       if (slot.group.contains(j) && (entry.joint < 0 || static_cast<unsigned>(entry.joint) == j)) {

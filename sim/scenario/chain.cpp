@@ -35,7 +35,8 @@ class ChainBuilder {
         std::vector<std::size_t>& joints = joints_of_[body_index(name)];
         joints.push_back(j);
         if (joints.size() > 2) {
-          refuse(entry.origin, "joint " + in_quotes(entry.joint.name) + " as the third joint of body " + in_quotes(name),
+          refuse(entry.origin,
+                 "joint " + in_quotes(entry.joint.name) + " as the third joint of body " + in_quotes(name),
                  "an unbranched chain");
         }
       }
@@ -55,7 +56,8 @@ class ChainBuilder {
         continue;
       }
       if (head) {
-        refuse(body.origin, "two heads, " + in_quotes((*bodies_)[*head].link.name) + " and " + in_quotes(body.link.name),
+        refuse(body.origin,
+               "two heads, " + in_quotes((*bodies_)[*head].link.name) + " and " + in_quotes(body.link.name),
                "one end of the robot with a name that ends with 'Head'");
       }
       head = b;

@@ -84,8 +84,9 @@ JointDescription read_joint(const XmlElement& element, std::vector<std::string>&
     ++bodies;
   }
   if (bodies != 2 || description.bodies[0] == description.bodies[1]) {
-    element.refuse(bodies != 2 ? std::to_string(bodies) + " <body> in joint " + in_quotes(joint.name)
-                               : "body " + in_quotes(description.bodies[0]) + " twice in joint " + in_quotes(joint.name),
+    element.refuse(bodies != 2
+                       ? std::to_string(bodies) + " <body> in joint " + in_quotes(joint.name)
+                       : "body " + in_quotes(description.bodies[0]) + " twice in joint " + in_quotes(joint.name),
                    "two bodies");
   }
   if (const auto offset = element.child("offsetfrom")) {

@@ -1,5 +1,20 @@
 #pragma once
 
+// The way in: scenarios from XML files, in the format of the thesis (listings B.1, B.2, B.5, B.6) with a few additions.
+// The top-level file names the others; a path is looked for from the folder of the file that names it, then from the
+// folder of the top-level file:
+//
+//   <simulation>
+//     <robot>caterpillar.robot.xml</robot>                    robot_reader.hpp, kinbody_reader.hpp, joint_reader.hpp,
+//                                                             geometry_reader.hpp, mass_reader.hpp
+//     <actuation>uniform.actuation.xml</actuation>            actuation_reader.hpp
+//     <environment>flat.environment.xml</environment>         environment_reader.hpp
+//     <simulationProperties>...</simulationProperties>        properties_reader.hpp; may be left out
+//   </simulation>
+//
+// Tags and attributes may be written in any case; names of things keep theirs. What a reader does not know is an error
+// that names what it knows. Lengths are metres, masses kilograms, angles degrees unless a tag says otherwise.
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,7 +31,7 @@ class FileSource {
   [[nodiscard]] virtual std::optional<std::string> read(const std::filesystem::path& path) = 0;
 };
 
-/// Files on disk, at most 16 MiB each.
+/// Files on disk, at most 16 MiB each. Anything but a regular file counts as missing.
 class DiskFiles final : public FileSource {
  public:
   [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override;
@@ -25,7 +40,16 @@ class DiskFiles final : public FileSource {
 /// Reads a top-level simulation file and all that it names. Throws InputError.
 [[nodiscard]] Scenario read_scenario(const std::filesystem::path& path, FileSource& files);
 
-/// Applies a `--set NAME=VALUE[@TICK]` word to a scenario. Throws InputError with the word as its file.
+/// Applies a `--set` word to a scenario: [MODULE.]NAME[:JOINT]=VALUE[@TICK]
+///   MODULE  name of an algorithm, or 1 to 4 for its place in the actuation file; needed if several modules that drive
+///           the joint have the name
+///   NAME    a parameter, or an internal value
+///   JOINT   a joint of the robot file; without it all joints of the module
+///   VALUE   a decimal number in the declared unit
+///   TICK    0 to 2^32 - 1
+/// A parameter without a tick gets another start value, with a tick it changes in flight. An internal value is
+/// overwritten (a distortion) at the tick, by default 0. Throws InputError with the word as its file, and then leaves
+/// the scenario as it was.
 void apply_setting(Scenario& scenario, const std::string& word);
 
 }  // namespace proleg::sim

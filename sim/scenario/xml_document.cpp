@@ -42,6 +42,18 @@ std::optional<std::size_t> find_null_reference(std::string_view text) {
   return std::nullopt;
 }
 
+/// "mismatched element" for XML_ERROR_MISMATCHED_ELEMENT.
+std::string error_words(const tinyxml2::XMLDocument& document) {
+  std::string words = lower_case(document.ErrorName());
+  std::ranges::replace(words, '_', ' ');
+  for (const std::string_view prefix : {"xml ", "error "}) {
+    if (words.starts_with(prefix)) {
+      words.erase(0, prefix.size());
+    }
+  }
+  return words;
+}
+
 class CommentCollector : public tinyxml2::XMLVisitor {
  public:
   bool Visit(const tinyxml2::XMLComment& comment) override {
@@ -182,9 +194,8 @@ XmlDocument::XmlDocument(std::filesystem::path path, std::string text, const Xml
     throw InputError(name_, line_at(text, *at), "bytes that are not UTF-8", "XML text in UTF-8");
   }
   if (parsed_->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-    // tinyxml2's words end with the line number, which the message has already.
-    throw InputError(name_, std::max(parsed_->ErrorLineNum(), 1),
-                     "malformed XML (" + lower_case(parsed_->ErrorName()) + ")", "well-formed XML");
+    throw InputError(name_, std::max(parsed_->ErrorLineNum(), 1), "malformed XML (" + error_words(*parsed_) + ")",
+                     "well-formed XML");
   }
   for (const auto* node = parsed_->FirstChild(); node != nullptr; node = node->NextSibling()) {
     const bool second_root = node->ToElement() != nullptr && node != parsed_->RootElement();

@@ -21,8 +21,12 @@ function(proleg_test path)
   endforeach()
   target_link_libraries(${name}_test PRIVATE ${test_LIBRARIES} GTest::gtest GTest::gtest_main)
   target_compile_definitions(${name}_test PRIVATE PROLEG_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  set(properties TIMEOUT 300)
+  if(test_LABELS)
+    list(APPEND properties LABELS "${test_LABELS}")
+  endif()
   gtest_discover_tests(${name}_test
     TEST_PREFIX "${PROLEG_TEST_PREFIX}${path}."
     DISCOVERY_TIMEOUT 60
-    PROPERTIES LABELS "${test_LABELS}" TIMEOUT 300)
+    PROPERTIES ${properties})
 endfunction()

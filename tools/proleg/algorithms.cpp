@@ -1,4 +1,5 @@
-// proleg algorithms: what the algorithms of the core declare, for people and, as docs/algorithms.md, for the documentation.
+// proleg algorithms: what the algorithms of the core declare, for people and, as docs/algorithms.md, for the
+// documentation.
 
 #include <iostream>
 #include <string>
@@ -84,7 +85,8 @@ void print_text(std::ostream& out, const Declaration& declaration) {
 }
 
 int print_all_markdown(std::ostream& out) {
-  out << "# Algorithms\n\nWritten by `proleg algorithms --markdown` from the declarations in `shared/gait`; a test keeps "
+  out << "# Algorithms\n\nWritten by `proleg algorithms --markdown` from the declarations in `shared/gait`; a test "
+         "keeps "
          "the two the same.\n\"Object\" is the index in the object dictionary; the sub-index is the slot, 1 to 4.\n";
   for (std::size_t i = 0; i < algorithm_count(); ++i) {
     out << '\n';

@@ -21,9 +21,9 @@ int main(int argc, char** argv) {
   std::string recording_path;
   std::string out;
   bool tsv = false;
-  app.add_option("RUN", recording_path, "the recording")->required();
+  app.add_option("RUN", recording_path, "the recording")->required()->type_name("");
   app.add_flag("--tsv", tsv, "as tab-separated values")->required();
-  app.add_option("--out", out, "write to this file instead of standard output");
+  app.add_option("--out", out, "write to this file instead of standard output")->type_name("FILE");
 
   return tools::run_command(argc, argv, app, [&] {
     const sim::Recording recording(recording_path);

@@ -1,5 +1,5 @@
-// The dispatcher: `proleg simulate ...` runs `proleg-simulate ...`, which lies beside it. Each subcommand is a program of
-// its own, so that none needs the libraries of another.
+// The dispatcher: `proleg simulate ...` runs `proleg-simulate ...`, which lies beside it. Each subcommand is a program
+// of its own, so that none needs the libraries of another.
 
 #include <unistd.h>
 

@@ -32,10 +32,12 @@ int main(int argc, char** argv) {
   std::string recording_path;
   std::string out;
   sim::TimeWindow window;
-  app.add_option("RUN", recording_path, "the recording")->required();
-  app.add_option("--out", out, "the picture (default: the recording's name with .svg)");
-  app.add_option("--from", window.from_s, "start of what is shown over time, in s (default: 3 s before its end)");
-  app.add_option("--to", window.to_s, "end of what is shown over time, in s (default: the end of the run)");
+  app.add_option("RUN", recording_path, "the recording")->required()->type_name("");
+  app.add_option("--out", out, "the picture (default: the recording's name with .svg)")->type_name("FILE");
+  app.add_option("--from", window.from_s, "start of what is shown over time, in s (default: 3 s before its end)")
+      ->type_name("SECONDS");
+  app.add_option("--to", window.to_s, "end of what is shown over time, in s (default: the end of the run)")
+      ->type_name("SECONDS");
 
   return tools::run_command(argc, argv, app, [&] {
     require_finite("--from", window.from_s);
@@ -55,7 +57,13 @@ int main(int argc, char** argv) {
     sim::Output output(picture);
     output.write(drawing);
     output.finish();
-    std::cout << picture.string() << std::endl;
+    try {
+      sim::Output standard_output;
+      standard_output.write(picture.string() + "\n");
+      standard_output.finish();
+    } catch (const sim::ReaderGone&) {
+      // The picture is there, and nobody asks for its name.
+    }
     return tools::exit_success;
   });
 }

@@ -65,8 +65,8 @@ sim::Scenario prepare(const Options& options) {
 }
 
 std::uint32_t tick_count(const sim::Scenario& scenario) {
-  const auto ticks = static_cast<std::uint32_t>(
-      std::max(1L, std::lround(scenario.duration_s * 1e6 / scenario.kernel.tick_period_us)));
+  const auto ticks =
+      static_cast<std::uint32_t>(std::max(1L, std::lround(scenario.duration_s * 1e6 / scenario.kernel.tick_period_us)));
   if (!scenario.changes.empty() && scenario.changes.back().tick >= ticks) {
     throw sim::InputError("--set", 0, "tick " + std::to_string(scenario.changes.back().tick),
                           "a tick before the end of the run, below " + std::to_string(ticks));

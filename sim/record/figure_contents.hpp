@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "sim/record/figure.hpp"
+#include "sim/record/recording.hpp"
+#include "sim/record/svg.hpp"
+
+namespace proleg::sim {
+
+/// A trace over time, or a path.
+using Trace = std::vector<Point>;
+
+/// What is drawn, taken from the recording in one pass. Angles and positions are cut to +-10^9: when a simulation has
+/// flown apart, the picture still has finite coordinates.
+struct FigureContents {
+  double from_s = 0.0;
+  double to_s = 0.0;
+  double tick_s = 0.0;
+  std::uint32_t first_tick = 0;  ///< in the window
+  std::uint32_t last_tick = 0;
+  std::vector<Trace> setpoints;  ///< per joint; x: s, y: degrees
+  std::vector<Trace> angles;
+  struct Press {
+    double from_s;
+    double to_s;
+  };
+  std::vector<std::array<std::vector<Press>, 2>> presses;  ///< per link: of the rear and the front sensor
+  Trace path;                                              ///< x, y of the centre, in m
+  Trace first_chain;                                       ///< x, y of the links, head to tail
+  Trace last_chain;
+};
+
+/// Throws InputError if less than two ticks lie in the window.
+[[nodiscard]] FigureContents collect_figure_contents(const Recording& recording, const TimeWindow& window);
+
+}  // namespace proleg::sim

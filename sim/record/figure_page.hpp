@@ -1,0 +1,27 @@
+#pragma once
+
+// What the panels of a figure share.
+
+#include <string_view>
+
+#include "sim/record/svg.hpp"
+
+namespace proleg::sim {
+
+// Page, in pixels.
+inline constexpr double page_width = 900.0;
+inline constexpr double page_left = 104.0;
+inline constexpr double page_right = 820.0;
+
+inline constexpr double label_size = 12.0;
+inline constexpr double heading_size = 13.5;
+inline constexpr const char* ink = "#222222";
+inline constexpr const char* faint_ink = "#555555";
+inline constexpr const char* grid_style = R"(stroke="#e2e2e2" stroke-width="1")";
+inline constexpr const char* frame_style = R"(fill="none" stroke="#777777" stroke-width="1")";
+
+inline void draw_heading(Svg& svg, double panel_top, std::string_view text) {
+  svg.text({page_left, panel_top - 12.0}, text, TextAnchor::start, heading_size, ink, R"(font-weight="bold")");
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,84 @@
+#include "sim/record/recording_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+#include "sim/record/record_error.hpp"
+#include "sim/record/schema.hpp"
+#include "sim/record/sqlite.hpp"
+
+namespace proleg::sim {
+namespace {
+
+/// Whether the file begins as an SQLite database with the application id of a recording.
+bool is_recording(const std::filesystem::path& path) {
+  std::array<char, 72> header{};
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(header.data(), header.size())) {
+    return false;
+  }
+  std::uint32_t application_id = 0;
+  for (std::size_t i = 68; i < 72; ++i) {
+    application_id = application_id << 8U | static_cast<unsigned char>(header[i]);
+  }
+  // The magic string is 16 bytes long with its terminating zero.
+  return std::equal(header.begin(), header.begin() + 16, "SQLite format 3") &&
+         application_id == recording_application_id;
+}
+
+/// A recorder holds a write transaction all the time, so the lock tells whether a file is being recorded into.
+bool is_being_recorded(const std::filesystem::path& path) {
+  try {
+    Database database(path, SQLITE_OPEN_READWRITE);
+    sqlite3_busy_timeout(database.handle(), 0);
+    database.execute("BEGIN IMMEDIATE; ROLLBACK");
+    return false;
+  } catch (const SqliteError& error) {
+    return error.code() == SQLITE_BUSY;  // anything else: a damaged recording, which may be replaced
+  }
+}
+
+void remove_earlier_recording(const std::filesystem::path& path, const std::filesystem::file_status& status) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(status)) {
+    throw RecordError(path, "is there and is not a file; the recording is not written");
+  }
+  const bool empty = std::filesystem::file_size(path, error) == 0 && !error;
+  if (!empty && !is_recording(path)) {
+    throw RecordError(path, "is there and is not a recording; it is left as it is");
+  }
+  if (!empty && is_being_recorded(path)) {
+    throw RecordError(path, "another program is recording into it");
+  }
+  for (const char* suffix : {"-wal", "-shm", "-journal", ""}) {
+    std::filesystem::remove(path.string() + suffix, error);
+    if (error) {
+      throw RecordError(path, "the earlier recording cannot be replaced: " + error.message());
+    }
+  }
+}
+
+}  // namespace
+
+void claim_recording_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status)) {
+    remove_earlier_recording(path, status);
+  }
+  // SQLite would create the file, too, but after a refusal it tries again for reading and reports that failure.
+  const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) {
+    throw RecordError(path, std::string("cannot be created: ") + std::strerror(errno));
+  }
+  close(descriptor);
+}
+
+}  // namespace proleg::sim

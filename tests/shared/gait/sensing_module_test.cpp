@@ -1,0 +1,124 @@
+#include "shared/gait/sensing_module.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <random>
+
+#include "module_chain.hpp"
+#include "robot.hpp"
+
+namespace proleg {
+namespace {
+
+constexpr unsigned joints = 5;
+constexpr unsigned links = joints + 1;
+
+constexpr InternalValue internal_values[] = {{"seen", Unit::count, 0, "two bits a link, head first"}};
+constexpr Declaration about{120, "ContactProbe", "test", {}, internal_values, {}};
+
+/// Remembers the contacts it was given.
+class ContactProbe final : public SensingModule {
+ public:
+  [[nodiscard]] const Declaration& declaration() const override { return about; }
+  [[nodiscard]] std::int32_t output(const Tuning& /*tuning*/, const std::int32_t* /*state*/) const override {
+    return 0;
+  }
+
+ private:
+  void advance_sensing(const Contacts& contacts, const Surroundings& /*surroundings*/, const Tuning& /*tuning*/,
+                       const std::int32_t* /*state*/, std::int32_t* next) const override {
+    EXPECT_EQ(contacts.link_count(), links);
+    next[0] = 0;
+    for (unsigned link = 0; link < links; ++link) {
+      const bool rear = contacts.pressed(link, TouchSensor::rear);
+      const bool front = contacts.pressed(link, TouchSensor::front);
+      EXPECT_EQ(contacts.pressed(link), rear || front);
+      next[0] |= (rear ? 1 : 0) << (2 * link) | (front ? 2 : 0) << (2 * link);
+    }
+    EXPECT_FALSE(contacts.pressed(links, TouchSensor::rear));
+  }
+};
+
+constexpr ContactProbe probe;
+
+/// What a joint reports of the bitmap of all links: its rear link, and the head's joint the head link as well.
+std::uint8_t reported(std::uint32_t bitmap, unsigned joint) {
+  const std::uint32_t rear_link = (bitmap >> (2 * (joint + 1))) & 3U;
+  const std::uint32_t far_link = joint == 0 ? bitmap & 3U : 0U;
+  return static_cast<std::uint8_t>(rear_link | far_link << 2U);
+}
+
+// protocol.md: state k + 1 comes from contacts c[k - 1], for everyone, the own contacts included.
+TEST(SensingModule, SeesTheContactsOfAllLinksOneTickOldItsOwnIncluded) {
+  const KernelConfiguration configuration = test::one_slot(probe, joints);
+  KernelOf<joints> whole;
+  ASSERT_EQ(whole.configure(configuration, 0), Status::ok);
+  test::ModuleChain chain(configuration);
+  std::mt19937 random(12);
+  std::uint32_t previous = 0;
+  for (int tick = 0; tick < 200; ++tick) {
+    const std::uint32_t contacts = random() % (1U << (2 * links));
+    chain.exchange();
+    for (unsigned joint = 0; joint < joints; ++joint) {
+      whole.set_contacts(joint, reported(contacts, joint));
+      chain[joint].set_contacts(joint, reported(contacts, joint));
+    }
+    whole.advance();
+    chain.advance();
+    for (unsigned joint = 0; joint < joints; ++joint) {
+      ASSERT_EQ(static_cast<std::uint32_t>(whole.internal_value(0, joint, 0)), previous) << "tick " << tick;
+      ASSERT_EQ(static_cast<std::uint32_t>(chain[joint].internal_value(0, joint, 0)), previous) << "tick " << tick;
+    }
+    previous = contacts;
+  }
+}
+
+TEST(SensingModule, KeepsTheLastContactsOfAJointWhoseFrameIsLost) {
+  test::ModuleChain chain(test::one_slot(probe, joints));
+  chain[3].set_contacts(3, StateFrame::contact_rear_link_front);
+  chain.tick();
+  chain[3].set_contacts(3, 0);
+  chain.tick();
+  EXPECT_EQ(chain[0].internal_value(0, 0, 0), 2 << 8);
+  chain.exchange([](unsigned sender, unsigned receiver) { return sender == 3 && receiver == 0; });
+  chain.advance();
+  EXPECT_EQ(chain[0].internal_value(0, 0, 0), 2 << 8) << "held";
+  EXPECT_EQ(chain[1].internal_value(0, 1, 0), 0) << "heard";
+}
+
+TEST(SensingModule, SeesNoContactOfAJointItNeverHeard) {
+  test::ModuleChain chain(test::one_slot(probe, joints));
+  for (unsigned joint = 0; joint < joints; ++joint) {
+    chain[joint].set_contacts(joint, 3);
+  }
+  for (int tick = 0; tick < 3; ++tick) {
+    chain.exchange([](unsigned, unsigned) { return true; });
+    chain.advance();
+  }
+  EXPECT_EQ(chain[2].internal_value(0, 2, 0), 3 << 6) << "its own";
+}
+
+TEST(SensingModule, SeesNoContactFromBeforeAReset) {
+  KernelOf<joints> kernel;
+  ASSERT_EQ(kernel.configure(test::one_slot(probe, joints), 0), Status::ok);
+  kernel.set_contacts(1, 3);
+  test::run(kernel, 2);
+  EXPECT_EQ(kernel.internal_value(0, 0, 0), 3 << 4);
+  kernel.reset();
+  test::run(kernel, 2);
+  EXPECT_EQ(kernel.internal_value(0, 0, 0), 0);
+}
+
+TEST(SensingModule, IgnoresBitsThatAreNoContacts) {
+  KernelOf<joints> kernel;
+  ASSERT_EQ(kernel.configure(test::one_slot(probe, joints), 0), Status::ok);
+  kernel.set_contacts(1, 0xF1);
+  kernel.advance();
+  EXPECT_EQ(kernel.frame(1, 0).flags(), StateFrame::valid | StateFrame::contact_rear_link_rear);
+}
+
+}  // namespace
+}  // namespace proleg

@@ -1,0 +1,276 @@
+#include "sim/physics/world.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <thread>
+#include <vector>
+
+namespace proleg::sim {
+namespace {
+
+constexpr double step_s = 0.001;
+constexpr double gravity = 9.81;
+
+Link box_link(double y, const Eigen::Vector3d& half_sides, double mass) {
+  Link link;
+  link.pose.position = {0, y, 0};
+  const Eigen::Vector3d sides = 2 * half_sides;
+  const Eigen::Vector3d squares = sides.cwiseProduct(sides);
+  link.mass.mass = mass;
+  link.mass.inertia =
+      (mass / 12 * Eigen::Vector3d(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y()))
+          .asDiagonal();
+  Geometry geometry;
+  geometry.extents = half_sides;
+  link.geometries.push_back(geometry);
+  return link;
+}
+
+/// Links of 100 mm along y, the head foremost, hinges between them about x.
+RobotModel chain(std::size_t links) {
+  RobotModel robot;
+  for (std::size_t i = 0; i < links; ++i) {
+    robot.links.push_back(box_link(-0.1 * static_cast<double>(i), {0.02, 0.04, 0.02}, 0.1));
+  }
+  for (std::size_t i = 0; i + 1 < links; ++i) {
+    Joint joint;
+    joint.anchor = {0, -0.05 - 0.1 * static_cast<double>(i), 0};
+    joint.lower_limit = -1.0;
+    joint.upper_limit = 1.0;
+    joint.max_torque = 2.0;
+    joint.max_speed = 4.5;
+    robot.joints.push_back(joint);
+  }
+  return robot;
+}
+
+StaticObject floor_with_friction(double friction) {
+  StaticObject floor;
+  floor.pose.position = {0, 0, -0.5};
+  Geometry geometry;
+  geometry.extents = {50, 50, 0.5};
+  geometry.friction = friction;
+  floor.geometries.push_back(geometry);
+  return floor;
+}
+
+EnvironmentModel flat_ground(double friction, double start_height) {
+  EnvironmentModel environment;
+  environment.objects.push_back(floor_with_friction(friction));
+  environment.robot_pose.position = {0, 0, start_height};
+  return environment;
+}
+
+void run(World& world, double seconds) {
+  for (long i = 0; i < std::lround(seconds / step_s); ++i) {
+    world.step();
+  }
+}
+
+TEST(World, StartsWithTheLinksWhereTheModelPutsThem) {
+  RobotModel robot = chain(3);
+  robot.links[1].mass.center = {0.001, 0.002, 0.003};
+  EnvironmentModel environment;
+  environment.robot_pose = {{1, 2, 3},
+                            Eigen::Quaterniond(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()))};
+  const World world(robot, environment, step_s, Stepper::direct);
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    const Pose expected = environment.robot_pose * robot.links[i].pose;
+    EXPECT_LT((world.link_pose(i).position - expected.position).norm(), 1e-12) << "link " << i;
+    EXPECT_LT(world.link_pose(i).orientation.angularDistance(expected.orientation), 1e-7) << "link " << i;
+  }
+}
+
+TEST(World, ALinkInTheAirFallsAsGalileoSays) {
+  World world(chain(1), EnvironmentModel{}, step_s, Stepper::direct);
+  constexpr double seconds = 0.5;
+  run(world, seconds);
+  // Semi-implicit Euler falls g t^2 / 2 + g t h / 2.
+  EXPECT_NEAR(world.center_of_mass().z(), -gravity * seconds * (seconds + step_s) / 2, 1e-9);
+}
+
+TEST(World, ALinkOnTheGroundStaysOnIt) {
+  World world(chain(1), flat_ground(0.5, 0.02), step_s, Stepper::direct);
+  run(world, 1.0);
+  EXPECT_NEAR(world.center_of_mass().z(), 0.02, 1e-3);
+  EXPECT_EQ(world.contact_count(), 4U);
+  EXPECT_NE(world.link_contacts(0), 0U);
+}
+
+class Slope : public testing::TestWithParam<double> {};
+
+TEST_P(Slope, ALinkSlidesWithTheAccelerationThatCoulombFrictionLeaves) {
+  const double friction = GetParam();
+  const double angle = 25.0 * std::numbers::pi / 180.0;
+  EnvironmentModel environment = flat_ground(friction, 0.02);
+  environment.gravity = {0, -gravity * std::sin(angle), -gravity * std::cos(angle)};
+  World world(chain(1), environment, step_s, Stepper::direct);
+  run(world, 0.2);
+  const double before = world.center_of_mass().y();
+  run(world, 0.5);
+  const double middle = world.center_of_mass().y();
+  run(world, 0.5);
+  const double acceleration = -(world.center_of_mass().y() - 2 * middle + before) / (0.5 * 0.5);
+  const double expected = std::max(0.0, gravity * (std::sin(angle) - friction * std::cos(angle)));
+  EXPECT_NEAR(acceleration, expected, 0.03 * gravity);
+}
+
+INSTANTIATE_TEST_SUITE_P(Friction, Slope, testing::Values(0.0, 0.1, 0.3, 0.6, 1.0));
+
+TEST(World, FrictionOfTwoSurfacesIsTheGeometricMean) {
+  RobotModel robot = chain(1);
+  robot.links[0].geometries[0].friction = 0.9;
+  EnvironmentModel environment = flat_ground(0.1, 0.02);  // mean 0.3
+  environment.gravity = {0, -4.0, -9.0};                  // needs 0.444
+  World world(robot, environment, step_s, Stepper::direct);
+  run(world, 0.2);
+  const double before = world.center_of_mass().y();
+  run(world, 0.5);
+  const double middle = world.center_of_mass().y();
+  run(world, 0.5);
+  const double acceleration = -(world.center_of_mass().y() - 2 * middle + before) / (0.5 * 0.5);
+  EXPECT_NEAR(acceleration, 4.0 - 0.3 * 9.0, 0.3);
+}
+
+TEST(World, APositiveJointAngleRaisesTheLinkInFront) {
+  EnvironmentModel weightless;
+  weightless.gravity.setZero();
+  World world(chain(2), weightless, step_s, Stepper::direct);
+  world.set_joint_speed(0, 1.0);
+  run(world, 0.5);
+  EXPECT_NEAR(world.joint_angle(0), 0.5, 0.01);
+  const Eigen::Vector3d head_direction = world.link_pose(0).orientation * Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d tail_direction = world.link_pose(1).orientation * Eigen::Vector3d::UnitY();
+  EXPECT_GT(head_direction.z(), 0.1);
+  EXPECT_LT(tail_direction.z(), -0.1);
+  EXPECT_NEAR(std::acos(head_direction.dot(tail_direction)), world.joint_angle(0), 1e-6);
+}
+
+TEST(World, AMotorDoesNotExceedItsTorque) {
+  // A joint in the middle of two 100 mm links on its feet would have to lift 0.1 kg at 50 mm: 0.049 Nm.
+  for (const double torque : {0.01, 0.2}) {
+    RobotModel robot = chain(2);
+    robot.joints[0].max_torque = torque;
+    World world(robot, flat_ground(0.5, 0.02), step_s, Stepper::direct);
+    run(world, 0.2);
+    world.set_joint_speed(0, 1.0);
+    run(world, 0.5);
+    if (torque < 0.049) {
+      EXPECT_LT(world.joint_angle(0), 0.05) << "torque " << torque;
+    } else {
+      EXPECT_GT(world.joint_angle(0), 0.3) << "torque " << torque;
+    }
+  }
+}
+
+TEST(World, AJointStopsAtItsLimits) {
+  EnvironmentModel weightless;
+  weightless.gravity.setZero();
+  RobotModel robot = chain(2);
+  robot.joints[0].lower_limit = -0.2;
+  World world(robot, weightless, step_s, Stepper::direct);
+  world.set_joint_speed(0, -2.0);
+  run(world, 1.0);
+  EXPECT_NEAR(world.joint_angle(0), -0.2, 0.02);
+}
+
+TEST(World, ASensorIsPressedWhereTheLinkTouches) {
+  World world(chain(3), flat_ground(0.5, 0.02), step_s, Stepper::direct);
+  run(world, 0.2);
+  for (std::size_t link = 0; link < 3; ++link) {
+    EXPECT_EQ(world.link_contacts(link), 3U) << "lying flat, link " << link;
+  }
+  // Arch the middle: the head touches with its foremost edge, the tail with its rearmost, the middle link with none.
+  for (int i = 0; i < 600; ++i) {
+    for (std::size_t joint = 0; joint < 2; ++joint) {
+      world.set_joint_speed(joint, 5.0 * (-0.5 - world.joint_angle(joint)));
+    }
+    world.step();
+  }
+  EXPECT_EQ(world.link_contacts(0), 2U);
+  EXPECT_EQ(world.link_contacts(1), 0U);
+  EXPECT_EQ(world.link_contacts(2), 1U);
+}
+
+TEST(World, ACylinderLiesAlongYAndASphereIsRound) {
+  for (const Shape shape : {Shape::cylinder, Shape::sphere}) {
+    RobotModel robot = chain(1);
+    robot.links[0].geometries[0].shape = shape;
+    robot.links[0].geometries[0].extents = {0.03, 0.1, 0};
+    World world(robot, flat_ground(0.5, 0.05), step_s, Stepper::direct);
+    run(world, 2.0);
+    EXPECT_NEAR(world.center_of_mass().z(), 0.03, 2e-3);
+  }
+}
+
+TEST(World, SelfCollisionKeepsLinksApartThatAreNotNeighbours) {
+  for (const bool self_collision : {false, true}) {
+    EnvironmentModel weightless;
+    weightless.gravity.setZero();
+    weightless.self_collision = self_collision;
+    RobotModel robot = chain(3);
+    for (Joint& joint : robot.joints) {
+      joint.lower_limit = -3.0;
+      joint.upper_limit = 3.0;
+    }
+    World world(robot, weightless, step_s, Stepper::direct);
+    for (int i = 0; i < 4000; ++i) {
+      world.set_joint_speed(0, 1.0);
+      world.set_joint_speed(1, 1.0);
+      world.step();
+    }
+    const double folded = world.joint_angle(0) + world.joint_angle(1);
+    if (self_collision) {
+      EXPECT_LT(folded, 5.2);
+    } else {
+      EXPECT_GT(folded, 5.8);
+    }
+  }
+}
+
+/// Bit pattern of a run that slips, bends and touches.
+std::vector<double> wriggle() {
+  World world(chain(4), flat_ground(0.2, 0.03), step_s, Stepper::direct);
+  std::vector<double> trace;
+  for (int i = 0; i < 1500; ++i) {
+    for (std::size_t joint = 0; joint < 3; ++joint) {
+      world.set_joint_speed(joint, 3.0 * std::sin(0.01 * i + static_cast<double>(joint)));
+    }
+    world.step();
+    trace.push_back(world.center_of_mass().y());
+  }
+  return trace;
+}
+
+TEST(World, RepeatsToTheLastBitOnEveryThread) {
+  const std::vector<double> expected = wriggle();
+  std::array<std::vector<double>, 4> traces;
+  std::vector<std::thread> threads;
+  for (std::vector<double>& trace : traces) {
+    threads.emplace_back([&trace] { trace = wriggle(); });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  for (const std::vector<double>& trace : traces) {
+    EXPECT_EQ(trace, expected);
+  }
+}
+
+TEST(World, TheIterativeStepperRepeatsToo) {
+  const auto wriggle_iteratively = [] {
+    World world(chain(10), flat_ground(0.2, 0.03), step_s, Stepper::iterative);
+    for (int i = 0; i < 500; ++i) {
+      world.set_joint_speed(static_cast<std::size_t>(i % 9), 2.0);
+      world.step();
+    }
+    return world.center_of_mass();
+  };
+  EXPECT_EQ(wriggle_iteratively(), wriggle_iteratively());
+}
+
+}  // namespace
+}  // namespace proleg::sim

@@ -1,0 +1,240 @@
+#include "sim/record/figure.hpp"
+
+#include <gtest/gtest.h>
+#include <tinyxml2.h>
+
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "sim/record/svg.hpp"
+#include "sim/scenario/input_error.hpp"
+#include "small_run.hpp"
+
+namespace proleg::sim {
+namespace {
+
+/// What a figure consists of.
+class Picture {
+ public:
+  explicit Picture(const std::string& svg) {
+    EXPECT_EQ(document_.Parse(svg.c_str()), tinyxml2::XML_SUCCESS) << document_.ErrorStr();
+    if (document_.RootElement() != nullptr) {
+      look_at(*document_.RootElement());
+    }
+  }
+
+  [[nodiscard]] bool has_text(const std::string& text) const { return texts_.contains(text); }
+  [[nodiscard]] int count(const std::string& what) const {
+    const auto found = counts_.find(what);
+    return found == counts_.end() ? 0 : found->second;
+  }
+  /// Points of all polylines within a group of this class.
+  [[nodiscard]] const std::vector<std::vector<Point>>& lines(const std::string& group) { return lines_[group]; }
+
+ private:
+  void look_at(const tinyxml2::XMLElement& element) {
+    ++counts_[element.Name()];
+    if (const char* group = element.Attribute("class"); group != nullptr) {
+      ++counts_[group];
+      group_ = group;
+    }
+    for (const char* name : {"x", "y", "x1", "y1", "x2", "y2", "cx", "cy", "r", "width", "height"}) {
+      if (element.Attribute(name) != nullptr) {
+        double value = NAN;
+        EXPECT_EQ(element.QueryDoubleAttribute(name, &value), tinyxml2::XML_SUCCESS) << element.Attribute(name);
+        EXPECT_TRUE(std::isfinite(value));
+        EXPECT_GE(value, 0.0) << name << " of " << element.Name();
+        EXPECT_LE(value, 1200.0) << name << " of " << element.Name();
+      }
+    }
+    if (const char* points = element.Attribute("points"); points != nullptr) {
+      std::vector<Point>& line = lines_[group_].emplace_back();
+      std::istringstream stream(points);
+      char comma = ' ';
+      for (Point point; stream >> point.x >> comma >> point.y;) {
+        line.push_back(point);
+        EXPECT_TRUE(point.x >= 0.0 && point.x <= 900.0 && point.y >= 0.0 && point.y <= 1200.0) << points;
+      }
+      EXPECT_TRUE(stream.eof()) << points;
+    }
+    if (element.GetText() != nullptr) {
+      ++texts_[element.GetText()];
+    }
+    for (const tinyxml2::XMLElement* child = element.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
+      look_at(*child);
+    }
+  }
+
+  tinyxml2::XMLDocument document_;
+  std::string group_;
+  std::map<std::string, int> counts_;
+  std::map<std::string, int> texts_;
+  std::map<std::string, std::vector<std::vector<Point>>> lines_;
+};
+
+class Figure : public testing::Test {
+ protected:
+  Picture draw(const Scenario& scenario, std::uint32_t ticks, const TimeWindow& window = {}) {
+    record_small(path_, scenario, ticks);
+    return Picture(draw_figure(Recording(path_), window));
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_ / "run.sqlite";
+};
+
+/// A robot with this many joints on the sine.
+Scenario long_scenario(unsigned joints) {
+  Scenario scenario = small_scenario();
+  scenario.robot.links.clear();
+  scenario.robot.joints.clear();
+  for (unsigned i = 0; i <= joints; ++i) {
+    scenario.robot.links.emplace_back().name = "Link" + std::to_string(joints - i);
+  }
+  for (unsigned i = 0; i < joints; ++i) {
+    scenario.robot.joints.emplace_back().name = "J" + std::to_string(joints - i);
+  }
+  scenario.joint_limits.assign(joints, {});
+  scenario.kernel.joint_count = static_cast<std::uint8_t>(joints);
+  scenario.kernel.slots[0].group = JointMask::first(joints);
+  scenario.kernel.slots[2] = {};
+  scenario.changes.clear();
+  return scenario;
+}
+
+TEST_F(Figure, NamesWhatItShows) {
+  Picture picture = draw(small_scenario(), 400);
+  for (const char* text : {"small", "J1", "J2", "J3", "Head", "Link2", "Link1", "Tail", "time (s)", "x (m)", "y (m)",
+                           "start", "end", "set-point", "measured", "displacement 1.625 m in 4 s"}) {
+    EXPECT_TRUE(picture.has_text(text)) << text;
+  }
+  EXPECT_EQ(picture.count("title"), 1);
+}
+
+TEST_F(Figure, DrawsSetPointAndAngleOfEachJointAndThePath) {
+  Picture picture = draw(small_scenario(), 400);
+  EXPECT_EQ(picture.count("joint"), 3);
+  ASSERT_EQ(picture.lines("joint").size(), 6U);
+  for (const std::vector<Point>& line : picture.lines("joint")) {
+    EXPECT_GE(line.size(), 290U);  // 3 s of 10 ms ticks
+  }
+  ASSERT_EQ(picture.lines("path").size(), 1U);
+  EXPECT_GT(picture.lines("path")[0].size(), 50U);
+  EXPECT_EQ(picture.lines("chain").size(), 2U);
+  EXPECT_GT(picture.count("contact"), 10);
+}
+
+TEST_F(Figure, DrawsThePathToOneScale) {
+  // The made-up robot goes 0.399 m ahead in 400 ticks while it swings by +-0.01 m.
+  Picture picture = draw(small_scenario(), 400);
+  const std::vector<Point>& path = picture.lines("path")[0];
+  double low = INFINITY;
+  double high = -INFINITY;
+  for (const Point& point : path) {
+    low = std::min(low, point.y);
+    high = std::max(high, point.y);
+  }
+  const double pixels_per_metre = (path.back().x - path.front().x) / 0.399;
+  EXPECT_NEAR((high - low) / pixels_per_metre, 0.02, 0.0005);
+}
+
+TEST_F(Figure, ShowsTheWindowThatIsAskedFor) {
+  Picture picture = draw(small_scenario(), 400, {0.5, 1.0});
+  EXPECT_EQ(picture.lines("joint")[0].size(), 51U);
+  EXPECT_TRUE(picture.has_text("0.75"));
+  EXPECT_FALSE(picture.has_text("1.5"));
+}
+
+TEST_F(Figure, RefusesAWindowWithoutTicks) {
+  record_small(path_, small_scenario(), 100);
+  const Recording recording(path_);
+  for (const TimeWindow& window : {TimeWindow{2.0, {}}, TimeWindow{0.5, 0.5}, TimeWindow{0.7, 0.2},
+                                   TimeWindow{{}, -1.0}, TimeWindow{1e300, {}}, TimeWindow{{}, -1e300}}) {
+    const std::string message = message_of<InputError>([&] { (void)draw_figure(recording, window); });
+    EXPECT_NE(message.find("less than two ticks"), std::string::npos) << message;
+    EXPECT_NE(message.find("expected a window within the recorded 0 s to 1 s"), std::string::npos) << message;
+  }
+}
+
+TEST_F(Figure, IsDrawnForTwoTicks) { EXPECT_EQ(draw(small_scenario(), 2).count("joint"), 3); }
+
+TEST_F(Figure, IsDrawnForTheLongestRobot) {
+  Picture picture = draw(long_scenario(max_joints), 100);
+  EXPECT_EQ(picture.count("joint"), 10);  // of 64, so that the lines can be told apart
+  EXPECT_TRUE(picture.has_text("Joint angles (deg), one joint in 7"));
+  EXPECT_TRUE(picture.has_text("J64"));
+  EXPECT_TRUE(picture.has_text("Link64"));
+}
+
+TEST_F(Figure, DoesNotGrowWithTheLengthOfTheWindow) {
+  const Scenario scenario = small_scenario();
+  record_small(path_, scenario, 6000);
+  const std::size_t minute = draw_figure(Recording(path_), {0.0, 60.0}).size();
+  EXPECT_LT(minute, 1'000'000U);
+}
+
+TEST_F(Figure, IsWellFormedWhateverTheNames) {
+  Scenario scenario = small_scenario();
+  scenario.robot.name = "<&\">'\x01\xff\xc3";
+  scenario.robot.links[0].name = "]]><b a='";
+  scenario.robot.joints[0].name = "K\xc3\xb6rper";
+  Picture picture = draw(scenario, 100);
+  EXPECT_TRUE(picture.has_text("]]><b a='"));
+  EXPECT_TRUE(picture.has_text("K\xc3\xb6rper"));
+}
+
+TEST_F(Figure, IsDrawnOfASimulationThatHasFlownApart) {
+  const Scenario scenario = small_scenario();
+  {
+    Recorder recorder(path_, scenario, "build");
+    run_small(scenario, 50, [&](const TickSample& sample, const Change* /*change*/) {
+      std::vector<double> angles(sample.joint_angles.begin(), sample.joint_angles.end());
+      std::vector<Pose> poses(sample.link_poses.begin(), sample.link_poses.end());
+      if (sample.tick > 30) {
+        angles[1] = 1e300;
+        poses[2].position = {-1.7e308, 1.7e308, 0.0};
+      }
+      recorder.record_tick({sample.tick, sample.kernel, sample.servo_commands, poses, angles, sample.link_contacts});
+    });
+  }
+  Picture picture(draw_figure(Recording(path_), {}));  // which looks whether all coordinates are on the page
+  EXPECT_EQ(picture.count("joint"), 3);
+}
+
+TEST_F(Figure, ShortensNamesThatAreTooLong) {
+  Scenario scenario = small_scenario();
+  scenario.path = std::string(200, 'p') + ".simulation.xml";
+  scenario.robot.joints[0].name = "\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc";
+  Picture picture = draw(scenario, 100);
+  EXPECT_TRUE(picture.has_text(std::string(55, 'p') + "..."));
+  EXPECT_TRUE(picture.has_text("\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6..."));
+}
+
+TEST_F(Figure, SaysThatARunIsNotFinished) {
+  const Scenario scenario = small_scenario();
+  {
+    Recorder recorder(path_, scenario, "build");
+    run_small(scenario, 20, [&](const TickSample& sample, const Change* /*change*/) { recorder.record_tick(sample); });
+  }
+  EXPECT_NE(draw_figure(Recording(path_), {}).find("not finished"), std::string::npos);
+}
+
+TEST(XmlText, ReplacesWhatXmlCannotHold) {
+  EXPECT_EQ(xml_text("a<b>&\"c"), "a&lt;b&gt;&amp;&quot;c");
+  EXPECT_EQ(xml_text("\x01\x7f\t"), "???");
+  EXPECT_EQ(xml_text("\xe2\x82\xac"), "\xe2\x82\xac");                            // the euro sign
+  EXPECT_EQ(xml_text("\xf0\x9f\x90\x9b"), "\xf0\x9f\x90\x9b");                    // a caterpillar, beyond 16 bits
+  EXPECT_EQ(xml_text("\xc0\xaf\xed\xa0\x80\xef\xbf\xbe\xe2\x82"), "??????????");  // overlong, surrogate, U+FFFE, cut
+}
+
+TEST(PlainNumber, HasNoTrailingZeros) {
+  EXPECT_EQ(plain_number(1.5, 2), "1.5");
+  EXPECT_EQ(plain_number(20.0, 2), "20");
+  EXPECT_EQ(plain_number(-0.001, 2), "0");
+  EXPECT_EQ(plain_number(0.125, 3), "0.125");
+}
+
+}  // namespace
+}  // namespace proleg::sim

@@ -1,0 +1,104 @@
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+#include <vector>
+
+#include "sim/record/recording.hpp"
+#include "small_run.hpp"
+
+namespace proleg::sim {
+namespace {
+
+/// Sent through a pipe for every tick that was recorded.
+struct Report {
+  std::uint32_t tick;
+  std::chrono::steady_clock::time_point time;
+};
+
+/// The child process: a tick each 5 ms, for much longer than it is allowed to live.
+[[noreturn]] void record_until_killed(const std::filesystem::path& path, int pipe) {
+  const Scenario scenario = small_scenario();
+  Recorder recorder(path, scenario, "build");
+  run_small(scenario, 100'000, [&](const TickSample& sample, const Change* change) {
+    if (change != nullptr) {
+      recorder.record_change(*change);
+    }
+    recorder.record_tick(sample);
+    const Report report{sample.tick, std::chrono::steady_clock::now()};
+    if (write(pipe, &report, sizeof report) != sizeof report) {
+      _exit(1);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  });
+  _exit(1);
+}
+
+class KilledRecorder : public testing::Test {
+ protected:
+  void SetUp() override {
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      close(ends[0]);
+      record_until_killed(path_, ends[1]);
+    }
+    close(ends[1]);
+    std::vector<Report> reports;
+    for (Report report{}; read(ends[0], &report, sizeof report) == sizeof report;) {
+      reports.push_back(report);
+      if (report.time - reports.front().time > std::chrono::milliseconds(1500)) {
+        kill(child, SIGKILL);  // what it still reports until then is read, too
+      }
+    }
+    close(ends[0]);
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    // Counted from the last tick of the child, not from its death, so that the test holds on a busy machine, too.
+    for (const Report& report : reports) {
+      due_ += report.time < reports.back().time - std::chrono::seconds(1) ? 1U : 0U;
+    }
+    ASSERT_GT(due_, 0U);
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_ / "run.sqlite";
+  std::uint32_t due_ = 0;  ///< number of ticks that must not be lost
+};
+
+TEST_F(KilledRecorder, LosesAtMostTheLastSecond) {
+  const Recording recording(path_);
+  EXPECT_FALSE(recording.finished());
+  EXPECT_GE(recording.last_tick() + 1, due_);
+  std::uint32_t count = 0;
+  recording.read_ticks(0, recording.last_tick(), [&](const RecordedTick& tick) {
+    EXPECT_EQ(tick.tick, count++);
+    EXPECT_EQ(tick.joint_angles[1], made_up_angle(tick.tick, 1));
+  });
+  EXPECT_EQ(count, recording.last_tick() + 1);
+  if (recording.last_tick() >= 7) {
+    EXPECT_EQ(recording.distortions().size(), 1U);
+  }
+}
+
+TEST_F(KilledRecorder, IsNotChangedByReading) {
+  const std::uint32_t last = Recording(path_).last_tick();
+  const auto size = std::filesystem::file_size(path_);
+  EXPECT_EQ(Recording(path_).last_tick(), last);
+  EXPECT_EQ(std::filesystem::file_size(path_), size);
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"run.sqlite", "run.sqlite-shm", "run.sqlite-wal"}));
+}
+
+TEST_F(KilledRecorder, LeavesARecordingThatCanBeReplaced) {
+  record_small(path_, small_scenario(), 10);
+  EXPECT_TRUE(Recording(path_).finished());
+  EXPECT_EQ(folder_.names(), (std::vector<std::string>{"run.sqlite"}));
+}
+
+}  // namespace
+}  // namespace proleg::sim

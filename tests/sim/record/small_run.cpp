@@ -1,0 +1,158 @@
+#include "small_run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "shared/fixed/decimal.hpp"
+#include "shared/gait/registry.hpp"
+
+namespace proleg::sim {
+namespace {
+
+std::uint8_t index_of_parameter(const ActuationModule& algorithm, std::string_view name) {
+  return static_cast<std::uint8_t>(find_parameter(algorithm.declaration(), name));
+}
+
+}  // namespace
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "proleg-record-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) {
+    throw std::runtime_error("no temporary folder");
+  }
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+std::vector<std::string> TemporaryFolder::names() const {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(path_)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Scenario small_scenario() {
+  Scenario scenario;
+  scenario.path = "some folder/small.simulation.xml";
+  scenario.robot.name = "Small";
+  for (const char* link : {"Head", "Link2", "Link1", "Tail"}) {
+    scenario.robot.links.emplace_back().name = link;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    Joint& joint = scenario.robot.joints.emplace_back();
+    joint.name = "J" + std::to_string(3 - i);
+    joint.file_index = 2 - i;
+  }
+  scenario.joint_limits = {{-500'000'000, 600'000'000}, {-quarter_turn, quarter_turn}, {-1'000'000'000, quarter_turn}};
+
+  const ActuationModule& sine = *find_algorithm("PatternGenerator_sinusoidal");
+  const ActuationModule& direct = *find_algorithm("DirectJointAccess");
+  scenario.kernel.joint_count = 3;
+  scenario.kernel.seed = 18446744073709551557U;
+  scenario.kernel.slots[0] = {&sine, JointMask::first(3)};
+  scenario.kernel.slots[2] = {&direct, JointMask(4)};
+  scenario.settings = {{0, 1, index_of_parameter(sine, "amplitude"), false, parse_decimal("12.3", Unit::degree).raw}};
+  scenario.changes = {
+      {5, {{2, 2, index_of_parameter(direct, "angle"), false, raw(Unit::degree, -7)}}},
+      {7,
+       {{0, 0, static_cast<std::uint8_t>(find_internal_value(sine.declaration(), "phase")), true,
+         raw(Unit::phase_degree, 90)}}},
+  };
+  scenario.sources = {{"some folder/small.simulation.xml", "<simulation/>\n"}, {"robot.xml", "tab\there \"quoted\"\n"}};
+  return scenario;
+}
+
+double made_up_angle(std::uint32_t tick, std::size_t joint) {
+  return 0.7 * std::sin(0.06 * tick + static_cast<double>(joint));
+}
+
+Pose made_up_pose(std::uint32_t tick, std::size_t link) {
+  Pose pose;
+  pose.position = {0.001 * tick - 0.1 * static_cast<double>(link), 0.01 * std::sin(0.05 * tick), 1.0 / 3.0};
+  pose.orientation = Eigen::AngleAxisd(0.01 * tick, Eigen::Vector3d::UnitZ());
+  return pose;
+}
+
+std::uint8_t made_up_contacts(std::uint32_t tick, std::size_t link) {
+  return static_cast<std::uint8_t>((tick / 4 + link) % 4);
+}
+
+std::int32_t made_up_command(std::uint32_t tick, std::size_t joint) {
+  return 18'000 + static_cast<std::int32_t>(tick) - 7 * static_cast<std::int32_t>(joint);
+}
+
+void run_small(const Scenario& scenario, std::uint32_t ticks,
+               const std::function<void(const TickSample& sample, const Change* change)>& use) {
+  const std::size_t joints = scenario.robot.joints.size();
+  const std::size_t links = scenario.robot.links.size();
+  std::vector<JointMemory> memory(joints);
+  Kernel kernel(memory);
+  ASSERT_EQ(kernel.configure(scenario.kernel, 0), Status::ok);
+  for (unsigned joint = 0; joint < joints; ++joint) {
+    ASSERT_EQ(kernel.set_limits(joint, scenario.joint_limits[joint].lower, scenario.joint_limits[joint].upper),
+              Status::ok);
+  }
+  for (const Setting& setting : scenario.settings) {
+    ASSERT_EQ(kernel.set_parameter(setting.slot, setting.joint, setting.index, setting.value), Status::ok);
+  }
+  kernel.reset();
+
+  std::vector<std::uint8_t> contacts(links);
+  for (std::size_t link = 0; link < links; link += 2) {
+    contacts[link] = 1;
+  }
+  std::vector<std::int32_t> commands(joints);
+  std::vector<double> angles(joints);
+  std::vector<Pose> poses(links);
+  auto next_change = scenario.changes.begin();
+  for (std::uint32_t tick = 0; tick < ticks; ++tick) {
+    const Change* change = nullptr;
+    if (next_change != scenario.changes.end() && next_change->tick == tick) {
+      change = &*next_change++;
+      for (const Setting& setting : change->settings) {
+        if (setting.internal) {
+          ASSERT_EQ(kernel.distort(setting.slot, setting.joint, setting.index, setting.value), Status::ok);
+        } else {
+          ASSERT_EQ(kernel.stage(1, setting.slot, setting.joint, setting.index, setting.value), Status::ok);
+          ASSERT_EQ(kernel.commit(1, tick), Status::ok);
+        }
+      }
+    }
+    for (unsigned joint = 0; joint < joints; ++joint) {
+      const unsigned far = joint == 0 ? contacts[0] : 0U;
+      kernel.set_contacts(joint, static_cast<std::uint8_t>(contacts[joint + 1] | far << 2U));
+    }
+    kernel.advance();
+    for (std::size_t joint = 0; joint < joints; ++joint) {
+      commands[joint] = made_up_command(tick, joint);
+      angles[joint] = made_up_angle(tick, joint);
+    }
+    for (std::size_t link = 0; link < links; ++link) {
+      poses[link] = made_up_pose(tick, link);
+      contacts[link] = made_up_contacts(tick, link);
+    }
+    use({tick, kernel, commands, poses, angles, contacts}, change);
+  }
+}
+
+void record_small(const std::filesystem::path& path, const Scenario& scenario, std::uint32_t ticks) {
+  Recorder recorder(path, scenario, "build-7");
+  run_small(scenario, ticks, [&](const TickSample& sample, const Change* change) {
+    if (change != nullptr) {
+      recorder.record_change(*change);
+    }
+    recorder.record_tick(sample);
+  });
+  recorder.finish({{"displacement_m", "1.625"}, {"setpoint_hash", "abc"}});
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,62 @@
+#pragma once
+
+// A small robot with made-up motion, to record. What is recorded is computed here a second time, from the tick alone.
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "sim/record/recorder.hpp"
+
+namespace proleg::sim {
+
+/// A folder for one test, removed at its end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Names of the files in it, sorted.
+  [[nodiscard]] std::vector<std::string> names() const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Three joints (J3, J2, J1 from the head), four links; a sine on all joints and direct access on the last; one
+/// amplitude of its own, one commit at tick 5, one distortion at tick 7.
+[[nodiscard]] Scenario small_scenario();
+
+// Made-up measurements at SYNC tick + 1.
+[[nodiscard]] double made_up_angle(std::uint32_t tick, std::size_t joint);
+[[nodiscard]] Pose made_up_pose(std::uint32_t tick, std::size_t link);
+[[nodiscard]] std::uint8_t made_up_contacts(std::uint32_t tick, std::size_t link);
+[[nodiscard]] std::int32_t made_up_command(std::uint32_t tick, std::size_t joint);
+
+/// Runs the kernel of a scenario for some ticks as the simulator does, changes and contacts included, and hands over
+/// each tick. Before tick 0 every second link is pressed at the rear.
+void run_small(const Scenario& scenario, std::uint32_t ticks,
+               const std::function<void(const TickSample& sample, const Change* change)>& use);
+
+/// Runs a scenario into a new recording and finishes it.
+void record_small(const std::filesystem::path& path, const Scenario& scenario, std::uint32_t ticks);
+
+/// What a call throws, as text; empty if it throws nothing of that kind.
+template <typename Error, typename Action>
+std::string message_of(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace proleg::sim

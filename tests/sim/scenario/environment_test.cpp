@@ -1,0 +1,106 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "memory_files.hpp"
+
+namespace proleg::sim {
+namespace {
+
+TEST(Environment, ThePoseCommentTurnsAboutXThenYThenZ) {
+  MemoryFiles files = small_scenario();
+  files.replace("environment.xml", "Pose: ,0 0 0.1,0 0 0,", " pose: , 1 -2  3 ,90 90 0, ");
+  const Pose& pose = files.scenario().environment.robot_pose;
+  EXPECT_EQ(pose.position, Eigen::Vector3d(1, -2, 3));
+  // y goes to z by the turn about x, and on to x by the turn about y.
+  EXPECT_TRUE((pose.orientation * Eigen::Vector3d::UnitY()).isApprox(Eigen::Vector3d::UnitX(), 1e-12));
+  // x stays with the first turn and goes to -z by the second.
+  EXPECT_TRUE((pose.orientation * Eigen::Vector3d::UnitX()).isApprox(-Eigen::Vector3d::UnitZ(), 1e-12));
+}
+
+TEST(Environment, TheTurnAboutZComesLast) {
+  MemoryFiles files = small_scenario();
+  files.replace("environment.xml", "Pose: ,0 0 0.1,0 0 0,", "Pose: ,0 0 9,90 0 90,");
+  const Pose& pose = files.scenario().environment.robot_pose;
+  EXPECT_TRUE((pose.orientation * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY(), 1e-12));
+  EXPECT_TRUE((pose.orientation * Eigen::Vector3d::UnitY()).isApprox(Eigen::Vector3d::UnitZ(), 1e-12));
+}
+
+TEST(Environment, WithoutAPoseTheRobotStartsAtTheOrigin) {
+  MemoryFiles files = small_scenario();
+  files.replace("environment.xml", "Pose: ,0 0 0.1,0 0 0,", "a floor").replace("environment.xml", "0 0 -0.5", "0 0 -9");
+  EXPECT_EQ(files.scenario().environment.robot_pose.position, Eigen::Vector3d::Zero());
+}
+
+TEST(Environment, ARobotAboveTheGroundStaysWhereItIs) {
+  const Scenario scenario = small_scenario().scenario();
+  EXPECT_EQ(scenario.environment.robot_pose.position.z(), 0.1);
+  EXPECT_EQ(scenario.remarks.size(), 1U) << "only the joint map";
+}
+
+/// Start height of a robot whose only low part is the head's geometry, on a floor with its top at 0.
+double height_with_head(const std::string& geometry) {
+  MemoryFiles files = small_scenario();
+  files.replace("robot.xml", "<Geom type=\"sphere\">\n        <radius>0.03</radius>\n      </Geom>", geometry);
+  files.replace("environment.xml", "0 0 0.1,", "0 0 0,");
+  return files.scenario().environment.robot_pose.position.z();
+}
+
+TEST(Environment, TheLowestPointOfASphereIsItsRadiusBelowItsCentre) {
+  EXPECT_NEAR(height_with_head("<Geom type=\"sphere\"><radius>0.3</radius><translation>0 0 0.1</translation></Geom>"),
+              0.2, 1e-12);
+}
+
+TEST(Environment, TheLowestPointOfATurnedBoxIsACorner) {
+  EXPECT_NEAR(height_with_head("<Geom type=\"box\"><extents>0.1 0.2 0.3</extents><rotationaxis>1 0 0 30</rotationaxis>"
+                               "</Geom>"),
+              0.2 * std::sin(std::numbers::pi / 6) + 0.3 * std::cos(std::numbers::pi / 6), 1e-12);
+}
+
+TEST(Environment, TheLowestPointOfATurnedCylinderIsOnItsRim) {
+  // Axis along y, raised by 30 degrees: half the height by its sine, the radius by its cosine.
+  EXPECT_NEAR(height_with_head("<Geom type=\"cylinder\"><radius>0.1</radius><height>0.8</height>"
+                               "<rotationaxis>1 0 0 30</rotationaxis></Geom>"),
+              0.4 * 0.5 + 0.1 * std::sqrt(0.75), 1e-12);
+}
+
+TEST(Environment, ALiftIsRemarked) {
+  MemoryFiles files = small_scenario();
+  files.replace("environment.xml", "0 0 0.1,", "0 0 0.01,");
+  const Scenario scenario = files.scenario();
+  EXPECT_NEAR(scenario.environment.robot_pose.position.z(), 0.03, 1e-15);
+  EXPECT_EQ(scenario.remarks.back(),
+            "the robot starts 20 mm higher than the environment file says, so that it rests on 'floor'");
+}
+
+TEST(Environment, TheHighestObjectUnderTheStartCountsAndOthersDoNot) {
+  MemoryFiles files = small_scenario();
+  files.replace("environment.xml", "</Environment>", R"(
+    <KinBody name="step"><Body type="static"><Geom type="box"><extents>1 1 0.25</extents></Geom></Body></KinBody>
+    <KinBody name="wall"><Body type="static"><translation>5 0 0</translation>
+      <Geom type="box"><extents>1 1 3</extents></Geom></Body></KinBody>
+    </Environment>)");
+  const Scenario scenario = files.scenario();
+  EXPECT_EQ(scenario.environment.objects.size(), 3U);
+  EXPECT_NEAR(scenario.environment.robot_pose.position.z(), 0.25 + 0.03, 1e-12);
+  EXPECT_NE(scenario.remarks.back().find("'step'"), std::string::npos);
+}
+
+TEST(Environment, ObjectsMayComeFromFilesAndKeepTheirPose) {
+  MemoryFiles files = small_scenario();
+  files.texts["step.xml"] =
+      "<KinBody name=\"step\"><Body name=\"b\" type=\"static\"><translation>0 1 0</translation>"
+      "<Geom type=\"box\"><extents>1 1 1</extents></Geom></Body></KinBody>";
+  files.replace("environment.xml", "</Environment>",
+                "<KinBody file=\"step.xml\" prefix=\"far\"><rotationaxis>0 0 1 90</rotationaxis>"
+                "<translation>100 0 0</translation></KinBody></Environment>");
+  const Scenario scenario = files.scenario();
+  const StaticObject& step = scenario.environment.objects.back();
+  EXPECT_EQ(step.name, "farb");
+  EXPECT_TRUE(step.pose.position.isApprox(Eigen::Vector3d(99, 0, 0)));
+}
+
+}  // namespace
+}  // namespace proleg::sim

@@ -1,0 +1,228 @@
+// Parameters of the actuation file and of `--set`.
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+
+#include <optional>
+
+#include "memory_files.hpp"
+#include "shared/fixed/decimal.hpp"
+
+namespace proleg::sim {
+namespace {
+
+std::int32_t degrees(const std::string& text) { return parse_decimal(text, Unit::degree).raw; }
+
+/// Slot 0: sine on both joints, slot 1: direct access on J2 (kernel joint 0).
+Scenario scenario() { return small_scenario().scenario(); }
+
+std::optional<std::int32_t> find(const std::vector<Setting>& settings, unsigned slot, unsigned joint,
+                                 std::string_view name, const Scenario& scenario) {
+  const Declaration& declaration = scenario.kernel.slots[slot].algorithm->declaration();
+  for (const Setting& setting : settings) {
+    if (setting.slot != slot || setting.joint != joint) {
+      continue;
+    }
+    const std::string_view found =
+        setting.internal ? declaration.internal_values[setting.index].name : declaration.parameters[setting.index].name;
+    if (found == name) {
+      return setting.value;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::int32_t> start(const Scenario& scenario, unsigned slot, unsigned joint, std::string_view name) {
+  return find(scenario.settings, slot, joint, name, scenario);
+}
+
+std::string refusal(Scenario scenario, const std::string& word) {
+  try {
+    apply_setting(scenario, word);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "taken";
+}
+
+TEST(Parameters, HoldForAllJointsOfTheModuleOrForOne) {
+  const Scenario small = scenario();
+  EXPECT_EQ(start(small, 0, 0, "amplitude"), degrees("30"));
+  EXPECT_EQ(start(small, 0, 1, "amplitude"), degrees("10")) << "J1 is kernel joint 1";
+  EXPECT_EQ(start(small, 1, 0, "angle"), degrees("5"));
+  EXPECT_EQ(small.settings.size(), 3U);
+}
+
+TEST(Parameters, OfOneJointWinWhereverTheyStand) {
+  MemoryFiles files = small_scenario();
+  files.replace("actuation.xml", "<parameter name=\"amplitude\" value=\"30\" unit=\"deg\"/>", "");
+  files.replace("actuation.xml", "joint=\"J1\"/>", "joint=\"J1\"/><parameter name=\"amplitude\" value=\"30\"/>");
+  const Scenario small = files.scenario();
+  EXPECT_EQ(start(small, 0, 0, "amplitude"), degrees("30"));
+  EXPECT_EQ(start(small, 0, 1, "amplitude"), degrees("10"));
+}
+
+TEST(Parameters, AtTheirDefaultAreNotListed) {
+  MemoryFiles files = small_scenario();
+  files.replace("actuation.xml", "value=\"30\"", "value=\"40\"");
+  const Scenario small = files.scenario();
+  EXPECT_EQ(start(small, 0, 0, "amplitude"), std::nullopt);
+  EXPECT_EQ(start(small, 0, 1, "amplitude"), degrees("10"));
+}
+
+TEST(SetOption, ReplacesTheStartValueOnAllJointsOfTheOnlyModuleThatHasTheName) {
+  Scenario small = scenario();
+  apply_setting(small, "amplitude=22.5");
+  EXPECT_EQ(start(small, 0, 0, "amplitude"), degrees("22.5"));
+  EXPECT_EQ(start(small, 0, 1, "amplitude"), degrees("22.5"));
+  EXPECT_TRUE(small.changes.empty());
+}
+
+TEST(SetOption, ReplacesTheStartValueOfOneJoint) {
+  Scenario small = scenario();
+  apply_setting(small, "amplitude:J2=0");
+  EXPECT_EQ(start(small, 0, 0, "amplitude"), 0);
+  EXPECT_EQ(start(small, 0, 1, "amplitude"), degrees("10"));
+}
+
+TEST(SetOption, BackToTheDefaultRemovesTheSetting) {
+  Scenario small = scenario();
+  apply_setting(small, "amplitude=40");
+  EXPECT_EQ(start(small, 0, 0, "amplitude"), std::nullopt);
+  EXPECT_EQ(small.settings.size(), 1U);
+}
+
+TEST(SetOption, TakesTheModuleByNameOrNumber) {
+  Scenario small = scenario();
+  apply_setting(small, "PatternGenerator_sinusoidal.frequency=2");
+  apply_setting(small, "2.angle=-12");
+  EXPECT_EQ(start(small, 0, 1, "frequency"), parse_decimal("2", Unit::hertz).raw);
+  EXPECT_EQ(start(small, 1, 0, "angle"), degrees("-12"));
+}
+
+TEST(SetOption, WithATickIsAChangeInOrderOfTicks) {
+  Scenario small = scenario();
+  apply_setting(small, "amplitude=20@500");
+  apply_setting(small, "frequency:J1=2@100");
+  apply_setting(small, "angle=1@500");
+  ASSERT_EQ(small.changes.size(), 2U);
+  EXPECT_EQ(small.changes[0].tick, 100U);
+  EXPECT_EQ(find(small.changes[0].settings, 0, 1, "frequency", small), parse_decimal("2", Unit::hertz).raw);
+  EXPECT_EQ(small.changes[0].settings.size(), 1U);
+  EXPECT_EQ(small.changes[1].tick, 500U);
+  EXPECT_EQ(small.changes[1].settings.size(), 3U);
+  EXPECT_EQ(find(small.changes[1].settings, 1, 0, "angle", small), degrees("1"));
+  EXPECT_EQ(start(small, 0, 0, "amplitude"), degrees("30")) << "the start value stays";
+}
+
+TEST(SetOption, ALaterWordForTheSameTickWins) {
+  Scenario small = scenario();
+  apply_setting(small, "amplitude=20@5");
+  apply_setting(small, "amplitude:J1=21@5");
+  ASSERT_EQ(small.changes.size(), 1U);
+  EXPECT_EQ(small.changes[0].settings.size(), 2U);
+  EXPECT_EQ(find(small.changes[0].settings, 0, 1, "amplitude", small), degrees("21"));
+}
+
+TEST(SetOption, TakesEveryTick) {
+  Scenario small = scenario();
+  apply_setting(small, "amplitude=20@4294967295");
+  apply_setting(small, "amplitude=20@0");
+  ASSERT_EQ(small.changes.size(), 2U);
+  EXPECT_EQ(small.changes[0].tick, 0U);
+  EXPECT_EQ(small.changes[1].tick, 4294967295U);
+}
+
+TEST(SetOption, OnAnInternalValueIsADistortion) {
+  MemoryFiles files = small_scenario();
+  files.replace("actuation.xml", "PatternGenerator_sinusoidal", "PatternGenerator_coupled_oscillator");
+  Scenario small = files.scenario();
+  apply_setting(small, "phase:J2=90@50");
+  apply_setting(small, "current_amplitude=1");
+  ASSERT_EQ(small.changes.size(), 2U);
+  EXPECT_EQ(small.changes[0].tick, 0U) << "without a tick at the start";
+  EXPECT_EQ(small.changes[0].settings.size(), 2U);
+  EXPECT_EQ(find(small.changes[0].settings, 0, 1, "current_amplitude", small), degrees("1"));
+  ASSERT_EQ(small.changes[1].settings.size(), 1U);
+  EXPECT_TRUE(small.changes[1].settings[0].internal);
+  EXPECT_EQ(small.changes[1].settings[0].joint, 0);
+  EXPECT_EQ(small.changes[1].settings[0].value, 1 << 30);
+}
+
+/// Both slots run the sine; the second one drives J2 only.
+Scenario twice_the_sine() {
+  MemoryFiles files = small_scenario();
+  files.replace("actuation.xml", "DirectJointAccess", "PatternGenerator_sinusoidal");
+  files.replace("actuation.xml", "name=\"angle\"", "name=\"amplitude\"");
+  return files.scenario();
+}
+
+TEST(SetOption, AsksForTheModuleWhenSeveralHaveTheName) {
+  EXPECT_EQ(refusal(twice_the_sine(), "amplitude=1"),
+            "amplitude=1: found 'amplitude' in several modules, expected MODULE.amplitude with one of "
+            "PatternGenerator_sinusoidal (1), PatternGenerator_sinusoidal (2)");
+  EXPECT_NE(refusal(twice_the_sine(), "PatternGenerator_sinusoidal.amplitude=1").find("in several modules"),
+            std::string::npos);
+  EXPECT_EQ(refusal(twice_the_sine(), "2.amplitude=1"), "taken");
+}
+
+TEST(SetOption, AJointThatOnlyOneModuleDrivesTellsTheModule) {
+  Scenario small = twice_the_sine();
+  apply_setting(small, "amplitude:J1=1");
+  EXPECT_EQ(start(small, 0, 1, "amplitude"), degrees("1"));
+  EXPECT_NE(refusal(small, "amplitude:J2=1").find("in several modules"), std::string::npos);
+}
+
+struct Refusal {
+  std::string word;
+  std::string message;
+};
+
+void PrintTo(const Refusal& bad, std::ostream* stream) { *stream << bad.word; }
+
+class BadSetOption : public testing::TestWithParam<Refusal> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    Words, BadSetOption,
+    testing::Values(
+        Refusal{"amplitude", "amplitude: found no '=', expected [MODULE.]NAME[:JOINT]=VALUE[@TICK]"},
+        Refusal{"", ": found no '=', expected [MODULE.]NAME[:JOINT]=VALUE[@TICK]"},
+        Refusal{"=", "=: found unknown parameter '', expected one of amplitude, frequency"},
+        Refusal{"amplitud=3", "found unknown parameter 'amplitud', expected one of amplitude, frequency"},
+        Refusal{"2.amplitude=3", "found unknown parameter 'amplitude', expected one of angle"},
+        Refusal{"5.amplitude=3", "found unknown module '5', expected one of PatternGenerator_sinusoidal (1), DirectJ"},
+        Refusal{"Nobody.amplitude=3", "found unknown module 'Nobody', expected one of PatternGenerator_sinusoidal (1)"},
+        Refusal{"amplitude:J7=3", "found unknown joint 'J7', expected one of J1, J2"},
+        Refusal{"amplitude:=3", "found unknown joint '', expected one of J1, J2"},
+        Refusal{"angle:J1=3", "found joint 'J1', which DirectJointAccess (2) does not drive, expected one of J2"},
+        Refusal{"amplitude=91", "found '91' for parameter 'amplitude', expected a number from 0 to 90 deg"},
+        Refusal{"amplitude=-1", "found '-1' for parameter 'amplitude', expected a number from 0 to 90 deg"},
+        Refusal{"amplitude=nan", "found 'nan' for parameter 'amplitude', expected a number from 0 to 90 deg"},
+        Refusal{"amplitude=", "found '' for parameter 'amplitude', expected a number from 0 to 90 deg"},
+        Refusal{"amplitude=4 0", "found '4 0' for parameter 'amplitude'"},
+        Refusal{"amplitude=40deg", "found '40deg' for parameter 'amplitude'"},
+        Refusal{"amplitude=1e99", "found '1e99' for parameter 'amplitude'"},
+        Refusal{"frequency=20.001", "expected a number from 0 to 20 Hz"},
+        Refusal{"amplitude=3@", "found tick '', expected a whole number from 0 to 4294967295"},
+        Refusal{"amplitude=3@-1", "found tick '-1', expected a whole number from 0 to 4294967295"},
+        Refusal{"amplitude=3@4294967296", "found tick '4294967296', expected a whole number from 0 to 4294967295"},
+        Refusal{"amplitude=3@1.5", "found tick '1.5', expected a whole number from 0 to 4294967295"},
+        Refusal{"amp\nlitude=3", "amp litude=3: found unknown parameter 'amp litude', expected"}));
+
+TEST_P(BadSetOption, IsNamedWithWhatWasExpected) {
+  const std::string message = refusal(scenario(), GetParam().word);
+  EXPECT_NE(message.find(GetParam().message), std::string::npos) << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+}
+
+TEST(SetOption, AWordThatIsRefusedChangesNothing) {
+  Scenario small = scenario();
+  EXPECT_THROW(apply_setting(small, "amplitude=3@x"), InputError);
+  EXPECT_THROW(apply_setting(small, "phase=x@3"), InputError);
+  EXPECT_EQ(small.settings.size(), scenario().settings.size());
+  EXPECT_TRUE(small.changes.empty());
+}
+
+}  // namespace
+}  // namespace proleg::sim

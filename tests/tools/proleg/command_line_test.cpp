@@ -1,0 +1,245 @@
+// The programs as a user meets them: words in, standard output, standard error and exit status out.
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+extern char** environ;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Finished {
+  int status;
+  std::string out;
+  std::string err;
+};
+
+std::string read_file(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+class CommandLine : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "proleg-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] fs::path file(const std::string& name) const { return folder_ / name; }
+
+  [[nodiscard]] static std::string scenario(const std::string& name) {
+    return std::string(PROLEG_SOURCE_DIR) + "/sim/scenarios/travelling_wave/" + name + ".simulation.xml";
+  }
+
+  /// Runs proleg with these words; an empty `out_file` catches standard output.
+  [[nodiscard]] Finished proleg(const std::vector<std::string>& words, const std::string& out_file = "") const {
+    const fs::path out = out_file.empty() ? folder_ / "stdout" : fs::path(out_file);
+    const fs::path err = folder_ / "stderr";
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    std::vector<std::string> storage{PROLEG_PROGRAM};
+    storage.insert(storage.end(), words.begin(), words.end());
+    std::vector<char*> arguments;
+    for (std::string& word : storage) {
+      arguments.push_back(word.data());
+    }
+    arguments.push_back(nullptr);
+    pid_t child = 0;
+    const int error = posix_spawn(&child, PROLEG_PROGRAM, &actions, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (error != 0) {
+      ADD_FAILURE() << "cannot start " << PROLEG_PROGRAM;
+      return {-1, "", ""};
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), out_file.empty() ? read_file(out) : "",
+            read_file(err)};
+  }
+
+  /// Bad input: exit status 2, one line on standard error that contains the words, nothing on standard output.
+  void expect_refused(const std::vector<std::string>& words, const std::vector<std::string>& message) const {
+    const Finished finished = proleg(words);
+    EXPECT_EQ(finished.status, 2) << finished.err;
+    EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1) << finished.err;
+    EXPECT_TRUE(finished.out.empty()) << finished.out;
+    for (const std::string& part : message) {
+      EXPECT_NE(finished.err.find(part), std::string::npos) << "'" << part << "' is missing in: " << finished.err;
+    }
+  }
+
+  [[nodiscard]] std::vector<std::string> left_behind() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      const std::string name = entry.path().filename().string();
+      if (name != "stdout" && name != "stderr") {
+        names.push_back(name);
+      }
+    }
+    return names;
+  }
+
+ private:
+  fs::path folder_;
+};
+
+TEST_F(CommandLine, HelpListsTheSubcommands) {
+  for (const char* word : {"--help", "-h", "help"}) {
+    const Finished finished = proleg({word});
+    EXPECT_EQ(finished.status, 0);
+    for (const char* name : {"algorithms", "simulate", "export", "plot"}) {
+      EXPECT_NE(finished.out.find(name), std::string::npos);
+    }
+  }
+  for (const char* name : {"algorithms", "simulate", "export", "plot"}) {
+    const Finished finished = proleg({name, "--help"});
+    EXPECT_EQ(finished.status, 0);
+    EXPECT_NE(finished.out.find(std::string("Usage: proleg ") + name), std::string::npos) << finished.out;
+  }
+}
+
+TEST_F(CommandLine, RefusesUnknownWords) {
+  expect_refused({}, {"expected one of algorithms, simulate, export, plot"});
+  expect_refused({"simulat"}, {"'simulat'", "expected one of algorithms, simulate"});
+  expect_refused({"../../bin/sh"}, {"expected one of"});
+  expect_refused({"simulate"}, {"FILE"});
+  expect_refused({"simulate", scenario("uniform"), "--fast"}, {"--fast", "--help"});
+  expect_refused({"simulate", scenario("uniform"), "--seconds"}, {"--seconds"});
+  expect_refused({"simulate", scenario("uniform"), "--seconds", "soon"}, {"soon"});
+  expect_refused({"export", "--tsv", "--binary"}, {"--binary"});
+  expect_refused({"plot"}, {"RUN"});
+}
+
+TEST_F(CommandLine, RefusesBadInputAndWritesNothing) {
+  const std::string recording = file("run.proleg").string();
+  const auto simulate = [&](const std::vector<std::string>& rest, const std::vector<std::string>& message) {
+    std::vector<std::string> words{"simulate", "--record", recording};
+    words.insert(words.end(), rest.begin(), rest.end());
+    expect_refused(words, message);
+    EXPECT_TRUE(left_behind().empty());
+  };
+  simulate({"/nowhere/x.simulation.xml"}, {"/nowhere/x.simulation.xml", "expected"});
+  simulate({std::string(PROLEG_SOURCE_DIR)}, {"expected"});
+  for (const char* seconds : {"nan", "inf", "0", "-1", "1e9"}) {
+    simulate({scenario("uniform"), "--seconds", seconds}, {"--seconds", "0.01 to 86400"});
+  }
+  simulate({scenario("uniform"), "--set", "amplitud=3"}, {"amplitud", "amplitude"});
+  simulate({scenario("uniform"), "--set", "amplitude=91"}, {"91", "90"});
+  simulate({scenario("uniform"), "--set", "amplitude=nan"}, {"nan"});
+  simulate({scenario("uniform"), "--set", "amplitude"}, {"amplitude", "NAME=VALUE"});
+  simulate({scenario("uniform"), "--set", "amplitude:J9=3"}, {"J9", "J1"});
+  simulate({scenario("uniform"), "--set", "amplitude=3@-1"}, {"-1"});
+  simulate({scenario("uniform"), "--set", "amplitude=3@3000"}, {"tick 3000", "below 3000"});
+}
+
+TEST_F(CommandLine, SimulatePrintsOneJsonObjectWithTheFiguresOfTheRun) {
+  const Finished finished = proleg({"simulate", scenario("uniform"), "--seconds", "2", "--json"});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_TRUE(finished.err.empty()) << "no progress unless standard error is a terminal: " << finished.err;
+  const nlohmann::json object = nlohmann::json::parse(finished.out);
+  EXPECT_GT(object.at("displacement_m").get<double>(), 0.03);
+  EXPECT_DOUBLE_EQ(object.at("simulated_s").get<double>(), 2.0);
+  EXPECT_GT(object.at("real_time_factor").get<double>(), 0.0);
+  EXPECT_GT(object.at("contacts_mean").get<double>(), 1.0);
+  EXPECT_EQ(object.at("setpoint_hash").get<std::string>().size(), 64U);
+  EXPECT_EQ(object.at("servo_hash").get<std::string>().size(), 64U);
+  EXPECT_NE(object.at("setpoint_hash"), object.at("servo_hash"));
+}
+
+TEST_F(CommandLine, TheSameCommandGivesTheSameHashesAndASettingOtherOnes) {
+  const auto hash = [&](const std::vector<std::string>& rest) {
+    std::vector<std::string> words{"simulate", scenario("coupled"), "--seconds", "1", "--json"};
+    words.insert(words.end(), rest.begin(), rest.end());
+    const Finished finished = proleg(words);
+    EXPECT_EQ(finished.status, 0) << finished.err;
+    return nlohmann::json::parse(finished.out).at("setpoint_hash").get<std::string>();
+  };
+  const std::string plain = hash({});
+  EXPECT_EQ(hash({}), plain);
+  EXPECT_NE(hash({"--set", "amplitude=20"}), plain);
+  EXPECT_NE(hash({"--set", "amplitude=20@50"}), plain);
+  EXPECT_NE(hash({"--set", "amplitude=20@50"}), hash({"--set", "amplitude=20@51"}));
+  EXPECT_NE(hash({"--set", "phase:J3=90@50"}), plain) << "an internal value is distorted";
+}
+
+TEST_F(CommandLine, VerbosePrintsTheJointMapAndEveryParameter) {
+  const Finished finished = proleg({"simulate", scenario("tail_fixed"), "--seconds", "0.1", "--verbose"});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_NE(finished.err.find("J5"), std::string::npos) << finished.err;
+  EXPECT_NE(finished.err.find("amplitude [deg] J5=40 J4=40 J3=40 J2=40 J1=0"), std::string::npos) << finished.err;
+}
+
+TEST_F(CommandLine, ARecordingCanBeExportedAndDrawn) {
+  const std::string recording = file("run.proleg").string();
+  ASSERT_EQ(proleg({"simulate", scenario("uniform"), "--seconds", "2", "--record", recording}).status, 0);
+  const Finished table = proleg({"export", recording, "--tsv"});
+  EXPECT_EQ(table.status, 0) << table.err;
+  EXPECT_EQ(std::count(table.out.begin(), table.out.end(), '\n'), 201) << "a header and 200 ticks";
+  const std::string picture = file("run.svg").string();
+  const Finished drawn = proleg({"plot", recording, "--out", picture});
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_NE(read_file(picture).find("<svg"), std::string::npos);
+}
+
+TEST_F(CommandLine, ExportAndPlotRefuseWhatIsNoRecording) {
+  std::ofstream(file("text")) << "not a recording\n";
+  std::ofstream(file("empty"));
+  for (const char* tool : {"export", "plot"}) {
+    for (const char* name : {"text", "empty", "missing"}) {
+      std::vector<std::string> words{tool, file(name).string()};
+      if (std::string(tool) == "export") {
+        words.emplace_back("--tsv");
+      }
+      expect_refused(words, {name});
+    }
+  }
+}
+
+TEST_F(CommandLine, AlgorithmsListsWhatCanBeSet) {
+  EXPECT_NE(proleg({"algorithms"}).out.find("PatternGenerator_sinusoidal\n"), std::string::npos);
+  const Finished finished = proleg({"algorithms", "PatternGenerator_sinusoidal"});
+  EXPECT_EQ(finished.status, 0);
+  EXPECT_NE(finished.out.find("amplitude [deg], 0 to 90, default 40"), std::string::npos) << finished.out;
+  expect_refused({"algorithms", "MTRAN"}, {"'MTRAN'", "DirectJointAccess"});
+}
+
+TEST_F(CommandLine, TheDocumentationsTablesAreTheDeclarations) {
+  EXPECT_EQ(proleg({"algorithms", "--markdown"}).out, read_file(std::string(PROLEG_SOURCE_DIR) + "/docs/algorithms.md"))
+      << "rewrite it: build/host/bin/proleg algorithms --markdown >docs/algorithms.md";
+}
+
+TEST_F(CommandLine, AFullDiskIsReported) {
+  const Finished finished = proleg({"simulate", scenario("uniform"), "--seconds", "0.1"}, "/dev/full");
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_NE(finished.err.find("standard output"), std::string::npos);
+}
+
+TEST_F(CommandLine, RecordingWhereNothingCanBeWrittenFailsWithTheFilesName) {
+  const Finished finished =
+      proleg({"simulate", scenario("uniform"), "--seconds", "0.1", "--record", file("no/such/folder").string()});
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_NE(finished.err.find("no/such/folder"), std::string::npos) << finished.err;
+}
+
+}  // namespace

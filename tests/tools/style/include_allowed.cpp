@@ -1,0 +1,3 @@
+// What a file of shared/gait may include.
+#include "shared/fixed/sine.hpp"
+#include "shared/gait/registry.hpp"

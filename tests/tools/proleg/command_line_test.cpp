@@ -123,11 +123,11 @@ TEST_F(CommandLine, RefusesUnknownWords) {
   expect_refused({}, {"expected one of algorithms, simulate, export, plot"});
   expect_refused({"simulat"}, {"'simulat'", "expected one of algorithms, simulate"});
   expect_refused({"../../bin/sh"}, {"expected one of"});
-  expect_refused({"simulate"}, {"FILE"});
-  expect_refused({"simulate", scenario("uniform"), "--fast"}, {"--fast", "--help"});
+  expect_refused({"simulate"}, {"found no FILE"});
+  expect_refused({"simulate", scenario("uniform"), "--fast"}, {"unknown '--fast'", "--help"});
   expect_refused({"simulate", scenario("uniform"), "--seconds"}, {"--seconds"});
   expect_refused({"simulate", scenario("uniform"), "--seconds", "soon"}, {"soon"});
-  expect_refused({"export", "--tsv", "--binary"}, {"--binary"});
+  expect_refused({"export", "run", "--tsv", "--binary"}, {"--binary"});
   expect_refused({"plot"}, {"RUN"});
 }
 
@@ -147,7 +147,7 @@ TEST_F(CommandLine, RefusesBadInputAndWritesNothing) {
   simulate({scenario("uniform"), "--set", "amplitud=3"}, {"amplitud", "amplitude"});
   simulate({scenario("uniform"), "--set", "amplitude=91"}, {"91", "90"});
   simulate({scenario("uniform"), "--set", "amplitude=nan"}, {"nan"});
-  simulate({scenario("uniform"), "--set", "amplitude"}, {"amplitude", "NAME=VALUE"});
+  simulate({scenario("uniform"), "--set", "amplitude"}, {"amplitude", "=VALUE"});
   simulate({scenario("uniform"), "--set", "amplitude:J9=3"}, {"J9", "J1"});
   simulate({scenario("uniform"), "--set", "amplitude=3@-1"}, {"-1"});
   simulate({scenario("uniform"), "--set", "amplitude=3@3000"}, {"tick 3000", "below 3000"});

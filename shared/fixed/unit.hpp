@@ -8,13 +8,12 @@
 namespace proleg {
 
 enum class Unit : std::uint8_t {
-  degree,           ///< angle; 90 degrees = 2^30; saturates
-  phase_degree,     ///< binary angle; 2^32 = one turn; wraps; 180 and -180 are the same phase
-  degree_per_tick,  ///< change of an angle or phase over one tick
-  hertz,            ///< 1 Hz = 2^24
-  per_second,       ///< rate constants; 1/s = 2^24
-  ratio,            ///< dimensionless; 1 = 2^28
-  count,            ///< whole numbers
+  degree,        ///< angle; 90 degrees = 2^30; saturates
+  phase_degree,  ///< binary angle; 2^32 = one turn; wraps; 180 and -180 are the same phase
+  hertz,         ///< 1 Hz = 2^24
+  per_second,    ///< rate constants; 1/s = 2^24
+  ratio,         ///< dimensionless; 1 = 2^28
+  count,         ///< whole numbers
 };
 
 /// raw = value * numerator / denominator.
@@ -29,8 +28,6 @@ struct UnitScale {
     case Unit::degree:
     case Unit::phase_degree:
       return {"deg", 1U << 29U, 45};
-    case Unit::degree_per_tick:
-      return {"deg/tick", 1U << 29U, 45};
     case Unit::hertz:
       return {"Hz", 1U << 24U, 1};
     case Unit::per_second:

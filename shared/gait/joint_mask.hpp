@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstdint>
 
@@ -12,7 +13,8 @@ inline constexpr unsigned max_joints = 64;
 class JointMask {
  public:
   constexpr JointMask() = default;
-  explicit constexpr JointMask(std::uint64_t bits) : bits_(bits) {}
+  explicit constexpr JointMask(std::uint64_t bits)
+      : words_{static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32U)} {}
 
   /// The joints 0 to count - 1. count is at most 64.
   [[nodiscard]] static constexpr JointMask first(unsigned count) {
@@ -20,14 +22,14 @@ class JointMask {
   }
 
   [[nodiscard]] constexpr bool contains(unsigned joint) const {
-    return joint < max_joints && ((bits_ >> joint) & 1U) != 0;
+    return joint < max_joints && ((words_[joint / 32] >> (joint % 32)) & 1U) != 0;
   }
-  constexpr void insert(unsigned joint) { bits_ |= std::uint64_t{1} << joint; }
-  [[nodiscard]] constexpr std::uint64_t bits() const { return bits_; }
+  constexpr void insert(unsigned joint) { words_[joint / 32] |= 1U << (joint % 32); }
+  [[nodiscard]] constexpr std::uint64_t bits() const { return std::uint64_t{words_[1]} << 32U | words_[0]; }
 
   /// The nearest member towards the head, or -1.
   [[nodiscard]] constexpr int before(unsigned joint) const {
-    const std::uint64_t ahead = bits_ & first(joint).bits_;
+    const std::uint64_t ahead = bits() & first(joint).bits();
     return ahead == 0 ? -1 : 63 - std::countl_zero(ahead);
   }
 
@@ -36,14 +38,14 @@ class JointMask {
 
   /// The joint itself if it is a member, else the nearest member towards the tail, or -1.
   [[nodiscard]] constexpr int from(unsigned joint) const {
-    const std::uint64_t rest = bits_ & ~first(joint).bits_;
+    const std::uint64_t rest = bits() & ~first(joint).bits();
     return rest == 0 ? -1 : std::countr_zero(rest);
   }
 
   friend constexpr bool operator==(JointMask, JointMask) = default;
 
  private:
-  std::uint64_t bits_ = 0;
+  std::array<std::uint32_t, 2> words_{};  ///< a 64-bit shift is dear on a 32-bit processor
 };
 
 }  // namespace proleg

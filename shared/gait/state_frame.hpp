@@ -26,7 +26,7 @@ struct alignas(4) StateFrame {  // copied as two words, where bytes would need a
     fault = 1U << 4U,
     holdover = 1U << 5U,  ///< the joint computes without hearing the SYNC
     limited = 1U << 6U,   ///< the sum of the slots was cut to the joint's limits
-    valid = 1U << 7U,     ///< bytes 0-5 are a state
+    valid = 1U << 7U,     ///< the joint computes; bytes 0-5 are its state, or 0 if it broadcasts nothing
   };
   static constexpr std::uint8_t contact_bits = 0x0F;
 

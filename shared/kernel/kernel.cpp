@@ -24,8 +24,12 @@ Status Kernel::configure(const KernelConfiguration& configuration, unsigned firs
   std::array<JointMask, max_slots> second_channel;
   std::uint64_t one_broadcast = 0;
   std::uint64_t two_broadcasts = 0;
-  for (std::size_t i = 0; i < max_slots; ++i) {
+  unsigned slots_in_use = 0;
+  for (unsigned i = 0; i < max_slots; ++i) {
     const Slot& slot = configuration.slots[i];
+    if (slot.algorithm != nullptr) {
+      slots_in_use = i + 1;
+    }
     if ((slot.group.bits() & ~all_joints) != 0) {
       return Status::bad_group;
     }
@@ -42,6 +46,7 @@ Status Kernel::configure(const KernelConfiguration& configuration, unsigned firs
   configuration_ = configuration;
   first_joint_ = first_joint;
   second_channel_ = second_channel;
+  slots_in_use_ = slots_in_use;
   broadcasters_ = {JointMask(one_broadcast), JointMask(two_broadcasts)};
   for (unsigned i = 0; i < memory_.size(); ++i) {
     set_up(first_joint + i);
@@ -272,7 +277,7 @@ void Kernel::advance() {
 
 void Kernel::compute_next_state(JointMemory& joint) {
   const Contacts contacts({heard_[0].data(), configuration_.joint_count});
-  for (unsigned s = 0; s < max_slots; ++s) {
+  for (unsigned s = 0; s < slots_in_use_; ++s) {
     SlotMemory& slot = joint.slots[s];
     if (slot.active) {
       const Surroundings surroundings{tick_, slot.place, slot.ahead, slot.behind, contacts};
@@ -284,7 +289,7 @@ void Kernel::compute_next_state(JointMemory& joint) {
 
 void Kernel::update_setpoint(JointMemory& joint) {
   std::int32_t sum = 0;
-  for (unsigned s = 0; s < max_slots; ++s) {
+  for (unsigned s = 0; s < slots_in_use_; ++s) {
     SlotMemory& slot = joint.slots[s];
     if (slot.active) {
       sum = add_saturating(sum, configuration_.slots[s].algorithm->output(tuning(slot), current(slot).data()));
@@ -313,7 +318,7 @@ void Kernel::pack_frames(unsigned joint) {
     frame.bytes[7] = static_cast<std::uint8_t>(tick_);
     arrived_[channel].insert(joint);
   }
-  for (unsigned s = 0; s < max_slots; ++s) {
+  for (unsigned s = 0; s < slots_in_use_; ++s) {
     const SlotMemory& slot = memory.slots[s];
     if (slot.broadcast != nullptr) {
       pack(*slot.broadcast, current(slot).data(), heard_[slot.channel][joint]);
@@ -332,7 +337,7 @@ bool Kernel::receive(unsigned joint, unsigned channel, const StateFrame& frame) 
 }
 
 void Kernel::fill_missed_frames() {
-  for (unsigned s = 0; s < max_slots; ++s) {
+  for (unsigned s = 0; s < slots_in_use_; ++s) {
     const Slot& slot = configuration_.slots[s];
     if (!broadcasts(slot)) {
       continue;

@@ -161,6 +161,7 @@ class Kernel {
   std::span<JointMemory> memory_;
   KernelConfiguration configuration_;
   unsigned first_joint_ = 0;
+  unsigned slots_in_use_ = 0;  ///< the slots from here on are empty
   std::uint32_t tick_ = 0;
   std::uint32_t missed_frames_ = 0;
   std::uint32_t commit_tick_ = 0;

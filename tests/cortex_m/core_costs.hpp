@@ -1,0 +1,47 @@
+#pragma once
+
+// What the core costs on a Cortex-M: instructions and stack, measured on the emulated CPU. Instruction counts are
+// those of issue; they do not depend on the computer that measures.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tests/cortex_m/machine.hpp"
+
+namespace proleg::cortex_m {
+
+struct Instructions {
+  double mean = 0;
+  std::uint64_t worst = 0;
+};
+
+/// One tick of the middle joint of five, alone in its kernel, with an algorithm and its defaults in one slot.
+struct TickCost {
+  Instructions set_contacts;
+  Instructions receive;  ///< all four frames of the other joints
+  Instructions advance;
+  Instructions total;
+};
+[[nodiscard]] TickCost measure_tick(Machine& machine, std::uint8_t algorithm_id, unsigned ticks);
+
+/// sine() over phases in all quarters.
+[[nodiscard]] Instructions measure_sine(Machine& machine);
+
+/// Deepest stack of a kernel's function, in bytes, over all algorithms of the core, with a commit and with missing
+/// frames.
+struct StackUse {
+  std::string function;  ///< qualified, e.g. "proleg::Kernel::advance"
+  std::size_t bytes;
+};
+[[nodiscard]] std::vector<StackUse> measure_stack(Machine& machine);
+
+/// Sizes in bytes of what a module keeps: one JointMemory and one Kernel.
+struct Sizes {
+  std::uint32_t joint_memory;
+  std::uint32_t kernel;
+};
+[[nodiscard]] Sizes read_sizes(const Machine& machine);
+
+}  // namespace proleg::cortex_m

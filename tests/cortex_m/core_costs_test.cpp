@@ -1,0 +1,83 @@
+// What the core may cost. Instruction counts and stack are the same on every computer.
+
+#include "tests/cortex_m/core_costs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+
+#include "tests/cortex_m/core_image.hpp"
+
+namespace proleg::cortex_m {
+namespace {
+
+constexpr std::uint8_t sinusoidal = 2;
+constexpr std::uint8_t coupled_oscillator = 4;
+constexpr unsigned ticks = 1000;
+
+class CostOnCortexM4 : public testing::Test {
+ protected:
+  ElfImage image_{core_image_file(Cpu::cortex_m4)};
+  Machine machine_{image_, Cpu::cortex_m4};
+};
+
+TEST_F(CostOnCortexM4, ATickOfTheSinusoidalGeneratorTakesAtMost600Instructions) {
+  EXPECT_LE(measure_tick(machine_, sinusoidal, ticks).total.worst, 600U);
+}
+
+TEST_F(CostOnCortexM4, ATickOfTheCoupledOscillatorTakesAtMost1500Instructions) {
+  EXPECT_LE(measure_tick(machine_, coupled_oscillator, ticks).total.worst, 1500U);
+}
+
+TEST_F(CostOnCortexM4, ASineTakesAtMost50Instructions) { EXPECT_LE(measure_sine(machine_).worst, 50U); }
+
+TEST_F(CostOnCortexM4, ATickCostsTheSumOfItsParts) {
+  const TickCost cost = measure_tick(machine_, sinusoidal, 10);
+  EXPECT_GT(cost.set_contacts.mean, 0);
+  EXPECT_GT(cost.receive.mean, 4 * cost.set_contacts.mean / 2);
+  EXPECT_DOUBLE_EQ(cost.total.mean, cost.set_contacts.mean + cost.receive.mean + cost.advance.mean);
+  EXPECT_LE(cost.total.mean, static_cast<double>(cost.total.worst));
+}
+
+/// Stack of the kernel's functions: measured, at most the bound that tools/stack_bound computes, at most this.
+class StackOfKernel : public testing::TestWithParam<Cpu> {
+ protected:
+  static constexpr std::size_t limit = 512;
+
+  /// What the cross build has left beside the image.
+  static std::map<std::string, std::size_t> read_bounds() {
+    std::filesystem::path file = core_image_file(GetParam());
+    std::ifstream stream(file.replace_extension(".stack.tsv"));
+    std::map<std::string, std::size_t> bounds;
+    std::string function;
+    std::size_t bytes = 0;
+    while (stream >> function >> bytes) {
+      bounds[function] = bytes;
+    }
+    return bounds;
+  }
+};
+
+TEST_P(StackOfKernel, StaysWithinItsComputedBoundAndThatWithin512Bytes) {
+  const ElfImage image(core_image_file(GetParam()));
+  Machine machine(image, GetParam());
+  const std::map<std::string, std::size_t> bounds = read_bounds();
+  const std::vector<StackUse> uses = measure_stack(machine);
+  EXPECT_EQ(uses.size(), 8U);
+  for (const StackUse& use : uses) {
+    ASSERT_TRUE(bounds.contains(use.function)) << use.function;
+    const std::size_t bound = bounds.at(use.function);
+    EXPECT_LE(use.bytes, bound) << use.function;
+    EXPECT_LE(bound, limit) << use.function;
+    std::cout << use.function << ": measured " << use.bytes << ", bound " << bound << " bytes\n";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Processors, StackOfKernel, testing::Values(Cpu::cortex_m0, Cpu::cortex_m4),
+                         [](const testing::TestParamInfo<Cpu>& cpu) {
+                           return cpu.param == Cpu::cortex_m4 ? "CortexM4" : "CortexM0";
+                         });
+
+}  // namespace
+}  // namespace proleg::cortex_m

@@ -1,0 +1,44 @@
+// Entry points for the counts of instructions and stack: five modules that the harness drives call by call, so that it
+// measures the kernel's own functions and nothing around them.
+
+#include <array>
+
+#include "shared/gait/registry.hpp"
+#include "shared/kernel/kernel.hpp"
+
+namespace {
+
+constexpr unsigned joint_count = 5;
+constexpr unsigned longest_snapshot = 2048;
+
+std::array<proleg::KernelOf<1>, joint_count> kernels;
+proleg::KernelConfiguration configuration;
+
+}  // namespace
+
+extern "C" {
+
+/// Sizes in bytes, for the harness to read.
+extern const std::uint32_t size_of_joint_memory = sizeof(proleg::JointMemory);
+extern const std::uint32_t size_of_kernel = sizeof(proleg::Kernel);
+
+/// Room for Kernel::save.
+std::uint8_t benchmark_snapshot[longest_snapshot];
+
+/// An algorithm in one slot, on all joints. For Kernel::configure.
+const proleg::KernelConfiguration* benchmark_configuration(std::uint32_t algorithm_id) {
+  configuration = {};
+  configuration.joint_count = joint_count;
+  configuration.slots[0] = {proleg::find_algorithm(static_cast<std::uint8_t>(algorithm_id)),
+                            proleg::JointMask::first(joint_count)};
+  return &configuration;
+}
+
+proleg::Kernel* benchmark_kernel(std::uint32_t joint) { return &kernels[joint]; }
+
+/// The frame that a joint sends.
+const proleg::StateFrame* benchmark_frame(std::uint32_t joint) {
+  return &static_cast<const proleg::Kernel&>(kernels[joint]).frame(joint, 0);
+}
+
+}  // extern "C"

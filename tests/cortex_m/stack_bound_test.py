@@ -1,0 +1,92 @@
+"""tools/stack_bound against small programs whose stack is known. Argument 1: the tool."""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOOL = pathlib.Path(sys.argv.pop(1)).resolve()
+
+
+class StackBound(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def bound(self, text, function):
+        """Compiles a program and runs the tool on it."""
+        source = self.folder / "program.cpp"
+        source.write_text(text)
+        subprocess.run(["arm-none-eabi-g++", "-mcpu=cortex-m4", "-mthumb", "-std=c++20", "-O1", "-fno-inline",
+                        "-fno-exceptions", "-fno-rtti", "-ffreestanding", "-fcallgraph-info=su", "-c", str(source),
+                        "-o", str(self.folder / "program.o")], check=True, cwd=self.folder)
+        subprocess.run(["arm-none-eabi-g++", "-mcpu=cortex-m4", "-mthumb", "-nostartfiles", "-Wl,--entry=0",
+                        str(self.folder / "program.o"), "-o", str(self.folder / "program.elf")], check=True)
+        return subprocess.run([sys.executable, str(TOOL), "--program", str(self.folder / "program.elf"), "--build",
+                               str(self.folder), "--source", str(self.folder), function],
+                              capture_output=True, text=True, check=False)
+
+    def bytes_of(self, text, function):
+        result = self.bound(text, function)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return int(result.stdout.split()[0])
+
+    def expect_error(self, text, function, message):
+        result = self.bound(text, function)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(message, result.stderr)
+        self.assertEqual(result.stderr.count("\n"), 1)
+
+    FILL = "void use(volatile char* p); void use(volatile char* p) { *p = 1; }\n"
+
+    def test_the_deepest_of_the_called_functions_counts(self):
+        small = self.FILL + "void leaf() { volatile char a[40]; use(a); }\n"
+        large = small + "void deep() { volatile char a[400]; use(a); }\n"
+        one = self.bytes_of(small + "void root() { leaf(); }", "root")
+        both = self.bytes_of(large + "void root() { leaf(); deep(); }", "root")
+        self.assertGreaterEqual(one, 40)
+        self.assertEqual(both - one, 360)
+
+    def test_a_virtual_call_counts_as_the_worst_overriding_function(self):
+        text = self.FILL + """
+struct Base { virtual void step() = 0; virtual void other() = 0; };
+struct Small : Base { void step() override { volatile char a[40]; use(a); } void other() override {} };
+struct Large : Base {
+  void step() override { volatile char a[400]; use(a); }
+  void other() override { volatile char a[4000]; use(a); }
+};
+extern "C" void __cxa_pure_virtual() {}
+Small small; Large large;
+void root(Base& base) {
+  base.step();
+}
+"""
+        found = self.bytes_of(text, "root")
+        self.assertGreaterEqual(found, 400)
+        self.assertLess(found, 500)
+
+    def test_a_function_of_a_library_counts_by_its_disassembly(self):
+        text = "long long quotient(long long a, long long b) { return a / b; }"
+        self.assertGreaterEqual(self.bytes_of(text, "quotient"), 8 + 16)
+
+    def test_recursion_has_no_bound(self):
+        text = "int root(int n); int other(int n) { return n + root(n - 1) * n; }\n"
+        text += "int root(int n) { return n < 1 ? 1 : n + other(n) * n; }"
+        self.expect_error(text, "root", "recursion: ")
+
+    def test_a_frame_of_variable_size_has_no_bound(self):
+        text = self.FILL + "void root(unsigned n) { use(static_cast<char*>(__builtin_alloca(n))); }"
+        self.expect_error(text, "root", "its frame is dynamic")
+
+    def test_an_unknown_function_pointer_has_no_bound(self):
+        text = "void root(int (*f)(int), int* n) {\n  *n += f(*n);\n}"
+        self.expect_error(text, "root", "unknown target of the indirect call at ")
+
+    def test_an_unknown_function_is_an_error(self):
+        self.expect_error("void root() {}", "branch", "found no function branch")
+
+
+if __name__ == "__main__":
+    unittest.main()

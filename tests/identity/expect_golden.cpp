@@ -1,0 +1,31 @@
+#include "tests/identity/expect_golden.hpp"
+
+#include <algorithm>
+
+namespace proleg::identity {
+
+void expect_golden(const std::function<std::unique_ptr<Player>()>& make, const ActuationModule& algorithm,
+                   std::uint32_t cases) {
+  const std::vector<Golden> table = read_golden(golden_file());
+  const std::unique_ptr<Player> player = make();
+  const Golden found = hash_cases(*player, algorithm, cases);
+  const auto expected = std::find_if(table.begin(), table.end(), [&](const Golden& row) {
+    return row.algorithm == found.algorithm && row.cases == cases && row.ticks == tick_count;
+  });
+  ASSERT_NE(expected, table.end()) << golden_file() << " has no row for " << found.algorithm << " with " << cases
+                                   << " cases: build/host/bin/identity --write-golden";
+  if (found != *expected) {
+    const std::unique_ptr<Player> again = make();
+    const std::unique_ptr<Player> reference = make_native_player(Driver::whole);
+    ADD_FAILURE() << found.algorithm << ": set-points " << found.setpoints << " and servo commands "
+                  << found.servo_commands << " are not the golden ones; compared with one kernel in this program: "
+                  << first_difference(*again, *reference, algorithm, cases)
+                  << ". If the change is meant: build/host/bin/identity --write-golden";
+  }
+}
+
+std::string algorithm_name(const testing::TestParamInfo<unsigned>& id) {
+  return std::string(find_algorithm(static_cast<std::uint8_t>(id.param))->declaration().name);
+}
+
+}  // namespace proleg::identity

@@ -1,0 +1,49 @@
+#include "tests/identity/sensing_probe.hpp"
+
+#include "shared/fixed/arithmetic.hpp"
+
+namespace proleg::identity {
+namespace {
+
+enum Parameters : std::uint8_t { amplitude };
+constexpr Parameter parameters[] = {
+    Parameter{"amplitude", Unit::degree, raw(Unit::degree, 40), 0, quarter_turn, "largest joint angle"},
+};
+
+enum Values : std::uint8_t { mixture };
+constexpr InternalValue internal_values[] = {
+    InternalValue{"mixture", Unit::phase_degree, 0, "scrambled history of the contacts"},
+};
+
+constexpr Declaration about{127,        "SensingProbe",  "set-points from contacts, for tests",
+                            parameters, internal_values, {}};
+
+class SensingProbe final : public SensingModule {
+ public:
+  [[nodiscard]] const Declaration& declaration() const override { return about; }
+
+  [[nodiscard]] std::int32_t output(const Tuning& tuning, const std::int32_t* state) const override {
+    return multiply(tuning.parameters[amplitude], state[mixture], 31);
+  }
+
+ private:
+  void advance_sensing(const Contacts& contacts, const Surroundings& /*surroundings*/, const Tuning& /*tuning*/,
+                       const std::int32_t* state, std::int32_t* next) const override {
+    std::uint32_t pressed = 0;
+    for (unsigned link = 0; link < contacts.link_count(); ++link) {
+      pressed = pressed << 1U | (contacts.pressed(link, TouchSensor::rear) ? 1U : 0U);
+      pressed = pressed << 1U | (contacts.pressed(link, TouchSensor::front) ? 1U : 0U);
+    }
+    // A linear congruential step is invertible: two histories that differ never meet again under equal contacts.
+    next[mixture] = static_cast<std::int32_t>(static_cast<std::uint32_t>(state[mixture]) * 1664525U + 1013904223U +
+                                              (pressed << 8U));
+  }
+};
+
+constexpr SensingProbe instance;
+
+}  // namespace
+
+const SensingModule& sensing_probe() { return instance; }
+
+}  // namespace proleg::identity

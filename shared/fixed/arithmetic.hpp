@@ -31,10 +31,40 @@ namespace proleg {
   return saturate(std::int64_t{a} + b);
 }
 
+/// a * b from four products of halves: for processors whose multiplier gives 32 bits only.
+[[nodiscard]] constexpr std::uint64_t multiply_by_halves(std::uint32_t a, std::uint32_t b) {
+  const std::uint32_t low = (a & 0xFFFFU) * (b & 0xFFFFU);
+  const std::uint32_t middle_a = (a >> 16U) * (b & 0xFFFFU) + (low >> 16U);  // at most 2^32 - 2^16
+  const std::uint32_t middle_b = (a & 0xFFFFU) * (b >> 16U) + (middle_a & 0xFFFFU);
+  const std::uint32_t high = (a >> 16U) * (b >> 16U) + (middle_a >> 16U) + (middle_b >> 16U);
+  return (std::uint64_t{high} << 32U) | (middle_b << 16U) | (low & 0xFFFFU);
+}
+
+/// The whole product of two numbers.
+[[nodiscard]] constexpr std::uint64_t multiply_wide(std::uint32_t a, std::uint32_t b) {
+#ifdef __ARM_ARCH_6M__  // Cortex-M0: the compiler would call a routine for 64 by 64 bits
+  return multiply_by_halves(a, b);
+#else
+  return std::uint64_t{a} * b;
+#endif
+}
+
+[[nodiscard]] constexpr std::int64_t multiply_wide(std::int32_t a, std::int32_t b) {
+#ifdef __ARM_ARCH_6M__
+  const auto bits_a = static_cast<std::uint32_t>(a);
+  const auto bits_b = static_cast<std::uint32_t>(b);
+  // A negative factor was read as 2^32 too large.
+  const std::uint32_t excess = (a < 0 ? bits_b : 0U) + (b < 0 ? bits_a : 0U);
+  return static_cast<std::int64_t>(multiply_by_halves(bits_a, bits_b) - (std::uint64_t{excess} << 32U));
+#else
+  return std::int64_t{a} * b;
+#endif
+}
+
 /// Product of two fixed-point numbers of which one has `fraction_bits` fraction bits; the result has the format of the
 /// other. The caller keeps the result within int32_t.
 [[nodiscard]] constexpr std::int32_t multiply(std::int32_t a, std::int32_t b, unsigned fraction_bits) {
-  return static_cast<std::int32_t>(shift_right_rounding(std::int64_t{a} * b, fraction_bits));
+  return static_cast<std::int32_t>(shift_right_rounding(multiply_wide(a, b), fraction_bits));
 }
 
 /// Sum modulo 2^32 of two values that are bit patterns of a wrapping quantity (a phase).

@@ -1,5 +1,7 @@
 #include "shared/fixed/sine.hpp"
 
+#include "shared/fixed/arithmetic.hpp"
+
 namespace proleg {
 namespace {
 
@@ -15,7 +17,7 @@ constexpr std::uint32_t c9 = 5145016U;
 
 /// High word of the product, rounded half up; one UMLAL on Cortex-M4.
 constexpr std::uint32_t multiply_high(std::uint32_t a, std::uint32_t b) {
-  return static_cast<std::uint32_t>((std::uint64_t{a} * b + 0x80000000U) >> 32U);
+  return static_cast<std::uint32_t>((multiply_wide(a, b) + 0x80000000U) >> 32U);
 }
 
 }  // namespace
@@ -29,7 +31,7 @@ std::int32_t sine(std::uint32_t phase) {
   const auto magnitude = static_cast<std::uint32_t>(negative ? -quarter : quarter);
 
   const std::uint32_t x = magnitude << 1U;  // Q31: the crest is 2^31
-  const auto x2 = static_cast<std::uint32_t>((std::uint64_t{x} * x + 0x40000000U) >> 31U);
+  const auto x2 = static_cast<std::uint32_t>((multiply_wide(x, x) + 0x40000000U) >> 31U);
   const std::uint32_t slope =
       c1 - multiply_high(x2, c3 - multiply_high(x2, c5 - multiply_high(x2, c7 - multiply_high(x2, c9))));
   const auto result = static_cast<std::int32_t>(multiply_high(x, slope));

@@ -37,8 +37,10 @@ struct CriticalFilter {
 /// the target.
 [[nodiscard]] inline std::int32_t advance(const CriticalFilter& filter, std::int32_t distance, std::int32_t& rate) {
   const std::int32_t step = multiply(filter.half_rate, add_saturating(distance, rate), 30);
-  const std::int32_t next_distance = saturate(shift_right_rounding((std::int64_t{distance} + step) * filter.decay, 30));
-  rate = saturate(shift_right_rounding((std::int64_t{rate} - step) * filter.decay, 30));
+  const std::int64_t decayed_step = multiply_wide(step, filter.decay);
+  const std::int32_t next_distance =
+      saturate(shift_right_rounding(multiply_wide(distance, filter.decay) + decayed_step, 30));
+  rate = saturate(shift_right_rounding(multiply_wide(rate, filter.decay) - decayed_step, 30));
   if (next_distance > -filter.arrived && next_distance < filter.arrived && rate > -filter.arrived &&
       rate < filter.arrived) {
     rate = 0;

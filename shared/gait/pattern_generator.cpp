@@ -41,7 +41,7 @@ void PatternGenerator::advance(const Surroundings& surroundings, const Tuning& t
   advance_pattern(surroundings, tuning, state, next);
   // turns/tick in Q32 times ticks/s in Q16 is Q48; Q24 is wanted.
   next[frequency] = saturate(shift_right_rounding(
-      std::int64_t{subtract_wrapping(next[phase], state[phase])} * tuning.derived[ticks_per_second], 24));
+      multiply_wide(subtract_wrapping(next[phase], state[phase]), tuning.derived[ticks_per_second]), 24));
   next[phase_difference] =
       surroundings.behind.present() ? subtract_wrapping(surroundings.behind.value(phase_field), state[phase]) : 0;
 }

@@ -163,7 +163,7 @@ class KinBodyReader {
     entry.joint.name = scope.prefix + entry.joint.name;
     entry.joint.file_index = joints_.size();
     for (std::string& body : entry.bodies) {
-      body = scope.prefix + body;
+      body.insert(0, scope.prefix);
     }
     if (pending.offset_from) {
       pending.offset_from = scope.prefix + *pending.offset_from;

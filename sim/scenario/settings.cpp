@@ -116,6 +116,7 @@ class Resolver {
     }
     if (meanings.size() > 1) {
       std::vector<std::string> names;
+      names.reserve(meanings.size());
       for (const Meaning& meaning : meanings) {
         names.push_back(slot_name(meaning.slot));
       }

@@ -49,6 +49,7 @@ std::vector<double> read_numbers(const XmlElement& element, std::size_t count, c
     element.refuse(in_quotes(text) + " in " + element.label(), std::to_string(count) + " numbers");
   }
   std::vector<double> result;
+  result.reserve(count);
   for (const std::string_view token : tokens) {
     result.push_back(checked_number(element, token, range));
   }

@@ -27,6 +27,7 @@ function(proleg_test path)
   endif()
   gtest_discover_tests(${name}_test
     TEST_PREFIX "${PROLEG_TEST_PREFIX}${path}."
+    NO_PRETTY_VALUES
     DISCOVERY_TIMEOUT 60
     PROPERTIES ${properties})
 endfunction()

@@ -87,6 +87,34 @@ TEST(AddSaturating, EqualsTheClampedExactSum) {
   }
 }
 
+TEST(MultiplyByHalves, EqualsTheProductThatTheProcessorForms) {
+  constexpr std::uint32_t edges[] = {0,       1,           2,           0x7FFF,      0x8000,      0xFFFF,
+                                     0x10000, 0x10001,     0x7FFFFFFF,  0x80000000U, 0x80000001U, 0xFFFF0000U,
+                                     0xFFFF,  0xFFFFFFFEU, 0xFFFFFFFFU, 0x0001FFFF};
+  for (const std::uint32_t a : edges) {
+    for (const std::uint32_t b : edges) {
+      EXPECT_EQ(multiply_by_halves(a, b), std::uint64_t{a} * b) << a << " * " << b;
+    }
+  }
+  std::mt19937 random(1);
+  for (int i = 0; i < 1'000'000; ++i) {
+    const auto a = static_cast<std::uint32_t>(random());
+    const auto b = static_cast<std::uint32_t>(random());
+    ASSERT_EQ(multiply_by_halves(a, b), std::uint64_t{a} * b) << a << " * " << b;
+  }
+}
+
+TEST(MultiplyWide, IsTheExactProductOfSignedAndUnsignedNumbers) {
+  constexpr std::int32_t edges[] = {std::numeric_limits<std::int32_t>::min(), -1, 0, 1,
+                                    std::numeric_limits<std::int32_t>::max()};
+  for (const std::int32_t a : edges) {
+    for (const std::int32_t b : edges) {
+      EXPECT_EQ(multiply_wide(a, b), std::int64_t{a} * b) << a << " * " << b;
+    }
+  }
+  EXPECT_EQ(multiply_wide(0xFFFFFFFFU, 0xFFFFFFFFU), 0xFFFFFFFE00000001U);
+}
+
 TEST(Multiply, EqualsTheRoundedExactProductWhereItFits) {
   for (const std::int32_t a : telling_values()) {
     for (const std::int32_t b : telling_values()) {

@@ -9,7 +9,7 @@ host_packages=(
 # What the tests need beyond that: the ARM toolchain, the CPU emulator, a second compiler with its sanitizers.
 test_packages=(
   gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib binutils-arm-none-eabi libunicorn-dev
-  clang libclang-rt-14-dev clang-format clang-tidy libgtest-dev python3 sqlite3
+  clang libclang-rt-14-dev clang-format clang-tidy libgtest-dev python3
 )
 
 # install_packages NAME...: installs those that are missing, and says which.

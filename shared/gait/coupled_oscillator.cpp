@@ -27,7 +27,8 @@ enum Values : std::uint8_t {
   offset_rate,
 };
 constexpr InternalValue internal_values[] = {
-    InternalValue{"phase", Unit::phase_degree, raw(Unit::degree, 30), "phase of the oscillator"},
+    InternalValue{PatternGenerator::phase_value.name, Unit::phase_degree, raw(Unit::degree, 30),
+                  "phase of the oscillator"},
     PatternGenerator::frequency_value,
     PatternGenerator::phase_difference_value,
     InternalValue{"current_amplitude", Unit::degree, raw(Unit::degree, 1), "filtered amplitude"},
@@ -35,7 +36,7 @@ constexpr InternalValue internal_values[] = {
     InternalValue{"current_offset", Unit::degree, raw(Unit::degree, 1), "filtered offset"},
     InternalValue{"offset_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
 };
-constexpr FrameField frame[] = {FrameField{PatternGenerator::phase, 4}, FrameField{current_amplitude, 2}};
+constexpr FrameField frame[] = {FrameField{PatternGenerator::current_phase, 4}, FrameField{current_amplitude, 2}};
 
 constexpr Declaration about{4,
                             "PatternGenerator_coupled_oscillator",
@@ -49,7 +50,8 @@ class CoupledOscillator final : public PatternGenerator {
   [[nodiscard]] const Declaration& declaration() const override { return about; }
 
   [[nodiscard]] std::int32_t output(const Tuning& /*tuning*/, const std::int32_t* state) const override {
-    const std::int32_t swing = multiply(state[current_amplitude], cosine(static_cast<std::uint32_t>(state[phase])), 30);
+    const std::int32_t swing =
+        multiply(state[current_amplitude], cosine(static_cast<std::uint32_t>(state[current_phase])), 30);
     return add_saturating(swing, state[current_offset]);
   }
 
@@ -80,7 +82,7 @@ class CoupledOscillator final : public PatternGenerator {
     std::int32_t step = tuning.derived[phase_increment];
     step = add_wrapping(step, pull(surroundings.ahead, surroundings.place, tuning, state));
     step = add_wrapping(step, pull(surroundings.behind, surroundings.place, tuning, state));
-    next[phase] = add_wrapping(state[phase], step);
+    next[current_phase] = add_wrapping(state[current_phase], step);
 
     const CriticalFilter filter{tuning.derived[half_rate], tuning.derived[decay], tuning.derived[arrived]};
     next[amplitude_rate] = state[amplitude_rate];
@@ -98,8 +100,8 @@ class CoupledOscillator final : public PatternGenerator {
     }
     const std::uint32_t distance = neighbour.joint() - place.joint;
     const std::uint32_t wanted = distance * static_cast<std::uint32_t>(tuning.parameters[phase_step]);
-    const std::uint32_t lead =
-        static_cast<std::uint32_t>(neighbour.value(phase_field)) - static_cast<std::uint32_t>(state[phase]) - wanted;
+    const std::uint32_t lead = static_cast<std::uint32_t>(neighbour.value(phase_field)) -
+                               static_cast<std::uint32_t>(state[current_phase]) - wanted;
     return multiply(tuning.derived[gain], sine(lead), 30);
   }
 };

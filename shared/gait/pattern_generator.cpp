@@ -40,10 +40,12 @@ void PatternGenerator::advance(const Surroundings& surroundings, const Tuning& t
                                std::int32_t* next) const {
   advance_pattern(surroundings, tuning, state, next);
   // turns/tick in Q32 times ticks/s in Q16 is Q48; Q24 is wanted.
-  next[frequency] = saturate(shift_right_rounding(
-      multiply_wide(subtract_wrapping(next[phase], state[phase]), tuning.derived[ticks_per_second]), 24));
-  next[phase_difference] =
-      surroundings.behind.present() ? subtract_wrapping(surroundings.behind.value(phase_field), state[phase]) : 0;
+  next[measured_frequency] = saturate(shift_right_rounding(
+      multiply_wide(subtract_wrapping(next[current_phase], state[current_phase]), tuning.derived[ticks_per_second]),
+      24));
+  next[measured_phase_difference] =
+      surroundings.behind.present() ? subtract_wrapping(surroundings.behind.value(phase_field), state[current_phase])
+                                    : 0;
 }
 
 void PatternGenerator::extrapolate(const Tuning& tuning, const std::int32_t* /*state*/, StateFrame& frame) const {

@@ -14,14 +14,14 @@ class PatternGenerator : public ActuationModule {
  public:
   /// The first internal values of every pattern generator.
   enum Value : std::uint8_t {
-    phase,             ///< argument of the periodic signal
-    frequency,         ///< measured: change of `phase` over the last tick
-    phase_difference,  ///< measured: phase of the next joint of the group minus the own; 0 for the last joint
+    current_phase,              ///< argument of the periodic signal
+    measured_frequency,         ///< change of the phase over the last tick
+    measured_phase_difference,  ///< phase of the next joint of the group minus the own; 0 for the last joint
     first_own_value
   };
-  static constexpr InternalValue phase_value{"phase", Unit::phase_degree, 0, "argument of the periodic signal"};
-  static constexpr InternalValue frequency_value{"frequency", Unit::hertz, 0, "measured frequency"};
-  static constexpr InternalValue phase_difference_value{"phase_difference", Unit::phase_degree, 0,
+  static constexpr InternalValue phase_value{"current_phase", Unit::phase_degree, 0, "argument of the periodic signal"};
+  static constexpr InternalValue frequency_value{"measured_frequency", Unit::hertz, 0, "measured frequency"};
+  static constexpr InternalValue phase_difference_value{"measured_phase_difference", Unit::phase_degree, 0,
                                                         "measured phase difference to the next joint towards the tail"};
   static constexpr std::size_t phase_field = 0;
 

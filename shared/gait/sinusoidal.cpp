@@ -17,7 +17,7 @@ constexpr InternalValue internal_values[] = {
     PatternGenerator::frequency_value,
     PatternGenerator::phase_difference_value,
 };
-constexpr FrameField frame[] = {FrameField{PatternGenerator::phase, 4}};
+constexpr FrameField frame[] = {FrameField{PatternGenerator::current_phase, 4}};
 
 constexpr Declaration about{
     2,    "PatternGenerator_sinusoidal", "sine with one clock for all joints (eq. 3.1)", parameters, internal_values,
@@ -29,7 +29,7 @@ class Sinusoidal final : public PatternGenerator {
 
   [[nodiscard]] std::int32_t output(const Tuning& tuning, const std::int32_t* state) const override {
     const std::int32_t swing =
-        multiply(tuning.parameters[amplitude], sine(static_cast<std::uint32_t>(state[phase])), 30);
+        multiply(tuning.parameters[amplitude], sine(static_cast<std::uint32_t>(state[current_phase])), 30);
     return add_saturating(swing, tuning.parameters[offset]);
   }
 
@@ -46,13 +46,13 @@ class Sinusoidal final : public PatternGenerator {
   }
 
   void reset_pattern(const Place& /*place*/, const Tuning& tuning, std::int32_t* state) const override {
-    state[phase] = tuning.derived[joint_phase];
+    state[current_phase] = tuning.derived[joint_phase];
   }
 
   void advance_pattern(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* /*state*/,
                        std::int32_t* next) const override {
     const std::uint32_t clock = (surroundings.tick + 1) * static_cast<std::uint32_t>(tuning.derived[phase_increment]);
-    next[phase] = add_wrapping(static_cast<std::int32_t>(clock), tuning.derived[joint_phase]);
+    next[current_phase] = add_wrapping(static_cast<std::int32_t>(clock), tuning.derived[joint_phase]);
   }
 };
 

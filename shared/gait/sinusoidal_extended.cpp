@@ -41,7 +41,7 @@ constexpr InternalValue internal_values[] = {
     InternalValue{"current_offset", Unit::degree, raw(Unit::degree, 5), "filtered offset"},
     InternalValue{"offset_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
 };
-constexpr FrameField frame[] = {FrameField{PatternGenerator::phase, 4}};
+constexpr FrameField frame[] = {FrameField{PatternGenerator::current_phase, 4}};
 
 constexpr Declaration about{
     3,    "PatternGenerator_sinusoidal_extended", "sine with smooth changes and harmonics", parameters, internal_values,
@@ -52,7 +52,8 @@ class SinusoidalExtended final : public PatternGenerator {
   [[nodiscard]] const Declaration& declaration() const override { return about; }
 
   [[nodiscard]] std::int32_t output(const Tuning& /*tuning*/, const std::int32_t* state) const override {
-    const std::int32_t swing = multiply(state[current_amplitude], sine(static_cast<std::uint32_t>(state[phase])), 30);
+    const std::int32_t swing =
+        multiply(state[current_amplitude], sine(static_cast<std::uint32_t>(state[current_phase])), 30);
     return add_saturating(swing, state[current_offset]);
   }
 
@@ -77,7 +78,7 @@ class SinusoidalExtended final : public PatternGenerator {
 
   void reset_pattern(const Place& /*place*/, const Tuning& tuning, std::int32_t* state) const override {
     state[current_shift] = tuning.derived[joint_phase];
-    state[phase] = state[current_shift];
+    state[current_phase] = state[current_shift];
   }
 
   void advance_pattern(const Surroundings& /*surroundings*/, const Tuning& tuning, const std::int32_t* state,
@@ -98,7 +99,7 @@ class SinusoidalExtended final : public PatternGenerator {
     next[clock] = add_wrapping(state[clock], tuning.derived[clock_increment]);
     const std::uint32_t multiple =
         static_cast<std::uint32_t>(next[clock]) * static_cast<std::uint32_t>(tuning.parameters[harmonic]);
-    next[phase] = add_wrapping(static_cast<std::int32_t>(multiple), next[current_shift]);
+    next[current_phase] = add_wrapping(static_cast<std::int32_t>(multiple), next[current_shift]);
   }
 };
 

@@ -11,8 +11,8 @@ namespace proleg::sim {
 ///
 ///   tick, time_s                                  the number of the tick, and the time at which its values hold
 ///   setpoint_deg.J, servo_us.J, angle_deg.J       for each joint J, from the head: commanded, sent, measured
-///   phase_deg.J, ...                              its internal values, with their units (none: dimensionless); a slot
-///                                                 number is added (phase_deg.J.slot1) where names would meet
+///   current_phase_deg.J, ...                              its internal values, with their units (none: dimensionless); a slot
+///                                                 number is added (current_phase_deg.J.slot1) where names would meet
 ///   x_m.L, y_m.L, z_m.L                           for each link L, from the head: position in the world
 ///   contact_rear.L, contact_front.L               1: the touch sensor is pressed
 ///

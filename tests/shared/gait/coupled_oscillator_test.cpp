@@ -35,7 +35,7 @@ class CoupledOscillator : public testing::Test {
   [[nodiscard]] test::OscillatorModel model() const {
     test::OscillatorModel result;
     for (unsigned joint = 0; joint < joints; ++joint) {
-      result.theta.push_back(in_radians(value(joint, "phase")));
+      result.theta.push_back(in_radians(value(joint, "current_phase")));
       result.r.push_back({in_degrees(value(joint, "current_amplitude")), 0});
       result.x.push_back({in_degrees(value(joint, "current_offset")), 0});
     }
@@ -46,8 +46,8 @@ class CoupledOscillator : public testing::Test {
   [[nodiscard]] double lag_error(double wanted) const {
     double largest = 0;
     for (unsigned joint = 0; joint + 1 < joints; ++joint) {
-      const std::uint32_t error = static_cast<std::uint32_t>(value(joint + 1, "phase")) -
-                                  static_cast<std::uint32_t>(value(joint, "phase")) -
+      const std::uint32_t error = static_cast<std::uint32_t>(value(joint + 1, "current_phase")) -
+                                  static_cast<std::uint32_t>(value(joint, "current_phase")) -
                                   static_cast<std::uint32_t>(test::phase(wanted));
       largest = std::max(largest, std::abs(in_degrees(static_cast<std::int32_t>(error))));
     }
@@ -64,7 +64,7 @@ TEST_F(CoupledOscillator, SettlesOnTheClosedForm) {
   kernel.reset();
   test::run(kernel, 1000);
   EXPECT_LE(lag_error(70), 0.02);
-  const double start = in_degrees(value(0, "phase"));
+  const double start = in_degrees(value(0, "current_phase"));
   for (int tick = 0; tick < 1000; ++tick) {
     for (unsigned joint = 0; joint < joints; ++joint) {
       const double argument = start + 360 * tick * 0.01 + joint * 70.0;
@@ -82,8 +82,8 @@ TEST_F(CoupledOscillator, RunsAtItsFrequencyAtEveryStableCoupling) {
     kernel.reset();
     test::run(kernel, 1000);
     for (unsigned joint = 0; joint < joints; ++joint) {
-      EXPECT_NEAR(value(joint, "frequency") / 16777216.0, 1.0, 1e-5) << "coupling " << coupling;
-      EXPECT_NEAR(in_degrees(value(joint, "phase_difference")), joint + 1 < joints ? 55 : 0, 0.02)
+      EXPECT_NEAR(value(joint, "measured_frequency") / 16777216.0, 1.0, 1e-5) << "coupling " << coupling;
+      EXPECT_NEAR(in_degrees(value(joint, "measured_phase_difference")), joint + 1 < joints ? 55 : 0, 0.02)
           << "coupling " << coupling;
     }
   }
@@ -97,7 +97,7 @@ TEST_F(CoupledOscillator, FollowsItsEquationsInDoublePrecisionFromANoisyStart) {
     double largest_output_error = 0;
     for (int tick = 0; tick <= 1000; ++tick) {
       for (unsigned joint = 0; joint < joints; ++joint) {
-        const double error = in_radians(value(joint, "phase")) - reference.theta[joint];
+        const double error = in_radians(value(joint, "current_phase")) - reference.theta[joint];
         largest_phase_error = std::max(largest_phase_error,
                                        std::abs(std::remainder(error, 2 * std::numbers::pi)) * 180 / std::numbers::pi);
         largest_output_error =
@@ -159,17 +159,17 @@ TEST_F(CoupledOscillator, StaysStableAtTheStrongestCouplingWhateverTheTick) {
 TEST_F(CoupledOscillator, StartsTheSameFromTheSameSeedAndDifferentlyFromAnother) {
   std::array<std::int32_t, joints> first{};
   for (unsigned joint = 0; joint < joints; ++joint) {
-    first[joint] = value(joint, "phase");
+    first[joint] = value(joint, "current_phase");
   }
   EXPECT_EQ(std::set<std::int32_t>(first.begin(), first.end()).size(), joints) << "every joint has noise of its own";
   test::run(kernel, 10);
   kernel.reset();
   for (unsigned joint = 0; joint < joints; ++joint) {
-    EXPECT_EQ(value(joint, "phase"), first[joint]);
+    EXPECT_EQ(value(joint, "current_phase"), first[joint]);
   }
   configure(10'000, 2);
   for (unsigned joint = 0; joint < joints; ++joint) {
-    EXPECT_NE(value(joint, "phase"), first[joint]);
+    EXPECT_NE(value(joint, "current_phase"), first[joint]);
   }
 }
 
@@ -207,7 +207,7 @@ TEST_F(CoupledOscillator, WrapsNoiseOfThePhaseBeyondHalfATurn) {
     test::set_all(kernel, 0, "noise", test::ratio(4));
     kernel.reset();
     for (unsigned joint = 0; joint < joints; ++joint) {
-      at_half_a_turn += std::abs(in_degrees(value(joint, "phase"))) > 179.99 ? 1 : 0;
+      at_half_a_turn += std::abs(in_degrees(value(joint, "current_phase"))) > 179.99 ? 1 : 0;
     }
   }
   EXPECT_LE(at_half_a_turn, 2);
@@ -218,9 +218,9 @@ TEST_F(CoupledOscillator, CouplesAcrossJointsThatTheGroupLeavesOut) {
   configuration.slots[0].group = JointMask(0b11001);
   ASSERT_EQ(kernel.configure(configuration, 0), Status::ok);
   test::run(kernel, 1500);
-  EXPECT_NEAR(in_degrees(value(0, "phase_difference")), 165, 0.02) << "three joints further on";
-  EXPECT_NEAR(in_degrees(value(3, "phase_difference")), 55, 0.02);
-  EXPECT_EQ(value(4, "phase_difference"), 0);
+  EXPECT_NEAR(in_degrees(value(0, "measured_phase_difference")), 165, 0.02) << "three joints further on";
+  EXPECT_NEAR(in_degrees(value(3, "measured_phase_difference")), 55, 0.02);
+  EXPECT_EQ(value(4, "measured_phase_difference"), 0);
   EXPECT_EQ(kernel.setpoint(1), 0);
 }
 

@@ -135,14 +135,14 @@ TEST(Declaration, OfAPatternGeneratorStartsWithPhaseFrequencyAndPhaseDifference)
     }
     ++generators;
     ASSERT_GE(about.internal_values.size(), 3U);
-    EXPECT_EQ(about.internal_values[PatternGenerator::phase].name, "phase");
-    EXPECT_EQ(about.internal_values[PatternGenerator::phase].unit, Unit::phase_degree);
-    EXPECT_EQ(about.internal_values[PatternGenerator::frequency].name, "frequency");
-    EXPECT_EQ(about.internal_values[PatternGenerator::frequency].unit, Unit::hertz);
-    EXPECT_EQ(about.internal_values[PatternGenerator::phase_difference].name, "phase_difference");
-    EXPECT_EQ(about.internal_values[PatternGenerator::phase_difference].unit, Unit::phase_degree);
+    EXPECT_EQ(about.internal_values[PatternGenerator::current_phase].name, "current_phase");
+    EXPECT_EQ(about.internal_values[PatternGenerator::current_phase].unit, Unit::phase_degree);
+    EXPECT_EQ(about.internal_values[PatternGenerator::measured_frequency].name, "measured_frequency");
+    EXPECT_EQ(about.internal_values[PatternGenerator::measured_frequency].unit, Unit::hertz);
+    EXPECT_EQ(about.internal_values[PatternGenerator::measured_phase_difference].name, "measured_phase_difference");
+    EXPECT_EQ(about.internal_values[PatternGenerator::measured_phase_difference].unit, Unit::phase_degree);
     ASSERT_GE(about.frame.size(), 1U);
-    EXPECT_EQ(about.frame[0].internal_value, PatternGenerator::phase);
+    EXPECT_EQ(about.frame[0].internal_value, PatternGenerator::current_phase);
     EXPECT_EQ(about.frame[0].bytes, 4);
   });
   EXPECT_EQ(generators, 3);

@@ -24,8 +24,8 @@ KernelConfiguration configuration_of(std::string_view algorithm) {
 double lag_error(ModuleChain& chain) {
   double largest = 0;
   for (unsigned joint = 0; joint + 1 < joints; ++joint) {
-    const std::uint32_t error = static_cast<std::uint32_t>(test::value(chain[joint + 1], 0, joint + 1, "phase")) -
-                                static_cast<std::uint32_t>(test::value(chain[joint], 0, joint, "phase")) -
+    const std::uint32_t error = static_cast<std::uint32_t>(test::value(chain[joint + 1], 0, joint + 1, "current_phase")) -
+                                static_cast<std::uint32_t>(test::value(chain[joint], 0, joint, "current_phase")) -
                                 static_cast<std::uint32_t>(test::phase(55));
     largest = std::max(largest, std::abs(in_degrees(static_cast<std::int32_t>(error))));
   }
@@ -38,7 +38,7 @@ TEST(Distortion, OfAPhaseIsOvercomeByTheCoupledGait) {
   for (int tick = 0; tick < 1000; ++tick) {
     chain.tick();
   }
-  const unsigned phase = test::value_index(chain[2], 0, "phase");
+  const unsigned phase = test::value_index(chain[2], 0, "current_phase");
   const std::int32_t before = chain[2].internal_value(0, 2, phase);
   ASSERT_EQ(chain[2].distort(0, 2, phase, before + test::degrees(60)), Status::ok);
   chain.tick();
@@ -52,7 +52,7 @@ TEST(Distortion, OfAPhaseIsOvercomeByTheCoupledGait) {
 TEST(Distortion, ReachesTheNeighboursOneTickLater) {
   ModuleChain chain(configuration_of(test::coupled));
   ModuleChain undisturbed(configuration_of(test::coupled));
-  const unsigned phase = test::value_index(chain[2], 0, "phase");
+  const unsigned phase = test::value_index(chain[2], 0, "current_phase");
   ASSERT_EQ(chain[2].distort(0, 2, phase, test::phase(123)), Status::ok);
   const auto same = [&](unsigned joint) {
     return chain[joint].internal_value(0, joint, phase) == undisturbed[joint].internal_value(0, joint, phase);
@@ -75,11 +75,11 @@ TEST(Distortion, OfThePlainSineIsGoneAfterATick) {
   KernelOf<1> undisturbed;
   ASSERT_EQ(kernel.configure(test::one_slot(test::algorithm(test::sinusoidal), 1), 0), Status::ok);
   ASSERT_EQ(undisturbed.configure(kernel.configuration(), 0), Status::ok);
-  ASSERT_EQ(kernel.distort(0, 0, test::value_index(kernel, 0, "phase"), test::phase(90)), Status::ok);
+  ASSERT_EQ(kernel.distort(0, 0, test::value_index(kernel, 0, "current_phase"), test::phase(90)), Status::ok);
   test::run(kernel, 2);
   test::run(undisturbed, 2);
   EXPECT_EQ(kernel.setpoint(0), undisturbed.setpoint(0));
-  EXPECT_EQ(test::value(kernel, 0, 0, "frequency"), test::value(undisturbed, 0, 0, "frequency"));
+  EXPECT_EQ(test::value(kernel, 0, 0, "measured_frequency"), test::value(undisturbed, 0, 0, "measured_frequency"));
 }
 
 TEST(Distortion, IsRefusedForWhatDoesNotExist) {
@@ -151,7 +151,7 @@ TEST(LostFrame, IsExtrapolatedExactlyForAHarmonic) {
   for (int tick = 0; tick < 10; ++tick) {
     chain.exchange([](unsigned, unsigned) { return true; });
     chain.advance();
-    EXPECT_EQ(test::value(chain[0], 0, 0, "phase_difference"), test::phase(55)) << "tick " << tick;
+    EXPECT_EQ(test::value(chain[0], 0, 0, "measured_phase_difference"), test::phase(55)) << "tick " << tick;
   }
 }
 
@@ -167,7 +167,7 @@ TEST(Losses, LeaveTheCoupledGaitAtItsFrequencyAndWithin1DegreeOfItsLagOnceTheyEn
     chain.tick();
   }
   EXPECT_LE(lag_error(chain), 1.0);
-  EXPECT_NEAR(test::value(chain[2], 0, 2, "frequency") / 16777216.0, 1.0, 1e-3);
+  EXPECT_NEAR(test::value(chain[2], 0, 2, "measured_frequency") / 16777216.0, 1.0, 1e-3);
 }
 
 // The remedy of the reference sheet: extrapolation restores 1.0000 Hz and 55.0 degrees exactly.
@@ -181,17 +181,17 @@ TEST(Losses, OfEverythingLeaveASettledGaitAlone) {
     chain.advance();
   }
   EXPECT_LE(lag_error(chain), 0.02);
-  EXPECT_NEAR(test::value(chain[0], 0, 0, "frequency") / 16777216.0, 1.0, 1e-5);
+  EXPECT_NEAR(test::value(chain[0], 0, 0, "measured_frequency") / 16777216.0, 1.0, 1e-5);
 }
 
 TEST(Losses, FromTheStartLeaveEveryOscillatorToItself) {
   ModuleChain chain(configuration_of(test::coupled));
-  const std::int32_t start = test::value(chain[2], 0, 2, "phase");
+  const std::int32_t start = test::value(chain[2], 0, 2, "current_phase");
   for (int tick = 0; tick < 100; ++tick) {
     chain.exchange([](unsigned, unsigned) { return true; });
     chain.advance();
   }
-  EXPECT_EQ(static_cast<std::uint32_t>(test::value(chain[2], 0, 2, "phase")),
+  EXPECT_EQ(static_cast<std::uint32_t>(test::value(chain[2], 0, 2, "current_phase")),
             static_cast<std::uint32_t>(start) + 100U * 42'949'673U);
 }
 

@@ -42,7 +42,7 @@ TEST_F(SinusoidalExtended, EqualsThePlainSinusoidalToTheLastBitOnceItHasSettled)
   for (int tick = 400; tick < 1000; ++tick) {
     for (unsigned joint = 0; joint < joints; ++joint) {
       ASSERT_EQ(kernel.setpoint(joint), plain.setpoint(joint)) << "tick " << tick;
-      ASSERT_EQ(value(joint, "phase"), test::value(plain, 0, joint, "phase")) << "tick " << tick;
+      ASSERT_EQ(value(joint, "current_phase"), test::value(plain, 0, joint, "current_phase")) << "tick " << tick;
     }
     kernel.advance();
     plain.advance();
@@ -158,7 +158,7 @@ TEST_F(SinusoidalExtended, OscillatesAtAWholeMultipleOfTheFrequency) {
     for (unsigned joint = 0; joint < joints; ++joint) {
       const double angle = 40 * std::sin(2 * std::numbers::pi * ((joint + 1) * 1.0 * tick * 0.01 + joint * 55.0 / 360));
       ASSERT_NEAR(in_degrees(kernel.setpoint(joint)), angle, 1e-3) << "tick " << tick << ", joint " << joint;
-      ASSERT_NEAR(value(joint, "frequency") / 16777216.0, joint + 1.0, 1e-5);
+      ASSERT_NEAR(value(joint, "measured_frequency") / 16777216.0, joint + 1.0, 1e-5);
     }
     kernel.advance();
   }

@@ -90,8 +90,8 @@ TEST(Sinusoidal, MeasuresItsFrequencyAndThePhaseDifferenceToTheNextJoint) {
   kernel.reset();
   test::run(kernel, 10);
   for (unsigned joint = 0; joint < 5; ++joint) {
-    EXPECT_NEAR(test::value(kernel, 0, joint, "frequency") / 16777216.0, 1.25, 1e-6);
-    EXPECT_EQ(test::value(kernel, 0, joint, "phase_difference"), joint < 4 ? test::phase(-55) : 0);
+    EXPECT_NEAR(test::value(kernel, 0, joint, "measured_frequency") / 16777216.0, 1.25, 1e-6);
+    EXPECT_EQ(test::value(kernel, 0, joint, "measured_phase_difference"), joint < 4 ? test::phase(-55) : 0);
   }
 }
 

@@ -120,10 +120,10 @@ TEST(Channels, AreTheFirstAndTheSecondBroadcastingSlotOfAJoint) {
   EXPECT_EQ(kernel.channel_count(4), 1U);
   const Declaration& sine = test::algorithm(test::sinusoidal).declaration();
   const Declaration& oscillator = test::algorithm(test::coupled).declaration();
-  EXPECT_EQ(unpack(sine, 0, kernel.frame(0, 0)), test::value(kernel, 1, 0, "phase"));
-  EXPECT_EQ(unpack(sine, 0, kernel.frame(1, 0)), test::value(kernel, 1, 1, "phase"));
-  EXPECT_EQ(unpack(oscillator, 0, kernel.frame(1, 1)), test::value(kernel, 3, 1, "phase"));
-  EXPECT_EQ(unpack(oscillator, 0, kernel.frame(2, 0)), test::value(kernel, 3, 2, "phase"));
+  EXPECT_EQ(unpack(sine, 0, kernel.frame(0, 0)), test::value(kernel, 1, 0, "current_phase"));
+  EXPECT_EQ(unpack(sine, 0, kernel.frame(1, 0)), test::value(kernel, 1, 1, "current_phase"));
+  EXPECT_EQ(unpack(oscillator, 0, kernel.frame(1, 1)), test::value(kernel, 3, 1, "current_phase"));
+  EXPECT_EQ(unpack(oscillator, 0, kernel.frame(2, 0)), test::value(kernel, 3, 2, "current_phase"));
   for (unsigned channel = 0; channel < 2; ++channel) {
     EXPECT_EQ(kernel.frame(1, channel).label(), 3);
     EXPECT_EQ(kernel.frame(1, channel).flags(), StateFrame::valid);
@@ -142,7 +142,7 @@ TEST(Channels, OfNeighboursMayDifferWithoutConfusingTheSlots) {
   test::run(kernel, 200);
   test::run(alone, 200);
   for (unsigned joint = 0; joint < 5; ++joint) {
-    EXPECT_EQ(test::value(kernel, 1, joint, "phase"), test::value(alone, 1, joint, "phase")) << "joint " << joint;
+    EXPECT_EQ(test::value(kernel, 1, joint, "current_phase"), test::value(alone, 1, joint, "current_phase")) << "joint " << joint;
   }
 }
 

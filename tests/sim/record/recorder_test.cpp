@@ -151,7 +151,7 @@ TEST(Recorder, KeepsDistortions) {
   ASSERT_EQ(distortions.size(), 1U);
   EXPECT_EQ(distortions[0].tick, 7U);
   EXPECT_EQ(distortions[0].joint, 0U);
-  EXPECT_EQ(distortions[0].name, "phase");
+  EXPECT_EQ(distortions[0].name, "current_phase");
   EXPECT_EQ(distortions[0].raw, 1 << 30);
 }
 

@@ -64,7 +64,7 @@ Scenario small_scenario() {
   scenario.changes = {
       {5, {{2, 2, index_of_parameter(direct, "angle"), false, raw(Unit::degree, -7)}}},
       {7,
-       {{0, 0, static_cast<std::uint8_t>(find_internal_value(sine.declaration(), "phase")), true,
+       {{0, 0, static_cast<std::uint8_t>(find_internal_value(sine.declaration(), "current_phase")), true,
          raw(Unit::phase_degree, 90)}}},
   };
   scenario.sources = {{"some folder/small.simulation.xml", "<simulation/>\n"}, {"robot.xml", "tab\there \"quoted\"\n"}};

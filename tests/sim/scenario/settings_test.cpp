@@ -138,7 +138,7 @@ TEST(SetOption, OnAnInternalValueIsADistortion) {
   MemoryFiles files = small_scenario();
   files.replace("actuation.xml", "PatternGenerator_sinusoidal", "PatternGenerator_coupled_oscillator");
   Scenario small = files.scenario();
-  apply_setting(small, "phase:J2=90@50");
+  apply_setting(small, "current_phase:J2=90@50");
   apply_setting(small, "current_amplitude=1");
   ASSERT_EQ(small.changes.size(), 2U);
   EXPECT_EQ(small.changes[0].tick, 0U) << "without a tick at the start";

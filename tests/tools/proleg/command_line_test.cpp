@@ -180,7 +180,7 @@ TEST_F(CommandLine, TheSameCommandGivesTheSameHashesAndASettingOtherOnes) {
   EXPECT_NE(hash({"--set", "amplitude=20"}), plain);
   EXPECT_NE(hash({"--set", "amplitude=20@50"}), plain);
   EXPECT_NE(hash({"--set", "amplitude=20@50"}), hash({"--set", "amplitude=20@51"}));
-  EXPECT_NE(hash({"--set", "phase:J3=90@50"}), plain) << "an internal value is distorted";
+  EXPECT_NE(hash({"--set", "current_phase:J3=90@50"}), plain) << "an internal value is distorted";
 }
 
 TEST_F(CommandLine, VerbosePrintsTheJointMapAndEveryParameter) {

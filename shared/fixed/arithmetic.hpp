@@ -2,8 +2,9 @@
 
 // Integer arithmetic that every number format of the core rests on.
 //
-// The core rounds in one way only: a product is formed in 64 bits and shifted right once, rounding half up. Sums wrap
-// only in uint32_t and saturate only where a function says so; signed overflow never happens.
+// Products round in one way only: formed in 64 bits and shifted right once, half up. Divisions happen where a constant
+// is derived, not in a tick, and say how they round. Sums wrap only in uint32_t and saturate only where a function says
+// so; signed overflow never happens.
 
 #include <cstdint>
 #include <limits>

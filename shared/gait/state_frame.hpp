@@ -28,6 +28,7 @@ struct alignas(4) StateFrame {  // copied as two words, where bytes would need a
     limited = 1U << 6U,   ///< the sum of the slots was cut to the joint's limits
     valid = 1U << 7U,     ///< the joint computes; bytes 0-5 are its state, or 0 if it broadcasts nothing
   };
+  static constexpr std::uint8_t rear_link_contact_bits = 0x03;
   static constexpr std::uint8_t contact_bits = 0x0F;
 
   [[nodiscard]] std::uint8_t flags() const { return bytes[6]; }

@@ -26,6 +26,9 @@ inline constexpr std::size_t max_channels = 2;
 struct Slot {
   const ActuationModule* algorithm = nullptr;  ///< null: the slot is empty
   JointMask group;
+
+  /// Whether neighbours learn of the algorithm's state.
+  [[nodiscard]] bool broadcasts() const { return algorithm != nullptr && !algorithm->declaration().frame.empty(); }
 };
 
 /// What all modules of a robot agree on.
@@ -120,11 +123,11 @@ class Kernel {
   [[nodiscard]] std::int32_t parameter(unsigned slot, unsigned joint, unsigned parameter) const;
   [[nodiscard]] std::int32_t internal_value(unsigned slot, unsigned joint, unsigned internal_value) const;
   /// Number of state frames that a joint sends in a tick: 1 or 2.
-  [[nodiscard]] unsigned channel_count(unsigned joint) const { return broadcasters_[1].contains(joint) ? 2 : 1; }
-  /// The frame labelled tick().
+  [[nodiscard]] unsigned channel_count(unsigned joint) const { return senders_[1].contains(joint) ? 2 : 1; }
+  /// The frame of a local joint labelled tick(), or the latest known of another joint.
   [[nodiscard]] const StateFrame& frame(unsigned joint, unsigned channel) const { return heard_[channel][joint]; }
 
-  /// Frames of other joints that were missing when they were needed, since the reset.
+  /// State frames of other joints that had not come when their tick was computed, since the reset.
   [[nodiscard]] std::uint32_t missed_frames() const { return missed_frames_; }
 
   /// The whole state, parameters included, in a byte order and layout that is the same everywhere. A kernel with the
@@ -134,8 +137,8 @@ class Kernel {
   Status restore(std::span<const std::uint8_t> snapshot);
 
  private:
-  template <typename Archive>
-  void visit_state(Archive& archive);
+  template <typename Self, typename Archive>
+  static void visit_state(Self& self, Archive& archive);
 
   [[nodiscard]] JointMemory& joint_memory(unsigned joint) { return memory_[joint - first_joint_]; }
   [[nodiscard]] const JointMemory& joint_memory(unsigned joint) const { return memory_[joint - first_joint_]; }
@@ -168,7 +171,7 @@ class Kernel {
   std::uint16_t transaction_ = 0;
   bool staged_ = false;
   bool committed_ = false;
-  std::array<JointMask, max_channels> broadcasters_;  ///< the joints of which a slot sends on the channel
+  std::array<JointMask, max_channels> senders_;  ///< all joints on the first channel, some on the second
   /// For each slot the joints of which it uses the second channel.
   std::array<JointMask, max_slots> second_channel_;
   std::array<JointMask, max_channels> arrived_;  ///< whose frames with the label tick_ are in heard_

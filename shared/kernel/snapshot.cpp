@@ -1,3 +1,5 @@
+#include <type_traits>
+
 #include "shared/kernel/kernel.hpp"
 
 // One list of what makes up the state serves counting, writing, checking and reading. Little-endian, no padding.
@@ -14,10 +16,10 @@ class Counter {
     size_ += sizeof(Integer);
   }
   template <typename Integer>
-  void value(Integer& /*value*/) {
+  void value(const Integer& /*value*/) {
     size_ += sizeof(Integer);
   }
-  void ranged(std::int32_t& value, std::int32_t /*lowest*/, std::int32_t /*highest*/) { this->value(value); }
+  void ranged(const std::int32_t& value, std::int32_t /*lowest*/, std::int32_t /*highest*/) { this->value(value); }
 
   [[nodiscard]] std::size_t size() const { return size_; }
 
@@ -36,10 +38,10 @@ class Writer {
     }
   }
   template <typename Integer>
-  void value(Integer& value) {
+  void value(const Integer& value) {
     identity(value);
   }
-  void ranged(std::int32_t& value, std::int32_t /*lowest*/, std::int32_t /*highest*/) { identity(value); }
+  void ranged(const std::int32_t& value, std::int32_t /*lowest*/, std::int32_t /*highest*/) { identity(value); }
 
  private:
   std::span<std::uint8_t> bytes_;
@@ -97,25 +99,25 @@ class Reader {
 
 }  // namespace
 
-template <typename Archive>
-void Kernel::visit_state(Archive& archive) {
+template <typename Self, typename Archive>
+void Kernel::visit_state(Self& self, Archive& archive) {
   archive.identity(snapshot_magic);
-  archive.identity(configuration_.joint_count);
-  archive.identity(configuration_.tick_period_us);
-  archive.identity(static_cast<std::uint8_t>(first_joint_));
-  archive.identity(static_cast<std::uint8_t>(memory_.size()));
-  for (const Slot& slot : configuration_.slots) {
+  archive.identity(self.configuration_.joint_count);
+  archive.identity(self.configuration_.tick_period_us);
+  archive.identity(static_cast<std::uint8_t>(self.first_joint_));
+  archive.identity(static_cast<std::uint8_t>(self.memory_.size()));
+  for (const Slot& slot : self.configuration_.slots) {
     archive.identity(slot.algorithm == nullptr ? std::uint8_t{0} : slot.algorithm->declaration().id);
     archive.identity(slot.group.bits());
   }
 
-  archive.value(tick_);
-  archive.value(missed_frames_);
-  archive.value(commit_tick_);
-  archive.value(transaction_);
-  archive.value(staged_);
-  archive.value(committed_);
-  for (JointMemory& joint : memory_) {
+  archive.value(self.tick_);
+  archive.value(self.missed_frames_);
+  archive.value(self.commit_tick_);
+  archive.value(self.transaction_);
+  archive.value(self.staged_);
+  archive.value(self.committed_);
+  for (JointMemory& joint : self.memory_) {
     archive.value(joint.lower_limit);
     archive.value(joint.upper_limit);
     archive.value(joint.previous_setpoint);
@@ -127,7 +129,7 @@ void Kernel::visit_state(Archive& archive) {
       if (!slot.active) {
         continue;
       }
-      const Declaration& declaration = configuration_.slots[s].algorithm->declaration();
+      const Declaration& declaration = self.configuration_.slots[s].algorithm->declaration();
       archive.value(slot.staged_mask);
       for (std::size_t p = 0; p < declaration.parameters.size(); ++p) {
         const Parameter& parameter = declaration.parameters[p];
@@ -141,16 +143,18 @@ void Kernel::visit_state(Archive& archive) {
         }
       }
       for (std::size_t v = 0; v < declaration.internal_values.size(); ++v) {
-        archive.value(current(slot)[v]);
+        archive.value(self.current(slot)[v]);
       }
     }
   }
   for (unsigned channel = 0; channel < max_channels; ++channel) {
-    std::uint64_t arrived = arrived_[channel].bits();
+    std::uint64_t arrived = self.arrived_[channel].bits();
     archive.value(arrived);
-    arrived_[channel] = JointMask(arrived);
-    for (unsigned joint = 0; joint < configuration_.joint_count; ++joint) {
-      for (std::uint8_t& byte : heard_[channel][joint].bytes) {
+    if constexpr (!std::is_const_v<Self>) {
+      self.arrived_[channel] = JointMask(arrived);
+    }
+    for (unsigned joint = 0; joint < self.configuration_.joint_count; ++joint) {
+      for (auto& byte : self.heard_[channel][joint].bytes) {
         archive.value(byte);
       }
     }
@@ -159,7 +163,7 @@ void Kernel::visit_state(Archive& archive) {
 
 std::size_t Kernel::snapshot_size() const {
   Counter counter;
-  const_cast<Kernel*>(this)->visit_state(counter);  // a counter changes nothing
+  visit_state(*this, counter);
   return counter.size();
 }
 
@@ -168,7 +172,7 @@ Status Kernel::save(std::span<std::uint8_t> snapshot) const {
     return Status::no_room;
   }
   Writer writer(snapshot);
-  const_cast<Kernel*>(this)->visit_state(writer);  // neither does a writer
+  visit_state(*this, writer);
   return Status::ok;
 }
 
@@ -177,12 +181,12 @@ Status Kernel::restore(std::span<const std::uint8_t> snapshot) {
     return Status::bad_snapshot;
   }
   Reader check(snapshot, false);
-  visit_state(check);
+  visit_state(*this, check);
   if (!check.fits()) {
     return Status::bad_snapshot;
   }
   Reader reader(snapshot, true);
-  visit_state(reader);
+  visit_state(*this, reader);
   for (JointMemory& joint : memory_) {
     for (unsigned s = 0; s < max_slots; ++s) {
       if (joint.slots[s].active) {

@@ -14,8 +14,8 @@ namespace proleg::sim {
 
 enum class Solver : std::uint8_t {
   automatic,  ///< direct up to 8 links, iterative above
-  direct,     ///< dWorldStep
-  iterative,  ///< dWorldQuickStep
+  direct,     ///< exact and repeatable on every thread
+  iterative,  ///< approximate, in time proportional to the number of links
 };
 
 /// A parameter (or, from `--set`, an internal value) given a value on one joint.

@@ -1,0 +1,112 @@
+#include "shared/gait/declaration.hpp"
+#include "shared/kernel/kernel.hpp"
+
+// What is settled before the first tick.
+
+namespace proleg {
+
+Status Kernel::configure(const KernelConfiguration& configuration, unsigned first_joint) {
+  if (configuration.joint_count == 0 || configuration.joint_count > max_joints) {
+    return Status::bad_joint_count;
+  }
+  if (memory_.empty() || memory_.size() > configuration.joint_count ||
+      first_joint > configuration.joint_count - memory_.size()) {
+    return Status::bad_local_joints;
+  }
+  if (configuration.tick_period_us < 1'000 || configuration.tick_period_us > 100'000) {
+    return Status::bad_tick_period;
+  }
+  const std::uint64_t all_joints = JointMask::first(configuration.joint_count).bits();
+  std::array<JointMask, max_slots> second_channel;
+  std::uint64_t one_broadcast = 0;
+  std::uint64_t two_broadcasts = 0;
+  unsigned slots_in_use = 0;
+  for (unsigned i = 0; i < max_slots; ++i) {
+    const Slot& slot = configuration.slots[i];
+    if (slot.algorithm != nullptr) {
+      slots_in_use = i + 1;
+    }
+    if ((slot.group.bits() & ~all_joints) != 0) {
+      return Status::bad_group;
+    }
+    if (slot.broadcasts()) {
+      if ((slot.group.bits() & two_broadcasts) != 0) {
+        return Status::too_many_broadcasts;
+      }
+      second_channel[i] = JointMask(slot.group.bits() & one_broadcast);
+      two_broadcasts |= second_channel[i].bits();
+      one_broadcast |= slot.group.bits();
+    }
+  }
+
+  configuration_ = configuration;
+  first_joint_ = first_joint;
+  second_channel_ = second_channel;
+  slots_in_use_ = slots_in_use;
+  senders_ = {JointMask(all_joints), JointMask(two_broadcasts)};
+  for (unsigned i = 0; i < memory_.size(); ++i) {
+    set_up(first_joint + i);
+  }
+  reset();
+  return Status::ok;
+}
+
+void Kernel::set_up(unsigned joint) {
+  JointMemory& memory = joint_memory(joint);
+  memory = JointMemory{};
+  memory.lower_limit = -quarter_turn;
+  memory.upper_limit = quarter_turn;
+  for (unsigned i = 0; i < max_slots; ++i) {
+    const Slot& slot = configuration_.slots[i];
+    SlotMemory& slot_memory = memory.slots[i];
+    slot_memory.active = slot.algorithm != nullptr && slot.group.contains(joint);
+    if (!slot_memory.active) {
+      continue;
+    }
+    slot_memory.place = {static_cast<std::uint8_t>(joint), configuration_.joint_count, slot.group,
+                         configuration_.tick_period_us};
+    slot_memory.channel = second_channel_[i].contains(joint) ? 1 : 0;
+    if (slot.broadcasts()) {
+      slot_memory.broadcast = &slot.algorithm->declaration();
+      slot_memory.ahead = neighbour(i, slot.group.before(joint));
+      slot_memory.behind = neighbour(i, slot.group.after(joint));
+    }
+    const std::span<const Parameter> parameters = slot.algorithm->declaration().parameters;
+    for (std::size_t p = 0; p < parameters.size(); ++p) {
+      slot_memory.parameters[p] = parameters[p].default_value;
+      slot_memory.staged[p] = parameters[p].default_value;
+    }
+    derive(i, slot_memory);
+  }
+}
+
+Neighbour Kernel::neighbour(unsigned slot, int joint) const {
+  if (joint < 0) {
+    return {};
+  }
+  const auto index = static_cast<unsigned>(joint);
+  const unsigned channel = second_channel_[slot].contains(index) ? 1 : 0;
+  return {configuration_.slots[slot].algorithm->declaration(), index, heard_[channel][index]};
+}
+
+void Kernel::derive(unsigned slot, SlotMemory& memory) {
+  configuration_.slots[slot].algorithm->derive(memory.place, memory.parameters.data(), memory.derived.data());
+}
+
+Status Kernel::set_limits(unsigned joint, std::int32_t lower, std::int32_t upper) {
+  if (!is_local(joint)) {
+    return Status::unknown_joint;
+  }
+  if (lower > upper) {
+    return Status::bad_limits;
+  }
+  joint_memory(joint).lower_limit = lower;
+  joint_memory(joint).upper_limit = upper;
+  return Status::ok;
+}
+
+bool Kernel::drives(unsigned slot, unsigned joint) const {
+  return slot < max_slots && is_local(joint) && joint_memory(joint).slots[slot].active;
+}
+
+}  // namespace proleg

@@ -4,6 +4,7 @@
 host_packages=(
   g++ cmake ninja-build pkg-config ccache git ca-certificates
   libode-dev libeigen3-dev libtinyxml2-dev libsqlite3-dev libsodium-dev libcli11-dev nlohmann-json3-dev
+  sqlite3  # not needed to build: to look into recordings
 )
 
 # What the tests need beyond that: the ARM toolchain, the CPU emulator, a second compiler with its sanitizers.

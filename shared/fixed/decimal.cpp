@@ -7,6 +7,8 @@ namespace {
 
 constexpr int max_digits = 60;
 constexpr int max_exponent = 60;
+constexpr unsigned quotient_bits = 48;
+constexpr std::uint64_t largest_quotient = std::uint64_t{1} << quotient_bits;
 
 /// Unsigned integer of 512 bits, enough for 60 digits shifted by 60 places and scaled by a unit.
 class Natural {
@@ -59,13 +61,12 @@ class Natural {
 
 /// Nearest integer to numerator / denominator, ties to even; at most 2^48, a larger quotient is returned as 2^48.
 std::uint64_t divide_half_even(Natural numerator, const Natural& denominator) {
-  constexpr unsigned quotient_bits = 48;
   Natural multiple = denominator;
   for (unsigned i = 0; i < quotient_bits; ++i) {
     multiple.multiply_add(2, 0);
   }
   if (numerator.compare(multiple) >= 0) {
-    return std::uint64_t{1} << quotient_bits;
+    return largest_quotient;
   }
   std::uint64_t quotient = 0;
   for (unsigned i = quotient_bits; i-- > 0;) {
@@ -185,7 +186,9 @@ DecimalResult parse_decimal(std::string_view text, Unit unit) {
   }
   const std::uint64_t magnitude = divide_half_even(numerator, denominator);
   constexpr std::uint64_t beyond = std::uint64_t{1} << 31U;
-  if (magnitude > beyond || (magnitude == beyond && !number.negative && !wraps(unit))) {
+  const bool fits =
+      wraps(unit) ? magnitude < largest_quotient : magnitude < beyond || (magnitude == beyond && number.negative);
+  if (!fits) {
     return {DecimalError::out_of_range, 0};
   }
   const auto value = static_cast<std::uint32_t>(magnitude);

@@ -16,7 +16,7 @@ enum class DecimalError : std::uint8_t {
   none,
   not_a_number,     ///< anything but [+-]digits[.digits][e[+-]digits]; includes "inf", "nan", hexadecimal, blanks
   too_many_digits,  ///< more than 60 significant digits, or an exponent beyond +-60
-  out_of_range,     ///< the nearest raw value does not fit int32_t
+  out_of_range,     ///< the nearest raw value does not fit int32_t; 2^16 turns or more of a phase
 };
 
 struct DecimalResult {
@@ -24,7 +24,8 @@ struct DecimalResult {
   std::int32_t raw;  ///< 0 unless error is none
 };
 
-/// The raw value nearest to the decimal number in `text`, ties to even. For a wrapping unit +180 degrees reads as -180.
+/// The raw value nearest to the decimal number in `text`, ties to even. A wrapping unit takes any
+/// number of turns up to 2^16: 235 degrees is -125.
 [[nodiscard]] DecimalResult parse_decimal(std::string_view text, Unit unit);
 
 struct DecimalText {

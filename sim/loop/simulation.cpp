@@ -1,9 +1,11 @@
 #include "sim/loop/simulation.hpp"
 
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 #include "shared/kernel/servo_command.hpp"
+#include "sim/physics/physics_error.hpp"
 #include "sim/robot/servo.hpp"
 
 namespace proleg::sim {
@@ -32,7 +34,10 @@ Simulation::Simulation(const Scenario& scenario)
       kernel_(joint_memory_),
       world_(scenario.robot, scenario.environment, scenario.step_s, choose_stepper(scenario)),
       steps_per_tick_(static_cast<std::uint32_t>(std::lround(scenario.kernel.tick_period_us * 1e-6 / scenario.step_s))),
+      servo_schedule_(scenario.robot.servo.period_us, scenario.kernel.tick_period_us),
       start_(world_.center_of_mass()),
+      latched_contacts_(scenario.robot.links.size()),
+      setpoints_(scenario.robot.joints.size()),
       servo_commands_(scenario.robot.joints.size(), servo_center),
       link_poses_(scenario.robot.links.size()),
       joint_angles_(scenario.robot.joints.size()),
@@ -52,19 +57,16 @@ double Simulation::time_s() const { return tick() * (scenario_.kernel.tick_perio
 
 const Change* Simulation::advance() {
   const Change* change = apply_changes();
+  const Eigen::Vector3d center_before = world_.center_of_mass();
   latch_contacts();
   const std::uint64_t tick_start_us = std::uint64_t{tick()} * scenario_.kernel.tick_period_us;
   kernel_.advance();
-  for (unsigned joint = 0; joint < kernel_.local_joint_count(); ++joint) {
-    setpoint_hash_.append(kernel_.setpoint(joint));
-  }
+  read_kernel();
+  compute_servo_pulses();
 
   for (std::uint32_t step = 0; step < steps_per_tick_; ++step) {
-    const std::uint32_t elapsed_us = step * scenario_.kernel.tick_period_us / steps_per_tick_;
-    if (tick_start_us + elapsed_us >= next_servo_us_) {
-      take_servo_commands(elapsed_us);
-      next_servo_us_ += scenario_.robot.servo.period_us;
-    }
+    // Rounded down, which loses nothing: pulses start at whole microseconds.
+    take_servo_pulses(tick_start_us + std::uint64_t{step} * scenario_.kernel.tick_period_us / steps_per_tick_);
     for (std::size_t joint = 0; joint < servo_commands_.size(); ++joint) {
       world_.set_joint_speed(joint, servo_speed(scenario_.robot.servo, scenario_.robot.joints[joint],
                                                 servo_commands_[joint], world_.joint_angle(joint)));
@@ -72,8 +74,28 @@ const Change* Simulation::advance() {
     world_.step();
     contact_sum_ += world_.contact_count();
   }
+  take_servo_pulses(tick_start_us + scenario_.kernel.tick_period_us);
   read_world();
+  require_crawling(center_before);
   return change;
+}
+
+void Simulation::require_crawling(const Eigen::Vector3d& center_before) const {
+  constexpr double fastest = 100.0;  // m/s; a robot that crawls stays far below, one whose solver broke down does not
+  constexpr double deepest = 1.0;    // m
+  const Eigen::Vector3d center = world_.center_of_mass();
+  const auto now = [&] {
+    std::ostringstream text;
+    text << time_s() << " s";
+    return text.str();
+  };
+  if ((center - center_before).norm() > fastest * scenario_.kernel.tick_period_us * 1e-6) {
+    throw PhysicsError("the simulation became unstable at " + now() + ": the robot moves faster than 100 m/s");
+  }
+  if (center.z() < world_.lowest_ground().value_or(start_.z()) - deepest) {
+    throw PhysicsError("the robot fell off its environment: at " + now() +
+                       " it is a metre below everything it could stand on");
+  }
 }
 
 const Change* Simulation::apply_changes() {
@@ -99,22 +121,56 @@ const Change* Simulation::apply_changes() {
 }
 
 void Simulation::latch_contacts() {
+  latched_contacts_ = link_contacts_;
   for (unsigned joint = 0; joint < kernel_.local_joint_count(); ++joint) {
-    std::uint8_t contacts = link_contacts_[joint + 1];
+    std::uint8_t contacts = latched_contacts_[joint + 1];
     if (joint == 0) {
-      contacts = static_cast<std::uint8_t>(contacts | (link_contacts_[0] << 2U));
+      contacts = static_cast<std::uint8_t>(contacts | (latched_contacts_[0] << 2U));
     }
     kernel_.set_contacts(joint, contacts);
   }
 }
 
-void Simulation::take_servo_commands(std::uint32_t elapsed_us) {
-  const std::int32_t fraction =
-      sample_fraction(elapsed_us, scenario_.robot.servo.period_us, scenario_.kernel.tick_period_us);
+void Simulation::read_kernel() {
   for (unsigned joint = 0; joint < kernel_.local_joint_count(); ++joint) {
-    servo_commands_[joint] =
-        servo_command(interpolate(kernel_.previous_setpoint(joint), kernel_.setpoint(joint), fraction));
-    servo_hash_.append(servo_commands_[joint]);
+    setpoints_[joint] = kernel_.setpoint(joint);
+    setpoint_hash_.append(setpoints_[joint]);
+  }
+  internal_values_.clear();
+  for (unsigned slot = 0; slot < max_slots; ++slot) {
+    for (unsigned joint = 0; joint < kernel_.local_joint_count(); ++joint) {
+      if (!kernel_.drives(slot, joint)) {
+        continue;
+      }
+      const std::size_t count = scenario_.kernel.slots[slot].algorithm->declaration().internal_values.size();
+      for (unsigned i = 0; i < count; ++i) {
+        internal_values_.push_back(kernel_.internal_value(slot, joint, i));
+      }
+    }
+  }
+}
+
+/// All pulses of the tick, before the first step of the physics: what they are does not depend on the steps.
+void Simulation::compute_servo_pulses() {
+  servo_pulses_.clear();
+  taken_pulses_ = 0;
+  const std::uint32_t k = tick() - 1;
+  const std::uint64_t end = servo_schedule_.first_interval(std::uint64_t{k} + 1);
+  for (std::uint64_t interval = servo_schedule_.first_interval(k); interval < end; ++interval) {
+    const std::int32_t fraction = servo_schedule_.fraction(interval);
+    for (unsigned joint = 0; joint < kernel_.local_joint_count(); ++joint) {
+      const std::int32_t command =
+          servo_command(interpolate(kernel_.previous_setpoint(joint), kernel_.setpoint(joint), fraction));
+      servo_hash_.append(command);
+      servo_pulses_.push_back({servo_schedule_.start_us(interval), joint, command});
+    }
+  }
+}
+
+/// A step of the physics moves the servos by the pulses whose intervals have started by its own start.
+void Simulation::take_servo_pulses(std::uint64_t until_us) {
+  for (; taken_pulses_ < servo_pulses_.size() && servo_pulses_[taken_pulses_].time_us <= until_us; ++taken_pulses_) {
+    servo_commands_[servo_pulses_[taken_pulses_].joint] = servo_pulses_[taken_pulses_].command;
   }
 }
 
@@ -126,6 +182,11 @@ void Simulation::read_world() {
     link_poses_[link] = world_.link_pose(link);
     link_contacts_[link] = world_.link_contacts(link);
   }
+}
+
+TickSample Simulation::sample() const {
+  return {tick() - 1,    latched_contacts_, setpoints_,  internal_values_,
+          servo_pulses_, servo_commands_,   link_poses_, joint_angles_};
 }
 
 double Simulation::displacement() const { return (world_.center_of_mass() - start_).head<2>().norm(); }

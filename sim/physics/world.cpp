@@ -2,8 +2,12 @@
 
 #include <ode/ode.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <mutex>
+#include <optional>
+#include <vector>
 
 #include "sim/physics/engine.hpp"
 #include "sim/physics/physics_error.hpp"
@@ -35,12 +39,6 @@ void to_quaternion(const Eigen::Quaterniond& orientation, dQuaternion out) {
 struct GeometryData {
   int link = -1;  ///< -1: the environment
   std::optional<double> friction;
-};
-
-/// The sensors of a link: a contact counts for the half on whose side of the middle it lies.
-struct SensorLayout {
-  Eigen::Vector3d middle;   ///< in the frame of the link
-  Eigen::Vector3d forward;  ///< in the frame of the link, towards the head
 };
 
 }  // namespace
@@ -79,22 +77,16 @@ class World::Implementation {
   void set_joint_speed(std::size_t joint, double speed) { dJointSetHingeParam(joints_[joint], dParamVel, speed); }
 
   void step() {
-    link_contacts_.assign(bodies_.size(), 0);
-    contact_count_ = 0;
-    dSpaceCollide2(reinterpret_cast<dGeomID>(robot_space_.get()), reinterpret_cast<dGeomID>(environment_space_.get()),
-                   this, &Implementation::on_near);
-    if (self_collision_) {
-      dSpaceCollide(robot_space_.get(), this, &Implementation::on_near);
+    if (world_ == nullptr) {
+      throw PhysicsError("the simulation broke down at an earlier step");
     }
-    if (stepper_ == Stepper::direct) {
-      dWorldStep(world_.get(), step_s_);
-    } else {
-      dWorldQuickStep(world_.get(), step_s_);
+    try {
+      advance();
+    } catch (...) {
+      abandon();
+      throw;
     }
-    dJointGroupEmpty(contact_group_.get());
-    if (!std::isfinite(dBodyGetPosition(bodies_.front())[2])) {
-      throw PhysicsError("the simulation became unstable: the position of the head is no longer a number");
-    }
+    require_finite_positions();
   }
 
   [[nodiscard]] double joint_angle(std::size_t joint) const { return dJointGetHingeAngle(joints_[joint]); }
@@ -120,9 +112,48 @@ class World::Implementation {
 
   [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const { return link_contacts_[link]; }
   [[nodiscard]] std::size_t contact_count() const { return contact_count_; }
+  [[nodiscard]] std::optional<double> lowest_ground() const { return lowest_ground_; }
   [[nodiscard]] std::size_t solver_messages() const { return engine_messages() - messages_before_; }
 
  private:
+  void advance() {
+    link_contacts_.assign(bodies_.size(), 0);
+    contact_count_ = 0;
+    dSpaceCollide2(reinterpret_cast<dGeomID>(robot_space_.get()), reinterpret_cast<dGeomID>(environment_space_.get()),
+                   this, &Implementation::on_near);
+    if (self_collision_) {
+      dSpaceCollide(robot_space_.get(), this, &Implementation::on_near);
+    }
+    if (stepper_ == Stepper::direct) {
+      dWorldStep(world_.get(), step_s_);
+    } else {
+      dWorldQuickStep(world_.get(), step_s_);
+    }
+    dJointGroupEmpty(contact_group_.get());
+  }
+
+  /// An error that the engine raises in the middle of a step leaves it with work half done; taking its world down then
+  /// would fail the next assertion. So what it holds is given up, but kept reachable.
+  void abandon() {
+    static auto* const abandoned = new std::vector<void*>;
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    abandoned->insert(abandoned->end(), {contact_group_.release(), environment_space_.release(), robot_space_.release(),
+                                         world_.release(), threading_.release()});
+  }
+
+  /// One number that is not finite makes a sum not finite, so one look at a sum is a look at all of it.
+  void require_finite_positions() const {
+    double sum = 0.0;
+    for (const dBodyID body : bodies_) {
+      const dReal* position = dBodyGetPosition(body);
+      sum += position[0] + position[1] + position[2];
+    }
+    if (!std::isfinite(sum)) {
+      throw PhysicsError("the simulation became unstable: the position of a link is no longer a finite number");
+    }
+  }
+
   dGeomID add_geometry(dxSpace* space, const Geometry& geometry, int link) {
     dGeomID shape = nullptr;
     switch (geometry.shape) {
@@ -158,6 +189,9 @@ class World::Implementation {
         to_quaternion(engine_orientation(geometry, pose.orientation), orientation);
         dGeomSetPosition(shape, pose.position.x(), pose.position.y(), pose.position.z());
         dGeomSetQuaternion(shape, orientation);
+        std::array<dReal, 6> bounds{};
+        dGeomGetAABB(shape, bounds.data());
+        lowest_ground_ = std::min(lowest_ground_.value_or(bounds[4]), bounds[4]);
       }
     }
   }
@@ -192,21 +226,18 @@ class World::Implementation {
       bodies_.push_back(body);
       masses_.push_back(link.mass.mass);
       mass_centers_.push_back(link.mass.center);
-      sensors_.push_back(sensor_layout(robot, i));
+      directions_to_head_.push_back(direction_to_head(robot, i));
     }
     link_contacts_.assign(bodies_.size(), 0);
   }
 
-  static SensorLayout sensor_layout(const RobotModel& robot, std::size_t link) {
-    const auto in_link = [&](const Eigen::Vector3d& point) -> Eigen::Vector3d {
-      return robot.links[link].pose.orientation.conjugate() * (point - robot.links[link].pose.position);
-    };
-    const bool has_front = link > 0;
-    const bool has_rear = link < robot.joints.size();
-    const Eigen::Vector3d center = robot.links[link].mass.center;
-    const Eigen::Vector3d front = has_front ? in_link(robot.joints[link - 1].anchor) : center;
-    const Eigen::Vector3d rear = has_rear ? in_link(robot.joints[link].anchor) : center;
-    return {center, (front - rear).stableNormalized()};
+  /// Unit vector along a link, in its frame.
+  static Eigen::Vector3d direction_to_head(const RobotModel& robot, std::size_t link) {
+    const Pose& pose = robot.links[link].pose;
+    const Eigen::Vector3d middle = pose * robot.links[link].mass.center;
+    const Eigen::Vector3d front = link > 0 ? robot.joints[link - 1].anchor : middle;
+    const Eigen::Vector3d rear = link < robot.joints.size() ? robot.joints[link].anchor : middle;
+    return pose.orientation.conjugate() * (front - rear).stableNormalized();
   }
 
   void add_joints(const RobotModel& robot, const Pose& robot_pose) {
@@ -262,10 +293,17 @@ class World::Implementation {
       return;
     }
     const auto index = static_cast<std::size_t>(link);
-    const Eigen::Vector3d point(contact.geom.pos[0], contact.geom.pos[1], contact.geom.pos[2]);
-    const Pose pose = link_pose(index);
-    const Eigen::Vector3d local = pose.orientation.conjugate() * (point - pose.position);
-    const double along = (local - sensors_[index].middle).dot(sensors_[index].forward);
+    // Every contact of every step passes here, so this uses what the engine has at hand: the middle of the link is its
+    // centre of mass, and the origin of the engine's body.
+    const dReal* rotation = dBodyGetRotation(bodies_[index]);  // 3 rows of 4
+    const dReal* middle = dBodyGetPosition(bodies_[index]);
+    const Eigen::Vector3d& forward = directions_to_head_[index];
+    double along = 0.0;
+    for (int row = 0; row < 3; ++row) {
+      const double forward_in_world =
+          rotation[4 * row] * forward.x() + rotation[4 * row + 1] * forward.y() + rotation[4 * row + 2] * forward.z();
+      along += forward_in_world * (contact.geom.pos[row] - middle[row]);
+    }
     link_contacts_[index] = static_cast<std::uint8_t>(link_contacts_[index] | (along < 0.0 ? 1U : 2U));
   }
 
@@ -280,9 +318,10 @@ class World::Implementation {
   std::vector<dJointID> joints_;
   std::vector<double> masses_;
   std::vector<Eigen::Vector3d> mass_centers_;
-  std::vector<SensorLayout> sensors_;
+  std::vector<Eigen::Vector3d> directions_to_head_;
   std::vector<std::uint8_t> link_contacts_;
   std::size_t contact_count_ = 0;
+  std::optional<double> lowest_ground_;
   std::size_t messages_before_ = 0;
   double step_s_;
   Stepper stepper_;
@@ -302,6 +341,7 @@ Pose World::link_pose(std::size_t link) const { return implementation_->link_pos
 Eigen::Vector3d World::center_of_mass() const { return implementation_->center_of_mass(); }
 std::uint8_t World::link_contacts(std::size_t link) const { return implementation_->link_contacts(link); }
 std::size_t World::contact_count() const { return implementation_->contact_count(); }
+std::optional<double> World::lowest_ground() const { return implementation_->lowest_ground(); }
 std::size_t World::solver_messages() const { return implementation_->solver_messages(); }
 
 }  // namespace proleg::sim

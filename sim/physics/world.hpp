@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,7 +32,8 @@ class World {
   /// The speed, in rad/s, that the motor of a joint is to reach with the torque it has.
   void set_joint_speed(std::size_t joint, double speed);
 
-  /// Advances the world by one step. Throws PhysicsError if the solver broke down.
+  /// Advances the world by one step. Throws PhysicsError if the solver broke down or a position of a link is no longer
+  /// a finite number; after that the world can be read and destroyed, no more.
   void step();
 
   /// Angle of a joint in rad, as RobotModel defines it.
@@ -40,11 +42,14 @@ class World {
   [[nodiscard]] Pose link_pose(std::size_t link) const;
   /// Centre of mass of the robot in the world.
   [[nodiscard]] Eigen::Vector3d center_of_mass() const;
-  /// Which sensors of a link touch the environment since the last step: bit 0 the half towards the tail, bit 1 the
-  /// half towards the head.
+  /// Which sensors of a link touch the environment: bit 0 the half towards the tail, bit 1 the half towards the head.
+  /// The contacts are those found at the start of the last step, where the links were then; before the first step
+  /// nothing is pressed.
   [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const;
-  /// Number of contact points in the last step.
+  /// Number of contact points at the start of the last step.
   [[nodiscard]] std::size_t contact_count() const;
+  /// Height of the lowest point of the environment; nothing if there is no environment.
+  [[nodiscard]] std::optional<double> lowest_ground() const;
   /// Complaints of the solver since the world was made ("LCP internal error" and its like).
   [[nodiscard]] std::size_t solver_messages() const;
 

@@ -54,12 +54,16 @@ FigureContents collect_figure_contents(const Recording& recording, const TimeWin
       contents.angles[joint].push_back({time, bounded(tick.joint_angles[joint] * 180.0 / std::numbers::pi)});
     }
   };
-  const auto add_contacts = [&contents](const RecordedTick& tick, double time) {
-    const double from = std::max(time - contents.tick_s / 2.0, contents.from_s);
-    const double to = std::min(time + contents.tick_s / 2.0, contents.to_s);
+  // Contacts hold from the SYNC at which they were latched to the next.
+  const auto add_contacts = [&contents](const RecordedTick& tick, double sync_time) {
+    const double from = std::max(sync_time, contents.from_s);
+    const double to = std::min(sync_time + contents.tick_s, contents.to_s);
+    if (from >= to) {
+      return;
+    }
     for (std::size_t link = 0; link < contents.presses.size(); ++link) {
       for (unsigned sensor = 0; sensor < 2; ++sensor) {
-        if (((tick.link_contacts[link] >> sensor) & 1U) == 0) {
+        if (((tick.latched_contacts[link] >> sensor) & 1U) == 0) {
           continue;
         }
         std::vector<FigureContents::Press>& presses = contents.presses[link][sensor];
@@ -88,8 +92,8 @@ FigureContents collect_figure_contents(const Recording& recording, const TimeWin
     }
     if (tick.tick >= contents.first_tick && tick.tick <= contents.last_tick) {
       add_angles(tick, recording.time_s(tick.tick));
-      add_contacts(tick, recording.time_s(tick.tick));
     }
+    add_contacts(tick, recording.sync_time_s(tick.tick));
   });
   return contents;
 }

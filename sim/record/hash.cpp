@@ -6,9 +6,9 @@ namespace proleg::sim {
 
 // The results of libsodium's SHA-256 functions are not looked at: they are 0 always.
 
-SetpointHash::SetpointHash() { crypto_hash_sha256_init(&state_); }
+ValueHash::ValueHash() { crypto_hash_sha256_init(&state_); }
 
-void SetpointHash::append(std::int32_t value) {
+void ValueHash::append(std::int32_t value) {
   const auto bits = static_cast<std::uint32_t>(value);
   const std::array<unsigned char, 4> bytes{static_cast<unsigned char>(bits), static_cast<unsigned char>(bits >> 8U),
                                            static_cast<unsigned char>(bits >> 16U),
@@ -16,7 +16,7 @@ void SetpointHash::append(std::int32_t value) {
   crypto_hash_sha256_update(&state_, bytes.data(), bytes.size());
 }
 
-std::string SetpointHash::hex() const {
+std::string ValueHash::hex() const {
   // Finishing destroys the state, so a copy is finished.
   crypto_hash_sha256_state state = state_;
   std::array<unsigned char, crypto_hash_sha256_BYTES> digest;

@@ -7,11 +7,11 @@
 
 namespace proleg::sim {
 
-/// SHA-256 over a sequence of int32 values, each as four bytes, little-endian: the fingerprint by which two runs, on
-/// whatever machine, are said to be the same.
-class SetpointHash {
+/// SHA-256 over a sequence of int32 values, each as four bytes, little-endian: the fingerprint by which the set-points,
+/// or the servo commands, of two runs, on whatever machine, are said to be the same.
+class ValueHash {
  public:
-  SetpointHash();
+  ValueHash();
 
   void append(std::int32_t value);
 

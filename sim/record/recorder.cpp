@@ -94,23 +94,23 @@ class Recorder::Storage {
 
   void write_tick(const TickSample& sample) {
     require_finite(sample);
-    if (!started_) {
-      write_start_contacts(sample);
-      started_ = true;
-    }
     const std::uint32_t tick = sample.tick;
     for (std::uint32_t joint = 0; joint < scenario_.robot.joints.size(); ++joint) {
-      insert_sample_.run(tick, joint, sample.kernel.setpoint(joint), sample.servo_commands[joint],
+      insert_sample_.run(tick, joint, sample.setpoints[joint], sample.servo_commands[joint],
                          sample.joint_angles[joint]);
     }
-    for (std::uint32_t slot = 0; slot < max_slots; ++slot) {
-      write_internal_values(sample, slot);
+    for (std::size_t i = 0; i < internal_values_.size(); ++i) {
+      const InternalValuePlace& place = internal_values_[i];
+      insert_value_.run(tick, place.slot, place.joint, place.index, sample.internal_values[i]);
+    }
+    for (const ServoPulse& pulse : sample.servo_pulses) {
+      insert_pulse_.run(pulse.time_us, pulse.joint, pulse.command);
     }
     for (std::uint32_t link = 0; link < scenario_.robot.links.size(); ++link) {
       const Eigen::Vector3d& position = sample.link_poses[link].position;
       const Eigen::Quaterniond& turn = sample.link_poses[link].orientation;
       insert_pose_.run(tick, link, position.x(), position.y(), position.z(), turn.w(), turn.x(), turn.y(), turn.z());
-      const std::uint32_t contacts = sample.link_contacts[link];
+      const std::uint32_t contacts = sample.latched_contacts[link];
       insert_contact_.run(tick, link, contacts & 1U, (contacts >> 1U) & 1U);
     }
     commit_if_due();
@@ -141,6 +141,12 @@ class Recorder::Storage {
   }
 
  private:
+  struct InternalValuePlace {
+    std::uint32_t slot;
+    std::uint32_t joint;
+    std::uint32_t index;
+  };
+
   void write_run(const std::string& build_id) {
     Statement insert(database_, "INSERT INTO run VALUES(?1, ?2)");
     const auto put = [&insert](std::string_view key, std::string_view value) { insert.run(key, value); };
@@ -197,12 +203,12 @@ class Recorder::Storage {
         insert_name.run(slot, i, value.name, std::string_view(scale.symbol),
                         static_cast<double>(scale.denominator) / static_cast<double>(scale.numerator));
       }
-      write_start_parameters(slot);
-    }
-    for (const Setting& setting : scenario_.settings) {
-      if (setting.internal) {
-        write_distortion(0, setting);
+      for (std::uint32_t joint = 0; joint < scenario_.kernel.joint_count; ++joint) {
+        for (std::uint32_t i = 0; place.group.contains(joint) && i < declaration.internal_values.size(); ++i) {
+          internal_values_.push_back({slot, joint, i});
+        }
       }
+      write_start_parameters(slot);
     }
   }
 
@@ -216,7 +222,7 @@ class Recorder::Storage {
       for (std::uint32_t i = 0; i < parameters.size(); ++i) {
         std::int32_t value = parameters[i].default_value;
         for (const Setting& setting : scenario_.settings) {
-          if (!setting.internal && setting.slot == slot && setting.joint == joint && setting.index == i) {
+          if (setting.slot == slot && setting.joint == joint && setting.index == i) {
             value = setting.value;
           }
         }
@@ -238,34 +244,6 @@ class Recorder::Storage {
     insert_distortion_.run(tick, std::uint32_t{setting.slot}, std::uint32_t{setting.joint}, value.name,
                            std::string_view(scale_of(value.unit).symbol), setting.value,
                            format_decimal(setting.value, value.unit).view());
-  }
-
-  void write_internal_values(const TickSample& sample, std::uint32_t slot) {
-    const ActuationModule* algorithm = scenario_.kernel.slots[slot].algorithm;
-    if (algorithm == nullptr) {
-      return;
-    }
-    const std::size_t count = algorithm->declaration().internal_values.size();
-    for (std::uint32_t joint = 0; joint < scenario_.robot.joints.size(); ++joint) {
-      if (sample.kernel.drives(slot, joint)) {
-        for (std::uint32_t i = 0; i < count; ++i) {
-          insert_value_.run(sample.tick, slot, joint, i, sample.kernel.internal_value(slot, joint, i));
-        }
-      }
-    }
-  }
-
-  /// The contacts from which the kernel computed the first tick are in its state frames.
-  void write_start_contacts(const TickSample& sample) {
-    std::vector<StateFrame> frames;
-    for (unsigned joint = 0; joint < scenario_.kernel.joint_count; ++joint) {
-      frames.push_back(sample.kernel.frame(joint, 0));
-    }
-    const Contacts contacts(frames);
-    for (std::uint32_t link = 0; link < contacts.link_count(); ++link) {
-      insert_contact_.run(std::int64_t{sample.tick} - 1, link, contacts.pressed(link, TouchSensor::rear) ? 1U : 0U,
-                          contacts.pressed(link, TouchSensor::front) ? 1U : 0U);
-    }
   }
 
   void require_finite(const TickSample& sample) const {
@@ -304,6 +282,7 @@ class Recorder::Storage {
 
   std::filesystem::path path_;
   const Scenario& scenario_;
+  std::vector<InternalValuePlace> internal_values_;  ///< what TickSample::internal_values holds
   NewRecording database_;
   Statement insert_parameter_{database_,
                               "INSERT INTO parameter(tick, origin, slot, joint, name, unit, raw, value_text) "
@@ -313,9 +292,9 @@ class Recorder::Storage {
                                "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7)"};
   Statement insert_sample_{database_, "INSERT INTO sample VALUES(?1, ?2, ?3, ?4, ?5)"};
   Statement insert_value_{database_, "INSERT INTO internal_value VALUES(?1, ?2, ?3, ?4, ?5)"};
+  Statement insert_pulse_{database_, "INSERT INTO servo VALUES(?1, ?2, ?3)"};
   Statement insert_pose_{database_, "INSERT INTO pose VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)"};
   Statement insert_contact_{database_, "INSERT INTO contact VALUES(?1, ?2, ?3, ?4)"};
-  bool started_ = false;
   bool closed_ = false;
   bool failed_ = false;
   std::chrono::steady_clock::time_point last_commit_ = std::chrono::steady_clock::now();

@@ -8,21 +8,25 @@
 #include <utility>
 #include <vector>
 
-#include "shared/kernel/kernel.hpp"
 #include "sim/record/record_error.hpp"
 #include "sim/robot/robot_model.hpp"
+#include "sim/robot/servo_schedule.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {
 
-/// What is known after tick k was computed and simulated until SYNC k + 1.
+/// What is known after tick k was computed and simulated until SYNC k + 1. Joints and links count from the head.
 struct TickSample {
-  std::uint32_t tick;                            ///< k
-  const Kernel& kernel;                          ///< after advance() at SYNC k: setpoint(j) is out(k + 1)
-  std::span<const std::int32_t> servo_commands;  ///< per kernel joint: last command taken before SYNC k + 1
-  std::span<const Pose> link_poses;              ///< in the world, at SYNC k + 1, head to tail
+  std::uint32_t tick;  ///< k
+  std::span<const std::uint8_t>
+      latched_contacts;                     ///< per link bit 0 rear, bit 1 front sensor; given to the kernel at k
+  std::span<const std::int32_t> setpoints;  ///< per joint: out(k + 1)
+  /// State k + 1: slot by slot, in each the joints of its group, of each joint all values.
+  std::span<const std::int32_t> internal_values;
+  std::span<const ServoPulse> servo_pulses;      ///< that start in the tick, in the order of time, then of joints
+  std::span<const std::int32_t> servo_commands;  ///< per joint: the last pulse before SYNC k + 1
+  std::span<const Pose> link_poses;              ///< in the world, at SYNC k + 1
   std::span<const double> joint_angles;          ///< rad, at SYNC k + 1, measured on the robot
-  std::span<const std::uint8_t> link_contacts;   ///< per link bit 0 rear, bit 1 front sensor, at SYNC k + 1
 };
 
 /// Writes a run into an SQLite file (tables: schema.hpp) as it goes on. Others may read the file at the same time.

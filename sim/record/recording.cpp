@@ -40,6 +40,14 @@ std::uint32_t natural(const Statement& row, int column) {
   return static_cast<std::uint32_t>(value);
 }
 
+std::uint64_t time(const Statement& row, int column) {
+  const std::int64_t value = row.integer(column);
+  if (!row.is_integer(column) || value < 0) {
+    throw Damage("a time that is not a whole number of microseconds after the start");
+  }
+  return static_cast<std::uint64_t>(value);
+}
+
 double finite(const Statement& row, int column) {
   const double value = row.real(column);
   if (!row.is_real(column) || !std::isfinite(value)) {
@@ -246,21 +254,6 @@ std::vector<std::pair<std::string, std::string>> Recording::sources() const {
   });
 }
 
-std::vector<std::uint8_t> Recording::start_contacts() const {
-  return reading(path_, [&] {
-    std::vector<std::uint8_t> contacts(links_.size());
-    Statement row(tables_->database, "SELECT rear, front FROM contact WHERE tick = ?1 - 1 ORDER BY link");
-    row.bind_all(first_tick_);
-    for (std::uint8_t& link : contacts) {
-      if (!row.step()) {
-        throw Damage("no contacts at the start");
-      }
-      link = static_cast<std::uint8_t>((natural(row, 0) & 1U) | (natural(row, 1) & 1U) << 1U);
-    }
-    return contacts;
-  });
-}
-
 namespace {
 
 /// One of the tables that grow with the ticks, read in the order of its key.
@@ -297,7 +290,7 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
   tick.joint_angles.resize(joints_.size());
   tick.internal_values.resize(internal_values_.size());
   tick.link_poses.resize(links_.size());
-  tick.link_contacts.resize(links_.size());
+  tick.latched_contacts.resize(links_.size());
 
   std::optional<Rows> samples;
   std::optional<Rows> values;
@@ -337,11 +330,38 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
         tick.link_poses[link].position = {finite(pose, 2), finite(pose, 3), finite(pose, 4)};
         tick.link_poses[link].orientation = {finite(pose, 5), finite(pose, 6), finite(pose, 7), finite(pose, 8)};
         const Statement& contact = contacts->expect(tick.tick, link);
-        tick.link_contacts[link] =
+        tick.latched_contacts[link] =
             static_cast<std::uint8_t>((natural(contact, 2) & 1U) | (natural(contact, 3) & 1U) << 1U);
       }
     });
     use(tick);
+  }
+}
+
+void Recording::read_servo_pulses(const std::function<void(const ServoPulse&)>& use) const {
+  std::optional<Statement> row;
+  reading(path_,
+          [&] { row.emplace(tables_->database, "SELECT time_us, joint, command FROM servo ORDER BY time_us, joint"); });
+  ServoPulse pulse{};
+  std::uint32_t expected_joint = 0;
+  const auto next = [&] {
+    if (!row->step()) {
+      if (expected_joint != 0) {
+        throw Damage("a gap in the table servo at its end");
+      }
+      return false;
+    }
+    const std::uint64_t time_us = time(*row, 0);
+    const std::uint32_t joint = natural(*row, 1);
+    if (joint != expected_joint || (joint != 0 && time_us != pulse.time_us)) {
+      throw Damage("a gap in the table servo at " + std::to_string(time_us) + " us");
+    }
+    pulse = {time_us, joint, raw(*row, 2)};
+    expected_joint = joint + 1 < joints_.size() ? joint + 1 : 0;
+    return true;
+  };
+  while (reading(path_, next)) {
+    use(pulse);
   }
 }
 

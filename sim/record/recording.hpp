@@ -12,6 +12,7 @@
 
 #include "shared/fixed/unit.hpp"
 #include "sim/robot/robot_model.hpp"
+#include "sim/robot/servo_schedule.hpp"
 
 namespace proleg::sim {
 
@@ -47,15 +48,16 @@ struct RecordedSetting {
   std::int32_t raw = 0;
 };
 
-/// What was computed at SYNC `tick` and holds at SYNC tick + 1. Joints and links from the head.
+/// What was computed at SYNC `tick` and holds at SYNC tick + 1, and the contacts from which it was computed. Joints and
+/// links from the head.
 struct RecordedTick {
   std::uint32_t tick = 0;
-  std::vector<std::int32_t> setpoints;        ///< 90 degrees = 2^30
-  std::vector<std::int32_t> servo_commands;   ///< twelfths of a microsecond
-  std::vector<double> joint_angles;           ///< rad
-  std::vector<std::int32_t> internal_values;  ///< in the order of Recording::internal_values()
-  std::vector<Pose> link_poses;               ///< in the world
-  std::vector<std::uint8_t> link_contacts;    ///< bit 0 rear, bit 1 front sensor
+  std::vector<std::int32_t> setpoints;         ///< 90 degrees = 2^30
+  std::vector<std::int32_t> servo_commands;    ///< twelfths of a microsecond
+  std::vector<double> joint_angles;            ///< rad
+  std::vector<std::int32_t> internal_values;   ///< in the order of Recording::internal_values()
+  std::vector<Pose> link_poses;                ///< in the world
+  std::vector<std::uint8_t> latched_contacts;  ///< at SYNC tick; bit 0 rear, bit 1 front sensor
 };
 
 /// A recording as it was when it was opened; a run may go on and write into the file meanwhile.
@@ -81,6 +83,8 @@ class Recording {
   [[nodiscard]] std::uint32_t last_tick() const { return last_tick_; }
   /// Seconds from the start to the SYNC at which what is recorded under a tick holds.
   [[nodiscard]] double time_s(std::uint32_t tick) const { return (tick + 1.0) * tick_period_us_ / 1e6; }
+  /// Seconds from the start to SYNC `tick`, when its contacts were latched.
+  [[nodiscard]] double sync_time_s(std::uint32_t tick) const { return 1.0 * tick * tick_period_us_ / 1e6; }
 
   [[nodiscard]] const std::vector<RecordedJoint>& joints() const { return joints_; }
   [[nodiscard]] const std::vector<std::string>& links() const { return links_; }
@@ -90,11 +94,12 @@ class Recording {
   [[nodiscard]] std::vector<RecordedSetting> distortions() const;
   /// Path and text of every file that was read.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> sources() const;
-  /// Contacts from which the first tick was computed.
-  [[nodiscard]] std::vector<std::uint8_t> start_contacts() const;
 
   /// Calls `use` for the ticks from `first` to `last`, in order. The tick is overwritten by the next.
   void read_ticks(std::uint32_t first, std::uint32_t last, const std::function<void(const RecordedTick&)>& use) const;
+
+  /// Calls `use` for every pulse of every servo, in the order of time, then of joints.
+  void read_servo_pulses(const std::function<void(const ServoPulse&)>& use) const;
 
  private:
   class Tables;

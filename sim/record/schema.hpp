@@ -10,7 +10,7 @@ namespace proleg::sim {
 /// "Prol", SQLite's application id, bytes 68 to 71 of the file: how a recording is told from any other database.
 inline constexpr std::uint32_t recording_application_id = 0x50726F6C;
 /// Raised whenever a reader of the older format would misread or miss something. SQLite's user_version.
-inline constexpr std::uint32_t recording_format = 1;
+inline constexpr std::uint32_t recording_format = 2;
 
 // Choices:
 // - STRICT: a value of the wrong type is an error when it is written, not a surprise when it is read.
@@ -98,12 +98,12 @@ CREATE TABLE internal_value_name(
   PRIMARY KEY(slot, value_index)
 ) STRICT, WITHOUT ROWID;
 
--- In the tables below, tick k is what was computed at SYNC k and holds at SYNC k + 1, which is
+-- In sample, internal_value and pose, tick k is what was computed at SYNC k and holds at SYNC k + 1, which is
 -- (k + 1) * tick_us / 1000000 seconds after the start.
 
 CREATE TABLE sample(
-  -- setpoint: where the joint is to be at SYNC tick + 1. servo_command: last pulse that the servo took before it, in
-  -- twelfths of a microsecond. angle: where the joint was.
+  -- setpoint: where the joint is to be at SYNC tick + 1. servo_command: last pulse that the servo took before it (the
+  -- table servo has them all), in twelfths of a microsecond. angle: where the joint was.
   tick INTEGER NOT NULL,
   joint INTEGER NOT NULL,
   setpoint_raw INTEGER NOT NULL,
@@ -139,13 +139,21 @@ CREATE TABLE pose(
 ) STRICT, WITHOUT ROWID;
 
 CREATE TABLE contact(
-  -- Touch sensors under a link: rear is nearer to the tail, front nearer to the head. Tick -1: contacts at SYNC 0,
-  -- from which the first tick was computed.
+  -- Touch sensors under a link as the modules were given them at SYNC tick, tick * tick_us / 1000000 seconds after the
+  -- start: the state frames labelled tick + 1 say the same. rear is nearer to the tail, front nearer to the head.
   tick INTEGER NOT NULL,
   link INTEGER NOT NULL,
   rear INTEGER NOT NULL,
   front INTEGER NOT NULL,
   PRIMARY KEY(tick, link)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE servo(
+  -- Every pulse for a servo, in twelfths of a microsecond, and when its interval starts: microseconds after SYNC 0.
+  time_us INTEGER NOT NULL,
+  joint INTEGER NOT NULL,
+  command INTEGER NOT NULL,
+  PRIMARY KEY(time_us, joint)
 ) STRICT, WITHOUT ROWID;
 
 CREATE VIEW sample_by_name AS

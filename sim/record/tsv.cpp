@@ -127,8 +127,8 @@ void write_tsv(const Recording& recording, const std::function<void(std::string_
       line.add(position.x());
       line.add(position.y());
       line.add(position.z());
-      line.add((tick.link_contacts[link] & 1U) != 0 ? "1" : "0");
-      line.add((tick.link_contacts[link] & 2U) != 0 ? "1" : "0");
+      line.add((tick.latched_contacts[link] & 1U) != 0 ? "1" : "0");
+      line.add((tick.latched_contacts[link] & 2U) != 0 ? "1" : "0");
     }
     write(line.end());
   });

@@ -67,6 +67,9 @@ std::string checked_name(const XmlElement& element, std::string name) {
     element.refuse(name.empty() ? "an empty name in " + element.label() : "the long name " + in_quotes(name),
                    "a name of 1 to " + std::to_string(longest_name) + " characters");
   }
+  if (one_line(name) != name) {
+    element.refuse("control characters in the name " + in_quotes(name), "a name of one line");
+  }
   return name;
 }
 

@@ -1,6 +1,7 @@
 // What the simulator costs beyond the physics engine: the time of `simulate` without a recorder against a bare loop
 // over the same world that calls the engine and nothing else. The two run in turn in one process, so that their ratio
-// holds on any machine.
+// holds on any machine. The bare loop's gait is fixed, whatever the scenario's: the travelling wave of
+// uniform.simulation.xml with 40 degrees of amplitude, 55 degrees of phase difference and 1 Hz.
 //
 //   bench_simulate SCENARIO [SECONDS] [REPETITIONS]
 
@@ -34,13 +35,15 @@ class BareLoop {
     threading_ = dThreadingAllocateSelfThreadedImplementation();
     world_ = dWorldCreate();
     dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(threading_), threading_);
-    space_ = dSimpleSpaceCreate(nullptr);
+    // Two spaces, as in the simulator: pairs of links need not even be looked at.
+    robot_space_ = dSimpleSpaceCreate(nullptr);
+    environment_space_ = dSimpleSpaceCreate(nullptr);
     group_ = dJointGroupCreate(0);
     dWorldSetGravity(world_, 0, 0, scenario.environment.gravity.z());
     for (const StaticObject& object : scenario.environment.objects) {
       for (const Geometry& geometry : object.geometries) {
-        const dGeomID floor =
-            dCreateBox(space_, 2 * geometry.extents.x(), 2 * geometry.extents.y(), 2 * geometry.extents.z());
+        const dGeomID floor = dCreateBox(environment_space_, 2 * geometry.extents.x(), 2 * geometry.extents.y(),
+                                         2 * geometry.extents.z());
         const Eigen::Vector3d position = (object.pose * geometry.pose).position;
         dGeomSetPosition(floor, position.x(), position.y(), position.z());
         friction_ = geometry.friction.value_or(default_friction);
@@ -57,7 +60,7 @@ class BareLoop {
       dBodySetPosition(body, center.x(), center.y(), center.z());
       for (const Geometry& geometry : link.geometries) {
         const dGeomID box =
-            dCreateBox(space_, 2 * geometry.extents.x(), 2 * geometry.extents.y(), 2 * geometry.extents.z());
+            dCreateBox(robot_space_, 2 * geometry.extents.x(), 2 * geometry.extents.y(), 2 * geometry.extents.z());
         dGeomSetBody(box, body);
         const Eigen::Vector3d offset = geometry.pose.position - link.mass.center;
         dGeomSetOffsetPosition(box, offset.x(), offset.y(), offset.z());
@@ -79,7 +82,8 @@ class BareLoop {
   BareLoop& operator=(const BareLoop&) = delete;
   ~BareLoop() {
     dJointGroupDestroy(group_);
-    dSpaceDestroy(space_);
+    dSpaceDestroy(robot_space_);
+    dSpaceDestroy(environment_space_);
     dWorldDestroy(world_);
     dThreadingFreeImplementation(threading_);
   }
@@ -98,7 +102,8 @@ class BareLoop {
         const double speed = gain * (target - dJointGetHingeAngle(joints_[i]));
         dJointSetHingeParam(joints_[i], dParamVel, std::clamp(speed, -speed_limit, speed_limit));
       }
-      dSpaceCollide(space_, this, &BareLoop::on_near);
+      dSpaceCollide2(reinterpret_cast<dGeomID>(robot_space_), reinterpret_cast<dGeomID>(environment_space_), this,
+                     &BareLoop::on_near);
       if (direct) {
         dWorldStep(world_, scenario_.step_s);
       } else {
@@ -114,9 +119,6 @@ class BareLoop {
  private:
   static void on_near(void* self, dGeomID a, dGeomID b) {
     auto& loop = *static_cast<BareLoop*>(self);
-    if ((dGeomGetBody(a) == nullptr) == (dGeomGetBody(b) == nullptr)) {
-      return;
-    }
     std::array<dContact, 8> contacts{};
     const int count = dCollide(a, b, 8, &contacts[0].geom, sizeof(dContact));
     for (int i = 0; i < count; ++i) {
@@ -131,7 +133,8 @@ class BareLoop {
   const Scenario& scenario_;
   dThreadingImplementationID threading_;
   dWorldID world_;
-  dSpaceID space_;
+  dSpaceID robot_space_;
+  dSpaceID environment_space_;
   dJointGroupID group_;
   std::vector<dBodyID> bodies_;
   std::vector<dJointID> joints_;

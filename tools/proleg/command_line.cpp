@@ -44,7 +44,12 @@ int run_command(int argc, char** argv, CLI::App& app, const std::function<int()>
     return exit_bad_input;
   }
   try {
-    return body();
+    const int status = body();
+    std::cout.flush();
+    if (!std::cout) {
+      throw std::runtime_error("cannot write to standard output");
+    }
+    return status;
   } catch (const sim::InputError& error) {
     complain(error);
     return exit_bad_input;

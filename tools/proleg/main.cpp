@@ -13,6 +13,8 @@
 #include <system_error>
 #include <vector>
 
+#include "tools/proleg/build_id.hpp"
+
 namespace {
 
 struct Subcommand {
@@ -32,7 +34,7 @@ void print_help(std::ostream& out) {
   for (const Subcommand& subcommand : subcommands) {
     out << "  " << subcommand.name << std::string(12 - subcommand.name.size(), ' ') << subcommand.summary << '\n';
   }
-  out << "\n'proleg SUBCOMMAND --help' explains one of them.\n";
+  out << "\n'proleg SUBCOMMAND --help' explains one of them; 'proleg --version' says which build this is.\n";
 }
 
 std::string names() {
@@ -53,6 +55,10 @@ int main(int argc, char** argv) {
   const std::string_view word = argv[1];
   if (word == "--help" || word == "-h" || word == "help") {
     print_help(std::cout);
+    return 0;
+  }
+  if (word == "--version") {
+    std::cout << "proleg " << proleg::tools::build_id << '\n';
     return 0;
   }
   bool known = false;

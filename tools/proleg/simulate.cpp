@@ -13,9 +13,11 @@
 
 #include "shared/fixed/decimal.hpp"
 #include "sim/loop/simulation.hpp"
+#include "sim/physics/physics_error.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/scenario/input_error.hpp"
 #include "sim/scenario/reader.hpp"
+#include "sim/scenario/text.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/progress.hpp"
@@ -30,8 +32,8 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 
 struct Options {
   std::string file;
-  std::optional<double> seconds;
-  std::string record;
+  std::optional<std::string> seconds;
+  std::optional<std::string> record;
   std::vector<std::string> settings;
   bool verbose = false;
   bool json = false;
@@ -56,10 +58,11 @@ sim::Scenario prepare(const Options& options) {
     sim::apply_setting(scenario, setting);
   }
   if (options.seconds) {
-    if (!std::isfinite(*options.seconds) || *options.seconds < 0.01 || *options.seconds > 86'400.0) {
-      throw sim::InputError("--seconds", 0, std::to_string(*options.seconds), "0.01 to 86400 seconds");
+    const std::optional<double> seconds = sim::parse_number(*options.seconds);
+    if (!seconds || *seconds < 0.01 || *seconds > 86'400.0) {
+      throw sim::InputError("--seconds", 0, sim::in_quotes(*options.seconds), "0.01 to 86400 seconds");
     }
-    scenario.duration_s = *options.seconds;
+    scenario.duration_s = *seconds;
   }
   return scenario;
 }
@@ -104,14 +107,12 @@ Result run(const sim::Scenario& scenario, std::uint32_t ticks, sim::Recorder* re
   Progress progress("simulating", "s", scenario.duration_s);
   const auto start = std::chrono::steady_clock::now();
   while (simulation.tick() < ticks && !interrupted) {
-    const std::uint32_t tick = simulation.tick();
     const sim::Change* change = simulation.advance();
     if (recorder != nullptr) {
       if (change != nullptr) {
         recorder->record_change(*change);
       }
-      recorder->record_tick({tick, simulation.kernel(), simulation.servo_commands(), simulation.link_poses(),
-                             simulation.joint_angles(), simulation.link_contacts()});
+      recorder->record_tick(simulation.sample());
     }
     progress.show(simulation.time_s());
   }
@@ -134,7 +135,7 @@ void print_json(const Options& options, const Result& result) {
                                       {"real_time_factor", result.real_time_factor()},
                                       {"contacts_mean", result.contacts_mean},
                                       {"solver_messages", result.solver_messages},
-                                      {"recording", options.record},
+                                      {"recording", options.record.value_or("")},
                                       {"build_id", build_id}};
   // File names need not be UTF-8; whatever is not is replaced.
   std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
@@ -149,8 +150,8 @@ void print_table(const Options& options, const Result& result) {
   }
   std::printf("set-point hash    %s\n", result.setpoint_hash.c_str());
   std::printf("servo hash        %s\n", result.servo_hash.c_str());
-  if (!options.record.empty()) {
-    std::printf("recording         %s\n", options.record.c_str());
+  if (options.record) {
+    std::printf("recording         %s\n", options.record->c_str());
   }
 }
 
@@ -164,16 +165,32 @@ int simulate(const Options& options) {
     print_setup(scenario, simulation.kernel());
   }
   std::optional<sim::Recorder> recorder;
-  if (!options.record.empty()) {
-    recorder.emplace(options.record, scenario, build_id);
+  if (options.record) {
+    if (options.record->empty()) {
+      throw sim::InputError("--record", 0, "no name", "the name of a file");
+    }
+    try {
+      recorder.emplace(*options.record, scenario, build_id);
+    } catch (const sim::RecordError& error) {
+      // Nothing has run yet: it is the name that was wrong.
+      std::cerr << "proleg simulate: " << sim::one_line(error.what()) << '\n';
+      return exit_bad_input;
+    }
   }
 
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  std::signal(SIGTERM, [](int) { interrupted = true; });
-  const Result result = run(scenario, ticks, recorder ? &*recorder : nullptr, simulation);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    std::signal(signal, [](int) { interrupted = true; });
+  }
+  const std::string kept = recorder ? "; what was simulated is in " + *options.record : "";
+  std::optional<Result> finished;
+  try {
+    finished = run(scenario, ticks, recorder ? &*recorder : nullptr, simulation);
+  } catch (const sim::PhysicsError& error) {
+    throw std::runtime_error(error.what() + kept);
+  }
+  const Result& result = *finished;
   if (interrupted) {
-    std::cerr << "proleg simulate: interrupted after " << result.simulated_s << " s"
-              << (recorder ? "; what was simulated is in " + options.record : "") << '\n';
+    std::cerr << "proleg simulate: interrupted after " << result.simulated_s << " s" << kept << '\n';
     return exit_failed;
   }
   if (recorder) {

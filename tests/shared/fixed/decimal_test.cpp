@@ -84,8 +84,11 @@ std::string with_point(Wide value, int places) {
 
 std::optional<std::int32_t> expected_raw(bool negative, Wide steps, Unit unit) {
   const Wide value = negative ? -steps : steps;
-  if (value == Wide{highest} + 1 && unit == Unit::phase_degree) {
-    return lowest;
+  if (unit == Unit::phase_degree) {
+    constexpr Wide largest = Wide{1} << 48;  // 2^16 turns
+    return value < largest && value > -largest
+               ? std::optional(static_cast<std::int32_t>(static_cast<std::uint32_t>(value)))
+               : std::nullopt;
   }
   if (value > highest || value < lowest) {
     return std::nullopt;
@@ -180,11 +183,16 @@ TEST(ParseDecimal, ReadsWhatRoundsToTheEndOfTheRangeAndRefusesTheNextStep) {
   expect_parse("1e-60", Unit::count, 0);
 }
 
-TEST(ParseDecimal, WrapsHalfATurnOfPhaseAndRefusesItAsAnAngle) {
+TEST(ParseDecimal, WrapsTurnsOfPhaseAndRefusesThemAsAnAngle) {
   expect_parse("180", Unit::phase_degree, lowest);
   expect_parse("-180", Unit::phase_degree, lowest);
   expect_parse("180.00000001", Unit::phase_degree, lowest);
-  expect_parse("180.0000001", Unit::phase_degree, std::nullopt);
+  expect_parse("180.0000001", Unit::phase_degree, lowest + 1);
+  expect_parse("235", Unit::phase_degree, parse_decimal("-125", Unit::phase_degree).raw);
+  expect_parse("-400", Unit::phase_degree, parse_decimal("-40", Unit::phase_degree).raw);
+  expect_parse("720", Unit::phase_degree, 0);
+  expect_parse("23592959", Unit::phase_degree, parse_decimal("-1", Unit::phase_degree).raw);
+  expect_parse("23592960", Unit::phase_degree, std::nullopt);
   expect_parse("180", Unit::degree, std::nullopt);
   expect_parse("-180", Unit::degree, lowest);
   expect_parse("179.9999999", Unit::degree, highest);

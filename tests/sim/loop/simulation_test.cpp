@@ -2,15 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <numbers>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "shared/kernel/servo_command.hpp"
+#include "sim/physics/physics_error.hpp"
 #include "sim/scenario/reader.hpp"
 
 namespace proleg::sim {
@@ -48,6 +51,32 @@ TEST(Simulation, ReproducesTheTravellingWaveOfTheThesis) {
   EXPECT_LE(tail_fixed / uniform, 1.30);
 }
 
+std::string failure_of(const Scenario& scenario) {
+  try {
+    run(scenario, 30);
+  } catch (const PhysicsError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Simulation, ARobotThatFallsIsAFailedRunAndNotALongJourney) {
+  Scenario scenario = shipped("uniform");
+  EXPECT_EQ(failure_of(scenario), "none");
+  scenario.environment.objects[0].geometries[0].extents.y() = 0.5;
+  EXPECT_NE(failure_of(scenario).find("fell off"), std::string::npos) << "over the edge, half a metre away";
+  scenario.environment.objects.clear();
+  EXPECT_NE(failure_of(scenario).find("fell off"), std::string::npos) << "nothing to stand on";
+}
+
+TEST(Simulation, ARobotThatBreaksUpIsAFailedRun) {
+  Scenario scenario = shipped("uniform");
+  for (Link& link : scenario.robot.links) {
+    link.geometries[0].extents = {100, 100, 100};  // larger by far than the links: the solver throws them apart
+  }
+  EXPECT_NE(failure_of(scenario), "none");
+}
+
 TEST(Simulation, APositivePhaseDifferenceCrawlsHeadFirst) {
   for (const char* degrees : {"55", "-55"}) {
     Scenario scenario = shipped("uniform");
@@ -65,6 +94,27 @@ TEST(Simulation, APositivePhaseDifferenceCrawlsHeadFirst) {
     } else {
       EXPECT_GT(forward, 0.1);
     }
+  }
+}
+
+// The set-points are integers computed from the scenario alone, because the shipped algorithms read no contacts; so are
+// the commands that the servos take. No machine, compiler or physics engine may give others. A new hash here means that
+// robots move differently from before, and that recordings made before can no longer be verified.
+TEST(Simulation, TheShippedScenariosGiveTheSameHashesOnEveryMachine) {
+  struct Golden {
+    const char* scenario;
+    const char* setpoints;
+    const char* servo_commands;
+  };
+  for (const Golden& golden : {Golden{"uniform", "22da369b07f47e76a020bc6f2026ceec6c40ae2bb89e34f2bcd1d28a560ff366",
+                                      "075d8026f8e263d331d0a9f60d7da0e593b12f5bce9781792a5bffa973ff3aab"},
+                               Golden{"tail_fixed", "1cbe8ff1ccf5365f71b743ad5ed55082eb0edd6fca1e1d70af4f24a016a04b2b",
+                                      "0a66479902ba7b7970549ad9926ecf85e6f8e2b8d157ec029ab0767bbd1db0bc"},
+                               Golden{"coupled", "a8c98c69b4366a733030f6a1f2d00a4e0a4cfb13f47df28da20e8d483f11857f",
+                                      "42bfbbb21a4d1ca887515c3783a2cb88dfc28852c2e60afc0fabf1d4654198e3"}}) {
+    const Outcome outcome = run(shipped(golden.scenario), 30);
+    EXPECT_EQ(outcome.setpoints, golden.setpoints) << golden.scenario;
+    EXPECT_EQ(outcome.servo_commands, golden.servo_commands) << golden.scenario;
   }
 }
 
@@ -176,6 +226,85 @@ TEST(Simulation, TheServoTakesThePulseOfTheMiddleOfItsInterval) {
   }
 }
 
+TEST(Simulation, ServoCommandsDependOnTheScheduleAndNotOnTheStepsOfThePhysics) {
+  constexpr std::uint32_t ticks = 53;  // no multiple of any period
+  constexpr std::uint32_t duration_us = ticks * 10'000;
+  for (const std::uint32_t period_us : {700U, 1'000U, 3'000U, 20'000U, 25'000U}) {
+    std::string expected;
+    for (const double step_s : {0.0005, 0.001, 0.002}) {
+      Scenario scenario = shipped("uniform");
+      scenario.robot.servo.period_us = period_us;
+      scenario.step_s = step_s;
+      Simulation simulation(scenario);
+      std::vector<ServoPulse> pulses;
+      for (std::uint32_t tick = 0; tick < ticks; ++tick) {
+        simulation.advance();
+        pulses.insert(pulses.end(), simulation.servo_pulses().begin(), simulation.servo_pulses().end());
+      }
+      ASSERT_EQ(pulses.size(), 5 * ((duration_us + period_us - 1) / period_us));
+      ValueHash hash;
+      for (std::size_t i = 0; i < pulses.size(); ++i) {
+        EXPECT_EQ(pulses[i].time_us, i / 5 * period_us);
+        EXPECT_EQ(pulses[i].joint, i % 5);
+        hash.append(pulses[i].command);
+      }
+      EXPECT_EQ(hash.hex(), simulation.servo_hash().hex());
+      expected = expected.empty() ? hash.hex() : expected;
+      EXPECT_EQ(hash.hex(), expected) << "period " << period_us << " us, step " << step_s << " s";
+    }
+  }
+}
+
+TEST(Simulation, AtTheEndOfATickTheServosHaveItsLastPulse) {
+  Scenario scenario = shipped("uniform");
+  scenario.robot.servo.period_us = 700;  // below the step: the last one of a tick may start after its last step
+  Simulation simulation(scenario);
+  for (int tick = 0; tick < 20; ++tick) {
+    simulation.advance();
+    const std::span<const ServoPulse> last = simulation.servo_pulses().last(5);
+    for (unsigned joint = 0; joint < 5; ++joint) {
+      EXPECT_EQ(simulation.servo_commands()[joint], last[joint].command);
+    }
+  }
+}
+
+TEST(Simulation, ServosFollowTheirPulsesStepByStep) {
+  // Without gravity and ground strong motors reach the speed that the servo asks of them, so that each joint is the
+  // first-order lag d(angle)/dt = gain * (target - angle), with the pulse as the target that a step finds at its start.
+  for (const std::uint32_t period_us : {500U, 1'000U, 3'000U, 20'000U}) {
+    Scenario scenario = shipped("uniform");
+    scenario.environment.objects.clear();
+    scenario.environment.gravity.setZero();
+    for (Joint& joint : scenario.robot.joints) {
+      joint.max_torque = 100.0;
+    }
+    scenario.robot.servo.period_us = period_us;
+    Simulation simulation(scenario);
+    std::array<double, 5> angles{};
+    std::array<double, 5> targets{};
+    for (std::uint64_t tick = 0; tick < 100; ++tick) {
+      simulation.advance();
+      for (std::uint64_t step = 0; step < 10; ++step) {
+        for (unsigned joint = 0; joint < 5; ++joint) {
+          for (const ServoPulse& pulse : simulation.servo_pulses()) {
+            if (pulse.joint == joint && pulse.time_us <= 10'000 * tick + 1'000 * step) {
+              targets[joint] = (pulse.command / 12.0 - 1'500.0) / 1'000.0 * std::numbers::pi / 2.0;
+            }
+          }
+          const double speed = scenario.robot.servo.gain * (targets[joint] - angles[joint]);
+          const double limit = scenario.robot.joints[joint].max_speed;
+          angles[joint] += 0.001 * std::clamp(speed, -limit, limit);
+        }
+      }
+      for (unsigned joint = 0; joint < 5; ++joint) {
+        // A step of lag would be 0.004 at the highest speed.
+        EXPECT_NEAR(simulation.joint_angles()[joint], angles[joint], 2e-4)
+            << "period " << period_us << " us, tick " << tick << ", joint " << joint;
+      }
+    }
+  }
+}
+
 TEST(Simulation, AnAnalogueServoTakesAPulseEveryTwoTicks) {
   Scenario scenario = shipped("uniform");
   scenario.robot.servo.period_us = 20'000;
@@ -197,6 +326,7 @@ TEST(Simulation, AMovingRobotTouchesTheGroundAndTellsTheKernel) {
     simulation.advance();
     for (unsigned joint = 0; joint < 5; ++joint) {
       const std::uint8_t flags = simulation.kernel().frame(joint, 0).flags();
+      EXPECT_EQ(simulation.latched_contacts()[joint + 1], latched[joint + 1]);
       EXPECT_EQ(flags & 3U, latched[joint + 1]) << "contacts latched at the SYNC, joint " << joint;
       touched |= (flags & 3U) != 0 ? 1U << joint : 0U;
     }

@@ -8,6 +8,8 @@
 #include <thread>
 #include <vector>
 
+#include "sim/physics/physics_error.hpp"
+
 namespace proleg::sim {
 namespace {
 
@@ -204,6 +206,30 @@ TEST(World, ACylinderLiesAlongYAndASphereIsRound) {
     run(world, 2.0);
     EXPECT_NEAR(world.center_of_mass().z(), 0.03, 2e-3);
   }
+}
+
+TEST(World, AnErrorOfTheEngineIsThrownAndTheWorldCanBeLeft) {
+  // With next to no inertia the engine's direct solver fails an assertion of its own.
+  RobotModel robot = chain(6);
+  for (Link& link : robot.links) {
+    link.mass.inertia = Eigen::Matrix3d::Identity() * 1e-200;
+  }
+  const auto struggle = [&] {
+    World world(robot, flat_ground(0.1, 0.026), step_s, Stepper::direct);
+    for (int i = 0; i < 20'000; ++i) {
+      for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
+        world.set_joint_speed(joint, std::sin(0.006 * i + static_cast<double>(joint)));
+      }
+      world.step();
+    }
+  };
+  EXPECT_THROW(struggle(), PhysicsError);
+  EXPECT_THROW(struggle(), PhysicsError) << "the next world is not disturbed by the one before";
+}
+
+TEST(World, KnowsTheLowestPointOfItsEnvironment) {
+  EXPECT_EQ(World(chain(1), EnvironmentModel{}, step_s, Stepper::direct).lowest_ground(), std::nullopt);
+  EXPECT_DOUBLE_EQ(World(chain(1), flat_ground(0.1, 0.026), step_s, Stepper::direct).lowest_ground().value(), -1.0);
 }
 
 TEST(World, SelfCollisionKeepsLinksApartThatAreNotNeighbours) {

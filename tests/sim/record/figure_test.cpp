@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "sim/record/figure_contents.hpp"
 #include "sim/record/svg.hpp"
 #include "sim/scenario/input_error.hpp"
 #include "small_run.hpp"
@@ -126,6 +127,25 @@ TEST_F(Figure, DrawsSetPointAndAngleOfEachJointAndThePath) {
   EXPECT_GT(picture.count("contact"), 10);
 }
 
+TEST_F(Figure, ShowsContactsFromTheSyncAtWhichTheyWereLatchedToTheNext) {
+  record_small(path_, small_scenario(), 30);
+  const FigureContents contents = collect_figure_contents(Recording(path_), {0.0, 0.14});
+  // The made-up contacts of the head: none in ticks 0 to 3, rear in 4 to 7, front in 8 to 11, both in 12 to 15.
+  const std::vector<FigureContents::Press>& rear = contents.presses[0][0];
+  ASSERT_EQ(rear.size(), 2U);
+  EXPECT_NEAR(rear[0].from_s, 0.04, 1e-9);
+  EXPECT_NEAR(rear[0].to_s, 0.08, 1e-9);
+  EXPECT_NEAR(rear[1].from_s, 0.12, 1e-9);
+  EXPECT_NEAR(rear[1].to_s, 0.14, 1e-9);
+  const std::vector<FigureContents::Press>& front = contents.presses[0][1];
+  ASSERT_EQ(front.size(), 1U);
+  EXPECT_NEAR(front[0].from_s, 0.08, 1e-9);
+  EXPECT_NEAR(front[0].to_s, 0.14, 1e-9);
+  // The tail is pressed at both ends from the start.
+  ASSERT_EQ(contents.presses[3][0].size(), 2U);
+  EXPECT_EQ(contents.presses[3][0][0].from_s, 0.0);
+}
+
 TEST_F(Figure, DrawsThePathToOneScale) {
   // The made-up robot goes 0.399 m ahead in 400 ticks while it swings by +-0.01 m.
   Picture picture = draw(small_scenario(), 400);
@@ -196,7 +216,10 @@ TEST_F(Figure, IsDrawnOfASimulationThatHasFlownApart) {
         angles[1] = 1e300;
         poses[2].position = {-1.7e308, 1.7e308, 0.0};
       }
-      recorder.record_tick({sample.tick, sample.kernel, sample.servo_commands, poses, angles, sample.link_contacts});
+      TickSample wild = sample;
+      wild.link_poses = poses;
+      wild.joint_angles = angles;
+      recorder.record_tick(wild);
     });
   }
   Picture picture(draw_figure(Recording(path_), {}));  // which looks whether all coordinates are on the page

@@ -13,7 +13,7 @@ namespace proleg::sim {
 namespace {
 
 /// Appends a text whose length is a multiple of four, so that its bytes come out in their order.
-void append(SetpointHash& hash, const std::string& text) {
+void append(ValueHash& hash, const std::string& text) {
   for (std::size_t i = 0; i < text.size(); i += 4) {
     std::uint32_t bits = 0;
     for (std::size_t byte = 0; byte < 4; ++byte) {
@@ -38,25 +38,25 @@ std::string output_of(const std::string& command) {
 
 // FIPS 180-2, appendix B, and NIST's example of the empty message.
 
-TEST(SetpointHash, OfNothingIsThatOfTheEmptyMessage) {
-  EXPECT_EQ(SetpointHash().hex(), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+TEST(ValueHash, OfNothingIsThatOfTheEmptyMessage) {
+  EXPECT_EQ(ValueHash().hex(), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
-TEST(SetpointHash, GivesTheFipsExampleOfTwoBlocks) {
-  SetpointHash hash;
+TEST(ValueHash, GivesTheFipsExampleOfTwoBlocks) {
+  ValueHash hash;
   append(hash, "abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq");
   EXPECT_EQ(hash.hex(), "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
 }
 
-TEST(SetpointHash, GivesTheFipsExampleOfAMillionLetters) {
-  SetpointHash hash;
+TEST(ValueHash, GivesTheFipsExampleOfAMillionLetters) {
+  ValueHash hash;
   append(hash, std::string(1'000'000, 'a'));
   EXPECT_EQ(hash.hex(), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-TEST(SetpointHash, GoesOnAfterItWasRead) {
-  SetpointHash read;
-  SetpointHash unread;
+TEST(ValueHash, GoesOnAfterItWasRead) {
+  ValueHash read;
+  ValueHash unread;
   for (std::int32_t i = 0; i < 40; ++i) {
     read.append(i);
     unread.append(i);
@@ -65,9 +65,9 @@ TEST(SetpointHash, GoesOnAfterItWasRead) {
   EXPECT_EQ(read.hex(), unread.hex());
 }
 
-TEST(SetpointHash, DependsOnOrderAndSign) {
+TEST(ValueHash, DependsOnOrderAndSign) {
   const auto hash_of = [](std::initializer_list<std::int32_t> values) {
-    SetpointHash hash;
+    ValueHash hash;
     for (const std::int32_t value : values) {
       hash.append(value);
     }
@@ -78,11 +78,11 @@ TEST(SetpointHash, DependsOnOrderAndSign) {
   EXPECT_NE(hash_of({0}), hash_of({0, 0}));
 }
 
-TEST(SetpointHash, AgreesWithSha256sumOnLittleEndianBytes) {
+TEST(ValueHash, AgreesWithSha256sumOnLittleEndianBytes) {
   const TemporaryFolder folder;
   const std::string path = (folder / "setpoints.bin").string();
   Pcg32 random(2, 0);
-  SetpointHash hash;
+  ValueHash hash;
   {
     std::ofstream file(path, std::ios::binary);
     for (int i = 0; i < 1001; ++i) {

@@ -39,6 +39,12 @@ std::vector<std::string> rows(const std::filesystem::path& path, const std::stri
   return result;
 }
 
+TickSample with_measurements(TickSample sample, std::span<const Pose> poses, std::span<const double> angles) {
+  sample.link_poses = poses;
+  sample.joint_angles = angles;
+  return sample;
+}
+
 void expect_left_alone(const std::filesystem::path& path, const std::string& contents) {
   std::ofstream(path, std::ios::binary) << contents;
   const Scenario scenario = small_scenario();
@@ -64,7 +70,7 @@ TEST(Recorder, KeepsEverySampleBitForBit) {
     const RecordedTick& tick = recorded[sample.tick];
     ASSERT_EQ(tick.tick, sample.tick);
     for (unsigned joint = 0; joint < 3; ++joint) {
-      EXPECT_EQ(tick.setpoints[joint], sample.kernel.setpoint(joint));
+      EXPECT_EQ(tick.setpoints[joint], sample.setpoints[joint]);
       EXPECT_EQ(tick.servo_commands[joint], made_up_command(sample.tick, joint));
       EXPECT_EQ(tick.joint_angles[joint], made_up_angle(sample.tick, joint));
     }
@@ -72,20 +78,49 @@ TEST(Recorder, KeepsEverySampleBitForBit) {
       const Pose pose = made_up_pose(sample.tick, link);
       EXPECT_EQ(tick.link_poses[link].position, pose.position);
       EXPECT_EQ(tick.link_poses[link].orientation.coeffs(), pose.orientation.coeffs());
-      EXPECT_EQ(tick.link_contacts[link], made_up_contacts(sample.tick, link));
+      EXPECT_EQ(tick.latched_contacts[link], made_up_contacts(sample.tick, link));
     }
     // Slot 0 drives all joints and has three internal values; slot 2 has none.
     ASSERT_EQ(tick.internal_values.size(), 9U);
     for (unsigned i = 0; i < 9; ++i) {
-      EXPECT_EQ(tick.internal_values[i], sample.kernel.internal_value(0, i / 3, i % 3));
+      EXPECT_EQ(tick.internal_values[i], sample.internal_values[i]);
     }
   });
 }
 
-TEST(Recorder, KeepsTheContactsFromWhichTheFirstTickWasComputed) {
+TEST(Recorder, KeepsEveryServoPulseWithItsTime) {
   const TemporaryFolder folder;
-  record_small(folder / "run.sqlite", small_scenario(), 2);
-  EXPECT_EQ(Recording(folder / "run.sqlite").start_contacts(), (std::vector<std::uint8_t>{1, 0, 1, 0}));
+  record_small(folder / "run.sqlite", small_scenario(), ticks);
+  std::vector<ServoPulse> recorded;
+  Recording(folder / "run.sqlite").read_servo_pulses([&](const ServoPulse& pulse) { recorded.push_back(pulse); });
+  ASSERT_EQ(recorded.size(), ticks * 2 * 3);
+  std::size_t i = 0;
+  for (std::uint32_t tick = 0; tick < ticks; ++tick) {
+    for (const ServoPulse& expected : made_up_pulses(tick, 3)) {
+      EXPECT_EQ(recorded[i].time_us, expected.time_us);
+      EXPECT_EQ(recorded[i].joint, expected.joint);
+      EXPECT_EQ(recorded[i].command, expected.command);
+      ++i;
+    }
+  }
+}
+
+TEST(Recorder, KeepsTimesOfADay) {
+  const TemporaryFolder folder;
+  const Scenario scenario = small_scenario();
+  constexpr std::uint64_t day_us = 86'400'000'000;
+  {
+    Recorder recorder(folder / "run.sqlite", scenario, "build");
+    run_small(scenario, 1, [&](const TickSample& sample, const Change* /*change*/) {
+      TickSample late = sample;
+      const std::vector<ServoPulse> pulses{{day_us, 0, 1}, {day_us, 1, 2}, {day_us, 2, 3}};
+      late.servo_pulses = pulses;
+      recorder.record_tick(late);
+    });
+  }
+  Recording(folder / "run.sqlite").read_servo_pulses([&](const ServoPulse& pulse) {
+    EXPECT_EQ(pulse.time_us, day_us);
+  });
 }
 
 TEST(Recorder, KeepsWhatWasRun) {
@@ -167,7 +202,7 @@ TEST(Recorder, LeavesTablesThatAPersonCanQuery) {
   // The head's joint at 1 Hz, 80 ms after the start.
   EXPECT_EQ(rows(path,
                  "SELECT round(value, 3), unit FROM internal_value_by_name WHERE tick = 7 AND joint = 'J3' AND name = "
-                 "'phase'",
+                 "'current_phase'",
                  2),
             (std::vector<std::string>{"28.8|deg"}));
   EXPECT_EQ(
@@ -287,9 +322,8 @@ TEST(Recorder, RefusesNumbersThatAreNotFinite) {
     angles[1] = std::nan("");
     std::vector<Pose> poses(sample.link_poses.begin(), sample.link_poses.end());
     poses[3].position.x() = std::numeric_limits<double>::infinity();
-    for (const TickSample& bad :
-         {TickSample{2, sample.kernel, sample.servo_commands, sample.link_poses, angles, sample.link_contacts},
-          TickSample{2, sample.kernel, sample.servo_commands, poses, sample.joint_angles, sample.link_contacts}}) {
+    for (const TickSample& bad : {with_measurements(sample, sample.link_poses, angles),
+                                  with_measurements(sample, poses, sample.joint_angles)}) {
       const std::string message = message_of<RecordError>([&] { recorder.record_tick(bad); });
       EXPECT_NE(message.find("at tick 2"), std::string::npos) << message;
       EXPECT_NE(message.find("unstable"), std::string::npos) << message;

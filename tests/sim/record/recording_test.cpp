@@ -17,7 +17,7 @@ void read_all(const std::filesystem::path& path) {
   (void)recording.parameters();
   (void)recording.distortions();
   (void)recording.sources();
-  (void)recording.start_contacts();
+  recording.read_servo_pulses([](const ServoPulse& /*pulse*/) {});
   recording.read_ticks(recording.first_tick(), recording.last_tick(), [](const RecordedTick& /*tick*/) {});
 }
 
@@ -98,7 +98,18 @@ TEST_F(BadRecording, AMissingTickIsRefused) {
   expect_refusal("a gap in the table sample at tick 12");
 }
 
+TEST_F(BadRecording, AMissingServoPulseIsRefused) {
+  damage("DELETE FROM servo WHERE time_us = 120000 AND joint = 1");
+  expect_refusal("a gap in the table servo at 120000 us");
+  damage("DELETE FROM servo WHERE time_us = 120000 AND joint = 0");
+  expect_refusal("a gap in the table servo at 120000 us");
+  damage("DELETE FROM servo WHERE time_us = (SELECT max(time_us) FROM servo) AND joint = 2");
+  expect_refusal("a gap in the table servo at its end");
+}
+
 TEST_F(BadRecording, NumbersOutOfRangeAreRefused) {
+  damage("UPDATE servo SET time_us = -5000 WHERE time_us = 0");
+  expect_refusal("a time that is not a whole number of microseconds");
   damage("UPDATE sample SET setpoint_raw = 3000000000 WHERE tick = 3");
   expect_refusal("not a 32-bit integer");
   damage("UPDATE pose SET x_m = 9e999 WHERE tick = 3");
@@ -155,6 +166,7 @@ TEST(Recording, ReadsAPartOfARun) {
   recording.read_ticks(4, 6, [&](const RecordedTick& tick) { ticks.push_back(tick.tick); });
   EXPECT_EQ(ticks, (std::vector<std::uint32_t>{4, 5, 6}));
   EXPECT_DOUBLE_EQ(recording.time_s(4), 0.05);
+  EXPECT_DOUBLE_EQ(recording.sync_time_s(4), 0.04);
 }
 
 }  // namespace

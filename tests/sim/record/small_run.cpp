@@ -8,12 +8,26 @@
 
 #include "shared/fixed/decimal.hpp"
 #include "shared/gait/registry.hpp"
+#include "shared/kernel/kernel.hpp"
 
 namespace proleg::sim {
 namespace {
 
 std::uint8_t index_of_parameter(const ActuationModule& algorithm, std::string_view name) {
   return static_cast<std::uint8_t>(find_parameter(algorithm.declaration(), name));
+}
+
+std::vector<std::int32_t> internal_values(const Kernel& kernel) {
+  std::vector<std::int32_t> values;
+  for (unsigned slot = 0; slot < max_slots; ++slot) {
+    for (unsigned joint = 0; joint < kernel.local_joint_count(); ++joint) {
+      const ActuationModule* algorithm = kernel.configuration().slots[slot].algorithm;
+      for (unsigned i = 0; kernel.drives(slot, joint) && i < algorithm->declaration().internal_values.size(); ++i) {
+        values.push_back(kernel.internal_value(slot, joint, i));
+      }
+    }
+  }
+  return values;
 }
 
 }  // namespace
@@ -86,6 +100,17 @@ std::uint8_t made_up_contacts(std::uint32_t tick, std::size_t link) {
   return static_cast<std::uint8_t>((tick / 4 + link) % 4);
 }
 
+std::vector<ServoPulse> made_up_pulses(std::uint32_t tick, std::size_t joints) {
+  std::vector<ServoPulse> pulses;
+  for (const std::uint32_t half : {0U, 1U}) {
+    for (std::uint32_t joint = 0; joint < joints; ++joint) {
+      const std::int32_t last = made_up_command(tick, joint);
+      pulses.push_back({tick * std::uint64_t{10'000} + half * 5'000, joint, half == 0 ? last - 90 : last});
+    }
+  }
+  return pulses;
+}
+
 std::int32_t made_up_command(std::uint32_t tick, std::size_t joint) {
   return 18'000 + static_cast<std::int32_t>(tick) - 7 * static_cast<std::int32_t>(joint);
 }
@@ -107,9 +132,7 @@ void run_small(const Scenario& scenario, std::uint32_t ticks,
   kernel.reset();
 
   std::vector<std::uint8_t> contacts(links);
-  for (std::size_t link = 0; link < links; link += 2) {
-    contacts[link] = 1;
-  }
+  std::vector<std::int32_t> setpoints(joints);
   std::vector<std::int32_t> commands(joints);
   std::vector<double> angles(joints);
   std::vector<Pose> poses(links);
@@ -127,20 +150,25 @@ void run_small(const Scenario& scenario, std::uint32_t ticks,
         }
       }
     }
+    for (std::size_t link = 0; link < links; ++link) {
+      contacts[link] = made_up_contacts(tick, link);
+    }
     for (unsigned joint = 0; joint < joints; ++joint) {
       const unsigned far = joint == 0 ? contacts[0] : 0U;
       kernel.set_contacts(joint, static_cast<std::uint8_t>(contacts[joint + 1] | far << 2U));
     }
     kernel.advance();
-    for (std::size_t joint = 0; joint < joints; ++joint) {
+    for (unsigned joint = 0; joint < joints; ++joint) {
+      setpoints[joint] = kernel.setpoint(joint);
       commands[joint] = made_up_command(tick, joint);
       angles[joint] = made_up_angle(tick, joint);
     }
     for (std::size_t link = 0; link < links; ++link) {
       poses[link] = made_up_pose(tick, link);
-      contacts[link] = made_up_contacts(tick, link);
     }
-    use({tick, kernel, commands, poses, angles, contacts}, change);
+    const std::vector<std::int32_t> values = internal_values(kernel);
+    const std::vector<ServoPulse> pulses = made_up_pulses(tick, joints);
+    use({tick, contacts, setpoints, values, pulses, commands, poses, angles}, change);
   }
 }
 

@@ -37,11 +37,15 @@ class TemporaryFolder {
 // Made-up measurements at SYNC tick + 1.
 [[nodiscard]] double made_up_angle(std::uint32_t tick, std::size_t joint);
 [[nodiscard]] Pose made_up_pose(std::uint32_t tick, std::size_t link);
-[[nodiscard]] std::uint8_t made_up_contacts(std::uint32_t tick, std::size_t link);
+/// The last pulse before SYNC tick + 1.
 [[nodiscard]] std::int32_t made_up_command(std::uint32_t tick, std::size_t joint);
+/// Two for each joint, the later one that of made_up_command.
+[[nodiscard]] std::vector<ServoPulse> made_up_pulses(std::uint32_t tick, std::size_t joints);
+/// Made-up contacts at SYNC tick.
+[[nodiscard]] std::uint8_t made_up_contacts(std::uint32_t tick, std::size_t link);
 
 /// Runs the kernel of a scenario for some ticks as the simulator does, changes and contacts included, and hands over
-/// each tick. Before tick 0 every second link is pressed at the rear.
+/// each tick.
 void run_small(const Scenario& scenario, std::uint32_t ticks,
                const std::function<void(const TickSample& sample, const Change* change)>& use);
 

@@ -36,9 +36,12 @@ TEST(Tsv, NamesItsColumns) {
   const std::vector<std::string> lines = table_of(small_scenario(), 3);
   EXPECT_EQ(lines[0],
             "tick\ttime_s\t"
-            "setpoint_deg.J3\tservo_us.J3\tangle_deg.J3\tphase_deg.J3\tmeasured_frequency_Hz.J3\tmeasured_phase_difference_deg.J3\t"
-            "setpoint_deg.J2\tservo_us.J2\tangle_deg.J2\tphase_deg.J2\tmeasured_frequency_Hz.J2\tmeasured_phase_difference_deg.J2\t"
-            "setpoint_deg.J1\tservo_us.J1\tangle_deg.J1\tphase_deg.J1\tmeasured_frequency_Hz.J1\tmeasured_phase_difference_deg.J1\t"
+            "setpoint_deg.J3\tservo_us.J3\tangle_deg.J3\tcurrent_phase_deg.J3\tmeasured_frequency_Hz.J3\tmeasured_"
+            "phase_difference_deg.J3\t"
+            "setpoint_deg.J2\tservo_us.J2\tangle_deg.J2\tcurrent_phase_deg.J2\tmeasured_frequency_Hz.J2\tmeasured_"
+            "phase_difference_deg.J2\t"
+            "setpoint_deg.J1\tservo_us.J1\tangle_deg.J1\tcurrent_phase_deg.J1\tmeasured_frequency_Hz.J1\tmeasured_"
+            "phase_difference_deg.J1\t"
             "x_m.Head\ty_m.Head\tz_m.Head\tcontact_rear.Head\tcontact_front.Head\t"
             "x_m.Link2\ty_m.Link2\tz_m.Link2\tcontact_rear.Link2\tcontact_front.Link2\t"
             "x_m.Link1\ty_m.Link1\tz_m.Link1\tcontact_rear.Link1\tcontact_front.Link1\t"
@@ -64,12 +67,13 @@ TEST(Tsv, HoldsEveryValueExactly) {
     EXPECT_EQ(number("time_s"), (sample.tick + 1) / 100.0);
     for (unsigned joint = 0; joint < 3; ++joint) {
       const std::string name = "." + scenario.robot.joints[joint].name;
-      EXPECT_EQ(parse_decimal(row["setpoint_deg" + name], Unit::degree).raw, sample.kernel.setpoint(joint));
+      EXPECT_EQ(parse_decimal(row["setpoint_deg" + name], Unit::degree).raw, sample.setpoints[joint]);
       EXPECT_EQ(parse_decimal(row["current_phase_deg" + name], Unit::phase_degree).raw,
-                sample.kernel.internal_value(0, joint, 0));
-      EXPECT_EQ(parse_decimal(row["measured_frequency_Hz" + name], Unit::hertz).raw, sample.kernel.internal_value(0, joint, 1));
+                sample.internal_values[3 * joint]);
+      EXPECT_EQ(parse_decimal(row["measured_frequency_Hz" + name], Unit::hertz).raw,
+                sample.internal_values[3 * joint + 1]);
       EXPECT_EQ(parse_decimal(row["measured_phase_difference_deg" + name], Unit::phase_degree).raw,
-                sample.kernel.internal_value(0, joint, 2));
+                sample.internal_values[3 * joint + 2]);
       EXPECT_EQ(number("servo_us" + name), made_up_command(sample.tick, joint) / 12.0);
       EXPECT_EQ(number("angle_deg" + name), made_up_angle(sample.tick, joint) * 180.0 / std::numbers::pi);
     }

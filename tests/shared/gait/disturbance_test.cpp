@@ -24,9 +24,10 @@ KernelConfiguration configuration_of(std::string_view algorithm) {
 double lag_error(ModuleChain& chain) {
   double largest = 0;
   for (unsigned joint = 0; joint + 1 < joints; ++joint) {
-    const std::uint32_t error = static_cast<std::uint32_t>(test::value(chain[joint + 1], 0, joint + 1, "current_phase")) -
-                                static_cast<std::uint32_t>(test::value(chain[joint], 0, joint, "current_phase")) -
-                                static_cast<std::uint32_t>(test::phase(55));
+    const std::uint32_t error =
+        static_cast<std::uint32_t>(test::value(chain[joint + 1], 0, joint + 1, "current_phase")) -
+        static_cast<std::uint32_t>(test::value(chain[joint], 0, joint, "current_phase")) -
+        static_cast<std::uint32_t>(test::phase(55));
     largest = std::max(largest, std::abs(in_degrees(static_cast<std::int32_t>(error))));
   }
   return largest;

@@ -142,7 +142,8 @@ TEST(Channels, OfNeighboursMayDifferWithoutConfusingTheSlots) {
   test::run(kernel, 200);
   test::run(alone, 200);
   for (unsigned joint = 0; joint < 5; ++joint) {
-    EXPECT_EQ(test::value(kernel, 1, joint, "current_phase"), test::value(alone, 1, joint, "current_phase")) << "joint " << joint;
+    EXPECT_EQ(test::value(kernel, 1, joint, "current_phase"), test::value(alone, 1, joint, "current_phase"))
+        << "joint " << joint;
   }
 }
 

@@ -56,7 +56,8 @@ class CoupledOscillator final : public PatternGenerator {
   }
 
  private:
-  enum OwnDerived : std::uint8_t { gain = first_own_derived, half_rate, decay, arrived };
+  enum OwnDerived : std::uint8_t { gain = first_own_derived, filter_constants };
+  static_assert(filter_constants + CriticalFilter::derived_size <= max_derived);
 
   [[nodiscard]] std::int32_t nominal_frequency(const std::int32_t* values) const override {
     return values[Parameters::frequency];
@@ -69,10 +70,7 @@ class CoupledOscillator final : public PatternGenerator {
         divide_nearest((std::int64_t{values[coupling]} * place.tick_period_us) << 6U, 1'000'000);
     const std::int64_t stable = weight > (1 << 29) ? 1 << 29 : weight;
     derived[gain] = static_cast<std::int32_t>(shift_right_rounding(stable * inverse_of_two_pi, 28));
-    const CriticalFilter filter = make_critical_filter(values[rate], place.tick_period_us);
-    derived[half_rate] = filter.half_rate;
-    derived[decay] = filter.decay;
-    derived[arrived] = filter.arrived;
+    make_critical_filter(values[rate], place.tick_period_us).store(derived + filter_constants);
   }
 
   void reset_pattern(const Place& /*place*/, const Tuning& /*tuning*/, std::int32_t* /*state*/) const override {}
@@ -84,7 +82,7 @@ class CoupledOscillator final : public PatternGenerator {
     step = add_wrapping(step, pull(surroundings.behind, surroundings.place, tuning, state));
     next[current_phase] = add_wrapping(state[current_phase], step);
 
-    const CriticalFilter filter{tuning.derived[half_rate], tuning.derived[decay], tuning.derived[arrived]};
+    const CriticalFilter filter = CriticalFilter::load(tuning.derived + filter_constants);
     next[amplitude_rate] = state[amplitude_rate];
     next[current_amplitude] =
         approach(filter, tuning.parameters[amplitude], state[current_amplitude], next[amplitude_rate]);

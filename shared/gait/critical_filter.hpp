@@ -15,9 +15,20 @@
 namespace proleg {
 
 struct CriticalFilter {
+  /// Number of derived constants that a filter takes up.
+  static constexpr unsigned derived_size = 3;
+
   std::int32_t half_rate;  ///< h dt in Q30, at most 1
   std::int32_t decay;      ///< q in Q30
   std::int32_t arrived;    ///< closer than this the roundings outweigh the motion
+
+  /// Writes the filter into derived constants, and finds it again in the tick.
+  void store(std::int32_t* derived) const {
+    derived[0] = half_rate;
+    derived[1] = decay;
+    derived[2] = arrived;
+  }
+  [[nodiscard]] static CriticalFilter load(const std::int32_t* derived) { return {derived[0], derived[1], derived[2]}; }
 };
 
 /// rate: a in Q24 1/s, not negative. Rates above 2 / tick act as 2 / tick.

@@ -58,7 +58,8 @@ class SinusoidalExtended final : public PatternGenerator {
   }
 
  private:
-  enum OwnDerived : std::uint8_t { clock_increment = first_own_derived, joint_phase, half_rate, decay, arrived };
+  enum OwnDerived : std::uint8_t { clock_increment = first_own_derived, joint_phase, filter_constants };
+  static_assert(filter_constants + CriticalFilter::derived_size <= max_derived);
 
   [[nodiscard]] std::int32_t nominal_frequency(const std::int32_t* values) const override {
     return values[Parameters::frequency];
@@ -70,10 +71,7 @@ class SinusoidalExtended final : public PatternGenerator {
                                                          static_cast<std::uint32_t>(values[harmonic]));
     const std::uint32_t travelled = std::uint32_t{place.joint} * static_cast<std::uint32_t>(values[phase_step]);
     derived[joint_phase] = add_wrapping(static_cast<std::int32_t>(travelled), values[phase_shift]);
-    const CriticalFilter filter = make_critical_filter(values[rate], place.tick_period_us);
-    derived[half_rate] = filter.half_rate;
-    derived[decay] = filter.decay;
-    derived[arrived] = filter.arrived;
+    make_critical_filter(values[rate], place.tick_period_us).store(derived + filter_constants);
   }
 
   void reset_pattern(const Place& /*place*/, const Tuning& tuning, std::int32_t* state) const override {
@@ -83,7 +81,7 @@ class SinusoidalExtended final : public PatternGenerator {
 
   void advance_pattern(const Surroundings& /*surroundings*/, const Tuning& tuning, const std::int32_t* state,
                        std::int32_t* next) const override {
-    const CriticalFilter filter{tuning.derived[half_rate], tuning.derived[decay], tuning.derived[arrived]};
+    const CriticalFilter filter = CriticalFilter::load(tuning.derived + filter_constants);
 
     next[amplitude_rate] = state[amplitude_rate];
     next[current_amplitude] =

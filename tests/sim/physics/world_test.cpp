@@ -102,6 +102,17 @@ TEST(World, ALinkOnTheGroundStaysOnIt) {
   EXPECT_NE(world.link_contacts(0), 0U);
 }
 
+/// Towards -y, after the link has come to lie flat.
+double sliding_acceleration(World& world) {
+  constexpr double interval = 0.5;
+  run(world, 0.2);
+  const double before = world.center_of_mass().y();
+  run(world, interval);
+  const double middle = world.center_of_mass().y();
+  run(world, interval);
+  return -(world.center_of_mass().y() - 2 * middle + before) / (interval * interval);
+}
+
 class Slope : public testing::TestWithParam<double> {};
 
 TEST_P(Slope, ALinkSlidesWithTheAccelerationThatCoulombFrictionLeaves) {
@@ -110,12 +121,7 @@ TEST_P(Slope, ALinkSlidesWithTheAccelerationThatCoulombFrictionLeaves) {
   EnvironmentModel environment = flat_ground(friction, 0.02);
   environment.gravity = {0, -gravity * std::sin(angle), -gravity * std::cos(angle)};
   World world(chain(1), environment, step_s, Stepper::direct);
-  run(world, 0.2);
-  const double before = world.center_of_mass().y();
-  run(world, 0.5);
-  const double middle = world.center_of_mass().y();
-  run(world, 0.5);
-  const double acceleration = -(world.center_of_mass().y() - 2 * middle + before) / (0.5 * 0.5);
+  const double acceleration = sliding_acceleration(world);
   const double expected = std::max(0.0, gravity * (std::sin(angle) - friction * std::cos(angle)));
   EXPECT_NEAR(acceleration, expected, 0.03 * gravity);
 }
@@ -128,13 +134,7 @@ TEST(World, FrictionOfTwoSurfacesIsTheGeometricMean) {
   EnvironmentModel environment = flat_ground(0.1, 0.02);  // mean 0.3
   environment.gravity = {0, -4.0, -9.0};                  // needs 0.444
   World world(robot, environment, step_s, Stepper::direct);
-  run(world, 0.2);
-  const double before = world.center_of_mass().y();
-  run(world, 0.5);
-  const double middle = world.center_of_mass().y();
-  run(world, 0.5);
-  const double acceleration = -(world.center_of_mass().y() - 2 * middle + before) / (0.5 * 0.5);
-  EXPECT_NEAR(acceleration, 4.0 - 0.3 * 9.0, 0.3);
+  EXPECT_NEAR(sliding_acceleration(world), 4.0 - 0.3 * 9.0, 0.3);
 }
 
 TEST(World, APositiveJointAngleRaisesTheLinkInFront) {

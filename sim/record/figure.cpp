@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/record/axis.hpp"
+#include "sim/record/change_marks.hpp"
 #include "sim/record/figure_contents.hpp"
 #include "sim/record/figure_page.hpp"
 #include "sim/record/path_panel.hpp"
@@ -204,17 +205,43 @@ void draw_contacts(Svg& svg, const Recording& recording, const FigureContents& c
   svg.rectangle({page_left, contact_panel_top}, page_right - page_left, height, frame_style);
 }
 
+/// A line through both panels at each change in the window, labelled where there is room.
+void draw_changes(Svg& svg, const std::vector<ChangeMark>& marks, const Axis& time, double contact_panel_height) {
+  constexpr double character_width = 6.6;  // generous, at the size of labels
+  double free_from = page_left;
+  for (const ChangeMark& mark : marks) {
+    if (mark.time_s < time.low || mark.time_s > time.high) {
+      continue;
+    }
+    const double x = time.pixel(mark.time_s);
+    constexpr const char* style = R"(class="change" stroke="#222222" stroke-width="1" stroke-dasharray="2 3")";
+    svg.line({x, angle_panel_top}, {x, angle_panel_top + angle_panel_height}, style);
+    svg.line({x, contact_panel_top}, {x, contact_panel_top + contact_panel_height}, style);
+    const std::string text = shortened(mark.text, 40);
+    const double width = character_width * static_cast<double>(text.size());
+    const bool to_the_left = x + width > page_right;
+    if ((to_the_left ? x - width : x) >= free_from) {
+      svg.text({to_the_left ? x - 4.0 : x + 4.0, angle_panel_top + 14.0}, text,
+               to_the_left ? TextAnchor::end : TextAnchor::start, label_size, ink);
+      free_from = to_the_left ? x : x + width;
+    }
+  }
+}
+
 /// "travelling_wave/uniform.simulation.xml" is called "uniform".
 std::string scenario_name(const Recording& recording) {
   std::string name = std::filesystem::path(recording.run_value("scenario")).filename().string();
   return name.substr(0, name.find('.'));
 }
 
-void draw_title(Svg& svg, const Recording& recording) {
+void draw_title(Svg& svg, const Recording& recording, std::size_t changes) {
   svg.text({page_left, 36.0}, shortened(scenario_name(recording), 55), TextAnchor::start, 20.0, ink,
            R"(font-weight="bold")");
   std::string about = "robot " + shortened(recording.run_value("robot"), 24) + ", " +
                       std::to_string(recording.joints().size()) + " joints, seed " + recording.run_value("seed");
+  if (changes > 0) {
+    about += changes == 1 ? ", changed once in flight" : ", changed " + std::to_string(changes) + " times in flight";
+  }
   if (!recording.finished()) {
     about += ", not finished";
   }
@@ -233,11 +260,13 @@ std::string draw_figure(const Recording& recording, const TimeWindow& window) {
 
   Svg svg(page_width, panel.top + panel.height + 52.0, scenario_name(recording),
           "Joint angles and contacts over time, and the path of the robot from above.");
-  draw_title(svg, recording);
+  const std::vector<ChangeMark> changes = collect_change_marks(recording);
+  draw_title(svg, recording, changes.size());
   const Axis time{contents.from_s, contents.to_s, page_left, page_right};
   draw_time_axis(svg, time, contact_panel_height);
   draw_angles(svg, recording, contents, time);
   draw_contacts(svg, recording, contents, time);
+  draw_changes(svg, changes, time, contact_panel_height);
   draw_path(svg, recording, contents, panel);
   return svg.finish();
 }

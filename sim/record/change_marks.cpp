@@ -1,0 +1,54 @@
+#include "sim/record/change_marks.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "shared/fixed/decimal.hpp"
+
+namespace proleg::sim {
+namespace {
+
+/// The same value for the same name on several joints of a module.
+using Assignment = std::tuple<std::uint32_t, std::string, std::string>;  // slot, name, value
+
+std::string describe(const Recording& recording, const std::map<Assignment, std::set<std::uint32_t>>& assignments) {
+  const auto& [assignment, joints] = *assignments.begin();
+  const auto& [slot, name, value] = assignment;
+  std::string text = name;
+  if (joints.size() == 1 && recording.joints().size() > 1) {
+    text += " " + recording.joints()[*joints.begin()].name;
+  }
+  text += " = " + value;
+  if (assignments.size() > 1) {
+    text += ", +" + std::to_string(assignments.size() - 1);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<ChangeMark> collect_change_marks(const Recording& recording) {
+  std::map<std::uint32_t, std::map<Assignment, std::set<std::uint32_t>>> by_tick;
+  const auto add = [&](const RecordedSetting& setting) {
+    const std::string value(format_decimal(setting.raw, setting.unit).view());
+    by_tick[setting.tick][{setting.slot, setting.name, value}].insert(setting.joint);
+  };
+  for (const RecordedSetting& setting : recording.parameters()) {
+    if (setting.commit) {
+      add(setting);
+    }
+  }
+  for (const RecordedSetting& setting : recording.distortions()) {
+    add(setting);
+  }
+  std::vector<ChangeMark> marks;
+  marks.reserve(by_tick.size());
+  for (const auto& [tick, assignments] : by_tick) {
+    marks.push_back({recording.sync_time_s(tick), describe(recording, assignments)});
+  }
+  return marks;
+}
+
+}  // namespace proleg::sim

@@ -5,8 +5,10 @@
 namespace proleg::sim {
 
 Database::Database(const std::filesystem::path& path, int flags) {
+  // SQLite gives names like ":memory:" and "file:..." a meaning of their own; an absolute path is always a file.
+  const std::filesystem::path file = std::filesystem::absolute(path);
   const int code =
-      sqlite3_open_v2(path.c_str(), &handle_, flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
+      sqlite3_open_v2(file.c_str(), &handle_, flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
   if (code != SQLITE_OK) {
     try {
       fail(code);

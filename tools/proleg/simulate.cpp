@@ -5,6 +5,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -170,8 +171,9 @@ int simulate(const Options& options) {
       throw sim::InputError("--record", 0, "no name", "the name of a file");
     }
     try {
-      recorder.emplace(*options.record, scenario, build_id);
-    } catch (const sim::RecordError& error) {
+      // A link is followed, so that the recording lands where it points to.
+      recorder.emplace(std::filesystem::weakly_canonical(*options.record), scenario, build_id);
+    } catch (const std::runtime_error& error) {  // RecordError, or a name that leads nowhere
       // Nothing has run yet: it is the name that was wrong.
       std::cerr << "proleg simulate: " << sim::one_line(error.what()) << '\n';
       return exit_bad_input;

@@ -207,6 +207,20 @@ TEST_F(CommandLine, ARecordingCanBeExportedAndDrawn) {
   EXPECT_NE(read_file(picture).find("<svg"), std::string::npos);
 }
 
+TEST_F(CommandLine, ARecordingFollowsALinkAndTakesItsNameLiterally) {
+  const std::string target = file("target.proleg").string();
+  const std::string link = file("link.proleg").string();
+  fs::create_symlink(target, link);
+  const std::vector<std::string> simulate{"simulate", scenario("uniform"), "--seconds", "0.1", "--record"};
+  for (const std::string& name : {target, link, file(":memory:").string()}) {
+    std::vector<std::string> words = simulate;
+    words.push_back(name);
+    EXPECT_EQ(proleg(words).status, 0) << name;
+    EXPECT_EQ(proleg({"export", name, "--tsv"}).status, 0) << name;
+  }
+  EXPECT_TRUE(fs::is_symlink(link));
+}
+
 TEST_F(CommandLine, ExportAndPlotRefuseWhatIsNoRecording) {
   std::ofstream(file("text")) << "not a recording\n";
   std::ofstream(file("empty"));
@@ -244,7 +258,7 @@ TEST_F(CommandLine, ARecordingThatCannotBeWrittenIsRefusedBeforeTheRun) {
   const std::string notes = file("notes.txt").string();
   std::ofstream(notes) << "precious\n";
   const std::string missing = file("no/such/folder").string();
-  for (const std::string& target : {missing, notes, std::string(), file("").string()}) {
+  for (const std::string& target : {missing, notes, std::string(), fs::temp_directory_path().string()}) {
     expect_refused({"simulate", scenario("uniform"), "--seconds", "0.1", "--record", target},
                    {target.empty() ? "--record" : target});
   }

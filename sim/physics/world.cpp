@@ -331,8 +331,6 @@ class World::Implementation {
 World::World(const RobotModel& robot, const EnvironmentModel& environment, double step_s, Stepper stepper)
     : implementation_(std::make_unique<Implementation>(robot, environment, step_s, stepper)) {}
 World::~World() = default;
-World::World(World&& other) noexcept = default;
-World& World::operator=(World&& other) noexcept = default;
 
 void World::set_joint_speed(std::size_t joint, double speed) { implementation_->set_joint_speed(joint, speed); }
 void World::step() { implementation_->step(); }

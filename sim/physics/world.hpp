@@ -26,8 +26,8 @@ class World {
   /// step_s: length of a step, above 0. The models must be valid (sim/scenario checks them).
   World(const RobotModel& robot, const EnvironmentModel& environment, double step_s, Stepper stepper);
   ~World();
-  World(World&& other) noexcept;
-  World& operator=(World&& other) noexcept;
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
 
   /// The speed, in rad/s, that the motor of a joint is to reach with the torque it has.
   void set_joint_speed(std::size_t joint, double speed);

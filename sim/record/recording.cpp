@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <sstream>
 
 #include "shared/gait/joint_mask.hpp"
 #include "sim/record/record_error.hpp"
@@ -363,6 +364,16 @@ void Recording::read_servo_pulses(const std::function<void(const ServoPulse&)>& 
   while (reading(path_, next)) {
     use(pulse);
   }
+}
+
+std::string remark_on_unfinished_run(const Recording& recording) {
+  if (recording.finished()) {
+    return {};
+  }
+  std::ostringstream remark;
+  remark << recording.path().string() << ": the run is not finished; recorded are "
+         << recording.time_s(recording.last_tick()) << " s";
+  return remark.str();
 }
 
 }  // namespace proleg::sim

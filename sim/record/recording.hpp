@@ -122,4 +122,7 @@ class Recording {
   std::vector<RecordedInternalValue> internal_values_;
 };
 
+/// One line for a person who uses a recording that was interrupted or still grows; empty for a finished one.
+[[nodiscard]] std::string remark_on_unfinished_run(const Recording& recording);
+
 }  // namespace proleg::sim

@@ -30,9 +30,8 @@ int main(int argc, char** argv) {
     if (!out.empty() && std::filesystem::exists(out) && std::filesystem::equivalent(out, recording_path)) {
       throw sim::InputError("--out", 0, "the recording itself", "another file");
     }
-    if (!recording.finished()) {
-      std::cerr << app.get_name() << ": " << recording_path << ": the run is not finished; recorded are "
-                << recording.time_s(recording.last_tick()) << " s\n";
+    if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
+      std::cerr << app.get_name() << ": " << remark << '\n';
     }
     try {
       std::optional<sim::Output> output;

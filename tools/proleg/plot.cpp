@@ -49,9 +49,8 @@ int main(int argc, char** argv) {
       throw sim::InputError(out.empty() ? recording_path : "--out", 0, "the recording's own name for the picture",
                             "another one, with --out FILE");
     }
-    if (!recording.finished()) {
-      std::cerr << app.get_name() << ": " << recording_path << ": the run is not finished; recorded are "
-                << recording.time_s(recording.last_tick()) << " s\n";
+    if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
+      std::cerr << app.get_name() << ": " << remark << '\n';
     }
     const std::string drawing = sim::draw_figure(recording, window);
     sim::Output output(picture);

@@ -208,12 +208,6 @@ int simulate(const Options& options) {
   } else {
     print_table(options, result);
   }
-  std::cout.flush();
-  std::fflush(stdout);
-  if (!std::cout || std::ferror(stdout) != 0) {
-    std::cerr << "proleg simulate: cannot write to standard output\n";
-    return exit_failed;
-  }
   return exit_success;
 }
 

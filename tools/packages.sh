@@ -11,6 +11,7 @@ host_packages=(
 test_packages=(
   gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib binutils-arm-none-eabi libunicorn-dev
   clang libclang-rt-14-dev clang-format clang-tidy libgtest-dev python3
+  can-utils tshark  # independent readers of bus logs
 )
 
 # install_packages NAME...: installs those that are missing, and says which.

@@ -72,6 +72,10 @@ class ActuationModule {
   /// Writes state 0. `noise` is seeded by the robot's seed and the joint. All values are 0 before.
   virtual void reset(const Place& place, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const;
 
+  /// Makes the best of state k for a joint that takes its place in a robot that moves already: `surroundings` hold the
+  /// neighbours' frames of tick k, `state` what reset() has written. The default leaves it at that.
+  virtual void rejoin(const Surroundings& surroundings, const Tuning& tuning, std::int32_t* state) const;
+
   /// Computes state k + 1 from state k and what was heard. `state` and `next` never overlap.
   virtual void advance(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
                        std::int32_t* next) const = 0;
@@ -91,6 +95,8 @@ inline void ActuationModule::derive(const Place& /*place*/, const std::int32_t* 
                                     std::int32_t* /*derived*/) const {}
 inline void ActuationModule::reset(const Place& /*place*/, const Tuning& /*tuning*/, Pcg32& /*noise*/,
                                    std::int32_t* /*state*/) const {}
+inline void ActuationModule::rejoin(const Surroundings& /*surroundings*/, const Tuning& /*tuning*/,
+                                    std::int32_t* /*state*/) const {}
 inline void ActuationModule::extrapolate(const Tuning& /*tuning*/, const std::int32_t* /*state*/,
                                          StateFrame& /*frame*/) const {}
 

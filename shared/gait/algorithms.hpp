@@ -26,4 +26,12 @@ namespace proleg {
 /// with r_i and X_i filtered as above. The phases start from noise.
 [[nodiscard]] const ActuationModule& pattern_generator_coupled_oscillator();
 
+/// An offset for the gait of another slot, from the contacts of all links. On flat ground the supports of a travelling
+/// wave lie almost a wavelength apart; where two links touch at most `reach` places apart, for `confirm` ticks in a
+/// row, something lies under the robot or bars its way. Every joint then moves to its angle `raise`, holds it until
+/// `hold` ticks after the last such sign, and returns to 0. Raised joints bend the body upwards, so that it comes down
+/// on an obstacle instead of pushing against it. Without such a sign the gait is the other slot's, bit for bit. Nothing
+/// is broadcast. Not the adaptive algorithm of the thesis (section 6.2), and simpler.
+[[nodiscard]] const ActuationModule& sensing_module_uneven_ground_reflex();
+
 }  // namespace proleg

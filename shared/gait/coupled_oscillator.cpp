@@ -49,6 +49,14 @@ class CoupledOscillator final : public PatternGenerator {
  public:
   [[nodiscard]] const Declaration& declaration() const override { return about; }
 
+  void rejoin(const Surroundings& surroundings, const Tuning& tuning, std::int32_t* state) const override {
+    state[current_amplitude] = tuning.parameters[amplitude];
+    state[current_offset] = tuning.parameters[offset];
+    if (const auto phase = phase_beside_neighbour(surroundings, tuning.parameters[phase_step])) {
+      state[current_phase] = *phase;
+    }
+  }
+
   [[nodiscard]] std::int32_t output(const Tuning& /*tuning*/, const std::int32_t* state) const override {
     const std::int32_t swing =
         multiply(state[current_amplitude], cosine(static_cast<std::uint32_t>(state[current_phase])), 30);

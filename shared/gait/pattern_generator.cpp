@@ -48,6 +48,17 @@ void PatternGenerator::advance(const Surroundings& surroundings, const Tuning& t
                                     : 0;
 }
 
+std::optional<std::int32_t> PatternGenerator::phase_beside_neighbour(const Surroundings& surroundings,
+                                                                     std::int32_t phase_difference) {
+  const Neighbour& neighbour = surroundings.ahead.present() ? surroundings.ahead : surroundings.behind;
+  if (!neighbour.present()) {
+    return std::nullopt;
+  }
+  const std::uint32_t distance = surroundings.place.joint - neighbour.joint();
+  const std::uint32_t step = distance * static_cast<std::uint32_t>(phase_difference);
+  return add_wrapping(neighbour.value(phase_field), static_cast<std::int32_t>(step));
+}
+
 void PatternGenerator::extrapolate(const Tuning& tuning, const std::int32_t* /*state*/, StateFrame& frame) const {
   const std::int32_t last = unpack(declaration(), phase_field, frame);
   repack(declaration(), phase_field, add_wrapping(last, tuning.derived[phase_increment]), frame);

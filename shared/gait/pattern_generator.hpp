@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "shared/gait/actuation_module.hpp"
 
 namespace proleg {
@@ -40,6 +42,11 @@ class PatternGenerator : public ActuationModule {
 
  protected:
   ~PatternGenerator() = default;
+
+  /// The phase that a joint has next to its neighbours, the one ahead first, when the phase grows by phase_difference
+  /// from joint to joint; nothing if no neighbour was heard.
+  [[nodiscard]] static std::optional<std::int32_t> phase_beside_neighbour(const Surroundings& surroundings,
+                                                                          std::int32_t phase_difference);
 
  private:
   /// The generator's nominal frequency, in Q24 hertz.

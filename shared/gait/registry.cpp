@@ -13,6 +13,7 @@ constexpr const ActuationModule& (*algorithms[])() = {
     pattern_generator_sinusoidal,
     pattern_generator_sinusoidal_extended,
     pattern_generator_coupled_oscillator,
+    sensing_module_uneven_ground_reflex,
 };
 
 }  // namespace

@@ -27,6 +27,10 @@ class Sinusoidal final : public PatternGenerator {
  public:
   [[nodiscard]] const Declaration& declaration() const override { return about; }
 
+  void rejoin(const Surroundings& surroundings, const Tuning& tuning, std::int32_t* state) const override {
+    state[current_phase] = phase_at(surroundings.tick, tuning);
+  }
+
   [[nodiscard]] std::int32_t output(const Tuning& tuning, const std::int32_t* state) const override {
     const std::int32_t swing =
         multiply(tuning.parameters[amplitude], sine(static_cast<std::uint32_t>(state[current_phase])), 30);
@@ -51,8 +55,12 @@ class Sinusoidal final : public PatternGenerator {
 
   void advance_pattern(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* /*state*/,
                        std::int32_t* next) const override {
-    const std::uint32_t clock = (surroundings.tick + 1) * static_cast<std::uint32_t>(tuning.derived[phase_increment]);
-    next[current_phase] = add_wrapping(static_cast<std::int32_t>(clock), tuning.derived[joint_phase]);
+    next[current_phase] = phase_at(surroundings.tick + 1, tuning);
+  }
+
+  static std::int32_t phase_at(std::uint32_t tick, const Tuning& tuning) {
+    const std::uint32_t clock = tick * static_cast<std::uint32_t>(tuning.derived[phase_increment]);
+    return add_wrapping(static_cast<std::int32_t>(clock), tuning.derived[joint_phase]);
   }
 };
 

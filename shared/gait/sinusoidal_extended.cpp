@@ -51,6 +51,19 @@ class SinusoidalExtended final : public PatternGenerator {
  public:
   [[nodiscard]] const Declaration& declaration() const override { return about; }
 
+  void rejoin(const Surroundings& surroundings, const Tuning& tuning, std::int32_t* state) const override {
+    state[current_amplitude] = tuning.parameters[amplitude];
+    state[current_offset] = tuning.parameters[offset];
+    state[current_shift] = tuning.derived[joint_phase];
+    const std::uint32_t since_start = surroundings.tick * static_cast<std::uint32_t>(tuning.derived[phase_increment]);
+    const std::int32_t undisturbed = add_wrapping(static_cast<std::int32_t>(since_start), state[current_shift]);
+    state[current_phase] = phase_beside_neighbour(surroundings, tuning.parameters[phase_step]).value_or(undisturbed);
+    // Which of the turns of the harmonic it is makes no difference to the joint.
+    const std::int32_t multiple = subtract_wrapping(state[current_phase], state[current_shift]);
+    state[clock] = multiple / tuning.parameters[harmonic];
+    state[current_phase] = add_wrapping(state[clock] * tuning.parameters[harmonic], state[current_shift]);
+  }
+
   [[nodiscard]] std::int32_t output(const Tuning& /*tuning*/, const std::int32_t* state) const override {
     const std::int32_t swing =
         multiply(state[current_amplitude], sine(static_cast<std::uint32_t>(state[current_phase])), 30);

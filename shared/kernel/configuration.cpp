@@ -5,6 +5,22 @@
 
 namespace proleg {
 
+JointMask KernelConfiguration::second_channel(unsigned slot) const {
+  std::uint64_t earlier = 0;
+  for (unsigned i = 0; i < slot; ++i) {
+    earlier |= slots[i].broadcasts() ? slots[i].group.bits() : 0;
+  }
+  return JointMask(slots[slot].broadcasts() ? slots[slot].group.bits() & earlier : 0);
+}
+
+JointMask KernelConfiguration::second_channel_senders() const {
+  std::uint64_t senders = 0;
+  for (unsigned i = 0; i < max_slots; ++i) {
+    senders |= second_channel(i).bits();
+  }
+  return JointMask(senders);
+}
+
 Status Kernel::configure(const KernelConfiguration& configuration, unsigned first_joint) {
   if (configuration.joint_count == 0 || configuration.joint_count > max_joints) {
     return Status::bad_joint_count;
@@ -18,7 +34,6 @@ Status Kernel::configure(const KernelConfiguration& configuration, unsigned firs
   }
   const std::uint64_t all_joints = JointMask::first(configuration.joint_count).bits();
   std::array<JointMask, max_slots> second_channel;
-  std::uint64_t one_broadcast = 0;
   std::uint64_t two_broadcasts = 0;
   unsigned slots_in_use = 0;
   for (unsigned i = 0; i < max_slots; ++i) {
@@ -33,9 +48,8 @@ Status Kernel::configure(const KernelConfiguration& configuration, unsigned firs
       if ((slot.group.bits() & two_broadcasts) != 0) {
         return Status::too_many_broadcasts;
       }
-      second_channel[i] = JointMask(slot.group.bits() & one_broadcast);
+      second_channel[i] = configuration.second_channel(i);
       two_broadcasts |= second_channel[i].bits();
-      one_broadcast |= slot.group.bits();
     }
   }
 
@@ -47,6 +61,13 @@ Status Kernel::configure(const KernelConfiguration& configuration, unsigned firs
   for (unsigned i = 0; i < memory_.size(); ++i) {
     set_up(first_joint + i);
   }
+  transactions_ = {};
+  committed_count_ = 0;
+  has_open_ = false;
+  open_ = 0;
+  last_effective_ = {};
+  has_last_effective_ = false;
+  flags_ = 0;
   reset();
   return Status::ok;
 }
@@ -74,7 +95,6 @@ void Kernel::set_up(unsigned joint) {
     const std::span<const Parameter> parameters = slot.algorithm->declaration().parameters;
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       slot_memory.parameters[p] = parameters[p].default_value;
-      slot_memory.staged[p] = parameters[p].default_value;
     }
     derive(i, slot_memory);
   }

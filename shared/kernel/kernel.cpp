@@ -19,7 +19,7 @@ void Kernel::set_contacts(unsigned joint, std::uint8_t contacts) {
 void Kernel::reset() {
   tick_ = 0;
   missed_frames_ = 0;
-  close_transaction();
+  joining_ = false;
   arrived_ = {};
   heard_ = {};
   for (unsigned i = 0; i < memory_.size(); ++i) {
@@ -29,7 +29,6 @@ void Kernel::reset() {
     for (unsigned s = 0; s < max_slots; ++s) {
       SlotMemory& slot = memory.slots[s];
       slot.values = {};
-      slot.staged_mask = 0;
       if (slot.active) {
         // Slots of one joint draw from different streams, too.
         Pcg32 noise(configuration_.seed, joint * max_slots + s);
@@ -43,8 +42,12 @@ void Kernel::reset() {
 }
 
 void Kernel::advance() {
-  if (committed_ && commit_tick_ == tick_) {
-    apply_commit();
+  if (committed_count_ != 0) {
+    apply_commits();
+  }
+  const bool joining = joining_;
+  if (joining) {
+    rejoin();
   }
   const std::uint64_t unheard_first = senders_[0].bits() & ~arrived_[0].bits();
   const std::uint64_t unheard_second = senders_[1].bits() & ~arrived_[1].bits();
@@ -62,6 +65,50 @@ void Kernel::advance() {
     update_setpoint(memory_[i]);
     pack_frames(first_joint_ + i);
   }
+  if (joining) {
+    flags_ = static_cast<std::uint8_t>(flags_ & ~StateFrame::holdover);
+  }
+}
+
+void Kernel::join(std::uint32_t tick) {
+  tick_ = tick;
+  arrived_ = {};
+  heard_ = {};
+  joining_ = true;
+  for (unsigned i = 0; i < memory_.size(); ++i) {
+    JointMemory& joint = memory_[i];
+    joint.contacts = 0;
+    joint.limited = false;
+    for (unsigned s = 0; s < max_slots; ++s) {
+      SlotMemory& slot = joint.slots[s];
+      slot.values = {};
+      if (slot.active) {
+        Pcg32 noise(configuration_.seed, (first_joint_ + i) * max_slots + s);
+        configuration_.slots[s].algorithm->reset(slot.place, tuning(slot), noise, current(slot).data());
+      }
+    }
+  }
+}
+
+/// State tick_ from what the neighbours said, instead of from state tick_ - 1.
+void Kernel::rejoin() {
+  joining_ = false;
+  flags_ = static_cast<std::uint8_t>(flags_ | StateFrame::holdover);
+  for (JointMemory& joint : memory_) {
+    const Contacts contacts({heard_[0].data(), configuration_.joint_count});
+    for (unsigned s = 0; s < slots_in_use_; ++s) {
+      SlotMemory& slot = joint.slots[s];
+      if (slot.active) {
+        const Surroundings surroundings{tick_, slot.place, slot.ahead, slot.behind, contacts};
+        configuration_.slots[s].algorithm->rejoin(surroundings, tuning(slot), current(slot).data());
+      }
+    }
+    update_setpoint(joint);
+  }
+}
+
+void Kernel::set_flags(std::uint8_t flags) {
+  flags_ = static_cast<std::uint8_t>(flags & (StateFrame::fault | StateFrame::holdover));
 }
 
 void Kernel::compute_next_state(JointMemory& joint) {
@@ -96,7 +143,7 @@ void Kernel::update_setpoint(JointMemory& joint) {
 
 void Kernel::pack_frames(unsigned joint) {
   const JointMemory& memory = joint_memory(joint);
-  auto flags = static_cast<std::uint8_t>(memory.contacts | StateFrame::valid);
+  auto flags = static_cast<std::uint8_t>(memory.contacts | flags_ | StateFrame::valid);
   if (memory.limited) {
     flags |= StateFrame::limited;
   }

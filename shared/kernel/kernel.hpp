@@ -7,6 +7,9 @@
 // Order of a tick k, at SYNC k: set_contacts, then advance(): commits due at k take effect, every local joint computes
 // state k + 1 from the frames labelled k, then the frames labelled k + 1 are packed and may be sent. Frames of other
 // joints labelled k + 1 are handed to receive() before SYNC k + 1.
+//
+// Changes in flight come in two phases: values are staged under a transaction number, then the transaction is committed
+// at a tick. One transaction is open at a time; committed ones wait, in the order of their commits, for their ticks.
 
 #include <array>
 #include <cstddef>
@@ -37,6 +40,25 @@ struct KernelConfiguration {
   std::uint32_t tick_period_us = 10'000;
   std::uint64_t seed = 1;  ///< of the noise at reset
   std::array<Slot, max_slots> slots;
+
+  /// Joints whose state in this slot travels in their second frame, because an earlier slot of theirs broadcasts.
+  [[nodiscard]] JointMask second_channel(unsigned slot) const;
+  /// Joints that send two state frames in a tick.
+  [[nodiscard]] JointMask second_channel_senders() const;
+};
+
+/// Transactions that wait for their tick at the same time.
+inline constexpr std::size_t max_transactions = 8;
+/// Values of one joint that are staged at the same time, over all transactions.
+inline constexpr std::size_t max_staged_values = 64;
+
+/// A change of one value of a joint, waiting for its transaction.
+struct StagedValue {
+  std::int32_t value;
+  std::uint8_t transaction;  ///< place in the kernel's list
+  std::uint8_t slot;
+  std::uint8_t number;  ///< of the parameter or internal value
+  bool internal;
 };
 
 /// What the kernel keeps for a slot on a joint.
@@ -47,8 +69,6 @@ struct SlotMemory {
   std::array<std::int32_t, max_parameters> parameters;
   std::array<std::int32_t, max_derived> derived;
   std::array<std::array<std::int32_t, max_internal_values>, 2> values;  ///< two buffers, never in place
-  std::array<std::int32_t, max_parameters> staged;
-  std::uint32_t staged_mask;
   const Declaration* broadcast;  ///< what the slot sends; null if it sends nothing
   std::uint8_t channel;
   bool active;
@@ -57,6 +77,8 @@ struct SlotMemory {
 /// What the kernel keeps for a joint.
 struct JointMemory {
   std::array<SlotMemory, max_slots> slots;
+  std::array<StagedValue, max_staged_values> staged;
+  std::uint8_t staged_count;
   std::int32_t lower_limit;
   std::int32_t upper_limit;
   std::int32_t previous_setpoint;
@@ -72,7 +94,8 @@ class Kernel {
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
 
-  /// Takes a configuration, sets all parameters to their defaults and all limits to +-90 degrees, and resets.
+  /// Takes a configuration, sets all parameters to their defaults and all limits to +-90 degrees, forgets what was
+  /// staged, and resets.
   /// The kernel computes the joints first_joint .. first_joint + size of the memory - 1.
   Status configure(const KernelConfiguration& configuration, unsigned first_joint);
 
@@ -82,16 +105,35 @@ class Kernel {
   /// Sets a parameter at once, for use before the first tick; reset() makes the start state follow.
   Status set_parameter(unsigned slot, unsigned joint, unsigned parameter, std::int32_t value);
 
-  /// Back to tick 0 and state 0. Staged changes are dropped; parameters stay.
+  /// Back to tick 0 and state 0. Parameters and what is staged stay.
   void reset();
 
-  /// Changing parameters in flight: stage values under a transaction number, then commit the transaction at a tick
-  /// that is not computed yet. Staging under a new number drops what was staged under the old one.
+  /// Opens a transaction under which values can be staged, even if there is none for the local joints. What was staged
+  /// under another number that is not committed is dropped; opening the open one again changes nothing.
+  Status open(std::uint16_t transaction);
+  /// A parameter, in force from the commit's tick on.
   Status stage(std::uint16_t transaction, unsigned slot, unsigned joint, unsigned parameter, std::int32_t value);
+  /// An internal value (thesis listing A.2, setDistortion), overwritten before the commit's tick is computed;
+  /// neighbours see it one tick later.
+  Status stage_internal(std::uint16_t transaction, unsigned slot, unsigned joint, unsigned internal_value,
+                        std::int32_t value);
+  /// For a tick that is not computed yet. Repeating a commit, also the last one that took effect, is ok.
   Status commit(std::uint16_t transaction, std::uint32_t tick);
+  /// Number of the transaction opened last, and of the values staged under it.
+  [[nodiscard]] std::uint16_t open_transaction() const { return open_; }
+  [[nodiscard]] unsigned staged_count() const;
+  /// A staged parameter or internal value of the open transaction; false if there is none.
+  [[nodiscard]] bool staged_value(unsigned slot, unsigned joint, unsigned number, bool internal,
+                                  std::int32_t& value) const;
 
-  /// Overwrites an internal value (thesis listing A.2, setDistortion). Neighbours see it one tick later.
-  Status distort(unsigned slot, unsigned joint, unsigned internal_value, std::int32_t value);
+  /// Takes a place in a robot that moves already: tick() becomes `tick`, and the coming advance() starts from a state
+  /// that it makes from the neighbours' frames labelled `tick` (approximately, but for the plain sine, which is a
+  /// function of the tick). Parameters of commits for earlier ticks are in force at once, internal values of theirs are
+  /// dropped. The first frame sent has the flag `holdover`.
+  void join(std::uint32_t tick);
+
+  /// Sets the flags `fault` and `holdover` in the frames to come; other bits are ignored.
+  void set_flags(std::uint8_t flags);
 
   /// Contacts of a local joint as of the coming SYNC: bits 0-1 the link behind the joint, bits 2-3 the link before
   /// joint 0, as in the state frame.
@@ -137,8 +179,16 @@ class Kernel {
   Status restore(std::span<const std::uint8_t> snapshot);
 
  private:
+  struct Commit {
+    std::uint16_t transaction;
+    std::uint32_t tick;
+  };
+
   template <typename Self, typename Archive>
   static void visit_state(Self& self, Archive& archive);
+  template <typename Self, typename Archive>
+  static void visit_staged(Self& self, JointMemory& joint, Archive& archive);
+  [[nodiscard]] bool is_stageable(const JointMemory& joint, const StagedValue& staged) const;
 
   [[nodiscard]] JointMemory& joint_memory(unsigned joint) { return memory_[joint - first_joint_]; }
   [[nodiscard]] const JointMemory& joint_memory(unsigned joint) const { return memory_[joint - first_joint_]; }
@@ -153,9 +203,14 @@ class Kernel {
   void set_up(unsigned joint);
   [[nodiscard]] Neighbour neighbour(unsigned slot, int joint) const;
   void derive(unsigned slot, SlotMemory& memory);
+  Status check_slot(unsigned slot, unsigned joint) const;
   Status check_parameter(unsigned slot, unsigned joint, unsigned parameter, std::int32_t value) const;
-  void apply_commit();
-  void close_transaction();
+  Status add_staged(std::uint16_t transaction, unsigned joint, const StagedValue& value);
+  [[nodiscard]] bool is_committed(std::uint16_t transaction) const;
+  void drop_open_transaction();
+  void apply_commits();
+  void take_effect(unsigned place, bool with_internal_values);
+  void rejoin();
   void fill_missed_frames();
   void compute_next_state(JointMemory& joint);
   void update_setpoint(JointMemory& joint);
@@ -167,10 +222,15 @@ class Kernel {
   unsigned slots_in_use_ = 0;  ///< the slots from here on are empty
   std::uint32_t tick_ = 0;
   std::uint32_t missed_frames_ = 0;
-  std::uint32_t commit_tick_ = 0;
-  std::uint16_t transaction_ = 0;
-  bool staged_ = false;
-  bool committed_ = false;
+  /// Committed transactions in the order of their commits, then, if has_open_, the open one.
+  std::array<Commit, max_transactions> transactions_{};
+  std::uint8_t committed_count_ = 0;
+  bool has_open_ = false;
+  std::uint16_t open_ = 0;
+  Commit last_effective_{};  ///< so that its repeats are recognised
+  bool has_last_effective_ = false;
+  bool joining_ = false;
+  std::uint8_t flags_ = 0;
   std::array<JointMask, max_channels> senders_;  ///< all joints on the first channel, some on the second
   /// For each slot the joints of which it uses the second channel.
   std::array<JointMask, max_slots> second_channel_;

@@ -7,7 +7,7 @@
 namespace proleg {
 namespace {
 
-constexpr std::uint32_t snapshot_magic = 0x314B5350;  // "PSK1"
+constexpr std::uint32_t snapshot_magic = 0x324B5350;  // "PSK2"
 
 class Counter {
  public:
@@ -19,7 +19,17 @@ class Counter {
   void value(const Integer& /*value*/) {
     size_ += sizeof(Integer);
   }
-  void ranged(const std::int32_t& value, std::int32_t /*lowest*/, std::int32_t /*highest*/) { this->value(value); }
+  template <typename Integer>
+  void ranged(const Integer& value, std::int32_t /*lowest*/, std::int32_t /*highest*/) {
+    this->value(value);
+  }
+
+  template <typename Integer>
+  void local(const Integer& value) {
+    this->value(value);
+  }
+  void expect(bool /*holds*/) {}
+  [[nodiscard]] static bool applies() { return false; }
 
   [[nodiscard]] std::size_t size() const { return size_; }
 
@@ -41,7 +51,16 @@ class Writer {
   void value(const Integer& value) {
     identity(value);
   }
-  void ranged(const std::int32_t& value, std::int32_t /*lowest*/, std::int32_t /*highest*/) { identity(value); }
+  template <typename Integer>
+  void ranged(const Integer& value, std::int32_t /*lowest*/, std::int32_t /*highest*/) {
+    identity(value);
+  }
+  template <typename Integer>
+  void local(const Integer& value) {
+    identity(value);
+  }
+  void expect(bool /*holds*/) {}
+  [[nodiscard]] static bool applies() { return false; }
 
  private:
   std::span<std::uint8_t> bytes_;
@@ -71,13 +90,22 @@ class Reader {
       value = read == 1;
     }
   }
-  void ranged(std::int32_t& value, std::int32_t lowest, std::int32_t highest) {
-    const auto read = take<std::int32_t>();
+  template <typename Integer>
+  void ranged(Integer& value, std::int32_t lowest, std::int32_t highest) {
+    const auto read = take<Integer>();
     fits_ = fits_ && read >= lowest && read <= highest;
     if (apply_) {
       value = read;
     }
   }
+
+  /// Read in both passes, into a copy.
+  template <typename Integer>
+  void local(Integer& value) {
+    value = take<Integer>();
+  }
+  void expect(bool holds) { fits_ = fits_ && holds; }
+  [[nodiscard]] bool applies() const { return apply_; }
 
   [[nodiscard]] bool fits() const { return fits_; }
 
@@ -99,6 +127,44 @@ class Reader {
 
 }  // namespace
 
+bool Kernel::is_stageable(const JointMemory& joint, const StagedValue& staged) const {
+  if (staged.slot >= max_slots || !joint.slots[staged.slot].active) {
+    return false;
+  }
+  const Declaration& declaration = configuration_.slots[staged.slot].algorithm->declaration();
+  if (staged.internal) {
+    return staged.number < declaration.internal_values.size();
+  }
+  return staged.number < declaration.parameters.size() &&
+         staged.value >= declaration.parameters[staged.number].minimum &&
+         staged.value <= declaration.parameters[staged.number].maximum;
+}
+
+/// Of the same size whatever is staged: places that are not in use are 0.
+template <typename Self, typename Archive>
+void Kernel::visit_staged(Self& self, JointMemory& joint, Archive& archive) {
+  std::uint8_t count = joint.staged_count;
+  archive.local(count);
+  archive.expect(count <= max_staged_values);
+  for (std::size_t i = 0; i < max_staged_values; ++i) {
+    StagedValue staged = i < joint.staged_count ? joint.staged[i] : StagedValue{};
+    auto internal = static_cast<std::uint8_t>(staged.internal ? 1 : 0);
+    archive.local(staged.value);
+    archive.local(staged.transaction);
+    archive.local(staged.slot);
+    archive.local(staged.number);
+    archive.local(internal);
+    staged.internal = internal != 0;
+    archive.expect(i >= count || (internal <= 1 && self.is_stageable(joint, staged)));
+    if (archive.applies()) {
+      joint.staged[i] = staged;
+    }
+  }
+  if (archive.applies()) {
+    joint.staged_count = count;
+  }
+}
+
 template <typename Self, typename Archive>
 void Kernel::visit_state(Self& self, Archive& archive) {
   archive.identity(snapshot_magic);
@@ -113,10 +179,15 @@ void Kernel::visit_state(Self& self, Archive& archive) {
 
   archive.value(self.tick_);
   archive.value(self.missed_frames_);
-  archive.value(self.commit_tick_);
-  archive.value(self.transaction_);
-  archive.value(self.staged_);
-  archive.value(self.committed_);
+  archive.ranged(self.committed_count_, 0, static_cast<std::int32_t>(max_transactions));
+  for (auto& commit : self.transactions_) {
+    archive.value(commit.transaction);
+    archive.value(commit.tick);
+  }
+  archive.value(self.has_open_);
+  archive.value(self.open_);
+  archive.value(self.joining_);
+  archive.value(self.flags_);
   for (JointMemory& joint : self.memory_) {
     archive.value(joint.lower_limit);
     archive.value(joint.upper_limit);
@@ -124,23 +195,16 @@ void Kernel::visit_state(Self& self, Archive& archive) {
     archive.value(joint.setpoint);
     archive.value(joint.contacts);
     archive.value(joint.limited);
+    visit_staged(self, joint, archive);
     for (unsigned s = 0; s < max_slots; ++s) {
       SlotMemory& slot = joint.slots[s];
       if (!slot.active) {
         continue;
       }
       const Declaration& declaration = self.configuration_.slots[s].algorithm->declaration();
-      archive.value(slot.staged_mask);
       for (std::size_t p = 0; p < declaration.parameters.size(); ++p) {
         const Parameter& parameter = declaration.parameters[p];
         archive.ranged(slot.parameters[p], parameter.minimum, parameter.maximum);
-        // Only what is staged counts; the rest of the array may hold anything.
-        const bool pending = ((slot.staged_mask >> p) & 1U) != 0;
-        std::int32_t staged = pending ? slot.staged[p] : slot.parameters[p];
-        archive.ranged(staged, parameter.minimum, parameter.maximum);
-        if (pending) {
-          slot.staged[p] = staged;
-        }
       }
       for (std::size_t v = 0; v < declaration.internal_values.size(); ++v) {
         archive.value(self.current(slot)[v]);

@@ -29,7 +29,9 @@ std::string_view describe(Status status) {
     case Status::out_of_range:
       return "value out of range";
     case Status::staging_closed:
-      return "another transaction waits for its tick";
+      return "the transaction is committed already";
+    case Status::staging_full:
+      return "too many changes wait for their tick";
     case Status::nothing_staged:
       return "the transaction was not staged";
     case Status::commit_in_the_past:

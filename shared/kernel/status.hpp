@@ -19,8 +19,9 @@ enum class [[nodiscard]] Status : std::uint8_t{
     unknown_parameter,
     unknown_internal_value,
     out_of_range,        ///< value outside the declared range
-    staging_closed,      ///< another transaction waits for its tick
-    nothing_staged,      ///< commit of a transaction that was not staged
+    staging_closed,      ///< the transaction is committed already
+    staging_full,        ///< as many transactions or values wait as there is room for
+    nothing_staged,      ///< commit of a transaction that was not opened
     commit_in_the_past,  ///< commit for a tick that was already computed
     bad_snapshot,        ///< not a snapshot of a kernel with this configuration
     no_room,             ///< the buffer is too small

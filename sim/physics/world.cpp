@@ -41,6 +41,13 @@ struct GeometryData {
   std::optional<double> friction;
 };
 
+/// How the touch sensors lie in a link: unit vectors in its frame.
+struct SensorFrame {
+  Eigen::Vector3d forward;   ///< along the link, to the head; zero if the robot is this link only
+  Eigen::Vector3d down;      ///< out of the underside
+  Eigen::Vector3d sideways;  ///< across both
+};
+
 }  // namespace
 
 class World::Implementation {
@@ -75,6 +82,8 @@ class World::Implementation {
   }
 
   void set_joint_speed(std::size_t joint, double speed) { dJointSetHingeParam(joints_[joint], dParamVel, speed); }
+
+  void set_joint_torque(std::size_t joint, double torque) { dJointSetHingeParam(joints_[joint], dParamFMax, torque); }
 
   void step() {
     if (world_ == nullptr) {
@@ -226,18 +235,23 @@ class World::Implementation {
       bodies_.push_back(body);
       masses_.push_back(link.mass.mass);
       mass_centers_.push_back(link.mass.center);
-      directions_to_head_.push_back(direction_to_head(robot, i));
+      sensor_frames_.push_back(sensor_frame(robot, i));
     }
     link_contacts_.assign(bodies_.size(), 0);
   }
 
-  /// Unit vector along a link, in its frame.
-  static Eigen::Vector3d direction_to_head(const RobotModel& robot, std::size_t link) {
+  static SensorFrame sensor_frame(const RobotModel& robot, std::size_t link) {
     const Pose& pose = robot.links[link].pose;
     const Eigen::Vector3d middle = pose * robot.links[link].mass.center;
     const Eigen::Vector3d front = link > 0 ? robot.joints[link - 1].anchor : middle;
     const Eigen::Vector3d rear = link < robot.joints.size() ? robot.joints[link].anchor : middle;
-    return pose.orientation.conjugate() * (front - rear).stableNormalized();
+    const Eigen::Vector3d forward = (front - rear).stableNormalized();  // zero if the link is all of the robot
+    constexpr double upright = 0.99;
+    const Eigen::Vector3d down =
+        -(std::abs(forward.z()) < upright ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY());
+    const Eigen::Vector3d underside = (down - down.dot(forward) * forward).normalized();
+    const Eigen::Quaterniond to_link = pose.orientation.conjugate();
+    return {to_link * forward, to_link * underside, to_link * forward.cross(underside)};
   }
 
   void add_joints(const RobotModel& robot, const Pose& robot_pose) {
@@ -297,14 +311,19 @@ class World::Implementation {
     // centre of mass, and the origin of the engine's body.
     const dReal* rotation = dBodyGetRotation(bodies_[index]);  // 3 rows of 4
     const dReal* middle = dBodyGetPosition(bodies_[index]);
-    const Eigen::Vector3d& forward = directions_to_head_[index];
-    double along = 0.0;
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();   // of the contact, from the middle, in the frame of the link
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // its sign depends on the order of the two bodies
     for (int row = 0; row < 3; ++row) {
-      const double forward_in_world =
-          rotation[4 * row] * forward.x() + rotation[4 * row + 1] * forward.y() + rotation[4 * row + 2] * forward.z();
-      along += forward_in_world * (contact.geom.pos[row] - middle[row]);
+      const Eigen::Vector3d row_of_rotation(rotation[4 * row], rotation[4 * row + 1], rotation[4 * row + 2]);
+      point += row_of_rotation * (contact.geom.pos[row] - middle[row]);
+      normal += row_of_rotation * contact.geom.normal[row];
     }
-    link_contacts_[index] = static_cast<std::uint8_t>(link_contacts_[index] | (along < 0.0 ? 1U : 2U));
+    constexpr double steepest = 0.707;  // sine of 45 degrees of roll; beyond, the link lies on its flank
+    const SensorFrame& sensors = sensor_frames_[index];
+    if (point.dot(sensors.down) > 0.0 && std::abs(normal.dot(sensors.sideways)) < steepest) {
+      link_contacts_[index] =
+          static_cast<std::uint8_t>(link_contacts_[index] | (point.dot(sensors.forward) < 0.0 ? 1U : 2U));
+    }
   }
 
   // Declared in the order in which the engine needs them; destroyed in reverse.
@@ -318,7 +337,7 @@ class World::Implementation {
   std::vector<dJointID> joints_;
   std::vector<double> masses_;
   std::vector<Eigen::Vector3d> mass_centers_;
-  std::vector<Eigen::Vector3d> directions_to_head_;
+  std::vector<SensorFrame> sensor_frames_;
   std::vector<std::uint8_t> link_contacts_;
   std::size_t contact_count_ = 0;
   std::optional<double> lowest_ground_;
@@ -333,6 +352,7 @@ World::World(const RobotModel& robot, const EnvironmentModel& environment, doubl
 World::~World() = default;
 
 void World::set_joint_speed(std::size_t joint, double speed) { implementation_->set_joint_speed(joint, speed); }
+void World::set_joint_torque(std::size_t joint, double torque) { implementation_->set_joint_torque(joint, torque); }
 void World::step() { implementation_->step(); }
 double World::joint_angle(std::size_t joint) const { return implementation_->joint_angle(joint); }
 Pose World::link_pose(std::size_t link) const { return implementation_->link_pose(link); }

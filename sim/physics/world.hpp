@@ -31,6 +31,8 @@ class World {
 
   /// The speed, in rad/s, that the motor of a joint is to reach with the torque it has.
   void set_joint_speed(std::size_t joint, double speed);
+  /// The torque, in Nm, that the motor of a joint has from now on; at first that of its model. 0: the joint is limp.
+  void set_joint_torque(std::size_t joint, double torque);
 
   /// Advances the world by one step. Throws PhysicsError if the solver broke down or a position of a link is no longer
   /// a finite number; after that the world can be read and destroyed, no more.
@@ -42,8 +44,11 @@ class World {
   [[nodiscard]] Pose link_pose(std::size_t link) const;
   /// Centre of mass of the robot in the world.
   [[nodiscard]] Eigen::Vector3d center_of_mass() const;
-  /// Which sensors of a link touch the environment: bit 0 the half towards the tail, bit 1 the half towards the head.
-  /// The contacts are those found at the start of the last step, where the links were then; before the first step
+  /// Which of the two touch sensors under a link are pressed by the environment: bit 0 the one towards the tail, bit 1
+  /// the one towards the head; each senses its half of the underside. A contact presses a sensor where it lies below
+  /// the link's centre of mass, unless it pushes from the side by more than 45 degrees. The underside is the one that
+  /// looks down (-z) in the robot's file, at angles 0, and turns with the link; of a link upright in the file, towards
+  /// -y. The contacts are those found at the start of the last step, where the links were then; before the first step
   /// nothing is pressed.
   [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const;
   /// Number of contact points at the start of the last step.

@@ -16,6 +16,12 @@ void ValueHash::append(std::int32_t value) {
   crypto_hash_sha256_update(&state_, bytes.data(), bytes.size());
 }
 
+void ValueHash::append(std::span<const std::int32_t> values) {
+  for (const std::int32_t value : values) {
+    append(value);
+  }
+}
+
 std::string ValueHash::hex() const {
   // Finishing destroys the state, so a copy is finished.
   crypto_hash_sha256_state state = state_;

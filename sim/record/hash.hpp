@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include <sodium/crypto_hash_sha256.h>
@@ -14,6 +15,7 @@ class ValueHash {
   ValueHash();
 
   void append(std::int32_t value);
+  void append(std::span<const std::int32_t> values);
 
   /// Hash of everything appended so far, 64 lower-case hexadecimal digits. More may be appended afterwards.
   [[nodiscard]] std::string hex() const;

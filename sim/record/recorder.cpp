@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "shared/fixed/decimal.hpp"
+#include "shared/kernel/fingerprint.hpp"
 #include "sim/record/recording_file.hpp"
 #include "sim/record/schema.hpp"
 #include "sim/record/sqlite.hpp"
@@ -56,9 +57,10 @@ bool is_finite(const Pose& pose) { return pose.position.allFinite() && pose.orie
 
 class Recorder::Storage {
  public:
-  Storage(const std::filesystem::path& path, const Scenario& scenario, const std::string& build_id)
+  Storage(const std::filesystem::path& path, const Scenario& scenario, const std::string& program,
+          const std::string& build_id)
       : path_(path), scenario_(scenario), database_(path) {
-    write_run(build_id);
+    write_run(program, build_id);
     write_robot();
     write_slots();
     database_.execute("COMMIT");
@@ -92,6 +94,10 @@ class Recorder::Storage {
     }
   }
 
+  void write_restart(std::uint32_t tick, std::uint32_t joint, bool joined) {
+    insert_restart_.run(tick, joint, std::string_view(joined ? "joined" : "stopped"));
+  }
+
   void write_tick(const TickSample& sample) {
     require_finite(sample);
     const std::uint32_t tick = sample.tick;
@@ -102,6 +108,10 @@ class Recorder::Storage {
     for (std::size_t i = 0; i < internal_values_.size(); ++i) {
       const InternalValuePlace& place = internal_values_[i];
       insert_value_.run(tick, place.slot, place.joint, place.index, sample.internal_values[i]);
+    }
+    for (const Loss& loss : sample.lost) {
+      insert_loss_.run(loss.tick, std::uint32_t{loss.sender}, std::uint32_t{loss.channel},
+                       std::uint32_t{loss.receiver});
     }
     for (const ServoPulse& pulse : sample.servo_pulses) {
       insert_pulse_.run(pulse.time_us, pulse.joint, pulse.command);
@@ -147,11 +157,15 @@ class Recorder::Storage {
     std::uint32_t index;
   };
 
-  void write_run(const std::string& build_id) {
+  void write_run(const std::string& program, const std::string& build_id) {
     Statement insert(database_, "INSERT INTO run VALUES(?1, ?2)");
     const auto put = [&insert](std::string_view key, std::string_view value) { insert.run(key, value); };
     put("format", std::to_string(recording_format));
+    put("program", program);
     put("build_id", build_id);
+    std::array<char, 11> fingerprint{};
+    std::snprintf(fingerprint.data(), fingerprint.size(), "0x%08X", core_fingerprint);
+    put("core_fingerprint", fingerprint.data());
     put("scenario", scenario_.path);
     put("robot", scenario_.robot.name);
     put("joint_count", std::to_string(scenario_.robot.joints.size()));
@@ -295,15 +309,18 @@ class Recorder::Storage {
   Statement insert_pulse_{database_, "INSERT INTO servo VALUES(?1, ?2, ?3)"};
   Statement insert_pose_{database_, "INSERT INTO pose VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)"};
   Statement insert_contact_{database_, "INSERT INTO contact VALUES(?1, ?2, ?3, ?4)"};
+  Statement insert_loss_{database_, "INSERT INTO loss VALUES(?1, ?2, ?3, ?4)"};
+  Statement insert_restart_{database_, "INSERT INTO restart VALUES(?1, ?2, ?3)"};
   bool closed_ = false;
   bool failed_ = false;
   std::chrono::steady_clock::time_point last_commit_ = std::chrono::steady_clock::now();
 };
 
-Recorder::Recorder(const std::filesystem::path& path, const Scenario& scenario, const std::string& build_id) {
+Recorder::Recorder(const std::filesystem::path& path, const Scenario& scenario, const std::string& program,
+                   const std::string& build_id) {
   claim_recording_file(path);
   try {
-    storage_ = std::make_unique<Storage>(path, scenario, build_id);
+    storage_ = std::make_unique<Storage>(path, scenario, program, build_id);
   } catch (const SqliteError& error) {
     std::error_code ignored;  // the error that is reported is the first
     std::filesystem::remove(path, ignored);
@@ -315,6 +332,10 @@ Recorder::~Recorder() = default;
 
 void Recorder::record_change(const Change& change) {
   storage_->guard([&] { storage_->write_change(change); });
+}
+
+void Recorder::record_restart(std::uint32_t tick, std::uint32_t joint, bool joined) {
+  storage_->guard([&] { storage_->write_restart(tick, joint, joined); });
 }
 
 void Recorder::record_tick(const TickSample& sample) {

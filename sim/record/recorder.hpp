@@ -11,6 +11,7 @@
 #include "sim/record/record_error.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/robot/servo_schedule.hpp"
+#include "sim/scenario/losses.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {
@@ -27,6 +28,7 @@ struct TickSample {
   std::span<const std::int32_t> servo_commands;  ///< per joint: the last pulse before SYNC k + 1
   std::span<const Pose> link_poses;              ///< in the world, at SYNC k + 1
   std::span<const double> joint_angles;          ///< rad, at SYNC k + 1, measured on the robot
+  std::span<const Loss> lost;                    ///< frames labelled k that were kept from their receivers
 };
 
 /// Writes a run into an SQLite file (tables: schema.hpp) as it goes on. Others may read the file at the same time.
@@ -39,8 +41,10 @@ struct TickSample {
 class Recorder {
  public:
   /// Creates the file. It must not be there yet, unless it is empty or an earlier recording, which is then replaced.
-  /// scenario: must outlive the recorder. build_id: of the program that simulates.
-  Recorder(const std::filesystem::path& path, const Scenario& scenario, const std::string& build_id);
+  /// scenario: must outlive the recorder. program: what computes the gait, e.g. "simulate" or "hil native".
+  /// build_id: of the program.
+  Recorder(const std::filesystem::path& path, const Scenario& scenario, const std::string& program,
+           const std::string& build_id);
   /// Commits. A run that was not finished stays marked so. A failure, which cannot be thrown here, goes to standard
   /// error.
   ~Recorder();
@@ -49,6 +53,9 @@ class Recorder {
 
   /// A change that takes effect at its tick; call it before the record_tick of that tick.
   void record_change(const Change& change);
+  /// The module of a joint does not compute this tick and those that follow (it restarts), or computes again from this
+  /// tick on; call it before the record_tick of that tick.
+  void record_restart(std::uint32_t tick, std::uint32_t joint, bool joined);
   /// Ticks come in ascending order. All values must be finite: a simulation that has blown up is an error here.
   void record_tick(const TickSample& sample);
   /// Marks the run as finished and closes the file, one file then. summary: names and values for the table `result`.

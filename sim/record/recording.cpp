@@ -7,7 +7,7 @@
 #include <optional>
 #include <sstream>
 
-#include "shared/gait/joint_mask.hpp"
+#include "shared/kernel/kernel.hpp"
 #include "sim/record/record_error.hpp"
 #include "sim/record/schema.hpp"
 #include "sim/record/sqlite.hpp"
@@ -220,6 +220,14 @@ void Recording::read_slots() {
   }
 }
 
+std::uint8_t Recording::joint_number(const Statement& row, int column) const {
+  const std::uint32_t joint = natural(row, column);
+  if (joint >= joints_.size()) {
+    throw Damage("joint " + std::to_string(joint) + " of " + std::to_string(joints_.size()));
+  }
+  return static_cast<std::uint8_t>(joint);
+}
+
 std::string Recording::run_value(const std::string& key) const {
   return reading(path_, [&] { return tables_->run_value(key); });
 }
@@ -241,6 +249,33 @@ std::vector<RecordedSetting> Recording::read_settings(const char* sql) const {
                           unit_of(row.text(4)), raw(row, 5)});
     }
     return settings;
+  });
+}
+
+std::vector<Loss> Recording::losses() const {
+  return reading(path_, [&] {
+    std::vector<Loss> losses;
+    Statement row(tables_->database, "SELECT tick, sender, channel, receiver FROM loss ORDER BY 1, 2, 3, 4");
+    while (row.step()) {
+      const std::uint32_t channel = natural(row, 2);
+      if (channel >= max_channels) {
+        throw Damage("a loss on channel " + std::to_string(channel));
+      }
+      losses.push_back(
+          {natural(row, 0), joint_number(row, 1), static_cast<std::uint8_t>(channel), joint_number(row, 3)});
+    }
+    return losses;
+  });
+}
+
+std::vector<RecordedRestart> Recording::restarts() const {
+  return reading(path_, [&] {
+    std::vector<RecordedRestart> restarts;
+    Statement row(tables_->database, "SELECT tick, joint, event = 'joined' FROM restart ORDER BY tick, joint");
+    while (row.step()) {
+      restarts.push_back({natural(row, 0), joint_number(row, 1), row.integer(2) != 0});
+    }
+    return restarts;
   });
 }
 
@@ -344,21 +379,11 @@ void Recording::read_servo_pulses(const std::function<void(const ServoPulse&)>& 
   reading(path_,
           [&] { row.emplace(tables_->database, "SELECT time_us, joint, command FROM servo ORDER BY time_us, joint"); });
   ServoPulse pulse{};
-  std::uint32_t expected_joint = 0;
   const auto next = [&] {
     if (!row->step()) {
-      if (expected_joint != 0) {
-        throw Damage("a gap in the table servo at its end");
-      }
       return false;
     }
-    const std::uint64_t time_us = time(*row, 0);
-    const std::uint32_t joint = natural(*row, 1);
-    if (joint != expected_joint || (joint != 0 && time_us != pulse.time_us)) {
-      throw Damage("a gap in the table servo at " + std::to_string(time_us) + " us");
-    }
-    pulse = {time_us, joint, raw(*row, 2)};
-    expected_joint = joint + 1 < joints_.size() ? joint + 1 : 0;
+    pulse = {time(*row, 0), joint_number(*row, 1), raw(*row, 2)};
     return true;
   };
   while (reading(path_, next)) {

@@ -13,6 +13,7 @@
 #include "shared/fixed/unit.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/robot/servo_schedule.hpp"
+#include "sim/scenario/losses.hpp"
 
 namespace proleg::sim {
 
@@ -48,6 +49,13 @@ struct RecordedSetting {
   std::int32_t raw = 0;
 };
 
+/// A module that restarted.
+struct RecordedRestart {
+  std::uint32_t tick = 0;
+  std::uint32_t joint = 0;
+  bool joined = false;  ///< computes again from this tick on; otherwise: computes nothing from this tick on
+};
+
 /// What was computed at SYNC `tick` and holds at SYNC tick + 1, and the contacts from which it was computed. Joints and
 /// links from the head.
 struct RecordedTick {
@@ -59,6 +67,8 @@ struct RecordedTick {
   std::vector<Pose> link_poses;                ///< in the world
   std::vector<std::uint8_t> latched_contacts;  ///< at SYNC tick; bit 0 rear, bit 1 front sensor
 };
+
+class Statement;
 
 /// A recording as it was when it was opened; a run may go on and write into the file meanwhile.
 ///
@@ -92,18 +102,23 @@ class Recording {
   [[nodiscard]] const std::vector<RecordedInternalValue>& internal_values() const { return internal_values_; }
   [[nodiscard]] std::vector<RecordedSetting> parameters() const;
   [[nodiscard]] std::vector<RecordedSetting> distortions() const;
+  /// In the order of ticks.
+  [[nodiscard]] std::vector<Loss> losses() const;
+  [[nodiscard]] std::vector<RecordedRestart> restarts() const;
   /// Path and text of every file that was read.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> sources() const;
 
   /// Calls `use` for the ticks from `first` to `last`, in order. The tick is overwritten by the next.
   void read_ticks(std::uint32_t first, std::uint32_t last, const std::function<void(const RecordedTick&)>& use) const;
 
-  /// Calls `use` for every pulse of every servo, in the order of time, then of joints.
+  /// Calls `use` for every pulse of every servo, in the order of time, then of joints. A module that restarts gives
+  /// none.
   void read_servo_pulses(const std::function<void(const ServoPulse&)>& use) const;
 
  private:
   class Tables;
 
+  [[nodiscard]] std::uint8_t joint_number(const Statement& row, int column) const;
   void read_run();
   void read_robot();
   void read_slots();

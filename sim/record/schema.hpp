@@ -10,7 +10,7 @@ namespace proleg::sim {
 /// "Prol", SQLite's application id, bytes 68 to 71 of the file: how a recording is told from any other database.
 inline constexpr std::uint32_t recording_application_id = 0x50726F6C;
 /// Raised whenever a reader of the older format would misread or miss something. SQLite's user_version.
-inline constexpr std::uint32_t recording_format = 2;
+inline constexpr std::uint32_t recording_format = 3;
 
 // Choices:
 // - STRICT: a value of the wrong type is an error when it is written, not a surprise when it is read.
@@ -146,6 +146,25 @@ CREATE TABLE contact(
   rear INTEGER NOT NULL,
   front INTEGER NOT NULL,
   PRIMARY KEY(tick, link)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE loss(
+  -- State frames that did not reach a joint: the frame of state tick, from sender (its channel 0 or 1), was kept from
+  -- receiver when SYNC tick was computed.
+  tick INTEGER NOT NULL,
+  sender INTEGER NOT NULL,
+  channel INTEGER NOT NULL,
+  receiver INTEGER NOT NULL,
+  PRIMARY KEY(tick, sender, channel, receiver)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE restart(
+  -- event 'stopped': from SYNC tick on the module of the joint computes nothing; 'joined': it computes again, from a
+  -- state that it took from its neighbours. In between its row in sample repeats the last set-point.
+  tick INTEGER NOT NULL,
+  joint INTEGER NOT NULL,
+  event TEXT NOT NULL,
+  PRIMARY KEY(tick, joint)
 ) STRICT, WITHOUT ROWID;
 
 CREATE TABLE servo(

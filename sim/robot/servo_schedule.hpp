@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_schedule.hpp"
 
 namespace proleg::sim {
 
@@ -11,33 +11,6 @@ struct ServoPulse {
   std::uint64_t time_us;  ///< since SYNC 0
   std::uint32_t joint;    ///< kernel order
   std::int32_t command;   ///< twelfths of a microsecond
-};
-
-/// When servos take pulses. Interval n starts n periods after SYNC 0, wherever ticks begin; its pulse is the one in the
-/// middle of the interval on the line between the two set-points of the tick in which it starts. All this is integers
-/// and knows no step of a physics engine, so that a module finds the same pulses.
-class ServoSchedule {
- public:
-  /// Both periods in us, above 0; tick_period_us is below 131072.
-  constexpr ServoSchedule(std::uint32_t servo_period_us, std::uint32_t tick_period_us)
-      : servo_period_us_(servo_period_us), tick_period_us_(tick_period_us) {}
-
-  /// The first interval that starts at SYNC `tick` or later. The intervals of tick k are those from first_interval(k)
-  /// up to, but without, first_interval(k + 1); there may be none.
-  [[nodiscard]] constexpr std::uint64_t first_interval(std::uint64_t tick) const {
-    return (tick * tick_period_us_ + servo_period_us_ - 1) / servo_period_us_;
-  }
-  /// Microseconds from SYNC 0 to the start of an interval.
-  [[nodiscard]] constexpr std::uint64_t start_us(std::uint64_t interval) const { return interval * servo_period_us_; }
-  /// Where the interval samples the line: Q16, 0 at out(k), 65536 at out(k + 1), with k the tick in which it starts.
-  [[nodiscard]] constexpr std::int32_t fraction(std::uint64_t interval) const {
-    const auto elapsed_us = static_cast<std::uint32_t>(start_us(interval) % tick_period_us_);
-    return sample_fraction(elapsed_us, servo_period_us_, tick_period_us_);
-  }
-
- private:
-  std::uint32_t servo_period_us_;
-  std::uint32_t tick_period_us_;
 };
 
 }  // namespace proleg::sim

@@ -28,7 +28,7 @@ Scenario read_scenario(const std::filesystem::path& path, FileSource& files) {
   }
   for (const XmlElement& child : root.children()) {
     if (child.is("sensor") || child.is("sensors")) {
-      remark_no_effect(scenario.remarks, child, "this version has no attached sensors");
+      remark_no_effect(scenario.remarks, child, "every link has two touch sensors under it anyway");
     }
   }
 
@@ -36,6 +36,7 @@ Scenario read_scenario(const std::filesystem::path& path, FileSource& files) {
   RobotDescription robot = read_robot(*robot_file, sources, scenario.remarks);
   scenario.robot = std::move(robot.model);
   scenario.joint_limits = std::move(robot.kernel_limits);
+  scenario.modules = std::move(robot.modules);
   scenario.kernel.joint_count = static_cast<std::uint8_t>(scenario.robot.joints.size());
 
   const auto actuation_file = open("actuation");

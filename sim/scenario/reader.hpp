@@ -6,7 +6,7 @@
 //
 //   <simulation>
 //     <robot>caterpillar.robot.xml</robot>                    robot_reader.hpp, kinbody_reader.hpp, joint_reader.hpp,
-//                                                             geometry_reader.hpp, mass_reader.hpp
+//                                                             geometry_reader.hpp, mass_reader.hpp, module_reader.hpp
 //     <actuation>uniform.actuation.xml</actuation>            actuation_reader.hpp
 //     <environment>flat.environment.xml</environment>         environment_reader.hpp
 //     <simulationProperties>...</simulationProperties>        properties_reader.hpp; may be left out

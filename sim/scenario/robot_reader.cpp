@@ -5,6 +5,7 @@
 
 #include "sim/scenario/chain.hpp"
 #include "sim/scenario/kinbody_reader.hpp"
+#include "sim/scenario/module_reader.hpp"
 #include "sim/scenario/text.hpp"
 #include "sim/scenario/values.hpp"
 
@@ -34,11 +35,11 @@ ServoModel read_servo(const XmlElement& element) {
 
 RobotDescription read_robot(const XmlDocument& document, SourceSet& sources, std::vector<std::string>& remarks) {
   const XmlElement root = document.root("Robot");
-  constexpr std::array<std::string_view, 4> extra_tags{"servo", "AttachedSensor", "sensor", "Manipulator"};
+  constexpr std::array<std::string_view, 5> extra_tags{"servo", "module", "AttachedSensor", "sensor", "Manipulator"};
   const KinBodyContents contents = read_kinbody(root, KinBodyUse::robot, sources, remarks, extra_tags);
   for (const XmlElement& child : root.children()) {
     if (child.is("AttachedSensor") || child.is("sensor")) {
-      remark_no_effect(remarks, child, "this version has no attached sensors");
+      remark_no_effect(remarks, child, "every link has two touch sensors under it anyway");
     } else if (child.is("Manipulator")) {
       remark_no_effect(remarks, child, "a crawling robot has none");
     }
@@ -53,6 +54,7 @@ RobotDescription read_robot(const XmlDocument& document, SourceSet& sources, std
   robot.model.links = std::move(chain.links);
   robot.model.joints = std::move(chain.joints);
   robot.kernel_limits = std::move(chain.kernel_limits);
+  robot.modules = read_modules(root, robot.model);
   remarks.push_back(one_line(chain.joint_map));
   return robot;
 }

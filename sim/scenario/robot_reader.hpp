@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/robot/module_place.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/scenario/source_set.hpp"
@@ -12,11 +13,13 @@ namespace proleg::sim {
 struct RobotDescription {
   RobotModel model;
   std::vector<JointLimits> kernel_limits;  ///< kernel order
+  std::vector<ModulePlace> modules;        ///< kernel order
 };
 
 /// Reads a robot file: <Robot> with KinBodies and joints as in OpenRAVE, and our
 ///   <servo><gain>50</gain><period unit="ms">1</period></servo>
-/// (gain in 1/s; what is left out is as in ServoModel). Adds the joint map to the remarks.
+/// (gain in 1/s; what is left out is as in ServoModel), and the modules (module_reader.hpp). Adds the joint map to the
+/// remarks.
 [[nodiscard]] RobotDescription read_robot(const XmlDocument& document, SourceSet& sources,
                                           std::vector<std::string>& remarks);
 

@@ -8,6 +8,7 @@
 
 #include "shared/kernel/kernel.hpp"
 #include "sim/environment/environment_model.hpp"
+#include "sim/robot/module_place.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim {
@@ -52,6 +53,7 @@ struct Scenario {
 
   KernelConfiguration kernel;
   std::vector<JointLimits> joint_limits;  ///< kernel order, one for each joint
+  std::vector<ModulePlace> modules;       ///< kernel order, one for each joint, no node id twice
   std::vector<Setting> settings;          ///< start values that differ from the defaults
   std::vector<Change> changes;            ///< in flight, by ascending tick
 

@@ -292,7 +292,14 @@ void apply_setting(Scenario& scenario, const std::string& text) {
     }
     setting.joint = static_cast<std::uint8_t>(j);
     if (in_flight) {
-      put(change_at(scenario.changes, tick).settings, setting);
+      std::vector<Setting>& settings = change_at(scenario.changes, tick).settings;
+      put(settings, setting);
+      const auto of_joint = std::ranges::count(settings, setting.joint, &Setting::joint);
+      if (of_joint > static_cast<std::ptrdiff_t>(max_staged_values)) {
+        word.refuse("more than " + std::to_string(max_staged_values) + " values for joint " +
+                        in_quotes(scenario.robot.joints[j].name) + " at tick " + std::to_string(tick),
+                    "as many as a module has room for");
+      }
     } else {
       set_start_value(scenario, setting);
     }

@@ -1,7 +1,8 @@
-// What the simulator costs beyond the physics engine: the time of `simulate` without a recorder against a bare loop
-// over the same world that calls the engine and nothing else. The two run in turn in one process, so that their ratio
-// holds on any machine. The bare loop's gait is fixed, whatever the scenario's: the travelling wave of
-// uniform.simulation.xml with 40 degrees of amplitude, 55 degrees of phase difference and 1 Hz.
+// What the simulator costs beyond the physics engine: the time of `simulate`, and of `hil` with native modules on the
+// simulated bus, without a recorder, against a bare loop over the same world that calls the engine and nothing else.
+// They run in turn in one process, so that their ratios hold on any machine. The bare loop's gait is fixed, whatever
+// the scenario's: the travelling wave of uniform.simulation.xml with 40 degrees of amplitude, 55 degrees of phase
+// difference and 1 Hz.
 //
 //   bench_simulate SCENARIO [SECONDS] [REPETITIONS]
 
@@ -16,8 +17,10 @@
 #include <exception>
 #include <functional>
 #include <numbers>
+#include <stdexcept>
 #include <vector>
 
+#include "sim/loop/hardware_loop.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/physics/engine.hpp"
 #include "sim/scenario/reader.hpp"
@@ -154,10 +157,18 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+void print_ratio(const char* name, std::vector<double> ratios, const char* wanted) {
+  std::printf("ratio %s / bare: median %.3f, %.3f to %.3f   (wanted: at most %s)\n", name, median(ratios),
+              *std::min_element(ratios.begin(), ratios.end()), *std::max_element(ratios.begin(), ratios.end()), wanted);
+}
+
 int benchmark(const Scenario& scenario, double seconds, int repetitions) {
   std::vector<double> bare_times;
   std::vector<double> simulate_times;
-  std::vector<double> ratios;
+  std::vector<double> hil_times;
+  std::vector<double> simulate_ratios;
+  std::vector<double> hil_ratios;
+  BusStatistics bus;
   double bare_contacts = 0.0;
   double simulate_contacts = 0.0;
   double displacement = 0.0;
@@ -172,13 +183,26 @@ int benchmark(const Scenario& scenario, double seconds, int repetitions) {
       while (simulation.time_s() < seconds - 1e-9) {
         simulation.advance();
       }
-      simulate_contacts = simulation.mean_contacts();
-      displacement = simulation.displacement();
+      simulate_contacts = simulation.plant().mean_contacts();
+      displacement = simulation.plant().displacement();
+    });
+    // From switching the modules on; a difference to the gait in memory would make the time worthless.
+    const double in_the_loop = time_of([&] {
+      HardwareLoop loop(scenario, {});
+      while (loop.time_s() < seconds - 1e-9) {
+        loop.advance();
+      }
+      if (loop.differences() != 0) {
+        throw std::runtime_error("the modules differ from the gait in memory");
+      }
+      bus = loop.bus_statistics();
     });
     if (i > 0) {  // the first round warms up
       bare_times.push_back(bare);
       simulate_times.push_back(simulated);
-      ratios.push_back(simulated / bare);
+      hil_times.push_back(in_the_loop);
+      simulate_ratios.push_back(simulated / bare);
+      hil_ratios.push_back(in_the_loop / bare);
     }
   }
   std::printf("%zu links, %.0f s at %.0f us a step, %d repetitions, medians\n", scenario.robot.links.size(), seconds,
@@ -188,8 +212,10 @@ int benchmark(const Scenario& scenario, double seconds, int repetitions) {
               bare_contacts);
   std::printf("simulate           %6.3f   %11.1f   %8.2f   displacement %.3f m\n", median(simulate_times),
               seconds / median(simulate_times), simulate_contacts, displacement);
-  std::printf("ratio simulate / bare: median %.3f, %.3f to %.3f   (wanted: at most 1.05)\n", median(ratios),
-              *std::min_element(ratios.begin(), ratios.end()), *std::max_element(ratios.begin(), ratios.end()));
+  std::printf("hil, native        %6.3f   %11.1f              %llu frames, %.1f %% bus load\n", median(hil_times),
+              seconds / median(hil_times), static_cast<unsigned long long>(bus.frames), 100 * bus.load());
+  print_ratio("simulate", simulate_ratios, "1.05");
+  print_ratio("hil", hil_ratios, "2.2");
   return 0;
 }
 

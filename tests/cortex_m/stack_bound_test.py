@@ -15,7 +15,7 @@ class StackBound(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def bound(self, text, function):
+    def bound(self, text, function, *options):
         """Compiles a program and runs the tool on it."""
         source = self.folder / "program.cpp"
         source.write_text(text)
@@ -25,11 +25,11 @@ class StackBound(unittest.TestCase):
         subprocess.run(["arm-none-eabi-g++", "-mcpu=cortex-m4", "-mthumb", "-nostartfiles", "-Wl,--entry=0",
                         str(self.folder / "program.o"), "-o", str(self.folder / "program.elf")], check=True)
         return subprocess.run([sys.executable, str(TOOL), "--program", str(self.folder / "program.elf"), "--build",
-                               str(self.folder), "--source", str(self.folder), function],
+                               str(self.folder), "--source", str(self.folder), *options, function],
                               capture_output=True, text=True, check=False)
 
-    def bytes_of(self, text, function):
-        result = self.bound(text, function)
+    def bytes_of(self, text, function, *options):
+        result = self.bound(text, function, *options)
         self.assertEqual(result.returncode, 0, result.stderr)
         return int(result.stdout.split()[0])
 
@@ -82,6 +82,17 @@ void root(Base& base) {
 
     def test_an_unknown_function_pointer_has_no_bound(self):
         text = "void root(int (*f)(int), int* n) {\n  *n += f(*n);\n}"
+        self.expect_error(text, "root", "unknown target of the indirect call at ")
+
+    def test_a_call_through_a_table_counts_as_the_worst_function_in_it(self):
+        text = self.FILL + """
+namespace { void small() { volatile char a[40]; use(a); } void large() { volatile char a[400]; use(a); } }
+namespace tables { extern void (*const steps[])(); void (*const steps[])() = {small, large}; }
+void root(int i) { tables::steps[i](); }
+"""
+        found = self.bytes_of(text, "root", "--table=tables::steps")
+        self.assertGreaterEqual(found, 400)
+        self.assertLess(found, 500)
         self.expect_error(text, "root", "unknown target of the indirect call at ")
 
     def test_an_unknown_function_is_an_error(self):

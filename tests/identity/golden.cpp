@@ -4,9 +4,12 @@
 
 #include <array>
 #include <fstream>
+#include <iomanip>
+#include <regex>
 #include <span>
 #include <sstream>
 
+#include "shared/fixed/crc32.hpp"
 #include "shared/gait/registry.hpp"
 #include "tests/identity/sensing_probe.hpp"
 
@@ -53,6 +56,23 @@ std::string first_difference_in(std::string_view what, std::span<const std::int3
   return {};
 }
 
+std::string text_of(const std::vector<Golden>& rows) {
+  std::ostringstream text;
+  for (const Golden& row : rows) {
+    text << row.algorithm << '\t' << row.cases << '\t' << row.ticks << '\t' << row.setpoints << '\t'
+         << row.servo_commands << '\n';
+  }
+  return text.str();
+}
+
+void write_file(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream stream(file);
+  stream << text;
+  if (!stream.flush()) {
+    throw PlayerError(file.string() + ": cannot write");
+  }
+}
+
 }  // namespace
 
 std::filesystem::path golden_file() { return std::filesystem::path(PROLEG_SOURCE_DIR) / "tests/identity/golden.tsv"; }
@@ -79,15 +99,20 @@ std::vector<Golden> read_golden(const std::filesystem::path& file) {
 }
 
 void write_golden(const std::filesystem::path& file, const std::vector<Golden>& rows) {
-  std::ofstream stream(file);
-  stream << heading << '\n';
-  for (const Golden& row : rows) {
-    stream << row.algorithm << '\t' << row.cases << '\t' << row.ticks << '\t' << row.setpoints << '\t'
-           << row.servo_commands << '\n';
-  }
-  if (!stream.flush()) {
-    throw PlayerError(file.string() + ": cannot write");
-  }
+  write_file(file, std::string(heading) + '\n' + text_of(rows));
+
+  const std::filesystem::path header = std::filesystem::path(PROLEG_SOURCE_DIR) / "shared/kernel/fingerprint.hpp";
+  std::ostringstream old;
+  old << std::ifstream(header).rdbuf();
+  std::ostringstream constant;
+  constant << "core_fingerprint = 0x" << std::hex << std::uppercase << std::setw(8) << std::setfill('0')
+           << fingerprint_of(rows) << ';';
+  write_file(header, std::regex_replace(old.str(), std::regex("core_fingerprint = [0-9A-Fx]+;"), constant.str()));
+}
+
+std::uint32_t fingerprint_of(const std::vector<Golden>& rows) {
+  const std::string text = text_of(rows);
+  return crc32(std::span(reinterpret_cast<const std::uint8_t*>(text.data()), text.size()));
 }
 
 std::vector<unsigned> algorithm_ids() {

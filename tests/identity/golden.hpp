@@ -30,7 +30,11 @@ struct Golden {
 [[nodiscard]] std::filesystem::path golden_file();
 /// Throws PlayerError that names file, line and expectation.
 [[nodiscard]] std::vector<Golden> read_golden(const std::filesystem::path& file);
+/// Also writes the fingerprint that follows from the rows into the core.
 void write_golden(const std::filesystem::path& file, const std::vector<Golden>& rows);
+
+/// What core_fingerprint must be (shared/kernel/fingerprint.hpp).
+[[nodiscard]] std::uint32_t fingerprint_of(const std::vector<Golden>& rows);
 
 /// Ids of the algorithms in the table: those of the registry and the sensing probe.
 [[nodiscard]] std::vector<unsigned> algorithm_ids();

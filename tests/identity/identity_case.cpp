@@ -211,8 +211,11 @@ class Run {
   }
 
   void distort() {
-    expect_ok(kernel_of(distortion_.joint)
-                  .distort(distortion_.slot, distortion_.joint, distortion_.internal_value, distortion_.value));
+    constexpr std::uint16_t transaction = 100;
+    Kernel& kernel = kernel_of(distortion_.joint);
+    expect_ok(kernel.stage_internal(transaction, distortion_.slot, distortion_.joint, distortion_.internal_value,
+                                    distortion_.value));
+    expect_ok(kernel.commit(transaction, distortion_.tick));
   }
 
   void touch() {

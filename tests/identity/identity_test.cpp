@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "shared/gait/algorithms.hpp"
+#include "shared/kernel/fingerprint.hpp"
 #include "tests/identity/expect_golden.hpp"
 #include "tests/identity/sensing_probe.hpp"
 
@@ -22,6 +23,10 @@ TEST_P(Identity, OneKernelOfAllJointsGivesTheGoldenSetpoints) {
 
 TEST_P(Identity, FiveModulesThatExchangeFramesGiveTheGoldenSetpoints) {
   expect_golden([] { return make_native_player(Driver::modules); }, algorithm(), native_cases);
+}
+
+TEST(CoreFingerprint, IsTheCheckSumOfTheGoldenResults) {
+  EXPECT_EQ(core_fingerprint, fingerprint_of(read_golden(golden_file()))) << "identity --write-golden writes it";
 }
 
 INSTANTIATE_TEST_SUITE_P(Algorithms, Identity, testing::ValuesIn(algorithm_ids()), algorithm_name);

@@ -53,6 +53,9 @@ int run_command(int argc, char** argv, CLI::App& app, const std::function<int()>
   } catch (const sim::InputError& error) {
     complain(error);
     return exit_bad_input;
+  } catch (const BadInput& error) {
+    complain(error);
+    return exit_bad_input;
   } catch (const std::exception& error) {
     complain(error);
     return exit_failed;

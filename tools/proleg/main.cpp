@@ -25,8 +25,11 @@ struct Subcommand {
 constexpr std::array subcommands{
     Subcommand{"algorithms", "list the algorithms that move a robot, and their parameters"},
     Subcommand{"simulate", "run a scenario in the physics simulation"},
+    Subcommand{"hil", "run a scenario with the modules' own programs on a simulated bus"},
+    Subcommand{"replay", "recompute the gait of a recording and compare, bit for bit"},
     Subcommand{"export", "write a recording as a tab-separated table"},
     Subcommand{"plot", "draw joint angles, contacts and path of a recording"},
+    Subcommand{"objects", "list what can be read and set in a module over the bus"},
 };
 
 void print_help(std::ostream& out) {

@@ -19,9 +19,9 @@ void for_each_algorithm(Visit visit) {
   }
 }
 
-TEST(Registry, HoldsTheFourAlgorithmsUnderTheirNamesInFiles) {
-  EXPECT_EQ(algorithm_count(), 4U);
-  for (const auto name : {test::direct, test::sinusoidal, test::extended, test::coupled}) {
+TEST(Registry, HoldsTheFiveAlgorithmsUnderTheirNamesInFiles) {
+  EXPECT_EQ(algorithm_count(), 5U);
+  for (const auto name : {test::direct, test::sinusoidal, test::extended, test::coupled, test::reflex}) {
     EXPECT_NE(find_algorithm(name), nullptr) << name;
   }
 }
@@ -46,6 +46,7 @@ TEST(Registry, KeepsTheIdsOfTheProtocol) {
   EXPECT_EQ(find_algorithm(test::sinusoidal)->declaration().id, 2);
   EXPECT_EQ(find_algorithm(test::extended)->declaration().id, 3);
   EXPECT_EQ(find_algorithm(test::coupled)->declaration().id, 4);
+  EXPECT_EQ(find_algorithm(test::reflex)->declaration().id, 5);
 }
 
 TEST(Declaration, HasAnIdANameAndAHelpTextOfItsOwn) {

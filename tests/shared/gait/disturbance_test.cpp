@@ -41,7 +41,7 @@ TEST(Distortion, OfAPhaseIsOvercomeByTheCoupledGait) {
   }
   const unsigned phase = test::value_index(chain[2], 0, "current_phase");
   const std::int32_t before = chain[2].internal_value(0, 2, phase);
-  ASSERT_EQ(chain[2].distort(0, 2, phase, before + test::degrees(60)), Status::ok);
+  ASSERT_EQ(test::distort(chain[2], 0, 2, phase, before + test::degrees(60)), Status::ok);
   chain.tick();
   EXPECT_GT(lag_error(chain), 30);
   for (int tick = 0; tick < 500; ++tick) {
@@ -54,7 +54,7 @@ TEST(Distortion, ReachesTheNeighboursOneTickLater) {
   ModuleChain chain(configuration_of(test::coupled));
   ModuleChain undisturbed(configuration_of(test::coupled));
   const unsigned phase = test::value_index(chain[2], 0, "current_phase");
-  ASSERT_EQ(chain[2].distort(0, 2, phase, test::phase(123)), Status::ok);
+  ASSERT_EQ(test::distort(chain[2], 0, 2, phase, test::phase(123)), Status::ok);
   const auto same = [&](unsigned joint) {
     return chain[joint].internal_value(0, joint, phase) == undisturbed[joint].internal_value(0, joint, phase);
   };
@@ -76,7 +76,7 @@ TEST(Distortion, OfThePlainSineIsGoneAfterATick) {
   KernelOf<1> undisturbed;
   ASSERT_EQ(kernel.configure(test::one_slot(test::algorithm(test::sinusoidal), 1), 0), Status::ok);
   ASSERT_EQ(undisturbed.configure(kernel.configuration(), 0), Status::ok);
-  ASSERT_EQ(kernel.distort(0, 0, test::value_index(kernel, 0, "current_phase"), test::phase(90)), Status::ok);
+  ASSERT_EQ(test::distort(kernel, 0, 0, test::value_index(kernel, 0, "current_phase"), test::phase(90)), Status::ok);
   test::run(kernel, 2);
   test::run(undisturbed, 2);
   EXPECT_EQ(kernel.setpoint(0), undisturbed.setpoint(0));
@@ -86,10 +86,10 @@ TEST(Distortion, OfThePlainSineIsGoneAfterATick) {
 TEST(Distortion, IsRefusedForWhatDoesNotExist) {
   KernelOf<5> kernel;
   ASSERT_EQ(kernel.configure(configuration_of(test::coupled), 0), Status::ok);
-  EXPECT_EQ(kernel.distort(1, 0, 0, 1), Status::unknown_slot);
-  EXPECT_EQ(kernel.distort(max_slots, 0, 0, 1), Status::unknown_slot);
-  EXPECT_EQ(kernel.distort(0, 5, 0, 1), Status::unknown_joint);
-  EXPECT_EQ(kernel.distort(0, 0, 7, 1), Status::unknown_internal_value);
+  EXPECT_EQ(test::distort(kernel, 1, 0, 0, 1), Status::unknown_slot);
+  EXPECT_EQ(test::distort(kernel, max_slots, 0, 0, 1), Status::unknown_slot);
+  EXPECT_EQ(test::distort(kernel, 0, 5, 0, 1), Status::unknown_joint);
+  EXPECT_EQ(test::distort(kernel, 0, 0, 7, 1), Status::unknown_internal_value);
 }
 
 // protocol.md: the receiver extrapolates the phase by its own increment and holds the rest.

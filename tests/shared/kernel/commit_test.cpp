@@ -77,8 +77,10 @@ TEST_F(Commit, MayBeRepeated) {
   EXPECT_EQ(kernel.commit(1, 10), Status::ok);
   kernel.advance();
   EXPECT_EQ(kernel.commit(1, 10), Status::ok);
-  EXPECT_EQ(kernel.commit(1, 11), Status::staging_closed);
-  EXPECT_EQ(kernel.commit(2, 10), Status::staging_closed);
+  EXPECT_EQ(kernel.commit(1, 11), Status::staging_closed) << "but not for another tick";
+  test::run(kernel, 20);
+  EXPECT_EQ(kernel.commit(1, 10), Status::ok) << "also late, when it took effect long ago";
+  EXPECT_EQ(kernel.commit(1, 11), Status::nothing_staged);
 }
 
 TEST_F(Commit, IsRefusedForATickThatIsOver) {
@@ -105,13 +107,93 @@ TEST_F(Commit, IsOverOnceItTookEffect) {
   EXPECT_EQ(kernel.commit(1, 5), Status::ok);
 }
 
-TEST_F(Staging, IsClosedWhileATransactionWaitsForItsTick) {
+TEST_F(Staging, IsClosedForACommittedTransactionAndOpenForTheNext) {
   ASSERT_EQ(kernel.stage(1, 0, 0, amplitude, test::degrees(20)), Status::ok);
   ASSERT_EQ(kernel.commit(1, 3), Status::ok);
   EXPECT_EQ(kernel.stage(1, 0, 0, offset, 0), Status::staging_closed);
-  EXPECT_EQ(kernel.stage(2, 0, 0, offset, 0), Status::staging_closed);
-  test::run(kernel, 4);
-  EXPECT_EQ(kernel.stage(2, 0, 0, offset, 0), Status::ok);
+  EXPECT_EQ(kernel.open(1), Status::staging_closed);
+  EXPECT_EQ(kernel.stage(2, 0, 0, offset, test::degrees(2)), Status::ok);
+  EXPECT_EQ(kernel.commit(2, 2), Status::ok) << "it may even come first";
+  test::run(kernel, 3);
+  EXPECT_EQ(kernel.parameter(0, 0, amplitude), test::degrees(40));
+  EXPECT_EQ(kernel.parameter(0, 0, offset), test::degrees(2));
+  test::run(kernel, 1);
+  EXPECT_EQ(kernel.parameter(0, 0, amplitude), test::degrees(20));
+}
+
+// A ramp is a row of commits.
+TEST_F(Commit, ManyMayWaitEachForItsOwnTick) {
+  for (std::uint16_t i = 0; i < max_transactions; ++i) {
+    ASSERT_EQ(kernel.stage(i, 0, 0, amplitude, test::degrees(30 + i)), Status::ok) << i;
+    ASSERT_EQ(kernel.commit(i, 10U + 2U * i), Status::ok) << i;
+  }
+  EXPECT_EQ(kernel.open(99), Status::staging_full);
+  EXPECT_EQ(kernel.stage(99, 0, 0, amplitude, 0), Status::staging_full);
+  test::run(kernel, 10);
+  for (unsigned i = 0; i < max_transactions; ++i) {
+    kernel.advance();
+    EXPECT_EQ(kernel.parameter(0, 0, amplitude), test::degrees(30 + i)) << "tick " << kernel.tick();
+    kernel.advance();
+  }
+  EXPECT_EQ(kernel.open(99), Status::ok);
+}
+
+TEST_F(Commit, OfTheSameTickTakeEffectInTheOrderOfTheirCommits) {
+  ASSERT_EQ(kernel.stage(5, 0, 0, amplitude, test::degrees(25)), Status::ok);
+  ASSERT_EQ(kernel.commit(5, 4), Status::ok);
+  ASSERT_EQ(kernel.stage(3, 0, 0, amplitude, test::degrees(15)), Status::ok);
+  ASSERT_EQ(kernel.commit(3, 4), Status::ok);
+  test::run(kernel, 5);
+  EXPECT_EQ(kernel.parameter(0, 0, amplitude), test::degrees(15));
+}
+
+// A robot-wide change need not touch every joint; the modules it does not touch hear the commit all the same.
+TEST_F(Commit, MayHaveNothingForAJointOnceTheTransactionIsOpen) {
+  ASSERT_EQ(kernel.open(9), Status::ok);
+  EXPECT_EQ(kernel.open_transaction(), 9);
+  EXPECT_EQ(kernel.staged_count(), 0U);
+  EXPECT_EQ(kernel.commit(9, 3), Status::ok);
+  test::run(kernel, 5);
+  EXPECT_EQ(kernel.commit(9, 3), Status::ok);
+}
+
+TEST_F(Staging, TellsWhatIsStaged) {
+  std::int32_t value = 0;
+  EXPECT_FALSE(kernel.staged_value(0, 1, amplitude, false, value));
+  ASSERT_EQ(kernel.stage(1, 0, 1, amplitude, test::degrees(20)), Status::ok);
+  ASSERT_EQ(kernel.stage_internal(1, 0, 1, 0, test::phase(45)), Status::ok);
+  EXPECT_EQ(kernel.staged_count(), 2U);
+  ASSERT_TRUE(kernel.staged_value(0, 1, amplitude, false, value));
+  EXPECT_EQ(value, test::degrees(20));
+  ASSERT_TRUE(kernel.staged_value(0, 1, 0, true, value));
+  EXPECT_EQ(value, test::phase(45));
+  ASSERT_EQ(kernel.commit(1, 10), Status::ok);
+  EXPECT_EQ(kernel.staged_count(), 0U) << "committed is no longer staged";
+  EXPECT_FALSE(kernel.staged_value(0, 1, amplitude, false, value));
+}
+
+TEST(StagingRoom, IsLimitedForEachJointAndARefusalKeepsWhatIsThere) {
+  KernelOf<joints> kernel;
+  ASSERT_EQ(kernel.configure(test::one_slot(test::algorithm(test::coupled), joints), 0), Status::ok);
+  const Declaration& about = kernel.configuration().slots[0].algorithm->declaration();
+  const auto parameters = static_cast<unsigned>(about.parameters.size());
+  const auto values = static_cast<unsigned>(about.internal_values.size());
+  unsigned staged = 0;
+  Status status = Status::ok;
+  for (std::uint16_t transaction = 0; status == Status::ok; ++transaction) {
+    for (unsigned i = 0; i < parameters + values && status == Status::ok; ++i) {
+      status = i < parameters ? kernel.stage(transaction, 0, 1, i, about.parameters[i].minimum)
+                              : kernel.stage_internal(transaction, 0, 1, i - parameters, 0);
+      staged += status == Status::ok ? 1U : 0U;
+    }
+    if (status == Status::ok) {
+      status = kernel.commit(transaction, 100);
+    }
+  }
+  EXPECT_EQ(status, Status::staging_full);
+  EXPECT_EQ(staged, max_staged_values);
+  EXPECT_EQ(kernel.staged_count(), max_staged_values % (parameters + values));
+  EXPECT_EQ(kernel.stage(kernel.open_transaction(), 0, 0, 0, 0), Status::ok) << "another joint has its own room";
 }
 
 TEST_F(Staging, UnderANewNumberDropsWhatWasStagedUnderTheOld) {
@@ -157,13 +239,19 @@ TEST_F(Staging, KeepsTheOtherValuesWhenOneIsRefused) {
   EXPECT_EQ(kernel.parameter(0, 0, amplitude), test::degrees(20));
 }
 
-TEST_F(Staging, IsDroppedByAReset) {
+// A module is set up, told what will change early in the run, and then starts from state 0.
+TEST_F(Staging, SurvivesAResetAndNotANewConfiguration) {
   ASSERT_EQ(kernel.stage(1, 0, 0, amplitude, test::degrees(20)), Status::ok);
   ASSERT_EQ(kernel.commit(1, 5), Status::ok);
   kernel.reset();
-  test::run(kernel, 10);
+  test::run(kernel, 6);
+  EXPECT_EQ(kernel.parameter(0, 0, amplitude), test::degrees(20));
+  ASSERT_EQ(kernel.stage(2, 0, 0, amplitude, test::degrees(30)), Status::ok);
+  ASSERT_EQ(kernel.commit(2, 20), Status::ok);
+  ASSERT_EQ(kernel.configure(reference.configuration(), 0), Status::ok);
+  EXPECT_EQ(kernel.commit(2, 20), Status::nothing_staged);
+  test::run(kernel, 30);
   EXPECT_EQ(kernel.parameter(0, 0, amplitude), test::degrees(40));
-  EXPECT_EQ(kernel.commit(1, 20), Status::nothing_staged);
 }
 
 }  // namespace

@@ -104,8 +104,8 @@ TEST(FrameExchange, MakesModulesEqualOneKernelForAllJointsToTheLastBit) {
       if (whole.drives(0, joint) && !configuration.slots[0].algorithm->declaration().internal_values.empty() &&
           random() % 20 == 0) {
         const auto distorted = static_cast<std::int32_t>(random());
-        ASSERT_EQ(whole.distort(0, joint, 0, distorted), Status::ok);
-        ASSERT_EQ(chain[joint].distort(0, joint, 0, distorted), Status::ok);
+        ASSERT_EQ(test::distort(whole, 0, joint, 0, distorted), Status::ok);
+        ASSERT_EQ(test::distort(chain[joint], 0, joint, 0, distorted), Status::ok);
       }
       const auto contacts = static_cast<std::uint8_t>(random() % 16);
       whole.set_contacts(joint, contacts);

@@ -59,7 +59,7 @@ TEST(ProtocolExample, StateFramesOfTick300AreThoseOfTheDocumentation) {
   kernel.reset();
   kernel.set_contacts(joint, StateFrame::contact_rear_link_rear | StateFrame::contact_rear_link_front);
   for (int tick = 0; tick < 300; ++tick) {
-    ASSERT_EQ(kernel.distort(0, joint, 0, test::degrees(110)), Status::ok);
+    ASSERT_EQ(test::distort(kernel, 0, joint, 0, test::degrees(110)), Status::ok);
     kernel.advance();
   }
   EXPECT_TRUE(documentation_has_line(as_text("183", kernel.frame(joint, 0)))) << as_text("183", kernel.frame(joint, 0));

@@ -220,7 +220,7 @@ TEST_F(Snapshot, WithAnyCorruptedByteIsRefusedOrLeavesAKernelThatRuns) {
 
 TEST_F(Snapshot, StartsWithItsFormatInTheDocumentedByteOrder) {
   const std::vector<std::uint8_t> bytes = saved(kernel);
-  EXPECT_EQ(std::string(bytes.begin(), bytes.begin() + 4), "PSK1");
+  EXPECT_EQ(std::string(bytes.begin(), bytes.begin() + 4), "PSK2");
   const std::vector<std::uint8_t> configuration(bytes.begin() + 4, bytes.begin() + 11);
   EXPECT_EQ(configuration, (std::vector<std::uint8_t>{joints, 0x10, 0x27, 0, 0, 0, joints}))
       << "joint count, tick in microseconds, first and number of local joints";

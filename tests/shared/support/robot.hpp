@@ -37,6 +37,7 @@ inline constexpr std::string_view direct = "DirectJointAccess";
 inline constexpr std::string_view sinusoidal = "PatternGenerator_sinusoidal";
 inline constexpr std::string_view extended = "PatternGenerator_sinusoidal_extended";
 inline constexpr std::string_view coupled = "PatternGenerator_coupled_oscillator";
+inline constexpr std::string_view reflex = "SensingModule_uneven_ground_reflex";
 
 /// A robot whose first slot drives all joints.
 inline KernelConfiguration one_slot(const ActuationModule& module, unsigned joints, std::uint32_t tick_us = 10'000,
@@ -83,6 +84,13 @@ inline void commit_all(Kernel& kernel, unsigned slot, std::string_view name, std
     }
   }
   ASSERT_EQ(kernel.commit(1, tick), Status::ok);
+}
+
+/// Overwrites an internal value at the coming tick.
+inline Status distort(Kernel& kernel, unsigned slot, unsigned joint, unsigned internal_value, std::int32_t value) {
+  constexpr std::uint16_t transaction = 0xD157;
+  const Status status = kernel.stage_internal(transaction, slot, joint, internal_value, value);
+  return status == Status::ok ? kernel.commit(transaction, kernel.tick()) : status;
 }
 
 inline std::int32_t value(const Kernel& kernel, unsigned slot, unsigned joint, std::string_view name) {

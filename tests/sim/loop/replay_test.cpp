@@ -11,6 +11,7 @@
 
 #include "shared/gait/registry.hpp"
 #include "shared/kernel/servo_command.hpp"
+#include "shipped.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/record/recording.hpp"
@@ -20,7 +21,7 @@
 namespace proleg::sim {
 namespace {
 
-/// No shipped algorithm looks at contacts; the probe makes every single one matter in all later set-points.
+/// The probe makes every single contact matter in all later set-points.
 const ActuationModule* algorithm_of(const std::string& name) {
   const ActuationModule& probe = identity::sensing_probe();
   return name == probe.declaration().name ? &probe : find_algorithm(name);
@@ -28,9 +29,7 @@ const ActuationModule* algorithm_of(const std::string& name) {
 
 /// Coupled oscillators, and the probe on some joints, with limits that bite, changes in flight and distortions.
 Scenario eventful_scenario() {
-  DiskFiles files;
-  Scenario scenario = read_scenario(
-      std::filesystem::path(PROLEG_SOURCE_DIR) / "sim/scenarios/travelling_wave/coupled.simulation.xml", files);
+  Scenario scenario = shipped("travelling_wave/coupled");
   scenario.kernel.seed = 18446744073709551557U;
   scenario.kernel.slots[2] = {&identity::sensing_probe(), JointMask(0b10110)};
   scenario.joint_limits[1] = {-200'000'000, 300'000'000};
@@ -50,7 +49,7 @@ Scenario eventful_scenario() {
 
 void record(const Scenario& scenario, std::uint32_t ticks, const std::filesystem::path& path) {
   Simulation simulation(scenario);
-  Recorder recorder(path, scenario, "build");
+  Recorder recorder(path, scenario, "test", "build");
   while (simulation.tick() < ticks) {
     if (const Change* change = simulation.advance()) {
       recorder.record_change(*change);
@@ -97,22 +96,21 @@ class Replay {
 
   void advance(const RecordedTick& tick) {
     const auto transaction = static_cast<std::uint16_t>(tick.tick + 1);
-    bool staged = false;
+    EXPECT_EQ(kernel_.open(transaction), Status::ok);
     for (const RecordedSetting& setting : parameters_) {
       if (setting.commit && setting.tick == tick.tick) {
         EXPECT_EQ(kernel_.stage(transaction, setting.slot, setting.joint, index_of(setting), setting.raw), Status::ok);
-        staged = true;
       }
-    }
-    if (staged) {
-      EXPECT_EQ(kernel_.commit(transaction, tick.tick), Status::ok);
     }
     for (const RecordedSetting& setting : distortions_) {
       if (setting.tick == tick.tick) {
         const int value = find_internal_value(declaration(setting.slot), setting.name);
-        EXPECT_EQ(kernel_.distort(setting.slot, setting.joint, static_cast<unsigned>(value), setting.raw), Status::ok);
+        EXPECT_EQ(
+            kernel_.stage_internal(transaction, setting.slot, setting.joint, static_cast<unsigned>(value), setting.raw),
+            Status::ok);
       }
     }
+    EXPECT_EQ(kernel_.commit(transaction, tick.tick), Status::ok);
     for (unsigned joint = 0; joint < kernel_.local_joint_count(); ++joint) {
       const unsigned head = joint == 0 ? tick.latched_contacts[0] : 0U;
       kernel_.set_contacts(joint, static_cast<std::uint8_t>(tick.latched_contacts[joint + 1] | head << 2U));

@@ -197,6 +197,122 @@ TEST(World, ASensorIsPressedWhereTheLinkTouches) {
   EXPECT_EQ(world.link_contacts(2), 1U);
 }
 
+/// What the sensors of the middle of three links say when a small ball touches it. The ball just reaches the point
+/// `surface` of the robot's frame, from the direction `outwards`; nothing moves.
+std::uint8_t touched_by_a_ball(const RobotModel& robot, const Eigen::Vector3d& surface, const Eigen::Vector3d& outwards,
+                               const Pose& robot_pose = {}) {
+  constexpr double radius = 0.004;
+  constexpr double depth = 0.0001;
+  EnvironmentModel environment;
+  environment.gravity.setZero();
+  environment.robot_pose = robot_pose;
+  StaticObject ball;
+  Geometry geometry;
+  geometry.shape = Shape::sphere;
+  geometry.extents = {radius, 0, 0};
+  ball.pose.position = robot_pose * Eigen::Vector3d(surface + (radius - depth) * outwards.normalized());
+  ball.geometries.push_back(geometry);
+  environment.objects.push_back(ball);
+  World world(robot, environment, step_s, Stepper::direct);
+  world.step();
+  EXPECT_EQ(world.contact_count(), 1U) << surface.transpose();
+  EXPECT_EQ(world.link_contacts(0), 0U);
+  EXPECT_EQ(world.link_contacts(2), 0U);
+  return world.link_contacts(1);
+}
+
+struct Touch {
+  Eigen::Vector3d surface;   ///< m from the middle of a link of 40 x 80 x 40 mm, the head towards +y
+  Eigen::Vector3d outwards;  ///< normal of the surface
+  unsigned sensors;          ///< bit 0 rear, bit 1 front
+};
+
+std::vector<Touch> touches_all_around() {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
+  const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  return {
+      {{0, 0.03, -0.02}, -z, 2},
+      {{0.01, -0.03, -0.02}, -z, 1},  // under it
+      {{0, 0.03, 0.02}, z, 0},
+      {{0, -0.03, 0.02}, z, 0},  // on its back
+      {{0.02, 0.03, -0.01}, x, 0},
+      {{-0.02, -0.03, -0.01}, -x, 0},
+      {{0.02, 0.03, 0.01}, x, 0},  // its flanks
+      {{0, 0.04, -0.01}, y, 2},
+      {{0, -0.04, -0.01}, -y, 1},  // its ends, below the middle
+      {{0, 0.04, 0.01}, y, 0},
+      {{0, -0.04, 0.01}, -y, 0},  // and above
+      {{0, 0.04, -0.02}, y - z, 2},
+      {{0, -0.04, -0.02}, -y - z, 1},  // the lower edges at the ends
+      {{0, 0.04, 0.02}, y + z, 0},     // an upper edge
+      {{0.02, 0.03, -0.02}, 0.8 * x - z, 2},
+      {{0.02, 0.03, -0.02}, x - 0.8 * z, 0},  // below and above 45 degrees of roll
+      {{-0.02, -0.03, -0.02}, -0.8 * x - z, 1},
+      {{-0.02, -0.03, -0.02}, -x - 0.8 * z, 0},
+  };
+}
+
+TEST(World, SensorsLieUnderTheLinkAndFeelNeitherItsBackNorItsFlanks) {
+  for (const Touch& touch : touches_all_around()) {
+    EXPECT_EQ(touched_by_a_ball(chain(3), touch.surface + Eigen::Vector3d(0, -0.1, 0), touch.outwards), touch.sensors)
+        << touch.surface.transpose() << " outwards " << touch.outwards.transpose();
+  }
+}
+
+TEST(World, TheUndersideIsThatOfTheRobotsFileHoweverItStartsInTheWorld) {
+  for (const double roll : {0.5, 1.5, 3.0}) {
+    const Pose pose{{1, 2, 3}, Eigen::Quaterniond(Eigen::AngleAxisd(roll, Eigen::Vector3d(1, 2, -1).normalized()))};
+    for (const Touch& touch : touches_all_around()) {
+      EXPECT_EQ(touched_by_a_ball(chain(3), touch.surface + Eigen::Vector3d(0, -0.1, 0), touch.outwards, pose),
+                touch.sensors)
+          << touch.surface.transpose() << " outwards " << touch.outwards.transpose();
+    }
+  }
+}
+
+TEST(World, TheUndersideDoesNotDependOnTheFrameOfTheLink) {
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(2.0, Eigen::Vector3d(3, -1, 2).normalized()));
+  RobotModel robot = chain(3);
+  Link& link = robot.links[1];
+  link.pose.orientation = turned;
+  link.mass.inertia = turned.conjugate() * link.mass.inertia * turned;
+  link.geometries[0].pose.orientation = turned.conjugate();
+  for (const Touch& touch : touches_all_around()) {
+    EXPECT_EQ(touched_by_a_ball(robot, touch.surface + Eigen::Vector3d(0, -0.1, 0), touch.outwards), touch.sensors)
+        << touch.surface.transpose() << " outwards " << touch.outwards.transpose();
+  }
+}
+
+TEST(World, ARobotUprightInItsFileHasItsSensorsTowardsMinusY) {
+  const Eigen::Quaterniond upright(
+      Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()));  // y to z, z to -y
+  RobotModel robot = chain(3);
+  for (Link& link : robot.links) {
+    link.pose = Pose{{0, 0, 0}, upright} * link.pose;
+  }
+  for (Joint& joint : robot.joints) {
+    joint.anchor = upright * joint.anchor;
+  }
+  const auto touched = [&](double y, double z) { return touched_by_a_ball(robot, {0, y, -0.1 + z}, {0, y, 0}); };
+  EXPECT_EQ(touched(-0.02, 0.03), 2U);
+  EXPECT_EQ(touched(-0.02, -0.03), 1U);
+  EXPECT_EQ(touched(0.02, 0.03), 0U);
+}
+
+TEST(World, ARobotOnItsBackOrOnItsSideFeelsNoGround) {
+  for (const double roll : {90.0, 180.0, 270.0}) {
+    EnvironmentModel environment = flat_ground(0.5, 0.02);
+    environment.robot_pose.orientation = Eigen::AngleAxisd(roll / 180 * std::numbers::pi, Eigen::Vector3d::UnitY());
+    World world(chain(3), environment, step_s, Stepper::direct);
+    run(world, 0.2);
+    EXPECT_GT(world.contact_count(), 0U);
+    for (std::size_t link = 0; link < 3; ++link) {
+      EXPECT_EQ(world.link_contacts(link), 0U) << "roll " << roll << ", link " << link;
+    }
+  }
+}
+
 TEST(World, ACylinderLiesAlongYAndASphereIsRound) {
   for (const Shape shape : {Shape::cylinder, Shape::sphere}) {
     RobotModel robot = chain(1);
@@ -275,6 +391,7 @@ TEST(World, RepeatsToTheLastBitOnEveryThread) {
   const std::vector<double> expected = wriggle();
   std::array<std::vector<double>, 4> traces;
   std::vector<std::thread> threads;
+  threads.reserve(traces.size());
   for (std::vector<double>& trace : traces) {
     threads.emplace_back([&trace] { trace = wriggle(); });
   }

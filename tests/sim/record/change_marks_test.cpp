@@ -30,7 +30,7 @@ TEST(ChangeMarks, SayWhatChangedOnOneJointOrOnAll) {
     all.settings.push_back(setting);
   }
   {
-    Recorder recorder(folder / "run", scenario, "build");
+    Recorder recorder(folder / "run", scenario, "test", "build");
     recorder.record_change(one);
     recorder.record_change(all);
     run_small(scenario, 20, [&](const TickSample& sample, const Change* /*change*/) { recorder.record_tick(sample); });

@@ -208,7 +208,7 @@ TEST_F(Figure, IsWellFormedWhateverTheNames) {
 TEST_F(Figure, IsDrawnOfASimulationThatHasFlownApart) {
   const Scenario scenario = small_scenario();
   {
-    Recorder recorder(path_, scenario, "build");
+    Recorder recorder(path_, scenario, "test", "build");
     run_small(scenario, 50, [&](const TickSample& sample, const Change* /*change*/) {
       std::vector<double> angles(sample.joint_angles.begin(), sample.joint_angles.end());
       std::vector<Pose> poses(sample.link_poses.begin(), sample.link_poses.end());
@@ -238,7 +238,7 @@ TEST_F(Figure, ShortensNamesThatAreTooLong) {
 TEST_F(Figure, SaysThatARunIsNotFinished) {
   const Scenario scenario = small_scenario();
   {
-    Recorder recorder(path_, scenario, "build");
+    Recorder recorder(path_, scenario, "test", "build");
     run_small(scenario, 20, [&](const TickSample& sample, const Change* /*change*/) { recorder.record_tick(sample); });
   }
   EXPECT_NE(draw_figure(Recording(path_), {}).find("not finished"), std::string::npos);

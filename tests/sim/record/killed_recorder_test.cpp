@@ -21,7 +21,7 @@ struct Report {
 /// The child process: a tick each 5 ms, for much longer than it is allowed to live.
 [[noreturn]] void record_until_killed(const std::filesystem::path& path, int pipe) {
   const Scenario scenario = small_scenario();
-  Recorder recorder(path, scenario, "build");
+  Recorder recorder(path, scenario, "test", "build");
   run_small(scenario, 100'000, [&](const TickSample& sample, const Change* change) {
     if (change != nullptr) {
       recorder.record_change(*change);

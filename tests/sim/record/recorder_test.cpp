@@ -48,7 +48,7 @@ TickSample with_measurements(TickSample sample, std::span<const Pose> poses, std
 void expect_left_alone(const std::filesystem::path& path, const std::string& contents) {
   std::ofstream(path, std::ios::binary) << contents;
   const Scenario scenario = small_scenario();
-  const std::string message = message_of<RecordError>([&] { Recorder(path, scenario, "build"); });
+  const std::string message = message_of<RecordError>([&] { Recorder(path, scenario, "test", "build"); });
   EXPECT_NE(message.find(path.string()), std::string::npos) << message;
   EXPECT_NE(message.find("is not a recording"), std::string::npos) << message;
   EXPECT_EQ(file_contents(path), contents);
@@ -110,7 +110,7 @@ TEST(Recorder, KeepsTimesOfADay) {
   const Scenario scenario = small_scenario();
   constexpr std::uint64_t day_us = 86'400'000'000;
   {
-    Recorder recorder(folder / "run.sqlite", scenario, "build");
+    Recorder recorder(folder / "run.sqlite", scenario, "test", "build");
     run_small(scenario, 1, [&](const TickSample& sample, const Change* /*change*/) {
       TickSample late = sample;
       const std::vector<ServoPulse> pulses{{day_us, 0, 1}, {day_us, 1, 2}, {day_us, 2, 3}};
@@ -227,7 +227,7 @@ TEST(Recorder, CommitsAnUnfinishedRunWhenItIsDestroyed) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
   {
-    Recorder recorder(folder / "run.sqlite", scenario, "build");
+    Recorder recorder(folder / "run.sqlite", scenario, "test", "build");
     run_small(scenario, 20, [&](const TickSample& sample, const Change* /*change*/) { recorder.record_tick(sample); });
   }
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"run.sqlite"}));
@@ -283,16 +283,16 @@ TEST(Recorder, LeavesAForeignDatabaseAlone) {
 TEST(Recorder, LeavesAFolderAlone) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
-  EXPECT_NE(message_of<RecordError>([&] { Recorder(folder.path(), scenario, "build"); }).find("is not a file"),
+  EXPECT_NE(message_of<RecordError>([&] { Recorder(folder.path(), scenario, "test", "build"); }).find("is not a file"),
             std::string::npos);
 }
 
 TEST(Recorder, DoesNotReplaceARecordingThatIsBeingWritten) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
-  Recorder first(folder / "run.sqlite", scenario, "build");
+  Recorder first(folder / "run.sqlite", scenario, "test", "build");
   EXPECT_NE(message_of<RecordError>([&] {
-              Recorder(folder / "run.sqlite", scenario, "build");
+              Recorder(folder / "run.sqlite", scenario, "test", "build");
             }).find("another program is recording"),
             std::string::npos);
   first.finish({});
@@ -302,7 +302,7 @@ TEST(Recorder, SaysWhyAFileCannotBeCreated) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
   const std::string message =
-      message_of<RecordError>([&] { Recorder(folder / "no such folder" / "run.sqlite", scenario, "build"); });
+      message_of<RecordError>([&] { Recorder(folder / "no such folder" / "run.sqlite", scenario, "test", "build"); });
   EXPECT_NE(message.find("run.sqlite"), std::string::npos) << message;
   EXPECT_NE(message.find("No such file or directory"), std::string::npos) << message;
   EXPECT_EQ(message.find('\n'), std::string::npos);
@@ -312,7 +312,7 @@ TEST(Recorder, SaysWhyAFileCannotBeCreated) {
 TEST(Recorder, RefusesNumbersThatAreNotFinite) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
-  Recorder recorder(folder / "run.sqlite", scenario, "build");
+  Recorder recorder(folder / "run.sqlite", scenario, "test", "build");
   run_small(scenario, 3, [&](const TickSample& sample, const Change* /*change*/) {
     if (sample.tick < 2) {
       recorder.record_tick(sample);
@@ -336,7 +336,7 @@ TEST(Recorder, RefusesNumbersThatAreNotFinite) {
 TEST(Recorder, TakesNothingAfterTheEnd) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
-  Recorder recorder(folder / "run.sqlite", scenario, "build");
+  Recorder recorder(folder / "run.sqlite", scenario, "test", "build");
   recorder.finish({});
   EXPECT_THROW(recorder.finish({}), RecordError);
   EXPECT_THROW(recorder.record_change(scenario.changes[0]), RecordError);
@@ -354,7 +354,7 @@ TEST(Recorder, ReportsADiskThatIsFull) {
     setrlimit(RLIMIT_FSIZE, &limit);
     const Scenario scenario = small_scenario();
     const std::string message = message_of<RecordError>([&] {
-      Recorder recorder(path, scenario, "build");
+      Recorder recorder(path, scenario, "test", "build");
       try {
         run_small(scenario, 20'000,
                   [&](const TickSample& sample, const Change* /*change*/) { recorder.record_tick(sample); });
@@ -380,7 +380,7 @@ TEST(Recorder, CanBeReadWhileItWrites) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
   std::uint32_t seen = 0;
-  Recorder recorder(folder / "run.sqlite", scenario, "build");
+  Recorder recorder(folder / "run.sqlite", scenario, "test", "build");
   EXPECT_NE(message_of<std::runtime_error>([&] { Recording(folder / "run.sqlite"); }).find("no tick"),
             std::string::npos);
   run_small(scenario, 40, [&](const TickSample& sample, const Change* /*change*/) {

@@ -143,11 +143,11 @@ void run_small(const Scenario& scenario, std::uint32_t ticks,
       change = &*next_change++;
       for (const Setting& setting : change->settings) {
         if (setting.internal) {
-          ASSERT_EQ(kernel.distort(setting.slot, setting.joint, setting.index, setting.value), Status::ok);
+          ASSERT_EQ(kernel.stage_internal(1, setting.slot, setting.joint, setting.index, setting.value), Status::ok);
         } else {
           ASSERT_EQ(kernel.stage(1, setting.slot, setting.joint, setting.index, setting.value), Status::ok);
-          ASSERT_EQ(kernel.commit(1, tick), Status::ok);
         }
+        ASSERT_EQ(kernel.commit(1, tick), Status::ok);
       }
     }
     for (std::size_t link = 0; link < links; ++link) {
@@ -168,12 +168,12 @@ void run_small(const Scenario& scenario, std::uint32_t ticks,
     }
     const std::vector<std::int32_t> values = internal_values(kernel);
     const std::vector<ServoPulse> pulses = made_up_pulses(tick, joints);
-    use({tick, contacts, setpoints, values, pulses, commands, poses, angles}, change);
+    use({tick, contacts, setpoints, values, pulses, commands, poses, angles, {}}, change);
   }
 }
 
 void record_small(const std::filesystem::path& path, const Scenario& scenario, std::uint32_t ticks) {
-  Recorder recorder(path, scenario, "build-7");
+  Recorder recorder(path, scenario, "test", "build-7");
   run_small(scenario, ticks, [&](const TickSample& sample, const Change* change) {
     if (change != nullptr) {
       recorder.record_change(*change);

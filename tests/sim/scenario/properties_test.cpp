@@ -70,10 +70,11 @@ TEST(Remarks, NameWhatIsAcceptedWithoutEffect) {
                "<Mass type=\"box\"><total>1</total><extents>1 1 1</extents></Mass></Body>");
   const Scenario scenario = files.scenario();
   for (const char* text :
-       {"top.xml:2: <sensor> has no effect", "top.xml:6: <parallelComputing> has no effect",
-        "top.xml:6: <mode> has no effect", "top.xml:6: <accuracy> has no effect",
-        "robot.xml:45: <AttachedSensor> has no effect", "robot.xml:42: <maxaccel> has no effect",
-        "actuation.xml:2: the actuation was made for robot 'other.xml'",
+       {"top.xml:2: <sensor> has no effect: every link has two touch sensors",
+        "top.xml:6: <parallelComputing> has no effect", "top.xml:6: <mode> has no effect",
+        "top.xml:6: <accuracy> has no effect",
+        "robot.xml:45: <AttachedSensor> has no effect: every link has two touch sensors",
+        "robot.xml:42: <maxaccel> has no effect", "actuation.xml:2: the actuation was made for robot 'other.xml'",
         "actuation.xml:8: <actuationModule> has no effect: it drives no joint", "environment.xml:15: <Mass> has no"}) {
     EXPECT_TRUE(remarked(scenario, text)) << text;
   }

@@ -11,9 +11,9 @@
 namespace proleg::sim {
 namespace {
 
-Scenario shipped(const std::string& name) {
+Scenario shipped(const std::string& name, const std::string& folder = "travelling_wave") {
   DiskFiles files;
-  return read_scenario(PROLEG_SOURCE_DIR "/sim/scenarios/travelling_wave/" + name + ".simulation.xml", files);
+  return read_scenario(PROLEG_SOURCE_DIR "/sim/scenarios/" + folder + "/" + name + ".simulation.xml", files);
 }
 
 class Shipped : public testing::TestWithParam<std::string> {};
@@ -80,11 +80,11 @@ TEST_P(Shipped, RunsThirtySecondsInStepsOfAMillisecondAndTicksOfTen) {
 }
 
 /// The value that a joint starts with: the setting, or the default.
-std::int32_t start_value(const Scenario& scenario, std::string_view parameter, unsigned joint) {
-  const Declaration& declaration = scenario.kernel.slots[0].algorithm->declaration();
+std::int32_t start_value(const Scenario& scenario, std::string_view parameter, unsigned joint, unsigned slot = 0) {
+  const Declaration& declaration = scenario.kernel.slots[slot].algorithm->declaration();
   const int index = find_parameter(declaration, parameter);
   for (const Setting& setting : scenario.settings) {
-    if (setting.slot == 0 && setting.joint == joint && setting.index == index) {
+    if (setting.slot == slot && setting.joint == joint && setting.index == index) {
       return setting.value;
     }
   }
@@ -140,6 +140,79 @@ TEST(Uniform, WaveRunsFromTheTailToTheHeadSoThatTheHeadLeadsTheCrawl) {
   for (std::size_t j = 0; j + 1 < ticks.size(); ++j) {
     const int delay = (ticks[j] - ticks[j + 1] + 100) % 100;
     EXPECT_NEAR(delay, 15.3, 1.3) << "kernel joint " << j;
+  }
+}
+
+class Obstacle : public testing::TestWithParam<std::string> {
+ protected:
+  const Scenario scenario_ = shipped(GetParam(), "obstacle");
+};
+
+INSTANTIATE_TEST_SUITE_P(Shipped, Obstacle, testing::Values("plain", "reflex"),
+                         [](const auto& name) { return name.param; });
+
+TEST_P(Obstacle, HasTheRobotAndTheWaveOfTheUniformTravellingWave) {
+  const Scenario wave = shipped("uniform");
+  ASSERT_EQ(scenario_.robot.links.size(), wave.robot.links.size());
+  for (std::size_t i = 0; i < wave.robot.links.size(); ++i) {
+    EXPECT_EQ(scenario_.robot.links[i].name, wave.robot.links[i].name);
+    EXPECT_EQ(scenario_.robot.links[i].mass.mass, wave.robot.links[i].mass.mass);
+    EXPECT_EQ(scenario_.robot.links[i].geometries[0].extents, wave.robot.links[i].geometries[0].extents);
+  }
+  EXPECT_EQ(scenario_.robot.servo.gain, wave.robot.servo.gain);
+  EXPECT_EQ(scenario_.robot.servo.period_us, wave.robot.servo.period_us);
+  EXPECT_EQ(scenario_.kernel.slots[0].algorithm, wave.kernel.slots[0].algorithm);
+  EXPECT_EQ(scenario_.kernel.slots[0].group, JointMask::first(5));
+  for (const char* parameter : {"amplitude", "frequency", "phase_difference"}) {
+    for (unsigned joint = 0; joint < 5; ++joint) {
+      EXPECT_EQ(start_value(scenario_, parameter, joint), start_value(wave, parameter, joint)) << parameter;
+    }
+  }
+}
+
+TEST_P(Obstacle, HasTwoStepsUpAndTwoDownAcrossTheWholeWay) {
+  struct Step {
+    double from;  // m, along the way
+    double to;
+    double height;
+  };
+  const std::vector<StaticObject>& objects = scenario_.environment.objects;
+  ASSERT_EQ(objects.size(), 3U) << "each body is an object";
+  const std::vector<Step> steps{{-8, 8, 0}, {0.5, 1.7, 0.03}, {0.9, 1.3, 0.06}};
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Geometry& geometry = objects[i].geometries.at(0);
+    const Eigen::Vector3d middle = (objects[i].pose * geometry.pose).position;
+    EXPECT_NEAR(middle.y() - geometry.extents.y(), steps[i].from, 1e-9);
+    EXPECT_NEAR(middle.y() + geometry.extents.y(), steps[i].to, 1e-9);
+    EXPECT_NEAR(middle.z() + geometry.extents.z(), steps[i].height, 1e-9);
+    EXPECT_GE(geometry.extents.x(), 1.0);
+    EXPECT_EQ(middle.x(), 0.0);
+    EXPECT_EQ(geometry.friction, 0.5);
+  }
+  EXPECT_EQ(scenario_.environment.robot_pose.position, Eigen::Vector3d(0, 0, 0.026));
+}
+
+TEST_P(Obstacle, RunsThirtySecondsOnTheDirectStepperAndSaysNothingButTheJointMap) {
+  EXPECT_EQ(scenario_.duration_s, 30.0);
+  EXPECT_EQ(scenario_.step_s, 0.001);
+  EXPECT_EQ(scenario_.kernel.tick_period_us, 10'000U);
+  EXPECT_EQ(scenario_.solver, Solver::direct);
+  ASSERT_EQ(scenario_.remarks.size(), 1U) << scenario_.remarks[1];
+}
+
+TEST_P(Obstacle, HasTheReflexOnAllJointsWithItsDefaultsOrNotAtAll) {
+  const Slot& slot = scenario_.kernel.slots[1];
+  if (GetParam() == "plain") {
+    EXPECT_EQ(slot.algorithm, nullptr);
+    return;
+  }
+  ASSERT_EQ(slot.algorithm, find_algorithm("SensingModule_uneven_ground_reflex"));
+  EXPECT_EQ(slot.group, JointMask::first(5));
+  for (const Parameter& parameter : slot.algorithm->declaration().parameters) {
+    for (unsigned joint = 0; joint < 5; ++joint) {
+      EXPECT_EQ(start_value(scenario_, parameter.name, joint, 1), parameter.default_value)
+          << parameter.name << ": the file says that its values are the defaults";
+    }
   }
 }
 

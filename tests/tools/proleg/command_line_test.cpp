@@ -1,118 +1,22 @@
-// The programs as a user meets them: words in, standard output, standard error and exit status out.
+// The programs as a user meets them.
 
-#include <fcntl.h>
-#include <gtest/gtest.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
-#include <string>
-#include <vector>
 
-extern char** environ;
+#include "command_line.hpp"
 
+namespace proleg::test {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct Finished {
-  int status;
-  std::string out;
-  std::string err;
-};
-
-std::string read_file(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-class CommandLine : public testing::Test {
- protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "proleg-XXXXXX").string();
-    ASSERT_NE(mkdtemp(name.data()), nullptr);
-    folder_ = name;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  [[nodiscard]] fs::path file(const std::string& name) const { return folder_ / name; }
-
-  [[nodiscard]] static std::string scenario(const std::string& name) {
-    return std::string(PROLEG_SOURCE_DIR) + "/sim/scenarios/travelling_wave/" + name + ".simulation.xml";
-  }
-
-  /// Runs proleg with these words; an empty `out_file` catches standard output.
-  [[nodiscard]] Finished proleg(const std::vector<std::string>& words, const std::string& out_file = "") const {
-    const fs::path out = out_file.empty() ? folder_ / "stdout" : fs::path(out_file);
-    const fs::path err = folder_ / "stderr";
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    std::vector<std::string> storage{PROLEG_PROGRAM};
-    storage.insert(storage.end(), words.begin(), words.end());
-    std::vector<char*> arguments;
-    for (std::string& word : storage) {
-      arguments.push_back(word.data());
-    }
-    arguments.push_back(nullptr);
-    pid_t child = 0;
-    const int error = posix_spawn(&child, PROLEG_PROGRAM, &actions, nullptr, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    if (error != 0) {
-      ADD_FAILURE() << "cannot start " << PROLEG_PROGRAM;
-      return {-1, "", ""};
-    }
-    int status = 0;
-    waitpid(child, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), out_file.empty() ? read_file(out) : "",
-            read_file(err)};
-  }
-
-  /// Bad input: exit status 2, one line on standard error that contains the words, nothing on standard output.
-  void expect_refused(const std::vector<std::string>& words, const std::vector<std::string>& message) const {
-    const Finished finished = proleg(words);
-    EXPECT_EQ(finished.status, 2) << finished.err;
-    EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1) << finished.err;
-    EXPECT_TRUE(finished.out.empty()) << finished.out;
-    for (const std::string& part : message) {
-      EXPECT_NE(finished.err.find(part), std::string::npos) << "'" << part << "' is missing in: " << finished.err;
-    }
-  }
-
-  [[nodiscard]] std::vector<std::string> left_behind() const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_)) {
-      const std::string name = entry.path().filename().string();
-      if (name != "stdout" && name != "stderr") {
-        names.push_back(name);
-      }
-    }
-    return names;
-  }
-
- private:
-  fs::path folder_;
-};
 
 TEST_F(CommandLine, HelpListsTheSubcommands) {
   for (const char* word : {"--help", "-h", "help"}) {
     const Finished finished = proleg({word});
     EXPECT_EQ(finished.status, 0);
-    for (const char* name : {"algorithms", "simulate", "export", "plot"}) {
+    for (const char* name : {"algorithms", "simulate", "hil", "replay", "export", "plot", "objects"}) {
       EXPECT_NE(finished.out.find(name), std::string::npos);
     }
   }
-  for (const char* name : {"algorithms", "simulate", "export", "plot"}) {
+  for (const char* name : {"algorithms", "simulate", "hil", "replay", "export", "plot", "objects"}) {
     const Finished finished = proleg({name, "--help"});
     EXPECT_EQ(finished.status, 0);
     EXPECT_NE(finished.out.find(std::string("Usage: proleg ") + name), std::string::npos) << finished.out;
@@ -126,7 +30,7 @@ TEST_F(CommandLine, VersionNamesTheBuild) {
 }
 
 TEST_F(CommandLine, RefusesUnknownWords) {
-  expect_refused({}, {"expected one of algorithms, simulate, export, plot"});
+  expect_refused({}, {"expected one of algorithms, simulate, hil, replay, export, plot, objects"});
   expect_refused({"simulat"}, {"'simulat'", "expected one of algorithms, simulate"});
   expect_refused({"../../bin/sh"}, {"expected one of"});
   expect_refused({"simulate"}, {"found no FILE"});
@@ -243,9 +147,44 @@ TEST_F(CommandLine, AlgorithmsListsWhatCanBeSet) {
   expect_refused({"algorithms", "MTRAN"}, {"'MTRAN'", "DirectJointAccess"});
 }
 
-TEST_F(CommandLine, TheDocumentationsTablesAreTheDeclarations) {
-  EXPECT_EQ(proleg({"algorithms", "--markdown"}).out, read_file(std::string(PROLEG_SOURCE_DIR) + "/docs/algorithms.md"))
-      << "rewrite it: build/host/bin/proleg algorithms --markdown >docs/algorithms.md";
+TEST_F(CommandLine, ObjectsListsTheObjectDictionary) {
+  const Finished finished = proleg({"objects"});
+  EXPECT_EQ(finished.status, 0);
+  EXPECT_NE(finished.out.find("0x6040"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("PatternGenerator_coupled_oscillator: parameters 0x3080 to 0x3086"), std::string::npos);
+  expect_refused({"objects", "--eds", "--markdown"}, {"--eds", "--markdown"});
+}
+
+/// The first line of a text that another does not have at the same place; empty if there is none.
+std::string first_difference(const std::string& found, const std::string& expected) {
+  std::istringstream a(found);
+  std::istringstream b(expected);
+  std::string in_a;
+  std::string in_b;
+  for (int line = 1;; ++line) {
+    const bool more_a = static_cast<bool>(std::getline(a, in_a));
+    const bool more_b = static_cast<bool>(std::getline(b, in_b));
+    if (!more_a && !more_b) {
+      return {};
+    }
+    if (more_a != more_b || in_a != in_b) {
+      return "line " + std::to_string(line) + ": " + (more_a ? in_a : "nothing");
+    }
+  }
+}
+
+struct WrittenPage {
+  const char* page;
+  std::vector<std::string> words;
+};
+
+TEST_F(CommandLine, ThePagesThatProgramsWriteSayWhatTheDeclarationsSay) {
+  for (const auto& [page, words] : {WrittenPage{"docs/algorithms.md", {"algorithms", "--markdown"}},
+                                    WrittenPage{"docs/objects.md", {"objects", "--markdown"}},
+                                    WrittenPage{"docs/proleg.eds", {"objects", "--eds"}}}) {
+    EXPECT_EQ(first_difference(proleg(words).out, read_file(fs::path(PROLEG_SOURCE_DIR) / page)), "")
+        << "rewrite it: build/host/bin/proleg " << words[0] << ' ' << words[1] << " >" << page;
+  }
 }
 
 TEST_F(CommandLine, AFullDiskIsReported) {
@@ -266,3 +205,4 @@ TEST_F(CommandLine, ARecordingThatCannotBeWrittenIsRefusedBeforeTheRun) {
 }
 
 }  // namespace
+}  // namespace proleg::test

@@ -97,6 +97,13 @@ void check_robot(const Scenario& scenario) {
             "inertias are positive definite");
     check_geometries(link.geometries);
   }
+  require(scenario.modules.size() == robot.joints.size(), "a module for each joint");
+  std::vector<bool> nodes(127, false);
+  for (const ModulePlace& module : scenario.modules) {
+    require(module.node >= 1 && module.node <= 126 && !nodes[module.node], "each node id once, 1 to 126");
+    nodes[module.node] = true;
+    require(module.serial != 0U, "a serial number is not 0");
+  }
   std::vector<bool> file_indices(robot.joints.size(), false);
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const Joint& joint = robot.joints[j];
@@ -132,9 +139,10 @@ void check_with_kernel(const Scenario& scenario) {
     kernel.reset();
     ++transaction;
     for (const Setting& setting : change.settings) {
-      const Status status = setting.internal
-                                ? kernel.distort(setting.slot, setting.joint, setting.index, setting.value)
-                                : kernel.stage(transaction, setting.slot, setting.joint, setting.index, setting.value);
+      const Status status =
+          setting.internal
+              ? kernel.stage_internal(transaction, setting.slot, setting.joint, setting.index, setting.value)
+              : kernel.stage(transaction, setting.slot, setting.joint, setting.index, setting.value);
       require(status == Status::ok, "the kernel takes the changes");
     }
   }

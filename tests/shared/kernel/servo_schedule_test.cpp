@@ -1,11 +1,11 @@
-#include "sim/robot/servo_schedule.hpp"
+#include "shared/kernel/servo_schedule.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace proleg::sim {
+namespace proleg {
 namespace {
 
 constexpr std::uint32_t periods_us[] = {100, 700, 999, 1'000, 3'000, 7'001, 10'000, 20'000, 25'000, 100'000};
@@ -52,6 +52,23 @@ TEST(ServoSchedule, SamplesTheMiddleOfTheIntervalButNeverBeyondTheTick) {
   }
 }
 
+TEST(ServoSchedule, CountsFromTheSyncOfATickAsFromTheFirst) {
+  for (const std::uint32_t tick_us : ticks_us) {
+    for (const std::uint32_t period : periods_us) {
+      const ServoSchedule schedule(period, tick_us);
+      for (std::uint64_t tick = 0; tick < 300; ++tick) {
+        const std::uint64_t interval = schedule.first_interval(tick);
+        const std::uint32_t elapsed = schedule.first_start_us(tick);
+        EXPECT_EQ(tick * tick_us + elapsed, schedule.start_us(interval));
+        EXPECT_LT(elapsed, period);
+        if (elapsed < tick_us) {
+          EXPECT_EQ(schedule.fraction_at(elapsed), schedule.fraction(interval));
+        }
+      }
+    }
+  }
+}
+
 TEST(ServoSchedule, DoesNotDriftOverADay) {
   const ServoSchedule schedule(700, 10'000);
   constexpr std::uint64_t ticks_a_day = 8'640'000;
@@ -62,4 +79,4 @@ TEST(ServoSchedule, DoesNotDriftOverADay) {
 }
 
 }  // namespace
-}  // namespace proleg::sim
+}  // namespace proleg

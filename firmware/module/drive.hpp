@@ -1,0 +1,49 @@
+#pragma once
+
+#include "firmware/module/servo_driver.hpp"
+#include "shared/canopen/objects.hpp"
+#include "shared/canopen/power_state.hpp"
+#include "shared/canopen/robot_setup.hpp"
+#include "shared/kernel/kernel.hpp"
+
+namespace proleg::firmware {
+
+/// The servo as a drive of CiA 402: whether it has power, and which set-point it follows. The gait's set-point is
+/// computed whatever the drive does.
+class Drive {
+ public:
+  explicit Drive(ServoPort& port) : servo_(port) {}
+
+  void reset();
+  void configure(const ServoSchedule& schedule) { servo_.configure(schedule); }
+
+  [[nodiscard]] canopen::PowerControl& power() { return power_; }
+  [[nodiscard]] const canopen::PowerControl& power() const { return power_; }
+
+  /// Object 0x6060: canopen::mode_gait or mode_direct_position.
+  [[nodiscard]] std::int8_t mode() const { return mode_; }
+  void set_mode(std::int8_t mode) { mode_ = mode; }
+  /// Object 0x607A: the set-point of direct position, 90 degrees = 2^30. Taken at SYNC, cut to the joint's limits.
+  [[nodiscard]] std::int32_t target() const { return target_; }
+  void set_target(std::int32_t target) { target_ = target; }
+
+  /// At SYNC `tick`, after the kernel computed it.
+  void start_tick(Microseconds now, std::uint32_t tick, const Kernel& kernel, const canopen::AngleLimits& limits);
+
+  /// After everything that happened: gives the servo power or takes it. operational: NMT state; synchronised: the
+  /// set-point is that of the robot's tick.
+  void update(Microseconds now, bool operational, bool synchronised);
+
+  void poll(Microseconds now) { servo_.poll(now); }
+  [[nodiscard]] Microseconds next_deadline() const { return servo_.next_deadline(); }
+
+ private:
+  ServoDriver servo_;
+  canopen::PowerControl power_;
+  std::int8_t mode_ = canopen::mode_gait;
+  bool followed_gait_ = true;  ///< in the last tick
+  std::int32_t target_ = 0;
+  std::int32_t setpoint_ = 0;  ///< towards which the servo moves, whatever the mode
+};
+
+}  // namespace proleg::firmware

@@ -1,0 +1,51 @@
+#include "firmware/module/emergencies.hpp"
+
+namespace proleg::firmware {
+namespace {
+
+using canopen::EmergencyCode;
+
+EmergencyCode code_of(Fault fault) {
+  switch (fault) {
+    case Fault::identifier_collision:
+      return EmergencyCode::identifier_collision;
+    case Fault::sync_lost:
+      return EmergencyCode::sync_lost;
+    case Fault::heartbeat_lost:
+      return EmergencyCode::heartbeat_lost;
+    case Fault::foreign_configuration:
+      break;
+  }
+  return EmergencyCode::foreign_configuration;
+}
+
+}  // namespace
+
+void Emergencies::report(EmergencyCode code, std::uint32_t detail) {
+  if (network_.state() != canopen::NmtState::stopped) {
+    outbox_.send(encode(canopen::Emergency{board_.node, code, error_register(), detail}));
+  }
+}
+
+void Emergencies::raise(Fault fault, std::uint32_t detail) {
+  faults_ |= bit(fault);
+  report(code_of(fault), detail);
+}
+
+void Emergencies::clear(Fault fault) {
+  if (is_raised(fault)) {
+    faults_ = static_cast<std::uint8_t>(faults_ & ~bit(fault));
+    report(EmergencyCode::none, static_cast<std::uint32_t>(code_of(fault)));
+  }
+}
+
+std::uint8_t Emergencies::error_register() const {
+  constexpr unsigned generic = 1U << 0U;
+  constexpr unsigned communication = 1U << 4U;
+  constexpr unsigned manufacturer_specific = 1U << 7U;
+  const unsigned foreign = bit(Fault::foreign_configuration);
+  return static_cast<std::uint8_t>((faults_ != 0 ? generic : 0U) | ((faults_ & ~foreign) != 0 ? communication : 0U) |
+                                   ((faults_ & foreign) != 0 ? manufacturer_specific : 0U));
+}
+
+}  // namespace proleg::firmware

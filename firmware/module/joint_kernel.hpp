@@ -1,0 +1,63 @@
+#pragma once
+
+#include "firmware/module/settings.hpp"
+#include "shared/gait/contact_debouncer.hpp"
+
+namespace proleg::firmware {
+
+/// The kernel of the module's one joint, and what a kernel does not know: whether it is configured, its limits, whether
+/// a transaction is open.
+class JointKernel {
+ public:
+  /// Takes the settings; a refusal leaves the joint unconfigured.
+  Status activate(const Settings& settings, std::uint8_t node);
+  void deactivate();
+  /// Whether the joint is configured.
+  [[nodiscard]] bool active() const { return active_; }
+  /// +-90 degrees until they are set.
+  [[nodiscard]] const canopen::AngleLimits& limits() const { return limits_; }
+
+  // All below: only if active().
+  [[nodiscard]] unsigned joint() const { return kernel_.first_joint(); }
+  [[nodiscard]] std::uint16_t robot_id() const { return robot_id_; }
+  [[nodiscard]] std::uint32_t configuration_crc() const { return crc_; }
+  /// The algorithm of a slot that drives the joint; null if the slot does not.
+  [[nodiscard]] const ActuationModule* algorithm(unsigned slot) const;
+
+  // Both belong before the start; restart() makes state 0 follow.
+  Status set_limits(const canopen::AngleLimits& limits);
+  Status set_parameter(unsigned slot, unsigned number, std::int32_t value);
+  /// To state 0. What is staged stays.
+  void restart();
+
+  Status open(std::uint16_t transaction);
+  [[nodiscard]] bool has_open_transaction() const { return open_; }
+  /// Under the open transaction.
+  Status stage(unsigned slot, unsigned number, bool internal, std::int32_t value);
+  /// The staged value; if there is none, the value in force.
+  [[nodiscard]] std::int32_t staged_parameter(unsigned slot, unsigned number) const;
+  Status commit(std::uint16_t transaction, std::uint32_t tick);
+
+  /// As Kernel::join().
+  void join(std::uint32_t tick) { kernel_.join(tick); }
+  /// Computes a tick, after `missed` ones whose SYNC was not heard; those have the contacts of the last tick before.
+  /// sensors: as they are at SYNC.
+  void advance(unsigned missed, std::uint8_t sensors);
+  /// A state frame of another joint.
+  void receive(unsigned joint, unsigned channel, const StateFrame& frame) { kernel_.receive(joint, channel, frame); }
+
+  [[nodiscard]] const Kernel& kernel() const { return kernel_; }
+
+ private:
+  static constexpr canopen::AngleLimits full_range{-quarter_turn, quarter_turn};
+
+  KernelOf<1> kernel_;
+  ContactDebouncer debouncer_;
+  bool active_ = false;
+  bool open_ = false;
+  std::uint16_t robot_id_ = 0;
+  std::uint32_t crc_ = 0;
+  canopen::AngleLimits limits_ = full_range;
+};
+
+}  // namespace proleg::firmware

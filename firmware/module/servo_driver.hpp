@@ -1,0 +1,58 @@
+#pragma once
+
+#include "firmware/module/ports.hpp"
+#include "shared/kernel/servo_schedule.hpp"
+
+namespace proleg::firmware {
+
+/// Gives the servo its pulses: along the line between two set-points, interval by interval; or, on its own clock, down
+/// to the safe pose.
+class ServoDriver {
+ public:
+  /// The safe pose, and the speed at which a quick stop goes there.
+  static constexpr std::int32_t safe_angle = 0;
+  static constexpr std::int32_t quick_stop_speed = 1 << 30;  ///< 90 degrees a second
+
+  explicit ServoDriver(ServoPort& port) : port_(port) {}
+
+  /// From reset: no pulses, and no line to follow.
+  void reset();
+  void configure(const ServoSchedule& schedule) { schedule_ = schedule; }
+
+  /// SYNC `tick` was at `now`, until the next one the set-point moves from `from` to `to` (90 degrees = 2^30). An
+  /// interval of the tick before that is still to come, because SYNC was early, is taken now.
+  void start_tick(Microseconds now, std::uint32_t tick, std::int32_t from, std::int32_t to);
+
+  /// Follows the line, from its next interval on.
+  void follow();
+  /// Ramps from the last pulse to the safe pose, then holds. A servo that was given no pulse yet stays off: nobody
+  /// knows where it is.
+  void quick_stop(Microseconds now);
+  /// No pulses.
+  void stop();
+
+  void poll(Microseconds now);
+  [[nodiscard]] Microseconds next_deadline() const;
+
+ private:
+  enum class Mode : std::uint8_t { off, following, ramping };
+
+  [[nodiscard]] bool interval_to_come() const { return elapsed_us_ < schedule_.tick_period_us(); }
+  /// Whoever is late takes the latest interval that has started, not all of them.
+  void skip_to(Microseconds since_sync_us);
+  void take_interval();
+  void take_ramp_step(Microseconds now);
+
+  ServoPort& port_;
+  ServoSchedule schedule_{20'000, 10'000};
+  Mode mode_ = Mode::off;
+  bool pulsing_ = false;  ///< the servo was given a pulse since it was off
+  std::int32_t from_ = 0;
+  std::int32_t to_ = 0;
+  std::int32_t angle_ = 0;          ///< of the last pulse
+  std::uint32_t elapsed_us_ = ~0U;  ///< from SYNC to the next interval; a tick period or more: none is to come
+  Microseconds sync_at_ = 0;
+  Microseconds next_step_ = never;  ///< of the ramp
+};
+
+}  // namespace proleg::firmware

@@ -1,0 +1,53 @@
+#include "firmware/module/tick_keeper.hpp"
+
+namespace proleg::firmware {
+namespace {
+
+constexpr unsigned counters = 128;
+
+std::uint8_t counter_of(std::uint32_t tick) { return static_cast<std::uint8_t>(tick % counters + 1U); }
+
+}  // namespace
+
+bool TickKeeper::announce(std::uint32_t tick, std::uint32_t coming) {
+  if (keeps_tick() && tick == coming - 1U) {
+    return true;
+  }
+  const bool fits = !keeps_tick() || tick - coming <= most_missed;
+  if (!fits) {
+    lose();
+  }
+  announced_ = true;
+  announced_tick_ = tick;
+  return fits;
+}
+
+SyncMeaning TickKeeper::sync(std::uint8_t counter, std::uint32_t coming) {
+  using Action = SyncMeaning::Action;
+  SyncMeaning meaning;
+  if (keeps_tick()) {
+    const unsigned ahead = (unsigned{counter} - counter_of(coming)) % counters;
+    if (ahead == counters - 1) {  // the one before once more
+      return meaning;
+    }
+    if (ahead <= most_missed && (!announced_ || announced_tick_ == coming + ahead)) {
+      announced_ = false;
+      meaning.joined = state_ == State::joining;
+      state_ = State::computing;
+      meaning.action = Action::compute;
+      meaning.missed = static_cast<std::uint8_t>(ahead);
+      return meaning;
+    }
+    state_ = State::lost;
+    meaning.lost = true;
+  }
+  if (announced_ && counter == counter_of(announced_tick_)) {
+    meaning.action = announced_tick_ == 0 ? Action::compute : Action::join;
+    meaning.tick = announced_tick_;
+    state_ = announced_tick_ == 0 ? State::computing : State::joining;
+  }
+  announced_ = false;
+  return meaning;
+}
+
+}  // namespace proleg::firmware

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "shared/can/can_port.hpp"
+
+namespace proleg {
+
+/// Frames that wait for a mailbox of the controller: lower identifiers first, equal ones in the order they came.
+class TransmitQueue {
+ public:
+  static constexpr std::size_t capacity = 16;
+
+  explicit TransmitQueue(CanPort& port) : port_(port) {}
+
+  /// Sends the frame now or keeps it. False, and nothing happens, if there is no room.
+  [[nodiscard]] bool push(const CanFrame& frame);
+  /// To be called when the controller has sent a frame.
+  void sent();
+  void clear() { size_ = 0; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+
+ private:
+  void hand_over();
+
+  CanPort& port_;
+  std::array<CanFrame, capacity> frames_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace proleg

@@ -1,0 +1,79 @@
+#pragma once
+
+// Changes in flight as the master makes them: which one is next, which wait for their tick, and the SDO writes of each.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "shared/canopen/robot_setup.hpp"
+
+namespace proleg::canopen {
+
+/// A parameter, or an internal value (a distortion), of a joint.
+struct ChangedValue {
+  std::uint8_t slot = 0;
+  std::uint8_t joint = 0;   ///< kernel order
+  std::uint8_t number = 0;  ///< of the parameter or internal value
+  bool internal = false;
+  std::int32_t value = 0;
+};
+
+/// Values that come into force together. At most max_staged_values of one joint.
+struct Change {
+  std::uint32_t tick = 0;
+  std::span<const ChangedValue> values;
+  bool dropped = false;  ///< set by the master: the change was not made (see Problem)
+};
+
+/// Change n travels as transaction n + 1 (modulo 65535), which is opened in every module.
+class ChangePlan {
+ public:
+  /// As many transactions wait in a module, one is open.
+  static constexpr std::size_t most_pending = max_transactions - 1;
+
+  /// kernel and changes must outlive the plan. Forgets what was dropped.
+  ChangePlan(const KernelConfiguration& kernel, std::span<Change> changes);
+
+  /// The first change that cannot be made: a value that its joint does not have, more values of a joint than there is
+  /// room for, a tick that is not after that of the change before.
+  [[nodiscard]] std::optional<std::size_t> find_bad() const;
+
+  /// The change that is to be staged next; size() if all are committed or dropped.
+  [[nodiscard]] std::size_t next() const { return next_; }
+  [[nodiscard]] std::size_t size() const { return changes_.size(); }
+  [[nodiscard]] const Change& operator[](std::size_t change) const { return changes_[change]; }
+  [[nodiscard]] static std::uint16_t transaction(std::size_t change) {
+    return static_cast<std::uint16_t>(change % 0xFFFFU + 1U);
+  }
+
+  /// Whether there is a next change and modules have room for it beside those that wait.
+  [[nodiscard]] bool can_stage() const;
+  void commit_next();
+  void drop_next();
+  /// Committed changes for this tick and earlier ones are in force.
+  void pass(std::uint32_t tick);
+
+  /// The n-th write that stages a change in the module of a joint.
+  [[nodiscard]] std::optional<SdoWrite> staging(std::size_t change, unsigned joint, std::size_t n) const;
+  /// The n-th write that gives a joint the parameters that changes before `end` have given it. (Internal values have
+  /// been overwritten by the gait since.)
+  [[nodiscard]] std::optional<SdoWrite> made_before(std::size_t end, unsigned joint, std::size_t n) const;
+
+ private:
+  [[nodiscard]] bool exists(const ChangedValue& value) const;
+  [[nodiscard]] bool fits(const Change& change) const;
+  [[nodiscard]] std::optional<std::int32_t> parameter_before(std::size_t end, unsigned joint, unsigned slot,
+                                                             unsigned parameter) const;
+  [[nodiscard]] std::uint8_t algorithm_id(unsigned slot) const {
+    return kernel_.slots[slot].algorithm->declaration().id;
+  }
+
+  const KernelConfiguration& kernel_;
+  std::span<Change> changes_;
+  std::size_t next_ = 0;
+  std::size_t waiting_ = 0;  ///< changes from here to next_ are dropped or wait for their tick
+};
+
+}  // namespace proleg::canopen

@@ -1,0 +1,272 @@
+#pragma once
+
+// The entries of the object dictionary that have fixed addresses. What follows from the algorithms' declarations:
+// objects.hpp.
+
+#include <array>
+
+#include "shared/canopen/messages.hpp"
+#include "shared/canopen/object.hpp"
+#include "shared/kernel/kernel.hpp"
+
+namespace proleg::canopen {
+
+/// Version of docs/protocol.md, major and minor in a byte each.
+inline constexpr std::uint16_t protocol_version = 0x0100;
+/// Not assigned by CiA: a placeholder ("PROL") until somebody who builds modules puts in the vendor id of his own.
+inline constexpr std::uint32_t placeholder_vendor = 0x50524F4C;
+/// A COB-ID with this bit belongs to no message: the PDO is off (CiA 301, 7.5.2.35).
+inline constexpr std::uint32_t pdo_off = 0x80000000;
+/// In the COB-ID of a transmit PDO: no remote frames (CiA 301, 7.5.2.37).
+inline constexpr std::uint32_t no_remote_frames = 0x40000000;
+/// In 0x1005: the module produces SYNC (CiA 301, 7.5.2.5).
+inline constexpr std::uint32_t produces_sync = 0x40000000;
+
+/// Modes of operation (0x6060): negative ones are the manufacturer's.
+inline constexpr std::int8_t mode_gait = -1;
+inline constexpr std::int8_t mode_direct_position = 8;  ///< cyclic synchronous position (CiA 402)
+
+/// What a mapping parameter says of an entry: index, sub-index and length in bits (CiA 301, 7.5.2.36).
+[[nodiscard]] constexpr std::uint32_t mapping_of(const Object& object) {
+  return std::uint32_t{object.address.index} << 16U | std::uint32_t{object.address.sub} << 8U |
+         8U * size_of(object.type);
+}
+
+namespace object {
+
+inline constexpr Range full_angle{static_cast<std::uint32_t>(-quarter_turn), quarter_turn};
+
+// Communication (CiA 301, section 7.5.2).
+
+inline constexpr Object device_type =
+    constant({0x1000, 0}, "Device type", DataType::unsigned32, 0x00020192, "servo drive, CiA 402");
+inline constexpr Object error_register =
+    read_only({0x1001, 0}, "Error register", DataType::unsigned8, "bit 0: an error; others as in CiA 301");
+inline constexpr Object sync_identifier = read_write(
+    {0x1005, 0}, "COB-ID SYNC message", DataType::unsigned32, identifier::sync, {identifier::sync, identifier::sync},
+    "0x40000080: the module produces SYNC and TICK, 0x80: another does", produces_sync | identifier::sync);
+inline constexpr Object tick_period = read_write({0x1006, 0}, "Communication cycle period", DataType::unsigned32,
+                                                 10'000, {1'000, 100'000}, "a tick, in microseconds");
+inline constexpr Object emergency_identifier =
+    node_identifier({0x1014, 0}, "COB-ID emergency message", identifier::emergency);
+
+inline constexpr ObjectGroup consumer_heartbeat{0x1016, ObjectCode::array, "Consumer heartbeat time"};
+inline constexpr Object host_heartbeat =
+    read_write(consumer_heartbeat.at(1), "Consumer heartbeat time of the host", DataType::unsigned32, 0,
+               {0, 0x007FFFFF}, "65536 * node + longest silence in ms; 0: none is expected");
+
+inline constexpr Object heartbeat_period = read_write({0x1017, 0}, "Producer heartbeat time", DataType::unsigned16, 0,
+                                                      full_range(DataType::unsigned16), "in ms; 0: off");
+
+inline constexpr ObjectGroup identity{0x1018, ObjectCode::record, "Identity object"};
+inline constexpr Object vendor = constant(identity.at(1), "Vendor-ID", DataType::unsigned32, placeholder_vendor,
+                                          "a placeholder, not assigned by CiA");
+inline constexpr Object product = read_only(identity.at(2), "Product code", DataType::unsigned32, "the board id");
+inline constexpr Object revision = constant(identity.at(3), "Revision number", DataType::unsigned32, 0x00010000,
+                                            "major and minor revision of this dictionary, 16 bits each");
+inline constexpr Object serial =
+    read_only(identity.at(4), "Serial number", DataType::unsigned32, "CRC-32 of the unique id, 0x2003");
+
+inline constexpr Object sync_counter_overflow = read_write(
+    {0x1019, 0}, "Synchronous counter overflow value", DataType::unsigned8, 128, {128, 128}, "SYNC counts 1 to 128");
+
+inline constexpr ObjectGroup sdo_server{0x1200, ObjectCode::record, "SDO server parameter"};
+inline constexpr Object sdo_request_identifier =
+    node_identifier(sdo_server.at(1), "COB-ID client to server", identifier::sdo_request);
+inline constexpr Object sdo_answer_identifier =
+    node_identifier(sdo_server.at(2), "COB-ID server to client", identifier::sdo_answer);
+
+// Device.
+
+inline constexpr ObjectGroup device{0x2000, ObjectCode::record, "Device"};
+inline constexpr Object version =
+    constant(device.at(1), "Protocol version", DataType::unsigned16, protocol_version, "major and minor, a byte each");
+inline constexpr Object frame_layout =
+    constant(device.at(2), "State frame layout", DataType::unsigned8, 1, "docs/protocol.md, State frame");
+inline constexpr Object core_fingerprint =
+    read_only(device.at(3), "Core fingerprint", DataType::unsigned32, "equal ones compute equal bits");
+inline constexpr Object board_id =
+    read_only(device.at(4), "Board id", DataType::unsigned16, "1: reference board STM32F405");
+inline constexpr Object capabilities = read_only(device.at(5), "Capabilities", DataType::unsigned32, "bits, 0 so far");
+
+inline constexpr ObjectGroup place{0x2001, ObjectCode::record, "Place in the robot"};
+inline constexpr Object joint_index =
+    read_write(place.at(1), "Joint index", DataType::unsigned8, 0, {0, max_joints - 1}, "0: the joint at the head");
+inline constexpr Object joint_count =
+    read_write(place.at(2), "Joint count", DataType::unsigned8, 1, {1, max_joints}, "joints of the robot");
+inline constexpr Object front_node = read_write(place.at(3), "Front node", DataType::unsigned8, 0, {0, highest_node},
+                                                "node id of the next joint towards the head; 0: none");
+inline constexpr Object rear_node = read_write(place.at(4), "Rear node", DataType::unsigned8, 0, {0, highest_node},
+                                               "node id of the next joint towards the tail; 0: none");
+inline constexpr Object robot_id =
+    read_write(place.at(5), "Robot id", DataType::unsigned16, 1, full_range(DataType::unsigned16), "as in COMMIT");
+inline constexpr Object configuration_crc = read_only(place.at(6), "Configuration CRC", DataType::unsigned32,
+                                                      "CRC-32 of what all modules agree on, as in TICK");
+inline constexpr Object current_tick = read_only(place.at(7), "Current tick", DataType::unsigned32);
+inline constexpr Object refusal = read_only(place.at(8), "Refusal", DataType::unsigned8,
+                                            "why the kernel refused the last request that it refused; 0: none");
+
+inline constexpr ObjectGroup unique_ids{0x2003, ObjectCode::array, "Unique id"};
+inline constexpr ObjectArray unique_id{
+    read_only(unique_ids.at(1), "Unique id, word", DataType::unsigned32, "of 96 bits, the lowest word first"), 3};
+
+inline constexpr ObjectGroup staging{0x2004, ObjectCode::record, "Staging"};
+inline constexpr Object transaction =
+    read_write(staging.at(1), "Transaction", DataType::unsigned16, 0, full_range(DataType::unsigned16),
+               "a write opens the transaction; what is staged under another number and not committed is dropped");
+inline constexpr Object staged_count =
+    read_only(staging.at(2), "Staged values", DataType::unsigned8, "number of values staged in the transaction");
+
+inline constexpr ObjectGroup kernel{0x2005, ObjectCode::record, "Control kernel"};
+inline constexpr Object seed_low = read_write(kernel.at(1), "Seed, lower half", DataType::unsigned32, 1,
+                                              full_range(DataType::unsigned32), "of the noise, one for all joints");
+inline constexpr Object seed_high =
+    read_write(kernel.at(2), "Seed, upper half", DataType::unsigned32, 0, full_range(DataType::unsigned32));
+inline constexpr Object servo_period = read_write(kernel.at(3), "Servo period", DataType::unsigned32, 20'000,
+                                                  {100, 100'000}, "between two pulses, in microseconds");
+inline constexpr Object lower_limit = read_write(kernel.at(4), "Lower limit", DataType::integer32, full_angle.minimum,
+                                                 full_angle, "of the joint angle; 90 degrees = 2^30");
+inline constexpr Object upper_limit = read_write(kernel.at(5), "Upper limit", DataType::integer32, full_angle.maximum,
+                                                 full_angle, "of the joint angle; 90 degrees = 2^30");
+inline constexpr Object activate = read_write(kernel.at(6), "Activate", DataType::unsigned8, 0, {0, 1},
+                                              "1: takes place, slots, seed and periods; 0: not configured");
+
+inline constexpr ObjectGroup slot_algorithms{0x2006, ObjectCode::array, "Slot algorithms"};
+inline constexpr ObjectArray slot_algorithm{read_write(slot_algorithms.at(1), "Algorithm of slot", DataType::unsigned8,
+                                                       0, {0, 127}, "algorithm id; 0: the slot is empty"),
+                                            max_slots};
+inline constexpr ObjectGroup slot_groups_low{0x2007, ObjectCode::array, "Slot groups, joints 0-31"};
+inline constexpr ObjectArray slot_group_low{
+    read_write(slot_groups_low.at(1), "Joints 0-31 of slot", DataType::unsigned32, 0, full_range(DataType::unsigned32),
+               "bit j: joint j"),
+    max_slots};
+inline constexpr ObjectGroup slot_groups_high{0x2008, ObjectCode::array, "Slot groups, joints 32-63"};
+inline constexpr ObjectArray slot_group_high{
+    read_write(slot_groups_high.at(1), "Joints 32-63 of slot", DataType::unsigned32, 0,
+               full_range(DataType::unsigned32), "bit j: joint 32 + j"),
+    max_slots};
+
+// State frames, by channel: 0 is the first broadcasting slot of a joint, 1 the second.
+
+inline constexpr std::array own_frames{
+    ObjectGroup{0x2010, ObjectCode::array, "Own state frame"},
+    ObjectGroup{0x2011, ObjectCode::array, "Own second state frame"},
+};
+inline constexpr std::array<std::array<Object, 2>, max_channels> own_frame{{
+    {read_only(own_frames[0].at(1), "Bytes 0-3", DataType::unsigned32, "as sent last"),
+     read_only(own_frames[0].at(2), "Bytes 4-7", DataType::unsigned32)},
+    {read_only(own_frames[1].at(1), "Bytes 0-3", DataType::unsigned32, "0 unless two slots of the joint broadcast"),
+     read_only(own_frames[1].at(2), "Bytes 4-7", DataType::unsigned32)},
+}};
+
+inline constexpr std::array received_frames{
+    ObjectGroup{0x2100, ObjectCode::array, "Received state frame of joint", max_joints},
+    ObjectGroup{0x2140, ObjectCode::array, "Received second state frame of joint", max_joints},
+};
+[[nodiscard]] constexpr JointObjects half_frame(unsigned channel, std::uint8_t sub, std::string_view name) {
+  Object first = read_only(received_frames[channel].at(sub), name, DataType::unsigned32, "as heard last");
+  first.access = Access::by_pdo;
+  return {first};
+}
+inline constexpr std::array<std::array<JointObjects, 2>, max_channels> received_frame{{
+    {half_frame(0, 1, "Bytes 0-3"), half_frame(0, 2, "Bytes 4-7")},
+    {half_frame(1, 1, "Bytes 0-3"), half_frame(1, 2, "Bytes 4-7")},
+}};
+
+// Process data objects. Contents are fixed; what is set is from whom a module listens.
+
+/// Transmission types (CiA 301, 7.5.2.35 and 7.5.2.37).
+inline constexpr std::uint32_t at_every_sync = 1;
+inline constexpr std::uint32_t on_event = 255;
+
+inline constexpr ObjectGroup command_reception{0x1400, ObjectCode::record, "RPDO communication parameter, command"};
+inline constexpr Object command_identifier =
+    node_identifier(command_reception.at(1), "COB-ID used by RPDO", identifier::command);
+inline constexpr Object command_transmission =
+    constant(command_reception.at(2), "Transmission type", DataType::unsigned8, on_event, "acts at once");
+
+inline constexpr std::array frame_receptions{
+    ObjectGroup{0x1410, ObjectCode::record, "RPDO communication parameter, state frame of joint", max_joints},
+    ObjectGroup{0x1450, ObjectCode::record, "RPDO communication parameter, second state frame of joint", max_joints},
+};
+[[nodiscard]] constexpr JointObjects frame_identifier(unsigned channel, std::uint32_t base) {
+  return {read_write(frame_receptions[channel].at(1), "COB-ID used by RPDO", DataType::unsigned32, pdo_off,
+                     {base + lowest_node, base + highest_node}, "0x80000000: off", pdo_off)};
+}
+/// From whom the state frames of a joint come; off for the module's own joint.
+inline constexpr std::array<JointObjects, max_channels> state_frame_identifier{
+    frame_identifier(0, identifier::state_frame),
+    frame_identifier(1, identifier::second_state),
+};
+inline constexpr std::array<JointObjects, max_channels> state_frame_transmission{
+    JointObjects{constant(frame_receptions[0].at(2), "Transmission type", DataType::unsigned8, at_every_sync,
+                          "acts at the next SYNC")},
+    JointObjects{constant(frame_receptions[1].at(2), "Transmission type", DataType::unsigned8, at_every_sync,
+                          "acts at the next SYNC")},
+};
+
+// Drive (CiA 402).
+
+inline constexpr Object controlword =
+    read_write({0x6040, 0}, "Controlword", DataType::unsigned16, 0, full_range(DataType::unsigned16));
+inline constexpr Object statusword = read_only({0x6041, 0}, "Statusword", DataType::unsigned16);
+inline constexpr Object mode =
+    read_write({0x6060, 0}, "Modes of operation", DataType::integer8, static_cast<std::uint32_t>(mode_gait),
+               {static_cast<std::uint32_t>(mode_gait), static_cast<std::uint32_t>(mode_gait)},
+               "-1: gait; 8: cyclic synchronous position", mode_direct_position);
+inline constexpr Object mode_display = read_only({0x6061, 0}, "Modes of operation display", DataType::integer8);
+inline constexpr Object target_position =
+    read_write({0x607A, 0}, "Target position", DataType::integer32, 0, full_angle, "joint angle; 90 degrees = 2^30");
+inline constexpr Object supported_modes = constant({0x6502, 0}, "Supported drive modes", DataType::unsigned32,
+                                                   0x00010080, "bit 7: cyclic synchronous position; bit 16: gait");
+
+// What is in the process data objects.
+
+inline constexpr ObjectGroup command_mapping{0x1600, ObjectCode::record, "RPDO mapping parameter, command"};
+inline constexpr std::array command_mapped{
+    constant(command_mapping.at(1), "Controlword", DataType::unsigned32, mapping_of(controlword)),
+    constant(command_mapping.at(2), "Target position", DataType::unsigned32, mapping_of(target_position)),
+};
+inline constexpr std::array frame_reception_mappings{
+    ObjectGroup{0x1610, ObjectCode::record, "RPDO mapping parameter, state frame of joint", max_joints},
+    ObjectGroup{0x1650, ObjectCode::record, "RPDO mapping parameter, second state frame of joint", max_joints},
+};
+[[nodiscard]] constexpr JointObjects received_mapping(unsigned channel, std::uint8_t sub) {
+  const Object& half = received_frame[channel][sub - 1U].first;
+  return {constant(frame_reception_mappings[channel].at(sub), half.name, DataType::unsigned32, mapping_of(half)),
+          0x10000};
+}
+inline constexpr std::array<std::array<JointObjects, 2>, max_channels> received_mapped{{
+    {received_mapping(0, 1), received_mapping(0, 2)},
+    {received_mapping(1, 1), received_mapping(1, 2)},
+}};
+
+inline constexpr std::array frame_transmissions{
+    ObjectGroup{0x1800, ObjectCode::record, "TPDO communication parameter, state frame"},
+    ObjectGroup{0x1801, ObjectCode::record, "TPDO communication parameter, second state frame"},
+};
+inline constexpr std::array own_frame_identifier{
+    node_identifier(frame_transmissions[0].at(1), "COB-ID used by TPDO", no_remote_frames | identifier::state_frame),
+    node_identifier(frame_transmissions[1].at(1), "COB-ID used by TPDO", no_remote_frames | identifier::second_state,
+                    "sent if two slots of the joint broadcast"),
+};
+inline constexpr std::array own_frame_transmission{
+    constant(frame_transmissions[0].at(2), "Transmission type", DataType::unsigned8, at_every_sync),
+    constant(frame_transmissions[1].at(2), "Transmission type", DataType::unsigned8, at_every_sync),
+};
+inline constexpr std::array frame_transmission_mappings{
+    ObjectGroup{0x1A00, ObjectCode::record, "TPDO mapping parameter, state frame"},
+    ObjectGroup{0x1A01, ObjectCode::record, "TPDO mapping parameter, second state frame"},
+};
+[[nodiscard]] constexpr Object own_mapping(unsigned channel, std::uint8_t sub) {
+  const Object& half = own_frame[channel][sub - 1U];
+  return constant(frame_transmission_mappings[channel].at(sub), half.name, DataType::unsigned32, mapping_of(half));
+}
+inline constexpr std::array<std::array<Object, 2>, max_channels> own_mapped{{
+    {own_mapping(0, 1), own_mapping(0, 2)},
+    {own_mapping(1, 1), own_mapping(1, 2)},
+}};
+
+}  // namespace object
+
+}  // namespace proleg::canopen

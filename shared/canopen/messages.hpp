@@ -1,0 +1,148 @@
+#pragma once
+
+// Every message of the protocol but SDO: identifiers, and the frames to and from their meaning
+// (docs/protocol.md). A decoder returns nothing if the frame has another identifier, or a length or content that the
+// protocol does not allow.
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "shared/can/can_frame.hpp"
+#include "shared/gait/state_frame.hpp"
+
+namespace proleg::canopen {
+
+inline constexpr std::uint8_t lowest_node = 1;
+inline constexpr std::uint8_t highest_node = 126;
+inline constexpr std::uint8_t host_node = 127;
+
+/// Predefined connection set (CiA 301, 7.3.5) and manufacturer identifiers.
+namespace identifier {
+inline constexpr std::uint16_t nmt = 0x000;
+inline constexpr std::uint16_t sync = 0x080;
+inline constexpr std::uint16_t emergency = 0x080;     ///< + node
+inline constexpr std::uint16_t state_frame = 0x180;   ///< + node; of the first broadcasting slot
+inline constexpr std::uint16_t command = 0x200;       ///< + node
+inline constexpr std::uint16_t second_state = 0x280;  ///< + node; of the second broadcasting slot
+inline constexpr std::uint16_t monitoring = 0x380;    ///< + node
+inline constexpr std::uint16_t sdo_answer = 0x580;    ///< + node
+inline constexpr std::uint16_t sdo_request = 0x600;   ///< + node
+inline constexpr std::uint16_t commit = 0x680;
+inline constexpr std::uint16_t tick = 0x681;
+inline constexpr std::uint16_t heartbeat = 0x700;  ///< + node
+}  // namespace identifier
+
+/// CiA 301, table 5. node 0: all.
+enum class NmtCommand : std::uint8_t {
+  start = 0x01,
+  stop = 0x02,
+  enter_pre_operational = 0x80,
+  reset_node = 0x81,
+  reset_communication = 0x82,
+};
+struct NmtRequest {
+  NmtCommand command;
+  std::uint8_t node;
+
+  friend bool operator==(const NmtRequest&, const NmtRequest&) = default;
+};
+[[nodiscard]] CanFrame encode(const NmtRequest& request);
+[[nodiscard]] std::optional<NmtRequest> decode_nmt(const CanFrame& frame);
+
+/// CiA 301, 7.2.8.3.2.2.
+enum class NmtState : std::uint8_t { boot_up = 0x00, stopped = 0x04, operational = 0x05, pre_operational = 0x7F };
+struct Heartbeat {
+  std::uint8_t node;
+  NmtState state;  ///< boot_up in the boot-up message
+
+  friend bool operator==(const Heartbeat&, const Heartbeat&) = default;
+};
+[[nodiscard]] CanFrame encode(const Heartbeat& heartbeat);
+[[nodiscard]] std::optional<Heartbeat> decode_heartbeat(const CanFrame& frame);
+
+/// SYNC of a tick: the counter is tick mod 128 + 1.
+[[nodiscard]] CanFrame encode_sync(std::uint32_t tick);
+/// The counter, 1 to 128.
+[[nodiscard]] std::optional<std::uint8_t> decode_sync(const CanFrame& frame);
+
+/// Announces the SYNC that follows.
+struct TickMessage {
+  std::uint32_t tick;
+  std::uint32_t configuration_crc;
+
+  friend bool operator==(const TickMessage&, const TickMessage&) = default;
+};
+[[nodiscard]] CanFrame encode(const TickMessage& message);
+[[nodiscard]] std::optional<TickMessage> decode_tick(const CanFrame& frame);
+
+struct CommitMessage {
+  std::uint16_t transaction;
+  std::uint32_t tick;
+  std::uint16_t robot;
+
+  friend bool operator==(const CommitMessage&, const CommitMessage&) = default;
+};
+[[nodiscard]] CanFrame encode(const CommitMessage& message);
+[[nodiscard]] std::optional<CommitMessage> decode_commit(const CanFrame& frame);
+
+/// Emergency error codes (CiA 301, table 26, and 0xFFxx of ours).
+enum class EmergencyCode : std::uint16_t {
+  none = 0x0000,  ///< the error is over
+  over_current = 0x2310,
+  over_temperature = 0x4210,
+  not_configured = 0x6300,  ///< started before the kernel had a configuration
+  heartbeat_lost = 0x8130,
+  identifier_collision = 0x8150,  ///< another module sends with this node's id
+  wrong_length = 0x8210,          ///< of a PDO
+  sync_lost = 0x8700,
+  commit_too_late = 0xFF01,
+  commit_not_staged = 0xFF02,
+  foreign_configuration = 0xFF03,  ///< the CRC in TICK is not the module's own
+  rejoined = 0xFF04,               ///< not a fault: back in the robot, state taken from the neighbours
+  unknown_label = 0xFF05,          ///< state frames of a joint carry labels that fit no tick
+};
+/// A code that is not listed is handed on as it is.
+struct Emergency {
+  std::uint8_t node;
+  EmergencyCode code;
+  std::uint8_t error_register;  ///< object 0x1001
+  std::uint32_t detail = 0;     ///< bytes 3 to 6: a tick, a transaction, a joint, ... as the code says; byte 7 is 0
+
+  friend bool operator==(const Emergency&, const Emergency&) = default;
+};
+[[nodiscard]] CanFrame encode(const Emergency& emergency);
+[[nodiscard]] std::optional<Emergency> decode_emergency(const CanFrame& frame);
+/// One short phrase for people.
+[[nodiscard]] std::string_view describe(EmergencyCode code);
+
+/// channel: 0 or 1.
+[[nodiscard]] CanFrame encode_state(std::uint8_t node, unsigned channel, const StateFrame& state);
+/// The 8 bytes; nothing if the frame is shorter. The identifier is not looked at.
+[[nodiscard]] std::optional<StateFrame> decode_state(const CanFrame& frame);
+
+/// To a module, at any time (RPDO1).
+struct Command {
+  std::uint8_t node;
+  std::uint16_t controlword;
+  std::int32_t target;  ///< joint angle; 90 degrees = 2^30
+
+  friend bool operator==(const Command&, const Command&) = default;
+};
+[[nodiscard]] CanFrame encode(const Command& command);
+[[nodiscard]] std::optional<Command> decode_command(const CanFrame& frame);
+
+/// What a module measures, every 10th SYNC.
+struct Monitoring {
+  std::uint8_t node;
+  std::int16_t angle;         ///< 90 degrees = 2^14
+  std::uint16_t current_ma;   ///< of the servo
+  std::int8_t temperature_c;  ///< degrees Celsius
+  std::uint8_t faults;        ///< object 0x1001
+
+  friend bool operator==(const Monitoring&, const Monitoring&) = default;
+};
+[[nodiscard]] CanFrame encode(const Monitoring& monitoring);
+[[nodiscard]] std::optional<Monitoring> decode_monitoring(const CanFrame& frame);
+
+}  // namespace proleg::canopen

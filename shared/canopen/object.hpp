@@ -1,0 +1,197 @@
+#pragma once
+
+// What an entry of the object dictionary is (CiA 301, section 7.4). The entries themselves: declared_objects.hpp.
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "shared/gait/joint_mask.hpp"
+
+namespace proleg::canopen {
+
+/// CiA 301, table 44: the types that fit into an expedited SDO.
+enum class DataType : std::uint8_t {
+  integer8 = 0x02,
+  integer16 = 0x03,
+  integer32 = 0x04,
+  unsigned8 = 0x05,
+  unsigned16 = 0x06,
+  unsigned32 = 0x07,
+};
+
+/// 1, 2 or 4 bytes.
+[[nodiscard]] constexpr std::uint8_t size_of(DataType type) {
+  switch (type) {
+    case DataType::integer8:
+    case DataType::unsigned8:
+      return 1;
+    case DataType::integer16:
+    case DataType::unsigned16:
+      return 2;
+    default:
+      return 4;
+  }
+}
+
+[[nodiscard]] constexpr bool is_signed(DataType type) {
+  return type == DataType::integer8 || type == DataType::integer16 || type == DataType::integer32;
+}
+
+/// The low bytes of a value, as many as the type has, as 32 bits: signed types are sign-extended.
+[[nodiscard]] constexpr std::uint32_t extend(DataType type, std::uint32_t value) {
+  const unsigned unused = 32U - 8U * size_of(type);
+  if (is_signed(type)) {
+    return static_cast<std::uint32_t>(static_cast<std::int32_t>(value << unused) >> unused);
+  }
+  return (value << unused) >> unused;
+}
+
+/// The range of a type.
+[[nodiscard]] constexpr std::uint32_t lowest(DataType type) {
+  return is_signed(type) ? extend(type, 1U << (8U * size_of(type) - 1U)) : 0;
+}
+[[nodiscard]] constexpr std::uint32_t highest(DataType type) { return extend(type, ~lowest(type)); }
+
+/// What SDO may do. `by_pdo`: SDO reads, and only a receive PDO writes.
+enum class Access : std::uint8_t { read_only, read_write, constant, by_pdo };
+
+/// CiA 301, table 42.
+enum class ObjectCode : std::uint8_t { variable = 0x07, array = 0x08, record = 0x09 };
+
+/// Where an entry is: index and sub-index.
+struct Address {
+  std::uint16_t index = 0;
+  std::uint8_t sub = 0;
+
+  friend constexpr bool operator==(Address, Address) = default;
+};
+
+/// An entry. Values travel as 32 bits; signed types are sign-extended.
+struct Object {
+  Address address;
+  std::string_view name;
+  DataType type;
+  Access access;
+  std::uint32_t default_value;  ///< of a constant: its value. The node id is added where adds_node_id.
+  std::uint32_t minimum;        ///< compared as signed for signed types
+  std::uint32_t maximum;
+  bool adds_node_id = false;  ///< the value is default_value + node id and never another (CiA 306, "$NODEID+")
+  std::optional<std::uint32_t> also_allowed = {};  ///< a value outside minimum to maximum, such as "off"
+  std::string_view help = {};                      ///< a short phrase: unit and meaning
+};
+
+/// An entry that nobody changes.
+[[nodiscard]] constexpr Object constant(Address address, std::string_view name, DataType type, std::uint32_t value,
+                                        std::string_view help = {}) {
+  return {address, name, type, Access::constant, value, lowest(type), highest(type), false, std::nullopt, help};
+}
+/// An entry that only the device changes; its default value says nothing.
+[[nodiscard]] constexpr Object read_only(Address address, std::string_view name, DataType type,
+                                         std::string_view help = {}) {
+  return {address, name, type, Access::read_only, 0, lowest(type), highest(type), false, std::nullopt, help};
+}
+/// The identifier `base` + node id of a message of the predefined connection set.
+[[nodiscard]] constexpr Object node_identifier(Address address, std::string_view name, std::uint32_t base,
+                                               std::string_view help = {}) {
+  constexpr DataType type = DataType::unsigned32;
+  return {address, name, type, Access::read_only, base, lowest(type), highest(type), true, std::nullopt, help};
+}
+struct Range {
+  std::uint32_t minimum;
+  std::uint32_t maximum;
+};
+[[nodiscard]] constexpr Range full_range(DataType type) { return {lowest(type), highest(type)}; }
+[[nodiscard]] constexpr Object read_write(Address address, std::string_view name, DataType type,
+                                          std::uint32_t default_value, Range range, std::string_view help = {},
+                                          std::optional<std::uint32_t> also_allowed = std::nullopt) {
+  return {address,       name,          type,  Access::read_write, default_value,
+          range.minimum, range.maximum, false, also_allowed,       help};
+}
+
+/// An index with sub-indices, or several that are alike. Sub-index 0, the highest sub-index supported, follows from the
+/// entries and is not declared.
+struct ObjectGroup {
+  std::uint16_t index;
+  ObjectCode code;  ///< array or record
+  std::string_view name;
+  std::uint8_t count = 1;  ///< indices: `index` and those that follow it, one a joint
+
+  [[nodiscard]] constexpr Address at(std::uint8_t sub) const { return {index, sub}; }
+};
+
+/// Entries alike at `count` sub-indices that follow each other.
+struct ObjectArray {
+  Object first;
+  std::uint8_t count;
+
+  [[nodiscard]] constexpr Address address(unsigned position) const {
+    return {first.address.index, static_cast<std::uint8_t>(first.address.sub + position)};
+  }
+};
+
+/// Entries alike at 64 indices that follow each other, one a joint.
+struct JointObjects {
+  Object first;
+  std::uint32_t default_step = 0;  ///< default value of an entry minus that of the one before
+  static constexpr std::uint8_t count = max_joints;
+
+  [[nodiscard]] constexpr Address address(unsigned joint) const {
+    return {static_cast<std::uint16_t>(first.address.index + joint), first.address.sub};
+  }
+};
+
+/// Whether `value`, as 32 bits, is less than `other` in the order of the type.
+[[nodiscard]] constexpr bool is_less(DataType type, std::uint32_t value, std::uint32_t other) {
+  return is_signed(type) ? static_cast<std::int32_t>(value) < static_cast<std::int32_t>(other) : value < other;
+}
+
+/// The value of an entry that can have only one; nothing if it depends on the device's state.
+[[nodiscard]] constexpr std::optional<std::uint32_t> fixed_value(const Object& object, std::uint8_t node) {
+  if (object.adds_node_id) {
+    return object.default_value + node;
+  }
+  if (object.access == Access::constant) {
+    return object.default_value;
+  }
+  return std::nullopt;
+}
+
+/// SDO abort codes (CiA 301, table 22).
+enum class AbortCode : std::uint32_t {
+  none = 0,
+  toggle_bit = 0x05030000,
+  time_out = 0x05040000,
+  unknown_command = 0x05040001,
+  out_of_memory = 0x05040005,
+  unsupported_access = 0x06010000,
+  write_only = 0x06010001,
+  read_only = 0x06010002,
+  no_such_object = 0x06020000,
+  cannot_be_mapped = 0x06040041,
+  general_incompatibility = 0x06040043,
+  wrong_length = 0x06070010,
+  no_such_sub_index = 0x06090011,
+  out_of_range = 0x06090030,
+  above_maximum = 0x06090031,
+  below_minimum = 0x06090032,
+  general_error = 0x08000000,
+  refused_by_application = 0x08000020,
+  refused_by_state = 0x08000022,  ///< "because of the present device state"
+};
+
+/// One short phrase in English for messages; for an unknown code "unknown abort code".
+[[nodiscard]] std::string_view describe(AbortCode code);
+
+/// `none`, or why the value, as 32 bits, is not one of those that the declaration allows.
+[[nodiscard]] constexpr AbortCode check_range(const Object& object, std::uint32_t value) {
+  if (object.also_allowed && value == *object.also_allowed) {
+    return AbortCode::none;
+  }
+  if (is_less(object.type, value, object.minimum)) {
+    return AbortCode::below_minimum;
+  }
+  return is_less(object.type, object.maximum, value) ? AbortCode::above_maximum : AbortCode::none;
+}
+
+}  // namespace proleg::canopen

@@ -1,0 +1,247 @@
+#include "shared/canopen/objects.hpp"
+
+#include <iterator>
+
+#include "shared/gait/registry.hpp"
+
+namespace proleg::canopen {
+namespace {
+
+constexpr ObjectRow row(const Object& object) { return {&object, 1, 1, 0}; }
+constexpr ObjectRow row(const ObjectArray& array) { return {&array.first, 1, array.count, 0}; }
+constexpr ObjectRow row(const JointObjects& series) {
+  return {&series.first, JointObjects::count, 1, series.default_step};
+}
+
+constexpr ObjectRow rows[] = {
+    row(object::device_type),
+    row(object::error_register),
+    row(object::sync_identifier),
+    row(object::tick_period),
+    row(object::emergency_identifier),
+    row(object::host_heartbeat),
+    row(object::heartbeat_period),
+    row(object::vendor),
+    row(object::product),
+    row(object::revision),
+    row(object::serial),
+    row(object::sync_counter_overflow),
+    row(object::sdo_request_identifier),
+    row(object::sdo_answer_identifier),
+    row(object::command_identifier),
+    row(object::command_transmission),
+    row(object::state_frame_identifier[0]),
+    row(object::state_frame_transmission[0]),
+    row(object::state_frame_identifier[1]),
+    row(object::state_frame_transmission[1]),
+    row(object::command_mapped[0]),
+    row(object::command_mapped[1]),
+    row(object::received_mapped[0][0]),
+    row(object::received_mapped[0][1]),
+    row(object::received_mapped[1][0]),
+    row(object::received_mapped[1][1]),
+    row(object::own_frame_identifier[0]),
+    row(object::own_frame_transmission[0]),
+    row(object::own_frame_identifier[1]),
+    row(object::own_frame_transmission[1]),
+    row(object::own_mapped[0][0]),
+    row(object::own_mapped[0][1]),
+    row(object::own_mapped[1][0]),
+    row(object::own_mapped[1][1]),
+    row(object::version),
+    row(object::frame_layout),
+    row(object::core_fingerprint),
+    row(object::board_id),
+    row(object::capabilities),
+    row(object::joint_index),
+    row(object::joint_count),
+    row(object::front_node),
+    row(object::rear_node),
+    row(object::robot_id),
+    row(object::configuration_crc),
+    row(object::current_tick),
+    row(object::refusal),
+    row(object::unique_id),
+    row(object::transaction),
+    row(object::staged_count),
+    row(object::seed_low),
+    row(object::seed_high),
+    row(object::servo_period),
+    row(object::lower_limit),
+    row(object::upper_limit),
+    row(object::activate),
+    row(object::slot_algorithm),
+    row(object::slot_group_low),
+    row(object::slot_group_high),
+    row(object::own_frame[0][0]),
+    row(object::own_frame[0][1]),
+    row(object::own_frame[1][0]),
+    row(object::own_frame[1][1]),
+    row(object::received_frame[0][0]),
+    row(object::received_frame[0][1]),
+    row(object::received_frame[1][0]),
+    row(object::received_frame[1][1]),
+    row(object::controlword),
+    row(object::statusword),
+    row(object::mode),
+    row(object::mode_display),
+    row(object::target_position),
+    row(object::supported_modes),
+};
+
+constexpr const ObjectGroup* groups[] = {
+    &object::consumer_heartbeat,
+    &object::identity,
+    &object::sdo_server,
+    &object::command_reception,
+    &object::frame_receptions[0],
+    &object::frame_receptions[1],
+    &object::command_mapping,
+    &object::frame_reception_mappings[0],
+    &object::frame_reception_mappings[1],
+    &object::frame_transmissions[0],
+    &object::frame_transmissions[1],
+    &object::frame_transmission_mappings[0],
+    &object::frame_transmission_mappings[1],
+    &object::device,
+    &object::place,
+    &object::unique_ids,
+    &object::staging,
+    &object::kernel,
+    &object::slot_algorithms,
+    &object::slot_groups_low,
+    &object::slot_groups_high,
+    &object::own_frames[0],
+    &object::own_frames[1],
+    &object::received_frames[0],
+    &object::received_frames[1],
+};
+
+constexpr std::uint16_t last_index = rows[std::size(rows) - 1].first->address.index;
+
+constexpr bool covers(const ObjectGroup& group, std::uint16_t index) {
+  return index >= group.index && index - group.index < group.count;
+}
+
+/// Ascending, and sub-indices only where a group says what the index is.
+constexpr bool well_formed() {
+  std::uint32_t before = 0;
+  for (const ObjectRow& row : rows) {
+    const Address address = row.first->address;
+    const std::uint32_t position = std::uint32_t{address.index} << 8U | address.sub;
+    bool grouped = false;
+    for (const ObjectGroup* group : groups) {
+      grouped = grouped || (covers(*group, address.index) && group->count == row.indices);
+    }
+    if (position <= before || grouped != (address.sub > 0)) {
+      return false;
+    }
+    before = position;
+  }
+  return true;
+}
+static_assert(well_formed());
+
+/// An entry of the ranges.
+Object value_object(Address address, const ValueAddress& value) {
+  const Declaration& declaration = find_algorithm(value.algorithm)->declaration();
+  if (value.kind == ValueKind::internal_value) {
+    const InternalValue& internal = declaration.internal_values[value.number];
+    return read_write(address, internal.name, DataType::integer32, 0, full_range(DataType::integer32), internal.help);
+  }
+  const Parameter& parameter = declaration.parameters[value.number];
+  return read_write(address, parameter.name, DataType::integer32, static_cast<std::uint32_t>(parameter.default_value),
+                    {static_cast<std::uint32_t>(parameter.minimum), static_cast<std::uint32_t>(parameter.maximum)},
+                    parameter.help);
+}
+
+}  // namespace
+
+std::optional<ValueAddress> value_address(Address address) {
+  constexpr unsigned first = 0x3000;
+  constexpr unsigned range = 0x1000;
+  if (address.index < first || address.index >= first + value_kinds * range || address.sub < 1 ||
+      address.sub > max_slots) {
+    return std::nullopt;
+  }
+  const ValueAddress value{static_cast<ValueKind>((address.index - first) / range),
+                           static_cast<std::uint8_t>(address.index % range / 32U),
+                           static_cast<std::uint8_t>(address.index % 32U), static_cast<std::uint8_t>(address.sub - 1)};
+  const ActuationModule* algorithm = find_algorithm(value.algorithm);
+  if (algorithm == nullptr) {
+    return std::nullopt;
+  }
+  const Declaration& declaration = algorithm->declaration();
+  const std::size_t declared =
+      value.kind == ValueKind::internal_value ? declaration.internal_values.size() : declaration.parameters.size();
+  return value.number < declared ? std::optional(value) : std::nullopt;
+}
+
+std::optional<Object> find_object(Address address) {
+  if (const ObjectRow* row = find_row(address)) {
+    Object object = *row->first;
+    object.default_value += row->default_step * (address.index - object.address.index);
+    object.address = address;
+    return object;
+  }
+  if (const std::optional<ValueAddress> value = value_address(address)) {
+    return value_object(address, *value);
+  }
+  if (address.sub == 0) {
+    if (const std::optional<IndexInfo> info = find_index(address.index)) {
+      return constant(address, "Highest sub-index supported", DataType::unsigned8, info->highest_sub);
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<IndexInfo> find_index(std::uint16_t index) {
+  if (find_row({index, 0}) != nullptr) {
+    return IndexInfo{ObjectCode::variable, 0};
+  }
+  if (const ObjectGroup* group = find_group(index)) {
+    std::uint8_t highest = 0;
+    while (find_row({index, static_cast<std::uint8_t>(highest + 1)}) != nullptr) {
+      ++highest;
+    }
+    return IndexInfo{group->code, highest};
+  }
+  if (value_address({index, 1})) {
+    return IndexInfo{ObjectCode::array, max_slots};
+  }
+  return std::nullopt;
+}
+
+std::span<const ObjectRow> object_rows() { return rows; }
+
+const ObjectRow* find_row(Address address) {
+  for (const ObjectRow& row : rows) {
+    if (row.covers(address)) {
+      return &row;
+    }
+  }
+  return nullptr;
+}
+
+const ObjectGroup* find_group(std::uint16_t index) {
+  for (const ObjectGroup* group : groups) {
+    if (covers(*group, index)) {
+      return group;
+    }
+  }
+  return nullptr;
+}
+
+std::optional<Object> next_object(Address address) {
+  if (const std::optional<IndexInfo> info = find_index(address.index); info && address.sub < info->highest_sub) {
+    return find_object({address.index, static_cast<std::uint8_t>(address.sub + 1)});
+  }
+  for (unsigned index = address.index + 1U; index <= last_index; ++index) {
+    if (index_exists(static_cast<std::uint16_t>(index))) {
+      return find_object({static_cast<std::uint16_t>(index), 0});
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace proleg::canopen

@@ -1,0 +1,82 @@
+#pragma once
+
+// The object dictionary of a joint module, declared once: the module's SDO server, the host's names, the EDS and
+// docs/objects.md come from here.
+//
+// The entries with fixed addresses are the constants of namespace `object` (declared_objects.hpp). Three ranges follow
+// from the algorithms' declarations (shared/gait): index 0x3000 + 32 * algorithm id + parameter number, sub-index =
+// slot 1 to 4, is the value in force; 0x4000 + ... the staged one; 0x5000 + 32 * algorithm id + internal value number
+// the same for internal values, where a write stages a distortion.
+
+#include <optional>
+#include <span>
+
+#include "shared/canopen/declared_objects.hpp"
+
+namespace proleg::canopen {
+
+/// What the ranges hold.
+enum class ValueKind : std::uint8_t { parameter, staged_parameter, internal_value };
+inline constexpr unsigned value_kinds = 3;
+struct ValueAddress {
+  ValueKind kind;
+  std::uint8_t algorithm;  ///< id
+  std::uint8_t number;     ///< of the parameter or internal value
+  std::uint8_t slot;       ///< 0 to 3
+
+  friend constexpr bool operator==(const ValueAddress&, const ValueAddress&) = default;
+};
+[[nodiscard]] constexpr Address address_of(const ValueAddress& value) {
+  const auto base = static_cast<std::uint16_t>(0x3000 + 0x1000 * static_cast<unsigned>(value.kind));
+  return {static_cast<std::uint16_t>(base + 32U * value.algorithm + value.number),
+          static_cast<std::uint8_t>(value.slot + 1)};
+}
+/// The inverse; nothing for an address outside the ranges, of an algorithm that is not in the registry or a number that
+/// it does not declare, or for sub-index 0 or above 4.
+[[nodiscard]] std::optional<ValueAddress> value_address(Address address);
+
+/// The entry at an address, also of the ranges; nothing if there is none.
+[[nodiscard]] std::optional<Object> find_object(Address address);
+
+/// What an index holds.
+struct IndexInfo {
+  ObjectCode code;
+  std::uint8_t highest_sub;  ///< 0 for a variable; else all sub-indices up to it exist
+};
+[[nodiscard]] std::optional<IndexInfo> find_index(std::uint16_t index);
+/// Whether any sub-index of the index exists.
+[[nodiscard]] inline bool index_exists(std::uint16_t index) { return find_index(index).has_value(); }
+
+/// The entries of namespace `object` as they are declared, series in one piece: a row stands for those at `indices`
+/// indices and `subs` sub-indices that follow each other. Ascending by index and sub-index of the first.
+struct ObjectRow {
+  const Object* first;
+  std::uint8_t indices;
+  std::uint8_t subs;
+  std::uint32_t default_step;  ///< default value at an index minus that at the index before
+
+  [[nodiscard]] constexpr bool covers(Address address) const {
+    return address.index >= first->address.index && address.index - first->address.index < indices &&
+           address.sub >= first->address.sub && address.sub - first->address.sub < subs;
+  }
+};
+[[nodiscard]] std::span<const ObjectRow> object_rows();
+/// The row with the address; null if there is none, as for sub-indices 0 of groups and for the ranges.
+[[nodiscard]] const ObjectRow* find_row(Address address);
+/// The group with the index; null for a variable and for the ranges.
+[[nodiscard]] const ObjectGroup* find_group(std::uint16_t index);
+
+/// The entry with the next higher address, sub-index before index; nothing after the last. It searches: for programs
+/// on a computer.
+[[nodiscard]] std::optional<Object> next_object(Address address);
+
+/// Calls visit(object) for every entry, ascending by index and sub-index.
+template <typename Visitor>
+void for_each_object(Visitor&& visit) {
+  for (std::optional<Object> object = find_object(object::device_type.address); object;
+       object = next_object(object->address)) {
+    visit(*object);
+  }
+}
+
+}  // namespace proleg::canopen

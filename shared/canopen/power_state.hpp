@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+
+namespace proleg::canopen {
+
+/// States of a drive (CiA 402, section 8.4; IEC 61800-7-201): only Operation enabled and Quick stop active give the
+/// servo pulses.
+enum class PowerState : std::uint8_t {
+  switch_on_disabled,
+  ready_to_switch_on,
+  switched_on,
+  operation_enabled,
+  quick_stop_active,
+  fault,
+};
+
+/// The state machine behind controlword (0x6040) and statusword (0x6041).
+class PowerControl {
+ public:
+  /// Commands by bits 0-3 and 7 of the controlword; a rising edge of bit 7 clears a fault, and a quick stop too, since
+  /// both need a person's decision.
+  void command(std::uint16_t controlword);
+  /// Lost SYNC, lost host, bus-off: Operation enabled becomes Quick stop active. Other states stay.
+  void quick_stop();
+  /// Over-current and the like: pulses off until cleared.
+  void fault();
+  /// As after switching on.
+  void reset();
+
+  [[nodiscard]] PowerState state() const { return state_; }
+  [[nodiscard]] std::uint16_t controlword() const { return controlword_; }
+  [[nodiscard]] std::uint16_t statusword() const;
+  [[nodiscard]] bool pulses() const {
+    return state_ == PowerState::operation_enabled || state_ == PowerState::quick_stop_active;
+  }
+
+ private:
+  PowerState state_ = PowerState::switch_on_disabled;
+  std::uint16_t controlword_ = 0;
+};
+
+}  // namespace proleg::canopen

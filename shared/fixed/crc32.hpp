@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace proleg {
+
+/// The check sum of Ethernet (IEEE 802.3, section 3.2.9; CRC-32/ISO-HDLC in the usual lists): polynomial 0x04C11DB7,
+/// reflected, start and final inversion. It finds accidents, not intent.
+class Crc32 {
+ public:
+  void add(std::uint8_t byte);
+  void add(std::span<const std::uint8_t> bytes);
+
+  /// Of all bytes added so far; 0 if there were none. More bytes may follow.
+  [[nodiscard]] std::uint32_t value() const { return ~remainder_; }
+
+ private:
+  std::uint32_t remainder_ = 0xFFFFFFFF;
+};
+
+[[nodiscard]] std::uint32_t crc32(std::span<const std::uint8_t> bytes);
+
+}  // namespace proleg

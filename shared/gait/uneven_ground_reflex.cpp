@@ -1,0 +1,113 @@
+#include "shared/fixed/arithmetic.hpp"
+#include "shared/gait/algorithms.hpp"
+#include "shared/gait/sensing_module.hpp"
+
+namespace proleg {
+namespace {
+
+enum Parameters : std::uint8_t { raise, reach, confirm, hold, rise_rate, fall_rate };
+constexpr Parameter parameters[] = {
+    Parameter{"raise", Unit::degree, raw(Unit::degree, 10), -quarter_turn, quarter_turn,
+              "angle added to the joint while the ground is uneven; 0: no reflex"},
+    Parameter{"reach", Unit::count, 2, 0, max_joints - 1,
+              "two touched links at most this many places apart are a sign of uneven ground; 0: no reflex"},
+    Parameter{"confirm", Unit::count, 2, 1, 100,
+              "ticks in a row for which that must last; the support passes from link to link in less"},
+    Parameter{"hold", Unit::count, 100, 0, 60'000, "ticks for which the joint stays raised after the last sign"},
+    Parameter{"rise_rate", Unit::degree, raw(Unit::degree, 60), raw(Unit::degree, 1), quarter_turn,
+              "degrees in a second by which the joint rises"},
+    Parameter{"fall_rate", Unit::degree, raw(Unit::degree, 20), raw(Unit::degree, 1), quarter_turn,
+              "degrees in a second by which it returns to 0"},
+};
+
+enum Values : std::uint8_t { offset, sign_ticks, hold_ticks };
+constexpr InternalValue internal_values[] = {
+    InternalValue{"offset", Unit::degree, 0, "angle of the reflex"},
+    InternalValue{"sign_ticks", Unit::count, 0, "ticks in a row with two such links; counts to `confirm`"},
+    InternalValue{"hold_ticks", Unit::count, 0, "ticks for which it goes on without another sign"},
+};
+
+constexpr Declaration about{5,
+                            "SensingModule_uneven_ground_reflex",
+                            "bends the body upwards while the links find uneven ground",
+                            parameters,
+                            internal_values,
+                            {}};
+
+/// Whether two links touch that are at most `reach` places apart.
+bool ground_is_uneven(const Contacts& contacts, std::int32_t reach) {
+  std::int32_t places = reach;  // since the last link that touches; none yet
+  for (unsigned link = 0; link < contacts.link_count(); ++link) {
+    ++places;
+    if (contacts.pressed(link)) {
+      if (places <= reach) {
+        return true;
+      }
+      places = 0;
+    }
+  }
+  return false;
+}
+
+/// The counter, if it is within 0 and `most`, else the nearer end.
+std::int32_t limit(std::int32_t counter, std::int32_t most) {
+  if (counter < 0) {
+    return 0;
+  }
+  return counter < most ? counter : most;
+}
+
+/// Towards the target by at most `step`.
+std::int32_t approach(std::int32_t target, std::int32_t value, std::int32_t step) {
+  const std::int64_t distance = std::int64_t{target} - value;
+  if (distance > step) {
+    return value + step;
+  }
+  return distance < -step ? value - step : target;
+}
+
+class UnevenGroundReflex final : public SensingModule {
+ public:
+  [[nodiscard]] const Declaration& declaration() const override { return about; }
+
+  void derive(const Place& place, const std::int32_t* values, std::int32_t* derived) const override {
+    derived[rise_step] = step_of(values[rise_rate], place);
+    derived[fall_step] = step_of(values[fall_rate], place);
+  }
+
+  [[nodiscard]] std::int32_t output(const Tuning& /*tuning*/, const std::int32_t* state) const override {
+    return state[offset];
+  }
+
+ private:
+  enum Derived : std::uint8_t { rise_step, fall_step };  // in a tick
+
+  /// At least 11 steps of the angle, at 1 degree in a second and ticks of 1 ms.
+  static std::int32_t step_of(std::int32_t rate, const Place& place) {
+    return static_cast<std::int32_t>(divide_nearest(std::int64_t{rate} * place.tick_period_us, 1'000'000));
+  }
+
+  void advance_sensing(const Contacts& contacts, const Surroundings& /*surroundings*/, const Tuning& tuning,
+                       const std::int32_t* state, std::int32_t* next) const override {
+    // Counters are cut to their ends: a constant may have been lowered, a counter overwritten.
+    const std::int32_t before = limit(state[sign_ticks], tuning.parameters[confirm] - 1);
+    next[sign_ticks] = ground_is_uneven(contacts, tuning.parameters[reach]) ? before + 1 : 0;
+    const bool sign = next[sign_ticks] == tuning.parameters[confirm];
+    const std::int32_t left = limit(state[hold_ticks], tuning.parameters[hold]);
+    if (sign || left > 0) {
+      next[hold_ticks] = sign ? tuning.parameters[hold] : left - 1;
+      next[offset] = approach(tuning.parameters[raise], state[offset], tuning.derived[rise_step]);
+    } else {
+      next[hold_ticks] = 0;
+      next[offset] = approach(0, state[offset], tuning.derived[fall_step]);
+    }
+  }
+};
+
+constexpr UnevenGroundReflex instance;
+
+}  // namespace
+
+const ActuationModule& sensing_module_uneven_ground_reflex() { return instance; }
+
+}  // namespace proleg

@@ -1,0 +1,121 @@
+#pragma once
+
+// A classical CAN bus (ISO 11898-1) on virtual time: arbitration, exact durations of frames, delivery.
+//
+// Whoever drives the simulation takes turns with the bus:
+//
+//   const BusTime time = min(bus.next_event(), deadlines of the nodes);
+//   bus.advance_to(time);          // listeners hear what was received and transmitted, and may send
+//   ...                            // nodes do what is due at `time`, and may send
+//
+// The bus is free 3 bits after a frame (interframe space). If frames are requested by then, the arbitration is at that
+// instant, else at the instant of the first request. It is held when time moves on beyond the instant, so that everyone
+// who asks in it takes part, in whatever order the driver calls the nodes.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "sim/bus/controller.hpp"
+#include "sim/bus/frame_bits.hpp"
+
+namespace proleg::sim {
+
+/// A frame on the wire.
+struct Transmission {
+  BusTime start = 0;  ///< of the start-of-frame bit
+  BusTime end = 0;    ///< of the last bit of end of frame: when all nodes have it
+  CanFrame frame;
+  std::size_t sender = 0;  ///< index of its controller; of the first one if several sent it together
+};
+
+/// What went over the bus since the start or the last Bus::start_statistics().
+struct BusStatistics {
+  std::uint64_t frames = 0;      ///< that ended
+  BusTime busy = 0;              ///< time taken by frames with their interframe spaces
+  BusTime period = 0;            ///< time in which that was counted
+  std::uint64_t losses = 0;      ///< deliveries withheld by the loss rule
+  std::uint64_t collisions = 0;  ///< see Bus::on_collision
+
+  /// Part of the time in which the bus was taken, 0 to 1.
+  [[nodiscard]] double load() const {
+    return period == 0 ? 0.0 : static_cast<double>(busy) / static_cast<double>(period);
+  }
+};
+
+class Bus {
+ public:
+  static constexpr std::uint32_t highest_bit_rate = 1'000'000;
+
+  /// bit_rate: bit/s, 1 to 1,000,000; else std::invalid_argument.
+  explicit Bus(std::uint32_t bit_rate = highest_bit_rate);
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+
+  /// The controller of one more node, switched on. It lives as long as the bus; the listener must outlive the bus.
+  Controller& attach(BusListener& listener);
+
+  /// The time up to which the bus has been simulated.
+  [[nodiscard]] BusTime now() const { return now_; }
+
+  /// When a frame ends next, if nobody asks for or withdraws a frame before; `never_on_bus` if none is on the way.
+  [[nodiscard]] BusTime next_event() const;
+
+  /// Lets time pass. Every frame that ends by `time`, inclusive, is reported: to its sender (or senders, in the order
+  /// of attachment), then to all other controllers in the order of attachment. A time before now() changes nothing.
+  /// Must not be called by a listener: std::logic_error.
+  void advance_to(BusTime time);
+
+  /// Whether a receiver does not get a frame, though it was on the bus without an error. receiver: index of a
+  /// controller. Empty: nothing is lost.
+  using LossRule = std::function<bool(const CanFrame& frame, std::size_t receiver)>;
+  void set_loss_rule(LossRule rule) { loss_rule_ = std::move(rule); }
+
+  /// Called for each frame when it ends, before anybody hears of it.
+  using Trace = std::function<void(const Transmission&)>;
+  void set_trace(Trace trace) { trace_ = std::move(trace); }
+
+  /// Two controllers send one identifier at the same instant. If their frames are equal in every bit they become one
+  /// transmission that each takes for its own. If not, that is a fault of the network: a real bus sees an error frame.
+  /// Here, until error frames are simulated, the frame that has a dominant bit first wins, the other one is tried
+  /// again, and this is called, once for every loser.
+  using CollisionReport = std::function<void(BusTime time, const CanFrame& winner, const CanFrame& loser)>;
+  void on_collision(CollisionReport report) { collision_report_ = std::move(report); }
+
+  [[nodiscard]] BusStatistics statistics() const;
+  /// Counts from now().
+  void start_statistics();
+
+ private:
+  friend class Controller;
+
+  void candidates_changed(bool had_one, bool has_one);
+  [[nodiscard]] BusTime duration(unsigned bits) const { return bits * std::uint64_t{1'000'000'000} / bit_rate_; }
+  [[nodiscard]] Controller* winner() const;
+  void start(BusTime time);
+  void finish();
+  void report();
+  [[nodiscard]] BusStatistics statistics_since_time_0() const;
+
+  std::uint64_t bit_rate_;
+  std::vector<std::unique_ptr<Controller>> controllers_;
+  std::size_t candidates_ = 0;  ///< controllers with a frame to send
+  BusTime now_ = 0;
+  BusTime free_at_ = 0;                    ///< end of the last interframe space, also of the frame on the wire
+  BusTime arbitration_at_ = never_on_bus;  ///< while a frame is on the wire: never
+  bool sending_ = false;                   ///< a frame is on the wire:
+  Transmission current_;
+  std::vector<Controller*> senders_;
+  std::uint64_t transmission_ = 0;  ///< number of the current or last one, from 1
+  bool reporting_ = false;          ///< listeners are being called
+
+  LossRule loss_rule_;
+  Trace trace_;
+  CollisionReport collision_report_;
+  BusStatistics total_;  ///< since time 0; `busy` with all of the current frame
+  BusStatistics mark_;   ///< what statistics_since_time_0() was at the start of the statistics
+};
+
+}  // namespace proleg::sim

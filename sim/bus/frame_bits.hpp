@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+
+#include "shared/can/can_frame.hpp"
+
+namespace proleg::sim {
+
+/// Recessive bits between two frames: no node may start in them (ISO 11898-1, intermission).
+inline constexpr unsigned interframe_bits = 3;
+
+/// Bits of a frame on the wire, stuff bits included, from start of frame to the last bit of end of frame
+/// (ISO 11898-1, classical base frame format). The interframe space comes on top. 44 to 132.
+[[nodiscard]] unsigned frame_bits(const CanFrame& frame);
+
+/// The CRC sequence that a controller puts behind the data: 15 bits, generator polynomial 0x4599 (CRC-15/CAN), over all
+/// bits before it but the stuff bits.
+[[nodiscard]] std::uint16_t crc_sequence(const CanFrame& frame);
+
+}  // namespace proleg::sim

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shared/canopen/master.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/loop/crystal.hpp"
+#include "sim/scenario/scenario.hpp"
+
+namespace proleg::sim {
+
+/// What a master needs to know of a scenario.
+class MasterInput {
+ public:
+  /// scenario: must outlive this.
+  explicit MasterInput(const Scenario& scenario);
+  MasterInput(const MasterInput&) = delete;
+  MasterInput& operator=(const MasterInput&) = delete;
+
+  canopen::RobotSetup setup;
+  std::vector<canopen::Change> changes;
+
+ private:
+  std::vector<std::uint8_t> nodes_;
+  std::vector<canopen::AngleLimits> limits_;
+  std::vector<canopen::StartValue> start_values_;
+  std::vector<std::vector<canopen::ChangedValue>> changed_values_;
+};
+
+/// The host on the simulated bus: node 127 with the master that sets the modules up and changes their parameters, on an
+/// exact clock.
+class HostNode final : private BusListener {
+ public:
+  /// Attaches to the bus. scenario: must outlive the node. sync_producer: joint whose module gives the ticks.
+  HostNode(Bus& bus, const Scenario& scenario, unsigned sync_producer);
+  HostNode(const HostNode&) = delete;
+  HostNode& operator=(const HostNode&) = delete;
+
+  void start(BusTime now);
+  [[nodiscard]] BusTime next_event() const { return next_event_; }
+  void advance_to(BusTime now);
+
+  [[nodiscard]] canopen::MasterState state() const { return master_.state(); }
+  /// Why the start ended, or the first thing that went wrong in flight, as one line; given once.
+  [[nodiscard]] std::optional<std::string> take_problem();
+  /// What happened, as one line for a person, oldest first.
+  [[nodiscard]] std::optional<std::string> take_event();
+
+ private:
+  void received(BusTime time, const CanFrame& frame) override;
+  void transmitted(BusTime time, const CanFrame& frame) override;
+  void update_deadline() { next_event_ = clock_.when(master_.next_deadline()); }
+  [[nodiscard]] std::string name_of(std::uint8_t node) const;
+
+  const Scenario& scenario_;
+  MasterInput input_;
+  Crystal clock_;
+  Controller& controller_;
+  canopen::Master master_;
+  bool problem_taken_ = false;
+  BusTime next_event_ = never_on_bus;
+};
+
+}  // namespace proleg::sim

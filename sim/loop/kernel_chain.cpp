@@ -1,0 +1,113 @@
+#include "sim/loop/kernel_chain.hpp"
+
+#include <string>
+
+namespace proleg::sim {
+namespace {
+
+void expect_ok(Status status) {
+  if (status != Status::ok) {
+    throw KernelRefusal(std::string(describe(status)));
+  }
+}
+
+}  // namespace
+
+KernelChain::KernelChain(const KernelConfiguration& configuration, std::span<const JointLimits> limits,
+                         std::span<const Setting> settings)
+    : configuration_(configuration),
+      limits_(limits.begin(), limits.end()),
+      settings_(settings.begin(), settings.end()),
+      running_(JointMask::first(configuration.joint_count)),
+      sent_(running_),
+      setpoints_(configuration.joint_count) {
+  for (unsigned joint = 0; joint < configuration.joint_count; ++joint) {
+    kernels_.push_back(std::make_unique<KernelOf<1>>());
+    configure(joint);
+    setpoints_[joint] = kernels_[joint]->setpoint(joint);
+  }
+}
+
+void KernelChain::configure(unsigned joint) {
+  Kernel& kernel = *kernels_[joint];
+  expect_ok(kernel.configure(configuration_, joint));
+  expect_ok(kernel.set_limits(joint, limits_[joint].lower, limits_[joint].upper));
+  for (const Setting& setting : settings_) {
+    if (setting.joint == joint) {
+      expect_ok(kernel.set_parameter(setting.slot, joint, setting.index, setting.value));
+    }
+  }
+  kernel.reset();
+}
+
+void KernelChain::apply(const Change& change) {
+  const auto transaction = static_cast<std::uint16_t>(tick_);
+  for (unsigned joint = 0; joint < joint_count(); ++joint) {
+    if (running_.contains(joint)) {
+      expect_ok(kernels_[joint]->open(transaction));
+    }
+  }
+  for (const Setting& setting : change.settings) {
+    if (!setting.internal) {
+      settings_.push_back(setting);
+    }
+    if (running_.contains(setting.joint)) {
+      Kernel& kernel = *kernels_[setting.joint];
+      expect_ok(setting.internal
+                    ? kernel.stage_internal(transaction, setting.slot, setting.joint, setting.index, setting.value)
+                    : kernel.stage(transaction, setting.slot, setting.joint, setting.index, setting.value));
+    }
+  }
+  for (unsigned joint = 0; joint < joint_count(); ++joint) {
+    if (running_.contains(joint)) {
+      expect_ok(kernels_[joint]->commit(transaction, tick_));
+    }
+  }
+}
+
+void KernelChain::stop(unsigned joint) { running_ = JointMask(running_.bits() & ~(std::uint64_t{1} << joint)); }
+
+void KernelChain::join(unsigned joint) {
+  configure(joint);
+  kernels_[joint]->join(tick_);
+  running_.insert(joint);
+}
+
+void KernelChain::exchange_frames() {
+  lost_.clear();
+  const bool any_losses = losses_ != nullptr && losses_->any();
+  for (unsigned sender = 0; sender < joint_count(); ++sender) {
+    const Kernel& source = *kernels_[sender];
+    for (unsigned channel = 0; sent_.contains(sender) && channel < source.channel_count(sender); ++channel) {
+      const StateFrame& frame = source.frame(sender, channel);
+      const JointMask without = any_losses ? losses_->receivers_without(tick_, sender, channel) : JointMask();
+      for (unsigned receiver = 0; receiver < joint_count(); ++receiver) {
+        if (receiver == sender || !running_.contains(receiver)) {
+          continue;
+        }
+        if (without.contains(receiver)) {
+          lost_.push_back({tick_, static_cast<std::uint8_t>(sender), static_cast<std::uint8_t>(channel),
+                           static_cast<std::uint8_t>(receiver)});
+        } else {
+          kernels_[receiver]->receive(sender, channel, frame);
+        }
+      }
+    }
+  }
+}
+
+void KernelChain::advance(std::span<const std::uint8_t> contacts) {
+  exchange_frames();
+  for (unsigned joint = 0; joint < joint_count(); ++joint) {
+    if (running_.contains(joint)) {
+      Kernel& kernel = *kernels_[joint];
+      kernel.set_contacts(joint, contacts[joint]);
+      kernel.advance();
+      setpoints_[joint] = kernel.setpoint(joint);
+    }
+  }
+  sent_ = running_;
+  ++tick_;
+}
+
+}  // namespace proleg::sim

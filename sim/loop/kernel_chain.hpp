@@ -1,0 +1,74 @@
+#pragma once
+
+// A robot's gait in memory: one kernel a joint, as on the robot, which exchange state frames and nothing else. What the
+// modules on a bus are compared with, and what computes the gait where there are none.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "shared/kernel/kernel.hpp"
+#include "sim/scenario/losses.hpp"
+#include "sim/scenario/scenario.hpp"
+
+namespace proleg::sim {
+
+/// The kernel refuses a configuration or a change. Readers of scenarios have checked what they hand on, so there it is
+/// a fault of the program. what(): the reason.
+class KernelRefusal : public std::logic_error {
+ public:
+  using std::logic_error::logic_error;
+};
+
+class KernelChain {
+ public:
+  /// The arguments are copied. Here as in apply(): KernelRefusal.
+  KernelChain(const KernelConfiguration& configuration, std::span<const JointLimits> limits,
+              std::span<const Setting> settings);
+
+  /// State frames that are not delivered from now on. losses: must outlive the chain; null for none.
+  void set_losses(const Losses* losses) { losses_ = losses; }
+
+  /// A change for the coming tick.
+  void apply(const Change& change);
+
+  /// The module of a joint restarts: from the coming tick on it computes nothing. The frame that it has sent for that
+  /// tick is still heard.
+  void stop(unsigned joint);
+  /// It takes its place again at the coming tick, with the parameters of the settings and of all changes so far.
+  void join(unsigned joint);
+  [[nodiscard]] bool is_running(unsigned joint) const { return running_.contains(joint); }
+
+  /// The tick: delivers the frames labelled tick(), then every running joint computes state tick() + 1.
+  /// contacts: of each joint, at this SYNC, in bits 0 to 3 as in the state frame.
+  void advance(std::span<const std::uint8_t> contacts);
+
+  /// Of each joint; a joint that does not run keeps its last one.
+  [[nodiscard]] std::span<const std::int32_t> setpoints() const { return setpoints_; }
+  /// Frames that the losses kept back in the last tick.
+  [[nodiscard]] std::span<const Loss> lost() const { return lost_; }
+  /// The coming tick.
+  [[nodiscard]] std::uint32_t tick() const { return tick_; }
+  [[nodiscard]] unsigned joint_count() const { return static_cast<unsigned>(kernels_.size()); }
+  /// The kernel of a joint.
+  [[nodiscard]] const Kernel& kernel(unsigned joint) const { return *kernels_[joint]; }
+
+ private:
+  void configure(unsigned joint);
+  void exchange_frames();
+
+  KernelConfiguration configuration_;
+  std::vector<JointLimits> limits_;
+  std::vector<Setting> settings_;  ///< start values, then what changes made of them
+  std::vector<std::unique_ptr<KernelOf<1>>> kernels_;
+  const Losses* losses_ = nullptr;
+  JointMask running_;
+  JointMask sent_;  ///< whose frames labelled tick() are on their way
+  std::uint32_t tick_ = 0;
+  std::vector<std::int32_t> setpoints_;
+  std::vector<Loss> lost_;
+};
+
+}  // namespace proleg::sim

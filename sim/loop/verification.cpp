@@ -1,0 +1,189 @@
+#include "sim/loop/verification.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <vector>
+
+#include "shared/gait/registry.hpp"
+#include "sim/loop/kernel_chain.hpp"
+#include "sim/loop/servo_pulses.hpp"
+#include "sim/loop/touch_inputs.hpp"
+#include "sim/record/hash.hpp"
+#include "sim/scenario/input_error.hpp"
+#include "sim/scenario/text.hpp"
+
+namespace proleg::sim {
+namespace {
+
+/// What a recording says of how its gait came about, with names resolved.
+class RecordedGait {
+ public:
+  explicit RecordedGait(const Recording& recording) : recording_(recording) {
+    configuration.joint_count = static_cast<std::uint8_t>(recording.joints().size());
+    configuration.tick_period_us = recording.tick_period_us();
+    configuration.seed = whole_number("seed");
+    servo_period_us = static_cast<std::uint32_t>(whole_number("servo_period_us"));
+    for (const RecordedJoint& joint : recording.joints()) {
+      limits.push_back({joint.lower_limit, joint.upper_limit});
+    }
+    read_slots();
+    for (const RecordedSetting& setting : recording.parameters()) {
+      if (setting.commit) {
+        add_change(setting, false);
+      } else {
+        settings.push_back(resolve(setting, false));
+      }
+    }
+    for (const RecordedSetting& setting : recording.distortions()) {
+      add_change(setting, true);
+    }
+  }
+
+  KernelConfiguration configuration;
+  std::uint32_t servo_period_us = 0;
+  std::vector<JointLimits> limits;
+  std::vector<Setting> settings;
+  std::vector<Change> changes;  ///< by ascending tick
+
+  [[noreturn]] void refuse(const std::string& found, const std::string& expected) const {
+    throw InputError(recording_.path().string(), 0, found, expected);
+  }
+
+ private:
+  [[nodiscard]] std::uint64_t whole_number(const std::string& key) const {
+    const std::string text = recording_.run_value(key);
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc{} || end != text.data() + text.size()) {
+      refuse(in_quotes(text) + " as " + key, "a whole number");
+    }
+    return value;
+  }
+
+  void read_slots() {
+    for (const RecordedSlot& slot : recording_.slots()) {
+      if (slot.slot >= max_slots) {
+        refuse("slot " + std::to_string(slot.slot), "slots 0 to " + std::to_string(max_slots - 1));
+      }
+      Slot& place = configuration.slots[slot.slot];
+      place.algorithm = find_algorithm(slot.algorithm);
+      if (place.algorithm == nullptr) {
+        refuse("algorithm " + in_quotes(slot.algorithm), "one that this program has ('proleg algorithms' lists them)");
+      }
+      for (unsigned joint = 0; joint < slot.joint_group.size(); ++joint) {
+        if (slot.joint_group[joint]) {
+          place.group.insert(joint);
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] Setting resolve(const RecordedSetting& setting, bool internal) const {
+    const ActuationModule* algorithm = setting.slot < max_slots ? configuration.slots[setting.slot].algorithm : nullptr;
+    const int index = algorithm == nullptr ? -1
+                                           : (internal ? find_internal_value(algorithm->declaration(), setting.name)
+                                                       : find_parameter(algorithm->declaration(), setting.name));
+    if (index < 0 || setting.joint >= configuration.joint_count ||
+        !configuration.slots[setting.slot].group.contains(setting.joint)) {
+      refuse("a value for " + in_quotes(setting.name) + " of joint " + std::to_string(setting.joint) + " in slot " +
+                 std::to_string(setting.slot),
+             "names that the recorded algorithms have");
+    }
+    return {static_cast<std::uint8_t>(setting.slot), static_cast<std::uint8_t>(setting.joint),
+            static_cast<std::uint8_t>(index), internal, setting.raw};
+  }
+
+  void add_change(const RecordedSetting& setting, bool internal) {
+    const auto place = std::ranges::lower_bound(changes, setting.tick, {}, &Change::tick);
+    if (place != changes.end() && place->tick == setting.tick) {
+      place->settings.push_back(resolve(setting, internal));
+    } else {
+      changes.insert(place, Change{setting.tick, {resolve(setting, internal)}});
+    }
+  }
+
+  const Recording& recording_;
+};
+
+/// The recorded pulses, from a table that is read beside the ticks. They are few bytes each, so they fit in memory.
+std::vector<ServoPulse> read_pulses(const Recording& recording) {
+  std::vector<ServoPulse> pulses;
+  recording.read_servo_pulses([&](const ServoPulse& pulse) { pulses.push_back(pulse); });
+  return pulses;
+}
+
+Verification recompute(const Recording& recording, const RecordedGait& gait,
+                       const std::function<void(std::uint32_t tick)>& progress) {
+  const ServoSchedule schedule(gait.servo_period_us, gait.configuration.tick_period_us);
+  const Losses losses(recording.losses());
+  const std::vector<RecordedRestart> restarts = recording.restarts();
+  const std::vector<ServoPulse> pulses = read_pulses(recording);
+
+  KernelChain chain(gait.configuration, gait.limits, gait.settings);
+  chain.set_losses(&losses);
+  Verification result;
+  const auto note = [&result](const Difference& difference) {
+    ++result.differences;
+    if (!result.first) {
+      result.first = difference;
+    }
+  };
+  ValueHash setpoint_hash;
+  ValueHash servo_hash;
+  std::vector<std::uint8_t> contacts(chain.joint_count());
+  std::vector<ServoPulse> expected_pulses;
+  auto change = gait.changes.begin();
+  auto restart = restarts.begin();
+  auto pulse = pulses.begin();
+  recording.read_ticks(0, recording.last_tick(), [&](const RecordedTick& tick) {
+    for (; restart != restarts.end() && restart->tick <= tick.tick; ++restart) {
+      restart->joined ? chain.join(restart->joint) : chain.stop(restart->joint);
+    }
+    if (change != gait.changes.end() && change->tick == tick.tick) {
+      chain.apply(*change++);
+    }
+    for (std::size_t joint = 0; joint < contacts.size(); ++joint) {
+      contacts[joint] = wired_sensors(tick.latched_contacts, joint);
+    }
+    chain.advance(contacts);
+    setpoint_hash.append(chain.setpoints());
+    compare_setpoints(tick.tick, tick.setpoints, chain.setpoints(), note);
+    result.setpoints += contacts.size();
+
+    expected_pulses.clear();
+    append_servo_pulses(chain, schedule, expected_pulses);
+    for (const ServoPulse& expected : expected_pulses) {
+      servo_hash.append(expected.command);
+    }
+    const auto first = pulse;
+    const std::uint64_t end_us = (tick.tick + std::uint64_t{1}) * gait.configuration.tick_period_us;
+    while (pulse != pulses.end() && pulse->time_us < end_us) {
+      ++pulse;
+    }
+    compare_pulses(tick.tick, {first, pulse}, expected_pulses, note);
+    result.servo_commands += expected_pulses.size();
+    ++result.ticks;
+    if (progress) {
+      progress(tick.tick);
+    }
+  });
+  result.setpoint_hash = setpoint_hash.hex();
+  result.servo_hash = servo_hash.hex();
+  return result;
+}
+
+}  // namespace
+
+Verification verify(const Recording& recording, const std::function<void(std::uint32_t tick)>& progress) {
+  const RecordedGait gait(recording);
+  if (recording.first_tick() != 0) {
+    gait.refuse("tick " + std::to_string(recording.first_tick()) + " as the first one", "a recording from tick 0 on");
+  }
+  try {
+    return recompute(recording, gait, progress);
+  } catch (const KernelRefusal& refusal) {
+    gait.refuse(std::string("values that the kernel refuses: ") + refusal.what(), "a recording of this version");
+  }
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,165 @@
+#include "sim/scenario/losses.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "shared/fixed/random.hpp"
+#include "shared/kernel/kernel.hpp"
+#include "sim/scenario/input_error.hpp"
+#include "sim/scenario/settings.hpp"
+#include "sim/scenario/text.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr const char* seed_form = "SEED:RATE or SEED:RATE@FIRST-LAST, for example 7:5% or 7:0.05@100-900";
+
+template <typename Integer>
+std::optional<Integer> parse_whole(const std::string& text) {
+  Integer value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+[[noreturn]] void refuse(const std::string& argument) {
+  throw InputError("--losses", 0, in_quotes(shortened(argument)), seed_form);
+}
+
+/// 0 to 1, times 2^32.
+std::uint32_t parse_rate(std::string text, const std::string& argument) {
+  const bool percent = !text.empty() && text.back() == '%';
+  if (percent) {
+    text.pop_back();
+  }
+  const std::optional<double> number = parse_number(text);
+  const double rate = number.value_or(-1.0) / (percent ? 100.0 : 1.0);
+  if (!(rate >= 0.0 && rate <= 1.0)) {
+    throw InputError("--losses", 0, "rate " + in_quotes(shortened(text)) + " in " + in_quotes(shortened(argument)),
+                     "0 to 1, or 0% to 100%");
+  }
+  return static_cast<std::uint32_t>(std::min(std::round(rate * 4294967296.0), 4294967295.0));
+}
+
+Losses parse_random(const std::string& argument, std::size_t colon) {
+  RandomLosses random;
+  const auto seed = parse_whole<std::uint64_t>(argument.substr(0, colon));
+  if (!seed) {
+    refuse(argument);
+  }
+  random.seed = *seed;
+  const std::size_t at = argument.find('@', colon);
+  random.threshold = parse_rate(argument.substr(colon + 1, at == std::string::npos ? at : at - colon - 1), argument);
+  if (at != std::string::npos) {
+    const std::size_t dash = argument.find('-', at);
+    if (dash == std::string::npos) {
+      refuse(argument);
+    }
+    const auto first = parse_whole<std::uint32_t>(argument.substr(at + 1, dash - at - 1));
+    const auto last = parse_whole<std::uint32_t>(argument.substr(dash + 1));
+    if (!first || !last || *first > *last) {
+      refuse(argument);
+    }
+    random.first_tick = *first;
+    random.last_tick = *last;
+  }
+  return Losses(random);
+}
+
+std::uint8_t parse_joint(const std::string& name, const RobotModel& robot, const std::string& path, int line) {
+  const int joint = find_joint(robot, name);
+  if (joint < 0) {
+    std::string known;
+    for (const std::string& other : joint_names(robot, JointMask::first(static_cast<unsigned>(robot.joints.size())))) {
+      known += (known.empty() ? "" : ", ") + other;
+    }
+    throw InputError(path, line, "unknown joint " + in_quotes(shortened(name)), "one of " + known);
+  }
+  return static_cast<std::uint8_t>(joint);
+}
+
+std::vector<Loss> read_list(const std::string& path, const RobotModel& robot) {
+  std::ifstream file(path);
+  if (!file) {
+    throw InputError(path, 0, "no readable file", std::string("a list of losses, or ") + seed_form);
+  }
+  std::vector<Loss> list;
+  std::string text;
+  for (int line = 1; std::getline(file, text); ++line) {
+    std::istringstream words(text.substr(0, text.find('#')));
+    std::vector<std::string> fields;
+    for (std::string field; words >> field;) {
+      fields.push_back(field);
+    }
+    if (fields.empty()) {
+      continue;
+    }
+    const auto tick = parse_whole<std::uint32_t>(fields[0]);
+    const bool has_channel = fields.size() == 4;
+    if (!tick || fields.size() < 3 || fields.size() > 4 || (has_channel && fields[3] != "1" && fields[3] != "2")) {
+      throw InputError(path, line, in_quotes(shortened(text)), "TICK SENDER RECEIVER [CHANNEL], channel 1 or 2");
+    }
+    Loss loss{*tick, parse_joint(fields[1], robot, path, line),
+              static_cast<std::uint8_t>(has_channel && fields[3] == "2" ? 1 : 0), 0};
+    if (fields[2] != "*") {
+      loss.receiver = parse_joint(fields[2], robot, path, line);
+      if (loss.receiver == loss.sender) {
+        throw InputError(path, line, fields[1] + " as sender and receiver",
+                         "two joints: a joint needs no frame of its own");
+      }
+      list.push_back(loss);
+      continue;
+    }
+    for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
+      loss.receiver = static_cast<std::uint8_t>(joint);
+      if (loss.receiver != loss.sender) {
+        list.push_back(loss);
+      }
+    }
+  }
+  if (file.bad()) {
+    throw InputError(path, 0, "a file that cannot be read to its end", "a list of losses");
+  }
+  return list;
+}
+
+}  // namespace
+
+Losses::Losses(std::vector<Loss> list) : list_(std::move(list)) { std::ranges::sort(list_); }
+
+JointMask Losses::receivers_without(std::uint32_t tick, unsigned sender, unsigned channel) const {
+  JointMask receivers;
+  const Loss first{tick, static_cast<std::uint8_t>(sender), static_cast<std::uint8_t>(channel), 0};
+  for (auto loss = std::ranges::lower_bound(list_, first);
+       loss != list_.end() && loss->tick == tick && loss->sender == sender && loss->channel == channel; ++loss) {
+    receivers.insert(loss->receiver);
+  }
+  if (random_.threshold != 0 && tick >= random_.first_tick && tick <= random_.last_tick) {
+    Pcg32 noise(random_.seed, (std::uint64_t{tick} * max_joints + sender) * max_channels + channel);
+    for (unsigned receiver = 0; receiver < max_joints; ++receiver) {
+      if (noise.next() < random_.threshold && receiver != sender) {
+        receivers.insert(receiver);
+      }
+    }
+  }
+  return receivers;
+}
+
+Losses read_losses(const std::string& argument, const RobotModel& robot) {
+  const std::size_t colon = argument.find(':');
+  const bool starts_like_a_seed =
+      colon != std::string::npos && colon > 0 &&
+      std::ranges::all_of(argument.substr(0, colon), [](char c) { return c >= '0' && c <= '9'; });
+  if (starts_like_a_seed) {
+    return parse_random(argument, colon);
+  }
+  return Losses(read_list(argument, robot));
+}
+
+}  // namespace proleg::sim

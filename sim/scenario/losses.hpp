@@ -1,0 +1,61 @@
+#pragma once
+
+// State frames that joints do not receive, chosen beforehand. The same losses can be given to a simulation in memory
+// and to modules on a bus, and then give the same bits.
+
+#include <compare>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "shared/gait/joint_mask.hpp"
+#include "sim/robot/robot_model.hpp"
+
+namespace proleg::sim {
+
+/// One state frame, of the state of a tick, that one joint does not receive. Joints in kernel order.
+struct Loss {
+  std::uint32_t tick;    ///< of the state; the frame is labelled with it modulo 256
+  std::uint8_t sender;   ///< joint
+  std::uint8_t channel;  ///< 0, or 1 for the frame of the joint's second broadcasting slot
+  std::uint8_t receiver;
+
+  friend auto operator<=>(const Loss&, const Loss&) = default;
+};
+
+/// Each frame is lost for each receiver with the same probability. Nothing depends on the number of joints, the order
+/// of questions or on what else happens: the noise is PCG32, seeded anew for each frame.
+struct RandomLosses {
+  std::uint64_t seed = 0;
+  std::uint32_t threshold = 0;  ///< probability times 2^32
+  std::uint32_t first_tick = 0;
+  std::uint32_t last_tick = std::numeric_limits<std::uint32_t>::max();
+};
+
+class Losses {
+ public:
+  /// No losses.
+  Losses() = default;
+  explicit Losses(std::vector<Loss> list);
+  explicit Losses(const RandomLosses& random) : random_(random) {}
+
+  [[nodiscard]] bool any() const { return !list_.empty() || random_.threshold != 0; }
+  /// The joints that do not receive a frame.
+  [[nodiscard]] JointMask receivers_without(std::uint32_t tick, unsigned sender, unsigned channel) const;
+  [[nodiscard]] bool lost(const Loss& loss) const {
+    return receivers_without(loss.tick, loss.sender, loss.channel).contains(loss.receiver);
+  }
+
+ private:
+  std::vector<Loss> list_;  ///< sorted
+  RandomLosses random_;
+};
+
+/// Reads what a user gives to --losses. Either SEED:RATE or SEED:RATE@FIRST-LAST, where RATE is a number up to 1 or a
+/// percentage ("7:5%") and FIRST and LAST are ticks; or the name of a file with a line "TICK SENDER RECEIVER [CHANNEL]"
+/// for each loss: joints by their names, "*" for all receivers, channel 1 (the default) or 2; # starts a comment.
+/// Throws InputError.
+[[nodiscard]] Losses read_losses(const std::string& argument, const RobotModel& robot);
+
+}  // namespace proleg::sim

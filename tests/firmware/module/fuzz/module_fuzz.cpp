@@ -1,0 +1,307 @@
+// Gives two modules, one of them configured, arbitrary frames and arbitrary time. An input is a sequence of events;
+// most of them make sense, so that the modules get to move. Whatever comes, the servo has pulses only when the rules
+// allow it, within its range, and time goes on.
+
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <deque>
+#include <span>
+
+#include "firmware/module/module.hpp"
+#include "shared/canopen/robot_setup.hpp"
+#include "shared/gait/registry.hpp"
+
+namespace {
+
+using namespace proleg;
+using canopen::NmtState;
+using canopen::PowerState;
+
+void require(bool holds, const char* what) {
+  if (!holds) {
+    std::fprintf(stderr, "broken promise: %s\n", what);
+    std::abort();
+  }
+}
+
+/// The input, byte by byte; 0 when it is used up.
+class Input {
+ public:
+  explicit Input(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
+
+  [[nodiscard]] bool empty() const { return bytes_.empty(); }
+  std::uint8_t byte() {
+    if (bytes_.empty()) {
+      return 0;
+    }
+    const std::uint8_t value = bytes_.front();
+    bytes_ = bytes_.subspan(1);
+    return value;
+  }
+  std::uint16_t half() { return static_cast<std::uint16_t>(byte() | byte() << 8U); }
+  std::uint32_t word() { return half() | std::uint32_t{half()} << 16U; }
+  std::array<std::uint8_t, 8> eight() {
+    std::array<std::uint8_t, 8> data{};
+    for (std::uint8_t& value : data) {
+      value = byte();
+    }
+    return data;
+  }
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+};
+
+/// A robot of three joints with two slots on one of them.
+class Setup {
+ public:
+  Setup() {
+    robot.kernel.joint_count = 3;
+    robot.kernel.slots[0] = {find_algorithm("PatternGenerator_coupled_oscillator"), JointMask(0b111)};
+    robot.kernel.slots[1] = {find_algorithm("PatternGenerator_sinusoidal_extended"), JointMask(0b010)};
+    robot.servo_period_us = 3'000;
+    robot.nodes = nodes_;
+    robot.limits = limits_;
+  }
+  static constexpr unsigned joint = 1;
+  [[nodiscard]] std::uint8_t node(unsigned of_joint) const { return nodes_[of_joint]; }
+
+  canopen::RobotSetup robot;
+
+ private:
+  std::array<std::uint8_t, 3> nodes_{4, 9, 2};
+  std::array<canopen::AngleLimits, 3> limits_{{{-1 << 29, 1 << 30}, {-1 << 30, 1 << 29}, {-1 << 30, 1 << 30}}};
+};
+
+class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
+ public:
+  explicit World(const Setup& setup)
+      : setup_(setup), module({setup.node(Setup::joint), 1, {7, 8, 9}, 0}, {*this, *this, *this}) {}
+
+  void power_on() {
+    module.power_on(now_);
+    run_for(20'000);
+  }
+  /// As a host does it.
+  void configure() {
+    const canopen::SetupList list(setup_.robot, Setup::joint);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const canopen::SdoWrite entry = list.at(i);
+      write(entry.address, entry.size, entry.value);
+    }
+    receive(encode(canopen::NmtRequest{canopen::NmtCommand::start, 0}));
+  }
+
+  void handle(std::uint8_t event, Input& input);
+
+ private:
+  // The ports.
+  bool send(const CanFrame& frame) override {
+    require(frame.length <= 8 && frame.identifier <= CanFrame::highest_identifier, "frames are frames");
+    const unsigned node = setup_.node(Setup::joint);
+    const unsigned base = frame.identifier - node;
+    const bool own = base == 0x080 || base == 0x180 || base == 0x280 || base == 0x580 || base == 0x700;
+    require(own || frame.identifier == canopen::identifier::sync || frame.identifier == canopen::identifier::tick,
+            "a module sends on its own identifiers, SYNC and TICK");
+    if (closed_ || mailboxes_.size() == mailbox_count) {
+      return false;
+    }
+    mailboxes_.push_back(frame);
+    return true;
+  }
+  void pulse(std::int32_t width) override {
+    require(width >= 6'000 && width <= 30'000, "pulses are within the servo's range");
+    require(module.state() == NmtState::operational, "pulses are sent in Operational only");
+    const bool enabled = module.power() == PowerState::operation_enabled && module.synchronised();
+    require(enabled || (module.power() == PowerState::quick_stop_active && pulsing_),
+            "pulses begin when the drive is enabled and the tick is known");
+    pulsing_ = true;
+  }
+  void off() override { pulsing_ = false; }
+  std::uint8_t read() override { return sensors_; }
+
+  // Events.
+  void check() const {
+    const bool may = module.state() == NmtState::operational &&
+                     ((module.power() == PowerState::operation_enabled && module.synchronised()) ||
+                      module.power() == PowerState::quick_stop_active);
+    require(may || !pulsing_, "whatever takes the power takes the pulses");
+    require(!module.synchronised() || module.state() == NmtState::operational, "the tick is known in Operational");
+  }
+  void receive(const CanFrame& frame) {
+    module.receive(now_, frame);
+    check();
+  }
+  void write(canopen::Address address, std::uint8_t size, std::uint32_t value) {
+    CanFrame frame{static_cast<std::uint16_t>(canopen::identifier::sdo_request + setup_.node(Setup::joint)), 8, {}};
+    frame.data = {static_cast<std::uint8_t>(0x23U | (4U - size) << 2U),
+                  static_cast<std::uint8_t>(address.index),
+                  static_cast<std::uint8_t>(address.index >> 8U),
+                  address.sub,
+                  static_cast<std::uint8_t>(value),
+                  static_cast<std::uint8_t>(value >> 8U),
+                  static_cast<std::uint8_t>(value >> 16U),
+                  static_cast<std::uint8_t>(value >> 24U)};
+    receive(frame);
+  }
+  void poll() {
+    module.poll(now_);
+    require(module.next_deadline() > now_, "time goes on");
+    check();
+  }
+  void run_for(Microseconds time) {
+    const Microseconds end = now_ + time;
+    for (unsigned polls = 0; module.next_deadline() <= end; ++polls) {
+      require(polls < 20'000, "deadlines are not that close");
+      now_ = module.next_deadline();
+      poll();
+      transmit();
+    }
+    now_ = end;
+  }
+  void transmit() {
+    // What is handed over meanwhile waits for the next time: an end of SYNC may give more than it takes.
+    for (std::size_t count = mailboxes_.size(); count > 0; --count) {
+      const CanFrame frame = mailboxes_.front();
+      mailboxes_.pop_front();
+      module.transmitted(now_, frame);
+      check();
+    }
+  }
+
+  static constexpr std::size_t mailbox_count = 3;
+
+  const Setup& setup_;
+  Microseconds now_ = 0;
+  std::deque<CanFrame> mailboxes_;
+  bool closed_ = false;
+  bool pulsing_ = false;
+  std::uint8_t sensors_ = 0;
+
+ public:
+  firmware::Module module;
+};
+
+void World::handle(std::uint8_t event, Input& input) {
+  const std::uint32_t coming = module.kernel().tick();
+  const std::uint32_t crc = canopen::configuration_crc(setup_.robot);
+  const std::uint8_t node = setup_.node(Setup::joint);
+  switch (event % 20U) {
+    case 0:
+    case 1:
+      run_for(Microseconds{input.byte()} * 100);
+      break;
+    case 2: {  // somebody was busy for long
+      now_ += Microseconds{input.half()} << (input.byte() % 12U);
+      poll();
+      break;
+    }
+    case 3:
+    case 4:
+    case 5:
+      receive(canopen::encode_sync(coming + input.byte() % 4U % 3U));
+      break;
+    case 6:
+      receive({canopen::identifier::sync, static_cast<std::uint8_t>(input.byte() % 3U), {input.byte()}});
+      break;
+    case 7:
+      receive(encode(canopen::TickMessage{coming + input.byte() - 3U, crc}));
+      break;
+    case 8:
+      receive(encode(canopen::TickMessage{0, crc}));
+      receive(canopen::encode_sync(0));
+      break;
+    case 9:
+      receive(encode(canopen::CommitMessage{input.byte(), coming + input.byte() - 8U, 1}));
+      break;
+    case 10: {
+      constexpr std::array<std::uint16_t, 8> words{0x06, 0x07, 0x0F, 0x0F, 0x02, 0x80, 0x00, 0x8F};
+      receive(encode(canopen::Command{node, words[input.byte() % 8U], static_cast<std::int32_t>(input.word())}));
+      break;
+    }
+    case 11:
+      for (const std::uint16_t word : {std::uint16_t{0x80}, std::uint16_t{6}, std::uint16_t{7}, std::uint16_t{15}}) {
+        write(canopen::object::controlword.address, 2, word);
+      }
+      break;
+    case 12: {
+      constexpr std::array commands{canopen::NmtCommand::start, canopen::NmtCommand::stop,
+                                    canopen::NmtCommand::enter_pre_operational, canopen::NmtCommand::reset_node};
+      receive(encode(canopen::NmtRequest{commands[input.byte() % 4U], 0}));
+      break;
+    }
+    case 13: {
+      const std::span<const canopen::ObjectRow> rows = canopen::object_rows();
+      const canopen::Object& entry = *rows[input.byte() % rows.size()].first;
+      write({static_cast<std::uint16_t>(entry.address.index + input.byte() % 3U), entry.address.sub},
+            size_of(entry.type), input.byte() < 128 ? input.byte() : input.word());
+      break;
+    }
+    case 14: {
+      const canopen::ValueAddress value{
+          static_cast<canopen::ValueKind>(input.byte() % 3U), static_cast<std::uint8_t>(3U + input.byte() % 2U),
+          static_cast<std::uint8_t>(input.byte() % 8U), static_cast<std::uint8_t>(input.byte() % 3U)};
+      write(canopen::object::transaction.address, 2, input.byte());
+      write(address_of(value), 4, input.word());
+      break;
+    }
+    case 15: {
+      const unsigned sender = input.byte() % 3U;
+      const unsigned channel = input.byte() % 2U;
+      CanFrame frame = canopen::encode_state(setup_.node(sender), channel, StateFrame{input.eight()});
+      if (sender == Setup::joint) {
+        frame.identifier = static_cast<std::uint16_t>(frame.identifier + 64U);  // its own would end the fun
+      }
+      frame.data[7] = static_cast<std::uint8_t>(coming + frame.data[7] % 4U);
+      receive(frame);
+      break;
+    }
+    case 16: {
+      const auto identifier = static_cast<std::uint16_t>(input.half() % 0x800U);
+      const auto length = static_cast<std::uint8_t>(input.byte() % 9U);
+      CanFrame frame{identifier, length, input.eight()};
+      for (std::size_t i = length; i < 8; ++i) {
+        frame.data[i] = 0;
+      }
+      receive(frame);
+      break;
+    }
+    case 17:
+      sensors_ = input.byte();
+      transmit();
+      break;
+    case 18:
+      closed_ = input.byte() < 64;
+      receive(encode(canopen::Heartbeat{canopen::host_node, NmtState::operational}));
+      break;
+    default:
+      receive(encode(canopen::NmtRequest{canopen::NmtCommand::enter_pre_operational, 0}));
+      configure();
+      break;
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const Setup setup;
+  World configured(setup);
+  World unconfigured(setup);
+  configured.power_on();
+  configured.configure();
+  require(configured.module.state() == NmtState::operational, "the set-up configures a module");
+  unconfigured.power_on();
+  Input first({data, size});
+  while (!first.empty()) {
+    const std::uint8_t event = first.byte();
+    configured.handle(event, first);
+  }
+  Input second({data, size});
+  while (!second.empty()) {
+    const std::uint8_t event = second.byte();
+    unconfigured.handle(event, second);
+  }
+  return 0;
+}

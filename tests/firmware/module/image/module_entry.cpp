@@ -1,0 +1,38 @@
+// A module with ports that lead nowhere, and calls of all that a board calls: what a linker keeps of it is what the
+// program of a module takes, but for the drivers.
+
+#include "firmware/module/module.hpp"
+#include "shared/kernel/fingerprint.hpp"
+
+namespace {
+
+using proleg::CanFrame;
+using proleg::firmware::Module;
+
+struct NoPorts final : proleg::CanPort, proleg::firmware::ServoPort, proleg::firmware::ContactPort {
+  bool send(const CanFrame& /*frame*/) override { return true; }
+  void pulse(std::int32_t /*width*/) override {}
+  void off() override {}
+  std::uint8_t read() override { return 0; }
+};
+
+NoPorts ports;
+
+}  // namespace
+
+/// Its size is read from the symbol table.
+Module the_module({1, 1, {1, 2, 3}, proleg::core_fingerprint}, {ports, ports, ports});
+
+extern "C" {
+
+[[gnu::used]] void module_power_on(proleg::Microseconds now) { the_module.power_on(now); }
+[[gnu::used]] void module_receive(proleg::Microseconds now, const CanFrame* frame) { the_module.receive(now, *frame); }
+[[gnu::used]] void module_transmitted(proleg::Microseconds now, const CanFrame* frame) {
+  the_module.transmitted(now, *frame);
+}
+[[gnu::used]] proleg::Microseconds module_poll(proleg::Microseconds now) {
+  the_module.poll(now);
+  return the_module.next_deadline();
+}
+
+}  // extern "C"

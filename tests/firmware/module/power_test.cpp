@@ -1,0 +1,281 @@
+// When the servo has pulses, and when it must not.
+
+#include <cstdlib>
+
+#include "test_robot.hpp"
+
+namespace proleg {
+namespace {
+
+namespace object = canopen::object;
+using canopen::AbortCode;
+using canopen::Emergency;
+using canopen::EmergencyCode;
+using canopen::NmtCommand;
+using canopen::PowerState;
+
+constexpr std::uint8_t node = test::TestModule::node_id;
+constexpr std::uint32_t servo_us = 3'000;
+
+class Power : public testing::Test {
+ protected:
+  Power() { robot.set_up_and_start(); }
+
+  void controlword(std::uint16_t value) {
+    ASSERT_EQ(robot.bus.write(node, object::controlword, value), AbortCode::none);
+  }
+  void move() {
+    robot.enable(0);
+    robot.run(20);  // a fifth of a period of the sine
+    ASSERT_TRUE(robot.it().is_pulsing());
+    ASSERT_GT(std::abs(last_width() - servo_center), 1'000);
+  }
+  [[nodiscard]] std::int32_t last_width() { return *robot.it().pulses.back().width; }
+  void expect_no_pulses(Microseconds time = 200'000) {
+    const std::size_t pulses = robot.it().pulse_count();
+    robot.bus.run_for(time);
+    EXPECT_EQ(robot.it().pulse_count(), pulses);
+    EXPECT_FALSE(robot.it().is_pulsing());
+  }
+  /// From here on: the pulse moves to 0 degrees at 90 degrees a second, then stays.
+  void expect_ramp_to_the_safe_pose() {
+    std::vector<test::Pulse>& pulses = robot.it().pulses;
+    std::int32_t width = last_width();
+    std::size_t i = pulses.size();
+    Microseconds time = 0;
+    robot.bus.run_for(2'000'000);
+    for (; i < pulses.size(); ++i) {
+      ASSERT_TRUE(pulses[i].width) << "it holds";
+      if (time != 0) {
+        EXPECT_EQ(pulses[i].time - time, servo_us);
+      }
+      time = pulses[i].time;
+      const std::int32_t step = servo_quarter_turn * (servo_us / 100) / 10'000;
+      const std::int32_t way = *pulses[i].width - width;
+      EXPECT_NEAR(std::abs(way), std::min(step, std::abs(width - servo_center)), 1);
+      EXPECT_LT(std::abs(*pulses[i].width - servo_center), std::abs(width - servo_center));
+      width = *pulses[i].width;
+    }
+    EXPECT_EQ(width, servo_center);
+    EXPECT_TRUE(robot.it().is_pulsing());
+  }
+
+  test::TestModule robot{test::one_slot(test::algorithm(test::sinusoidal), 1), servo_us};
+};
+
+TEST_F(Power, IsOffFromPowerOnAndSaidOnce) {
+  robot.run(20);
+  ASSERT_EQ(robot.it().pulses.size(), 1U);
+  EXPECT_FALSE(robot.it().pulses[0].width);
+  EXPECT_EQ(robot.kernel().tick(), 21U) << "the state is computed all the same";
+}
+
+TEST_F(Power, PulsesNeedTheTickAndOperationEnabledAndOperational) {
+  robot.enable(0);
+  expect_no_pulses();  // no tick
+  robot.tick(0);
+  robot.sync(0);
+  EXPECT_TRUE(robot.it().is_pulsing());
+  robot.command(NmtCommand::enter_pre_operational);
+  expect_no_pulses();
+}
+
+TEST_F(Power, PulsesStartInTheNextIntervalAfterTheServoWasEnabled) {
+  robot.run(10);
+  robot.sync(11);
+  const Microseconds sync = robot.bus.now();
+  controlword(0x0006);
+  controlword(0x0007);
+  robot.bus.run_until(sync + 4'000);
+  robot.it().receive(sync + 4'000, encode(canopen::Command{node, 0x000F, 0}));
+  EXPECT_EQ(robot.it().pulse_count(), 0U);
+  robot.bus.run_until(sync + 9'800);
+  // Tick 11 starts at 110 ms; intervals start at 111, 114 and 117 ms.
+  ASSERT_EQ(robot.it().pulse_count(), 1U);
+  EXPECT_EQ(robot.it().pulses.back().time, sync + 7'000);
+}
+
+TEST_F(Power, EveryOtherPowerStateIsOffAndSaidOnce) {
+  for (const std::uint16_t word : std::to_array<std::uint16_t>({0x0000, 0x0006, 0x0007})) {
+    test::TestModule other(robot.setup.kernel, servo_us);
+    other.set_up_and_start();
+    other.enable(0);
+    other.run(20);
+    ASSERT_TRUE(other.it().is_pulsing());
+    ASSERT_EQ(other.bus.write(node, object::controlword, word), AbortCode::none);
+    EXPECT_FALSE(other.it().is_pulsing());
+    const std::size_t said = other.it().pulses.size();
+    other.run(21, 60);
+    EXPECT_EQ(other.it().pulses.size(), said);
+    EXPECT_EQ(other.kernel().tick(), 61U);
+  }
+}
+
+TEST_F(Power, AQuickStopRampsToTheSafePoseAndTheStateGoesOn) {
+  move();
+  controlword(0x0002);
+  EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
+  const std::uint32_t tick = robot.kernel().tick();
+  robot.run(tick, tick + 5);
+  EXPECT_EQ(robot.kernel().tick(), tick + 6);
+  EXPECT_TRUE(robot.module().synchronised());
+  expect_ramp_to_the_safe_pose();
+}
+
+TEST_F(Power, LostSyncRampsToTheSafePose) {
+  move();
+  robot.bus.run_for(495'000);
+  EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
+  expect_ramp_to_the_safe_pose();
+}
+
+TEST_F(Power, ALostTickTakesThePulsesAtOnce) {
+  move();
+  robot.sync(40);
+  EXPECT_FALSE(robot.it().is_pulsing());
+}
+
+TEST_F(Power, AQuickStopEndsWithOperational) {
+  move();
+  controlword(0x0002);
+  robot.bus.run_for(50'000);
+  ASSERT_TRUE(robot.it().is_pulsing());
+  robot.command(NmtCommand::enter_pre_operational);
+  expect_no_pulses();
+}
+
+TEST_F(Power, AQuickStopEndsOnlyByDecision) {
+  move();
+  controlword(0x0002);
+  robot.bus.run_for(2'000'000);
+  controlword(0x000F);
+  EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
+  controlword(0x0080);
+  EXPECT_EQ(robot.module().power(), PowerState::switch_on_disabled);
+  expect_no_pulses();
+}
+
+TEST_F(Power, AQuickStopOfAServoWithoutPulsesStaysOff) {
+  robot.enable(0);
+  controlword(0x0002);
+  EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
+  expect_no_pulses(2'000'000);
+}
+
+TEST_F(Power, TheHostIsMissedOnlyAfterItWasHeard) {
+  robot.enable(0);
+  robot.run(150);
+  EXPECT_TRUE(robot.emergencies().empty());
+  EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
+}
+
+TEST_F(Power, AMissedHostRampsToTheSafePose) {
+  const CanFrame heartbeat = encode(canopen::Heartbeat{canopen::host_node, canopen::NmtState::operational});
+  robot.enable(0);
+  robot.bus.deliver(heartbeat);
+  robot.run(39);
+  EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
+  robot.bus.deliver(heartbeat);
+  const Microseconds heard = robot.bus.now();
+  robot.run(40, 88);
+  EXPECT_LT(robot.bus.now(), heard + 500'000);
+  EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
+  robot.bus.run_until(heard + 500'000);
+  EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
+  EXPECT_TRUE(robot.module().synchronised());
+  robot.bus.run_for(1'000);
+  ASSERT_EQ(robot.emergencies().size(), 1U);
+  EXPECT_EQ(robot.emergencies()[0], (Emergency{node, EmergencyCode::heartbeat_lost, 0x11, canopen::host_node}));
+  robot.bus.run_for(100'000);
+  EXPECT_EQ(robot.emergencies().size(), 1U);
+  // It is back; the quick stop stays.
+  robot.bus.deliver(heartbeat);
+  robot.bus.run_for(1'000);
+  ASSERT_EQ(robot.emergencies().size(), 2U);
+  EXPECT_EQ(robot.emergencies()[1].code, EmergencyCode::none);
+  EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
+}
+
+TEST_F(Power, OtherNodesHeartbeatsAreNotTheHosts) {
+  robot.bus.deliver(encode(canopen::Heartbeat{12, canopen::NmtState::operational}));
+  robot.bus.deliver({canopen::identifier::heartbeat + canopen::host_node, 2, {5, 0}});
+  robot.bus.deliver({canopen::identifier::heartbeat + canopen::host_node, 1, {99}});
+  robot.bus.run_for(2'000'000);
+  EXPECT_TRUE(robot.emergencies().empty());
+}
+
+TEST_F(Power, ACommandByPdoSetsControlwordAndTarget) {
+  for (const std::uint16_t word : test::power_up) {
+    robot.bus.deliver(encode(canopen::Command{node, word, test::degrees(45)}));
+  }
+  EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
+  EXPECT_EQ(robot.bus.value(node, object::target_position), 0x20000000U);
+  EXPECT_EQ(robot.bus.value(node, object::statusword) & 0x6FU, 0x27U);
+  // Not for this node, and not an angle.
+  robot.bus.deliver(encode(canopen::Command{node + 1, 0, 0}));
+  robot.bus.deliver(encode(canopen::Command{node, 0x000F, quarter_turn + 1}));
+  EXPECT_EQ(robot.bus.value(node, object::target_position), 0x20000000U);
+  EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
+}
+
+TEST_F(Power, ACommandOfWrongLengthIsToldOnceAndIgnored) {
+  robot.enable(0);
+  for (const std::uint8_t length : std::to_array<std::uint8_t>({2, 5, 7, 8})) {
+    robot.bus.deliver({canopen::identifier::command + node, length, {}});
+  }
+  robot.bus.run_for(1'000);
+  EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
+  ASSERT_EQ(robot.emergencies().size(), 1U);
+  EXPECT_EQ(robot.emergencies()[0],
+            (Emergency{node, EmergencyCode::wrong_length, 0, canopen::identifier::command + node}));
+  robot.command(NmtCommand::enter_pre_operational);
+  robot.start();
+  robot.bus.deliver({canopen::identifier::command + node, 2, {}});
+  robot.bus.run_for(1'000);
+  EXPECT_EQ(robot.emergencies().size(), 2U) << "once after each start";
+}
+
+TEST_F(Power, CommandsByPdoCountInOperationalOnly) {
+  robot.command(NmtCommand::enter_pre_operational);
+  robot.bus.deliver(encode(canopen::Command{node, 0x0006, 77}));
+  EXPECT_EQ(robot.module().power(), PowerState::switch_on_disabled);
+  EXPECT_EQ(robot.bus.value(node, object::target_position), 0U);
+}
+
+TEST_F(Power, DirectPositionMovesInAStraightLineInOneTickAndKeepsTheLimits) {
+  robot.command(NmtCommand::enter_pre_operational);
+  ASSERT_EQ(robot.bus.write(node, object::upper_limit, static_cast<std::uint32_t>(test::degrees(30))), AbortCode::none);
+  robot.start();
+  ASSERT_EQ(robot.bus.write(node, object::mode, canopen::mode_direct_position), AbortCode::none);
+  EXPECT_EQ(robot.bus.value(node, object::mode_display), 8U);
+  ASSERT_EQ(robot.bus.write(node, object::target_position, static_cast<std::uint32_t>(test::degrees(-90))),
+            AbortCode::none);
+  robot.enable(0);
+  robot.run(5);
+  EXPECT_EQ(last_width(), servo_command(test::degrees(-90)));
+  ASSERT_EQ(robot.bus.write(node, object::target_position, static_cast<std::uint32_t>(test::degrees(80))),
+            AbortCode::none);
+  const std::size_t from = robot.it().pulses.size();
+  robot.run(6, 7);
+  // Tick 6: intervals at 60, 63, 66 and 69 ms, sampled in their middles; tick 7 has arrived.
+  const std::vector<test::Pulse> pulses(robot.it().pulses.begin() + static_cast<std::ptrdiff_t>(from),
+                                        robot.it().pulses.end());
+  ASSERT_EQ(pulses.size(), 7U);
+  const double middles[] = {0.15, 0.45, 0.75, 1.0};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_NEAR(*pulses[i].width, servo_command(test::degrees(-90 + 120 * middles[i])), 1);
+  }
+  for (std::size_t i = 4; i < 7; ++i) {
+    EXPECT_EQ(*pulses[i].width, servo_command(test::degrees(30)));
+  }
+  // And back to the gait, from where it is.
+  ASSERT_EQ(robot.bus.write(node, object::mode, static_cast<std::uint32_t>(canopen::mode_gait)), AbortCode::none);
+  const std::size_t back = robot.it().pulses.size();
+  robot.run(8, 8);
+  const double to = test::in_degrees(robot.kernel().setpoint(0));
+  // Interval at 81 ms: middle at 82.5 ms.
+  EXPECT_NEAR(*robot.it().pulses[back].width, servo_command(test::degrees(30 + (to - 30) * 0.25)), 1);
+}
+
+}  // namespace
+}  // namespace proleg

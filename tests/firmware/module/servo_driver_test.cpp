@@ -1,0 +1,156 @@
+// Pulses along a line, also when SYNC or the processor's time does not come as it should.
+
+#include "firmware/module/servo_driver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <vector>
+
+namespace proleg::firmware {
+namespace {
+
+constexpr std::int32_t quarter = 1 << 30;
+
+struct Servo final : ServoPort {
+  void pulse(std::int32_t width) override { pulses.push_back(width); }
+  void off() override { pulses.push_back(std::nullopt); }
+  std::vector<std::optional<std::int32_t>> pulses;
+};
+
+class Driver : public testing::Test {
+ protected:
+  Driver() { driver.configure({1'000, 10'000}); }
+  /// The pulse in the middle of interval n of a tick that moves from 0 to 90 degrees, with the fraction of
+  /// docs/protocol.md.
+  static std::int32_t pulse(std::uint32_t n) {
+    const std::uint32_t fraction = 2 * (((n * 1'000 + 500) << 15U) / 10'000);
+    return 18'000 + static_cast<std::int32_t>((std::uint64_t{12'000} * fraction + 32'768) / 65'536);
+  }
+
+  Servo servo;
+  ServoDriver driver{servo};
+  std::vector<std::optional<std::int32_t>>& pulses = servo.pulses;
+};
+
+TEST_F(Driver, TakesEveryIntervalInTime) {
+  driver.follow();
+  driver.start_tick(500, 7, 0, quarter);
+  for (std::uint32_t n = 1; n < 10; ++n) {
+    ASSERT_EQ(driver.next_deadline(), 500U + n * 1'000);
+    driver.poll(driver.next_deadline());
+  }
+  EXPECT_EQ(driver.next_deadline(), never);
+  ASSERT_EQ(pulses.size(), 10U);
+  for (std::uint32_t n = 0; n < 10; ++n) {
+    EXPECT_EQ(pulses[n], pulse(n));
+  }
+}
+
+TEST_F(Driver, CalledTooLateTakesTheLatestIntervalOnly) {
+  driver.follow();
+  driver.start_tick(500, 7, 0, quarter);
+  driver.poll(500 + 4'999);
+  ASSERT_EQ(pulses.size(), 2U);
+  EXPECT_EQ(pulses[1], pulse(4));
+  EXPECT_EQ(driver.next_deadline(), 5'500U);
+  driver.poll(1'000'000'000'000);
+  ASSERT_EQ(pulses.size(), 3U);
+  EXPECT_EQ(pulses[2], pulse(9));
+  EXPECT_EQ(driver.next_deadline(), never);
+}
+
+TEST_F(Driver, ASyncThatIsEarlyLosesNoInterval) {
+  driver.follow();
+  driver.start_tick(0, 7, 0, quarter);
+  driver.poll(8'000);
+  driver.start_tick(8'950, 8, quarter, quarter);
+  ASSERT_EQ(pulses.size(), 4U);
+  EXPECT_EQ(pulses[2], pulse(9));
+  EXPECT_EQ(pulses[3], 30'000);
+}
+
+TEST_F(Driver, AnIntervalOfATickBeforeItFollowedIsNotMadeUpFor) {
+  driver.start_tick(0, 7, 0, quarter);
+  driver.follow();
+  driver.start_tick(500, 8, quarter, quarter);
+  ASSERT_EQ(pulses.size(), 1U);
+  EXPECT_EQ(pulses[0], 30'000);
+}
+
+TEST_F(Driver, ATickMayHaveNoInterval) {
+  driver.configure({25'000, 10'000});
+  driver.follow();
+  driver.start_tick(0, 0, 0, quarter);
+  EXPECT_EQ(pulses.size(), 1U);
+  EXPECT_EQ(driver.next_deadline(), never);
+  driver.start_tick(10'000, 1, 0, quarter);
+  EXPECT_EQ(driver.next_deadline(), never);
+  driver.start_tick(20'000, 2, 0, quarter);
+  EXPECT_EQ(driver.next_deadline(), 25'000U);
+}
+
+TEST_F(Driver, ARampThatIsCalledTooLateDoesNotHurry) {
+  driver.follow();
+  driver.start_tick(0, 0, quarter, quarter);
+  driver.quick_stop(100);
+  EXPECT_EQ(driver.next_deadline(), 1'100U);
+  driver.poll(70'000);
+  ASSERT_EQ(pulses.size(), 2U);
+  EXPECT_NEAR(*pulses[1], 30'000 - 12, 1);
+  EXPECT_EQ(driver.next_deadline(), 71'000U);
+}
+
+TEST_F(Driver, RampsFromEitherSideToTheSafePoseAndHolds) {
+  for (const std::int32_t side : {quarter, -quarter}) {
+    driver.reset();
+    driver.follow();
+    driver.start_tick(0, 0, side, side);
+    driver.quick_stop(0);
+    pulses.clear();
+    while (driver.next_deadline() != never) {
+      driver.poll(driver.next_deadline());
+      ASSERT_LE(pulses.size(), 1'001U);
+    }
+    EXPECT_NEAR(static_cast<double>(pulses.size()), 1'000, 1) << "90 degrees in a second";
+    EXPECT_EQ(pulses.back(), 18'000);
+  }
+}
+
+TEST_F(Driver, GoesOnWithTheNextIntervalWhenItIsSwitchedOffAndOn) {
+  driver.follow();
+  driver.start_tick(0, 0, 0, quarter);
+  driver.stop();
+  driver.poll(1'000);
+  driver.follow();
+  driver.poll(2'000);
+  ASSERT_EQ(pulses.size(), 3U);
+  EXPECT_EQ(pulses[1], std::nullopt);
+  EXPECT_EQ(pulses[2], pulse(2));
+}
+
+TEST_F(Driver, AQuickStopBeforeTheFirstPulseStaysOff) {
+  driver.start_tick(0, 0, 0, quarter);
+  driver.follow();
+  driver.quick_stop(500);
+  driver.poll(1'000);
+  ASSERT_EQ(pulses.size(), 1U);
+  EXPECT_EQ(pulses[0], std::nullopt);
+}
+
+TEST_F(Driver, AResetForgetsTheLine) {
+  driver.start_tick(0, 0, 0, quarter);
+  driver.reset();
+  EXPECT_EQ(driver.next_deadline(), never);
+}
+
+TEST_F(Driver, IsSilentUntilItFollows) {
+  driver.start_tick(0, 0, 0, quarter);
+  driver.quick_stop(10);
+  driver.poll(5'000);
+  driver.stop();
+  EXPECT_TRUE(pulses.empty());
+}
+
+}  // namespace
+}  // namespace proleg::firmware

@@ -1,0 +1,143 @@
+// State frames of the neighbours: from whom, and which are refused.
+
+#include "test_robot.hpp"
+
+namespace proleg {
+namespace {
+
+using canopen::Emergency;
+using canopen::EmergencyCode;
+
+constexpr std::uint8_t node = test::TestModule::node_id;
+constexpr std::uint8_t neighbour = 1;  ///< the node of joint 1
+constexpr std::uint16_t neighbour_frame = canopen::identifier::state_frame + neighbour;
+
+class StateFrames : public testing::Test {
+ protected:
+  StateFrames() {
+    robot.set_up_and_start();
+    robot.run(20);
+  }
+  void hear(std::uint16_t identifier, std::uint8_t label, std::uint8_t length = 8) {
+    robot.bus.deliver({identifier, length, {1, 2, 3, 4, 5, 6, StateFrame::valid, label}});
+    robot.bus.run_for(500);
+  }
+  [[nodiscard]] const StateFrame& heard(unsigned joint, unsigned channel = 0) {
+    return robot.kernel().frame(joint, channel);
+  }
+  static bool holds(const StateFrame& frame) { return frame.bytes[0] == 1 && frame.bytes[5] == 6; }
+
+  static KernelConfiguration configuration() {
+    KernelConfiguration made = test::one_slot(test::algorithm(test::sinusoidal), 5);
+    made.slots[1] = {&test::algorithm(test::extended), JointMask(0b00011)};
+    return made;
+  }
+
+  test::TestModule robot{configuration()};
+};
+
+TEST_F(StateFrames, AreTakenFromTheNodeOfTheJoint) {
+  hear(neighbour_frame, 21);
+  EXPECT_TRUE(holds(heard(1)));
+  EXPECT_FALSE(holds(heard(1, 1)));
+  hear(canopen::identifier::second_state + neighbour, 21);
+  EXPECT_TRUE(holds(heard(1, 1)));
+  hear(canopen::identifier::state_frame + 12, 21);
+  EXPECT_TRUE(holds(heard(4)));
+}
+
+TEST_F(StateFrames, OfAStrangerAreIgnored) {
+  hear(canopen::identifier::state_frame + 100, 21);
+  hear(canopen::identifier::state_frame + 100, 21, 3);
+  hear(canopen::identifier::second_state + 9, 21);  // joint 2 has one channel
+  for (unsigned joint = 1; joint < 5; ++joint) {
+    EXPECT_FALSE(holds(heard(joint)));
+  }
+  EXPECT_TRUE(robot.emergencies().empty());
+}
+
+TEST_F(StateFrames, OfAnotherLabelAreNotUsed) {
+  hear(neighbour_frame, 20);
+  hear(neighbour_frame, 22);
+  EXPECT_FALSE(holds(heard(1)));
+  EXPECT_TRUE(robot.emergencies().empty()) << "a module may be just before or just behind";
+  EXPECT_EQ(robot.module().unknown_labels(), 0U);
+}
+
+TEST_F(StateFrames, WithALabelThatFitsNoTickAreCountedAndToldOnceAJoint) {
+  for (const unsigned label : {23U, 19U, 100U, 255U, 23U}) {
+    hear(neighbour_frame, static_cast<std::uint8_t>(label));
+  }
+  hear(canopen::identifier::state_frame + 9, 0);
+  EXPECT_FALSE(holds(heard(1)));
+  EXPECT_EQ(robot.module().unknown_labels(), 6U);
+  const auto emergencies = robot.emergencies();
+  ASSERT_EQ(emergencies.size(), 2U);
+  EXPECT_EQ(emergencies[0], (Emergency{node, EmergencyCode::unknown_label, 0, 1}));
+  EXPECT_EQ(emergencies[1], (Emergency{node, EmergencyCode::unknown_label, 0, 2}));
+}
+
+TEST_F(StateFrames, WithUnknownLabelsAreNoFaultWhileTheModuleKnowsNoTick) {
+  robot.sync(100);
+  robot.bus.run_for(500);
+  const std::size_t told = robot.emergencies().size();
+  hear(neighbour_frame, 101);
+  EXPECT_EQ(robot.emergencies().size(), told);
+}
+
+TEST_F(StateFrames, OfWrongLengthAreToldOnceAJoint) {
+  for (const std::uint8_t length : std::to_array<std::uint8_t>({0, 3, 7})) {
+    hear(neighbour_frame, 21, length);
+    hear(canopen::identifier::second_state + neighbour, 21, length);
+    hear(canopen::identifier::state_frame + 3, 21, length);
+  }
+  EXPECT_FALSE(holds(heard(1)));
+  const auto emergencies = robot.emergencies();
+  ASSERT_EQ(emergencies.size(), 2U);
+  EXPECT_EQ(emergencies[0], (Emergency{node, EmergencyCode::wrong_length, 0, 1}));
+  EXPECT_EQ(emergencies[1], (Emergency{node, EmergencyCode::wrong_length, 0, 3}));
+}
+
+TEST_F(StateFrames, AreComplainedOfAgainAfterANewStart) {
+  hear(neighbour_frame, 21, 3);
+  hear(neighbour_frame, 99);
+  robot.command(canopen::NmtCommand::enter_pre_operational);
+  robot.start();
+  EXPECT_EQ(robot.module().unknown_labels(), 0U);
+  robot.run(20);
+  hear(neighbour_frame, 21, 3);
+  hear(neighbour_frame, 99);
+  EXPECT_EQ(robot.emergencies().size(), 4U);
+}
+
+TEST_F(StateFrames, OfTheOwnJointAreNotListenedTo) {
+  robot.command(canopen::NmtCommand::enter_pre_operational);
+  for (const std::uint32_t sender : {77U, std::uint32_t{node}}) {
+    ASSERT_EQ(robot.bus.write(node, canopen::object::state_frame_identifier[0].address(0), 4,
+                              canopen::identifier::state_frame + sender),
+              canopen::AbortCode::none);
+    ASSERT_EQ(robot.bus.write(node, canopen::object::activate, 1), canopen::AbortCode::none);
+  }
+  robot.start();
+  robot.run(20);
+  hear(canopen::identifier::state_frame + 77, 21, 3);
+  EXPECT_TRUE(robot.emergencies().empty());
+}
+
+TEST_F(StateFrames, ThatHoldNoStateAreNotUsed) {
+  robot.bus.deliver({neighbour_frame, 8, {1, 2, 3, 4, 5, 6, 0, 21}});
+  EXPECT_FALSE(holds(heard(1)));
+  EXPECT_TRUE(robot.emergencies().empty());
+}
+
+TEST_F(StateFrames, AreHeardInOperationalOnly) {
+  robot.command(canopen::NmtCommand::enter_pre_operational);
+  hear(neighbour_frame, 21);
+  hear(neighbour_frame, 99);
+  hear(neighbour_frame, 21, 2);
+  EXPECT_FALSE(holds(heard(1)));
+  EXPECT_TRUE(robot.emergencies().empty());
+}
+
+}  // namespace
+}  // namespace proleg

@@ -1,0 +1,85 @@
+#pragma once
+
+// A module with its world: a controller of three mailboxes, a servo that remembers its pulses, touch sensors.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "firmware/module/module.hpp"
+
+namespace proleg::test {
+
+/// What a servo was told.
+struct Pulse {
+  Microseconds time;                  ///< of the bus
+  std::optional<std::int32_t> width;  ///< nothing: off
+
+  friend bool operator==(const Pulse&, const Pulse&) = default;
+};
+
+class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
+ public:
+  static constexpr std::size_t mailboxes = 3;
+
+  /// clock_offset: what the module's clock shows when that of the bus shows 0.
+  explicit ModuleNode(const firmware::Board& board, Microseconds clock_offset = 0)
+      : clock_offset_(clock_offset), module(board, {*this, *this, *this}) {}
+  ModuleNode(const ModuleNode&) = delete;
+
+  // The world's side; times are those of the bus.
+  void power_on(Microseconds now) { at(now).power_on(local(now)); }
+  void receive(Microseconds now, const CanFrame& frame) { at(now).receive(local(now), frame); }
+  void transmitted(Microseconds now, const CanFrame& frame) { at(now).transmitted(local(now), frame); }
+  void poll(Microseconds now) { at(now).poll(local(now)); }
+  [[nodiscard]] Microseconds next_deadline() const {
+    const Microseconds deadline = module.next_deadline();
+    return deadline == never ? never : (deadline < clock_offset_ ? 0 : deadline - clock_offset_);
+  }
+
+  /// Frames that wait for the bus, in the order in which they were handed over.
+  std::vector<CanFrame> waiting;
+  /// Pulses and switches to off since the start; those that change nothing included.
+  std::vector<Pulse> pulses;
+  [[nodiscard]] bool is_pulsing() const { return !pulses.empty() && pulses.back().width.has_value(); }
+  [[nodiscard]] std::size_t pulse_count() const {
+    std::size_t count = 0;
+    for (const Pulse& pulse : pulses) {
+      count += pulse.width ? 1U : 0U;
+    }
+    return count;
+  }
+  /// Touch sensors as they are now.
+  std::uint8_t sensors = 0;
+  /// Times at which they were read.
+  std::vector<Microseconds> readings;
+
+ private:
+  [[nodiscard]] Microseconds local(Microseconds now) const { return now + clock_offset_; }
+  firmware::Module& at(Microseconds now) {
+    now_ = now;
+    return module;
+  }
+
+  [[nodiscard]] bool send(const CanFrame& frame) override {
+    if (waiting.size() == mailboxes) {
+      return false;
+    }
+    waiting.push_back(frame);
+    return true;
+  }
+  void pulse(std::int32_t width) override { pulses.push_back({now_, width}); }
+  void off() override { pulses.push_back({now_, std::nullopt}); }
+  [[nodiscard]] std::uint8_t read() override {
+    readings.push_back(now_);
+    return sensors;
+  }
+
+  Microseconds clock_offset_;
+  Microseconds now_ = 0;
+
+ public:
+  firmware::Module module;
+};
+
+}  // namespace proleg::test

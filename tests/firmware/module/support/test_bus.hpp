@@ -1,0 +1,196 @@
+#pragma once
+
+// A CAN bus in memory with modules and a host: every frame takes the same time, the lowest identifier goes first, all
+// others hear a frame at the instant at which its sender learns that it was sent.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "module_node.hpp"
+#include "shared/canopen/sdo.hpp"
+
+namespace proleg::test {
+
+class TestBus {
+ public:
+  static constexpr Microseconds frame_time_us = 130;
+  static constexpr std::size_t host = ~std::size_t{0};
+
+  struct Sent {
+    Microseconds time;
+    std::size_t sender;  ///< position of the module, or `host`
+    CanFrame frame;
+  };
+
+  ModuleNode& add(const firmware::Board& board, Microseconds clock_offset = 0) {
+    nodes.push_back(std::make_unique<ModuleNode>(board, clock_offset));
+    return *nodes.back();
+  }
+
+  [[nodiscard]] Microseconds now() const { return now_; }
+  void send(const CanFrame& frame) { host_queue_.push_back(frame); }
+
+  void run_until(Microseconds end) {
+    arbitrate();
+    for (Microseconds time = next_event(); time <= end; time = next_event()) {
+      ASSERT_LE(++events_, 10'000'000U) << "time stands still";
+      now_ = std::max(now_, time);
+      finish_frame();
+      for (const auto& node : nodes) {
+        if (node->next_deadline() <= now_) {
+          node->poll(now_);
+          EXPECT_GT(node->next_deadline(), now_);
+        }
+      }
+      arbitrate();
+    }
+    now_ = end;
+  }
+  void run_for(Microseconds time) { run_until(now_ + time); }
+  /// Until a frame that `wanted` accepts was sent; false after `longest`.
+  bool run_until_sent(const std::function<bool(const CanFrame&)>& wanted, Microseconds longest = 1'000'000) {
+    const Microseconds end = now_ + longest;
+    std::size_t seen = log.size();
+    for (arbitrate(); next_event() <= end;) {
+      run_until(next_event());
+      for (; seen < log.size(); ++seen) {
+        if (wanted(log[seen].frame)) {
+          return true;
+        }
+      }
+    }
+    run_until(end);
+    return false;
+  }
+  /// Sends a frame of the host and lets it arrive, and whatever it caused at once.
+  void deliver(const CanFrame& frame) {
+    send(frame);
+    run_until_sent([&](const CanFrame& sent) { return sent == frame; });
+  }
+
+  // SDO as a host does it.
+  canopen::AbortCode write(std::uint8_t node, canopen::Address address, std::uint8_t size, std::uint32_t value) {
+    return transfer(client_.write(now_, node, address, size, value));
+  }
+  canopen::AbortCode write(std::uint8_t node, const canopen::Object& entry, std::uint32_t value) {
+    return write(node, entry.address, canopen::size_of(entry.type), value);
+  }
+  canopen::AbortCode read(std::uint8_t node, canopen::Address address, std::uint32_t& value) {
+    const canopen::AbortCode code = transfer(client_.read(now_, node, address));
+    value = client_.value();
+    return code;
+  }
+  /// A value that must be there.
+  std::uint32_t value(std::uint8_t node, canopen::Address address) {
+    std::uint32_t value = 0;
+    EXPECT_EQ(read(node, address, value), canopen::AbortCode::none)
+        << std::hex << address.index << ':' << int{address.sub};
+    return value;
+  }
+  std::uint32_t value(std::uint8_t node, const canopen::Object& entry) { return value(node, entry.address); }
+
+  // What was sent.
+  [[nodiscard]] std::vector<Sent> sent(std::uint16_t identifier, std::size_t from = 0) const {
+    std::vector<Sent> found;
+    std::copy_if(log.begin() + static_cast<std::ptrdiff_t>(from), log.end(), std::back_inserter(found),
+                 [&](const Sent& entry) { return entry.frame.identifier == identifier; });
+    return found;
+  }
+  [[nodiscard]] std::vector<canopen::Emergency> emergencies(std::uint8_t node, std::size_t from = 0) const {
+    std::vector<canopen::Emergency> found;
+    for (const Sent& entry : sent(static_cast<std::uint16_t>(canopen::identifier::emergency + node), from)) {
+      const auto emergency = canopen::decode_emergency(entry.frame);
+      EXPECT_TRUE(emergency);
+      found.push_back(*emergency);
+    }
+    return found;
+  }
+
+  std::vector<std::unique_ptr<ModuleNode>> nodes;
+  std::vector<Sent> log;
+  /// Called with every frame that was sent, before anybody hears of it.
+  std::function<void(const CanFrame&)> on_frame = [](const CanFrame&) {};
+  /// Whether a module does not get a frame.
+  std::function<bool(const CanFrame&, std::size_t)> loses = [](const CanFrame&, std::size_t) { return false; };
+
+ private:
+  [[nodiscard]] Microseconds next_event() const {
+    Microseconds next = frame_end_;
+    for (const auto& node : nodes) {
+      next = std::min(next, node->next_deadline());
+    }
+    return next;
+  }
+
+  void arbitrate() {
+    if (frame_end_ != never) {
+      return;
+    }
+    std::vector<CanFrame>* winner = nullptr;
+    std::size_t position = 0;
+    const auto ask = [&](std::vector<CanFrame>& queue, std::size_t sender) {
+      for (std::size_t i = 0; i < queue.size(); ++i) {
+        if (winner == nullptr || queue[i].identifier < (*winner)[position].identifier) {
+          winner = &queue;
+          position = i;
+          sender_ = sender;
+        }
+      }
+    };
+    ask(host_queue_, host);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      ask(nodes[i]->waiting, i);
+    }
+    if (winner != nullptr) {
+      on_wire_ = (*winner)[position];
+      queue_ = winner;
+      frame_end_ = now_ + frame_time_us;
+    }
+  }
+
+  void finish_frame() {
+    if (frame_end_ > now_) {
+      return;
+    }
+    frame_end_ = never;
+    const CanFrame frame = on_wire_;
+    const std::size_t sender = sender_;
+    queue_->erase(std::find(queue_->begin(), queue_->end(), frame));
+    on_frame(frame);
+    log.push_back({now_, sender, frame});
+    if (sender != host) {
+      client_.receive(frame);
+      nodes[sender]->transmitted(now_, frame);
+    }
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (i != sender && !loses(frame, i)) {
+        nodes[i]->receive(now_, frame);
+      }
+    }
+  }
+
+  canopen::AbortCode transfer(const CanFrame& request) {
+    send(request);
+    const Microseconds end = now_ + 2 * canopen::SdoClient::default_time_out_us;
+    while (client_.state() == canopen::SdoClient::State::waiting && now_ < end) {
+      run_for(frame_time_us);
+      client_.poll(now_);
+    }
+    return client_.state() == canopen::SdoClient::State::done ? canopen::AbortCode::none : client_.abort_code();
+  }
+
+  Microseconds now_ = 0;
+  std::vector<CanFrame> host_queue_;
+  CanFrame on_wire_;
+  std::vector<CanFrame>* queue_ = nullptr;
+  std::size_t sender_ = host;
+  Microseconds frame_end_ = never;
+  canopen::SdoClient client_;
+  std::uint64_t events_ = 0;
+};
+
+}  // namespace proleg::test

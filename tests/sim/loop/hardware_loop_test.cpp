@@ -1,0 +1,343 @@
+// Modules that know only their own joint, their sensors and the frames they hear, each on its own crystal: not one bit
+// of what they do may differ from the gait in memory.
+
+#include "sim/loop/hardware_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "shared/canopen/messages.hpp"
+#include "shipped.hpp"
+#include "sim/loop/simulation.hpp"
+#include "sim/scenario/reader.hpp"
+
+namespace proleg::sim {
+namespace {
+
+struct Outcome {
+  std::uint64_t differences = 0;
+  std::string setpoints;
+  std::string servo_commands;
+  double displacement = 0;
+  std::uint64_t lost_frames = 0;
+  std::vector<std::string> notices;
+  std::map<std::uint32_t, std::uint32_t> joined;  ///< tick by joint
+  BusStatistics bus;
+};
+
+Outcome run(const Scenario& scenario, std::uint32_t ticks, HardwareOptions options = {}) {
+  Outcome result;
+  options.notice = [&result](const std::string& notice) { result.notices.push_back(notice); };
+  HardwareLoop loop(scenario, std::move(options));
+  while (loop.tick() < ticks) {
+    loop.advance();
+    for (const auto& event : loop.restart_events()) {
+      if (event.joined) {
+        result.joined[event.joint] = loop.tick() - 1;
+      }
+    }
+  }
+  result.differences = loop.differences();
+  result.setpoints = loop.setpoint_hash().hex();
+  result.servo_commands = loop.servo_hash().hex();
+  result.displacement = loop.plant().displacement();
+  result.lost_frames = loop.lost_frames();
+  result.bus = loop.bus_statistics();
+  return result;
+}
+
+Outcome simulated(const Scenario& scenario, std::uint32_t ticks, const Losses* losses = nullptr) {
+  Simulation simulation(scenario, losses);
+  Outcome result;
+  while (simulation.tick() < ticks) {
+    simulation.advance();
+    result.lost_frames += simulation.chain().lost().size();
+  }
+  result.setpoints = simulation.setpoint_hash().hex();
+  result.servo_commands = simulation.servo_hash().hex();
+  result.displacement = simulation.plant().displacement();
+  return result;
+}
+
+void expect_identical(const Outcome& modules, const Outcome& simulation) {
+  EXPECT_EQ(modules.differences, 0U);
+  EXPECT_EQ(modules.setpoints, simulation.setpoints);
+  EXPECT_EQ(modules.servo_commands, simulation.servo_commands);
+  EXPECT_EQ(modules.displacement, simulation.displacement) << "the worlds are the same to the last bit, too";
+  EXPECT_EQ(modules.lost_frames, simulation.lost_frames);
+}
+
+class EveryScenario : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryScenario, CrawlsBitForBitLikeTheSimulation) {
+  const Scenario scenario = shipped(GetParam());
+  expect_identical(run(scenario, 1500), simulated(scenario, 1500));
+}
+
+TEST_P(EveryScenario, DoesSoWhenFivePercentOfTheStateFramesAreLost) {
+  const Scenario scenario = shipped(GetParam());
+  const Losses losses(RandomLosses{7, 214748365, 0, 900});
+  HardwareOptions options;
+  options.losses = &losses;
+  const Outcome modules = run(scenario, 1200, options);
+  expect_identical(modules, simulated(scenario, 1200, &losses));
+  EXPECT_GT(modules.lost_frames, 700U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shipped, EveryScenario,
+                         testing::Values("travelling_wave/uniform", "travelling_wave/tail_fixed",
+                                         "travelling_wave/coupled", "obstacle/reflex", "obstacle/plain"));
+
+TEST(HardwareLoop, ChangesInFlightTakeEffectAtTheirTicksInEveryModule) {
+  Scenario scenario = shipped("travelling_wave/coupled");
+  for (const char* setting : {"amplitude=20@0", "frequency=0.8@1", "amplitude:J2=30@60", "current_phase:J3=170@61",
+                              "phase_difference=70@150", "offset:J5=5@300"}) {
+    apply_setting(scenario, setting);
+  }
+  const Outcome modules = run(scenario, 400);
+  expect_identical(modules, simulated(scenario, 400));
+  EXPECT_TRUE(modules.notices.empty()) << modules.notices.front();
+}
+
+TEST(HardwareLoop, TwoRunsAreTheSame) {
+  const Scenario scenario = shipped("travelling_wave/coupled");
+  const Outcome first = run(scenario, 200);
+  const Outcome second = run(scenario, 200);
+  EXPECT_EQ(first.setpoints, second.setpoints);
+  EXPECT_EQ(first.displacement, second.displacement);
+  EXPECT_EQ(first.bus.frames, second.bus.frames);
+  EXPECT_EQ(first.bus.busy, second.bus.busy);
+}
+
+TEST(HardwareLoop, CrystalsMayBeOffByMoreThanAnyCrystalIs) {
+  const Scenario scenario = shipped("travelling_wave/coupled");
+  for (const std::uint32_t error_ppm : {0U, 100U, 500U}) {
+    HardwareOptions options;
+    options.crystal_error_ppm = error_ppm;
+    expect_identical(run(scenario, 500, options), simulated(scenario, 500));
+  }
+}
+
+// Servo periods that do not fit the tick or the step of the physics.
+TEST(HardwareLoop, TakesServosOfEveryKind) {
+  for (const std::uint32_t period_us : {700U, 1'000U, 3'000U, 20'000U}) {
+    Scenario scenario = shipped("travelling_wave/coupled");
+    scenario.robot.servo.period_us = period_us;
+    expect_identical(run(scenario, 300), simulated(scenario, 300));
+  }
+}
+
+TEST(HardwareLoop, TakesOtherTicks) {
+  for (const std::uint32_t tick_us : {5'000U, 20'000U}) {
+    Scenario scenario = shipped("travelling_wave/coupled");
+    scenario.kernel.tick_period_us = tick_us;
+    expect_identical(run(scenario, 300), simulated(scenario, 300));
+  }
+}
+
+TEST(HardwareLoop, ANodeIdImpliesNoJoint) {
+  Scenario scenario = shipped("travelling_wave/coupled");
+  const Outcome expected = simulated(scenario, 300);
+  const std::uint8_t nodes[] = {126, 3, 77, 1, 42};
+  for (std::size_t joint = 0; joint < 5; ++joint) {
+    scenario.modules[joint].node = nodes[joint];
+  }
+  expect_identical(run(scenario, 300), expected);
+}
+
+// Load of one state frame a module and SYNC at 10 ms from the least to the most stuffing (docs/protocol.md), and TICK.
+TEST(HardwareLoop, FiveModulesTakeSevenPercentOfTheBus) {
+  const Outcome modules = run(shipped("travelling_wave/coupled"), 1000);
+  EXPECT_GT(modules.bus.load(), 0.061);
+  EXPECT_LT(modules.bus.load(), 0.076);
+}
+
+TEST(HardwareLoop, TwentyModulesTakeLessThanThirtyPercentOfTheBus) {
+  const Scenario scenario = shipped("long_chain/twenty");
+  const Outcome modules = run(scenario, 100);
+  EXPECT_EQ(modules.differences, 0U);
+  EXPECT_LT(modules.bus.load(), 0.30);
+}
+
+TEST(HardwareLoop, SixtyModulesRun) {
+  const Outcome modules = run(shipped("long_chain/sixty"), 20);
+  EXPECT_EQ(modules.differences, 0U);
+  EXPECT_LT(modules.bus.load(), 0.85);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Restarts.
+
+class RestartedModule : public testing::TestWithParam<const char*> {};
+
+TEST_P(RestartedModule, RejoinsAndNothingDiffersFromTheGaitInMemoryThatLacksItAsLong) {
+  Scenario scenario = shipped(GetParam());
+  if (scenario.kernel.slots[0].algorithm->declaration().name == "PatternGenerator_coupled_oscillator") {
+    apply_setting(scenario, "amplitude=25@205");  // committed while the module is away
+  }
+  for (const unsigned joint : {1U, 4U}) {
+    HardwareOptions options;
+    options.restarts = {{200, joint}, {500, joint}};
+    const Outcome modules = run(scenario, 800, options);
+    EXPECT_EQ(modules.differences, 0U) << "joint " << joint;
+    ASSERT_TRUE(modules.joined.contains(joint));
+    EXPECT_LT(modules.joined.at(joint), 540U) << "back within 0.4 s";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenarios, RestartedModule,
+                         testing::Values("travelling_wave/uniform", "travelling_wave/coupled", "obstacle/reflex"));
+
+TEST(HardwareLoop, APlainSineIsExactAgainAfterARestart) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  Simulation simulation(scenario);
+  HardwareOptions options;
+  options.restarts = {{100, 2}};
+  HardwareLoop loop(scenario, options);
+  for (std::uint32_t tick = 0; tick < 200; ++tick) {
+    loop.advance();
+    simulation.advance();
+    if (tick < 100 || tick > 140) {
+      ASSERT_TRUE(std::ranges::equal(loop.sample().setpoints, simulation.setpoints())) << "tick " << tick;
+    }
+  }
+}
+
+TEST(HardwareLoop, TheServoOfARestartedModuleIsLimpUntilItIsBack) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  HardwareOptions options;
+  options.restarts = {{100, 2}};
+  HardwareLoop loop(scenario, options);
+  std::uint32_t without_pulses = 0;
+  for (std::uint32_t tick = 0; tick < 200; ++tick) {
+    loop.advance();
+    const TickSample sample = loop.sample();
+    const auto pulses = std::ranges::count(sample.servo_pulses, 2U, &ServoPulse::joint);
+    EXPECT_TRUE(pulses == 10 || pulses == 0) << "tick " << tick;
+    without_pulses += pulses == 0 ? 1U : 0U;
+    if (tick < 100 || tick > 140) {
+      EXPECT_EQ(pulses, 10) << "tick " << tick;
+    }
+  }
+  EXPECT_GT(without_pulses, 0U);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// A check of identity must be able to fail.
+
+class SecretFault : public testing::TestWithParam<const char*> {
+ protected:
+  static bool is_state_frame(const CanFrame& frame, std::uint8_t node, std::uint8_t label) {
+    return frame.identifier == canopen::identifier::state_frame + node && frame.data[7] == label;
+  }
+
+  void expect_other_hash(const Outcome& faulty) const {
+    EXPECT_GT(faulty.differences, 0U);
+    EXPECT_NE(faulty.setpoints, run(scenario, ticks).setpoints);
+  }
+
+  static constexpr std::uint32_t ticks = 300;
+  Scenario scenario = shipped(GetParam());
+};
+
+// While the oscillators still look for their phases. (In a settled gait what a receiver expects of a lost frame is so
+// right that nothing changes.)
+TEST_P(SecretFault, AStateFrameDroppedOnItsWayToOneJointShows) {
+  HardwareOptions options;
+  options.tamper = [](unsigned joint, const CanFrame& frame, const auto& deliver) {
+    if (!(joint == 1 && is_state_frame(frame, 1, 20))) {
+      deliver(frame);
+    }
+  };
+  expect_other_hash(run(scenario, ticks, options));
+}
+
+TEST_P(SecretFault, AStateFrameThatComesATickLateShows) {
+  HardwareOptions options;
+  std::optional<CanFrame> late;
+  options.tamper = [&late](unsigned joint, const CanFrame& frame, const auto& deliver) {
+    if (joint == 1 && is_state_frame(frame, 1, 20)) {
+      late = frame;
+      return;
+    }
+    deliver(frame);
+    if (joint == 1 && late && is_state_frame(frame, 1, 21)) {
+      deliver(*late);
+      late.reset();
+    }
+  };
+  expect_other_hash(run(scenario, ticks, options));
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenarios, SecretFault, testing::Values("travelling_wave/coupled"));
+
+// All modules but one read their sensors as they were a tick before: that one's contacts are a tick younger than its
+// neighbours'.
+TEST(HardwareLoop, ContactsOfMixedAgesShow) {
+  const Scenario scenario = shipped("obstacle/reflex");
+  HardwareOptions options;
+  std::map<unsigned, std::uint8_t> before;
+  options.change_sensors = [&before](unsigned joint, std::uint8_t sensors) {
+    const std::uint8_t older = before[joint];
+    before[joint] = sensors;
+    return joint == 2 ? sensors : older;
+  };
+  const Outcome faulty = run(scenario, 600, options);
+  EXPECT_GT(faulty.differences, 0U);
+  EXPECT_NE(faulty.setpoints, run(scenario, 600).setpoints);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Robots that must not start.
+
+void expect_refusal(const Scenario& scenario, const HardwareOptions& options, const std::string& message) {
+  try {
+    const HardwareLoop loop(scenario, options);
+    ADD_FAILURE() << "the robot started";
+  } catch (const HardwareError& error) {
+    EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+  }
+}
+
+TEST(RefusedRobot, AModuleWithAnotherCoreIsNamed) {
+  HardwareOptions options;
+  options.change_board = [](unsigned joint, firmware::Board& board) {
+    if (joint == 3) {
+      board.core_fingerprint ^= 1U;
+    }
+  };
+  expect_refusal(shipped("travelling_wave/uniform"), options, "node 4 (J2)");
+}
+
+TEST(RefusedRobot, TwoModulesWithOneNodeIdAreNamed) {
+  HardwareOptions options;
+  options.change_board = [](unsigned joint, firmware::Board& board) {
+    if (joint == 3) {
+      board.node = 2;
+    }
+  };
+  expect_refusal(shipped("travelling_wave/uniform"), options, "node 2 (J4)");
+}
+
+TEST(RefusedRobot, AMissingModuleIsNamed) {
+  HardwareOptions options;
+  options.change_board = [](unsigned joint, firmware::Board& board) {
+    if (joint == 3) {
+      board.node = 99;
+    }
+  };
+  expect_refusal(shipped("travelling_wave/uniform"), options, "node");
+}
+
+TEST(RefusedRobot, ABusThatCannotCarryItsFramesIsRefusedBeforeItStarts) {
+  Scenario scenario = shipped("long_chain/sixty");
+  scenario.kernel.tick_period_us = 5'000;
+  expect_refusal(scenario, {}, "85 %");
+}
+
+}  // namespace
+}  // namespace proleg::sim

@@ -1,0 +1,163 @@
+#include "sim/loop/kernel_chain.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "shipped.hpp"
+#include "sim/record/hash.hpp"
+#include "sim/scenario/reader.hpp"
+
+namespace proleg::sim {
+namespace {
+
+KernelChain make_chain(const Scenario& scenario) { return {scenario.kernel, scenario.joint_limits, scenario.settings}; }
+
+const std::vector<std::uint8_t> no_contacts(5);
+
+double phase_degrees(const KernelChain& chain, unsigned joint) {
+  return chain.kernel(joint).internal_value(0, joint, 0) * (180.0 / 2147483648.0);
+}
+
+/// The largest distance between the phases of two chains, in degrees.
+double largest_phase_error(const KernelChain& a, const KernelChain& b) {
+  double largest = 0;
+  for (unsigned joint = 0; joint < a.joint_count(); ++joint) {
+    largest = std::max(largest, std::abs(std::remainder(phase_degrees(a, joint) - phase_degrees(b, joint), 360.0)));
+  }
+  return largest;
+}
+
+TEST(KernelChain, LosesWhatTheLossesNameAndNothingElse) {
+  const Scenario scenario = shipped("travelling_wave/coupled");
+  KernelChain chain = make_chain(scenario);
+  const Losses losses({{3, 0, 0, 1}, {5, 4, 0, 3}, {5, 4, 0, 2}});
+  chain.set_losses(&losses);
+  for (std::uint32_t tick = 0; tick < 10; ++tick) {
+    chain.advance(no_contacts);
+    const std::size_t expected = tick == 3 ? 1 : (tick == 5 ? 2 : 0);
+    EXPECT_EQ(chain.lost().size(), expected) << "tick " << tick;
+  }
+  EXPECT_EQ(chain.kernel(1).missed_frames(), 1U);
+  EXPECT_EQ(chain.kernel(2).missed_frames(), 1U);
+  EXPECT_EQ(chain.kernel(3).missed_frames(), 1U);
+  EXPECT_EQ(chain.kernel(0).missed_frames(), 0U);
+}
+
+TEST(KernelChain, ThePlainSineDoesNotMindLosses) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  KernelChain chain = make_chain(scenario);
+  KernelChain undisturbed = make_chain(scenario);
+  const Losses losses(RandomLosses{5, 1U << 30U, 0, 999});
+  chain.set_losses(&losses);
+  for (int tick = 0; tick < 2000; ++tick) {
+    chain.advance(no_contacts);
+    undisturbed.advance(no_contacts);
+    ASSERT_TRUE(std::ranges::equal(chain.setpoints(), undisturbed.setpoints())) << "tick " << tick;
+  }
+}
+
+/// The same between neighbours: what makes the wave.
+double largest_phase_difference_error(const KernelChain& a, const KernelChain& b) {
+  double largest = 0;
+  for (unsigned joint = 0; joint + 1 < a.joint_count(); ++joint) {
+    const double in_a = phase_degrees(a, joint + 1) - phase_degrees(a, joint);
+    const double in_b = phase_degrees(b, joint + 1) - phase_degrees(b, joint);
+    largest = std::max(largest, std::abs(std::remainder(in_a - in_b, 360.0)));
+  }
+  return largest;
+}
+
+struct Recovery {
+  std::size_t lost = 0;    ///< frames
+  double phase = 0;        ///< largest error after them
+  double differences = 0;  ///< largest error of a phase difference after them
+};
+
+/// Frames are lost for five seconds from tick `first` on; a second after that is left out.
+Recovery recovery(std::uint64_t seed, double rate, std::uint32_t first) {
+  const Scenario scenario = shipped("travelling_wave/coupled");
+  KernelChain chain = make_chain(scenario);
+  KernelChain undisturbed = make_chain(scenario);
+  const std::uint32_t end = first + 500;
+  const Losses losses(RandomLosses{seed, static_cast<std::uint32_t>(rate * 4294967296.0), first, end - 1});
+  chain.set_losses(&losses);
+  Recovery result;
+  for (std::uint32_t tick = 0; tick < end + 500; ++tick) {
+    chain.advance(no_contacts);
+    undisturbed.advance(no_contacts);
+    result.lost += chain.lost().size();
+    if (tick >= end + 100) {
+      result.phase = std::max(result.phase, largest_phase_error(chain, undisturbed));
+      result.differences = std::max(result.differences, largest_phase_difference_error(chain, undisturbed));
+    }
+  }
+  return result;
+}
+
+// What a receiver expects of a neighbour is right as long as the gait is settled.
+TEST(KernelChain, CoupledOscillatorsStayWithinADegreeWhenFramesAreLostInMidGait) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Recovery result = recovery(seed, 0.05, 1000);
+    EXPECT_GT(result.lost, 400U) << "seed " << seed;
+    EXPECT_LT(result.phase, 1.0) << "seed " << seed;
+  }
+}
+
+// The wave is what pulls the oscillators back. If frames are lost while they still look for it, all together may run a
+// few degrees ahead or behind ever after: that is nobody's to notice.
+TEST(KernelChain, PhaseDifferencesComeBackWithinADegreeWheneverLossesEnd) {
+  for (const double rate : {0.05, 0.25, 0.9}) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      EXPECT_LT(recovery(seed, rate, 0).differences, 1.0) << "seed " << seed << " rate " << rate;
+    }
+  }
+}
+
+TEST(KernelChain, AStoppedJointIsHeardOnceMoreAndThenMissed) {
+  const Scenario scenario = shipped("travelling_wave/coupled");
+  KernelChain chain = make_chain(scenario);
+  for (int tick = 0; tick < 10; ++tick) {
+    chain.advance(no_contacts);
+  }
+  const std::int32_t last = chain.setpoints()[2];
+  chain.stop(2);
+  EXPECT_FALSE(chain.is_running(2));
+  chain.advance(no_contacts);
+  EXPECT_EQ(chain.kernel(1).missed_frames(), 0U) << "the frame of the tick in which it stops was sent before";
+  chain.advance(no_contacts);
+  EXPECT_EQ(chain.kernel(1).missed_frames(), 1U);
+  EXPECT_EQ(chain.setpoints()[2], last) << "its set-point stays";
+  EXPECT_EQ(chain.lost().size(), 0U) << "that is no loss on the bus";
+}
+
+TEST(KernelChain, AJointThatJoinsHasTheParametersOfTheChangesMeanwhile) {
+  Scenario scenario = shipped("travelling_wave/uniform");
+  apply_setting(scenario, "amplitude=12@15");
+  apply_setting(scenario, "amplitude=13@25");
+  KernelChain chain = make_chain(scenario);
+  KernelChain undisturbed = make_chain(scenario);
+  std::size_t next = 0;
+  for (std::uint32_t tick = 0; tick < 100; ++tick) {
+    if (tick == 10) {
+      chain.stop(3);
+    }
+    if (tick == 20) {
+      chain.join(3);
+    }
+    if (next < scenario.changes.size() && scenario.changes[next].tick == tick) {
+      chain.apply(scenario.changes[next]);
+      undisturbed.apply(scenario.changes[next++]);
+    }
+    chain.advance(no_contacts);
+    undisturbed.advance(no_contacts);
+    if (tick < 10 || tick >= 20) {
+      ASSERT_TRUE(std::ranges::equal(chain.setpoints(), undisturbed.setpoints())) << "tick " << tick;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace proleg::sim

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "sim/scenario/reader.hpp"
+
+namespace proleg::sim {
+
+/// A scenario that ships, e.g. "travelling_wave/coupled".
+inline Scenario shipped(const std::string& name) {
+  DiskFiles files;
+  return read_scenario(std::filesystem::path(PROLEG_SOURCE_DIR) / "sim/scenarios" / (name + ".simulation.xml"), files);
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,107 @@
+#pragma once
+
+// The programs as a user meets them: words in, standard output, standard error and exit status out.
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+extern char** environ;
+
+namespace proleg::test {
+
+namespace fs = std::filesystem;
+
+struct Finished {
+  int status;
+  std::string out;
+  std::string err;
+};
+
+inline std::string read_file(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+class CommandLine : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = (fs::temp_directory_path() / "proleg-XXXXXX").string();
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] fs::path file(const std::string& name) const { return folder_ / name; }
+
+  [[nodiscard]] static std::string scenario(const std::string& name) {
+    return std::string(PROLEG_SOURCE_DIR) + "/sim/scenarios/travelling_wave/" + name + ".simulation.xml";
+  }
+
+  /// Runs proleg with these words; an empty `out_file` catches standard output.
+  [[nodiscard]] Finished proleg(const std::vector<std::string>& words, const std::string& out_file = "") const {
+    const fs::path out = out_file.empty() ? folder_ / "stdout" : fs::path(out_file);
+    const fs::path err = folder_ / "stderr";
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    std::vector<std::string> storage{PROLEG_PROGRAM};
+    storage.insert(storage.end(), words.begin(), words.end());
+    std::vector<char*> arguments;
+    for (std::string& word : storage) {
+      arguments.push_back(word.data());
+    }
+    arguments.push_back(nullptr);
+    pid_t child = 0;
+    const int error = posix_spawn(&child, PROLEG_PROGRAM, &actions, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (error != 0) {
+      ADD_FAILURE() << "cannot start " << PROLEG_PROGRAM;
+      return {-1, "", ""};
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), out_file.empty() ? read_file(out) : "",
+            read_file(err)};
+  }
+
+  /// Bad input: exit status 2, one line on standard error that contains the words, nothing on standard output.
+  void expect_refused(const std::vector<std::string>& words, const std::vector<std::string>& message) const {
+    const Finished finished = proleg(words);
+    EXPECT_EQ(finished.status, 2) << finished.err;
+    EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1) << finished.err;
+    EXPECT_TRUE(finished.out.empty()) << finished.out;
+    for (const std::string& part : message) {
+      EXPECT_NE(finished.err.find(part), std::string::npos) << "'" << part << "' is missing in: " << finished.err;
+    }
+  }
+
+  [[nodiscard]] std::vector<std::string> left_behind() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      const std::string name = entry.path().filename().string();
+      if (name != "stdout" && name != "stderr") {
+        names.push_back(name);
+      }
+    }
+    return names;
+  }
+
+ private:
+  fs::path folder_;
+};
+
+}  // namespace proleg::test

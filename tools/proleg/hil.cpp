@@ -1,0 +1,297 @@
+// proleg hil: hardware in the loop. The joints' own programs on a simulated CAN bus move the simulated robot.
+
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/bus/candump_log.hpp"
+#include "sim/loop/hardware_loop.hpp"
+#include "sim/physics/physics_error.hpp"
+#include "sim/scenario/input_error.hpp"
+#include "sim/scenario/text.hpp"
+#include "tools/proleg/build_id.hpp"
+#include "tools/proleg/command_line.hpp"
+#include "tools/proleg/progress.hpp"
+#include "tools/proleg/scenario_run.hpp"
+
+namespace {
+
+using namespace proleg;
+using namespace proleg::tools;
+
+struct Options : ScenarioOptions {
+  std::string modules = "native";
+  std::vector<std::string> resets;
+  std::optional<std::string> can_log;
+};
+
+struct RestartReport {
+  std::uint8_t node;
+  std::string joint;
+  std::uint32_t tick;
+  std::optional<std::uint32_t> joined_tick;
+};
+
+struct Result {
+  std::uint32_t ticks = 0;
+  double simulated_s = 0.0;
+  double wall_s = 0.0;
+  double displacement_m = 0.0;
+  double contacts_mean = 0.0;
+  std::uint64_t differences = 0;
+  std::string first_difference;
+  std::uint64_t lost_frames = 0;
+  std::uint64_t frames = 0;
+  std::uint64_t setup_frames = 0;
+  double bus_load = 0.0;
+  std::string setpoint_hash;
+  std::string servo_hash;
+  std::vector<RestartReport> restarts;
+
+  [[nodiscard]] double real_time_factor() const { return simulated_s / wall_s; }
+};
+
+template <typename Integer>
+std::optional<Integer> whole_number(std::string_view text) {
+  Integer value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return text.empty() || error != std::errc{} || end != text.data() + text.size() ? std::nullopt
+                                                                                  : std::optional<Integer>(value);
+}
+
+/// NODE@TICK
+sim::Restart parse_reset(const std::string& word, const ScenarioRun& run) {
+  const std::size_t at = word.find('@');
+  const auto node = whole_number<std::uint32_t>(std::string_view(word).substr(0, at));
+  const auto tick =
+      at == std::string::npos ? std::nullopt : whole_number<std::uint32_t>(std::string_view(word).substr(at + 1));
+  if (!node || !tick) {
+    throw sim::InputError("--reset", 0, sim::in_quotes(sim::shortened(word)), "NODE@TICK");
+  }
+  if (*tick == 0 || *tick >= run.ticks) {
+    throw sim::InputError("--reset", 0, "tick " + std::to_string(*tick),
+                          "a tick of the run, 1 to " + std::to_string(run.ticks - 1));
+  }
+  const std::vector<sim::ModulePlace>& modules = run.scenario.modules;
+  for (unsigned joint = 0; joint < modules.size(); ++joint) {
+    if (modules[joint].node == *node) {
+      if (joint == sim::HardwareLoop::sync_producer) {
+        throw sim::InputError("--reset", 0, "node " + std::to_string(*node) + ", which produces the SYNC",
+                              "another one: without SYNC the robot stops");
+      }
+      return {*tick, joint};
+    }
+  }
+  std::string nodes;
+  for (const sim::ModulePlace& module : modules) {
+    nodes += (nodes.empty() ? "" : ", ") + std::to_string(module.node);
+  }
+  throw sim::InputError("--reset", 0, "node " + std::to_string(*node), "one of " + nodes);
+}
+
+std::vector<sim::Restart> parse_resets(const Options& options, const ScenarioRun& run) {
+  std::vector<sim::Restart> restarts;
+  for (const std::string& word : options.resets) {
+    restarts.push_back(parse_reset(word, run));
+  }
+  std::ranges::stable_sort(restarts, {}, &sim::Restart::tick);
+  return restarts;
+}
+
+std::string joint_name(const ScenarioRun& setup, std::uint32_t joint) {
+  return setup.scenario.robot.joints[joint].name + " (node " + std::to_string(setup.scenario.modules[joint].node) + ")";
+}
+
+Result run(const ScenarioRun& setup, sim::HardwareOptions hardware, sim::Recorder* recorder) {
+  sim::HardwareLoop loop(setup.scenario, std::move(hardware));
+  Progress progress("in the loop", "s", setup.scenario.duration_s);
+  Result result;
+  const auto start = std::chrono::steady_clock::now();
+  while (loop.tick() < setup.ticks && !interrupted()) {
+    const sim::Change* change = loop.advance();
+    const std::uint32_t tick = loop.tick() - 1;
+    for (const auto& event : loop.restart_events()) {
+      if (recorder != nullptr) {
+        recorder->record_restart(tick, event.joint, event.joined);
+      }
+      if (event.joined) {
+        for (RestartReport& report : result.restarts) {
+          if (report.node == setup.scenario.modules[event.joint].node && !report.joined_tick) {
+            report.joined_tick = tick;
+          }
+        }
+      } else {
+        result.restarts.push_back({setup.scenario.modules[event.joint].node,
+                                   setup.scenario.robot.joints[event.joint].name, tick, std::nullopt});
+      }
+    }
+    if (recorder != nullptr) {
+      if (change != nullptr) {
+        recorder->record_change(*change);
+      }
+      recorder->record_tick(loop.sample());
+    }
+    progress.show(loop.time_s());
+  }
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.ticks = loop.tick();
+  result.simulated_s = loop.time_s();
+  result.displacement_m = loop.plant().displacement();
+  result.contacts_mean = loop.plant().mean_contacts();
+  result.differences = loop.differences();
+  if (const auto& first = loop.first_difference()) {
+    result.first_difference = describe(*first, joint_name(setup, first->joint));
+  }
+  result.lost_frames = loop.lost_frames();
+  const sim::BusStatistics bus = loop.bus_statistics();
+  result.frames = bus.frames;
+  result.bus_load = bus.load();
+  result.setup_frames = loop.setup_frames();
+  result.setpoint_hash = loop.setpoint_hash().hex();
+  result.servo_hash = loop.servo_hash().hex();
+  return result;
+}
+
+void print_json(const Options& options, const ScenarioRun& setup, const Result& result) {
+  nlohmann::ordered_json restarts = nlohmann::ordered_json::array();
+  for (const RestartReport& restart : result.restarts) {
+    nlohmann::ordered_json entry{{"node", restart.node}, {"joint", restart.joint}, {"tick", restart.tick}};
+    entry["joined_tick"] = restart.joined_tick ? nlohmann::ordered_json(*restart.joined_tick) : nullptr;
+    restarts.push_back(entry);
+  }
+  const nlohmann::ordered_json object{{"scenario", options.file},
+                                      {"modules", setup.scenario.modules.size()},
+                                      {"module_kind", options.modules},
+                                      {"displacement_m", result.displacement_m},
+                                      {"simulated_s", result.simulated_s},
+                                      {"setpoint_hash", result.setpoint_hash},
+                                      {"servo_hash", result.servo_hash},
+                                      {"differences", result.differences},
+                                      {"first_difference", result.first_difference},
+                                      {"lost_frames", result.lost_frames},
+                                      {"restarts", restarts},
+                                      {"frames", result.frames},
+                                      {"setup_frames", result.setup_frames},
+                                      {"bus_load", result.bus_load},
+                                      {"real_time_factor", result.real_time_factor()},
+                                      {"contacts_mean", result.contacts_mean},
+                                      {"recording", options.record.value_or("")},
+                                      {"can_log", options.can_log.value_or("")},
+                                      {"build_id", build_id}};
+  std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+}
+
+void print_table(const Options& options, const ScenarioRun& setup, const Result& result) {
+  const auto count = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+  std::printf("modules           %zu %s\n", setup.scenario.modules.size(), options.modules.c_str());
+  std::printf("displacement      %.4f m in %.2f s\n", result.displacement_m, result.simulated_s);
+  std::printf("real-time factor  %.1f\n", result.real_time_factor());
+  std::printf("bus               %llu frames, %.1f %% load; %llu frames before the start\n", count(result.frames),
+              100.0 * result.bus_load, count(result.setup_frames));
+  if (options.losses) {
+    std::printf("lost frames       %llu\n", count(result.lost_frames));
+  }
+  for (const RestartReport& restart : result.restarts) {
+    std::printf("restart           node %u (%s) at tick %u, %s\n", unsigned{restart.node}, restart.joint.c_str(),
+                restart.tick,
+                restart.joined_tick ? ("back at tick " + std::to_string(*restart.joined_tick)).c_str() : "not back");
+  }
+  std::printf("set-point hash    %s\n", result.setpoint_hash.c_str());
+  std::printf("servo hash        %s\n", result.servo_hash.c_str());
+  std::printf("differences       %llu against the gait in memory\n", count(result.differences));
+  if (options.record) {
+    std::printf("recording         %s\n", options.record->c_str());
+  }
+  if (options.can_log) {
+    std::printf("CAN log           %s\n", options.can_log->c_str());
+  }
+}
+
+int hil(const Options& options) {
+  const ScenarioRun setup = prepare_run(options);
+  if (options.verbose) {
+    print_setup(setup.scenario);
+  }
+  sim::HardwareOptions hardware;
+  hardware.losses = &setup.losses;
+  hardware.restarts = parse_resets(options, setup);
+  hardware.notice = [](const std::string& text) { std::cerr << "proleg hil: " << text << '\n'; };
+  std::optional<sim::CandumpLog> log;
+  if (options.can_log) {
+    try {
+      log.emplace(*options.can_log);
+    } catch (const sim::CandumpLogError& error) {  // nothing has run yet: it is the name that was wrong
+      throw BadInput(error.what());
+    }
+    hardware.trace = [&log](const sim::Transmission& transmission) {
+      log->write(transmission.end, transmission.frame);
+    };
+  }
+  const std::unique_ptr<sim::Recorder> recorder = open_recorder(options, setup.scenario, "hil " + options.modules);
+  catch_interrupts();
+  std::optional<Result> finished;
+  try {
+    finished = run(setup, std::move(hardware), recorder.get());
+  } catch (const sim::PhysicsError& error) {
+    throw std::runtime_error(error.what() + kept_in_recording(options));
+  }
+  const Result& result = *finished;
+  if (log) {
+    log->finish();
+  }
+  if (interrupted()) {
+    std::cerr << "proleg hil: interrupted after " << result.simulated_s << " s" << kept_in_recording(options) << '\n';
+    return exit_failed;
+  }
+  if (recorder) {
+    recorder->finish({{"displacement_m", exact(result.displacement_m)},
+                      {"simulated_s", exact(result.simulated_s)},
+                      {"contacts_mean", exact(result.contacts_mean)},
+                      {"differences", std::to_string(result.differences)},
+                      {"lost_frames", std::to_string(result.lost_frames)},
+                      {"frames", std::to_string(result.frames)},
+                      {"bus_load", exact(result.bus_load)},
+                      {"setpoint_hash", result.setpoint_hash},
+                      {"servo_hash", result.servo_hash}});
+  }
+  if (options.json) {
+    print_json(options, setup, result);
+  } else {
+    print_table(options, setup, result);
+  }
+  if (result.differences > 0) {
+    std::cout.flush();
+    std::cerr << "proleg hil: " << result.first_difference << '\n';
+    return exit_failed;
+  }
+  for (const RestartReport& restart : result.restarts) {
+    if (!restart.joined_tick) {
+      std::cerr << "proleg hil: node " << unsigned{restart.node} << " did not come back\n";
+      return exit_failed;
+    }
+  }
+  return exit_success;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Hardware in the loop: the joints' own programs on a simulated CAN bus move the simulated robot. Every set-point "
+      "and servo command is compared with the same gait computed in memory; status 1 if one differs.",
+      "proleg hil");
+  Options options;
+  add_scenario_options(app, options);
+  app.add_option("--modules", options.modules, "what runs the modules' program: native, as built for this computer")
+      ->check(CLI::IsMember({"native"}))
+      ->capture_default_str();
+  app.add_option("--reset", options.resets, "NODE@TICK: restart a module in mid-gait; it rejoins. May be repeated.")
+      ->allow_extra_args(false);
+  app.add_option("--can-log", options.can_log, "leave all frames of the bus in this file, in candump's log format");
+  return run_command(argc, argv, app, [&] { return hil(options); });
+}

@@ -1,0 +1,114 @@
+// proleg replay: recomputes the gait of a recording.
+
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "shared/kernel/fingerprint.hpp"
+#include "sim/loop/verification.hpp"
+#include "sim/record/recording.hpp"
+#include "sim/scenario/input_error.hpp"
+#include "tools/proleg/build_id.hpp"
+#include "tools/proleg/command_line.hpp"
+#include "tools/proleg/progress.hpp"
+
+namespace {
+
+using namespace proleg;
+using namespace proleg::tools;
+
+struct Options {
+  std::string file;
+  bool verify = false;
+  bool json = false;
+};
+
+/// The value of a figure in the recording's results; empty if the run was not finished.
+std::string recorded(const sim::Recording& recording, const std::string& name) {
+  for (const auto& [key, value] : recording.results()) {
+    if (key == name) {
+      return value;
+    }
+  }
+  return {};
+}
+
+std::string fingerprint_text() {
+  std::array<char, 11> text{};
+  std::snprintf(text.data(), text.size(), "0x%08X", core_fingerprint);
+  return text.data();
+}
+
+sim::Verification recompute(const sim::Recording& recording) {
+  Progress progress("recomputing", "s", recording.time_s(recording.last_tick()));
+  return sim::verify(recording, [&](std::uint32_t tick) { progress.show(recording.time_s(tick)); });
+}
+
+int replay(const Options& options) {
+  if (!options.verify) {
+    throw sim::InputError("proleg replay", 0, "nothing to do", "--verify");
+  }
+  const sim::Recording recording(options.file);
+  if (const std::string remark = remark_on_unfinished_run(recording); !remark.empty()) {
+    std::cerr << remark << '\n';
+  }
+  const sim::Verification verification = recompute(recording);
+  const std::string first =
+      verification.first ? describe(*verification.first, recording.joints()[verification.first->joint].name) : "";
+  // The hashes that the run itself printed must be those of its own tables.
+  const bool same_hashes =
+      !recording.finished() || (recorded(recording, "setpoint_hash") == verification.setpoint_hash &&
+                                recorded(recording, "servo_hash") == verification.servo_hash);
+  const bool holds = verification.differences == 0 && same_hashes;
+  const std::string core = recording.run_value("core_fingerprint");
+  if (options.json) {
+    const nlohmann::ordered_json object{{"recording", options.file},
+                                        {"ticks", verification.ticks},
+                                        {"setpoints", verification.setpoints},
+                                        {"servo_commands", verification.servo_commands},
+                                        {"differences", verification.differences},
+                                        {"first_difference", first},
+                                        {"setpoint_hash", verification.setpoint_hash},
+                                        {"servo_hash", verification.servo_hash},
+                                        {"recorded_by", recording.run_value("program")},
+                                        {"recorded_build_id", recording.run_value("build_id")},
+                                        {"recorded_core_fingerprint", core},
+                                        {"core_fingerprint", fingerprint_text()},
+                                        {"build_id", build_id}};
+    std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  } else {
+    std::printf("recorded by       %s, %s, core %s\n", recording.run_value("program").c_str(),
+                recording.run_value("build_id").c_str(), core.c_str());
+    std::printf("recomputed        %u ticks: %llu set-points, %llu servo commands\n", verification.ticks,
+                static_cast<unsigned long long>(verification.setpoints),
+                static_cast<unsigned long long>(verification.servo_commands));
+    std::printf("differences       %llu\n", static_cast<unsigned long long>(verification.differences));
+    std::printf("set-point hash    %s\n", verification.setpoint_hash.c_str());
+    std::printf("servo hash        %s\n", verification.servo_hash.c_str());
+  }
+  if (!holds) {
+    std::cerr << "proleg replay: " << options.file << ": "
+              << (first.empty() ? "the hashes in its results are not those of its tables" : first) << '\n';
+    if (core != fingerprint_text()) {
+      std::cerr << "proleg replay: it was recorded with core " << core << ", this program has core "
+                << fingerprint_text() << '\n';
+    }
+    return exit_failed;
+  }
+  return exit_success;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Recomputes the gait of a recording from its start values, changes, contacts, losses and restarts, and compares "
+      "it with what was recorded, bit for bit.",
+      "proleg replay");
+  Options options;
+  app.add_option("FILE", options.file, "a recording")->required();
+  app.add_flag("--verify", options.verify, "compare every set-point and servo command; status 1 if one differs");
+  app.add_flag("--json", options.json, "print one JSON object");
+  return run_command(argc, argv, app, [&] { return replay(options); });
+}

@@ -1,0 +1,141 @@
+#include "tools/proleg/scenario_run.hpp"
+
+#include <array>
+#include <atomic>
+#include <charconv>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+#include <stdexcept>
+
+#include "shared/fixed/decimal.hpp"
+#include "sim/scenario/input_error.hpp"
+#include "sim/scenario/reader.hpp"
+#include "sim/scenario/text.hpp"
+#include "tools/proleg/build_id.hpp"
+#include "tools/proleg/command_line.hpp"
+
+namespace proleg::tools {
+namespace {
+
+std::atomic<bool> interrupt_flag = false;  // lock-free, so a signal handler may set it
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+std::uint32_t tick_count(const sim::Scenario& scenario) {
+  const auto ticks =
+      static_cast<std::uint32_t>(std::max(1L, std::lround(scenario.duration_s * 1e6 / scenario.kernel.tick_period_us)));
+  if (!scenario.changes.empty() && scenario.changes.back().tick >= ticks) {
+    throw sim::InputError("--set", 0, "tick " + std::to_string(scenario.changes.back().tick),
+                          "a tick before the end of the run, below " + std::to_string(ticks));
+  }
+  return ticks;
+}
+
+/// The value that a parameter of a joint has at the start.
+std::int32_t start_value(const sim::Scenario& scenario, unsigned slot, unsigned joint, unsigned parameter) {
+  for (const sim::Setting& setting : scenario.settings) {
+    if (setting.slot == slot && setting.joint == joint && setting.index == parameter) {
+      return setting.value;
+    }
+  }
+  return scenario.kernel.slots[slot].algorithm->declaration().parameters[parameter].default_value;
+}
+
+}  // namespace
+
+void add_scenario_options(CLI::App& app, ScenarioOptions& options) {
+  app.add_option("FILE", options.file, "scenario, a *.simulation.xml file")->required();
+  app.add_option("--seconds", options.seconds, "simulated time; the scenario's own duration if not given");
+  app.add_option("--record", options.record, "leave a recording (SQLite) in this file");
+  app.add_option("--set", options.settings,
+                 "NAME=VALUE[@TICK]: change a parameter at the start or at a tick. NAME is [MODULE.]PARAMETER[:JOINT]; "
+                 "an internal value may stand in place of the parameter. May be repeated.")
+      ->allow_extra_args(false);
+  app.add_option("--losses", options.losses,
+                 "state frames that joints do not receive: SEED:RATE or SEED:RATE@FIRST-LAST (RATE 0.05 or 5%), or a "
+                 "file with lines TICK SENDER RECEIVER [CHANNEL]");
+  app.add_flag("--verbose", options.verbose, "print the joint map, remarks on the files and all parameters");
+  app.add_flag("--json", options.json, "print one JSON object");
+}
+
+ScenarioRun prepare_run(const ScenarioOptions& options) {
+  sim::DiskFiles files;
+  ScenarioRun run{sim::read_scenario(options.file, files), {}, 0};
+  for (const std::string& setting : options.settings) {
+    sim::apply_setting(run.scenario, setting);
+  }
+  if (options.seconds) {
+    const std::optional<double> seconds = sim::parse_number(*options.seconds);
+    if (!seconds || *seconds < 0.01 || *seconds > 86'400.0) {
+      throw sim::InputError("--seconds", 0, sim::in_quotes(*options.seconds), "0.01 to 86400 seconds");
+    }
+    run.scenario.duration_s = *seconds;
+  }
+  if (options.losses) {
+    run.losses = sim::read_losses(*options.losses, run.scenario.robot);
+  }
+  run.ticks = tick_count(run.scenario);
+  return run;
+}
+
+void print_setup(const sim::Scenario& scenario) {
+  for (const std::string& remark : scenario.remarks) {
+    std::cerr << remark << '\n';
+  }
+  for (unsigned s = 0; s < max_slots; ++s) {
+    const Slot& slot = scenario.kernel.slots[s];
+    if (slot.algorithm == nullptr) {
+      continue;
+    }
+    const Declaration& declaration = slot.algorithm->declaration();
+    std::cerr << declaration.name << '\n';
+    for (unsigned p = 0; p < declaration.parameters.size(); ++p) {
+      const Parameter& parameter = declaration.parameters[p];
+      std::cerr << "  " << parameter.name << " [" << scale_of(parameter.unit).symbol << "]";
+      for (unsigned joint = 0; joint < scenario.kernel.joint_count; ++joint) {
+        if (slot.group.contains(joint)) {
+          std::cerr << ' ' << scenario.robot.joints[joint].name << '='
+                    << format_decimal(start_value(scenario, s, joint, p), parameter.unit).view();
+        }
+      }
+      std::cerr << '\n';
+    }
+  }
+}
+
+std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options, const sim::Scenario& scenario,
+                                             const std::string& program) {
+  if (!options.record) {
+    return nullptr;
+  }
+  if (options.record->empty()) {
+    throw sim::InputError("--record", 0, "no name", "the name of a file");
+  }
+  try {
+    // A link is followed, so that the recording lands where it points to.
+    return std::make_unique<sim::Recorder>(std::filesystem::weakly_canonical(*options.record), scenario, program,
+                                           build_id);
+  } catch (const std::runtime_error& error) {  // RecordError, or a name that leads nowhere
+    throw BadInput(error.what());
+  }
+}
+
+void catch_interrupts() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    std::signal(signal, [](int) { interrupt_flag = true; });
+  }
+}
+
+bool interrupted() { return interrupt_flag; }
+
+std::string kept_in_recording(const ScenarioOptions& options) {
+  return options.record ? "; what was simulated is in " + *options.record : "";
+}
+
+std::string exact(double value) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+}  // namespace proleg::tools

@@ -30,7 +30,7 @@ class TickKeeper {
   void lose() { *this = {}; }
 
   /// TICK with this tick was heard. False if it contradicts the coming tick, which is lost then.
-  /// One that is overtaken by its SYNC, or that tells of SYNCs missed, is none.
+  /// One that its SYNC has overtaken, or that tells of missed SYNCs, does not.
   [[nodiscard]] bool announce(std::uint32_t tick, std::uint32_t coming);
   /// SYNC with this counter, 1 to 128, was heard.
   [[nodiscard]] SyncMeaning sync(std::uint8_t counter, std::uint32_t coming);

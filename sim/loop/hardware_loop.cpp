@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <deque>
 #include <utility>
 
 #include "shared/canopen/bus_load.hpp"
@@ -38,6 +39,34 @@ firmware::Board make_board(const Scenario& scenario, std::size_t joint) {
   return board;
 }
 
+/// A node that sends what it is told to and does not listen.
+class Injector final : private BusListener {
+ public:
+  Injector(Bus& bus, std::span<const InjectedFrame> frames) : frames_(frames), controller_(bus.attach(*this)) {}
+
+  /// SYNC of this tick was heard.
+  void advance_to(std::uint32_t tick) {
+    for (; !frames_.empty() && frames_.front().tick <= tick; frames_ = frames_.subspan(1)) {
+      waiting_.push_back(frames_.front().frame);
+    }
+    send();
+  }
+
+ private:
+  void received(BusTime /*time*/, const CanFrame& /*frame*/) override {}
+  void transmitted(BusTime /*time*/, const CanFrame& /*frame*/) override { send(); }
+
+  void send() {
+    while (!waiting_.empty() && controller_.send(waiting_.front())) {
+      waiting_.pop_front();
+    }
+  }
+
+  std::span<const InjectedFrame> frames_;
+  std::deque<CanFrame> waiting_;
+  Controller& controller_;
+};
+
 }  // namespace
 
 class HardwareLoop::Implementation {
@@ -56,6 +85,7 @@ class HardwareLoop::Implementation {
     for_each_internal_value(scenario.kernel, [&](unsigned, unsigned, unsigned) { internal_values_.push_back(0); });
     make_modules();
     host_ = std::make_unique<HostNode>(bus_, scenario, sync_producer);
+    injector_ = std::make_unique<Injector>(bus_, options_.injected);
     bus_.set_trace([this](const Transmission& transmission) { on_frame(transmission); });
     if (options_.losses != nullptr && options_.losses->any()) {
       bus_.set_loss_rule([this](const CanFrame& frame, std::size_t receiver) { return is_lost(frame, receiver); });
@@ -194,7 +224,8 @@ class HardwareLoop::Implementation {
     if (options_.trace) {
       options_.trace(transmission);
     }
-    if (canopen::decode_sync(transmission.frame)) {
+    // Others may send what looks like a SYNC; ticks are what the producer makes.
+    if (transmission.sender == modules_[sync_producer]->controller() && canopen::decode_sync(transmission.frame)) {
       if (syncs_ > 0 && !tick_finished_) {
         finish_tick();
       }
@@ -208,6 +239,7 @@ class HardwareLoop::Implementation {
       bus_.start_statistics();
     }
     const std::uint32_t tick = syncs_++;
+    injector_->advance_to(tick);
     for (; next_restart_ < options_.restarts.size() && options_.restarts[next_restart_].tick <= tick; ++next_restart_) {
       const unsigned joint = options_.restarts[next_restart_].joint;
       modules_[joint]->power_on(now);
@@ -360,6 +392,7 @@ class HardwareLoop::Implementation {
   std::vector<std::unique_ptr<NativeModule>> modules_;  ///< by joint; attached first, so also by controller
   std::array<unsigned, canopen::highest_node + 2> joint_of_node_{};
   std::unique_ptr<HostNode> host_;
+  std::unique_ptr<Injector> injector_;
   std::uint32_t syncs_ = 0;  ///< heard so far
   BusTime sync_time_ = 0;    ///< of the last one
   bool tick_finished_ = false;

@@ -42,9 +42,16 @@ struct Restart {
   unsigned joint;
 };
 
+/// A frame that somebody else sends on the bus, right after a SYNC.
+struct InjectedFrame {
+  std::uint32_t tick;
+  CanFrame frame;
+};
+
 struct HardwareOptions {
-  const Losses* losses = nullptr;  ///< must outlive the loop
-  std::vector<Restart> restarts;   ///< by ascending tick
+  const Losses* losses = nullptr;       ///< must outlive the loop
+  std::vector<Restart> restarts;        ///< by ascending tick
+  std::vector<InjectedFrame> injected;  ///< by ascending tick; from a node of its own
   /// Called for each frame on the bus when it ends, with the time since the modules were switched on.
   Bus::Trace trace;
   /// Called for what modules report by EMCY and for restarts, one line each.

@@ -27,6 +27,7 @@ using namespace proleg::tools;
 struct Options : ScenarioOptions {
   std::string modules = "native";
   std::vector<std::string> resets;
+  std::vector<std::string> frames;
   std::optional<std::string> can_log;
 };
 
@@ -57,9 +58,9 @@ struct Result {
 };
 
 template <typename Integer>
-std::optional<Integer> whole_number(std::string_view text) {
+std::optional<Integer> whole_number(std::string_view text, int base = 10) {
   Integer value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
   return text.empty() || error != std::errc{} || end != text.data() + text.size() ? std::nullopt
                                                                                   : std::optional<Integer>(value);
 }
@@ -101,6 +102,49 @@ std::vector<sim::Restart> parse_resets(const Options& options, const ScenarioRun
   }
   std::ranges::stable_sort(restarts, {}, &sim::Restart::tick);
   return restarts;
+}
+
+/// ID#DATA@TICK: the frame as cansend of can-utils takes it.
+sim::InjectedFrame parse_frame(const std::string& word, const ScenarioRun& run) {
+  const auto refuse = [&word] {
+    throw sim::InputError("--send", 0, sim::in_quotes(sim::shortened(word)),
+                          "ID#DATA@TICK: three hexadecimal digits up to 7FF, up to 8 bytes, a tick; for example "
+                          "603#4018100100000000@100");
+  };
+  const std::size_t hash = word.find('#');
+  const std::size_t at = word.find('@');
+  if (hash != 3 || at == std::string::npos || at < hash) {
+    refuse();
+  }
+  const auto tick = whole_number<std::uint32_t>(std::string_view(word).substr(at + 1));
+  const auto identifier = whole_number<std::uint16_t>(std::string_view(word).substr(0, hash), 16);
+  const std::string_view data = std::string_view(word).substr(hash + 1, at - hash - 1);
+  if (!tick || !identifier || *identifier > CanFrame::highest_identifier || data.size() % 2 != 0 ||
+      data.size() > 2 * CanFrame::longest) {
+    refuse();
+  }
+  sim::InjectedFrame injected{*tick, {*identifier, static_cast<std::uint8_t>(data.size() / 2), {}}};
+  for (std::size_t i = 0; i < data.size() / 2; ++i) {
+    const auto byte = whole_number<std::uint8_t>(data.substr(2 * i, 2), 16);
+    if (!byte) {
+      refuse();
+    }
+    injected.frame.data[i] = *byte;
+  }
+  if (*tick >= run.ticks) {
+    throw sim::InputError("--send", 0, "tick " + std::to_string(*tick),
+                          "a tick of the run, 0 to " + std::to_string(run.ticks - 1));
+  }
+  return injected;
+}
+
+std::vector<sim::InjectedFrame> parse_frames(const Options& options, const ScenarioRun& run) {
+  std::vector<sim::InjectedFrame> frames;
+  for (const std::string& word : options.frames) {
+    frames.push_back(parse_frame(word, run));
+  }
+  std::ranges::stable_sort(frames, {}, &sim::InjectedFrame::tick);
+  return frames;
 }
 
 std::string joint_name(const ScenarioRun& setup, std::uint32_t joint) {
@@ -220,6 +264,7 @@ int hil(const Options& options) {
   sim::HardwareOptions hardware;
   hardware.losses = &setup.losses;
   hardware.restarts = parse_resets(options, setup);
+  hardware.injected = parse_frames(options, setup);
   hardware.notice = [](const std::string& text) { std::cerr << "proleg hil: " << text << '\n'; };
   std::optional<sim::CandumpLog> log;
   if (options.can_log) {
@@ -291,6 +336,10 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"native"}))
       ->capture_default_str();
   app.add_option("--reset", options.resets, "NODE@TICK: restart a module in mid-gait; it rejoins. May be repeated.")
+      ->allow_extra_args(false);
+  app.add_option("--send", options.frames,
+                 "ID#DATA@TICK: a frame that somebody sends on the bus right after that SYNC, hexadecimal as cansend "
+                 "takes it; what comes of it is in --can-log. May be repeated.")
       ->allow_extra_args(false);
   app.add_option("--can-log", options.can_log, "leave all frames of the bus in this file, in candump's log format");
   return run_command(argc, argv, app, [&] { return hil(options); });

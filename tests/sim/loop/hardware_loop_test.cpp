@@ -292,6 +292,117 @@ TEST(HardwareLoop, ContactsOfMixedAgesShow) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
+// Frames that somebody else puts on the bus while the robot moves. What does not fit is refused, by name where it can
+// be answered; nothing moves otherwise than before.
+
+class Intruder : public testing::Test {
+ protected:
+  /// Sends the frames after SYNC 100; returns those on the bus afterwards whose identifier is in the answers.
+  std::vector<CanFrame> answers_to(const std::vector<CanFrame>& frames, std::uint16_t first, std::uint16_t last) {
+    HardwareOptions options;
+    for (const CanFrame& frame : frames) {
+      options.injected.push_back({100, frame});
+    }
+    std::vector<CanFrame> answers;
+    bool sent = false;
+    options.trace = [&](const Transmission& transmission) {
+      sent = sent || transmission.frame == frames.front();
+      if (sent && transmission.frame.identifier >= first && transmission.frame.identifier <= last) {
+        answers.push_back(transmission.frame);
+      }
+    };
+    expect_identical(run(scenario, 200, options), simulated(scenario, 200));
+    return answers;
+  }
+
+  static CanFrame frame(std::uint16_t identifier, std::initializer_list<std::uint8_t> data) {
+    CanFrame result{identifier, static_cast<std::uint8_t>(data.size()), {}};
+    std::copy(data.begin(), data.end(), result.data.begin());
+    return result;
+  }
+
+  Scenario scenario = shipped("travelling_wave/coupled");
+};
+
+TEST_F(Intruder, AnObjectThatDoesNotExistIsRefusedWithTheAbortCodeOfTheStandard) {
+  const auto answers = answers_to({frame(0x603, {0x40, 0x34, 0x12, 0x00, 0, 0, 0, 0})}, 0x583, 0x583);
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers[0], frame(0x583, {0x80, 0x34, 0x12, 0x00, 0x00, 0x00, 0x02, 0x06}));
+}
+
+TEST_F(Intruder, AValueOutOfRangeIsRefusedWithTheAbortCodeOfTheStandard) {
+  // Amplitude, staged in slot 1 as -1.
+  const auto answers = answers_to({frame(0x603, {0x23, 0x80, 0x40, 0x01, 0xFF, 0xFF, 0xFF, 0xFF})}, 0x583, 0x583);
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers[0], frame(0x583, {0x80, 0x80, 0x40, 0x01, 0x32, 0x00, 0x09, 0x06}));
+}
+
+TEST_F(Intruder, AParameterInForceCannotBeWrittenInMidGait) {
+  const auto answers = answers_to({frame(0x603, {0x23, 0x80, 0x30, 0x01, 0, 0, 0, 0})}, 0x583, 0x583);
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers[0], frame(0x583, {0x80, 0x80, 0x30, 0x01, 0x22, 0x00, 0x00, 0x08}));
+}
+
+TEST_F(Intruder, ACommitOfNothingIsAnsweredByEveryModule) {
+  const auto answers = answers_to({frame(0x680, {0x63, 0x00, 0xC8, 0, 0, 0, 0x01, 0x00})}, 0x081, 0x0FF);
+  ASSERT_EQ(answers.size(), 5U);
+  for (const CanFrame& answer : answers) {
+    EXPECT_EQ(answer.data[0] | answer.data[1] << 8, 0xFF02) << "commit not staged";
+    EXPECT_EQ(answer.data[3], 0x63);
+  }
+}
+
+TEST_F(Intruder, ACommitInThePastIsAnsweredByEveryModule) {
+  std::vector<CanFrame> frames;
+  for (std::uint16_t node = 1; node <= 5; ++node) {
+    frames.push_back(frame(static_cast<std::uint16_t>(0x600 + node), {0x2B, 0x04, 0x20, 0x01, 0x63, 0, 0, 0}));
+  }
+  frames.push_back(frame(0x680, {0x63, 0x00, 0x05, 0, 0, 0, 0x01, 0x00}));
+  const auto answers = answers_to(frames, 0x081, 0x0FF);
+  ASSERT_EQ(answers.size(), 5U);
+  for (const CanFrame& answer : answers) {
+    EXPECT_EQ(answer.data[0] | answer.data[1] << 8, 0xFF01) << "commit too late";
+  }
+}
+
+TEST_F(Intruder, FramesOfWrongLengthChangeNothing) {
+  answers_to({frame(0x080, {}), frame(0x080, {1, 2}), frame(0x680, {1}), frame(0x681, {1, 2, 3}), frame(0x603, {0x40}),
+              frame(0x000, {1}), frame(0x203, {1, 2, 3})},
+             0, 0);
+}
+
+// The module itself cannot tell a forged frame from a true one, but every true one follows and counts.
+TEST_F(Intruder, AnUnknownLabelChangesNothing) {
+  HardwareOptions options;
+  options.tamper = [](unsigned joint, const CanFrame& heard, const auto& deliver) {
+    if (joint == 1 && heard.identifier == 0x181 && heard.data[7] == 50) {
+      CanFrame forged = heard;
+      forged.data[7] = 200;
+      deliver(forged);
+    }
+    deliver(heard);
+  };
+  const Outcome modules = run(scenario, 200, options);
+  EXPECT_EQ(modules.differences, 0U);
+  ASSERT_EQ(modules.notices.size(), 1U);
+  EXPECT_NE(modules.notices[0].find("0xFF05"), std::string::npos) << modules.notices[0];
+}
+
+// Two clocks on one bus: nobody can say which is right. The servos lose their power until the next TICK.
+TEST_F(Intruder, ASyncThatFitsNoTickIsReportedAndTheModulesJoinAgain) {
+  HardwareOptions options;
+  options.injected = {{100, frame(0x080, {0x50})}};
+  const Outcome modules = run(scenario, 200, options);
+  EXPECT_GT(modules.differences, 0U);
+  const auto reports = [&](const char* text) {
+    return std::ranges::count_if(modules.notices,
+                                 [&](const std::string& notice) { return notice.find(text) != std::string::npos; });
+  };
+  EXPECT_GE(reports("0x8700"), 4) << "SYNC lost";
+  EXPECT_EQ(reports("0xFF04"), reports("0x8700")) << "joined again";
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
 // Robots that must not start.
 
 void expect_refusal(const Scenario& scenario, const HardwareOptions& options, const std::string& message) {

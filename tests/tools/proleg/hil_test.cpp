@@ -78,6 +78,13 @@ TEST_F(Hil, LeavesALogOfTheBus) {
   EXPECT_NE(log.find(" can0 080#01\n"), std::string::npos) << "SYNC 0";
 }
 
+TEST_F(Hil, SendsAFrameAndLogsTheAnswer) {
+  const json modules = succeed({"hil", scenario("uniform"), "--seconds", "1", "--send", "603#4034120000000000@50",
+                                "--can-log", file("bus.log").string()});
+  EXPECT_EQ(modules["differences"], 0);
+  EXPECT_NE(read_file(file("bus.log")).find(" can0 583#8034120000000206\n"), std::string::npos) << "no such object";
+}
+
 TEST_F(Hil, WhatCannotBeIsRefused) {
   const std::string file_name = scenario("uniform");
   expect_refused({"hil", file_name, "--modules", "mechanical"}, {"mechanical"});
@@ -86,6 +93,11 @@ TEST_F(Hil, WhatCannotBeIsRefused) {
   expect_refused({"hil", file_name, "--reset", "3@0"}, {"tick 0"});
   expect_refused({"hil", file_name, "--reset", "3@3000"}, {"tick 3000", "1 to 2999"});
   expect_refused({"hil", file_name, "--reset", "1@100"}, {"node 1, which produces the SYNC"});
+  for (const char* word : {"603", "603#00", "3#00@5", "803#00@5", "603#0@5", "603#00@", "603#00112233445566778899@5",
+                           "60G#00@5", "603#0G@5", "603@5#00"}) {
+    expect_refused({"hil", file_name, "--send", word}, {"--send", "ID#DATA@TICK"});
+  }
+  expect_refused({"hil", file_name, "--send", "603#00@3000"}, {"tick 3000"});
   expect_refused({"hil", file_name, "--can-log", "/nowhere/bus.log"}, {"/nowhere/bus.log"});
   for (const char* command : {"simulate", "hil"}) {
     expect_refused({command, file_name, "--losses", "7:500%"}, {"rate '500'", "0 to 1"});

@@ -146,6 +146,13 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
                   static_cast<std::uint8_t>(value >> 24U)};
     receive(frame);
   }
+  /// Of an algorithm that is in one of the slots; the slot may be another.
+  static canopen::ValueAddress value_address(Input& input) {
+    const auto kind = static_cast<canopen::ValueKind>(input.byte() % 3U);
+    const auto algorithm = static_cast<std::uint8_t>(3U + input.byte() % 2U);
+    const auto number = static_cast<std::uint8_t>(input.byte() % 8U);
+    return {kind, algorithm, number, static_cast<std::uint8_t>(input.byte() % 3U)};
+  }
   void poll() {
     module.poll(now_);
     require(module.next_deadline() > now_, "time goes on");
@@ -190,8 +197,11 @@ void World::handle(std::uint8_t event, Input& input) {
   const std::uint8_t node = setup_.node(Setup::joint);
   switch (event % 20U) {
     case 0:
-    case 1:
       run_for(Microseconds{input.byte()} * 100);
+      break;
+    case 1:
+      write(canopen::object::sync_identifier.address, 4,
+            canopen::identifier::sync | (input.byte() % 4U == 0 ? 0U : canopen::produces_sync));
       break;
     case 2: {  // somebody was busy for long
       now_ += Microseconds{input.half()} << (input.byte() % 12U);
@@ -200,9 +210,16 @@ void World::handle(std::uint8_t event, Input& input) {
     }
     case 3:
     case 4:
-    case 5:
       receive(canopen::encode_sync(coming + input.byte() % 4U % 3U));
       break;
+    case 5: {
+      const canopen::Address address = address_of(value_address(input));
+      receive({static_cast<std::uint16_t>(canopen::identifier::sdo_request + node),
+               8,
+               {0x40, static_cast<std::uint8_t>(address.index), static_cast<std::uint8_t>(address.index >> 8U),
+                address.sub}});
+      break;
+    }
     case 6:
       receive({canopen::identifier::sync, static_cast<std::uint8_t>(input.byte() % 3U), {input.byte()}});
       break;
@@ -240,9 +257,7 @@ void World::handle(std::uint8_t event, Input& input) {
       break;
     }
     case 14: {
-      const canopen::ValueAddress value{
-          static_cast<canopen::ValueKind>(input.byte() % 3U), static_cast<std::uint8_t>(3U + input.byte() % 2U),
-          static_cast<std::uint8_t>(input.byte() % 8U), static_cast<std::uint8_t>(input.byte() % 3U)};
+      const canopen::ValueAddress value = value_address(input);
       write(canopen::object::transaction.address, 2, input.byte());
       write(address_of(value), 4, input.word());
       break;

@@ -4,10 +4,6 @@
 
 namespace proleg::firmware {
 
-/// A module that was started before it was configured; in CiA 301, table 26, "software, data set". Detail: why the
-/// kernel refused the configuration (proleg::Status), 0 if it was never asked.
-inline constexpr auto not_configured = canopen::EmergencyCode{0x6300};
-
 /// Errors that last.
 enum class Fault : std::uint8_t { identifier_collision, sync_lost, heartbeat_lost, foreign_configuration };
 

@@ -4,7 +4,6 @@ namespace proleg::firmware {
 
 void JointKernel::deactivate() {
   active_ = false;
-  open_ = false;
   limits_ = full_range;
 }
 
@@ -42,11 +41,7 @@ void JointKernel::restart() {
   debouncer_.reset();
 }
 
-Status JointKernel::open(std::uint16_t transaction) {
-  const Status status = kernel_.open(transaction);
-  open_ = open_ || status == Status::ok;
-  return status;
-}
+Status JointKernel::open(std::uint16_t transaction) { return kernel_.open(transaction); }
 
 Status JointKernel::stage(unsigned slot, unsigned number, bool internal, std::int32_t value) {
   const std::uint16_t transaction = kernel_.open_transaction();
@@ -59,14 +54,7 @@ std::int32_t JointKernel::staged_parameter(unsigned slot, unsigned number) const
   return kernel_.staged_value(slot, joint(), number, false, value) ? value : kernel_.parameter(slot, joint(), number);
 }
 
-Status JointKernel::commit(std::uint16_t transaction, std::uint32_t tick) {
-  const bool closes = open_ && kernel_.open_transaction() == transaction;
-  const Status status = kernel_.commit(transaction, tick);
-  if (status == Status::ok && closes) {
-    open_ = false;
-  }
-  return status;
-}
+Status JointKernel::commit(std::uint16_t transaction, std::uint32_t tick) { return kernel_.commit(transaction, tick); }
 
 void JointKernel::advance(unsigned missed, std::uint8_t sensors) {
   const auto flags = static_cast<std::uint8_t>(missed == 0 ? 0 : StateFrame::holdover);

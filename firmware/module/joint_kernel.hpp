@@ -31,7 +31,7 @@ class JointKernel {
   void restart();
 
   Status open(std::uint16_t transaction);
-  [[nodiscard]] bool has_open_transaction() const { return open_; }
+  [[nodiscard]] bool has_open_transaction() const { return active_ && kernel_.has_open_transaction(); }
   /// Under the open transaction.
   Status stage(unsigned slot, unsigned number, bool internal, std::int32_t value);
   /// The staged value; if there is none, the value in force.
@@ -54,7 +54,6 @@ class JointKernel {
   KernelOf<1> kernel_;
   ContactDebouncer debouncer_;
   bool active_ = false;
-  bool open_ = false;
   std::uint16_t robot_id_ = 0;
   std::uint32_t crc_ = 0;
   canopen::AngleLimits limits_ = full_range;

@@ -155,7 +155,7 @@ void Module::on_network_command(Microseconds now, const CanFrame& frame) {
       return;
     case NmtCommand::start:
       if (!collided_ && !parts_.network.operational()) {
-        enter_operational();
+        enter_operational(request->node == 0);
       }
       return;
     case NmtCommand::stop:
@@ -169,15 +169,16 @@ void Module::on_network_command(Microseconds now, const CanFrame& frame) {
   }
 }
 
-void Module::enter_operational() {
+/// together: all modules were started, so that tick 0 is to come. One that is started alone joins a robot that moves.
+void Module::enter_operational(bool together) {
   if (!parts_.joint.active()) {
-    parts_.emergencies.report(not_configured, static_cast<std::uint32_t>(objects_.refusal()));
+    parts_.emergencies.report(EmergencyCode::not_configured, static_cast<std::uint32_t>(objects_.refusal()));
     return;
   }
   parts_.network.enter(NmtState::operational);
   parts_.neighbours.forget_complaints();
   wrong_command_ = false;
-  if (!sync_heard_) {
+  if (together && !sync_heard_) {
     prepare_start();
   }
 }

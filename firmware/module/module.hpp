@@ -52,7 +52,7 @@ class Module {
   void on_commit(const CanFrame& frame);
   void on_command(const CanFrame& frame);
 
-  void enter_operational();
+  void enter_operational(bool together);
   void leave_operational(canopen::NmtState state);
   void prepare_start();
   void compute(Microseconds now, const SyncMeaning& meaning);

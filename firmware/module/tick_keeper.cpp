@@ -10,8 +10,8 @@ std::uint8_t counter_of(std::uint32_t tick) { return static_cast<std::uint8_t>(t
 }  // namespace
 
 bool TickKeeper::announce(std::uint32_t tick, std::uint32_t coming) {
-  if (keeps_tick() && tick == coming - 1U) {
-    return true;
+  if (keeps_tick() && coming - tick - 1U < most_late) {
+    return true;  // other frames kept it from the bus until its SYNC, or some more, had gone
   }
   const bool fits = !keeps_tick() || tick - coming <= most_missed;
   if (!fits) {

@@ -25,12 +25,14 @@ class TickKeeper {
  public:
   /// So many SYNCs in a row may be missed without the tick being lost.
   static constexpr unsigned most_missed = 8;
+  /// So many SYNCs may overtake the TICK that announces the first of them: its identifier is higher than those of SDOs.
+  static constexpr unsigned most_late = 8;
 
   /// Knows no tick.
   void lose() { *this = {}; }
 
   /// TICK with this tick was heard. False if it contradicts the coming tick, which is lost then.
-  /// One that its SYNC has overtaken, or that tells of missed SYNCs, does not.
+  /// One that comes late, or that tells of SYNCs missed, is no contradiction.
   [[nodiscard]] bool announce(std::uint32_t tick, std::uint32_t coming);
   /// SYNC with this counter, 1 to 128, was heard.
   [[nodiscard]] SyncMeaning sync(std::uint8_t counter, std::uint32_t coming);

@@ -69,7 +69,7 @@ void Master::receive(Microseconds now, const CanFrame& frame) {
   } else {
     switch (frame.identifier & ~node_bits) {
       case identifier::sdo_answer:
-        crew_.receive(frame, *this);
+        crew_.receive(now, frame, *this);
         break;
       case identifier::heartbeat:
         on_heartbeat(frame);

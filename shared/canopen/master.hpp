@@ -49,6 +49,9 @@ class Master final : private SdoWork {
   static constexpr Microseconds start_time_out_us = 1'000'000;
   static constexpr Microseconds send_time_out_us = 1'000'000;
   static constexpr Microseconds silence_us = 500'000;
+  /// Between SDO transfers while the robot moves. Their identifiers are lower than that of TICK, which would not get
+  /// onto the bus beside transfers without a gap.
+  static constexpr Microseconds pause_us = 300;
   /// For each answer while the robot is stopped.
   static constexpr Microseconds stop_time_out_us = 100'000;
   /// A COMMIT goes out at least so many ticks before its tick.

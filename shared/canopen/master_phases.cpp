@@ -91,7 +91,7 @@ void Master::enter(Phase phase) {
       time_out_us = stop_time_out_us;
       break;
   }
-  crew_.begin(crew, time_out_us);
+  crew_.begin(crew, time_out_us, running() ? pause_us : 0);
   if (mission_ != Mission::bring_up) {
     return;
   }

@@ -91,7 +91,7 @@ enum class EmergencyCode : std::uint16_t {
   none = 0x0000,  ///< the error is over
   over_current = 0x2310,
   over_temperature = 0x4210,
-  not_configured = 0x6300,  ///< started before the kernel had a configuration
+  not_configured = 0x6300,  ///< started before it was configured; detail: the kernel's refusal, 0 if it was never asked
   heartbeat_lost = 0x8130,
   identifier_collision = 0x8150,  ///< another module sends with this node's id
   wrong_length = 0x8210,          ///< of a PDO

@@ -2,10 +2,12 @@
 
 namespace proleg::canopen {
 
-void SdoCrew::begin(JointSet joints, Microseconds time_out_us) {
+void SdoCrew::begin(JointSet joints, Microseconds time_out_us, Microseconds pause_us) {
   clerks_ = {};
   waiting_ = joints;
   time_out_us_ = time_out_us;
+  pause_us_ = pause_us;
+  pause_ends_ = 0;
 }
 
 void SdoCrew::cancel(unsigned joint) {
@@ -47,7 +49,12 @@ bool SdoCrew::assign(Clerk& clerk, SdoStep& step, SdoWork& work) {
 }
 
 void SdoCrew::send(Microseconds now, std::span<const std::uint8_t> nodes, TransmitQueue& queue, SdoWork& work) {
-  for (Clerk& clerk : clerks_) {
+  if (now < pause_ends_) {
+    return;
+  }
+  pause_ends_ = 0;
+  // With pauses one client does all the work.
+  for (Clerk& clerk : std::span(clerks_).first(pause_us_ == 0 ? clients : 1)) {
     if (clerk.client.state() == SdoClient::State::waiting) {
       continue;
     }
@@ -64,10 +71,10 @@ void SdoCrew::send(Microseconds now, std::span<const std::uint8_t> nodes, Transm
   }
 }
 
-void SdoCrew::receive(const CanFrame& frame, SdoWork& work) {
+void SdoCrew::receive(Microseconds now, const CanFrame& frame, SdoWork& work) {
   for (Clerk& clerk : clerks_) {
     if (clerk.client.receive(frame)) {
-      finish(clerk, work);
+      finish(now, clerk, work);
       return;
     }
   }
@@ -77,12 +84,13 @@ void SdoCrew::poll(Microseconds now, SdoWork& work) {
   for (Clerk& clerk : clerks_) {
     if (clerk.client.next_deadline() <= now) {
       clerk.client.poll(now);
-      finish(clerk, work);
+      finish(now, clerk, work);
     }
   }
 }
 
-void SdoCrew::finish(Clerk& clerk, SdoWork& work) {
+void SdoCrew::finish(Microseconds now, Clerk& clerk, SdoWork& work) {
+  pause_ends_ = pause_us_ == 0 ? 0 : now + pause_us_;
   const SdoClient client = clerk.client;
   const std::size_t position = clerk.position++;
   if (client.state() == SdoClient::State::aborted) {
@@ -94,7 +102,7 @@ void SdoCrew::finish(Clerk& clerk, SdoWork& work) {
 }
 
 Microseconds SdoCrew::next_deadline() const {
-  Microseconds next = never;
+  Microseconds next = pause_ends_ == 0 ? never : pause_ends_;
   for (const Clerk& clerk : clerks_) {
     const Microseconds deadline = clerk.client.next_deadline();
     next = deadline < next ? deadline : next;

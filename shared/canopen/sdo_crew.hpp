@@ -39,16 +39,17 @@ class SdoCrew {
   /// Frames that a queue has room for when the crew sends nothing more: for others.
   static constexpr std::size_t reserve = 5;
 
-  /// Starts the lists of these joints; those before are cancelled.
-  void begin(JointSet joints, Microseconds time_out_us);
+  /// Starts the lists of these joints; those before are cancelled. pause_us: if above 0, transfers are made one by one
+  /// with so long a pause between them, in which frames with higher identifiers get onto the bus.
+  void begin(JointSet joints, Microseconds time_out_us, Microseconds pause_us);
   void cancel(unsigned joint);
-  void cancel_all() { begin(0, 0); }
+  void cancel_all() { begin(0, 0, 0); }
   [[nodiscard]] bool done() const;
 
   /// Sends what there is room for. nodes: of each joint.
   void send(Microseconds now, std::span<const std::uint8_t> nodes, TransmitQueue& queue, SdoWork& work);
   /// A frame on 0x580 + node.
-  void receive(const CanFrame& frame, SdoWork& work);
+  void receive(Microseconds now, const CanFrame& frame, SdoWork& work);
   void poll(Microseconds now, SdoWork& work);
   [[nodiscard]] Microseconds next_deadline() const;
 
@@ -62,11 +63,13 @@ class SdoCrew {
   };
 
   [[nodiscard]] bool assign(Clerk& clerk, SdoStep& step, SdoWork& work);
-  void finish(Clerk& clerk, SdoWork& work);
+  void finish(Microseconds now, Clerk& clerk, SdoWork& work);
 
   std::array<Clerk, clients> clerks_;
   JointSet waiting_ = 0;
   Microseconds time_out_us_ = 0;
+  Microseconds pause_us_ = 0;
+  Microseconds pause_ends_ = 0;  ///< 0: none
 };
 
 }  // namespace proleg::canopen

@@ -119,7 +119,8 @@ class Kernel {
                         std::int32_t value);
   /// For a tick that is not computed yet. Repeating a commit, also the last one that took effect, is ok.
   Status commit(std::uint16_t transaction, std::uint32_t tick);
-  /// Number of the transaction opened last, and of the values staged under it.
+  /// The transaction that is open, if one is, and the number of values staged under it.
+  [[nodiscard]] bool has_open_transaction() const { return has_open_; }
   [[nodiscard]] std::uint16_t open_transaction() const { return open_; }
   [[nodiscard]] unsigned staged_count() const;
   /// A staged parameter or internal value of the open transaction; false if there is none.

@@ -12,6 +12,7 @@
 #include "sim/loop/internal_values.hpp"
 #include "sim/loop/plant_schedule.hpp"
 #include "sim/loop/servo_pulses.hpp"
+#include "sim/scenario/input_error.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -81,6 +82,7 @@ class HardwareLoop::Implementation {
         setpoints_(chain_.setpoints().begin(), chain_.setpoints().end()),
         latched_contacts_(scenario.robot.links.size()) {
     require_room_on_bus();
+    require_room_for_changes();
     chain_.set_losses(options_.losses);
     for_each_internal_value(scenario.kernel, [&](unsigned, unsigned, unsigned) { internal_values_.push_back(0); });
     make_modules();
@@ -133,10 +135,26 @@ class HardwareLoop::Implementation {
     const auto second_frames = static_cast<unsigned>(std::popcount(scenario_.kernel.second_channel_senders().bits()));
     const std::uint32_t load = canopen::worst_bus_load_permille(scenario_.kernel, second_frames);
     if (load > canopen::highest_bus_load_permille) {
-      throw HardwareError(std::to_string(scenario_.kernel.joint_count) + " modules with a tick of " +
-                          std::to_string(scenario_.kernel.tick_period_us) + " us may take " +
-                          std::to_string((load + 9) / 10) + " % of the bus, expected at most " +
-                          std::to_string(canopen::highest_bus_load_permille / 10) + " %");
+      throw InputError(
+          scenario_.path, 0,
+          std::to_string(scenario_.kernel.joint_count) + " modules that with a tick of " +
+              std::to_string(scenario_.kernel.tick_period_us) + " us may take " + std::to_string((load + 9) / 10) +
+              " % of the bus",
+          "at most " + std::to_string(canopen::highest_bus_load_permille / 10) + " %: fewer joints, or a longer tick");
+    }
+  }
+
+  void require_room_for_changes() const {
+    constexpr std::size_t most = canopen::ChangePlan::most_pending;
+    const std::vector<Change>& changes = scenario_.changes;
+    for (std::size_t i = 0; i + most < changes.size(); ++i) {
+      if (changes[i + most].tick - changes[i].tick < canopen::Master::commit_lead) {
+        throw InputError("--set", 0,
+                         std::to_string(most + 1) + " changes at the ticks " + std::to_string(changes[i].tick) +
+                             " to " + std::to_string(changes[i + most].tick),
+                         "at most " + std::to_string(most) + " in " + std::to_string(canopen::Master::commit_lead) +
+                             " ticks: modules have no room for more, and each is sent that long ahead");
+      }
     }
   }
 
@@ -192,6 +210,9 @@ class HardwareLoop::Implementation {
       act(actions_[next_action_++]);
     }
     bus_.advance_to(next);
+    if (tick_ended_) {
+      complete_tick();
+    }
     for (const auto& module : modules_) {
       if (module->next_event() <= next) {
         module->advance_to(next);
@@ -226,8 +247,8 @@ class HardwareLoop::Implementation {
     }
     // Others may send what looks like a SYNC; ticks are what the producer makes.
     if (transmission.sender == modules_[sync_producer]->controller() && canopen::decode_sync(transmission.frame)) {
-      if (syncs_ > 0 && !tick_finished_) {
-        finish_tick();
+      if (syncs_ > 0) {
+        end_tick();
       }
       begin_tick(transmission.end);
     }
@@ -242,11 +263,10 @@ class HardwareLoop::Implementation {
     injector_->advance_to(tick);
     for (; next_restart_ < options_.restarts.size() && options_.restarts[next_restart_].tick <= tick; ++next_restart_) {
       const unsigned joint = options_.restarts[next_restart_].joint;
+      last_pulses_[joint] = modules_[joint]->pulse();
       modules_[joint]->power_on(now);
       stopping_.insert(joint);
     }
-    readings_.clear();
-    taken_readings_ = 0;
     schedule_tick(servo_schedule_, plant_, tick, scenario_.robot.servo.period_us, scenario_.kernel.tick_period_us,
                   actions_);
     next_action_ = 0;
@@ -256,7 +276,10 @@ class HardwareLoop::Implementation {
     const std::uint64_t tick_start_us = std::uint64_t{tick_} * scenario_.kernel.tick_period_us;
     if (action.kind == PlantAction::Kind::read_servos) {
       for (std::uint32_t joint = 0; joint < modules_.size(); ++joint) {
-        readings_.push_back({servo_schedule_.start_us(action.number), joint, modules_[joint]->pulse()});
+        // Of a module that has restarted at the SYNC since: what it gave before.
+        const bool restarted = tick_ended_ && stopping_.contains(joint);
+        readings_.push_back({servo_schedule_.start_us(action.number), joint,
+                             restarted ? last_pulses_[joint] : modules_[joint]->pulse()});
       }
     } else {
       take_readings(tick_start_us + plant_.step_start_us(static_cast<std::uint32_t>(action.number)));
@@ -275,17 +298,36 @@ class HardwareLoop::Implementation {
     }
   }
 
-  void finish_tick() {
-    while (next_action_ < actions_.size()) {
-      act(actions_[next_action_++]);
+  /// At the next SYNC, before the modules hear it. Only the pulses of intervals that start so late that they are not
+  /// read yet are still to come: by its own crystal a module may begin one just after the SYNC before which it belongs.
+  void end_tick() {
+    late_.clear();
+    for (; next_action_ < actions_.size(); ++next_action_) {
+      const PlantAction& action = actions_[next_action_];
+      if (action.kind == PlantAction::Kind::read_servos) {
+        late_.push_back(action);
+      } else {
+        act(action);
+      }
     }
-    take_readings((std::uint64_t{tick_} + 1) * scenario_.kernel.tick_period_us);
-
     advance_reference();
     read_modules();
-    compare();
     plant_.finish_tick();
+    tick_ended_ = true;
+  }
+
+  /// After all have heard the SYNC.
+  void complete_tick() {
+    for (const PlantAction& action : late_) {
+      act(action);
+    }
+    take_readings((std::uint64_t{tick_} + 1) * scenario_.kernel.tick_period_us);
+    read_pulses();
+    compare();
+    readings_.clear();
+    taken_readings_ = 0;
     ++tick_;
+    tick_ended_ = false;
     tick_finished_ = true;
   }
 
@@ -339,6 +381,10 @@ class HardwareLoop::Implementation {
       }
       ++value;
     });
+    setpoint_hash_.append(setpoints_);
+  }
+
+  void read_pulses() {
     pulses_.clear();
     for (const Reading& reading : readings_) {
       if (reading.pulse) {
@@ -346,7 +392,6 @@ class HardwareLoop::Implementation {
         servo_hash_.append(*reading.pulse);
       }
     }
-    setpoint_hash_.append(setpoints_);
   }
 
   void compare() {
@@ -393,11 +438,14 @@ class HardwareLoop::Implementation {
   std::array<unsigned, canopen::highest_node + 2> joint_of_node_{};
   std::unique_ptr<HostNode> host_;
   std::unique_ptr<Injector> injector_;
-  std::uint32_t syncs_ = 0;  ///< heard so far
-  BusTime sync_time_ = 0;    ///< of the last one
-  bool tick_finished_ = false;
+  std::uint32_t syncs_ = 0;     ///< heard so far
+  BusTime sync_time_ = 0;       ///< of the last one
+  bool tick_ended_ = false;     ///< its SYNC is over, its last pulses are not read yet
+  bool tick_finished_ = false;  ///< since the last advance()
+  std::vector<PlantAction> late_;
   std::size_t next_restart_ = 0;
-  JointMask stopping_;  ///< modules that restarted at the last SYNC
+  JointMask stopping_;                                               ///< modules that restarted at the last SYNC
+  std::array<std::optional<std::int32_t>, max_joints> last_pulses_;  ///< of those, before
   std::vector<PlantAction> actions_;
   std::size_t next_action_ = 0;
   std::vector<Reading> readings_;

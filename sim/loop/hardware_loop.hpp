@@ -72,7 +72,8 @@ class HardwareLoop {
   static constexpr unsigned sync_producer = 0;
 
   /// Switches the modules on, sets them up over the bus and starts the robot; SYNC 0 comes next.
-  /// scenario: must outlive the loop. Throws HardwareError if that fails: nothing has moved then.
+  /// scenario: must outlive the loop. Throws HardwareError if that fails: nothing has moved then; and InputError for a
+  /// robot whose frames could fill the bus and for more changes close together than modules have room for.
   HardwareLoop(const Scenario& scenario, HardwareOptions options);
   ~HardwareLoop();
   HardwareLoop(const HardwareLoop&) = delete;

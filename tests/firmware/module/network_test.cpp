@@ -227,7 +227,7 @@ TEST(Network, StartWithoutConfigurationIsRefusedWithAnEmergency) {
   EXPECT_EQ(robot.module().state(), NmtState::pre_operational);
   const auto emergencies = robot.emergencies();
   ASSERT_EQ(emergencies.size(), 1U);
-  EXPECT_EQ(emergencies[0].code, firmware::not_configured);
+  EXPECT_EQ(emergencies[0].code, canopen::EmergencyCode::not_configured);
   EXPECT_EQ(emergencies[0].detail, 0U);
   EXPECT_EQ(robot.it().pulse_count(), 0U);
 }

@@ -148,7 +148,7 @@ TEST_P(Refused, LeavesTheModuleUnconfigured) {
   robot.bus.run_for(1'000);
   EXPECT_EQ(robot.module().state(), NmtState::pre_operational);
   ASSERT_EQ(robot.emergencies().size(), 1U);
-  EXPECT_EQ(robot.emergencies()[0].code, firmware::not_configured);
+  EXPECT_EQ(robot.emergencies()[0].code, canopen::EmergencyCode::not_configured);
   EXPECT_EQ(robot.emergencies()[0].detail, static_cast<std::uint32_t>(GetParam().status));
   // A good one makes it well again.
   robot.configure(0);

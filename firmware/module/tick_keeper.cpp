@@ -30,7 +30,7 @@ SyncMeaning TickKeeper::sync(std::uint8_t counter, std::uint32_t coming) {
     if (ahead == counters - 1) {  // the one before once more
       return meaning;
     }
-    if (ahead <= most_missed && (!announced_ || announced_tick_ == coming + ahead)) {
+    if (ahead <= most_missed && (!announced_ || announced_tick_ - coming <= ahead)) {
       announced_ = false;
       meaning.joined = state_ == State::joining;
       state_ = State::computing;

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "shared/canopen/robot_setup.hpp"
+#include <bit>
+
+#include "shared/kernel/kernel.hpp"
 
 namespace proleg::canopen {
 
@@ -10,8 +12,8 @@ inline constexpr std::uint32_t highest_bus_load_permille = 850;
 
 /// Share of a 1 Mbit/s bus, in thousandths and rounded up, that a robot's SYNC and state frames take if every frame has
 /// the most stuff bits: 135 bits for 8 bytes of data and 65 for one, with interframe space (ISO 11898-1).
-[[nodiscard]] constexpr std::uint32_t worst_bus_load_permille(const KernelConfiguration& kernel,
-                                                              unsigned second_frames) {
+[[nodiscard]] inline std::uint32_t worst_bus_load_permille(const KernelConfiguration& kernel) {
+  const auto second_frames = static_cast<std::uint32_t>(std::popcount(kernel.second_channel_senders().bits()));
   constexpr std::uint32_t state_bits = 135;
   constexpr std::uint32_t sync_bits = 65;
   constexpr std::uint32_t tick_bits = 135;  // every tenth tick

@@ -87,7 +87,6 @@ class EventLog {
   [[nodiscard]] std::optional<Event> take();
   /// Events that found no room.
   [[nodiscard]] std::uint32_t overflow() const { return overflow_; }
-  void clear() { *this = {}; }
 
  private:
   std::array<Event, capacity> events_{};

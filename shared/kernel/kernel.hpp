@@ -47,8 +47,9 @@ struct KernelConfiguration {
   [[nodiscard]] JointMask second_channel_senders() const;
 };
 
-/// Transactions that wait for their tick at the same time.
-inline constexpr std::size_t max_transactions = 8;
+/// Transactions that wait for their tick at the same time, and one that is open. A ramp is a row of them, each sent 20
+/// ticks ahead.
+inline constexpr std::size_t max_transactions = 32;
 /// Values of one joint that are staged at the same time, over all transactions.
 inline constexpr std::size_t max_staged_values = 64;
 

@@ -33,6 +33,14 @@ void append_decimal(std::string& text, std::uint64_t value, std::size_t digits) 
 
 CandumpLog::CandumpLog(const std::filesystem::path& path, std::string interface)
     : stream_(&file_), name_(path.string()), interface_(std::move(interface)) {
+  // What is lost by a slip of the keyboard does not come back.
+  std::error_code error;
+  std::ifstream old(path, std::ios::binary);
+  if (std::filesystem::is_regular_file(path, error) && old && old.peek() != std::ifstream::traits_type::eof() &&
+      old.peek() != '(') {
+    throw CandumpLogError(name_ + ": found another file, expected none, or a CAN log to be replaced");
+  }
+  old.close();
   errno = 0;
   file_.open(path, std::ios::binary | std::ios::trunc);
   if (!file_) {

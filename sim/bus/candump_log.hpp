@@ -22,7 +22,7 @@ class CandumpLogError : public std::runtime_error {
 ///   (0000000003.001065) can0 080#2D
 class CandumpLog {
  public:
-  /// Creates the file, or empties it. Throws CandumpLogError.
+  /// Creates the file, or empties it if it is a CAN log or empty already. Throws CandumpLogError.
   explicit CandumpLog(const std::filesystem::path& path, std::string interface = "can0");
   /// Writes to a stream, which must outlive the log; `name` stands for it in messages.
   CandumpLog(std::ostream& stream, std::string name, std::string interface = "can0");

@@ -11,15 +11,30 @@ bool before(const ServoPulse& a, const ServoPulse& b) {
   return a.time_us != b.time_us ? a.time_us < b.time_us : a.joint < b.joint;
 }
 
+const char* name_of(Difference::Kind kind) {
+  switch (kind) {
+    case Difference::Kind::setpoint:
+      return "set-point";
+    case Difference::Kind::servo_command:
+      return "servo command";
+    case Difference::Kind::last_servo_command:
+      return "last servo command";
+    case Difference::Kind::internal_value:
+      break;
+  }
+  return "internal value";
+}
+
 std::string in_words(Difference::Kind kind, std::optional<std::int32_t> value) {
   if (!value) {
     return "none";
   }
   std::ostringstream text;
+  text << *value;
   if (kind == Difference::Kind::setpoint) {
-    text << *value << " (" << *value * (90.0 / (1 << 30)) << " deg)";
-  } else {
-    text << *value << " (" << *value / static_cast<double>(servo_counts_per_us) << " us)";
+    text << " (" << *value * (90.0 / (1 << 30)) << " deg)";
+  } else if (kind != Difference::Kind::internal_value) {
+    text << " (" << *value / static_cast<double>(servo_counts_per_us) << " us)";
   }
   return text.str();
 }
@@ -59,8 +74,8 @@ void compare_pulses(std::uint32_t tick, std::span<const ServoPulse> found, std::
 
 std::string describe(const Difference& difference, const std::string& joint_name) {
   std::ostringstream text;
-  text << (difference.kind == Difference::Kind::setpoint ? "set-point" : "servo command") << " of " << joint_name
-       << " at tick " << difference.tick << ": found " << in_words(difference.kind, difference.found) << ", expected "
+  text << name_of(difference.kind) << " of " << joint_name << " at tick " << difference.tick << ": found "
+       << in_words(difference.kind, difference.found) << ", expected "
        << in_words(difference.kind, difference.expected);
   return text.str();
 }

@@ -6,13 +6,18 @@
 #include <span>
 #include <string>
 
-#include "sim/robot/servo_schedule.hpp"
+#include "sim/robot/servo_pulse.hpp"
 
 namespace proleg::sim {
 
-/// A set-point or servo command that is not what the gait in memory makes of the same inputs.
+/// A value that is not what the gait in memory makes of the same inputs.
 struct Difference {
-  enum class Kind : std::uint8_t { setpoint, servo_command };
+  enum class Kind : std::uint8_t {
+    setpoint,
+    servo_command,
+    last_servo_command,  ///< as recorded beside the set-point
+    internal_value,
+  };
   Kind kind;
   std::uint32_t tick;
   std::uint32_t joint;                   ///< kernel order

@@ -1,11 +1,11 @@
 #include "sim/loop/hardware_loop.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <deque>
 #include <utility>
 
 #include "shared/canopen/bus_load.hpp"
+#include "shared/fixed/crc32.hpp"
 #include "shared/fixed/random.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "sim/loop/host_node.hpp"
@@ -18,6 +18,8 @@ namespace proleg::sim {
 namespace {
 
 constexpr BusTime second = 1'000'000'000;
+/// More than a SYNC waits for a frame on the wire, and crystals drift apart in a tick.
+constexpr BusTime longest_sync_jitter = 500'000;
 
 /// Streams of the scenario's seed that no joint's noise uses.
 constexpr std::uint64_t crystal_stream = 1'000'000;
@@ -29,6 +31,17 @@ Crystal make_crystal(const Scenario& scenario, std::size_t joint, std::uint32_t 
   return Crystal(static_cast<std::int32_t>(noise.below(static_cast<std::uint32_t>(2 * range + 1))) - range);
 }
 
+/// The last word of a unique id whose check sum is a serial number: CRC-32 (shared/fixed/crc32.hpp), run backwards.
+std::uint32_t word_for_serial(std::uint32_t crc_before, std::uint32_t serial) {
+  constexpr std::uint32_t reflected_polynomial = 0xEDB88320;
+  std::uint32_t remainder = ~serial;
+  for (int bit = 0; bit < 32; ++bit) {
+    const bool divided = (remainder & 0x80000000U) != 0;
+    remainder = (divided ? (remainder ^ reflected_polynomial) << 1U | 1U : remainder << 1U);
+  }
+  return remainder ^ ~crc_before;
+}
+
 firmware::Board make_board(const Scenario& scenario, std::size_t joint) {
   Pcg32 noise(scenario.kernel.seed, board_stream + joint);
   firmware::Board board;
@@ -36,6 +49,15 @@ firmware::Board make_board(const Scenario& scenario, std::size_t joint) {
   board.core_fingerprint = core_fingerprint;
   for (std::uint32_t& word : board.unique_id) {
     word = noise.next();
+  }
+  if (const std::optional<std::uint32_t> serial = scenario.modules[joint].serial) {
+    Crc32 crc;
+    for (const std::uint32_t word : std::span(board.unique_id).first(2)) {
+      for (unsigned shift = 0; shift < 32; shift += 8) {
+        crc.add(static_cast<std::uint8_t>(word >> shift));
+      }
+    }
+    board.unique_id[2] = word_for_serial(crc.value(), *serial);
   }
   return board;
 }
@@ -82,7 +104,6 @@ class HardwareLoop::Implementation {
         setpoints_(chain_.setpoints().begin(), chain_.setpoints().end()),
         latched_contacts_(scenario.robot.links.size()) {
     require_room_on_bus();
-    require_room_for_changes();
     chain_.set_losses(options_.losses);
     for_each_internal_value(scenario.kernel, [&](unsigned, unsigned, unsigned) { internal_values_.push_back(0); });
     make_modules();
@@ -132,8 +153,7 @@ class HardwareLoop::Implementation {
   static constexpr unsigned no_joint = max_joints;
 
   void require_room_on_bus() const {
-    const auto second_frames = static_cast<unsigned>(std::popcount(scenario_.kernel.second_channel_senders().bits()));
-    const std::uint32_t load = canopen::worst_bus_load_permille(scenario_.kernel, second_frames);
+    const std::uint32_t load = canopen::worst_bus_load_permille(scenario_.kernel);
     if (load > canopen::highest_bus_load_permille) {
       throw InputError(
           scenario_.path, 0,
@@ -141,20 +161,6 @@ class HardwareLoop::Implementation {
               std::to_string(scenario_.kernel.tick_period_us) + " us may take " + std::to_string((load + 9) / 10) +
               " % of the bus",
           "at most " + std::to_string(canopen::highest_bus_load_permille / 10) + " %: fewer joints, or a longer tick");
-    }
-  }
-
-  void require_room_for_changes() const {
-    constexpr std::size_t most = canopen::ChangePlan::most_pending;
-    const std::vector<Change>& changes = scenario_.changes;
-    for (std::size_t i = 0; i + most < changes.size(); ++i) {
-      if (changes[i + most].tick - changes[i].tick < canopen::Master::commit_lead) {
-        throw InputError("--set", 0,
-                         std::to_string(most + 1) + " changes at the ticks " + std::to_string(changes[i].tick) +
-                             " to " + std::to_string(changes[i + most].tick),
-                         "at most " + std::to_string(most) + " in " + std::to_string(canopen::Master::commit_lead) +
-                             " ticks: modules have no room for more, and each is sent that long ahead");
-      }
     }
   }
 
@@ -263,6 +269,8 @@ class HardwareLoop::Implementation {
     injector_->advance_to(tick);
     for (; next_restart_ < options_.restarts.size() && options_.restarts[next_restart_].tick <= tick; ++next_restart_) {
       const unsigned joint = options_.restarts[next_restart_].joint;
+      // What it still has to give of the tick before, by a slow crystal, it gives.
+      modules_[joint]->advance_to(now + longest_sync_jitter);
       last_pulses_[joint] = modules_[joint]->pulse();
       modules_[joint]->power_on(now);
       stopping_.insert(joint);

@@ -73,7 +73,7 @@ class HardwareLoop {
 
   /// Switches the modules on, sets them up over the bus and starts the robot; SYNC 0 comes next.
   /// scenario: must outlive the loop. Throws HardwareError if that fails: nothing has moved then; and InputError for a
-  /// robot whose frames could fill the bus and for more changes close together than modules have room for.
+  /// robot whose frames could fill the bus.
   HardwareLoop(const Scenario& scenario, HardwareOptions options);
   ~HardwareLoop();
   HardwareLoop(const HardwareLoop&) = delete;

@@ -24,6 +24,7 @@ std::string in_text(canopen::Address address) {
 MasterInput::MasterInput(const Scenario& scenario) {
   for (const ModulePlace& module : scenario.modules) {
     nodes_.push_back(module.node);
+    serials.push_back(module.serial.value_or(0));
   }
   for (const JointLimits& limits : scenario.joint_limits) {
     limits_.push_back({limits.lower, limits.upper});
@@ -52,7 +53,9 @@ HostNode::HostNode(Bus& bus, const Scenario& scenario, unsigned sync_producer)
       input_(scenario),
       controller_(bus.attach(*this)),
       master_(controller_, input_.setup,
-              {.core_fingerprint = core_fingerprint, .sync_producer = static_cast<std::uint8_t>(sync_producer)},
+              {.core_fingerprint = core_fingerprint,
+               .serials = input_.serials,
+               .sync_producer = static_cast<std::uint8_t>(sync_producer)},
               input_.changes) {}
 
 void HostNode::start(BusTime now) {
@@ -123,7 +126,11 @@ std::optional<std::string> HostNode::take_event() {
   if (!event) {
     return std::nullopt;
   }
-  std::string text = name_of(event->node) + ": " + std::string(canopen::describe(event->kind));
+  std::string text(canopen::describe(event->kind));
+  if (event->kind == EventKind::change_dropped) {
+    return text + ": the one for tick " + std::to_string(event->detail);
+  }
+  text = name_of(event->node) + ": " + text;
   if (event->kind == EventKind::emergency) {
     text += " " + hexadecimal(static_cast<std::uint16_t>(event->code), 4) + ", " +
             std::string(canopen::describe(event->code)) + " (" + std::to_string(event->detail) + ")";

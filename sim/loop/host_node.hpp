@@ -22,6 +22,7 @@ class MasterInput {
 
   canopen::RobotSetup setup;
   std::vector<canopen::Change> changes;
+  std::vector<std::uint32_t> serials;  ///< of the robot's file, 0: any
 
  private:
   std::vector<std::uint8_t> nodes_;

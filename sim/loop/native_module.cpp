@@ -5,8 +5,7 @@
 namespace proleg::sim {
 
 NativeModule::NativeModule(Bus& bus, const firmware::Board& board, Crystal crystal, Sensors sensors)
-    : board_(board),
-      crystal_(crystal),
+    : crystal_(crystal),
       sensors_(std::move(sensors)),
       controller_(bus.attach(*this)),
       module_(board, {controller_, *this, *this}) {

@@ -31,7 +31,6 @@ class NativeModule final : private BusListener, private firmware::ServoPort, pri
   /// Does what is due.
   void advance_to(BusTime now);
 
-  [[nodiscard]] const firmware::Board& board() const { return board_; }
   [[nodiscard]] const Kernel& kernel() const { return module_.kernel(); }
   /// Whether the joint's kernel has computed this tick and is waiting for the next one.
   [[nodiscard]] bool has_computed(unsigned joint, std::uint32_t tick) const;
@@ -50,7 +49,6 @@ class NativeModule final : private BusListener, private firmware::ServoPort, pri
   [[nodiscard]] std::uint8_t read() override { return sensors_(); }
   void update_deadline() { next_event_ = crystal_.when(module_.next_deadline()); }
 
-  firmware::Board board_;
   Crystal crystal_;
   Sensors sensors_;
   Tamper tamper_;

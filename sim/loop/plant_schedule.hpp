@@ -3,9 +3,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "shared/kernel/servo_schedule.hpp"
 #include "sim/bus/controller.hpp"
 #include "sim/loop/plant.hpp"
-#include "sim/robot/servo_schedule.hpp"
+#include "sim/robot/servo_pulse.hpp"
 
 namespace proleg::sim {
 

@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "shared/kernel/servo_command.hpp"
+#include "shared/kernel/servo_schedule.hpp"
 #include "sim/loop/kernel_chain.hpp"
-#include "sim/robot/servo_schedule.hpp"
+#include "sim/robot/servo_pulse.hpp"
 
 namespace proleg::sim {
 

@@ -1,10 +1,10 @@
 #include "sim/loop/verification.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <vector>
 
 #include "shared/gait/registry.hpp"
+#include "sim/loop/internal_values.hpp"
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/servo_pulses.hpp"
 #include "sim/loop/touch_inputs.hpp"
@@ -15,6 +15,8 @@
 namespace proleg::sim {
 namespace {
 
+constexpr std::uint64_t longest_servo_period_us = 1'000'000;
+
 /// What a recording says of how its gait came about, with names resolved.
 class RecordedGait {
  public:
@@ -23,6 +25,9 @@ class RecordedGait {
     configuration.tick_period_us = recording.tick_period_us();
     configuration.seed = whole_number("seed");
     servo_period_us = static_cast<std::uint32_t>(whole_number("servo_period_us"));
+    if (whole_number("servo_period_us") < 1 || whole_number("servo_period_us") > longest_servo_period_us) {
+      refuse("a servo period of " + std::to_string(whole_number("servo_period_us")) + " us", "1 to 1000000 us");
+    }
     for (const RecordedJoint& joint : recording.joints()) {
       limits.push_back({joint.lower_limit, joint.upper_limit});
     }
@@ -52,12 +57,11 @@ class RecordedGait {
  private:
   [[nodiscard]] std::uint64_t whole_number(const std::string& key) const {
     const std::string text = recording_.run_value(key);
-    std::uint64_t value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || end != text.data() + text.size()) {
+    const auto value = parse_whole<std::uint64_t>(text);
+    if (!value) {
       refuse(in_quotes(text) + " as " + key, "a whole number");
     }
-    return value;
+    return *value;
   }
 
   void read_slots() {
@@ -132,6 +136,7 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
   ValueHash servo_hash;
   std::vector<std::uint8_t> contacts(chain.joint_count());
   std::vector<ServoPulse> expected_pulses;
+  std::vector<std::int32_t> last_commands(chain.joint_count(), servo_center);
   auto change = gait.changes.begin();
   auto restart = restarts.begin();
   auto pulse = pulses.begin();
@@ -149,11 +154,27 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
     setpoint_hash.append(chain.setpoints());
     compare_setpoints(tick.tick, tick.setpoints, chain.setpoints(), note);
     result.setpoints += contacts.size();
+    auto value = tick.internal_values.begin();
+    for_each_internal_value(gait.configuration, [&](unsigned slot, unsigned joint, unsigned number) {
+      const std::int32_t expected = chain.kernel(joint).internal_value(slot, joint, number);
+      if (*value != expected) {
+        note({Difference::Kind::internal_value, tick.tick, joint, *value, expected});
+      }
+      ++value;
+      ++result.internal_values;
+    });
 
     expected_pulses.clear();
     append_servo_pulses(chain, schedule, expected_pulses);
     for (const ServoPulse& expected : expected_pulses) {
       servo_hash.append(expected.command);
+      last_commands[expected.joint] = expected.command;
+    }
+    for (std::uint32_t joint = 0; joint < contacts.size(); ++joint) {
+      if (tick.servo_commands[joint] != last_commands[joint]) {
+        note(
+            {Difference::Kind::last_servo_command, tick.tick, joint, tick.servo_commands[joint], last_commands[joint]});
+      }
     }
     const auto first = pulse;
     const std::uint64_t end_us = (tick.tick + std::uint64_t{1}) * gait.configuration.tick_period_us;
@@ -167,6 +188,9 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
       progress(tick.tick);
     }
   });
+  for (; pulse != pulses.end(); ++pulse) {
+    note({Difference::Kind::servo_command, recording.last_tick(), pulse->joint, pulse->command, std::nullopt});
+  }
   result.setpoint_hash = setpoint_hash.hex();
   result.servo_hash = servo_hash.hex();
   return result;

@@ -12,17 +12,18 @@ namespace proleg::sim {
 
 struct Verification {
   std::uint32_t ticks = 0;
-  std::uint64_t setpoints = 0;       ///< compared
-  std::uint64_t servo_commands = 0;  ///< compared
+  std::uint64_t setpoints = 0;        ///< compared
+  std::uint64_t servo_commands = 0;   ///< compared
+  std::uint64_t internal_values = 0;  ///< compared
   std::uint64_t differences = 0;
   std::optional<Difference> first;
   std::string setpoint_hash;  ///< of what was recomputed
   std::string servo_hash;
 };
 
-/// Recomputes every set-point and every servo command of a recording with this program's core, from what is recorded of
-/// the start values, changes, contacts, losses and restarts; no world is simulated. A recording that does not start at
-/// tick 0 cannot be recomputed, nor one of an algorithm that this program does not have: InputError.
+/// Recomputes every set-point, internal value and servo command of a recording with this program's core, from what is
+/// recorded of the start values, changes, contacts, losses and restarts; no world is simulated. A recording that does
+/// not start at tick 0 cannot be recomputed, nor one of an algorithm that this program does not have: InputError.
 /// progress: called with every tick.
 [[nodiscard]] Verification verify(const Recording& recording,
                                   const std::function<void(std::uint32_t tick)>& progress = {});

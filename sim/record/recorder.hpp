@@ -10,7 +10,7 @@
 
 #include "sim/record/record_error.hpp"
 #include "sim/robot/robot_model.hpp"
-#include "sim/robot/servo_schedule.hpp"
+#include "sim/robot/servo_pulse.hpp"
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/scenario.hpp"
 

@@ -16,7 +16,7 @@
 namespace proleg::sim {
 namespace {
 
-constexpr const char* what_is_expected = "a recording of proleg simulate";
+constexpr const char* what_is_expected = "a recording of proleg simulate or proleg hil";
 
 // Not a text for people: it becomes an InputError where the path is known.
 class Damage : public std::runtime_error {

@@ -12,7 +12,7 @@
 
 #include "shared/fixed/unit.hpp"
 #include "sim/robot/robot_model.hpp"
-#include "sim/robot/servo_schedule.hpp"
+#include "sim/robot/servo_pulse.hpp"
 #include "sim/scenario/losses.hpp"
 
 namespace proleg::sim {

@@ -1,11 +1,12 @@
 #include "sim/scenario/losses.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <tuple>
 
 #include "shared/fixed/random.hpp"
 #include "shared/kernel/kernel.hpp"
@@ -17,16 +18,6 @@ namespace proleg::sim {
 namespace {
 
 constexpr const char* seed_form = "SEED:RATE or SEED:RATE@FIRST-LAST, for example 7:5% or 7:0.05@100-900";
-
-template <typename Integer>
-std::optional<Integer> parse_whole(const std::string& text) {
-  Integer value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) {
-    return std::nullopt;
-  }
-  return value;
-}
 
 [[noreturn]] void refuse(const std::string& argument) {
   throw InputError("--losses", 0, in_quotes(shortened(argument)), seed_form);
@@ -85,9 +76,18 @@ std::uint8_t parse_joint(const std::string& name, const RobotModel& robot, const
 }
 
 std::vector<Loss> read_list(const std::string& path, const RobotModel& robot) {
+  constexpr std::uintmax_t largest = 16U << 20U;
+  const std::string expected = std::string("a list of losses, or ") + seed_form;
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    throw InputError(in_quotes(path), 0, "no such file", expected);
+  }
+  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) > largest) {
+    throw InputError(path, 0, "no file, or one above 16 MiB", expected);
+  }
   std::ifstream file(path);
   if (!file) {
-    throw InputError(path, 0, "no readable file", std::string("a list of losses, or ") + seed_form);
+    throw InputError(path, 0, "a file that cannot be read", expected);
   }
   std::vector<Loss> list;
   std::string text;
@@ -129,14 +129,16 @@ std::vector<Loss> read_list(const std::string& path, const RobotModel& robot) {
   return list;
 }
 
+auto order(const Loss& loss) { return std::tuple(loss.tick, loss.sender, loss.channel, loss.receiver); }
+
 }  // namespace
 
-Losses::Losses(std::vector<Loss> list) : list_(std::move(list)) { std::ranges::sort(list_); }
+Losses::Losses(std::vector<Loss> list) : list_(std::move(list)) { std::ranges::sort(list_, {}, order); }
 
 JointMask Losses::receivers_without(std::uint32_t tick, unsigned sender, unsigned channel) const {
   JointMask receivers;
   const Loss first{tick, static_cast<std::uint8_t>(sender), static_cast<std::uint8_t>(channel), 0};
-  for (auto loss = std::ranges::lower_bound(list_, first);
+  for (auto loss = std::ranges::lower_bound(list_, order(first), {}, order);
        loss != list_.end() && loss->tick == tick && loss->sender == sender && loss->channel == channel; ++loss) {
     receivers.insert(loss->receiver);
   }
@@ -149,6 +151,22 @@ JointMask Losses::receivers_without(std::uint32_t tick, unsigned sender, unsigne
     }
   }
   return receivers;
+}
+
+void Losses::require_effect(std::uint32_t ticks, const KernelConfiguration& kernel) const {
+  const std::string expected = "ticks of the run, 0 to " + std::to_string(ticks - 1);
+  if (random_.threshold != 0 && random_.first_tick >= ticks) {
+    throw InputError("--losses", 0, "losses from tick " + std::to_string(random_.first_tick) + " on", expected);
+  }
+  for (const Loss& loss : list_) {
+    if (loss.tick >= ticks) {
+      throw InputError("--losses", 0, "a loss at tick " + std::to_string(loss.tick), expected);
+    }
+    if (loss.channel == 1 && !kernel.second_channel_senders().contains(loss.sender)) {
+      throw InputError("--losses", 0, "a loss on channel 2 at tick " + std::to_string(loss.tick),
+                       "a sender with two broadcasting algorithms");
+    }
+  }
 }
 
 Losses read_losses(const std::string& argument, const RobotModel& robot) {

@@ -3,13 +3,12 @@
 // State frames that joints do not receive, chosen beforehand. The same losses can be given to a simulation in memory
 // and to modules on a bus, and then give the same bits.
 
-#include <compare>
 #include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "shared/gait/joint_mask.hpp"
+#include "shared/kernel/kernel.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim {
@@ -20,8 +19,6 @@ struct Loss {
   std::uint8_t sender;   ///< joint
   std::uint8_t channel;  ///< 0, or 1 for the frame of the joint's second broadcasting slot
   std::uint8_t receiver;
-
-  friend auto operator<=>(const Loss&, const Loss&) = default;
 };
 
 /// Each frame is lost for each receiver with the same probability. Nothing depends on the number of joints, the order
@@ -43,6 +40,8 @@ class Losses {
   [[nodiscard]] bool any() const { return !list_.empty() || random_.threshold != 0; }
   /// The joints that do not receive a frame.
   [[nodiscard]] JointMask receivers_without(std::uint32_t tick, unsigned sender, unsigned channel) const;
+  /// Throws InputError if some can have no effect in a run of so many ticks.
+  void require_effect(std::uint32_t ticks, const KernelConfiguration& kernel) const;
   [[nodiscard]] bool lost(const Loss& loss) const {
     return receivers_without(loss.tick, loss.sender, loss.channel).contains(loss.receiver);
   }

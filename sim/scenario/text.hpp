@@ -2,6 +2,7 @@
 
 // Small pieces of text work that the readers share.
 
+#include <charconv>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -39,6 +40,16 @@ namespace proleg::sim {
 [[nodiscard]] std::string listed(std::span<const std::string> items);
 
 /// The whole word as a finite decimal number, or nothing.
+/// A whole number that is all of the text, without sign (of an unsigned type) and blanks; nothing if there is none or
+/// it does not fit.
+template <typename Integer>
+[[nodiscard]] std::optional<Integer> parse_whole(std::string_view text, int base = 10) {
+  Integer value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, base);
+  return text.empty() || error != std::errc{} || end != text.data() + text.size() ? std::nullopt
+                                                                                  : std::optional<Integer>(value);
+}
+
 [[nodiscard]] std::optional<double> parse_number(std::string_view word);
 
 /// Short text of a number for messages.

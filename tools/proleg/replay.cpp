@@ -47,7 +47,7 @@ sim::Verification recompute(const sim::Recording& recording) {
 
 int replay(const Options& options) {
   if (!options.verify) {
-    throw sim::InputError("proleg replay", 0, "nothing to do", "--verify");
+    throw sim::InputError("the command line", 0, "nothing to do", "--verify");
   }
   const sim::Recording recording(options.file);
   if (const std::string remark = remark_on_unfinished_run(recording); !remark.empty()) {
@@ -67,6 +67,7 @@ int replay(const Options& options) {
                                         {"ticks", verification.ticks},
                                         {"setpoints", verification.setpoints},
                                         {"servo_commands", verification.servo_commands},
+                                        {"internal_values", verification.internal_values},
                                         {"differences", verification.differences},
                                         {"first_difference", first},
                                         {"setpoint_hash", verification.setpoint_hash},
@@ -80,9 +81,10 @@ int replay(const Options& options) {
   } else {
     std::printf("recorded by       %s, %s, core %s\n", recording.run_value("program").c_str(),
                 recording.run_value("build_id").c_str(), core.c_str());
-    std::printf("recomputed        %u ticks: %llu set-points, %llu servo commands\n", verification.ticks,
-                static_cast<unsigned long long>(verification.setpoints),
-                static_cast<unsigned long long>(verification.servo_commands));
+    std::printf("recomputed        %u ticks: %llu set-points, %llu servo commands, %llu internal values\n",
+                verification.ticks, static_cast<unsigned long long>(verification.setpoints),
+                static_cast<unsigned long long>(verification.servo_commands),
+                static_cast<unsigned long long>(verification.internal_values));
     std::printf("differences       %llu\n", static_cast<unsigned long long>(verification.differences));
     std::printf("set-point hash    %s\n", verification.setpoint_hash.c_str());
     std::printf("servo hash        %s\n", verification.servo_hash.c_str());
@@ -108,7 +110,8 @@ int main(int argc, char** argv) {
       "proleg replay");
   Options options;
   app.add_option("FILE", options.file, "a recording")->required();
-  app.add_flag("--verify", options.verify, "compare every set-point and servo command; status 1 if one differs");
+  app.add_flag("--verify", options.verify,
+               "compare every set-point, internal value and servo command; status 1 if one differs");
   app.add_flag("--json", options.json, "print one JSON object");
   return run_command(argc, argv, app, [&] { return replay(options); });
 }

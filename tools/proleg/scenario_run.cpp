@@ -72,10 +72,11 @@ ScenarioRun prepare_run(const ScenarioOptions& options) {
     }
     run.scenario.duration_s = *seconds;
   }
+  run.ticks = tick_count(run.scenario);
   if (options.losses) {
     run.losses = sim::read_losses(*options.losses, run.scenario.robot);
+    run.losses.require_effect(run.ticks, run.scenario.kernel);
   }
-  run.ticks = tick_count(run.scenario);
   return run;
 }
 

@@ -79,6 +79,20 @@ TEST(TickKeeper, BelievesNeitherIfTickAndSyncDisagree) {
   EXPECT_FALSE(keeper.keeps_tick());
 }
 
+// The SYNC that was announced may be among those that were missed.
+TEST(TickKeeper, MissesSyncsAfterTickAsAtAnyTime) {
+  for (std::uint32_t missed = 0; missed <= 8; ++missed) {
+    for (std::uint32_t announced = 100; announced <= 100 + missed; ++announced) {
+      TickKeeper keeper = computing(100);
+      ASSERT_TRUE(keeper.announce(announced, 100));
+      const SyncMeaning meaning = keeper.sync(counter(100 + missed), 100);
+      EXPECT_EQ(meaning.action, Action::compute) << announced << ' ' << missed;
+      EXPECT_EQ(meaning.missed, missed);
+      EXPECT_TRUE(keeper.synchronised());
+    }
+  }
+}
+
 TEST(TickKeeper, KnowsNoTickWithoutAnAnnouncement) {
   TickKeeper keeper;
   for (unsigned i = 1; i <= 128; ++i) {

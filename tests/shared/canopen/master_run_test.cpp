@@ -62,17 +62,17 @@ void check_commits(const ScriptedRobot& robot, std::uint32_t lead) {
 
 TEST(MasterChanges, ThoseThatFitAreCommittedBeforeTheStart) {
   std::vector<PlannedChange> plan;
-  for (std::uint32_t i = 0; i < 9; ++i) {
-    plan.push_back({i * 40, for_all(3, 0, static_cast<std::int32_t>(i))});
+  for (std::uint32_t i = 0; i < 35; ++i) {
+    plan.push_back({i * 10, for_all(3, 0, static_cast<std::int32_t>(i))});
   }
   ScriptedRobot robot(3, plan);
   robot.start();
   ASSERT_TRUE(robot.run_until([&] { return robot.master().state() == MasterState::starting; }, 5'000'000));
-  EXPECT_EQ(robot.master().changes_made(), 7U);
+  EXPECT_EQ(robot.master().changes_made(), 31U);
   for (unsigned joint = 0; joint < 3; ++joint) {
-    ASSERT_EQ(robot.module(joint).committed().size(), 7U);
-    EXPECT_EQ(robot.module(joint).committed()[6].number, 7);
-    EXPECT_EQ(robot.module(joint).committed()[6].tick, 240U);
+    ASSERT_EQ(robot.module(joint).committed().size(), 31U);
+    EXPECT_EQ(robot.module(joint).committed()[30].number, 31);
+    EXPECT_EQ(robot.module(joint).committed()[30].tick, 300U);
   }
   ASSERT_TRUE(robot.run_until_running());
   ASSERT_TRUE(robot.run_to_tick(400));
@@ -148,8 +148,11 @@ TEST(MasterChanges, AModuleNeverHasMoreValuesStagedThanItHasRoomFor) {
 
 TEST(MasterChanges, OneThatComesTooLateIsReportedAndDroppedAndTheRobotGoesOn) {
   std::vector<PlannedChange> plan;
-  for (std::uint32_t i = 0; i < 12; ++i) {  // one a tick: seven fit at once
+  for (std::uint32_t i = 0; i < 12; ++i) {  // one a tick, of nine values of joint 0: seven of them fit at once
     plan.push_back({100 + i, for_all(2, 0, static_cast<std::int32_t>(i))});
+    for (std::uint8_t n = 0; n < 8; ++n) {
+      plan.back().values.push_back({0, 0, 0, false, static_cast<std::int32_t>(i)});
+    }
   }
   plan.push_back({300, for_all(2, 0, 1234)});
   ScriptedRobot robot(2, plan);
@@ -165,36 +168,35 @@ TEST(MasterChanges, OneThatComesTooLateIsReportedAndDroppedAndTheRobotGoesOn) {
   for (std::size_t i = 0; i < plan.size(); ++i) {
     EXPECT_EQ(robot.changes[i].dropped, i >= 7 && i < 12) << i;
   }
-  for (unsigned joint = 0; joint < 2; ++joint) {
-    EXPECT_EQ(robot.module(joint).effects, planned_effects(robot, joint));
-    EXPECT_EQ(value_of(robot, joint, 0), 1234U + joint);
-  }
+  EXPECT_EQ(robot.module(1).effects, planned_effects(robot, 1));
+  EXPECT_EQ(value_of(robot, 0, 0), 1234U);
+  EXPECT_EQ(value_of(robot, 1, 0), 1235U);
   EXPECT_EQ(robot.complaints(), 0U);
   check_commits(robot, 20);
 }
 
-TEST(MasterChanges, OneThatAModuleRefusesIsDroppedForAll) {
+TEST(MasterChanges, OneThatAModuleRefusesInFlightIsDroppedForAll) {
   std::vector<PlannedChange> plan;
-  for (std::uint32_t i = 0; i < 9; ++i) {
+  for (std::uint32_t i = 0; i < 35; ++i) {
     plan.push_back({50 + i * 25, for_all(4, 0, static_cast<std::int32_t>(i))});
   }
   ScriptedRobot robot(4, plan);
   robot.module(2).refusal = [](const Object& entry, bool, std::uint32_t value) {
     const Address staged{static_cast<std::uint16_t>(in_force(0).index + 0x1000), 1};
-    return entry.address == staged && value == 7 + 2 ? AbortCode::above_maximum : AbortCode::none;
+    return entry.address == staged && value == 33 + 2 ? AbortCode::above_maximum : AbortCode::none;
   };
   robot.start();
   ASSERT_TRUE(robot.run_until_running());
-  ASSERT_TRUE(robot.run_to_tick(300));
+  ASSERT_TRUE(robot.run_to_tick(950));
   const Problem& problem = robot.master().problem();
   EXPECT_EQ(problem.code, ProblemCode::change_refused);
   EXPECT_EQ(problem.joint, 2);
-  EXPECT_EQ(problem.change, 7U);
+  EXPECT_EQ(problem.change, 33U);
   EXPECT_EQ(problem.abort_code, AbortCode::above_maximum);
   EXPECT_EQ(robot.master().state(), MasterState::running);
   for (unsigned joint = 0; joint < 4; ++joint) {
     EXPECT_EQ(robot.module(joint).effects, planned_effects(robot, joint));
-    EXPECT_EQ(robot.module(joint).effects.size(), 8U);
+    EXPECT_EQ(robot.module(joint).effects.size(), 34U);
   }
 }
 
@@ -286,8 +288,11 @@ TEST(MasterRestart, ChangesMayPassWhileAModuleIsSetUpAgain) {
 
 TEST(MasterRestart, WhatWasDroppedIsNotMadeByARestart) {
   std::vector<PlannedChange> plan;
-  for (std::uint32_t i = 0; i < 9; ++i) {  // one a tick: seven fit at once
+  for (std::uint32_t i = 0; i < 9; ++i) {  // one a tick, of nine values of joint 0: seven of them fit at once
     plan.push_back({100 + i, for_all(3, static_cast<std::uint8_t>(i % 3), static_cast<std::int32_t>(i + 50))});
+    for (std::uint8_t n = 0; n < 8; ++n) {
+      plan.back().values.push_back({0, 0, 4, false, static_cast<std::int32_t>(i)});
+    }
   }
   ScriptedRobot robot(3, plan);
   robot.start();

@@ -117,7 +117,7 @@ class ScriptedModule final : public sim::BusListener, private canopen::ObjectAcc
   bool deaf = false;                 ///< answers no SDO request
   bool silent = false;               ///< sends no heartbeat
   bool never_starts = false;         ///< stays in Pre-operational
-  std::size_t most_pending = 8;      ///< transactions
+  std::size_t most_pending = 32;     ///< transactions
   /// Answers instead of the module, unless `none`.
   std::function<canopen::AbortCode(const canopen::Object&, bool writes, std::uint32_t value)> refusal;
 

@@ -86,9 +86,38 @@ TEST_F(Verifying, NamesAServoCommandThatIsChangedMissingOrTooMany) {
 }
 
 // What the gait is computed from counts, down to the last contact.
-TEST_F(Verifying, FailsIfAContactAChangeOrALossIsNotTheRecordedOne) {
+TEST_F(Verifying, FailsIfAContactIsNotTheRecordedOne) {
   change("UPDATE contact SET rear = 1 - rear, front = 1 - front WHERE tick BETWEEN 200 AND 260");
   EXPECT_GT(verified().differences, 0U);
+}
+
+// Of oscillators that still look for their phases: the reflex does not mind losses.
+TEST_F(Verifying, FailsIfALossIsForgotten) {
+  const Scenario scenario = shipped("travelling_wave/coupled");
+  const Losses losses({{20, 0, 0, 1}, {21, 3, 0, 2}});
+  {
+    Simulation simulation(scenario, &losses);
+    Recorder recorder(path_, scenario, "test", "build");
+    while (simulation.tick() < 100) {
+      simulation.advance();
+      recorder.record_tick(simulation.sample());
+    }
+    recorder.finish({});
+  }
+  EXPECT_EQ(verified().differences, 0U);
+  change("DELETE FROM loss WHERE tick = 21");
+  EXPECT_GT(verified().differences, 0U);
+}
+
+TEST_F(Verifying, NamesWhatElseDoesNotFollow) {
+  change("UPDATE internal_value SET raw = raw + 1 WHERE tick = 50 AND slot = 0 AND joint = 1 AND value_index = 0");
+  EXPECT_EQ(verified().differences, 1U);
+  EXPECT_EQ(verified().first->kind, Difference::Kind::internal_value);
+  change("UPDATE sample SET servo_command = 18000 WHERE tick = 40 AND joint = 2");
+  EXPECT_EQ(verified().differences, 2U);
+  EXPECT_EQ(verified().first->kind, Difference::Kind::last_servo_command);
+  change("INSERT INTO servo VALUES(99999999999, 0, 18000)");
+  EXPECT_EQ(verified().differences, 3U);
 }
 
 TEST_F(Verifying, FailsIfAChangeIsForgotten) {
@@ -113,6 +142,13 @@ TEST_F(Verifying, RefusesValuesThatNoKernelTakes) {
   EXPECT_THROW((void)verified(), InputError);
   change("UPDATE joint SET lower_raw = 5, upper_raw = 4 WHERE joint = 0");
   EXPECT_THROW((void)verified(), InputError);
+}
+
+TEST_F(Verifying, RefusesAServoPeriodThatNoServoHas) {
+  for (const char* period : {"0", "4294967296000", "-1", "x"}) {
+    change(("UPDATE run SET value = '" + std::string(period) + "' WHERE key = 'servo_period_us'").c_str());
+    EXPECT_THROW((void)verified(), InputError) << period;
+  }
 }
 
 TEST_F(Verifying, RefusesARecordingWithoutItsBeginning) {

@@ -36,7 +36,7 @@ class BadRecording : public testing::Test {
     const std::string message = refusal(path_);
     EXPECT_EQ(message.find(path_.string() + ": found "), 0U) << message;
     EXPECT_NE(message.find(part), std::string::npos) << message;
-    EXPECT_NE(message.find(", expected a recording of proleg simulate"), std::string::npos) << message;
+    EXPECT_NE(message.find(", expected a recording of proleg simulate or proleg hil"), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   }
 

@@ -99,9 +99,14 @@ TEST_F(Hil, WhatCannotBeIsRefused) {
   }
   expect_refused({"hil", file_name, "--send", "603#00@3000"}, {"tick 3000"});
   expect_refused({"hil", file_name, "--can-log", "/nowhere/bus.log"}, {"/nowhere/bus.log"});
+  expect_refused({"hil", file_name, "--can-log", file_name}, {"found another file"});
+  expect_refused({"hil", file_name, "--can-log", file("x").string(), "--record", file("x").string()}, {"found twice"});
   for (const char* command : {"simulate", "hil"}) {
     expect_refused({command, file_name, "--losses", "7:500%"}, {"rate '500'", "0 to 1"});
-    expect_refused({command, file_name, "--losses", file("none").string()}, {"none: found no readable file"});
+    expect_refused({command, file_name, "--losses", "7:5%@5000-6000"}, {"tick 5000", "0 to 2999"});
+    expect_refused({command, file_name, "--losses", "/dev/zero"}, {"/dev/zero: found no file"});
+    expect_refused({command, file_name, "--losses", "/"}, {"/: found no file"});
+    expect_refused({command, file_name, "--losses", file("none").string()}, {"none': found no such file"});
   }
   EXPECT_TRUE(left_behind().empty());
 }

@@ -2,8 +2,6 @@
 
 #include <cstdint>
 
-#include "shared/kernel/servo_schedule.hpp"
-
 namespace proleg::sim {
 
 /// A pulse that a servo takes at the start of one of its intervals.

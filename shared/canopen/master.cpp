@@ -1,5 +1,7 @@
 #include "shared/canopen/master.hpp"
 
+#include "shared/canopen/bus_load.hpp"
+
 namespace proleg::canopen {
 namespace {
 
@@ -262,6 +264,12 @@ std::optional<Problem> Master::check_setup() const {
       return problem_of(ProblemCode::bad_setup, joint);
     }
     taken[node] = true;
+  }
+  if (const std::uint32_t load = worst_bus_load_permille(setup_.kernel); load > highest_bus_load_permille) {
+    Problem problem{ProblemCode::bus_too_small};
+    problem.found = load;
+    problem.expected = highest_bus_load_permille;
+    return problem;
   }
   return std::nullopt;
 }

@@ -6,6 +6,8 @@ std::string_view describe(ProblemCode code) {
   switch (code) {
     case ProblemCode::none:
       return "no problem";
+    case ProblemCode::bus_too_small:
+      return "the state frames may fill the bus";
     case ProblemCode::bad_setup:
       return "the set-up does not give each joint a node of its own";
     case ProblemCode::bad_change:

@@ -16,9 +16,10 @@ namespace proleg::canopen {
 enum class ProblemCode : std::uint8_t {
   none,
   // Found before anything is sent.
-  bad_setup,   ///< a joint without a node of its own (1 to 126), spans of other lengths than the joint count
-  bad_change,  ///< `change` names a value that its joint does not have, too many values, or is not behind the one
-               ///< before
+  bad_setup,      ///< a joint without a node of its own (1 to 126), spans of other lengths than the joint count
+  bus_too_small,  ///< the robot may take `found` thousandths of the bus, more than `expected`
+  bad_change,     ///< `change` names a value that its joint does not have, too many values, or is not behind the one
+                  ///< before
   // The start ends with these.
   missing_module,       ///< no boot-up message of `node` came in time
   duplicate_node,       ///< `node` booted twice, or says that another module has its id

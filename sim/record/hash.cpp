@@ -10,10 +10,13 @@ ValueHash::ValueHash() { crypto_hash_sha256_init(&state_); }
 
 void ValueHash::append(std::int32_t value) {
   const auto bits = static_cast<std::uint32_t>(value);
-  const std::array<unsigned char, 4> bytes{static_cast<unsigned char>(bits), static_cast<unsigned char>(bits >> 8U),
-                                           static_cast<unsigned char>(bits >> 16U),
-                                           static_cast<unsigned char>(bits >> 24U)};
-  crypto_hash_sha256_update(&state_, bytes.data(), bytes.size());
+  for (unsigned shift = 0; shift < 32; shift += 8) {
+    waiting_[waiting_size_++] = static_cast<unsigned char>(bits >> shift);
+  }
+  if (waiting_size_ == waiting_.size()) {
+    crypto_hash_sha256_update(&state_, waiting_.data(), waiting_size_);
+    waiting_size_ = 0;
+  }
 }
 
 void ValueHash::append(std::span<const std::int32_t> values) {
@@ -25,6 +28,7 @@ void ValueHash::append(std::span<const std::int32_t> values) {
 std::string ValueHash::hex() const {
   // Finishing destroys the state, so a copy is finished.
   crypto_hash_sha256_state state = state_;
+  crypto_hash_sha256_update(&state, waiting_.data(), waiting_size_);
   std::array<unsigned char, crypto_hash_sha256_BYTES> digest;
   crypto_hash_sha256_final(&state, digest.data());
   constexpr std::string_view digits = "0123456789abcdef";

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -22,6 +24,9 @@ class ValueHash {
 
  private:
   crypto_hash_sha256_state state_;
+  /// Values come one by one and the hash takes blocks: what waits for more.
+  std::array<unsigned char, 256> waiting_;
+  std::size_t waiting_size_ = 0;
 };
 
 }  // namespace proleg::sim

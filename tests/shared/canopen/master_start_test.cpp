@@ -129,6 +129,14 @@ TEST(MasterProblem, ASetupThatCannotBeIsFoundBeforeAnythingIsSent) {
   broken([](ScriptedRobot& robot) { robot.options.serials = serials; });
 }
 
+// 135 bits a state frame at most: 60 of them take 81 % of a tick of 10 ms, and those of two slots 162 %.
+TEST(MasterProblem, ARobotThatCouldFillTheBusIsRefusedBeforeAnythingIsSent) {
+  ScriptedRobot robot(60);
+  expect_nothing_sent(robot, ProblemCode::bus_too_small);
+  EXPECT_EQ(robot.master().problem().found, 1628U);
+  EXPECT_EQ(robot.master().problem().expected, 850U);
+}
+
 TEST(MasterProblem, AChangeThatCannotBeIsFoundBeforeAnythingIsSent) {
   const auto bad_change = [](std::vector<PlannedChange> plan) {
     ScriptedRobot robot(3, std::move(plan));

@@ -1,15 +1,13 @@
 #include "sim/loop/hardware_loop.hpp"
 
 #include <algorithm>
-#include <deque>
 #include <utility>
 
 #include "shared/canopen/bus_load.hpp"
-#include "shared/fixed/crc32.hpp"
-#include "shared/fixed/random.hpp"
-#include "shared/kernel/fingerprint.hpp"
 #include "sim/loop/host_node.hpp"
+#include "sim/loop/injector.hpp"
 #include "sim/loop/internal_values.hpp"
+#include "sim/loop/module_making.hpp"
 #include "sim/loop/plant_schedule.hpp"
 #include "sim/loop/servo_pulses.hpp"
 #include "sim/scenario/input_error.hpp"
@@ -20,75 +18,6 @@ namespace {
 constexpr BusTime second = 1'000'000'000;
 /// More than a SYNC waits for a frame on the wire, and crystals drift apart in a tick.
 constexpr BusTime longest_sync_jitter = 500'000;
-
-/// Streams of the scenario's seed that no joint's noise uses.
-constexpr std::uint64_t crystal_stream = 1'000'000;
-constexpr std::uint64_t board_stream = 2'000'000;
-
-Crystal make_crystal(const Scenario& scenario, std::size_t joint, std::uint32_t error_ppm) {
-  Pcg32 noise(scenario.kernel.seed, crystal_stream + joint);
-  const auto range = static_cast<std::int32_t>(error_ppm) * 1000;
-  return Crystal(static_cast<std::int32_t>(noise.below(static_cast<std::uint32_t>(2 * range + 1))) - range);
-}
-
-/// The last word of a unique id whose check sum is a serial number: CRC-32 (shared/fixed/crc32.hpp), run backwards.
-std::uint32_t word_for_serial(std::uint32_t crc_before, std::uint32_t serial) {
-  constexpr std::uint32_t reflected_polynomial = 0xEDB88320;
-  std::uint32_t remainder = ~serial;
-  for (int bit = 0; bit < 32; ++bit) {
-    const bool divided = (remainder & 0x80000000U) != 0;
-    remainder = (divided ? (remainder ^ reflected_polynomial) << 1U | 1U : remainder << 1U);
-  }
-  return remainder ^ ~crc_before;
-}
-
-firmware::Board make_board(const Scenario& scenario, std::size_t joint) {
-  Pcg32 noise(scenario.kernel.seed, board_stream + joint);
-  firmware::Board board;
-  board.node = scenario.modules[joint].node;
-  board.core_fingerprint = core_fingerprint;
-  for (std::uint32_t& word : board.unique_id) {
-    word = noise.next();
-  }
-  if (const std::optional<std::uint32_t> serial = scenario.modules[joint].serial) {
-    Crc32 crc;
-    for (const std::uint32_t word : std::span(board.unique_id).first(2)) {
-      for (unsigned shift = 0; shift < 32; shift += 8) {
-        crc.add(static_cast<std::uint8_t>(word >> shift));
-      }
-    }
-    board.unique_id[2] = word_for_serial(crc.value(), *serial);
-  }
-  return board;
-}
-
-/// A node that sends what it is told to and does not listen.
-class Injector final : private BusListener {
- public:
-  Injector(Bus& bus, std::span<const InjectedFrame> frames) : frames_(frames), controller_(bus.attach(*this)) {}
-
-  /// SYNC of this tick was heard.
-  void advance_to(std::uint32_t tick) {
-    for (; !frames_.empty() && frames_.front().tick <= tick; frames_ = frames_.subspan(1)) {
-      waiting_.push_back(frames_.front().frame);
-    }
-    send();
-  }
-
- private:
-  void received(BusTime /*time*/, const CanFrame& /*frame*/) override {}
-  void transmitted(BusTime /*time*/, const CanFrame& /*frame*/) override { send(); }
-
-  void send() {
-    while (!waiting_.empty() && controller_.send(waiting_.front())) {
-      waiting_.pop_front();
-    }
-  }
-
-  std::span<const InjectedFrame> frames_;
-  std::deque<CanFrame> waiting_;
-  Controller& controller_;
-};
 
 }  // namespace
 

@@ -21,6 +21,7 @@
 
 #include "sim/bus/bus.hpp"
 #include "sim/loop/difference.hpp"
+#include "sim/loop/injector.hpp"
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/native_module.hpp"
 #include "sim/loop/plant.hpp"
@@ -40,12 +41,6 @@ class HardwareError : public std::runtime_error {
 struct Restart {
   std::uint32_t tick;
   unsigned joint;
-};
-
-/// A frame that somebody else sends on the bus, right after a SYNC.
-struct InjectedFrame {
-  std::uint32_t tick;
-  CanFrame frame;
 };
 
 struct HardwareOptions {

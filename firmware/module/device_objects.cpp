@@ -97,8 +97,8 @@ AbortCode DeviceObjects::read(const canopen::Object& entry, std::uint32_t& value
       return AbortCode::none;
     }
   }
-  value = address.index >= object::place.index && address.index < object::own_frames[0].index ? read_joint(address)
-                                                                                              : read_device(address);
+  value = address.index >= object::place.index && address.index < object::measured.index ? read_joint(address)
+                                                                                         : read_device(address);
   return AbortCode::none;
 }
 
@@ -121,8 +121,20 @@ std::uint32_t DeviceObjects::read_device(Address address) const {
       return serial_number(parts_.board);
     case key(object::sync_counter_overflow):
       return object::sync_counter_overflow.default_value;
+    case key(object::capabilities):
+      return parts_.board.capabilities;
     case key(object::core_fingerprint):
       return parts_.board.core_fingerprint;
+    case key(object::monitoring_transmission_type):
+      return parts_.joint.active() ? parts_.joint.monitoring_period() : 0;
+    case key(object::measured_angle):
+      return static_cast<std::uint32_t>(std::int32_t{canopen::monitored_angle(parts_.monitor.angle())});
+    case key(object::temperature):
+      return static_cast<std::uint32_t>(std::int32_t{parts_.monitor.temperature_c()});
+    case key(object::current_limit):
+      return parts_.monitor.limit_ma();
+    case key(object::current_limit_time):
+      return parts_.monitor.limit_time_ms();
     case key(object::controlword):
       return parts_.drive.power().controlword();
     case key(object::statusword):
@@ -132,8 +144,12 @@ std::uint32_t DeviceObjects::read_device(Address address) const {
       return static_cast<std::uint32_t>(parts_.drive.mode());
     case key(object::target_position):
       return static_cast<std::uint32_t>(parts_.drive.target());
+    case key(object::actual_position):
+      return static_cast<std::uint32_t>(parts_.monitor.angle().value_or(canopen::position_not_measured));
+    case key(object::actual_current):
+      return parts_.monitor.current_ma();
     default:
-      return 0;  // the capabilities: none
+      return 0;
   }
 }
 
@@ -238,6 +254,12 @@ AbortCode DeviceObjects::write(const canopen::Object& entry, std::uint32_t value
       return AbortCode::none;
     case key(object::sync_counter_overflow):
       return AbortCode::none;  // there is one value
+    case key(object::current_limit):
+      parts_.monitor.set_limit_ma(static_cast<std::uint16_t>(value));
+      return AbortCode::none;
+    case key(object::current_limit_time):
+      parts_.monitor.set_limit_time_ms(static_cast<std::uint16_t>(value));
+      return AbortCode::none;
     case key(object::controlword):
       parts_.drive.power().command(static_cast<std::uint16_t>(value));
       return AbortCode::none;
@@ -347,14 +369,19 @@ AbortCode DeviceObjects::write_limits(const canopen::AngleLimits& limits) {
 AbortCode DeviceObjects::activate(bool active) {
   const Settings& settings = parts_.settings;
   parts_.joint.deactivate();
+  parts_.neighbours.stop();
   if (!active) {
     return AbortCode::none;
   }
-  if (!parts_.neighbours.configure(settings, parts_.board.node)) {
+  if (!StateReceiver::accepts(settings, parts_.board.node)) {
     return AbortCode::general_incompatibility;
   }
   parts_.drive.configure({settings.servo_period_us, settings.tick_period_us});
-  return answer(parts_.joint.activate(settings, parts_.board.node));
+  const Status status = parts_.joint.activate(settings, parts_.board.node);
+  if (status == Status::ok) {
+    parts_.neighbours.configure(settings);
+  }
+  return answer(status);
 }
 
 AbortCode DeviceObjects::write_value(const canopen::ValueAddress& address, std::int32_t value) {

@@ -14,9 +14,13 @@ EmergencyCode code_of(Fault fault) {
     case Fault::heartbeat_lost:
       return EmergencyCode::heartbeat_lost;
     case Fault::foreign_configuration:
+      return EmergencyCode::foreign_configuration;
+    case Fault::over_current:
+      return EmergencyCode::over_current;
+    case Fault::bus_off:
       break;
   }
-  return EmergencyCode::foreign_configuration;
+  return EmergencyCode::bus_off_recovered;
 }
 
 }  // namespace
@@ -41,10 +45,13 @@ void Emergencies::clear(Fault fault) {
 
 std::uint8_t Emergencies::error_register() const {
   constexpr unsigned generic = 1U << 0U;
+  constexpr unsigned current = 1U << 1U;
   constexpr unsigned communication = 1U << 4U;
   constexpr unsigned manufacturer_specific = 1U << 7U;
+  const unsigned over_current = bit(Fault::over_current);
   const unsigned foreign = bit(Fault::foreign_configuration);
-  return static_cast<std::uint8_t>((faults_ != 0 ? generic : 0U) | ((faults_ & ~foreign) != 0 ? communication : 0U) |
+  return static_cast<std::uint8_t>((faults_ != 0 ? generic : 0U) | ((faults_ & over_current) != 0 ? current : 0U) |
+                                   ((faults_ & ~foreign & ~over_current) != 0 ? communication : 0U) |
                                    ((faults_ & foreign) != 0 ? manufacturer_specific : 0U));
 }
 

@@ -5,7 +5,14 @@
 namespace proleg::firmware {
 
 /// Errors that last.
-enum class Fault : std::uint8_t { identifier_collision, sync_lost, heartbeat_lost, foreign_configuration };
+enum class Fault : std::uint8_t {
+  identifier_collision,
+  sync_lost,
+  heartbeat_lost,
+  foreign_configuration,
+  over_current,
+  bus_off,
+};
 
 /// Sends EMCY and keeps the error register (CiA 301, section 7.2.7). Stopped modules keep silent.
 class Emergencies {

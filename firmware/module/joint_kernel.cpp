@@ -1,9 +1,12 @@
 #include "firmware/module/joint_kernel.hpp"
 
+#include "shared/canopen/bus_load.hpp"
+
 namespace proleg::firmware {
 
 void JointKernel::deactivate() {
   active_ = false;
+  record_.tick = TickRecord::none;
   limits_ = full_range;
 }
 
@@ -14,6 +17,7 @@ Status JointKernel::activate(const Settings& settings, std::uint8_t node) {
   }
   robot_id_ = settings.robot_id;
   crc_ = settings.crc(node);
+  monitoring_period_ = canopen::monitoring_period(kernel_.configuration());
   debouncer_.reset();
   active_ = true;
   return Status::ok;
@@ -36,9 +40,19 @@ Status JointKernel::set_parameter(unsigned slot, unsigned number, std::int32_t v
 }
 
 void JointKernel::restart() {
-  kernel_.set_flags(0);
+  set_flags(0);
   kernel_.reset();
   debouncer_.reset();
+  record_.tick = TickRecord::none;
+}
+
+void JointKernel::join(std::uint32_t tick) {
+  kernel_.join(tick);
+  record_.tick = TickRecord::none;
+}
+
+void JointKernel::set_flags(unsigned flags) {
+  kernel_.set_flags(static_cast<std::uint8_t>(fault_ ? flags | StateFrame::fault : flags));
 }
 
 Status JointKernel::open(std::uint16_t transaction) { return kernel_.open(transaction); }
@@ -57,14 +71,30 @@ std::int32_t JointKernel::staged_parameter(unsigned slot, unsigned number) const
 Status JointKernel::commit(std::uint16_t transaction, std::uint32_t tick) { return kernel_.commit(transaction, tick); }
 
 void JointKernel::advance(unsigned missed, std::uint8_t sensors) {
-  const auto flags = static_cast<std::uint8_t>(missed == 0 ? 0 : StateFrame::holdover);
+  const unsigned flags = missed == 0 ? 0U : unsigned{StateFrame::holdover};
   for (unsigned i = 0; i < missed; ++i) {
-    kernel_.set_flags(flags);
+    set_flags(flags);
     kernel_.advance();
   }
-  kernel_.set_flags(flags);
+  set_flags(flags);
   kernel_.set_contacts(joint(), debouncer_.sample(sensors));
   kernel_.advance();
+  write_record();
+}
+
+void JointKernel::write_record() {
+  record_.tick = kernel_.tick() - 1U;
+  record_.setpoint = kernel_.setpoint(joint());
+  record_.joint = static_cast<std::uint8_t>(joint());
+  record_.flags = kernel_.frame(joint(), 0).flags();
+  record_.value_count = 0;
+  for (unsigned slot = 0; slot < max_slots; ++slot) {
+    const ActuationModule* driver = algorithm(slot);
+    const std::size_t count = driver == nullptr ? 0 : driver->declaration().internal_values.size();
+    for (unsigned number = 0; number < count; ++number) {
+      record_.internal_values[record_.value_count++] = kernel_.internal_value(slot, joint(), number);
+    }
+  }
 }
 
 }  // namespace proleg::firmware

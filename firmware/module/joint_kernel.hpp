@@ -1,6 +1,7 @@
 #pragma once
 
 #include "firmware/module/settings.hpp"
+#include "firmware/module/tick_record.hpp"
 #include "shared/gait/contact_debouncer.hpp"
 
 namespace proleg::firmware {
@@ -21,6 +22,8 @@ class JointKernel {
   [[nodiscard]] unsigned joint() const { return kernel_.first_joint(); }
   [[nodiscard]] std::uint16_t robot_id() const { return robot_id_; }
   [[nodiscard]] std::uint32_t configuration_crc() const { return crc_; }
+  /// SYNCs from one monitoring frame to the next.
+  [[nodiscard]] std::uint32_t monitoring_period() const { return monitoring_period_; }
   /// The algorithm of a slot that drives the joint; null if the slot does not.
   [[nodiscard]] const ActuationModule* algorithm(unsigned slot) const;
 
@@ -39,23 +42,33 @@ class JointKernel {
   Status commit(std::uint16_t transaction, std::uint32_t tick);
 
   /// As Kernel::join().
-  void join(std::uint32_t tick) { kernel_.join(tick); }
+  void join(std::uint32_t tick);
   /// Computes a tick, after `missed` ones whose SYNC was not heard; those have the contacts of the last tick before.
   /// sensors: as they are at SYNC.
   void advance(unsigned missed, std::uint8_t sensors);
+  /// The flag `fault` of the state frames from the next one on.
+  void set_fault(bool fault) { fault_ = fault; }
   /// A state frame of another joint.
   void receive(unsigned joint, unsigned channel, const StateFrame& frame) { kernel_.receive(joint, channel, frame); }
 
   [[nodiscard]] const Kernel& kernel() const { return kernel_; }
+  /// Of the last advance(); none if another state was taken since.
+  [[nodiscard]] const TickRecord& record() const { return record_; }
 
  private:
   static constexpr canopen::AngleLimits full_range{-quarter_turn, quarter_turn};
 
+  void set_flags(unsigned flags);
+  void write_record();
+
   KernelOf<1> kernel_;
+  TickRecord record_;
   ContactDebouncer debouncer_;
   bool active_ = false;
+  bool fault_ = false;
   std::uint16_t robot_id_ = 0;
   std::uint32_t crc_ = 0;
+  std::uint32_t monitoring_period_ = 0;
   canopen::AngleLimits limits_ = full_range;
 };
 

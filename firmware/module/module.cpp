@@ -7,20 +7,37 @@ using canopen::EmergencyCode;
 using canopen::NmtCommand;
 using canopen::NmtState;
 
+namespace {
+
+Microseconds earlier(Microseconds a, Microseconds b) { return a < b ? a : b; }
+
+}  // namespace
+
 Module::Module(const Board& board, const Ports& ports) : parts_(board, ports), objects_(parts_) {}
 
 void Module::power_on(Microseconds now) {
+  reset(now);
+  reset_cause_told_ = false;
+  settle(now);
+}
+
+/// What power_on() and the host's reset have in common.
+void Module::reset(Microseconds now) {
   parts_.outbox.reset();
+  parts_.recovery.reset();
   parts_.network.start(now);
   parts_.emergencies.reset();
   parts_.host.set(canopen::object::host_heartbeat.default_value);
   parts_.settings = {};
   parts_.joint.deactivate();
+  parts_.neighbours.stop();
   parts_.neighbours.forget_complaints();
   parts_.producer.stop();
   parts_.drive.reset();
+  parts_.monitor.reset();
   objects_.reset();
   keeper_.lose();
+  boot_up_sent_ = false;
   collided_ = false;
   sync_heard_ = false;
   start_sent_ = false;
@@ -32,6 +49,9 @@ void Module::power_on(Microseconds now) {
 // Events.
 
 void Module::receive(Microseconds now, const CanFrame& frame) {
+  if (receive_state(frame)) {
+    return;
+  }
   if (is_own(frame.identifier)) {
     collide(frame.identifier);
   } else if (state() != NmtState::boot_up) {
@@ -40,31 +60,92 @@ void Module::receive(Microseconds now, const CanFrame& frame) {
   settle(now);
 }
 
+/// State frames are most of the traffic, and nothing follows from one before the next SYNC. False: it is none, or a
+/// stranger's with the module's own identifier.
+bool Module::receive_state(const CanFrame& frame) {
+  constexpr unsigned node_bits = 0x7F;
+  const unsigned function = frame.identifier & ~node_bits;
+  const auto node = static_cast<std::uint8_t>(frame.identifier & node_bits);
+  if ((function != identifier::state_frame && function != identifier::second_state) || node == parts_.board.node) {
+    return false;
+  }
+  if (parts_.network.operational()) {
+    parts_.neighbours.receive(frame, function == identifier::state_frame ? 0 : 1, node, keeper_.synchronised());
+  }
+  return true;
+}
+
 void Module::transmitted(Microseconds now, const CanFrame& frame) {
   parts_.outbox.sent();
   parts_.producer.transmitted(now, frame);
+  if (!boot_up_sent_ && frame.identifier == identifier::heartbeat + parts_.board.node) {
+    boot_up_sent_ = true;
+    tell_reset_cause();
+  }
   // A controller does not hear itself: these count for the module that sends them as for all others.
   if (frame.identifier == identifier::sync || frame.identifier == identifier::tick) {
     receive(now, frame);
+  } else {
+    find_deadlines();
+  }
+}
+
+void Module::bus_off(Microseconds now) {
+  if (!parts_.recovery.is_off()) {
+    parts_.recovery.bus_off(now);
+    parts_.outbox.close();
+    parts_.producer.bus_off(now);
+    parts_.drive.power().quick_stop();
+    settle(now);
+  }
+}
+
+void Module::bus_back(Microseconds now) {
+  if (parts_.recovery.is_off()) {
+    const std::uint32_t off_ms = parts_.recovery.bus_back(now);
+    parts_.outbox.open();
+    if (boot_up_sent_) {
+      parts_.emergencies.raise(Fault::bus_off, off_ms);
+    } else {
+      parts_.network.repeat_boot_up(now);  // nobody has heard of the module
+    }
+    settle(now);
   }
 }
 
 void Module::poll(Microseconds now) {
+  if (now >= deadline_of_parts_) {
+    poll_parts(now);
+  }
+  parts_.drive.poll(now);  // last: a stop that is due comes before a pulse that is due
+  next_deadline_ = earlier(deadline_of_parts_, parts_.drive.next_deadline());
+}
+
+/// All but the servo, which is due far more often.
+void Module::poll_parts(Microseconds now) {
+  if (parts_.recovery.poll(now)) {
+    parts_.emergencies.clear(Fault::bus_off);
+  }
+  const bool booting = state() == NmtState::boot_up;
   parts_.network.poll(now);
+  if (now >= parts_.monitor.next_deadline() || (booting && state() != NmtState::boot_up)) {
+    read_servo(now);
+  }
   watch_host(now);
   watch_sync(now);
   parts_.producer.poll(now);
   settle(now);
-  parts_.drive.poll(now);  // last: a stop that is due comes before a pulse that is due
 }
 
-Microseconds Module::next_deadline() const {
-  Microseconds next = sync_silence_ends_;
-  for (const Microseconds deadline : {parts_.network.next_deadline(), parts_.host.next_deadline(),
-                                      parts_.producer.next_deadline(), parts_.drive.next_deadline()}) {
-    next = deadline < next ? deadline : next;
+/// When something is due next, after whatever may have changed that.
+void Module::find_deadlines() {
+  deadline_of_parts_ = sync_silence_ends_;
+  for (const Microseconds deadline :
+       {parts_.recovery.next_deadline(), parts_.network.next_deadline(), parts_.host.next_deadline(),
+        parts_.producer.next_deadline(), parts_.monitor.next_deadline()}) {
+    deadline_of_parts_ = earlier(deadline_of_parts_, deadline);
   }
-  return next;
+  next_deadline_ = earlier(deadline_of_parts_, parts_.drive.next_deadline());
 }
 
 /// Whether only this module may send on an identifier.
@@ -107,13 +188,6 @@ void Module::dispatch(Microseconds now, const CanFrame& frame) {
       break;
   }
   switch (frame.identifier & ~node_bits) {
-    case identifier::state_frame:
-    case identifier::second_state:
-      if (parts_.network.operational()) {
-        const unsigned channel = frame.identifier < identifier::second_state ? 0 : 1;
-        parts_.neighbours.receive(frame, channel, node, keeper_.synchronised());
-      }
-      return;
     case identifier::command:
       if (node == parts_.board.node && parts_.network.operational()) {
         on_command(frame);
@@ -141,6 +215,19 @@ void Module::collide(std::uint16_t identifier) {
   leave_operational(NmtState::stopped);
 }
 
+/// Once, if the program did not end as it should. When the boot-up message has gone: EMCY would overtake it.
+void Module::tell_reset_cause() {
+  if (reset_cause_told_) {
+    return;
+  }
+  reset_cause_told_ = true;
+  if (parts_.board.reset_cause == ResetCause::watchdog) {
+    parts_.emergencies.report(EmergencyCode::watchdog_reset, parts_.board.reset_detail);
+  } else if (parts_.board.reset_cause == ResetCause::fault) {
+    parts_.emergencies.report(EmergencyCode::software_fault, parts_.board.reset_detail);
+  }
+}
+
 // Network management.
 
 void Module::on_network_command(Microseconds now, const CanFrame& frame) {
@@ -151,7 +238,7 @@ void Module::on_network_command(Microseconds now, const CanFrame& frame) {
   switch (request->command) {
     case NmtCommand::reset_node:
     case NmtCommand::reset_communication:
-      power_on(now);
+      reset(now);
       return;
     case NmtCommand::start:
       if (!collided_ && !parts_.network.operational()) {
@@ -196,6 +283,7 @@ void Module::leave_operational(NmtState state) {
 
 /// State 0, as the parameters have it by now, and everybody knows it.
 void Module::prepare_start() {
+  parts_.joint.set_fault(power() == canopen::PowerState::fault);
   parts_.joint.restart();
   start_sent_ = true;
   send_state();
@@ -272,8 +360,11 @@ void Module::on_sync(Microseconds now, const CanFrame& frame) {
 
 void Module::compute(Microseconds now, const SyncMeaning& meaning) {
   const std::uint32_t first_tick = kernel().tick();
+  parts_.joint.set_fault(power() == canopen::PowerState::fault);
   parts_.joint.advance(meaning.missed, parts_.contacts.read());
   send_state();
+  read_servo(now);
+  send_monitoring(kernel().tick() - 1U);
   parts_.drive.update(now, true, true);  // so that the first pulse can be that of this SYNC
   parts_.drive.start_tick(now, kernel().tick() - 1U, kernel(), parts_.joint.limits());
   parts_.emergencies.clear(Fault::sync_lost);
@@ -289,6 +380,25 @@ void Module::send_state() {
   }
 }
 
+/// The joints take turns, so that their frames do not come all at once.
+void Module::send_monitoring(std::uint32_t tick) {
+  const std::uint32_t period = parts_.joint.monitoring_period();
+  if (tick % period == parts_.joint.joint() % period) {
+    const ServoMonitor& monitor = parts_.monitor;
+    parts_.outbox.send(
+        encode(canopen::Monitoring{parts_.board.node, canopen::monitored_angle(monitor.angle()), monitor.current_ma(),
+                                   monitor.temperature_c(), parts_.emergencies.error_register()}));
+  }
+}
+
+void Module::read_servo(Microseconds now) {
+  parts_.monitor.read(now, parts_.settings.tick_period_us);
+  if (parts_.monitor.over_current() && power() != canopen::PowerState::fault) {
+    parts_.drive.power().fault();
+    parts_.emergencies.raise(Fault::over_current, 0);
+  }
+}
+
 void Module::watch_sync(Microseconds now) {
   if (now < sync_silence_ends_) {
     return;
@@ -300,6 +410,10 @@ void Module::watch_sync(Microseconds now) {
 }
 
 void Module::settle(Microseconds now) {
+  if (power() != canopen::PowerState::fault && parts_.emergencies.is_raised(Fault::over_current)) {
+    parts_.monitor.forget_current();
+    parts_.emergencies.clear(Fault::over_current);
+  }
   parts_.drive.update(now, parts_.network.operational(), keeper_.synchronised());
   const bool watches =
       parts_.network.operational() && (keeper_.keeps_tick() || power() == canopen::PowerState::operation_enabled);
@@ -308,6 +422,7 @@ void Module::settle(Microseconds now) {
   } else if (sync_silence_ends_ == never) {
     sync_silence_ends_ = now + longest_sync_silence_us;
   }
+  find_deadlines();
 }
 
 // What the host asks for in flight.

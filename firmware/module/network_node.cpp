@@ -13,6 +13,11 @@ void NetworkNode::start(Microseconds now) {
   heartbeat_at_ = never;
 }
 
+void NetworkNode::repeat_boot_up(Microseconds now) {
+  state_ = NmtState::boot_up;
+  boot_up_at_ = now;
+}
+
 void NetworkNode::enter(NmtState state) {
   state_ = state;
   boot_up_at_ = never;
@@ -32,8 +37,11 @@ void NetworkNode::poll_boot_up(Microseconds now) {
   if (now < boot_up_at_) {
     return;
   }
-  outbox_.send(encode(canopen::Heartbeat{board_.node, NmtState::boot_up}));
-  enter(NmtState::pre_operational);
+  if (outbox_.send(encode(canopen::Heartbeat{board_.node, NmtState::boot_up}))) {
+    enter(NmtState::pre_operational);
+  } else {
+    boot_up_at_ = now + 1'000U;
+  }
 }
 
 void NetworkNode::poll_heartbeat(Microseconds now) {

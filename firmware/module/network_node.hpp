@@ -14,6 +14,8 @@ class NetworkNode {
   /// Boot-up follows after 1 to 16 ms, which depend on the unique id: of two modules with one node id that are switched
   /// on together, one hears the other.
   void start(Microseconds now);
+  /// The boot-up message was lost.
+  void repeat_boot_up(Microseconds now);
   void enter(canopen::NmtState state);
 
   /// `boot_up` until the boot-up message is sent.

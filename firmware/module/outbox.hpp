@@ -14,7 +14,7 @@ class Outbox {
 
   /// Whether the frame was taken.
   bool send(const CanFrame& frame) {
-    const bool taken = queue_.push(frame);
+    const bool taken = open_ && queue_.push(frame);
     dropped_ += taken ? 0U : 1U;
     return taken;
   }
@@ -22,13 +22,22 @@ class Outbox {
   void sent() { queue_.sent(); }
   void reset() {
     queue_.clear();
+    open_ = true;
     dropped_ = 0;
   }
+
+  /// The controller is bus-off: forgets what waits, and drops everything until open().
+  void close() {
+    queue_.clear();
+    open_ = false;
+  }
+  void open() { open_ = true; }
 
   [[nodiscard]] std::uint32_t dropped() const { return dropped_; }
 
  private:
   TransmitQueue queue_;
+  bool open_ = true;
   std::uint32_t dropped_ = 0;
 };
 

@@ -3,6 +3,7 @@
 // What a module needs of the world. A board (or the simulator) implements these and hands events to Module.
 
 #include <cstdint>
+#include <optional>
 
 #include "shared/can/can_port.hpp"
 
@@ -10,8 +11,10 @@ namespace proleg::firmware {
 
 class ServoPort {
  public:
-  /// Sends pulses of this width, in twelfths of a microsecond, from now on.
-  virtual void pulse(std::int32_t width) = 0;
+  /// Begins a pulse of this width, in twelfths of a microsecond, and repeats it every period from now on. If the pulse
+  /// before is not over yet, the width is that of the next one. The program gives each pulse anew; it is repeated a
+  /// little later than the period only if the program does not.
+  virtual void pulse(std::int32_t width, std::uint32_t period_us) = 0;
   /// No pulses: the servo goes limp.
   virtual void off() = 0;
 
@@ -29,10 +32,28 @@ class ContactPort {
   ~ContactPort() = default;
 };
 
+/// What the servo and the chip say of themselves.
+struct ServoReadings {
+  std::uint16_t current_ma = 0;
+  /// Actual angle of the joint (binary angle); nothing on a board without a feedback potentiometer.
+  std::optional<std::int32_t> angle;
+  std::int8_t temperature_c = 0;  ///< of the chip
+};
+
+class SensorPort {
+ public:
+  /// The last readings; begins to take the next ones. Called once a tick and in its pauses.
+  [[nodiscard]] virtual ServoReadings read() = 0;
+
+ protected:
+  ~SensorPort() = default;
+};
+
 struct Ports {
   CanPort& can;
   ServoPort& servo;
   ContactPort& contacts;
+  SensorPort& sensors;
 };
 
 }  // namespace proleg::firmware

@@ -47,34 +47,6 @@ void ServoDriver::stop() {
   }
 }
 
-void ServoDriver::poll(Microseconds now) {
-  if (mode_ == Mode::ramping) {
-    if (now >= next_step_) {
-      take_ramp_step(now);
-    }
-  } else if (interval_to_come() && now >= sync_at_ + elapsed_us_) {
-    skip_to(now - sync_at_);
-    take_interval();
-  }
-}
-
-void ServoDriver::skip_to(Microseconds since_sync_us) {
-  const std::uint32_t last_us = schedule_.tick_period_us() - 1U;
-  const std::uint32_t until_us = since_sync_us < last_us ? static_cast<std::uint32_t>(since_sync_us) : last_us;
-  if (until_us > elapsed_us_) {
-    elapsed_us_ += (until_us - elapsed_us_) / schedule_.servo_period_us() * schedule_.servo_period_us();
-  }
-}
-
-void ServoDriver::take_interval() {
-  if (mode_ == Mode::following) {
-    angle_ = interpolate(from_, to_, schedule_.fraction_at(elapsed_us_));
-    pulsing_ = true;
-    port_.pulse(servo_command(angle_));
-  }
-  elapsed_us_ += schedule_.servo_period_us();
-}
-
 void ServoDriver::take_ramp_step(Microseconds now) {
   constexpr std::uint32_t second_us = 1'000'000;
   const auto step =
@@ -87,15 +59,8 @@ void ServoDriver::take_ramp_step(Microseconds now) {
   } else {
     angle_ = safe_angle;
   }
-  port_.pulse(servo_command(angle_));
+  port_.pulse(servo_command(angle_), schedule_.servo_period_us());
   next_step_ = angle_ == safe_angle ? never : now + schedule_.servo_period_us();
-}
-
-Microseconds ServoDriver::next_deadline() const {
-  if (mode_ == Mode::ramping) {
-    return next_step_;
-  }
-  return interval_to_come() ? sync_at_ + elapsed_us_ : never;
 }
 
 }  // namespace proleg::firmware

@@ -55,4 +55,41 @@ class ServoDriver {
   Microseconds next_step_ = never;  ///< of the ramp
 };
 
+// What happens at each interval, up to a thousand times a second, is here for the compiler to join.
+
+inline void ServoDriver::poll(Microseconds now) {
+  if (mode_ == Mode::ramping) {
+    if (now >= next_step_) {
+      take_ramp_step(now);
+    }
+  } else if (interval_to_come() && now >= sync_at_ + elapsed_us_) {
+    skip_to(now - sync_at_);
+    take_interval();
+  }
+}
+
+inline void ServoDriver::skip_to(Microseconds since_sync_us) {
+  const std::uint32_t last_us = schedule_.tick_period_us() - 1U;
+  const std::uint32_t until_us = since_sync_us < last_us ? static_cast<std::uint32_t>(since_sync_us) : last_us;
+  if (until_us > elapsed_us_) {
+    elapsed_us_ += (until_us - elapsed_us_) / schedule_.servo_period_us() * schedule_.servo_period_us();
+  }
+}
+
+inline void ServoDriver::take_interval() {
+  if (mode_ == Mode::following) {
+    angle_ = interpolate(from_, to_, schedule_.fraction_at(elapsed_us_));
+    pulsing_ = true;
+    port_.pulse(servo_command(angle_), schedule_.servo_period_us());
+  }
+  elapsed_us_ += schedule_.servo_period_us();
+}
+
+inline Microseconds ServoDriver::next_deadline() const {
+  if (mode_ == Mode::ramping) {
+    return next_step_;
+  }
+  return interval_to_come() ? sync_at_ + elapsed_us_ : never;
+}
+
 }  // namespace proleg::firmware

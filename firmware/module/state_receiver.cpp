@@ -2,22 +2,43 @@
 
 namespace proleg::firmware {
 
-bool StateReceiver::configure(const Settings& settings, std::uint8_t own_node) {
-  std::array<JointOfNode, max_channels> joints{};
+bool StateReceiver::accepts(const Settings& settings, std::uint8_t own_node) {
   for (unsigned channel = 0; channel < max_channels; ++channel) {
+    std::array<bool, canopen::host_node + 1U> taken{};
     for (unsigned joint = 0; joint < settings.joint_count; ++joint) {
       const std::uint8_t node = settings.nodes[channel][joint];
       if (node == 0 || joint == settings.joint) {
         continue;
       }
-      if (node == own_node || joints[channel][node] != 0) {
+      if (node == own_node || taken[node]) {
         return false;
       }
-      joints[channel][node] = static_cast<std::uint8_t>(joint + 1U);
+      taken[node] = true;
     }
   }
-  joints_ = joints;
   return true;
+}
+
+void StateReceiver::configure(const Settings& settings) {
+  constexpr std::array first_identifier{canopen::identifier::state_frame, canopen::identifier::second_state};
+  std::array<std::uint16_t, max_channels * max_joints> identifiers{};
+  std::size_t count = 0;
+  joints_ = {};
+  for (unsigned channel = 0; channel < max_channels; ++channel) {
+    for (unsigned joint = 0; joint < settings.joint_count; ++joint) {
+      const std::uint8_t node = settings.nodes[channel][joint];
+      if (node != 0 && joint_.kernel().listens_to(joint, channel)) {
+        joints_[channel][node] = static_cast<std::uint8_t>(joint + 1U);
+        identifiers[count++] = static_cast<std::uint16_t>(first_identifier[channel] + node);
+      }
+    }
+  }
+  port_.listen({identifiers.data(), count});
+}
+
+void StateReceiver::stop() {
+  joints_ = {};
+  port_.listen({});
 }
 
 void StateReceiver::forget_complaints() {

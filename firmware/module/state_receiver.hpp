@@ -8,11 +8,16 @@ namespace proleg::firmware {
 /// Hands the state frames of the other joints to the kernel, and complains of those that cannot be meant.
 class StateReceiver {
  public:
-  StateReceiver(JointKernel& joint, Emergencies& emergencies) : joint_(joint), emergencies_(emergencies) {}
+  StateReceiver(JointKernel& joint, Emergencies& emergencies, CanPort& port)
+      : joint_(joint), emergencies_(emergencies), port_(port) {}
 
-  /// Listens to the nodes of the settings. False, and nothing changes, if a node has two joints, or another joint the
-  /// module's own node.
-  [[nodiscard]] bool configure(const Settings& settings, std::uint8_t own_node);
+  /// Whether the nodes of the settings can be meant: none has two joints, and no other joint the module's own node.
+  [[nodiscard]] static bool accepts(const Settings& settings, std::uint8_t own_node);
+  /// Listens to those nodes of the settings whose joints matter to the joint; it is active, and the settings are
+  /// accepted.
+  void configure(const Settings& settings);
+  /// Listens to nobody.
+  void stop();
   /// Each joint may be complained of once more.
   void forget_complaints();
 
@@ -29,6 +34,7 @@ class StateReceiver {
 
   JointKernel& joint_;
   Emergencies& emergencies_;
+  CanPort& port_;
   std::array<JointOfNode, max_channels> joints_{};
   JointMask wrong_length_;  ///< joints that were complained of
   JointMask wrong_label_;

@@ -18,6 +18,13 @@ void SyncProducer::start(Microseconds now, std::uint32_t tick_period_us, std::ui
   next_sync_ = now;
 }
 
+void SyncProducer::bus_off(Microseconds now) {
+  if (state_ == State::announced) {
+    state_ = State::starting;
+    next_sync_ = now + lead_us_;
+  }
+}
+
 bool SyncProducer::send_tick() { return outbox_.send(encode(canopen::TickMessage{tick_, configuration_crc_})); }
 
 void SyncProducer::send_sync(Microseconds now) {

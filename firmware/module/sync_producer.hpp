@@ -19,6 +19,9 @@ class SyncProducer {
   void stop() { state_ = State::stopped; }
   [[nodiscard]] bool runs() const { return state_ != State::stopped; }
 
+  /// The controller has forgotten what it had to send.
+  void bus_off(Microseconds now);
+
   void poll(Microseconds now);
   /// The controller has sent a frame of the module.
   void transmitted(Microseconds now, const CanFrame& frame);

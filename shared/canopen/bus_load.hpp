@@ -10,16 +10,33 @@ namespace proleg::canopen {
 /// room.
 inline constexpr std::uint32_t highest_bus_load_permille = 850;
 
-/// Share of a 1 Mbit/s bus, in thousandths and rounded up, that a robot's SYNC and state frames take if every frame has
-/// the most stuff bits: 135 bits for 8 bytes of data and 65 for one, with interframe space (ISO 11898-1).
-[[nodiscard]] inline std::uint32_t worst_bus_load_permille(const KernelConfiguration& kernel) {
+/// SYNCs between two monitoring frames of a module: 10, or 100 where that would take more of the bus than a host drives
+/// it.
+inline constexpr std::uint32_t monitoring_periods[] = {10, 100};
+
+/// Share of a 1 Mbit/s bus, in thousandths and rounded up, that a robot's SYNC, state frames and monitoring take if
+/// every frame has the most stuff bits: 135 bits for 8 bytes of data, 115 for 6 and 65 for one, with interframe space
+/// (ISO 11898-1).
+[[nodiscard]] inline std::uint32_t worst_bus_load_permille(const KernelConfiguration& kernel,
+                                                           std::uint32_t monitoring_period) {
   const auto second_frames = static_cast<std::uint32_t>(std::popcount(kernel.second_channel_senders().bits()));
   constexpr std::uint32_t state_bits = 135;
   constexpr std::uint32_t sync_bits = 65;
   constexpr std::uint32_t tick_bits = 135;  // every tenth tick
-  const std::uint32_t bits = (kernel.joint_count + second_frames) * state_bits + sync_bits + (tick_bits + 9) / 10;
+  constexpr std::uint32_t monitoring_bits = 115;
+  const std::uint32_t bits = (kernel.joint_count + second_frames) * state_bits + sync_bits + (tick_bits + 9) / 10 +
+                             (kernel.joint_count * monitoring_bits + monitoring_period - 1) / monitoring_period;
   // At 1 Mbit/s a bit is a microsecond.
   return (bits * 1000 + kernel.tick_period_us - 1) / kernel.tick_period_us;
+}
+
+[[nodiscard]] inline std::uint32_t monitoring_period(const KernelConfiguration& kernel) {
+  const auto [often, seldom] = monitoring_periods;
+  return worst_bus_load_permille(kernel, often) <= highest_bus_load_permille ? often : seldom;
+}
+
+[[nodiscard]] inline std::uint32_t worst_bus_load_permille(const KernelConfiguration& kernel) {
+  return worst_bus_load_permille(kernel, monitoring_period(kernel));
 }
 
 }  // namespace proleg::canopen

@@ -26,6 +26,12 @@ inline constexpr std::uint32_t produces_sync = 0x40000000;
 inline constexpr std::int8_t mode_gait = -1;
 inline constexpr std::int8_t mode_direct_position = 8;  ///< cyclic synchronous position (CiA 402)
 
+/// Capabilities (0x2000:5), bits.
+inline constexpr std::uint32_t measures_angle = 1U << 0U;  ///< a feedback potentiometer on the joint
+
+/// 0x6064 if the module does not measure the angle.
+inline constexpr std::int32_t position_not_measured = -0x7FFFFFFF - 1;
+
 /// What a mapping parameter says of an entry: index, sub-index and length in bits (CiA 301, 7.5.2.36).
 [[nodiscard]] constexpr std::uint32_t mapping_of(const Object& object) {
   return std::uint32_t{object.address.index} << 16U | std::uint32_t{object.address.sub} << 8U |
@@ -87,7 +93,8 @@ inline constexpr Object core_fingerprint =
     read_only(device.at(3), "Core fingerprint", DataType::unsigned32, "equal ones compute equal bits");
 inline constexpr Object board_id =
     read_only(device.at(4), "Board id", DataType::unsigned16, "1: reference board STM32F405");
-inline constexpr Object capabilities = read_only(device.at(5), "Capabilities", DataType::unsigned32, "bits, 0 so far");
+inline constexpr Object capabilities =
+    read_only(device.at(5), "Capabilities", DataType::unsigned32, "bit 0: measures the actual angle of the joint");
 
 inline constexpr ObjectGroup place{0x2001, ObjectCode::record, "Place in the robot"};
 inline constexpr Object joint_index =
@@ -146,6 +153,19 @@ inline constexpr ObjectArray slot_group_high{
                full_range(DataType::unsigned32), "bit j: joint 32 + j"),
     max_slots};
 
+inline constexpr ObjectGroup measured{0x2009, ObjectCode::record, "Measured"};
+inline constexpr Object measured_angle = read_only(measured.at(1), "Actual angle", DataType::integer16,
+                                                   "upper bits of 0x6064: 90 degrees = 2^14; -32768: not measured");
+inline constexpr Object temperature =
+    read_only(measured.at(2), "Temperature", DataType::integer8, "of the chip, in degrees Celsius");
+
+inline constexpr ObjectGroup over_current{0x200A, ObjectCode::record, "Over-current"};
+inline constexpr Object current_limit =
+    read_write(over_current.at(1), "Limit", DataType::unsigned16, 2'000, {0, 0x7FFF}, "of the servo, in mA; 0: off");
+inline constexpr Object current_limit_time =
+    read_write(over_current.at(2), "Time", DataType::unsigned16, 500, full_range(DataType::unsigned16),
+               "above the limit that leads to a fault, in ms");
+
 // State frames, by channel: 0 is the first broadcasting slot of a joint, 1 the second.
 
 inline constexpr std::array own_frames{
@@ -164,7 +184,8 @@ inline constexpr std::array received_frames{
     ObjectGroup{0x2140, ObjectCode::array, "Received second state frame of joint", max_joints},
 };
 [[nodiscard]] constexpr JointObjects half_frame(unsigned channel, std::uint8_t sub, std::string_view name) {
-  Object first = read_only(received_frames[channel].at(sub), name, DataType::unsigned32, "as heard last");
+  Object first = read_only(received_frames[channel].at(sub), name, DataType::unsigned32,
+                           "as heard last; of joints on which this one depends");
   first.access = Access::by_pdo;
   return {first};
 }
@@ -215,6 +236,12 @@ inline constexpr Object mode =
                {static_cast<std::uint32_t>(mode_gait), static_cast<std::uint32_t>(mode_gait)},
                "-1: gait; 8: cyclic synchronous position", mode_direct_position);
 inline constexpr Object mode_display = read_only({0x6061, 0}, "Modes of operation display", DataType::integer8);
+inline constexpr Object actual_position = read_only({0x6064, 0}, "Position actual value", DataType::integer32,
+                                                    "90 degrees = 2^30; -2147483648: not measured");
+inline constexpr Object rated_current = constant({0x6075, 0}, "Motor rated current", DataType::unsigned32, 1'000,
+                                                 "1,000 mA, the unit of 0x6078; not what the servo bears");
+inline constexpr Object actual_current =
+    read_only({0x6078, 0}, "Current actual value", DataType::integer16, "thousandths of 0x6075, which are mA");
 inline constexpr Object target_position =
     read_write({0x607A, 0}, "Target position", DataType::integer32, 0, full_angle, "joint angle; 90 degrees = 2^30");
 inline constexpr Object supported_modes = constant({0x6502, 0}, "Supported drive modes", DataType::unsigned32,
@@ -254,6 +281,13 @@ inline constexpr std::array own_frame_transmission{
     constant(frame_transmissions[0].at(2), "Transmission type", DataType::unsigned8, at_every_sync),
     constant(frame_transmissions[1].at(2), "Transmission type", DataType::unsigned8, at_every_sync),
 };
+inline constexpr ObjectGroup monitoring_transmission{0x1802, ObjectCode::record,
+                                                     "TPDO communication parameter, monitoring"};
+inline constexpr Object monitoring_identifier =
+    node_identifier(monitoring_transmission.at(1), "COB-ID used by TPDO", no_remote_frames | identifier::monitoring);
+inline constexpr Object monitoring_transmission_type =
+    read_only(monitoring_transmission.at(2), "Transmission type", DataType::unsigned8,
+              "at every so many SYNCs: 10, or 100 in a robot that leaves no room for more");
 inline constexpr std::array frame_transmission_mappings{
     ObjectGroup{0x1A00, ObjectCode::record, "TPDO mapping parameter, state frame"},
     ObjectGroup{0x1A01, ObjectCode::record, "TPDO mapping parameter, second state frame"},
@@ -266,6 +300,14 @@ inline constexpr std::array<std::array<Object, 2>, max_channels> own_mapped{{
     {own_mapping(0, 1), own_mapping(0, 2)},
     {own_mapping(1, 1), own_mapping(1, 2)},
 }};
+
+inline constexpr ObjectGroup monitoring_mapping{0x1A02, ObjectCode::record, "TPDO mapping parameter, monitoring"};
+inline constexpr std::array monitoring_mapped{
+    constant(monitoring_mapping.at(1), "Actual angle", DataType::unsigned32, mapping_of(measured_angle)),
+    constant(monitoring_mapping.at(2), "Current actual value", DataType::unsigned32, mapping_of(actual_current)),
+    constant(monitoring_mapping.at(3), "Temperature", DataType::unsigned32, mapping_of(temperature)),
+    constant(monitoring_mapping.at(4), "Error register", DataType::unsigned32, mapping_of(error_register)),
+};
 
 }  // namespace object
 

@@ -134,10 +134,16 @@ std::string_view describe(EmergencyCode code) {
       return "over-current";
     case EmergencyCode::over_temperature:
       return "over-temperature";
+    case EmergencyCode::watchdog_reset:
+      return "reset by the watchdog";
+    case EmergencyCode::software_fault:
+      return "reset after a fault of the program";
     case EmergencyCode::not_configured:
       return "started without a configuration";
     case EmergencyCode::heartbeat_lost:
       return "heartbeat of the host lost";
+    case EmergencyCode::bus_off_recovered:
+      return "back after bus-off";
     case EmergencyCode::identifier_collision:
       return "another module has the same node id";
     case EmergencyCode::wrong_length:
@@ -181,6 +187,17 @@ std::optional<Command> decode_command(const CanFrame& frame) {
   }
   return Command{*node, static_cast<std::uint16_t>(read_little_endian(frame, 0, 2)),
                  static_cast<std::int32_t>(read_little_endian(frame, 2, 4))};
+}
+
+std::int16_t monitored_angle(std::optional<std::int32_t> angle) {
+  if (!angle) {
+    return Monitoring::not_measured;
+  }
+  const std::int64_t rounded = (std::int64_t{*angle} + (1 << 15)) >> 16U;
+  if (rounded > 0x7FFF) {
+    return 0x7FFF;
+  }
+  return static_cast<std::int16_t>(rounded > Monitoring::not_measured ? rounded : -0x7FFF);
 }
 
 CanFrame encode(const Monitoring& monitoring) {

@@ -91,8 +91,11 @@ enum class EmergencyCode : std::uint16_t {
   none = 0x0000,  ///< the error is over
   over_current = 0x2310,
   over_temperature = 0x4210,
+  watchdog_reset = 0x6010,  ///< the watchdog has reset the module; detail: where the program was, 0: not known
+  software_fault = 0x6100,  ///< the module was reset after a fault of its program; detail: as above
   not_configured = 0x6300,  ///< started before it was configured; detail: the kernel's refusal, 0 if it was never asked
   heartbeat_lost = 0x8130,
+  bus_off_recovered = 0x8140,     ///< the module was bus-off; detail: for how long, in ms
   identifier_collision = 0x8150,  ///< another module sends with this node's id
   wrong_length = 0x8210,          ///< of a PDO
   sync_lost = 0x8700,
@@ -134,14 +137,18 @@ struct Command {
 
 /// What a module measures, every 10th SYNC.
 struct Monitoring {
+  static constexpr std::int16_t not_measured = -0x8000;
+
   std::uint8_t node;
-  std::int16_t angle;         ///< 90 degrees = 2^14
-  std::uint16_t current_ma;   ///< of the servo
-  std::int8_t temperature_c;  ///< degrees Celsius
+  std::int16_t angle;         ///< of the joint, 90 degrees = 2^14; or not_measured
+  std::uint16_t current_ma;   ///< of the servo; modules stop counting at 32,767
+  std::int8_t temperature_c;  ///< of the chip, degrees Celsius
   std::uint8_t faults;        ///< object 0x1001
 
   friend bool operator==(const Monitoring&, const Monitoring&) = default;
 };
+/// An actual angle as it is monitored: 90 degrees = 2^30 rounded half up to 90 degrees = 2^14; nothing: not_measured.
+[[nodiscard]] std::int16_t monitored_angle(std::optional<std::int32_t> angle);
 [[nodiscard]] CanFrame encode(const Monitoring& monitoring);
 [[nodiscard]] std::optional<Monitoring> decode_monitoring(const CanFrame& frame);
 

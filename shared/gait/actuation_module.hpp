@@ -66,6 +66,10 @@ class ActuationModule {
 
   [[nodiscard]] virtual const Declaration& declaration() const = 0;
 
+  /// Whether it reads the contacts of links. One that does not say so finds none pressed, on every machine: so a module
+  /// need not listen to joints of which nothing depends.
+  [[nodiscard]] virtual bool senses_contacts() const { return false; }
+
   /// Computes constants from the parameters. Called after each change of a parameter, never in a tick without one.
   virtual void derive(const Place& place, const std::int32_t* parameters, std::int32_t* derived) const;
 

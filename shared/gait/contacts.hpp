@@ -18,6 +18,8 @@ enum class TouchSensor : std::uint8_t {
 /// behind joint j. A link whose joint was never heard is not pressed.
 class Contacts {
  public:
+  /// Nothing is pressed.
+  constexpr Contacts() = default;
   /// frames: the latest state frame of every joint, in kernel order.
   explicit Contacts(std::span<const StateFrame> frames) : frames_(frames) {}
 

@@ -8,6 +8,7 @@ namespace proleg {
 /// all links, its own included, all of the same age.
 class SensingModule : public ActuationModule {
  public:
+  [[nodiscard]] bool senses_contacts() const final { return true; }
   void advance(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
                std::int32_t* next) const final;
 

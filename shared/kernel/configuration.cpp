@@ -58,6 +58,8 @@ Status Kernel::configure(const KernelConfiguration& configuration, unsigned firs
   second_channel_ = second_channel;
   slots_in_use_ = slots_in_use;
   senders_ = {JointMask(all_joints), JointMask(two_broadcasts)};
+  listened_ = {};
+  beside_ = {};
   for (unsigned i = 0; i < memory_.size(); ++i) {
     set_up(first_joint + i);
   }
@@ -87,6 +89,8 @@ void Kernel::set_up(unsigned joint) {
     slot_memory.place = {static_cast<std::uint8_t>(joint), configuration_.joint_count, slot.group,
                          configuration_.tick_period_us};
     slot_memory.channel = second_channel_[i].contains(joint) ? 1 : 0;
+    slot_memory.senses = slot.algorithm->senses_contacts();
+    listen_for(i, joint);
     if (slot.broadcasts()) {
       slot_memory.broadcast = &slot.algorithm->declaration();
       slot_memory.ahead = neighbour(i, slot.group.before(joint));
@@ -97,6 +101,24 @@ void Kernel::set_up(unsigned joint) {
       slot_memory.parameters[p] = parameters[p].default_value;
     }
     derive(i, slot_memory);
+  }
+}
+
+/// What the slot on a local joint depends on.
+void Kernel::listen_for(unsigned slot, unsigned joint) {
+  const Slot& place = configuration_.slots[slot];
+  if (place.algorithm->senses_contacts()) {
+    listened_[0] = JointMask::first(configuration_.joint_count);
+  }
+  if (!place.broadcasts()) {
+    return;
+  }
+  for (const int other : {place.group.before(joint), place.group.after(joint)}) {
+    if (other >= 0 && !is_local(static_cast<unsigned>(other))) {
+      const auto index = static_cast<unsigned>(other);
+      beside_[slot].insert(index);
+      listened_[second_channel_[slot].contains(index) ? 1 : 0].insert(index);
+    }
   }
 }
 

@@ -7,6 +7,12 @@
 // The tick.
 
 namespace proleg {
+namespace {
+
+/// For those who do not sense any.
+constexpr Contacts no_contacts;
+
+}  // namespace
 
 void Kernel::set_contacts(unsigned joint, std::uint8_t contacts) {
   if (is_local(joint)) {
@@ -49,8 +55,8 @@ void Kernel::advance() {
   if (joining) {
     rejoin();
   }
-  const std::uint64_t unheard_first = senders_[0].bits() & ~arrived_[0].bits();
-  const std::uint64_t unheard_second = senders_[1].bits() & ~arrived_[1].bits();
+  const std::uint64_t unheard_first = listened_[0].bits() & ~arrived_[0].bits();
+  const std::uint64_t unheard_second = listened_[1].bits() & ~arrived_[1].bits();
   if ((unheard_first | unheard_second) != 0) {
     missed_frames_ += static_cast<std::uint32_t>(std::popcount(unheard_first) + std::popcount(unheard_second));
     fill_missed_frames();
@@ -99,7 +105,8 @@ void Kernel::rejoin() {
     for (unsigned s = 0; s < slots_in_use_; ++s) {
       SlotMemory& slot = joint.slots[s];
       if (slot.active) {
-        const Surroundings surroundings{tick_, slot.place, slot.ahead, slot.behind, contacts};
+        const Surroundings surroundings{tick_, slot.place, slot.ahead, slot.behind,
+                                        slot.senses ? contacts : no_contacts};
         configuration_.slots[s].algorithm->rejoin(surroundings, tuning(slot), current(slot).data());
       }
     }
@@ -116,7 +123,7 @@ void Kernel::compute_next_state(JointMemory& joint) {
   for (unsigned s = 0; s < slots_in_use_; ++s) {
     SlotMemory& slot = joint.slots[s];
     if (slot.active) {
-      const Surroundings surroundings{tick_, slot.place, slot.ahead, slot.behind, contacts};
+      const Surroundings surroundings{tick_, slot.place, slot.ahead, slot.behind, slot.senses ? contacts : no_contacts};
       configuration_.slots[s].algorithm->advance(surroundings, tuning(slot), slot.values[tick_ & 1U].data(),
                                                  slot.values[(tick_ + 1) & 1U].data());
     }
@@ -180,7 +187,7 @@ void Kernel::fill_missed_frames() {
     }
     const std::uint64_t second = second_channel_[s].bits();
     const std::uint64_t arrived = (arrived_[0].bits() & ~second) | (arrived_[1].bits() & second);
-    const std::uint64_t missing = slot.group.bits() & ~arrived;
+    const std::uint64_t missing = beside_[s].bits() & ~arrived;  // of others nobody here asks
     // A kernel of several joints hears with one ear: the first of them in the slot extrapolates.
     const int local = slot.group.from(first_joint_);
     if (missing == 0 || local < 0 || !drives(s, static_cast<unsigned>(local))) {

@@ -73,6 +73,7 @@ struct SlotMemory {
   const Declaration* broadcast;  ///< what the slot sends; null if it sends nothing
   std::uint8_t channel;
   bool active;
+  bool senses;  ///< contacts
 };
 
 /// What the kernel keeps for a joint.
@@ -166,6 +167,11 @@ class Kernel {
   [[nodiscard]] bool drives(unsigned slot, unsigned joint) const;
   [[nodiscard]] std::int32_t parameter(unsigned slot, unsigned joint, unsigned parameter) const;
   [[nodiscard]] std::int32_t internal_value(unsigned slot, unsigned joint, unsigned internal_value) const;
+  /// Whether what a local joint does depends on this state frame of another one: that of the next joint in a slot, or
+  /// of any joint if a slot senses contacts. Others need not be received.
+  [[nodiscard]] bool listens_to(unsigned joint, unsigned channel) const {
+    return listened_[channel].contains(joint) && !is_local(joint);
+  }
   /// Number of state frames that a joint sends in a tick: 1 or 2.
   [[nodiscard]] unsigned channel_count(unsigned joint) const { return senders_[1].contains(joint) ? 2 : 1; }
   /// The frame of a local joint labelled tick(), or the latest known of another joint.
@@ -203,6 +209,7 @@ class Kernel {
   }
 
   void set_up(unsigned joint);
+  void listen_for(unsigned slot, unsigned joint);
   [[nodiscard]] Neighbour neighbour(unsigned slot, int joint) const;
   void derive(unsigned slot, SlotMemory& memory);
   Status check_slot(unsigned slot, unsigned joint) const;
@@ -236,6 +243,9 @@ class Kernel {
   std::array<JointMask, max_channels> senders_;  ///< all joints on the first channel, some on the second
   /// For each slot the joints of which it uses the second channel.
   std::array<JointMask, max_slots> second_channel_;
+  std::array<JointMask, max_channels> listened_;  ///< joints on whose frames a local joint depends
+  /// For each slot the joints of other modules that are next to a local one.
+  std::array<JointMask, max_slots> beside_;
   std::array<JointMask, max_channels> arrived_;  ///< whose frames with the label tick_ are in heard_
   std::array<std::array<StateFrame, max_joints>, max_channels> heard_;
 };

@@ -19,9 +19,25 @@ bool prevails(const CanFrame& left, const CanFrame& right) {
   return std::ranges::lexicographical_compare(left.bytes(), right.bytes());
 }
 
+constexpr unsigned error_bits = 6 + 8;       // flag and delimiter; flags that do not begin together would take up to 12
+constexpr unsigned suspend_bits = 8;         // what a passive sender waits for others
+constexpr unsigned earliest_collision = 16;  // frames of one identifier differ from the length on
+
+/// Takes back a mark at the end, also if a listener throws.
+class Reset {
+ public:
+  explicit Reset(bool& mark) : mark_(&mark) {}
+  ~Reset() { *mark_ = false; }
+  Reset(const Reset&) = delete;
+  Reset& operator=(const Reset&) = delete;
+
+ private:
+  bool* mark_;
+};
+
 }  // namespace
 
-Bus::Bus(std::uint32_t bit_rate) : bit_rate_(bit_rate) {
+Bus::Bus(std::uint32_t bit_rate) : bit_rate_(bit_rate), waits_(bit_rate) {
   if (bit_rate == 0 || bit_rate > highest_bit_rate) {
     throw std::invalid_argument("a CAN bus of " + std::to_string(bit_rate) + " bit/s, expected 1 to " +
                                 std::to_string(highest_bit_rate));
@@ -30,7 +46,7 @@ Bus::Bus(std::uint32_t bit_rate) : bit_rate_(bit_rate) {
 
 Controller& Bus::attach(BusListener& listener) {
   controllers_.push_back(std::make_unique<Controller>(*this, listener, controllers_.size()));
-  controllers_.back()->on_since_ = now_;
+  controllers_.back()->part_since_ = now_;
   senders_.reserve(controllers_.size());
   return *controllers_.back();
 }
@@ -39,10 +55,22 @@ BusTime Bus::next_event() const {
   if (sending_) {
     return current_.end;
   }
+  const BusTime end_of_wait = waits_.next_end();
   if (candidates_ == 0) {
-    return never_on_bus;
+    return end_of_wait;
   }
-  return arbitration_at_ + duration(frame_bits(winner()->candidate_->frame));
+  if (watchers_ > 0 || collision_rule_ == CollisionRule::bit_error) {
+    return std::min(end_of_wait, arbitration_at_ + 1);  // more can be said when the transmission has begun
+  }
+  return std::min(end_of_wait, arbitration_at_ + duration(winner()->candidate_->bits));
+}
+
+BusTime Bus::earliest_delivery() const {
+  if (sending_) {
+    return current_.end;
+  }
+  const bool collides = collision_rule_ == CollisionRule::bit_error;
+  return std::min(waits_.next_end(), now_ + duration(collides ? earliest_collision + error_bits : shortest_frame_bits));
 }
 
 void Bus::advance_to(BusTime time) {
@@ -50,9 +78,17 @@ void Bus::advance_to(BusTime time) {
     throw std::logic_error("a listener of the CAN bus advances it");
   }
   for (;;) {
-    if (sending_ && current_.end <= time) {
+    if (sending_) {
+      if (current_.end > time) {
+        break;
+      }
       finish();
-    } else if (!sending_ && arbitration_at_ < time) {
+      continue;
+    }
+    const BusTime end_of_wait = waits_.next_end();
+    if (!waits_.empty() && end_of_wait <= time && end_of_wait <= arbitration_at_) {
+      end_waits(end_of_wait);
+    } else if (arbitration_at_ < time) {
       start(arbitration_at_);
     } else {
       break;
@@ -64,20 +100,56 @@ void Bus::advance_to(BusTime time) {
 void Bus::candidates_changed(bool had_one, bool has_one) {
   candidates_ += has_one ? 1U : 0U;
   candidates_ -= had_one ? 1U : 0U;
-  if (sending_) {
-    return;
+  if (!sending_) {
+    schedule_arbitration();
   }
+}
+
+void Bus::schedule_arbitration() {
+  const BusTime earliest = std::max(now_, free_at_);
   if (candidates_ == 0) {
     arbitration_at_ = never_on_bus;
+  } else if (suspended_until_ > earliest) {
+    arbitration_at_ = never_on_bus;
+    for (const auto& controller : controllers_) {
+      if (controller->candidate_ != nullptr) {
+        arbitration_at_ = std::min(arbitration_at_, std::max(earliest, controller->suspended_until_));
+      }
+    }
   } else if (arbitration_at_ == never_on_bus) {
-    arbitration_at_ = std::max(now_, free_at_);
+    arbitration_at_ = earliest;
+  }
+}
+
+void Bus::end_waits(BusTime time) {
+  now_ = time;
+  reporting_ = true;
+  const Reset guard(reporting_);
+  for (Controller* controller : waits_.ending_at(time)) {
+    // Whoever was called before may have switched it off.
+    if (!waits_.contains(*controller)) {
+      continue;
+    }
+    waits_.remove(*controller);
+    const bool joins = controller->presence_ == Controller::Presence::joining;
+    if (joins) {
+      controller->presence_ = Controller::Presence::on;
+    } else {
+      controller->errors_.reset();
+      controller->last_error_ = CanError::none;
+    }
+    controller->update_part();
+    if (joins) {
+      controller->listener_->joined(time);
+    }
+    report_states();
   }
 }
 
 Controller* Bus::winner() const {
   Controller* best = nullptr;
   for (const auto& controller : controllers_) {
-    if (controller->candidate_ != nullptr &&
+    if (competes(*controller) &&
         (best == nullptr || prevails(controller->candidate_->frame, best->candidate_->frame))) {
       best = controller.get();
     }
@@ -91,17 +163,17 @@ void Bus::start(BusTime time) {
   current_.start = time;
   current_.frame = first->candidate_->frame;
   current_.sender = first->index_;
-  const unsigned bits = frame_bits(current_.frame);
+  const unsigned bits = first->candidate_->bits;
   current_.end = time + duration(bits);
   free_at_ = time + duration(bits + interframe_bits);
-  total_.busy += free_at_ - time;
-  arbitration_at_ = never_on_bus;
-  sending_ = true;
+  failure_ = CanError::none;
   ++transmission_;
 
+  unsigned collision_bit = bits;
   senders_.clear();
   for (const auto& controller : controllers_) {
-    if (controller->candidate_ == nullptr || controller->candidate_->frame.identifier != current_.frame.identifier) {
+    if (controller->candidate_ == nullptr || controller->candidate_->frame.identifier != current_.frame.identifier ||
+        !competes(*controller)) {
       continue;
     }
     if (controller->candidate_->frame == current_.frame) {
@@ -109,10 +181,31 @@ void Bus::start(BusTime time) {
       continue;
     }
     ++total_.collisions;
+    if (collision_rule_ == CollisionRule::bit_error) {
+      collision_bit = std::min(collision_bit, first_different_bit(current_.frame, controller->candidate_->frame));
+      senders_.push_back(controller.get());
+    }
     if (collision_report_) {
       collision_report_(time, current_.frame, controller->candidate_->frame);
     }
   }
+  const bool acknowledged =
+      first->role_ == Controller::Role::loop_back || std::ranges::any_of(controllers_, [&](const auto& controller) {
+        return controller->acknowledges_ && controller.get() != first;
+      });
+  foresee_error(acknowledged, bits, collision_bit);
+  total_.busy += free_at_ - time;
+  if (!waits_.empty()) {
+    waits_.end_silence(time);
+  }
+  for (Controller* sender : senders_) {
+    sender->sent_mailbox_ = static_cast<std::size_t>(sender->candidate_ - sender->mailboxes_.data());
+  }
+  if (watchers_ > 0) {
+    tell_watchers(time);
+  }
+  arbitration_at_ = never_on_bus;
+  sending_ = true;
   for (Controller* sender : senders_) {
     sender->candidate_->state = Controller::MailboxState::on_wire;
     sender->last_sent_ = transmission_;
@@ -120,36 +213,143 @@ void Bus::start(BusTime time) {
   }
 }
 
+void Bus::foresee_error(bool acknowledged, unsigned bits, unsigned collision_bit) {
+  constexpr unsigned crc_delimiter_to_end = 10;
+  unsigned last_bit = 0;  // in which the error is seen, counted from 1
+  if (collision_bit < bits) {
+    failure_ = CanError::bit_recessive;
+    last_bit = collision_bit + 1;
+  } else if (error_rule_ && error_rule_(current_.frame, transmission_)) {
+    failure_ = CanError::bit_recessive;
+    last_bit = bits - crc_delimiter_to_end + 1;
+  } else if (!acknowledged) {
+    failure_ = CanError::acknowledgement;
+    last_bit = bits - crc_delimiter_to_end + 2;
+  } else {
+    return;
+  }
+  current_.end = current_.start + duration(last_bit + error_bits);
+  free_at_ = current_.start + duration(last_bit + error_bits + interframe_bits);
+}
+
+void Bus::tell_watchers(BusTime time) {
+  reporting_ = true;
+  const Reset guard(reporting_);
+  for (const auto& controller : controllers_) {
+    if (!controller->watches_) {
+      continue;
+    }
+    controller->outbid_mailbox_ = Controller::mailbox_count;
+    if (competes(*controller) && std::ranges::find(senders_, controller.get()) == senders_.end()) {
+      controller->outbid_mailbox_ = static_cast<std::size_t>(controller->candidate_ - controller->mailboxes_.data());
+    }
+  }
+  for (const auto& controller : controllers_) {
+    if (!controller->watches_) {
+      continue;
+    }
+    controller->listener_->frame_began(time);
+    if (controller->one_shot_ && controller->outbid_mailbox_ < Controller::mailbox_count) {
+      controller->mailboxes_[controller->outbid_mailbox_].state = Controller::MailboxState::empty;
+      controller->choose_candidate();
+    }
+  }
+}
+
 void Bus::finish() {
   now_ = current_.end;
   sending_ = false;
+  if (!waits_.empty()) {
+    waits_.begin_silence(now_);
+  }
+  if (failure_ == CanError::none) {
+    succeed();
+  } else {
+    fail();
+  }
+}
+
+void Bus::succeed() {
   ++total_.frames;
   for (Controller* sender : senders_) {
-    std::ranges::find(sender->mailboxes_, Controller::MailboxState::on_wire, &Controller::Mailbox::state)->state =
-        Controller::MailboxState::empty;
+    sender->mailboxes_[sender->sent_mailbox_].state = Controller::MailboxState::empty;
   }
-  if (candidates_ > 0) {
-    arbitration_at_ = free_at_;
+  if (counting_) {
+    for (const auto& controller : controllers_) {
+      if (!controller->took_part_since(current_.start)) {
+        continue;
+      }
+      if (controller->last_sent_ == transmission_) {
+        controller->errors_.transmitted();
+        controller->last_error_ = CanError::none;
+      } else if (controller->hears_) {
+        controller->errors_.received();
+        controller->last_error_ = CanError::none;
+      }
+    }
+    suspend_passive_senders();
   }
+  schedule_arbitration();
   reporting_ = true;
-  try {
-    report();
-  } catch (...) {
-    reporting_ = false;
-    throw;
+  const Reset guard(reporting_);
+  report();
+  if (counting_) {
+    report_states();
   }
-  reporting_ = false;
+}
+
+void Bus::fail() {
+  ++total_.errors;
+  counting_ = true;
+  for (const auto& controller : controllers_) {
+    const bool counts = controller->took_part_since(current_.start);
+    if (controller->last_sent_ != transmission_) {
+      if (counts && controller->hears_) {
+        controller->errors_.receiver_error();
+        controller->last_error_ = CanError::form;
+      }
+      continue;
+    }
+    controller->take_back();
+    if (counts) {
+      // A node that finds itself alone does not become bus-off (rule c, exception 1).
+      const bool alone = failure_ == CanError::acknowledgement && controller->error_state() == ErrorState::passive;
+      if (!alone) {
+        controller->errors_.transmitter_error();
+      }
+      controller->last_error_ = failure_;
+      if (controller->error_state() == ErrorState::bus_off) {
+        controller->update_part();
+        controller->abort_all();
+      }
+    }
+  }
+  suspend_passive_senders();
+  for (Controller* sender : senders_) {
+    sender->choose_candidate();
+  }
+  schedule_arbitration();
+  reporting_ = true;
+  const Reset guard(reporting_);
+  report_error();
+  report_states();
+}
+
+void Bus::suspend_passive_senders() {
+  for (Controller* sender : senders_) {
+    if (sender->error_state() == ErrorState::passive) {
+      sender->suspended_until_ = free_at_ + duration(suspend_bits);
+      suspended_until_ = std::max(suspended_until_, sender->suspended_until_);
+    }
+  }
 }
 
 void Bus::report() {
-  const auto hears = [this](const Controller& controller) {
-    return controller.on_ && controller.on_since_ <= current_.start;
-  };
   if (trace_) {
     trace_(current_);
   }
   for (Controller* sender : senders_) {
-    if (hears(*sender)) {
+    if (sender->took_part_since(current_.start)) {
       sender->listener_->transmitted(current_.end, current_.frame);
     }
   }
@@ -157,7 +357,7 @@ void Bus::report() {
   const std::size_t count = controllers_.size();
   for (std::size_t i = 0; i < count; ++i) {
     const Controller& controller = *controllers_[i];
-    if (controller.last_sent_ == transmission_ || !hears(controller)) {
+    if (controller.last_sent_ == transmission_ || !controller.hears_ || controller.part_since_ > current_.start) {
       continue;
     }
     if (loss_rule_ && loss_rule_(current_.frame, i)) {
@@ -165,6 +365,30 @@ void Bus::report() {
       continue;
     }
     controller.listener_->received(current_.end, current_.frame);
+  }
+}
+
+void Bus::report_error() {
+  const std::size_t count = controllers_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Controller& controller = *controllers_[i];
+    const bool sent = controller.last_sent_ == transmission_;
+    // Whoever is in bus-off by now was on the bus.
+    if (controller.presence_ == Controller::Presence::on && controller.part_since_ <= current_.start &&
+        (sent || controller.hears_)) {
+      controller.listener_->error_seen(current_.end, sent);
+    }
+  }
+}
+
+void Bus::report_states() {
+  const std::size_t count = controllers_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    Controller& controller = *controllers_[i];
+    if (controller.error_state() != controller.reported_state_) {
+      controller.reported_state_ = controller.error_state();
+      controller.listener_->error_state_changed(now_);
+    }
   }
 }
 
@@ -182,6 +406,7 @@ BusStatistics Bus::statistics() const {
   statistics.period -= mark_.period;
   statistics.losses -= mark_.losses;
   statistics.collisions -= mark_.collisions;
+  statistics.errors -= mark_.errors;
   return statistics;
 }
 

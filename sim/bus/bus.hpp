@@ -1,6 +1,6 @@
 #pragma once
 
-// A classical CAN bus (ISO 11898-1) on virtual time: arbitration, exact durations of frames, delivery.
+// A classical CAN bus (ISO 11898-1) on virtual time: arbitration, exact durations of frames, delivery, errors.
 //
 // Whoever drives the simulation takes turns with the bus:
 //
@@ -20,10 +20,11 @@
 
 #include "sim/bus/controller.hpp"
 #include "sim/bus/frame_bits.hpp"
+#include "sim/bus/recessive_waits.hpp"
 
 namespace proleg::sim {
 
-/// A frame on the wire.
+/// A frame that went over the wire without an error.
 struct Transmission {
   BusTime start = 0;  ///< of the start-of-frame bit
   BusTime end = 0;    ///< of the last bit of end of frame: when all nodes have it
@@ -34,10 +35,11 @@ struct Transmission {
 /// What went over the bus since the start or the last Bus::start_statistics().
 struct BusStatistics {
   std::uint64_t frames = 0;      ///< that ended
-  BusTime busy = 0;              ///< time taken by frames with their interframe spaces
+  BusTime busy = 0;              ///< time taken by frames and error frames with their interframe spaces
   BusTime period = 0;            ///< time in which that was counted
   std::uint64_t losses = 0;      ///< deliveries withheld by the loss rule
   std::uint64_t collisions = 0;  ///< see Bus::on_collision
+  std::uint64_t errors = 0;      ///< error frames; what they destroyed is sent again and counts when it succeeds
 
   /// Part of the time in which the bus was taken, 0 to 1.
   [[nodiscard]] double load() const {
@@ -60,8 +62,17 @@ class Bus {
   /// The time up to which the bus has been simulated.
   [[nodiscard]] BusTime now() const { return now_; }
 
-  /// When a frame ends next, if nobody asks for or withdraws a frame before; `never_on_bus` if none is on the way.
+  [[nodiscard]] std::uint32_t bit_rate() const { return static_cast<std::uint32_t>(bit_rate_); }
+
+  /// When a frame ends next, or a node comes back to the bus, if nobody asks for or withdraws a frame before;
+  /// `never_on_bus` if nothing is on the way. May be earlier, with nothing to hear then: if errors are possible.
   [[nodiscard]] BusTime next_event() const;
+
+  /// When the frame or error frame on the wire ends; now() if there is none.
+  [[nodiscard]] BusTime busy_until() const { return sending_ ? current_.end : now_; }
+
+  /// Before this nobody hears of a frame: the end of the one on the wire, else of the shortest that could start now.
+  [[nodiscard]] BusTime earliest_delivery() const;
 
   /// Lets time pass. Every frame that ends by `time`, inclusive, is reported: to its sender (or senders, in the order
   /// of attachment), then to all other controllers in the order of attachment. A time before now() changes nothing.
@@ -73,16 +84,35 @@ class Bus {
   using LossRule = std::function<bool(const CanFrame& frame, std::size_t receiver)>;
   void set_loss_rule(LossRule rule) { loss_rule_ = std::move(rule); }
 
-  /// Called for each frame when it ends, before anybody hears of it.
+  /// Whether a transmission is destroyed: everybody sees its CRC delimiter dominant, a bit error for the sender and a
+  /// form error for the receivers. An error frame follows at once: 6 bits of flag, 8 of delimiter, and the interframe
+  /// space. The sender tries again. transmission: counts up from 1. Empty: nothing is destroyed.
+  ///
+  /// Whatever this rule says, a frame that nobody acknowledges meets an error in its ACK slot. All controllers that
+  /// hear it do, and two that send it together take each other's word for it (in truth they would not, if nobody else
+  /// did).
+  using ErrorRule = std::function<bool(const CanFrame& frame, std::uint64_t transmission)>;
+  void set_error_rule(ErrorRule rule) { error_rule_ = std::move(rule); }
+
+  /// Called for each frame when it ends without an error, before anybody hears of it.
   using Trace = std::function<void(const Transmission&)>;
   void set_trace(Trace trace) { trace_ = std::move(trace); }
 
   /// Two controllers send one identifier at the same instant. If their frames are equal in every bit they become one
-  /// transmission that each takes for its own. If not, that is a fault of the network: a real bus sees an error frame.
-  /// Here, until error frames are simulated, the frame that has a dominant bit first wins, the other one is tried
-  /// again, and this is called, once for every loser.
+  /// transmission that each takes for its own. If not, that is a fault of the network, and this is called, once for
+  /// every loser. What happens then says CollisionRule.
   using CollisionReport = std::function<void(BusTime time, const CanFrame& winner, const CanFrame& loser)>;
   void on_collision(CollisionReport report) { collision_report_ = std::move(report); }
+
+  enum class CollisionRule : std::uint8_t {
+    /// The frame that has a dominant bit first wins, the other one is tried again. Not what a real bus does, but
+    /// everybody hears both frames: modules that share a node id find out (docs/protocol.md) and stop.
+    dominant_wins,
+    /// As in a real bus: a bit error where the frames differ. All try again together, so that they collide without end
+    /// and are in bus-off after 32 attempts, unless someone lets go.
+    bit_error,
+  };
+  void set_collision_rule(CollisionRule rule) { collision_rule_ = rule; }
 
   [[nodiscard]] BusStatistics statistics() const;
   /// Counts from now().
@@ -92,11 +122,25 @@ class Bus {
   friend class Controller;
 
   void candidates_changed(bool had_one, bool has_one);
+  void schedule_arbitration();
+  void end_waits(BusTime time);
+
   [[nodiscard]] BusTime duration(unsigned bits) const { return bits * std::uint64_t{1'000'000'000} / bit_rate_; }
   [[nodiscard]] Controller* winner() const;
+  [[nodiscard]] bool competes(const Controller& controller) const {
+    return controller.candidate_ != nullptr && controller.suspended_until_ <= arbitration_at_;
+  }
   void start(BusTime time);
+  /// Whether the transmission that starts meets an error; then it ends with the error frame.
+  void foresee_error(bool acknowledged, unsigned bits, unsigned collision_bit);
+  void tell_watchers(BusTime time);
   void finish();
+  void succeed();
+  void fail();
+  void suspend_passive_senders();
   void report();
+  void report_error();
+  void report_states();
   [[nodiscard]] BusStatistics statistics_since_time_0() const;
 
   std::uint64_t bit_rate_;
@@ -104,16 +148,23 @@ class Bus {
   std::size_t candidates_ = 0;  ///< controllers with a frame to send
   BusTime now_ = 0;
   BusTime free_at_ = 0;                    ///< end of the last interframe space, also of the frame on the wire
+  BusTime suspended_until_ = 0;            ///< the latest of the controllers'
   BusTime arbitration_at_ = never_on_bus;  ///< while a frame is on the wire: never
   bool sending_ = false;                   ///< a frame is on the wire:
   Transmission current_;
+  CanError failure_ = CanError::none;  ///< what its senders will see
   std::vector<Controller*> senders_;
   std::uint64_t transmission_ = 0;  ///< number of the current or last one, from 1
   bool reporting_ = false;          ///< listeners are being called
+  bool counting_ = false;           ///< there has been an error, so that error counters may differ from 0
+  RecessiveWaits waits_;
+  std::size_t watchers_ = 0;
 
   LossRule loss_rule_;
+  ErrorRule error_rule_;
   Trace trace_;
   CollisionReport collision_report_;
+  CollisionRule collision_rule_ = CollisionRule::dominant_wins;
   BusStatistics total_;  ///< since time 0; `busy` with all of the current frame
   BusStatistics mark_;   ///< what statistics_since_time_0() was at the start of the statistics
 };

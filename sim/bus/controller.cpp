@@ -9,20 +9,26 @@
 namespace proleg::sim {
 
 bool Controller::send(const CanFrame& frame) {
+  const auto free = std::ranges::find(mailboxes_, MailboxState::empty, &Mailbox::state);
+  return send(static_cast<std::size_t>(free - mailboxes_.begin()), frame);
+}
+
+bool Controller::send(std::size_t mailbox, const CanFrame& frame) {
   if (frame.identifier > CanFrame::highest_identifier || frame.length > CanFrame::longest) {
     throw std::invalid_argument("a CAN frame with identifier " + std::to_string(frame.identifier) + " and " +
                                 std::to_string(frame.length) + " bytes, expected at most 2047 and 8");
   }
-  const auto free = std::ranges::find(mailboxes_, MailboxState::empty, &Mailbox::state);
-  if (!on_ || free == mailboxes_.end()) {
+  if (!takes_part_ || mailbox >= mailbox_count || mailboxes_[mailbox].state != MailboxState::empty) {
     return false;
   }
-  free->frame.identifier = frame.identifier;
-  free->frame.length = frame.length;
-  free->frame.data.fill(0);  // nobody sees what lies beyond the length
-  std::ranges::copy(frame.bytes(), free->frame.data.begin());
-  free->request = requests_++;
-  free->state = MailboxState::pending;
+  Mailbox& free = mailboxes_[mailbox];
+  free.frame.identifier = frame.identifier;
+  free.frame.length = frame.length;
+  free.frame.data.fill(0);  // nobody sees what lies beyond the length
+  std::ranges::copy(frame.bytes(), free.frame.data.begin());
+  free.bits = frame_bits(free.frame);
+  free.request = requests_++;
+  free.state = MailboxState::pending;
   choose_candidate();
   return true;
 }
@@ -31,37 +37,116 @@ void Controller::abort_all() {
   for (Mailbox& mailbox : mailboxes_) {
     if (mailbox.state == MailboxState::pending) {
       mailbox.state = MailboxState::empty;
+    } else if (mailbox.state == MailboxState::on_wire) {
+      mailbox.state = MailboxState::withdrawn_on_wire;
     }
   }
   choose_candidate();
 }
 
+bool Controller::abort(std::size_t mailbox) {
+  MailboxState& state = mailboxes_.at(mailbox).state;
+  if (state == MailboxState::pending) {
+    state = MailboxState::empty;
+    choose_candidate();
+  } else if (state == MailboxState::on_wire) {
+    state = MailboxState::withdrawn_on_wire;
+  }
+  return state == MailboxState::empty;
+}
+
 void Controller::switch_off() {
+  presence_ = Presence::off;
+  bus_->waits_.remove(*this);
+  update_part();
   abort_all();
-  on_ = false;
 }
 
 void Controller::switch_on() {
-  if (!on_) {
-    on_ = true;
-    on_since_ = bus_->now();
+  if (presence_ != Presence::on) {
+    bus_->waits_.remove(*this);
+    presence_ = Presence::on;
+    forget_errors();
+    update_part();
   }
+}
+
+void Controller::join() {
+  if (presence_ == Presence::off) {
+    presence_ = Presence::joining;
+    bus_->waits_.add(*this, 1, bus_->now());
+  }
+}
+
+void Controller::recover() {
+  if (presence_ == Presence::on && error_state() == ErrorState::bus_off) {
+    bus_->waits_.add(*this, 128, bus_->now());
+  }
+}
+
+void Controller::forget_errors() {
+  errors_.reset();
+  last_error_ = CanError::none;
+  reported_state_ = ErrorState::active;
+  suspended_until_ = 0;
+}
+
+void Controller::set_order(Order order) {
+  order_ = order;
+  choose_candidate();
+}
+
+void Controller::set_role(Role role) {
+  role_ = role;
+  update_part();
+  choose_candidate();
+}
+
+void Controller::watch(bool watch) {
+  bus_->watchers_ += watch && !watches_ ? 1U : 0U;
+  bus_->watchers_ -= !watch && watches_ ? 1U : 0U;
+  watches_ = watch;
 }
 
 std::size_t Controller::free_mailboxes() const {
   return static_cast<std::size_t>(std::ranges::count(mailboxes_, MailboxState::empty, &Mailbox::state));
 }
 
+bool Controller::is_sending() const {
+  const MailboxState state = mailboxes_[sent_mailbox_].state;
+  return state == MailboxState::on_wire || state == MailboxState::withdrawn_on_wire;
+}
+
+void Controller::update_part() {
+  const bool before = takes_part_;
+  takes_part_ = presence_ == Presence::on && error_state() != ErrorState::bus_off;
+  if (takes_part_ && !before) {
+    part_since_ = bus_->now();
+  }
+  hears_ = takes_part_ && role_ != Role::loop_back;
+  acknowledges_ = hears_ && role_ != Role::silent;
+}
+
+void Controller::take_back() {
+  MailboxState& state = mailboxes_[sent_mailbox_].state;
+  state = state == MailboxState::on_wire && !one_shot_ ? MailboxState::pending : MailboxState::empty;
+}
+
+bool Controller::precedes(const Mailbox& left, const Mailbox& right) const {
+  if (order_ != Order::request && left.frame.identifier != right.frame.identifier) {
+    return left.frame.identifier < right.frame.identifier;
+  }
+  return order_ == Order::identifier_then_mailbox ? &left < &right : left.request < right.request;
+}
+
 void Controller::choose_candidate() {
   const bool had_one = candidate_ != nullptr;
   candidate_ = nullptr;
-  for (Mailbox& mailbox : mailboxes_) {
-    if (mailbox.state != MailboxState::pending) {
-      continue;
-    }
-    if (candidate_ == nullptr || mailbox.frame.identifier < candidate_->frame.identifier ||
-        (mailbox.frame.identifier == candidate_->frame.identifier && mailbox.request < candidate_->request)) {
-      candidate_ = &mailbox;
+  if (takes_part_ && role_ != Role::silent) {
+    for (Mailbox& mailbox : mailboxes_) {
+      if (mailbox.state == MailboxState::pending && (candidate_ == nullptr || precedes(mailbox, *candidate_))) {
+        candidate_ = &mailbox;
+      }
     }
   }
   bus_->candidates_changed(had_one, candidate_ != nullptr);

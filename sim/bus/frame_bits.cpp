@@ -1,7 +1,9 @@
 #include "sim/bus/frame_bits.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <vector>
 
 namespace proleg::sim {
 namespace {
@@ -81,6 +83,27 @@ unsigned header(const CanFrame& frame) {
   return ((unsigned{frame.identifier} & CanFrame::highest_identifier) << 7U) | (frame.length & 0xFU);
 }
 
+/// The frame on the wire from start of frame to the last bit of the CRC sequence.
+std::vector<bool> stuffed_bits(const CanFrame& frame) {
+  std::vector<bool> result{false};
+  Run run{0, 1};
+  const auto append = [&](unsigned bits, unsigned count) {
+    while (count-- > 0) {
+      const unsigned level = (bits >> count) & 1U;
+      result.push_back(level != 0);
+      if (add_bit(run, level) > 0) {
+        result.push_back(level == 0);
+      }
+    }
+  };
+  append(header(frame), 18);
+  for (const std::uint8_t byte : frame.bytes()) {
+    append(byte, 8);
+  }
+  append(crc_sequence(frame), crc_bits);
+  return result;
+}
+
 }  // namespace
 
 std::uint16_t crc_sequence(const CanFrame& frame) {
@@ -93,6 +116,13 @@ std::uint16_t crc_sequence(const CanFrame& frame) {
     crc = crc_step(crc, byte);
   }
   return static_cast<std::uint16_t>(crc);
+}
+
+unsigned first_different_bit(const CanFrame& left, const CanFrame& right) {
+  const std::vector<bool> one = stuffed_bits(left);
+  const std::vector<bool> other = stuffed_bits(right);
+  const auto [place, unused] = std::ranges::mismatch(one, other);
+  return place == one.end() ? frame_bits(left) : static_cast<unsigned>(place - one.begin());
 }
 
 unsigned frame_bits(const CanFrame& frame) {

@@ -20,9 +20,11 @@ const char* name_of(Difference::Kind kind) {
     case Difference::Kind::last_servo_command:
       return "last servo command";
     case Difference::Kind::internal_value:
+      return "internal value";
+    case Difference::Kind::missed_tick:
       break;
   }
-  return "internal value";
+  return "tick";
 }
 
 std::string in_words(Difference::Kind kind, std::optional<std::int32_t> value) {
@@ -74,6 +76,10 @@ void compare_pulses(std::uint32_t tick, std::span<const ServoPulse> found, std::
 
 std::string describe(const Difference& difference, const std::string& joint_name) {
   std::ostringstream text;
+  if (difference.kind == Difference::Kind::missed_tick) {
+    text << joint_name << " was gone at the end of tick " << difference.tick << ", and this run had not stopped it";
+    return text.str();
+  }
   text << name_of(difference.kind) << " of " << joint_name << " at tick " << difference.tick << ": found "
        << in_words(difference.kind, difference.found) << ", expected "
        << in_words(difference.kind, difference.expected);

@@ -4,11 +4,13 @@
 #include <utility>
 
 #include "shared/canopen/bus_load.hpp"
+#include "shared/fixed/random.hpp"
 #include "sim/loop/host_node.hpp"
 #include "sim/loop/injector.hpp"
 #include "sim/loop/internal_values.hpp"
 #include "sim/loop/module_making.hpp"
-#include "sim/loop/plant_schedule.hpp"
+#include "sim/loop/native_module.hpp"
+#include "sim/loop/plant_ticks.hpp"
 #include "sim/loop/servo_pulses.hpp"
 #include "sim/scenario/input_error.hpp"
 
@@ -28,6 +30,7 @@ class HardwareLoop::Implementation {
         options_(std::move(options)),
         servo_schedule_(scenario.robot.servo.period_us, scenario.kernel.tick_period_us),
         plant_(scenario),
+        plant_ticks_(scenario, plant_, [this](std::uint32_t joint) { return pulse_of(joint); }),
         chain_(scenario.kernel, scenario.joint_limits, scenario.settings),
         touch_(scenario.robot.joints.size()),
         setpoints_(chain_.setpoints().begin(), chain_.setpoints().end()),
@@ -42,6 +45,11 @@ class HardwareLoop::Implementation {
     if (options_.losses != nullptr && options_.losses->any()) {
       bus_.set_loss_rule([this](const CanFrame& frame, std::size_t receiver) { return is_lost(frame, receiver); });
     }
+    if (options_.bit_errors.threshold != 0) {
+      bus_.set_error_rule([errors = options_.bit_errors](const CanFrame& /*frame*/, std::uint64_t transmission) {
+        return Pcg32(errors.seed, transmission).next() < errors.threshold;
+      });
+    }
     bring_up();
   }
 
@@ -52,6 +60,7 @@ class HardwareLoop::Implementation {
     while (!tick_finished_) {
       run_next_event();
       if (bus_.now() > patience) {
+        report_problems();
         throw HardwareError("the SYNC of tick " + std::to_string(syncs_) + " stays out for a second");
       }
     }
@@ -68,14 +77,18 @@ class HardwareLoop::Implementation {
   HardwareOptions options_;
   ServoSchedule servo_schedule_;
   Plant plant_;
+  PlantTicks plant_ticks_;
   std::uint32_t tick_ = 0;  ///< finished ones
   ValueHash setpoint_hash_;
   ValueHash servo_hash_;
   std::uint64_t differences_ = 0;
+  std::array<std::uint64_t, max_joints> differences_of_{};
   std::optional<Difference> first_difference_;
   std::uint64_t lost_frames_ = 0;
   std::uint64_t setup_frames_ = 0;
   std::vector<RestartEvent> restart_events_;
+  std::vector<Failure> failures_;
+  std::vector<Problem> problems_;
   Bus bus_;
 
  private:
@@ -101,16 +114,32 @@ class HardwareLoop::Implementation {
         options_.change_board(joint, board);
       }
       joint_of_node_[scenario_.modules[joint].node] = joint;
-      modules_.push_back(std::make_unique<NativeModule>(
-          bus_, board, make_crystal(scenario_, joint, options_.crystal_error_ppm), [this, joint] {
-            const std::uint8_t sensors = wired_sensors(plant_.link_contacts(), joint);
-            return options_.change_sensors ? options_.change_sensors(joint, sensors) : sensors;
-          }));
-      if (options_.tamper) {
-        modules_.back()->set_tamper(
-            [this, joint](const CanFrame& frame, const auto& deliver) { options_.tamper(joint, frame, deliver); });
-      }
+      const ModuleParts parts{bus_,
+                              joint,
+                              board,
+                              make_crystal(scenario_, joint, options_.crystal_error_ppm),
+                              [this, joint] { return sensors_of(joint); },
+                              [this, joint] { return plant_.servo_readings(joint); }};
+      std::unique_ptr<JointModule> module = options_.make_module ? options_.make_module(parts) : nullptr;
+      modules_.push_back(module ? std::move(module) : make_native(parts));
     }
+    records_.resize(modules_.size());
+    failed_.resize(modules_.size());
+  }
+
+  std::unique_ptr<JointModule> make_native(const ModuleParts& parts) {
+    auto module = std::make_unique<NativeModule>(parts.bus, parts.board, parts.crystal, parts.sensors, parts.readings);
+    if (options_.tamper) {
+      module->set_tamper([this, joint = parts.joint](const CanFrame& frame, const auto& deliver) {
+        options_.tamper(joint, frame, deliver);
+      });
+    }
+    return module;
+  }
+
+  [[nodiscard]] std::uint8_t sensors_of(unsigned joint) const {
+    const std::uint8_t sensors = wired_sensors(plant_.link_contacts(), joint);
+    return options_.change_sensors ? options_.change_sensors(joint, sensors) : sensors;
   }
 
   void bring_up() {
@@ -122,7 +151,8 @@ class HardwareLoop::Implementation {
     const BusTime patience = 60 * second;
     while (host_->state() != canopen::MasterState::running) {
       run_next_event();
-      report_host_events();
+      report_events();
+      report_problems();
       if (bus_.now() > patience) {
         throw HardwareError("the robot is not set up after a minute on the bus");
       }
@@ -131,35 +161,43 @@ class HardwareLoop::Implementation {
   }
 
   void run_next_event() {
-    BusTime next = std::min(bus_.next_event(), host_->next_event());
+    BusTime next = std::min({bus_.next_event(), host_->next_event(), plant_ticks_.next_event()});
     for (const auto& module : modules_) {
       next = std::min(next, module->next_event());
-    }
-    if (next_action_ < actions_.size()) {
-      next = std::min(next, sync_time_ + actions_[next_action_].time);
     }
     if (next == never_on_bus) {
       throw HardwareError("nothing more happens on the bus after tick " + std::to_string(tick_));
     }
-    while (next_action_ < actions_.size() && sync_time_ + actions_[next_action_].time <= next) {
-      act(actions_[next_action_++]);
-    }
+    plant_ticks_.advance_to(next);
     bus_.advance_to(next);
-    if (tick_ended_) {
+    if (plant_ticks_.is_complete(next)) {
       complete_tick();
     }
+    const BusTime quiet_until = bus_.earliest_delivery();
     for (const auto& module : modules_) {
       if (module->next_event() <= next) {
-        module->advance_to(next);
+        module->advance_to(next, quiet_until);
       }
     }
     if (host_->next_event() <= next) {
       host_->advance_to(next);
     }
-    report_host_events();
+    report_events();
   }
 
-  void report_host_events() {
+  void report_problems() {
+    for (unsigned joint = 0; joint < modules_.size(); ++joint) {
+      while (const auto problem = modules_[joint]->take_problem()) {
+        problems_.push_back({tick_, joint, *problem});
+        if (options_.notice) {
+          options_.notice(scenario_.robot.joints[joint].name + " (node " +
+                          std::to_string(scenario_.modules[joint].node) + "): " + *problem);
+        }
+      }
+    }
+  }
+
+  void report_events() {
     while (const auto event = host_->take_event()) {
       if (options_.notice) {
         options_.notice(*event);
@@ -167,6 +205,7 @@ class HardwareLoop::Implementation {
     }
     if (const auto problem = host_->take_problem()) {
       if (syncs_ == 0) {
+        report_problems();
         throw HardwareError(*problem);
       }
       if (options_.notice) {
@@ -180,17 +219,29 @@ class HardwareLoop::Implementation {
     if (options_.trace) {
       options_.trace(transmission);
     }
+    note_state_frame(transmission);
     // Others may send what looks like a SYNC; ticks are what the producer makes.
     if (transmission.sender == modules_[sync_producer]->controller() && canopen::decode_sync(transmission.frame)) {
       if (syncs_ > 0) {
-        end_tick();
+        end_tick(transmission.end);
       }
       begin_tick(transmission.end);
     }
   }
 
+  /// Whose state frames for the coming tick are out.
+  void note_state_frame(const Transmission& transmission) {
+    const auto state = canopen::decode_state(transmission.frame);
+    if (state && transmission.sender < modules_.size() && syncs_ > 0 &&
+        transmission.frame.identifier ==
+            canopen::identifier::state_frame + scenario_.modules[transmission.sender].node &&
+        state->label() == static_cast<std::uint8_t>(syncs_)) {
+      sent_.insert(static_cast<unsigned>(transmission.sender));
+    }
+  }
+
   void begin_tick(BusTime now) {
-    sync_time_ = now;
+    sent_ = {};
     if (syncs_ == 0) {
       bus_.start_statistics();
     }
@@ -199,85 +250,63 @@ class HardwareLoop::Implementation {
     for (; next_restart_ < options_.restarts.size() && options_.restarts[next_restart_].tick <= tick; ++next_restart_) {
       const unsigned joint = options_.restarts[next_restart_].joint;
       // What it still has to give of the tick before, by a slow crystal, it gives.
-      modules_[joint]->advance_to(now + longest_sync_jitter);
+      modules_[joint]->run_out(now, now + longest_sync_jitter);
       last_pulses_[joint] = modules_[joint]->pulse();
       modules_[joint]->power_on(now);
       stopping_.insert(joint);
     }
-    schedule_tick(servo_schedule_, plant_, tick, scenario_.robot.servo.period_us, scenario_.kernel.tick_period_us,
-                  actions_);
-    next_action_ = 0;
-  }
-
-  void act(const PlantAction& action) {
-    const std::uint64_t tick_start_us = std::uint64_t{tick_} * scenario_.kernel.tick_period_us;
-    if (action.kind == PlantAction::Kind::read_servos) {
-      for (std::uint32_t joint = 0; joint < modules_.size(); ++joint) {
-        // Of a module that has restarted at the SYNC since: what it gave before.
-        const bool restarted = tick_ended_ && stopping_.contains(joint);
-        readings_.push_back({servo_schedule_.start_us(action.number), joint,
-                             restarted ? last_pulses_[joint] : modules_[joint]->pulse()});
-      }
-    } else {
-      take_readings(tick_start_us + plant_.step_start_us(static_cast<std::uint32_t>(action.number)));
-      plant_.step();
+    for (const auto& module : modules_) {
+      module->note_sync(tick);
     }
+    plant_ticks_.begin(tick, now);
   }
 
-  void take_readings(std::uint64_t until_us) {
-    for (; taken_readings_ < readings_.size() && readings_[taken_readings_].time_us <= until_us; ++taken_readings_) {
-      const Reading& reading = readings_[taken_readings_];
-      if (reading.pulse) {
-        plant_.set_command(reading.joint, *reading.pulse);
-      } else {
-        plant_.release(reading.joint);
-      }
-    }
+  /// What the servo of a joint gets; of a module that has restarted at the SYNC since: what it got before.
+  [[nodiscard]] std::optional<std::int32_t> pulse_of(std::uint32_t joint) const {
+    const bool restarted = plant_ticks_.has_ended() && stopping_.contains(joint);
+    return restarted ? last_pulses_[joint] : modules_[joint]->pulse();
   }
 
-  /// At the next SYNC, before the modules hear it. Only the pulses of intervals that start so late that they are not
-  /// read yet are still to come: by its own crystal a module may begin one just after the SYNC before which it belongs.
-  void end_tick() {
-    late_.clear();
-    for (; next_action_ < actions_.size(); ++next_action_) {
-      const PlantAction& action = actions_[next_action_];
-      if (action.kind == PlantAction::Kind::read_servos) {
-        late_.push_back(action);
-      } else {
-        act(action);
-      }
+  /// At the next SYNC, before the modules hear it.
+  void end_tick(BusTime now) {
+    for (unsigned joint = 0; joint < modules_.size(); ++joint) {
+      records_[joint] = modules_[joint]->last_tick();
     }
     advance_reference();
     read_modules();
-    plant_.finish_tick();
-    tick_ended_ = true;
+    plant_ticks_.end(now);
   }
 
-  /// After all have heard the SYNC.
+  /// When all have heard the SYNC and given their last pulses.
   void complete_tick() {
-    for (const PlantAction& action : late_) {
-      act(action);
-    }
-    take_readings((std::uint64_t{tick_} + 1) * scenario_.kernel.tick_period_us);
+    plant_ticks_.complete();
     read_pulses();
     compare();
-    readings_.clear();
-    taken_readings_ = 0;
+    report_problems();
     ++tick_;
-    tick_ended_ = false;
     tick_finished_ = true;
   }
 
   /// The gait in memory makes the same tick, with the sensors as they were at its SYNC.
   void advance_reference() {
     for (unsigned joint = 0; joint < modules_.size(); ++joint) {
-      if (stopping_.contains(joint)) {
-        chain_.stop(joint);
-        touch_.reset(joint);
-        restart_events_.push_back({joint, false});
-      } else if (!chain_.is_running(joint) && modules_[joint]->has_computed(joint, tick_)) {
+      const bool computed = has_computed(records_[joint], joint, tick_);
+      if (chain_.is_running(joint)) {
+        if (stopping_.contains(joint) || is_gone(joint)) {
+          stop_reference(joint);
+        } else if (!computed) {
+          fail(joint);
+          if (!sent_.contains(joint)) {
+            stop_reference(joint);
+          }
+        }
+      } else if (computed || sent_.contains(joint)) {
+        failed_[joint] = false;
         chain_.join(joint);
         restart_events_.push_back({joint, true});
+        if (!computed) {
+          fail(joint);
+        }
       }
     }
     stopping_ = {};
@@ -295,26 +324,54 @@ class HardwareLoop::Implementation {
     lost_frames_ += chain_.lost().size();
   }
 
+  /// The run had not stopped it.
+  void fail(unsigned joint) {
+    failed_[joint] = true;
+    failures_.push_back({tick_, joint});
+    note({Difference::Kind::missed_tick, tick_, joint, std::nullopt, std::nullopt});
+  }
+
+  void stop_reference(unsigned joint) {
+    chain_.stop(joint);
+    touch_.reset(joint);
+    restart_events_.push_back({joint, false});
+  }
+
+  /// A module that has computed the tick and sent its state, and failed since: nobody can ask it any more.
+  [[nodiscard]] bool is_gone(unsigned joint) const { return failed_[joint] && chain_.is_running(joint); }
+
+  void latch_contacts(unsigned joint, unsigned flags) {
+    latched_contacts_[joint + 1] = flags & StateFrame::rear_link_contact_bits;
+    if (joint == 0) {
+      latched_contacts_[0] = static_cast<std::uint8_t>((flags & StateFrame::contact_bits) >> 2U);
+    }
+  }
+
   /// What the modules have made of the tick. A module that does not compute keeps its last values.
   void read_modules() {
+    std::array<std::size_t, max_joints> value_of{};  // of each joint's record, the next to be read
     for (unsigned joint = 0; joint < modules_.size(); ++joint) {
-      if (!modules_[joint]->has_computed(joint, tick_)) {
+      const firmware::TickRecord& record = records_[joint];
+      if (is_gone(joint)) {
+        setpoints_[joint] = chain_.setpoints()[joint];
+        latch_contacts(joint, touch_.contacts()[joint]);
+        continue;
+      }
+      if (!has_computed(record, joint, tick_)) {
         latched_contacts_[joint + 1] = 0;
         latched_contacts_[0] = joint == 0 ? std::uint8_t{0} : latched_contacts_[0];
         continue;
       }
-      const Kernel& kernel = modules_[joint]->kernel();
-      setpoints_[joint] = kernel.setpoint(joint);
-      const unsigned flags = kernel.frame(joint, 0).flags();
-      latched_contacts_[joint + 1] = flags & StateFrame::rear_link_contact_bits;
-      if (joint == 0) {
-        latched_contacts_[0] = static_cast<std::uint8_t>((flags & StateFrame::contact_bits) >> 2U);
-      }
+      setpoints_[joint] = record.setpoint;
+      latch_contacts(joint, record.flags);
     }
     auto value = internal_values_.begin();
     for_each_internal_value(scenario_.kernel, [&](unsigned slot, unsigned joint, unsigned number) {
-      if (modules_[joint]->has_computed(joint, tick_)) {
-        *value = modules_[joint]->kernel().internal_value(slot, joint, number);
+      const firmware::TickRecord& record = records_[joint];
+      if (is_gone(joint)) {
+        *value = chain_.kernel(joint).internal_value(slot, joint, number);
+      } else if (has_computed(record, joint, tick_) && value_of[joint] < record.value_count) {
+        *value = record.internal_values[value_of[joint]++];
       }
       ++value;
     });
@@ -323,8 +380,9 @@ class HardwareLoop::Implementation {
 
   void read_pulses() {
     pulses_.clear();
-    for (const Reading& reading : readings_) {
-      if (reading.pulse) {
+    for (const PlantTicks::Reading& reading : plant_ticks_.readings()) {
+      // A module that failed may go on with old pulses; the servo takes them, but they are no part of the gait.
+      if (reading.pulse && !failed_[reading.joint]) {
         pulses_.push_back({reading.time_us, reading.joint, *reading.pulse});
         servo_hash_.append(*reading.pulse);
       }
@@ -332,16 +390,20 @@ class HardwareLoop::Implementation {
   }
 
   void compare() {
-    const auto note = [this](const Difference& difference) {
-      ++differences_;
-      if (!first_difference_) {
-        first_difference_ = difference;
-      }
-    };
-    compare_setpoints(tick_, setpoints_, chain_.setpoints(), note);
+    const auto take_note = [this](const Difference& difference) { note(difference); };
+    compare_setpoints(tick_, setpoints_, chain_.setpoints(), take_note);
     expected_pulses_.clear();
     append_servo_pulses(chain_, servo_schedule_, expected_pulses_);
-    compare_pulses(tick_, pulses_, expected_pulses_, note);
+    std::erase_if(expected_pulses_, [this](const ServoPulse& pulse) { return failed_[pulse.joint]; });
+    compare_pulses(tick_, pulses_, expected_pulses_, take_note);
+  }
+
+  void note(const Difference& difference) {
+    ++differences_;
+    ++differences_of_[difference.joint];
+    if (!first_difference_) {
+      first_difference_ = difference;
+    }
   }
 
   bool is_lost(const CanFrame& frame, std::size_t receiver) const {
@@ -365,28 +427,18 @@ class HardwareLoop::Implementation {
                                   static_cast<std::uint8_t>(receiver)});
   }
 
-  struct Reading {
-    std::uint64_t time_us;
-    std::uint32_t joint;
-    std::optional<std::int32_t> pulse;
-  };
-
-  std::vector<std::unique_ptr<NativeModule>> modules_;  ///< by joint; attached first, so also by controller
+  std::vector<std::unique_ptr<JointModule>> modules_;  ///< by joint; attached first, so also by controller
+  std::vector<firmware::TickRecord> records_;          ///< by joint: what the modules had computed at the last SYNC
   std::array<unsigned, canopen::highest_node + 2> joint_of_node_{};
   std::unique_ptr<HostNode> host_;
   std::unique_ptr<Injector> injector_;
   std::uint32_t syncs_ = 0;     ///< heard so far
-  BusTime sync_time_ = 0;       ///< of the last one
-  bool tick_ended_ = false;     ///< its SYNC is over, its last pulses are not read yet
   bool tick_finished_ = false;  ///< since the last advance()
-  std::vector<PlantAction> late_;
   std::size_t next_restart_ = 0;
-  JointMask stopping_;                                               ///< modules that restarted at the last SYNC
+  std::vector<bool> failed_;  ///< by joint: modules that stopped by themselves and have not joined again
+  JointMask sent_;            ///< joints whose state frames came after the last SYNC
+  JointMask stopping_;        ///< modules that restarted at the last SYNC
   std::array<std::optional<std::int32_t>, max_joints> last_pulses_;  ///< of those, before
-  std::vector<PlantAction> actions_;
-  std::size_t next_action_ = 0;
-  std::vector<Reading> readings_;
-  std::size_t taken_readings_ = 0;
 
   KernelChain chain_;
   TouchInputs touch_;
@@ -417,7 +469,10 @@ std::span<const HardwareLoop::RestartEvent> HardwareLoop::restart_events() const
 const ValueHash& HardwareLoop::setpoint_hash() const { return implementation_->setpoint_hash_; }
 const ValueHash& HardwareLoop::servo_hash() const { return implementation_->servo_hash_; }
 std::uint64_t HardwareLoop::differences() const { return implementation_->differences_; }
+std::uint64_t HardwareLoop::differences(unsigned joint) const { return implementation_->differences_of_[joint]; }
 const std::optional<Difference>& HardwareLoop::first_difference() const { return implementation_->first_difference_; }
+std::span<const HardwareLoop::Failure> HardwareLoop::failures() const { return implementation_->failures_; }
+std::span<const HardwareLoop::Problem> HardwareLoop::problems() const { return implementation_->problems_; }
 std::uint64_t HardwareLoop::lost_frames() const { return implementation_->lost_frames_; }
 BusStatistics HardwareLoop::bus_statistics() const { return implementation_->bus_.statistics(); }
 std::uint64_t HardwareLoop::setup_frames() const { return implementation_->setup_frames_; }

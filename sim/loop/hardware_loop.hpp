@@ -19,11 +19,14 @@
 #include <string>
 #include <vector>
 
+#include "firmware/module/board.hpp"
+#include "firmware/module/ports.hpp"
 #include "sim/bus/bus.hpp"
+#include "sim/loop/crystal.hpp"
 #include "sim/loop/difference.hpp"
 #include "sim/loop/injector.hpp"
+#include "sim/loop/joint_module.hpp"
 #include "sim/loop/kernel_chain.hpp"
-#include "sim/loop/native_module.hpp"
 #include "sim/loop/plant.hpp"
 #include "sim/loop/touch_inputs.hpp"
 #include "sim/record/hash.hpp"
@@ -43,10 +46,28 @@ struct Restart {
   unsigned joint;
 };
 
+/// What a joint module of the loop is made with.
+struct ModuleParts {
+  Bus& bus;
+  unsigned joint;
+  firmware::Board board;
+  Crystal crystal;
+  std::function<std::uint8_t()> sensors;              ///< touch sensors wired to it, as firmware::ContactPort::read()
+  std::function<firmware::ServoReadings()> readings;  ///< of its servo and chip, at this moment
+};
+
 struct HardwareOptions {
+  /// Makes the module of a joint; null, or one that returns null: a native one.
+  std::function<std::unique_ptr<JointModule>(const ModuleParts&)> make_module;
   const Losses* losses = nullptr;       ///< must outlive the loop
   std::vector<Restart> restarts;        ///< by ascending tick
   std::vector<InjectedFrame> injected;  ///< by ascending tick; from a node of its own
+  /// Frames destroyed on the bus, which are sent again: which ones, follows from the seed.
+  struct BitErrors {
+    std::uint64_t seed = 0;
+    std::uint32_t threshold = 0;  ///< probability for a frame, times 2^32
+  };
+  BitErrors bit_errors;
   /// Called for each frame on the bus when it ends, with the time since the modules were switched on.
   Bus::Trace trace;
   /// Called for what modules report by EMCY and for restarts, one line each.
@@ -89,11 +110,27 @@ class HardwareLoop {
     bool joined;
   };
   [[nodiscard]] std::span<const RestartEvent> restart_events() const;
+  /// A module that did not bring a tick to its end though the run had not stopped it: its program hangs, has a fault,
+  /// or was reset. It counts as stopped from then on, until it joins again.
+  struct Failure {
+    std::uint32_t tick;
+    unsigned joint;
+  };
+  [[nodiscard]] std::span<const Failure> failures() const;
+  /// What modules said of themselves (JointModule::take_problem()).
+  struct Problem {
+    std::uint32_t tick;
+    unsigned joint;
+    std::string text;
+  };
+  [[nodiscard]] std::span<const Problem> problems() const;
 
   [[nodiscard]] const ValueHash& setpoint_hash() const;
   [[nodiscard]] const ValueHash& servo_hash() const;
   /// Set-points and servo commands that differ from the gait in memory, so far, and the first of them.
   [[nodiscard]] std::uint64_t differences() const;
+  /// Those of one joint.
+  [[nodiscard]] std::uint64_t differences(unsigned joint) const;
   [[nodiscard]] const std::optional<Difference>& first_difference() const;
   /// State frames that were kept from a receiver.
   [[nodiscard]] std::uint64_t lost_frames() const;

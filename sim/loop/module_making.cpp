@@ -38,6 +38,7 @@ firmware::Board make_board(const Scenario& scenario, std::size_t joint) {
   firmware::Board board;
   board.node = scenario.modules[joint].node;
   board.core_fingerprint = core_fingerprint;
+  board.capabilities = canopen::measures_angle;
   for (std::uint32_t& word : board.unique_id) {
     word = noise.next();
   }

@@ -1,14 +1,13 @@
 #include "sim/loop/native_module.hpp"
 
-#include <utility>
-
 namespace proleg::sim {
 
-NativeModule::NativeModule(Bus& bus, const firmware::Board& board, Crystal crystal, Sensors sensors)
+NativeModule::NativeModule(Bus& bus, const firmware::Board& board, Crystal crystal, Sensors sensors, Readings readings)
     : crystal_(crystal),
       sensors_(std::move(sensors)),
+      meters_(std::move(readings)),
       controller_(bus.attach(*this)),
-      module_(board, {controller_, *this, *this}) {
+      module_(board, {controller_, *this, *this, meters_}) {
   controller_.switch_off();
 }
 
@@ -20,15 +19,9 @@ void NativeModule::power_on(BusTime now) {
   update_deadline();
 }
 
-void NativeModule::advance_to(BusTime now) {
+void NativeModule::advance_to(BusTime now, BusTime /*quiet_until*/) {
   module_.poll(crystal_.at(now));
   update_deadline();
-}
-
-bool NativeModule::has_computed(unsigned joint, std::uint32_t tick) const {
-  const Kernel& kernel = module_.kernel();
-  return kernel.is_local(joint) && kernel.tick() == tick + 1 &&
-         (kernel.frame(joint, 0).flags() & StateFrame::valid) != 0;
 }
 
 void NativeModule::received(BusTime time, const CanFrame& frame) {
@@ -42,6 +35,16 @@ void NativeModule::received(BusTime time, const CanFrame& frame) {
 
 void NativeModule::transmitted(BusTime time, const CanFrame& frame) {
   module_.transmitted(crystal_.at(time), frame);
+  update_deadline();
+}
+
+void NativeModule::error_state_changed(BusTime time) {
+  // Between the other states the controller goes on by itself; the module ignores a return from where it never was.
+  if (controller_.error_state() == ErrorState::bus_off) {
+    module_.bus_off(crystal_.at(time));
+  } else {
+    module_.bus_back(crystal_.at(time));
+  }
   update_deadline();
 }
 

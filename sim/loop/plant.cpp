@@ -1,11 +1,15 @@
 #include "sim/loop/plant.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <sstream>
 
 #include "shared/kernel/servo_command.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/robot/servo.hpp"
+#include "sim/robot/servo_current.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -18,6 +22,13 @@ Stepper choose_stepper(const Scenario& scenario) {
   return scenario.solver == Solver::direct ? Stepper::direct : Stepper::iterative;
 }
 
+/// 90 degrees = 2^30, saturated.
+std::int32_t joint_angle_in_steps(double radians) {
+  constexpr double highest = std::numeric_limits<std::int32_t>::max();
+  const double steps = std::round(radians / (std::numbers::pi / 2.0) * quarter_turn);
+  return static_cast<std::int32_t>(std::clamp(steps, -highest, highest));
+}
+
 }  // namespace
 
 Plant::Plant(const Scenario& scenario)
@@ -28,6 +39,7 @@ Plant::Plant(const Scenario& scenario)
       center_before_(start_),
       limp_(scenario.robot.joints.size()),
       servo_commands_(scenario.robot.joints.size(), servo_center),
+      last_step_(scenario.robot.joints.size()),
       link_poses_(scenario.robot.links.size()),
       joint_angles_(scenario.robot.joints.size()),
       link_contacts_(scenario.robot.links.size()) {
@@ -55,8 +67,11 @@ std::uint32_t Plant::step_start_us(std::uint32_t step) const {
 
 void Plant::step() {
   for (std::size_t joint = 0; joint < servo_commands_.size(); ++joint) {
-    world_.set_joint_speed(joint, servo_speed(scenario_.robot.servo, scenario_.robot.joints[joint],
-                                              servo_commands_[joint], world_.joint_angle(joint)));
+    const double angle = world_.joint_angle(joint);
+    const double speed =
+        servo_speed(scenario_.robot.servo, scenario_.robot.joints[joint], servo_commands_[joint], angle);
+    last_step_[joint] = {speed, angle};
+    world_.set_joint_speed(joint, speed);
   }
   world_.step();
   contact_sum_ += world_.contact_count();
@@ -97,6 +112,18 @@ void Plant::read_world() {
     link_poses_[link] = world_.link_pose(link);
     link_contacts_[link] = world_.link_contacts(link);
   }
+}
+
+firmware::ServoReadings Plant::servo_readings(std::size_t joint) const {
+  constexpr std::int8_t chip_temperature_c = 25;
+  constexpr ServoCurrent servo;
+  const double angle = world_.joint_angle(joint);
+  const Motion& motion = last_step_[joint];
+  const double speed = steps_ == 0 ? 0.0 : (angle - motion.angle_before) / scenario_.step_s;
+  const double current_ma =
+      limp_[joint] ? servo.idle_ma
+                   : servo_current_ma(servo, motion.commanded_speed, speed, scenario_.robot.joints[joint].max_speed);
+  return {static_cast<std::uint16_t>(std::lround(current_ma)), joint_angle_in_steps(angle), chip_temperature_c};
 }
 
 double Plant::displacement() const { return (world_.center_of_mass() - start_).head<2>().norm(); }

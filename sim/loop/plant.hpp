@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "firmware/module/ports.hpp"
 #include "sim/physics/world.hpp"
 #include "sim/scenario/scenario.hpp"
 
@@ -38,6 +39,10 @@ class Plant {
   /// Touch sensors per link: bit 0 rear, bit 1 front; as they are, not debounced.
   [[nodiscard]] std::span<const std::uint8_t> link_contacts() const { return link_contacts_; }
 
+  /// What the module of a joint measures now: the current that its servo drew in the last step (an estimate,
+  /// sim/robot/servo_current.hpp), the actual angle, and a chip at 25 degrees Celsius.
+  [[nodiscard]] firmware::ServoReadings servo_readings(std::size_t joint) const;
+
   /// Horizontal distance, in m, of the centre of mass from its start (thesis, equation 3.7).
   [[nodiscard]] double displacement() const;
   /// Contact points in a physics step, on average.
@@ -58,6 +63,11 @@ class Plant {
   Eigen::Vector3d center_before_;
   std::vector<bool> limp_;
   std::vector<std::int32_t> servo_commands_;
+  struct Motion {
+    double commanded_speed = 0.0;  ///< rad/s
+    double angle_before = 0.0;     ///< rad
+  };
+  std::vector<Motion> last_step_;  ///< of each joint
   std::vector<Pose> link_poses_;
   std::vector<double> joint_angles_;
   std::vector<std::uint8_t> link_contacts_;

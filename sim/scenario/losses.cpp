@@ -23,19 +23,13 @@ constexpr const char* seed_form = "SEED:RATE or SEED:RATE@FIRST-LAST, for exampl
   throw InputError("--losses", 0, in_quotes(shortened(argument)), seed_form);
 }
 
-/// 0 to 1, times 2^32.
-std::uint32_t parse_rate(std::string text, const std::string& argument) {
-  const bool percent = !text.empty() && text.back() == '%';
-  if (percent) {
-    text.pop_back();
-  }
-  const std::optional<double> number = parse_number(text);
-  const double rate = number.value_or(-1.0) / (percent ? 100.0 : 1.0);
-  if (!(rate >= 0.0 && rate <= 1.0)) {
+std::uint32_t require_rate(const std::string& text, const std::string& argument) {
+  const std::optional<std::uint32_t> rate = parse_rate(text);
+  if (!rate) {
     throw InputError("--losses", 0, "rate " + in_quotes(shortened(text)) + " in " + in_quotes(shortened(argument)),
                      "0 to 1, or 0% to 100%");
   }
-  return static_cast<std::uint32_t>(std::min(std::round(rate * 4294967296.0), 4294967295.0));
+  return *rate;
 }
 
 Losses parse_random(const std::string& argument, std::size_t colon) {
@@ -46,7 +40,7 @@ Losses parse_random(const std::string& argument, std::size_t colon) {
   }
   random.seed = *seed;
   const std::size_t at = argument.find('@', colon);
-  random.threshold = parse_rate(argument.substr(colon + 1, at == std::string::npos ? at : at - colon - 1), argument);
+  random.threshold = require_rate(argument.substr(colon + 1, at == std::string::npos ? at : at - colon - 1), argument);
   if (at != std::string::npos) {
     const std::size_t dash = argument.find('-', at);
     if (dash == std::string::npos) {

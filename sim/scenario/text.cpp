@@ -146,6 +146,16 @@ std::optional<double> parse_number(std::string_view word) {
   return value;
 }
 
+std::optional<std::uint32_t> parse_rate(std::string_view text) {
+  const bool percent = text.ends_with('%');
+  const std::optional<double> number = parse_number(std::string(percent ? text.substr(0, text.size() - 1) : text));
+  const double rate = number.value_or(-1.0) / (percent ? 100.0 : 1.0);
+  if (!(rate >= 0.0 && rate <= 1.0)) {
+    return std::nullopt;
+  }
+  return static_cast<std::uint32_t>(std::min(std::round(rate * 4294967296.0), 4294967295.0));
+}
+
 std::string number_text(double value) {
   std::array<char, 32> buffer{};
   const auto [end, error] =

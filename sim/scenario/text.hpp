@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -51,6 +52,9 @@ template <typename Integer>
 }
 
 [[nodiscard]] std::optional<double> parse_number(std::string_view word);
+
+/// A probability, 0 to 1 or 0% to 100%, times 2^32 (at most 2^32 - 1); nothing for anything else.
+[[nodiscard]] std::optional<std::uint32_t> parse_rate(std::string_view text);
 
 /// Short text of a number for messages.
 [[nodiscard]] std::string number_text(double value);

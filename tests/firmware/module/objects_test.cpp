@@ -277,8 +277,9 @@ TEST(Objects, ShowTheStateAndTheFrames) {
   for (unsigned half = 0; half < 2; ++half) {
     EXPECT_EQ(robot.bus.value(node, object::own_frame[0][half]), word(kernel.frame(0, 0), half));
     EXPECT_EQ(robot.bus.value(node, object::own_frame[1][half]), word(kernel.frame(0, 1), half));
-    EXPECT_EQ(robot.bus.value(node, object::received_frame[0][half].address(4)),
-              word(std::as_const(robot.kernel(4)).frame(4, 0), half));
+    EXPECT_EQ(robot.bus.value(node, object::received_frame[0][half].address(1)),
+              word(std::as_const(robot.kernel(1)).frame(1, 0), half));
+    EXPECT_EQ(robot.bus.value(node, object::received_frame[0][half].address(4)), 0U) << "nothing depends on joint 4";
     EXPECT_EQ(robot.bus.value(node, object::received_frame[1][half].address(1)),
               word(std::as_const(robot.kernel(1)).frame(1, 1), half));
   }

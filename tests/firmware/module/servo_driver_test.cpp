@@ -13,9 +13,13 @@ namespace {
 constexpr std::int32_t quarter = 1 << 30;
 
 struct Servo final : ServoPort {
-  void pulse(std::int32_t width) override { pulses.push_back(width); }
+  void pulse(std::int32_t width, std::uint32_t period_us) override {
+    pulses.push_back(width);
+    period = period_us;
+  }
   void off() override { pulses.push_back(std::nullopt); }
   std::vector<std::optional<std::int32_t>> pulses;
+  std::uint32_t period = 0;
 };
 
 class Driver : public testing::Test {
@@ -45,6 +49,17 @@ TEST_F(Driver, TakesEveryIntervalInTime) {
   for (std::uint32_t n = 0; n < 10; ++n) {
     EXPECT_EQ(pulses[n], pulse(n));
   }
+}
+
+TEST_F(Driver, SaysHowOftenAPulseIsToBeRepeated) {
+  driver.configure({3'000, 10'000});
+  driver.follow();
+  driver.start_tick(0, 0, quarter, quarter);
+  EXPECT_EQ(servo.period, 3'000U);
+  servo.period = 0;
+  driver.quick_stop(0);
+  driver.poll(driver.next_deadline());
+  EXPECT_EQ(servo.period, 3'000U) << "on the way to the safe pose, too, which is held";
 }
 
 TEST_F(Driver, CalledTooLateTakesTheLatestIntervalOnly) {

@@ -30,6 +30,7 @@ class StateFrames : public testing::Test {
   static KernelConfiguration configuration() {
     KernelConfiguration made = test::one_slot(test::algorithm(test::sinusoidal), 5);
     made.slots[1] = {&test::algorithm(test::extended), JointMask(0b00011)};
+    made.slots[2] = {&test::algorithm(test::reflex), JointMask(0b00001)};  // depends on everybody's contacts
     return made;
   }
 
@@ -122,6 +123,47 @@ TEST_F(StateFrames, OfTheOwnJointAreNotListenedTo) {
   robot.run(20);
   hear(canopen::identifier::state_frame + 77, 21, 3);
   EXPECT_TRUE(robot.emergencies().empty());
+}
+
+/// What the controller was asked to let pass, with these slots.
+std::vector<std::uint16_t> listened_to(const KernelConfiguration& configuration) {
+  test::TestModule robot(configuration);
+  robot.set_up_and_start();
+  return robot.it().listened;
+}
+
+TEST(Listening, IsToTheNextJointsOfEachSlotOnTheirChannels) {
+  KernelConfiguration configuration = test::one_slot(test::algorithm(test::coupled), 5);
+  EXPECT_EQ(listened_to(configuration), std::vector<std::uint16_t>{0x181}) << "joint 1 is node 1";
+  configuration.slots[1] = {&test::algorithm(test::extended), JointMask(0b10001)};
+  EXPECT_EQ(listened_to(configuration), (std::vector<std::uint16_t>{0x181, 0x28C})) << "joint 4 is node 12";
+  configuration.slots[0].group = JointMask(0b11110);
+  configuration.slots[1].group = JointMask(0b00100);
+  EXPECT_EQ(listened_to(configuration), std::vector<std::uint16_t>{}) << "no slot drives the joint";
+}
+
+TEST(Listening, IsToEverybodyIfASlotSensesContacts) {
+  KernelConfiguration configuration = test::one_slot(test::algorithm(test::reflex), 5);
+  configuration.slots[0].group = JointMask(0b00001);
+  EXPECT_EQ(listened_to(configuration), (std::vector<std::uint16_t>{0x181, 0x189, 0x183, 0x18C}));
+}
+
+TEST(Listening, EndsWithTheConfiguration) {
+  test::TestModule robot(test::one_slot(test::algorithm(test::coupled), 5));
+  robot.set_up_and_start();
+  EXPECT_EQ(robot.it().listened.size(), 1U);
+  robot.command(canopen::NmtCommand::reset_node);
+  EXPECT_TRUE(robot.it().listened.empty());
+}
+
+TEST(Listening, LeavesFramesThatDoNotMatterUnheardAlsoWhereNothingIsFiltered) {
+  test::TestModule robot(test::one_slot(test::algorithm(test::coupled), 5));
+  robot.set_up_and_start();
+  robot.run(20);
+  robot.bus.deliver({canopen::identifier::state_frame + 12, 3, {1, 2, 3}});
+  robot.bus.deliver({canopen::identifier::state_frame + 12, 8, {1, 2, 3, 4, 5, 6, StateFrame::valid, 99}});
+  EXPECT_TRUE(robot.emergencies().empty());
+  EXPECT_EQ(robot.module().unknown_labels(), 0U);
 }
 
 TEST_F(StateFrames, ThatHoldNoStateAreNotUsed) {

@@ -217,7 +217,7 @@ class EdsTest(unittest.TestCase):
         self.assertEqual(check.number("1014", "DefaultValue", 3), 0x083)
         self.assertEqual(check.number("1800sub1", "DefaultValue", 3) & 0x7FF, 0x183)
         self.assertEqual(check.number("DeviceInfo", "NrOfRXPDO"), 1 + 2 * 64)
-        self.assertEqual(check.number("DeviceInfo", "NrOfTXPDO"), 2)
+        self.assertEqual(check.number("DeviceInfo", "NrOfTXPDO"), 3)
         self.assertEqual(check.number("4080sub1", "HighLimit"), 2 ** 30, "amplitude: 90 degrees")
         self.assertIn("amplitude", check.get("4080", "ParameterName"))
 

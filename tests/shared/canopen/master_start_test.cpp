@@ -133,7 +133,7 @@ TEST(MasterProblem, ASetupThatCannotBeIsFoundBeforeAnythingIsSent) {
 TEST(MasterProblem, ARobotThatCouldFillTheBusIsRefusedBeforeAnythingIsSent) {
   ScriptedRobot robot(60);
   expect_nothing_sent(robot, ProblemCode::bus_too_small);
-  EXPECT_EQ(robot.master().problem().found, 1628U);
+  EXPECT_EQ(robot.master().problem().found, 1635U);
   EXPECT_EQ(robot.master().problem().expected, 850U);
 }
 

@@ -33,7 +33,11 @@ TEST(Messages, AreTheExamplesOfTheDocumentation) {
   expect_example<Heartbeat>("703 [1] 00", {3, NmtState::boot_up}, decode_heartbeat);
   expect_example<Heartbeat>("703 [1] 05", {3, NmtState::operational}, decode_heartbeat);
   expect_example<Heartbeat>("77F [1] 05", {host_node, NmtState::operational}, decode_heartbeat);
-  expect_example<Emergency>("083 [8] 10 23 02 00 00 00 00 00", {3, EmergencyCode::over_current, 2, 0},
+  expect_example<Emergency>("083 [8] 10 23 03 00 00 00 00 00", {3, EmergencyCode::over_current, 3, 0},
+                            decode_emergency);
+  expect_example<Emergency>("083 [8] 40 81 11 1F 00 00 00 00", {3, EmergencyCode::bus_off_recovered, 0x11, 31},
+                            decode_emergency);
+  expect_example<Emergency>("083 [8] 10 60 00 00 00 00 00 00", {3, EmergencyCode::watchdog_reset, 0, 0},
                             decode_emergency);
   expect_example<Command>("203 [6] 0F 00 00 00 00 20", {3, 0x000F, 1 << 29}, decode_command);
   // 44.9 degrees are 8173.7 steps of 90 / 2^14 degrees.
@@ -64,6 +68,18 @@ TEST(Messages, NegativeAnglesAndTemperaturesSurvive) {
   const Monitoring monitoring{1, -16384, 65535, -40, 0xFF};
   EXPECT_EQ(encode(monitoring), frame("381 [6] 00 C0 FF FF D8 FF"));
   EXPECT_EQ(decode_monitoring(encode(monitoring)), monitoring);
+}
+
+TEST(Messages, AMonitoredAngleIsRoundedHalfUpAndSaysWhetherItWasMeasured) {
+  EXPECT_EQ(monitored_angle(std::nullopt), -0x8000);
+  EXPECT_EQ(monitored_angle(1 << 30), 1 << 14) << "90 degrees";
+  EXPECT_EQ(monitored_angle(-(1 << 30)), -(1 << 14));
+  EXPECT_EQ(monitored_angle(0x7FFF), 0);
+  EXPECT_EQ(monitored_angle(0x8000), 1);
+  EXPECT_EQ(monitored_angle(-0x8000), 0);
+  EXPECT_EQ(monitored_angle(-0x8001), -1);
+  EXPECT_EQ(monitored_angle(0x7FFFFFFF), 0x7FFF);
+  EXPECT_EQ(monitored_angle(-0x7FFFFFFF - 1), -0x7FFF) << "measured, whatever the angle";
 }
 
 /// Every message with a decoder, behind one face: decodes and encodes again.
@@ -167,6 +183,9 @@ TEST(Messages, WhatTheProtocolDoesNotAllowIsNotRead) {
 
 TEST(Messages, EmergenciesHaveNames) {
   EXPECT_EQ(describe(EmergencyCode::over_current), "over-current");
+  EXPECT_EQ(describe(EmergencyCode::bus_off_recovered), "back after bus-off");
+  EXPECT_EQ(describe(EmergencyCode::watchdog_reset), "reset by the watchdog");
+  EXPECT_EQ(describe(EmergencyCode::software_fault), "reset after a fault of the program");
   EXPECT_EQ(describe(static_cast<EmergencyCode>(0x1234)), "unknown emergency code");
   const std::optional<Emergency> foreign = decode_emergency(frame("083 [8] 34 12 01 04 03 02 01 00"));
   ASSERT_TRUE(foreign) << "a code of a later version is handed on";

@@ -79,7 +79,9 @@ TEST(ObjectDictionary, HasTheStandardsObjects) {
       {{0x1A00, 1}, unsigned32, constant, record},     {{0x6040, 0}, unsigned16, read_write, variable},
       {{0x6041, 0}, unsigned16, read_only, variable},  {{0x6060, 0}, integer8, read_write, variable},
       {{0x6061, 0}, integer8, read_only, variable},    {{0x607A, 0}, integer32, read_write, variable},
-      {{0x6502, 0}, unsigned32, constant, variable},
+      {{0x6502, 0}, unsigned32, constant, variable},   {{0x1802, 1}, unsigned32, read_only, record},
+      {{0x1A02, 0}, unsigned8, constant, record},      {{0x6064, 0}, integer32, read_only, variable},
+      {{0x6075, 0}, unsigned32, constant, variable},   {{0x6078, 0}, integer16, read_only, variable},
   };
   for (const Case& c : cases) {
     const std::optional<Object> object = find_object(c.address);
@@ -99,6 +101,7 @@ TEST(ObjectDictionary, ValuesThatFollowFromTheNodeAreThoseOfThePredefinedConnect
   EXPECT_EQ(value({0x1400, 1}), 0x203U);
   EXPECT_EQ(value({0x1800, 1}), 0x40000183U) << "no remote frames";
   EXPECT_EQ(value({0x1801, 1}), 0x40000283U);
+  EXPECT_EQ(value({0x1802, 1}), 0x40000383U);
   EXPECT_FALSE(fixed_value(*find_object({0x6041, 0}), 3)) << "state";
   EXPECT_FALSE(fixed_value(*find_object({0x1017, 0}), 3)) << "can be set";
 }
@@ -184,6 +187,7 @@ TEST(ObjectDictionary, RangesAreThoseOfTheSpecification) {
       {{0x2005, 3}, {100, 100'000}, {99}, {100'001}},
       {{0x2005, 4}, {-(1 << 30), 1 << 30}, {-(1 << 30) - 1, -2147483648}, {(1 << 30) + 1, 2147483647}},
       {{0x2005, 6}, {0, 1}, {}, {2}},
+      {{0x200A, 1}, {0, 32767}, {}, {32768, 65535}},
       {{0x6060, 0}, {-1, 8}, {-128, -2}, {0, 7, 9, 127}},
   };
   for (const Case& c : cases) {
@@ -217,10 +221,15 @@ TEST(ObjectDictionary, EveryPdoIsMappedToObjectsOfItsLength) {
   for (unsigned index = 0x1400; index < 0x1A00; ++index) {
     if ((index < 0x1600 || index >= 0x1800) && index_exists(static_cast<std::uint16_t>(index))) {
       ++pdos;
-      EXPECT_EQ(bits_of(static_cast<std::uint16_t>(index + 0x200)), index == 0x1400 ? 48U : 64U) << index;
+      EXPECT_EQ(bits_of(static_cast<std::uint16_t>(index + 0x200)), index == 0x1400 || index == 0x1802 ? 48U : 64U)
+          << index;
     }
   }
-  EXPECT_EQ(pdos, 1U + 128U + 2U);
+  EXPECT_EQ(pdos, 1U + 128U + 3U);
+  const std::vector<std::uint32_t> monitored{0x20090110, 0x60780010, 0x20090208, 0x10010008};
+  for (std::uint8_t sub = 1; sub <= 4; ++sub) {
+    EXPECT_EQ(find_object({0x1A02, sub})->default_value, monitored[sub - 1U]) << "docs/protocol.md, example of 0x383";
+  }
   EXPECT_EQ(find_object({0x1610 + 5, 2})->default_value >> 8U, 0x210502U) << "joint 5, bytes 4-7";
   EXPECT_EQ(find_object({0x1650 + 63, 1})->default_value >> 8U, 0x217F01U) << "joint 63, second frame, bytes 0-3";
 }

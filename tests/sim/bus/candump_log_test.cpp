@@ -113,7 +113,9 @@ TEST_F(CandumpFile, ShowsTsharkTheProtocolsExamplesAsCanopen) {
   };
   Bus bus;
   Silent node;
+  Silent other;  // to acknowledge
   Controller& controller = bus.attach(node);
+  bus.attach(other);
   CandumpLog log(path);
   bus.set_trace([&](const Transmission& transmission) { log.write(transmission.end, transmission.frame); });
   for (std::size_t i = 0; i < examples.size(); ++i) {

@@ -41,7 +41,7 @@ TEST(KernelChain, LosesWhatTheLossesNameAndNothingElse) {
     EXPECT_EQ(chain.lost().size(), expected) << "tick " << tick;
   }
   EXPECT_EQ(chain.kernel(1).missed_frames(), 1U);
-  EXPECT_EQ(chain.kernel(2).missed_frames(), 1U);
+  EXPECT_EQ(chain.kernel(2).missed_frames(), 0U) << "joint 2 does not depend on joint 4";
   EXPECT_EQ(chain.kernel(3).missed_frames(), 1U);
   EXPECT_EQ(chain.kernel(0).missed_frames(), 0U);
 }

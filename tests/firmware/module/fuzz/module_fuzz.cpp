@@ -75,12 +75,18 @@ class Setup {
   std::array<canopen::AngleLimits, 3> limits_{{{-1 << 29, 1 << 30}, {-1 << 30, 1 << 29}, {-1 << 30, 1 << 30}}};
 };
 
+struct Meters final : firmware::SensorPort {
+  firmware::ServoReadings read() override { return readings; }
+  firmware::ServoReadings readings;
+};
+
 class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
  public:
   explicit World(const Setup& setup)
-      : setup_(setup), module({setup.node(Setup::joint), 1, {7, 8, 9}, 0}, {*this, *this, *this}) {}
+      : setup_(setup), module({setup.node(Setup::joint), 1, {7, 8, 9}}, {*this, *this, *this, meters_}) {}
 
   void power_on() {
+    off_ = asked_ = false;
     module.power_on(now_);
     run_for(20'000);
   }
@@ -102,16 +108,18 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
     require(frame.length <= 8 && frame.identifier <= CanFrame::highest_identifier, "frames are frames");
     const unsigned node = setup_.node(Setup::joint);
     const unsigned base = frame.identifier - node;
-    const bool own = base == 0x080 || base == 0x180 || base == 0x280 || base == 0x580 || base == 0x700;
+    const bool own = base == 0x080 || base == 0x180 || base == 0x280 || base == 0x380 || base == 0x580 || base == 0x700;
     require(own || frame.identifier == canopen::identifier::sync || frame.identifier == canopen::identifier::tick,
             "a module sends on its own identifiers, SYNC and TICK");
+    require(!off_, "nothing is handed to a controller that is bus-off");
     if (closed_ || mailboxes_.size() == mailbox_count) {
       return false;
     }
     mailboxes_.push_back(frame);
     return true;
   }
-  void pulse(std::int32_t width) override {
+  void pulse(std::int32_t width, std::uint32_t period_us) override {
+    require(period_us >= 100 && period_us <= 100'000, "pulses have a servo's period");
     require(width >= 6'000 && width <= 30'000, "pulses are within the servo's range");
     require(module.state() == NmtState::operational, "pulses are sent in Operational only");
     const bool enabled = module.power() == PowerState::operation_enabled && module.synchronised();
@@ -120,6 +128,10 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
     pulsing_ = true;
   }
   void off() override { pulsing_ = false; }
+  void recover() override {
+    require(off_, "only who is off the bus asks to come back");
+    asked_ = true;
+  }
   std::uint8_t read() override { return sensors_; }
 
   // Events.
@@ -131,8 +143,10 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
     require(!module.synchronised() || module.state() == NmtState::operational, "the tick is known in Operational");
   }
   void receive(const CanFrame& frame) {
-    module.receive(now_, frame);
-    check();
+    if (!off_) {
+      module.receive(now_, frame);
+      check();
+    }
   }
   void write(canopen::Address address, std::uint8_t size, std::uint32_t value) {
     CanFrame frame{static_cast<std::uint16_t>(canopen::identifier::sdo_request + setup_.node(Setup::joint)), 8, {}};
@@ -168,6 +182,19 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
     }
     now_ = end;
   }
+  void handle_bus(std::uint8_t what) {
+    if (what % 8U == 7) {
+      mailboxes_.clear();
+      off_ = true;
+      module.bus_off(now_);
+    } else if (asked_ || what % 8U == 6) {
+      off_ = asked_ = false;
+      module.bus_back(now_);
+    }
+    closed_ = what < 64;
+    require(module.is_bus_off() == off_, "the module knows whether it is on the bus");
+    check();
+  }
   void transmit() {
     // What is handed over meanwhile waits for the next time: an end of SYNC may give more than it takes.
     for (std::size_t count = mailboxes_.size(); count > 0; --count) {
@@ -183,7 +210,10 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
   const Setup& setup_;
   Microseconds now_ = 0;
   std::deque<CanFrame> mailboxes_;
+  Meters meters_;
   bool closed_ = false;
+  bool off_ = false;    ///< the bus
+  bool asked_ = false;  ///< to come back
   bool pulsing_ = false;
   std::uint8_t sensors_ = 0;
 
@@ -285,10 +315,11 @@ void World::handle(std::uint8_t event, Input& input) {
     }
     case 17:
       sensors_ = input.byte();
+      meters_.readings.current_ma = static_cast<std::uint16_t>(sensors_ << 4U);
       transmit();
       break;
     case 18:
-      closed_ = input.byte() < 64;
+      handle_bus(input.byte());
       receive(encode(canopen::Heartbeat{canopen::host_node, NmtState::operational}));
       break;
     default:

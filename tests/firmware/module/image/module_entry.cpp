@@ -11,17 +11,22 @@ using proleg::firmware::Module;
 
 struct NoPorts final : proleg::CanPort, proleg::firmware::ServoPort, proleg::firmware::ContactPort {
   bool send(const CanFrame& /*frame*/) override { return true; }
-  void pulse(std::int32_t /*width*/) override {}
+  void pulse(std::int32_t /*width*/, std::uint32_t /*period_us*/) override {}
   void off() override {}
   std::uint8_t read() override { return 0; }
 };
 
+struct NoSensors final : proleg::firmware::SensorPort {
+  proleg::firmware::ServoReadings read() override { return {}; }
+};
+
 NoPorts ports;
+NoSensors sensors;
 
 }  // namespace
 
 /// Its size is read from the symbol table.
-Module the_module({1, 1, {1, 2, 3}, proleg::core_fingerprint}, {ports, ports, ports});
+Module the_module({1, 1, {1, 2, 3}, proleg::core_fingerprint}, {ports, ports, ports, sensors});
 
 extern "C" {
 
@@ -30,6 +35,8 @@ extern "C" {
 [[gnu::used]] void module_transmitted(proleg::Microseconds now, const CanFrame* frame) {
   the_module.transmitted(now, *frame);
 }
+[[gnu::used]] void module_bus_off(proleg::Microseconds now) { the_module.bus_off(now); }
+[[gnu::used]] void module_bus_back(proleg::Microseconds now) { the_module.bus_back(now); }
 [[gnu::used]] proleg::Microseconds module_poll(proleg::Microseconds now) {
   the_module.poll(now);
   return the_module.next_deadline();

@@ -10,6 +10,16 @@
 
 namespace proleg::test {
 
+/// What the module measures, as a test wants it.
+struct Meters final : firmware::SensorPort {
+  [[nodiscard]] firmware::ServoReadings read() override {
+    ++count;
+    return readings;
+  }
+  firmware::ServoReadings readings;
+  std::size_t count = 0;  ///< of the times at which they were read
+};
+
 /// What a servo was told.
 struct Pulse {
   Microseconds time;                  ///< of the bus
@@ -24,7 +34,7 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
 
   /// clock_offset: what the module's clock shows when that of the bus shows 0.
   explicit ModuleNode(const firmware::Board& board, Microseconds clock_offset = 0)
-      : clock_offset_(clock_offset), module(board, {*this, *this, *this}) {}
+      : clock_offset_(clock_offset), module(board, {*this, *this, *this, meters}) {}
   ModuleNode(const ModuleNode&) = delete;
 
   // The world's side; times are those of the bus.
@@ -32,6 +42,12 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
   void receive(Microseconds now, const CanFrame& frame) { at(now).receive(local(now), frame); }
   void transmitted(Microseconds now, const CanFrame& frame) { at(now).transmitted(local(now), frame); }
   void poll(Microseconds now) { at(now).poll(local(now)); }
+  /// The controller has forgotten what it had to send.
+  void bus_off(Microseconds now) {
+    waiting.clear();
+    at(now).bus_off(local(now));
+  }
+  void bus_back(Microseconds now) { at(now).bus_back(local(now)); }
   [[nodiscard]] Microseconds next_deadline() const {
     const Microseconds deadline = module.next_deadline();
     return deadline == never ? never : (deadline < clock_offset_ ? 0 : deadline - clock_offset_);
@@ -39,6 +55,10 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
 
   /// Frames that wait for the bus, in the order in which they were handed over.
   std::vector<CanFrame> waiting;
+  /// State frames that the module wants to hear.
+  std::vector<std::uint16_t> listened;
+  /// Times at which the controller was asked to come back.
+  std::vector<Microseconds> recoveries;
   /// Pulses and switches to off since the start; those that change nothing included.
   std::vector<Pulse> pulses;
   [[nodiscard]] bool is_pulsing() const { return !pulses.empty() && pulses.back().width.has_value(); }
@@ -49,6 +69,8 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
     }
     return count;
   }
+  std::uint32_t pulse_period_us = 0;  ///< of the last pulse
+  Meters meters;
   /// Touch sensors as they are now.
   std::uint8_t sensors = 0;
   /// Times at which they were read.
@@ -61,6 +83,9 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
     return module;
   }
 
+  void listen(std::span<const std::uint16_t> identifiers) override {
+    listened.assign(identifiers.begin(), identifiers.end());
+  }
   [[nodiscard]] bool send(const CanFrame& frame) override {
     if (waiting.size() == mailboxes) {
       return false;
@@ -68,7 +93,11 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
     waiting.push_back(frame);
     return true;
   }
-  void pulse(std::int32_t width) override { pulses.push_back({now_, width}); }
+  void recover() override { recoveries.push_back(now_); }
+  void pulse(std::int32_t width, std::uint32_t period_us) override {
+    pulses.push_back({now_, width});
+    pulse_period_us = period_us;
+  }
   void off() override { pulses.push_back({now_, std::nullopt}); }
   [[nodiscard]] std::uint8_t read() override {
     readings.push_back(now_);

@@ -159,7 +159,11 @@ class TestBus {
     frame_end_ = never;
     const CanFrame frame = on_wire_;
     const std::size_t sender = sender_;
-    queue_->erase(std::find(queue_->begin(), queue_->end(), frame));
+    const auto sent = std::find(queue_->begin(), queue_->end(), frame);
+    if (sent == queue_->end()) {
+      return;  // its sender went bus-off: nobody hears it
+    }
+    queue_->erase(sent);
     on_frame(frame);
     log.push_back({now_, sender, frame});
     if (sender != host) {

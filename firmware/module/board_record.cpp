@@ -1,0 +1,140 @@
+#include "firmware/module/board_record.hpp"
+
+#include "shared/fixed/crc32.hpp"
+
+namespace proleg::firmware {
+namespace {
+
+constexpr std::uint8_t schema_version = 1;
+constexpr std::uint8_t flag_feedback = 1;
+constexpr std::size_t version_at = 4;
+constexpr std::size_t node_at = 5;
+constexpr std::size_t flags_at = 6;
+constexpr std::size_t minus_90_at = 8;
+constexpr std::size_t plus_90_at = 10;
+constexpr std::size_t crc_at = 28;
+constexpr std::uint8_t erased = 0xFF;
+
+using Bytes = std::span<const std::uint8_t>;
+
+std::uint32_t read(Bytes bytes, std::size_t position, std::size_t size) {
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    value |= std::uint32_t{bytes[position + i]} << (8U * i);
+  }
+  return value;
+}
+
+void write(std::span<std::uint8_t> bytes, std::size_t position, std::size_t size, std::uint32_t value) {
+  for (std::size_t i = 0; i < size; ++i) {
+    bytes[position + i] = static_cast<std::uint8_t>(value >> (8U * i));
+  }
+}
+
+std::optional<BoardRecord> decode(Bytes bytes) {
+  if (read(bytes, crc_at, 4) != crc32(bytes.first(crc_at)) || bytes[version_at] != schema_version) {
+    return std::nullopt;
+  }
+  BoardRecord record;
+  record.node = bytes[node_at];
+  record.has_feedback = (bytes[flags_at] & flag_feedback) != 0;
+  record.feedback_at_minus_90 = static_cast<std::uint16_t>(read(bytes, minus_90_at, 2));
+  record.feedback_at_plus_90 = static_cast<std::uint16_t>(read(bytes, plus_90_at, 2));
+  return record.valid() ? std::optional(record) : std::nullopt;
+}
+
+bool is_erased(Bytes bytes) {
+  for (const std::uint8_t byte : bytes) {
+    if (byte != erased) {
+      return false;
+    }
+  }
+  return true;
+}
+
+struct Found {
+  std::optional<BoardRecord> record;
+  std::uint32_t sequence = 0;
+  unsigned sector = 0;
+};
+
+Found find_newest(const std::array<Bytes, 2>& sectors) {
+  Found found;
+  for (unsigned sector = 0; sector < sectors.size(); ++sector) {
+    for (Bytes rest = sectors[sector]; rest.size() >= BoardRecord::size; rest = rest.subspan(BoardRecord::size)) {
+      const Bytes bytes = rest.first(BoardRecord::size);
+      const std::uint32_t sequence = read(bytes, 0, 4);
+      if (sequence <= found.sequence || is_erased(bytes)) {
+        continue;
+      }
+      if (const std::optional<BoardRecord> record = decode(bytes)) {
+        found = {record, sequence, sector};
+      }
+    }
+  }
+  return found;
+}
+
+/// Where the next record of a sector goes: behind everything that was ever written there. Its end if it is full.
+std::size_t free_place(Bytes sector) {
+  std::size_t place = sector.size() / BoardRecord::size * BoardRecord::size;
+  while (place > 0 && is_erased(sector.subspan(place - BoardRecord::size, BoardRecord::size))) {
+    place -= BoardRecord::size;
+  }
+  return place;
+}
+
+bool equal(Bytes a, Bytes b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i] != b[i]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+bool BoardRecord::valid() const {
+  return node >= 1 && node <= highest_node && feedback_at_minus_90 <= highest_reading &&
+         feedback_at_plus_90 <= highest_reading && (!has_feedback || feedback_at_minus_90 != feedback_at_plus_90);
+}
+
+std::array<std::uint8_t, BoardRecord::size> encode(const BoardRecord& record, std::uint32_t sequence) {
+  std::array<std::uint8_t, BoardRecord::size> bytes{};
+  write(bytes, 0, 4, sequence);
+  bytes[version_at] = schema_version;
+  bytes[node_at] = record.node;
+  bytes[flags_at] = record.has_feedback ? flag_feedback : std::uint8_t{0};
+  write(bytes, minus_90_at, 2, record.feedback_at_minus_90);
+  write(bytes, plus_90_at, 2, record.feedback_at_plus_90);
+  write(bytes, crc_at, 4, crc32(Bytes(bytes).first(crc_at)));
+  return bytes;
+}
+
+std::optional<BoardRecord> newest(Bytes sector_1, Bytes sector_2) { return find_newest({sector_1, sector_2}).record; }
+
+AppendResult append(FlashPort& flash, const BoardRecord& record) {
+  if (!record.valid()) {
+    return AppendResult::invalid_record;
+  }
+  const Found before = find_newest({flash.contents(0), flash.contents(1)});
+  unsigned sector = before.sector;
+  std::size_t place = free_place(flash.contents(sector));
+  if (place + BoardRecord::size > flash.contents(sector).size()) {
+    // Erased even if it looks so: an erase that was cut off can leave bits that read as 1 for a while.
+    sector ^= 1U;
+    place = 0;
+    if (!flash.erase(sector)) {
+      return AppendResult::erase_failed;
+    }
+  }
+  const std::array<std::uint8_t, BoardRecord::size> bytes = encode(record, before.sequence + 1U);
+  if (!flash.program(sector, static_cast<std::uint32_t>(place), bytes) ||
+      !equal(bytes, flash.contents(sector).subspan(place, BoardRecord::size))) {
+    return AppendResult::program_failed;
+  }
+  return AppendResult::ok;
+}
+
+}  // namespace proleg::firmware

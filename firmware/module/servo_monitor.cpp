@@ -1,0 +1,42 @@
+#include "firmware/module/servo_monitor.hpp"
+
+namespace proleg::firmware {
+
+void ServoMonitor::reset() {
+  limit_ma_ = canopen::object::current_limit.default_value;
+  limit_time_ms_ = canopen::object::current_limit_time.default_value;
+  readings_ = {};
+  forget_current();
+  next_reading_ = never;
+}
+
+void ServoMonitor::read(Microseconds now, std::uint32_t tick_period_us) {
+  constexpr std::uint16_t highest_current_ma = 0x7FFF;  // of object 0x6078
+  readings_ = port_.read();
+  if (readings_.current_ma > highest_current_ma) {
+    readings_.current_ma = highest_current_ma;
+  }
+  if (!measures_angle_) {
+    readings_.angle.reset();
+  }
+  judge_current(now);
+  next_reading_ = now + tick_period_us + tick_period_us / 2;
+}
+
+void ServoMonitor::judge_current(Microseconds now) {
+  if (limit_ma_ == 0 || readings_.current_ma <= limit_ma_) {
+    forget_current();
+    return;
+  }
+  if (above_since_ == never) {
+    above_since_ = now;
+  }
+  over_current_ = now - above_since_ >= Microseconds{limit_time_ms_} * 1'000U;
+}
+
+void ServoMonitor::forget_current() {
+  over_current_ = false;
+  above_since_ = never;
+}
+
+}  // namespace proleg::firmware

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "firmware/module/ports.hpp"
+#include "shared/canopen/objects.hpp"
+
+namespace proleg::firmware {
+
+/// Reads what the servo and the chip say of themselves, once a tick, and tells over-current.
+class ServoMonitor {
+ public:
+  /// measures_angle: the board has a feedback potentiometer; else an angle in the readings is noise.
+  ServoMonitor(SensorPort& port, bool measures_angle) : port_(port), measures_angle_(measures_angle) {}
+
+  /// Limits as they are by default, nothing read yet.
+  void reset();
+
+  /// Object 0x200A. A current above limit_ma for limit_time_ms is over-current; limit 0: none is.
+  [[nodiscard]] std::uint16_t limit_ma() const { return limit_ma_; }
+  void set_limit_ma(std::uint16_t limit_ma) { limit_ma_ = limit_ma; }
+  [[nodiscard]] std::uint16_t limit_time_ms() const { return limit_time_ms_; }
+  void set_limit_time_ms(std::uint16_t time_ms) { limit_time_ms_ = time_ms; }
+
+  /// Takes a reading. The next one is the next tick's; if that stays out for half a tick period, it is due all the
+  /// same: a servo that holds the safe pose can stall, too.
+  void read(Microseconds now, std::uint32_t tick_period_us);
+  [[nodiscard]] Microseconds next_deadline() const { return next_reading_; }
+
+  /// Whether all readings were above the limit for the limit's time, as of the last one.
+  [[nodiscard]] bool over_current() const { return over_current_; }
+  /// What was above the limit so far does not count any more.
+  void forget_current();
+
+  // As read last. Currents end at 32,767 mA.
+  [[nodiscard]] std::uint16_t current_ma() const { return readings_.current_ma; }
+  [[nodiscard]] std::int8_t temperature_c() const { return readings_.temperature_c; }
+  /// Nothing: not measured.
+  [[nodiscard]] const std::optional<std::int32_t>& angle() const { return readings_.angle; }
+
+ private:
+  void judge_current(Microseconds now);
+
+  SensorPort& port_;
+  bool measures_angle_;
+  std::uint16_t limit_ma_ = canopen::object::current_limit.default_value;
+  std::uint16_t limit_time_ms_ = canopen::object::current_limit_time.default_value;
+  ServoReadings readings_;
+  bool over_current_ = false;
+  Microseconds above_since_ = never;  ///< the first reading of those above the limit
+  Microseconds next_reading_ = never;
+};
+
+}  // namespace proleg::firmware

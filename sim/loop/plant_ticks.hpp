@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "shared/kernel/servo_schedule.hpp"
+#include "sim/loop/plant.hpp"
+#include "sim/loop/plant_schedule.hpp"
+#include "sim/scenario/scenario.hpp"
+
+namespace proleg::sim {
+
+/// Moves servos and world through the ticks of the loop: reads the servos' pulses and makes the steps of the physics,
+/// each at its time after the SYNC.
+class PlantTicks {
+ public:
+  /// The pulse that the servo of a joint gets now.
+  using ReadPulse = std::function<std::optional<std::int32_t>(std::uint32_t joint)>;
+  /// A pulse that a servo took, or that it got none.
+  struct Reading {
+    std::uint64_t time_us;  ///< start of the servo's interval, since SYNC 0
+    std::uint32_t joint;
+    std::optional<std::int32_t> pulse;
+  };
+
+  /// Both must outlive this.
+  PlantTicks(const Scenario& scenario, Plant& plant, ReadPulse read_pulse);
+
+  /// SYNC of a tick, counted from 0. The one before may still have readings to come.
+  void begin(std::uint32_t tick, BusTime sync);
+  /// When there is something to do: servos, a step, or complete().
+  [[nodiscard]] BusTime next_event() const;
+  void advance_to(BusTime now);
+
+  /// At the next SYNC, before the modules hear it. Only the pulses of intervals that start so late that they are not
+  /// read yet are still to come: by its own crystal a module may begin one just after the SYNC before which it belongs,
+  /// and its program takes time. Until then the next tick's world stands still.
+  void end(BusTime now);
+  [[nodiscard]] bool has_ended() const { return ended_; }
+  /// Whether complete() is due: all have given their last pulses.
+  [[nodiscard]] bool is_complete(BusTime now) const { return ended_ && completion_ <= now; }
+  /// The servos take the last pulses of the tick.
+  void complete();
+
+  /// Of the tick that was completed last, in the order of time, then of joints.
+  [[nodiscard]] std::span<const Reading> readings() const { return completed_; }
+
+ private:
+  void act(const PlantAction& action);
+  void take_readings(std::uint64_t until_us);
+
+  const Scenario& scenario_;
+  Plant& plant_;
+  ReadPulse read_pulse_;
+  ServoSchedule servo_schedule_;
+  std::uint32_t tick_ = 0;  ///< whose readings and steps are made
+  BusTime sync_ = 0;        ///< of the tick that began last
+  std::vector<PlantAction> actions_;
+  std::size_t next_action_ = 0;
+  bool ended_ = false;
+  BusTime completion_ = 0;
+  std::vector<PlantAction> late_;
+  std::vector<Reading> readings_;
+  std::vector<Reading> completed_;
+  std::size_t taken_ = 0;  ///< of the readings, by the servos
+};
+
+}  // namespace proleg::sim

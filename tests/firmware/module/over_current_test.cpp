@@ -1,0 +1,204 @@
+// A servo that draws too much for too long loses its pulses.
+
+#include "test_robot.hpp"
+
+namespace proleg {
+namespace {
+
+namespace object = canopen::object;
+using canopen::AbortCode;
+using canopen::Emergency;
+using canopen::EmergencyCode;
+using canopen::PowerState;
+
+constexpr std::uint8_t node = test::TestModule::node_id;
+
+class OverCurrent : public testing::Test {
+ protected:
+  OverCurrent() {
+    robot.set_up_and_start();
+    robot.enable(0);
+  }
+
+  void draw(std::uint16_t current_ma) { robot.it().meters.readings.current_ma = current_ma; }
+  void write(const canopen::Object& entry, std::uint32_t value) {
+    ASSERT_EQ(robot.bus.write(node, entry, value), AbortCode::none);
+  }
+  /// Runs SYNCs up to and including `last`, then whether the module is in Fault.
+  bool faulty_after(std::uint32_t first, std::uint32_t last) {
+    robot.run(first, last);
+    return robot.module().power() == PowerState::fault;
+  }
+  [[nodiscard]] std::uint8_t flags(std::uint32_t tick) const {
+    for (const test::TestBus::Sent& sent : robot.bus.sent(canopen::identifier::state_frame + node)) {
+      if (sent.frame.data[7] == static_cast<std::uint8_t>(tick)) {
+        return sent.frame.data[6];
+      }
+    }
+    ADD_FAILURE() << "no state " << tick;
+    return 0;
+  }
+
+  test::TestModule robot;
+};
+
+TEST_F(OverCurrent, IsAFaultAfterHalfASecondAbove2000MilliamperesAndNotATickSooner) {
+  robot.run(9);
+  draw(2'001);
+  // The first reading above the limit is that of tick 10; 50 ticks of 10 ms later it is half a second.
+  EXPECT_FALSE(faulty_after(10, 59));
+  EXPECT_TRUE(robot.it().is_pulsing());
+  EXPECT_TRUE(robot.emergencies().empty());
+  robot.sync(60);
+  EXPECT_EQ(robot.module().power(), PowerState::fault);
+  EXPECT_FALSE(robot.it().is_pulsing());
+  EXPECT_EQ(robot.bus.value(node, object::statusword) & 0x4FU, 0x08U) << "CiA 402: fault";
+}
+
+TEST_F(OverCurrent, UpToTheLimitIsNone) {
+  draw(2'000);
+  robot.run(0);
+  EXPECT_FALSE(faulty_after(1, 300));
+}
+
+TEST_F(OverCurrent, OneReadingThatIsNotAboveTheLimitBeginsAnew) {
+  draw(30'000);
+  robot.run(49);
+  draw(2'000);
+  robot.run(50, 50);
+  draw(30'000);
+  EXPECT_FALSE(faulty_after(51, 100));
+  EXPECT_TRUE(faulty_after(101, 101));
+}
+
+TEST_F(OverCurrent, LimitAndTimeAreObjects) {
+  EXPECT_EQ(robot.bus.value(node, canopen::Address{0x200A, 1}), 2'000U);
+  EXPECT_EQ(robot.bus.value(node, canopen::Address{0x200A, 2}), 500U);
+  write(object::current_limit, 700);
+  write(object::current_limit_time, 35);
+  draw(701);
+  robot.run(3);
+  EXPECT_EQ(robot.module().power(), PowerState::operation_enabled) << "30 ms after the first reading";
+  EXPECT_TRUE(faulty_after(4, 4));
+}
+
+TEST_F(OverCurrent, TimeZeroIsTheFirstReading) {
+  write(object::current_limit_time, 0);
+  robot.run(0);
+  draw(2'001);
+  EXPECT_TRUE(faulty_after(1, 1));
+}
+
+TEST_F(OverCurrent, LimitZeroIsOff) {
+  write(object::current_limit, 0);
+  draw(0xFFFF);
+  robot.run(0);
+  EXPECT_FALSE(faulty_after(1, 200));
+}
+
+TEST_F(OverCurrent, LimitsDoNotBelongToTheConfiguration) {
+  const std::uint32_t crc = robot.bus.value(node, object::configuration_crc);
+  EXPECT_EQ(crc, robot.crc());
+  write(object::current_limit, 1);
+  write(object::current_limit_time, 2);
+  EXPECT_EQ(robot.bus.value(node, object::configuration_crc), crc);
+  robot.command(canopen::NmtCommand::enter_pre_operational);
+  robot.configure(0);
+  EXPECT_EQ(robot.bus.value(node, object::configuration_crc), crc);
+  EXPECT_EQ(robot.bus.value(node, object::current_limit), 1U) << "a new set-up of the gait leaves them";
+  robot.command(canopen::NmtCommand::reset_node);
+  robot.bus.run_for(50'000);
+  EXPECT_EQ(robot.bus.value(node, object::current_limit), 2'000U);
+}
+
+TEST_F(OverCurrent, IsToldWithTheDocumentedFrame) {
+  // docs/protocol.md shows it for node 3.
+  const CanFrame example{0x083, 8, {0x10, 0x23, 0x03, 0, 0, 0, 0, 0}};
+  draw(5'000);
+  robot.run(50);
+  robot.bus.run_for(1'000);
+  std::vector<test::TestBus::Sent> sent = robot.bus.sent(canopen::identifier::emergency + node);
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_EQ(sent[0].frame.data, example.data);
+  EXPECT_EQ(robot.bus.value(node, object::error_register), 0x03U);
+}
+
+TEST_F(OverCurrent, SetsTheFaultFlagOfTheStateFramesAndNothingElse) {
+  test::TestModule sound(robot.setup.kernel);
+  sound.set_up_and_start();
+  draw(5'000);
+  robot.run(80);
+  sound.run(80);
+  ASSERT_EQ(robot.module().power(), PowerState::fault);
+  EXPECT_EQ(flags(51) & StateFrame::fault, 0) << "sent before the reading of its tick";
+  EXPECT_EQ(flags(52) & StateFrame::fault, StateFrame::fault);
+  EXPECT_EQ(flags(81) & StateFrame::fault, StateFrame::fault);
+  EXPECT_EQ(robot.kernel().setpoint(0), sound.kernel().setpoint(0)) << "the state is computed all the same";
+  StateFrame frame = robot.kernel().frame(0, 0);
+  frame.bytes[6] = static_cast<std::uint8_t>(frame.bytes[6] & ~unsigned{StateFrame::fault});
+  EXPECT_EQ(frame, sound.kernel().frame(0, 0));
+  EXPECT_EQ(robot.module().last_tick().flags & StateFrame::fault, StateFrame::fault);
+}
+
+TEST_F(OverCurrent, EndsByDecision) {
+  draw(5'000);
+  robot.run(50);
+  draw(100);
+  robot.run(51, 150);
+  EXPECT_EQ(robot.module().power(), PowerState::fault) << "also when the current is gone";
+  write(object::controlword, 0x000F);
+  EXPECT_EQ(robot.module().power(), PowerState::fault);
+  const std::size_t before = robot.bus.log.size();
+  write(object::controlword, 0x0080);
+  robot.bus.run_for(1'000);
+  EXPECT_EQ(robot.module().power(), PowerState::switch_on_disabled);
+  EXPECT_EQ(robot.emergencies(before), (std::vector{Emergency{node, EmergencyCode::none, 0, 0x2310}}));
+  robot.run(151, 152);
+  EXPECT_EQ(flags(153) & StateFrame::fault, 0);
+  robot.enable(0);
+  robot.run(153, 154);
+  EXPECT_TRUE(robot.it().is_pulsing());
+}
+
+TEST_F(OverCurrent, ThatGoesOnAfterTheDecisionIsAFaultAgainAfterItsTime) {
+  draw(5'000);
+  robot.run(60);
+  ASSERT_EQ(robot.module().power(), PowerState::fault);
+  write(object::controlword, 0x0080);
+  EXPECT_EQ(robot.emergencies().size(), 2U);
+  EXPECT_FALSE(faulty_after(61, 110));
+  EXPECT_TRUE(faulty_after(111, 111));
+  robot.bus.run_for(1'000);
+  EXPECT_EQ(robot.emergencies().size(), 3U) << "told once more";
+}
+
+TEST_F(OverCurrent, IsSeenInAServoThatHoldsTheSafePoseWithoutSync) {
+  robot.run(20);
+  draw(5'000);
+  robot.bus.run_for(510'000);
+  EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active) << "SYNC was lost before half a second was over";
+  robot.bus.run_for(40'000);
+  EXPECT_EQ(robot.module().power(), PowerState::fault);
+  EXPECT_FALSE(robot.it().is_pulsing());
+}
+
+TEST_F(OverCurrent, CurrentIsReadOnceATickAfterTheStateFrame) {
+  robot.run(9);
+  const std::size_t before = robot.it().meters.count;
+  robot.run(10, 59);
+  EXPECT_EQ(robot.it().meters.count, before + 50);
+}
+
+TEST_F(OverCurrent, AFaultOutlastsTheEndOfOperational) {
+  draw(5'000);
+  robot.run(50);
+  robot.command(canopen::NmtCommand::enter_pre_operational);
+  EXPECT_EQ(robot.module().power(), PowerState::fault);
+  robot.start();
+  EXPECT_EQ(robot.module().power(), PowerState::fault);
+  robot.run(1);
+  EXPECT_EQ(robot.kernel().frame(0, 0).flags() & StateFrame::fault, StateFrame::fault);
+}
+
+}  // namespace
+}  // namespace proleg

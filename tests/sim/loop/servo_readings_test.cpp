@@ -1,0 +1,137 @@
+// What modules in the loop measure of their servos, and what they do about it.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <vector>
+
+#include "shared/canopen/declared_objects.hpp"
+#include "shipped.hpp"
+#include "sim/loop/hardware_loop.hpp"
+#include "sim/loop/simulation.hpp"
+#include "sim/robot/servo_current.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr ServoCurrent servo;
+
+double in_radians(std::int32_t angle) { return angle * (std::numbers::pi / 2.0 / quarter_turn); }
+
+TEST(ServoReadings, AreTheActualAnglesAndCurrentsBetweenIdleAndStall) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  Simulation simulation(scenario);
+  double sum_ma = 0.0;
+  unsigned count = 0;
+  while (simulation.tick() < 500) {
+    simulation.advance();
+    for (std::size_t joint = 0; joint < scenario.robot.joints.size(); ++joint) {
+      const firmware::ServoReadings readings = simulation.plant().servo_readings(joint);
+      ASSERT_TRUE(readings.angle);
+      EXPECT_NEAR(in_radians(*readings.angle), simulation.plant().joint_angles()[joint], 2e-9);
+      EXPECT_GE(readings.current_ma, servo.idle_ma);
+      EXPECT_LE(readings.current_ma, servo.stall_ma);
+      EXPECT_EQ(readings.temperature_c, 25);
+      sum_ma += readings.current_ma;
+      ++count;
+    }
+  }
+  EXPECT_GT(sum_ma / count, 50.0);
+  EXPECT_LT(sum_ma / count, 400.0) << "a robot that crawls on the flat is far from stall";
+}
+
+TEST(ServoReadings, OfAServoThatIsHeldOrLimp) {
+  Scenario scenario = shipped("travelling_wave/uniform");
+  for (Joint& joint : scenario.robot.joints) {
+    joint.max_torque = 1e-6;  // cannot lift the robot
+  }
+  Plant plant(scenario);
+  EXPECT_EQ(plant.servo_readings(2).current_ma, servo.idle_ma) << "nothing has happened yet";
+  plant.set_command(2, 30'000);
+  plant.step();
+  EXPECT_NEAR(plant.servo_readings(2).current_ma, servo.stall_ma, 1.0);
+  plant.release(2);
+  plant.step();
+  EXPECT_EQ(plant.servo_readings(2).current_ma, servo.idle_ma);
+}
+
+TEST(ServoReadings, AreMonitoredByEveryModuleEveryTenthTick) {
+  const Scenario scenario = shipped("travelling_wave/coupled");
+  HardwareOptions options;
+  std::map<std::uint8_t, std::vector<canopen::Monitoring>> monitored;
+  options.trace = [&](const Transmission& transmission) {
+    if (const auto monitoring = canopen::decode_monitoring(transmission.frame)) {
+      monitored[monitoring->node].push_back(*monitoring);
+    }
+  };
+  HardwareLoop loop(scenario, options);
+  std::vector<double> angles;  // of the third joint, at the SYNCs at which it is its turn
+  constexpr unsigned joint = 2;
+  for (std::uint32_t tick = 0; tick < 200; ++tick) {
+    if (tick % 10 == joint) {
+      angles.push_back(loop.plant().joint_angles()[joint]);
+    }
+    loop.advance();
+  }
+  ASSERT_EQ(monitored.size(), 5U);
+  for (const auto& [node, messages] : monitored) {
+    EXPECT_EQ(messages.size(), 20U) << "node " << int{node};
+  }
+  const auto& messages = monitored[scenario.modules[joint].node];
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    // A step of the physics may lie on either side of the SYNC.
+    EXPECT_NEAR(messages[i].angle * (std::numbers::pi / 2.0 / (1 << 14)), angles[i], 0.05) << i;
+    EXPECT_GE(messages[i].current_ma, servo.idle_ma);
+    EXPECT_LE(messages[i].current_ma, servo.stall_ma);
+    EXPECT_EQ(messages[i].temperature_c, 25);
+    EXPECT_EQ(messages[i].faults, 0);
+  }
+}
+
+TEST(ServoReadings, AboveTheLimitTakeThePulsesButNotTheGait) {
+  const Scenario scenario = shipped("travelling_wave/coupled");
+  constexpr unsigned joint = 1;
+  const std::uint8_t node = scenario.modules[joint].node;
+  HardwareOptions options;
+  // 0x200A:1 = 1 mA, which is less than a servo at rest draws.
+  options.injected.push_back({100,
+                              {static_cast<std::uint16_t>(canopen::identifier::sdo_request + node),
+                               8,
+                               {0x2B, 0x0A, 0x20, 0x01, 0x01, 0x00, 0x00, 0x00}}});
+  std::vector<std::pair<std::uint32_t, CanFrame>> emergencies;
+  std::vector<std::string> notices;
+  HardwareLoop* running = nullptr;
+  bool fault_flag = false;
+  options.trace = [&](const Transmission& transmission) {
+    if (transmission.frame.identifier == canopen::identifier::emergency + node) {
+      emergencies.emplace_back(running->tick(), transmission.frame);
+    }
+    if (transmission.frame.identifier == canopen::identifier::state_frame + node) {
+      fault_flag = (transmission.frame.data[6] & StateFrame::fault) != 0;
+    }
+  };
+  options.notice = [&](const std::string& notice) { notices.push_back(notice); };
+  HardwareLoop loop(scenario, options);
+  running = &loop;
+  Simulation simulation(scenario);
+  while (loop.tick() < 300) {
+    loop.advance();
+    simulation.advance();
+  }
+  ASSERT_EQ(emergencies.size(), 1U);
+  EXPECT_EQ(emergencies[0].second.data, (std::array<std::uint8_t, 8>{0x10, 0x23, 0x03, 0, 0, 0, 0, 0}));
+  // The first reading above the limit is that of tick 101.
+  EXPECT_EQ(emergencies[0].first, 101U + 50U);
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices[0].find("over-current"), std::string::npos) << notices[0];
+  EXPECT_TRUE(fault_flag);
+  EXPECT_EQ(loop.setpoint_hash().hex(), simulation.setpoint_hash().hex());
+  EXPECT_GT(loop.differences(), 0U) << "pulses that are missing";
+  EXPECT_EQ(loop.first_difference()->kind, Difference::Kind::servo_command);
+  EXPECT_EQ(loop.first_difference()->joint, joint);
+}
+
+}  // namespace
+}  // namespace proleg::sim

@@ -95,6 +95,22 @@ void root(int i) { tables::steps[i](); }
         self.assertLess(found, 500)
         self.expect_error(text, "root", "unknown target of the indirect call at ")
 
+    def test_functions_of_other_folders_than_those_named_do_not_count(self):
+        shallow, deep = (self.FILL + f"void root() {{ volatile char a[{size}]; use(a); }}" for size in (40, 400))
+        small = self.bytes_of(shallow, "root")
+        other = self.folder / "other"
+        other.mkdir()
+        self.folder, named = other, self.folder
+        self.assertGreaterEqual(self.bytes_of(deep, "root"), 400)
+        tool = [sys.executable, str(TOOL), "--program", str(named / "program.elf"), "--source", str(named)]
+        (named / "one").mkdir()
+        (named / "program.ci").rename(named / "one/program.ci")
+        for folders, expected in ([["one"], small], [["one", "other"], 400]):
+            options = [text for folder in folders for text in ("--build", str(named / folder))]
+            found = subprocess.run([*tool, *options, "root"], capture_output=True, text=True, check=True).stdout
+            self.assertGreaterEqual(int(found.split()[0]), expected)
+            self.assertEqual(int(found.split()[0]) == small, folders == ["one"])
+
     def test_an_unknown_function_is_an_error(self):
         self.expect_error("void root() {}", "branch", "found no function branch")
 

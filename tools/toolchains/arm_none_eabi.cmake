@@ -1,4 +1,5 @@
-# Common part of the Cortex-M toolchains: Debian's gcc-arm-none-eabi. The including file sets `cpu`.
+# Common part of the Cortex-M toolchains: Debian's gcc-arm-none-eabi. The including file sets `cpu`, and
+# PROLEG_TARGET, which is the name of its preset.
 
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR arm)
@@ -16,8 +17,6 @@ set(CMAKE_ASM_FLAGS_INIT "${cpu_flags}")
 set(CMAKE_C_FLAGS_INIT "${cpu_flags} -ffreestanding -ffunction-sections -fdata-sections")
 # The .ci files beside the objects hold the call graph and the stack of each function, for tools/stack_bound.
 set(CMAKE_CXX_FLAGS_INIT "${CMAKE_C_FLAGS_INIT} -fno-threadsafe-statics -fcallgraph-info=su")
-set(CMAKE_C_FLAGS_RELEASE_INIT "-O2")
-set(CMAKE_CXX_FLAGS_RELEASE_INIT "-O2")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-nostartfiles -Wl,--fatal-warnings")
 
 # ccache 4.7 does not know of the .ci files and would not bring them back.

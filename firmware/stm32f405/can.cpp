@@ -1,0 +1,247 @@
+#include "firmware/stm32f405/can.hpp"
+
+#include <cstring>
+
+#include "firmware/stm32f405/pins.hpp"
+#include "firmware/stm32f405/registers/can.hpp"
+#include "firmware/stm32f405/registers/rcc.hpp"
+#include "shared/canopen/messages.hpp"
+
+namespace proleg::stm32f405 {
+namespace {
+
+// A bit of 14 quanta, sampled after 12 of them: at 85.7 %. CiA 301 recommends 87.5 %, which 42 MHz cannot give: the
+// divisors of 42 allow 6, 7, 14 and 21 quanta, and of 21 the first segment may take only 16 (81 %).
+constexpr std::uint32_t prescaler = 3;
+constexpr std::uint32_t segment_1 = 11;
+constexpr std::uint32_t segment_2 = 2;
+static_assert(board::apb1 / prescaler / (1 + segment_1 + segment_2) == 1'000'000);
+
+/// Initialization mode is entered when a frame that is under way is over: 135 bits at most, and errors.
+constexpr std::uint32_t reads_for_a_frame = 10'000;
+/// RFOM ends after a few cycles of APB1.
+constexpr unsigned reads_for_release = 16;
+/// The FIFO holds three frames. Should more be there, the interrupt comes again.
+constexpr unsigned frames_an_interrupt = 3;
+
+/// Bits of TSR for a mailbox.
+constexpr std::uint32_t of_mailbox(std::uint32_t bits_of_mailbox_0, unsigned mailbox) {
+  return bits_of_mailbox_0 << (8U * mailbox);
+}
+
+// Filter banks, all in 16-bit scale and into FIFO 0. Data frames with 11-bit identifiers pass, and of those what
+// concerns the module: in a robot of 20 joints it is spared nine of ten interrupts.
+constexpr unsigned node_bank = 0;        ///< masks: the module's own identifiers, everybody's heartbeat
+constexpr unsigned common_bank = 1;      ///< what is for all
+constexpr unsigned first_list_bank = 2;  ///< state frames that matter, four a bank
+constexpr unsigned all_states_bank = can1::filter_banks - 1;  ///< masks: all state frames, if the lists are too short
+constexpr unsigned list_banks = all_states_bank - first_list_bank;
+constexpr std::size_t list_entries = 4;
+
+constexpr std::uint32_t filter_of(std::uint32_t identifier) { return identifier << can1::filter_stid_position; }
+/// Identifier and mask: the bits of `mask` must be equal.
+constexpr std::uint32_t masked(std::uint32_t identifier, std::uint32_t mask) {
+  return filter_of(identifier) | (filter_of(mask) | can1::filter_rtr | can1::filter_ide) << 16U;
+}
+constexpr std::uint32_t pair_of(std::uint32_t first, std::uint32_t second) {
+  return filter_of(first) | filter_of(second) << 16U;
+}
+
+/// What passes whatever the robot is like. The module's own identifiers, because it must hear when somebody else sends
+/// on them.
+void accept_common_frames(std::uint8_t node) {
+  namespace identifier = canopen::identifier;
+  constexpr std::uint32_t node_bits = 0x7F;
+  constexpr std::uint32_t function_bits = 0x780;
+  constexpr std::uint32_t with_masks = 1U << node_bank | 1U << all_states_bank;
+  constexpr std::uint32_t all_banks = (1U << can1::filter_banks) - 1U;
+  can1::fmr.write(can1::fmr_finit | can1::fmr_can2sb_of(can1::filter_banks));
+  can1::fa1r.write(0);
+  can1::fm1r.write(all_banks & ~with_masks);
+  can1::fs1r.write(0);
+  can1::ffa1r.write(0);
+  const can1::FilterBank own(node_bank);
+  own.first.write(masked(node, node_bits));
+  own.second.write(masked(identifier::heartbeat, function_bits));
+  const can1::FilterBank common(common_bank);
+  common.first.write(pair_of(identifier::nmt, identifier::sync));
+  common.second.write(pair_of(identifier::commit, identifier::tick));
+  const can1::FilterBank all_states(all_states_bank);
+  all_states.first.write(masked(identifier::state_frame, function_bits));
+  all_states.second.write(masked(identifier::second_state, function_bits));
+  can1::fa1r.write(1U << node_bank | 1U << common_bank);
+  can1::fmr.write(can1::fmr_can2sb_of(can1::filter_banks));
+}
+
+/// A word of data without the bytes from `length` on, which the controller leaves as they come.
+constexpr std::uint32_t first_bytes(std::uint32_t word, std::uint32_t length) {
+  return length >= 4 ? word : word & ((1U << (8U * length)) - 1U);
+}
+
+/// The oldest frame of FIFO 0.
+void read_frame(CanFrame& frame) {
+  const std::uint32_t sent_length = can1::rdt0r.read() & can1::dtr_dlc;
+  const std::uint32_t length = sent_length > CanFrame::longest ? CanFrame::longest : sent_length;
+  const std::array<std::uint32_t, 2> words{first_bytes(can1::rdl0r.read(), length),
+                                           length > 4 ? first_bytes(can1::rdh0r.read(), length - 4U) : 0U};
+  frame.identifier = static_cast<std::uint16_t>(can1::ri0r.read() >> can1::ir_stid_position);
+  frame.length = static_cast<std::uint8_t>(length);
+  std::memcpy(frame.data.data(), words.data(), sizeof(words));  // the CPU is little-endian, as the registers are
+}
+
+/// What was to be sent in bus-off would be old when the controller is back. CAN1_TX comes for each that is aborted.
+void abort_all() {
+  can1::tsr.write(of_mailbox(can1::tsr_abrq0, 0) | of_mailbox(can1::tsr_abrq0, 1) | of_mailbox(can1::tsr_abrq0, 2));
+}
+
+}  // namespace
+
+bool Can::start(std::uint8_t node) {
+  rcc::apb1enr.set(rcc::apb1enr_can1);
+  static_cast<void>(rcc::apb1enr.read());
+  // Everything but these is off: time stamps, automatic return from bus-off and sleep, locked FIFOs, sending in the
+  // order of requests. A lower identifier goes first; a full FIFO loses its newest frame.
+  can1::mcr.write(can1::mcr_dbf | can1::mcr_inrq);
+  if (!wait_until_set(can1::msr, can1::msr_inak, reads_for_a_frame)) {
+    return false;
+  }
+  can1::btr.write(can1::btr_of(prescaler, segment_1, segment_2, 1));
+  accept_common_frames(node);
+  can1::ier.write(can1::ier_tmeie | can1::ier_fmpie0 | can1::ier_fovie0 | can1::ier_bofie | can1::ier_errie);
+  can1::mcr.write(can1::mcr_dbf);
+  return true;
+}
+
+bool Can::send(const CanFrame& frame) {
+  if (is_bus_off_.load(std::memory_order_relaxed)) {
+    return false;
+  }
+  unsigned free = mailbox_count;
+  for (unsigned mailbox = mailbox_count; mailbox-- > 0;) {
+    if (!is_pending_[mailbox].load(std::memory_order_relaxed)) {
+      free = mailbox;
+    } else if (sending_[mailbox].identifier == frame.identifier) {
+      return false;
+    }
+  }
+  if (free == mailbox_count) {
+    return false;
+  }
+  sending_[free] = frame;
+  is_pending_[free].store(true, std::memory_order_relaxed);
+  std::array<std::uint32_t, 2> words{};
+  std::memcpy(words.data(), frame.data.data(), sizeof(words));
+  const can1::TransmitMailbox mailbox(free);
+  mailbox.length.write(frame.length);
+  mailbox.low.write(words[0]);
+  mailbox.high.write(words[1]);
+  std::atomic_signal_fence(std::memory_order_release);  // from the next write on CAN1_TX may come
+  mailbox.identifier.write(std::uint32_t{frame.identifier} << can1::ir_stid_position | can1::tir_txrq);
+  return true;
+}
+
+void Can::listen(std::span<const std::uint16_t> identifiers) {
+  // A bank may be written while it is not in use.
+  can1::fa1r.write(1U << node_bank | 1U << common_bank);
+  std::uint32_t used = 1U << node_bank | 1U << common_bank;
+  if (identifiers.size() > list_banks * list_entries) {
+    used |= 1U << all_states_bank;
+  } else {
+    // The last bank is filled up with what passes anyway.
+    const auto entry = [identifiers](std::size_t i) {
+      return std::uint32_t{i < identifiers.size() ? identifiers[i] : canopen::identifier::sync};
+    };
+    for (std::size_t first = 0; first < identifiers.size(); first += list_entries) {
+      const auto number = static_cast<unsigned>(first_list_bank + first / list_entries);
+      const can1::FilterBank bank(number);
+      bank.first.write(pair_of(entry(first), entry(first + 1)));
+      bank.second.write(pair_of(entry(first + 2), entry(first + 3)));
+      used |= 1U << number;
+    }
+  }
+  can1::fa1r.write(used);
+}
+
+void Can::recover() {
+  if (is_bus_off_.load(std::memory_order_relaxed) && recovery_ == Recovery::none) {
+    abort_all();  // again: bus-off may have come while send() was at work
+    can1::mcr.write(can1::mcr_dbf | can1::mcr_inrq);
+    recovery_ = Recovery::entering;
+  }
+}
+
+bool Can::follow_recovery() {
+  const std::uint32_t is_initializing = can1::msr.read() & can1::msr_inak;
+  if (recovery_ == Recovery::entering && is_initializing != 0) {
+    can1::mcr.write(can1::mcr_dbf);
+    recovery_ = Recovery::leaving;
+    return false;
+  }
+  if (recovery_ != Recovery::leaving || is_initializing != 0 || can1::esr.has(can1::esr_boff)) {
+    return false;
+  }
+  recovery_ = Recovery::none;
+  is_bus_off_.store(false, std::memory_order_relaxed);
+  return true;
+}
+
+void Can::put(std::uint32_t stamp, EventKind kind, const CanFrame& frame) {
+  if (Event* const event = events_.place()) {
+    *event = {stamp, frame, kind};
+    events_.push();
+  } else {
+    lost_.store(lost_.load(std::memory_order_relaxed) + 1U, std::memory_order_relaxed);
+  }
+}
+
+void Can::on_transmit_interrupt(std::uint32_t stamp) {
+  const std::uint32_t status = can1::tsr.read();
+  for (unsigned mailbox = 0; mailbox < mailbox_count; ++mailbox) {
+    if ((status & of_mailbox(can1::tsr_rqcp0, mailbox)) == 0) {
+      continue;
+    }
+    can1::tsr.write(of_mailbox(can1::tsr_rqcp0, mailbox));
+    if ((status & of_mailbox(can1::tsr_txok0, mailbox)) != 0) {  // else it was aborted
+      put(stamp, EventKind::transmitted, sending_[mailbox]);
+    }
+    is_pending_[mailbox].store(false, std::memory_order_relaxed);
+  }
+}
+
+void Can::on_receive_interrupt(std::uint32_t stamp) {
+  std::uint32_t status = can1::rf0r.read();
+  for (unsigned i = 0; i < frames_an_interrupt; ++i) {
+    if ((status & can1::rf0r_fovr) != 0) {
+      can1::rf0r.write(can1::rf0r_fovr);
+      lost_.store(lost_.load(std::memory_order_relaxed) + 1U, std::memory_order_relaxed);
+    }
+    if ((status & can1::rf0r_fmp) == 0) {
+      return;
+    }
+    if (Event* const event = events_.place()) {
+      event->stamp = stamp;
+      event->kind = EventKind::received;
+      read_frame(event->frame);
+      events_.push();
+    } else {
+      lost_.store(lost_.load(std::memory_order_relaxed) + 1U, std::memory_order_relaxed);
+    }
+    can1::rf0r.write(can1::rf0r_rfom);
+    // Until that is done the same frame is still the oldest: who returned now would be interrupted for it again.
+    unsigned reads = reads_for_release;
+    do {
+      status = can1::rf0r.read();
+    } while ((status & can1::rf0r_rfom) != 0 && --reads > 0);
+  }
+}
+
+void Can::on_status_interrupt(std::uint32_t stamp) {
+  can1::msr.write(can1::msr_erri);
+  if (can1::esr.has(can1::esr_boff) && !is_bus_off_.load(std::memory_order_relaxed)) {
+    is_bus_off_.store(true, std::memory_order_relaxed);
+    abort_all();
+    put(stamp, EventKind::bus_off, {});
+  }
+}
+
+}  // namespace proleg::stm32f405

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+
+namespace proleg::stm32f405 {
+
+enum class ClockResult : std::uint8_t {
+  ok,
+  no_crystal,  ///< HSE did not start
+  no_pll,      ///< the PLL did not lock, or was not taken as the clock
+};
+
+/// From the internal oscillator to the frequencies of pins.hpp, by crystal and PLL. Ends within 100 ms, whatever
+/// happens. If it fails the chip goes on with the internal oscillator, which is too inaccurate for CAN at 1 Mbit/s.
+[[nodiscard]] ClockResult start_clocks();
+
+}  // namespace proleg::stm32f405

@@ -1,0 +1,18 @@
+#include "firmware/stm32f405/factory_data.hpp"
+
+#include "firmware/stm32f405/registers/register.hpp"
+
+namespace proleg::stm32f405::factory {
+
+std::array<std::uint32_t, 3> unique_id() {
+  constexpr std::uintptr_t at = 0x1FFF'7A10;
+  return {Register(at).read(), Register(at + 4).read(), Register(at + 8).read()};
+}
+
+TemperatureCalibration temperature_calibration() {
+  constexpr std::uintptr_t at = 0x1FFF'7A2C;  // 30 degrees in the lower half of the word, 110 in the upper
+  const std::uint32_t both = Register(at).read();
+  return {static_cast<std::uint16_t>(both), static_cast<std::uint16_t>(both >> 16U)};
+}
+
+}  // namespace proleg::stm32f405::factory

@@ -1,0 +1,17 @@
+#pragma once
+
+// What the maker of the chip has written into it, in the system memory.
+
+#include <array>
+
+#include "firmware/stm32f405/readings.hpp"
+
+namespace proleg::stm32f405::factory {
+
+/// 96 bits that no other chip has, the lowest word first (RM0090, section 39.1).
+[[nodiscard]] std::array<std::uint32_t, 3> unique_id();
+
+/// Data sheet, table 70.
+[[nodiscard]] TemperatureCalibration temperature_calibration();
+
+}  // namespace proleg::stm32f405::factory

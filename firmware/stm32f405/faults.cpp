@@ -1,0 +1,152 @@
+#include "firmware/stm32f405/faults.hpp"
+
+#include <bit>
+
+#include "firmware/stm32f405/handlers.hpp"
+#include "firmware/stm32f405/registers/core.hpp"
+
+extern "C" {
+
+/// Ends of the RAM that the program uses, from the linker script.
+extern const std::uint32_t stack_bottom[];
+extern const std::uint32_t ram_end[];
+
+[[gnu::used]] void report_fault(const std::uint32_t* frame);
+
+}  // extern "C"
+
+namespace proleg::stm32f405 {
+namespace {
+
+using Words = std::array<std::uint32_t, sizeof(FaultRecord) / 4>;
+
+/// Words, and not a FaultRecord, because nothing here may be initialized.
+struct Kept {
+  std::uint32_t mark;
+  Words record;
+  std::uint32_t check;
+};
+
+constexpr std::uint32_t valid_mark = 0xFA17'0001;
+
+/// Not initialized at the start: holds whatever the RAM held, which after power-on is anything.
+[[gnu::section(".noinit")]] Kept kept;
+
+std::uint32_t check_of(const Words& record) {
+  std::uint32_t sum = valid_mark;
+  for (const std::uint32_t word : record) {
+    sum = std::rotl(sum, 5) ^ word;
+  }
+  return sum;
+}
+
+void keep(const FaultRecord& record) {
+  kept.record = std::bit_cast<Words>(record);
+  kept.check = check_of(kept.record);
+  kept.mark = valid_mark;
+}
+
+void add_status(FaultRecord& record) {
+  record.configurable_status = scb::cfsr.read();
+  record.hard_fault_status = scb::hfsr.read();
+  if ((record.configurable_status & scb::cfsr_bfarvalid) != 0) {
+    record.address = scb::bfar.read();
+  } else if ((record.configurable_status & scb::cfsr_mmarvalid) != 0) {
+    record.address = scb::mmfar.read();
+  }
+}
+
+FaultRecord::Reason reason_of(std::uint32_t exception) {
+  constexpr std::uint32_t non_maskable = 2;
+  constexpr std::uint32_t first_interrupt = 11;
+  if (exception == non_maskable) {
+    return FaultRecord::Reason::non_maskable;
+  }
+  return exception < first_interrupt ? FaultRecord::Reason::processor_fault : FaultRecord::Reason::unexpected_interrupt;
+}
+
+}  // namespace
+
+std::string_view text_of(FaultRecord::Reason reason) {
+  switch (reason) {
+    case FaultRecord::Reason::processor_fault:
+      return "processor fault";
+    case FaultRecord::Reason::non_maskable:
+      return "non-maskable interrupt";
+    case FaultRecord::Reason::unexpected_interrupt:
+      return "unexpected interrupt";
+    case FaultRecord::Reason::pure_virtual_call:
+      return "pure virtual call";
+    case FaultRecord::Reason::no_crystal:
+      return "the crystal does not start";
+    case FaultRecord::Reason::no_pll:
+      return "the PLL does not lock";
+    case FaultRecord::Reason::no_can:
+      return "the CAN controller does not answer";
+  }
+  return "unknown";
+}
+
+std::optional<FaultRecord> take_fault_record() {
+  if (kept.mark != valid_mark || kept.check != check_of(kept.record)) {
+    return std::nullopt;
+  }
+  kept.mark = 0;
+  return std::bit_cast<FaultRecord>(kept.record);
+}
+
+void record_fault(FaultRecord::Reason reason) {
+  FaultRecord record;
+  record.reason = reason;
+  record.frame[6] = std::bit_cast<std::uint32_t>(__builtin_return_address(0));
+  keep(record);
+}
+
+void reset_chip() {
+  asm volatile("dsb" : : : "memory");
+  scb::aircr.write(scb::aircr_sysresetreq);
+  for (;;) {
+    asm volatile("wfi");  // it takes a few cycles
+  }
+}
+
+}  // namespace proleg::stm32f405
+
+extern "C" {
+
+using proleg::stm32f405::FaultRecord;
+
+/// All faults, and interrupts that nobody has enabled. The stack may be what is broken: the record is written on a new
+/// one.
+[[gnu::naked]] void fault_handler() {
+  asm volatile(
+      "mrs r0, msp\n\t"
+      "movw r1, #:lower16:stack_top\n\t"
+      "movt r1, #:upper16:stack_top\n\t"
+      "mov sp, r1\n\t"
+      "b report_fault");
+}
+
+void report_fault(const std::uint32_t* frame) {
+  FaultRecord record;
+  asm volatile("mrs %0, ipsr" : "=r"(record.exception));
+  record.reason = proleg::stm32f405::reason_of(record.exception);
+  record.stack_pointer = std::bit_cast<std::uint32_t>(frame);
+  constexpr std::uint32_t alignment = 4;
+  if (frame >= stack_bottom && frame + record.frame.size() <= ram_end && record.stack_pointer % alignment == 0) {
+    for (std::uint32_t& word : record.frame) {
+      word = *frame++;
+    }
+  }
+  proleg::stm32f405::add_status(record);
+  proleg::stm32f405::keep(record);
+  proleg::stm32f405::reset_chip();
+}
+
+/// Called by the compiler's tables where a virtual function was not overridden.
+[[noreturn]] void __cxa_pure_virtual() {
+  proleg::stm32f405::record_fault(FaultRecord::Reason::pure_virtual_call);
+  proleg::stm32f405::reset_chip();
+}
+
+}  // extern "C"

@@ -1,0 +1,48 @@
+#pragma once
+
+// When the program cannot go on: what is known goes into a record in RAM that a reset leaves alone, then the chip
+// resets. The next start reads the record, once.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace proleg::stm32f405 {
+
+struct FaultRecord {
+  enum class Reason : std::uint32_t {
+    processor_fault,       ///< HardFault, to which bus, usage and memory faults escalate: CFSR says more
+    non_maskable,          ///< NMI: the clock security system, which is not used
+    unexpected_interrupt,  ///< one that nobody has enabled
+    pure_virtual_call,
+    no_crystal,  ///< HSE did not start: without it there is no CAN
+    no_pll,
+    no_can,  ///< the controller does not enter its initialization mode
+  };
+
+  Reason reason = Reason::processor_fault;
+  std::uint32_t exception = 0;  ///< IPSR: which handler was entered
+  /// r0, r1, r2, r3, r12, lr, pc, xPSR as the exception found them (PM0214, section 2.3.7); 0 if the stack was lost.
+  std::array<std::uint32_t, 8> frame{};
+  std::uint32_t stack_pointer = 0;
+  std::uint32_t configurable_status = 0;  ///< CFSR
+  std::uint32_t hard_fault_status = 0;    ///< HFSR
+  std::uint32_t address = 0;              ///< that was accessed, if CFSR says that it is known
+
+  [[nodiscard]] std::uint32_t lr() const { return frame[5]; }
+  [[nodiscard]] std::uint32_t pc() const { return frame[6]; }
+};
+
+/// As the console prints it.
+[[nodiscard]] std::string_view text_of(FaultRecord::Reason reason);
+
+/// The record that the program left when it stopped last, if it did; there is none afterwards.
+[[nodiscard]] std::optional<FaultRecord> take_fault_record();
+
+/// Leaves a record with the caller's address as pc. The caller has to end in a reset.
+[[gnu::noinline]] void record_fault(FaultRecord::Reason reason);
+
+[[noreturn]] void reset_chip();
+
+}  // namespace proleg::stm32f405

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "firmware/module/board_record.hpp"
+
+namespace proleg::stm32f405 {
+
+/// Sectors 1 and 2 of the flash, 16 KiB each at 0x08004000 and 0x08008000: sectors 0 and 1 of the port (RM0090, section
+/// 3.3, table 5).
+///
+/// The flash is one bank: while a sector is erased (up to half a second; data sheet, table 41) or a word programmed (up
+/// to 0.1 ms), every read of flash stalls the CPU. So the wait runs from RAM, with interrupts held up, whose vectors
+/// and handlers are in flash; it feeds the watchdog. Frames that come meanwhile are lost but for three, servo pulses go
+/// on by themselves, the servo does not move. To be used in Pre-operational only.
+class SettingsFlash final : public firmware::FlashPort {
+ public:
+  static constexpr std::uint32_t sector_count = 2;
+  static constexpr std::uint32_t sector_size = 16 * 1024;
+
+  [[nodiscard]] bool erase(unsigned sector) override;
+  [[nodiscard]] bool program(unsigned sector, std::uint32_t offset, std::span<const std::uint8_t> bytes) override;
+  [[nodiscard]] std::span<const std::uint8_t> contents(unsigned sector) const override;
+};
+
+}  // namespace proleg::stm32f405

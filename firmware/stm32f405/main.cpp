@@ -1,0 +1,174 @@
+// The program that is flashed into a module.
+
+#include "firmware/stm32f405/clock.hpp"
+#include "firmware/stm32f405/factory_data.hpp"
+#include "firmware/stm32f405/faults.hpp"
+#include "firmware/stm32f405/gpio.hpp"
+#include "firmware/stm32f405/handlers.hpp"
+#include "firmware/stm32f405/module_task.hpp"
+#include "firmware/stm32f405/registers/core.hpp"
+#include "firmware/stm32f405/reset_cause.hpp"
+#include "firmware/stm32f405/watchdog.hpp"
+#include "shared/kernel/fingerprint.hpp"
+
+namespace proleg::stm32f405 {
+namespace {
+
+constinit firmware::TickRecord the_last_tick;
+constinit ModuleTask the_module_task;
+
+using firmware::ResetCause;
+
+/// Why this start, and what the program left behind if it stopped.
+struct Start {
+  ResetCause cause = ResetCause::power_on;
+  std::optional<FaultRecord> fault;
+};
+
+Start find_start() {
+  Start start;
+  start.cause = reset_cause_of(rcc::csr.read());
+  rcc::csr.set(rcc::csr_rmvf);
+  start.fault = take_fault_record();
+  if (start.fault) {
+    start.cause = ResetCause::fault;
+  }
+  return start;
+}
+
+std::string_view text_of(ResetCause cause) {
+  switch (cause) {
+    case ResetCause::power_on:
+      return "power on";
+    case ResetCause::pin:
+      return "reset pin";
+    case ResetCause::software:
+      return "software";
+    case ResetCause::watchdog:
+      return "watchdog";
+    case ResetCause::fault:
+      return "fault";
+  }
+  return "unknown";
+}
+
+void print(const FaultRecord& fault) {
+  Console& console = hardware.console;
+  console.write("stopped by: ");
+  console.write(text_of(fault.reason));
+  if (fault.reason == FaultRecord::Reason::unexpected_interrupt) {
+    console.write(" ");
+    console.write_decimal(fault.exception);
+  }
+  const struct {
+    std::string_view name;
+    std::uint32_t value;
+  } words[]{{", pc ", fault.pc()},
+            {", lr ", fault.lr()},
+            {", sp ", fault.stack_pointer},
+            {", cfsr ", fault.configurable_status},
+            {", hfsr ", fault.hard_fault_status},
+            {", address ", fault.address}};
+  for (const auto& word : words) {
+    console.write(word.name);
+    console.write_hex(word.value);
+  }
+  console.write("\r\n");
+}
+
+void print(const Start& start, const std::optional<firmware::BoardRecord>& record) {
+  Console& console = hardware.console;
+  if (record) {
+    console.write("proleg module, node ");
+    console.write_decimal(record->node);
+  } else {
+    console.write("proleg module, no node id (no board record: see docs/board.md), silent on the bus");
+  }
+  console.write(", board ");
+  console.write_decimal(board::id);
+  console.write(", core ");
+  console.write_hex(core_fingerprint);
+  console.write(", started by ");
+  console.write(text_of(start.cause));
+  console.write("\r\n");
+  if (start.fault) {
+    print(*start.fault);
+  }
+}
+
+/// The watchdog restarts the chip; perhaps the crystal starts then.
+[[noreturn]] void wait_for_watchdog() {
+  for (;;) {
+    asm volatile("wfi");
+  }
+}
+
+[[noreturn]] void give_up(FaultRecord::Reason reason) {
+  record_fault(reason);
+  hardware.console.write("proleg module: ");
+  hardware.console.write(text_of(reason));
+  hardware.console.write("\r\n");
+  hardware.console.flush();
+  wait_for_watchdog();
+}
+
+void start_clocks_or_give_up() {
+  const ClockResult result = start_clocks();
+  if (result != ClockResult::ok) {
+    hardware.console.start(board::internal_oscillator);
+    give_up(result == ClockResult::no_crystal ? FaultRecord::Reason::no_crystal : FaultRecord::Reason::no_pll);
+  }
+}
+
+void start_module(const Start& start, const firmware::BoardRecord& record) {
+  hardware.servo.start();
+  if (!hardware.can.start(record.node)) {
+    give_up(FaultRecord::Reason::no_can);
+  }
+  firmware::Board board;
+  board.node = record.node;
+  board.board_id = board::id;
+  board.unique_id = factory::unique_id();
+  board.core_fingerprint = core_fingerprint;
+  board.capabilities = record.has_feedback ? canopen::measures_angle : 0;
+  board.reset_cause = start.cause;
+  board.reset_detail = start.fault ? start.fault->pc() : 0;
+  the_module_task.start(board, the_last_tick);
+}
+
+}  // namespace
+}  // namespace proleg::stm32f405
+
+using namespace proleg::stm32f405;
+
+extern "C" {
+
+/// Where the module's last tick is, in flash, for a debugger or a simulator to find by this name.
+[[gnu::section(".tick_record"),
+  gnu::used]] extern constinit const proleg::firmware::TickRecord* const proleg_tick_record = &the_last_tick;
+
+void run_program() {
+  static_cast<void>(start_watchdog());  // with 512 ms instead of 200 it does as well
+  const Start start = find_start();
+  start_pins();
+  start_clocks_or_give_up();
+  hardware.clock.start();
+  hardware.console.start(board::apb1);
+  const std::optional<proleg::firmware::BoardRecord> record =
+      proleg::firmware::newest(hardware.settings.contents(0), hardware.settings.contents(1));
+  print(start, record);
+  hardware.sensors.start(record);
+  if (record) {
+    start_module(start, *record);
+  }
+  enable_interrupts();
+  scb::scr.write(scb::scr_sleeponexit);
+  request_pend_sv();
+  for (;;) {
+    asm volatile("wfi");
+  }
+}
+
+void pend_sv_handler() { the_module_task.run(); }
+
+}  // extern "C"

@@ -1,0 +1,97 @@
+#include "firmware/stm32f405/module_task.hpp"
+
+#include <cstring>
+#include <type_traits>
+
+#include "firmware/stm32f405/watchdog.hpp"
+
+namespace proleg::stm32f405 {
+namespace {
+
+/// A quarter of the watchdog's time, so that it can be late three times on its fastest clock.
+constexpr Microseconds longest_pause_us = 50'000;
+/// The end of bus-off raises no interrupt; it takes 1.4 ms at least.
+constexpr Microseconds recovery_poll_us = 1'000;
+
+static_assert(std::is_trivially_destructible_v<firmware::Module>, "nothing is ever destroyed here");
+
+}  // namespace
+
+void ModuleTask::start(const firmware::Board& board, firmware::TickRecord& last_tick) {
+  last_tick_ = &last_tick;
+  module_.emplace(board, firmware::Ports{hardware.can, hardware.servo, hardware.contacts, hardware.sensors});
+  told_ = hardware.clock.now();
+  module_->power_on(told_);
+}
+
+void ModuleTask::run() {
+  take_events();
+  const Microseconds now = hardware.clock.now();
+  if (hardware.can.recovering() && hardware.can.follow_recovery() && module_) {
+    module_->bus_back(in_order(now));
+  }
+  if (now >= due_) {
+    poll(now);
+  }
+  Microseconds next = poll_by_;
+  if (module_) {
+    publish_tick();
+    const Microseconds deadline = module_->next_deadline();
+    next = deadline < next ? deadline : next;
+  }
+  if (hardware.can.recovering()) {
+    next = now + recovery_poll_us < next ? now + recovery_poll_us : next;
+  }
+  // If the deadline is as it was, and still to come, TIM5 is set already.
+  if (next != due_ || next <= now) {
+    due_ = next;
+    if (!MicrosecondClock::wake_at(due_)) {
+      request_pend_sv();
+    }
+  }
+}
+
+Microseconds ModuleTask::in_order(Microseconds time) {
+  told_ = time > told_ ? time : told_;
+  return told_;
+}
+
+void ModuleTask::take_events() {
+  while (const Can::Event* const event = hardware.can.next_event()) {
+    const Microseconds time = in_order(hardware.clock.at(event->stamp));
+    if (module_) {
+      handle(*event, time);
+    }
+    hardware.can.drop_event();
+  }
+}
+
+void ModuleTask::handle(const Can::Event& event, Microseconds time) {
+  switch (event.kind) {
+    case Can::EventKind::received:
+      module_->receive(time, event.frame);
+      break;
+    case Can::EventKind::transmitted:
+      module_->transmitted(time, event.frame);
+      break;
+    case Can::EventKind::bus_off:
+      module_->bus_off(time);
+      break;
+  }
+}
+
+void ModuleTask::publish_tick() {
+  if (const firmware::TickRecord& record = module_->last_tick(); record.tick != last_tick_->tick) {
+    std::memcpy(last_tick_, &record, record.used_bytes());
+  }
+}
+
+void ModuleTask::poll(Microseconds now) {
+  if (module_) {
+    module_->poll(in_order(now));
+  }
+  feed_watchdog();
+  poll_by_ = now + longest_pause_us;
+}
+
+}  // namespace proleg::stm32f405

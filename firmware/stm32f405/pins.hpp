@@ -1,0 +1,52 @@
+#pragma once
+
+// The reference board, board id 1: what is connected to which pin, and the frequencies of its clocks. docs/board.md
+// says the same in words.
+
+#include <array>
+#include <cstdint>
+
+namespace proleg::stm32f405 {
+
+struct Pin {
+  char port;
+  unsigned number;
+};
+
+namespace board {
+
+inline constexpr std::uint16_t id = 1;
+
+// Clocks, in Hz. RM0090, section 7.2; the limits are those of the data sheet.
+inline constexpr std::uint32_t crystal = 8'000'000;
+inline constexpr std::uint32_t internal_oscillator = 16'000'000;  ///< HSI: what the chip runs on before the crystal
+inline constexpr std::uint32_t core = 168'000'000;
+inline constexpr std::uint32_t apb1 = core / 4;         ///< CAN1, USART2; at most 42 MHz
+inline constexpr std::uint32_t apb1_timers = 2 * apb1;  ///< TIM2, TIM5
+inline constexpr std::uint32_t apb2 = core / 2;         ///< ADC1; at most 84 MHz
+
+inline constexpr Pin can_receive{'B', 8};
+inline constexpr Pin can_transmit{'B', 9};
+inline constexpr unsigned can_function = 9;
+
+inline constexpr Pin servo{'A', 5};  ///< TIM2, channel 1
+inline constexpr unsigned servo_function = 1;
+
+/// Touch sensors: switches to ground. In the order of firmware::ContactPort: rear and front of the link behind the
+/// joint, rear and front of the link before it.
+inline constexpr std::array<Pin, 4> contacts{{{'B', 12}, {'B', 13}, {'B', 14}, {'B', 15}}};
+
+inline constexpr Pin servo_current{'C', 0};  ///< 1 V per A
+inline constexpr unsigned servo_current_channel = 10;
+inline constexpr Pin feedback{'C', 1};  ///< slider of the potentiometer, between ground and VDDA
+inline constexpr unsigned feedback_channel = 11;
+inline constexpr unsigned temperature_channel = 16;  ///< inside the chip
+inline constexpr std::uint32_t vdda_millivolt = 3300;
+
+inline constexpr Pin console_transmit{'A', 2};
+inline constexpr Pin console_receive{'A', 3};
+inline constexpr unsigned console_function = 7;
+inline constexpr std::uint32_t console_baud = 115'200;
+
+}  // namespace board
+}  // namespace proleg::stm32f405

@@ -1,0 +1,56 @@
+#pragma once
+
+// The processor's own registers: PM0214, sections 4.3 (NVIC) and 4.4 (SCB). Positions of interrupts: RM0090, table 61.
+
+#include "firmware/stm32f405/registers/register.hpp"
+
+namespace proleg::stm32f405 {
+
+namespace scb {
+
+inline constexpr std::uintptr_t base = 0xE000'ED00;
+
+inline constexpr Register icsr{base + 0x04};
+inline constexpr std::uint32_t icsr_pendsvset = 1U << 28U;  ///< a 0 does nothing
+
+inline constexpr Register scr{base + 0x10};
+inline constexpr std::uint32_t scr_sleeponexit = 1U << 1U;  ///< sleeps when an interrupt would return to thread mode
+inline constexpr Register vtor{base + 0x08};
+inline constexpr Register aircr{base + 0x0C};
+inline constexpr std::uint32_t aircr_sysresetreq = 0x05FA'0004;  ///< with its key
+inline constexpr Register shpr3{base + 0x20};
+inline constexpr std::uint32_t shpr3_pendsv_position = 16;
+inline constexpr Register cfsr{base + 0x28};
+inline constexpr std::uint32_t cfsr_mmarvalid = 1U << 7U;
+inline constexpr std::uint32_t cfsr_bfarvalid = 1U << 15U;
+inline constexpr Register hfsr{base + 0x2C};
+inline constexpr Register mmfar{base + 0x34};
+inline constexpr Register bfar{base + 0x38};
+
+}  // namespace scb
+
+enum class Interrupt : std::uint8_t {
+  can1_tx = 19,
+  can1_rx0 = 20,
+  can1_sce = 22,
+  usart2 = 38,
+  timer_5 = 50,
+};
+inline constexpr unsigned interrupt_count = 82;
+
+namespace nvic {
+
+/// Priority 0 (first) to 15: the upper four bits are there.
+inline void set_priority(Interrupt interrupt, std::uint32_t priority) {
+  const auto position = static_cast<std::uint32_t>(interrupt);
+  const std::uint32_t shift = 8U * (position % 4U);
+  Register(0xE000'E400 + position / 4U * 4U).change(0xFFU << shift, priority << (shift + 4U));
+}
+
+inline void enable(Interrupt interrupt) {
+  const auto position = static_cast<std::uint32_t>(interrupt);
+  Register(0xE000'E100 + position / 32U * 4U).write(1U << (position % 32U));
+}
+
+}  // namespace nvic
+}  // namespace proleg::stm32f405

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "firmware/module/board.hpp"
+#include "firmware/stm32f405/registers/rcc.hpp"
+
+namespace proleg::stm32f405 {
+
+/// What RCC_CSR says of why the chip started. The chip pulls its own reset pin whatever the cause, so that this flag
+/// means something only if it is alone (RM0090, section 7.1.1).
+[[nodiscard]] constexpr firmware::ResetCause reset_cause_of(std::uint32_t csr) {
+  using firmware::ResetCause;
+  if ((csr & (rcc::csr_porrstf | rcc::csr_borrstf)) != 0) {
+    return ResetCause::power_on;
+  }
+  if ((csr & rcc::csr_iwdgrstf) != 0) {
+    return ResetCause::watchdog;
+  }
+  return (csr & rcc::csr_sftrstf) != 0 ? ResetCause::software : ResetCause::pin;
+}
+
+}  // namespace proleg::stm32f405

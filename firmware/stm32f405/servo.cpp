@@ -1,0 +1,70 @@
+#include "firmware/stm32f405/servo.hpp"
+
+#include "firmware/stm32f405/gpio.hpp"
+#include "firmware/stm32f405/registers/rcc.hpp"
+#include "firmware/stm32f405/registers/timer.hpp"
+#include "shared/kernel/servo_command.hpp"
+
+namespace proleg::stm32f405 {
+namespace {
+
+constexpr std::uint32_t counts_per_us = servo_counts_per_us;
+constexpr std::uint32_t counter_hz = counts_per_us * 1'000'000;
+static_assert(board::apb1_timers % counter_hz == 0);
+
+/// The output is low for this long at least, between pulses.
+constexpr std::uint32_t shortest_pause = 500 * counts_per_us;
+
+/// Counts until a pulse is repeated that the program does not renew.
+constexpr std::uint32_t counts_to_repeat(std::uint32_t width, std::uint32_t period_us) {
+  const std::uint32_t late = period_us * counts_per_us / 4U * 5U;
+  const std::uint32_t shortest = width + shortest_pause;
+  return late < shortest ? shortest : late;
+}
+
+}  // namespace
+
+void Servo::start() {
+  rcc::apb1enr.set(rcc::apb1enr_tim2);
+  static_cast<void>(rcc::apb1enr.read());
+  connect(board::servo, board::servo_function);
+  off();
+  tim2.psc().write(board::apb1_timers / counter_hz - 1);
+  tim2.ccmr1().write(Timer::ccmr1_oc1m_pwm1 | Timer::ccmr1_oc1pe);
+}
+
+void Servo::pulse(std::int32_t width, std::uint32_t period_us) {
+  if ((tim2.sr().read() & Timer::sr_uif) != 0) {  // the counter came round, and took over what had been asked for
+    tim2.sr().write(~Timer::sr_uif);
+    running_width_ = asked_width_;
+  }
+  asked_width_ = static_cast<std::uint32_t>(width);
+  tim2.ccr1().write(asked_width_);
+  if (const std::uint32_t last = counts_to_repeat(asked_width_, period_us) - 1U; last != last_count_) {
+    last_count_ = last;
+    tim2.arr().write(last);
+  }
+  if (!runs_) {
+    runs_ = true;
+    tim2.ccer().write(Timer::ccer_cc1e);
+    tim2.egr().write(Timer::egr_ug);
+    tim2.cr1().write(Timer::cr1_arpe | Timer::cr1_urs | Timer::cr1_cen);
+    set_mode(board::servo, PinMode::alternate);
+    running_width_ = asked_width_;
+  } else if (tim2.cnt().read() >= running_width_) {
+    tim2.egr().write(Timer::egr_ug);
+    running_width_ = asked_width_;
+  }
+}
+
+void Servo::off() {
+  // The pin first, which start_pins() has set low: without its channel the timer does not say what the level is.
+  set_mode(board::servo, PinMode::output);
+  runs_ = false;
+  tim2.ccer().write(0);
+  tim2.ccr1().write(0);
+  tim2.cr1().write(Timer::cr1_arpe | Timer::cr1_urs);
+  tim2.sr().write(0);
+}
+
+}  // namespace proleg::stm32f405

@@ -1,0 +1,59 @@
+// Flash sector 0, where the chip starts: jumps to the image in slot A. A bootloader will take its place, which receives
+// and verifies images; until then this is all that lies there, so that images are linked where they will stay.
+
+#include <cstdint>
+
+#include "firmware/stm32f405/registers/core.hpp"
+
+namespace proleg::stm32f405 {
+namespace {
+
+constexpr std::uint32_t slot_a = 0x0802'0000;
+constexpr std::uint32_t slot_size = 384 * 1024;
+constexpr std::uint32_t ram = 0x2000'0000;
+constexpr std::uint32_t ram_size = 128 * 1024;
+
+/// Erased flash (all bits 1) has neither a stack nor a program.
+[[gnu::always_inline]] inline bool is_plausible(std::uint32_t stack, std::uint32_t entry) {
+  constexpr std::uint32_t stack_alignment = 8;
+  return stack > ram && stack <= ram + ram_size && stack % stack_alignment == 0 && entry >= slot_a &&
+         entry < slot_a + slot_size && entry % 2 == 1;
+}
+
+}  // namespace
+}  // namespace proleg::stm32f405
+
+extern "C" {
+
+/// For an exception, and where there is no image: a debugger or a programmer must come.
+[[gnu::section(".stub.text"), noreturn]] void stub_stop() {
+  for (;;) {
+    asm volatile("wfi");
+  }
+}
+
+[[gnu::section(".stub.text"), noreturn]] void stub_reset() {
+  using namespace proleg::stm32f405;
+  const std::uint32_t stack = Register(slot_a).read();
+  const std::uint32_t entry = Register(slot_a + 4).read();
+  if (is_plausible(stack, entry)) {
+    scb::vtor.write(slot_a);
+    asm volatile("dsb\n\tmsr msp, %0\n\tbx %1" : : "r"(stack), "r"(entry));
+    __builtin_unreachable();
+  }
+  stub_stop();
+}
+
+}  // extern "C"
+
+namespace {
+
+struct StubVectors {
+  std::uint32_t initial_stack;
+  void (*handlers[3])();  ///< reset, NMI, HardFault
+};
+
+[[gnu::section(".stub.vectors"), gnu::used]] constinit const StubVectors stub_vectors{
+    0x2002'0000, {stub_reset, stub_stop, stub_stop}};
+
+}  // namespace

@@ -1,0 +1,25 @@
+#include "firmware/stm32f405/watchdog.hpp"
+
+namespace proleg::stm32f405 {
+namespace {
+
+constexpr std::uint32_t lsi_hz = 32'000;
+constexpr std::uint32_t prescaler = 16;
+constexpr std::uint32_t counts = lsi_hz / prescaler / 5;  // 200 ms
+
+/// PR and RLR take 5 periods of LSI to be taken over; the core still runs at 16 MHz, 5 cycles or more a read.
+constexpr std::uint32_t reads_in_5_ms = 16'000;
+
+}  // namespace
+
+bool start_watchdog() {
+  iwdg::kr.write(iwdg::kr_start);  // first: it switches LSI on, which the others need
+  iwdg::kr.write(iwdg::kr_unlock);
+  iwdg::pr.write(iwdg::pr_16);
+  iwdg::rlr.write(counts - 1U);
+  const bool done = wait_until_clear(iwdg::sr, iwdg::sr_updating, reads_in_5_ms);
+  feed_watchdog();
+  return done;
+}
+
+}  // namespace proleg::stm32f405

@@ -4,14 +4,19 @@
 host_packages=(
   g++ cmake ninja-build pkg-config ccache git ca-certificates
   libode-dev libeigen3-dev libtinyxml2-dev libsqlite3-dev libsodium-dev libcli11-dev nlohmann-json3-dev
+  libunicorn-dev libdw-dev
   sqlite3  # not needed to build: to look into recordings
 )
 
-# What the tests need beyond that: the ARM toolchain, the CPU emulator, a second compiler with its sanitizers.
+# The image that is flashed into modules.
+firmware_packages=(gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib binutils-arm-none-eabi python3)
+
+# What the tests need beyond that: a second compiler with its sanitizers, independent programs.
 test_packages=(
-  gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib binutils-arm-none-eabi libunicorn-dev
-  clang libclang-rt-14-dev clang-format clang-tidy libgtest-dev python3
+  clang libclang-rt-14-dev clang-format clang-tidy libgtest-dev
   can-utils tshark  # independent readers of bus logs
+  gdb-multiarch     # a debugger for the virtual module
+  qemu-system-arm   # another model of the CPU, to compare with
 )
 
 # install_packages NAME...: installs those that are missing, and says which.

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <array>
 
-#include "tests/cortex_m/thumb.hpp"
+#include "sim/mcu/cpu/thumb.hpp"
 
 namespace proleg::cortex_m {
+
+using sim::halfword_at;
+using sim::instruction_size;
+using sim::is_coprocessor_instruction;
 
 std::vector<std::string> coprocessor_instructions(const ElfImage& image, const std::vector<ElfImage::Code>& code) {
   std::vector<std::string> found;

@@ -3,9 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "tests/cortex_m/elf_image.hpp"
+#include "sim/mcu/cpu/elf_image.hpp"
 
 namespace proleg::cortex_m {
+
+using sim::ElfImage;
 
 /// Where code uses the FPU or another coprocessor: address and function of each such instruction.
 [[nodiscard]] std::vector<std::string> coprocessor_instructions(const ElfImage& image,

@@ -1,4 +1,4 @@
-#include "tests/cortex_m/elf_image.hpp"
+#include "sim/mcu/cpu/elf_image.hpp"
 
 #include <elf.h>
 #include <gtest/gtest.h>
@@ -12,6 +12,8 @@
 
 namespace proleg::cortex_m {
 namespace {
+
+using sim::ElfError;
 
 std::vector<char> bytes_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);

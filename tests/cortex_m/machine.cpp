@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "tests/cortex_m/thumb.hpp"
+#include "sim/mcu/cpu/thumb.hpp"
 
 namespace proleg::cortex_m {
 namespace {
@@ -146,13 +146,13 @@ class Machine::Engine {
   [[nodiscard]] std::uint32_t count(std::uint32_t address, std::uint32_t size) const {
     std::vector<std::uint8_t> code(size);
     read(address, code);
-    return static_cast<std::uint32_t>(count_instructions(code));
+    return static_cast<std::uint32_t>(sim::count_instructions(code));
   }
 
   [[nodiscard]] bool is_wait(std::uint32_t address) const {
     std::array<std::uint8_t, 2> code{};
     return uc_mem_read(uc_, address, code.data(), code.size()) == UC_ERR_OK &&
-           halfword_at(code, 0) == wait_for_interrupt;
+           sim::halfword_at(code, 0) == wait_for_interrupt;
   }
 
   uc_engine* uc_ = nullptr;

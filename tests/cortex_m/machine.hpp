@@ -10,9 +10,11 @@
 #include <string_view>
 #include <vector>
 
-#include "tests/cortex_m/elf_image.hpp"
+#include "sim/mcu/cpu/elf_image.hpp"
 
 namespace proleg::cortex_m {
+
+using sim::ElfImage;
 
 enum class Cpu : std::uint8_t { cortex_m0, cortex_m4 };
 

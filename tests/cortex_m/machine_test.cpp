@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "sim/mcu/cpu/thumb.hpp"
 #include "tests/cortex_m/core_image.hpp"
-#include "tests/cortex_m/thumb.hpp"
 
 namespace proleg::cortex_m {
 namespace {
@@ -118,11 +118,11 @@ INSTANTIATE_TEST_SUITE_P(Processors, MachineOf, testing::Values(Cpu::cortex_m0, 
                          });
 
 TEST(Thumb, AnInstructionHasTwoOrFourBytes) {
-  EXPECT_EQ(instruction_size(0x4770), 2U);  // bx lr
-  EXPECT_EQ(instruction_size(0xE7FE), 2U);  // b .
-  EXPECT_EQ(instruction_size(0xE92D), 4U);  // stmdb
-  EXPECT_EQ(instruction_size(0xF000), 4U);  // bl
-  EXPECT_EQ(instruction_size(0xFB01), 4U);  // mul and its kin
+  EXPECT_EQ(sim::instruction_size(0x4770), 2U);  // bx lr
+  EXPECT_EQ(sim::instruction_size(0xE7FE), 2U);  // b .
+  EXPECT_EQ(sim::instruction_size(0xE92D), 4U);  // stmdb
+  EXPECT_EQ(sim::instruction_size(0xF000), 4U);  // bl
+  EXPECT_EQ(sim::instruction_size(0xFB01), 4U);  // mul and its kin
 }
 
 }  // namespace

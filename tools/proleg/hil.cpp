@@ -15,6 +15,7 @@
 #include "sim/scenario/text.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/hil_modules.hpp"
 #include "tools/proleg/progress.hpp"
 #include "tools/proleg/scenario_run.hpp"
 
@@ -23,10 +24,10 @@ namespace {
 using namespace proleg;
 using namespace proleg::tools;
 
-struct Options : ScenarioOptions {
-  std::string modules = "native";
+struct Options : ScenarioOptions, ModuleOptions {
   std::vector<std::string> resets;
   std::vector<std::string> frames;
+  std::optional<std::string> bit_errors;
   std::optional<std::string> can_log;
 };
 
@@ -46,12 +47,16 @@ struct Result {
   std::uint64_t differences = 0;
   std::string first_difference;
   std::uint64_t lost_frames = 0;
+  std::uint64_t bit_errors = 0;
   std::uint64_t frames = 0;
   std::uint64_t setup_frames = 0;
   double bus_load = 0.0;
   std::string setpoint_hash;
   std::string servo_hash;
   std::vector<RestartReport> restarts;
+  std::vector<sim::HardwareLoop::Failure> failures;
+  std::vector<sim::HardwareLoop::Problem> problems;
+  std::optional<HilModules::Costliest> costliest_tick;
 
   [[nodiscard]] double real_time_factor() const { return simulated_s / wall_s; }
 };
@@ -138,11 +143,24 @@ std::vector<sim::InjectedFrame> parse_frames(const Options& options, const Scena
   return frames;
 }
 
+/// SEED:RATE
+sim::HardwareOptions::BitErrors parse_bit_errors(const std::string& word) {
+  const std::size_t colon = word.find(':');
+  const auto seed = sim::parse_whole<std::uint64_t>(std::string_view(word).substr(0, colon));
+  const auto rate =
+      colon == std::string::npos ? std::nullopt : sim::parse_rate(std::string_view(word).substr(colon + 1));
+  if (!seed || !rate) {
+    throw sim::InputError("--bit-errors", 0, sim::in_quotes(sim::shortened(word)), "SEED:RATE, for example 7:1%");
+  }
+  return {*seed, *rate};
+}
+
 std::string joint_name(const ScenarioRun& setup, std::uint32_t joint) {
   return setup.scenario.robot.joints[joint].name + " (node " + std::to_string(setup.scenario.modules[joint].node) + ")";
 }
 
-Result run(const ScenarioRun& setup, sim::HardwareOptions hardware, sim::Recorder* recorder) {
+Result run(const ScenarioRun& setup, const HilModules& modules, sim::HardwareOptions hardware,
+           sim::Recorder* recorder) {
   sim::HardwareLoop loop(setup.scenario, std::move(hardware));
   Progress progress("in the loop", "s", setup.scenario.duration_s);
   Result result;
@@ -182,9 +200,13 @@ Result run(const ScenarioRun& setup, sim::HardwareOptions hardware, sim::Recorde
   if (const auto& first = loop.first_difference()) {
     result.first_difference = describe(*first, joint_name(setup, first->joint));
   }
+  result.failures.assign(loop.failures().begin(), loop.failures().end());
+  result.problems.assign(loop.problems().begin(), loop.problems().end());
+  result.costliest_tick = modules.costliest_tick();
   result.lost_frames = loop.lost_frames();
   const sim::BusStatistics bus = loop.bus_statistics();
   result.frames = bus.frames;
+  result.bit_errors = bus.errors;
   result.bus_load = bus.load();
   result.setup_frames = loop.setup_frames();
   result.setpoint_hash = loop.setpoint_hash().hex();
@@ -192,38 +214,57 @@ Result run(const ScenarioRun& setup, sim::HardwareOptions hardware, sim::Recorde
   return result;
 }
 
-void print_json(const Options& options, const ScenarioRun& setup, const Result& result) {
+void print_json(const Options& options, const ScenarioRun& setup, const HilModules& modules, const Result& result) {
   nlohmann::ordered_json restarts = nlohmann::ordered_json::array();
   for (const RestartReport& restart : result.restarts) {
     nlohmann::ordered_json entry{{"node", restart.node}, {"joint", restart.joint}, {"tick", restart.tick}};
     entry["joined_tick"] = restart.joined_tick ? nlohmann::ordered_json(*restart.joined_tick) : nullptr;
     restarts.push_back(entry);
   }
-  const nlohmann::ordered_json object{{"scenario", options.file},
-                                      {"modules", setup.scenario.modules.size()},
-                                      {"module_kind", options.modules},
-                                      {"displacement_m", result.displacement_m},
-                                      {"simulated_s", result.simulated_s},
-                                      {"setpoint_hash", result.setpoint_hash},
-                                      {"servo_hash", result.servo_hash},
-                                      {"differences", result.differences},
-                                      {"first_difference", result.first_difference},
-                                      {"lost_frames", result.lost_frames},
-                                      {"restarts", restarts},
-                                      {"frames", result.frames},
-                                      {"setup_frames", result.setup_frames},
-                                      {"bus_load", result.bus_load},
-                                      {"real_time_factor", result.real_time_factor()},
-                                      {"contacts_mean", result.contacts_mean},
-                                      {"recording", options.record.value_or("")},
-                                      {"can_log", options.can_log.value_or("")},
-                                      {"build_id", build_id}};
+  nlohmann::ordered_json failures = nlohmann::ordered_json::array();
+  for (const auto& failure : result.failures) {
+    failures.push_back({{"node", setup.scenario.modules[failure.joint].node},
+                        {"joint", setup.scenario.robot.joints[failure.joint].name},
+                        {"tick", failure.tick}});
+  }
+  nlohmann::ordered_json problems = nlohmann::ordered_json::array();
+  for (const auto& problem : result.problems) {
+    problems.push_back({{"node", setup.scenario.modules[problem.joint].node},
+                        {"joint", setup.scenario.robot.joints[problem.joint].name},
+                        {"tick", problem.tick},
+                        {"text", problem.text}});
+  }
+  const nlohmann::ordered_json object{
+      {"scenario", options.file},
+      {"modules", setup.scenario.modules.size()},
+      {"module_kind", modules.kind()},
+      {"image", modules.any_virtual() ? modules.image().file().string() : ""},
+      {"displacement_m", result.displacement_m},
+      {"simulated_s", result.simulated_s},
+      {"setpoint_hash", result.setpoint_hash},
+      {"servo_hash", result.servo_hash},
+      {"differences", result.differences},
+      {"first_difference", result.first_difference},
+      {"failures", failures},
+      {"problems", problems},
+      {"instructions_per_tick", result.costliest_tick ? result.costliest_tick->cost.to_state_frame : 0},
+      {"lost_frames", result.lost_frames},
+      {"bit_errors", result.bit_errors},
+      {"restarts", restarts},
+      {"frames", result.frames},
+      {"setup_frames", result.setup_frames},
+      {"bus_load", result.bus_load},
+      {"real_time_factor", result.real_time_factor()},
+      {"contacts_mean", result.contacts_mean},
+      {"recording", options.record.value_or("")},
+      {"can_log", options.can_log.value_or("")},
+      {"build_id", build_id}};
   std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
 }
 
-void print_table(const Options& options, const ScenarioRun& setup, const Result& result) {
+void print_table(const Options& options, const ScenarioRun& setup, const HilModules& modules, const Result& result) {
   const auto count = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
-  std::printf("modules           %zu %s\n", setup.scenario.modules.size(), options.modules.c_str());
+  std::printf("modules           %zu %s\n", setup.scenario.modules.size(), modules.kind().c_str());
   std::printf("displacement      %.4f m in %.2f s\n", result.displacement_m, result.simulated_s);
   std::printf("real-time factor  %.1f\n", result.real_time_factor());
   std::printf("bus               %llu frames, %.1f %% load; %llu frames before the start\n", count(result.frames),
@@ -231,10 +272,25 @@ void print_table(const Options& options, const ScenarioRun& setup, const Result&
   if (options.losses) {
     std::printf("lost frames       %llu\n", count(result.lost_frames));
   }
+  if (options.bit_errors) {
+    std::printf("bit errors        %llu frames destroyed and sent again\n", count(result.bit_errors));
+  }
   for (const RestartReport& restart : result.restarts) {
     std::printf("restart           node %u (%s) at tick %u, %s\n", unsigned{restart.node}, restart.joint.c_str(),
                 restart.tick,
                 restart.joined_tick ? ("back at tick " + std::to_string(*restart.joined_tick)).c_str() : "not back");
+  }
+  if (const auto& worst = result.costliest_tick) {
+    std::printf("instructions      %llu at most from SYNC to the state frame (node %u, tick %u)\n",
+                count(worst->cost.to_state_frame), unsigned{worst->node}, worst->cost.tick);
+  }
+  for (const auto& failure : result.failures) {
+    std::printf("failure           %s was gone at the end of tick %u\n", joint_name(setup, failure.joint).c_str(),
+                failure.tick);
+  }
+  for (const auto& problem : result.problems) {
+    std::printf("problem           %s, tick %u: %s\n", joint_name(setup, problem.joint).c_str(), problem.tick,
+                problem.text.substr(0, problem.text.find('\n')).c_str());
   }
   std::printf("set-point hash    %s\n", result.setpoint_hash.c_str());
   std::printf("servo hash        %s\n", result.servo_hash.c_str());
@@ -256,6 +312,9 @@ int hil(const Options& options) {
   hardware.losses = &setup.losses;
   hardware.restarts = parse_resets(options, setup);
   hardware.injected = parse_frames(options, setup);
+  if (options.bit_errors) {
+    hardware.bit_errors = parse_bit_errors(*options.bit_errors);
+  }
   hardware.notice = [](const std::string& text) { std::cerr << "proleg hil: " << text << '\n'; };
   std::optional<sim::CandumpLog> log;
   if (options.can_log) {
@@ -271,11 +330,13 @@ int hil(const Options& options) {
       log->write(transmission.end, transmission.frame);
     };
   }
-  const std::unique_ptr<sim::Recorder> recorder = open_recorder(options, setup.scenario, "hil " + options.modules);
+  HilModules modules(options, setup.scenario, {options.record.value_or(""), options.can_log.value_or("")});
+  hardware.make_module = [&modules](const sim::ModuleParts& parts) { return modules.make(parts); };
+  const std::unique_ptr<sim::Recorder> recorder = open_recorder(options, setup.scenario, "hil " + modules.kind());
   catch_interrupts();
   std::optional<Result> finished;
   try {
-    finished = run(setup, std::move(hardware), recorder.get());
+    finished = run(setup, modules, std::move(hardware), recorder.get());
   } catch (const sim::PhysicsError& error) {
     throw std::runtime_error(error.what() + kept_in_recording(options));
   }
@@ -299,10 +360,12 @@ int hil(const Options& options) {
                       {"servo_hash", result.servo_hash}});
   }
   if (options.json) {
-    print_json(options, setup, result);
+    print_json(options, setup, modules, result);
   } else {
-    print_table(options, setup, result);
+    print_table(options, setup, modules, result);
   }
+  std::cout.flush();
+  modules.finish();
   if (result.differences > 0) {
     std::cout.flush();
     std::cerr << "proleg hil: " << result.first_difference << '\n';
@@ -331,15 +394,17 @@ int main(int argc, char** argv) {
       "proleg hil");
   Options options;
   add_scenario_options(app, options);
-  app.add_option("--modules", options.modules, "what runs the modules' program: native, as built for this computer")
-      ->check(CLI::IsMember({"native"}))
-      ->capture_default_str();
+  add_module_options(app, options);
   app.add_option("--reset", options.resets, "NODE@TICK: restart a module in mid-gait; it rejoins. May be repeated.")
       ->allow_extra_args(false);
   app.add_option("--send", options.frames,
                  "ID#DATA@TICK: a frame that somebody sends on the bus right after that SYNC, hexadecimal as cansend "
                  "takes it; what comes of it is in --can-log. May be repeated.")
       ->allow_extra_args(false);
+  app.add_option(
+      "--bit-errors", options.bit_errors,
+      "SEED:RATE: frames that are destroyed on the bus and sent again, with this probability (7:1%). Nothing "
+      "is lost, so nothing may differ.");
   app.add_option("--can-log", options.can_log, "leave all frames of the bus in this file, in candump's log format");
   return run_command(argc, argv, app, [&] { return hil(options); });
 }

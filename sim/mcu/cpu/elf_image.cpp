@@ -1,4 +1,4 @@
-#include "tests/cortex_m/elf_image.hpp"
+#include "sim/mcu/cpu/elf_image.hpp"
 
 #include <cxxabi.h>
 #include <elf.h>
@@ -12,7 +12,7 @@
 #include <sstream>
 #include <type_traits>
 
-namespace proleg::cortex_m {
+namespace proleg::sim {
 namespace {
 
 std::string hexadecimal(std::uint32_t value) {
@@ -32,6 +32,12 @@ std::string demangled(const std::string& name) {
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& file) : file_(file) {
+    constexpr std::uintmax_t largest = 256U << 20U;
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error) || std::filesystem::file_size(file, error) > largest) {
+      throw ElfError((file.empty() ? "\"\"" : file.string()) +
+                     ": found no file, or one above 256 MiB, expected an ARM program");
+    }
     std::ifstream stream(file, std::ios::binary);
     if (!stream) {
       throw ElfError(file.string() + ": found no readable file, expected an ARM program");
@@ -44,10 +50,7 @@ class Reader {
   }
 
   [[nodiscard]] std::vector<std::uint8_t> bytes(std::size_t offset, std::size_t size) const {
-    if (offset > bytes_.size() || size > bytes_.size() - offset) {
-      fail("the end of the file at byte " + std::to_string(bytes_.size()),
-           std::to_string(size) + " bytes at " + std::to_string(offset));
-    }
+    check(offset, size);
     const auto first = bytes_.begin() + static_cast<std::ptrdiff_t>(offset);
     return {first, first + static_cast<std::ptrdiff_t>(size)};
   }
@@ -55,9 +58,9 @@ class Reader {
   template <typename Record>
   [[nodiscard]] Record record(std::size_t offset) const {
     static_assert(std::is_trivially_copyable_v<Record>);
+    check(offset, sizeof(Record));
     Record result;
-    const std::vector<std::uint8_t> raw = bytes(offset, sizeof(Record));
-    std::memcpy(&result, raw.data(), sizeof(Record));
+    std::memcpy(&result, &bytes_[offset], sizeof(Record));
     return result;
   }
 
@@ -72,6 +75,13 @@ class Reader {
   }
 
  private:
+  void check(std::size_t offset, std::size_t size) const {
+    if (offset > bytes_.size() || size > bytes_.size() - offset) {
+      fail("the end of the file at byte " + std::to_string(bytes_.size()),
+           std::to_string(size) + " bytes at " + std::to_string(offset));
+    }
+  }
+
   const std::filesystem::path& file_;
   std::vector<std::uint8_t> bytes_;
 };
@@ -90,6 +100,10 @@ Elf32_Ehdr read_header(const Reader& reader) {
   }
   if (header.e_phentsize != sizeof(Elf32_Phdr) || header.e_shentsize != sizeof(Elf32_Shdr)) {
     reader.fail("table entries of unknown size", "a linked ARM program");
+  }
+  constexpr unsigned most_segments = 32;  // ours have four; a damaged count is rarely small
+  if (header.e_phnum == 0 || header.e_phnum > most_segments) {
+    reader.fail(std::to_string(header.e_phnum) + " program headers", "1 to " + std::to_string(most_segments));
   }
   return header;
 }
@@ -123,6 +137,7 @@ std::vector<ElfImage::Code> code_of_section(const Reader& reader, const Elf32_Sh
 ElfImage::ElfImage(const std::filesystem::path& file) : file_(file) {
   const Reader reader(file);
   const Elf32_Ehdr header = read_header(reader);
+  flags_ = header.e_flags;
   for (const auto& segment : reader.table<Elf32_Phdr>(header.e_phoff, header.e_phnum)) {
     if (segment.p_type == PT_LOAD && segment.p_filesz > 0) {
       segments_.push_back({segment.p_paddr, reader.bytes(segment.p_offset, segment.p_filesz)});
@@ -132,6 +147,9 @@ ElfImage::ElfImage(const std::filesystem::path& file) : file_(file) {
   const auto sections = reader.table<Elf32_Shdr>(header.e_shoff, header.e_shnum);
   std::vector<std::vector<Mark>> marks(sections.size());
   for (const Elf32_Shdr& section : sections) {
+    if (section.sh_type == SHT_ARM_ATTRIBUTES) {
+      attributes_ = reader.bytes(section.sh_offset, section.sh_size);
+    }
     if (section.sh_type != SHT_SYMTAB) {
       continue;
     }
@@ -197,4 +215,4 @@ std::string ElfImage::describe(std::uint32_t address) const {
   return hexadecimal(address);
 }
 
-}  // namespace proleg::cortex_m
+}  // namespace proleg::sim

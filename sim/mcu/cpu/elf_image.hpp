@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace proleg::cortex_m {
+namespace proleg::sim {
 
 /// The file is missing or not what it should be. One line that names file, finding and expectation.
 class ElfError : public std::runtime_error {
@@ -46,6 +46,11 @@ class ElfImage {
   [[nodiscard]] const std::vector<Segment>& segments() const { return segments_; }
   [[nodiscard]] const std::vector<Symbol>& symbols() const { return symbols_; }
   [[nodiscard]] const std::vector<Code>& code() const { return code_; }
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+  /// e_flags (ELF for the Arm Architecture, 5.2).
+  [[nodiscard]] std::uint32_t flags() const { return flags_; }
+  /// Contents of .ARM.attributes, which say what the program was compiled for; empty if it has none.
+  [[nodiscard]] const std::vector<std::uint8_t>& attributes() const { return attributes_; }
 
   /// The symbol of that name, which is mangled, or qualified and without arguments ("proleg::Kernel::advance").
   /// ElfError if there is none, or more than one.
@@ -59,7 +64,9 @@ class ElfImage {
   std::vector<Segment> segments_;
   std::vector<Symbol> symbols_;
   std::vector<Code> code_;
+  std::uint32_t flags_ = 0;
+  std::vector<std::uint8_t> attributes_;
   std::multimap<std::string, std::size_t, std::less<>> qualified_names_;  ///< index of the symbol
 };
 
-}  // namespace proleg::cortex_m
+}  // namespace proleg::sim

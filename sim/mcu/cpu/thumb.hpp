@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-namespace proleg::cortex_m {
+namespace proleg::sim {
 
 /// Length in bytes of the Thumb instruction that begins with this halfword (ARMv7-M reference manual, A5.1).
 [[nodiscard]] constexpr std::size_t instruction_size(std::uint16_t first_halfword) {
@@ -30,4 +30,4 @@ namespace proleg::cortex_m {
   return count;
 }
 
-}  // namespace proleg::cortex_m
+}  // namespace proleg::sim

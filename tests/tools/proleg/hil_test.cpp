@@ -28,8 +28,9 @@ TEST_F(Hil, GivesTheSameHashesAsSimulate) {
   EXPECT_EQ(modules["servo_hash"], simulated["servo_hash"]);
   EXPECT_EQ(modules["displacement_m"], simulated["displacement_m"]);
   EXPECT_GT(modules["real_time_factor"], 0.0);
-  EXPECT_NEAR(modules["bus_load"].get<double>(), 0.068, 0.007);
-  EXPECT_NEAR(modules["frames"].get<double>(), 300 * 6.7, 40) << "5 state frames and SYNC a tick, TICK and heartbeats";
+  EXPECT_NEAR(modules["bus_load"].get<double>(), 0.073, 0.007);
+  EXPECT_NEAR(modules["frames"].get<double>(), 300 * 7.2, 40)
+      << "5 state frames and SYNC a tick, monitoring, TICK and heartbeats";
 }
 
 TEST_F(Hil, LosesTheFramesThatSimulateLoses) {
@@ -102,13 +103,107 @@ TEST_F(Hil, WhatCannotBeIsRefused) {
   expect_refused({"hil", file_name, "--can-log", file_name}, {"found another file"});
   expect_refused({"hil", file_name, "--can-log", file("x").string(), "--record", file("x").string()}, {"found twice"});
   for (const char* command : {"simulate", "hil"}) {
-    expect_refused({command, file_name, "--losses", "7:500%"}, {"rate '500'", "0 to 1"});
+    expect_refused({command, file_name, "--losses", "7:500%"}, {"rate '500%'", "0 to 1"});
     expect_refused({command, file_name, "--losses", "7:5%@5000-6000"}, {"tick 5000", "0 to 2999"});
     expect_refused({command, file_name, "--losses", "/dev/zero"}, {"/dev/zero: found no file"});
     expect_refused({command, file_name, "--losses", "/"}, {"/: found no file"});
     expect_refused({command, file_name, "--losses", file("none").string()}, {"none': found no such file"});
   }
   EXPECT_TRUE(left_behind().empty());
+}
+
+TEST_F(Hil, FramesDestroyedOnTheBusAreNoLoss) {
+  const json clean = succeed({"simulate", scenario("coupled"), "--seconds", "3"});
+  const json disturbed = succeed({"hil", scenario("coupled"), "--seconds", "3", "--bit-errors", "7:2%"});
+  EXPECT_GT(disturbed["bit_errors"], 10);
+  EXPECT_EQ(disturbed["setpoint_hash"], clean["setpoint_hash"]);
+  EXPECT_EQ(disturbed["servo_hash"], clean["servo_hash"]);
+  for (const char* word : {"7", "7:", "x:1%", "7:101%", "-1:1%"}) {
+    expect_refused({"hil", scenario("coupled"), "--bit-errors", word}, {"--bit-errors", "SEED:RATE"});
+  }
+}
+
+class VirtualModules : public Hil {
+ protected:
+  /// The same for every start of a run but for how long it took.
+  [[nodiscard]] json without_wall_clock(json object) const {
+    object.erase("real_time_factor");
+    return object;
+  }
+};
+
+TEST_F(VirtualModules, GiveTheSameHashesAsSimulate) {
+  const json simulated = succeed({"simulate", scenario("coupled"), "--seconds", "3"});
+  for (const char* modules : {"mcu", "1,3=mcu"}) {
+    const json found = succeed({"hil", scenario("coupled"), "--modules", modules, "--seconds", "3"});
+    EXPECT_EQ(found["differences"], 0);
+    EXPECT_EQ(found["setpoint_hash"], simulated["setpoint_hash"]);
+    EXPECT_EQ(found["servo_hash"], simulated["servo_hash"]);
+    EXPECT_EQ(found["displacement_m"], simulated["displacement_m"]);
+    EXPECT_GT(found["instructions_per_tick"], 100);
+    EXPECT_LE(found["instructions_per_tick"], 20'000);
+    EXPECT_TRUE(found["failures"].empty());
+  }
+}
+
+TEST_F(VirtualModules, TwoRunsSayAndRecordTheSame) {
+  std::vector<json> results;
+  for (const char* name : {"a", "b"}) {
+    const std::string recording = file(std::string(name) + ".proleg").string();
+    const std::string table = file(std::string(name) + ".tsv").string();
+    const std::string log = file(std::string(name) + ".log").string();
+    json result = succeed({"hil", scenario("coupled"), "--modules", "mcu", "--seconds", "2", "--losses", "7:5%",
+                           "--reset", "3@100", "--record", recording, "--can-log", log});
+    result.erase("recording");
+    result.erase("can_log");
+    results.push_back(without_wall_clock(result));
+    EXPECT_EQ(proleg({"export", recording, "--tsv", "--out", table}).status, 0);
+  }
+  EXPECT_EQ(results[0], results[1]);
+  EXPECT_EQ(read_file(file("a.tsv")), read_file(file("b.tsv")));
+  EXPECT_EQ(read_file(file("a.log")), read_file(file("b.log")));
+  EXPECT_EQ(proleg({"replay", file("a.proleg").string(), "--verify"}).status, 0);
+}
+
+TEST_F(VirtualModules, ShowTheirConsoleAndTheirInstructions) {
+  const std::string table = file("trace.tsv").string();
+  const Finished finished = proleg(
+      {"hil", scenario("coupled"), "--modules", "3=mcu", "--seconds", "1", "--uart", "3", "--trace", "3=" + table});
+  EXPECT_EQ(finished.status, 0);
+  EXPECT_NE(finished.err.find("node 3: proleg module, node 3, board 1"), std::string::npos) << finished.err;
+  const std::string text = read_file(file("trace.tsv"));
+  EXPECT_EQ(text.substr(0, text.find('\n')), "node\ttick\tto_state_frame\twhole_tick");
+  EXPECT_EQ(std::ranges::count(text, '\n'), 1 + 100) << "a line a tick; the last one ends with the next SYNC";
+}
+
+TEST_F(VirtualModules, WhatCannotBeIsRefusedAndNoFileIsTouched) {
+  const std::string name = scenario("uniform");
+  const std::string kept = file("kept.txt").string();
+  std::ofstream(kept) << "precious";
+  const auto refused = [&](std::vector<std::string> words, const std::vector<std::string>& message) {
+    words.insert(words.begin(), {"hil", name});
+    expect_refused(words, message);
+  };
+  refused({"--modules", "9=mcu"}, {"--modules", "node '9'", "one of 1, 2, 3, 4, 5"});
+  refused({"--modules", "1,,2=mcu"}, {"--modules", "node ''"});
+  refused({"--modules", "=mcu"}, {"--modules"});
+  refused({"--image", "x.elf"}, {"--image", "--modules mcu"});
+  refused({"--uart", "3"}, {"node 3, which is native"});
+  refused({"--modules", "mcu", "--uart", "33"}, {"node '33'"});
+  refused({"--gdb", "3333"}, {"--gdb", "--modules mcu"});
+  refused({"--modules", "mcu", "--gdb", "gdb"}, {"--gdb", "PORT or NODE:PORT"});
+  refused({"--modules", "mcu", "--gdb", "0"}, {"--gdb", "PORT or NODE:PORT"});
+  refused({"--modules", "2=mcu", "--gdb", "3:3333"}, {"node 3, which is native"});
+  refused({"--modules", "mcu", "--trace", "9=" + kept}, {"node '9'"});
+  refused({"--modules", "2=mcu", "--trace", "1=" + kept}, {"node 1, which is native"});
+  refused({"--modules", "mcu", "--trace", "1=" + kept, "--trace", "2=" + kept}, {"kept.txt", "twice"});
+  refused({"--modules", "mcu", "--trace", "1=/nowhere/x"}, {"/nowhere/x"});
+  refused({"--modules", "mcu", "--trace", "1", "--trace", "1"}, {"node 1 twice"});
+  for (const std::string image : {"/nowhere/x.elf", "/tmp", "/dev/zero", PROLEG_PROGRAM, name.c_str()}) {
+    refused({"--modules", "mcu", "--image", image}, {image, "expected"});
+  }
+  EXPECT_EQ(read_file(file("kept.txt")), "precious");
+  EXPECT_EQ(left_behind().size(), 1U);
 }
 
 class Replay : public Hil {};

@@ -1,0 +1,593 @@
+#include "sim/mcu/chip/stm32f405.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "shared/fixed/random.hpp"
+#include "sim/mcu/chip/oscillator.hpp"
+#include "sim/mcu/peripherals/adc.hpp"
+#include "sim/mcu/peripherals/bxcan.hpp"
+#include "sim/mcu/peripherals/chip_identity.hpp"
+#include "sim/mcu/peripherals/flash_interface.hpp"
+#include "sim/mcu/peripherals/gpio.hpp"
+#include "sim/mcu/peripherals/iwdg.hpp"
+#include "sim/mcu/peripherals/pwr.hpp"
+#include "sim/mcu/peripherals/rcc.hpp"
+#include "sim/mcu/peripherals/syscfg.hpp"
+#include "sim/mcu/peripherals/timer.hpp"
+#include "sim/mcu/peripherals/usart.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr std::uint32_t first_peripheral = 0x4000'0000;
+constexpr std::uint32_t block_bytes = 0x400;  ///< no two peripherals share one
+constexpr std::uint32_t block_count = 0x8'0000 / block_bytes;
+
+/// Alternate functions of the pins (DS8626, table 9).
+constexpr unsigned timer_2_function = 1;
+constexpr unsigned can_function = 9;
+struct Pin {
+  unsigned port;
+  unsigned number;
+};
+/// Where each output of TIM2 can reach a pin.
+constexpr std::array<std::array<Pin, 3>, Timer::channel_count> timer_2_pins{{{{{0, 0}, {0, 5}, {0, 15}}},
+                                                                             {{{0, 1}, {1, 3}, {1, 3}}},
+                                                                             {{{0, 2}, {1, 10}, {1, 10}}},
+                                                                             {{{0, 3}, {1, 11}, {1, 11}}}}};
+/// Receive and transmit of CAN1.
+constexpr std::array<std::array<Pin, 2>, 3> can_pins{{{{{0, 11}, {0, 12}}}, {{{1, 8}, {1, 9}}}, {{{3, 0}, {3, 1}}}}};
+
+}  // namespace
+
+class Stm32f405::Implementation final : public CpuSurroundings, public ChipServices, public FlashMemory {
+ public:
+  Implementation(Bus& bus, BoardSignals& board, const ChipSettings& settings)
+      : settings_(settings),
+        oscillator_(settings.crystal_parts_per_billion),
+        cpu_(*this),
+        iwdg_(*this),
+        pwr_(*this),
+        flash_(*this, *this),
+        rcc_(*this, flash_, pwr_, iwdg_),
+        syscfg_(*this),
+        timer_2_(*this, 2),
+        timer_5_(*this, 5),
+        usart_(*this, board),
+        adc_(*this, board),
+        can_(*this, bus, [this](LocalTime time) { return oscillator_.when(time); }) {
+    for (const char port : {'A', 'B', 'C', 'D', 'E', 'F', 'G', 'H', 'I'}) {
+      ports_.push_back(std::make_unique<Gpio>(*this, board, port));
+      place(*ports_.back());
+    }
+    for (Peripheral* peripheral : std::initializer_list<Peripheral*>{&iwdg_, &pwr_, &flash_, &rcc_, &syscfg_, &timer_2_,
+                                                                     &timer_5_, &usart_, &adc_, &can_}) {
+      place(*peripheral);
+    }
+    timed_ = {&rcc_, &flash_, &iwdg_, &timer_2_, &timer_5_, &usart_, &adc_, &can_};
+    cpu_.write(system_memory_address, system_memory(settings.unique_id));
+  }
+
+  void power_on(BusTime now) {
+    if (on_) {
+      cut_flash();
+    }
+    on_ = true;
+    stands_still_ = false;
+    forget_memory();
+    oscillator_.start(now);
+    anchor_time_ = 0;
+    anchor_instructions_ = cpu_.instructions();
+    reset_cause_.reset();
+    start(ResetCause::power_on);
+  }
+
+  [[nodiscard]] BusTime next_event() const {
+    if (!next_event_) {
+      next_event_ = never_on_bus;
+      if (on_ && !stands_still_) {
+        const LocalTime next = is_awake() ? now() : next_internal_event();
+        next_event_ = std::min(can_.next_request(), oscillator_.when(next));
+      }
+    }
+    return *next_event_;
+  }
+
+  void advance_to(BusTime now_on_bus, BusTime quiet_until) {
+    if (!on_ || stands_still_) {
+      return;
+    }
+    forget_next_events();
+    can_.submit(now_on_bus);
+    const LocalTime due = oscillator_.at(now_on_bus);
+    const LocalTime horizon = std::max(due, oscillator_.at(quiet_until));
+    if (cpu_.state() == Cpu::State::sleeping && next_internal_event() > due) {
+      pass_to(std::max(now(), due));
+    }
+    while (!stands_still_) {
+      while (next_internal_event() <= now()) {
+        take_events();
+      }
+      if (reset_cause_) {
+        restart();
+      } else if (!is_awake()) {
+        const LocalTime next = next_internal_event();
+        if (next > horizon) {
+          pass_to(std::max(now(), due));
+          return;
+        }
+        pass_to(next);
+      } else if (now() >= horizon) {
+        return;
+      } else if (stalls()) {
+        pass_to(std::min({flash_.busy_until(), next_internal_event(), horizon}));
+      } else {
+        execute(std::min(horizon, next_internal_event()));
+      }
+    }
+  }
+
+  [[nodiscard]] std::optional<LocalTime> pulse_time(unsigned channel) {
+    const auto& pins = timer_2_pins[channel - 1];
+    const bool reaches_pin =
+        std::ranges::any_of(pins, [this](const Pin& pin) { return has_function(pin, timer_2_function); });
+    return reaches_pin ? timer_2_.high_time(channel) : std::nullopt;
+  }
+
+  void watch_pin(char port, unsigned number, PinWatch watch) {
+    watched_ = WatchedPin{{static_cast<unsigned>(port - 'A'), number}, std::move(watch)};
+    watched_->high = level(watched_->pin);
+  }
+
+  [[nodiscard]] std::optional<ChipEvent> take_event() {
+    if (events_.empty()) {
+      return std::nullopt;
+    }
+    ChipEvent event = std::move(events_.front());
+    events_.pop_front();
+    return event;
+  }
+
+  ChipSettings settings_;
+  Oscillator oscillator_;
+  Cpu cpu_;
+  Iwdg iwdg_;
+  Pwr pwr_;
+  FlashInterface flash_;
+  Rcc rcc_;
+  Syscfg syscfg_;
+  Timer timer_2_;
+  Timer timer_5_;
+  Usart usart_;
+  Adc adc_;
+  BxCan can_;
+  std::vector<std::unique_ptr<Gpio>> ports_;
+  TransmitWatch transmit_watch_;
+  DebugHook debug_hook_;
+
+ private:
+  void place(Peripheral& peripheral) {
+    rcc_.attach(peripheral);
+    for (std::uint32_t address = peripheral.base(); address < peripheral.base() + peripheral.size();
+         address += block_bytes) {
+      blocks_[(address - first_peripheral) / block_bytes] = &peripheral;
+    }
+  }
+
+  // Time.
+
+  [[nodiscard]] LocalTime now() const override {
+    return anchor_time_ + (cpu_.instructions() - anchor_instructions_) * rcc_.clocks().core;
+  }
+  [[nodiscard]] LocalTime core_period() const override { return rcc_.clocks().core; }
+  [[nodiscard]] const Clocks& clocks() const override { return rcc_.clocks(); }
+
+  /// Time goes on without instructions.
+  void pass_to(LocalTime time) {
+    anchor_time_ = time;
+    anchor_instructions_ = cpu_.instructions();
+  }
+
+  [[nodiscard]] LocalTime next_internal_event() const {
+    if (!next_peripheral_event_) {
+      LocalTime next = never_on_chip;
+      for (const Peripheral* peripheral : timed_) {
+        next = std::min(next, peripheral->next_event());
+      }
+      if (watched_) {
+        next = std::min(next, watched_->next_edge);
+      }
+      next_peripheral_event_ = next;
+    }
+    return std::min(*next_peripheral_event_, cpu_.next_system_tick());
+  }
+  /// Something happened that may have changed when something happens next.
+  void forget_next_events() {
+    next_peripheral_event_.reset();
+    next_event_.reset();
+  }
+
+  void take_events() {
+    const LocalTime time = now();
+    forget_next_events();
+    if (cpu_.next_system_tick() <= time) {
+      cpu_.advance_system_tick();
+    }
+    for (Peripheral* peripheral : timed_) {
+      if (peripheral->next_event() <= time) {
+        guard([&] { peripheral->advance(); });
+      }
+    }
+    look_at_pin();
+    forget_next_events();
+    if (now() != time) {  // the core has another clock now
+      pass_to(time);
+      cpu_.change_core_period();
+    }
+  }
+
+  /// A CPU that has locked up waits for the watchdog.
+  [[nodiscard]] bool is_awake() const {
+    const Cpu::State state = cpu_.state();
+    return state != Cpu::State::locked_up && (state != Cpu::State::sleeping || cpu_.wakes());
+  }
+
+  /// A flash operation is under way and the program runs from flash.
+  [[nodiscard]] bool stalls() const {
+    if (flash_.busy_until() <= now()) {
+      return false;
+    }
+    const std::uint32_t address = cpu_.core_register(program_counter);
+    return address >= Cpu::flash_start && address - Cpu::flash_start < Cpu::flash_size;
+  }
+
+  void execute(LocalTime until) {
+    if (debug_hook_ && step_for_debugger()) {
+      return;
+    }
+    const LocalTime period = core_period();
+    run_end_ = until;
+    const Cpu::State state = cpu_.run((until - now() + period - 1) / period);
+    run_end_ = 0;
+    note_faults();
+    if (state == Cpu::State::halted) {
+      stand_still();
+    }
+    if (debug_hook_ && state == Cpu::State::at_breakpoint) {
+      take_debugger(DebugEvent::breakpoint);
+    }
+  }
+
+  // The debugger.
+
+  bool step_for_debugger() {
+    if (!steps_) {
+      take_debugger(DebugEvent::about_to_run);
+    }
+    if (!steps_) {
+      return false;
+    }
+    cpu_.step();
+    note_faults();
+    take_debugger(DebugEvent::step);
+    return true;
+  }
+  void take_debugger(DebugEvent event) { steps_ = debug_hook_(event); }
+
+  // Resets.
+
+  void start(ResetCause cause) {
+    for (const auto& port : ports_) {
+      port->reset();
+    }
+    for (Peripheral* peripheral : std::initializer_list<Peripheral*>{&iwdg_, &pwr_, &flash_, &rcc_, &syscfg_, &timer_2_,
+                                                                     &timer_5_, &usart_, &adc_, &can_}) {
+      peripheral->reset();
+    }
+    rcc_.note_start(cause);
+    cpu_.reset();
+    if (watched_) {
+      watched_->next_edge = never_on_chip;  // was on the clock of before
+    }
+    look_at_pin();
+    forget_next_events();
+  }
+
+  /// RAM holds what the program of a chip that was just switched on must not rely on.
+  void forget_memory() {
+    Pcg32 noise(settings_.seed, ++starts_);
+    std::vector<std::uint8_t> bytes(Cpu::ram_size);
+    for (std::size_t i = 0; i < bytes.size(); i += sizeof(std::uint32_t)) {
+      const std::uint32_t word = noise.next();
+      std::memcpy(&bytes[i], &word, sizeof(word));
+    }
+    cpu_.write(Cpu::ram_start, bytes);
+    cpu_.write(Cpu::ccm_start, std::span(bytes).first(Cpu::ccm_size));
+  }
+
+  void restart() {
+    const ResetCause cause = *std::exchange(reset_cause_, std::nullopt);
+    pass_to(now());
+    cut_flash();
+    start(cause);
+    ChipEvent event;
+    event.kind = ChipEvent::Kind::reset;
+    event.time = oscillator_.when(now());
+    event.cause = cause;
+    events_.push_back(std::move(event));
+  }
+
+  void cut_flash() {
+    if (flash_.busy_until() > now()) {
+      flash_.cut(settings_.seed + ++cuts_);
+    }
+  }
+
+  // What the CPU sees.
+
+  [[nodiscard]] Peripheral* at(std::uint32_t address) const {
+    const std::uint32_t block = (address - first_peripheral) / block_bytes;
+    return block < block_count ? blocks_[block] : nullptr;
+  }
+
+  /// The peripheral at an address, and the offset of its register. Refuses what nobody answers.
+  std::pair<Peripheral*, std::uint32_t> find(std::uint32_t address, unsigned size) {
+    Peripheral* const peripheral = at(address);
+    if (peripheral == nullptr || address - peripheral->base() >= peripheral->size()) {
+      throw UnmodelledAccess(describe_address(address) + " is not modelled");
+    }
+    const std::uint32_t offset = address - peripheral->base();
+    if (size != 4 || offset % 4 != 0) {
+      throw UnmodelledAccess(peripheral->register_name(offset / 4 * 4) + ": an access of " + std::to_string(size * 8) +
+                             " bits is not modelled");
+    }
+    rcc_.require_clock(*peripheral, offset);
+    return {peripheral, offset};
+  }
+
+  std::uint32_t load(std::uint32_t address, unsigned size) override {
+    std::uint32_t value = 0;
+    guard([&] {
+      const auto [peripheral, offset] = find(address, size);
+      value = peripheral->read(offset);
+      if (peripheral == &flash_ && flash_.busy_until() > now()) {
+        // A program in RAM that waits for the end of the operation: nothing comes of its waiting one by one.
+        pass_to(std::max(now(), std::min({flash_.busy_until(), next_internal_event(), run_end_})));
+        shorten_run(run_end_);
+      }
+    });
+    return value;
+  }
+
+  void store(std::uint32_t address, unsigned size, std::uint32_t value) override {
+    guard([&] {
+      const auto [peripheral, offset] = find(address, size);
+      const LocalTime time = now();
+      if (peripheral == &can_) {
+        watch_can(offset, value);
+      }
+      look_at_pin();
+      peripheral->write(offset, value);
+      look_at_pin();
+      forget_next_events();
+      if (now() != time) {  // the core has another clock now
+        pass_to(time);
+        cpu_.change_core_period();
+        cpu_.pause();
+      }
+      shorten_run(peripheral->next_event());
+      if (watched_) {
+        shorten_run(watched_->next_edge);
+      }
+    });
+    if (flash_.busy_until() > now()) {
+      cpu_.pause();
+    }
+  }
+
+  bool store_to_flash(std::uint32_t address, unsigned size, std::uint32_t value) override {
+    const bool taken = flash_.program(address, size, value);
+    forget_next_events();
+    shorten_run(flash_.next_event());
+    if (flash_.busy_until() > now()) {
+      cpu_.pause();
+    }
+    return taken;
+  }
+
+  /// Something happens at this time, which may be before the end of the run.
+  void shorten_run(LocalTime next) {
+    if (run_end_ == 0 || next > run_end_) {
+      return;
+    }
+    run_end_ = next;
+    const LocalTime period = core_period();
+    const LocalTime time = now();
+    cpu_.limit(cpu_.instructions() + (next <= time ? 0 : (next - time + period - 1) / period));
+  }
+
+  void watch_can(std::uint32_t offset, std::uint32_t value) {
+    constexpr std::uint32_t mcr = 0x000;
+    constexpr std::uint32_t inrq = 1;
+    constexpr std::uint32_t first_mailbox = 0x180;
+    constexpr std::uint32_t mailbox_bytes = 0x10;
+    constexpr std::uint32_t mailboxes = 3;
+    constexpr std::uint32_t txrq = 1;
+    if (offset == mcr && (value & inrq) == 0) {
+      require_can_pins();
+    }
+    const std::uint32_t place = offset - first_mailbox;
+    if (transmit_watch_ && offset >= first_mailbox && place < mailboxes * mailbox_bytes && place % mailbox_bytes == 0 &&
+        (value & txrq) != 0) {
+      transmit_watch_(static_cast<std::uint16_t>(value >> 21U), cpu_.instructions());
+    }
+  }
+
+  [[nodiscard]] bool has_function(const Pin& pin, unsigned function) const {
+    const Gpio& port = *ports_[pin.port];
+    return port.mode(pin.number) == Gpio::Mode::alternate && port.alternate_function(pin.number) == function;
+  }
+
+  void require_can_pins() const {
+    const bool connected = std::ranges::any_of(can_pins, [this](const auto& pins) {
+      return std::ranges::all_of(pins, [this](const Pin& pin) { return has_function(pin, can_function); });
+    });
+    if (!connected) {
+      throw UnmodelledAccess("CAN1_MCR: the controller is to join the bus, but no pins are connected to it (AF9)");
+    }
+  }
+
+  // The watched pin.
+
+  struct WatchedPin {
+    Pin pin;
+    PinWatch watch;
+    bool high = false;
+    LocalTime next_edge = never_on_chip;  ///< or when to look again, if no register is written before
+  };
+
+  /// The output of TIM2, 1 to 4, that drives a pin; 0: none.
+  [[nodiscard]] unsigned timer_output_at(const Pin& pin) const {
+    for (unsigned channel = 1; channel <= timer_2_pins.size() && has_function(pin, timer_2_function); ++channel) {
+      const auto reaches = [&pin](const Pin& other) { return other.port == pin.port && other.number == pin.number; };
+      if (std::ranges::any_of(timer_2_pins[channel - 1], reaches)) {
+        return channel;
+      }
+    }
+    return 0;
+  }
+
+  [[nodiscard]] bool level(const Pin& pin) {
+    if (const unsigned channel = timer_output_at(pin); channel != 0) {
+      return timer_2_.output(channel).high;
+    }
+    Gpio& port = *ports_[pin.port];
+    return port.mode(pin.number) != Gpio::Mode::alternate && port.level(pin.number);
+  }
+
+  /// Two edges are never due at once: it is looked at each of them.
+  void look_at_pin() {
+    if (!watched_) {
+      return;
+    }
+    const bool high = level(watched_->pin);
+    if (high != watched_->high) {
+      watched_->high = high;
+      watched_->watch(oscillator_.when(std::min(watched_->next_edge, now())), high);
+    }
+    const unsigned channel = timer_output_at(watched_->pin);
+    watched_->next_edge = channel != 0 ? timer_2_.next_edge(channel) : never_on_chip;
+  }
+
+  // FlashMemory.
+  void read(std::uint32_t address, std::span<std::uint8_t> bytes) override { cpu_.read(address, bytes); }
+  void write(std::uint32_t address, std::span<const std::uint8_t> bytes) override { cpu_.write(address, bytes); }
+
+  // What peripherals and CPU ask for.
+  void set_interrupt(unsigned position, bool high) override {
+    cpu_.set_interrupt(position, high);
+    next_event_.reset();
+  }
+  void request_reset(ResetCause cause) override {
+    if (!reset_cause_) {
+      reset_cause_ = cause;
+      cpu_.pause();
+    }
+  }
+  void reset_requested() override { request_reset(ResetCause::software); }
+  void reschedule() override {
+    forget_next_events();
+    shorten_run(next_internal_event());
+  }
+
+  // Reports.
+
+  template <typename Action>
+  void guard(const Action& action) {
+    try {
+      action();
+    } catch (const UnmodelledAccess& error) {
+      cpu_.halt(error.what());
+      stand_still();
+      next_event_.reset();
+    }
+  }
+
+  /// The program has left what is modelled.
+  void stand_still() {
+    if (stands_still_) {
+      return;
+    }
+    stands_still_ = true;
+    ChipEvent event;
+    event.kind = ChipEvent::Kind::unmodelled;
+    event.time = oscillator_.when(now());
+    event.text = cpu_.halt_reason();
+    for (unsigned number = 0; number < event.registers.size(); ++number) {
+      event.registers[number] = cpu_.core_register(number);
+    }
+    events_.push_back(std::move(event));
+  }
+
+  void note_faults() {
+    for (CpuFault& fault : cpu_.take_faults()) {
+      ChipEvent event;
+      event.kind = fault.locked_up ? ChipEvent::Kind::locked_up : ChipEvent::Kind::fault;
+      event.time = oscillator_.when(now());
+      event.text = std::move(fault.cause);
+      std::ranges::copy(fault.registers, event.registers.begin());
+      events_.push_back(std::move(event));
+      if (debug_hook_) {
+        take_debugger(DebugEvent::fault);
+      }
+    }
+  }
+
+  static constexpr unsigned program_counter = 15;
+
+  std::vector<Peripheral*> timed_;  ///< those with events of their own
+  std::array<Peripheral*, block_count> blocks_{};
+  mutable std::optional<LocalTime> next_peripheral_event_;  ///< nothing: to be asked for
+  mutable std::optional<BusTime> next_event_;
+  LocalTime anchor_time_ = 0;  ///< local time when the CPU had executed anchor_instructions_
+  std::uint64_t anchor_instructions_ = 0;
+  LocalTime run_end_ = 0;  ///< while instructions are executed
+  std::optional<ResetCause> reset_cause_;
+  std::optional<WatchedPin> watched_;
+  std::uint64_t cuts_ = 0;
+  std::uint64_t starts_ = 0;
+  bool on_ = false;
+  bool stands_still_ = false;  ///< the model has ended
+  bool steps_ = false;
+  std::deque<ChipEvent> events_;
+};
+
+Stm32f405::Stm32f405(Bus& bus, BoardSignals& board, const ChipSettings& settings)
+    : implementation_(std::make_unique<Implementation>(bus, board, settings)) {}
+Stm32f405::~Stm32f405() = default;
+
+void Stm32f405::write(std::uint32_t address, std::span<const std::uint8_t> bytes) {
+  implementation_->cpu_.write(address, bytes);
+}
+void Stm32f405::read(std::uint32_t address, std::span<std::uint8_t> bytes) const {
+  implementation_->cpu_.read(address, bytes);
+}
+void Stm32f405::power_on(BusTime now) { implementation_->power_on(now); }
+BusTime Stm32f405::next_event() const { return implementation_->next_event(); }
+void Stm32f405::advance_to(BusTime now, BusTime quiet_until) { implementation_->advance_to(now, quiet_until); }
+std::optional<LocalTime> Stm32f405::pulse_time(unsigned channel) const { return implementation_->pulse_time(channel); }
+void Stm32f405::set_pin_watch(char port, unsigned number, PinWatch watch) {
+  implementation_->watch_pin(port, number, std::move(watch));
+}
+std::size_t Stm32f405::controller() const { return implementation_->can_.controller(); }
+std::uint64_t Stm32f405::instructions() const { return implementation_->cpu_.instructions(); }
+void Stm32f405::serial_input(std::uint8_t byte) { implementation_->usart_.receive(byte); }
+void Stm32f405::set_transmit_watch(TransmitWatch watch) { implementation_->transmit_watch_ = std::move(watch); }
+void Stm32f405::set_debug_hook(DebugHook hook) { implementation_->debug_hook_ = std::move(hook); }
+Cpu& Stm32f405::cpu() { return implementation_->cpu_; }
+std::optional<ChipEvent> Stm32f405::take_event() { return implementation_->take_event(); }
+
+}  // namespace proleg::sim

@@ -1,0 +1,102 @@
+#pragma once
+
+// A virtual STM32F405 (ST RM0090): CPU, memory and the peripherals that a joint module uses, on the simulated CAN bus.
+// It runs the image that is flashed, unmodified.
+//
+// Time comes from executed instructions, one a cycle of HCLK; while the CPU sleeps time goes to the next event. What
+// the model does not have stops the chip with a name, rather than let a program believe in it.
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "sim/bus/bus.hpp"
+#include "sim/mcu/cpu/cpu.hpp"
+#include "sim/mcu/peripherals/peripheral.hpp"
+
+namespace proleg::sim {
+
+struct ChipSettings {
+  std::array<std::uint32_t, 3> unique_id{};
+  std::int32_t crystal_parts_per_billion = 0;  ///< of the 8 MHz crystal, against true time
+  std::uint64_t seed = 0;                      ///< of what a cut flash operation leaves behind
+};
+
+/// Something that a person should hear of.
+struct ChipEvent {
+  enum class Kind : std::uint8_t {
+    fault,       ///< the program's: an exception handler runs now
+    locked_up,   ///< a fault in the handler of a fault
+    unmodelled,  ///< the model ends here: the chip stands still until it is switched on again
+    reset,       ///< it started again by itself
+  };
+  Kind kind;
+  BusTime time = 0;
+  std::string text;
+  std::array<std::uint32_t, 17> registers{};  ///< r0-r12, sp, lr, pc, xpsr; of a fault: where it happened
+  std::optional<ResetCause> cause;            ///< of a reset
+};
+
+class Stm32f405 {
+ public:
+  /// Attaches to the bus. The chip is off. What it refers to must outlive it.
+  Stm32f405(Bus& bus, BoardSignals& board, const ChipSettings& settings);
+  ~Stm32f405();
+  Stm32f405(const Stm32f405&) = delete;
+  Stm32f405& operator=(const Stm32f405&) = delete;
+
+  /// Puts something into memory, as a programmer on the debug port does. std::out_of_range where no memory is.
+  void write(std::uint32_t address, std::span<const std::uint8_t> bytes);
+  void read(std::uint32_t address, std::span<std::uint8_t> bytes) const;
+
+  /// Switches it on; if it is on: off and on again.
+  void power_on(BusTime now);
+  [[nodiscard]] BusTime next_event() const;
+  /// Does what is due. Nothing reaches the chip from outside before quiet_until: up to there its program may run ahead.
+  void advance_to(BusTime now, BusTime quiet_until);
+
+  /// Length of the pulses at an output of TIM2 (1 to 4) that reaches its pin, as Timer::high_time(); nothing if there
+  /// are none.
+  [[nodiscard]] std::optional<LocalTime> pulse_time(unsigned channel) const;
+  /// Called when the level of a pin changes, with the true time of its edge: of one that is a plain input or output, or
+  /// an output of TIM2. One of another peripheral counts as low. One pin can be watched, before the chip is switched
+  /// on.
+  using PinWatch = std::function<void(BusTime time, bool high)>;
+  void set_pin_watch(char port, unsigned number, PinWatch watch);
+
+  /// Index of the controller on the bus.
+  [[nodiscard]] std::size_t controller() const;
+  /// Executed since the chip was made.
+  [[nodiscard]] std::uint64_t instructions() const;
+  /// A byte arrives at USART2.
+  void serial_input(std::uint8_t byte);
+
+  /// Called when the program asks for a frame to be sent, with the instructions executed by then.
+  using TransmitWatch = std::function<void(std::uint16_t identifier, std::uint64_t instructions)>;
+  void set_transmit_watch(TransmitWatch watch);
+
+  enum class DebugEvent : std::uint8_t {
+    about_to_run,
+    breakpoint,
+    step,   ///< done
+    fault,  ///< or lock-up, or what is not modelled
+  };
+  /// For a debugger: called between instructions; true: the next one alone, then `step`. It may throw.
+  using DebugHook = std::function<bool(DebugEvent)>;
+  void set_debug_hook(DebugHook hook);
+  [[nodiscard]] Cpu& cpu();
+
+  /// What happened since it was asked last, oldest first.
+  [[nodiscard]] std::optional<ChipEvent> take_event();
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace proleg::sim

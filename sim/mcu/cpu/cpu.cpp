@@ -1,0 +1,433 @@
+#include "sim/mcu/cpu/cpu.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+#include "sim/mcu/cpu/engine.hpp"
+#include "sim/mcu/cpu/exceptions.hpp"
+#include "sim/mcu/cpu/nvic.hpp"
+#include "sim/mcu/cpu/system_control.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr std::uint32_t peripheral_bits_start = 0x4200'0000;
+constexpr std::uint32_t peripheral_bits_end = 0x4400'0000;
+constexpr std::uint32_t peripherals_start = 0x4000'0000;
+constexpr std::uint32_t ram_bits_start = 0x2200'0000;
+constexpr std::uint32_t ram_bits_end = ram_bits_start + Cpu::ram_size * 32;
+
+std::string hexadecimal(std::uint32_t value) {
+  std::ostringstream text;
+  text << "0x" << std::hex << std::uppercase << value;
+  return text.str();
+}
+
+/// What RAM holds at power-on: always the same, and useless.
+void fill_with_noise(std::span<std::uint8_t> bytes) {
+  std::uint32_t state = 0x2545'F491;
+  for (std::uint8_t& byte : bytes) {
+    state ^= state << 13U;
+    state ^= state >> 17U;
+    state ^= state << 5U;
+    byte = static_cast<std::uint8_t>(state >> 24U);
+  }
+}
+
+}  // namespace
+
+class Cpu::Implementation final : public EngineClient, public SystemControlOwner {
+ public:
+  explicit Implementation(CpuSurroundings& surroundings)
+      : surroundings_(&surroundings),
+        engine_(*this),
+        system_control_(*this, nvic_),
+        exceptions_(engine_, nvic_, system_control_) {
+    fill_with_noise({engine_.ram(ram_start, ram_size), ram_size});
+    fill_with_noise({engine_.ram(ccm_start, ccm_size), ccm_size});
+    const std::vector<std::uint8_t> erased(flash_size, 0xFF);
+    static_cast<void>(engine_.write_memory(flash_start, erased));
+    static_cast<void>(engine_.write_memory(system_memory_start, std::span(erased).first(system_memory_size)));
+  }
+
+  void restart() {
+    halt_reason_.clear();
+    stop_requested_ = false;
+    wants_halt_ = false;
+    sleep_priority_ = Nvic::no_priority;
+    state_ = State::running;
+    exceptions_.reset();
+  }
+
+  State run(std::uint64_t instructions) {
+    if (!begin()) {
+      return state_;
+    }
+    const std::uint64_t done = engine_.instructions();
+    limit_ =
+        done + std::min(std::max<std::uint64_t>(instructions, 1), std::numeric_limits<std::uint64_t>::max() - done);
+    while (prepare() && engine_.instructions() < limit_) {
+      engine_.set_limit(nvic_.wants_attention() ? 0 : limit_);
+      handle(engine_.run());
+    }
+    return state_;
+  }
+
+  void step() {
+    if (begin() && prepare()) {
+      limit_ = std::numeric_limits<std::uint64_t>::max();
+      engine_.pass_breakpoint(true);
+      handle(engine_.step());
+      static_cast<void>(prepare_to_stop());
+    }
+  }
+
+  void limit(std::uint64_t total) {
+    limit_ = std::min(limit_, total);
+    attend();
+  }
+
+  void pause() {
+    stop_requested_ = true;
+    attend();
+  }
+
+  [[nodiscard]] bool wakes() const {
+    const int priority = state_ == State::sleeping ? sleep_priority_ : priority_without_primask();
+    return nvic_.next_priority() < priority;
+  }
+
+  void advance_system_tick() {
+    system_control_.system_tick().advance(now());
+    system_control_.collect_system_tick();
+  }
+
+  void read(std::uint32_t address, std::span<std::uint8_t> bytes) const {
+    if (!engine_.read_memory(address, bytes)) {
+      throw no_memory(address, bytes.size());
+    }
+    for (const Write& write : writes_) {
+      for (std::size_t i = 0; i < write.bytes.size(); ++i) {
+        const std::uint64_t place = std::uint64_t{write.address} + i - address;
+        if (place < bytes.size()) {
+          bytes[place] = write.bytes[i];
+        }
+      }
+    }
+  }
+
+  void write(std::uint32_t address, std::span<const std::uint8_t> bytes) {
+    if (!Engine::is_memory(address, bytes.size())) {
+      throw no_memory(address, bytes.size());
+    }
+    if (engine_.is_running() && engine_.ram(address, static_cast<std::uint32_t>(bytes.size())) == nullptr) {
+      writes_.push_back({address, {bytes.begin(), bytes.end()}});
+      attend();
+      return;
+    }
+    static_cast<void>(engine_.write_memory(address, bytes));
+    exceptions_.forget_vectors();
+  }
+
+  [[nodiscard]] std::uint32_t core_register(unsigned number) const {
+    if (number == 15 && engine_.is_running()) {
+      return engine_.block();
+    }
+    return engine_.read(named(number));
+  }
+
+  void set_core_register(unsigned number, std::uint32_t value) {
+    constexpr std::uint32_t thumb_state = 1U << 24U;
+    constexpr std::uint32_t number_mask = 0x1FF;
+    engine_.write(named(number), number == 16 ? (value & ~number_mask) | thumb_state | exceptions_.current() : value);
+  }
+
+  // EngineClient
+  [[nodiscard]] std::uint32_t load(std::uint32_t address, unsigned size) override {
+    if (address >= SystemControl::start) {
+      return system_control_.load(address, size);
+    }
+    if (address >= peripheral_bits_start && address < peripheral_bits_end) {
+      const std::uint32_t offset = address - peripheral_bits_start;
+      return surroundings_->load(peripherals_start + (offset >> 5U & ~3U), 4) >> (offset >> 2U & 31U) & 1U;
+    }
+    if (address < ram_bits_end) {
+      const std::uint32_t offset = address - ram_bits_start;
+      return static_cast<std::uint32_t>(*engine_.ram(ram_start + (offset >> 5U), 1)) >> (offset >> 2U & 7U) & 1U;
+    }
+    return surroundings_->load(address, size);
+  }
+
+  void store(std::uint32_t address, unsigned size, std::uint32_t value) override {
+    if (address >= SystemControl::start) {
+      system_control_.store(address, size, value);
+    } else if (address >= peripheral_bits_start && address < peripheral_bits_end) {
+      const std::uint32_t offset = address - peripheral_bits_start;
+      const std::uint32_t word = peripherals_start + (offset >> 5U & ~3U);
+      const std::uint32_t bit = 1U << (offset >> 2U & 31U);
+      const std::uint32_t old = surroundings_->load(word, 4);
+      surroundings_->store(word, 4, (value & 1U) != 0 ? old | bit : old & ~bit);
+    } else if (address < ram_bits_end) {
+      const std::uint32_t offset = address - ram_bits_start;
+      std::uint8_t& byte = *engine_.ram(ram_start + (offset >> 5U), 1);
+      const unsigned bit = 1U << (offset >> 2U & 7U);
+      byte = static_cast<std::uint8_t>((value & 1U) != 0 ? byte | bit : byte & ~bit);
+    } else {
+      surroundings_->store(address, size, value);
+    }
+  }
+
+  [[nodiscard]] bool store_to_flash(std::uint32_t address, unsigned size, std::uint32_t value) override {
+    return surroundings_->store_to_flash(address, size, value);
+  }
+
+  [[nodiscard]] bool stops() override {
+    if (stop_requested_ || wants_halt_ || !writes_.empty() || engine_.instructions() >= limit_) {
+      return true;
+    }
+    if (nvic_.wants_attention()) {
+      // While it is masked, every block asks again.
+      return exceptions_.takes_next();
+    }
+    engine_.set_limit(limit_);
+    return false;
+  }
+
+  [[nodiscard]] bool coprocessor_allowed() const override {
+    constexpr std::uint32_t unprivileged = 1;
+    return system_control_.fpu_enabled(exceptions_.current() != 0 ||
+                                       (engine_.read(CoreRegister::control) & unprivileged) == 0);
+  }
+
+  void send_event() override { exceptions_.send_event(); }
+
+  // SystemControlOwner
+  [[nodiscard]] LocalTime now() const override { return surroundings_->now(); }
+  [[nodiscard]] LocalTime core_period() const override { return surroundings_->core_period(); }
+  [[nodiscard]] std::uint64_t instructions() const override { return engine_.instructions(); }
+  [[nodiscard]] unsigned active_exception() const override { return exceptions_.current(); }
+  void attend() override { engine_.set_limit(0); }
+  void reschedule() override { limit(engine_.instructions()); }
+  void request_reset() override {
+    stop_requested_ = true;
+    surroundings_->reset_requested();
+  }
+  void halt(std::string reason) override {
+    if (halt_reason_.empty()) {
+      halt_reason_ = std::move(reason);
+      if (engine_.is_running()) {
+        halt_reason_ += ", by the code from " + hexadecimal(engine_.block()) + " on";
+      }
+    }
+    wants_halt_ = true;
+    attend();
+    if (!engine_.is_running()) {
+      state_ = State::halted;
+    }
+  }
+
+  [[nodiscard]] State state() const { return state_; }
+  [[nodiscard]] const std::string& halt_reason() const { return halt_reason_; }
+  Engine& engine() { return engine_; }
+  Nvic& nvic() { return nvic_; }
+  SystemControl& system_control() { return system_control_; }
+  Exceptions& exceptions() { return exceptions_; }
+
+ private:
+  /// A write to flash or system memory in the middle of a block, which waits for the end of the block.
+  struct Write {
+    std::uint32_t address;
+    std::vector<std::uint8_t> bytes;
+  };
+
+  static std::out_of_range no_memory(std::uint32_t address, std::size_t size) {
+    return std::out_of_range("no memory at " + hexadecimal(address) + ", " + std::to_string(size) + " bytes");
+  }
+
+  static CoreRegister named(unsigned number) {
+    if (number > 16) {
+      throw std::out_of_range("no core register " + std::to_string(number));
+    }
+    return static_cast<CoreRegister>(number);
+  }
+
+  [[nodiscard]] int priority_without_primask() const {
+    ExceptionMasks masks = exceptions_.masks();
+    masks.primask = 0;
+    return nvic_.execution_priority(masks);
+  }
+
+  /// False: the CPU does not run.
+  bool begin() {
+    if (state_ == State::locked_up || state_ == State::halted || (state_ == State::sleeping && !wakes())) {
+      return false;
+    }
+    // What has been told of once is not told of again.
+    engine_.pass_breakpoint(state_ == State::at_breakpoint);
+    state_ = State::running;
+    stop_requested_ = false;
+    return true;
+  }
+
+  bool prepare_to_stop() {
+    if (!writes_.empty()) {
+      for (const Write& write : std::exchange(writes_, {})) {
+        static_cast<void>(engine_.write_memory(write.address, write.bytes));
+      }
+      exceptions_.forget_vectors();
+    }
+    if (exceptions_.is_locked_up()) {
+      state_ = State::locked_up;
+    } else if (wants_halt_) {
+      state_ = State::halted;
+    } else if (stop_requested_ && state_ == State::running) {
+      state_ = State::paused;
+    }
+    return state_ != State::running;
+  }
+
+  /// What is to be done between blocks. False: the run ends.
+  bool prepare() {
+    if (prepare_to_stop()) {
+      return false;
+    }
+    if (exceptions_.takes_next()) {
+      exceptions_.take_next();
+      return !prepare_to_stop();
+    }
+    return true;
+  }
+
+  void sleep() {
+    sleep_priority_ = priority_without_primask();
+    if (nvic_.next_priority() >= sleep_priority_) {
+      state_ = State::sleeping;
+    }
+  }
+
+  void handle(Engine::End end) {
+    switch (end) {
+      case Engine::End::stopped:
+      case Engine::End::stepped:
+      case Engine::End::yielded:
+        break;
+      case Engine::End::breakpoint:
+        state_ = State::at_breakpoint;
+        break;
+      case Engine::End::wait_for_interrupt:
+        sleep();
+        break;
+      case Engine::End::wait_for_event:
+        if (!exceptions_.take_event()) {
+          sleep();
+        }
+        break;
+      case Engine::End::supervisor_call:
+        exceptions_.call_supervisor();
+        break;
+      case Engine::End::exception_return:
+        exceptions_.return_from_handler(engine_.exception_return_value());
+        if (exceptions_.current() == 0 && system_control_.sleeps_on_exit()) {
+          sleep();
+        }
+        break;
+      case Engine::End::breakpoint_instruction:
+        exceptions_.refuse_breakpoint();
+        break;
+      case Engine::End::no_coprocessor:
+        exceptions_.refuse_coprocessor();
+        break;
+      case Engine::End::undefined_instruction:
+        exceptions_.refuse_undefined_instruction();
+        break;
+      case Engine::End::invalid_state:
+        exceptions_.refuse_state();
+        break;
+      case Engine::End::unaligned_exclusive:
+        exceptions_.refuse_alignment();
+        break;
+      case Engine::End::memory_fault:
+        exceptions_.refuse_memory(engine_.fault());
+        break;
+      case Engine::End::failed:
+        halt("the emulator cannot go on at " + hexadecimal(engine_.pc()));
+        break;
+    }
+  }
+
+  CpuSurroundings* surroundings_;
+  Engine engine_;
+  Nvic nvic_;
+  SystemControl system_control_;
+  Exceptions exceptions_;
+  State state_ = State::halted;
+  std::uint64_t limit_ = 0;
+  int sleep_priority_ = Nvic::no_priority;
+  bool stop_requested_ = false;
+  bool wants_halt_ = false;
+  std::string halt_reason_;
+  std::vector<Write> writes_;
+};
+
+Cpu::Cpu(CpuSurroundings& surroundings) : implementation_(std::make_unique<Implementation>(surroundings)) {}
+
+Cpu::~Cpu() = default;
+
+void Cpu::reset() { implementation_->restart(); }
+
+Cpu::State Cpu::run(std::uint64_t instructions) { return implementation_->run(instructions); }
+
+Cpu::State Cpu::state() const { return implementation_->state(); }
+
+std::uint64_t Cpu::instructions() const { return implementation_->engine().instructions(); }
+
+void Cpu::limit(std::uint64_t instructions) { implementation_->limit(instructions); }
+
+void Cpu::pause() { implementation_->pause(); }
+
+void Cpu::halt(std::string reason) { implementation_->halt(std::move(reason)); }
+
+const std::string& Cpu::halt_reason() const { return implementation_->halt_reason(); }
+
+void Cpu::set_interrupt(unsigned position, bool high) {
+  if (position >= Nvic::interrupt_count) {
+    throw std::out_of_range("no interrupt " + std::to_string(position));
+  }
+  implementation_->nvic().set_line(position, high);
+  implementation_->attend();
+}
+
+bool Cpu::wakes() const { return implementation_->wakes(); }
+
+LocalTime Cpu::next_system_tick() const { return implementation_->system_control().system_tick().next_exception(); }
+
+void Cpu::advance_system_tick() { implementation_->advance_system_tick(); }
+
+void Cpu::change_core_period() {
+  implementation_->system_control().system_tick().set_core_period(implementation_->now(),
+                                                                  implementation_->core_period());
+}
+
+void Cpu::read(std::uint32_t address, std::span<std::uint8_t> bytes) const { implementation_->read(address, bytes); }
+
+void Cpu::write(std::uint32_t address, std::span<const std::uint8_t> bytes) { implementation_->write(address, bytes); }
+
+std::uint32_t Cpu::core_register(unsigned number) const { return implementation_->core_register(number); }
+
+void Cpu::set_core_register(unsigned number, std::uint32_t value) { implementation_->set_core_register(number, value); }
+
+unsigned Cpu::active_exception() const { return implementation_->exceptions().current(); }
+
+void Cpu::set_breakpoints(std::span<const std::uint32_t> addresses) {
+  implementation_->engine().set_breakpoints(addresses);
+}
+
+void Cpu::step() { implementation_->step(); }
+
+std::vector<CpuFault> Cpu::take_faults() { return implementation_->exceptions().take_faults(); }
+
+}  // namespace proleg::sim

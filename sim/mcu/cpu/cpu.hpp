@@ -1,0 +1,145 @@
+#pragma once
+
+// A Cortex-M4 (ARMv7-M Architecture Reference Manual, DDI 0403) with its memory: executes a program, takes interrupts
+// and faults. Instructions are executed by Unicorn; exceptions, NVIC, SCB and SysTick, which Unicorn lacks, are here.
+//
+// It differs from the chip in this:
+// - Interrupts are taken between blocks (instructions up to the next branch), not between instructions.
+// - An instruction takes one cycle. DWT_CYCCNT counts instructions.
+// - Nothing is at address 0, where the chip shows the flash a second time; only the vector table is found there. So a
+//   null pointer is a fault.
+// - There is no MPU; unprivileged code may use everything but the special registers.
+// - CCR.UNALIGN_TRP and DIV_0_TRP do nothing: unaligned accesses work, also those that always fault on the chip, and a
+//   division by zero gives 0.
+// - The FPU works, but its registers are not saved at exceptions, and FPCCR is not modelled.
+// - Exceptions do not clear the monitor of LDREX and STREX; instead STREX fails if the memory has another value.
+// - BASEPRI reads back its lower four bits, which the chip reads as 0. They count for nothing.
+// - A store that the bus refuses is a precise fault. Its instruction is told from the addresses in the block: if
+// several
+//   fit, the first is named.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/mcu/cpu/local_time.hpp"
+
+namespace proleg::sim {
+
+/// What lies behind the CPU's addresses, other than memory and its own system registers.
+class CpuSurroundings {
+ public:
+  /// An access in 0x40000000 to 0x5FFFFFFF, of 1, 2 or 4 bytes; one to a bit-band alias arrives as load and store of
+  /// the word. These are called in the middle of a block: they must not throw, and of the CPU they may use everything
+  /// but reset(), run(), step(), set_breakpoints() and set_core_register().
+  [[nodiscard]] virtual std::uint32_t load(std::uint32_t address, unsigned size) = 0;
+  virtual void store(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
+  /// A store to flash, which changes nothing by itself: Cpu::write() does. False: it is refused by the bus, a fault of
+  /// the program.
+  [[nodiscard]] virtual bool store_to_flash(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
+  /// For SysTick: local time and period of its clock (HCLK).
+  [[nodiscard]] virtual LocalTime now() const = 0;
+  [[nodiscard]] virtual LocalTime core_period() const = 0;
+  /// SYSRESETREQ. The run ends before the next block; reset() is for the caller of run() to call.
+  virtual void reset_requested() = 0;
+
+ protected:
+  ~CpuSurroundings() = default;
+};
+
+/// What went wrong, and the registers before the instruction that did it.
+struct CpuFault {
+  std::string cause;                     ///< "store to 0x20030000, where nothing is", "undefined instruction" ...
+  std::vector<std::uint32_t> registers;  ///< r0-r12, sp, lr, pc, xpsr
+  bool locked_up = false;                ///< a fault within HardFault or NMI: the CPU stands still
+};
+
+class Cpu {
+ public:
+  static constexpr std::uint32_t flash_start = 0x0800'0000;
+  static constexpr std::uint32_t flash_size = 1024 * 1024;
+  static constexpr std::uint32_t ram_start = 0x2000'0000;
+  static constexpr std::uint32_t ram_size = 128 * 1024;
+  static constexpr std::uint32_t ccm_start = 0x1000'0000;  ///< core-coupled memory
+  static constexpr std::uint32_t ccm_size = 64 * 1024;
+  static constexpr std::uint32_t system_memory_start = 0x1FFF'0000;  ///< with unique id and calibration values
+  static constexpr std::uint32_t system_memory_size = 32 * 1024;
+
+  /// Memory is as a new chip has it: flash erased (0xFF), RAM holds what a program must not rely on. The CPU is halted
+  /// until the first reset(). The surroundings must outlive it.
+  explicit Cpu(CpuSurroundings& surroundings);
+  ~Cpu();
+  Cpu(const Cpu&) = delete;
+  Cpu& operator=(const Cpu&) = delete;
+
+  /// Starts from reset: stack pointer and first address from the vector table at the start of the flash. RAM keeps its
+  /// contents. A vector table that leads nowhere is a fault at the first run().
+  void reset();
+
+  enum class State : std::uint8_t {
+    running,   ///< wants to go on
+    sleeping,  ///< WFI or WFE: until an interrupt is pending
+    paused,    ///< pause() was called, or the program has requested a reset
+    at_breakpoint,
+    locked_up,  ///< by a fault in the handler of a fault: until reset()
+    halted,     ///< halt() was called, or the program used what is not modelled: until reset()
+  };
+
+  /// Executes about this many instructions, at least one if the CPU runs: up to the end of the block in which the
+  /// number is reached. Ends earlier when it sleeps, pauses, halts or locks up, and, still running, when the program
+  /// has set SysTick, so that next_system_tick() may have changed. Interrupts that are pending are taken.
+  State run(std::uint64_t instructions);
+  [[nodiscard]] State state() const;
+  /// Since the CPU was made; counts in issue order, including instructions that an IT block skips, as the M4 spends
+  /// them. In a callback: those of the blocks before, and of the current one.
+  [[nodiscard]] std::uint64_t instructions() const;
+
+  /// run() ends before the next block.
+  void pause();
+  /// Shortens the present run(): it ends before the next block once instructions() has reached this number.
+  void limit(std::uint64_t instructions);
+  /// Ends it until reset(), before the next block; for what is not modelled.
+  void halt(std::string reason = {});
+  /// Of the first halt() since reset(): one line that names what was found; empty if there was none.
+  [[nodiscard]] const std::string& halt_reason() const;
+
+  /// The level of a line to the NVIC, position 0 to 81 (RM0090, table 61). It pends when it rises, and again if it is
+  /// still high when its handler returns.
+  void set_interrupt(unsigned position, bool high);
+  /// Whether an interrupt is pending that would wake the CPU from WFI.
+  [[nodiscard]] bool wakes() const;
+  /// When SysTick pends its exception next; never_on_chip if it does not.
+  [[nodiscard]] LocalTime next_system_tick() const;
+  /// To be called when time has reached next_system_tick().
+  void advance_system_tick();
+  /// To be called when CpuSurroundings::core_period() has changed.
+  void change_core_period();
+
+  /// Any memory but registers; throws std::out_of_range for an address without memory. Writes to flash forget the code
+  /// that was translated there. A write to flash in the middle of a block reaches the program with the next block.
+  void read(std::uint32_t address, std::span<std::uint8_t> bytes) const;
+  void write(std::uint32_t address, std::span<const std::uint8_t> bytes);
+
+  /// r0-r12, sp, lr, pc, xpsr: 0 to 16. In the middle of a block, pc is that of its begin.
+  [[nodiscard]] std::uint32_t core_register(unsigned number) const;
+  void set_core_register(unsigned number, std::uint32_t value);
+  /// Number of the exception being handled, 0 in thread mode.
+  [[nodiscard]] unsigned active_exception() const;
+
+  /// Execution ends before these addresses, also those in an IT block that are skipped. A run after one that ended at a
+  /// breakpoint passes it.
+  void set_breakpoints(std::span<const std::uint32_t> addresses);
+  /// Executes a single instruction, after an exception entry if one is due.
+  void step();
+
+  /// Faults since the last call, oldest first: what led to a HardFault (or another fault handler) or a lock-up.
+  [[nodiscard]] std::vector<CpuFault> take_faults();
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace proleg::sim

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace proleg::sim {
+
+class Cpu;
+
+/// What a debugger sees of a program that stands still. Single steps and running are with the owner of the target, see
+/// gdb_server.hpp. No function may throw.
+class DebugTarget {
+ public:
+  /// r0 to r12, sp, lr, pc, xpsr.
+  static constexpr unsigned register_count = 17;
+  static constexpr unsigned program_counter = 15;
+
+  /// number: below register_count.
+  [[nodiscard]] virtual std::uint32_t core_register(unsigned number) const = 0;
+  virtual void set_core_register(unsigned number, std::uint32_t value) = 0;
+
+  /// False if there is no memory at one of the addresses; `bytes`, or the memory, may be changed in part then.
+  [[nodiscard]] virtual bool read_memory(std::uint32_t address, std::span<std::uint8_t> bytes) const = 0;
+  [[nodiscard]] virtual bool write_memory(std::uint32_t address, std::span<const std::uint8_t> bytes) = 0;
+
+  /// Before these addresses the program stops. Replaces the breakpoints there were. Even addresses, ascending, without
+  /// repetition.
+  virtual void set_breakpoints(std::span<const std::uint32_t> addresses) = 0;
+
+ protected:
+  ~DebugTarget() = default;
+};
+
+/// A virtual CPU as a target. Peripheral registers cannot be read: looking at them would change them.
+class CpuTarget final : public DebugTarget {
+ public:
+  /// The CPU must outlive the target.
+  explicit CpuTarget(Cpu& cpu) : cpu_(&cpu) {}
+
+  [[nodiscard]] std::uint32_t core_register(unsigned number) const override;
+  void set_core_register(unsigned number, std::uint32_t value) override;
+  [[nodiscard]] bool read_memory(std::uint32_t address, std::span<std::uint8_t> bytes) const override;
+  [[nodiscard]] bool write_memory(std::uint32_t address, std::span<const std::uint8_t> bytes) override;
+  void set_breakpoints(std::span<const std::uint32_t> addresses) override;
+
+ private:
+  Cpu* cpu_;
+};
+
+}  // namespace proleg::sim

@@ -1,0 +1,68 @@
+#pragma once
+
+// Packets of the GDB remote serial protocol: "Debugging with GDB", appendix E.1, Overview.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace proleg::sim {
+
+/// `$`, the payload with `# $ } *` escaped, `#`, and the sum of the bytes between modulo 256, in hexadecimal.
+[[nodiscard]] std::string gdb_packet(std::string_view payload);
+
+/// Bytes as hexadecimal digits, and back; nothing for an odd number of digits or for anything that is no digit.
+[[nodiscard]] std::string to_hex(std::span<const std::uint8_t> bytes);
+[[nodiscard]] std::optional<std::vector<std::uint8_t>> from_hex(std::string_view digits);
+
+/// A number in hexadecimal digits, nothing else around it, at most 0xFFFFFFFF.
+[[nodiscard]] std::optional<std::uint32_t> hex_number(std::string_view digits);
+
+/// What a client sends.
+struct GdbInput {
+  enum class Kind : std::uint8_t {
+    packet,
+    damaged,    ///< a packet whose checksum is wrong
+    too_long,   ///< a packet of more than GdbDecoder::longest_packet bytes
+    interrupt,  ///< the byte 0x03 between packets
+    accepted,   ///< `+`
+    refused,    ///< `-`: the client wants the last packet again
+  };
+  Kind kind = Kind::packet;
+  std::string payload;  ///< of a packet, without escapes
+};
+
+/// Cuts a stream of bytes into what they mean. Whatever else is between packets is left out; a `$` within a packet
+/// starts a new one.
+class GdbDecoder {
+ public:
+  /// Between `$` and `#`, as sent.
+  static constexpr std::size_t longest_packet = 0x4000;
+
+  /// Appends what was received. Memory is bounded if the caller takes all inputs before it feeds more.
+  void feed(std::string_view bytes);
+  [[nodiscard]] std::optional<GdbInput> next();
+
+ private:
+  enum class State : std::uint8_t { between, payload, first_digit, second_digit };
+
+  [[nodiscard]] std::optional<GdbInput> take(char byte);
+  [[nodiscard]] std::optional<GdbInput> take_between(char byte);
+  void take_payload(char byte);
+  [[nodiscard]] GdbInput finish(char second_digit);
+
+  std::string received_;
+  std::size_t taken_ = 0;
+  State state_ = State::between;
+  std::string payload_;
+  bool escaped_ = false;
+  std::size_t length_ = 0;
+  std::uint8_t sum_ = 0;
+  char first_digit_ = '0';
+};
+
+}  // namespace proleg::sim

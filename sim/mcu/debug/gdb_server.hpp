@@ -1,0 +1,95 @@
+#pragma once
+
+// Lets GDB look into a program that stands still: `gdb-multiarch IMAGE -ex 'target remote :PORT'`.
+//
+// The owner of the target runs it and stops it; the server talks while it stands still:
+//
+//   GdbServer server(port, target);               // port 0: any; server.port() tells which
+//   if (!server.wait_for_client(interrupted)) return;
+//   Resume resume = server.serve(StopReason::attached, interrupted);
+//   while (resume != Resume::kill && resume != Resume::interrupted) {
+//     StopReason reason;
+//     if (resume == Resume::step) {
+//       ... execute one instruction ...
+//       reason = StopReason::step;
+//     } else {                                    // run or detach: the same, but for the breakpoints that are gone
+//       ... execute until a breakpoint, a fault, or server.interrupt_requested() ...
+//       reason = ...
+//     }
+//     resume = server.serve(reason, interrupted);
+//   }
+//
+// interrupt_requested() costs a system call; every few milliseconds of the user's time is enough. Without a client
+// (after a detach or a lost connection) serve() returns Resume::detach at once, and the target runs on; a client that
+// comes later is found by interrupt_requested(), which asks for a stop then. There is one client at a time; others are
+// turned away.
+//
+// All functions are to be called from one thread. Only programs on this computer can connect.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "sim/mcu/debug/debug_target.hpp"
+#include "sim/mcu/debug/gdb_commands.hpp"
+#include "sim/mcu/debug/gdb_packet.hpp"
+#include "sim/mcu/debug/local_socket.hpp"
+
+namespace proleg::sim {
+
+class GdbServer {
+ public:
+  /// Whether to give up waiting; asked at least every 100 ms.
+  using Interrupted = std::function<bool()>;
+
+  /// Listens on 127.0.0.1. The target must outlive the server. Throws std::runtime_error with one line if the port
+  /// cannot be had.
+  GdbServer(std::uint16_t port, DebugTarget& target);
+
+  [[nodiscard]] std::uint16_t port() const { return listener_.port(); }
+  [[nodiscard]] bool has_client() const { return connection_.has_value(); }
+
+  /// What answers the user's `monitor TEXT`.
+  void set_monitor(MonitorCommand monitor) { commands_.set_monitor(std::move(monitor)); }
+
+  /// Blocks until there is a client; false if `interrupted` said so before.
+  [[nodiscard]] bool wait_for_client(const Interrupted& interrupted);
+
+  /// To be called when the target stands still. Tells the client, and answers it until it says how to go on.
+  [[nodiscard]] Resume serve(StopReason reason, const Interrupted& interrupted);
+
+  /// To be called now and then while the target runs, at a place where breakpoints can be changed. Does not block. True
+  /// if the target shall stop: the client asks for it, or a new one is there.
+  [[nodiscard]] bool interrupt_requested();
+
+  /// Text for the user, while the target runs or before serve(): what caused a fault, say. It is dropped if there is no
+  /// client that waits for the target, or if it does not read.
+  void say(std::string_view text);
+
+  /// The program has ended, with this status; the client is told and let go.
+  void finish(std::uint8_t status);
+
+ private:
+  [[nodiscard]] bool take_client();
+  void let_go();
+  void receive();
+  void send(std::string_view payload);
+  void flush();
+  [[nodiscard]] std::optional<GdbInput> next_input();
+  [[nodiscard]] std::optional<Resume> handle(const GdbInput& input);
+  [[nodiscard]] std::optional<Resume> handle_packet(const std::string& payload);
+
+  LocalListener listener_;
+  GdbCommands commands_;
+  std::optional<LocalConnection> connection_;
+  GdbDecoder decoder_;
+  std::optional<GdbInput> unanswered_;  ///< a packet that came while the target ran
+  std::string unsent_;
+  std::string last_packet_;
+  bool acknowledges_ = true;
+  bool awaits_stop_ = false;  ///< the client has said how to go on, and waits until the target stops
+};
+
+}  // namespace proleg::sim

@@ -1,0 +1,74 @@
+#pragma once
+
+// TCP on 127.0.0.1, for one client, without waiting unless wait() is called. Linux; POSIX.1-2008 sockets.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+
+namespace proleg::sim {
+
+/// Owns what open(), socket() and the like return.
+class FileDescriptor {
+ public:
+  explicit FileDescriptor(int number) : number_(number) {}
+  FileDescriptor(FileDescriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~FileDescriptor();
+
+  [[nodiscard]] int number() const { return number_; }
+
+ private:
+  int number_;
+};
+
+/// The connection to a client.
+class LocalConnection {
+ public:
+  explicit LocalConnection(FileDescriptor socket);
+
+  /// Number of bytes sent or received now, 0 if that has to wait or the connection is lost.
+  std::size_t send(std::string_view bytes);
+  std::size_t receive(std::span<char> bytes);
+  /// False once send() or receive() has found the connection closed or broken.
+  [[nodiscard]] bool open() const { return open_; }
+  [[nodiscard]] int descriptor() const { return socket_.number(); }
+
+ private:
+  [[nodiscard]] std::size_t result(std::ptrdiff_t length);
+
+  FileDescriptor socket_;
+  bool open_ = true;
+};
+
+class LocalListener {
+ public:
+  /// Port 0: any free one. Throws std::runtime_error with one line if the port cannot be had.
+  explicit LocalListener(std::uint16_t port);
+
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+  [[nodiscard]] std::optional<LocalConnection> accept();
+  [[nodiscard]] int descriptor() const { return socket_.number(); }
+
+ private:
+  FileDescriptor socket_;
+  std::uint16_t port_ = 0;
+};
+
+/// Which of the two have something to say.
+struct Ready {
+  bool listener = false;    ///< a client wants to connect
+  bool connection = false;  ///< bytes can be received (or sent, if that was asked for), or the connection is lost
+};
+
+/// Waits until one of them is ready, at most so long; 0 does not wait. connection: may be null.
+[[nodiscard]] Ready wait(const LocalListener& listener, const LocalConnection* connection, bool to_send,
+                         int milliseconds);
+
+}  // namespace proleg::sim

@@ -1,0 +1,26 @@
+#include "sim/mcu/module/firmware_image.hpp"
+
+#include <algorithm>
+
+namespace proleg::sim {
+namespace {
+
+constexpr const char* record_symbol = "proleg_tick_record";
+
+/// Where the image proper is linked: slot A (docs/board.md), behind the start stub.
+constexpr std::uint32_t slot_a = 0x0802'0000;
+
+}  // namespace
+
+FirmwareImage::FirmwareImage(const std::filesystem::path& file) : file_(file), flash_(file) {
+  const auto& symbols = flash_.elf().symbols();
+  const auto symbol = std::ranges::find(symbols, record_symbol, &ElfImage::Symbol::name);
+  if (symbol == symbols.end()) {
+    throw ElfError(file.string() + ": found no symbol " + record_symbol +
+                   ", expected the firmware of a joint module for this chip (firmware/stm32f405)");
+  }
+  flash_.require_vector_table(slot_a);
+  tick_record_ = flash_.require_word(symbol->address);
+}
+
+}  // namespace proleg::sim

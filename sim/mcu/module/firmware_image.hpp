@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "sim/mcu/cpu/flash_image.hpp"
+
+namespace proleg::sim {
+
+/// The firmware of a joint module, as linked for the reference board (firmware/stm32f405).
+class FirmwareImage {
+ public:
+  /// Throws ElfError for what is not a program for this chip, or not one of a joint module: one line that names the
+  /// file, what was found and what was expected.
+  explicit FirmwareImage(const std::filesystem::path& file);
+
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+  [[nodiscard]] const FlashImage& flash() const { return flash_; }
+  /// Where the module keeps what it computed at its last tick (firmware/module/tick_record.hpp).
+  [[nodiscard]] std::uint32_t tick_record() const { return tick_record_; }
+
+ private:
+  std::filesystem::path file_;
+  FlashImage flash_;
+  std::uint32_t tick_record_;
+};
+
+}  // namespace proleg::sim

@@ -1,0 +1,210 @@
+#include "sim/mcu/module/virtual_module.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <sstream>
+#include <utility>
+
+#include "firmware/module/board_record.hpp"
+#include "firmware/stm32f405/pins.hpp"
+#include "shared/canopen/messages.hpp"
+#include "shared/kernel/servo_command.hpp"
+
+namespace proleg::sim {
+namespace {
+
+namespace board = stm32f405::board;
+
+constexpr unsigned servo_channel = 1;  ///< of TIM2
+constexpr std::uint32_t microvolts_per_ma = 1'000;
+constexpr std::uint32_t highest_uv = board::vdda_millivolt * 1'000;
+constexpr std::uint32_t board_record_address = 0x0800'4000;  ///< first record of flash sector 1
+
+// What a feedback potentiometer reads, 12 bits.
+constexpr std::uint16_t feedback_at_minus_90 = 410;
+constexpr std::uint16_t feedback_at_plus_90 = 3686;
+
+ChipSettings chip_settings(const ModuleParts& parts) {
+  return {parts.board.unique_id, parts.crystal.parts_per_billion(), parts.board.node};
+}
+
+firmware::BoardRecord board_record(const ModuleParts& parts) {
+  firmware::BoardRecord record;
+  record.node = parts.board.node;
+  record.has_feedback = parts.readings().angle.has_value();
+  record.feedback_at_minus_90 = feedback_at_minus_90;
+  record.feedback_at_plus_90 = feedback_at_plus_90;
+  return record;
+}
+
+/// "at 1.234567 s on the bus".
+std::string at_time(BusTime time) {
+  std::ostringstream text;
+  text.precision(6);
+  text << std::fixed << static_cast<double>(time) * 1e-9 << " s";
+  return text.str();
+}
+
+std::string registers_in_words(const std::array<std::uint32_t, 17>& registers) {
+  constexpr std::array<const char*, 17> names{"r0", "r1",  "r2",  "r3",  "r4", "r5", "r6", "r7",  "r8",
+                                              "r9", "r10", "r11", "r12", "sp", "lr", "pc", "xpsr"};
+  constexpr std::size_t in_a_line = 6;
+  std::ostringstream text;
+  text << std::hex;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    text << (i % in_a_line == 0 ? "\n    " : "  ") << names[i] << " 0x" << registers[i];
+  }
+  return text.str();
+}
+
+const char* in_words(ResetCause cause) {
+  switch (cause) {
+    case ResetCause::power_on:
+      return "power";
+    case ResetCause::pin:
+      return "its reset pin";
+    case ResetCause::software:
+      return "its own program";
+    case ResetCause::independent_watchdog:
+      break;
+  }
+  return "its watchdog: the program had hung";
+}
+
+}  // namespace
+
+VirtualModule::VirtualModule(const ModuleParts& parts, const FirmwareImage& image, VirtualModuleOptions options)
+    : image_(image),
+      options_(std::move(options)),
+      sensors_(parts.sensors),
+      readings_(parts.readings),
+      state_frame_(static_cast<std::uint16_t>(canopen::identifier::state_frame + parts.board.node)),
+      chip_(parts.bus, *this, chip_settings(parts)) {
+  for (const ElfImage::Segment& segment : image.flash().elf().segments()) {
+    chip_.write(segment.load_address, segment.bytes);
+  }
+  chip_.write(board_record_address, firmware::encode(board_record(parts), 1));
+  chip_.set_transmit_watch([this](std::uint16_t identifier, std::uint64_t instructions) {
+    if (identifier == state_frame_) {
+      state_frame_instructions_ = instructions;
+    }
+  });
+}
+
+void VirtualModule::power_on(BusTime now) {
+  line_.clear();
+  tick_.reset();
+  chip_.power_on(now);
+}
+
+void VirtualModule::advance_to(BusTime now, BusTime quiet_until) { chip_.advance_to(now, quiet_until); }
+
+firmware::TickRecord VirtualModule::last_tick() const {
+  std::array<std::uint8_t, sizeof(firmware::TickRecord)> bytes{};
+  chip_.read(image_.tick_record(), bytes);
+  firmware::TickRecord record;
+  std::memcpy(&record, bytes.data(), bytes.size());
+  return record;
+}
+
+std::optional<std::int32_t> VirtualModule::pulse() const {
+  constexpr LocalTime twelfth = local_time_per_us / servo_counts_per_us;
+  const auto high = chip_.pulse_time(servo_channel);
+  return high ? std::optional(static_cast<std::int32_t>(*high / twelfth)) : std::nullopt;
+}
+
+void VirtualModule::note_sync(std::uint32_t tick) {
+  const std::uint64_t instructions = chip_.instructions();
+  if (tick_) {
+    const bool sent = state_frame_instructions_ > sync_instructions_;
+    const TickCost cost{*tick_, sent ? state_frame_instructions_ - sync_instructions_ : 0,
+                        instructions - sync_instructions_};
+    if (cost.to_state_frame > worst_.to_state_frame) {
+      worst_ = cost;
+    }
+    if (options_.trace) {
+      options_.trace(cost);
+    }
+  }
+  tick_ = tick;
+  sync_instructions_ = instructions;
+}
+
+std::optional<std::string> VirtualModule::take_problem() {
+  while (const auto event = chip_.take_event()) {
+    if (event->kind == ChipEvent::Kind::reset && event->cause == ResetCause::software) {
+      continue;  // its fault handler's, of which is told already, or asked for
+    }
+    return describe(*event);
+  }
+  return std::nullopt;
+}
+
+std::string VirtualModule::describe(const ChipEvent& event) {
+  if (event.kind == ChipEvent::Kind::reset) {
+    return "at " + at_time(event.time) + " reset by " + in_words(*event.cause);
+  }
+  std::string text = "at " + at_time(event.time) + " ";
+  switch (event.kind) {
+    case ChipEvent::Kind::fault:
+      text += "fault of the program: ";
+      break;
+    case ChipEvent::Kind::locked_up:
+      text += "locked up: ";
+      break;
+    default:
+      text += "stands still, beyond the model: ";
+      break;
+  }
+  text += event.text + registers_in_words(event.registers);
+  const auto read = [this](std::uint32_t address, std::span<std::uint8_t> bytes) { chip_.read(address, bytes); };
+  for (const std::string& line : trace_back(image_.file(), event.registers, read)) {
+    text += "\n    " + line;
+  }
+  return text;
+}
+
+// What the board has at the pins.
+
+std::optional<bool> VirtualModule::pin(char port, unsigned number) {
+  for (unsigned i = 0; i < board::contacts.size(); ++i) {
+    if (board::contacts[i].port == port && board::contacts[i].number == number) {
+      // A pressed switch closes to ground, an open one leaves the pin to its pull-up.
+      const bool pressed = ((unsigned{sensors_()} >> i) & 1U) != 0;
+      return pressed ? std::optional(false) : std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+std::uint32_t VirtualModule::analog_uv(unsigned channel) {
+  if (channel == board::servo_current_channel) {
+    return std::min<std::uint32_t>(readings_().current_ma * microvolts_per_ma, highest_uv);
+  }
+  if (channel == board::feedback_channel) {
+    constexpr std::int64_t quarter_turn = std::int64_t{1} << 30U;
+    constexpr std::int64_t codes = 4096;
+    const std::int64_t angle = readings_().angle.value_or(0);
+    const std::int64_t span = feedback_at_plus_90 - feedback_at_minus_90;
+    const std::int64_t uv = (feedback_at_minus_90 * 2 * quarter_turn + (angle + quarter_turn) * span) * highest_uv /
+                            (2 * quarter_turn * codes);
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(uv, 0, highest_uv));
+  }
+  return 0;
+}
+
+std::int32_t VirtualModule::chip_temperature() { return readings_().temperature_c * 1000; }
+
+void VirtualModule::serial_output(unsigned /*usart*/, std::uint8_t byte) {
+  if (byte == '\n') {
+    if (options_.console) {
+      options_.console(line_);
+    }
+    line_.clear();
+  } else if (byte != '\r') {
+    line_.push_back(static_cast<char>(byte));
+  }
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,73 @@
+#pragma once
+
+// A joint module whose program is the image that is flashed, run by a virtual chip.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "sim/loop/hardware_loop.hpp"
+#include "sim/mcu/chip/stm32f405.hpp"
+#include "sim/mcu/cpu/back_trace.hpp"
+#include "sim/mcu/module/firmware_image.hpp"
+
+namespace proleg::sim {
+
+/// What a program needed for a tick.
+struct TickCost {
+  std::uint32_t tick;
+  std::uint64_t to_state_frame;  ///< instructions from SYNC to the state frame in a mailbox; 0: none was sent
+  std::uint64_t whole;           ///< instructions from SYNC to the next SYNC
+};
+
+struct VirtualModuleOptions {
+  /// Called with each line that the program prints on its console (USART2).
+  std::function<void(const std::string&)> console;
+  /// Called at the end of each tick.
+  std::function<void(const TickCost&)> trace;
+};
+
+class VirtualModule final : public JointModule, private BoardSignals {
+ public:
+  /// image: must outlive the module. The board record with the node id is in flash, as a programmer would put it there.
+  VirtualModule(const ModuleParts& parts, const FirmwareImage& image, VirtualModuleOptions options);
+  ~VirtualModule() override = default;
+  VirtualModule(const VirtualModule&) = delete;
+  VirtualModule& operator=(const VirtualModule&) = delete;
+
+  void power_on(BusTime now) override;
+  [[nodiscard]] BusTime next_event() const override { return chip_.next_event(); }
+  void advance_to(BusTime now, BusTime quiet_until) override;
+  void run_out(BusTime now, BusTime until) override { chip_.advance_to(now, until); }
+  [[nodiscard]] firmware::TickRecord last_tick() const override;
+  [[nodiscard]] std::optional<std::int32_t> pulse() const override;
+  [[nodiscard]] std::size_t controller() const override { return chip_.controller(); }
+  void note_sync(std::uint32_t tick) override;
+  [[nodiscard]] std::optional<std::string> take_problem() override;
+
+  /// The costliest tick so far, by the way to the state frame.
+  [[nodiscard]] const TickCost& worst_tick() const { return worst_; }
+  [[nodiscard]] Stm32f405& chip() { return chip_; }
+
+ private:
+  [[nodiscard]] std::optional<bool> pin(char port, unsigned number) override;
+  [[nodiscard]] std::uint32_t analog_uv(unsigned channel) override;
+  [[nodiscard]] std::int32_t chip_temperature() override;
+  void serial_output(unsigned usart, std::uint8_t byte) override;
+  [[nodiscard]] std::string describe(const ChipEvent& event);
+
+  const FirmwareImage& image_;
+  VirtualModuleOptions options_;
+  std::function<std::uint8_t()> sensors_;
+  std::function<firmware::ServoReadings()> readings_;
+  std::uint16_t state_frame_;  ///< its identifier
+  Stm32f405 chip_;
+  std::string line_;  ///< of the console, so far
+  std::optional<std::uint32_t> tick_;
+  std::uint64_t sync_instructions_ = 0;
+  std::uint64_t state_frame_instructions_ = 0;
+  TickCost worst_{};
+};
+
+}  // namespace proleg::sim

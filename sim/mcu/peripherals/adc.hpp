@@ -1,0 +1,91 @@
+#pragma once
+
+// ADC1 with the registers common to all ADCs (RM0090, section 13): conversions started by software. VDDA is 3.3 V.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "sim/mcu/peripherals/register_block.hpp"
+
+namespace proleg::sim {
+
+inline constexpr std::uint32_t vdda_uv = 3'300'000;
+inline constexpr std::uint32_t vrefint_uv = 1'210'000;  ///< DS8626, embedded reference voltage: typical
+
+/// 12 bits for a voltage, in microvolts: ideal, steps in the middle between the codes (DS8626, ADC accuracy).
+[[nodiscard]] constexpr std::uint16_t adc_code(std::uint64_t uv) {
+  constexpr std::uint64_t codes = 4096;
+  const std::uint64_t code = (uv * codes + vdda_uv / 2) / vdda_uv;
+  return static_cast<std::uint16_t>(code < codes ? code : codes - 1);
+}
+
+/// Voltage of the temperature sensor, in microvolts, at thousandths of a degree Celsius: 0.76 V at 25 degrees, 2.5 mV a
+/// degree (DS8626, temperature sensor characteristics: typical).
+[[nodiscard]] constexpr std::uint32_t temperature_sensor_uv(std::int32_t millidegrees) {
+  const std::int64_t uv = 760'000 + (std::int64_t{millidegrees} - 25'000) * 5 / 2;
+  return static_cast<std::uint32_t>(uv < 0 ? 0 : uv);
+}
+
+class Adc final : public RegisterBlock {
+ public:
+  static constexpr unsigned interrupt_position = 18;
+  // DS8626, ADC characteristics.
+  static constexpr LocalTime stabilisation = 3 * local_time_per_us;     ///< after ADON
+  static constexpr LocalTime sensor_start = 10 * local_time_per_us;     ///< after TSVREFE
+  static constexpr LocalTime sensor_sampling = 10 * local_time_per_us;  ///< of channels 16 and 17, at least
+
+  Adc(ChipServices& chip, BoardSignals& board);
+
+  /// "ADC1_CR2", "ADC_CCR", and "ADC2 at offset 0x4" for those that the board does not use.
+  [[nodiscard]] std::string register_name(std::uint32_t offset) const override;
+  [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
+  void write(std::uint32_t offset, std::uint32_t value) override;
+  void reset() override;
+  [[nodiscard]] LocalTime next_event() const override;
+  void advance() override;
+  void clocks_change(const Clocks& next) override;
+
+ private:
+  enum class Group : std::uint8_t { none, regular, injected };
+
+  void settle();
+  void finish_conversion();
+  void begin_conversion(LocalTime begin);
+  void start_group(Group group, std::uint32_t value);
+  [[nodiscard]] unsigned length(Group group) const;
+  [[nodiscard]] unsigned channel(Group group, unsigned rank) const;
+  [[nodiscard]] LocalTime clock_period() const;
+  [[nodiscard]] LocalTime sampling_time(unsigned channel) const;
+  void check_channel(unsigned channel, std::uint32_t value) const;
+  [[nodiscard]] std::uint16_t convert(unsigned channel);
+  void write_cr1(std::uint32_t value);
+  void write_cr2(std::uint32_t value);
+  void write_ccr(std::uint32_t value);
+  void update_interrupt();
+
+  BoardSignals* board_;
+  InterruptLine interrupt_;
+  std::uint32_t sr_ = 0;
+  std::uint32_t cr1_ = 0;
+  std::uint32_t cr2_ = 0;
+  std::array<std::uint32_t, 2> smpr_{};
+  std::array<std::uint32_t, 4> jofr_{};
+  std::uint32_t htr_ = 0;
+  std::uint32_t ltr_ = 0;
+  std::array<std::uint32_t, 3> sqr_{};
+  std::uint32_t jsqr_ = 0;
+  std::array<std::uint32_t, 4> jdr_{};
+  std::uint32_t dr_ = 0;
+  std::uint32_t ccr_ = 0;
+  LocalTime on_since_ = 0;
+  LocalTime sensors_since_ = 0;
+
+  Group converting_ = Group::none;
+  LocalTime conversion_end_ = never_on_chip;
+  unsigned regular_rank_ = 0;  ///< that is converted, or goes on after the injected group
+  unsigned injected_rank_ = 0;
+  bool regular_waits_ = false;  ///< for the end of the injected group
+};
+
+}  // namespace proleg::sim

@@ -1,0 +1,116 @@
+#pragma once
+
+// The flash memory interface FLASH (RM0090, section 3): unlocking, erasing, programming. The contents live elsewhere.
+// Durations are those of the datasheet (DS8626, table "Flash memory programming").
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <span>
+
+#include "sim/mcu/peripherals/register_block.hpp"
+
+namespace proleg::sim {
+
+/// The cells. Addresses from flash_start on.
+class FlashMemory {
+ public:
+  virtual void read(std::uint32_t address, std::span<std::uint8_t> bytes) = 0;
+  virtual void write(std::uint32_t address, std::span<const std::uint8_t> bytes) = 0;
+
+ protected:
+  ~FlashMemory() = default;
+};
+
+/// Sectors of the 1 MB device (RM0090, table 5).
+struct FlashSector {
+  std::uint32_t start;
+  std::uint32_t size;  ///< bytes
+};
+inline constexpr std::uint32_t flash_start = 0x0800'0000;
+inline constexpr std::array<FlashSector, 12> flash_sectors = [] {
+  constexpr std::uint32_t kib = 1024;
+  std::array<FlashSector, 12> sectors{};
+  std::uint32_t start = flash_start;
+  for (std::size_t i = 0; i < sectors.size(); ++i) {
+    const std::uint32_t size = i < 4 ? 16 * kib : i == 4 ? 64 * kib : 128 * kib;
+    sectors[i] = {start, size};
+    start += size;
+  }
+  return sectors;
+}();
+
+/// Wait states that HCLK needs at 2.7 to 3.6 V (RM0090, table 10): one more for every 30 MHz.
+[[nodiscard]] constexpr unsigned flash_wait_states(LocalTime core_period) {
+  constexpr LocalTime mhz_per_state = 30;
+  // f <= 30 MHz * (states + 1), with f = 1008 MHz / period.
+  return static_cast<unsigned>((local_time_per_us + mhz_per_state * core_period - 1) / (mhz_per_state * core_period)) -
+         1;
+}
+
+class FlashInterface final : public RegisterBlock {
+ public:
+  static constexpr unsigned interrupt_position = 4;
+  /// An access while the interface works waits; contents change when the operation ends.
+  static constexpr LocalTime program_time = 16 * local_time_per_us;  ///< typical; 100 us at most
+
+  /// protected_sectors: bit n: sector n cannot be erased or programmed (option bytes nWRP, which a programmer set).
+  FlashInterface(ChipServices& chip, FlashMemory& memory, std::uint16_t protected_sectors = 0);
+
+  [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
+  void write(std::uint32_t offset, std::uint32_t value) override;
+  /// An operation that is under way is forgotten: call cut() first.
+  void reset() override;
+  [[nodiscard]] LocalTime next_event() const override;
+  void advance() override;
+  [[nodiscard]] bool is_idle() const override { return true; }  // its own oscillator times the operations
+
+  /// A store of the program to flash; size: 1, 2, 4. What the hardware does not do it tells in FLASH_SR; the store
+  /// itself ends without a fault (RM0090, 3.6.4), which is what `true` says. False: the address is not in flash. A
+  /// store while the interface works is done after that, as if the bus had stalled the program.
+  [[nodiscard]] bool program(std::uint32_t address, unsigned size, std::uint32_t value);
+
+  /// Until then a read, a fetch or another store of flash stalls the bus (single bank). Not busy if not in the future.
+  [[nodiscard]] LocalTime busy_until() const;
+
+  /// Power fails, or a reset comes (RM0090, 3.6.3: contents are not guaranteed): what is under work is left half done.
+  /// Erase: some bits of every word are 1 already. Program: some of the bits that shall be 0 are. What a seed leaves
+  /// behind is always the same. Nothing if no operation is under way.
+  void cut(std::uint64_t seed);
+
+  /// FLASH_ACR.LATENCY.
+  [[nodiscard]] unsigned wait_states() const { return acr_ & 0x7U; }
+
+ private:
+  enum class Lock : std::uint8_t { locked, first_key_given, open, until_reset };
+  struct Operation {
+    std::uint32_t address;
+    std::uint32_t size;  ///< bytes
+    bool erase;          ///< else: bits of `value` that are 0 are cleared
+    std::uint32_t value;
+    LocalTime end;
+  };
+
+  void settle();
+  void finish(const Operation& operation);
+  void fail(std::uint32_t flags);
+  void start_erase(std::uint32_t value);
+  void write_acr(std::uint32_t value);
+  void write_cr(std::uint32_t value);
+  void check_unlock(Lock& lock, std::uint32_t offset, std::uint32_t value, std::uint32_t first, std::uint32_t second);
+  void write_optcr(std::uint32_t value);
+  void update_interrupt();
+
+  FlashMemory* memory_;
+  std::uint32_t option_bytes_;  ///< as OPTCR shows them after reset
+  InterruptLine interrupt_;
+  std::uint32_t acr_ = 0;
+  std::uint32_t sr_ = 0;
+  std::uint32_t cr_ = 0;
+  std::uint32_t optcr_ = 0;
+  Lock lock_ = Lock::locked;
+  Lock option_lock_ = Lock::locked;
+  std::deque<Operation> operations_;  ///< one after the other
+};
+
+}  // namespace proleg::sim

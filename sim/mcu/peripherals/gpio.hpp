@@ -1,0 +1,47 @@
+#pragma once
+
+// A port of general-purpose pins GPIOA to GPIOI (RM0090, section 8).
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "sim/mcu/peripherals/register_block.hpp"
+
+namespace proleg::sim {
+
+class Gpio final : public RegisterBlock {
+ public:
+  enum class Mode : std::uint8_t { input = 0, output = 1, alternate = 2, analog = 3 };
+  static constexpr unsigned pin_count = 16;
+
+  /// port: 'A' to 'I'; else std::invalid_argument.
+  Gpio(ChipServices& chip, BoardSignals& board, char port);
+
+  [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
+  void write(std::uint32_t offset, std::uint32_t value) override;
+  void reset() override;
+
+  // Of a pin, 0 to 15.
+  [[nodiscard]] Mode mode(unsigned pin) const;
+  /// AF0 to AF15, as selected; it matters in Mode::alternate.
+  [[nodiscard]] unsigned alternate_function(unsigned pin) const;
+  /// Level that the port itself drives; nothing unless it is an output (open drain: only low is driven).
+  [[nodiscard]] std::optional<bool> output(unsigned pin) const;
+  /// Level that the program reads: what drives the pin (the port before the board), else its pull resistor, else low.
+  /// An analog pin reads low.
+  [[nodiscard]] bool level(unsigned pin);
+
+ private:
+  BoardSignals* board_;
+  char port_;
+  std::uint32_t moder_ = 0;
+  std::uint32_t otyper_ = 0;
+  std::uint32_t ospeedr_ = 0;
+  std::uint32_t pupdr_ = 0;
+  std::uint32_t odr_ = 0;
+  std::array<std::uint32_t, 2> afr_{};
+};
+
+}  // namespace proleg::sim

@@ -1,0 +1,11 @@
+#include "sim/mcu/peripherals/peripheral.hpp"
+
+#include "sim/mcu/peripherals/register_block.hpp"
+
+namespace proleg::sim {
+
+std::string Peripheral::register_name(std::uint32_t offset) const {
+  return std::string(name()) + " at offset " + hex(offset);
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,431 @@
+#include "sim/mcu/peripherals/rcc.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+namespace proleg::sim {
+namespace {
+
+constexpr std::uint32_t cr = 0x00;
+constexpr std::uint32_t pllcfgr = 0x04;
+constexpr std::uint32_t cfgr = 0x08;
+constexpr std::uint32_t cir = 0x0C;
+constexpr std::uint32_t first_rstr = 0x10;
+constexpr std::uint32_t first_enr = 0x30;
+constexpr std::uint32_t first_lpenr = 0x50;
+constexpr std::uint32_t bdcr = 0x70;
+constexpr std::uint32_t csr = 0x74;
+constexpr std::uint32_t sscgr = 0x80;
+constexpr std::uint32_t plli2scfgr = 0x84;
+constexpr RegisterName registers[] = {{cr, "CR"},
+                                      {pllcfgr, "PLLCFGR"},
+                                      {cfgr, "CFGR"},
+                                      {cir, "CIR"},
+                                      {0x10, "AHB1RSTR"},
+                                      {0x14, "AHB2RSTR"},
+                                      {0x18, "AHB3RSTR"},
+                                      {0x20, "APB1RSTR"},
+                                      {0x24, "APB2RSTR"},
+                                      {0x30, "AHB1ENR"},
+                                      {0x34, "AHB2ENR"},
+                                      {0x38, "AHB3ENR"},
+                                      {0x40, "APB1ENR"},
+                                      {0x44, "APB2ENR"},
+                                      {0x50, "AHB1LPENR"},
+                                      {0x54, "AHB2LPENR"},
+                                      {0x58, "AHB3LPENR"},
+                                      {0x60, "APB1LPENR"},
+                                      {0x64, "APB2LPENR"},
+                                      {bdcr, "BDCR"},
+                                      {csr, "CSR"},
+                                      {sscgr, "SSCGR"},
+                                      {plli2scfgr, "PLLI2SCFGR"}};
+
+// AHB1, AHB2, AHB3, APB1, APB2: where their registers lie in each of the three groups, and which bits they have.
+constexpr std::array<std::uint32_t, 5> bus_offset = {0x00, 0x04, 0x08, 0x10, 0x14};
+constexpr std::size_t ahb1 = 0;
+constexpr std::size_t apb1 = 3;
+constexpr std::size_t apb2 = 4;
+constexpr std::array<std::uint32_t, 5> reset_bits = {0x2260'11FF, 0xF1, 0x1, 0x36FE'C9FF, 0x0007'5933};
+constexpr std::array<std::uint32_t, 5> enable_bits = {0x7E74'11FF, 0xF1, 0x1, 0x36FE'C9FF, 0x0007'5F33};
+constexpr std::array<std::uint32_t, 5> sleep_enable_bits = {0x7E67'91FF, 0xF1, 0x1, 0x36FE'C9FF, 0x0007'5F33};
+constexpr std::uint32_t ahb1enr_reset = 0x0010'0000;  // core-coupled memory
+
+constexpr std::uint32_t cr_hsion = 1U << 0U;
+constexpr std::uint32_t cr_hsirdy = 1U << 1U;
+constexpr std::uint32_t cr_hseon = 1U << 16U;
+constexpr std::uint32_t cr_hserdy = 1U << 17U;
+constexpr std::uint32_t cr_hsebyp = 1U << 18U;
+constexpr std::uint32_t cr_csson = 1U << 19U;
+constexpr std::uint32_t cr_pllon = 1U << 24U;
+constexpr std::uint32_t cr_pllrdy = 1U << 25U;
+constexpr std::uint32_t cr_plli2son = 1U << 26U;
+/// HSICAL differs from chip to chip; what matters is that it is not 0.
+constexpr std::uint32_t cr_hsical = 0x80U << 8U;
+constexpr std::uint32_t hsi_trim_reset = 0x10;
+
+constexpr std::uint32_t pllcfgr_reset = 0x2400'3010;
+constexpr std::uint32_t pllcfgr_bits = 0x0F43'7FFF;
+constexpr std::uint32_t pllcfgr_reserved = 0x2000'0000;  // reads as after reset
+constexpr std::uint32_t plli2scfgr_reset = 0x2000'3000;
+
+constexpr std::uint32_t cfgr_sw = 0x3;
+constexpr std::uint32_t cfgr_clocks = 0x0000'FCF3;  // PPRE2, PPRE1, HPRE, SW
+constexpr std::uint32_t cfgr_others = 0xFFFF'0000;  // outputs, I2S, RTC
+constexpr std::uint32_t cir_enables = 0x3F00;
+
+constexpr std::uint32_t csr_lsion = 1U << 0U;
+constexpr std::uint32_t csr_lsirdy = 1U << 1U;
+constexpr std::uint32_t csr_rmvf = 1U << 24U;
+constexpr std::uint32_t csr_borrstf = 1U << 25U;
+constexpr std::uint32_t csr_pinrstf = 1U << 26U;
+constexpr std::uint32_t csr_porrstf = 1U << 27U;
+constexpr std::uint32_t csr_sftrstf = 1U << 28U;
+constexpr std::uint32_t csr_iwdgrstf = 1U << 29U;
+
+}  // namespace
+
+struct Rcc::Gate {
+  std::uint32_t base;
+  std::size_t bus;
+  unsigned bit;
+};
+
+const Rcc::Gate* Rcc::gate_of(const Peripheral& peripheral) {
+  static constexpr Gate gates[] = {
+      {0x4002'0000, ahb1, 0},   // GPIOA
+      {0x4002'0400, ahb1, 1},   // GPIOB
+      {0x4002'0800, ahb1, 2},   // GPIOC
+      {0x4002'0C00, ahb1, 3},   // GPIOD
+      {0x4002'1000, ahb1, 4},   // GPIOE
+      {0x4002'1400, ahb1, 5},   // GPIOF
+      {0x4002'1800, ahb1, 6},   // GPIOG
+      {0x4002'1C00, ahb1, 7},   // GPIOH
+      {0x4002'2000, ahb1, 8},   // GPIOI
+      {0x4000'0000, apb1, 0},   // TIM2
+      {0x4000'0C00, apb1, 3},   // TIM5
+      {0x4000'4400, apb1, 17},  // USART2
+      {0x4000'6400, apb1, 25},  // CAN1
+      {0x4000'6800, apb1, 26},  // CAN2
+      {0x4000'7000, apb1, 28},  // PWR
+      {0x4001'2000, apb2, 8},   // ADC1
+      {0x4001'3800, apb2, 14},  // SYSCFG
+  };
+  for (const Gate& gate : gates) {
+    if (gate.base == peripheral.base()) {
+      return &gate;
+    }
+  }
+  return nullptr;
+}
+
+void Rcc::Oscillator::switch_to(bool wanted, LocalTime now, LocalTime start, LocalTime stop) {
+  if (wanted == on) {
+    return;
+  }
+  if (wanted) {
+    ready_at = now + start;
+  } else {
+    not_ready_at = ready(now) ? now + stop : now;
+  }
+  on = wanted;
+}
+
+Rcc::Rcc(ChipServices& chip, FlashInterface& flash, Pwr& power, Iwdg& iwdg)
+    : RegisterBlock(chip, "RCC", 0x4002'3800, 0x400, registers), flash_(&flash), power_(&power), iwdg_(&iwdg) {
+  start_registers(0);
+}
+
+void Rcc::attach(Peripheral& peripheral) { attached_.push_back(&peripheral); }
+
+bool Rcc::is_clocked(const Peripheral& peripheral) const {
+  const Gate* gate = gate_of(peripheral);
+  return gate == nullptr || proleg::sim::bit(enables_[gate->bus], gate->bit);
+}
+
+void Rcc::require_clock(const Peripheral& peripheral, std::uint32_t offset) const {
+  const Gate* gate = gate_of(peripheral);
+  if (gate == nullptr) {
+    return;
+  }
+  const bool clocked = proleg::sim::bit(enables_[gate->bus], gate->bit);
+  if (clocked && !proleg::sim::bit(resets_[gate->bus], gate->bit)) {
+    return;
+  }
+  const std::uint32_t switch_offset = bus_offset[gate->bus] + (clocked ? first_rstr : first_enr);
+  throw UnmodelledAccess(peripheral.register_name(offset) +
+                         (clocked ? ": it is held in reset (" : ": its clock is off (") + register_name(switch_offset) +
+                         " bit " + std::to_string(gate->bit) + ")");
+}
+
+void Rcc::note_start(ResetCause cause) {
+  switch (cause) {
+    case ResetCause::power_on:
+      reset_flags_ = csr_porrstf | csr_pinrstf | csr_borrstf;
+      break;
+    case ResetCause::pin:
+      reset_flags_ |= csr_pinrstf;
+      break;
+    case ResetCause::software:
+      reset_flags_ |= csr_sftrstf | csr_pinrstf;
+      break;
+    case ResetCause::independent_watchdog:
+      reset_flags_ |= csr_iwdgrstf | csr_pinrstf;
+      break;
+  }
+}
+
+void Rcc::reset() { start_registers(chip().now()); }
+
+void Rcc::start_registers(LocalTime now) {
+  hsi_ = {.on = true, .ready_at = now, .not_ready_at = 0};
+  hse_ = {};
+  pll_ = {};
+  lsi_ = {};
+  hsi_trim_ = hsi_trim_reset;
+  pllcfgr_ = pllcfgr_reset;
+  cfgr_ = 0;
+  current_ = ClockSource::hsi;
+  clocks_ = {};
+  resets_ = {};
+  enables_ = {};
+  enables_[ahb1] = ahb1enr_reset;
+  sleep_enables_ = sleep_enable_bits;
+}
+
+const Rcc::Oscillator& Rcc::oscillator(ClockSource source) const {
+  switch (source) {
+    case ClockSource::hse:
+      return hse_;
+    case ClockSource::pll:
+      return pll_;
+    case ClockSource::hsi:
+      break;
+  }
+  return hsi_;
+}
+
+LocalTime Rcc::next_event() const {
+  const auto selected = static_cast<ClockSource>(cfgr_ & cfgr_sw);
+  return selected == current_ || !oscillator(selected).on ? never_on_chip : oscillator(selected).ready_at;
+}
+
+void Rcc::advance() { settle(); }
+
+void Rcc::settle() {
+  const auto selected = static_cast<ClockSource>(cfgr_ & cfgr_sw);
+  if (selected != current_ && oscillator(selected).ready(chip().now())) {
+    const Clocks next = clocks_of(selected, cfgr_, cfgr_);
+    current_ = selected;
+    change_clocks(next);
+  }
+}
+
+Clocks Rcc::clocks_of(ClockSource source, std::uint32_t setting, std::uint32_t value) const {
+  const ClockSettings settings{.source = source, .pllcfgr = pllcfgr_, .cfgr = setting};
+  const ClockOutcome outcome =
+      proleg::sim::clocks_of(settings, {.core_mhz = power_->fastest_core_mhz(), .wait_states = flash_->wait_states()});
+  if (outcome.fault) {
+    refuse_write(cfgr, value, *outcome.fault);
+  }
+  return outcome.clocks;
+}
+
+void Rcc::change_clocks(const Clocks& next) {
+  for (Peripheral* peripheral : attached_) {
+    peripheral->clocks_change(next);
+  }
+  clocks_ = next;
+  chip().reschedule();
+}
+
+bool Rcc::lsi_ready() const { return lsi_.ready(chip().now()) || iwdg_->is_running(); }
+
+std::uint32_t Rcc::read(std::uint32_t offset) {
+  settle();
+  const LocalTime now = chip().now();
+  for (std::size_t bus = 0; bus < bus_count; ++bus) {
+    if (offset == first_rstr + bus_offset[bus]) {
+      return resets_[bus];
+    }
+    if (offset == first_enr + bus_offset[bus]) {
+      return enables_[bus];
+    }
+    if (offset == first_lpenr + bus_offset[bus]) {
+      return sleep_enables_[bus];
+    }
+  }
+  switch (offset) {
+    case cr:
+      return (hsi_.on ? cr_hsion : 0) | (hsi_.ready(now) ? cr_hsirdy : 0) | hsi_trim_ << 3U | cr_hsical |
+             (hse_.on ? cr_hseon : 0) | (hse_.ready(now) ? cr_hserdy : 0) | (pll_.on ? cr_pllon : 0) |
+             (pll_.ready(now) ? cr_pllrdy : 0);
+    case pllcfgr:
+      return pllcfgr_;
+    case cfgr:
+      return cfgr_ | static_cast<std::uint32_t>(current_) << 2U;
+    case cir:
+    case bdcr:
+    case sscgr:
+      return 0;
+    case csr:
+      return reset_flags_ | (lsi_ready() ? csr_lsirdy : 0) | (lsi_.on ? csr_lsion : 0);
+    case plli2scfgr:
+      return plli2scfgr_reset;
+    default:
+      refuse_read(offset);
+  }
+}
+
+void Rcc::write(std::uint32_t offset, std::uint32_t value) {
+  settle();
+  for (std::size_t bus = 0; bus < bus_count; ++bus) {
+    if (offset == first_rstr + bus_offset[bus]) {
+      write_resets(bus, value & reset_bits[bus]);
+      return;
+    }
+    if (offset == first_enr + bus_offset[bus]) {
+      write_enables(bus, value & enable_bits[bus]);
+      return;
+    }
+    if (offset == first_lpenr + bus_offset[bus]) {
+      write_sleep_enables(bus, value & sleep_enable_bits[bus]);
+      return;
+    }
+  }
+  switch (offset) {
+    case cr:
+      write_cr(value);
+      break;
+    case pllcfgr:
+      write_pllcfgr(value);
+      break;
+    case cfgr:
+      write_cfgr(value);
+      break;
+    case cir:
+      refuse_bits(offset, value, cir_enables, "interrupts of the RCC are not modelled");
+      break;
+    case bdcr:
+    case sscgr:
+      refuse_bits(offset, value, ~0U,
+                  offset == bdcr ? "the backup domain is not modelled" : "spread spectrum is not modelled");
+      break;
+    case csr:
+      write_csr(value);
+      break;
+    case plli2scfgr:
+      if (value != plli2scfgr_reset) {
+        refuse_write(offset, value, "PLLI2S is not modelled");
+      }
+      break;
+    default:
+      refuse_write(offset, value);
+  }
+}
+
+void Rcc::write_cr(std::uint32_t value) {
+  refuse_bits(cr, value, cr_hsebyp, "the board has a crystal, no clock to bypass it");
+  refuse_bits(cr, value, cr_csson, "the clock security system is not modelled");
+  refuse_bits(cr, value, cr_plli2son, "PLLI2S is not modelled");
+  if (field(value, 3, 5) != hsi_trim_) {
+    refuse_write(cr, value, "HSITRIM = " + std::to_string(field(value, 3, 5)) + ": trimming is not modelled");
+  }
+  const LocalTime now = chip().now();
+  const bool from_hse = pll_from_hse(pllcfgr_);
+  const bool uses_pll = current_ == ClockSource::pll;
+  const bool uses_hse = current_ == ClockSource::hse || (uses_pll && from_hse);
+  const bool uses_hsi = current_ == ClockSource::hsi || (uses_pll && !from_hse);
+  // What the system clock comes from cannot be switched off.
+  const bool hsi_on = (value & cr_hsion) != 0 || uses_hsi;
+  const bool hse_on = (value & cr_hseon) != 0 || uses_hse;
+  const bool pll_on = (value & cr_pllon) != 0 || uses_pll;
+  if (pll_on) {
+    if (!pll_.on) {
+      if (const std::optional<std::string> fault = pll_fault(pllcfgr_)) {
+        refuse_write(cr, value, "PLLON with " + *fault);
+      }
+      if (!(from_hse ? hse_ : hsi_).ready(now)) {
+        refuse_write(cr, value, std::string("PLLON while its clock ") + (from_hse ? "HSE" : "HSI") + " is not ready");
+      }
+    }
+    if (!(from_hse ? hse_on : hsi_on)) {
+      refuse_write(cr, value, std::string("PLLON without its clock ") + (from_hse ? "HSE" : "HSI"));
+    }
+  }
+  constexpr LocalTime stop_cycles = 6;
+  hsi_.switch_to(hsi_on, now, hsi_start, stop_cycles * hsi_period);
+  hse_.switch_to(hse_on, now, hse_start, stop_cycles * hse_period);
+  pll_.switch_to(pll_on, now, pll_start, 0);
+}
+
+void Rcc::write_pllcfgr(std::uint32_t value) {
+  const std::uint32_t next = (value & pllcfgr_bits) | pllcfgr_reserved;
+  if (next != pllcfgr_ && pll_.on) {
+    refuse_write(pllcfgr, value, "the PLL is on (RM0090, 7.3.2)");
+  }
+  pllcfgr_ = next;
+}
+
+void Rcc::write_cfgr(std::uint32_t value) {
+  refuse_bits(cfgr, value, cfgr_others, "clocks for pins, I2S and RTC are not modelled");
+  const std::uint32_t next = value & cfgr_clocks;
+  if ((next & cfgr_sw) == cfgr_sw) {
+    refuse_write(cfgr, value, "SW = 3 is not allowed");
+  }
+  // A clock that is not ready takes over when it is.
+  const auto selected = static_cast<ClockSource>(next & cfgr_sw);
+  const ClockSource source = oscillator(selected).ready(chip().now()) ? selected : current_;
+  const Clocks clocks = clocks_of(source, next, value);
+  cfgr_ = next;
+  current_ = source;
+  change_clocks(clocks);
+}
+
+void Rcc::write_resets(std::size_t bus, std::uint32_t value) {
+  const std::uint32_t begun = value & ~resets_[bus];
+  resets_[bus] = value;
+  for (Peripheral* peripheral : attached_) {
+    const Gate* gate = gate_of(*peripheral);
+    if (gate != nullptr && gate->bus == bus && proleg::sim::bit(begun, gate->bit)) {
+      peripheral->reset();
+    }
+  }
+}
+
+void Rcc::write_enables(std::size_t bus, std::uint32_t value) {
+  const std::uint32_t ended = enables_[bus] & ~value;
+  for (const Peripheral* peripheral : attached_) {
+    const Gate* gate = gate_of(*peripheral);
+    if (gate != nullptr && gate->bus == bus && proleg::sim::bit(ended, gate->bit) && !peripheral->is_idle()) {
+      refuse_write(
+          first_enr + bus_offset[bus], value,
+          "the clock of " + std::string(peripheral->name()) + " goes off while it works, which is not modelled");
+    }
+  }
+  enables_[bus] = value;
+}
+
+void Rcc::write_sleep_enables(std::size_t bus, std::uint32_t value) {
+  for (const Peripheral* peripheral : attached_) {
+    const Gate* gate = gate_of(*peripheral);
+    if (gate != nullptr && gate->bus == bus && !proleg::sim::bit(value, gate->bit)) {
+      refuse_write(first_lpenr + bus_offset[bus], value,
+                   std::string(peripheral->name()) + " without clock in Sleep mode is not modelled");
+    }
+  }
+  sleep_enables_[bus] = value;
+}
+
+void Rcc::write_csr(std::uint32_t value) {
+  const bool lsi_on = (value & csr_lsion) != 0;
+  constexpr std::uint64_t stop_cycles = 3;
+  lsi_.switch_to(lsi_on, chip().now(), lsi_start, iwdg_->lsi_cycles(stop_cycles));
+  iwdg_->lsi_switched(lsi_on);
+  if ((value & csr_rmvf) != 0) {
+    reset_flags_ = 0;
+  }
+}
+
+}  // namespace proleg::sim

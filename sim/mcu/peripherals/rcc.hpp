@@ -1,0 +1,102 @@
+#pragma once
+
+// Reset and clock control RCC (RM0090, section 7). A setting that the manual forbids is refused with its figures; so is
+// one whose core clock does not divide 1,008 MHz, in which local time counts.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "sim/mcu/peripherals/clock_tree.hpp"
+#include "sim/mcu/peripherals/flash_interface.hpp"
+#include "sim/mcu/peripherals/iwdg.hpp"
+#include "sim/mcu/peripherals/pwr.hpp"
+#include "sim/mcu/peripherals/register_block.hpp"
+
+namespace proleg::sim {
+
+class Rcc final : public RegisterBlock {
+ public:
+  // Until an oscillator is ready: crystal of the board; HSI, LSI and PLL: DS8626 (the PLL: 75 to 300 us).
+  static constexpr LocalTime hse_start = 2'000 * local_time_per_us;
+  static constexpr LocalTime hsi_start = 2 * local_time_per_us;
+  static constexpr LocalTime pll_start = 200 * local_time_per_us;
+  static constexpr LocalTime lsi_start = 40 * local_time_per_us;
+
+  /// flash, power: asked whether they bear a new clock. iwdg: keeps LSI on while it runs.
+  Rcc(ChipServices& chip, FlashInterface& flash, Pwr& power, Iwdg& iwdg);
+
+  /// Peripherals whose clock and reset are switched here, or that count clocks; by their base(). They must outlive
+  /// this.
+  void attach(Peripheral& peripheral);
+
+  /// What ChipServices::clocks() says.
+  [[nodiscard]] const Clocks& clocks() const { return clocks_; }
+  /// Whether its registers answer. Those that have no gate (RCC, FLASH, IWDG) always do.
+  [[nodiscard]] bool is_clocked(const Peripheral& peripheral) const;
+  /// Refuses an access to a peripheral without clock, or one that is held in reset:
+  /// "USART2_BRR: its clock is off (RCC_APB1ENR bit 17)".
+  void require_clock(const Peripheral& peripheral, std::uint32_t offset) const;
+
+  /// Notes in RCC_CSR why the chip starts; to be called with every reset(). Each internal cause pulls NRST as well
+  /// (RM0090, 7.1.1), so that PINRSTF is always set.
+  void note_start(ResetCause cause);
+
+  [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
+  void write(std::uint32_t offset, std::uint32_t value) override;
+  /// Registers but the flags of note_start(). The attached peripherals are the chip's to reset.
+  void reset() override;
+  /// When a selected clock becomes ready and takes over.
+  [[nodiscard]] LocalTime next_event() const override;
+  void advance() override;
+  [[nodiscard]] bool is_idle() const override { return false; }
+
+ private:
+  struct Oscillator {
+    bool on = false;
+    LocalTime ready_at = never_on_chip;
+    LocalTime not_ready_at = 0;  ///< after it was switched off
+
+    void switch_to(bool wanted, LocalTime now, LocalTime start, LocalTime stop);
+    [[nodiscard]] bool ready(LocalTime now) const { return on ? now >= ready_at : now < not_ready_at; }
+  };
+  struct Gate;
+
+  void start_registers(LocalTime now);
+  void settle();
+  void write_cr(std::uint32_t value);
+  void write_pllcfgr(std::uint32_t value);
+  void write_cfgr(std::uint32_t value);
+  void write_resets(std::size_t bus, std::uint32_t value);
+  void write_enables(std::size_t bus, std::uint32_t value);
+  void write_sleep_enables(std::size_t bus, std::uint32_t value);
+  void write_csr(std::uint32_t value);
+  [[nodiscard]] const Oscillator& oscillator(ClockSource source) const;
+  /// Refuses what the manual does, naming the write to CFGR that led there.
+  [[nodiscard]] Clocks clocks_of(ClockSource source, std::uint32_t setting, std::uint32_t value) const;
+  void change_clocks(const Clocks& next);
+  [[nodiscard]] static const Gate* gate_of(const Peripheral& peripheral);
+  [[nodiscard]] bool lsi_ready() const;
+
+  FlashInterface* flash_;
+  Pwr* power_;
+  Iwdg* iwdg_;
+  std::vector<Peripheral*> attached_;
+  Clocks clocks_;
+
+  Oscillator hsi_;
+  Oscillator hse_;
+  Oscillator pll_;
+  Oscillator lsi_;
+  std::uint32_t hsi_trim_ = 0x10;
+  std::uint32_t pllcfgr_ = 0;
+  std::uint32_t cfgr_ = 0;  ///< without SWS
+  ClockSource current_ = ClockSource::hsi;
+  static constexpr std::size_t bus_count = 5;  ///< AHB1, AHB2, AHB3, APB1, APB2
+  std::array<std::uint32_t, bus_count> resets_{};
+  std::array<std::uint32_t, bus_count> enables_{};
+  std::array<std::uint32_t, bus_count> sleep_enables_{};
+  std::uint32_t reset_flags_ = 0;
+};
+
+}  // namespace proleg::sim

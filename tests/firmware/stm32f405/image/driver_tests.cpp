@@ -1,0 +1,111 @@
+// Exercises the drivers that the module's program does not use much: floods the console, then appends board records for
+// ever. Cut its power whenever you like: it goes on from the record that it finds. What it has done is in
+// driver_test_result.
+
+#include "firmware/stm32f405/clock.hpp"
+#include "firmware/stm32f405/gpio.hpp"
+#include "firmware/stm32f405/handlers.hpp"
+#include "firmware/stm32f405/hardware.hpp"
+#include "firmware/stm32f405/watchdog.hpp"
+
+namespace {
+
+using namespace proleg;
+using namespace proleg::stm32f405;
+
+enum class Phase : std::uint32_t { none, started, no_clocks, flooded, appending };
+
+struct Result {
+  Phase phase = Phase::none;
+  std::uint32_t found = 0;         ///< node of the newest record at the start; 0: there was none
+  std::uint32_t appended = 0;      ///< records since the start, each with the next node (126 is followed by 1)
+  std::uint32_t failed = 0;        ///< records that were not written, or did not read back as the newest
+  std::uint32_t last_failure = 0;  ///< firmware::AppendResult
+  std::uint32_t longest_us = 0;    ///< of an append
+  std::uint32_t deadlines = 0;     ///< interrupts of TIM5, one a millisecond but for those that an append holds up
+};
+
+constexpr unsigned flood_lines = 100;
+
+}  // namespace
+
+extern "C" {
+
+/// For whoever runs this to read, at any time.
+[[gnu::used]] constinit volatile Result driver_test_result;
+
+}  // extern "C"
+
+namespace {
+
+void add_one(volatile std::uint32_t& count) { count = count + 1; }
+
+std::optional<firmware::BoardRecord> newest_record() {
+  return firmware::newest(hardware.settings.contents(0), hardware.settings.contents(1));
+}
+
+/// Far more than the console's memory holds; what it takes arrives whole and in order, and nothing waits.
+void flood_console() {
+  for (unsigned line = 0; line < flood_lines; ++line) {
+    hardware.console.write("line ");
+    hardware.console.write_decimal(line);
+    hardware.console.write(" of a text that is too long for its way\r\n");
+  }
+  driver_test_result.phase = Phase::flooded;
+}
+
+void append_next(unsigned node) {
+  firmware::BoardRecord record;
+  record.node = static_cast<std::uint8_t>(node);
+  const std::uint32_t start = MicrosecondClock::stamp();
+  const firmware::AppendResult result = append(hardware.settings, record);
+  const std::uint32_t duration = MicrosecondClock::stamp() - start;
+  if (duration > driver_test_result.longest_us) {
+    driver_test_result.longest_us = duration;
+  }
+  if (result == firmware::AppendResult::ok && newest_record() == record) {
+    add_one(driver_test_result.appended);
+  } else {
+    add_one(driver_test_result.failed);
+    driver_test_result.last_failure = static_cast<std::uint32_t>(result);
+  }
+}
+
+}  // namespace
+
+extern "C" {
+
+void run_program() {
+  static_cast<void>(start_watchdog());
+  driver_test_result.phase = Phase::started;
+  start_pins();
+  if (start_clocks() != ClockResult::ok) {
+    driver_test_result.phase = Phase::no_clocks;
+    for (;;) {
+    }
+  }
+  hardware.clock.start();
+  hardware.console.start(board::apb1);
+  enable_interrupts();
+  request_pend_sv();
+  flood_console();
+  const std::optional<firmware::BoardRecord> record = newest_record();
+  unsigned node = record ? record->node : 0U;
+  driver_test_result.found = node;
+  driver_test_result.phase = Phase::appending;
+  for (;;) {
+    node = node % firmware::BoardRecord::highest_node + 1U;
+    append_next(node);
+    feed_watchdog();
+  }
+}
+
+void pend_sv_handler() {
+  constexpr Microseconds millisecond_us = 1'000;
+  add_one(driver_test_result.deadlines);
+  if (!MicrosecondClock::wake_at(hardware.clock.now() + millisecond_us)) {
+    request_pend_sv();
+  }
+}
+
+}  // extern "C"

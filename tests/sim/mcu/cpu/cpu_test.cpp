@@ -1,0 +1,345 @@
+// Execution, memory and sleep.
+
+#include "sim/mcu/cpu/cpu.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/sim/mcu/cpu/board.hpp"
+
+namespace proleg::sim {
+namespace {
+
+using Marks = std::vector<std::uint32_t>;
+
+class CpuTest : public Programs {};
+
+TEST_F(CpuTest, StartsWithStackPointerAndAddressOfTheVectorTable) {
+  start("counted_loop");
+  EXPECT_EQ(cpu_.core_register(13), initial_stack);
+  EXPECT_EQ(cpu_.core_register(14), 0xFFFF'FFFFU);
+  EXPECT_EQ(cpu_.core_register(15), address_of("counted_loop"));
+  EXPECT_EQ(cpu_.core_register(16), 0x0100'0000U);
+  EXPECT_EQ(cpu_.active_exception(), 0U);
+}
+
+TEST_F(CpuTest, CountsInstructionsOfTwoAndFourBytesExactly) {
+  start("counted_loop");
+  EXPECT_EQ(cpu_.run(10'000'000), Cpu::State::sleeping);
+  EXPECT_EQ(cpu_.instructions(), 1'000'001U);
+}
+
+TEST_F(CpuTest, RunsForAsManyInstructionsAsItIsToldUpToTheEndOfABlock) {
+  start("counted_loop");
+  for (const std::uint64_t budget : {std::uint64_t{1}, std::uint64_t{7}, std::uint64_t{100}, std::uint64_t{5000}}) {
+    const std::uint64_t before = cpu_.instructions();
+    EXPECT_EQ(cpu_.run(budget), Cpu::State::running);
+    EXPECT_GE(cpu_.instructions() - before, budget);
+    EXPECT_LT(cpu_.instructions() - before, budget + 6);
+  }
+  EXPECT_EQ(cpu_.run(0), Cpu::State::running);
+}
+
+TEST_F(CpuTest, NewMemoryIsErasedFlashAndTheSameNoiseInEveryRam) {
+  Board other;
+  std::vector<std::uint8_t> ram(Cpu::ram_size);
+  std::vector<std::uint8_t> other_ram(Cpu::ram_size);
+  Board fresh;
+  fresh.cpu.read(Cpu::ram_start, ram);
+  other.cpu.read(Cpu::ram_start, other_ram);
+  EXPECT_EQ(ram, other_ram);
+  EXPECT_NE(ram, std::vector<std::uint8_t>(Cpu::ram_size, ram[0]));
+  EXPECT_EQ(fresh.word(Cpu::flash_start), 0xFFFF'FFFFU);
+  EXPECT_EQ(fresh.word(Cpu::flash_start + Cpu::flash_size - 4), 0xFFFF'FFFFU);
+  EXPECT_THROW(static_cast<void>(fresh.word(Cpu::flash_start + Cpu::flash_size - 2)), std::out_of_range);
+  EXPECT_THROW(static_cast<void>(fresh.word(0x4000'0000)), std::out_of_range);
+  EXPECT_THROW(fresh.set_word(0, 1), std::out_of_range);
+}
+
+TEST_F(CpuTest, StoresToRegistersHappenExactlyOnceWhateverInterruptsThem) {
+  script(16 + 3, {});
+  start("stores_once");
+  board_.run(1000);
+  const std::vector<Board::Store> expected{{0x4000'0000, 4, 1},     {0x4000'0000, 4, 2}, {0x4000'0004, 2, 2},
+                                           {0x4000'0008, 1, 2},     {0x4000'0000, 4, 3}, {0x4000'0000, 4, 0x1013},
+                                           {0x4000'0000, 4, 0x2013}};
+  EXPECT_EQ(board_.stores, expected);
+}
+
+TEST_F(CpuTest, PauseWithinAStoreEndsTheRunBehindTheBlock) {
+  start("stores_once");
+  board_.on_store = [&](const Board::Store& store) {
+    if (store.value == 1) {
+      cpu_.pause();
+    }
+  };
+  EXPECT_EQ(cpu_.run(1000), Cpu::State::paused);
+  EXPECT_EQ(board_.marks, Marks({1, 2, 3}));
+  EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
+  EXPECT_EQ(board_.marks, Marks({1, 2, 3, 0x1013, 0x2013}));
+}
+
+TEST_F(CpuTest, LimitWithinAStoreEndsTheRunBehindTheBlock) {
+  start("stores_once");
+  board_.on_store = [&](const Board::Store& store) {
+    if (store.value == 1) {
+      cpu_.limit(cpu_.instructions());
+    }
+  };
+  EXPECT_EQ(cpu_.run(1000), Cpu::State::running);
+  EXPECT_EQ(board_.marks, Marks({1, 2, 3}));
+}
+
+TEST_F(CpuTest, HaltEndsTheRunUntilReset) {
+  start("stores_once");
+  board_.on_store = [&](const Board::Store& store) {
+    if (store.value == 1) {
+      cpu_.halt("the board is not modelled");
+    }
+  };
+  EXPECT_EQ(cpu_.run(1000), Cpu::State::halted);
+  EXPECT_TRUE(cpu_.halt_reason().starts_with("the board is not modelled, by the code from 0x")) << cpu_.halt_reason();
+  EXPECT_EQ(cpu_.run(1000), Cpu::State::halted);
+  board_.on_store = [](const Board::Store&) {};
+  start("counted_loop");
+  EXPECT_EQ(cpu_.halt_reason(), "");
+  EXPECT_EQ(cpu_.run(10'000'000), Cpu::State::sleeping);
+}
+
+TEST_F(CpuTest, AnUnknownRegisterOfThePrivateBusHaltsWithItsUnitAndAddress) {
+  script(0, {step::mark_load(0xE000'2000)});
+  EXPECT_EQ(run_script(), Marks({0}));
+  EXPECT_EQ(cpu_.state(), Cpu::State::halted);
+  EXPECT_TRUE(
+      cpu_.halt_reason().starts_with("load from 0xE0002000 (private peripheral bus, FPB), which is not modelled"))
+      << cpu_.halt_reason();
+}
+
+TEST_F(CpuTest, SleepsAtWfiAndGoesOnBehindIt) {
+  start("sleeps_masked");
+  EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
+  EXPECT_FALSE(cpu_.wakes());
+  EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
+  EXPECT_EQ(board_.marks, Marks());
+}
+
+TEST_F(CpuTest, AMaskedInterruptWakesAndIsTakenWhenItIsUnmasked) {
+  script(0, {step::store(scs::iser, 2), step::call(address_of("sleeps_masked") | 1U)});
+  EXPECT_EQ(run_script(), Marks());
+  EXPECT_EQ(cpu_.state(), Cpu::State::sleeping);
+  cpu_.set_interrupt(1, true);
+  EXPECT_TRUE(cpu_.wakes());
+  board_.on_store = [&](const Board::Store& store) { cpu_.set_interrupt(1, store.value == 1); };
+  board_.run(1000);
+  EXPECT_EQ(board_.marks, Marks({1, 0x1011, 0x2011, 2}));
+}
+
+TEST_F(CpuTest, ADisabledInterruptDoesNotWake) {
+  start("sleeps_masked");
+  board_.run(1000);
+  cpu_.set_interrupt(1, true);
+  EXPECT_FALSE(cpu_.wakes());
+}
+
+TEST_F(CpuTest, AnInterruptBelowBasepriDoesNotWake) {
+  script(0, {step::store(scs::iser, 6), step::store(scs::ipr, 0x0020'5000), step::basepri(0x50),
+             step::wait_for_interrupt(), step::mark(7)});
+  EXPECT_EQ(run_script(), Marks());
+  cpu_.set_interrupt(1, true);
+  EXPECT_FALSE(cpu_.wakes());
+  cpu_.set_interrupt(2, true);
+  EXPECT_TRUE(cpu_.wakes());
+}
+
+TEST_F(CpuTest, WfiInAnItBlockSleepsOnlyIfItsConditionHolds) {
+  script(16 + 1, {});
+  start("sleeps_conditionally");
+  EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
+  EXPECT_EQ(board_.marks, Marks({1}));
+}
+
+TEST_F(CpuTest, WfeSleepsWithoutAnEvent) {
+  start("waits_for_events");
+  EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
+  EXPECT_EQ(board_.marks, Marks());
+}
+
+TEST_F(CpuTest, WfeTakesAnEventThatWasSentBefore) {
+  script(0, {step::send_event(), step::wait_for_event(), step::mark(1), step::wait_for_event(), step::mark(2)});
+  EXPECT_EQ(run_script(), Marks({1}));
+  EXPECT_EQ(cpu_.state(), Cpu::State::sleeping);
+}
+
+TEST_F(CpuTest, WfeWakesByAnInterruptWhoseEntryIsAnEvent) {
+  script(0, {step::store(scs::iser, 2), step::wait_for_event(), step::mark(1), step::send_event(),
+             step::wait_for_event(), step::mark(2), step::wait_for_event(), step::mark(3)});
+  EXPECT_EQ(run_script(), Marks());
+  EXPECT_EQ(cpu_.state(), Cpu::State::sleeping);
+  board_.on_store = [&](const Board::Store&) { cpu_.set_interrupt(1, false); };
+  cpu_.set_interrupt(1, true);
+  EXPECT_TRUE(cpu_.wakes());
+  board_.run(1000);
+  // The handler has run; its event ends the second WFE at once, and SEV merges with it.
+  EXPECT_EQ(board_.take_marks(), Marks({0x1011, 0x2011, 1, 2}));
+  EXPECT_EQ(cpu_.state(), Cpu::State::sleeping);
+}
+
+TEST_F(CpuTest, YieldDoesNothing) {
+  start("yields");
+  EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
+  EXPECT_EQ(board_.marks, Marks({1, 2}));
+}
+
+TEST_F(CpuTest, SleepOnExitSleepsWithoutRunningThreadMode) {
+  script(0, {step::store(scs::iser, 2), step::store(scs::scr, 2), step::wait_for_interrupt(), step::mark(5)});
+  EXPECT_EQ(run_script(), Marks());
+  board_.on_store = [&](const Board::Store&) { cpu_.set_interrupt(1, false); };
+  for (int i = 0; i < 3; ++i) {
+    cpu_.set_interrupt(1, true);
+    EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
+    EXPECT_EQ(board_.take_marks(), Marks({0x1011, 0x2011}));
+  }
+}
+
+TEST_F(CpuTest, CodeThatIsWrittenIntoRamIsExecuted) {
+  start("calls_code_in_ram");
+  board_.run(1000);
+  EXPECT_EQ(board_.marks, Marks({1, 2}));
+}
+
+TEST_F(CpuTest, CodeThatTheOwnerWritesIntoFlashIsExecuted) {
+  constexpr std::uint32_t returns_1 = 0x4770'2001;  // movs r0, #1; bx lr
+  board_.set_word(0x0804'0000, returns_1);
+  set_vector(16 + 1, "short_handler");
+  script(0, {step::store(scs::iser, 2), step::call(address_of("calls_written_code") | 1U)});
+  EXPECT_EQ(run_script(), Marks({1}));
+  for (const std::uint32_t value : {2U, 3U}) {
+    board_.set_word(0x0804'0000, returns_1 - 1 + value);
+    cpu_.set_interrupt(1, true);
+    cpu_.set_interrupt(1, false);
+    EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
+    EXPECT_EQ(board_.take_marks(), Marks({value}));
+  }
+}
+
+TEST_F(CpuTest, AProgramThatProgramsTheFlashExecutesWhatItHasWritten) {
+  board_.on_flash_store = [&](const Board::Store& store) {
+    board_.set_word(store.address, store.value);
+    EXPECT_EQ(board_.word(store.address), store.value) << "the owner sees it at once";
+    return true;
+  };
+  start("programs_itself");
+  board_.run(1000);
+  EXPECT_EQ(board_.marks, Marks({1, 2}));
+  EXPECT_TRUE(cpu_.take_faults().empty());
+}
+
+TEST_F(CpuTest, AStoreToFlashGoesToTheOwnerWhoDecidesWhatItDoes) {
+  std::vector<Board::Store> seen;
+  board_.on_flash_store = [&](const Board::Store& store) {
+    seen.push_back(store);
+    board_.set_word(store.address, store.value & 0xFFFF'0000U);
+    return true;
+  };
+  start("stores_to_flash");
+  board_.run(1000);
+  EXPECT_EQ(seen, (std::vector<Board::Store>{{0x0804'0000, 4, 0x1234'5678}}));
+  EXPECT_EQ(board_.marks, Marks({1, 2, 0x1234'0000}));
+}
+
+TEST_F(CpuTest, BitBandAliasesReadAndWriteSingleBits) {
+  board_.registers[0x4000'0100] = 0x8000'0001;
+  start("uses_bits");
+  board_.run(1000);
+  EXPECT_EQ(board_.marks, Marks({0x7FFF'0002, 1, 0x8000'0021}));
+}
+
+TEST_F(CpuTest, AnInterruptBetweenTheInstructionsOfAnItBlockLeavesTheRestConditional) {
+  const std::uint32_t within = address_of("it_across_pages") + 16;  // blocks end at pages
+  set_vector(16 + 1, "reporting_handler");
+  script(0, {step::store(scs::iser, 2), step::call(address_of("it_across_pages") | 1U)});
+  start("reset_handler");
+  while (cpu_.core_register(15) != within) {
+    ASSERT_EQ(cpu_.run(1), Cpu::State::running);
+  }
+  EXPECT_NE(cpu_.core_register(16) & 0x0600'FC00U, 0U);
+  cpu_.set_interrupt(1, true);
+  cpu_.set_interrupt(1, false);
+  EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
+  ASSERT_EQ(board_.marks.size(), 6U);
+  EXPECT_EQ(board_.marks[3] & 0x0600'FC00U, 0U) << "in the handler";
+  EXPECT_EQ(board_.marks[5], 0U);
+}
+
+TEST_F(CpuTest, StepExecutesSingleInstructions) {
+  start("counted_loop");
+  const std::uint32_t begin = address_of("counted_loop");
+  for (const std::uint32_t offset : {2U, 4U, 8U, 10U, 12U, 2U, 4U}) {
+    const std::uint64_t before = cpu_.instructions();
+    cpu_.step();
+    EXPECT_EQ(cpu_.core_register(15), begin + offset);
+    EXPECT_EQ(cpu_.instructions(), before + 1);
+  }
+  cpu_.run(10'000'000);
+  EXPECT_EQ(cpu_.instructions(), 1'000'001U);
+}
+
+TEST_F(CpuTest, PausesAtBreakpointsAndPassesThemWhenItGoesOn) {
+  start("counted_loop");
+  const std::uint32_t in_loop = address_of("counted_loop") + 8;
+  cpu_.run(100);
+  cpu_.set_breakpoints(std::array{in_loop});
+  for (int i = 0; i < 3; ++i) {
+    const std::uint32_t rounds = cpu_.core_register(0);
+    EXPECT_EQ(cpu_.run(1000), Cpu::State::at_breakpoint);
+    EXPECT_EQ(cpu_.core_register(15), in_loop);
+    if (i > 0) {
+      EXPECT_EQ(cpu_.core_register(0), rounds - 1);
+    }
+  }
+  cpu_.set_breakpoints({});
+  EXPECT_EQ(cpu_.run(10'000'000), Cpu::State::sleeping);
+  EXPECT_EQ(cpu_.instructions(), 1'000'001U);
+}
+
+TEST_F(CpuTest, NoBreakpointIsMissedBetweenShortRuns) {
+  start("counted_loop");
+  const std::uint32_t loop = address_of("counted_loop") + 2;
+  cpu_.set_breakpoints(std::array{loop});
+  for (std::uint32_t round = 0; round < 50; ++round) {
+    Cpu::State state = Cpu::State::running;
+    while (state == Cpu::State::running) {
+      state = cpu_.run(1 + round % 7);
+    }
+    EXPECT_EQ(state, Cpu::State::at_breakpoint);
+    EXPECT_EQ(cpu_.core_register(0), 199'999U - round);
+  }
+}
+
+TEST_F(CpuTest, ABreakpointAtTheBeginOfAHandlerIsReached) {
+  script(0, {step::store(scs::iser, 2), step::store(scs::ispr, 2), step::mark(3)});
+  start("reset_handler");
+  cpu_.set_breakpoints(std::array{address_of("scripted_handler")});
+  EXPECT_EQ(cpu_.run(10'000), Cpu::State::at_breakpoint);
+  EXPECT_EQ(cpu_.active_exception(), 17U);
+  EXPECT_EQ(cpu_.core_register(15), address_of("scripted_handler"));
+  EXPECT_EQ(cpu_.run(10'000), Cpu::State::sleeping);
+  EXPECT_EQ(board_.take_marks(), Marks({0x1011, 0x2011, 3, 0x2000}));
+}
+
+TEST_F(CpuTest, RegistersCanBeReadAndWritten) {
+  start("counted_loop");
+  for (unsigned i = 0; i <= 14; ++i) {
+    cpu_.set_core_register(i, 0x1000'0000 + 16 * i);
+  }
+  cpu_.set_core_register(15, address_of("compute_loop") | 1U);
+  cpu_.set_core_register(16, 0xF900'0000);
+  for (unsigned i = 0; i <= 14; ++i) {
+    EXPECT_EQ(cpu_.core_register(i), 0x1000'0000 + 16 * i);
+  }
+  EXPECT_EQ(cpu_.core_register(15), address_of("compute_loop"));
+  EXPECT_EQ(cpu_.core_register(16), 0xF900'0000U);
+  EXPECT_THROW(static_cast<void>(cpu_.core_register(17)), std::out_of_range);
+}
+
+}  // namespace
+}  // namespace proleg::sim

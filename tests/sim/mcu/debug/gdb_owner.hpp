@@ -1,0 +1,59 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gdb_process.hpp"
+#include "sim/mcu/debug/gdb_server.hpp"
+
+namespace proleg::sim {
+
+/// What the owner of a target does, as gdb_server.hpp says, until the debugger has ended.
+/// Program: step(); run_slice(), true if it came to a breakpoint.
+template <typename Program>
+Resume run_under(GdbServer& server, Program& program, GdbProcess& gdb, int slices_until_control_c = 20'000) {
+  const auto interrupted = [&] { return gdb.ended(); };
+  if (!server.wait_for_client(interrupted)) {
+    return Resume::interrupted;
+  }
+  Resume resume = server.serve(StopReason::attached, interrupted);
+  while (resume == Resume::step || resume == Resume::run) {
+    StopReason reason = StopReason::step;
+    if (resume == Resume::step) {
+      program.step();
+    } else {
+      reason = StopReason::interrupt;
+      int slices = 0;
+      // The user's control-C, when the program does not stop by itself.
+      for (bool requested = false; !requested; requested = server.interrupt_requested()) {
+        if (program.run_slice()) {
+          reason = StopReason::breakpoint;
+          break;
+        }
+        if (++slices == slices_until_control_c) {
+          gdb.interrupt();
+        }
+        if (gdb.ended()) {
+          return Resume::interrupted;
+        }
+      }
+    }
+    resume = server.serve(reason, interrupted);
+  }
+  return resume;
+}
+
+/// Whether the lines are in the output, in this order.
+inline testing::AssertionResult contains(const std::string& output, const std::vector<std::string>& lines) {
+  std::size_t at = 0;
+  for (const std::string& line : lines) {
+    at = output.find(line, at);
+    if (at == std::string::npos) {
+      return testing::AssertionFailure() << "'" << line << "' is not, or not there, in:\n" << output;
+    }
+    at += line.size();
+  }
+  return testing::AssertionSuccess();
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,80 @@
+#pragma once
+
+// A robot whose modules are virtual chips, for tests.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "shipped.hpp"
+#include "sim/loop/hardware_loop.hpp"
+#include "sim/loop/simulation.hpp"
+#include "sim/mcu/module/virtual_module.hpp"
+
+namespace proleg::sim {
+
+/// The image that is flashed, as the preset stm32f405 builds it.
+inline const FirmwareImage& flashed_image() {
+  static const FirmwareImage image(PROLEG_IMAGE);
+  return image;
+}
+
+class VirtualRobot {
+ public:
+  using Choice = std::function<bool(unsigned joint)>;
+
+  /// is_virtual: which joints have a virtual chip; the others are native.
+  explicit VirtualRobot(
+      Scenario scenario, HardwareOptions options = {}, Choice is_virtual = [](unsigned) { return true; })
+      : scenario_(std::move(scenario)), modules_(scenario_.robot.joints.size()) {
+    options.notice = [this](const std::string& text) { notices.push_back(text); };
+    options.make_module = [this, is_virtual](const ModuleParts& parts) -> std::unique_ptr<JointModule> {
+      if (!is_virtual(parts.joint)) {
+        return nullptr;
+      }
+      VirtualModuleOptions module_options;
+      module_options.console = [this, joint = parts.joint](const std::string& line) {
+        console.emplace_back(joint, line);
+      };
+      module_options.trace = [this](const TickCost& cost) { costs.push_back(cost); };
+      auto module = std::make_unique<VirtualModule>(parts, flashed_image(), std::move(module_options));
+      modules_[parts.joint] = module.get();
+      return module;
+    };
+    loop_ = std::make_unique<HardwareLoop>(scenario_, std::move(options));
+  }
+
+  void run_to(std::uint32_t tick) {
+    while (loop_->tick() < tick) {
+      loop_->advance();
+      for (const auto& event : loop_->restart_events()) {
+        (event.joined ? joined : stopped).emplace_back(event.joint, loop_->tick() - 1);
+      }
+    }
+  }
+
+  [[nodiscard]] HardwareLoop& loop() { return *loop_; }
+  [[nodiscard]] VirtualModule& module(unsigned joint) { return *modules_[joint]; }
+  [[nodiscard]] const Scenario& scenario() const { return scenario_; }
+
+  /// Whether somebody said this.
+  [[nodiscard]] bool was_noticed(const std::string& words) const {
+    return std::ranges::any_of(notices, [&](const std::string& text) { return text.find(words) != std::string::npos; });
+  }
+
+  std::vector<std::string> notices;
+  std::vector<std::pair<unsigned, std::string>> console;
+  std::vector<TickCost> costs;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> stopped;  ///< joint, tick
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> joined;
+
+ private:
+  Scenario scenario_;
+  std::vector<VirtualModule*> modules_;
+  std::unique_ptr<HardwareLoop> loop_;
+};
+
+}  // namespace proleg::sim

@@ -1,0 +1,244 @@
+#include "tools/proleg/hil_modules.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+
+#include "sim/scenario/input_error.hpp"
+#include "sim/scenario/text.hpp"
+#include "tools/proleg/command_line.hpp"
+#include "tools/proleg/debugger.hpp"
+
+namespace proleg::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Where the stm32f405 preset leaves the image, seen from this program.
+fs::path default_image() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return program.parent_path().parent_path().parent_path() / "stm32f405" / "bin" / "proleg_stm32f405.elf";
+}
+
+sim::FirmwareImage read_image(const std::optional<std::string>& name) {
+  const fs::path file = name ? fs::path(*name) : default_image();
+  if (!name && !fs::exists(file)) {
+    throw BadInput(file.string() +
+                   ": found no image, expected that of cmake --preset stm32f405 && cmake --build --preset stm32f405, "
+                   "or --image ELF");
+  }
+  try {
+    return sim::FirmwareImage(file);
+  } catch (const sim::ElfError& error) {
+    throw BadInput(error.what());
+  }
+}
+
+}  // namespace
+
+/// The table of a module's instruction counts: in a file, or on standard error.
+struct HilModules::Trace {
+  unsigned node = 0;
+  std::string file;
+  std::ofstream stream;
+
+  [[nodiscard]] std::ostream& out() { return file.empty() ? std::cerr : stream; }
+};
+
+void add_module_options(CLI::App& app, ModuleOptions& options) {
+  app.add_option("--modules", options.modules,
+                 "what runs the modules' program: native, as built for this computer; mcu: the image that is flashed, "
+                 "each in a virtual STM32F405; 1,3=mcu: those nodes so, the others native")
+      ->capture_default_str();
+  app.add_option("--image", options.image, "ELF: the image, instead of the one that the preset stm32f405 builds");
+  app.add_option("--uart", options.consoles,
+                 "NODE: show on standard error what a virtual module prints on its console. May be repeated.")
+      ->allow_extra_args(false);
+  app.add_option("--trace", options.traces,
+                 "NODE or NODE=FILE: a table of the instructions that a virtual module executes in each tick, on "
+                 "standard error or in a file. May be repeated.")
+      ->allow_extra_args(false);
+  app.add_option("--gdb", options.gdb,
+                 "PORT or NODE:PORT: wait until gdb-multiarch has attached to a virtual module (the first one) with "
+                 "'target remote :PORT'; the whole simulation stands still while the program does");
+}
+
+HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenario,
+                       const std::vector<std::string>& other_files)
+    : scenario_(scenario),
+      virtual_joints_(scenario.modules.size()),
+      consoles_(scenario.modules.size()),
+      traces_(scenario.modules.size()),
+      modules_(scenario.modules.size()) {
+  parse_modules(options.modules);
+  for (const std::string& word : options.consoles) {
+    consoles_[virtual_joint_of("--uart", word)] = true;
+  }
+  if (std::ranges::find(virtual_joints_, true) != virtual_joints_.end()) {
+    image_.emplace(read_image(options.image));
+  } else if (options.image) {
+    throw sim::InputError("--image", 0, "it without a module that runs it", "--modules mcu");
+  }
+  if (options.gdb) {
+    const std::size_t colon = options.gdb->find(':');
+    const auto port = sim::parse_whole<std::uint16_t>(
+        std::string_view(*options.gdb).substr(colon == std::string::npos ? 0 : colon + 1));
+    if (!port || *port == 0) {
+      throw sim::InputError("--gdb", 0, sim::in_quotes(sim::shortened(*options.gdb)), "PORT or NODE:PORT");
+    }
+    if (!image_) {
+      throw sim::InputError("--gdb", 0, "no virtual module", "--modules mcu");
+    }
+    const auto first = std::ranges::find(virtual_joints_, true) - virtual_joints_.begin();
+    const unsigned joint = colon == std::string::npos ? static_cast<unsigned>(first)
+                                                      : virtual_joint_of("--gdb", options.gdb->substr(0, colon));
+    debugger_ = std::make_unique<Debugger>(*port, joint, image_->file());
+  }
+  open_traces(options.traces, other_files);  // last: what is refused leaves no file behind
+}
+
+HilModules::~HilModules() = default;
+
+void HilModules::parse_modules(const std::string& word) {
+  constexpr std::string_view some = "=mcu";
+  if (word == "native") {
+    return;
+  }
+  if (word == "mcu") {
+    virtual_joints_.assign(virtual_joints_.size(), true);
+    return;
+  }
+  if (!word.ends_with(some)) {
+    throw sim::InputError("--modules", 0, sim::in_quotes(sim::shortened(word)),
+                          "native, mcu, or nodes that are to be virtual: 1,3=mcu");
+  }
+  std::string_view rest = std::string_view(word).substr(0, word.size() - some.size());
+  for (bool more = true; more;) {
+    const std::size_t comma = rest.find(',');
+    virtual_joints_[joint_of("--modules", std::string(rest.substr(0, comma)))] = true;
+    more = comma != std::string_view::npos;
+    rest = more ? rest.substr(comma + 1) : rest;
+  }
+}
+
+unsigned HilModules::joint_of(const std::string& option, const std::string& word) const {
+  const auto node = sim::parse_whole<std::uint32_t>(word);
+  std::string nodes;
+  for (unsigned joint = 0; joint < scenario_.modules.size(); ++joint) {
+    if (node && scenario_.modules[joint].node == *node) {
+      return joint;
+    }
+    nodes += (nodes.empty() ? "" : ", ") + std::to_string(scenario_.modules[joint].node);
+  }
+  throw sim::InputError(option, 0, "node " + sim::in_quotes(sim::shortened(word)), "one of " + nodes);
+}
+
+unsigned HilModules::virtual_joint_of(const std::string& option, const std::string& word) const {
+  const unsigned joint = joint_of(option, word);
+  if (!is_virtual(joint)) {
+    throw sim::InputError(option, 0, "node " + word + ", which is native", "a virtual one (--modules mcu)");
+  }
+  return joint;
+}
+
+void HilModules::open_traces(const std::vector<std::string>& words, const std::vector<std::string>& other_files) {
+  // All is looked at before a file is touched: what is refused leaves none behind, and none overwritten.
+  std::vector<std::string> files = other_files;
+  for (const std::string& word : words) {
+    const std::size_t equal = word.find('=');
+    const unsigned joint = virtual_joint_of("--trace", word.substr(0, equal));
+    if (traces_[joint]) {
+      throw sim::InputError("--trace", 0, "node " + word.substr(0, equal) + " twice", "each node once");
+    }
+    traces_[joint] = std::make_unique<Trace>();
+    traces_[joint]->node = scenario_.modules[joint].node;
+    if (equal != std::string::npos) {
+      const std::string file = word.substr(equal + 1);
+      if (std::ranges::find(files, file) != files.end()) {
+        throw BadInput("--trace: found " + sim::in_quotes(sim::shortened(file)) +
+                       " twice, expected a file for each table, recording and log");
+      }
+      files.push_back(file);
+      traces_[joint]->file = file;
+    }
+  }
+  bool has_head = false;
+  for (const auto& trace : traces_) {
+    if (!trace) {
+      continue;
+    }
+    if (!trace->file.empty()) {
+      trace->stream.open(trace->file);
+      if (!trace->stream) {
+        throw BadInput("--trace: found " + sim::in_quotes(sim::shortened(trace->file)) +
+                       ", expected a file that can be written");
+      }
+    }
+    if (!trace->file.empty() || !has_head) {
+      trace->out() << "node\ttick\tto_state_frame\twhole_tick\n";
+      has_head = has_head || trace->file.empty();
+    }
+  }
+}
+
+std::unique_ptr<sim::JointModule> HilModules::make(const sim::ModuleParts& parts) {
+  const unsigned joint = parts.joint;
+  if (!is_virtual(joint)) {
+    return nullptr;
+  }
+  sim::VirtualModuleOptions options;
+  if (consoles_[joint]) {
+    options.console = [node = parts.board.node](const std::string& line) {
+      std::cerr << "node " << unsigned{node} << ": " << line << '\n';
+    };
+  }
+  if (traces_[joint]) {
+    options.trace = [trace = traces_[joint].get()](const sim::TickCost& cost) {
+      trace->out() << trace->node << '\t' << cost.tick << '\t' << cost.to_state_frame << '\t' << cost.whole << '\n';
+    };
+  }
+  auto module = std::make_unique<sim::VirtualModule>(parts, *image_, std::move(options));
+  modules_[joint] = module.get();
+  if (debugger_ && debugger_->joint() == joint) {
+    debugger_->attach(module->chip());
+  }
+  return module;
+}
+
+std::string HilModules::kind() const {
+  std::string nodes;
+  for (unsigned joint = 0; joint < virtual_joints_.size(); ++joint) {
+    if (is_virtual(joint)) {
+      nodes += (nodes.empty() ? "" : ", ") + std::to_string(scenario_.modules[joint].node);
+    }
+  }
+  if (nodes.empty()) {
+    return "native";
+  }
+  return std::ranges::find(virtual_joints_, false) == virtual_joints_.end() ? "mcu" : "native and mcu (" + nodes + ")";
+}
+
+std::optional<HilModules::Costliest> HilModules::costliest_tick() const {
+  std::optional<Costliest> worst;
+  for (unsigned joint = 0; joint < modules_.size(); ++joint) {
+    if (modules_[joint] != nullptr &&
+        (!worst || modules_[joint]->worst_tick().to_state_frame > worst->cost.to_state_frame)) {
+      worst = {scenario_.modules[joint].node, modules_[joint]->worst_tick()};
+    }
+  }
+  return worst;
+}
+
+void HilModules::finish() {
+  for (const auto& trace : traces_) {
+    if (trace && !trace->file.empty()) {
+      trace->stream.close();
+      if (!trace->stream) {
+        throw std::runtime_error(trace->file + ": could not be written to its end");
+      }
+    }
+  }
+}
+
+}  // namespace proleg::tools

@@ -1,0 +1,72 @@
+#pragma once
+
+// What runs the modules of `proleg hil`: this computer or virtual chips, as the user asks.
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/loop/hardware_loop.hpp"
+#include "sim/mcu/module/virtual_module.hpp"
+
+namespace proleg::tools {
+
+class Debugger;
+
+struct ModuleOptions {
+  std::string modules = "native";
+  std::optional<std::string> image;
+  std::vector<std::string> consoles;
+  std::vector<std::string> traces;
+  std::optional<std::string> gdb;
+};
+
+void add_module_options(CLI::App& app, ModuleOptions& options);
+
+class HilModules {
+ public:
+  /// Reads the image if one is needed. Throws InputError and BadInput. scenario: must outlive this.
+  /// other_files: that the run writes, which no trace may be.
+  HilModules(const ModuleOptions& options, const sim::Scenario& scenario, const std::vector<std::string>& other_files);
+  ~HilModules();
+  HilModules(const HilModules&) = delete;
+  HilModules& operator=(const HilModules&) = delete;
+
+  /// For HardwareOptions::make_module; this must outlive the loop.
+  [[nodiscard]] std::unique_ptr<sim::JointModule> make(const sim::ModuleParts& parts);
+  [[nodiscard]] bool any_virtual() const { return image_.has_value(); }
+  /// "native", "mcu" or "native and mcu (1, 3)".
+  [[nodiscard]] std::string kind() const;
+  [[nodiscard]] const sim::FirmwareImage& image() const { return *image_; }
+
+  struct Costliest {
+    std::uint8_t node;
+    sim::TickCost cost;
+  };
+  /// Of all virtual modules; only while the loop lives.
+  [[nodiscard]] std::optional<Costliest> costliest_tick() const;
+  /// To be called when the run is over: ends the traces. Throws std::runtime_error if one could not be written.
+  void finish();
+
+ private:
+  struct Trace;
+
+  [[nodiscard]] bool is_virtual(unsigned joint) const { return virtual_joints_[joint]; }
+  [[nodiscard]] unsigned joint_of(const std::string& option, const std::string& word) const;
+  [[nodiscard]] unsigned virtual_joint_of(const std::string& option, const std::string& word) const;
+  void parse_modules(const std::string& word);
+  void open_traces(const std::vector<std::string>& words, const std::vector<std::string>& other_files);
+
+  const sim::Scenario& scenario_;
+  std::vector<bool> virtual_joints_;  ///< by joint
+  std::vector<bool> consoles_;
+  std::vector<std::unique_ptr<Trace>> traces_;  ///< by joint; null: none
+  std::optional<sim::FirmwareImage> image_;
+  std::vector<sim::VirtualModule*> modules_;  ///< by joint; null: native
+  std::unique_ptr<Debugger> debugger_;
+};
+
+}  // namespace proleg::tools

@@ -18,9 +18,7 @@ enum class TouchSensor : std::uint8_t {
 /// behind joint j. A link whose joint was never heard is not pressed.
 class Contacts {
  public:
-  /// Nothing is pressed.
-  constexpr Contacts() = default;
-  /// frames: the latest state frame of every joint, in kernel order.
+  /// frames: the latest state frame of every joint, in kernel order; or none, then nothing is pressed.
   explicit Contacts(std::span<const StateFrame> frames) : frames_(frames) {}
 
   [[nodiscard]] unsigned link_count() const { return static_cast<unsigned>(frames_.size()) + 1; }

@@ -89,7 +89,7 @@ void Kernel::set_up(unsigned joint) {
     slot_memory.place = {static_cast<std::uint8_t>(joint), configuration_.joint_count, slot.group,
                          configuration_.tick_period_us};
     slot_memory.channel = second_channel_[i].contains(joint) ? 1 : 0;
-    slot_memory.senses = slot.algorithm->senses_contacts();
+    slot_memory.sensed_joints = slot.algorithm->senses_contacts() ? configuration_.joint_count : std::uint8_t{0};
     listen_for(i, joint);
     if (slot.broadcasts()) {
       slot_memory.broadcast = &slot.algorithm->declaration();

@@ -7,12 +7,6 @@
 // The tick.
 
 namespace proleg {
-namespace {
-
-/// For those who do not sense any.
-constexpr Contacts no_contacts;
-
-}  // namespace
 
 void Kernel::set_contacts(unsigned joint, std::uint8_t contacts) {
   if (is_local(joint)) {
@@ -101,12 +95,11 @@ void Kernel::rejoin() {
   joining_ = false;
   flags_ = static_cast<std::uint8_t>(flags_ | StateFrame::holdover);
   for (JointMemory& joint : memory_) {
-    const Contacts contacts({heard_[0].data(), configuration_.joint_count});
     for (unsigned s = 0; s < slots_in_use_; ++s) {
       SlotMemory& slot = joint.slots[s];
       if (slot.active) {
-        const Surroundings surroundings{tick_, slot.place, slot.ahead, slot.behind,
-                                        slot.senses ? contacts : no_contacts};
+        const Contacts contacts({heard_[0].data(), slot.sensed_joints});
+        const Surroundings surroundings{tick_, slot.place, slot.ahead, slot.behind, contacts};
         configuration_.slots[s].algorithm->rejoin(surroundings, tuning(slot), current(slot).data());
       }
     }
@@ -119,11 +112,11 @@ void Kernel::set_flags(std::uint8_t flags) {
 }
 
 void Kernel::compute_next_state(JointMemory& joint) {
-  const Contacts contacts({heard_[0].data(), configuration_.joint_count});
   for (unsigned s = 0; s < slots_in_use_; ++s) {
     SlotMemory& slot = joint.slots[s];
     if (slot.active) {
-      const Surroundings surroundings{tick_, slot.place, slot.ahead, slot.behind, slot.senses ? contacts : no_contacts};
+      const Contacts contacts({heard_[0].data(), slot.sensed_joints});
+      const Surroundings surroundings{tick_, slot.place, slot.ahead, slot.behind, contacts};
       configuration_.slots[s].algorithm->advance(surroundings, tuning(slot), slot.values[tick_ & 1U].data(),
                                                  slot.values[(tick_ + 1) & 1U].data());
     }

@@ -73,7 +73,7 @@ struct SlotMemory {
   const Declaration* broadcast;  ///< what the slot sends; null if it sends nothing
   std::uint8_t channel;
   bool active;
-  bool senses;  ///< contacts
+  std::uint8_t sensed_joints;  ///< whose contacts the algorithm is given: all joints, or none
 };
 
 /// What the kernel keeps for a joint.
@@ -244,10 +244,10 @@ class Kernel {
   /// For each slot the joints of which it uses the second channel.
   std::array<JointMask, max_slots> second_channel_;
   std::array<JointMask, max_channels> listened_;  ///< joints on whose frames a local joint depends
-  /// For each slot the joints of other modules that are next to a local one.
-  std::array<JointMask, max_slots> beside_;
   std::array<JointMask, max_channels> arrived_;  ///< whose frames with the label tick_ are in heard_
   std::array<std::array<StateFrame, max_joints>, max_channels> heard_;
+  /// For each slot the joints of other modules that are next to a local one.
+  std::array<JointMask, max_slots> beside_;
 };
 
 /// A kernel with memory for its joints.

@@ -22,7 +22,7 @@ void print_costs(cortex_m::Cpu cpu) {
   constexpr unsigned ticks = 1000;
   const cortex_m::ElfImage image(cortex_m::core_image_file(cpu));
   cortex_m::Machine machine(image, cpu);
-  std::printf("%s, gcc -O2, instructions                  mean   worst\n",
+  std::printf("%s, gcc -O3, instructions                  mean   worst\n",
               cpu == cortex_m::Cpu::cortex_m4 ? "Cortex-M4" : "Cortex-M0");
   print("sine", cortex_m::measure_sine(machine));
   for (std::size_t i = 0; i < algorithm_count(); ++i) {

@@ -244,7 +244,7 @@ class Kernel {
   /// For each slot the joints of which it uses the second channel.
   std::array<JointMask, max_slots> second_channel_;
   std::array<JointMask, max_channels> listened_;  ///< joints on whose frames a local joint depends
-  std::array<JointMask, max_channels> arrived_;  ///< whose frames with the label tick_ are in heard_
+  std::array<JointMask, max_channels> arrived_;   ///< whose frames with the label tick_ are in heard_
   std::array<std::array<StateFrame, max_joints>, max_channels> heard_;
   /// For each slot the joints of other modules that are next to a local one.
   std::array<JointMask, max_slots> beside_;

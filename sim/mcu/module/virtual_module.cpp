@@ -187,8 +187,8 @@ std::uint32_t VirtualModule::analog_uv(unsigned channel) {
     constexpr std::int64_t codes = 4096;
     const std::int64_t angle = readings_().angle.value_or(0);
     const std::int64_t span = feedback_at_plus_90 - feedback_at_minus_90;
-    const std::int64_t uv = (feedback_at_minus_90 * 2 * quarter_turn + (angle + quarter_turn) * span) * highest_uv /
-                            (2 * quarter_turn * codes);
+    const std::int64_t part = (feedback_at_minus_90 * 2 * quarter_turn + (angle + quarter_turn) * span) / codes;
+    const std::int64_t uv = part * highest_uv / (2 * quarter_turn);
     return static_cast<std::uint32_t>(std::clamp<std::int64_t>(uv, 0, highest_uv));
   }
   return 0;

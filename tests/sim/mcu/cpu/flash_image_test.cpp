@@ -169,7 +169,8 @@ TEST_F(FlashImageTest, TheInitialStackPointerMustEndAMemory) {
   EXPECT_EQ(refusal_with_vectors(Cpu::ccm_start + Cpu::ccm_size, start), "");
   for (const std::uint32_t stack : {0U, Cpu::ram_start, Cpu::ram_start + Cpu::ram_size + 4, Cpu::ram_start + 1026,
                                     0xFFFF'FFFFU, Cpu::flash_start + 1024}) {
-    EXPECT_TRUE(refusal_with_vectors(stack, start).starts_with("found a vector table with the initial stack pointer "))
+    EXPECT_TRUE(refusal_with_vectors(stack, start)
+                    .starts_with("found a vector table at 0x8000000 with the initial stack pointer "))
         << stack;
   }
 }
@@ -178,7 +179,8 @@ TEST_F(FlashImageTest, TheStartAddressMustBeThumbCodeOfTheProgram) {
   const std::uint32_t stack = Cpu::ram_start + Cpu::ram_size;
   for (const std::uint32_t start :
        {0U, Cpu::flash_start + 0x200, Cpu::flash_start + Cpu::flash_size - 1, Cpu::ram_start + 1, 0xFFFF'FFFFU}) {
-    EXPECT_TRUE(refusal_with_vectors(stack, start).starts_with("found a vector table with the start address "))
+    EXPECT_TRUE(
+        refusal_with_vectors(stack, start).starts_with("found a vector table at 0x8000000 with the start address "))
         << start;
   }
 }

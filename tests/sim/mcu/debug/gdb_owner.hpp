@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -24,14 +25,20 @@ Resume run_under(GdbServer& server, Program& program, GdbProcess& gdb, int slice
     } else {
       reason = StopReason::interrupt;
       int slices = 0;
+      bool has_interrupted = false;
+      const auto start = std::chrono::steady_clock::now();
       // The user's control-C, when the program does not stop by itself.
       for (bool requested = false; !requested; requested = server.interrupt_requested()) {
         if (program.run_slice()) {
           reason = StopReason::breakpoint;
           break;
         }
-        if (++slices == slices_until_control_c) {
+        // A user's hand comes long after gdb has begun to wait, which a signal before that would end.
+        constexpr std::chrono::milliseconds reaction_time(500);
+        if (++slices >= slices_until_control_c && !has_interrupted &&
+            std::chrono::steady_clock::now() - start >= reaction_time) {
           gdb.interrupt();
+          has_interrupted = true;
         }
         if (gdb.ended()) {
           return Resume::interrupted;

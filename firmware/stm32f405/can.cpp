@@ -30,7 +30,7 @@ constexpr std::uint32_t of_mailbox(std::uint32_t bits_of_mailbox_0, unsigned mai
 }
 
 // Filter banks, all in 16-bit scale and into FIFO 0. Data frames with 11-bit identifiers pass, and of those what
-// concerns the module: in a robot of 20 joints it is spared nine of ten interrupts.
+// concerns the module: in a chain of 20 coupled joints two of the 19 state frames that the others send in a tick.
 constexpr unsigned node_bank = 0;        ///< masks: the module's own identifiers, everybody's heartbeat
 constexpr unsigned common_bank = 1;      ///< what is for all
 constexpr unsigned first_list_bank = 2;  ///< state frames that matter, four a bank

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "firmware/stm32f405/flash_layout.hpp"
 #include "firmware/stm32f405/registers/flash.hpp"
 #include "firmware/stm32f405/registers/timer.hpp"
 #include "firmware/stm32f405/watchdog.hpp"
@@ -11,7 +12,6 @@ namespace {
 
 using namespace flash_interface;
 
-constexpr std::uintptr_t first_address = 0x0800'4000;
 constexpr std::uint32_t first_sector = 1;
 
 /// Twice what the data sheet has as the longest.
@@ -64,7 +64,9 @@ void forget_cached_data() {
   acr.set(acr_dcen);
 }
 
-constexpr std::uintptr_t address_of(unsigned sector) { return first_address + sector * SettingsFlash::sector_size; }
+constexpr std::uintptr_t address_of(unsigned sector) {
+  return flash_layout::settings + sector * SettingsFlash::sector_size;
+}
 
 }  // namespace
 

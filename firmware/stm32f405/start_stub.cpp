@@ -3,13 +3,14 @@
 
 #include <cstdint>
 
+#include "firmware/stm32f405/flash_layout.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
 
 namespace proleg::stm32f405 {
 namespace {
 
-constexpr std::uint32_t slot_a = 0x0802'0000;
-constexpr std::uint32_t slot_size = 384 * 1024;
+using flash_layout::slot_a;
+using flash_layout::slot_size;
 constexpr std::uint32_t ram = 0x2000'0000;
 constexpr std::uint32_t ram_size = 128 * 1024;
 

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 
+#include "firmware/stm32f405/flash_layout.hpp"
+
 namespace proleg::sim {
 namespace {
 
 constexpr const char* record_symbol = "proleg_tick_record";
-
-/// Where the image proper is linked: slot A (docs/board.md), behind the start stub.
-constexpr std::uint32_t slot_a = 0x0802'0000;
 
 }  // namespace
 
@@ -19,7 +18,7 @@ FirmwareImage::FirmwareImage(const std::filesystem::path& file) : file_(file), f
     throw ElfError(file.string() + ": found no symbol " + record_symbol +
                    ", expected the firmware of a joint module for this chip (firmware/stm32f405)");
   }
-  flash_.require_vector_table(slot_a);
+  flash_.require_vector_table(stm32f405::flash_layout::slot_a);  // behind the start stub
   tick_record_ = flash_.require_word(symbol->address);
 }
 

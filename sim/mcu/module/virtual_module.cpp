@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "firmware/module/board_record.hpp"
+#include "firmware/stm32f405/flash_layout.hpp"
 #include "firmware/stm32f405/pins.hpp"
 #include "shared/canopen/messages.hpp"
 #include "shared/kernel/servo_command.hpp"
@@ -19,7 +20,6 @@ namespace board = stm32f405::board;
 constexpr unsigned servo_channel = 1;  ///< of TIM2
 constexpr std::uint32_t microvolts_per_ma = 1'000;
 constexpr std::uint32_t highest_uv = board::vdda_millivolt * 1'000;
-constexpr std::uint32_t board_record_address = 0x0800'4000;  ///< first record of flash sector 1
 
 // What a feedback potentiometer reads, 12 bits.
 constexpr std::uint16_t feedback_at_minus_90 = 410;
@@ -84,7 +84,7 @@ VirtualModule::VirtualModule(const ModuleParts& parts, const FirmwareImage& imag
   for (const ElfImage::Segment& segment : image.flash().elf().segments()) {
     chip_.write(segment.load_address, segment.bytes);
   }
-  chip_.write(board_record_address, firmware::encode(board_record(parts), 1));
+  chip_.write(stm32f405::flash_layout::settings, firmware::encode(board_record(parts), 1));
   chip_.set_transmit_watch([this](std::uint16_t identifier, std::uint64_t instructions) {
     if (identifier == state_frame_) {
       state_frame_instructions_ = instructions;

@@ -17,7 +17,7 @@ struct Difference {
     servo_command,
     last_servo_command,  ///< as recorded beside the set-point
     internal_value,
-    missed_tick,  ///< a module computed nothing though nothing had stopped it; it has no found and expected value
+    missed_tick,  ///< a module was gone at its end, and the run had not stopped it; no found and expected value
   };
   Kind kind;
   std::uint32_t tick;

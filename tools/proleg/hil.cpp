@@ -74,21 +74,12 @@ sim::Restart parse_reset(const std::string& word, const ScenarioRun& run) {
     throw sim::InputError("--reset", 0, "tick " + std::to_string(*tick),
                           "a tick of the run, 1 to " + std::to_string(run.ticks - 1));
   }
-  const std::vector<sim::ModulePlace>& modules = run.scenario.modules;
-  for (unsigned joint = 0; joint < modules.size(); ++joint) {
-    if (modules[joint].node == *node) {
-      if (joint == sim::HardwareLoop::sync_producer) {
-        throw sim::InputError("--reset", 0, "node " + std::to_string(*node) + ", which produces the SYNC",
-                              "another one: without SYNC the robot stops");
-      }
-      return {*tick, joint};
-    }
+  const unsigned joint = joint_of_node(run.scenario, node, "--reset", std::to_string(*node));
+  if (joint == sim::HardwareLoop::sync_producer) {
+    throw sim::InputError("--reset", 0, "node " + std::to_string(*node) + ", which produces the SYNC",
+                          "another one: without SYNC the robot stops");
   }
-  std::string nodes;
-  for (const sim::ModulePlace& module : modules) {
-    nodes += (nodes.empty() ? "" : ", ") + std::to_string(module.node);
-  }
-  throw sim::InputError("--reset", 0, "node " + std::to_string(*node), "one of " + nodes);
+  return {*tick, joint};
 }
 
 std::vector<sim::Restart> parse_resets(const Options& options, const ScenarioRun& run) {

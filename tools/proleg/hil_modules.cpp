@@ -8,6 +8,7 @@
 #include "sim/scenario/text.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/debugger.hpp"
+#include "tools/proleg/scenario_run.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -123,15 +124,7 @@ void HilModules::parse_modules(const std::string& word) {
 }
 
 unsigned HilModules::joint_of(const std::string& option, const std::string& word) const {
-  const auto node = sim::parse_whole<std::uint32_t>(word);
-  std::string nodes;
-  for (unsigned joint = 0; joint < scenario_.modules.size(); ++joint) {
-    if (node && scenario_.modules[joint].node == *node) {
-      return joint;
-    }
-    nodes += (nodes.empty() ? "" : ", ") + std::to_string(scenario_.modules[joint].node);
-  }
-  throw sim::InputError(option, 0, "node " + sim::in_quotes(sim::shortened(word)), "one of " + nodes);
+  return joint_of_node(scenario_, sim::parse_whole<std::uint32_t>(word), option, sim::in_quotes(sim::shortened(word)));
 }
 
 unsigned HilModules::virtual_joint_of(const std::string& option, const std::string& word) const {

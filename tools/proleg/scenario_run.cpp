@@ -80,6 +80,18 @@ ScenarioRun prepare_run(const ScenarioOptions& options) {
   return run;
 }
 
+unsigned joint_of_node(const sim::Scenario& scenario, std::optional<std::uint32_t> node, const std::string& option,
+                       const std::string& found) {
+  std::string nodes;
+  for (unsigned joint = 0; joint < scenario.modules.size(); ++joint) {
+    if (node && scenario.modules[joint].node == *node) {
+      return joint;
+    }
+    nodes += (nodes.empty() ? "" : ", ") + std::to_string(scenario.modules[joint].node);
+  }
+  throw sim::InputError(option, 0, "node " + found, "one of " + nodes);
+}
+
 void print_setup(const sim::Scenario& scenario) {
   for (const std::string& remark : scenario.remarks) {
     std::cerr << remark << '\n';

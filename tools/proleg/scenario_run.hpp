@@ -37,6 +37,10 @@ struct ScenarioRun {
 /// Throws InputError.
 [[nodiscard]] ScenarioRun prepare_run(const ScenarioOptions& options);
 
+/// The joint whose module has this node id. Throws InputError if there is none; option, found: what the user gave.
+[[nodiscard]] unsigned joint_of_node(const sim::Scenario& scenario, std::optional<std::uint32_t> node,
+                                     const std::string& option, const std::string& found);
+
 /// Every parameter of every joint, as the run starts with it, and the remarks on the files; on standard error.
 void print_setup(const sim::Scenario& scenario);
 

@@ -1,17 +1,15 @@
 #include "sim/mcu/chip/stm32f405.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 #include <vector>
 
-#include "shared/fixed/random.hpp"
 #include "sim/mcu/chip/oscillator.hpp"
+#include "sim/mcu/chip/pins.hpp"
 #include "sim/mcu/peripherals/adc.hpp"
 #include "sim/mcu/peripherals/bxcan.hpp"
 #include "sim/mcu/peripherals/chip_identity.hpp"
 #include "sim/mcu/peripherals/flash_interface.hpp"
-#include "sim/mcu/peripherals/gpio.hpp"
 #include "sim/mcu/peripherals/iwdg.hpp"
 #include "sim/mcu/peripherals/pwr.hpp"
 #include "sim/mcu/peripherals/rcc.hpp"
@@ -25,21 +23,6 @@ namespace {
 constexpr std::uint32_t first_peripheral = 0x4000'0000;
 constexpr std::uint32_t block_bytes = 0x400;  ///< no two peripherals share one
 constexpr std::uint32_t block_count = 0x8'0000 / block_bytes;
-
-/// Alternate functions of the pins (DS8626, table 9).
-constexpr unsigned timer_2_function = 1;
-constexpr unsigned can_function = 9;
-struct Pin {
-  unsigned port;
-  unsigned number;
-};
-/// Where each output of TIM2 can reach a pin.
-constexpr std::array<std::array<Pin, 3>, Timer::channel_count> timer_2_pins{{{{{0, 0}, {0, 5}, {0, 15}}},
-                                                                             {{{0, 1}, {1, 3}, {1, 3}}},
-                                                                             {{{0, 2}, {1, 10}, {1, 10}}},
-                                                                             {{{0, 3}, {1, 11}, {1, 11}}}}};
-/// Receive and transmit of CAN1.
-constexpr std::array<std::array<Pin, 2>, 3> can_pins{{{{{0, 11}, {0, 12}}}, {{{1, 8}, {1, 9}}}, {{{3, 0}, {3, 1}}}}};
 
 }  // namespace
 
@@ -58,13 +41,13 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
         timer_5_(*this, 5),
         usart_(*this, board),
         adc_(*this, board),
-        can_(*this, bus, [this](LocalTime time) { return oscillator_.when(time); }) {
-    for (const char port : {'A', 'B', 'C', 'D', 'E', 'F', 'G', 'H', 'I'}) {
-      ports_.push_back(std::make_unique<Gpio>(*this, board, port));
-      place(*ports_.back());
+        can_(*this, bus, [this](LocalTime time) { return oscillator_.when(time); }),
+        pins_(*this, board, timer_2_) {
+    peripherals_ = {&iwdg_, &pwr_, &flash_, &rcc_, &syscfg_, &timer_2_, &timer_5_, &usart_, &adc_, &can_};
+    for (const auto& port : pins_.ports()) {
+      peripherals_.push_back(port.get());
     }
-    for (Peripheral* peripheral : std::initializer_list<Peripheral*>{&iwdg_, &pwr_, &flash_, &rcc_, &syscfg_, &timer_2_,
-                                                                     &timer_5_, &usart_, &adc_, &can_}) {
+    for (Peripheral* peripheral : peripherals_) {
       place(*peripheral);
     }
     timed_ = {&rcc_, &flash_, &iwdg_, &timer_2_, &timer_5_, &usart_, &adc_, &can_};
@@ -77,7 +60,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     }
     on_ = true;
     stands_still_ = false;
-    forget_memory();
+    cpu_.lose_memory(settings_.seed + ++starts_);
     oscillator_.start(now);
     anchor_time_ = 0;
     anchor_instructions_ = cpu_.instructions();
@@ -130,18 +113,6 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     }
   }
 
-  [[nodiscard]] std::optional<LocalTime> pulse_time(unsigned channel) {
-    const auto& pins = timer_2_pins[channel - 1];
-    const bool reaches_pin =
-        std::ranges::any_of(pins, [this](const Pin& pin) { return has_function(pin, timer_2_function); });
-    return reaches_pin ? timer_2_.high_time(channel) : std::nullopt;
-  }
-
-  void watch_pin(char port, unsigned number, PinWatch watch) {
-    watched_ = WatchedPin{{static_cast<unsigned>(port - 'A'), number}, std::move(watch)};
-    watched_->high = level(watched_->pin);
-  }
-
   [[nodiscard]] std::optional<ChipEvent> take_event() {
     if (events_.empty()) {
       return std::nullopt;
@@ -164,7 +135,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   Usart usart_;
   Adc adc_;
   BxCan can_;
-  std::vector<std::unique_ptr<Gpio>> ports_;
+  Pins pins_;
   TransmitWatch transmit_watch_;
   DebugHook debug_hook_;
 
@@ -193,12 +164,9 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   [[nodiscard]] LocalTime next_internal_event() const {
     if (!next_peripheral_event_) {
-      LocalTime next = never_on_chip;
+      LocalTime next = pins_.next_edge();
       for (const Peripheral* peripheral : timed_) {
         next = std::min(next, peripheral->next_event());
-      }
-      if (watched_) {
-        next = std::min(next, watched_->next_edge);
       }
       next_peripheral_event_ = next;
     }
@@ -221,7 +189,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
         guard([&] { peripheral->advance(); });
       }
     }
-    look_at_pin();
+    pins_.look();
     forget_next_events();
     if (now() != time) {  // the core has another clock now
       pass_to(time);
@@ -280,32 +248,13 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   // Resets.
 
   void start(ResetCause cause) {
-    for (const auto& port : ports_) {
-      port->reset();
-    }
-    for (Peripheral* peripheral : std::initializer_list<Peripheral*>{&iwdg_, &pwr_, &flash_, &rcc_, &syscfg_, &timer_2_,
-                                                                     &timer_5_, &usart_, &adc_, &can_}) {
+    for (Peripheral* peripheral : peripherals_) {
       peripheral->reset();
     }
     rcc_.note_start(cause);
     cpu_.reset();
-    if (watched_) {
-      watched_->next_edge = never_on_chip;  // was on the clock of before
-    }
-    look_at_pin();
+    pins_.reset();
     forget_next_events();
-  }
-
-  /// RAM holds what the program of a chip that was just switched on must not rely on.
-  void forget_memory() {
-    Pcg32 noise(settings_.seed, ++starts_);
-    std::vector<std::uint8_t> bytes(Cpu::ram_size);
-    for (std::size_t i = 0; i < bytes.size(); i += sizeof(std::uint32_t)) {
-      const std::uint32_t word = noise.next();
-      std::memcpy(&bytes[i], &word, sizeof(word));
-    }
-    cpu_.write(Cpu::ram_start, bytes);
-    cpu_.write(Cpu::ccm_start, std::span(bytes).first(Cpu::ccm_size));
   }
 
   void restart() {
@@ -313,11 +262,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     pass_to(now());
     cut_flash();
     start(cause);
-    ChipEvent event;
-    event.kind = ChipEvent::Kind::reset;
-    event.time = oscillator_.when(now());
-    event.cause = cause;
-    events_.push_back(std::move(event));
+    new_event(ChipEvent::Kind::reset).cause = cause;
   }
 
   void cut_flash() {
@@ -369,9 +314,9 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       if (peripheral == &can_) {
         watch_can(offset, value);
       }
-      look_at_pin();
+      pins_.look();
       peripheral->write(offset, value);
-      look_at_pin();
+      pins_.look();
       forget_next_events();
       if (now() != time) {  // the core has another clock now
         pass_to(time);
@@ -379,9 +324,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
         cpu_.pause();
       }
       shorten_run(peripheral->next_event());
-      if (watched_) {
-        shorten_run(watched_->next_edge);
-      }
+      shorten_run(pins_.next_edge());
     });
     if (flash_.busy_until() > now()) {
       cpu_.pause();
@@ -416,70 +359,14 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     constexpr std::uint32_t mailbox_bytes = 0x10;
     constexpr std::uint32_t mailboxes = 3;
     constexpr std::uint32_t txrq = 1;
-    if (offset == mcr && (value & inrq) == 0) {
-      require_can_pins();
+    if (offset == mcr && (value & inrq) == 0 && !pins_.connect_can()) {
+      throw UnmodelledAccess("CAN1_MCR: the controller is to join the bus, but no pins are connected to it (AF9)");
     }
     const std::uint32_t place = offset - first_mailbox;
     if (transmit_watch_ && offset >= first_mailbox && place < mailboxes * mailbox_bytes && place % mailbox_bytes == 0 &&
         (value & txrq) != 0) {
       transmit_watch_(static_cast<std::uint16_t>(value >> 21U), cpu_.instructions());
     }
-  }
-
-  [[nodiscard]] bool has_function(const Pin& pin, unsigned function) const {
-    const Gpio& port = *ports_[pin.port];
-    return port.mode(pin.number) == Gpio::Mode::alternate && port.alternate_function(pin.number) == function;
-  }
-
-  void require_can_pins() const {
-    const bool connected = std::ranges::any_of(can_pins, [this](const auto& pins) {
-      return std::ranges::all_of(pins, [this](const Pin& pin) { return has_function(pin, can_function); });
-    });
-    if (!connected) {
-      throw UnmodelledAccess("CAN1_MCR: the controller is to join the bus, but no pins are connected to it (AF9)");
-    }
-  }
-
-  // The watched pin.
-
-  struct WatchedPin {
-    Pin pin;
-    PinWatch watch;
-    bool high = false;
-    LocalTime next_edge = never_on_chip;  ///< or when to look again, if no register is written before
-  };
-
-  /// The output of TIM2, 1 to 4, that drives a pin; 0: none.
-  [[nodiscard]] unsigned timer_output_at(const Pin& pin) const {
-    for (unsigned channel = 1; channel <= timer_2_pins.size() && has_function(pin, timer_2_function); ++channel) {
-      const auto reaches = [&pin](const Pin& other) { return other.port == pin.port && other.number == pin.number; };
-      if (std::ranges::any_of(timer_2_pins[channel - 1], reaches)) {
-        return channel;
-      }
-    }
-    return 0;
-  }
-
-  [[nodiscard]] bool level(const Pin& pin) {
-    if (const unsigned channel = timer_output_at(pin); channel != 0) {
-      return timer_2_.output(channel).high;
-    }
-    Gpio& port = *ports_[pin.port];
-    return port.mode(pin.number) != Gpio::Mode::alternate && port.level(pin.number);
-  }
-
-  /// Two edges are never due at once: it is looked at each of them.
-  void look_at_pin() {
-    if (!watched_) {
-      return;
-    }
-    const bool high = level(watched_->pin);
-    if (high != watched_->high) {
-      watched_->high = high;
-      watched_->watch(oscillator_.when(std::min(watched_->next_edge, now())), high);
-    }
-    const unsigned channel = timer_output_at(watched_->pin);
-    watched_->next_edge = channel != 0 ? timer_2_.next_edge(channel) : never_on_chip;
   }
 
   // FlashMemory.
@@ -522,24 +409,25 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       return;
     }
     stands_still_ = true;
-    ChipEvent event;
-    event.kind = ChipEvent::Kind::unmodelled;
-    event.time = oscillator_.when(now());
+    ChipEvent& event = new_event(ChipEvent::Kind::unmodelled);
     event.text = cpu_.halt_reason();
     for (unsigned number = 0; number < event.registers.size(); ++number) {
       event.registers[number] = cpu_.core_register(number);
     }
-    events_.push_back(std::move(event));
+  }
+
+  ChipEvent& new_event(ChipEvent::Kind kind) {
+    ChipEvent event;
+    event.kind = kind;
+    event.time = oscillator_.when(now());
+    return events_.emplace_back(std::move(event));
   }
 
   void note_faults() {
     for (CpuFault& fault : cpu_.take_faults()) {
-      ChipEvent event;
-      event.kind = fault.locked_up ? ChipEvent::Kind::locked_up : ChipEvent::Kind::fault;
-      event.time = oscillator_.when(now());
+      ChipEvent& event = new_event(fault.locked_up ? ChipEvent::Kind::locked_up : ChipEvent::Kind::fault);
       event.text = std::move(fault.cause);
       std::ranges::copy(fault.registers, event.registers.begin());
-      events_.push_back(std::move(event));
       if (debug_hook_) {
         take_debugger(DebugEvent::fault);
       }
@@ -548,6 +436,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   static constexpr unsigned program_counter = 15;
 
+  std::vector<Peripheral*> peripherals_;
   std::vector<Peripheral*> timed_;  ///< those with events of their own
   std::array<Peripheral*, block_count> blocks_{};
   mutable std::optional<LocalTime> next_peripheral_event_;  ///< nothing: to be asked for
@@ -556,7 +445,6 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   std::uint64_t anchor_instructions_ = 0;
   LocalTime run_end_ = 0;  ///< while instructions are executed
   std::optional<ResetCause> reset_cause_;
-  std::optional<WatchedPin> watched_;
   std::uint64_t cuts_ = 0;
   std::uint64_t starts_ = 0;
   bool on_ = false;
@@ -578,13 +466,16 @@ void Stm32f405::read(std::uint32_t address, std::span<std::uint8_t> bytes) const
 void Stm32f405::power_on(BusTime now) { implementation_->power_on(now); }
 BusTime Stm32f405::next_event() const { return implementation_->next_event(); }
 void Stm32f405::advance_to(BusTime now, BusTime quiet_until) { implementation_->advance_to(now, quiet_until); }
-std::optional<LocalTime> Stm32f405::pulse_time(unsigned channel) const { return implementation_->pulse_time(channel); }
+std::optional<LocalTime> Stm32f405::pulse_time(unsigned channel) const {
+  return implementation_->pins_.pulse_time(channel);
+}
 void Stm32f405::set_pin_watch(char port, unsigned number, PinWatch watch) {
-  implementation_->watch_pin(port, number, std::move(watch));
+  implementation_->pins_.watch(port, number, [this, watch = std::move(watch)](LocalTime edge, bool high) {
+    watch(implementation_->oscillator_.when(edge), high);
+  });
 }
 std::size_t Stm32f405::controller() const { return implementation_->can_.controller(); }
 std::uint64_t Stm32f405::instructions() const { return implementation_->cpu_.instructions(); }
-void Stm32f405::serial_input(std::uint8_t byte) { implementation_->usart_.receive(byte); }
 void Stm32f405::set_transmit_watch(TransmitWatch watch) { implementation_->transmit_watch_ = std::move(watch); }
 void Stm32f405::set_debug_hook(DebugHook hook) { implementation_->debug_hook_ = std::move(hook); }
 Cpu& Stm32f405::cpu() { return implementation_->cpu_; }

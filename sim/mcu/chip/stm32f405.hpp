@@ -73,8 +73,6 @@ class Stm32f405 {
   [[nodiscard]] std::size_t controller() const;
   /// Executed since the chip was made.
   [[nodiscard]] std::uint64_t instructions() const;
-  /// A byte arrives at USART2.
-  void serial_input(std::uint8_t byte);
 
   /// Called when the program asks for a frame to be sent, with the instructions executed by then.
   using TransmitWatch = std::function<void(std::uint16_t identifier, std::uint64_t instructions)>;

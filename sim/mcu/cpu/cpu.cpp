@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "shared/fixed/random.hpp"
 #include "sim/mcu/cpu/engine.hpp"
 #include "sim/mcu/cpu/exceptions.hpp"
+#include "sim/mcu/cpu/hexadecimal.hpp"
 #include "sim/mcu/cpu/nvic.hpp"
 #include "sim/mcu/cpu/system_control.hpp"
 
@@ -21,20 +22,9 @@ constexpr std::uint32_t peripherals_start = 0x4000'0000;
 constexpr std::uint32_t ram_bits_start = 0x2200'0000;
 constexpr std::uint32_t ram_bits_end = ram_bits_start + Cpu::ram_size * 32;
 
-std::string hexadecimal(std::uint32_t value) {
-  std::ostringstream text;
-  text << "0x" << std::hex << std::uppercase << value;
-  return text.str();
-}
-
-/// What RAM holds at power-on: always the same, and useless.
-void fill_with_noise(std::span<std::uint8_t> bytes) {
-  std::uint32_t state = 0x2545'F491;
+void fill_with_noise(std::span<std::uint8_t> bytes, Pcg32& noise) {
   for (std::uint8_t& byte : bytes) {
-    state ^= state << 13U;
-    state ^= state >> 17U;
-    state ^= state << 5U;
-    byte = static_cast<std::uint8_t>(state >> 24U);
+    byte = static_cast<std::uint8_t>(noise.next());
   }
 }
 
@@ -47,11 +37,16 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
         engine_(*this),
         system_control_(*this, nvic_),
         exceptions_(engine_, nvic_, system_control_) {
-    fill_with_noise({engine_.ram(ram_start, ram_size), ram_size});
-    fill_with_noise({engine_.ram(ccm_start, ccm_size), ccm_size});
+    lose_memory(0);
     const std::vector<std::uint8_t> erased(flash_size, 0xFF);
     static_cast<void>(engine_.write_memory(flash_start, erased));
     static_cast<void>(engine_.write_memory(system_memory_start, std::span(erased).first(system_memory_size)));
+  }
+
+  void lose_memory(std::uint64_t seed) {
+    Pcg32 noise(seed, 0);
+    fill_with_noise({engine_.ram(ram_start, ram_size), ram_size}, noise);
+    fill_with_noise({engine_.ram(ccm_start, ccm_size), ccm_size}, noise);
   }
 
   void restart() {
@@ -376,6 +371,8 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
 Cpu::Cpu(CpuSurroundings& surroundings) : implementation_(std::make_unique<Implementation>(surroundings)) {}
 
 Cpu::~Cpu() = default;
+
+void Cpu::lose_memory(std::uint64_t seed) { implementation_->lose_memory(seed); }
 
 void Cpu::reset() { implementation_->restart(); }
 

@@ -74,6 +74,9 @@ class Cpu {
   Cpu(const Cpu&) = delete;
   Cpu& operator=(const Cpu&) = delete;
 
+  /// The power was off: RAM and core-coupled memory hold noise, which follows from the seed. Before the next reset().
+  void lose_memory(std::uint64_t seed);
+
   /// Starts from reset: stack pointer and first address from the vector table at the start of the flash. RAM keeps its
   /// contents. A vector table that leads nowhere is a fault at the first run().
   void reset();

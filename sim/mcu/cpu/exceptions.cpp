@@ -1,8 +1,9 @@
 #include "sim/mcu/cpu/exceptions.hpp"
 
 #include <cstring>
-#include <sstream>
 #include <utility>
+
+#include "sim/mcu/cpu/hexadecimal.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -37,12 +38,6 @@ constexpr std::uint32_t unaligned = 1U << 24U;
 constexpr std::uint32_t vecttbl = 1U << 1U;
 constexpr std::uint32_t forced = 1U << 30U;
 constexpr std::uint32_t debugevt = 1U << 31U;
-
-std::string hexadecimal(std::uint32_t value) {
-  std::ostringstream text;
-  text << "0x" << std::hex << std::uppercase << value;
-  return text.str();
-}
 
 bool is_execute_never(std::uint32_t address) {
   return (address >= 0x4000'0000 && address < 0x6000'0000) || address >= 0xA000'0000;

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <string>
 
 #include "sim/mcu/cpu/cpu.hpp"
+#include "sim/mcu/cpu/hexadecimal.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -23,12 +23,6 @@ constexpr std::uint32_t arch_v6_m = 11;
 constexpr std::uint32_t arch_v6s_m = 12;
 constexpr std::uint32_t arch_v7e_m = 13;
 constexpr std::uint32_t vfp_args_in_fpu = 1;
-
-std::string hexadecimal(std::uint32_t value) {
-  std::ostringstream text;
-  text << "0x" << std::hex << std::uppercase << value;
-  return text.str();
-}
 
 [[noreturn]] void refuse(const ElfImage& image, const std::string& found, const std::string& expected) {
   throw ElfError(image.file().string() + ": found " + found + ", expected " + expected);

@@ -88,10 +88,10 @@ std::string Adc::register_name(std::uint32_t offset) const {
         return "ADC_" + std::string(candidate.name);
       }
     }
-    return "ADC at offset " + hex(offset);
+    return "ADC at offset " + hexadecimal(offset);
   }
   if (offset >= adc_size) {
-    return "ADC" + std::to_string(offset / adc_size + 1) + " at offset " + hex(offset % adc_size);
+    return "ADC" + std::to_string(offset / adc_size + 1) + " at offset " + hexadecimal(offset % adc_size);
   }
   return RegisterBlock::register_name(offset);
 }

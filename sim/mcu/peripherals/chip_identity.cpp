@@ -64,10 +64,10 @@ std::array<std::uint8_t, system_memory_bytes> system_memory(const std::array<std
 std::string describe_address(std::uint32_t address) {
   for (const Block& block : memory_map) {
     if (address - block.base < block.size) {
-      return std::string(block.name) + " at offset " + hex(address - block.base);
+      return std::string(block.name) + " at offset " + hexadecimal(address - block.base);
     }
   }
-  return hex(address);
+  return hexadecimal(address);
 }
 
 }  // namespace proleg::sim

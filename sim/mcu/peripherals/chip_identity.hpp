@@ -1,6 +1,6 @@
 #pragma once
 
-// What tells one chip from another, in system memory and in the debug unit (RM0090, section 39 and 38.6.1; DS8626).
+// What tells one chip from another, in system memory (RM0090, section 39; DS8626).
 
 #include <array>
 #include <cstdint>
@@ -9,10 +9,6 @@
 #include "sim/mcu/peripherals/adc.hpp"
 
 namespace proleg::sim {
-
-/// DBGMCU_IDCODE: DEV_ID 0x413, REV_ID 0x1007. The four bits between them, which the manual reserves, read as 6.
-inline constexpr std::uint32_t dbgmcu_idcode_address = 0xE004'2000;
-inline constexpr std::uint32_t dbgmcu_idcode = 0x1007'6413;
 
 // Converted at 3.3 V when the chip was made.
 inline constexpr std::uint32_t vrefin_cal_address = 0x1FFF'7A2A;

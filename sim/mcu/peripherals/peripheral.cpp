@@ -5,7 +5,7 @@
 namespace proleg::sim {
 
 std::string Peripheral::register_name(std::uint32_t offset) const {
-  return std::string(name()) + " at offset " + hex(offset);
+  return std::string(name()) + " at offset " + hexadecimal(offset);
 }
 
 }  // namespace proleg::sim

@@ -2,16 +2,6 @@
 
 namespace proleg::sim {
 
-std::string hex(std::uint32_t value) {
-  constexpr std::string_view digits = "0123456789ABCDEF";
-  std::string text;
-  do {
-    text.insert(text.begin(), digits[value % 16]);
-    value /= 16;
-  } while (value != 0);
-  return "0x" + text;
-}
-
 std::string RegisterBlock::register_name(std::uint32_t offset) const {
   for (const RegisterName& candidate : registers_) {
     if (candidate.offset == offset) {
@@ -25,14 +15,14 @@ namespace {
 
 /// The offset behind the name of a register; the name of an offset without register has it already.
 std::string place(const std::string& name, std::uint32_t offset) {
-  return name.find(" at offset ") == std::string::npos ? " at offset " + hex(offset) : std::string();
+  return name.find(" at offset ") == std::string::npos ? " at offset " + hexadecimal(offset) : std::string();
 }
 
 }  // namespace
 
 void RegisterBlock::refuse_write(std::uint32_t offset, std::uint32_t value, std::string_view why) const {
   const std::string register_ = register_name(offset);
-  throw UnmodelledAccess(register_ + " = " + hex(value) + place(register_, offset) + ": " + std::string(why));
+  throw UnmodelledAccess(register_ + " = " + hexadecimal(value) + place(register_, offset) + ": " + std::string(why));
 }
 
 void RegisterBlock::refuse_read(std::uint32_t offset, std::string_view why) const {

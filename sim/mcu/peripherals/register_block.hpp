@@ -7,12 +7,10 @@
 #include <string>
 #include <string_view>
 
+#include "sim/mcu/cpu/hexadecimal.hpp"
 #include "sim/mcu/peripherals/peripheral.hpp"
 
 namespace proleg::sim {
-
-/// "0x4C".
-[[nodiscard]] std::string hex(std::uint32_t value);
 
 [[nodiscard]] constexpr bool bit(std::uint32_t value, unsigned number) { return ((value >> number) & 1U) != 0; }
 /// `width` bits from bit `lowest` on.

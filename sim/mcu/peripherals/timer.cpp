@@ -294,7 +294,7 @@ void Timer::write(std::uint32_t offset, std::uint32_t value) {
       break;
     case cnt:
       if (value > arr_) {
-        refuse_write(offset, value, "above ARR (" + hex(arr_) + "): the counter would go through all 32 bits");
+        refuse_write(offset, value, "above ARR (" + hexadecimal(arr_) + "): the counter would go through all 32 bits");
       }
       count_ = value;
       break;
@@ -327,9 +327,9 @@ void Timer::write(std::uint32_t offset, std::uint32_t value) {
 void Timer::write_cr1(std::uint32_t value) {
   refuse_bits(cr1, value, cr1_dir | cr1_cms, "only up-counting is modelled");
   if ((value & cr1_cen) != 0 && count_ > arr_) {
-    refuse_write(
-        cr1, value,
-        "CNT (" + hex(count_) + ") is above ARR (" + hex(arr_) + "): the counter would go through all 32 bits");
+    refuse_write(cr1, value,
+                 "CNT (" + hexadecimal(count_) + ") is above ARR (" + hexadecimal(arr_) +
+                     "): the counter would go through all 32 bits");
   }
   if ((value & cr1_arpe) == 0 && arr_ != arr_preload_) {
     cr1_ &= ~cr1_arpe;
@@ -395,7 +395,8 @@ void Timer::set_arr(std::uint32_t value) {
     return;
   }
   if (enabled() && value < count_) {
-    refuse_write(arr, value, "below the counter (" + hex(count_) + ") without ARPE: it would go through all 32 bits");
+    refuse_write(arr, value,
+                 "below the counter (" + hexadecimal(count_) + ") without ARPE: it would go through all 32 bits");
   }
   const bool counted = counts();
   arr_ = value;

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sim/mcu/peripherals/gpio.hpp"
+#include "sim/mcu/peripherals/timer.hpp"
+
+namespace proleg::sim {
+
+/// The pins of the chip, and which peripherals reach them by their alternate functions (DS8626, table 9): TIM2 and
+/// CAN1.
+class Pins {
+ public:
+  /// All must outlive it.
+  Pins(ChipServices& chip, BoardSignals& board, Timer& timer_2);
+
+  [[nodiscard]] const std::vector<std::unique_ptr<Gpio>>& ports() const { return ports_; }
+
+  /// Whether a pair of pins, receive and transmit, is CAN1's.
+  [[nodiscard]] bool connect_can() const;
+  /// Of an output of TIM2 (1 to 4) that reaches a pin, as Timer::high_time(); nothing if it reaches none.
+  [[nodiscard]] std::optional<LocalTime> pulse_time(unsigned channel);
+
+  /// Called when the level of the watched pin changes, with the time of the edge: of one that is a plain input or
+  /// output, or an output of TIM2. One of another peripheral counts as low.
+  using Watch = std::function<void(LocalTime edge, bool high)>;
+  void watch(char port, unsigned number, Watch watch);
+  /// To be called at next_edge(), and before and after each write of a register: two edges are never due at once.
+  void look();
+  /// When the watched pin may change by itself; never_on_chip if nothing is watched.
+  [[nodiscard]] LocalTime next_edge() const { return watched_ ? watched_->next_edge : never_on_chip; }
+  /// After a reset of the chip: time and timers start anew.
+  void reset();
+
+ private:
+  struct Pin {
+    unsigned port;
+    unsigned number;
+    friend bool operator==(const Pin&, const Pin&) = default;
+  };
+  struct Watched {
+    Pin pin;
+    Watch watch;
+    bool high = false;
+    LocalTime next_edge = never_on_chip;  ///< or when to look again, if no register is written before
+  };
+
+  [[nodiscard]] static std::span<const Pin> timer_2_pins(unsigned channel);
+  [[nodiscard]] bool has_function(const Pin& pin, unsigned function) const;
+  [[nodiscard]] unsigned timer_output_at(const Pin& pin) const;
+  [[nodiscard]] bool level(const Pin& pin);
+
+  ChipServices* chip_;
+  Timer* timer_2_;
+  std::vector<std::unique_ptr<Gpio>> ports_;
+  std::optional<Watched> watched_;
+};
+
+}  // namespace proleg::sim

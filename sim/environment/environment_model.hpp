@@ -20,6 +20,8 @@ struct StaticObject {
 struct EnvironmentModel {
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< m/s^2
   bool self_collision = false;               ///< whether links that are not neighbours collide
+  /// Coulomb coefficient between two geometries of which neither has one.
+  double unspecified_friction = default_friction;
   std::vector<StaticObject> objects;
   Pose robot_pose;  ///< where the robot starts
 };

@@ -14,6 +14,9 @@
 namespace proleg::sim {
 namespace {
 
+/// Stream of the scenario's seed that nobody else uses (joints use those from 0 on, module_making.cpp others).
+constexpr std::uint64_t contact_stream = 3'000'000;
+
 Stepper choose_stepper(const Scenario& scenario) {
   constexpr std::size_t most_links_for_direct = 8;  // measured: above, the iterative stepper is faster
   if (scenario.solver == Solver::automatic) {
@@ -37,27 +40,63 @@ Plant::Plant(const Scenario& scenario)
       steps_per_tick_(static_cast<std::uint32_t>(std::lround(scenario.kernel.tick_period_us * 1e-6 / scenario.step_s))),
       start_(world_.center_of_mass()),
       center_before_(start_),
-      limp_(scenario.robot.joints.size()),
+      meter_(scenario.robot, scenario.environment, start_, scenario.step_s, scenario.kernel.tick_period_us * 1e-6),
+      latency_steps_(
+          static_cast<std::uint64_t>(std::llround(scenario.robot.servo.latency_us * 1e-6 / scenario.step_s))),
       servo_commands_(scenario.robot.joints.size(), servo_center),
-      last_step_(scenario.robot.joints.size()),
+      servos_(scenario.robot.joints.size(), Servo{servo_center}),
+      contact_noise_(scenario.kernel.seed, contact_stream),
       link_poses_(scenario.robot.links.size()),
       joint_angles_(scenario.robot.joints.size()),
+      joint_targets_(scenario.robot.joints.size()),
       link_contacts_(scenario.robot.links.size()) {
+  for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
+    servos_[joint].angle = servos_[joint].angle_before = world_.joint_angle(joint);
+  }
   read_world();
 }
 
 void Plant::set_command(std::size_t joint, std::int32_t command) {
   servo_commands_[joint] = command;
-  if (limp_[joint]) {
-    limp_[joint] = false;
-    world_.set_joint_torque(joint, scenario_.robot.joints[joint].max_torque);
+  if (latency_steps_ == 0) {
+    act(joint, command);
+  } else {
+    orders_.push_back({steps_ + latency_steps_, joint, command});
   }
 }
 
 void Plant::release(std::size_t joint) {
-  if (!limp_[joint]) {
-    limp_[joint] = true;
+  if (latency_steps_ == 0) {
+    go_limp(joint);
+  } else {
+    orders_.push_back({steps_ + latency_steps_, joint, std::nullopt});
+  }
+}
+
+void Plant::act(std::size_t joint, std::int32_t command) {
+  Servo& servo = servos_[joint];
+  servo.command = command;
+  if (servo.limp) {
+    servo.limp = false;
+    world_.set_joint_torque(joint, scenario_.robot.joints[joint].max_torque);
+  }
+}
+
+void Plant::go_limp(std::size_t joint) {
+  if (!servos_[joint].limp) {
+    servos_[joint].limp = true;
     world_.set_joint_torque(joint, 0.0);
+  }
+}
+
+void Plant::follow_orders() {
+  for (; !orders_.empty() && orders_.front().step <= steps_; orders_.pop_front()) {
+    const Order& order = orders_.front();
+    if (order.command) {
+      act(order.joint, *order.command);
+    } else {
+      go_limp(order.joint);
+    }
   }
 }
 
@@ -66,14 +105,23 @@ std::uint32_t Plant::step_start_us(std::uint32_t step) const {
 }
 
 void Plant::step() {
-  for (std::size_t joint = 0; joint < servo_commands_.size(); ++joint) {
-    const double angle = world_.joint_angle(joint);
-    const double speed =
-        servo_speed(scenario_.robot.servo, scenario_.robot.joints[joint], servo_commands_[joint], angle);
-    last_step_[joint] = {speed, angle};
-    world_.set_joint_speed(joint, speed);
+  if (latency_steps_ > 0) {
+    follow_orders();
+  }
+  for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
+    Servo& servo = servos_[joint];
+    servo.commanded_speed =
+        servo_speed(scenario_.robot.servo, scenario_.robot.joints[joint], servo.command, servo.angle);
+    servo.angle_before = servo.angle;
+    world_.set_joint_speed(joint, servo.commanded_speed);
   }
   world_.step();
+  for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
+    Servo& servo = servos_[joint];
+    servo.angle = world_.joint_angle(joint);
+    meter_.add_joint_step(
+        joint, {world_.motor_torque(joint), servo.commanded_speed, servo.angle_before, servo.angle, servo.limp});
+  }
   contact_sum_ += world_.contact_count();
   ++steps_;
 }
@@ -81,15 +129,17 @@ void Plant::step() {
 void Plant::finish_tick() {
   ++finished_ticks_;
   read_world();
-  require_crawling();
-  center_before_ = world_.center_of_mass();
+  const Eigen::Vector3d center = world_.center_of_mass();
+  require_crawling(center);
+  center_before_ = center;
+  meter_.add_tick({center, link_poses_, joint_angles_, joint_targets_, link_contacts_});
+  add_contact_noise();
 }
 
-void Plant::require_crawling() const {
+void Plant::require_crawling(const Eigen::Vector3d& center) const {
   constexpr double fastest = 100.0;  // m/s; a robot that crawls stays far below, one whose solver broke down does not
   constexpr double deepest = 1.0;    // m
   const double tick_s = scenario_.kernel.tick_period_us * 1e-6;
-  const Eigen::Vector3d center = world_.center_of_mass();
   const auto now = [&] {
     std::ostringstream text;
     text << finished_ticks_ * tick_s << " s";
@@ -106,7 +156,8 @@ void Plant::require_crawling() const {
 
 void Plant::read_world() {
   for (std::size_t joint = 0; joint < joint_angles_.size(); ++joint) {
-    joint_angles_[joint] = world_.joint_angle(joint);
+    joint_angles_[joint] = servos_[joint].angle;
+    joint_targets_[joint] = servo_target(servos_[joint].command);
   }
   for (std::size_t link = 0; link < link_poses_.size(); ++link) {
     link_poses_[link] = world_.link_pose(link);
@@ -114,16 +165,29 @@ void Plant::read_world() {
   }
 }
 
+void Plant::add_contact_noise() {
+  if (scenario_.contact_noise <= 0.0) {
+    return;
+  }
+  const auto threshold = static_cast<std::uint64_t>(std::llround(std::ldexp(scenario_.contact_noise, 32)));
+  for (std::uint8_t& contacts : link_contacts_) {
+    for (const unsigned sensor : {1U, 2U}) {
+      if (contact_noise_.next() < threshold) {
+        contacts = static_cast<std::uint8_t>(contacts ^ sensor);
+      }
+    }
+  }
+}
+
 firmware::ServoReadings Plant::servo_readings(std::size_t joint) const {
   constexpr std::int8_t chip_temperature_c = 25;
-  constexpr ServoCurrent servo;
-  const double angle = world_.joint_angle(joint);
-  const Motion& motion = last_step_[joint];
-  const double speed = steps_ == 0 ? 0.0 : (angle - motion.angle_before) / scenario_.step_s;
+  constexpr ServoCurrent model;
+  const Servo& servo = servos_[joint];
+  const double speed = (servo.angle - servo.angle_before) / scenario_.step_s;
   const double current_ma =
-      limp_[joint] ? servo.idle_ma
-                   : servo_current_ma(servo, motion.commanded_speed, speed, scenario_.robot.joints[joint].max_speed);
-  return {static_cast<std::uint16_t>(std::lround(current_ma)), joint_angle_in_steps(angle), chip_temperature_c};
+      servo.limp ? model.idle_ma
+                 : servo_current_ma(model, servo.commanded_speed, speed, scenario_.robot.joints[joint].max_speed);
+  return {static_cast<std::uint16_t>(std::lround(current_ma)), joint_angle_in_steps(servo.angle), chip_temperature_c};
 }
 
 double Plant::displacement() const { return (world_.center_of_mass() - start_).head<2>().norm(); }

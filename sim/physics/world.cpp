@@ -48,12 +48,36 @@ struct SensorFrame {
   Eigen::Vector3d sideways;  ///< across both
 };
 
+/// What it takes to read the torque of a hinge's motor. The engine tells force and torque that the whole hinge exerts
+/// on the centre of mass of its first link, and that is the bearing's force, with its moment, too:
+///   torque * axis - force * moment,  moment = axis x (anchor - centre of mass)
+struct Motor {
+  dJointFeedback feedback{};
+  double most = 0.0;  ///< Nm
+  Eigen::Vector3d axis_in_link = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moment_in_link = Eigen::Vector3d::Zero();
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< in the world, at the start of the last step
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+};
+
+/// rotation: 3 rows of 4, as the engine has it.
+inline Eigen::Vector3d rotated(const dReal* rotation, const Eigen::Vector3d& vector) {
+  return {rotation[0] * vector.x() + rotation[1] * vector.y() + rotation[2] * vector.z(),
+          rotation[4] * vector.x() + rotation[5] * vector.y() + rotation[6] * vector.z(),
+          rotation[8] * vector.x() + rotation[9] * vector.y() + rotation[10] * vector.z()};
+}
+
+inline double dot(const dReal* a, const Eigen::Vector3d& b) { return a[0] * b.x() + a[1] * b.y() + a[2] * b.z(); }
+
 }  // namespace
 
 class World::Implementation {
  public:
   Implementation(const RobotModel& robot, const EnvironmentModel& environment, double step_s, Stepper stepper)
-      : step_s_(step_s), stepper_(stepper), self_collision_(environment.self_collision) {
+      : step_s_(step_s),
+        stepper_(stepper),
+        self_collision_(environment.self_collision),
+        unspecified_friction_(environment.unspecified_friction) {
     prepare_engine_for_this_thread();
     messages_before_ = engine_messages();
     world_.reset(dWorldCreate());
@@ -83,7 +107,10 @@ class World::Implementation {
 
   void set_joint_speed(std::size_t joint, double speed) { dJointSetHingeParam(joints_[joint], dParamVel, speed); }
 
-  void set_joint_torque(std::size_t joint, double torque) { dJointSetHingeParam(joints_[joint], dParamFMax, torque); }
+  void set_joint_torque(std::size_t joint, double torque) {
+    dJointSetHingeParam(joints_[joint], dParamFMax, torque);
+    motors_[joint].most = torque;
+  }
 
   void step() {
     if (world_ == nullptr) {
@@ -99,6 +126,12 @@ class World::Implementation {
   }
 
   [[nodiscard]] double joint_angle(std::size_t joint) const { return dJointGetHingeAngle(joints_[joint]); }
+
+  [[nodiscard]] double motor_torque(std::size_t joint) const {
+    const Motor& motor = motors_[joint];
+    return std::clamp(dot(motor.feedback.t1, motor.axis) - dot(motor.feedback.f1, motor.moment), -motor.most,
+                      motor.most);
+  }
 
   [[nodiscard]] Pose link_pose(std::size_t link) const {
     const dReal* position = dBodyGetPosition(bodies_[link]);
@@ -132,6 +165,11 @@ class World::Implementation {
                    this, &Implementation::on_near);
     if (self_collision_) {
       dSpaceCollide(robot_space_.get(), this, &Implementation::on_near);
+    }
+    for (std::size_t i = 0; i < motors_.size(); ++i) {
+      const dReal* rotation = dBodyGetRotation(bodies_[i]);
+      motors_[i].axis = rotated(rotation, motors_[i].axis_in_link);
+      motors_[i].moment = rotated(rotation, motors_[i].moment_in_link);
     }
     if (stepper_ == Stepper::direct) {
       dWorldStep(world_.get(), step_s_);
@@ -255,6 +293,7 @@ class World::Implementation {
   }
 
   void add_joints(const RobotModel& robot, const Pose& robot_pose) {
+    motors_.resize(robot.joints.size());  // the engine keeps pointers into it
     for (std::size_t i = 0; i < robot.joints.size(); ++i) {
       const Joint& joint = robot.joints[i];
       const dJointID hinge = dJointCreateHinge(world_.get(), nullptr);
@@ -268,6 +307,14 @@ class World::Implementation {
       dJointSetHingeParam(hinge, dParamFMax, joint.max_torque);
       dJointSetHingeParam(hinge, dParamVel, 0.0);
       joints_.push_back(hinge);
+
+      const Link& link = robot.links[i];
+      const Eigen::Quaterniond to_link = link.pose.orientation.conjugate();
+      const Eigen::Vector3d arm = to_link * (joint.anchor - link.pose.position) - link.mass.center;
+      motors_[i].most = joint.max_torque;
+      motors_[i].axis_in_link = to_link * joint.axis.normalized();
+      motors_[i].moment_in_link = motors_[i].axis_in_link.cross(arm);
+      dJointSetFeedback(hinge, &motors_[i].feedback);
     }
   }
 
@@ -281,7 +328,8 @@ class World::Implementation {
       return;
     }
     constexpr int most_contacts = 8;
-    std::array<dContact, most_contacts> contacts{};
+    // Left as it is: the engine fills in the geometry, and looks at nothing of the surface but what its mode says.
+    std::array<dContact, most_contacts> contacts;
     const int count = dCollide(a, b, most_contacts, &contacts[0].geom, sizeof(dContact));
     for (int i = 0; i < count; ++i) {
       dContact& contact = contacts[static_cast<std::size_t>(i)];
@@ -295,11 +343,11 @@ class World::Implementation {
     contact_count_ += static_cast<std::size_t>(count);
   }
 
-  static double friction(const GeometryData& a, const GeometryData& b) {
+  [[nodiscard]] double friction(const GeometryData& a, const GeometryData& b) const {
     if (a.friction && b.friction) {
       return std::sqrt(*a.friction * *b.friction);
     }
-    return a.friction.value_or(b.friction.value_or(default_friction));
+    return a.friction.value_or(b.friction.value_or(unspecified_friction_));
   }
 
   void note_touch(int link, int other, const dContact& contact) {
@@ -335,6 +383,7 @@ class World::Implementation {
   std::vector<GeometryData> geometry_data_;
   std::vector<dBodyID> bodies_;
   std::vector<dJointID> joints_;
+  std::vector<Motor> motors_;  ///< of each joint
   std::vector<double> masses_;
   std::vector<Eigen::Vector3d> mass_centers_;
   std::vector<SensorFrame> sensor_frames_;
@@ -345,6 +394,7 @@ class World::Implementation {
   double step_s_;
   Stepper stepper_;
   bool self_collision_;
+  double unspecified_friction_;
 };
 
 World::World(const RobotModel& robot, const EnvironmentModel& environment, double step_s, Stepper stepper)
@@ -355,6 +405,7 @@ void World::set_joint_speed(std::size_t joint, double speed) { implementation_->
 void World::set_joint_torque(std::size_t joint, double torque) { implementation_->set_joint_torque(joint, torque); }
 void World::step() { implementation_->step(); }
 double World::joint_angle(std::size_t joint) const { return implementation_->joint_angle(joint); }
+double World::motor_torque(std::size_t joint) const { return implementation_->motor_torque(joint); }
 Pose World::link_pose(std::size_t link) const { return implementation_->link_pose(link); }
 Eigen::Vector3d World::center_of_mass() const { return implementation_->center_of_mass(); }
 std::uint8_t World::link_contacts(std::size_t link) const { return implementation_->link_contacts(link); }

@@ -40,6 +40,10 @@ class World {
 
   /// Angle of a joint in rad, as RobotModel defines it.
   [[nodiscard]] double joint_angle(std::size_t joint) const;
+  /// The torque, in Nm, that the motor of a joint gave in the last step, about the joint's axis: what it adds to the
+  /// energy per radian that the joint turns. At a stop of the joint it is what stop and motor gave together, but no
+  /// more than the motor has. 0 before the first step.
+  [[nodiscard]] double motor_torque(std::size_t joint) const;
   /// Pose of the frame of a link in the world.
   [[nodiscard]] Pose link_pose(std::size_t link) const;
   /// Centre of mass of the robot in the world.

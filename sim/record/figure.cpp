@@ -10,6 +10,7 @@
 #include "sim/record/figure_contents.hpp"
 #include "sim/record/figure_page.hpp"
 #include "sim/record/path_panel.hpp"
+#include "sim/record/plot_frame.hpp"
 #include "sim/record/svg.hpp"
 
 namespace proleg::sim {
@@ -38,13 +39,10 @@ std::size_t joint_stride(std::size_t joints) {
   return (joints + most_lines - 1) / most_lines;
 }
 
-/// Colours that people with any colour vision tell apart (M. Okabe, K. Ito, 2008; without the yellow, which is too
-/// faint on white); for more lines a scale from blue over grey to orange, head to tail.
+/// distinct_colours; for more lines a scale from blue over grey to orange, head to tail.
 std::string line_colour(std::size_t line, std::size_t count) {
-  constexpr std::array<const char*, 7> distinct{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                                "#e69f00", "#56b4e9", "#000000"};
-  if (count <= distinct.size()) {
-    return distinct[line];
+  if (count <= distinct_colours.size()) {
+    return distinct_colours[line];
   }
   using Colour = std::array<double, 3>;
   constexpr std::array<Colour, 3> scale{Colour{0, 114, 178}, Colour{60, 60, 70}, Colour{213, 94, 0}};
@@ -56,35 +54,6 @@ std::string line_colour(std::size_t line, std::size_t count) {
     colour += (i > 0 ? "," : "") + plain_number(scale[half][i] + share * (scale[half + 1][i] - scale[half][i]), 0);
   }
   return colour + ")";
-}
-
-/// In pixels, with at most four points (first, lowest, highest, last) in each column of pixels, so that a picture of an
-/// hour is no larger than one of a minute and no peak is lost.
-Trace to_pixels(const Trace& trace, const Axis& x, const Axis& y) {
-  Trace pixels;
-  std::vector<Point> column;
-  const auto flush = [&] {
-    if (column.size() <= 4) {
-      pixels.insert(pixels.end(), column.begin(), column.end());
-    } else {
-      const auto lower = [](const Point& a, const Point& b) { return a.y < b.y; };
-      auto [low, high] = std::minmax_element(column.begin() + 1, column.end() - 1, lower);
-      if (high < low) {
-        std::swap(low, high);
-      }
-      pixels.insert(pixels.end(), {column.front(), *low, *high, column.back()});
-    }
-    column.clear();
-  };
-  for (const Point& point : trace) {
-    const Point pixel{x.pixel(point.x), y.pixel(point.y)};
-    if (!column.empty() && std::floor(pixel.x) != std::floor(column.front().x)) {
-      flush();
-    }
-    column.push_back(pixel);
-  }
-  flush();
-  return pixels;
 }
 
 /// The time axis of two panels one above the other: grid in both, numbers below the lower.
@@ -146,7 +115,7 @@ void draw_angles(Svg& svg, const Recording& recording, const FigureContents& con
   }
 
   const std::size_t count = (recording.joints().size() + stride - 1) / stride;
-  std::vector<double> ends;
+  std::vector<LineName> names;
   for (std::size_t line = 0; line < count; ++line) {
     const std::size_t joint = line * stride;
     const std::string colour = "stroke=\"" + line_colour(line, count) + "\" stroke-linejoin=\"round\" ";
@@ -155,20 +124,12 @@ void draw_angles(Svg& svg, const Recording& recording, const FigureContents& con
     svg.polyline(to_pixels(contents.angles[joint], time, angle),
                  colour + R"(stroke-width="1.1" stroke-dasharray="5 3")");
     svg.end_group();
-    ends.push_back(angle.pixel(contents.setpoints[joint].back().y));
+    names.push_back(
+        {contents.setpoints[joint].back().y, shortened(recording.joints()[joint].name, 8), line_colour(line, count)});
   }
   svg.rectangle({page_left, angle_panel_top}, page_right - page_left, angle_panel_height, frame_style);
 
-  // Each line is labelled where it ends.
-  const std::vector<double> places =
-      spread(ends, 15.0, angle_panel_top + 4.0, angle_panel_top + angle_panel_height - 4.0);
-  for (std::size_t line = 0; line < count; ++line) {
-    const std::string colour = line_colour(line, count);
-    svg.line({page_right, ends[line]}, {page_right + 12.0, places[line]},
-             "stroke=\"" + colour + "\" stroke-width=\"1\"");
-    svg.text({page_right + 15.0, places[line] + 4.0}, shortened(recording.joints()[line * stride].name, 8),
-             TextAnchor::start, label_size, colour, R"(font-weight="bold")");
-  }
+  draw_line_names(svg, angle, page_right, names);
 }
 
 double contact_row_height(std::size_t links) {

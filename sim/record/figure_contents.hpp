@@ -10,9 +10,6 @@
 
 namespace proleg::sim {
 
-/// A trace over time, or a path.
-using Trace = std::vector<Point>;
-
 /// What is drawn, taken from the recording in one pass. Angles and positions are cut to +-10^9: when a simulation has
 /// flown apart, the picture still has finite coordinates.
 struct FigureContents {

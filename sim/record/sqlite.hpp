@@ -69,7 +69,17 @@ class Statement {
   bool step();
   void reset();
 
+  // Values one by one, for a statement whose number of values is known at run time only. After reset(); positions count
+  // from 1. Text must stay where it is until the statement has run.
+  void bind(int position, std::int64_t value);
+  void bind(int position, std::int32_t value) { bind(position, std::int64_t{value}); }
+  void bind(int position, std::uint32_t value) { bind(position, std::int64_t{value}); }
+  void bind(int position, std::size_t value) { bind(position, static_cast<std::int64_t>(value)); }
+  void bind(int position, double value);  ///< SQLite keeps "not a number" as NULL
+  void bind(int position, std::string_view value);
+
   // Columns of the current row, counted from 0.
+  [[nodiscard]] bool is_null(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
   [[nodiscard]] bool is_integer(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_INTEGER; }
   [[nodiscard]] bool is_real(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_FLOAT; }
   [[nodiscard]] std::int64_t integer(int column) const { return sqlite3_column_int64(statement_, column); }
@@ -77,12 +87,6 @@ class Statement {
   [[nodiscard]] std::string text(int column) const;
 
  private:
-  void bind(int position, std::int64_t value);
-  void bind(int position, std::int32_t value) { bind(position, std::int64_t{value}); }
-  void bind(int position, std::uint32_t value) { bind(position, std::int64_t{value}); }
-  void bind(int position, std::size_t value) { bind(position, static_cast<std::int64_t>(value)); }
-  void bind(int position, double value);
-  void bind(int position, std::string_view value);
   void check(int code) const;
 
   Database& database_;

@@ -124,6 +124,17 @@ void Svg::circle(Point center, double radius, std::string_view style) {
               std::string(style) + "/>\n";
 }
 
+void Svg::marks(std::span<const Point> places, std::string_view mark, std::string_view style) {
+  if (places.empty()) {
+    return;
+  }
+  picture_ += "<path d=\"";
+  for (const Point& place : places) {
+    picture_ += "M" + plain_number(place.x, 1) + " " + plain_number(place.y, 1) + std::string(mark);
+  }
+  picture_ += "\" fill=\"none\" " + std::string(style) + "/>\n";
+}
+
 void Svg::text(Point position, std::string_view text, TextAnchor anchor, double size, std::string_view colour,
                std::string_view style) {
   picture_ += "<text" + attribute("x", position.x) + attribute("y", position.y) + attribute("font-size", size) +

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace proleg::sim {
 
@@ -11,6 +12,9 @@ struct Point {
   double x = 0.0;
   double y = 0.0;
 };
+
+/// A line, or values over something, e.g. time.
+using Trace = std::vector<Point>;
 
 enum class TextAnchor { start, middle, end };
 
@@ -26,6 +30,9 @@ class Svg {
   void polyline(std::span<const Point> points, std::string_view style);
   void rectangle(Point corner, double width, double height, std::string_view style);
   void circle(Point center, double radius, std::string_view style);
+  /// The same mark at many places, as one shape of few bytes. mark: path commands relative to the place, e.g. "h0" for
+  /// a dot (with round line ends) or "m-2 -2l4 4m0 -4l-4 4" for a cross.
+  void marks(std::span<const Point> places, std::string_view mark, std::string_view style);
   void text(Point position, std::string_view text, TextAnchor anchor, double size, std::string_view colour,
             std::string_view style = {});
 

@@ -76,6 +76,7 @@ struct Joint {
 struct ServoModel {
   double gain = 8.3;  ///< 1/s, above 0; the default is that of the OpenMR servo plug-in
   std::uint32_t period_us = 20'000;
+  std::uint32_t latency_us = 0;  ///< it acts on a pulse, or on none, that much later; up to 100000
 };
 
 struct RobotModel {

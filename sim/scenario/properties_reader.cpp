@@ -13,6 +13,7 @@ namespace {
 constexpr Range durations{0.01, 86'400.0, "s"};
 constexpr Range step_widths{1e-5, 0.02, "s"};
 constexpr Range ticks{1.0, 100.0, "ms"};
+constexpr Range probabilities{0.0, 1.0, ""};
 
 std::uint64_t read_seed(const XmlElement& element) {
   const std::string text = element.text();
@@ -68,8 +69,8 @@ void remark_unless(const XmlElement& parent, std::string_view tag, std::string_v
 }  // namespace
 
 void read_simulation_properties(const XmlElement& element, Scenario& scenario) {
-  element.allow({}, {"stepWidth", "duration", "tick", "seed", "solver", "showViewer", "parallelComputing",
-                     "storingData", "mode", "accuracy"});
+  element.allow({}, {"stepWidth", "duration", "tick", "seed", "solver", "contactNoise", "showViewer",
+                     "parallelComputing", "storingData", "mode", "accuracy"});
   if (const auto duration = element.child("duration")) {
     scenario.duration_s = read_quantity(*duration, durations);
   }
@@ -87,6 +88,9 @@ void read_simulation_properties(const XmlElement& element, Scenario& scenario) {
   }
   if (const auto solver = element.child("solver")) {
     scenario.solver = read_solver(*solver);
+  }
+  if (const auto noise = element.child("contactNoise")) {
+    scenario.contact_noise = read_number(*noise, probabilities);
   }
 
   std::vector<std::string>& remarks = scenario.remarks;

@@ -14,19 +14,27 @@ namespace {
 
 constexpr Range gains{1e-3, 1e4, "1/s"};
 constexpr Range servo_periods{0.1, 100.0, "ms"};
+constexpr Range servo_latencies{0.0, 100.0, "ms"};
+
+std::uint32_t read_microseconds(const XmlElement& element, const Range& milliseconds) {
+  const double microseconds = read_quantity(element, milliseconds) * 1000.0;
+  if (std::abs(microseconds - std::round(microseconds)) > 1e-6) {
+    element.refuse(in_quotes(element.text({"unit"})) + " in " + element.label(), "a whole number of microseconds");
+  }
+  return static_cast<std::uint32_t>(std::round(microseconds));
+}
 
 ServoModel read_servo(const XmlElement& element) {
-  element.allow({}, {"gain", "period"});
+  element.allow({}, {"gain", "period", "latency"});
   ServoModel servo;
   if (const auto gain = element.child("gain")) {
     servo.gain = read_quantity(*gain, gains);
   }
   if (const auto period = element.child("period")) {
-    const double microseconds = read_quantity(*period, servo_periods) * 1000.0;
-    if (std::abs(microseconds - std::round(microseconds)) > 1e-6) {
-      period->refuse(in_quotes(period->text({"unit"})) + " in " + period->label(), "a whole number of microseconds");
-    }
-    servo.period_us = static_cast<std::uint32_t>(std::round(microseconds));
+    servo.period_us = read_microseconds(*period, servo_periods);
+  }
+  if (const auto latency = element.child("latency")) {
+    servo.latency_us = read_microseconds(*latency, servo_latencies);
   }
   return servo;
 }

@@ -2,6 +2,8 @@
 
 // Everything that a *.simulation.xml file and the files it names say, checked: whoever holds a Scenario can run it.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -60,9 +62,16 @@ struct Scenario {
   double duration_s = 30.0;
   double step_s = 0.001;  ///< of the physics; a tick is a whole number of steps
   Solver solver = Solver::automatic;
+  double contact_noise = 0.0;  ///< probability that a touch sensor reads wrong at a tick; 0 to 1, drawn with the seed
 
   std::vector<SourceFile> sources;   ///< every file read, the top-level file first
   std::vector<std::string> remarks;  ///< what a user may want to know: the joint map, tags without effect
 };
+
+/// The ticks of a run: the duration, rounded to whole ticks; at least 1.
+[[nodiscard]] inline std::uint32_t tick_count(const Scenario& scenario) {
+  return static_cast<std::uint32_t>(
+      std::max(1L, std::lround(scenario.duration_s * 1e6 / scenario.kernel.tick_period_us)));
+}
 
 }  // namespace proleg::sim

@@ -33,6 +33,16 @@ std::string range_text(const Parameter& parameter) {
          std::string(format_decimal(parameter.maximum, parameter.unit).view()) + (symbol.empty() ? "" : " " + symbol);
 }
 
+std::vector<unsigned> used_slots(const Scenario& scenario) {
+  std::vector<unsigned> slots;
+  for (unsigned slot = 0; slot < max_slots; ++slot) {
+    if (scenario.kernel.slots[slot].algorithm != nullptr) {
+      slots.push_back(slot);
+    }
+  }
+  return slots;
+}
+
 /// A `--set` word taken apart: [MODULE.]VALUE_NAME[:JOINT]=NUMBER[@TICK].
 struct SettingWord {
   std::string word;
@@ -110,15 +120,16 @@ class Resolver {
         return !scenario_->kernel.slots[meaning.slot].group.contains(static_cast<unsigned>(joint));
       });
       if (meanings.empty()) {
-        word_->refuse("joint " + in_quotes(*word_->joint) + ", which " + slot_name(slot) + " does not drive",
-                      "one of " + listed(joint_names(scenario_->robot, scenario_->kernel.slots[slot].group)));
+        word_->refuse(
+            "joint " + in_quotes(*word_->joint) + ", which " + slot_name(*scenario_, slot) + " does not drive",
+            "one of " + listed(joint_names(scenario_->robot, scenario_->kernel.slots[slot].group)));
       }
     }
     if (meanings.size() > 1) {
       std::vector<std::string> names;
       names.reserve(meanings.size());
       for (const Meaning& meaning : meanings) {
-        names.push_back(slot_name(meaning.slot));
+        names.push_back(slot_name(*scenario_, meaning.slot));
       }
       word_->refuse(in_quotes(word_->name) + " in several modules",
                     "MODULE." + shortened(word_->name) + " with one of " + listed(names));
@@ -133,26 +144,11 @@ class Resolver {
     return scenario_->kernel.slots[slot].algorithm->declaration();
   }
 
-  /// "PatternGenerator_sinusoidal (2)": what may stand before the dot, name or number.
-  [[nodiscard]] std::string slot_name(unsigned slot) const {
-    return std::string(declaration(slot).name) + " (" + std::to_string(slot + 1) + ")";
-  }
-
   [[nodiscard]] std::vector<unsigned> candidate_slots() const {
-    std::vector<unsigned> slots;
-    std::vector<std::string> names;
-    for (unsigned slot = 0; slot < max_slots; ++slot) {
-      if (scenario_->kernel.slots[slot].algorithm == nullptr) {
-        continue;
-      }
-      names.push_back(slot_name(slot));
-      if (!word_->module || *word_->module == declaration(slot).name || *word_->module == std::to_string(slot + 1)) {
-        slots.push_back(slot);
-      }
-    }
+    std::vector<unsigned> slots = word_->module ? find_slots(*scenario_, *word_->module) : used_slots(*scenario_);
     if (slots.empty()) {
       word_->refuse(word_->module ? "unknown module " + in_quotes(*word_->module) : "a scenario without modules",
-                    "one of " + listed(names));
+                    "one of " + listed(slot_names(*scenario_)));
     }
     return slots;
   }
@@ -243,6 +239,33 @@ void set_start_value(Scenario& scenario, const Setting& setting) {
   } else {
     put(scenario.settings, setting);
   }
+}
+
+std::int32_t start_value(const Scenario& scenario, const Setting& place) {
+  const auto position = std::ranges::lower_bound(scenario.settings, place_of(place), {}, place_of);
+  return position != scenario.settings.end() && place_of(*position) == place_of(place)
+             ? position->value
+             : scenario.kernel.slots[place.slot].algorithm->declaration().parameters[place.index].default_value;
+}
+
+std::string slot_name(const Scenario& scenario, unsigned slot) {
+  return std::string(scenario.kernel.slots[slot].algorithm->declaration().name) + " (" + std::to_string(slot + 1) + ")";
+}
+
+std::vector<std::string> slot_names(const Scenario& scenario) {
+  std::vector<std::string> names;
+  for (const unsigned slot : used_slots(scenario)) {
+    names.push_back(slot_name(scenario, slot));
+  }
+  return names;
+}
+
+std::vector<unsigned> find_slots(const Scenario& scenario, const std::string& module) {
+  std::vector<unsigned> slots = used_slots(scenario);
+  std::erase_if(slots, [&](unsigned slot) {
+    return module != scenario.kernel.slots[slot].algorithm->declaration().name && module != std::to_string(slot + 1);
+  });
+  return slots;
 }
 
 std::vector<std::string> parameter_names(const Declaration& declaration) {

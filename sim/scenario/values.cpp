@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
+#include <utility>
 
 #include "sim/scenario/input_error.hpp"
 #include "sim/scenario/text.hpp"
@@ -20,18 +22,81 @@ std::string described(const Range& range) {
          (range.unit.empty() ? "" : " " + std::string(range.unit));
 }
 
-double checked_number(const XmlElement& element, std::string_view word, const Range& range) {
+/// What an element holds, or one of its attributes, with the words of a message for where that is.
+struct Held {
+  std::string text;
+  std::string place;
+};
+
+Held text_of(const XmlElement& element) {
+  return {element.text(), in_quotes(element.text()) + " in " + element.label()};
+}
+
+Held attribute_of(const XmlElement& element, std::string_view attribute) {
+  std::string text = element.required_attribute(attribute);
+  std::string place = std::string(attribute) + " " + in_quotes(text) + " in " + element.label();
+  return {std::move(text), std::move(place)};
+}
+
+double checked_number(const XmlElement& element, std::string_view word, const std::string& place, const Range& range) {
   const std::optional<double> value = parse_number(word);
   if (!value || *value < range.lowest || *value > range.highest) {
-    element.refuse(in_quotes(word) + " in " + element.label(), "a number from " + described(range));
+    element.refuse(place, "a number from " + described(range));
   }
   return *value;
+}
+
+double checked_number(const XmlElement& element, std::string_view word, const Range& range) {
+  return checked_number(element, word, in_quotes(word) + " in " + element.label(), range);
+}
+
+std::uint64_t checked_whole(const XmlElement& element, const Held& held, std::uint64_t lowest, std::uint64_t highest) {
+  const std::optional<std::uint64_t> value = parse_whole<std::uint64_t>(held.text);
+  if (!value || *value < lowest || *value > highest) {
+    element.refuse(held.place, "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest));
+  }
+  return *value;
+}
+
+std::size_t checked_choice(const XmlElement& element, const Held& held, std::span<const std::string_view> words) {
+  const auto found = std::ranges::find(words, lower_case(held.text));
+  if (found == words.end()) {
+    std::string known;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      known += (i == 0 ? "'" : i + 1 == words.size() ? " or '" : ", '") + std::string(words[i]) + "'";
+    }
+    element.refuse(held.place, known);
+  }
+  return static_cast<std::size_t>(found - words.begin());
 }
 
 }  // namespace
 
 double read_number(const XmlElement& element, const Range& range, std::initializer_list<std::string_view> attributes) {
   return checked_number(element, element.text(attributes), range);
+}
+
+double read_number_attribute(const XmlElement& element, std::string_view attribute, const Range& range) {
+  const Held held = attribute_of(element, attribute);
+  return checked_number(element, held.text, held.place, range);
+}
+
+std::uint64_t read_whole(const XmlElement& element, std::uint64_t lowest, std::uint64_t highest) {
+  return checked_whole(element, text_of(element), lowest, highest);
+}
+
+std::uint64_t read_whole_attribute(const XmlElement& element, std::string_view attribute, std::uint64_t lowest,
+                                   std::uint64_t highest) {
+  return checked_whole(element, attribute_of(element, attribute), lowest, highest);
+}
+
+std::size_t read_choice(const XmlElement& element, std::initializer_list<std::string_view> words) {
+  return checked_choice(element, text_of(element), std::span(words.begin(), words.size()));
+}
+
+std::size_t read_choice_attribute(const XmlElement& element, std::string_view attribute,
+                                  std::initializer_list<std::string_view> words) {
+  return checked_choice(element, attribute_of(element, attribute), std::span(words.begin(), words.size()));
 }
 
 double read_quantity(const XmlElement& element, const Range& range) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -36,6 +37,19 @@ inline constexpr Range frictions{0.0, 1e3, ""};
 
 /// As read_number; an attribute `unit` may say the unit, but no other than that of the range.
 [[nodiscard]] double read_quantity(const XmlElement& element, const Range& range);
+
+/// A number that an attribute holds.
+[[nodiscard]] double read_number_attribute(const XmlElement& element, std::string_view attribute, const Range& range);
+
+/// A whole number from lowest to highest, which is all that the element holds.
+[[nodiscard]] std::uint64_t read_whole(const XmlElement& element, std::uint64_t lowest, std::uint64_t highest);
+[[nodiscard]] std::uint64_t read_whole_attribute(const XmlElement& element, std::string_view attribute,
+                                                 std::uint64_t lowest, std::uint64_t highest);
+
+/// Position of the only word that the element holds, in any case, among these words in lower case.
+[[nodiscard]] std::size_t read_choice(const XmlElement& element, std::initializer_list<std::string_view> words);
+[[nodiscard]] std::size_t read_choice_attribute(const XmlElement& element, std::string_view attribute,
+                                                std::initializer_list<std::string_view> words);
 
 /// `count` numbers.
 [[nodiscard]] std::vector<double> read_numbers(const XmlElement& element, std::size_t count, const Range& range);

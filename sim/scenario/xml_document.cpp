@@ -208,13 +208,15 @@ XmlDocument::XmlDocument(std::filesystem::path path, std::string text, const Xml
 
 XmlDocument::~XmlDocument() = default;
 
-XmlElement XmlDocument::root(std::string_view tag) const {
+XmlElement XmlDocument::root(std::string_view tag) const { return root(std::span(&tag, 1)); }
+
+XmlElement XmlDocument::root(std::span<const std::string_view> tags) const {
   if (parsed_->RootElement() == nullptr) {
-    throw InputError(name_, 1, "no tag", "<" + std::string(tag) + ">");
+    throw InputError(name_, 1, "no tag", listed_tags(tags));
   }
   const XmlElement root(*parsed_->RootElement(), *this);
-  if (!root.is(tag)) {
-    root.refuse(root.label() + " as the outermost tag", "<" + std::string(tag) + ">");
+  if (!contains(tags, parsed_->RootElement()->Name())) {
+    root.refuse(root.label() + " as the outermost tag", listed_tags(tags));
   }
   return root;
 }

@@ -79,6 +79,8 @@ class XmlDocument {
 
   /// The outermost element, which must have that tag.
   [[nodiscard]] XmlElement root(std::string_view tag) const;
+  /// As root(), which must have one of the tags.
+  [[nodiscard]] XmlElement root(std::span<const std::string_view> tags) const;
   /// All comments of the file, in order.
   [[nodiscard]] std::vector<Comment> comments() const;
 

@@ -137,6 +137,17 @@ TEST(World, FrictionOfTwoSurfacesIsTheGeometricMean) {
   EXPECT_NEAR(sliding_acceleration(world), 4.0 - 0.3 * 9.0, 0.3);
 }
 
+TEST(World, FrictionOfTwoSurfacesWithoutOneIsTheEnvironments) {
+  for (const double friction : {0.1, 0.3}) {
+    EnvironmentModel environment = flat_ground(0.0, 0.02);
+    environment.objects[0].geometries[0].friction.reset();
+    environment.unspecified_friction = friction;
+    environment.gravity = {0, -4.0, -9.0};
+    World world(chain(1), environment, step_s, Stepper::direct);
+    EXPECT_NEAR(sliding_acceleration(world), 4.0 - friction * 9.0, 0.3);
+  }
+}
+
 TEST(World, APositiveJointAngleRaisesTheLinkInFront) {
   EnvironmentModel weightless;
   weightless.gravity.setZero();

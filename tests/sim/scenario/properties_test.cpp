@@ -49,6 +49,13 @@ TEST(SimulationProperties, TakeATickOfPartsOfAMillisecondIfItIsAWholeNumberOfSte
   EXPECT_EQ(files.scenario().kernel.tick_period_us, 2'500U);
 }
 
+TEST(SimulationProperties, TakeNoiseOfTheTouchSensors) {
+  MemoryFiles files = small_scenario();
+  EXPECT_EQ(files.scenario().contact_noise, 0.0);
+  files.replace("top.xml", "<seed>", "<contactNoise>0.25</contactNoise><seed>");
+  EXPECT_EQ(files.scenario().contact_noise, 0.25);
+}
+
 TEST(SimulationProperties, OnTheirOwnCauseNoRemark) {
   MemoryFiles files = small_scenario();
   files.replace("top.xml", "<duration>",

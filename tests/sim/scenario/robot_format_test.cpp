@@ -294,5 +294,12 @@ TEST(RobotFormat, SixtyFourJointsAreTaken) {
   EXPECT_EQ(scenario.robot.servo.gain, ServoModel{}.gain);
 }
 
+TEST(RobotFormat, AServoMayBeLate) {
+  MemoryFiles files = small_scenario();
+  EXPECT_EQ(files.scenario().robot.servo.latency_us, 0U);
+  files.replace("robot.xml", "</period>", "</period><latency unit=\"ms\">12.5</latency>");
+  EXPECT_EQ(files.scenario().robot.servo.latency_us, 12'500U);
+}
+
 }  // namespace
 }  // namespace proleg::sim

@@ -1,0 +1,52 @@
+#include "sim/measure/measure.hpp"
+
+#include <algorithm>
+
+namespace proleg::sim {
+namespace {
+
+constexpr std::array<MeasureDeclaration, measure_count> declarations{{
+    {Measure::distance, "distance", "m", true, "horizontal distance of the centre of mass from its start"},
+    {Measure::speed, "speed", "m/s", true, "mean speed of the centre of mass along a heading; negative against it"},
+    {Measure::mechanical_energy, "mechanical_energy", "J", false, "positive work of the servos' motors"},
+    {Measure::electrical_energy, "electrical_energy", "J", false,
+     "what the servos drew of their 6 V supply; an estimate"},
+    {Measure::cost_of_transport, "cost_of_transport", "m/s^2", false, "mechanical energy per mass and distance"},
+    {Measure::electrical_cost_of_transport, "electrical_cost_of_transport", "m/s^2", false,
+     "electrical energy per mass and distance"},
+    {Measure::specific_resistance, "specific_resistance", "", false, "cost of transport over gravity"},
+    {Measure::smoothness, "smoothness", "m/s^2", false,
+     "root mean square acceleration of the centre of mass; the lower, the smoother"},
+    {Measure::stability_margin, "stability_margin", "m", true,
+     "how far the centre of mass is inside the outermost supports along the body, on average; negative outside"},
+    {Measure::height, "height", "m", true, "height that the centre of mass gained"},
+    {Measure::slip, "slip", "", false, "share of the step of a crawler that does not slip that is lost"},
+    {Measure::duty_factor, "duty_factor", "", true,
+     "share of a stride that a link is on the ground, mean of the links"},
+    {Measure::froude_number, "froude_number", "", true, "speed squared over gravity and stride length"},
+    {Measure::stride_length, "stride_length", "m", true, "distance in a stride"},
+    {Measure::stride_frequency, "stride_frequency", "Hz", true, "strides in a second"},
+}};
+
+constexpr bool in_order() {
+  for (std::size_t i = 0; i < measure_count; ++i) {
+    if (static_cast<std::size_t>(declarations[i].measure) != i) {
+      return false;
+    }
+  }
+  return true;
+}
+static_assert(in_order(), "declaration_of() takes the enumerator as the place");
+
+}  // namespace
+
+std::span<const MeasureDeclaration, measure_count> measures() { return declarations; }
+
+const MeasureDeclaration& declaration_of(Measure measure) { return declarations[static_cast<std::size_t>(measure)]; }
+
+std::optional<Measure> find_measure(std::string_view name) {
+  const auto* const found = std::ranges::find(declarations, name, &MeasureDeclaration::name);
+  return found == declarations.end() ? std::nullopt : std::optional(found->measure);
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,62 @@
+#pragma once
+
+// What a run of a robot is worth, in numbers: declared once. `proleg simulate`, fitness functions, the optimiser's
+// store and docs/gait-measures.md take names, units and meaning from here.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace proleg::sim {
+
+enum class Measure : std::uint8_t {
+  distance,
+  speed,
+  mechanical_energy,
+  electrical_energy,
+  cost_of_transport,
+  electrical_cost_of_transport,
+  specific_resistance,
+  smoothness,
+  stability_margin,
+  height,
+  slip,
+  duty_factor,
+  froude_number,
+  stride_length,
+  stride_frequency,
+};
+inline constexpr std::size_t measure_count = 15;
+
+struct MeasureDeclaration {
+  Measure measure;
+  std::string_view name;  ///< as in files and JSON
+  std::string_view unit;  ///< "" if dimensionless
+  bool higher_is_better;
+  std::string_view help;
+};
+
+/// All of them, in the order of the enumeration.
+[[nodiscard]] std::span<const MeasureDeclaration, measure_count> measures();
+[[nodiscard]] const MeasureDeclaration& declaration_of(Measure measure);
+[[nodiscard]] std::optional<Measure> find_measure(std::string_view name);
+
+/// A value of each measure; not a number where the run does not define it (the cost of transport of a robot that stays,
+/// the slip of a gait without a wave).
+class MeasureValues {
+ public:
+  MeasureValues() { values_.fill(std::numeric_limits<double>::quiet_NaN()); }
+  [[nodiscard]] double& operator[](Measure measure) { return values_[static_cast<std::size_t>(measure)]; }
+  [[nodiscard]] double operator[](Measure measure) const { return values_[static_cast<std::size_t>(measure)]; }
+  [[nodiscard]] std::span<double, measure_count> all() { return values_; }
+  [[nodiscard]] std::span<const double, measure_count> all() const { return values_; }
+
+ private:
+  std::array<double, measure_count> values_;
+};
+
+}  // namespace proleg::sim

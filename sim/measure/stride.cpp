@@ -1,0 +1,113 @@
+#include "sim/measure/stride.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <utility>
+
+#include <Eigen/Dense>
+
+namespace proleg::sim {
+namespace {
+
+constexpr double smallest_amplitude = 0.5 * std::numbers::pi / 180.0;
+/// A crossing of the mean counts if the signal was below it by this part of its amplitude: a ripple is no stride.
+constexpr double hysteresis = 0.25;
+
+struct Swing {
+  std::size_t signal = 0;
+  double mean = 0.0;
+  double amplitude = 0.0;  ///< of a sine with the same standard deviation
+};
+
+Swing largest_swing(const SignalTable& signals) {
+  std::vector<double> sum(signals.signals);
+  std::vector<double> square_sum(signals.signals);
+  for (std::size_t tick = 0; tick < signals.ticks(); ++tick) {
+    for (std::size_t i = 0; i < signals.signals; ++i) {
+      const double value = signals.at(tick, i);
+      sum[i] += value;
+      square_sum[i] += value * value;
+    }
+  }
+  const auto ticks = static_cast<double>(signals.ticks());
+  Swing largest;
+  for (std::size_t i = 0; i < signals.signals; ++i) {
+    const double mean = sum[i] / ticks;
+    const double amplitude = std::sqrt(2.0 * std::max(square_sum[i] / ticks - mean * mean, 0.0));
+    if (amplitude > largest.amplitude) {
+      largest = {i, mean, amplitude};
+    }
+  }
+  return largest;
+}
+
+/// In ticks, interpolated.
+std::vector<double> upward_crossings(const SignalTable& signals, const Swing& swing) {
+  std::vector<double> crossings;
+  bool was_below = false;
+  double before = 0.0;
+  for (std::size_t tick = 0; tick < signals.ticks(); ++tick) {
+    const double value = signals.at(tick, swing.signal) - swing.mean;
+    if (value < -hysteresis * swing.amplitude) {
+      was_below = true;
+    } else if (was_below && value >= 0.0) {
+      crossings.push_back(static_cast<double>(tick) - value / (value - before));
+      was_below = false;
+    }
+    before = value;
+  }
+  return crossings;
+}
+
+}  // namespace
+
+std::optional<Stride> find_stride(const SignalTable& angles, double tick_s) {
+  const Swing swing = largest_swing(angles);
+  if (swing.amplitude < smallest_amplitude) {
+    return std::nullopt;
+  }
+  std::vector<double> crossings = upward_crossings(angles, swing);
+  if (crossings.size() < 2) {
+    return std::nullopt;
+  }
+  if (crossings.size() > 2) {
+    crossings.erase(crossings.begin());
+  }
+  const double strides = static_cast<double>(crossings.size() - 1);
+  return Stride{strides / ((crossings.back() - crossings.front()) * tick_s),
+                static_cast<std::size_t>(std::lround(crossings.front())),
+                static_cast<std::size_t>(std::lround(crossings.back())), std::move(crossings)};
+}
+
+std::vector<Oscillation> find_oscillations(const SignalTable& signals, const Stride& stride) {
+  // Least squares of a constant, a sine and a cosine: over whole strides that is the projection, but for what the
+  // rounding of the strides to ticks would add to it.
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3Xd right = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(signals.signals));
+  auto end = stride.bounds.begin() + 1;
+  for (std::size_t tick = stride.first_tick; tick < stride.end_tick; ++tick) {
+    const auto time = static_cast<double>(tick);
+    while (*end <= time && end + 1 != stride.bounds.end()) {
+      ++end;
+    }
+    const double start = *(end - 1);
+    const double phase = 2.0 * std::numbers::pi * (time - start) / (*end - start);
+    const Eigen::Vector3d basis(1.0, std::sin(phase), std::cos(phase));
+    normal += basis * basis.transpose();
+    for (std::size_t i = 0; i < signals.signals; ++i) {
+      right.col(static_cast<Eigen::Index>(i)) += signals.at(tick, i) * basis;
+    }
+  }
+  const Eigen::Matrix3Xd solution = normal.ldlt().solve(right);
+  std::vector<Oscillation> oscillations(signals.signals);
+  for (std::size_t i = 0; i < signals.signals; ++i) {
+    const auto column = solution.col(static_cast<Eigen::Index>(i));
+    const std::complex<double> phasor(column[1], column[2]);
+    oscillations[i] = {column[0], std::abs(phasor), std::arg(phasor)};
+  }
+  return oscillations;
+}
+
+}  // namespace proleg::sim

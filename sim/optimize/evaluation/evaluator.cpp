@@ -1,0 +1,213 @@
+#include "sim/optimize/evaluation/evaluator.hpp"
+
+#include <algorithm>
+#include <deque>
+#include <unordered_map>
+#include <utility>
+
+#include "sim/optimize/evaluation/rating.hpp"
+#include "sim/optimize/evaluation/task_pipeline.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+/// How long fitness() waits before it asks again whether to stop.
+constexpr std::chrono::milliseconds patience{100};
+
+bool knows_outcomes(const Experiment& experiment) {
+  return experiment.reuse && !depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread);
+}
+
+}  // namespace
+
+class Evaluator::Implementation {
+ public:
+  Implementation(const Experiment& experiment, std::uint32_t run, Workers& workers, Store* store,
+                 std::function<void(const Evaluation&, const Progress&)> observe, std::function<bool()> stop)
+      : experiment_(experiment),
+        run_(run),
+        workers_(workers),
+        store_(store),
+        observe_(std::move(observe)),
+        stop_(std::move(stop)),
+        reuse_(knows_outcomes(experiment)),
+        decided_(store != nullptr ? store->evaluation_count(run) : 0),
+        pipeline_(experiment, workers, store,
+                  reuse_ ? TaskPipeline::Results::of_every_number : TaskPipeline::Results::of_one_number) {}
+
+  void expect(std::span<const Candidate> next) {
+    expected_.assign(next.begin(), next.end());
+    plan(false);
+    pipeline_.run(std::chrono::milliseconds(0));
+    count();
+  }
+
+  [[nodiscard]] std::size_t lookahead() const { return 2 * std::size_t{workers_.count()}; }
+
+  std::vector<double> fitness(const Candidate& candidate) {
+    if (budget_spent()) {
+      throw SearchEnded{};
+    }
+    Evaluation evaluation = evaluate(candidate);
+    ++number_;
+    account(evaluation);
+    if (store_ != nullptr) {
+      store_->save(evaluation);
+    }
+    if (observe_) {
+      observe_(evaluation, progress_);
+    }
+    return std::move(evaluation.scores);
+  }
+
+  void set_needed_score(std::optional<double> score) {
+    hopeless_below_.reset();
+    if (experiment_.racing.on() && score && *score > 0.0) {
+      hopeless_below_ = *score * experiment_.racing.keep;
+    }
+  }
+
+  [[nodiscard]] const Progress& progress() const { return progress_; }
+  [[nodiscard]] bool stopped() const { return stopped_; }
+  [[nodiscard]] bool budget_spent() const { return experiment_.evaluations > 0 && number_ >= experiment_.evaluations; }
+
+ private:
+  [[nodiscard]] Task task(std::uint64_t number, const Candidate& candidate, std::uint32_t trial) const {
+    return {run_, number, trial, candidate, hopeless_below_};
+  }
+
+  /// What an outcome that is known is known of.
+  [[nodiscard]] Task outcome_key(const Candidate& candidate) const { return task(0, candidate, 0); }
+
+  /// Asks for the trials of what is expected, but those that nobody will need. asked: whether the first one is certain.
+  void plan(bool asked) {
+    std::vector<Task> tasks;
+    for (std::size_t i = 0; i < expected_.size(); ++i) {
+      const std::uint64_t number = number_ + i;
+      if (experiment_.evaluations > 0 && number >= experiment_.evaluations) {
+        break;
+      }
+      const bool useful = number >= decided_ || (asked && number == number_);
+      if (useful && !outcomes_.contains(outcome_key(expected_[i]))) {
+        for (std::uint32_t trial = 0; trial < experiment_.trials.count; ++trial) {
+          tasks.push_back(task(number, expected_[i], trial));
+        }
+      }
+    }
+    planned_for_ = hopeless_below_;
+    pipeline_.want(tasks);
+  }
+
+  Evaluation evaluate(const Candidate& candidate) {
+    if (expected_.empty()) {
+      expected_.push_back(candidate);
+      plan(true);
+    } else if (expected_.front() != candidate || planned_for_ != hopeless_below_ || number_ < decided_) {
+      expected_.front() = candidate;
+      plan(true);
+    }
+    const auto known = outcomes_.find(outcome_key(candidate));
+    Evaluation evaluation = known != outcomes_.end() ? repeated(known->second) : simulated(candidate);
+    expected_.pop_front();
+    return evaluation;
+  }
+
+  Evaluation repeated(Evaluation outcome) {
+    // The others go on meanwhile.
+    ask_to_go_on();
+    pipeline_.run(std::chrono::milliseconds(0));
+    outcome.number = number_;
+    outcome.reused = true;
+    outcome.restored = false;
+    outcome.wall_s = 0.0;
+    outcome.simulated_s = 0.0;
+    return outcome;
+  }
+
+  Evaluation simulated(const Candidate& candidate) {
+    std::vector<Task> tasks;
+    for (std::uint32_t trial = 0; trial < experiment_.trials.count; ++trial) {
+      tasks.push_back(task(number_, candidate, trial));
+    }
+    const auto all_known = [&] {
+      return std::ranges::all_of(tasks, [&](const Task& its) { return pipeline_.has(its); });
+    };
+    ask_to_go_on();
+    pipeline_.run(std::chrono::milliseconds(0));
+    while (!all_known()) {
+      ask_to_go_on();
+      pipeline_.run(patience);
+    }
+    std::vector<TrialResult> trials;
+    bool restored = true;
+    for (const Task& its : tasks) {
+      TaskPipeline::Found found = pipeline_.take(its);
+      restored = restored && found.restored;
+      trials.push_back(std::move(found.result));
+    }
+    Evaluation evaluation = rate(experiment_, run_, number_, candidate, trials);
+    evaluation.restored = restored;
+    if (reuse_) {
+      outcomes_.emplace(outcome_key(candidate), evaluation);
+    }
+    return evaluation;
+  }
+
+  void ask_to_go_on() {
+    if (stop_ && stop_()) {
+      stopped_ = true;
+      throw SearchEnded{};
+    }
+  }
+
+  void account(const Evaluation& evaluation) {
+    progress_.evaluations += 1;
+    (evaluation.reused ? progress_.reused : evaluation.restored ? progress_.restored : progress_.simulated) += 1;
+    progress_.score_sum += evaluation.scores.front();
+    if (!progress_.best ||
+        experiment_.objectives.front().better(evaluation.scores.front(), progress_.best->scores.front())) {
+      progress_.best = evaluation;
+    }
+    count();
+  }
+
+  void count() {
+    progress_.wasted = pipeline_.counts().wasted;
+    progress_.simulated_s = pipeline_.counts().simulated_s;
+    progress_.workers_s = pipeline_.counts().workers_s;
+  }
+
+  const Experiment& experiment_;
+  std::uint32_t run_;
+  Workers& workers_;
+  Store* store_;
+  std::function<void(const Evaluation&, const Progress&)> observe_;
+  std::function<bool()> stop_;
+  bool reuse_;
+  /// Of a run that goes on: up to here the store knows what was asked for, so what is expected until then and not asked
+  /// for is in vain, and would take the place of a result in the store.
+  std::uint64_t decided_;
+  TaskPipeline pipeline_;
+  std::uint64_t number_ = 0;        ///< of the next evaluation
+  std::deque<Candidate> expected_;  ///< from number_ on
+  std::optional<double> hopeless_below_;
+  std::optional<double> planned_for_;                        ///< hopeless_below_ when plan() was made
+  std::unordered_map<Task, Evaluation, TaskHash> outcomes_;  ///< by outcome_key, if outcomes may be reused
+  Progress progress_;
+  bool stopped_ = false;
+};
+
+Evaluator::Evaluator(const Experiment& experiment, std::uint32_t run, Workers& workers, Store* store,
+                     std::function<void(const Evaluation&, const Progress&)> observe, std::function<bool()> stop)
+    : implementation_(
+          std::make_unique<Implementation>(experiment, run, workers, store, std::move(observe), std::move(stop))) {}
+Evaluator::~Evaluator() = default;
+void Evaluator::expect(std::span<const Candidate> next) { implementation_->expect(next); }
+std::size_t Evaluator::lookahead() const { return implementation_->lookahead(); }
+std::vector<double> Evaluator::fitness(const Candidate& candidate) { return implementation_->fitness(candidate); }
+void Evaluator::set_needed_score(std::optional<double> score) { implementation_->set_needed_score(score); }
+const Progress& Evaluator::progress() const { return implementation_->progress(); }
+bool Evaluator::stopped() const { return implementation_->stopped(); }
+bool Evaluator::budget_spent() const { return implementation_->budget_spent(); }
+
+}  // namespace proleg::optimize

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "sim/optimize/evaluation/fitness_source.hpp"
+#include "sim/optimize/evaluation/store.hpp"
+#include "sim/optimize/evaluation/task.hpp"
+#include "sim/optimize/evaluation/workers.hpp"
+
+namespace proleg::optimize {
+
+/// How a run of an experiment came out so far.
+struct Progress {
+  std::uint64_t evaluations = 0;   ///< that the optimiser asked for
+  std::uint64_t simulated = 0;     ///< of these: neither reused nor restored
+  std::uint64_t reused = 0;        ///< of these: the outcome was known
+  std::uint64_t restored = 0;      ///< of these: all trials came from the store
+  std::uint64_t wasted = 0;        ///< trials simulated ahead that nobody asked for
+  double simulated_s = 0.0;        ///< time that passed in simulations made now, wasted ones too
+  double workers_s = 0.0;          ///< that workers needed for it
+  double score_sum = 0.0;          ///< of the first objective
+  std::optional<Evaluation> best;  ///< by the first objective; the earliest of equals
+};
+
+/// Evaluates what an optimiser asks for, in its order, while workers run ahead of it. Every result depends on run,
+/// number and candidate alone: not on the number of workers, nor on what was expected, nor on whether it came from the
+/// store.
+class Evaluator final : public FitnessSource {
+ public:
+  /// experiment, workers, store: must outlive this. store: null for none. observe: called for each evaluation, in
+  /// order. stop: asked often; when it says true, fitness() throws SearchEnded.
+  Evaluator(const Experiment& experiment, std::uint32_t run, Workers& workers, Store* store,
+            std::function<void(const Evaluation&, const Progress&)> observe, std::function<bool()> stop);
+  ~Evaluator() override;
+  Evaluator(const Evaluator&) = delete;
+  Evaluator& operator=(const Evaluator&) = delete;
+
+  void expect(std::span<const Candidate> next) override;
+  [[nodiscard]] std::size_t lookahead() const override;  ///< twice the number of workers
+  std::vector<double> fitness(const Candidate& candidate) override;
+  void set_needed_score(std::optional<double> score) override;
+
+  [[nodiscard]] const Progress& progress() const;
+  [[nodiscard]] bool stopped() const;       ///< whether stop() said so
+  [[nodiscard]] bool budget_spent() const;  ///< whether experiment.evaluations are used up
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace proleg::optimize

@@ -1,0 +1,151 @@
+#include "sim/optimize/evaluation/experiment_parts.hpp"
+
+#include <array>
+#include <charconv>
+#include <concepts>
+#include <optional>
+#include <type_traits>
+
+#include "shared/fixed/decimal.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+/// "name=value name=value ..."
+class Settings {
+ public:
+  template <typename Number>
+  requires std::integral<Number> || std::floating_point<Number> Settings& add(const char* name, Number value) {
+    std::array<char, 32> text{};
+    char* const end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+    return add(name, std::string(text.data(), end));
+  }
+  Settings& add(const char* name, bool value) { return add(name, std::string(value ? "yes" : "no")); }
+  Settings& add(const char* name, const std::optional<double>& value) {
+    return value ? add(name, *value) : add(name, std::string("none"));
+  }
+  Settings& add(const char* name, const std::string& value) {
+    text_ += (text_.empty() ? "" : " ") + std::string(name) + "=" + value;
+    return *this;
+  }
+  /// By number: which one it is matters only for comparing.
+  template <typename Enumeration>
+  requires std::is_enum_v<Enumeration> Settings& add(const char* name, Enumeration value) {
+    return add(name, static_cast<int>(value));
+  }
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+std::string method_text(const GreatDelugeSettings& method) {
+  return Settings()
+      .add("water_level", method.water_level)
+      .add("rain", method.rain)
+      .add("credits", method.credits)
+      .add("retries", method.retries)
+      .add("confidence", method.confidence)
+      .add("step", method.step)
+      .add("growth", method.growth)
+      .add("move", method.move)
+      .add("neighbour", method.neighbour)
+      .add("start", method.start)
+      .add("first_must_pass", method.first_must_pass)
+      .add("reevaluations", method.reevaluations)
+      .add("chains", method.chains)
+      .add("target", method.target)
+      .text();
+}
+
+std::string method_text(const GeneticSettings& method) {
+  return Settings()
+      .add("population", method.population)
+      .add("mutation", method.mutation)
+      .add("crossover", method.crossover)
+      .add("generations_to_convergence", method.generations_to_convergence)
+      .add("convergence", method.convergence)
+      .add("mode", method.mode)
+      .text();
+}
+
+std::string method_text(const PagmoSettings& method) {
+  return Settings()
+      .add("population", method.population)
+      .add("generations", method.generations)
+      .add("sigma0", method.sigma0)
+      .add("crossover", method.crossover)
+      .add("scale", method.scale)
+      .add("mutation", method.mutation)
+      .text();
+}
+
+std::string space_text(const SearchSpace& space) {
+  std::string text;
+  for (const Dimension& dimension : space.dimensions) {
+    text += dimension.name;
+    for (const std::int32_t value : dimension.values) {
+      text += " ";
+      text += format_decimal(value, dimension.unit).view();
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string objectives_text(const Experiment& experiment) {
+  std::string text;
+  for (const Objective& objective : experiment.objectives) {
+    text += Settings()
+                .add("name", objective.name)
+                .add("goal", objective.goal)
+                .add("failed", objective.failed)
+                .add("terms", terms_text(objective))
+                .text() +
+            "\n";
+  }
+  return text + Settings().add("heading_deg", experiment.heading_deg).text();
+}
+
+std::string trials_text(const Trials& trials) {
+  return Settings()
+      .add("count", trials.count)
+      .add("aggregate", trials.aggregate)
+      .add("friction", trials.spread.friction)
+      .add("mass", trials.spread.mass)
+      .add("servo_gain", trials.spread.servo_gain)
+      .add("latency_ms", trials.spread.latency_ms)
+      .add("contact_noise", trials.spread.contact_noise)
+      .text();
+}
+
+}  // namespace
+
+std::string terms_text(const Objective& objective) {
+  std::string text;
+  for (const Term& term : objective.terms) {
+    std::array<char, 32> weight{};
+    char* const end = std::to_chars(weight.data(), weight.data() + weight.size(), term.weight).ptr;
+    text += text.empty() ? "" : " + ";
+    text.append(weight.data(), end);
+    text += " * ";
+    text += sim::declaration_of(term.measure).name;
+  }
+  return text;
+}
+
+std::vector<ExperimentPart> parts_of(const Experiment& experiment) {
+  return {{"method",
+           std::visit([&](const auto& method) { return method_name(experiment.method) + " " + method_text(method); },
+                      experiment.method)},
+          {"seed", Settings().add("seed", experiment.seed).text()},
+          {"search space", space_text(experiment.space)},
+          {"fitness", objectives_text(experiment)},
+          {"trials", trials_text(experiment.trials)},
+          {"racing", Settings().add("after", experiment.racing.after).add("keep", experiment.racing.keep).text()},
+          {"reuse", Settings().add("reuse", experiment.reuse).text()},
+          {"duration", Settings().add("seconds", experiment.scenario.duration_s).text()}};
+}
+
+}  // namespace proleg::optimize

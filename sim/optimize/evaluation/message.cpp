@@ -1,0 +1,161 @@
+#include "sim/optimize/evaluation/message.hpp"
+
+#include <bit>
+#include <concepts>
+#include <utility>
+
+namespace proleg::optimize {
+namespace {
+
+class Writer {
+ public:
+  template <std::unsigned_integral Integer>
+  void write(Integer value) {
+    for (std::size_t i = 0; i < sizeof value; ++i) {
+      bytes_.push_back(static_cast<std::byte>(value >> (8 * i)));
+    }
+  }
+  void write(double value) { write(std::bit_cast<std::uint64_t>(value)); }
+  void write(bool value) { bytes_.push_back(std::byte{value}); }
+  void write(const std::string& text) {
+    write(text.size());
+    const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+  }
+  void write(const Candidate& candidate) {
+    write(candidate.size());
+    for (const std::uint32_t index : candidate) {
+      write(index);
+    }
+  }
+
+  [[nodiscard]] Bytes take() { return std::move(bytes_); }
+
+ private:
+  Bytes bytes_;
+};
+
+/// After something that is not there, everything reads as nothing and ok() says so.
+class Reader {
+ public:
+  explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}
+
+  template <std::unsigned_integral Integer>
+  void read(Integer& value) {
+    value = 0;
+    const std::span<const std::byte> bytes = take(sizeof value);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+      value |= static_cast<Integer>(std::to_integer<Integer>(bytes[i]) << (8 * i));
+    }
+  }
+  void read(double& value) {
+    std::uint64_t pattern = 0;
+    read(pattern);
+    value = std::bit_cast<double>(pattern);
+  }
+  void read(bool& value) {
+    const std::span<const std::byte> bytes = take(1);
+    value = !bytes.empty() && bytes[0] == std::byte{1};
+    ok_ = ok_ && (value || bytes[0] == std::byte{0});
+  }
+  void read(std::string& text) {
+    const std::span<const std::byte> bytes = take(read_count(1));
+    text.clear();
+    for (const std::byte byte : bytes) {
+      text.push_back(std::to_integer<char>(byte));
+    }
+  }
+  void read(Candidate& candidate) {
+    candidate.resize(read_count(sizeof(std::uint32_t)));
+    for (std::uint32_t& index : candidate) {
+      read(index);
+    }
+  }
+
+  [[nodiscard]] bool ok() const { return ok_; }
+  [[nodiscard]] bool finished() const { return ok_ && rest_.empty(); }
+
+ private:
+  std::span<const std::byte> take(std::size_t count) {
+    if (!ok_ || count > rest_.size()) {
+      ok_ = false;
+      return {};
+    }
+    const std::span<const std::byte> taken = rest_.first(count);
+    rest_ = rest_.subspan(count);
+    return taken;
+  }
+  /// A number of items that are there, so that a wrong one takes no memory.
+  std::size_t read_count(std::size_t item_size) {
+    std::uint64_t count = 0;
+    read(count);
+    ok_ = ok_ && count <= rest_.size() / item_size;
+    return ok_ ? count : 0;
+  }
+
+  std::span<const std::byte> rest_;
+  bool ok_ = true;
+};
+
+// The order of the fields, said once: Archive is a Writer or a Reader.
+
+template <typename Archive, typename TaskType>
+void each_field(TaskType& task, const Archive& field) {
+  field(task.run);
+  field(task.number);
+  field(task.trial);
+  field(task.candidate);
+}
+
+template <typename Archive, typename ResultType>
+void each_result_field(ResultType& result, const Archive& field) {
+  for (auto& value : result.measures.all()) {
+    field(value);
+  }
+  field(result.simulated_s);
+  field(result.wall_s);
+  field(result.given_up);
+  field(result.failure);
+}
+
+}  // namespace
+
+Bytes to_bytes(const Task& task) {
+  Writer writer;
+  each_field(task, [&](const auto& value) { writer.write(value); });
+  writer.write(task.hopeless_below.has_value());
+  writer.write(task.hopeless_below.value_or(0.0));
+  return writer.take();
+}
+
+std::optional<Task> task_from(std::span<const std::byte> bytes) {
+  Reader reader(bytes);
+  Task task;
+  each_field(task, [&](auto& value) { reader.read(value); });
+  bool can_be_hopeless = false;
+  double hopeless_below = 0.0;
+  reader.read(can_be_hopeless);
+  reader.read(hopeless_below);
+  if (!reader.finished()) {
+    return std::nullopt;
+  }
+  if (can_be_hopeless) {
+    task.hopeless_below = hopeless_below;
+  }
+  return task;
+}
+
+Bytes to_bytes(const TrialResult& result) {
+  Writer writer;
+  each_result_field(result, [&](const auto& value) { writer.write(value); });
+  return writer.take();
+}
+
+std::optional<TrialResult> result_from(std::span<const std::byte> bytes) {
+  Reader reader(bytes);
+  TrialResult result;
+  each_result_field(result, [&](auto& value) { reader.read(value); });
+  return reader.finished() ? std::optional(std::move(result)) : std::nullopt;
+}
+
+}  // namespace proleg::optimize

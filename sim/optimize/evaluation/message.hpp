@@ -1,0 +1,25 @@
+#pragma once
+
+// Tasks and results as bytes, for other processes of this program, on this computer or others of its kind. Numbers are
+// written with their lowest byte first, doubles as their bit pattern, so that every value arrives as it was.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sim/optimize/evaluation/task.hpp"
+
+namespace proleg::optimize {
+
+using Bytes = std::vector<std::byte>;
+
+[[nodiscard]] Bytes to_bytes(const Task& task);
+[[nodiscard]] Bytes to_bytes(const TrialResult& result);
+
+/// Nothing if the bytes are not exactly a task.
+[[nodiscard]] std::optional<Task> task_from(std::span<const std::byte> bytes);
+/// Nothing if the bytes are not exactly a result.
+[[nodiscard]] std::optional<TrialResult> result_from(std::span<const std::byte> bytes);
+
+}  // namespace proleg::optimize

@@ -1,0 +1,202 @@
+#include "sim/optimize/evaluation/store_file.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <utility>
+#include <vector>
+
+#include "sim/optimize/evaluation/experiment_parts.hpp"
+#include "sim/optimize/evaluation/store.hpp"
+#include "sim/scenario/text.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+using sim::Database;
+using sim::Statement;
+
+std::string universal_time() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  std::array<char, 32> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts)};
+}
+
+std::int64_t pragma(Database& database, const char* sql) {
+  Statement statement(database, sql);
+  return statement.step() ? statement.integer(0) : 0;
+}
+
+std::string value_of(Database& database, std::string_view key) {
+  Statement statement(database, "SELECT value FROM experiment WHERE key = ?1");
+  statement.bind_all(key);
+  return statement.step() ? statement.text(0) : "";
+}
+
+void write_experiment(Database& database, const Experiment& experiment, const StoreColumns& columns,
+                      const std::string& build_id) {
+  Statement entry(database, "INSERT INTO experiment VALUES(?1, ?2)");
+  const auto write = [&entry](std::string_view key, const std::string& value) {
+    entry.run(key, std::string_view(value));
+  };
+  write("fingerprint", experiment.fingerprint());
+  write("build_id", build_id);
+  write("path", experiment.path);
+  write("scenario", experiment.scenario.path);
+  write("method", method_name(experiment.method));
+  write("seed", std::to_string(experiment.seed));
+  write("started", universal_time());
+
+  Statement part(database, "INSERT INTO part VALUES(?1, ?2)");
+  for (const ExperimentPart& its : parts_of(experiment)) {
+    part.run(std::string_view(its.name), std::string_view(its.text));
+  }
+  Statement source(database, "INSERT INTO source(path, text) VALUES(?1, ?2)");
+  for (const sim::SourceFile& its : experiment.sources) {
+    source.run(std::string_view(its.path), std::string_view(its.text));
+  }
+  Statement objective(database, "INSERT INTO objective VALUES(?1, ?2, ?3, ?4, ?5, ?6)");
+  for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
+    const Objective& its = experiment.objectives[i];
+    const std::string terms = terms_text(its);
+    objective.run(i, std::string_view(its.name), std::string_view(columns.scores[i]),
+                  std::string_view(its.goal == Goal::maximise ? "maximise" : "minimise"), std::string_view(terms),
+                  its.failed);
+  }
+  Statement dimension(database, "INSERT INTO dimension VALUES(?1, ?2, nullif(?3, ''), ?4, ?5, ?6, ?7)");
+  for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
+    const Dimension& its = experiment.space.dimensions[i];
+    Candidate candidate(experiment.space.dimensions.size(), 0);
+    const double lowest = column_value(experiment.space, candidate, i);
+    candidate[i] = static_cast<std::uint32_t>(its.values.size() - 1);
+    dimension.run(i, std::string_view(its.name),
+                  columns.values.empty() ? std::string_view() : std::string_view(columns.values[i]),
+                  std::string_view(scale_of(its.unit).symbol), its.values.size(), lowest,
+                  column_value(experiment.space, candidate, i));
+  }
+  Statement measure(database, "INSERT INTO measure VALUES(?1, ?2, ?3)");
+  for (const sim::MeasureDeclaration& its : sim::measures()) {
+    measure.run(its.name, its.unit, its.help);
+  }
+}
+
+std::filesystem::path beginning(const std::filesystem::path& path) { return path.string() + ".new"; }
+
+/// What differs between the experiment of a store and this one.
+std::vector<std::string> differences(Database& database, const Experiment& experiment) {
+  std::vector<std::string> names;
+  Statement part(database, "SELECT text FROM part WHERE name = ?1");
+  for (const ExperimentPart& its : parts_of(experiment)) {
+    part.bind_all(std::string_view(its.name));
+    if (!part.step() || part.text(0) != its.text) {
+      names.push_back(its.name);
+    }
+  }
+  // The experiment's own file says what the parts say.
+  Statement source(database, "SELECT text FROM source ORDER BY position LIMIT -1 OFFSET ?1");
+  source.bind_all(experiment.sources.size() - experiment.scenario.sources.size());
+  for (const sim::SourceFile& its : experiment.scenario.sources) {
+    if (!source.step() || source.text(0) != its.text) {
+      names.push_back("file " + std::filesystem::path(its.path).filename().string());
+    }
+  }
+  if (source.step()) {
+    names.emplace_back("number of files");
+  }
+  return names;
+}
+
+}  // namespace
+
+StoreLock::StoreLock(const std::filesystem::path& file, bool create, const std::filesystem::path& shown)
+    : descriptor_(open(file.c_str(), O_RDWR | O_CLOEXEC | (create ? O_CREAT : 0), 0666)) {
+  if (descriptor_ < 0) {
+    throw StoreError(shown.string() + (create ? ": cannot be created: " : ": cannot be opened for writing: ") +
+                     std::strerror(errno));
+  }
+  // File systems without such locks are used without one.
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    close(descriptor_);
+    throw StoreError(shown.string() + ": another program is writing into it; wait for it or stop it first");
+  }
+}
+
+StoreLock::~StoreLock() {
+  if (descriptor_ >= 0) {
+    close(descriptor_);
+  }
+}
+
+StoreLock::StoreLock(StoreLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+/// Under another name first: what is there under its own is a whole store, whenever the process is killed.
+StoreLock create_store(const std::filesystem::path& path, const Experiment& experiment, const StoreColumns& columns,
+                       const std::string& build_id) {
+  const auto require_none = [&path] {
+    if (std::filesystem::exists(std::filesystem::symlink_status(path))) {
+      throw StoreError(path.string() + ": is there already; resume it, or choose another folder");
+    }
+  };
+  require_none();
+  StoreLock lock(beginning(path), true, path);
+  require_none();
+  try {
+    std::filesystem::resize_file(beginning(path), 0);  // that of a process killed here
+    Database database(beginning(path), SQLITE_OPEN_READWRITE);
+    database.execute("PRAGMA journal_mode = MEMORY; BEGIN IMMEDIATE");
+    database.execute(("PRAGMA application_id = " + std::to_string(store_application_id) +
+                      "; PRAGMA user_version = " + std::to_string(store_format))
+                         .c_str());
+    database.execute(store_schema(experiment, columns).c_str());
+    write_experiment(database, experiment, columns, build_id);
+    database.execute("COMMIT");
+  } catch (...) {
+    std::error_code ignored;
+    std::filesystem::remove(beginning(path), ignored);
+    throw;
+  }
+  std::filesystem::rename(beginning(path), path);
+  return lock;
+}
+
+StoreLock find_store(const std::filesystem::path& path) {
+  const std::filesystem::file_status status = std::filesystem::status(path);
+  if (!std::filesystem::exists(status)) {
+    throw StoreError(path.string() + ": is not there; nothing can be resumed");
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw StoreError(path.string() + ": is not a file; expected the store of an experiment");
+  }
+  return {path, false, path};
+}
+
+void require_same_experiment(const std::filesystem::path& path, Database& database, const Experiment& experiment,
+                             const std::string& build_id) {
+  if (pragma(database, "PRAGMA application_id") != std::int64_t{store_application_id}) {
+    throw StoreError(path.string() + ": is not the store of an experiment");
+  }
+  if (const std::int64_t format = pragma(database, "PRAGMA user_version"); format != std::int64_t{store_format}) {
+    throw StoreError(path.string() + ": has format " + std::to_string(format) + ", this program knows format " +
+                     std::to_string(store_format));
+  }
+  const std::string fingerprint = value_of(database, "fingerprint");
+  if (fingerprint != experiment.fingerprint()) {
+    const std::vector<std::string> names = differences(database, experiment);
+    throw StoreError(path.string() + ": is the store of another experiment, with fingerprint " +
+                     fingerprint.substr(0, 12) + ", expected " + experiment.fingerprint().substr(0, 12) +
+                     (names.empty() ? "" : "; what differs: " + sim::listed(names)));
+  }
+  if (const std::string other = value_of(database, "build_id"); other != build_id) {
+    throw StoreError(path.string() + ": was made by build " + sim::in_quotes(other) + ", this is " +
+                     sim::in_quotes(build_id) + "; their results may differ, so it takes no more");
+  }
+}
+
+}  // namespace proleg::optimize

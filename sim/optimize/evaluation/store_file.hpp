@@ -1,0 +1,40 @@
+#pragma once
+
+// How a store's file comes to be, is claimed and is recognised. All throw StoreError, or SqliteError.
+
+#include <filesystem>
+#include <string>
+
+#include "sim/optimize/evaluation/store_schema.hpp"
+#include "sim/optimize/experiment/experiment.hpp"
+#include "sim/record/sqlite.hpp"
+
+namespace proleg::optimize {
+
+/// The lock that says "a program writes into this store", on the file itself: it goes with the process, however that
+/// ends. Readers do not care. (SQLite's own locks are held only while it writes.)
+class StoreLock {
+ public:
+  /// Of a file that is there, or with `create` is made. Throws StoreError if it cannot be opened or another has the
+  /// lock. shown: how messages call it.
+  StoreLock(const std::filesystem::path& file, bool create, const std::filesystem::path& shown);
+  ~StoreLock();
+  StoreLock(StoreLock&& other) noexcept;
+  StoreLock& operator=(StoreLock&&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+/// Makes a store with its tables and what it says about the experiment. There must be nothing under its name.
+[[nodiscard]] StoreLock create_store(const std::filesystem::path& path, const Experiment& experiment,
+                                     const StoreColumns& columns, const std::string& build_id);
+
+/// Claims a file that is there.
+[[nodiscard]] StoreLock find_store(const std::filesystem::path& path);
+
+/// Refuses what is no store of this format, experiment and build.
+void require_same_experiment(const std::filesystem::path& path, sim::Database& database, const Experiment& experiment,
+                             const std::string& build_id);
+
+}  // namespace proleg::optimize

@@ -1,0 +1,41 @@
+#pragma once
+
+// The tables of a store. Comments inside the SQL are kept in the file: `.schema` in the sqlite3 shell shows them.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/optimize/experiment/experiment.hpp"
+
+namespace proleg::optimize {
+
+/// "PrOp", SQLite's application id: how a store is told from any other database.
+inline constexpr std::uint32_t store_application_id = 0x50724F70;
+/// Raised whenever a reader of the older format would misread or miss something. SQLite's user_version.
+inline constexpr std::uint32_t store_format = 1;
+
+/// Names of the columns that depend on the experiment. SQLite knows no difference between cases in
+/// them, so a name that is taken gets "_" at its end.
+struct StoreColumns {
+  explicit StoreColumns(const Experiment& experiment);
+
+  std::vector<std::string> scores;    ///< "score distance": one for each objective
+  std::vector<std::string> values;    ///< "amplitude:J5": one for each dimension; none if they are too many for a table
+  std::vector<std::string> measures;  ///< "distance"
+};
+
+/// A dimension's value as it stands in files: 0.1, not the multiple of 2^-30 that a module makes of it.
+[[nodiscard]] double column_value(const SearchSpace& space, const Candidate& candidate, std::size_t dimension);
+
+/// SQL that makes all tables.
+[[nodiscard]] std::string store_schema(const Experiment& experiment, const StoreColumns& columns);
+
+/// SQL that inserts or replaces a row: "table(a, b) VALUES(?1, ?2)".
+[[nodiscard]] std::string replace_row(const std::string& table, const std::vector<std::string>& columns);
+
+/// Columns of the tables trial and evaluation, in the order in which the store gives them their values.
+[[nodiscard]] std::vector<std::string> trial_columns(const StoreColumns& columns);
+[[nodiscard]] std::vector<std::string> evaluation_columns(const StoreColumns& columns);
+
+}  // namespace proleg::optimize

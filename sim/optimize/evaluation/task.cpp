@@ -1,0 +1,82 @@
+#include "sim/optimize/evaluation/task.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "sim/loop/simulation.hpp"
+#include "sim/physics/physics_error.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+sim::Scenario scenario_of(const Experiment& experiment, const Task& task) {
+  sim::Scenario scenario = experiment.scenario;
+  experiment.space.apply(task.candidate, scenario);
+  const Spread& spread = experiment.trials.spread;
+  if (depends_on_seed(experiment.scenario, experiment.space, spread)) {
+    perturb(scenario, spread, trial_seed(experiment.seed, task.run, task.number, task.trial));
+  }
+  return scenario;
+}
+
+/// The tick after which racing looks at the run; none if it does not.
+std::optional<std::uint32_t> look_tick(const Experiment& experiment, const Task& task, std::uint32_t ticks) {
+  if (!experiment.racing.on() || !task.hopeless_below || ticks < 2) {
+    return std::nullopt;
+  }
+  return std::clamp(static_cast<std::uint32_t>(std::lround(experiment.racing.after * ticks)), 1U, ticks - 1);
+}
+
+/// What a run is heading for if it goes on as it did: the distance grows with time; the speed is what it is.
+sim::MeasureValues extrapolated(sim::MeasureValues measures, double share) {
+  measures[sim::Measure::distance] /= share;
+  return measures;
+}
+
+/// Zeros without a sign and one pattern of "not a number": what every store and message gives back as it was.
+void normalise(sim::MeasureValues& measures) {
+  for (double& value : measures.all()) {
+    value = std::isnan(value) ? std::numeric_limits<double>::quiet_NaN() : value + 0.0;
+  }
+}
+
+void simulate(const Experiment& experiment, const Task& task, TrialResult& result) {
+  const sim::Scenario scenario = scenario_of(experiment, task);
+  const std::uint32_t ticks = sim::tick_count(scenario);
+  const std::optional<std::uint32_t> look = look_tick(experiment, task, ticks);
+  sim::Simulation simulation(scenario);
+  try {
+    while (simulation.tick() < ticks && !result.given_up) {
+      simulation.advance();
+      if (simulation.tick() == look) {
+        const sim::MeasureValues heading_for =
+            extrapolated(simulation.measures(experiment.heading_deg), static_cast<double>(*look) / ticks);
+        if (experiment.objectives.front().score(heading_for) < *task.hopeless_below) {
+          result.given_up = true;
+          result.measures = heading_for;
+        }
+      }
+    }
+    if (!result.given_up) {
+      result.measures = simulation.measures(experiment.heading_deg);
+    }
+  } catch (const sim::PhysicsError& error) {
+    result.failure = error.what();
+  }
+  result.simulated_s = simulation.time_s();
+}
+
+}  // namespace
+
+TrialResult run_trial(const Experiment& experiment, const Task& task) {
+  const auto start = std::chrono::steady_clock::now();
+  TrialResult result;
+  simulate(experiment, task, result);
+  normalise(result.measures);
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace proleg::optimize

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "sim/measure/measure.hpp"
+#include "sim/optimize/experiment/experiment.hpp"
+
+namespace proleg::optimize {
+
+/// One simulation to be made: a trial of a candidate.
+struct Task {
+  std::uint32_t run = 0;     ///< repetition of the experiment, from 0
+  std::uint64_t number = 0;  ///< of the evaluation in its run, from 0: the individual
+  std::uint32_t trial = 0;   ///< from 0
+  Candidate candidate;
+  /// Racing: the candidate is given up if it is heading for a score below this.
+  std::optional<double> hopeless_below;
+
+  bool operator==(const Task&) const = default;
+};
+
+/// What came of it.
+struct TrialResult {
+  sim::MeasureValues measures;
+  double simulated_s = 0.0;
+  double wall_s = 0.0;    ///< processor time would hide waiting; this is what the worker needed
+  bool given_up = false;  ///< racing stopped it; distance and speed are those it was heading for
+  std::string failure;    ///< why the simulation failed (PhysicsError); empty if it did not
+};
+
+/// Simulates. The result depends on experiment and task alone (but for wall_s). Throws nothing but what cannot be
+/// helped (out of memory).
+[[nodiscard]] TrialResult run_trial(const Experiment& experiment, const Task& task);
+
+/// A candidate rated: the outcome of all its trials.
+struct Evaluation {
+  std::uint32_t run = 0;
+  std::uint64_t number = 0;
+  Candidate candidate;
+  std::vector<double> scores;   ///< of each objective; mean or worst of its trials
+  sim::MeasureValues measures;  ///< mean over the trials that did not fail
+  double wall_s = 0.0;          ///< of all trials
+  double simulated_s = 0.0;
+  bool given_up = false;  ///< at least one trial was
+  bool reused = false;    ///< not simulated: the outcome was known from an evaluation before
+  bool restored = false;  ///< not simulated now: from the store of an interrupted run
+  std::string failure;    ///< of the first trial that failed
+};
+
+}  // namespace proleg::optimize

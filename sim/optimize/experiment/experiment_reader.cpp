@@ -1,0 +1,139 @@
+#include <limits>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "sim/optimize/experiment/experiment.hpp"
+#include "sim/optimize/experiment/fitness_reader.hpp"
+#include "sim/optimize/experiment/genome_reader.hpp"
+#include "sim/optimize/experiment/method_reader.hpp"
+#include "sim/scenario/source_set.hpp"
+#include "sim/scenario/text.hpp"
+#include "sim/scenario/values.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+using sim::Range;
+using sim::XmlElement;
+
+constexpr Range headings{-360.0, 360.0, "degrees"};
+constexpr Range spreads{0.0, 0.9, ""};
+constexpr Range latencies{0.0, 100.0, "ms"};
+constexpr Range shares{0.0, 1.0, ""};
+constexpr Range part_runs{0.0, 0.99, ""};
+constexpr std::uint64_t most_evaluations = 1'000'000'000;
+constexpr std::uint64_t most_trials = 1000;
+
+sim::Scenario read_named_scenario(const XmlElement& section, const std::filesystem::path& path, sim::FileSource& files,
+                                  const std::optional<std::filesystem::path>& simulation) {
+  if (simulation) {
+    return read_scenario(*simulation, files);
+  }
+  const auto mention = section.child("simulation");
+  if (!mention) {
+    section.refuse("no <simulation> in " + section.label(), "the scenario, named there or with --simulation");
+  }
+  // Opened here first, so that a file that is missing is a fault of this line.
+  std::vector<sim::SourceFile> record;
+  const std::filesystem::path found = sim::SourceSet(files, path, record).open(*mention, mention->text())->path();
+  return read_scenario(found, files);
+}
+
+double read_spread(const XmlElement& trials, std::string_view tag, const Range& range) {
+  const auto element = trials.child(tag);
+  return element ? read_quantity(*element, range) : 0.0;
+}
+
+Trials read_trials(const XmlElement& element) {
+  element.allow({"count", "aggregate"}, {"friction", "mass", "servoGain", "latency", "contactNoise"});
+  Trials trials;
+  trials.count = static_cast<std::uint32_t>(read_whole_attribute(element, "count", 1, most_trials));
+  if (element.attribute("aggregate")) {
+    trials.aggregate = static_cast<Aggregate>(read_choice_attribute(element, "aggregate", {"mean", "worst"}));
+  }
+  trials.spread.friction = read_spread(element, "friction", spreads);
+  trials.spread.mass = read_spread(element, "mass", spreads);
+  trials.spread.servo_gain = read_spread(element, "servoGain", spreads);
+  trials.spread.latency_ms = read_spread(element, "latency", latencies);
+  trials.spread.contact_noise = read_spread(element, "contactNoise", shares);
+  return trials;
+}
+
+/// Whether the score is the distance or the speed, or a multiple, which a run gains bit by bit.
+bool grows_with_time(const std::vector<Objective>& objectives) {
+  if (objectives.size() != 1 || objectives.front().terms.size() != 1) {
+    return false;
+  }
+  const Objective& objective = objectives.front();
+  const Term& term = objective.terms.front();
+  return objective.goal == Goal::maximise && term.weight > 0.0 &&
+         (term.measure == sim::Measure::distance || term.measure == sim::Measure::speed);
+}
+
+Racing read_racing(const XmlElement& element, const std::vector<Objective>& objectives) {
+  element.allow({"after", "keep"}, {});
+  Racing racing;
+  racing.after = read_number_attribute(element, "after", part_runs);
+  if (element.attribute("keep")) {
+    racing.keep = read_number_attribute(element, "keep", shares);
+  }
+  if (racing.on() && !grows_with_time(objectives)) {
+    element.refuse(element.label() + " with this fitness",
+                   "one objective, which is distance or speed with a weight above 0, to be maximised");
+  }
+  return racing;
+}
+
+void read_evaluation(const XmlElement& element, Experiment& experiment) {
+  element.allow({}, {"evaluations", "seed", "reuse", "trials", "racing"});
+  if (const auto evaluations = element.child("evaluations")) {
+    experiment.evaluations = read_whole(*evaluations, 0, most_evaluations);
+  }
+  if (const auto seed = element.child("seed")) {
+    experiment.seed = read_whole(*seed, 0, std::numeric_limits<std::uint64_t>::max());
+  }
+  if (const auto reuse = element.child("reuse")) {
+    experiment.reuse = read_whole(*reuse, 0, 1) == 1;
+  }
+  if (const auto trials = element.child("trials")) {
+    experiment.trials = read_trials(*trials);
+  }
+  if (const auto racing = element.child("racing")) {
+    experiment.racing = read_racing(*racing, experiment.objectives);
+  }
+}
+
+}  // namespace
+
+Experiment read_experiment(const std::filesystem::path& path, sim::FileSource& files,
+                           const std::optional<std::filesystem::path>& simulation) {
+  Experiment experiment;
+  experiment.path = path.string();
+  const std::unique_ptr<sim::XmlDocument> document = sim::SourceSet(files, path, experiment.sources).open_top();
+  const XmlElement section = document->root(method_tags);
+  constexpr std::array<std::string_view, 1> pagmo_attributes{"algorithm"};
+  constexpr std::array<std::string_view, 5> tags{"simulation", "properties", "genome", "fitness", "evaluation"};
+  section.allow(std::span(pagmo_attributes).first(section.is("pagmo") ? 1 : 0), tags);
+
+  experiment.scenario = read_named_scenario(section, path, files, simulation);
+  experiment.sources.insert(experiment.sources.end(), experiment.scenario.sources.begin(),
+                            experiment.scenario.sources.end());
+  const XmlElement properties = section.required_child("properties");
+  experiment.method = read_method(section, properties, experiment.scenario.remarks);
+  experiment.space = read_search_space(properties, section.required_child("genome"), experiment.scenario);
+  experiment.objectives = default_objectives();
+  if (const auto fitness = section.child("fitness")) {
+    fitness->allow({"heading"}, {"objective"});
+    if (fitness->attribute("heading")) {
+      experiment.heading_deg = read_number_attribute(*fitness, "heading", headings);
+    }
+    experiment.objectives = read_objectives(*fitness);
+  }
+  if (const auto evaluation = section.child("evaluation")) {
+    read_evaluation(*evaluation, experiment);
+  }
+  return experiment;
+}
+
+}  // namespace proleg::optimize

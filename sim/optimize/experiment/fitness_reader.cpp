@@ -1,0 +1,124 @@
+#include "sim/optimize/experiment/fitness_reader.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "sim/scenario/text.hpp"
+#include "sim/scenario/values.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+using sim::in_quotes;
+using sim::XmlElement;
+
+constexpr std::size_t most_objectives = 8;
+constexpr sim::Range weights{-1e9, 1e9, ""};
+constexpr sim::Range scores{-1e12, 1e12, ""};
+constexpr double worst_cost = 1e6;
+
+sim::Measure read_measure(const XmlElement& element) {
+  const std::string name = element.required_attribute("measure");
+  const std::optional<sim::Measure> measure = sim::find_measure(name);
+  if (!measure) {
+    std::vector<std::string> known;
+    for (const sim::MeasureDeclaration& declaration : sim::measures()) {
+      known.emplace_back(declaration.name);
+    }
+    element.refuse("unknown measure " + in_quotes(name), "one of " + sim::listed(known));
+  }
+  return *measure;
+}
+
+Term read_term(const XmlElement& element) {
+  element.allow({"measure", "weight"}, {});
+  Term term;
+  term.measure = read_measure(element);
+  if (element.attribute("weight")) {
+    term.weight = read_number_attribute(element, "weight", weights);
+  }
+  if (term.weight == 0.0) {
+    element.refuse("weight 0 in " + element.label(), "another weight, or no such term");
+  }
+  return term;
+}
+
+std::vector<Term> read_terms(const XmlElement& objective) {
+  std::vector<Term> terms;
+  for (const XmlElement& child : objective.children()) {
+    const Term term = read_term(child);
+    if (std::ranges::find(terms, term.measure, &Term::measure) != terms.end()) {
+      child.refuse("a second term of measure " + in_quotes(declaration_of(term.measure).name), "one");
+    }
+    terms.push_back(term);
+  }
+  if (objective.attribute("measure")) {
+    if (!terms.empty()) {
+      objective.refuse("attribute 'measure' and <term>s in " + objective.label(), "one or the other");
+    }
+    terms.push_back({read_measure(objective), 1.0});
+  }
+  if (terms.empty()) {
+    objective.refuse("no <term> in " + objective.label(), "at least one, or an attribute 'measure'");
+  }
+  return terms;
+}
+
+/// Where nothing says the goal: of a single measure it is clear, a sum is made to be maximised.
+Goal natural_goal(const std::vector<Term>& terms) {
+  if (terms.size() > 1) {
+    return Goal::maximise;
+  }
+  const bool rises = declaration_of(terms.front().measure).higher_is_better == (terms.front().weight > 0.0);
+  return rises ? Goal::maximise : Goal::minimise;
+}
+
+Objective read_objective(const XmlElement& element) {
+  element.allow({"name", "goal", "failed", "measure"}, {"term"});
+  Objective objective;
+  objective.terms = read_terms(element);
+  objective.goal = element.attribute("goal")
+                       ? static_cast<Goal>(read_choice_attribute(element, "goal", {"maximise", "minimise"}))
+                       : natural_goal(objective.terms);
+  if (const auto name = element.attribute("name")) {
+    objective.name = checked_name(element, *name);
+  } else {
+    objective.name =
+        objective.terms.size() == 1 ? std::string(declaration_of(objective.terms.front().measure).name) : "score";
+  }
+  objective.failed = objective.goal == Goal::maximise ? 0.0 : worst_cost;
+  if (element.attribute("failed")) {
+    objective.failed = read_number_attribute(element, "failed", scores);
+  }
+  return objective;
+}
+
+}  // namespace
+
+std::vector<Objective> read_objectives(const XmlElement& fitness) {
+  std::vector<Objective> objectives;
+  for (const XmlElement& child : fitness.children()) {
+    Objective objective = read_objective(child);
+    if (std::ranges::find(objectives, objective.name, &Objective::name) != objectives.end()) {
+      child.refuse("a second objective " + in_quotes(objective.name), "another name");
+    }
+    if (objectives.size() == most_objectives) {
+      child.refuse("more than " + std::to_string(most_objectives) + " objectives", "at most that");
+    }
+    objectives.push_back(std::move(objective));
+  }
+  if (objectives.empty()) {
+    fitness.refuse("no <objective> in " + fitness.label(), "at least one");
+  }
+  return objectives;
+}
+
+std::vector<Objective> default_objectives() {
+  Objective distance;
+  distance.name = declaration_of(sim::Measure::distance).name;
+  distance.terms.push_back({sim::Measure::distance, 1.0});
+  return {distance};
+}
+
+}  // namespace proleg::optimize

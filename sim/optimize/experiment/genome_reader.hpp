@@ -1,0 +1,15 @@
+#pragma once
+
+#include "sim/optimize/experiment/search_space.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "sim/scenario/xml_document.hpp"
+
+namespace proleg::optimize {
+
+/// Reads what may be chosen: the <registeredParameters> of `properties`, and the <genomeConfig> of `genome` that each
+/// of them has (thesis, figures 4.13 and 4.14, listing B.7). Dimensions are in the order of the parameters' numbers;
+/// those of single joints from head to tail.
+[[nodiscard]] SearchSpace read_search_space(const sim::XmlElement& properties, const sim::XmlElement& genome,
+                                            const sim::Scenario& scenario);
+
+}  // namespace proleg::optimize

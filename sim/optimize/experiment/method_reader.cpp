@@ -1,0 +1,160 @@
+#include "sim/optimize/experiment/method_reader.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+#include <span>
+
+#include "sim/optimize/experiment/experiment.hpp"
+#include "sim/scenario/text.hpp"
+#include "sim/scenario/values.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+using sim::Range;
+using sim::XmlElement;
+
+constexpr Range shares{0.0, 1.0, ""};
+constexpr Range scores{-1e9, 1e9, ""};
+constexpr Range rises{1e-9, 1e9, ""};
+constexpr Range step_sizes{1e-6, 1.0, ""};
+constexpr std::uint64_t most_candidates = 1'000'000;
+constexpr std::uint64_t largest_population = 10'000;
+
+/// The tags with which <properties> names what may be chosen.
+constexpr std::array<std::string_view, 2> registration_tags{"numOfParametersToOptimize", "registeredParameters"};
+
+/// Settings by tag; what is not there keeps its value.
+class Settings {
+ public:
+  Settings(const XmlElement& properties, std::span<const std::string_view> tags) : properties_(&properties) {
+    properties.allow({}, sim::joined({tags, registration_tags}));
+  }
+
+  template <typename Whole>
+  void read(std::string_view tag, Whole& value, std::uint64_t lowest, std::uint64_t highest) const {
+    if (const auto element = properties_->child(tag)) {
+      value = static_cast<Whole>(read_whole(*element, lowest, highest));
+    }
+  }
+  template <typename Number>
+  void read(std::string_view tag, Number& value, const Range& range) const {
+    if (const auto element = properties_->child(tag)) {
+      value = read_number(*element, range);
+    }
+  }
+  /// words: of the enumeration's values, in their order.
+  template <typename Enumeration>
+  void read(std::string_view tag, Enumeration& value, std::initializer_list<std::string_view> words) const {
+    if (const auto element = properties_->child(tag)) {
+      value = static_cast<Enumeration>(read_choice(*element, words));
+    }
+  }
+
+ private:
+  const XmlElement* properties_;
+};
+
+GeneticSettings read_genetic(const XmlElement& properties, std::vector<std::string>& remarks) {
+  constexpr std::array<std::string_view, 7> tags{"popsize",      "pmut",           "pcross", "nconvergence",
+                                                 "pconvergence", "flushfrequency", "gamode"};
+  const Settings settings(properties, tags);
+  GeneticSettings genetic;
+  settings.read("popsize", genetic.population, 2, largest_population);
+  settings.read("pmut", genetic.mutation, shares);
+  settings.read("pcross", genetic.crossover, shares);
+  settings.read("nconvergence", genetic.generations_to_convergence, 1, 10'000);
+  settings.read("pconvergence", genetic.convergence, shares);
+  settings.read("gamode", genetic.mode, 1, 2);
+  if (const auto flush = properties.child("flushfrequency")) {
+    remark_no_effect(remarks, *flush, "every evaluation is saved when it is known");
+  }
+  return genetic;
+}
+
+GreatDelugeSettings read_great_deluge(const XmlElement& properties) {
+  constexpr std::array<std::string_view, 14> tags{
+      "waterLevel", "rain",      "credits", "retries",       "confidence",    "step",   "growth",
+      "move",       "neighbour", "start",   "firstMustPass", "reevaluations", "chains", "target"};
+  const Settings settings(properties, tags);
+  GreatDelugeSettings deluge;
+  settings.read("waterLevel", deluge.water_level, scores);
+  settings.read("rain", deluge.rain, rises);
+  settings.read("credits", deluge.credits, 0, most_candidates);
+  settings.read("retries", deluge.retries, 1, most_candidates);
+  settings.read("confidence", deluge.confidence, 1, most_candidates);
+  settings.read("step", deluge.step, 1, most_candidates);
+  settings.read("growth", deluge.growth, {"linear", "doubling"});
+  settings.read("move", deluge.move, {"all", "one"});
+  settings.read("neighbour", deluge.neighbour, {"three", "sign", "uniform"});
+  settings.read("start", deluge.start, {"random", "scenario"});
+  settings.read("firstMustPass", deluge.first_must_pass, 0, 1);
+  settings.read("reevaluations", deluge.reevaluations, 0, 100);
+  settings.read("chains", deluge.chains, 1, 64);
+  settings.read("target", deluge.target, scores);
+  return deluge;
+}
+
+/// What pagmo's algorithms may be told; the others know their population and generations only.
+bool has_setting(std::string_view algorithm, std::string_view tag) {
+  const auto any_of = [algorithm](std::initializer_list<std::string_view> names) {
+    return std::ranges::find(names, algorithm) != names.end();
+  };
+  if (tag == "sigma0") {
+    return any_of({"cmaes", "xnes"});
+  }
+  if (tag == "crossover") {
+    return any_of({"de", "sga", "nsga2"});
+  }
+  if (tag == "mutation") {
+    return any_of({"sga", "nsga2"});
+  }
+  return tag != "scale" || algorithm == "de";
+}
+
+PagmoSettings read_pagmo(const XmlElement& properties, std::string algorithm) {
+  std::vector<std::string_view> tags{"popsize", "generations", "sigma0", "crossover", "scale", "mutation"};
+  std::erase_if(tags, [&](std::string_view tag) { return !has_setting(algorithm, tag); });
+  const Settings settings(properties, tags);
+  PagmoSettings pagmo;
+  pagmo.algorithm = std::move(algorithm);
+  settings.read("popsize", pagmo.population, 2, largest_population);
+  settings.read("generations", pagmo.generations, 1, most_candidates);
+  settings.read("sigma0", pagmo.sigma0, step_sizes);
+  settings.read("crossover", pagmo.crossover, shares);
+  settings.read("scale", pagmo.scale, shares);
+  settings.read("mutation", pagmo.mutation, shares);
+  return pagmo;
+}
+
+}  // namespace
+
+MethodSettings read_method(const XmlElement& section, const XmlElement& properties, std::vector<std::string>& remarks) {
+  if (section.is("geneticAlgorithm")) {
+    return read_genetic(properties, remarks);
+  }
+  if (section.is("greatDeluge")) {
+    return read_great_deluge(properties);
+  }
+  if (section.is("cmaEs")) {
+    return read_pagmo(properties, "cmaes");
+  }
+  if (section.is("differentialEvolution")) {
+    return read_pagmo(properties, "de");
+  }
+  if (section.is("nsga2")) {
+    return read_pagmo(properties, "nsga2");
+  }
+  return read_pagmo(properties, checked_name(section, section.required_attribute("algorithm")));
+}
+
+std::string method_name(const MethodSettings& method) {
+  struct Name {
+    std::string operator()(const GreatDelugeSettings& /*settings*/) const { return "great-deluge"; }
+    std::string operator()(const GeneticSettings& /*settings*/) const { return "genetic"; }
+    std::string operator()(const PagmoSettings& settings) const { return settings.algorithm; }
+  };
+  return std::visit(Name(), method);
+}
+
+}  // namespace proleg::optimize

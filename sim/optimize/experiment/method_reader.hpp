@@ -1,0 +1,22 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/optimize/experiment/method_settings.hpp"
+#include "sim/scenario/xml_document.hpp"
+
+namespace proleg::optimize {
+
+/// The method sections: what the outermost tag of an experiment file may be.
+inline constexpr std::array<std::string_view, 6> method_tags{"geneticAlgorithm",      "greatDeluge", "cmaEs",
+                                                             "differentialEvolution", "nsga2",       "pagmo"};
+
+/// Reads the method that a section's tag names, with its settings from `properties`; these may also hold the parameters
+/// that are registered, which are read elsewhere.
+[[nodiscard]] MethodSettings read_method(const sim::XmlElement& section, const sim::XmlElement& properties,
+                                         std::vector<std::string>& remarks);
+
+}  // namespace proleg::optimize

@@ -1,0 +1,61 @@
+#pragma once
+
+// What the method section of a *.optimise.xml file says.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+
+namespace proleg::optimize {
+
+/// The modified great deluge algorithm (thesis, section 3.4.2; after G. Dueck, "New optimization heuristics: the great
+/// deluge algorithm and the record-to-record travel", J. Comput. Phys. 104, 1993). What the thesis leaves open is an
+/// option; its default is the thesis's text read literally.
+struct GreatDelugeSettings {
+  double water_level = 0.15;      ///< the score that the first accepted candidate must reach
+  double rain = 0.01;             ///< by which the water rises when a candidate is accepted; above 0
+  std::uint32_t credits = 10;     ///< times that the search may start over with its first radius
+  std::uint32_t retries = 200;    ///< candidates in a row that may fail before a credit is used; at least 1
+  std::uint32_t confidence = 20;  ///< the radius grows with every so many failures; at least 1
+  std::uint32_t step = 1;         ///< first radius, in steps of each parameter's value set; at least 1
+  enum class Growth : std::uint8_t { linear, doubling } growth = Growth::linear;
+  enum class Move : std::uint8_t { all, one } move = Move::all;  ///< parameters that a candidate changes
+  enum class Neighbour : std::uint8_t {
+    three,    ///< -radius, 0 or +radius
+    sign,     ///< -radius or +radius
+    uniform,  ///< any step from -radius to +radius
+  } neighbour = Neighbour::three;
+  enum class Start : std::uint8_t { random, scenario } start = Start::random;
+  bool first_must_pass = true;      ///< whether the start itself must reach the water level to be accepted
+  std::uint32_t reevaluations = 0;  ///< further evaluations of a candidate that would be accepted; their mean decides
+  std::uint32_t chains = 1;         ///< searches side by side, each with its own water; the best of all counts
+  std::optional<double> target;     ///< stops when a score reaches it
+};
+
+/// A genetic algorithm with the settings of GAlib (M. Wall, GAlib 2.4 documentation), which the thesis used.
+struct GeneticSettings {
+  std::uint32_t population = 30;                  ///< popsize; 2 to 10000
+  double mutation = 0.01;                         ///< pmut, a gene's probability; 0 to 1
+  double crossover = 0.9;                         ///< pcross; 0 to 1
+  std::uint32_t generations_to_convergence = 50;  ///< nconvergence; 1 to 10000
+  double convergence = 0.99;                      ///< pconvergence: of best-of-generation scores; 0 to 1
+  /// gamode: the thesis's program had such a setting and does not explain it. 1: a whole new generation each time, the
+  /// best survives (GAlib's simple algorithm). 2: overlapping generations, half of them new (steady state).
+  enum class Mode : std::uint8_t { simple = 1, steady_state = 2 } mode = Mode::simple;
+};
+
+/// One of pagmo's algorithms.
+struct PagmoSettings {
+  std::string algorithm;  ///< pagmo's name: cmaes, de, nsga2, sade, de1220, pso, sga, xnes, ...
+  std::uint32_t population = 20;
+  std::uint32_t generations = 1000;  ///< at most
+  std::optional<double> sigma0;      ///< cmaes, xnes: first step size, as a share of the ranges
+  std::optional<double> crossover;   ///< de, sga, nsga2: their CR, cr
+  std::optional<double> scale;       ///< de: F
+  std::optional<double> mutation;    ///< sga, nsga2: their m
+};
+
+using MethodSettings = std::variant<GreatDelugeSettings, GeneticSettings, PagmoSettings>;
+
+}  // namespace proleg::optimize

@@ -1,0 +1,144 @@
+#include "sim/optimize/experiment/trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/fixed/random.hpp"
+#include "sim/optimize/experiment/search_space.hpp"
+#include "sim/scenario/settings.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+/// Streams of a trial's seed. Each quantity has its own, so that one that is spread does not move the others, and none
+/// is one that the scenario's own noise draws from with the same seed (the joints' from 0, the modules' from
+/// 1,000,000).
+enum Stream : std::uint64_t {
+  friction_stream = 3'000'000,
+  mass_stream,
+  gain_stream,
+  latency_stream,
+};
+
+/// Evenly between 0 and 1, never either of them.
+double draw(Pcg32& random) { return (random.next() + 0.5) / 4294967296.0; }
+
+/// Evenly between 1 - spread and 1 + spread.
+double draw_factor(Pcg32& random, double spread) { return 1.0 + spread * (2.0 * draw(random) - 1.0); }
+
+void scale_friction(std::vector<sim::Geometry>& geometries, double factor) {
+  for (sim::Geometry& geometry : geometries) {
+    if (geometry.friction) {
+      *geometry.friction *= factor;
+    }
+  }
+}
+
+void perturb_friction(sim::Scenario& scenario, double factor) {
+  scenario.environment.unspecified_friction *= factor;
+  for (sim::StaticObject& object : scenario.environment.objects) {
+    scale_friction(object.geometries, factor);
+  }
+  for (sim::Link& link : scenario.robot.links) {
+    scale_friction(link.geometries, factor);
+  }
+}
+
+/// A bijection whose every output bit depends on every input bit: the finaliser of SplitMix64 (G. L. Steele, D. Lea,
+/// C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014).
+constexpr std::uint64_t mixed(std::uint64_t bits) {
+  bits = (bits ^ (bits >> 30U)) * 0xBF58476D1CE4E5B9U;
+  bits = (bits ^ (bits >> 27U)) * 0x94D049BB133111EBU;
+  return bits ^ (bits >> 31U);
+}
+
+/// The dimension that sets a parameter of a joint, or null.
+const Dimension* find_dimension(const SearchSpace& space, const sim::Setting& place) {
+  for (const Dimension& dimension : space.dimensions) {
+    for (const sim::Setting& target : dimension.targets) {
+      if (target.slot == place.slot && target.joint == place.joint && target.index == place.index) {
+        return &dimension;
+      }
+    }
+  }
+  return nullptr;
+}
+
+/// Whether an algorithm's state starts with noise on some joint.
+bool starts_with_noise(const sim::Scenario& scenario, const SearchSpace& space, unsigned slot_number) {
+  const Slot& slot = scenario.kernel.slots[slot_number];
+  const Declaration& declaration = slot.algorithm->declaration();
+  const int noise = find_parameter(declaration, "noise");
+  const bool has_scale = std::ranges::any_of(declaration.internal_values,
+                                             [](const InternalValue& value) { return value.noise_scale != 0; });
+  if (noise < 0 || !has_scale) {
+    return false;
+  }
+  for (unsigned joint = 0; joint < scenario.kernel.joint_count; ++joint) {
+    if (!slot.group.contains(joint)) {
+      continue;
+    }
+    sim::Setting place;
+    place.slot = static_cast<std::uint8_t>(slot_number);
+    place.joint = static_cast<std::uint8_t>(joint);
+    place.index = static_cast<std::uint8_t>(noise);
+    const Dimension* const dimension = find_dimension(space, place);
+    if (dimension != nullptr ? std::ranges::any_of(dimension->values, [](std::int32_t value) { return value != 0; })
+                             : start_value(scenario, place) != 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+void perturb(sim::Scenario& scenario, const Spread& spread, std::uint64_t seed) {
+  Pcg32 friction(seed, friction_stream);
+  perturb_friction(scenario, draw_factor(friction, spread.friction));
+
+  Pcg32 mass(seed, mass_stream);
+  for (sim::Link& link : scenario.robot.links) {
+    const double factor = draw_factor(mass, spread.mass);
+    link.mass.mass *= factor;
+    link.mass.inertia *= factor;
+  }
+
+  sim::ServoModel& servo = scenario.robot.servo;
+  Pcg32 gain(seed, gain_stream);
+  servo.gain *= draw_factor(gain, spread.servo_gain);
+
+  constexpr std::uint32_t longest_latency_us = 100'000;
+  Pcg32 latency(seed, latency_stream);
+  const auto later_us = static_cast<std::uint32_t>(std::lround(draw(latency) * spread.latency_ms * 1000.0));
+  servo.latency_us = std::min(servo.latency_us + later_us, longest_latency_us);
+
+  if (spread.contact_noise > 0.0) {
+    scenario.contact_noise = spread.contact_noise;
+  }
+  scenario.kernel.seed = seed;
+}
+
+bool depends_on_seed(const sim::Scenario& scenario, const SearchSpace& space, const Spread& spread) {
+  if (spread.any() || scenario.contact_noise > 0.0) {
+    return true;
+  }
+  for (unsigned slot = 0; slot < max_slots; ++slot) {
+    if (scenario.kernel.slots[slot].algorithm != nullptr && starts_with_noise(scenario, space, slot)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::uint64_t trial_seed(std::uint64_t experiment_seed, std::uint32_t run, std::uint64_t individual,
+                         std::uint32_t trial) {
+  // Each step is a bijection of the number that it takes in: seeds that differ in one number are never the same.
+  constexpr std::uint64_t odd = 0x9E3779B97F4A7C15U;  // so that zeros do not stay zeros
+  std::uint64_t seed = mixed(experiment_seed + odd);
+  seed = mixed((seed ^ run) + odd);
+  seed = mixed((seed ^ individual) + odd);
+  return mixed((seed ^ trial) + odd);
+}
+
+}  // namespace proleg::optimize

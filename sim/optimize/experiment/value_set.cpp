@@ -1,0 +1,175 @@
+#include "sim/optimize/experiment/value_set.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <unordered_set>
+
+namespace proleg::optimize {
+namespace {
+
+constexpr int places = 15;
+constexpr Decimal::Wide one = 1'000'000'000'000'000;
+constexpr Decimal::Wide limit = one * 10'000'000'000;
+
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+bool skip(std::string_view& text, std::string_view characters) {
+  const bool found = !text.empty() && characters.find(text.front()) != std::string_view::npos;
+  text.remove_prefix(found ? 1 : 0);
+  return found;
+}
+
+/// The digits of a number without the point, and how many are behind it.
+struct Digits {
+  Decimal::Wide value = 0;
+  int behind_point = 0;
+};
+
+/// Takes the digits off the front of the text; nothing if there are none or too many.
+std::optional<Digits> take_digits(std::string_view& text) {
+  Digits digits;
+  bool any = false;
+  bool after_point = false;
+  for (; !text.empty(); text.remove_prefix(1)) {
+    const char c = text.front();
+    if (c == '.' && !after_point) {
+      after_point = true;
+      continue;
+    }
+    if (!is_digit(c)) {
+      break;
+    }
+    any = true;
+    // More digits than these a Decimal has not, unless they are zeros at the end; so many of those nobody writes.
+    if (digits.value > limit * 10'000'000'000 || digits.behind_point > 4 * places) {
+      return std::nullopt;
+    }
+    digits.value = digits.value * 10 + (c - '0');
+    digits.behind_point += after_point ? 1 : 0;
+  }
+  return any ? std::optional(digits) : std::nullopt;
+}
+
+/// Takes the e and the number after it off the front of the text; 0 without them.
+std::optional<int> take_exponent(std::string_view& text) {
+  if (!skip(text, "eE")) {
+    return 0;
+  }
+  const bool negative = skip(text, "-");
+  if (!negative) {
+    skip(text, "+");
+  }
+  int exponent = 0;
+  constexpr int largest = 60;
+  const std::size_t length = static_cast<std::size_t>(std::ranges::find_if_not(text, is_digit) - text.begin());
+  const auto [end, error] = std::from_chars(text.data(), text.data() + length, exponent);
+  if (error != std::errc{} || exponent > largest) {
+    return std::nullopt;
+  }
+  text.remove_prefix(length);
+  return negative ? -exponent : exponent;
+}
+
+/// value * 10^power if that is a whole number within the limits.
+std::optional<Decimal::Wide> shifted(Decimal::Wide value, int power) {
+  if (value == 0) {
+    return value;
+  }
+  for (; power < 0; ++power) {
+    if (value % 10 != 0) {
+      return std::nullopt;
+    }
+    value /= 10;
+  }
+  for (; power > 0 && value < limit; --power) {
+    value *= 10;
+  }
+  return power == 0 && value < limit ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Decimal> Decimal::parse(std::string_view text) {
+  const bool negative = skip(text, "-");
+  if (!negative) {
+    skip(text, "+");
+  }
+  const std::optional<Digits> digits = take_digits(text);
+  const std::optional<int> exponent = digits ? take_exponent(text) : std::nullopt;
+  if (!exponent || !text.empty()) {
+    return std::nullopt;
+  }
+  const std::optional<Wide> quanta = shifted(digits->value, places - digits->behind_point + *exponent);
+  return quanta ? std::optional(Decimal(negative ? -*quanta : *quanta)) : std::nullopt;
+}
+
+std::string Decimal::text() const {
+  const Wide magnitude = quanta_ < 0 ? -quanta_ : quanta_;
+  // The 1 in front keeps the zeros behind the point.
+  std::string fraction = std::to_string(static_cast<std::uint64_t>(one + magnitude % one)).substr(1);
+  fraction.erase(fraction.find_last_not_of('0') + 1);
+  return (quanta_ < 0 ? "-" : "") + std::to_string(static_cast<std::uint64_t>(magnitude / one)) +
+         (fraction.empty() ? "" : "." + fraction);
+}
+
+std::int32_t Decimal::raw(Unit unit) const {
+  // 10^25 quanta by 2^29 are below 2^113.
+  const UnitScale scale = scale_of(unit);
+  const Wide numerator = (quanta_ < 0 ? -quanta_ : quanta_) * scale.numerator;
+  const Wide denominator = one * scale.denominator;
+  Wide quotient = numerator / denominator;
+  const Wide twice_rest = (numerator - quotient * denominator) * 2;
+  if (twice_rest > denominator || (twice_rest == denominator && quotient % 2 != 0)) {
+    ++quotient;
+  }
+  const auto magnitude = static_cast<std::uint32_t>(static_cast<std::uint64_t>(quotient));
+  return static_cast<std::int32_t>(quanta_ < 0 ? 0U - magnitude : magnitude);
+}
+
+DecimalRange::DecimalRange(Decimal lowest, Decimal highest, Decimal step)
+    : lowest_(lowest),
+      highest_(highest),
+      step_(step),
+      steps_((highest.quanta() - lowest.quanta() + step.quanta() / 2) / step.quanta()) {}
+
+bool DecimalRange::step_fits() const {
+  const Decimal::Wide length = highest_.quanta() - lowest_.quanta();
+  const Decimal::Wide rest = length - steps_ * step_.quanta();
+  constexpr Decimal::Wide tolerance = 1'000'000'000;
+  return (rest < 0 ? -rest : rest) * tolerance <= length;
+}
+
+std::uint64_t DecimalRange::count() const {
+  constexpr std::uint64_t largest = std::numeric_limits<std::uint64_t>::max();
+  return steps_ >= Decimal::Wide{largest} ? largest : static_cast<std::uint64_t>(steps_) + 1;
+}
+
+Decimal DecimalRange::operator[](std::uint64_t n) const {
+  // The end is the end, also with a step that only nearly fits.
+  return Decimal::Wide{n} == steps_ ? highest_ : Decimal(lowest_.quanta() + Decimal::Wide{n} * step_.quanta());
+}
+
+Decimal DecimalRange::fitting_below() const {
+  const Decimal::Wide whole = (highest_.quanta() - lowest_.quanta()) / step_.quanta();
+  return Decimal(lowest_.quanta() + whole * step_.quanta());
+}
+
+Decimal DecimalRange::fitting_above() const { return Decimal(fitting_below().quanta() + step_.quanta()); }
+
+std::vector<std::int32_t> raw_values(const std::vector<Decimal>& numbers, Unit unit) {
+  std::vector<std::int32_t> values;
+  values.reserve(numbers.size());
+  // Raw values rise with the numbers, so the same ones follow each other, but for a unit that comes round again.
+  std::unordered_set<std::int32_t> seen;
+  for (const Decimal& number : numbers) {
+    const std::int32_t value = number.raw(unit);
+    const bool known = wraps(unit) ? !seen.insert(value).second : !values.empty() && values.back() == value;
+    if (!known) {
+      values.push_back(value);
+    }
+  }
+  return values;
+}
+
+}  // namespace proleg::optimize

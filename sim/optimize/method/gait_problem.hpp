@@ -1,0 +1,62 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/optimize/evaluation/fitness_source.hpp"
+#include "sim/optimize/experiment/fitness.hpp"
+
+namespace proleg::optimize {
+
+/// What all the copies that pagmo makes of a GaitProblem share: the way from a vector of numbers to a candidate and its
+/// costs.
+///
+/// The vector has one number for each dimension that has a choice (more than one value): the index of its value, as a
+/// real number from 0 to n - 1. The candidate is at the nearest index. So one is a step of the value set, for every
+/// dimension alike.
+class GaitProblemHub {
+ public:
+  /// All three must outlive this.
+  GaitProblemHub(const SearchSpace& space, const std::vector<Objective>& objectives, FitnessSource& source);
+
+  [[nodiscard]] std::size_t size() const { return choices_.size(); }  ///< of the vectors
+  [[nodiscard]] std::size_t objectives() const { return objectives_.size(); }
+  [[nodiscard]] double last_index(std::size_t i) const;  ///< n - 1 of the i-th dimension that has a choice
+  /// The nearest candidate; numbers outside the range count as its end, what is not a number as 0.
+  [[nodiscard]] Candidate candidate(const std::vector<double>& x) const;
+  [[nodiscard]] std::vector<double> numbers(const Candidate& candidate) const;
+  /// What pagmo minimises, for each objective, and back; the same function.
+  [[nodiscard]] std::vector<double> costs(const std::vector<double>& scores) const;
+  [[nodiscard]] FitnessSource& source() const { return source_; }
+
+  /// Who answers what a GaitProblem is asked: x to costs. At first the source does.
+  std::function<std::vector<double>(const std::vector<double>&)> answer;
+
+ private:
+  const SearchSpace& space_;
+  const std::vector<Objective>& objectives_;
+  FitnessSource& source_;
+  std::vector<std::size_t> choices_;  ///< dimensions that have a choice
+};
+
+/// The search for a gait as a problem of pagmo (a "user-defined problem": F. Biscani, D. Izzo, "A parallel global
+/// multiobjective framework for optimization: pagmo", J. Open Source Software 5, 2020).
+class GaitProblem {
+ public:
+  GaitProblem() = default;  ///< pagmo demands it; of no use
+  /// hub: must outlive all copies, and have a size.
+  explicit GaitProblem(GaitProblemHub& hub) : hub_(&hub) {}
+
+  [[nodiscard]] std::vector<double> fitness(const std::vector<double>& x) const { return hub_->answer(x); }
+  [[nodiscard]] std::pair<std::vector<double>, std::vector<double>> get_bounds() const;
+  [[nodiscard]] std::vector<double>::size_type get_nobj() const { return hub_ == nullptr ? 1 : hub_->objectives(); }
+  [[nodiscard]] std::string get_name() const { return "gait"; }
+  [[nodiscard]] GaitProblemHub& hub() const { return *hub_; }
+
+ private:
+  GaitProblemHub* hub_ = nullptr;
+};
+
+}  // namespace proleg::optimize

@@ -1,0 +1,167 @@
+#include "sim/optimize/method/genetic.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <vector>
+
+#include <ga/GA1DArrayGenome.h>
+#include <ga/GASStateGA.h>
+#include <ga/GASimpleGA.h>
+#include <ga/garandom.h>
+
+#include "sim/optimize/method/method_seed.hpp"
+
+namespace proleg::optimize {
+
+namespace {
+
+using Genome = GA1DArrayAlleleGenome<int>;
+
+/// Between GAlib, which knows functions and pointers only, and the source.
+class Rating {
+ public:
+  Rating(const Objective& objective, FitnessSource& source) : objective_(objective), source_(source) {}
+
+  /// For GAPopulation::evaluator: evaluates those whose score is not known, in the order of the population.
+  static void rate(GAPopulation& population) {
+    auto& self = *static_cast<Rating*>(population.userData());
+    self.unrated_.clear();
+    for (int i = 0; i < population.size(); ++i) {
+      population.individual(static_cast<unsigned>(i)).evaluate();
+    }
+    self.rate_collected();
+  }
+
+  /// For GAGenome::evaluator. GAlib does not tell which scores are known, but it calls this for the others.
+  static float collect(GAGenome& genome) {
+    static_cast<Rating*>(genome.userData())->unrated_.push_back(&genome);
+    return 0.0F;
+  }
+
+  /// What ended the search, if anything did. An exception would leave GAlib's memory behind.
+  [[nodiscard]] const std::exception_ptr& ended() const { return ended_; }
+
+ private:
+  void rate_collected() {
+    if (ended_) {
+      return;  // the scores do not matter any more
+    }
+    try {
+      if (best_) {
+        source_.set_needed_score(best_);
+      }
+      std::vector<Candidate> candidates;
+      candidates.reserve(unrated_.size());
+      for (const GAGenome* genome : unrated_) {
+        candidates.push_back(candidate_of(dynamic_cast<const Genome&>(*genome)));
+      }
+      source_.expect(candidates);
+      for (std::size_t i = 0; i < candidates.size(); ++i) {
+        const double score = source_.fitness(candidates[i]).front();
+        if (!best_ || objective_.better(score, *best_)) {
+          best_ = score;
+        }
+        unrated_[i]->score(static_cast<float>(std::max(score, 0.0)));
+      }
+    } catch (...) {
+      ended_ = std::current_exception();
+    }
+  }
+
+  static Candidate candidate_of(const Genome& genome) {
+    Candidate candidate;
+    for (unsigned i = 0; i < static_cast<unsigned>(genome.length()); ++i) {
+      candidate.push_back(static_cast<std::uint32_t>(genome.gene(i)));
+    }
+    return candidate;
+  }
+
+  const Objective& objective_;
+  FitnessSource& source_;
+  std::vector<GAGenome*> unrated_;
+  std::optional<double> best_;
+  std::exception_ptr ended_;
+};
+
+GAAlleleSet<int> make_alleles(const Dimension& dimension) {
+  std::vector<int> indices(dimension.values.size());
+  std::iota(indices.begin(), indices.end(), 0);
+  return {static_cast<unsigned>(indices.size()), indices.data()};
+}
+
+Genome make_genome(const SearchSpace& space, Rating& rating) {
+  // GAlib's array must not start empty: it would copy from a null pointer.
+  GAAlleleSetArray<int> alleles(make_alleles(space.dimensions.front()));
+  for (std::size_t i = 1; i < space.dimensions.size(); ++i) {
+    alleles.add(make_alleles(space.dimensions[i]));
+  }
+  Genome genome(alleles, Rating::collect, &rating);
+  genome.crossover(Genome::UniformCrossover);
+  return genome;
+}
+
+/// GAlib's seed: below 2^31 for all platforms, and not 0 in its lower 18 bits, or every coin toss would be the same.
+unsigned galib_seed(const Experiment& experiment, std::uint32_t run) {
+  const std::uint64_t seed = method_seed(experiment.seed, run);
+  const auto upper = static_cast<unsigned>(seed >> 32U) & 0xFFFU;
+  const auto lower = static_cast<unsigned>(seed % ((1U << 18U) - 1U)) + 1U;
+  return upper << 18U | lower;
+}
+
+/// GAlib compares the quotient with 1 from the other side when it minimises.
+float convergence_limit(const GeneticSettings& settings, Goal goal) {
+  if (goal == Goal::maximise) {
+    return static_cast<float>(settings.convergence);
+  }
+  constexpr float largest = std::numeric_limits<float>::max();
+  return settings.convergence * largest > 1.0 ? static_cast<float>(1.0 / settings.convergence) : largest;
+}
+
+std::unique_ptr<GAGeneticAlgorithm> make_algorithm(const GAPopulation& population, GeneticSettings::Mode mode) {
+  if (mode == GeneticSettings::Mode::steady_state) {
+    return std::make_unique<GASteadyStateGA>(population);
+  }
+  return std::make_unique<GASimpleGA>(population);
+}
+
+}  // namespace
+
+std::string search_genetic(const Experiment& experiment, std::uint32_t run, FitnessSource& source) {
+  const auto& settings = std::get<GeneticSettings>(experiment.method);
+  const Objective& objective = experiment.objectives.front();
+  Rating rating(objective, source);
+  source.set_needed_score(std::nullopt);
+
+  GAPopulation population(make_genome(experiment.space, rating), settings.population);
+  population.userData(&rating);
+  population.evaluator(Rating::rate);
+  const std::unique_ptr<GAGeneticAlgorithm> algorithm = make_algorithm(population, settings.mode);
+  algorithm->minimaxi(objective.goal == Goal::maximise ? GAGeneticAlgorithm::MAXIMIZE : GAGeneticAlgorithm::MINIMIZE);
+  algorithm->pMutation(static_cast<float>(settings.mutation));
+  algorithm->pCrossover(static_cast<float>(settings.crossover));
+  algorithm->nConvergence(settings.generations_to_convergence);
+  algorithm->pConvergence(convergence_limit(settings, objective.goal));
+  algorithm->terminator(GAGeneticAlgorithm::TerminateUponConvergence);
+
+  GAResetRNG(
+      galib_seed(experiment, run));  // initialize(seed) would go on with the sequence if the seed is the last one
+  algorithm->initialize();
+  std::uint32_t zeros = 0;  // generations in a row whose best is 0: GAlib does not divide then
+  for (;;) {
+    if (rating.ended()) {
+      std::rethrow_exception(rating.ended());
+    }
+    const float best = algorithm->population().best().score();
+    zeros = best == 0.0F ? zeros + 1 : 0;
+    if (algorithm->done() == gaTrue || zeros >= settings.generations_to_convergence) {
+      return "converged";
+    }
+    algorithm->step();
+  }
+}
+
+}  // namespace proleg::optimize

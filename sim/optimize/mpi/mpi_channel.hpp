@@ -1,0 +1,60 @@
+#pragma once
+
+#include <boost/mpi/communicator.hpp>
+#include <boost/mpi/environment.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/optimize/evaluation/message.hpp"
+#include "sim/optimize/experiment/experiment.hpp"
+
+namespace proleg::optimize {
+
+/// What ranks say to each other; MPI's tags.
+enum class MpiTag : int {
+  // From rank 0.
+  task = 1,
+  stop,
+  // To rank 0.
+  result,
+  failure,  ///< text: the task cannot be done
+  message,  ///< text: what a person should know
+  goodbye,  ///< the answer to stop
+};
+
+struct MpiMessage {
+  int rank;  ///< that sent it
+  MpiTag tag;
+  Bytes content;
+
+  [[nodiscard]] std::string text() const;
+};
+
+/// MPI from its initialisation to its end, for bytes.
+class MpiChannel {
+ public:
+  MpiChannel() : environment_(false) {}
+
+  [[nodiscard]] int size() const { return world_.size(); }
+  [[nodiscard]] int rank() const { return world_.rank(); }
+
+  void send(int rank, MpiTag tag, const Bytes& content = {}) const;
+  void send(int rank, MpiTag tag, const std::string& text) const;
+  /// A message that is here.
+  [[nodiscard]] std::optional<MpiMessage> receive() const;
+
+  /// Every rank says what it is; all get all, by rank. To be called by all.
+  [[nodiscard]] std::vector<std::string> exchange(const std::string& identity) const;
+
+  [[noreturn]] void abort() const;
+
+ private:
+  boost::mpi::environment environment_;
+  boost::mpi::communicator world_;
+};
+
+/// What all ranks must agree on.
+[[nodiscard]] std::string mpi_identity(const Experiment& experiment, const std::string& build_id);
+
+}  // namespace proleg::optimize

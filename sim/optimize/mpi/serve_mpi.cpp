@@ -1,0 +1,73 @@
+#include <csignal>
+#include <exception>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+#include "sim/optimize/mpi/mpi_channel.hpp"
+#include "sim/optimize/mpi/mpi_workers.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+/// How late rank 0 may be heard; a simulation takes hundreds of it.
+constexpr std::chrono::milliseconds look_interval{1};
+
+void serve(const MpiChannel& channel, LocalWorkers& worker) {
+  while (true) {
+    if (const std::optional<MpiMessage> message = channel.receive()) {
+      if (message->tag == MpiTag::stop) {
+        return;
+      }
+      const std::optional<Task> task = task_from(message->content);
+      if (message->tag != MpiTag::task || !task) {
+        throw std::runtime_error("was sent what is not a task");
+      }
+      worker.start(0, *task);
+    }
+    const std::optional<Workers::Done> done = worker.wait(look_interval);
+    for (const std::string& text : worker.messages()) {
+      channel.send(0, MpiTag::message, text);
+    }
+    if (done) {
+      channel.send(0, MpiTag::result, to_bytes(done->result));
+    }
+  }
+}
+
+void wait_for_stop(const MpiChannel& channel) {
+  while (true) {
+    const std::optional<MpiMessage> message = channel.receive();
+    if (message && message->tag == MpiTag::stop) {
+      return;
+    }
+    std::this_thread::sleep_for(look_interval);
+  }
+}
+
+}  // namespace
+
+bool serve_mpi(const Experiment& experiment, const std::string& build_id, RunTask run, TaskLimit limit) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    std::signal(signal, SIG_IGN);
+  }
+  auto worker = std::make_unique<LocalWorkers>(experiment, 1, std::move(run), limit);
+  const MpiChannel channel;
+  const std::vector<std::string> identities = channel.exchange(mpi_identity(experiment, build_id));
+  for (const std::string& identity : identities) {
+    if (identity != identities.front()) {
+      return false;  // rank 0 says it
+    }
+  }
+  try {
+    serve(channel, *worker);
+  } catch (const std::exception& error) {
+    channel.send(0, MpiTag::failure, std::string(error.what()));
+    wait_for_stop(channel);
+  }
+  worker.reset();
+  channel.send(0, MpiTag::goodbye);
+  return true;
+}
+
+}  // namespace proleg::optimize

@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "sim/optimize/report/report.hpp"
+#include "sim/optimize/report/scores.hpp"
+#include "sim/record/figure_page.hpp"
+#include "sim/record/plot_frame.hpp"
+#include "sim/record/svg.hpp"
+#include "sim/scenario/text.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+using sim::Svg;
+using sim::TextAnchor;
+using sim::Trace;
+
+constexpr double panel_top = 104.0;
+constexpr double panel_bottom = 540.0;
+constexpr double page_height = panel_bottom + 56.0;
+
+constexpr const char* dot_style = R"(stroke="#8fb3c9" stroke-width="3" stroke-linecap="round")";
+constexpr const char* front_style = R"(stroke="#0072b2" stroke-width="1.6" stroke-linejoin="round")";
+constexpr const char* front_dot_style = R"(stroke="#0072b2" stroke-width="7" stroke-linecap="round")";
+constexpr const char* dot = "h0";
+
+/// Two objectives of those evaluations that have both.
+struct Cloud {
+  Trace places;
+  std::vector<double> x;
+  std::vector<double> y;
+
+  void add(const Experiment& experiment, const Evaluation& evaluation) {
+    if (experiment.objectives.size() >= 2 && has_own_score(experiment, evaluation, 0) &&
+        has_own_score(experiment, evaluation, 1)) {
+      x.push_back(drawable(evaluation.scores[0]));
+      y.push_back(drawable(evaluation.scores[1]));
+      places.push_back({x.back(), y.back()});
+    }
+  }
+};
+
+std::string axis_name(const Experiment& experiment, std::size_t objective) {
+  if (objective >= experiment.objectives.size()) {
+    return {};
+  }
+  const Objective& named = experiment.objectives[objective];
+  return with_unit(sim::shortened(named.name), unit_of(named)) +
+         (named.goal == Goal::maximise ? ": more is better" : ": less is better");
+}
+
+}  // namespace
+
+std::string draw_pareto_front(const Experiment& experiment, std::span<const Evaluation> evaluations) {
+  const std::vector<std::size_t> front = pareto_front(experiment, evaluations);
+  Cloud all;
+  Cloud best;
+  for (const Evaluation& evaluation : evaluations) {
+    all.add(experiment, evaluation);
+  }
+  for (const std::size_t i : front) {
+    best.add(experiment, evaluations[i]);
+  }
+  const sim::Axis x = score_axis(std::move(all.x), best.x, sim::page_left, sim::page_right);
+  const sim::Axis y = score_axis(std::move(all.y), best.y, panel_bottom, panel_top);
+
+  Svg svg(sim::page_width, page_height, experiment_title(experiment),
+          "Candidates by two objectives; those that none beats in both are joined by a line.");
+  svg.text({sim::page_left, 36.0}, sim::shortened(experiment_title(experiment)), TextAnchor::start, 20.0, sim::ink,
+           R"(font-weight="bold")");
+  svg.text({sim::page_left, 58.0},
+           "method " + method_name(experiment.method) + ", " + std::to_string(evaluations.size()) + " evaluations, " +
+               std::to_string(front.size()) + " of them on the Pareto front",
+           TextAnchor::start, sim::label_size, sim::faint_ink);
+  const std::array<sim::LegendEntry, 2> entries{
+      {{"evaluation", dot_style, dot}, {"Pareto front", front_dot_style, dot}}};
+  sim::draw_legend(svg, sim::page_right, panel_top - 16.0, entries);
+  sim::draw_plot_grid(svg, x, y, axis_name(experiment, 0), axis_name(experiment, 1));
+  svg.begin_group("evaluations");
+  svg.marks(sim::to_marks(all.places, x, y, 2.5), dot, dot_style);
+  svg.end_group();
+  svg.begin_group("front");
+  if (experiment.objectives.size() == 2) {  // a front in more dimensions is no line
+    svg.polyline(sim::to_pixels(best.places, x, y), front_style);
+  }
+  svg.marks(sim::to_marks(best.places, x, y, 2.5), dot, front_dot_style);
+  svg.end_group();
+  sim::draw_plot_frame(svg, x, y);
+  return svg.finish();
+}
+
+}  // namespace proleg::optimize

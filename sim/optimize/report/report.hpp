@@ -1,0 +1,45 @@
+#pragma once
+
+// What an optimisation leaves behind for people, drawn and written from its evaluations.
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/optimize/evaluation/task.hpp"
+#include "sim/optimize/experiment/experiment.hpp"
+
+namespace proleg::optimize {
+
+/// SVG: every evaluation's score, the best so far and the mean of the last ones, against evaluations (first objective).
+/// Below 1 MB however many there are.
+[[nodiscard]] std::string draw_learning_curve(const Experiment& experiment, std::span<const Evaluation> evaluations);
+
+/// SVG: the first two objectives against each other, and the Pareto front; of two objectives it is joined by a line.
+[[nodiscard]] std::string draw_pareto_front(const Experiment& experiment, std::span<const Evaluation> evaluations);
+
+/// Positions, by ascending first score, of the evaluations that no other is better than in one objective without being
+/// worse in another. Of equal candidates with equal scores the first.
+[[nodiscard]] std::vector<std::size_t> pareto_front(const Experiment& experiment,
+                                                    std::span<const Evaluation> evaluations);
+
+/// Tab-separated, with a header line: every evaluation with its values, scores and measures. Numbers are the shortest
+/// that read back as the same; a measure that is not defined is an empty cell. Columns: run, evaluation, each dimension
+/// ("amplitude:J5 (deg)"), each objective ("score:distance (m)"), each measure ("distance (m)"), simulated_s, wall_s,
+/// given_up, reused, restored (0 or 1), failure.
+[[nodiscard]] std::string evaluations_table(const Experiment& experiment, std::span<const Evaluation> evaluations);
+
+/// The same with a column `rank` before: the best `count` different candidates by the first objective, best first, of
+/// equals the earlier.
+[[nodiscard]] std::string best_table(const Experiment& experiment, std::span<const Evaluation> evaluations,
+                                     std::size_t count);
+
+/// Writes a scenario that is the experiment's with the candidate's values, ready for `proleg simulate` and needing
+/// nothing else: the top-level file `folder`/name.simulation.xml, its actuation file name.actuation.xml, and copies of
+/// the robot and environment files below name.files. What is there already is replaced. Returns the path of the
+/// top-level file. Throws RecordError if it cannot be written.
+std::filesystem::path write_scenario(const Experiment& experiment, const Candidate& candidate,
+                                     const std::filesystem::path& folder, const std::string& name);
+
+}  // namespace proleg::optimize

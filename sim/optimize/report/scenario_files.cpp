@@ -1,0 +1,137 @@
+#include "sim/optimize/report/scenario_files.hpp"
+
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "sim/scenario/text.hpp"
+#include "sim/scenario/xml_document.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The files that were read, by their absolute paths.
+class Sources {
+ public:
+  explicit Sources(const std::vector<sim::SourceFile>& files) : top_(full(files.front().path)) {
+    for (const sim::SourceFile& file : files) {
+      texts_.emplace(full(file.path), &file.text);
+    }
+  }
+
+  /// The file that a reference in `includer` led the reader to (SourceSet::open); empty if it led to none.
+  [[nodiscard]] fs::path find(const fs::path& includer, const std::string& reference) const {
+    for (const fs::path& folder : {includer.parent_path(), top_.parent_path()}) {
+      if (const fs::path path = (folder / reference).lexically_normal(); texts_.contains(path)) {
+        return path;
+      }
+    }
+    return {};
+  }
+
+  /// The file that a tag of the top-level file names.
+  [[nodiscard]] fs::path named_by_top(std::string_view tag) const {
+    const sim::XmlDocument document(top_, text(top_), nullptr);
+    return find(top_, document.root("simulation").required_child(tag).text());
+  }
+
+  [[nodiscard]] const std::string& text(const fs::path& path) const { return *texts_.at(path); }
+
+ private:
+  static fs::path full(const std::string& path) { return fs::absolute(path).lexically_normal(); }
+
+  fs::path top_;
+  std::map<fs::path, const std::string*> texts_;
+};
+
+/// Calls use(element, attribute) for each attribute `file` in a document, where a file includes another.
+template <typename Use>
+void for_each_include(tinyxml2::XMLElement* element, const Use& use) {
+  for (; element != nullptr; element = element->NextSiblingElement()) {
+    for (const auto* attribute = element->FirstAttribute(); attribute != nullptr; attribute = attribute->Next()) {
+      if (sim::lower_case(attribute->Name()) == "file") {
+        use(*element, *attribute);
+      }
+    }
+    for_each_include(element->FirstChildElement(), use);
+  }
+}
+
+std::string reference_of(const tinyxml2::XMLAttribute& attribute) {
+  return std::string(sim::trimmed(attribute.Value()));
+}
+
+/// Adds a file and, in turn, all that it includes.
+void add_with_includes(const Sources& sources, const fs::path& path, std::set<fs::path>& files) {
+  if (path.empty() || !files.insert(path).second) {
+    return;
+  }
+  tinyxml2::XMLDocument document;
+  const std::string& text = sources.text(path);
+  document.Parse(text.data(), text.size());
+  for_each_include(document.RootElement(), [&](tinyxml2::XMLElement&, const tinyxml2::XMLAttribute& attribute) {
+    add_with_includes(sources, sources.find(path, reference_of(attribute)), files);
+  });
+}
+
+fs::path common_folder(const std::set<fs::path>& files) {
+  fs::path common = files.begin()->parent_path();
+  for (const fs::path& file : files) {
+    const fs::path folder = file.parent_path();
+    const auto end = std::mismatch(common.begin(), common.end(), folder.begin(), folder.end()).first;
+    fs::path shared;
+    for (auto part = common.begin(); part != end; ++part) {
+      shared /= *part;
+    }
+    common = shared;
+  }
+  return common;
+}
+
+/// The text of a file with references that hold where the files keep their places relative to each other.
+std::string text_with_relative_references(const Sources& sources, const fs::path& path) {
+  const std::string& text = sources.text(path);
+  tinyxml2::XMLDocument document;
+  document.Parse(text.data(), text.size());
+  bool changed = false;
+  for_each_include(document.RootElement(), [&](tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute& attribute) {
+    const std::string reference = reference_of(attribute);
+    const fs::path target = sources.find(path, reference);
+    const std::string wanted = target.lexically_relative(path.parent_path()).string();
+    if (!target.empty() && reference != wanted) {
+      element.SetAttribute(attribute.Name(), wanted.c_str());
+      changed = true;
+    }
+  });
+  if (!changed) {
+    return text;
+  }
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  return printer.CStr();
+}
+
+}  // namespace
+
+ScenarioFiles collect_scenario_files(const sim::Scenario& scenario, const fs::path& root) {
+  const Sources sources(scenario.sources);
+  const fs::path robot = sources.named_by_top("robot");
+  const fs::path environment = sources.named_by_top("environment");
+  std::set<fs::path> files;
+  add_with_includes(sources, robot, files);
+  add_with_includes(sources, environment, files);
+
+  const fs::path folder = common_folder(files);
+  const auto place_of = [&](const fs::path& file) { return root / file.lexically_relative(folder); };
+  ScenarioFiles result{place_of(robot), place_of(environment), {}};
+  for (const fs::path& file : files) {
+    result.copies.push_back({place_of(file), text_with_relative_references(sources, file)});
+  }
+  return result;
+}
+
+}  // namespace proleg::optimize

@@ -1,0 +1,77 @@
+#include "sim/optimize/report/scores.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+#include "sim/record/plot_frame.hpp"
+
+namespace proleg::optimize {
+
+bool has_own_score(const Experiment& experiment, const Evaluation& evaluation, std::size_t objective) {
+  return evaluation.failure.empty() && objective < evaluation.scores.size() &&
+         std::isfinite(evaluation.scores[objective]) &&
+         std::ranges::all_of(experiment.objectives[objective].terms,
+                             [&](const Term& term) { return std::isfinite(evaluation.measures[term.measure]); });
+}
+
+std::string_view unit_of(const Objective& objective) {
+  const bool is_measure = objective.terms.size() == 1 && objective.terms.front().weight == 1.0;
+  return is_measure ? sim::declaration_of(objective.terms.front().measure).unit : std::string_view();
+}
+
+std::string with_unit(std::string_view name, std::string_view unit) {
+  return std::string(name) + (unit.empty() ? "" : " (" + std::string(unit) + ")");
+}
+
+std::string exact_text(double value) {
+  if (!std::isfinite(value)) {
+    return {};
+  }
+  std::array<char, 32> text;
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+std::string rounded_text(double value) {
+  std::array<char, 32> text;
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 4).ptr};
+}
+
+std::string fixed_text(double value, int decimals) {
+  std::array<char, 400> text;  // the longest double has 309 digits before the point
+  return {text.data(),
+          std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, decimals).ptr};
+}
+
+double drawable(double score) { return std::clamp(score, -1e9, 1e9); }
+
+sim::Axis score_axis(std::vector<double> scores, std::span<const double> always, double pixel_low, double pixel_high) {
+  if (scores.empty()) {
+    return sim::axis_over(0.0, 1.0, pixel_low, pixel_high);
+  }
+  std::ranges::sort(scores);
+  const std::size_t few = scores.size() / 20;
+  const double usual_low = scores[few];
+  const double usual_high = scores[scores.size() - 1 - few];
+  const double usual = usual_high - usual_low;
+  double low = scores.front();
+  double high = scores.back();
+  if (usual > 0.0 && high - low > 8.0 * usual) {
+    low = std::max(low, usual_low - usual);
+    high = std::min(high, usual_high + usual);
+  }
+  for (const double score : always) {
+    low = std::min(low, score);
+    high = std::max(high, score);
+  }
+  return sim::axis_over(low, high, pixel_low, pixel_high);
+}
+
+std::string experiment_title(const Experiment& experiment) {
+  const std::string name = std::filesystem::path(experiment.path).filename().string();
+  return name.substr(0, name.find('.'));
+}
+
+}  // namespace proleg::optimize

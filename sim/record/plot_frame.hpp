@@ -1,0 +1,50 @@
+#pragma once
+
+// What plots of numbers against numbers share: a frame with grid and numbers, a legend, names beside lines, and lines
+// that stay small however many values they have.
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "sim/record/axis.hpp"
+#include "sim/record/svg.hpp"
+
+namespace proleg::sim {
+
+/// An axis from low to high with a little room at both ends; also if they are equal. Beyond +-10^12 it is cut.
+[[nodiscard]] Axis axis_over(double low, double high, double pixel_low, double pixel_high);
+
+/// Grid, numbers and names of two axes: that of y as a heading above the frame, that of x below it.
+void draw_plot_grid(Svg& svg, const Axis& x, const Axis& y, std::string_view x_name, std::string_view y_name);
+/// The frame around it, to be drawn over the lines.
+void draw_plot_frame(Svg& svg, const Axis& x, const Axis& y);
+
+/// In pixels and within the axes, with at most four points (first, lowest, highest, last) in each column of pixels, so
+/// that a picture of an hour is no larger than one of a minute and no peak is lost. The trace is finite and ascends in
+/// x.
+[[nodiscard]] Trace to_pixels(const Trace& trace, const Axis& x, const Axis& y);
+
+/// Places of marks of that size (pixels), those beyond the axes at their edge; of marks that would hide each other only
+/// the first.
+[[nodiscard]] Trace to_marks(const Trace& points, const Axis& x, const Axis& y, double size);
+
+/// What a line beside its end is called.
+struct LineName {
+  double value = 0.0;  ///< where it ends, on the axis
+  std::string text;
+  std::string colour;
+};
+/// Names beside the right edge of a plot, moved apart where they would meet.
+void draw_line_names(Svg& svg, const Axis& y, double right, std::span<const LineName> names);
+
+/// A sample of a line or mark and what it means.
+struct LegendEntry {
+  std::string name;
+  std::string style;  ///< of the line or mark
+  std::string mark;   ///< as Svg::marks has it; empty: a line
+};
+/// In one row, the last entry's text ending at `right`.
+void draw_legend(Svg& svg, double right, double y, std::span<const LegendEntry> entries);
+
+}  // namespace proleg::sim

@@ -1,0 +1,176 @@
+// Servos that act late, and touch sensors that read wrong.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "shipped.hpp"
+#include "sim/loop/hardware_loop.hpp"
+#include "sim/loop/simulation.hpp"
+
+namespace proleg::sim {
+namespace {
+
+/// Nothing happens to it but what its servos do, so that it does the same later if they do.
+Scenario floating(std::uint32_t latency_us) {
+  Scenario scenario = shipped("travelling_wave/uniform");
+  scenario.environment.objects.clear();
+  scenario.environment.gravity.setZero();
+  scenario.robot.servo.latency_us = latency_us;
+  return scenario;
+}
+
+/// Joint angles at the end of each tick.
+std::vector<std::vector<double>> angles_of(const Scenario& scenario, int ticks) {
+  Simulation simulation(scenario);
+  std::vector<std::vector<double>> angles;
+  for (int i = 0; i < ticks; ++i) {
+    simulation.advance();
+    angles.emplace_back(simulation.plant().joint_angles().begin(), simulation.plant().joint_angles().end());
+  }
+  return angles;
+}
+
+TEST(ServoLatency, MakesTheRobotDoTheSameLater) {
+  const auto prompt = angles_of(floating(0), 50);
+  for (const int ticks : {1, 2, 10}) {
+    const auto late = angles_of(floating(static_cast<std::uint32_t>(ticks) * 10'000U), 50);
+    for (std::size_t tick = 0; tick < 50; ++tick) {
+      for (std::size_t joint = 0; joint < 5; ++joint) {
+        const double expected =
+            tick < static_cast<std::size_t>(ticks) ? 0.0 : prompt[tick - static_cast<std::size_t>(ticks)][joint];
+        EXPECT_NEAR(late[tick][joint], expected, 1e-12) << ticks << " ticks late, tick " << tick << ", joint " << joint;
+      }
+    }
+  }
+}
+
+TEST(ServoLatency, IsRoundedToStepsOfThePhysics) {
+  const auto steps = [](std::uint32_t latency_us) { return angles_of(floating(latency_us), 20); };
+  EXPECT_EQ(steps(400), steps(0));
+  EXPECT_NE(steps(600), steps(0));
+  EXPECT_EQ(steps(600), steps(1'000));
+  EXPECT_EQ(steps(1'499), steps(1'000));
+}
+
+TEST(ServoLatency, ChangesNoSetpointNorPulse) {
+  Scenario scenario = shipped("travelling_wave/uniform");
+  Simulation prompt(scenario);
+  Scenario late_scenario = scenario;
+  late_scenario.robot.servo.latency_us = 30'000;
+  Simulation late(late_scenario);
+  for (int i = 0; i < 100; ++i) {
+    prompt.advance();
+    late.advance();
+    EXPECT_TRUE(std::ranges::equal(prompt.plant().servo_commands(), late.plant().servo_commands()))
+        << "the last pulse that came, not the one that it acts on";
+  }
+  EXPECT_EQ(prompt.setpoint_hash().hex(), late.setpoint_hash().hex());
+  EXPECT_EQ(prompt.servo_hash().hex(), late.servo_hash().hex());
+  EXPECT_NE(prompt.plant().displacement(), late.plant().displacement());
+}
+
+TEST(ServoLatency, HoldsForTheEndOfPulsesToo) {
+  Scenario scenario = shipped("travelling_wave/uniform");
+  scenario.robot.servo.latency_us = 20'000;
+  HardwareOptions options;
+  options.restarts = {{50, 2}};
+  HardwareLoop loop(scenario, std::move(options));
+  constexpr std::uint16_t idle_ma = 10;
+  std::vector<std::uint32_t> limp_ticks;
+  while (loop.tick() < 80) {
+    loop.advance();
+    if (loop.tick() > 40 && loop.plant().servo_readings(2).current_ma == idle_ma) {
+      limp_ticks.push_back(loop.tick() - 1);
+    }
+  }
+  ASSERT_FALSE(limp_ticks.empty());
+  EXPECT_EQ(limp_ticks.front(), 52U) << "the module is gone at tick 50";
+  EXPECT_LT(limp_ticks.back(), 79U);
+}
+
+/// Sensors of all links at the end of each tick.
+std::vector<std::vector<std::uint8_t>> sensors_of(const Scenario& scenario, int ticks) {
+  Simulation simulation(scenario);
+  std::vector<std::vector<std::uint8_t>> sensors;
+  for (int i = 0; i < ticks; ++i) {
+    simulation.advance();
+    sensors.emplace_back(simulation.plant().link_contacts().begin(), simulation.plant().link_contacts().end());
+  }
+  return sensors;
+}
+
+Scenario noisy(double probability, std::uint64_t seed = 1) {
+  Scenario scenario = shipped("travelling_wave/uniform");  // reads no contacts, so that its motion stays the same
+  scenario.contact_noise = probability;
+  scenario.kernel.seed = seed;
+  return scenario;
+}
+
+TEST(ContactNoise, MakesEverySensorReadWrongAsOftenAsItSays) {
+  constexpr int ticks = 500;
+  const auto truth = sensors_of(noisy(0.0), ticks);
+  for (const double probability : {0.01, 0.2, 1.0}) {
+    const auto sensors = sensors_of(noisy(probability), ticks);
+    for (std::size_t link = 0; link < 6; ++link) {
+      for (const unsigned bit : {1U, 2U}) {
+        int wrong = 0;
+        for (std::size_t tick = 0; tick < ticks; ++tick) {
+          wrong += ((sensors[tick][link] ^ truth[tick][link]) & bit) != 0 ? 1 : 0;
+        }
+        // Five standard deviations of a binomial distribution.
+        EXPECT_NEAR(wrong, probability * ticks, 5 * std::sqrt(ticks * probability * (1 - probability)) + 1e-9)
+            << "link " << link << ", bit " << bit;
+      }
+    }
+  }
+}
+
+TEST(ContactNoise, IsTheSameForTheSameSeed) {
+  EXPECT_EQ(sensors_of(noisy(0.1, 5), 100), sensors_of(noisy(0.1, 5), 100));
+  EXPECT_NE(sensors_of(noisy(0.1, 5), 100), sensors_of(noisy(0.1, 6), 100));
+}
+
+TEST(ContactNoise, IsNoneOfTheMeasuresBusiness) {
+  const Scenario undisturbed = noisy(0.0);
+  const Scenario disturbed = noisy(0.5);
+  Simulation quiet(undisturbed);
+  Simulation loud(disturbed);
+  for (int i = 0; i < 200; ++i) {
+    quiet.advance();
+    loud.advance();
+  }
+  EXPECT_EQ(quiet.link_duty_factors(), loud.link_duty_factors()) << "they are of what the links do";
+  EXPECT_EQ(quiet.measures()[Measure::stability_margin], loud.measures()[Measure::stability_margin]);
+}
+
+TEST(ContactNoise, AndLatencyAreTheSameForModulesInTheLoop) {
+  Scenario scenario = shipped("obstacle/reflex");
+  scenario.contact_noise = 0.05;
+  scenario.robot.servo.latency_us = 3'000;
+  Simulation simulation(scenario);
+  HardwareLoop loop(scenario, {});
+  while (loop.tick() < 300) {
+    loop.advance();
+    simulation.advance();
+  }
+  EXPECT_EQ(loop.differences(), 0U);
+  EXPECT_EQ(loop.setpoint_hash().hex(), simulation.setpoint_hash().hex());
+  EXPECT_EQ(loop.plant().displacement(), simulation.plant().displacement());
+  EXPECT_TRUE(std::ranges::equal(loop.plant().link_contacts(), simulation.plant().link_contacts()));
+
+  Scenario without_noise = scenario;
+  without_noise.contact_noise = 0.0;
+  Simulation undisturbed(without_noise);
+  while (undisturbed.tick() < 300) {
+    undisturbed.advance();
+  }
+  EXPECT_NE(simulation.setpoint_hash().hex(), undisturbed.setpoint_hash().hex()) << "the reflex reads them";
+}
+
+}  // namespace
+}  // namespace proleg::sim

@@ -1,0 +1,194 @@
+// What the shipped gaits are worth, against what theory and other accounts of the same run say.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "shipped.hpp"
+#include "sim/loop/hardware_loop.hpp"
+#include "sim/loop/simulation.hpp"
+#include "sim/measure/measure.hpp"
+
+namespace proleg::sim {
+namespace {
+
+void run_on(Simulation& simulation, double seconds) {
+  while (simulation.time_s() < seconds - 1e-9) {
+    simulation.advance();
+  }
+}
+
+MeasureValues measured(const Scenario& scenario, double seconds) {
+  Simulation simulation(scenario);
+  run_on(simulation, seconds);
+  return simulation.measures();
+}
+
+TEST(GaitMeasures, AreUndefinedBeforeTheFirstTickAndDefinedAfterTheGaitHasStarted) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  Simulation simulation(scenario);
+  const MeasureValues start = simulation.measures();
+  for (const double value : start.all()) {
+    EXPECT_TRUE(std::isnan(value));
+  }
+  run_on(simulation, 3);
+  const MeasureValues values = simulation.measures();
+  for (const MeasureDeclaration& declaration : measures()) {
+    EXPECT_TRUE(std::isfinite(values[declaration.measure])) << declaration.name;
+  }
+}
+
+// Thesis, equation 3.2: the step of a wave that does not slip. It cannot be beaten, and on a flat floor with the
+// shipped friction more than half of it is reached.
+TEST(GaitMeasures, TheTravellingWaveTakesMoreThanHalfOfThePredictedStep) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  Simulation simulation(scenario);
+  run_on(simulation, 30);
+  const MeasureValues values = simulation.measures();
+  EXPECT_GE(values[Measure::slip], 0.0);
+  EXPECT_LT(values[Measure::slip], 0.5);
+  EXPECT_NEAR(values[Measure::stride_frequency], 1.0, 1e-3);
+  EXPECT_EQ(values[Measure::distance], simulation.plant().displacement());
+  EXPECT_NEAR(values[Measure::stride_length], values[Measure::distance] / 30, 1e-4);
+  // Five joints, 55 degrees apart, swing by 40 degrees; the chain of four whole and two half links is 360 mm long.
+  const double predicted = values[Measure::stride_length] / (1 - values[Measure::slip]);
+  EXPECT_NEAR(predicted, 0.0650, 0.0015);
+  EXPECT_NEAR(values[Measure::froude_number],
+              std::pow(values[Measure::distance] / 30, 2) / 9.81 / values[Measure::stride_length], 1e-9);
+}
+
+TEST(GaitMeasures, EnergiesLieBetweenWhatPhysicsAndTheServosAllow) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  const MeasureValues values = measured(scenario, 10);
+  double power = 0.0;  // W, if all motors gave all they have
+  double mass = 0.0;
+  for (const Joint& joint : scenario.robot.joints) {
+    power += joint.max_torque * joint.max_speed;
+  }
+  for (const Link& link : scenario.robot.links) {
+    mass += link.mass.mass;
+  }
+  // No crawler gets about without the friction that its floor has on it; it slides forth and back.
+  EXPECT_GT(values[Measure::mechanical_energy], 0.1 * mass * 9.81 * values[Measure::distance]);
+  EXPECT_LT(values[Measure::mechanical_energy], 10 * power);
+  EXPECT_GT(values[Measure::electrical_energy], 10 * 5 * 6 * 0.010);
+  EXPECT_LT(values[Measure::electrical_energy], 10 * 5 * 6 * 1.5);
+  EXPECT_NEAR(values[Measure::cost_of_transport] * mass * values[Measure::distance], values[Measure::mechanical_energy],
+              1e-9);
+  EXPECT_NEAR(values[Measure::specific_resistance] * 9.81, values[Measure::cost_of_transport], 1e-9);
+}
+
+TEST(GaitMeasures, EnergyAndTimeNeverRunBackwards) {
+  const Scenario scenario = shipped("travelling_wave/coupled");
+  Simulation simulation(scenario);
+  double mechanical = 0.0;
+  double electrical = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    simulation.advance();
+    const MeasureValues values = simulation.measures();
+    EXPECT_GE(values[Measure::mechanical_energy], mechanical);
+    EXPECT_GT(values[Measure::electrical_energy], electrical);
+    mechanical = values[Measure::mechanical_energy];
+    electrical = values[Measure::electrical_energy];
+  }
+}
+
+TEST(GaitMeasures, AWaveTheOtherWayRoundGoesBackwards) {
+  Scenario scenario = shipped("travelling_wave/uniform");
+  const double forwards = measured(scenario, 5)[Measure::speed];
+  apply_setting(scenario, "phase_difference=-55");
+  const MeasureValues backwards = measured(scenario, 5);
+  EXPECT_GT(forwards, 0.02);
+  EXPECT_LT(backwards[Measure::speed], -0.02);
+  EXPECT_LT(backwards[Measure::slip], 1.0) << "a step is a step either way";
+}
+
+TEST(GaitMeasures, SpeedFollowsTheHeading) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  Simulation simulation(scenario);
+  run_on(simulation, 5);
+  const auto speed = [&](double heading) { return simulation.measures(heading)[Measure::speed]; };
+  EXPECT_NEAR(speed(180), -speed(0), 1e-12);
+  EXPECT_NEAR(speed(-90), -speed(90), 1e-12);
+  EXPECT_NEAR(std::hypot(speed(0), speed(90)), simulation.plant().displacement() / 5, 1e-12);
+  EXPECT_LT(std::abs(speed(90)), 0.1 * speed(0)) << "pitch joints alone take it straight on";
+}
+
+TEST(GaitMeasures, DoNotDependOnWhereTheRobotPointsAtTheStart) {
+  Scenario scenario = shipped("travelling_wave/uniform");
+  const MeasureValues expected = measured(scenario, 1);
+  scenario.environment.robot_pose.orientation =
+      Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitZ())) *
+      scenario.environment.robot_pose.orientation;
+  const MeasureValues turned = measured(scenario, 1);
+  // A quarter of a turn, for the engine's friction is a pyramid along the axes of the world.
+  for (const Measure measure :
+       {Measure::speed, Measure::mechanical_energy, Measure::electrical_energy, Measure::smoothness}) {
+    EXPECT_NEAR(turned[measure], expected[measure], 0.02 * expected[measure]) << declaration_of(measure).name;
+  }
+  EXPECT_NEAR(turned[Measure::stability_margin], expected[Measure::stability_margin], 0.005) << "sensors flicker";
+}
+
+TEST(GaitMeasures, ARobotTwiceAsHeavyWithMotorsTwiceAsStrongNeedsTwiceTheEnergy) {
+  Scenario scenario = shipped("travelling_wave/uniform");
+  const MeasureValues light = measured(scenario, 1);
+  for (Link& link : scenario.robot.links) {
+    link.mass.mass *= 2;
+    link.mass.inertia *= 2;
+  }
+  for (Joint& joint : scenario.robot.joints) {
+    joint.max_torque *= 2;
+  }
+  const MeasureValues heavy = measured(scenario, 1);
+  EXPECT_NEAR(heavy[Measure::mechanical_energy], 2 * light[Measure::mechanical_energy],
+              0.01 * light[Measure::mechanical_energy]);
+  EXPECT_NEAR(heavy[Measure::cost_of_transport], light[Measure::cost_of_transport],
+              0.02 * light[Measure::cost_of_transport]);
+}
+
+TEST(GaitMeasures, DutyFactorsAreThoseOfTheContacts) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  Simulation simulation(scenario);
+  std::vector<std::vector<bool>> contacts;
+  while (simulation.tick() < 500) {
+    simulation.advance();
+    contacts.emplace_back();
+    for (const std::uint8_t sensors : simulation.plant().link_contacts()) {
+      contacts.back().push_back(sensors != 0);
+    }
+  }
+  const std::vector<double> factors = simulation.link_duty_factors();
+  ASSERT_EQ(factors.size(), 6U);
+  const auto stride = simulation.plant().meter().stride();
+  ASSERT_TRUE(stride);
+  EXPECT_NEAR(static_cast<double>(stride->end_tick - stride->first_tick), 300, 100.5) << "whole strides of 100 ticks";
+  double sum = 0.0;
+  for (std::size_t link = 0; link < 6; ++link) {
+    double expected = 0.0;
+    for (std::size_t tick = stride->first_tick; tick < stride->end_tick; ++tick) {
+      expected += contacts[tick][link] ? 1.0 : 0.0;
+    }
+    expected /= static_cast<double>(stride->end_tick - stride->first_tick);
+    EXPECT_NEAR(factors[link], expected, 1e-12) << "link " << link;
+    sum += factors[link];
+  }
+  EXPECT_NEAR(simulation.measures()[Measure::duty_factor], sum / 6, 1e-12);
+}
+
+TEST(GaitMeasures, AreTheSameWithModulesInTheLoop) {
+  const Scenario scenario = shipped("travelling_wave/coupled");
+  HardwareLoop loop(scenario, {});
+  while (loop.tick() < 400) {
+    loop.advance();
+  }
+  const MeasureValues modules = loop.plant().meter().values();
+  const MeasureValues memory = measured(scenario, 4);
+  for (const MeasureDeclaration& declaration : measures()) {
+    EXPECT_EQ(modules[declaration.measure], memory[declaration.measure]) << declaration.name;
+  }
+}
+
+}  // namespace
+}  // namespace proleg::sim

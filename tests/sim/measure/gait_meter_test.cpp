@@ -1,0 +1,311 @@
+// Motions whose measures are known without a computer.
+
+#include "sim/measure/gait_meter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+#include "sim/measure/crawling_models.hpp"
+#include "test_robot.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr double tick_s = 0.01;
+constexpr double step_s = 0.001;
+constexpr double degree = std::numbers::pi / 180.0;
+
+/// Tells a meter of a robot that slides about without turning, its links in the places of its model.
+class Motion {
+ public:
+  using Path = std::function<Eigen::Vector3d(double t)>;
+  using Angle = std::function<double(std::size_t joint, double t)>;
+  using Contact = std::function<std::uint8_t(std::size_t link, int tick)>;
+
+  explicit Motion(std::size_t links = 6) : robot(straight_robot(links)) {}
+
+  RobotModel robot;
+  EnvironmentModel environment;
+  Path path = [](double /*t*/) { return Eigen::Vector3d(0, 0, 0); };
+  Angle angle = [](std::size_t /*joint*/, double /*t*/) { return 0.0; };
+  Contact contact = [](std::size_t /*link*/, int /*tick*/) { return std::uint8_t{0}; };
+
+  [[nodiscard]] GaitMeter after(double seconds) const {
+    GaitMeter meter(robot, environment, path(0.0), step_s, tick_s);
+    std::vector<Pose> poses(robot.links.size());
+    std::vector<double> angles(robot.joints.size());
+    std::vector<std::uint8_t> contacts(robot.links.size());
+    for (int tick = 1; tick <= std::lround(seconds / tick_s); ++tick) {
+      const double t = tick * tick_s;
+      for (std::size_t link = 0; link < poses.size(); ++link) {
+        poses[link] = robot.links[link].pose;
+        poses[link].position += path(t) - path(0.0);
+        contacts[link] = contact(link, tick - 1);
+      }
+      for (std::size_t joint = 0; joint < angles.size(); ++joint) {
+        angles[joint] = angle(joint, t);
+      }
+      meter.add_tick({path(t), poses, angles, angles, contacts});
+    }
+    return meter;
+  }
+  [[nodiscard]] MeasureValues values_after(double seconds) const { return after(seconds).values(); }
+};
+
+TEST(GaitMeter, DefinesNothingBeforeTheFirstTick) {
+  const GaitMeter meter = Motion().after(0);
+  const MeasureValues values = meter.values();
+  for (const double value : values.all()) {
+    EXPECT_TRUE(std::isnan(value));
+  }
+  for (const double factor : meter.link_duty_factors()) {
+    EXPECT_TRUE(std::isnan(factor));
+  }
+}
+
+TEST(GaitMeter, DistanceIsHorizontalAndStraight) {
+  Motion motion;
+  motion.path = [](double t) { return Eigen::Vector3d(1 + 0.3 * t, 2 - 0.4 * t, 7 * t); };
+  EXPECT_NEAR(motion.values_after(2)[Measure::distance], 1.0, 1e-12) << "thesis, equation 3.7";
+  EXPECT_NEAR(motion.values_after(2)[Measure::height], 14.0, 1e-12);
+  motion.path = [](double t) { return Eigen::Vector3d(std::cos(t), std::sin(t), 0); };
+  EXPECT_NEAR(motion.values_after(2)[Measure::distance], 2 * std::sin(1.0), 1e-12) << "not along the way";
+}
+
+TEST(GaitMeter, SpeedIsAlongAHeadingFromTheWayTheHeadPoints) {
+  Motion motion;  // its head points to +y, so its left is -x
+  motion.path = [](double t) { return Eigen::Vector3d(0.3 * t, 0.4 * t, t); };
+  const GaitMeter meter = motion.after(3);
+  const auto speed = [&meter](double heading) { return meter.values(heading)[Measure::speed]; };
+  EXPECT_NEAR(speed(0), 0.4, 1e-12);
+  EXPECT_NEAR(speed(180), -0.4, 1e-12);
+  EXPECT_NEAR(speed(90), -0.3, 1e-12);
+  EXPECT_NEAR(speed(-90), 0.3, 1e-12);
+  EXPECT_NEAR(speed(-std::atan2(0.3, 0.4) / degree), 0.5, 1e-12) << "the heading it takes";
+  EXPECT_EQ(meter.values()[Measure::speed], speed(0));
+
+  motion.environment.robot_pose.orientation =
+      Eigen::Quaterniond(Eigen::AngleAxisd(-std::numbers::pi / 2, Eigen::Vector3d::UnitZ()));  // now it points to +x
+  EXPECT_NEAR(motion.values_after(3)[Measure::speed], 0.3, 1e-12);
+  motion.environment.robot_pose.orientation =
+      Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi / 2, Eigen::Vector3d::UnitX()));
+  EXPECT_TRUE(std::isnan(motion.values_after(3)[Measure::speed])) << "it stands on its tail";
+}
+
+TEST(GaitMeter, SmoothnessIsTheRootMeanSquareOfTheAcceleration) {
+  Motion motion;
+  motion.path = [](double t) { return Eigen::Vector3d(0.3 * t, 0.4 * t, 0.1 * t); };
+  EXPECT_NEAR(motion.values_after(2)[Measure::smoothness], 0.0, 1e-9);
+  motion.path = [](double t) { return Eigen::Vector3d(t * t, 0, t * t); };
+  EXPECT_NEAR(motion.values_after(2)[Measure::smoothness], std::sqrt(8.0), 1e-8);
+  constexpr double w = 2 * std::numbers::pi;
+  motion.path = [](double t) { return Eigen::Vector3d(0, 0.05 * std::sin(w * t), 0); };
+  EXPECT_NEAR(motion.values_after(10)[Measure::smoothness], 0.05 * w * w / std::sqrt(2.0), 0.01);
+}
+
+TEST(GaitMeter, TheStabilityMarginIsTheWayFromTheCentreOfMassToTheNearerOutermostSupport) {
+  // Three links of 72 mm: their sensors lie 18 mm before and behind their middles, at +72, 0 and -72 mm. The head
+  // points to +y; the centre of mass is that of the path, at 0 where it is not said otherwise.
+  Motion motion(3);
+  const auto margin = [&motion](const std::vector<std::uint8_t>& contacts, double center = 0.0) {
+    motion.path = [center](double /*t*/) { return Eigen::Vector3d(0, center, 0); };
+    motion.contact = [&contacts](std::size_t link, int /*tick*/) { return contacts[link]; };
+    // The links are where their model has them, 72 mm further back than described above.
+    return motion.values_after(0.1)[Measure::stability_margin];
+  };
+  EXPECT_NEAR(margin({3, 0, 3}, -0.072), 0.090, 1e-12);
+  EXPECT_NEAR(margin({1, 0, 2}, -0.072), 0.054, 1e-12) << "rear sensor of the head, front sensor of the tail";
+  EXPECT_NEAR(margin({0, 3, 0}, -0.072), 0.018, 1e-12);
+  EXPECT_NEAR(margin({3, 0, 3}, -0.052), 0.070, 1e-12) << "the nearer one";
+  EXPECT_NEAR(margin({3, 0, 3}, -0.092), 0.070, 1e-12) << "on either side";
+  EXPECT_NEAR(margin({0, 0, 3}, -0.072), -0.054, 1e-12) << "outside";
+  EXPECT_NEAR(margin({2, 0, 0}, -0.072), -0.090, 1e-12) << "one support: the way to it";
+  EXPECT_TRUE(std::isnan(margin({0, 0, 0}))) << "in the air";
+}
+
+TEST(GaitMeter, TheStabilityMarginIsAMeanOfTheTicksWithSupport) {
+  Motion motion(3);
+  motion.path = [](double /*t*/) { return Eigen::Vector3d(0, -0.072, 0); };
+  motion.contact = [](std::size_t link, int tick) {
+    const std::array<std::array<std::uint8_t, 3>, 4> gait{{{3, 0, 3}, {0, 3, 0}, {0, 0, 0}, {2, 0, 0}}};
+    return gait[static_cast<std::size_t>(tick) % 4][link];
+  };
+  EXPECT_NEAR(motion.values_after(0.4)[Measure::stability_margin], (0.090 + 0.018 - 0.090) / 3, 1e-12);
+}
+
+TEST(GaitMeter, TheDutyFactorIsTheShareOfWholeStridesOnTheGround) {
+  Motion motion(4);
+  motion.angle = [](std::size_t joint, double t) {
+    return 0.5 * std::sin(2 * std::numbers::pi * t - static_cast<double>(joint));
+  };
+  // By stride of 100 ticks: the head always, the next 30 ticks with one sensor or both, then 50, the tail never.
+  motion.contact = [](std::size_t link, int tick) -> std::uint8_t {
+    const int phase = tick % 100;
+    switch (link) {
+      case 0:
+        return 3;
+      case 1:
+        return phase < 10 ? 1 : phase < 20 ? 3 : phase < 30 ? 2 : 0;
+      case 2:
+        return phase >= 50 ? 1 : 0;
+      default:
+        return 0;
+    }
+  };
+  for (const double seconds : {5.0, 5.37, 7.9}) {
+    const GaitMeter meter = motion.after(seconds);
+    const std::vector<double> factors = meter.link_duty_factors();
+    ASSERT_EQ(factors.size(), 4U);
+    EXPECT_NEAR(factors[0], 1.0, 1e-12);
+    EXPECT_NEAR(factors[1], 0.3, 1e-12) << seconds << " s: not those of a part of a stride";
+    EXPECT_NEAR(factors[2], 0.5, 1e-12);
+    EXPECT_NEAR(factors[3], 0.0, 1e-12);
+    EXPECT_NEAR(meter.values()[Measure::duty_factor], 1.8 / 4, 1e-12);
+  }
+  motion.angle = [](std::size_t /*joint*/, double /*t*/) { return 0.0; };
+  EXPECT_NEAR(motion.after(1.3).link_duty_factors()[1], 60.0 / 130, 1e-12) << "without strides: of all ticks";
+}
+
+TEST(GaitMeter, StridesGiveLengthFrequencyAndFroudeNumber) {
+  Motion motion;
+  motion.path = [](double t) { return Eigen::Vector3d(0, 0.06 * t, 0); };
+  motion.angle = [](std::size_t joint, double t) {
+    return 0.5 * std::sin(2 * std::numbers::pi * 1.5 * t - static_cast<double>(joint));
+  };
+  const MeasureValues values = motion.values_after(20);
+  EXPECT_NEAR(values[Measure::stride_frequency], 1.5, 1e-3);
+  EXPECT_NEAR(values[Measure::stride_length], 0.04, 4e-5);
+  EXPECT_NEAR(values[Measure::froude_number], 0.06 * 0.06 / (9.81 * 0.04), 1e-5) << "v^2 / (g * stride length)";
+  motion.angle = [](std::size_t /*joint*/, double /*t*/) { return 0.2; };
+  const MeasureValues still = motion.values_after(20);
+  for (const Measure measure :
+       {Measure::stride_frequency, Measure::stride_length, Measure::froude_number, Measure::slip}) {
+    EXPECT_TRUE(std::isnan(still[measure])) << declaration_of(measure).name;
+  }
+}
+
+TEST(GaitMeter, SlipIsWhatOfThePredictedStepIsMissing) {
+  // Section 3.3.1 of the thesis, worked out: six links of 72 mm, 40 degrees, 55 degrees apart: 78.0 mm in a stride.
+  Motion motion;
+  const auto slip = [&motion](double step, double difference, const std::vector<double>& amplitudes) {
+    motion.path = [step](double t) { return Eigen::Vector3d(0, step * t, 0); };
+    motion.angle = [&](std::size_t joint, double t) {
+      return amplitudes[joint] * degree *
+             std::sin(2 * std::numbers::pi * t + difference * degree * static_cast<double>(joint));
+    };
+    return motion.values_after(10)[Measure::slip];
+  };
+  const std::vector<double> even(5, 40.0);
+  EXPECT_NEAR(slip(0.0780, 55, even), 0.0, 2e-3);
+  EXPECT_NEAR(slip(0.0390, 55, even), 0.5, 2e-3);
+  EXPECT_NEAR(slip(0.0390, -55, even), 0.5, 2e-3) << "whichever way the wave runs";
+  EXPECT_NEAR(slip(0.0780, 55, {40, 40, 40, 40, 0}), 0.0, 2e-3) << "a joint at rest is no part of the wave";
+  EXPECT_NEAR(slip(0.0780, 55, {50, 40, 30, 40, 40}), 0.0, 2e-3) << "the mean amplitude";
+  EXPECT_TRUE(std::isnan(slip(0.0780, 0, even))) << "all joints swing together: no wave";
+  EXPECT_TRUE(std::isnan(slip(0.0780, 1, even)));
+  EXPECT_TRUE(std::isnan(slip(0.0780, 55, {40, 0, 40, 0, 40}))) << "no neighbours to take a difference from";
+
+  motion.robot.joints[2].axis = -Eigen::Vector3d::UnitX();
+  EXPECT_TRUE(std::isnan(slip(0.0390, 55, even))) << "a joint that counts the other way breaks the wave";
+  motion.robot.joints[2].axis = Eigen::Vector3d::UnitZ();
+  EXPECT_TRUE(std::isnan(slip(0.0390, 55, even))) << "pitch and yaw: no wave in one plane";
+}
+
+TEST(GaitMeter, AJointThatCountsTheOtherWayMakesTheSameWaveWithTheOppositeAngle) {
+  Motion motion;
+  motion.path = [](double t) { return Eigen::Vector3d(0, 0.0390 * t, 0); };
+  motion.robot.joints[2].axis = -Eigen::Vector3d::UnitX();
+  motion.angle = [](std::size_t joint, double t) {
+    const double sign = joint == 2 ? -1.0 : 1.0;
+    return sign * 40 * degree * std::sin(2 * std::numbers::pi * t + 55 * degree * static_cast<double>(joint));
+  };
+  EXPECT_NEAR(motion.values_after(10)[Measure::slip], 0.5, 2e-3);
+}
+
+/// A meter that saw one joint turn at a speed with a torque, for a second.
+MeasureValues turning(Motion motion, double torque, double speed, double commanded, bool limp = false) {
+  GaitMeter meter(motion.robot, motion.environment, Eigen::Vector3d::Zero(), step_s, tick_s);
+  double angle = 0.0;
+  meter.add_joint_step(0, {0.0, speed, -speed * step_s, 0.0, true});  // it has its speed already
+  const double before = 0.06 * 0.01 * step_s;                         // J, that it drew meanwhile
+  for (int step = 0; step < 1000; ++step) {
+    meter.add_joint_step(0, {torque, commanded, angle, angle + speed * step_s, limp});
+    angle += speed * step_s;
+  }
+  const std::vector<Pose> poses(motion.robot.links.size());
+  const std::vector<double> angles(motion.robot.joints.size());
+  const std::vector<std::uint8_t> contacts(motion.robot.links.size());
+  meter.add_tick({{0.5, 0, 0}, poses, angles, angles, contacts});
+  MeasureValues values = meter.values();
+  EXPECT_GE(values[Measure::electrical_energy], before);
+  return values;
+}
+
+TEST(GaitMeter, MechanicalEnergyIsPositiveWorkAlone) {
+  const Motion motion(2);
+  EXPECT_NEAR(turning(motion, 0.2, 3.0, 3.0)[Measure::mechanical_energy], 0.6, 1e-9);
+  EXPECT_NEAR(turning(motion, -0.2, -3.0, -3.0)[Measure::mechanical_energy], 0.6, 1e-9) << "either way";
+  EXPECT_EQ(turning(motion, -0.2, 3.0, 3.0)[Measure::mechanical_energy], 0.0) << "braking gives nothing back";
+  EXPECT_EQ(turning(motion, 0.2, 0.0, 1.0)[Measure::mechanical_energy], 0.0) << "holding is no work";
+}
+
+TEST(GaitMeter, ElectricalEnergyIsWhatTheServosDrawAtSixVolts) {
+  const Motion motion(2);
+  const auto energy = [&motion](double speed, double commanded, bool limp = false) {
+    return turning(motion, 0.1, speed, commanded, limp)[Measure::electrical_energy];
+  };
+  constexpr double tolerance = 1e-3;  // the step before the second
+  EXPECT_NEAR(energy(0, 0), 6 * 0.010, tolerance) << "at rest";
+  EXPECT_NEAR(energy(4.5, 4.5), 6 * 0.200, tolerance) << "free, at full speed";
+  EXPECT_NEAR(energy(0, 4.5), 6 * 1.5, tolerance) << "held";
+  EXPECT_NEAR(energy(0, -4.5), 6 * 1.5, tolerance);
+  EXPECT_NEAR(energy(2.0, 4.5, true), 6 * 0.010, tolerance) << "without pulses";
+}
+
+TEST(GaitMeter, CostsOfTransportAreEnergyPerMassAndDistance) {
+  Motion motion(2);  // 0.2 kg; turning() goes half a metre
+  const MeasureValues values = turning(motion, 0.2, 3.0, 3.0);
+  EXPECT_NEAR(values[Measure::cost_of_transport], 0.6 / (0.2 * 0.5), 1e-8);
+  EXPECT_NEAR(values[Measure::specific_resistance], 0.6 / (0.2 * 0.5 * 9.81), 1e-9);
+  EXPECT_NEAR(values[Measure::electrical_cost_of_transport], values[Measure::electrical_energy] / 0.1, 1e-12);
+
+  motion.environment.gravity.setZero();
+  EXPECT_TRUE(std::isnan(turning(motion, 0.2, 3.0, 3.0)[Measure::specific_resistance]));
+  EXPECT_NEAR(turning(motion, 0.2, 3.0, 3.0)[Measure::cost_of_transport], 6.0, 1e-8);
+
+  for (Link& link : motion.robot.links) {
+    link.mass.mass *= 3;
+  }
+  EXPECT_NEAR(turning(motion, 0.2, 3.0, 3.0)[Measure::cost_of_transport], 2.0, 1e-8) << "of a robot thrice as heavy";
+}
+
+TEST(GaitMeter, ARobotThatStaysHasNoCostOfTransport) {
+  Motion motion;
+  motion.path = [](double t) { return Eigen::Vector3d(0, 0.0009 * t, 0); };
+  MeasureValues values = motion.values_after(1);
+  EXPECT_TRUE(std::isnan(values[Measure::cost_of_transport]));
+  EXPECT_TRUE(std::isnan(values[Measure::electrical_cost_of_transport]));
+  EXPECT_TRUE(std::isnan(values[Measure::specific_resistance]));
+  values = motion.values_after(2);
+  EXPECT_EQ(values[Measure::cost_of_transport], 0.0) << "1.8 mm, without work";
+}
+
+TEST(GaitMeter, ADayLongRunTakesItsStridesFromTheLastTicks) {
+  Motion motion(2);
+  const double change_s = 0.5 * static_cast<double>(GaitMeter::history_ticks) * tick_s;
+  motion.angle = [&](std::size_t /*joint*/, double t) {
+    return 0.5 * std::sin(2 * std::numbers::pi * (t < change_s ? 1.0 : 2.0) * t);
+  };
+  const double seconds = 2.2 * static_cast<double>(GaitMeter::history_ticks) * tick_s;
+  const GaitMeter meter = motion.after(seconds);
+  EXPECT_NEAR(meter.values()[Measure::stride_frequency], 2.0, 1e-4) << "the early ones are forgotten";
+  EXPECT_LE(meter.stride()->end_tick, 2 * GaitMeter::history_ticks);
+}
+
+}  // namespace
+}  // namespace proleg::sim

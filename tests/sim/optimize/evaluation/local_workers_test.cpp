@@ -1,0 +1,312 @@
+#include "sim/optimize/evaluation/local_workers.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <regex>
+
+#include "small_experiment.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// In a worker: how often the function was called in this test, over all processes, from 1.
+int count_call(const std::filesystem::path& file) {
+  std::ofstream(file, std::ios::app) << '.';
+  return static_cast<int>(std::filesystem::file_size(file));
+}
+
+/// Waits for a result for as long as it takes.
+Workers::Done next(Workers& workers) {
+  std::optional<Workers::Done> done;
+  while (!done) {
+    done = workers.wait(milliseconds(1000));
+  }
+  return *done;
+}
+
+class LocalWorkersTest : public testing::Test {
+ protected:
+  /// Does at the first call for evaluation 17 what `misfortune` says, else made_up_trial.
+  [[nodiscard]] RunTask once(const std::function<void()>& misfortune) const {
+    return [this, misfortune](const Experiment& experiment, const Task& task) {
+      if (task.number == 17 && count_call(folder_ / "calls") == 1) {
+        misfortune();
+      }
+      return made_up_trial(experiment, task);
+    };
+  }
+
+  TemporaryFolder folder_;
+  Experiment experiment_ = small_experiment();
+  Task task_{0, 17, 0, {3, 1, 2}, {}};
+};
+
+TEST_F(LocalWorkersTest, GiveTheResultsThatRunTrialGives) {
+  const Experiment noisy = noisy_experiment();
+  LocalWorkers workers(noisy, 2);
+  EXPECT_EQ(workers.count(), 2U);
+  std::vector<Task> tasks;
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    tasks.push_back({0, i, i % 2, {i, i % 4, (i + 1) % 4}, {}});
+  }
+  std::map<std::uint64_t, TrialResult> results;
+  for (std::size_t given = 0; results.size() < tasks.size();) {
+    while (given < tasks.size() && workers.idle() > 0) {
+      workers.start(given, tasks[given]);
+      ++given;
+    }
+    Workers::Done done = next(workers);
+    EXPECT_LT(done.worker, 2U);
+    EXPECT_TRUE(results.emplace(done.ticket, done.result).second);
+  }
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    EXPECT_EQ(exact(results.at(i)), exact(run_trial(noisy, tasks[i])));
+    EXPECT_GT(results.at(i).wall_s, 0.0);
+  }
+  EXPECT_EQ(workers.idle(), 2U);
+  EXPECT_TRUE(workers.messages().empty());
+}
+
+TEST_F(LocalWorkersTest, WithoutATaskHaveNoResult) {
+  LocalWorkers workers(experiment_, 1);
+  EXPECT_FALSE(workers.wait(milliseconds(0)));
+}
+
+TEST_F(LocalWorkersTest, RepeatTheTaskOfAWorkerThatIsKilled) {
+  LocalWorkers workers(experiment_, 1, once([] { raise(SIGKILL); }));
+  workers.start(5, task_);
+  const Workers::Done done = next(workers);
+  EXPECT_EQ(done.ticket, 5U);
+  EXPECT_EQ(exact(done.result), exact(made_up_trial(experiment_, task_)));
+  const std::vector<std::string> messages = workers.messages();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_TRUE(std::regex_match(
+      messages[0], std::regex("worker 0 \\(process [0-9]+\\) was killed by signal 9 in evaluation 17 of run "
+                              "0; started again, evaluation repeated")))
+      << messages[0];
+  EXPECT_TRUE(workers.messages().empty());
+  EXPECT_EQ(workers.idle(), 1U);
+}
+
+TEST_F(LocalWorkersTest, RepeatTheTaskOfAWorkerThatEndsOrThrows) {
+  for (const auto& [misfortune, what] :
+       {std::pair<std::function<void()>, std::string>{[] { _exit(3); }, "ended with exit status 3"},
+        {[] { throw std::bad_alloc(); }, "failed (std::bad_alloc)"}}) {
+    std::filesystem::remove(folder_ / "calls");
+    LocalWorkers workers(experiment_, 1, once(misfortune));
+    workers.start(1, task_);
+    EXPECT_EQ(exact(next(workers).result), exact(made_up_trial(experiment_, task_)));
+    const std::vector<std::string> messages = workers.messages();
+    ASSERT_EQ(messages.size(), 1U);
+    EXPECT_NE(messages[0].find(what), std::string::npos) << messages[0];
+  }
+}
+
+TEST_F(LocalWorkersTest, ReplaceOneThatDiesWithoutATask) {
+  const RunTask tell_process = [](const Experiment&, const Task&) {
+    TrialResult result;
+    result.simulated_s = getpid();
+    return result;
+  };
+  LocalWorkers workers(experiment_, 1, tell_process);
+  workers.start(1, task_);
+  const auto process = static_cast<pid_t>(next(workers).result.simulated_s);
+  ASSERT_NE(process, getpid());
+  kill(process, SIGKILL);
+  std::vector<std::string> messages;
+  while (messages.empty()) {
+    EXPECT_FALSE(workers.wait(milliseconds(10)));
+    messages = workers.messages();
+  }
+  EXPECT_NE(messages[0].find("was killed by signal 9 without a task; started again"), std::string::npos);
+  workers.start(2, task_);
+  EXPECT_NE(static_cast<pid_t>(next(workers).result.simulated_s), process);
+}
+
+TEST_F(LocalWorkersTest, EndTheSearchIfATaskCostsThreeWorkers) {
+  const RunTask deadly = [this](const Experiment& experiment, const Task& task) {
+    if (task.number == 17) {
+      count_call(folder_ / "calls");
+      raise(SIGSEGV);
+    }
+    return made_up_trial(experiment, task);
+  };
+  // The sanitizers would report the signal at length.
+  std::signal(SIGSEGV, SIG_DFL);
+  LocalWorkers workers(experiment_, 2, deadly);
+  workers.start(1, task_);
+  workers.start(2, {0, 18, 0, {0, 0, 0}, {}});
+  try {
+    while (true) {
+      if (const std::optional<Workers::Done> done = workers.wait(milliseconds(1000))) {
+        EXPECT_EQ(done->ticket, 2U);
+      }
+    }
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("evaluation 17 of run 0"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(count_call(folder_ / "calls"), 4);
+}
+
+TEST_F(LocalWorkersTest, ReplaceOneThatHangs) {
+  LocalWorkers workers(experiment_, 1, once([] {
+                         while (true) {
+                           pause();
+                         }
+                       }),
+                       {milliseconds(200), 0.0});
+  workers.start(1, task_);
+  EXPECT_EQ(exact(next(workers).result), exact(made_up_trial(experiment_, task_)));
+  const std::vector<std::string> messages = workers.messages();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_NE(messages[0].find("gave no answer"), std::string::npos) << messages[0];
+}
+
+TEST_F(LocalWorkersTest, DoNotHearTheSignalsThatAreForTheirParent) {
+  const RunTask asked_to_end = [](const Experiment& experiment, const Task& task) {
+    raise(SIGINT);
+    raise(SIGTERM);
+    raise(SIGHUP);
+    return made_up_trial(experiment, task);
+  };
+  LocalWorkers workers(experiment_, 1, asked_to_end);
+  workers.start(1, task_);
+  next(workers);
+  EXPECT_TRUE(workers.messages().empty());
+}
+
+TEST_F(LocalWorkersTest, HoldNoDescriptorOfTheirParent) {
+  const RunTask count_descriptors = [](const Experiment&, const Task&) {
+    TrialResult result;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+      result.simulated_s += 1.0;
+    }
+    return result;
+  };
+  std::ifstream open_file("/dev/zero");
+  LocalWorkers workers(experiment_, 3, count_descriptors);
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    workers.start(i, task_);
+  }
+  for (int i = 0; i < 3; ++i) {
+    // Standard input, output and error, the socket, and that of the listing.
+    EXPECT_EQ(next(workers).result.simulated_s, 5.0);
+  }
+}
+
+TEST_F(LocalWorkersTest, WaitReturnsWhenASignalComes) {
+  std::signal(SIGALRM, [](int) {});
+  LocalWorkers workers(experiment_, 1, [](const Experiment&, const Task&) -> TrialResult {
+    while (true) {
+      pause();
+    }
+  });
+  workers.start(1, task_);
+  ualarm(20'000, 20'000);
+  EXPECT_FALSE(workers.wait(milliseconds(100'000)));  // or the test takes longer than it may
+  ualarm(0, 0);
+  std::signal(SIGALRM, SIG_DFL);
+}
+
+TEST_F(LocalWorkersTest, EndWithTheirParentHoweverItEnds) {
+  // Whoever loses its parent becomes a child of this process, so that its end can be seen.
+  prctl(PR_SET_CHILD_SUBREAPER, 1);
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const pid_t parent = fork();
+  if (parent == 0) {
+    LocalWorkers workers(experiment_, 2, [this](const Experiment&, const Task&) -> TrialResult {
+      count_call(folder_ / "calls");
+      while (true) {
+        pause();
+      }
+    });
+    workers.start(1, task_);
+    while (!std::filesystem::exists(folder_ / "calls")) {
+      static_cast<void>(workers.wait(milliseconds(1)));
+    }
+    if (write(ends[1], "x", 1) != 1) {
+      _exit(1);
+    }
+    while (true) {
+      pause();
+    }
+  }
+  char ready = 0;
+  ASSERT_EQ(read(ends[0], &ready, 1), 1);
+  kill(parent, SIGKILL);
+  // One that is at a task and one that waits for one.
+  int gone = 0;
+  for (pid_t process = wait(nullptr); process > 0; process = wait(nullptr)) {
+    ++gone;
+  }
+  EXPECT_EQ(gone, 3);
+  prctl(PR_SET_CHILD_SUBREAPER, 0);
+  close(ends[0]);
+  close(ends[1]);
+}
+
+/// Descriptors stand for whatever the system may run out of: a worker needs one, and two while it is made.
+class ScarceSystem : public LocalWorkersTest {
+ protected:
+  ScarceSystem() { getrlimit(RLIMIT_NOFILE, &before_); }
+  ~ScarceSystem() override { setrlimit(RLIMIT_NOFILE, &before_); }
+
+  void leave_descriptors(rlim_t count) const {
+    const int next = dup(STDERR_FILENO);
+    close(next);
+    const rlimit limit{static_cast<rlim_t>(next) + count, before_.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &limit), 0);
+  }
+
+  rlimit before_{};
+};
+
+TEST_F(ScarceSystem, GivesFewerWorkers) {
+  leave_descriptors(3);
+  LocalWorkers workers(experiment_, 5, made_up_trial);
+  setrlimit(RLIMIT_NOFILE, &before_);
+  EXPECT_EQ(workers.count(), 2U);
+  const std::vector<std::string> messages = workers.messages();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_NE(messages[0].find("2 of 5 workers"), std::string::npos) << messages[0];
+  workers.start(1, task_);
+  EXPECT_EQ(next(workers).ticket, 1U);
+}
+
+TEST_F(ScarceSystem, ThatGivesNoWorkerIsAnError) {
+  leave_descriptors(1);
+  EXPECT_THROW(LocalWorkers(experiment_, 5, made_up_trial), std::runtime_error);
+}
+
+TEST_F(ScarceSystem, ThatGivesNoSuccessorLeavesTheTaskToAnother) {
+  LocalWorkers workers(experiment_, 2, once([] { raise(SIGKILL); }));
+  leave_descriptors(0);
+  workers.start(1, task_);
+  workers.start(2, {0, 18, 0, {0, 0, 0}, {}});
+  // The dead worker's descriptor is free again, but two are needed for a new one.
+  std::map<std::uint64_t, TrialResult> results;
+  while (results.size() < 2) {
+    const Workers::Done done = next(workers);
+    results[done.ticket] = done.result;
+  }
+  setrlimit(RLIMIT_NOFILE, &before_);
+  EXPECT_EQ(exact(results.at(1)), exact(made_up_trial(experiment_, task_)));
+  EXPECT_EQ(workers.count(), 1U);
+  EXPECT_EQ(workers.idle(), 1U);
+  const std::vector<std::string> messages = workers.messages();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_NE(messages[0].find("not started again"), std::string::npos) << messages[0];
+}
+
+}  // namespace
+}  // namespace proleg::optimize

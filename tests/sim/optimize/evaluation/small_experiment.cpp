@@ -1,0 +1,155 @@
+#include "small_experiment.hpp"
+
+#include <bit>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "shared/fixed/decimal.hpp"
+#include "shared/gait/actuation_module.hpp"
+#include "sim/scenario/reader.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+/// A parameter on all joints, with these values.
+Dimension dimension(const sim::Scenario& scenario, const std::string& name, const std::vector<std::string>& values) {
+  const Declaration& declaration = scenario.kernel.slots[0].algorithm->declaration();
+  Dimension dimension;
+  dimension.name = name;
+  for (std::size_t i = 0; i < declaration.parameters.size(); ++i) {
+    if (declaration.parameters[i].name == name) {
+      dimension.unit = declaration.parameters[i].unit;
+      for (std::uint8_t joint = 0; joint < scenario.kernel.joint_count; ++joint) {
+        dimension.targets.push_back({0, joint, static_cast<std::uint8_t>(i), false, 0});
+      }
+    }
+  }
+  for (const std::string& value : values) {
+    dimension.values.push_back(parse_decimal(value, dimension.unit).raw);
+  }
+  return dimension;
+}
+
+std::uint64_t mixed(std::uint64_t hash, std::uint64_t value) {
+  hash = (hash ^ value) * 0x9E3779B97F4A7C15U;
+  return hash ^ hash >> 29U;
+}
+
+void append(std::string& text, double value) { text += " " + std::to_string(std::bit_cast<std::uint64_t>(value)); }
+
+}  // namespace
+
+Experiment small_experiment(double duration_s) {
+  Experiment experiment;
+  experiment.path = "small.optimise.xml";
+  sim::DiskFiles files;
+  experiment.scenario = sim::read_scenario(
+      std::filesystem::path(PROLEG_SOURCE_DIR) / "sim/scenarios/travelling_wave/uniform.simulation.xml", files);
+  experiment.scenario.duration_s = duration_s;
+  experiment.space.dimensions = {
+      dimension(experiment.scenario, "amplitude", {"10", "20", "30", "40", "50", "60"}),
+      dimension(experiment.scenario, "frequency", {"0.5", "1", "1.5", "2"}),
+      dimension(experiment.scenario, "phase_difference", {"40", "50", "60", "70"}),
+  };
+  experiment.objectives = {{"distance", {{sim::Measure::distance, 1.0}}, Goal::maximise, 0.0}};
+  experiment.sources = experiment.scenario.sources;
+  experiment.sources.insert(experiment.sources.begin(), {experiment.path, "<optimise/>"});
+  return experiment;
+}
+
+Experiment noisy_experiment(std::uint32_t trials, double duration_s) {
+  Experiment experiment = small_experiment(duration_s);
+  experiment.trials.count = trials;
+  experiment.trials.spread.friction = 0.2;
+  return experiment;
+}
+
+Candidate random_candidate(const Experiment& experiment, std::mt19937& random) {
+  Candidate candidate;
+  for (const Dimension& dimension : experiment.space.dimensions) {
+    candidate.push_back(static_cast<std::uint32_t>(random() % dimension.values.size()));
+  }
+  return candidate;
+}
+
+TrialResult made_up_trial(const Experiment& experiment, const Task& task) {
+  std::uint64_t hash = 1;
+  if (depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread)) {
+    hash = trial_seed(experiment.seed, task.run, task.number, task.trial);
+  }
+  for (const std::uint32_t index : task.candidate) {
+    hash = mixed(hash, index);
+  }
+  TrialResult result;
+  for (double& value : result.measures.all()) {
+    hash = mixed(hash, 7);
+    value = static_cast<double>(hash >> 11U) * 0x1p-53;
+  }
+  result.simulated_s = 0.25;
+  result.given_up = task.hopeless_below && experiment.objectives.front().score(result.measures) < *task.hopeless_below;
+  if (hash % 16 == 0) {
+    result.measures = {};
+    result.failure = "made up";
+    result.given_up = false;
+  }
+  return result;
+}
+
+void MadeUpWorkers::start(std::uint64_t ticket, const Task& task) {
+  if (idle() == 0) {
+    throw std::logic_error("no worker is idle");
+  }
+  started_.push_back(task);
+  busy_.push_back({ticket, task});
+}
+
+std::optional<Workers::Done> MadeUpWorkers::wait(std::chrono::milliseconds /*timeout*/) {
+  if (busy_.empty() || random_() % 3 == 0) {
+    return std::nullopt;
+  }
+  const auto chosen = static_cast<std::ptrdiff_t>(random_() % busy_.size());
+  const Busy busy = busy_[static_cast<std::size_t>(chosen)];
+  busy_.erase(busy_.begin() + chosen);
+  return Done{busy.ticket, run_(experiment_, busy.task), static_cast<std::uint32_t>(chosen)};
+}
+
+std::string exact(const TrialResult& result) {
+  std::string text = result.failure + (result.given_up ? " given up" : "");
+  append(text, result.simulated_s);
+  for (const double value : result.measures.all()) {
+    append(text, value);
+  }
+  return text;
+}
+
+std::string exact(const Evaluation& evaluation) {
+  std::string text = std::to_string(evaluation.run) + " " + std::to_string(evaluation.number) + " " +
+                     evaluation.failure + (evaluation.given_up ? " given up" : "") +
+                     (evaluation.reused ? " reused" : "") + ":";
+  for (const std::uint32_t index : evaluation.candidate) {
+    text += " " + std::to_string(index);
+  }
+  for (const double score : evaluation.scores) {
+    append(text, score);
+  }
+  append(text, evaluation.simulated_s);
+  for (const double value : evaluation.measures.all()) {
+    append(text, value);
+  }
+  return text;
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "proleg-optimise-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) {
+    throw std::runtime_error("no temporary folder");
+  }
+  path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+}  // namespace proleg::optimize

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "sim/optimize/evaluation/task.hpp"
+#include "sim/optimize/evaluation/worker_process.hpp"
+#include "sim/optimize/evaluation/workers.hpp"
+#include "sim/optimize/experiment/experiment.hpp"
+
+namespace proleg::optimize {
+
+/// The shipped uniform travelling wave for a fraction of a second. To be found: "amplitude", 10 to 60 degrees by 10,
+/// "frequency", 0.5 to 2 Hz by 0.5, "phase_difference", 40 to 70 degrees by 10. By the distance.
+[[nodiscard]] Experiment small_experiment(double duration_s = 0.3);
+
+/// The same with trials that differ by friction, so that the outcome depends on the seed.
+[[nodiscard]] Experiment noisy_experiment(std::uint32_t trials = 1, double duration_s = 0.3);
+
+/// Any whole number below the limit.
+[[nodiscard]] inline std::uint32_t draw(std::mt19937& random, std::uint32_t limit) {
+  return static_cast<std::uint32_t>(random() % limit);
+}
+
+/// Any candidate.
+[[nodiscard]] Candidate random_candidate(const Experiment& experiment, std::mt19937& random);
+
+/// Made up, in no time: any numbers, but the same for the same task; the number counts only if the experiment's outcome
+/// depends on the seed. Racing gives up what is below its limit.
+[[nodiscard]] TrialResult made_up_trial(const Experiment& experiment, const Task& task);
+
+/// Workers without processes, which finish in any order and sometimes let wait() return without a result.
+class MadeUpWorkers final : public Workers {
+ public:
+  MadeUpWorkers(const Experiment& experiment, std::uint32_t count, std::uint32_t seed, RunTask run = made_up_trial)
+      : experiment_(experiment), count_(count), random_(seed), run_(std::move(run)) {}
+
+  [[nodiscard]] std::uint32_t count() const override { return count_; }
+  [[nodiscard]] std::uint32_t idle() const override { return count_ - static_cast<std::uint32_t>(busy_.size()); }
+  void start(std::uint64_t ticket, const Task& task) override;
+  [[nodiscard]] std::optional<Done> wait(std::chrono::milliseconds timeout) override;
+  [[nodiscard]] std::vector<std::string> messages() override { return {}; }
+
+  /// All tasks that were started.
+  [[nodiscard]] const std::vector<Task>& started() const { return started_; }
+
+ private:
+  const Experiment& experiment_;
+  std::uint32_t count_;
+  std::mt19937 random_;
+  RunTask run_;
+  struct Busy {
+    std::uint64_t ticket;
+    Task task;
+  };
+  std::vector<Busy> busy_;
+  std::vector<Task> started_;
+};
+
+/// Bit patterns of numbers, with texts and flags; but for the time that it took, which is nobody's promise.
+[[nodiscard]] std::string exact(const TrialResult& result);
+[[nodiscard]] std::string exact(const Evaluation& evaluation);
+
+/// A folder for one test, removed at its end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace proleg::optimize

@@ -1,0 +1,243 @@
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "sim/optimize/evaluation/store.hpp"
+#include "sim/record/sqlite.hpp"
+#include "small_experiment.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+using sim::Database;
+
+class StoreFile : public testing::Test {
+ protected:
+  std::unique_ptr<Store> open(Store::Opening opening, const Experiment& experiment,
+                              const std::string& build = "build 1") const {
+    return std::make_unique<Store>(path_, experiment, build, opening);
+  }
+  /// The message of the refusal.
+  [[nodiscard]] std::string refused(Store::Opening opening, const Experiment& experiment,
+                                    const std::string& build = "build 1") const {
+    try {
+      open(opening, experiment, build);
+      return "nothing";
+    } catch (const StoreError& error) {
+      const std::string what = error.what();
+      EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+      EXPECT_EQ(what.rfind(path_.string() + ": ", 0), 0U) << what;
+      return what.substr(std::min(what.size(), path_.string().size() + 2));
+    }
+  }
+  [[nodiscard]] std::string not_resumed() const { return refused(Store::Opening::resume, experiment_); }
+
+  void make() const { open(Store::Opening::fresh, experiment_); }
+  void write_file(const std::string& text) const { std::ofstream(path_) << text; }
+  void execute(const char* sql) const {
+    Database database(path_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    database.execute(sql);
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_ / "store.sqlite";
+  Experiment experiment_ = small_experiment();
+};
+
+TEST_F(StoreFile, ThatIsThereIsNotMadeAgain) {
+  make();
+  EXPECT_NE(refused(Store::Opening::fresh, experiment_).find("is there already"), std::string::npos);
+  std::filesystem::remove(path_);
+  write_file("");
+  EXPECT_NE(refused(Store::Opening::fresh, experiment_).find("is there already"), std::string::npos);
+  EXPECT_EQ(std::filesystem::file_size(path_), 0U);
+}
+
+TEST_F(StoreFile, ThatIsNotThereIsNotResumed) {
+  EXPECT_NE(not_resumed().find("is not there"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(path_));
+}
+
+TEST_F(StoreFile, OfAnotherKindIsNotResumed) {
+  write_file("not a database at all, but long enough to be one: " + std::string(200, 'x'));
+  EXPECT_EQ(not_resumed(), "is not the store of an experiment");
+  std::filesystem::remove(path_);
+  write_file("");
+  EXPECT_EQ(not_resumed(), "is not the store of an experiment");
+  std::filesystem::remove(path_);
+  execute("CREATE TABLE experiment(key, value)");
+  EXPECT_EQ(not_resumed(), "is not the store of an experiment");
+  std::filesystem::remove(path_);
+  std::filesystem::create_directory(path_);
+  EXPECT_NE(not_resumed().find("is not a file"), std::string::npos);
+}
+
+TEST_F(StoreFile, OfAnotherFormatIsNotResumed) {
+  make();
+  execute("PRAGMA user_version = 77");
+  EXPECT_NE(not_resumed().find("has format 77"), std::string::npos);
+}
+
+TEST_F(StoreFile, ThatIsDamagedIsNotResumed) {
+  make();
+  std::filesystem::resize_file(path_, std::filesystem::file_size(path_) - 4096);
+  EXPECT_NE(not_resumed(), "nothing");
+}
+
+TEST_F(StoreFile, OfAnotherBuildIsNotResumed) {
+  make();
+  const std::string what = refused(Store::Opening::resume, experiment_, "build 2");
+  EXPECT_NE(what.find("'build 1'"), std::string::npos) << what;
+  EXPECT_NE(what.find("'build 2'"), std::string::npos) << what;
+}
+
+TEST_F(StoreFile, OfAnotherExperimentIsNotResumedAndSaysWhatDiffers) {
+  make();
+  const auto differs = [this](const std::function<void(Experiment&)>& change) {
+    Experiment other = small_experiment();
+    change(other);
+    const std::string what = refused(Store::Opening::resume, other);
+    const std::string intro = "what differs: ";
+    const std::size_t start = what.find(intro);
+    EXPECT_NE(what.find("another experiment"), std::string::npos) << what;
+    return start == std::string::npos ? what : what.substr(start + intro.size());
+  };
+  EXPECT_EQ(differs([](Experiment& other) { other.seed = 2; }), "seed");
+  EXPECT_EQ(differs([](Experiment& other) { other.space.dimensions[0].values.pop_back(); }), "search space");
+  EXPECT_EQ(differs([](Experiment& other) { other.trials.count = 3; }), "trials");
+  EXPECT_EQ(differs([](Experiment& other) { other.racing.after = 0.5; }), "racing");
+  EXPECT_EQ(differs([](Experiment& other) { other.reuse = false; }), "reuse");
+  EXPECT_EQ(differs([](Experiment& other) { other.objectives[0].terms[0].weight = 2.0; }), "fitness");
+  EXPECT_EQ(differs([](Experiment& other) { other.method = GeneticSettings{}; }), "method");
+  EXPECT_EQ(differs([](Experiment& other) { std::get<GreatDelugeSettings>(other.method).rain = 0.02; }), "method");
+  EXPECT_EQ(differs([](Experiment& other) { other.scenario.sources.back().text += " "; }),
+            "file " + std::filesystem::path(experiment_.scenario.sources.back().path).filename().string());
+}
+
+TEST_F(StoreFile, IsResumedWithAnotherBudgetAndFromAnotherFolder) {
+  make();
+  experiment_.evaluations = 5;
+  experiment_.path = "elsewhere/small.optimise.xml";
+  EXPECT_EQ(not_resumed(), "nothing");
+}
+
+TEST_F(StoreFile, TakesOneWriterAtATime) {
+  {
+    const std::unique_ptr<Store> first = open(Store::Opening::fresh, experiment_);
+    EXPECT_NE(not_resumed().find("another program is writing into it"), std::string::npos);
+    first->save(Task{}, 1, {}, 0);  // the refusal took no lock away
+    EXPECT_NE(not_resumed().find("another program is writing into it"), std::string::npos);
+  }
+  EXPECT_EQ(not_resumed(), "nothing");
+}
+
+TEST_F(StoreFile, InAFolderThatCannotBeWrittenIsRefused) {
+  path_ = folder_ / "none/store.sqlite";
+  EXPECT_NE(refused(Store::Opening::fresh, experiment_).find("cannot be created: No such file"), std::string::npos);
+  if (geteuid() == 0) {
+    GTEST_SKIP() << "root may write everywhere";
+  }
+  std::filesystem::create_directory(folder_ / "none");
+  std::filesystem::permissions(folder_ / "none",
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  EXPECT_NE(refused(Store::Opening::fresh, experiment_).find("cannot be created: Permission denied"),
+            std::string::npos);
+}
+
+TEST_F(StoreFile, OfAProcessKilledWhileItWasMadeIsMadeAgain) {
+  std::ofstream(path_.string() + ".new") << "SQLite format 3, and then the process was killed";
+  make();
+  EXPECT_EQ(not_resumed(), "nothing");
+  EXPECT_FALSE(std::filesystem::exists(path_.string() + ".new"));
+}
+
+/// A child process that saves trials until it is stopped, and tells the number of each when it is saved.
+class StoreOfAnotherProcess : public StoreFile {
+ protected:
+  /// prepare: done in the child. Returns how many were saved; kills the child after `enough` of them. outcome: what the
+  /// child said at its end.
+  std::uint32_t save(const std::function<void()>& prepare, std::uint32_t enough, std::string& outcome) {
+    int ends[2];
+    if (pipe(ends) != 0) {
+      throw std::runtime_error("no pipe");
+    }
+    const pid_t child = fork();
+    if (child == 0) {
+      std::string what;
+      try {
+        const std::unique_ptr<Store> store = open(Store::Opening::fresh, experiment_);
+        prepare();
+        for (std::uint32_t i = 0; write(ends[1], "+", 1) == 1; ++i) {
+          TrialResult result;
+          result.simulated_s = i;
+          store->save({0, i, 0, {1, 2, 3}, {}}, i, result, 0);
+          store->save(Evaluation{0, i, {1, 2, 3}, {1.0}, {}, 0, 0, false, false, false, ""});
+        }
+      } catch (const StoreError& error) {
+        what = error.what();
+      }
+      _exit(write(ends[1], what.data(), what.size()) == static_cast<ssize_t>(what.size()) ? 0 : 1);
+    }
+    close(ends[1]);
+    std::uint32_t begun = 0;
+    for (char c = 0; read(ends[0], &c, 1) == 1;) {
+      if (c == '+') {
+        if (++begun == enough) {
+          kill(child, SIGKILL);
+        }
+      } else {
+        outcome += c;
+      }
+    }
+    close(ends[0]);
+    waitpid(child, nullptr, 0);
+    return begun - 1;
+  }
+
+  void expect_trials(std::uint32_t count) {
+    const std::unique_ptr<Store> store = open(Store::Opening::resume, experiment_);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const std::optional<TrialResult> found = store->find({0, i, 0, {1, 2, 3}, {}});
+      ASSERT_TRUE(found) << i;
+      EXPECT_EQ(found->simulated_s, i);
+    }
+    const std::size_t evaluations = store->evaluations(0).size();
+    EXPECT_GE(evaluations, count);
+    EXPECT_LE(evaluations, count + 1);
+    // And goes on.
+    store->save({0, count + 1, 0, {1, 2, 3}, {}}, 1, {}, 0);
+    EXPECT_TRUE(store->find({0, count + 1, 0, {1, 2, 3}, {}}));
+  }
+};
+
+TEST_F(StoreOfAnotherProcess, ThatIsKilledHasAllThatWasSaved) {
+  std::random_device device;
+  const std::uint32_t enough = 20 + device() % 300;
+  std::printf("killed after %u\n", enough);
+  std::string outcome;
+  const std::uint32_t saved = save([] {}, enough, outcome);
+  EXPECT_EQ(outcome, "");
+  EXPECT_GE(saved + 1, enough);
+  expect_trials(saved);
+}
+
+TEST_F(StoreOfAnotherProcess, OnAFullDiskKeepsWhatWasSaved) {
+  std::string outcome;
+  const std::uint32_t saved = save(
+      [] {
+        std::signal(SIGXFSZ, SIG_IGN);
+        const rlimit limit{300'000, 300'000};
+        setrlimit(RLIMIT_FSIZE, &limit);
+      },
+      1'000'000, outcome);
+  EXPECT_EQ(outcome, path_.string() + ": no room left on the disk; what was evaluated is kept");
+  EXPECT_GT(saved, 10U);
+  expect_trials(saved);
+}
+
+}  // namespace
+}  // namespace proleg::optimize

@@ -1,0 +1,202 @@
+#include "sim/optimize/evaluation/store.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "sim/record/sqlite.hpp"
+#include "small_experiment.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+using sim::Database;
+using sim::Statement;
+
+/// Any number but a negative zero, which run_trial never gives.
+double any_number(std::mt19937& random) {
+  const std::uint64_t high = random();
+  const auto value = std::bit_cast<double>(high << 32U | random());
+  return std::isnan(value) ? std::numeric_limits<double>::quiet_NaN() : value + 0.0;
+}
+
+TrialResult any_result(std::mt19937& random) {
+  TrialResult result;
+  for (double& value : result.measures.all()) {
+    value = any_number(random);
+  }
+  result.measures[sim::Measure::slip] = std::numeric_limits<double>::quiet_NaN();
+  result.measures[sim::Measure::distance] = 3.0;  // SQLite keeps whole numbers in another way
+  result.simulated_s = 0.1 + 0.2;
+  result.wall_s = 1.0 / 3.0;
+  result.given_up = random() % 2 == 0;
+  result.failure = random() % 2 == 0 ? "it's \"gone\"\n\xC3\xA4" : "";
+  return result;
+}
+
+class StoreTest : public testing::Test {
+ protected:
+  [[nodiscard]] std::unique_ptr<Store> open(Store::Opening opening) {
+    return std::make_unique<Store>(path_, experiment_, "build", opening);
+  }
+  [[nodiscard]] std::unique_ptr<Store> fresh() { return open(Store::Opening::fresh); }
+  [[nodiscard]] std::unique_ptr<Store> resumed() { return open(Store::Opening::resume); }
+
+  /// The one value that a query has, for somebody else who looks into the file.
+  [[nodiscard]] std::string ask(const std::string& sql) const {
+    Database database(path_, SQLITE_OPEN_READONLY);
+    Statement statement(database, sql);
+    return statement.step() ? statement.text(0) : "nothing";
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_ / "store.sqlite";
+  Experiment experiment_ = small_experiment();
+  std::mt19937 random_{3};
+};
+
+TEST_F(StoreTest, GivesTrialsBackToTheLastBit) {
+  std::vector<std::pair<Task, TrialResult>> saved;
+  {
+    const std::unique_ptr<Store> store = fresh();
+    for (std::uint32_t i = 0; i < 200; ++i) {
+      const Task task{
+          i % 3, i / 3, i % 2, {i % 6, i % 4, i % 4}, i % 5 == 0 ? std::nullopt : std::optional(any_number(random_))};
+      if (task.hopeless_below && std::isnan(*task.hopeless_below)) {
+        continue;
+      }
+      saved.emplace_back(task, any_result(random_));
+      store->save(task, 0xFFFFFFFFFFFFFFFFU - i, saved.back().second, i);
+      const std::optional<TrialResult> found = store->find(task);
+      ASSERT_TRUE(found);
+      EXPECT_EQ(exact(*found), exact(saved.back().second));
+    }
+  }
+  const std::unique_ptr<Store> store = resumed();
+  for (const auto& [task, result] : saved) {
+    const std::optional<TrialResult> found = store->find(task);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(exact(*found), exact(result));
+    EXPECT_EQ(found->wall_s, result.wall_s);
+  }
+  EXPECT_EQ(ask("SELECT seed FROM trial WHERE run = 0 AND number = 0"), "18446744073709551615");
+}
+
+TEST_F(StoreTest, FindsThatVeryTaskOnly) {
+  const std::unique_ptr<Store> store = fresh();
+  const Task task{1, 5, 2, {1, 2, 3}, 0.5};
+  store->save(task, 1, any_result(random_), 0);
+  EXPECT_TRUE(store->find(task));
+  for (const Task& other : {Task{0, 5, 2, {1, 2, 3}, 0.5}, Task{1, 4, 2, {1, 2, 3}, 0.5}, Task{1, 6, 2, {1, 2, 3}, 0.5},
+                            Task{1, 5, 1, {1, 2, 3}, 0.5}, Task{1, 5, 2, {1, 2, 2}, 0.5}, Task{1, 5, 2, {1, 2}, 0.5},
+                            Task{1, 5, 2, {1, 2, 3}, 0.25}, Task{1, 5, 2, {1, 2, 3}, {}}}) {
+    EXPECT_FALSE(store->find(other));
+  }
+}
+
+TEST_F(StoreTest, ReplacesAPredictionThatDidNotComeTrue) {
+  const std::unique_ptr<Store> store = fresh();
+  const Task wrong{0, 5, 0, {1, 2, 3}, {}};
+  const Task right{0, 5, 0, {3, 2, 1}, {}};
+  store->save(wrong, 1, any_result(random_), 0);
+  store->save(right, 1, any_result(random_), 0);
+  EXPECT_FALSE(store->find(wrong));
+  EXPECT_TRUE(store->find(right));
+  EXPECT_EQ(ask("SELECT count(*) FROM trial"), "1");
+}
+
+TEST_F(StoreTest, GivesEvaluationsBackToTheLastBit) {
+  experiment_.objectives.push_back({"economy", {{sim::Measure::cost_of_transport, -2.0}}, Goal::minimise, 1e6});
+  std::vector<Evaluation> saved;
+  const std::unique_ptr<Store> store = fresh();
+  for (std::uint32_t i = 0; i < 50; ++i) {
+    const TrialResult any = any_result(random_);
+    Evaluation evaluation{
+        1,          i,     {i % 6, 1, 2}, {0.1 * i, -1e300}, any.measures, any.wall_s, any.simulated_s, any.given_up,
+        i % 7 == 0, false, any.failure};
+    store->save(evaluation);
+    store->save(evaluation);
+    saved.push_back(evaluation);
+  }
+  const std::vector<Evaluation> read = store->evaluations(1);
+  ASSERT_EQ(read.size(), saved.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(exact(read[i]), exact(saved[i]));
+    EXPECT_EQ(read[i].wall_s, saved[i].wall_s);
+  }
+  EXPECT_TRUE(store->evaluations(0).empty());
+}
+
+TEST_F(StoreTest, IsReadableForAPersonWhileItIsOpen) {
+  experiment_.objectives.push_back({"economy", {{sim::Measure::cost_of_transport, 0.5}}, Goal::minimise, 1e6});
+  const std::unique_ptr<Store> store = fresh();
+  Evaluation evaluation{0, 7, {4, 2, 1}, {1.5, 2.5}, {}, 0.3, 30.0, false, false, false, ""};
+  evaluation.measures[sim::Measure::distance] = 1.25;
+  store->save(evaluation);
+  EXPECT_EQ(ask("SELECT \"amplitude\" || ' ' || frequency || ' ' || phase_difference FROM evaluation"),
+            "50.0 1.5 50.0");
+  EXPECT_EQ(ask("SELECT \"score distance\" || ' ' || \"score economy\" || ' ' || distance FROM evaluation"),
+            "1.5 2.5 1.25");
+  EXPECT_EQ(ask("SELECT slip IS NULL FROM evaluation"), "1");
+  EXPECT_EQ(ask("SELECT seed FROM evaluation"), std::to_string(trial_seed(experiment_.seed, 0, 7, 0)));
+  EXPECT_EQ(ask("SELECT value FROM experiment WHERE key = 'fingerprint'"), experiment_.fingerprint());
+  EXPECT_EQ(ask("SELECT value FROM experiment WHERE key = 'build_id'"), "build");
+  EXPECT_EQ(ask("SELECT text FROM source WHERE position = 1"), "<optimise/>");
+  EXPECT_EQ(ask("SELECT group_concat(name || ' [' || unit || ']', ', ') FROM dimension"),
+            "amplitude [deg], frequency [Hz], phase_difference [deg]");
+  EXPECT_EQ(ask("SELECT terms || ' ' || goal FROM objective WHERE name = 'economy'"),
+            "0.5 * cost_of_transport minimise");
+  EXPECT_EQ(ask("SELECT number FROM best"), "7");
+  EXPECT_NE(ask("SELECT sql FROM sqlite_schema WHERE name = 'evaluation'").find("-- What the search used"),
+            std::string::npos);
+}
+
+TEST_F(StoreTest, IsNotStoppedByAReaderThatTakesItsTime) {
+  const std::unique_ptr<Store> store = fresh();
+  Database reader(path_, SQLITE_OPEN_READONLY);
+  reader.execute("BEGIN; SELECT count(*) FROM trial");
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    store->save({0, i, 0, {1, 2, 3}, {}}, 1, any_result(random_), 0);
+  }
+  EXPECT_TRUE(store->find({0, 99, 0, {1, 2, 3}, {}}));
+}
+
+TEST_F(StoreTest, KnowsWhyARunEnded) {
+  const std::unique_ptr<Store> store = fresh();
+  EXPECT_EQ(store->ending(0), std::nullopt);
+  store->finish_run(0, "first");
+  store->finish_run(0, "no credit left");
+  EXPECT_EQ(store->ending(0), "no credit left");
+  EXPECT_EQ(store->ending(1), std::nullopt);
+}
+
+TEST_F(StoreTest, TakesNamesThatSqlHasForItselfOrThatOccurTwice) {
+  const std::vector<std::string> names{"distance", "Run", "select", "a\"b", "score distance", "A\"B"};
+  experiment_.space.dimensions.resize(names.size(), experiment_.space.dimensions[0]);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    experiment_.space.dimensions[i].name = names[i];
+  }
+  const std::unique_ptr<Store> store = fresh();
+  store->save(Evaluation{0, 0, {0, 1, 2, 3, 4, 5}, {1.0}, {}, 0, 0, false, false, false, ""});
+  ASSERT_EQ(store->evaluations(0).size(), 1U);
+  EXPECT_EQ(ask("SELECT group_concat(column_name, ' ') FROM dimension"),
+            "distance_ Run_ select a\"b score distance_ A\"B_");
+  EXPECT_EQ(ask("SELECT \"A\"\"B_\" FROM evaluation"), "60.0");
+}
+
+TEST_F(StoreTest, TakesMoreDimensionsThanATableHasColumns) {
+  experiment_.space.dimensions.resize(3000, experiment_.space.dimensions[0]);
+  for (std::size_t i = 0; i < 3000; ++i) {
+    experiment_.space.dimensions[i].name = "parameter " + std::to_string(i);
+  }
+  const std::unique_ptr<Store> store = fresh();
+  Candidate candidate(3000, 1);
+  candidate.back() = 5;
+  store->save(Evaluation{0, 0, candidate, {1.0}, {}, 0, 0, false, false, false, ""});
+  EXPECT_EQ(store->evaluations(0).at(0).candidate, candidate);
+}
+
+}  // namespace
+}  // namespace proleg::optimize

@@ -1,0 +1,184 @@
+#include "sim/optimize/method/pagmo_method.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <pagmo/algorithm.hpp>
+#include <pagmo/population.hpp>
+#include <pagmo/problem.hpp>
+#include <set>
+
+#include "fake_source.hpp"
+#include "sim/optimize/method/method_seed.hpp"
+#include "sim/optimize/method/pagmo_algorithms.hpp"
+#include "sim/optimize/method/search.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+PagmoSettings settings_of(const std::string& name, std::uint32_t population, std::uint32_t generations) {
+  PagmoSettings settings;
+  settings.algorithm = name;
+  settings.population = population;
+  settings.generations = generations;
+  return settings;
+}
+
+double best_of(const FakeSource& source) { return (*std::min_element(source.scores.begin(), source.scores.end()))[0]; }
+
+TEST(PagmoSearch, FindsTheBottomOfABowl) {
+  for (const char* name : {"cmaes", "de", "sade", "pso", "pso_gen", "gwo", "xnes", "gaco", "de1220", "bee_colony",
+                           "compass_search", "simulated_annealing"}) {
+    FakeSource source([](const Candidate& candidate) { return std::vector<double>{sphere(candidate, 29.0)}; });
+    const Experiment experiment = make_experiment({41, 41, 41, 41, 41}, settings_of(name, 20, 100), Goal::minimise);
+    const std::string ending = search(experiment, 0, source);
+    // From 4205 in the far corner. Annealing is coarse.
+    EXPECT_LE(best_of(source), std::string_view(name) == "simulated_annealing" ? 40.0 : 1.0) << name << ": " << ending;
+  }
+}
+
+TEST(PagmoSearch, FindsACornerWhereTheBoundsCut) {
+  // As in the thesis: all amplitudes at their largest, the tail at rest.
+  const auto score = [](const Candidate& c) {
+    return std::vector<double>{(c[0] + c[1] + c[2] + c[3]) / 640.0 - 0.3 * c[4] / 160.0};
+  };
+  for (const char* name : {"cmaes", "de", "sade", "pso"}) {
+    FakeSource source(score);
+    const Experiment experiment = make_experiment({161, 161, 161, 161, 161}, settings_of(name, 20, 300));
+    static_cast<void>(search(experiment, 0, source));
+    EXPECT_GT((*std::max_element(source.scores.begin(), source.scores.end()))[0], 0.99) << name;
+  }
+}
+
+TEST(PagmoSearch, EndsWithItsGenerationsOrWhenNothingMovesAnyMore) {
+  const auto bowl = [](const Candidate& candidate) { return std::vector<double>{sphere(candidate, 29.0)}; };
+  FakeSource three(bowl);
+  EXPECT_EQ(search(make_experiment({41, 41}, settings_of("de", 10, 3), Goal::minimise), 0, three),
+            "generations used up");
+  EXPECT_EQ(three.asked.size(), 40U);
+  for (const char* name : {"cmaes", "de", "sade", "xnes"}) {
+    FakeSource source(bowl);
+    EXPECT_EQ(search(make_experiment({41, 41, 41}, settings_of(name, 20, 5000), Goal::minimise), 0, source),
+              "converged")
+        << name;
+    EXPECT_EQ(best_of(source), 0.0);
+    // It took no end of a generation for it: the last generation was all about one place.
+    const std::set<Candidate> last(source.asked.end() - 20, source.asked.end());
+    EXPECT_LE(last.size(), 12U);
+  }
+}
+
+TEST(PagmoSearch, GoesOnWhereAllScoresAreTheSame) {
+  for (const char* name : {"cmaes", "de", "nsga2", "gaco", "maco"}) {
+    const bool several = std::string_view(name) == "nsga2" || std::string_view(name) == "maco";
+    FakeSource source([several](const Candidate&) { return std::vector<double>(several ? 2 : 1, 1.0); });
+    static_cast<void>(search(
+        make_experiment({161, 161, 161}, settings_of(name, 20, 10), Goal::maximise, several ? 2 : 1), 0, source));
+    EXPECT_GE(source.asked.size(), 100U) << name;
+  }
+}
+
+/// A problem of pagmo's that knows nothing of foresight, and writes down what it is asked.
+struct PlainProblem {
+  std::vector<Candidate>* asked = nullptr;
+  std::vector<double>::size_type objectives = 1;
+
+  [[nodiscard]] std::vector<double> fitness(const std::vector<double>& x) const {
+    Candidate candidate;
+    for (const double index : x) {
+      candidate.push_back(static_cast<std::uint32_t>(std::lround(std::clamp(index, 0.0, 40.0))));
+    }
+    asked->push_back(candidate);
+    std::vector<double> costs = {3.0 - rugged(candidate), sphere(candidate, 3.0)};
+    costs.resize(objectives);
+    return costs;
+  }
+  [[nodiscard]] std::pair<std::vector<double>, std::vector<double>> get_bounds() const {
+    return {{0, 0, 0}, {40, 40, 40}};
+  }
+  [[nodiscard]] std::vector<double>::size_type get_nobj() const { return objectives; }
+};
+
+TEST(PagmoSearch, AsksWhatPagmoAsksWithoutForesight) {
+  for (const PagmoAlgorithm& each : pagmo_algorithms()) {
+    const std::size_t objectives = each.objectives == PagmoAlgorithm::Objectives::several ? 2 : 1;
+    const PagmoSettings settings = settings_of(std::string(each.name), 12, 6);
+    Experiment experiment = make_experiment({41, 41, 41}, settings, Goal::minimise, objectives);
+    experiment.seed = 5;
+    FakeSource source([objectives](const Candidate& candidate) {
+      std::vector<double> scores = {3.0 - rugged(candidate), sphere(candidate, 3.0)};
+      scores.resize(objectives);
+      return scores;
+    });
+    static_cast<void>(search(experiment, 2, source));
+
+    std::vector<Candidate> asked;
+    const std::uint64_t seed = method_seed(5, 2);
+    pagmo::population population{pagmo::problem{PlainProblem{&asked, objectives}}, 12U, static_cast<unsigned>(seed)};
+    double least = 1e9;
+    double most = -1e9;
+    for (const auto& costs : population.get_f()) {
+      least = std::min(least, costs[0]);
+      most = std::max(most, costs[0]);
+    }
+    const pagmo::algorithm algorithm = each.make({.settings = settings,
+                                                  .seed = static_cast<unsigned>(seed >> 32U),
+                                                  .variables = 3,
+                                                  .largest_index = 40.0,
+                                                  .spread = most - least,
+                                                  .objectives = objectives});
+    for (int generation = 0; generation < (each.goes_on ? 6 : 1); ++generation) {
+      population = algorithm.evolve(population);
+    }
+    EXPECT_EQ(source.asked, asked) << each.name;
+    EXPECT_GE(asked.size(), 40U) << each.name;
+  }
+}
+
+TEST(PagmoRacing, GoesByTheBestScoreBeforeTheGeneration) {
+  for (const Goal goal : {Goal::maximise, Goal::minimise}) {
+    for (const char* name : {"cmaes", "pso"}) {
+      FakeSource source([](const Candidate& candidate) { return std::vector<double>{rugged(candidate)}; });
+      static_cast<void>(search(make_experiment({161, 161, 161}, settings_of(name, 10, 20), goal), 0, source));
+      std::optional<double> best;
+      std::optional<double> before;
+      for (std::size_t i = 0; i < source.asked.size(); ++i) {
+        if (i % 10 == 0) {
+          before = best;
+        }
+        EXPECT_EQ(source.needed[i], before);
+        const double score = source.scores[i][0];
+        best = !best ? score : goal == Goal::maximise ? std::max(*best, score) : std::min(*best, score);
+      }
+    }
+  }
+}
+
+TEST(PagmoFront, OfTwoBowlsIsFound) {
+  // K. Deb's reading of Schaffer's first problem, on a grid: (x - 10)^2 against (x - 30)^2, the rest far from its best.
+  // No x from 10 to 30 is beaten by another, all others are.
+  for (const char* name : {"nsga2", "moead", "nspso"}) {
+    FakeSource source([](const Candidate& c) {
+      const double x = c[0];
+      const double other = c[1];
+      return std::vector<double>{(x - 10) * (x - 10) + other, (x - 30) * (x - 30) + other};
+    });
+    const Experiment experiment = make_experiment({61, 61}, settings_of(name, 40, 60), Goal::minimise, 2);
+    EXPECT_EQ(search(experiment, 0, source), "generations used up");
+    std::set<std::uint32_t> found;
+    std::size_t late_on_front = 0;
+    for (std::size_t i = 0; i < source.asked.size(); ++i) {
+      const Candidate& c = source.asked[i];
+      const bool on_front = c[0] >= 10 && c[0] <= 30 && c[1] == 0;
+      if (on_front) {
+        found.insert(c[0]);
+      }
+      late_on_front += on_front && i >= source.asked.size() - 400 ? 1U : 0U;
+    }
+    EXPECT_GE(found.size(), 18U) << name << " of 21";
+    EXPECT_GE(late_on_front, 150U) << name << " of 400";
+  }
+}
+
+}  // namespace
+}  // namespace proleg::optimize

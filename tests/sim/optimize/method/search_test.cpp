@@ -1,0 +1,91 @@
+#include "sim/optimize/method/search.hpp"
+
+#include <gtest/gtest.h>
+
+#include "fake_source.hpp"
+#include "sim/optimize/method/pagmo_algorithms.hpp"
+#include "sim/scenario/input_error.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+PagmoSettings pagmo_method(const std::string& name, std::uint32_t population = 20) {
+  PagmoSettings settings;
+  settings.algorithm = name;
+  settings.population = population;
+  settings.generations = 3;
+  return settings;
+}
+
+std::string refusal(const Experiment& experiment) {
+  try {
+    check_method(experiment);
+  } catch (const sim::InputError& error) {
+    FakeSource source([](const Candidate&) { return std::vector<double>{0.0}; });
+    EXPECT_THROW(static_cast<void>(search(experiment, 0, source)), sim::InputError);
+    EXPECT_TRUE(source.asked.empty());
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CheckMethod, NamesTheAlgorithmsItKnows) {
+  const std::string message = refusal(make_experiment({5}, pagmo_method("simplex")));
+  EXPECT_EQ(message,
+            "test.optimise.xml: found algorithm 'simplex', expected one of bee_colony, cmaes, compass_search, de, "
+            "de1220, gaco, gwo, ihs, maco, moead, nsga2, nspso, pso, pso_gen, sade, sea, sga, simulated_annealing, "
+            "xnes");
+}
+
+TEST(CheckMethod, RefusesTheWrongNumberOfObjectives) {
+  for (const MethodSettings& method :
+       std::vector<MethodSettings>{GreatDelugeSettings{}, GeneticSettings{}, pagmo_method("cmaes")}) {
+    EXPECT_EQ(refusal(make_experiment({5}, method)), "");
+    EXPECT_NE(refusal(make_experiment({5}, method, Goal::maximise, 2)).find("found 2 objectives for "),
+              std::string::npos);
+  }
+  EXPECT_EQ(refusal(make_experiment({5}, pagmo_method("nsga2"), Goal::maximise, 2)), "");
+  EXPECT_EQ(refusal(make_experiment({5}, pagmo_method("nsga2"))),
+            "test.optimise.xml: found 1 objective for nsga2, expected at least two objectives");
+}
+
+TEST(CheckMethod, RefusesAPopulationThatIsTooSmall) {
+  EXPECT_EQ(refusal(make_experiment({5}, pagmo_method("cmaes", 4))),
+            "test.optimise.xml: found a population of 4 for cmaes, expected at least 5");
+  EXPECT_EQ(refusal(make_experiment({5}, pagmo_method("nsga2", 22), Goal::maximise, 2)),
+            "test.optimise.xml: found a population of 22 for nsga2, expected at least 8, and a multiple of 4");
+  EXPECT_NE(refusal(make_experiment({5}, pagmo_method("sea", 0))), "");
+}
+
+TEST(CheckMethod, RefusesSettingsThatAnAlgorithmDoesNotHave) {
+  PagmoSettings settings = pagmo_method("de");
+  settings.sigma0 = 0.3;
+  EXPECT_EQ(refusal(make_experiment({5}, settings)),
+            "test.optimise.xml: found sigma0 for de, expected settings that it has: crossover scale");
+  settings = pagmo_method("sade");
+  settings.scale = 0.3;
+  EXPECT_EQ(refusal(make_experiment({5}, settings)),
+            "test.optimise.xml: found scale for sade, expected no such setting: sade has none");
+  settings = pagmo_method("cmaes");
+  settings.sigma0 = 0.0;
+  EXPECT_NE(refusal(make_experiment({5}, settings)), "");
+  settings.sigma0 = 1.0;
+  EXPECT_EQ(refusal(make_experiment({5}, settings)), "");
+  settings = pagmo_method("sga");
+  settings.mutation = 1.5;
+  EXPECT_NE(refusal(make_experiment({5}, settings)), "");
+  settings.mutation = 0.0;
+  EXPECT_EQ(refusal(make_experiment({5}, settings)), "");
+}
+
+TEST(Search, OfOneCandidateEvaluatesItOnce) {
+  for (const MethodSettings& method :
+       std::vector<MethodSettings>{GreatDelugeSettings{}, GeneticSettings{}, pagmo_method("cmaes")}) {
+    FakeSource source([](const Candidate&) { return std::vector<double>{1.0}; });
+    EXPECT_EQ(search(make_experiment({1, 1}, method), 0, source), "there is one candidate only");
+    EXPECT_EQ(source.asked, (std::vector<Candidate>{{0, 0}}));
+  }
+}
+
+}  // namespace
+}  // namespace proleg::optimize

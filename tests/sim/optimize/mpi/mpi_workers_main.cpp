@@ -1,0 +1,205 @@
+// Run by mpirun with the name of a test; rank 0 prints "passed", or what went wrong.
+
+#include "sim/optimize/mpi/mpi_workers.hpp"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <set>
+
+#include "sim/optimize/evaluation/evaluator.hpp"
+#include "sim/optimize/evaluation/rating.hpp"
+#include "small_experiment.hpp"
+
+namespace {
+
+using namespace proleg::optimize;
+
+constexpr const char* build = "test";
+
+bool is_rank_0() { return mpi_place().value().rank == 0; }
+
+/// Requires something to be so.
+void expect(bool so, const std::string& what) {
+  if (!so) {
+    throw std::runtime_error("not as it should be: " + what);
+  }
+}
+
+/// Candidates that depend on the scores so far; of what is expected, half comes true. With the outcome that each must
+/// have.
+void search_and_compare(const Experiment& experiment, Workers& workers) {
+  std::set<std::uint32_t> used;
+  Evaluator evaluator(experiment, 0, workers, nullptr, {}, {});
+  std::mt19937 random(8);
+  std::uint32_t pick = 0;
+  for (std::uint64_t number = 0; number < 24; ++number) {
+    const Candidate candidate{pick % 6, pick % 4, pick / 4 % 4};
+    std::vector<Candidate> next{candidate};
+    while (next.size() < evaluator.lookahead()) {
+      next.push_back(random_candidate(experiment, random));
+    }
+    if (number % 2 == 0) {
+      evaluator.expect(next);
+    }
+    const std::vector<double> scores = evaluator.fitness(candidate);
+    const std::vector<TrialResult> trials{run_trial(experiment, {0, number, 0, candidate, {}})};
+    expect(scores == rate(experiment, 0, number, candidate, trials).scores,
+           "the scores of evaluation " + std::to_string(number));
+    pick = static_cast<std::uint32_t>(scores.front() * 1e9);
+  }
+}
+
+void equals_local_workers() {
+  const Experiment experiment = noisy_experiment(1, 0.1);
+  if (!is_rank_0()) {
+    expect(serve_mpi(experiment, build), "that all have the same experiment");
+    return;
+  }
+  MpiWorkers workers(experiment, build);
+  expect(workers.count() == 4, "4 workers");
+  expect(workers.idle() == 4, "4 idle workers");
+  search_and_compare(experiment, workers);
+  // Each of them gets tasks and is told apart.
+  while (workers.idle() < 4) {
+    static_cast<void>(workers.wait(std::chrono::milliseconds(100)));
+  }
+  for (std::uint64_t ticket = 0; ticket < 4; ++ticket) {
+    workers.start(ticket, {0, ticket, 0, {1, 1, 1}, {}});
+  }
+  expect(workers.idle() == 0, "no idle worker");
+  std::set<std::uint32_t> numbers;
+  while (numbers.size() < 4) {
+    if (const auto done = workers.wait(std::chrono::milliseconds(100))) {
+      expect(numbers.insert(done->worker).second, "that each worker has one task");
+      expect(exact(done->result) == exact(run_trial(experiment, {0, done->ticket, 0, {1, 1, 1}, {}})),
+             "the result of ticket " + std::to_string(done->ticket));
+    }
+  }
+  expect(workers.messages().empty(), "no messages");
+}
+
+void ends_in_the_middle_of_tasks() {
+  const Experiment experiment = small_experiment();
+  const RunTask hang = [](const Experiment&, const Task&) -> TrialResult {
+    while (true) {
+      pause();
+    }
+  };
+  if (!is_rank_0()) {
+    static_cast<void>(serve_mpi(experiment, build, hang));
+    return;
+  }
+  MpiWorkers workers(experiment, build, hang);
+  for (std::uint64_t ticket = 0; ticket < 4; ++ticket) {
+    workers.start(ticket, {});
+  }
+  expect(!workers.wait(std::chrono::milliseconds(50)), "no result");
+}
+
+void repeats_the_task_of_a_killed_worker() {
+  const Experiment experiment = noisy_experiment();
+  const TemporaryFolder folder;
+  // In each rank the first worker dies at its first task.
+  const RunTask first_dies = [&folder](const Experiment& its, const Task& task) {
+    const std::filesystem::path died = folder / "died";
+    if (!std::filesystem::exists(died)) {
+      std::filesystem::create_directory(died);
+      raise(SIGKILL);
+    }
+    return made_up_trial(its, task);
+  };
+  if (!is_rank_0()) {
+    static_cast<void>(serve_mpi(experiment, build, first_dies));
+    return;
+  }
+  MpiWorkers workers(experiment, build, first_dies);
+  for (std::uint64_t ticket = 0; ticket < 4; ++ticket) {
+    workers.start(ticket, {0, ticket, 0, {1, 1, 1}, {}});
+  }
+  for (int results = 0; results < 4;) {
+    if (const auto done = workers.wait(std::chrono::milliseconds(100))) {
+      expect(exact(done->result) == exact(made_up_trial(experiment, {0, done->ticket, 0, {1, 1, 1}, {}})),
+             "the result of ticket " + std::to_string(done->ticket));
+      ++results;
+    }
+  }
+  std::size_t from_others = 0;
+  const std::vector<std::string> messages = workers.messages();
+  for (const std::string& message : messages) {
+    expect(message.find("was killed by signal 9") != std::string::npos, message);
+    from_others += message.rfind("rank ", 0) == 0 ? 1U : 0U;
+  }
+  expect(messages.size() == 4 && from_others == 3, "four messages, one of each rank");
+}
+
+void refuses_another_experiment() {
+  Experiment experiment = small_experiment();
+  if (mpi_place().value().rank == 2) {
+    experiment.seed = 2;
+  }
+  if (!is_rank_0()) {
+    expect(!serve_mpi(experiment, build), "that all have the same experiment is not so");
+    return;
+  }
+  try {
+    const MpiWorkers workers(experiment, build);
+  } catch (const std::runtime_error& error) {
+    expect(std::string(error.what()).find("rank 2 has experiment") == 0, error.what());
+    return;
+  }
+  expect(false, "it was not refused");
+}
+
+void tells_of_a_task_that_cannot_be_done() {
+  const Experiment experiment = small_experiment();
+  const RunTask deadly = [](const Experiment& its, const Task& task) {
+    if (task.number == 17) {
+      raise(SIGKILL);
+    }
+    return made_up_trial(its, task);
+  };
+  if (!is_rank_0()) {
+    static_cast<void>(serve_mpi(experiment, build, deadly));
+    return;
+  }
+  MpiWorkers workers(experiment, build, deadly);
+  workers.start(0, {0, 17, 0, {}, {}});  // the ranks above 0 are asked first
+  try {
+    while (!workers.wait(std::chrono::milliseconds(100))) {
+    }
+  } catch (const std::runtime_error& error) {
+    expect(std::string(error.what()).find("rank 1: evaluation 17 of run 0") == 0, error.what());
+    return;
+  }
+  expect(false, "there was no error");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string subject = argc == 2 ? argv[1] : "";
+  try {
+    if (subject == "EqualsLocalWorkers") {
+      equals_local_workers();
+    } else if (subject == "EndsInTheMiddleOfTasks") {
+      ends_in_the_middle_of_tasks();
+    } else if (subject == "RepeatsTheTaskOfAKilledWorker") {
+      repeats_the_task_of_a_killed_worker();
+    } else if (subject == "RefusesAnotherExperiment") {
+      refuses_another_experiment();
+    } else if (subject == "TellsOfATaskThatCannotBeDone") {
+      tells_of_a_task_that_cannot_be_done();
+    } else {
+      throw std::runtime_error("there is no test '" + subject + "'");
+    }
+  } catch (const std::exception& error) {
+    std::printf("failed: %s\n", error.what());
+    return 1;
+  }
+  if (is_rank_0()) {
+    std::printf("passed\n");
+  }
+  return 0;
+}

@@ -1,0 +1,235 @@
+#include "sim/optimize/report/thesis_experiment.hpp"
+
+#include <numeric>
+
+#include "made_up.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+double mean_of(std::span<const double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+// Sums of the rows as the thesis prints them.
+TEST(ThesisResults, AreThoseOfTable6_2) {
+  const ThesisResult* const result = find_thesis_result("great-deluge");
+  ASSERT_NE(result, nullptr);
+  EXPECT_EQ(result->table, "table 6.2");
+  EXPECT_EQ(result->runs, 30U);
+  const std::array<double, 5> sums{400.0, 399.25, 399.25, 399.75, 2.25};
+  for (std::size_t joint = 0; joint < 5; ++joint) {
+    EXPECT_DOUBLE_EQ(mean_of(result->amplitudes_deg[joint]) * 10.0, sums[joint]) << "joint " << joint;
+  }
+  EXPECT_NEAR(mean_of(result->displacements_m), 1.9507, 1e-12);
+  EXPECT_EQ(result->displacements_m.front(), 1.958);
+  EXPECT_EQ(result->displacements_m.back(), 1.945);
+  EXPECT_EQ(result->amplitudes_deg[1][1], 39.5);
+  EXPECT_EQ(result->amplitudes_deg[3][1], 39.75);
+  EXPECT_EQ(result->amplitudes_deg[4][3], 0.75);
+  EXPECT_EQ(result->amplitudes_deg[4][8], 1.5);
+}
+
+TEST(ThesisResults, AreThoseOfTable6_4) {
+  const ThesisResult* const result = find_thesis_result("genetic");
+  ASSERT_NE(result, nullptr);
+  EXPECT_EQ(result->table, "table 6.4");
+  EXPECT_EQ(result->runs, 29U);
+  const std::array<double, 5> sums{386.25, 393.0, 395.25, 378.5, 12.0};
+  for (std::size_t joint = 0; joint < 5; ++joint) {
+    EXPECT_DOUBLE_EQ(mean_of(result->amplitudes_deg[joint]) * 10.0, sums[joint]) << "joint " << joint;
+  }
+  EXPECT_NEAR(mean_of(result->displacements_m), 1.8394, 1e-12);
+  EXPECT_EQ(result->displacements_m.front(), 1.878);
+  EXPECT_EQ(result->displacements_m.back(), 1.806);
+  EXPECT_EQ(result->amplitudes_deg[3][9], 30.25);
+  EXPECT_EQ(result->amplitudes_deg[0][5], 37.0);
+}
+
+TEST(ThesisResults, AreSortedAndWithinTheSearchSpace) {
+  for (const ThesisResult& result : thesis_results()) {
+    EXPECT_TRUE(std::ranges::is_sorted(result.displacements_m, std::ranges::greater{}));
+    for (const auto& row : result.amplitudes_deg) {
+      for (const double amplitude : row) {
+        EXPECT_TRUE(amplitude >= 0.0 && amplitude <= 40.0 && amplitude * 4.0 == std::floor(amplitude * 4.0));
+      }
+    }
+  }
+  EXPECT_EQ(find_thesis_result("cmaes"), nullptr);
+}
+
+std::vector<Evaluation> run_of(const std::vector<double>& scores) {
+  std::vector<Evaluation> run;
+  run.reserve(scores.size());
+  for (const double score : scores) {
+    run.push_back(evaluation_of(run.size(), score));
+  }
+  return run;
+}
+
+MethodRuns method_of(const std::string& name, const std::vector<std::vector<double>>& runs) {
+  MethodRuns method{name, amplitudes(), {}};
+  for (const std::vector<double>& scores : runs) {
+    method.runs.push_back(run_of(scores));
+  }
+  return method;
+}
+
+TEST(BestCurves, KeepTheLastBestOfARunThatHasEnded) {
+  const BestCurves curves = best_curves(method_of("genetic", {{1.0, 0.5, 3.0}, {2.0}, {}}));
+  EXPECT_EQ(curves.lowest, (std::vector<double>{1.0, 1.0, 2.0}));
+  EXPECT_EQ(curves.mean, (std::vector<double>{1.5, 1.5, 2.5}));
+  EXPECT_EQ(curves.highest, (std::vector<double>{2.0, 2.0, 3.0}));
+  EXPECT_EQ(best_so_far(run_of({0.0, 2.0, 1.0, 2.5})), (std::vector<double>{0.0, 2.0, 2.0, 2.5}));
+}
+
+TEST(Overtaking, IsTheLastEvaluationAtWhichTheFollowerIsNotAbove) {
+  const BestCurves leader = best_curves(method_of("genetic", {{1.0, 3.0}}));
+  EXPECT_EQ(overtaking(best_curves(method_of("great-deluge", {{0.0, 1.0, 2.0, 3.0, 4.0}})), leader), 4U);
+  EXPECT_EQ(overtaking(best_curves(method_of("great-deluge", {{2.0, 2.0, 5.0}})), leader), 2U);
+  EXPECT_EQ(overtaking(best_curves(method_of("great-deluge", {{2.0, 4.0}})), leader), 0U);
+  EXPECT_EQ(overtaking(best_curves(method_of("great-deluge", {{2.0, 3.0}})), leader), std::nullopt);
+  EXPECT_EQ(overtaking(leader, {}), std::nullopt);
+}
+
+TEST(EvaluationsToReach, CountsFromOne) {
+  const BestCurves curves = best_curves(method_of("cmaes", {{1.0, 2.0, 3.0}}));
+  EXPECT_EQ(evaluations_to_reach(curves, 1.0), 1U);
+  EXPECT_EQ(evaluations_to_reach(curves, 2.5), 3U);
+  EXPECT_EQ(evaluations_to_reach(curves, 3.5), std::nullopt);
+}
+
+std::vector<std::vector<std::string>> cells_of(const std::string& table) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string>& row = rows.emplace_back(1);
+    for (const char c : line) {
+      if (c == '\t') {
+        row.emplace_back();
+      } else {
+        row.back() += c;
+      }
+    }
+  }
+  return rows;
+}
+
+TEST(ExperimentTable, HasTheTenBestRunsAboveTheThesiss) {
+  std::vector<std::vector<double>> scores;
+  scores.reserve(12);
+  for (int i = 0; i < 12; ++i) {
+    scores.push_back({0.5, 1.5 + 0.0251 * ((i * 5) % 12), 1.0});
+  }
+  const auto rows = cells_of(experiment_table(method_of("great-deluge", scores)));
+  ASSERT_EQ(rows.size(), 1U + 6U + 6U);
+  for (const auto& row : rows) {
+    EXPECT_EQ(row.size(), 12U);
+  }
+  EXPECT_EQ(rows[0][2], "1");
+  EXPECT_EQ(rows[0][11], "10");
+  EXPECT_EQ(rows[1][1], "Joint 0");
+  EXPECT_EQ(rows[1][2], "40");  // index 160 of quarters of a degree
+  EXPECT_EQ(rows[2][2], "39.75");
+  EXPECT_EQ(rows[5][1], "Joint 4");
+  EXPECT_EQ(rows[5][2], "0");
+  EXPECT_EQ(rows[6][1], "Displacement [m]");
+  EXPECT_EQ(rows[6][2], "1.776");   // 1.5 + 11 * 0.0251
+  EXPECT_EQ(rows[6][11], "1.550");  // the tenth best: 1.5 + 2 * 0.0251
+  EXPECT_EQ(rows[7][0], "thesis, table 6.2");
+  EXPECT_EQ(rows[11][5], "0.75");
+  EXPECT_EQ(rows[12][2], "1.958");
+}
+
+TEST(ExperimentTable, HasEmptyCellsForFewerRunsAndNoThesisForOtherMethods) {
+  const auto rows = cells_of(experiment_table(method_of("cmaes", {{1.0}, {2.0}, {}})));
+  ASSERT_EQ(rows.size(), 7U);
+  EXPECT_EQ(rows[6][2], "2.000");
+  EXPECT_EQ(rows[6][3], "1.000");
+  EXPECT_EQ(rows[6][4], "");
+}
+
+TEST(ExperimentTable, OrdersJointsFromTheHeadWhateverTheFileDoes) {
+  MethodRuns method = method_of("cmaes", {{1.0}});
+  std::ranges::reverse(method.space.dimensions);
+  for (Evaluation& evaluation : method.runs.front()) {
+    std::ranges::reverse(evaluation.candidate);
+  }
+  const auto rows = cells_of(experiment_table(method));
+  EXPECT_EQ(rows[1][2], "40");
+  EXPECT_EQ(rows[5][2], "0");
+}
+
+TEST(ExperimentSummary, SaysWhatCameOut) {
+  const std::vector<MethodRuns> methods{method_of("great-deluge", {{0.1, 0.2, 1.0, 2.0}, {0.1, 0.2, 1.0, 1.9, 1.8}}),
+                                        method_of("genetic", {{1.0, 1.5, 1.8}}),
+                                        method_of("cmaes", {{1.0, 1.96}, {1.0, 1.96}})};
+  const std::string text = experiment_summary(methods, 1.6);
+  for (const char* part : {"1.600 m (the thesis: 1.65 m)", "4..5", "1.950", "0.071", "2.000", "+25.0 %",  // 2 / 1.6
+                           "+18.7 %", "+13.8 %",  // 1.958 / 1.65, 1.878 / 1.65
+                           "stays above the genetic algorithm's after evaluation 3 (the thesis: at around 5000)",
+                           "genetic's mean does not reach great deluge's final mean (1.950 m)",
+                           "cmaes's mean reaches great deluge's final mean (1.950 m) after 2 evaluations: 44.4 %"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  }
+}
+
+TEST(ExperimentFigures, ShowEveryRunAndTheThesissNumbers) {
+  const std::vector<MethodRuns> methods{method_of("great-deluge", {{0.1, 0.2, 1.0, 2.0}, {0.1, 0.2, 1.0, 1.9, 1.8}}),
+                                        method_of("genetic", {{1.0, 1.5, 1.8}}), method_of("cmaes", {{1.0, 1.96}})};
+  Picture every(draw_every_run(methods[0], 1.6));
+  EXPECT_EQ(every.lines("run"), 2U);
+  for (const char* text : {"Great deluge: every run", "2 repetitions", "thesis 1.958", "best 2.000", "uniform 1.6"}) {
+    EXPECT_TRUE(every.has_text(text)) << text;
+  }
+  Picture range(draw_run_spread(methods[1], 1.6));
+  for (const char* text : {"Genetic algorithm", "thesis 1.878", "lowest 1.800", "mean 1.800", "highest 1.800"}) {
+    EXPECT_TRUE(range.has_text(text)) << text;
+  }
+  Picture comparison(draw_method_comparison(methods, 1.6));
+  EXPECT_EQ(comparison.lines("run"), 4U);
+  EXPECT_EQ(comparison.lines("mean"), 3U);
+  for (const char* text : {"great-deluge 1.950", "genetic 1.800", "cmaes 1.960", "thesis 1.958", "thesis 1.878",
+                           "best 2.000", "uniform 1.6"}) {
+    EXPECT_TRUE(comparison.has_text(text)) << text;
+  }
+}
+
+TEST(ExperimentFigures, AreDrawnWhateverTheRuns) {
+  const std::vector<std::vector<MethodRuns>> cases{
+      {},
+      {method_of("great-deluge", {})},
+      {method_of("great-deluge", {{}})},
+      {method_of("<b>", {{0.0}})},
+      {method_of("genetic", {{0.0, 0.0, 0.0}, {0.0}})},
+      {method_of("genetic", {{1e308, -1e308}, {-1e308}})},
+      std::vector<MethodRuns>(9, method_of("de", {{1.0, 2.0}})),
+  };
+  for (const std::vector<MethodRuns>& methods : cases) {
+    for (const double uniform_m : {1.6, 0.0, std::nan("")}) {
+      EXPECT_TRUE(Picture(draw_method_comparison(methods, uniform_m)).has_text("(b) Mean of the runs"));
+      for (const MethodRuns& method : methods) {
+        EXPECT_TRUE(Picture(draw_every_run(method, uniform_m)).has_text("every run"));
+        EXPECT_TRUE(Picture(draw_run_spread(method, uniform_m)).has_text("highest"));
+        EXPECT_NE(experiment_table(method).find("Displacement"), std::string::npos);
+      }
+      EXPECT_NE(experiment_summary(methods, uniform_m).find("uniform amplitudes"), std::string::npos);
+    }
+  }
+}
+
+TEST(ExperimentFigures, DoNotGrowWithThirtyLongRuns) {
+  MethodRuns method{"great-deluge", amplitudes(), {}};
+  for (int i = 0; i < 30; ++i) {
+    std::vector<double> scores;
+    scores.reserve(6000);
+    for (int k = 0; k < 6000; ++k) {
+      scores.push_back(0.0003 * k + 0.001 * i);
+    }
+    method.runs.push_back(run_of(scores));
+  }
+  EXPECT_LT(draw_every_run(method, 1.65).size(), 1'500'000U);
+}
+
+}  // namespace
+}  // namespace proleg::optimize

@@ -5,6 +5,7 @@ host_packages=(
   g++ cmake ninja-build pkg-config ccache git ca-certificates
   libode-dev libeigen3-dev libtinyxml2-dev libsqlite3-dev libsodium-dev libcli11-dev nlohmann-json3-dev
   libunicorn-dev libdw-dev
+  libpagmo-dev libga-dev  # the optimiser
   sqlite3  # not needed to build: to look into recordings
 )
 
@@ -17,6 +18,8 @@ test_packages=(
   can-utils tshark  # independent readers of bus logs
   gdb-multiarch     # a debugger for the virtual module
   qemu-system-arm   # another model of the CPU, to compare with
+  libbenchmark-dev libmujoco-dev                       # benchmarks
+  libopenmpi-dev libboost-mpi-dev openmpi-bin          # the optimiser on a cluster
 )
 
 # install_packages NAME...: installs those that are missing, and says which.

@@ -1,11 +1,12 @@
-// proleg algorithms: what the algorithms of the core declare, for people and, as docs/algorithms.md, for the
-// documentation.
+// proleg algorithms: what the algorithms of the core declare, and what a run is rated by, for people and, as
+// docs/algorithms.md and the table of docs/gait-measures.md, for the documentation.
 
 #include <iostream>
 #include <string>
 
 #include "shared/fixed/decimal.hpp"
 #include "shared/gait/registry.hpp"
+#include "sim/measure/measure.hpp"
 #include "sim/scenario/input_error.hpp"
 #include "tools/proleg/command_line.hpp"
 
@@ -95,6 +96,22 @@ int print_all_markdown(std::ostream& out) {
   return tools::exit_success;
 }
 
+int print_measures(std::ostream& out, bool markdown) {
+  if (markdown) {
+    out << "| measure | unit | better | what it is |\n| --- | --- | --- | --- |\n";
+  }
+  for (const sim::MeasureDeclaration& measure : sim::measures()) {
+    const char* better = measure.higher_is_better ? "higher" : "lower";
+    if (markdown) {
+      out << "| `" << measure.name << "` | " << measure.unit << " | " << better << " | " << measure.help << " |\n";
+    } else {
+      out << measure.name << (measure.unit.empty() ? "" : " [" + std::string(measure.unit) + "]") << ", the " << better
+          << ", the better\n    " << measure.help << '\n';
+    }
+  }
+  return tools::exit_success;
+}
+
 int describe(const std::string& name, bool markdown) {
   if (name.empty()) {
     if (markdown) {
@@ -127,5 +144,9 @@ int main(int argc, char** argv) {
   bool markdown = false;
   app.add_option("NAME", name, "name of an algorithm");
   app.add_flag("--markdown", markdown, "as Markdown tables");
-  return proleg::tools::run_command(argc, argv, app, [&] { return describe(name, markdown); });
+  bool measures = false;
+  app.add_flag("--measures", measures, "lists what a run is rated by instead (docs/gait-measures.md)")
+      ->excludes("NAME");
+  return proleg::tools::run_command(
+      argc, argv, app, [&] { return measures ? print_measures(std::cout, markdown) : describe(name, markdown); });
 }

@@ -29,6 +29,8 @@ constexpr std::array subcommands{
     Subcommand{"replay", "recompute the gait of a recording and compare, bit for bit"},
     Subcommand{"export", "write a recording as a tab-separated table"},
     Subcommand{"plot", "draw joint angles, contacts and path of a recording"},
+    Subcommand{"optimise", "search for the parameters of a gait"},
+    Subcommand{"experiment", "repeat an experiment of the thesis, beside its published numbers"},
     Subcommand{"objects", "list what can be read and set in a module over the bus"},
 };
 

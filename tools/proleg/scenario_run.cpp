@@ -3,7 +3,6 @@
 #include <array>
 #include <atomic>
 #include <charconv>
-#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <iostream>
@@ -22,9 +21,9 @@ namespace {
 std::atomic<bool> interrupt_flag = false;  // lock-free, so a signal handler may set it
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-std::uint32_t tick_count(const sim::Scenario& scenario) {
-  const auto ticks =
-      static_cast<std::uint32_t>(std::max(1L, std::lround(scenario.duration_s * 1e6 / scenario.kernel.tick_period_us)));
+/// The ticks of the run, in which all changes take effect.
+std::uint32_t checked_tick_count(const sim::Scenario& scenario) {
+  const std::uint32_t ticks = sim::tick_count(scenario);
   if (!scenario.changes.empty() && scenario.changes.back().tick >= ticks) {
     throw sim::InputError("--set", 0, "tick " + std::to_string(scenario.changes.back().tick),
                           "a tick before the end of the run, below " + std::to_string(ticks));
@@ -72,7 +71,7 @@ ScenarioRun prepare_run(const ScenarioOptions& options) {
     }
     run.scenario.duration_s = *seconds;
   }
-  run.ticks = tick_count(run.scenario);
+  run.ticks = checked_tick_count(run.scenario);
   if (options.losses) {
     run.losses = sim::read_losses(*options.losses, run.scenario.robot);
     run.losses.require_effect(run.ticks, run.scenario.kernel);

@@ -52,30 +52,43 @@ class CommandLine : public testing::Test {
 
   /// Runs proleg with these words; an empty `out_file` catches standard output.
   [[nodiscard]] Finished proleg(const std::vector<std::string>& words, const std::string& out_file = "") const {
+    std::vector<std::string> command{PROLEG_PROGRAM};
+    command.insert(command.end(), words.begin(), words.end());
+    return finish(start(command, out_file), out_file);
+  }
+
+  /// Starts a program; the first word is its path, or a name to be looked for in PATH.
+  [[nodiscard]] pid_t start(const std::vector<std::string>& command, const std::string& out_file = "") const {
     const fs::path out = out_file.empty() ? folder_ / "stdout" : fs::path(out_file);
     const fs::path err = folder_ / "stderr";
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    std::vector<std::string> storage{PROLEG_PROGRAM};
-    storage.insert(storage.end(), words.begin(), words.end());
+    std::vector<std::string> storage = command;
     std::vector<char*> arguments;
     for (std::string& word : storage) {
       arguments.push_back(word.data());
     }
     arguments.push_back(nullptr);
-    pid_t child = 0;
-    const int error = posix_spawn(&child, PROLEG_PROGRAM, &actions, nullptr, arguments.data(), environ);
+    pid_t child = -1;
+    const int error = posix_spawnp(&child, storage.front().c_str(), &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     if (error != 0) {
-      ADD_FAILURE() << "cannot start " << PROLEG_PROGRAM;
+      ADD_FAILURE() << "cannot start " << command.front();
+      return -1;
+    }
+    return child;
+  }
+
+  [[nodiscard]] Finished finish(pid_t child, const std::string& out_file = "") const {
+    if (child < 0) {
       return {-1, "", ""};
     }
     int status = 0;
     waitpid(child, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), out_file.empty() ? read_file(out) : "",
-            read_file(err)};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
+            out_file.empty() ? read_file(folder_ / "stdout") : "", read_file(folder_ / "stderr")};
   }
 
   /// Bad input: exit status 2, one line on standard error that contains the words, nothing on standard output.

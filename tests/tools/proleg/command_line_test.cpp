@@ -1,9 +1,11 @@
 // The programs as a user meets them.
 
 #include <csignal>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "command_line.hpp"
+#include "sim/record/recording.hpp"
 
 namespace proleg::test {
 namespace {
@@ -12,11 +14,13 @@ TEST_F(CommandLine, HelpListsTheSubcommands) {
   for (const char* word : {"--help", "-h", "help"}) {
     const Finished finished = proleg({word});
     EXPECT_EQ(finished.status, 0);
-    for (const char* name : {"algorithms", "simulate", "hil", "replay", "export", "plot", "objects"}) {
+    for (const char* name :
+         {"algorithms", "simulate", "hil", "replay", "export", "plot", "optimise", "experiment", "objects"}) {
       EXPECT_NE(finished.out.find(name), std::string::npos);
     }
   }
-  for (const char* name : {"algorithms", "simulate", "hil", "replay", "export", "plot", "objects"}) {
+  for (const char* name :
+       {"algorithms", "simulate", "hil", "replay", "export", "plot", "optimise", "experiment", "objects"}) {
     const Finished finished = proleg({name, "--help"});
     EXPECT_EQ(finished.status, 0);
     EXPECT_NE(finished.out.find(std::string("Usage: proleg ") + name), std::string::npos) << finished.out;
@@ -30,7 +34,8 @@ TEST_F(CommandLine, VersionNamesTheBuild) {
 }
 
 TEST_F(CommandLine, RefusesUnknownWords) {
-  expect_refused({}, {"expected one of algorithms, simulate, hil, replay, export, plot, objects"});
+  expect_refused({},
+                 {"expected one of algorithms, simulate, hil, replay, export, plot, optimise, experiment, objects"});
   expect_refused({"simulat"}, {"'simulat'", "expected one of algorithms, simulate"});
   expect_refused({"../../bin/sh"}, {"expected one of"});
   expect_refused({"simulate"}, {"found no FILE"});
@@ -74,6 +79,54 @@ TEST_F(CommandLine, SimulatePrintsOneJsonObjectWithTheFiguresOfTheRun) {
   EXPECT_EQ(object.at("setpoint_hash").get<std::string>().size(), 64U);
   EXPECT_EQ(object.at("servo_hash").get<std::string>().size(), 64U);
   EXPECT_NE(object.at("setpoint_hash"), object.at("servo_hash"));
+}
+
+TEST_F(CommandLine, SimulateSaysWhatTheRunWasWorth) {
+  const Finished finished = proleg({"simulate", scenario("uniform"), "--seconds", "4", "--json"});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const nlohmann::json object = nlohmann::json::parse(finished.out);
+  const nlohmann::json& measures = object.at("measures");
+  EXPECT_EQ(measures.at("distance"), object.at("displacement_m"));
+  for (const char* name : {"speed", "mechanical_energy", "electrical_energy", "cost_of_transport",
+                           "electrical_cost_of_transport", "specific_resistance", "smoothness", "stability_margin",
+                           "height", "slip", "duty_factor", "froude_number", "stride_length", "stride_frequency"}) {
+    EXPECT_TRUE(measures.at(name).is_number()) << name;
+  }
+  EXPECT_EQ(measures.size(), 15U);
+  ASSERT_EQ(object.at("link_duty_factors").size(), 6U);
+  double sum = 0.0;
+  for (const nlohmann::json& factor : object.at("link_duty_factors")) {
+    EXPECT_GE(factor.get<double>(), 0.0);
+    EXPECT_LE(factor.get<double>(), 1.0);
+    sum += factor.get<double>();
+  }
+  EXPECT_NEAR(measures.at("duty_factor").get<double>(), sum / 6, 1e-9);
+
+  const Finished table = proleg({"simulate", scenario("uniform"), "--seconds", "4"});
+  EXPECT_NE(table.out.find("\n  stride_frequency              1 Hz\n"), std::string::npos) << table.out;
+}
+
+TEST_F(CommandLine, AMeasureThatTheRunDoesNotDefineIsNull) {
+  const std::string recording = file("run.proleg").string();
+  const std::vector<std::string> words{"simulate", scenario("uniform"), "--seconds", "1",
+                                       "--set",    "amplitude=0",       "--record",  recording};
+  std::vector<std::string> json_words = words;
+  json_words.emplace_back("--json");
+  const nlohmann::json measures = nlohmann::json::parse(proleg(json_words).out).at("measures");
+  for (const char* name : {"cost_of_transport", "specific_resistance", "slip", "stride_length", "stride_frequency"}) {
+    EXPECT_TRUE(measures.at(name).is_null()) << name;
+  }
+  EXPECT_TRUE(measures.at("distance").is_number());
+  EXPECT_EQ(proleg(words).out.find("stride_frequency"), std::string::npos) << "the table leaves it out";
+  std::map<std::string, std::string> results;
+  const sim::Recording recorded(recording);
+  for (const auto& [name, value] : recorded.results()) {
+    results[name] = value;
+  }
+  EXPECT_TRUE(results.contains("smoothness")) << "a recording has those that are defined";
+  EXPECT_FALSE(results.contains("stride_frequency"));
+  EXPECT_EQ(std::stod(results.at("distance")), measures.at("distance").get<double>());
+  EXPECT_EQ(std::stod(results.at("duty_factor.Head")), 1.0) << "it lies on the ground";
 }
 
 TEST_F(CommandLine, TheSameCommandGivesTheSameHashesAndASettingOtherOnes) {
@@ -185,6 +238,18 @@ TEST_F(CommandLine, ThePagesThatProgramsWriteSayWhatTheDeclarationsSay) {
     EXPECT_EQ(first_difference(proleg(words).out, read_file(fs::path(PROLEG_SOURCE_DIR) / page)), "")
         << "rewrite it: build/host/bin/proleg " << words[0] << ' ' << words[1] << " >" << page;
   }
+}
+
+TEST_F(CommandLine, ThePageOfGaitMeasuresHasTheTableOfTheDeclarations) {
+  const std::string table = proleg({"algorithms", "--measures", "--markdown"}).out;
+  EXPECT_NE(table.find("| `cost_of_transport` | m/s^2 | lower |"), std::string::npos) << table;
+  EXPECT_NE(read_file(fs::path(PROLEG_SOURCE_DIR) / "docs/gait-measures.md").find("\n\n" + table + "\n"),
+            std::string::npos)
+      << "put this into docs/gait-measures.md:\n"
+      << table;
+  EXPECT_NE(proleg({"algorithms", "--measures"}).out.find("smoothness [m/s^2], the lower, the better\n"),
+            std::string::npos);
+  expect_refused({"algorithms", "DirectJointAccess", "--measures"}, {"--measures"});
 }
 
 TEST_F(CommandLine, AFullDiskIsReported) {

@@ -1,0 +1,269 @@
+// `proleg optimise` and `proleg experiment` as a user meets them. Trials are short: these tests are about the program,
+// not about gaits.
+
+#include <sqlite3.h>
+
+#include <chrono>
+#include <csignal>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "command_line.hpp"
+
+namespace proleg::test {
+namespace {
+
+class Optimise : public CommandLine {
+ protected:
+  void SetUp() override {
+    CommandLine::SetUp();
+    const std::string shipped = std::string(PROLEG_SOURCE_DIR) + "/sim/scenarios/travelling_wave/";
+    write("short.simulation.xml", "<simulation><robot>" + shipped + "caterpillar.robot.xml</robot><actuation>" +
+                                      shipped + "uniform.actuation.xml</actuation><environment>" + shipped +
+                                      "flat.environment.xml</environment><simulationProperties><duration>0.2</duration>"
+                                      "</simulationProperties></simulation>");
+  }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(file(name)) << text; }
+
+  [[nodiscard]] static std::string shipped(const std::string& name) {
+    return std::string(PROLEG_SOURCE_DIR) + "/sim/scenarios/travelling_wave/" + name + ".optimise.xml";
+  }
+
+  /// Words for a search in short trials that leaves its results in a folder.
+  [[nodiscard]] std::vector<std::string> words(const std::string& experiment, const std::string& folder,
+                                               const std::vector<std::string>& rest = {}) const {
+    std::vector<std::string> all{"optimise", shipped(experiment), "--simulation", file("short.simulation.xml").string(),
+                                 "--json"};
+    if (!folder.empty()) {
+      all.insert(all.end(), {"--out", file(folder).string()});
+    }
+    all.insert(all.end(), rest.begin(), rest.end());
+    return all;
+  }
+
+  /// All that a store says of its evaluations and does not depend on time, as text.
+  [[nodiscard]] std::string evaluations(const std::string& folder) const {
+    std::string text;
+    sqlite3* store = nullptr;
+    EXPECT_EQ(sqlite3_open_v2(file(folder + "/store.sqlite").c_str(), &store, SQLITE_OPEN_READWRITE, nullptr),
+              SQLITE_OK);
+    const auto append = [](void* out, int columns, char** values, char**) {
+      for (int i = 0; i < columns; ++i) {
+        *static_cast<std::string*>(out) += std::string(values[i] == nullptr ? "NULL" : values[i]) + "|";
+      }
+      *static_cast<std::string*>(out) += "\n";
+      return 0;
+    };
+    // Seventeen digits tell every double from every other.
+    sqlite3_exec(
+        store,
+        "SELECT run, number, candidate, seed, reused, printf('%.17g', distance), printf('%.17g', smoothness), "
+        "printf('%.17g', mechanical_energy), printf('%.17g', stability_margin) FROM evaluation ORDER BY run, number",
+        append, &text, nullptr);
+    sqlite3_close(store);
+    return text;
+  }
+
+  /// Waits until a store holds that many evaluations; a minute at most.
+  void wait_for(const std::string& folder, int count) const {
+    for (int tries = 0; tries < 6000; ++tries) {
+      sqlite3* store = nullptr;
+      int found = 0;
+      if (fs::exists(file(folder + "/store.sqlite")) && sqlite3_open_v2(file(folder + "/store.sqlite").c_str(), &store,
+                                                                        SQLITE_OPEN_READWRITE, nullptr) == SQLITE_OK) {
+        const auto take = [](void* out, int, char** values, char**) {
+          *static_cast<int*>(out) = std::atoi(values[0]);
+          return 0;
+        };
+        sqlite3_exec(store, "SELECT count(*) FROM evaluation", take, &found, nullptr);
+      }
+      sqlite3_close(store);
+      if (found >= count) {
+        return;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ADD_FAILURE() << "no " << count << " evaluations within a minute";
+  }
+
+  [[nodiscard]] pid_t start_proleg(const std::vector<std::string>& words) const {
+    std::vector<std::string> command{PROLEG_PROGRAM};
+    command.insert(command.end(), words.begin(), words.end());
+    return start(command);
+  }
+};
+
+nlohmann::json json_of(const Finished& finished) {
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  return nlohmann::json::parse(finished.out);
+}
+
+TEST_F(Optimise, PrintsTheBestAndLeavesStoreTablesPicturesAndTheWinner) {
+  const Finished finished = proleg(words("great_deluge", "out", {"--evaluations", "12"}));
+  const nlohmann::json object = json_of(finished);
+  EXPECT_TRUE(finished.err.empty()) << "no progress unless standard error is a terminal: " << finished.err;
+  EXPECT_EQ(object.at("evaluations"), 12);
+  EXPECT_EQ(object.at("best_values").size(), 5U);
+  EXPECT_TRUE(object.at("best_values").contains("amplitude:J5"));
+  EXPECT_GT(object.at("simulated_s_per_s").get<double>(), 0.0);
+  for (const char* name :
+       {"store.sqlite", "evaluations.tsv", "best.tsv", "learning_curve.svg", "best.simulation.xml"}) {
+    EXPECT_TRUE(fs::is_regular_file(file(std::string("out/") + name))) << name;
+  }
+  const std::string table = read_file(file("out/evaluations.tsv"));
+  EXPECT_EQ(std::ranges::count(table, '\n'), 13);
+}
+
+TEST_F(Optimise, TheWinnersScenarioIsReadyAndScoresWhatTheSearchSaid) {
+  const nlohmann::json search = json_of(proleg(words("cma_es", "out", {"--evaluations", "30"})));
+  const nlohmann::json run = json_of(proleg({"simulate", file("out/best.simulation.xml").string(), "--json"}));
+  EXPECT_EQ(search.at("best_score"), run.at("displacement_m")) << "to the last bit";
+  EXPECT_EQ(search.at("best_measures"), run.at("measures"));
+}
+
+TEST_F(Optimise, OneWorkerTwoAndThreeGiveTheSameToTheLastBit) {
+  for (const char* experiment : {"great_deluge", "genetic", "cma_es"}) {
+    std::map<std::string, int> outcomes;
+    for (const char* workers : {"1", "2", "3"}) {
+      const std::string folder = std::string(experiment) + workers;
+      static_cast<void>(json_of(proleg(words(experiment, folder, {"--evaluations", "70", "--workers", workers}))));
+      ++outcomes[evaluations(folder)];
+    }
+    EXPECT_EQ(outcomes.size(), 1U) << experiment;
+    EXPECT_EQ(std::ranges::count(outcomes.begin()->first, '\n'), 70) << experiment;
+  }
+}
+
+TEST_F(Optimise, AnotherSeedGivesAnotherSearch) {
+  static_cast<void>(json_of(proleg(words("great_deluge", "a", {"--evaluations", "5"}))));
+  static_cast<void>(json_of(proleg(words("great_deluge", "b", {"--evaluations", "5", "--seed", "2"}))));
+  EXPECT_NE(evaluations("a"), evaluations("b"));
+}
+
+TEST_F(Optimise, InterruptedAndResumedIsTheSameAsInOneGo) {
+  for (const char* experiment : {"great_deluge", "genetic", "cma_es"}) {
+    static_cast<void>(json_of(proleg(words(experiment, "whole", {"--evaluations", "150"}))));
+    const pid_t search = start_proleg(words(experiment, "parts", {"--evaluations", "150"}));
+    wait_for("parts", 20);
+    kill(search, SIGINT);
+    const Finished interrupted = finish(search);
+    EXPECT_EQ(interrupted.status, 1) << interrupted.err;
+    EXPECT_NE(interrupted.err.find("--resume " + file("parts").string()), std::string::npos) << interrupted.err;
+    EXPECT_TRUE(fs::exists(file("parts/learning_curve.svg"))) << "what there is so far can be looked at";
+    const nlohmann::json object =
+        json_of(proleg(words(experiment, "", {"--evaluations", "150", "--resume", file("parts").string()})));
+    EXPECT_GE(object.at("restored").get<int>(), 20);
+    EXPECT_EQ(evaluations("whole"), evaluations("parts")) << experiment;
+    fs::remove_all(file("whole"));
+    fs::remove_all(file("parts"));
+  }
+}
+
+TEST_F(Optimise, KilledItLosesWhatItsWorkersWereAtAndNothingElse) {
+  static_cast<void>(json_of(proleg(words("genetic", "whole", {"--evaluations", "100"}))));
+  const pid_t search = start_proleg(words("genetic", "parts", {"--evaluations", "100"}));
+  wait_for("parts", 31);
+  kill(search, SIGKILL);
+  EXPECT_EQ(finish(search).status, 128 + SIGKILL);
+  const nlohmann::json object =
+      json_of(proleg(words("genetic", "", {"--evaluations", "100", "--resume", file("parts").string()})));
+  EXPECT_GE(object.at("restored").get<int>(), 31);
+  EXPECT_EQ(evaluations("whole"), evaluations("parts"));
+}
+
+TEST_F(Optimise, ALargerBudgetGoesOnFromTheSameStore) {
+  static_cast<void>(json_of(proleg(words("great_deluge", "out", {"--evaluations", "20"}))));
+  const nlohmann::json object =
+      json_of(proleg(words("great_deluge", "", {"--evaluations", "40", "--resume", file("out").string()})));
+  EXPECT_EQ(object.at("restored"), 20);
+  EXPECT_EQ(object.at("evaluations"), 40);
+}
+
+TEST_F(Optimise, SeveralObjectivesLeaveAParetoFront) {
+  const nlohmann::json object = json_of(proleg(words("pareto", "out", {"--evaluations", "80"})));
+  EXPECT_EQ(object.at("best_scores").size(), 2U);
+  EXPECT_TRUE(fs::is_regular_file(file("out/pareto.svg")));
+  EXPECT_GT(std::ranges::count(read_file(file("out/pareto.tsv")), '\n'), 1);
+}
+
+TEST_F(Optimise, RefusesBadInputAndStartsNothing) {
+  const auto refuse = [&](const std::vector<std::string>& rest, const std::vector<std::string>& message) {
+    expect_refused(words("great_deluge", "out", rest), message);
+    EXPECT_FALSE(fs::exists(file("out"))) << message.front();
+  };
+  refuse({"--workers", "0"}, {"--workers", "'0'", "1 to 1024"});
+  refuse({"--workers", "two"}, {"--workers", "'two'"});
+  refuse({"--evaluations", "0"}, {"--evaluations", "'0'"});
+  refuse({"--evaluations", "-3"}, {"--evaluations", "'-3'"});
+  refuse({"--seed", "1.5"}, {"--seed", "'1.5'"});
+  expect_refused({"optimise", "/nowhere/x.optimise.xml"}, {"/nowhere/x.optimise.xml"});
+  expect_refused({"optimise", scenario("uniform")}, {"uniform.simulation.xml", "greatDeluge"});
+  expect_refused(words("great_deluge", "", {"--resume", file("nothing").string()}), {"nothing", "store.sqlite"});
+}
+
+TEST_F(Optimise, RefusesAStoreThatIsThereOrOfAnotherExperiment) {
+  static_cast<void>(json_of(proleg(words("great_deluge", "out", {"--evaluations", "5"}))));
+  const std::string before = evaluations("out");
+  expect_refused(words("great_deluge", "out", {"--evaluations", "5"}), {"store.sqlite", "resume"});
+  expect_refused(words("genetic", "", {"--resume", file("out").string()}), {"store.sqlite", "another experiment"});
+  expect_refused(words("great_deluge", "", {"--resume", file("out").string(), "--seed", "9"}), {"another experiment"});
+  expect_refused(words("great_deluge", "elsewhere", {"--resume", file("out").string()}), {"--out", "--resume"});
+  EXPECT_EQ(evaluations("out"), before);
+}
+
+TEST_F(Optimise, UnderMpirunGivesTheSame) {
+  if (!fs::exists(fs::path(PROLEG_PROGRAM).parent_path() / "proleg-optimise-mpi")) {
+    GTEST_SKIP() << "built without Open MPI";
+  }
+  static_cast<void>(json_of(proleg(words("great_deluge", "local", {"--evaluations", "40"}))));
+  std::vector<std::string> command{"mpirun", "--oversubscribe", "-n", "4"};
+  if (geteuid() == 0) {
+    command.emplace_back("--allow-run-as-root");
+  }
+  command.emplace_back(PROLEG_PROGRAM);
+  const std::vector<std::string> search = words("great_deluge", "cluster", {"--evaluations", "40"});
+  command.insert(command.end(), search.begin(), search.end());
+  const nlohmann::json object = json_of(finish(start(command)));
+  EXPECT_EQ(object.at("workers"), 4);
+  EXPECT_EQ(evaluations("local"), evaluations("cluster"));
+}
+
+TEST_F(Optimise, AnExperimentWritesTheThesissTablesAndFiguresAndGoesOn) {
+  // The shipped experiment with its trials cut to a fifth of a second.
+  const fs::path folder = file("scenarios");
+  fs::copy(std::string(PROLEG_SOURCE_DIR) + "/sim/scenarios/travelling_wave", folder, fs::copy_options::recursive);
+  std::string scenario = read_file(folder / "uniform.simulation.xml");
+  scenario.replace(scenario.find("<duration>30<"), 13, "<duration>0.2<");
+  std::ofstream(folder / "uniform.simulation.xml") << scenario;
+  const auto run = [&](const char* repetitions) {
+    return json_of(proleg({"experiment", "travelling_wave", "--repetitions", repetitions, "--evaluations", "40",
+                           "--scenarios", folder.string(), "--out", file("out").string(), "--json"}));
+  };
+  const nlohmann::json two = run("2");
+  ASSERT_EQ(two.at("methods").size(), 3U);
+  for (const char* name :
+       {"table_6_2.tsv", "table_6_4.tsv", "figure_6_3.svg", "figure_6_4.svg", "figure_6_5.svg", "figure_6_6.svg",
+        "figure_7_1.svg", "summary.txt", "great-deluge/store.sqlite", "genetic/best.simulation.xml"}) {
+    EXPECT_TRUE(fs::is_regular_file(file(std::string("out/") + name))) << name;
+  }
+  EXPECT_NE(read_file(file("out/table_6_2.tsv")).find("1.958"), std::string::npos) << "the thesis's best stands beside";
+  const nlohmann::json three = run("3");
+  for (std::size_t method = 0; method < 3; ++method) {
+    ASSERT_EQ(three["methods"][method]["runs"].size(), 3U);
+    for (std::size_t repetition = 0; repetition < 2; ++repetition) {
+      EXPECT_EQ(three["methods"][method]["runs"][repetition], two["methods"][method]["runs"][repetition]);
+    }
+  }
+}
+
+TEST_F(Optimise, AnExperimentThatIsUnknownOrHasNoFilesIsRefused) {
+  expect_refused({"experiment", "swimming"}, {"'swimming'", "travelling_wave"});
+  expect_refused({"experiment", "travelling_wave", "--repetitions", "0"}, {"--repetitions", "'0'"});
+  expect_refused({"experiment", "travelling_wave", "--method", "magic"}, {"--method", "'magic'", "great-deluge"});
+  expect_refused({"experiment", "travelling_wave", "--scenarios", file("none").string()}, {"--scenarios"});
+}
+
+}  // namespace
+}  // namespace proleg::test

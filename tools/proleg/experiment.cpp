@@ -1,0 +1,257 @@
+// proleg experiment: repeats an experiment of the thesis and writes its tables and figures beside the published ones.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "sim/optimize/evaluation/local_workers.hpp"
+#include "sim/optimize/method/search.hpp"
+#include "sim/optimize/report/report.hpp"
+#include "sim/optimize/report/thesis_experiment.hpp"
+#include "sim/scenario/input_error.hpp"
+#include "sim/scenario/text.hpp"
+#include "tools/proleg/build_id.hpp"
+#include "tools/proleg/command_line.hpp"
+#include "tools/proleg/optimisation.hpp"
+#include "tools/proleg/scenario_run.hpp"
+
+namespace {
+
+using namespace proleg;
+using namespace proleg::tools;
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string name;
+  std::string repetitions = "3";
+  std::vector<std::string> methods;
+  std::optional<std::string> evaluations;
+  std::optional<std::string> workers;
+  std::optional<std::string> seed;
+  std::optional<std::string> out;
+  std::optional<std::string> scenarios;
+  bool json = false;
+};
+
+/// A method of the experiment: its name on the command line, its file, and what its tables and figures are called.
+struct Method {
+  std::string_view name;
+  std::string_view file;
+  std::string_view table;
+  std::string_view runs_figure;
+  std::string_view spread_figure;
+};
+
+constexpr std::array methods{
+    Method{"great-deluge", "great_deluge.optimise.xml", "table_6_2.tsv", "figure_6_3.svg", "figure_6_4.svg"},
+    Method{"genetic", "genetic.optimise.xml", "table_6_4.tsv", "figure_6_5.svg", "figure_6_6.svg"},
+    Method{"cma-es", "cma_es.optimise.xml", "table_cma_es.tsv", "figure_cma_es_runs.svg", "figure_cma_es_spread.svg"},
+};
+
+const Method& find_method(const std::string& name) {
+  for (const Method& method : methods) {
+    if (method.name == name) {
+      return method;
+    }
+  }
+  std::vector<std::string> names;
+  for (const Method& method : methods) {
+    names.emplace_back(method.name);
+  }
+  throw sim::InputError("--method", 0, sim::in_quotes(name), "one of " + sim::listed(names));
+}
+
+/// The folder of the scenarios: below the working directory, or below the source tree that this program was built in.
+fs::path find_scenarios(const Options& options) {
+  const fs::path inside = fs::path("sim") / "scenarios" / options.name;
+  std::vector<fs::path> candidates;
+  if (options.scenarios) {
+    candidates.emplace_back(*options.scenarios);
+  } else {
+    candidates.push_back(inside);
+    std::error_code error;
+    for (fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path(); folder.has_relative_path();
+         folder = folder.parent_path()) {
+      candidates.push_back(folder / inside);
+    }
+  }
+  for (const fs::path& folder : candidates) {
+    if (fs::is_regular_file(folder / methods.front().file)) {
+      return folder;
+    }
+  }
+  throw sim::InputError(options.scenarios ? "--scenarios" : options.name, 0,
+                        "no " + (candidates.front() / methods.front().file).string(),
+                        "the experiment's files there; --scenarios FOLDER says where else");
+}
+
+optimize::Experiment read(const Options& options, const fs::path& folder, const Method& method) {
+  sim::DiskFiles files;
+  optimize::Experiment experiment = optimize::read_experiment(folder / method.file, files);
+  if (options.evaluations) {
+    experiment.evaluations = parse_evaluations(*options.evaluations);
+  }
+  if (options.seed) {
+    experiment.seed = parse_seed(*options.seed);
+  }
+  optimize::check_method(experiment);
+  return experiment;
+}
+
+/// The distance of the scenario as it stands: all amplitudes alike.
+double uniform_distance(const optimize::Experiment& experiment) {
+  optimize::Task task;
+  task.candidate = experiment.space.nearest(experiment.scenario);
+  return optimize::run_trial(experiment, task).measures[sim::Measure::distance];
+}
+
+struct MethodResult {
+  optimize::MethodRuns runs;
+  std::vector<std::string> endings;
+  std::optional<optimize::Evaluation> best;
+  double wall_s = 0.0;
+  double simulated_s = 0.0;
+  double workers_s = 0.0;
+  double own_cpu_s = 0.0;
+};
+
+/// Runs the repetitions; what the store has is not simulated again. Fewer if somebody interrupts.
+MethodResult run_method(const optimize::Experiment& experiment, std::uint32_t repetitions, std::uint32_t worker_count,
+                        const fs::path& folder) {
+  optimize::LocalWorkers workers(experiment, worker_count);
+  const bool there = fs::exists(store_path(folder));
+  const std::unique_ptr<optimize::Store> store =
+      open_store(folder, experiment, there ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);
+  const std::string name = optimize::method_name(experiment.method);
+  MethodResult result{{name, experiment.space, {}}, {}, {}};
+  for (std::uint32_t run = 0; run < repetitions && !interrupted(); ++run) {
+    SearchOutcome outcome = run_search(experiment, run, workers, *store,
+                                       name + " " + std::to_string(run + 1) + "/" + std::to_string(repetitions));
+    if (outcome.ending.empty()) {
+      break;
+    }
+    const std::optional<optimize::Evaluation>& best = outcome.progress.best;
+    if (!result.best || experiment.objectives.front().better(best->scores.front(), result.best->scores.front())) {
+      result.best = best;
+    }
+    result.wall_s += outcome.wall_s;
+    result.simulated_s += outcome.progress.simulated_s;
+    result.workers_s += outcome.progress.workers_s;
+    result.own_cpu_s += outcome.own_cpu_s;
+    std::cerr << name << " " << run + 1 << " of " << repetitions << ": " << outcome.evaluations.size()
+              << " evaluations, best " << best->scores.front() << " " << score_unit(experiment) << ", "
+              << outcome.ending << "; " << outcome.progress.simulated << " simulated in "
+              << static_cast<long>(outcome.wall_s) << " s\n";
+    result.endings.push_back(outcome.ending);
+    result.runs.runs.push_back(std::move(outcome.evaluations));
+  }
+  return result;
+}
+
+nlohmann::ordered_json to_json(const MethodResult& result, const optimize::SearchSpace& space, double uniform_m) {
+  nlohmann::ordered_json values;
+  for (std::size_t i = 0; i < space.dimensions.size(); ++i) {
+    values[space.dimensions[i].name] = space.value(result.best->candidate, i);
+  }
+  nlohmann::ordered_json runs = nlohmann::ordered_json::array();
+  double sum = 0.0;
+  for (std::size_t run = 0; run < result.runs.runs.size(); ++run) {
+    const double best = optimize::best_so_far(result.runs.runs[run]).back();
+    sum += best;
+    runs.push_back({{"evaluations", result.runs.runs[run].size()}, {"best", best}, {"ended", result.endings[run]}});
+  }
+  return {{"method", result.runs.method},
+          {"best_score", result.best->scores.front()},
+          {"best_values", values},
+          {"gain_over_uniform", result.best->scores.front() / uniform_m - 1.0},
+          {"mean_best", sum / static_cast<double>(runs.size())},
+          {"runs", runs},
+          {"wall_s", result.wall_s},
+          {"simulated_s_per_s", result.wall_s > 0.0 ? result.simulated_s / result.wall_s : 0.0}};
+}
+
+int experiment(const Options& options) {
+  if (options.name != "travelling_wave") {
+    throw sim::InputError(options.name, 0, "unknown experiment " + sim::in_quotes(options.name), "'travelling_wave'");
+  }
+  const std::optional<std::uint32_t> repetitions = sim::parse_whole<std::uint32_t>(options.repetitions);
+  if (!repetitions || *repetitions == 0 || *repetitions > 1000) {
+    throw sim::InputError("--repetitions", 0, sim::in_quotes(options.repetitions), "1 to 1000");
+  }
+  const std::uint32_t worker_count = parse_workers(options.workers);
+  const fs::path scenarios = find_scenarios(options);
+  const fs::path folder = options.out.value_or(options.name + "_experiment");
+  std::vector<std::pair<const Method*, optimize::Experiment>> chosen;
+  for (const Method& method : methods) {
+    if (options.methods.empty() || std::ranges::count(options.methods, method.name) > 0) {
+      chosen.emplace_back(&method, read(options, scenarios, method));
+    }
+  }
+  for (const std::string& name : options.methods) {
+    static_cast<void>(find_method(name));
+  }
+
+  catch_interrupts();
+  const double uniform_m = uniform_distance(chosen.front().second);
+  std::vector<MethodResult> results;
+  std::vector<optimize::MethodRuns> all_runs;
+  for (const auto& [method, experiment] : chosen) {
+    MethodResult result = run_method(experiment, *repetitions, worker_count, folder / method->name);
+    if (result.runs.runs.size() < *repetitions) {
+      std::cerr << "proleg experiment: interrupted; the same command goes on from " << folder.string() << '\n';
+      return exit_failed;
+    }
+    write_file(folder / method->table, optimize::experiment_table(result.runs));
+    write_file(folder / method->runs_figure, optimize::draw_every_run(result.runs, uniform_m));
+    write_file(folder / method->spread_figure, optimize::draw_run_spread(result.runs, uniform_m));
+    optimize::write_scenario(experiment, result.best->candidate, folder / method->name, "best");
+    all_runs.push_back(result.runs);
+    results.push_back(std::move(result));
+  }
+  write_file(folder / "figure_7_1.svg", optimize::draw_method_comparison(all_runs, uniform_m));
+  const std::string summary = optimize::experiment_summary(all_runs, uniform_m);
+  write_file(folder / "summary.txt", summary);
+
+  if (!options.json) {
+    std::cout << summary << "\ntables, figures and stores are in " << folder.string() << '\n';
+    return exit_success;
+  }
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    list.push_back(to_json(results[i], chosen[i].second.space, uniform_m));
+  }
+  const nlohmann::ordered_json object{{"experiment", options.name},
+                                      {"uniform_m", uniform_m},
+                                      {"methods", list},
+                                      {"out", folder.string()},
+                                      {"build_id", build_id}};
+  std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  return exit_success;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Repeats an experiment of the thesis with several methods; writes its tables and figures beside the "
+      "published numbers. Goes on where it was interrupted.",
+      "proleg experiment");
+  Options options;
+  app.add_option("NAME", options.name, "travelling_wave: the amplitudes of section 6.1")->required();
+  app.add_option("--repetitions", options.repetitions, "searches by each method; 3 if not given, 30 in the thesis");
+  app.add_option("--method", options.methods,
+                 "great-deluge, genetic or cma-es; all of them if not given. May be repeated.")
+      ->allow_extra_args(false);
+  app.add_option("--evaluations", options.evaluations, "of one search at most, instead of what the files say");
+  app.add_option("--workers", options.workers, "simulations at a time; as many as there are processors if not given");
+  app.add_option("--seed", options.seed, "of all searches");
+  app.add_option("--out", options.out, "folder for stores, tables and figures; NAME_experiment if not given");
+  app.add_option("--scenarios", options.scenarios, "folder of the experiment's files");
+  app.add_flag("--json", options.json, "print one JSON object");
+  return run_command(argc, argv, app, [&] { return experiment(options); });
+}

@@ -1,0 +1,208 @@
+// proleg optimise: searches for the parameters of a gait.
+
+#include "tools/proleg/optimise.hpp"
+
+#include <cstdio>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "sim/optimize/method/search.hpp"
+#include "sim/optimize/report/report.hpp"
+#include "sim/scenario/input_error.hpp"
+#include "tools/proleg/build_id.hpp"
+#include "tools/proleg/command_line.hpp"
+#include "tools/proleg/optimisation.hpp"
+#include "tools/proleg/scenario_run.hpp"
+
+namespace proleg::tools {
+namespace {
+
+using optimize::Evaluation;
+using optimize::Experiment;
+
+/// great_deluge.optimise.xml -> great_deluge
+std::string default_folder(const std::string& file) {
+  std::string name = std::filesystem::path(file).filename().string();
+  return name.substr(0, name.find('.'));
+}
+
+std::filesystem::path folder_of(const OptimiseOptions& options) {
+  if (options.resume && options.out && *options.out != *options.resume) {
+    throw BadInput("found --out " + *options.out + " beside --resume " + *options.resume +
+                   ", expected one of them: what is resumed stays where it is");
+  }
+  const std::string folder = options.resume ? *options.resume : options.out.value_or(default_folder(options.file));
+  if (folder.empty()) {
+    throw sim::InputError(options.resume ? "--resume" : "--out", 0, "no name", "the name of a folder");
+  }
+  return folder;
+}
+
+/// What a search leaves in its folder for people.
+std::vector<std::filesystem::path> write_results(const Experiment& experiment, const SearchOutcome& outcome,
+                                                 const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  const auto write = [&](const char* name, const std::string& text) {
+    files.push_back(folder / name);
+    write_file(files.back(), text);
+  };
+  write("evaluations.tsv", optimize::evaluations_table(experiment, outcome.evaluations));
+  write("best.tsv", optimize::best_table(experiment, outcome.evaluations, 10));
+  write("learning_curve.svg", optimize::draw_learning_curve(experiment, outcome.evaluations));
+  if (experiment.objectives.size() > 1) {
+    std::vector<Evaluation> front;
+    for (const std::size_t position : optimize::pareto_front(experiment, outcome.evaluations)) {
+      front.push_back(outcome.evaluations[position]);
+    }
+    write("pareto.tsv", optimize::evaluations_table(experiment, front));
+    write("pareto.svg", optimize::draw_pareto_front(experiment, outcome.evaluations));
+  }
+  files.push_back(optimize::write_scenario(experiment, outcome.progress.best->candidate, folder, "best"));
+  return files;
+}
+
+nlohmann::ordered_json defined(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+void print_json(const OptimiseOptions& options, const Experiment& experiment, const SearchOutcome& outcome,
+                const std::filesystem::path& folder, std::uint32_t workers) {
+  const Evaluation& best = *outcome.progress.best;
+  nlohmann::ordered_json values;
+  for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
+    values[experiment.space.dimensions[i].name] = experiment.space.value(best.candidate, i);
+  }
+  nlohmann::ordered_json scores;
+  for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
+    scores[experiment.objectives[i].name] = best.scores[i];
+  }
+  nlohmann::ordered_json measures;
+  for (const sim::MeasureDeclaration& measure : sim::measures()) {
+    measures[std::string(measure.name)] = defined(best.measures[measure.measure]);
+  }
+  const optimize::Progress& progress = outcome.progress;
+  const nlohmann::ordered_json object{{"experiment", options.file},
+                                      {"method", optimize::method_name(experiment.method)},
+                                      {"seed", experiment.seed},
+                                      {"best_score", best.scores.front()},
+                                      {"best_scores", scores},
+                                      {"best_values", values},
+                                      {"best_number", best.number},
+                                      {"best_measures", measures},
+                                      {"evaluations", progress.evaluations},
+                                      {"simulated", progress.simulated},
+                                      {"reused", progress.reused},
+                                      {"restored", progress.restored},
+                                      {"simulated_ahead_in_vain", progress.wasted},
+                                      {"ended", outcome.ending},
+                                      {"workers", workers},
+                                      {"wall_s", outcome.wall_s},
+                                      {"simulated_s", progress.simulated_s},
+                                      {"simulated_s_per_s", progress.simulated_s / outcome.wall_s},
+                                      {"workers_busy", progress.workers_s / (outcome.wall_s * workers)},
+                                      {"overhead", overhead(outcome)},
+                                      {"out", folder.string()},
+                                      {"fingerprint", experiment.fingerprint()},
+                                      {"build_id", build_id}};
+  std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+}
+
+void print_result(const Experiment& experiment, const SearchOutcome& outcome,
+                  const std::vector<std::filesystem::path>& files, std::uint32_t workers) {
+  const Evaluation& best = *outcome.progress.best;
+  const optimize::Progress& progress = outcome.progress;
+  for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
+    const std::string unit = i == 0 ? score_unit(experiment) : "";
+    std::printf("%-24s %.6g%s%s\n", ("best " + experiment.objectives[i].name).c_str(), best.scores[i],
+                unit.empty() ? "" : " ", unit.c_str());
+  }
+  for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
+    const optimize::Dimension& dimension = experiment.space.dimensions[i];
+    std::printf("  %-22s %s %s\n", dimension.name.c_str(), experiment.space.value_text(best.candidate, i).c_str(),
+                scale_of(dimension.unit).symbol);
+  }
+  std::printf("%-24s %llu, of which %llu simulated now, %llu known from others, %llu from the store\n", "evaluations",
+              static_cast<unsigned long long>(progress.evaluations),
+              static_cast<unsigned long long>(progress.simulated), static_cast<unsigned long long>(progress.reused),
+              static_cast<unsigned long long>(progress.restored));
+  std::printf("%-24s %s\n", "ended", outcome.ending.empty() ? "interrupted" : outcome.ending.c_str());
+  std::printf("%-24s %.1f s, %.0f simulated s/s with %u workers, busy %.1f %% of it; optimiser and store %.2f %%\n",
+              "time", outcome.wall_s, progress.simulated_s / outcome.wall_s, workers,
+              100.0 * progress.workers_s / (outcome.wall_s * workers), 100.0 * overhead(outcome));
+  for (const std::filesystem::path& file : files) {
+    std::printf("%-24s %s\n", "written", file.c_str());
+  }
+}
+
+int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
+  const Experiment experiment = read_experiment(options);
+  const std::filesystem::path folder = folder_of(options);
+  if (options.verbose) {
+    for (const std::string& remark : experiment.scenario.remarks) {
+      std::cerr << remark << '\n';
+    }
+    std::cerr << experiment.space.dimensions.size() << " dimensions, " << experiment.space.size() << " candidates\n";
+  }
+  catch_interrupts();
+  // Before the store is opened: workers are processes, and what they do not need they should not have.
+  const std::unique_ptr<optimize::Workers> workers = make_workers(experiment, options);
+  const std::unique_ptr<optimize::Store> store = open_store(
+      folder, experiment, options.resume ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);
+  const SearchOutcome outcome = run_search(experiment, 0, *workers, *store, optimize::method_name(experiment.method));
+  const std::string go_on = "proleg optimise " + options.file + " --resume " + folder.string();
+  if (!outcome.progress.best) {
+    std::cerr << "proleg optimise: interrupted before the first evaluation; go on with '" << go_on << "'\n";
+    return exit_failed;
+  }
+  const std::vector<std::filesystem::path> files = write_results(experiment, outcome, folder);
+  if (options.json) {
+    print_json(options, experiment, outcome, folder, workers->count());
+  } else {
+    print_result(experiment, outcome, files, workers->count());
+  }
+  if (outcome.ending.empty()) {
+    std::cerr << "proleg optimise: interrupted after " << outcome.progress.evaluations << " evaluations; go on with '"
+              << go_on << "'\n";
+    return exit_failed;
+  }
+  return exit_success;
+}
+
+}  // namespace
+
+optimize::Experiment read_experiment(const OptimiseOptions& options) {
+  sim::DiskFiles files;
+  optimize::Experiment experiment = optimize::read_experiment(options.file, files, options.simulation);
+  if (options.evaluations) {
+    experiment.evaluations = parse_evaluations(*options.evaluations);
+  }
+  if (options.seed) {
+    experiment.seed = parse_seed(*options.seed);
+  }
+  optimize::check_method(experiment);
+  return experiment;
+}
+
+int optimise_command(int argc, char** argv, const WorkersMaker& make_workers) {
+  CLI::App app(
+      "Searches for the parameters of a gait: runs simulations, keeps every one, and writes the best scenario.",
+      "proleg optimise");
+  OptimiseOptions options;
+  add_optimise_options(app, options);
+  return run_command(argc, argv, app, [&] { return optimise(options, make_workers); });
+}
+
+void add_optimise_options(CLI::App& app, OptimiseOptions& options) {
+  app.add_option("FILE", options.file, "experiment, a *.optimise.xml file")->required();
+  app.add_option("--simulation", options.simulation, "scenario to optimise, instead of the one that FILE names");
+  app.add_option("--evaluations", options.evaluations, "at most so many, instead of what FILE says");
+  app.add_option("--workers", options.workers, "simulations at a time; as many as there are processors if not given");
+  app.add_option("--seed", options.seed, "of the search and of all randomness in it, instead of what FILE says");
+  app.add_option("--out", options.out,
+                 "folder for store, tables and pictures; the first word of FILE's name if not given");
+  app.add_option("--resume", options.resume, "go on with the search whose store is in this folder");
+  app.add_flag("--verbose", options.verbose, "print remarks on the files and the size of the search space");
+  app.add_flag("--json", options.json, "print one JSON object");
+}
+
+}  // namespace proleg::tools

@@ -1,0 +1,41 @@
+// proleg optimise on this computer. Under mpirun the program beside it with the same name and -mpi takes over: it alone
+// needs Open MPI.
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+
+#include "sim/optimize/evaluation/local_workers.hpp"
+#include "tools/proleg/command_line.hpp"
+#include "tools/proleg/optimisation.hpp"
+#include "tools/proleg/optimise.hpp"
+
+namespace {
+
+/// Returns only if that is not possible.
+void run_over_mpi(char** argv) {
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::string program = self.string() + "-mpi";
+  execv(program.c_str(), argv);
+  std::cerr << "proleg optimise: cannot start " << program << " (" << std::strerror(errno)
+            << "); it is built where libopenmpi-dev and libboost-mpi-dev are installed\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) {  // set by Open MPI's mpirun
+    run_over_mpi(argv);
+    return proleg::tools::exit_failed;
+  }
+  using namespace proleg;
+  return tools::optimise_command(
+      argc, argv, [](const optimize::Experiment& experiment, const tools::OptimiseOptions& options) {
+        return std::make_unique<optimize::LocalWorkers>(experiment, tools::parse_workers(options.workers));
+      });
+}

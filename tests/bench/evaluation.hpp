@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "sim/loop/simulation.hpp"
+#include "tests/bench/workload.hpp"
+
+namespace proleg::bench {
+
+/// What came out of one evaluation of a candidate.
+struct Evaluation {
+  double displacement = 0.0;   ///< m
+  double mean_contacts = 0.0;  ///< contact points in a step
+  std::string servo_hash;      ///< of all pulses that the servos got
+};
+
+/// What an optimiser does for one candidate: a fresh simulation, run to its end.
+[[nodiscard]] inline Evaluation evaluate(const sim::Scenario& scenario, const Workload& workload) {
+  sim::Simulation simulation(scenario);
+  while (simulation.tick() < workload.ticks()) {
+    simulation.advance();
+  }
+  return {simulation.plant().displacement(), simulation.plant().mean_contacts(), simulation.servo_hash().hex()};
+}
+
+}  // namespace proleg::bench

@@ -1,0 +1,178 @@
+#include "tests/bench/mujoco/mjcf.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+namespace proleg::bench {
+namespace {
+
+using sim::Geometry;
+using sim::Pose;
+
+/// How hard a constraint is (dmin, dmax, width): 1 would be rigid, and MuJoCo cuts at 0.9999.
+constexpr std::string_view hard_contact = "0.9999 0.9999 0.001";
+/// A motor that leaves a hundredth of the difference in speed to the next step takes the robot as far as a harder one
+/// (within 1 %), and Newton's solver a third less time.
+constexpr std::string_view hard_motor = "0.99 0.99 0.001";
+
+class Writer {
+ public:
+  Writer() { text_.precision(std::numeric_limits<double>::max_digits10); }
+
+  void write(const sim::RobotModel& robot, const sim::EnvironmentModel& environment, double step_s,
+             MujocoIntegrator integrator) {
+    text_ << "<mujoco>\n"
+          << "<compiler angle='radian' inertiafromgeom='false'/>\n"
+          << "<option solver='Newton' cone='pyramidal' collision='predefined' integrator='"
+          << (integrator == MujocoIntegrator::implicit ? "implicit" : "Euler") << "' timestep='" << step_s << "'"
+          << vector("gravity", environment.gravity) << "/>\n";
+    text_ << "<default>\n"
+          << "<joint limited='true' solimpfriction='" << hard_motor << "' solimplimit='" << hard_contact
+          << "' solreflimit='" << reference(step_s) << "'/>\n"
+          << "<pair condim='3' solimp='" << hard_contact << "' solref='" << reference(step_s) << "'/>\n"
+          << "</default>\n"
+          << "<worldbody>\n";
+    for (const sim::StaticObject& object : environment.objects) {
+      for (const Geometry& geometry : object.geometries) {
+        write_geometry(geometry, object.pose * geometry.pose, environment_owner);
+      }
+    }
+    write_links(robot, environment.robot_pose);
+    text_ << "</worldbody>\n<contact>\n";
+    write_pairs(environment);
+    text_ << "</contact>\n</mujoco>\n";
+  }
+
+  [[nodiscard]] std::string text() const { return text_.str(); }
+
+ private:
+  static constexpr std::ptrdiff_t environment_owner = -2;  ///< no neighbour of any link
+
+  /// A geometry that was written; its name is its place in the list.
+  struct Written {
+    std::ptrdiff_t owner;  ///< link, or environment_owner
+    std::optional<double> friction;
+  };
+
+  /// As the Open Dynamics Engine: the next step takes away the speed, and a fifth of the depth.
+  static std::string reference(double step_s) {
+    constexpr double error_reduction = 0.2;
+    std::ostringstream text;
+    text.precision(std::numeric_limits<double>::max_digits10);
+    text << -error_reduction / (step_s * step_s) << ' ' << -1.0 / step_s;  // negative: stiffness and damping
+    return text.str();
+  }
+
+  static std::string vector(std::string_view name, const Eigen::Vector3d& value) {
+    std::ostringstream text;
+    text.precision(std::numeric_limits<double>::max_digits10);
+    text << ' ' << name << "='" << value.x() << ' ' << value.y() << ' ' << value.z() << "'";
+    return text.str();
+  }
+
+  static std::string place(const Pose& pose) {
+    const Eigen::Quaterniond& q = pose.orientation;
+    std::ostringstream text;
+    text.precision(std::numeric_limits<double>::max_digits10);
+    text << vector("pos", pose.position) << " quat='" << q.w() << ' ' << q.x() << ' ' << q.y() << ' ' << q.z() << "'";
+    return text.str();
+  }
+
+  static Pose inverse(const Pose& pose) {
+    const Eigen::Quaterniond back = pose.orientation.conjugate();
+    return {back * -pose.position, back};
+  }
+
+  void write_geometry(const Geometry& geometry, Pose pose, std::ptrdiff_t owner) {
+    text_ << "<geom name='" << written_.size() << "' contype='0' conaffinity='0'";
+    const Eigen::Vector3d& extents = geometry.extents;
+    switch (geometry.shape) {
+      case sim::Shape::box:
+        text_ << " type='box'" << vector("size", extents);
+        break;
+      case sim::Shape::sphere:
+        text_ << " type='sphere' size='" << extents.x() << "'";
+        break;
+      case sim::Shape::cylinder:  // MuJoCo's lie along z, those of the model along y
+        text_ << " type='cylinder' size='" << extents.x() << ' ' << extents.y() << "'";
+        pose.orientation =
+            pose.orientation * Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
+        break;
+    }
+    text_ << place(pose) << "/>\n";
+    written_.push_back({owner, geometry.friction});
+  }
+
+  void write_links(const sim::RobotModel& robot, const Pose& robot_pose) {
+    for (std::size_t i = 0; i < robot.links.size(); ++i) {
+      const sim::Link& link = robot.links[i];
+      const Pose pose = i == 0 ? robot_pose * link.pose : inverse(robot.links[i - 1].pose) * link.pose;
+      text_ << "<body" << place(pose) << ">\n";
+      if (i == 0) {
+        text_ << "<freejoint/>\n";
+      } else {
+        write_hinge(robot.joints[i - 1], i - 1, link);
+      }
+      const Eigen::Matrix3d& inertia = link.mass.inertia;
+      text_ << "<inertial mass='" << link.mass.mass << "'" << vector("pos", link.mass.center) << " fullinertia='"
+            << inertia(0, 0) << ' ' << inertia(1, 1) << ' ' << inertia(2, 2) << ' ' << inertia(0, 1) << ' '
+            << inertia(0, 2) << ' ' << inertia(1, 2) << "'/>\n";
+      for (const Geometry& geometry : link.geometries) {
+        write_geometry(geometry, geometry.pose, static_cast<std::ptrdiff_t>(i));
+      }
+    }
+    for (std::size_t i = 0; i < robot.links.size(); ++i) {
+      text_ << "</body>\n";
+    }
+  }
+
+  void write_hinge(const sim::Joint& joint, std::size_t number, const sim::Link& link) {
+    const Pose to_link = inverse(link.pose);
+    // MuJoCo turns the child against its parent; our angle is that of the link towards the head, here the parent.
+    const Eigen::Vector3d axis = to_link.orientation * -joint.axis;
+    text_ << "<joint name='joint " << number << "' type='hinge'" << vector("pos", to_link * joint.anchor)
+          << vector("axis", axis) << " range='" << joint.lower_limit << ' ' << joint.upper_limit << "' frictionloss='"
+          << joint.max_torque << "'/>\n";
+  }
+
+  static double friction(const Written& a, const Written& b, double unspecified) {
+    if (a.friction && b.friction) {
+      return std::sqrt(*a.friction * *b.friction);
+    }
+    return a.friction.value_or(b.friction.value_or(unspecified));
+  }
+
+  void write_pairs(const sim::EnvironmentModel& environment) {
+    for (std::size_t a = 0; a < written_.size(); ++a) {
+      for (std::size_t b = a + 1; b < written_.size(); ++b) {
+        const std::ptrdiff_t owner = written_[a].owner;
+        const std::ptrdiff_t other = written_[b].owner;
+        const bool touches = owner == environment_owner ? other != environment_owner
+                                                        : environment.self_collision && std::abs(owner - other) > 1;
+        if (touches) {
+          const double mu = friction(written_[a], written_[b], environment.unspecified_friction);
+          text_ << "<pair geom1='" << a << "' geom2='" << b << "' friction='" << mu << ' ' << mu << " 0 0 0'/>\n";
+        }
+      }
+    }
+  }
+
+  std::ostringstream text_;
+  std::vector<Written> written_;
+};
+
+}  // namespace
+
+std::string write_mjcf(const sim::RobotModel& robot, const sim::EnvironmentModel& environment, double step_s,
+                       MujocoIntegrator integrator) {
+  Writer writer;
+  writer.write(robot, environment, step_s, integrator);
+  return writer.text();
+}
+
+}  // namespace proleg::bench

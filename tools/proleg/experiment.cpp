@@ -53,17 +53,15 @@ constexpr std::array methods{
     Method{"cma-es", "cma_es.optimise.xml", "table_cma_es.tsv", "figure_cma_es_runs.svg", "figure_cma_es_spread.svg"},
 };
 
-const Method& find_method(const std::string& name) {
-  for (const Method& method : methods) {
-    if (method.name == name) {
-      return method;
-    }
-  }
+/// Throws InputError unless there is a method of that name.
+void check_method_name(const std::string& name) {
   std::vector<std::string> names;
   for (const Method& method : methods) {
     names.emplace_back(method.name);
   }
-  throw sim::InputError("--method", 0, sim::in_quotes(name), "one of " + sim::listed(names));
+  if (std::ranges::count(names, name) == 0) {
+    throw sim::InputError("--method", 0, sim::in_quotes(name), "one of " + sim::listed(names));
+  }
 }
 
 /// The folder of the scenarios: below the working directory, or below the source tree that this program was built in.
@@ -184,6 +182,9 @@ int experiment(const Options& options) {
     throw sim::InputError("--repetitions", 0, sim::in_quotes(options.repetitions), "1 to 1000");
   }
   const std::uint32_t worker_count = parse_workers(options.workers);
+  for (const std::string& name : options.methods) {
+    check_method_name(name);
+  }
   const fs::path scenarios = find_scenarios(options);
   const fs::path folder = options.out.value_or(options.name + "_experiment");
   std::vector<std::pair<const Method*, optimize::Experiment>> chosen;
@@ -191,9 +192,6 @@ int experiment(const Options& options) {
     if (options.methods.empty() || std::ranges::count(options.methods, method.name) > 0) {
       chosen.emplace_back(&method, read(options, scenarios, method));
     }
-  }
-  for (const std::string& name : options.methods) {
-    static_cast<void>(find_method(name));
   }
 
   catch_interrupts();

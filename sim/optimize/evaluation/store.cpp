@@ -163,7 +163,7 @@ class Store::Implementation {
       row.bind(evaluation.number);
       row.bind(std::span<const double>(evaluation.scores));
       for (std::size_t i = 0; i < columns_.values.size(); ++i) {
-        row.bind(column_value(experiment_.space, evaluation.candidate, i));
+        row.bind(experiment_.space.value(evaluation.candidate, i));
       }
       row.bind(std::span<const double>(evaluation.measures.all()));
       row.bind(std::string_view(seed));

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/optimize/evaluation/experiment_parts.hpp"
 #include "sim/optimize/evaluation/store.hpp"
+#include "sim/optimize/experiment/experiment_parts.hpp"
 #include "sim/scenario/text.hpp"
 
 namespace proleg::optimize {
@@ -74,12 +74,12 @@ void write_experiment(Database& database, const Experiment& experiment, const St
   for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
     const Dimension& its = experiment.space.dimensions[i];
     Candidate candidate(experiment.space.dimensions.size(), 0);
-    const double lowest = column_value(experiment.space, candidate, i);
+    const double lowest = experiment.space.value(candidate, i);
     candidate[i] = static_cast<std::uint32_t>(its.values.size() - 1);
     dimension.run(i, std::string_view(its.name),
                   columns.values.empty() ? std::string_view() : std::string_view(columns.values[i]),
                   std::string_view(scale_of(its.unit).symbol), its.values.size(), lowest,
-                  column_value(experiment.space, candidate, i));
+                  experiment.space.value(candidate, i));
   }
   Statement measure(database, "INSERT INTO measure VALUES(?1, ?2, ?3)");
   for (const sim::MeasureDeclaration& its : sim::measures()) {

@@ -121,10 +121,6 @@ StoreColumns::StoreColumns(const Experiment& experiment) {
   }
 }
 
-double column_value(const SearchSpace& space, const Candidate& candidate, std::size_t dimension) {
-  return sim::parse_number(space.value_text(candidate, dimension)).value_or(0.0);
-}
-
 std::vector<std::string> trial_columns(const StoreColumns& columns) {
   std::vector<std::string> names{"run", "number", "trial", "seed", "candidate", "hopeless_below"};
   names.insert(names.end(), columns.measures.begin(), columns.measures.end());

@@ -25,9 +25,6 @@ struct StoreColumns {
   std::vector<std::string> measures;  ///< "distance"
 };
 
-/// A dimension's value as it stands in files: 0.1, not the multiple of 2^-30 that a module makes of it.
-[[nodiscard]] double column_value(const SearchSpace& space, const Candidate& candidate, std::size_t dimension);
-
 /// SQL that makes all tables.
 [[nodiscard]] std::string store_schema(const Experiment& experiment, const StoreColumns& columns);
 

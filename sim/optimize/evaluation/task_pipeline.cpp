@@ -99,7 +99,6 @@ void TaskPipeline::give_tasks() {
 }
 
 void TaskPipeline::receive(Workers::Done done) {
-  give_tasks();  // before all else: the worker waits
   const auto task = at_workers_.find(done.ticket);
   if (task == at_workers_.end()) {
     return;  // of an earlier pipeline

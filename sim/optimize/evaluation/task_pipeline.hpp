@@ -37,7 +37,8 @@ class TaskPipeline {
 
   /// These, the first ones first, instead of what was wanted before. Others that workers are at run on.
   void want(std::span<const Task> tasks);
-  /// Gives workers tasks and takes results: those that are there, or else the first one within the time.
+  /// Gives workers tasks and takes results: those that are there, or else the first one within the time. Workers that
+  /// are idle then wait for the next call: what the optimiser makes of a result may change what is wanted.
   void run(std::chrono::milliseconds timeout);
 
   /// Whether the result of a wanted task is here.

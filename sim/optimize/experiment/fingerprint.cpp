@@ -6,6 +6,7 @@
 #include <sodium/crypto_hash_sha256.h>
 
 #include "sim/optimize/experiment/experiment.hpp"
+#include "sim/optimize/experiment/experiment_parts.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -29,13 +30,7 @@ class CanonicalText {
     text_ += std::to_string(number);
     text_ += ';';
   }
-  template <typename Enumeration>
-  requires std::is_enum_v<Enumeration>
-  void add(Enumeration value) { add(static_cast<int>(value)); }
-  void add(const std::optional<double>& number) {
-    add(number.has_value());
-    add(number.value_or(0.0));
-  }
+  void add(sim::Solver solver) { add(static_cast<int>(solver)); }
   template <typename... Items>
   void add_all(const Items&... items) {
     (add(items), ...);
@@ -47,48 +42,8 @@ class CanonicalText {
   std::string text_;
 };
 
-struct MethodWriter {
-  CanonicalText* text;
-
-  void operator()(const GreatDelugeSettings& deluge) const {
-    text->add_all(deluge.water_level, deluge.rain, deluge.credits, deluge.retries, deluge.confidence, deluge.step,
-                  deluge.growth, deluge.move, deluge.neighbour, deluge.start, deluge.first_must_pass,
-                  deluge.reevaluations, deluge.chains, deluge.target);
-  }
-  void operator()(const GeneticSettings& genetic) const {
-    text->add_all(genetic.population, genetic.mutation, genetic.crossover, genetic.generations_to_convergence,
-                  genetic.convergence, genetic.mode);
-  }
-  void operator()(const PagmoSettings& pagmo) const {
-    text->add_all(pagmo.population, pagmo.generations, pagmo.sigma0, pagmo.crossover, pagmo.scale, pagmo.mutation);
-  }
-};
-
 void add_setting(CanonicalText& text, const sim::Setting& setting) {
   text.add_all(setting.slot, setting.joint, setting.index, setting.internal, setting.value);
-}
-
-void add_space(CanonicalText& text, const SearchSpace& space) {
-  text.add(space.dimensions.size());
-  for (const Dimension& dimension : space.dimensions) {
-    text.add_all(std::string_view(dimension.name), dimension.unit, dimension.targets.size(), dimension.values.size());
-    for (const sim::Setting& target : dimension.targets) {
-      add_setting(text, target);
-    }
-    for (const std::int32_t value : dimension.values) {
-      text.add(value);
-    }
-  }
-}
-
-void add_objectives(CanonicalText& text, const std::vector<Objective>& objectives) {
-  text.add(objectives.size());
-  for (const Objective& objective : objectives) {
-    text.add_all(std::string_view(objective.name), objective.goal, objective.failed, objective.terms.size());
-    for (const Term& term : objective.terms) {
-      text.add_all(declaration_of(term.measure).name, term.weight);
-    }
-  }
 }
 
 /// The files as they are, and what may differ from them by the command line.
@@ -114,13 +69,9 @@ void add_scenario(CanonicalText& text, const sim::Scenario& scenario) {
 
 std::string Experiment::fingerprint() const {
   CanonicalText text;
-  text.add(std::string_view(method_name(method)));
-  std::visit(MethodWriter{&text}, method);
-  add_space(text, space);
-  add_objectives(text, objectives);
-  text.add_all(heading_deg, trials.count, trials.aggregate, trials.spread.friction, trials.spread.mass,
-               trials.spread.servo_gain, trials.spread.latency_ms, trials.spread.contact_noise, racing.after,
-               racing.keep, reuse, seed);
+  for (const ExperimentPart& part : parts_of(*this)) {
+    text.add(std::string_view(part.text));
+  }
   add_scenario(text, scenario);
 
   std::array<unsigned char, crypto_hash_sha256_BYTES> digest;

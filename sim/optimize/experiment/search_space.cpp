@@ -1,6 +1,7 @@
 #include "sim/optimize/experiment/search_space.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 
@@ -56,9 +57,11 @@ std::string SearchSpace::value_text(const Candidate& candidate, std::size_t dime
 }
 
 double SearchSpace::value(const Candidate& candidate, std::size_t dimension) const {
-  const Dimension& chosen = dimensions[dimension];
-  const UnitScale scale = scale_of(chosen.unit);
-  return static_cast<double>(chosen.values[candidate[dimension]]) * scale.denominator / scale.numerator;
+  // By way of the text: 50 and not the 50.0000000372529 that is one step of the unit times the raw value.
+  const std::string text = value_text(candidate, dimension);
+  double value = 0.0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
 }
 
 }  // namespace proleg::optimize

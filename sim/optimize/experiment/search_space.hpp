@@ -36,6 +36,7 @@ struct SearchSpace {
   [[nodiscard]] Candidate nearest(const sim::Scenario& scenario) const;
   /// Shortest text of a value, without unit.
   [[nodiscard]] std::string value_text(const Candidate& candidate, std::size_t dimension) const;
+  /// The number that the text says.
   [[nodiscard]] double value(const Candidate& candidate, std::size_t dimension) const;
 };
 

@@ -68,9 +68,12 @@ struct GreatDeluge::Chain {
   std::uint32_t credits;
   std::uint32_t used = 0;
   std::uint64_t drawn = 0;  ///< candidates so far
+  double luck = 0.0;  ///< share of the latest candidates that were accepted, 0 to 1
   bool ended = false;
 
   [[nodiscard]] std::vector<double> draw(const GreatDelugeSettings& settings, std::uint64_t seed, const Box& box);
+
+  void count_luck(bool accepted) { luck += 0.25 * ((accepted ? 1.0 : 0.0) - luck); }
 
   void accept(const GreatDelugeSettings& settings, const std::vector<double>& place) {
     current = place;
@@ -129,6 +132,7 @@ class GreatDeluge::Voyage {
                          .credits = settings_.credits,
                          .used = 0,
                          .drawn = 0,
+                         .luck = 0.0,
                          .ended = false});
       levels_.push_back(-population.get_f()[i][0]);
     }
@@ -186,6 +190,7 @@ class GreatDeluge::Voyage {
     }
     const bool accepted = level >= chain.water;
     log(chain, place, level, radius_after(settings_, chain.used), accepted);
+    chain.count_luck(accepted);
     if (accepted) {
       chain.accept(settings_, place);
     } else {
@@ -225,7 +230,8 @@ class GreatDeluge::Voyage {
     }
   }
 
-  /// Tells the source: `again` so many times, then the candidates of the chains, from that turn on, if all fail.
+  /// Tells the source: `again` so many times, then the candidates of the chains, from that turn on, if each does as most
+  /// of its chain's latest ones did: far above the water nearly all are accepted, near the top nearly none.
   void expect(const std::vector<double>& again, std::uint32_t times, std::vector<Chain> chains, std::size_t turn) {
     if (gait_ == nullptr) {
       return;
@@ -237,8 +243,13 @@ class GreatDeluge::Voyage {
       next.push_back(hub.candidate(again));
     }
     for (; next.size() < count && next_turn(chains, turn); ++turn) {
-      next.push_back(hub.candidate(chains[turn].draw(settings_, algorithm_.seed_, box_)));
-      chains[turn].fail(settings_);
+      const std::vector<double> place = chains[turn].draw(settings_, algorithm_.seed_, box_);
+      next.push_back(hub.candidate(place));
+      if (chains[turn].luck > 0.5) {
+        chains[turn].accept(settings_, place);
+      } else {
+        chains[turn].fail(settings_);
+      }
     }
     hub.source().expect(next);
   }

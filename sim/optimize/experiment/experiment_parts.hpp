@@ -13,7 +13,8 @@ struct ExperimentPart {
   std::string text;
 };
 
-/// All that determines the results, but the files.
+/// All that determines the results, but the scenario. The fingerprint is made of it, and a store keeps it to say what
+/// differs.
 [[nodiscard]] std::vector<ExperimentPart> parts_of(const Experiment& experiment);
 
 /// weight * measure + ...

@@ -1,4 +1,4 @@
-#include "sim/optimize/evaluation/experiment_parts.hpp"
+#include "sim/optimize/experiment/experiment_parts.hpp"
 
 #include <array>
 #include <charconv>

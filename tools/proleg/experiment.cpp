@@ -56,6 +56,7 @@ constexpr std::array methods{
 /// Throws InputError unless there is a method of that name.
 void check_method_name(const std::string& name) {
   std::vector<std::string> names;
+  names.reserve(methods.size());
   for (const Method& method : methods) {
     names.emplace_back(method.name);
   }

@@ -17,6 +17,7 @@
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/hil_modules.hpp"
 #include "tools/proleg/progress.hpp"
+#include "tools/proleg/run_measures.hpp"
 #include "tools/proleg/scenario_run.hpp"
 
 namespace {
@@ -57,6 +58,7 @@ struct Result {
   std::vector<sim::HardwareLoop::Failure> failures;
   std::vector<sim::HardwareLoop::Problem> problems;
   std::optional<HilModules::Costliest> costliest_tick;
+  RunMeasures measures;
 
   [[nodiscard]] double real_time_factor() const { return simulated_s / wall_s; }
 };
@@ -202,6 +204,7 @@ Result run(const ScenarioRun& setup, const HilModules& modules, sim::HardwareOpt
   result.setup_frames = loop.setup_frames();
   result.setpoint_hash = loop.setpoint_hash().hex();
   result.servo_hash = loop.servo_hash().hex();
+  result.measures = {loop.plant().meter().values(), loop.plant().meter().link_duty_factors()};
   return result;
 }
 
@@ -247,6 +250,8 @@ void print_json(const Options& options, const ScenarioRun& setup, const HilModul
       {"bus_load", result.bus_load},
       {"real_time_factor", result.real_time_factor()},
       {"contacts_mean", result.contacts_mean},
+      {"measures", measures_object(result.measures.values)},
+      {"link_duty_factors", result.measures.link_duty_factors},
       {"recording", options.record.value_or("")},
       {"can_log", options.can_log.value_or("")},
       {"build_id", build_id}};
@@ -292,6 +297,7 @@ void print_table(const Options& options, const ScenarioRun& setup, const HilModu
   if (options.can_log) {
     std::printf("CAN log           %s\n", options.can_log->c_str());
   }
+  print_measures(result.measures.values);
 }
 
 int hil(const Options& options) {
@@ -340,15 +346,17 @@ int hil(const Options& options) {
     return exit_failed;
   }
   if (recorder) {
-    recorder->finish({{"displacement_m", exact(result.displacement_m)},
-                      {"simulated_s", exact(result.simulated_s)},
-                      {"contacts_mean", exact(result.contacts_mean)},
-                      {"differences", std::to_string(result.differences)},
-                      {"lost_frames", std::to_string(result.lost_frames)},
-                      {"frames", std::to_string(result.frames)},
-                      {"bus_load", exact(result.bus_load)},
-                      {"setpoint_hash", result.setpoint_hash},
-                      {"servo_hash", result.servo_hash}});
+    std::vector<std::pair<std::string, std::string>> summary{{"displacement_m", exact(result.displacement_m)},
+                                                             {"simulated_s", exact(result.simulated_s)},
+                                                             {"contacts_mean", exact(result.contacts_mean)},
+                                                             {"differences", std::to_string(result.differences)},
+                                                             {"lost_frames", std::to_string(result.lost_frames)},
+                                                             {"frames", std::to_string(result.frames)},
+                                                             {"bus_load", exact(result.bus_load)},
+                                                             {"setpoint_hash", result.setpoint_hash},
+                                                             {"servo_hash", result.servo_hash}};
+    append_results(result.measures, setup.scenario.robot, summary);
+    recorder->finish(summary);
   }
   if (options.json) {
     print_json(options, setup, modules, result);

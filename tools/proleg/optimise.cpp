@@ -12,6 +12,7 @@
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/optimisation.hpp"
+#include "tools/proleg/run_measures.hpp"
 #include "tools/proleg/scenario_run.hpp"
 
 namespace proleg::tools {
@@ -61,10 +62,6 @@ std::vector<std::filesystem::path> write_results(const Experiment& experiment, c
   return files;
 }
 
-nlohmann::ordered_json defined(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
 void print_json(const OptimiseOptions& options, const Experiment& experiment, const SearchOutcome& outcome,
                 const std::filesystem::path& folder, std::uint32_t workers) {
   const Evaluation& best = *outcome.progress.best;
@@ -76,10 +73,6 @@ void print_json(const OptimiseOptions& options, const Experiment& experiment, co
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
     scores[experiment.objectives[i].name] = best.scores[i];
   }
-  nlohmann::ordered_json measures;
-  for (const sim::MeasureDeclaration& measure : sim::measures()) {
-    measures[std::string(measure.name)] = defined(best.measures[measure.measure]);
-  }
   const optimize::Progress& progress = outcome.progress;
   const nlohmann::ordered_json object{{"experiment", options.file},
                                       {"method", optimize::method_name(experiment.method)},
@@ -88,7 +81,7 @@ void print_json(const OptimiseOptions& options, const Experiment& experiment, co
                                       {"best_scores", scores},
                                       {"best_values", values},
                                       {"best_number", best.number},
-                                      {"best_measures", measures},
+                                      {"best_measures", measures_object(best.measures)},
                                       {"evaluations", progress.evaluations},
                                       {"simulated", progress.simulated},
                                       {"reused", progress.reused},

@@ -1,7 +1,6 @@
 // proleg simulate: runs a scenario in the physics simulation.
 
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -10,11 +9,11 @@
 #include <vector>
 
 #include "sim/loop/simulation.hpp"
-#include "sim/measure/measure.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/progress.hpp"
+#include "tools/proleg/run_measures.hpp"
 #include "tools/proleg/scenario_run.hpp"
 
 namespace {
@@ -31,8 +30,7 @@ struct Result {
   std::uint64_t lost_frames;
   std::string setpoint_hash;
   std::string servo_hash;
-  sim::MeasureValues measures;
-  std::vector<double> link_duty_factors;
+  RunMeasures measures;
 
   [[nodiscard]] double real_time_factor() const { return simulated_s / wall_s; }
 };
@@ -62,31 +60,7 @@ Result run(const ScenarioRun& setup, sim::Recorder* recorder) {
           lost_frames,
           simulation.setpoint_hash().hex(),
           simulation.servo_hash().hex(),
-          simulation.measures(),
-          simulation.link_duty_factors()};
-}
-
-/// What JSON has no numbers for becomes null.
-nlohmann::ordered_json measures_object(const sim::MeasureValues& measures) {
-  nlohmann::ordered_json object;
-  for (const sim::MeasureDeclaration& declaration : sim::measures()) {
-    object[std::string(declaration.name)] = measures[declaration.measure];
-  }
-  return object;
-}
-
-/// Those that the run defines, and the duty factors of the links.
-std::vector<std::pair<std::string, std::string>> recorded_measures(const Result& result, const sim::RobotModel& robot) {
-  std::vector<std::pair<std::string, std::string>> values;
-  for (const sim::MeasureDeclaration& declaration : sim::measures()) {
-    if (std::isfinite(result.measures[declaration.measure])) {
-      values.emplace_back(declaration.name, exact(result.measures[declaration.measure]));
-    }
-  }
-  for (std::size_t link = 0; link < robot.links.size(); ++link) {
-    values.emplace_back("duty_factor." + robot.links[link].name, exact(result.link_duty_factors[link]));
-  }
-  return values;
+          {simulation.measures(), simulation.link_duty_factors()}};
 }
 
 void print_json(const ScenarioOptions& options, const Result& result) {
@@ -99,23 +73,12 @@ void print_json(const ScenarioOptions& options, const Result& result) {
                                       {"contacts_mean", result.contacts_mean},
                                       {"solver_messages", result.solver_messages},
                                       {"lost_frames", result.lost_frames},
-                                      {"measures", measures_object(result.measures)},
-                                      {"link_duty_factors", result.link_duty_factors},
+                                      {"measures", measures_object(result.measures.values)},
+                                      {"link_duty_factors", result.measures.link_duty_factors},
                                       {"recording", options.record.value_or("")},
                                       {"build_id", build_id}};
   // File names need not be UTF-8; whatever is not is replaced.
   std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
-}
-
-void print_measures(const sim::MeasureValues& measures) {
-  std::printf("measures (docs/gait-measures.md)\n");
-  for (const sim::MeasureDeclaration& declaration : sim::measures()) {
-    if (const double value = measures[declaration.measure]; std::isfinite(value)) {
-      const std::string unit(declaration.unit);
-      std::printf("  %-28s  %.4g%s\n", std::string(declaration.name).c_str(), value,
-                  unit.empty() ? "" : (' ' + unit).c_str());
-    }
-  }
 }
 
 void print_table(const ScenarioOptions& options, const Result& result) {
@@ -133,7 +96,7 @@ void print_table(const ScenarioOptions& options, const Result& result) {
   if (options.record) {
     std::printf("recording         %s\n", options.record->c_str());
   }
-  print_measures(result.measures);
+  print_measures(result.measures.values);
 }
 
 int simulate(const ScenarioOptions& options) {
@@ -164,8 +127,7 @@ int simulate(const ScenarioOptions& options) {
         {"lost_frames", std::to_string(result.lost_frames)},
         {"setpoint_hash", result.setpoint_hash},
         {"servo_hash", result.servo_hash}};
-    const auto measured = recorded_measures(result, setup.scenario.robot);
-    summary.insert(summary.end(), measured.begin(), measured.end());
+    append_results(result.measures, setup.scenario.robot, summary);
     recorder->finish(summary);
   }
   if (options.json) {

@@ -68,7 +68,7 @@ struct GreatDeluge::Chain {
   std::uint32_t credits;
   std::uint32_t used = 0;
   std::uint64_t drawn = 0;  ///< candidates so far
-  double luck = 0.0;  ///< share of the latest candidates that were accepted, 0 to 1
+  double luck = 0.0;        ///< share of the latest candidates that were accepted, 0 to 1
   bool ended = false;
 
   [[nodiscard]] std::vector<double> draw(const GreatDelugeSettings& settings, std::uint64_t seed, const Box& box);
@@ -230,8 +230,8 @@ class GreatDeluge::Voyage {
     }
   }
 
-  /// Tells the source: `again` so many times, then the candidates of the chains, from that turn on, if each does as most
-  /// of its chain's latest ones did: far above the water nearly all are accepted, near the top nearly none.
+  /// Tells the source: `again` so many times, then the candidates of the chains, from that turn on, if each does as
+  /// most of its chain's latest ones did: far above the water nearly all are accepted, near the top nearly none.
   void expect(const std::vector<double>& again, std::uint32_t times, std::vector<Chain> chains, std::size_t turn) {
     if (gait_ == nullptr) {
       return;

@@ -47,8 +47,8 @@ class GreatDeluge {
   explicit GreatDeluge(const GreatDelugeSettings& settings = {}, std::uint64_t seed = 1);
 
   /// If the population's problem is a GaitProblem, its source is told what comes next on the assumption that candidates
-  /// are accepted if most of the latest were, or are not; what was wrong is said anew. Throws std::invalid_argument for a problem that it does not
-  /// know how to handle. Whatever the problem's fitness throws passes through.
+  /// are accepted if most of the latest were, or are not; what was wrong is said anew. Throws std::invalid_argument for
+  /// a problem that it does not know how to handle. Whatever the problem's fitness throws passes through.
   [[nodiscard]] pagmo::population evolve(pagmo::population population) const;
 
   void set_seed(unsigned seed) { seed_ = seed; }

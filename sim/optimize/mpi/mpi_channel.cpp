@@ -7,7 +7,11 @@
 namespace proleg::optimize {
 namespace {
 
-const unsigned char* characters(const Bytes& bytes) { return reinterpret_cast<const unsigned char*>(bytes.data()); }
+/// Not null, also if there are none: Boost takes a reference to the first one.
+unsigned char* characters(Bytes& bytes) {
+  static unsigned char nothing = 0;
+  return bytes.empty() ? &nothing : reinterpret_cast<unsigned char*>(bytes.data());
+}
 
 }  // namespace
 
@@ -20,7 +24,8 @@ std::string MpiMessage::text() const {
 }
 
 void MpiChannel::send(int rank, MpiTag tag, const Bytes& content) const {
-  world_.send(rank, static_cast<int>(tag), characters(content), static_cast<int>(content.size()));
+  Bytes copy = content;
+  world_.send(rank, static_cast<int>(tag), characters(copy), static_cast<int>(copy.size()));
 }
 
 void MpiChannel::send(int rank, MpiTag tag, const std::string& text) const {
@@ -38,7 +43,7 @@ std::optional<MpiMessage> MpiChannel::receive() const {
   }
   const int size = status->count<unsigned char>().value_or(0);
   MpiMessage message{status->source(), static_cast<MpiTag>(status->tag()), Bytes(static_cast<std::size_t>(size))};
-  world_.recv(status->source(), status->tag(), reinterpret_cast<unsigned char*>(message.content.data()), size);
+  world_.recv(status->source(), status->tag(), characters(message.content), size);
   return message;
 }
 

@@ -6,13 +6,10 @@
 #include "shared/fixed/crc32.hpp"
 #include "shared/fixed/random.hpp"
 #include "shared/kernel/fingerprint.hpp"
+#include "sim/scenario/random_streams.hpp"
 
 namespace proleg::sim {
 namespace {
-
-/// Streams of the scenario's seed that no joint's noise uses.
-constexpr std::uint64_t crystal_stream = 1'000'000;
-constexpr std::uint64_t board_stream = 2'000'000;
 
 /// The last word of a unique id whose check sum is a serial number: CRC-32 (shared/fixed/crc32.hpp), run backwards.
 std::uint32_t word_for_serial(std::uint32_t crc_before, std::uint32_t serial) {
@@ -28,13 +25,13 @@ std::uint32_t word_for_serial(std::uint32_t crc_before, std::uint32_t serial) {
 }  // namespace
 
 Crystal make_crystal(const Scenario& scenario, std::size_t joint, std::uint32_t error_ppm) {
-  Pcg32 noise(scenario.kernel.seed, crystal_stream + joint);
+  Pcg32 noise(scenario.kernel.seed, random_stream::crystals + joint);
   const auto range = static_cast<std::int32_t>(error_ppm) * 1000;
   return Crystal(static_cast<std::int32_t>(noise.below(static_cast<std::uint32_t>(2 * range + 1))) - range);
 }
 
 firmware::Board make_board(const Scenario& scenario, std::size_t joint) {
-  Pcg32 noise(scenario.kernel.seed, board_stream + joint);
+  Pcg32 noise(scenario.kernel.seed, random_stream::boards + joint);
   firmware::Board board;
   board.node = scenario.modules[joint].node;
   board.core_fingerprint = core_fingerprint;

@@ -10,12 +10,10 @@
 #include "sim/physics/physics_error.hpp"
 #include "sim/robot/servo.hpp"
 #include "sim/robot/servo_current.hpp"
+#include "sim/scenario/random_streams.hpp"
 
 namespace proleg::sim {
 namespace {
-
-/// Stream of the scenario's seed that nobody else uses (joints use those from 0 on, module_making.cpp others).
-constexpr std::uint64_t contact_stream = 3'000'000;
 
 Stepper choose_stepper(const Scenario& scenario) {
   constexpr std::size_t most_links_for_direct = 8;  // measured: above, the iterative stepper is faster
@@ -45,7 +43,7 @@ Plant::Plant(const Scenario& scenario)
           static_cast<std::uint64_t>(std::llround(scenario.robot.servo.latency_us * 1e-6 / scenario.step_s))),
       servo_commands_(scenario.robot.joints.size(), servo_center),
       servos_(scenario.robot.joints.size(), Servo{servo_center}),
-      contact_noise_(scenario.kernel.seed, contact_stream),
+      contact_noise_(scenario.kernel.seed, random_stream::touch_sensors),
       link_poses_(scenario.robot.links.size()),
       joint_angles_(scenario.robot.joints.size()),
       joint_targets_(scenario.robot.joints.size()),

@@ -4,16 +4,13 @@ execute_process(COMMAND git -C ${SOURCE_DIR} describe --always --dirty --abbrev=
   OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE status)
 if(NOT status EQUAL 0)
   set(revision "unknown")
+elseif(revision MATCHES "-dirty$")
+  execute_process(COMMAND git -C ${SOURCE_DIR} diff HEAD OUTPUT_VARIABLE changes ERROR_QUIET)
+  string(SHA1 hash "${changes}")
+  string(SUBSTRING ${hash} 0 8 hash)
+  string(APPEND revision "-${hash}")
 endif()
-set(text "#pragma once
-
-namespace proleg::tools {
-
-/// Version and git revision of this build.
-inline constexpr const char* build_id = \"${VERSION}-${revision}\";
-
-}  // namespace proleg::tools
-")
+set(text "#define PROLEG_BUILD_ID \"${VERSION}-${revision}\"\n")
 set(old "")
 if(EXISTS ${OUTPUT})
   file(READ ${OUTPUT} old)

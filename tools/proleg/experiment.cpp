@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -109,24 +109,37 @@ double uniform_distance(const optimize::Experiment& experiment) {
   return optimize::run_trial(experiment, task).measures[sim::Measure::distance];
 }
 
+/// Whether the store in a folder has all repetitions of this experiment: then its method belongs into the comparison,
+/// whether it was asked for now or before.
+bool is_complete(const optimize::Experiment& experiment, std::uint32_t repetitions, const fs::path& folder) {
+  try {
+    optimize::Store store(store_path(folder), experiment, build_id, optimize::Store::Opening::resume);
+    for (std::uint32_t run = 0; run < repetitions; ++run) {
+      if (!store.ending(run)) {
+        return false;
+      }
+    }
+    return true;
+  } catch (const optimize::StoreError&) {
+    return false;  // there is none, or one of something else
+  }
+}
+
 struct MethodResult {
   optimize::MethodRuns runs;
   std::vector<std::string> endings;
   std::optional<optimize::Evaluation> best;
   double wall_s = 0.0;
   double simulated_s = 0.0;
-  double workers_s = 0.0;
-  double own_cpu_s = 0.0;
 };
 
 /// Runs the repetitions; what the store has is not simulated again. Fewer if somebody interrupts.
-MethodResult run_method(const optimize::Experiment& experiment, std::uint32_t repetitions, std::uint32_t worker_count,
-                        const fs::path& folder) {
+MethodResult run_method(const std::string& name, const optimize::Experiment& experiment, std::uint32_t repetitions,
+                        std::uint32_t worker_count, const fs::path& folder) {
   optimize::LocalWorkers workers(experiment, worker_count);
   const bool there = fs::exists(store_path(folder));
   const std::unique_ptr<optimize::Store> store =
       open_store(folder, experiment, there ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);
-  const std::string name = optimize::method_name(experiment.method);
   MethodResult result{{name, experiment.space, {}}, {}, {}};
   for (std::uint32_t run = 0; run < repetitions && !interrupted(); ++run) {
     SearchOutcome outcome = run_search(experiment, run, workers, *store,
@@ -140,8 +153,6 @@ MethodResult run_method(const optimize::Experiment& experiment, std::uint32_t re
     }
     result.wall_s += outcome.wall_s;
     result.simulated_s += outcome.progress.simulated_s;
-    result.workers_s += outcome.progress.workers_s;
-    result.own_cpu_s += outcome.own_cpu_s;
     std::cerr << name << " " << run + 1 << " of " << repetitions << ": " << outcome.evaluations.size()
               << " evaluations, best " << best->scores.front() << " " << score_unit(experiment) << ", "
               << outcome.ending << "; " << outcome.progress.simulated << " simulated in "
@@ -175,6 +186,9 @@ nlohmann::ordered_json to_json(const MethodResult& result, const optimize::Searc
 }
 
 int experiment(const Options& options) {
+  if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) {
+    throw BadInput("found mpirun, expected none: an experiment runs on one computer; 'proleg optimise' knows clusters");
+  }
   if (options.name != "travelling_wave") {
     throw sim::InputError(options.name, 0, "unknown experiment " + sim::in_quotes(options.name), "'travelling_wave'");
   }
@@ -190,8 +204,10 @@ int experiment(const Options& options) {
   const fs::path folder = options.out.value_or(options.name + "_experiment");
   std::vector<std::pair<const Method*, optimize::Experiment>> chosen;
   for (const Method& method : methods) {
-    if (options.methods.empty() || std::ranges::count(options.methods, method.name) > 0) {
-      chosen.emplace_back(&method, read(options, scenarios, method));
+    optimize::Experiment experiment = read(options, scenarios, method);
+    if (options.methods.empty() || std::ranges::count(options.methods, method.name) > 0 ||
+        is_complete(experiment, *repetitions, folder / method.name)) {
+      chosen.emplace_back(&method, std::move(experiment));
     }
   }
 
@@ -200,7 +216,8 @@ int experiment(const Options& options) {
   std::vector<MethodResult> results;
   std::vector<optimize::MethodRuns> all_runs;
   for (const auto& [method, experiment] : chosen) {
-    MethodResult result = run_method(experiment, *repetitions, worker_count, folder / method->name);
+    MethodResult result =
+        run_method(std::string(method->name), experiment, *repetitions, worker_count, folder / method->name);
     if (result.runs.runs.size() < *repetitions) {
       std::cerr << "proleg experiment: interrupted; the same command goes on from " << folder.string() << '\n';
       return exit_failed;
@@ -243,8 +260,10 @@ int main(int argc, char** argv) {
   Options options;
   app.add_option("NAME", options.name, "travelling_wave: the amplitudes of section 6.1")->required();
   app.add_option("--repetitions", options.repetitions, "searches by each method; 3 if not given, 30 in the thesis");
-  app.add_option("--method", options.methods,
-                 "great-deluge, genetic or cma-es; all of them if not given. May be repeated.")
+  app.add_option(
+         "--method", options.methods,
+         "great-deluge, genetic or cma-es; all of them if not given. May be repeated. Methods whose repetitions "
+         "are in the folder already are shown beside.")
       ->allow_extra_args(false);
   app.add_option("--evaluations", options.evaluations, "of one search at most, instead of what the files say");
   app.add_option("--workers", options.workers, "simulations at a time; as many as there are processors if not given");

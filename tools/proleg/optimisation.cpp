@@ -87,14 +87,18 @@ SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t r
   };
   const auto observe = [&](const optimize::Evaluation& evaluation, const optimize::Progress& progress) {
     outcome.evaluations.push_back(evaluation);
-    display.show(evaluation, progress);
+    display.show(progress);
     say_messages();
   };
   optimize::Evaluator evaluator(experiment, run, workers, &store, observe, interrupted);
+  store.start_run(run);
   const auto start = std::chrono::steady_clock::now();
   const double cpu_start = own_cpu_s();
   try {
     outcome.ending = optimize::search(experiment, run, evaluator);
+  } catch (const std::runtime_error&) {
+    say_messages();  // what led to it
+    throw;
   } catch (const optimize::SearchEnded&) {
     if (evaluator.budget_spent()) {
       outcome.ending = "all " + std::to_string(experiment.evaluations) + " evaluations made";

@@ -127,6 +127,35 @@ void print_result(const Experiment& experiment, const SearchOutcome& outcome,
   }
 }
 
+/// The words as a shell takes them.
+std::string quoted(const std::string& word) {
+  if (!word.empty() &&
+      word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=+,-") ==
+          std::string::npos) {
+    return word;
+  }
+  std::string text = "'";
+  for (const char character : word) {
+    text += character == '\'' ? "'\\''" : std::string(1, character);
+  }
+  return text + "'";
+}
+
+/// The command that goes on with this search: with all that the store is of.
+std::string command_to_go_on(const OptimiseOptions& options, const std::filesystem::path& folder) {
+  std::string command = "proleg optimise " + quoted(options.file);
+  const auto add = [&](const char* option, const std::optional<std::string>& value) {
+    if (value) {
+      command += std::string(" ") + option + " " + quoted(*value);
+    }
+  };
+  add("--simulation", options.simulation);
+  add("--evaluations", options.evaluations);
+  add("--seed", options.seed);
+  add("--resume", folder.string());
+  return command;
+}
+
 int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   const Experiment experiment = read_experiment(options);
   const std::filesystem::path folder = folder_of(options);
@@ -142,9 +171,9 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   const std::unique_ptr<optimize::Store> store = open_store(
       folder, experiment, options.resume ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);
   const SearchOutcome outcome = run_search(experiment, 0, *workers, *store, optimize::method_name(experiment.method));
-  const std::string go_on = "proleg optimise " + options.file + " --resume " + folder.string();
+  const std::string go_on = command_to_go_on(options, folder);
   if (!outcome.progress.best) {
-    std::cerr << "proleg optimise: interrupted before the first evaluation; go on with '" << go_on << "'\n";
+    std::cerr << "proleg optimise: interrupted before the first evaluation; go on with: " << go_on << '\n';
     return exit_failed;
   }
   const std::vector<std::filesystem::path> files = write_results(experiment, outcome, folder);
@@ -154,8 +183,8 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
     print_result(experiment, outcome, files, workers->count());
   }
   if (outcome.ending.empty()) {
-    std::cerr << "proleg optimise: interrupted after " << outcome.progress.evaluations << " evaluations; go on with '"
-              << go_on << "'\n";
+    std::cerr << "proleg optimise: interrupted after " << outcome.progress.evaluations
+              << " evaluations; go on with: " << go_on << '\n';
     return exit_failed;
   }
   return exit_success;
@@ -178,7 +207,7 @@ optimize::Experiment read_experiment(const OptimiseOptions& options) {
 
 int optimise_command(int argc, char** argv, const WorkersMaker& make_workers) {
   CLI::App app(
-      "Searches for the parameters of a gait: runs simulations, keeps every one, and writes the best scenario.",
+      "Searches for the parameters of a gait: runs simulations, keeps what it tried, and writes the best scenario.",
       "proleg optimise");
   OptimiseOptions options;
   add_optimise_options(app, options);

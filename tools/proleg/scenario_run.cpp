@@ -135,7 +135,10 @@ std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options, con
 
 void catch_interrupts() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    std::signal(signal, [](int) { interrupt_flag = true; });
+    // What is ignored stays so: that is how nohup and background jobs of a script ask not to be stopped.
+    if (std::signal(signal, [](int) { interrupt_flag = true; }) == SIG_IGN) {
+      std::signal(signal, SIG_IGN);
+    }
   }
 }
 

@@ -49,7 +49,7 @@ void print_setup(const sim::Scenario& scenario);
 [[nodiscard]] std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options,
                                                            const sim::Scenario& scenario, const std::string& program);
 
-/// From now on SIGINT, SIGTERM and SIGHUP only make `interrupted` true.
+/// From now on SIGINT, SIGTERM and SIGHUP only make `interrupted` true, unless they are ignored (nohup).
 void catch_interrupts();
 [[nodiscard]] bool interrupted();
 

@@ -1,5 +1,6 @@
 #include "tools/proleg/search_display.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +12,16 @@
 
 namespace proleg::tools {
 
+namespace {
+
+/// Columns of the terminal at standard error; 80 if it does not say.
+std::size_t terminal_width() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : 80;
+}
+
+}  // namespace
+
 SearchDisplay::SearchDisplay(std::string label, std::string unit, std::uint64_t budget)
     : label_(std::move(label)),
       unit_(std::move(unit)),
@@ -21,7 +32,7 @@ SearchDisplay::SearchDisplay(std::string label, std::string unit, std::uint64_t 
 
 SearchDisplay::~SearchDisplay() { erase(); }
 
-void SearchDisplay::show(const optimize::Evaluation& evaluation, const optimize::Progress& progress) {
+void SearchDisplay::show(const optimize::Progress& progress) {
   if (!terminal_ || !progress.best) {
     return;
   }
@@ -38,17 +49,19 @@ void SearchDisplay::show(const optimize::Evaluation& evaluation, const optimize:
     line += " of " + std::to_string(budget_);
   }
   std::array<char, 160> figures{};
-  std::snprintf(figures.data(), figures.size(), ", best %.4g%s%s, mean %.4g, last %.4g, %.0f simulated s/s",
-                progress.best->scores.front(), unit_.empty() ? "" : " ", unit_.c_str(), progress.score_sum / done,
-                evaluation.scores.front(), progress.simulated_s / elapsed);
+  std::snprintf(figures.data(), figures.size(), ", best %.4g%s%s, mean %.4g, %.0f s/s", progress.best->scores.front(),
+                unit_.empty() ? "" : " ", unit_.c_str(), progress.score_sum / done, progress.simulated_s / elapsed);
   line += figures.data();
   // What was restored took no time and says nothing about what is to come.
   const auto made_now = done - static_cast<double>(progress.restored);
   if (budget_ > progress.evaluations && made_now > 0.0) {
-    line += ", at most " + duration_text(static_cast<double>(budget_ - progress.evaluations) * elapsed / made_now) +
-            " to go";
+    line += ", " + duration_text(static_cast<double>(budget_ - progress.evaluations) * elapsed / made_now) + " to go";
   }
-  std::cerr << "\r\033[K" << line << "  " << spark_line(best_so_far_, 16) << std::flush;
+  // A line that wraps could not be erased: what does not fit is cut, the spark line first.
+  const std::size_t width = terminal_width();
+  const std::size_t left = width > line.size() + 3 ? width - line.size() - 3 : 0;
+  std::cerr << "\r\033[K" << line.substr(0, width - 1) << (left > 0 ? "  " : "")
+            << spark_line(best_so_far_, std::min<std::size_t>(left, 16)) << std::flush;
   shown_ = true;
 }
 

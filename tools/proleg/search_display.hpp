@@ -10,7 +10,8 @@
 
 namespace proleg::tools {
 
-/// A line on standard error that says how far a search is; nothing if that is not a terminal.
+/// A line on standard error that says how far a search is: evaluations, best and mean score, simulated seconds in a
+/// second, time to go, the course of the best. Nothing if that is not a terminal.
 class SearchDisplay {
  public:
   /// label: what is searched, with the repetition if there are several. unit: of the score. budget: evaluations at
@@ -22,7 +23,7 @@ class SearchDisplay {
   SearchDisplay& operator=(const SearchDisplay&) = delete;
 
   /// Cheap; redraws at most ten times a second.
-  void show(const optimize::Evaluation& evaluation, const optimize::Progress& progress);
+  void show(const optimize::Progress& progress);
   /// A line above it, also when standard error is no terminal.
   void say(const std::string& line);
 

@@ -178,6 +178,10 @@ class Store::Implementation {
     });
   }
 
+  void start_run(std::uint32_t run) {
+    guard([&] { Statement(*database_, "DELETE FROM run WHERE run = ?1").run(run); });
+  }
+
   void finish_run(std::uint32_t run, const std::string& ending) {
     guard([&] { Statement(*database_, "REPLACE INTO run VALUES(?1, ?2)").run(run, std::string_view(ending)); });
   }
@@ -296,6 +300,7 @@ void Store::save(const Task& task, std::uint64_t seed, const TrialResult& result
   implementation_->save(task, seed, result, worker);
 }
 void Store::save(const Evaluation& evaluation) { implementation_->save(evaluation); }
+void Store::start_run(std::uint32_t run) { implementation_->start_run(run); }
 void Store::finish_run(std::uint32_t run, const std::string& reason) { implementation_->finish_run(run, reason); }
 std::uint64_t Store::evaluation_count(std::uint32_t run) { return implementation_->evaluation_count(run); }
 std::vector<Evaluation> Store::evaluations(std::uint32_t run) { return implementation_->evaluations(run); }

@@ -40,6 +40,8 @@ class Store {
   void save(const Task& task, std::uint64_t seed, const TrialResult& result, std::uint32_t worker);
   /// What the optimiser used, in the order of number. One that is there is replaced by the same.
   void save(const Evaluation& evaluation);
+  /// A run is under way (again): it has no ending.
+  void start_run(std::uint32_t run);
   /// How a run ended ("converged", "credits used up", ...).
   void finish_run(std::uint32_t run, const std::string& reason);
 

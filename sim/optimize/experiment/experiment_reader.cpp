@@ -106,6 +106,19 @@ void read_evaluation(const XmlElement& element, Experiment& experiment) {
 
 }  // namespace
 
+namespace {
+
+void require_trials_to_differ(const XmlElement& evaluation, const Experiment& experiment) {
+  const Trials& trials = experiment.trials;
+  if (trials.count > 1 && !depends_on_seed(experiment.scenario, experiment.space, trials.spread)) {
+    evaluation.required_child("trials").refuse(
+        std::to_string(trials.count) + " trials that are all alike",
+        "a spread of <friction>, <mass>, <servoGain>, <latency> or <contactNoise>, or noise in the scenario");
+  }
+}
+
+}  // namespace
+
 Experiment read_experiment(const std::filesystem::path& path, sim::FileSource& files,
                            const std::optional<std::filesystem::path>& simulation) {
   Experiment experiment;
@@ -132,6 +145,7 @@ Experiment read_experiment(const std::filesystem::path& path, sim::FileSource& f
   }
   if (const auto evaluation = section.child("evaluation")) {
     read_evaluation(*evaluation, experiment);
+    require_trials_to_differ(*evaluation, experiment);
   }
   return experiment;
 }

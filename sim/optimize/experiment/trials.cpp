@@ -5,20 +5,11 @@
 
 #include "shared/fixed/random.hpp"
 #include "sim/optimize/experiment/search_space.hpp"
+#include "sim/scenario/random_streams.hpp"
 #include "sim/scenario/settings.hpp"
 
 namespace proleg::optimize {
 namespace {
-
-/// Streams of a trial's seed. Each quantity has its own, so that one that is spread does not move the others, and none
-/// is one that the scenario's own noise draws from with the same seed (the joints' from 0, the modules' from
-/// 1,000,000).
-enum Stream : std::uint64_t {
-  friction_stream = 3'000'000,
-  mass_stream,
-  gain_stream,
-  latency_stream,
-};
 
 /// Evenly between 0 and 1, never either of them.
 double draw(Pcg32& random) { return (random.next() + 0.5) / 4294967296.0; }
@@ -94,10 +85,10 @@ bool starts_with_noise(const sim::Scenario& scenario, const SearchSpace& space, 
 }  // namespace
 
 void perturb(sim::Scenario& scenario, const Spread& spread, std::uint64_t seed) {
-  Pcg32 friction(seed, friction_stream);
+  Pcg32 friction(seed, sim::random_stream::friction);
   perturb_friction(scenario, draw_factor(friction, spread.friction));
 
-  Pcg32 mass(seed, mass_stream);
+  Pcg32 mass(seed, sim::random_stream::mass);
   for (sim::Link& link : scenario.robot.links) {
     const double factor = draw_factor(mass, spread.mass);
     link.mass.mass *= factor;
@@ -105,11 +96,11 @@ void perturb(sim::Scenario& scenario, const Spread& spread, std::uint64_t seed) 
   }
 
   sim::ServoModel& servo = scenario.robot.servo;
-  Pcg32 gain(seed, gain_stream);
+  Pcg32 gain(seed, sim::random_stream::servo_gain);
   servo.gain *= draw_factor(gain, spread.servo_gain);
 
   constexpr std::uint32_t longest_latency_us = 100'000;
-  Pcg32 latency(seed, latency_stream);
+  Pcg32 latency(seed, sim::random_stream::latency);
   const auto later_us = static_cast<std::uint32_t>(std::lround(draw(latency) * spread.latency_ms * 1000.0));
   servo.latency_us = std::min(servo.latency_us + later_us, longest_latency_us);
 

@@ -245,7 +245,7 @@ class GreatDeluge::Voyage {
     for (; next.size() < count && next_turn(chains, turn); ++turn) {
       const std::vector<double> place = chains[turn].draw(settings_, algorithm_.seed_, box_);
       next.push_back(hub.candidate(place));
-      if (chains[turn].luck > 0.5) {
+      if (chains[turn].luck > 0.5 && !algorithm_.level_matters_) {
         chains[turn].accept(settings_, place);
       } else {
         chains[turn].fail(settings_);
@@ -333,7 +333,9 @@ std::string search_great_deluge(const Experiment& experiment, std::uint32_t run,
   for (const Candidate& start : starts) {
     population.push_back(hub.numbers(start));
   }
-  const pagmo::algorithm algorithm{GreatDeluge{settings, seed}};
+  GreatDeluge deluge(settings, seed);
+  deluge.set_level_matters(experiment.racing.on());
+  const pagmo::algorithm algorithm{deluge};
   population = algorithm.evolve(population);
   return algorithm.extract<GreatDeluge>()->ending();
 }

@@ -52,6 +52,9 @@ class GreatDeluge {
   [[nodiscard]] pagmo::population evolve(pagmo::population population) const;
 
   void set_seed(unsigned seed) { seed_ = seed; }
+  /// Whether scores may depend on the water level that the source was told (racing). Then what was foreseen for after an
+  /// acceptance, which raises it, is of no use, and nothing is.
+  void set_level_matters(bool matters) { level_matters_ = matters; }
   /// Above 0: evolve() keeps a log.
   void set_verbosity(unsigned level) { verbosity_ = level; }
   [[nodiscard]] std::string get_name() const { return "modified great deluge"; }
@@ -78,6 +81,7 @@ class GreatDeluge {
   class Voyage;
 
   GreatDelugeSettings settings_;
+  bool level_matters_ = false;
   std::uint64_t seed_;
   unsigned verbosity_ = 0;
   // evolve() is const because pagmo wants it so.

@@ -17,6 +17,9 @@ using std::chrono::milliseconds;
 
 /// MPI cannot be waited for together with anything else without burning a core, so it is asked this often.
 constexpr milliseconds look_interval{1};
+/// A rank has a limit of its own for each try of a task (LocalWorkers) and says when it gives up; one that says nothing
+/// for longer than that is lost.
+constexpr int limits_of_a_rank = 4;
 /// How long ranks have for their goodbye.
 constexpr std::chrono::seconds longest_goodbye{5};
 
@@ -36,46 +39,55 @@ std::optional<MpiPlace> mpi_place() {
 class MpiWorkers::Implementation {
  public:
   Implementation(const Experiment& experiment, const std::string& build_id, RunTask run, TaskLimit limit)
-      : local_(experiment, 1, std::move(run), limit), ranks_(static_cast<std::size_t>(channel_.size())) {
+      : local_(experiment, 1, std::move(run), limit),
+        ranks_(static_cast<std::size_t>(channel_.size())),
+        longest_silence_(limits_of_a_rank *
+                         (limit.fixed + std::chrono::duration_cast<milliseconds>(std::chrono::duration<double>(
+                                            limit.per_simulated_second * experiment.scenario.duration_s)))) {
+    ranks_[0].lost = true;  // this process, whose worker is local_
     const std::vector<std::string> identities = channel_.exchange(mpi_identity(experiment, build_id));
     for (std::size_t rank = 1; rank < identities.size(); ++rank) {
       if (identities[rank] != identities[0]) {
-        over_ = true;  // the others know it, too
+        // The others know it, too, and have ended.
         throw std::runtime_error("rank " + std::to_string(rank) + " has " + identities[rank] + ", rank 0 has " +
                                  identities[0] + "; all computers need the same files and the same program");
       }
     }
   }
 
-  ~Implementation() {
-    if (!over_) {
-      end_ranks();
-    }
-  }
+  ~Implementation() { end_ranks(); }
 
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
 
-  [[nodiscard]] std::uint32_t count() const { return local_.count() + static_cast<std::uint32_t>(ranks_.size()) - 1; }
+  [[nodiscard]] std::uint32_t count() const {
+    return local_.count() + static_cast<std::uint32_t>(std::ranges::count(ranks_, false, &Rank::lost));
+  }
 
   [[nodiscard]] std::uint32_t idle() const {
-    return local_.idle() + static_cast<std::uint32_t>(std::count(ranks_.begin() + 1, ranks_.end(), std::nullopt));
+    const std::size_t without_task =
+        local_.idle() + static_cast<std::size_t>(std::ranges::count_if(ranks_, &Rank::is_idle));
+    return static_cast<std::uint32_t>(without_task - std::min(without_task, again_.size()));
   }
 
   void start(std::uint64_t ticket, const Task& task) {
     // The other ranks first: a message takes longer than a socket.
-    const auto rank = std::find(ranks_.begin() + 1, ranks_.end(), std::nullopt);
+    const auto rank = std::ranges::find_if(ranks_, &Rank::is_idle);
     if (rank == ranks_.end()) {
       local_.start(ticket, task);
       return;
     }
-    *rank = ticket;
+    rank->order = Order{ticket, task};
+    rank->silence = milliseconds(0);
     channel_.send(static_cast<int>(rank - ranks_.begin()), MpiTag::task, to_bytes(task));
   }
 
   std::optional<Done> wait(milliseconds timeout) {
-    const Clock::time_point end = Clock::now() + timeout;
+    const Clock::time_point begin = Clock::now();
+    const Clock::time_point end = begin + timeout;
+    Clock::time_point looked = begin;
     while (true) {
+      start_again();
       while (std::optional<MpiMessage> message = channel_.receive()) {
         if (std::optional<Done> done = hear(*message)) {
           return done;
@@ -85,7 +97,10 @@ class MpiWorkers::Implementation {
         done->worker = 0;
         return done;
       }
-      if (Clock::now() >= end) {
+      const Clock::time_point now = Clock::now();
+      count_silence(now - looked);
+      looked = now;
+      if (now >= end) {
         return std::nullopt;
       }
     }
@@ -99,7 +114,45 @@ class MpiWorkers::Implementation {
   }
 
  private:
+  struct Order {
+    std::uint64_t ticket;
+    Task task;
+  };
+  struct Rank {
+    std::optional<Order> order;
+    Clock::duration silence{};  ///< while somebody waited for it
+    bool lost = false;          ///< it is given no more tasks
+    [[nodiscard]] bool is_idle() const { return !lost && !order; }
+  };
+
+  /// Only time counts in which somebody waits.
+  void count_silence(Clock::duration waited) {
+    for (std::size_t rank = 0; rank < ranks_.size(); ++rank) {
+      Rank& its = ranks_[rank];
+      if (its.lost || !its.order || (its.silence += waited) < longest_silence_) {
+        continue;
+      }
+      its.lost = true;
+      messages_.push_back("rank " + std::to_string(rank) + " has not answered for too long in evaluation " +
+                          std::to_string(its.order->task.number) + "; the search goes on without it");
+      again_.push_back(std::move(*std::exchange(its.order, std::nullopt)));
+    }
+  }
+
+  /// What lost ranks were at, given to those that are left.
+  void start_again() {
+    while (!again_.empty() && (local_.idle() > 0 || std::ranges::any_of(ranks_, &Rank::is_idle))) {
+      const Order order = std::move(again_.back());
+      again_.pop_back();
+      start(order.ticket, order.task);
+    }
+  }
+
   std::optional<Done> hear(const MpiMessage& message) {
+    Rank& rank = ranks_[static_cast<std::size_t>(message.rank)];
+    if (rank.lost) {
+      return std::nullopt;  // too late
+    }
     const std::string place = "rank " + std::to_string(message.rank) + ": ";
     if (message.tag == MpiTag::message) {
       messages_.push_back(place + message.text());
@@ -108,12 +161,12 @@ class MpiWorkers::Implementation {
     if (message.tag == MpiTag::failure) {
       throw std::runtime_error(place + message.text());
     }
-    std::optional<std::uint64_t>& ticket = ranks_[static_cast<std::size_t>(message.rank)];
     std::optional<TrialResult> result = result_from(message.content);
-    if (message.tag != MpiTag::result || !result || !ticket) {
+    if (message.tag != MpiTag::result || !result || !rank.order) {
       throw std::runtime_error(place + "sent what is not the result of a task");
     }
-    return Done{*std::exchange(ticket, std::nullopt), std::move(*result), static_cast<std::uint32_t>(message.rank)};
+    return Done{std::exchange(rank.order, std::nullopt)->ticket, std::move(*result),
+                static_cast<std::uint32_t>(message.rank)};
   }
 
   void end_ranks() const {
@@ -135,9 +188,10 @@ class MpiWorkers::Implementation {
 
   LocalWorkers local_;  // forks before MPI is initialised
   MpiChannel channel_;
-  std::vector<std::optional<std::uint64_t>> ranks_;  ///< the ticket that each is at; [0] is not used
+  std::vector<Rank> ranks_;
+  std::vector<Order> again_;  ///< of lost ranks
+  Clock::duration longest_silence_;
   std::vector<std::string> messages_;
-  bool over_ = false;
 };
 
 MpiWorkers::MpiWorkers(const Experiment& experiment, const std::string& build_id, RunTask run, TaskLimit limit)

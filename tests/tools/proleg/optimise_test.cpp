@@ -43,8 +43,8 @@ class Optimise : public CommandLine {
     return all;
   }
 
-  /// All that a store says of its evaluations and does not depend on time, as text.
-  [[nodiscard]] std::string evaluations(const std::string& folder) const {
+  /// The rows that a store gives for a question, as text.
+  [[nodiscard]] std::string select(const std::string& folder, const std::string& question) const {
     std::string text;
     sqlite3* store = nullptr;
     EXPECT_EQ(sqlite3_open_v2(file(folder + "/store.sqlite").c_str(), &store, SQLITE_OPEN_READWRITE, nullptr),
@@ -56,14 +56,19 @@ class Optimise : public CommandLine {
       *static_cast<std::string*>(out) += "\n";
       return 0;
     };
-    // Seventeen digits tell every double from every other.
-    sqlite3_exec(
-        store,
-        "SELECT run, number, candidate, seed, reused, printf('%.17g', distance), printf('%.17g', smoothness), "
-        "printf('%.17g', mechanical_energy), printf('%.17g', stability_margin) FROM evaluation ORDER BY run, number",
-        append, &text, nullptr);
+    EXPECT_EQ(sqlite3_exec(store, question.c_str(), append, &text, nullptr), SQLITE_OK) << question;
     sqlite3_close(store);
     return text;
+  }
+
+  /// All that a store says of its first evaluations and does not depend on time.
+  [[nodiscard]] std::string evaluations(const std::string& folder, int count = 1'000'000) const {
+    // Seventeen digits tell every double from every other.
+    return select(
+        folder,
+        "SELECT run, number, candidate, seed, reused, printf('%.17g', distance), printf('%.17g', smoothness), "
+        "printf('%.17g', mechanical_energy), printf('%.17g', stability_margin) FROM evaluation WHERE number < " +
+            std::to_string(count) + " ORDER BY run, number");
   }
 
   /// Waits until a store holds that many evaluations; a minute at most.
@@ -139,38 +144,68 @@ TEST_F(Optimise, OneWorkerTwoAndThreeGiveTheSameToTheLastBit) {
 TEST_F(Optimise, AnotherSeedGivesAnotherSearch) {
   static_cast<void>(json_of(proleg(words("great_deluge", "a", {"--evaluations", "5"}))));
   static_cast<void>(json_of(proleg(words("great_deluge", "b", {"--evaluations", "5", "--seed", "2"}))));
-  EXPECT_NE(evaluations("a"), evaluations("b"));
+  const auto tried = [&](const std::string& folder) {
+    return select(folder, "SELECT group_concat(candidate, ' ') FROM evaluation");
+  };
+  EXPECT_NE(tried("a"), tried("b"));
 }
 
+// However late this process comes to stop it, a search of that many evaluations is still going on.
+constexpr const char* endless = "1000000";
+
 TEST_F(Optimise, InterruptedAndResumedIsTheSameAsInOneGo) {
-  for (const char* experiment : {"great_deluge", "genetic", "cma_es"}) {
+  for (const char* experiment : {"great_deluge", "pareto", "cma_es"}) {
     static_cast<void>(json_of(proleg(words(experiment, "whole", {"--evaluations", "150"}))));
-    const pid_t search = start_proleg(words(experiment, "parts", {"--evaluations", "150"}));
+    const pid_t search = start_proleg(words(experiment, "parts", {"--evaluations", endless}));
     wait_for("parts", 20);
     kill(search, SIGINT);
     const Finished interrupted = finish(search);
     EXPECT_EQ(interrupted.status, 1) << interrupted.err;
-    EXPECT_NE(interrupted.err.find("--resume " + file("parts").string()), std::string::npos) << interrupted.err;
     EXPECT_TRUE(fs::exists(file("parts/learning_curve.svg"))) << "what there is so far can be looked at";
     const nlohmann::json object =
         json_of(proleg(words(experiment, "", {"--evaluations", "150", "--resume", file("parts").string()})));
     EXPECT_GE(object.at("restored").get<int>(), 20);
-    EXPECT_EQ(evaluations("whole"), evaluations("parts")) << experiment;
+    EXPECT_EQ(evaluations("whole", 150), evaluations("parts", 150)) << experiment;
     fs::remove_all(file("whole"));
     fs::remove_all(file("parts"));
   }
 }
 
+TEST_F(Optimise, SaysTheCommandThatGoesOn) {
+  const pid_t search = start_proleg(words("great_deluge", "the parts", {"--evaluations", endless, "--seed", "9"}));
+  wait_for("the parts", 3);
+  kill(search, SIGINT);
+  const std::string message = finish(search).err;
+  const std::string mark = "go on with: proleg ";
+  ASSERT_NE(message.find(mark), std::string::npos) << message;
+  std::string command = message.substr(message.find(mark) + mark.size());
+  command.replace(command.find(endless), std::string(endless).size(), "2000");
+  // As a person would paste it.
+  const nlohmann::json object = json_of(finish(
+      start({"sh", "-c", std::string(PROLEG_PROGRAM) + " " + command.substr(0, command.find('\n')) + " --json"})));
+  EXPECT_GE(object.at("restored").get<int>(), 3);
+  EXPECT_EQ(object.at("seed"), 9);
+}
+
+TEST_F(Optimise, AHangUpThatIsIgnoredStopsNothing) {
+  const pid_t search = start({"sh", "-c", "trap '' HUP; exec \"$0\" \"$@\"", PROLEG_PROGRAM, "optimise",
+                              shipped("great_deluge"), "--simulation", file("short.simulation.xml").string(), "--out",
+                              file("out").string(), "--evaluations", "400", "--json"});
+  wait_for("out", 3);
+  kill(search, SIGHUP);
+  EXPECT_EQ(json_of(finish(search)).at("evaluations"), 400);
+}
+
 TEST_F(Optimise, KilledItLosesWhatItsWorkersWereAtAndNothingElse) {
   static_cast<void>(json_of(proleg(words("genetic", "whole", {"--evaluations", "100"}))));
-  const pid_t search = start_proleg(words("genetic", "parts", {"--evaluations", "100"}));
+  const pid_t search = start_proleg(words("genetic", "parts", {"--evaluations", endless}));
   wait_for("parts", 31);
   kill(search, SIGKILL);
   EXPECT_EQ(finish(search).status, 128 + SIGKILL);
   const nlohmann::json object =
       json_of(proleg(words("genetic", "", {"--evaluations", "100", "--resume", file("parts").string()})));
   EXPECT_GE(object.at("restored").get<int>(), 31);
-  EXPECT_EQ(evaluations("whole"), evaluations("parts"));
+  EXPECT_EQ(evaluations("whole", 100), evaluations("parts", 100));
 }
 
 TEST_F(Optimise, ALargerBudgetGoesOnFromTheSameStore) {
@@ -249,6 +284,10 @@ TEST_F(Optimise, AnExperimentWritesTheThesissTablesAndFiguresAndGoesOn) {
     EXPECT_TRUE(fs::is_regular_file(file(std::string("out/") + name))) << name;
   }
   EXPECT_NE(read_file(file("out/table_6_2.tsv")).find("1.958"), std::string::npos) << "the thesis's best stands beside";
+  const nlohmann::json one =
+      json_of(proleg({"experiment", "travelling_wave", "--repetitions", "2", "--evaluations", "40", "--scenarios",
+                      folder.string(), "--out", file("out").string(), "--json", "--method", "genetic"}));
+  EXPECT_EQ(one.at("methods").size(), 3U) << "those that are in the folder are shown beside";
   const nlohmann::json three = run("3");
   for (std::size_t method = 0; method < 3; ++method) {
     ASSERT_EQ(three["methods"][method]["runs"].size(), 3U);

@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <set>
 
 #include "sim/optimize/evaluation/evaluator.hpp"
@@ -134,6 +135,57 @@ void repeats_the_task_of_a_killed_worker() {
   expect(messages.size() == 4 && from_others == 3, "four messages, one of each rank");
 }
 
+void goes_on_without_a_rank_that_stands_still() {
+  const Experiment experiment = noisy_experiment();
+  const TaskLimit limit{std::chrono::milliseconds(100), 0.0};
+  // Only time counts in which rank 0 waits for others.
+  const RunTask slow = [](const Experiment& its, const Task& task) {
+    usleep(10'000);
+    return made_up_trial(its, task);
+  };
+  // Known to all ranks: mpirun is the parent of each.
+  const std::filesystem::path pid_file =
+      std::filesystem::temp_directory_path() / ("proleg-mpi-" + std::to_string(getppid()));
+  if (!is_rank_0()) {
+    if (mpi_place().value().rank == 2) {
+      std::ofstream(pid_file) << getpid();
+      std::signal(SIGALRM, [](int) { raise(SIGSTOP); });
+      ualarm(300'000, 0);
+    }
+    static_cast<void>(serve_mpi(experiment, build, slow, limit));
+    return;
+  }
+  MpiWorkers workers(experiment, build, slow, limit);
+  std::vector<std::string> messages;
+  std::set<std::uint64_t> open;
+  const auto take = [&] {
+    if (const auto done = workers.wait(std::chrono::milliseconds(20))) {
+      expect(open.erase(done->ticket) == 1, "one result of each task");
+    }
+  };
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  for (std::uint64_t ticket = 0; messages.empty(); ++ticket) {
+    expect(std::chrono::steady_clock::now() < end, "a message within 30 s");
+    while (workers.idle() == 0) {
+      take();
+    }
+    workers.start(ticket, {0, ticket, 0, {1, 1, 1}, {}});
+    open.insert(ticket);
+    take();
+    messages = workers.messages();
+  }
+  expect(messages.size() == 1 && messages[0].find("rank 2 has not answered") == 0, messages[0]);
+  expect(workers.count() == 3, "three workers");
+  while (!open.empty()) {
+    expect(std::chrono::steady_clock::now() < end, "all results within 30 s");
+    take();
+  }
+  pid_t stopped = 0;
+  std::ifstream(pid_file) >> stopped;
+  std::filesystem::remove(pid_file);
+  kill(stopped, SIGCONT);  // it, too, says goodbye
+}
+
 void refuses_another_experiment() {
   Experiment experiment = small_experiment();
   if (mpi_place().value().rank == 2) {
@@ -187,6 +239,8 @@ int main(int argc, char** argv) {
       ends_in_the_middle_of_tasks();
     } else if (subject == "RepeatsTheTaskOfAKilledWorker") {
       repeats_the_task_of_a_killed_worker();
+    } else if (subject == "GoesOnWithoutARankThatStandsStill") {
+      goes_on_without_a_rank_that_stands_still();
     } else if (subject == "RefusesAnotherExperiment") {
       refuses_another_experiment();
     } else if (subject == "TellsOfATaskThatCannotBeDone") {

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+
+namespace proleg::sim {
+
+/// Streams of Pcg32 with the scenario's seed: who draws from which, so that no two draw the same numbers. The kernels
+/// have 0 to 63, one for each joint.
+namespace random_stream {
+inline constexpr std::uint64_t crystals = 1'000'000;  ///< of the modules, plus the joint
+inline constexpr std::uint64_t boards = 2'000'000;    ///< plus the joint
+inline constexpr std::uint64_t touch_sensors = 3'000'000;
+inline constexpr std::uint64_t friction = 4'000'000;  ///< this and the following: spreads of an optimiser's trials
+inline constexpr std::uint64_t mass = 5'000'000;
+inline constexpr std::uint64_t servo_gain = 6'000'000;
+inline constexpr std::uint64_t latency = 7'000'000;
+}  // namespace random_stream
+
+}  // namespace proleg::sim

@@ -52,8 +52,8 @@ class GreatDeluge {
   [[nodiscard]] pagmo::population evolve(pagmo::population population) const;
 
   void set_seed(unsigned seed) { seed_ = seed; }
-  /// Whether scores may depend on the water level that the source was told (racing). Then what was foreseen for after an
-  /// acceptance, which raises it, is of no use, and nothing is.
+  /// Whether scores may depend on the water level that the source was told (racing). Then what was foreseen for after
+  /// an acceptance, which raises it, is of no use, and nothing is.
   void set_level_matters(bool matters) { level_matters_ = matters; }
   /// Above 0: evolve() keeps a log.
   void set_verbosity(unsigned level) { verbosity_ = level; }

@@ -84,26 +84,10 @@ class MpiWorkers::Implementation {
 
   std::optional<Done> wait(milliseconds timeout) {
     const Clock::time_point begin = Clock::now();
-    const Clock::time_point end = begin + timeout;
-    Clock::time_point looked = begin;
-    while (true) {
-      start_again();
-      while (std::optional<MpiMessage> message = channel_.receive()) {
-        if (std::optional<Done> done = hear(*message)) {
-          return done;
-        }
-      }
-      if (std::optional<Done> done = local_.wait(std::min(timeout, look_interval))) {
-        done->worker = 0;
-        return done;
-      }
-      const Clock::time_point now = Clock::now();
-      count_silence(now - looked);
-      looked = now;
-      if (now >= end) {
-        return std::nullopt;
-      }
-    }
+    std::optional<Done> done = look(timeout);
+    count_silence(Clock::now() - begin);
+    start_again();
+    return done;
   }
 
   std::vector<std::string> messages() {
@@ -114,6 +98,25 @@ class MpiWorkers::Implementation {
   }
 
  private:
+  /// The next result, or nothing after the timeout.
+  std::optional<Done> look(milliseconds timeout) {
+    const Clock::time_point end = Clock::now() + timeout;
+    while (true) {
+      while (std::optional<MpiMessage> message = channel_.receive()) {
+        if (std::optional<Done> done = hear(*message)) {
+          return done;
+        }
+      }
+      if (std::optional<Done> done = local_.wait(std::min(timeout, look_interval))) {
+        done->worker = 0;
+        return done;
+      }
+      if (Clock::now() >= end) {
+        return std::nullopt;
+      }
+    }
+  }
+
   struct Order {
     std::uint64_t ticket;
     Task task;

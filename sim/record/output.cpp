@@ -84,4 +84,10 @@ void Output::flush() {
 
 void Output::fail(const std::string& what) const { throw RecordError(path_, "cannot be written: " + what); }
 
+void write_file(const std::filesystem::path& path, std::string_view text) {
+  Output output(path);
+  output.write(text);
+  output.finish();
+}
+
 }  // namespace proleg::sim

@@ -34,6 +34,9 @@ class Output {
   std::string buffer_;
 };
 
+/// Writes a whole file. Throws as Output does.
+void write_file(const std::filesystem::path& path, std::string_view text);
+
 /// Nobody reads any more; not an error to report.
 class ReaderGone {};
 

@@ -163,4 +163,12 @@ std::string number_text(double value) {
   return {buffer.data(), error == std::errc{} ? end : buffer.data()};
 }
 
+std::string exact_text(double value) {
+  if (!std::isfinite(value)) {
+    return {};
+  }
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
 }  // namespace proleg::sim

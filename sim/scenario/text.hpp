@@ -40,7 +40,6 @@ namespace proleg::sim {
 /// "a, b, c"; at most 20 items, then "...". "nothing" for an empty list.
 [[nodiscard]] std::string listed(std::span<const std::string> items);
 
-/// The whole word as a finite decimal number, or nothing.
 /// A whole number that is all of the text, without sign (of an unsigned type) and blanks; nothing if there is none or
 /// it does not fit.
 template <typename Integer>
@@ -51,6 +50,7 @@ template <typename Integer>
                                                                                   : std::optional<Integer>(value);
 }
 
+/// The whole word as a finite decimal number, or nothing.
 [[nodiscard]] std::optional<double> parse_number(std::string_view word);
 
 /// A probability, 0 to 1 or 0% to 100%, times 2^32 (at most 2^32 - 1); nothing for anything else.
@@ -58,5 +58,8 @@ template <typename Integer>
 
 /// Short text of a number for messages.
 [[nodiscard]] std::string number_text(double value);
+
+/// Shortest text that reads back as the same number; empty if it is not finite.
+[[nodiscard]] std::string exact_text(double value);
 
 }  // namespace proleg::sim

@@ -139,14 +139,15 @@ int describe(const std::string& name, bool markdown) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Lists the algorithms that can move a robot, or the parameters of one of them.", "proleg algorithms");
+  proleg::tools::CommandLine command_line(
+      "proleg algorithms", "Lists the algorithms that can move a robot, or the parameters of one of them.");
   std::string name;
   bool markdown = false;
-  app.add_option("NAME", name, "name of an algorithm");
-  app.add_flag("--markdown", markdown, "as Markdown tables");
+  command_line.add_option("NAME", name, "name of an algorithm");
+  command_line.add_flag("--markdown", markdown, "as Markdown tables");
   bool measures = false;
-  app.add_flag("--measures", measures, "lists what a run is rated by instead (docs/gait-measures.md)")
-      ->excludes("NAME");
-  return proleg::tools::run_command(
-      argc, argv, app, [&] { return measures ? print_measures(std::cout, markdown) : describe(name, markdown); });
+  command_line.add_flag("--measures", measures, "lists what a run is rated by instead (docs/gait-measures.md)")
+      .excludes("NAME");
+  return command_line.run(argc, argv,
+                          [&] { return measures ? print_measures(std::cout, markdown) : describe(name, markdown); });
 }

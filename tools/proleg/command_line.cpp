@@ -1,5 +1,10 @@
 #include "tools/proleg/command_line.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
 #include <exception>
 #include <iostream>
 #include <string>
@@ -27,20 +32,82 @@ std::string found(const CLI::App& app, const CLI::ParseError& error) {
   return text;
 }
 
+/// A standard stream that the caller closed gets something that refuses to be used: else the next file that is opened,
+/// or the socket of a worker, would have its number and get what is printed.
+void occupy_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) == -1 && errno == EBADF) {
+      // The lowest free number, which is this one; it stays open. (If it fails, so will everything.)
+      static_cast<void>(open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+    }
+  }
+}
+
 }  // namespace
 
-int run_command(int argc, char** argv, CLI::App& app, const std::function<int()>& body) {
+CommandLine::Option& CommandLine::Option::required() {
+  option_->required();
+  return *this;
+}
+
+CommandLine::Option& CommandLine::Option::value_name(const std::string& name) {
+  option_->type_name(name);
+  return *this;
+}
+
+CommandLine::Option& CommandLine::Option::excludes(const std::string& other) {
+  option_->excludes(other);
+  return *this;
+}
+
+CommandLine::Option& CommandLine::Option::shows_default() {
+  option_->capture_default_str();
+  return *this;
+}
+
+CommandLine::CommandLine(const std::string& name, const std::string& help)
+    : app_(std::make_unique<CLI::App>(help, name)) {}
+
+CommandLine::~CommandLine() = default;
+
+CommandLine::Option CommandLine::add_option(const std::string& name, std::string& variable, const std::string& help) {
+  return Option(app_->add_option(name, variable, help));
+}
+
+CommandLine::Option CommandLine::add_option(const std::string& name, std::optional<std::string>& variable,
+                                            const std::string& help) {
+  return Option(app_->add_option(name, variable, help));
+}
+
+CommandLine::Option CommandLine::add_option(const std::string& name, std::optional<double>& variable,
+                                            const std::string& help) {
+  return Option(app_->add_option(name, variable, help));
+}
+
+CommandLine::Option CommandLine::add_option(const std::string& name, std::vector<std::string>& variable,
+                                            const std::string& help) {
+  return Option(app_->add_option(name, variable, help)->allow_extra_args(false));
+}
+
+CommandLine::Option CommandLine::add_flag(const std::string& name, bool& variable, const std::string& help) {
+  return Option(app_->add_flag(name, variable, help));
+}
+
+std::string CommandLine::name() const { return app_->get_name(); }
+
+int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
   const auto complain = [&](const std::exception& error) {
-    std::cerr << app.get_name() << ": " << sim::one_line(error.what()) << '\n';
+    std::cerr << app_->get_name() << ": " << sim::one_line(error.what()) << '\n';
   };
+  occupy_closed_streams();
   try {
-    app.parse(argc, argv);
+    app_->parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help
-    app.exit(request);
+    app_->exit(request);
     return exit_success;
   } catch (const CLI::ParseError& error) {
-    std::cerr << app.get_name() << ": found " << sim::one_line(found(app, error)) << ", expected what '"
-              << app.get_name() << " --help' lists\n";
+    std::cerr << app_->get_name() << ": found " << sim::one_line(found(*app_, error)) << ", expected what '"
+              << app_->get_name() << " --help' lists\n";
     return exit_bad_input;
   }
   try {

@@ -1,18 +1,18 @@
 // proleg experiment: repeats an experiment of the thesis and writes its tables and figures beside the published ones.
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "sim/optimize/evaluation/local_workers.hpp"
-#include "sim/optimize/method/search.hpp"
+#include "sim/optimize/method/pagmo_algorithms.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/thesis_experiment.hpp"
+#include "sim/record/output.hpp"
 #include "sim/scenario/input_error.hpp"
 #include "sim/scenario/text.hpp"
 #include "tools/proleg/build_id.hpp"
@@ -26,13 +26,11 @@ using namespace proleg;
 using namespace proleg::tools;
 namespace fs = std::filesystem;
 
-struct Options {
+struct Options : ExperimentOptions {
   std::string name;
   std::string repetitions = "3";
   std::vector<std::string> methods;
-  std::optional<std::string> evaluations;
   std::optional<std::string> workers;
-  std::optional<std::string> seed;
   std::optional<std::string> out;
   std::optional<std::string> scenarios;
   bool json = false;
@@ -40,33 +38,42 @@ struct Options {
 
 /// A method of the experiment: its name on the command line, its file, and what its tables and figures are called.
 struct Method {
-  std::string_view name;
-  std::string_view file;
-  std::string_view table;
-  std::string_view runs_figure;
-  std::string_view spread_figure;
+  std::string name;
+  std::string file;
+  std::string table;
+  std::string runs_figure;
+  std::string spread_figure;
+  bool shipped = true;  ///< its file is for it; else an algorithm of pagmo searches what the file says
 };
 
-constexpr std::array methods{
-    Method{"great-deluge", "great_deluge.optimise.xml", "table_6_2.tsv", "figure_6_3.svg", "figure_6_4.svg"},
-    Method{"genetic", "genetic.optimise.xml", "table_6_4.tsv", "figure_6_5.svg", "figure_6_6.svg"},
-    Method{"cma-es", "cma_es.optimise.xml", "table_cma_es.tsv", "figure_cma_es_runs.svg", "figure_cma_es_spread.svg"},
-};
+/// Those that the experiment consists of, and the others of pagmo that search for one objective.
+std::vector<Method> all_methods() {
+  std::vector<Method> methods{
+      {"great-deluge", "great_deluge.optimise.xml", "table_6_2.tsv", "figure_6_3.svg", "figure_6_4.svg"},
+      {"genetic", "genetic.optimise.xml", "table_6_4.tsv", "figure_6_5.svg", "figure_6_6.svg"},
+      {"cma-es", "cma_es.optimise.xml", "table_cma_es.tsv", "figure_cma_es_runs.svg", "figure_cma_es_spread.svg"},
+  };
+  for (const optimize::PagmoAlgorithm& algorithm : optimize::pagmo_algorithms()) {
+    const std::string name(algorithm.name);
+    if (algorithm.objectives != optimize::PagmoAlgorithm::Objectives::several && name != "cmaes") {
+      methods.push_back({name, "cma_es.optimise.xml", "table_" + name + ".tsv", "figure_" + name + "_runs.svg",
+                         "figure_" + name + "_spread.svg", false});
+    }
+  }
+  return methods;
+}
 
 /// Throws InputError unless there is a method of that name.
-void check_method_name(const std::string& name) {
-  std::vector<std::string> names;
-  names.reserve(methods.size());
-  for (const Method& method : methods) {
-    names.emplace_back(method.name);
-  }
-  if (std::ranges::count(names, name) == 0) {
+void check_method_name(const std::vector<Method>& methods, const std::string& name) {
+  if (std::ranges::count(methods, name, &Method::name) == 0) {
+    std::vector<std::string> names;
+    std::ranges::transform(methods, std::back_inserter(names), &Method::name);
     throw sim::InputError("--method", 0, sim::in_quotes(name), "one of " + sim::listed(names));
   }
 }
 
 /// The folder of the scenarios: below the working directory, or below the source tree that this program was built in.
-fs::path find_scenarios(const Options& options) {
+fs::path find_scenarios(const Options& options, const std::string& file) {
   const fs::path inside = fs::path("sim") / "scenarios" / options.name;
   std::vector<fs::path> candidates;
   if (options.scenarios) {
@@ -80,25 +87,24 @@ fs::path find_scenarios(const Options& options) {
     }
   }
   for (const fs::path& folder : candidates) {
-    if (fs::is_regular_file(folder / methods.front().file)) {
+    if (fs::is_regular_file(folder / file)) {
       return folder;
     }
   }
   throw sim::InputError(options.scenarios ? "--scenarios" : options.name, 0,
-                        "no " + (candidates.front() / methods.front().file).string(),
+                        "no " + (candidates.front() / file).string(),
                         "the experiment's files there; --scenarios FOLDER says where else");
 }
 
 optimize::Experiment read(const Options& options, const fs::path& folder, const Method& method) {
   sim::DiskFiles files;
   optimize::Experiment experiment = optimize::read_experiment(folder / method.file, files);
-  if (options.evaluations) {
-    experiment.evaluations = parse_evaluations(*options.evaluations);
+  if (!method.shipped) {
+    optimize::PagmoSettings settings;
+    settings.algorithm = method.name;
+    experiment.method = settings;
   }
-  if (options.seed) {
-    experiment.seed = parse_seed(*options.seed);
-  }
-  optimize::check_method(experiment);
+  apply_options(options, experiment);
   return experiment;
 }
 
@@ -154,7 +160,7 @@ MethodResult run_method(const std::string& name, const optimize::Experiment& exp
     result.wall_s += outcome.wall_s;
     result.simulated_s += outcome.progress.simulated_s;
     std::cerr << name << " " << run + 1 << " of " << repetitions << ": " << outcome.evaluations.size()
-              << " evaluations, best " << best->scores.front() << " " << score_unit(experiment) << ", "
+              << " evaluations, best " << best->scores.front() << " " << experiment.objectives.front().unit() << ", "
               << outcome.ending << "; " << outcome.progress.simulated << " simulated in "
               << static_cast<long>(outcome.wall_s) << " s\n";
     result.endings.push_back(outcome.ending);
@@ -163,11 +169,12 @@ MethodResult run_method(const std::string& name, const optimize::Experiment& exp
   return result;
 }
 
+/// A number of evaluations, or null.
+nlohmann::ordered_json count_or_null(const std::optional<std::size_t>& count) {
+  return count ? nlohmann::ordered_json(*count) : nlohmann::ordered_json();
+}
+
 nlohmann::ordered_json to_json(const MethodResult& result, const optimize::SearchSpace& space, double uniform_m) {
-  nlohmann::ordered_json values;
-  for (std::size_t i = 0; i < space.dimensions.size(); ++i) {
-    values[space.dimensions[i].name] = space.value(result.best->candidate, i);
-  }
   nlohmann::ordered_json runs = nlohmann::ordered_json::array();
   double sum = 0.0;
   for (std::size_t run = 0; run < result.runs.runs.size(); ++run) {
@@ -177,7 +184,7 @@ nlohmann::ordered_json to_json(const MethodResult& result, const optimize::Searc
   }
   return {{"method", result.runs.method},
           {"best_score", result.best->scores.front()},
-          {"best_values", values},
+          {"best_values", values_object(space, result.best->candidate)},
           {"gain_over_uniform", result.best->scores.front() / uniform_m - 1.0},
           {"mean_best", sum / static_cast<double>(runs.size())},
           {"runs", runs},
@@ -197,17 +204,21 @@ int experiment(const Options& options) {
     throw sim::InputError("--repetitions", 0, sim::in_quotes(options.repetitions), "1 to 1000");
   }
   const std::uint32_t worker_count = parse_workers(options.workers);
+  const std::vector<Method> methods = all_methods();
   for (const std::string& name : options.methods) {
-    check_method_name(name);
+    check_method_name(methods, name);
   }
-  const fs::path scenarios = find_scenarios(options);
+  const fs::path scenarios = find_scenarios(options, methods.front().file);
   const fs::path folder = options.out.value_or(options.name + "_experiment");
   std::vector<std::pair<const Method*, optimize::Experiment>> chosen;
   for (const Method& method : methods) {
-    optimize::Experiment experiment = read(options, scenarios, method);
-    if (options.methods.empty() || std::ranges::count(options.methods, method.name) > 0 ||
-        is_complete(experiment, *repetitions, folder / method.name)) {
-      chosen.emplace_back(&method, std::move(experiment));
+    const bool asked_for =
+        options.methods.empty() ? method.shipped : std::ranges::count(options.methods, method.name) > 0;
+    if (asked_for || fs::exists(store_path(folder / method.name))) {
+      optimize::Experiment experiment = read(options, scenarios, method);
+      if (asked_for || is_complete(experiment, *repetitions, folder / method.name)) {
+        chosen.emplace_back(&method, std::move(experiment));
+      }
     }
   }
 
@@ -216,36 +227,48 @@ int experiment(const Options& options) {
   std::vector<MethodResult> results;
   std::vector<optimize::MethodRuns> all_runs;
   for (const auto& [method, experiment] : chosen) {
-    MethodResult result =
-        run_method(std::string(method->name), experiment, *repetitions, worker_count, folder / method->name);
+    MethodResult result = run_method(method->name, experiment, *repetitions, worker_count, folder / method->name);
     if (result.runs.runs.size() < *repetitions) {
       std::cerr << "proleg experiment: interrupted; the same command goes on from " << folder.string() << '\n';
       return exit_failed;
     }
-    write_file(folder / method->table, optimize::experiment_table(result.runs));
-    write_file(folder / method->runs_figure, optimize::draw_every_run(result.runs, uniform_m));
-    write_file(folder / method->spread_figure, optimize::draw_run_spread(result.runs, uniform_m));
+    sim::write_file(folder / method->table, optimize::experiment_table(result.runs));
+    sim::write_file(folder / method->runs_figure, optimize::draw_every_run(result.runs, uniform_m));
+    sim::write_file(folder / method->spread_figure, optimize::draw_run_spread(result.runs, uniform_m));
     optimize::write_scenario(experiment, result.best->candidate, folder / method->name, "best");
     all_runs.push_back(result.runs);
     results.push_back(std::move(result));
   }
-  write_file(folder / "figure_7_1.svg", optimize::draw_method_comparison(all_runs, uniform_m));
+  sim::write_file(folder / "figure_7_1.svg", optimize::draw_method_comparison(all_runs, uniform_m));
   const std::string summary = optimize::experiment_summary(all_runs, uniform_m);
-  write_file(folder / "summary.txt", summary);
+  sim::write_file(folder / "summary.txt", summary);
 
   if (!options.json) {
     std::cout << summary << "\ntables, figures and stores are in " << folder.string() << '\n';
     return exit_success;
   }
+  std::map<std::string, optimize::BestCurves> curves;
+  for (const optimize::MethodRuns& runs : all_runs) {
+    curves[runs.method] = optimize::best_curves(runs);
+  }
+  const auto deluge = curves.find("great-deluge");
+  const auto genetic = curves.find("genetic");
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < results.size(); ++i) {
     list.push_back(to_json(results[i], chosen[i].second.space, uniform_m));
+    if (deluge != curves.end()) {
+      list.back()["reaches_mean_of_great_deluge_after"] =
+          count_or_null(optimize::evaluations_to_reach(curves[results[i].runs.method], deluge->second.mean.back()));
+    }
   }
-  const nlohmann::ordered_json object{{"experiment", options.name},
-                                      {"uniform_m", uniform_m},
-                                      {"methods", list},
-                                      {"out", folder.string()},
-                                      {"build_id", build_id}};
+  nlohmann::ordered_json object{{"experiment", options.name},
+                                {"uniform_m", uniform_m},
+                                {"methods", list},
+                                {"out", folder.string()},
+                                {"build_id", build_id}};
+  if (deluge != curves.end() && genetic != curves.end()) {
+    object["great_deluge_above_genetic_after"] = count_or_null(optimize::overtaking(deluge->second, genetic->second));
+  }
   std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
   return exit_success;
 }
@@ -253,23 +276,25 @@ int experiment(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  CommandLine command_line(
+      "proleg experiment",
       "Repeats an experiment of the thesis with several methods; writes its tables and figures beside the "
-      "published numbers. Goes on where it was interrupted.",
-      "proleg experiment");
+      "published numbers. Goes on where it was interrupted.");
   Options options;
-  app.add_option("NAME", options.name, "travelling_wave: the amplitudes of section 6.1")->required();
-  app.add_option("--repetitions", options.repetitions, "searches by each method; 3 if not given, 30 in the thesis");
-  app.add_option(
-         "--method", options.methods,
-         "great-deluge, genetic or cma-es; all of them if not given. May be repeated. Methods whose repetitions "
-         "are in the folder already are shown beside.")
-      ->allow_extra_args(false);
-  app.add_option("--evaluations", options.evaluations, "of one search at most, instead of what the files say");
-  app.add_option("--workers", options.workers, "simulations at a time; as many as there are processors if not given");
-  app.add_option("--seed", options.seed, "of all searches");
-  app.add_option("--out", options.out, "folder for stores, tables and figures; NAME_experiment if not given");
-  app.add_option("--scenarios", options.scenarios, "folder of the experiment's files");
-  app.add_flag("--json", options.json, "print one JSON object");
-  return run_command(argc, argv, app, [&] { return experiment(options); });
+  command_line.add_option("NAME", options.name, "travelling_wave: the amplitudes of section 6.1").required();
+  command_line.add_option("--repetitions", options.repetitions,
+                          "searches by each method; 3 if not given, 30 in the thesis");
+  command_line.add_option(
+      "--method", options.methods,
+      "great-deluge, genetic, cma-es, or the name of another algorithm of pagmo; the first three if not "
+      "given. May be "
+      "repeated. Methods whose repetitions are in the folder already are shown beside.");
+  command_line.add_option("--evaluations", options.evaluations, "of one search at most, instead of what the files say");
+  command_line.add_option("--workers", options.workers,
+                          "simulations at a time; as many as there are processors if not given");
+  command_line.add_option("--seed", options.seed, "of all searches");
+  command_line.add_option("--out", options.out, "folder for stores, tables and figures; NAME_experiment if not given");
+  command_line.add_option("--scenarios", options.scenarios, "folder of the experiment's files");
+  command_line.add_flag("--json", options.json, "print one JSON object");
+  return command_line.run(argc, argv, [&] { return experiment(options); });
 }

@@ -13,25 +13,25 @@
 using namespace proleg;
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  tools::CommandLine command_line(
+      "proleg export",
       "Writes a recording of 'proleg simulate --record' as a table: a header line, then a line for each tick.\n"
       "Columns: tick; time_s; for each joint setpoint_deg, servo_us, angle_deg and its internal values; for each link\n"
-      "x_m, y_m, z_m, contact_rear, contact_front. Joint and link names follow the dot (setpoint_deg.J1).",
-      "proleg export");
+      "x_m, y_m, z_m, contact_rear, contact_front. Joint and link names follow the dot (setpoint_deg.J1).");
   std::string recording_path;
   std::string out;
   bool tsv = false;
-  app.add_option("RUN", recording_path, "the recording")->required()->type_name("");
-  app.add_flag("--tsv", tsv, "as tab-separated values")->required();
-  app.add_option("--out", out, "write to this file instead of standard output")->type_name("FILE");
+  command_line.add_option("RUN", recording_path, "the recording").required().value_name("");
+  command_line.add_flag("--tsv", tsv, "as tab-separated values").required();
+  command_line.add_option("--out", out, "write to this file instead of standard output").value_name("FILE");
 
-  return tools::run_command(argc, argv, app, [&] {
+  return command_line.run(argc, argv, [&] {
     const sim::Recording recording(recording_path);
     if (!out.empty() && std::filesystem::exists(out) && std::filesystem::equivalent(out, recording_path)) {
       throw sim::InputError("--out", 0, "the recording itself", "another file");
     }
     if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
-      std::cerr << app.get_name() << ": " << remark << '\n';
+      std::cerr << command_line.name() << ": " << remark << '\n';
     }
     try {
       std::optional<sim::Output> output;

@@ -346,13 +346,13 @@ int hil(const Options& options) {
     return exit_failed;
   }
   if (recorder) {
-    std::vector<std::pair<std::string, std::string>> summary{{"displacement_m", exact(result.displacement_m)},
-                                                             {"simulated_s", exact(result.simulated_s)},
-                                                             {"contacts_mean", exact(result.contacts_mean)},
+    std::vector<std::pair<std::string, std::string>> summary{{"displacement_m", sim::exact_text(result.displacement_m)},
+                                                             {"simulated_s", sim::exact_text(result.simulated_s)},
+                                                             {"contacts_mean", sim::exact_text(result.contacts_mean)},
                                                              {"differences", std::to_string(result.differences)},
                                                              {"lost_frames", std::to_string(result.lost_frames)},
                                                              {"frames", std::to_string(result.frames)},
-                                                             {"bus_load", exact(result.bus_load)},
+                                                             {"bus_load", sim::exact_text(result.bus_load)},
                                                              {"setpoint_hash", result.setpoint_hash},
                                                              {"servo_hash", result.servo_hash}};
     append_results(result.measures, setup.scenario.robot, summary);
@@ -387,23 +387,24 @@ int hil(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  CommandLine command_line(
+      "proleg hil",
       "Hardware in the loop: the joints' own programs on a simulated CAN bus move the simulated robot. Every set-point "
-      "and servo command is compared with the same gait computed in memory; status 1 if one differs.",
-      "proleg hil");
+      "and servo command is compared with the same gait computed in memory; status 1 if one differs.");
   Options options;
-  add_scenario_options(app, options);
-  add_module_options(app, options);
-  app.add_option("--reset", options.resets, "NODE@TICK: restart a module in mid-gait; it rejoins. May be repeated.")
-      ->allow_extra_args(false);
-  app.add_option("--send", options.frames,
-                 "ID#DATA@TICK: a frame that somebody sends on the bus right after that SYNC, hexadecimal as cansend "
-                 "takes it; what comes of it is in --can-log. May be repeated.")
-      ->allow_extra_args(false);
-  app.add_option(
+  add_scenario_options(command_line, options);
+  add_module_options(command_line, options);
+  command_line.add_option("--reset", options.resets,
+                          "NODE@TICK: restart a module in mid-gait; it rejoins. May be repeated.");
+  command_line.add_option(
+      "--send", options.frames,
+      "ID#DATA@TICK: a frame that somebody sends on the bus right after that SYNC, hexadecimal as cansend "
+      "takes it; what comes of it is in --can-log. May be repeated.");
+  command_line.add_option(
       "--bit-errors", options.bit_errors,
       "SEED:RATE: frames that are destroyed on the bus and sent again, with this probability (7:1%). Nothing "
       "is lost, so nothing may differ.");
-  app.add_option("--can-log", options.can_log, "leave all frames of the bus in this file, in candump's log format");
-  return run_command(argc, argv, app, [&] { return hil(options); });
+  command_line.add_option("--can-log", options.can_log,
+                          "leave all frames of the bus in this file, in candump's log format");
+  return command_line.run(argc, argv, [&] { return hil(options); });
 }

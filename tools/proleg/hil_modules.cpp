@@ -47,22 +47,24 @@ struct HilModules::Trace {
   [[nodiscard]] std::ostream& out() { return file.empty() ? std::cerr : stream; }
 };
 
-void add_module_options(CLI::App& app, ModuleOptions& options) {
-  app.add_option("--modules", options.modules,
-                 "what runs the modules' program: native, as built for this computer; mcu: the image that is flashed, "
-                 "each in a virtual STM32F405; 1,3=mcu: those nodes so, the others native")
-      ->capture_default_str();
-  app.add_option("--image", options.image, "ELF: the image, instead of the one that the preset stm32f405 builds");
-  app.add_option("--uart", options.consoles,
-                 "NODE: show on standard error what a virtual module prints on its console. May be repeated.")
-      ->allow_extra_args(false);
-  app.add_option("--trace", options.traces,
-                 "NODE or NODE=FILE: a table of the instructions that a virtual module executes in each tick, on "
-                 "standard error or in a file. May be repeated.")
-      ->allow_extra_args(false);
-  app.add_option("--gdb", options.gdb,
-                 "PORT or NODE:PORT: wait until gdb-multiarch has attached to a virtual module (the first one) with "
-                 "'target remote :PORT'; the whole simulation stands still while the program does");
+void add_module_options(CommandLine& command_line, ModuleOptions& options) {
+  command_line
+      .add_option("--modules", options.modules,
+                  "what runs the modules' program: native, as built for this computer; mcu: the image that is flashed, "
+                  "each in a virtual STM32F405; 1,3=mcu: those nodes so, the others native")
+      .shows_default();
+  command_line.add_option("--image", options.image,
+                          "ELF: the image, instead of the one that the preset stm32f405 builds");
+  command_line.add_option("--uart", options.consoles,
+                          "NODE: show on standard error what a virtual module prints on its console. May be repeated.");
+  command_line.add_option(
+      "--trace", options.traces,
+      "NODE or NODE=FILE: a table of the instructions that a virtual module executes in each tick, on "
+      "standard error or in a file. May be repeated.");
+  command_line.add_option(
+      "--gdb", options.gdb,
+      "PORT or NODE:PORT: wait until gdb-multiarch has attached to a virtual module (the first one) with "
+      "'target remote :PORT'; the whole simulation stands still while the program does");
 }
 
 HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenario,

@@ -2,7 +2,6 @@
 
 // What runs the modules of `proleg hil`: this computer or virtual chips, as the user asks.
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include "sim/loop/hardware_loop.hpp"
 #include "sim/mcu/module/virtual_module.hpp"
+#include "tools/proleg/command_line.hpp"
 
 namespace proleg::tools {
 
@@ -24,7 +24,7 @@ struct ModuleOptions {
   std::optional<std::string> gdb;
 };
 
-void add_module_options(CLI::App& app, ModuleOptions& options);
+void add_module_options(CommandLine& command_line, ModuleOptions& options);
 
 class HilModules {
  public:

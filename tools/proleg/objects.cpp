@@ -172,12 +172,13 @@ void print_text(std::ostream& out) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Lists the object dictionary of a module: what can be read and set over the bus.", "proleg objects");
+  proleg::tools::CommandLine command_line(
+      "proleg objects", "Lists the object dictionary of a module: what can be read and set over the bus.");
   bool eds = false;
   bool markdown = false;
-  CLI::Option* as_eds = app.add_flag("--eds", eds, "as an Electronic Data Sheet (CiA 306) for CANopen tools");
-  app.add_flag("--markdown", markdown, "as Markdown tables")->excludes(as_eds);
-  return proleg::tools::run_command(argc, argv, app, [&] {
+  command_line.add_flag("--eds", eds, "as an Electronic Data Sheet (CiA 306) for CANopen tools");
+  command_line.add_flag("--markdown", markdown, "as Markdown tables").excludes("--eds");
+  return command_line.run(argc, argv, [&] {
     if (eds) {
       proleg::tools::print_eds(std::cout);
     } else if (markdown) {

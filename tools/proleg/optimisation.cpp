@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "sim/optimize/method/search.hpp"
-#include "sim/record/output.hpp"
 #include "sim/scenario/input_error.hpp"
 #include "sim/scenario/text.hpp"
 #include "tools/proleg/build_id.hpp"
@@ -42,20 +42,24 @@ std::uint32_t parse_workers(const std::optional<std::string>& word) {
   return *count;
 }
 
-std::uint64_t parse_evaluations(const std::string& word) {
-  const std::optional<std::uint64_t> count = sim::parse_whole<std::uint64_t>(word);
-  if (!count || *count == 0 || *count > 1'000'000'000) {
-    throw sim::InputError("--evaluations", 0, sim::in_quotes(word), "a whole number from 1 to 1000000000");
+void apply_options(const ExperimentOptions& options, optimize::Experiment& experiment) {
+  if (options.evaluations) {
+    const std::optional<std::uint64_t> count = sim::parse_whole<std::uint64_t>(*options.evaluations);
+    if (!count || *count == 0 || *count > 1'000'000'000) {
+      throw sim::InputError("--evaluations", 0, sim::in_quotes(*options.evaluations),
+                            "a whole number from 1 to 1000000000");
+    }
+    experiment.evaluations = *count;
   }
-  return *count;
-}
-
-std::uint64_t parse_seed(const std::string& word) {
-  const std::optional<std::uint64_t> seed = sim::parse_whole<std::uint64_t>(word);
-  if (!seed) {
-    throw sim::InputError("--seed", 0, sim::in_quotes(word), "a whole number from 0 to 18446744073709551615");
+  if (options.seed) {
+    const std::optional<std::uint64_t> seed = sim::parse_whole<std::uint64_t>(*options.seed);
+    if (!seed) {
+      throw sim::InputError("--seed", 0, sim::in_quotes(*options.seed),
+                            "a whole number from 0 to 18446744073709551615");
+    }
+    experiment.seed = *seed;
   }
-  return *seed;
+  optimize::check_method(experiment);
 }
 
 std::filesystem::path store_path(const std::filesystem::path& folder) { return folder / "store.sqlite"; }
@@ -79,7 +83,8 @@ std::unique_ptr<optimize::Store> open_store(const std::filesystem::path& folder,
 SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t run, optimize::Workers& workers,
                          optimize::Store& store, const std::string& label) {
   SearchOutcome outcome;
-  SearchDisplay display(label, score_unit(experiment), experiment.evaluations);
+  SearchDisplay display(label, std::string(experiment.objectives.front().unit()),
+                        optimize::planned_evaluations(experiment));
   const auto say_messages = [&] {
     for (const std::string& message : workers.messages()) {
       display.say(message);
@@ -119,17 +124,12 @@ double overhead(const SearchOutcome& outcome) {
   return all > 0.0 ? outcome.own_cpu_s / all : 0.0;
 }
 
-std::string score_unit(const optimize::Experiment& experiment) {
-  const optimize::Objective& objective = experiment.objectives.front();
-  return objective.terms.size() == 1 && objective.terms.front().weight == 1.0
-             ? std::string(sim::declaration_of(objective.terms.front().measure).unit)
-             : "";
-}
-
-void write_file(const std::filesystem::path& path, const std::string& text) {
-  sim::Output output(path);
-  output.write(text);
-  output.finish();
+nlohmann::ordered_json values_object(const optimize::SearchSpace& space, const optimize::Candidate& candidate) {
+  nlohmann::ordered_json values;
+  for (std::size_t i = 0; i < space.dimensions.size(); ++i) {
+    values[space.dimensions[i].name] = space.value(candidate, i);
+  }
+  return values;
 }
 
 }  // namespace proleg::tools

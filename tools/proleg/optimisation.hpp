@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,10 +18,17 @@
 
 namespace proleg::tools {
 
-/// Numbers of the command line. Throws InputError with the option's name if a word is none, or not in its range.
-[[nodiscard]] std::uint32_t parse_workers(const std::optional<std::string>& word);  ///< default: one for each processor
-[[nodiscard]] std::uint64_t parse_evaluations(const std::string& word);
-[[nodiscard]] std::uint64_t parse_seed(const std::string& word);
+/// --workers; one for each processor if it is not given. Throws InputError.
+[[nodiscard]] std::uint32_t parse_workers(const std::optional<std::string>& word);
+
+/// What the command line says instead of the experiment's file: --evaluations, --seed.
+struct ExperimentOptions {
+  std::optional<std::string> evaluations;
+  std::optional<std::string> seed;
+};
+
+/// Sets an experiment to what the options want. Throws InputError, also if its method cannot deal with the experiment.
+void apply_options(const ExperimentOptions& options, optimize::Experiment& experiment);
 
 /// A folder with the store of an experiment.
 [[nodiscard]] std::filesystem::path store_path(const std::filesystem::path& folder);
@@ -47,10 +55,8 @@ struct SearchOutcome {
 /// Share of all processor time that went into optimiser, store and scheduling.
 [[nodiscard]] double overhead(const SearchOutcome& outcome);
 
-/// Unit of the first objective's score: that of its measure, or "" of a sum.
-[[nodiscard]] std::string score_unit(const optimize::Experiment& experiment);
-
-/// Writes a file, complete or not at all.
-void write_file(const std::filesystem::path& path, const std::string& text);
+/// The values of a candidate by the names of their dimensions.
+[[nodiscard]] nlohmann::ordered_json values_object(const optimize::SearchSpace& space,
+                                                   const optimize::Candidate& candidate);
 
 }  // namespace proleg::tools

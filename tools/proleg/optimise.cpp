@@ -8,10 +8,10 @@
 
 #include "sim/optimize/method/search.hpp"
 #include "sim/optimize/report/report.hpp"
+#include "sim/record/output.hpp"
 #include "sim/scenario/input_error.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
-#include "tools/proleg/optimisation.hpp"
 #include "tools/proleg/run_measures.hpp"
 #include "tools/proleg/scenario_run.hpp"
 
@@ -21,18 +21,12 @@ namespace {
 using optimize::Evaluation;
 using optimize::Experiment;
 
-/// great_deluge.optimise.xml -> great_deluge
-std::string default_folder(const std::string& file) {
-  std::string name = std::filesystem::path(file).filename().string();
-  return name.substr(0, name.find('.'));
-}
-
-std::filesystem::path folder_of(const OptimiseOptions& options) {
+std::filesystem::path folder_of(const OptimiseOptions& options, const Experiment& experiment) {
   if (options.resume && options.out && *options.out != *options.resume) {
     throw BadInput("found --out " + *options.out + " beside --resume " + *options.resume +
                    ", expected one of them: what is resumed stays where it is");
   }
-  const std::string folder = options.resume ? *options.resume : options.out.value_or(default_folder(options.file));
+  const std::string folder = options.resume ? *options.resume : options.out.value_or(experiment.title());
   if (folder.empty()) {
     throw sim::InputError(options.resume ? "--resume" : "--out", 0, "no name", "the name of a folder");
   }
@@ -45,7 +39,7 @@ std::vector<std::filesystem::path> write_results(const Experiment& experiment, c
   std::vector<std::filesystem::path> files;
   const auto write = [&](const char* name, const std::string& text) {
     files.push_back(folder / name);
-    write_file(files.back(), text);
+    sim::write_file(files.back(), text);
   };
   write("evaluations.tsv", optimize::evaluations_table(experiment, outcome.evaluations));
   write("best.tsv", optimize::best_table(experiment, outcome.evaluations, 10));
@@ -65,10 +59,6 @@ std::vector<std::filesystem::path> write_results(const Experiment& experiment, c
 void print_json(const OptimiseOptions& options, const Experiment& experiment, const SearchOutcome& outcome,
                 const std::filesystem::path& folder, std::uint32_t workers) {
   const Evaluation& best = *outcome.progress.best;
-  nlohmann::ordered_json values;
-  for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
-    values[experiment.space.dimensions[i].name] = experiment.space.value(best.candidate, i);
-  }
   nlohmann::ordered_json scores;
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
     scores[experiment.objectives[i].name] = best.scores[i];
@@ -79,7 +69,7 @@ void print_json(const OptimiseOptions& options, const Experiment& experiment, co
                                       {"seed", experiment.seed},
                                       {"best_score", best.scores.front()},
                                       {"best_scores", scores},
-                                      {"best_values", values},
+                                      {"best_values", values_object(experiment.space, best.candidate)},
                                       {"best_number", best.number},
                                       {"best_measures", measures_object(best.measures)},
                                       {"evaluations", progress.evaluations},
@@ -105,9 +95,9 @@ void print_result(const Experiment& experiment, const SearchOutcome& outcome,
   const Evaluation& best = *outcome.progress.best;
   const optimize::Progress& progress = outcome.progress;
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
-    const std::string unit = i == 0 ? score_unit(experiment) : "";
-    std::printf("%-24s %.6g%s%s\n", ("best " + experiment.objectives[i].name).c_str(), best.scores[i],
-                unit.empty() ? "" : " ", unit.c_str());
+    const optimize::Objective& objective = experiment.objectives[i];
+    std::printf("%-24s %.6g %s\n", ("best " + objective.name).c_str(), best.scores[i],
+                std::string(objective.unit()).c_str());
   }
   for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
     const optimize::Dimension& dimension = experiment.space.dimensions[i];
@@ -158,7 +148,7 @@ std::string command_to_go_on(const OptimiseOptions& options, const std::filesyst
 
 int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   const Experiment experiment = read_experiment(options);
-  const std::filesystem::path folder = folder_of(options);
+  const std::filesystem::path folder = folder_of(options, experiment);
   if (options.verbose) {
     for (const std::string& remark : experiment.scenario.remarks) {
       std::cerr << remark << '\n';
@@ -195,36 +185,33 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
 optimize::Experiment read_experiment(const OptimiseOptions& options) {
   sim::DiskFiles files;
   optimize::Experiment experiment = optimize::read_experiment(options.file, files, options.simulation);
-  if (options.evaluations) {
-    experiment.evaluations = parse_evaluations(*options.evaluations);
-  }
-  if (options.seed) {
-    experiment.seed = parse_seed(*options.seed);
-  }
-  optimize::check_method(experiment);
+  apply_options(options, experiment);
   return experiment;
 }
 
 int optimise_command(int argc, char** argv, const WorkersMaker& make_workers) {
-  CLI::App app(
-      "Searches for the parameters of a gait: runs simulations, keeps what it tried, and writes the best scenario.",
-      "proleg optimise");
+  CommandLine command_line(
+      "proleg optimise",
+      "Searches for the parameters of a gait: runs simulations, keeps what it tried, and writes the best scenario.");
   OptimiseOptions options;
-  add_optimise_options(app, options);
-  return run_command(argc, argv, app, [&] { return optimise(options, make_workers); });
+  add_optimise_options(command_line, options);
+  return command_line.run(argc, argv, [&] { return optimise(options, make_workers); });
 }
 
-void add_optimise_options(CLI::App& app, OptimiseOptions& options) {
-  app.add_option("FILE", options.file, "experiment, a *.optimise.xml file")->required();
-  app.add_option("--simulation", options.simulation, "scenario to optimise, instead of the one that FILE names");
-  app.add_option("--evaluations", options.evaluations, "at most so many, instead of what FILE says");
-  app.add_option("--workers", options.workers, "simulations at a time; as many as there are processors if not given");
-  app.add_option("--seed", options.seed, "of the search and of all randomness in it, instead of what FILE says");
-  app.add_option("--out", options.out,
-                 "folder for store, tables and pictures; the first word of FILE's name if not given");
-  app.add_option("--resume", options.resume, "go on with the search whose store is in this folder");
-  app.add_flag("--verbose", options.verbose, "print remarks on the files and the size of the search space");
-  app.add_flag("--json", options.json, "print one JSON object");
+void add_optimise_options(CommandLine& command_line, OptimiseOptions& options) {
+  command_line.add_option("FILE", options.file, "experiment, a *.optimise.xml file").required();
+  command_line.add_option("--simulation", options.simulation,
+                          "scenario to optimise, instead of the one that FILE names");
+  command_line.add_option("--evaluations", options.evaluations, "at most so many, instead of what FILE says");
+  command_line.add_option("--workers", options.workers,
+                          "simulations at a time; as many as there are processors if not given");
+  command_line.add_option("--seed", options.seed,
+                          "of the search and of all randomness in it, instead of what FILE says");
+  command_line.add_option("--out", options.out,
+                          "folder for store, tables and pictures; the first word of FILE's name if not given");
+  command_line.add_option("--resume", options.resume, "go on with the search whose store is in this folder");
+  command_line.add_flag("--verbose", options.verbose, "print remarks on the files and the size of the search space");
+  command_line.add_flag("--json", options.json, "print one JSON object");
 }
 
 }  // namespace proleg::tools

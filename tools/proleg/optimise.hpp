@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -9,22 +8,22 @@
 
 #include "sim/optimize/evaluation/workers.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
+#include "tools/proleg/command_line.hpp"
+#include "tools/proleg/optimisation.hpp"
 
 namespace proleg::tools {
 
-struct OptimiseOptions {
+struct OptimiseOptions : ExperimentOptions {
   std::string file;
   std::optional<std::string> simulation;
-  std::optional<std::string> evaluations;
   std::optional<std::string> workers;
-  std::optional<std::string> seed;
   std::optional<std::string> out;
   std::optional<std::string> resume;
   bool verbose = false;
   bool json = false;
 };
 
-void add_optimise_options(CLI::App& app, OptimiseOptions& options);
+void add_optimise_options(CommandLine& command_line, OptimiseOptions& options);
 
 /// The experiment as the options want it. Throws InputError.
 [[nodiscard]] optimize::Experiment read_experiment(const OptimiseOptions& options);

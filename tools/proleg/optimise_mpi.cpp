@@ -1,6 +1,5 @@
 // proleg optimise over Open MPI: mpirun starts this program many times; rank 0 searches and all simulate.
 
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <iostream>
 #include <thread>
@@ -24,23 +23,36 @@ int search(int argc, char** argv) {
   });
 }
 
+/// What is wrong on another rank is most probably wrong on rank 0, too: it speaks first, and its end is the end of all.
+void let_rank_0_speak() { std::this_thread::sleep_for(std::chrono::seconds(2)); }
+
 /// What ranks above 0 do.
 int serve(int argc, char** argv, int rank) {
-  CLI::App app("", "proleg optimise, rank " + std::to_string(rank));
+  CommandLine command_line("proleg optimise, rank " + std::to_string(rank), "");
   OptimiseOptions options;
-  add_optimise_options(app, options);
+  add_optimise_options(command_line, options);
   optimize::Experiment experiment;
-  const int read = run_command(argc, argv, app, [&] {
+  // The words are those of rank 0, and so is what there is to say about them.
+  bool understood = false;
+  std::cout.setstate(std::ios::failbit);
+  std::cerr.setstate(std::ios::failbit);
+  const int read = command_line.run(argc, argv, [&] {
+    understood = true;
+    std::cout.clear();
+    std::cerr.clear();
     try {
       experiment = read_experiment(options);
     } catch (const std::exception&) {
-      // What is wrong here is most probably wrong on rank 0, too: it speaks first, and its end is the end of all.
-      std::this_thread::sleep_for(std::chrono::seconds(2));
+      let_rank_0_speak();
       throw;
     }
     return exit_success;
   });
-  if (read != exit_success || app.get_help_ptr()->count() > 0) {
+  if (!understood) {
+    let_rank_0_speak();
+    return read;
+  }
+  if (read != exit_success) {
     return read;
   }
   return optimize::serve_mpi(experiment, build_id) ? exit_success : exit_failed;

@@ -24,22 +24,23 @@ void require_finite(const char* option, const std::optional<double>& seconds) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  tools::CommandLine command_line(
+      "proleg plot",
       "Draws a recording of 'proleg simulate --record' as an SVG picture: the joint angles and the contacts over "
       "time,\n"
-      "and the path of the robot over the whole run, from above. Prints the name of the picture.",
-      "proleg plot");
+      "and the path of the robot over the whole run, from above. Prints the name of the picture.");
   std::string recording_path;
   std::string out;
   sim::TimeWindow window;
-  app.add_option("RUN", recording_path, "the recording")->required()->type_name("");
-  app.add_option("--out", out, "the picture (default: the recording's name with .svg)")->type_name("FILE");
-  app.add_option("--from", window.from_s, "start of what is shown over time, in s (default: 3 s before its end)")
-      ->type_name("SECONDS");
-  app.add_option("--to", window.to_s, "end of what is shown over time, in s (default: the end of the run)")
-      ->type_name("SECONDS");
+  command_line.add_option("RUN", recording_path, "the recording").required().value_name("");
+  command_line.add_option("--out", out, "the picture (default: the recording's name with .svg)").value_name("FILE");
+  command_line
+      .add_option("--from", window.from_s, "start of what is shown over time, in s (default: 3 s before its end)")
+      .value_name("SECONDS");
+  command_line.add_option("--to", window.to_s, "end of what is shown over time, in s (default: the end of the run)")
+      .value_name("SECONDS");
 
-  return tools::run_command(argc, argv, app, [&] {
+  return command_line.run(argc, argv, [&] {
     require_finite("--from", window.from_s);
     require_finite("--to", window.to_s);
     const sim::Recording recording(recording_path);
@@ -50,12 +51,9 @@ int main(int argc, char** argv) {
                             "another one, with --out FILE");
     }
     if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
-      std::cerr << app.get_name() << ": " << remark << '\n';
+      std::cerr << command_line.name() << ": " << remark << '\n';
     }
-    const std::string drawing = sim::draw_figure(recording, window);
-    sim::Output output(picture);
-    output.write(drawing);
-    output.finish();
+    sim::write_file(picture, sim::draw_figure(recording, window));
     try {
       sim::Output standard_output;
       standard_output.write(picture.string() + "\n");

@@ -104,14 +104,14 @@ int replay(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
+  CommandLine command_line(
+      "proleg replay",
       "Recomputes the gait of a recording from its start values, changes, contacts, losses and restarts, and compares "
-      "it with what was recorded, bit for bit.",
-      "proleg replay");
+      "it with what was recorded, bit for bit.");
   Options options;
-  app.add_option("FILE", options.file, "a recording")->required();
-  app.add_flag("--verify", options.verify,
-               "compare every set-point, internal value and servo command; status 1 if one differs");
-  app.add_flag("--json", options.json, "print one JSON object");
-  return run_command(argc, argv, app, [&] { return replay(options); });
+  command_line.add_option("FILE", options.file, "a recording").required();
+  command_line.add_flag("--verify", options.verify,
+                        "compare every set-point, internal value and servo command; status 1 if one differs");
+  command_line.add_flag("--json", options.json, "print one JSON object");
+  return command_line.run(argc, argv, [&] { return replay(options); });
 }

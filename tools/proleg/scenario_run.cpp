@@ -1,8 +1,6 @@
 #include "tools/proleg/scenario_run.hpp"
 
-#include <array>
 #include <atomic>
-#include <charconv>
 #include <csignal>
 #include <filesystem>
 #include <iostream>
@@ -43,19 +41,20 @@ std::int32_t start_value(const sim::Scenario& scenario, unsigned slot, unsigned 
 
 }  // namespace
 
-void add_scenario_options(CLI::App& app, ScenarioOptions& options) {
-  app.add_option("FILE", options.file, "scenario, a *.simulation.xml file")->required();
-  app.add_option("--seconds", options.seconds, "simulated time; the scenario's own duration if not given");
-  app.add_option("--record", options.record, "leave a recording (SQLite) in this file");
-  app.add_option("--set", options.settings,
-                 "NAME=VALUE[@TICK]: change a parameter at the start or at a tick. NAME is [MODULE.]PARAMETER[:JOINT]; "
-                 "an internal value may stand in place of the parameter. May be repeated.")
-      ->allow_extra_args(false);
-  app.add_option("--losses", options.losses,
-                 "state frames that joints do not receive: SEED:RATE or SEED:RATE@FIRST-LAST (RATE 0.05 or 5%), or a "
-                 "file with lines TICK SENDER RECEIVER [CHANNEL]");
-  app.add_flag("--verbose", options.verbose, "print the joint map, remarks on the files and all parameters");
-  app.add_flag("--json", options.json, "print one JSON object");
+void add_scenario_options(CommandLine& command_line, ScenarioOptions& options) {
+  command_line.add_option("FILE", options.file, "scenario, a *.simulation.xml file").required();
+  command_line.add_option("--seconds", options.seconds, "simulated time; the scenario's own duration if not given");
+  command_line.add_option("--record", options.record, "leave a recording (SQLite) in this file");
+  command_line.add_option(
+      "--set", options.settings,
+      "NAME=VALUE[@TICK]: change a parameter at the start or at a tick. NAME is [MODULE.]PARAMETER[:JOINT]; "
+      "an internal value may stand in place of the parameter. May be repeated.");
+  command_line.add_option(
+      "--losses", options.losses,
+      "state frames that joints do not receive: SEED:RATE or SEED:RATE@FIRST-LAST (RATE 0.05 or 5%), or a "
+      "file with lines TICK SENDER RECEIVER [CHANNEL]");
+  command_line.add_flag("--verbose", options.verbose, "print the joint map, remarks on the files and all parameters");
+  command_line.add_flag("--json", options.json, "print one JSON object");
 }
 
 ScenarioRun prepare_run(const ScenarioOptions& options) {
@@ -146,11 +145,6 @@ bool interrupted() { return interrupt_flag; }
 
 std::string kept_in_recording(const ScenarioOptions& options) {
   return options.record ? "; what was simulated is in " + *options.record : "";
-}
-
-std::string exact(double value) {
-  std::array<char, 32> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
 }  // namespace proleg::tools

@@ -2,7 +2,6 @@
 
 // What all subcommands have in common that run a scenario: their options, interruption, and what they print.
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "sim/record/recorder.hpp"
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/scenario.hpp"
+#include "tools/proleg/command_line.hpp"
 
 namespace proleg::tools {
 
@@ -25,7 +25,7 @@ struct ScenarioOptions {
   bool json = false;
 };
 
-void add_scenario_options(CLI::App& app, ScenarioOptions& options);
+void add_scenario_options(CommandLine& command_line, ScenarioOptions& options);
 
 /// A scenario as the options want it.
 struct ScenarioRun {
@@ -55,8 +55,5 @@ void catch_interrupts();
 
 /// For messages about a run that ended early: where what was done is kept; empty without a recording.
 [[nodiscard]] std::string kept_in_recording(const ScenarioOptions& options);
-
-/// Shortest text that reads back as the same number.
-[[nodiscard]] std::string exact(double value);
 
 }  // namespace proleg::tools

@@ -10,6 +10,7 @@
 
 #include "sim/loop/simulation.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "sim/scenario/text.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/progress.hpp"
@@ -120,9 +121,9 @@ int simulate(const ScenarioOptions& options) {
   }
   if (recorder) {
     std::vector<std::pair<std::string, std::string>> summary{
-        {"displacement_m", exact(result.displacement_m)},
-        {"simulated_s", exact(result.simulated_s)},
-        {"contacts_mean", exact(result.contacts_mean)},
+        {"displacement_m", sim::exact_text(result.displacement_m)},
+        {"simulated_s", sim::exact_text(result.simulated_s)},
+        {"contacts_mean", sim::exact_text(result.contacts_mean)},
         {"solver_messages", std::to_string(result.solver_messages)},
         {"lost_frames", std::to_string(result.lost_frames)},
         {"setpoint_hash", result.setpoint_hash},
@@ -141,8 +142,8 @@ int simulate(const ScenarioOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Runs a scenario in the physics simulation and prints what came of it.", "proleg simulate");
+  CommandLine command_line("proleg simulate", "Runs a scenario in the physics simulation and prints what came of it.");
   ScenarioOptions options;
-  add_scenario_options(app, options);
-  return run_command(argc, argv, app, [&] { return simulate(options); });
+  add_scenario_options(command_line, options);
+  return command_line.run(argc, argv, [&] { return simulate(options); });
 }

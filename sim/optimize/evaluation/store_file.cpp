@@ -115,16 +115,15 @@ std::vector<std::string> differences(Database& database, const Experiment& exper
 
 }  // namespace
 
-StoreLock::StoreLock(const std::filesystem::path& file, bool create, const std::filesystem::path& shown)
-    : descriptor_(open(file.c_str(), O_RDWR | O_CLOEXEC | (create ? O_CREAT : 0), 0666)) {
+StoreLock::StoreLock(const std::filesystem::path& store, const std::string& refusal)
+    : descriptor_(open((store.string() + ".lock").c_str(), O_RDWR | O_CLOEXEC | O_CREAT, 0666)) {
   if (descriptor_ < 0) {
-    throw StoreError(shown.string() + (create ? ": cannot be created: " : ": cannot be opened for writing: ") +
-                     std::strerror(errno));
+    throw StoreError(store.string() + ": " + refusal + ": " + std::strerror(errno));
   }
   // File systems without such locks are used without one.
   if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     close(descriptor_);
-    throw StoreError(shown.string() + ": another program is writing into it; wait for it or stop it first");
+    throw StoreError(store.string() + ": another program is writing into it; wait for it or stop it first");
   }
 }
 
@@ -139,17 +138,13 @@ StoreLock::StoreLock(StoreLock&& other) noexcept : descriptor_(std::exchange(oth
 /// Under another name first: what is there under its own is a whole store, whenever the process is killed.
 StoreLock create_store(const std::filesystem::path& path, const Experiment& experiment, const StoreColumns& columns,
                        const std::string& build_id) {
-  const auto require_none = [&path] {
-    if (std::filesystem::exists(std::filesystem::symlink_status(path))) {
-      throw StoreError(path.string() + ": is there already; resume it, or choose another folder");
-    }
-  };
-  require_none();
-  StoreLock lock(beginning(path), true, path);
-  require_none();
+  StoreLock lock(path, "cannot be created");
+  if (std::filesystem::exists(std::filesystem::symlink_status(path))) {
+    throw StoreError(path.string() + ": is there already; resume it, or choose another folder");
+  }
   try {
-    std::filesystem::resize_file(beginning(path), 0);  // that of a process killed here
-    Database database(beginning(path), SQLITE_OPEN_READWRITE);
+    std::filesystem::remove(beginning(path));  // that of a process killed here
+    Database database(beginning(path), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
     database.execute("PRAGMA journal_mode = MEMORY; BEGIN IMMEDIATE");
     database.execute(("PRAGMA application_id = " + std::to_string(store_application_id) +
                       "; PRAGMA user_version = " + std::to_string(store_format))
@@ -174,7 +169,7 @@ StoreLock find_store(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(status)) {
     throw StoreError(path.string() + ": is not a file; expected the store of an experiment");
   }
-  return {path, false, path};
+  return {path, "cannot be opened for writing"};
 }
 
 void require_same_experiment(const std::filesystem::path& path, Database& database, const Experiment& experiment,

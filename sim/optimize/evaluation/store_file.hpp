@@ -11,13 +11,13 @@
 
 namespace proleg::optimize {
 
-/// The lock that says "a program writes into this store", on the file itself: it goes with the process, however that
-/// ends. Readers do not care. (SQLite's own locks are held only while it writes.)
+/// The lock that says "a program writes into this store": it goes with the process, however that ends. Readers do not
+/// care. (SQLite's own locks are held only while it writes.) It is on an empty file beside the store, which stays: on a
+/// network file system one on the store itself would shut SQLite out.
 class StoreLock {
  public:
-  /// Of a file that is there, or with `create` is made. Throws StoreError if it cannot be opened or another has the
-  /// lock. shown: how messages call it.
-  StoreLock(const std::filesystem::path& file, bool create, const std::filesystem::path& shown);
+  /// Throws StoreError if another has the lock, or its file cannot be made: then `refusal` says what cannot be done.
+  StoreLock(const std::filesystem::path& store, const std::string& refusal);
   ~StoreLock();
   StoreLock(StoreLock&& other) noexcept;
   StoreLock& operator=(StoreLock&&) = delete;

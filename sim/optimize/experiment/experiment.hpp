@@ -27,6 +27,7 @@ struct Racing {
 /// A search for the parameters of a gait: what a *.optimise.xml file says.
 struct Experiment {
   std::string path;
+  int method_line = 0;     ///< of path, where the method's settings begin; 0: there is none
   sim::Scenario scenario;  ///< as its file says; its remarks are also those on this file
   SearchSpace space;
   std::vector<Objective> objectives;  ///< at least one
@@ -39,6 +40,8 @@ struct Experiment {
   std::uint64_t evaluations = 0;         ///< at most so many; 0: until the method ends
   std::vector<sim::SourceFile> sources;  ///< every file read, the experiment's own first, then the scenario's
 
+  /// "great_deluge" of "travelling_wave/great_deluge.optimise.xml".
+  [[nodiscard]] std::string title() const;
   /// SHA-256 of all that determines the result but `evaluations`: settings and files. 64 hexadecimal digits.
   [[nodiscard]] std::string fingerprint() const;
 };

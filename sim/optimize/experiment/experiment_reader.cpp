@@ -104,10 +104,6 @@ void read_evaluation(const XmlElement& element, Experiment& experiment) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 void require_trials_to_differ(const XmlElement& evaluation, const Experiment& experiment) {
   const Trials& trials = experiment.trials;
   if (trials.count > 1 && !depends_on_seed(experiment.scenario, experiment.space, trials.spread)) {
@@ -118,6 +114,11 @@ void require_trials_to_differ(const XmlElement& evaluation, const Experiment& ex
 }
 
 }  // namespace
+
+std::string Experiment::title() const {
+  const std::string name = std::filesystem::path(path).filename().string();
+  return name.substr(0, name.find('.'));
+}
 
 Experiment read_experiment(const std::filesystem::path& path, sim::FileSource& files,
                            const std::optional<std::filesystem::path>& simulation) {
@@ -133,6 +134,7 @@ Experiment read_experiment(const std::filesystem::path& path, sim::FileSource& f
   experiment.sources.insert(experiment.sources.end(), experiment.scenario.sources.begin(),
                             experiment.scenario.sources.end());
   const XmlElement properties = section.required_child("properties");
+  experiment.method_line = properties.line();
   experiment.method = read_method(section, properties, experiment.scenario.remarks);
   experiment.space = read_search_space(properties, section.required_child("genome"), experiment.scenario);
   experiment.objectives = default_objectives();

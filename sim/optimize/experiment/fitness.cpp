@@ -12,4 +12,9 @@ double Objective::score(const sim::MeasureValues& measures) const {
   return std::isfinite(sum) ? sum : failed;
 }
 
+std::string_view Objective::unit() const {
+  const bool is_measure = terms.size() == 1 && terms.front().weight == 1.0;
+  return is_measure ? sim::declaration_of(terms.front().measure).unit : std::string_view();
+}
+
 }  // namespace proleg::optimize

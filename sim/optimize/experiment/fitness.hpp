@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/measure/measure.hpp"
@@ -29,6 +30,8 @@ struct Objective {
   [[nodiscard]] double score(const sim::MeasureValues& measures) const;
   /// Whether score a is better than b.
   [[nodiscard]] bool better(double a, double b) const { return goal == Goal::maximise ? a > b : a < b; }
+  /// Unit of the score: that of its measure, or nothing for a sum.
+  [[nodiscard]] std::string_view unit() const;
   /// The number that pagmo, which minimises, is given: the score or its negative; and back.
   [[nodiscard]] double cost(double score) const { return goal == Goal::maximise ? -score : score; }
 };

@@ -95,26 +95,10 @@ GreatDelugeSettings read_great_deluge(const XmlElement& properties) {
   return deluge;
 }
 
-/// What pagmo's algorithms may be told; the others know their population and generations only.
-bool has_setting(std::string_view algorithm, std::string_view tag) {
-  const auto any_of = [algorithm](std::initializer_list<std::string_view> names) {
-    return std::ranges::find(names, algorithm) != names.end();
-  };
-  if (tag == "sigma0") {
-    return any_of({"cmaes", "xnes"});
-  }
-  if (tag == "crossover") {
-    return any_of({"de", "sga", "nsga2"});
-  }
-  if (tag == "mutation") {
-    return any_of({"sga", "nsga2"});
-  }
-  return tag != "scale" || algorithm == "de";
-}
-
 PagmoSettings read_pagmo(const XmlElement& properties, std::string algorithm) {
-  std::vector<std::string_view> tags{"popsize", "generations", "sigma0", "crossover", "scale", "mutation"};
-  std::erase_if(tags, [&](std::string_view tag) { return !has_setting(algorithm, tag); });
+  const std::vector<std::string> options = pagmo_options(algorithm);
+  std::vector<std::string_view> tags{"popsize", "generations"};
+  tags.insert(tags.end(), options.begin(), options.end());
   const Settings settings(properties, tags);
   PagmoSettings pagmo;
   pagmo.algorithm = std::move(algorithm);
@@ -146,6 +130,19 @@ MethodSettings read_method(const XmlElement& section, const XmlElement& properti
     return read_pagmo(properties, "nsga2");
   }
   return read_pagmo(properties, checked_name(section, section.required_attribute("algorithm")));
+}
+
+std::vector<std::string> pagmo_options(std::string_view algorithm) {
+  if (algorithm == "cmaes" || algorithm == "xnes") {
+    return {"sigma0"};
+  }
+  if (algorithm == "de") {
+    return {"crossover", "scale"};
+  }
+  if (algorithm == "nsga2" || algorithm == "sga") {
+    return {"crossover", "mutation"};
+  }
+  return {};  // their population and generations
 }
 
 std::string method_name(const MethodSettings& method) {

@@ -5,13 +5,15 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
+#include <vector>
 
 namespace proleg::optimize {
 
 /// The modified great deluge algorithm (thesis, section 3.4.2; after G. Dueck, "New optimization heuristics: the great
 /// deluge algorithm and the record-to-record travel", J. Comput. Phys. 104, 1993). What the thesis leaves open is an
-/// option; its default is the thesis's text read literally.
+/// option; its default is the thesis's text read literally: a radius that is "increased by itself" doubles.
 struct GreatDelugeSettings {
   double water_level = 0.15;      ///< the score that the first accepted candidate must reach
   double rain = 0.01;             ///< by which the water rises when a candidate is accepted; above 0
@@ -19,7 +21,7 @@ struct GreatDelugeSettings {
   std::uint32_t retries = 200;    ///< candidates in a row that may fail before a credit is used; at least 1
   std::uint32_t confidence = 20;  ///< the radius grows with every so many failures; at least 1
   std::uint32_t step = 1;         ///< first radius, in steps of each parameter's value set; at least 1
-  enum class Growth : std::uint8_t { linear, doubling } growth = Growth::linear;
+  enum class Growth : std::uint8_t { linear, doubling } growth = Growth::doubling;
   enum class Move : std::uint8_t { all, one } move = Move::all;  ///< parameters that a candidate changes
   enum class Neighbour : std::uint8_t {
     three,    ///< -radius, 0 or +radius
@@ -55,6 +57,9 @@ struct PagmoSettings {
   std::optional<double> scale;       ///< de: F
   std::optional<double> mutation;    ///< sga, nsga2: their m
 };
+
+/// The options above that an algorithm of pagmo knows: sigma0, ...
+[[nodiscard]] std::vector<std::string> pagmo_options(std::string_view algorithm);
 
 using MethodSettings = std::variant<GreatDelugeSettings, GeneticSettings, PagmoSettings>;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "shared/fixed/random.hpp"
+#include "sim/optimize/experiment/scatter.hpp"
 #include "sim/optimize/experiment/search_space.hpp"
 #include "sim/scenario/random_streams.hpp"
 #include "sim/scenario/settings.hpp"
@@ -33,14 +34,6 @@ void perturb_friction(sim::Scenario& scenario, double factor) {
   for (sim::Link& link : scenario.robot.links) {
     scale_friction(link.geometries, factor);
   }
-}
-
-/// A bijection whose every output bit depends on every input bit: the finaliser of SplitMix64 (G. L. Steele, D. Lea,
-/// C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014).
-constexpr std::uint64_t mixed(std::uint64_t bits) {
-  bits = (bits ^ (bits >> 30U)) * 0xBF58476D1CE4E5B9U;
-  bits = (bits ^ (bits >> 27U)) * 0x94D049BB133111EBU;
-  return bits ^ (bits >> 31U);
 }
 
 /// The dimension that sets a parameter of a joint, or null.
@@ -125,11 +118,10 @@ bool depends_on_seed(const sim::Scenario& scenario, const SearchSpace& space, co
 std::uint64_t trial_seed(std::uint64_t experiment_seed, std::uint32_t run, std::uint64_t individual,
                          std::uint32_t trial) {
   // Each step is a bijection of the number that it takes in: seeds that differ in one number are never the same.
-  constexpr std::uint64_t odd = 0x9E3779B97F4A7C15U;  // so that zeros do not stay zeros
-  std::uint64_t seed = mixed(experiment_seed + odd);
-  seed = mixed((seed ^ run) + odd);
-  seed = mixed((seed ^ individual) + odd);
-  return mixed((seed ^ trial) + odd);
+  std::uint64_t seed = scatter(experiment_seed);
+  seed = scatter(seed ^ run);
+  seed = scatter(seed ^ individual);
+  return scatter(seed ^ trial);
 }
 
 }  // namespace proleg::optimize

@@ -2,16 +2,9 @@
 
 #include <cstdint>
 
-namespace proleg::optimize {
+#include "sim/optimize/experiment/scatter.hpp"
 
-/// Scatters the 64 bits of a number, one to one (the output function of SplitMix64: G. L. Steele, D. Lea, C. H. Flood,
-/// "Fast splittable pseudorandom number generators", 2014).
-[[nodiscard]] constexpr std::uint64_t scatter(std::uint64_t bits) {
-  bits += 0x9E3779B97F4A7C15U;
-  bits = (bits ^ (bits >> 30U)) * 0xBF58476D1CE4E5B9U;
-  bits = (bits ^ (bits >> 27U)) * 0x94D049BB133111EBU;
-  return bits ^ (bits >> 31U);
-}
+namespace proleg::optimize {
 
 /// Seed of what an optimiser draws in a run of an experiment: a function of both, and unlike the seeds of trials.
 [[nodiscard]] constexpr std::uint64_t method_seed(std::uint64_t experiment_seed, std::uint32_t run) {

@@ -143,26 +143,26 @@ algorithm make_xnes(const PagmoMaking& making) {
 }
 
 constexpr std::array<PagmoAlgorithm, 19> table = {{
-    // name, objectives, least population and its multiple, goes on, settles, options
-    {"bee_colony", one, 2, 1, false, false, "", make_bee_colony},
-    {"cmaes", one, 5, 1, true, true, "sigma0", make_cmaes},
-    {"compass_search", one, 1, 1, false, false, "", make_compass_search},
-    {"de", one, 5, 1, true, true, "crossover scale", make_de},
-    {"de1220", one, 7, 1, true, true, "", make_de1220},
-    {"gaco", one, 2, 1, true, true, "", make_gaco},
-    {"gwo", one, 3, 1, false, true, "", make_gwo},
-    {"ihs", any, 1, 1, false, false, "", make_ihs},
-    {"maco", several, 2, 1, true, false, "", make_maco},
-    {"moead", several, 3, 1, true, false, "", make_moead},
-    {"nsga2", several, 8, 4, true, false, "crossover mutation", make_nsga2},
-    {"nspso", several, 2, 1, true, false, "", make_nspso},
-    {"pso", one, 2, 1, false, true, "", make_pso},
-    {"pso_gen", one, 2, 1, false, true, "", make_pso_gen},
-    {"sade", one, 7, 1, true, true, "", make_sade},
-    {"sea", one, 1, 1, true, false, "", make_sea},
-    {"sga", one, 2, 1, true, false, "crossover mutation", make_sga},
-    {"simulated_annealing", one, 1, 1, false, false, "", make_simulated_annealing},
-    {"xnes", one, 4, 1, true, true, "sigma0", make_xnes},
+    // name, objectives, least population and its multiple, goes on, settles
+    {"bee_colony", one, 2, 1, false, false, make_bee_colony},
+    {"cmaes", one, 5, 1, true, true, make_cmaes},
+    {"compass_search", one, 1, 1, false, false, make_compass_search},
+    {"de", one, 5, 1, true, true, make_de},
+    {"de1220", one, 7, 1, true, true, make_de1220},
+    {"gaco", one, 2, 1, true, true, make_gaco},
+    {"gwo", one, 3, 1, false, true, make_gwo},
+    {"ihs", any, 1, 1, false, false, make_ihs},
+    {"maco", several, 2, 1, true, false, make_maco},
+    {"moead", several, 3, 1, true, false, make_moead},
+    {"nsga2", several, 8, 4, true, false, make_nsga2},
+    {"nspso", several, 2, 1, true, false, make_nspso},
+    {"pso", one, 2, 1, false, true, make_pso},
+    {"pso_gen", one, 2, 1, false, true, make_pso_gen},
+    {"sade", one, 7, 1, true, true, make_sade},
+    {"sea", one, 1, 1, true, false, make_sea},
+    {"sga", one, 2, 1, true, false, make_sga},
+    {"simulated_annealing", one, 1, 1, false, false, make_simulated_annealing},
+    {"xnes", one, 4, 1, true, true, make_xnes},
 }};
 
 }  // namespace

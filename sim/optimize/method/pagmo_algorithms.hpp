@@ -37,7 +37,6 @@ struct PagmoAlgorithm {
   bool goes_on;
   /// Whether it is stuck when its candidates do not differ any more.
   bool settles;
-  std::string_view options;  ///< of PagmoSettings, that it knows; separated by a space
   pagmo::algorithm (*make)(const PagmoMaking& making);
 };
 

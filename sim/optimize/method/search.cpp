@@ -7,13 +7,14 @@
 #include "sim/optimize/method/pagmo_algorithms.hpp"
 #include "sim/optimize/method/pagmo_method.hpp"
 #include "sim/scenario/input_error.hpp"
+#include "sim/scenario/text.hpp"
 
 namespace proleg::optimize {
 
 namespace {
 
 [[noreturn]] void refuse(const Experiment& experiment, const std::string& found, const std::string& expected) {
-  throw sim::InputError(experiment.path, 0, found, expected);
+  throw sim::InputError(experiment.path, experiment.method_line, found, expected);
 }
 
 void check_objectives(const Experiment& experiment, const std::string& method, PagmoAlgorithm::Objectives known) {
@@ -35,10 +36,9 @@ void check_number(const Experiment& experiment, const PagmoAlgorithm& algorithm,
     return;
   }
   const std::string name(algorithm.name);
-  if (algorithm.options.find(option) == std::string_view::npos) {
+  if (const std::vector<std::string> known = pagmo_options(name); std::ranges::count(known, option) == 0) {
     refuse(experiment, std::string(option) + " for " + name,
-           algorithm.options.empty() ? "no such setting: " + name + " has none"
-                                     : "settings that it has: " + std::string(algorithm.options));
+           known.empty() ? "no such setting: " + name + " has none" : "settings that it has: " + sim::listed(known));
   }
   if (!(*value > 0.0 && *value <= 1.0) && !(*value == 0.0 && may_be_zero)) {
     refuse(experiment, std::string(option) + " " + std::to_string(*value),
@@ -49,11 +49,11 @@ void check_number(const Experiment& experiment, const PagmoAlgorithm& algorithm,
 void check_pagmo(const Experiment& experiment, const PagmoSettings& settings) {
   const PagmoAlgorithm* const algorithm = find_pagmo_algorithm(settings.algorithm);
   if (algorithm == nullptr) {
-    std::string known;
+    std::vector<std::string> known;
     for (const PagmoAlgorithm& each : pagmo_algorithms()) {
-      known += (known.empty() ? "" : ", ") + std::string(each.name);
+      known.emplace_back(each.name);
     }
-    refuse(experiment, "algorithm '" + settings.algorithm + "'", "one of " + known);
+    refuse(experiment, "algorithm " + sim::in_quotes(settings.algorithm), "one of " + sim::listed(known));
   }
   check_objectives(experiment, settings.algorithm, algorithm->objectives);
   if (settings.population < algorithm->least_population || settings.population % algorithm->population_multiple != 0) {
@@ -84,6 +84,15 @@ void check_method(const Experiment& experiment) {
   } else {
     check_objectives(experiment, "genetic", PagmoAlgorithm::Objectives::one);
   }
+}
+
+std::uint64_t planned_evaluations(const Experiment& experiment) {
+  const auto* const settings = std::get_if<PagmoSettings>(&experiment.method);
+  if (settings == nullptr) {
+    return experiment.evaluations;
+  }
+  const std::uint64_t all = (std::uint64_t{settings->generations} + 1) * settings->population;
+  return experiment.evaluations == 0 ? all : std::min(all, experiment.evaluations);
 }
 
 std::string search(const Experiment& experiment, std::uint32_t run, FitnessSource& source) {

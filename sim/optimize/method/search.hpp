@@ -13,6 +13,10 @@ namespace proleg::optimize {
 /// settings that the method refuses (a population that is too small, several objectives for a method that knows one).
 [[nodiscard]] std::string search(const Experiment& experiment, std::uint32_t run, FitnessSource& source);
 
+/// Evaluations that a search makes if it does not end before: those of its budget, or of its generations if they are
+/// fewer. 0: nobody knows.
+[[nodiscard]] std::uint64_t planned_evaluations(const Experiment& experiment);
+
 /// Throws InputError as search() would, before anything is evaluated.
 void check_method(const Experiment& experiment);
 

@@ -2,7 +2,8 @@
 
 // The optimiser on a cluster: `mpirun -n 64 proleg optimise ...` starts the same program 64 times. Rank 0 searches, all
 // ranks simulate. Every rank has a process of its own for its simulations, forked before MPI is initialised, so that a
-// simulation can be ended at any time and a rank stays able to hear.
+// simulation can be ended at any time and a rank stays able to hear. (Only one that replaces a process which died is
+// forked later. It calls nothing of MPI, and ends with its rank.)
 
 #include <memory>
 #include <optional>

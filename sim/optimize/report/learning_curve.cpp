@@ -119,14 +119,14 @@ std::string count_text(double evaluations) {
 
 void draw_title(Svg& svg, const Experiment& experiment, const Contents& contents, std::size_t evaluations) {
   const Objective& objective = experiment.objectives.front();
-  svg.text({sim::page_left, 36.0}, sim::shortened(experiment_title(experiment)), TextAnchor::start, 20.0, sim::ink,
+  svg.text({sim::page_left, 36.0}, sim::shortened(experiment.title()), TextAnchor::start, 20.0, sim::ink,
            R"(font-weight="bold")");
   svg.text({sim::page_left, 58.0},
            "method " + method_name(experiment.method) + ", " + count_text(static_cast<double>(evaluations)) +
                (contents.failed.empty() ? "" : ", " + std::to_string(contents.failed.size()) + " failed"),
            TextAnchor::start, sim::label_size, sim::faint_ink);
   if (contents.winner) {
-    const std::string_view unit = unit_of(objective);
+    const std::string_view unit = objective.unit();
     svg.text({sim::page_right, 58.0},
              "best " + rounded_text(contents.winner->y) + (unit.empty() ? "" : " " + std::string(unit)) + " after " +
                  count_text(contents.winner->x),
@@ -156,11 +156,11 @@ std::string draw_learning_curve(const Experiment& experiment, std::span<const Ev
   const Axis x{0.0, last, sim::page_left, sim::page_right};
   const Axis y = axis_of(contents);
 
-  Svg svg(sim::page_width, page_height, experiment_title(experiment),
+  Svg svg(sim::page_width, page_height, experiment.title(),
           "Scores of the evaluations of an optimisation, the best so far and the mean, against their number.");
   draw_title(svg, experiment, contents, evaluations.size());
   draw_key(svg, contents);
-  sim::draw_plot_grid(svg, x, y, "evaluations", with_unit(sim::shortened(objective.name), unit_of(objective)));
+  sim::draw_plot_grid(svg, x, y, "evaluations", with_unit(sim::shortened(objective.name), objective.unit()));
   svg.begin_group("evaluations");
   svg.marks(sim::to_marks(contents.rated, x, y, 2.5), dot, dot_style(evaluations.size()));
   svg.end_group();

@@ -46,7 +46,7 @@ std::string axis_name(const Experiment& experiment, std::size_t objective) {
     return {};
   }
   const Objective& named = experiment.objectives[objective];
-  return with_unit(sim::shortened(named.name), unit_of(named)) +
+  return with_unit(sim::shortened(named.name), named.unit()) +
          (named.goal == Goal::maximise ? ": more is better" : ": less is better");
 }
 
@@ -65,9 +65,9 @@ std::string draw_pareto_front(const Experiment& experiment, std::span<const Eval
   const sim::Axis x = score_axis(std::move(all.x), best.x, sim::page_left, sim::page_right);
   const sim::Axis y = score_axis(std::move(all.y), best.y, panel_bottom, panel_top);
 
-  Svg svg(sim::page_width, page_height, experiment_title(experiment),
+  Svg svg(sim::page_width, page_height, experiment.title(),
           "Candidates by two objectives; those that none beats in both are joined by a line.");
-  svg.text({sim::page_left, 36.0}, sim::shortened(experiment_title(experiment)), TextAnchor::start, 20.0, sim::ink,
+  svg.text({sim::page_left, 36.0}, sim::shortened(experiment.title()), TextAnchor::start, 20.0, sim::ink,
            R"(font-weight="bold")");
   svg.text({sim::page_left, 58.0},
            "method " + method_name(experiment.method) + ", " + std::to_string(evaluations.size()) + " evaluations, " +

@@ -121,24 +121,23 @@ std::string top_text(const sim::Scenario& scenario, const ScenarioFiles& files, 
   };
   return remark + "<simulation>\n" + element("  ", "robot", files.robot.generic_string()) +
          element("  ", "actuation", actuation) + element("  ", "environment", files.environment.generic_string()) +
-         "  <simulationProperties>\n" + element("    ", "stepWidth", exact_text(scenario.step_s)) +
+         "  <simulationProperties>\n" + element("    ", "stepWidth", sim::exact_text(scenario.step_s)) +
          element("    ", "tick unit=\"ms\"", sim::plain_number(scenario.kernel.tick_period_us / 1000.0, 3)) +
-         element("    ", "duration", exact_text(scenario.duration_s)) +
+         element("    ", "duration", sim::exact_text(scenario.duration_s)) +
          element("    ", "seed", std::to_string(scenario.kernel.seed)) +
          element("    ", "solver", solver_name(scenario.solver)) +
-         (scenario.contact_noise == 0.0 ? "" : element("    ", "contactNoise", exact_text(scenario.contact_noise))) +
+         (scenario.contact_noise == 0.0 ? ""
+                                        : element("    ", "contactNoise", sim::exact_text(scenario.contact_noise))) +
          "  </simulationProperties>\n</simulation>\n";
 }
 
-void write_file(const fs::path& path, std::string_view text) {
+void write_with_folder(const fs::path& path, std::string_view text) {
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
   if (error) {
     throw sim::RecordError(path.parent_path(), "cannot be created: " + error.message());
   }
-  sim::Output output(path);
-  output.write(text);
-  output.finish();
+  sim::write_file(path, text);
 }
 
 }  // namespace
@@ -153,16 +152,18 @@ fs::path write_scenario(const Experiment& experiment, const Candidate& candidate
   const ScenarioFiles files = collect_scenario_files(scenario, name + ".files");
   const std::string remark =
       "<!-- Found by an optimisation: " + comment_text(fs::path(experiment.path).filename().string()) + ", method " +
-      comment_text(method_name(experiment.method)) + ". -->\n";
+      comment_text(method_name(experiment.method)) + "." +
+      (experiment.trials.spread.any() ? " What its trials varied is as in the scenario that it started from." : "") +
+      " -->\n";
 
   for (const FileCopy& file : files.copies) {
-    write_file(folder / file.place, file.text);
+    write_with_folder(folder / file.place, file.text);
   }
   const std::string actuation = name + ".actuation.xml";
-  write_file(folder / actuation, actuation_text(scenario, files.robot.filename().string(), remark));
+  write_with_folder(folder / actuation, actuation_text(scenario, files.robot.filename().string(), remark));
   // Last, so that whoever sees it finds the others.
   const fs::path top = folder / (name + ".simulation.xml");
-  write_file(top, top_text(scenario, files, actuation, remark));
+  write_with_folder(top, top_text(scenario, files, actuation, remark));
   return top;
 }
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 
 #include "sim/record/plot_frame.hpp"
 
@@ -17,21 +16,8 @@ bool has_own_score(const Experiment& experiment, const Evaluation& evaluation, s
                              [&](const Term& term) { return std::isfinite(evaluation.measures[term.measure]); });
 }
 
-std::string_view unit_of(const Objective& objective) {
-  const bool is_measure = objective.terms.size() == 1 && objective.terms.front().weight == 1.0;
-  return is_measure ? sim::declaration_of(objective.terms.front().measure).unit : std::string_view();
-}
-
 std::string with_unit(std::string_view name, std::string_view unit) {
   return std::string(name) + (unit.empty() ? "" : " (" + std::string(unit) + ")");
-}
-
-std::string exact_text(double value) {
-  if (!std::isfinite(value)) {
-    return {};
-  }
-  std::array<char, 32> text;
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
 std::string rounded_text(double value) {
@@ -67,11 +53,6 @@ sim::Axis score_axis(std::vector<double> scores, std::span<const double> always,
     high = std::max(high, score);
   }
   return sim::axis_over(low, high, pixel_low, pixel_high);
-}
-
-std::string experiment_title(const Experiment& experiment) {
-  const std::string name = std::filesystem::path(experiment.path).filename().string();
-  return name.substr(0, name.find('.'));
 }
 
 }  // namespace proleg::optimize

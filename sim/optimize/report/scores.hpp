@@ -16,14 +16,8 @@ namespace proleg::optimize {
 /// Whether the score of an objective comes from measures, and not from a failure or a measure that is not defined.
 [[nodiscard]] bool has_own_score(const Experiment& experiment, const Evaluation& evaluation, std::size_t objective);
 
-/// Unit of an objective's score: that of its measure, or nothing for a sum.
-[[nodiscard]] std::string_view unit_of(const Objective& objective);
-
 /// "distance (m)".
 [[nodiscard]] std::string with_unit(std::string_view name, std::string_view unit);
-
-/// Shortest text that reads back as the same double; nothing if it is not finite.
-[[nodiscard]] std::string exact_text(double value);
 
 /// A few digits, for titles: "1.958".
 [[nodiscard]] std::string rounded_text(double value);
@@ -38,8 +32,5 @@ namespace proleg::optimize {
 
 /// With that number of decimals, zeros included.
 [[nodiscard]] std::string fixed_text(double value, int decimals);
-
-/// "great_deluge" of "travelling_wave/great_deluge.optimise.xml".
-[[nodiscard]] std::string experiment_title(const Experiment& experiment);
 
 }  // namespace proleg::optimize

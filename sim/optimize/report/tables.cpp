@@ -34,7 +34,7 @@ void add_header(const Experiment& experiment, Line& line) {
     line.add(with_unit(sim::one_line(dimension.name), scale_of(dimension.unit).symbol));
   }
   for (const Objective& objective : experiment.objectives) {
-    line.add("score:" + with_unit(sim::one_line(objective.name), unit_of(objective)));
+    line.add("score:" + with_unit(sim::one_line(objective.name), objective.unit()));
   }
   for (const sim::MeasureDeclaration& measure : sim::measures()) {
     line.add(with_unit(measure.name, measure.unit));
@@ -51,13 +51,13 @@ void add_evaluation(const Experiment& experiment, const Evaluation& evaluation, 
     line.add(experiment.space.value_text(evaluation.candidate, i));
   }
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
-    line.add(exact_text(evaluation.scores[i]));
+    line.add(sim::exact_text(evaluation.scores[i]));
   }
   for (const double value : evaluation.measures.all()) {
-    line.add(exact_text(value));
+    line.add(sim::exact_text(value));
   }
-  line.add(exact_text(evaluation.simulated_s));
-  line.add(exact_text(evaluation.wall_s));
+  line.add(sim::exact_text(evaluation.simulated_s));
+  line.add(sim::exact_text(evaluation.wall_s));
   for (const bool flag : {evaluation.given_up, evaluation.reused, evaluation.restored}) {
     line.add(flag ? "1" : "0");
   }

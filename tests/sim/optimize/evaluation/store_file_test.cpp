@@ -1,4 +1,6 @@
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -133,6 +135,14 @@ TEST_F(StoreFile, TakesOneWriterAtATime) {
     EXPECT_NE(not_resumed().find("another program is writing into it"), std::string::npos);
   }
   EXPECT_EQ(not_resumed(), "nothing");
+}
+
+TEST_F(StoreFile, IsLeftToSqliteWhichLocksItToo) {
+  const std::unique_ptr<Store> store = open(Store::Opening::fresh, experiment_);
+  const int file = ::open(path_.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_GE(file, 0);
+  EXPECT_EQ(flock(file, LOCK_EX | LOCK_NB), 0) << "on a network file system this would be SQLite's own kind of lock";
+  close(file);
 }
 
 TEST_F(StoreFile, InAFolderThatCannotBeWrittenIsRefused) {

@@ -239,6 +239,10 @@ const auto evaluation = testing::Values(
     BadExperiment{"Reuse", "<reuse>1", "<reuse>yes", "31: found 'yes' in <reuse>, expected a whole number from 0 to 1"},
     BadExperiment{"NoTrial", trials, "<trials count=\"0\">",
                   "32: found count '0' in <trials>, expected a whole number from 1 to 1000"},
+    BadExperiment{
+        "TrialsThatAreAllAlike", "<friction>0.1</friction>\n      <latency unit=\"ms\">20</latency>", "",
+        "32: found 2 trials that are all alike, expected a spread of <friction>, <mass>, <servoGain>, <latency> "
+        "or <contactNoise>, or noise in the scenario"},
     BadExperiment{"Aggregate", "aggregate=\"mean\"", "aggregate=\"best\"",
                   "32: found aggregate 'best' in <trials>, expected 'mean' or 'worst'"},
     BadExperiment{"UnknownSpread", "<friction>0.1</friction>", "<gravity>0.1</gravity>",

@@ -49,7 +49,7 @@ TEST(Fingerprint, ChangesWithEverySetting) {
       {"<waterLevel>0.1", "<retries>9</retries><waterLevel>0.1"},
       {"<waterLevel>0.1", "<confidence>9</confidence><waterLevel>0.1"},
       {"<waterLevel>0.1", "<step>9</step><waterLevel>0.1"},
-      {"<waterLevel>0.1", "<growth>doubling</growth><waterLevel>0.1"},
+      {"<waterLevel>0.1", "<growth>linear</growth><waterLevel>0.1"},
       {"<waterLevel>0.1", "<move>one</move><waterLevel>0.1"},
       {"<waterLevel>0.1", "<neighbour>sign</neighbour><waterLevel>0.1"},
       {"<waterLevel>0.1", "<start>scenario</start><waterLevel>0.1"},

@@ -39,6 +39,7 @@ TEST(GreatDeluge, HasTheThesissSettingsByDefault) {
   EXPECT_EQ(deluge.credits, 10U);
   EXPECT_EQ(deluge.retries, 200U);
   EXPECT_EQ(deluge.confidence, 20U);
+  EXPECT_EQ(deluge.growth, GreatDelugeSettings::Growth::doubling) << "its step is 'increased by itself'";
   EXPECT_EQ(deluge.target, std::nullopt);
   EXPECT_EQ(method_name(experiment.method), "great-deluge");
 }
@@ -47,7 +48,7 @@ TEST(GreatDeluge, TakesEverySetting) {
   const Experiment experiment = read_with(
       water_level,
       "<waterLevel>-0.5</waterLevel><rain>0.25</rain><credits>0</credits><retries>7</retries><confidence>3</confidence>"
-      "<step>4</step><growth>Doubling</growth><move>one</move><neighbour>uniform</neighbour><start>scenario</start>"
+      "<step>4</step><growth>Linear</growth><move>one</move><neighbour>uniform</neighbour><start>scenario</start>"
       "<firstMustPass>0</firstMustPass><reevaluations>2</reevaluations><chains>5</chains><target>1.9</target>");
   const auto& deluge = std::get<GreatDelugeSettings>(experiment.method);
   EXPECT_EQ(deluge.water_level, -0.5);
@@ -56,7 +57,7 @@ TEST(GreatDeluge, TakesEverySetting) {
   EXPECT_EQ(deluge.retries, 7U);
   EXPECT_EQ(deluge.confidence, 3U);
   EXPECT_EQ(deluge.step, 4U);
-  EXPECT_EQ(deluge.growth, GreatDelugeSettings::Growth::doubling);
+  EXPECT_EQ(deluge.growth, GreatDelugeSettings::Growth::linear);
   EXPECT_EQ(deluge.move, GreatDelugeSettings::Move::one);
   EXPECT_EQ(deluge.neighbour, GreatDelugeSettings::Neighbour::uniform);
   EXPECT_EQ(deluge.start, GreatDelugeSettings::Start::scenario);

@@ -96,8 +96,9 @@ TEST(GreatDelugeSearch, UsesNoRetryAboveAllLevels) {
   }
 }
 
-TEST(GreatDelugeSearch, WidensByTheFirstRadiusAfterEveryConfidenceFailures) {
+TEST(GreatDelugeSearch, WidensByTheFirstRadiusAfterEveryConfidenceFailuresIfToldTo) {
   GreatDelugeSettings settings;
+  settings.growth = Growth::linear;
   settings.step = 3;
   settings.retries = 100;
   settings.credits = 2;
@@ -113,9 +114,8 @@ TEST(GreatDelugeSearch, WidensByTheFirstRadiusAfterEveryConfidenceFailures) {
   }
 }
 
-TEST(GreatDelugeSearch, DoublesTheRadiusIfToldTo) {
+TEST(GreatDelugeSearch, DoublesTheRadiusAfterEveryConfidenceFailures) {
   GreatDelugeSettings settings;
-  settings.growth = Growth::doubling;
   settings.credits = 0;
   settings.retries = 2000;
   const auto log = log_of(settings, Landscape{.level = [](const auto&) { return 0.0; }}, {{80, 80, 80}});
@@ -138,7 +138,7 @@ TEST(GreatDelugeSearch, GoesBackToTheFirstRadiusWhenItAccepts) {
   ASSERT_GT(log.size(), 200U);
   EXPECT_TRUE(log[49].accepted);
   EXPECT_EQ(log[49].used, 48U);
-  EXPECT_EQ(log[49].radius, 3.0);
+  EXPECT_EQ(log[49].radius, 4.0);
   EXPECT_EQ(log[50].used, 0U);
   EXPECT_EQ(log[50].radius, 1.0);
   EXPECT_EQ(log[50].water, 0.15 + 0.01);

@@ -61,7 +61,7 @@ TEST(CheckMethod, RefusesSettingsThatAnAlgorithmDoesNotHave) {
   PagmoSettings settings = pagmo_method("de");
   settings.sigma0 = 0.3;
   EXPECT_EQ(refusal(make_experiment({5}, settings)),
-            "test.optimise.xml: found sigma0 for de, expected settings that it has: crossover scale");
+            "test.optimise.xml: found sigma0 for de, expected settings that it has: crossover, scale");
   settings = pagmo_method("sade");
   settings.scale = 0.3;
   EXPECT_EQ(refusal(make_experiment({5}, settings)),
@@ -76,6 +76,19 @@ TEST(CheckMethod, RefusesSettingsThatAnAlgorithmDoesNotHave) {
   EXPECT_NE(refusal(make_experiment({5}, settings)), "");
   settings.mutation = 0.0;
   EXPECT_EQ(refusal(make_experiment({5}, settings)), "");
+}
+
+TEST(PlannedEvaluations, AreThoseOfTheBudgetOrOfAllGenerationsWithTheFirstPopulation) {
+  Experiment experiment = make_experiment({5}, pagmo_method("cmaes", 20));  // 3 generations
+  EXPECT_EQ(planned_evaluations(experiment), 80U);
+  experiment.evaluations = 50;
+  EXPECT_EQ(planned_evaluations(experiment), 50U);
+  experiment.evaluations = 5000;
+  EXPECT_EQ(planned_evaluations(experiment), 80U);
+  experiment.method = GreatDelugeSettings{};
+  EXPECT_EQ(planned_evaluations(experiment), 5000U);
+  experiment.evaluations = 0;
+  EXPECT_EQ(planned_evaluations(experiment), 0U) << "nobody knows";
 }
 
 TEST(Search, OfOneCandidateEvaluatesItOnce) {

@@ -169,6 +169,15 @@ MethodResult run_method(const std::string& name, const optimize::Experiment& exp
   return result;
 }
 
+/// The mean of the best so far after 100, 200, 400, ... evaluations.
+nlohmann::ordered_json course(const optimize::BestCurves& curves) {
+  nlohmann::ordered_json means = nlohmann::ordered_json::object();
+  for (std::size_t evaluations = 100; evaluations <= curves.mean.size(); evaluations *= 2) {
+    means[std::to_string(evaluations)] = curves.mean[evaluations - 1];
+  }
+  return means;
+}
+
 /// A number of evaluations, or null.
 nlohmann::ordered_json count_or_null(const std::optional<std::size_t>& count) {
   return count ? nlohmann::ordered_json(*count) : nlohmann::ordered_json();
@@ -256,6 +265,7 @@ int experiment(const Options& options) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < results.size(); ++i) {
     list.push_back(to_json(results[i], chosen[i].second.space, uniform_m));
+    list.back()["mean_best_after"] = course(curves[results[i].runs.method]);
     if (deluge != curves.end()) {
       list.back()["reaches_mean_of_great_deluge_after"] =
           count_or_null(optimize::evaluations_to_reach(curves[results[i].runs.method], deluge->second.mean.back()));

@@ -74,6 +74,7 @@ std::string method_text(const PagmoSettings& method) {
   return Settings()
       .add("population", method.population)
       .add("generations", method.generations)
+      .add("restart_after", method.restart_after)
       .add("sigma0", method.sigma0)
       .add("crossover", method.crossover)
       .add("scale", method.scale)

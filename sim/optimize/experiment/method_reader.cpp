@@ -97,13 +97,14 @@ GreatDelugeSettings read_great_deluge(const XmlElement& properties) {
 
 PagmoSettings read_pagmo(const XmlElement& properties, std::string algorithm) {
   const std::vector<std::string> options = pagmo_options(algorithm);
-  std::vector<std::string_view> tags{"popsize", "generations"};
+  std::vector<std::string_view> tags{"popsize", "generations", "restartAfter"};
   tags.insert(tags.end(), options.begin(), options.end());
   const Settings settings(properties, tags);
   PagmoSettings pagmo;
   pagmo.algorithm = std::move(algorithm);
   settings.read("popsize", pagmo.population, 2, largest_population);
   settings.read("generations", pagmo.generations, 1, most_candidates);
+  settings.read("restartAfter", pagmo.restart_after, 0, most_candidates);
   settings.read("sigma0", pagmo.sigma0, step_sizes);
   settings.read("crossover", pagmo.crossover, shares);
   settings.read("scale", pagmo.scale, shares);

@@ -52,10 +52,14 @@ struct PagmoSettings {
   std::string algorithm;  ///< pagmo's name: cmaes, de, nsga2, sade, de1220, pso, sga, xnes, ...
   std::uint32_t population = 20;
   std::uint32_t generations = 1000;  ///< at most
-  std::optional<double> sigma0;      ///< cmaes, xnes: first step size, as a share of the ranges
-  std::optional<double> crossover;   ///< de, sga, nsga2: their CR, cr
-  std::optional<double> scale;       ///< de: F
-  std::optional<double> mutation;    ///< sga, nsga2: their m
+  /// Generations in which the best score gets better by less than a thousandth, after which the search begins anew from
+  /// another random population: for landscapes with several summits. It then ends with its generations or evaluations.
+  /// For algorithms that go on from one generation to the next. 0: never.
+  std::uint32_t restart_after = 0;
+  std::optional<double> sigma0;     ///< cmaes, xnes: first step size, as a share of the ranges
+  std::optional<double> crossover;  ///< de, sga, nsga2: their CR, cr
+  std::optional<double> scale;      ///< de: F
+  std::optional<double> mutation;   ///< sga, nsga2: their m
 };
 
 /// The options above that an algorithm of pagmo knows: sigma0, ...

@@ -114,9 +114,13 @@ TEST(Pagmo, SectionsNameItsAlgorithms) {
 
 TEST(Pagmo, TakesTheSettingsOfEachAlgorithm) {
   const auto cmaes = std::get<PagmoSettings>(
-      with_method("cmaEs", "<popsize>10</popsize><generations>7</generations><sigma0>0.25</sigma0>").method);
+      with_method(
+          "cmaEs",
+          "<popsize>10</popsize><generations>7</generations><restartAfter>3</restartAfter><sigma0>0.25</sigma0>")
+          .method);
   EXPECT_EQ(cmaes.population, 10U);
   EXPECT_EQ(cmaes.generations, 7U);
+  EXPECT_EQ(cmaes.restart_after, 3U);
   EXPECT_EQ(cmaes.sigma0, 0.25);
   const auto de = std::get<PagmoSettings>(
       with_method("differentialEvolution", "<crossover>0.5</crossover><scale>0.75</scale>").method);
@@ -132,12 +136,13 @@ TEST(Pagmo, RefusesTheSettingsOfOtherAlgorithmsAndWhatIsOutOfRange) {
   const std::string file = "top.optimise.xml:4: found ";
   EXPECT_EQ(message_with_method("cmaEs", "<mutation>0.1</mutation>"),
             file +
-                "<mutation> in <properties>, expected <popsize>, <generations>, <sigma0>, "
+                "<mutation> in <properties>, expected <popsize>, <generations>, <restartAfter>, <sigma0>, "
                 "<numOfParametersToOptimize>, <registeredParameters>");
-  EXPECT_EQ(message_with_method("pagmo algorithm=\"sade\"", "<scale>0.1</scale>"),
-            file +
-                "<scale> in <properties>, expected <popsize>, <generations>, <numOfParametersToOptimize>, "
-                "<registeredParameters>");
+  EXPECT_EQ(
+      message_with_method("pagmo algorithm=\"sade\"", "<scale>0.1</scale>"),
+      file +
+          "<scale> in <properties>, expected <popsize>, <generations>, <restartAfter>, <numOfParametersToOptimize>, "
+          "<registeredParameters>");
   EXPECT_EQ(message_with_method("nsga2", "<popsize>1</popsize>"),
             file + "'1' in <popsize>, expected a whole number from 2 to 10000");
   EXPECT_EQ(message_with_method("nsga2", "<generations>0</generations>"),

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <pagmo/algorithm.hpp>
 #include <pagmo/population.hpp>
 #include <pagmo/problem.hpp>
@@ -65,6 +66,50 @@ TEST(PagmoSearch, EndsWithItsGenerationsOrWhenNothingMovesAnyMore) {
     // It took no end of a generation for it: the last generation was all about one place.
     const std::set<Candidate> last(source.asked.end() - 20, source.asked.end());
     EXPECT_LE(last.size(), 12U);
+  }
+}
+
+/// A wide summit of 0.8 in one corner and a narrow one of 1 in the middle.
+double two_summits(const Candidate& candidate) {
+  const auto summit = [&](double place, double width) {
+    double squares = 0.0;
+    for (const std::uint32_t index : candidate) {
+      squares += (index - place) * (index - place);
+    }
+    return std::exp(-squares / (width * width));
+  };
+  return std::max(0.8 * summit(160.0, 120.0), summit(60.0, 50.0));
+}
+
+TEST(PagmoSearch, BeginsAnewFromAnotherPopulationAndFindsTheOtherSummit) {
+  PagmoSettings settings = settings_of("cmaes", 12, 120);
+  std::size_t without = 0;
+  std::size_t with = 0;
+  for (std::uint32_t run = 0; run < 10; ++run) {
+    for (const std::uint32_t restart_after : {0U, 5U}) {
+      settings.restart_after = restart_after;
+      FakeSource source([](const Candidate& candidate) { return std::vector<double>{two_summits(candidate)}; });
+      const std::string ending = search(make_experiment({161, 161, 161}, settings), run, source);
+      const bool found = (*std::max_element(source.scores.begin(), source.scores.end()))[0] > 0.99;
+      (restart_after == 0 ? without : with) += found ? 1U : 0U;
+      if (restart_after > 0) {
+        EXPECT_EQ(ending, "generations used up");
+        EXPECT_GE(source.asked.size(), 12U * 121U) << "and each start has a first population besides";
+      }
+    }
+  }
+  std::printf("the higher summit was found in %zu of 10 searches, with restarts in %zu\n", without, with);
+  EXPECT_LT(without, 8U) << "or there is nothing to gain";
+  EXPECT_GE(with, without + 2);
+}
+
+TEST(PagmoSearch, WithRestartsEndsAlsoWhereNothingIsEverGained) {
+  for (const PagmoAlgorithm& each : pagmo_algorithms()) {
+    const std::size_t objectives = each.objectives == PagmoAlgorithm::Objectives::several ? 2 : 1;
+    PagmoSettings settings = settings_of(std::string(each.name), 12, 9);
+    settings.restart_after = 2;
+    FakeSource source([objectives](const Candidate&) { return std::vector<double>(objectives, 1.0); });
+    EXPECT_NE(search(make_experiment({41, 41}, settings, Goal::maximise, objectives), 0, source), "") << each.name;
   }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "firmware/module/parts.hpp"
-#include "shared/canopen/sdo.hpp"
+#include "shared/canopen/sdo_server.hpp"
 
 namespace proleg::firmware {
 

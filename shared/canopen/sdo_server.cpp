@@ -1,6 +1,6 @@
+#include "shared/canopen/sdo_server.hpp"
 #include "shared/canopen/messages.hpp"
 #include "shared/canopen/objects.hpp"
-#include "shared/canopen/sdo.hpp"
 #include "shared/canopen/sdo_frame.hpp"
 
 namespace proleg::canopen {

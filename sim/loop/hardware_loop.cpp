@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "shared/canopen/bus_load.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "shared/fixed/random.hpp"
 #include "sim/loop/host_node.hpp"
 #include "sim/loop/injector.hpp"
@@ -12,7 +13,6 @@
 #include "sim/loop/native_module.hpp"
 #include "sim/loop/plant_ticks.hpp"
 #include "sim/loop/servo_pulses.hpp"
-#include "sim/scenario/input_error.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -21,6 +21,7 @@
 
 #include "firmware/module/board.hpp"
 #include "firmware/module/ports.hpp"
+#include "shared/computer/hash/value_hash.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/loop/crystal.hpp"
 #include "sim/loop/difference.hpp"
@@ -29,7 +30,6 @@
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/plant.hpp"
 #include "sim/loop/touch_inputs.hpp"
-#include "sim/record/hash.hpp"
 #include "sim/record/recorder.hpp"
 
 namespace proleg::sim {

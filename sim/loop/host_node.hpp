@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "shared/canopen/master.hpp"
+#include "shared/master/master.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/loop/crystal.hpp"
 #include "sim/scenario/scenario.hpp"

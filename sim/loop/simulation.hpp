@@ -4,13 +4,13 @@
 #include <span>
 #include <vector>
 
+#include "shared/computer/hash/value_hash.hpp"
 #include "shared/kernel/servo_schedule.hpp"
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/plant.hpp"
 #include "sim/loop/touch_inputs.hpp"
 #include "sim/measure/gait_meter.hpp"
 #include "sim/measure/measure.hpp"
-#include "sim/record/hash.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/robot/servo_pulse.hpp"
 #include "sim/scenario/scenario.hpp"

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <vector>
 
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/hash/value_hash.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
 #include "sim/loop/internal_values.hpp"
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/servo_pulses.hpp"
 #include "sim/loop/touch_inputs.hpp"
-#include "sim/record/hash.hpp"
-#include "sim/scenario/input_error.hpp"
-#include "sim/scenario/text.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string>
 
-#include "sim/scenario/input_error.hpp"
+#include "shared/computer/errors/input_error.hpp"
 
 namespace proleg::sim {
 namespace {

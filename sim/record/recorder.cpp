@@ -7,11 +7,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "sim/record/recording_file.hpp"
 #include "sim/record/schema.hpp"
-#include "sim/record/sqlite.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -140,13 +140,13 @@ class Recorder::Storage {
   template <typename Action>
   void guard(const Action& action) {
     if (closed_ || failed_) {
-      throw RecordError(path_, closed_ ? "the recording is finished" : "recording stopped at an earlier error");
+      throw FileError(path_, closed_ ? "the recording is finished" : "recording stopped at an earlier error");
     }
     try {
       action();
     } catch (const SqliteError& error) {
       failed_ = true;
-      throw RecordError(path_, std::string("recording stopped: ") + error.what());
+      throw FileError(path_, std::string("recording stopped: ") + error.what());
     }
   }
 
@@ -265,8 +265,8 @@ class Recorder::Storage {
                                     [](double x) { return std::isfinite(x); }) &&
                         std::all_of(sample.link_poses.begin(), sample.link_poses.end(), is_finite);
     if (!finite) {
-      throw RecordError(path_, "at tick " + std::to_string(sample.tick) +
-                                   " a pose or joint angle is not a finite number: the simulation has become unstable");
+      throw FileError(path_, "at tick " + std::to_string(sample.tick) +
+                                 " a pose or joint angle is not a finite number: the simulation has become unstable");
     }
   }
 
@@ -324,7 +324,7 @@ Recorder::Recorder(const std::filesystem::path& path, const Scenario& scenario, 
   } catch (const SqliteError& error) {
     std::error_code ignored;  // the error that is reported is the first
     std::filesystem::remove(path, ignored);
-    throw RecordError(path, std::string("cannot be written: ") + error.what());
+    throw FileError(path, std::string("cannot be written: ") + error.what());
   }
 }
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/record/record_error.hpp"
+#include "shared/computer/errors/file_error.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/robot/servo_pulse.hpp"
 #include "sim/scenario/losses.hpp"
@@ -37,7 +37,7 @@ struct TickSample {
 /// a second is committed by the next record_tick. (A program that stops recording for a while, alive but silent, can
 /// lose the half second before its silence.)
 ///
-/// Every failure to write is thrown as RecordError; after one, the recorder takes nothing more.
+/// Every failure to write is thrown as FileError; after one, the recorder takes nothing more.
 class Recorder {
  public:
   /// Creates the file. It must not be there yet, unless it is empty or an earlier recording, which is then replaced.

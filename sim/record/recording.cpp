@@ -7,11 +7,11 @@
 #include <optional>
 #include <sstream>
 
+#include "shared/computer/errors/file_error.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/kernel/kernel.hpp"
-#include "sim/record/record_error.hpp"
 #include "sim/record/schema.hpp"
-#include "sim/record/sqlite.hpp"
-#include "sim/scenario/input_error.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -93,11 +93,11 @@ auto reading(const std::filesystem::path& path, const Action& action) {
         throw InputError(path.string(), 0, error.what(), what_is_expected);
       case SQLITE_CANTOPEN:
       case SQLITE_READONLY:
-        throw RecordError(
+        throw FileError(
             path, std::string("cannot be read (") + error.what() +
                       "); a recording that was not finished needs its -wal file and a folder with write permission");
       default:
-        throw RecordError(path, std::string("cannot be read: ") + error.what());
+        throw FileError(path, std::string("cannot be read: ") + error.what());
     }
   }
 }

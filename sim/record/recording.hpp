@@ -15,6 +15,10 @@
 #include "sim/robot/servo_pulse.hpp"
 #include "sim/scenario/losses.hpp"
 
+namespace proleg {
+class Statement;
+}
+
 namespace proleg::sim {
 
 struct RecordedJoint {
@@ -68,12 +72,11 @@ struct RecordedTick {
   std::vector<std::uint8_t> latched_contacts;  ///< at SYNC tick; bit 0 rear, bit 1 front sensor
 };
 
-class Statement;
 
 /// A recording as it was when it was opened; a run may go on and write into the file meanwhile.
 ///
 /// Throws InputError if the file is missing or is no recording, is of a newer format, damaged or without a tick, and
-/// RecordError if the system cannot read it. The file is never changed.
+/// FileError if the system cannot read it. The file is never changed.
 class Recording {
  public:
   explicit Recording(const std::filesystem::path& path);

@@ -10,9 +10,9 @@
 #include <fstream>
 #include <string>
 
-#include "sim/record/record_error.hpp"
+#include "shared/computer/errors/file_error.hpp"
+#include "shared/computer/sqlite/sqlite.hpp"
 #include "sim/record/schema.hpp"
-#include "sim/record/sqlite.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -48,19 +48,19 @@ bool is_being_recorded(const std::filesystem::path& path) {
 void remove_earlier_recording(const std::filesystem::path& path, const std::filesystem::file_status& status) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(status)) {
-    throw RecordError(path, "is there and is not a file; the recording is not written");
+    throw FileError(path, "is there and is not a file; the recording is not written");
   }
   const bool empty = std::filesystem::file_size(path, error) == 0 && !error;
   if (!empty && !is_recording(path)) {
-    throw RecordError(path, "is there and is not a recording; it is left as it is");
+    throw FileError(path, "is there and is not a recording; it is left as it is");
   }
   if (!empty && is_being_recorded(path)) {
-    throw RecordError(path, "another program is recording into it");
+    throw FileError(path, "another program is recording into it");
   }
   for (const char* suffix : {"-wal", "-shm", "-journal", ""}) {
     std::filesystem::remove(path.string() + suffix, error);
     if (error) {
-      throw RecordError(path, "the earlier recording cannot be replaced: " + error.message());
+      throw FileError(path, "the earlier recording cannot be replaced: " + error.message());
     }
   }
 }
@@ -76,7 +76,7 @@ void claim_recording_file(const std::filesystem::path& path) {
   // SQLite would create the file, too, but after a refusal it tries again for reading and reports that failure.
   const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) {
-    throw RecordError(path, std::string("cannot be created: ") + std::strerror(errno));
+    throw FileError(path, std::string("cannot be created: ") + std::strerror(errno));
   }
   close(descriptor);
 }

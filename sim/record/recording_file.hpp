@@ -4,7 +4,7 @@
 
 namespace proleg::sim {
 
-/// Creates an empty file for a new recording, in place of an empty file or an earlier recording. Throws RecordError if
+/// Creates an empty file for a new recording, in place of an empty file or an earlier recording. Throws FileError if
 /// anything else is there, or a recording that is being written at this moment, or if the system refuses.
 void claim_recording_file(const std::filesystem::path& path);
 

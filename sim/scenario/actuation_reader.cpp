@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
 #include "sim/scenario/settings.hpp"
-#include "sim/scenario/text.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {

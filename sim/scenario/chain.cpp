@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/gait/joint_mask.hpp"
-#include "sim/scenario/input_error.hpp"
-#include "sim/scenario/text.hpp"
 
 namespace proleg::sim {
 namespace {

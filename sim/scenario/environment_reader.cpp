@@ -6,10 +6,10 @@
 #include <optional>
 #include <utility>
 
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/scenario/geometry_reader.hpp"
-#include "sim/scenario/input_error.hpp"
 #include "sim/scenario/kinbody_reader.hpp"
-#include "sim/scenario/text.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {

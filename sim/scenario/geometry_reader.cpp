@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/scenario/text.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
-#include "sim/scenario/text.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/gait/joint_mask.hpp"
 #include "sim/scenario/geometry_reader.hpp"
-#include "sim/scenario/input_error.hpp"
 #include "sim/scenario/joint_reader.hpp"
 #include "sim/scenario/mass_reader.hpp"
-#include "sim/scenario/text.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {

@@ -8,11 +8,11 @@
 #include <sstream>
 #include <tuple>
 
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/fixed/random.hpp"
 #include "shared/kernel/kernel.hpp"
-#include "sim/scenario/input_error.hpp"
 #include "sim/scenario/settings.hpp"
-#include "sim/scenario/text.hpp"
 
 namespace proleg::sim {
 namespace {

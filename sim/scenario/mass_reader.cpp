@@ -4,8 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/scenario/geometry_reader.hpp"
-#include "sim/scenario/text.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {

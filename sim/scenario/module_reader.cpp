@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/scenario/settings.hpp"
-#include "sim/scenario/text.hpp"
 
 namespace proleg::sim {
 namespace {

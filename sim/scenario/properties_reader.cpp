@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "sim/scenario/text.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {

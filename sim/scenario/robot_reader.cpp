@@ -3,10 +3,10 @@
 #include <cmath>
 #include <utility>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/scenario/chain.hpp"
 #include "sim/scenario/kinbody_reader.hpp"
 #include "sim/scenario/module_reader.hpp"
-#include "sim/scenario/text.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {

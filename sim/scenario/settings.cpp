@@ -5,10 +5,10 @@
 #include <optional>
 #include <tuple>
 
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
-#include "sim/scenario/input_error.hpp"
 #include "sim/scenario/reader.hpp"
-#include "sim/scenario/text.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -7,8 +7,8 @@
 #include <span>
 #include <utility>
 
-#include "sim/scenario/input_error.hpp"
-#include "sim/scenario/text.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 
 namespace proleg::sim {
 namespace {

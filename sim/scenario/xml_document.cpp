@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim/scenario/input_error.hpp"
-#include "sim/scenario/text.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -12,6 +12,7 @@
 
 #include "sim/scenario/reader.hpp"
 #include "tests/bench/evaluation.hpp"
+#include "tests/support/files.hpp"
 
 namespace {
 
@@ -36,7 +37,7 @@ int main(int argc, char** argv) {
   try {
     sim::DiskFiles files;
     const sim::Scenario scenario =
-        sim::read_scenario(PROLEG_SOURCE_DIR "/sim/scenarios/travelling_wave/uniform.simulation.xml", files);
+        sim::read_scenario(source_path("/sim/scenarios/travelling_wave/uniform.simulation.xml"), files);
     for (const bench::Workload& workload : bench::workloads) {
       benchmark::RegisterBenchmark(std::string(workload.name).c_str(),
                                    [&workload, changed = bench::with_workload(scenario, workload)](

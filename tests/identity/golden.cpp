@@ -12,6 +12,7 @@
 #include "shared/fixed/crc32.hpp"
 #include "shared/gait/registry.hpp"
 #include "tests/identity/sensing_probe.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::identity {
 namespace {
@@ -75,7 +76,7 @@ void write_file(const std::filesystem::path& file, const std::string& text) {
 
 }  // namespace
 
-std::filesystem::path golden_file() { return std::filesystem::path(PROLEG_SOURCE_DIR) / "tests/identity/golden.tsv"; }
+std::filesystem::path golden_file() { return std::filesystem::path(source_path("/tests/identity/golden.tsv")); }
 
 std::vector<Golden> read_golden(const std::filesystem::path& file) {
   std::ifstream stream(file);
@@ -101,7 +102,7 @@ std::vector<Golden> read_golden(const std::filesystem::path& file) {
 void write_golden(const std::filesystem::path& file, const std::vector<Golden>& rows) {
   write_file(file, std::string(heading) + '\n' + text_of(rows));
 
-  const std::filesystem::path header = std::filesystem::path(PROLEG_SOURCE_DIR) / "shared/kernel/fingerprint.hpp";
+  const std::filesystem::path header = std::filesystem::path(source_path("/shared/kernel/fingerprint.hpp"));
   std::ostringstream old;
   old << std::ifstream(header).rdbuf();
   std::ostringstream constant;

@@ -4,10 +4,10 @@
 #include <iostream>
 #include <string>
 
+#include "shared/computer/errors/input_error.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "shared/gait/registry.hpp"
 #include "sim/measure/measure.hpp"
-#include "sim/scenario/input_error.hpp"
 #include "tools/proleg/command_line.hpp"
 
 namespace {
@@ -126,7 +126,7 @@ int describe(const std::string& name, bool markdown) {
     for (std::size_t i = 0; i < algorithm_count(); ++i) {
       known += (known.empty() ? "" : ", ") + std::string(algorithm_at(i).declaration().name);
     }
-    throw sim::InputError("NAME", 0, "'" + name + "'", "one of " + known);
+    throw InputError("NAME", 0, "'" + name + "'", "one of " + known);
   }
   if (markdown) {
     print_markdown(std::cout, algorithm->declaration());

@@ -9,8 +9,8 @@
 #include <iostream>
 #include <string>
 
-#include "sim/scenario/input_error.hpp"
-#include "sim/scenario/text.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 
 namespace proleg::tools {
 
@@ -21,7 +21,7 @@ std::string found(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     std::string words;
     for (const std::string& word : app.remaining()) {
-      words += (words.empty() ? "" : " ") + sim::in_quotes(word);
+      words += (words.empty() ? "" : " ") + in_quotes(word);
     }
     return "unknown " + words;
   }
@@ -97,7 +97,7 @@ std::string CommandLine::name() const { return app_->get_name(); }
 
 int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
   const auto complain = [&](const std::exception& error) {
-    std::cerr << app_->get_name() << ": " << sim::one_line(error.what()) << '\n';
+    std::cerr << app_->get_name() << ": " << one_line(error.what()) << '\n';
   };
   occupy_closed_streams();
   try {
@@ -106,7 +106,7 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
     app_->exit(request);
     return exit_success;
   } catch (const CLI::ParseError& error) {
-    std::cerr << app_->get_name() << ": found " << sim::one_line(found(*app_, error)) << ", expected what '"
+    std::cerr << app_->get_name() << ": found " << one_line(found(*app_, error)) << ", expected what '"
               << app_->get_name() << " --help' lists\n";
     return exit_bad_input;
   }
@@ -117,7 +117,7 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
       throw std::runtime_error("cannot write to standard output");
     }
     return status;
-  } catch (const sim::InputError& error) {
+  } catch (const InputError& error) {
     complain(error);
     return exit_bad_input;
   } catch (const BadInput& error) {

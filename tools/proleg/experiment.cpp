@@ -8,13 +8,13 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/optimize/evaluation/local_workers.hpp"
 #include "sim/optimize/method/pagmo_algorithms.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/thesis_experiment.hpp"
-#include "sim/record/output.hpp"
-#include "sim/scenario/input_error.hpp"
-#include "sim/scenario/text.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/optimisation.hpp"
@@ -68,7 +68,7 @@ void check_method_name(const std::vector<Method>& methods, const std::string& na
   if (std::ranges::count(methods, name, &Method::name) == 0) {
     std::vector<std::string> names;
     std::ranges::transform(methods, std::back_inserter(names), &Method::name);
-    throw sim::InputError("--method", 0, sim::in_quotes(name), "one of " + sim::listed(names));
+    throw InputError("--method", 0, in_quotes(name), "one of " + listed(names));
   }
 }
 
@@ -91,9 +91,8 @@ fs::path find_scenarios(const Options& options, const std::string& file) {
       return folder;
     }
   }
-  throw sim::InputError(options.scenarios ? "--scenarios" : options.name, 0,
-                        "no " + (candidates.front() / file).string(),
-                        "the experiment's files there; --scenarios FOLDER says where else");
+  throw InputError(options.scenarios ? "--scenarios" : options.name, 0, "no " + (candidates.front() / file).string(),
+                   "the experiment's files there; --scenarios FOLDER says where else");
 }
 
 optimize::Experiment read(const Options& options, const fs::path& folder, const Method& method) {
@@ -206,11 +205,11 @@ int experiment(const Options& options) {
     throw BadInput("found mpirun, expected none: an experiment runs on one computer; 'proleg optimise' knows clusters");
   }
   if (options.name != "travelling_wave") {
-    throw sim::InputError(options.name, 0, "unknown experiment " + sim::in_quotes(options.name), "'travelling_wave'");
+    throw InputError(options.name, 0, "unknown experiment " + in_quotes(options.name), "'travelling_wave'");
   }
-  const std::optional<std::uint32_t> repetitions = sim::parse_whole<std::uint32_t>(options.repetitions);
+  const std::optional<std::uint32_t> repetitions = parse_whole<std::uint32_t>(options.repetitions);
   if (!repetitions || *repetitions == 0 || *repetitions > 1000) {
-    throw sim::InputError("--repetitions", 0, sim::in_quotes(options.repetitions), "1 to 1000");
+    throw InputError("--repetitions", 0, in_quotes(options.repetitions), "1 to 1000");
   }
   const std::uint32_t worker_count = parse_workers(options.workers);
   const std::vector<Method> methods = all_methods();
@@ -241,16 +240,16 @@ int experiment(const Options& options) {
       std::cerr << "proleg experiment: interrupted; the same command goes on from " << folder.string() << '\n';
       return exit_failed;
     }
-    sim::write_file(folder / method->table, optimize::experiment_table(result.runs));
-    sim::write_file(folder / method->runs_figure, optimize::draw_every_run(result.runs, uniform_m));
-    sim::write_file(folder / method->spread_figure, optimize::draw_run_spread(result.runs, uniform_m));
+    write_file(folder / method->table, optimize::experiment_table(result.runs));
+    write_file(folder / method->runs_figure, optimize::draw_every_run(result.runs, uniform_m));
+    write_file(folder / method->spread_figure, optimize::draw_run_spread(result.runs, uniform_m));
     optimize::write_scenario(experiment, result.best->candidate, folder / method->name, "best");
     all_runs.push_back(result.runs);
     results.push_back(std::move(result));
   }
-  sim::write_file(folder / "figure_7_1.svg", optimize::draw_method_comparison(all_runs, uniform_m));
+  write_file(folder / "figure_7_1.svg", optimize::draw_method_comparison(all_runs, uniform_m));
   const std::string summary = optimize::experiment_summary(all_runs, uniform_m);
-  sim::write_file(folder / "summary.txt", summary);
+  write_file(folder / "summary.txt", summary);
 
   if (!options.json) {
     std::cout << summary << "\ntables, figures and stores are in " << folder.string() << '\n';

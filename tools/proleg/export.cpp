@@ -4,10 +4,10 @@
 #include <iostream>
 #include <optional>
 
-#include "sim/record/output.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
 #include "sim/record/recording.hpp"
 #include "sim/record/tsv.hpp"
-#include "sim/scenario/input_error.hpp"
 #include "tools/proleg/command_line.hpp"
 
 using namespace proleg;
@@ -28,13 +28,13 @@ int main(int argc, char** argv) {
   return command_line.run(argc, argv, [&] {
     const sim::Recording recording(recording_path);
     if (!out.empty() && std::filesystem::exists(out) && std::filesystem::equivalent(out, recording_path)) {
-      throw sim::InputError("--out", 0, "the recording itself", "another file");
+      throw InputError("--out", 0, "the recording itself", "another file");
     }
     if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
       std::cerr << command_line.name() << ": " << remark << '\n';
     }
     try {
-      std::optional<sim::Output> output;
+      std::optional<Output> output;
       if (out.empty()) {
         output.emplace();
       } else {
@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
       }
       sim::write_tsv(recording, [&](std::string_view text) { output->write(text); });
       output->finish();
-    } catch (const sim::ReaderGone&) {
+    } catch (const ReaderGone&) {
       return tools::exit_failed;  // as `head` does to everyone; not worth a word
     }
     return tools::exit_success;

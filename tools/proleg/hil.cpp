@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/bus/candump_log.hpp"
 #include "sim/loop/hardware_loop.hpp"
 #include "sim/physics/physics_error.hpp"
-#include "sim/scenario/input_error.hpp"
-#include "sim/scenario/text.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/hil_modules.hpp"
@@ -66,20 +66,20 @@ struct Result {
 /// NODE@TICK
 sim::Restart parse_reset(const std::string& word, const ScenarioRun& run) {
   const std::size_t at = word.find('@');
-  const auto node = sim::parse_whole<std::uint32_t>(std::string_view(word).substr(0, at));
+  const auto node = parse_whole<std::uint32_t>(std::string_view(word).substr(0, at));
   const auto tick =
-      at == std::string::npos ? std::nullopt : sim::parse_whole<std::uint32_t>(std::string_view(word).substr(at + 1));
+      at == std::string::npos ? std::nullopt : parse_whole<std::uint32_t>(std::string_view(word).substr(at + 1));
   if (!node || !tick) {
-    throw sim::InputError("--reset", 0, sim::in_quotes(sim::shortened(word)), "NODE@TICK");
+    throw InputError("--reset", 0, in_quotes(shortened(word)), "NODE@TICK");
   }
   if (*tick == 0 || *tick >= run.ticks) {
-    throw sim::InputError("--reset", 0, "tick " + std::to_string(*tick),
-                          "a tick of the run, 1 to " + std::to_string(run.ticks - 1));
+    throw InputError("--reset", 0, "tick " + std::to_string(*tick),
+                     "a tick of the run, 1 to " + std::to_string(run.ticks - 1));
   }
   const unsigned joint = joint_of_node(run.scenario, node, "--reset", std::to_string(*node));
   if (joint == sim::HardwareLoop::sync_producer) {
-    throw sim::InputError("--reset", 0, "node " + std::to_string(*node) + ", which produces the SYNC",
-                          "another one: without SYNC the robot stops");
+    throw InputError("--reset", 0, "node " + std::to_string(*node) + ", which produces the SYNC",
+                     "another one: without SYNC the robot stops");
   }
   return {*tick, joint};
 }
@@ -96,17 +96,17 @@ std::vector<sim::Restart> parse_resets(const Options& options, const ScenarioRun
 /// ID#DATA@TICK: the frame as cansend of can-utils takes it.
 sim::InjectedFrame parse_frame(const std::string& word, const ScenarioRun& run) {
   const auto refuse = [&word] {
-    throw sim::InputError("--send", 0, sim::in_quotes(sim::shortened(word)),
-                          "ID#DATA@TICK: three hexadecimal digits up to 7FF, up to 8 bytes, a tick; for example "
-                          "603#4018100100000000@100");
+    throw InputError("--send", 0, in_quotes(shortened(word)),
+                     "ID#DATA@TICK: three hexadecimal digits up to 7FF, up to 8 bytes, a tick; for example "
+                     "603#4018100100000000@100");
   };
   const std::size_t hash = word.find('#');
   const std::size_t at = word.find('@');
   if (hash != 3 || at == std::string::npos || at < hash) {
     refuse();
   }
-  const auto tick = sim::parse_whole<std::uint32_t>(std::string_view(word).substr(at + 1));
-  const auto identifier = sim::parse_whole<std::uint16_t>(std::string_view(word).substr(0, hash), 16);
+  const auto tick = parse_whole<std::uint32_t>(std::string_view(word).substr(at + 1));
+  const auto identifier = parse_whole<std::uint16_t>(std::string_view(word).substr(0, hash), 16);
   const std::string_view data = std::string_view(word).substr(hash + 1, at - hash - 1);
   if (!tick || !identifier || *identifier > CanFrame::highest_identifier || data.size() % 2 != 0 ||
       data.size() > 2 * CanFrame::longest) {
@@ -114,15 +114,15 @@ sim::InjectedFrame parse_frame(const std::string& word, const ScenarioRun& run) 
   }
   sim::InjectedFrame injected{*tick, {*identifier, static_cast<std::uint8_t>(data.size() / 2), {}}};
   for (std::size_t i = 0; i < data.size() / 2; ++i) {
-    const auto byte = sim::parse_whole<std::uint8_t>(data.substr(2 * i, 2), 16);
+    const auto byte = parse_whole<std::uint8_t>(data.substr(2 * i, 2), 16);
     if (!byte) {
       refuse();
     }
     injected.frame.data[i] = *byte;
   }
   if (*tick >= run.ticks) {
-    throw sim::InputError("--send", 0, "tick " + std::to_string(*tick),
-                          "a tick of the run, 0 to " + std::to_string(run.ticks - 1));
+    throw InputError("--send", 0, "tick " + std::to_string(*tick),
+                     "a tick of the run, 0 to " + std::to_string(run.ticks - 1));
   }
   return injected;
 }
@@ -139,11 +139,10 @@ std::vector<sim::InjectedFrame> parse_frames(const Options& options, const Scena
 /// SEED:RATE
 sim::HardwareOptions::BitErrors parse_bit_errors(const std::string& word) {
   const std::size_t colon = word.find(':');
-  const auto seed = sim::parse_whole<std::uint64_t>(std::string_view(word).substr(0, colon));
-  const auto rate =
-      colon == std::string::npos ? std::nullopt : sim::parse_rate(std::string_view(word).substr(colon + 1));
+  const auto seed = parse_whole<std::uint64_t>(std::string_view(word).substr(0, colon));
+  const auto rate = colon == std::string::npos ? std::nullopt : parse_rate(std::string_view(word).substr(colon + 1));
   if (!seed || !rate) {
-    throw sim::InputError("--bit-errors", 0, sim::in_quotes(sim::shortened(word)), "SEED:RATE, for example 7:1%");
+    throw InputError("--bit-errors", 0, in_quotes(shortened(word)), "SEED:RATE, for example 7:1%");
   }
   return {*seed, *rate};
 }
@@ -346,13 +345,13 @@ int hil(const Options& options) {
     return exit_failed;
   }
   if (recorder) {
-    std::vector<std::pair<std::string, std::string>> summary{{"displacement_m", sim::exact_text(result.displacement_m)},
-                                                             {"simulated_s", sim::exact_text(result.simulated_s)},
-                                                             {"contacts_mean", sim::exact_text(result.contacts_mean)},
+    std::vector<std::pair<std::string, std::string>> summary{{"displacement_m", exact_text(result.displacement_m)},
+                                                             {"simulated_s", exact_text(result.simulated_s)},
+                                                             {"contacts_mean", exact_text(result.contacts_mean)},
                                                              {"differences", std::to_string(result.differences)},
                                                              {"lost_frames", std::to_string(result.lost_frames)},
                                                              {"frames", std::to_string(result.frames)},
-                                                             {"bus_load", sim::exact_text(result.bus_load)},
+                                                             {"bus_load", exact_text(result.bus_load)},
                                                              {"setpoint_hash", result.setpoint_hash},
                                                              {"servo_hash", result.servo_hash}};
     append_results(result.measures, setup.scenario.robot, summary);

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <iostream>
 
-#include "sim/scenario/input_error.hpp"
-#include "sim/scenario/text.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/debugger.hpp"
 #include "tools/proleg/scenario_run.hpp"
@@ -81,17 +81,17 @@ HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenar
   if (std::ranges::find(virtual_joints_, true) != virtual_joints_.end()) {
     image_.emplace(read_image(options.image));
   } else if (options.image) {
-    throw sim::InputError("--image", 0, "it without a module that runs it", "--modules mcu");
+    throw InputError("--image", 0, "it without a module that runs it", "--modules mcu");
   }
   if (options.gdb) {
     const std::size_t colon = options.gdb->find(':');
-    const auto port = sim::parse_whole<std::uint16_t>(
-        std::string_view(*options.gdb).substr(colon == std::string::npos ? 0 : colon + 1));
+    const auto port =
+        parse_whole<std::uint16_t>(std::string_view(*options.gdb).substr(colon == std::string::npos ? 0 : colon + 1));
     if (!port || *port == 0) {
-      throw sim::InputError("--gdb", 0, sim::in_quotes(sim::shortened(*options.gdb)), "PORT or NODE:PORT");
+      throw InputError("--gdb", 0, in_quotes(shortened(*options.gdb)), "PORT or NODE:PORT");
     }
     if (!image_) {
-      throw sim::InputError("--gdb", 0, "no virtual module", "--modules mcu");
+      throw InputError("--gdb", 0, "no virtual module", "--modules mcu");
     }
     const auto first = std::ranges::find(virtual_joints_, true) - virtual_joints_.begin();
     const unsigned joint = colon == std::string::npos ? static_cast<unsigned>(first)
@@ -113,8 +113,8 @@ void HilModules::parse_modules(const std::string& word) {
     return;
   }
   if (!word.ends_with(some)) {
-    throw sim::InputError("--modules", 0, sim::in_quotes(sim::shortened(word)),
-                          "native, mcu, or nodes that are to be virtual: 1,3=mcu");
+    throw InputError("--modules", 0, in_quotes(shortened(word)),
+                     "native, mcu, or nodes that are to be virtual: 1,3=mcu");
   }
   std::string_view rest = std::string_view(word).substr(0, word.size() - some.size());
   for (bool more = true; more;) {
@@ -126,13 +126,13 @@ void HilModules::parse_modules(const std::string& word) {
 }
 
 unsigned HilModules::joint_of(const std::string& option, const std::string& word) const {
-  return joint_of_node(scenario_, sim::parse_whole<std::uint32_t>(word), option, sim::in_quotes(sim::shortened(word)));
+  return joint_of_node(scenario_, parse_whole<std::uint32_t>(word), option, in_quotes(shortened(word)));
 }
 
 unsigned HilModules::virtual_joint_of(const std::string& option, const std::string& word) const {
   const unsigned joint = joint_of(option, word);
   if (!is_virtual(joint)) {
-    throw sim::InputError(option, 0, "node " + word + ", which is native", "a virtual one (--modules mcu)");
+    throw InputError(option, 0, "node " + word + ", which is native", "a virtual one (--modules mcu)");
   }
   return joint;
 }
@@ -144,14 +144,14 @@ void HilModules::open_traces(const std::vector<std::string>& words, const std::v
     const std::size_t equal = word.find('=');
     const unsigned joint = virtual_joint_of("--trace", word.substr(0, equal));
     if (traces_[joint]) {
-      throw sim::InputError("--trace", 0, "node " + word.substr(0, equal) + " twice", "each node once");
+      throw InputError("--trace", 0, "node " + word.substr(0, equal) + " twice", "each node once");
     }
     traces_[joint] = std::make_unique<Trace>();
     traces_[joint]->node = scenario_.modules[joint].node;
     if (equal != std::string::npos) {
       const std::string file = word.substr(equal + 1);
       if (std::ranges::find(files, file) != files.end()) {
-        throw BadInput("--trace: found " + sim::in_quotes(sim::shortened(file)) +
+        throw BadInput("--trace: found " + in_quotes(shortened(file)) +
                        " twice, expected a file for each table, recording and log");
       }
       files.push_back(file);
@@ -166,8 +166,7 @@ void HilModules::open_traces(const std::vector<std::string>& words, const std::v
     if (!trace->file.empty()) {
       trace->stream.open(trace->file);
       if (!trace->stream) {
-        throw BadInput("--trace: found " + sim::in_quotes(sim::shortened(trace->file)) +
-                       ", expected a file that can be written");
+        throw BadInput("--trace: found " + in_quotes(shortened(trace->file)) + ", expected a file that can be written");
       }
     }
     if (!trace->file.empty() || !has_head) {

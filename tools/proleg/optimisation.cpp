@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/optimize/method/search.hpp"
-#include "sim/scenario/input_error.hpp"
-#include "sim/scenario/text.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/scenario_run.hpp"
@@ -35,27 +35,25 @@ std::uint32_t parse_workers(const std::optional<std::string>& word) {
   if (!word) {
     return std::clamp(std::thread::hardware_concurrency(), 1U, most_workers);
   }
-  const std::optional<std::uint32_t> count = sim::parse_whole<std::uint32_t>(*word);
+  const std::optional<std::uint32_t> count = parse_whole<std::uint32_t>(*word);
   if (!count || *count == 0 || *count > most_workers) {
-    throw sim::InputError("--workers", 0, sim::in_quotes(*word), "1 to " + std::to_string(most_workers));
+    throw InputError("--workers", 0, in_quotes(*word), "1 to " + std::to_string(most_workers));
   }
   return *count;
 }
 
 void apply_options(const ExperimentOptions& options, optimize::Experiment& experiment) {
   if (options.evaluations) {
-    const std::optional<std::uint64_t> count = sim::parse_whole<std::uint64_t>(*options.evaluations);
+    const std::optional<std::uint64_t> count = parse_whole<std::uint64_t>(*options.evaluations);
     if (!count || *count == 0 || *count > 1'000'000'000) {
-      throw sim::InputError("--evaluations", 0, sim::in_quotes(*options.evaluations),
-                            "a whole number from 1 to 1000000000");
+      throw InputError("--evaluations", 0, in_quotes(*options.evaluations), "a whole number from 1 to 1000000000");
     }
     experiment.evaluations = *count;
   }
   if (options.seed) {
-    const std::optional<std::uint64_t> seed = sim::parse_whole<std::uint64_t>(*options.seed);
+    const std::optional<std::uint64_t> seed = parse_whole<std::uint64_t>(*options.seed);
     if (!seed) {
-      throw sim::InputError("--seed", 0, sim::in_quotes(*options.seed),
-                            "a whole number from 0 to 18446744073709551615");
+      throw InputError("--seed", 0, in_quotes(*options.seed), "a whole number from 0 to 18446744073709551615");
     }
     experiment.seed = *seed;
   }

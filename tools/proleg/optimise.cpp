@@ -6,10 +6,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
 #include "sim/optimize/method/search.hpp"
 #include "sim/optimize/report/report.hpp"
-#include "sim/record/output.hpp"
-#include "sim/scenario/input_error.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/run_measures.hpp"
@@ -28,7 +28,7 @@ std::filesystem::path folder_of(const OptimiseOptions& options, const Experiment
   }
   const std::string folder = options.resume ? *options.resume : options.out.value_or(experiment.title());
   if (folder.empty()) {
-    throw sim::InputError(options.resume ? "--resume" : "--out", 0, "no name", "the name of a folder");
+    throw InputError(options.resume ? "--resume" : "--out", 0, "no name", "the name of a folder");
   }
   return folder;
 }
@@ -39,7 +39,7 @@ std::vector<std::filesystem::path> write_results(const Experiment& experiment, c
   std::vector<std::filesystem::path> files;
   const auto write = [&](const char* name, const std::string& text) {
     files.push_back(folder / name);
-    sim::write_file(files.back(), text);
+    write_file(files.back(), text);
   };
   write("evaluations.tsv", optimize::evaluations_table(experiment, outcome.evaluations));
   write("best.tsv", optimize::best_table(experiment, outcome.evaluations, 10));

@@ -5,10 +5,10 @@
 #include <iostream>
 #include <optional>
 
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
 #include "sim/record/figure.hpp"
-#include "sim/record/output.hpp"
 #include "sim/record/recording.hpp"
-#include "sim/scenario/input_error.hpp"
 #include "tools/proleg/command_line.hpp"
 
 using namespace proleg;
@@ -17,7 +17,7 @@ namespace {
 
 void require_finite(const char* option, const std::optional<double>& seconds) {
   if (seconds && !std::isfinite(*seconds)) {
-    throw sim::InputError(option, 0, "something that is not a finite number", "seconds from the start of the run");
+    throw InputError(option, 0, "something that is not a finite number", "seconds from the start of the run");
   }
 }
 
@@ -47,18 +47,18 @@ int main(int argc, char** argv) {
     const std::filesystem::path picture =
         out.empty() ? std::filesystem::path(recording_path).replace_extension(".svg") : std::filesystem::path(out);
     if (std::filesystem::exists(picture) && std::filesystem::equivalent(picture, recording_path)) {
-      throw sim::InputError(out.empty() ? recording_path : "--out", 0, "the recording's own name for the picture",
-                            "another one, with --out FILE");
+      throw InputError(out.empty() ? recording_path : "--out", 0, "the recording's own name for the picture",
+                       "another one, with --out FILE");
     }
     if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
       std::cerr << command_line.name() << ": " << remark << '\n';
     }
-    sim::write_file(picture, sim::draw_figure(recording, window));
+    write_file(picture, sim::draw_figure(recording, window));
     try {
-      sim::Output standard_output;
+      Output standard_output;
       standard_output.write(picture.string() + "\n");
       standard_output.finish();
-    } catch (const sim::ReaderGone&) {
+    } catch (const ReaderGone&) {
       // The picture is there, and nobody asks for its name.
     }
     return tools::exit_success;

@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "shared/computer/errors/input_error.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "sim/loop/verification.hpp"
 #include "sim/record/recording.hpp"
-#include "sim/scenario/input_error.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/progress.hpp"
@@ -47,7 +47,7 @@ sim::Verification recompute(const sim::Recording& recording) {
 
 int replay(const Options& options) {
   if (!options.verify) {
-    throw sim::InputError("the command line", 0, "nothing to do", "--verify");
+    throw InputError("the command line", 0, "nothing to do", "--verify");
   }
   const sim::Recording recording(options.file);
   if (const std::string remark = remark_on_unfinished_run(recording); !remark.empty()) {

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "sim/scenario/text.hpp"
+#include "shared/computer/text/text.hpp"
 
 namespace proleg::tools {
 
@@ -31,11 +31,11 @@ void append_results(const RunMeasures& measures, const sim::RobotModel& robot,
                     std::vector<std::pair<std::string, std::string>>& results) {
   for (const sim::MeasureDeclaration& declaration : sim::measures()) {
     if (std::isfinite(measures.values[declaration.measure])) {
-      results.emplace_back(declaration.name, sim::exact_text(measures.values[declaration.measure]));
+      results.emplace_back(declaration.name, exact_text(measures.values[declaration.measure]));
     }
   }
   for (std::size_t link = 0; link < robot.links.size(); ++link) {
-    results.emplace_back("duty_factor." + robot.links[link].name, sim::exact_text(measures.link_duty_factors[link]));
+    results.emplace_back("duty_factor." + robot.links[link].name, exact_text(measures.link_duty_factors[link]));
   }
 }
 

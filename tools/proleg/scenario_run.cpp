@@ -6,10 +6,10 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
-#include "sim/scenario/input_error.hpp"
 #include "sim/scenario/reader.hpp"
-#include "sim/scenario/text.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 
@@ -23,8 +23,8 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 std::uint32_t checked_tick_count(const sim::Scenario& scenario) {
   const std::uint32_t ticks = sim::tick_count(scenario);
   if (!scenario.changes.empty() && scenario.changes.back().tick >= ticks) {
-    throw sim::InputError("--set", 0, "tick " + std::to_string(scenario.changes.back().tick),
-                          "a tick before the end of the run, below " + std::to_string(ticks));
+    throw InputError("--set", 0, "tick " + std::to_string(scenario.changes.back().tick),
+                     "a tick before the end of the run, below " + std::to_string(ticks));
   }
   return ticks;
 }
@@ -64,9 +64,9 @@ ScenarioRun prepare_run(const ScenarioOptions& options) {
     sim::apply_setting(run.scenario, setting);
   }
   if (options.seconds) {
-    const std::optional<double> seconds = sim::parse_number(*options.seconds);
+    const std::optional<double> seconds = parse_number(*options.seconds);
     if (!seconds || *seconds < 0.01 || *seconds > 86'400.0) {
-      throw sim::InputError("--seconds", 0, sim::in_quotes(*options.seconds), "0.01 to 86400 seconds");
+      throw InputError("--seconds", 0, in_quotes(*options.seconds), "0.01 to 86400 seconds");
     }
     run.scenario.duration_s = *seconds;
   }
@@ -87,7 +87,7 @@ unsigned joint_of_node(const sim::Scenario& scenario, std::optional<std::uint32_
     }
     nodes += (nodes.empty() ? "" : ", ") + std::to_string(scenario.modules[joint].node);
   }
-  throw sim::InputError(option, 0, "node " + found, "one of " + nodes);
+  throw InputError(option, 0, "node " + found, "one of " + nodes);
 }
 
 void print_setup(const sim::Scenario& scenario) {
@@ -121,13 +121,13 @@ std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options, con
     return nullptr;
   }
   if (options.record->empty()) {
-    throw sim::InputError("--record", 0, "no name", "the name of a file");
+    throw InputError("--record", 0, "no name", "the name of a file");
   }
   try {
     // A link is followed, so that the recording lands where it points to.
     return std::make_unique<sim::Recorder>(std::filesystem::weakly_canonical(*options.record), scenario, program,
                                            build_id);
-  } catch (const std::runtime_error& error) {  // RecordError, or a name that leads nowhere
+  } catch (const std::runtime_error& error) {  // FileError, or a name that leads nowhere
     throw BadInput(error.what());
   }
 }

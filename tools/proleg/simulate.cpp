@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/physics/physics_error.hpp"
-#include "sim/scenario/text.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/progress.hpp"
@@ -121,9 +121,9 @@ int simulate(const ScenarioOptions& options) {
   }
   if (recorder) {
     std::vector<std::pair<std::string, std::string>> summary{
-        {"displacement_m", sim::exact_text(result.displacement_m)},
-        {"simulated_s", sim::exact_text(result.simulated_s)},
-        {"contacts_mean", sim::exact_text(result.contacts_mean)},
+        {"displacement_m", exact_text(result.displacement_m)},
+        {"simulated_s", exact_text(result.simulated_s)},
+        {"contacts_mean", exact_text(result.contacts_mean)},
         {"solver_messages", std::to_string(result.solver_messages)},
         {"lost_frames", std::to_string(result.lost_frames)},
         {"setpoint_hash", result.setpoint_hash},

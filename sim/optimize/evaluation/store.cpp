@@ -8,17 +8,13 @@
 #include <map>
 #include <utility>
 
+#include "shared/computer/sqlite/sqlite.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/optimize/evaluation/store_file.hpp"
 #include "sim/optimize/evaluation/store_schema.hpp"
-#include "sim/record/sqlite.hpp"
-#include "sim/scenario/text.hpp"
 
 namespace proleg::optimize {
 namespace {
-
-using sim::Database;
-using sim::SqliteError;
-using sim::Statement;
 
 std::string text_of(const Candidate& candidate) {
   std::string text;
@@ -32,8 +28,8 @@ std::string text_of(const Candidate& candidate) {
 
 Candidate candidate_of(const std::string& text) {
   Candidate candidate;
-  for (const std::string_view word : sim::words(text)) {
-    candidate.push_back(sim::parse_whole<std::uint32_t>(word).value_or(0));
+  for (const std::string_view word : words(text)) {
+    candidate.push_back(parse_whole<std::uint32_t>(word).value_or(0));
   }
   return candidate;
 }

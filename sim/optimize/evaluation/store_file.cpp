@@ -11,15 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/optimize/evaluation/store.hpp"
 #include "sim/optimize/experiment/experiment_parts.hpp"
-#include "sim/scenario/text.hpp"
 
 namespace proleg::optimize {
 namespace {
-
-using sim::Database;
-using sim::Statement;
 
 std::string universal_time() {
   const std::time_t now = std::time(nullptr);
@@ -186,11 +183,11 @@ void require_same_experiment(const std::filesystem::path& path, Database& databa
     const std::vector<std::string> names = differences(database, experiment);
     throw StoreError(path.string() + ": is the store of another experiment, with fingerprint " +
                      fingerprint.substr(0, 12) + ", expected " + experiment.fingerprint().substr(0, 12) +
-                     (names.empty() ? "" : "; what differs: " + sim::listed(names)));
+                     (names.empty() ? "" : "; what differs: " + listed(names)));
   }
   if (const std::string other = value_of(database, "build_id"); other != build_id) {
-    throw StoreError(path.string() + ": was made by build " + sim::in_quotes(other) + ", this is " +
-                     sim::in_quotes(build_id) + "; their results may differ, so it takes no more");
+    throw StoreError(path.string() + ": was made by build " + in_quotes(other) + ", this is " + in_quotes(build_id) +
+                     "; their results may differ, so it takes no more");
   }
 }
 

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <string>
 
+#include "shared/computer/sqlite/sqlite.hpp"
 #include "sim/optimize/evaluation/store_schema.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
-#include "sim/record/sqlite.hpp"
 
 namespace proleg::optimize {
 
@@ -34,7 +34,7 @@ class StoreLock {
 [[nodiscard]] StoreLock find_store(const std::filesystem::path& path);
 
 /// Refuses what is no store of this format, experiment and build.
-void require_same_experiment(const std::filesystem::path& path, sim::Database& database, const Experiment& experiment,
+void require_same_experiment(const std::filesystem::path& path, Database& database, const Experiment& experiment,
                              const std::string& build_id);
 
 }  // namespace proleg::optimize

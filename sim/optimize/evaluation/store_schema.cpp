@@ -5,8 +5,8 @@
 #include <set>
 #include <string_view>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/measure/measure.hpp"
-#include "sim/scenario/text.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -103,7 +103,7 @@ StoreColumns::StoreColumns(const Experiment& experiment) {
   std::set<std::string> taken(before_scores.begin(), before_scores.end());
   taken.insert(after_measures.begin(), after_measures.end());
   const auto own = [&taken](std::string name) {
-    while (!taken.insert(sim::lower_case(name)).second) {
+    while (!taken.insert(lower_case(name)).second) {
       name += "_";
     }
     return name;

@@ -3,12 +3,12 @@
 #include <string_view>
 #include <utility>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
 #include "sim/optimize/experiment/fitness_reader.hpp"
 #include "sim/optimize/experiment/genome_reader.hpp"
 #include "sim/optimize/experiment/method_reader.hpp"
 #include "sim/scenario/source_set.hpp"
-#include "sim/scenario/text.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::optimize {

@@ -4,13 +4,12 @@
 #include <optional>
 #include <string>
 
-#include "sim/scenario/text.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::optimize {
 namespace {
 
-using sim::in_quotes;
 using sim::XmlElement;
 
 constexpr std::size_t most_objectives = 8;
@@ -26,7 +25,7 @@ sim::Measure read_measure(const XmlElement& element) {
     for (const sim::MeasureDeclaration& declaration : sim::measures()) {
       known.emplace_back(declaration.name);
     }
-    element.refuse("unknown measure " + in_quotes(name), "one of " + sim::listed(known));
+    element.refuse("unknown measure " + in_quotes(name), "one of " + listed(known));
   }
   return *measure;
 }

@@ -9,16 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/optimize/experiment/value_reader.hpp"
 #include "sim/scenario/settings.hpp"
-#include "sim/scenario/text.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::optimize {
 namespace {
 
-using sim::in_quotes;
-using sim::listed;
 using sim::XmlElement;
 
 constexpr std::size_t most_dimensions = 1000;

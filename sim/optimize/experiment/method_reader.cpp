@@ -4,8 +4,8 @@
 #include <initializer_list>
 #include <span>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
-#include "sim/scenario/text.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::optimize {

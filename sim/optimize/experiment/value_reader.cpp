@@ -5,15 +5,14 @@
 #include <string>
 #include <string_view>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/optimize/experiment/value_set.hpp"
 #include "sim/scenario/settings.hpp"
-#include "sim/scenario/text.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::optimize {
 namespace {
 
-using sim::in_quotes;
 using sim::XmlElement;
 
 constexpr std::uint64_t most_values = 1'000'000;
@@ -36,7 +35,7 @@ class WordPerJoint {
  public:
   WordPerJoint(const XmlElement& element, std::size_t joints) : element_(element) {
     const std::string text = element.text();
-    for (const std::string_view word : sim::words(text)) {
+    for (const std::string_view word : words(text)) {
       words_.emplace_back(word);
     }
     if (words_.size() != 1 && words_.size() != joints) {
@@ -143,7 +142,7 @@ class RangeReader {
 std::vector<std::int32_t> read_list(const XmlElement& element, const Parameter& parameter) {
   const std::string text = element.text();
   std::vector<Decimal> numbers;
-  for (const std::string_view word : sim::words(text)) {
+  for (const std::string_view word : words(text)) {
     numbers.push_back(parse_decimal_word(word, element));
     check_range(parameter, numbers.back(), element);
     if (numbers.size() > most_values) {

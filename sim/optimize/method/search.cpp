@@ -2,19 +2,19 @@
 
 #include <algorithm>
 
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/optimize/method/genetic.hpp"
 #include "sim/optimize/method/great_deluge.hpp"
 #include "sim/optimize/method/pagmo_algorithms.hpp"
 #include "sim/optimize/method/pagmo_method.hpp"
-#include "sim/scenario/input_error.hpp"
-#include "sim/scenario/text.hpp"
 
 namespace proleg::optimize {
 
 namespace {
 
 [[noreturn]] void refuse(const Experiment& experiment, const std::string& found, const std::string& expected) {
-  throw sim::InputError(experiment.path, experiment.method_line, found, expected);
+  throw InputError(experiment.path, experiment.method_line, found, expected);
 }
 
 void check_objectives(const Experiment& experiment, const std::string& method, PagmoAlgorithm::Objectives known) {
@@ -38,7 +38,7 @@ void check_number(const Experiment& experiment, const PagmoAlgorithm& algorithm,
   const std::string name(algorithm.name);
   if (const std::vector<std::string> known = pagmo_options(name); std::ranges::count(known, option) == 0) {
     refuse(experiment, std::string(option) + " for " + name,
-           known.empty() ? "no such setting: " + name + " has none" : "settings that it has: " + sim::listed(known));
+           known.empty() ? "no such setting: " + name + " has none" : "settings that it has: " + listed(known));
   }
   if (!(*value > 0.0 && *value <= 1.0) && !(*value == 0.0 && may_be_zero)) {
     refuse(experiment, std::string(option) + " " + std::to_string(*value),
@@ -53,7 +53,7 @@ void check_pagmo(const Experiment& experiment, const PagmoSettings& settings) {
     for (const PagmoAlgorithm& each : pagmo_algorithms()) {
       known.emplace_back(each.name);
     }
-    refuse(experiment, "algorithm " + sim::in_quotes(settings.algorithm), "one of " + sim::listed(known));
+    refuse(experiment, "algorithm " + in_quotes(settings.algorithm), "one of " + listed(known));
   }
   check_objectives(experiment, settings.algorithm, algorithm->objectives);
   if (settings.population < algorithm->least_population || settings.population % algorithm->population_multiple != 0) {

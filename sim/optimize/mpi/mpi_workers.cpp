@@ -6,8 +6,8 @@
 #include <thread>
 #include <utility>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/optimize/mpi/mpi_channel.hpp"
-#include "sim/scenario/text.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -25,7 +25,7 @@ constexpr std::chrono::seconds longest_goodbye{5};
 
 std::optional<int> number_in_environment(const char* name) {
   const char* text = std::getenv(name);
-  return text != nullptr ? sim::parse_whole<int>(text) : std::nullopt;
+  return text != nullptr ? parse_whole<int>(text) : std::nullopt;
 }
 
 }  // namespace

@@ -4,12 +4,12 @@
 #include <utility>
 #include <vector>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
 #include "sim/record/figure_page.hpp"
 #include "sim/record/plot_frame.hpp"
 #include "sim/record/svg.hpp"
-#include "sim/scenario/text.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -119,7 +119,7 @@ std::string count_text(double evaluations) {
 
 void draw_title(Svg& svg, const Experiment& experiment, const Contents& contents, std::size_t evaluations) {
   const Objective& objective = experiment.objectives.front();
-  svg.text({sim::page_left, 36.0}, sim::shortened(experiment.title()), TextAnchor::start, 20.0, sim::ink,
+  svg.text({sim::page_left, 36.0}, shortened(experiment.title()), TextAnchor::start, 20.0, sim::ink,
            R"(font-weight="bold")");
   svg.text({sim::page_left, 58.0},
            "method " + method_name(experiment.method) + ", " + count_text(static_cast<double>(evaluations)) +
@@ -160,7 +160,7 @@ std::string draw_learning_curve(const Experiment& experiment, std::span<const Ev
           "Scores of the evaluations of an optimisation, the best so far and the mean, against their number.");
   draw_title(svg, experiment, contents, evaluations.size());
   draw_key(svg, contents);
-  sim::draw_plot_grid(svg, x, y, "evaluations", with_unit(sim::shortened(objective.name), objective.unit()));
+  sim::draw_plot_grid(svg, x, y, "evaluations", with_unit(shortened(objective.name), objective.unit()));
   svg.begin_group("evaluations");
   svg.marks(sim::to_marks(contents.rated, x, y, 2.5), dot, dot_style(evaluations.size()));
   svg.end_group();

@@ -2,12 +2,12 @@
 #include <array>
 #include <vector>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
 #include "sim/record/figure_page.hpp"
 #include "sim/record/plot_frame.hpp"
 #include "sim/record/svg.hpp"
-#include "sim/scenario/text.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -46,7 +46,7 @@ std::string axis_name(const Experiment& experiment, std::size_t objective) {
     return {};
   }
   const Objective& named = experiment.objectives[objective];
-  return with_unit(sim::shortened(named.name), named.unit()) +
+  return with_unit(shortened(named.name), named.unit()) +
          (named.goal == Goal::maximise ? ": more is better" : ": less is better");
 }
 
@@ -67,7 +67,7 @@ std::string draw_pareto_front(const Experiment& experiment, std::span<const Eval
 
   Svg svg(sim::page_width, page_height, experiment.title(),
           "Candidates by two objectives; those that none beats in both are joined by a line.");
-  svg.text({sim::page_left, 36.0}, sim::shortened(experiment.title()), TextAnchor::start, 20.0, sim::ink,
+  svg.text({sim::page_left, 36.0}, shortened(experiment.title()), TextAnchor::start, 20.0, sim::ink,
            R"(font-weight="bold")");
   svg.text({sim::page_left, 58.0},
            "method " + method_name(experiment.method) + ", " + std::to_string(evaluations.size()) + " evaluations, " +

@@ -38,7 +38,7 @@ namespace proleg::optimize {
 /// Writes a scenario that is the experiment's with the candidate's values, ready for `proleg simulate` and needing
 /// nothing else: the top-level file `folder`/name.simulation.xml, its actuation file name.actuation.xml, and copies of
 /// the robot and environment files below name.files. What is there already is replaced. Returns the path of the
-/// top-level file. Throws RecordError if it cannot be written.
+/// top-level file. Throws FileError if it cannot be written.
 std::filesystem::path write_scenario(const Experiment& experiment, const Candidate& candidate,
                                      const std::filesystem::path& folder, const std::string& name);
 

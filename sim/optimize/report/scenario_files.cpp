@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "sim/scenario/text.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/scenario/xml_document.hpp"
 
 namespace proleg::optimize {
@@ -53,7 +53,7 @@ template <typename Use>
 void for_each_include(tinyxml2::XMLElement* element, const Use& use) {
   for (; element != nullptr; element = element->NextSiblingElement()) {
     for (const auto* attribute = element->FirstAttribute(); attribute != nullptr; attribute = attribute->Next()) {
-      if (sim::lower_case(attribute->Name()) == "file") {
+      if (lower_case(attribute->Name()) == "file") {
         use(*element, *attribute);
       }
     }
@@ -61,9 +61,7 @@ void for_each_include(tinyxml2::XMLElement* element, const Use& use) {
   }
 }
 
-std::string reference_of(const tinyxml2::XMLAttribute& attribute) {
-  return std::string(sim::trimmed(attribute.Value()));
-}
+std::string reference_of(const tinyxml2::XMLAttribute& attribute) { return std::string(trimmed(attribute.Value())); }
 
 /// Adds a file and, in turn, all that it includes.
 void add_with_includes(const Sources& sources, const fs::path& path, std::set<fs::path>& files) {

@@ -4,15 +4,15 @@
 #include <cstdint>
 #include <system_error>
 
+#include "shared/computer/errors/file_error.hpp"
+#include "shared/computer/output/output.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "shared/gait/declaration.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scenario_files.hpp"
 #include "sim/optimize/report/scores.hpp"
-#include "sim/record/output.hpp"
-#include "sim/record/record_error.hpp"
 #include "sim/record/svg.hpp"
-#include "sim/scenario/text.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 /// Text within <!-- -->, which must not hold two hyphens in a row.
 std::string comment_text(std::string_view text) {
   std::string result;
-  for (const char c : sim::one_line(text)) {
+  for (const char c : one_line(text)) {
     result += c == '-' && result.ends_with('-') ? " -" : std::string(1, c);
   }
   return result + (result.ends_with('-') ? " " : "");
@@ -121,13 +121,12 @@ std::string top_text(const sim::Scenario& scenario, const ScenarioFiles& files, 
   };
   return remark + "<simulation>\n" + element("  ", "robot", files.robot.generic_string()) +
          element("  ", "actuation", actuation) + element("  ", "environment", files.environment.generic_string()) +
-         "  <simulationProperties>\n" + element("    ", "stepWidth", sim::exact_text(scenario.step_s)) +
+         "  <simulationProperties>\n" + element("    ", "stepWidth", exact_text(scenario.step_s)) +
          element("    ", "tick unit=\"ms\"", sim::plain_number(scenario.kernel.tick_period_us / 1000.0, 3)) +
-         element("    ", "duration", sim::exact_text(scenario.duration_s)) +
+         element("    ", "duration", exact_text(scenario.duration_s)) +
          element("    ", "seed", std::to_string(scenario.kernel.seed)) +
          element("    ", "solver", solver_name(scenario.solver)) +
-         (scenario.contact_noise == 0.0 ? ""
-                                        : element("    ", "contactNoise", sim::exact_text(scenario.contact_noise))) +
+         (scenario.contact_noise == 0.0 ? "" : element("    ", "contactNoise", exact_text(scenario.contact_noise))) +
          "  </simulationProperties>\n</simulation>\n";
 }
 
@@ -135,9 +134,9 @@ void write_with_folder(const fs::path& path, std::string_view text) {
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
   if (error) {
-    throw sim::RecordError(path.parent_path(), "cannot be created: " + error.message());
+    throw FileError(path.parent_path(), "cannot be created: " + error.message());
   }
-  sim::write_file(path, text);
+  write_file(path, text);
 }
 
 }  // namespace
@@ -145,7 +144,7 @@ void write_with_folder(const fs::path& path, std::string_view text) {
 fs::path write_scenario(const Experiment& experiment, const Candidate& candidate, const fs::path& folder,
                         const std::string& name) {
   if (experiment.scenario.sources.empty()) {
-    throw sim::RecordError(folder, "has no scenario written to it: the experiment's was not read from files");
+    throw FileError(folder, "has no scenario written to it: the experiment's was not read from files");
   }
   sim::Scenario scenario = experiment.scenario;
   experiment.space.apply(candidate, scenario);

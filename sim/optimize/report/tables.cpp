@@ -4,9 +4,9 @@
 #include <set>
 #include <utility>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
-#include "sim/scenario/text.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -31,10 +31,10 @@ void add_header(const Experiment& experiment, Line& line) {
   line.add("run");
   line.add("evaluation");
   for (const Dimension& dimension : experiment.space.dimensions) {
-    line.add(with_unit(sim::one_line(dimension.name), scale_of(dimension.unit).symbol));
+    line.add(with_unit(one_line(dimension.name), scale_of(dimension.unit).symbol));
   }
   for (const Objective& objective : experiment.objectives) {
-    line.add("score:" + with_unit(sim::one_line(objective.name), objective.unit()));
+    line.add("score:" + with_unit(one_line(objective.name), objective.unit()));
   }
   for (const sim::MeasureDeclaration& measure : sim::measures()) {
     line.add(with_unit(measure.name, measure.unit));
@@ -51,17 +51,17 @@ void add_evaluation(const Experiment& experiment, const Evaluation& evaluation, 
     line.add(experiment.space.value_text(evaluation.candidate, i));
   }
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
-    line.add(sim::exact_text(evaluation.scores[i]));
+    line.add(exact_text(evaluation.scores[i]));
   }
   for (const double value : evaluation.measures.all()) {
-    line.add(sim::exact_text(value));
+    line.add(exact_text(value));
   }
-  line.add(sim::exact_text(evaluation.simulated_s));
-  line.add(sim::exact_text(evaluation.wall_s));
+  line.add(exact_text(evaluation.simulated_s));
+  line.add(exact_text(evaluation.wall_s));
   for (const bool flag : {evaluation.given_up, evaluation.reused, evaluation.restored}) {
     line.add(flag ? "1" : "0");
   }
-  line.add(sim::one_line(evaluation.failure));
+  line.add(one_line(evaluation.failure));
 }
 
 }  // namespace

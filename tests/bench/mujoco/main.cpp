@@ -19,6 +19,7 @@
 #include "sim/scenario/reader.hpp"
 #include "tests/bench/mujoco/mjcf.hpp"
 #include "tests/bench/mujoco/mujoco_evaluation.hpp"
+#include "tests/support/files.hpp"
 
 namespace {
 
@@ -44,8 +45,7 @@ double median(std::vector<double> values) {
 sim::Scenario read(const std::string& gait, const Workload& workload) {
   sim::DiskFiles files;
   return with_workload(
-      sim::read_scenario(PROLEG_SOURCE_DIR "/sim/scenarios/travelling_wave/" + gait + ".simulation.xml", files),
-      workload);
+      sim::read_scenario(source_path("/sim/scenarios/travelling_wave/") + gait + ".simulation.xml", files), workload);
 }
 
 Displacements compare(const std::string& gait, const Workload& workload, int repetitions) {

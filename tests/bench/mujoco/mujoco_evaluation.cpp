@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "shared/computer/hash/value_hash.hpp"
 #include "shared/kernel/servo_command.hpp"
 #include "shared/kernel/servo_schedule.hpp"
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/servo_pulses.hpp"
-#include "sim/record/hash.hpp"
 #include "sim/robot/servo.hpp"
 #include "tests/bench/mujoco/mujoco_world.hpp"
 
@@ -21,7 +21,7 @@ Evaluation evaluate_in_mujoco(const sim::Scenario& scenario, const Workload& wor
   const std::vector<std::uint8_t> no_contacts(joints);
   std::vector<std::int32_t> commands(joints, servo_center);
   std::vector<sim::ServoPulse> pulses;
-  sim::ValueHash hash;
+  ValueHash hash;
   MujocoWorld world(model);
   const Eigen::Vector3d start = world.center_of_mass();
   std::uint64_t contacts = 0;

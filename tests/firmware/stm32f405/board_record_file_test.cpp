@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "firmware/module/board_record.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::firmware {
 namespace {
@@ -24,8 +25,8 @@ class BoardRecordFileTest : public testing::Test {
 
   /// Status of the tool.
   int make(const std::string& options) const {
-    return std::system((PROLEG_PYTHON " " PROLEG_SOURCE_DIR "/firmware/stm32f405/make_board_record.py " + options +
-                        " " + file().string() + " 2>" + (folder_ / "errors").string())
+    return std::system((std::string(PROLEG_PYTHON " ") + source_path("/firmware/stm32f405/make_board_record.py ") +
+                        options + " " + file().string() + " 2>" + (folder_ / "errors").string())
                            .c_str());
   }
   [[nodiscard]] std::vector<std::uint8_t> sectors() const {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "shared/canopen/objects.hpp"
-#include "shared/canopen/sdo.hpp"
+#include "shared/canopen/sdo_server.hpp"
 
 namespace proleg::test {
 

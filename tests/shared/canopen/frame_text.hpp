@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "shared/can/can_frame.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::test {
 
@@ -41,7 +42,7 @@ inline std::string text(const CanFrame& frame) {
 
 /// Whether docs/protocol.md has the frame as a worked example.
 inline bool is_documented(std::string_view frame) {
-  std::ifstream file(std::string(PROLEG_SOURCE_DIR) + "/docs/protocol.md");
+  std::ifstream file(source_path("/docs/protocol.md"));
   std::string line;
   while (std::getline(file, line)) {
     if (line == "    " + std::string(frame)) {

@@ -11,6 +11,7 @@
 #include "robot.hpp"
 #include "shared/canopen/objects.hpp"
 #include "shared/fixed/random.hpp"
+#include "shared/master/sdo_client.hpp"
 
 namespace proleg::canopen {
 namespace {

@@ -9,6 +9,7 @@
 #include "robot.hpp"
 #include "shared/gait/algorithms.hpp"
 #include "shared/kernel/kernel.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg {
 namespace {
@@ -27,7 +28,7 @@ std::string as_text(const char* identifier, const StateFrame& frame) {
 }
 
 bool documentation_has_line(const std::string& text) {
-  std::ifstream file(std::string(PROLEG_SOURCE_DIR) + "/docs/protocol.md");
+  std::ifstream file(source_path("/docs/protocol.md"));
   std::string line;
   while (std::getline(file, line)) {
     if (line == "    " + text) {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "shared/canopen/messages.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "shipped.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/scenario/input_error.hpp"
 #include "sim/scenario/reader.hpp"
 
 namespace proleg::sim {

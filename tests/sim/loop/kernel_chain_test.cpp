@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "shared/computer/hash/value_hash.hpp"
 #include "shipped.hpp"
-#include "sim/record/hash.hpp"
 #include "sim/scenario/reader.hpp"
 
 namespace proleg::sim {

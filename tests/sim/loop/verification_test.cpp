@@ -7,9 +7,9 @@
 
 #include <filesystem>
 
+#include "shared/computer/errors/input_error.hpp"
 #include "shipped.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/scenario/input_error.hpp"
 #include "sim/scenario/reader.hpp"
 
 namespace proleg::sim {

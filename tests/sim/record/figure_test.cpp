@@ -7,9 +7,9 @@
 #include <map>
 #include <sstream>
 
+#include "shared/computer/errors/input_error.hpp"
 #include "sim/record/figure_contents.hpp"
 #include "sim/record/svg.hpp"
-#include "sim/scenario/input_error.hpp"
 #include "small_run.hpp"
 
 namespace proleg::sim {

@@ -10,20 +10,16 @@
 #include <fstream>
 #include <limits>
 
+#include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/kernel/servo_command.hpp"
 #include "sim/record/recording.hpp"
-#include "sim/record/sqlite.hpp"
 #include "small_run.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::sim {
 namespace {
 
 constexpr std::uint32_t ticks = 60;
-
-std::string file_contents(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 /// All rows of a query, as the sqlite3 shell would show them.
 std::vector<std::string> rows(const std::filesystem::path& path, const std::string& sql, int columns) {
@@ -48,7 +44,7 @@ TickSample with_measurements(TickSample sample, std::span<const Pose> poses, std
 void expect_left_alone(const std::filesystem::path& path, const std::string& contents) {
   std::ofstream(path, std::ios::binary) << contents;
   const Scenario scenario = small_scenario();
-  const std::string message = message_of<RecordError>([&] { Recorder(path, scenario, "test", "build"); });
+  const std::string message = message_of<FileError>([&] { Recorder(path, scenario, "test", "build"); });
   EXPECT_NE(message.find(path.string()), std::string::npos) << message;
   EXPECT_NE(message.find("is not a recording"), std::string::npos) << message;
   EXPECT_EQ(file_contents(path), contents);
@@ -283,7 +279,7 @@ TEST(Recorder, LeavesAForeignDatabaseAlone) {
 TEST(Recorder, LeavesAFolderAlone) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
-  EXPECT_NE(message_of<RecordError>([&] { Recorder(folder.path(), scenario, "test", "build"); }).find("is not a file"),
+  EXPECT_NE(message_of<FileError>([&] { Recorder(folder.path(), scenario, "test", "build"); }).find("is not a file"),
             std::string::npos);
 }
 
@@ -291,7 +287,7 @@ TEST(Recorder, DoesNotReplaceARecordingThatIsBeingWritten) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
   Recorder first(folder / "run.sqlite", scenario, "test", "build");
-  EXPECT_NE(message_of<RecordError>([&] {
+  EXPECT_NE(message_of<FileError>([&] {
               Recorder(folder / "run.sqlite", scenario, "test", "build");
             }).find("another program is recording"),
             std::string::npos);
@@ -302,7 +298,7 @@ TEST(Recorder, SaysWhyAFileCannotBeCreated) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
   const std::string message =
-      message_of<RecordError>([&] { Recorder(folder / "no such folder" / "run.sqlite", scenario, "test", "build"); });
+      message_of<FileError>([&] { Recorder(folder / "no such folder" / "run.sqlite", scenario, "test", "build"); });
   EXPECT_NE(message.find("run.sqlite"), std::string::npos) << message;
   EXPECT_NE(message.find("No such file or directory"), std::string::npos) << message;
   EXPECT_EQ(message.find('\n'), std::string::npos);
@@ -324,7 +320,7 @@ TEST(Recorder, RefusesNumbersThatAreNotFinite) {
     poses[3].position.x() = std::numeric_limits<double>::infinity();
     for (const TickSample& bad : {with_measurements(sample, sample.link_poses, angles),
                                   with_measurements(sample, poses, sample.joint_angles)}) {
-      const std::string message = message_of<RecordError>([&] { recorder.record_tick(bad); });
+      const std::string message = message_of<FileError>([&] { recorder.record_tick(bad); });
       EXPECT_NE(message.find("at tick 2"), std::string::npos) << message;
       EXPECT_NE(message.find("unstable"), std::string::npos) << message;
     }
@@ -338,8 +334,8 @@ TEST(Recorder, TakesNothingAfterTheEnd) {
   const Scenario scenario = small_scenario();
   Recorder recorder(folder / "run.sqlite", scenario, "test", "build");
   recorder.finish({});
-  EXPECT_THROW(recorder.finish({}), RecordError);
-  EXPECT_THROW(recorder.record_change(scenario.changes[0]), RecordError);
+  EXPECT_THROW(recorder.finish({}), FileError);
+  EXPECT_THROW(recorder.record_change(scenario.changes[0]), FileError);
 }
 
 TEST(Recorder, ReportsADiskThatIsFull) {
@@ -353,15 +349,15 @@ TEST(Recorder, ReportsADiskThatIsFull) {
     const rlimit limit{400'000, 400'000};
     setrlimit(RLIMIT_FSIZE, &limit);
     const Scenario scenario = small_scenario();
-    const std::string message = message_of<RecordError>([&] {
+    const std::string message = message_of<FileError>([&] {
       Recorder recorder(path, scenario, "test", "build");
       try {
         run_small(scenario, 20'000,
                   [&](const TickSample& sample, const Change* /*change*/) { recorder.record_tick(sample); });
         recorder.finish({});
-      } catch (const RecordError&) {
+      } catch (const FileError&) {
         // Nothing is taken after an error, so that a recording has no gap.
-        if (message_of<RecordError>([&] { recorder.finish({}); }).find("earlier error") == std::string::npos) {
+        if (message_of<FileError>([&] { recorder.finish({}); }).find("earlier error") == std::string::npos) {
           _exit(3);
         }
         throw;

@@ -4,8 +4,8 @@
 
 #include <fstream>
 
-#include "sim/record/sqlite.hpp"
-#include "sim/scenario/input_error.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/sqlite/sqlite.hpp"
 #include "small_run.hpp"
 
 namespace proleg::sim {

@@ -2,33 +2,16 @@
 
 // A small robot with made-up motion, to record. What is recorded is computed here a second time, from the tick alone.
 
-#include <unistd.h>
-
 #include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "sim/record/recorder.hpp"
+#include "tests/support/message_of.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace proleg::sim {
-
-/// A folder for one test, removed at its end.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Names of the files in it, sorted.
-  [[nodiscard]] std::vector<std::string> names() const;
-
- private:
-  std::filesystem::path path_;
-};
 
 /// Three joints (J3, J2, J1 from the head), four links; a sine on all joints and direct access on the last; one
 /// amplitude of its own, one commit at tick 5, one distortion at tick 7.
@@ -51,16 +34,5 @@ void run_small(const Scenario& scenario, std::uint32_t ticks,
 
 /// Runs a scenario into a new recording and finishes it.
 void record_small(const std::filesystem::path& path, const Scenario& scenario, std::uint32_t ticks);
-
-/// What a call throws, as text; empty if it throws nothing of that kind.
-template <typename Error, typename Action>
-std::string message_of(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
-}
 
 }  // namespace proleg::sim

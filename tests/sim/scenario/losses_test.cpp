@@ -8,16 +8,17 @@
 #include <filesystem>
 #include <fstream>
 
-#include "sim/scenario/input_error.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "sim/scenario/reader.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::sim {
 namespace {
 
 RobotModel caterpillar() {
   DiskFiles files;
-  return read_scenario(
-             std::filesystem::path(PROLEG_SOURCE_DIR) / "sim/scenarios/travelling_wave/uniform.simulation.xml", files)
+  return read_scenario(std::filesystem::path(source_path("/sim/scenarios/travelling_wave/uniform.simulation.xml")),
+                       files)
       .robot;
 }
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sim/scenario/input_error.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "sim/scenario/reader.hpp"
 
 namespace proleg::sim {

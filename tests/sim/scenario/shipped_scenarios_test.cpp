@@ -7,13 +7,14 @@
 #include "shared/fixed/decimal.hpp"
 #include "shared/gait/registry.hpp"
 #include "sim/scenario/reader.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::sim {
 namespace {
 
 Scenario shipped(const std::string& name, const std::string& folder = "travelling_wave") {
   DiskFiles files;
-  return read_scenario(PROLEG_SOURCE_DIR "/sim/scenarios/" + folder + "/" + name + ".simulation.xml", files);
+  return read_scenario(source_path("/sim/scenarios/") + folder + "/" + name + ".simulation.xml", files);
 }
 
 class Shipped : public testing::TestWithParam<std::string> {};

@@ -8,13 +8,14 @@
 
 #include "shared/gait/registry.hpp"
 #include "sim/scenario/reader.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::sim {
 namespace {
 
 Scenario thesis_scenario() {
   DiskFiles files;
-  return read_scenario(PROLEG_SOURCE_DIR "/tests/sim/scenario/thesis/MFIdemo.simulation.xml", files);
+  return read_scenario(source_path("/tests/sim/scenario/thesis/MFIdemo.simulation.xml"), files);
 }
 
 TEST(ThesisFiles, LinksAreOrderedFromTheHeadAndStandAsTheTranslationsSay) {

@@ -15,6 +15,7 @@
 #include <sstream>
 #include <string>
 #include <vector>
+#include "tests/support/files.hpp"
 
 extern char** environ;
 
@@ -47,7 +48,7 @@ class CommandLine : public testing::Test {
   [[nodiscard]] fs::path file(const std::string& name) const { return folder_ / name; }
 
   [[nodiscard]] static std::string scenario(const std::string& name) {
-    return std::string(PROLEG_SOURCE_DIR) + "/sim/scenarios/travelling_wave/" + name + ".simulation.xml";
+    return source_path("/sim/scenarios/travelling_wave/") + name + ".simulation.xml";
   }
 
   /// Runs proleg with these words; an empty `out_file` catches standard output.

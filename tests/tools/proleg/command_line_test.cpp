@@ -6,6 +6,7 @@
 
 #include "command_line.hpp"
 #include "sim/record/recording.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::test {
 namespace {
@@ -54,7 +55,7 @@ TEST_F(CommandLine, RefusesBadInputAndWritesNothing) {
     EXPECT_TRUE(left_behind().empty());
   };
   simulate({"/nowhere/x.simulation.xml"}, {"/nowhere/x.simulation.xml", "expected"});
-  simulate({std::string(PROLEG_SOURCE_DIR)}, {"expected"});
+  simulate({source_path("")}, {"expected"});
   for (const char* seconds : {"nan", "inf", "0", "-1", "1e9", "soon", ""}) {
     simulate({scenario("uniform"), "--seconds", seconds}, {"--seconds", "0.01 to 86400"});
   }
@@ -235,7 +236,7 @@ TEST_F(CommandLine, ThePagesThatProgramsWriteSayWhatTheDeclarationsSay) {
   for (const auto& [page, words] : {WrittenPage{"docs/algorithms.md", {"algorithms", "--markdown"}},
                                     WrittenPage{"docs/objects.md", {"objects", "--markdown"}},
                                     WrittenPage{"docs/proleg.eds", {"objects", "--eds"}}}) {
-    EXPECT_EQ(first_difference(proleg(words).out, read_file(fs::path(PROLEG_SOURCE_DIR) / page)), "")
+    EXPECT_EQ(first_difference(proleg(words).out, read_file(source_path("/" + std::string(page)))), "")
         << "rewrite it: build/host/bin/proleg " << words[0] << ' ' << words[1] << " >" << page;
   }
 }
@@ -243,8 +244,7 @@ TEST_F(CommandLine, ThePagesThatProgramsWriteSayWhatTheDeclarationsSay) {
 TEST_F(CommandLine, ThePageOfGaitMeasuresHasTheTableOfTheDeclarations) {
   const std::string table = proleg({"algorithms", "--measures", "--markdown"}).out;
   EXPECT_NE(table.find("| `cost_of_transport` | m/s^2 | lower |"), std::string::npos) << table;
-  EXPECT_NE(read_file(fs::path(PROLEG_SOURCE_DIR) / "docs/gait-measures.md").find("\n\n" + table + "\n"),
-            std::string::npos)
+  EXPECT_NE(read_file(fs::path(source_path("/docs/gait-measures.md"))).find("\n\n" + table + "\n"), std::string::npos)
       << "put this into docs/gait-measures.md:\n"
       << table;
   EXPECT_NE(proleg({"algorithms", "--measures"}).out.find("smoothness [m/s^2], the lower, the better\n"),

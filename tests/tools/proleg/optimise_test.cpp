@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "command_line.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::test {
 namespace {
@@ -18,7 +19,7 @@ class Optimise : public CommandLine {
  protected:
   void SetUp() override {
     CommandLine::SetUp();
-    const std::string shipped = std::string(PROLEG_SOURCE_DIR) + "/sim/scenarios/travelling_wave/";
+    const std::string shipped = source_path("/sim/scenarios/travelling_wave/");
     write("short.simulation.xml", "<simulation><robot>" + shipped + "caterpillar.robot.xml</robot><actuation>" +
                                       shipped + "uniform.actuation.xml</actuation><environment>" + shipped +
                                       "flat.environment.xml</environment><simulationProperties><duration>0.2</duration>"
@@ -28,7 +29,7 @@ class Optimise : public CommandLine {
   void write(const std::string& name, const std::string& text) const { std::ofstream(file(name)) << text; }
 
   [[nodiscard]] static std::string shipped(const std::string& name) {
-    return std::string(PROLEG_SOURCE_DIR) + "/sim/scenarios/travelling_wave/" + name + ".optimise.xml";
+    return source_path("/sim/scenarios/travelling_wave/") + name + ".optimise.xml";
   }
 
   /// Words for a search in short trials that leaves its results in a folder.
@@ -296,7 +297,7 @@ TEST_F(Optimise, UnderMpirunSaysOnceWhatIsWrong) {
 TEST_F(Optimise, AnExperimentWritesTheThesissTablesAndFiguresAndGoesOn) {
   // The shipped experiment with its trials cut to a fifth of a second.
   const fs::path folder = file("scenarios");
-  fs::copy(std::string(PROLEG_SOURCE_DIR) + "/sim/scenarios/travelling_wave", folder, fs::copy_options::recursive);
+  fs::copy(source_path("/sim/scenarios/travelling_wave"), folder, fs::copy_options::recursive);
   std::string scenario = read_file(folder / "uniform.simulation.xml");
   scenario.replace(scenario.find("<duration>30<"), 13, "<duration>0.2<");
   std::ofstream(folder / "uniform.simulation.xml") << scenario;

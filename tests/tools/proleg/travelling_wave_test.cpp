@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command_line.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::test {
 namespace {
@@ -31,7 +32,7 @@ double mean_evaluations(const nlohmann::json& method) {
 TEST_F(TravellingWaveExperiment, GainsWhatTheThesisGainedAndMore) {
   const Finished finished =
       proleg({"experiment", "travelling_wave", "--repetitions", "3", "--json", "--out", file("out").string(),
-              "--scenarios", std::string(PROLEG_SOURCE_DIR) + "/sim/scenarios/travelling_wave"});
+              "--scenarios", source_path("/sim/scenarios/travelling_wave")});
   ASSERT_EQ(finished.status, 0) << finished.err;
   const nlohmann::json experiment = nlohmann::json::parse(finished.out);
   std::printf("%s%s\n", read_file(file("out/summary.txt")).c_str(), finished.out.c_str());

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "module_node.hpp"
-#include "shared/canopen/sdo.hpp"
+#include "shared/master/sdo_client.hpp"
 
 namespace proleg::test {
 

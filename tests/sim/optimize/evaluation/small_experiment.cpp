@@ -7,6 +7,7 @@
 #include "shared/fixed/decimal.hpp"
 #include "shared/gait/actuation_module.hpp"
 #include "sim/scenario/reader.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -44,7 +45,7 @@ Experiment small_experiment(double duration_s) {
   experiment.path = "small.optimise.xml";
   sim::DiskFiles files;
   experiment.scenario = sim::read_scenario(
-      std::filesystem::path(PROLEG_SOURCE_DIR) / "sim/scenarios/travelling_wave/uniform.simulation.xml", files);
+      std::filesystem::path(source_path("/sim/scenarios/travelling_wave/uniform.simulation.xml")), files);
   experiment.scenario.duration_s = duration_s;
   experiment.space.dimensions = {
       dimension(experiment.scenario, "amplitude", {"10", "20", "30", "40", "50", "60"}),
@@ -137,19 +138,6 @@ std::string exact(const Evaluation& evaluation) {
     append(text, value);
   }
   return text;
-}
-
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "proleg-optimise-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) {
-    throw std::runtime_error("no temporary folder");
-  }
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace proleg::optimize

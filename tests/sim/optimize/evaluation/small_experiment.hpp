@@ -9,6 +9,7 @@
 #include "sim/optimize/evaluation/worker_process.hpp"
 #include "sim/optimize/evaluation/workers.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace proleg::optimize {
 
@@ -62,20 +63,5 @@ class MadeUpWorkers final : public Workers {
 /// Bit patterns of numbers, with texts and flags; but for the time that it took, which is nobody's promise.
 [[nodiscard]] std::string exact(const TrialResult& result);
 [[nodiscard]] std::string exact(const Evaluation& evaluation);
-
-/// A folder for one test, removed at its end.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 }  // namespace proleg::optimize

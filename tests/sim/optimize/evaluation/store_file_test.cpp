@@ -8,14 +8,12 @@
 #include <csignal>
 #include <fstream>
 
+#include "shared/computer/sqlite/sqlite.hpp"
 #include "sim/optimize/evaluation/store.hpp"
-#include "sim/record/sqlite.hpp"
 #include "small_experiment.hpp"
 
 namespace proleg::optimize {
 namespace {
-
-using sim::Database;
 
 class StoreFile : public testing::Test {
  protected:

@@ -6,14 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/record/sqlite.hpp"
+#include "shared/computer/sqlite/sqlite.hpp"
 #include "small_experiment.hpp"
 
 namespace proleg::optimize {
 namespace {
-
-using sim::Database;
-using sim::Statement;
 
 /// Any number but a negative zero, which run_trial never gives.
 double any_number(std::mt19937& random) {

@@ -4,13 +4,13 @@
 
 #include "memory_files.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::optimize {
 
-using sim::InputError;
 using sim::MemoryFiles;
 
-inline const std::string travelling_wave = PROLEG_SOURCE_DIR "/sim/scenarios/travelling_wave/";
+inline const std::string travelling_wave = source_path("/sim/scenarios/travelling_wave/");
 
 /// Files in memory, and those on disk where memory has none of that name.
 class FilesOverDisk final : public sim::FileSource {

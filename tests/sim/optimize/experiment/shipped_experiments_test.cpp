@@ -5,6 +5,7 @@
 
 #include "experiment_files.hpp"
 #include "shared/fixed/decimal.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -104,7 +105,7 @@ TEST(ShippedExperiments, KeepEveryFileThatWasReadTheirOwnFirst) {
   EXPECT_TRUE(experiment.sources[1].path.ends_with("uniform.simulation.xml"));
 }
 
-const std::string thesis_file = PROLEG_SOURCE_DIR "/tests/sim/optimize/experiment/thesis/MFIdemo.ga.xml";
+const std::string thesis_file = source_path("/tests/sim/optimize/experiment/thesis/MFIdemo.ga.xml");
 const std::string uniform = travelling_wave + "uniform.simulation.xml";
 
 /// The thesis's file (listing B.7) with texts replaced, wherever they stand.

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "fake_source.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "sim/optimize/method/search.hpp"
-#include "sim/scenario/input_error.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -49,7 +49,7 @@ TEST_P(EachAlgorithm, RunsWithEveryPopulationThatIsNotRefused) {
     const Experiment experiment = experiment_for(algorithm, {31, 2, 161}, population, 2, objectives);
     FakeSource source(spheres(objectives), 8);
     if (population < algorithm.least_population || population % algorithm.population_multiple != 0) {
-      EXPECT_THROW(check_method(experiment), sim::InputError) << population;
+      EXPECT_THROW(check_method(experiment), InputError) << population;
       continue;
     }
     ASSERT_NO_THROW(static_cast<void>(search(experiment, 0, source))) << population;

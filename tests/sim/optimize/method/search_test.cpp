@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "fake_source.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "sim/optimize/method/pagmo_algorithms.hpp"
-#include "sim/scenario/input_error.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -20,9 +20,9 @@ PagmoSettings pagmo_method(const std::string& name, std::uint32_t population = 2
 std::string refusal(const Experiment& experiment) {
   try {
     check_method(experiment);
-  } catch (const sim::InputError& error) {
+  } catch (const InputError& error) {
     FakeSource source([](const Candidate&) { return std::vector<double>{0.0}; });
-    EXPECT_THROW(static_cast<void>(search(experiment, 0, source)), sim::InputError);
+    EXPECT_THROW(static_cast<void>(search(experiment, 0, source)), InputError);
     EXPECT_TRUE(source.asked.empty());
     return error.what();
   }

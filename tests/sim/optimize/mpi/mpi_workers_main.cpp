@@ -16,6 +16,7 @@
 namespace {
 
 using namespace proleg::optimize;
+using proleg::TemporaryFolder;
 
 constexpr const char* build = "test";
 

@@ -8,32 +8,16 @@
 
 #include "made_up.hpp"
 #include "memory_files.hpp"
+#include "shared/computer/errors/file_error.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/optimize/report/report.hpp"
-#include "sim/record/record_error.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace proleg::optimize {
 namespace {
 
 namespace fs = std::filesystem;
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "proleg_report_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw std::runtime_error("no temporary folder");
-    }
-    path_ = name;
-  }
-  ~TemporaryFolder() { fs::remove_all(path_); }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 void describe(std::ostream& out, const sim::Pose& pose) {
   out << "pose " << pose.position.transpose() << " " << pose.orientation.coeffs().transpose() << "\n";
@@ -167,7 +151,7 @@ sim::Scenario expect_round_trip(const Experiment& experiment, const Candidate& c
   return scenario;
 }
 
-sim::Scenario shipped(const std::string& name) { return read_back(PROLEG_SOURCE_DIR "/sim/scenarios/" + name); }
+sim::Scenario shipped(const std::string& name) { return read_back(source_path("/sim/scenarios/") + name); }
 
 const std::vector<std::string> shipped_names{
     "travelling_wave/uniform.simulation.xml", "travelling_wave/tail_fixed.simulation.xml",
@@ -217,8 +201,7 @@ TEST(WriteScenario, WhatComesBackMovesTheSame) {
 
 TEST(WriteScenario, TheThesissFilesComeBack) {
   std::mt19937 random(5);
-  Experiment experiment =
-      experiment_of(read_back(PROLEG_SOURCE_DIR "/tests/sim/scenario/thesis/MFIdemo.simulation.xml"));
+  Experiment experiment = experiment_of(read_back(source_path("/tests/sim/scenario/thesis/MFIdemo.simulation.xml")));
   add_dimensions(experiment, "", random);
   (void)expect_round_trip(experiment, random_candidate(experiment.space, random));
 }
@@ -286,7 +269,7 @@ TEST(WriteScenario, CopiesFilesByteByByteWhereItCan) {
   const fs::path files = folder.path() / "best.files";
   for (const char* name : {"travelling_wave/caterpillar.robot.xml", "travelling_wave/modules/segment.kinbody.xml",
                            "obstacle/terrace.environment.xml"}) {
-    EXPECT_EQ(text_of(files / name), text_of(fs::path(PROLEG_SOURCE_DIR "/sim/scenarios") / name)) << name;
+    EXPECT_EQ(text_of(files / name), text_of(fs::path(source_path("/sim/scenarios")) / name)) << name;
   }
   EXPECT_FALSE(fs::exists(files / "obstacle/reflex.actuation.xml"));
   EXPECT_FALSE(fs::exists(files / "obstacle/reflex.simulation.xml"));
@@ -330,10 +313,10 @@ TEST(WriteScenario, SaysWhatCannotBeWritten) {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "file") << "in the way";
   const Experiment experiment = experiment_of(shipped("travelling_wave/uniform.simulation.xml"));
-  EXPECT_THROW(write_scenario(experiment, {}, folder.path() / "file", "best"), sim::RecordError);
+  EXPECT_THROW(write_scenario(experiment, {}, folder.path() / "file", "best"), FileError);
   Experiment unread = experiment;
   unread.scenario.sources.clear();
-  EXPECT_THROW(write_scenario(unread, {}, folder.path() / "other", "best"), sim::RecordError);
+  EXPECT_THROW(write_scenario(unread, {}, folder.path() / "other", "best"), FileError);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/scenario/input_error.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "sim/scenario/reader.hpp"
 
 namespace {

@@ -27,7 +27,7 @@ void require(bool holds, const char* what) {
   }
 }
 
-void check_message(const sim::InputError& error) {
+void check_message(const InputError& error) {
   const std::string_view message = error.what();
   require(std::ranges::none_of(message, [](char c) { return static_cast<unsigned char>(c) < 0x20; }),
           "a message is one line");
@@ -98,7 +98,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   files.texts["fuzz.optimise.xml"] = std::string(reinterpret_cast<const char*>(data), size);
   try {
     check(read_experiment("fuzz.optimise.xml", files));
-  } catch (const sim::InputError& error) {
+  } catch (const InputError& error) {
     check_message(error);
   }
   return 0;

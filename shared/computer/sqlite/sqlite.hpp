@@ -1,0 +1,96 @@
+#pragma once
+
+// The little of SQLite that recordings need: a connection, prepared statements, and errors as exceptions.
+
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include <sqlite3.h>
+
+namespace proleg {
+
+class SqliteError : public std::runtime_error {
+ public:
+  SqliteError(int code, const std::string& what) : std::runtime_error(what), code_(code) {}
+  /// Primary result code, e.g. SQLITE_FULL.
+  [[nodiscard]] int code() const { return code_ & 0xFF; }
+
+ private:
+  int code_;
+};
+
+/// A connection, used by one thread. Waits up to 2 s for another program's lock.
+class Database {
+ public:
+  /// flags: SQLITE_OPEN_READONLY, or SQLITE_OPEN_READWRITE with or without SQLITE_OPEN_CREATE.
+  Database(const std::filesystem::path& path, int flags);
+  ~Database();
+  Database(const Database&) = delete;
+  Database& operator=(const Database&) = delete;
+
+  /// Runs statements whose results do not matter.
+  void execute(const char* sql);
+
+  [[nodiscard]] sqlite3* handle() const { return handle_; }
+  [[noreturn]] void fail(int code) const;
+
+ private:
+  sqlite3* handle_ = nullptr;
+};
+
+/// A prepared statement. Must not outlive its connection.
+class Statement {
+ public:
+  Statement(Database& database, std::string_view sql);
+  ~Statement();
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  /// Runs the statement to its end with these values for ?1, ?2, ...
+  template <typename... Values>
+  void run(const Values&... values) {
+    bind_all(values...);
+    while (step()) {
+    }
+    reset();
+  }
+
+  /// Starts over with these values; step() then gives row after row.
+  template <typename... Values>
+  void bind_all(const Values&... values) {
+    reset();
+    int position = 0;
+    (bind(++position, values), ...);
+  }
+  /// The next row, or false at the end.
+  bool step();
+  void reset();
+
+  // Values one by one, for a statement whose number of values is known at run time only. After reset(); positions count
+  // from 1. Text must stay where it is until the statement has run.
+  void bind(int position, std::int64_t value);
+  void bind(int position, std::int32_t value) { bind(position, std::int64_t{value}); }
+  void bind(int position, std::uint32_t value) { bind(position, std::int64_t{value}); }
+  void bind(int position, std::size_t value) { bind(position, static_cast<std::int64_t>(value)); }
+  void bind(int position, double value);  ///< SQLite keeps "not a number" as NULL
+  void bind(int position, std::string_view value);
+
+  // Columns of the current row, counted from 0.
+  [[nodiscard]] bool is_null(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
+  [[nodiscard]] bool is_integer(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_INTEGER; }
+  [[nodiscard]] bool is_real(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_FLOAT; }
+  [[nodiscard]] std::int64_t integer(int column) const { return sqlite3_column_int64(statement_, column); }
+  [[nodiscard]] double real(int column) const { return sqlite3_column_double(statement_, column); }
+  [[nodiscard]] std::string text(int column) const;
+
+ private:
+  void check(int code) const;
+
+  Database& database_;
+  sqlite3_stmt* statement_ = nullptr;
+};
+
+}  // namespace proleg

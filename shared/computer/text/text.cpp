@@ -1,0 +1,174 @@
+#include "shared/computer/text/text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+
+namespace proleg {
+namespace {
+
+constexpr std::string_view blanks = " \t\r\n";
+
+unsigned byte_at(std::string_view text, std::size_t position) { return static_cast<unsigned char>(text[position]); }
+
+/// Whether a terminal would take the character for anything but a sign on the line: the control characters of ASCII
+/// and Latin-1, the line and the paragraph separator.
+bool breaks_a_line(std::string_view character) {
+  const unsigned first = byte_at(character, 0);
+  return first < 0x20 || first == 0x7F || (first == 0xC2 && byte_at(character, 1) < 0xA0) ||
+         character == "\xE2\x80\xA8" || character == "\xE2\x80\xA9";
+}
+
+}  // namespace
+
+std::size_t utf8_character_size(std::string_view text) {
+  if (text.empty()) {
+    return 0;
+  }
+  const unsigned first = byte_at(text, 0);
+  if (first < 0x80) {
+    return 1;
+  }
+  std::size_t size = 0;
+  std::uint32_t code_point = 0;
+  std::uint32_t smallest = 0;  // a longer form than needed is not UTF-8
+  if ((first & 0xE0U) == 0xC0) {
+    size = 2;
+    code_point = first & 0x1FU;
+    smallest = 0x80;
+  } else if ((first & 0xF0U) == 0xE0) {
+    size = 3;
+    code_point = first & 0x0FU;
+    smallest = 0x800;
+  } else if ((first & 0xF8U) == 0xF0) {
+    size = 4;
+    code_point = first & 0x07U;
+    smallest = 0x10000;
+  }
+  if (size == 0 || size > text.size()) {
+    return 0;
+  }
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte_at(text, i) & 0xC0U) != 0x80) {
+      return 0;
+    }
+    code_point = (code_point << 6U) | (byte_at(text, i) & 0x3FU);
+  }
+  const bool surrogate = code_point >= 0xD800 && code_point <= 0xDFFF;
+  return code_point < smallest || code_point > 0x10FFFF || surrogate ? 0 : size;
+}
+
+std::optional<std::size_t> find_invalid_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t size = utf8_character_size(text.substr(i));
+    if (size == 0) {
+      return i;
+    }
+    i += size;
+  }
+  return std::nullopt;
+}
+
+std::string one_line(std::string_view text) {
+  std::string result;
+  result.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t size = utf8_character_size(text);
+    if (size == 0) {
+      result += '?';
+    } else if (breaks_a_line(text.substr(0, size))) {
+      result += ' ';
+    } else {
+      result += text.substr(0, size);
+    }
+    text.remove_prefix(std::max<std::size_t>(size, 1));
+  }
+  return result;
+}
+
+std::string shortened(std::string_view text) {
+  constexpr int most_characters = 60;
+  std::size_t end = 0;
+  for (int i = 0; i < most_characters && end < text.size(); ++i) {
+    end += std::max<std::size_t>(utf8_character_size(text.substr(end)), 1);
+  }
+  return std::string(text.substr(0, end)) + (end < text.size() ? "..." : "");
+}
+
+std::string in_quotes(std::string_view text) { return "'" + shortened(text) + "'"; }
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(),
+                         [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return result;
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) {
+    return {};
+  }
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::vector<std::string_view> words(std::string_view text) {
+  std::vector<std::string_view> result;
+  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+    const std::string_view word = text.substr(0, text.find_first_of(blanks));
+    result.push_back(word);
+    text.remove_prefix(word.size());
+  }
+  return result;
+}
+
+std::string listed(std::span<const std::string> items) {
+  constexpr std::size_t most_items = 20;
+  std::string result;
+  for (std::size_t i = 0; i < items.size() && i < most_items; ++i) {
+    result += (i == 0 ? "" : ", ") + shortened(items[i]);
+  }
+  if (items.size() > most_items) {
+    result += ", ...";
+  }
+  return items.empty() ? "nothing" : result;
+}
+
+std::optional<double> parse_number(std::string_view word) {
+  double value = 0.0;
+  const char* const end = word.data() + word.size();
+  const auto [rest, error] = std::from_chars(word.data(), end, value);
+  if (error != std::errc{} || rest != end || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<std::uint32_t> parse_rate(std::string_view text) {
+  const bool percent = text.ends_with('%');
+  const std::optional<double> number = parse_number(std::string(percent ? text.substr(0, text.size() - 1) : text));
+  const double rate = number.value_or(-1.0) / (percent ? 100.0 : 1.0);
+  if (!(rate >= 0.0 && rate <= 1.0)) {
+    return std::nullopt;
+  }
+  return static_cast<std::uint32_t>(std::min(std::round(rate * 4294967296.0), 4294967295.0));
+}
+
+std::string number_text(double value) {
+  std::array<char, 32> buffer{};
+  const auto [end, error] =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, 6);
+  return {buffer.data(), error == std::errc{} ? end : buffer.data()};
+}
+
+std::string exact_text(double value) {
+  if (!std::isfinite(value)) {
+    return {};
+  }
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+}  // namespace proleg

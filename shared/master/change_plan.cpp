@@ -1,0 +1,139 @@
+#include "shared/master/change_plan.hpp"
+
+#include <array>
+
+#include "shared/canopen/objects.hpp"
+
+namespace proleg::canopen {
+namespace {
+
+constexpr std::uint8_t value_size = 4;
+
+}  // namespace
+
+ChangePlan::ChangePlan(const KernelConfiguration& kernel, std::span<Change> changes)
+    : kernel_(kernel), changes_(changes) {
+  for (Change& change : changes_) {
+    change.dropped = false;
+  }
+}
+
+bool ChangePlan::exists(const ChangedValue& value) const {
+  if (value.slot >= max_slots || value.joint >= kernel_.joint_count) {
+    return false;
+  }
+  const Slot& slot = kernel_.slots[value.slot];
+  if (slot.algorithm == nullptr || !slot.group.contains(value.joint)) {
+    return false;
+  }
+  const Declaration& declaration = slot.algorithm->declaration();
+  return value.number < (value.internal ? declaration.internal_values.size() : declaration.parameters.size());
+}
+
+bool ChangePlan::fits(const Change& change) const {
+  std::array<std::uint8_t, max_joints> count{};
+  for (const ChangedValue& value : change.values) {
+    if (!exists(value) || count[value.joint] == max_staged_values) {
+      return false;
+    }
+    ++count[value.joint];
+  }
+  return true;
+}
+
+std::optional<std::size_t> ChangePlan::find_bad() const {
+  for (std::size_t i = 0; i < changes_.size(); ++i) {
+    if ((i > 0 && changes_[i].tick <= changes_[i - 1].tick) || !fits(changes_[i])) {
+      return i;
+    }
+  }
+  return std::nullopt;
+}
+
+bool ChangePlan::can_stage() const {
+  if (next_ == changes_.size()) {
+    return false;
+  }
+  std::size_t pending = 0;
+  std::array<std::uint16_t, max_joints> count{};
+  const auto add = [&count](const Change& change) {
+    bool room = true;
+    for (const ChangedValue& value : change.values) {
+      ++count[value.joint];
+      room = room && count[value.joint] <= max_staged_values;
+    }
+    return room;
+  };
+  for (std::size_t i = waiting_; i < next_; ++i) {
+    if (!changes_[i].dropped) {
+      ++pending;
+      static_cast<void>(add(changes_[i]));
+    }
+  }
+  return pending < most_pending && add(changes_[next_]);
+}
+
+void ChangePlan::commit_next() { ++next_; }
+
+void ChangePlan::drop_next() {
+  changes_[next_].dropped = true;
+  ++next_;
+}
+
+void ChangePlan::pass(std::uint32_t tick) {
+  while (waiting_ < next_ && (changes_[waiting_].dropped || changes_[waiting_].tick <= tick)) {
+    ++waiting_;
+  }
+}
+
+std::optional<SdoWrite> ChangePlan::staging(std::size_t change, unsigned joint, std::size_t n) const {
+  if (n == 0) {
+    return SdoWrite{object::transaction.address, size_of(object::transaction.type), transaction(change)};
+  }
+  for (const ChangedValue& value : changes_[change].values) {
+    if (value.joint == joint && --n == 0) {
+      const ValueKind kind = value.internal ? ValueKind::internal_value : ValueKind::staged_parameter;
+      return SdoWrite{address_of({kind, algorithm_id(value.slot), value.number, value.slot}), value_size,
+                      static_cast<std::uint32_t>(value.value)};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::int32_t> ChangePlan::parameter_before(std::size_t end, unsigned joint, unsigned slot,
+                                                         unsigned parameter) const {
+  for (std::size_t i = end; i-- > 0;) {
+    if (changes_[i].dropped) {
+      continue;
+    }
+    std::optional<std::int32_t> last;
+    for (const ChangedValue& value : changes_[i].values) {
+      if (!value.internal && value.joint == joint && value.slot == slot && value.number == parameter) {
+        last = value.value;
+      }
+    }
+    if (last) {
+      return last;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<SdoWrite> ChangePlan::made_before(std::size_t end, unsigned joint, std::size_t n) const {
+  for (std::uint8_t slot = 0; slot < max_slots; ++slot) {
+    if (kernel_.slots[slot].algorithm == nullptr) {
+      continue;
+    }
+    const std::size_t parameters = kernel_.slots[slot].algorithm->declaration().parameters.size();
+    for (std::uint8_t parameter = 0; parameter < parameters; ++parameter) {
+      const std::optional<std::int32_t> value = parameter_before(end, joint, slot, parameter);
+      if (value && n-- == 0) {
+        return SdoWrite{address_of({ValueKind::parameter, algorithm_id(slot), parameter, slot}), value_size,
+                        static_cast<std::uint32_t>(*value)};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace proleg::canopen

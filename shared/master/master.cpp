@@ -1,0 +1,312 @@
+#include "shared/master/master.hpp"
+
+#include "shared/canopen/bus_load.hpp"
+
+namespace proleg::canopen {
+namespace {
+
+constexpr unsigned node_bits = 0x7F;
+
+}  // namespace
+
+Master::Master(CanPort& port, const RobotSetup& setup, const MasterOptions& options, std::span<Change> changes)
+    : setup_(setup), options_(options), plan_(setup.kernel, changes), queue_(port) {
+  joint_of_.fill(nobody);
+}
+
+void Master::start(Microseconds now) {
+  if (state_ != MasterState::idle) {
+    return;
+  }
+  now_ = now;
+  mission_ = Mission::bring_up;
+  if (const std::optional<Problem> problem = check_setup()) {
+    fail(*problem);
+    return;
+  }
+  if (const std::optional<Problem> problem = check_change()) {
+    fail(*problem);
+    return;
+  }
+  crc_ = configuration_crc(setup_);
+  for (std::uint8_t joint = 0; joint < setup_.kernel.joint_count; ++joint) {
+    joint_of_[setup_.nodes[joint]] = joint;
+  }
+  heartbeat_at_ = now;
+  enter(Phase::scan);
+  poll(now);
+}
+
+void Master::stop(Microseconds now) {
+  if (state_ == MasterState::idle || mission_ == Mission::stop) {
+    return;
+  }
+  now_ = now;
+  state_ = MasterState::stopping;
+  mission_ = Mission::stop;
+  silence_at_ = never;
+  sync_lost_at_ = never;
+  start_joints_ = 0;
+  reset_joints_ = 0;
+  start_all_ = false;
+  joints_ = booted_;
+  enter(Phase::disable);
+  advance(now);
+}
+
+// Events.
+
+void Master::receive(Microseconds now, const CanFrame& frame) {
+  if (state_ == MasterState::idle) {
+    return;
+  }
+  now_ = now;
+  if (frame.identifier == identifier::sync) {
+    if (const std::optional<std::uint8_t> counter = decode_sync(frame)) {
+      ticks_.sync(*counter);
+      on_tick_passed();
+    }
+  } else if (const std::optional<TickMessage> message = decode_tick(frame)) {
+    ticks_.announce(message->tick);
+  } else {
+    switch (frame.identifier & ~node_bits) {
+      case identifier::sdo_answer:
+        crew_.receive(now, frame, *this);
+        break;
+      case identifier::heartbeat:
+        on_heartbeat(frame);
+        break;
+      case identifier::emergency:
+        on_emergency(frame);
+        break;
+      default:
+        return;
+    }
+  }
+  advance(now);
+}
+
+void Master::transmitted(Microseconds now, const CanFrame& frame) {
+  now_ = now;
+  queue_.sent();
+  if (phase_ == Phase::commit && frame.identifier == identifier::commit) {
+    ++commits_sent_;
+  }
+  advance(now);
+}
+
+void Master::poll(Microseconds now) {
+  now_ = now;
+  if (now >= heartbeat_at_) {
+    constexpr Microseconds until_next_try_us = 1'000;
+    const bool sent = queue_.push(encode(Heartbeat{host_node, NmtState::operational}));
+    heartbeat_at_ += heartbeat_period_us;
+    if (!sent || heartbeat_at_ <= now) {
+      heartbeat_at_ = now + (sent ? heartbeat_period_us : until_next_try_us);
+    }
+  }
+  crew_.poll(now, *this);
+  watch_heartbeats();
+  if (now >= sync_lost_at_) {
+    fail({ProblemCode::sync_lost});
+  }
+  if (now >= deadline_) {
+    deadline_ = never;
+    phase_timed_out();
+  }
+  advance(now);
+}
+
+Microseconds Master::next_deadline() const {
+  Microseconds next = crew_.next_deadline();
+  for (const Microseconds deadline : {heartbeat_at_, deadline_, silence_at_, sync_lost_at_}) {
+    next = deadline < next ? deadline : next;
+  }
+  return next;
+}
+
+void Master::on_heartbeat(const CanFrame& frame) {
+  const std::optional<Heartbeat> heartbeat = decode_heartbeat(frame);
+  if (!heartbeat || heartbeat->node == host_node) {
+    return;
+  }
+  const std::uint8_t joint = joint_of_[heartbeat->node];
+  if (joint == nobody) {
+    on_stranger(heartbeat->node, heartbeat->state == NmtState::boot_up);
+    return;
+  }
+  heard_at_[joint] = now_;
+  if (heartbeat->state == NmtState::boot_up) {
+    on_boot_up(joint);
+    return;
+  }
+  const JointSet self = set_of(joint);
+  if (heartbeat->state == NmtState::operational) {
+    operational_ |= self;
+  } else if (contains(operational_, joint)) {
+    operational_ &= ~self;
+    if (running()) {
+      add_event(EventKind::left_operational, heartbeat->node, static_cast<std::uint32_t>(heartbeat->state));
+    }
+  }
+  if (running() && contains(lost_ & ~given_up_ & ~restarted_, joint)) {
+    lost_ &= ~self;
+    add_event(EventKind::heard_again, heartbeat->node);
+    if (contains(outdated_, joint)) {
+      reset_joints_ |= self;  // it would go on with old values; after the reset it is set up again
+    }
+  }
+}
+
+void Master::on_boot_up(unsigned joint) {
+  const JointSet self = set_of(joint);
+  const std::uint8_t node = setup_.nodes[joint];
+  if (mission_ == Mission::bring_up) {
+    if (contains(booted_, joint)) {
+      fail(problem_of(ProblemCode::duplicate_node, joint));
+    }
+    booted_ |= self;
+    return;
+  }
+  operational_ &= ~self;
+  crew_.cancel(joint);
+  joints_ &= ~self;
+  start_joints_ &= ~self;
+  reset_joints_ &= ~self;
+  if (!running()) {
+    return;
+  }
+  ++restarts_;
+  add_event(EventKind::restarted, node, restarts_);
+  lost_ &= ~self;
+  given_up_ &= ~self;
+  restarted_ |= self;
+  if (joint == options_.sync_producer) {
+    fail(problem_of(ProblemCode::sync_lost, joint));  // the ticks of the others cannot go on
+  }
+}
+
+void Master::on_emergency(const CanFrame& frame) {
+  const std::optional<Emergency> emergency = decode_emergency(frame);
+  if (!emergency || emergency->node == host_node) {
+    return;
+  }
+  events_.add(
+      {now_, EventKind::emergency, emergency->node, emergency->error_register, emergency->code, emergency->detail});
+  const std::uint8_t joint = joint_of_[emergency->node];
+  if (joint == nobody) {
+    on_stranger(emergency->node, false);
+  } else if (mission_ == Mission::bring_up && emergency->code == EmergencyCode::identifier_collision) {
+    fail(problem_of(ProblemCode::duplicate_node, joint));
+  }
+}
+
+void Master::on_stranger(std::uint8_t node, bool boots) {
+  if (mission_ == Mission::bring_up) {
+    Problem problem{ProblemCode::unexpected_node};
+    problem.node = node;
+    fail(problem);
+  } else if (running() && boots) {
+    add_event(EventKind::unexpected_node, node);
+  }
+}
+
+void Master::on_tick_passed() {
+  if (!running()) {
+    return;
+  }
+  sync_lost_at_ = now_ + silence_us;
+  if (const std::optional<std::uint32_t> tick = ticks_.tick(); tick && *tick >= ticks_on_the_way) {
+    plan_.pass(*tick - ticks_on_the_way);  // also in a module that has not heard the last SYNC
+  }
+}
+
+void Master::watch_heartbeats() {
+  if (now_ < silence_at_) {
+    return;
+  }
+  silence_at_ = never;
+  for (unsigned joint = 0; joint < setup_.kernel.joint_count; ++joint) {
+    if (contains(lost_ | restarted_ | (mission_ == Mission::rejoin ? joints_ : 0), joint)) {
+      continue;  // known, or not expected to send
+    }
+    const Microseconds silent_at = heard_at_[joint] + silence_us;
+    if (silent_at <= now_) {
+      lost_ |= set_of(joint);
+      add_event(EventKind::silent, setup_.nodes[joint]);
+    } else {
+      silence_at_ = silent_at < silence_at_ ? silent_at : silence_at_;
+    }
+  }
+  // One that is heard again is watched again in time.
+  silence_at_ = silence_at_ == never ? now_ + silence_us : silence_at_;
+}
+
+// Problems.
+
+Problem Master::problem_of(ProblemCode code, unsigned joint) const {
+  Problem problem{code};
+  problem.joint = static_cast<std::uint8_t>(joint);
+  problem.node = setup_.nodes[joint];
+  return problem;
+}
+
+std::optional<Problem> Master::check_setup() const {
+  const std::size_t joints = setup_.kernel.joint_count;
+  if (joints == 0 || joints > max_joints || setup_.nodes.size() != joints || setup_.limits.size() != joints ||
+      (!options_.serials.empty() && options_.serials.size() != joints) || options_.sync_producer >= joints) {
+    return Problem{ProblemCode::bad_setup};
+  }
+  std::array<bool, 128> taken{};
+  for (unsigned joint = 0; joint < joints; ++joint) {
+    const std::uint8_t node = setup_.nodes[joint];
+    if (node < lowest_node || node > highest_node || taken[node]) {
+      return problem_of(ProblemCode::bad_setup, joint);
+    }
+    taken[node] = true;
+  }
+  if (const std::uint32_t load = worst_bus_load_permille(setup_.kernel); load > highest_bus_load_permille) {
+    Problem problem{ProblemCode::bus_too_small};
+    problem.found = load;
+    problem.expected = highest_bus_load_permille;
+    return problem;
+  }
+  return std::nullopt;
+}
+
+std::optional<Problem> Master::check_change() const {
+  const std::optional<std::size_t> bad = plan_.find_bad();
+  if (!bad) {
+    return std::nullopt;
+  }
+  Problem problem{ProblemCode::bad_change};
+  problem.change = *bad;
+  return problem;
+}
+
+void Master::fail(const Problem& problem) {
+  if (state_ == MasterState::failed || mission_ == Mission::stop) {
+    return;
+  }
+  problem_ = problem;
+  state_ = MasterState::failed;
+  mission_ = Mission::none;
+  silence_at_ = never;
+  sync_lost_at_ = never;
+  start_joints_ = 0;
+  reset_joints_ = 0;
+  start_all_ = false;
+  enter(Phase::none);
+}
+
+void Master::report(const Problem& problem) {
+  if (problem_.code == ProblemCode::none) {
+    problem_ = problem;
+  }
+}
+
+void Master::add_event(EventKind kind, std::uint8_t node, std::uint32_t detail) {
+  events_.add({now_, kind, node, 0, EmergencyCode::none, detail});
+}
+
+}  // namespace proleg::canopen

@@ -1,0 +1,331 @@
+#include "shared/master/master.hpp"
+
+// The order of things: what is waited for (phases), what for (missions), and what comes next.
+
+namespace proleg::canopen {
+
+void Master::advance(Microseconds now) {
+  do {
+    send_network_requests();
+    crew_.send(now, setup_.nodes, queue_, *this);
+    while (phase_ == Phase::commit && commits_queued_ < commit_repeats &&
+           queue_.push(encode(CommitMessage{ChangePlan::transaction(change_), plan_[change_].tick, setup_.robot_id}))) {
+      ++commits_queued_;
+    }
+    if (!phase_done()) {
+      return;
+    }
+    next_phase();
+  } while (true);
+}
+
+void Master::send_network_requests() {
+  const auto send = [this](NmtCommand command, std::uint8_t node) {
+    return queue_.push(encode(NmtRequest{command, node}));
+  };
+  const auto send_each = [&](NmtCommand command, JointSet& joints) {
+    while (joints != 0 && send(command, setup_.nodes[first_of(joints)])) {
+      joints &= joints - 1;
+    }
+  };
+  start_all_ = start_all_ && !send(NmtCommand::start, 0);
+  rest_all_ = rest_all_ && !send(NmtCommand::enter_pre_operational, 0);
+  send_each(NmtCommand::start, start_joints_);
+  send_each(NmtCommand::reset_node, reset_joints_);
+}
+
+bool Master::phase_done() const {
+  switch (phase_) {
+    case Phase::none:
+      return running() && (restarted_ != 0 || plan_.can_stage());
+    case Phase::scan:
+      return booted_ == all_of(setup_.kernel.joint_count);
+    case Phase::quiet:
+      return false;  // until its time is over
+    case Phase::commit:
+      return commits_sent_ >= commit_repeats;
+    case Phase::nmt_start:
+      return !start_all_ && start_joints_ == 0 && (joints_ & ~operational_) == 0;
+    default:
+      return crew_.done();
+  }
+}
+
+void Master::enter(Phase phase) {
+  phase_ = phase;
+  deadline_ = never;
+  JointSet crew = 0;
+  Microseconds time_out_us = SdoClient::default_time_out_us;
+  switch (phase) {
+    case Phase::none:
+    case Phase::quiet:
+      deadline_ = phase == Phase::quiet ? now_ + quiet_time_us : never;
+      break;
+    case Phase::scan:
+      state_ = MasterState::scanning;
+      deadline_ = now_ + boot_time_out_us;
+      break;
+    case Phase::commit:
+      commits_queued_ = 0;
+      commits_sent_ = 0;
+      deadline_ = now_ + send_time_out_us;
+      break;
+    case Phase::nmt_start:
+      operational_ &= ~joints_;
+      deadline_ = now_ + start_time_out_us;
+      break;
+    case Phase::set_up:
+    case Phase::stage:
+    case Phase::enable:
+      crew = joints_;
+      break;
+    case Phase::produce_sync:
+      crew = set_of(options_.sync_producer);
+      break;
+    case Phase::disable:
+      crew = joints_;
+      time_out_us = stop_time_out_us;
+      break;
+    case Phase::sync_off:
+      crew = joints_ & set_of(options_.sync_producer);
+      time_out_us = stop_time_out_us;
+      break;
+  }
+  crew_.begin(crew, time_out_us, running() ? pause_us : 0);
+  if (mission_ != Mission::bring_up) {
+    return;
+  }
+  switch (phase) {
+    case Phase::set_up:
+      state_ = MasterState::setting_up;
+      break;
+    case Phase::stage:
+      state_ = MasterState::staging;
+      break;
+    case Phase::nmt_start:
+      state_ = MasterState::starting;
+      break;
+    case Phase::enable:
+      state_ = MasterState::powering;
+      break;
+    default:
+      break;
+  }
+}
+
+/// What comes after a phase that is done.
+void Master::next_phase() {
+  switch (phase_) {
+    case Phase::none:
+      begin_mission();
+      break;
+    case Phase::scan:
+      joints_ = booted_;
+      enter(Phase::quiet);
+      break;
+    case Phase::quiet:
+      enter(Phase::set_up);
+      break;
+    case Phase::set_up:
+      change_ = rejoin_from_;
+      if (mission_ == Mission::rejoin) {
+        stage_for_rejoin();
+      } else {
+        after_commit();
+      }
+      break;
+    case Phase::stage:
+      begin_commit();
+      break;
+    case Phase::commit:
+      after_commit();
+      break;
+    case Phase::nmt_start:
+      if (mission_ == Mission::rejoin) {
+        finish_rejoin();
+      } else {
+        enter(Phase::enable);
+      }
+      break;
+    case Phase::enable:
+      if (mission_ == Mission::rejoin) {
+        start_joints_ = joints_;
+        enter(Phase::nmt_start);
+      } else {
+        ticks_ = {};
+        enter(Phase::produce_sync);
+      }
+      break;
+    case Phase::produce_sync:
+      run();
+      break;
+    case Phase::disable:
+      rest_all_ = true;
+      enter(Phase::sync_off);
+      break;
+    case Phase::sync_off:
+      state_ = MasterState::stopped;
+      enter(Phase::none);
+      break;
+  }
+}
+
+void Master::phase_timed_out() {
+  switch (phase_) {
+    case Phase::scan:
+      fail(problem_of(ProblemCode::missing_module, first_of(all_of(setup_.kernel.joint_count) & ~booted_)));
+      break;
+    case Phase::quiet:
+      next_phase();
+      break;
+    case Phase::commit:
+      fail({ProblemCode::cannot_send});
+      break;
+    case Phase::nmt_start: {
+      const JointSet missing = joints_ & ~operational_;
+      if (missing == 0) {
+        fail({ProblemCode::cannot_send});
+      }
+      start_all_ = false;
+      start_joints_ = 0;
+      for (JointSet rest = missing; rest != 0; rest &= rest - 1) {
+        static_cast<void>(joint_failed(problem_of(ProblemCode::not_operational, first_of(rest))));
+      }
+      break;
+    }
+    default:
+      break;
+  }
+}
+
+void Master::run() {
+  state_ = MasterState::running;
+  mission_ = Mission::none;
+  sync_lost_at_ = now_ + silence_us;
+  silence_at_ = now_ + silence_us;
+  heard_at_.fill(now_);
+  enter(Phase::none);
+}
+
+/// Something is to be done while the robot runs: modules that restarted come first, but not twice in a row, so that one
+/// that restarts again and again does not keep changes from being made.
+void Master::begin_mission() {
+  if (restarted_ != 0 && !(rejoined_last_ && plan_.can_stage())) {
+    rejoined_last_ = true;
+    const JointSet joints = restarted_;
+    restarted_ = 0;
+    begin_rejoin(joints);
+    return;
+  }
+  rejoined_last_ = false;
+  mission_ = Mission::change;
+  change_ = plan_.next();
+  change_failed_ = false;
+  joints_ = all_of(setup_.kernel.joint_count) & ~lost_ & ~restarted_;
+  // Who is too late already need not stage.
+  enter(plan_[change_].tick < ticks_.tick().value_or(0) + commit_lead ? Phase::none : Phase::stage);
+  if (phase_ == Phase::none) {
+    begin_commit();
+  }
+}
+
+void Master::drop_change(const Problem& problem) {
+  report(problem);
+  add_event(EventKind::change_dropped, 0, plan_[change_].tick);
+  plan_.drop_next();
+  mission_ = Mission::none;
+  enter(Phase::none);
+}
+
+void Master::begin_commit() {
+  if (mission_ == Mission::rejoin && passed(plan_[change_])) {
+    // Its parameters are in force by now; as such they must be written before anything is staged.
+    begin_rejoin(joints_);
+    return;
+  }
+  if (mission_ == Mission::change) {
+    if (change_failed_) {
+      drop_change(problem_);
+      return;
+    }
+    const std::uint32_t tick = ticks_.tick().value_or(0);
+    if (plan_[change_].tick < tick + commit_lead) {
+      Problem problem{ProblemCode::commit_too_late};
+      problem.change = change_;
+      problem.found = tick;
+      problem.expected = plan_[change_].tick;
+      drop_change(problem);
+      return;
+    }
+  }
+  enter(Phase::commit);
+}
+
+void Master::after_commit() {
+  switch (mission_) {
+    case Mission::bring_up:
+      if (phase_ == Phase::commit) {
+        plan_.commit_next();
+      }
+      if (plan_.can_stage()) {
+        change_ = plan_.next();
+        enter(Phase::stage);
+      } else {
+        start_all_ = true;
+        enter(Phase::nmt_start);
+      }
+      break;
+    case Mission::change:
+      plan_.commit_next();
+      outdated_ |= all_of(setup_.kernel.joint_count) & ~joints_ & ~restarted_;
+      mission_ = Mission::none;
+      enter(Phase::none);
+      break;
+    case Mission::rejoin:
+      ++change_;
+      stage_for_rejoin();
+      break;
+    default:
+      enter(Phase::none);
+      break;
+  }
+}
+
+bool Master::passed(const Change& change) const { return change.tick <= ticks_.tick().value_or(0) + ticks_on_the_way; }
+
+void Master::begin_rejoin(JointSet joints) {
+  mission_ = Mission::rejoin;
+  joints_ = joints;
+  rejoin_from_ = plan_.next();
+  while (rejoin_from_ > 0 && !passed(plan_[rejoin_from_ - 1])) {
+    --rejoin_from_;
+  }
+  enter(Phase::set_up);
+}
+
+/// The committed changes that wait for their tick are staged in the restarted modules too, and committed again. All
+/// others take that for a repetition.
+void Master::stage_for_rejoin() {
+  while (change_ < plan_.next() && plan_[change_].dropped) {
+    ++change_;
+  }
+  if (joints_ == 0) {
+    finish_rejoin();
+  } else if (change_ == plan_.next()) {
+    enter(Phase::enable);  // so that the servo has power from the first tick that its module computes
+  } else {
+    enter(Phase::stage);
+  }
+}
+
+void Master::finish_rejoin() {
+  for (JointSet rest = joints_; rest != 0; rest &= rest - 1) {
+    heard_at_[first_of(rest)] = now_;
+    add_event(EventKind::rejoined, setup_.nodes[first_of(rest)]);
+  }
+  outdated_ &= ~joints_;
+  mission_ = Mission::none;
+  enter(Phase::none);
+}
+
+}  // namespace proleg::canopen

@@ -1,0 +1,92 @@
+#include "shared/master/master_report.hpp"
+
+namespace proleg::canopen {
+
+std::string_view describe(ProblemCode code) {
+  switch (code) {
+    case ProblemCode::none:
+      return "no problem";
+    case ProblemCode::bus_too_small:
+      return "the state frames may fill the bus";
+    case ProblemCode::bad_setup:
+      return "the set-up does not give each joint a node of its own";
+    case ProblemCode::bad_change:
+      return "a change that cannot be made";
+    case ProblemCode::missing_module:
+      return "a module is missing";
+    case ProblemCode::duplicate_node:
+      return "two modules have one node id, or a module has restarted";
+    case ProblemCode::unexpected_node:
+      return "a module that does not belong to the robot";
+    case ProblemCode::wrong_serial:
+      return "another serial number";
+    case ProblemCode::foreign_protocol:
+      return "another version of the protocol";
+    case ProblemCode::foreign_fingerprint:
+      return "a module with another core";
+    case ProblemCode::refused:
+      return "a module refuses its set-up";
+    case ProblemCode::no_answer:
+      return "a module does not answer";
+    case ProblemCode::wrong_configuration:
+      return "a module has another configuration";
+    case ProblemCode::not_operational:
+      return "a module does not become operational";
+    case ProblemCode::commit_too_late:
+      return "a change came too late for its tick";
+    case ProblemCode::change_refused:
+      return "a module refuses a change";
+    case ProblemCode::sync_lost:
+      return "SYNC is lost";
+    case ProblemCode::cannot_send:
+      return "nothing can be sent on the bus";
+  }
+  return "unknown problem";
+}
+
+std::string_view describe(EventKind kind) {
+  switch (kind) {
+    case EventKind::emergency:
+      return "emergency message";
+    case EventKind::restarted:
+      return "module has restarted";
+    case EventKind::rejoined:
+      return "module is set up again";
+    case EventKind::rejoin_failed:
+      return "module could not be set up again";
+    case EventKind::silent:
+      return "module is silent";
+    case EventKind::heard_again:
+      return "module is heard again";
+    case EventKind::not_reached:
+      return "module did not take a change";
+    case EventKind::left_operational:
+      return "module is not operational any more";
+    case EventKind::unexpected_node:
+      return "module that does not belong to the robot";
+    case EventKind::change_dropped:
+      return "change was dropped";
+  }
+  return "unknown event";
+}
+
+void EventLog::add(const Event& event) {
+  if (size_ == capacity) {
+    ++overflow_;
+    return;
+  }
+  events_[(first_ + size_) % capacity] = event;
+  ++size_;
+}
+
+std::optional<Event> EventLog::take() {
+  if (size_ == 0) {
+    return std::nullopt;
+  }
+  const Event event = events_[first_];
+  first_ = (first_ + 1) % capacity;
+  --size_;
+  return event;
+}
+
+}  // namespace proleg::canopen

@@ -1,0 +1,138 @@
+#include "shared/canopen/objects.hpp"
+#include "shared/master/master.hpp"
+
+// What the master asks of the modules in each phase, and what it makes of their answers.
+
+namespace proleg::canopen {
+namespace {
+
+/// Read from each module before it is set up.
+constexpr const Object* identity_entries[] = {&object::vendor, &object::product, &object::serial, &object::version,
+                                              &object::core_fingerprint};
+constexpr std::size_t identity_count = 5;
+
+/// CiA 402: Shutdown, Switch on, Enable operation.
+constexpr std::uint16_t enabling_controlwords[] = {0x0006, 0x0007, 0x000F};
+constexpr std::size_t enabling_count = 3;
+
+}  // namespace
+
+std::optional<SdoStep> Master::step(unsigned joint, std::size_t position) {
+  const auto write = [](const Object& object, std::uint32_t value) {
+    return SdoStep{true, object.address, size_of(object.type), value};
+  };
+  const auto only = [&](const Object& object, std::uint32_t value) {
+    return position == 0 ? std::optional(write(object, value)) : std::nullopt;
+  };
+  switch (phase_) {
+    case Phase::set_up:
+      return set_up_step(joint, position);
+    case Phase::stage:
+      if (const std::optional<SdoWrite> next = plan_.staging(change_, joint, position)) {
+        return SdoStep{true, next->address, next->size, next->value};
+      }
+      return std::nullopt;
+    case Phase::enable:
+      return position < enabling_count ? std::optional(write(object::controlword, enabling_controlwords[position]))
+                                       : std::nullopt;
+    case Phase::produce_sync:
+      return only(object::sync_identifier, produces_sync | identifier::sync);
+    case Phase::disable:
+      return only(object::controlword, 0);
+    case Phase::sync_off:
+      return only(object::sync_identifier, identifier::sync);
+    default:
+      return std::nullopt;
+  }
+}
+
+std::optional<SdoStep> Master::set_up_step(unsigned joint, std::size_t position) const {
+  if (position < identity_count) {
+    return SdoStep{false, identity_entries[position]->address};
+  }
+  position -= identity_count;
+  const SetupList list(setup_, joint);
+  std::optional<SdoWrite> next;
+  if (position < list.size()) {
+    next = list.at(position);
+  } else if (position == list.size()) {
+    return SdoStep{false, object::configuration_crc.address};
+  } else if (mission_ == Mission::rejoin) {
+    next = plan_.made_before(rejoin_from_, joint, position - list.size() - 1);
+  }
+  return next ? std::optional(SdoStep{true, next->address, next->size, next->value}) : std::nullopt;
+}
+
+bool Master::take(unsigned joint, std::size_t position, std::uint32_t value) {
+  Identity& identity = identities_[joint];
+  const auto expect = [&](std::uint32_t expected, ProblemCode code) {
+    if (value == expected) {
+      return true;
+    }
+    Problem problem = problem_of(code, joint);
+    problem.found = value;
+    problem.expected = expected;
+    return joint_failed(problem);
+  };
+  const std::uint32_t serial = options_.serials.empty() ? 0 : options_.serials[joint];
+  switch (position) {
+    case 0:
+      identity.vendor = value;
+      return true;
+    case 1:
+      identity.product = value;
+      return true;
+    case 2:
+      identity.serial = value;
+      return serial == 0 || expect(serial, ProblemCode::wrong_serial);
+    case 3:
+      return expect(protocol_version, ProblemCode::foreign_protocol);
+    case 4:
+      return expect(options_.core_fingerprint, ProblemCode::foreign_fingerprint);
+    default:
+      return expect(crc_, ProblemCode::wrong_configuration);
+  }
+}
+
+void Master::aborted(unsigned joint, Address address, AbortCode code) {
+  Problem problem = problem_of(code == AbortCode::time_out ? ProblemCode::no_answer : ProblemCode::refused, joint);
+  problem.address = address;
+  problem.abort_code = code;
+  static_cast<void>(joint_failed(problem));
+}
+
+/// Nothing more can be done for the joint in this mission. Always false.
+bool Master::joint_failed(const Problem& problem) {
+  const JointSet self = set_of(problem.joint);
+  switch (mission_) {
+    case Mission::bring_up:
+      fail(problem);
+      break;
+    case Mission::change:
+      if (problem.code == ProblemCode::no_answer) {
+        joints_ &= ~self;
+        lost_ |= self;
+        add_event(EventKind::not_reached, problem.node);
+      } else if (!change_failed_) {
+        change_failed_ = true;
+        crew_.cancel_all();
+        Problem refused = problem;
+        refused.code = ProblemCode::change_refused;
+        refused.change = change_;
+        report(refused);
+      }
+      break;
+    case Mission::rejoin:
+      joints_ &= ~self;
+      lost_ |= self;
+      given_up_ |= self;
+      add_event(EventKind::rejoin_failed, problem.node, static_cast<std::uint32_t>(problem.code));
+      break;
+    case Mission::stop:
+    case Mission::none:
+      break;
+  }
+  return false;
+}
+
+}  // namespace proleg::canopen

@@ -1,0 +1,61 @@
+#include "shared/computer/output/output.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "shared/computer/errors/file_error.hpp"
+#include "tests/support/files.hpp"
+#include "tests/support/message_of.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace proleg {
+namespace {
+
+TEST(Output, AppearsWhenItIsComplete) {
+  const TemporaryFolder folder;
+  const std::string text(200'000, 'x');
+  Output output(folder / "table.tsv");
+  output.write(text);
+  output.write("end");
+  EXPECT_FALSE(std::filesystem::exists(folder / "table.tsv"));
+  output.finish();
+  EXPECT_EQ(file_contents(folder / "table.tsv"), text + "end");
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"table.tsv"}));
+}
+
+TEST(Output, LeavesNothingIfItIsNotFinished) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "table.tsv") << "earlier";
+  { Output(folder / "table.tsv").write(std::string(200'000, 'x')); }
+  EXPECT_EQ(folder.names(), (std::vector<std::string>{"table.tsv"}));
+  EXPECT_EQ(file_contents(folder / "table.tsv"), "earlier");
+}
+
+TEST(Output, ReportsADeviceThatIsFull) {
+  Output output("/dev/full");
+  output.write("text");
+  const std::string message = message_of<FileError>([&] { output.finish(); });
+  EXPECT_EQ(message, "/dev/full: cannot be written: No space left on device");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST(Output, ReportsAFolderThatIsNotThere) {
+  const TemporaryFolder folder;
+  const std::string message = message_of<FileError>([&] { Output(folder / "none" / "table.tsv"); });
+  EXPECT_NE(message.find("No such file or directory"), std::string::npos) << message;
+}
+
+TEST(Output, ReplacesTheFileThatALinkNames) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "table.tsv") << "earlier";
+  std::filesystem::create_symlink("table.tsv", folder / "link.tsv");
+  Output output(folder / "link.tsv");
+  output.write("later");
+  output.finish();
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.tsv"));
+  EXPECT_EQ(file_contents(folder / "table.tsv"), "later");
+}
+
+}  // namespace
+}  // namespace proleg

@@ -1,0 +1,59 @@
+#include "shared/computer/text/text.hpp"
+
+#include <gtest/gtest.h>
+
+#include "shared/computer/errors/input_error.hpp"
+
+namespace proleg {
+namespace {
+
+TEST(Text, Utf8IsCheckedAsRfc3629Says) {
+  for (const char* good : {"", "a", "\x7F", "\xC2\x80", "\xDF\xBF", "\xE0\xA0\x80", "\xED\x9F\xBF", "\xEE\x80\x80",
+                           "\xEF\xBF\xBF", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"}) {
+    EXPECT_FALSE(find_invalid_utf8(good).has_value()) << testing::PrintToString(good);
+  }
+  // Continuation alone, cut short, longer than needed, surrogates, beyond U+10FFFF, bytes that never occur.
+  for (const char* bad :
+       {"\x80", "\xC2", "\xC2\x41", "\xC0\x80", "\xC1\xBF", "\xE0\x80\x80", "\xE0\x9F\xBF", "\xE2\x82", "\xED\xA0\x80",
+        "\xED\xBF\xBF", "\xF0\x80\x80\x80", "\xF4\x90\x80\x80", "\xF8\x88\x80\x80\x80", "\xFE", "\xFF"}) {
+    EXPECT_EQ(find_invalid_utf8(bad), 0U) << testing::PrintToString(bad);
+  }
+  EXPECT_EQ(find_invalid_utf8("ab\xFF"), 2U);
+}
+
+TEST(Text, OneLineHasNoControlCharactersAndNoBadBytes) {
+  EXPECT_EQ(one_line("a\nb\tc\x1b[0m\x7F"), "a b c [0m ");
+  EXPECT_EQ(one_line("\xC2\x85|\xE2\x80\xA8|\xE2\x80\xA9|\xC3\xA4"), " | | |\xC3\xA4");
+  EXPECT_EQ(one_line("\xFF\xC3"), "??");
+}
+
+TEST(Text, LongTextIsCutBetweenCharacters) {
+  EXPECT_EQ(shortened(std::string(60, 'a')), std::string(60, 'a'));
+  EXPECT_EQ(shortened(std::string(61, 'a')), std::string(60, 'a') + "...");
+  std::string umlauts;
+  for (int i = 0; i < 61; ++i) {
+    umlauts += "\xC3\xA4";
+  }
+  EXPECT_EQ(shortened(umlauts), umlauts.substr(0, 120) + "...");
+}
+
+TEST(Text, NumbersAreWholeWordsAndFinite) {
+  EXPECT_EQ(parse_number("-1.5e3"), -1500.0);
+  EXPECT_EQ(parse_number(".5"), 0.5);
+  for (const char* bad : {"", " 1", "1 ", "+1", "1,5", "0x1", "inf", "-infinity", "nan", "1e999", "--1", "1e"}) {
+    EXPECT_FALSE(parse_number(bad).has_value()) << bad;
+  }
+}
+
+TEST(Text, WordsAreSplitAtXmlBlanks) {
+  EXPECT_EQ(words(" a\t b\r\nc "), (std::vector<std::string_view>{"a", "b", "c"}));
+  EXPECT_TRUE(words(" \n ").empty());
+}
+
+TEST(InputErrorText, NamesFileAndLineAndLeavesLineZeroOut) {
+  EXPECT_STREQ(InputError("a.xml", 3, "x", "y").what(), "a.xml:3: found x, expected y");
+  EXPECT_STREQ(InputError("amplitude=x", 0, "x", "y").what(), "amplitude=x: found x, expected y");
+}
+
+}  // namespace
+}  // namespace proleg

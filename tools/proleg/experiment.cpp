@@ -6,7 +6,6 @@
 #include <iostream>
 #include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
@@ -17,6 +16,7 @@
 #include "sim/optimize/report/thesis_experiment.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/json_output.hpp"
 #include "tools/proleg/optimisation.hpp"
 #include "tools/proleg/scenario_run.hpp"
 
@@ -169,32 +169,27 @@ MethodResult run_method(const std::string& name, const optimize::Experiment& exp
 }
 
 /// The mean of the best so far after 100, 200, 400, ... evaluations.
-nlohmann::ordered_json course(const optimize::BestCurves& curves) {
-  nlohmann::ordered_json means = nlohmann::ordered_json::object();
+Json course(const optimize::BestCurves& curves) {
+  Json means = Json::empty_object();
   for (std::size_t evaluations = 100; evaluations <= curves.mean.size(); evaluations *= 2) {
-    means[std::to_string(evaluations)] = curves.mean[evaluations - 1];
+    means.add(std::to_string(evaluations), curves.mean[evaluations - 1]);
   }
   return means;
 }
 
-/// A number of evaluations, or null.
-nlohmann::ordered_json count_or_null(const std::optional<std::size_t>& count) {
-  return count ? nlohmann::ordered_json(*count) : nlohmann::ordered_json();
-}
-
-nlohmann::ordered_json to_json(const MethodResult& result, const optimize::SearchSpace& space, double uniform_m) {
-  nlohmann::ordered_json runs = nlohmann::ordered_json::array();
+Json to_json(const MethodResult& result, const optimize::SearchSpace& space, double uniform_m) {
+  Json runs = Json::empty_array();
   double sum = 0.0;
   for (std::size_t run = 0; run < result.runs.runs.size(); ++run) {
     const double best = optimize::best_so_far(result.runs.runs[run]).back();
     sum += best;
-    runs.push_back({{"evaluations", result.runs.runs[run].size()}, {"best", best}, {"ended", result.endings[run]}});
+    runs.append({{"evaluations", result.runs.runs[run].size()}, {"best", best}, {"ended", result.endings[run]}});
   }
   return {{"method", result.runs.method},
           {"best_score", result.best->scores.front()},
           {"best_values", values_object(space, result.best->candidate)},
           {"gain_over_uniform", result.best->scores.front() / uniform_m - 1.0},
-          {"mean_best", sum / static_cast<double>(runs.size())},
+          {"mean_best", sum / static_cast<double>(result.runs.runs.size())},
           {"runs", runs},
           {"wall_s", result.wall_s},
           {"simulated_s_per_s", result.wall_s > 0.0 ? result.simulated_s / result.wall_s : 0.0}};
@@ -261,24 +256,25 @@ int experiment(const Options& options) {
   }
   const auto deluge = curves.find("great-deluge");
   const auto genetic = curves.find("genetic");
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  Json list = Json::empty_array();
   for (std::size_t i = 0; i < results.size(); ++i) {
-    list.push_back(to_json(results[i], chosen[i].second.space, uniform_m));
-    list.back()["mean_best_after"] = course(curves[results[i].runs.method]);
+    Json entry = to_json(results[i], chosen[i].second.space, uniform_m);
+    entry.add("mean_best_after", course(curves[results[i].runs.method]));
     if (deluge != curves.end()) {
-      list.back()["reaches_mean_of_great_deluge_after"] =
-          count_or_null(optimize::evaluations_to_reach(curves[results[i].runs.method], deluge->second.mean.back()));
+      entry.add("reaches_mean_of_great_deluge_after",
+                optimize::evaluations_to_reach(curves[results[i].runs.method], deluge->second.mean.back()));
     }
+    list.append(entry);
   }
-  nlohmann::ordered_json object{{"experiment", options.name},
-                                {"uniform_m", uniform_m},
-                                {"methods", list},
-                                {"out", folder.string()},
-                                {"build_id", build_id}};
+  Json object{{"experiment", options.name},
+              {"uniform_m", uniform_m},
+              {"methods", list},
+              {"out", folder.string()},
+              {"build_id", build_id}};
   if (deluge != curves.end() && genetic != curves.end()) {
-    object["great_deluge_above_genetic_after"] = count_or_null(optimize::overtaking(deluge->second, genetic->second));
+    object.add("great_deluge_above_genetic_after", optimize::overtaking(deluge->second, genetic->second));
   }
-  std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  std::cout << object.text() << '\n';
   return exit_success;
 }
 

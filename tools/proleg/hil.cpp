@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstdio>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/hil_modules.hpp"
+#include "tools/proleg/json_output.hpp"
 #include "tools/proleg/progress.hpp"
 #include "tools/proleg/run_measures.hpp"
 #include "tools/proleg/scenario_run.hpp"
@@ -208,53 +208,53 @@ Result run(const ScenarioRun& setup, const HilModules& modules, sim::HardwareOpt
 }
 
 void print_json(const Options& options, const ScenarioRun& setup, const HilModules& modules, const Result& result) {
-  nlohmann::ordered_json restarts = nlohmann::ordered_json::array();
+  Json restarts = Json::empty_array();
   for (const RestartReport& restart : result.restarts) {
-    nlohmann::ordered_json entry{{"node", restart.node}, {"joint", restart.joint}, {"tick", restart.tick}};
-    entry["joined_tick"] = restart.joined_tick ? nlohmann::ordered_json(*restart.joined_tick) : nullptr;
-    restarts.push_back(entry);
+    restarts.append({{"node", restart.node},
+                     {"joint", restart.joint},
+                     {"tick", restart.tick},
+                     {"joined_tick", restart.joined_tick}});
   }
-  nlohmann::ordered_json failures = nlohmann::ordered_json::array();
+  Json failures = Json::empty_array();
   for (const auto& failure : result.failures) {
-    failures.push_back({{"node", setup.scenario.modules[failure.joint].node},
-                        {"joint", setup.scenario.robot.joints[failure.joint].name},
-                        {"tick", failure.tick}});
+    failures.append({{"node", setup.scenario.modules[failure.joint].node},
+                     {"joint", setup.scenario.robot.joints[failure.joint].name},
+                     {"tick", failure.tick}});
   }
-  nlohmann::ordered_json problems = nlohmann::ordered_json::array();
+  Json problems = Json::empty_array();
   for (const auto& problem : result.problems) {
-    problems.push_back({{"node", setup.scenario.modules[problem.joint].node},
-                        {"joint", setup.scenario.robot.joints[problem.joint].name},
-                        {"tick", problem.tick},
-                        {"text", problem.text}});
+    problems.append({{"node", setup.scenario.modules[problem.joint].node},
+                     {"joint", setup.scenario.robot.joints[problem.joint].name},
+                     {"tick", problem.tick},
+                     {"text", problem.text}});
   }
-  const nlohmann::ordered_json object{
-      {"scenario", options.file},
-      {"modules", setup.scenario.modules.size()},
-      {"module_kind", modules.kind()},
-      {"image", modules.any_virtual() ? modules.image().file().string() : ""},
-      {"displacement_m", result.displacement_m},
-      {"simulated_s", result.simulated_s},
-      {"setpoint_hash", result.setpoint_hash},
-      {"servo_hash", result.servo_hash},
-      {"differences", result.differences},
-      {"first_difference", result.first_difference},
-      {"failures", failures},
-      {"problems", problems},
-      {"instructions_per_tick", result.costliest_tick ? result.costliest_tick->cost.to_state_frame : 0},
-      {"lost_frames", result.lost_frames},
-      {"bit_errors", result.bit_errors},
-      {"restarts", restarts},
-      {"frames", result.frames},
-      {"setup_frames", result.setup_frames},
-      {"bus_load", result.bus_load},
-      {"real_time_factor", result.real_time_factor()},
-      {"contacts_mean", result.contacts_mean},
-      {"measures", measures_object(result.measures.values)},
-      {"link_duty_factors", result.measures.link_duty_factors},
-      {"recording", options.record.value_or("")},
-      {"can_log", options.can_log.value_or("")},
-      {"build_id", build_id}};
-  std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  const Json object{{"scenario", options.file},
+                    {"modules", setup.scenario.modules.size()},
+                    {"module_kind", modules.kind()},
+                    {"image", modules.any_virtual() ? modules.image().file().string() : ""},
+                    {"displacement_m", result.displacement_m},
+                    {"simulated_s", result.simulated_s},
+                    {"setpoint_hash", result.setpoint_hash},
+                    {"servo_hash", result.servo_hash},
+                    {"differences", result.differences},
+                    {"first_difference", result.first_difference},
+                    {"failures", failures},
+                    {"problems", problems},
+                    {"instructions_per_tick", result.costliest_tick ? result.costliest_tick->cost.to_state_frame : 0},
+                    {"lost_frames", result.lost_frames},
+                    {"bit_errors", result.bit_errors},
+                    {"restarts", restarts},
+                    {"frames", result.frames},
+                    {"setup_frames", result.setup_frames},
+                    {"bus_load", result.bus_load},
+                    {"real_time_factor", result.real_time_factor()},
+                    {"contacts_mean", result.contacts_mean},
+                    {"measures", measures_object(result.measures.values)},
+                    {"link_duty_factors", result.measures.link_duty_factors},
+                    {"recording", options.record.value_or("")},
+                    {"can_log", options.can_log.value_or("")},
+                    {"build_id", build_id}};
+  std::cout << object.text() << '\n';
 }
 
 void print_table(const Options& options, const ScenarioRun& setup, const HilModules& modules, const Result& result) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -122,10 +121,10 @@ double overhead(const SearchOutcome& outcome) {
   return all > 0.0 ? outcome.own_cpu_s / all : 0.0;
 }
 
-nlohmann::ordered_json values_object(const optimize::SearchSpace& space, const optimize::Candidate& candidate) {
-  nlohmann::ordered_json values;
+Json values_object(const optimize::SearchSpace& space, const optimize::Candidate& candidate) {
+  Json values = Json::empty_object();
   for (std::size_t i = 0; i < space.dimensions.size(); ++i) {
-    values[space.dimensions[i].name] = space.value(candidate, i);
+    values.add(space.dimensions[i].name, space.value(candidate, i));
   }
   return values;
 }

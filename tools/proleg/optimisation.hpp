@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "sim/optimize/evaluation/store.hpp"
 #include "sim/optimize/evaluation/workers.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
+#include "tools/proleg/json_output.hpp"
 
 namespace proleg::tools {
 
@@ -56,7 +56,6 @@ struct SearchOutcome {
 [[nodiscard]] double overhead(const SearchOutcome& outcome);
 
 /// The values of a candidate by the names of their dimensions.
-[[nodiscard]] nlohmann::ordered_json values_object(const optimize::SearchSpace& space,
-                                                   const optimize::Candidate& candidate);
+[[nodiscard]] Json values_object(const optimize::SearchSpace& space, const optimize::Candidate& candidate);
 
 }  // namespace proleg::tools

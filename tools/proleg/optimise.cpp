@@ -4,7 +4,6 @@
 
 #include <cstdio>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
@@ -12,6 +11,7 @@
 #include "sim/optimize/report/report.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/json_output.hpp"
 #include "tools/proleg/run_measures.hpp"
 #include "tools/proleg/scenario_run.hpp"
 
@@ -59,35 +59,35 @@ std::vector<std::filesystem::path> write_results(const Experiment& experiment, c
 void print_json(const OptimiseOptions& options, const Experiment& experiment, const SearchOutcome& outcome,
                 const std::filesystem::path& folder, std::uint32_t workers) {
   const Evaluation& best = *outcome.progress.best;
-  nlohmann::ordered_json scores;
+  Json scores = Json::empty_object();
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
-    scores[experiment.objectives[i].name] = best.scores[i];
+    scores.add(experiment.objectives[i].name, best.scores[i]);
   }
   const optimize::Progress& progress = outcome.progress;
-  const nlohmann::ordered_json object{{"experiment", options.file},
-                                      {"method", optimize::method_name(experiment.method)},
-                                      {"seed", experiment.seed},
-                                      {"best_score", best.scores.front()},
-                                      {"best_scores", scores},
-                                      {"best_values", values_object(experiment.space, best.candidate)},
-                                      {"best_number", best.number},
-                                      {"best_measures", measures_object(best.measures)},
-                                      {"evaluations", progress.evaluations},
-                                      {"simulated", progress.simulated},
-                                      {"reused", progress.reused},
-                                      {"restored", progress.restored},
-                                      {"simulated_ahead_in_vain", progress.wasted},
-                                      {"ended", outcome.ending},
-                                      {"workers", workers},
-                                      {"wall_s", outcome.wall_s},
-                                      {"simulated_s", progress.simulated_s},
-                                      {"simulated_s_per_s", progress.simulated_s / outcome.wall_s},
-                                      {"workers_busy", progress.workers_s / (outcome.wall_s * workers)},
-                                      {"overhead", overhead(outcome)},
-                                      {"out", folder.string()},
-                                      {"fingerprint", experiment.fingerprint()},
-                                      {"build_id", build_id}};
-  std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  const Json object{{"experiment", options.file},
+                    {"method", optimize::method_name(experiment.method)},
+                    {"seed", experiment.seed},
+                    {"best_score", best.scores.front()},
+                    {"best_scores", scores},
+                    {"best_values", values_object(experiment.space, best.candidate)},
+                    {"best_number", best.number},
+                    {"best_measures", measures_object(best.measures)},
+                    {"evaluations", progress.evaluations},
+                    {"simulated", progress.simulated},
+                    {"reused", progress.reused},
+                    {"restored", progress.restored},
+                    {"simulated_ahead_in_vain", progress.wasted},
+                    {"ended", outcome.ending},
+                    {"workers", workers},
+                    {"wall_s", outcome.wall_s},
+                    {"simulated_s", progress.simulated_s},
+                    {"simulated_s_per_s", progress.simulated_s / outcome.wall_s},
+                    {"workers_busy", progress.workers_s / (outcome.wall_s * workers)},
+                    {"overhead", overhead(outcome)},
+                    {"out", folder.string()},
+                    {"fingerprint", experiment.fingerprint()},
+                    {"build_id", build_id}};
+  std::cout << object.text() << '\n';
 }
 
 void print_result(const Experiment& experiment, const SearchOutcome& outcome,

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -11,6 +10,7 @@
 #include "sim/record/recording.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/json_output.hpp"
 #include "tools/proleg/progress.hpp"
 
 namespace {
@@ -63,21 +63,21 @@ int replay(const Options& options) {
   const bool holds = verification.differences == 0 && same_hashes;
   const std::string core = recording.run_value("core_fingerprint");
   if (options.json) {
-    const nlohmann::ordered_json object{{"recording", options.file},
-                                        {"ticks", verification.ticks},
-                                        {"setpoints", verification.setpoints},
-                                        {"servo_commands", verification.servo_commands},
-                                        {"internal_values", verification.internal_values},
-                                        {"differences", verification.differences},
-                                        {"first_difference", first},
-                                        {"setpoint_hash", verification.setpoint_hash},
-                                        {"servo_hash", verification.servo_hash},
-                                        {"recorded_by", recording.run_value("program")},
-                                        {"recorded_build_id", recording.run_value("build_id")},
-                                        {"recorded_core_fingerprint", core},
-                                        {"core_fingerprint", fingerprint_text()},
-                                        {"build_id", build_id}};
-    std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+    const Json object{{"recording", options.file},
+                      {"ticks", verification.ticks},
+                      {"setpoints", verification.setpoints},
+                      {"servo_commands", verification.servo_commands},
+                      {"internal_values", verification.internal_values},
+                      {"differences", verification.differences},
+                      {"first_difference", first},
+                      {"setpoint_hash", verification.setpoint_hash},
+                      {"servo_hash", verification.servo_hash},
+                      {"recorded_by", recording.run_value("program")},
+                      {"recorded_build_id", recording.run_value("build_id")},
+                      {"recorded_core_fingerprint", core},
+                      {"core_fingerprint", fingerprint_text()},
+                      {"build_id", build_id}};
+    std::cout << object.text() << '\n';
   } else {
     std::printf("recorded by       %s, %s, core %s\n", recording.run_value("program").c_str(),
                 recording.run_value("build_id").c_str(), core.c_str());

@@ -2,16 +2,15 @@
 
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::tools {
 
-nlohmann::ordered_json measures_object(const sim::MeasureValues& values) {
-  nlohmann::ordered_json object;
+Json measures_object(const sim::MeasureValues& values) {
+  Json object = Json::empty_object();
   for (const sim::MeasureDeclaration& declaration : sim::measures()) {
-    object[std::string(declaration.name)] = values[declaration.measure];  // not a number is written as null
+    object.add(declaration.name, values[declaration.measure]);
   }
   return object;
 }

@@ -2,13 +2,13 @@
 
 // How programs show what a run was worth (docs/gait-measures.md).
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "sim/measure/measure.hpp"
 #include "sim/robot/robot_model.hpp"
+#include "tools/proleg/json_output.hpp"
 
 namespace proleg::tools {
 
@@ -18,7 +18,7 @@ struct RunMeasures {
 };
 
 /// An object of all measures by name; null where the run does not define one.
-[[nodiscard]] nlohmann::ordered_json measures_object(const sim::MeasureValues& values);
+[[nodiscard]] Json measures_object(const sim::MeasureValues& values);
 
 /// The measures that the run defines, on standard output, a line each.
 void print_measures(const sim::MeasureValues& values);

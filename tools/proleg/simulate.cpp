@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstdio>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "sim/physics/physics_error.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/json_output.hpp"
 #include "tools/proleg/progress.hpp"
 #include "tools/proleg/run_measures.hpp"
 #include "tools/proleg/scenario_run.hpp"
@@ -65,21 +65,21 @@ Result run(const ScenarioRun& setup, sim::Recorder* recorder) {
 }
 
 void print_json(const ScenarioOptions& options, const Result& result) {
-  const nlohmann::ordered_json object{{"scenario", options.file},
-                                      {"displacement_m", result.displacement_m},
-                                      {"simulated_s", result.simulated_s},
-                                      {"setpoint_hash", result.setpoint_hash},
-                                      {"servo_hash", result.servo_hash},
-                                      {"real_time_factor", result.real_time_factor()},
-                                      {"contacts_mean", result.contacts_mean},
-                                      {"solver_messages", result.solver_messages},
-                                      {"lost_frames", result.lost_frames},
-                                      {"measures", measures_object(result.measures.values)},
-                                      {"link_duty_factors", result.measures.link_duty_factors},
-                                      {"recording", options.record.value_or("")},
-                                      {"build_id", build_id}};
+  const Json object{{"scenario", options.file},
+                    {"displacement_m", result.displacement_m},
+                    {"simulated_s", result.simulated_s},
+                    {"setpoint_hash", result.setpoint_hash},
+                    {"servo_hash", result.servo_hash},
+                    {"real_time_factor", result.real_time_factor()},
+                    {"contacts_mean", result.contacts_mean},
+                    {"solver_messages", result.solver_messages},
+                    {"lost_frames", result.lost_frames},
+                    {"measures", measures_object(result.measures.values)},
+                    {"link_duty_factors", result.measures.link_duty_factors},
+                    {"recording", options.record.value_or("")},
+                    {"build_id", build_id}};
   // File names need not be UTF-8; whatever is not is replaced.
-  std::cout << object.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+  std::cout << object.text() << '\n';
 }
 
 void print_table(const ScenarioOptions& options, const Result& result) {

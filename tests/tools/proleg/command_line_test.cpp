@@ -2,9 +2,9 @@
 
 #include <csignal>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "command_line.hpp"
+#include "json_result.hpp"
 #include "sim/record/recording.hpp"
 #include "tests/support/files.hpp"
 
@@ -72,36 +72,36 @@ TEST_F(CommandLine, SimulatePrintsOneJsonObjectWithTheFiguresOfTheRun) {
   const Finished finished = proleg({"simulate", scenario("uniform"), "--seconds", "2", "--json"});
   ASSERT_EQ(finished.status, 0) << finished.err;
   EXPECT_TRUE(finished.err.empty()) << "no progress unless standard error is a terminal: " << finished.err;
-  const nlohmann::json object = nlohmann::json::parse(finished.out);
-  EXPECT_GT(object.at("displacement_m").get<double>(), 0.03);
-  EXPECT_DOUBLE_EQ(object.at("simulated_s").get<double>(), 2.0);
-  EXPECT_GT(object.at("real_time_factor").get<double>(), 0.0);
-  EXPECT_GT(object.at("contacts_mean").get<double>(), 1.0);
-  EXPECT_EQ(object.at("setpoint_hash").get<std::string>().size(), 64U);
-  EXPECT_EQ(object.at("servo_hash").get<std::string>().size(), 64U);
-  EXPECT_NE(object.at("setpoint_hash"), object.at("servo_hash"));
+  const Json object(finished.out);
+  EXPECT_GT(object["displacement_m"].number(), 0.03);
+  EXPECT_DOUBLE_EQ(object["simulated_s"].number(), 2.0);
+  EXPECT_GT(object["real_time_factor"].number(), 0.0);
+  EXPECT_GT(object["contacts_mean"].number(), 1.0);
+  EXPECT_EQ(object["setpoint_hash"].text().size(), 64U);
+  EXPECT_EQ(object["servo_hash"].text().size(), 64U);
+  EXPECT_NE(object["setpoint_hash"], object["servo_hash"]);
 }
 
 TEST_F(CommandLine, SimulateSaysWhatTheRunWasWorth) {
   const Finished finished = proleg({"simulate", scenario("uniform"), "--seconds", "4", "--json"});
   ASSERT_EQ(finished.status, 0) << finished.err;
-  const nlohmann::json object = nlohmann::json::parse(finished.out);
-  const nlohmann::json& measures = object.at("measures");
-  EXPECT_EQ(measures.at("distance"), object.at("displacement_m"));
+  const Json object(finished.out);
+  const Json measures = object["measures"];
+  EXPECT_EQ(measures["distance"], object["displacement_m"]);
   for (const char* name : {"speed", "mechanical_energy", "electrical_energy", "cost_of_transport",
                            "electrical_cost_of_transport", "specific_resistance", "smoothness", "stability_margin",
                            "height", "slip", "duty_factor", "froude_number", "stride_length", "stride_frequency"}) {
-    EXPECT_TRUE(measures.at(name).is_number()) << name;
+    EXPECT_TRUE(measures[name].is_number()) << name;
   }
   EXPECT_EQ(measures.size(), 15U);
-  ASSERT_EQ(object.at("link_duty_factors").size(), 6U);
+  ASSERT_EQ(object["link_duty_factors"].size(), 6U);
   double sum = 0.0;
-  for (const nlohmann::json& factor : object.at("link_duty_factors")) {
-    EXPECT_GE(factor.get<double>(), 0.0);
-    EXPECT_LE(factor.get<double>(), 1.0);
-    sum += factor.get<double>();
+  for (const Json& factor : object["link_duty_factors"].elements()) {
+    EXPECT_GE(factor.number(), 0.0);
+    EXPECT_LE(factor.number(), 1.0);
+    sum += factor.number();
   }
-  EXPECT_NEAR(measures.at("duty_factor").get<double>(), sum / 6, 1e-9);
+  EXPECT_NEAR(measures["duty_factor"].number(), sum / 6, 1e-9);
 
   const Finished table = proleg({"simulate", scenario("uniform"), "--seconds", "4"});
   EXPECT_NE(table.out.find("\n  stride_frequency              1 Hz\n"), std::string::npos) << table.out;
@@ -113,11 +113,11 @@ TEST_F(CommandLine, AMeasureThatTheRunDoesNotDefineIsNull) {
                                        "--set",    "amplitude=0",       "--record",  recording};
   std::vector<std::string> json_words = words;
   json_words.emplace_back("--json");
-  const nlohmann::json measures = nlohmann::json::parse(proleg(json_words).out).at("measures");
+  const Json measures = Json(proleg(json_words).out)["measures"];
   for (const char* name : {"cost_of_transport", "specific_resistance", "slip", "stride_length", "stride_frequency"}) {
-    EXPECT_TRUE(measures.at(name).is_null()) << name;
+    EXPECT_TRUE(measures[name].is_null()) << name;
   }
-  EXPECT_TRUE(measures.at("distance").is_number());
+  EXPECT_TRUE(measures["distance"].is_number());
   EXPECT_EQ(proleg(words).out.find("stride_frequency"), std::string::npos) << "the table leaves it out";
   std::map<std::string, std::string> results;
   const sim::Recording recorded(recording);
@@ -126,7 +126,7 @@ TEST_F(CommandLine, AMeasureThatTheRunDoesNotDefineIsNull) {
   }
   EXPECT_TRUE(results.contains("smoothness")) << "a recording has those that are defined";
   EXPECT_FALSE(results.contains("stride_frequency"));
-  EXPECT_EQ(std::stod(results.at("distance")), measures.at("distance").get<double>());
+  EXPECT_EQ(std::stod(results.at("distance")), measures["distance"].number());
   EXPECT_EQ(std::stod(results.at("duty_factor.Head")), 1.0) << "it lies on the ground";
 }
 
@@ -136,7 +136,7 @@ TEST_F(CommandLine, TheSameCommandGivesTheSameHashesAndASettingOtherOnes) {
     words.insert(words.end(), rest.begin(), rest.end());
     const Finished finished = proleg(words);
     EXPECT_EQ(finished.status, 0) << finished.err;
-    return nlohmann::json::parse(finished.out).at("setpoint_hash").get<std::string>();
+    return Json(finished.out)["setpoint_hash"].text();
   };
   const std::string plain = hash({});
   EXPECT_EQ(hash({}), plain);

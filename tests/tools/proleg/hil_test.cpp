@@ -1,42 +1,39 @@
 // proleg hil, proleg replay and --losses as a user meets them.
 
-#include <nlohmann/json.hpp>
-
 #include "command_line.hpp"
+#include "json_result.hpp"
 
 namespace proleg::test {
 namespace {
 
-using nlohmann::json;
-
 class Hil : public CommandLine {
  protected:
-  [[nodiscard]] json succeed(std::vector<std::string> words) const {
+  [[nodiscard]] Json succeed(std::vector<std::string> words) const {
     words.emplace_back("--json");
     const Finished finished = proleg(words);
     EXPECT_EQ(finished.status, 0) << finished.err;
-    return json::parse(finished.out, nullptr, false);
+    return Json(finished.out);
   }
 };
 
 TEST_F(Hil, GivesTheSameHashesAsSimulate) {
-  const json simulated = succeed({"simulate", scenario("coupled"), "--seconds", "3"});
-  const json modules = succeed({"hil", scenario("coupled"), "--modules", "native", "--seconds", "3"});
+  const Json simulated = succeed({"simulate", scenario("coupled"), "--seconds", "3"});
+  const Json modules = succeed({"hil", scenario("coupled"), "--modules", "native", "--seconds", "3"});
   EXPECT_EQ(modules["modules"], 5);
   EXPECT_EQ(modules["differences"], 0);
   EXPECT_EQ(modules["setpoint_hash"], simulated["setpoint_hash"]);
   EXPECT_EQ(modules["servo_hash"], simulated["servo_hash"]);
   EXPECT_EQ(modules["displacement_m"], simulated["displacement_m"]);
   EXPECT_GT(modules["real_time_factor"], 0.0);
-  EXPECT_NEAR(modules["bus_load"].get<double>(), 0.073, 0.007);
-  EXPECT_NEAR(modules["frames"].get<double>(), 300 * 7.2, 40)
+  EXPECT_NEAR(modules["bus_load"].number(), 0.073, 0.007);
+  EXPECT_NEAR(modules["frames"].number(), 300 * 7.2, 40)
       << "5 state frames and SYNC a tick, monitoring, TICK and heartbeats";
 }
 
 TEST_F(Hil, LosesTheFramesThatSimulateLoses) {
-  const json clean = succeed({"simulate", scenario("coupled"), "--seconds", "2"});
-  const json simulated = succeed({"simulate", scenario("coupled"), "--seconds", "2", "--losses", "7:5%"});
-  const json modules = succeed({"hil", scenario("coupled"), "--seconds", "2", "--losses", "7:0.05"});
+  const Json clean = succeed({"simulate", scenario("coupled"), "--seconds", "2"});
+  const Json simulated = succeed({"simulate", scenario("coupled"), "--seconds", "2", "--losses", "7:5%"});
+  const Json modules = succeed({"hil", scenario("coupled"), "--seconds", "2", "--losses", "7:0.05"});
   EXPECT_EQ(modules["differences"], 0);
   EXPECT_EQ(modules["lost_frames"], simulated["lost_frames"]);
   EXPECT_EQ(modules["setpoint_hash"], simulated["setpoint_hash"]);
@@ -50,21 +47,21 @@ TEST_F(Hil, TakesLossesFromAFile) {
   std::vector<std::string> hil{"hil", scenario("coupled"), "--seconds", "1"};
   simulate.insert(simulate.end(), losses.begin(), losses.end());
   hil.insert(hil.end(), losses.begin(), losses.end());
-  const json simulated = succeed(simulate);
-  const json modules = succeed(hil);
+  const Json simulated = succeed(simulate);
+  const Json modules = succeed(hil);
   EXPECT_EQ(simulated["lost_frames"], 5);
   EXPECT_EQ(modules["setpoint_hash"], simulated["setpoint_hash"]);
 }
 
 TEST_F(Hil, AModuleThatIsResetComesBackAndTheRecordingHoldsIt) {
-  const json modules = succeed({"hil", scenario("coupled"), "--seconds", "3", "--reset", "3@100", "--set",
+  const Json modules = succeed({"hil", scenario("coupled"), "--seconds", "3", "--reset", "3@100", "--set",
                                 "amplitude=30@105", "--losses", "3:1%", "--record", file("run.proleg").string()});
   EXPECT_EQ(modules["differences"], 0);
   ASSERT_EQ(modules["restarts"].size(), 1U);
   EXPECT_EQ(modules["restarts"][0]["node"], 3);
   EXPECT_EQ(modules["restarts"][0]["tick"], 100);
   EXPECT_GT(modules["restarts"][0]["joined_tick"], 100);
-  const json replayed = succeed({"replay", file("run.proleg").string(), "--verify"});
+  const Json replayed = succeed({"replay", file("run.proleg").string(), "--verify"});
   EXPECT_EQ(replayed["differences"], 0);
   EXPECT_EQ(replayed["setpoint_hash"], modules["setpoint_hash"]);
   EXPECT_EQ(replayed["servo_hash"], modules["servo_hash"]);
@@ -80,7 +77,7 @@ TEST_F(Hil, LeavesALogOfTheBus) {
 }
 
 TEST_F(Hil, SendsAFrameAndLogsTheAnswer) {
-  const json modules = succeed({"hil", scenario("uniform"), "--seconds", "1", "--send", "603#4034120000000000@50",
+  const Json modules = succeed({"hil", scenario("uniform"), "--seconds", "1", "--send", "603#4034120000000000@50",
                                 "--can-log", file("bus.log").string()});
   EXPECT_EQ(modules["differences"], 0);
   EXPECT_NE(read_file(file("bus.log")).find(" can0 583#8034120000000206\n"), std::string::npos) << "no such object";
@@ -113,8 +110,8 @@ TEST_F(Hil, WhatCannotBeIsRefused) {
 }
 
 TEST_F(Hil, FramesDestroyedOnTheBusAreNoLoss) {
-  const json clean = succeed({"simulate", scenario("coupled"), "--seconds", "3"});
-  const json disturbed = succeed({"hil", scenario("coupled"), "--seconds", "3", "--bit-errors", "7:2%"});
+  const Json clean = succeed({"simulate", scenario("coupled"), "--seconds", "3"});
+  const Json disturbed = succeed({"hil", scenario("coupled"), "--seconds", "3", "--bit-errors", "7:2%"});
   EXPECT_GT(disturbed["bit_errors"], 10);
   EXPECT_EQ(disturbed["setpoint_hash"], clean["setpoint_hash"]);
   EXPECT_EQ(disturbed["servo_hash"], clean["servo_hash"]);
@@ -126,16 +123,13 @@ TEST_F(Hil, FramesDestroyedOnTheBusAreNoLoss) {
 class VirtualModules : public Hil {
  protected:
   /// The same for every start of a run but for how long it took.
-  [[nodiscard]] json without_wall_clock(json object) const {
-    object.erase("real_time_factor");
-    return object;
-  }
+  [[nodiscard]] Json without_wall_clock(const Json& object) const { return object.without("real_time_factor"); }
 };
 
 TEST_F(VirtualModules, GiveTheSameHashesAsSimulate) {
-  const json simulated = succeed({"simulate", scenario("coupled"), "--seconds", "3"});
+  const Json simulated = succeed({"simulate", scenario("coupled"), "--seconds", "3"});
   for (const char* modules : {"mcu", "1,3=mcu"}) {
-    const json found = succeed({"hil", scenario("coupled"), "--modules", modules, "--seconds", "3"});
+    const Json found = succeed({"hil", scenario("coupled"), "--modules", modules, "--seconds", "3"});
     EXPECT_EQ(found["differences"], 0);
     EXPECT_EQ(found["setpoint_hash"], simulated["setpoint_hash"]);
     EXPECT_EQ(found["servo_hash"], simulated["servo_hash"]);
@@ -147,16 +141,14 @@ TEST_F(VirtualModules, GiveTheSameHashesAsSimulate) {
 }
 
 TEST_F(VirtualModules, TwoRunsSayAndRecordTheSame) {
-  std::vector<json> results;
+  std::vector<Json> results;
   for (const char* name : {"a", "b"}) {
     const std::string recording = file(std::string(name) + ".proleg").string();
     const std::string table = file(std::string(name) + ".tsv").string();
     const std::string log = file(std::string(name) + ".log").string();
-    json result = succeed({"hil", scenario("coupled"), "--modules", "mcu", "--seconds", "2", "--losses", "7:5%",
-                           "--reset", "3@100", "--record", recording, "--can-log", log});
-    result.erase("recording");
-    result.erase("can_log");
-    results.push_back(without_wall_clock(result));
+    const Json result = succeed({"hil", scenario("coupled"), "--modules", "mcu", "--seconds", "2", "--losses", "7:5%",
+                                 "--reset", "3@100", "--record", recording, "--can-log", log});
+    results.push_back(without_wall_clock(result).without("recording").without("can_log"));
     EXPECT_EQ(proleg({"export", recording, "--tsv", "--out", table}).status, 0);
   }
   EXPECT_EQ(results[0], results[1]);
@@ -210,7 +202,7 @@ class Replay : public Hil {};
 
 TEST_F(Replay, HoldsOnARecordingOfSimulate) {
   (void)succeed({"simulate", scenario("coupled"), "--seconds", "2", "--record", file("run.proleg").string()});
-  const json replayed = succeed({"replay", file("run.proleg").string(), "--verify"});
+  const Json replayed = succeed({"replay", file("run.proleg").string(), "--verify"});
   EXPECT_EQ(replayed["ticks"], 200);
   EXPECT_EQ(replayed["setpoints"], 1000);
   EXPECT_EQ(replayed["servo_commands"], 10000);

@@ -6,10 +6,10 @@
 #include <chrono>
 #include <csignal>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "command_line.hpp"
+#include "json_result.hpp"
 #include "tests/support/files.hpp"
 
 namespace proleg::test {
@@ -113,19 +113,19 @@ class Optimise : public CommandLine {
   }
 };
 
-nlohmann::json json_of(const Finished& finished) {
+Json json_of(const Finished& finished) {
   EXPECT_EQ(finished.status, 0) << finished.err;
-  return nlohmann::json::parse(finished.out);
+  return Json(finished.out);
 }
 
 TEST_F(Optimise, PrintsTheBestAndLeavesStoreTablesPicturesAndTheWinner) {
   const Finished finished = proleg(words("great_deluge", "out", {"--evaluations", "12"}));
-  const nlohmann::json object = json_of(finished);
+  const Json object = json_of(finished);
   EXPECT_TRUE(finished.err.empty()) << "no progress unless standard error is a terminal: " << finished.err;
-  EXPECT_EQ(object.at("evaluations"), 12);
-  EXPECT_EQ(object.at("best_values").size(), 5U);
-  EXPECT_TRUE(object.at("best_values").contains("amplitude:J5"));
-  EXPECT_GT(object.at("simulated_s_per_s").get<double>(), 0.0);
+  EXPECT_EQ(object["evaluations"], 12);
+  EXPECT_EQ(object["best_values"].size(), 5U);
+  EXPECT_TRUE(object["best_values"].contains("amplitude:J5"));
+  EXPECT_GT(object["simulated_s_per_s"].number(), 0.0);
   for (const char* name :
        {"store.sqlite", "evaluations.tsv", "best.tsv", "learning_curve.svg", "best.simulation.xml"}) {
     EXPECT_TRUE(fs::is_regular_file(file(std::string("out/") + name))) << name;
@@ -135,10 +135,10 @@ TEST_F(Optimise, PrintsTheBestAndLeavesStoreTablesPicturesAndTheWinner) {
 }
 
 TEST_F(Optimise, TheWinnersScenarioIsReadyAndScoresWhatTheSearchSaid) {
-  const nlohmann::json search = json_of(proleg(words("cma_es", "out", {"--evaluations", "30"})));
-  const nlohmann::json run = json_of(proleg({"simulate", file("out/best.simulation.xml").string(), "--json"}));
-  EXPECT_EQ(search.at("best_score"), run.at("displacement_m")) << "to the last bit";
-  EXPECT_EQ(search.at("best_measures"), run.at("measures"));
+  const Json search = json_of(proleg(words("cma_es", "out", {"--evaluations", "30"})));
+  const Json run = json_of(proleg({"simulate", file("out/best.simulation.xml").string(), "--json"}));
+  EXPECT_EQ(search["best_score"], run["displacement_m"]) << "to the last bit";
+  EXPECT_EQ(search["best_measures"], run["measures"]);
 }
 
 TEST_F(Optimise, OneWorkerTwoAndThreeGiveTheSameToTheLastBit) {
@@ -175,9 +175,9 @@ TEST_F(Optimise, InterruptedAndResumedIsTheSameAsInOneGo) {
     const Finished interrupted = finish(search);
     EXPECT_EQ(interrupted.status, 1) << interrupted.err;
     EXPECT_TRUE(fs::exists(file("parts/learning_curve.svg"))) << "what there is so far can be looked at";
-    const nlohmann::json object =
+    const Json object =
         json_of(proleg(words(experiment, "", {"--evaluations", "150", "--resume", file("parts").string()})));
-    EXPECT_GE(object.at("restored").get<int>(), 20);
+    EXPECT_GE(object["restored"].number(), 20);
     EXPECT_EQ(evaluations("whole", 150), evaluations("parts", 150)) << experiment;
     fs::remove_all(file("whole"));
     fs::remove_all(file("parts"));
@@ -194,10 +194,10 @@ TEST_F(Optimise, SaysTheCommandThatGoesOn) {
   std::string command = message.substr(message.find(mark) + mark.size());
   command.replace(command.find(endless), std::string(endless).size(), "2000");
   // As a person would paste it.
-  const nlohmann::json object = json_of(finish(
+  const Json object = json_of(finish(
       start({"sh", "-c", std::string(PROLEG_PROGRAM) + " " + command.substr(0, command.find('\n')) + " --json"})));
-  EXPECT_GE(object.at("restored").get<int>(), 3);
-  EXPECT_EQ(object.at("seed"), 9);
+  EXPECT_GE(object["restored"].number(), 3);
+  EXPECT_EQ(object["seed"], 9);
 }
 
 TEST_F(Optimise, AHangUpThatIsIgnoredStopsNothing) {
@@ -206,7 +206,7 @@ TEST_F(Optimise, AHangUpThatIsIgnoredStopsNothing) {
                               file("out").string(), "--evaluations", "400", "--json"});
   wait_for("out", 3);
   kill(search, SIGHUP);
-  EXPECT_EQ(json_of(finish(search)).at("evaluations"), 400);
+  EXPECT_EQ(json_of(finish(search))["evaluations"], 400);
 }
 
 TEST_F(Optimise, KilledItLosesWhatItsWorkersWereAtAndNothingElse) {
@@ -215,23 +215,23 @@ TEST_F(Optimise, KilledItLosesWhatItsWorkersWereAtAndNothingElse) {
   wait_for("parts", 31);
   kill(search, SIGKILL);
   EXPECT_EQ(finish(search).status, 128 + SIGKILL);
-  const nlohmann::json object =
+  const Json object =
       json_of(proleg(words("genetic", "", {"--evaluations", "100", "--resume", file("parts").string()})));
-  EXPECT_GE(object.at("restored").get<int>(), 31);
+  EXPECT_GE(object["restored"].number(), 31);
   EXPECT_EQ(evaluations("whole", 100), evaluations("parts", 100));
 }
 
 TEST_F(Optimise, ALargerBudgetGoesOnFromTheSameStore) {
   static_cast<void>(json_of(proleg(words("great_deluge", "out", {"--evaluations", "20"}))));
-  const nlohmann::json object =
+  const Json object =
       json_of(proleg(words("great_deluge", "", {"--evaluations", "40", "--resume", file("out").string()})));
-  EXPECT_EQ(object.at("restored"), 20);
-  EXPECT_EQ(object.at("evaluations"), 40);
+  EXPECT_EQ(object["restored"], 20);
+  EXPECT_EQ(object["evaluations"], 40);
 }
 
 TEST_F(Optimise, SeveralObjectivesLeaveAParetoFront) {
-  const nlohmann::json object = json_of(proleg(words("pareto", "out", {"--evaluations", "80"})));
-  EXPECT_EQ(object.at("best_scores").size(), 2U);
+  const Json object = json_of(proleg(words("pareto", "out", {"--evaluations", "80"})));
+  EXPECT_EQ(object["best_scores"].size(), 2U);
   EXPECT_TRUE(fs::is_regular_file(file("out/pareto.svg")));
   EXPECT_GT(std::ranges::count(read_file(file("out/pareto.tsv")), '\n'), 1);
 }
@@ -275,9 +275,8 @@ TEST_F(Optimise, UnderMpirunGivesTheSame) {
     GTEST_SKIP() << "built without Open MPI";
   }
   static_cast<void>(json_of(proleg(words("great_deluge", "local", {"--evaluations", "40"}))));
-  const nlohmann::json object =
-      json_of(finish(start(under_mpirun(words("great_deluge", "cluster", {"--evaluations", "40"})))));
-  EXPECT_EQ(object.at("workers"), 4);
+  const Json object = json_of(finish(start(under_mpirun(words("great_deluge", "cluster", {"--evaluations", "40"})))));
+  EXPECT_EQ(object["workers"], 4);
   EXPECT_EQ(evaluations("local"), evaluations("cluster"));
 }
 
@@ -305,27 +304,27 @@ TEST_F(Optimise, AnExperimentWritesTheThesissTablesAndFiguresAndGoesOn) {
     return json_of(proleg({"experiment", "travelling_wave", "--repetitions", repetitions, "--evaluations", "40",
                            "--scenarios", folder.string(), "--out", file("out").string(), "--json"}));
   };
-  const nlohmann::json two = run("2");
-  ASSERT_EQ(two.at("methods").size(), 3U);
+  const Json two = run("2");
+  ASSERT_EQ(two["methods"].size(), 3U);
   for (const char* name :
        {"table_6_2.tsv", "table_6_4.tsv", "figure_6_3.svg", "figure_6_4.svg", "figure_6_5.svg", "figure_6_6.svg",
         "figure_7_1.svg", "summary.txt", "great-deluge/store.sqlite", "genetic/best.simulation.xml"}) {
     EXPECT_TRUE(fs::is_regular_file(file(std::string("out/") + name))) << name;
   }
   EXPECT_NE(read_file(file("out/table_6_2.tsv")).find("1.958"), std::string::npos) << "the thesis's best stands beside";
-  const nlohmann::json one =
+  const Json one =
       json_of(proleg({"experiment", "travelling_wave", "--repetitions", "2", "--evaluations", "40", "--scenarios",
                       folder.string(), "--out", file("out").string(), "--json", "--method", "genetic"}));
-  EXPECT_EQ(one.at("methods").size(), 3U) << "those that are in the folder are shown beside";
+  EXPECT_EQ(one["methods"].size(), 3U) << "those that are in the folder are shown beside";
   EXPECT_TRUE(one.contains("great_deluge_above_genetic_after"));
-  EXPECT_TRUE(one.at("methods")[2].contains("reaches_mean_of_great_deluge_after"));
-  const nlohmann::json other =
+  EXPECT_TRUE(one["methods"][2].contains("reaches_mean_of_great_deluge_after"));
+  const Json other =
       json_of(proleg({"experiment", "travelling_wave", "--repetitions", "2", "--evaluations", "40", "--scenarios",
                       folder.string(), "--out", file("out").string(), "--json", "--method", "xnes"}));
-  ASSERT_EQ(other.at("methods").size(), 4U);
-  EXPECT_EQ(other.at("methods")[3].at("method"), "xnes") << "any algorithm of pagmo searches the same space";
+  ASSERT_EQ(other["methods"].size(), 4U);
+  EXPECT_EQ(other["methods"][3]["method"], "xnes") << "any algorithm of pagmo searches the same space";
   EXPECT_TRUE(fs::is_regular_file(file("out/table_xnes.tsv")));
-  const nlohmann::json three = run("3");
+  const Json three = run("3");
   for (std::size_t method = 0; method < 3; ++method) {
     ASSERT_EQ(three["methods"][method]["runs"].size(), 3U);
     for (std::size_t repetition = 0; repetition < 2; ++repetition) {

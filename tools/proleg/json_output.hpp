@@ -1,0 +1,74 @@
+#pragma once
+
+#include <concepts>
+#include <initializer_list>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace proleg::tools {
+
+struct JsonMember;
+
+/// A JSON value to be printed; null unless constructed from something. The JSON library, which takes seconds to compile
+/// wherever it is included, is known to the source file only.
+class Json {
+ public:
+  Json();
+  ~Json();
+  Json(const Json& other);
+  Json(Json&& other) noexcept;
+  Json& operator=(const Json& other);
+  Json& operator=(Json&& other) noexcept;
+
+  /// Infinities and "not a number" print as null.
+  template <std::floating_point Number>
+  Json(Number value) : Json(from_number(value)) {}
+  template <std::integral Integer>
+  requires(!std::same_as<Integer, bool>) Json(Integer value) : Json(from_integer(value)) {}
+  Json(const char* value) : Json(std::string_view(value)) {}
+  Json(const std::string& value) : Json(std::string_view(value)) {}
+  Json(std::string_view value);
+  Json(const std::vector<double>& values);
+  /// Null if there is no value.
+  template <typename Value>
+  Json(const std::optional<Value>& value) : Json(value ? Json(*value) : Json()) {}
+  /// An object whose members keep their order.
+  Json(std::initializer_list<JsonMember> members);
+
+  [[nodiscard]] static Json empty_object();
+  [[nodiscard]] static Json empty_array();
+
+  /// Adds a member to an object.
+  void add(std::string_view key, const Json& value);
+  /// Adds an element to an array.
+  void append(const Json& value);
+
+  /// One member or element a line, two blanks a level. Replaces bytes that are not UTF-8.
+  [[nodiscard]] std::string text() const;
+
+ private:
+  [[nodiscard]] static Json from_number(double value);
+  template <typename Integer>
+  [[nodiscard]] static Json from_integer(Integer value) {
+    if constexpr (std::signed_integral<Integer>) {
+      return from_signed(value);
+    } else {
+      return from_unsigned(value);
+    }
+  }
+  [[nodiscard]] static Json from_signed(long long value);
+  [[nodiscard]] static Json from_unsigned(unsigned long long value);
+
+  std::unique_ptr<nlohmann::ordered_json> value_;
+};
+
+struct JsonMember {
+  std::string_view key;
+  Json value;
+};
+
+}  // namespace proleg::tools

@@ -1,4 +1,4 @@
-#include "chip_rig.hpp"
+#include "tests/sim/mcu/chip/chip_rig.hpp"
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,11 @@ void HostEnd::fill() {
 }
 
 ChipRig::ChipRig(const RigSettings& settings)
-    : bus(settings.bit_rate), chip(bus, board, settings.chip), host(bus), image_(image(settings.image)) {
+    : bus(settings.bit_rate),
+      chip(bus, board, settings.chip),
+      host(bus),
+      image_(image(settings.image)),
+      max_lead_(settings.max_lead) {
   board.clock = [this] { return bus.now(); };
   for (const ElfImage::Segment& segment : image_.elf().segments()) {
     chip.write(segment.load_address, segment.bytes);
@@ -69,12 +73,10 @@ ChipRig::ChipRig(const RigSettings& settings)
 }
 
 void ChipRig::take_step(BusTime time) {
-  // The chip may run ahead, but no more than this, so that what it does is seen at its time.
-  constexpr BusTime ahead = us;
   const BusTime next = std::max(bus.now(), std::min({time, bus.next_event(), chip.next_event()}));
   bus.advance_to(next);
   if (chip.next_event() <= next || next == time) {
-    chip.advance_to(next, std::min(bus.earliest_delivery(), next + ahead));
+    chip.advance_to(next, std::min(bus.earliest_delivery(), next + max_lead_));
   }
   while (auto event = chip.take_event()) {
     events.push_back(std::move(*event));

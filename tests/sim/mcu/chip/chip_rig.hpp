@@ -77,6 +77,8 @@ struct RigSettings {
   std::optional<firmware::BoardRecord> record = firmware::BoardRecord{3, false, 0, 0};
   ChipSettings chip{{0x0123'4567, 0x89AB'CDEF, 0x5A5A'0F0F}, 0, 1};
   std::uint32_t bit_rate = Bus::highest_bit_rate;
+  /// How far the chip may run ahead of the bus: short, so that what it does is seen at its time.
+  BusTime max_lead = us;
 };
 
 class ChipRig {
@@ -125,6 +127,7 @@ class ChipRig {
   void take_step(BusTime time);
 
   const FlashImage& image_;
+  BusTime max_lead_;
   std::vector<std::pair<std::uint32_t, std::vector<std::uint8_t>>> broken_;  ///< what was there
 };
 

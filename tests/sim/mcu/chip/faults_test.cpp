@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "chip_rig.hpp"
+#include "tests/sim/mcu/chip/chip_rig.hpp"
 
 namespace proleg::sim {
 namespace {

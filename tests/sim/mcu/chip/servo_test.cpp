@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "chip_rig.hpp"
+#include "tests/sim/mcu/chip/chip_rig.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "chip_rig.hpp"
 #include "shared/kernel/fingerprint.hpp"
+#include "tests/sim/mcu/chip/chip_rig.hpp"
 
 namespace proleg::sim {
 namespace {

@@ -1,4 +1,4 @@
-# Debian packages, by name, and how to install the missing ones. Read by tools/demo and tools/check.
+# Names of the Debian packages, and a function that installs the missing ones. tools/demo and tools/check read this file.
 
 # Programs for this computer.
 host_packages=(
@@ -6,13 +6,13 @@ host_packages=(
   libode-dev libeigen3-dev libtinyxml2-dev libsqlite3-dev libsodium-dev libcli11-dev nlohmann-json3-dev
   libunicorn-dev libdw-dev
   libpagmo-dev libga-dev  # the optimiser
-  sqlite3  # not needed to build: to look into recordings
+  sqlite3  # not for the build: shows the contents of recordings
 )
 
 # The image that is flashed into modules.
 firmware_packages=(gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib binutils-arm-none-eabi python3)
 
-# What the tests need beyond that: a second compiler with its sanitizers, independent programs.
+# Additional packages for the tests: a second compiler with its sanitizers, independent programs.
 test_packages=(
   clang libclang-rt-14-dev clang-format clang-tidy libgtest-dev
   can-utils tshark  # independent readers of bus logs
@@ -22,7 +22,7 @@ test_packages=(
   libopenmpi-dev libboost-mpi-dev openmpi-bin          # the optimiser on a cluster
 )
 
-# install_packages NAME...: installs those that are missing, and says which.
+# install_packages NAME...: installs the packages that are missing, and prints their names.
 install_packages() {
   local missing=() name
   for name in "$@"; do

@@ -10,7 +10,7 @@ set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
-  # What ccache asks for before it keeps what was compiled with a precompiled header.
+  # ccache requires these settings to store objects that were compiled with a precompiled header.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
     CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE_PROGRAM})
   set(CMAKE_C_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
@@ -19,15 +19,15 @@ endif()
 add_compile_options(
   -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast
   -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wundef
-  # Paths of the building machine stay out of the binaries.
+  # Binaries contain no paths of the build computer.
   -ffile-prefix-map=${CMAKE_SOURCE_DIR}/=)
 
-# C++ without heap, exceptions or run-time type information: what the core and the firmware are built with.
+# The core and the firmware are built without exceptions and run-time type information.
 set(PROLEG_CORE_OPTIONS -fno-exceptions -fno-rtti)
 
 option(PROLEG_SANITIZE "Build with AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
 if(PROLEG_SANITIZE)
-  # The core has no run-time type information, which the check of virtual calls (vptr) needs.
+  # The check of virtual calls (vptr) needs run-time type information, which the core does not have.
   add_compile_options(-fsanitize=address,undefined -fno-sanitize=vptr -fno-sanitize-recover=all
                       -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)

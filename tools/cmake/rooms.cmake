@@ -4,8 +4,8 @@
 
 # proleg_room(<path> [SOURCES ...] [DEPENDS ...] [LIBRARIES ...] [PRIVATE_LIBRARIES ...])
 #   path       folder below the top level, e.g. shared/fixed; the target is called proleg::shared_fixed
-#   DEPENDS    other rooms, by path; they become visible to whoever depends on this room
-#   LIBRARIES  library targets from outside the project; PRIVATE_LIBRARIES: those that only the room itself may name
+#   DEPENDS    other rooms, by path; targets that depend on this room can include them too
+#   LIBRARIES  library targets from outside the project; PRIVATE_LIBRARIES: those that only this room may name
 function(proleg_room path)
   cmake_parse_arguments(PARSE_ARGV 1 room "" "" "SOURCES;DEPENDS;LIBRARIES;PRIVATE_LIBRARIES")
   string(REPLACE "/" "_" target ${path})

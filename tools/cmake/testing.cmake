@@ -3,13 +3,14 @@
 find_package(GTest REQUIRED)
 include(GoogleTest)
 
-# Build folders of several presets are tested in one ctest run; the prefix keeps their tests apart.
+# One ctest run tests the build folders of several presets; the prefix distinguishes their tests.
 set(PROLEG_TEST_PREFIX "")
 if(PROLEG_SANITIZE)
   set(PROLEG_TEST_PREFIX "asan.")
 endif()
 
-# What nearly every test includes, compiled once. Only with clang: gcc's false warnings differ with what is included.
+# Headers that nearly every test includes, compiled once. Only with clang: gcc gives false warnings that depend on the
+# precompiled headers.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   find_package(Eigen3 REQUIRED NO_MODULE)
   add_library(tests_prelude OBJECT ${CMAKE_CURRENT_LIST_DIR}/tests_prelude.cpp)
@@ -17,7 +18,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   target_precompile_headers(tests_prelude PRIVATE
     <gtest/gtest.h> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <memory>
     <optional> <random> <span> <sstream> <string> <string_view> <vector>)
-  target_compile_options(tests_prelude PRIVATE -Xclang -fno-pch-timestamp)  # else ccache does not know it again
+  target_compile_options(tests_prelude PRIVATE -Xclang -fno-pch-timestamp)  # otherwise ccache finds no match
 endif()
 
 # proleg_test(<path> SOURCES ... [DEPENDS rooms...] [LIBRARIES targets...] [LABELS ...] [TIMEOUT seconds])

@@ -1,5 +1,5 @@
-# Writes the build id, taken from git, into a header; leaves the header alone if it says so already.
-# Called at every build with SOURCE_DIR, VERSION and OUTPUT.
+# Writes the build id, taken from git, into a header. Does not touch a header that already has it. Called at every build with
+# SOURCE_DIR, VERSION and OUTPUT.
 execute_process(COMMAND git -C ${SOURCE_DIR} describe --always --dirty --abbrev=12
   OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE status)
 if(NOT status EQUAL 0)

@@ -11,7 +11,7 @@ set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 
-# The FPU stays unused (the core computes in integers), so interrupts need not save it.
+# The FPU is unused (the core computes in integers), so interrupts need not save its registers.
 set(cpu_flags "-mcpu=${cpu} -mthumb -mfloat-abi=soft")
 set(CMAKE_ASM_FLAGS_INIT "${cpu_flags}")
 set(CMAKE_C_FLAGS_INIT "${cpu_flags} -ffreestanding -ffunction-sections -fdata-sections")
@@ -19,5 +19,5 @@ set(CMAKE_C_FLAGS_INIT "${cpu_flags} -ffreestanding -ffunction-sections -fdata-s
 set(CMAKE_CXX_FLAGS_INIT "${CMAKE_C_FLAGS_INIT} -fno-threadsafe-statics -fcallgraph-info=su")
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-nostartfiles -Wl,--fatal-warnings")
 
-# ccache 4.7 does not know of the .ci files and would not bring them back.
+# ccache 4.7 does not store the .ci files, so a cached object would have none.
 set(CCACHE_PROGRAM "" CACHE STRING "ccache, unused here")

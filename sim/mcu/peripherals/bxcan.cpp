@@ -95,6 +95,7 @@ BxCan::BxCan(ChipServices& chip, Bus& bus, TrueTime true_time)
       bus_(&bus),
       true_time_(std::move(true_time)),
       controller_(bus.attach(*this)),
+      transmitter_(controller_),
       transmit_line_(chip, tx_interrupt),
       fifo_lines_{InterruptLine(chip, rx0_interrupt), InterruptLine(chip, rx1_interrupt)},
       status_line_(chip, sce_interrupt) {
@@ -117,7 +118,7 @@ void BxCan::reset() {
   last_error_ = 0;
   timing_ = timing_after_reset;
   is_warning_ = false;
-  mailboxes_ = {};
+  transmitter_.reset();
   fifos_ = {};
   filters_.reset();
   self_test_end_ = never_on_chip;
@@ -134,7 +135,7 @@ std::uint32_t BxCan::read(std::uint32_t offset) {
     case msr:
       return master_status();
     case tsr:
-      return mailboxes_.status((control_ & txfp) != 0);
+      return transmitter_.mailboxes().status((control_ & txfp) != 0);
     case rf0r:
       return fifos_[0].status();
     case rf1r:
@@ -171,9 +172,10 @@ void BxCan::write(std::uint32_t offset, std::uint32_t value) {
       status_ &= ~(value & (erri | wkui | slaki));
       break;
     case tsr:
-      for (std::uint32_t aborts = mailboxes_.write_status(value), i = 0; aborts != 0; aborts >>= 1U, ++i) {
+      for (std::uint32_t aborts = transmitter_.mailboxes().write_status(value), i = 0; aborts != 0;
+           aborts >>= 1U, ++i) {
         if ((aborts & 1U) != 0) {
-          ask(Request::Kind::abort, i);
+          ask(BxCanRequests::Kind::abort, i);
         }
       }
       break;
@@ -231,7 +233,7 @@ std::uint32_t BxCan::error_status() const {
 
 std::uint32_t BxCan::read_mailbox(std::uint32_t offset) const {
   const std::uint32_t word = offset % 0x10 / 4;
-  return offset < first_receive_mailbox ? mailboxes_.read((offset - first_transmit_mailbox) / 0x10, word)
+  return offset < first_receive_mailbox ? transmitter_.mailboxes().read((offset - first_transmit_mailbox) / 0x10, word)
                                         : fifos_.at((offset - first_receive_mailbox) / 0x10).read(word);
 }
 
@@ -256,7 +258,7 @@ void BxCan::write_master_control(std::uint32_t value) {
   }
   if (value != control_) {
     control_ = value;
-    ask(Request::Kind::control, value);
+    ask(BxCanRequests::Kind::control, value);
   }
 }
 
@@ -265,14 +267,14 @@ void BxCan::write_mailbox(std::uint32_t offset, std::uint32_t value) {
     refuse_write(offset, value, "receive mailboxes are write-protected");
   }
   const std::uint32_t number = (offset - first_transmit_mailbox) / 0x10;
-  if (const auto refusal = mailboxes_.write(number, offset % 0x10 / 4, value)) {
+  if (const auto refusal = transmitter_.mailboxes().write(number, offset % 0x10 / 4, value)) {
     refuse_write(offset, value, *refusal);
   }
-  if (mailboxes_[number].is_pending) {
+  if (transmitter_.mailboxes()[number].is_pending) {
     if (is_self_test()) {
       start_self_test(chip().now());
     } else {
-      ask(Request::Kind::transmit, number);
+      ask(BxCanRequests::Kind::transmit, number);
     }
   }
 }
@@ -307,45 +309,29 @@ void BxCan::require_bit_rate_of_bus() const {
 
 // Requests of the program
 
-void BxCan::ask(Request::Kind kind, std::uint32_t value) {
-  BusTime time = std::max(true_time_(chip().now()), bus_->now());
-  if (!requests_.empty()) {
-    time = std::max(time, requests_.back().time);
-  }
-  requests_.push_back({time, kind, value});
+void BxCan::ask(BxCanRequests::Kind kind, std::uint32_t value) {
+  requests_.add(std::max(true_time_(chip().now()), bus_->now()), kind, value);
 }
 
 void BxCan::submit(BusTime now) {
-  while (!requests_.empty() && requests_.front().time <= now) {
-    const Request request = requests_.front();
-    requests_.pop_front();
-    switch (request.kind) {
-      case Request::Kind::transmit:
-        mailboxes_[request.value].is_submitted = true;
-        hand_over();
+  while (const auto request = requests_.take_due(now)) {
+    switch (request->kind) {
+      case BxCanRequests::Kind::transmit:
+        transmitter_.submit(request->value);
         break;
-      case Request::Kind::abort:
-        submit_abort(request.value);
+      case BxCanRequests::Kind::abort:
+        transmitter_.abort(request->value);
         break;
-      case Request::Kind::control:
-        apply_control(now, request.value);
+      case BxCanRequests::Kind::control:
+        apply_control(now, *request);
         break;
     }
   }
   update_interrupts();
 }
 
-void BxCan::submit_abort(std::size_t mailbox) {
-  const BxCanMailboxes::Mailbox& aborted = mailboxes_[mailbox];
-  if (!aborted.abort_requested) {
-    return;  // the frame has gone out in the meantime
-  }
-  if (!aborted.is_handed_over || controller_.abort(mailbox)) {
-    mailboxes_.complete(mailbox, aborted.outcome & ~BxCanMailboxes::txok);
-  }
-}
-
-void BxCan::apply_control(BusTime now, std::uint32_t control) {
+void BxCan::apply_control(BusTime now, const BxCanRequests::Request& request) {
+  const std::uint32_t control = request.value;
   const bool wants_initialisation = (control & inrq) != 0;
   const bool wants_sleep = (control & sleep) != 0;
   // In sleep, SLEEP = 1 keeps it there; elsewhere INRQ comes first (RM0090, figure 336).
@@ -354,7 +340,7 @@ void BxCan::apply_control(BusTime now, std::uint32_t control) {
                       : wants_sleep                       ? Mode::sleep
                                                           : Mode::normal;
   if (wanted != Mode::normal && controller_.is_on() && bus_->busy_until() > now) {
-    requests_.push_front({bus_->busy_until(), Request::Kind::control, control});
+    requests_.postpone(request, bus_->busy_until());
     return;
   }
   controller_.set_one_shot((control & nart) != 0);
@@ -374,7 +360,7 @@ void BxCan::apply_control(BusTime now, std::uint32_t control) {
 
 void BxCan::enter(Mode mode) {
   controller_.switch_off();
-  mailboxes_.take_back();
+  transmitter_.take_back();
   self_test_end_ = never_on_chip;
   is_leaving_ = false;
   if (mode == Mode::sleep && mode_ != Mode::sleep && (interrupts_ & slkie) != 0) {
@@ -403,16 +389,7 @@ void BxCan::leave_for_normal() {
   controller_.join();
 }
 
-void BxCan::hand_over() {
-  for (auto next = mailboxes_.next_to_hand_over(); next; next = mailboxes_.next_to_hand_over()) {
-    if (!controller_.send(*next, mailboxes_.frame(*next))) {
-      return;
-    }
-    mailboxes_[*next].is_handed_over = true;
-  }
-}
-
-// What the bus says
+// What the bus reports
 
 void BxCan::store(const CanFrame& frame) {
   if (const auto match = filters_.match(frame.identifier)) {
@@ -429,11 +406,11 @@ void BxCan::received(BusTime /*time*/, const CanFrame& frame) {
 
 void BxCan::transmitted(BusTime /*time*/, const CanFrame& frame) {
   last_error_ = 0;
-  mailboxes_.complete(controller_.sent_mailbox(), BxCanMailboxes::txok);
+  transmitter_.transmitted();
   if ((timing_ & lbkm) != 0) {
     store(frame);
   }
-  hand_over();
+  transmitter_.hand_over();
   update_warning();
   update_interrupts();
 }
@@ -442,14 +419,7 @@ void BxCan::error_seen(BusTime /*time*/, bool was_sending) {
   last_error_ = static_cast<std::uint32_t>(controller_.last_error());
   status_ |= (interrupts_ & lecie) != 0 ? erri : 0U;
   if (was_sending) {
-    BxCanMailboxes::Mailbox& mailbox = mailboxes_[controller_.sent_mailbox()];
-    mailbox.outcome = (mailbox.outcome & ~BxCanMailboxes::txok) | BxCanMailboxes::terr;
-    // In bus-off the controller has emptied all its mailboxes; there, only what ends with one attempt is done with.
-    const bool is_tried_again =
-        controller_.error_state() == ErrorState::bus_off && !mailbox.abort_requested && (control_ & nart) == 0;
-    if (controller_.is_empty(controller_.sent_mailbox()) && !is_tried_again) {
-      mailboxes_.complete(controller_.sent_mailbox(), mailbox.outcome);
-    }
+    transmitter_.failed((control_ & nart) != 0);
   }
   update_warning();
   update_interrupts();
@@ -462,13 +432,13 @@ void BxCan::error_state_changed(BusTime /*time*/) {
       break;
     case ErrorState::bus_off:
       status_ |= (interrupts_ & bofie) != 0 ? erri : 0U;
-      mailboxes_.take_back();  // the requests stay, and are made again when it is back
+      transmitter_.take_back();
       if ((control_ & abom) != 0) {
         controller_.recover();
       }
       break;
     case ErrorState::active:
-      hand_over();
+      transmitter_.hand_over();
       break;
   }
   update_warning();
@@ -481,7 +451,7 @@ void BxCan::joined(BusTime /*time*/) {
   status_ &= ~slaki;
   controller_.watch((control_ & nart) != 0);
   controller_.recover();
-  hand_over();
+  transmitter_.hand_over();
   update_interrupts();
 }
 
@@ -490,12 +460,10 @@ void BxCan::frame_began(BusTime time) {
     status_ |= wkui;
     if ((control_ & awum) != 0 && (control_ & sleep) != 0) {
       control_ &= ~sleep;
-      requests_.push_back(
-          {requests_.empty() ? time : std::max(time, requests_.back().time), Request::Kind::control, control_});
+      requests_.add(time, BxCanRequests::Kind::control, control_);
     }
   } else if (controller_.outbid_mailbox() < BxCanMailboxes::count) {
-    const std::size_t mailbox = controller_.outbid_mailbox();
-    mailboxes_.complete(mailbox, (mailboxes_[mailbox].outcome & ~BxCanMailboxes::txok) | BxCanMailboxes::alst);
+    transmitter_.lost_arbitration();
   }
   update_interrupts();
 }
@@ -517,7 +485,7 @@ void BxCan::update_interrupts() {
   const bool status_change = ((interrupts_ & errie) != 0 && (status_ & erri) != 0) ||
                              ((interrupts_ & wkuie) != 0 && (status_ & wkui) != 0) ||
                              ((interrupts_ & slkie) != 0 && (status_ & slaki) != 0);
-  transmit_line_.set((interrupts_ & tmeie) != 0 && mailboxes_.any_completed());
+  transmit_line_.set((interrupts_ & tmeie) != 0 && transmitter_.mailboxes().any_completed());
   fifo_lines_[0].set(fifo_line(0));
   fifo_lines_[1].set(fifo_line(1));
   status_line_.set(status_change);
@@ -543,9 +511,10 @@ void BxCan::start_self_test(LocalTime now) {
   if (self_test_end_ != never_on_chip) {
     return;
   }
-  if (const auto next = mailboxes_.first((control_ & txfp) != 0)) {
+  const BxCanMailboxes& mailboxes = transmitter_.mailboxes();
+  if (const auto next = mailboxes.first((control_ & txfp) != 0)) {
     self_test_mailbox_ = *next;
-    self_test_end_ = std::max(now, self_test_free_at_) + frame_bits(mailboxes_.frame(*next)) * bit_period();
+    self_test_end_ = std::max(now, self_test_free_at_) + frame_bits(mailboxes.frame(*next)) * bit_period();
   }
 }
 
@@ -555,8 +524,9 @@ void BxCan::advance() {
   }
   self_test_free_at_ = self_test_end_ + interframe_bits * bit_period();
   self_test_end_ = never_on_chip;
-  store(mailboxes_.frame(self_test_mailbox_));
-  mailboxes_.complete(self_test_mailbox_, BxCanMailboxes::txok);
+  BxCanMailboxes& mailboxes = transmitter_.mailboxes();
+  store(mailboxes.frame(self_test_mailbox_));
+  mailboxes.complete(self_test_mailbox_, BxCanMailboxes::txok);
   start_self_test(self_test_free_at_);
   update_interrupts();
 }

@@ -3,15 +3,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
-#include <optional>
 #include <string>
 
 #include "sim/bus/bus.hpp"
 #include "sim/mcu/peripherals/bxcan_fifo.hpp"
 #include "sim/mcu/peripherals/bxcan_filters.hpp"
-#include "sim/mcu/peripherals/bxcan_mailboxes.hpp"
+#include "sim/mcu/peripherals/bxcan_requests.hpp"
+#include "sim/mcu/peripherals/bxcan_transmitter.hpp"
 #include "sim/mcu/peripherals/register_block.hpp"
 
 namespace proleg::sim {
@@ -19,19 +18,19 @@ namespace proleg::sim {
 /// CAN1 of the STM32F405: bxCAN as its program sees it (RM0090, section 32), on a controller of the simulated bus.
 ///
 /// A chip computes ahead of the bus. What its program asks of the bus (to send, to withdraw, to join or to leave) is
-/// kept with its true time until the bus has got there; whoever drives both looks at next_request() and calls submit().
-/// What the bus has to say sets flags and interrupt lines at bus time, that is in the chip's next piece of work. A
-/// frame that the program releases from a FIFO is out of it at once, also if a frame that the bus brings later was on
+/// pending until the bus has reached its true time: the caller that advances both looks at next_request() and calls
+/// submit(). What the bus reports sets flags and interrupt lines at bus time, that is in the chip's next piece of work.
+/// A frame that the program releases from a FIFO leaves it at once, even if a frame that the bus delivers later was on
 /// the wire before.
 ///
-/// Refused (UnmodelledAccess) is what the project's protocol does not use: remote frames, extended identifiers, time
+/// It rejects (UnmodelledAccess) what the project's protocol does not use: remote frames, extended identifiers, time
 /// triggered communication, CAN2; and what the manual forbids: reserved bits, registers that are write-protected in
 /// that state, a bit rate that is not the bus's.
 ///
-/// Simplified: MSR.RX and SAMP are always 1 (recessive); TXM and RXM say what the bus does at bus time. ALST is set
-/// only with NART = 1 (with retransmission, a lost arbitration is no outcome). DBF is kept and does nothing. LBKM
-/// without SILM: its frames go over the bus like those of others, and do not run into what it does not hear. Between
-/// reset and the first initialisation mode it may leave sleep mode, but has no bit rate and so hears nothing.
+/// Simplified: MSR.RX and SAMP are always 1 (recessive); TXM and RXM show what the bus does at bus time. ALST is set
+/// only with NART = 1 (with retransmission, a lost arbitration is no outcome). DBF is stored and has no effect. LBKM
+/// without SILM: its frames go over the bus like those of others, and do not collide with frames that it ignores.
+/// Between reset and the first initialisation mode it may leave sleep mode, but has no bit rate and receives nothing.
 class BxCan final : public RegisterBlock, private BusListener {
  public:
   /// Interrupt lines.
@@ -51,18 +50,18 @@ class BxCan final : public RegisterBlock, private BusListener {
   [[nodiscard]] std::string register_name(std::uint32_t offset) const override;
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
-  /// Also leaves the bus at once (a frame on the wire finishes) and forgets what was asked of it: also for power off.
+  /// Also leaves the bus at once (a frame on the wire finishes) and drops all pending requests: also for power off.
   void reset() override;
   /// Frames of the self-test (LBKM and SILM) end by the chip's own clock.
   [[nodiscard]] LocalTime next_event() const override { return self_test_end_; }
   void advance() override;
-  /// On the bus, its clock must not change.
+  /// Its clock must not change while it is on the bus.
   void clocks_change(const Clocks& next) override;
   [[nodiscard]] bool is_idle() const override;
 
-  /// True time of the first request that the bus has not got yet; never_on_bus if there is none.
-  [[nodiscard]] BusTime next_request() const { return requests_.empty() ? never_on_bus : requests_.front().time; }
-  /// Hands over the requests of times up to now, which must be Bus::now().
+  /// True time of the first pending request; never_on_bus if there is none.
+  [[nodiscard]] BusTime next_request() const { return requests_.next_time(); }
+  /// Carries out the requests of times up to now, which must be Bus::now().
   void submit(BusTime now);
 
   /// Index of its controller.
@@ -70,12 +69,6 @@ class BxCan final : public RegisterBlock, private BusListener {
 
  private:
   enum class Mode : std::uint8_t { sleep, initialisation, normal };
-  struct Request {
-    enum class Kind : std::uint8_t { transmit, abort, control };
-    BusTime time;
-    Kind kind;
-    std::uint32_t value;  ///< mailbox, or MCR
-  };
 
   void received(BusTime time, const CanFrame& frame) override;
   void transmitted(BusTime time, const CanFrame& frame) override;
@@ -93,13 +86,12 @@ class BxCan final : public RegisterBlock, private BusListener {
   void require_bit_rate_of_bus() const;
   [[nodiscard]] LocalTime bit_period() const;
 
-  void ask(Request::Kind kind, std::uint32_t value);
-  void submit_abort(std::size_t mailbox);
-  /// Comes back to it by way of requests_ if a frame is on the wire.
-  void apply_control(BusTime now, std::uint32_t control);
+  /// Adds a request at the present time of the program.
+  void ask(BxCanRequests::Kind kind, std::uint32_t value);
+  /// Postpones it if a frame is on the wire.
+  void apply_control(BusTime now, const BxCanRequests::Request& request);
   void enter(Mode mode);
   void leave_for_normal();
-  void hand_over();
   void store(const CanFrame& frame);
   void start_self_test(LocalTime now);
   [[nodiscard]] bool is_self_test() const;
@@ -109,7 +101,8 @@ class BxCan final : public RegisterBlock, private BusListener {
   Bus* bus_;
   TrueTime true_time_;
   Controller& controller_;
-  std::deque<Request> requests_;
+  BxCanTransmitter transmitter_;
+  BxCanRequests requests_;
 
   Mode mode_ = Mode::sleep;
   bool is_leaving_ = false;  ///< waits for 11 recessive bits, in the mode before
@@ -120,7 +113,6 @@ class BxCan final : public RegisterBlock, private BusListener {
   std::uint32_t last_error_ = 0;
   std::uint32_t timing_ = 0;
   bool is_warning_ = false;
-  BxCanMailboxes mailboxes_;
   std::array<BxCanFifo, 2> fifos_;
   BxCanFilters filters_;
   InterruptLine transmit_line_;

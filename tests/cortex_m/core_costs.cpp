@@ -56,20 +56,28 @@ class Modules {
     }
   }
 
+  /// All frames of the others to a joint. Returns the instructions of that.
+  std::uint64_t receive_all(std::uint32_t receiver) {
+    std::uint64_t spent = 0;
+    for (std::uint32_t sender = 0; sender < joint_count; ++sender) {
+      if (sender == receiver) {
+        continue;
+      }
+      const CallResult result = call("proleg::Kernel::receive", receiver, {sender, 0, frames_[sender]});
+      if ((result.value & 1U) == 0) {
+        throw RunError("a kernel rejects a frame of its tick");
+      }
+      spent += result.instructions;
+    }
+    return spent;
+  }
+
   /// All frames to all others. Returns the instructions that the measured joint spends on receiving.
   std::uint64_t exchange() {
     std::uint64_t spent = 0;
     for (std::uint32_t receiver = 0; receiver < joint_count; ++receiver) {
-      for (std::uint32_t sender = 0; sender < joint_count; ++sender) {
-        if (sender == receiver) {
-          continue;
-        }
-        const CallResult result = call("proleg::Kernel::receive", receiver, {sender, 0, frames_[sender]});
-        if ((result.value & 1U) == 0) {
-          throw RunError("a kernel refuses a frame of its tick");
-        }
-        spent += receiver == measured_joint ? result.instructions : 0;
-      }
+      const std::uint64_t instructions = receive_all(receiver);
+      spent += receiver == measured_joint ? instructions : 0;
     }
     return spent;
   }
@@ -109,6 +117,9 @@ class StackMeter {
   std::vector<StackUse> uses_;
 };
 
+/// Contacts that change with the ticks.
+std::uint32_t contacts_of(std::uint32_t joint, unsigned tick) { return (tick + joint) % 4; }
+
 }  // namespace
 
 TickCost measure_tick(Machine& machine, std::uint8_t algorithm_id, unsigned ticks) {
@@ -123,7 +134,7 @@ TickCost measure_tick(Machine& machine, std::uint8_t algorithm_id, unsigned tick
     std::uint64_t advance_cost = 0;
     for (std::uint32_t joint = 0; joint < joint_count; ++joint) {
       const std::uint64_t contacts =
-          modules.call("proleg::Kernel::set_contacts", joint, {joint, (tick + joint) % 4}).instructions;
+          modules.call("proleg::Kernel::set_contacts", joint, {joint, contacts_of(joint, tick)}).instructions;
       const std::uint64_t step = modules.call("proleg::Kernel::advance", joint, {}).instructions;
       if (joint == measured_joint) {
         contacts_cost = contacts;
@@ -137,6 +148,29 @@ TickCost measure_tick(Machine& machine, std::uint8_t algorithm_id, unsigned tick
     total.add(contacts_cost + receive_cost + advance_cost);
   }
   return {set_contacts.result(), receive.result(), advance.result(), total.result()};
+}
+
+Instructions measure_whole_tick(Machine& machine, std::uint8_t algorithm_id, unsigned ticks) {
+  Modules modules(machine, algorithm_id);
+  Statistics statistics;
+  static_cast<void>(modules.exchange());
+  const auto for_others = [](auto action) {
+    for (std::uint32_t joint = 0; joint < joint_count; ++joint) {
+      if (joint != measured_joint) {
+        action(joint);
+      }
+    }
+  };
+  for (unsigned tick = 0; tick < ticks; ++tick) {
+    for_others([&](std::uint32_t joint) {
+      static_cast<void>(modules.call("proleg::Kernel::set_contacts", joint, {joint, contacts_of(joint, tick)}));
+      static_cast<void>(modules.call("proleg::Kernel::advance", joint, {}));
+    });
+    const std::vector<std::uint32_t> arguments{measured_joint, contacts_of(measured_joint, tick)};
+    statistics.add(machine.call("benchmark_tick", arguments, budget).instructions);
+    for_others([&](std::uint32_t joint) { static_cast<void>(modules.receive_all(joint)); });
+  }
+  return statistics.result();
 }
 
 Instructions measure_sine(Machine& machine) {

@@ -26,6 +26,9 @@ struct TickCost {
 };
 [[nodiscard]] TickCost measure_tick(Machine& machine, std::uint8_t algorithm_id, unsigned ticks);
 
+/// The same ticks, each as one call of a function of the image: with the instructions that call the parts.
+[[nodiscard]] Instructions measure_whole_tick(Machine& machine, std::uint8_t algorithm_id, unsigned ticks);
+
 /// sine() over phases in all quarters.
 [[nodiscard]] Instructions measure_sine(Machine& machine);
 

@@ -41,4 +41,16 @@ const proleg::StateFrame* benchmark_frame(std::uint32_t joint) {
   return &static_cast<const proleg::Kernel&>(kernels[joint]).frame(joint, 0);
 }
 
+/// The tick of a joint after the other joints have advanced, in one call.
+void benchmark_tick(std::uint32_t joint, std::uint32_t contacts) {
+  proleg::Kernel& kernel = kernels[joint];
+  kernel.set_contacts(joint, static_cast<std::uint8_t>(contacts));
+  kernel.advance();
+  for (std::uint32_t sender = 0; sender < joint_count; ++sender) {
+    if (sender != joint) {
+      static_cast<void>(kernel.receive(sender, 0, *benchmark_frame(sender)));
+    }
+  }
+}
+
 }  // extern "C"

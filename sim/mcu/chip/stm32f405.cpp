@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/mcu/chip/oscillator.hpp"
+#include "sim/mcu/chip/peripheral_map.hpp"
 #include "sim/mcu/chip/pins.hpp"
 #include "sim/mcu/peripherals/adc.hpp"
 #include "sim/mcu/peripherals/bxcan.hpp"
@@ -18,14 +19,6 @@
 #include "sim/mcu/peripherals/usart.hpp"
 
 namespace proleg::sim {
-namespace {
-
-constexpr std::uint32_t first_peripheral = 0x4000'0000;
-constexpr std::uint32_t block_bytes = 0x400;  ///< no two peripherals share one
-constexpr std::uint32_t block_count = 0x8'0000 / block_bytes;
-
-}  // namespace
-
 class Stm32f405::Implementation final : public CpuSurroundings, public ChipServices, public FlashMemory {
  public:
   Implementation(Bus& bus, BoardSignals& board, const ChipSettings& settings)
@@ -48,7 +41,8 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       peripherals_.push_back(port.get());
     }
     for (Peripheral* peripheral : peripherals_) {
-      place(*peripheral);
+      rcc_.attach(*peripheral);
+      map_.add(*peripheral);
     }
     timed_ = {&rcc_, &flash_, &iwdg_, &timer_2_, &timer_5_, &usart_, &adc_, &can_};
     cpu_.write(system_memory_address, system_memory(settings.unique_id));
@@ -140,14 +134,6 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   DebugHook debug_hook_;
 
  private:
-  void place(Peripheral& peripheral) {
-    rcc_.attach(peripheral);
-    for (std::uint32_t address = peripheral.base(); address < peripheral.base() + peripheral.size();
-         address += block_bytes) {
-      blocks_[(address - first_peripheral) / block_bytes] = &peripheral;
-    }
-  }
-
   // Time.
 
   [[nodiscard]] LocalTime now() const override {
@@ -273,24 +259,11 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   // What the CPU sees.
 
-  [[nodiscard]] Peripheral* at(std::uint32_t address) const {
-    const std::uint32_t block = (address - first_peripheral) / block_bytes;
-    return block < block_count ? blocks_[block] : nullptr;
-  }
-
-  /// The peripheral at an address, and the offset of its register. Refuses what nobody answers.
-  std::pair<Peripheral*, std::uint32_t> find(std::uint32_t address, unsigned size) {
-    Peripheral* const peripheral = at(address);
-    if (peripheral == nullptr || address - peripheral->base() >= peripheral->size()) {
-      throw UnmodelledAccess(describe_address(address) + " is not modelled");
-    }
-    const std::uint32_t offset = address - peripheral->base();
-    if (size != 4 || offset % 4 != 0) {
-      throw UnmodelledAccess(peripheral->register_name(offset / 4 * 4) + ": an access of " + std::to_string(size * 8) +
-                             " bits is not modelled");
-    }
-    rcc_.require_clock(*peripheral, offset);
-    return {peripheral, offset};
+  /// The peripheral at an address, which has a clock, and the offset of its register.
+  std::pair<Peripheral*, std::uint32_t> find(std::uint32_t address, unsigned size) const {
+    const auto found = map_.find(address, size);
+    rcc_.require_clock(*found.first, found.second);
+    return found;
   }
 
   std::uint32_t load(std::uint32_t address, unsigned size) override {
@@ -438,7 +411,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   std::vector<Peripheral*> peripherals_;
   std::vector<Peripheral*> timed_;  ///< those with events of their own
-  std::array<Peripheral*, block_count> blocks_{};
+  PeripheralMap map_;
   mutable std::optional<LocalTime> next_peripheral_event_;  ///< nothing: to be asked for
   mutable std::optional<BusTime> next_event_;
   LocalTime anchor_time_ = 0;  ///< local time when the CPU had executed anchor_instructions_

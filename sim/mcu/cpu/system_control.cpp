@@ -49,8 +49,6 @@ constexpr std::uint32_t interrupt_words = Nvic::interrupt_count / 32;
 
 constexpr std::uint32_t aircr_key = 0x05FA;
 constexpr std::uint32_t aircr_key_read = 0xFA05;
-constexpr std::uint32_t trace_enable = 1U << 24U;
-constexpr std::uint32_t cycle_enable = 1U;
 constexpr std::uint32_t first_priority = 4;  ///< exception of the first byte of SHPR1
 
 /// Which unit a part of the bus belongs to.
@@ -167,11 +165,9 @@ std::uint32_t SystemControl::read_word(std::uint32_t address) {
   }
   switch (address) {
     case dwt_ctrl:
-      return watch_control_;
+      return cycle_counter_.control();
     case dwt_cyccnt:
-      return (watch_control_ & cycle_enable) != 0 && (debug_control_ & trace_enable) != 0
-                 ? static_cast<std::uint32_t>(owner_->instructions() - cycle_base_)
-                 : cycles_stopped_;
+      return cycle_counter_.value(owner_->instructions());
     case ictr:
       return interrupt_words;
     case actlr:
@@ -215,7 +211,7 @@ std::uint32_t SystemControl::read_word(std::uint32_t address) {
     case cpacr:
       return coprocessor_access_;
     case demcr:
-      return debug_control_;
+      return cycle_counter_.debug_control();
     case afsr:
     case mpu_type:  // no MPU
     case dhcsr:     // no debugger
@@ -252,20 +248,13 @@ void SystemControl::write_word(std::uint32_t address, std::uint32_t value) {
   }
   switch (address) {
     case dwt_ctrl:
-    case demcr: {
-      const std::uint32_t cycles = read_word(dwt_cyccnt);
-      if (address == demcr) {
-        debug_control_ = value & trace_enable;
-      } else {
-        watch_control_ = (watch_control_ & ~cycle_enable) | (value & cycle_enable);
-      }
-      cycles_stopped_ = cycles;
-      cycle_base_ = owner_->instructions() - cycles;
+      cycle_counter_.write_control(value, owner_->instructions());
       break;
-    }
+    case demcr:
+      cycle_counter_.write_debug_control(value, owner_->instructions());
+      break;
     case dwt_cyccnt:
-      cycles_stopped_ = value;
-      cycle_base_ = owner_->instructions() - value;
+      cycle_counter_.write_value(value, owner_->instructions());
       break;
     case actlr:
       auxiliary_control_ = value;
@@ -343,7 +332,7 @@ bool SystemControl::write_byte(std::uint32_t address, std::uint8_t value) {
       nvic_->set_priority(number, value);
     }
   } else if (is_in(address, shpr1, 12)) {
-    // Of the bytes, those of the exceptions that exist.
+    // Only the bytes of exceptions that exist can be written.
     const unsigned number = first_priority + (address - shpr1);
     if (number <= exception::usage_fault || number == exception::supervisor_call ||
         number == exception::debug_monitor || number >= exception::pending_supervisor) {

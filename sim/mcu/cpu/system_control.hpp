@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "sim/mcu/cpu/cycle_counter.hpp"
 #include "sim/mcu/cpu/local_time.hpp"
 #include "sim/mcu/cpu/nvic.hpp"
 #include "sim/mcu/cpu/system_tick.hpp"
@@ -92,10 +93,7 @@ class SystemControl {
   std::uint32_t bus_fault_address_ = 0;
   std::uint32_t auxiliary_control_ = 0;
   std::uint32_t coprocessor_access_ = 0;
-  std::uint32_t debug_control_ = 0;
-  std::uint32_t watch_control_ = 0x4000'0000;
-  std::uint64_t cycle_base_ = 0;      ///< CYCCNT counts from here while it is enabled
-  std::uint32_t cycles_stopped_ = 0;  ///< CYCCNT while it is not
+  CycleCounter cycle_counter_;
 };
 
 }  // namespace proleg::sim

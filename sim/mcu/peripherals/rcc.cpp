@@ -11,9 +11,6 @@ constexpr std::uint32_t cr = 0x00;
 constexpr std::uint32_t pllcfgr = 0x04;
 constexpr std::uint32_t cfgr = 0x08;
 constexpr std::uint32_t cir = 0x0C;
-constexpr std::uint32_t first_rstr = 0x10;
-constexpr std::uint32_t first_enr = 0x30;
-constexpr std::uint32_t first_lpenr = 0x50;
 constexpr std::uint32_t bdcr = 0x70;
 constexpr std::uint32_t csr = 0x74;
 constexpr std::uint32_t sscgr = 0x80;
@@ -41,16 +38,6 @@ constexpr RegisterName registers[] = {{cr, "CR"},
                                       {csr, "CSR"},
                                       {sscgr, "SSCGR"},
                                       {plli2scfgr, "PLLI2SCFGR"}};
-
-// AHB1, AHB2, AHB3, APB1, APB2: where their registers lie in each of the three groups, and which bits they have.
-constexpr std::array<std::uint32_t, 5> bus_offset = {0x00, 0x04, 0x08, 0x10, 0x14};
-constexpr std::size_t ahb1 = 0;
-constexpr std::size_t apb1 = 3;
-constexpr std::size_t apb2 = 4;
-constexpr std::array<std::uint32_t, 5> reset_bits = {0x2260'11FF, 0xF1, 0x1, 0x36FE'C9FF, 0x0007'5933};
-constexpr std::array<std::uint32_t, 5> enable_bits = {0x7E74'11FF, 0xF1, 0x1, 0x36FE'C9FF, 0x0007'5F33};
-constexpr std::array<std::uint32_t, 5> sleep_enable_bits = {0x7E67'91FF, 0xF1, 0x1, 0x36FE'C9FF, 0x0007'5F33};
-constexpr std::uint32_t ahb1enr_reset = 0x0010'0000;  // core-coupled memory
 
 constexpr std::uint32_t cr_hsion = 1U << 0U;
 constexpr std::uint32_t cr_hsirdy = 1U << 1U;
@@ -86,40 +73,6 @@ constexpr std::uint32_t csr_iwdgrstf = 1U << 29U;
 
 }  // namespace
 
-struct Rcc::Gate {
-  std::uint32_t base;
-  std::size_t bus;
-  unsigned bit;
-};
-
-const Rcc::Gate* Rcc::gate_of(const Peripheral& peripheral) {
-  static constexpr Gate gates[] = {
-      {0x4002'0000, ahb1, 0},   // GPIOA
-      {0x4002'0400, ahb1, 1},   // GPIOB
-      {0x4002'0800, ahb1, 2},   // GPIOC
-      {0x4002'0C00, ahb1, 3},   // GPIOD
-      {0x4002'1000, ahb1, 4},   // GPIOE
-      {0x4002'1400, ahb1, 5},   // GPIOF
-      {0x4002'1800, ahb1, 6},   // GPIOG
-      {0x4002'1C00, ahb1, 7},   // GPIOH
-      {0x4002'2000, ahb1, 8},   // GPIOI
-      {0x4000'0000, apb1, 0},   // TIM2
-      {0x4000'0C00, apb1, 3},   // TIM5
-      {0x4000'4400, apb1, 17},  // USART2
-      {0x4000'6400, apb1, 25},  // CAN1
-      {0x4000'6800, apb1, 26},  // CAN2
-      {0x4000'7000, apb1, 28},  // PWR
-      {0x4001'2000, apb2, 8},   // ADC1
-      {0x4001'3800, apb2, 14},  // SYSCFG
-  };
-  for (const Gate& gate : gates) {
-    if (gate.base == peripheral.base()) {
-      return &gate;
-    }
-  }
-  return nullptr;
-}
-
 void Rcc::Oscillator::switch_to(bool wanted, LocalTime now, LocalTime start, LocalTime stop) {
   if (wanted == on) {
     return;
@@ -137,26 +90,12 @@ Rcc::Rcc(ChipServices& chip, FlashInterface& flash, Pwr& power, Iwdg& iwdg)
   start_registers(0);
 }
 
-void Rcc::attach(Peripheral& peripheral) { attached_.push_back(&peripheral); }
-
-bool Rcc::is_clocked(const Peripheral& peripheral) const {
-  const Gate* gate = gate_of(peripheral);
-  return gate == nullptr || proleg::sim::bit(enables_[gate->bus], gate->bit);
-}
-
 void Rcc::require_clock(const Peripheral& peripheral, std::uint32_t offset) const {
-  const Gate* gate = gate_of(peripheral);
-  if (gate == nullptr) {
-    return;
+  if (const auto obstacle = gates_.obstacle(peripheral)) {
+    throw UnmodelledAccess(peripheral.register_name(offset) +
+                           (obstacle->is_reset ? ": it is held in reset (" : ": its clock is off (") +
+                           register_name(obstacle->offset) + " bit " + std::to_string(obstacle->bit) + ")");
   }
-  const bool clocked = proleg::sim::bit(enables_[gate->bus], gate->bit);
-  if (clocked && !proleg::sim::bit(resets_[gate->bus], gate->bit)) {
-    return;
-  }
-  const std::uint32_t switch_offset = bus_offset[gate->bus] + (clocked ? first_rstr : first_enr);
-  throw UnmodelledAccess(peripheral.register_name(offset) +
-                         (clocked ? ": it is held in reset (" : ": its clock is off (") + register_name(switch_offset) +
-                         " bit " + std::to_string(gate->bit) + ")");
 }
 
 void Rcc::note_start(ResetCause cause) {
@@ -188,10 +127,7 @@ void Rcc::start_registers(LocalTime now) {
   cfgr_ = 0;
   current_ = ClockSource::hsi;
   clocks_ = {};
-  resets_ = {};
-  enables_ = {};
-  enables_[ahb1] = ahb1enr_reset;
-  sleep_enables_ = sleep_enable_bits;
+  gates_.reset();
 }
 
 const Rcc::Oscillator& Rcc::oscillator(ClockSource source) const {
@@ -233,7 +169,7 @@ Clocks Rcc::clocks_of(ClockSource source, std::uint32_t setting, std::uint32_t v
 }
 
 void Rcc::change_clocks(const Clocks& next) {
-  for (Peripheral* peripheral : attached_) {
+  for (Peripheral* peripheral : gates_.attached()) {
     peripheral->clocks_change(next);
   }
   clocks_ = next;
@@ -245,16 +181,8 @@ bool Rcc::lsi_ready() const { return lsi_.ready(chip().now()) || iwdg_->is_runni
 std::uint32_t Rcc::read(std::uint32_t offset) {
   settle();
   const LocalTime now = chip().now();
-  for (std::size_t bus = 0; bus < bus_count; ++bus) {
-    if (offset == first_rstr + bus_offset[bus]) {
-      return resets_[bus];
-    }
-    if (offset == first_enr + bus_offset[bus]) {
-      return enables_[bus];
-    }
-    if (offset == first_lpenr + bus_offset[bus]) {
-      return sleep_enables_[bus];
-    }
+  if (PeripheralGates::contains(offset)) {
+    return gates_.read(offset);
   }
   switch (offset) {
     case cr:
@@ -280,19 +208,11 @@ std::uint32_t Rcc::read(std::uint32_t offset) {
 
 void Rcc::write(std::uint32_t offset, std::uint32_t value) {
   settle();
-  for (std::size_t bus = 0; bus < bus_count; ++bus) {
-    if (offset == first_rstr + bus_offset[bus]) {
-      write_resets(bus, value & reset_bits[bus]);
-      return;
+  if (PeripheralGates::contains(offset)) {
+    if (const auto refusal = gates_.write(offset, value)) {
+      refuse_write(offset, value, *refusal);
     }
-    if (offset == first_enr + bus_offset[bus]) {
-      write_enables(bus, value & enable_bits[bus]);
-      return;
-    }
-    if (offset == first_lpenr + bus_offset[bus]) {
-      write_sleep_enables(bus, value & sleep_enable_bits[bus]);
-      return;
-    }
+    return;
   }
   switch (offset) {
     case cr:
@@ -381,41 +301,6 @@ void Rcc::write_cfgr(std::uint32_t value) {
   cfgr_ = next;
   current_ = source;
   change_clocks(clocks);
-}
-
-void Rcc::write_resets(std::size_t bus, std::uint32_t value) {
-  const std::uint32_t begun = value & ~resets_[bus];
-  resets_[bus] = value;
-  for (Peripheral* peripheral : attached_) {
-    const Gate* gate = gate_of(*peripheral);
-    if (gate != nullptr && gate->bus == bus && proleg::sim::bit(begun, gate->bit)) {
-      peripheral->reset();
-    }
-  }
-}
-
-void Rcc::write_enables(std::size_t bus, std::uint32_t value) {
-  const std::uint32_t ended = enables_[bus] & ~value;
-  for (const Peripheral* peripheral : attached_) {
-    const Gate* gate = gate_of(*peripheral);
-    if (gate != nullptr && gate->bus == bus && proleg::sim::bit(ended, gate->bit) && !peripheral->is_idle()) {
-      refuse_write(
-          first_enr + bus_offset[bus], value,
-          "the clock of " + std::string(peripheral->name()) + " goes off while it works, which is not modelled");
-    }
-  }
-  enables_[bus] = value;
-}
-
-void Rcc::write_sleep_enables(std::size_t bus, std::uint32_t value) {
-  for (const Peripheral* peripheral : attached_) {
-    const Gate* gate = gate_of(*peripheral);
-    if (gate != nullptr && gate->bus == bus && !proleg::sim::bit(value, gate->bit)) {
-      refuse_write(first_lpenr + bus_offset[bus], value,
-                   std::string(peripheral->name()) + " without clock in Sleep mode is not modelled");
-    }
-  }
-  sleep_enables_[bus] = value;
 }
 
 void Rcc::write_csr(std::uint32_t value) {

@@ -1,15 +1,14 @@
 #pragma once
 
-// Reset and clock control RCC (RM0090, section 7). A setting that the manual forbids is refused with its figures; so is
-// one whose core clock does not divide 1,008 MHz, in which local time counts.
+// Reset and clock control RCC (RM0090, section 7). It rejects a setting that the manual forbids, with its figures,
+// and one whose core clock does not divide 1,008 MHz, in which local time counts.
 
-#include <array>
 #include <cstdint>
-#include <vector>
 
 #include "sim/mcu/peripherals/clock_tree.hpp"
 #include "sim/mcu/peripherals/flash_interface.hpp"
 #include "sim/mcu/peripherals/iwdg.hpp"
+#include "sim/mcu/peripherals/peripheral_gates.hpp"
 #include "sim/mcu/peripherals/pwr.hpp"
 #include "sim/mcu/peripherals/register_block.hpp"
 
@@ -23,18 +22,18 @@ class Rcc final : public RegisterBlock {
   static constexpr LocalTime pll_start = 200 * local_time_per_us;
   static constexpr LocalTime lsi_start = 40 * local_time_per_us;
 
-  /// flash, power: asked whether they bear a new clock. iwdg: keeps LSI on while it runs.
+  /// flash, power: limit the core clock. iwdg: keeps LSI on while it runs.
   Rcc(ChipServices& chip, FlashInterface& flash, Pwr& power, Iwdg& iwdg);
 
   /// Peripherals whose clock and reset are switched here, or that count clocks; by their base(). They must outlive
   /// this.
-  void attach(Peripheral& peripheral);
+  void attach(Peripheral& peripheral) { gates_.attach(peripheral); }
 
-  /// What ChipServices::clocks() says.
+  /// For ChipServices::clocks().
   [[nodiscard]] const Clocks& clocks() const { return clocks_; }
   /// Whether its registers answer. Those that have no gate (RCC, FLASH, IWDG) always do.
-  [[nodiscard]] bool is_clocked(const Peripheral& peripheral) const;
-  /// Refuses an access to a peripheral without clock, or one that is held in reset:
+  [[nodiscard]] bool is_clocked(const Peripheral& peripheral) const { return gates_.is_clocked(peripheral); }
+  /// Rejects an access to a peripheral without clock, or one that is held in reset:
   /// "USART2_BRR: its clock is off (RCC_APB1ENR bit 17)".
   void require_clock(const Peripheral& peripheral, std::uint32_t offset) const;
 
@@ -60,28 +59,23 @@ class Rcc final : public RegisterBlock {
     void switch_to(bool wanted, LocalTime now, LocalTime start, LocalTime stop);
     [[nodiscard]] bool ready(LocalTime now) const { return on ? now >= ready_at : now < not_ready_at; }
   };
-  struct Gate;
 
   void start_registers(LocalTime now);
   void settle();
   void write_cr(std::uint32_t value);
   void write_pllcfgr(std::uint32_t value);
   void write_cfgr(std::uint32_t value);
-  void write_resets(std::size_t bus, std::uint32_t value);
-  void write_enables(std::size_t bus, std::uint32_t value);
-  void write_sleep_enables(std::size_t bus, std::uint32_t value);
   void write_csr(std::uint32_t value);
   [[nodiscard]] const Oscillator& oscillator(ClockSource source) const;
-  /// Refuses what the manual does, naming the write to CFGR that led there.
+  /// Rejects what the manual forbids, naming the write to CFGR that led there.
   [[nodiscard]] Clocks clocks_of(ClockSource source, std::uint32_t setting, std::uint32_t value) const;
   void change_clocks(const Clocks& next);
-  [[nodiscard]] static const Gate* gate_of(const Peripheral& peripheral);
   [[nodiscard]] bool lsi_ready() const;
 
   FlashInterface* flash_;
   Pwr* power_;
   Iwdg* iwdg_;
-  std::vector<Peripheral*> attached_;
+  PeripheralGates gates_;
   Clocks clocks_;
 
   Oscillator hsi_;
@@ -92,10 +86,6 @@ class Rcc final : public RegisterBlock {
   std::uint32_t pllcfgr_ = 0;
   std::uint32_t cfgr_ = 0;  ///< without SWS
   ClockSource current_ = ClockSource::hsi;
-  static constexpr std::size_t bus_count = 5;  ///< AHB1, AHB2, AHB3, APB1, APB2
-  std::array<std::uint32_t, bus_count> resets_{};
-  std::array<std::uint32_t, bus_count> enables_{};
-  std::array<std::uint32_t, bus_count> sleep_enables_{};
   std::uint32_t reset_flags_ = 0;
 };
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include "sim/mcu/peripherals/peripheral.hpp"
+
+namespace proleg::sim {
+
+/// Which peripheral answers an address of the AHB and APB buses (RM0090, table 1).
+class PeripheralMap {
+ public:
+  /// Adds a peripheral at its base(). It must outlive the map.
+  void add(Peripheral& peripheral);
+
+  /// The peripheral at an address, and the offset of its register. Throws UnmodelledAccess where there is none, and for
+  /// an access that is not a whole word. size: bytes.
+  [[nodiscard]] std::pair<Peripheral*, std::uint32_t> find(std::uint32_t address, unsigned size) const;
+
+ private:
+  static constexpr std::uint32_t start = 0x4000'0000;
+  static constexpr std::uint32_t block_bytes = 0x400;  ///< no two peripherals share a block
+  static constexpr std::uint32_t block_count = 0x8'0000 / block_bytes;
+
+  std::array<Peripheral*, block_count> blocks_{};
+};
+
+}  // namespace proleg::sim

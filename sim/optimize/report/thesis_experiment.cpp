@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "sim/optimize/report/scores.hpp"
+#include "sim/optimize/report/thesis_tables.hpp"
 #include "sim/record/svg.hpp"
 
 namespace proleg::optimize {
@@ -12,28 +13,6 @@ namespace {
 
 using sim::plain_number;
 
-constexpr std::array<ThesisResult, 2> published{{
-    {"great-deluge",
-     "table 6.2",
-     30,
-     {{{40, 40, 40, 40, 40, 40, 40, 40, 40, 40},
-       {40, 39.5, 39.75, 40, 40, 40, 40, 40, 40, 40},
-       {39.75, 40, 40, 40, 40, 40, 39.75, 40, 40, 39.75},
-       {40, 39.75, 40, 40, 40, 40, 40, 40, 40, 40},
-       {0, 0, 0, 0.75, 0, 0, 0, 0, 1.5, 0}}},
-     {1.958, 1.956, 1.954, 1.953, 1.950, 1.949, 1.949, 1.947, 1.946, 1.945}},
-    {"genetic",
-     "table 6.4",
-     29,
-     {{{37.5, 39.5, 38.75, 39.75, 39.25, 37, 38.25, 39.75, 37.75, 38.75},
-       {39.25, 40, 40, 38.75, 39.5, 39.5, 38.75, 39, 38.5, 39.75},
-       {39.25, 39, 38, 40, 39.75, 39.25, 40, 40, 40, 40},
-       {39.5, 39.25, 38.25, 37.25, 39.25, 38.75, 39.75, 36.75, 39.5, 30.25},
-       {1, 2.25, 0.5, 0.5, 0.75, 2.25, 0, 0.75, 3.25, 0.75}}},
-     {1.878, 1.874, 1.865, 1.846, 1.839, 1.828, 1.822, 1.820, 1.816, 1.806}},
-}};
-
-constexpr std::size_t columns = 10;
 constexpr int distance_decimals = 3;
 
 /// The best evaluation of each repetition that has any, best first.
@@ -178,62 +157,18 @@ std::string reach_text(const MethodRuns& method, const MethodRuns& deluge, const
 
 }  // namespace
 
-std::span<const ThesisResult, 2> thesis_results() { return published; }
-
-const ThesisResult* find_thesis_result(std::string_view method) {
-  const auto result = std::ranges::find(published, method, &ThesisResult::method);
-  return result == published.end() ? nullptr : &*result;
-}
-
-std::vector<double> best_so_far(std::span<const Evaluation> run) {
-  std::vector<double> best;
-  best.reserve(run.size());
-  for (const Evaluation& evaluation : run) {
-    const double score = evaluation.scores.front();
-    best.push_back(best.empty() ? score : std::max(best.back(), score));
-  }
-  return best;
-}
-
-BestCurves best_curves(const MethodRuns& method) {
-  std::vector<std::vector<double>> runs;
-  std::size_t longest = 0;
-  for (const std::vector<Evaluation>& run : method.runs) {
-    if (!run.empty()) {
-      runs.push_back(best_so_far(run));
-      longest = std::max(longest, run.size());
-    }
-  }
-  BestCurves curves;
-  for (std::size_t i = 0; i < longest; ++i) {
-    double sum = 0.0;
-    double low = INFINITY;
-    double high = -INFINITY;
-    for (const std::vector<double>& run : runs) {
-      const double best = run[std::min(i, run.size() - 1)];
-      sum += best;
-      low = std::min(low, best);
-      high = std::max(high, best);
-    }
-    curves.lowest.push_back(low);
-    curves.mean.push_back(sum / static_cast<double>(runs.size()));
-    curves.highest.push_back(high);
-  }
-  return curves;
-}
-
 std::string experiment_table(const MethodRuns& method) {
   std::string table = "source\tvalue";
-  for (std::size_t column = 1; column <= columns; ++column) {
+  for (std::size_t column = 1; column <= thesis_columns; ++column) {
     table += "\t" + std::to_string(column);
   }
   table += "\n";
 
   std::vector<const Evaluation*> best = best_of_runs(method);
-  best.resize(std::min(best.size(), columns));
+  best.resize(std::min(best.size(), thesis_columns));
   const auto add_row = [&](const std::string& label, const auto& cell) {
     table += "here\t" + label;
-    for (std::size_t column = 0; column < columns; ++column) {
+    for (std::size_t column = 0; column < thesis_columns; ++column) {
       table += "\t" + (column < best.size() ? cell(*best[column]) : std::string());
     }
     table += "\n";
@@ -262,25 +197,6 @@ std::string experiment_table(const MethodRuns& method) {
     table += "\n";
   }
   return table;
-}
-
-std::optional<std::size_t> overtaking(const BestCurves& follower, const BestCurves& leader) {
-  const std::size_t length = std::max(follower.mean.size(), leader.mean.size());
-  if (follower.mean.empty() || leader.mean.empty()) {
-    return std::nullopt;
-  }
-  const auto at = [](const std::vector<double>& curve, std::size_t i) { return curve[std::min(i, curve.size() - 1)]; };
-  std::size_t above_from = length;
-  while (above_from > 0 && at(follower.mean, above_from - 1) > at(leader.mean, above_from - 1)) {
-    --above_from;
-  }
-  return above_from == length ? std::nullopt : std::optional(above_from);
-}
-
-std::optional<std::size_t> evaluations_to_reach(const BestCurves& curves, double score) {
-  const auto reached = std::ranges::find_if(curves.mean, [score](double mean) { return mean >= score; });
-  return reached == curves.mean.end() ? std::nullopt
-                                      : std::optional(static_cast<std::size_t>(reached - curves.mean.begin()) + 1);
 }
 
 std::string experiment_summary(std::span<const MethodRuns> methods, double uniform_m) {

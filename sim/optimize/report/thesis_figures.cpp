@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
 
+#include "sim/optimize/report/curve_panel.hpp"
 #include "sim/optimize/report/scores.hpp"
 #include "sim/optimize/report/thesis_experiment.hpp"
+#include "sim/optimize/report/thesis_tables.hpp"
 #include "sim/record/figure_page.hpp"
 #include "sim/record/plot_frame.hpp"
 #include "sim/record/svg.hpp"
@@ -11,26 +12,13 @@
 namespace proleg::optimize {
 namespace {
 
-using sim::Axis;
 using sim::LegendEntry;
 using sim::LineName;
 using sim::Svg;
-using sim::TextAnchor;
-using sim::Trace;
 
-constexpr double plot_right = 740.0;  // the names of lines stand beside
-constexpr double first_panel_top = 104.0;
 constexpr double single_panel_height = 380.0;
 constexpr double double_panel_height = 320.0;
 constexpr double between_panels = 96.0;
-
-constexpr const char* dotted = "1.5 3.5";
-constexpr const char* dashed = "7 4";
-
-std::string style(const std::string& colour, double width, const std::string& dashes = {}) {
-  return "stroke=\"" + colour + "\" stroke-width=\"" + sim::plain_number(width, 2) + "\" stroke-linejoin=\"round\"" +
-         (dashes.empty() ? "" : " stroke-dasharray=\"" + dashes + "\"");
-}
 
 /// Colours of methods. Great deluge is green and the genetic algorithm red, as in the thesis: a green and a red that
 /// all people tell apart.
@@ -58,37 +46,14 @@ std::string title_of(std::string_view method) {
   return method == "genetic" ? "Genetic algorithm" : std::string(method);
 }
 
-/// The best so far as a line of steps.
-Trace steps(const std::vector<double>& best) {
-  Trace trace;
-  for (std::size_t i = 0; i < best.size(); ++i) {
-    const bool changes = i == 0 || best[i] != best[i - 1];
-    if (i > 0 && changes) {
-      trace.push_back({static_cast<double>(i + 1), drawable(best[i - 1])});
-    }
-    if (changes || i + 1 == best.size()) {
-      trace.push_back({static_cast<double>(i + 1), drawable(best[i])});
-    }
-  }
-  return trace;
-}
-
-/// A score that others are compared with, drawn from edge to edge.
-struct Level {
-  double value;
-  std::string text;
-  std::string colour;
-  const char* dashes;
-};
-
 Level uniform_level(double uniform_m) { return {uniform_m, "uniform " + rounded_text(uniform_m), "#000000", dotted}; }
 
 /// The best of all runs of a method.
 std::vector<Level> best_level(const BestCurves& curves, const std::string& colour) {
-  if (curves.highest.empty()) {
+  if (curves.max.empty()) {
     return {};
   }
-  return {{curves.highest.back(), "best " + fixed_text(curves.highest.back(), 3), colour, dotted}};
+  return {{curves.max.back(), "best " + fixed_text(curves.max.back(), 3), colour, dotted}};
 }
 
 /// The best that the thesis has for a method.
@@ -101,72 +66,6 @@ std::vector<Level> thesis_level(const MethodRuns& method, const std::string& col
   return {{best, "thesis " + fixed_text(best, 3), colour, dashed}};
 }
 
-struct Panel {
-  Axis x;
-  Axis y;
-};
-
-Panel make_panel(double top, double height, std::span<const BestCurves> curves, std::span<const Level> levels) {
-  std::size_t longest = 10;
-  double low = INFINITY;
-  double high = -INFINITY;
-  const auto include = [&](double value) {
-    if (std::isfinite(value)) {
-      low = std::min(low, drawable(value));
-      high = std::max(high, drawable(value));
-    }
-  };
-  for (const BestCurves& curve : curves) {
-    longest = std::max(longest, curve.mean.size());
-    if (!curve.mean.empty()) {
-      include(curve.lowest.front());
-      include(curve.highest.back());
-    }
-  }
-  for (const Level& level : levels) {
-    include(level.value);
-  }
-  return {{0.0, static_cast<double>(longest), sim::page_left, plot_right},
-          low <= high ? sim::axis_over(low, high, top + height, top) : Axis{0.0, 1.0, top + height, top}};
-}
-
-void draw_levels(Svg& svg, const Panel& panel, std::span<const Level> levels) {
-  svg.begin_group("levels");
-  for (const Level& level : levels) {
-    if (std::isfinite(level.value)) {
-      const double at = panel.y.pixel(drawable(level.value));
-      svg.line({panel.x.pixel_low, at}, {panel.x.pixel_high, at}, style(level.colour, 1.3, level.dashes));
-    }
-  }
-  svg.end_group();
-}
-
-void draw_curve(Svg& svg, const Panel& panel, const std::vector<double>& best, const std::string& line_style) {
-  svg.polyline(sim::to_pixels(steps(best), panel.x, panel.y), line_style);
-}
-
-void draw_every_curve(Svg& svg, const Panel& panel, const MethodRuns& method, const std::string& colour) {
-  svg.begin_group("run");
-  for (const std::vector<Evaluation>& run : method.runs) {
-    draw_curve(svg, panel, best_so_far(run), style(colour, 1.1) + R"( stroke-opacity="0.65")");
-  }
-  svg.end_group();
-}
-
-void draw_names(Svg& svg, const Panel& panel, std::span<const Level> levels, std::vector<LineName> names) {
-  for (const Level& level : levels) {
-    if (std::isfinite(level.value)) {
-      names.push_back({level.value, level.text, level.colour});
-    }
-  }
-  sim::draw_line_names(svg, panel.y, plot_right, names);
-}
-
-void draw_title(Svg& svg, std::string_view title, std::string_view about) {
-  svg.text({sim::page_left, 36.0}, title, TextAnchor::start, 20.0, sim::ink, R"(font-weight="bold")");
-  svg.text({sim::page_left, 58.0}, about, TextAnchor::start, sim::label_size, sim::faint_ink);
-}
-
 std::string repetitions_text(const MethodRuns& method) {
   return std::to_string(method.runs.size()) + (method.runs.size() == 1 ? " repetition" : " repetitions");
 }
@@ -175,12 +74,12 @@ std::string repetitions_text(const MethodRuns& method) {
 template <typename Draw>
 std::string draw_method(const MethodRuns& method, const std::string& title, const std::string& about,
                         const std::vector<Level>& levels, const BestCurves& curves, const Draw& draw) {
-  const Panel panel = make_panel(first_panel_top, single_panel_height, {&curves, 1}, levels);
+  const CurvePanel panel = make_panel(first_panel_top, single_panel_height, {&curves, 1}, levels);
   Svg svg(sim::page_width, first_panel_top + single_panel_height + 56.0, title, about);
   draw_title(svg, title, about);
-  std::vector<LegendEntry> legend{{"uniform amplitudes", style(sim::ink, 1.3, dotted), ""}};
+  std::vector<LegendEntry> legend{{"uniform amplitudes", line_style(sim::ink, 1.3, dotted), ""}};
   if (find_thesis_result(method.method) != nullptr) {
-    legend.push_back({"the thesis's best", style(sim::ink, 1.3, dashed), ""});
+    legend.push_back({"the thesis's best", line_style(sim::ink, 1.3, dashed), ""});
   }
   sim::draw_legend(svg, plot_right, first_panel_top - 16.0, legend);
   sim::draw_plot_grid(svg, panel.x, panel.y, "evaluations", "Best distance so far (m)");
@@ -204,7 +103,7 @@ std::string draw_every_run(const MethodRuns& method, double uniform_m) {
   levels.push_back(uniform_level(uniform_m));
   return draw_method(method, title_of(method.method) + ": every run",
                      repetitions_text(method) + ", the best distance of each so far", levels, curves,
-                     [&](Svg& svg, const Panel& panel) {
+                     [&](Svg& svg, const CurvePanel& panel) {
                        draw_every_curve(svg, panel, method, colour);
                        std::vector<LineName> names;
                        for (const Level& best : best_level(curves, colour)) {
@@ -221,20 +120,20 @@ std::string draw_run_spread(const MethodRuns& method, double uniform_m) {
   levels.push_back(uniform_level(uniform_m));
   return draw_method(method, title_of(method.method) + ": lowest, mean and highest",
                      repetitions_text(method) + "; one that has ended keeps its best", levels, curves,
-                     [&](Svg& svg, const Panel& panel) {
+                     [&](Svg& svg, const CurvePanel& panel) {
                        std::vector<LineName> names;
                        const auto draw = [&](const std::vector<double>& curve, double width, const std::string& name,
-                                             const std::string& line_colour) {
+                                             const std::string& curve_colour) {
                          svg.begin_group(name);
-                         draw_curve(svg, panel, curve, style(line_colour, width));
+                         draw_curve(svg, panel, curve, line_style(curve_colour, width));
                          svg.end_group();
                          if (!curve.empty()) {
-                           names.push_back({curve.back(), name + " " + fixed_text(curve.back(), 3), line_colour});
+                           names.push_back({curve.back(), name + " " + fixed_text(curve.back(), 3), curve_colour});
                          }
                        };
-                       draw(curves.highest, 1.3, "highest", sim::ink);
+                       draw(curves.max, 1.3, "highest", sim::ink);
                        draw(curves.mean, 2.4, "mean", colour);
-                       draw(curves.lowest, 1.3, "lowest", "#777777");
+                       draw(curves.min, 1.3, "lowest", "#777777");
                        return names;
                      });
 }
@@ -253,7 +152,7 @@ std::string draw_method_comparison(std::span<const MethodRuns> methods, double u
     curves.push_back(best_curves(method));
     append(best, best_level(curves.back(), colour));
     append(thesis, thesis_level(method, colour));
-    method_legend.push_back({method.method, style(colour, 2.0), ""});
+    method_legend.push_back({method.method, line_style(colour, 2.0), ""});
     if (!curves.back().mean.empty()) {
       const double mean = curves.back().mean.back();
       means.push_back({mean, method.method + " " + fixed_text(mean, 3), colour});
@@ -266,14 +165,15 @@ std::string draw_method_comparison(std::span<const MethodRuns> methods, double u
   best.push_back(uniform);
   thesis.push_back(uniform);
   const double second_top = first_panel_top + double_panel_height + between_panels;
-  const Panel every = make_panel(first_panel_top, double_panel_height, curves, all);
-  const Panel mean = make_panel(second_top, double_panel_height, curves, all);
+  const CurvePanel every = make_panel(first_panel_top, double_panel_height, curves, all);
+  const CurvePanel mean = make_panel(second_top, double_panel_height, curves, all);
 
   Svg svg(sim::page_width, second_top + double_panel_height + 56.0, "Comparison of methods",
           "Best distance so far of every repetition, and its mean, against evaluations.");
   draw_title(svg, "Travelling wave: methods compared", {});
   sim::draw_legend(svg, plot_right, 54.0, method_legend);
-  std::vector<LegendEntry> level_legend{{"uniform amplitudes; best of all runs", style(sim::ink, 1.3, dotted), ""}};
+  std::vector<LegendEntry> level_legend{
+      {"uniform amplitudes; best of all runs", line_style(sim::ink, 1.3, dotted), ""}};
   sim::draw_plot_grid(svg, every.x, every.y, "evaluations", "(a) Every run: best distance so far (m)");
   sim::draw_legend(svg, plot_right, first_panel_top - 16.0, level_legend);
   draw_levels(svg, every, best);
@@ -286,13 +186,13 @@ std::string draw_method_comparison(std::span<const MethodRuns> methods, double u
   sim::draw_plot_grid(svg, mean.x, mean.y, "evaluations", "(b) Mean of the runs (m)");
   level_legend.front().name = "uniform; best of all";
   if (thesis.size() > 1) {
-    level_legend.push_back({"the thesis's best", style(sim::ink, 1.3, dashed), ""});
+    level_legend.push_back({"the thesis's best", line_style(sim::ink, 1.3, dashed), ""});
   }
   sim::draw_legend(svg, plot_right, second_top - 16.0, level_legend);
   draw_levels(svg, mean, all);
   for (std::size_t i = 0; i < methods.size(); ++i) {
     svg.begin_group("mean");
-    draw_curve(svg, mean, curves[i].mean, style(colours[i], 2.4));
+    draw_curve(svg, mean, curves[i].mean, line_style(colours[i], 2.4));
     svg.end_group();
   }
   sim::draw_plot_frame(svg, mean.x, mean.y);

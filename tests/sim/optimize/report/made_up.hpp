@@ -14,6 +14,7 @@
 
 #include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
+#include "sim/optimize/report/best_curves.hpp"
 
 namespace proleg::optimize {
 
@@ -64,6 +65,24 @@ namespace proleg::optimize {
   evaluation.measures = {};
   evaluation.failure = "the robot flew apart";
   return evaluation;
+}
+
+/// The evaluations of a run with these scores.
+[[nodiscard]] inline std::vector<Evaluation> run_of(const std::vector<double>& scores) {
+  std::vector<Evaluation> run;
+  run.reserve(scores.size());
+  for (const double score : scores) {
+    run.push_back(evaluation_of(run.size(), score));
+  }
+  return run;
+}
+
+[[nodiscard]] inline MethodRuns method_of(const std::string& name, const std::vector<std::vector<double>>& runs) {
+  MethodRuns method{name, amplitudes(), {}};
+  for (const std::vector<double>& scores : runs) {
+    method.runs.push_back(run_of(scores));
+  }
+  return method;
 }
 
 /// What a picture consists of. Looks whether it is XML and all its coordinates are on the page.

@@ -1,0 +1,40 @@
+#pragma once
+
+// The course of repeated searches: the best score so far after each evaluation. More is better.
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/optimize/evaluation/task.hpp"
+#include "sim/optimize/experiment/search_space.hpp"
+
+namespace proleg::optimize {
+
+/// All repetitions of the experiment with one method.
+struct MethodRuns {
+  std::string method;                         ///< as method_name() says
+  SearchSpace space;                          ///< of its candidates
+  std::vector<std::vector<Evaluation>> runs;  ///< the evaluations of each repetition, in order
+};
+
+/// Best score so far after each evaluation of a run.
+[[nodiscard]] std::vector<double> best_so_far(std::span<const Evaluation> run);
+
+/// Over all repetitions, after each evaluation of the longest one. A repetition that has ended keeps its last best.
+struct BestCurves {
+  std::vector<double> min;
+  std::vector<double> mean;
+  std::vector<double> max;
+};
+[[nodiscard]] BestCurves best_curves(const MethodRuns& method);
+
+/// Number of the last evaluation, from 1, at which the mean of `follower` is not above that of `leader`: after it, it
+/// stays above. 0: it is above from the start. Nothing: it does not end above.
+[[nodiscard]] std::optional<std::size_t> overtaking(const BestCurves& follower, const BestCurves& leader);
+
+/// Number of evaluations, from 1, after which the mean is at least `score`.
+[[nodiscard]] std::optional<std::size_t> evaluations_to_reach(const BestCurves& curves, double score);
+
+}  // namespace proleg::optimize

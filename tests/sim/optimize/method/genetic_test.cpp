@@ -289,13 +289,49 @@ TEST(GeneticSearch, EndsWhenItsSourceDoesAtAnyEvaluation) {
   EXPECT_THROW(static_cast<void>(search(make_experiment({41, 41}, GeneticSettings{}), 0, broken)), std::runtime_error);
 }
 
-TEST(GeneticSearch, TakesScoresBelowZeroWithoutComplaint) {
-  testing::internal::CaptureStderr();
-  FakeSource source([](const Candidate& candidate) { return std::vector<double>{rugged(candidate) - 2.0}; });
-  EXPECT_EQ(search(make_experiment({41, 41, 41}, GeneticSettings{}), 0, source), "converged");
-  FakeSource below([](const Candidate& candidate) { return std::vector<double>{-rugged(candidate) - 2.0}; });
-  EXPECT_EQ(search(make_experiment({41, 41, 41}, GeneticSettings{}), 0, below), "converged");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+/// Mean of the scores that were asked for in one generation.
+double mean_score(const FakeSource& source, const std::pair<std::uint64_t, std::vector<Candidate>>& generation) {
+  double sum = 0.0;
+  for (std::uint64_t i = generation.first; i < generation.first + generation.second.size(); ++i) {
+    sum += source.scores[i][0];
+  }
+  return sum / static_cast<double>(generation.second.size());
+}
+
+TEST(GeneticSearch, ClimbsFromScoresBelowZeroToScoresAbove) {
+  for (const Mode mode : {Mode::simple, Mode::steady_state}) {
+    GeneticSettings settings;
+    settings.mode = mode;
+    settings.mutation = 0.05;
+    testing::internal::CaptureStderr();
+    FakeSource source([](const Candidate& candidate) { return std::vector<double>{rugged(candidate) - 2.5}; });
+    EXPECT_EQ(search(make_experiment({41, 41, 41}, settings), 0, source), "converged");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "GAlib prints no warnings";
+    ASSERT_GE(source.expectations.size(), 2U);
+    const auto best_until = [&](std::size_t count) {
+      return (*std::max_element(source.scores.begin(), source.scores.begin() + static_cast<std::ptrdiff_t>(count)))[0];
+    };
+    EXPECT_LT(mean_score(source, source.expectations.front()), 0.0) << "most of the first generation is below 0";
+    EXPECT_GT(best_until(source.scores.size()), best_until(settings.population) + 0.2);
+    EXPECT_GT(mean_score(source, source.expectations.back()), mean_score(source, source.expectations.front()) + 0.5);
+  }
+}
+
+TEST(GeneticSearch, SelectsAtRandomWithoutAScoreAboveZeroAndEndsAfterNGenerations) {
+  // GAlib is given 0 for each score below 0, so all candidates are equal for it: which are chosen as parents does not
+  // depend on their scores.
+  GeneticSettings settings;
+  settings.generations_to_convergence = 12;
+  const auto asked = [&](const FakeSource::Function& function) {
+    testing::internal::CaptureStderr();
+    FakeSource source(function);
+    EXPECT_EQ(search(make_experiment({41, 41, 41}, settings), 0, source), "converged");
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_EQ(source.expectations.size(), 12U);
+    return source.asked;
+  };
+  EXPECT_EQ(asked([](const Candidate& candidate) { return std::vector<double>{-rugged(candidate) - 2.0}; }),
+            asked(constant(0.0)));
 }
 
 TEST(GeneticSearch, ClimbsBothWays) {

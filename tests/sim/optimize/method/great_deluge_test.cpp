@@ -11,7 +11,9 @@
 #include <set>
 #include <stdexcept>
 
+#include "deluge_log.hpp"
 #include "fake_source.hpp"
+#include "landscape_problem.hpp"
 #include "sim/optimize/method/search.hpp"
 
 namespace proleg::optimize {
@@ -28,32 +30,6 @@ FakeSource::Function constant(double score) {
 
 FakeSource::Function rugged_score() {
   return [](const Candidate& candidate) { return std::vector<double>{rugged(candidate)}; };
-}
-
-/// A box of whole numbers with any level, as a problem of pagmo.
-struct Landscape {
-  std::vector<double> lower = {0.0, 0.0, 0.0};
-  std::vector<double> upper = {160.0, 160.0, 160.0};
-  std::function<double(const std::vector<double>&)> level;
-
-  [[nodiscard]] std::vector<double> fitness(const std::vector<double>& x) const { return {-level(x)}; }
-  [[nodiscard]] std::pair<std::vector<double>, std::vector<double>> get_bounds() const { return {lower, upper}; }
-};
-
-/// What a search on a landscape thought; also of one that the landscape ended with SearchEnded.
-std::vector<GreatDeluge::LogLine> log_of(const GreatDelugeSettings& settings, const Landscape& landscape,
-                                         const std::vector<std::vector<double>>& starts, std::uint64_t seed = 1) {
-  pagmo::population population{pagmo::problem{landscape}, 0U, 1U};
-  for (const auto& start : starts) {
-    population.push_back(start);
-  }
-  pagmo::algorithm algorithm{GreatDeluge{settings, seed}};
-  algorithm.set_verbosity(1);
-  try {
-    static_cast<void>(algorithm.evolve(population));
-  } catch (const SearchEnded&) {
-  }
-  return algorithm.extract<GreatDeluge>()->get_log();
 }
 
 TEST(GreatDelugeSearch, ThatAcceptsNothingMakesRetriesTimesCreditsPlusOneEvaluationsAfterTheStart) {
@@ -96,7 +72,7 @@ TEST(GreatDelugeSearch, UsesNoRetryAboveAllLevels) {
   }
 }
 
-TEST(GreatDelugeSearch, WidensByTheFirstRadiusAfterEveryConfidenceFailuresIfToldTo) {
+TEST(GreatDelugeSearch, WidensByTheFirstRadiusAfterEveryConfidenceFailuresWithLinearGrowth) {
   GreatDelugeSettings settings;
   settings.growth = Growth::linear;
   settings.step = 3;
@@ -126,7 +102,7 @@ TEST(GreatDelugeSearch, DoublesTheRadiusAfterEveryConfidenceFailures) {
   }
 }
 
-TEST(GreatDelugeSearch, GoesBackToTheFirstRadiusWhenItAccepts) {
+TEST(GreatDelugeSearch, ReturnsToTheFirstRadiusWhenItAccepts) {
   int evaluations = 0;
   const auto log = log_of({},
                           Landscape{.level =
@@ -144,7 +120,7 @@ TEST(GreatDelugeSearch, GoesBackToTheFirstRadiusWhenItAccepts) {
   EXPECT_EQ(log[50].water, 0.15 + 0.01);
 }
 
-TEST(GreatDelugeSearch, MaySettleForLessThanItHasAsLongAsItIsAboveTheWater) {
+TEST(GreatDelugeSearch, AcceptsAWorsePlaceIfItReachesTheWater) {
   int evaluations = 0;
   const auto log = log_of({},
                           Landscape{.level =
@@ -158,13 +134,13 @@ TEST(GreatDelugeSearch, MaySettleForLessThanItHasAsLongAsItIsAboveTheWater) {
   EXPECT_FALSE(log[2].accepted);
 }
 
-TEST(GreatDelugeSearch, KeepsTheBestPlaceThoughItWentOn) {
+TEST(GreatDelugeSearch, KeepsTheBestPlaceWhenItMovesOn) {
   Landscape landscape;
   landscape.level = [&, evaluations = 0](const auto&) mutable {
     ++evaluations;
     return evaluations == 1 ? 1.0 : evaluations == 2 ? 5.0 : evaluations == 3 ? 0.5 : 0.0;
   };
-  pagmo::population population{pagmo::problem{landscape}, 0U, 1U};
+  pagmo::population population{pagmo::problem{LandscapeProblem{landscape}}, 0U, 1U};
   population.push_back({80, 80, 80});
   pagmo::algorithm algorithm{GreatDeluge{{}, 4}};
   algorithm.set_verbosity(1);
@@ -227,7 +203,7 @@ TEST(GreatDelugeNeighbours, AreEvenlyDistributedOverTheSteps) {
   }
 }
 
-TEST(GreatDelugeNeighbours, DifferInOneParameterIfToldTo) {
+TEST(GreatDelugeNeighbours, DifferInOneParameterIfOneMoves) {
   GreatDelugeSettings settings;
   settings.move = Move::one;
   settings.neighbour = Neighbour::sign;
@@ -262,7 +238,7 @@ TEST(GreatDelugeNeighbours, AreCutToTheBounds) {
   EXPECT_EQ(seen, (std::set<double>{-3.0, 1.0, 2.0}));
 }
 
-TEST(GreatDelugeStart, IsBelowTheWaterNoReasonToGoSomewhereElse) {
+TEST(GreatDelugeStart, StaysTheCurrentPlaceIfItIsBelowTheWater) {
   const Landscape low{.level = [](const auto&) { return 0.1; }};
   const auto must_pass = log_of({}, low, {{80, 80, 80}});
   EXPECT_FALSE(must_pass[0].accepted);
@@ -314,7 +290,7 @@ TEST(GreatDelugeReevaluation, DecidesByTheMean) {
   settings.reevaluations = 2;
   settings.retries = 3;
   settings.credits = 0;
-  // Start; a lucky candidate; one that is good on the average; one that fails at once.
+  // The start; a candidate that is good once; one that is good on average; one that fails at once.
   const std::vector<double> levels = {0.0, 0.3, 0.0, 0.0, 0.2, 0.1, 0.3, 0.0};
   std::size_t evaluation = 0;
   const auto log =
@@ -367,7 +343,7 @@ TEST(GreatDeluge, RefusesSeveralObjectivesAndBoundsAtInfinity) {
                std::invalid_argument);
   Landscape endless{.level = [](const auto&) { return 0.0; }};
   endless.upper[1] = std::numeric_limits<double>::infinity();
-  pagmo::population population{pagmo::problem{endless}, 0U, 1U};
+  pagmo::population population{pagmo::problem{LandscapeProblem{endless}}, 0U, 1U};
   population.push_back({0, 0, 0});
   EXPECT_THROW(static_cast<void>(algorithm.evolve(population)), std::invalid_argument);
 }

@@ -1,0 +1,25 @@
+#pragma once
+
+// A great deluge on a landscape, without a simulation. Only the source file includes pagmo.
+
+#include <functional>
+#include <vector>
+
+#include "sim/optimize/method/great_deluge.hpp"
+
+namespace proleg::optimize {
+
+/// A box of whole numbers with any level.
+struct Landscape {
+  std::vector<double> lower = {0.0, 0.0, 0.0};
+  std::vector<double> upper = {160.0, 160.0, 160.0};
+  std::function<double(const std::vector<double>&)> level;
+};
+
+/// The log of a search on a landscape, with one chain for each start; also of one that the landscape ended with
+/// SearchEnded.
+[[nodiscard]] std::vector<GreatDeluge::LogLine> log_of(const GreatDelugeSettings& settings, const Landscape& landscape,
+                                                       const std::vector<std::vector<double>>& starts,
+                                                       std::uint64_t seed = 1);
+
+}  // namespace proleg::optimize

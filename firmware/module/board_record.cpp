@@ -96,7 +96,7 @@ bool equal(Bytes a, Bytes b) {
 }  // namespace
 
 bool BoardRecord::valid() const {
-  return node >= 1 && node <= highest_node && feedback_at_minus_90 <= highest_reading &&
+  return node >= 1 && node <= max_node_id && feedback_at_minus_90 <= highest_reading &&
          feedback_at_plus_90 <= highest_reading && (!has_feedback || feedback_at_minus_90 != feedback_at_plus_90);
 }
 

@@ -40,7 +40,7 @@ class FlashPort {
 
 struct BoardRecord {
   static constexpr std::size_t size = 32;  ///< bytes in flash
-  static constexpr std::uint8_t highest_node = 126;
+  static constexpr std::uint8_t max_node_id = 126;
   static constexpr std::uint16_t highest_reading = 4095;
 
   std::uint8_t node = 0;  ///< 1 to 126

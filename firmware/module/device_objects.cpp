@@ -212,7 +212,7 @@ std::uint32_t DeviceObjects::read_frame(unsigned joint, unsigned channel, std::u
     return 0;
   }
   const StateFrame& frame = parts_.joint.kernel().frame(joint, channel);
-  return read_little_endian({0, CanFrame::longest, frame.bytes}, sub == 1 ? 0 : 4, 4);
+  return read_little_endian({0, CanFrame::max_length, frame.bytes}, sub == 1 ? 0 : 4, 4);
 }
 
 AbortCode DeviceObjects::read_value(const canopen::ValueAddress& address, std::uint32_t& value) const {

@@ -3,7 +3,7 @@
 #include "firmware/module/servo_driver.hpp"
 #include "shared/canopen/objects.hpp"
 #include "shared/canopen/power_state.hpp"
-#include "shared/canopen/robot_setup.hpp"
+#include "shared/canopen/robot_configuration.hpp"
 #include "shared/kernel/kernel.hpp"
 
 namespace proleg::firmware {

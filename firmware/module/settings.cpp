@@ -20,7 +20,7 @@ KernelConfiguration Settings::kernel() const {
 std::uint32_t Settings::crc(std::uint8_t own_node) const {
   std::array<std::uint8_t, max_joints> robot = nodes[0];
   robot[joint] = own_node;
-  return canopen::configuration_crc({kernel(), robot_id, servo_period_us, {robot.data(), joint_count}, {}, {}});
+  return canopen::configuration_crc({kernel(), robot_id, servo_period_us, {robot.data(), joint_count}});
 }
 
 }  // namespace proleg::firmware

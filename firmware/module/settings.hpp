@@ -1,7 +1,7 @@
 #pragma once
 
 #include "shared/canopen/objects.hpp"
-#include "shared/canopen/robot_setup.hpp"
+#include "shared/canopen/robot_configuration.hpp"
 
 namespace proleg::firmware {
 

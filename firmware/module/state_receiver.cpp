@@ -27,7 +27,7 @@ void StateReceiver::configure(const Settings& settings) {
   for (unsigned channel = 0; channel < max_channels; ++channel) {
     for (unsigned joint = 0; joint < settings.joint_count; ++joint) {
       const std::uint8_t node = settings.nodes[channel][joint];
-      if (node != 0 && joint_.kernel().listens_to(joint, channel)) {
+      if (node != 0 && joint_.kernel().needs_frame(joint, channel)) {
         joints_[channel][node] = static_cast<std::uint8_t>(joint + 1U);
         identifiers[count++] = static_cast<std::uint16_t>(first_identifier[channel] + node);
       }

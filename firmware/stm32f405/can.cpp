@@ -81,7 +81,7 @@ constexpr std::uint32_t first_bytes(std::uint32_t word, std::uint32_t length) {
 /// The oldest frame of FIFO 0.
 void read_frame(CanFrame& frame) {
   const std::uint32_t sent_length = can1::rdt0r.read() & can1::dtr_dlc;
-  const std::uint32_t length = sent_length > CanFrame::longest ? CanFrame::longest : sent_length;
+  const std::uint32_t length = sent_length > CanFrame::max_length ? CanFrame::max_length : sent_length;
   const std::array<std::uint32_t, 2> words{first_bytes(can1::rdl0r.read(), length),
                                            length > 4 ? first_bytes(can1::rdh0r.read(), length - 4U) : 0U};
   frame.identifier = static_cast<std::uint16_t>(can1::ri0r.read() >> can1::ir_stid_position);

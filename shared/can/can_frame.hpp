@@ -9,8 +9,8 @@ namespace proleg {
 /// A classic CAN data frame with an 11-bit identifier (ISO 11898-1). The protocol uses neither remote nor extended
 /// frames.
 struct CanFrame {
-  static constexpr std::uint16_t highest_identifier = 0x7FF;
-  static constexpr std::uint8_t longest = 8;
+  static constexpr std::uint16_t max_identifier = 0x7FF;
+  static constexpr std::uint8_t max_length = 8;
 
   std::uint16_t identifier = 0;        ///< 0 to 0x7FF; the lower one wins the bus
   std::uint8_t length = 0;             ///< 0 to 8 bytes of data

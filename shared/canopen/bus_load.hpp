@@ -8,7 +8,7 @@ namespace proleg::canopen {
 
 /// A bus is not driven above this share of its time in the worst case, in thousandths: EMCY, SDO and the host need
 /// room.
-inline constexpr std::uint32_t highest_bus_load_permille = 850;
+inline constexpr std::uint32_t max_bus_load_permille = 850;
 
 /// SYNCs between two monitoring frames of a module: 10, or 100 where that would take more of the bus than a host drives
 /// it.
@@ -32,7 +32,7 @@ inline constexpr std::uint32_t monitoring_periods[] = {10, 100};
 
 [[nodiscard]] inline std::uint32_t monitoring_period(const KernelConfiguration& kernel) {
   const auto [often, seldom] = monitoring_periods;
-  return worst_bus_load_permille(kernel, often) <= highest_bus_load_permille ? often : seldom;
+  return worst_bus_load_permille(kernel, often) <= max_bus_load_permille ? often : seldom;
 }
 
 [[nodiscard]] inline std::uint32_t worst_bus_load_permille(const KernelConfiguration& kernel) {

@@ -101,9 +101,9 @@ inline constexpr Object joint_index =
     read_write(place.at(1), "Joint index", DataType::unsigned8, 0, {0, max_joints - 1}, "0: the joint at the head");
 inline constexpr Object joint_count =
     read_write(place.at(2), "Joint count", DataType::unsigned8, 1, {1, max_joints}, "joints of the robot");
-inline constexpr Object front_node = read_write(place.at(3), "Front node", DataType::unsigned8, 0, {0, highest_node},
+inline constexpr Object front_node = read_write(place.at(3), "Front node", DataType::unsigned8, 0, {0, max_node_id},
                                                 "node id of the next joint towards the head; 0: none");
-inline constexpr Object rear_node = read_write(place.at(4), "Rear node", DataType::unsigned8, 0, {0, highest_node},
+inline constexpr Object rear_node = read_write(place.at(4), "Rear node", DataType::unsigned8, 0, {0, max_node_id},
                                                "node id of the next joint towards the tail; 0: none");
 inline constexpr Object robot_id =
     read_write(place.at(5), "Robot id", DataType::unsigned16, 1, full_range(DataType::unsigned16), "as in COMMIT");
@@ -212,7 +212,7 @@ inline constexpr std::array frame_receptions{
 };
 [[nodiscard]] constexpr JointObjects frame_identifier(unsigned channel, std::uint32_t base) {
   return {read_write(frame_receptions[channel].at(1), "COB-ID used by RPDO", DataType::unsigned32, pdo_off,
-                     {base + lowest_node, base + highest_node}, "0x80000000: off", pdo_off)};
+                     {base + min_node_id, base + max_node_id}, "0x80000000: off", pdo_off)};
 }
 /// From whom the state frames of a joint come; off for the module's own joint.
 inline constexpr std::array<JointObjects, max_channels> state_frame_identifier{

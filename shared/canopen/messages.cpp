@@ -12,7 +12,7 @@ constexpr CanFrame make(unsigned identifier, std::uint8_t length) {
 /// The node of a frame on base + node with that length; nothing if it is no such frame.
 std::optional<std::uint8_t> sender(const CanFrame& frame, std::uint16_t base, unsigned length, unsigned highest) {
   const unsigned node = static_cast<unsigned>(frame.identifier) - base;
-  if (frame.identifier < base || node < lowest_node || node > highest || frame.length != length) {
+  if (frame.identifier < base || node < min_node_id || node > highest || frame.length != length) {
     return std::nullopt;
   }
   return static_cast<std::uint8_t>(node);
@@ -181,7 +181,7 @@ CanFrame encode(const Command& command) {
 }
 
 std::optional<Command> decode_command(const CanFrame& frame) {
-  const std::optional<std::uint8_t> node = sender(frame, identifier::command, 6, highest_node);
+  const std::optional<std::uint8_t> node = sender(frame, identifier::command, 6, max_node_id);
   if (!node) {
     return std::nullopt;
   }
@@ -210,7 +210,7 @@ CanFrame encode(const Monitoring& monitoring) {
 }
 
 std::optional<Monitoring> decode_monitoring(const CanFrame& frame) {
-  const std::optional<std::uint8_t> node = sender(frame, identifier::monitoring, 6, highest_node);
+  const std::optional<std::uint8_t> node = sender(frame, identifier::monitoring, 6, max_node_id);
   if (!node) {
     return std::nullopt;
   }

@@ -13,8 +13,8 @@
 
 namespace proleg::canopen {
 
-inline constexpr std::uint8_t lowest_node = 1;
-inline constexpr std::uint8_t highest_node = 126;
+inline constexpr std::uint8_t min_node_id = 1;
+inline constexpr std::uint8_t max_node_id = 126;
 inline constexpr std::uint8_t host_node = 127;
 
 /// Predefined connection set (CiA 301, 7.3.5) and manufacturer identifiers.

@@ -8,7 +8,7 @@ std::string_view describe(AbortCode code) {
       return "ok";
     case AbortCode::toggle_bit:
       return "toggle bit not alternated";
-    case AbortCode::time_out:
+    case AbortCode::timeout:
       return "no answer";
     case AbortCode::unknown_command:
       return "kind of transfer not supported";

@@ -48,10 +48,10 @@ enum class DataType : std::uint8_t {
 }
 
 /// The range of a type.
-[[nodiscard]] constexpr std::uint32_t lowest(DataType type) {
+[[nodiscard]] constexpr std::uint32_t min_value(DataType type) {
   return is_signed(type) ? extend(type, 1U << (8U * size_of(type) - 1U)) : 0;
 }
-[[nodiscard]] constexpr std::uint32_t highest(DataType type) { return extend(type, ~lowest(type)); }
+[[nodiscard]] constexpr std::uint32_t max_value(DataType type) { return extend(type, ~min_value(type)); }
 
 /// What SDO may do. `by_pdo`: SDO reads, and only a receive PDO writes.
 enum class Access : std::uint8_t { read_only, read_write, constant, by_pdo };
@@ -84,24 +84,24 @@ struct Object {
 /// An entry that nobody changes.
 [[nodiscard]] constexpr Object constant(Address address, std::string_view name, DataType type, std::uint32_t value,
                                         std::string_view help = {}) {
-  return {address, name, type, Access::constant, value, lowest(type), highest(type), false, std::nullopt, help};
+  return {address, name, type, Access::constant, value, min_value(type), max_value(type), false, std::nullopt, help};
 }
 /// An entry that only the device changes; its default value says nothing.
 [[nodiscard]] constexpr Object read_only(Address address, std::string_view name, DataType type,
                                          std::string_view help = {}) {
-  return {address, name, type, Access::read_only, 0, lowest(type), highest(type), false, std::nullopt, help};
+  return {address, name, type, Access::read_only, 0, min_value(type), max_value(type), false, std::nullopt, help};
 }
 /// The identifier `base` + node id of a message of the predefined connection set.
 [[nodiscard]] constexpr Object node_identifier(Address address, std::string_view name, std::uint32_t base,
                                                std::string_view help = {}) {
   constexpr DataType type = DataType::unsigned32;
-  return {address, name, type, Access::read_only, base, lowest(type), highest(type), true, std::nullopt, help};
+  return {address, name, type, Access::read_only, base, min_value(type), max_value(type), true, std::nullopt, help};
 }
 struct Range {
   std::uint32_t minimum;
   std::uint32_t maximum;
 };
-[[nodiscard]] constexpr Range full_range(DataType type) { return {lowest(type), highest(type)}; }
+[[nodiscard]] constexpr Range full_range(DataType type) { return {min_value(type), max_value(type)}; }
 [[nodiscard]] constexpr Object read_write(Address address, std::string_view name, DataType type,
                                           std::uint32_t default_value, Range range, std::string_view help = {},
                                           std::optional<std::uint32_t> also_allowed = std::nullopt) {
@@ -161,7 +161,7 @@ struct JointObjects {
 enum class AbortCode : std::uint32_t {
   none = 0,
   toggle_bit = 0x05030000,
-  time_out = 0x05040000,
+  timeout = 0x05040000,
   unknown_command = 0x05040001,
   out_of_memory = 0x05040005,
   unsupported_access = 0x06010000,

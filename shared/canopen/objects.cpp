@@ -206,7 +206,7 @@ std::optional<Object> find_object(Address address) {
   }
   if (address.sub == 0) {
     if (const std::optional<IndexInfo> info = find_index(address.index)) {
-      return constant(address, "Highest sub-index supported", DataType::unsigned8, info->highest_sub);
+      return constant(address, "Highest sub-index supported", DataType::unsigned8, info->max_sub);
     }
   }
   return std::nullopt;
@@ -250,7 +250,7 @@ const ObjectGroup* find_group(std::uint16_t index) {
 }
 
 std::optional<Object> next_object(Address address) {
-  if (const std::optional<IndexInfo> info = find_index(address.index); info && address.sub < info->highest_sub) {
+  if (const std::optional<IndexInfo> info = find_index(address.index); info && address.sub < info->max_sub) {
     return find_object({address.index, static_cast<std::uint8_t>(address.sub + 1)});
   }
   for (unsigned index = address.index + 1U; index <= last_index; ++index) {

@@ -41,7 +41,7 @@ struct ValueAddress {
 /// What an index holds.
 struct IndexInfo {
   ObjectCode code;
-  std::uint8_t highest_sub;  ///< 0 for a variable; else all sub-indices up to it exist
+  std::uint8_t max_sub;  ///< 0 for a variable; else all sub-indices up to it exist
 };
 [[nodiscard]] std::optional<IndexInfo> find_index(std::uint16_t index);
 /// Whether any sub-index of the index exists.

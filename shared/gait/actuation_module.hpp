@@ -16,7 +16,7 @@
 namespace proleg {
 
 /// Which joint of which robot an algorithm works for.
-struct Place {
+struct JointContext {
   std::uint8_t joint;        ///< kernel order: 0 is at the head
   std::uint8_t joint_count;  ///< of the whole robot
   JointMask group;           ///< joints that the slot drives
@@ -51,7 +51,7 @@ class Neighbour {
 /// What a joint knows at SYNC k: everything in it has the age of tick k.
 struct Surroundings {
   std::uint32_t tick;  ///< k; the step leads to state k + 1
-  const Place& place;
+  const JointContext& context;
   const Neighbour& ahead;   ///< nearest joint of the group towards the head
   const Neighbour& behind;  ///< nearest joint of the group towards the tail
   const Contacts& contacts;
@@ -71,10 +71,10 @@ class ActuationModule {
   [[nodiscard]] virtual bool senses_contacts() const { return false; }
 
   /// Computes constants from the parameters. Called after each change of a parameter, never in a tick without one.
-  virtual void derive(const Place& place, const std::int32_t* parameters, std::int32_t* derived) const;
+  virtual void derive(const JointContext& context, const std::int32_t* parameters, std::int32_t* derived) const;
 
   /// Writes state 0. `noise` is seeded by the robot's seed and the joint. All values are 0 before.
-  virtual void reset(const Place& place, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const;
+  virtual void reset(const JointContext& context, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const;
 
   /// Makes the best of state k for a joint that takes its place in a robot that moves already: `surroundings` hold the
   /// neighbours' frames of tick k, `state` what reset() has written. The default leaves it at that.
@@ -95,9 +95,9 @@ class ActuationModule {
   ~ActuationModule() = default;  // algorithms are static objects, never deleted through the interface
 };
 
-inline void ActuationModule::derive(const Place& /*place*/, const std::int32_t* /*parameters*/,
+inline void ActuationModule::derive(const JointContext& /*context*/, const std::int32_t* /*parameters*/,
                                     std::int32_t* /*derived*/) const {}
-inline void ActuationModule::reset(const Place& /*place*/, const Tuning& /*tuning*/, Pcg32& /*noise*/,
+inline void ActuationModule::reset(const JointContext& /*context*/, const Tuning& /*tuning*/, Pcg32& /*noise*/,
                                    std::int32_t* /*state*/) const {}
 inline void ActuationModule::rejoin(const Surroundings& /*surroundings*/, const Tuning& /*tuning*/,
                                     std::int32_t* /*state*/) const {}

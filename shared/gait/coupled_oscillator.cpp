@@ -71,23 +71,24 @@ class CoupledOscillator final : public PatternGenerator {
     return values[Parameters::frequency];
   }
 
-  void derive_pattern(const Place& place, const std::int32_t* values, std::int32_t* derived) const override {
+  void derive_pattern(const JointContext& context, const std::int32_t* values, std::int32_t* derived) const override {
     // The step of phase for a sine of 1: w dt / (2 pi) turns.
     constexpr std::int64_t inverse_of_two_pi = 170891319;  // Q30
     const std::int64_t weight =
-        divide_nearest((std::int64_t{values[coupling]} * place.tick_period_us) << 6U, 1'000'000);
+        divide_nearest((std::int64_t{values[coupling]} * context.tick_period_us) << 6U, 1'000'000);
     const std::int64_t stable = weight > (1 << 29) ? 1 << 29 : weight;
     derived[gain] = static_cast<std::int32_t>(shift_right_rounding(stable * inverse_of_two_pi, 28));
-    make_critical_filter(values[rate], place.tick_period_us).store(derived + filter_constants);
+    make_critical_filter(values[rate], context.tick_period_us).store(derived + filter_constants);
   }
 
-  void reset_pattern(const Place& /*place*/, const Tuning& /*tuning*/, std::int32_t* /*state*/) const override {}
+  void reset_pattern(const JointContext& /*context*/, const Tuning& /*tuning*/,
+                     std::int32_t* /*state*/) const override {}
 
   void advance_pattern(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
                        std::int32_t* next) const override {
     std::int32_t step = tuning.derived[phase_increment];
-    step = add_wrapping(step, pull(surroundings.ahead, surroundings.place, tuning, state));
-    step = add_wrapping(step, pull(surroundings.behind, surroundings.place, tuning, state));
+    step = add_wrapping(step, pull(surroundings.ahead, surroundings.context, tuning, state));
+    step = add_wrapping(step, pull(surroundings.behind, surroundings.context, tuning, state));
     next[current_phase] = add_wrapping(state[current_phase], step);
 
     const CriticalFilter filter = CriticalFilter::load(tuning.derived + filter_constants);
@@ -99,12 +100,12 @@ class CoupledOscillator final : public PatternGenerator {
   }
 
   /// What a neighbour adds to the phase in a tick.
-  static std::int32_t pull(const Neighbour& neighbour, const Place& place, const Tuning& tuning,
+  static std::int32_t pull(const Neighbour& neighbour, const JointContext& context, const Tuning& tuning,
                            const std::int32_t* state) {
     if (!neighbour.present()) {
       return 0;
     }
-    const std::uint32_t distance = neighbour.joint() - place.joint;
+    const std::uint32_t distance = neighbour.joint() - context.joint;
     const std::uint32_t wanted = distance * static_cast<std::uint32_t>(tuning.parameters[phase_step]);
     const std::uint32_t lead = static_cast<std::uint32_t>(neighbour.value(phase_field)) -
                                static_cast<std::uint32_t>(state[current_phase]) - wanted;

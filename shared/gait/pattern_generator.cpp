@@ -10,15 +10,17 @@ std::int32_t phase_increment_of(std::int32_t frequency, std::uint32_t tick_perio
       static_cast<std::uint32_t>(divide_nearest(std::int64_t{frequency} * tick_period_us * 256, 1'000'000)));
 }
 
-void PatternGenerator::derive(const Place& place, const std::int32_t* parameters, std::int32_t* derived) const {
-  derived[phase_increment] = phase_increment_of(nominal_frequency(parameters), place.tick_period_us);
+void PatternGenerator::derive(const JointContext& context, const std::int32_t* parameters,
+                              std::int32_t* derived) const {
+  derived[phase_increment] = phase_increment_of(nominal_frequency(parameters), context.tick_period_us);
   derived[ticks_per_second] =
-      saturate(divide_nearest(std::int64_t{1'000'000} << 16U, std::int64_t{place.tick_period_us}));
-  derive_pattern(place, parameters, derived);
+      saturate(divide_nearest(std::int64_t{1'000'000} << 16U, std::int64_t{context.tick_period_us}));
+  derive_pattern(context, parameters, derived);
 }
 
-void PatternGenerator::reset(const Place& place, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const {
-  reset_pattern(place, tuning, state);
+void PatternGenerator::reset(const JointContext& context, const Tuning& tuning, Pcg32& noise,
+                             std::int32_t* state) const {
+  reset_pattern(context, tuning, state);
   const Declaration& about = declaration();
   const int noise_parameter = find_parameter(about, "noise");
   if (noise_parameter < 0) {
@@ -54,7 +56,7 @@ std::optional<std::int32_t> PatternGenerator::phase_beside_neighbour(const Surro
   if (!neighbour.present()) {
     return std::nullopt;
   }
-  const std::uint32_t distance = surroundings.place.joint - neighbour.joint();
+  const std::uint32_t distance = surroundings.context.joint - neighbour.joint();
   const std::uint32_t step = distance * static_cast<std::uint32_t>(phase_difference);
   return add_wrapping(neighbour.value(phase_field), static_cast<std::int32_t>(step));
 }

@@ -34,8 +34,8 @@ class PatternGenerator : public ActuationModule {
     first_own_derived
   };
 
-  void derive(const Place& place, const std::int32_t* parameters, std::int32_t* derived) const final;
-  void reset(const Place& place, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const final;
+  void derive(const JointContext& context, const std::int32_t* parameters, std::int32_t* derived) const final;
+  void reset(const JointContext& context, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const final;
   void advance(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
                std::int32_t* next) const final;
   void extrapolate(const Tuning& tuning, const std::int32_t* state, StateFrame& frame) const final;
@@ -53,9 +53,10 @@ class PatternGenerator : public ActuationModule {
   [[nodiscard]] virtual std::int32_t nominal_frequency(const std::int32_t* parameters) const = 0;
   /// Writes the derived constants from `first_own_derived` on. The phase increment is that of the nominal frequency;
   /// a generator whose phase runs at a multiple of it corrects it here.
-  virtual void derive_pattern(const Place& place, const std::int32_t* parameters, std::int32_t* derived) const = 0;
+  virtual void derive_pattern(const JointContext& context, const std::int32_t* parameters,
+                              std::int32_t* derived) const = 0;
   /// As ActuationModule::reset, without the noise.
-  virtual void reset_pattern(const Place& place, const Tuning& tuning, std::int32_t* state) const = 0;
+  virtual void reset_pattern(const JointContext& context, const Tuning& tuning, std::int32_t* state) const = 0;
   /// As ActuationModule::advance, for all values but the two measured ones.
   virtual void advance_pattern(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
                                std::int32_t* next) const = 0;

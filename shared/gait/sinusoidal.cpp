@@ -44,12 +44,12 @@ class Sinusoidal final : public PatternGenerator {
     return values[Parameters::frequency];
   }
 
-  void derive_pattern(const Place& place, const std::int32_t* values, std::int32_t* derived) const override {
-    const std::uint32_t travelled = std::uint32_t{place.joint} * static_cast<std::uint32_t>(values[phase_step]);
+  void derive_pattern(const JointContext& context, const std::int32_t* values, std::int32_t* derived) const override {
+    const std::uint32_t travelled = std::uint32_t{context.joint} * static_cast<std::uint32_t>(values[phase_step]);
     derived[joint_phase] = add_wrapping(static_cast<std::int32_t>(travelled), values[phase_shift]);
   }
 
-  void reset_pattern(const Place& /*place*/, const Tuning& tuning, std::int32_t* state) const override {
+  void reset_pattern(const JointContext& /*context*/, const Tuning& tuning, std::int32_t* state) const override {
     state[current_phase] = tuning.derived[joint_phase];
   }
 

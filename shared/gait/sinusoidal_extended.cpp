@@ -78,16 +78,16 @@ class SinusoidalExtended final : public PatternGenerator {
     return values[Parameters::frequency];
   }
 
-  void derive_pattern(const Place& place, const std::int32_t* values, std::int32_t* derived) const override {
+  void derive_pattern(const JointContext& context, const std::int32_t* values, std::int32_t* derived) const override {
     derived[clock_increment] = derived[phase_increment];
     derived[phase_increment] = static_cast<std::int32_t>(static_cast<std::uint32_t>(derived[clock_increment]) *
                                                          static_cast<std::uint32_t>(values[harmonic]));
-    const std::uint32_t travelled = std::uint32_t{place.joint} * static_cast<std::uint32_t>(values[phase_step]);
+    const std::uint32_t travelled = std::uint32_t{context.joint} * static_cast<std::uint32_t>(values[phase_step]);
     derived[joint_phase] = add_wrapping(static_cast<std::int32_t>(travelled), values[phase_shift]);
-    make_critical_filter(values[rate], place.tick_period_us).store(derived + filter_constants);
+    make_critical_filter(values[rate], context.tick_period_us).store(derived + filter_constants);
   }
 
-  void reset_pattern(const Place& /*place*/, const Tuning& tuning, std::int32_t* state) const override {
+  void reset_pattern(const JointContext& /*context*/, const Tuning& tuning, std::int32_t* state) const override {
     state[current_shift] = tuning.derived[joint_phase];
     state[current_phase] = state[current_shift];
   }

@@ -70,9 +70,9 @@ class UnevenGroundReflex final : public SensingModule {
  public:
   [[nodiscard]] const Declaration& declaration() const override { return about; }
 
-  void derive(const Place& place, const std::int32_t* values, std::int32_t* derived) const override {
-    derived[rise_step] = step_of(values[rise_rate], place);
-    derived[fall_step] = step_of(values[fall_rate], place);
+  void derive(const JointContext& context, const std::int32_t* values, std::int32_t* derived) const override {
+    derived[rise_step] = step_of(values[rise_rate], context);
+    derived[fall_step] = step_of(values[fall_rate], context);
   }
 
   [[nodiscard]] std::int32_t output(const Tuning& /*tuning*/, const std::int32_t* state) const override {
@@ -83,8 +83,8 @@ class UnevenGroundReflex final : public SensingModule {
   enum Derived : std::uint8_t { rise_step, fall_step };  // in a tick
 
   /// At least 11 steps of the angle, at 1 degree in a second and ticks of 1 ms.
-  static std::int32_t step_of(std::int32_t rate, const Place& place) {
-    return static_cast<std::int32_t>(divide_nearest(std::int64_t{rate} * place.tick_period_us, 1'000'000));
+  static std::int32_t step_of(std::int32_t rate, const JointContext& context) {
+    return static_cast<std::int32_t>(divide_nearest(std::int64_t{rate} * context.tick_period_us, 1'000'000));
   }
 
   void advance_sensing(const Contacts& contacts, const Surroundings& /*surroundings*/, const Tuning& tuning,

@@ -1,7 +1,7 @@
 #include "shared/gait/declaration.hpp"
 #include "shared/kernel/kernel.hpp"
 
-// What is settled before the first tick.
+// What the kernel computes before the first tick.
 
 namespace proleg {
 
@@ -58,7 +58,7 @@ Status Kernel::configure(const KernelConfiguration& configuration, unsigned firs
   second_channel_ = second_channel;
   slots_in_use_ = slots_in_use;
   senders_ = {JointMask(all_joints), JointMask(two_broadcasts)};
-  listened_ = {};
+  needed_ = {};
   beside_ = {};
   for (unsigned i = 0; i < memory_.size(); ++i) {
     set_up(first_joint + i);
@@ -86,11 +86,11 @@ void Kernel::set_up(unsigned joint) {
     if (!slot_memory.active) {
       continue;
     }
-    slot_memory.place = {static_cast<std::uint8_t>(joint), configuration_.joint_count, slot.group,
-                         configuration_.tick_period_us};
+    slot_memory.context = {static_cast<std::uint8_t>(joint), configuration_.joint_count, slot.group,
+                           configuration_.tick_period_us};
     slot_memory.channel = second_channel_[i].contains(joint) ? 1 : 0;
     slot_memory.sensed_joints = slot.algorithm->senses_contacts() ? configuration_.joint_count : std::uint8_t{0};
-    listen_for(i, joint);
+    note_needed_frames(i, joint);
     if (slot.broadcasts()) {
       slot_memory.broadcast = &slot.algorithm->declaration();
       slot_memory.ahead = neighbour(i, slot.group.before(joint));
@@ -104,20 +104,20 @@ void Kernel::set_up(unsigned joint) {
   }
 }
 
-/// What the slot on a local joint depends on.
-void Kernel::listen_for(unsigned slot, unsigned joint) {
-  const Slot& place = configuration_.slots[slot];
-  if (place.algorithm->senses_contacts()) {
-    listened_[0] = JointMask::first(configuration_.joint_count);
+/// Notes the frames of other joints that a slot on a local joint needs.
+void Kernel::note_needed_frames(unsigned slot, unsigned joint) {
+  const Slot& driving = configuration_.slots[slot];
+  if (driving.algorithm->senses_contacts()) {
+    needed_[0] = JointMask::first(configuration_.joint_count);
   }
-  if (!place.broadcasts()) {
+  if (!driving.broadcasts()) {
     return;
   }
-  for (const int other : {place.group.before(joint), place.group.after(joint)}) {
+  for (const int other : {driving.group.before(joint), driving.group.after(joint)}) {
     if (other >= 0 && !is_local(static_cast<unsigned>(other))) {
       const auto index = static_cast<unsigned>(other);
       beside_[slot].insert(index);
-      listened_[second_channel_[slot].contains(index) ? 1 : 0].insert(index);
+      needed_[second_channel_[slot].contains(index) ? 1 : 0].insert(index);
     }
   }
 }
@@ -128,11 +128,11 @@ Neighbour Kernel::neighbour(unsigned slot, int joint) const {
   }
   const auto index = static_cast<unsigned>(joint);
   const unsigned channel = second_channel_[slot].contains(index) ? 1 : 0;
-  return {configuration_.slots[slot].algorithm->declaration(), index, heard_[channel][index]};
+  return {configuration_.slots[slot].algorithm->declaration(), index, frames_[channel][index]};
 }
 
 void Kernel::derive(unsigned slot, SlotMemory& memory) {
-  configuration_.slots[slot].algorithm->derive(memory.place, memory.parameters.data(), memory.derived.data());
+  configuration_.slots[slot].algorithm->derive(memory.context, memory.parameters.data(), memory.derived.data());
 }
 
 Status Kernel::set_limits(unsigned joint, std::int32_t lower, std::int32_t upper) {

@@ -21,7 +21,7 @@ void Kernel::reset() {
   missed_frames_ = 0;
   joining_ = false;
   arrived_ = {};
-  heard_ = {};
+  frames_ = {};
   for (unsigned i = 0; i < memory_.size(); ++i) {
     const unsigned joint = first_joint_ + i;
     JointMemory& memory = memory_[i];
@@ -32,7 +32,7 @@ void Kernel::reset() {
       if (slot.active) {
         // Slots of one joint draw from different streams, too.
         Pcg32 noise(configuration_.seed, joint * max_slots + s);
-        configuration_.slots[s].algorithm->reset(slot.place, tuning(slot), noise, current(slot).data());
+        configuration_.slots[s].algorithm->reset(slot.context, tuning(slot), noise, current(slot).data());
       }
     }
     update_setpoint(memory);
@@ -49,10 +49,10 @@ void Kernel::advance() {
   if (joining) {
     rejoin();
   }
-  const std::uint64_t unheard_first = listened_[0].bits() & ~arrived_[0].bits();
-  const std::uint64_t unheard_second = listened_[1].bits() & ~arrived_[1].bits();
-  if ((unheard_first | unheard_second) != 0) {
-    missed_frames_ += static_cast<std::uint32_t>(std::popcount(unheard_first) + std::popcount(unheard_second));
+  const std::uint64_t unframes_first = needed_[0].bits() & ~arrived_[0].bits();
+  const std::uint64_t unframes_second = needed_[1].bits() & ~arrived_[1].bits();
+  if ((unframes_first | unframes_second) != 0) {
+    missed_frames_ += static_cast<std::uint32_t>(std::popcount(unframes_first) + std::popcount(unframes_second));
     fill_missed_frames();
   }
   for (JointMemory& joint : memory_) {
@@ -73,7 +73,7 @@ void Kernel::advance() {
 void Kernel::join(std::uint32_t tick) {
   tick_ = tick;
   arrived_ = {};
-  heard_ = {};
+  frames_ = {};
   joining_ = true;
   for (unsigned i = 0; i < memory_.size(); ++i) {
     JointMemory& joint = memory_[i];
@@ -84,7 +84,7 @@ void Kernel::join(std::uint32_t tick) {
       slot.values = {};
       if (slot.active) {
         Pcg32 noise(configuration_.seed, (first_joint_ + i) * max_slots + s);
-        configuration_.slots[s].algorithm->reset(slot.place, tuning(slot), noise, current(slot).data());
+        configuration_.slots[s].algorithm->reset(slot.context, tuning(slot), noise, current(slot).data());
       }
     }
   }
@@ -98,8 +98,8 @@ void Kernel::rejoin() {
     for (unsigned s = 0; s < slots_in_use_; ++s) {
       SlotMemory& slot = joint.slots[s];
       if (slot.active) {
-        const Contacts contacts({heard_[0].data(), slot.sensed_joints});
-        const Surroundings surroundings{tick_, slot.place, slot.ahead, slot.behind, contacts};
+        const Contacts contacts({frames_[0].data(), slot.sensed_joints});
+        const Surroundings surroundings{tick_, slot.context, slot.ahead, slot.behind, contacts};
         configuration_.slots[s].algorithm->rejoin(surroundings, tuning(slot), current(slot).data());
       }
     }
@@ -115,8 +115,8 @@ void Kernel::compute_next_state(JointMemory& joint) {
   for (unsigned s = 0; s < slots_in_use_; ++s) {
     SlotMemory& slot = joint.slots[s];
     if (slot.active) {
-      const Contacts contacts({heard_[0].data(), slot.sensed_joints});
-      const Surroundings surroundings{tick_, slot.place, slot.ahead, slot.behind, contacts};
+      const Contacts contacts({frames_[0].data(), slot.sensed_joints});
+      const Surroundings surroundings{tick_, slot.context, slot.ahead, slot.behind, contacts};
       configuration_.slots[s].algorithm->advance(surroundings, tuning(slot), slot.values[tick_ & 1U].data(),
                                                  slot.values[(tick_ + 1) & 1U].data());
     }
@@ -149,7 +149,7 @@ void Kernel::pack_frames(unsigned joint) {
   }
   const unsigned channels = channel_count(joint);
   for (unsigned channel = 0; channel < channels; ++channel) {
-    StateFrame& frame = heard_[channel][joint];
+    StateFrame& frame = frames_[channel][joint];
     frame.bytes[6] = flags;
     frame.bytes[7] = static_cast<std::uint8_t>(tick_);
     arrived_[channel].insert(joint);
@@ -157,7 +157,7 @@ void Kernel::pack_frames(unsigned joint) {
   for (unsigned s = 0; s < slots_in_use_; ++s) {
     const SlotMemory& slot = memory.slots[s];
     if (slot.broadcast != nullptr) {
-      pack(*slot.broadcast, current(slot).data(), heard_[slot.channel][joint]);
+      pack(*slot.broadcast, current(slot).data(), frames_[slot.channel][joint]);
     }
   }
 }
@@ -167,7 +167,7 @@ bool Kernel::receive(unsigned joint, unsigned channel, const StateFrame& frame) 
       frame.label() != static_cast<std::uint8_t>(tick_) || (frame.flags() & StateFrame::valid) == 0) {
     return false;
   }
-  heard_[channel][joint] = frame;
+  frames_[channel][joint] = frame;
   arrived_[channel].insert(joint);
   return true;
 }
@@ -190,7 +190,7 @@ void Kernel::fill_missed_frames() {
     for (int joint = JointMask(missing).from(0); joint >= 0;
          joint = JointMask(missing).after(static_cast<unsigned>(joint))) {
       const auto index = static_cast<unsigned>(joint);
-      StateFrame& frame = heard_[second_channel_[s].contains(index) ? 1 : 0][index];
+      StateFrame& frame = frames_[second_channel_[s].contains(index) ? 1 : 0][index];
       if ((frame.flags() & StateFrame::valid) != 0) {
         slot.algorithm->extrapolate(tuning(memory), current(memory).data(), frame);
       }

@@ -32,6 +32,12 @@ struct Slot {
 
   /// Whether neighbours learn of the algorithm's state.
   [[nodiscard]] bool broadcasts() const { return algorithm != nullptr && !algorithm->declaration().frame.empty(); }
+  /// 0 if the slot is empty.
+  [[nodiscard]] std::uint8_t algorithm_id() const {
+    return algorithm == nullptr ? std::uint8_t{0} : algorithm->declaration().id;
+  }
+  /// None if the slot is empty, whatever the group is.
+  [[nodiscard]] JointMask driven_joints() const { return algorithm == nullptr ? JointMask() : group; }
 };
 
 /// What all modules of a robot agree on.
@@ -64,7 +70,7 @@ struct StagedValue {
 
 /// What the kernel keeps for a slot on a joint.
 struct SlotMemory {
-  Place place;
+  JointContext context;
   Neighbour ahead;
   Neighbour behind;
   std::array<std::int32_t, max_parameters> parameters;
@@ -169,13 +175,13 @@ class Kernel {
   [[nodiscard]] std::int32_t internal_value(unsigned slot, unsigned joint, unsigned internal_value) const;
   /// Whether what a local joint does depends on this state frame of another one: that of the next joint in a slot, or
   /// of any joint if a slot senses contacts. Others need not be received.
-  [[nodiscard]] bool listens_to(unsigned joint, unsigned channel) const {
-    return listened_[channel].contains(joint) && !is_local(joint);
+  [[nodiscard]] bool needs_frame(unsigned joint, unsigned channel) const {
+    return needed_[channel].contains(joint) && !is_local(joint);
   }
   /// Number of state frames that a joint sends in a tick: 1 or 2.
   [[nodiscard]] unsigned channel_count(unsigned joint) const { return senders_[1].contains(joint) ? 2 : 1; }
   /// The frame of a local joint labelled tick(), or the latest known of another joint.
-  [[nodiscard]] const StateFrame& frame(unsigned joint, unsigned channel) const { return heard_[channel][joint]; }
+  [[nodiscard]] const StateFrame& frame(unsigned joint, unsigned channel) const { return frames_[channel][joint]; }
 
   /// State frames of other joints that had not come when their tick was computed, since the reset.
   [[nodiscard]] std::uint32_t missed_frames() const { return missed_frames_; }
@@ -209,7 +215,7 @@ class Kernel {
   }
 
   void set_up(unsigned joint);
-  void listen_for(unsigned slot, unsigned joint);
+  void note_needed_frames(unsigned slot, unsigned joint);
   [[nodiscard]] Neighbour neighbour(unsigned slot, int joint) const;
   void derive(unsigned slot, SlotMemory& memory);
   Status check_slot(unsigned slot, unsigned joint) const;
@@ -243,9 +249,9 @@ class Kernel {
   std::array<JointMask, max_channels> senders_;  ///< all joints on the first channel, some on the second
   /// For each slot the joints of which it uses the second channel.
   std::array<JointMask, max_slots> second_channel_;
-  std::array<JointMask, max_channels> listened_;  ///< joints on whose frames a local joint depends
-  std::array<JointMask, max_channels> arrived_;   ///< whose frames with the label tick_ are in heard_
-  std::array<std::array<StateFrame, max_joints>, max_channels> heard_;
+  std::array<JointMask, max_channels> needed_;   ///< joints on whose frames a local joint depends
+  std::array<JointMask, max_channels> arrived_;  ///< whose frames with the label tick_ are in frames_
+  std::array<std::array<StateFrame, max_joints>, max_channels> frames_;
   /// For each slot the joints of other modules that are next to a local one.
   std::array<JointMask, max_slots> beside_;
 };

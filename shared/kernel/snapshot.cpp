@@ -218,7 +218,7 @@ void Kernel::visit_state(Self& self, Archive& archive) {
       self.arrived_[channel] = JointMask(arrived);
     }
     for (unsigned joint = 0; joint < self.configuration_.joint_count; ++joint) {
-      for (auto& byte : self.heard_[channel][joint].bytes) {
+      for (auto& byte : self.frames_[channel][joint].bytes) {
         archive.value(byte);
       }
     }

@@ -70,7 +70,7 @@ bool ChangePlan::can_stage() const {
       static_cast<void>(add(changes_[i]));
     }
   }
-  return pending < most_pending && add(changes_[next_]);
+  return pending < max_pending && add(changes_[next_]);
 }
 
 void ChangePlan::commit_next() { ++next_; }
@@ -93,8 +93,8 @@ std::optional<SdoWrite> ChangePlan::staging(std::size_t change, unsigned joint, 
   for (const ChangedValue& value : changes_[change].values) {
     if (value.joint == joint && --n == 0) {
       const ValueKind kind = value.internal ? ValueKind::internal_value : ValueKind::staged_parameter;
-      return SdoWrite{address_of({kind, algorithm_id(value.slot), value.number, value.slot}), value_size,
-                      static_cast<std::uint32_t>(value.value)};
+      return SdoWrite{address_of({kind, kernel_.slots[value.slot].algorithm_id(), value.number, value.slot}),
+                      value_size, static_cast<std::uint32_t>(value.value)};
     }
   }
   return std::nullopt;
@@ -128,8 +128,8 @@ std::optional<SdoWrite> ChangePlan::made_before(std::size_t end, unsigned joint,
     for (std::uint8_t parameter = 0; parameter < parameters; ++parameter) {
       const std::optional<std::int32_t> value = parameter_before(end, joint, slot, parameter);
       if (value && n-- == 0) {
-        return SdoWrite{address_of({ValueKind::parameter, algorithm_id(slot), parameter, slot}), value_size,
-                        static_cast<std::uint32_t>(*value)};
+        return SdoWrite{address_of({ValueKind::parameter, kernel_.slots[slot].algorithm_id(), parameter, slot}),
+                        value_size, static_cast<std::uint32_t>(*value)};
       }
     }
   }

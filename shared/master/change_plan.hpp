@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "shared/canopen/robot_setup.hpp"
+#include "shared/master/setup_list.hpp"
 
 namespace proleg::canopen {
 
@@ -31,7 +31,7 @@ struct Change {
 class ChangePlan {
  public:
   /// As many transactions wait in a module, one is open.
-  static constexpr std::size_t most_pending = max_transactions - 1;
+  static constexpr std::size_t max_pending = max_transactions - 1;
 
   /// kernel and changes must outlive the plan. Forgets what was dropped.
   ChangePlan(const KernelConfiguration& kernel, std::span<Change> changes);
@@ -66,9 +66,6 @@ class ChangePlan {
   [[nodiscard]] bool fits(const Change& change) const;
   [[nodiscard]] std::optional<std::int32_t> parameter_before(std::size_t end, unsigned joint, unsigned slot,
                                                              unsigned parameter) const;
-  [[nodiscard]] std::uint8_t algorithm_id(unsigned slot) const {
-    return kernel_.slots[slot].algorithm->declaration().id;
-  }
 
   const KernelConfiguration& kernel_;
   std::span<Change> changes_;

@@ -11,7 +11,7 @@ constexpr unsigned node_bits = 0x7F;
 
 Master::Master(CanPort& port, const RobotSetup& setup, const MasterOptions& options, std::span<Change> changes)
     : setup_(setup), options_(options), plan_(setup.kernel, changes), queue_(port) {
-  joint_of_.fill(nobody);
+  joint_of_.fill(no_joint);
 }
 
 void Master::start(Microseconds now) {
@@ -46,9 +46,9 @@ void Master::stop(Microseconds now) {
   mission_ = Mission::stop;
   silence_at_ = never;
   sync_lost_at_ = never;
-  start_joints_ = 0;
-  reset_joints_ = 0;
-  start_all_ = false;
+  start_joints_ = {};
+  reset_joints_ = {};
+  start_all_pending_ = false;
   joints_ = booted_;
   enter(Phase::disable);
   advance(now);
@@ -71,7 +71,7 @@ void Master::receive(Microseconds now, const CanFrame& frame) {
   } else {
     switch (frame.identifier & ~node_bits) {
       case identifier::sdo_answer:
-        crew_.receive(now, frame, *this);
+        sdo_clients_.receive(now, frame, *this);
         break;
       case identifier::heartbeat:
         on_heartbeat(frame);
@@ -105,7 +105,7 @@ void Master::poll(Microseconds now) {
       heartbeat_at_ = now + (sent ? heartbeat_period_us : until_next_try_us);
     }
   }
-  crew_.poll(now, *this);
+  sdo_clients_.poll(now, *this);
   watch_heartbeats();
   if (now >= sync_lost_at_) {
     fail({ProblemCode::sync_lost});
@@ -118,7 +118,7 @@ void Master::poll(Microseconds now) {
 }
 
 Microseconds Master::next_deadline() const {
-  Microseconds next = crew_.next_deadline();
+  Microseconds next = sdo_clients_.next_deadline();
   for (const Microseconds deadline : {heartbeat_at_, deadline_, silence_at_, sync_lost_at_}) {
     next = deadline < next ? deadline : next;
   }
@@ -131,55 +131,55 @@ void Master::on_heartbeat(const CanFrame& frame) {
     return;
   }
   const std::uint8_t joint = joint_of_[heartbeat->node];
-  if (joint == nobody) {
-    on_stranger(heartbeat->node, heartbeat->state == NmtState::boot_up);
+  if (joint == no_joint) {
+    on_unknown_node(heartbeat->node, heartbeat->state == NmtState::boot_up);
     return;
   }
-  heard_at_[joint] = now_;
+  heartbeat_received_at_[joint] = now_;
   if (heartbeat->state == NmtState::boot_up) {
     on_boot_up(joint);
     return;
   }
-  const JointSet self = set_of(joint);
+  const JointMask self = JointMask::of(joint);
   if (heartbeat->state == NmtState::operational) {
     operational_ |= self;
-  } else if (contains(operational_, joint)) {
-    operational_ &= ~self;
-    if (running()) {
+  } else if (operational_.contains(joint)) {
+    operational_ -= self;
+    if (is_running()) {
       add_event(EventKind::left_operational, heartbeat->node, static_cast<std::uint32_t>(heartbeat->state));
     }
   }
-  if (running() && contains(lost_ & ~given_up_ & ~restarted_, joint)) {
-    lost_ &= ~self;
-    add_event(EventKind::heard_again, heartbeat->node);
-    if (contains(outdated_, joint)) {
+  if (is_running() && (lost_ - given_up_ - restarted_).contains(joint)) {
+    lost_ -= self;
+    add_event(EventKind::heartbeat_returned, heartbeat->node);
+    if (outdated_.contains(joint)) {
       reset_joints_ |= self;  // it would go on with old values; after the reset it is set up again
     }
   }
 }
 
 void Master::on_boot_up(unsigned joint) {
-  const JointSet self = set_of(joint);
+  const JointMask self = JointMask::of(joint);
   const std::uint8_t node = setup_.nodes[joint];
   if (mission_ == Mission::bring_up) {
-    if (contains(booted_, joint)) {
+    if (booted_.contains(joint)) {
       fail(problem_of(ProblemCode::duplicate_node, joint));
     }
     booted_ |= self;
     return;
   }
-  operational_ &= ~self;
-  crew_.cancel(joint);
-  joints_ &= ~self;
-  start_joints_ &= ~self;
-  reset_joints_ &= ~self;
-  if (!running()) {
+  operational_ -= self;
+  sdo_clients_.cancel(joint);
+  joints_ -= self;
+  start_joints_ -= self;
+  reset_joints_ -= self;
+  if (!is_running()) {
     return;
   }
   ++restarts_;
   add_event(EventKind::restarted, node, restarts_);
-  lost_ &= ~self;
-  given_up_ &= ~self;
+  lost_ -= self;
+  given_up_ -= self;
   restarted_ |= self;
   if (joint == options_.sync_producer) {
     fail(problem_of(ProblemCode::sync_lost, joint));  // the ticks of the others cannot go on
@@ -194,25 +194,25 @@ void Master::on_emergency(const CanFrame& frame) {
   events_.add(
       {now_, EventKind::emergency, emergency->node, emergency->error_register, emergency->code, emergency->detail});
   const std::uint8_t joint = joint_of_[emergency->node];
-  if (joint == nobody) {
-    on_stranger(emergency->node, false);
+  if (joint == no_joint) {
+    on_unknown_node(emergency->node, false);
   } else if (mission_ == Mission::bring_up && emergency->code == EmergencyCode::identifier_collision) {
     fail(problem_of(ProblemCode::duplicate_node, joint));
   }
 }
 
-void Master::on_stranger(std::uint8_t node, bool boots) {
+void Master::on_unknown_node(std::uint8_t node, bool boots) {
   if (mission_ == Mission::bring_up) {
     Problem problem{ProblemCode::unexpected_node};
     problem.node = node;
     fail(problem);
-  } else if (running() && boots) {
+  } else if (is_running() && boots) {
     add_event(EventKind::unexpected_node, node);
   }
 }
 
 void Master::on_tick_passed() {
-  if (!running()) {
+  if (!is_running()) {
     return;
   }
   sync_lost_at_ = now_ + silence_us;
@@ -226,13 +226,14 @@ void Master::watch_heartbeats() {
     return;
   }
   silence_at_ = never;
+  const JointMask not_expected = lost_ | restarted_ | (mission_ == Mission::rejoin ? joints_ : JointMask());
   for (unsigned joint = 0; joint < setup_.kernel.joint_count; ++joint) {
-    if (contains(lost_ | restarted_ | (mission_ == Mission::rejoin ? joints_ : 0), joint)) {
-      continue;  // known, or not expected to send
+    if (not_expected.contains(joint)) {
+      continue;
     }
-    const Microseconds silent_at = heard_at_[joint] + silence_us;
+    const Microseconds silent_at = heartbeat_received_at_[joint] + silence_us;
     if (silent_at <= now_) {
-      lost_ |= set_of(joint);
+      lost_ |= JointMask::of(joint);
       add_event(EventKind::silent, setup_.nodes[joint]);
     } else {
       silence_at_ = silent_at < silence_at_ ? silent_at : silence_at_;
@@ -260,15 +261,15 @@ std::optional<Problem> Master::check_setup() const {
   std::array<bool, 128> taken{};
   for (unsigned joint = 0; joint < joints; ++joint) {
     const std::uint8_t node = setup_.nodes[joint];
-    if (node < lowest_node || node > highest_node || taken[node]) {
+    if (node < min_node_id || node > max_node_id || taken[node]) {
       return problem_of(ProblemCode::bad_setup, joint);
     }
     taken[node] = true;
   }
-  if (const std::uint32_t load = worst_bus_load_permille(setup_.kernel); load > highest_bus_load_permille) {
+  if (const std::uint32_t load = worst_bus_load_permille(setup_.kernel); load > max_bus_load_permille) {
     Problem problem{ProblemCode::bus_too_small};
     problem.found = load;
-    problem.expected = highest_bus_load_permille;
+    problem.expected = max_bus_load_permille;
     return problem;
   }
   return std::nullopt;
@@ -293,9 +294,9 @@ void Master::fail(const Problem& problem) {
   mission_ = Mission::none;
   silence_at_ = never;
   sync_lost_at_ = never;
-  start_joints_ = 0;
-  reset_joints_ = 0;
-  start_all_ = false;
+  start_joints_ = {};
+  reset_joints_ = {};
+  start_all_pending_ = false;
   enter(Phase::none);
 }
 

@@ -13,10 +13,9 @@
 #include <span>
 
 #include "shared/can/transmit_queue.hpp"
-#include "shared/canopen/robot_setup.hpp"
 #include "shared/master/change_plan.hpp"
 #include "shared/master/master_report.hpp"
-#include "shared/master/sdo_crew.hpp"
+#include "shared/master/sdo_client_pool.hpp"
 #include "shared/master/tick_follower.hpp"
 
 namespace proleg::canopen {
@@ -43,17 +42,17 @@ enum class MasterState : std::uint8_t {
 class Master final : private SdoWork {
  public:
   static constexpr Microseconds heartbeat_period_us = 100'000;
-  static constexpr Microseconds boot_time_out_us = 1'000'000;
+  static constexpr Microseconds boot_timeout_us = 1'000'000;
   /// So long after the last expected boot-up others may show up.
   static constexpr Microseconds quiet_time_us = 50'000;
-  static constexpr Microseconds start_time_out_us = 1'000'000;
-  static constexpr Microseconds send_time_out_us = 1'000'000;
+  static constexpr Microseconds start_timeout_us = 1'000'000;
+  static constexpr Microseconds send_timeout_us = 1'000'000;
   static constexpr Microseconds silence_us = 500'000;
   /// Between SDO transfers while the robot moves. Their identifiers are lower than that of TICK, which would not get
   /// onto the bus beside transfers without a gap.
   static constexpr Microseconds pause_us = 300;
   /// For each answer while the robot is stopped.
-  static constexpr Microseconds stop_time_out_us = 100'000;
+  static constexpr Microseconds stop_timeout_us = 100'000;
   /// A COMMIT goes out at least so many ticks before its tick.
   static constexpr std::uint32_t commit_lead = 20;
   static constexpr unsigned commit_repeats = 3;
@@ -87,7 +86,7 @@ class Master final : private SdoWork {
   /// What ended the start or the run, or the first thing that went wrong in flight; code `none` if nothing did.
   [[nodiscard]] const Problem& problem() const { return problem_; }
   [[nodiscard]] std::optional<Event> take_event() { return events_.take(); }
-  /// Events that were not kept because nobody took those before.
+  /// Events that were not kept because no_joint took those before.
   [[nodiscard]] std::uint32_t lost_events() const { return events_.overflow(); }
 
   /// Tick of the last SYNC; nothing before SYNC 0.
@@ -98,7 +97,7 @@ class Master final : private SdoWork {
   /// As read during set-up. joint: below the joint count.
   [[nodiscard]] const Identity& identity(unsigned joint) const { return identities_[joint]; }
   /// Joints whose modules have booted.
-  [[nodiscard]] JointSet booted() const { return booted_; }
+  [[nodiscard]] JointMask booted() const { return booted_; }
 
  private:
   /// What is waited for.
@@ -118,14 +117,14 @@ class Master final : private SdoWork {
   /// What for.
   enum class Mission : std::uint8_t { none, bring_up, change, rejoin, stop };
 
-  static constexpr std::uint8_t nobody = 0xFF;
+  static constexpr std::uint8_t no_joint = 0xFF;
   /// A change this close to its tick is taken as passed: what is sent to one module now may be heard after it.
   static constexpr std::uint32_t ticks_on_the_way = 2;
 
   // SdoWork: what is written to each module in the present phase.
   [[nodiscard]] std::optional<SdoStep> step(unsigned joint, std::size_t position) override;
-  [[nodiscard]] bool take(unsigned joint, std::size_t position, std::uint32_t value) override;
-  void aborted(unsigned joint, Address address, AbortCode code) override;
+  [[nodiscard]] bool on_value(unsigned joint, std::size_t position, std::uint32_t value) override;
+  void on_abort(unsigned joint, Address address, AbortCode code) override;
   [[nodiscard]] std::optional<SdoStep> set_up_step(unsigned joint, std::size_t position) const;
   [[nodiscard]] bool joint_failed(const Problem& problem);
 
@@ -135,16 +134,16 @@ class Master final : private SdoWork {
   void on_heartbeat(const CanFrame& frame);
   void on_boot_up(unsigned joint);
   void on_emergency(const CanFrame& frame);
-  void on_stranger(std::uint8_t node, bool boots);
+  void on_unknown_node(std::uint8_t node, bool boots);
   void on_tick_passed();
 
   void advance(Microseconds now);
   void send_network_requests();
-  [[nodiscard]] bool phase_done() const;
+  [[nodiscard]] bool is_phase_done() const;
   void next_phase();
   void enter(Phase phase);
   void begin_mission();
-  void begin_rejoin(JointSet joints);
+  void begin_rejoin(JointMask joints);
   void stage_for_rejoin();
   void begin_commit();
   void after_commit();
@@ -153,8 +152,9 @@ class Master final : private SdoWork {
   void phase_timed_out();
   void watch_heartbeats();
 
-  [[nodiscard]] bool running() const { return state_ == MasterState::running; }
-  [[nodiscard]] bool passed(const Change& change) const;
+  [[nodiscard]] bool is_running() const { return state_ == MasterState::running; }
+  [[nodiscard]] JointMask all_joints() const { return JointMask::first(setup_.kernel.joint_count); }
+  [[nodiscard]] bool has_passed(const Change& change) const;
   [[nodiscard]] Problem problem_of(ProblemCode code, unsigned joint) const;
   void fail(const Problem& problem);
   void report(const Problem& problem);
@@ -166,7 +166,7 @@ class Master final : private SdoWork {
   std::uint32_t crc_ = 0;
   ChangePlan plan_;
   TransmitQueue queue_;
-  SdoCrew crew_;
+  SdoClientPool sdo_clients_;
   TickFollower ticks_;
   EventLog events_;
 
@@ -180,18 +180,18 @@ class Master final : private SdoWork {
   Microseconds silence_at_ = never;  ///< no module is silent before
   Microseconds sync_lost_at_ = never;
 
-  JointSet joints_ = 0;        ///< of the mission
-  JointSet booted_ = 0;        ///< since start()
-  JointSet operational_ = 0;   ///< by their heartbeats
-  JointSet restarted_ = 0;     ///< to be set up again
-  JointSet lost_ = 0;          ///< silent, or without answers: left out of changes
-  JointSet outdated_ = 0;      ///< have missed a commit
-  JointSet given_up_ = 0;      ///< could not be set up again; only a restart of their own helps
-  JointSet start_joints_ = 0;  ///< to be sent NMT start
-  JointSet reset_joints_ = 0;  ///< to be sent NMT reset node
-  bool start_all_ = false;     ///< the same to all
-  bool rest_all_ = false;      ///< Pre-operational, to all
-  bool rejoined_last_ = false;
+  JointMask joints_;                          ///< of the mission
+  JointMask booted_;                          ///< since start()
+  JointMask operational_;                     ///< by their heartbeats
+  JointMask restarted_;                       ///< to be set up again
+  JointMask lost_;                            ///< silent, or without answers: left out of changes
+  JointMask outdated_;                        ///< have missed a commit
+  JointMask given_up_;                        ///< could not be set up again; only a restart of their own helps
+  JointMask start_joints_ = {};               ///< to be sent NMT start
+  JointMask reset_joints_ = {};               ///< to be sent NMT reset node
+  bool start_all_pending_ = false;            ///< the same to all
+  bool pre_operational_all_pending_ = false;  ///< Pre-operational, to all
+  bool last_mission_was_rejoin_ = false;
   bool change_failed_ = false;
   std::uint32_t restarts_ = 0;
 
@@ -200,8 +200,8 @@ class Master final : private SdoWork {
   unsigned commits_queued_ = 0;
   unsigned commits_sent_ = 0;
 
-  std::array<std::uint8_t, 128> joint_of_{};  ///< by node; `nobody` if it is not in the set-up
-  std::array<Microseconds, max_joints> heard_at_{};
+  std::array<std::uint8_t, 128> joint_of_{};  ///< by node; `no_joint` if it is not in the set-up
+  std::array<Microseconds, max_joints> heartbeat_received_at_{};
   std::array<Identity, max_joints> identities_{};
 };
 

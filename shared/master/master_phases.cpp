@@ -7,12 +7,12 @@ namespace proleg::canopen {
 void Master::advance(Microseconds now) {
   do {
     send_network_requests();
-    crew_.send(now, setup_.nodes, queue_, *this);
+    sdo_clients_.send(now, setup_.nodes, queue_, *this);
     while (phase_ == Phase::commit && commits_queued_ < commit_repeats &&
            queue_.push(encode(CommitMessage{ChangePlan::transaction(change_), plan_[change_].tick, setup_.robot_id}))) {
       ++commits_queued_;
     }
-    if (!phase_done()) {
+    if (!is_phase_done()) {
       return;
     }
     next_phase();
@@ -23,39 +23,42 @@ void Master::send_network_requests() {
   const auto send = [this](NmtCommand command, std::uint8_t node) {
     return queue_.push(encode(NmtRequest{command, node}));
   };
-  const auto send_each = [&](NmtCommand command, JointSet& joints) {
-    while (joints != 0 && send(command, setup_.nodes[first_of(joints)])) {
-      joints &= joints - 1;
+  const auto send_each = [&](NmtCommand command, JointMask& joints) {
+    for (const unsigned joint : joints) {
+      if (!send(command, setup_.nodes[joint])) {
+        return;
+      }
+      joints.erase(joint);
     }
   };
-  start_all_ = start_all_ && !send(NmtCommand::start, 0);
-  rest_all_ = rest_all_ && !send(NmtCommand::enter_pre_operational, 0);
+  start_all_pending_ = start_all_pending_ && !send(NmtCommand::start, 0);
+  pre_operational_all_pending_ = pre_operational_all_pending_ && !send(NmtCommand::enter_pre_operational, 0);
   send_each(NmtCommand::start, start_joints_);
   send_each(NmtCommand::reset_node, reset_joints_);
 }
 
-bool Master::phase_done() const {
+bool Master::is_phase_done() const {
   switch (phase_) {
     case Phase::none:
-      return running() && (restarted_ != 0 || plan_.can_stage());
+      return is_running() && (!restarted_.empty() || plan_.can_stage());
     case Phase::scan:
-      return booted_ == all_of(setup_.kernel.joint_count);
+      return booted_ == all_joints();
     case Phase::quiet:
       return false;  // until its time is over
     case Phase::commit:
       return commits_sent_ >= commit_repeats;
     case Phase::nmt_start:
-      return !start_all_ && start_joints_ == 0 && (joints_ & ~operational_) == 0;
+      return !start_all_pending_ && start_joints_.empty() && (joints_ - operational_).empty();
     default:
-      return crew_.done();
+      return sdo_clients_.done();
   }
 }
 
 void Master::enter(Phase phase) {
   phase_ = phase;
   deadline_ = never;
-  JointSet crew = 0;
-  Microseconds time_out_us = SdoClient::default_time_out_us;
+  JointMask served;
+  Microseconds timeout_us = SdoClient::default_timeout_us;
   switch (phase) {
     case Phase::none:
     case Phase::quiet:
@@ -63,35 +66,35 @@ void Master::enter(Phase phase) {
       break;
     case Phase::scan:
       state_ = MasterState::scanning;
-      deadline_ = now_ + boot_time_out_us;
+      deadline_ = now_ + boot_timeout_us;
       break;
     case Phase::commit:
       commits_queued_ = 0;
       commits_sent_ = 0;
-      deadline_ = now_ + send_time_out_us;
+      deadline_ = now_ + send_timeout_us;
       break;
     case Phase::nmt_start:
-      operational_ &= ~joints_;
-      deadline_ = now_ + start_time_out_us;
+      operational_ -= joints_;
+      deadline_ = now_ + start_timeout_us;
       break;
     case Phase::set_up:
     case Phase::stage:
     case Phase::enable:
-      crew = joints_;
+      served = joints_;
       break;
     case Phase::produce_sync:
-      crew = set_of(options_.sync_producer);
+      served = JointMask::of(options_.sync_producer);
       break;
     case Phase::disable:
-      crew = joints_;
-      time_out_us = stop_time_out_us;
+      served = joints_;
+      timeout_us = stop_timeout_us;
       break;
     case Phase::sync_off:
-      crew = joints_ & set_of(options_.sync_producer);
-      time_out_us = stop_time_out_us;
+      served = joints_ & JointMask::of(options_.sync_producer);
+      timeout_us = stop_timeout_us;
       break;
   }
-  crew_.begin(crew, time_out_us, running() ? pause_us : 0);
+  sdo_clients_.begin(served, timeout_us, is_running() ? pause_us : 0);
   if (mission_ != Mission::bring_up) {
     return;
   }
@@ -160,7 +163,7 @@ void Master::next_phase() {
       run();
       break;
     case Phase::disable:
-      rest_all_ = true;
+      pre_operational_all_pending_ = true;
       enter(Phase::sync_off);
       break;
     case Phase::sync_off:
@@ -173,7 +176,7 @@ void Master::next_phase() {
 void Master::phase_timed_out() {
   switch (phase_) {
     case Phase::scan:
-      fail(problem_of(ProblemCode::missing_module, first_of(all_of(setup_.kernel.joint_count) & ~booted_)));
+      fail(problem_of(ProblemCode::missing_module, (all_joints() - booted_).front()));
       break;
     case Phase::quiet:
       next_phase();
@@ -182,14 +185,14 @@ void Master::phase_timed_out() {
       fail({ProblemCode::cannot_send});
       break;
     case Phase::nmt_start: {
-      const JointSet missing = joints_ & ~operational_;
-      if (missing == 0) {
+      const JointMask missing = joints_ - operational_;
+      if (missing.empty()) {
         fail({ProblemCode::cannot_send});
       }
-      start_all_ = false;
-      start_joints_ = 0;
-      for (JointSet rest = missing; rest != 0; rest &= rest - 1) {
-        static_cast<void>(joint_failed(problem_of(ProblemCode::not_operational, first_of(rest))));
+      start_all_pending_ = false;
+      start_joints_ = {};
+      for (const unsigned joint : missing) {
+        static_cast<void>(joint_failed(problem_of(ProblemCode::not_operational, joint)));
       }
       break;
     }
@@ -203,25 +206,25 @@ void Master::run() {
   mission_ = Mission::none;
   sync_lost_at_ = now_ + silence_us;
   silence_at_ = now_ + silence_us;
-  heard_at_.fill(now_);
+  heartbeat_received_at_.fill(now_);
   enter(Phase::none);
 }
 
 /// Something is to be done while the robot runs: modules that restarted come first, but not twice in a row, so that one
 /// that restarts again and again does not keep changes from being made.
 void Master::begin_mission() {
-  if (restarted_ != 0 && !(rejoined_last_ && plan_.can_stage())) {
-    rejoined_last_ = true;
-    const JointSet joints = restarted_;
-    restarted_ = 0;
+  if (!restarted_.empty() && !(last_mission_was_rejoin_ && plan_.can_stage())) {
+    last_mission_was_rejoin_ = true;
+    const JointMask joints = restarted_;
+    restarted_ = {};
     begin_rejoin(joints);
     return;
   }
-  rejoined_last_ = false;
+  last_mission_was_rejoin_ = false;
   mission_ = Mission::change;
   change_ = plan_.next();
   change_failed_ = false;
-  joints_ = all_of(setup_.kernel.joint_count) & ~lost_ & ~restarted_;
+  joints_ = all_joints() - lost_ - restarted_;
   // Who is too late already need not stage.
   enter(plan_[change_].tick < ticks_.tick().value_or(0) + commit_lead ? Phase::none : Phase::stage);
   if (phase_ == Phase::none) {
@@ -238,7 +241,7 @@ void Master::drop_change(const Problem& problem) {
 }
 
 void Master::begin_commit() {
-  if (mission_ == Mission::rejoin && passed(plan_[change_])) {
+  if (mission_ == Mission::rejoin && has_passed(plan_[change_])) {
     // Its parameters are in force by now; as such they must be written before anything is staged.
     begin_rejoin(joints_);
     return;
@@ -271,13 +274,13 @@ void Master::after_commit() {
         change_ = plan_.next();
         enter(Phase::stage);
       } else {
-        start_all_ = true;
+        start_all_pending_ = true;
         enter(Phase::nmt_start);
       }
       break;
     case Mission::change:
       plan_.commit_next();
-      outdated_ |= all_of(setup_.kernel.joint_count) & ~joints_ & ~restarted_;
+      outdated_ |= all_joints() - joints_ - restarted_;
       mission_ = Mission::none;
       enter(Phase::none);
       break;
@@ -291,13 +294,15 @@ void Master::after_commit() {
   }
 }
 
-bool Master::passed(const Change& change) const { return change.tick <= ticks_.tick().value_or(0) + ticks_on_the_way; }
+bool Master::has_passed(const Change& change) const {
+  return change.tick <= ticks_.tick().value_or(0) + ticks_on_the_way;
+}
 
-void Master::begin_rejoin(JointSet joints) {
+void Master::begin_rejoin(JointMask joints) {
   mission_ = Mission::rejoin;
   joints_ = joints;
   rejoin_from_ = plan_.next();
-  while (rejoin_from_ > 0 && !passed(plan_[rejoin_from_ - 1])) {
+  while (rejoin_from_ > 0 && !has_passed(plan_[rejoin_from_ - 1])) {
     --rejoin_from_;
   }
   enter(Phase::set_up);
@@ -309,7 +314,7 @@ void Master::stage_for_rejoin() {
   while (change_ < plan_.next() && plan_[change_].dropped) {
     ++change_;
   }
-  if (joints_ == 0) {
+  if (joints_.empty()) {
     finish_rejoin();
   } else if (change_ == plan_.next()) {
     enter(Phase::enable);  // so that the servo has power from the first tick that its module computes
@@ -319,11 +324,11 @@ void Master::stage_for_rejoin() {
 }
 
 void Master::finish_rejoin() {
-  for (JointSet rest = joints_; rest != 0; rest &= rest - 1) {
-    heard_at_[first_of(rest)] = now_;
-    add_event(EventKind::rejoined, setup_.nodes[first_of(rest)]);
+  for (const unsigned joint : joints_) {
+    heartbeat_received_at_[joint] = now_;
+    add_event(EventKind::rejoined, setup_.nodes[joint]);
   }
-  outdated_ &= ~joints_;
+  outdated_ -= joints_;
   mission_ = Mission::none;
   enter(Phase::none);
 }

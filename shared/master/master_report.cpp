@@ -9,27 +9,27 @@ std::string_view describe(ProblemCode code) {
     case ProblemCode::bus_too_small:
       return "the state frames may fill the bus";
     case ProblemCode::bad_setup:
-      return "the set-up does not give each joint a node of its own";
+      return "the set-up needs one node and one pair of limits for each joint";
     case ProblemCode::bad_change:
-      return "a change that cannot be made";
+      return "a change is not possible";
     case ProblemCode::missing_module:
       return "a module is missing";
     case ProblemCode::duplicate_node:
       return "two modules have one node id, or a module has restarted";
     case ProblemCode::unexpected_node:
-      return "a module that does not belong to the robot";
+      return "the node does not belong to the robot";
     case ProblemCode::wrong_serial:
-      return "another serial number";
-    case ProblemCode::foreign_protocol:
-      return "another version of the protocol";
-    case ProblemCode::foreign_fingerprint:
-      return "a module with another core";
+      return "wrong serial number";
+    case ProblemCode::wrong_protocol:
+      return "wrong version of the protocol";
+    case ProblemCode::wrong_fingerprint:
+      return "wrong core fingerprint";
     case ProblemCode::refused:
       return "a module refuses its set-up";
     case ProblemCode::no_answer:
       return "a module does not answer";
     case ProblemCode::wrong_configuration:
-      return "a module has another configuration";
+      return "a module has the wrong configuration";
     case ProblemCode::not_operational:
       return "a module does not become operational";
     case ProblemCode::commit_too_late:
@@ -39,7 +39,7 @@ std::string_view describe(ProblemCode code) {
     case ProblemCode::sync_lost:
       return "SYNC is lost";
     case ProblemCode::cannot_send:
-      return "nothing can be sent on the bus";
+      return "the master cannot send on the bus";
   }
   return "unknown problem";
 }
@@ -56,14 +56,14 @@ std::string_view describe(EventKind kind) {
       return "module could not be set up again";
     case EventKind::silent:
       return "module is silent";
-    case EventKind::heard_again:
-      return "module is heard again";
+    case EventKind::heartbeat_returned:
+      return "heartbeat of the module is back";
     case EventKind::not_reached:
-      return "module did not take a change";
+      return "module did not answer while a change was staged";
     case EventKind::left_operational:
-      return "module is not operational any more";
+      return "module is no longer operational";
     case EventKind::unexpected_node:
-      return "module that does not belong to the robot";
+      return "node does not belong to the robot";
     case EventKind::change_dropped:
       return "change was dropped";
   }

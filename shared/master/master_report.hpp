@@ -1,6 +1,6 @@
 #pragma once
 
-// What the master has to tell people: why a robot does not run (Problem), and what happened on the way (Event).
+// What the master reports: why a robot does not run (Problem), and what happens on the way (Event).
 
 #include <array>
 #include <cstddef>
@@ -16,36 +16,36 @@ namespace proleg::canopen {
 enum class ProblemCode : std::uint8_t {
   none,
   // Found before anything is sent.
-  bad_setup,      ///< a joint without a node of its own (1 to 126), spans of other lengths than the joint count
+  bad_setup,      ///< two joints with one node, a node not in 1 to 126, or a span without one element a joint
   bus_too_small,  ///< the robot may take `found` thousandths of the bus, more than `expected`
-  bad_change,     ///< `change` names a value that its joint does not have, too many values, or is not behind the one
-                  ///< before
-  // The start ends with these.
-  missing_module,       ///< no boot-up message of `node` came in time
-  duplicate_node,       ///< `node` booted twice, or says that another module has its id
+  bad_change,     ///< `change` names a value that its joint does not have, has too many values, or is not later than
+                  ///< the change before it
+  // These end the start.
+  missing_module,       ///< no boot-up message of `node` before the timeout
+  duplicate_node,       ///< `node` booted twice, or reports that another module has its id
   unexpected_node,      ///< `node` is on the bus, but not in the set-up
-  wrong_serial,         ///< `found` and `expected`, as for all that follow
-  foreign_protocol,     ///< version of docs/protocol.md
-  foreign_fingerprint,  ///< the module computes with another core
+  wrong_serial,         ///< serial number; `found` and `expected` as for all wrong_ codes
+  wrong_protocol,       ///< version of docs/protocol.md
+  wrong_fingerprint,    ///< the module computes with another core
   refused,              ///< the module refused `address` with `abort_code`
   no_answer,            ///< the module did not answer a request for `address`
-  wrong_configuration,  ///< after set-up the module has another configuration CRC than the master
-  not_operational,      ///< the module does not say in time that it is Operational; `found`: its last state
-  // In flight.
+  wrong_configuration,  ///< after set-up, the configuration CRC of the module is not the master's
+  not_operational,      ///< the heartbeat of the module does not report Operational before the timeout
+  // While the robot runs.
   commit_too_late,  ///< `change` for the tick `expected` could not be committed by the tick `found`; it is dropped
   change_refused,   ///< the module refused a value of `change` with `abort_code`; the change is dropped for all
-  sync_lost,        ///< no SYNC is heard, or `node`, which produces it, has restarted: the robot has stopped
+  sync_lost,        ///< no SYNC is received, or `node`, which produces it, has restarted: the robot has stopped
   cannot_send,      ///< no frame of the master gets onto the bus
 };
 
-/// The same in one short phrase.
+/// One short phrase, for messages.
 [[nodiscard]] std::string_view describe(ProblemCode code);
 
 struct Problem {
   static constexpr std::uint8_t no_joint = 0xFF;
 
   ProblemCode code = ProblemCode::none;
-  std::uint8_t node = 0;  ///< 0: no one in particular
+  std::uint8_t node = 0;  ///< 0: no particular node
   std::uint8_t joint = no_joint;
   Address address = {};
   AbortCode abort_code = AbortCode::none;
@@ -55,19 +55,19 @@ struct Problem {
 };
 
 enum class EventKind : std::uint8_t {
-  emergency,      ///< EMCY with `code`, `error_register` and `detail`; code `none`: an error is over
-  restarted,      ///< the node has booted while the robot runs; it is set up again. detail: number of restarts so far
-  rejoined,       ///< a restarted node is set up and started
-  rejoin_failed,  ///< it could not be set up again; detail: ProblemCode
-  silent,         ///< no heartbeat for 500 ms; changes are made without the node
-  heard_again,    ///< its heartbeat is back
-  not_reached,    ///< it did not answer while values were staged; changes are made without it
-  left_operational,  ///< its heartbeat says another state; detail: NmtState
-  unexpected_node,   ///< a node that is not in the set-up has booted
-  change_dropped,    ///< detail: tick of the change; see Problem
+  emergency,           ///< EMCY with `code`, `error_register` and `detail`; code `none`: an error is over
+  restarted,           ///< the node has booted while the robot runs; it is set up again. detail: restarts so far
+  rejoined,            ///< a restarted node is set up and started
+  rejoin_failed,       ///< a restarted node could not be set up; detail: ProblemCode
+  silent,              ///< no heartbeat for 500 ms; changes are made without the node
+  heartbeat_returned,  ///< a heartbeat of a silent node
+  not_reached,         ///< the node did not answer while values were staged; changes are made without it
+  left_operational,    ///< the heartbeat reports another state; detail: NmtState
+  unexpected_node,     ///< a node that is not in the set-up has booted
+  change_dropped,      ///< detail: tick of the change; see Problem
 };
 
-/// The same in one short phrase.
+/// One short phrase, for messages.
 [[nodiscard]] std::string_view describe(EventKind kind);
 
 struct Event {
@@ -79,14 +79,14 @@ struct Event {
   std::uint32_t detail = 0;
 };
 
-/// The first events that nobody has fetched yet, oldest first; later ones are counted.
+/// Events that are not taken yet, oldest first. When it is full, it counts further events and drops them.
 class EventLog {
  public:
   static constexpr std::size_t capacity = 64;
 
   void add(const Event& event);
   [[nodiscard]] std::optional<Event> take();
-  /// Events that found no room.
+  /// Number of dropped events.
   [[nodiscard]] std::uint32_t overflow() const { return overflow_; }
 
  private:

@@ -63,7 +63,7 @@ std::optional<SdoStep> Master::set_up_step(unsigned joint, std::size_t position)
   return next ? std::optional(SdoStep{true, next->address, next->size, next->value}) : std::nullopt;
 }
 
-bool Master::take(unsigned joint, std::size_t position, std::uint32_t value) {
+bool Master::on_value(unsigned joint, std::size_t position, std::uint32_t value) {
   Identity& identity = identities_[joint];
   const auto expect = [&](std::uint32_t expected, ProblemCode code) {
     if (value == expected) {
@@ -86,16 +86,16 @@ bool Master::take(unsigned joint, std::size_t position, std::uint32_t value) {
       identity.serial = value;
       return serial == 0 || expect(serial, ProblemCode::wrong_serial);
     case 3:
-      return expect(protocol_version, ProblemCode::foreign_protocol);
+      return expect(protocol_version, ProblemCode::wrong_protocol);
     case 4:
-      return expect(options_.core_fingerprint, ProblemCode::foreign_fingerprint);
+      return expect(options_.core_fingerprint, ProblemCode::wrong_fingerprint);
     default:
       return expect(crc_, ProblemCode::wrong_configuration);
   }
 }
 
-void Master::aborted(unsigned joint, Address address, AbortCode code) {
-  Problem problem = problem_of(code == AbortCode::time_out ? ProblemCode::no_answer : ProblemCode::refused, joint);
+void Master::on_abort(unsigned joint, Address address, AbortCode code) {
+  Problem problem = problem_of(code == AbortCode::timeout ? ProblemCode::no_answer : ProblemCode::refused, joint);
   problem.address = address;
   problem.abort_code = code;
   static_cast<void>(joint_failed(problem));
@@ -103,19 +103,19 @@ void Master::aborted(unsigned joint, Address address, AbortCode code) {
 
 /// Nothing more can be done for the joint in this mission. Always false.
 bool Master::joint_failed(const Problem& problem) {
-  const JointSet self = set_of(problem.joint);
+  const JointMask self = JointMask::of(problem.joint);
   switch (mission_) {
     case Mission::bring_up:
       fail(problem);
       break;
     case Mission::change:
       if (problem.code == ProblemCode::no_answer) {
-        joints_ &= ~self;
+        joints_ -= self;
         lost_ |= self;
         add_event(EventKind::not_reached, problem.node);
       } else if (!change_failed_) {
         change_failed_ = true;
-        crew_.cancel_all();
+        sdo_clients_.cancel_all();
         Problem refused = problem;
         refused.code = ProblemCode::change_refused;
         refused.change = change_;
@@ -123,7 +123,7 @@ bool Master::joint_failed(const Problem& problem) {
       }
       break;
     case Mission::rejoin:
-      joints_ &= ~self;
+      joints_ -= self;
       lost_ |= self;
       given_up_ |= self;
       add_event(EventKind::rejoin_failed, problem.node, static_cast<std::uint32_t>(problem.code));

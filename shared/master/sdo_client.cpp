@@ -4,30 +4,30 @@
 
 namespace proleg::canopen {
 
-CanFrame SdoClient::read(Microseconds now, std::uint8_t node, Address address, Microseconds time_out_us) {
+CanFrame SdoClient::read(Microseconds now, std::uint8_t node, Address address, Microseconds timeout_us) {
   writing_ = false;
-  CanFrame request = start(now, node, address, time_out_us);
+  CanFrame request = start(now, node, address, timeout_us);
   request.data[0] = sdo::request_upload;
   return request;
 }
 
 CanFrame SdoClient::write(Microseconds now, std::uint8_t node, Address address, std::uint8_t size, std::uint32_t value,
-                          Microseconds time_out_us) {
+                          Microseconds timeout_us) {
   writing_ = true;
-  CanFrame request = start(now, node, address, time_out_us);
+  CanFrame request = start(now, node, address, timeout_us);
   request.data[0] = sdo::with_size(sdo::request_download, size);
   write_little_endian(request, 4, size, value);
   return request;
 }
 
-CanFrame SdoClient::start(Microseconds now, std::uint8_t node, Address address, Microseconds time_out_us) {
+CanFrame SdoClient::start(Microseconds now, std::uint8_t node, Address address, Microseconds timeout_us) {
   state_ = State::waiting;
   node_ = node;
   address_ = address;
   value_ = 0;
   size_ = 0;
   abort_code_ = AbortCode::none;
-  deadline_ = now + time_out_us;
+  deadline_ = now + timeout_us;
   return sdo::make(static_cast<std::uint16_t>(identifier::sdo_request + node), 0, address);
 }
 
@@ -57,7 +57,7 @@ bool SdoClient::receive(const CanFrame& frame) {
 
 void SdoClient::poll(Microseconds now) {
   if (state_ == State::waiting && now >= deadline_) {
-    finish(State::aborted, AbortCode::time_out);
+    finish(State::aborted, AbortCode::timeout);
   }
 }
 

@@ -10,21 +10,21 @@ namespace proleg::canopen {
 /// One transfer to one server, as the client does it. At most one at a time.
 class SdoClient {
  public:
-  static constexpr Microseconds default_time_out_us = 500'000;
+  static constexpr Microseconds default_timeout_us = 500'000;
 
   enum class State : std::uint8_t { idle, waiting, done, aborted };
 
-  /// The request, to be sent on the bus. The answer is awaited until now + time_out_us.
+  /// The request, to be sent on the bus. The answer is awaited until now + timeout_us.
   [[nodiscard]] CanFrame read(Microseconds now, std::uint8_t node, Address address,
-                              Microseconds time_out_us = default_time_out_us);
+                              Microseconds timeout_us = default_timeout_us);
   /// size: 1, 2 or 4 bytes.
   [[nodiscard]] CanFrame write(Microseconds now, std::uint8_t node, Address address, std::uint8_t size,
-                               std::uint32_t value, Microseconds time_out_us = default_time_out_us);
+                               std::uint32_t value, Microseconds timeout_us = default_timeout_us);
 
   /// Any frame from the bus. Returns whether it ended the transfer. An answer that belongs to another node, entry or
   /// kind of transfer is passed over; one that is not expedited ends it with `unknown_command`.
   bool receive(const CanFrame& frame);
-  /// Ends the transfer with `time_out` if its time is over.
+  /// Ends the transfer with `timeout` if its time is over.
   void poll(Microseconds now);
   /// When poll() is to be called; `never` if nothing is awaited.
   [[nodiscard]] Microseconds next_deadline() const { return state_ == State::waiting ? deadline_ : never; }
@@ -40,7 +40,7 @@ class SdoClient {
   [[nodiscard]] Address address() const { return address_; }
 
  private:
-  CanFrame start(Microseconds now, std::uint8_t node, Address address, Microseconds time_out_us);
+  CanFrame start(Microseconds now, std::uint8_t node, Address address, Microseconds timeout_us);
   bool finish(State state, AbortCode code);
 
   State state_ = State::idle;

@@ -14,7 +14,7 @@ bool Controller::send(const CanFrame& frame) {
 }
 
 bool Controller::send(std::size_t mailbox, const CanFrame& frame) {
-  if (frame.identifier > CanFrame::highest_identifier || frame.length > CanFrame::longest) {
+  if (frame.identifier > CanFrame::max_identifier || frame.length > CanFrame::max_length) {
     throw std::invalid_argument("a CAN frame with identifier " + std::to_string(frame.identifier) + " and " +
                                 std::to_string(frame.length) + " bytes, expected at most 2047 and 8");
   }

@@ -80,7 +80,7 @@ constexpr std::array<std::array<StuffStep, 256>, run_count> stuff_table = make_s
 
 /// SOF, identifier, RTR, IDE, r0 and DLC: 19 bits, the first of them the highest of 19.
 unsigned header(const CanFrame& frame) {
-  return ((unsigned{frame.identifier} & CanFrame::highest_identifier) << 7U) | (frame.length & 0xFU);
+  return ((unsigned{frame.identifier} & CanFrame::max_identifier) << 7U) | (frame.length & 0xFU);
 }
 
 /// The frame on the wire from start of frame to the last bit of the CRC sequence.

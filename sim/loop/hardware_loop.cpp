@@ -96,13 +96,13 @@ class HardwareLoop::Implementation {
 
   void require_room_on_bus() const {
     const std::uint32_t load = canopen::worst_bus_load_permille(scenario_.kernel);
-    if (load > canopen::highest_bus_load_permille) {
+    if (load > canopen::max_bus_load_permille) {
       throw InputError(
           scenario_.path, 0,
           std::to_string(scenario_.kernel.joint_count) + " modules that with a tick of " +
               std::to_string(scenario_.kernel.tick_period_us) + " us may take " + std::to_string((load + 9) / 10) +
               " % of the bus",
-          "at most " + std::to_string(canopen::highest_bus_load_permille / 10) + " %: fewer joints, or a longer tick");
+          "at most " + std::to_string(canopen::max_bus_load_permille / 10) + " %: fewer joints, or a longer tick");
     }
   }
 
@@ -409,9 +409,9 @@ class HardwareLoop::Implementation {
   bool is_lost(const CanFrame& frame, std::size_t receiver) const {
     const auto state = canopen::decode_state(frame);
     const bool first = frame.identifier > canopen::identifier::state_frame &&
-                       frame.identifier <= canopen::identifier::state_frame + canopen::highest_node;
+                       frame.identifier <= canopen::identifier::state_frame + canopen::max_node_id;
     const bool second_channel = frame.identifier > canopen::identifier::second_state &&
-                                frame.identifier <= canopen::identifier::second_state + canopen::highest_node;
+                                frame.identifier <= canopen::identifier::second_state + canopen::max_node_id;
     if (!state || (!first && !second_channel)) {
       return false;
     }
@@ -429,7 +429,7 @@ class HardwareLoop::Implementation {
 
   std::vector<std::unique_ptr<JointModule>> modules_;  ///< by joint; attached first, so also by controller
   std::vector<firmware::TickRecord> records_;          ///< by joint: what the modules had computed at the last SYNC
-  std::array<unsigned, canopen::highest_node + 2> joint_of_node_{};
+  std::array<unsigned, canopen::max_node_id + 2> joint_of_node_{};
   std::unique_ptr<HostNode> host_;
   std::unique_ptr<Injector> injector_;
   std::uint32_t syncs_ = 0;     ///< heard so far

@@ -98,8 +98,8 @@ std::optional<std::string> HostNode::take_problem() {
   text += describe(problem.code);
   switch (problem.code) {
     case ProblemCode::wrong_serial:
-    case ProblemCode::foreign_protocol:
-    case ProblemCode::foreign_fingerprint:
+    case ProblemCode::wrong_protocol:
+    case ProblemCode::wrong_fingerprint:
     case ProblemCode::wrong_configuration:
       text += ": found " + hexadecimal(problem.found, 8) + ", expected " + hexadecimal(problem.expected, 8);
       break;

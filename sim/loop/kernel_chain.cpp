@@ -65,7 +65,7 @@ void KernelChain::apply(const Change& change) {
   }
 }
 
-void KernelChain::stop(unsigned joint) { running_ = JointMask(running_.bits() & ~(std::uint64_t{1} << joint)); }
+void KernelChain::stop(unsigned joint) { running_.erase(joint); }
 
 void KernelChain::join(unsigned joint) {
   configure(joint);

@@ -12,7 +12,7 @@ namespace proleg::sim {
 namespace {
 
 // CANopen node ids (CiA 301): 1 to 127, of which 127 is the host (docs/protocol.md).
-constexpr std::uint32_t highest_node = 126;
+constexpr std::uint32_t max_node_id = 126;
 
 /// The whole text as a number; base 16 after 0x.
 std::optional<std::uint32_t> parse_whole(std::string_view text) {
@@ -42,9 +42,9 @@ ModuleEntry read_module(const XmlElement& element, const RobotModel& model) {
   ModuleEntry entry{element, name, static_cast<std::size_t>(joint), {}};
   const std::string node_text = element.required_attribute("node");
   const std::optional<std::uint32_t> node = parse_whole(node_text);
-  if (!node || *node == 0 || *node > highest_node) {
+  if (!node || *node == 0 || *node > max_node_id) {
     element.refuse("node " + in_quotes(node_text) + " in " + element.label(),
-                   "a whole number from 1 to " + std::to_string(highest_node) + " (127 is the host)");
+                   "a whole number from 1 to " + std::to_string(max_node_id) + " (127 is the host)");
   }
   entry.place.node = static_cast<std::uint8_t>(*node);
   if (const auto serial_text = element.attribute("serial")) {

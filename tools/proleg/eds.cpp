@@ -101,10 +101,10 @@ void print_entry(std::ostream& out, const Object& object, const Mapped& mapped) 
     out << "DefaultValue=" << number(object.type, object.default_value) << '\n';
   }
   const Range range = outer_range(object);
-  if (object.access == Access::read_write && range.minimum != lowest(object.type)) {
+  if (object.access == Access::read_write && range.minimum != min_value(object.type)) {
     out << "LowLimit=" << number(object.type, range.minimum) << '\n';
   }
-  if (object.access == Access::read_write && range.maximum != highest(object.type)) {
+  if (object.access == Access::read_write && range.maximum != max_value(object.type)) {
     out << "HighLimit=" << number(object.type, range.maximum) << '\n';
   }
   out << "PDOMapping=" << (mapped.contains(object) ? 1 : 0) << '\n';
@@ -119,9 +119,9 @@ void print_index(std::ostream& out, std::uint16_t index, const Mapped& mapped) {
     return;
   }
   out << "ParameterName=" << index_name(index).view()
-      << "\nObjectType=" << hexadecimal(static_cast<std::uint32_t>(info.code), 1)
-      << "\nSubNumber=" << info.highest_sub + 1 << '\n';
-  for (unsigned sub = 0; sub <= info.highest_sub; ++sub) {
+      << "\nObjectType=" << hexadecimal(static_cast<std::uint32_t>(info.code), 1) << "\nSubNumber=" << info.max_sub + 1
+      << '\n';
+  for (unsigned sub = 0; sub <= info.max_sub; ++sub) {
     out << "\n[" << name << "sub" << sub << "]\n";
     print_entry(out, *find_object({index, static_cast<std::uint8_t>(sub)}), mapped);
   }

@@ -108,8 +108,8 @@ sim::InjectedFrame parse_frame(const std::string& word, const ScenarioRun& run) 
   const auto tick = parse_whole<std::uint32_t>(std::string_view(word).substr(at + 1));
   const auto identifier = parse_whole<std::uint16_t>(std::string_view(word).substr(0, hash), 16);
   const std::string_view data = std::string_view(word).substr(hash + 1, at - hash - 1);
-  if (!tick || !identifier || *identifier > CanFrame::highest_identifier || data.size() % 2 != 0 ||
-      data.size() > 2 * CanFrame::longest) {
+  if (!tick || !identifier || *identifier > CanFrame::max_identifier || data.size() % 2 != 0 ||
+      data.size() > 2 * CanFrame::max_length) {
     refuse();
   }
   sim::InjectedFrame injected{*tick, {*identifier, static_cast<std::uint8_t>(data.size() / 2), {}}};

@@ -63,7 +63,7 @@ std::string range_text(const Object& object) {
   if (object.access != Access::read_write) {
     return "";
   }
-  if (object.minimum == lowest(object.type) && object.maximum == highest(object.type)) {
+  if (object.minimum == min_value(object.type) && object.maximum == max_value(object.type)) {
     return "any";
   }
   std::string text = number(object, object.minimum);

@@ -54,7 +54,7 @@ std::optional<std::string> BxCanMailboxes::write(std::size_t number, std::uint32
       if ((value & tgt) != 0) {
         return "time triggered communication is not modelled";
       }
-      if ((value & dlc_mask) > CanFrame::longest) {
+      if ((value & dlc_mask) > CanFrame::max_length) {
         return "a data length above 8 is not modelled";
       }
       mailbox.length = value & (dlc_mask | time_mask);

@@ -45,8 +45,8 @@ TEST(DataTypes, HaveTheSizesAndRangesOfTheirNames) {
       return is_signed(c.type) ? std::int64_t{static_cast<std::int32_t>(raw)} : std::int64_t{raw};
     };
     EXPECT_EQ(size_of(c.type), c.size);
-    EXPECT_EQ(value(lowest(c.type)), c.lowest);
-    EXPECT_EQ(value(highest(c.type)), c.highest);
+    EXPECT_EQ(value(min_value(c.type)), c.lowest);
+    EXPECT_EQ(value(max_value(c.type)), c.highest);
     EXPECT_EQ(value(extend(c.type, 0xA5A5A5A5)),
               is_signed(c.type)
                   ? std::int64_t{static_cast<std::int32_t>(0xA5A5A5A5U << (32 - 8 * c.size))} >> (32 - 8 * c.size)
@@ -122,7 +122,7 @@ TEST(ObjectDictionary, IsEnumeratedInAscendingOrderWithoutGapsInSubIndices) {
   for (const auto& [index, count] : subs) {
     const std::optional<IndexInfo> info = find_index(index);
     ASSERT_TRUE(info);
-    EXPECT_EQ(info->highest_sub + 1U, count) << text({index, 0});
+    EXPECT_EQ(info->max_sub + 1U, count) << text({index, 0});
     if (info->code == ObjectCode::variable) {
       EXPECT_EQ(count, 1U);
     } else {
@@ -159,8 +159,8 @@ TEST(ObjectDictionary, DefaultsAreAllowedValues) {
   for (const Object& object : all_objects()) {
     EXPECT_EQ(check_range(object, object.default_value), AbortCode::none) << text(object.address);
     EXPECT_EQ(extend(object.type, object.default_value), object.default_value) << text(object.address);
-    EXPECT_FALSE(is_less(object.type, object.minimum, lowest(object.type))) << text(object.address);
-    EXPECT_FALSE(is_less(object.type, highest(object.type), object.maximum)) << text(object.address);
+    EXPECT_FALSE(is_less(object.type, object.minimum, min_value(object.type))) << text(object.address);
+    EXPECT_FALSE(is_less(object.type, max_value(object.type), object.maximum)) << text(object.address);
     EXPECT_FALSE(is_less(object.type, object.maximum, object.minimum)) << text(object.address);
   }
 }
@@ -207,7 +207,7 @@ TEST(ObjectDictionary, EveryPdoIsMappedToObjectsOfItsLength) {
   // CiA 301: communication parameters are 0x200 before their mapping.
   const auto bits_of = [](std::uint16_t mapping) {
     unsigned bits = 0;
-    for (std::uint8_t sub = 1; sub <= find_index(mapping)->highest_sub; ++sub) {
+    for (std::uint8_t sub = 1; sub <= find_index(mapping)->max_sub; ++sub) {
       const std::uint32_t entry = find_object({mapping, sub})->default_value;
       const Address mapped{static_cast<std::uint16_t>(entry >> 16U), static_cast<std::uint8_t>(entry >> 8U)};
       const std::optional<Object> object = find_object(mapped);

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <set>
 #include <string_view>
 
 #include "robot.hpp"
+#include "shared/fixed/random.hpp"
 
 namespace proleg {
 namespace {
@@ -145,6 +147,42 @@ TEST(Channels, OfNeighboursMayDifferWithoutConfusingTheSlots) {
     EXPECT_EQ(test::value(kernel, 1, joint, "current_phase"), test::value(alone, 1, joint, "current_phase"))
         << "joint " << joint;
   }
+}
+
+KernelConfiguration random_configuration(Pcg32& random, unsigned joints) {
+  KernelConfiguration configuration;
+  configuration.joint_count = static_cast<std::uint8_t>(joints);
+  for (Slot& slot : configuration.slots) {
+    if (random.next() % 4 != 0) {
+      slot.algorithm = &algorithm_at(random.next() % algorithm_count());
+    }
+    // Sparse groups, of which three rarely meet.
+    slot.group = JointMask((std::uint64_t{random.next()} << 32U | random.next()) &
+                           (std::uint64_t{random.next()} << 32U | random.next())) &
+                 JointMask::first(joints);
+  }
+  return configuration;
+}
+
+TEST(Channels, ConfigurationAndKernelAgreeWhoSendsTwoFrames) {
+  constexpr std::uint32_t seed = 77;
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  Pcg32 random(seed, 0);
+  const auto kernel = std::make_unique<KernelOf<1>>();
+  unsigned accepted = 0;
+  for (int run = 0; run < 3'000; ++run) {
+    const unsigned joints = 1 + random.next() % max_joints;
+    const KernelConfiguration configuration = random_configuration(random, joints);
+    if (kernel->configure(configuration, 0) != Status::ok) {
+      continue;
+    }
+    ++accepted;
+    const JointMask senders = configuration.second_channel_senders();
+    for (unsigned joint = 0; joint < joints; ++joint) {
+      ASSERT_EQ(senders.contains(joint), kernel->channel_count(joint) == 2) << "run " << run << ", joint " << joint;
+    }
+  }
+  EXPECT_GT(accepted, 300U);
 }
 
 TEST(Status, HasAPhraseOfItsOwnForEveryAnswer) {

@@ -388,7 +388,7 @@ TEST(MasterRestart, AModuleThatCannotBeSetUpAgainIsNamedAndLeftAlone) {
   ASSERT_TRUE(robot.run_to_tick(620));
   EXPECT_EQ(robot.count(EventKind::rejoin_failed), 1U);
   EXPECT_EQ(robot.module(2).boots, 2U) << "it is not reset for ever";
-  EXPECT_EQ(robot.count(EventKind::heard_again), 0U) << "nor asked for anything";
+  EXPECT_EQ(robot.count(EventKind::heartbeat_returned), 0U) << "nor asked for anything";
   EXPECT_EQ(robot.master().state(), MasterState::running);
   for (const unsigned joint : {0U, 1U, 3U}) {
     EXPECT_EQ(robot.module(joint).effects, planned_effects(robot, joint));
@@ -424,7 +424,7 @@ TEST(MasterSilence, AModuleThatHasMissedAChangeIsResetWhenItIsHeardAgain) {
   robot.module(3).silent = false;
   robot.module(3).deaf = false;
   ASSERT_TRUE(robot.run_to_tick(920));
-  EXPECT_EQ(robot.count(EventKind::heard_again), 1U);
+  EXPECT_EQ(robot.count(EventKind::heartbeat_returned), 1U);
   EXPECT_EQ(robot.module(3).boots, 2U);
   EXPECT_EQ(robot.count(EventKind::rejoined), 1U);
   expect_values_of_plan(robot);
@@ -440,7 +440,7 @@ TEST(MasterSilence, AModuleThatHasMissedNothingGoesOn) {
   robot.module(1).silent = false;
   robot.run_for(500'000);
   EXPECT_EQ(robot.count(EventKind::silent), 1U);
-  EXPECT_EQ(robot.count(EventKind::heard_again), 1U);
+  EXPECT_EQ(robot.count(EventKind::heartbeat_returned), 1U);
   EXPECT_EQ(robot.module(1).boots, 1U);
 }
 

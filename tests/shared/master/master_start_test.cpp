@@ -161,7 +161,7 @@ TEST(MasterProblem, AMissingModuleIsNamedAfterASecond) {
   EXPECT_EQ(problem.joint, 2);
   EXPECT_EQ(problem.node, robot.module(2).node);
   EXPECT_EQ(robot.now(), 1'001'000U);
-  EXPECT_EQ(robot.master().booted(), 0b1011U);
+  EXPECT_EQ(robot.master().booted(), JointMask(0b1011));
 }
 
 TEST(MasterProblem, TwoModulesWithOneNodeIdAreNamed) {
@@ -198,7 +198,7 @@ TEST(MasterProblem, AForeignModuleIsNamedWithWhatWasFoundAndExpected) {
     ScriptedRobot robot(3);
     robot.module(1).fingerprint = 0xBAD;
     const Problem problem = robot.problem_of_start();
-    EXPECT_EQ(problem.code, ProblemCode::foreign_fingerprint);
+    EXPECT_EQ(problem.code, ProblemCode::wrong_fingerprint);
     EXPECT_EQ(problem.joint, 1);
     EXPECT_EQ(problem.found, 0xBADU);
     EXPECT_EQ(problem.expected, ScriptedRobot::fingerprint);
@@ -248,7 +248,7 @@ TEST(MasterProblem, AnotherVersionOfTheProtocolIsNamed) {
     answer.data[4] = request.data[1] == 0x00 ? 0x42 : 0;
     master.receive(102'000, answer);
   }
-  EXPECT_EQ(master.problem().code, ProblemCode::foreign_protocol);
+  EXPECT_EQ(master.problem().code, ProblemCode::wrong_protocol);
   EXPECT_EQ(master.problem().found, 0x42U);
   EXPECT_EQ(master.problem().expected, protocol_version);
 }
@@ -272,7 +272,7 @@ TEST(MasterProblem, AModuleWithoutAnswersIsNamed) {
   const Problem problem = robot.problem_of_start();
   EXPECT_EQ(problem.code, ProblemCode::no_answer);
   EXPECT_EQ(problem.joint, 4);
-  EXPECT_EQ(problem.abort_code, AbortCode::time_out);
+  EXPECT_EQ(problem.abort_code, AbortCode::timeout);
 }
 
 TEST(MasterProblem, AModuleThatDoesNotBecomeOperationalIsNamed) {

@@ -72,7 +72,7 @@ TEST(SdoClient, GivesUpWhenItsTimeIsOver) {
   EXPECT_EQ(client.state(), State::waiting);
   client.poll(1'250);
   EXPECT_EQ(client.state(), State::aborted);
-  EXPECT_EQ(client.abort_code(), AbortCode::time_out);
+  EXPECT_EQ(client.abort_code(), AbortCode::timeout);
   EXPECT_EQ(client.next_deadline(), never);
   EXPECT_FALSE(client.receive(frame("583 [8] 60 06 10 00 00 00 00 00"))) << "too late";
   EXPECT_EQ(client.state(), State::aborted);

@@ -81,7 +81,7 @@ TEST(FrameBits, ModelStuffsAsTheStandardsExamplesSay) {
 }
 
 TEST(FrameBits, EveryIdentifierWithoutDataAgreesWithTheModel) {
-  for (std::uint16_t identifier = 0; identifier <= CanFrame::highest_identifier; ++identifier) {
+  for (std::uint16_t identifier = 0; identifier <= CanFrame::max_identifier; ++identifier) {
     const CanFrame frame = frame_of(identifier);
     ASSERT_EQ(frame_bits(frame), wire_bits(frame).size()) << identifier;
     ASSERT_EQ(binary(crc_sequence(frame), 15), remainder_of(bits_before_crc(frame))) << identifier;
@@ -103,7 +103,7 @@ TEST(FrameBits, RandomFramesOfEveryLengthAgreeWithTheModel) {
 
 TEST(FrameBits, AStuffBitFollowsTheCrcThatEndsInFiveEqualBits) {
   unsigned found = 0;
-  for (std::uint16_t identifier = 0; identifier <= CanFrame::highest_identifier; ++identifier) {
+  for (std::uint16_t identifier = 0; identifier <= CanFrame::max_identifier; ++identifier) {
     const CanFrame frame = frame_of(identifier);
     const std::string bits = bits_before_crc(frame) + remainder_of(bits_before_crc(frame));
     const std::string all = stuffed(bits);

@@ -10,8 +10,8 @@
 #include <span>
 
 #include "firmware/module/module.hpp"
-#include "shared/canopen/robot_setup.hpp"
 #include "shared/gait/registry.hpp"
+#include "shared/master/setup_list.hpp"
 
 namespace {
 
@@ -105,7 +105,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
  private:
   // The ports.
   bool send(const CanFrame& frame) override {
-    require(frame.length <= 8 && frame.identifier <= CanFrame::highest_identifier, "frames are frames");
+    require(frame.length <= 8 && frame.identifier <= CanFrame::max_identifier, "frames are frames");
     const unsigned node = setup_.node(Setup::joint);
     const unsigned base = frame.identifier - node;
     const bool own = base == 0x080 || base == 0x180 || base == 0x280 || base == 0x380 || base == 0x580 || base == 0x700;

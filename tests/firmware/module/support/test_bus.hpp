@@ -179,7 +179,7 @@ class TestBus {
 
   canopen::AbortCode transfer(const CanFrame& request) {
     send(request);
-    const Microseconds end = now_ + 2 * canopen::SdoClient::default_time_out_us;
+    const Microseconds end = now_ + 2 * canopen::SdoClient::default_timeout_us;
     while (client_.state() == canopen::SdoClient::State::waiting && now_ < end) {
       run_for(frame_time_us);
       client_.poll(now_);

@@ -1,22 +1,9 @@
-#include "shared/canopen/robot_setup.hpp"
+#include "shared/master/setup_list.hpp"
 
 #include "shared/canopen/objects.hpp"
-#include "shared/fixed/crc32.hpp"
 
 namespace proleg::canopen {
 namespace {
-
-void add_little_endian(Crc32& crc, std::uint64_t value, unsigned bytes) {
-  for (unsigned i = 0; i < bytes; ++i) {
-    crc.add(static_cast<std::uint8_t>(value >> (8U * i)));
-  }
-}
-
-std::uint8_t algorithm_id(const Slot& slot) {
-  return slot.algorithm == nullptr ? std::uint8_t{0} : slot.algorithm->declaration().id;
-}
-
-std::uint64_t group_bits(const Slot& slot) { return slot.algorithm == nullptr ? 0 : slot.group.bits(); }
 
 /// Counts writes and keeps the one at a position.
 class Picker {
@@ -41,21 +28,6 @@ class Picker {
 };
 
 }  // namespace
-
-std::uint32_t configuration_crc(const RobotSetup& setup) {
-  Crc32 crc;
-  add_little_endian(crc, setup.kernel.joint_count, 1);
-  add_little_endian(crc, setup.kernel.tick_period_us, 4);
-  add_little_endian(crc, setup.servo_period_us, 4);
-  add_little_endian(crc, setup.kernel.seed, 8);
-  add_little_endian(crc, setup.robot_id, 2);
-  for (const Slot& slot : setup.kernel.slots) {
-    add_little_endian(crc, algorithm_id(slot), 1);
-    add_little_endian(crc, group_bits(slot), 8);
-  }
-  crc.add(setup.nodes);
-  return crc.value();
-}
 
 SetupList::SetupList(const RobotSetup& setup, unsigned joint)
     : setup_(setup), joint_(joint), second_channel_(setup.kernel.second_channel_senders()) {
@@ -95,7 +67,7 @@ void SetupList::collect_start_values() {
 template <typename Visitor>
 void SetupList::visit_all(Visitor& visitor) const {
   const KernelConfiguration& kernel = setup_.kernel;
-  visitor(object::host_heartbeat, std::uint32_t{host_node} << 16U | host_time_out_ms);
+  visitor(object::host_heartbeat, std::uint32_t{host_node} << 16U | host_timeout_ms);
   visitor(object::heartbeat_period, heartbeat_period_ms);
   visitor(object::tick_period, kernel.tick_period_us);
   visitor(object::sync_counter_overflow, object::sync_counter_overflow.default_value);
@@ -109,8 +81,8 @@ void SetupList::visit_all(Visitor& visitor) const {
   visitor(object::seed_high, static_cast<std::uint32_t>(kernel.seed >> 32U));
   visitor(object::servo_period, setup_.servo_period_us);
   for (unsigned i = 0; i < max_slots; ++i) {
-    const std::uint64_t group = group_bits(kernel.slots[i]);
-    visitor(object::slot_algorithm.address(i), object::slot_algorithm.first.type, algorithm_id(kernel.slots[i]));
+    const std::uint64_t group = kernel.slots[i].driven_joints().bits();
+    visitor(object::slot_algorithm.address(i), object::slot_algorithm.first.type, kernel.slots[i].algorithm_id());
     visitor(object::slot_group_low.address(i), object::slot_group_low.first.type, static_cast<std::uint32_t>(group));
     visitor(object::slot_group_high.address(i), object::slot_group_high.first.type,
             static_cast<std::uint32_t>(group >> 32U));
@@ -135,7 +107,7 @@ void SetupList::visit_all(Visitor& visitor) const {
   for (std::uint8_t slot = 0; slot < max_slots; ++slot) {
     for (std::uint8_t parameter = 0; parameter < max_parameters; ++parameter) {
       if ((to_write_[slot] >> parameter & 1U) != 0) {
-        const ValueAddress value{ValueKind::parameter, algorithm_id(kernel.slots[slot]), parameter, slot};
+        const ValueAddress value{ValueKind::parameter, kernel.slots[slot].algorithm_id(), parameter, slot};
         visitor(address_of(value), DataType::integer32, static_cast<std::uint32_t>(start_values_[slot][parameter]));
       }
     }

@@ -1,15 +1,13 @@
-#include "shared/canopen/robot_setup.hpp"
+#include "shared/master/setup_list.hpp"
 
 #include <gtest/gtest.h>
 
-#include <functional>
-#include <memory>
-#include <set>
 #include <vector>
 
 #include "device_memory.hpp"
 #include "robot.hpp"
 #include "shared/canopen/objects.hpp"
+#include "shared/canopen/sdo_server.hpp"
 #include "shared/fixed/random.hpp"
 #include "shared/master/sdo_client.hpp"
 
@@ -60,45 +58,7 @@ KernelConfiguration random_configuration(Pcg32& random, unsigned joints) {
   return configuration;
 }
 
-TEST(ConfigurationCrc, CoversTheDocumentedBytes) {
-  Robot robot(5);
-  robot.nodes = {3, 7, 1, 126, 12};
-  robot.setup.kernel.seed = 0x0123456789ABCDEF;
-  robot.setup.robot_id = 7;
-  robot.setup.kernel.slots[0] = {&test::algorithm(test::coupled), JointMask(0x1F)};
-  robot.setup.kernel.slots[1] = {&test::algorithm(test::sinusoidal), JointMask(0b00110)};
-  robot.setup.kernel.slots[2] = {nullptr, JointMask(0b1)};
-  // zlib's crc32 of the 60 bytes that Python's struct.pack makes of these numbers: "<BIIQH", four times "<BQ", nodes.
-  EXPECT_EQ(configuration_crc(robot.with_spans()), 0xBED05E06U);
-}
-
-TEST(ConfigurationCrc, ChangesWithEverythingThatModulesMustAgreeOnAndWithNothingElse) {
-  Robot robot(3);
-  robot.setup.kernel.slots[0] = {&test::algorithm(test::coupled), JointMask(0b111)};
-  const std::uint32_t crc = configuration_crc(robot.with_spans());
-  std::set<std::uint32_t> crcs{crc};
-  const auto expect_other = [&](const std::function<void(Robot&)>& change) {
-    Robot other = robot;
-    change(other);
-    EXPECT_TRUE(crcs.insert(configuration_crc(other.with_spans())).second);
-  };
-  expect_other([](Robot& r) { r.setup.kernel.tick_period_us = 10'001; });
-  expect_other([](Robot& r) { r.setup.servo_period_us = 3'000; });
-  expect_other([](Robot& r) { r.setup.kernel.seed = 2; });
-  expect_other([](Robot& r) { r.setup.kernel.seed = 1ULL << 32U; });
-  expect_other([](Robot& r) { r.setup.robot_id = 2; });
-  expect_other([](Robot& r) { r.setup.kernel.slots[0].group = JointMask(0b011); });
-  expect_other([](Robot& r) { r.setup.kernel.slots[0].algorithm = &test::algorithm(test::extended); });
-  expect_other([](Robot& r) { std::swap(r.setup.kernel.slots[0], r.setup.kernel.slots[3]); });
-  expect_other([](Robot& r) { std::swap(r.nodes[0], r.nodes[2]); });
-  Robot same = robot;
-  same.limits[0].lower = 0;
-  same.start_values.push_back({0, 0, 0, 0});
-  same.setup.kernel.slots[1].group = JointMask(0b1);  // of an empty slot
-  EXPECT_EQ(configuration_crc(same.with_spans()), crc);
-}
-
-TEST(SetupList, TellsAModuleInTheOrderOfTheProtocol) {
+TEST(SetupList, WritesInTheOrderOfTheProtocol) {
   Robot robot(3);
   robot.nodes = {21, 22, 23};
   robot.setup.robot_id = 9;
@@ -170,7 +130,7 @@ TEST(SetupList, TheEndsOfTheRobotHaveOneNeighbour) {
   EXPECT_EQ(value(1, {0x1411, 1}), -1);
 }
 
-TEST(SetupList, OfStartValuesTheLastCountsAndDefaultsAreNotSent) {
+TEST(SetupList, SendsTheLastOfRepeatedStartValuesAndNoDefaults) {
   Robot robot(2);
   robot.setup.kernel.slots[0] = {&test::algorithm(test::coupled), JointMask(0b01)};
   const std::int32_t usual = test::algorithm(test::coupled).declaration().parameters[0].default_value;
@@ -183,7 +143,7 @@ TEST(SetupList, OfStartValuesTheLastCountsAndDefaultsAreNotSent) {
   EXPECT_EQ(robot.writes(0).size(), without);
 }
 
-TEST(SetupList, LeavesOutStartValuesThatFitNothing) {
+TEST(SetupList, LeavesOutStartValuesWithoutAParameter) {
   Robot robot(2);
   robot.setup.kernel.slots[0] = {&test::algorithm(test::coupled), JointMask(0b01)};
   const std::size_t without = robot.writes(0).size();
@@ -213,33 +173,10 @@ TEST(SetupList, IsEmptyWithoutJointNodesOrLimits) {
   EXPECT_TRUE(robot.writes(0).empty());
 }
 
-TEST(SecondChannel, IsTheKernelsOwnRule) {
-  constexpr std::uint32_t seed = 77;
-  SCOPED_TRACE(testing::Message() << "seed " << seed);
-  Pcg32 random(seed, 0);
-  const auto kernel = std::make_unique<KernelOf<1>>();
-  unsigned accepted = 0;
-  for (int run = 0; run < 3'000; ++run) {
-    const unsigned joints = 1 + random.next() % max_joints;
-    KernelConfiguration configuration = random_configuration(random, joints);
-    for (Slot& slot : configuration.slots) {  // sparse groups, of which three rarely meet
-      slot.group = JointMask(slot.group.bits() & random.next() & (std::uint64_t{random.next()} << 32U | random.next()));
-    }
-    if (kernel->configure(configuration, 0) != Status::ok) {
-      continue;
-    }
-    ++accepted;
-    const JointMask senders = configuration.second_channel_senders();
-    for (unsigned joint = 0; joint < joints; ++joint) {
-      ASSERT_EQ(senders.contains(joint), kernel->channel_count(joint) == 2) << "run " << run << ", joint " << joint;
-    }
-  }
-  EXPECT_GT(accepted, 300U);
-}
-
-/// What a module knows from its objects, and nothing else.
-RobotSetup read_back(const test::DeviceMemory& device, std::uint8_t own_node, std::vector<std::uint8_t>& nodes) {
-  RobotSetup setup;
+/// The configuration as the objects of a module hold it.
+RobotConfiguration read_back(const test::DeviceMemory& device, std::uint8_t own_node,
+                             std::vector<std::uint8_t>& nodes) {
+  RobotConfiguration setup;
   const auto value = [&](Address address) { return device.value(address); };
   setup.kernel.joint_count = static_cast<std::uint8_t>(value(object::joint_count.address));
   setup.kernel.tick_period_us = value(object::tick_period.address);
@@ -260,7 +197,7 @@ RobotSetup read_back(const test::DeviceMemory& device, std::uint8_t own_node, st
   return setup;
 }
 
-TEST(SetupList, IsAcceptedByAModuleWhichThenKnowsTheWholeConfiguration) {
+TEST(SetupList, GivesAModuleTheWholeConfiguration) {
   constexpr std::uint32_t seed = 8;
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   Pcg32 random(seed, 0);

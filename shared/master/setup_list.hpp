@@ -1,0 +1,72 @@
+#pragma once
+
+// The SDO writes that set up the module of a joint. There is no other way to configure a module: simulator and host
+// send this list.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "shared/canopen/object.hpp"
+#include "shared/canopen/robot_configuration.hpp"
+
+namespace proleg::canopen {
+
+/// Silence of the host after which a module stops.
+inline constexpr std::uint32_t host_timeout_ms = 500;
+/// Period of a module's heartbeat.
+inline constexpr std::uint32_t heartbeat_period_ms = 100;
+
+/// A parameter of a joint that differs from its default.
+struct StartValue {
+  std::uint8_t slot;
+  std::uint8_t joint;
+  std::uint8_t parameter;
+  std::int32_t value;
+};
+
+/// A robot on a bus.
+struct RobotSetup : RobotConfiguration {
+  std::span<const AngleLimits> limits;       ///< of each joint, in kernel order
+  std::span<const StartValue> start_values;  ///< if an address occurs several times, the last value counts
+};
+
+struct SdoWrite {
+  Address address;
+  std::uint8_t size;  ///< bytes
+  std::uint32_t value;
+
+  friend bool operator==(const SdoWrite&, const SdoWrite&) = default;
+};
+
+/// The writes that configure a module for a joint, in the order in which they must be made: heartbeats, what the kernel
+/// needs, `activate`, then limits and parameters. The module is in Pre-operational after a reset, so values that equal
+/// the defaults are left out.
+///
+/// setup: must outlive the list. The list is empty if there is no such joint, or if nodes or limits are missing. The
+/// list leaves out a start value without a parameter of an algorithm that drives the joint.
+class SetupList {
+ public:
+  SetupList(const RobotSetup& setup, unsigned joint);
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  /// position: below size().
+  [[nodiscard]] SdoWrite at(std::size_t position) const;
+
+ private:
+  using Values = std::array<std::array<std::int32_t, max_parameters>, max_slots>;
+
+  void collect_start_values();
+  template <typename Visitor>
+  void visit_all(Visitor& visitor) const;
+
+  const RobotSetup& setup_;
+  unsigned joint_;
+  JointMask second_channel_;
+  Values start_values_{};
+  std::array<std::uint32_t, max_slots> to_write_{};  ///< of each slot, bit p: parameter p differs from its default
+  std::size_t size_ = 0;
+};
+
+}  // namespace proleg::canopen

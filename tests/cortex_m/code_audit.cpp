@@ -31,7 +31,7 @@ bool is_floating_point_helper(std::string_view name) {
                                                        "__aeabi_cf",  "__aeabi_h2f", "__aeabi_i2",
                                                        "__aeabi_ui2", "__aeabi_l2",  "__aeabi_ul2"};
   if (std::any_of(beginnings.begin(), beginnings.end(),
-                  [&](std::string_view beginning) { return name.starts_with(beginning); })) {
+                  [&](std::string_view prefix) { return name.starts_with(prefix); })) {
     return true;
   }
   // libgcc: __adddf3, __mulsf3, __fixdfsi, __floatsidf and so on name the format df or sf.

@@ -1,4 +1,4 @@
-// The core needs no FPU, no floating-point library and no heap: said of all of it, on both processors.
+// All of the core needs no FPU, no floating-point library and no heap, on both processors.
 
 #include "tests/cortex_m/code_audit.hpp"
 

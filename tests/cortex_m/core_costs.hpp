@@ -1,7 +1,7 @@
 #pragma once
 
-// What the core costs on a Cortex-M: instructions and stack, measured on the emulated CPU. Instruction counts are
-// those of issue; they do not depend on the computer that measures.
+// What the core costs on a Cortex-M: instructions and stack, measured on the emulated CPU. Instructions count when they
+// are issued; the counts do not depend on the computer that measures.
 
 #include <cstddef>
 #include <cstdint>

@@ -45,12 +45,13 @@ TEST_F(CostOnCortexM4, ATickInOneCallCostsItsPartsAndTheCallsOfThem) {
   }
 }
 
-/// Stack of the kernel's functions: measured, at most the bound that tools/stack_bound computes, at most this.
+/// Stack of the kernel's functions: measured, at most the bound that tools/stack_bound computes, and that at most
+/// `limit`.
 class StackOfKernel : public testing::TestWithParam<Cpu> {
  protected:
   static constexpr std::size_t limit = 512;
 
-  /// What the cross build has left beside the image.
+  /// The file that the cross build writes beside the image.
   static std::map<std::string, std::size_t> read_bounds() {
     std::filesystem::path file = core_image_file(GetParam());
     std::ifstream stream(file.replace_extension(".stack.tsv"));

@@ -6,7 +6,8 @@
 
 namespace proleg::cortex_m {
 
-/// The test image for a CPU, as its cross preset builds it. sim::ElfError that names the command if it was not built.
+/// The test image for a CPU, as its cross preset builds it. Throws sim::ElfError, which names the command, if it was
+/// not built.
 [[nodiscard]] std::filesystem::path core_image_file(Cpu cpu);
 
 }  // namespace proleg::cortex_m

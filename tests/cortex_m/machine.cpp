@@ -41,8 +41,8 @@ class Machine::Engine {
     check(uc_open(UC_ARCH_ARM, UC_MODE_THUMB, &uc_), "open");
     // The mode for microcontrollers would silently choose a Cortex-M33; the model brings the mode with it.
     check(uc_ctl_set_cpu_model(uc_, cpu == Cpu::cortex_m4 ? UC_CPU_ARM_CORTEX_M4 : UC_CPU_ARM_CORTEX_M0), "CPU model");
-    // Unicorn 2.0.1 takes every store for a possible change of code and looks up what code its page has. That is a
-    // third faster if no code lies in the same 4 MB of Unicorn's own memory, which it fills in the order of mapping.
+    // At every store Unicorn 2.0.1 looks up the code in its page. That is a third faster if no code lies in the same 4
+    // MB of Unicorn's own memory, which it fills in the order of mapping.
     check(uc_mem_map(uc_, ram_start, ram_size, UC_PROT_READ | UC_PROT_WRITE), "map RAM");
     check(uc_mem_map(uc_, distance_start, distance_size, UC_PROT_NONE), "map distance");
     check(uc_mem_map(uc_, flash_start, flash_size, UC_PROT_READ | UC_PROT_EXEC), "map flash");
@@ -173,7 +173,7 @@ Machine::Machine(const ElfImage& image, Cpu cpu)
   for (const ElfImage::Segment& segment : image.segments()) {
     engine_->write(segment.load_address, segment.bytes);
   }
-  // A Cortex-M takes its stack pointer and its first address from the vector table.
+  // A Cortex-M reads its stack pointer and its first address from the vector table.
   engine_->set_reg(UC_ARM_REG_SP, read_word(flash_start));
   const Engine::End end = engine_->run(read_word(flash_start + 4), start_up_budget);
   if (end != Engine::End::waiting) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// An emulated Cortex-M CPU with flash and RAM and nothing more: calls functions of an image and measures them.
+// An emulated Cortex-M CPU with flash and RAM only: calls functions of an image and measures them.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +18,7 @@ using sim::ElfImage;
 
 enum class Cpu : std::uint8_t { cortex_m0, cortex_m4 };
 
-/// The image did something that no image should: one line that names the address and the function.
+/// The image failed: one line that names the address and the function.
 class RunError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -26,7 +26,7 @@ class RunError : public std::runtime_error {
 
 struct CallResult {
   std::uint32_t value;         ///< register r0 at the return
-  std::uint64_t instructions;  ///< issued from the first of the function to its return, both included
+  std::uint64_t instructions;  ///< from the first of the function to its return, both included
 };
 
 class Machine {
@@ -44,7 +44,7 @@ class Machine {
   Machine& operator=(const Machine&) = delete;
 
   /// Calls a function with arguments of 32 bits, on an empty stack. RunError if it does not return within
-  /// `budget` instructions, or commits a fault; the error names the begin of the block of instructions that did it.
+  /// `budget` instructions, or causes a fault; the error names the begin of the block of instructions that caused it.
   CallResult call(std::string_view function, const std::vector<std::uint32_t>& arguments, std::uint64_t budget);
 
   [[nodiscard]] std::uint32_t address_of(std::string_view symbol) const { return image_.symbol(symbol).address; }

@@ -108,7 +108,7 @@ TEST_P(MachineOf, ReadsBackWhatItWrites) {
   EXPECT_EQ(machine_.read_word(address), 0x12345678U);
 }
 
-TEST_P(MachineOf, RefusesToCallWhatIsNoFunction) {
+TEST_P(MachineOf, RejectsToCallWhatIsNoFunction) {
   EXPECT_TRUE(contains(error_of("benchmark_snapshot", {}, 100), "is not a function"));
 }
 
@@ -122,7 +122,7 @@ TEST(Thumb, AnInstructionHasTwoOrFourBytes) {
   EXPECT_EQ(sim::instruction_size(0xE7FE), 2U);  // b .
   EXPECT_EQ(sim::instruction_size(0xE92D), 4U);  // stmdb
   EXPECT_EQ(sim::instruction_size(0xF000), 4U);  // bl
-  EXPECT_EQ(sim::instruction_size(0xFB01), 4U);  // mul and its kin
+  EXPECT_EQ(sim::instruction_size(0xFB01), 4U);  // mul and the like
 }
 
 }  // namespace

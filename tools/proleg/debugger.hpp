@@ -10,18 +10,18 @@
 
 namespace proleg::tools {
 
-/// gdb at one virtual module of `proleg hil`. While its program stands still so does the simulation.
+/// gdb at one virtual module of `proleg hil`. While its program stands still, the simulation does too.
 class Debugger {
  public:
-  /// Listens; std::runtime_error if the port cannot be had.
+  /// Listens; throws std::runtime_error if the port is not available.
   Debugger(std::uint16_t port, unsigned joint, std::filesystem::path image);
 
   [[nodiscard]] unsigned joint() const { return joint_; }
-  /// Waits until gdb is there, or the user interrupts. The program then stops at its first instruction.
+  /// Waits until gdb has connected, or the user interrupts. The program then stops at its first instruction.
   void attach(sim::Stm32f405& chip);
 
  private:
-  /// Whether the program shall make a single step. Throws std::runtime_error if gdb ended it.
+  /// Whether the program must make a single step. Throws std::runtime_error if gdb ended it.
   [[nodiscard]] bool on_debug_event(sim::Stm32f405::DebugEvent event);
 
   std::uint16_t port_;
@@ -29,7 +29,7 @@ class Debugger {
   std::filesystem::path image_;
   std::optional<sim::CpuTarget> target_;
   std::optional<sim::GdbServer> server_;
-  bool attached_ = false;  ///< the first stop is still to come
+  bool attached_ = false;  ///< gdb has connected; the first stop is next
   std::chrono::steady_clock::time_point last_poll_;
 };
 

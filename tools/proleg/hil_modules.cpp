@@ -39,7 +39,7 @@ sim::FirmwareImage read_image(const std::optional<std::string>& name) {
 }  // namespace
 
 /// The table of a module's instruction counts: in a file, or on standard error.
-struct HilModules::Trace {
+struct HilModules::InstructionTrace {
   unsigned node = 0;
   std::string file;
   std::ofstream stream;
@@ -98,7 +98,7 @@ HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenar
                                                       : virtual_joint_of("--gdb", options.gdb->substr(0, colon));
     debugger_ = std::make_unique<Debugger>(*port, joint, image_->file());
   }
-  open_traces(options.traces, other_files);  // last: what is refused leaves no file behind
+  open_traces(options.traces, other_files);  // last: a rejected option leaves no file behind
 }
 
 HilModules::~HilModules() = default;
@@ -114,7 +114,7 @@ void HilModules::parse_modules(const std::string& word) {
   }
   if (!word.ends_with(some)) {
     throw InputError("--modules", 0, in_quotes(shortened(word)),
-                     "native, mcu, or nodes that are to be virtual: 1,3=mcu");
+                     "native, mcu, or the nodes of virtual modules: 1,3=mcu");
   }
   std::string_view rest = std::string_view(word).substr(0, word.size() - some.size());
   for (bool more = true; more;) {
@@ -138,7 +138,7 @@ unsigned HilModules::virtual_joint_of(const std::string& option, const std::stri
 }
 
 void HilModules::open_traces(const std::vector<std::string>& words, const std::vector<std::string>& other_files) {
-  // All is looked at before a file is touched: what is refused leaves none behind, and none overwritten.
+  // Checks everything before it opens a file: a rejected option neither leaves nor overwrites a file.
   std::vector<std::string> files = other_files;
   for (const std::string& word : words) {
     const std::size_t equal = word.find('=');
@@ -146,7 +146,7 @@ void HilModules::open_traces(const std::vector<std::string>& words, const std::v
     if (traces_[joint]) {
       throw InputError("--trace", 0, "node " + word.substr(0, equal) + " twice", "each node once");
     }
-    traces_[joint] = std::make_unique<Trace>();
+    traces_[joint] = std::make_unique<InstructionTrace>();
     traces_[joint]->node = scenario_.modules[joint].node;
     if (equal != std::string::npos) {
       const std::string file = word.substr(equal + 1);
@@ -188,7 +188,7 @@ std::unique_ptr<sim::JointModule> HilModules::make(const sim::ModuleParts& parts
     };
   }
   if (traces_[joint]) {
-    options.trace = [trace = traces_[joint].get()](const sim::TickCost& cost) {
+    options.on_tick = [trace = traces_[joint].get()](const sim::TickCost& cost) {
       trace->out() << trace->node << '\t' << cost.tick << '\t' << cost.to_state_frame << '\t' << cost.whole << '\n';
     };
   }

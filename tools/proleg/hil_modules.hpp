@@ -1,6 +1,6 @@
 #pragma once
 
-// What runs the modules of `proleg hil`: this computer or virtual chips, as the user asks.
+// The modules of `proleg hil`: native, or in virtual chips, as the user chooses.
 
 #include <filesystem>
 #include <memory>
@@ -29,7 +29,7 @@ void add_module_options(CommandLine& command_line, ModuleOptions& options);
 class HilModules {
  public:
   /// Reads the image if one is needed. Throws InputError and BadInput. scenario: must outlive this.
-  /// other_files: that the run writes, which no trace may be.
+  /// other_files: files that the run writes; no trace may have their names.
   HilModules(const ModuleOptions& options, const sim::Scenario& scenario, const std::vector<std::string>& other_files);
   ~HilModules();
   HilModules(const HilModules&) = delete;
@@ -46,13 +46,13 @@ class HilModules {
     std::uint8_t node;
     sim::TickCost cost;
   };
-  /// Of all virtual modules; only while the loop lives.
+  /// Of all virtual modules; only before the loop is destroyed.
   [[nodiscard]] std::optional<Costliest> costliest_tick() const;
   /// To be called when the run is over: ends the traces. Throws std::runtime_error if one could not be written.
   void finish();
 
  private:
-  struct Trace;
+  struct InstructionTrace;
 
   [[nodiscard]] bool is_virtual(unsigned joint) const { return virtual_joints_[joint]; }
   [[nodiscard]] unsigned joint_of(const std::string& option, const std::string& word) const;
@@ -63,7 +63,7 @@ class HilModules {
   const sim::Scenario& scenario_;
   std::vector<bool> virtual_joints_;  ///< by joint
   std::vector<bool> consoles_;
-  std::vector<std::unique_ptr<Trace>> traces_;  ///< by joint; null: none
+  std::vector<std::unique_ptr<InstructionTrace>> traces_;  ///< by joint; null: none
   std::optional<sim::FirmwareImage> image_;
   std::vector<sim::VirtualModule*> modules_;  ///< by joint; null: native
   std::unique_ptr<Debugger> debugger_;

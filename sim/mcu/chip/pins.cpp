@@ -97,7 +97,7 @@ void Pins::look() {
 
 void Pins::reset() {
   if (watched_) {
-    watched_->next_edge = never_on_chip;  // was on the clock of before
+    watched_->next_edge = never_on_chip;  // on the clock before the reset
   }
   look();
 }

@@ -25,15 +25,15 @@ class Pins {
   /// Of an output of TIM2 (1 to 4) that reaches a pin, as Timer::high_time(); nothing if it reaches none.
   [[nodiscard]] std::optional<LocalTime> pulse_time(unsigned channel);
 
-  /// Called when the level of the watched pin changes, with the time of the edge: of one that is a plain input or
-  /// output, or an output of TIM2. One of another peripheral counts as low.
+  /// Called when the level of the watched pin changes, with the time of the edge. The pin is a plain input or output,
+  /// or an output of TIM2; one of another peripheral counts as low.
   using Watch = std::function<void(LocalTime edge, bool high)>;
   void watch(char port, unsigned number, Watch watch);
   /// To be called at next_edge(), and before and after each write of a register: two edges are never due at once.
   void look();
   /// When the watched pin may change by itself; never_on_chip if nothing is watched.
   [[nodiscard]] LocalTime next_edge() const { return watched_ ? watched_->next_edge : never_on_chip; }
-  /// After a reset of the chip: time and timers start anew.
+  /// After a reset of the chip: time and timers start from 0.
   void reset();
 
  private:

@@ -77,7 +77,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     if (!on_ || stands_still_) {
       return;
     }
-    forget_next_events();
+    invalidate_next_events();
     can_.submit(now_on_bus);
     const LocalTime due = oscillator_.at(now_on_bus);
     const LocalTime horizon = std::max(due, oscillator_.at(quiet_until));
@@ -142,7 +142,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   [[nodiscard]] LocalTime core_period() const override { return rcc_.clocks().core; }
   [[nodiscard]] const Clocks& clocks() const override { return rcc_.clocks(); }
 
-  /// Time goes on without instructions.
+  /// Time passes without instructions.
   void pass_to(LocalTime time) {
     anchor_time_ = time;
     anchor_instructions_ = cpu_.instructions();
@@ -158,15 +158,15 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     }
     return std::min(*next_peripheral_event_, cpu_.next_system_tick());
   }
-  /// Something happened that may have changed when something happens next.
-  void forget_next_events() {
+  /// To be called when the time of the next event may have changed.
+  void invalidate_next_events() {
     next_peripheral_event_.reset();
     next_event_.reset();
   }
 
   void take_events() {
     const LocalTime time = now();
-    forget_next_events();
+    invalidate_next_events();
     if (cpu_.next_system_tick() <= time) {
       cpu_.advance_system_tick();
     }
@@ -176,11 +176,18 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       }
     }
     pins_.look();
-    forget_next_events();
-    if (now() != time) {  // the core has another clock now
-      pass_to(time);
-      cpu_.change_core_period();
+    invalidate_next_events();
+    static_cast<void>(follow_core_clock(time));
+  }
+
+  /// To be called when the core may have a new clock, with the time before. True if it has.
+  bool follow_core_clock(LocalTime time) {
+    if (now() == time) {
+      return false;
     }
+    pass_to(time);
+    cpu_.change_core_period();
+    return true;
   }
 
   /// A CPU that has locked up waits for the watchdog.
@@ -240,7 +247,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     rcc_.note_start(cause);
     cpu_.reset();
     pins_.reset();
-    forget_next_events();
+    invalidate_next_events();
   }
 
   void restart() {
@@ -257,7 +264,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     }
   }
 
-  // What the CPU sees.
+  // Memory and registers of the CPU.
 
   /// The peripheral at an address, which has a clock, and the offset of its register.
   std::pair<Peripheral*, std::uint32_t> find(std::uint32_t address, unsigned size) const {
@@ -272,7 +279,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       const auto [peripheral, offset] = find(address, size);
       value = peripheral->read(offset);
       if (peripheral == &flash_ && flash_.busy_until() > now()) {
-        // A program in RAM that waits for the end of the operation: nothing comes of its waiting one by one.
+        // A program in RAM polls for the end of the operation: skips to it.
         pass_to(std::max(now(), std::min({flash_.busy_until(), next_internal_event(), run_end_})));
         shorten_run(run_end_);
       }
@@ -290,10 +297,8 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       pins_.look();
       peripheral->write(offset, value);
       pins_.look();
-      forget_next_events();
-      if (now() != time) {  // the core has another clock now
-        pass_to(time);
-        cpu_.change_core_period();
+      invalidate_next_events();
+      if (follow_core_clock(time)) {
         cpu_.pause();
       }
       shorten_run(peripheral->next_event());
@@ -306,7 +311,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   bool store_to_flash(std::uint32_t address, unsigned size, std::uint32_t value) override {
     const bool taken = flash_.program(address, size, value);
-    forget_next_events();
+    invalidate_next_events();
     shorten_run(flash_.next_event());
     if (flash_.busy_until() > now()) {
       cpu_.pause();
@@ -346,7 +351,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   void read(std::uint32_t address, std::span<std::uint8_t> bytes) override { cpu_.read(address, bytes); }
   void write(std::uint32_t address, std::span<const std::uint8_t> bytes) override { cpu_.write(address, bytes); }
 
-  // What peripherals and CPU ask for.
+  // Services for peripherals and CPU.
   void set_interrupt(unsigned position, bool high) override {
     cpu_.set_interrupt(position, high);
     next_event_.reset();
@@ -359,7 +364,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   }
   void reset_requested() override { request_reset(ResetCause::software); }
   void reschedule() override {
-    forget_next_events();
+    invalidate_next_events();
     shorten_run(next_internal_event());
   }
 
@@ -410,9 +415,9 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   static constexpr unsigned program_counter = 15;
 
   std::vector<Peripheral*> peripherals_;
-  std::vector<Peripheral*> timed_;  ///< those with events of their own
+  std::vector<Peripheral*> timed_;  ///< those that act by themselves
   PeripheralMap map_;
-  mutable std::optional<LocalTime> next_peripheral_event_;  ///< nothing: to be asked for
+  mutable std::optional<LocalTime> next_peripheral_event_;  ///< nothing: not computed
   mutable std::optional<BusTime> next_event_;
   LocalTime anchor_time_ = 0;  ///< local time when the CPU had executed anchor_instructions_
   std::uint64_t anchor_instructions_ = 0;

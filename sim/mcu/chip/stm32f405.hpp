@@ -1,10 +1,10 @@
 #pragma once
 
 // A virtual STM32F405 (ST RM0090): CPU, memory and the peripherals that a joint module uses, on the simulated CAN bus.
-// It runs the image that is flashed, unmodified.
+// It runs the flashed image, unmodified.
 //
-// Time comes from executed instructions, one a cycle of HCLK; while the CPU sleeps time goes to the next event. What
-// the model does not have stops the chip with a name, rather than let a program believe in it.
+// An executed instruction takes one cycle of HCLK; while the CPU sleeps, time jumps to the next event. A program that
+// uses what the model does not have stops the chip, with a message that names it.
 
 #include <array>
 #include <cstdint>
@@ -27,10 +27,10 @@ struct ChipSettings {
   std::uint64_t seed = 0;                      ///< of what a cut flash operation leaves behind
 };
 
-/// Something that a person should hear of.
+/// An event to report to the user.
 struct ChipEvent {
   enum class Kind : std::uint8_t {
-    fault,       ///< the program's: an exception handler runs now
+    fault,       ///< of the program: an exception handler runs now
     locked_up,   ///< a fault in the handler of a fault
     unmodelled,  ///< the model ends here: the chip stands still until it is switched on again
     reset,       ///< it started again by itself
@@ -50,7 +50,7 @@ class Stm32f405 {
   Stm32f405(const Stm32f405&) = delete;
   Stm32f405& operator=(const Stm32f405&) = delete;
 
-  /// Puts something into memory, as a programmer on the debug port does. std::out_of_range where no memory is.
+  /// Writes memory, as a programmer on the debug port does. Throws std::out_of_range where no memory is.
   void write(std::uint32_t address, std::span<const std::uint8_t> bytes);
   void read(std::uint32_t address, std::span<std::uint8_t> bytes) const;
 
@@ -63,8 +63,8 @@ class Stm32f405 {
   /// Length of the pulses at an output of TIM2 (1 to 4) that reaches its pin, as Timer::high_time(); nothing if there
   /// are none.
   [[nodiscard]] std::optional<LocalTime> pulse_time(unsigned channel) const;
-  /// Called when the level of a pin changes, with the true time of its edge: of one that is a plain input or output, or
-  /// an output of TIM2. One of another peripheral counts as low. One pin can be watched, before the chip is switched
+  /// Called when the level of a pin changes, with the true time of its edge. The pin is a plain input or output, or an
+  /// output of TIM2; one of another peripheral counts as low. One pin can be watched, before the chip is switched
   /// on.
   using PinWatch = std::function<void(BusTime time, bool high)>;
   void set_pin_watch(char port, unsigned number, PinWatch watch);
@@ -89,7 +89,7 @@ class Stm32f405 {
   void set_debug_hook(DebugHook hook);
   [[nodiscard]] Cpu& cpu();
 
-  /// What happened since it was asked last, oldest first.
+  /// The oldest event that was not taken yet.
   [[nodiscard]] std::optional<ChipEvent> take_event();
 
  private:

@@ -40,7 +40,7 @@ std::optional<std::uint32_t> word_at(const ReadMemory& read, std::uint32_t addre
   return bytes[0] | std::uint32_t{bytes[1]} << 8U | std::uint32_t{bytes[2]} << 16U | std::uint32_t{bytes[3]} << 24U;
 }
 
-/// What an expression of the call frame information leads to: a place in memory, a register or the value itself.
+/// The result of an expression of the call frame information: a place in memory, a register or the value itself.
 std::optional<std::uint32_t> evaluate(std::span<const Dwarf_Op> operations, const Registers& registers,
                                       std::optional<std::uint32_t> frame_address, bool is_address,
                                       const ReadMemory& read) {
@@ -175,7 +175,7 @@ class BackTracer::Implementation {
     std::copy_n(given.begin(), registers.size(), registers.begin());
     unsigned exception = given[16] & exception_number_mask;
     bool is_return_address = false;
-    while (frames.size() < most_frames) {
+    while (frames.size() < max_frames) {
       const std::uint32_t address = registers[pc] & ~1U;
       // A return address may be the first of the next function.
       const std::uint32_t looked_up = is_return_address ? address - 2 : address;
@@ -185,7 +185,7 @@ class BackTracer::Implementation {
         if (frames.size() > 1 || registers[pc] == registers[lr]) {
           break;
         }
-        // Not known, or no code at all: as if it had been called just now.
+        // Not known, or no code at all: treats it as just called.
         registers[pc] = registers[lr];
       } else if (registers[sp] < old_sp || (registers[sp] == old_sp && frames.size() > 1 && is_return_address)) {
         break;

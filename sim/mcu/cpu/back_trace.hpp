@@ -1,7 +1,7 @@
 #pragma once
 
-// Which functions had been called when a program stopped, read off its stack by means of the call frame information
-// that the compiler left in the image (DWARF 5, section 6.4).
+// Which functions had been called when a program stopped, from its stack and the call frame information that the
+// compiler left in the image (DWARF 5, section 6.4).
 
 #include <cstdint>
 #include <filesystem>
@@ -25,7 +25,7 @@ struct CallFrame {
 
 class BackTracer {
  public:
-  static constexpr std::size_t most_frames = 32;
+  static constexpr std::size_t max_frames = 32;
 
   /// The image, with its symbols; debug information (-g) is used if it is there. Throws ElfError.
   explicit BackTracer(const std::filesystem::path& image);
@@ -37,8 +37,8 @@ class BackTracer {
   [[nodiscard]] std::string describe(std::uint32_t address) const;
 
   /// The innermost function first. registers: r0-r12, sp, lr, pc, xpsr. It ends at the function that started the
-  /// program, at what makes no sense, and where the interrupted code used the process stack; without debug information
-  /// after the address and the one in lr.
+  /// program, at a frame that makes no sense, and where the interrupted code used the process stack; without debug
+  /// information it has pc and lr only.
   [[nodiscard]] std::vector<CallFrame> trace(std::span<const std::uint32_t, 17> registers,
                                              const ReadMemory& read) const;
 

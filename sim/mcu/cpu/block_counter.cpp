@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint16_t wait_for_event = 0xBF20;
 constexpr std::uint16_t wait_for_interrupt = 0xBF30;
 constexpr std::uint16_t send_event = 0xBF40;
-constexpr std::uint32_t longest_block = 512 * 4;
+constexpr std::uint32_t max_block_bytes = 512 * 4;
 
 }  // namespace
 
@@ -61,9 +61,9 @@ std::optional<CodeBlock> BlockCounter::find_elsewhere(std::uint32_t address, std
   return found != others_.end() && found->second.size == size ? std::optional(found->second) : std::nullopt;
 }
 
-void BlockCounter::forget(std::uint32_t address, std::uint32_t size) {
+void BlockCounter::discard(std::uint32_t address, std::uint32_t size) {
   const std::uint32_t offset = address - start_;
-  const std::uint32_t first = offset < longest_block ? 0 : (offset - longest_block) / 2;
+  const std::uint32_t first = offset < max_block_bytes ? 0 : (offset - max_block_bytes) / 2;
   const std::uint32_t last = std::min(count_, (offset + size + 1) / 2);
   std::memset(static_cast<void*>(entries_.get() + first), 0, (last - first) * sizeof(Entry));
   others_.erase(others_.lower_bound(start_ + 2 * first), others_.lower_bound(start_ + 2 * last));

@@ -1,6 +1,6 @@
 #pragma once
 
-// How many instructions a block of translated code has, and what is special about it.
+// The number of instructions of a block of translated code, and its special ones.
 
 #include <cstdint>
 #include <cstdlib>
@@ -24,8 +24,8 @@ struct CodeBlock {
 /// Reads the code of a block.
 [[nodiscard]] CodeBlock examine_block(std::span<const std::uint8_t> code);
 
-/// Remembers the blocks of one memory. Looked at before every block that is executed, by many chips in turn: so an
-/// entry is two bytes, and the few blocks that do not fit are kept elsewhere.
+/// The known blocks of one memory. It is read before every block that is executed, by many chips in turn: so an entry
+/// has two bytes, and the few blocks that do not fit are stored elsewhere.
 class BlockCounter {
  public:
   /// start, size: of the memory, in bytes.
@@ -44,8 +44,8 @@ class BlockCounter {
   }
   void add(std::uint32_t address, const CodeBlock& block);
 
-  /// Forgets what touches these addresses.
-  void forget(std::uint32_t address, std::uint32_t size);
+  /// Discards the blocks that touch these addresses.
+  void discard(std::uint32_t address, std::uint32_t size);
 
  private:
   static constexpr std::uint8_t elsewhere = 0xFF;

@@ -125,7 +125,7 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
       return;
     }
     static_cast<void>(engine_.write_memory(address, bytes));
-    exceptions_.forget_vectors();
+    exceptions_.discard_vectors();
   }
 
   [[nodiscard]] std::uint32_t core_register(unsigned number) const {
@@ -185,7 +185,7 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
       return true;
     }
     if (nvic_.wants_attention()) {
-      // While it is masked, every block asks again.
+      // While it is masked, every block checks again.
       return exceptions_.takes_next();
     }
     engine_.set_limit(limit_);
@@ -261,7 +261,7 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
     if (state_ == State::locked_up || state_ == State::halted || (state_ == State::sleeping && !wakes())) {
       return false;
     }
-    // What has been told of once is not told of again.
+    // A breakpoint that has stopped the run does not stop it again.
     engine_.pass_breakpoint(state_ == State::at_breakpoint);
     state_ = State::running;
     stop_requested_ = false;
@@ -273,7 +273,7 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
       for (const Write& write : std::exchange(writes_, {})) {
         static_cast<void>(engine_.write_memory(write.address, write.bytes));
       }
-      exceptions_.forget_vectors();
+      exceptions_.discard_vectors();
     }
     if (exceptions_.is_locked_up()) {
       state_ = State::locked_up;
@@ -285,7 +285,7 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
     return state_ != State::running;
   }
 
-  /// What is to be done between blocks. False: the run ends.
+  /// The work between blocks. False: the run ends.
   bool prepare() {
     if (prepare_to_stop()) {
       return false;
@@ -331,25 +331,25 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
         }
         break;
       case Engine::End::breakpoint_instruction:
-        exceptions_.refuse_breakpoint();
+        exceptions_.raise_breakpoint();
         break;
       case Engine::End::no_coprocessor:
-        exceptions_.refuse_coprocessor();
+        exceptions_.raise_no_coprocessor();
         break;
       case Engine::End::undefined_instruction:
-        exceptions_.refuse_undefined_instruction();
+        exceptions_.raise_undefined_instruction();
         break;
       case Engine::End::invalid_state:
-        exceptions_.refuse_state();
+        exceptions_.raise_invalid_state();
         break;
       case Engine::End::unaligned_exclusive:
-        exceptions_.refuse_alignment();
+        exceptions_.raise_unaligned_access();
         break;
       case Engine::End::memory_fault:
-        exceptions_.refuse_memory(engine_.fault());
+        exceptions_.raise_memory_fault(engine_.fault());
         break;
       case Engine::End::failed:
-        halt("the emulator cannot go on at " + hexadecimal(engine_.pc()));
+        halt("the emulator cannot continue at " + hexadecimal(engine_.pc()));
         break;
     }
   }

@@ -8,14 +8,13 @@
 // - An instruction takes one cycle. DWT_CYCCNT counts instructions.
 // - Nothing is at address 0, where the chip shows the flash a second time; only the vector table is found there. So a
 //   null pointer is a fault.
-// - There is no MPU; unprivileged code may use everything but the special registers.
+// - There is no MPU; unprivileged code may use everything except the special registers.
 // - CCR.UNALIGN_TRP and DIV_0_TRP do nothing: unaligned accesses work, also those that always fault on the chip, and a
 //   division by zero gives 0.
 // - The FPU works, but its registers are not saved at exceptions, and FPCCR is not modelled.
 // - Exceptions do not clear the monitor of LDREX and STREX; instead STREX fails if the memory has another value.
-// - BASEPRI reads back its lower four bits, which the chip reads as 0. They count for nothing.
-// - A store that the bus refuses is a precise fault. Its instruction is told from the addresses in the block: if
-// several
+// - BASEPRI reads back its lower four bits, which the chip reads as 0. They have no effect.
+// - A store that the bus rejects is a precise fault. Its instruction is found by the addresses in the block: if several
 //   fit, the first is named.
 
 #include <cstdint>
@@ -32,17 +31,17 @@ namespace proleg::sim {
 class CpuSurroundings {
  public:
   /// An access in 0x40000000 to 0x5FFFFFFF, of 1, 2 or 4 bytes; one to a bit-band alias arrives as load and store of
-  /// the word. These are called in the middle of a block: they must not throw, and of the CPU they may use everything
-  /// but reset(), run(), step(), set_breakpoints() and set_core_register().
+  /// the word. These are called in the middle of a block: they must not throw, and may use all functions of the CPU
+  /// except reset(), run(), step(), set_breakpoints() and set_core_register().
   [[nodiscard]] virtual std::uint32_t load(std::uint32_t address, unsigned size) = 0;
   virtual void store(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
-  /// A store to flash, which changes nothing by itself: Cpu::write() does. False: it is refused by the bus, a fault of
-  /// the program.
+  /// A store to flash, which changes nothing by itself: Cpu::write() does. False: the bus rejects it, a fault of the
+  /// program.
   [[nodiscard]] virtual bool store_to_flash(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
   /// For SysTick: local time and period of its clock (HCLK).
   [[nodiscard]] virtual LocalTime now() const = 0;
   [[nodiscard]] virtual LocalTime core_period() const = 0;
-  /// SYSRESETREQ. The run ends before the next block; reset() is for the caller of run() to call.
+  /// SYSRESETREQ. The run ends before the next block; the caller of run() must call reset().
   virtual void reset_requested() = 0;
 
  protected:
@@ -67,7 +66,7 @@ class Cpu {
   static constexpr std::uint32_t system_memory_start = 0x1FFF'0000;  ///< with unique id and calibration values
   static constexpr std::uint32_t system_memory_size = 32 * 1024;
 
-  /// Memory is as a new chip has it: flash erased (0xFF), RAM holds what a program must not rely on. The CPU is halted
+  /// Memory is that of a new chip: flash is erased (0xFF), RAM holds noise. The CPU is halted
   /// until the first reset(). The surroundings must outlive it.
   explicit Cpu(CpuSurroundings& surroundings);
   ~Cpu();
@@ -78,11 +77,11 @@ class Cpu {
   void lose_memory(std::uint64_t seed);
 
   /// Starts from reset: stack pointer and first address from the vector table at the start of the flash. RAM keeps its
-  /// contents. A vector table that leads nowhere is a fault at the first run().
+  /// contents. A vector table without a valid address is a fault at the first run().
   void reset();
 
   enum class State : std::uint8_t {
-    running,   ///< wants to go on
+    running,   ///< can execute
     sleeping,  ///< WFI or WFE: until an interrupt is pending
     paused,    ///< pause() was called, or the program has requested a reset
     at_breakpoint,
@@ -95,8 +94,8 @@ class Cpu {
   /// has set SysTick, so that next_system_tick() may have changed. Interrupts that are pending are taken.
   State run(std::uint64_t instructions);
   [[nodiscard]] State state() const;
-  /// Since the CPU was made; counts in issue order, including instructions that an IT block skips, as the M4 spends
-  /// them. In a callback: those of the blocks before, and of the current one.
+  /// Executed since the CPU was made, with those that an IT block skips, since they take time on the M4. In a callback:
+  /// those of the blocks before, and of the current one.
   [[nodiscard]] std::uint64_t instructions() const;
 
   /// run() ends before the next block.
@@ -120,7 +119,7 @@ class Cpu {
   /// To be called when CpuSurroundings::core_period() has changed.
   void change_core_period();
 
-  /// Any memory but registers; throws std::out_of_range for an address without memory. Writes to flash forget the code
+  /// Any memory but registers; throws std::out_of_range for an address without memory. Writes to flash discard the code
   /// that was translated there. A write to flash in the middle of a block reaches the program with the next block.
   void read(std::uint32_t address, std::span<std::uint8_t> bytes) const;
   void write(std::uint32_t address, std::span<const std::uint8_t> bytes);

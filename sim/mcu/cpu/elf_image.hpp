@@ -29,7 +29,7 @@ class ElfImage {
 
   struct Symbol {
     std::string name;
-    std::uint32_t address;  ///< bit 0 of functions, which only says "Thumb", is cleared
+    std::uint32_t address;  ///< bit 0 of functions, which marks Thumb code, is cleared
     std::uint32_t size;
     bool is_function;
   };

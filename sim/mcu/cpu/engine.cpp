@@ -20,7 +20,8 @@ constexpr std::uint32_t ram_bits_size = Cpu::ram_size * 32;
 constexpr std::uint32_t distance_start = 0xA000'0000;
 constexpr std::uint32_t distance_size = 4 * 1024 * 1024;
 
-/// Where Unicorn ends a run by itself; there is no memory, so that it is the program that has jumped to nowhere.
+/// Where Unicorn ends a run by itself; there is no memory, so that only a program that jumped to an invalid address
+/// gets there.
 constexpr std::uint32_t never_executed = 0;
 
 constexpr std::uint32_t thumb_state = 1U << 24U;
@@ -44,7 +45,8 @@ bool lies_in(std::uint32_t address, std::uint64_t size, std::uint32_t start, std
 
 }  // namespace
 
-/// RAM is ours, so that stack frames are a copy away; Unicorn keeps the flash, which it must know to be read only.
+/// RAM belongs to the engine, so that stack frames can be copied; Unicorn has the flash, which it must map as
+/// read-only.
 struct Engine::Memory {
   alignas(4096) std::array<std::uint8_t, Cpu::ram_size> ram;
   alignas(4096) std::array<std::uint8_t, Cpu::ccm_size> ccm;
@@ -75,8 +77,8 @@ Engine::Engine(EngineClient& client)
 Engine::~Engine() { uc_close(uc_); }
 
 void Engine::map_memory() {
-  // Unicorn takes every store for a possible change of code and looks up what code its page has. That is a third faster
-  // if no code lies in the same 4 MB of Unicorn's own memory, which it fills in the order of mapping.
+  // At every store Unicorn looks up the code in its page. That is a third faster if no code lies in the same 4 MB of
+  // Unicorn's own memory, which it fills in the order of mapping.
   check(uc_mem_map_ptr(uc_, Cpu::ram_start, Cpu::ram_size, UC_PROT_ALL, memory_->ram.data()), "map RAM");
   // The core-coupled memory is on the data bus alone.
   check(uc_mem_map_ptr(uc_, Cpu::ccm_start, Cpu::ccm_size, UC_PROT_READ | UC_PROT_WRITE, memory_->ccm.data()),
@@ -165,19 +167,19 @@ bool Engine::write_memory(std::uint32_t address, std::span<const std::uint8_t> b
   if (std::uint8_t* const place = ram(address, size)) {
     std::memcpy(place, bytes.data(), bytes.size());
     if (code_in_ram_) {
-      forget_code(address, size);
+      discard_code(address, size);
     }
     return true;
   }
   check(uc_mem_write(uc_, address, bytes.data(), bytes.size()), "write memory");
   if (lies_in(address, size, Cpu::flash_start, Cpu::flash_size)) {
-    flash_blocks_.forget(address, size);
-    forget_code(address, size);
+    flash_blocks_.discard(address, size);
+    discard_code(address, size);
   }
   return true;
 }
 
-void Engine::forget_code(std::uint32_t address, std::uint32_t size) {
+void Engine::discard_code(std::uint32_t address, std::uint32_t size) {
   uc_ctl_remove_cache(uc_, std::uint64_t{address}, std::uint64_t{address} + size);
 }
 
@@ -279,7 +281,7 @@ void Engine::on_interrupt(uc_engine* uc, std::uint32_t number, void* self) {
         engine.end_ = End::exception_return;
         break;
       case prefetch_abort_number:
-        // Where the architecture forbids to execute.
+        // The architecture forbids execution there.
         engine.fault_ = {engine.end_address_, 2, false, true};
         engine.end_ = End::memory_fault;
         break;
@@ -305,7 +307,7 @@ bool Engine::on_bad_access(uc_engine* /*uc*/, uc_mem_type type, std::uint64_t ad
   }
   if (type == UC_MEM_WRITE_PROT && lies_in(address, bytes, Cpu::flash_start, Cpu::flash_size)) {
     const auto word = static_cast<std::uint32_t>(value);
-    // True: Unicorn throws the store away and goes on.
+    // True: Unicorn drops the store and continues.
     if (engine.client_.store_to_flash(address, bytes, bytes < 4 ? word & ((1U << 8U * bytes) - 1U) : word)) {
       return true;
     }
@@ -340,7 +342,7 @@ Engine::End Engine::run() {
       // The instructions before it in the block come first.
       until = *until_;
       until_.reset();
-      forget_code(pc_, 2);
+      discard_code(pc_, 2);
       continue;
     }
     until_.reset();
@@ -351,7 +353,7 @@ Engine::End Engine::run() {
 }
 
 Engine::End Engine::fetch_or_state() const {
-  // The state is looked at first, so that a call of a null pointer is one of what is no Thumb code.
+  // Checks the state first: a call of a null pointer is a call of code that is not Thumb.
   return fault_.is_fetch && (read(CoreRegister::xpsr) & thumb_state) == 0 ? End::invalid_state : End::memory_fault;
 }
 
@@ -408,7 +410,7 @@ Engine::End Engine::step() {
   const std::uint32_t next = pc_ + static_cast<std::uint32_t>(instruction_size(halfword_at(bytes, 0)));
   uc_hook hook = 0;
   check(uc_hook_add(uc_, &hook, UC_HOOK_CODE, reinterpret_cast<void*>(&on_instruction), this, next, next), "step");
-  forget_code(pc_, next - pc_ + 2);
+  discard_code(pc_, next - pc_ + 2);
   stepping_ = true;
   step_begun_ = false;
   const std::uint64_t limit = limit_;
@@ -418,7 +420,7 @@ Engine::End Engine::step() {
   limit_ = limit;
   stepping_ = false;
   check(uc_hook_del(uc_, hook), "step");
-  forget_code(start, next - start + 2);
+  discard_code(start, next - start + 2);
   return end;
 }
 
@@ -455,7 +457,7 @@ void Engine::set_breakpoints(std::span<const std::uint32_t> addresses) {
     check(uc_hook_del(uc_, hook), "remove a breakpoint");
   }
   for (const std::uint32_t address : breakpoint_addresses_) {
-    forget_code(address, 2);
+    discard_code(address, 2);
   }
   breakpoints_.clear();
   breakpoint_addresses_.clear();
@@ -466,7 +468,7 @@ void Engine::set_breakpoints(std::span<const std::uint32_t> addresses) {
           "set a breakpoint");
     breakpoints_.push_back(hook);
     breakpoint_addresses_.push_back(address);
-    forget_code(address, 2);
+    discard_code(address, 2);
   }
 }
 

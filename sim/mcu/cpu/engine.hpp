@@ -1,7 +1,7 @@
 #pragma once
 
-// Unicorn as the executing part of a Cortex-M4: registers, memory and instructions. Exceptions, and what lies behind
-// the memory-mapped registers, are its client's. Unicorn's own peculiarities (version 2.0.1) end in this file.
+// Unicorn as the executing part of a Cortex-M4: registers, memory and instructions. Its client has the exceptions and
+// the memory-mapped registers. This file hides the peculiarities of Unicorn (version 2.0.1).
 
 #include <unicorn/unicorn.h>
 
@@ -17,17 +17,17 @@
 
 namespace proleg::sim {
 
-/// What the engine needs of others in the middle of a block. They must not throw, nor run or stop the engine.
+/// What the engine calls in the middle of a block. They must not throw, nor run or stop the engine.
 class EngineClient {
  public:
   /// Peripherals (0x40000000 to 0x5FFFFFFF), private peripheral bus, and the bits of the bit-band regions.
   [[nodiscard]] virtual std::uint32_t load(std::uint32_t address, unsigned size) = 0;
   virtual void store(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
-  /// A store to flash. False: refused.
+  /// A store to flash. False: rejected.
   [[nodiscard]] virtual bool store_to_flash(std::uint32_t address, unsigned size, std::uint32_t value) = 0;
-  /// Asked before a block that begins when attention was asked for, or the limit is reached. True: the run ends.
+  /// Called before a block if attention was requested or the limit is reached. True: the run ends.
   [[nodiscard]] virtual bool stops() = 0;
-  /// Asked before a block with coprocessor instructions: whether it may execute them.
+  /// Called before a block with coprocessor instructions: whether it may execute them.
   [[nodiscard]] virtual bool coprocessor_allowed() const = 0;
   /// SEV was executed.
   virtual void send_event() = 0;
@@ -62,7 +62,7 @@ enum class CoreRegister : std::uint8_t {
   control
 };
 
-/// An access that the memory refused.
+/// An access that the memory rejected.
 struct MemoryFault {
   std::uint32_t address = 0;
   unsigned size = 0;
@@ -78,7 +78,7 @@ class Engine {
     stepped,                 ///< after one instruction
     wait_for_interrupt,      ///< WFI was executed
     wait_for_event,          ///< WFE was executed
-    yielded,                 ///< YIELD was executed; run() goes on by itself
+    yielded,                 ///< YIELD was executed; run() continues by itself
     supervisor_call,         ///< SVC was executed; pc() is behind it
     breakpoint_instruction,  ///< BKPT at pc()
     exception_return,        ///< a branch to exception_return_value() in handler mode
@@ -87,7 +87,7 @@ class Engine {
     invalid_state,           ///< an instruction at pc() with EPSR.T clear
     unaligned_exclusive,     ///< a load or store exclusive at pc() has an address that is not a multiple of its size
     memory_fault,            ///< see fault(); the instruction at pc() was not executed
-    failed,                  ///< something Unicorn does not explain
+    failed,                  ///< Unicorn gave no reason
   };
 
   explicit Engine(EngineClient& client);
@@ -105,17 +105,17 @@ class Engine {
   /// Address of the next instruction; bit 0 clear.
   [[nodiscard]] std::uint32_t pc() const { return pc_; }
   void set_pc(std::uint32_t address) { pc_ = address & ~1U; }
-  /// Begin of the block that is being executed, or was last.
+  /// Begin of the present or last block.
   [[nodiscard]] std::uint32_t block() const { return block_address_; }
   [[nodiscard]] std::uint32_t exception_return_value() const { return exception_return_; }
   [[nodiscard]] const MemoryFault& fault() const { return fault_; }
 
   /// Issued in all blocks that were begun.
   [[nodiscard]] std::uint64_t instructions() const { return instructions_; }
-  /// EngineClient::stops() is asked from here on.
+  /// EngineClient::stops() is called from here on.
   void set_limit(std::uint64_t instructions) { limit_ = instructions; }
 
-  /// Any registers but pc.
+  /// Any registers except pc.
   template <std::size_t count>
   void read(const std::array<CoreRegister, count>& names, std::array<std::uint32_t, count>& values) const {
     std::array<int, count> ids;
@@ -126,7 +126,7 @@ class Engine {
     }
     read_batch(ids.data(), places.data(), static_cast<int>(count));
   }
-  /// In the order given. Writing xpsr changes mode and stack pointer as its exception number says.
+  /// In the order given. Writing xpsr changes mode and stack pointer according to its exception number.
   template <std::size_t count>
   void write(const std::array<CoreRegister, count>& names, const std::array<std::uint32_t, count>& values) {
     std::array<int, 2 * count> ids;
@@ -155,7 +155,7 @@ class Engine {
   [[nodiscard]] static bool is_memory(std::uint32_t address, std::uint64_t size);
 
   void set_breakpoints(std::span<const std::uint32_t> addresses);
-  /// Whether a breakpoint at pc() is not heeded once.
+  /// Whether the next run ignores a breakpoint at pc() once.
   void pass_breakpoint(bool pass) { pass_ = pass ? std::optional(pc_) : std::nullopt; }
 
  private:
@@ -182,10 +182,10 @@ class Engine {
   void enter_special_block(std::uint32_t address);
   End finish(uc_err error, std::uint32_t until);
   [[nodiscard]] End fetch_or_state() const;
-  /// Takes back the instructions of the current block from an address on, which were not executed.
+  /// Subtracts the instructions of the current block from an address on, which were not executed.
   void uncount_from(std::uint32_t address);
-  void forget_code(std::uint32_t address, std::uint32_t size);
-  /// The load or store of the current block that committed the fault: the first whose address is the fault's.
+  void discard_code(std::uint32_t address, std::uint32_t size);
+  /// The load or store of the current block that caused the fault: the first whose address is the fault's.
   [[nodiscard]] std::uint32_t locate_fault() const;
   [[nodiscard]] std::vector<std::uint8_t> code(std::uint32_t address, std::uint32_t size) const;
 
@@ -215,7 +215,7 @@ class Engine {
   std::uint32_t end_address_ = 0;
   std::uint32_t exception_return_ = 0;
   std::optional<std::uint32_t> until_;  ///< where the run ends without executing
-  std::optional<std::uint32_t> pass_;   ///< a breakpoint here is not heeded once
+  std::optional<std::uint32_t> pass_;   ///< a breakpoint here is ignored once
   bool stepping_ = false;
   bool step_begun_ = false;
   bool has_fault_ = false;

@@ -237,8 +237,8 @@ void Exceptions::return_from_handler(std::uint32_t exc_return) {
     engine_->write(faultmask, 0);
   }
   if (!is_valid) {
-    refuse_return(number, exc_return, invpc,
-                  "return from exception " + std::to_string(number) + " by " + hexadecimal(exc_return));
+    fail_return(number, exc_return, invpc,
+                "return from exception " + std::to_string(number) + " by " + hexadecimal(exc_return));
     return;
   }
   if (takes_next()) {  // tail-chaining
@@ -249,18 +249,18 @@ void Exceptions::return_from_handler(std::uint32_t exc_return) {
   const std::uint32_t place = exc_return == return_to_process ? values[1] : values[0];
   const std::uint8_t* const memory = engine_->ram(place, frame_size);
   if (memory == nullptr) {
-    refuse_return(number, exc_return, unstkerr,
-                  "the stack at " + hexadecimal(place) + ", where nothing is, at the return from exception " +
-                      std::to_string(number));
+    fail_return(number, exc_return, unstkerr,
+                "the stack at " + hexadecimal(place) + ", where nothing is, at the return from exception " +
+                    std::to_string(number));
     return;
   }
   Frame frame;
   std::memcpy(frame.data(), memory, frame_size);
   const unsigned returned_to = frame[7] & exception_number_mask;
   if ((returned_to != 0) != (exc_return == return_to_handler)) {
-    refuse_return(number, exc_return, invpc,
-                  "return from exception " + std::to_string(number) + " by " + hexadecimal(exc_return) +
-                      " to an xPSR of " + hexadecimal(frame[7]));
+    fail_return(number, exc_return, invpc,
+                "return from exception " + std::to_string(number) + " by " + hexadecimal(exc_return) +
+                    " to an xPSR of " + hexadecimal(frame[7]));
     return;
   }
   const bool was_aligned = system_control_->aligns_stack() && (frame[7] & frame_was_aligned) != 0;
@@ -279,13 +279,13 @@ void Exceptions::return_from_handler(std::uint32_t exc_return) {
   }
   event_ = true;
   if ((flags & thumb_state) == 0) {
-    refuse_state();
+    raise_invalid_state();
   }
 }
 
-void Exceptions::refuse_return(unsigned number, std::uint32_t exc_return, std::uint32_t status, std::string cause) {
+void Exceptions::fail_return(unsigned number, std::uint32_t exc_return, std::uint32_t status, std::string cause) {
   const unsigned wanted = status == invpc ? exception::usage_fault : exception::bus_fault;
-  // As the handler has returned, only what lies below it counts.
+  // The handler has returned: only the exceptions that it interrupted count.
   engine_->set_pc(exc_return);
   note(std::move(cause));
   system_control_->note_configurable(status);
@@ -354,7 +354,7 @@ std::vector<CpuFault> Exceptions::take_faults() { return std::exchange(faults_, 
 
 bool Exceptions::take_event() { return std::exchange(event_, false); }
 
-void Exceptions::refuse_memory(const MemoryFault& fault) {
+void Exceptions::raise_memory_fault(const MemoryFault& fault) {
   const std::string cause = describe(fault);
   if (fault.is_fetch) {
     if (is_execute_never(fault.address)) {
@@ -368,21 +368,21 @@ void Exceptions::refuse_memory(const MemoryFault& fault) {
   raise(exception::bus_fault, preciserr | bfarvalid, cause);
 }
 
-void Exceptions::refuse_undefined_instruction() { raise(exception::usage_fault, undefinstr, "undefined instruction"); }
+void Exceptions::raise_undefined_instruction() { raise(exception::usage_fault, undefinstr, "undefined instruction"); }
 
-void Exceptions::refuse_state() {
+void Exceptions::raise_invalid_state() {
   raise(exception::usage_fault, invstate, "a branch to an even address, which does not mean Thumb code");
 }
 
-void Exceptions::refuse_coprocessor() {
+void Exceptions::raise_no_coprocessor() {
   raise(exception::usage_fault, nocp, "FPU or coprocessor instruction while CPACR forbids it");
 }
 
-void Exceptions::refuse_alignment() {
+void Exceptions::raise_unaligned_access() {
   raise(exception::usage_fault, unaligned, "load or store exclusive at an address that is not aligned");
 }
 
-void Exceptions::refuse_breakpoint() {
+void Exceptions::raise_breakpoint() {
   note("BKPT without a debugger");
   raise_hard_fault(debugevt);
 }

@@ -35,18 +35,18 @@ class Exceptions {
   /// SVC was executed.
   void call_supervisor();
 
-  // Faults of the instruction at Engine::pc().
-  void refuse_memory(const MemoryFault& fault);
-  void refuse_undefined_instruction();
-  void refuse_state();
-  void refuse_coprocessor();
-  void refuse_breakpoint();
-  void refuse_alignment();
+  // Raise a fault of the instruction at Engine::pc().
+  void raise_memory_fault(const MemoryFault& fault);
+  void raise_undefined_instruction();
+  void raise_invalid_state();
+  void raise_no_coprocessor();
+  void raise_breakpoint();
+  void raise_unaligned_access();
 
   [[nodiscard]] bool is_locked_up() const { return locked_up_; }
   [[nodiscard]] std::vector<CpuFault> take_faults();
   /// Flash has changed.
-  void forget_vectors() { vectors_known_.reset(); }
+  void discard_vectors() { vectors_known_.reset(); }
   /// The event register of WFE.
   [[nodiscard]] bool take_event();
   void send_event() { event_ = true; }
@@ -59,7 +59,7 @@ class Exceptions {
 
   [[nodiscard]] Vector vector(unsigned number);
   void enter(unsigned number);
-  /// With the registers where they are: after tail-chaining, or a fault of the stack itself.
+  /// Without saving registers: after tail-chaining, or a fault of the stack itself.
   void enter_without_frame(unsigned number, std::uint32_t exc_return);
   void go_to(const Vector& vector);
   /// Raises a fault, or HardFault in its place.
@@ -68,7 +68,7 @@ class Exceptions {
   [[nodiscard]] bool may_raise(unsigned number) const;
   void note(std::string cause);
   void lock_up();
-  void refuse_return(unsigned number, std::uint32_t exc_return, std::uint32_t status, std::string cause);
+  void fail_return(unsigned number, std::uint32_t exc_return, std::uint32_t status, std::string cause);
   [[nodiscard]] bool is_valid_return(std::uint32_t exc_return) const;
   void set_mode(unsigned number, std::uint32_t xpsr, std::uint32_t control);
 

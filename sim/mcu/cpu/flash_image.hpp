@@ -1,6 +1,6 @@
 #pragma once
 
-// A program that may be written into the flash of an STM32F405: everything that can be said against it before it runs.
+// A program for the flash of an STM32F405, with all checks that are possible before it runs.
 
 #include <cstdint>
 #include <filesystem>

@@ -1,6 +1,6 @@
 #pragma once
 
-// What an instruction does to memory: to find the one that committed a fault.
+// The memory access of an instruction, to find the one that caused a fault.
 
 #include <cstdint>
 #include <optional>

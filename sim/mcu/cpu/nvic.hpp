@@ -1,7 +1,7 @@
 #pragma once
 
 // Which exceptions are pending, enabled and active, and which one comes next (ARMv7-M Architecture Reference Manual,
-// DDI 0403, B1.5 and B3.4). Knows exceptions by number: 1 to 15 are the system's, 16 + n is interrupt n.
+// DDI 0403, B1.5 and B3.4). Exceptions have numbers: 1 to 15 are the system's, 16 + n is interrupt n.
 
 #include <array>
 #include <bit>
@@ -66,7 +66,7 @@ class Nvic {
   static constexpr unsigned exception_count = exception::first_interrupt + interrupt_count;
   /// Priority of thread mode: everything preempts it.
   static constexpr int no_priority = 256;
-  /// Of priorities: four bits (RM0090, 12.1.1).
+  /// Priorities have four bits (RM0090, 12.1.1).
   static constexpr std::uint8_t implemented_priority = 0xF0;
 
   Nvic() { reset(); }
@@ -94,7 +94,7 @@ class Nvic {
   void deactivate(unsigned number);
   [[nodiscard]] int active_count() const { return active_.count(); }
 
-  /// The exception that is to be taken next, masks apart: pending, enabled, of the highest priority; 0 if none.
+  /// The exception to take next, without regard to masks: pending, enabled, of the highest priority; 0 if none.
   [[nodiscard]] unsigned next() const { return next_; }
   /// Group priority of next(); no_priority if there is none.
   [[nodiscard]] int next_priority() const { return next_priority_; }
@@ -107,7 +107,7 @@ class Nvic {
   /// Whether next() would be taken if masks were clear.
   [[nodiscard]] bool wants_attention() const { return next_priority_ < active_priority_; }
 
-  /// Number of the highest-priority pending and enabled exception, whether or not it preempts: VECTPENDING.
+  /// ICSR.ISRPENDING.
   [[nodiscard]] bool any_interrupt_pending() const;
 
  private:

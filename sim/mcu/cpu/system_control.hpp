@@ -63,7 +63,7 @@ class SystemControl {
 
   [[nodiscard]] SystemTick& system_tick() { return system_tick_; }
   [[nodiscard]] const SystemTick& system_tick() const { return system_tick_; }
-  /// Pends what SysTick asks for.
+  /// Pends the exception of SysTick if it is due.
   void collect_system_tick();
 
  private:

@@ -1,7 +1,6 @@
 #pragma once
 
-// The SysTick timer (ARMv7-M Architecture Reference Manual, DDI 0403, B3.3), computed from local time only when someone
-// asks.
+// The SysTick timer (ARMv7-M Architecture Reference Manual, DDI 0403, B3.3), computed from local time on access.
 
 #include <cstdint>
 
@@ -19,7 +18,7 @@ class SystemTick {
   [[nodiscard]] std::uint32_t reload() const { return reload_; }
   void write_reload(std::uint32_t value, LocalTime now);
   [[nodiscard]] std::uint32_t read_value(LocalTime now);
-  /// Clears the counter, whatever is written.
+  /// Clears the counter; the written value has no effect.
   void write_value(LocalTime now);
 
   /// When the counter reaches 0 next and pends the exception; never_on_chip if it does not.

@@ -11,7 +11,7 @@ namespace proleg::sim {
   return (first_halfword >> 11U) >= 0x1DU ? 4 : 2;
 }
 
-/// Whether an instruction belongs to a coprocessor: the FPU is numbers 10 and 11, and no other has business in the core
+/// Whether an instruction belongs to a coprocessor: the FPU is numbers 10 and 11, and the core uses no other
 /// (ARMv7-M reference manual, A5.3.18).
 [[nodiscard]] constexpr bool is_coprocessor_instruction(std::uint16_t first_halfword) {
   return (first_halfword & 0xEC00U) == 0xEC00U;

@@ -7,7 +7,7 @@ namespace proleg::sim {
 
 class Cpu;
 
-/// What a debugger sees of a program that stands still. Single steps and running are with the owner of the target, see
+/// A program that stands still, for a debugger. The owner of the target steps and runs it, see
 /// gdb_server.hpp. No function may throw.
 class DebugTarget {
  public:
@@ -23,7 +23,7 @@ class DebugTarget {
   [[nodiscard]] virtual bool read_memory(std::uint32_t address, std::span<std::uint8_t> bytes) const = 0;
   [[nodiscard]] virtual bool write_memory(std::uint32_t address, std::span<const std::uint8_t> bytes) = 0;
 
-  /// Before these addresses the program stops. Replaces the breakpoints there were. Even addresses, ascending, without
+  /// The program stops before these addresses. Replaces the breakpoints before. Even addresses, ascending, without
   /// repetition.
   virtual void set_breakpoints(std::span<const std::uint32_t> addresses) = 0;
 

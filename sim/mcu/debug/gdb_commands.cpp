@@ -17,7 +17,7 @@ constexpr const char* no_memory = "E0e";  // EFAULT
 constexpr const char* done = "OK";
 constexpr const char* unknown = "";
 
-constexpr std::size_t longest_memory_reply = GdbDecoder::longest_packet / 2;
+constexpr std::size_t max_memory_reply = GdbDecoder::max_packet / 2;
 
 struct Halves {
   std::string_view before;
@@ -134,7 +134,7 @@ GdbCommands::Answer GdbCommands::answer(std::string_view packet) {
       return resume(Resume::run, rest);
     case 's':
       return resume(Resume::step, rest);
-    // With a signal, which a bare CPU cannot be given.
+    // With a signal, which a bare CPU does not have.
     case 'C':
       return resume(Resume::run, split(rest, ';').after.value_or(""));
     case 'S':
@@ -152,7 +152,7 @@ GdbCommands::Answer GdbCommands::answer(std::string_view packet) {
     case 'q':
       return {query(rest), {}};
     case 'v':
-      // GDB takes vCont only if all four are there.
+      // GDB uses vCont only if all four are supported.
       if (rest == "Cont?") {
         return {"vCont;c;C;s;S", {}};
       }
@@ -216,7 +216,7 @@ GdbCommands::Answer GdbCommands::resume_threads(std::string_view actions) {
 std::string GdbCommands::query(std::string_view packet) const {
   const auto [head, tail] = split(packet, ':');
   if (head == "Supported") {
-    const std::uint16_t size = GdbDecoder::longest_packet;
+    const std::uint16_t size = GdbDecoder::max_packet;
     const std::array<std::uint8_t, 2> bytes{static_cast<std::uint8_t>(size >> 8U), static_cast<std::uint8_t>(size)};
     return "PacketSize=" + to_hex(bytes) + ";QStartNoAckMode+;qXfer:features:read+;vContSupported+";
   }
@@ -253,7 +253,7 @@ std::string GdbCommands::features(std::string_view range) const {
   if (!part || part->start > text.size()) {
     return malformed;
   }
-  const std::size_t length = std::min<std::size_t>(part->length, longest_memory_reply);
+  const std::size_t length = std::min<std::size_t>(part->length, max_memory_reply);
   const bool last = part->start + length >= text.size();
   return (last ? "l" : "m") + text.substr(part->start, length);
 }
@@ -267,7 +267,7 @@ std::string GdbCommands::monitor(std::string_view digits) const {
     return malformed;
   }
   std::string text = monitor_(std::string(bytes->begin(), bytes->end()));
-  text.resize(std::min(text.size(), longest_memory_reply));
+  text.resize(std::min(text.size(), max_memory_reply));
   return text.empty() ? done : to_hex(std::vector<std::uint8_t>(text.begin(), text.end()));
 }
 
@@ -315,11 +315,11 @@ std::string GdbCommands::read_memory(std::string_view range) const {
     return malformed;
   }
   const std::uint64_t to_end = (std::uint64_t{1} << 32U) - wanted->start;
-  std::vector<std::uint8_t> bytes(std::min<std::uint64_t>({wanted->length, longest_memory_reply, to_end}));
+  std::vector<std::uint8_t> bytes(std::min<std::uint64_t>({wanted->length, max_memory_reply, to_end}));
   if (target_->read_memory(wanted->start, bytes)) {
     return to_hex(bytes);
   }
-  // A client takes less than it asked for: up to where the memory ends.
+  // A client accepts fewer bytes than it asked for: up to the end of the memory.
   std::size_t there = 0;
   while (there < bytes.size() &&
          target_->read_memory(wanted->start + static_cast<std::uint32_t>(there), std::span(bytes).subspan(there, 1))) {
@@ -342,7 +342,7 @@ std::string GdbCommands::write_memory(std::string_view text, bool binary) {
   if (std::uint64_t{wanted->start} + wanted->length > std::uint64_t{1} << 32U) {
     return no_memory;
   }
-  // With no bytes at all a client asks whether the command is known.
+  // With no bytes a client asks whether the command is known.
   return bytes->empty() || target_->write_memory(wanted->start, *bytes) ? done : no_memory;
 }
 
@@ -368,7 +368,8 @@ std::string GdbCommands::change_breakpoint(std::string_view text, bool insert) {
   return done;
 }
 
-// Clients take all breakpoints away at each stop and set them again before they go on; the target need not know.
+// Clients remove all breakpoints at each stop and set them again before they resume; the target does not need these
+// changes.
 void GdbCommands::apply_breakpoints() {
   std::vector<std::uint32_t> addresses;
   for (const auto& [address, kind] : breakpoints_) {

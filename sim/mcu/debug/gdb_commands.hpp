@@ -18,20 +18,20 @@ namespace proleg::sim {
 
 /// Why a target stands still.
 enum class StopReason : std::uint8_t {
-  attached,    ///< before its first instruction, or because a client has come: SIGTRAP
+  attached,    ///< before its first instruction, or because a client has connected: SIGTRAP
   breakpoint,  ///< SIGTRAP
   step,        ///< a single step is done: SIGTRAP
   interrupt,   ///< the client asked for it: SIGINT
   fault,       ///< SIGSEGV
 };
 
-/// What is to be done with a target that stood still.
+/// How the client resumes a target that stood still.
 enum class Resume : std::uint8_t {
   run,          ///< until a breakpoint, a fault or interrupt_requested()
   step,         ///< one instruction, then serve() again
   detach,       ///< the client has left: run freely, without breakpoints
-  kill,         ///< the client wants the program ended
-  interrupted,  ///< `interrupted` said so; the client is still there
+  kill,         ///< the client ends the program
+  interrupted,  ///< `interrupted` was true; the client is still connected
 };
 
 /// Answers `monitor TEXT` with a text for the user; lines end with '\n'. Must not throw.
@@ -42,17 +42,17 @@ class GdbCommands {
   explicit GdbCommands(DebugTarget& target) : target_(&target) {}
 
   struct Answer {
-    std::optional<std::string> reply;  ///< payload to be sent; an empty one says: unknown command
+    std::optional<std::string> reply;  ///< payload to send; an empty one means: unknown command
     std::optional<Resume> resume;
   };
-  /// Never throws for what is wrong with a packet: the answer is an error number then.
+  /// Does not throw for a wrong packet: the answer is an error number then.
   [[nodiscard]] Answer answer(std::string_view packet);
 
   void set_monitor(MonitorCommand monitor) { monitor_ = std::move(monitor); }
   void set_stop_reason(StopReason reason) { reason_ = reason; }
   /// The stop reply packet: signal, and the registers that a debugger looks at first.
   [[nodiscard]] std::string stop_reply() const;
-  /// Takes all breakpoints away, also from the target.
+  /// Removes all breakpoints, also from the target.
   void clear_breakpoints();
 
  private:
@@ -73,7 +73,7 @@ class GdbCommands {
   DebugTarget* target_;
   MonitorCommand monitor_;
   StopReason reason_ = StopReason::attached;
-  /// Address and kind (software, hardware): a client may set both at an address, and take one away.
+  /// Address and kind (software, hardware): a client may set both at an address, and remove one.
   std::set<std::pair<std::uint32_t, char>> breakpoints_;
   std::vector<std::uint32_t> applied_;  ///< addresses that the target has
 };

@@ -139,7 +139,7 @@ void GdbDecoder::take_payload(char byte) {
     return;
   }
   sum_ = static_cast<std::uint8_t>(sum_ + as_byte(byte));
-  if (++length_ > longest_packet) {
+  if (++length_ > max_packet) {
     return;
   }
   if (escaped_) {
@@ -157,7 +157,7 @@ GdbInput GdbDecoder::finish(char second_digit) {
   if (hex_byte(first_digit_, second_digit) != sum_ || escaped_) {
     return {GdbInput::Kind::damaged, {}};
   }
-  if (length_ > longest_packet) {
+  if (length_ > max_packet) {
     return {GdbInput::Kind::too_long, {}};
   }
   return {GdbInput::Kind::packet, std::move(payload_)};

@@ -27,7 +27,7 @@ struct GdbInput {
   enum class Kind : std::uint8_t {
     packet,
     damaged,    ///< a packet whose checksum is wrong
-    too_long,   ///< a packet of more than GdbDecoder::longest_packet bytes
+    too_long,   ///< a packet of more than GdbDecoder::max_packet bytes
     interrupt,  ///< the byte 0x03 between packets
     accepted,   ///< `+`
     refused,    ///< `-`: the client wants the last packet again
@@ -36,12 +36,12 @@ struct GdbInput {
   std::string payload;  ///< of a packet, without escapes
 };
 
-/// Cuts a stream of bytes into what they mean. Whatever else is between packets is left out; a `$` within a packet
-/// starts a new one.
+/// Splits a stream of bytes into packets and signs. Ignores other bytes between packets; a `$` within a packet starts a
+/// new one.
 class GdbDecoder {
  public:
   /// Between `$` and `#`, as sent.
-  static constexpr std::size_t longest_packet = 0x4000;
+  static constexpr std::size_t max_packet = 0x4000;
 
   /// Appends what was received. Memory is bounded if the caller takes all inputs before it feeds more.
   void feed(std::string_view bytes);

@@ -8,7 +8,7 @@
 namespace proleg::sim {
 namespace {
 
-constexpr int patience = 100;  // milliseconds, between two questions whether to give up
+constexpr int poll_period_ms = 100;  // between two calls of Interrupted
 
 }  // namespace
 
@@ -19,7 +19,7 @@ bool GdbServer::wait_for_client(const Interrupted& interrupted) {
     if (interrupted && interrupted()) {
       return false;
     }
-    static_cast<void>(wait(listener_, nullptr, false, patience).listener && take_client());
+    static_cast<void>(wait(listener_, nullptr, false, poll_period_ms).listener && accept_client());
   }
   return true;
 }
@@ -33,7 +33,7 @@ Resume GdbServer::serve(StopReason reason, const Interrupted& interrupted) {
     if (interrupted && interrupted()) {
       return Resume::interrupted;
     }
-    // The client takes an answer before it gets the next one: what is kept for it stays small.
+    // The client must read an answer before it gets the next one, so that the buffer stays small.
     flush();
     if (connection_ && unsent_.empty()) {
       if (const auto input = next_input()) {
@@ -44,11 +44,11 @@ Resume GdbServer::serve(StopReason reason, const Interrupted& interrupted) {
       }
     }
     if (connection_) {
-      const Ready ready = wait(listener_, &*connection_, !unsent_.empty(), patience);
+      const Ready ready = wait(listener_, &*connection_, !unsent_.empty(), poll_period_ms);
       if (ready.connection && unsent_.empty()) {
         receive();
       }
-      static_cast<void>(ready.listener && take_client());
+      static_cast<void>(ready.listener && accept_client());
     }
   }
   return Resume::detach;
@@ -68,7 +68,7 @@ bool GdbServer::interrupt_requested() {
       } else if (input->kind == GdbInput::Kind::accepted || input->kind == GdbInput::Kind::refused) {
         static_cast<void>(handle(*input));
       } else {
-        // Who asks while the target runs would wait for ever.
+        // A client that sends a command while the target runs would wait without end.
         unanswered_ = std::move(input);
         requested = true;
       }
@@ -78,27 +78,27 @@ bool GdbServer::interrupt_requested() {
       break;
     }
   }
-  return (ready.listener && take_client()) || requested;
+  return (ready.listener && accept_client()) || requested;
 }
 
-void GdbServer::say(std::string_view text) {
+void GdbServer::send_text(std::string_view text) {
   if (!awaits_stop_ || !unsent_.empty()) {
     return;
   }
   const std::vector<std::uint8_t> bytes(text.begin(), text.end());
-  constexpr std::size_t most = GdbDecoder::longest_packet / 2 - 1;
-  send("O" + to_hex(std::span(bytes).first(std::min(bytes.size(), most))));
+  constexpr std::size_t max_bytes = GdbDecoder::max_packet / 2 - 1;
+  send("O" + to_hex(std::span(bytes).first(std::min(bytes.size(), max_bytes))));
 }
 
 void GdbServer::finish(std::uint8_t status) {
   if (std::exchange(awaits_stop_, false)) {
     send("W" + to_hex({&status, 1}));
   }
-  let_go();
+  disconnect();
 }
 
-bool GdbServer::take_client() {
-  // A second client is accepted too, and closed at once: it would wait without a word otherwise.
+bool GdbServer::accept_client() {
+  // A second client is accepted and closed at once: it would wait without an answer otherwise.
   auto connection = listener_.accept();
   if (!connection || connection_) {
     return false;
@@ -107,7 +107,7 @@ bool GdbServer::take_client() {
   return true;
 }
 
-void GdbServer::let_go() {
+void GdbServer::disconnect() {
   connection_.reset();
   decoder_ = {};
   unanswered_.reset();
@@ -123,7 +123,7 @@ void GdbServer::receive() {
   const std::size_t length = connection_->receive(bytes);
   decoder_.feed({bytes.data(), length});
   if (!connection_->open()) {
-    let_go();
+    disconnect();
   }
 }
 
@@ -138,7 +138,7 @@ void GdbServer::flush() {
     const std::size_t sent = connection_->send(unsent_);
     unsent_.erase(0, sent);
     if (!connection_->open()) {
-      let_go();
+      disconnect();
     } else if (sent == 0) {
       return;
     }
@@ -154,7 +154,7 @@ std::optional<GdbInput> GdbServer::next_input() {
 
 std::optional<Resume> GdbServer::handle(const GdbInput& input) {
   switch (input.kind) {
-    case GdbInput::Kind::interrupt:  // It stands still already, and the client knows.
+    case GdbInput::Kind::interrupt:  // It stands still already.
     case GdbInput::Kind::accepted:
       break;
     case GdbInput::Kind::refused:
@@ -171,7 +171,7 @@ std::optional<Resume> GdbServer::handle(const GdbInput& input) {
       if (acknowledges_) {
         unsent_ += '+';
       }
-      send("E16");  // EINVAL; to have it repeated would not help
+      send("E16");  // EINVAL; a repetition would not help
       break;
     case GdbInput::Kind::packet:
       if (acknowledges_) {
@@ -197,7 +197,7 @@ std::optional<Resume> GdbServer::handle_packet(const std::string& payload) {
   if (answer.resume == Resume::run || answer.resume == Resume::step) {
     awaits_stop_ = connection_.has_value();
   } else if (answer.resume) {
-    let_go();
+    disconnect();
   }
   return answer.resume;
 }

@@ -1,10 +1,10 @@
 #pragma once
 
-// Lets GDB look into a program that stands still: `gdb-multiarch IMAGE -ex 'target remote :PORT'`.
+// Lets GDB inspect a program that stands still: `gdb-multiarch IMAGE -ex 'target remote :PORT'`.
 //
-// The owner of the target runs it and stops it; the server talks while it stands still:
+// The owner of the target runs and stops it; the server communicates while it stands still:
 //
-//   GdbServer server(port, target);               // port 0: any; server.port() tells which
+//   GdbServer server(port, target);               // port 0: any; see server.port()
 //   if (!server.wait_for_client(interrupted)) return;
 //   Resume resume = server.serve(StopReason::attached, interrupted);
 //   while (resume != Resume::kill && resume != Resume::interrupted) {
@@ -12,7 +12,7 @@
 //     if (resume == Resume::step) {
 //       ... execute one instruction ...
 //       reason = StopReason::step;
-//     } else {                                    // run or detach: the same, but for the breakpoints that are gone
+//     } else {                                    // run or detach: after detach without breakpoints
 //       ... execute until a breakpoint, a fault, or server.interrupt_requested() ...
 //       reason = ...
 //     }
@@ -20,11 +20,11 @@
 //   }
 //
 // interrupt_requested() costs a system call; every few milliseconds of the user's time is enough. Without a client
-// (after a detach or a lost connection) serve() returns Resume::detach at once, and the target runs on; a client that
-// comes later is found by interrupt_requested(), which asks for a stop then. There is one client at a time; others are
-// turned away.
+// (after a detach or a lost connection) serve() returns Resume::detach at once, and the target runs on;
+// interrupt_requested() finds a client that comes later, and then requests a stop. There is one client at a time;
+// others are disconnected.
 //
-// All functions are to be called from one thread. Only programs on this computer can connect.
+// All functions must be called from one thread. Only programs on this computer can connect.
 
 #include <cstdint>
 #include <functional>
@@ -41,7 +41,7 @@ namespace proleg::sim {
 
 class GdbServer {
  public:
-  /// Whether to give up waiting; asked at least every 100 ms.
+  /// Whether to stop waiting; called at least every 100 ms.
   using Interrupted = std::function<bool()>;
 
   /// Listens on 127.0.0.1. The target must outlive the server. Throws std::runtime_error with one line if the port
@@ -51,29 +51,30 @@ class GdbServer {
   [[nodiscard]] std::uint16_t port() const { return listener_.port(); }
   [[nodiscard]] bool has_client() const { return connection_.has_value(); }
 
-  /// What answers the user's `monitor TEXT`.
+  /// Answers the user's `monitor TEXT`.
   void set_monitor(MonitorCommand monitor) { commands_.set_monitor(std::move(monitor)); }
 
-  /// Blocks until there is a client; false if `interrupted` said so before.
+  /// Blocks until there is a client; false if `interrupted` was true before.
   [[nodiscard]] bool wait_for_client(const Interrupted& interrupted);
 
-  /// To be called when the target stands still. Tells the client, and answers it until it says how to go on.
+  /// To be called when the target stands still. Reports the stop to the client, and answers it until it resumes the
+  /// target.
   [[nodiscard]] Resume serve(StopReason reason, const Interrupted& interrupted);
 
-  /// To be called now and then while the target runs, at a place where breakpoints can be changed. Does not block. True
-  /// if the target shall stop: the client asks for it, or a new one is there.
+  /// To be called every few milliseconds while the target runs, where breakpoints can be changed. Does not block. True
+  /// if the target must stop: the client requests it, or a new one has connected.
   [[nodiscard]] bool interrupt_requested();
 
-  /// Text for the user, while the target runs or before serve(): what caused a fault, say. It is dropped if there is no
-  /// client that waits for the target, or if it does not read.
-  void say(std::string_view text);
+  /// Text for the user, while the target runs or before serve(): what caused a fault, say. It is dropped if no client
+  /// waits for the target, or if the client does not read.
+  void send_text(std::string_view text);
 
-  /// The program has ended, with this status; the client is told and let go.
+  /// The program has ended: reports this status to the client and disconnects it.
   void finish(std::uint8_t status);
 
  private:
-  [[nodiscard]] bool take_client();
-  void let_go();
+  [[nodiscard]] bool accept_client();
+  void disconnect();
   void receive();
   void send(std::string_view payload);
   void flush();
@@ -89,7 +90,7 @@ class GdbServer {
   std::string unsent_;
   std::string last_packet_;
   bool acknowledges_ = true;
-  bool awaits_stop_ = false;  ///< the client has said how to go on, and waits until the target stops
+  bool awaits_stop_ = false;  ///< the client has resumed the target, and waits for its stop
 };
 
 }  // namespace proleg::sim

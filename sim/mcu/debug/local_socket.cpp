@@ -22,12 +22,12 @@ namespace {
                            "; expected a TCP port that is free, for a debugger");
 }
 
-// Takes what the kernel's interface wants: it tells the kinds of addresses apart by their first member.
+// The kernel's interface distinguishes kinds of addresses by their first member.
 sockaddr* general(sockaddr_in& address) { return reinterpret_cast<sockaddr*>(&address); }
 
 void set_option(int socket, int level, int option) {
   const int on = 1;
-  // Without it all works as well, only less smoothly.
+  // Everything works without it, only slower.
   static_cast<void>(setsockopt(socket, level, option, &on, sizeof on));
 }
 
@@ -67,7 +67,7 @@ LocalListener::LocalListener(std::uint16_t port)
   if (descriptor() < 0) {
     fail(port, errno);
   }
-  // A port that was left a moment ago can be had again at once.
+  // A port that was closed a moment ago can be used again at once.
   set_option(descriptor(), SOL_SOCKET, SO_REUSEADDR);
   sockaddr_in address{};
   address.sin_family = AF_INET;

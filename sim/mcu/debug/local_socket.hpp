@@ -11,7 +11,7 @@
 
 namespace proleg::sim {
 
-/// Owns what open(), socket() and the like return.
+/// Owns a file descriptor, from open() or socket().
 class FileDescriptor {
  public:
   explicit FileDescriptor(int number) : number_(number) {}
@@ -61,13 +61,13 @@ class LocalListener {
   std::uint16_t port_ = 0;
 };
 
-/// Which of the two have something to say.
+/// Which of the two can be used without waiting.
 struct Ready {
   bool listener = false;    ///< a client wants to connect
   bool connection = false;  ///< bytes can be received (or sent, if that was asked for), or the connection is lost
 };
 
-/// Waits until one of them is ready, at most so long; 0 does not wait. connection: may be null.
+/// Waits until one of them is ready, at most this time; 0 does not wait. connection: may be null.
 [[nodiscard]] Ready wait(const LocalListener& listener, const LocalConnection* connection, bool to_send,
                          int milliseconds);
 

@@ -10,8 +10,8 @@ namespace proleg::sim {
 /// The firmware of a joint module, as linked for the reference board (firmware/stm32f405).
 class FirmwareImage {
  public:
-  /// Throws ElfError for what is not a program for this chip, or not one of a joint module: one line that names the
-  /// file, what was found and what was expected.
+  /// Throws ElfError for a file that is not a program for this chip, or not that of a joint module: one line that names
+  /// the file, what was found and what was expected.
   explicit FirmwareImage(const std::filesystem::path& file);
 
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }

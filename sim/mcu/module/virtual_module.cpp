@@ -19,7 +19,7 @@ namespace board = stm32f405::board;
 
 constexpr unsigned servo_channel = 1;  ///< of TIM2
 constexpr std::uint32_t microvolts_per_ma = 1'000;
-constexpr std::uint32_t highest_uv = board::vdda_millivolt * 1'000;
+constexpr std::uint32_t max_uv = board::vdda_millivolt * 1'000;
 
 // What a feedback potentiometer reads, 12 bits.
 constexpr std::uint16_t feedback_at_minus_90 = 410;
@@ -38,7 +38,7 @@ firmware::BoardRecord board_record(const ModuleParts& parts) {
   return record;
 }
 
-/// "at 1.234567 s on the bus".
+/// "1.234567 s", on the bus.
 std::string at_time(BusTime time) {
   std::ostringstream text;
   text.precision(6);
@@ -123,8 +123,8 @@ void VirtualModule::note_sync(std::uint32_t tick) {
     if (cost.to_state_frame > worst_.to_state_frame) {
       worst_ = cost;
     }
-    if (options_.trace) {
-      options_.trace(cost);
+    if (options_.on_tick) {
+      options_.on_tick(cost);
     }
   }
   tick_ = tick;
@@ -134,7 +134,7 @@ void VirtualModule::note_sync(std::uint32_t tick) {
 std::optional<std::string> VirtualModule::take_problem() {
   while (const auto event = chip_.take_event()) {
     if (event->kind == ChipEvent::Kind::reset && event->cause == ResetCause::software) {
-      continue;  // its fault handler's, of which is told already, or asked for
+      continue;  // of its fault handler, which was reported already, or on request
     }
     return describe(*event);
   }
@@ -180,7 +180,7 @@ std::optional<bool> VirtualModule::pin(char port, unsigned number) {
 
 std::uint32_t VirtualModule::analog_uv(unsigned channel) {
   if (channel == board::servo_current_channel) {
-    return std::min<std::uint32_t>(readings_().current_ma * microvolts_per_ma, highest_uv);
+    return std::min<std::uint32_t>(readings_().current_ma * microvolts_per_ma, max_uv);
   }
   if (channel == board::feedback_channel) {
     constexpr std::int64_t quarter_turn = std::int64_t{1} << 30U;
@@ -188,8 +188,8 @@ std::uint32_t VirtualModule::analog_uv(unsigned channel) {
     const std::int64_t angle = readings_().angle.value_or(0);
     const std::int64_t span = feedback_at_plus_90 - feedback_at_minus_90;
     const std::int64_t part = (feedback_at_minus_90 * 2 * quarter_turn + (angle + quarter_turn) * span) / codes;
-    const std::int64_t uv = part * highest_uv / (2 * quarter_turn);
-    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(uv, 0, highest_uv));
+    const std::int64_t uv = part * max_uv / (2 * quarter_turn);
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(uv, 0, max_uv));
   }
   return 0;
 }

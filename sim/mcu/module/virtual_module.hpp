@@ -1,6 +1,6 @@
 #pragma once
 
-// A joint module whose program is the image that is flashed, run by a virtual chip.
+// A joint module that runs the flashed image in a virtual chip.
 
 #include <functional>
 #include <memory>
@@ -25,12 +25,12 @@ struct VirtualModuleOptions {
   /// Called with each line that the program prints on its console (USART2).
   std::function<void(const std::string&)> console;
   /// Called at the end of each tick.
-  std::function<void(const TickCost&)> trace;
+  std::function<void(const TickCost&)> on_tick;
 };
 
 class VirtualModule final : public JointModule, private BoardSignals {
  public:
-  /// image: must outlive the module. The board record with the node id is in flash, as a programmer would put it there.
+  /// image: must outlive the module. The board record with the node id is in flash, as a programmer writes it.
   VirtualModule(const ModuleParts& parts, const FirmwareImage& image, VirtualModuleOptions options);
   ~VirtualModule() override = default;
   VirtualModule(const VirtualModule&) = delete;
@@ -46,7 +46,7 @@ class VirtualModule final : public JointModule, private BoardSignals {
   void note_sync(std::uint32_t tick) override;
   [[nodiscard]] std::optional<std::string> take_problem() override;
 
-  /// The costliest tick so far, by the way to the state frame.
+  /// The most expensive tick so far, by the instructions to the state frame.
   [[nodiscard]] const TickCost& worst_tick() const { return worst_; }
   [[nodiscard]] Stm32f405& chip() { return chip_; }
 

@@ -71,8 +71,8 @@ constexpr unsigned vbat_channel = 18;
 constexpr LocalTime conversion_cycles = 12;
 
 // DS8626: 0.6 to 36 MHz.
-constexpr LocalTime shortest_clock = 28;
-constexpr LocalTime longest_clock = 1680;
+constexpr LocalTime min_clock_period = 28;
+constexpr LocalTime max_clock_period = 1680;
 
 }  // namespace
 
@@ -166,20 +166,20 @@ unsigned Adc::channel(Group group, unsigned rank) const {
 
 void Adc::check_channel(unsigned channel, std::uint32_t value) const {
   if (channel >= vbat_channel) {
-    refuse_write(cr2, value, "channel " + std::to_string(channel) + " is not modelled");
+    reject_write(cr2, value, "channel " + std::to_string(channel) + " is not modelled");
   }
   if (channel < temperature_channel) {
     return;
   }
   const std::string name = "channel " + std::to_string(channel);
   if ((ccr_ & ccr_tsvrefe) == 0) {
-    refuse_write(cr2, value, name + " without TSVREFE");
+    reject_write(cr2, value, name + " without TSVREFE");
   }
   if (chip().now() - sensors_since_ < sensor_start) {
-    refuse_write(cr2, value, name + " earlier than 10 us after TSVREFE");
+    reject_write(cr2, value, name + " earlier than 10 us after TSVREFE");
   }
   if (sampling_time(channel) < sensor_sampling) {
-    refuse_write(cr2, value, name + " sampled for less than 10 us");
+    reject_write(cr2, value, name + " sampled for less than 10 us");
   }
 }
 
@@ -204,22 +204,22 @@ void Adc::finish_conversion() {
   const Group group = converting_;
   const unsigned rank = group == Group::regular ? regular_rank_++ : injected_rank_++;
   const std::uint16_t code = convert(channel(group, rank));
-  bool goes_on = rank + 1 < length(group);
+  bool has_more = rank + 1 < length(group);
   if (group == Group::injected) {
     jdr_[rank] = (code - jofr_[rank]) & 0xFFFFU;
-    if (!goes_on) {
+    if (!has_more) {
       sr_ |= sr_jeoc;
     }
   } else if ((cr2_ & cr2_eocs) != 0 && (sr_ & sr_eoc) != 0) {
     sr_ |= sr_ovr;  // the data are lost, and the sequence ends (RM0090, 13.8.2)
-    goes_on = false;
+    has_more = false;
   } else {
     dr_ = code;
-    if (!goes_on || (cr2_ & cr2_eocs) != 0) {
+    if (!has_more || (cr2_ & cr2_eocs) != 0) {
       sr_ |= sr_eoc;
     }
   }
-  if (!goes_on) {
+  if (!has_more) {
     converting_ = group == Group::injected && regular_waits_ ? Group::regular : Group::none;
     regular_waits_ = false;
   }
@@ -232,18 +232,18 @@ void Adc::finish_conversion() {
 
 void Adc::start_group(Group group, std::uint32_t value) {
   if ((cr2_ & cr2_adon) == 0) {
-    refuse_write(cr2, value, "a start without ADON");
+    reject_write(cr2, value, "a start without ADON");
   }
   if (chip().now() - on_since_ < stabilisation) {
-    refuse_write(cr2, value, "a start earlier than 3 us after ADON");
+    reject_write(cr2, value, "a start earlier than 3 us after ADON");
   }
-  if (clock_period() < shortest_clock || clock_period() > longest_clock) {
-    refuse_write(
+  if (clock_period() < min_clock_period || clock_period() > max_clock_period) {
+    reject_write(
         cr2, value,
         "ADCCLK of " + std::to_string(local_time_per_us * 1000 / clock_period()) + " kHz: expected 600 to 36000 kHz");
   }
   if ((cr1_ & cr1_scan) == 0 && length(group) > 1) {
-    refuse_write(cr2, value, "a sequence of " + std::to_string(length(group)) + " without SCAN");
+    reject_write(cr2, value, "a sequence of " + std::to_string(length(group)) + " without SCAN");
   }
   for (unsigned rank = 0; rank < length(group); ++rank) {
     check_channel(channel(group, rank), value);
@@ -253,7 +253,7 @@ void Adc::start_group(Group group, std::uint32_t value) {
       return;  // starts are ignored until it is cleared (RM0090, 13.8)
     }
     if (converting_ == Group::regular || regular_waits_) {
-      refuse_write(cr2, value, "SWSTART while the regular group is being converted");
+      reject_write(cr2, value, "SWSTART while the regular group is being converted");
     }
     sr_ |= sr_strt;
     regular_rank_ = 0;
@@ -263,7 +263,7 @@ void Adc::start_group(Group group, std::uint32_t value) {
     }
   } else {
     if (converting_ == Group::injected) {
-      refuse_write(cr2, value, "JSWSTART while the injected group is being converted");
+      reject_write(cr2, value, "JSWSTART while the injected group is being converted");
     }
     sr_ |= sr_jstrt;
     injected_rank_ = 0;
@@ -313,7 +313,7 @@ std::uint32_t Adc::read(std::uint32_t offset) {
       if (offset >= jdr1 && offset <= jdr4) {
         return jdr_[(offset - jdr1) / 4];
       }
-      refuse_read(offset);
+      reject_read(offset);
   }
 }
 
@@ -345,13 +345,13 @@ void Adc::write(std::uint32_t offset, std::uint32_t value) {
     case sqr2:
     case sqr3:
       if (converting_ == Group::regular || regular_waits_) {
-        refuse_write(offset, value, "the sequence changes while it is being converted");
+        reject_write(offset, value, "the sequence changes while it is being converted");
       }
       sqr_[(offset - sqr1) / 4] = value & (offset == sqr1 ? 0x00FF'FFFFU : 0x3FFF'FFFFU);
       break;
     case jsqr:
       if (converting_ == Group::injected) {
-        refuse_write(offset, value, "the sequence changes while it is being converted");
+        reject_write(offset, value, "the sequence changes while it is being converted");
       }
       jsqr_ = value & 0x003F'FFFFU;
       break;
@@ -362,24 +362,24 @@ void Adc::write(std::uint32_t offset, std::uint32_t value) {
       if (offset >= jofr1 && offset <= jofr4) {
         jofr_[(offset - jofr1) / 4] = value & 0xFFFU;
       } else if ((offset < jdr1 || offset > dr) && offset != csr && offset != cdr) {  // those are read only
-        refuse_write(offset, value);
+        reject_write(offset, value);
       }
   }
   update_interrupt();
 }
 
 void Adc::write_cr1(std::uint32_t value) {
-  refuse_bits(cr1, value, cr1_watchdog, "the analog watchdog is not modelled");
-  refuse_bits(cr1, value, cr1_jauto | cr1_discontinuous, "automatic injection and discontinuous mode are not modelled");
-  refuse_bits(cr1, value, cr1_resolution, "only 12 bits are modelled");
+  reject_bits(cr1, value, cr1_watchdog, "the analog watchdog is not modelled");
+  reject_bits(cr1, value, cr1_jauto | cr1_discontinuous, "automatic injection and discontinuous mode are not modelled");
+  reject_bits(cr1, value, cr1_resolution, "only 12 bits are modelled");
   cr1_ = value & cr1_bits;
 }
 
 void Adc::write_cr2(std::uint32_t value) {
-  refuse_bits(cr2, value, cr2_dma, "DMA is not modelled");
-  refuse_bits(cr2, value, cr2_cont, "continuous conversion is not modelled");
-  refuse_bits(cr2, value, cr2_align, "only right alignment is modelled");
-  refuse_bits(cr2, value, cr2_triggers, "external triggers are not modelled");
+  reject_bits(cr2, value, cr2_dma, "DMA is not modelled");
+  reject_bits(cr2, value, cr2_cont, "continuous conversion is not modelled");
+  reject_bits(cr2, value, cr2_align, "only right alignment is modelled");
+  reject_bits(cr2, value, cr2_triggers, "external triggers are not modelled");
   const bool was_on = (cr2_ & cr2_adon) != 0;
   cr2_ = value & cr2_kept;
   if ((cr2_ & cr2_adon) == 0) {
@@ -398,10 +398,10 @@ void Adc::write_cr2(std::uint32_t value) {
 }
 
 void Adc::write_ccr(std::uint32_t value) {
-  refuse_bits(ccr, value, ccr_multi | ccr_dma, "several ADCs together are not modelled");
-  refuse_bits(ccr, value, ccr_vbate, "the battery channel is not modelled");
+  reject_bits(ccr, value, ccr_multi | ccr_dma, "several ADCs together are not modelled");
+  reject_bits(ccr, value, ccr_vbate, "the battery channel is not modelled");
   if (converting_ != Group::none && ((value ^ ccr_) & ccr_prescaler) != 0) {
-    refuse_write(ccr, value, "ADCCLK changes during a conversion");
+    reject_write(ccr, value, "ADCCLK changes during a conversion");
   }
   if ((value & ~ccr_ & ccr_tsvrefe) != 0) {
     sensors_since_ = chip().now();

@@ -83,7 +83,7 @@ class Adc final : public RegisterBlock {
 
   Group converting_ = Group::none;
   LocalTime conversion_end_ = never_on_chip;
-  unsigned regular_rank_ = 0;  ///< that is converted, or goes on after the injected group
+  unsigned regular_rank_ = 0;  ///< that is converted, or continues after the injected group
   unsigned injected_rank_ = 0;
   bool regular_waits_ = false;  ///< for the end of the injected group
 };

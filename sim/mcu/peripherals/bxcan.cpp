@@ -153,7 +153,7 @@ std::uint32_t BxCan::read(std::uint32_t offset) {
     return read_mailbox(offset);
   }
   if (!BxCanFilters::contains(offset)) {
-    refuse_read(offset);
+    reject_read(offset);
   }
   return filters_.read(offset);
 }
@@ -187,7 +187,7 @@ void BxCan::write(std::uint32_t offset, std::uint32_t value) {
       break;
     case ier:
       if ((value & ~all_interrupts) != 0) {
-        refuse_write(ier, value, "reserved bits are not 0");
+        reject_write(ier, value, "reserved bits are not 0");
       }
       interrupts_ = value;
       break;
@@ -201,9 +201,9 @@ void BxCan::write(std::uint32_t offset, std::uint32_t value) {
       if (offset >= first_transmit_mailbox && offset < end_of_mailboxes) {
         write_mailbox(offset, value);
       } else if (!BxCanFilters::contains(offset)) {
-        refuse_write(offset, value);
-      } else if (const auto refusal = filters_.write(offset, value)) {
-        refuse_write(offset, value, *refusal);
+        reject_write(offset, value);
+      } else if (const auto rejection = filters_.write(offset, value)) {
+        reject_write(offset, value, *rejection);
       }
       break;
   }
@@ -239,10 +239,10 @@ std::uint32_t BxCan::read_mailbox(std::uint32_t offset) const {
 
 void BxCan::write_master_control(std::uint32_t value) {
   if ((value & ttcm) != 0) {
-    refuse_write(mcr, value, "time triggered communication is not modelled");
+    reject_write(mcr, value, "time triggered communication is not modelled");
   }
   if ((value & ~(0xFFU | software_reset | dbf)) != 0) {
-    refuse_write(mcr, value, "reserved bits are not 0");
+    reject_write(mcr, value, "reserved bits are not 0");
   }
   if ((value & software_reset) != 0) {
     const BxCanFilters filters = filters_;
@@ -264,11 +264,11 @@ void BxCan::write_master_control(std::uint32_t value) {
 
 void BxCan::write_mailbox(std::uint32_t offset, std::uint32_t value) {
   if (offset >= first_receive_mailbox) {
-    refuse_write(offset, value, "receive mailboxes are write-protected");
+    reject_write(offset, value, "receive mailboxes are write-protected");
   }
   const std::uint32_t number = (offset - first_transmit_mailbox) / 0x10;
-  if (const auto refusal = transmitter_.mailboxes().write(number, offset % 0x10 / 4, value)) {
-    refuse_write(offset, value, *refusal);
+  if (const auto rejection = transmitter_.mailboxes().write(number, offset % 0x10 / 4, value)) {
+    reject_write(offset, value, *rejection);
   }
   if (transmitter_.mailboxes()[number].is_pending) {
     if (is_self_test()) {
@@ -281,10 +281,10 @@ void BxCan::write_mailbox(std::uint32_t offset, std::uint32_t value) {
 
 void BxCan::write_bit_timing(std::uint32_t value) {
   if (mode_ != Mode::initialisation) {
-    refuse_write(btr, value, "it may be written in initialisation mode (MSR.INAK = 1) only");
+    reject_write(btr, value, "it may be written in initialisation mode (MSR.INAK = 1) only");
   }
   if ((value & ~timing_bits) != 0) {
-    refuse_write(btr, value, "reserved bits are not 0");
+    reject_write(btr, value, "reserved bits are not 0");
   }
   timing_ = value;
   has_timing_ = true;
@@ -300,7 +300,7 @@ void BxCan::require_bit_rate_of_bus() const {
   const LocalTime period = bit_period();
   const std::uint64_t rate = (local_time_per_second + period / 2) / period;
   if (rate != bus_->bit_rate()) {
-    refuse_write(btr, timing_,
+    reject_write(btr, timing_,
                  std::to_string(rate) + " bit/s at a peripheral clock of " +
                      std::to_string(local_time_per_second / chip().clocks().apb1) + " Hz, the bus has " +
                      std::to_string(bus_->bit_rate()) + " bit/s");

@@ -13,10 +13,10 @@ class BxCanFifo {
   /// RFxR.
   [[nodiscard]] std::uint32_t status() const;
   void write_status(std::uint32_t value);
-  /// RIxR, RDTxR, RDLxR, RDHxR as words 0 to 3: of the oldest frame. If there is none: of the last that was.
+  /// RIxR, RDTxR, RDLxR, RDHxR as words 0 to 3: of the oldest frame. If there is none: of the last one.
   [[nodiscard]] std::uint32_t read(std::uint32_t word) const;
 
-  /// Takes a frame in. A full FIFO loses it if it is locked (MCR.RFLM), else the one before it.
+  /// Stores a frame. A full FIFO loses it if it is locked (MCR.RFLM), else the one before it.
   void store(const CanFrame& frame, unsigned filter_match_index, bool locked);
 
   [[nodiscard]] bool is_pending() const { return count_ > 0; }

@@ -15,7 +15,7 @@ constexpr std::uint32_t all_banks = (1U << BxCanFilters::bank_count) - 1;
 constexpr std::uint32_t finit = 1;
 constexpr std::uint32_t can2sb = 0x3F00;
 
-/// How a filter looks at a standard data frame: as the upper bits, the rest being zeros.
+/// What a filter compares of a standard data frame: the identifier in the upper bits, the rest zeros.
 constexpr std::uint32_t wide_image(std::uint16_t identifier) { return std::uint32_t{identifier} << 21U; }
 constexpr std::uint32_t narrow_image(std::uint16_t identifier) { return std::uint32_t{identifier} << 5U; }
 
@@ -30,7 +30,7 @@ struct Filters {
     mask.at(count) = relevant;
     ++count;
   }
-  /// Position of the first that lets a frame pass; `count` if none does.
+  /// Position of the first filter that accepts a frame; `count` if none does.
   [[nodiscard]] unsigned first_match(std::uint32_t image) const {
     unsigned i = 0;
     while (i < count && ((image ^ expected.at(i)) & mask.at(i)) != 0) {
@@ -123,7 +123,7 @@ std::optional<std::string> BxCanFilters::write(std::uint32_t offset, std::uint32
     if (((value & can2sb) >> 8U) > bank_count) {
       return "CAN2SB is above 28";
     }
-    // The reserved bits are what they are after reset, whatever a program writes there.
+    // The reserved bits keep their values of the reset.
     master_ = (master_ & ~(finit | can2sb)) | (value & (finit | can2sb));
     return std::nullopt;
   }

@@ -7,8 +7,8 @@
 
 namespace proleg::sim {
 
-/// The filter banks of bxCAN (RM0090, 32.7.4 and 32.9.4): which frames a controller takes in, and into which FIFO.
-/// Frames have 11-bit identifiers, so that of a filter the bits for IDE, RTR and the extended identifier meet zeros.
+/// The filter banks of bxCAN (RM0090, 32.7.4 and 32.9.4): which frames a controller accepts, and into which FIFO.
+/// Frames have 11-bit identifiers: the filter bits for IDE, RTR and the extended identifier are compared with zeros.
 class BxCanFilters {
  public:
   static constexpr unsigned bank_count = 28;
@@ -23,13 +23,13 @@ class BxCanFilters {
   [[nodiscard]] static bool contains(std::uint32_t offset);
   /// "F13R2".
   [[nodiscard]] static std::string register_name(std::uint32_t offset);
-  /// Of a register that there is.
+  /// Of a register that exists.
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) const;
-  /// Nothing, or why it is refused, and then nothing has changed.
+  /// Nothing, or why it is rejected, and then nothing has changed.
   [[nodiscard]] std::optional<std::string> write(std::uint32_t offset, std::uint32_t value);
   void reset() { *this = BxCanFilters(); }
 
-  /// The filter that a frame passes; nothing if no active one lets it in, or while FINIT is set. Only banks below
+  /// The filter that a frame passes; nothing if no active filter accepts it, or while FINIT is set. Only banks below
   /// CAN2SB count: the others belong to CAN2.
   [[nodiscard]] std::optional<Match> match(std::uint16_t identifier) const;
 

@@ -10,14 +10,14 @@
 
 namespace proleg::sim {
 
-/// The three transmit mailboxes of bxCAN as registers (RM0090, 32.7.1 and 32.9: TSR, TIxR to TDHxR), and how far each
-/// request has come: a pending one is submitted when the bus has got to its time, and handed over while the controller
+/// The three transmit mailboxes of bxCAN as registers (RM0090, 32.7.1 and 32.9: TSR, TIxR to TDHxR), and the progress
+/// of each request: a pending one is submitted when the bus has reached its time, and handed over while the controller
 /// has it.
 class BxCanMailboxes {
  public:
   static constexpr std::size_t count = 3;
 
-  /// What TSR says of a mailbox, in the lowest bits.
+  /// Bits of a mailbox in TSR, of mailbox 0.
   enum Outcome : std::uint32_t { rqcp = 1U << 0U, txok = 1U << 1U, alst = 1U << 2U, terr = 1U << 3U };
 
   struct Mailbox {
@@ -37,17 +37,17 @@ class BxCanMailboxes {
 
   /// TIxR, TDTxR, TDLxR, TDHxR as words 0 to 3.
   [[nodiscard]] std::uint32_t read(std::size_t number, std::uint32_t word) const;
-  /// Nothing, or why it is refused, and then nothing has changed. A TXRQ is in is_pending.
+  /// Nothing, or why it is rejected, and then nothing has changed. TXRQ sets is_pending.
   [[nodiscard]] std::optional<std::string> write(std::size_t number, std::uint32_t word, std::uint32_t value);
 
   /// TSR; by_request: MCR.TXFP.
   [[nodiscard]] std::uint32_t status(bool by_request) const;
-  /// Clears outcomes; returns the mailboxes whose abort was asked for now, as bits.
+  /// Clears outcomes; returns the mailboxes whose abort is newly requested, as bits.
   [[nodiscard]] std::uint32_t write_status(std::uint32_t value);
 
   /// The mailbox is empty again.
   void complete(std::size_t number, std::uint32_t outcome);
-  /// The controller has forgotten all of them.
+  /// The controller has dropped all of them.
   void take_back();
   [[nodiscard]] bool any_completed() const;
 

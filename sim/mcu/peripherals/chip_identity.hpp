@@ -1,6 +1,6 @@
 #pragma once
 
-// What tells one chip from another, in system memory (RM0090, section 39; DS8626).
+// What distinguishes chips, in system memory (RM0090, section 39; DS8626).
 
 #include <array>
 #include <cstdint>
@@ -28,8 +28,8 @@ inline constexpr std::uint32_t system_memory_bytes = 0x30;
 [[nodiscard]] std::array<std::uint8_t, system_memory_bytes> system_memory(
     const std::array<std::uint32_t, 3>& unique_id);
 
-/// Where an address lies that no peripheral of this room has: "DMA1 at offset 0x10", "0x40000C04" where the chip has
-/// nothing (RM0090, table 1).
+/// Describes an address that belongs to no peripheral of this room: "DMA1 at offset 0x10", "0x40000C04" where the chip
+/// has nothing (RM0090, table 1).
 [[nodiscard]] std::string describe_address(std::uint32_t address);
 
 }  // namespace proleg::sim

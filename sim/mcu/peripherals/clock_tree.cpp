@@ -119,16 +119,16 @@ ClockOutcome clocks_of(const ClockSettings& settings, const ClockLimits& limits)
   struct Limit {
     const char* clock;
     LocalTime period;
-    std::uint32_t most_mhz;
+    std::uint32_t max_mhz;
     const char* why;
   };
   for (const Limit& limit :
        {Limit{"PCLK1", next.apb1, 42, "(RM0090, 7.3.3)"}, Limit{"PCLK2", next.apb2, 84, "(RM0090, 7.3.3)"},
         Limit{"HCLK", next.core, limits.core_mhz, "at this core voltage (PWR_CR.VOS)"}}) {
-    if (limit.period * limit.most_mhz < local_time_per_us) {
+    if (limit.period * limit.max_mhz < local_time_per_us) {
       return {{},
               std::string(limit.clock) + " of " + mhz(local_time_hz / limit.period) + ": at most " +
-                  std::to_string(limit.most_mhz) + " MHz " + limit.why};
+                  std::to_string(limit.max_mhz) + " MHz " + limit.why};
     }
   }
   const unsigned needed = flash_wait_states(next.core);

@@ -1,7 +1,7 @@
 #pragma once
 
-// From oscillators to the clocks of core and buses (RM0090, figure 21 and 7.3.2 to 7.3.3), and what the manual forbids
-// on the way. In whole numbers.
+// The clocks of core and buses, from the oscillators (RM0090, figure 21 and 7.3.2 to 7.3.3), and what the manual
+// forbids. In whole numbers.
 
 #include <cstdint>
 #include <optional>
@@ -31,7 +31,7 @@ struct ClockSettings {
   std::uint32_t pllcfgr = 0;  ///< one without pll_fault(), if the source is the PLL
   std::uint32_t cfgr = 0;     ///< the prescalers
 };
-/// What the rest of the chip bears.
+/// What the rest of the chip allows.
 struct ClockLimits {
   std::uint32_t core_mhz;  ///< HCLK at the core voltage
   unsigned wait_states;    ///< of the flash

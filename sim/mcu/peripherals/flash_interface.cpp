@@ -46,7 +46,7 @@ constexpr unsigned x64 = 3;
 
 constexpr LocalTime ms = 1000 * local_time_per_us;
 
-/// Typical durations of erasing, by size and parallelism x8, x16, x32 (DS8626). The longest are twice as long.
+/// Typical durations of erasing, by size and parallelism x8, x16, x32 (DS8626). The maximum is twice as long.
 LocalTime erase_time(std::uint32_t bytes, unsigned parallelism) {
   constexpr LocalTime sector_16k[] = {400 * ms, 300 * ms, 250 * ms};
   constexpr LocalTime sector_64k[] = {1200 * ms, 700 * ms, 550 * ms};
@@ -217,7 +217,7 @@ std::uint32_t FlashInterface::read(std::uint32_t offset) {
     case optcr:
       return optcr_;
     default:
-      refuse_read(offset);
+      reject_read(offset);
   }
 }
 
@@ -250,7 +250,7 @@ void FlashInterface::write(std::uint32_t offset, std::uint32_t value) {
       write_optcr(value);
       break;
     default:
-      refuse_write(offset, value);
+      reject_write(offset, value);
   }
 }
 
@@ -258,7 +258,7 @@ void FlashInterface::write_acr(std::uint32_t value) {
   const unsigned states = value & 0x7U;
   const unsigned needed = flash_wait_states(chip().clocks().core);
   if (states < needed) {
-    refuse_write(acr, value,
+    reject_write(acr, value,
                  std::to_string(states) + " wait states, HCLK needs " + std::to_string(needed) + " (RM0090, table 10)");
   }
   acr_ = value & acr_bits;
@@ -267,7 +267,7 @@ void FlashInterface::write_acr(std::uint32_t value) {
 void FlashInterface::check_unlock(Lock& lock, std::uint32_t offset, std::uint32_t value, std::uint32_t first,
                                   std::uint32_t second) {
   if (lock == Lock::open) {
-    refuse_write(offset, value, "it is not locked; the manual does not say what a key does then");
+    reject_write(offset, value, "it is not locked; the manual does not say what a key does then");
   }
   if (lock == Lock::locked && value == first) {
     lock = Lock::first_key_given;
@@ -275,22 +275,22 @@ void FlashInterface::check_unlock(Lock& lock, std::uint32_t offset, std::uint32_
     lock = Lock::open;
   } else {
     lock = Lock::until_reset;
-    refuse_write(offset, value, "not the key that comes next: a bus fault, and locked until reset (RM0090, 3.6.1)");
+    reject_write(offset, value, "not the key that comes next: a bus fault, and locked until reset (RM0090, 3.6.1)");
   }
 }
 
 void FlashInterface::write_cr(std::uint32_t value) {
   if (!operations_.empty()) {
-    refuse_write(cr, value, "written while BSY is set, which stalls the bus until the operation ends");
+    reject_write(cr, value, "written while BSY is set, which stalls the bus until the operation ends");
   }
   if ((cr_ & cr_lock) != 0) {
     if (((value ^ cr_) & (cr_kept | cr_strt)) != 0) {
-      refuse_write(cr, value, "it is locked");
+      reject_write(cr, value, "it is locked");
     }
     return;
   }
   if (field(value, 8, 2) == x64) {
-    refuse_write(cr, value, "PSIZE x64 needs an external supply of 8 to 9 V, which the board does not have");
+    reject_write(cr, value, "PSIZE x64 needs an external supply of 8 to 9 V, which the board does not have");
   }
   cr_ = value & cr_kept;
   if ((value & cr_strt) != 0) {
@@ -313,10 +313,10 @@ void FlashInterface::start_erase(std::uint32_t value) {
   // With both of them it is a mass erase (RM0090, 3.6.3).
   if ((value & cr_mer) == 0) {
     if ((value & cr_ser) == 0) {
-      refuse_write(cr, value, "STRT without SER or MER: unpredictable (RM0090, 3.6.3)");
+      reject_write(cr, value, "STRT without SER or MER: unpredictable (RM0090, 3.6.3)");
     }
     if (sector >= flash_sectors.size()) {
-      refuse_write(cr, value, "SNB = " + std::to_string(sector) + ": the last sector is 11");
+      reject_write(cr, value, "SNB = " + std::to_string(sector) + ": the last sector is 11");
     }
     address = flash_sectors[sector].start;
     size = flash_sectors[sector].size;
@@ -336,12 +336,12 @@ void FlashInterface::start_erase(std::uint32_t value) {
 void FlashInterface::write_optcr(std::uint32_t value) {
   if ((optcr_ & optcr_lock) != 0) {
     if (((value ^ optcr_) & ~optcr_lock) != 0) {
-      refuse_write(optcr, value, "it is locked");
+      reject_write(optcr, value, "it is locked");
     }
     return;
   }
   if ((value & optcr_start) != 0) {
-    refuse_write(optcr, value, "programming option bytes is not modelled");
+    reject_write(optcr, value, "programming option bytes is not modelled");
   }
   optcr_ = value & 0x0FFF'FFEDU;
   if ((value & optcr_lock) != 0) {

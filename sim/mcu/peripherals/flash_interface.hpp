@@ -1,6 +1,6 @@
 #pragma once
 
-// The flash memory interface FLASH (RM0090, section 3): unlocking, erasing, programming. The contents live elsewhere.
+// The flash memory interface FLASH (RM0090, section 3): unlocking, erasing, programming. The caller has the contents.
 // Durations are those of the datasheet (DS8626, table "Flash memory programming").
 
 #include <array>
@@ -51,7 +51,7 @@ inline constexpr std::array<FlashSector, 12> flash_sectors = [] {
 class FlashInterface final : public RegisterBlock {
  public:
   static constexpr unsigned interrupt_position = 4;
-  /// An access while the interface works waits; contents change when the operation ends.
+  /// An access during an operation waits; contents change when the operation ends.
   static constexpr LocalTime program_time = 16 * local_time_per_us;  ///< typical; 100 us at most
 
   /// protected_sectors: bit n: sector n cannot be erased or programmed (option bytes nWRP, which a programmer set).
@@ -59,23 +59,23 @@ class FlashInterface final : public RegisterBlock {
 
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
-  /// An operation that is under way is forgotten: call cut() first.
+  /// Drops an operation that is under way: call cut() first.
   void reset() override;
   [[nodiscard]] LocalTime next_event() const override;
   void advance() override;
   [[nodiscard]] bool is_idle() const override { return true; }  // its own oscillator times the operations
 
-  /// A store of the program to flash; size: 1, 2, 4. What the hardware does not do it tells in FLASH_SR; the store
-  /// itself ends without a fault (RM0090, 3.6.4), which is what `true` says. False: the address is not in flash. A
-  /// store while the interface works is done after that, as if the bus had stalled the program.
+  /// A store of the program to flash; size: 1, 2, 4. FLASH_SR reports what the hardware rejects; the store itself ends
+  /// without a fault (RM0090, 3.6.4): true. False: the address is not in flash. A store during an operation is done
+  /// after it, as if the bus had stalled the program.
   [[nodiscard]] bool program(std::uint32_t address, unsigned size, std::uint32_t value);
 
   /// Until then a read, a fetch or another store of flash stalls the bus (single bank). Not busy if not in the future.
   [[nodiscard]] LocalTime busy_until() const;
 
-  /// Power fails, or a reset comes (RM0090, 3.6.3: contents are not guaranteed): what is under work is left half done.
-  /// Erase: some bits of every word are 1 already. Program: some of the bits that shall be 0 are. What a seed leaves
-  /// behind is always the same. Nothing if no operation is under way.
+  /// Power fails, or a reset comes (RM0090, 3.6.3: contents are not guaranteed): the operation under way stays half
+  /// done. Erase: some bits of every word are 1 already. Program: some of the bits that must become 0 are 0. The same
+  /// seed leaves the same bits. Changes nothing if no operation is under way.
   void cut(std::uint64_t seed);
 
   /// FLASH_ACR.LATENCY.

@@ -99,7 +99,7 @@ std::uint32_t Gpio::read(std::uint32_t offset) {
     case afrh:
       return afr_[1];
     default:
-      refuse_read(offset);
+      reject_read(offset);
   }
 }
 
@@ -118,7 +118,7 @@ void Gpio::write(std::uint32_t offset, std::uint32_t value) {
     case pupdr:
       for (unsigned pin = 0; pin < pin_count; ++pin) {
         if (field(value, 2 * pin, 2) == Pull::reserved) {
-          refuse_write(offset, value, "11 for pin " + std::to_string(pin) + " is reserved");
+          reject_write(offset, value, "11 for pin " + std::to_string(pin) + " is reserved");
         }
       }
       pupdr_ = value;
@@ -129,11 +129,11 @@ void Gpio::write(std::uint32_t offset, std::uint32_t value) {
       odr_ = value & pins;
       break;
     case bsrr:
-      // To set goes before to reset.
+      // Setting has precedence over resetting.
       odr_ = (odr_ & ~(value >> 16U)) | (value & pins);
       break;
     case lckr:
-      refuse_write(offset, value, "locking is not modelled");
+      reject_write(offset, value, "locking is not modelled");
     case afrl:
       afr_[0] = value;
       break;
@@ -141,7 +141,7 @@ void Gpio::write(std::uint32_t offset, std::uint32_t value) {
       afr_[1] = value;
       break;
     default:
-      refuse_write(offset, value);
+      reject_write(offset, value);
   }
 }
 

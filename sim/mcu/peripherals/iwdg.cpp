@@ -16,7 +16,7 @@ constexpr RegisterName registers[] = {{kr, "KR"}, {pr, "PR"}, {rlr, "RLR"}, {sr,
 constexpr std::uint32_t key_unlock = 0x5555;
 constexpr std::uint32_t key_reload = 0xAAAA;
 constexpr std::uint32_t key_start = 0xCCCC;
-constexpr std::uint32_t largest_count = 0xFFF;
+constexpr std::uint32_t max_count = 0xFFF;
 constexpr std::uint32_t sr_pvu = 1U << 0U;
 constexpr std::uint32_t sr_rvu = 1U << 1U;
 constexpr std::uint64_t update_cycles = 5;
@@ -43,7 +43,7 @@ void Iwdg::reset() {
   unlocked_ = false;
   expired_ = false;
   prescaler_ = 0;
-  reload_ = largest_count;
+  reload_ = max_count;
   prescaler_update_ = {};
   reload_update_ = {};
 }
@@ -111,7 +111,7 @@ std::uint32_t Iwdg::read(std::uint32_t offset) {
     case sr:
       return (prescaler_update_.pending ? sr_pvu : 0) | (reload_update_.pending ? sr_rvu : 0);
     default:
-      refuse_read(offset);
+      reject_read(offset);
   }
 }
 
@@ -124,20 +124,20 @@ void Iwdg::write(std::uint32_t offset, std::uint32_t value) {
     case pr:
     case rlr: {
       if (!unlocked_) {
-        refuse_write(offset, value, "write-protected: IWDG_KR = 0x5555 comes first");
+        reject_write(offset, value, "write-protected: IWDG_KR = 0x5555 comes first");
       }
       Update& update = offset == pr ? prescaler_update_ : reload_update_;
       if (update.pending) {
-        refuse_write(offset, value, "the update before is not over (IWDG_SR)");
+        reject_write(offset, value, "the update before is not over (IWDG_SR)");
       }
-      update = {.pending = true, .value = value & (offset == pr ? 0x7U : largest_count), .done = never_on_chip};
+      update = {.pending = true, .value = value & (offset == pr ? 0x7U : max_count), .done = never_on_chip};
       schedule_updates();
       return;
     }
     case sr:
       return;  // read only
     default:
-      refuse_write(offset, value);
+      reject_write(offset, value);
   }
 }
 
@@ -145,7 +145,7 @@ void Iwdg::write_key(std::uint32_t value) {
   unlocked_ = value == key_unlock;
   if (value == key_start && !running_) {
     running_ = true;
-    start_count(chip().now(), largest_count);
+    start_count(chip().now(), max_count);
     schedule_updates();
   } else if (value == key_reload && running_) {
     start_count(chip().now(), reload_);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Independent watchdog IWDG (RM0090, section 21). It counts cycles of LSI and does not know of sleep.
+// Independent watchdog IWDG (RM0090, section 21). It counts cycles of LSI, also during sleep.
 
 #include <cstdint>
 
@@ -18,13 +18,13 @@ class Iwdg final : public RegisterBlock {
   void write(std::uint32_t offset, std::uint32_t value) override;
   /// LSI is off as well: a reset is one of the whole chip.
   void reset() override;
-  /// When it resets the chip if nobody reloads it before.
+  /// When it resets the chip, unless the program reloads it before.
   [[nodiscard]] LocalTime next_event() const override;
   void advance() override;
 
   /// Started: nothing but a reset stops it, and LSI runs with it.
   [[nodiscard]] bool is_running() const { return running_; }
-  /// LSI runs for another reason (RCC_CSR.LSION). Without LSI an update of PR or RLR does not come to its end.
+  /// LSI runs for another reason (RCC_CSR.LSION). Without LSI an update of PR or RLR does not end.
   void lsi_switched(bool on);
   /// LSI cycles in local time, rounded up.
   [[nodiscard]] LocalTime lsi_cycles(std::uint64_t count) const;

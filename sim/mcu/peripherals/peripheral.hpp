@@ -1,6 +1,6 @@
 #pragma once
 
-// What the parts of a virtual chip know of each other.
+// The interfaces between the parts of a virtual chip.
 
 #include <cstdint>
 #include <optional>
@@ -12,28 +12,28 @@
 
 namespace proleg::sim {
 
-/// The program used a register, or a bit of it, that the model does not have, or one in a way that the manual forbids.
-/// what() says which and how: "USART2_CR3 = 0x40 at offset 0x14: DMA is not modelled". The chip stops and adds address
+/// The program used a register, or a bit of one, that the model does not have, or used it in a way that the manual
+/// forbids. what() names both: "USART2_CR3 = 0x40 at offset 0x14: DMA is not modelled". The chip stops and adds address
 /// and place in the program.
 class UnmodelledAccess : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Why a chip starts, as RCC_CSR tells it (RM0090, 7.3.21).
+/// Why a chip starts, as RCC_CSR shows it (RM0090, 7.3.21).
 enum class ResetCause : std::uint8_t { power_on, pin, software, independent_watchdog };
 
-/// What a peripheral may ask of its chip.
+/// What a chip provides for its peripherals.
 class ChipServices {
  public:
-  /// Local time of the access or event that is being worked on.
+  /// Local time of the present access or event.
   [[nodiscard]] virtual LocalTime now() const = 0;
   [[nodiscard]] virtual const Clocks& clocks() const = 0;
   /// The level of an interrupt line into the NVIC (RM0090, table 61). The NVIC pends it while it is high.
   virtual void set_interrupt(unsigned position, bool high) = 0;
   /// The chip starts again from reset, after the instruction that caused it.
   virtual void request_reset(ResetCause cause) = 0;
-  /// When this peripheral's next_event() has become earlier outside of a register access.
+  /// To be called when this peripheral's next_event() has become earlier outside of a register access.
   virtual void reschedule() = 0;
 
  protected:
@@ -58,23 +58,23 @@ class Peripheral {
   /// "USART2_BRR"; for an offset without a register "USART2 at offset 0x4C".
   [[nodiscard]] virtual std::string register_name(std::uint32_t offset) const;
 
-  /// As after a reset of the chip. Does not touch what lies outside (pins, flash contents).
+  /// Sets the registers as after a reset of the chip. Does not change what lies outside (pins, flash contents).
   virtual void reset() = 0;
 
-  /// When it does something by itself next (raises an interrupt, ends an operation); never_on_chip if nothing is due.
-  /// It may do so late: every access and every question settles first what was due by ChipServices::now().
+  /// When it next acts by itself (raises an interrupt, ends an operation); never_on_chip if nothing is due. advance()
+  /// may come late: every access first does what was due by ChipServices::now().
   [[nodiscard]] virtual LocalTime next_event() const { return never_on_chip; }
   /// Does what is due at ChipServices::now().
   virtual void advance() {}
 
-  /// Clocks change at ChipServices::now(), from ChipServices::clocks() to `next`: settles what the old ones counted.
-  /// Throws UnmodelledAccess if something is under way that the change would spoil.
+  /// Clocks change at ChipServices::now(), from ChipServices::clocks() to `next`: counts up to now with the old ones.
+  /// Throws UnmodelledAccess if the change would spoil an operation under way.
   virtual void clocks_change(const Clocks& next) { static_cast<void>(next); }
-  /// Whether it would be the same with its clock off: nothing counts, converts, sends or listens.
+  /// Whether it does nothing that needs its clock: it does not count, convert, send or receive.
   [[nodiscard]] virtual bool is_idle() const { return next_event() == never_on_chip; }
 };
 
-/// The board around the chip: where pins lead.
+/// The board around the chip: what its pins are connected to.
 class BoardSignals {
  public:
   /// Level that the board drives a pin to; nothing if it leaves it open, so that the pull resistors decide.

@@ -18,7 +18,7 @@ class PeripheralGates {
   void attach(Peripheral& peripheral) { attached_.push_back(&peripheral); }
   [[nodiscard]] const std::vector<Peripheral*>& attached() const { return attached_; }
 
-  /// Registers as after reset. The attached peripherals are the chip's to reset.
+  /// Registers as after reset. The chip resets the attached peripherals.
   void reset();
   [[nodiscard]] static bool contains(std::uint32_t offset);
   /// Of a register that exists.

@@ -25,7 +25,7 @@ Pwr::Pwr(ChipServices& chip) : RegisterBlock(chip, "PWR", 0x4000'7000, 0x400, re
 
 void Pwr::reset() { cr_ = cr_vos; }
 
-std::uint32_t Pwr::fastest_core_mhz() const { return (cr_ & cr_vos) != 0 ? scale_1_mhz : scale_2_mhz; }
+std::uint32_t Pwr::max_core_mhz() const { return (cr_ & cr_vos) != 0 ? scale_1_mhz : scale_2_mhz; }
 
 std::uint32_t Pwr::read(std::uint32_t offset) {
   switch (offset) {
@@ -34,26 +34,26 @@ std::uint32_t Pwr::read(std::uint32_t offset) {
     case csr:
       return csr_vosrdy;
     default:
-      refuse_read(offset);
+      reject_read(offset);
   }
 }
 
 void Pwr::write(std::uint32_t offset, std::uint32_t value) {
   switch (offset) {
     case cr:
-      refuse_bits(offset, value, cr_pvde, "the voltage detector is not modelled");
+      reject_bits(offset, value, cr_pvde, "the voltage detector is not modelled");
       if ((value & cr_vos) == 0 && chip().clocks().core * scale_2_mhz < local_time_per_us) {
-        refuse_write(offset, value,
-                     "scale 2 bears " + std::to_string(scale_2_mhz) + " MHz, HCLK is " +
+        reject_write(offset, value,
+                     "scale 2 allows " + std::to_string(scale_2_mhz) + " MHz, HCLK is " +
                          std::to_string(local_time_per_us / chip().clocks().core) + " MHz");
       }
       cr_ = value & cr_kept;
       break;
     case csr:
-      refuse_bits(offset, value, csr_ewup | csr_bre, "wake-up pin and backup regulator are not modelled");
+      reject_bits(offset, value, csr_ewup | csr_bre, "wake-up pin and backup regulator are not modelled");
       break;
     default:
-      refuse_write(offset, value);
+      reject_write(offset, value);
   }
 }
 

@@ -15,8 +15,8 @@ class Pwr final : public RegisterBlock {
   void write(std::uint32_t offset, std::uint32_t value) override;
   void reset() override;
 
-  /// The fastest HCLK that the core voltage bears, in MHz (DS8626, general operating conditions).
-  [[nodiscard]] std::uint32_t fastest_core_mhz() const;
+  /// The maximum HCLK at the core voltage, in MHz (DS8626, general operating conditions).
+  [[nodiscard]] std::uint32_t max_core_mhz() const;
 
  private:
   std::uint32_t cr_ = 0;

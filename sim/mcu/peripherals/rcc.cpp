@@ -161,9 +161,9 @@ void Rcc::settle() {
 Clocks Rcc::clocks_of(ClockSource source, std::uint32_t setting, std::uint32_t value) const {
   const ClockSettings settings{.source = source, .pllcfgr = pllcfgr_, .cfgr = setting};
   const ClockOutcome outcome =
-      proleg::sim::clocks_of(settings, {.core_mhz = power_->fastest_core_mhz(), .wait_states = flash_->wait_states()});
+      proleg::sim::clocks_of(settings, {.core_mhz = power_->max_core_mhz(), .wait_states = flash_->wait_states()});
   if (outcome.fault) {
-    refuse_write(cfgr, value, *outcome.fault);
+    reject_write(cfgr, value, *outcome.fault);
   }
   return outcome.clocks;
 }
@@ -202,15 +202,15 @@ std::uint32_t Rcc::read(std::uint32_t offset) {
     case plli2scfgr:
       return plli2scfgr_reset;
     default:
-      refuse_read(offset);
+      reject_read(offset);
   }
 }
 
 void Rcc::write(std::uint32_t offset, std::uint32_t value) {
   settle();
   if (PeripheralGates::contains(offset)) {
-    if (const auto refusal = gates_.write(offset, value)) {
-      refuse_write(offset, value, *refusal);
+    if (const auto rejection = gates_.write(offset, value)) {
+      reject_write(offset, value, *rejection);
     }
     return;
   }
@@ -225,11 +225,11 @@ void Rcc::write(std::uint32_t offset, std::uint32_t value) {
       write_cfgr(value);
       break;
     case cir:
-      refuse_bits(offset, value, cir_enables, "interrupts of the RCC are not modelled");
+      reject_bits(offset, value, cir_enables, "interrupts of the RCC are not modelled");
       break;
     case bdcr:
     case sscgr:
-      refuse_bits(offset, value, ~0U,
+      reject_bits(offset, value, ~0U,
                   offset == bdcr ? "the backup domain is not modelled" : "spread spectrum is not modelled");
       break;
     case csr:
@@ -237,20 +237,20 @@ void Rcc::write(std::uint32_t offset, std::uint32_t value) {
       break;
     case plli2scfgr:
       if (value != plli2scfgr_reset) {
-        refuse_write(offset, value, "PLLI2S is not modelled");
+        reject_write(offset, value, "PLLI2S is not modelled");
       }
       break;
     default:
-      refuse_write(offset, value);
+      reject_write(offset, value);
   }
 }
 
 void Rcc::write_cr(std::uint32_t value) {
-  refuse_bits(cr, value, cr_hsebyp, "the board has a crystal, no clock to bypass it");
-  refuse_bits(cr, value, cr_csson, "the clock security system is not modelled");
-  refuse_bits(cr, value, cr_plli2son, "PLLI2S is not modelled");
+  reject_bits(cr, value, cr_hsebyp, "the board has a crystal, no clock to bypass it");
+  reject_bits(cr, value, cr_csson, "the clock security system is not modelled");
+  reject_bits(cr, value, cr_plli2son, "PLLI2S is not modelled");
   if (field(value, 3, 5) != hsi_trim_) {
-    refuse_write(cr, value, "HSITRIM = " + std::to_string(field(value, 3, 5)) + ": trimming is not modelled");
+    reject_write(cr, value, "HSITRIM = " + std::to_string(field(value, 3, 5)) + ": trimming is not modelled");
   }
   const LocalTime now = chip().now();
   const bool from_hse = pll_from_hse(pllcfgr_);
@@ -264,14 +264,14 @@ void Rcc::write_cr(std::uint32_t value) {
   if (pll_on) {
     if (!pll_.on) {
       if (const std::optional<std::string> fault = pll_fault(pllcfgr_)) {
-        refuse_write(cr, value, "PLLON with " + *fault);
+        reject_write(cr, value, "PLLON with " + *fault);
       }
       if (!(from_hse ? hse_ : hsi_).ready(now)) {
-        refuse_write(cr, value, std::string("PLLON while its clock ") + (from_hse ? "HSE" : "HSI") + " is not ready");
+        reject_write(cr, value, std::string("PLLON while its clock ") + (from_hse ? "HSE" : "HSI") + " is not ready");
       }
     }
     if (!(from_hse ? hse_on : hsi_on)) {
-      refuse_write(cr, value, std::string("PLLON without its clock ") + (from_hse ? "HSE" : "HSI"));
+      reject_write(cr, value, std::string("PLLON without its clock ") + (from_hse ? "HSE" : "HSI"));
     }
   }
   constexpr LocalTime stop_cycles = 6;
@@ -283,16 +283,16 @@ void Rcc::write_cr(std::uint32_t value) {
 void Rcc::write_pllcfgr(std::uint32_t value) {
   const std::uint32_t next = (value & pllcfgr_bits) | pllcfgr_reserved;
   if (next != pllcfgr_ && pll_.on) {
-    refuse_write(pllcfgr, value, "the PLL is on (RM0090, 7.3.2)");
+    reject_write(pllcfgr, value, "the PLL is on (RM0090, 7.3.2)");
   }
   pllcfgr_ = next;
 }
 
 void Rcc::write_cfgr(std::uint32_t value) {
-  refuse_bits(cfgr, value, cfgr_others, "clocks for pins, I2S and RTC are not modelled");
+  reject_bits(cfgr, value, cfgr_others, "clocks for pins, I2S and RTC are not modelled");
   const std::uint32_t next = value & cfgr_clocks;
   if ((next & cfgr_sw) == cfgr_sw) {
-    refuse_write(cfgr, value, "SW = 3 is not allowed");
+    reject_write(cfgr, value, "SW = 3 is not allowed");
   }
   // A clock that is not ready takes over when it is.
   const auto selected = static_cast<ClockSource>(next & cfgr_sw);

@@ -43,7 +43,7 @@ class Rcc final : public RegisterBlock {
 
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
-  /// Registers but the flags of note_start(). The attached peripherals are the chip's to reset.
+  /// All registers except the flags of note_start(). The chip resets the attached peripherals.
   void reset() override;
   /// When a selected clock becomes ready and takes over.
   [[nodiscard]] LocalTime next_event() const override;

@@ -13,33 +13,33 @@ std::string RegisterBlock::register_name(std::uint32_t offset) const {
 
 namespace {
 
-/// The offset behind the name of a register; the name of an offset without register has it already.
+/// The offset behind the name of a register; the name of an offset without a register contains it already.
 std::string place(const std::string& name, std::uint32_t offset) {
   return name.find(" at offset ") == std::string::npos ? " at offset " + hexadecimal(offset) : std::string();
 }
 
 }  // namespace
 
-void RegisterBlock::refuse_write(std::uint32_t offset, std::uint32_t value, std::string_view why) const {
+void RegisterBlock::reject_write(std::uint32_t offset, std::uint32_t value, std::string_view why) const {
   const std::string register_ = register_name(offset);
   throw UnmodelledAccess(register_ + " = " + hexadecimal(value) + place(register_, offset) + ": " + std::string(why));
 }
 
-void RegisterBlock::refuse_read(std::uint32_t offset, std::string_view why) const {
+void RegisterBlock::reject_read(std::uint32_t offset, std::string_view why) const {
   const std::string register_ = register_name(offset);
   throw UnmodelledAccess(register_ + place(register_, offset) + ": " + std::string(why));
 }
 
-void RegisterBlock::refuse_read(std::uint32_t offset) const { refuse_read(offset, "reading it is not modelled"); }
+void RegisterBlock::reject_read(std::uint32_t offset) const { reject_read(offset, "reading it is not modelled"); }
 
-void RegisterBlock::refuse_write(std::uint32_t offset, std::uint32_t value) const {
-  refuse_write(offset, value, "writing it is not modelled");
+void RegisterBlock::reject_write(std::uint32_t offset, std::uint32_t value) const {
+  reject_write(offset, value, "writing it is not modelled");
 }
 
-void RegisterBlock::refuse_bits(std::uint32_t offset, std::uint32_t value, std::uint32_t mask,
+void RegisterBlock::reject_bits(std::uint32_t offset, std::uint32_t value, std::uint32_t mask,
                                 std::string_view why) const {
   if ((value & mask) != 0) {
-    refuse_write(offset, value, why);
+    reject_write(offset, value, why);
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the models of this room have in common: names of registers, refusals, a line into the NVIC.
+// What the models of this room have in common: names of registers, rejections, a line into the NVIC.
 
 #include <cstdint>
 #include <span>
@@ -23,7 +23,7 @@ struct RegisterName {
   std::string_view name;  ///< without that of the peripheral: "BRR"
 };
 
-/// A peripheral that knows the names of its registers.
+/// A peripheral with names for its registers.
 class RegisterBlock : public Peripheral {
  public:
   [[nodiscard]] std::string_view name() const final { return name_; }
@@ -32,7 +32,7 @@ class RegisterBlock : public Peripheral {
   [[nodiscard]] std::string register_name(std::uint32_t offset) const override;
 
  protected:
-  /// registers: must outlive the block. Constructors ask nothing of the chip, which may itself be in the making.
+  /// registers: must outlive the block. Constructors do not use the chip, which may be under construction.
   RegisterBlock(ChipServices& chip, std::string_view name, std::uint32_t base, std::uint32_t size,
                 std::span<const RegisterName> registers)
       : chip_(&chip), name_(name), base_(base), size_(size), registers_(registers) {}
@@ -40,13 +40,13 @@ class RegisterBlock : public Peripheral {
   [[nodiscard]] ChipServices& chip() const { return *chip_; }
 
   /// Throw UnmodelledAccess: "USART2_CR3 = 0x40 at offset 0x14: DMA is not modelled".
-  [[noreturn]] void refuse_write(std::uint32_t offset, std::uint32_t value, std::string_view why) const;
-  [[noreturn]] void refuse_read(std::uint32_t offset, std::string_view why) const;
-  /// For an offset that read() or write() does not know.
-  [[noreturn]] void refuse_read(std::uint32_t offset) const;
-  [[noreturn]] void refuse_write(std::uint32_t offset, std::uint32_t value) const;
-  /// Refuses a write that sets one of the bits of `mask`.
-  void refuse_bits(std::uint32_t offset, std::uint32_t value, std::uint32_t mask, std::string_view why) const;
+  [[noreturn]] void reject_write(std::uint32_t offset, std::uint32_t value, std::string_view why) const;
+  [[noreturn]] void reject_read(std::uint32_t offset, std::string_view why) const;
+  /// For an offset that read() or write() does not model.
+  [[noreturn]] void reject_read(std::uint32_t offset) const;
+  [[noreturn]] void reject_write(std::uint32_t offset, std::uint32_t value) const;
+  /// Rejects a write that sets one of the bits of `mask`.
+  void reject_bits(std::uint32_t offset, std::uint32_t value, std::uint32_t mask, std::string_view why) const;
 
  private:
   ChipServices* chip_;
@@ -56,7 +56,7 @@ class RegisterBlock : public Peripheral {
   std::span<const RegisterName> registers_;
 };
 
-/// The line of a peripheral into the NVIC; tells the chip of changes only.
+/// The line of a peripheral into the NVIC; passes on changes only.
 class InterruptLine {
  public:
   InterruptLine(ChipServices& chip, unsigned position) : chip_(&chip), position_(position) {}

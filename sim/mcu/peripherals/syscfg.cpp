@@ -16,12 +16,12 @@ std::uint32_t Syscfg::read(std::uint32_t offset) {
       return 0;  // MEMRMP: main flash is at address 0
     }
   }
-  refuse_read(offset);
+  reject_read(offset);
 }
 
 void Syscfg::write(std::uint32_t offset, std::uint32_t value) {
   if (value != 0) {
-    refuse_write(offset, value, "remapping, EXTI lines and the compensation cell are not modelled");
+    reject_write(offset, value, "remapping, EXTI lines and the compensation cell are not modelled");
   }
   static_cast<void>(read(offset));
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// System configuration controller SYSCFG (RM0090, section 9): can be read, and written with what it holds anyway.
+// System configuration controller SYSCFG (RM0090, section 9): can be read, and written with its present contents only.
 
 #include "sim/mcu/peripherals/register_block.hpp"
 

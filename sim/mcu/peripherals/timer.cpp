@@ -160,7 +160,7 @@ void Timer::settle() {
     match(count_, arr_);
     since_ += static_cast<std::int64_t>(to_overflow) * period;
     overflow();
-    // After two of them nothing is left to be loaded, and every flag that a period sets is set.
+    // After two of them all preloaded values are in effect, and every flag that a period sets is set.
     if (++overflows == 2 && counts()) {
       const auto whole = static_cast<std::int64_t>(count_period() * (std::uint64_t{arr_} + 1));
       since_ += (now - since_) / whole * whole;
@@ -259,7 +259,7 @@ std::uint32_t Timer::read(std::uint32_t offset) {
       if (offset >= ccr1 && offset <= ccr4) {
         return channels_[(offset - ccr1) / 4].preload;
       }
-      refuse_read(offset);
+      reject_read(offset);
   }
 }
 
@@ -271,10 +271,10 @@ void Timer::write(std::uint32_t offset, std::uint32_t value) {
       break;
     case cr2:
     case smcr:
-      refuse_bits(offset, value, 0xFFFF, "trigger inputs and outputs are not modelled");
+      reject_bits(offset, value, 0xFFFF, "trigger inputs and outputs are not modelled");
       break;
     case dier:
-      refuse_bits(offset, value, 0x5F40, "DMA and trigger interrupts are not modelled");
+      reject_bits(offset, value, 0x5F40, "DMA and trigger interrupts are not modelled");
       dier_ = value & flags;
       break;
     case sr:
@@ -294,7 +294,7 @@ void Timer::write(std::uint32_t offset, std::uint32_t value) {
       break;
     case cnt:
       if (value > arr_) {
-        refuse_write(offset, value, "above ARR (" + hexadecimal(arr_) + "): the counter would go through all 32 bits");
+        reject_write(offset, value, "above ARR (" + hexadecimal(arr_) + "): the counter would go through all 32 bits");
       }
       count_ = value;
       break;
@@ -306,13 +306,13 @@ void Timer::write(std::uint32_t offset, std::uint32_t value) {
       break;
     case dcr:
     case dmar:
-      refuse_write(offset, value, "DMA is not modelled");
+      reject_write(offset, value, "DMA is not modelled");
     case option:
-      refuse_bits(offset, value, ~0U, "trigger remapping is not modelled");
+      reject_bits(offset, value, ~0U, "trigger remapping is not modelled");
       break;
     default:
       if (offset < ccr1 || offset > ccr4) {
-        refuse_write(offset, value);
+        reject_write(offset, value);
       }
       const unsigned channel = (offset - ccr1) / 4;
       channels_[channel].preload = value;
@@ -325,9 +325,9 @@ void Timer::write(std::uint32_t offset, std::uint32_t value) {
 }
 
 void Timer::write_cr1(std::uint32_t value) {
-  refuse_bits(cr1, value, cr1_dir | cr1_cms, "only up-counting is modelled");
+  reject_bits(cr1, value, cr1_dir | cr1_cms, "only up-counting is modelled");
   if ((value & cr1_cen) != 0 && count_ > arr_) {
-    refuse_write(cr1, value,
+    reject_write(cr1, value,
                  "CNT (" + hexadecimal(count_) + ") is above ARR (" + hexadecimal(arr_) +
                      "): the counter would go through all 32 bits");
   }
@@ -349,7 +349,7 @@ void Timer::write_cr1(std::uint32_t value) {
 }
 
 void Timer::write_egr(std::uint32_t value) {
-  refuse_bits(egr, value, egr_tg, "triggers are not modelled");
+  reject_bits(egr, value, egr_tg, "triggers are not modelled");
   sr_ |= value & flags & ~flag_update;
   if ((value & egr_ug) == 0) {
     return;
@@ -365,10 +365,10 @@ void Timer::write_ccmr(unsigned index, std::uint32_t offset, std::uint32_t value
   for (unsigned half = 0; half < 2; ++half) {
     const std::uint32_t setting = value >> (8 * half);
     const unsigned mode = field(setting, 4, 3);
-    refuse_bits(offset, value, (setting & ccmr_selection) != 0 ? value : 0, "input capture is not modelled");
-    refuse_bits(offset, value, (setting & ccmr_clear) != 0 ? value : 0, "clearing by ETRF is not modelled");
+    reject_bits(offset, value, (setting & ccmr_selection) != 0 ? value : 0, "input capture is not modelled");
+    reject_bits(offset, value, (setting & ccmr_clear) != 0 ? value : 0, "clearing by ETRF is not modelled");
     if (mode > frozen && mode <= toggle) {
-      refuse_write(offset, value,
+      reject_write(offset, value,
                    "OC" + std::to_string(2 * index + half + 1) + "M = " + std::to_string(mode) +
                        ": outputs that change on a match are not modelled");
     }
@@ -385,7 +385,7 @@ void Timer::write_ccmr(unsigned index, std::uint32_t offset, std::uint32_t value
 }
 
 void Timer::write_ccer(std::uint32_t value) {
-  refuse_bits(ccer, value, 0x8888, "CCxNP belongs to inputs");
+  reject_bits(ccer, value, 0x8888, "CCxNP belongs to inputs");
   ccer_ = value & 0x3333U;
 }
 
@@ -395,7 +395,7 @@ void Timer::set_arr(std::uint32_t value) {
     return;
   }
   if (enabled() && value < count_) {
-    refuse_write(arr, value,
+    reject_write(arr, value,
                  "below the counter (" + hexadecimal(count_) + ") without ARPE: it would go through all 32 bits");
   }
   const bool counted = counts();

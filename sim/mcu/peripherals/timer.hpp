@@ -1,7 +1,7 @@
 #pragma once
 
-// General-purpose timers TIM2 and TIM5 (RM0090, section 18): a 32-bit up-counter with four outputs. Nothing runs while
-// nobody looks: what happened since the last look follows from the time that passed.
+// General-purpose timers TIM2 and TIM5 (RM0090, section 18): a 32-bit up-counter with four outputs. It computes its
+// state on access, from the time that has passed since the access before.
 
 #include <array>
 #include <cstdint>
@@ -26,13 +26,13 @@ class Timer final : public RegisterBlock {
   void clocks_change(const Clocks& next) override;
   [[nodiscard]] bool is_idle() const override { return !enabled(); }
 
-  // Of a channel, 1 to 4.
+  // For a channel, 1 to 4:
 
   /// Counts for which its PWM output is active in each period, as the program wrote them last (with preload: they hold
   /// from the next update on). Nothing unless the counter runs, the channel is in a PWM mode and its output is enabled.
   [[nodiscard]] std::optional<std::uint32_t> pulse_width(unsigned channel) const;
   /// How long the output is high in each period, at ChipServices::now(): in the period that runs; or, if the program
-  /// has asked for another width while the output was active, in the next one. Nothing as pulse_width().
+  /// wrote another width while the output was active, in the next one. Nothing where pulse_width() has none.
   [[nodiscard]] std::optional<LocalTime> high_time(unsigned channel);
   struct Output {
     bool driven = false;  ///< CCxE
@@ -42,7 +42,7 @@ class Timer final : public RegisterBlock {
   /// At ChipServices::now().
   [[nodiscard]] Output output(unsigned channel);
   /// When its level changes next, after ChipServices::now(), if no register is written before; or an earlier time, at
-  /// which one should ask again (an update loads preloaded registers). never_on_chip if it never does.
+  /// which the caller must ask again (an update loads preloaded registers). never_on_chip if it never does.
   [[nodiscard]] LocalTime next_edge(unsigned channel);
 
   /// Local time of a count: (PSC + 1) clocks of the timer, with the prescaler that is in effect.

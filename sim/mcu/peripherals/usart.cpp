@@ -34,7 +34,7 @@ constexpr std::uint32_t cr1_ue = 1U << 13U;
 constexpr std::uint32_t cr1_over8 = 1U << 15U;
 constexpr std::uint32_t cr1_bits = 0xBFFF;
 
-constexpr std::uint32_t cr2_refused = 0x7840;  // LINEN, STOP, CLKEN, LBDIE
+constexpr std::uint32_t cr2_rejected = 0x7840;  // LINEN, STOP, CLKEN, LBDIE
 constexpr std::uint32_t cr2_bits = 0x7F6F;
 constexpr std::uint32_t cr3_eie = 1U << 0U;
 constexpr std::uint32_t cr3_refused = 0xFFE;
@@ -155,7 +155,7 @@ std::uint32_t Usart::read(std::uint32_t offset) {
     case gtpr:
       return gtpr_;
     default:
-      refuse_read(offset);
+      reject_read(offset);
   }
 }
 
@@ -175,35 +175,35 @@ void Usart::write(std::uint32_t offset, std::uint32_t value) {
       write_cr1(value);
       break;
     case cr2:
-      refuse_bits(offset, value, cr2_refused, "only asynchronous frames with one stop bit are modelled");
+      reject_bits(offset, value, cr2_rejected, "only asynchronous frames with one stop bit are modelled");
       cr2_ = value & cr2_bits;
       break;
     case cr3:
-      refuse_bits(offset, value, cr3_refused, "DMA, flow control, half duplex, IrDA and smartcards are not modelled");
+      reject_bits(offset, value, cr3_refused, "DMA, flow control, half duplex, IrDA and smartcards are not modelled");
       cr3_ = value & cr3_eie;
       break;
     case gtpr:
       gtpr_ = value & 0xFFFFU;
       break;
     default:
-      refuse_write(offset, value);
+      reject_write(offset, value);
   }
   update_interrupt();
 }
 
 void Usart::check_divider(std::uint32_t divider, bool over8, std::uint32_t offset, std::uint32_t value) const {
   if (!clocks_of_bit(divider, over8)) {
-    refuse_write(offset, value, "USARTDIV is below 1");
+    reject_write(offset, value, "USARTDIV is below 1");
   }
   if (over8 && bit(divider, 3)) {
-    refuse_write(offset, value, "bit 3 of USART2_BRR must be clear with OVER8");
+    reject_write(offset, value, "bit 3 of USART2_BRR must be clear with OVER8");
   }
 }
 
 void Usart::write_brr(std::uint32_t value) {
   const std::uint32_t next = value & 0xFFFFU;
   if (sends()) {
-    refuse_write(brr, value, "the baud rate changes while a byte is being sent");
+    reject_write(brr, value, "the baud rate changes while a byte is being sent");
   }
   if ((cr1_ & cr1_ue) != 0) {
     check_divider(next, (cr1_ & cr1_over8) != 0, brr, value);
@@ -212,15 +212,15 @@ void Usart::write_brr(std::uint32_t value) {
 }
 
 void Usart::write_cr1(std::uint32_t value) {
-  refuse_bits(cr1, value, cr1_sbk | cr1_rwu, "break and mute mode are not modelled");
-  refuse_bits(cr1, value, cr1_idleie, "idle line detection is not modelled");
-  refuse_bits(cr1, value, cr1_pce | cr1_m, "only 8 data bits without parity are modelled");
+  reject_bits(cr1, value, cr1_sbk | cr1_rwu, "break and mute mode are not modelled");
+  reject_bits(cr1, value, cr1_idleie, "idle line detection is not modelled");
+  reject_bits(cr1, value, cr1_pce | cr1_m, "only 8 data bits without parity are modelled");
   const std::uint32_t next = value & cr1_bits;
   constexpr std::uint32_t sending = cr1_ue | cr1_te;
   const bool could_send = (cr1_ & sending) == sending;
   const bool can_send = (next & sending) == sending;
   if (sends() && (!can_send || ((next ^ cr1_) & cr1_over8) != 0)) {
-    refuse_write(cr1, value, "UE, TE or OVER8 changes while a byte is being sent");
+    reject_write(cr1, value, "UE, TE or OVER8 changes while a byte is being sent");
   }
   if ((next & cr1_ue) != 0 && (next & (cr1_te | cr1_re)) != 0) {
     check_divider(brr_, (next & cr1_over8) != 0, cr1, value);
@@ -236,7 +236,7 @@ void Usart::write_cr1(std::uint32_t value) {
 void Usart::write_data(std::uint32_t value) {
   constexpr std::uint32_t sending = cr1_ue | cr1_te;
   if ((cr1_ & sending) != sending) {
-    refuse_write(dr, value, "UE or TE is off");
+    reject_write(dr, value, "UE or TE is off");
   }
   const auto byte = static_cast<std::uint8_t>(value);
   if (tc_was_read_) {
@@ -244,7 +244,7 @@ void Usart::write_data(std::uint32_t value) {
     tc_was_read_ = false;
   }
   if (sends()) {
-    waiting_ = byte;  // takes the place of one that waits
+    waiting_ = byte;  // replaces one that waits
     sr_ &= ~sr_txe;
   } else {
     shifting_ = byte;

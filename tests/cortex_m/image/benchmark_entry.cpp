@@ -1,5 +1,5 @@
 // Entry points for the counts of instructions and stack: five modules that the harness drives call by call, so that it
-// measures the kernel's own functions and nothing around them.
+// measures the kernel's own functions only.
 
 #include <array>
 
@@ -9,7 +9,7 @@
 namespace {
 
 constexpr unsigned joint_count = 5;
-constexpr unsigned longest_snapshot = 2048;
+constexpr unsigned max_snapshot = 2048;
 
 std::array<proleg::KernelOf<1>, joint_count> kernels;
 proleg::KernelConfiguration configuration;
@@ -23,7 +23,7 @@ extern const std::uint32_t size_of_joint_memory = sizeof(proleg::JointMemory);
 extern const std::uint32_t size_of_kernel = sizeof(proleg::Kernel);
 
 /// Room for Kernel::save.
-std::uint8_t benchmark_snapshot[longest_snapshot];
+std::uint8_t benchmark_snapshot[max_snapshot];
 
 /// An algorithm in one slot, on all joints. For Kernel::configure.
 const proleg::KernelConfiguration* benchmark_configuration(std::uint32_t algorithm_id) {

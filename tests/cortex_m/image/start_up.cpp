@@ -21,7 +21,7 @@ extern void (*const constructors_end[])();
   }
 }
 
-/// Every exception of the CPU: stops where the harness sees it.
+/// Every exception of the CPU: stops where the harness detects it.
 [[noreturn]] void fault_handler() {
   for (;;) {
     asm volatile("udf #0");
@@ -43,7 +43,7 @@ extern void (*const constructors_end[])();
   wait_for_calls();
 }
 
-/// Called by the virtual functions that no algorithm has overridden; none is left so.
+/// Called by the virtual functions that no algorithm has overridden; there is none.
 [[noreturn]] void __cxa_pure_virtual() { fault_handler(); }
 
 }  // extern "C"

@@ -9,7 +9,7 @@
 namespace proleg::sim {
 namespace {
 
-/// What a chip in Pre-operational has executed after the same time, in which it was sent these frames, so far apart.
+/// Instructions that a chip in Pre-operational executes in 30 ms, in which it receives these frames at this distance.
 std::uint64_t instructions(
     const std::vector<CanFrame>& frames, BusTime distance,
     const std::function<void(ChipRig&)>& prepare = [](ChipRig&) {}) {
@@ -62,7 +62,7 @@ TEST(ChipCan, SixtyFourRequestsBackToBackAreAllAnsweredInTheirOrder) {
   ASSERT_TRUE(rig.run_until_true([&] { return rig.host.is_done(); }));
   EXPECT_GT(rig.bus.statistics().load(), 0.99);
   rig.run_for(10 * ms);
-  const std::vector<Heard> answers = rig.frames(0x583, start);
+  const std::vector<LoggedFrame> answers = rig.frames(0x583, start);
   ASSERT_EQ(answers.size(), requests.size());
   for (std::size_t i = 0; i < answers.size(); ++i) {
     EXPECT_EQ(answers[i].frame.data[0] & 0xE0U, 0x40U);
@@ -81,7 +81,7 @@ TEST(ChipCan, FramesThatDoNotMatterCostNoInstruction) {
   EXPECT_EQ(instructions(foreign, 300 * us), instructions({}, 0));
 }
 
-TEST(ChipCan, EachFrameThatMattersIsTaken) {
+TEST(ChipCan, EachFrameThatMattersIsProcessed) {
   const std::uint64_t idle = instructions({}, 0);
   for (const unsigned identifier : {0x000U, 0x080U, 0x203U, 0x603U, 0x680U, 0x681U, 0x704U, 0x77FU}) {
     EXPECT_GT(instructions({{static_cast<std::uint16_t>(identifier), 0, {}}}, 300 * us), idle + 100)
@@ -89,7 +89,7 @@ TEST(ChipCan, EachFrameThatMattersIsTaken) {
   }
 }
 
-TEST(ChipCan, OfTheStateFramesItHearsThoseOfItsNeighboursOnly) {
+TEST(ChipCan, ReceivesTheStateFramesOfItsNeighboursOnly) {
   const auto prepare = [](ChipRig& rig) {
     constexpr std::uint32_t coupled = 4;
     rig.write(0x2001, 2, 1, 3);
@@ -107,18 +107,18 @@ TEST(ChipCan, OfTheStateFramesItHearsThoseOfItsNeighboursOnly) {
   EXPECT_EQ(instructions({one_further}, 300 * us, prepare), idle);
 }
 
-TEST(ChipCan, HearsAnotherModuleOnItsOwnIdentifiersAndStops) {
+TEST(ChipCan, DetectsAnotherModuleOnItsOwnIdentifiersAndStops) {
   for (const unsigned identifier : {0x083U, 0x183U, 0x283U, 0x383U, 0x583U, 0x703U}) {
     ChipRig rig;
     rig.boot();
     const BusTime start = rig.bus.now();
     rig.host.send({static_cast<std::uint16_t>(identifier), 1, {0x05}});
     rig.run_for(5 * ms);
-    std::vector<Heard> said = rig.frames(0x083, start);
-    std::erase_if(said, [](const Heard& heard) { return heard.by_host; });
-    ASSERT_EQ(said.size(), 1U) << std::hex << identifier;
-    EXPECT_EQ(said[0].frame.data[0] | said[0].frame.data[1] << 8, 0x8150);
-    EXPECT_EQ(said[0].frame.data[3] | said[0].frame.data[4] << 8, static_cast<int>(identifier));
+    std::vector<LoggedFrame> emergencies = rig.frames(0x083, start);
+    std::erase_if(emergencies, [](const LoggedFrame& logged) { return logged.by_host; });
+    ASSERT_EQ(emergencies.size(), 1U) << std::hex << identifier;
+    EXPECT_EQ(emergencies[0].frame.data[0] | emergencies[0].frame.data[1] << 8, 0x8150);
+    EXPECT_EQ(emergencies[0].frame.data[3] | emergencies[0].frame.data[4] << 8, static_cast<int>(identifier));
   }
 }
 
@@ -129,7 +129,7 @@ class BusOff : public testing::Test {
     rig_.write(0x1017, 0, 2, 20);
     rig_.run_for(50 * ms);
   }
-  /// Its frames are destroyed until it has given up; returns when it did.
+  /// Destroys its frames until it is in bus-off; returns when that was.
   BusTime destroy() {
     unsigned destroyed = 0;
     rig_.bus.set_error_rule([&destroyed](const CanFrame& frame, std::uint64_t) {
@@ -146,23 +146,24 @@ class BusOff : public testing::Test {
   ChipRig rig_;
 };
 
-TEST_F(BusOff, IsBackAfterTenMillisecondsAndSaysHowLongItWasAway) {
+TEST_F(BusOff, IsBackAfterTenMillisecondsAndReportsHowLongItWasAway) {
   const BusTime off = destroy();
   rig_.run_for(100 * ms);
-  const std::vector<Heard> emergencies = rig_.frames(0x083);
+  const std::vector<LoggedFrame> emergencies = rig_.frames(0x083);
   ASSERT_EQ(emergencies.size(), 1U);
   EXPECT_EQ(emergencies[0].frame.data[0] | emergencies[0].frame.data[1] << 8, 0x8140);
   // 10 ms, 128 times 11 bits of 1 us, and up to 1 ms until the program looks.
   const BusTime away = emergencies[0].time - off;
   EXPECT_GE(away, 10 * ms + 128 * 11 * us);
   EXPECT_LE(away, 10 * ms + 128 * 11 * us + 2 * ms + 300 * us);
-  const auto told = static_cast<BusTime>(emergencies[0].frame.data[3]);
-  EXPECT_LE(told, away / ms);
-  EXPECT_GE(told + 1, away / ms);
-  std::vector<Heard> between = rig_.log;
-  std::erase_if(between, [&](const Heard& heard) { return heard.time <= off || heard.time >= emergencies[0].time; });
+  const auto reported = static_cast<BusTime>(emergencies[0].frame.data[3]);
+  EXPECT_LE(reported, away / ms);
+  EXPECT_GE(reported + 1, away / ms);
+  std::vector<LoggedFrame> between = rig_.log;
+  std::erase_if(between,
+                [&](const LoggedFrame& logged) { return logged.time <= off || logged.time >= emergencies[0].time; });
   EXPECT_TRUE(between.empty());
-  EXPECT_GE(rig_.frames(0x703, off).size(), 3U) << "its heartbeat goes on";
+  EXPECT_GE(rig_.frames(0x703, off).size(), 3U) << "its heartbeat continues";
 }
 
 TEST_F(BusOff, EachTimeWithoutTenGoodSecondsBetweenItWaitsTwiceAsLong) {
@@ -176,10 +177,10 @@ TEST_F(BusOff, EachTimeWithoutTenGoodSecondsBetweenItWaitsTwiceAsLong) {
   }
 }
 
-TEST_F(BusOff, AfterTenGoodSecondsItIsForgotten) {
+TEST_F(BusOff, AfterTenGoodSecondsTheNextOneWaitsAsLongAsTheFirst) {
   destroy();
   rig_.run_for(10'200 * ms);
-  const std::vector<Heard> emergencies = rig_.frames(0x083);
+  const std::vector<LoggedFrame> emergencies = rig_.frames(0x083);
   ASSERT_EQ(emergencies.size(), 2U);
   EXPECT_EQ(emergencies[1].frame.data[0] | emergencies[1].frame.data[1] << 8, 0) << "over";
   const BusTime off = destroy();

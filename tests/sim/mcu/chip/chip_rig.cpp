@@ -89,8 +89,8 @@ void ChipRig::run_until(BusTime time) {
   }
 }
 
-bool ChipRig::run_until_true(const std::function<bool()>& wanted, BusTime longest) {
-  const BusTime end = bus.now() + longest;
+bool ChipRig::run_until_true(const std::function<bool()>& wanted, BusTime timeout) {
+  const BusTime end = bus.now() + timeout;
   while (!wanted()) {
     if (bus.now() >= end) {
       return false;
@@ -110,7 +110,7 @@ CanFrame ChipRig::transfer(const CanFrame& request) {
   const BusTime start = bus.now();
   host.send(request);
   EXPECT_TRUE(run_until_true([&] { return !frames(0x580 + node, start).empty(); }, 100 * ms));
-  const std::vector<Heard> answers = frames(0x580 + node, start);
+  const std::vector<LoggedFrame> answers = frames(0x580 + node, start);
   const CanFrame answer = answers.empty() ? CanFrame{} : answers[0].frame;
   EXPECT_NE(answer.data[0], 0x80) << std::hex << unsigned{request.data[2]} << ' ' << unsigned{request.data[1]} << ':'
                                   << unsigned{request.data[3]};
@@ -159,11 +159,11 @@ void ChipRig::enable_servo(std::int32_t target) {
   }
 }
 
-std::vector<Heard> ChipRig::frames(std::uint16_t identifier, BusTime since) const {
-  std::vector<Heard> found;
-  const auto first = std::ranges::lower_bound(log, since, {}, &Heard::time);
+std::vector<LoggedFrame> ChipRig::frames(std::uint16_t identifier, BusTime since) const {
+  std::vector<LoggedFrame> found;
+  const auto first = std::ranges::lower_bound(log, since, {}, &LoggedFrame::time);
   std::copy_if(first, log.end(), std::back_inserter(found),
-               [&](const Heard& heard) { return heard.frame.identifier == identifier && heard.time > since; });
+               [&](const LoggedFrame& logged) { return logged.frame.identifier == identifier && logged.time > since; });
   return found;
 }
 

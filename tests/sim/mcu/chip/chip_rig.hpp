@@ -1,7 +1,7 @@
 #pragma once
 
-// One chip with the image that is flashed, on a bus with a node that plays the host. What reaches the chip's pins and
-// what leaves them is in the hands of the test.
+// One chip with the image that is flashed, on a bus with a node that plays the host. The test sets the inputs of the
+// chip's pins and reads their outputs.
 
 #include <cstdint>
 #include <deque>
@@ -30,7 +30,7 @@ inline constexpr std::uint16_t undefined_instruction = 0xDE00;  // udf #0
 /// An image that the preset stm32f405 builds: "proleg_stm32f405", "driver_tests".
 const FlashImage& image(const std::string& name);
 
-/// What is wired to the pins, and what came out of the console.
+/// What is wired to the pins, and the output of the console.
 struct TestBoard final : BoardSignals {
   [[nodiscard]] std::optional<bool> pin(char port, unsigned number) override;
   [[nodiscard]] std::uint32_t analog_uv(unsigned channel) override { return channel < 16 ? uv.at(channel) : 0; }
@@ -45,14 +45,14 @@ struct TestBoard final : BoardSignals {
   std::vector<BusTime> byte_times;  ///< end of each byte of it
 };
 
-/// What went over the bus.
-struct Heard {
+/// A frame that went over the bus.
+struct LoggedFrame {
   BusTime time;  ///< its end
   CanFrame frame;
   bool by_host;
 };
 
-/// The host's controller: sends a queue back to back in its order, and remembers errors.
+/// The host's controller: sends a queue back to back in its order, and notes errors.
 class HostEnd final : public BusListener {
  public:
   explicit HostEnd(Bus& bus);
@@ -93,25 +93,25 @@ class ChipRig {
   void power_on() { chip.power_on(bus.now()); }
   void run_until(BusTime time);
   void run_for(BusTime time) { run_until(bus.now() + time); }
-  /// Whether it came true before `longest` had passed.
-  bool run_until_true(const std::function<bool()>& wanted, BusTime longest = 1'000 * ms);
+  /// Whether it became true within `timeout`.
+  bool run_until_true(const std::function<bool()>& wanted, BusTime timeout = 1'000 * ms);
   /// Powers on and lets the module boot.
   void boot();
 
   // SDO as a host does it, with frames made by hand.
   std::uint32_t read(std::uint16_t index, std::uint8_t sub);
   void write(std::uint16_t index, std::uint8_t sub, unsigned size, std::uint32_t value);
-  /// From boot to the first SYNC: a robot of this joint alone, with a sine in slot 1, whose module gives the ticks (10
-  /// ms).
+  /// From boot to the first SYNC: a robot of this joint alone, with a sine in slot 1, whose module sends the SYNCs
+  /// (every 10 ms).
   void start_robot(std::uint32_t servo_period_us);
   /// Power for the servo, at a direct position (90 degrees = 2^30).
   void enable_servo(std::int32_t target);
 
-  [[nodiscard]] std::vector<Heard> frames(std::uint16_t identifier, BusTime since = 0) const;
+  [[nodiscard]] std::vector<LoggedFrame> frames(std::uint16_t identifier, BusTime since = 0) const;
   [[nodiscard]] std::vector<std::uint8_t> memory(std::uint32_t address, std::size_t size) const;
   [[nodiscard]] std::uint32_t word(std::uint32_t address) const;
   [[nodiscard]] std::uint32_t address_of(const std::string& function) const;
-  /// Puts instructions in the place of those that PendSV and TIM5, so all of the module's program, begin with.
+  /// Replaces the first instructions of the handlers of PendSV and TIM5, which run all of the module's program.
   void break_program(std::initializer_list<std::uint16_t> instructions);
   void mend_program();
 
@@ -119,7 +119,7 @@ class ChipRig {
   TestBoard board;
   Stm32f405 chip;
   HostEnd host;
-  std::vector<Heard> log;
+  std::vector<LoggedFrame> log;
   std::vector<ChipEvent> events;  ///< of the chip
 
  private:

@@ -40,7 +40,7 @@ class DriverTests : public testing::Test {
   /// Node of the record that the program appends to one of this node.
   [[nodiscard]] static unsigned node_after(unsigned node) { return node % firmware::BoardRecord::max_node_id + 1; }
 
-  /// Fills the first sector of the log but for one record. The second sector holds the oldest record: it is erased
+  /// Fills the first sector of the log except for one record. The second sector holds the oldest record: it is erased
   /// when the first sector is full.
   void nearly_fill_log();
   /// Lets the program run for a time, cuts its power and switches it on again. Expects that the program has found the

@@ -1,4 +1,4 @@
-// Programs that stop: the watchdog, and what a fault leaves for the console.
+// Programs that stop: the watchdog, and the report of a fault on the console.
 
 #include <gtest/gtest.h>
 
@@ -15,12 +15,12 @@ std::string hex(std::uint32_t value) {
   return text.data();
 }
 
-/// What the console said since its first `from` bytes, as soon as it has said `words`.
-bool says(ChipRig& rig, std::size_t from, const std::string& words) {
+/// Whether the console prints `words` behind its first `from` bytes, within 500 ms.
+bool prints(ChipRig& rig, std::size_t from, const std::string& words) {
   return rig.run_until_true([&] { return rig.board.console.find(words, from) != std::string::npos; }, 500 * ms);
 }
 
-TEST(ChipWatchdog, ComesTwoHundredMillisecondsAfterItWasFedLast) {
+TEST(ChipWatchdog, ResetsTwoHundredMillisecondsAfterItWasFedLast) {
   // At 32 kHz: 400 counts of 16 periods. It is fed every 50 ms at least.
   for (BusTime phase = 0; phase < 50 * ms; phase += 7 * ms) {
     ChipRig rig;
@@ -36,14 +36,14 @@ TEST(ChipWatchdog, ComesTwoHundredMillisecondsAfterItWasFedLast) {
   }
 }
 
-TEST(ChipWatchdog, DoesNotComeWhileTheProgramRuns) {
+TEST(ChipWatchdog, DoesNotResetWhileTheProgramRuns) {
   ChipRig rig;
   rig.start_robot(20'000);
   rig.run_for(3'000 * ms);
   EXPECT_TRUE(rig.events.empty());
 }
 
-TEST(ChipWatchdog, TheNextStartSaysSo) {
+TEST(ChipWatchdog, IsReportedByTheNextStart) {
   ChipRig rig;
   rig.boot();
   const std::size_t before = rig.board.console.size();
@@ -51,11 +51,11 @@ TEST(ChipWatchdog, TheNextStartSaysSo) {
   ASSERT_TRUE(rig.run_until_true([&] { return !rig.events.empty(); }, 300 * ms));
   rig.mend_program();
   const BusTime reset = rig.bus.now();
-  EXPECT_TRUE(says(rig, before, "started by watchdog\r\n"));
+  EXPECT_TRUE(prints(rig, before, "started by watchdog\r\n"));
   rig.run_for(50 * ms);
   EXPECT_EQ(rig.board.console.find("stopped by"), std::string::npos);
   ASSERT_EQ(rig.frames(0x703, reset).size(), 1U);
-  const std::vector<Heard> emergencies = rig.frames(0x083, reset);
+  const std::vector<LoggedFrame> emergencies = rig.frames(0x083, reset);
   ASSERT_EQ(emergencies.size(), 1U);
   EXPECT_EQ(emergencies[0].frame, (CanFrame{0x083, 8, {0x10, 0x60, emergencies[0].frame.data[2]}}));
   EXPECT_GT(emergencies[0].time, rig.frames(0x703, reset)[0].time);
@@ -80,8 +80,8 @@ TEST(ChipFault, IsPrintedAfterTheRestartWithTheRegistersOfThatTime) {
   // PM0214, 4.4.14 and 4.4.16: UNDEFINSTR and FORCED. EXC_RETURN: to thread mode, main stack.
   EXPECT_EQ(fault.registers.at(lr), 0xFFFF'FFF9U);
   EXPECT_TRUE(
-      says(rig, before, "started by fault\r\nstopped by: processor fault, pc " + hex(place) + ", lr fffffff9, sp "));
-  EXPECT_TRUE(says(rig, before, ", cfsr 00010000, hfsr 40000000, address 00000000\r\n"));
+      prints(rig, before, "started by fault\r\nstopped by: processor fault, pc " + hex(place) + ", lr fffffff9, sp "));
+  EXPECT_TRUE(prints(rig, before, ", cfsr 00010000, hfsr 40000000, address 00000000\r\n"));
 }
 
 TEST(ChipFault, IsReportedOnTheBusOnceAndTheStartAfterIsLikeAnyOther) {
@@ -92,7 +92,7 @@ TEST(ChipFault, IsReportedOnTheBusOnceAndTheStartAfterIsLikeAnyOther) {
   rig.mend_program();
   const BusTime reset = rig.bus.now();
   rig.run_for(100 * ms);
-  const std::vector<Heard> emergencies = rig.frames(0x083, reset);
+  const std::vector<LoggedFrame> emergencies = rig.frames(0x083, reset);
   ASSERT_EQ(emergencies.size(), 1U);
   EXPECT_EQ(emergencies[0].frame.data[0] | emergencies[0].frame.data[1] << 8, 0x6100);
   std::uint32_t detail = 0;
@@ -103,7 +103,7 @@ TEST(ChipFault, IsReportedOnTheBusOnceAndTheStartAfterIsLikeAnyOther) {
 
   const std::size_t before = rig.board.console.size();
   rig.power_on();
-  EXPECT_TRUE(says(rig, before, "started by power on\r\n"));
+  EXPECT_TRUE(prints(rig, before, "started by power on\r\n"));
   rig.run_for(100 * ms);
   EXPECT_EQ(rig.board.console.find("stopped by", before), std::string::npos) << "the record is read once";
 }
@@ -115,7 +115,7 @@ TEST(ChipFault, ThatComesAgainAtEachStartIsPrintedEachTime) {
   rig.run_for(300 * ms);
   EXPECT_GE(rig.events.size(), 20U) << "fault and reset, every few milliseconds";
   rig.mend_program();
-  EXPECT_TRUE(says(rig, rig.board.console.size(), "stopped by: processor fault, pc "));
+  EXPECT_TRUE(prints(rig, rig.board.console.size(), "stopped by: processor fault, pc "));
 }
 
 TEST(ChipFault, APushBelowTheRamLocksTheProcessorUpAndTheWatchdogComes) {
@@ -130,7 +130,7 @@ TEST(ChipFault, APushBelowTheRamLocksTheProcessorUpAndTheWatchdogComes) {
   EXPECT_EQ(rig.events[1].kind, ChipEvent::Kind::locked_up);
   EXPECT_EQ(rig.events[2].kind, ChipEvent::Kind::reset);
   EXPECT_EQ(rig.events[2].cause, ResetCause::independent_watchdog);
-  EXPECT_TRUE(says(rig, before, "started by watchdog\r\n"));
+  EXPECT_TRUE(prints(rig, before, "started by watchdog\r\n"));
 }
 
 TEST(ChipFault, AnInterruptThatFindsNoStackIsAFaultWithItsRecord) {
@@ -142,8 +142,8 @@ TEST(ChipFault, AnInterruptThatFindsNoStackIsAFaultWithItsRecord) {
   rig.chip.cpu().set_core_register(13, 0x2000'0000);
   ASSERT_TRUE(rig.run_until_true([&] { return rig.events.size() >= 2; }, 500 * ms));
   EXPECT_EQ(rig.events.back().cause, ResetCause::software);
-  EXPECT_TRUE(says(rig, before, "stopped by: processor fault, pc 00000000, lr 00000000, sp 1fff"));
-  EXPECT_TRUE(says(rig, before, ", cfsr 00001000, hfsr 40000000, "));
+  EXPECT_TRUE(prints(rig, before, "stopped by: processor fault, pc 00000000, lr 00000000, sp 1fff"));
+  EXPECT_TRUE(prints(rig, before, ", cfsr 00001000, hfsr 40000000, "));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Switches at PB12 to PB15, voltages at the ADC, the temperature sensor: what the module says of them on the bus.
+// Switches at PB12 to PB15, voltages at the ADC, the temperature sensor: what the module reports of them on the bus.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ struct Monitored {
 
 Monitored monitored(ChipRig& rig) {
   rig.run_for(2 * ten_ticks + 20 * ms);
-  const std::vector<Heard> frames = rig.frames(0x383);
+  const std::vector<LoggedFrame> frames = rig.frames(0x383);
   EXPECT_FALSE(frames.empty());
   const CanFrame frame = frames.empty() ? CanFrame{} : frames.back().frame;
   EXPECT_EQ(frame.length, 6);
@@ -38,7 +38,7 @@ TEST(TouchPins, EachCombinationIsInTheStateFrame) {
   for (unsigned closed = 0; closed < 16; ++closed) {
     rig.board.low_pins_of_b = static_cast<std::uint16_t>(closed << 12U);
     rig.run_for(45 * ms);
-    const std::vector<Heard> states = rig.frames(0x183);
+    const std::vector<LoggedFrame> states = rig.frames(0x183);
     ASSERT_FALSE(states.empty());
     EXPECT_EQ(states.back().frame.data[6] & 0x0FU, closed);
   }
@@ -111,7 +111,7 @@ TEST_F(OverCurrent, SwitchesThePulsesOffAfterItsTimeAndSaysSo) {
   const BusTime start = rig_.bus.now();
   rig_.board.uv[current_channel] = 800'000;
   rig_.run_for(400 * ms);
-  const std::vector<Heard> emergencies = rig_.frames(0x083);
+  const std::vector<LoggedFrame> emergencies = rig_.frames(0x083);
   ASSERT_EQ(emergencies.size(), 1U);
   EXPECT_EQ(emergencies[0].frame.data[0] | emergencies[0].frame.data[1] << 8, 0x2310);
   // The conversion of the tick before is read: 1 to 2 ticks, and one more to be above for all of the time.

@@ -15,7 +15,7 @@ constexpr BusTime tick = 10 * ms;
 /// A SYNC is noted with the microsecond that has begun.
 constexpr BusTime early = us;
 /// From SYNC, or from the deadline of an interval, to the pulse: interrupt and program.
-constexpr BusTime longest_latency = 30 * us;
+constexpr BusTime max_latency = 30 * us;
 
 struct Pulse {
   BusTime start;
@@ -44,7 +44,7 @@ class ServoPin : public testing::Test {
   };
   /// By the SYNC of the tick.
   [[nodiscard]] Place place_of(const Pulse& pulse, BusTime period) const {
-    const std::vector<Heard> syncs = rig_.frames(0x080);
+    const std::vector<LoggedFrame> syncs = rig_.frames(0x080);
     std::size_t number = 0;
     while (number + 1 < syncs.size() && syncs[number + 1].time <= pulse.start + early) {
       ++number;
@@ -105,7 +105,7 @@ TEST_P(ServoPeriod, EveryPulseIsAsWideAsItsAngleAndStartsOnTheSchedule) {
     for (std::size_t i = first; i < pulses_.size(); ++i) {
       expect_width(pulses_[i], width_of(target));
       const Place place = place_of(pulses_[i], period_);
-      EXPECT_LT(place.late, longest_latency + early) << "pulse at " << pulses_[i].start;
+      EXPECT_LT(place.late, max_latency + early) << "pulse at " << pulses_[i].start;
       EXPECT_TRUE(i == first || place.interval == place_of(pulses_[i - 1], period_).interval + 1) << "none is left out";
     }
   }
@@ -138,7 +138,7 @@ TEST_P(ServoPeriod, BetweenTwoSetPointsThePulsesAreOnTheLine) {
   EXPECT_TRUE(on_the_way >= 2 || period_ >= tick);
 }
 
-TEST_P(ServoPeriod, AHungProgramsPulsesGoOnAQuarterLaterUntilTheWatchdogComes) {
+TEST_P(ServoPeriod, PulsesOfAHungProgramContinueAQuarterLaterUntilTheWatchdogResetsIt) {
   rig_.start_robot(GetParam());
   rig_.enable_servo(right_angle / 4);
   rig_.run_for(100 * ms);
@@ -163,7 +163,7 @@ TEST_P(ServoPeriod, AHungProgramsPulsesGoOnAQuarterLaterUntilTheWatchdogComes) {
 INSTANTIATE_TEST_SUITE_P(Servos, ServoPeriod, testing::Values(20'000U, 10'000U, 3'300U));
 
 /// Periods that are shorter than pulse and pause together: pulses are left out, none is cut short. Where in the
-/// millisecond they start follows from what was before: the timer repeats some of them before the program comes.
+/// millisecond they start depends on the pulses before: the timer repeats some of them before the program runs.
 TEST_F(ServoPin, APeriodOfOneMillisecondIsThinnedSoThatPulsesStayWhole) {
   rig_.start_robot(1'000);
   rig_.enable_servo(0);
@@ -178,7 +178,7 @@ TEST_F(ServoPin, APeriodOfOneMillisecondIsThinnedSoThatPulsesStayWhole) {
       expect_width(pulses_[i], width_of(target));
       if (i != first) {
         const auto distance = static_cast<double>(pulses_[i].start - pulses_[i - 1].start);
-        EXPECT_NEAR(distance, static_cast<double>(every), static_cast<double>(longest_latency));
+        EXPECT_NEAR(distance, static_cast<double>(every), static_cast<double>(max_latency));
       }
     }
   }
@@ -194,7 +194,7 @@ TEST_F(ServoPin, AThreeMillisecondServoGetsEveryPulseAtItsWidest) {
   for (std::size_t i = first + 1; i < pulses_.size(); ++i) {
     expect_width(pulses_[i], width_of(right_angle));
     EXPECT_NEAR(static_cast<double>(pulses_[i].start - pulses_[i - 1].start), 3.0 * ms,
-                static_cast<double>(longest_latency));
+                static_cast<double>(max_latency));
   }
 }
 
@@ -207,9 +207,9 @@ TEST_F(ServoPin, OffIsLowAtOnceAlsoInMidPulse) {
   go_to(0, 0);
   rig_.run_for(50 * ms);
   ASSERT_EQ(rig_.frames(0x203, before).size(), 1U);
-  const BusTime told = rig_.frames(0x203, before)[0].time;
-  EXPECT_GT(fall_, told);
-  EXPECT_LT(fall_, told + longest_latency);
+  const BusTime reported = rig_.frames(0x203, before)[0].time;
+  EXPECT_GT(fall_, reported);
+  EXPECT_LT(fall_, reported + max_latency);
   EXPECT_FALSE(is_high_);
   EXPECT_EQ(pulses_.back().start, rise_) << "none since";
 }

@@ -1,4 +1,4 @@
-// From power on to the first words: clocks (docs/board.md), console, boot-up message, identity.
+// From power on to the first output: clocks (docs/board.md), console, boot-up message, identity.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ std::string boot_line(const std::string& who, const std::string& cause) {
   return "proleg module, " + who + ", board 1, core " + core.data() + ", started by " + cause + "\r\n";
 }
 
-const std::string nobody = "no node id (no board record: see docs/board.md), silent on the bus";
+const std::string without_node_id = "no node id (no board record: see docs/board.md), silent on the bus";
 
 /// CRC-32 as in Ethernet, bit by bit.
 std::uint32_t crc32(std::span<const std::uint32_t> words) {
@@ -31,7 +31,7 @@ std::uint32_t crc32(std::span<const std::uint32_t> words) {
   return ~crc;
 }
 
-TEST(ChipStart, TheConsoleSaysWhoItIsByteForByte) {
+TEST(ChipStart, TheConsolePrintsItsIdentityByteForByte) {
   ChipRig rig;
   rig.boot();
   EXPECT_EQ(rig.board.console, boot_line("node 3", "power on"));
@@ -44,7 +44,7 @@ class Crystal : public testing::TestWithParam<std::int32_t> {
     settings_.chip.crystal_parts_per_billion = GetParam();
     rig_.emplace(settings_);
   }
-  /// What lasts so long on the chip's clock, in true time.
+  /// The true time of a duration on the chip's clock.
   [[nodiscard]] static double truly(double duration) { return duration / (1.0 + GetParam() * 1e-9); }
 
   RigSettings settings_;
@@ -66,7 +66,7 @@ TEST_P(Crystal, TheMicrosecondClockRunsAsFastAsTheCrystal) {
   rig_->write(0x1017, 0, 2, 1'000);
   const BusTime start = rig_->bus.now();
   rig_->run_for(10'500 * ms);
-  const std::vector<Heard> beats = rig_->frames(0x703, start);
+  const std::vector<LoggedFrame> beats = rig_->frames(0x703, start);
   ASSERT_GE(beats.size(), 10U);
   const double seconds = static_cast<double>(beats[9].time - beats[1].time) * 1e-9;
   // A heartbeat is sent some microseconds after its deadline; 100 ppm of 8 s are 800 us. The first one had to wait for
@@ -74,7 +74,7 @@ TEST_P(Crystal, TheMicrosecondClockRunsAsFastAsTheCrystal) {
   EXPECT_NEAR(seconds, truly(8.0), 10e-6);
 }
 
-TEST_P(Crystal, ItIsHeardAtOneMegabit) {
+TEST_P(Crystal, SendsAtOneMegabit) {
   rig_->boot();
   ASSERT_EQ(rig_->frames(0x703).size(), 1U);
   EXPECT_EQ(rig_->frames(0x703)[0].frame, (CanFrame{0x703, 1, {0}}));
@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(Errors, Crystal, testing::Values(0, 100'000, -100'000),
   return error.param == 0 ? "exact" : error.param > 0 ? "fast" : "slow";
 });
 
-TEST(ChipStart, ABusOfAnotherBitRateIsNotItsOwn) {
+TEST(ChipStart, RejectsABusOfAnotherBitRate) {
   RigSettings settings;
   settings.bit_rate = 500'000;
   ChipRig rig(settings);
@@ -131,15 +131,15 @@ class NoRecord : public testing::Test {
   ChipRig rig_;
 };
 
-TEST_F(NoRecord, ItSaysSoAndIsSilentForSecondsAndFeedsItsWatchdog) {
+TEST_F(NoRecord, IsReportedAndTheModuleIsSilentForSecondsAndFeedsItsWatchdog) {
   rig_.power_on();
   for (unsigned i = 0; i < 50; ++i) {
     rig_.host.send({0x000, 2, {0x81, 0x00}});
     rig_.run_for(100 * ms);
   }
-  EXPECT_EQ(rig_.board.console, boot_line(nobody, "power on"));
+  EXPECT_EQ(rig_.board.console, boot_line(without_node_id, "power on"));
   EXPECT_TRUE(rig_.events.empty()) << "no reset";
-  // Nobody acknowledges: the host's first frame is tried again for ever.
+  // No node acknowledges: the host sends its first frame again and again.
   EXPECT_TRUE(rig_.log.empty());
   EXPECT_GT(rig_.bus.statistics().errors, 1'000U);
 }
@@ -150,7 +150,7 @@ TEST_F(NoRecord, ARecordThatIsDamagedIsNone) {
   rig_.chip.write(ChipRig::settings_address, record);
   rig_.power_on();
   rig_.run_for(50 * ms);
-  EXPECT_EQ(rig_.board.console, boot_line(nobody, "power on"));
+  EXPECT_EQ(rig_.board.console, boot_line(without_node_id, "power on"));
   EXPECT_TRUE(rig_.log.empty());
 }
 
@@ -161,8 +161,8 @@ TEST(ChipStart, TwoRunsAreEqualInEveryInstructionFrameAndByte) {
     rig.enable_servo(1 << 29);
     rig.run_for(500 * ms);
     std::vector<std::uint64_t> all{rig.chip.instructions()};
-    for (const Heard& heard : rig.log) {
-      all.push_back(heard.time);
+    for (const LoggedFrame& logged : rig.log) {
+      all.push_back(logged.time);
     }
     all.insert(all.end(), rig.board.byte_times.begin(), rig.board.byte_times.end());
     return all;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "tests/sim/mcu/cpu/board.hpp"
+#include "tests/sim/mcu/cpu/cpu_rig.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -43,20 +43,20 @@ TEST_F(BackTraceTest, NamesTheFunctionsFromTheFaultToTheBegin) {
   set_vector(3, "faulting_handler");
   start("reset_handler");
   cpu_.set_breakpoints(std::array{address_of("faulting_handler")});
-  board_.run(10'000);
+  rig_.run(10'000);
   const std::vector<CallFrame> frames = trace_of_fault();
   expect_functions(frames, {"third_function", "second_function", "first_function", "play", "reset_handler"});
   ASSERT_FALSE(frames.empty());
   EXPECT_NE(frames[0].text.find("scripts.cpp:"), std::string::npos) << frames[0].text;
 }
 
-TEST_F(BackTraceTest, GoesThroughTheHandlerOfAnInterruptIntoWhatItInterrupted) {
+TEST_F(BackTraceTest, ContinuesThroughTheHandlerOfAnInterruptIntoTheInterruptedCode) {
   set_vector(16 + 7, "calling_handler");
   script(0, {step::store(scs::iser, 1U << 7U), step::store(scs::ispr, 1U << 7U)});
   start("reset_handler");
   set_vector(3, "faulting_handler");
   cpu_.set_breakpoints(std::array{address_of("faulting_handler")});
-  board_.run(10'000);
+  rig_.run(10'000);
   const std::vector<CallFrame> frames = trace_of_fault();
   expect_functions(frames, {"third_function", "second_function", "calling_handler", "play", "reset_handler"});
   ASSERT_EQ(frames.size(), 5U);
@@ -67,17 +67,17 @@ TEST_F(BackTraceTest, GoesThroughTheHandlerOfAnInterruptIntoWhatItInterrupted) {
   EXPECT_EQ(lines[3], "exception 23 (interrupt 7), which came in");
 }
 
-TEST_F(BackTraceTest, AJumpToNowhereIsTracedToItsCaller) {
+TEST_F(BackTraceTest, AJumpToAnInvalidAddressIsTracedToItsCaller) {
   script(0, {step::call(0x6000'0001)});
   set_vector(3, "faulting_handler");
   start("reset_handler");
   cpu_.set_breakpoints(std::array{address_of("faulting_handler")});
-  board_.run(10'000);
+  rig_.run(10'000);
   const std::vector<CallFrame> frames = trace_of_fault();
   expect_functions(frames, {"0x60000000", "play", "reset_handler"});
 }
 
-TEST_F(BackTraceTest, WithoutCallFrameInformationTheLinkRegisterIsAllThatIsKnown) {
+TEST_F(BackTraceTest, HasTheLinkRegisterOnlyWithoutCallFrameInformation) {
   // Assembly.
   registers_[15] = address_of("distinct_registers");
   registers_[14] = address_of("reset_handler") + 5;
@@ -100,14 +100,14 @@ TEST_F(BackTraceTest, NonsenseEndsTheTrace) {
 }
 
 TEST_F(BackTraceTest, EndsAtTheLatestAfter32Frames) {
-  // A stack of nothing but return addresses into the same function, entered by itself again and again.
+  // A stack that holds only return addresses into one function, as if it had called itself again and again.
   registers_[15] = address_of("second_function") + 20;
   registers_[14] = registers_[15] | 1U;
   registers_[13] = Cpu::ram_start;
   for (std::uint32_t i = 0; i < 0x4000; i += 4) {
-    board_.set_word(Cpu::ram_start + i, (address_of("second_function") + 20) | 1U);
+    rig_.set_word(Cpu::ram_start + i, (address_of("second_function") + 20) | 1U);
   }
-  EXPECT_LE(tracer_.trace(registers_, read_).size(), BackTracer::most_frames);
+  EXPECT_LE(tracer_.trace(registers_, read_).size(), BackTracer::max_frames);
 }
 
 TEST_F(BackTraceTest, DescribesAnAddress) {

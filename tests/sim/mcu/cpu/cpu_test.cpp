@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/sim/mcu/cpu/board.hpp"
+#include "tests/sim/mcu/cpu/cpu_rig.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -28,7 +28,7 @@ TEST_F(CpuTest, CountsInstructionsOfTwoAndFourBytesExactly) {
   EXPECT_EQ(cpu_.instructions(), 1'000'001U);
 }
 
-TEST_F(CpuTest, RunsForAsManyInstructionsAsItIsToldUpToTheEndOfABlock) {
+TEST_F(CpuTest, RunsForTheGivenInstructionsUpToTheEndOfABlock) {
   start("counted_loop");
   for (const std::uint64_t budget : {std::uint64_t{1}, std::uint64_t{7}, std::uint64_t{100}, std::uint64_t{5000}}) {
     const std::uint64_t before = cpu_.instructions();
@@ -40,10 +40,10 @@ TEST_F(CpuTest, RunsForAsManyInstructionsAsItIsToldUpToTheEndOfABlock) {
 }
 
 TEST_F(CpuTest, NewMemoryIsErasedFlashAndTheSameNoiseInEveryRam) {
-  Board other;
+  CpuRig other;
   std::vector<std::uint8_t> ram(Cpu::ram_size);
   std::vector<std::uint8_t> other_ram(Cpu::ram_size);
-  Board fresh;
+  CpuRig fresh;
   fresh.cpu.read(Cpu::ram_start, ram);
   other.cpu.read(Cpu::ram_start, other_ram);
   EXPECT_EQ(ram, other_ram);
@@ -55,43 +55,43 @@ TEST_F(CpuTest, NewMemoryIsErasedFlashAndTheSameNoiseInEveryRam) {
   EXPECT_THROW(fresh.set_word(0, 1), std::out_of_range);
 }
 
-TEST_F(CpuTest, StoresToRegistersHappenExactlyOnceWhateverInterruptsThem) {
+TEST_F(CpuTest, StoresToRegistersHappenExactlyOnceInSpiteOfInterrupts) {
   script(16 + 3, {});
   start("stores_once");
-  board_.run(1000);
-  const std::vector<Board::Store> expected{{0x4000'0000, 4, 1},     {0x4000'0000, 4, 2}, {0x4000'0004, 2, 2},
-                                           {0x4000'0008, 1, 2},     {0x4000'0000, 4, 3}, {0x4000'0000, 4, 0x1013},
-                                           {0x4000'0000, 4, 0x2013}};
-  EXPECT_EQ(board_.stores, expected);
+  rig_.run(1000);
+  const std::vector<CpuRig::Store> expected{{0x4000'0000, 4, 1},     {0x4000'0000, 4, 2}, {0x4000'0004, 2, 2},
+                                            {0x4000'0008, 1, 2},     {0x4000'0000, 4, 3}, {0x4000'0000, 4, 0x1013},
+                                            {0x4000'0000, 4, 0x2013}};
+  EXPECT_EQ(rig_.stores, expected);
 }
 
 TEST_F(CpuTest, PauseWithinAStoreEndsTheRunBehindTheBlock) {
   start("stores_once");
-  board_.on_store = [&](const Board::Store& store) {
+  rig_.on_store = [&](const CpuRig::Store& store) {
     if (store.value == 1) {
       cpu_.pause();
     }
   };
   EXPECT_EQ(cpu_.run(1000), Cpu::State::paused);
-  EXPECT_EQ(board_.marks, Marks({1, 2, 3}));
+  EXPECT_EQ(rig_.marks, Marks({1, 2, 3}));
   EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
-  EXPECT_EQ(board_.marks, Marks({1, 2, 3, 0x1013, 0x2013}));
+  EXPECT_EQ(rig_.marks, Marks({1, 2, 3, 0x1013, 0x2013}));
 }
 
 TEST_F(CpuTest, LimitWithinAStoreEndsTheRunBehindTheBlock) {
   start("stores_once");
-  board_.on_store = [&](const Board::Store& store) {
+  rig_.on_store = [&](const CpuRig::Store& store) {
     if (store.value == 1) {
       cpu_.limit(cpu_.instructions());
     }
   };
   EXPECT_EQ(cpu_.run(1000), Cpu::State::running);
-  EXPECT_EQ(board_.marks, Marks({1, 2, 3}));
+  EXPECT_EQ(rig_.marks, Marks({1, 2, 3}));
 }
 
 TEST_F(CpuTest, HaltEndsTheRunUntilReset) {
   start("stores_once");
-  board_.on_store = [&](const Board::Store& store) {
+  rig_.on_store = [&](const CpuRig::Store& store) {
     if (store.value == 1) {
       cpu_.halt("the board is not modelled");
     }
@@ -99,7 +99,7 @@ TEST_F(CpuTest, HaltEndsTheRunUntilReset) {
   EXPECT_EQ(cpu_.run(1000), Cpu::State::halted);
   EXPECT_TRUE(cpu_.halt_reason().starts_with("the board is not modelled, by the code from 0x")) << cpu_.halt_reason();
   EXPECT_EQ(cpu_.run(1000), Cpu::State::halted);
-  board_.on_store = [](const Board::Store&) {};
+  rig_.on_store = [](const CpuRig::Store&) {};
   start("counted_loop");
   EXPECT_EQ(cpu_.halt_reason(), "");
   EXPECT_EQ(cpu_.run(10'000'000), Cpu::State::sleeping);
@@ -114,12 +114,12 @@ TEST_F(CpuTest, AnUnknownRegisterOfThePrivateBusHaltsWithItsUnitAndAddress) {
       << cpu_.halt_reason();
 }
 
-TEST_F(CpuTest, SleepsAtWfiAndGoesOnBehindIt) {
+TEST_F(CpuTest, SleepsAtWfiAndContinuesBehindIt) {
   start("sleeps_masked");
   EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
   EXPECT_FALSE(cpu_.wakes());
   EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
-  EXPECT_EQ(board_.marks, Marks());
+  EXPECT_EQ(rig_.marks, Marks());
 }
 
 TEST_F(CpuTest, AMaskedInterruptWakesAndIsTakenWhenItIsUnmasked) {
@@ -128,14 +128,14 @@ TEST_F(CpuTest, AMaskedInterruptWakesAndIsTakenWhenItIsUnmasked) {
   EXPECT_EQ(cpu_.state(), Cpu::State::sleeping);
   cpu_.set_interrupt(1, true);
   EXPECT_TRUE(cpu_.wakes());
-  board_.on_store = [&](const Board::Store& store) { cpu_.set_interrupt(1, store.value == 1); };
-  board_.run(1000);
-  EXPECT_EQ(board_.marks, Marks({1, 0x1011, 0x2011, 2}));
+  rig_.on_store = [&](const CpuRig::Store& store) { cpu_.set_interrupt(1, store.value == 1); };
+  rig_.run(1000);
+  EXPECT_EQ(rig_.marks, Marks({1, 0x1011, 0x2011, 2}));
 }
 
 TEST_F(CpuTest, ADisabledInterruptDoesNotWake) {
   start("sleeps_masked");
-  board_.run(1000);
+  rig_.run(1000);
   cpu_.set_interrupt(1, true);
   EXPECT_FALSE(cpu_.wakes());
 }
@@ -154,13 +154,13 @@ TEST_F(CpuTest, WfiInAnItBlockSleepsOnlyIfItsConditionHolds) {
   script(16 + 1, {});
   start("sleeps_conditionally");
   EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
-  EXPECT_EQ(board_.marks, Marks({1}));
+  EXPECT_EQ(rig_.marks, Marks({1}));
 }
 
 TEST_F(CpuTest, WfeSleepsWithoutAnEvent) {
   start("waits_for_events");
   EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
-  EXPECT_EQ(board_.marks, Marks());
+  EXPECT_EQ(rig_.marks, Marks());
 }
 
 TEST_F(CpuTest, WfeTakesAnEventThatWasSentBefore) {
@@ -174,83 +174,83 @@ TEST_F(CpuTest, WfeWakesByAnInterruptWhoseEntryIsAnEvent) {
              step::wait_for_event(), step::mark(2), step::wait_for_event(), step::mark(3)});
   EXPECT_EQ(run_script(), Marks());
   EXPECT_EQ(cpu_.state(), Cpu::State::sleeping);
-  board_.on_store = [&](const Board::Store&) { cpu_.set_interrupt(1, false); };
+  rig_.on_store = [&](const CpuRig::Store&) { cpu_.set_interrupt(1, false); };
   cpu_.set_interrupt(1, true);
   EXPECT_TRUE(cpu_.wakes());
-  board_.run(1000);
+  rig_.run(1000);
   // The handler has run; its event ends the second WFE at once, and SEV merges with it.
-  EXPECT_EQ(board_.take_marks(), Marks({0x1011, 0x2011, 1, 2}));
+  EXPECT_EQ(rig_.take_marks(), Marks({0x1011, 0x2011, 1, 2}));
   EXPECT_EQ(cpu_.state(), Cpu::State::sleeping);
 }
 
 TEST_F(CpuTest, YieldDoesNothing) {
   start("yields");
   EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
-  EXPECT_EQ(board_.marks, Marks({1, 2}));
+  EXPECT_EQ(rig_.marks, Marks({1, 2}));
 }
 
 TEST_F(CpuTest, SleepOnExitSleepsWithoutRunningThreadMode) {
   script(0, {step::store(scs::iser, 2), step::store(scs::scr, 2), step::wait_for_interrupt(), step::mark(5)});
   EXPECT_EQ(run_script(), Marks());
-  board_.on_store = [&](const Board::Store&) { cpu_.set_interrupt(1, false); };
+  rig_.on_store = [&](const CpuRig::Store&) { cpu_.set_interrupt(1, false); };
   for (int i = 0; i < 3; ++i) {
     cpu_.set_interrupt(1, true);
     EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
-    EXPECT_EQ(board_.take_marks(), Marks({0x1011, 0x2011}));
+    EXPECT_EQ(rig_.take_marks(), Marks({0x1011, 0x2011}));
   }
 }
 
 TEST_F(CpuTest, CodeThatIsWrittenIntoRamIsExecuted) {
   start("calls_code_in_ram");
-  board_.run(1000);
-  EXPECT_EQ(board_.marks, Marks({1, 2}));
+  rig_.run(1000);
+  EXPECT_EQ(rig_.marks, Marks({1, 2}));
 }
 
 TEST_F(CpuTest, CodeThatTheOwnerWritesIntoFlashIsExecuted) {
   constexpr std::uint32_t returns_1 = 0x4770'2001;  // movs r0, #1; bx lr
-  board_.set_word(0x0804'0000, returns_1);
+  rig_.set_word(0x0804'0000, returns_1);
   set_vector(16 + 1, "short_handler");
   script(0, {step::store(scs::iser, 2), step::call(address_of("calls_written_code") | 1U)});
   EXPECT_EQ(run_script(), Marks({1}));
   for (const std::uint32_t value : {2U, 3U}) {
-    board_.set_word(0x0804'0000, returns_1 - 1 + value);
+    rig_.set_word(0x0804'0000, returns_1 - 1 + value);
     cpu_.set_interrupt(1, true);
     cpu_.set_interrupt(1, false);
     EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
-    EXPECT_EQ(board_.take_marks(), Marks({value}));
+    EXPECT_EQ(rig_.take_marks(), Marks({value}));
   }
 }
 
 TEST_F(CpuTest, AProgramThatProgramsTheFlashExecutesWhatItHasWritten) {
-  board_.on_flash_store = [&](const Board::Store& store) {
-    board_.set_word(store.address, store.value);
-    EXPECT_EQ(board_.word(store.address), store.value) << "the owner sees it at once";
+  rig_.on_flash_store = [&](const CpuRig::Store& store) {
+    rig_.set_word(store.address, store.value);
+    EXPECT_EQ(rig_.word(store.address), store.value) << "the owner sees it at once";
     return true;
   };
   start("programs_itself");
-  board_.run(1000);
-  EXPECT_EQ(board_.marks, Marks({1, 2}));
+  rig_.run(1000);
+  EXPECT_EQ(rig_.marks, Marks({1, 2}));
   EXPECT_TRUE(cpu_.take_faults().empty());
 }
 
-TEST_F(CpuTest, AStoreToFlashGoesToTheOwnerWhoDecidesWhatItDoes) {
-  std::vector<Board::Store> seen;
-  board_.on_flash_store = [&](const Board::Store& store) {
+TEST_F(CpuTest, TheOwnerDecidesAboutAStoreToFlash) {
+  std::vector<CpuRig::Store> seen;
+  rig_.on_flash_store = [&](const CpuRig::Store& store) {
     seen.push_back(store);
-    board_.set_word(store.address, store.value & 0xFFFF'0000U);
+    rig_.set_word(store.address, store.value & 0xFFFF'0000U);
     return true;
   };
   start("stores_to_flash");
-  board_.run(1000);
-  EXPECT_EQ(seen, (std::vector<Board::Store>{{0x0804'0000, 4, 0x1234'5678}}));
-  EXPECT_EQ(board_.marks, Marks({1, 2, 0x1234'0000}));
+  rig_.run(1000);
+  EXPECT_EQ(seen, (std::vector<CpuRig::Store>{{0x0804'0000, 4, 0x1234'5678}}));
+  EXPECT_EQ(rig_.marks, Marks({1, 2, 0x1234'0000}));
 }
 
 TEST_F(CpuTest, BitBandAliasesReadAndWriteSingleBits) {
-  board_.registers[0x4000'0100] = 0x8000'0001;
+  rig_.registers[0x4000'0100] = 0x8000'0001;
   start("uses_bits");
-  board_.run(1000);
-  EXPECT_EQ(board_.marks, Marks({0x7FFF'0002, 1, 0x8000'0021}));
+  rig_.run(1000);
+  EXPECT_EQ(rig_.marks, Marks({0x7FFF'0002, 1, 0x8000'0021}));
 }
 
 TEST_F(CpuTest, AnInterruptBetweenTheInstructionsOfAnItBlockLeavesTheRestConditional) {
@@ -265,9 +265,9 @@ TEST_F(CpuTest, AnInterruptBetweenTheInstructionsOfAnItBlockLeavesTheRestConditi
   cpu_.set_interrupt(1, true);
   cpu_.set_interrupt(1, false);
   EXPECT_EQ(cpu_.run(1000), Cpu::State::sleeping);
-  ASSERT_EQ(board_.marks.size(), 6U);
-  EXPECT_EQ(board_.marks[3] & 0x0600'FC00U, 0U) << "in the handler";
-  EXPECT_EQ(board_.marks[5], 0U);
+  ASSERT_EQ(rig_.marks.size(), 6U);
+  EXPECT_EQ(rig_.marks[3] & 0x0600'FC00U, 0U) << "in the handler";
+  EXPECT_EQ(rig_.marks[5], 0U);
 }
 
 TEST_F(CpuTest, StepExecutesSingleInstructions) {
@@ -283,7 +283,7 @@ TEST_F(CpuTest, StepExecutesSingleInstructions) {
   EXPECT_EQ(cpu_.instructions(), 1'000'001U);
 }
 
-TEST_F(CpuTest, PausesAtBreakpointsAndPassesThemWhenItGoesOn) {
+TEST_F(CpuTest, PausesAtBreakpointsAndPassesThemWhenItContinues) {
   start("counted_loop");
   const std::uint32_t in_loop = address_of("counted_loop") + 8;
   cpu_.run(100);
@@ -323,7 +323,7 @@ TEST_F(CpuTest, ABreakpointAtTheBeginOfAHandlerIsReached) {
   EXPECT_EQ(cpu_.active_exception(), 17U);
   EXPECT_EQ(cpu_.core_register(15), address_of("scripted_handler"));
   EXPECT_EQ(cpu_.run(10'000), Cpu::State::sleeping);
-  EXPECT_EQ(board_.take_marks(), Marks({0x1011, 0x2011, 3, 0x2000}));
+  EXPECT_EQ(rig_.take_marks(), Marks({0x1011, 0x2011, 3, 0x2000}));
 }
 
 TEST_F(CpuTest, RegistersCanBeReadAndWritten) {

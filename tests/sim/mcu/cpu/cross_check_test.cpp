@@ -10,14 +10,14 @@
 #include <csignal>
 #include <string>
 
-#include "tests/sim/mcu/cpu/board.hpp"
+#include "tests/sim/mcu/cpu/cpu_rig.hpp"
 
 namespace proleg::sim {
 namespace {
 
 constexpr std::string_view last_line = "end\n";
 
-/// What QEMU's USART1 says up to the last line.
+/// The output of QEMU's USART1 up to the last line.
 std::string output_of_qemu(const std::string& image) {
   std::array<int, 2> ends{};
   if (pipe(ends.data()) != 0) {
@@ -34,9 +34,9 @@ std::string output_of_qemu(const std::string& image) {
   }
   close(ends[1]);
   std::string output;
-  constexpr int longest_silence_ms = 60'000;
+  constexpr int max_silence_ms = 60'000;
   pollfd waiting{ends[0], POLLIN, 0};
-  while (!output.ends_with(last_line) && poll(&waiting, 1, longest_silence_ms) > 0) {
+  while (!output.ends_with(last_line) && poll(&waiting, 1, max_silence_ms) > 0) {
     std::array<char, 256> buffer{};
     const ssize_t count = read(ends[0], buffer.data(), buffer.size());
     if (count <= 0) {
@@ -50,31 +50,31 @@ std::string output_of_qemu(const std::string& image) {
   return output;
 }
 
-/// The same of our CPU, run in slices of so many instructions.
+/// The same of the virtual CPU, run in slices of this many instructions.
 std::string output_of_cpu(const std::string& file, std::uint64_t slice) {
   constexpr std::uint32_t usart_sr = 0x4001'1000;
   constexpr std::uint32_t usart_dr = 0x4001'1004;
   constexpr std::uint32_t empty_and_complete = 0xC0;
-  Board board;
+  CpuRig rig;
   const ElfImage image(file);
   for (const ElfImage::Segment& segment : image.segments()) {
-    board.cpu.write(segment.load_address, segment.bytes);
+    rig.cpu.write(segment.load_address, segment.bytes);
   }
   std::string output;
-  board.registers[usart_sr] = empty_and_complete;
-  board.on_store = [&](const Board::Store& store) {
+  rig.registers[usart_sr] = empty_and_complete;
+  rig.on_store = [&](const CpuRig::Store& store) {
     if (store.address == usart_dr) {
       output.push_back(static_cast<char>(store.value));
     }
-    board.loads.clear();
-    board.stores.clear();
+    rig.loads.clear();
+    rig.stores.clear();
   };
-  board.cpu.reset();
-  constexpr std::uint64_t most = 200'000'000;
-  while (!output.ends_with(last_line) && board.cpu.instructions() < most) {
-    if (const Cpu::State state = board.run(100'000, slice);
+  rig.cpu.reset();
+  constexpr std::uint64_t max_instructions = 200'000'000;
+  while (!output.ends_with(last_line) && rig.cpu.instructions() < max_instructions) {
+    if (const Cpu::State state = rig.run(100'000, slice);
         state != Cpu::State::running && state != Cpu::State::sleeping) {
-      return output + "stopped: " + board.cpu.halt_reason();
+      return output + "stopped: " + rig.cpu.halt_reason();
     }
   }
   return output;

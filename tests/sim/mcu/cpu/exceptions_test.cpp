@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "tests/sim/mcu/cpu/board.hpp"
+#include "tests/sim/mcu/cpu/cpu_rig.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -57,7 +57,7 @@ class ExceptionFrame : public Programs {
   [[nodiscard]] std::vector<std::uint32_t> frame(std::uint32_t address) const {
     std::vector<std::uint32_t> words;
     for (unsigned i = 0; i < 8; ++i) {
-      words.push_back(board_.word(address + 4 * i));
+      words.push_back(rig_.word(address + 4 * i));
     }
     return words;
   }
@@ -138,8 +138,8 @@ TEST_F(ExceptionFrame, EntryFromTheProcessStackPushesThereAndRunsOnTheMainStack)
     return_to_loop();
     expect_registers_as_before();
     // LR, MSP, PSP, xPSR, CONTROL as the handler saw them: on the main stack, nPRIV kept.
-    EXPECT_EQ(board_.take_marks(), Marks({0xFFFF'FFFD, main_stack, 0x2000'8000 - 32,
-                                          0xA90F'0000U + irq(interrupt) - 0x0100'0000U, unprivileged ? 1U : 0U}));
+    EXPECT_EQ(rig_.take_marks(), Marks({0xFFFF'FFFD, main_stack, 0x2000'8000 - 32,
+                                        0xA90F'0000U + irq(interrupt) - 0x0100'0000U, unprivileged ? 1U : 0U}));
     // A second one, so that CONTROL has been restored.
     cpu_.set_interrupt(interrupt, true);
     cpu_.set_interrupt(interrupt, false);
@@ -147,14 +147,14 @@ TEST_F(ExceptionFrame, EntryFromTheProcessStackPushesThereAndRunsOnTheMainStack)
     EXPECT_EQ(cpu_.core_register(14), 0xFFFF'FFFDU);
     return_to_loop();
     expect_registers_as_before();
-    board_.marks.clear();
+    rig_.marks.clear();
   }
 }
 
 class ExceptionOrder : public Programs {
  protected:
   /// Priority of interrupts 0 to 3, 0 to 15 each.
-  static step::Order priorities(unsigned first, unsigned second, unsigned third, unsigned fourth) {
+  static step::Step priorities(unsigned first, unsigned second, unsigned third, unsigned fourth) {
     return step::store(scs::ipr, first << 4U | second << 12U | third << 20U | fourth << 28U);
   }
   static constexpr std::uint32_t all = 0xF;
@@ -172,7 +172,7 @@ TEST_F(ExceptionOrder, AnInterruptOfTheSamePriorityWaits) {
   EXPECT_EQ(run_script(), Marks({entry(17), 2, exit_of(17), entry(16), exit_of(16), 1, thread_end}));
 }
 
-TEST_F(ExceptionOrder, OfSeveralPendingTheHighestPriorityComesFirstAndThenTheLowestNumber) {
+TEST_F(ExceptionOrder, TheHighestPriorityOfSeveralPendingComesFirstThenTheLowestNumber) {
   script(0, {priorities(5, 4, 4, 3), step::store(scs::iser, all), step::primask(1), step::store(scs::ispr, all),
              step::mark(1), step::primask(0), step::mark(2)});
   EXPECT_EQ(run_script(), Marks({1, entry(19), exit_of(19), entry(17), exit_of(17), entry(18), exit_of(18), entry(16),
@@ -191,7 +191,7 @@ TEST_F(ExceptionOrder, NestsAsDeepAsThereArePriorities) {
 
 TEST_F(ExceptionOrder, TheGroupOfAPriorityDecidesOnPreemptionTheRestOnTheOrder) {
   // PRIGROUP 5: bits 7 and 6 preempt (DDI 0403, B1.5.4).
-  const step::Order group = step::store(scs::aircr, 0x05FA'0500);
+  const step::Step group = step::store(scs::aircr, 0x05FA'0500);
   script(0, {group, priorities(6, 5, 4, 3), step::store(scs::iser, all), step::store(scs::ispr, 1)});
   script(irq(0), {step::store(scs::ispr, 2 + 4), step::mark(1), step::store(scs::ispr, 8), step::mark(2)});
   EXPECT_EQ(run_script(), Marks({entry(16), 1, entry(19), exit_of(19), 2, exit_of(16), entry(18), exit_of(18),
@@ -231,7 +231,7 @@ TEST_F(ExceptionOrder, BasepriHoldsBackItsPriorityAndBelow) {
             Marks({entry(18), exit_of(18), 1, entry(17), exit_of(17), entry(16), exit_of(16), 2, thread_end}));
 }
 
-TEST_F(ExceptionOrder, OfPrioritiesFourBitsCount) {
+TEST_F(ExceptionOrder, PrioritiesHaveFourBits) {
   script(0, {step::store(scs::ipr, 0x1F2F'0F01), step::mark_load(scs::ipr), step::store(scs::shpr3, 0xFFFF'FFFF),
              step::mark_load(scs::shpr3), step::basepri(0x0F), step::store(scs::iser, 1), step::store(scs::ispr, 1)});
   EXPECT_EQ(run_script(), Marks({0x1020'0000, 0xF0F0'00F0, entry(16), exit_of(16), thread_end}));
@@ -266,7 +266,7 @@ TEST_F(ExceptionOrder, StirPendsAnInterrupt) {
 TEST_F(ExceptionOrder, ALineThatStaysHighInterruptsAgainAndOneThatFallsDoesNot) {
   script(0, {step::store(scs::iser, all), step::store(0x4000'0010, 1), step::mark(1)});
   int rounds = 0;
-  board_.on_store = [&](const Board::Store& store) {
+  rig_.on_store = [&](const CpuRig::Store& store) {
     if (store.address == 0x4000'0010) {
       cpu_.set_interrupt(2, true);
     } else if (store.value == exit_of(18) && ++rounds == 3) {
@@ -280,7 +280,7 @@ TEST_F(ExceptionOrder, ALineThatStaysHighInterruptsAgainAndOneThatFallsDoesNot) 
 TEST_F(ExceptionOrder, APulseThatComesWhileItsHandlerRunsIsNotLost) {
   script(0, {step::store(scs::iser, all), step::store(scs::ispr, 1), step::mark(1)});
   bool first = true;
-  board_.on_store = [&](const Board::Store& store) {
+  rig_.on_store = [&](const CpuRig::Store& store) {
     if (store.value == entry(16) && std::exchange(first, false)) {
       cpu_.set_interrupt(0, true);
       cpu_.set_interrupt(0, false);
@@ -292,8 +292,8 @@ TEST_F(ExceptionOrder, APulseThatComesWhileItsHandlerRunsIsNotLost) {
 TEST_F(ExceptionOrder, SupervisorCallPassesArgumentsAndResultThroughTheFrame) {
   set_vector(11, "supervisor");
   start("calls_supervisor");
-  board_.run(1000);
-  EXPECT_EQ(board_.marks, Marks({42, 3}));
+  rig_.run(1000);
+  EXPECT_EQ(rig_.marks, Marks({42, 3}));
 }
 
 TEST_F(ExceptionOrder, SupervisorCallWhereItsPriorityDoesNotAllowItIsAHardFault) {
@@ -308,9 +308,9 @@ TEST_F(ExceptionOrder, SupervisorCallWhereItsPriorityDoesNotAllowItIsAHardFault)
 TEST_F(ExceptionOrder, VtorMovesTheVectorTableAlsoIntoRam) {
   for (const std::uint32_t table : {0x0802'0000U, 0x2000'4000U}) {
     for (unsigned i = 0; i < 98; ++i) {
-      board_.set_word(table + 4 * i, board_.word(Cpu::flash_start + 4 * i));
+      rig_.set_word(table + 4 * i, rig_.word(Cpu::flash_start + 4 * i));
     }
-    board_.set_word(table + 4 * irq(0), address_of("short_handler") | 1U);
+    rig_.set_word(table + 4 * irq(0), address_of("short_handler") | 1U);
     script(0, {step::store(scs::iser, all), step::store(scs::ispr, 1), step::mark(1), step::store(scs::vtor, table),
                step::mark_load(scs::vtor), step::store(scs::ispr, 1), step::store(scs::ispr, 2)});
     EXPECT_EQ(run_script(), Marks({entry(16), exit_of(16), 1, table, entry(17), exit_of(17), thread_end}));
@@ -321,8 +321,8 @@ TEST_F(ExceptionOrder, ResetRequestNeedsItsKeyAndEndsTheRun) {
   script(0, {step::store(scs::aircr, 4), step::mark(1), step::store(scs::aircr, 0x05FA'0004), step::mark(2)});
   start("reset_handler");
   EXPECT_EQ(cpu_.run(10'000), Cpu::State::paused);
-  EXPECT_EQ(board_.resets, 1);
-  EXPECT_EQ(board_.take_marks(), Marks({1}));
+  EXPECT_EQ(rig_.resets, 1);
+  EXPECT_EQ(rig_.take_marks(), Marks({1}));
   // RAM survives; the registers do not.
   cpu_.set_core_register(4, 0x1234);
   script(0, {step::mark_load(scs::vtor)});
@@ -335,7 +335,7 @@ TEST_F(ExceptionOrder, ResetClearsWhatWasPendingEnabledAndActive) {
   start("reset_handler");
   EXPECT_EQ(cpu_.run(10'000), Cpu::State::paused);
   EXPECT_EQ(cpu_.active_exception(), 16U);
-  board_.marks.clear();
+  rig_.marks.clear();
   script(0, {step::mark_load(scs::iser), step::mark_load(scs::ispr), step::mark_load(scs::iabr), step::mark_control()});
   EXPECT_EQ(run_script(), Marks({0, 0, 0, 0, thread_end}));
 }
@@ -368,23 +368,23 @@ TEST_F(SystemTickTest, InterruptsEveryReloadPlusOneClocks) {
   script(0, {step::store(scs::syst_rvr, 999), step::store(scs::syst_cvr, 0), step::store(scs::syst_csr, 7),
              step::spin(100'000)});
   std::vector<LocalTime> following;
-  board_.on_store = [&](const Board::Store& store) {
+  rig_.on_store = [&](const CpuRig::Store& store) {
     if (store.value == entry(15)) {
       following.push_back(cpu_.next_system_tick());
       // Entered with the first block after the tick.
-      EXPECT_LT(following.back() - board_.now(), 1000 * Board::period);
-      EXPECT_GT(following.back() - board_.now(), 950 * Board::period);
+      EXPECT_LT(following.back() - rig_.now(), 1000 * CpuRig::period);
+      EXPECT_GT(following.back() - rig_.now(), 950 * CpuRig::period);
     }
   };
   start("reset_handler");
-  board_.run(50'000);
+  rig_.run(50'000);
   ASSERT_GE(following.size(), 45U);
   for (std::size_t i = 1; i < following.size(); ++i) {
-    EXPECT_EQ(following[i] - following[i - 1], 1000 * Board::period);
+    EXPECT_EQ(following[i] - following[i - 1], 1000 * CpuRig::period);
   }
 }
 
-TEST_F(SystemTickTest, CountsDownAndToldItHasCountedOnce) {
+TEST_F(SystemTickTest, CountsDownAndItsCountFlagReadsOneOnce) {
   script(0, {step::store(scs::syst_rvr, 100'000), step::store(scs::syst_cvr, 7), step::store(scs::syst_csr, 5),
              step::mark_load(scs::syst_cvr), step::spin(1000), step::mark_load(scs::syst_cvr),
              step::mark_load(scs::syst_csr), step::spin(40'000), step::mark_load(scs::syst_csr),
@@ -403,21 +403,21 @@ TEST_F(SystemTickTest, CountsDownAndToldItHasCountedOnce) {
 TEST_F(SystemTickTest, TheOtherClockIsAnEighth) {
   script(0, {step::store(scs::syst_rvr, 1000), step::store(scs::syst_cvr, 0), step::store(scs::syst_csr, 3)});
   start("reset_handler");
-  board_.run(200);
+  rig_.run(200);
   const LocalTime first = cpu_.next_system_tick();
-  board_.run(20'000);
-  EXPECT_EQ((cpu_.next_system_tick() - first) % (8 * 1001 * Board::period), 0U);
+  rig_.run(20'000);
+  EXPECT_EQ((cpu_.next_system_tick() - first) % (8 * 1001 * CpuRig::period), 0U);
   EXPECT_GT(cpu_.next_system_tick(), first);
 }
 
 TEST_F(SystemTickTest, AnotherCoreClockCountsOnFromTheSameValue) {
   script(0, {step::store(scs::syst_rvr, 10'000), step::store(scs::syst_cvr, 0), step::store(scs::syst_csr, 7)});
   start("reset_handler");
-  board_.run(200);
-  const LocalTime now = board_.now();
+  rig_.run(200);
+  const LocalTime now = rig_.now();
   const LocalTime left = cpu_.next_system_tick() - now;
-  board_.core = Board::period / 3;
-  board_.slept = now - cpu_.instructions() * board_.core;
+  rig_.core = CpuRig::period / 3;
+  rig_.slept = now - cpu_.instructions() * rig_.core;
   cpu_.change_core_period();
   EXPECT_EQ(cpu_.next_system_tick() - now, left / 3);
 }
@@ -430,14 +430,14 @@ TEST_F(SystemTickTest, WakesFromSleep) {
   }
   EXPECT_EQ(cpu_.state(), Cpu::State::sleeping);
   EXPECT_FALSE(cpu_.wakes());
-  board_.slept += cpu_.next_system_tick() - board_.now();
+  rig_.slept += cpu_.next_system_tick() - rig_.now();
   cpu_.advance_system_tick();
   EXPECT_TRUE(cpu_.wakes());
   EXPECT_EQ(cpu_.run(10'000), Cpu::State::sleeping);
-  EXPECT_EQ(board_.marks, Marks({entry(15), exit_of(15), 1}));
+  EXPECT_EQ(rig_.marks, Marks({entry(15), exit_of(15), 1}));
 }
 
-/// All that a program can tell of itself.
+/// All that a program can read of its state.
 struct EndState {
   std::vector<std::uint32_t> marks;
   std::vector<std::uint32_t> registers;
@@ -458,21 +458,21 @@ class Slices : public Programs {
     script(14, {step::spin(30), step::store(scs::ispr, 4), step::mark_load(scs::syst_cvr)});
     script(irq(2), {step::spin(100)});
     start("reset_handler");
-    board_.run(100'000, slice);
+    rig_.run(100'000, slice);
     EndState end;
-    end.marks = board_.marks;
+    end.marks = rig_.marks;
     for (unsigned i = 0; i <= 16; ++i) {
       end.registers.push_back(cpu_.core_register(i));
     }
     end.ram.resize(Cpu::ram_size);
     cpu_.read(Cpu::ram_start, end.ram);
     end.instructions = cpu_.instructions();
-    end.time = board_.now();
+    end.time = rig_.now();
     return end;
   }
 };
 
-/// Each in a CPU of its own.
+/// Each runs in its own CPU.
 class SlicesOf : public Slices, public testing::WithParamInterface<std::uint64_t> {
  public:
   static inline EndState first;

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "tests/sim/mcu/cpu/board.hpp"
+#include "tests/sim/mcu/cpu/cpu_rig.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -20,14 +20,14 @@ class Faults : public Programs {
 
   /// Runs a program into its fault, which it must note. Ends with the handler, whose return may repeat the fault.
   CpuFault fault_of(std::string_view program) {
-    board_.marks.clear();
+    rig_.marks.clear();
     start(program);
-    board_.on_store = [&](const Board::Store& store) {
+    rig_.on_store = [&](const CpuRig::Store& store) {
       if (store.value >= 0x2000 && store.value < 0x2010) {
         cpu_.pause();
       }
     };
-    board_.run(10'000);
+    rig_.run(10'000);
     const std::vector<CpuFault> faults = cpu_.take_faults();
     EXPECT_GE(faults.size(), 1U) << program;
     return faults.empty() ? CpuFault{"none", std::vector<std::uint32_t>(17), false} : faults[0];
@@ -36,34 +36,34 @@ class Faults : public Programs {
   static std::uint32_t here(const std::string& program) { return address_of(program + "_here"); }
 };
 
-TEST_F(Faults, ALoadFromNowhereIsABusFaultThatBecomesAHardFault) {
+TEST_F(Faults, ALoadWithoutMemoryIsABusFaultThatBecomesAHardFault) {
   const CpuFault fault = fault_of("faults_between_stores");
   EXPECT_EQ(fault.cause, "load from 0x60000000, where nothing is");
   EXPECT_EQ(fault.registers[pc], here("faults_between_stores"));
   EXPECT_EQ(fault.registers[2], 2U);
   EXPECT_FALSE(fault.locked_up);
   // The stores before it, once each; then HFSR.FORCED, CFSR.PRECISERR and BFARVALID, BFAR.
-  EXPECT_EQ(board_.marks, Marks({1, 2, 0x1003, forced, 0x8200, 0x6000'0000, 0x2003}));
+  EXPECT_EQ(rig_.marks, Marks({1, 2, 0x1003, forced, 0x8200, 0x6000'0000, 0x2003}));
 }
 
 TEST_F(Faults, TheFrameOfAFaultPointsToTheInstructionThatDidIt) {
   static_cast<void>(fault_of("faults_between_stores"));
   // Main stack: frame of the fault.
-  EXPECT_EQ(board_.word(initial_stack - 32 + 24), here("faults_between_stores"));
+  EXPECT_EQ(rig_.word(initial_stack - 32 + 24), here("faults_between_stores"));
 }
 
-TEST_F(Faults, AHandlerMaySkipTheInstructionAndTheProgramGoesOn) {
+TEST_F(Faults, AHandlerMaySkipTheInstructionAndTheProgramContinues) {
   set_vector(3, "skipping_handler");
   start("faults_between_stores");
-  board_.run(10'000);
-  EXPECT_EQ(board_.marks, Marks({1, 2, 3}));
+  rig_.run(10'000);
+  EXPECT_EQ(rig_.marks, Marks({1, 2, 3}));
   EXPECT_EQ(cpu_.state(), Cpu::State::sleeping);
 }
 
 TEST_F(Faults, OnlyTheInstructionsBeforeAFaultCount) {
   set_vector(3, "skipping_handler");
   start("faults_between_stores");
-  board_.run(10'000);
+  rig_.run(10'000);
   // 6 before it (two loads of constants among them), 4 of the handler, 3 behind.
   EXPECT_EQ(cpu_.instructions(), 6U + 4U + 3U);
 }
@@ -87,14 +87,14 @@ TEST_F(Faults, AnUndefinedInstruction) {
   const CpuFault fault = fault_of("undefined_instruction");
   EXPECT_EQ(fault.cause, "undefined instruction");
   EXPECT_EQ(fault.registers[pc], here("undefined_instruction"));
-  EXPECT_EQ(Marks(board_.marks.begin(), board_.marks.begin() + 4), Marks({1, 0x1003, forced, 1U << 16U}));
+  EXPECT_EQ(Marks(rig_.marks.begin(), rig_.marks.begin() + 4), Marks({1, 0x1003, forced, 1U << 16U}));
 }
 
-TEST_F(Faults, AJumpToNowhere) {
+TEST_F(Faults, AJumpToAnInvalidAddress) {
   const CpuFault fault = fault_of("bad_jump");
   EXPECT_EQ(fault.cause, "execution at 0x60000000, where nothing is");
   EXPECT_EQ(fault.registers[pc], 0x6000'0000U);
-  EXPECT_EQ(Marks(board_.marks.begin(), board_.marks.begin() + 3), Marks({0x1003, forced, 1U << 8U}));
+  EXPECT_EQ(Marks(rig_.marks.begin(), rig_.marks.begin() + 3), Marks({0x1003, forced, 1U << 8U}));
 }
 
 TEST_F(Faults, ACallOfANullPointer) {
@@ -110,20 +110,20 @@ TEST_F(Faults, ACallOfANullPointer) {
 TEST_F(Faults, AJumpToWhereNothingMayBeExecuted) {
   const CpuFault peripheral = fault_of("jump_to_peripheral");
   EXPECT_EQ(peripheral.cause, "execution at 0x40000000, where nothing can be executed from");
-  EXPECT_EQ(board_.marks[2], 1U);  // IACCVIOL
+  EXPECT_EQ(rig_.marks[2], 1U);  // IACCVIOL
   const CpuFault ccm = fault_of("jump_to_ccm");
   EXPECT_EQ(ccm.cause, "execution at 0x10000000, where nothing can be executed from");
-  EXPECT_EQ(board_.marks[2], 1U << 8U);
+  EXPECT_EQ(rig_.marks[2], 1U << 8U);
 }
 
 TEST_F(Faults, AJumpToAnEvenAddress) {
   const CpuFault fault = fault_of("jump_to_even");
   EXPECT_EQ(fault.cause, "a branch to an even address, which does not mean Thumb code");
   EXPECT_EQ(fault.registers[pc], address_of("short_handler"));
-  EXPECT_EQ(board_.marks[2], 1U << 17U);
+  EXPECT_EQ(rig_.marks[2], 1U << 17U);
 }
 
-TEST_F(Faults, AnExceptionReturnInThreadModeIsAJumpToNowhere) {
+TEST_F(Faults, AnExceptionReturnInThreadModeIsAJumpToAnInvalidAddress) {
   const CpuFault fault = fault_of("false_return");
   EXPECT_EQ(fault.cause, "execution at 0xFFFFFFF8, where nothing can be executed from");
 }
@@ -132,63 +132,63 @@ TEST_F(Faults, AnUnalignedExclusiveAccess) {
   const CpuFault fault = fault_of("unaligned_exclusive");
   EXPECT_EQ(fault.cause, "load or store exclusive at an address that is not aligned");
   EXPECT_EQ(fault.registers[pc], here("unaligned_exclusive"));
-  EXPECT_EQ(board_.marks[2], 1U << 24U);
+  EXPECT_EQ(rig_.marks[2], 1U << 24U);
 }
 
 TEST_F(Faults, ABreakpointInstructionWithoutDebugger) {
   const CpuFault fault = fault_of("breaks");
   EXPECT_EQ(fault.cause, "BKPT without a debugger");
   EXPECT_EQ(fault.registers[pc], here("breaks"));
-  EXPECT_EQ(board_.marks[1], 1U << 31U);
+  EXPECT_EQ(rig_.marks[1], 1U << 31U);
 }
 
 TEST_F(Faults, TheFpuWhileItIsForbidden) {
   const CpuFault fault = fault_of("uses_fpu");
   EXPECT_EQ(fault.cause, "FPU or coprocessor instruction while CPACR forbids it");
   EXPECT_EQ(fault.registers[pc], here("uses_fpu"));
-  EXPECT_EQ(Marks(board_.marks.begin(), board_.marks.begin() + 4), Marks({1, 0x1003, forced, 1U << 19U}));
+  EXPECT_EQ(Marks(rig_.marks.begin(), rig_.marks.begin() + 4), Marks({1, 0x1003, forced, 1U << 19U}));
 }
 
 TEST_F(Faults, TheFpuWorksWhenItIsAllowed) {
   start("allows_and_uses_fpu");
-  board_.run(10'000);
-  EXPECT_EQ(board_.marks, Marks({0x4000'0000}));  // 1.0F + 1.0F
+  rig_.run(10'000);
+  EXPECT_EQ(rig_.marks, Marks({0x4000'0000}));  // 1.0F + 1.0F
 }
 
-TEST_F(Faults, AStoreThatTheFlashRefuses) {
+TEST_F(Faults, AStoreThatTheFlashRejects) {
   const CpuFault fault = fault_of("stores_to_flash");
   EXPECT_EQ(fault.cause, "store to 0x8040000, where nothing can be stored now");
-  EXPECT_EQ(Marks(board_.marks.begin(), board_.marks.begin() + 4), Marks({1, 0x1003, forced, 0x8200}));
+  EXPECT_EQ(Marks(rig_.marks.begin(), rig_.marks.begin() + 4), Marks({1, 0x1003, forced, 0x8200}));
 }
 
-TEST_F(Faults, EnabledInShcsrTheyHaveHandlersOfTheirOwn) {
+TEST_F(Faults, HaveTheirOwnHandlersIfEnabledInShcsr) {
   const auto enable = step::store(scs::shcsr, 7U << 16U);
   script(5, {step::mark_load(scs::bfar)});
   script(0, {enable, step::call(address_of("faults_between_stores") | 1U)});
   static_cast<void>(fault_of("reset_handler"));
-  EXPECT_EQ(board_.marks, Marks({1, 2, 0x1005, 0x6000'0000, 0x2005}));
+  EXPECT_EQ(rig_.marks, Marks({1, 2, 0x1005, 0x6000'0000, 0x2005}));
   script(6, {step::mark_load(scs::cfsr)});
   script(0, {enable, step::call(address_of("undefined_instruction") | 1U)});
   static_cast<void>(fault_of("reset_handler"));
-  EXPECT_EQ(board_.marks, Marks({1, 0x1006, 1U << 16U, 0x2006}));
+  EXPECT_EQ(rig_.marks, Marks({1, 0x1006, 1U << 16U, 0x2006}));
   script(4, {step::mark_load(scs::cfsr)});
   script(0, {enable, step::call(address_of("jump_to_peripheral") | 1U)});
   static_cast<void>(fault_of("reset_handler"));
-  EXPECT_EQ(board_.marks, Marks({0x1004, 1, 0x2004}));
+  EXPECT_EQ(rig_.marks, Marks({0x1004, 1, 0x2004}));
 }
 
 TEST_F(Faults, AnEnabledFaultHandlerOfTooLowPriorityGivesAHardFault) {
   script(0, {step::store(scs::shcsr, 7U << 16U), step::store(scs::shpr1, 0x00F0'F0F0), step::basepri(0x80),
              step::call(address_of("undefined_instruction") | 1U)});
   static_cast<void>(fault_of("reset_handler"));
-  EXPECT_EQ(Marks(board_.marks.begin(), board_.marks.begin() + 3), Marks({1, 0x1003, forced}));
+  EXPECT_EQ(Marks(rig_.marks.begin(), rig_.marks.begin() + 3), Marks({1, 0x1003, forced}));
 }
 
 TEST_F(Faults, FaultStatusIsClearedByWritingOnes) {
   script(3, {step::store(scs::cfsr, 0xFFFF'FFFF), step::mark_load(scs::cfsr), step::store(scs::hfsr, 0xFFFF'FFFF),
              step::mark_load(scs::hfsr)});
   static_cast<void>(fault_of("faults_between_stores"));
-  EXPECT_EQ(board_.marks, Marks({1, 2, 0x1003, 0, 0, 0x2003}));
+  EXPECT_EQ(rig_.marks, Marks({1, 2, 0x1003, 0, 0, 0x2003}));
 }
 
 TEST_F(Faults, AFaultInTheHardFaultHandlerLocksUp) {
@@ -202,7 +202,7 @@ TEST_F(Faults, AFaultInTheHardFaultHandlerLocksUp) {
   EXPECT_EQ(faults[1].cause, "undefined instruction");
   EXPECT_EQ(faults[1].registers[pc], here("faulting_handler"));
   EXPECT_EQ(cpu_.run(10'000), Cpu::State::locked_up);
-  EXPECT_EQ(board_.resets, 0);
+  EXPECT_EQ(rig_.resets, 0);
   start("counted_loop");
   EXPECT_EQ(cpu_.run(10), Cpu::State::running);
 }
@@ -220,13 +220,13 @@ TEST_F(Faults, AStackOverflowEndsWhereTheRamBegins) {
       << fault.cause;
 }
 
-TEST_F(Faults, AnExceptionWhoseStackIsNowhereIsAFaultOfItsOwn) {
+TEST_F(Faults, AnExceptionWithoutMemoryForItsStackIsAnotherFault) {
   script(0, {step::store(scs::iser, 1)});
   start("reset_handler");
-  board_.run(10'000);
+  rig_.run(10'000);
   cpu_.set_core_register(13, 0x3000'0000);
   cpu_.set_interrupt(0, true);
-  board_.run(10'000);
+  rig_.run(10'000);
   const std::vector<CpuFault> faults = cpu_.take_faults();
   ASSERT_GE(faults.size(), 1U);
   EXPECT_EQ(faults[0].cause, "the stack at 0x2FFFFFE0, where nothing is, when exception 16 came");
@@ -238,28 +238,28 @@ TEST_F(Faults, AWrongExceptionReturnIsAUsageFault) {
   script(0, {step::store(scs::iser, 1), step::store(scs::ispr, 1)});
   const CpuFault fault = fault_of("reset_handler");
   EXPECT_EQ(fault.cause, "return from exception 16 by 0xFFFFFFF1");
-  EXPECT_EQ(Marks(board_.marks.begin(), board_.marks.begin() + 3), Marks({0x1003, forced, 1U << 18U}));
+  EXPECT_EQ(Marks(rig_.marks.begin(), rig_.marks.begin() + 3), Marks({0x1003, forced, 1U << 18U}));
 }
 
 TEST_F(Faults, AnErasedFlashLocksUpAtOnce) {
-  Board board;
-  board.cpu.reset();
-  EXPECT_EQ(board.cpu.run(1000), Cpu::State::locked_up);
-  EXPECT_FALSE(board.cpu.take_faults().empty());
+  CpuRig rig;
+  rig.cpu.reset();
+  EXPECT_EQ(rig.cpu.run(1000), Cpu::State::locked_up);
+  EXPECT_FALSE(rig.cpu.take_faults().empty());
 }
 
 TEST_F(Faults, AResetVectorThatIsNotThumbIsAFault) {
-  board_.set_word(Cpu::flash_start + 4, address_of("counted_loop"));
+  rig_.set_word(Cpu::flash_start + 4, address_of("counted_loop"));
   cpu_.reset();
-  board_.run(1000);
+  rig_.run(1000);
   const std::vector<CpuFault> faults = cpu_.take_faults();
   ASSERT_EQ(faults.size(), 1U);
   EXPECT_TRUE(faults[0].cause.starts_with("the vector table sends the reset to 0x")) << faults[0].cause;
-  EXPECT_EQ(board_.marks[0], 0x1003U);
+  EXPECT_EQ(rig_.marks[0], 0x1003U);
 }
 
-TEST_F(Faults, AVectorThatIsNotThumbIsAFaultOfItsOwn) {
-  board_.set_word(Cpu::flash_start + 64, address_of("short_handler"));
+TEST_F(Faults, AVectorThatIsNotThumbIsAnotherFault) {
+  rig_.set_word(Cpu::flash_start + 64, address_of("short_handler"));
   script(0, {step::store(scs::iser, 1), step::store(scs::ispr, 1)});
   const CpuFault fault = fault_of("reset_handler");
   EXPECT_TRUE(fault.cause.starts_with("the vector of exception 16 is 0x")) << fault.cause;

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <random>
 
-#include "tests/sim/mcu/cpu/board.hpp"
+#include "tests/sim/mcu/cpu/cpu_rig.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -29,8 +29,8 @@ class FlashImageTest : public testing::Test {
         valid_(bytes_of(image_file("cpu_programs"))) {}
   ~FlashImageTest() override { std::filesystem::remove(file_); }
 
-  /// What is said against a file with these bytes; empty: nothing.
-  [[nodiscard]] std::string refusal(const Bytes& bytes) const {
+  /// The error for a file with these bytes; empty: none.
+  [[nodiscard]] std::string rejection(const Bytes& bytes) const {
     std::ofstream(file_, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     try {
       const FlashImage image(file_);
@@ -75,7 +75,7 @@ class FlashImageTest : public testing::Test {
     auto segment = read<Elf32_Phdr>(bytes, first_segment());
     change(segment);
     write(bytes, first_segment(), segment);
-    return refusal(bytes);
+    return rejection(bytes);
   }
 
   [[nodiscard]] std::string refusal_with_vectors(std::uint32_t stack, std::uint32_t start) const {
@@ -83,19 +83,19 @@ class FlashImageTest : public testing::Test {
     const auto segment = read<Elf32_Phdr>(bytes, first_segment());
     write(bytes, segment.p_offset, stack);
     write(bytes, segment.p_offset + 4, start);
-    return refusal(bytes);
+    return rejection(bytes);
   }
 
   std::filesystem::path file_;
   Bytes valid_;
 };
 
-TEST_F(FlashImageTest, AProgramForThisChipIsTaken) {
-  EXPECT_EQ(refusal(valid_), "");
+TEST_F(FlashImageTest, AProgramForThisChipIsAccepted) {
+  EXPECT_EQ(rejection(valid_), "");
   EXPECT_EQ(FlashImage(image_file("cpu_programs")).elf().segments()[0].load_address, Cpu::flash_start);
 }
 
-TEST_F(FlashImageTest, AProgramForCortexM0IsTakenToo) {
+TEST_F(FlashImageTest, AProgramForCortexM0IsAcceptedToo) {
   const std::filesystem::path other =
       std::filesystem::path(PROLEG_CROSS_BUILD_DIR) / "cortex-m0" / "bin" / "core_image.elf";
   if (!std::filesystem::exists(other)) {
@@ -104,25 +104,25 @@ TEST_F(FlashImageTest, AProgramForCortexM0IsTakenToo) {
   EXPECT_NO_THROW(FlashImage{other});
 }
 
-TEST_F(FlashImageTest, WhatIsNoElfFileIsRefused) {
-  EXPECT_EQ(refusal(Bytes(1000, 'x')), "found a file without the ELF magic number, expected an ARM program");
+TEST_F(FlashImageTest, AFileThatIsNotElfIsRejected) {
+  EXPECT_EQ(rejection(Bytes(1000, 'x')), "found a file without the ELF magic number, expected an ARM program");
 }
 
-TEST_F(FlashImageTest, AProgramForThisComputerIsRefused) {
-  EXPECT_EQ(refusal(bytes_of("/proc/self/exe")),
+TEST_F(FlashImageTest, AProgramForThisComputerIsRejected) {
+  EXPECT_EQ(rejection(bytes_of("/proc/self/exe")),
             "found a program that is not 32-bit little-endian, expected an ARM program");
 }
 
-TEST_F(FlashImageTest, OtherMachinesTypesAndByteOrdersAreRefused) {
+TEST_F(FlashImageTest, OtherMachinesTypesAndByteOrdersAreRejected) {
   for (const std::size_t offset :
        {offsetof(Elf32_Ehdr, e_machine), offsetof(Elf32_Ehdr, e_type), std::size_t{EI_DATA}}) {
     Bytes bytes = valid_;
     bytes[offset] = static_cast<char>(bytes[offset] + 1);
-    EXPECT_NE(refusal(bytes), "") << offset;
+    EXPECT_NE(rejection(bytes), "") << offset;
   }
 }
 
-TEST_F(FlashImageTest, AProgramForAnotherChipIsRefusedWithItsAddress) {
+TEST_F(FlashImageTest, AProgramForAnotherChipIsRejectedWithItsAddress) {
   for (const std::uint32_t address : {0x0000'0000U, 0x0001'0000U, 0x1000'0000U}) {
     const std::string text = refusal_with_segment([&](Elf32_Phdr& segment) { segment.p_paddr = address; });
     EXPECT_NE(text.find(", a program for another chip, expected all of it in the flash at 0x8000000"),
@@ -131,13 +131,13 @@ TEST_F(FlashImageTest, AProgramForAnotherChipIsRefusedWithItsAddress) {
   }
 }
 
-TEST_F(FlashImageTest, AProgramThatDoesNotFitIsRefused) {
+TEST_F(FlashImageTest, AProgramThatDoesNotFitIsRejected) {
   const std::string text =
       refusal_with_segment([](Elf32_Phdr& segment) { segment.p_paddr = Cpu::flash_start + Cpu::flash_size - 16; });
   EXPECT_NE(text.find("expected at most 1048576 bytes from 0x8000000 on"), std::string::npos) << text;
 }
 
-TEST_F(FlashImageTest, SegmentsThatOverlapAreRefused) {
+TEST_F(FlashImageTest, SegmentsThatOverlapAreRejected) {
   Bytes bytes = valid_;
   auto header = read<Elf32_Ehdr>(bytes, 0);
   const auto segment = read<Elf32_Phdr>(bytes, first_segment());
@@ -150,15 +150,15 @@ TEST_F(FlashImageTest, SegmentsThatOverlapAreRefused) {
   second.p_paddr += 4;
   write(bytes, header.e_phoff + sizeof segment, second);
   write(bytes, 0, header);
-  EXPECT_EQ(refusal(bytes), "found segments at 0x8000000 and 0x8000004 that overlap, expected each address once");
+  EXPECT_EQ(rejection(bytes), "found segments at 0x8000000 and 0x8000004 that overlap, expected each address once");
 }
 
-TEST_F(FlashImageTest, OffsetsBeyondTheFileAreRefused) {
+TEST_F(FlashImageTest, OffsetsBeyondTheFileAreRejected) {
   const std::string text = refusal_with_segment([](Elf32_Phdr& segment) { segment.p_offset = 0x7FFF'FFFF; });
   EXPECT_TRUE(text.starts_with("found the end of the file at byte ")) << text;
 }
 
-TEST_F(FlashImageTest, AProgramWithoutVectorTableIsRefused) {
+TEST_F(FlashImageTest, AProgramWithoutVectorTableIsRejected) {
   const std::string text = refusal_with_segment([](Elf32_Phdr& segment) { segment.p_paddr += 0x10000; });
   EXPECT_EQ(text, "found nothing at 0x8000000, expected the vector table");
 }
@@ -185,16 +185,16 @@ TEST_F(FlashImageTest, TheStartAddressMustBeThumbCodeOfTheProgram) {
   }
 }
 
-TEST_F(FlashImageTest, AProgramThatPassesArgumentsInTheFpuIsRefused) {
+TEST_F(FlashImageTest, AProgramThatPassesArgumentsInTheFpuIsRejected) {
   Bytes bytes = valid_;
   auto header = read<Elf32_Ehdr>(bytes, 0);
   header.e_flags |= EF_ARM_ABI_FLOAT_HARD;
   write(bytes, 0, header);
-  EXPECT_EQ(refusal(bytes),
+  EXPECT_EQ(rejection(bytes),
             "found a program that passes arguments in the FPU, expected one compiled with -mfloat-abi=soft");
 }
 
-TEST_F(FlashImageTest, AProgramForAnApplicationProcessorIsRefused) {
+TEST_F(FlashImageTest, AProgramForAnApplicationProcessorIsRejected) {
   const auto header = read<Elf32_Ehdr>(valid_, 0);
   bool changed = false;
   Bytes bytes = valid_;
@@ -213,7 +213,7 @@ TEST_F(FlashImageTest, AProgramForAnApplicationProcessorIsRefused) {
     }
   }
   ASSERT_TRUE(changed);
-  EXPECT_TRUE(refusal(bytes).starts_with("found a program for architecture 10, expected one for a Cortex-M4"));
+  EXPECT_TRUE(rejection(bytes).starts_with("found a program for architecture 10, expected one for a Cortex-M4"));
 }
 
 TEST_F(FlashImageTest, CorruptedFilesAreReadOrRefusedButNeverMore) {
@@ -247,7 +247,7 @@ TEST_F(FlashImageTest, CorruptedFilesAreReadOrRefusedButNeverMore) {
     if (random() % 8 == 0) {
       bytes.resize(random() % bytes.size());
     }
-    refused += refusal(bytes).empty() ? 0 : 1;
+    refused += rejection(bytes).empty() ? 0 : 1;
   }
   EXPECT_GT(refused, corruptions / 4);
   EXPECT_LT(refused, corruptions);

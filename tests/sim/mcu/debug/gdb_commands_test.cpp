@@ -70,7 +70,7 @@ TEST_F(Commands, MemoryEndsWhereItEnds) {
   EXPECT_EQ(reply("M2000fffe,4:00000000"), "E0e");
   EXPECT_EQ(reply("mffffffff,ffffffff"), "E0e");
   EXPECT_EQ(reply("Mffffffff,2:0000"), "E0e");
-  EXPECT_EQ(reply("m20000000,ffffffff").size(), GdbDecoder::longest_packet);
+  EXPECT_EQ(reply("m20000000,ffffffff").size(), GdbDecoder::max_packet);
 }
 
 TEST_F(Commands, BreakpointsOfBothKindsAreOneSetOfAddresses) {
@@ -100,8 +100,8 @@ TEST_F(Commands, ThereIsNoLimitToBreakpoints) {
   EXPECT_EQ(target.breakpoints.size(), 5000U);
 }
 
-// GDB takes them all away at each stop and sets them again; each change costs the target its translated code.
-TEST_F(Commands, BreakpointsThatComeBackBeforeTheTargetRunsAreNotNoticed) {
+// GDB removes them all at each stop and sets them again; each change costs the target its translated code.
+TEST_F(Commands, BreakpointsThatComeBackBeforeTheTargetRunsChangeNothing) {
   EXPECT_EQ(reply("Z0,8000100,2"), "OK");
   EXPECT_EQ(resume("c"), Resume::run);
   EXPECT_EQ(reply("z0,8000100,2"), "OK");
@@ -110,7 +110,7 @@ TEST_F(Commands, BreakpointsThatComeBackBeforeTheTargetRunsAreNotNoticed) {
   EXPECT_EQ(target.breakpoint_calls, 1);
 }
 
-TEST_F(Commands, DetachAndKillTakeBreakpointsAway) {
+TEST_F(Commands, DetachAndKillRemoveBreakpoints) {
   for (const auto& [packet, expected] : {std::pair("D", Resume::detach), std::pair("k", Resume::kill)}) {
     EXPECT_EQ(reply("Z0,8000100,2"), "OK");
     EXPECT_EQ(resume("c"), Resume::run);
@@ -121,7 +121,7 @@ TEST_F(Commands, DetachAndKillTakeBreakpointsAway) {
   EXPECT_EQ(reply("k"), "(none)");
 }
 
-TEST_F(Commands, GoOnFromHereOrFromAnAddress) {
+TEST_F(Commands, ContinueFromHereOrFromAnAddress) {
   EXPECT_EQ(reply("c"), "(none)");
   EXPECT_EQ(resume("s8000010"), Resume::step);
   EXPECT_EQ(target.registers[15], 0x0800'0010U);
@@ -133,7 +133,7 @@ TEST_F(Commands, GoOnFromHereOrFromAnAddress) {
   EXPECT_EQ(reply("cx"), "E16");
 }
 
-TEST_F(Commands, VContTakesTheFirstActionThatNamesTheThread) {
+TEST_F(Commands, VContUsesTheFirstActionThatNamesTheThread) {
   EXPECT_EQ(reply("vCont?"), "vCont;c;C;s;S");
   EXPECT_EQ(resume("vCont;c"), Resume::run);
   EXPECT_EQ(resume("vCont;s:1;c"), Resume::step);
@@ -147,7 +147,7 @@ TEST_F(Commands, VContTakesTheFirstActionThatNamesTheThread) {
   }
 }
 
-TEST_F(Commands, StopRepliesTellTheSignal) {
+TEST_F(Commands, StopRepliesHaveTheSignal) {
   const auto signal = [&](StopReason reason) {
     commands.set_stop_reason(reason);
     return reply("?").substr(0, 3);
@@ -191,7 +191,7 @@ TEST_F(Commands, ThereIsOneThread) {
   EXPECT_EQ(reply("qAttached"), "1");
 }
 
-TEST_F(Commands, MonitorTextsAreTheOwners) {
+TEST_F(Commands, MonitorTextsComeFromTheOwner) {
   commands.set_monitor([](std::string_view text) { return text == "time" ? "1.5 s\n" : std::string(); });
   EXPECT_EQ(reply("qRcmd,74696d65"), "312e3520730a");
   EXPECT_EQ(reply("qRcmd,00"), "OK");

@@ -30,7 +30,7 @@ struct CpuProgram {
 
 class GdbCpuSession : public testing::Test {
  protected:
-  // As a user would: reset, forget the registers as they were.
+  // As a user would: reset, and drop the registers of before.
   GdbCpuSession() {
     server.set_monitor([this](std::string_view text) {
       if (text != "reset") {
@@ -57,7 +57,7 @@ std::vector<std::string> after_load(const std::vector<std::string>& commands) {
 }
 
 // main() of program.c takes the readings -10, -20, -30, -40: -100 in total.
-TEST_F(GdbCpuSession, BreaksReadsVariablesStepsChangesARegisterAndGoesOn) {
+TEST_F(GdbCpuSession, BreaksReadsVariablesStepsChangesARegisterAndContinues) {
   GdbProcess gdb(PROLEG_PROGRAM, server.port(),
                  after_load({"print $pc == (long)main",
                              "print/x $sp",
@@ -98,7 +98,7 @@ TEST_F(GdbCpuSession, SeesThroughAnExceptionHandlerToTheProgramBelow) {
                                       "<signal handler called>", "#2  main ()", "detached"}));
 }
 
-TEST_F(GdbCpuSession, IsStoppedByControlCAndGoesOnFromWhereItWas) {
+TEST_F(GdbCpuSession, IsStoppedByControlCAndContinuesFromThere) {
   GdbProcess gdb(PROLEG_PROGRAM, server.port(),
                  after_load({"continue", "print rounds > 500", "print $pc >= 0x8000000 && $pc < 0x8001000",
                              "break take_reading", "continue", "print total >= -60 && total <= 0", "kill"}));

@@ -9,7 +9,7 @@
 
 namespace proleg::sim {
 
-/// What the owner of a target does, as gdb_server.hpp says, until the debugger has ended.
+/// The owner of a target, as in gdb_server.hpp, until the debugger has ended.
 /// Program: step(); run_slice(), true if it came to a breakpoint.
 template <typename Program>
 Resume run_under(GdbServer& server, Program& program, GdbProcess& gdb, int slices_until_control_c = 20'000) {
@@ -33,7 +33,7 @@ Resume run_under(GdbServer& server, Program& program, GdbProcess& gdb, int slice
           reason = StopReason::breakpoint;
           break;
         }
-        // A user's hand comes long after gdb has begun to wait, which a signal before that would end.
+        // A user reacts long after gdb has begun to wait; a signal before that would end gdb's wait.
         constexpr std::chrono::milliseconds reaction_time(500);
         if (++slices >= slices_until_control_c && !has_interrupted &&
             std::chrono::steady_clock::now() - start >= reaction_time) {

@@ -94,7 +94,7 @@ TEST(GdbPacket, WithOneByteChangedIsNeverTakenForAnotherPacket) {
   }
 }
 
-TEST(GdbDecoder, TellsAcknowledgementsAndInterruptsFromPacketsAndLeavesOutTheRest) {
+TEST(GdbDecoder, SeparatesAcknowledgementsAndInterruptsFromPacketsAndIgnoresTheRest) {
   const auto inputs = inputs_of("+ abc-\x03$OK#9a#12+");
   ASSERT_EQ(inputs.size(), 5U);
   EXPECT_EQ(inputs[0].kind, Kind::accepted);
@@ -104,20 +104,20 @@ TEST(GdbDecoder, TellsAcknowledgementsAndInterruptsFromPacketsAndLeavesOutTheRes
   EXPECT_EQ(inputs[4].kind, Kind::accepted);
 }
 
-TEST(GdbDecoder, TakesAnInterruptByteWithinAPacketForContent) {
+TEST(GdbDecoder, TreatsAnInterruptByteWithinAPacketAsContent) {
   const auto inputs = inputs_of(gdb_packet("X0,1:\x03"));
   ASSERT_EQ(inputs.size(), 1U);
   EXPECT_EQ(inputs[0].payload, "X0,1:\x03");
 }
 
-TEST(GdbDecoder, StartsAnewWithADollarSign) {
+TEST(GdbDecoder, StartsAgainAtADollarSign) {
   const auto inputs = inputs_of("$m2000$OK#$OK#9a");
   ASSERT_EQ(inputs.size(), 1U);
   EXPECT_EQ(inputs[0].payload, "OK");
 }
 
-TEST(GdbDecoder, TakesTheLongestPacketAndNoLongerOne) {
-  const std::string longest(GdbDecoder::longest_packet, 'x');
+TEST(GdbDecoder, AcceptsTheLongestPacketAndNoLongerOne) {
+  const std::string longest(GdbDecoder::max_packet, 'x');
   auto inputs = inputs_of(gdb_packet(longest) + gdb_packet(longest + "x") + gdb_packet("OK"));
   ASSERT_EQ(inputs.size(), 3U);
   EXPECT_EQ(inputs[0].payload, longest);
@@ -125,7 +125,7 @@ TEST(GdbDecoder, TakesTheLongestPacketAndNoLongerOne) {
   EXPECT_EQ(inputs[2].payload, "OK");
 }
 
-TEST(GdbHex, IsReadBackAndRefusesEverythingElse) {
+TEST(GdbHex, IsReadBackAndRejectsEverythingElse) {
   std::vector<std::uint8_t> all(256);
   for (unsigned i = 0; i < all.size(); ++i) {
     all[i] = static_cast<std::uint8_t>(i);

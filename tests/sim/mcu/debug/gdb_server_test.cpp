@@ -68,7 +68,7 @@ class Client {
   void say_no_more() const { shutdown(socket_, SHUT_WR); }
   void leave() {
     if (socket_ >= 0) {
-      // Gone at once, so that thousands of clients leave no ports behind that wait.
+      // Closed at once, so that thousands of clients leave no waiting ports behind.
       const linger at_once{1, 0};
       setsockopt(socket_, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
       close(socket_);
@@ -93,7 +93,7 @@ class Server : public testing::Test {
     client.packet("c");
     return server.serve(StopReason::attached, never);
   }
-  // Serves until the client has got this, or a while has passed.
+  // Serves until the client has received this, or until a timeout.
   testing::AssertionResult answers(const Client& client, const std::string& expected,
                                    StopReason reason = StopReason::attached) {
     std::string text;
@@ -133,7 +133,7 @@ class Server : public testing::Test {
   GdbServer server{0, target};
 };
 
-TEST_F(Server, SaysThatAPortIsInUseInOneLine) {
+TEST_F(Server, ReportsAPortInUseInOneLine) {
   try {
     const GdbServer second(server.port(), target);
     FAIL() << "expected an error";
@@ -144,12 +144,12 @@ TEST_F(Server, SaysThatAPortIsInUseInOneLine) {
   }
 }
 
-TEST_F(Server, GivesUpWaitingForAClientWhenToldSo) {
+TEST_F(Server, StopsWaitingForAClientWhenInterrupted) {
   EXPECT_FALSE(server.wait_for_client([] { return true; }));
   EXPECT_FALSE(server.has_client());
 }
 
-TEST_F(Server, AcknowledgesPacketsUntilToldNotTo) {
+TEST_F(Server, AcknowledgesPacketsUntilNoAckMode) {
   const Client client(server.port());
   let_in();
   client.send("+$qC#b4");
@@ -178,7 +178,7 @@ TEST_F(Server, AnswersAPacketThatIsTooLongWithAnError) {
   EXPECT_TRUE(answers(client, "+" + gdb_packet("E16")));
 }
 
-TEST_F(Server, TellsWhyTheTargetStoppedOnlyToAClientThatWaits) {
+TEST_F(Server, ReportsWhyTheTargetStoppedOnlyToAClientThatWaits) {
   const Client client(server.port());
   let_in();
   client.packet("qC");
@@ -263,7 +263,7 @@ TEST_F(Server, StopsForAClientThatComesWhenTheOtherIsLost) {
       << "it has not asked for the target to run";
 }
 
-TEST_F(Server, TurnsASecondClientAway) {
+TEST_F(Server, DisconnectsASecondClient) {
   const Client first(server.port());
   let_in();
   EXPECT_EQ(run(first), Resume::run);
@@ -278,12 +278,12 @@ TEST_F(Server, TurnsASecondClientAway) {
   EXPECT_TRUE(third.is_turned_away());
 }
 
-TEST_F(Server, SaysTextsAndTheEndToAClientThatWaits) {
+TEST_F(Server, SendsTextsAndTheEndToAClientThatWaits) {
   const Client client(server.port());
   let_in();
-  server.say("not now");
+  server.send_text("not now");
   EXPECT_EQ(run(client), Resume::run);
-  server.say("hi\n");
+  server.send_text("hi\n");
   server.finish(3);
   EXPECT_TRUE(client.gets("+" + gdb_packet("O68690a") + gdb_packet("W03")));
   EXPECT_FALSE(server.has_client());
@@ -309,7 +309,7 @@ TEST_F(Server, DoesNotHangOnAClientThatDoesNotRead) {
   EXPECT_LT(read, 2000) << "answers pile up";
   for (int i = 0; i < 10; ++i) {
     static_cast<void>(server.interrupt_requested());
-    server.say("text");
+    server.send_text("text");
   }
 }
 

@@ -40,7 +40,7 @@ TEST_F(GdbSession, IsStoppedByControlC) {
   EXPECT_TRUE(contains(gdb.output(), {"received signal SIGINT", "\"after\"", "killed"}));
 }
 
-TEST_F(GdbSession, AsksTheOwnerWhatTheUserSaysToTheMonitor) {
+TEST_F(GdbSession, PassesMonitorCommandsToTheOwner) {
   std::string asked;
   server.set_monitor([&](std::string_view text) {
     asked = text;

@@ -1,5 +1,5 @@
-// Programs that go wrong in mid-gait. They are named, their watchdog brings them back, and the other modules go on as
-// if the broken one had been switched off.
+// Programs that fail while the robot crawls. They are reported, their watchdog restarts them, and the other modules
+// continue as if the broken one had been switched off.
 
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ class Code {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// Writes code over the begin of a function while the module runs, and can take it back.
+/// Writes code over the begin of a function while the module runs, and can restore it.
 class Patch {
  public:
   Patch(Stm32f405& chip, const Code& code, const char* function = broken_function)
@@ -43,7 +43,7 @@ class Patch {
     chip_.read(address_, before_);
     chip_.write(address_, code.bytes());
   }
-  void take_back() { chip_.write(address_, before_); }
+  void restore() { chip_.write(address_, before_); }
   [[nodiscard]] std::uint32_t address() const { return address_; }
 
  private:
@@ -68,36 +68,36 @@ Code store_to(std::uint32_t address) {
   return code.op(load_r3_behind_next).op(store_r3_at_r3).word(address);
 }
 
-/// Breaks one module, lets it be for a while, and expects of the others that nothing differs.
-void expect_others_to_go_on(VirtualRobot& robot) {
+/// Runs on with one broken module, and expects no difference of the others.
+void expect_others_to_continue(VirtualRobot& robot) {
   robot.run_to(breaks_at + 150);
   for (unsigned joint = 0; joint < 5; ++joint) {
     if (joint != broken_joint) {
       EXPECT_EQ(robot.loop().differences(joint), 0U) << "joint " << joint;
     }
   }
-  EXPECT_GT(robot.loop().differences(broken_joint), 0U) << "what a broken program leaves out is a difference";
+  EXPECT_GT(robot.loop().differences(broken_joint), 0U) << "what a broken program omits is a difference";
   ASSERT_FALSE(robot.loop().failures().empty());
   EXPECT_EQ(robot.loop().failures()[0].joint, broken_joint);
   EXPECT_LE(robot.loop().failures()[0].tick, breaks_at + 1);
 }
 
-TEST(HungProgram, IsResetByItsWatchdogWhichTheReportSaysAndTheOthersGoOn) {
+TEST(HungProgram, IsResetByItsWatchdogAndReportedAndTheOthersContinue) {
   VirtualRobot robot(shipped("travelling_wave/coupled"));
   robot.run_to(breaks_at);
   const Patch patch(robot.module(broken_joint).chip(), Code().op(branch_to_itself));
-  expect_others_to_go_on(robot);
+  expect_others_to_continue(robot);
   EXPECT_TRUE(robot.was_noticed("J3 (node 3): at ") && robot.was_noticed("reset by its watchdog"));
 }
 
-TEST(HungProgram, ThatHasSentItsStateBeforeMisleadsNoNeighbour) {
+TEST(HungProgram, ThatHasSentItsStateMisleadsNoNeighbour) {
   VirtualRobot robot(shipped("travelling_wave/coupled"));
   robot.run_to(breaks_at);
   const Patch patch(robot.module(broken_joint).chip(), Code().op(branch_to_itself), servo_function);
-  expect_others_to_go_on(robot);
+  expect_others_to_continue(robot);
 }
 
-TEST(HungProgram, ThatIsWellAfterItsResetJoinsAgainAndSaysWhyItStarted) {
+TEST(HungProgram, ThatWorksAfterItsResetJoinsAgainAndReportsWhyItStarted) {
   VirtualRobot robot(shipped("travelling_wave/coupled"));
   robot.run_to(breaks_at);
   Patch patch(robot.module(broken_joint).chip(), Code().op(branch_to_itself));
@@ -105,7 +105,7 @@ TEST(HungProgram, ThatIsWellAfterItsResetJoinsAgainAndSaysWhyItStarted) {
   while (!robot.was_noticed("watchdog") && tick < breaks_at + 100) {
     robot.run_to(++tick);
   }
-  patch.take_back();
+  patch.restore();
   EXPECT_GE(tick, breaks_at + 10U) << "a watchdog of some 200 ms, by an RC oscillator";
   EXPECT_LE(tick, breaks_at + 40U);
   const std::uint64_t differences = robot.loop().differences();
@@ -119,7 +119,7 @@ TEST(HungProgram, ThatIsWellAfterItsResetJoinsAgainAndSaysWhyItStarted) {
   }));
 }
 
-TEST(FaultyProgram, ThatWritesWhereNothingIsIsNamedWithRegistersAndBackTrace) {
+TEST(FaultyProgram, ThatWritesWithoutMemoryIsNamedWithRegistersAndBackTrace) {
   VirtualRobot robot(shipped("travelling_wave/coupled"));
   robot.run_to(breaks_at);
   Patch patch(robot.module(broken_joint).chip(), store_to(0x2003'0000));
@@ -127,7 +127,7 @@ TEST(FaultyProgram, ThatWritesWhereNothingIsIsNamedWithRegistersAndBackTrace) {
   while (!robot.was_noticed("fault of the program") && tick < breaks_at + 5) {
     robot.run_to(++tick);
   }
-  patch.take_back();
+  patch.restore();
   robot.run_to(breaks_at + 150);
   EXPECT_TRUE(robot.was_noticed("0x20030000"));
   EXPECT_TRUE(robot.was_noticed("r3 0x20030000")) << "registers";
@@ -145,7 +145,7 @@ TEST(FaultyProgram, WithAnUndefinedInstructionIsNamed) {
   VirtualRobot robot(shipped("travelling_wave/coupled"));
   robot.run_to(breaks_at);
   const Patch patch(robot.module(broken_joint).chip(), Code().op(undefined));
-  expect_others_to_go_on(robot);
+  expect_others_to_continue(robot);
   EXPECT_TRUE(robot.was_noticed("undefined instruction"));
 }
 
@@ -166,13 +166,13 @@ TEST(ProgramBeyondTheModel, StandsStillAndIsNamedWithTheRegisterAndThePlace) {
   VirtualRobot robot(shipped("travelling_wave/coupled"));
   robot.run_to(breaks_at);
   const Patch patch(robot.module(broken_joint).chip(), store_to(0x4001'3000));
-  expect_others_to_go_on(robot);
+  expect_others_to_continue(robot);
   EXPECT_TRUE(robot.was_noticed("SPI1"));
   EXPECT_TRUE(robot.was_noticed("proleg::firmware::Module::receive"));
   EXPECT_TRUE(robot.joined.empty());
 }
 
-TEST(BrokenProgram, InTheModuleThatGivesTheTicksEndsTheRunWithAReason) {
+TEST(BrokenProgram, InTheModuleThatSendsTheTicksEndsTheRunWithAReason) {
   VirtualRobot robot(shipped("travelling_wave/coupled"));
   robot.run_to(50);
   const Patch patch(robot.module(0).chip(), Code().op(branch_to_itself));

@@ -1,4 +1,4 @@
-// Which files are taken for the firmware of a module. What is wrong with an ELF file as such: tests/sim/mcu/cpu.
+// Which files are accepted as the firmware of a module. Errors of ELF files as such: tests/sim/mcu/cpu.
 
 #include "sim/mcu/module/firmware_image.hpp"
 
@@ -10,7 +10,7 @@
 namespace proleg::sim {
 namespace {
 
-std::string refusal(const std::string& file) {
+std::string rejection(const std::string& file) {
   try {
     const FirmwareImage image(file);
   } catch (const ElfError& error) {
@@ -19,21 +19,21 @@ std::string refusal(const std::string& file) {
   return "";
 }
 
-TEST(FirmwareImage, KnowsWhereTheModuleKeepsItsLastTick) {
+TEST(FirmwareImage, FindsWhereTheModuleStoresItsLastTick) {
   const FirmwareImage image(PROLEG_IMAGE);
   EXPECT_GE(image.tick_record(), 0x2000'0000U);
   EXPECT_LT(image.tick_record(), 0x2002'0000U);
 }
 
-TEST(FirmwareImage, RefusesAProgramThatIsNoModule) {
-  const std::string message = refusal(PROLEG_OTHER_PROGRAM);
+TEST(FirmwareImage, RejectsAProgramThatIsNotAModule) {
+  const std::string message = rejection(PROLEG_OTHER_PROGRAM);
   EXPECT_NE(message.find("proleg_tick_record"), std::string::npos) << message;
   EXPECT_EQ(message.find('\n'), std::string::npos);
 }
 
-TEST(FirmwareImage, RefusesWhatIsNoProgram) {
-  EXPECT_NE(refusal("/nowhere/x.elf").find("/nowhere/x.elf"), std::string::npos);
-  EXPECT_NE(refusal(__FILE__), "");
+TEST(FirmwareImage, RejectsAFileThatIsNotAProgram) {
+  EXPECT_NE(rejection("/nowhere/x.elf").find("/nowhere/x.elf"), std::string::npos);
+  EXPECT_NE(rejection(__FILE__), "");
 }
 
 }  // namespace

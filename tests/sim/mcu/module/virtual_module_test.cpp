@@ -1,4 +1,4 @@
-// The image that is flashed, in virtual chips on the simulated bus: not one bit of what they do may differ from the
+// The image that is flashed, in virtual chips on the simulated bus: no bit of what they do may differ from the
 // gait in memory.
 
 #include "sim/mcu/module/virtual_module.hpp"
@@ -83,7 +83,7 @@ TEST(VirtualModule, MixesWithNativeOnes) {
   expect_identical(robot, simulated(robot.scenario(), 800));
 }
 
-TEST(VirtualModule, TakesServosAndTicksOfEveryKind) {
+TEST(VirtualModule, WorksWithServosAndTicksOfManyPeriods) {
   for (const std::uint32_t servo_period : {700U, 1'000U, 3'300U, 20'000U}) {
     for (const std::uint32_t tick_period : {5'000U, 10'000U, 20'000U}) {
       SCOPED_TRACE("servo " + std::to_string(servo_period) + " us, tick " + std::to_string(tick_period) + " us");
@@ -132,7 +132,7 @@ TEST(VirtualModule, NeedsFarLessThan20000InstructionsFromSyncToTheStateFrame) {
   std::cout << "instructions from SYNC to the state frame, 20 joints: at most " << worst << '\n';
 }
 
-TEST(VirtualModule, SaysOnItsConsoleWhoItIs) {
+TEST(VirtualModule, PrintsItsIdentityOnItsConsole) {
   VirtualRobot robot(shipped("travelling_wave/uniform"));
   for (unsigned joint = 0; joint < 5; ++joint) {
     const std::string node = "node " + std::to_string(robot.scenario().modules[joint].node);

@@ -39,7 +39,7 @@ class VirtualRobot {
       module_options.console = [this, joint = parts.joint](const std::string& line) {
         console.emplace_back(joint, line);
       };
-      module_options.trace = [this](const TickCost& cost) { costs.push_back(cost); };
+      module_options.on_tick = [this](const TickCost& cost) { costs.push_back(cost); };
       auto module = std::make_unique<VirtualModule>(parts, flashed_image(), std::move(module_options));
       modules_[parts.joint] = module.get();
       return module;
@@ -60,7 +60,7 @@ class VirtualRobot {
   [[nodiscard]] VirtualModule& module(unsigned joint) { return *modules_[joint]; }
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
 
-  /// Whether somebody said this.
+  /// Whether a notice contains this.
   [[nodiscard]] bool was_noticed(const std::string& words) const {
     return std::ranges::any_of(notices, [&](const std::string& text) { return text.find(words) != std::string::npos; });
   }

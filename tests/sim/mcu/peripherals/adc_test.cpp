@@ -122,7 +122,7 @@ TEST_F(AdcTest, VoltagesBecomeCodesOfAnIdealConverter) {
   }
 }
 
-TEST_F(AdcTest, ASequenceTellsItsEndOrEachConversion) {
+TEST_F(AdcTest, ASequenceFlagsItsEndOrEachConversion) {
   start();
   adc.write(cr1, scan);
   adc.write(sqr1, 2U << 20U);  // three
@@ -166,7 +166,7 @@ TEST_F(AdcTest, SixteenConversionsComeFromThreeSequenceRegisters) {
   }
 }
 
-TEST_F(AdcTest, DataThatNobodyFetchedIsAnOverrunAndEndsTheSequence) {
+TEST_F(AdcTest, UnreadDataIsAnOverrunAndEndsTheSequence) {
   start();
   adc.write(cr1, scan | 1U << 26U);  // OVRIE
   adc.write(sqr1, 3U << 20U);
@@ -277,44 +277,44 @@ TEST_F(AdcTest, SwitchingOffEndsAConversion) {
   EXPECT_EQ(adc.next_event(), never_on_chip);
 }
 
-TEST_F(AdcTest, RefusesWhatTheDatasheetForbids) {
-  EXPECT_EQ(test::refusal([&] { adc.write(cr2, swstart); }),
+TEST_F(AdcTest, RejectsWhatTheDatasheetForbids) {
+  EXPECT_EQ(test::rejection([&] { adc.write(cr2, swstart); }),
             "ADC1_CR2 = 0x40000000 at offset 0x8: a start without ADON");
   adc.write(cr2, adon);
   chip.time += Adc::stabilisation - 1;
-  EXPECT_EQ(test::refusal([&] { adc.write(cr2, adon | swstart); }),
+  EXPECT_EQ(test::rejection([&] { adc.write(cr2, adon | swstart); }),
             "ADC1_CR2 = 0x40000001 at offset 0x8: a start earlier than 3 us after ADON");
   chip.time += 1;
-  EXPECT_EQ(test::refusal([&] { adc.write(cr2, adon | swstart); }),
+  EXPECT_EQ(test::rejection([&] { adc.write(cr2, adon | swstart); }),
             "ADC1_CR2 = 0x40000001 at offset 0x8: ADCCLK of 42000 kHz: expected 600 to 36000 kHz");
   adc.write(ccr, 0x0001'0000);
   adc.write(sqr3, 16);
-  EXPECT_NE(test::refusal([&] { adc.write(cr2, adon | swstart); }).find("without TSVREFE"), std::string::npos);
+  EXPECT_NE(test::rejection([&] { adc.write(cr2, adon | swstart); }).find("without TSVREFE"), std::string::npos);
   adc.write(ccr, 0x0081'0000);
-  EXPECT_NE(test::refusal([&] { adc.write(cr2, adon | swstart); }).find("10 us after TSVREFE"), std::string::npos);
+  EXPECT_NE(test::rejection([&] { adc.write(cr2, adon | swstart); }).find("10 us after TSVREFE"), std::string::npos);
   chip.time += Adc::sensor_start;
   adc.write(smpr1, 6U << 18U);
-  EXPECT_NE(test::refusal([&] { adc.write(cr2, adon | swstart); }).find("less than 10 us"), std::string::npos);
+  EXPECT_NE(test::rejection([&] { adc.write(cr2, adon | swstart); }).find("less than 10 us"), std::string::npos);
   adc.write(sqr3, 18);
-  EXPECT_NE(test::refusal([&] { adc.write(cr2, adon | swstart); }).find("channel 18"), std::string::npos);
+  EXPECT_NE(test::rejection([&] { adc.write(cr2, adon | swstart); }).find("channel 18"), std::string::npos);
   adc.write(sqr3, 0);
   adc.write(sqr1, 1U << 20U);
-  EXPECT_NE(test::refusal([&] { adc.write(cr2, adon | swstart); }).find("without SCAN"), std::string::npos);
+  EXPECT_NE(test::rejection([&] { adc.write(cr2, adon | swstart); }).find("without SCAN"), std::string::npos);
 }
 
-TEST_F(AdcTest, RefusesWhatItDoesNotModelByName) {
-  EXPECT_EQ(test::refusal([&] { adc.write(cr2, 0x100); }), "ADC1_CR2 = 0x100 at offset 0x8: DMA is not modelled");
+TEST_F(AdcTest, RejectsWhatItDoesNotModelByName) {
+  EXPECT_EQ(test::rejection([&] { adc.write(cr2, 0x100); }), "ADC1_CR2 = 0x100 at offset 0x8: DMA is not modelled");
   for (const std::uint32_t value : {1U << 1U, 1U << 11U, 1U << 20U, 1U << 28U}) {
-    EXPECT_NE(test::refusal([&] { adc.write(cr2, value); }), "") << value;
+    EXPECT_NE(test::rejection([&] { adc.write(cr2, value); }), "") << value;
   }
   for (const std::uint32_t value : {1U << 10U, 1U << 11U, 1U << 12U, 1U << 22U, 1U << 23U, 1U << 24U}) {
-    EXPECT_NE(test::refusal([&] { adc.write(cr1, value); }), "") << value;
+    EXPECT_NE(test::rejection([&] { adc.write(cr1, value); }), "") << value;
   }
-  EXPECT_EQ(test::refusal([&] { adc.write(ccr, 6); }),
+  EXPECT_EQ(test::rejection([&] { adc.write(ccr, 6); }),
             "ADC_CCR = 0x6 at offset 0x304: several ADCs together are not modelled");
-  EXPECT_EQ(test::refusal([&] { static_cast<void>(adc.read(0x104)); }),
+  EXPECT_EQ(test::rejection([&] { static_cast<void>(adc.read(0x104)); }),
             "ADC2 at offset 0x4: reading it is not modelled");
-  EXPECT_EQ(test::refusal([&] { static_cast<void>(adc.read(0x50)); }),
+  EXPECT_EQ(test::rejection([&] { static_cast<void>(adc.read(0x50)); }),
             "ADC1 at offset 0x50: reading it is not modelled");
 }
 

@@ -22,8 +22,8 @@ constexpr std::uint32_t bank(unsigned number) { return 0x240 + 8 * number; }
 class Filters : public testing::Test {
  protected:
   void write(std::uint32_t offset, std::uint32_t value) {
-    const auto refusal = filters.write(offset, value);
-    EXPECT_FALSE(refusal) << *refusal;
+    const auto rejection = filters.write(offset, value);
+    EXPECT_FALSE(rejection) << *rejection;
   }
   /// All banks belong to CAN1.
   void begin() { write(fmr, (28U << 8U) | 1U); }
@@ -53,7 +53,7 @@ TEST_F(Filters, AMaskOf32BitsHasTheIdentifierAtTheTop) {
   }
 }
 
-TEST_F(Filters, AMaskThatWantsExtendedOrRemoteFramesLetsNoDataFramePass) {
+TEST_F(Filters, AMaskForExtendedOrRemoteFramesAcceptsNoDataFrame) {
   for (const std::uint32_t bit : {4U, 2U}) {
     begin();
     write(fs1r, 1);
@@ -135,7 +135,7 @@ struct Drawn {
   unsigned fifo;
   unsigned number;
   bool is_active;
-  // A frame passes if its identifier has these bits under that mask, and if nothing else is asked of the other bits.
+  // A frame passes if its identifier has these bits under that mask, and if the filter has no condition for other bits.
   unsigned identifier;
   unsigned mask;
   bool asks_no_more;

@@ -75,18 +75,18 @@ class TestChip final : public ChipServices {
 class TestPartner final : public BusListener {
  public:
   explicit TestPartner(Bus& bus) : controller(bus.attach(*this)) {}
-  void received(BusTime time, const CanFrame& frame) override { heard.emplace_back(time, frame); }
+  void received(BusTime time, const CanFrame& frame) override { received_frames.emplace_back(time, frame); }
   void transmitted(BusTime time, const CanFrame& frame) override { sent.emplace_back(time, frame); }
 
   [[nodiscard]] std::vector<std::uint16_t> identifiers() const {
     std::vector<std::uint16_t> result;
-    std::ranges::transform(heard, std::back_inserter(result),
+    std::ranges::transform(received_frames, std::back_inserter(result),
                            [](const auto& entry) { return entry.second.identifier; });
     return result;
   }
 
   Controller& controller;
-  std::vector<std::pair<BusTime, CanFrame>> heard;
+  std::vector<std::pair<BusTime, CanFrame>> received_frames;
   std::vector<std::pair<BusTime, CanFrame>> sent;
 };
 
@@ -95,7 +95,7 @@ class BxCanRig : public testing::Test {
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) { return can.read(offset); }
   void write(std::uint32_t offset, std::uint32_t value) { can.write(offset, value); }
 
-  /// Lets chip and bus go on together.
+  /// Advances chip and bus together.
   void run_until(BusTime end) {
     for (;;) {
       BusTime next = std::min(bus.next_event(), can.next_request());
@@ -146,16 +146,17 @@ class BxCanRig : public testing::Test {
   void partner_sends(std::uint16_t identifier, std::uint8_t length = 0) {
     ASSERT_TRUE(partner.controller.send({identifier, length, {1, 2, 3, 4, 5, 6, 7, 8}}));
   }
-  /// What the mailbox's byte of TSR says.
+  /// The mailbox's byte of TSR.
   [[nodiscard]] std::uint32_t outcome(unsigned mailbox) { return (read(can1::tsr) >> (8 * mailbox)) & 0xFFU; }
   [[nodiscard]] bool is_empty(unsigned mailbox) { return ((read(can1::tsr) >> (26 + mailbox)) & 1U) != 0; }
-  void expect_refused(std::uint32_t offset, std::uint32_t value, const std::vector<std::string>& words) {
+  void expect_rejected(std::uint32_t offset, std::uint32_t value, const std::vector<std::string>& words) {
     try {
       write(offset, value);
       ADD_FAILURE() << "accepted: " << std::hex << value << " at " << offset;
-    } catch (const UnmodelledAccess& refusal) {
+    } catch (const UnmodelledAccess& rejection) {
       for (const std::string& word : words) {
-        EXPECT_NE(std::string(refusal.what()).find(word), std::string::npos) << refusal.what() << "; expected " << word;
+        EXPECT_NE(std::string(rejection.what()).find(word), std::string::npos)
+            << rejection.what() << "; expected " << word;
       }
     }
   }

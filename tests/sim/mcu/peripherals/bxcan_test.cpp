@@ -55,13 +55,13 @@ TEST_F(BxCanTest, InitialisationIsEnteredAndLeftWithAHandshake) {
   EXPECT_EQ(read(can1::msr) & 3U, 0U);
 }
 
-TEST_F(BxCanTest, SleepMayBeLeftBeforeInitialisationIsAskedFor) {
+TEST_F(BxCanTest, SleepMayBeLeftBeforeInitialisationIsRequested) {
   write(can1::mcr, 0);
   run_for(20'000);
   EXPECT_EQ(read(can1::msr) & 3U, 0U);
   partner_sends(0x123);
   run_for(200'000);
-  EXPECT_TRUE(partner.sent.empty()) << "who has no bit rate does not acknowledge";
+  EXPECT_TRUE(partner.sent.empty()) << "without a bit rate it does not acknowledge";
   write(can1::mcr, can1::inrq);
   run_for(1'000);
   EXPECT_EQ(read(can1::msr) & 3U, can1::inak);
@@ -73,7 +73,7 @@ TEST_F(BxCanTest, WithSleepStillSetItStaysAsleep) {
   EXPECT_EQ(read(can1::msr) & 3U, can1::slak);
 }
 
-TEST_F(BxCanTest, OutsideOfNormalModeItNeitherHearsNorAcknowledges) {
+TEST_F(BxCanTest, OutsideOfNormalModeItNeitherReceivesNorAcknowledges) {
   start();
   enter_initialisation();
   partner_sends(0x123);
@@ -120,10 +120,10 @@ TEST_F(BxCanTest, OnABusyBusNormalModeBeginsAfterTheFrameAndItsIntermission) {
   EXPECT_EQ(read(can1::msr) & can1::inak, 0U);
 }
 
-TEST_F(BxCanTest, ABitRateThatIsNotTheBusesIsRefusedWithBothRates) {
+TEST_F(BxCanTest, ABitRateThatIsNotTheBusesIsRejectedWithBothRates) {
   enter_initialisation();
   write(can1::btr, (can1::megabit & ~0x3FFU) | 5U);
-  expect_refused(can1::mcr, 0, {"CAN1_BTR", "500000 bit/s", "1000000 bit/s", "42000000 Hz"});
+  expect_rejected(can1::mcr, 0, {"CAN1_BTR", "500000 bit/s", "1000000 bit/s", "42000000 Hz"});
   chip.clocks_.apb1 = local_time_per_us / 16;
   write(can1::btr, (1U << 20U) | (4U << 16U) | 1U);  // 16 MHz / 2 / 8
   write(can1::mcr, 0);
@@ -174,7 +174,7 @@ TEST_F(BxCanTest, MasterResetEmptiesTheFifosAndGoesToSleep) {
   EXPECT_EQ(read(can1::msr) & 3U, can1::slak);
 }
 
-TEST_F(BxCanTest, AFrameWakesItOrIsAtLeastNoted) {
+TEST_F(BxCanTest, AFrameWakesItOrIsNoted) {
   start();
   write(can1::ier, (1U << 16U) | (1U << 17U));
   write(can1::mcr, can1::sleep);
@@ -214,8 +214,8 @@ TEST_F(BxCanTest, AFrameGoesOutAsTheMailboxHasIt) {
   const BusTime begin = bus.now();
   run_for(1'000'000);
   const CanFrame frame{0x5A5, 7, {0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77}};
-  ASSERT_EQ(partner.heard.size(), 1U);
-  EXPECT_EQ(partner.heard[0], std::make_pair(begin + frame_bits(frame) * bit, frame));
+  ASSERT_EQ(partner.received_frames.size(), 1U);
+  EXPECT_EQ(partner.received_frames[0], std::make_pair(begin + frame_bits(frame) * bit, frame));
   EXPECT_TRUE(is_empty(1));
   EXPECT_EQ(outcome(1), rqcp | txok);
   EXPECT_EQ(read(can1::ti0r + 0x10), 0x5A5U << 21U);
@@ -234,11 +234,11 @@ TEST_F(BxCanTest, ARequestOfAChipThatIsAheadReachesTheBusAtItsTrueTime) {
   EXPECT_EQ(bus.next_event(), never_on_bus);
   EXPECT_EQ(can.next_request(), asked);
   run_until(asked + 1'000'000);
-  ASSERT_EQ(partner.heard.size(), 1U);
-  EXPECT_EQ(partner.heard[0].first, asked + duration(0x123));
+  ASSERT_EQ(partner.received_frames.size(), 1U);
+  EXPECT_EQ(partner.received_frames[0].first, asked + duration(0x123));
 }
 
-TEST_F(BxCanTest, OfSeveralMailboxesTheLowestIdentifierGoesFirstThenTheLowestNumber) {
+TEST_F(BxCanTest, TheLowestIdentifierOfSeveralMailboxesGoesFirstThenTheLowestNumber) {
   start();
   request(2, 0x300);
   request(1, 0x200, 1, 1);
@@ -246,7 +246,7 @@ TEST_F(BxCanTest, OfSeveralMailboxesTheLowestIdentifierGoesFirstThenTheLowestNum
   EXPECT_EQ(read(can1::tsr) >> 24U, 0x82U) << "LOW2; CODE: the mailbox of the lowest priority";
   run_for(1'000'000);
   ASSERT_EQ(partner.identifiers(), (std::vector<std::uint16_t>{0x200, 0x200, 0x300}));
-  EXPECT_EQ(partner.heard[0].second.data[0], 0);
+  EXPECT_EQ(partner.received_frames[0].second.data[0], 0);
   EXPECT_EQ(read(can1::tsr) >> 24U, 0x1CU);
 }
 
@@ -269,15 +269,15 @@ TEST_F(BxCanTest, TsrNamesAFreeMailboxAndTheLowestPriorityOfTwo) {
   EXPECT_EQ(read(can1::tsr) >> 24U, 0x32U) << "LOW0, TME2, CODE 2";
 }
 
-TEST_F(BxCanTest, WhatIsAskedOutsideOfNormalModeGoesOutLater) {
+TEST_F(BxCanTest, ARequestOutsideOfNormalModeGoesOutLater) {
   start();
   enter_initialisation();
   request(0, 0x100);
   run_for(1'000'000);
-  EXPECT_TRUE(partner.heard.empty());
+  EXPECT_TRUE(partner.received_frames.empty());
   write(can1::mcr, 0);
   run_for(1'000'000);
-  EXPECT_EQ(partner.heard.size(), 1U);
+  EXPECT_EQ(partner.received_frames.size(), 1U);
 }
 
 TEST_F(BxCanTest, APendingMailboxIsAbortedAtOnceOneOnTheWireOnlyIfItFails) {
@@ -309,7 +309,7 @@ TEST_F(BxCanTest, APendingMailboxIsAbortedAtOnceOneOnTheWireOnlyIfItFails) {
   EXPECT_EQ(outcome(0), rqcp | txok);
 }
 
-TEST_F(BxCanTest, WithNartAFrameIsTriedOnceAndTheOutcomeSaysWhy) {
+TEST_F(BxCanTest, WithNartAFrameIsTriedOnceAndTheOutcomeHasTheReason) {
   start(can1::nart);
   bus.set_error_rule([](const CanFrame& frame, std::uint64_t) { return frame.identifier == 0x100; });
   request(0, 0x100);
@@ -323,7 +323,7 @@ TEST_F(BxCanTest, WithNartAFrameIsTriedOnceAndTheOutcomeSaysWhy) {
   run_for(1'000'000);
   EXPECT_TRUE(is_empty(1));
   EXPECT_EQ(outcome(1), rqcp | alst);
-  EXPECT_TRUE(partner.heard.empty());
+  EXPECT_TRUE(partner.received_frames.empty());
 
   request(1, 0x200);
   run_for(1'000'000);
@@ -340,7 +340,7 @@ TEST_F(BxCanTest, WithRetransmissionAnErrorShowsAndTheFrameFollows) {
   EXPECT_EQ(read(can1::esr), (8U << 16U) | (4U << 4U)) << "TEC 8, LEC bit recessive";
   run_for(1'000'000);
   EXPECT_EQ(outcome(0), rqcp | txok);
-  EXPECT_EQ(partner.heard.size(), 1U);
+  EXPECT_EQ(partner.received_frames.size(), 1U);
   EXPECT_EQ(read(can1::esr), 7U << 16U);
 }
 
@@ -394,7 +394,7 @@ TEST_F(BxCanTest, ALockedFifoKeepsTheOldest) {
   }
 }
 
-TEST_F(BxCanTest, FiltersDirectFramesToEitherFifoOrNowhere) {
+TEST_F(BxCanTest, FiltersDirectFramesToEitherFifoOrNone) {
   start();
   write(can1::fmr, (28U << 8U) | 1U);
   write(can1::fs1r, 6);   // banks 1 and 2: 32 bits
@@ -420,9 +420,9 @@ TEST_F(BxCanTest, FiltersDirectFramesToEitherFifoOrNowhere) {
   EXPECT_EQ(read(can1::rf1r), 1U);
   EXPECT_EQ(read(can1::ri0r + 0x10), 0x201U << 21U);
   EXPECT_EQ(read(can1::ri0r + 0x14), 1U << 8U);
-  expect_refused(can1::f0r1 + 8, 1, {"CAN1_F1R1", "write-protected"});
+  expect_rejected(can1::f0r1 + 8, 1, {"CAN1_F1R1", "write-protected"});
   write(can1::f0r1, 1);
-  expect_refused(can1::fs1r, 0, {"CAN1_FS1R", "FINIT"});
+  expect_rejected(can1::fs1r, 0, {"CAN1_FS1R", "FINIT"});
   write(can1::fa1r, 4);
   write(can1::f0r1 + 8, 1);
 }
@@ -510,7 +510,7 @@ TEST_F(BxCanTest, ErrorInterruptsComeForWhatIsEnabled) {
 
 // Errors
 
-TEST_F(BxCanTest, WithoutAcknowledgementItBecomesPassiveAndTriesOn) {
+TEST_F(BxCanTest, WithoutAcknowledgementItBecomesPassiveAndContinuesToSend) {
   start();
   partner.controller.switch_off();
   request(0, 0x100);
@@ -520,7 +520,7 @@ TEST_F(BxCanTest, WithoutAcknowledgementItBecomesPassiveAndTriesOn) {
   partner.controller.switch_on();
   run_for(1'000'000);
   EXPECT_TRUE(is_empty(0));
-  EXPECT_EQ(partner.heard.size(), 1U);
+  EXPECT_EQ(partner.received_frames.size(), 1U);
   EXPECT_EQ(read(can1::esr), (127U << 16U) | 1U);
 }
 
@@ -565,7 +565,7 @@ TEST_F(BxCanTest, BusOffIsLeftByWayOfInitialisation) {
   EXPECT_EQ(read(can1::msr) & can1::inak, 0U);
   run_for(128 * 11 * bit - 125);
   EXPECT_EQ(read(can1::esr) & 4U, 4U);
-  EXPECT_TRUE(partner.heard.empty());
+  EXPECT_TRUE(partner.received_frames.empty());
   run_for(125);
   EXPECT_EQ(read(can1::esr) & 0xFFFF'0007U, 0U);
   run_for(1'000'000);
@@ -586,13 +586,13 @@ TEST_F(BxCanTest, WithAbomBusOffIsLeftByItself) {
   run_until(bus_off + 128 * 11 * bit);
   EXPECT_EQ(read(can1::esr) & 7U, 0U);
   run_for(1'000'000);
-  EXPECT_EQ(partner.heard.size(), 1U);
+  EXPECT_EQ(partner.received_frames.size(), 1U);
   EXPECT_EQ(outcome(0), rqcp | txok);
 }
 
 // Test modes
 
-TEST_F(BxCanTest, SilentItHearsButNeitherAcknowledgesNorSends) {
+TEST_F(BxCanTest, InSilentModeItReceivesButNeitherAcknowledgesNorSends) {
   TestPartner third(bus);
   start(0, can1::megabit | can1::silm);
   partner_sends(0x100);
@@ -600,7 +600,7 @@ TEST_F(BxCanTest, SilentItHearsButNeitherAcknowledgesNorSends) {
   run_for(1'000'000);
   EXPECT_EQ(read(can1::rf0r), 1U);
   EXPECT_EQ(partner.sent.size(), 1U);
-  EXPECT_TRUE(partner.heard.empty());
+  EXPECT_TRUE(partner.received_frames.empty());
   EXPECT_FALSE(is_empty(0));
   third.controller.switch_off();
   partner_sends(0x100);
@@ -608,7 +608,7 @@ TEST_F(BxCanTest, SilentItHearsButNeitherAcknowledgesNorSends) {
   EXPECT_EQ(partner.sent.size(), 1U);
 }
 
-TEST_F(BxCanTest, LoopedBackItHearsItselfOnly) {
+TEST_F(BxCanTest, InLoopBackModeItReceivesItsOwnFramesOnly) {
   start(0, can1::megabit | can1::lbkm);
   partner.controller.switch_off();
   request(0, 0x100);
@@ -623,7 +623,7 @@ TEST_F(BxCanTest, LoopedBackItHearsItselfOnly) {
   TestPartner third(bus);
   partner_sends(0x300);
   run_for(1'000'000);
-  EXPECT_EQ(third.heard.size(), 1U);
+  EXPECT_EQ(third.received_frames.size(), 1U);
   EXPECT_EQ(read(can1::rf0r), 2U);
 }
 
@@ -645,34 +645,34 @@ TEST_F(BxCanTest, TheSelfTestDoesWithoutTheBus) {
   EXPECT_EQ(read(can1::rf0r), 2U);
   EXPECT_EQ(read(can1::ri0r) >> 21U, 0x200U);
   EXPECT_EQ(read(can1::ri0r + 12), 0x0807'0605U);
-  EXPECT_TRUE(partner.heard.empty());
-  EXPECT_EQ(third.heard.size(), 1U);
+  EXPECT_TRUE(partner.received_frames.empty());
+  EXPECT_EQ(third.received_frames.size(), 1U);
 }
 
-// What is not there
+// What is not modelled
 
-TEST_F(BxCanTest, WhatTheProtocolDoesNotUseIsRefusedWithRegisterAndValue) {
+TEST_F(BxCanTest, WhatTheProtocolDoesNotUseIsRejectedWithRegisterAndValue) {
   start();
-  expect_refused(can1::ti0r, 0x8000'0005, {"CAN1_TI0R = 0x80000005", "extended identifiers are not modelled"});
-  expect_refused(can1::ti0r + 0x20, 0x8000'0003, {"CAN1_TI2R = 0x80000003", "remote frames are not modelled"});
-  expect_refused(can1::ti0r + 0x14, 0x108, {"CAN1_TDT1R = 0x108", "time triggered"});
-  expect_refused(can1::ti0r + 0x14, 9, {"CAN1_TDT1R = 0x9", "length"});
-  expect_refused(can1::mcr, 0x80, {"CAN1_MCR = 0x80", "time triggered"});
-  expect_refused(can1::mcr, 0x100, {"CAN1_MCR = 0x100", "reserved"});
-  expect_refused(can1::ier, 0x80, {"CAN1_IER = 0x80", "reserved"});
-  expect_refused(can1::btr, can1::megabit, {"CAN1_BTR", "initialisation mode"});
-  expect_refused(can1::ri0r, 0, {"CAN1_RI0R", "write-protected"});
-  expect_refused(can1::fmr, 29U << 8U, {"CAN1_FMR", "CAN2SB"});
-  expect_refused(can1::fa1r, 1U << 28U, {"CAN1_FA1R", "28 filter banks"});
-  expect_refused(0x20, 0, {"CAN1 at offset 0x20"});
-  expect_refused(0x320, 0, {"CAN1 at offset 0x320"});
+  expect_rejected(can1::ti0r, 0x8000'0005, {"CAN1_TI0R = 0x80000005", "extended identifiers are not modelled"});
+  expect_rejected(can1::ti0r + 0x20, 0x8000'0003, {"CAN1_TI2R = 0x80000003", "remote frames are not modelled"});
+  expect_rejected(can1::ti0r + 0x14, 0x108, {"CAN1_TDT1R = 0x108", "time triggered"});
+  expect_rejected(can1::ti0r + 0x14, 9, {"CAN1_TDT1R = 0x9", "length"});
+  expect_rejected(can1::mcr, 0x80, {"CAN1_MCR = 0x80", "time triggered"});
+  expect_rejected(can1::mcr, 0x100, {"CAN1_MCR = 0x100", "reserved"});
+  expect_rejected(can1::ier, 0x80, {"CAN1_IER = 0x80", "reserved"});
+  expect_rejected(can1::btr, can1::megabit, {"CAN1_BTR", "initialisation mode"});
+  expect_rejected(can1::ri0r, 0, {"CAN1_RI0R", "write-protected"});
+  expect_rejected(can1::fmr, 29U << 8U, {"CAN1_FMR", "CAN2SB"});
+  expect_rejected(can1::fa1r, 1U << 28U, {"CAN1_FA1R", "28 filter banks"});
+  expect_rejected(0x20, 0, {"CAN1 at offset 0x20"});
+  expect_rejected(0x320, 0, {"CAN1 at offset 0x320"});
   EXPECT_THROW(static_cast<void>(read(0x20)), UnmodelledAccess);
   EXPECT_THROW(static_cast<void>(read(0x208)), UnmodelledAccess);
   request(0, 0x100);
-  expect_refused(can1::ti0r, 0x2000'0001, {"CAN1_TI0R", "write-protected", "TME0"});
-  expect_refused(can1::ti0r + 8, 0, {"CAN1_TDL0R", "write-protected"});
+  expect_rejected(can1::ti0r, 0x2000'0001, {"CAN1_TI0R", "write-protected", "TME0"});
+  expect_rejected(can1::ti0r + 8, 0, {"CAN1_TDL0R", "write-protected"});
   enter_initialisation();
-  expect_refused(can1::btr, can1::megabit | 0x400U, {"CAN1_BTR", "reserved"});
+  expect_rejected(can1::btr, can1::megabit | 0x400U, {"CAN1_BTR", "reserved"});
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ std::uint32_t at(const std::array<std::uint8_t, system_memory_bytes>& bytes, std
 }
 
 // RM0090 rev 21, 39.1 and 39.2; DS8626, tables of the calibration values.
-TEST(ChipIdentity, LiesWhereProgramsLookForIt) {
+TEST(ChipIdentity, LiesAtTheAddressesOfTheManual) {
   const auto bytes = system_memory({0x0123'4567, 0x89AB'CDEF, 0xFEDC'BA98});
   EXPECT_EQ(at(bytes, 0x1FFF'7A10, 4), 0x0123'4567U);
   EXPECT_EQ(at(bytes, 0x1FFF'7A14, 4), 0x89AB'CDEFU);

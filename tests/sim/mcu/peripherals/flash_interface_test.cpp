@@ -99,7 +99,7 @@ TEST_F(FlashTest, SectorsAreThoseOfTheManual) {
 }
 
 TEST_F(FlashTest, OnlyTheTwoKeysInOrderUnlock) {
-  EXPECT_EQ(test::refusal([&] { flash.write(cr, pg); }), "FLASH_CR = 0x1 at offset 0x10: it is locked");
+  EXPECT_EQ(test::rejection([&] { flash.write(cr, pg); }), "FLASH_CR = 0x1 at offset 0x10: it is locked");
   flash.write(cr, lock);
   flash.write(keyr, 0x4567'0123);
   EXPECT_EQ(flash.read(cr), lock);
@@ -112,10 +112,10 @@ TEST_F(FlashTest, OnlyTheTwoKeysInOrderUnlock) {
 }
 
 TEST_F(FlashTest, AWrongKeyLocksUntilReset) {
-  EXPECT_EQ(test::refusal([&] { flash.write(keyr, 0xCDEF'89AB); }),
+  EXPECT_EQ(test::rejection([&] { flash.write(keyr, 0xCDEF'89AB); }),
             "FLASH_KEYR = 0xCDEF89AB at offset 0x4: not the key that comes next: a bus fault, and locked until reset "
             "(RM0090, 3.6.1)");
-  EXPECT_NE(test::refusal([&] { unlock(); }), "");
+  EXPECT_NE(test::rejection([&] { unlock(); }), "");
   EXPECT_EQ(flash.read(cr), lock);
   flash.reset();
   unlock();
@@ -139,7 +139,7 @@ TEST_F(FlashTest, ProgrammingClearsBitsAfterSixteenMicroseconds) {
   EXPECT_EQ(memory.word(0x0801'2340), 0x1234'0000U);
 }
 
-TEST_F(FlashTest, AStoreWhileItWorksIsDoneAfterwards) {
+TEST_F(FlashTest, AStoreDuringAnOperationIsDoneAfterIt) {
   unlock();
   flash.write(cr, pg | x32);
   EXPECT_TRUE(flash.program(flash_start, 4, 1));
@@ -153,7 +153,7 @@ TEST_F(FlashTest, AStoreWhileItWorksIsDoneAfterwards) {
   EXPECT_EQ(memory.word(flash_start + 4), 2U);
 }
 
-TEST_F(FlashTest, StoresThatHaveNotTheSizeOfPsizeAreErrors) {
+TEST_F(FlashTest, StoresOfAnotherSizeThanPsizeAreErrors) {
   unlock();
   for (std::uint32_t psize = 0; psize < 3; ++psize) {
     flash.write(cr, pg | psize << 8U);
@@ -169,7 +169,7 @@ TEST_F(FlashTest, StoresThatHaveNotTheSizeOfPsizeAreErrors) {
   }
 }
 
-TEST_F(FlashTest, WhatItDoesNotDoItTellsInFlags) {
+TEST_F(FlashTest, RejectedStoresSetFlags) {
   static_cast<void>(flash.program(flash_start, 1, 0));
   EXPECT_EQ(flash.read(sr), pgserr) << "without PG";
   flash.write(sr, pgserr);
@@ -234,7 +234,7 @@ TEST_F(FlashTest, ErasingTakesTheTimeOfTheDatasheet) {
   }
 }
 
-TEST_F(FlashTest, ProtectedSectorsStay) {
+TEST_F(FlashTest, ProtectedSectorsDoNotChange) {
   FlashInterface guarded(chip, memory, 0b101);
   EXPECT_EQ(guarded.read(optcr), 0x0FFA'AAEDU);
   guarded.write(keyr, 0x4567'0123);
@@ -312,7 +312,7 @@ TEST_F(FlashTest, ACutOperationLeavesBitsBetweenOldAndNew) {
       EXPECT_GT(changed, 0x2000U);
       EXPECT_NE(memory.cells, goal);
     }
-    // The same seed leaves the same behind.
+    // The same seed leaves the same bits.
     const std::vector<std::uint8_t> left = memory.cells;
     memory.cells = old;
     flash.reset();
@@ -343,27 +343,27 @@ TEST_F(FlashTest, WaitStatesFollowTheCore) {
     EXPECT_EQ(flash_wait_states(local_time_per_us / mhz), states) << mhz;
   }
   chip.settings = test::full_speed;
-  EXPECT_EQ(test::refusal([&] { flash.write(acr, 0x704); }),
+  EXPECT_EQ(test::rejection([&] { flash.write(acr, 0x704); }),
             "FLASH_ACR = 0x704 at offset 0x0: 4 wait states, HCLK needs 5 (RM0090, table 10)");
   flash.write(acr, 0x705);
   EXPECT_EQ(flash.read(acr), 0x705U);
   EXPECT_EQ(flash.wait_states(), 5U);
 }
 
-TEST_F(FlashTest, RefusesWhatTheManualForbids) {
+TEST_F(FlashTest, RejectsWhatTheManualForbids) {
   unlock();
-  EXPECT_NE(test::refusal([&] { flash.write(cr, pg | 3U << 8U); }).find("PSIZE x64"), std::string::npos);
-  EXPECT_NE(test::refusal([&] { flash.write(cr, x32 | strt); }).find("STRT without SER or MER"), std::string::npos);
-  EXPECT_NE(test::refusal([&] { flash.write(cr, ser | 12U << 3U | strt); }).find("SNB = 12"), std::string::npos);
+  EXPECT_NE(test::rejection([&] { flash.write(cr, pg | 3U << 8U); }).find("PSIZE x64"), std::string::npos);
+  EXPECT_NE(test::rejection([&] { flash.write(cr, x32 | strt); }).find("STRT without SER or MER"), std::string::npos);
+  EXPECT_NE(test::rejection([&] { flash.write(cr, ser | 12U << 3U | strt); }).find("SNB = 12"), std::string::npos);
   flash.write(cr, ser | x32 | strt);
-  EXPECT_NE(test::refusal([&] { flash.write(cr, 0); }).find("written while BSY is set"), std::string::npos);
-  EXPECT_EQ(test::refusal([&] { flash.write(optcr, 0x0FFE'AAEC); }),
+  EXPECT_NE(test::rejection([&] { flash.write(cr, 0); }).find("written while BSY is set"), std::string::npos);
+  EXPECT_EQ(test::rejection([&] { flash.write(optcr, 0x0FFE'AAEC); }),
             "FLASH_OPTCR = 0xFFEAAEC at offset 0x14: it is locked");
   flash.write(optkeyr, 0x0819'2A3B);
   flash.write(optkeyr, 0x4C5D'6E7F);
   EXPECT_EQ(flash.read(optcr), 0x0FFF'AAECU);
   flash.write(optcr, 0x0FFE'AAEC);
-  EXPECT_EQ(test::refusal([&] { flash.write(optcr, 0x0FFE'AAEE); }),
+  EXPECT_EQ(test::rejection([&] { flash.write(optcr, 0x0FFE'AAEE); }),
             "FLASH_OPTCR = 0xFFEAAEE at offset 0x14: programming option bytes is not modelled");
 }
 

@@ -87,7 +87,7 @@ TEST_F(GpioTest, AnAnalogPinReadsLow) {
   EXPECT_EQ(port.mode(5), Gpio::Mode::analog);
 }
 
-TEST_F(GpioTest, SetGoesBeforeResetInBsrr) {
+TEST_F(GpioTest, SetHasPrecedenceOverResetInBsrr) {
   port.write(odr, 0x00F0);
   port.write(bsrr, 0x0030'0001);
   EXPECT_EQ(port.read(odr), 0x00C1U);
@@ -95,7 +95,7 @@ TEST_F(GpioTest, SetGoesBeforeResetInBsrr) {
   EXPECT_EQ(port.read(odr), 0x0F00U);
 }
 
-TEST_F(GpioTest, TellsModeAndAlternateFunctionOfAPin) {
+TEST_F(GpioTest, ReportsModeAndAlternateFunctionOfAPin) {
   port.write(moder, 0b10U << 18U);  // pin 9
   port.write(0x20, 0x7000'0001);    // pin 7: AF7, pin 0: AF1
   port.write(0x24, 0x0000'0090);    // pin 9: AF9
@@ -106,12 +106,12 @@ TEST_F(GpioTest, TellsModeAndAlternateFunctionOfAPin) {
   EXPECT_EQ(port.alternate_function(0), 1U);
 }
 
-TEST_F(GpioTest, RefusesWhatItDoesNotModelByName) {
-  EXPECT_EQ(test::refusal([&] { port.write(0x1C, 0x1'0001); }),
+TEST_F(GpioTest, RejectsWhatItDoesNotModelByName) {
+  EXPECT_EQ(test::rejection([&] { port.write(0x1C, 0x1'0001); }),
             "GPIOC_LCKR = 0x10001 at offset 0x1C: locking is not modelled");
-  EXPECT_EQ(test::refusal([&] { port.write(pupdr, 0xC0); }),
+  EXPECT_EQ(test::rejection([&] { port.write(pupdr, 0xC0); }),
             "GPIOC_PUPDR = 0xC0 at offset 0xC: 11 for pin 3 is reserved");
-  EXPECT_EQ(test::refusal([&] { static_cast<void>(port.read(0x28)); }),
+  EXPECT_EQ(test::rejection([&] { static_cast<void>(port.read(0x28)); }),
             "GPIOC at offset 0x28: reading it is not modelled");
   EXPECT_THROW(Gpio(chip, board, 'J'), std::invalid_argument);
 }

@@ -67,7 +67,7 @@ TEST_F(IwdgTest, StartsWithTheLongestCountOfTheShortestPrescaler) {
   EXPECT_EQ(dog.next_event(), 512 * ms);
 }
 
-TEST_F(IwdgTest, AReloadBeginsTheCountAnew) {
+TEST_F(IwdgTest, AReloadRestartsTheCount) {
   start(4, 99);  // 200 ms
   for (int i = 0; i < 20; ++i) {
     chip.run_until(chip.time + 199 * ms, dog);
@@ -129,15 +129,15 @@ TEST_F(IwdgTest, FollowsTheFrequencyOfItsOscillator) {
   EXPECT_THROW(Iwdg(chip, 47'001), std::invalid_argument);
 }
 
-TEST_F(IwdgTest, RefusesProtectedWritesByName) {
-  EXPECT_EQ(test::refusal([&] { dog.write(pr, 3); }),
+TEST_F(IwdgTest, RejectsProtectedWritesByName) {
+  EXPECT_EQ(test::rejection([&] { dog.write(pr, 3); }),
             "IWDG_PR = 0x3 at offset 0x4: write-protected: IWDG_KR = 0x5555 comes first");
   dog.write(kr, 0x5555);
   dog.write(kr, 0xAAAA);
-  EXPECT_NE(test::refusal([&] { dog.write(rlr, 3); }), "");
+  EXPECT_NE(test::rejection([&] { dog.write(rlr, 3); }), "");
   dog.write(kr, 0x5555);
   dog.write(rlr, 3);
-  EXPECT_EQ(test::refusal([&] { dog.write(rlr, 4); }),
+  EXPECT_EQ(test::rejection([&] { dog.write(rlr, 4); }),
             "IWDG_RLR = 0x4 at offset 0x8: the update before is not over (IWDG_SR)");
 }
 

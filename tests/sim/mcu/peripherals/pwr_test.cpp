@@ -21,27 +21,27 @@ TEST(Pwr, KeepsWhatCanBeWritten) {
   EXPECT_EQ(power.read(0x00), 0x43E3U);
 }
 
-TEST(Pwr, Scale2Bears144Megahertz) {
+TEST(Pwr, Scale2Allows144Megahertz) {
   test::BenchChip chip;
   Pwr power(chip);
-  EXPECT_EQ(power.fastest_core_mhz(), 168U);
+  EXPECT_EQ(power.max_core_mhz(), 168U);
   chip.settings.core = 7;  // 144 MHz
   power.write(0x00, 0);
-  EXPECT_EQ(power.fastest_core_mhz(), 144U);
+  EXPECT_EQ(power.max_core_mhz(), 144U);
   power.write(0x00, 0x4000);
   chip.settings.core = 6;
-  EXPECT_EQ(test::refusal([&] { power.write(0x00, 0); }),
-            "PWR_CR = 0x0 at offset 0x0: scale 2 bears 144 MHz, HCLK is 168 MHz");
+  EXPECT_EQ(test::rejection([&] { power.write(0x00, 0); }),
+            "PWR_CR = 0x0 at offset 0x0: scale 2 allows 144 MHz, HCLK is 168 MHz");
 }
 
-TEST(Pwr, RefusesWhatItDoesNotModelByName) {
+TEST(Pwr, RejectsWhatItDoesNotModelByName) {
   test::BenchChip chip;
   Pwr power(chip);
-  EXPECT_EQ(test::refusal([&] { power.write(0x00, 0x4010); }),
+  EXPECT_EQ(test::rejection([&] { power.write(0x00, 0x4010); }),
             "PWR_CR = 0x4010 at offset 0x0: the voltage detector is not modelled");
-  EXPECT_EQ(test::refusal([&] { power.write(0x04, 0x100); }),
+  EXPECT_EQ(test::rejection([&] { power.write(0x04, 0x100); }),
             "PWR_CSR = 0x100 at offset 0x4: wake-up pin and backup regulator are not modelled");
-  EXPECT_EQ(test::refusal([&] { power.write(0x08, 1); }), "PWR at offset 0x8 = 0x1: writing it is not modelled");
+  EXPECT_EQ(test::rejection([&] { power.write(0x08, 1); }), "PWR at offset 0x8 = 0x1: writing it is not modelled");
 }
 
 }  // namespace

@@ -167,12 +167,12 @@ TEST_F(RccTest, ThePllStartsWithinTheLimitsOfTheManualOnly) {
     for (std::uint32_t n = 0; n < 512; n += n < 60 || n > 420 ? 1 : 7) {
       for (const std::uint32_t p : {2U, 4U, 6U, 8U}) {
         rcc.write(pllcfgr, Pll{.m = m, .n = n, .p = p}.value());
-        const std::string refused = test::refusal([&] { rcc.write(cr, hsion | hseon | pllon); });
+        const std::string rejected = test::rejection([&] { rcc.write(cr, hsion | hseon | pllon); });
         const double in = m == 0 ? 0 : 8.0 / m;
         const double vco = 8.0 * n / (m == 0 ? 1 : m);
         const bool ok =
             m >= 2 && n >= 50 && n <= 432 && in >= 1 && in <= 2 && vco >= 100 && vco <= 432 && 8 * n <= 168 * m * p;
-        EXPECT_EQ(refused.empty(), ok) << m << " " << n << " " << p << " " << refused;
+        EXPECT_EQ(rejected.empty(), ok) << m << " " << n << " " << p << " " << rejected;
         allowed += ok ? 1 : 0;
         rcc.write(cr, hsion | hseon);
       }
@@ -181,11 +181,11 @@ TEST_F(RccTest, ThePllStartsWithinTheLimitsOfTheManualOnly) {
   EXPECT_GT(allowed, 100U);
 }
 
-TEST_F(RccTest, RefusalsOfThePllHaveTheFigures) {
+TEST_F(RccTest, RejectionsByThePllHaveTheFigures) {
   start_hse();
   const auto with = [&](const Pll& pll) {
     rcc.write(pllcfgr, pll.value());
-    return test::refusal([&] { rcc.write(cr, hsion | hseon | pllon); });
+    return test::rejection([&] { rcc.write(cr, hsion | hseon | pllon); });
   };
   EXPECT_EQ(with({.m = 3, .n = 100, .p = 2}),
             "RCC_CR = 0x1010081 at offset 0x0: PLLON with VCO input of 2.666 MHz: expected 1 to 2 MHz (RM0090, 7.3.2)");
@@ -196,11 +196,11 @@ TEST_F(RccTest, RefusalsOfThePllHaveTheFigures) {
   EXPECT_NE(with({.m = 8, .n = 336, .p = 2, .q = 1}), "");
   rcc.reset();
   rcc.write(pllcfgr, Pll{.m = 8, .n = 336, .p = 2}.value());
-  EXPECT_EQ(test::refusal([&] { rcc.write(cr, hsion | hseon | pllon); }),
+  EXPECT_EQ(test::rejection([&] { rcc.write(cr, hsion | hseon | pllon); }),
             "RCC_CR = 0x1010081 at offset 0x0: PLLON while its clock HSE is not ready");
 }
 
-TEST_F(RccTest, EachClockThatDivides1008MegahertzCanBeHad) {
+TEST_F(RccTest, EachClockThatDivides1008MegahertzIsPossible) {
   // HSI 16 MHz / 16 * n / p.
   for (const auto& [n, p, mhz] : std::vector<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>>{
            {336, 2, 168}, {288, 2, 144}, {252, 2, 126}, {224, 2, 112}, {168, 2, 84}, {192, 4, 48}, {336, 8, 42}}) {
@@ -214,19 +214,19 @@ TEST_F(RccTest, EachClockThatDivides1008MegahertzCanBeHad) {
   rcc.reset();
   start_pll({.m = 16, .n = 200, .p = 2, .hse = false});
   EXPECT_EQ(
-      test::refusal([&] { rcc.write(cfgr, 0x9402); }),
+      test::rejection([&] { rcc.write(cfgr, 0x9402); }),
       "RCC_CFGR = 0x9402 at offset 0x8: HCLK of 100 MHz does not divide 1008 MHz, in which the model counts time");
 }
 
 TEST_F(RccTest, BusesHaveTheirLimits) {
   start_hse();
   start_pll({.m = 8, .n = 336, .p = 2});
-  EXPECT_EQ(test::refusal([&] { rcc.write(cfgr, 0x9002); }),
+  EXPECT_EQ(test::rejection([&] { rcc.write(cfgr, 0x9002); }),
             "RCC_CFGR = 0x9002 at offset 0x8: PCLK1 of 84 MHz: at most 42 MHz (RM0090, 7.3.3)");
-  EXPECT_EQ(test::refusal([&] { rcc.write(cfgr, 0x1402); }),
+  EXPECT_EQ(test::rejection([&] { rcc.write(cfgr, 0x1402); }),
             "RCC_CFGR = 0x1402 at offset 0x8: PCLK2 of 168 MHz: at most 84 MHz (RM0090, 7.3.3)");
   power.write(0x00, 0);
-  EXPECT_EQ(test::refusal([&] { rcc.write(cfgr, 0x9402); }),
+  EXPECT_EQ(test::rejection([&] { rcc.write(cfgr, 0x9402); }),
             "RCC_CFGR = 0x9402 at offset 0x8: HCLK of 168 MHz: at most 144 MHz at this core voltage (PWR_CR.VOS)");
 }
 
@@ -234,22 +234,22 @@ TEST_F(RccTest, FlashNeedsItsWaitStatesFirst) {
   start_hse();
   start_pll({.m = 8, .n = 336, .p = 2});
   flash.write(0x00, 4);
-  EXPECT_EQ(test::refusal([&] { rcc.write(cfgr, 0x9402); }),
+  EXPECT_EQ(test::rejection([&] { rcc.write(cfgr, 0x9402); }),
             "RCC_CFGR = 0x9402 at offset 0x8: HCLK of 168 MHz needs 5 wait states, FLASH_ACR has 4 (RM0090, table 10)");
   flash.write(0x00, 5);
   rcc.write(cfgr, 0x9402);
-  EXPECT_NE(test::refusal([&] { flash.write(0x00, 0); }), "");
+  EXPECT_NE(test::rejection([&] { flash.write(0x00, 0); }), "");
 }
 
-TEST_F(RccTest, WhatTheSystemClockComesFromCannotBeSwitchedOff) {
+TEST_F(RccTest, TheSourcesOfTheSystemClockCannotBeSwitchedOff) {
   full_speed();
   rcc.write(cr, 0x80);
   EXPECT_EQ(rcc.read(cr) & (hseon | pllon), hseon | pllon);
   EXPECT_EQ(rcc.read(cr) & 1U, 0U) << "HSI is not needed";
-  EXPECT_NE(test::refusal([&] { rcc.write(pllcfgr, Pll{.m = 8, .n = 200, .p = 2}.value()); }), "");
+  EXPECT_NE(test::rejection([&] { rcc.write(pllcfgr, Pll{.m = 8, .n = 200, .p = 2}.value()); }), "");
 }
 
-TEST_F(RccTest, ResetFlagsTellWhyAndGoByRmvf) {
+TEST_F(RccTest, ResetFlagsHoldTheCauseUntilRmvf) {
   const auto flags = [&] { return rcc.read(csr) >> 24U; };
   rcc.note_start(ResetCause::power_on);
   EXPECT_EQ(flags(), 0x0EU);
@@ -281,18 +281,18 @@ TEST_F(RccTest, TheWatchdogKeepsLsiOn) {
   EXPECT_EQ(rcc.read(csr) & 3U, 2U);
 }
 
-TEST_F(RccTest, RegistersAnswerWithAClockOnly) {
+TEST_F(RccTest, RegistersAnswerOnlyWithAClock) {
   EXPECT_FALSE(rcc.is_clocked(usart));
   EXPECT_TRUE(rcc.is_clocked(flash));
   EXPECT_TRUE(rcc.is_clocked(dog));
-  EXPECT_EQ(test::refusal([&] { rcc.require_clock(usart, 0x08); }),
+  EXPECT_EQ(test::rejection([&] { rcc.require_clock(usart, 0x08); }),
             "USART2_BRR: its clock is off (RCC_APB1ENR bit 17)");
-  EXPECT_EQ(test::refusal([&] { rcc.require_clock(port, 0x14); }), "GPIOA_ODR: its clock is off (RCC_AHB1ENR bit 0)");
+  EXPECT_EQ(test::rejection([&] { rcc.require_clock(port, 0x14); }), "GPIOA_ODR: its clock is off (RCC_AHB1ENR bit 0)");
   rcc.write(apb1enr, 1U << 17U);
   EXPECT_TRUE(rcc.is_clocked(usart));
-  EXPECT_EQ(test::refusal([&] { rcc.require_clock(usart, 0x08); }), "");
+  EXPECT_EQ(test::rejection([&] { rcc.require_clock(usart, 0x08); }), "");
   rcc.write(apb1rstr, 1U << 17U);
-  EXPECT_EQ(test::refusal([&] { rcc.require_clock(usart, 0x08); }),
+  EXPECT_EQ(test::rejection([&] { rcc.require_clock(usart, 0x08); }),
             "USART2_BRR: it is held in reset (RCC_APB1RSTR bit 17)");
 }
 
@@ -310,26 +310,26 @@ TEST_F(RccTest, ClocksOfBusyPeripheralsStayOn) {
   rcc.write(apb1enr, 1);
   timer.write(0x2C, 100);
   timer.write(0x00, 1);
-  EXPECT_EQ(test::refusal([&] { rcc.write(apb1enr, 0); }),
+  EXPECT_EQ(test::rejection([&] { rcc.write(apb1enr, 0); }),
             "RCC_APB1ENR = 0x0 at offset 0x40: the clock of TIM2 goes off while it works, which is not modelled");
   timer.write(0x00, 0);
   rcc.write(apb1enr, 0);
-  EXPECT_NE(test::refusal([&] { rcc.write(0x60, 0); }).find("without clock in Sleep mode"), std::string::npos);
+  EXPECT_NE(test::rejection([&] { rcc.write(0x60, 0); }).find("without clock in Sleep mode"), std::string::npos);
 }
 
-TEST_F(RccTest, RefusesWhatItDoesNotModelByName) {
-  EXPECT_EQ(test::refusal([&] { rcc.write(cr, hsion | 1U << 19U); }),
+TEST_F(RccTest, RejectsWhatItDoesNotModelByName) {
+  EXPECT_EQ(test::rejection([&] { rcc.write(cr, hsion | 1U << 19U); }),
             "RCC_CR = 0x80081 at offset 0x0: the clock security system is not modelled");
-  EXPECT_NE(test::refusal([&] { rcc.write(cr, hsion | 1U << 18U); }), "");
-  EXPECT_NE(test::refusal([&] { rcc.write(cr, hsion | 1U << 26U); }), "");
-  EXPECT_NE(test::refusal([&] { rcc.write(cr, 0x89); }).find("HSITRIM = 17"), std::string::npos);
-  EXPECT_NE(test::refusal([&] { rcc.write(cfgr, 3); }).find("SW = 3"), std::string::npos);
-  EXPECT_NE(test::refusal([&] { rcc.write(cfgr, 1U << 21U); }), "");
-  EXPECT_NE(test::refusal([&] { rcc.write(0x0C, 1U << 8U); }), "");
-  EXPECT_NE(test::refusal([&] { rcc.write(0x70, 1); }), "");
-  EXPECT_NE(test::refusal([&] { rcc.write(0x80, 1); }), "");
-  EXPECT_NE(test::refusal([&] { rcc.write(0x84, 0); }), "");
-  EXPECT_EQ(test::refusal([&] { rcc.write(0x28, 1); }), "RCC at offset 0x28 = 0x1: writing it is not modelled");
+  EXPECT_NE(test::rejection([&] { rcc.write(cr, hsion | 1U << 18U); }), "");
+  EXPECT_NE(test::rejection([&] { rcc.write(cr, hsion | 1U << 26U); }), "");
+  EXPECT_NE(test::rejection([&] { rcc.write(cr, 0x89); }).find("HSITRIM = 17"), std::string::npos);
+  EXPECT_NE(test::rejection([&] { rcc.write(cfgr, 3); }).find("SW = 3"), std::string::npos);
+  EXPECT_NE(test::rejection([&] { rcc.write(cfgr, 1U << 21U); }), "");
+  EXPECT_NE(test::rejection([&] { rcc.write(0x0C, 1U << 8U); }), "");
+  EXPECT_NE(test::rejection([&] { rcc.write(0x70, 1); }), "");
+  EXPECT_NE(test::rejection([&] { rcc.write(0x80, 1); }), "");
+  EXPECT_NE(test::rejection([&] { rcc.write(0x84, 0); }), "");
+  EXPECT_EQ(test::rejection([&] { rcc.write(0x28, 1); }), "RCC at offset 0x28 = 0x1: writing it is not modelled");
 }
 
 }  // namespace

@@ -314,7 +314,7 @@ TEST_F(TimerTest, LongTimesPassQuickly) {
 }
 
 /// Random registers, random moments: counter, flags, outputs and interrupts are those of the clock-by-clock model; and
-/// what next_event() and next_edge() promise holds.
+/// next_event() and next_edge() are right.
 TEST_F(TimerTest, DoesWhatTheTimerOfTheManualDoesClockByClock) {
   for (unsigned seed = 1; seed <= 150; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -343,7 +343,7 @@ TEST_F(TimerTest, DoesWhatTheTimerOfTheManualDoesClockByClock) {
                                       (below(2) != 0 ? arpe : 0);
           const std::uint32_t reload = (value & arpe) == 0 ? model.arr : model.arr_shadow;
           if (model.counter > reload) {
-            break;  // refused
+            break;  // rejected
           }
           lazy.write(cr1, value);
           if ((value & cen) == 0 || (model.cr1 & cen) == 0) {
@@ -360,7 +360,7 @@ TEST_F(TimerTest, DoesWhatTheTimerOfTheManualDoesClockByClock) {
         case 2: {
           const std::uint32_t value = 1 + below(30);
           if ((model.cr1 & arpe) == 0 && value < model.counter) {
-            break;  // refused
+            break;  // rejected
           }
           model.arr = value;
           model.follow();
@@ -406,7 +406,7 @@ TEST_F(TimerTest, DoesWhatTheTimerOfTheManualDoesClockByClock) {
     for (int i = 0; i < 10; ++i) {
       change();
     }
-    // In every other run nobody waits for it: it is looked at after many periods only.
+    // Every other run advances the timer after many periods only.
     const bool unobserved = seed % 2 == 0;
     std::uint32_t look = 1;
     for (int step = 0; step < 4000; ++step) {
@@ -443,25 +443,25 @@ TEST_F(TimerTest, DoesWhatTheTimerOfTheManualDoesClockByClock) {
   }
 }
 
-TEST_F(TimerTest, RefusesWhatItDoesNotModelByName) {
-  EXPECT_EQ(test::refusal([&] { timer.write(cr1, 0x10); }),
+TEST_F(TimerTest, RejectsWhatItDoesNotModelByName) {
+  EXPECT_EQ(test::rejection([&] { timer.write(cr1, 0x10); }),
             "TIM2_CR1 = 0x10 at offset 0x0: only up-counting is modelled");
-  EXPECT_EQ(test::refusal([&] { timer.write(ccmr1, 0x30); }),
+  EXPECT_EQ(test::rejection([&] { timer.write(ccmr1, 0x30); }),
             "TIM2_CCMR1 = 0x30 at offset 0x18: OC1M = 3: outputs that change on a match are not modelled");
-  EXPECT_EQ(test::refusal([&] { timer.write(0x1C, 0x100); }),
+  EXPECT_EQ(test::rejection([&] { timer.write(0x1C, 0x100); }),
             "TIM2_CCMR2 = 0x100 at offset 0x1C: input capture is not modelled");
-  EXPECT_NE(test::refusal([&] { timer.write(0x04, 0x10); }), "");
-  EXPECT_NE(test::refusal([&] { timer.write(0x08, 1); }), "");
-  EXPECT_NE(test::refusal([&] { timer.write(dier, 0x100); }), "");
-  EXPECT_NE(test::refusal([&] { timer.write(ccer, 8); }), "");
-  EXPECT_EQ(test::refusal([&] { static_cast<void>(timer.read(0x4C)); }),
+  EXPECT_NE(test::rejection([&] { timer.write(0x04, 0x10); }), "");
+  EXPECT_NE(test::rejection([&] { timer.write(0x08, 1); }), "");
+  EXPECT_NE(test::rejection([&] { timer.write(dier, 0x100); }), "");
+  EXPECT_NE(test::rejection([&] { timer.write(ccer, 8); }), "");
+  EXPECT_EQ(test::rejection([&] { static_cast<void>(timer.read(0x4C)); }),
             "TIM2_DMAR at offset 0x4C: reading it is not modelled");
-  EXPECT_EQ(test::refusal([&] { static_cast<void>(timer.read(0x54)); }),
+  EXPECT_EQ(test::rejection([&] { static_cast<void>(timer.read(0x54)); }),
             "TIM2 at offset 0x54: reading it is not modelled");
   timer.write(arr, 100);
   timer.write(cr1, cen);
   chip.time = clock + 50 * clock;
-  EXPECT_EQ(test::refusal([&] { timer.write(arr, 49); }),
+  EXPECT_EQ(test::rejection([&] { timer.write(arr, 49); }),
             "TIM2_ARR = 0x31 at offset 0x2C: below the counter (0x32) without ARPE: it would go through all 32 bits");
 }
 

@@ -101,7 +101,7 @@ TEST_F(UsartTest, BytesFollowEachOtherWithoutGap) {
   EXPECT_EQ(board.sent, (std::vector<std::pair<unsigned, std::uint8_t>>{{2, 1}, {2, 2}, {2, 3}}));
 }
 
-TEST_F(UsartTest, WorksTheSameWhenItIsLookedAtLate) {
+TEST_F(UsartTest, WorksTheSameWhenItIsAdvancedLate) {
   start();
   const LocalTime frame = 10 * 42 * 24;
   port.write(dr, 1);
@@ -164,7 +164,7 @@ TEST_F(UsartTest, AnOverrunKeepsTheOldByte) {
   EXPECT_EQ(port.read(dr), 3U);
 }
 
-TEST_F(UsartTest, OverrunGoesAwayOnlyByReadingStatusThenData) {
+TEST_F(UsartTest, OverrunIsClearedOnlyByReadingStatusThenData) {
   start(42, on | 0x20);
   port.receive(1);
   port.receive(2);
@@ -176,25 +176,25 @@ TEST_F(UsartTest, OverrunGoesAwayOnlyByReadingStatusThenData) {
   EXPECT_FALSE(chip.interrupts.contains(38));
 }
 
-TEST_F(UsartTest, AReceiverThatIsOffHearsNothing) {
+TEST_F(UsartTest, AReceiverThatIsOffReceivesNothing) {
   start(42, 0x2008);
   port.receive(1);
   EXPECT_EQ(port.read(sr) & rxne, 0U);
 }
 
-TEST_F(UsartTest, RefusesWhatItDoesNotModelByName) {
-  EXPECT_EQ(test::refusal([&] { port.write(cr3, 0x40); }),
+TEST_F(UsartTest, RejectsWhatItDoesNotModelByName) {
+  EXPECT_EQ(test::rejection([&] { port.write(cr3, 0x40); }),
             "USART2_CR3 = 0x40 at offset 0x14: DMA, flow control, half duplex, IrDA and smartcards are not modelled");
-  EXPECT_NE(test::refusal([&] { port.write(cr2, 0x2000); }), "");
-  EXPECT_NE(test::refusal([&] { port.write(cr1, 0x1000); }), "");
-  EXPECT_NE(test::refusal([&] { port.write(cr1, 0x0400); }), "");
-  EXPECT_EQ(test::refusal([&] { port.write(cr1, on); }), "USART2_CR1 = 0x200C at offset 0xC: USARTDIV is below 1");
-  EXPECT_EQ(test::refusal([&] { port.write(dr, 1); }), "USART2_DR = 0x1 at offset 0x4: UE or TE is off");
+  EXPECT_NE(test::rejection([&] { port.write(cr2, 0x2000); }), "");
+  EXPECT_NE(test::rejection([&] { port.write(cr1, 0x1000); }), "");
+  EXPECT_NE(test::rejection([&] { port.write(cr1, 0x0400); }), "");
+  EXPECT_EQ(test::rejection([&] { port.write(cr1, on); }), "USART2_CR1 = 0x200C at offset 0xC: USARTDIV is below 1");
+  EXPECT_EQ(test::rejection([&] { port.write(dr, 1); }), "USART2_DR = 0x1 at offset 0x4: UE or TE is off");
   start();
   port.write(dr, 1);
-  EXPECT_NE(test::refusal([&] { port.write(brr, 43); }), "");
-  EXPECT_NE(test::refusal([&] { port.write(cr1, 0); }), "");
-  EXPECT_NE(test::refusal([&] { port.clocks_change(Clocks{}); }), "");
+  EXPECT_NE(test::rejection([&] { port.write(brr, 43); }), "");
+  EXPECT_NE(test::rejection([&] { port.write(cr1, 0); }), "");
+  EXPECT_NE(test::rejection([&] { port.clocks_change(Clocks{}); }), "");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A program that tells over USART1 what its CPU computes, one line a subject: to be run by two different models.
+// A program that prints over USART1 what its CPU computes, one line a subject: for two different models of the CPU.
 
 #include <array>
 #include <cstdint>
@@ -464,7 +464,7 @@ void process_stack_calls() {
   print("process", order.value());
 }
 
-/// Notes the fault and goes on behind the instruction, of 4 bytes, that did it.
+/// Notes the fault and continues behind the instruction, of 4 bytes, that caused it.
 [[gnu::naked]] void fault_handler() {
   asm volatile(
       "mov r0, sp\n"

@@ -1,4 +1,4 @@
-// Instructions that commit faults. Each function has the instruction that does it at the label with _here.
+// Instructions that cause faults. Each function has that instruction at the label with _here.
 
 #include "macros.inc"
 
@@ -113,7 +113,7 @@ function bad_exc_return
   bx lr
 end_function bad_exc_return
 
-// Goes on behind the instruction of 2 bytes that did it.
+// Continues behind the instruction of 2 bytes that caused it.
 function skipping_handler
   ldr r0, [sp, #24]
   adds r0, r0, #2
@@ -144,7 +144,7 @@ function faults_between_stores
   b 1b
 end_function faults_between_stores
 
-// Loads that overwrite the register of their own address.
+// Loads that overwrite their address register.
 function follows_a_chain
   ldr r0, =0x20002000
   ldr r1, =0x20002100

@@ -1,8 +1,8 @@
-// Programs of which every instruction matters. The test lets the vector table lead to them.
+// Programs in which every instruction matters. The test puts them into the vector table.
 
 #include "macros.inc"
 
-// Gives every register its own value, sets N, C, Q and GE, and waits for an interrupt, busily.
+// Sets every register to another value, sets N, C, Q and GE, and polls for an interrupt.
 function distinct_registers
   ldr r0, =0xA80F0000
   msr apsr_nzcvqg, r0
@@ -53,7 +53,7 @@ function distinct_registers_on_odd_stack
   b distinct_registers
 end_function distinct_registers_on_odd_stack
 
-// A handler that destroys all that the hardware saves, tells what it was entered with, and returns.
+// A handler that overwrites all that the hardware saves, marks the registers at its entry, and returns.
 function reporting_handler
   ldr r0, =mark_port
   str lr, [r0]
@@ -88,7 +88,7 @@ function ldm_handler
   ldmia sp!, {r4-r6, pc}
 end_function ldm_handler
 
-// A handler that tells r0 to r3 as it finds them.
+// A handler that marks r0 to r3 as it finds them.
 function register_handler
   ldr r12, =mark_port
   str r0, [r12]
@@ -98,7 +98,7 @@ function register_handler
   bx lr
 end_function register_handler
 
-// SVC 42 with arguments; what the handler leaves in the frame's r0 is told.
+// SVC 42 with arguments; marks what the handler leaves in the frame's r0.
 function calls_supervisor
   movs r0, #1
   movs r1, #2
@@ -110,7 +110,7 @@ function calls_supervisor
   b 1b
 end_function calls_supervisor
 
-// Tells the number of the SVC, and returns r0 + r1 to the caller.
+// Marks the number of the SVC, and returns r0 + r1 to the caller.
 function supervisor
   tst lr, #4
   ite eq
@@ -259,7 +259,7 @@ it_across_pages:
   .ltorg
   .size it_across_pages, . - it_across_pages
 
-// Calls code that the test writes to r4, with a return by BX LR, again and again, and tells what it returns.
+// Calls code that the test writes to r4, with a return by BX LR, again and again, and marks what it returns.
 function calls_written_code
   ldr r4, =0x08040001
   ldr r5, =mark_port
@@ -379,7 +379,7 @@ function short_handler
   bx lr
 end_function short_handler
 
-// Enables interrupt 3 and sleeps for ever.
+// Enables interrupt 3 and sleeps without end.
 function sleeps
   ldr r0, =0xE000E100
   movs r1, #8

@@ -5,9 +5,9 @@
 namespace {
 
 constexpr unsigned exception_count = 98;
-constexpr unsigned longest_script = 12;
+constexpr unsigned max_steps = 12;
 
-enum class Step : std::uint32_t {
+enum class Action : std::uint32_t {
   end,
   store,      ///< value to address
   mark,       ///< value
@@ -25,8 +25,8 @@ enum class Step : std::uint32_t {
   spin,  ///< value rounds
 };
 
-struct Order {
-  Step step;
+struct Step {
+  Action action;
   std::uint32_t address;
   std::uint32_t value;
 };
@@ -40,70 +40,70 @@ void mark(std::uint32_t value) { at(0x4000'0000) = value; }
 extern "C" {
 
 /// Written by the test.
-extern Order scripts[exception_count][longest_script];
-[[gnu::section(".bss.scripts")]] Order scripts[exception_count][longest_script];
+extern Step scripts[exception_count][max_steps];
+[[gnu::section(".bss.scripts")]] Step scripts[exception_count][max_steps];
 extern std::uint32_t stack_top[];
 
 void play(std::uint32_t number) {
-  for (const Order& order : scripts[number]) {
-    switch (order.step) {
-      case Step::end:
+  for (const Step& step : scripts[number]) {
+    switch (step.action) {
+      case Action::end:
         return;
-      case Step::store:
-        at(order.address) = order.value;
+      case Action::store:
+        at(step.address) = step.value;
         break;
-      case Step::mark:
-        mark(order.value);
+      case Action::mark:
+        mark(step.value);
         break;
-      case Step::mark_load:
-        mark(at(order.address));
+      case Action::mark_load:
+        mark(at(step.address));
         break;
-      case Step::wait_for_interrupt:
+      case Action::wait_for_interrupt:
         asm volatile("wfi" ::: "memory");
         break;
-      case Step::wait_for_event:
+      case Action::wait_for_event:
         asm volatile("wfe" ::: "memory");
         break;
-      case Step::send_event:
+      case Action::send_event:
         asm volatile("sev" ::: "memory");
         break;
-      case Step::supervisor_call:
+      case Action::supervisor_call:
         asm volatile("svc #1" ::: "memory");
         break;
-      case Step::set_primask:
-        if (order.value != 0) {
+      case Action::set_primask:
+        if (step.value != 0) {
           asm volatile("cpsid i" ::: "memory");
         } else {
           asm volatile("cpsie i" ::: "memory");
         }
         break;
-      case Step::set_faultmask:
-        if (order.value != 0) {
+      case Action::set_faultmask:
+        if (step.value != 0) {
           asm volatile("cpsid f" ::: "memory");
         } else {
           asm volatile("cpsie f" ::: "memory");
         }
         break;
-      case Step::set_basepri:
-        asm volatile("msr basepri, %0" ::"r"(order.value) : "memory");
+      case Action::set_basepri:
+        asm volatile("msr basepri, %0" ::"r"(step.value) : "memory");
         break;
-      case Step::mark_basepri: {
+      case Action::mark_basepri: {
         std::uint32_t value = 0;
         asm volatile("mrs %0, basepri" : "=r"(value));
         mark(value);
         break;
       }
-      case Step::mark_control: {
+      case Action::mark_control: {
         std::uint32_t value = 0;
         asm volatile("mrs %0, control" : "=r"(value));
         mark(value);
         break;
       }
-      case Step::call:
-        reinterpret_cast<void (*)()>(order.address)();
+      case Action::call:
+        reinterpret_cast<void (*)()>(step.address)();
         break;
-      case Step::spin:
-        for (std::uint32_t i = 0; i < order.value; ++i) {
+      case Action::spin:
+        for (std::uint32_t i = 0; i < step.value; ++i) {
           asm volatile("nop");
         }
         break;
@@ -111,7 +111,7 @@ void play(std::uint32_t number) {
   }
 }
 
-/// Tells that it is entered and that it ends: 0x1000 and 0x2000, with its number.
+/// Marks its entry and its end: 0x1000 and 0x2000, with its number.
 void scripted_handler() {
   std::uint32_t number = 0;
   asm volatile("mrs %0, ipsr" : "=r"(number));
@@ -128,7 +128,7 @@ void scripted_handler() {
   }
 }
 
-// For the trace of calls: three functions deep, each with a frame of its own.
+// For the trace of calls: three functions deep, each with its own frame.
 [[gnu::noinline]] std::uint32_t third_function(std::uint32_t address) {
   volatile std::uint32_t room[4]{address, 2, 3, 4};
   const std::uint32_t value = at(room[0]);

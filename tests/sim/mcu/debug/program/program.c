@@ -1,4 +1,4 @@
-// What the debugger is tried on: sums up readings for ever.
+// A program for tests of the debugger: sums up readings without end.
 
 #include <stdint.h>
 

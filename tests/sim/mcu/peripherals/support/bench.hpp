@@ -1,6 +1,6 @@
 #pragma once
 
-// A chip around single peripherals, whose time stands still until the test moves it.
+// A chip around single peripherals; the test moves its time.
 
 #include <gtest/gtest.h>
 
@@ -70,9 +70,9 @@ class BenchBoard final : public BoardSignals {
 /// The clocks that the firmware runs with: 168 MHz core, 42 and 84 MHz buses, timers twice as fast.
 inline constexpr Clocks full_speed{.core = 6, .apb1 = 24, .apb2 = 12, .apb1_timers = 12, .apb2_timers = 6};
 
-/// What `action` is refused with; empty if it is not.
+/// The reason why `action` is rejected; empty if it is not.
 template <class Action>
-[[nodiscard]] std::string refusal(Action action) {
+[[nodiscard]] std::string rejection(Action action) {
   try {
     action();
   } catch (const UnmodelledAccess& refused) {
@@ -86,7 +86,7 @@ struct ResetValue {
   std::uint32_t value;
 };
 
-/// Every register of the table reads as it says.
+/// Every register reads the value of the table.
 inline void expect_values(Peripheral& peripheral, const std::vector<ResetValue>& table) {
   for (const ResetValue& row : table) {
     EXPECT_EQ(peripheral.read(row.offset), row.value) << peripheral.register_name(row.offset);

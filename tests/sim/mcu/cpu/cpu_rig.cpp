@@ -1,4 +1,4 @@
-#include "tests/sim/mcu/cpu/board.hpp"
+#include "tests/sim/mcu/cpu/cpu_rig.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,14 +10,14 @@ std::string image_file(std::string_view name) {
   return std::string(PROLEG_CROSS_BUILD_DIR) + "/stm32f405/bin/" + std::string(name) + ".elf";
 }
 
-Board::Board() : cpu(*this) {}
+CpuRig::CpuRig() : cpu(*this) {}
 
-std::uint32_t Board::load(std::uint32_t address, unsigned size) {
+std::uint32_t CpuRig::load(std::uint32_t address, unsigned size) {
   loads.push_back({address, size, 0});
   return registers[address];
 }
 
-void Board::store(std::uint32_t address, unsigned size, std::uint32_t value) {
+void CpuRig::store(std::uint32_t address, unsigned size, std::uint32_t value) {
   stores.push_back({address, size, value});
   if (address == mark_port && size == 4) {
     marks.push_back(value);
@@ -27,11 +27,11 @@ void Board::store(std::uint32_t address, unsigned size, std::uint32_t value) {
   on_store(stores.back());
 }
 
-bool Board::store_to_flash(std::uint32_t address, unsigned size, std::uint32_t value) {
+bool CpuRig::store_to_flash(std::uint32_t address, unsigned size, std::uint32_t value) {
   return on_flash_store({address, size, value});
 }
 
-Cpu::State Board::run(std::uint64_t instructions, std::uint64_t slice) {
+Cpu::State CpuRig::run(std::uint64_t instructions, std::uint64_t slice) {
   const std::uint64_t end = cpu.instructions() + instructions;
   Cpu::State state = cpu.state();
   do {
@@ -58,13 +58,13 @@ Cpu::State Board::run(std::uint64_t instructions, std::uint64_t slice) {
   return state;
 }
 
-std::uint32_t Board::word(std::uint32_t address) const {
+std::uint32_t CpuRig::word(std::uint32_t address) const {
   std::array<std::uint8_t, 4> bytes{};
   cpu.read(address, bytes);
   return bytes[0] | std::uint32_t{bytes[1]} << 8U | std::uint32_t{bytes[2]} << 16U | std::uint32_t{bytes[3]} << 24U;
 }
 
-void Board::set_word(std::uint32_t address, std::uint32_t value) {
+void CpuRig::set_word(std::uint32_t address, std::uint32_t value) {
   const std::array<std::uint8_t, 4> bytes{
       static_cast<std::uint8_t>(value & 0xFFU), static_cast<std::uint8_t>(value >> 8U & 0xFFU),
       static_cast<std::uint8_t>(value >> 16U & 0xFFU), static_cast<std::uint8_t>(value >> 24U)};
@@ -80,7 +80,7 @@ Programs::Programs() {
   for (const ElfImage::Segment& segment : image().segments()) {
     cpu_.write(segment.load_address, segment.bytes);
   }
-  board_.set_word(Cpu::flash_start, initial_stack);
+  rig_.set_word(Cpu::flash_start, initial_stack);
   const ElfImage::Symbol& scripts = image().symbol("scripts");
   cpu_.write(scripts.address, std::vector<std::uint8_t>(scripts.size));
 }
@@ -91,26 +91,26 @@ void Programs::start(std::string_view function) {
 }
 
 void Programs::set_vector(unsigned exception, std::string_view function) {
-  board_.set_word(Cpu::flash_start + 4 * exception, address_of(function) | 1U);
+  rig_.set_word(Cpu::flash_start + 4 * exception, address_of(function) | 1U);
 }
 
-void Programs::script(unsigned exception, std::initializer_list<step::Order> orders) {
-  constexpr unsigned longest = 12;
-  ASSERT_LE(orders.size(), longest);
-  std::uint32_t address = address_of("scripts") + exception * longest * 12;
-  cpu_.write(address, std::vector<std::uint8_t>(longest * 12));
-  for (const step::Order& order : orders) {
-    board_.set_word(address, order.step);
-    board_.set_word(address + 4, order.address);
-    board_.set_word(address + 8, order.value);
+void Programs::script(unsigned exception, std::initializer_list<step::Step> steps) {
+  constexpr unsigned max_steps = 12;
+  ASSERT_LE(steps.size(), max_steps);
+  std::uint32_t address = address_of("scripts") + exception * max_steps * 12;
+  cpu_.write(address, std::vector<std::uint8_t>(max_steps * 12));
+  for (const step::Step& step : steps) {
+    rig_.set_word(address, step.action);
+    rig_.set_word(address + 4, step.address);
+    rig_.set_word(address + 8, step.value);
     address += 12;
   }
 }
 
 std::vector<std::uint32_t> Programs::run_script(std::uint64_t instructions) {
   start("reset_handler");
-  board_.run(instructions);
-  return board_.take_marks();
+  rig_.run(instructions);
+  return rig_.take_marks();
 }
 
 }  // namespace proleg::sim

@@ -1,6 +1,6 @@
 #pragma once
 
-// A CPU with next to nothing around it, and the programs of image/ for it.
+// A CPU with minimal surroundings, and the programs of image/ for it.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ namespace proleg::sim {
 /// A file of the cross build; its name without ".elf".
 [[nodiscard]] std::string image_file(std::string_view name);
 
-class Board final : public CpuSurroundings {
+class CpuRig final : public CpuSurroundings {
  public:
   struct Store {
     std::uint32_t address;
@@ -34,7 +34,7 @@ class Board final : public CpuSurroundings {
   static constexpr std::uint32_t mark_port = 0x4000'0000;
   static constexpr LocalTime period = Clocks::hsi;
 
-  Board();
+  CpuRig();
 
   std::uint32_t load(std::uint32_t address, unsigned size) override;
   void store(std::uint32_t address, unsigned size, std::uint32_t value) override;
@@ -64,25 +64,25 @@ class Board final : public CpuSurroundings {
 
 /// Steps of a script; as in image/scripts.cpp.
 namespace step {
-struct Order {
-  std::uint32_t step;
+struct Step {
+  std::uint32_t action;
   std::uint32_t address;
   std::uint32_t value;
 };
-inline Order store(std::uint32_t address, std::uint32_t value) { return {1, address, value}; }
-inline Order mark(std::uint32_t value) { return {2, 0, value}; }
-inline Order mark_load(std::uint32_t address) { return {3, address, 0}; }
-inline Order wait_for_interrupt() { return {4, 0, 0}; }
-inline Order wait_for_event() { return {5, 0, 0}; }
-inline Order send_event() { return {6, 0, 0}; }
-inline Order supervisor_call() { return {7, 0, 0}; }
-inline Order primask(std::uint32_t value) { return {8, 0, value}; }
-inline Order faultmask(std::uint32_t value) { return {9, 0, value}; }
-inline Order basepri(std::uint32_t value) { return {10, 0, value}; }
-inline Order mark_basepri() { return {11, 0, 0}; }
-inline Order mark_control() { return {12, 0, 0}; }
-inline Order call(std::uint32_t address) { return {13, address, 0}; }
-inline Order spin(std::uint32_t rounds) { return {14, 0, rounds}; }
+inline Step store(std::uint32_t address, std::uint32_t value) { return {1, address, value}; }
+inline Step mark(std::uint32_t value) { return {2, 0, value}; }
+inline Step mark_load(std::uint32_t address) { return {3, address, 0}; }
+inline Step wait_for_interrupt() { return {4, 0, 0}; }
+inline Step wait_for_event() { return {5, 0, 0}; }
+inline Step send_event() { return {6, 0, 0}; }
+inline Step supervisor_call() { return {7, 0, 0}; }
+inline Step primask(std::uint32_t value) { return {8, 0, value}; }
+inline Step faultmask(std::uint32_t value) { return {9, 0, value}; }
+inline Step basepri(std::uint32_t value) { return {10, 0, value}; }
+inline Step mark_basepri() { return {11, 0, 0}; }
+inline Step mark_control() { return {12, 0, 0}; }
+inline Step call(std::uint32_t address) { return {13, address, 0}; }
+inline Step spin(std::uint32_t rounds) { return {14, 0, rounds}; }
 }  // namespace step
 
 /// Tests with the programs of image/.
@@ -95,16 +95,16 @@ class Programs : public testing::Test {
 
   /// Restarts the CPU with a function as its program.
   void start(std::string_view function);
-  /// Where an exception leads.
+  /// Sets the vector of an exception.
   void set_vector(unsigned exception, std::string_view function);
   [[nodiscard]] static std::uint32_t address_of(std::string_view symbol) { return image().symbol(symbol).address; }
   /// What an exception's handler does, or thread mode (0); of scripted_handler and reset_handler.
-  void script(unsigned exception, std::initializer_list<step::Order> orders);
+  void script(unsigned exception, std::initializer_list<step::Step> steps);
   /// Starts the script of thread mode. Returns the marks.
   [[nodiscard]] std::vector<std::uint32_t> run_script(std::uint64_t instructions = 100'000);
 
-  Board board_;
-  Cpu& cpu_ = board_.cpu;
+  CpuRig rig_;
+  Cpu& cpu_ = rig_.cpu;
 };
 
 /// Registers of the System Control Space.

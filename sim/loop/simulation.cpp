@@ -1,7 +1,7 @@
 #include "sim/loop/simulation.hpp"
 
-#include "sim/loop/internal_values.hpp"
 #include "sim/loop/servo_pulses.hpp"
+#include "sim/record/internal_values.hpp"
 
 namespace proleg::sim {
 

@@ -9,22 +9,32 @@
 
 namespace proleg::sim {
 
-/// The touch sensors that are wired to the module of a joint, as bits 0 to 3 of the state frame's flags: those of the
-/// link behind it, and for the head module those of link 0. link_contacts: per link, bit 0 rear, bit 1 front.
-[[nodiscard]] inline std::uint8_t wired_sensors(std::span<const std::uint8_t> link_contacts, std::size_t joint) {
+// The module of a joint has the touch sensors of the link behind it, and the head's module those of link 0 as well.
+// link_contacts: per link, bit 0 rear, bit 1 front. Contacts of a joint: bits 0 to 3 as in the state frame's flags.
+
+/// The contacts of a joint.
+[[nodiscard]] inline std::uint8_t joint_contacts(std::span<const std::uint8_t> link_contacts, std::size_t joint) {
   const unsigned behind = link_contacts[joint + 1];
-  const unsigned far = joint == 0 ? unsigned{link_contacts[0]} << 2U : 0U;
-  return static_cast<std::uint8_t>(behind | far);
+  const unsigned head = joint == 0 ? unsigned{link_contacts[0]} << 2U : 0U;
+  return static_cast<std::uint8_t>(behind | head);
 }
 
-/// What the modules make of their touch sensors at each SYNC.
+/// The reverse: writes the contacts of a joint to its links. Other bits of `contacts` are ignored.
+inline void write_link_contacts(std::span<std::uint8_t> link_contacts, std::size_t joint, unsigned contacts) {
+  link_contacts[joint + 1] = contacts & StateFrame::rear_link_contact_bits;
+  if (joint == 0) {
+    link_contacts[0] = static_cast<std::uint8_t>((contacts & StateFrame::contact_bits) >> 2U);
+  }
+}
+
+/// The touch sensors of all joints, debounced at each SYNC as the modules do it.
 class TouchInputs {
  public:
   explicit TouchInputs(std::size_t joints) : debouncers_(joints), contacts_(joints) {}
 
   /// At SYNC: the debounced contacts of a joint.
   std::uint8_t sample(std::span<const std::uint8_t> link_contacts, std::size_t joint) {
-    contacts_[joint] = debouncers_[joint].sample(wired_sensors(link_contacts, joint));
+    contacts_[joint] = debouncers_[joint].sample(joint_contacts(link_contacts, joint));
     return contacts_[joint];
   }
   /// The module of the joint restarts.
@@ -33,15 +43,14 @@ class TouchInputs {
     contacts_[joint] = 0;
   }
 
-  /// The same by links, as recordings have it.
+  /// The same by link, as recordings have it.
   void write_links(std::span<std::uint8_t> link_contacts) const {
     for (std::size_t joint = 0; joint < contacts_.size(); ++joint) {
-      link_contacts[joint + 1] = contacts_[joint] & StateFrame::rear_link_contact_bits;
+      write_link_contacts(link_contacts, joint, contacts_[joint]);
     }
-    link_contacts[0] = static_cast<std::uint8_t>(contacts_[0] >> 2U);
   }
 
-  /// Of each joint, as sampled last.
+  /// The last sample, by joint.
   [[nodiscard]] std::span<const std::uint8_t> contacts() const { return contacts_; }
 
  private:

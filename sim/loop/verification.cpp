@@ -7,10 +7,10 @@
 #include "shared/computer/hash/value_hash.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
-#include "sim/loop/internal_values.hpp"
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/servo_pulses.hpp"
 #include "sim/loop/touch_inputs.hpp"
+#include "sim/record/internal_values.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -148,7 +148,7 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
       chain.apply(*change++);
     }
     for (std::size_t joint = 0; joint < contacts.size(); ++joint) {
-      contacts[joint] = wired_sensors(tick.latched_contacts, joint);
+      contacts[joint] = joint_contacts(tick.latched_contacts, joint);
     }
     chain.advance(contacts);
     setpoint_hash.append(chain.setpoints());

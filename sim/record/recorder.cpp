@@ -10,6 +10,7 @@
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "shared/kernel/fingerprint.hpp"
+#include "sim/record/internal_values.hpp"
 #include "sim/record/recording_file.hpp"
 #include "sim/record/schema.hpp"
 
@@ -217,13 +218,11 @@ class Recorder::Storage {
         insert_name.run(slot, i, value.name, std::string_view(scale.symbol),
                         static_cast<double>(scale.denominator) / static_cast<double>(scale.numerator));
       }
-      for (std::uint32_t joint = 0; joint < scenario_.kernel.joint_count; ++joint) {
-        for (std::uint32_t i = 0; place.group.contains(joint) && i < declaration.internal_values.size(); ++i) {
-          internal_values_.push_back({slot, joint, i});
-        }
-      }
       write_start_parameters(slot);
     }
+    for_each_internal_value(scenario_.kernel, [this](unsigned slot, unsigned joint, unsigned number) {
+      internal_values_.push_back({slot, joint, number});
+    });
   }
 
   void write_start_parameters(std::uint32_t slot) {

@@ -11,6 +11,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/kernel/kernel.hpp"
+#include "sim/record/internal_values.hpp"
 #include "sim/record/schema.hpp"
 
 namespace proleg::sim {
@@ -56,6 +57,12 @@ double finite(const Statement& row, int column) {
   }
   return value;
 }
+
+/// An internal value of an algorithm.
+struct ValueName {
+  std::string name;
+  Unit unit;
+};
 
 /// Degrees and phases share a symbol; they differ in how text is read, not in how a value is written.
 Unit unit_of(const std::string& symbol) {
@@ -204,18 +211,24 @@ void Recording::read_slots() {
     if (read.joint_group.size() != joints_.size()) {
       throw Damage("a joint group that does not name every joint");
     }
+    JointMask group;
     for (std::uint32_t joint = 0; joint < joints_.size(); ++joint) {
-      if (!read.joint_group[joint]) {
-        continue;
-      }
-      std::uint32_t count = 0;
-      for (name.bind_all(read.slot); name.step(); ++count) {
-        if (natural(name, 0) != count) {
-          throw Damage("internal values that are not numbered from 0");
-        }
-        internal_values_.push_back({read.slot, joint, name.text(1), unit_of(name.text(2))});
+      if (read.joint_group[joint]) {
+        group.insert(joint);
       }
     }
+    std::vector<ValueName> names;
+    for (name.bind_all(read.slot); name.step();) {
+      if (natural(name, 0) != names.size()) {
+        throw Damage("internal values that are not numbered from 0");
+      }
+      names.push_back({name.text(1), unit_of(name.text(2))});
+    }
+    for_each_internal_value_of_slot(
+        static_cast<unsigned>(joints_.size()), group, static_cast<std::uint32_t>(names.size()),
+        [&](unsigned joint, unsigned number) {
+          internal_values_.push_back({read.slot, joint, names[number].name, names[number].unit});
+        });
     slots_.push_back(std::move(read));
   }
 }

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "firmware/module/board.hpp"
+#include "firmware/module/ports.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/loop/crystal.hpp"
+#include "sim/loop/injector.hpp"
+#include "sim/loop/joint_module.hpp"
+#include "sim/scenario/losses.hpp"
+
+namespace proleg::sim {
+
+/// A module restarts at the instant of a SYNC, which it does not receive.
+struct Restart {
+  std::uint32_t tick;
+  unsigned joint;
+};
+
+/// What a joint module of the loop is made with.
+struct ModuleParts {
+  Bus& bus;
+  unsigned joint;
+  firmware::Board board;
+  Crystal crystal;
+  std::function<std::uint8_t()> sensors;              ///< touch sensors wired to it, as firmware::ContactPort::read()
+  std::function<firmware::ServoReadings()> readings;  ///< of its servo and chip, at this moment
+};
+
+struct HardwareOptions {
+  /// Makes the module of a joint; null, or one that returns null: a native one.
+  std::function<std::unique_ptr<JointModule>(const ModuleParts&)> make_module;
+  const Losses* losses = nullptr;       ///< must outlive the loop
+  std::vector<Restart> restarts;        ///< by ascending tick
+  std::vector<InjectedFrame> injected;  ///< by ascending tick; sent by a node that is no module
+  /// Frames destroyed on the bus, which are sent again. The seed decides which ones.
+  struct BitErrors {
+    std::uint64_t seed = 0;
+    std::uint32_t threshold = 0;  ///< probability for a frame, times 2^32
+  };
+  BitErrors bit_errors;
+  /// Called for each frame on the bus when it ends, with the time since the modules were switched on.
+  Bus::Trace trace;
+  /// Called for what modules report by EMCY and for restarts, one line each.
+  std::function<void(const std::string&)> notice;
+  /// Crystals are off by up to this, each by an amount that follows from the scenario's seed.
+  std::uint32_t crystal_error_ppm = 100;
+  /// For tests: changes the boards, and frames on their way into the program of a joint's module.
+  std::function<void(unsigned joint, firmware::Board& board)> change_board;
+  std::function<void(unsigned joint, const CanFrame& frame, const std::function<void(const CanFrame&)>& deliver)>
+      tamper;
+  /// For tests: the touch sensors that a module reads instead.
+  std::function<std::uint8_t(unsigned joint, std::uint8_t sensors)> change_sensors;
+};
+
+}  // namespace proleg::sim

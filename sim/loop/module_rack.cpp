@@ -1,0 +1,106 @@
+#include "sim/loop/module_rack.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "sim/loop/module_making.hpp"
+#include "sim/loop/native_module.hpp"
+#include "sim/loop/touch_inputs.hpp"
+
+namespace proleg::sim {
+namespace {
+
+/// Longer than a SYNC waits for a frame on the wire, plus the drift of the crystals in a tick.
+constexpr BusTime max_sync_jitter = 500'000;
+
+}  // namespace
+
+ModuleRack::ModuleRack(Bus& bus, const Plant& plant, const Scenario& scenario, const HardwareOptions& options)
+    : scenario_(scenario), options_(options), records_(scenario.modules.size()) {
+  for (unsigned joint = 0; joint < scenario.modules.size(); ++joint) {
+    firmware::Board board = make_board(scenario, joint);
+    if (options.change_board) {
+      options.change_board(joint, board);
+    }
+    const auto sensors = [&plant, &options, joint] {
+      const std::uint8_t contacts = joint_contacts(plant.link_contacts(), joint);
+      return options.change_sensors ? options.change_sensors(joint, contacts) : contacts;
+    };
+    const ModuleParts parts{bus,     joint,
+                            board,   make_crystal(scenario, joint, options.crystal_error_ppm),
+                            sensors, [&plant, joint] { return plant.servo_readings(joint); }};
+    std::unique_ptr<JointModule> module = options.make_module ? options.make_module(parts) : nullptr;
+    modules_.push_back(module ? std::move(module) : make_native(parts));
+  }
+}
+
+std::unique_ptr<JointModule> ModuleRack::make_native(const ModuleParts& parts) const {
+  auto module = std::make_unique<NativeModule>(parts.bus, parts.board, parts.crystal, parts.sensors, parts.readings);
+  if (options_.tamper) {
+    module->set_tamper([&options = options_, joint = parts.joint](const CanFrame& frame, const auto& deliver) {
+      options.tamper(joint, frame, deliver);
+    });
+  }
+  return module;
+}
+
+void ModuleRack::power_on(BusTime now) {
+  for (const auto& module : modules_) {
+    module->power_on(now);
+  }
+}
+
+BusTime ModuleRack::next_event() const {
+  BusTime next = never_on_bus;
+  for (const auto& module : modules_) {
+    next = std::min(next, module->next_event());
+  }
+  return next;
+}
+
+void ModuleRack::advance_to(BusTime now, BusTime quiet_until) {
+  for (const auto& module : modules_) {
+    if (module->next_event() <= now) {
+      module->advance_to(now, quiet_until);
+    }
+  }
+}
+
+void ModuleRack::begin_tick(std::uint32_t tick, BusTime now) {
+  restarted_ = {};
+  for (; next_restart_ < options_.restarts.size() && options_.restarts[next_restart_].tick <= tick; ++next_restart_) {
+    restart(options_.restarts[next_restart_].joint, now);
+  }
+  for (const auto& module : modules_) {
+    module->note_sync(tick);
+  }
+}
+
+void ModuleRack::restart(unsigned joint, BusTime now) {
+  // A module with a slow crystal still owes pulses of the tick before.
+  modules_[joint]->run_out(now, now + max_sync_jitter);
+  last_pulses_[joint] = modules_[joint]->pulse();
+  modules_[joint]->power_on(now);
+  restarted_.insert(joint);
+}
+
+void ModuleRack::end_tick() {
+  for (unsigned joint = 0; joint < size(); ++joint) {
+    records_[joint] = modules_[joint]->last_tick();
+  }
+}
+
+void ModuleRack::take_problems(std::uint32_t tick, HardwareReport& report) {
+  for (unsigned joint = 0; joint < size(); ++joint) {
+    while (const auto problem = modules_[joint]->take_problem()) {
+      report.problems.push_back({tick, joint, *problem});
+      if (options_.notice) {
+        options_.notice(scenario_.robot.joints[joint].name + " (node " + std::to_string(scenario_.modules[joint].node) +
+                        "): " + *problem);
+      }
+    }
+  }
+}
+
+}  // namespace proleg::sim

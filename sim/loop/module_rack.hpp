@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "shared/kernel/kernel.hpp"
+#include "sim/loop/hardware_options.hpp"
+#include "sim/loop/hardware_report.hpp"
+#include "sim/loop/plant.hpp"
+#include "sim/scenario/scenario.hpp"
+
+namespace proleg::sim {
+
+/// The joint modules on the bus: makes them, restarts them when the run says so, and reads what they computed.
+class ModuleRack {
+ public:
+  /// Makes the module of each joint and attaches it to the bus, switched off. All arguments must outlive the rack. The
+  /// rack must be the first to attach: the index of a module's controller is its joint.
+  ModuleRack(Bus& bus, const Plant& plant, const Scenario& scenario, const HardwareOptions& options);
+
+  [[nodiscard]] unsigned size() const { return static_cast<unsigned>(modules_.size()); }
+  [[nodiscard]] std::size_t controller(unsigned joint) const { return modules_[joint]->controller(); }
+
+  void power_on(BusTime now);
+  [[nodiscard]] BusTime next_event() const;
+  /// quiet_until: as JointModule::advance_to() has it.
+  void advance_to(BusTime now, BusTime quiet_until);
+
+  /// At SYNC, before the modules receive it: restarts the modules that are due.
+  void begin_tick(std::uint32_t tick, BusTime now);
+  /// At the next SYNC, before the modules receive it: reads what they computed.
+  void end_tick();
+
+  /// What a module had computed at the last end_tick().
+  [[nodiscard]] const firmware::TickRecord& record(unsigned joint) const { return records_[joint]; }
+  [[nodiscard]] bool has_computed(unsigned joint, std::uint32_t tick) const {
+    return sim::has_computed(records_[joint], joint, tick);
+  }
+  /// Whether the run restarted it at the last SYNC.
+  [[nodiscard]] bool has_restarted(unsigned joint) const { return restarted_.contains(joint); }
+
+  /// The pulse that the servo of a joint gets now.
+  [[nodiscard]] std::optional<std::int32_t> pulse(unsigned joint) const { return modules_[joint]->pulse(); }
+  /// The same, but of a module that restarted at the last SYNC: the pulse before the restart.
+  [[nodiscard]] std::optional<std::int32_t> pulse_before_restart(unsigned joint) const {
+    return has_restarted(joint) ? last_pulses_[joint] : pulse(joint);
+  }
+
+  /// Moves the problems that modules have reported since the last call into the report.
+  void take_problems(std::uint32_t tick, HardwareReport& report);
+
+ private:
+  [[nodiscard]] std::unique_ptr<JointModule> make_native(const ModuleParts& parts) const;
+  void restart(unsigned joint, BusTime now);
+
+  const Scenario& scenario_;
+  const HardwareOptions& options_;
+  std::vector<std::unique_ptr<JointModule>> modules_;  ///< by joint
+  std::vector<firmware::TickRecord> records_;          ///< by joint
+  std::size_t next_restart_ = 0;
+  JointMask restarted_;
+  std::array<std::optional<std::int32_t>, max_joints> last_pulses_;  ///< of modules that restarted, before that
+};
+
+}  // namespace proleg::sim

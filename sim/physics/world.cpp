@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "sim/physics/engine.hpp"
+#include "sim/physics/hinge_motor.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "sim/physics/touch_sensors.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -41,34 +43,6 @@ struct GeometryData {
   std::optional<double> friction;
 };
 
-/// How the touch sensors lie in a link: unit vectors in its frame.
-struct SensorFrame {
-  Eigen::Vector3d forward;   ///< along the link, to the head; zero if the robot is this link only
-  Eigen::Vector3d down;      ///< out of the underside
-  Eigen::Vector3d sideways;  ///< across both
-};
-
-/// What it takes to read the torque of a hinge's motor. The engine tells force and torque that the whole hinge exerts
-/// on the centre of mass of its first link, and that is the bearing's force, with its moment, too:
-///   torque * axis - force * moment,  moment = axis x (anchor - centre of mass)
-struct Motor {
-  dJointFeedback feedback{};
-  double most = 0.0;  ///< Nm
-  Eigen::Vector3d axis_in_link = Eigen::Vector3d::Zero();
-  Eigen::Vector3d moment_in_link = Eigen::Vector3d::Zero();
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< in the world, at the start of the last step
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-};
-
-/// rotation: 3 rows of 4, as the engine has it.
-inline Eigen::Vector3d rotated(const dReal* rotation, const Eigen::Vector3d& vector) {
-  return {rotation[0] * vector.x() + rotation[1] * vector.y() + rotation[2] * vector.z(),
-          rotation[4] * vector.x() + rotation[5] * vector.y() + rotation[6] * vector.z(),
-          rotation[8] * vector.x() + rotation[9] * vector.y() + rotation[10] * vector.z()};
-}
-
-inline double dot(const dReal* a, const Eigen::Vector3d& b) { return a[0] * b.x() + a[1] * b.y() + a[2] * b.z(); }
-
 }  // namespace
 
 class World::Implementation {
@@ -81,7 +55,7 @@ class World::Implementation {
     prepare_engine_for_this_thread();
     messages_before_ = engine_messages();
     world_.reset(dWorldCreate());
-    // Without a threading implementation of its own, a world stepped beside others crashes.
+    // A world without its own threading implementation crashes when other worlds are stepped beside it.
     threading_.reset(dThreadingAllocateSelfThreadedImplementation());
     dWorldSetStepThreadingImplementation(world_.get(), dThreadingImplementationGetFunctions(threading_.get()),
                                          threading_.get());
@@ -105,12 +79,8 @@ class World::Implementation {
     add_joints(robot, environment.robot_pose);
   }
 
-  void set_joint_speed(std::size_t joint, double speed) { dJointSetHingeParam(joints_[joint], dParamVel, speed); }
-
-  void set_joint_torque(std::size_t joint, double torque) {
-    dJointSetHingeParam(joints_[joint], dParamFMax, torque);
-    motors_[joint].most = torque;
-  }
+  void set_joint_speed(std::size_t joint, double speed) { motors_[joint].set_speed(speed); }
+  void set_joint_torque(std::size_t joint, double torque) { motors_[joint].set_max_torque(torque); }
 
   void step() {
     if (world_ == nullptr) {
@@ -127,11 +97,7 @@ class World::Implementation {
 
   [[nodiscard]] double joint_angle(std::size_t joint) const { return dJointGetHingeAngle(joints_[joint]); }
 
-  [[nodiscard]] double motor_torque(std::size_t joint) const {
-    const Motor& motor = motors_[joint];
-    return std::clamp(dot(motor.feedback.t1, motor.axis) - dot(motor.feedback.f1, motor.moment), -motor.most,
-                      motor.most);
-  }
+  [[nodiscard]] double motor_torque(std::size_t joint) const { return motors_[joint].torque(); }
 
   [[nodiscard]] Pose link_pose(std::size_t link) const {
     const dReal* position = dBodyGetPosition(bodies_[link]);
@@ -152,24 +118,22 @@ class World::Implementation {
     return sum / mass;
   }
 
-  [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const { return link_contacts_[link]; }
+  [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const { return touch_sensors_.pressed(link); }
   [[nodiscard]] std::size_t contact_count() const { return contact_count_; }
   [[nodiscard]] std::optional<double> lowest_ground() const { return lowest_ground_; }
   [[nodiscard]] std::size_t solver_messages() const { return engine_messages() - messages_before_; }
 
  private:
   void advance() {
-    link_contacts_.assign(bodies_.size(), 0);
+    touch_sensors_.release_all();
     contact_count_ = 0;
     dSpaceCollide2(reinterpret_cast<dGeomID>(robot_space_.get()), reinterpret_cast<dGeomID>(environment_space_.get()),
                    this, &Implementation::on_near);
     if (self_collision_) {
       dSpaceCollide(robot_space_.get(), this, &Implementation::on_near);
     }
-    for (std::size_t i = 0; i < motors_.size(); ++i) {
-      const dReal* rotation = dBodyGetRotation(bodies_[i]);
-      motors_[i].axis = rotated(rotation, motors_[i].axis_in_link);
-      motors_[i].moment = rotated(rotation, motors_[i].moment_in_link);
+    for (HingeMotor& motor : motors_) {
+      motor.note_axis();
     }
     if (stepper_ == Stepper::direct) {
       dWorldStep(world_.get(), step_s_);
@@ -179,8 +143,8 @@ class World::Implementation {
     dJointGroupEmpty(contact_group_.get());
   }
 
-  /// An error that the engine raises in the middle of a step leaves it with work half done; taking its world down then
-  /// would fail the next assertion. So what it holds is given up, but kept reachable.
+  /// An error that the engine raises in the middle of a step leaves its world half updated. Destroying that world would
+  /// fail the next assertion, so it is never destroyed, only kept reachable.
   void abandon() {
     static auto* const abandoned = new std::vector<void*>;
     static std::mutex mutex;
@@ -189,7 +153,7 @@ class World::Implementation {
                                          world_.release(), threading_.release()});
   }
 
-  /// One number that is not finite makes a sum not finite, so one look at a sum is a look at all of it.
+  /// One number that is not finite makes the sum not finite, so checking the sum checks all of them.
   void require_finite_positions() const {
     double sum = 0.0;
     for (const dBodyID body : bodies_) {
@@ -273,23 +237,8 @@ class World::Implementation {
       bodies_.push_back(body);
       masses_.push_back(link.mass.mass);
       mass_centers_.push_back(link.mass.center);
-      sensor_frames_.push_back(sensor_frame(robot, i));
+      touch_sensors_.add_link(robot, i);
     }
-    link_contacts_.assign(bodies_.size(), 0);
-  }
-
-  static SensorFrame sensor_frame(const RobotModel& robot, std::size_t link) {
-    const Pose& pose = robot.links[link].pose;
-    const Eigen::Vector3d middle = pose * robot.links[link].mass.center;
-    const Eigen::Vector3d front = link > 0 ? robot.joints[link - 1].anchor : middle;
-    const Eigen::Vector3d rear = link < robot.joints.size() ? robot.joints[link].anchor : middle;
-    const Eigen::Vector3d forward = (front - rear).stableNormalized();  // zero if the link is all of the robot
-    constexpr double upright = 0.99;
-    const Eigen::Vector3d down =
-        -(std::abs(forward.z()) < upright ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY());
-    const Eigen::Vector3d underside = (down - down.dot(forward) * forward).normalized();
-    const Eigen::Quaterniond to_link = pose.orientation.conjugate();
-    return {to_link * forward, to_link * underside, to_link * forward.cross(underside)};
   }
 
   void add_joints(const RobotModel& robot, const Pose& robot_pose) {
@@ -304,17 +253,8 @@ class World::Implementation {
       dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
       dJointSetHingeParam(hinge, dParamLoStop, joint.lower_limit);
       dJointSetHingeParam(hinge, dParamHiStop, joint.upper_limit);
-      dJointSetHingeParam(hinge, dParamFMax, joint.max_torque);
-      dJointSetHingeParam(hinge, dParamVel, 0.0);
       joints_.push_back(hinge);
-
-      const Link& link = robot.links[i];
-      const Eigen::Quaterniond to_link = link.pose.orientation.conjugate();
-      const Eigen::Vector3d arm = to_link * (joint.anchor - link.pose.position) - link.mass.center;
-      motors_[i].most = joint.max_torque;
-      motors_[i].axis_in_link = to_link * joint.axis.normalized();
-      motors_[i].moment_in_link = motors_[i].axis_in_link.cross(arm);
-      dJointSetFeedback(hinge, &motors_[i].feedback);
+      motors_[i].attach(hinge, bodies_[i], joint, robot.links[i]);
     }
   }
 
@@ -327,10 +267,10 @@ class World::Implementation {
     if (data_a.link >= 0 && data_b.link >= 0 && std::abs(data_a.link - data_b.link) <= 1) {
       return;
     }
-    constexpr int most_contacts = 8;
-    // Left as it is: the engine fills in the geometry, and looks at nothing of the surface but what its mode says.
-    std::array<dContact, most_contacts> contacts;
-    const int count = dCollide(a, b, most_contacts, &contacts[0].geom, sizeof(dContact));
+    constexpr int max_contacts = 8;
+    // Not initialised: the engine fills in the geometry, and reads only what the mode of the surface names.
+    std::array<dContact, max_contacts> contacts;
+    const int count = dCollide(a, b, max_contacts, &contacts[0].geom, sizeof(dContact));
     for (int i = 0; i < count; ++i) {
       dContact& contact = contacts[static_cast<std::size_t>(i)];
       // Without this mode mu would be a force.
@@ -351,26 +291,9 @@ class World::Implementation {
   }
 
   void note_touch(int link, int other, const dContact& contact) {
-    if (link < 0 || other >= 0) {
-      return;
-    }
-    const auto index = static_cast<std::size_t>(link);
-    // Every contact of every step passes here, so this uses what the engine has at hand: the middle of the link is its
-    // centre of mass, and the origin of the engine's body.
-    const dReal* rotation = dBodyGetRotation(bodies_[index]);  // 3 rows of 4
-    const dReal* middle = dBodyGetPosition(bodies_[index]);
-    Eigen::Vector3d point = Eigen::Vector3d::Zero();   // of the contact, from the middle, in the frame of the link
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // its sign depends on the order of the two bodies
-    for (int row = 0; row < 3; ++row) {
-      const Eigen::Vector3d row_of_rotation(rotation[4 * row], rotation[4 * row + 1], rotation[4 * row + 2]);
-      point += row_of_rotation * (contact.geom.pos[row] - middle[row]);
-      normal += row_of_rotation * contact.geom.normal[row];
-    }
-    constexpr double steepest = 0.707;  // sine of 45 degrees of roll; beyond, the link lies on its flank
-    const SensorFrame& sensors = sensor_frames_[index];
-    if (point.dot(sensors.down) > 0.0 && std::abs(normal.dot(sensors.sideways)) < steepest) {
-      link_contacts_[index] =
-          static_cast<std::uint8_t>(link_contacts_[index] | (point.dot(sensors.forward) < 0.0 ? 1U : 2U));
+    if (link >= 0 && other < 0) {
+      const auto index = static_cast<std::size_t>(link);
+      touch_sensors_.press(index, bodies_[index], contact.geom);
     }
   }
 
@@ -383,11 +306,10 @@ class World::Implementation {
   std::vector<GeometryData> geometry_data_;
   std::vector<dBodyID> bodies_;
   std::vector<dJointID> joints_;
-  std::vector<Motor> motors_;  ///< of each joint
+  std::vector<HingeMotor> motors_;  ///< by joint
   std::vector<double> masses_;
   std::vector<Eigen::Vector3d> mass_centers_;
-  std::vector<SensorFrame> sensor_frames_;
-  std::vector<std::uint8_t> link_contacts_;
+  TouchSensors touch_sensors_;
   std::size_t contact_count_ = 0;
   std::optional<double> lowest_ground_;
   std::size_t messages_before_ = 0;

@@ -16,7 +16,7 @@ namespace proleg::sim {
 enum class Stepper : std::uint8_t {
   direct,     ///< dWorldStep: exact, repeatable on every thread; the faster one up to about 8 links
   iterative,  ///< dWorldQuickStep, 20 iterations: the faster one above. Draws from one random generator for the whole
-              ///< process, so runs that are to be repeatable need a process each.
+              ///< process, so each run that must be repeatable needs its own process.
 };
 
 /// A robot and its environment in the Open Dynamics Engine. Time passes in equal steps; a world of the same models
@@ -29,37 +29,36 @@ class World {
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  /// The speed, in rad/s, that the motor of a joint is to reach with the torque it has.
+  /// The speed, in rad/s, that the motor of a joint tries to reach with the torque it has.
   void set_joint_speed(std::size_t joint, double speed);
   /// The torque, in Nm, that the motor of a joint has from now on; at first that of its model. 0: the joint is limp.
   void set_joint_torque(std::size_t joint, double torque);
 
   /// Advances the world by one step. Throws PhysicsError if the solver broke down or a position of a link is no longer
-  /// a finite number; after that the world can be read and destroyed, no more.
+  /// a finite number; after that the world can only be read and destroyed.
   void step();
 
   /// Angle of a joint in rad, as RobotModel defines it.
   [[nodiscard]] double joint_angle(std::size_t joint) const;
   /// The torque, in Nm, that the motor of a joint gave in the last step, about the joint's axis: what it adds to the
-  /// energy per radian that the joint turns. At a stop of the joint it is what stop and motor gave together, but no
-  /// more than the motor has. 0 before the first step.
+  /// energy per radian that the joint turns. At a stop of the joint it is the sum of stop and motor, limited to what
+  /// the motor has. 0 before the first step.
   [[nodiscard]] double motor_torque(std::size_t joint) const;
   /// Pose of the frame of a link in the world.
   [[nodiscard]] Pose link_pose(std::size_t link) const;
   /// Centre of mass of the robot in the world.
   [[nodiscard]] Eigen::Vector3d center_of_mass() const;
-  /// Which of the two touch sensors under a link are pressed by the environment: bit 0 the one towards the tail, bit 1
-  /// the one towards the head; each senses its half of the underside. A contact presses a sensor where it lies below
-  /// the link's centre of mass, unless it pushes from the side by more than 45 degrees. The underside is the one that
-  /// looks down (-z) in the robot's file, at angles 0, and turns with the link; of a link upright in the file, towards
-  /// -y. The contacts are those found at the start of the last step, where the links were then; before the first step
-  /// nothing is pressed.
+  /// Which of the two touch sensors under a link the environment presses: bit 0 the one towards the tail, bit 1 the one
+  /// towards the head. Each senses its half of the underside. A contact presses a sensor if it lies below the link's
+  /// centre of mass and does not push from the side by more than 45 degrees. The underside faces down (-z) in the
+  /// robot's file at angles 0, or towards -y if the link is upright in the file; it turns with the link. The contacts
+  /// are those at the start of the last step; before the first step no sensor is pressed.
   [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const;
   /// Number of contact points at the start of the last step.
   [[nodiscard]] std::size_t contact_count() const;
   /// Height of the lowest point of the environment; nothing if there is no environment.
   [[nodiscard]] std::optional<double> lowest_ground() const;
-  /// Complaints of the solver since the world was made ("LCP internal error" and its like).
+  /// Number of messages from the solver since the world was made, such as "LCP internal error".
   [[nodiscard]] std::size_t solver_messages() const;
 
  private:

@@ -1,0 +1,46 @@
+#include "sim/physics/hinge_motor.hpp"
+
+#include <algorithm>
+
+namespace proleg::sim {
+namespace {
+
+/// rotation: 3 rows of 4, as the engine has it.
+Eigen::Vector3d rotated(const dReal* rotation, const Eigen::Vector3d& vector) {
+  return {rotation[0] * vector.x() + rotation[1] * vector.y() + rotation[2] * vector.z(),
+          rotation[4] * vector.x() + rotation[5] * vector.y() + rotation[6] * vector.z(),
+          rotation[8] * vector.x() + rotation[9] * vector.y() + rotation[10] * vector.z()};
+}
+
+double dot(const dReal* a, const Eigen::Vector3d& b) { return a[0] * b.x() + a[1] * b.y() + a[2] * b.z(); }
+
+}  // namespace
+
+void HingeMotor::attach(dJointID hinge, dBodyID body, const Joint& joint, const Link& link) {
+  hinge_ = hinge;
+  body_ = body;
+  const Eigen::Quaterniond to_link = link.pose.orientation.conjugate();
+  const Eigen::Vector3d arm = to_link * (joint.anchor - link.pose.position) - link.mass.center;
+  axis_in_link_ = to_link * joint.axis.normalized();
+  moment_in_link_ = axis_in_link_.cross(arm);
+  set_max_torque(joint.max_torque);
+  set_speed(0.0);
+  dJointSetFeedback(hinge, &feedback_);
+}
+
+void HingeMotor::set_max_torque(double torque) {
+  dJointSetHingeParam(hinge_, dParamFMax, torque);
+  max_torque_ = torque;
+}
+
+void HingeMotor::note_axis() {
+  const dReal* rotation = dBodyGetRotation(body_);
+  axis_ = rotated(rotation, axis_in_link_);
+  moment_ = rotated(rotation, moment_in_link_);
+}
+
+double HingeMotor::torque() const {
+  return std::clamp(dot(feedback_.t1, axis_) - dot(feedback_.f1, moment_), -max_torque_, max_torque_);
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <ode/ode.h>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "sim/robot/robot_model.hpp"
+
+namespace proleg::sim {
+
+/// The two touch sensors under each link, as World::link_contacts() describes them.
+class TouchSensors {
+ public:
+  void add_link(const RobotModel& robot, std::size_t link);
+
+  /// Before each step: no sensor is pressed.
+  void release_all() { pressed_.assign(frames_.size(), 0); }
+  /// The environment touches a link. body: of the link.
+  void press(std::size_t link, dBodyID body, const dContactGeom& contact);
+  /// Bit 0 rear, bit 1 front.
+  [[nodiscard]] std::uint8_t pressed(std::size_t link) const { return pressed_[link]; }
+
+ private:
+  /// How the sensors lie in a link: unit vectors in its frame.
+  struct SensorFrame {
+    Eigen::Vector3d forward;   ///< along the link, to the head; zero if the robot has no other link
+    Eigen::Vector3d down;      ///< out of the underside
+    Eigen::Vector3d sideways;  ///< perpendicular to both
+  };
+
+  std::vector<SensorFrame> frames_;  ///< by link
+  std::vector<std::uint8_t> pressed_;
+};
+
+// Runs for every contact of every step, so it uses what the engine has at hand: the middle of the link is its centre of
+// mass, and the origin of the engine's body.
+inline void TouchSensors::press(std::size_t link, dBodyID body, const dContactGeom& contact) {
+  const dReal* rotation = dBodyGetRotation(body);  // 3 rows of 4
+  const dReal* middle = dBodyGetPosition(body);
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();   // of the contact, from the middle, in the frame of the link
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // its sign depends on the order of the two bodies
+  for (int row = 0; row < 3; ++row) {
+    const Eigen::Vector3d row_of_rotation(rotation[4 * row], rotation[4 * row + 1], rotation[4 * row + 2]);
+    point += row_of_rotation * (contact.pos[row] - middle[row]);
+    normal += row_of_rotation * contact.normal[row];
+  }
+  constexpr double max_sine = 0.707;  // of 45 degrees of roll; beyond, the link lies on its flank
+  const SensorFrame& frame = frames_[link];
+  if (point.dot(frame.down) > 0.0 && std::abs(normal.dot(frame.sideways)) < max_sine) {
+    pressed_[link] = static_cast<std::uint8_t>(pressed_[link] | (point.dot(frame.forward) < 0.0 ? 1U : 2U));
+  }
+}
+
+}  // namespace proleg::sim

@@ -16,18 +16,18 @@ namespace proleg::sim {
 namespace {
 
 Stepper choose_stepper(const Scenario& scenario) {
-  constexpr std::size_t most_links_for_direct = 8;  // measured: above, the iterative stepper is faster
+  constexpr std::size_t max_links_for_direct = 8;  // measured: above, the iterative stepper is faster
   if (scenario.solver == Solver::automatic) {
-    return scenario.robot.links.size() <= most_links_for_direct ? Stepper::direct : Stepper::iterative;
+    return scenario.robot.links.size() <= max_links_for_direct ? Stepper::direct : Stepper::iterative;
   }
   return scenario.solver == Solver::direct ? Stepper::direct : Stepper::iterative;
 }
 
 /// 90 degrees = 2^30, saturated.
 std::int32_t joint_angle_in_steps(double radians) {
-  constexpr double highest = std::numeric_limits<std::int32_t>::max();
+  constexpr double max_steps = std::numeric_limits<std::int32_t>::max();
   const double steps = std::round(radians / (std::numbers::pi / 2.0) * quarter_turn);
-  return static_cast<std::int32_t>(std::clamp(steps, -highest, highest));
+  return static_cast<std::int32_t>(std::clamp(steps, -max_steps, max_steps));
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ void Plant::set_command(std::size_t joint, std::int32_t command) {
   if (latency_steps_ == 0) {
     act(joint, command);
   } else {
-    orders_.push_back({steps_ + latency_steps_, joint, command});
+    delayed_pulses_.push_back({steps_ + latency_steps_, joint, command});
   }
 }
 
@@ -67,7 +67,7 @@ void Plant::release(std::size_t joint) {
   if (latency_steps_ == 0) {
     go_limp(joint);
   } else {
-    orders_.push_back({steps_ + latency_steps_, joint, std::nullopt});
+    delayed_pulses_.push_back({steps_ + latency_steps_, joint, std::nullopt});
   }
 }
 
@@ -87,13 +87,13 @@ void Plant::go_limp(std::size_t joint) {
   }
 }
 
-void Plant::follow_orders() {
-  for (; !orders_.empty() && orders_.front().step <= steps_; orders_.pop_front()) {
-    const Order& order = orders_.front();
-    if (order.command) {
-      act(order.joint, *order.command);
+void Plant::act_on_delayed_pulses() {
+  for (; !delayed_pulses_.empty() && delayed_pulses_.front().step <= steps_; delayed_pulses_.pop_front()) {
+    const DelayedPulse& pulse = delayed_pulses_.front();
+    if (pulse.command) {
+      act(pulse.joint, *pulse.command);
     } else {
-      go_limp(order.joint);
+      go_limp(pulse.joint);
     }
   }
 }
@@ -104,7 +104,7 @@ std::uint32_t Plant::step_start_us(std::uint32_t step) const {
 
 void Plant::step() {
   if (latency_steps_ > 0) {
-    follow_orders();
+    act_on_delayed_pulses();
   }
   for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
     Servo& servo = servos_[joint];
@@ -135,18 +135,18 @@ void Plant::finish_tick() {
 }
 
 void Plant::require_crawling(const Eigen::Vector3d& center) const {
-  constexpr double fastest = 100.0;  // m/s; a robot that crawls stays far below, one whose solver broke down does not
-  constexpr double deepest = 1.0;    // m
+  constexpr double max_speed = 100.0;  // m/s; a robot that crawls is far slower, one whose solver failed is not
+  constexpr double max_fall = 1.0;     // m
   const double tick_s = scenario_.kernel.tick_period_us * 1e-6;
   const auto now = [&] {
     std::ostringstream text;
     text << finished_ticks_ * tick_s << " s";
     return text.str();
   };
-  if ((center - center_before_).norm() > fastest * tick_s) {
+  if ((center - center_before_).norm() > max_speed * tick_s) {
     throw PhysicsError("the simulation became unstable at " + now() + ": the robot moves faster than 100 m/s");
   }
-  if (center.z() < world_.lowest_ground().value_or(start_.z()) - deepest) {
+  if (center.z() < world_.lowest_ground().value_or(start_.z()) - max_fall) {
     throw PhysicsError("the robot fell off its environment: at " + now() +
                        " it is a metre below everything it could stand on");
   }

@@ -14,28 +14,29 @@
 
 namespace proleg::sim {
 
-/// What the joints' programs move: servos and the world, in physics steps of which a tick has a whole number.
+/// The servos and the world that the joints' programs move, in steps of the physics. A tick is a whole number of steps.
 class Plant {
  public:
   /// scenario: must outlive the plant.
   explicit Plant(const Scenario& scenario);
 
-  /// A servo takes a pulse, in twelfths of a microsecond. It acts on it after its latency, in whole steps.
+  /// A servo takes a pulse, in twelfths of a microsecond. It acts on the pulse after its latency, in whole steps.
   void set_command(std::size_t joint, std::int32_t command);
   /// A servo that gets no pulses goes limp, after its latency.
   void release(std::size_t joint);
 
   [[nodiscard]] std::uint32_t steps_per_tick() const { return steps_per_tick_; }
   /// Microseconds from the tick to the start of one of its steps, rounded down; pulses start at whole microseconds, so
-  /// nothing is lost.
+  /// the fraction does not matter.
   [[nodiscard]] std::uint32_t step_start_us(std::uint32_t step) const;
-  /// Throws PhysicsError if the engine gave up.
+  /// Throws PhysicsError if the engine fails.
   void step();
-  /// To be called after the last step of a tick: updates what follows. Throws PhysicsError if the robot moves faster
-  /// than 100 m/s or fell off its environment.
+  /// Must be called after the last step of a tick: updates the values below and the measures. A pulse that a servo
+  /// takes after the last step counts for the next tick. Throws PhysicsError if the robot moves faster than 100 m/s or
+  /// fell off its environment.
   void finish_tick();
 
-  // As of the last tick that was finished.
+  // At the end of the last finished tick.
   /// The last pulse of each servo; the middle position before the first one.
   [[nodiscard]] std::span<const std::int32_t> servo_commands() const { return servo_commands_; }
   [[nodiscard]] std::span<const Pose> link_poses() const { return link_poses_; }
@@ -49,23 +50,23 @@ class Plant {
 
   /// Horizontal distance, in m, of the centre of mass from its start (thesis, equation 3.7).
   [[nodiscard]] double displacement() const;
-  /// What the run was worth so far, and how much each link was on the ground (sim/measure/gait_meter.hpp).
+  /// The measures of the run so far (sim/measure/gait_meter.hpp).
   [[nodiscard]] const GaitMeter& meter() const { return meter_; }
   /// Contact points in a physics step, on average.
   [[nodiscard]] double mean_contacts() const;
   [[nodiscard]] const World& world() const { return world_; }
 
  private:
-  /// What a servo was told: a pulse, or that there is none.
-  struct Order {
-    std::uint64_t step;  ///< from which on it acts on it
+  /// A pulse that a servo has taken and does not act on yet.
+  struct DelayedPulse {
+    std::uint64_t step;  ///< at which the servo begins to act on it
     std::size_t joint;
-    std::optional<std::int32_t> command;
+    std::optional<std::int32_t> command;  ///< nothing: pulses end, and the servo goes limp
   };
 
   void act(std::size_t joint, std::int32_t command);
   void go_limp(std::size_t joint);
-  void follow_orders();
+  void act_on_delayed_pulses();
   void read_world();
   void add_contact_noise();
   void require_crawling(const Eigen::Vector3d& center) const;
@@ -80,20 +81,20 @@ class Plant {
   Eigen::Vector3d center_before_;
   GaitMeter meter_;
   std::uint64_t latency_steps_;
-  std::deque<Order> orders_;  ///< that servos have not acted on yet
+  std::deque<DelayedPulse> delayed_pulses_;
   std::vector<std::int32_t> servo_commands_;
   struct Servo {
-    std::int32_t command;  ///< that it acts on
+    std::int32_t command;  ///< the pulse that it acts on
     bool limp = false;
     double commanded_speed = 0.0;  ///< rad/s, in the last step
     double angle_before = 0.0;     ///< rad, at the start of the last step
     double angle = 0.0;            ///< rad, now
   };
-  std::vector<Servo> servos_;  ///< of each joint
+  std::vector<Servo> servos_;  ///< by joint
   Pcg32 contact_noise_;
   std::vector<Pose> link_poses_;
   std::vector<double> joint_angles_;
-  std::vector<double> joint_targets_;        ///< rad, that the servos turn to
+  std::vector<double> joint_targets_;        ///< rad, of the servos in the last step
   std::vector<std::uint8_t> link_contacts_;  ///< with noise
 };
 

@@ -38,8 +38,9 @@ const Change* Simulation::advance() {
     take_servo_pulses(tick_start_us + plant_.step_start_us(step));
     plant_.step();
   }
-  take_servo_pulses(tick_start_us + scenario_.kernel.tick_period_us);
+  // Pulses that start after the last step act in the next tick, as they do with modules in the loop (PlantTicks).
   plant_.finish_tick();
+  take_servo_pulses(tick_start_us + scenario_.kernel.tick_period_us);
   return change;
 }
 
@@ -51,7 +52,7 @@ const Change* Simulation::apply_changes() {
   return &scenario_.changes[next_change_++];
 }
 
-/// A step of the physics moves the servos by the pulses whose intervals have started by its own start.
+/// The servos take the pulses whose intervals have started by then. A step uses those that have started by its start.
 void Simulation::take_servo_pulses(std::uint64_t until_us) {
   for (; taken_pulses_ < servo_pulses_.size() && servo_pulses_[taken_pulses_].time_us <= until_us; ++taken_pulses_) {
     plant_.set_command(servo_pulses_[taken_pulses_].joint, servo_pulses_[taken_pulses_].command);

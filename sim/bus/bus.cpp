@@ -20,10 +20,10 @@ bool prevails(const CanFrame& left, const CanFrame& right) {
 }
 
 constexpr unsigned error_bits = 6 + 8;       // flag and delimiter; flags that do not begin together would take up to 12
-constexpr unsigned suspend_bits = 8;         // what a passive sender waits for others
+constexpr unsigned suspend_bits = 8;         // a passive sender waits this long for others
 constexpr unsigned earliest_collision = 16;  // frames of one identifier differ from the length on
 
-/// Takes back a mark at the end, also if a listener throws.
+/// Resets a mark at the end of a scope, also if a listener throws.
 class Reset {
  public:
   explicit Reset(bool& mark) : mark_(&mark) {}
@@ -38,9 +38,9 @@ class Reset {
 }  // namespace
 
 Bus::Bus(std::uint32_t bit_rate) : bit_rate_(bit_rate), waits_(bit_rate) {
-  if (bit_rate == 0 || bit_rate > highest_bit_rate) {
+  if (bit_rate == 0 || bit_rate > max_bit_rate) {
     throw std::invalid_argument("a CAN bus of " + std::to_string(bit_rate) + " bit/s, expected 1 to " +
-                                std::to_string(highest_bit_rate));
+                                std::to_string(max_bit_rate));
   }
 }
 
@@ -60,7 +60,7 @@ BusTime Bus::next_event() const {
     return end_of_wait;
   }
   if (watchers_ > 0 || collision_rule_ == CollisionRule::bit_error) {
-    return std::min(end_of_wait, arbitration_at_ + 1);  // more can be said when the transmission has begun
+    return std::min(end_of_wait, arbitration_at_ + 1);  // the end is known when the transmission has begun
   }
   return std::min(end_of_wait, arbitration_at_ + duration(winner()->candidate_->bits));
 }
@@ -70,7 +70,7 @@ BusTime Bus::earliest_delivery() const {
     return current_.end;
   }
   const bool collides = collision_rule_ == CollisionRule::bit_error;
-  return std::min(waits_.next_end(), now_ + duration(collides ? earliest_collision + error_bits : shortest_frame_bits));
+  return std::min(waits_.next_end(), now_ + duration(collides ? earliest_collision + error_bits : min_frame_bits));
 }
 
 void Bus::advance_to(BusTime time) {
@@ -126,7 +126,7 @@ void Bus::end_waits(BusTime time) {
   reporting_ = true;
   const Reset guard(reporting_);
   for (Controller* controller : waits_.ending_at(time)) {
-    // Whoever was called before may have switched it off.
+    // A listener called before may have switched it off.
     if (!waits_.contains(*controller)) {
       continue;
     }
@@ -193,7 +193,7 @@ void Bus::start(BusTime time) {
       first->role_ == Controller::Role::loop_back || std::ranges::any_of(controllers_, [&](const auto& controller) {
         return controller->acknowledges_ && controller.get() != first;
       });
-  foresee_error(acknowledged, bits, collision_bit);
+  predict_error(acknowledged, bits, collision_bit);
   total_.busy += free_at_ - time;
   if (!waits_.empty()) {
     waits_.end_silence(time);
@@ -202,7 +202,7 @@ void Bus::start(BusTime time) {
     sender->sent_mailbox_ = static_cast<std::size_t>(sender->candidate_ - sender->mailboxes_.data());
   }
   if (watchers_ > 0) {
-    tell_watchers(time);
+    notify_watchers(time);
   }
   arbitration_at_ = never_on_bus;
   sending_ = true;
@@ -213,7 +213,7 @@ void Bus::start(BusTime time) {
   }
 }
 
-void Bus::foresee_error(bool acknowledged, unsigned bits, unsigned collision_bit) {
+void Bus::predict_error(bool acknowledged, unsigned bits, unsigned collision_bit) {
   constexpr unsigned crc_delimiter_to_end = 10;
   unsigned last_bit = 0;  // in which the error is seen, counted from 1
   if (collision_bit < bits) {
@@ -232,7 +232,7 @@ void Bus::foresee_error(bool acknowledged, unsigned bits, unsigned collision_bit
   free_at_ = current_.start + duration(last_bit + error_bits + interframe_bits);
 }
 
-void Bus::tell_watchers(BusTime time) {
+void Bus::notify_watchers(BusTime time) {
   reporting_ = true;
   const Reset guard(reporting_);
   for (const auto& controller : controllers_) {
@@ -282,7 +282,7 @@ void Bus::succeed() {
       if (controller->last_sent_ == transmission_) {
         controller->errors_.transmitted();
         controller->last_error_ = CanError::none;
-      } else if (controller->hears_) {
+      } else if (controller->receives_) {
         controller->errors_.received();
         controller->last_error_ = CanError::none;
       }
@@ -304,7 +304,7 @@ void Bus::fail() {
   for (const auto& controller : controllers_) {
     const bool counts = controller->took_part_since(current_.start);
     if (controller->last_sent_ != transmission_) {
-      if (counts && controller->hears_) {
+      if (counts && controller->receives_) {
         controller->errors_.receiver_error();
         controller->last_error_ = CanError::form;
       }
@@ -312,7 +312,7 @@ void Bus::fail() {
     }
     controller->take_back();
     if (counts) {
-      // A node that finds itself alone does not become bus-off (rule c, exception 1).
+      // A node that is alone on the bus does not enter bus-off (rule c, exception 1).
       const bool alone = failure_ == CanError::acknowledgement && controller->error_state() == ErrorState::passive;
       if (!alone) {
         controller->errors_.transmitter_error();
@@ -357,7 +357,7 @@ void Bus::report() {
   const std::size_t count = controllers_.size();
   for (std::size_t i = 0; i < count; ++i) {
     const Controller& controller = *controllers_[i];
-    if (controller.last_sent_ == transmission_ || !controller.hears_ || controller.part_since_ > current_.start) {
+    if (controller.last_sent_ == transmission_ || !controller.receives_ || controller.part_since_ > current_.start) {
       continue;
     }
     if (loss_rule_ && loss_rule_(current_.frame, i)) {
@@ -373,9 +373,9 @@ void Bus::report_error() {
   for (std::size_t i = 0; i < count; ++i) {
     const Controller& controller = *controllers_[i];
     const bool sent = controller.last_sent_ == transmission_;
-    // Whoever is in bus-off by now was on the bus.
+    // A controller that is in bus-off now was on the bus when the error occurred.
     if (controller.presence_ == Controller::Presence::on && controller.part_since_ <= current_.start &&
-        (sent || controller.hears_)) {
+        (sent || controller.receives_)) {
       controller.listener_->error_seen(current_.end, sent);
     }
   }

@@ -2,15 +2,15 @@
 
 // A classical CAN bus (ISO 11898-1) on virtual time: arbitration, exact durations of frames, delivery, errors.
 //
-// Whoever drives the simulation takes turns with the bus:
+// The program that drives the simulation takes turns with the bus:
 //
 //   const BusTime time = min(bus.next_event(), deadlines of the nodes);
-//   bus.advance_to(time);          // listeners hear what was received and transmitted, and may send
+//   bus.advance_to(time);          // calls listeners for frames received and transmitted; they may send
 //   ...                            // nodes do what is due at `time`, and may send
 //
 // The bus is free 3 bits after a frame (interframe space). If frames are requested by then, the arbitration is at that
-// instant, else at the instant of the first request. It is held when time moves on beyond the instant, so that everyone
-// who asks in it takes part, in whatever order the driver calls the nodes.
+// instant, else at the instant of the first request. The bus decides it when time moves beyond the instant, so that all
+// nodes that request a frame in that instant take part, in any order of calls.
 
 #include <cstddef>
 #include <cstdint>
@@ -36,12 +36,12 @@ struct Transmission {
 struct BusStatistics {
   std::uint64_t frames = 0;      ///< that ended
   BusTime busy = 0;              ///< time taken by frames and error frames with their interframe spaces
-  BusTime period = 0;            ///< time in which that was counted
+  BusTime period = 0;            ///< time over which these were counted
   std::uint64_t losses = 0;      ///< deliveries withheld by the loss rule
   std::uint64_t collisions = 0;  ///< see Bus::on_collision
   std::uint64_t errors = 0;      ///< error frames; what they destroyed is sent again and counts when it succeeds
 
-  /// Part of the time in which the bus was taken, 0 to 1.
+  /// Share of the time in which the bus was busy, 0 to 1.
   [[nodiscard]] double load() const {
     return period == 0 ? 0.0 : static_cast<double>(busy) / static_cast<double>(period);
   }
@@ -49,14 +49,14 @@ struct BusStatistics {
 
 class Bus {
  public:
-  static constexpr std::uint32_t highest_bit_rate = 1'000'000;
+  static constexpr std::uint32_t max_bit_rate = 1'000'000;
 
   /// bit_rate: bit/s, 1 to 1,000,000; else std::invalid_argument.
-  explicit Bus(std::uint32_t bit_rate = highest_bit_rate);
+  explicit Bus(std::uint32_t bit_rate = max_bit_rate);
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  /// The controller of one more node, switched on. It lives as long as the bus; the listener must outlive the bus.
+  /// Adds a node's controller, switched on. It is valid as long as the bus; the listener must outlive the bus.
   Controller& attach(BusListener& listener);
 
   /// The time up to which the bus has been simulated.
@@ -64,14 +64,15 @@ class Bus {
 
   [[nodiscard]] std::uint32_t bit_rate() const { return static_cast<std::uint32_t>(bit_rate_); }
 
-  /// When a frame ends next, or a node comes back to the bus, if nobody asks for or withdraws a frame before;
-  /// `never_on_bus` if nothing is on the way. May be earlier, with nothing to hear then: if errors are possible.
+  /// When the next frame ends or the next node returns to the bus, if no frame is requested or withdrawn before;
+  /// `never_on_bus` if neither will happen. If errors are possible, it may be earlier, and then no listener is called.
   [[nodiscard]] BusTime next_event() const;
 
   /// When the frame or error frame on the wire ends; now() if there is none.
   [[nodiscard]] BusTime busy_until() const { return sending_ ? current_.end : now_; }
 
-  /// Before this nobody hears of a frame: the end of the one on the wire, else of the shortest that could start now.
+  /// No listener is called for a frame before this: the end of the frame on the wire, else of the shortest frame that
+  /// could start now.
   [[nodiscard]] BusTime earliest_delivery() const;
 
   /// Lets time pass. Every frame that ends by `time`, inclusive, is reported: to its sender (or senders, in the order
@@ -79,37 +80,36 @@ class Bus {
   /// Must not be called by a listener: std::logic_error.
   void advance_to(BusTime time);
 
-  /// Whether a receiver does not get a frame, though it was on the bus without an error. receiver: index of a
+  /// Whether a frame that was on the bus without an error is withheld from a receiver, given by the index of its
   /// controller. Empty: nothing is lost.
   using LossRule = std::function<bool(const CanFrame& frame, std::size_t receiver)>;
   void set_loss_rule(LossRule rule) { loss_rule_ = std::move(rule); }
 
-  /// Whether a transmission is destroyed: everybody sees its CRC delimiter dominant, a bit error for the sender and a
+  /// Whether a transmission is destroyed: all nodes see its CRC delimiter dominant, a bit error for the sender and a
   /// form error for the receivers. An error frame follows at once: 6 bits of flag, 8 of delimiter, and the interframe
   /// space. The sender tries again. transmission: counts up from 1. Empty: nothing is destroyed.
   ///
-  /// Whatever this rule says, a frame that nobody acknowledges meets an error in its ACK slot. All controllers that
-  /// hear it do, and two that send it together take each other's word for it (in truth they would not, if nobody else
-  /// did).
+  /// A frame without an acknowledgement meets an error in its ACK slot, independently of this rule. All controllers
+  /// that receive a frame acknowledge it. Simplified: two controllers that send it together acknowledge each other.
   using ErrorRule = std::function<bool(const CanFrame& frame, std::uint64_t transmission)>;
   void set_error_rule(ErrorRule rule) { error_rule_ = std::move(rule); }
 
-  /// Called for each frame when it ends without an error, before anybody hears of it.
+  /// Called for each frame when it ends without an error, before any listener.
   using Trace = std::function<void(const Transmission&)>;
   void set_trace(Trace trace) { trace_ = std::move(trace); }
 
   /// Two controllers send one identifier at the same instant. If their frames are equal in every bit they become one
-  /// transmission that each takes for its own. If not, that is a fault of the network, and this is called, once for
-  /// every loser. What happens then says CollisionRule.
+  /// transmission, which both report as sent. If not, that is a fault of the network, and this is called once for
+  /// every loser. CollisionRule decides what happens then.
   using CollisionReport = std::function<void(BusTime time, const CanFrame& winner, const CanFrame& loser)>;
   void on_collision(CollisionReport report) { collision_report_ = std::move(report); }
 
   enum class CollisionRule : std::uint8_t {
-    /// The frame that has a dominant bit first wins, the other one is tried again. Not what a real bus does, but
-    /// everybody hears both frames: modules that share a node id find out (docs/protocol.md) and stop.
+    /// The frame that has a dominant bit first wins, the other one is tried again. A real bus does not do this, but all
+    /// nodes receive both frames: modules that share a node id detect it (docs/protocol.md) and stop.
     dominant_wins,
-    /// As in a real bus: a bit error where the frames differ. All try again together, so that they collide without end
-    /// and are in bus-off after 32 attempts, unless someone lets go.
+    /// As on a real bus: a bit error where the frames differ. All try again together, so they collide again and are in
+    /// bus-off after 32 attempts, unless one of them withdraws its frame.
     bit_error,
   };
   void set_collision_rule(CollisionRule rule) { collision_rule_ = rule; }
@@ -132,8 +132,8 @@ class Bus {
   }
   void start(BusTime time);
   /// Whether the transmission that starts meets an error; then it ends with the error frame.
-  void foresee_error(bool acknowledged, unsigned bits, unsigned collision_bit);
-  void tell_watchers(BusTime time);
+  void predict_error(bool acknowledged, unsigned bits, unsigned collision_bit);
+  void notify_watchers(BusTime time);
   void finish();
   void succeed();
   void fail();
@@ -152,11 +152,11 @@ class Bus {
   BusTime arbitration_at_ = never_on_bus;  ///< while a frame is on the wire: never
   bool sending_ = false;                   ///< a frame is on the wire:
   Transmission current_;
-  CanError failure_ = CanError::none;  ///< what its senders will see
+  CanError failure_ = CanError::none;  ///< the error that its senders will see
   std::vector<Controller*> senders_;
   std::uint64_t transmission_ = 0;  ///< number of the current or last one, from 1
   bool reporting_ = false;          ///< listeners are being called
-  bool counting_ = false;           ///< there has been an error, so that error counters may differ from 0
+  bool counting_ = false;           ///< an error has occurred, so error counters may differ from 0
   RecessiveWaits waits_;
   std::size_t watchers_ = 0;
 
@@ -166,7 +166,7 @@ class Bus {
   CollisionReport collision_report_;
   CollisionRule collision_rule_ = CollisionRule::dominant_wins;
   BusStatistics total_;  ///< since time 0; `busy` with all of the current frame
-  BusStatistics mark_;   ///< what statistics_since_time_0() was at the start of the statistics
+  BusStatistics mark_;   ///< statistics_since_time_0() at the start of the statistics
 };
 
 }  // namespace proleg::sim

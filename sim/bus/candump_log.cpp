@@ -11,7 +11,7 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::size_t enough_to_write = 1U << 16U;
+constexpr std::size_t min_write_bytes = 1U << 16U;
 
 [[noreturn]] void fail(const std::string& name, int error) {
   throw CandumpLogError(name + ": cannot be written: " + (error == 0 ? "the stream refuses" : std::strerror(error)));
@@ -33,12 +33,12 @@ void append_decimal(std::string& text, std::uint64_t value, std::size_t digits) 
 
 CandumpLog::CandumpLog(const std::filesystem::path& path, std::string interface)
     : stream_(&file_), name_(path.string()), interface_(std::move(interface)) {
-  // What is lost by a slip of the keyboard does not come back.
+  // A mistyped path must not overwrite a file that is no CAN log.
   std::error_code error;
   std::ifstream old(path, std::ios::binary);
   if (std::filesystem::is_regular_file(path, error) && old && old.peek() != std::ifstream::traits_type::eof() &&
       old.peek() != '(') {
-    throw CandumpLogError(name_ + ": found another file, expected none, or a CAN log to be replaced");
+    throw CandumpLogError(name_ + ": found a file that is no CAN log, expected no file or a CAN log to replace");
   }
   old.close();
   errno = 0;
@@ -55,7 +55,7 @@ CandumpLog::~CandumpLog() {
   try {
     finish();
   } catch (const std::exception&) {
-    static_cast<void>(0);  // Whoever wants to know has called finish().
+    static_cast<void>(0);  // finish() reports errors; a destructor cannot.
   }
 }
 
@@ -73,7 +73,7 @@ void CandumpLog::write(BusTime time, const CanFrame& frame) {
     append_hex(buffer_, byte, 2);
   }
   buffer_ += '\n';
-  if (buffer_.size() >= enough_to_write) {
+  if (buffer_.size() >= min_write_bytes) {
     flush();
   }
 }

@@ -17,23 +17,23 @@ class CandumpLogError : public std::runtime_error {
 };
 
 /// Writes frames in the log format of candump (Debian's can-utils), which tshark, canplayer, log2asc, SavvyCAN and
-/// others read; with the time at which the frame ended, down to the microsecond, one frame a line:
+/// others read. Each line has one frame and the time at which it ended, in seconds with six decimals:
 ///
 ///   (0000000003.001065) can0 080#2D
 class CandumpLog {
  public:
   /// Creates the file, or empties it if it is a CAN log or empty already. Throws CandumpLogError.
   explicit CandumpLog(const std::filesystem::path& path, std::string interface = "can0");
-  /// Writes to a stream, which must outlive the log; `name` stands for it in messages.
+  /// Writes to a stream, which must outlive the log; messages call it `name`.
   CandumpLog(std::ostream& stream, std::string name, std::string interface = "can0");
-  /// Writes what is left, but cannot say whether that worked: finish() can.
+  /// Writes the rest, but cannot report errors: finish() can.
   ~CandumpLog();
   CandumpLog(const CandumpLog&) = delete;
   CandumpLog& operator=(const CandumpLog&) = delete;
 
   /// Throws CandumpLogError.
   void write(BusTime time, const CanFrame& frame);
-  /// Writes what is left, so that the log is complete. Throws CandumpLogError.
+  /// Writes the rest, so that the log is complete. Throws CandumpLogError.
   void finish();
 
  private:

@@ -24,7 +24,7 @@ bool Controller::send(std::size_t mailbox, const CanFrame& frame) {
   Mailbox& free = mailboxes_[mailbox];
   free.frame.identifier = frame.identifier;
   free.frame.length = frame.length;
-  free.frame.data.fill(0);  // nobody sees what lies beyond the length
+  free.frame.data.fill(0);  // bytes beyond the length are not sent
   std::ranges::copy(frame.bytes(), free.frame.data.begin());
   free.bits = frame_bits(free.frame);
   free.request = requests_++;
@@ -66,7 +66,7 @@ void Controller::switch_on() {
   if (presence_ != Presence::on) {
     bus_->waits_.remove(*this);
     presence_ = Presence::on;
-    forget_errors();
+    reset_errors();
     update_part();
   }
 }
@@ -84,7 +84,7 @@ void Controller::recover() {
   }
 }
 
-void Controller::forget_errors() {
+void Controller::reset_errors() {
   errors_.reset();
   last_error_ = CanError::none;
   reported_state_ = ErrorState::active;
@@ -123,8 +123,8 @@ void Controller::update_part() {
   if (takes_part_ && !before) {
     part_since_ = bus_->now();
   }
-  hears_ = takes_part_ && role_ != Role::loop_back;
-  acknowledges_ = hears_ && role_ != Role::silent;
+  receives_ = takes_part_ && role_ != Role::loop_back;
+  acknowledges_ = receives_ && role_ != Role::silent;
 }
 
 void Controller::take_back() {

@@ -12,7 +12,7 @@ enum class ErrorState : std::uint8_t {
   bus_off,  ///< the transmit error counter is above 255: takes no part in the bus
 };
 
-/// What went wrong last, numbered as bxCAN's ESR.LEC does (RM0090, 32.9.2).
+/// The last error, with the numbers of bxCAN's ESR.LEC (RM0090, 32.9.2).
 enum class CanError : std::uint8_t {
   none = 0,
   stuff = 1,
@@ -28,7 +28,7 @@ class ErrorCounters {
  public:
   /// 0 to 255; 256 and more is bus-off, after which both stay until reset().
   [[nodiscard]] unsigned transmit_errors() const { return transmit_; }
-  /// 0 to 135. ISO leaves open how far it counts beyond 128; like bxCAN it stops counting above 127.
+  /// 0 to 135. ISO does not define the count above 128; like bxCAN this one stops above 127.
   [[nodiscard]] unsigned receive_errors() const { return receive_; }
   [[nodiscard]] ErrorState state() const;
 

@@ -33,8 +33,8 @@ constexpr unsigned crc_step(unsigned crc, unsigned byte) {
   return ((crc << 8U) & crc_mask) ^ crc_table[((crc >> (crc_bits - 8)) ^ byte) & 0xFFU];
 }
 
-/// Where the bit stuffing is: the level of the last bit on the wire, and how many bits before the next one have it.
-/// Five equal bits do not last: the stuff bit behind them starts a run of one.
+/// The state of bit stuffing: the level of the last bit on the wire, and the number of equal bits up to it. After five
+/// equal bits the stuff bit starts a new run.
 struct Run {
   unsigned level;
   unsigned length;  ///< 1 to 4
@@ -44,7 +44,7 @@ struct Run {
 };
 constexpr unsigned run_count = 8;
 
-/// Adds a bit; returns the number of stuff bits behind it.
+/// Adds a bit; returns the number of stuff bits that follow it.
 constexpr unsigned add_bit(Run& run, unsigned level) {
   run.length = level == run.level ? run.length + 1 : 1;
   run.level = level;
@@ -60,7 +60,7 @@ struct StuffStep {
   std::uint8_t stuff_bits;
 };
 
-/// What eight more bits do to each state.
+/// The effect of eight more bits on each state.
 constexpr std::array<std::array<StuffStep, 256>, run_count> make_stuff_table() {
   std::array<std::array<StuffStep, 256>, run_count> table{};
   for (unsigned start = 0; start < run_count; ++start) {
@@ -107,7 +107,7 @@ std::vector<bool> stuffed_bits(const CanFrame& frame) {
 }  // namespace
 
 std::uint16_t crc_sequence(const CanFrame& frame) {
-  // Zeros before the first bit leave the register at 0, so the header may count as three bytes.
+  // Zeros before the first bit leave the register at 0, so the header is processed as three bytes.
   const unsigned bits = header(frame);
   unsigned crc = crc_step(0, bits >> 16U);
   crc = crc_step(crc, (bits >> 8U) & 0xFFU);

@@ -10,17 +10,17 @@ namespace proleg::sim {
 inline constexpr unsigned interframe_bits = 3;
 
 /// Bits of a frame on the wire, stuff bits included, from start of frame to the last bit of end of frame
-/// (ISO 11898-1, classical base frame format). The interframe space comes on top. 44 to 132.
+/// (ISO 11898-1, classical base frame format), without the interframe space. 44 to 132.
 [[nodiscard]] unsigned frame_bits(const CanFrame& frame);
 
-/// The least that frame_bits() gives.
-inline constexpr unsigned shortest_frame_bits = 44;
+/// The minimum of frame_bits().
+inline constexpr unsigned min_frame_bits = 44;
 
 /// The first bit, from 0 (start of frame), in which two frames differ on the wire; frame_bits() if they do not.
 [[nodiscard]] unsigned first_different_bit(const CanFrame& left, const CanFrame& right);
 
-/// The CRC sequence that a controller puts behind the data: 15 bits, generator polynomial 0x4599 (CRC-15/CAN), over all
-/// bits before it but the stuff bits.
+/// The CRC sequence that a controller appends to the data: 15 bits, generator polynomial 0x4599 (CRC-15/CAN), over all
+/// bits before it except stuff bits.
 [[nodiscard]] std::uint16_t crc_sequence(const CanFrame& frame);
 
 }  // namespace proleg::sim

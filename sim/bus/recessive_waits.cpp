@@ -32,9 +32,9 @@ void RecessiveWaits::begin_silence(BusTime end_of_frame) {
 void RecessiveWaits::end_silence(BusTime time) {
   for (Wait& wait : waits_) {
     const BusTime since = std::min(time, std::max(recessive_since_, wait.since));
-    // Rounded, as durations have lost their fractions.
+    // Rounded to the nearest, because durations are truncated.
     const std::uint64_t bits = ((time - since) * bit_rate_ + second / 2) / second;
-    // A wait that ends now is somebody else's event.
+    // A wait that ends now is left to ending_at().
     wait.sequences -= static_cast<unsigned>(std::min<std::uint64_t>(bits / sequence_bits, wait.sequences - 1));
   }
 }

@@ -9,7 +9,7 @@
 
 namespace proleg::sim {
 
-/// Something in the world that does not move: the floor, a wall, a step.
+/// An object in the world that does not move: the floor, a wall, a step.
 struct StaticObject {
   std::string name;
   Pose pose;  ///< in the world

@@ -13,7 +13,7 @@ class Crystal {
   /// parts_per_billion: how much faster than true time; within +-1,000,000.
   explicit Crystal(std::int32_t parts_per_billion = 0) : error_(parts_per_billion) {}
 
-  /// What the clock shows at a time, whole microseconds.
+  /// The reading of the clock at a time, in whole microseconds.
   [[nodiscard]] Microseconds at(BusTime time) const {
     const auto true_us = static_cast<std::int64_t>(time / 1000);
     return static_cast<Microseconds>(true_us + floor_divide(true_us * error_, billion));

@@ -10,20 +10,20 @@
 
 namespace proleg::sim {
 
-/// A value that is not what the gait in memory makes of the same inputs.
+/// A value that differs from that of the gait in memory with the same inputs.
 struct Difference {
   enum class Kind : std::uint8_t {
     setpoint,
     servo_command,
     last_servo_command,  ///< as recorded beside the set-point
     internal_value,
-    missed_tick,  ///< a module was gone at its end, and the run had not stopped it; no found and expected value
+    missed_tick,  ///< a module did not finish it, and the run had not stopped it; no found and expected value
   };
   Kind kind;
   std::uint32_t tick;
   std::uint32_t joint;                   ///< kernel order
-  std::optional<std::int32_t> found;     ///< nothing: it is missing
-  std::optional<std::int32_t> expected;  ///< nothing: it should not be there
+  std::optional<std::int32_t> found;     ///< nothing: the value is missing
+  std::optional<std::int32_t> expected;  ///< nothing: there must be no value
 };
 
 using DifferenceNote = std::function<void(const Difference&)>;
@@ -32,7 +32,7 @@ using DifferenceNote = std::function<void(const Difference&)>;
 void compare_setpoints(std::uint32_t tick, std::span<const std::int32_t> found, std::span<const std::int32_t> expected,
                        const DifferenceNote& note);
 
-/// The same for pulses, which are in the order of time, then of joints; one that only one side has differs, too.
+/// The same for pulses, which are in the order of time, then of joints. A pulse that only one side has is a difference.
 void compare_pulses(std::uint32_t tick, std::span<const ServoPulse> found, std::span<const ServoPulse> expected,
                     const DifferenceNote& note);
 

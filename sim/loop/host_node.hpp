@@ -12,7 +12,7 @@
 
 namespace proleg::sim {
 
-/// What a master needs to know of a scenario.
+/// A scenario in the form that the master takes.
 class MasterInput {
  public:
   /// scenario: must outlive this.
@@ -22,7 +22,7 @@ class MasterInput {
 
   canopen::RobotSetup setup;
   std::vector<canopen::Change> changes;
-  std::vector<std::uint32_t> serials;  ///< of the robot's file, 0: any
+  std::vector<std::uint32_t> serials;  ///< from the robot's file; 0: any
 
  private:
   std::vector<std::uint8_t> nodes_;
@@ -35,7 +35,7 @@ class MasterInput {
 /// exact clock.
 class HostNode final : private BusListener {
  public:
-  /// Attaches to the bus. scenario: must outlive the node. sync_producer: joint whose module gives the ticks.
+  /// Attaches to the bus. scenario: must outlive the node. sync_producer: joint whose module produces the SYNC.
   HostNode(Bus& bus, const Scenario& scenario, unsigned sync_producer);
   HostNode(const HostNode&) = delete;
   HostNode& operator=(const HostNode&) = delete;
@@ -45,9 +45,9 @@ class HostNode final : private BusListener {
   void advance_to(BusTime now);
 
   [[nodiscard]] canopen::MasterState state() const { return master_.state(); }
-  /// Why the start ended, or the first thing that went wrong in flight, as one line; given once.
+  /// Why the start failed, or the first problem in flight, as one line; returned once.
   [[nodiscard]] std::optional<std::string> take_problem();
-  /// What happened, as one line for a person, oldest first.
+  /// The oldest event that this function has not returned yet, as one line for a person.
   [[nodiscard]] std::optional<std::string> take_event();
 
  private:

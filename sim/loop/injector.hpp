@@ -7,13 +7,13 @@
 
 namespace proleg::sim {
 
-/// A frame that somebody else sends on the bus, right after a SYNC.
+/// A frame that a node other than host and modules sends on the bus, right after a SYNC.
 struct InjectedFrame {
   std::uint32_t tick;
   CanFrame frame;
 };
 
-/// A node that sends what it is told to and does not listen.
+/// A node that sends given frames and ignores what it receives.
 class Injector final : private BusListener {
  public:
   /// Attaches to the bus. frames: by ascending tick; they must outlive the injector.
@@ -21,10 +21,10 @@ class Injector final : private BusListener {
   Injector(const Injector&) = delete;
   Injector& operator=(const Injector&) = delete;
 
-  /// SYNC of this tick was heard.
+  /// At the SYNC of this tick: sends the frames that are due.
   void advance_to(std::uint32_t tick) {
     for (; !frames_.empty() && frames_.front().tick <= tick; frames_ = frames_.subspan(1)) {
-      waiting_.push_back(frames_.front().frame);
+      pending_.push_back(frames_.front().frame);
     }
     send();
   }
@@ -34,13 +34,13 @@ class Injector final : private BusListener {
   void transmitted(BusTime /*time*/, const CanFrame& /*frame*/) override { send(); }
 
   void send() {
-    while (!waiting_.empty() && controller_.send(waiting_.front())) {
-      waiting_.pop_front();
+    while (!pending_.empty() && controller_.send(pending_.front())) {
+      pending_.pop_front();
     }
   }
 
   std::span<const InjectedFrame> frames_;
-  std::deque<CanFrame> waiting_;
+  std::deque<CanFrame> pending_;
   Controller& controller_;
 };
 

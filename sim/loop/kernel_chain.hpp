@@ -1,7 +1,7 @@
 #pragma once
 
-// A robot's gait in memory: one kernel a joint, as on the robot, which exchange state frames and nothing else. What the
-// modules on a bus are compared with, and what computes the gait where there are none.
+// A robot's gait in memory: one kernel for each joint, as on the robot; the kernels exchange state frames and nothing
+// else. It computes the gait where there are no modules, and modules on a bus are compared with it.
 
 #include <cstdint>
 #include <memory>
@@ -15,7 +15,7 @@
 
 namespace proleg::sim {
 
-/// The kernel refuses a configuration or a change. Readers of scenarios have checked what they hand on, so there it is
+/// The kernel rejects a configuration or a change. Readers of scenarios check their values, so with a scenario this is
 /// a fault of the program. what(): the reason.
 class KernelRefusal : public std::logic_error {
  public:
@@ -24,20 +24,20 @@ class KernelRefusal : public std::logic_error {
 
 class KernelChain {
  public:
-  /// The arguments are copied. Here as in apply(): KernelRefusal.
+  /// Copies the arguments. Throws KernelRefusal, as apply() does.
   KernelChain(const KernelConfiguration& configuration, std::span<const JointLimits> limits,
               std::span<const Setting> settings);
 
-  /// State frames that are not delivered from now on. losses: must outlive the chain; null for none.
+  /// Withholds state frames from now on. losses: must outlive the chain; null for none.
   void set_losses(const Losses* losses) { losses_ = losses; }
 
   /// A change for the coming tick.
   void apply(const Change& change);
 
-  /// The module of a joint restarts: from the coming tick on it computes nothing. The frame that it has sent for that
-  /// tick is still heard.
+  /// The module of a joint restarts: from the coming tick on it computes nothing. The other joints still receive the
+  /// frame that it has sent for that tick.
   void stop(unsigned joint);
-  /// It takes its place again at the coming tick, with the parameters of the settings and of all changes so far.
+  /// The joint computes again from the coming tick on, with the parameters of the settings and of all changes so far.
   void join(unsigned joint);
   [[nodiscard]] bool is_running(unsigned joint) const { return running_.contains(joint); }
 
@@ -47,7 +47,7 @@ class KernelChain {
 
   /// Of each joint; a joint that does not run keeps its last one.
   [[nodiscard]] std::span<const std::int32_t> setpoints() const { return setpoints_; }
-  /// Frames that the losses kept back in the last tick.
+  /// Frames that the losses withheld in the last tick.
   [[nodiscard]] std::span<const Loss> lost() const { return lost_; }
   /// The coming tick.
   [[nodiscard]] std::uint32_t tick() const { return tick_; }
@@ -61,11 +61,11 @@ class KernelChain {
 
   KernelConfiguration configuration_;
   std::vector<JointLimits> limits_;
-  std::vector<Setting> settings_;  ///< start values, then what changes made of them
+  std::vector<Setting> settings_;  ///< start values, then those of the changes so far
   std::vector<std::unique_ptr<KernelOf<1>>> kernels_;
   const Losses* losses_ = nullptr;
   JointMask running_;
-  JointMask sent_;  ///< whose frames labelled tick() are on their way
+  JointMask sent_;  ///< joints that have sent frames labelled tick()
   std::uint32_t tick_ = 0;
   std::vector<std::int32_t> setpoints_;
   std::vector<Loss> lost_;

@@ -11,7 +11,7 @@
 namespace proleg::sim {
 namespace {
 
-/// The last word of a unique id whose check sum is a serial number: CRC-32 (shared/fixed/crc32.hpp), run backwards.
+/// The last word of a unique id whose check sum is the given serial number: CRC-32 (shared/fixed/crc32.hpp), reversed.
 std::uint32_t word_for_serial(std::uint32_t crc_before, std::uint32_t serial) {
   constexpr std::uint32_t reflected_polynomial = 0xEDB88320;
   std::uint32_t remainder = ~serial;

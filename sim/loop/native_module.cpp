@@ -39,7 +39,7 @@ void NativeModule::transmitted(BusTime time, const CanFrame& frame) {
 }
 
 void NativeModule::error_state_changed(BusTime time) {
-  // Between the other states the controller goes on by itself; the module ignores a return from where it never was.
+  // The controller handles the other states itself; the module ignores bus_back() if it was not in bus-off.
   if (controller_.error_state() == ErrorState::bus_off) {
     module_.bus_off(crystal_.at(time));
   } else {

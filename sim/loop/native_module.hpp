@@ -13,20 +13,20 @@
 namespace proleg::sim {
 
 /// A joint module on the simulated bus: the module's program as built for this computer, with a controller, a crystal,
-/// a servo, touch sensors and meters.
+/// a servo, touch sensors and measurements.
 class NativeModule final : public JointModule,
                            private BusListener,
                            private firmware::ServoPort,
                            private firmware::ContactPort {
  public:
-  /// Reads the touch sensors that are wired to the module, as they are at this moment.
+  /// Reads the touch sensors that are wired to the module, at this moment.
   using Sensors = std::function<std::uint8_t()>;
-  /// What the servo and the chip say of themselves, as they are at this moment.
+  /// Measurements of the servo and the chip, at this moment.
   using Readings = std::function<firmware::ServoReadings()>;
-  /// What stands between controller and program in tests: hands on a frame, or does not, or something else.
+  /// For tests, between controller and program: delivers a frame, withholds it, or delivers another one.
   using Tamper = std::function<void(const CanFrame& frame, const std::function<void(const CanFrame&)>& deliver)>;
 
-  /// Attaches to the bus. The module is off. Without readings it measures nothing.
+  /// Attaches to the bus, switched off. Without readings the module measures nothing.
   NativeModule(Bus& bus, const firmware::Board& board, Crystal crystal, Sensors sensors, Readings readings = {});
   NativeModule(const NativeModule&) = delete;
   NativeModule& operator=(const NativeModule&) = delete;
@@ -42,7 +42,7 @@ class NativeModule final : public JointModule,
   void set_tamper(Tamper tamper) { tamper_ = std::move(tamper); }
 
  private:
-  /// A port of its own: read() of ContactPort has the same name.
+  /// A separate object, because read() of ContactPort has the same name.
   struct Meters final : firmware::SensorPort {
     explicit Meters(Readings readings) : source(std::move(readings)) {}
     [[nodiscard]] firmware::ServoReadings read() override { return source ? source() : firmware::ServoReadings{}; }

@@ -10,26 +10,26 @@
 
 namespace proleg::sim {
 
-/// What the loop does with servos and world within a tick, and when.
+/// An action of the loop on servos or world within a tick.
 struct PlantAction {
   enum class Kind : std::uint8_t {
-    read_servos,  ///< take the pulses of an interval
+    read_servos,  ///< read the pulses of an interval
     step,         ///< make a step of the physics
   };
   BusTime time;  ///< after the SYNC
   Kind kind;
-  std::uint64_t number;  ///< interval since SYNC 0, or step of the tick
+  std::uint64_t number;  ///< of the interval since SYNC 0, or of the step in the tick
 };
 
 /// The actions of a tick, by time. An interval's pulse is read in the middle of the interval, or half a millisecond
-/// after its start if that is earlier: by then the module has given it, and it has not given the next. A step is made
-/// in its own middle, after the intervals that have started by its start.
+/// after its start if that is earlier: by then the module has given this pulse and not yet the next. A step is made in
+/// its own middle, after the intervals that have started by its start.
 inline void schedule_tick(const ServoSchedule& servo, const Plant& plant, std::uint32_t tick,
                           std::uint32_t servo_period_us, std::uint32_t tick_period_us,
                           std::vector<PlantAction>& actions) {
-  constexpr std::uint64_t longest_wait_us = 500;
+  constexpr std::uint64_t max_wait_us = 500;
   const std::uint64_t tick_start_us = std::uint64_t{tick} * tick_period_us;
-  const std::uint64_t wait_us = std::min<std::uint64_t>(servo_period_us / 2, longest_wait_us);
+  const std::uint64_t wait_us = std::min<std::uint64_t>(servo_period_us / 2, max_wait_us);
   const std::uint64_t half_step = std::uint64_t{tick_period_us} * 1000 / plant.steps_per_tick() / 2;
   const std::uint64_t end = servo.first_interval(std::uint64_t{tick} + 1);
   std::uint64_t interval = servo.first_interval(tick);
@@ -48,7 +48,7 @@ inline void schedule_tick(const ServoSchedule& servo, const Plant& plant, std::u
   for (; interval < end; ++interval) {
     actions.push_back({read_time(interval), PlantAction::Kind::read_servos, interval});
   }
-  // A reading may come before a step that does not look at it.
+  // A reading may come before a step that does not use it.
   std::ranges::stable_sort(actions, {}, &PlantAction::time);
 }
 

@@ -55,12 +55,12 @@ void PlantTicks::take_readings(std::uint64_t until_us) {
 }
 
 void PlantTicks::end(BusTime now) {
-  late_.clear();
+  pending_.clear();
   completion_ = now;
   for (; next_action_ < actions_.size(); ++next_action_) {
     const PlantAction& action = actions_[next_action_];
     if (action.kind == PlantAction::Kind::read_servos) {
-      late_.push_back(action);
+      pending_.push_back(action);
       completion_ = std::max(completion_, sync_ + action.time);
     } else {
       act(action);
@@ -71,7 +71,7 @@ void PlantTicks::end(BusTime now) {
 }
 
 void PlantTicks::complete() {
-  for (const PlantAction& action : late_) {
+  for (const PlantAction& action : pending_) {
     act(action);
   }
   take_readings((std::uint64_t{tick_} + 1) * scenario_.kernel.tick_period_us);

@@ -19,33 +19,33 @@ class PlantTicks {
  public:
   /// The pulse that the servo of a joint gets now.
   using ReadPulse = std::function<std::optional<std::int32_t>(std::uint32_t joint)>;
-  /// A pulse that a servo took, or that it got none.
+  /// The pulse of a servo's interval; nothing if the servo got none.
   struct Reading {
     std::uint64_t time_us;  ///< start of the servo's interval, since SYNC 0
     std::uint32_t joint;
     std::optional<std::int32_t> pulse;
   };
 
-  /// Both must outlive this.
+  /// scenario, plant: must outlive this.
   PlantTicks(const Scenario& scenario, Plant& plant, ReadPulse read_pulse);
 
-  /// SYNC of a tick, counted from 0. The one before may still have readings to come.
+  /// At the SYNC of a tick, counted from 0. The tick before may still have pending readings.
   void begin(std::uint32_t tick, BusTime sync);
-  /// When there is something to do: servos, a step, or complete().
+  /// The time of the next reading, step or complete().
   [[nodiscard]] BusTime next_event() const;
   void advance_to(BusTime now);
 
-  /// At the next SYNC, before the modules hear it. Only the pulses of intervals that start so late that they are not
-  /// read yet are still to come: by its own crystal a module may begin one just after the SYNC before which it belongs,
-  /// and its program takes time. Until then the next tick's world stands still.
+  /// At the next SYNC, before the modules receive it. Makes the remaining steps. Readings of intervals that start late
+  /// in the tick stay pending: by its own crystal a module may begin such an interval just after the SYNC, and its
+  /// program takes time. The world makes no step of the next tick before complete().
   void end(BusTime now);
   [[nodiscard]] bool has_ended() const { return ended_; }
-  /// Whether complete() is due: all have given their last pulses.
+  /// Whether complete() is due: all modules have given their last pulses.
   [[nodiscard]] bool is_complete(BusTime now) const { return ended_ && completion_ <= now; }
   /// The servos take the last pulses of the tick.
   void complete();
 
-  /// Of the tick that was completed last, in the order of time, then of joints.
+  /// The readings of the last completed tick, in the order of time, then of joints.
   [[nodiscard]] std::span<const Reading> readings() const { return completed_; }
 
  private:
@@ -56,16 +56,16 @@ class PlantTicks {
   Plant& plant_;
   ReadPulse read_pulse_;
   ServoSchedule servo_schedule_;
-  std::uint32_t tick_ = 0;  ///< whose readings and steps are made
-  BusTime sync_ = 0;        ///< of the tick that began last
+  std::uint32_t tick_ = 0;  ///< number of completed ticks
+  BusTime sync_ = 0;        ///< of the last begin()
   std::vector<PlantAction> actions_;
   std::size_t next_action_ = 0;
   bool ended_ = false;
   BusTime completion_ = 0;
-  std::vector<PlantAction> late_;
+  std::vector<PlantAction> pending_;
   std::vector<Reading> readings_;
   std::vector<Reading> completed_;
-  std::size_t taken_ = 0;  ///< of the readings, by the servos
+  std::size_t taken_ = 0;  ///< number of readings that the servos have taken
 };
 
 }  // namespace proleg::sim

@@ -10,8 +10,8 @@
 
 namespace proleg::sim {
 
-/// The pulses that the running joints of a chain give their servos in the tick that it computed last, in the order of
-/// time, then of joints. What they are does not depend on the steps of the physics.
+/// Appends the pulses that the running joints of a chain give their servos in the last computed tick, in the order of
+/// time, then of joints. They do not depend on the steps of the physics.
 inline void append_servo_pulses(const KernelChain& chain, const ServoSchedule& schedule,
                                 std::vector<ServoPulse>& pulses) {
   const std::uint64_t tick = chain.tick() - 1U;

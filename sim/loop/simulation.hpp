@@ -17,8 +17,8 @@
 
 namespace proleg::sim {
 
-/// A scenario running: the joints' kernels in memory, servos, and the world, tick by tick. The same scenario gives the
-/// same numbers on every run.
+/// Runs a scenario tick by tick: the joints' kernels in memory, servos, and the world. The same scenario gives the same
+/// numbers on every run.
 class Simulation {
  public:
   /// scenario, losses: must outlive the simulation, which keeps references to them. losses: null for none.
@@ -26,7 +26,7 @@ class Simulation {
   explicit Simulation(const Scenario&& scenario, const Losses* losses = nullptr) = delete;
 
   /// One tick: SYNC k, then the world until SYNC k + 1. Returns the change that took effect at k, if any.
-  /// Throws PhysicsError if the engine gave up, the robot moves faster than 100 m/s or fell off its environment.
+  /// Throws PhysicsError if the engine fails, the robot moves faster than 100 m/s or fell off its environment.
   const Change* advance();
 
   [[nodiscard]] std::uint32_t tick() const { return chain_.tick(); }
@@ -34,24 +34,24 @@ class Simulation {
   [[nodiscard]] const KernelChain& chain() const { return chain_; }
   [[nodiscard]] const Plant& plant() const { return plant_; }
 
-  /// What the run was worth so far; before the first tick nothing is defined. heading_deg: of the measure `speed`, from
-  /// the way that the head points at the start; 90 is its left. Takes about a millisecond.
+  /// The measures of the run so far; before the first tick none is defined. heading_deg: direction of the measure
+  /// `speed`, relative to the direction of the head at the start; 90 is to its left. Takes about a millisecond.
   [[nodiscard]] MeasureValues measures(double heading_deg = 0.0) const { return plant_.meter().values(heading_deg); }
   /// Share of a stride that each link is on the ground, from the head.
   [[nodiscard]] std::vector<double> link_duty_factors() const { return plant_.meter().link_duty_factors(); }
 
   // Of the last tick, k = tick() - 1; before the first tick they are empty or 0.
-  /// Per link, bit 0 rear, bit 1 front sensor, debounced: what the kernels were given at SYNC k, and so what the frames
-  /// labelled k + 1 say.
+  /// Per link, bit 0 rear, bit 1 front sensor, debounced: the contacts that the kernels took at SYNC k. The frames
+  /// labelled k + 1 carry them.
   [[nodiscard]] std::span<const std::uint8_t> latched_contacts() const { return latched_contacts_; }
   /// out(k + 1) of each joint.
   [[nodiscard]] std::span<const std::int32_t> setpoints() const { return chain_.setpoints(); }
   /// The pulses of the servo intervals that start in the tick, in the order of time, then of joints.
   [[nodiscard]] std::span<const ServoPulse> servo_pulses() const { return servo_pulses_; }
-  /// All of it, to be recorded. Only after a tick; valid until the next advance().
+  /// The last tick, as a recorder takes it. Only after a tick; valid until the next advance().
   [[nodiscard]] TickSample sample();
 
-  /// Hash of all set-points, and of all pulses, in kernel order, in the order of time.
+  /// Hashes of all set-points and of all pulses, in the order of time, then of joints.
   [[nodiscard]] const ValueHash& setpoint_hash() const { return setpoint_hash_; }
   [[nodiscard]] const ValueHash& servo_hash() const { return servo_hash_; }
 

@@ -15,9 +15,9 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::uint64_t longest_servo_period_us = 1'000'000;
+constexpr std::uint64_t max_servo_period_us = 1'000'000;
 
-/// What a recording says of how its gait came about, with names resolved.
+/// The inputs of a recorded gait, with names resolved.
 class RecordedGait {
  public:
   explicit RecordedGait(const Recording& recording) : recording_(recording) {
@@ -25,7 +25,7 @@ class RecordedGait {
     configuration.tick_period_us = recording.tick_period_us();
     configuration.seed = whole_number("seed");
     servo_period_us = static_cast<std::uint32_t>(whole_number("servo_period_us"));
-    if (whole_number("servo_period_us") < 1 || whole_number("servo_period_us") > longest_servo_period_us) {
+    if (whole_number("servo_period_us") < 1 || whole_number("servo_period_us") > max_servo_period_us) {
       refuse("a servo period of " + std::to_string(whole_number("servo_period_us")) + " us", "1 to 1000000 us");
     }
     for (const RecordedJoint& joint : recording.joints()) {
@@ -69,14 +69,15 @@ class RecordedGait {
       if (slot.slot >= max_slots) {
         refuse("slot " + std::to_string(slot.slot), "slots 0 to " + std::to_string(max_slots - 1));
       }
-      Slot& place = configuration.slots[slot.slot];
-      place.algorithm = find_algorithm(slot.algorithm);
-      if (place.algorithm == nullptr) {
-        refuse("algorithm " + in_quotes(slot.algorithm), "one that this program has ('proleg algorithms' lists them)");
+      Slot& kernel_slot = configuration.slots[slot.slot];
+      kernel_slot.algorithm = find_algorithm(slot.algorithm);
+      if (kernel_slot.algorithm == nullptr) {
+        refuse("algorithm " + in_quotes(slot.algorithm),
+               "an algorithm that this program has ('proleg algorithms' lists them)");
       }
       for (unsigned joint = 0; joint < slot.joint_group.size(); ++joint) {
         if (slot.joint_group[joint]) {
-          place.group.insert(joint);
+          kernel_slot.group.insert(joint);
         }
       }
     }
@@ -98,18 +99,18 @@ class RecordedGait {
   }
 
   void add_change(const RecordedSetting& setting, bool internal) {
-    const auto place = std::ranges::lower_bound(changes, setting.tick, {}, &Change::tick);
-    if (place != changes.end() && place->tick == setting.tick) {
-      place->settings.push_back(resolve(setting, internal));
+    const auto change = std::ranges::lower_bound(changes, setting.tick, {}, &Change::tick);
+    if (change != changes.end() && change->tick == setting.tick) {
+      change->settings.push_back(resolve(setting, internal));
     } else {
-      changes.insert(place, Change{setting.tick, {resolve(setting, internal)}});
+      changes.insert(change, Change{setting.tick, {resolve(setting, internal)}});
     }
   }
 
   const Recording& recording_;
 };
 
-/// The recorded pulses, from a table that is read beside the ticks. They are few bytes each, so they fit in memory.
+/// All recorded pulses, in memory: 16 bytes each.
 std::vector<ServoPulse> read_pulses(const Recording& recording) {
   std::vector<ServoPulse> pulses;
   recording.read_servo_pulses([&](const ServoPulse& pulse) { pulses.push_back(pulse); });

@@ -17,14 +17,14 @@ struct Verification {
   std::uint64_t internal_values = 0;  ///< compared
   std::uint64_t differences = 0;
   std::optional<Difference> first;
-  std::string setpoint_hash;  ///< of what was recomputed
-  std::string servo_hash;
+  std::string setpoint_hash;  ///< of the recomputed set-points
+  std::string servo_hash;     ///< of the recomputed servo commands
 };
 
-/// Recomputes every set-point, internal value and servo command of a recording with this program's core, from what is
-/// recorded of the start values, changes, contacts, losses and restarts; no world is simulated. A recording that does
-/// not start at tick 0 cannot be recomputed, nor one of an algorithm that this program does not have: InputError.
-/// progress: called with every tick.
+/// Recomputes every set-point, internal value and servo command of a recording with this program's core, from the
+/// recorded start values, changes, contacts, losses and restarts; no world is simulated. Throws InputError for a
+/// recording that does not start at tick 0, or has an algorithm that this program does not have. progress: called with
+/// every tick.
 [[nodiscard]] Verification verify(const Recording& recording,
                                   const std::function<void(std::uint32_t tick)>& progress = {});
 

@@ -22,7 +22,7 @@ double peristalsis_crossover_speed(double friction, double moving_share, double 
   return moving_share * std::sqrt(2.0 * friction * gravity * stride_length);
 }
 
-double largest_moving_share(double friction_forward, double friction_back) {
+double max_moving_share(double friction_forward, double friction_back) {
   return friction_back / (friction_back + friction_forward);
 }
 
@@ -35,7 +35,7 @@ double serpentine_crossover_speed(double axial_friction, double bend, double str
   return std::sqrt(axial_friction * gravity * stride_length * std::cos(bend)) / std::sin(bend);
 }
 
-double smallest_bend(double axial_friction, double transverse_friction) {
+double min_bend(double axial_friction, double transverse_friction) {
   return std::atan2(axial_friction, transverse_friction);
 }
 

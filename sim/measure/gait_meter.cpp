@@ -11,11 +11,11 @@ namespace proleg::sim {
 namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-constexpr double shortest_distance = 1e-3;  // m; below, costs of transport are noise
+constexpr double min_distance = 1e-3;  // m; below, costs of transport are noise
 /// A direction whose horizontal part is shorter counts as vertical.
 constexpr double vertical = 1e-6;
 
-/// From the joint (or end) behind a link to the one before it; of an end link to its centre of mass or from it.
+/// The ends of a link, in the robot's frame: its joints; at the end of the robot a point beyond the centre of mass.
 struct LinkEnds {
   Eigen::Vector3d rear;
   Eigen::Vector3d front;
@@ -91,7 +91,7 @@ void GaitMeter::add_tick(const Tick& tick) {
   center_ = tick.center_of_mass;
   add_stability(tick);
   if (angles_.size() >= 2 * history_ticks * joints_.size()) {
-    forget_the_oldest();
+    drop_oldest_ticks();
   }
   angles_.insert(angles_.end(), tick.joint_angles.begin(), tick.joint_angles.end());
   targets_.insert(targets_.end(), tick.joint_targets.begin(), tick.joint_targets.end());
@@ -110,8 +110,8 @@ void GaitMeter::add_stability(const Tick& tick) {
   const Eigen::Vector2d axis = span / length;
   double rearmost = std::numeric_limits<double>::infinity();
   double foremost = -rearmost;
-  const auto support = [&](const Pose& pose, const Eigen::Vector3d& place) {
-    const double position = axis.dot((pose * place - tick.center_of_mass).head<2>());
+  const auto support = [&](const Pose& pose, const Eigen::Vector3d& sensor) {
+    const double position = axis.dot((pose * sensor - tick.center_of_mass).head<2>());
     rearmost = std::min(rearmost, position);
     foremost = std::max(foremost, position);
   };
@@ -129,7 +129,7 @@ void GaitMeter::add_stability(const Tick& tick) {
   }
 }
 
-void GaitMeter::forget_the_oldest() {
+void GaitMeter::drop_oldest_ticks() {
   const auto joint_values = static_cast<std::ptrdiff_t>(history_ticks * joints_.size());
   angles_.erase(angles_.begin(), angles_.begin() + joint_values);
   targets_.erase(targets_.begin(), targets_.begin() + joint_values);
@@ -145,7 +145,7 @@ double GaitMeter::speed_along(double heading_deg) const {
   return (center_ - start_).head<2>().dot(direction) / (static_cast<double>(ticks_) * tick_s_);
 }
 
-/// Thesis, equation 3.2, for the wave that the joints make: those that swing by a tenth of the largest amplitude. Not a
+/// Thesis, equation 3.2, for the wave of the joints that swing by at least a tenth of the maximum amplitude. Not a
 /// number if there is no such wave.
 double GaitMeter::predicted_step(const Stride& stride) const {
   if (axis_signs_.empty()) {
@@ -155,8 +155,8 @@ double GaitMeter::predicted_step(const Stride& stride) const {
   constexpr double agreeing = 0.5;
   constexpr double first_zero_of_j0 = 2.404825557695773;
   const std::vector<Oscillation> swings = find_oscillations({angles_, joints_.size()}, stride);
-  const double largest = std::ranges::max(swings, {}, &Oscillation::amplitude).amplitude;
-  const auto moves = [&](std::size_t joint) { return swings[joint].amplitude >= moving * largest; };
+  const double max_amplitude = std::ranges::max(swings, {}, &Oscillation::amplitude).amplitude;
+  const auto moves = [&](std::size_t joint) { return swings[joint].amplitude >= moving * max_amplitude; };
   double amplitude_sum = 0.0;
   double moving_joints = 0.0;
   std::complex<double> difference_sum;
@@ -173,13 +173,13 @@ double GaitMeter::predicted_step(const Stride& stride) const {
       differences += 1.0;
     }
   }
-  // Differences that point everywhere have no mean.
+  // Differences in all directions have no mean.
   if (differences == 0.0 || std::abs(difference_sum) < agreeing * differences) {
     return undefined;
   }
   const double phase_difference = std::arg(difference_sum);
   const double alpha = winding_angle(amplitude_sum / moving_joints, phase_difference);
-  // From here on the curve turns back on itself: the wave is longer than any body.
+  // From this angle on the curve turns back on itself, and the wave has no length.
   if (!(alpha < first_zero_of_j0)) {
     return undefined;
   }
@@ -217,7 +217,7 @@ MeasureValues GaitMeter::values(double heading_deg) const {
   values[Measure::speed] = speed_along(heading_deg);
   values[Measure::mechanical_energy] = mechanical;
   values[Measure::electrical_energy] = electrical;
-  if (distance >= shortest_distance) {
+  if (distance >= min_distance) {
     values[Measure::cost_of_transport] = mechanical / (mass_ * distance);
     values[Measure::electrical_cost_of_transport] = electrical / (mass_ * distance);
     if (gravity_ > 0.0) {

@@ -17,10 +17,10 @@
 
 namespace proleg::sim {
 
-/// Supply voltage of the servos, that for which sim/robot/servo_current.hpp estimates their current.
+/// Supply voltage of the servos; sim/robot/servo_current.hpp estimates their current for this voltage.
 inline constexpr double servo_supply_v = 6.0;
 
-/// Watches a robot in a run and says what the run was worth. docs/gait-measures.md defines the measures.
+/// Computes the measures of a run from the robot's motion. docs/gait-measures.md defines them.
 class GaitMeter {
  public:
   /// start: centre of mass in the world before the first step. All joint angles are 0 there.
@@ -30,19 +30,19 @@ class GaitMeter {
   /// What a joint did in a step of the physics.
   struct JointStep {
     double motor_torque;     ///< Nm, about the joint's axis
-    double commanded_speed;  ///< rad/s, that the servo asked of its motor
+    double commanded_speed;  ///< rad/s, that the servo commanded
     double angle_before;     ///< rad
     double angle;            ///< rad, after the step
     bool limp;               ///< without pulses
   };
-  /// To be called for every joint after every step.
+  /// Must be called for every joint after every step.
   void add_joint_step(std::size_t joint, const JointStep& step) {
     JointState& state = joints_[joint];
     const double speed = (step.angle - step.angle_before) * steps_per_s_;
-    // Torque times the mean of the speeds before and after a step is what the step adds to the energy, exactly.
+    // Torque times the mean of the speeds before and after a step is exactly the energy that the step adds.
     mechanical_power_sum_ += 0.5 * std::max(step.motor_torque * (speed + state.speed), 0.0);
     state.speed = speed;
-    // Speeds as parts of the highest: no division in what runs every step.
+    // Speeds are relative to max_speed, which avoids a division in every step.
     current_sum_ma_ += step.limp ? servo_.idle_ma
                                  : servo_current_ma(servo_, step.commanded_speed * state.per_max_speed,
                                                     speed * state.per_max_speed, 1.0);
@@ -51,23 +51,23 @@ class GaitMeter {
     Eigen::Vector3d center_of_mass;    ///< in the world
     std::span<const Pose> link_poses;  ///< in the world
     std::span<const double> joint_angles;
-    std::span<const double> joint_targets;  ///< rad, that the servos turn to
-    /// Per link, bit 0 rear, bit 1 front sensor, as they are: not debounced, without noise.
+    std::span<const double> joint_targets;  ///< rad, of the servos in the last step
+    /// Per link, bit 0 rear, bit 1 front sensor: not debounced, without noise.
     std::span<const std::uint8_t> link_contacts;
   };
-  /// To be called after the last step of every tick.
+  /// Must be called after the last step of every tick.
   void add_tick(const Tick& tick);
 
-  /// Of the run so far. heading_deg: the heading of `speed`, in the horizontal plane, from the way that the head points
-  /// at the start; 90 is its left.
+  /// The measures of the run so far. heading_deg: direction of `speed` in the horizontal plane, relative to the
+  /// direction of the head at the start; 90 is to its left.
   [[nodiscard]] MeasureValues values(double heading_deg = 0.0) const;
-  /// Of each link from the head: share of the ticks in a whole number of strides (in all, if there is no stride) in
-  /// which one of its sensors was pressed. Not a number before the first tick.
+  /// For each link from the head: share of the ticks in which at least one of its sensors was pressed, over a whole
+  /// number of strides, or over all ticks if there is no stride. Not a number before the first tick.
   [[nodiscard]] std::vector<double> link_duty_factors() const;
-  /// The strides that measures of strides are taken from.
+  /// The strides from which measures of strides are computed.
   [[nodiscard]] std::optional<Stride> stride() const;
 
-  /// Strides are looked for in at least so many ticks before now.
+  /// Strides are searched in at least this number of the last ticks.
   static constexpr std::size_t history_ticks = 65'536;
 
  private:
@@ -75,14 +75,14 @@ class GaitMeter {
     double per_max_speed;  ///< s/rad
     double speed = 0.0;    ///< rad/s, in the last step
   };
-  /// Where the touch sensors of a link are, in its frame: in the middle of the halves that they sense.
-  struct SensorPlaces {
+  /// Positions of the touch sensors of a link, in its frame: in the middle of the halves that they sense.
+  struct SensorPositions {
     Eigen::Vector3d rear;
     Eigen::Vector3d front;
   };
 
   void add_stability(const Tick& tick);
-  void forget_the_oldest();
+  void drop_oldest_ticks();
   [[nodiscard]] double speed_along(double heading_deg) const;
   [[nodiscard]] double predicted_step(const Stride& stride) const;
   [[nodiscard]] std::vector<double> duty_factors(const std::optional<Stride>& stride) const;
@@ -94,14 +94,14 @@ class GaitMeter {
   double gravity_;
   double mass_ = 0.0;
   double body_length_ = 0.0;
-  Eigen::Vector2d forward_;  ///< the way that the head points at the start; not numbers if that is up or down
-  std::vector<SensorPlaces> sensors_;
+  Eigen::Vector2d forward_;  ///< direction of the head at the start; not numbers if the head points up or down
+  std::vector<SensorPositions> sensors_;
   std::vector<Eigen::Vector3d> link_centers_;  ///< centres of mass, in the frames of the links
-  std::vector<double> axis_signs_;             ///< against the first joint's axis; empty if they are not parallel
+  std::vector<double> axis_signs_;             ///< relative to the first joint's axis; empty if axes are not parallel
 
   std::vector<JointState> joints_;
-  double mechanical_power_sum_ = 0.0;  ///< W, of all steps
-  double current_sum_ma_ = 0.0;        ///< of all steps
+  double mechanical_power_sum_ = 0.0;  ///< W, over all steps
+  double current_sum_ma_ = 0.0;        ///< over all steps
 
   std::uint64_t ticks_ = 0;
   Eigen::Vector3d start_;
@@ -110,9 +110,9 @@ class GaitMeter {
   double squared_second_differences_ = 0.0;
   double margin_sum_ = 0.0;
   std::uint64_t supported_ticks_ = 0;
-  std::vector<double> angles_;          ///< of the last ticks, by ticks, then by joints
-  std::vector<double> targets_;         ///< the same
-  std::vector<std::uint8_t> contacts_;  ///< the same by links
+  std::vector<double> angles_;          ///< of the last ticks, by tick, then by joint
+  std::vector<double> targets_;         ///< of the last ticks, by tick, then by joint
+  std::vector<std::uint8_t> contacts_;  ///< of the last ticks, by tick, then by link
 };
 
 }  // namespace proleg::sim

@@ -20,7 +20,8 @@ constexpr std::array<MeasureDeclaration, measure_count> declarations{{
     {Measure::stability_margin, "stability_margin", "m", true,
      "how far the centre of mass is inside the outermost supports along the body, on average; negative outside"},
     {Measure::height, "height", "m", true, "height that the centre of mass gained"},
-    {Measure::slip, "slip", "", false, "share of the step of a crawler that does not slip that is lost"},
+    {Measure::slip, "slip", "", false,
+     "share of a stride that is lost by slip: 1 - stride length / stride length without slip"},
     {Measure::duty_factor, "duty_factor", "", true,
      "share of a stride that a link is on the ground, mean of the links"},
     {Measure::froude_number, "froude_number", "", true, "speed squared over gravity and stride length"},
@@ -36,7 +37,7 @@ constexpr bool in_order() {
   }
   return true;
 }
-static_assert(in_order(), "declaration_of() takes the enumerator as the place");
+static_assert(in_order(), "declaration_of() uses the enumerator as the index");
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// What a run of a robot is worth, in numbers: declared once. `proleg simulate`, fitness functions, the optimiser's
-// store and docs/gait-measures.md take names, units and meaning from here.
+// The measures of a run, declared once. `proleg simulate`, fitness functions, the optimiser's store and
+// docs/gait-measures.md take names, units and meaning from here.
 
 #include <array>
 #include <cstddef>
@@ -45,8 +45,8 @@ struct MeasureDeclaration {
 [[nodiscard]] const MeasureDeclaration& declaration_of(Measure measure);
 [[nodiscard]] std::optional<Measure> find_measure(std::string_view name);
 
-/// A value of each measure; not a number where the run does not define it (the cost of transport of a robot that stays,
-/// the slip of a gait without a wave).
+/// A value of each measure; not a number where the run does not define it (the cost of transport of a robot that does
+/// not move, the slip of a gait without a wave).
 class MeasureValues {
  public:
   MeasureValues() { values_.fill(std::numeric_limits<double>::quiet_NaN()); }

@@ -11,8 +11,8 @@
 namespace proleg::sim {
 namespace {
 
-constexpr double smallest_amplitude = 0.5 * std::numbers::pi / 180.0;
-/// A crossing of the mean counts if the signal was below it by this part of its amplitude: a ripple is no stride.
+constexpr double min_amplitude = 0.5 * std::numbers::pi / 180.0;
+/// A crossing of the mean counts if the signal was below it by this share of its amplitude: a ripple is no stride.
 constexpr double hysteresis = 0.25;
 
 struct Swing {
@@ -21,7 +21,7 @@ struct Swing {
   double amplitude = 0.0;  ///< of a sine with the same standard deviation
 };
 
-Swing largest_swing(const SignalTable& signals) {
+Swing max_swing(const SignalTable& signals) {
   std::vector<double> sum(signals.signals);
   std::vector<double> square_sum(signals.signals);
   for (std::size_t tick = 0; tick < signals.ticks(); ++tick) {
@@ -64,8 +64,8 @@ std::vector<double> upward_crossings(const SignalTable& signals, const Swing& sw
 }  // namespace
 
 std::optional<Stride> find_stride(const SignalTable& angles, double tick_s) {
-  const Swing swing = largest_swing(angles);
-  if (swing.amplitude < smallest_amplitude) {
+  const Swing swing = max_swing(angles);
+  if (swing.amplitude < min_amplitude) {
     return std::nullopt;
   }
   std::vector<double> crossings = upward_crossings(angles, swing);
@@ -82,8 +82,8 @@ std::optional<Stride> find_stride(const SignalTable& angles, double tick_s) {
 }
 
 std::vector<Oscillation> find_oscillations(const SignalTable& signals, const Stride& stride) {
-  // Least squares of a constant, a sine and a cosine: over whole strides that is the projection, but for what the
-  // rounding of the strides to ticks would add to it.
+  // Least squares of a constant, a sine and a cosine. Over whole strides this is the projection, without the error from
+  // rounding the strides to ticks.
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Matrix3Xd right = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(signals.signals));
   auto end = stride.bounds.begin() + 1;

@@ -7,8 +7,7 @@
 
 namespace proleg::sim {
 
-/// Signals of one length, a sample of each at every tick. The outer span is by ticks, then by signals: sample
-/// `tick * signals + i` is that of signal i.
+/// Signals of one length, one sample of each at every tick. Sample `tick * signals + i` is that of signal i.
 struct SignalTable {
   std::span<const double> samples;
   std::size_t signals = 0;
@@ -17,19 +16,19 @@ struct SignalTable {
   [[nodiscard]] double at(std::size_t tick, std::size_t signal) const { return samples[tick * signals + signal]; }
 };
 
-/// The cycle that signals repeat, as often as they do.
+/// The strides in a table of signals: the cycle that the signals repeat.
 struct Stride {
   double frequency = 0.0;      ///< Hz, mean
   std::size_t first_tick = 0;  ///< of a whole number of strides, rounded to ticks
   std::size_t end_tick = 0;    ///< one past the last
-  std::vector<double> bounds;  ///< in ticks: where a stride starts and the one before ends; at least two
+  std::vector<double> bounds;  ///< in ticks: the start of each stride and the end of the last one; at least two
 };
 
-/// Finds the strides in the angles (rad) that a robot's joints are to take. They are taken from the signal with the
-/// largest standard deviation: from one upward crossing of its mean to the next, a crossing being one only if the
-/// signal was well below the mean before; the times of crossings are interpolated. The first stride is left out if
-/// there are others, as a robot starts from rest. Nothing if there is not one whole stride, or no signal that would be
-/// a sine of half a degree.
+/// Finds the strides in the target angles (rad) of a robot's joints, by the signal with the largest standard deviation.
+/// A stride lasts from one upward crossing of the signal's mean to the next. A crossing counts only if the signal was
+/// well below the mean before; its time is interpolated. The first stride is left out if there are others, because a
+/// robot starts from rest. Returns nothing without a whole stride, or if all signals are smaller than a sine of half a
+/// degree.
 [[nodiscard]] std::optional<Stride> find_stride(const SignalTable& angles, double tick_s);
 
 /// mean + amplitude * sin(2 pi s + phase), s: strides since the first one began.
@@ -39,8 +38,8 @@ struct Oscillation {
   double phase = 0.0;      ///< rad, -pi to pi
 };
 
-/// The part of each signal that repeats with the strides: projected on a sine and a cosine that each stride has one
-/// period of, so that a gait that changes its pace does not blur it.
+/// The part of each signal that repeats with the strides: its projection on a sine and a cosine with one period in each
+/// stride. A change of pace therefore does not blur it.
 [[nodiscard]] std::vector<Oscillation> find_oscillations(const SignalTable& signals, const Stride& stride);
 
 }  // namespace proleg::sim

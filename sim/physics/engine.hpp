@@ -4,8 +4,8 @@
 
 namespace proleg::sim {
 
-/// Makes the Open Dynamics Engine usable on the calling thread. The engine's errors become PhysicsError instead of
-/// ending the process; its messages are counted, not printed.
+/// Prepares the Open Dynamics Engine for the calling thread. An error of the engine throws PhysicsError and does not
+/// end the process; its messages are counted, not printed.
 void prepare_engine_for_this_thread();
 
 /// Messages of the engine on this thread so far.

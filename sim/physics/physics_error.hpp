@@ -4,7 +4,7 @@
 
 namespace proleg::sim {
 
-/// The physics engine gave up, or its numbers are no longer finite.
+/// The physics engine failed, or its numbers are no longer finite.
 class PhysicsError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

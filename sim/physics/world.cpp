@@ -37,7 +37,7 @@ void to_quaternion(const Eigen::Quaterniond& orientation, dQuaternion out) {
   out[3] = orientation.z();
 }
 
-/// What the collision callback needs to know of a geometry.
+/// Properties of a geometry for the collision callback.
 struct GeometryData {
   int link = -1;  ///< -1: the environment
   std::optional<double> friction;
@@ -84,7 +84,7 @@ class World::Implementation {
 
   void step() {
     if (world_ == nullptr) {
-      throw PhysicsError("the simulation broke down at an earlier step");
+      throw PhysicsError("the simulation failed at an earlier step");
     }
     try {
       advance();

@@ -1,7 +1,7 @@
 #pragma once
 
-// A robot as data: links, hinge joints and servos, in metres, kilograms, radians and newtons. Nothing here knows a
-// physics engine or a file format.
+// A robot as data: links, hinge joints and servos, in metres, kilograms, radians and newtons. It is
+// independent of the physics engine and of file formats.
 
 #include <cstddef>
 #include <cstdint>
@@ -37,7 +37,8 @@ struct Geometry {
   Pose pose;  ///< in the frame of the link
   /// box: half the side lengths; sphere: radius in x; cylinder: radius in x, half the height in y. All above 0.
   Eigen::Vector3d extents = Eigen::Vector3d::Zero();
-  /// Coulomb coefficient, not negative; without one the partner's holds. Two of them: the geometric mean.
+  /// Coulomb coefficient, not negative; without one that of the other geometry applies. Two of them: the geometric
+  /// mean.
   std::optional<double> friction;
 };
 
@@ -72,11 +73,11 @@ struct Joint {
 };
 
 /// A position servo: a proportional controller on the angle commands a speed, which the motor reaches if its torque
-/// suffices. It takes a new pulse at its own period.
+/// suffices. The servo takes one pulse in each of its periods.
 struct ServoModel {
   double gain = 8.3;  ///< 1/s, above 0; the default is that of the OpenMR servo plug-in
   std::uint32_t period_us = 20'000;
-  std::uint32_t latency_us = 0;  ///< it acts on a pulse, or on none, that much later; up to 100000
+  std::uint32_t latency_us = 0;  ///< from a pulse, or the lack of one, until the servo acts on it; up to 100000
 };
 
 struct RobotModel {

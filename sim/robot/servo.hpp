@@ -14,7 +14,7 @@ namespace proleg::sim {
   return static_cast<double>(command - servo_center) * (std::numbers::pi / 2.0 / servo_quarter_turn);
 }
 
-/// The speed, in rad/s, that a servo asks of its motor.
+/// The speed, in rad/s, that a servo commands.
 [[nodiscard]] inline double servo_speed(const ServoModel& servo, const Joint& joint, std::int32_t command,
                                         double angle) {
   return std::clamp(servo.gain * (servo_target(command) - angle), -joint.max_speed, joint.max_speed);

@@ -1,5 +1,5 @@
-// Prints what the core costs on a Cortex-M: instructions a tick, instructions of a sine, stack and memory. Measured on
-// an emulated CPU; the figures do not depend on the computer.
+// Prints the costs of the core on a Cortex-M: instructions per tick and per sine, stack and memory. They are measured
+// on an emulated CPU and do not depend on the computer.
 
 #include <cstdio>
 #include <exception>

@@ -1,4 +1,4 @@
-// Prints what the virtual CPU costs: opening, a wake-up by an interrupt, and plain code.
+// Prints the costs of the virtual CPU: opening, a wake-up by an interrupt, and plain code.
 
 #include <cstdint>
 #include <cstdio>
@@ -15,10 +15,10 @@
 namespace proleg::sim {
 namespace {
 
-/// The one that the program `sleeps` enables.
+/// The interrupt that the program `sleeps` enables.
 constexpr unsigned interrupt = 3;
 
-class Nothing final : public CpuSurroundings {
+class EmptySurroundings final : public CpuSurroundings {
  public:
   std::uint32_t load(std::uint32_t /*address*/, unsigned /*size*/) override { return 0; }
   void store(std::uint32_t /*address*/, unsigned /*size*/, std::uint32_t /*value*/) override {}
@@ -28,7 +28,7 @@ class Nothing final : public CpuSurroundings {
   void reset_requested() override {}
 };
 
-/// Of processor time, so that other programs do not count.
+/// Processor time of the work, so other programs do not affect it.
 double seconds_of(const std::function<void()>& work) {
   const std::clock_t start = std::clock();
   work();
@@ -56,10 +56,10 @@ void load(Cpu& cpu, const ElfImage& image, std::string_view program, std::string
 void print_wake_ups(const ElfImage& image, std::string_view handler) {
   constexpr int wake_ups = 200'000;
   constexpr std::size_t cpu_count = 20;
-  Nothing nothing;
+  EmptySurroundings surroundings;
   std::vector<std::unique_ptr<Cpu>> cpus;
   for (std::size_t i = 0; i < cpu_count; ++i) {
-    cpus.push_back(std::make_unique<Cpu>(nothing));
+    cpus.push_back(std::make_unique<Cpu>(surroundings));
     load(*cpus.back(), image, "sleeps", handler);
     cpus.back()->run(1000);
   }
@@ -85,11 +85,11 @@ void print_wake_ups(const ElfImage& image, std::string_view handler) {
 
 void print_figures() {
   const ElfImage image(PROLEG_CROSS_BUILD_DIR "/stm32f405/bin/cpu_programs.elf");
-  Nothing nothing;
+  EmptySurroundings surroundings;
   constexpr int openings = 20;
   const double opening = seconds_of([&] {
     for (int i = 0; i < openings; ++i) {
-      Cpu cpu(nothing);
+      Cpu cpu(surroundings);
       load(cpu, image, "compute_loop", "short_handler");
       cpu.run(100);
     }
@@ -98,7 +98,7 @@ void print_figures() {
   print_wake_ups(image, "short_handler");
   print_wake_ups(image, "benchmark_handler");
 
-  Cpu cpu(nothing);
+  Cpu cpu(surroundings);
   load(cpu, image, "compute_loop", "short_handler");
   cpu.run(1000);
   constexpr std::uint64_t instructions = 100'000'000;

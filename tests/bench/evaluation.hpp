@@ -7,14 +7,14 @@
 
 namespace proleg::bench {
 
-/// What came out of one evaluation of a candidate.
+/// The result of one evaluation of a candidate.
 struct Evaluation {
   double displacement = 0.0;   ///< m
   double mean_contacts = 0.0;  ///< contact points in a step
-  std::string servo_hash;      ///< of all pulses that the servos got
+  std::string servo_hash;      ///< of all pulses that the servos took
 };
 
-/// What an optimiser does for one candidate: a fresh simulation, run to its end.
+/// Runs a new simulation to its end, as an optimiser does for one candidate.
 [[nodiscard]] inline Evaluation evaluate(const sim::Scenario& scenario, const Workload& workload) {
   sim::Simulation simulation(scenario);
   while (simulation.tick() < workload.ticks()) {

@@ -1,6 +1,5 @@
-// What an optimiser can expect of one core: evaluations per second of the shipped caterpillar with the workloads that
-// optimisers of robots have by default. Displacement and contacts are printed because a robot that lies still, or one
-// that flies, costs another time.
+// Evaluations per second on one core: the shipped caterpillar with the default workloads of optimisers of robots.
+// Displacement and contacts are printed because a robot that lies still, or one that flies, takes a different time.
 //
 //   bench_evaluations [options of Google Benchmark]
 
@@ -24,7 +23,7 @@ void time_evaluations(benchmark::State& state, const sim::Scenario& scenario, co
     evaluation = bench::evaluate(scenario, workload);
   }
   const auto evaluations = static_cast<double>(state.iterations());
-  // Rates are by processor time, so that other programs do not count.
+  // Rates are by processor time, so other programs do not affect them.
   state.counters["evaluations"] = benchmark::Counter(evaluations, benchmark::Counter::kIsRate);
   state.counters["x_real_time"] = benchmark::Counter(evaluations * workload.seconds(), benchmark::Counter::kIsRate);
   state.counters["displacement_m"] = evaluation.displacement;

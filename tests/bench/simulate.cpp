@@ -1,8 +1,7 @@
-// What the simulator costs beyond the physics engine: the time of `simulate`, and of `hil` with native modules on the
+// The cost of the simulator beyond the physics engine: the time of `simulate`, and of `hil` with native modules on the
 // simulated bus, without a recorder, against a bare loop over the same world that calls the engine and nothing else.
-// They run in turn in one process, so that their ratios hold on any machine. The bare loop's gait is fixed, whatever
-// the scenario's: the travelling wave of uniform.simulation.xml with 40 degrees of amplitude, 55 degrees of phase
-// difference and 1 Hz.
+// They run in turn in one process, so their ratios are valid on any machine. The bare loop always has the same gait:
+// the travelling wave of uniform.simulation.xml with 40 degrees of amplitude, 55 degrees of phase difference and 1 Hz.
 //
 //   bench_simulate SCENARIO [SECONDS] [REPETITIONS]
 
@@ -38,7 +37,7 @@ class BareLoop {
     threading_ = dThreadingAllocateSelfThreadedImplementation();
     world_ = dWorldCreate();
     dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(threading_), threading_);
-    // Two spaces, as in the simulator: pairs of links need not even be looked at.
+    // Two spaces, as in the simulator: the engine does not test pairs of links.
     robot_space_ = dSimpleSpaceCreate(nullptr);
     environment_space_ = dSimpleSpaceCreate(nullptr);
     group_ = dJointGroupCreate(0);
@@ -186,7 +185,7 @@ int benchmark(const Scenario& scenario, double seconds, int repetitions) {
       simulate_contacts = simulation.plant().mean_contacts();
       displacement = simulation.plant().displacement();
     });
-    // From switching the modules on; a difference to the gait in memory would make the time worthless.
+    // Includes the set-up. A difference from the gait in memory would make the time worthless.
     const double in_the_loop = time_of([&] {
       HardwareLoop loop(scenario, {});
       while (loop.time_s() < seconds - 1e-9) {

@@ -8,7 +8,7 @@
 
 namespace proleg::bench {
 
-/// How long and how finely an optimiser simulates one candidate.
+/// The duration and time steps with which an optimiser simulates one candidate.
 struct Workload {
   std::string_view name;
   std::uint32_t steps;    ///< of the physics
@@ -25,7 +25,7 @@ inline constexpr std::array<Workload, 3> workloads{{
     {"Proleg", 30'000, 1'000, 10'000},    // 30 s, control at 100 Hz
 }};
 
-/// The scenario run by a workload. Its servos take new pulses at their own period still.
+/// The scenario with the times of a workload. The period of its servos does not change.
 [[nodiscard]] inline sim::Scenario with_workload(sim::Scenario scenario, const Workload& workload) {
   scenario.step_s = 1e-6 * workload.step_us;
   scenario.kernel.tick_period_us = workload.tick_us;

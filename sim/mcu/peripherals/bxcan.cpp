@@ -104,7 +104,7 @@ BxCan::BxCan(ChipServices& chip, Bus& bus, TrueTime true_time)
 
 void BxCan::reset() {
   controller_.switch_off();
-  controller_.forget_errors();
+  controller_.reset_errors();
   controller_.watch(false);
   controller_.set_one_shot(false);
   controller_.set_order(Controller::Order::identifier_then_mailbox);

@@ -29,7 +29,7 @@ void PrintTo(const Event& event, std::ostream* stream) {
           << " of " << unsigned{event.frame.length} << " bytes at " << event.time;
 }
 
-/// Writes down what it hears, and may act on it.
+/// Logs what it receives and sends, and may react.
 class Node final : public BusListener {
  public:
   Node(Bus& bus, std::string node_name, std::vector<Event>& log)
@@ -101,7 +101,7 @@ TEST_F(BusOfThree, TheNextFrameStartsThreeBitsAfterTheLastOne) {
   EXPECT_EQ(log.back().time, duration(low) + 3 * bit + duration(high));
 }
 
-TEST_F(BusOfThree, TheLowestIdentifierWinsInWhateverOrderTheNodesAreCalled) {
+TEST_F(BusOfThree, TheLowestIdentifierWinsInEveryOrderOfCalls) {
   ASSERT_TRUE(c.controller.send(high));
   bus.advance_to(0);  // time does not move on: all of the instant take part
   ASSERT_TRUE(a.controller.send(middle));
@@ -207,7 +207,7 @@ TEST_F(BusOfThree, ANodeWithoutPowerNeitherSendsNorReceives) {
   EXPECT_EQ(frames(), (std::vector{low, high}));
 }
 
-TEST_F(BusOfThree, ANodeThatGetsPowerDuringAFrameHearsOnlyTheNextOne) {
+TEST_F(BusOfThree, ANodeThatGetsPowerDuringAFrameReceivesOnlyTheNextOne) {
   c.controller.switch_off();
   ASSERT_TRUE(a.controller.send(middle));
   ASSERT_TRUE(a.controller.send(high));
@@ -217,7 +217,7 @@ TEST_F(BusOfThree, ANodeThatGetsPowerDuringAFrameHearsOnlyTheNextOne) {
   EXPECT_EQ(frames(), std::vector{high});
 }
 
-TEST_F(BusOfThree, ANodeThatLosesPowerDuringItsFrameIsNotToldOfItsEnd) {
+TEST_F(BusOfThree, ANodeThatLosesPowerDuringItsFrameGetsNoReportOfItsEnd) {
   ASSERT_TRUE(c.controller.send(low));
   ASSERT_TRUE(c.controller.send(high));
   bus.advance_to(10 * bit);

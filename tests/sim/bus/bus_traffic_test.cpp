@@ -1,4 +1,4 @@
-// Random traffic of many nodes, held against a book of what was asked for. Properties of ISO 11898-1: one frame at a
+// Random traffic of many nodes, compared with a list of all requests. Properties of ISO 11898-1: one frame at a
 // time, the lowest identifier that waits at an arbitration, no idling while something waits; and of a bus without
 // errors: every accepted frame is sent once, frames of one identifier in the order of their requests.
 
@@ -32,7 +32,7 @@ class TrafficNode final : public BusListener {
 
   void received(BusTime time, const CanFrame& frame) override {
     EXPECT_EQ(time, bus_->now());
-    heard.push_back(frame);
+    arrived.push_back(frame);
     if ((*random_)() % 64 == 0 && time < end_of_requests) {
       request();
     }
@@ -62,7 +62,7 @@ class TrafficNode final : public BusListener {
   std::deque<Request> waiting;  ///< accepted, transmission not begun
   std::size_t accepted = 0;
   std::vector<CanFrame> sent;
-  std::vector<CanFrame> heard;
+  std::vector<CanFrame> arrived;
 
  private:
   Bus* bus_;
@@ -88,7 +88,7 @@ TEST_P(Traffic, KeepsTheRulesOfTheBus) {
   std::vector<CanFrame> order;
   bus.set_trace([&](const Transmission& transmission) {
     EXPECT_EQ(transmission.end - transmission.start, frame_bits(transmission.frame) * bit);
-    // The book at the instant of arbitration, from the requests alone.
+    // The expected winner at the instant of arbitration, from the requests alone.
     BusTime first_request = never_on_bus;
     std::uint16_t lowest = 0xFFFF;
     for (const auto& node : nodes) {
@@ -134,7 +134,7 @@ TEST_P(Traffic, KeepsTheRulesOfTheBus) {
   for (const auto& node : nodes) {
     EXPECT_TRUE(node->waiting.empty());
     EXPECT_EQ(node->sent.size(), node->accepted);
-    EXPECT_EQ(node->heard.size() + node->sent.size(), order.size());
+    EXPECT_EQ(node->arrived.size() + node->sent.size(), order.size());
     EXPECT_EQ(node->controller.free_mailboxes(), Controller::mailbox_count);
     accepted += node->accepted;
   }
@@ -150,9 +150,9 @@ TEST(TrafficWithCollisions, LosesAndRepeatsNothing) {
   std::mt19937_64 random(seed);
   class Counter final : public BusListener {
    public:
-    void received(BusTime /*time*/, const CanFrame& /*frame*/) override { ++heard; }
+    void received(BusTime /*time*/, const CanFrame& /*frame*/) override { ++arrived; }
     void transmitted(BusTime /*time*/, const CanFrame& /*frame*/) override { ++sent; }
-    std::size_t heard = 0;
+    std::size_t arrived = 0;
     std::size_t sent = 0;
   };
   Bus bus;
@@ -171,8 +171,8 @@ TEST(TrafficWithCollisions, LosesAndRepeatsNothing) {
   EXPECT_EQ(counters[0].sent, accepted[0]);
   EXPECT_EQ(counters[1].sent, accepted[1]);
   const std::size_t merged = accepted[0] + accepted[1] - bus.statistics().frames;
-  EXPECT_EQ(counters[0].heard + merged, counters[1].sent);
-  EXPECT_EQ(counters[1].heard + merged, counters[0].sent);
+  EXPECT_EQ(counters[0].arrived + merged, counters[1].sent);
+  EXPECT_EQ(counters[1].arrived + merged, counters[0].sent);
   EXPECT_GT(merged, 10U);
   EXPECT_GT(bus.statistics().collisions, 10U);
 }

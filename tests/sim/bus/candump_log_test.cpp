@@ -1,4 +1,4 @@
-// Oracles: log2asc of can-utils reads the log back; tshark dissects it as CANopen.
+// Oracles: log2asc of can-utils reads the log; tshark dissects it as CANopen.
 
 #include "sim/bus/candump_log.hpp"
 
@@ -90,7 +90,7 @@ struct Dissected {
   std::string meaning;
 };
 
-TEST_F(CandumpFile, ShowsTsharkTheProtocolsExamplesAsCanopen) {
+TEST_F(CandumpFile, IsDissectedByTsharkAsCanopen) {
   const std::vector<Dissected> examples{
       {frame_of(0x080, {0x2D}), "SYNC [45]"},
       {frame_of(0x000, {0x01, 0x03}), "NMT: Start remote node [0x3]"},
@@ -145,7 +145,7 @@ std::string message_of(const std::string& path) {
   return "no error";
 }
 
-TEST(CandumpLog, SaysWhyItCannotBeWritten) {
+TEST(CandumpLog, NamesTheReasonWhenItCannotBeWritten) {
   EXPECT_EQ(message_of("/no/such/folder/x.log"), "/no/such/folder/x.log: cannot be written: No such file or directory");
   EXPECT_EQ(message_of("/dev/full"), "/dev/full: cannot be written: No space left on device");
   std::ostringstream broken;

@@ -1,5 +1,5 @@
-// Errors on the bus, against the rules of ISO 11898-1 (fault confinement, error and interframe frames): the counters
-// are kept a second time here, from the rules alone.
+// Errors on the bus, against the rules of ISO 11898-1 (fault confinement, error and interframe frames). The tests count
+// errors independently, from the rules alone.
 
 #include "sim/bus/fault_confinement.hpp"
 
@@ -26,14 +26,14 @@ class Node final : public BusListener {
  public:
   explicit Node(Bus& bus) : controller(bus.attach(*this)) {}
 
-  void received(BusTime time, const CanFrame& frame) override { heard.emplace_back(time, frame); }
+  void received(BusTime time, const CanFrame& frame) override { arrived.emplace_back(time, frame); }
   void transmitted(BusTime time, const CanFrame& frame) override { sent.emplace_back(time, frame); }
   void error_seen(BusTime time, bool was_sending) override { errors.emplace_back(time, was_sending); }
   void error_state_changed(BusTime time) override { states.emplace_back(time, controller.error_state()); }
   void joined(BusTime time) override { joins.push_back(time); }
 
   Controller& controller;
-  std::vector<std::pair<BusTime, CanFrame>> heard;
+  std::vector<std::pair<BusTime, CanFrame>> arrived;
   std::vector<std::pair<BusTime, CanFrame>> sent;
   std::vector<std::pair<BusTime, bool>> errors;
   std::vector<std::pair<BusTime, ErrorState>> states;
@@ -72,8 +72,8 @@ TEST_F(FaultConfinement, ADestroyedFrameEndsInAnErrorFrameAndIsSentAgainOnce) {
   EXPECT_EQ(b.errors, (Errors{{error, false}}));
   using Frames = std::vector<std::pair<BusTime, CanFrame>>;
   EXPECT_EQ(a.sent, (Frames{{end, frame}}));
-  EXPECT_EQ(b.heard, a.sent);
-  EXPECT_EQ(c.heard, a.sent);
+  EXPECT_EQ(b.arrived, a.sent);
+  EXPECT_EQ(c.arrived, a.sent);
   EXPECT_EQ(a.controller.free_mailboxes(), Controller::mailbox_count);
   EXPECT_EQ(bus.statistics().frames, 1U);
   EXPECT_EQ(bus.statistics().errors, 1U);
@@ -81,7 +81,7 @@ TEST_F(FaultConfinement, ADestroyedFrameEndsInAnErrorFrameAndIsSentAgainOnce) {
   EXPECT_EQ(bus.statistics().busy, end + intermission);
 }
 
-TEST_F(FaultConfinement, EverybodyCountsAnErrorAndSuccessTakesItBack) {
+TEST_F(FaultConfinement, EveryNodeCountsAnErrorAndSuccessLowersTheCount) {
   destroy_next(1);
   ASSERT_TRUE(a.controller.send(frame));
   bus.advance_to(until_error(frame) + flag_and_delimiter);
@@ -104,9 +104,9 @@ TEST_F(FaultConfinement, AnotherFrameMayWinTheArbitrationAfterAnError) {
   bus.advance_to(10 * bit);
   ASSERT_TRUE(b.controller.send(low));
   bus.advance_to(10'000'000);
-  ASSERT_EQ(c.heard.size(), 2U);
-  EXPECT_EQ(c.heard[0].second, low);
-  EXPECT_EQ(c.heard[1].second, frame);
+  ASSERT_EQ(c.arrived.size(), 2U);
+  EXPECT_EQ(c.arrived[0].second, low);
+  EXPECT_EQ(c.arrived[1].second, frame);
 }
 
 TEST_F(FaultConfinement, After16ErrorsInARowASenderIsPassiveAndAfter32InBusOff) {
@@ -129,8 +129,8 @@ TEST_F(FaultConfinement, After16ErrorsInARowASenderIsPassiveAndAfter32InBusOff) 
   bus.set_error_rule({});
   ASSERT_TRUE(b.controller.send(low));
   bus.advance_to(200'000'000);
-  EXPECT_TRUE(a.heard.empty());
-  EXPECT_EQ(c.heard.size(), 1U);
+  EXPECT_TRUE(a.arrived.empty());
+  EXPECT_EQ(c.arrived.size(), 1U);
 }
 
 TEST_F(FaultConfinement, AReceiverBecomesPassiveAbove127AndActiveWithTheNextFrame) {
@@ -154,7 +154,7 @@ TEST_F(FaultConfinement, AReceiverBecomesPassiveAbove127AndActiveWithTheNextFram
   EXPECT_GE(c.controller.receive_errors(), 119U);
   EXPECT_LE(c.controller.receive_errors(), 127U);
   ASSERT_EQ(c.states.size(), 2U);
-  EXPECT_EQ(c.states[1].first, c.heard.front().first);
+  EXPECT_EQ(c.states[1].first, c.arrived.front().first);
 }
 
 TEST_F(FaultConfinement, BusOffIsLeftAfter128Times11RecessiveBits) {
@@ -163,7 +163,7 @@ TEST_F(FaultConfinement, BusOffIsLeftAfter128Times11RecessiveBits) {
   bus.advance_to(100'000'000);
   ASSERT_EQ(a.controller.error_state(), ErrorState::bus_off);
   bus.advance_to(200'000'000);
-  EXPECT_EQ(a.controller.error_state(), ErrorState::bus_off) << "not without being asked";
+  EXPECT_EQ(a.controller.error_state(), ErrorState::bus_off) << "not without recover()";
   a.controller.recover();
   a.controller.recover();
   EXPECT_EQ(bus.next_event(), 200'000'000 + 128 * 11 * bit);
@@ -176,10 +176,10 @@ TEST_F(FaultConfinement, BusOffIsLeftAfter128Times11RecessiveBits) {
   EXPECT_EQ(a.states.back(), std::make_pair(bus.now(), ErrorState::active));
   ASSERT_TRUE(a.controller.send(frame));
   bus.advance_to(300'000'000);
-  EXPECT_EQ(b.heard.size(), 1U);
+  EXPECT_EQ(b.arrived.size(), 1U);
 }
 
-TEST_F(FaultConfinement, OnABusThatIsNeverIdleEachFrameCountsForOneSequenceOf11RecessiveBits) {
+TEST_F(FaultConfinement, OnABusThatIsNeverIdleEachFrameCountsAsOneSequenceOf11RecessiveBits) {
   destroy_next(32);
   ASSERT_TRUE(a.controller.send(frame));
   bus.advance_to(100'000'000);
@@ -237,7 +237,7 @@ TEST_F(FaultConfinement, RecoveryEndsWithPower) {
   ASSERT_TRUE(a.controller.send(frame));
 }
 
-TEST_F(FaultConfinement, AnActiveSenderMayGoOnAfterIntermissionAPassiveOneWaits8BitsMore) {
+TEST_F(FaultConfinement, AnActiveSenderMayContinueAfterIntermissionAPassiveOneWaits8BitsMore) {
   destroy_next(17);
   ASSERT_TRUE(a.controller.send(frame));
   bus.advance_to(10'000'000);
@@ -259,7 +259,7 @@ TEST_F(FaultConfinement, AnActiveSenderMayGoOnAfterIntermissionAPassiveOneWaits8
   EXPECT_EQ(a.sent[1].first - a.sent[0].first, intermission + 8 * bit + duration(high));
 }
 
-TEST_F(FaultConfinement, WhileAPassiveSenderWaitsOthersMayStartWhateverTheirIdentifiers) {
+TEST_F(FaultConfinement, WhileAPassiveSenderWaitsOthersMayStartWithAnyIdentifier) {
   destroy_next(16);
   ASSERT_TRUE(a.controller.send(low));
   while (a.errors.size() < 16) {
@@ -269,10 +269,10 @@ TEST_F(FaultConfinement, WhileAPassiveSenderWaitsOthersMayStartWhateverTheirIden
   ASSERT_TRUE(b.controller.send(high));
   const BusTime error = bus.now();
   bus.advance_to(error + 1'000'000);
-  ASSERT_EQ(c.heard.size(), 2U);
-  EXPECT_EQ(c.heard[0], std::make_pair(error + intermission + duration(high), high));
-  EXPECT_EQ(c.heard[1], std::make_pair(c.heard[0].first + intermission + duration(low), low))
-      << "who has received meanwhile waits no longer";
+  ASSERT_EQ(c.arrived.size(), 2U);
+  EXPECT_EQ(c.arrived[0], std::make_pair(error + intermission + duration(high), high));
+  EXPECT_EQ(c.arrived[1], std::make_pair(c.arrived[0].first + intermission + duration(low), low))
+      << "a node that has received a frame meanwhile waits no longer";
 }
 
 TEST_F(FaultConfinement, WhileAPassiveSenderWaitsAnIdleBusIsOpenToOthersAtOnce) {
@@ -285,7 +285,7 @@ TEST_F(FaultConfinement, WhileAPassiveSenderWaitsAnIdleBusIsOpenToOthersAtOnce) 
   bus.advance_to(start);
   ASSERT_TRUE(b.controller.send(high));
   bus.advance_to(start + 1'000'000);
-  EXPECT_EQ(c.heard[0], std::make_pair(start + duration(high), high));
+  EXPECT_EQ(c.arrived[0], std::make_pair(start + duration(high), high));
 }
 
 TEST(LoneNode, BecomesPassiveForLackOfAcknowledgementButNeverBusOff) {
@@ -308,7 +308,7 @@ TEST(LoneNode, BecomesPassiveForLackOfAcknowledgementButNeverBusOff) {
   Node other(bus);
   bus.advance_to(bus.now() + 2 * period);
   ASSERT_EQ(alone.sent.size(), 1U);
-  EXPECT_EQ(other.heard, alone.sent);
+  EXPECT_EQ(other.arrived, alone.sent);
   EXPECT_EQ(alone.controller.transmit_errors(), 127U);
   EXPECT_EQ(alone.controller.error_state(), ErrorState::active);
 }
@@ -319,13 +319,13 @@ TEST_F(FaultConfinement, NodesWithoutPowerInBusOffOrSilentDoNotAcknowledge) {
   ASSERT_TRUE(a.controller.send(frame));
   bus.advance_to(1'000'000);
   EXPECT_TRUE(a.sent.empty());
-  EXPECT_TRUE(c.heard.empty());
+  EXPECT_TRUE(c.arrived.empty());
   EXPECT_GT(a.errors.size(), 5U);
   b.controller.switch_on();
   bus.advance_to(2'000'000);
   EXPECT_EQ(a.sent.size(), 1U);
-  EXPECT_EQ(c.heard.size(), 1U) << "a silent node hears";
-  ASSERT_TRUE(c.controller.send(low)) << "but keeps what it is given";
+  EXPECT_EQ(c.arrived.size(), 1U) << "a silent node receives";
+  ASSERT_TRUE(c.controller.send(low)) << "but keeps the frame in its mailbox";
   bus.advance_to(3'000'000);
   EXPECT_TRUE(c.sent.empty());
   c.controller.set_role(Controller::Role::normal);
@@ -333,7 +333,7 @@ TEST_F(FaultConfinement, NodesWithoutPowerInBusOffOrSilentDoNotAcknowledge) {
   EXPECT_EQ(c.sent.size(), 1U);
 }
 
-TEST_F(FaultConfinement, ALoopingNodeNeedsNoAcknowledgementAndHearsNobody) {
+TEST_F(FaultConfinement, ALoopingNodeNeedsNoAcknowledgementAndReceivesNothing) {
   b.controller.switch_off();
   c.controller.switch_off();
   a.controller.set_role(Controller::Role::loop_back);
@@ -343,7 +343,7 @@ TEST_F(FaultConfinement, ALoopingNodeNeedsNoAcknowledgementAndHearsNobody) {
   b.controller.switch_on();
   ASSERT_TRUE(b.controller.send(low));
   bus.advance_to(2'000'000);
-  EXPECT_TRUE(a.heard.empty());
+  EXPECT_TRUE(a.arrived.empty());
   EXPECT_TRUE(b.sent.empty());
 }
 
@@ -377,7 +377,7 @@ TEST_F(FaultConfinement, AOneShotFrameIsTriedOnce) {
   ASSERT_TRUE(b.controller.send(low));
   bus.advance_to(2'000'000);
   EXPECT_TRUE(a.sent.empty()) << "the arbitration was lost";
-  EXPECT_EQ(c.heard.size(), 1U);
+  EXPECT_EQ(c.arrived.size(), 1U);
   ASSERT_TRUE(a.controller.send(frame));
   bus.advance_to(3'000'000);
   EXPECT_EQ(a.sent.size(), 1U);
@@ -386,15 +386,15 @@ TEST_F(FaultConfinement, AOneShotFrameIsTriedOnce) {
 TEST_F(FaultConfinement, TheOrderOfMailboxesCanBeChosen) {
   const CanFrame low_too = frame_of(0x080, {0x2E});
   const auto order_of = [&](Controller::Order order) {
-    c.heard.clear();
+    c.arrived.clear();
     a.controller.set_order(order);
     EXPECT_TRUE(a.controller.send(2, high));
     EXPECT_TRUE(a.controller.send(1, low));
     EXPECT_TRUE(a.controller.send(0, low_too));
     bus.advance_to(bus.now() + 1'000'000);
     std::vector<CanFrame> result;
-    for (const auto& [time, heard] : c.heard) {
-      result.push_back(heard);
+    for (const auto& [time, arrived] : c.arrived) {
+      result.push_back(arrived);
     }
     return result;
   };
@@ -414,7 +414,7 @@ TEST_F(FaultConfinement, JoiningTakes11RecessiveBits) {
   EXPECT_EQ(c.joins, std::vector<BusTime>{5'000 + 11 * bit});
   EXPECT_TRUE(c.controller.is_on());
 
-  // On a busy bus: at the end of the intermission after the frame, and the next frame is heard.
+  // On a busy bus: at the end of the intermission after the frame, and the node receives the next frame.
   c.controller.switch_off();
   ASSERT_TRUE(a.controller.send(frame));
   ASSERT_TRUE(a.controller.send(high));
@@ -423,8 +423,8 @@ TEST_F(FaultConfinement, JoiningTakes11RecessiveBits) {
   bus.advance_to(1'000'000);
   ASSERT_EQ(c.joins.size(), 2U);
   EXPECT_EQ(c.joins[1], 100'000 + duration(frame) + intermission);
-  ASSERT_EQ(c.heard.size(), 1U);
-  EXPECT_EQ(c.heard[0].second, high);
+  ASSERT_EQ(c.arrived.size(), 1U);
+  EXPECT_EQ(c.arrived[0].second, high);
 }
 
 TEST_F(FaultConfinement, WithRealBitErrorsAnIdentifierSharedByTwoEndsInBusOffOfBoth) {
@@ -444,7 +444,7 @@ TEST_F(FaultConfinement, WithRealBitErrorsAnIdentifierSharedByTwoEndsInBusOffOfB
   EXPECT_EQ(a.controller.error_state(), ErrorState::bus_off);
   EXPECT_EQ(b.controller.error_state(), ErrorState::bus_off);
   EXPECT_EQ(c.controller.receive_errors(), 32U);
-  EXPECT_TRUE(c.heard.empty());
+  EXPECT_TRUE(c.arrived.empty());
 }
 
 TEST_F(FaultConfinement, ErrorCountersFollowTheRulesUnderRandomErrors) {
@@ -499,7 +499,7 @@ TEST_F(FaultConfinement, ErrorCountersFollowTheRulesUnderRandomErrors) {
           node.is_bus_off = node.transmit > 255;
         } else if (seen.sent.size() > sent_before[i]) {
           node.transmit -= node.transmit > 0 ? 1 : 0;
-        } else if (!seen.heard.empty() && seen.heard.back().first == noisy.now()) {
+        } else if (!seen.arrived.empty() && seen.arrived.back().first == noisy.now()) {
           node.receive = node.receive > 127 ? 127 : node.receive - (node.receive > 0 ? 1 : 0);
         }
         errors_before[i] = seen.errors.size();
@@ -528,7 +528,7 @@ TEST_P(NoisyBus, EveryFrameArrivesOnceAndThoseOfAnIdentifierInTheirOrder) {
   for (std::size_t i = 0; i < count; ++i) {
     nodes.push_back(std::make_unique<Node>(bus));
   }
-  const unsigned percent = static_cast<unsigned>(random() % 11);  // nobody comes near bus-off
+  const unsigned percent = static_cast<unsigned>(random() % 11);  // no node comes near bus-off
   bus.set_error_rule([&](const CanFrame&, std::uint64_t) { return random() % 100 < percent; });
   std::map<std::uint16_t, std::vector<CanFrame>> accepted;
   std::size_t total = 0;
@@ -546,7 +546,7 @@ TEST_P(NoisyBus, EveryFrameArrivesOnceAndThoseOfAnIdentifierInTheirOrder) {
   for (std::size_t i = 0; i < count; ++i) {
     std::map<std::uint16_t, std::vector<CanFrame>> seen;
     std::size_t frames = 0;
-    for (const auto* list : {&nodes[i]->sent, &nodes[i]->heard}) {
+    for (const auto* list : {&nodes[i]->sent, &nodes[i]->arrived}) {
       for (const auto& [time, frame] : *list) {
         seen[frame.identifier].push_back(frame);
         ++frames;
@@ -562,7 +562,7 @@ TEST_P(NoisyBus, EveryFrameArrivesOnceAndThoseOfAnIdentifierInTheirOrder) {
 INSTANTIATE_TEST_SUITE_P(Seeds, NoisyBus, testing::Range(1U, 31U));
 
 TEST(FirstDifferentBit, IsWhereTheLevelsOnTheWireDiffer) {
-  // SOF, 11 bits of identifier, RTR, IDE, r0 and three bits of DLC; of these the last zeros make five, and a stuff bit.
+  // SOF, 11 bits of identifier, RTR, IDE, r0 and three bits of DLC. Five zeros at their end cause a stuff bit.
   EXPECT_EQ(first_different_bit(frame_of(0x555, {0xAA}), frame_of(0x555, {0x2A})), 1U + 11U + 3U + 4U + 1U);
   EXPECT_EQ(first_different_bit(frame_of(0x555, {0xAA}), frame_of(0x555, {0xAB})), 1U + 11U + 3U + 4U + 1U + 7U);
   // Length 0 or 8: the first of the four bits of DLC.

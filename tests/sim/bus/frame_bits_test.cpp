@@ -122,7 +122,8 @@ TEST(FrameBits, LiesBetweenTheBestAndTheWorstCase) {
   for (int i = 0; i < 100'000; ++i) {
     const auto length = static_cast<std::uint8_t>(random() % 9);
     const CanFrame frame = random_frame(static_cast<std::uint16_t>(random() & 0x7FFU), length, random);
-    const unsigned stuffable = 34U + 8U * length;  // of the first five bits one, of each four bits behind them one
+    const unsigned stuffable =
+        34U + 8U * length;  // at most one stuff bit after the first five, then one after each four
     ASSERT_GE(frame_bits(frame), stuffable + 10);
     ASSERT_LE(frame_bits(frame), stuffable + 10 + (stuffable - 1) / 4);
   }

@@ -17,7 +17,7 @@ namespace proleg::sim {
   return frame;
 }
 
-/// A frame with that identifier and length; its bytes come in runs, so that there is something to stuff.
+/// A frame with that identifier and length; its bytes have runs of equal bits, which cause stuff bits.
 [[nodiscard]] inline CanFrame random_frame(std::uint16_t identifier, std::uint8_t length, std::mt19937_64& random) {
   CanFrame frame;
   frame.identifier = identifier;

@@ -15,7 +15,7 @@
 namespace proleg::sim {
 namespace {
 
-/// Nothing happens to it but what its servos do, so that it does the same later if they do.
+/// Only its servos move it, so a latency delays the whole motion.
 Scenario floating(std::uint32_t latency_us) {
   Scenario scenario = shipped("travelling_wave/uniform");
   scenario.environment.objects.clear();
@@ -35,7 +35,7 @@ std::vector<std::vector<double>> angles_of(const Scenario& scenario, int ticks) 
   return angles;
 }
 
-TEST(ServoLatency, MakesTheRobotDoTheSameLater) {
+TEST(ServoLatency, DelaysTheWholeMotion) {
   const auto prompt = angles_of(floating(0), 50);
   for (const int ticks : {1, 2, 10}) {
     const auto late = angles_of(floating(static_cast<std::uint32_t>(ticks) * 10'000U), 50);
@@ -67,7 +67,7 @@ TEST(ServoLatency, ChangesNoSetpointNorPulse) {
     prompt.advance();
     late.advance();
     EXPECT_TRUE(std::ranges::equal(prompt.plant().servo_commands(), late.plant().servo_commands()))
-        << "the last pulse that came, not the one that it acts on";
+        << "the last pulse taken, not the one acted on";
   }
   EXPECT_EQ(prompt.setpoint_hash().hex(), late.setpoint_hash().hex());
   EXPECT_EQ(prompt.servo_hash().hex(), late.servo_hash().hex());
@@ -111,7 +111,7 @@ Scenario noisy(double probability, std::uint64_t seed = 1) {
   return scenario;
 }
 
-TEST(ContactNoise, MakesEverySensorReadWrongAsOftenAsItSays) {
+TEST(ContactNoise, MakesEverySensorReadWrongWithItsProbability) {
   constexpr int ticks = 500;
   const auto truth = sensors_of(noisy(0.0), ticks);
   for (const double probability : {0.01, 0.2, 1.0}) {
@@ -135,7 +135,7 @@ TEST(ContactNoise, IsTheSameForTheSameSeed) {
   EXPECT_NE(sensors_of(noisy(0.1, 5), 100), sensors_of(noisy(0.1, 6), 100));
 }
 
-TEST(ContactNoise, IsNoneOfTheMeasuresBusiness) {
+TEST(ContactNoise, DoesNotChangeTheMeasures) {
   const Scenario undisturbed = noisy(0.0);
   const Scenario disturbed = noisy(0.5);
   Simulation quiet(undisturbed);
@@ -144,7 +144,7 @@ TEST(ContactNoise, IsNoneOfTheMeasuresBusiness) {
     quiet.advance();
     loud.advance();
   }
-  EXPECT_EQ(quiet.link_duty_factors(), loud.link_duty_factors()) << "they are of what the links do";
+  EXPECT_EQ(quiet.link_duty_factors(), loud.link_duty_factors()) << "they use the contacts without noise";
   EXPECT_EQ(quiet.measures()[Measure::stability_margin], loud.measures()[Measure::stability_margin]);
 }
 

@@ -1,5 +1,5 @@
-// Modules that know only their own joint, their sensors and the frames they hear, each on its own crystal: not one bit
-// of what they do may differ from the gait in memory.
+// Modules that have only their own joint, their sensors, the frames they receive and their own crystal: their
+// set-points and pulses must not differ from the gait in memory in a single bit.
 
 #include "sim/loop/hardware_loop.hpp"
 
@@ -114,7 +114,7 @@ TEST(HardwareLoop, TwoRunsAreTheSame) {
   EXPECT_EQ(first.bus.busy, second.bus.busy);
 }
 
-TEST(HardwareLoop, CrystalsMayBeOffByMoreThanAnyCrystalIs) {
+TEST(HardwareLoop, CrystalsMayBeOffByMoreThanRealOnes) {
   const Scenario scenario = shipped("travelling_wave/coupled");
   for (const std::uint32_t error_ppm : {0U, 100U, 500U}) {
     HardwareOptions options;
@@ -124,7 +124,7 @@ TEST(HardwareLoop, CrystalsMayBeOffByMoreThanAnyCrystalIs) {
 }
 
 // Servo periods that do not fit the tick or the step of the physics.
-TEST(HardwareLoop, TakesServosOfEveryKind) {
+TEST(HardwareLoop, WorksWithEveryServoPeriod) {
   for (const std::uint32_t period_us : {700U, 981U, 1'000U, 1'999U, 3'000U, 3'333U, 9'999U, 20'000U, 33'333U}) {
     Scenario scenario = shipped("travelling_wave/coupled");
     scenario.robot.servo.period_us = period_us;
@@ -132,7 +132,7 @@ TEST(HardwareLoop, TakesServosOfEveryKind) {
   }
 }
 
-TEST(HardwareLoop, TakesOtherTicks) {
+TEST(HardwareLoop, WorksWithOtherTickPeriods) {
   for (const std::uint32_t tick_us : {5'000U, 20'000U}) {
     Scenario scenario = shipped("travelling_wave/coupled");
     scenario.kernel.tick_period_us = tick_us;
@@ -175,7 +175,7 @@ TEST(HardwareLoop, SixtyModulesRun) {
 
 class RestartedModule : public testing::TestWithParam<const char*> {};
 
-TEST_P(RestartedModule, RejoinsAndNothingDiffersFromTheGaitInMemoryThatLacksItAsLong) {
+TEST_P(RestartedModule, RejoinsAndNothingDiffersFromTheGaitInMemoryWithTheSameGap) {
   Scenario scenario = shipped(GetParam());
   if (scenario.kernel.slots[0].algorithm->declaration().name == "PatternGenerator_coupled_oscillator") {
     apply_setting(scenario, "amplitude=25@205");  // committed while the module is away
@@ -229,7 +229,7 @@ TEST(HardwareLoop, TheServoOfARestartedModuleIsLimpUntilItIsBack) {
 
 // TICK has a higher identifier than the SDOs of a set-up, which must leave it room; also with short and long ticks, and
 // when the frame of the restarted module would carry the label 0.
-TEST(HardwareLoop, RestartsAtAwkwardTicksDisturbNobodyElse) {
+TEST(HardwareLoop, RestartsAtAwkwardTicksDoNotDisturbOtherModules) {
   struct Case {
     const char* scenario;
     std::uint32_t tick_us;
@@ -259,7 +259,7 @@ TEST(HardwareLoop, RestartsAtAwkwardTicksDisturbNobodyElse) {
 // ---------------------------------------------------------------------------------------------------------------------
 // A check of identity must be able to fail.
 
-class SecretFault : public testing::TestWithParam<const char*> {
+class HiddenFault : public testing::TestWithParam<const char*> {
  protected:
   static bool is_state_frame(const CanFrame& frame, std::uint8_t node, std::uint8_t label) {
     return frame.identifier == canopen::identifier::state_frame + node && frame.data[7] == label;
@@ -274,9 +274,9 @@ class SecretFault : public testing::TestWithParam<const char*> {
   Scenario scenario = shipped(GetParam());
 };
 
-// While the oscillators still look for their phases. (In a settled gait what a receiver expects of a lost frame is so
-// right that nothing changes.)
-TEST_P(SecretFault, AStateFrameDroppedOnItsWayToOneJointShows) {
+// While the phases of the oscillators still converge. (In a settled gait a receiver predicts a lost frame so well that
+// nothing changes.)
+TEST_P(HiddenFault, AStateFrameDroppedOnItsWayToOneJointShows) {
   HardwareOptions options;
   options.tamper = [](unsigned joint, const CanFrame& frame, const auto& deliver) {
     if (!(joint == 1 && is_state_frame(frame, 1, 20))) {
@@ -286,7 +286,7 @@ TEST_P(SecretFault, AStateFrameDroppedOnItsWayToOneJointShows) {
   expect_other_hash(run(scenario, ticks, options));
 }
 
-TEST_P(SecretFault, AStateFrameThatComesATickLateShows) {
+TEST_P(HiddenFault, AStateFrameThatComesATickLateShows) {
   HardwareOptions options;
   std::optional<CanFrame> late;
   options.tamper = [&late](unsigned joint, const CanFrame& frame, const auto& deliver) {
@@ -303,10 +303,10 @@ TEST_P(SecretFault, AStateFrameThatComesATickLateShows) {
   expect_other_hash(run(scenario, ticks, options));
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenarios, SecretFault, testing::Values("travelling_wave/coupled"));
+INSTANTIATE_TEST_SUITE_P(Scenarios, HiddenFault, testing::Values("travelling_wave/coupled"));
 
-// One module's contacts are a tick younger than those of its neighbours. That they are all older is another gait, too,
-// but not the same one.
+// One module's contacts are a tick younger than those of its neighbours. If the contacts of all modules are a tick
+// older, the gait differs as well, but in another way.
 TEST(HardwareLoop, ContactsOfMixedAgesShow) {
   const Scenario scenario = shipped("obstacle/reflex");
   const auto with_older_contacts = [&](unsigned young_joint) {
@@ -328,8 +328,8 @@ TEST(HardwareLoop, ContactsOfMixedAgesShow) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// Frames that somebody else puts on the bus while the robot moves. What does not fit is refused, by name where it can
-// be answered; nothing moves otherwise than before.
+// Frames that another node sends on the bus while the robot moves. Modules reject what does not fit, with a reason
+// where the protocol has an answer, and the motion does not change.
 
 class Intruder : public testing::Test {
  protected:
@@ -360,13 +360,13 @@ class Intruder : public testing::Test {
   Scenario scenario = shipped("travelling_wave/coupled");
 };
 
-TEST_F(Intruder, AnObjectThatDoesNotExistIsRefusedWithTheAbortCodeOfTheStandard) {
+TEST_F(Intruder, AnObjectThatDoesNotExistIsRejectedWithTheAbortCodeOfTheStandard) {
   const auto answers = answers_to({frame(0x603, {0x40, 0x34, 0x12, 0x00, 0, 0, 0, 0})}, 0x583, 0x583);
   ASSERT_EQ(answers.size(), 1U);
   EXPECT_EQ(answers[0], frame(0x583, {0x80, 0x34, 0x12, 0x00, 0x00, 0x00, 0x02, 0x06}));
 }
 
-TEST_F(Intruder, AValueOutOfRangeIsRefusedWithTheAbortCodeOfTheStandard) {
+TEST_F(Intruder, AValueOutOfRangeIsRejectedWithTheAbortCodeOfTheStandard) {
   // Amplitude, staged in slot 1 as -1.
   const auto answers = answers_to({frame(0x603, {0x23, 0x80, 0x40, 0x01, 0xFF, 0xFF, 0xFF, 0xFF})}, 0x583, 0x583);
   ASSERT_EQ(answers.size(), 1U);
@@ -407,16 +407,16 @@ TEST_F(Intruder, FramesOfWrongLengthChangeNothing) {
              0, 0);
 }
 
-// The module itself cannot tell a forged frame from a true one, but every true one follows and counts.
+// The module cannot distinguish a forged frame from a true one, but the true one follows each and replaces it.
 TEST_F(Intruder, AnUnknownLabelChangesNothing) {
   HardwareOptions options;
-  options.tamper = [](unsigned joint, const CanFrame& heard, const auto& deliver) {
-    if (joint == 1 && heard.identifier == 0x181 && heard.data[7] == 50) {
-      CanFrame forged = heard;
+  options.tamper = [](unsigned joint, const CanFrame& received, const auto& deliver) {
+    if (joint == 1 && received.identifier == 0x181 && received.data[7] == 50) {
+      CanFrame forged = received;
       forged.data[7] = 200;
       deliver(forged);
     }
-    deliver(heard);
+    deliver(received);
   };
   const Outcome modules = run(scenario, 200, options);
   EXPECT_EQ(modules.differences, 0U);
@@ -424,7 +424,7 @@ TEST_F(Intruder, AnUnknownLabelChangesNothing) {
   EXPECT_NE(modules.notices[0].find("0xFF05"), std::string::npos) << modules.notices[0];
 }
 
-// Two clocks on one bus: nobody can say which is right. The servos lose their power until the next TICK.
+// Two clocks on one bus: no module can decide which is right. The servos lose their power until the next TICK.
 TEST_F(Intruder, ASyncThatFitsNoTickIsReportedAndTheModulesJoinAgain) {
   HardwareOptions options;
   options.injected = {{100, frame(0x080, {0x50})}};
@@ -450,7 +450,7 @@ void expect_refusal(const Scenario& scenario, const HardwareOptions& options, co
   }
 }
 
-TEST(RefusedRobot, AModuleWithAnotherCoreIsNamed) {
+TEST(RefusedRobot, AModuleWithAWrongCoreIsNamed) {
   HardwareOptions options;
   options.change_board = [](unsigned joint, firmware::Board& board) {
     if (joint == 3) {
@@ -460,7 +460,7 @@ TEST(RefusedRobot, AModuleWithAnotherCoreIsNamed) {
   expect_refusal(shipped("travelling_wave/uniform"), options, "node 4 (J2)");
 }
 
-TEST(RefusedRobot, AModuleWithAnotherSerialNumberThanTheFileNamesIsNamed) {
+TEST(RefusedRobot, AModuleWithAWrongSerialNumberIsNamed) {
   Scenario scenario = shipped("travelling_wave/uniform");
   scenario.modules[2].serial = 0x1234ABCD;
   EXPECT_EQ(run(scenario, 10).differences, 0U) << "the simulated module has the serial number of the file";
@@ -495,7 +495,7 @@ TEST(RefusedRobot, ABusThatCannotCarryItsFramesIsRefusedBeforeItStarts) {
   EXPECT_THROW(HardwareLoop(scenario, {}), InputError);
 }
 
-TEST(HardwareLoop, TakesARampOfAChangeInEveryTick) {
+TEST(HardwareLoop, AppliesARampWithAChangeInEveryTick) {
   Scenario scenario = shipped("travelling_wave/coupled");
   scenario.kernel.tick_period_us = 5'000;
   for (int i = 0; i < 60; ++i) {  // a ramp of a step in every tick

@@ -22,7 +22,7 @@ double phase_degrees(const KernelChain& chain, unsigned joint) {
 }
 
 /// The largest distance between the phases of two chains, in degrees.
-double largest_phase_error(const KernelChain& a, const KernelChain& b) {
+double max_phase_error(const KernelChain& a, const KernelChain& b) {
   double largest = 0;
   for (unsigned joint = 0; joint < a.joint_count(); ++joint) {
     largest = std::max(largest, std::abs(std::remainder(phase_degrees(a, joint) - phase_degrees(b, joint), 360.0)));
@@ -30,7 +30,7 @@ double largest_phase_error(const KernelChain& a, const KernelChain& b) {
   return largest;
 }
 
-TEST(KernelChain, LosesWhatTheLossesNameAndNothingElse) {
+TEST(KernelChain, LosesExactlyTheFramesThatTheLossesName) {
   const Scenario scenario = shipped("travelling_wave/coupled");
   KernelChain chain = make_chain(scenario);
   const Losses losses({{3, 0, 0, 1}, {5, 4, 0, 3}, {5, 4, 0, 2}});
@@ -46,7 +46,7 @@ TEST(KernelChain, LosesWhatTheLossesNameAndNothingElse) {
   EXPECT_EQ(chain.kernel(0).missed_frames(), 0U);
 }
 
-TEST(KernelChain, ThePlainSineDoesNotMindLosses) {
+TEST(KernelChain, LossesDoNotChangeThePlainSine) {
   const Scenario scenario = shipped("travelling_wave/uniform");
   KernelChain chain = make_chain(scenario);
   KernelChain undisturbed = make_chain(scenario);
@@ -60,7 +60,7 @@ TEST(KernelChain, ThePlainSineDoesNotMindLosses) {
 }
 
 /// The same between neighbours: what makes the wave.
-double largest_phase_difference_error(const KernelChain& a, const KernelChain& b) {
+double max_phase_difference_error(const KernelChain& a, const KernelChain& b) {
   double largest = 0;
   for (unsigned joint = 0; joint + 1 < a.joint_count(); ++joint) {
     const double in_a = phase_degrees(a, joint + 1) - phase_degrees(a, joint);
@@ -90,14 +90,14 @@ Recovery recovery(std::uint64_t seed, double rate, std::uint32_t first) {
     undisturbed.advance(no_contacts);
     result.lost += chain.lost().size();
     if (tick >= end + 100) {
-      result.phase = std::max(result.phase, largest_phase_error(chain, undisturbed));
-      result.differences = std::max(result.differences, largest_phase_difference_error(chain, undisturbed));
+      result.phase = std::max(result.phase, max_phase_error(chain, undisturbed));
+      result.differences = std::max(result.differences, max_phase_difference_error(chain, undisturbed));
     }
   }
   return result;
 }
 
-// What a receiver expects of a neighbour is right as long as the gait is settled.
+// A receiver predicts its neighbour's phase correctly as long as the gait is settled.
 TEST(KernelChain, CoupledOscillatorsStayWithinADegreeWhenFramesAreLostInMidGait) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const Recovery result = recovery(seed, 0.05, 1000);
@@ -106,9 +106,9 @@ TEST(KernelChain, CoupledOscillatorsStayWithinADegreeWhenFramesAreLostInMidGait)
   }
 }
 
-// The wave is what pulls the oscillators back. If frames are lost while they still look for it, all together may run a
-// few degrees ahead or behind ever after: that is nobody's to notice.
-TEST(KernelChain, PhaseDifferencesComeBackWithinADegreeWheneverLossesEnd) {
+// The coupling restores phase differences only. If frames are lost while the phases still converge, the whole wave may
+// stay a few degrees ahead or behind.
+TEST(KernelChain, PhaseDifferencesReturnToWithinADegreeAfterLosses) {
   for (const double rate : {0.05, 0.25, 0.9}) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
       EXPECT_LT(recovery(seed, rate, 0).differences, 1.0) << "seed " << seed << " rate " << rate;
@@ -116,7 +116,7 @@ TEST(KernelChain, PhaseDifferencesComeBackWithinADegreeWheneverLossesEnd) {
   }
 }
 
-TEST(KernelChain, AStoppedJointIsHeardOnceMoreAndThenMissed) {
+TEST(KernelChain, TheOthersReceiveOneMoreFrameOfAStoppedJointAndThenMissIt) {
   const Scenario scenario = shipped("travelling_wave/coupled");
   KernelChain chain = make_chain(scenario);
   for (int tick = 0; tick < 10; ++tick) {
@@ -129,8 +129,8 @@ TEST(KernelChain, AStoppedJointIsHeardOnceMoreAndThenMissed) {
   EXPECT_EQ(chain.kernel(1).missed_frames(), 0U) << "the frame of the tick in which it stops was sent before";
   chain.advance(no_contacts);
   EXPECT_EQ(chain.kernel(1).missed_frames(), 1U);
-  EXPECT_EQ(chain.setpoints()[2], last) << "its set-point stays";
-  EXPECT_EQ(chain.lost().size(), 0U) << "that is no loss on the bus";
+  EXPECT_EQ(chain.setpoints()[2], last) << "its set-point does not change";
+  EXPECT_EQ(chain.lost().size(), 0U) << "this is no loss on the bus";
 }
 
 TEST(KernelChain, AJointThatJoinsHasTheParametersOfTheChangesMeanwhile) {

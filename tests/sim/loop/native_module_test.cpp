@@ -13,17 +13,17 @@ namespace {
 constexpr std::uint8_t node = 5;
 constexpr BusTime ms = 1'000'000;
 
-/// Listens, so that there is somebody to acknowledge.
+/// Receives frames, and so acknowledges them.
 struct Host final : BusListener {
   explicit Host(Bus& bus) : controller(bus.attach(*this)) {}
-  void received(BusTime time, const CanFrame& frame) override { heard.push_back({time, frame}); }
+  void received(BusTime time, const CanFrame& frame) override { frames.push_back({time, frame}); }
   void transmitted(BusTime /*time*/, const CanFrame& /*frame*/) override {}
 
-  struct Heard {
+  struct ReceivedFrame {
     BusTime time;
     CanFrame frame;
   };
-  std::vector<Heard> heard;
+  std::vector<ReceivedFrame> frames;
   Controller& controller;
 };
 
@@ -51,11 +51,11 @@ class NativeModules : public testing::Test {
   NativeModule module{bus, board(), Crystal(), [] { return std::uint8_t{0}; }};
 };
 
-TEST_F(NativeModules, ComeBackFromBusOffAndSaySo) {
+TEST_F(NativeModules, ReturnFromBusOffAndReportIt) {
   module.power_on(0);
   run_until(30 * ms);
-  ASSERT_EQ(host.heard.size(), 1U) << "boot-up";
-  // From now on nothing comes through for a while: heartbeats of 1 ms end in bus-off.
+  ASSERT_EQ(host.frames.size(), 1U) << "boot-up";
+  // Heartbeats of 1 ms that are all destroyed end in bus-off.
   ASSERT_TRUE(host.controller.send({static_cast<std::uint16_t>(canopen::identifier::sdo_request + node),
                                     8,
                                     {0x2B, 0x17, 0x10, 0x00, 0x01, 0x00, 0x00, 0x00}}));
@@ -63,29 +63,29 @@ TEST_F(NativeModules, ComeBackFromBusOffAndSaySo) {
   bool destroy = true;
   bus.set_error_rule([&](const CanFrame& frame, std::uint64_t) { return destroy && frame.identifier > 0x700; });
   run_until(45 * ms);
-  host.heard.clear();
+  host.frames.clear();
   destroy = false;
   run_until(60 * ms);
-  ASSERT_FALSE(host.heard.empty());
-  const auto emergency = canopen::decode_emergency(host.heard[0].frame);
+  ASSERT_FALSE(host.frames.empty());
+  const auto emergency = canopen::decode_emergency(host.frames[0].frame);
   ASSERT_TRUE(emergency);
   EXPECT_EQ(emergency->node, node);
   EXPECT_EQ(emergency->code, canopen::EmergencyCode::bus_off_recovered);
   // 10 ms of pause and 128 times 11 bits.
   EXPECT_EQ(emergency->detail, 11U);
-  EXPECT_GT(host.heard.size(), 3U) << "heartbeats";
+  EXPECT_GT(host.frames.size(), 3U) << "heartbeats";
 }
 
-TEST_F(NativeModules, GrowWeary) {
-  // The first message never comes through.
+TEST_F(NativeModules, SendTheirBootUpMessageAfterALongFaultOfTheBus) {
+  // Every transmission is destroyed.
   bus.set_error_rule([&](const CanFrame&, std::uint64_t) { return true; });
   module.power_on(0);
   run_until(3'000 * ms);
-  EXPECT_TRUE(host.heard.empty());
+  EXPECT_TRUE(host.frames.empty());
   bus.set_error_rule({});
   run_until(5'000 * ms);
-  ASSERT_EQ(host.heard.size(), 1U);
-  EXPECT_EQ(canopen::decode_heartbeat(host.heard[0].frame), (canopen::Heartbeat{node, canopen::NmtState::boot_up}));
+  ASSERT_EQ(host.frames.size(), 1U);
+  EXPECT_EQ(canopen::decode_heartbeat(host.frames[0].frame), (canopen::Heartbeat{node, canopen::NmtState::boot_up}));
 }
 
 TEST_F(NativeModules, MeasureNothingWithoutASource) {

@@ -1,4 +1,4 @@
-// A recording must be enough to compute the run once more: everything below the line comes from the file alone.
+// A recording must be sufficient to repeat the run: everything below the line comes from the file alone.
 
 #include <gtest/gtest.h>
 
@@ -152,7 +152,7 @@ class ReplayedRecording : public testing::Test {
                                  "-" + std::to_string(::getpid()) + ".sqlite");
 };
 
-TEST_F(ReplayedRecording, GivesEverySetpointInternalValueAndServoCommandOnceMore) {
+TEST_F(ReplayedRecording, RepeatsEverySetpointInternalValueAndServoCommand) {
   constexpr std::uint32_t ticks = 300;
   record(eventful_scenario(), ticks, path_);
 

@@ -1,4 +1,4 @@
-// What modules in the loop measure of their servos, and what they do about it.
+// The measurements of servos by modules in the loop, and the protection that uses them.
 
 #include <gtest/gtest.h>
 
@@ -67,7 +67,7 @@ TEST(ServoReadings, AreMonitoredByEveryModuleEveryTenthTick) {
     }
   };
   HardwareLoop loop(scenario, options);
-  std::vector<double> angles;  // of the third joint, at the SYNCs at which it is its turn
+  std::vector<double> angles;  // of the third joint, at the SYNCs after which it sends its monitoring message
   constexpr unsigned joint = 2;
   for (std::uint32_t tick = 0; tick < 200; ++tick) {
     if (tick % 10 == joint) {
@@ -90,7 +90,7 @@ TEST(ServoReadings, AreMonitoredByEveryModuleEveryTenthTick) {
   }
 }
 
-TEST(ServoReadings, AboveTheLimitTakeThePulsesButNotTheGait) {
+TEST(ServoReadings, AboveTheLimitStopThePulsesButNotTheGait) {
   const Scenario scenario = shipped("travelling_wave/coupled");
   constexpr unsigned joint = 1;
   const std::uint8_t node = scenario.modules[joint].node;

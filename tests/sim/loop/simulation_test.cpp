@@ -36,11 +36,13 @@ Outcome run(const Scenario& scenario, double seconds) {
   return {simulation.plant().displacement(), simulation.setpoint_hash().hex(), simulation.servo_hash().hex()};
 }
 
-TEST(Simulation, ReproducesTheTravellingWaveOfTheThesis) {
+// A regression test of the calibration, no independent evidence: friction and servo gain of the shipped robot were
+// fitted to the displacement that the thesis reports.
+TEST(Simulation, TheCalibratedTravellingWaveKeepsTheDisplacementOfTheThesis) {
   const double uniform = run(shipped("travelling_wave/uniform"), 30).displacement;
   const double tail_fixed = run(shipped("travelling_wave/tail_fixed"), 30).displacement;
   // Thesis, section 6.1: 1.65 m, and 1.95 m with the tail joint at rest. The bounds are wider than the solver's noise:
-  // friction alone moves the figure by 0.18 m for 0.01.
+  // a change of friction by 0.01 changes the displacement by 0.18 m.
   EXPECT_NEAR(uniform, 1.65, 0.15);
   EXPECT_GE(tail_fixed / uniform, 1.05);
   EXPECT_LE(tail_fixed / uniform, 1.30);
@@ -55,11 +57,11 @@ std::string failure_of(const Scenario& scenario) {
   return "none";
 }
 
-TEST(Simulation, ARobotThatFallsIsAFailedRunAndNotALongJourney) {
+TEST(Simulation, ARobotThatFallsIsAFailedRun) {
   Scenario scenario = shipped("travelling_wave/uniform");
   EXPECT_EQ(failure_of(scenario), "none");
   scenario.environment.objects[0].geometries[0].extents.y() = 0.5;
-  EXPECT_NE(failure_of(scenario).find("fell off"), std::string::npos) << "over the edge, half a metre away";
+  EXPECT_NE(failure_of(scenario).find("fell off"), std::string::npos) << "over an edge half a metre away";
   scenario.environment.objects.clear();
   EXPECT_NE(failure_of(scenario).find("fell off"), std::string::npos) << "nothing to stand on";
 }
@@ -67,7 +69,7 @@ TEST(Simulation, ARobotThatFallsIsAFailedRunAndNotALongJourney) {
 TEST(Simulation, ARobotThatBreaksUpIsAFailedRun) {
   Scenario scenario = shipped("travelling_wave/uniform");
   for (Link& link : scenario.robot.links) {
-    link.geometries[0].extents = {100, 100, 100};  // larger by far than the links: the solver throws them apart
+    link.geometries[0].extents = {100, 100, 100};  // far larger than the links: the solver throws them apart
   }
   EXPECT_NE(failure_of(scenario), "none");
 }
@@ -92,9 +94,9 @@ TEST(Simulation, APositivePhaseDifferenceCrawlsHeadFirst) {
   }
 }
 
-// The set-points are integers computed from the scenario alone, because these gaits read no contacts; so are the
-// commands that the servos take. No machine, compiler or physics engine may give others. A new hash here means that
-// robots move differently from before, and that recordings made before can no longer be verified.
+// These gaits read no contacts, so their set-points and servo commands are integers computed from the scenario alone.
+// Every machine, compiler and physics engine must give the same ones. A new hash here means that robots move
+// differently from before, and that older recordings can no longer be verified.
 TEST(Simulation, TheShippedScenariosGiveTheSameHashesOnEveryMachine) {
   struct Golden {
     const char* scenario;
@@ -205,7 +207,7 @@ TEST(Simulation, TheServoTakesThePulseOfTheMiddleOfItsInterval) {
 }
 
 TEST(Simulation, ServoCommandsDependOnTheScheduleAndNotOnTheStepsOfThePhysics) {
-  constexpr std::uint32_t ticks = 53;  // no multiple of any period
+  constexpr std::uint32_t ticks = 53;  // not a multiple of any period
   constexpr std::uint32_t duration_us = ticks * 10'000;
   for (const std::uint32_t period_us : {700U, 1'000U, 3'000U, 20'000U, 25'000U}) {
     std::string expected;
@@ -235,7 +237,7 @@ TEST(Simulation, ServoCommandsDependOnTheScheduleAndNotOnTheStepsOfThePhysics) {
 
 TEST(Simulation, AtTheEndOfATickTheServosHaveItsLastPulse) {
   Scenario scenario = shipped("travelling_wave/uniform");
-  scenario.robot.servo.period_us = 700;  // below the step: the last one of a tick may start after its last step
+  scenario.robot.servo.period_us = 700;  // shorter than a step: the last pulse of a tick may start after its last step
   Simulation simulation(scenario);
   for (int tick = 0; tick < 20; ++tick) {
     simulation.advance();
@@ -297,7 +299,7 @@ TEST(Simulation, AnAnalogueServoTakesAPulseEveryTwoTicks) {
   }
 }
 
-TEST(Simulation, AMovingRobotTouchesTheGroundAndTellsTheKernelsWhatWasPressedAtTwoTicksInARow) {
+TEST(Simulation, TheKernelsGetAContactAfterTwoEqualSamples) {
   const Scenario scenario = shipped("travelling_wave/uniform");
   Simulation simulation(scenario);
   unsigned touched = 0;

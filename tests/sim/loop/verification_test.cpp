@@ -73,7 +73,7 @@ TEST_F(Verifying, NamesTheFirstSetpointThatDoesNotFollow) {
   EXPECT_EQ(*result.first->found, *result.first->expected + 1);
 }
 
-TEST_F(Verifying, NamesAServoCommandThatIsChangedMissingOrTooMany) {
+TEST_F(Verifying, NamesAServoCommandThatIsChangedMissingOrAdded) {
   change("UPDATE servo SET command = command + 1 WHERE time_us = 50000 AND joint = 0");
   EXPECT_EQ(verified().differences, 1U);
   change("DELETE FROM servo WHERE time_us = 60000 AND joint = 4");
@@ -85,14 +85,14 @@ TEST_F(Verifying, NamesAServoCommandThatIsChangedMissingOrTooMany) {
   EXPECT_EQ(describe(*result.first, "J5").substr(0, 31), "servo command of J5 at tick 5: ");
 }
 
-// What the gait is computed from counts, down to the last contact.
+// Every single contact is an input of the gait.
 TEST_F(Verifying, FailsIfAContactIsNotTheRecordedOne) {
   change("UPDATE contact SET rear = 1 - rear, front = 1 - front WHERE tick BETWEEN 200 AND 260");
   EXPECT_GT(verified().differences, 0U);
 }
 
-// Of oscillators that still look for their phases: the reflex does not mind losses.
-TEST_F(Verifying, FailsIfALossIsForgotten) {
+// With oscillators whose phases still converge: losses do not change the reflex.
+TEST_F(Verifying, FailsIfALossIsMissing) {
   const Scenario scenario = shipped("travelling_wave/coupled");
   const Losses losses({{20, 0, 0, 1}, {21, 3, 0, 2}});
   {
@@ -109,7 +109,7 @@ TEST_F(Verifying, FailsIfALossIsForgotten) {
   EXPECT_GT(verified().differences, 0U);
 }
 
-TEST_F(Verifying, NamesWhatElseDoesNotFollow) {
+TEST_F(Verifying, NamesInternalValuesAndLastServoCommandsThatDoNotFollow) {
   change("UPDATE internal_value SET raw = raw + 1 WHERE tick = 50 AND slot = 0 AND joint = 1 AND value_index = 0");
   EXPECT_EQ(verified().differences, 1U);
   EXPECT_EQ(verified().first->kind, Difference::Kind::internal_value);
@@ -120,14 +120,14 @@ TEST_F(Verifying, NamesWhatElseDoesNotFollow) {
   EXPECT_EQ(verified().differences, 3U);
 }
 
-TEST_F(Verifying, FailsIfAChangeIsForgotten) {
+TEST_F(Verifying, FailsIfAChangeIsMissing) {
   change("DELETE FROM parameter WHERE origin = 'commit'");
   const Verification result = verified();
   EXPECT_GT(result.differences, 0U);
   EXPECT_EQ(result.first->tick, 120U);
 }
 
-TEST_F(Verifying, RefusesAnAlgorithmThatItDoesNotHave) {
+TEST_F(Verifying, RejectsAnAlgorithmThatTheProgramDoesNotHave) {
   change("UPDATE slot SET algorithm = 'Teleport' WHERE slot = 0");
   try {
     (void)verified();
@@ -137,21 +137,21 @@ TEST_F(Verifying, RefusesAnAlgorithmThatItDoesNotHave) {
   }
 }
 
-TEST_F(Verifying, RefusesValuesThatNoKernelTakes) {
+TEST_F(Verifying, RejectsValuesThatNoKernelAccepts) {
   change("UPDATE parameter SET raw = -2000000000 WHERE name = 'amplitude' AND joint = 1");
   EXPECT_THROW((void)verified(), InputError);
   change("UPDATE joint SET lower_raw = 5, upper_raw = 4 WHERE joint = 0");
   EXPECT_THROW((void)verified(), InputError);
 }
 
-TEST_F(Verifying, RefusesAServoPeriodThatNoServoHas) {
+TEST_F(Verifying, RejectsAServoPeriodThatNoServoHas) {
   for (const char* period : {"0", "4294967296000", "-1", "x"}) {
     change(("UPDATE run SET value = '" + std::string(period) + "' WHERE key = 'servo_period_us'").c_str());
     EXPECT_THROW((void)verified(), InputError) << period;
   }
 }
 
-TEST_F(Verifying, RefusesARecordingWithoutItsBeginning) {
+TEST_F(Verifying, RejectsARecordingThatDoesNotStartAtTick0) {
   change("DELETE FROM sample WHERE tick < 10");
   EXPECT_THROW((void)verified(), InputError);
 }

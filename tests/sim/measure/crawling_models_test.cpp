@@ -1,5 +1,5 @@
-// The figures are worked out by hand from the equations of the thesis, chapters 2 and 3, for 9.81 m/s^2, a stride of
-// 0.1 m and a friction of 0.3, and for the thesis's gait of 40 and 30 degrees with 55 degrees of phase difference.
+// The figures are computed by hand from the equations of the thesis, chapters 2 and 3, for 9.81 m/s^2, a stride of 0.1
+// m and a friction of 0.3, and for the thesis's gait of 40 and 30 degrees with 55 degrees of phase difference.
 
 #include "sim/measure/crawling_models.hpp"
 
@@ -49,10 +49,10 @@ TEST(CrawlingModels, InertiaCostsWithTheSquareOfTheSpeedAndFrictionDoesNot) {
 }
 
 TEST(CrawlingModels, PropulsionNeedsFrictionThatDiffersByDirection) {
-  EXPECT_DOUBLE_EQ(largest_moving_share(0.3, 0.3), 0.5);
-  EXPECT_DOUBLE_EQ(largest_moving_share(0.1, 0.3), 0.75);
-  EXPECT_DOUBLE_EQ(smallest_bend(0.3, 0.3), 45 * degree);
-  EXPECT_NEAR(std::tan(smallest_bend(0.1, 0.4)), 0.25, 1e-12);
+  EXPECT_DOUBLE_EQ(max_moving_share(0.3, 0.3), 0.5);
+  EXPECT_DOUBLE_EQ(max_moving_share(0.1, 0.3), 0.75);
+  EXPECT_DOUBLE_EQ(min_bend(0.3, 0.3), 45 * degree);
+  EXPECT_NEAR(std::tan(min_bend(0.1, 0.4)), 0.25, 1e-12);
 }
 
 TEST(BodyWave, ItsNumberIsCountedByJointsOrByLinks) {
@@ -71,7 +71,7 @@ TEST(BodyWave, IsASerpenoidCurve) {
 }
 
 // By its definition: the mean of the cosine of the heading along the curve.
-TEST(BodyWave, IsAsMuchShorterThanItsArcAsTheCurveDrawnPointByPoint) {
+TEST(BodyWave, HasTheLengthOfTheCurveDrawnPointByPoint) {
   for (const double alpha : {0.0, 0.1, 0.5, 1.0, 2.0, 2.4}) {
     double sum = 0.0;
     constexpr int points = 1000;
@@ -82,7 +82,7 @@ TEST(BodyWave, IsAsMuchShorterThanItsArcAsTheCurveDrawnPointByPoint) {
   }
 }
 
-TEST(BodyWave, PredictsTheStepOfTheThesissGaits) {
+TEST(BodyWave, PredictsTheStepOfTheGaitsOfTheThesis) {
   constexpr double length = 6 * 0.072;
   const auto step = [](double amplitude, double count) {
     return predicted_step_length(length, wave_count(55 * degree, count),

@@ -1,4 +1,4 @@
-// Motions whose measures are known without a computer.
+// Motions whose measures can be computed by hand.
 
 #include "sim/measure/gait_meter.hpp"
 
@@ -20,7 +20,7 @@ constexpr double tick_s = 0.01;
 constexpr double step_s = 0.001;
 constexpr double degree = std::numbers::pi / 180.0;
 
-/// Tells a meter of a robot that slides about without turning, its links in the places of its model.
+/// Feeds a meter with a robot that slides without turning, its links at the positions of its model.
 class Motion {
  public:
   using Path = std::function<Eigen::Vector3d(double t)>;
@@ -74,10 +74,10 @@ TEST(GaitMeter, DistanceIsHorizontalAndStraight) {
   EXPECT_NEAR(motion.values_after(2)[Measure::distance], 1.0, 1e-12) << "thesis, equation 3.7";
   EXPECT_NEAR(motion.values_after(2)[Measure::height], 14.0, 1e-12);
   motion.path = [](double t) { return Eigen::Vector3d(std::cos(t), std::sin(t), 0); };
-  EXPECT_NEAR(motion.values_after(2)[Measure::distance], 2 * std::sin(1.0), 1e-12) << "not along the way";
+  EXPECT_NEAR(motion.values_after(2)[Measure::distance], 2 * std::sin(1.0), 1e-12) << "not along the path";
 }
 
-TEST(GaitMeter, SpeedIsAlongAHeadingFromTheWayTheHeadPoints) {
+TEST(GaitMeter, SpeedIsAlongAHeadingRelativeToTheDirectionOfTheHead) {
   Motion motion;  // its head points to +y, so its left is -x
   motion.path = [](double t) { return Eigen::Vector3d(0.3 * t, 0.4 * t, t); };
   const GaitMeter meter = motion.after(3);
@@ -108,9 +108,9 @@ TEST(GaitMeter, SmoothnessIsTheRootMeanSquareOfTheAcceleration) {
   EXPECT_NEAR(motion.values_after(10)[Measure::smoothness], 0.05 * w * w / std::sqrt(2.0), 0.01);
 }
 
-TEST(GaitMeter, TheStabilityMarginIsTheWayFromTheCentreOfMassToTheNearerOutermostSupport) {
+TEST(GaitMeter, TheStabilityMarginIsTheDistanceFromTheCentreOfMassToTheNearerOutermostSupport) {
   // Three links of 72 mm: their sensors lie 18 mm before and behind their middles, at +72, 0 and -72 mm. The head
-  // points to +y; the centre of mass is that of the path, at 0 where it is not said otherwise.
+  // points to +y; the centre of mass is that of the path, at 0 by default.
   Motion motion(3);
   const auto margin = [&motion](const std::vector<std::uint8_t>& contacts, double center = 0.0) {
     motion.path = [center](double /*t*/) { return Eigen::Vector3d(0, center, 0); };
@@ -124,7 +124,7 @@ TEST(GaitMeter, TheStabilityMarginIsTheWayFromTheCentreOfMassToTheNearerOutermos
   EXPECT_NEAR(margin({3, 0, 3}, -0.052), 0.070, 1e-12) << "the nearer one";
   EXPECT_NEAR(margin({3, 0, 3}, -0.092), 0.070, 1e-12) << "on either side";
   EXPECT_NEAR(margin({0, 0, 3}, -0.072), -0.054, 1e-12) << "outside";
-  EXPECT_NEAR(margin({2, 0, 0}, -0.072), -0.090, 1e-12) << "one support: the way to it";
+  EXPECT_NEAR(margin({2, 0, 0}, -0.072), -0.090, 1e-12) << "one support: the distance to it";
   EXPECT_TRUE(std::isnan(margin({0, 0, 0}))) << "in the air";
 }
 
@@ -189,8 +189,9 @@ TEST(GaitMeter, StridesGiveLengthFrequencyAndFroudeNumber) {
   }
 }
 
-TEST(GaitMeter, SlipIsWhatOfThePredictedStepIsMissing) {
-  // Section 3.3.1 of the thesis, worked out: six links of 72 mm, 40 degrees, 55 degrees apart: 78.0 mm in a stride.
+TEST(GaitMeter, SlipIsTheMissingShareOfThePredictedStep) {
+  // Section 3.3.1 of the thesis, computed by hand: six links of 72 mm, 40 degrees, 55 degrees apart: 78.0 mm in a
+  // stride.
   Motion motion;
   const auto slip = [&motion](double step, double difference, const std::vector<double>& amplitudes) {
     motion.path = [step](double t) { return Eigen::Vector3d(0, step * t, 0); };
@@ -203,7 +204,7 @@ TEST(GaitMeter, SlipIsWhatOfThePredictedStepIsMissing) {
   const std::vector<double> even(5, 40.0);
   EXPECT_NEAR(slip(0.0780, 55, even), 0.0, 2e-3);
   EXPECT_NEAR(slip(0.0390, 55, even), 0.5, 2e-3);
-  EXPECT_NEAR(slip(0.0390, -55, even), 0.5, 2e-3) << "whichever way the wave runs";
+  EXPECT_NEAR(slip(0.0390, -55, even), 0.5, 2e-3) << "in both directions of the wave";
   EXPECT_NEAR(slip(0.0780, 55, {40, 40, 40, 40, 0}), 0.0, 2e-3) << "a joint at rest is no part of the wave";
   EXPECT_NEAR(slip(0.0780, 55, {50, 40, 30, 40, 40}), 0.0, 2e-3) << "the mean amplitude";
   EXPECT_TRUE(std::isnan(slip(0.0780, 0, even))) << "all joints swing together: no wave";
@@ -211,12 +212,12 @@ TEST(GaitMeter, SlipIsWhatOfThePredictedStepIsMissing) {
   EXPECT_TRUE(std::isnan(slip(0.0780, 55, {40, 0, 40, 0, 40}))) << "no neighbours to take a difference from";
 
   motion.robot.joints[2].axis = -Eigen::Vector3d::UnitX();
-  EXPECT_TRUE(std::isnan(slip(0.0390, 55, even))) << "a joint that counts the other way breaks the wave";
+  EXPECT_TRUE(std::isnan(slip(0.0390, 55, even))) << "a joint with a reversed axis breaks the wave";
   motion.robot.joints[2].axis = Eigen::Vector3d::UnitZ();
   EXPECT_TRUE(std::isnan(slip(0.0390, 55, even))) << "pitch and yaw: no wave in one plane";
 }
 
-TEST(GaitMeter, AJointThatCountsTheOtherWayMakesTheSameWaveWithTheOppositeAngle) {
+TEST(GaitMeter, AJointWithAReversedAxisMakesTheSameWaveWithTheOppositeAngle) {
   Motion motion;
   motion.path = [](double t) { return Eigen::Vector3d(0, 0.0390 * t, 0); };
   motion.robot.joints[2].axis = -Eigen::Vector3d::UnitX();
@@ -227,12 +228,12 @@ TEST(GaitMeter, AJointThatCountsTheOtherWayMakesTheSameWaveWithTheOppositeAngle)
   EXPECT_NEAR(motion.values_after(10)[Measure::slip], 0.5, 2e-3);
 }
 
-/// A meter that saw one joint turn at a speed with a torque, for a second.
+/// The measures after one joint has turned at a speed with a torque for a second.
 MeasureValues turning(Motion motion, double torque, double speed, double commanded, bool limp = false) {
   GaitMeter meter(motion.robot, motion.environment, Eigen::Vector3d::Zero(), step_s, tick_s);
   double angle = 0.0;
-  meter.add_joint_step(0, {0.0, speed, -speed * step_s, 0.0, true});  // it has its speed already
-  const double before = 0.06 * 0.01 * step_s;                         // J, that it drew meanwhile
+  meter.add_joint_step(0, {0.0, speed, -speed * step_s, 0.0, true});  // the joint has its speed already
+  const double before = 0.06 * 0.01 * step_s;                         // J, drawn in this step
   for (int step = 0; step < 1000; ++step) {
     meter.add_joint_step(0, {torque, commanded, angle, angle + speed * step_s, limp});
     angle += speed * step_s;
@@ -246,10 +247,10 @@ MeasureValues turning(Motion motion, double torque, double speed, double command
   return values;
 }
 
-TEST(GaitMeter, MechanicalEnergyIsPositiveWorkAlone) {
+TEST(GaitMeter, MechanicalEnergyIsPositiveWorkOnly) {
   const Motion motion(2);
   EXPECT_NEAR(turning(motion, 0.2, 3.0, 3.0)[Measure::mechanical_energy], 0.6, 1e-9);
-  EXPECT_NEAR(turning(motion, -0.2, -3.0, -3.0)[Measure::mechanical_energy], 0.6, 1e-9) << "either way";
+  EXPECT_NEAR(turning(motion, -0.2, -3.0, -3.0)[Measure::mechanical_energy], 0.6, 1e-9) << "in both directions";
   EXPECT_EQ(turning(motion, -0.2, 3.0, 3.0)[Measure::mechanical_energy], 0.0) << "braking gives nothing back";
   EXPECT_EQ(turning(motion, 0.2, 0.0, 1.0)[Measure::mechanical_energy], 0.0) << "holding is no work";
 }
@@ -281,10 +282,11 @@ TEST(GaitMeter, CostsOfTransportAreEnergyPerMassAndDistance) {
   for (Link& link : motion.robot.links) {
     link.mass.mass *= 3;
   }
-  EXPECT_NEAR(turning(motion, 0.2, 3.0, 3.0)[Measure::cost_of_transport], 2.0, 1e-8) << "of a robot thrice as heavy";
+  EXPECT_NEAR(turning(motion, 0.2, 3.0, 3.0)[Measure::cost_of_transport], 2.0, 1e-8)
+      << "of a robot three times as heavy";
 }
 
-TEST(GaitMeter, ARobotThatStaysHasNoCostOfTransport) {
+TEST(GaitMeter, ARobotThatDoesNotMoveHasNoCostOfTransport) {
   Motion motion;
   motion.path = [](double t) { return Eigen::Vector3d(0, 0.0009 * t, 0); };
   MeasureValues values = motion.values_after(1);
@@ -303,7 +305,7 @@ TEST(GaitMeter, ADayLongRunTakesItsStridesFromTheLastTicks) {
   };
   const double seconds = 2.2 * static_cast<double>(GaitMeter::history_ticks) * tick_s;
   const GaitMeter meter = motion.after(seconds);
-  EXPECT_NEAR(meter.values()[Measure::stride_frequency], 2.0, 1e-4) << "the early ones are forgotten";
+  EXPECT_NEAR(meter.values()[Measure::stride_frequency], 2.0, 1e-4) << "early strides do not count";
   EXPECT_LE(meter.stride()->end_tick, 2 * GaitMeter::history_ticks);
 }
 

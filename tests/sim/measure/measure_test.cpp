@@ -9,7 +9,7 @@
 namespace proleg::sim {
 namespace {
 
-TEST(Measures, HaveEachANameOfTheirOwnByWhichTheyAreFound) {
+TEST(Measures, HaveUniqueNamesByWhichTheyAreFound) {
   std::set<std::string_view> names;
   for (std::size_t i = 0; i < measure_count; ++i) {
     const MeasureDeclaration& declaration = measures()[i];
@@ -26,7 +26,7 @@ TEST(Measures, HaveEachANameOfTheirOwnByWhichTheyAreFound) {
   }
 }
 
-TEST(Measures, SayWhichWayIsBetter) {
+TEST(Measures, StateWhetherHigherIsBetter) {
   EXPECT_TRUE(declaration_of(Measure::distance).higher_is_better);
   EXPECT_TRUE(declaration_of(Measure::stability_margin).higher_is_better);
   EXPECT_FALSE(declaration_of(Measure::cost_of_transport).higher_is_better);
@@ -34,7 +34,7 @@ TEST(Measures, SayWhichWayIsBetter) {
   EXPECT_FALSE(declaration_of(Measure::slip).higher_is_better);
 }
 
-TEST(MeasureValues, AreUndefinedUntilSomebodySaysThem) {
+TEST(MeasureValues, AreUndefinedUntilTheyAreSet) {
   MeasureValues values;
   for (const double value : values.all()) {
     EXPECT_TRUE(std::isnan(value));

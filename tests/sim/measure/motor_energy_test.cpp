@@ -1,5 +1,5 @@
-// The torque that the world tells of a motor, and the energy that the meter makes of it, against mechanics: the weight
-// that a motor holds, the height to which it lifts it, the speed that it gives it.
+// The torque of a motor that the world reports, and the energy that the meter computes from it, against mechanics: the
+// weight that a motor holds, the height to which it lifts it, the speed that it gives it.
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ EnvironmentModel rough_ground(double start_height) {
   return environment;
 }
 
-/// A world whose meter is told what its joints do.
+/// A world with a meter that gets the motion of its joints.
 class MeteredWorld {
  public:
   MeteredWorld(const RobotModel& robot, const EnvironmentModel& environment, Stepper stepper = Stepper::direct)
@@ -103,10 +103,10 @@ TEST_P(MotorTorque, HoldsAnArmAgainstItsWeight) {
   EXPECT_NEAR(world.motor_torque(0), 0.1 * gravity * 0.05, 1e-3 * 0.049);
 }
 
-TEST_P(MotorTorque, IsAboutTheAxisWhicheverWayThatPoints) {
+TEST_P(MotorTorque, IsAboutTheAxisInEitherDirection) {
   RobotModel robot = arm_robot();
   robot.joints[0].axis = -Eigen::Vector3d::UnitX();
-  // The frame of the arm lies anyhow in it, its origin anywhere.
+  // The frame of the arm has any orientation and origin.
   const Eigen::Quaterniond turned(Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()));
   const Eigen::Vector3d shift(0.01, 0.02, -0.03);
   Link& arm = robot.links[0];
@@ -122,7 +122,7 @@ TEST_P(MotorTorque, IsAboutTheAxisWhicheverWayThatPoints) {
   EXPECT_NEAR(world.motor_torque(0), -0.1 * gravity * 0.05, 1e-3 * 0.049);
 }
 
-TEST_P(MotorTorque, IsAllItHasWhenThatIsNotEnoughAndNothingWhenItIsLimp) {
+TEST_P(MotorTorque, IsTheMaximumUnderOverloadAndZeroWhenLimp) {
   World world(arm_robot(), rough_ground(0.02), step_s, GetParam());
   for (int i = 0; i < 200; ++i) {
     world.step();
@@ -154,12 +154,12 @@ TEST(MotorEnergy, OfAnArmThatIsLiftedIsItsPotentialEnergy) {
   metered.run(0.05);
   const double gained = 0.1 * gravity * (metered.world.link_pose(0).position.z() - height_before);
   EXPECT_NEAR(metered.world.joint_angle(0), 0.8, 0.01);
-  // The kinetic energy that a brake took from it at the end is spent, too: 1 rad/s about the joint.
+  // The kinetic energy that the brake removed at the end counts, too: 1 rad/s about the joint.
   const double kinetic = 0.5 * (robot.links[0].mass.inertia(0, 0) + 0.1 * 0.05 * 0.05);
   EXPECT_NEAR(metered.energy() - energy_before, gained + kinetic, 0.002 * gained);
 }
 
-TEST(MotorEnergy, IsNotGivenBackWhenTheArmIsLowered) {
+TEST(MotorEnergy, IsNotReturnedWhenTheArmIsLowered) {
   MeteredWorld metered(arm_robot(), rough_ground(0.02));
   metered.world.set_joint_speed(0, 1.0);
   metered.run(0.8);
@@ -167,7 +167,7 @@ TEST(MotorEnergy, IsNotGivenBackWhenTheArmIsLowered) {
   metered.world.set_joint_speed(0, -1.0);
   metered.run(0.8);
   EXPECT_NEAR(metered.energy(), lifted, 0.01 * lifted);
-  EXPECT_NEAR(metered.work(), 0.0, 0.01 * lifted) << "with what the motor braked it would be nothing";
+  EXPECT_NEAR(metered.work(), 0.0, 0.01 * lifted) << "including the work of braking";
 }
 
 /// The sum over links, from two poses a step apart.
@@ -197,7 +197,7 @@ TEST(MotorEnergy, OfARobotInSpaceIsItsKineticEnergy) {
   space.gravity.setZero();
   space.robot_pose.orientation = Eigen::Quaterniond(Eigen::AngleAxisd(0.9, Eigen::Vector3d(3, 1, 2).normalized()));
   MeteredWorld metered(robot, space);
-  double largest = 0.0;
+  double max_energy = 0.0;
   std::vector<Pose> before = poses_of(metered.world, 4);
   for (int i = 0; i < 1000; ++i) {
     for (std::size_t joint = 0; joint < 3; ++joint) {
@@ -206,12 +206,12 @@ TEST(MotorEnergy, OfARobotInSpaceIsItsKineticEnergy) {
     metered.step();
     const std::vector<Pose> after = poses_of(metered.world, 4);
     const double energy = kinetic_energy(robot, before, after);
-    largest = std::max(largest, energy);
-    EXPECT_NEAR(metered.work(), energy, 0.02 * largest) << "step " << i;
+    max_energy = std::max(max_energy, energy);
+    EXPECT_NEAR(metered.work(), energy, 0.02 * max_energy) << "step " << i;
     before = after;
   }
-  EXPECT_GT(largest, 1e-3);
-  EXPECT_GE(metered.energy(), largest);
+  EXPECT_GT(max_energy, 1e-3);
+  EXPECT_GE(metered.energy(), max_energy);
 }
 
 }  // namespace

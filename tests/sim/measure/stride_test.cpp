@@ -32,7 +32,7 @@ Signals oscillating(const std::vector<Oscillation>& oscillations, double frequen
   return signals;
 }
 
-TEST(Stride, HasTheFrequencyOfTheSignalAlsoIfItsPeriodIsNoWholeNumberOfTicks) {
+TEST(Stride, HasTheFrequencyOfTheSignalForEveryPeriod) {
   for (const double frequency : {0.2, 0.7, 1.0, 1.01, std::numbers::e, 7.3, 13.0}) {
     const auto stride = find_stride(oscillating({{0.1, 0.02, 0.0}, {-0.2, 0.6, 1.0}}, frequency, 20).table(), tick_s);
     ASSERT_TRUE(stride) << frequency;
@@ -79,7 +79,7 @@ TEST(Stride, RunningBackwardsHasTheSameFrequencyAndTheOppositePhaseDifferences) 
   EXPECT_NEAR(std::remainder(swings_back[1].phase - swings_back[0].phase, turn), -1.0, 1e-6);
 }
 
-TEST(Stride, IsNotMistakenByNoiseHarmonicsAndAnOffset) {
+TEST(Stride, IsFoundDespiteNoiseHarmonicsAndAnOffset) {
   Signals signals = oscillating({{0.5, 0.6, 0.3}}, 1.3, 20);
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0.0, 0.03);
@@ -112,7 +112,7 @@ TEST(Stride, AChangeOfPaceDoesNotBlurAmplitudesAndPhases) {
   }
 }
 
-TEST(Stride, LeavesTheFirstOneOut) {
+TEST(Stride, TheFirstOneIsLeftOut) {
   Signals signals = oscillating({{0.0, 0.6, 0.0}}, 1.0, 10);
   for (std::size_t tick = 0; tick < 100; ++tick) {
     signals.samples[tick] =

@@ -86,7 +86,7 @@ TEST(World, StartsWithTheLinksWhereTheModelPutsThem) {
   }
 }
 
-TEST(World, ALinkInTheAirFallsAsGalileoSays) {
+TEST(World, ALinkInTheAirFallsFreely) {
   World world(chain(1), EnvironmentModel{}, step_s, Stepper::direct);
   constexpr double seconds = 0.5;
   run(world, seconds);
@@ -208,8 +208,8 @@ TEST(World, ASensorIsPressedWhereTheLinkTouches) {
   EXPECT_EQ(world.link_contacts(2), 1U);
 }
 
-/// What the sensors of the middle of three links say when a small ball touches it. The ball just reaches the point
-/// `surface` of the robot's frame, from the direction `outwards`; nothing moves.
+/// The sensors of the middle of three links when a small ball touches it. The ball just reaches the point `surface` of
+/// the robot's frame, from the direction `outwards`; nothing moves.
 std::uint8_t touched_by_a_ball(const RobotModel& robot, const Eigen::Vector3d& surface, const Eigen::Vector3d& outwards,
                                const Pose& robot_pose = {}) {
   constexpr double radius = 0.004;
@@ -264,14 +264,14 @@ std::vector<Touch> touches_all_around() {
   };
 }
 
-TEST(World, SensorsLieUnderTheLinkAndFeelNeitherItsBackNorItsFlanks) {
+TEST(World, SensorsLieUnderTheLinkAndIgnoreItsBackAndFlanks) {
   for (const Touch& touch : touches_all_around()) {
     EXPECT_EQ(touched_by_a_ball(chain(3), touch.surface + Eigen::Vector3d(0, -0.1, 0), touch.outwards), touch.sensors)
         << touch.surface.transpose() << " outwards " << touch.outwards.transpose();
   }
 }
 
-TEST(World, TheUndersideIsThatOfTheRobotsFileHoweverItStartsInTheWorld) {
+TEST(World, TheUndersideIsThatOfTheRobotsFileForEveryStartPose) {
   for (const double roll : {0.5, 1.5, 3.0}) {
     const Pose pose{{1, 2, 3}, Eigen::Quaterniond(Eigen::AngleAxisd(roll, Eigen::Vector3d(1, 2, -1).normalized()))};
     for (const Touch& touch : touches_all_around()) {
@@ -311,7 +311,7 @@ TEST(World, ARobotUprightInItsFileHasItsSensorsTowardsMinusY) {
   EXPECT_EQ(touched(0.02, 0.03), 0U);
 }
 
-TEST(World, ARobotOnItsBackOrOnItsSideFeelsNoGround) {
+TEST(World, TheGroundPressesNoSensorOfARobotOnItsBackOrOnItsSide) {
   for (const double roll : {90.0, 180.0, 270.0}) {
     EnvironmentModel environment = flat_ground(0.5, 0.02);
     environment.robot_pose.orientation = Eigen::AngleAxisd(roll / 180 * std::numbers::pi, Eigen::Vector3d::UnitY());
@@ -335,8 +335,8 @@ TEST(World, ACylinderLiesAlongYAndASphereIsRound) {
   }
 }
 
-TEST(World, AnErrorOfTheEngineIsThrownAndTheWorldCanBeLeft) {
-  // With next to no inertia the engine's direct solver fails an assertion of its own.
+TEST(World, AnErrorOfTheEngineIsThrownAndTheWorldCanBeDestroyed) {
+  // With almost no inertia the engine's direct solver fails one of its assertions.
   RobotModel robot = chain(6);
   for (Link& link : robot.links) {
     link.mass.inertia = Eigen::Matrix3d::Identity() * 1e-200;
@@ -351,15 +351,15 @@ TEST(World, AnErrorOfTheEngineIsThrownAndTheWorldCanBeLeft) {
     }
   };
   EXPECT_THROW(struggle(), PhysicsError);
-  EXPECT_THROW(struggle(), PhysicsError) << "the next world is not disturbed by the one before";
+  EXPECT_THROW(struggle(), PhysicsError) << "the first failure does not disturb the next world";
 }
 
-TEST(World, KnowsTheLowestPointOfItsEnvironment) {
+TEST(World, ReturnsTheLowestPointOfItsEnvironment) {
   EXPECT_EQ(World(chain(1), EnvironmentModel{}, step_s, Stepper::direct).lowest_ground(), std::nullopt);
   EXPECT_DOUBLE_EQ(World(chain(1), flat_ground(0.1, 0.026), step_s, Stepper::direct).lowest_ground().value(), -1.0);
 }
 
-TEST(World, SelfCollisionKeepsLinksApartThatAreNotNeighbours) {
+TEST(World, SelfCollisionSeparatesLinksThatAreNotNeighbours) {
   for (const bool self_collision : {false, true}) {
     EnvironmentModel weightless;
     weightless.gravity.setZero();

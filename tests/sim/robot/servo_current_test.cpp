@@ -8,9 +8,9 @@ namespace proleg::sim {
 namespace {
 
 constexpr ServoCurrent servo;
-constexpr double fastest = 5.2;  // rad/s: 60 degrees in 0.2 s
+constexpr double max_speed = 5.2;  // rad/s: 60 degrees in 0.2 s
 
-double current(double commanded, double actual) { return servo_current_ma(servo, commanded, actual, fastest); }
+double current(double commanded, double actual) { return servo_current_ma(servo, commanded, actual, max_speed); }
 
 TEST(ServoCurrents, AreThoseOfDataSheetsOfStandardRcServos) {
   EXPECT_GE(servo.idle_ma, 5.0);
@@ -24,17 +24,17 @@ TEST(ServoCurrents, AreThoseOfDataSheetsOfStandardRcServos) {
 TEST(ServoCurrents, AtRestAtFullSpeedAndHeld) {
   EXPECT_EQ(current(0, 0), servo.idle_ma);
   for (const double direction : {1.0, -1.0}) {
-    EXPECT_DOUBLE_EQ(current(direction * fastest, direction * fastest), servo.no_load_ma);
-    EXPECT_DOUBLE_EQ(current(direction * fastest, 0), servo.stall_ma);
-    EXPECT_DOUBLE_EQ(current(direction * fastest / 2, 0), (servo.stall_ma + servo.idle_ma) / 2);
+    EXPECT_DOUBLE_EQ(current(direction * max_speed, direction * max_speed), servo.no_load_ma);
+    EXPECT_DOUBLE_EQ(current(direction * max_speed, 0), servo.stall_ma);
+    EXPECT_DOUBLE_EQ(current(direction * max_speed / 2, 0), (servo.stall_ma + servo.idle_ma) / 2);
   }
 }
 
-TEST(ServoCurrents, RiseWithWhatHoldsTheServoAndStayInTheirRange) {
+TEST(ServoCurrents, RiseWithTheLoadAndRemainInTheirRange) {
   constexpr std::uint32_t seed = 5;
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
-  std::uniform_real_distribution<double> speed(-2 * fastest, 2 * fastest);
+  std::uniform_real_distribution<double> speed(-2 * max_speed, 2 * max_speed);
   for (int run = 0; run < 10'000; ++run) {
     const double commanded = speed(random);
     const double actual = speed(random);

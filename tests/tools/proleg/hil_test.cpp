@@ -97,7 +97,7 @@ TEST_F(Hil, WhatCannotBeIsRefused) {
   }
   expect_refused({"hil", file_name, "--send", "603#00@3000"}, {"tick 3000"});
   expect_refused({"hil", file_name, "--can-log", "/nowhere/bus.log"}, {"/nowhere/bus.log"});
-  expect_refused({"hil", file_name, "--can-log", file_name}, {"found another file"});
+  expect_refused({"hil", file_name, "--can-log", file_name}, {"found a file that is no CAN log"});
   expect_refused({"hil", file_name, "--can-log", file("x").string(), "--record", file("x").string()}, {"found twice"});
   for (const char* command : {"simulate", "hil"}) {
     expect_refused({command, file_name, "--losses", "7:500%"}, {"rate '500%'", "0 to 1"});

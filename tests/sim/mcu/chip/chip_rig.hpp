@@ -76,7 +76,7 @@ struct RigSettings {
   std::string image = "proleg_stm32f405";
   std::optional<firmware::BoardRecord> record = firmware::BoardRecord{3, false, 0, 0};
   ChipSettings chip{{0x0123'4567, 0x89AB'CDEF, 0x5A5A'0F0F}, 0, 1};
-  std::uint32_t bit_rate = Bus::highest_bit_rate;
+  std::uint32_t bit_rate = Bus::max_bit_rate;
   /// How far the chip may run ahead of the bus: short, so that what it does is seen at its time.
   BusTime max_lead = us;
 };

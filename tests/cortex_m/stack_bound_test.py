@@ -95,6 +95,22 @@ void root(int i) { tables::steps[i](); }
         self.assertLess(found, 500)
         self.expect_error(text, "root", "unknown target of the indirect call at ")
 
+    def test_a_table_counts_for_calls_in_files_that_name_it(self):
+        (self.folder / "deep.hpp").write_text("""
+namespace { void large() { volatile char a[400]; use(a); } }
+namespace tables { extern void (*const deep[])(); void (*const deep[])() = {large}; }
+void call_deep(int i) { tables::deep[i](); }
+""")
+        text = self.FILL + """
+#include "deep.hpp"
+namespace { void small() { volatile char a[40]; use(a); } }
+namespace tables { extern void (*const flat[])(); void (*const flat[])() = {small}; }
+void root(int i) { tables::flat[i](); }
+"""
+        tables = ["--table=tables::flat", "--table=tables::deep"]
+        self.assertLess(self.bytes_of(text, "root", *tables), 100)
+        self.assertGreaterEqual(self.bytes_of(text, "call_deep", *tables), 400)
+
     def test_functions_of_other_folders_than_those_named_do_not_count(self):
         shallow, deep = (self.FILL + f"void root() {{ volatile char a[{size}]; use(a); }}" for size in (40, 400))
         small = self.bytes_of(shallow, "root")

@@ -52,14 +52,14 @@ bool is_erased(Bytes bytes) {
   return true;
 }
 
-struct Found {
+struct NewestRecord {
   std::optional<BoardRecord> record;
   std::uint32_t sequence = 0;
   unsigned sector = 0;
 };
 
-Found find_newest(const std::array<Bytes, 2>& sectors) {
-  Found found;
+NewestRecord find_newest(const std::array<Bytes, 2>& sectors) {
+  NewestRecord found;
   for (unsigned sector = 0; sector < sectors.size(); ++sector) {
     for (Bytes rest = sectors[sector]; rest.size() >= BoardRecord::size; rest = rest.subspan(BoardRecord::size)) {
       const Bytes bytes = rest.first(BoardRecord::size);
@@ -75,13 +75,13 @@ Found find_newest(const std::array<Bytes, 2>& sectors) {
   return found;
 }
 
-/// Where the next record of a sector goes: behind everything that was ever written there. Its end if it is full.
-std::size_t free_place(Bytes sector) {
-  std::size_t place = sector.size() / BoardRecord::size * BoardRecord::size;
-  while (place > 0 && is_erased(sector.subspan(place - BoardRecord::size, BoardRecord::size))) {
-    place -= BoardRecord::size;
+/// Where the next record of a sector goes: after everything that was written there. Its end if it is full.
+std::size_t free_offset(Bytes sector) {
+  std::size_t offset = sector.size() / BoardRecord::size * BoardRecord::size;
+  while (offset > 0 && is_erased(sector.subspan(offset - BoardRecord::size, BoardRecord::size))) {
+    offset -= BoardRecord::size;
   }
-  return place;
+  return offset;
 }
 
 bool equal(Bytes a, Bytes b) {
@@ -96,8 +96,8 @@ bool equal(Bytes a, Bytes b) {
 }  // namespace
 
 bool BoardRecord::valid() const {
-  return node >= 1 && node <= max_node_id && feedback_at_minus_90 <= highest_reading &&
-         feedback_at_plus_90 <= highest_reading && (!has_feedback || feedback_at_minus_90 != feedback_at_plus_90);
+  return node >= 1 && node <= max_node && feedback_at_minus_90 <= max_reading && feedback_at_plus_90 <= max_reading &&
+         (!has_feedback || feedback_at_minus_90 != feedback_at_plus_90);
 }
 
 std::array<std::uint8_t, BoardRecord::size> encode(const BoardRecord& record, std::uint32_t sequence) {
@@ -118,20 +118,20 @@ AppendResult append(FlashPort& flash, const BoardRecord& record) {
   if (!record.valid()) {
     return AppendResult::invalid_record;
   }
-  const Found before = find_newest({flash.contents(0), flash.contents(1)});
+  const NewestRecord before = find_newest({flash.contents(0), flash.contents(1)});
   unsigned sector = before.sector;
-  std::size_t place = free_place(flash.contents(sector));
-  if (place + BoardRecord::size > flash.contents(sector).size()) {
-    // Erased even if it looks so: an erase that was cut off can leave bits that read as 1 for a while.
+  std::size_t offset = free_offset(flash.contents(sector));
+  if (offset + BoardRecord::size > flash.contents(sector).size()) {
+    // Erase it even if it reads as erased: an erase that was cut off can leave bits that read as 1 for a while.
     sector ^= 1U;
-    place = 0;
+    offset = 0;
     if (!flash.erase(sector)) {
       return AppendResult::erase_failed;
     }
   }
   const std::array<std::uint8_t, BoardRecord::size> bytes = encode(record, before.sequence + 1U);
-  if (!flash.program(sector, static_cast<std::uint32_t>(place), bytes) ||
-      !equal(bytes, flash.contents(sector).subspan(place, BoardRecord::size))) {
+  if (!flash.program(sector, static_cast<std::uint32_t>(offset), bytes) ||
+      !equal(bytes, flash.contents(sector).subspan(offset, BoardRecord::size))) {
     return AppendResult::program_failed;
   }
   return AppendResult::ok;

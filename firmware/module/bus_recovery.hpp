@@ -4,21 +4,21 @@
 
 namespace proleg::firmware {
 
-/// Brings the controller back from bus-off (ISO 11898-1, 6.13): asks it after a pause of 10 ms, and again after pauses
-/// twice as long each, up to 1 s, so that a module that disturbs the bus does so less and less. The pauses are short
-/// again when it stayed on the bus for 10 s.
+/// Brings the controller back from bus-off (ISO 11898-1, 6.13). It asks the controller after a pause of 10 ms, then
+/// after pauses twice as long each, up to 1 s, so that a module that disturbs the bus does so less and less. The pauses
+/// are short again after 10 s on the bus.
 class BusRecovery {
  public:
-  static constexpr Microseconds shortest_pause_us = 10'000;
-  static constexpr Microseconds longest_pause_us = 1'000'000;
+  static constexpr Microseconds min_pause_us = 10'000;
+  static constexpr Microseconds max_pause_us = 1'000'000;
   static constexpr Microseconds calm_us = 10'000'000;
 
   explicit BusRecovery(CanPort& port) : port_(port) {}
 
-  /// On the bus, and nothing was ever wrong.
+  /// On the bus, with the shortest pause.
   void reset() {
     off_ = false;
-    pause_us_ = shortest_pause_us;
+    pause_us_ = min_pause_us;
     due_ = never;
   }
 
@@ -35,7 +35,7 @@ class BusRecovery {
     return static_cast<std::uint32_t>((now - off_since_) / 1'000U);
   }
 
-  /// Asks the controller if that is due. True, once, when it has stayed on the bus for 10 s.
+  /// Asks the controller if that is due. True, once, after 10 s on the bus.
   [[nodiscard]] bool poll(Microseconds now) {
     if (now < due_) {
       return false;
@@ -45,7 +45,7 @@ class BusRecovery {
       return true;
     }
     port_.recover();
-    pause_us_ = 2 * pause_us_ < longest_pause_us ? 2 * pause_us_ : longest_pause_us;
+    pause_us_ = 2 * pause_us_ < max_pause_us ? 2 * pause_us_ : max_pause_us;
     due_ = now + pause_us_;
     return false;
   }
@@ -55,8 +55,8 @@ class BusRecovery {
   CanPort& port_;
   bool off_ = false;
   Microseconds off_since_ = 0;
-  Microseconds pause_us_ = shortest_pause_us;  ///< before the next request
-  Microseconds due_ = never;                   ///< off: the next request; on: the end of the 10 s
+  Microseconds pause_us_ = min_pause_us;  ///< before the next request
+  Microseconds due_ = never;              ///< off: the next request; on: the end of the 10 s
 };
 
 }  // namespace proleg::firmware

@@ -1,5 +1,7 @@
 #include "firmware/module/drive.hpp"
 
+#include <algorithm>
+
 namespace proleg::firmware {
 
 using canopen::PowerState;
@@ -16,12 +18,12 @@ void Drive::reset() {
 void Drive::start_tick(Microseconds now, std::uint32_t tick, const Kernel& kernel, const canopen::AngleLimits& limits) {
   const unsigned joint = kernel.first_joint();
   const bool gait = mode_ == canopen::mode_gait;
-  // Between two ticks of the gait the line is the kernel's own, which the simulator draws too.
+  // Between two ticks of the gait the line is the kernel's own, which the simulator computes too.
   const std::int32_t from = gait && followed_gait_ ? kernel.previous_setpoint(joint) : setpoint_;
   if (gait) {
     setpoint_ = kernel.setpoint(joint);
   } else {
-    setpoint_ = target_ < limits.lower ? limits.lower : (target_ > limits.upper ? limits.upper : target_);
+    setpoint_ = std::clamp(target_, limits.lower, limits.upper);
   }
   followed_gait_ = gait;
   servo_.start_tick(now, tick, from, setpoint_);

@@ -8,8 +8,8 @@
 
 namespace proleg::firmware {
 
-/// The servo as a drive of CiA 402: whether it has power, and which set-point it follows. The gait's set-point is
-/// computed whatever the drive does.
+/// The servo as a drive of CiA 402: whether it has power, and which set-point it follows. The kernel computes the
+/// gait's set-point in every state of the drive.
 class Drive {
  public:
   explicit Drive(ServoPort& port) : servo_(port) {}
@@ -23,15 +23,16 @@ class Drive {
   /// Object 0x6060: canopen::mode_gait or mode_direct_position.
   [[nodiscard]] std::int8_t mode() const { return mode_; }
   void set_mode(std::int8_t mode) { mode_ = mode; }
-  /// Object 0x607A: the set-point of direct position, 90 degrees = 2^30. Taken at SYNC, cut to the joint's limits.
+  /// Object 0x607A: the set-point of direct position, 90 degrees = 2^30. It takes effect at SYNC, within the joint's
+  /// limits.
   [[nodiscard]] std::int32_t target() const { return target_; }
   void set_target(std::int32_t target) { target_ = target; }
 
   /// At SYNC `tick`, after the kernel computed it.
   void start_tick(Microseconds now, std::uint32_t tick, const Kernel& kernel, const canopen::AngleLimits& limits);
 
-  /// After everything that happened: gives the servo power or takes it. operational: NMT state; synchronised: the
-  /// set-point is that of the robot's tick.
+  /// After each event: switches the servo's pulses on or off. operational: NMT state; synchronised: the set-point is
+  /// that of the robot's tick.
   void update(Microseconds now, bool operational, bool synchronised);
 
   void poll(Microseconds now) { servo_.poll(now); }
@@ -43,7 +44,7 @@ class Drive {
   std::int8_t mode_ = canopen::mode_gait;
   bool followed_gait_ = true;  ///< in the last tick
   std::int32_t target_ = 0;
-  std::int32_t setpoint_ = 0;  ///< towards which the servo moves, whatever the mode
+  std::int32_t setpoint_ = 0;  ///< towards which the servo moves, in either mode
 };
 
 }  // namespace proleg::firmware

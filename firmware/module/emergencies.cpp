@@ -25,21 +25,31 @@ EmergencyCode code_of(Fault fault) {
 
 }  // namespace
 
-void Emergencies::report(EmergencyCode code, std::uint32_t detail) {
+[[gnu::noinline]] void Emergencies::report(EmergencyCode code, std::uint32_t detail) {
   if (network_.state() != canopen::NmtState::stopped) {
-    outbox_.send(encode(canopen::Emergency{board_.node, code, error_register(), detail}));
+    outbox_.send(encode(canopen::Emergency{identity_.node, code, error_register(), detail}));
   }
 }
 
-void Emergencies::raise(Fault fault, std::uint32_t detail) {
+[[gnu::noinline]] void Emergencies::raise(Fault fault, std::uint32_t detail) {
   faults_ |= bit(fault);
   report(code_of(fault), detail);
 }
 
-void Emergencies::clear(Fault fault) {
-  if (is_raised(fault)) {
-    faults_ = static_cast<std::uint8_t>(faults_ & ~bit(fault));
-    report(EmergencyCode::none, static_cast<std::uint32_t>(code_of(fault)));
+[[gnu::noinline]] void Emergencies::end(Fault fault) {
+  faults_ = static_cast<std::uint8_t>(faults_ & ~bit(fault));
+  report(EmergencyCode::none, static_cast<std::uint32_t>(code_of(fault)));
+}
+
+void Emergencies::report_reset_cause() {
+  if (!is_reset_cause_pending_) {
+    return;
+  }
+  is_reset_cause_pending_ = false;
+  if (identity_.reset_cause == ResetCause::watchdog) {
+    report(EmergencyCode::watchdog_reset, identity_.reset_detail);
+  } else if (identity_.reset_cause == ResetCause::fault) {
+    report(EmergencyCode::software_fault, identity_.reset_detail);
   }
 }
 

@@ -4,7 +4,7 @@
 
 namespace proleg::firmware {
 
-/// Errors that last.
+/// Errors that last until they are cleared.
 enum class Fault : std::uint8_t {
   identifier_collision,
   sync_lost,
@@ -14,34 +14,45 @@ enum class Fault : std::uint8_t {
   bus_off,
 };
 
-/// Sends EMCY and keeps the error register (CiA 301, section 7.2.7). Stopped modules keep silent.
+/// Sends EMCY and keeps the error register (CiA 301, section 7.2.7). A stopped module sends no EMCY.
 class Emergencies {
  public:
-  Emergencies(const Board& board, const NetworkNode& network, Outbox& outbox)
-      : board_(board), network_(network), outbox_(outbox) {}
+  Emergencies(const ModuleIdentity& identity, const NetworkNode& network, Outbox& outbox)
+      : identity_(identity), network_(network), outbox_(outbox) {}
 
   void reset() { faults_ = 0; }
+  /// From now on the reset cause is not yet reported.
+  void power_on() { is_reset_cause_pending_ = true; }
 
-  /// Something that happened and is over.
+  /// An event.
   void report(canopen::EmergencyCode code, std::uint32_t detail);
-  /// Something that lasts.
+  /// An error that lasts.
   void raise(Fault fault, std::uint32_t detail);
-  /// It is over: EMCY `none`, with its code as the detail. Nothing happens if it was not raised.
-  void clear(Fault fault);
+  /// The error is over: EMCY `none`, with the error's code as the detail. Nothing happens if it was not raised.
+  void clear(Fault fault) {
+    if (is_raised(fault)) {
+      end(fault);
+    }
+  }
+  /// Once after power_on(), if the program did not end as it should. To be called after the boot-up message was sent:
+  /// EMCY has the lower identifier and would overtake it.
+  void report_reset_cause();
   [[nodiscard]] bool is_raised(Fault fault) const { return (faults_ & bit(fault)) != 0; }
 
   /// Object 0x1001.
   [[nodiscard]] std::uint8_t error_register() const;
 
  private:
+  void end(Fault fault);
   [[nodiscard]] static std::uint8_t bit(Fault fault) {
     return static_cast<std::uint8_t>(1U << static_cast<unsigned>(fault));
   }
 
-  const Board& board_;
+  const ModuleIdentity& identity_;
   const NetworkNode& network_;
   Outbox& outbox_;
   std::uint8_t faults_ = 0;
+  bool is_reset_cause_pending_ = false;
 };
 
 }  // namespace proleg::firmware

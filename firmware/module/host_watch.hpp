@@ -4,39 +4,39 @@
 
 namespace proleg::firmware {
 
-/// Misses the heartbeat of the host (CiA 301, consumer heartbeat time, object 0x1016).
+/// Notices that the heartbeat of the host is missing (CiA 301, consumer heartbeat time, object 0x1016).
 class HostWatch {
  public:
-  /// As in 0x1016: 65536 * node + longest silence in ms; 0 ms: none is expected. Nothing is missed before the first
-  /// heartbeat was heard.
+  /// As in 0x1016: 65536 * node + timeout in ms; 0 ms: none is expected. Nothing is missing before the first heartbeat
+  /// was received.
   void set(std::uint32_t expected) {
     expected_ = expected;
-    silence_ends_ = never;
+    timeout_at_ = never;
   }
   [[nodiscard]] std::uint32_t expected() const { return expected_; }
 
   /// A heartbeat of any node.
-  void heard(Microseconds now, std::uint8_t node) {
-    const std::uint32_t silence_ms = expected_ & 0xFFFFU;
-    if (silence_ms != 0 && node == expected_ >> 16U) {
-      silence_ends_ = now + Microseconds{silence_ms} * 1'000U;
+  void receive_heartbeat(Microseconds now, std::uint8_t node) {
+    const std::uint32_t timeout_ms = expected_ & 0xFFFFU;
+    if (timeout_ms != 0 && node == expected_ >> 16U) {
+      timeout_at_ = now + Microseconds{timeout_ms} * 1'000U;
     }
   }
-  /// Whether the host is heard and not yet missed.
-  [[nodiscard]] bool present() const { return silence_ends_ != never; }
-  /// Whether the host is missed from now on; told once.
-  [[nodiscard]] bool missed(Microseconds now) {
-    if (now < silence_ends_) {
+  /// Whether a heartbeat of the host was received and the timeout has not passed since.
+  [[nodiscard]] bool is_present() const { return timeout_at_ != never; }
+  /// True, once, when the timeout has passed.
+  [[nodiscard]] bool poll_timeout(Microseconds now) {
+    if (now < timeout_at_) {
       return false;
     }
-    silence_ends_ = never;
+    timeout_at_ = never;
     return true;
   }
-  [[nodiscard]] Microseconds next_deadline() const { return silence_ends_; }
+  [[nodiscard]] Microseconds next_deadline() const { return timeout_at_; }
 
  private:
   std::uint32_t expected_ = 0;
-  Microseconds silence_ends_ = never;
+  Microseconds timeout_at_ = never;
 };
 
 }  // namespace proleg::firmware

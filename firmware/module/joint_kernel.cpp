@@ -10,7 +10,7 @@ void JointKernel::deactivate() {
   limits_ = full_range;
 }
 
-Status JointKernel::activate(const Settings& settings, std::uint8_t node) {
+Status JointKernel::activate(const ModuleSettings& settings, std::uint8_t node) {
   deactivate();
   if (const Status status = kernel_.configure(settings.kernel(), settings.joint); status != Status::ok) {
     return status;
@@ -25,6 +25,11 @@ Status JointKernel::activate(const Settings& settings, std::uint8_t node) {
 
 const ActuationModule* JointKernel::algorithm(unsigned slot) const {
   return kernel_.drives(slot, joint()) ? kernel_.configuration().slots[slot].algorithm : nullptr;
+}
+
+bool JointKernel::has_algorithm(unsigned slot, std::uint8_t id) const {
+  const ActuationModule* found = algorithm(slot);
+  return found != nullptr && found->declaration().id == id;
 }
 
 Status JointKernel::set_limits(const canopen::AngleLimits& limits) {
@@ -89,8 +94,8 @@ void JointKernel::write_record() {
   record_.flags = kernel_.frame(joint(), 0).flags();
   record_.value_count = 0;
   for (unsigned slot = 0; slot < max_slots; ++slot) {
-    const ActuationModule* driver = algorithm(slot);
-    const std::size_t count = driver == nullptr ? 0 : driver->declaration().internal_values.size();
+    const ActuationModule* in_slot = algorithm(slot);
+    const std::size_t count = in_slot == nullptr ? 0 : in_slot->declaration().internal_values.size();
     for (unsigned number = 0; number < count; ++number) {
       record_.internal_values[record_.value_count++] = kernel_.internal_value(slot, joint(), number);
     }

@@ -1,22 +1,27 @@
 #pragma once
 
-#include "firmware/module/settings.hpp"
+#include "firmware/module/module_settings.hpp"
 #include "firmware/module/tick_record.hpp"
 #include "shared/gait/contact_debouncer.hpp"
 
 namespace proleg::firmware {
 
-/// The kernel of the module's one joint, and what a kernel does not know: whether it is configured, its limits, whether
-/// a transaction is open.
+/// The kernel of the module's one joint, and what belongs to it: whether it is configured, the robot's agreement, the
+/// joint's limits and contacts.
 class JointKernel {
  public:
-  /// Takes the settings; a refusal leaves the joint unconfigured.
-  Status activate(const Settings& settings, std::uint8_t node);
+  /// Configures the joint. A status other than ok leaves it unconfigured.
+  Status activate(const ModuleSettings& settings, std::uint8_t node);
   void deactivate();
   /// Whether the joint is configured.
   [[nodiscard]] bool active() const { return active_; }
   /// +-90 degrees until they are set.
   [[nodiscard]] const canopen::AngleLimits& limits() const { return limits_; }
+
+  /// Why the kernel rejected a request last (object 0x2001:8); ok: it has rejected none.
+  [[nodiscard]] Status last_refusal() const { return last_refusal_; }
+  void keep_refusal(Status status) { last_refusal_ = status; }
+  void clear_refusal() { last_refusal_ = Status::ok; }
 
   // All below: only if active().
   [[nodiscard]] unsigned joint() const { return kernel_.first_joint(); }
@@ -26,8 +31,10 @@ class JointKernel {
   [[nodiscard]] std::uint32_t monitoring_period() const { return monitoring_period_; }
   /// The algorithm of a slot that drives the joint; null if the slot does not.
   [[nodiscard]] const ActuationModule* algorithm(unsigned slot) const;
+  /// Whether a slot drives the joint with the algorithm of this id.
+  [[nodiscard]] bool has_algorithm(unsigned slot, std::uint8_t id) const;
 
-  // Both belong before the start; restart() makes state 0 follow.
+  // Before the start: state 0 follows from both at restart().
   Status set_limits(const canopen::AngleLimits& limits);
   Status set_parameter(unsigned slot, unsigned number, std::int32_t value);
   /// To state 0. What is staged stays.
@@ -35,7 +42,7 @@ class JointKernel {
 
   Status open(std::uint16_t transaction);
   [[nodiscard]] bool has_open_transaction() const { return active_ && kernel_.has_open_transaction(); }
-  /// Under the open transaction.
+  /// In the open transaction.
   Status stage(unsigned slot, unsigned number, bool internal, std::int32_t value);
   /// The staged value; if there is none, the value in force.
   [[nodiscard]] std::int32_t staged_parameter(unsigned slot, unsigned number) const;
@@ -43,7 +50,7 @@ class JointKernel {
 
   /// As Kernel::join().
   void join(std::uint32_t tick);
-  /// Computes a tick, after `missed` ones whose SYNC was not heard; those have the contacts of the last tick before.
+  /// Computes a tick, after `missed` ones whose SYNC was not received; those have the contacts of the last tick before.
   /// sensors: as they are at SYNC.
   void advance(unsigned missed, std::uint8_t sensors);
   /// The flag `fault` of the state frames from the next one on.
@@ -52,7 +59,7 @@ class JointKernel {
   void receive(unsigned joint, unsigned channel, const StateFrame& frame) { kernel_.receive(joint, channel, frame); }
 
   [[nodiscard]] const Kernel& kernel() const { return kernel_; }
-  /// Of the last advance(); none if another state was taken since.
+  /// Of the last advance(); none after deactivate(), restart() or join().
   [[nodiscard]] const TickRecord& record() const { return record_; }
 
  private:
@@ -65,6 +72,7 @@ class JointKernel {
   TickRecord record_;
   ContactDebouncer debouncer_;
   bool active_ = false;
+  Status last_refusal_ = Status::ok;
   bool fault_ = false;
   std::uint16_t robot_id_ = 0;
   std::uint32_t crc_ = 0;

@@ -7,15 +7,15 @@ namespace proleg::firmware {
 
 /// Why the program has started.
 enum class ResetCause : std::uint8_t {
-  power_on,  ///< or the supply broke down
+  power_on,  ///< or a supply voltage that was too low
   pin,       ///< the reset button, a programmer
   software,  ///< on request
-  watchdog,  ///< the program did not come round any more
+  watchdog,  ///< the program has not fed the watchdog in time
   fault,     ///< the program broke a rule of the processor, or one of its own
 };
 
-/// What a module is born with, and how it came to life.
-struct Board {
+/// What distinguishes a module from all others, and why its program has started.
+struct ModuleIdentity {
   std::uint8_t node = 0;                     ///< 1 to 126
   std::uint16_t board_id = 1;                ///< 1: the reference board
   std::array<std::uint32_t, 3> unique_id{};  ///< 96 bits, the lowest word first
@@ -25,7 +25,7 @@ struct Board {
   std::uint32_t reset_detail = 0;  ///< of a fault: where the program was (program counter); 0: not known
 };
 
-/// CRC-32 of the unique id, little-endian: a serial number for those who have room for 32 bits (object 0x1018).
-[[nodiscard]] std::uint32_t serial_number(const Board& board);
+/// The serial number of object 0x1018, which has 32 bits: CRC-32 of the unique id, little-endian.
+[[nodiscard]] std::uint32_t serial_number(const ModuleIdentity& identity);
 
 }  // namespace proleg::firmware

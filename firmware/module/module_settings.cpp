@@ -1,10 +1,10 @@
-#include "firmware/module/settings.hpp"
+#include "firmware/module/module_settings.hpp"
 
 #include "shared/gait/registry.hpp"
 
 namespace proleg::firmware {
 
-KernelConfiguration Settings::kernel() const {
+KernelConfiguration ModuleSettings::kernel() const {
   KernelConfiguration configuration;
   configuration.joint_count = joint_count;
   configuration.tick_period_us = tick_period_us;
@@ -17,7 +17,7 @@ KernelConfiguration Settings::kernel() const {
   return configuration;
 }
 
-std::uint32_t Settings::crc(std::uint8_t own_node) const {
+std::uint32_t ModuleSettings::crc(std::uint8_t own_node) const {
   std::array<std::uint8_t, max_joints> robot = nodes[0];
   robot[joint] = own_node;
   return canopen::configuration_crc({kernel(), robot_id, servo_period_us, {robot.data(), joint_count}});

@@ -5,8 +5,8 @@
 
 namespace proleg::firmware {
 
-/// What the host has written of the robot's configuration, as it wrote it. It counts from `activate` on.
-struct Settings {
+/// The robot's configuration as the host has written it. It takes effect at `activate`.
+struct ModuleSettings {
   std::uint8_t joint = 0;
   std::uint8_t joint_count = canopen::object::joint_count.default_value;
   std::uint8_t front_node = 0;
@@ -17,11 +17,11 @@ struct Settings {
   std::uint64_t seed = canopen::object::seed_low.default_value;
   std::array<std::uint8_t, max_slots> algorithms{};  ///< ids; 0: the slot is empty
   std::array<std::uint64_t, max_slots> groups{};     ///< bit j: joint j
-  /// For each channel and joint, whose state frames are those of the joint; 0: nobody's.
+  /// For each channel and joint: the node that sends the joint's state frames; 0: none.
   std::array<std::array<std::uint8_t, max_joints>, max_channels> nodes{};
 
   [[nodiscard]] KernelConfiguration kernel() const;
-  /// As all modules of the robot compute it (canopen::configuration_crc).
+  /// The CRC that all modules of the robot compute (canopen::configuration_crc).
   [[nodiscard]] std::uint32_t crc(std::uint8_t own_node) const;
 };
 

@@ -8,7 +8,9 @@ using canopen::NmtState;
 
 void NetworkNode::start(Microseconds now) {
   state_ = NmtState::boot_up;
-  boot_up_at_ = now + 1'000U * (1U + serial_number(board_) % 16U);
+  has_sent_boot_up_ = false;
+  has_collided_ = false;
+  boot_up_at_ = now + 1'000U * (1U + serial_number(identity_) % 16U);
   heartbeat_period_ms_ = canopen::object::heartbeat_period.default_value;
   heartbeat_at_ = never;
 }
@@ -18,9 +20,25 @@ void NetworkNode::repeat_boot_up(Microseconds now) {
   boot_up_at_ = now;
 }
 
+bool NetworkNode::confirm_boot_up(const CanFrame& frame) {
+  if (has_sent_boot_up_ || frame.identifier != canopen::identifier::heartbeat + identity_.node) {
+    return false;
+  }
+  has_sent_boot_up_ = true;
+  return true;
+}
+
 void NetworkNode::enter(NmtState state) {
   state_ = state;
   boot_up_at_ = never;
+}
+
+bool NetworkNode::notice_collision() {
+  if (has_collided_) {
+    return false;
+  }
+  has_collided_ = true;
+  return true;
 }
 
 void NetworkNode::set_heartbeat_period(Microseconds now, std::uint16_t period_ms) {
@@ -28,27 +46,29 @@ void NetworkNode::set_heartbeat_period(Microseconds now, std::uint16_t period_ms
   heartbeat_at_ = period_ms == 0 ? never : now;
 }
 
-void NetworkNode::poll(Microseconds now) {
-  poll_boot_up(now);
+bool NetworkNode::poll(Microseconds now) {
+  const bool has_booted = poll_boot_up(now);
   poll_heartbeat(now);
+  return has_booted;
 }
 
-void NetworkNode::poll_boot_up(Microseconds now) {
+bool NetworkNode::poll_boot_up(Microseconds now) {
   if (now < boot_up_at_) {
-    return;
+    return false;
   }
-  if (outbox_.send(encode(canopen::Heartbeat{board_.node, NmtState::boot_up}))) {
-    enter(NmtState::pre_operational);
-  } else {
+  if (!outbox_.send(encode(canopen::Heartbeat{identity_.node, NmtState::boot_up}))) {
     boot_up_at_ = now + 1'000U;
+    return false;
   }
+  enter(NmtState::pre_operational);
+  return true;
 }
 
 void NetworkNode::poll_heartbeat(Microseconds now) {
   if (now < heartbeat_at_) {
     return;
   }
-  outbox_.send(encode(canopen::Heartbeat{board_.node, state_}));
+  outbox_.send(encode(canopen::Heartbeat{identity_.node, state_}));
   const Microseconds period_us = Microseconds{heartbeat_period_ms_} * 1'000U;
   heartbeat_at_ += period_us;
   if (heartbeat_at_ <= now) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/module/board.hpp"
+#include "firmware/module/module_identity.hpp"
 #include "firmware/module/outbox.hpp"
 #include "shared/canopen/messages.hpp"
 
@@ -9,16 +9,22 @@ namespace proleg::firmware {
 /// The module as a node of the network (CiA 301, section 7.3.2): its state, boot-up and its own heartbeat.
 class NetworkNode {
  public:
-  NetworkNode(const Board& board, Outbox& outbox) : board_(board), outbox_(outbox) {}
+  NetworkNode(const ModuleIdentity& identity, Outbox& outbox) : identity_(identity), outbox_(outbox) {}
 
   /// Boot-up follows after 1 to 16 ms, which depend on the unique id: of two modules with one node id that are switched
-  /// on together, one hears the other.
+  /// on together, one receives the other's message.
   void start(Microseconds now);
   /// The boot-up message was lost.
   void repeat_boot_up(Microseconds now);
+  /// The controller has sent a frame. True if it is the boot-up message: from then on the network knows of the module.
+  [[nodiscard]] bool confirm_boot_up(const CanFrame& frame);
+  [[nodiscard]] bool has_sent_boot_up() const { return has_sent_boot_up_; }
   void enter(canopen::NmtState state);
+  /// Another node has sent with an identifier of this one. False: that was noticed before, since start().
+  [[nodiscard]] bool notice_collision();
+  [[nodiscard]] bool has_collided() const { return has_collided_; }
 
-  /// `boot_up` until the boot-up message is sent.
+  /// `boot_up` until the boot-up message is in the queue.
   [[nodiscard]] canopen::NmtState state() const { return state_; }
   [[nodiscard]] bool started() const { return state_ != canopen::NmtState::boot_up || boot_up_at_ != never; }
   [[nodiscard]] bool operational() const { return state_ == canopen::NmtState::operational; }
@@ -27,16 +33,19 @@ class NetworkNode {
   /// The first heartbeat is due at once. 0: no heartbeats.
   void set_heartbeat_period(Microseconds now, std::uint16_t period_ms);
 
-  void poll(Microseconds now);
+  /// Whether the module has left the state `boot_up` now.
+  [[nodiscard]] bool poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const;
 
  private:
-  void poll_boot_up(Microseconds now);
+  [[nodiscard]] bool poll_boot_up(Microseconds now);
   void poll_heartbeat(Microseconds now);
 
-  const Board& board_;
+  const ModuleIdentity& identity_;
   Outbox& outbox_;
   canopen::NmtState state_ = canopen::NmtState::boot_up;
+  bool has_sent_boot_up_ = false;
+  bool has_collided_ = false;
   Microseconds boot_up_at_ = never;
   std::uint16_t heartbeat_period_ms_ = 0;
   Microseconds heartbeat_at_ = never;

@@ -6,17 +6,17 @@
 
 namespace proleg::firmware {
 
-/// The way out for all frames of a module. What finds no room is dropped and counted: whoever fills the queue would
-/// only send older news later.
+/// Sends all frames of a module. A frame that finds the queue full is dropped and counted: it would be out of date
+/// before it is sent.
 class Outbox {
  public:
   explicit Outbox(CanPort& port) : queue_(port) {}
 
-  /// Whether the frame was taken.
+  /// Whether the frame was accepted.
   bool send(const CanFrame& frame) {
-    const bool taken = open_ && queue_.push(frame);
-    dropped_ += taken ? 0U : 1U;
-    return taken;
+    const bool is_accepted = open_ && queue_.push(frame);
+    dropped_ += is_accepted ? 0U : 1U;
+    return is_accepted;
   }
   /// To be called when the controller has sent a frame.
   void sent() { queue_.sent(); }
@@ -26,7 +26,7 @@ class Outbox {
     dropped_ = 0;
   }
 
-  /// The controller is bus-off: forgets what waits, and drops everything until open().
+  /// The controller is bus-off: drops pending frames, and all frames until open().
   void close() {
     queue_.clear();
     open_ = false;

@@ -6,33 +6,47 @@
 #include "firmware/module/servo_monitor.hpp"
 #include "firmware/module/state_receiver.hpp"
 #include "firmware/module/sync_producer.hpp"
+#include "firmware/module/sync_watch.hpp"
+#include "firmware/module/tick_keeper.hpp"
 
 namespace proleg::firmware {
 
-/// What a module consists of. Each part minds one thing; Module moves them by the events, DeviceObjects shows them to
-/// the host.
+/// How far the start of the gait is.
+struct GaitStart {
+  bool has_received_sync = false;  ///< since Operational was left: the robot moves already
+  bool has_sent_state = false;     ///< the frame of state 0, since Operational was entered
+};
+
+/// Errors in the host's requests that were reported, so that a repetition is not.
+struct ReportedRequests {
+  bool has_wrong_command = false;                  ///< since Operational was entered
+  std::optional<canopen::CommitMessage> commit{};  ///< the last one that was rejected
+};
+
+/// What a module consists of: the whole state of the program, one piece in each part. The functions over it are in
+/// network_control.hpp, tick_control.hpp, watches.hpp and host_requests.hpp, a job in each; Module calls them.
 struct Parts {
-  Parts(const Board& board_as_built, const Ports& ports)
-      : board(board_as_built),
-        can(ports.can),
-        outbox(ports.can),
-        recovery(ports.can),
-        drive(ports.servo),
-        monitor(ports.sensors, (board_as_built.capabilities & canopen::measures_angle) != 0),
-        contacts(ports.contacts) {}
+  Parts(const ModuleIdentity& module_identity, const Ports& ports);
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
-  const Board board;
+  /// As after power on.
+  void reset(Microseconds now);
+
+  const ModuleIdentity identity;
   CanPort& can;
   Outbox outbox;
   BusRecovery recovery;
-  NetworkNode network{board, outbox};
-  Emergencies emergencies{board, network, outbox};
+  NetworkNode network{identity, outbox};
+  Emergencies emergencies{identity, network, outbox};
   HostWatch host;
-  Settings settings;
+  ReportedRequests reported;
+  ModuleSettings settings;
   JointKernel joint;
   StateReceiver neighbours{joint, emergencies, can};
+  TickKeeper keeper;
+  GaitStart start;
+  SyncWatch sync;
   SyncProducer producer{outbox};
   Drive drive;
   ServoMonitor monitor;

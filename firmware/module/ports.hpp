@@ -1,6 +1,7 @@
 #pragma once
 
-// What a module needs of the world. A board (or the simulator) implements these and hands events to Module.
+// What a module needs from its surroundings. Drivers of the chip, or the simulator, implement these ports and hand
+// events to Module.
 
 #include <cstdint>
 #include <optional>
@@ -12,10 +13,10 @@ namespace proleg::firmware {
 class ServoPort {
  public:
   /// Begins a pulse of this width, in twelfths of a microsecond, and repeats it every period from now on. If the pulse
-  /// before is not over yet, the width is that of the next one. The program gives each pulse anew; it is repeated a
-  /// little later than the period only if the program does not.
+  /// before is not over yet, the width is that of the next one. The program requests each pulse; the port repeats one
+  /// only if the program is late, a little after the period.
   virtual void pulse(std::int32_t width, std::uint32_t period_us) = 0;
-  /// No pulses: the servo goes limp.
+  /// No pulses: the servo has no torque.
   virtual void off() = 0;
 
  protected:
@@ -32,18 +33,18 @@ class ContactPort {
   ~ContactPort() = default;
 };
 
-/// What the servo and the chip say of themselves.
+/// What the sensors of servo and chip measure.
 struct ServoReadings {
   std::uint16_t current_ma = 0;
-  /// Actual angle of the joint (binary angle); nothing on a board without a feedback potentiometer.
+  /// Actual angle of the joint (binary angle); nothing without a feedback potentiometer.
   std::optional<std::int32_t> angle;
   std::int8_t temperature_c = 0;  ///< of the chip
 };
 
 class SensorPort {
  public:
-  /// The last readings; begins to take the next ones. Called once a tick and in its pauses.
-  [[nodiscard]] virtual ServoReadings read() = 0;
+  /// The last readings; starts the next ones. Called once a tick, and while ticks are missing.
+  [[nodiscard]] virtual ServoReadings take_readings() = 0;
 
  protected:
   ~SensorPort() = default;

@@ -10,7 +10,7 @@ void ServoDriver::reset() {
 }
 
 void ServoDriver::start_tick(Microseconds now, std::uint32_t tick, std::int32_t from, std::int32_t to) {
-  if (mode_ == Mode::following && pulsing_ && interval_to_come()) {
+  if (mode_ == Mode::following && pulsing_ && has_pending_interval()) {
     skip_to(schedule_.tick_period_us() - 1U);
     take_interval();
   }

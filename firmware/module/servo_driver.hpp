@@ -5,8 +5,8 @@
 
 namespace proleg::firmware {
 
-/// Gives the servo its pulses: along the line between two set-points, interval by interval; or, on its own clock, down
-/// to the safe pose.
+/// Gives the servo its pulses: along the line between two set-points, interval by interval; or, in a quick stop, along
+/// a ramp to the safe pose.
 class ServoDriver {
  public:
   /// The safe pose, and the speed at which a quick stop goes there.
@@ -15,18 +15,18 @@ class ServoDriver {
 
   explicit ServoDriver(ServoPort& port) : port_(port) {}
 
-  /// From reset: no pulses, and no line to follow.
+  /// As after reset: no pulses, and no line to follow.
   void reset();
   void configure(const ServoSchedule& schedule) { schedule_ = schedule; }
 
-  /// SYNC `tick` was at `now`, until the next one the set-point moves from `from` to `to` (90 degrees = 2^30). An
-  /// interval of the tick before that is still to come, because SYNC was early, is taken now.
+  /// SYNC `tick` came at `now`. Until the next one the set-point moves from `from` to `to` (90 degrees = 2^30). If SYNC
+  /// was early and an interval of the tick before is pending, its pulse is given now.
   void start_tick(Microseconds now, std::uint32_t tick, std::int32_t from, std::int32_t to);
 
   /// Follows the line, from its next interval on.
   void follow();
-  /// Ramps from the last pulse to the safe pose, then holds. A servo that was given no pulse yet stays off: nobody
-  /// knows where it is.
+  /// Ramps from the last pulse to the safe pose, then holds. A servo that was given no pulse yet stays off: its angle
+  /// is not known.
   void quick_stop(Microseconds now);
   /// No pulses.
   void stop();
@@ -37,8 +37,8 @@ class ServoDriver {
  private:
   enum class Mode : std::uint8_t { off, following, ramping };
 
-  [[nodiscard]] bool interval_to_come() const { return elapsed_us_ < schedule_.tick_period_us(); }
-  /// Whoever is late takes the latest interval that has started, not all of them.
+  [[nodiscard]] bool has_pending_interval() const { return elapsed_us_ < schedule_.tick_period_us(); }
+  /// Of several intervals that have started only the latest gets a pulse.
   void skip_to(Microseconds since_sync_us);
   void take_interval();
   void take_ramp_step(Microseconds now);
@@ -50,19 +50,19 @@ class ServoDriver {
   std::int32_t from_ = 0;
   std::int32_t to_ = 0;
   std::int32_t angle_ = 0;          ///< of the last pulse
-  std::uint32_t elapsed_us_ = ~0U;  ///< from SYNC to the next interval; a tick period or more: none is to come
+  std::uint32_t elapsed_us_ = ~0U;  ///< from SYNC to the next interval; a tick period or more: none is pending
   Microseconds sync_at_ = 0;
   Microseconds next_step_ = never;  ///< of the ramp
 };
 
-// What happens at each interval, up to a thousand times a second, is here for the compiler to join.
+// Up to a thousand times a second; in the header so that the compiler can inline it.
 
 inline void ServoDriver::poll(Microseconds now) {
   if (mode_ == Mode::ramping) {
     if (now >= next_step_) {
       take_ramp_step(now);
     }
-  } else if (interval_to_come() && now >= sync_at_ + elapsed_us_) {
+  } else if (has_pending_interval() && now >= sync_at_ + elapsed_us_) {
     skip_to(now - sync_at_);
     take_interval();
   }
@@ -89,7 +89,7 @@ inline Microseconds ServoDriver::next_deadline() const {
   if (mode_ == Mode::ramping) {
     return next_step_;
   }
-  return interval_to_come() ? sync_at_ + elapsed_us_ : never;
+  return has_pending_interval() ? sync_at_ + elapsed_us_ : never;
 }
 
 }  // namespace proleg::firmware

@@ -6,15 +6,15 @@ void ServoMonitor::reset() {
   limit_ma_ = canopen::object::current_limit.default_value;
   limit_time_ms_ = canopen::object::current_limit_time.default_value;
   readings_ = {};
-  forget_current();
+  clear_over_current();
   next_reading_ = never;
 }
 
 void ServoMonitor::read(Microseconds now, std::uint32_t tick_period_us) {
-  constexpr std::uint16_t highest_current_ma = 0x7FFF;  // of object 0x6078
-  readings_ = port_.read();
-  if (readings_.current_ma > highest_current_ma) {
-    readings_.current_ma = highest_current_ma;
+  constexpr std::uint16_t max_current_ma = 0x7FFF;  // of object 0x6078
+  readings_ = port_.take_readings();
+  if (readings_.current_ma > max_current_ma) {
+    readings_.current_ma = max_current_ma;
   }
   if (!measures_angle_) {
     readings_.angle.reset();
@@ -25,7 +25,7 @@ void ServoMonitor::read(Microseconds now, std::uint32_t tick_period_us) {
 
 void ServoMonitor::judge_current(Microseconds now) {
   if (limit_ma_ == 0 || readings_.current_ma <= limit_ma_) {
-    forget_current();
+    clear_over_current();
     return;
   }
   if (above_since_ == never) {
@@ -34,7 +34,7 @@ void ServoMonitor::judge_current(Microseconds now) {
   over_current_ = now - above_since_ >= Microseconds{limit_time_ms_} * 1'000U;
 }
 
-void ServoMonitor::forget_current() {
+void ServoMonitor::clear_over_current() {
   over_current_ = false;
   above_since_ = never;
 }

@@ -5,13 +5,13 @@
 
 namespace proleg::firmware {
 
-/// Reads what the servo and the chip say of themselves, once a tick, and tells over-current.
+/// Reads the sensors of servo and chip once a tick, and detects over-current.
 class ServoMonitor {
  public:
   /// measures_angle: the board has a feedback potentiometer; else an angle in the readings is noise.
   ServoMonitor(SensorPort& port, bool measures_angle) : port_(port), measures_angle_(measures_angle) {}
 
-  /// Limits as they are by default, nothing read yet.
+  /// Default limits, nothing read yet.
   void reset();
 
   /// Object 0x200A. A current above limit_ma for limit_time_ms is over-current; limit 0: none is.
@@ -20,17 +20,17 @@ class ServoMonitor {
   [[nodiscard]] std::uint16_t limit_time_ms() const { return limit_time_ms_; }
   void set_limit_time_ms(std::uint16_t time_ms) { limit_time_ms_ = time_ms; }
 
-  /// Takes a reading. The next one is the next tick's; if that stays out for half a tick period, it is due all the
-  /// same: a servo that holds the safe pose can stall, too.
+  /// Takes a reading. The next one comes with the next tick, or is due half a tick period after that should have come:
+  /// a servo that holds the safe pose can stall, too.
   void read(Microseconds now, std::uint32_t tick_period_us);
   [[nodiscard]] Microseconds next_deadline() const { return next_reading_; }
 
   /// Whether all readings were above the limit for the limit's time, as of the last one.
   [[nodiscard]] bool over_current() const { return over_current_; }
-  /// What was above the limit so far does not count any more.
-  void forget_current();
+  /// Starts again: readings so far do not count.
+  void clear_over_current();
 
-  // As read last. Currents end at 32,767 mA.
+  // As read last. A current above 32,767 mA counts as that.
   [[nodiscard]] std::uint16_t current_ma() const { return readings_.current_ma; }
   [[nodiscard]] std::int8_t temperature_c() const { return readings_.temperature_c; }
   /// Nothing: not measured.

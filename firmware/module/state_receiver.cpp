@@ -2,24 +2,24 @@
 
 namespace proleg::firmware {
 
-bool StateReceiver::accepts(const Settings& settings, std::uint8_t own_node) {
+bool StateReceiver::accepts(const ModuleSettings& settings, std::uint8_t own_node) {
   for (unsigned channel = 0; channel < max_channels; ++channel) {
-    std::array<bool, canopen::host_node + 1U> taken{};
+    std::array<bool, canopen::host_node + 1U> has_joint{};
     for (unsigned joint = 0; joint < settings.joint_count; ++joint) {
       const std::uint8_t node = settings.nodes[channel][joint];
       if (node == 0 || joint == settings.joint) {
         continue;
       }
-      if (node == own_node || taken[node]) {
+      if (node == own_node || has_joint[node]) {
         return false;
       }
-      taken[node] = true;
+      has_joint[node] = true;
     }
   }
   return true;
 }
 
-void StateReceiver::configure(const Settings& settings) {
+void StateReceiver::configure(const ModuleSettings& settings) {
   constexpr std::array first_identifier{canopen::identifier::state_frame, canopen::identifier::second_state};
   std::array<std::uint16_t, max_channels * max_joints> identifiers{};
   std::size_t count = 0;
@@ -41,9 +41,9 @@ void StateReceiver::stop() {
   port_.listen({});
 }
 
-void StateReceiver::forget_complaints() {
-  wrong_length_ = {};
-  wrong_label_ = {};
+void StateReceiver::clear_reported_errors() {
+  reported_length_ = {};
+  reported_label_ = {};
   unknown_labels_ = 0;
 }
 
@@ -54,19 +54,18 @@ void StateReceiver::receive(const CanFrame& frame, unsigned channel, std::uint8_
   const unsigned joint = joints_[channel][node] - 1U;
   const std::optional<StateFrame> state = canopen::decode_state(frame);
   if (!state) {
-    if (!wrong_length_.contains(joint)) {
-      wrong_length_.insert(joint);
+    if (!reported_length_.contains(joint)) {
+      reported_length_.insert(joint);
       emergencies_.report(canopen::EmergencyCode::wrong_length, joint);
     }
     return;
   }
-  // How far the label is from the coming tick, plus one: 0 to 2 for those of a module that has just computed, or has
-  // not yet.
+  // How far the label is from the coming tick, plus one: 0 to 2 for a module that has just computed, or has not yet.
   const auto distance = static_cast<std::uint8_t>(state->label() - joint_.kernel().tick() + 1U);
   if (distance > 2) {
     ++unknown_labels_;
-    if (synchronised && !wrong_label_.contains(joint)) {
-      wrong_label_.insert(joint);
+    if (synchronised && !reported_label_.contains(joint)) {
+      reported_label_.insert(joint);
       emergencies_.report(canopen::EmergencyCode::unknown_label, joint);
     }
   }

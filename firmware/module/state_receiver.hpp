@@ -5,21 +5,21 @@
 
 namespace proleg::firmware {
 
-/// Hands the state frames of the other joints to the kernel, and complains of those that cannot be meant.
+/// Hands the state frames of the other joints to the kernel, and reports wrong ones.
 class StateReceiver {
  public:
   StateReceiver(JointKernel& joint, Emergencies& emergencies, CanPort& port)
       : joint_(joint), emergencies_(emergencies), port_(port) {}
 
-  /// Whether the nodes of the settings can be meant: none has two joints, and no other joint the module's own node.
-  [[nodiscard]] static bool accepts(const Settings& settings, std::uint8_t own_node);
-  /// Listens to those nodes of the settings whose joints matter to the joint; it is active, and the settings are
+  /// Whether the nodes of the settings are possible: none has two joints, and no other joint has the module's own node.
+  [[nodiscard]] static bool accepts(const ModuleSettings& settings, std::uint8_t own_node);
+  /// From now on receives from those nodes whose joints this joint depends on. The joint must be active, the settings
   /// accepted.
-  void configure(const Settings& settings);
-  /// Listens to nobody.
+  void configure(const ModuleSettings& settings);
+  /// Receives from no node.
   void stop();
-  /// Each joint may be complained of once more.
-  void forget_complaints();
+  /// Errors of each joint are reported again.
+  void clear_reported_errors();
 
   /// A frame on the identifier of the state frame of `node`, 1 to 127. synchronised: a label that is more than a tick
   /// away from the coming one is an error.
@@ -36,8 +36,8 @@ class StateReceiver {
   Emergencies& emergencies_;
   CanPort& port_;
   std::array<JointOfNode, max_channels> joints_{};
-  JointMask wrong_length_;  ///< joints that were complained of
-  JointMask wrong_label_;
+  JointMask reported_length_;  ///< joints whose wrong length was reported
+  JointMask reported_label_;   ///< joints whose unknown label was reported
   std::uint32_t unknown_labels_ = 0;
 };
 

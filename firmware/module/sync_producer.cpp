@@ -5,7 +5,7 @@
 namespace proleg::firmware {
 
 void SyncProducer::start(Microseconds now, std::uint32_t tick_period_us, std::uint32_t configuration_crc) {
-  constexpr std::uint32_t longest_lead_us = 1'000;
+  constexpr std::uint32_t max_lead_us = 1'000;
   if (runs()) {
     return;
   }
@@ -13,7 +13,7 @@ void SyncProducer::start(Microseconds now, std::uint32_t tick_period_us, std::ui
   tick_sent_ = false;
   tick_period_us_ = tick_period_us;
   configuration_crc_ = configuration_crc;
-  lead_us_ = tick_period_us / 10 < longest_lead_us ? tick_period_us / 10 : longest_lead_us;
+  lead_us_ = tick_period_us / 10 < max_lead_us ? tick_period_us / 10 : max_lead_us;
   tick_ = 0;
   next_sync_ = now;
 }
@@ -33,7 +33,7 @@ void SyncProducer::send_sync(Microseconds now) {
   next_sync_ += tick_period_us_;
   tick_sent_ = false;
   if (next_sync_ <= now) {
-    // Called too late by a period or more: the others count these as missed.
+    // Called too late by a period or more: the modules count these as missed.
     const Microseconds missed = (now - next_sync_) / tick_period_us_ + 1;
     tick_ += static_cast<std::uint32_t>(missed);
     next_sync_ += missed * tick_period_us_;
@@ -55,7 +55,7 @@ void SyncProducer::poll(Microseconds now) {
   if (now >= next_sync_) {
     send_sync(now);
   }
-  if (to_be_announced() && now >= next_sync_ - lead_us_) {
+  if (must_announce() && now >= next_sync_ - lead_us_) {
     tick_sent_ = true;
     send_tick();
   }
@@ -77,7 +77,7 @@ Microseconds SyncProducer::next_deadline() const {
     case State::starting:
       return next_sync_;
     case State::running:
-      return to_be_announced() ? next_sync_ - lead_us_ : next_sync_;
+      return must_announce() ? next_sync_ - lead_us_ : next_sync_;
   }
   return never;
 }

@@ -10,10 +10,10 @@ std::uint8_t counter_of(std::uint32_t tick) { return static_cast<std::uint8_t>(t
 }  // namespace
 
 bool TickKeeper::announce(std::uint32_t tick, std::uint32_t coming) {
-  if (keeps_tick() && coming - tick - 1U < most_late) {
-    return true;  // other frames kept it from the bus until its SYNC, or some more, had gone
+  if (keeps_tick() && coming - tick - 1U < max_late) {
+    return true;  // other frames kept it from the bus until its SYNC, or a few more, were sent
   }
-  const bool fits = !keeps_tick() || tick - coming <= most_missed;
+  const bool fits = !keeps_tick() || tick - coming <= max_missed;
   if (!fits) {
     lose();
   }
@@ -27,10 +27,10 @@ SyncMeaning TickKeeper::sync(std::uint8_t counter, std::uint32_t coming) {
   SyncMeaning meaning;
   if (keeps_tick()) {
     const unsigned ahead = (unsigned{counter} - counter_of(coming)) % counters;
-    if (ahead == counters - 1) {  // the one before once more
+    if (ahead == counters - 1) {  // a repetition of the one before
       return meaning;
     }
-    if (ahead <= most_missed && (!announced_ || announced_tick_ - coming <= ahead)) {
+    if (ahead <= max_missed && (!announced_ || announced_tick_ - coming <= ahead)) {
       announced_ = false;
       meaning.joined = state_ == State::joining;
       state_ = State::computing;

@@ -8,21 +8,21 @@
 
 namespace proleg::firmware {
 
-/// What a module computed at its last tick, at one place and in a layout that is the same on every machine: for a
-/// debugger that watches a running module, and for the simulator, which compares it.
+/// What a module computed at its last tick, at a fixed address and in a layout that is the same on every machine. A
+/// debugger reads it from a running module; the simulator compares it.
 struct TickRecord {
   static constexpr std::uint32_t none = 0xFFFF'FFFF;
 
-  std::uint32_t tick = none;  ///< none: nothing was computed since the gait was set up
+  std::uint32_t tick = none;  ///< none: nothing was computed since the set-up
   std::int32_t setpoint = 0;  ///< as Kernel::setpoint
   std::uint8_t joint = 0;
   std::uint8_t flags = 0;  ///< of the state frame, byte 6
   std::uint8_t value_count = 0;
   std::uint8_t reserved = 0;
-  /// Internal values of the joint's algorithms, slot by slot, in each in the order of its declaration.
+  /// Internal values of the joint's algorithms, slot by slot, each in the order of its declaration.
   std::array<std::int32_t, max_slots * max_internal_values> internal_values{};
 
-  /// The leading bytes that mean something.
+  /// The leading bytes that are in use.
   [[nodiscard]] std::size_t used_bytes() const {
     return sizeof(TickRecord) - (internal_values.size() - value_count) * sizeof(std::int32_t);
   }

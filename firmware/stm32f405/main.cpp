@@ -125,7 +125,7 @@ void start_module(const Start& start, const firmware::BoardRecord& record) {
   if (!hardware.can.start(record.node)) {
     give_up(FaultRecord::Reason::no_can);
   }
-  firmware::Board board;
+  firmware::ModuleIdentity board;
   board.node = record.node;
   board.board_id = board::id;
   board.unique_id = factory::unique_id();

@@ -17,7 +17,7 @@ static_assert(std::is_trivially_destructible_v<firmware::Module>, "nothing is ev
 
 }  // namespace
 
-void ModuleTask::start(const firmware::Board& board, firmware::TickRecord& last_tick) {
+void ModuleTask::start(const firmware::ModuleIdentity& board, firmware::TickRecord& last_tick) {
   last_tick_ = &last_tick;
   module_.emplace(board, firmware::Ports{hardware.can, hardware.servo, hardware.contacts, hardware.sensors});
   told_ = hardware.clock.now();

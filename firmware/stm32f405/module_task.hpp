@@ -29,7 +29,7 @@ class ModuleTask {
  public:
   /// Before the interrupts are enabled. Without it the task feeds the watchdog, and that is all. The record of each
   /// tick is copied to last_tick, so that it has a place that is known without the program running.
-  void start(const firmware::Board& board, firmware::TickRecord& last_tick);
+  void start(const firmware::ModuleIdentity& board, firmware::TickRecord& last_tick);
 
   /// What PendSV and TIM5 do.
   void run();

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "firmware/module/board.hpp"
+#include "firmware/module/module_identity.hpp"
 #include "firmware/stm32f405/registers/rcc.hpp"
 
 namespace proleg::stm32f405 {

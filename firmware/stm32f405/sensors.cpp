@@ -38,7 +38,7 @@ void Sensors::start(const std::optional<firmware::BoardRecord>& record) {
   adc1::cr2.write(adc1::cr2_adon | adc1::cr2_jswstart);
 }
 
-firmware::ServoReadings Sensors::read() {
+firmware::ServoReadings Sensors::take_readings() {
   if (!adc1::sr.has(adc1::sr_jeoc)) {
     return readings_;  // asked again within 33 us
   }

@@ -12,7 +12,7 @@ class Sensors final : public firmware::SensorPort {
  public:
   /// Without a record, or a potentiometer in it, there is no angle.
   void start(const std::optional<firmware::BoardRecord>& record);
-  [[nodiscard]] firmware::ServoReadings read() override;
+  [[nodiscard]] firmware::ServoReadings take_readings() override;
 
  private:
   std::optional<firmware::BoardRecord> feedback_;  ///< of a board with a potentiometer

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/module/board.hpp"
+#include "firmware/module/module_identity.hpp"
 #include "firmware/module/ports.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/loop/crystal.hpp"
@@ -26,7 +26,7 @@ struct Restart {
 struct ModuleParts {
   Bus& bus;
   unsigned joint;
-  firmware::Board board;
+  firmware::ModuleIdentity board;
   Crystal crystal;
   std::function<std::uint8_t()> sensors;              ///< touch sensors wired to it, as firmware::ContactPort::read()
   std::function<firmware::ServoReadings()> readings;  ///< of its servo and chip, at this moment
@@ -51,7 +51,7 @@ struct HardwareOptions {
   /// Crystals are off by up to this, each by an amount that follows from the scenario's seed.
   std::uint32_t crystal_error_ppm = 100;
   /// For tests: changes the boards, and frames on their way into the program of a joint's module.
-  std::function<void(unsigned joint, firmware::Board& board)> change_board;
+  std::function<void(unsigned joint, firmware::ModuleIdentity& board)> change_board;
   std::function<void(unsigned joint, const CanFrame& frame, const std::function<void(const CanFrame&)>& deliver)>
       tamper;
   /// For tests: the touch sensors that a module reads instead.

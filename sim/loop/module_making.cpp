@@ -30,9 +30,9 @@ Crystal make_crystal(const Scenario& scenario, std::size_t joint, std::uint32_t 
   return Crystal(static_cast<std::int32_t>(noise.below(static_cast<std::uint32_t>(2 * range + 1))) - range);
 }
 
-firmware::Board make_board(const Scenario& scenario, std::size_t joint) {
+firmware::ModuleIdentity make_board(const Scenario& scenario, std::size_t joint) {
   Pcg32 noise(scenario.kernel.seed, random_stream::boards + joint);
-  firmware::Board board;
+  firmware::ModuleIdentity board;
   board.node = scenario.modules[joint].node;
   board.core_fingerprint = core_fingerprint;
   board.capabilities = canopen::measures_angle;

@@ -14,6 +14,6 @@ namespace proleg::sim {
 
 /// The board of a joint's module: its node id; a unique id that follows from the scenario's seed, or has the serial
 /// number that the robot's file names; this program's core; a feedback potentiometer.
-[[nodiscard]] firmware::Board make_board(const Scenario& scenario, std::size_t joint);
+[[nodiscard]] firmware::ModuleIdentity make_board(const Scenario& scenario, std::size_t joint);
 
 }  // namespace proleg::sim

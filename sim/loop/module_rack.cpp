@@ -19,7 +19,7 @@ constexpr BusTime max_sync_jitter = 500'000;
 ModuleRack::ModuleRack(Bus& bus, const Plant& plant, const Scenario& scenario, const HardwareOptions& options)
     : scenario_(scenario), options_(options), records_(scenario.modules.size()) {
   for (unsigned joint = 0; joint < scenario.modules.size(); ++joint) {
-    firmware::Board board = make_board(scenario, joint);
+    firmware::ModuleIdentity board = make_board(scenario, joint);
     if (options.change_board) {
       options.change_board(joint, board);
     }

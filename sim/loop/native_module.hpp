@@ -27,7 +27,8 @@ class NativeModule final : public JointModule,
   using Tamper = std::function<void(const CanFrame& frame, const std::function<void(const CanFrame&)>& deliver)>;
 
   /// Attaches to the bus, switched off. Without readings the module measures nothing.
-  NativeModule(Bus& bus, const firmware::Board& board, Crystal crystal, Sensors sensors, Readings readings = {});
+  NativeModule(Bus& bus, const firmware::ModuleIdentity& board, Crystal crystal, Sensors sensors,
+               Readings readings = {});
   NativeModule(const NativeModule&) = delete;
   NativeModule& operator=(const NativeModule&) = delete;
 
@@ -45,7 +46,9 @@ class NativeModule final : public JointModule,
   /// A separate object, because read() of ContactPort has the same name.
   struct Meters final : firmware::SensorPort {
     explicit Meters(Readings readings) : source(std::move(readings)) {}
-    [[nodiscard]] firmware::ServoReadings read() override { return source ? source() : firmware::ServoReadings{}; }
+    [[nodiscard]] firmware::ServoReadings take_readings() override {
+      return source ? source() : firmware::ServoReadings{};
+    }
     Readings source;
   };
 

@@ -89,7 +89,7 @@ TEST(BoardRecordTest, ErasedFlashHoldsNone) {
 }
 
 TEST(BoardRecordTest, EveryRecordComesBackAsItWasWritten) {
-  for (unsigned node = 1; node <= BoardRecord::max_node_id; ++node) {
+  for (unsigned node = 1; node <= BoardRecord::max_node; ++node) {
     for (const bool has_feedback : {false, true}) {
       const BoardRecord record{static_cast<std::uint8_t>(node), has_feedback, 4095, static_cast<std::uint16_t>(node)};
       FlashMemory flash;

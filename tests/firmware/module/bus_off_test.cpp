@@ -107,11 +107,11 @@ TEST_F(BusOff, WhatWasToBeSentIsForgottenAndNothingIsHandedOver) {
   for (int i = 0; i < 10; ++i) {
     robot.it().receive(robot.bus.now(), request);
   }
-  ASSERT_EQ(robot.it().waiting.size(), test::ModuleNode::mailboxes);
+  ASSERT_EQ(robot.it().pending.size(), 1U) << "the others wait in the queue";
   const std::uint32_t dropped = robot.module().dropped_frames();
   throw_off();
   robot.bus.run_for(100 * ms);
-  EXPECT_TRUE(robot.it().waiting.empty());
+  EXPECT_TRUE(robot.it().pending.empty());
   EXPECT_GE(robot.module().dropped_frames(), dropped + 9) << "heartbeats";
   const std::size_t before = robot.bus.log.size();
   bring_back();
@@ -173,10 +173,10 @@ TEST(BusOffOfTheProducer, ATickZeroThatWasLostIsSentOnceMore) {
                                        8,
                                        {0x23, 0x05, 0x10, 0x00, 0x80, 0x00, 0x00, 0x40}});
   robot.it().poll(robot.bus.now());
-  ASSERT_EQ(robot.it().waiting.size(), 2U) << "the answer and TICK 0";
+  ASSERT_EQ(robot.it().pending.size(), 2U) << "the answer and TICK 0";
   robot.it().bus_off(robot.bus.now());
   robot.bus.run_for(50 * ms);
-  EXPECT_TRUE(robot.it().waiting.empty());
+  EXPECT_TRUE(robot.it().pending.empty());
   const std::size_t before = robot.bus.log.size();
   robot.it().bus_back(robot.bus.now());
   robot.bus.run_for(100 * ms);
@@ -225,7 +225,7 @@ class BusOffBeforeBootUp : public testing::Test {
   }
 
   test::TestBus bus;
-  firmware::Board board;
+  firmware::ModuleIdentity board;
   test::ModuleNode* module = nullptr;
 };
 
@@ -237,7 +237,7 @@ TEST_F(BusOffBeforeBootUp, TheBootUpMessageWaits) {
 TEST_F(BusOffBeforeBootUp, ABootUpMessageThatWasLostIsRepeated) {
   const Microseconds boot_up = module->next_deadline();
   module->poll(boot_up);
-  ASSERT_EQ(module->waiting.size(), 1U);
+  ASSERT_EQ(module->pending.size(), 1U);
   module->bus_off(boot_up);
   expect_a_boot_up_from(60 * ms);
 }

@@ -22,7 +22,7 @@ class Measuring {
     setup.kernel = test::one_slot(test::algorithm(test::sinusoidal), 1);
     setup.nodes = nodes_;
     setup.limits = limits_;
-    firmware::Board board;
+    firmware::ModuleIdentity board;
     board.node = node;
     board.capabilities = measures_angle ? canopen::measures_angle : 0;
     it = &bus.add(board);
@@ -109,7 +109,7 @@ TEST(Monitored, ObjectsHaveTheSameValues) {
 
 TEST(Monitored, IsMeasuredAlsoBeforeAnythingIsSetUp) {
   test::TestBus bus;
-  firmware::Board board;
+  firmware::ModuleIdentity board;
   board.node = 3;
   bus.add(board).meters.readings = example();
   bus.nodes[0]->power_on(0);

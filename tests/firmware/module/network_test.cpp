@@ -15,8 +15,8 @@ using canopen::NmtState;
 constexpr std::uint8_t node = test::TestModule::node_id;
 constexpr std::uint16_t heartbeat = canopen::identifier::heartbeat + node;
 
-firmware::Board board(std::uint8_t node_id, std::uint32_t id) {
-  firmware::Board made;
+firmware::ModuleIdentity board(std::uint8_t node_id, std::uint32_t id) {
+  firmware::ModuleIdentity made;
   made.node = node_id;
   made.unique_id = {id, id * 7919U, 3};
   return made;
@@ -194,15 +194,15 @@ TEST(Network, PowerOnAtAnyTimeIsAReset) {
 TEST(Network, AResetClearsTheQueue) {
   test::TestModule robot;
   robot.set_up_and_start();
-  // The bus is kept busy; answers pile up.
+  // The bus is busy, so that the answers wait in the queue.
   for (int i = 0; i < 12; ++i) {
     robot.it().receive(robot.bus.now(), {canopen::identifier::sdo_request + node, 8, {0x40, 0x18, 0x10, 1}});
   }
   robot.it().receive(robot.bus.now(), encode(canopen::NmtRequest{NmtCommand::reset_node, 0}));
   const std::size_t from = robot.bus.log.size();
   robot.bus.run_for(20'000);
-  // What the controller held already, and the boot-up.
-  EXPECT_EQ(robot.bus.log.size(), from + test::ModuleNode::mailboxes + 1);
+  // The answer that the controller has already, and the boot-up message.
+  EXPECT_EQ(robot.bus.log.size(), from + 2);
 }
 
 TEST(Network, WhatDoesNotFitTheQueueIsDroppedAndCounted) {
@@ -212,7 +212,7 @@ TEST(Network, WhatDoesNotFitTheQueueIsDroppedAndCounted) {
   for (unsigned i = 0; i < requests; ++i) {
     robot.it().receive(robot.bus.now(), {canopen::identifier::sdo_request + node, 8, {0x40, 0x18, 0x10, 1}});
   }
-  const std::size_t room = test::ModuleNode::mailboxes + TransmitQueue::capacity;
+  const std::size_t room = 1 + TransmitQueue::capacity;  // one of them in a mailbox
   EXPECT_EQ(robot.module().dropped_frames(), requests - room);
   const std::size_t from = robot.bus.log.size();
   robot.bus.run_for(20'000);

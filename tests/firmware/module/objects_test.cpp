@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "firmware/module/abort_code.hpp"
 #include "test_robot.hpp"
 
 namespace proleg {

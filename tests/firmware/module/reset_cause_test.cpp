@@ -13,7 +13,7 @@ constexpr std::uint8_t node = 3;
 
 std::vector<CanFrame> frames_after_power_on(ResetCause cause, std::uint32_t detail = 0) {
   test::TestBus bus;
-  firmware::Board board;
+  firmware::ModuleIdentity board;
   board.node = node;
   board.reset_cause = cause;
   board.reset_detail = detail;
@@ -45,7 +45,7 @@ TEST(ResetCauses, WatchdogAndFaultAreToldAfterTheBootUpMessage) {
 TEST(ResetCauses, AreNotToldAgainWhenTheHostResetsTheModule) {
   for (const auto command : {canopen::NmtCommand::reset_node, canopen::NmtCommand::reset_communication}) {
     test::TestBus bus;
-    firmware::Board board;
+    firmware::ModuleIdentity board;
     board.node = node;
     board.reset_cause = ResetCause::watchdog;
     bus.add(board).power_on(0);
@@ -60,7 +60,7 @@ TEST(ResetCauses, AreNotToldAgainWhenTheHostResetsTheModule) {
 
 TEST(ResetCauses, ANewResetIsToldAgain) {
   test::TestBus bus;
-  firmware::Board board;
+  firmware::ModuleIdentity board;
   board.node = node;
   board.reset_cause = ResetCause::watchdog;
   test::ModuleNode& module = bus.add(board);

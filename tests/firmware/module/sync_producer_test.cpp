@@ -131,7 +131,7 @@ TEST(Producer, TriesAgainIfTheQueueHasNoRoomForTheFirstTick) {
 }
 
 TEST(Producer, SkipsWhatItCameTooLateFor) {
-  firmware::Board board;
+  firmware::ModuleIdentity board;
   board.node = 5;
   struct FreePort final : CanPort {
     bool send(const CanFrame& frame) override {

@@ -452,7 +452,7 @@ void expect_refusal(const Scenario& scenario, const HardwareOptions& options, co
 
 TEST(RefusedRobot, AModuleWithAWrongCoreIsNamed) {
   HardwareOptions options;
-  options.change_board = [](unsigned joint, firmware::Board& board) {
+  options.change_board = [](unsigned joint, firmware::ModuleIdentity& board) {
     if (joint == 3) {
       board.core_fingerprint ^= 1U;
     }
@@ -465,13 +465,13 @@ TEST(RefusedRobot, AModuleWithAWrongSerialNumberIsNamed) {
   scenario.modules[2].serial = 0x1234ABCD;
   EXPECT_EQ(run(scenario, 10).differences, 0U) << "the simulated module has the serial number of the file";
   HardwareOptions options;
-  options.change_board = [](unsigned joint, firmware::Board& board) { board.unique_id[0] ^= joint == 2 ? 1U : 0U; };
+  options.change_board = [](unsigned joint, firmware::ModuleIdentity& board) { board.unique_id[0] ^= joint == 2 ? 1U : 0U; };
   expect_refusal(scenario, options, "node 3 (J3)");
 }
 
 TEST(RefusedRobot, TwoModulesWithOneNodeIdAreNamed) {
   HardwareOptions options;
-  options.change_board = [](unsigned joint, firmware::Board& board) {
+  options.change_board = [](unsigned joint, firmware::ModuleIdentity& board) {
     if (joint == 3) {
       board.node = 2;
     }
@@ -481,7 +481,7 @@ TEST(RefusedRobot, TwoModulesWithOneNodeIdAreNamed) {
 
 TEST(RefusedRobot, AModuleThatIsNotInTheMapIsNamed) {
   HardwareOptions options;
-  options.change_board = [](unsigned joint, firmware::Board& board) {
+  options.change_board = [](unsigned joint, firmware::ModuleIdentity& board) {
     if (joint == 3) {
       board.node = 99;
     }

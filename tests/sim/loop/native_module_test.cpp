@@ -27,8 +27,8 @@ struct Host final : BusListener {
   Controller& controller;
 };
 
-firmware::Board board() {
-  firmware::Board made;
+firmware::ModuleIdentity board() {
+  firmware::ModuleIdentity made;
   made.node = node;
   return made;
 }

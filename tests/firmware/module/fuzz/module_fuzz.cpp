@@ -2,6 +2,7 @@
 // most of them make sense, so that the modules get to move. Whatever comes, the servo has pulses only when the rules
 // allow it, within its range, and time goes on.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -76,7 +77,7 @@ class Setup {
 };
 
 struct Meters final : firmware::SensorPort {
-  firmware::ServoReadings read() override { return readings; }
+  firmware::ServoReadings take_readings() override { return readings; }
   firmware::ServoReadings readings;
 };
 
@@ -112,7 +113,9 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
     require(own || frame.identifier == canopen::identifier::sync || frame.identifier == canopen::identifier::tick,
             "a module sends on its own identifiers, SYNC and TICK");
     require(!off_, "nothing is handed to a controller that is bus-off");
-    if (closed_ || mailboxes_.size() == mailbox_count) {
+    const bool is_twice = std::any_of(mailboxes_.begin(), mailboxes_.end(),
+                                      [&](const CanFrame& other) { return other.identifier == frame.identifier; });
+    if (closed_ || is_twice || mailboxes_.size() == mailbox_count) {
       return false;
     }
     mailboxes_.push_back(frame);

@@ -17,7 +17,7 @@ struct NoPorts final : proleg::CanPort, proleg::firmware::ServoPort, proleg::fir
 };
 
 struct NoSensors final : proleg::firmware::SensorPort {
-  proleg::firmware::ServoReadings read() override { return {}; }
+  proleg::firmware::ServoReadings take_readings() override { return {}; }
 };
 
 NoPorts ports;

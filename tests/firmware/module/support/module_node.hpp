@@ -1,7 +1,8 @@
 #pragma once
 
-// A module with its world: a controller of three mailboxes, a servo that remembers its pulses, touch sensors.
+// A module with its surroundings: a controller of three mailboxes, a servo whose pulses are recorded, touch sensors.
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -10,17 +11,17 @@
 
 namespace proleg::test {
 
-/// What the module measures, as a test wants it.
+/// The module's sensors, with readings that a test sets.
 struct Meters final : firmware::SensorPort {
-  [[nodiscard]] firmware::ServoReadings read() override {
+  [[nodiscard]] firmware::ServoReadings take_readings() override {
     ++count;
     return readings;
   }
   firmware::ServoReadings readings;
-  std::size_t count = 0;  ///< of the times at which they were read
+  std::size_t count = 0;  ///< how often they were read
 };
 
-/// What a servo was told.
+/// A command to the servo.
 struct Pulse {
   Microseconds time;                  ///< of the bus
   std::optional<std::int32_t> width;  ///< nothing: off
@@ -33,18 +34,18 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
   static constexpr std::size_t mailboxes = 3;
 
   /// clock_offset: what the module's clock shows when that of the bus shows 0.
-  explicit ModuleNode(const firmware::Board& board, Microseconds clock_offset = 0)
-      : clock_offset_(clock_offset), module(board, {*this, *this, *this, meters}) {}
+  explicit ModuleNode(const firmware::ModuleIdentity& identity, Microseconds clock_offset = 0)
+      : clock_offset_(clock_offset), module(identity, {*this, *this, *this, meters}) {}
   ModuleNode(const ModuleNode&) = delete;
 
-  // The world's side; times are those of the bus.
+  // Events from outside; times are those of the bus.
   void power_on(Microseconds now) { at(now).power_on(local(now)); }
   void receive(Microseconds now, const CanFrame& frame) { at(now).receive(local(now), frame); }
   void transmitted(Microseconds now, const CanFrame& frame) { at(now).transmitted(local(now), frame); }
   void poll(Microseconds now) { at(now).poll(local(now)); }
-  /// The controller has forgotten what it had to send.
+  /// The controller drops its pending frames.
   void bus_off(Microseconds now) {
-    waiting.clear();
+    pending.clear();
     at(now).bus_off(local(now));
   }
   void bus_back(Microseconds now) { at(now).bus_back(local(now)); }
@@ -53,9 +54,9 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
     return deadline == never ? never : (deadline < clock_offset_ ? 0 : deadline - clock_offset_);
   }
 
-  /// Frames that wait for the bus, in the order in which they were handed over.
-  std::vector<CanFrame> waiting;
-  /// State frames that the module wants to hear.
+  /// Frames in the mailboxes, in the order in which they were handed over; no two with one identifier.
+  std::vector<CanFrame> pending;
+  /// Identifiers of the state frames that the module wants to receive.
   std::vector<std::uint16_t> listened;
   /// Times at which the controller was asked to come back.
   std::vector<Microseconds> recoveries;
@@ -87,10 +88,12 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
     listened.assign(identifiers.begin(), identifiers.end());
   }
   [[nodiscard]] bool send(const CanFrame& frame) override {
-    if (waiting.size() == mailboxes) {
+    const bool is_twice = std::any_of(pending.begin(), pending.end(),
+                                      [&](const CanFrame& other) { return other.identifier == frame.identifier; });
+    if (is_twice || pending.size() == mailboxes) {
       return false;
     }
-    waiting.push_back(frame);
+    pending.push_back(frame);
     return true;
   }
   void recover() override { recoveries.push_back(now_); }

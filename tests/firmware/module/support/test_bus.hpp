@@ -1,7 +1,7 @@
 #pragma once
 
-// A CAN bus in memory with modules and a host: every frame takes the same time, the lowest identifier goes first, all
-// others hear a frame at the instant at which its sender learns that it was sent.
+// A CAN bus in memory with modules and a host. Every frame takes the same time, and the lowest identifier goes first.
+// All other nodes receive a frame at the instant at which its sender is notified that it was sent.
 
 #include <gtest/gtest.h>
 
@@ -26,8 +26,8 @@ class TestBus {
     CanFrame frame;
   };
 
-  ModuleNode& add(const firmware::Board& board, Microseconds clock_offset = 0) {
-    nodes.push_back(std::make_unique<ModuleNode>(board, clock_offset));
+  ModuleNode& add(const firmware::ModuleIdentity& identity, Microseconds clock_offset = 0) {
+    nodes.push_back(std::make_unique<ModuleNode>(identity, clock_offset));
     return *nodes.back();
   }
 
@@ -112,9 +112,9 @@ class TestBus {
 
   std::vector<std::unique_ptr<ModuleNode>> nodes;
   std::vector<Sent> log;
-  /// Called with every frame that was sent, before anybody hears of it.
+  /// Called with every frame that was sent, before a node receives it.
   std::function<void(const CanFrame&)> on_frame = [](const CanFrame&) {};
-  /// Whether a module does not get a frame.
+  /// Whether a module does not receive a frame.
   std::function<bool(const CanFrame&, std::size_t)> loses = [](const CanFrame&, std::size_t) { return false; };
 
  private:
@@ -143,7 +143,7 @@ class TestBus {
     };
     ask(host_queue_, host);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      ask(nodes[i]->waiting, i);
+      ask(nodes[i]->pending, i);
     }
     if (winner != nullptr) {
       on_wire_ = (*winner)[position];
@@ -161,7 +161,7 @@ class TestBus {
     const std::size_t sender = sender_;
     const auto sent = std::find(queue_->begin(), queue_->end(), frame);
     if (sent == queue_->end()) {
-      return;  // its sender went bus-off: nobody hears it
+      return;  // its sender went bus-off: no node receives it
     }
     queue_->erase(sent);
     on_frame(frame);

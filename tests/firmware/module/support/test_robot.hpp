@@ -21,7 +21,7 @@ inline canopen::Address parameter_address(const Kernel& kernel, std::uint8_t slo
 
 class TestRobot {
  public:
-  /// The joints' modules have node ids in no order, and clocks of their own.
+  /// The modules have node ids in no order, and each its own clock.
   explicit TestRobot(const KernelConfiguration& kernel, std::uint32_t servo_period_us = 20'000)
       : nodes_{5, 1, 9, 3, 12, 77, 126, 2}, limits_(kernel.joint_count, {-quarter_turn, quarter_turn}) {
     nodes_.resize(kernel.joint_count);
@@ -30,11 +30,11 @@ class TestRobot {
     setup.nodes = nodes_;
     setup.limits = limits_;
     for (unsigned joint = 0; joint < kernel.joint_count; ++joint) {
-      firmware::Board board;
-      board.node = nodes_[joint];
-      board.unique_id = {joint * 77U + 1U, 0x12345678, 0x9ABCDEF0};
-      board.core_fingerprint = 0xC0DEC0DE;
-      bus.add(board, joint * Microseconds{123'456'789});
+      firmware::ModuleIdentity identity;
+      identity.node = nodes_[joint];
+      identity.unique_id = {joint * 77U + 1U, 0x12345678, 0x9ABCDEF0};
+      identity.core_fingerprint = 0xC0DEC0DE;
+      bus.add(identity, joint * Microseconds{123'456'789});
     }
   }
 
@@ -62,7 +62,7 @@ class TestRobot {
           << write.value;
     }
   }
-  /// All modules know their place.
+  /// All modules are configured.
   void set_up() {
     boot();
     for (unsigned joint = 0; joint < joints(); ++joint) {
@@ -81,7 +81,7 @@ class TestRobot {
         bus.write(node(joint), canopen::object::sync_identifier, canopen::produces_sync | canopen::identifier::sync),
         canopen::AbortCode::none);
   }
-  /// Set-up, Operational, SYNC 0 is about to come.
+  /// Set-up and start; SYNC 0 is the next one.
   void drive() {
     set_up();
     start();
@@ -93,7 +93,7 @@ class TestRobot {
     }
     ASSERT_EQ(module(joint).power(), canopen::PowerState::operation_enabled);
   }
-  /// Until so many SYNCs were sent from now on, and the modules have answered each.
+  /// Until `count` SYNCs were sent from now on, and the modules have answered each.
   void run_syncs(unsigned count) {
     for (unsigned i = 0; i < count; ++i) {
       ASSERT_TRUE(bus.run_until_sent(is_sync)) << "no SYNC";

@@ -94,7 +94,7 @@ void run_program() {
   driver_test_result.found = node;
   driver_test_result.phase = Phase::appending;
   for (;;) {
-    node = node % firmware::BoardRecord::max_node_id + 1U;
+    node = node % firmware::BoardRecord::max_node + 1U;
     append_next(node);
     feed_watchdog();
   }

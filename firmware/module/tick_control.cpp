@@ -1,0 +1,118 @@
+#include "firmware/module/tick_control.hpp"
+
+#include "firmware/module/watches.hpp"
+
+namespace proleg::firmware {
+namespace {
+
+using canopen::PowerState;
+
+void send_state(Parts& parts) {
+  const Kernel& kernel = parts.joint.kernel();
+  const unsigned joint = parts.joint.joint();
+  for (unsigned channel = 0; channel < kernel.channel_count(joint); ++channel) {
+    parts.outbox.send(canopen::encode_state(parts.identity.node, channel, kernel.frame(joint, channel)));
+  }
+}
+
+/// State 0 follows from the parameters as they are now. Its frame is sent, so that all joints have it at tick 0.
+void prepare_start(Parts& parts) {
+  parts.joint.set_fault(parts.drive.power().state() == PowerState::fault);
+  parts.joint.restart();
+  parts.start.has_sent_state = true;
+  send_state(parts);
+}
+
+/// The joints take turns, so that their frames do not come all at once.
+void send_monitoring(Parts& parts, std::uint32_t tick) {
+  const std::uint32_t period = parts.joint.monitoring_period();
+  if (tick % period == parts.joint.joint() % period) {
+    const ServoMonitor& monitor = parts.monitor;
+    parts.outbox.send(
+        encode(canopen::Monitoring{parts.identity.node, canopen::monitored_angle(monitor.angle()), monitor.current_ma(),
+                                   monitor.temperature_c(), parts.emergencies.error_register()}));
+  }
+}
+
+void compute(Parts& parts, Microseconds now, const SyncMeaning& meaning) {
+  const Kernel& kernel = parts.joint.kernel();
+  const std::uint32_t first_tick = kernel.tick();
+  parts.joint.set_fault(parts.drive.power().state() == PowerState::fault);
+  parts.joint.advance(meaning.missed, parts.contacts.read());
+  send_state(parts);
+  read_servo(parts, now);
+  send_monitoring(parts, kernel.tick() - 1U);
+  parts.drive.update(now, true, true);  // so that the first pulse can be that of this SYNC
+  parts.drive.start_tick(now, kernel.tick() - 1U, kernel, parts.joint.limits());
+  parts.emergencies.clear(Fault::sync_lost);
+  if (meaning.joined) {
+    parts.emergencies.report(canopen::EmergencyCode::rejoined, first_tick);
+  }
+}
+
+}  // namespace
+
+void start_gait(Parts& parts, bool together) {
+  if (together && !parts.start.has_received_sync) {
+    prepare_start(parts);
+  }
+}
+
+void stop_gait(Parts& parts) {
+  parts.keeper.lose();
+  parts.start = {};
+  if (parts.joint.active()) {
+    parts.joint.restart();  // no tick yet: commits for any tick of the next start are in time
+  }
+}
+
+void receive_tick(Parts& parts, const CanFrame& frame) {
+  const std::optional<canopen::TickMessage> message = canopen::decode_tick(frame);
+  if (!message || !parts.network.operational()) {
+    return;
+  }
+  if (message->configuration_crc != parts.joint.configuration_crc()) {
+    parts.keeper.lose();
+    if (!parts.emergencies.is_raised(Fault::foreign_configuration)) {
+      parts.emergencies.raise(Fault::foreign_configuration, message->configuration_crc);
+    }
+    return;
+  }
+  parts.emergencies.clear(Fault::foreign_configuration);
+  const Kernel& kernel = parts.joint.kernel();
+  if (!parts.keeper.announce(message->tick, kernel.tick())) {
+    parts.emergencies.raise(Fault::sync_lost, kernel.tick());
+  }
+  if (message->tick == 0 && !parts.keeper.keeps_tick() && (kernel.tick() != 0 || !parts.start.has_sent_state)) {
+    prepare_start(parts);
+  }
+}
+
+void receive_sync(Parts& parts, Microseconds now, const CanFrame& frame) {
+  const std::optional<std::uint8_t> counter = canopen::decode_sync(frame);
+  if (!counter) {
+    return;
+  }
+  parts.start.has_received_sync = true;
+  if (!parts.network.operational()) {
+    return;
+  }
+  parts.sync.restart(now);
+  const Kernel& kernel = parts.joint.kernel();
+  const SyncMeaning meaning = parts.keeper.sync(*counter, kernel.tick());
+  if (meaning.lost) {
+    parts.emergencies.raise(Fault::sync_lost, kernel.tick());
+  }
+  switch (meaning.action) {
+    case SyncMeaning::Action::none:
+      break;
+    case SyncMeaning::Action::compute:
+      compute(parts, now, meaning);
+      break;
+    case SyncMeaning::Action::join:
+      parts.joint.join(meaning.tick + 1U);
+      break;
+  }
+}
+
+}  // namespace proleg::firmware

@@ -1,0 +1,76 @@
+#include "firmware/module/watches.hpp"
+
+namespace proleg::firmware {
+
+using canopen::PowerState;
+
+void leave_bus(Parts& parts, Microseconds now) {
+  parts.recovery.bus_off(now);
+  parts.outbox.close();
+  parts.producer.bus_off(now);
+  parts.drive.power().quick_stop();
+}
+
+void return_to_bus(Parts& parts, Microseconds now) {
+  const std::uint32_t off_ms = parts.recovery.bus_back(now);
+  parts.outbox.open();
+  if (parts.network.has_sent_boot_up()) {
+    parts.emergencies.raise(Fault::bus_off, off_ms);
+  } else {
+    parts.network.repeat_boot_up(now);
+  }
+}
+
+void receive_heartbeat(Parts& parts, Microseconds now, const CanFrame& frame) {
+  const std::optional<canopen::Heartbeat> heartbeat = canopen::decode_heartbeat(frame);
+  if (!heartbeat) {
+    return;
+  }
+  parts.host.receive_heartbeat(now, heartbeat->node);
+  if (parts.host.is_present()) {
+    parts.emergencies.clear(Fault::heartbeat_lost);
+  }
+}
+
+void read_servo(Parts& parts, Microseconds now) {
+  parts.monitor.read(now, parts.settings.tick_period_us);
+  if (parts.monitor.over_current() && parts.drive.power().state() != PowerState::fault) {
+    parts.drive.power().fault();
+    parts.emergencies.raise(Fault::over_current, 0);
+  }
+}
+
+void poll_bus(Parts& parts, Microseconds now) {
+  if (parts.recovery.poll(now)) {
+    parts.emergencies.clear(Fault::bus_off);
+  }
+}
+
+void poll_host(Parts& parts, Microseconds now) {
+  if (parts.host.poll_timeout(now)) {
+    parts.emergencies.raise(Fault::heartbeat_lost, parts.host.expected() >> 16U);
+    parts.drive.power().quick_stop();
+  }
+}
+
+void poll_sync(Parts& parts, Microseconds now) {
+  if (parts.sync.poll_timeout(now)) {
+    parts.keeper.lose();
+    parts.emergencies.raise(Fault::sync_lost, parts.joint.kernel().tick());
+    parts.drive.power().quick_stop();
+  }
+}
+
+void clear_over_current(Parts& parts) {
+  if (parts.drive.power().state() != PowerState::fault && parts.emergencies.is_raised(Fault::over_current)) {
+    parts.monitor.clear_over_current();
+    parts.emergencies.clear(Fault::over_current);
+  }
+}
+
+void update_sync_watch(Parts& parts, Microseconds now) {
+  const bool is_enabled = parts.drive.power().state() == PowerState::operation_enabled;
+  parts.sync.update(now, parts.network.operational() && (parts.keeper.keeps_tick() || is_enabled));
+}
+
+}  // namespace proleg::firmware

@@ -1,0 +1,28 @@
+#pragma once
+
+// Watching the bus, the host's heartbeat, SYNC and the servo's current. What fails is reported by EMCY and stops the
+// servo: a quick stop, or a fault for over-current. The EMCY `none` reports that it is over.
+
+#include "firmware/module/parts.hpp"
+
+namespace proleg::firmware {
+
+/// The controller is bus-off.
+void leave_bus(Parts& parts, Microseconds now);
+/// The controller takes part in the bus again.
+void return_to_bus(Parts& parts, Microseconds now);
+
+void receive_heartbeat(Parts& parts, Microseconds now, const CanFrame& frame);
+
+/// Takes a reading and judges the current.
+void read_servo(Parts& parts, Microseconds now);
+
+void poll_bus(Parts& parts, Microseconds now);
+void poll_host(Parts& parts, Microseconds now);
+void poll_sync(Parts& parts, Microseconds now);
+
+/// After each event: whether over-current is over, and whether SYNC is expected.
+void clear_over_current(Parts& parts);
+void update_sync_watch(Parts& parts, Microseconds now);
+
+}  // namespace proleg::firmware

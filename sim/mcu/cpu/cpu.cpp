@@ -22,6 +22,22 @@ constexpr std::uint32_t peripherals_start = 0x4000'0000;
 constexpr std::uint32_t ram_bits_start = 0x2200'0000;
 constexpr std::uint32_t ram_bits_end = ram_bits_start + Cpu::ram_size * 32;
 
+/// The bit that a word of a bit-band alias region stands for (DDI 0403, B3.1; RM0090, 2.3.3).
+struct AliasedBit {
+  std::uint32_t address;  ///< of its word (peripherals) or byte (RAM)
+  unsigned bit;
+};
+
+AliasedBit peripheral_bit(std::uint32_t alias) {
+  const std::uint32_t offset = alias - peripheral_bits_start;
+  return {peripherals_start + (offset >> 5U & ~3U), offset >> 2U & 31U};
+}
+
+AliasedBit ram_bit(std::uint32_t alias) {
+  const std::uint32_t offset = alias - ram_bits_start;
+  return {Cpu::ram_start + (offset >> 5U), offset >> 2U & 7U};
+}
+
 void fill_with_noise(std::span<std::uint8_t> bytes, Pcg32& noise) {
   for (std::uint8_t& byte : bytes) {
     byte = static_cast<std::uint8_t>(noise.next());
@@ -147,12 +163,12 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
       return system_control_.load(address, size);
     }
     if (address >= peripheral_bits_start && address < peripheral_bits_end) {
-      const std::uint32_t offset = address - peripheral_bits_start;
-      return surroundings_->load(peripherals_start + (offset >> 5U & ~3U), 4) >> (offset >> 2U & 31U) & 1U;
+      const AliasedBit aliased = peripheral_bit(address);
+      return surroundings_->load(aliased.address, 4) >> aliased.bit & 1U;
     }
     if (address < ram_bits_end) {
-      const std::uint32_t offset = address - ram_bits_start;
-      return static_cast<std::uint32_t>(*engine_.ram(ram_start + (offset >> 5U), 1)) >> (offset >> 2U & 7U) & 1U;
+      const AliasedBit aliased = ram_bit(address);
+      return static_cast<std::uint32_t>(*engine_.ram(aliased.address, 1)) >> aliased.bit & 1U;
     }
     return surroundings_->load(address, size);
   }
@@ -161,15 +177,14 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
     if (address >= SystemControl::start) {
       system_control_.store(address, size, value);
     } else if (address >= peripheral_bits_start && address < peripheral_bits_end) {
-      const std::uint32_t offset = address - peripheral_bits_start;
-      const std::uint32_t word = peripherals_start + (offset >> 5U & ~3U);
-      const std::uint32_t bit = 1U << (offset >> 2U & 31U);
-      const std::uint32_t old = surroundings_->load(word, 4);
-      surroundings_->store(word, 4, (value & 1U) != 0 ? old | bit : old & ~bit);
+      const AliasedBit aliased = peripheral_bit(address);
+      const std::uint32_t bit = 1U << aliased.bit;
+      const std::uint32_t old = surroundings_->load(aliased.address, 4);
+      surroundings_->store(aliased.address, 4, (value & 1U) != 0 ? old | bit : old & ~bit);
     } else if (address < ram_bits_end) {
-      const std::uint32_t offset = address - ram_bits_start;
-      std::uint8_t& byte = *engine_.ram(ram_start + (offset >> 5U), 1);
-      const unsigned bit = 1U << (offset >> 2U & 7U);
+      const AliasedBit aliased = ram_bit(address);
+      std::uint8_t& byte = *engine_.ram(aliased.address, 1);
+      const unsigned bit = 1U << aliased.bit;
       byte = static_cast<std::uint8_t>((value & 1U) != 0 ? byte | bit : byte & ~bit);
     } else {
       surroundings_->store(address, size, value);

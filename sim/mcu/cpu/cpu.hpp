@@ -50,7 +50,7 @@ class CpuSurroundings {
 
 /// What went wrong, and the registers before the instruction that did it.
 struct CpuFault {
-  std::string cause;                     ///< "store to 0x20030000, where nothing is", "undefined instruction" ...
+  std::string cause;  ///< "store to 0x20030000, where there is no memory", "undefined instruction" ...
   std::vector<std::uint32_t> registers;  ///< r0-r12, sp, lr, pc, xpsr
   bool locked_up = false;                ///< a fault within HardFault or NMI: the CPU stands still
 };

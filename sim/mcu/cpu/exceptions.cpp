@@ -47,15 +47,14 @@ std::string describe(const MemoryFault& fault) {
   const std::string place = hexadecimal(fault.address);
   if (fault.is_fetch) {
     return "execution at " + place +
-           (Engine::is_memory(fault.address, 1) || is_execute_never(fault.address)
-                ? ", where nothing can be executed from"
-                : ", where nothing is");
+           (Engine::is_memory(fault.address, 1) || is_execute_never(fault.address) ? ", where execution is not possible"
+                                                                                   : ", where there is no memory");
   }
   const std::string what = fault.is_store ? "store to " : "load from ";
   if (fault.is_store && Engine::is_memory(fault.address, 1)) {
-    return what + place + ", where nothing can be stored now";
+    return what + place + ", where a store is not possible now";
   }
-  return what + place + ", where nothing is";
+  return what + place + ", where there is no memory";
 }
 
 using Frame = std::array<std::uint32_t, 8>;  ///< r0-r3, r12, lr, return address, xPSR
@@ -166,8 +165,8 @@ void Exceptions::enter(unsigned number) {
   }
   event_ = true;
   if (memory == nullptr) {
-    const std::string cause =
-        "the stack at " + hexadecimal(place) + ", where nothing is, when exception " + std::to_string(number) + " came";
+    const std::string cause = "the stack at " + hexadecimal(place) +
+                              ", where there is no memory, at the entry of exception " + std::to_string(number);
     nvic_->activate(number);
     system_control_->note_configurable(stkerr);
     note(cause);
@@ -202,7 +201,7 @@ void Exceptions::enter_without_frame(unsigned number, std::uint32_t exc_return) 
 
 void Exceptions::go_to(const Vector& vector) {
   if (!vector.exists) {
-    note("the vector of exception " + std::to_string(current_) + " lies where nothing is");
+    note("the vector of exception " + std::to_string(current_) + " lies where there is no memory");
     raise_hard_fault(vecttbl);
     return;
   }
@@ -250,7 +249,7 @@ void Exceptions::return_from_handler(std::uint32_t exc_return) {
   const std::uint8_t* const memory = engine_->ram(place, frame_size);
   if (memory == nullptr) {
     fail_return(number, exc_return, unstkerr,
-                "the stack at " + hexadecimal(place) + ", where nothing is, at the return from exception " +
+                "the stack at " + hexadecimal(place) + ", where there is no memory, at the return from exception " +
                     std::to_string(number));
     return;
   }
@@ -371,7 +370,7 @@ void Exceptions::raise_memory_fault(const MemoryFault& fault) {
 void Exceptions::raise_undefined_instruction() { raise(exception::usage_fault, undefinstr, "undefined instruction"); }
 
 void Exceptions::raise_invalid_state() {
-  raise(exception::usage_fault, invstate, "a branch to an even address, which does not mean Thumb code");
+  raise(exception::usage_fault, invstate, "a branch to an even address, which is not Thumb code");
 }
 
 void Exceptions::raise_no_coprocessor() {

@@ -117,7 +117,7 @@ TEST(ChipCan, DetectsAnotherModuleOnItsOwnIdentifiersAndStops) {
     std::vector<LoggedFrame> emergencies = rig.frames(0x083, start);
     std::erase_if(emergencies, [](const LoggedFrame& logged) { return logged.by_host; });
     ASSERT_EQ(emergencies.size(), 1U) << std::hex << identifier;
-    EXPECT_EQ(emergencies[0].frame.data[0] | emergencies[0].frame.data[1] << 8, 0x8150);
+    EXPECT_EQ(emergency_code(emergencies[0]), 0x8150U);
     EXPECT_EQ(emergencies[0].frame.data[3] | emergencies[0].frame.data[4] << 8, static_cast<int>(identifier));
   }
 }
@@ -151,7 +151,7 @@ TEST_F(BusOff, IsBackAfterTenMillisecondsAndReportsHowLongItWasAway) {
   rig_.run_for(100 * ms);
   const std::vector<LoggedFrame> emergencies = rig_.frames(0x083);
   ASSERT_EQ(emergencies.size(), 1U);
-  EXPECT_EQ(emergencies[0].frame.data[0] | emergencies[0].frame.data[1] << 8, 0x8140);
+  EXPECT_EQ(emergency_code(emergencies[0]), 0x8140U);
   // 10 ms, 128 times 11 bits of 1 us, and up to 1 ms until the program looks.
   const BusTime away = emergencies[0].time - off;
   EXPECT_GE(away, 10 * ms + 128 * 11 * us);
@@ -182,7 +182,7 @@ TEST_F(BusOff, AfterTenGoodSecondsTheNextOneWaitsAsLongAsTheFirst) {
   rig_.run_for(10'200 * ms);
   const std::vector<LoggedFrame> emergencies = rig_.frames(0x083);
   ASSERT_EQ(emergencies.size(), 2U);
-  EXPECT_EQ(emergencies[1].frame.data[0] | emergencies[1].frame.data[1] << 8, 0) << "over";
+  EXPECT_EQ(emergency_code(emergencies[1]), 0U) << "over";
   const BusTime off = destroy();
   ASSERT_TRUE(rig_.run_until_true([&] { return !rig_.frames(0x083, off).empty(); }));
   EXPECT_LE(rig_.frames(0x083, off)[0].time - off, 14 * ms);

@@ -52,6 +52,11 @@ struct LoggedFrame {
   bool by_host;
 };
 
+/// Code of an emergency message (CiA 301): its first two bytes.
+[[nodiscard]] inline unsigned emergency_code(const LoggedFrame& emergency) {
+  return emergency.frame.data[0] | unsigned{emergency.frame.data[1]} << 8U;
+}
+
 /// The host's controller: sends a queue back to back in its order, and notes errors.
 class HostEnd final : public BusListener {
  public:

@@ -94,7 +94,7 @@ TEST(ChipFault, IsReportedOnTheBusOnceAndTheStartAfterIsLikeAnyOther) {
   rig.run_for(100 * ms);
   const std::vector<LoggedFrame> emergencies = rig.frames(0x083, reset);
   ASSERT_EQ(emergencies.size(), 1U);
-  EXPECT_EQ(emergencies[0].frame.data[0] | emergencies[0].frame.data[1] << 8, 0x6100);
+  EXPECT_EQ(emergency_code(emergencies[0]), 0x6100U);
   std::uint32_t detail = 0;
   for (unsigned i = 0; i < 4; ++i) {
     detail |= std::uint32_t{emergencies[0].frame.data[3 + i]} << 8U * i;

@@ -113,7 +113,7 @@ TEST_F(OverCurrent, SwitchesThePulsesOffAfterItsTimeAndSaysSo) {
   rig_.run_for(400 * ms);
   const std::vector<LoggedFrame> emergencies = rig_.frames(0x083);
   ASSERT_EQ(emergencies.size(), 1U);
-  EXPECT_EQ(emergencies[0].frame.data[0] | emergencies[0].frame.data[1] << 8, 0x2310);
+  EXPECT_EQ(emergency_code(emergencies[0]), 0x2310U);
   // The conversion of the tick before is read: 1 to 2 ticks, and one more to be above for all of the time.
   EXPECT_GE(emergencies[0].time, start + 100 * ms);
   EXPECT_LE(emergencies[0].time, start + 131 * ms);

@@ -38,7 +38,7 @@ class Faults : public Programs {
 
 TEST_F(Faults, ALoadWithoutMemoryIsABusFaultThatBecomesAHardFault) {
   const CpuFault fault = fault_of("faults_between_stores");
-  EXPECT_EQ(fault.cause, "load from 0x60000000, where nothing is");
+  EXPECT_EQ(fault.cause, "load from 0x60000000, where there is no memory");
   EXPECT_EQ(fault.registers[pc], here("faults_between_stores"));
   EXPECT_EQ(fault.registers[2], 2U);
   EXPECT_FALSE(fault.locked_up);
@@ -79,7 +79,7 @@ TEST_F(Faults, EveryFormOfLoadAndStoreIsFoundInItsBlock) {
 
 TEST_F(Faults, InAChainOfLoadsTheOneThatFailedIsNamed) {
   const CpuFault fault = fault_of("follows_a_chain");
-  EXPECT_EQ(fault.cause, "load from 0x6000000C, where nothing is");
+  EXPECT_EQ(fault.cause, "load from 0x6000000C, where there is no memory");
   EXPECT_EQ(fault.registers[pc], here("follows_a_chain"));
 }
 
@@ -92,40 +92,40 @@ TEST_F(Faults, AnUndefinedInstruction) {
 
 TEST_F(Faults, AJumpToAnInvalidAddress) {
   const CpuFault fault = fault_of("bad_jump");
-  EXPECT_EQ(fault.cause, "execution at 0x60000000, where nothing is");
+  EXPECT_EQ(fault.cause, "execution at 0x60000000, where there is no memory");
   EXPECT_EQ(fault.registers[pc], 0x6000'0000U);
   EXPECT_EQ(Marks(rig_.marks.begin(), rig_.marks.begin() + 3), Marks({0x1003, forced, 1U << 8U}));
 }
 
 TEST_F(Faults, ACallOfANullPointer) {
   const CpuFault null = fault_of("null_call");
-  EXPECT_EQ(null.cause, "a branch to an even address, which does not mean Thumb code");
+  EXPECT_EQ(null.cause, "a branch to an even address, which is not Thumb code");
   EXPECT_EQ(null.registers[pc], 0U);
   EXPECT_EQ(null.registers[14], (address_of("null_call") + 4) | 1U);
   const CpuFault odd = fault_of("null_call_in_thumb_state");
-  EXPECT_EQ(odd.cause, "execution at 0x0, where nothing is");
+  EXPECT_EQ(odd.cause, "execution at 0x0, where there is no memory");
   EXPECT_EQ(odd.registers[pc], 0U);
 }
 
 TEST_F(Faults, AJumpToWhereNothingMayBeExecuted) {
   const CpuFault peripheral = fault_of("jump_to_peripheral");
-  EXPECT_EQ(peripheral.cause, "execution at 0x40000000, where nothing can be executed from");
+  EXPECT_EQ(peripheral.cause, "execution at 0x40000000, where execution is not possible");
   EXPECT_EQ(rig_.marks[2], 1U);  // IACCVIOL
   const CpuFault ccm = fault_of("jump_to_ccm");
-  EXPECT_EQ(ccm.cause, "execution at 0x10000000, where nothing can be executed from");
+  EXPECT_EQ(ccm.cause, "execution at 0x10000000, where execution is not possible");
   EXPECT_EQ(rig_.marks[2], 1U << 8U);
 }
 
 TEST_F(Faults, AJumpToAnEvenAddress) {
   const CpuFault fault = fault_of("jump_to_even");
-  EXPECT_EQ(fault.cause, "a branch to an even address, which does not mean Thumb code");
+  EXPECT_EQ(fault.cause, "a branch to an even address, which is not Thumb code");
   EXPECT_EQ(fault.registers[pc], address_of("short_handler"));
   EXPECT_EQ(rig_.marks[2], 1U << 17U);
 }
 
 TEST_F(Faults, AnExceptionReturnInThreadModeIsAJumpToAnInvalidAddress) {
   const CpuFault fault = fault_of("false_return");
-  EXPECT_EQ(fault.cause, "execution at 0xFFFFFFF8, where nothing can be executed from");
+  EXPECT_EQ(fault.cause, "execution at 0xFFFFFFF8, where execution is not possible");
 }
 
 TEST_F(Faults, AnUnalignedExclusiveAccess) {
@@ -157,7 +157,7 @@ TEST_F(Faults, TheFpuWorksWhenItIsAllowed) {
 
 TEST_F(Faults, AStoreThatTheFlashRejects) {
   const CpuFault fault = fault_of("stores_to_flash");
-  EXPECT_EQ(fault.cause, "store to 0x8040000, where nothing can be stored now");
+  EXPECT_EQ(fault.cause, "store to 0x8040000, where a store is not possible now");
   EXPECT_EQ(Marks(rig_.marks.begin(), rig_.marks.begin() + 4), Marks({1, 0x1003, forced, 0x8200}));
 }
 
@@ -229,7 +229,7 @@ TEST_F(Faults, AnExceptionWithoutMemoryForItsStackIsAnotherFault) {
   rig_.run(10'000);
   const std::vector<CpuFault> faults = cpu_.take_faults();
   ASSERT_GE(faults.size(), 1U);
-  EXPECT_EQ(faults[0].cause, "the stack at 0x2FFFFFE0, where nothing is, when exception 16 came");
+  EXPECT_EQ(faults[0].cause, "the stack at 0x2FFFFFE0, where there is no memory, at the entry of exception 16");
   EXPECT_EQ(cpu_.state(), Cpu::State::locked_up);
 }
 

@@ -6,11 +6,11 @@
 
 namespace proleg::sim {
 
-double nice_step(double smallest) {
-  const double decade = std::pow(10.0, std::floor(std::log10(smallest)));
+double nice_step(double min) {
+  const double decade = std::pow(10.0, std::floor(std::log10(min)));
   for (const double factor : {1.0, 2.0, 5.0}) {
     // The tolerance lets 0.3 / 3 count as 0.1.
-    if (factor * decade >= smallest * (1.0 - 1e-9)) {
+    if (factor * decade >= min * (1.0 - 1e-9)) {
       return factor * decade;
     }
   }

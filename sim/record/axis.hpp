@@ -16,14 +16,14 @@ struct Axis {
   }
 };
 
-/// Smallest of ..., 0.1, 0.2, 0.5, 1, 2, 5, ... that is at least `smallest`, which is above 0.
-[[nodiscard]] double nice_step(double smallest);
+/// Smallest of ..., 0.1, 0.2, 0.5, 1, 2, 5, ... that is at least `min`, which is above 0.
+[[nodiscard]] double nice_step(double min);
 
 /// Multiples of `step` from low to high.
 [[nodiscard]] std::vector<double> multiples(double low, double high, double step);
 
-/// Moves positions apart until neighbours are `gap` or more from each other, within low to high as far as there is
-/// room; in the order given by the positions, which need not be sorted.
+/// Moves positions apart until neighbours have a distance of `gap` or more, within low to high if there is room. Keeps
+/// their order; they need not be sorted.
 [[nodiscard]] std::vector<double> spread(std::vector<double> positions, double gap, double low, double high);
 
 }  // namespace proleg::sim

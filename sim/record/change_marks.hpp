@@ -7,7 +7,7 @@
 
 namespace proleg::sim {
 
-/// Something that was changed while a run went on, for the figure.
+/// A change during a run, for the figure.
 struct ChangeMark {
   double time_s;     ///< of the SYNC at which it took effect
   std::string text;  ///< "frequency = 0.5", "current_phase J3 = 180", "amplitude J2 = 10, +3"

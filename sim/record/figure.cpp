@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/record/axis.hpp"
 #include "sim/record/change_marks.hpp"
 #include "sim/record/figure_contents.hpp"
@@ -19,24 +20,12 @@ namespace {
 constexpr double angle_panel_top = 104.0;
 constexpr double angle_panel_height = 250.0;
 constexpr double contact_panel_top = angle_panel_top + angle_panel_height + 44.0;
-constexpr double most_contact_panel_height = 320.0;
+constexpr double max_contact_panel_height = 320.0;
 
-/// At most this many characters of a name, so that it stays in its place.
-std::string shortened(const std::string& name, std::size_t most) {
-  std::size_t characters = 0;
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const bool begins_character = (static_cast<unsigned char>(name[i]) & 0xC0U) != 0x80U;
-    if (begins_character && ++characters > most) {
-      return name.substr(0, i) + "...";
-    }
-  }
-  return name;
-}
-
-/// Joints of which the angles are drawn: all, or one in so many that the lines can still be told apart.
+/// 1 if the figure shows the angles of all joints; else n for one joint in n, so that the lines remain distinct.
 std::size_t joint_stride(std::size_t joints) {
-  constexpr std::size_t most_lines = 10;
-  return (joints + most_lines - 1) / most_lines;
+  constexpr std::size_t max_lines = 10;
+  return (joints + max_lines - 1) / max_lines;
 }
 
 /// distinct_colours; for more lines a scale from blue over grey to orange, head to tail.
@@ -133,7 +122,7 @@ void draw_angles(Svg& svg, const Recording& recording, const FigureContents& con
 }
 
 double contact_row_height(std::size_t links) {
-  return std::min(22.0, most_contact_panel_height / static_cast<double>(links));
+  return std::min(22.0, max_contact_panel_height / static_cast<double>(links));
 }
 
 void draw_contacts(Svg& svg, const Recording& recording, const FigureContents& contents, const Axis& time) {

@@ -7,7 +7,7 @@
 
 namespace proleg::sim {
 
-/// Part of a run, in seconds from its start; what is not given: the last three seconds.
+/// Part of a run, in seconds from its start; by default the last three seconds.
 struct TimeWindow {
   std::optional<double> from_s;
   std::optional<double> to_s;
@@ -15,7 +15,7 @@ struct TimeWindow {
 
 /// Draws a recording as an SVG picture: set-points and measured angles of the joints and the contacts of the links in
 /// the window, and the path of the chain's centre (mean of the positions of its links) over the whole run, from above.
-/// Throws InputError if less than two ticks lie in the window.
+/// Throws InputError if fewer than two ticks lie in the window.
 [[nodiscard]] std::string draw_figure(const Recording& recording, const TimeWindow& window);
 
 }  // namespace proleg::sim

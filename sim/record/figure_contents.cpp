@@ -22,7 +22,7 @@ void set_window(const Recording& recording, const TimeWindow& window, FigureCont
   std::uint32_t first = recording.last_tick();
   std::uint32_t last = recording.first_tick();
   if (contents.from_s < contents.to_s) {
-    // Tick k holds at (k + 1) tick_s; the tolerance takes in ticks that lie on an end of the window.
+    // Tick k holds at (k + 1) tick_s; the tolerance includes ticks that lie on an end of the window.
     const double tolerance = 1e-6;
     first = static_cast<std::uint32_t>(std::max(std::ceil(contents.from_s / tick_s - 1.0 - tolerance), 0.0));
     last = static_cast<std::uint32_t>(std::max(std::floor(contents.to_s / tick_s - 1.0 + tolerance), 0.0));
@@ -30,7 +30,7 @@ void set_window(const Recording& recording, const TimeWindow& window, FigureCont
   }
   if (last <= first) {
     throw InputError(recording.path().string(), 0,
-                     "less than two ticks between " + plain_number(window.from_s.value_or(contents.from_s), 6) +
+                     "fewer than two ticks between " + plain_number(window.from_s.value_or(contents.from_s), 6) +
                          " s and " + plain_number(window.to_s.value_or(contents.to_s), 6) + " s",
                      "a window within the recorded " + plain_number(begin, 6) + " s to " + plain_number(end, 6) + " s");
   }
@@ -54,7 +54,7 @@ FigureContents collect_figure_contents(const Recording& recording, const TimeWin
       contents.angles[joint].push_back({time, bounded(tick.joint_angles[joint] * 180.0 / std::numbers::pi)});
     }
   };
-  // Contacts hold from the SYNC at which they were latched to the next.
+  // Contacts hold from the SYNC at which they were latched until the next.
   const auto add_contacts = [&contents](const RecordedTick& tick, double sync_time) {
     const double from = std::max(sync_time, contents.from_s);
     const double to = std::min(sync_time + contents.tick_s, contents.to_s);

@@ -10,8 +10,8 @@
 
 namespace proleg::sim {
 
-/// What is drawn, taken from the recording in one pass. Angles and positions are cut to +-10^9: when a simulation has
-/// flown apart, the picture still has finite coordinates.
+/// What a figure shows, read from the recording in one pass. Angles and positions are limited to +-10^9, so that the
+/// picture has finite coordinates even if the simulation became unstable.
 struct FigureContents {
   double from_s = 0.0;
   double to_s = 0.0;
@@ -30,7 +30,7 @@ struct FigureContents {
   Trace last_chain;
 };
 
-/// Throws InputError if less than two ticks lie in the window.
+/// Throws InputError if fewer than two ticks lie in the window.
 [[nodiscard]] FigureContents collect_figure_contents(const Recording& recording, const TimeWindow& window);
 
 }  // namespace proleg::sim

@@ -21,7 +21,7 @@ inline constexpr const char* faint_ink = "#555555";
 inline constexpr const char* grid_style = R"(stroke="#e2e2e2" stroke-width="1")";
 inline constexpr const char* frame_style = R"(fill="none" stroke="#777777" stroke-width="1")";
 
-/// Colours that people with any colour vision tell apart (M. Okabe, K. Ito, 2008; without the yellow, which is too
+/// Colours that people with any colour vision can distinguish (M. Okabe, K. Ito, 2008; without the yellow, which is too
 /// faint on white).
 inline constexpr std::array<const char*, 7> distinct_colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                              "#e69f00", "#56b4e9", "#000000"};

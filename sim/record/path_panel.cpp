@@ -9,8 +9,8 @@
 namespace proleg::sim {
 namespace {
 
-constexpr double most_height_on_page = 320.0;
-constexpr double least_height_on_page = 110.0;
+constexpr double max_height_on_page = 320.0;
+constexpr double min_height_on_page = 110.0;
 
 struct Extent {
   Point low{INFINITY, INFINITY};
@@ -104,10 +104,10 @@ PathPanel make_path_panel(const FigureContents& contents, double top) {
   constexpr double border = 34.0;  // room for the marks and their names
   const double width_m = std::max(extent.high.x - extent.low.x, 0.01);
   const double height_m = extent.high.y - extent.low.y;
-  const double most_height = most_height_on_page - 2.0 * border;
+  const double max_height = max_height_on_page - 2.0 * border;
   const double scale =
-      std::min((page_right - page_left - 2.0 * border) / width_m, height_m > 0.0 ? most_height / height_m : INFINITY);
-  const double height = std::max(height_m * scale + 2.0 * border, least_height_on_page);
+      std::min((page_right - page_left - 2.0 * border) / width_m, height_m > 0.0 ? max_height / height_m : INFINITY);
+  const double height = std::max(height_m * scale + 2.0 * border, min_height_on_page);
   const Point center{(extent.low.x + extent.high.x) / 2.0, (extent.low.y + extent.high.y) / 2.0};
   const double half_width_m = (page_right - page_left) / 2.0 / scale;
   const double half_height_m = height / 2.0 / scale;

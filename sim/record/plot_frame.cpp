@@ -14,10 +14,10 @@
 namespace proleg::sim {
 namespace {
 
-/// Shortest text that tells neighbouring multiples of the step apart.
+/// Shortest text with which neighbouring multiples of the step differ.
 std::string tick_text(double value, double step) {
-  const double largest = 1e6;
-  if (std::abs(value) < largest && step > 1.0 / largest) {
+  const double max = 1e6;
+  if (std::abs(value) < max && step > 1.0 / max) {
     return plain_number(value, 6);
   }
   // A multiple of the step, without what the last bits of the product add.
@@ -39,9 +39,9 @@ double width_of(std::string_view text) {
 }  // namespace
 
 Axis axis_over(double low, double high, double pixel_low, double pixel_high) {
-  constexpr double most = 1e12;
-  low = std::clamp(low, -most, most);
-  high = std::clamp(high, low, most);
+  constexpr double bound = 1e12;
+  low = std::clamp(low, -bound, bound);
+  high = std::clamp(high, low, bound);
   const double size = std::max(std::abs(low), std::abs(high));
   if (high - low <= 1e-9 * size) {
     const double around = size == 0.0 ? 0.5 : 0.1 * size;

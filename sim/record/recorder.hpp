@@ -16,7 +16,7 @@
 
 namespace proleg::sim {
 
-/// What is known after tick k was computed and simulated until SYNC k + 1. Joints and links count from the head.
+/// The result of tick k, after it was computed and simulated until SYNC k + 1. Joints and links count from the head.
 struct TickSample {
   std::uint32_t tick;  ///< k
   std::span<const std::uint8_t>
@@ -28,37 +28,37 @@ struct TickSample {
   std::span<const std::int32_t> servo_commands;  ///< per joint: the last pulse before SYNC k + 1
   std::span<const Pose> link_poses;              ///< in the world, at SYNC k + 1
   std::span<const double> joint_angles;          ///< rad, at SYNC k + 1, measured on the robot
-  std::span<const Loss> lost;                    ///< frames labelled k that were kept from their receivers
+  std::span<const Loss> lost;                    ///< frames labelled k that their receivers did not get
 };
 
-/// Writes a run into an SQLite file (tables: schema.hpp) as it goes on. Others may read the file at the same time.
+/// Writes a run into an SQLite file (tables: schema.hpp) while it runs. Other programs may read the file at the same
+/// time.
 ///
-/// When the process is killed, what was recorded up to a second before is in the file: what waits for longer than half
-/// a second is committed by the next record_tick. (A program that stops recording for a while, alive but silent, can
-/// lose the half second before its silence.)
+/// If the process is killed, the file lacks at most the last second: record_tick commits rows that have waited for half
+/// a second. (A program that runs on without recording can lose the half second before its last record_tick.)
 ///
-/// Every failure to write is thrown as FileError; after one, the recorder takes nothing more.
+/// Throws FileError if it cannot write; after that it rejects all further calls.
 class Recorder {
  public:
-  /// Creates the file. It must not be there yet, unless it is empty or an earlier recording, which is then replaced.
+  /// Creates the file. An empty file or an earlier recording is replaced; any other existing file is an error.
   /// scenario: must outlive the recorder. program: what computes the gait, e.g. "simulate" or "hil native".
   /// build_id: of the program.
   Recorder(const std::filesystem::path& path, const Scenario& scenario, const std::string& program,
            const std::string& build_id);
-  /// Commits. A run that was not finished stays marked so. A failure, which cannot be thrown here, goes to standard
-  /// error.
+  /// Commits. A run without finish() remains marked as unfinished. Writes an error to standard error.
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// A change that takes effect at its tick; call it before the record_tick of that tick.
+  /// A change that takes effect at its tick. Call this before the record_tick of that tick.
   void record_change(const Change& change);
-  /// The module of a joint does not compute this tick and those that follow (it restarts), or computes again from this
-  /// tick on; call it before the record_tick of that tick.
+  /// From this tick on the module of a joint computes nothing (it restarts), or computes again (it joined). Call this
+  /// before the record_tick of that tick.
   void record_restart(std::uint32_t tick, std::uint32_t joint, bool joined);
-  /// Ticks come in ascending order. All values must be finite: a simulation that has blown up is an error here.
+  /// Ticks must ascend. Throws FileError if a value is not finite, because the simulation became unstable.
   void record_tick(const TickSample& sample);
-  /// Marks the run as finished and closes the file, one file then. summary: names and values for the table `result`.
+  /// Marks the run as finished and closes the file, so that the recording is one file. summary: names and values for
+  /// the table `result`.
   void finish(const std::vector<std::pair<std::string, std::string>>& summary);
 
  private:

@@ -1,62 +1,17 @@
 #include "sim/record/recording.hpp"
 
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <sstream>
 
-#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/kernel/kernel.hpp"
 #include "sim/record/internal_values.hpp"
+#include "sim/record/recording_rows.hpp"
 #include "sim/record/schema.hpp"
 
 namespace proleg::sim {
 namespace {
-
-constexpr const char* what_is_expected = "a recording of proleg simulate or proleg hil";
-
-// Not a text for people: it becomes an InputError where the path is known.
-class Damage : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-std::int32_t raw(const Statement& row, int column) {
-  const std::int64_t value = row.integer(column);
-  if (!row.is_integer(column) || value < std::numeric_limits<std::int32_t>::min() ||
-      value > std::numeric_limits<std::int32_t>::max()) {
-    throw Damage("a value that is not a 32-bit integer");
-  }
-  return static_cast<std::int32_t>(value);
-}
-
-std::uint32_t natural(const Statement& row, int column) {
-  const std::int32_t value = raw(row, column);
-  if (value < 0) {
-    throw Damage("a negative number where ticks, joints and links are counted");
-  }
-  return static_cast<std::uint32_t>(value);
-}
-
-std::uint64_t time(const Statement& row, int column) {
-  const std::int64_t value = row.integer(column);
-  if (!row.is_integer(column) || value < 0) {
-    throw Damage("a time that is not a whole number of microseconds after the start");
-  }
-  return static_cast<std::uint64_t>(value);
-}
-
-double finite(const Statement& row, int column) {
-  const double value = row.real(column);
-  if (!row.is_real(column) || !std::isfinite(value)) {
-    throw Damage("a value that is not a finite number");
-  }
-  return value;
-}
 
 /// An internal value of an algorithm.
 struct ValueName {
@@ -64,64 +19,20 @@ struct ValueName {
   Unit unit;
 };
 
-/// Degrees and phases share a symbol; they differ in how text is read, not in how a value is written.
-Unit unit_of(const std::string& symbol) {
-  for (const Unit unit : {Unit::degree, Unit::hertz, Unit::per_second, Unit::ratio, Unit::count}) {
-    if (symbol == scale_of(unit).symbol) {
-      return unit;
-    }
-  }
-  throw Damage("the unknown unit '" + symbol + "'");
-}
-
-std::uint32_t number(const std::string& text, const char* name) {
-  std::uint32_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) {
-    throw Damage(std::string("'") + text + "' as " + name);
-  }
-  return value;
-}
-
-/// Runs something that reads, and turns what can go wrong into the one line for a person.
-template <typename Action>
-auto reading(const std::filesystem::path& path, const Action& action) {
-  try {
-    return action();
-  } catch (const Damage& damage) {
-    throw InputError(path.string(), 0, damage.what(), what_is_expected);
-  } catch (const SqliteError& error) {
-    switch (error.code()) {
-      case SQLITE_NOTADB:
-        throw InputError(path.string(), 0, "something that is not a database", what_is_expected);
-      case SQLITE_CORRUPT:
-        throw InputError(path.string(), 0, std::string("a damaged file (") + error.what() + ")", what_is_expected);
-      case SQLITE_ERROR:  // no such table or column
-        throw InputError(path.string(), 0, error.what(), what_is_expected);
-      case SQLITE_CANTOPEN:
-      case SQLITE_READONLY:
-        throw FileError(
-            path, std::string("cannot be read (") + error.what() +
-                      "); a recording that was not finished needs its -wal file and a folder with write permission");
-      default:
-        throw FileError(path, std::string("cannot be read: ") + error.what());
-    }
-  }
-}
-
 }  // namespace
 
 class Recording::Tables {
  public:
   explicit Tables(const std::filesystem::path& path) : database(path, SQLITE_OPEN_READONLY) {
-    // One read transaction for all that follows: what a running recorder adds meanwhile stays invisible.
+    // One read transaction for everything, which does not see what a running recorder adds meanwhile.
     database.execute("BEGIN");
     if (pragma("PRAGMA application_id") != std::int64_t{recording_application_id}) {
       throw Damage("a database of another program");
     }
     if (const std::int64_t format = pragma("PRAGMA user_version"); format != std::int64_t{recording_format}) {
       throw Damage("recording format " + std::to_string(format) +
-                   ", of another version of this program; this one knows " + std::to_string(recording_format));
+                   ", of another version of this program; this version reads format " +
+                   std::to_string(recording_format));
     }
   }
 
@@ -146,10 +57,10 @@ Recording::Recording(const std::filesystem::path& path) : path_(path) {
   if (!std::filesystem::exists(status)) {
     throw InputError(path.string(), 0,
                      error && error != std::errc::no_such_file_or_directory ? error.message() : "no file",
-                     what_is_expected);
+                     recording_expected);
   }
   if (!std::filesystem::is_regular_file(status)) {
-    throw InputError(path.string(), 0, "something that is not a file", what_is_expected);
+    throw InputError(path.string(), 0, "something that is not a file", recording_expected);
   }
   reading(path_, [&] {
     tables_ = std::make_unique<Tables>(path);
@@ -173,7 +84,7 @@ void Recording::read_run() {
   }
   Statement range(tables_->database, "SELECT (SELECT min(tick) FROM sample), (SELECT max(tick) FROM sample)");
   if (!range.step() || !range.is_integer(0)) {
-    throw Damage("no tick at all (the run ended before the first was written)");
+    throw Damage("no tick (the run ended before the first was written)");
   }
   first_tick_ = natural(range, 0);
   last_tick_ = natural(range, 1);
@@ -303,33 +214,6 @@ std::vector<std::pair<std::string, std::string>> Recording::sources() const {
   });
 }
 
-namespace {
-
-/// One of the tables that grow with the ticks, read in the order of its key.
-class Rows {
- public:
-  Rows(Database& database, const char* table, const char* sql, std::uint32_t first, std::uint32_t last)
-      : table_(table), row_(database, sql) {
-    row_.bind_all(first, last);
-  }
-
-  /// Steps to the row of this tick whose further key columns have these values.
-  template <typename... Keys>
-  const Statement& expect(std::uint32_t tick, Keys... keys) {
-    int column = 0;
-    if (!row_.step() || natural(row_, column) != tick || (... || (natural(row_, ++column) != keys))) {
-      throw Damage(std::string("a gap in the table ") + table_ + " at tick " + std::to_string(tick));
-    }
-    return row_;
-  }
-
- private:
-  const char* table_;
-  Statement row_;
-};
-
-}  // namespace
-
 void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
                            const std::function<void(const RecordedTick&)>& use) const {
   Database& database = tables_->database;
@@ -409,7 +293,7 @@ std::string remark_on_unfinished_run(const Recording& recording) {
     return {};
   }
   std::ostringstream remark;
-  remark << recording.path().string() << ": the run is not finished; recorded are "
+  remark << recording.path().string() << ": the run is not finished; the recording has "
          << recording.time_s(recording.last_tick()) << " s";
   return remark.str();
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// A recording, read.
+// Reads recordings.
 
 #include <cstdint>
 #include <filesystem>
@@ -72,11 +72,10 @@ struct RecordedTick {
   std::vector<std::uint8_t> latched_contacts;  ///< at SYNC tick; bit 0 rear, bit 1 front sensor
 };
 
-
-/// A recording as it was when it was opened; a run may go on and write into the file meanwhile.
+/// A recording as it was when it was opened; a recorder may write into the file meanwhile.
 ///
-/// Throws InputError if the file is missing or is no recording, is of a newer format, damaged or without a tick, and
-/// FileError if the system cannot read it. The file is never changed.
+/// Throws InputError if the file is missing, is no recording, has a newer format, is damaged or has no tick, and
+/// FileError if the system cannot read it. Never changes the file.
 class Recording {
  public:
   explicit Recording(const std::filesystem::path& path);
@@ -85,16 +84,16 @@ class Recording {
   Recording& operator=(const Recording&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// False for a run that was interrupted or still goes on.
+  /// False for a run that was interrupted or is still running.
   [[nodiscard]] bool finished() const { return finished_; }
-  /// Value from the table `run`, e.g. "seed"; empty if it is not there.
+  /// Value from the table `run`, e.g. "seed"; empty if the table has no such key.
   [[nodiscard]] std::string run_value(const std::string& key) const;
   [[nodiscard]] const std::vector<std::pair<std::string, std::string>>& results() const { return results_; }
 
   [[nodiscard]] std::uint32_t tick_period_us() const { return tick_period_us_; }
   [[nodiscard]] std::uint32_t first_tick() const { return first_tick_; }
   [[nodiscard]] std::uint32_t last_tick() const { return last_tick_; }
-  /// Seconds from the start to the SYNC at which what is recorded under a tick holds.
+  /// Seconds from the start to SYNC tick + 1, at which the results of a tick hold.
   [[nodiscard]] double time_s(std::uint32_t tick) const { return (tick + 1.0) * tick_period_us_ / 1e6; }
   /// Seconds from the start to SYNC `tick`, when its contacts were latched.
   [[nodiscard]] double sync_time_s(std::uint32_t tick) const { return 1.0 * tick * tick_period_us_ / 1e6; }
@@ -108,14 +107,14 @@ class Recording {
   /// In the order of ticks.
   [[nodiscard]] std::vector<Loss> losses() const;
   [[nodiscard]] std::vector<RecordedRestart> restarts() const;
-  /// Path and text of every file that was read.
+  /// Path and text of every file of the scenario.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> sources() const;
 
-  /// Calls `use` for the ticks from `first` to `last`, in order. The tick is overwritten by the next.
+  /// Calls `use` for the ticks from `first` to `last`, in order. The next tick overwrites the object.
   void read_ticks(std::uint32_t first, std::uint32_t last, const std::function<void(const RecordedTick&)>& use) const;
 
-  /// Calls `use` for every pulse of every servo, in the order of time, then of joints. A module that restarts gives
-  /// none.
+  /// Calls `use` for every pulse of every servo, in the order of time, then of joints. There is none while a module
+  /// restarts.
   void read_servo_pulses(const std::function<void(const ServoPulse&)>& use) const;
 
  private:
@@ -140,7 +139,7 @@ class Recording {
   std::vector<RecordedInternalValue> internal_values_;
 };
 
-/// One line for a person who uses a recording that was interrupted or still grows; empty for a finished one.
+/// One line for the user if the run was interrupted or is still running; empty if it is finished.
 [[nodiscard]] std::string remark_on_unfinished_run(const Recording& recording);
 
 }  // namespace proleg::sim

@@ -17,7 +17,7 @@
 namespace proleg::sim {
 namespace {
 
-/// Whether the file begins as an SQLite database with the application id of a recording.
+/// Whether the file starts as an SQLite database with the application id of a recording.
 bool is_recording(const std::filesystem::path& path) {
   std::array<char, 72> header{};
   std::ifstream file(path, std::ios::binary);
@@ -33,7 +33,7 @@ bool is_recording(const std::filesystem::path& path) {
          application_id == recording_application_id;
 }
 
-/// A recorder holds a write transaction all the time, so the lock tells whether a file is being recorded into.
+/// A recorder has a write transaction open all the time, so its lock shows that it is recording.
 bool is_being_recorded(const std::filesystem::path& path) {
   try {
     Database database(path, SQLITE_OPEN_READWRITE);
@@ -41,26 +41,26 @@ bool is_being_recorded(const std::filesystem::path& path) {
     database.execute("BEGIN IMMEDIATE; ROLLBACK");
     return false;
   } catch (const SqliteError& error) {
-    return error.code() == SQLITE_BUSY;  // anything else: a damaged recording, which may be replaced
+    return error.code() == SQLITE_BUSY;  // any other error: a damaged recording, which may be replaced
   }
 }
 
 void remove_earlier_recording(const std::filesystem::path& path, const std::filesystem::file_status& status) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(status)) {
-    throw FileError(path, "is there and is not a file; the recording is not written");
+    throw FileError(path, "exists and is not a file; give another name for the recording");
   }
   const bool empty = std::filesystem::file_size(path, error) == 0 && !error;
   if (!empty && !is_recording(path)) {
-    throw FileError(path, "is there and is not a recording; it is left as it is");
+    throw FileError(path, "exists and is not a recording; it was not changed; give another name for the recording");
   }
   if (!empty && is_being_recorded(path)) {
-    throw FileError(path, "another program is recording into it");
+    throw FileError(path, "another program is recording into this file; give another name for the recording");
   }
   for (const char* suffix : {"-wal", "-shm", "-journal", ""}) {
     std::filesystem::remove(path.string() + suffix, error);
     if (error) {
-      throw FileError(path, "the earlier recording cannot be replaced: " + error.message());
+      throw FileError(path, "cannot replace the earlier recording: " + error.message());
     }
   }
 }
@@ -73,7 +73,7 @@ void claim_recording_file(const std::filesystem::path& path) {
   if (std::filesystem::exists(status)) {
     remove_earlier_recording(path, status);
   }
-  // SQLite would create the file, too, but after a refusal it tries again for reading and reports that failure.
+  // SQLite would create the file too, but if that fails it opens it for reading and reports the failure of that.
   const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) {
     throw FileError(path, std::string("cannot be created: ") + std::strerror(errno));

@@ -4,8 +4,9 @@
 
 namespace proleg::sim {
 
-/// Creates an empty file for a new recording, in place of an empty file or an earlier recording. Throws FileError if
-/// anything else is there, or a recording that is being written at this moment, or if the system refuses.
+/// Creates an empty file for a new recording. Replaces an empty file or an earlier recording. Throws FileError for any
+/// other existing file, for a recording into which another program is writing, and if the system cannot create the
+/// file.
 void claim_recording_file(const std::filesystem::path& path);
 
 }  // namespace proleg::sim

@@ -3,6 +3,8 @@
 #include <array>
 #include <charconv>
 
+#include "shared/computer/text/text.hpp"
+
 namespace proleg::sim {
 namespace {
 
@@ -24,32 +26,10 @@ std::string_view anchor_name(TextAnchor anchor) {
   return "end";
 }
 
-/// Length of the well-formed UTF-8 sequence at the start of `text` (RFC 3629), or 0.
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [text](std::size_t i) {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : static_cast<unsigned char>(0);
-  };
-  const auto continues = [&byte](std::size_t i) { return (byte(i) & 0xC0U) == 0x80U; };
-  const unsigned first = byte(0);
-  const unsigned second = byte(1);
-  if (first < 0x80) {
-    return 1;
-  }
-  if (first >= 0xC2 && first <= 0xDF) {
-    return continues(1) ? 2 : 0;
-  }
-  if (first >= 0xE0 && first <= 0xEF) {
-    const bool overlong = first == 0xE0 && second < 0xA0;
-    const bool surrogate = first == 0xED && second >= 0xA0;
-    const bool forbidden = first == 0xEF && second == 0xBF && byte(2) >= 0xBE;  // U+FFFE, U+FFFF: not in XML
-    return continues(1) && continues(2) && !overlong && !surrogate && !forbidden ? 3 : 0;
-  }
-  if (first >= 0xF0 && first <= 0xF4) {
-    const bool overlong = first == 0xF0 && second < 0x90;
-    const bool beyond = first == 0xF4 && second >= 0x90;
-    return continues(1) && continues(2) && continues(3) && !overlong && !beyond ? 4 : 0;
-  }
-  return 0;
+/// XML has no control characters, and neither U+FFFE nor U+FFFF.
+bool is_in_xml(std::string_view character) {
+  const auto first = static_cast<unsigned char>(character.front());
+  return first >= ' ' && first != 0x7F && character != "\xEF\xBF\xBE" && character != "\xEF\xBF\xBF";
 }
 
 }  // namespace
@@ -71,9 +51,9 @@ std::string plain_number(double value, int decimals) {
 std::string xml_text(std::string_view text) {
   std::string escaped;
   while (!text.empty()) {
-    const std::size_t length = utf8_length(text);
+    const std::size_t length = utf8_character_size(text);
     const char c = text.front();
-    if (length == 0 || static_cast<unsigned char>(c) < ' ' || c == 0x7F) {
+    if (length == 0 || !is_in_xml(text.substr(0, length))) {
       escaped += '?';
     } else if (c == '<') {
       escaped += "&lt;";

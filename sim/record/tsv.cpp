@@ -1,39 +1,16 @@
 #include "sim/record/tsv.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <numbers>
 #include <set>
 #include <string>
 
+#include "shared/computer/text/table_line.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "shared/kernel/servo_command.hpp"
 
 namespace proleg::sim {
 namespace {
-
-class Line {
- public:
-  void add(std::string_view field) {
-    if (!text_.empty()) {
-      text_ += '\t';
-    }
-    text_ += field;
-  }
-  void add(double value) {
-    std::array<char, 32> digits;
-    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
-    add(std::string_view(digits.data(), static_cast<std::size_t>(end - digits.data())));
-  }
-  void add(std::int32_t raw, Unit unit) { add(format_decimal(raw, unit).view()); }
-
-  [[nodiscard]] std::string_view end() { return text_ += '\n'; }
-  void clear() { text_.clear(); }
-
- private:
-  std::string text_;
-};
 
 std::string unit_suffix(Unit unit) {
   switch (unit) {
@@ -66,11 +43,11 @@ class Header {
     }
     line_.add(name);
   }
-  [[nodiscard]] std::string_view end() { return line_.end(); }
+  [[nodiscard]] std::string finish() { return line_.finish(); }
 
  private:
   std::set<std::string> used_;
-  Line line_;
+  TableLine line_;
 };
 
 void write_header(const Recording& recording, const std::function<void(std::string_view)>& write) {
@@ -95,7 +72,7 @@ void write_header(const Recording& recording, const std::function<void(std::stri
       header.add(quantity + name, ".link" + std::to_string(link));
     }
   }
-  write(header.end());
+  write(header.finish());
 }
 
 }  // namespace
@@ -109,17 +86,16 @@ void write_tsv(const Recording& recording, const std::function<void(std::string_
     values_of[recording.internal_values()[i].joint].push_back(i);
   }
 
-  Line line;
+  TableLine line;
   recording.read_ticks(recording.first_tick(), recording.last_tick(), [&](const RecordedTick& tick) {
-    line.clear();
-    line.add(std::to_string(tick.tick));
+    line.add(tick.tick);
     line.add(recording.time_s(tick.tick));
     for (std::size_t joint = 0; joint < recording.joints().size(); ++joint) {
-      line.add(tick.setpoints[joint], Unit::degree);
+      line.add(format_decimal(tick.setpoints[joint], Unit::degree).view());
       line.add(static_cast<double>(tick.servo_commands[joint]) / servo_counts_per_us);
       line.add(tick.joint_angles[joint] * 180.0 / std::numbers::pi);
       for (const std::size_t i : values_of[joint]) {
-        line.add(tick.internal_values[i], recording.internal_values()[i].unit);
+        line.add(format_decimal(tick.internal_values[i], recording.internal_values()[i].unit).view());
       }
     }
     for (std::size_t link = 0; link < recording.links().size(); ++link) {
@@ -130,7 +106,7 @@ void write_tsv(const Recording& recording, const std::function<void(std::string_
       line.add((tick.latched_contacts[link] & 1U) != 0 ? "1" : "0");
       line.add((tick.latched_contacts[link] & 2U) != 0 ? "1" : "0");
     }
-    write(line.end());
+    write(line.finish());
   });
 }
 

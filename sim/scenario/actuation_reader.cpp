@@ -9,6 +9,7 @@
 
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
+#include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"
 #include "sim/scenario/values.hpp"
 
@@ -46,7 +47,7 @@ JointMask read_group(const XmlElement& module, const RobotModel& robot) {
   return group;
 }
 
-/// A <parameter>: for which joint of the slot, or all of them, which value.
+/// A <parameter>: a value for one joint of the slot, or for all of them (-1).
 struct ParameterEntry {
   int index = 0;
   int joint = -1;
@@ -73,8 +74,9 @@ ParameterEntry read_parameter(const XmlElement& element, const Scenario& scenari
   if (const auto joint = element.attribute("joint")) {
     entry.joint = find_joint(scenario.robot, *joint);
     if (entry.joint < 0 || !slot.group.contains(static_cast<unsigned>(entry.joint))) {
-      element.refuse((entry.joint < 0 ? "unknown joint " : "joint not driven by this module, ") + in_quotes(*joint),
-                     "one of " + listed(joint_names(scenario.robot, slot.group)));
+      element.refuse(
+          (entry.joint < 0 ? "unknown joint " : "a joint that this module does not drive, ") + in_quotes(*joint),
+          "one of " + listed(joint_names(scenario.robot, slot.group)));
     }
   }
   return entry;
@@ -94,7 +96,7 @@ void read_parameters(const XmlElement& module, unsigned slot_number, Scenario& s
                    "it once");
     }
   }
-  // Those for all joints first, whatever the order in the file.
+  // Values for all joints first, in any order of the file.
   std::stable_partition(entries.begin(), entries.end(), [](const ParameterEntry& entry) { return entry.joint < 0; });
   for (const ParameterEntry& entry : entries) {
     for (unsigned j = 0; j < scenario.kernel.joint_count; ++j) {
@@ -110,14 +112,14 @@ void read_parameters(const XmlElement& module, unsigned slot_number, Scenario& s
   }
 }
 
-/// Asks the kernel itself whether it takes the configuration so far.
+/// Throws InputError if the kernel rejects the configuration so far.
 void check_with_kernel(const XmlElement& place, const KernelConfiguration& configuration) {
   std::vector<JointMemory> memory(configuration.joint_count);
   Kernel kernel(memory);
   if (const Status status = kernel.configure(configuration, 0); status != Status::ok) {
     place.refuse(
-        "a configuration that the control kernel refuses with " + place.label() + ": " + std::string(describe(status)),
-        "one that it takes");
+        "a configuration that the control kernel rejects with " + place.label() + ": " + std::string(describe(status)),
+        "a configuration that it accepts");
   }
 }
 

@@ -5,7 +5,7 @@
 
 namespace proleg::sim {
 
-/// Reads an actuation file into the kernel configuration and the settings of a scenario that has its robot already:
+/// Reads an actuation file into the kernel configuration and the settings of a scenario, which must have its robot:
 ///   <actuation>
 ///     <validRobot robotName="..."/>
 ///     <actuationModule name="PatternGenerator_sinusoidal">
@@ -14,9 +14,9 @@ namespace proleg::sim {
 ///       <parameter name="amplitude" value="0" joint="J1"/>
 ///     </actuationModule>
 ///   </actuation>
-/// Modules take the slots of the kernel in their order. The first character of `joints` is the first joint of the robot
-/// FILE. A parameter without `joint` holds for all joints of the module; with one it holds for that joint, wherever it
-/// stands. Values are in the declared unit. A configuration that the kernel refuses is an InputError.
+/// Modules get the slots of the kernel in their order. The first character of `joints` is the first joint of the robot
+/// FILE. A parameter without `joint` applies to all joints of the module; a parameter with `joint` overrides it, in any
+/// order. Values are in the declared unit. Throws InputError for a configuration that the kernel rejects.
 void read_actuation(const XmlDocument& document, Scenario& scenario, const std::string& robot_file);
 
 }  // namespace proleg::sim

@@ -88,7 +88,7 @@ class ChainBuilder {
     for (std::size_t b = 0; b < bodies_->size(); ++b) {
       if (!reached[b]) {
         refuse((*bodies_)[b].origin,
-               "body " + in_quotes((*bodies_)[b].link.name) + ", which no joints connect with the head " +
+               "body " + in_quotes((*bodies_)[b].link.name) + ", which no joint connects to the head " +
                    in_quotes(chain.links.front().name),
                "one connected chain");
       }
@@ -105,15 +105,15 @@ class ChainBuilder {
     return std::nullopt;
   }
 
-  /// Adds the joint that leads from a body towards the tail; returns the body that it leads to.
+  /// Adds the joint between a body and the next one towards the tail; returns that body.
   std::size_t append_joint(Chain& chain, std::size_t joint, std::size_t headward) const {
     const JointEntry& entry = (*joints_)[joint];
     const bool headward_first = entry.bodies[0] == (*bodies_)[headward].link.name;
     const std::string& tailward = entry.bodies[headward_first ? 1 : 0];
     chain.joints.push_back(entry.joint);
     if (headward_first) {
-      // The file's angle turns the second body relative to the first. Seen from the second the first turns the other
-      // way, which is the same angle about the opposite axis.
+      // The angle in the file is the rotation of the second body relative to the first. The rotation of the first
+      // relative to the second is the same angle about the opposite axis.
       chain.joints.back().axis *= -1.0;
     }
     chain.kernel_limits.push_back(entry.kernel_limits);

@@ -16,10 +16,10 @@ struct Chain {
   std::string joint_map;  ///< "joint map: kernel 0 = J5 (Head - 4Seg), ..."
 };
 
-/// Orders what a robot file declares from head to tail. The head is the end of the chain whose name is or ends with
-/// "Head", in any case; without one the end that comes last in the file. An axis is turned round if its joint names
-/// the link towards the head first, so that an angle is always the rotation of that link relative to the other.
-/// Refuses robots that are not one unbranched chain of 1 to 64 joints.
+/// Orders the bodies and joints of a robot file from head to tail. The head is the end of the chain whose name ends
+/// with "Head", in any case; if there is none, the end that is last in the file. If a joint names the link towards the
+/// head first, its axis is reversed, so that an angle is always the rotation of that link relative to the other. Throws
+/// InputError for a robot that is not one unbranched chain of 1 to 64 joints.
 [[nodiscard]] Chain make_chain(const KinBodyContents& contents, const Origin& robot);
 
 }  // namespace proleg::sim

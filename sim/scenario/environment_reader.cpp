@@ -16,9 +16,9 @@ namespace proleg::sim {
 namespace {
 
 constexpr Range accelerations{-1e3, 1e3, "m/s^2"};
-constexpr double largest_angle = 1e4;  // degrees
+constexpr double max_angle = 1e4;  // degrees
 
-/// Tags of OpenRAVE for its viewer.
+/// Tags for OpenRAVE's viewer.
 constexpr std::array<std::string_view, 5> viewer_tags{"bkgndcolor", "camtrans", "camrotaxis", "camrotationaxis",
                                                       "camfocal"};
 
@@ -44,8 +44,8 @@ void read_physics(const XmlElement& element, EnvironmentModel& environment) {
   }
 }
 
-/// "x y z" as three numbers of at most that size.
-std::optional<Eigen::Vector3d> parse_triple(std::string_view text, double largest) {
+/// "x y z" as three numbers from -max to max.
+std::optional<Eigen::Vector3d> parse_triple(std::string_view text, double max) {
   const std::vector<std::string_view> tokens = words(text);
   if (tokens.size() != 3) {
     return std::nullopt;
@@ -53,7 +53,7 @@ std::optional<Eigen::Vector3d> parse_triple(std::string_view text, double larges
   Eigen::Vector3d result;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::optional<double> value = parse_number(tokens[i]);
-    if (!value || *value < -largest || *value > largest) {
+    if (!value || *value < -max || *value > max) {
       return std::nullopt;
     }
     result[static_cast<Eigen::Index>(i)] = *value;
@@ -84,8 +84,8 @@ Pose read_robot_pose(const XmlDocument& document) {
     std::optional<Eigen::Vector3d> position;
     std::optional<Eigen::Vector3d> degrees;
     if (parts.size() == 4 && lower_case(parts[0]) == "pose:" && parts[3].empty()) {
-      position = parse_triple(parts[1], coordinates.highest);
-      degrees = parse_triple(parts[2], largest_angle);
+      position = parse_triple(parts[1], coordinates.max);
+      degrees = parse_triple(parts[2], max_angle);
     }
     if (!position || !degrees || pose) {
       throw InputError(document.name(), comment.line, (pose ? "a second comment " : "the comment ") + in_quotes(text),
@@ -99,7 +99,7 @@ Pose read_robot_pose(const XmlDocument& document) {
   return pose.value_or(Pose{});
 }
 
-/// Bounds of all geometries of a body; nothing if it has none.
+/// Bounds of all geometries of a body; nothing if there are none.
 std::optional<Bounds> bounds_of_body(const std::vector<Geometry>& geometries, const Pose& frame) {
   std::optional<Bounds> whole;
   for (const Geometry& geometry : geometries) {
@@ -152,8 +152,8 @@ void lift_onto_ground(const RobotModel& robot, EnvironmentModel& environment, st
       bottom = bottom ? std::min(*bottom, bounds->lowest.z()) : bounds->lowest.z();
     }
   }
-  constexpr double negligible = 1e-9;  // m
-  if (!top || !bottom || *top - *bottom < negligible) {
+  constexpr double min_lift = 1e-9;  // m
+  if (!top || !bottom || *top - *bottom < min_lift) {
     return;
   }
   environment.robot_pose.position.z() += *top - *bottom;

@@ -9,15 +9,15 @@
 namespace proleg::sim {
 
 /// Reads an environment file: <Environment> with <physicsengine> (gravity, selfcollision) and KinBodies of static
-/// bodies. The start pose of the robot stands in a comment
+/// bodies. A comment gives the start pose of the robot:
 ///   <!--Pose: ,X Y Z,A B C,-->
 /// position in metres; then degrees: the robot is turned by A about the world's x axis, then by B about its y axis,
 /// then by C about its z axis. Without the comment the robot starts at the origin.
 [[nodiscard]] EnvironmentModel read_environment(const XmlDocument& document, SourceSet& sources,
                                                 std::vector<std::string>& remarks);
 
-/// Raises the start pose if the robot, with all joint angles 0, reaches below the highest of the objects that have the
-/// robot's start position within their bounds seen from above, so that it just rests on that one. Never lowers it.
+/// Raises the start pose until the robot, with all joint angles 0, rests on the highest of the objects below its start
+/// position (whose bounds, seen from above, contain that position). Never lowers it.
 void lift_onto_ground(const RobotModel& robot, EnvironmentModel& environment, std::vector<std::string>& remarks);
 
 }  // namespace proleg::sim

@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Only a viewer would use these.
+/// For viewers only.
 constexpr std::array<std::string_view, 5> visual_tags{"diffuseColor", "ambientColor", "transparency", "render",
                                                       "visible"};
 

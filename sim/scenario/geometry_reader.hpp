@@ -13,7 +13,7 @@ namespace proleg::sim {
 /// its pose in the body and its <friction>.
 [[nodiscard]] Geometry read_geometry(const XmlElement& element);
 
-/// What <Mass> can take from the solids of a body. Overlapping solids count twice.
+/// What <Mass> may use of the solids of a body. The overlap of two solids counts twice.
 struct SolidProperties {
   double volume = 0.0;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();   ///< of volume, in the frame of the body
@@ -25,7 +25,7 @@ struct SolidProperties {
 /// Inertia about the centre of a box with these half sides and mass 1.
 [[nodiscard]] Eigen::Matrix3d box_inertia(const Eigen::Vector3d& half_sides);
 
-/// An axis-aligned box: what a shape reaches along x, y and z, to the last bit of its surface.
+/// The smallest axis-aligned box around a shape.
 struct Bounds {
   Eigen::Vector3d lowest;
   Eigen::Vector3d highest;

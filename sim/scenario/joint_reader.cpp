@@ -16,9 +16,9 @@ constexpr Range torques{1e-9, 1e6, "Nm"};
 constexpr Range speeds{1e-9, 1e6, "rad/s"};
 constexpr Range limits_in_degrees{-360.0, 360.0, "degrees"};
 constexpr Range limits_in_radians{-6.2832, 6.2832, "rad"};
-constexpr double shortest_axis = 1e-6;
+constexpr double min_axis = 1e-6;
 
-/// Raw value of a limit in degrees: from its text, so that no rounding of floating point is in it.
+/// Raw value of a limit in degrees, from its text, so that floating point adds no rounding.
 std::int32_t kernel_limit(std::string_view degrees) {
   const DecimalResult result = parse_decimal(degrees, Unit::degree);
   if (result.error == DecimalError::none) {
@@ -97,7 +97,7 @@ JointDescription read_joint(const XmlElement& element, std::vector<std::string>&
   }
   const XmlElement axis = element.required_child("axis");
   joint.axis = read_vector(axis, directions);
-  if (joint.axis.norm() < shortest_axis) {
+  if (joint.axis.norm() < min_axis) {
     axis.refuse(in_quotes(axis.text()) + " in " + axis.label(), "a direction that is not 0");
   }
   read_limits(element, description);
@@ -107,10 +107,11 @@ JointDescription read_joint(const XmlElement& element, std::vector<std::string>&
   constexpr double right_angle = std::numbers::pi / 2.0;
   if (joint.lower_limit < -right_angle * (1.0 + 1e-12) || joint.upper_limit > right_angle * (1.0 + 1e-12)) {
     remarks.push_back(one_line(element.document().name() + ":" + std::to_string(element.line()) + ": joint " +
-                               in_quotes(joint.name) + " has limits beyond +-90 degrees; it is driven within +-90"));
+                               in_quotes(joint.name) +
+                               " has limits beyond +-90 degrees; it moves within +-90 degrees"));
   }
   if (const auto acceleration = element.child("maxaccel")) {
-    remark_no_effect(remarks, *acceleration, "a servo is limited in torque and speed");
+    remark_no_effect(remarks, *acceleration, "a servo has limits of torque and speed only");
   }
   return description;
 }

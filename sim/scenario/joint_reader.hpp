@@ -11,7 +11,7 @@
 
 namespace proleg::sim {
 
-/// What a <Joint> says, with names as in the file.
+/// The contents of a <Joint>, with names as in the file.
 struct JointDescription {
   Joint joint;  ///< anchor and axis in the frame of `offset_from`
   std::array<std::string, 2> bodies;
@@ -20,8 +20,8 @@ struct JointDescription {
 };
 
 /// Reads a <Joint type="hinge">: two <body>, <axis>, <anchor> (0 0 0 by default), <offsetfrom>, <limitsdeg> or <limits>
-/// (radians), <maxtorque> (Nm), <maxvel> (rad/s). Limits beyond +-90 degrees stay in the model, and are +-90 degrees
-/// for the kernel, with a remark.
+/// (radians), <maxtorque> (Nm), <maxvel> (rad/s). The model keeps limits beyond +-90 degrees; the kernel gets +-90
+/// degrees, and a remark says so.
 [[nodiscard]] JointDescription read_joint(const XmlElement& element, std::vector<std::string>& remarks);
 
 }  // namespace proleg::sim

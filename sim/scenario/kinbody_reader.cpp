@@ -14,10 +14,10 @@
 namespace proleg::sim {
 namespace {
 
-constexpr int deepest_kinbody = 32;
-constexpr std::size_t most_static_bodies = 10'000;
+constexpr int max_kinbody_depth = 32;
+constexpr std::size_t max_static_bodies = 10'000;
 
-/// What the KinBodies around a body say about it.
+/// Pose and names that the KinBodies around a body give it.
 struct Scope {
   Pose pose;
   std::string prefix;
@@ -25,7 +25,7 @@ struct Scope {
   int depth = 0;
 };
 
-/// A joint whose frame is not known yet: the body of its <offsetfrom> may come later in the file.
+/// A joint whose frame is still unknown: the body of its <offsetfrom> may be later in the file.
 struct PendingJoint {
   JointEntry entry;
   std::optional<std::string> offset_from;
@@ -38,8 +38,9 @@ class KinBodyReader {
       : use_(use), sources_(&sources), remarks_(&remarks) {}
 
   void read(const XmlElement& element, Scope scope, std::span<const std::string_view> extra_tags) {
-    if (++scope.depth > deepest_kinbody) {
-      element.refuse("KinBodies nested deeper than " + std::to_string(deepest_kinbody), "at most that");
+    if (++scope.depth > max_kinbody_depth) {
+      element.refuse("KinBodies nested deeper than " + std::to_string(max_kinbody_depth),
+                     "at most " + std::to_string(max_kinbody_depth) + " levels");
     }
     if (const auto name = element.attribute("name")) {
       scope.name = checked_name(element, *name);
@@ -95,9 +96,9 @@ class KinBodyReader {
     constexpr std::array<std::string_view, 3> tags{"Geom", "Mass", "offsetfrom"};
     element.allow(body_attributes, joined({tags, pose_tags}));
     check_type(element);
-    const std::size_t most_bodies = use_ == KinBodyUse::robot ? max_joints + 1 : most_static_bodies;
-    if (contents_.bodies.size() == most_bodies) {
-      element.refuse("more than " + std::to_string(most_bodies) + " bodies", "at most that");
+    const std::size_t max_bodies = use_ == KinBodyUse::robot ? max_joints + 1 : max_static_bodies;
+    if (contents_.bodies.size() == max_bodies) {
+      element.refuse("more than " + std::to_string(max_bodies) + " bodies", "at most " + std::to_string(max_bodies));
     }
 
     BodyEntry entry{{element.document().name(), element.line()}, {}};
@@ -130,11 +131,11 @@ class KinBodyReader {
   void check_type(const XmlElement& element) const {
     const std::string type = lower_case(element.attribute("type").value_or("dynamic"));
     if (use_ == KinBodyUse::robot && type != "dynamic") {
-      element.refuse("type " + in_quotes(type) + " in " + element.label(), "'dynamic', as a robot moves");
+      element.refuse("type " + in_quotes(type) + " in " + element.label(), "'dynamic', because a robot moves");
     }
     if (use_ == KinBodyUse::environment && type != "static") {
       element.refuse("type " + in_quotes(type) + " in " + element.label(),
-                     "'static', as this version has only static objects in an environment");
+                     "'static', because all objects of an environment are static");
     }
   }
 

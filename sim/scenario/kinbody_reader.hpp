@@ -14,7 +14,7 @@
 
 namespace proleg::sim {
 
-/// Where in the input something stands.
+/// A place in the input.
 struct Origin {
   std::string file;
   int line = 0;
@@ -33,7 +33,7 @@ struct JointEntry {
   JointLimits kernel_limits;
 };
 
-/// What a file declares, in its order.
+/// The contents of a file, in its order.
 struct KinBodyContents {
   std::vector<BodyEntry> bodies;
   std::vector<JointEntry> joints;
@@ -47,9 +47,9 @@ enum class KinBodyUse : std::uint8_t {
 /// Reads a <KinBody>, or a <Robot>, which may hold the same. extra_tags: tags that the caller reads itself.
 ///
 /// Nested KinBodies have their pose (<translation>, <rotationaxis>, <quat>) in the frame of the outer one. A `prefix`
-/// goes before the names of all bodies and joints inside; names in a joint are looked for with the prefixes of its
-/// place. <offsetfrom> of a joint names the body in whose frame anchor and axis are, of a body the body in whose frame
-/// its pose is; without it the frame is that of the KinBody. Poses, anchors and axes come out in the outermost frame.
+/// precedes the names of all bodies and joints inside; the names of bodies in a joint get the prefixes of that joint.
+/// <offsetfrom> names the body in whose frame the anchor and axis of a joint, or the pose of a body, are given; without
+/// it the frame is that of the KinBody. The result has poses, anchors and axes in the outermost frame.
 [[nodiscard]] KinBodyContents read_kinbody(const XmlElement& element, KinBodyUse use, SourceSet& sources,
                                            std::vector<std::string>& remarks,
                                            std::span<const std::string_view> extra_tags = {});

@@ -12,7 +12,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/random.hpp"
 #include "shared/kernel/kernel.hpp"
-#include "sim/scenario/settings.hpp"
+#include "sim/scenario/names.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -20,14 +20,13 @@ namespace {
 constexpr const char* seed_form = "SEED:RATE or SEED:RATE@FIRST-LAST, for example 7:5% or 7:0.05@100-900";
 
 [[noreturn]] void refuse(const std::string& argument) {
-  throw InputError("--losses", 0, in_quotes(shortened(argument)), seed_form);
+  throw InputError("--losses", 0, in_quotes(argument), seed_form);
 }
 
 std::uint32_t require_rate(const std::string& text, const std::string& argument) {
   const std::optional<std::uint32_t> rate = parse_rate(text);
   if (!rate) {
-    throw InputError("--losses", 0, "rate " + in_quotes(shortened(text)) + " in " + in_quotes(shortened(argument)),
-                     "0 to 1, or 0% to 100%");
+    throw InputError("--losses", 0, "rate " + in_quotes(text) + " in " + in_quotes(argument), "0 to 1, or 0% to 100%");
   }
   return *rate;
 }
@@ -60,24 +59,20 @@ Losses parse_random(const std::string& argument, std::size_t colon) {
 std::uint8_t parse_joint(const std::string& name, const RobotModel& robot, const std::string& path, int line) {
   const int joint = find_joint(robot, name);
   if (joint < 0) {
-    std::string known;
-    for (const std::string& other : joint_names(robot, JointMask::first(static_cast<unsigned>(robot.joints.size())))) {
-      known += (known.empty() ? "" : ", ") + other;
-    }
-    throw InputError(path, line, "unknown joint " + in_quotes(shortened(name)), "one of " + known);
+    throw InputError(path, line, "unknown joint " + in_quotes(name), "one of " + listed(joint_names(robot)));
   }
   return static_cast<std::uint8_t>(joint);
 }
 
 std::vector<Loss> read_list(const std::string& path, const RobotModel& robot) {
-  constexpr std::uintmax_t largest = 16U << 20U;
+  constexpr std::uintmax_t max_bytes = 16U << 20U;
   const std::string expected = std::string("a list of losses, or ") + seed_form;
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
     throw InputError(in_quotes(path), 0, "no such file", expected);
   }
-  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) > largest) {
-    throw InputError(path, 0, "no file, or one above 16 MiB", expected);
+  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) > max_bytes) {
+    throw InputError(path, 0, "something that is not a file, or a file above 16 MiB", expected);
   }
   std::ifstream file(path);
   if (!file) {
@@ -97,7 +92,7 @@ std::vector<Loss> read_list(const std::string& path, const RobotModel& robot) {
     const auto tick = parse_whole<std::uint32_t>(fields[0]);
     const bool has_channel = fields.size() == 4;
     if (!tick || fields.size() < 3 || fields.size() > 4 || (has_channel && fields[3] != "1" && fields[3] != "2")) {
-      throw InputError(path, line, in_quotes(shortened(text)), "TICK SENDER RECEIVER [CHANNEL], channel 1 or 2");
+      throw InputError(path, line, in_quotes(text), "TICK SENDER RECEIVER [CHANNEL], channel 1 or 2");
     }
     Loss loss{*tick, parse_joint(fields[1], robot, path, line),
               static_cast<std::uint8_t>(has_channel && fields[3] == "2" ? 1 : 0), 0};
@@ -105,7 +100,7 @@ std::vector<Loss> read_list(const std::string& path, const RobotModel& robot) {
       loss.receiver = parse_joint(fields[2], robot, path, line);
       if (loss.receiver == loss.sender) {
         throw InputError(path, line, fields[1] + " as sender and receiver",
-                         "two joints: a joint needs no frame of its own");
+                         "two different joints: a joint does not receive its own frames");
       }
       list.push_back(loss);
       continue;
@@ -165,10 +160,10 @@ void Losses::require_effect(std::uint32_t ticks, const KernelConfiguration& kern
 
 Losses read_losses(const std::string& argument, const RobotModel& robot) {
   const std::size_t colon = argument.find(':');
-  const bool starts_like_a_seed =
+  const bool starts_with_seed =
       colon != std::string::npos && colon > 0 &&
       std::ranges::all_of(argument.substr(0, colon), [](char c) { return c >= '0' && c <= '9'; });
-  if (starts_like_a_seed) {
+  if (starts_with_seed) {
     return parse_random(argument, colon);
   }
   return Losses(read_list(argument, robot));

@@ -1,7 +1,7 @@
 #pragma once
 
-// State frames that joints do not receive, chosen beforehand. The same losses can be given to a simulation in memory
-// and to modules on a bus, and then give the same bits.
+// State frames that joints do not receive, chosen beforehand. The same losses give the same bits in a simulation in
+// memory and with modules on a bus.
 
 #include <cstdint>
 #include <limits>
@@ -21,8 +21,8 @@ struct Loss {
   std::uint8_t receiver;
 };
 
-/// Each frame is lost for each receiver with the same probability. Nothing depends on the number of joints, the order
-/// of questions or on what else happens: the noise is PCG32, seeded anew for each frame.
+/// Each frame is lost for each receiver with the same probability. The result does not depend on the number of joints,
+/// on the order of calls or on anything else: the noise is PCG32, seeded again for each frame.
 struct RandomLosses {
   std::uint64_t seed = 0;
   std::uint32_t threshold = 0;  ///< probability times 2^32
@@ -40,7 +40,7 @@ class Losses {
   [[nodiscard]] bool any() const { return !list_.empty() || random_.threshold != 0; }
   /// The joints that do not receive a frame.
   [[nodiscard]] JointMask receivers_without(std::uint32_t tick, unsigned sender, unsigned channel) const;
-  /// Throws InputError if some can have no effect in a run of so many ticks.
+  /// Throws InputError if a loss can have no effect in a run of that many ticks.
   void require_effect(std::uint32_t ticks, const KernelConfiguration& kernel) const;
   [[nodiscard]] bool lost(const Loss& loss) const {
     return receivers_without(loss.tick, loss.sender, loss.channel).contains(loss.receiver);
@@ -51,10 +51,10 @@ class Losses {
   RandomLosses random_;
 };
 
-/// Reads what a user gives to --losses. Either SEED:RATE or SEED:RATE@FIRST-LAST, where RATE is a number up to 1 or a
-/// percentage ("7:5%") and FIRST and LAST are ticks; or the name of a file with a line "TICK SENDER RECEIVER [CHANNEL]"
-/// for each loss: joints by their names, "*" for all receivers, channel 1 (the default) or 2; # starts a comment.
-/// Throws InputError.
+/// Reads the value of --losses. It is SEED:RATE or SEED:RATE@FIRST-LAST, where RATE is a number up to 1 or a percentage
+/// ("7:5%") and FIRST and LAST are ticks. Or it names a file with a line "TICK SENDER RECEIVER [CHANNEL]" for each
+/// loss: joints by their names, "*" for all receivers, channel 1 (the default) or 2; # starts a comment. Throws
+/// InputError.
 [[nodiscard]] Losses read_losses(const std::string& argument, const RobotModel& robot);
 
 }  // namespace proleg::sim

@@ -13,7 +13,7 @@ namespace {
 
 constexpr Range inertias{-1e12, 1e12, "kg m^2"};
 
-/// The total that the element says itself or by the density of a volume.
+/// The mass from <total>, or from <density> and a volume.
 double read_total(const XmlElement& element, double volume) {
   const std::optional<XmlElement> total = element.child("total");
   const std::optional<XmlElement> density = element.child("density");
@@ -25,9 +25,9 @@ double read_total(const XmlElement& element, double volume) {
     return read_number(*total, masses);
   }
   const double mass = read_number(*density, densities) * volume;
-  if (mass < masses.lowest || mass > masses.highest) {
+  if (mass < masses.min || mass > masses.max) {
     density->refuse("a density that makes " + number_text(mass) + " kg",
-                    "a mass from " + number_text(masses.lowest) + " to " + number_text(masses.highest) + " kg");
+                    "a mass from " + number_text(masses.min) + " to " + number_text(masses.max) + " kg");
   }
   return mass;
 }
@@ -49,13 +49,13 @@ MassProperties read_custom(const XmlElement& element, const std::vector<Geometry
   if (com) {
     result.center = read_vector(*com, coordinates);
   } else {
-    result.center = required_solids(element, geometries, "<com> in it").center;
+    result.center = required_solids(element, geometries, "<com> in the <Mass>").center;
   }
   if (inertia) {
     const std::vector<double> numbers = read_numbers(*inertia, 9, inertias);
     result.inertia = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(numbers.data());
   } else {
-    const SolidProperties solids = required_solids(element, geometries, "<inertia> in it");
+    const SolidProperties solids = required_solids(element, geometries, "<inertia> in the <Mass>");
     result.inertia = solids.inertia * (result.mass / solids.volume);
   }
   return result;
@@ -80,8 +80,8 @@ MassProperties read_mimic(const XmlElement& element, const std::vector<Geometry>
   return {mass, solids.center, solids.inertia * (mass / solids.volume)};
 }
 
-/// Also a matrix that is positive definite only just is refused: rounding would make it singular in the engine.
-bool positive_definite(const Eigen::Matrix3d& inertia) {
+/// False also for a matrix that is nearly singular: rounding would make it singular in the engine.
+bool is_positive_definite(const Eigen::Matrix3d& inertia) {
   constexpr double tolerance = 1e-9;
   const double size = inertia.cwiseAbs().maxCoeff();
   if ((inertia - inertia.transpose()).cwiseAbs().maxCoeff() > tolerance * size) {
@@ -105,9 +105,9 @@ MassProperties read_mass(const XmlElement& element, const std::vector<Geometry>&
   } else {
     element.refuse("type " + in_quotes(type) + " in " + element.label(), "'custom', 'box' or 'mimicgeom'");
   }
-  if (!positive_definite(result.inertia)) {
+  if (!is_positive_definite(result.inertia)) {
     element.refuse("an inertia that is not positive definite in " + element.label(),
-                   "a symmetric matrix with eigenvalues above 0, the least above 1e-9 of the largest");
+                   "a symmetric matrix with eigenvalues above 0, the smallest above 1e-9 of the largest");
   }
   result.inertia = (result.inertia + result.inertia.transpose().eval()) / 2.0;
   return result;

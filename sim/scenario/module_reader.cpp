@@ -1,12 +1,11 @@
 #include "sim/scenario/module_reader.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/scenario/settings.hpp"
+#include "sim/scenario/names.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -14,13 +13,10 @@ namespace {
 // CANopen node ids (CiA 301): 1 to 127, of which 127 is the host (docs/protocol.md).
 constexpr std::uint32_t max_node_id = 126;
 
-/// The whole text as a number; base 16 after 0x.
-std::optional<std::uint32_t> parse_whole(std::string_view text) {
-  const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
-  text.remove_prefix(hexadecimal ? 2 : 0);
-  std::uint32_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, hexadecimal ? 16 : 10);
-  return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+/// Decimal, or hexadecimal after 0x.
+std::optional<std::uint32_t> parse_node_or_serial(std::string_view text) {
+  return text.starts_with("0x") || text.starts_with("0X") ? parse_whole<std::uint32_t>(text.substr(2), 16)
+                                                          : parse_whole<std::uint32_t>(text);
 }
 
 /// A <module> and the kernel joint that it names.
@@ -36,19 +32,18 @@ ModuleEntry read_module(const XmlElement& element, const RobotModel& model) {
   const std::string name = element.required_attribute("joint");
   const int joint = find_joint(model, name);
   if (joint < 0) {
-    element.refuse("unknown joint " + in_quotes(name),
-                   "one of " + listed(joint_names(model, JointMask::first(max_joints))));
+    element.refuse("unknown joint " + in_quotes(name), "one of " + listed(joint_names(model)));
   }
   ModuleEntry entry{element, name, static_cast<std::size_t>(joint), {}};
   const std::string node_text = element.required_attribute("node");
-  const std::optional<std::uint32_t> node = parse_whole(node_text);
+  const std::optional<std::uint32_t> node = parse_node_or_serial(node_text);
   if (!node || *node == 0 || *node > max_node_id) {
     element.refuse("node " + in_quotes(node_text) + " in " + element.label(),
                    "a whole number from 1 to " + std::to_string(max_node_id) + " (127 is the host)");
   }
   entry.place.node = static_cast<std::uint8_t>(*node);
   if (const auto serial_text = element.attribute("serial")) {
-    const std::optional<std::uint32_t> serial = parse_whole(*serial_text);
+    const std::optional<std::uint32_t> serial = parse_node_or_serial(*serial_text);
     if (!serial || *serial == 0) {
       element.refuse("serial " + in_quotes(*serial_text) + " in " + element.label(),
                      "a whole number from 1 to 4294967295 (0xFFFFFFFF)");
@@ -95,7 +90,7 @@ std::vector<ModulePlace> read_modules(const XmlElement& robot, const RobotModel&
     const auto entry = std::ranges::find(entries, j, &ModuleEntry::joint);
     if (entry == entries.end()) {
       robot.refuse("no <module> for joint " + in_quotes(model.joints[j].name) + " in " + robot.label(),
-                   "one for each joint, or none at all");
+                   "a module for each joint, or none");
     }
     places[j] = entry->place;
   }

@@ -1,7 +1,8 @@
 #include "sim/scenario/properties_reader.hpp"
 
-#include <charconv>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "shared/computer/text/text.hpp"
@@ -15,36 +16,9 @@ constexpr Range step_widths{1e-5, 0.02, "s"};
 constexpr Range ticks{1.0, 100.0, "ms"};
 constexpr Range probabilities{0.0, 1.0, ""};
 
-std::uint64_t read_seed(const XmlElement& element) {
-  const std::string text = element.text();
-  std::uint64_t seed = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  if (error != std::errc{} || end != text.data() + text.size()) {
-    element.refuse(in_quotes(text) + " in " + element.label(), "a whole number from 0 to 18446744073709551615");
-  }
-  return seed;
-}
-
 Solver read_solver(const XmlElement& element) {
-  const std::string text = lower_case(element.text());
-  if (text == "automatic") {
-    return Solver::automatic;
-  }
-  if (text == "direct") {
-    return Solver::direct;
-  }
-  if (text != "iterative") {
-    element.refuse(in_quotes(text) + " in " + element.label(), "'automatic', 'direct' or 'iterative'");
-  }
-  return Solver::iterative;
-}
-
-std::uint32_t read_tick(const XmlElement& element) {
-  const double microseconds = read_quantity(element, ticks) * 1000.0;
-  if (std::abs(microseconds - std::round(microseconds)) > 1e-6) {
-    element.refuse(in_quotes(element.text({"unit"})) + " in " + element.label(), "a whole number of microseconds");
-  }
-  return static_cast<std::uint32_t>(std::round(microseconds));
+  constexpr std::array solvers{Solver::automatic, Solver::direct, Solver::iterative};
+  return solvers[read_choice(element, {"automatic", "direct", "iterative"})];
 }
 
 void check_steps_in_tick(const XmlElement& place, const Scenario& scenario) {
@@ -57,11 +31,11 @@ void check_steps_in_tick(const XmlElement& place, const Scenario& scenario) {
   }
 }
 
-/// The thesis's tags without a counterpart: a value other than `quiet` asks for something that will not happen.
-void remark_unless(const XmlElement& parent, std::string_view tag, std::string_view quiet, std::string_view reason,
+/// For tags of the thesis without a counterpart: any value but `off` asks for something that this program does not do.
+void remark_unless(const XmlElement& parent, std::string_view tag, std::string_view off, std::string_view reason,
                    std::vector<std::string>& remarks) {
   const std::optional<XmlElement> child = parent.child(tag);
-  if (child && child->text() != quiet) {
+  if (child && child->text() != off) {
     remark_no_effect(remarks, *child, reason);
   }
 }
@@ -80,11 +54,11 @@ void read_simulation_properties(const XmlElement& element, Scenario& scenario) {
   }
   const std::optional<XmlElement> tick = element.child("tick");
   if (tick) {
-    scenario.kernel.tick_period_us = read_tick(*tick);
+    scenario.kernel.tick_period_us = read_microseconds(*tick, ticks);
   }
   check_steps_in_tick(tick ? *tick : step.value_or(element), scenario);
   if (const auto seed = element.child("seed")) {
-    scenario.kernel.seed = read_seed(*seed);
+    scenario.kernel.seed = read_whole(*seed, 0, std::numeric_limits<std::uint64_t>::max());
   }
   if (const auto solver = element.child("solver")) {
     scenario.solver = read_solver(*solver);
@@ -96,11 +70,11 @@ void read_simulation_properties(const XmlElement& element, Scenario& scenario) {
   std::vector<std::string>& remarks = scenario.remarks;
   remark_unless(element, "showViewer", "0", "a run has no viewer", remarks);
   remark_unless(element, "parallelComputing", "0", "one run uses one processor", remarks);
-  remark_unless(element, "storingData", "0", "ask for a recording on the command line", remarks);
+  remark_unless(element, "storingData", "0", "use --record on the command line", remarks);
   remark_unless(element, "mode", "Single Run Simulation", "a scenario is a single run", remarks);
   if (const auto accuracy = element.child("accuracy")) {
     remark_no_effect(remarks, *accuracy,
-                     "it is the sampling of the thesis's program in ms; <tick> and <stepWidth> count here");
+                     "it is the sampling time of the thesis's program in ms; this program uses <tick> and <stepWidth>");
   }
 }
 

@@ -4,8 +4,8 @@
 
 namespace proleg::sim {
 
-/// Streams of Pcg32 with the scenario's seed: who draws from which, so that no two draw the same numbers. The kernels
-/// have 0 to 63, one for each joint.
+/// Streams of Pcg32 with the scenario's seed. Each use has its own, so that no two draw the same numbers. The kernels
+/// use 0 to 63, one for each joint.
 namespace random_stream {
 inline constexpr std::uint64_t crystals = 1'000'000;  ///< of the modules, plus the joint
 inline constexpr std::uint64_t boards = 2'000'000;    ///< plus the joint

@@ -28,7 +28,7 @@ Scenario read_scenario(const std::filesystem::path& path, FileSource& files) {
   }
   for (const XmlElement& child : root.children()) {
     if (child.is("sensor") || child.is("sensors")) {
-      remark_no_effect(scenario.remarks, child, "every link has two touch sensors under it anyway");
+      remark_no_effect(scenario.remarks, child, "every link has two touch sensors under it");
     }
   }
 

@@ -1,19 +1,19 @@
 #pragma once
 
-// The way in: scenarios from XML files, in the format of the thesis (listings B.1, B.2, B.5, B.6) with a few additions.
-// The top-level file names the others; a path is looked for from the folder of the file that names it, then from the
-// folder of the top-level file:
+// Scenarios from XML files, in the format of the thesis (listings B.1, B.2, B.5, B.6) with a few additions. The
+// top-level file names the others. A path is relative to the folder of the file that contains it; if there is no such
+// file, to the folder of the top-level file:
 //
 //   <simulation>
 //     <robot>caterpillar.robot.xml</robot>                    robot_reader.hpp, kinbody_reader.hpp, joint_reader.hpp,
 //                                                             geometry_reader.hpp, mass_reader.hpp, module_reader.hpp
 //     <actuation>uniform.actuation.xml</actuation>            actuation_reader.hpp
 //     <environment>flat.environment.xml</environment>         environment_reader.hpp
-//     <simulationProperties>...</simulationProperties>        properties_reader.hpp; may be left out
+//     <simulationProperties>...</simulationProperties>        properties_reader.hpp; optional
 //   </simulation>
 //
-// Tags and attributes may be written in any case; names of things keep theirs. What a reader does not know is an error
-// that names what it knows. Lengths are metres, masses kilograms, angles degrees unless a tag says otherwise.
+// The case of tags and attributes does not matter; the case of names does. An unknown tag or attribute is an error that
+// lists the known ones. Lengths are metres, masses kilograms, angles degrees unless a tag says otherwise.
 
 #include <filesystem>
 #include <optional>
@@ -23,7 +23,7 @@
 
 namespace proleg::sim {
 
-/// Where the reader gets its files from; the tests and the fuzzer give it files in memory.
+/// Where the reader gets its files from: a disk or, in tests and the fuzzer, memory.
 class FileSource {
  public:
   virtual ~FileSource() = default;
@@ -41,15 +41,15 @@ class DiskFiles final : public FileSource {
 [[nodiscard]] Scenario read_scenario(const std::filesystem::path& path, FileSource& files);
 
 /// Applies a `--set` word to a scenario: [MODULE.]NAME[:JOINT]=VALUE[@TICK]
-///   MODULE  name of an algorithm, or 1 to 4 for its place in the actuation file; needed if several modules that drive
-///           the joint have the name
+///   MODULE  name of an algorithm, or 1 to 4 for its position in the actuation file; required if several modules that
+///           drive the joint have a value of that name
 ///   NAME    a parameter, or an internal value
 ///   JOINT   a joint of the robot file; without it all joints of the module
 ///   VALUE   a decimal number in the declared unit
 ///   TICK    0 to 2^32 - 1
-/// A parameter without a tick gets another start value, with a tick it changes in flight. An internal value is
-/// overwritten (a distortion) at the tick, by default 0. Throws InputError with the word as its file, and then leaves
-/// the scenario as it was.
+/// A parameter without a tick gets a new start value; with a tick it changes in flight. An internal value is
+/// overwritten (a distortion) at the tick, by default 0. Throws InputError with the word as its file, and then does not
+/// change the scenario.
 void apply_setting(Scenario& scenario, const std::string& word);
 
 }  // namespace proleg::sim

@@ -1,6 +1,5 @@
 #include "sim/scenario/robot_reader.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include "shared/computer/text/text.hpp"
@@ -15,14 +14,6 @@ namespace {
 constexpr Range gains{1e-3, 1e4, "1/s"};
 constexpr Range servo_periods{0.1, 100.0, "ms"};
 constexpr Range servo_latencies{0.0, 100.0, "ms"};
-
-std::uint32_t read_microseconds(const XmlElement& element, const Range& milliseconds) {
-  const double microseconds = read_quantity(element, milliseconds) * 1000.0;
-  if (std::abs(microseconds - std::round(microseconds)) > 1e-6) {
-    element.refuse(in_quotes(element.text({"unit"})) + " in " + element.label(), "a whole number of microseconds");
-  }
-  return static_cast<std::uint32_t>(std::round(microseconds));
-}
 
 ServoModel read_servo(const XmlElement& element) {
   element.allow({}, {"gain", "period", "latency"});
@@ -47,9 +38,9 @@ RobotDescription read_robot(const XmlDocument& document, SourceSet& sources, std
   const KinBodyContents contents = read_kinbody(root, KinBodyUse::robot, sources, remarks, extra_tags);
   for (const XmlElement& child : root.children()) {
     if (child.is("AttachedSensor") || child.is("sensor")) {
-      remark_no_effect(remarks, child, "every link has two touch sensors under it anyway");
+      remark_no_effect(remarks, child, "every link has two touch sensors under it");
     } else if (child.is("Manipulator")) {
-      remark_no_effect(remarks, child, "a crawling robot has none");
+      remark_no_effect(remarks, child, "a crawling robot has no manipulator");
     }
   }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Everything that a *.simulation.xml file and the files it names say, checked: whoever holds a Scenario can run it.
+// The contents of a *.simulation.xml file and of the files that it names, checked: every Scenario can be run.
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ enum class Solver : std::uint8_t {
   iterative,  ///< approximate, in time proportional to the number of links
 };
 
-/// A parameter (or, from `--set`, an internal value) given a value on one joint.
+/// A value for a parameter (or, from `--set`, an internal value) of one joint.
 struct Setting {
   std::uint8_t slot = 0;
   std::uint8_t joint = 0;  ///< kernel order
@@ -42,7 +42,7 @@ struct SourceFile {
   std::string text;
 };
 
-/// What the kernel cuts the set-points of a joint to: 90 degrees = 2^30, within +-90 degrees.
+/// The kernel limits the set-points of a joint to this range: 90 degrees = 2^30, within +-90 degrees.
 struct JointLimits {
   std::int32_t lower = -(1 << 30);
   std::int32_t upper = 1 << 30;
@@ -64,8 +64,8 @@ struct Scenario {
   Solver solver = Solver::automatic;
   double contact_noise = 0.0;  ///< probability that a touch sensor reads wrong at a tick; 0 to 1, drawn with the seed
 
-  std::vector<SourceFile> sources;   ///< every file read, the top-level file first
-  std::vector<std::string> remarks;  ///< what a user may want to know: the joint map, tags without effect
+  std::vector<SourceFile> sources;   ///< every file, the top-level file first
+  std::vector<std::string> remarks;  ///< for the user: the joint map, tags without effect
 };
 
 /// The ticks of a run: the duration, rounded to whole ticks; at least 1.

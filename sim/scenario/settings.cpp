@@ -1,224 +1,21 @@
 #include "sim/scenario/settings.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <optional>
 #include <tuple>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
-#include "sim/scenario/reader.hpp"
 
 namespace proleg::sim {
 namespace {
 
-auto place_of(const Setting& setting) {
-  return std::tuple(setting.slot, setting.joint, setting.internal, setting.index);
-}
-
-/// Puts a setting into an ordered list, over one for the same place.
-void put(std::vector<Setting>& settings, const Setting& setting) {
-  const auto position = std::ranges::lower_bound(settings, place_of(setting), {}, place_of);
-  if (position != settings.end() && place_of(*position) == place_of(setting)) {
-    *position = setting;
-  } else {
-    settings.insert(position, setting);
-  }
-}
+auto key_of(const Setting& setting) { return std::tuple(setting.slot, setting.joint, setting.internal, setting.index); }
 
 std::string range_text(const Parameter& parameter) {
   const std::string symbol = scale_of(parameter.unit).symbol;
   return std::string(format_decimal(parameter.minimum, parameter.unit).view()) + " to " +
          std::string(format_decimal(parameter.maximum, parameter.unit).view()) + (symbol.empty() ? "" : " " + symbol);
-}
-
-std::vector<unsigned> used_slots(const Scenario& scenario) {
-  std::vector<unsigned> slots;
-  for (unsigned slot = 0; slot < max_slots; ++slot) {
-    if (scenario.kernel.slots[slot].algorithm != nullptr) {
-      slots.push_back(slot);
-    }
-  }
-  return slots;
-}
-
-/// A `--set` word taken apart: [MODULE.]VALUE_NAME[:JOINT]=NUMBER[@TICK].
-struct SettingWord {
-  std::string word;
-  std::optional<std::string> module;
-  std::string name;
-  std::optional<std::string> joint;
-  std::string number;
-  std::optional<std::string> tick;
-
-  [[noreturn]] void refuse(const std::string& found, const std::string& expected) const {
-    throw InputError(shortened(word), 0, found, expected);
-  }
-};
-
-SettingWord take_apart(const std::string& text) {
-  SettingWord word;
-  word.word = text;
-  const std::size_t equals = text.rfind('=');
-  if (equals == std::string::npos) {
-    word.refuse("no '='", "[MODULE.]NAME[:JOINT]=VALUE[@TICK]");
-  }
-  word.name = text.substr(0, equals);
-  word.number = text.substr(equals + 1);
-  if (const std::size_t at = word.number.find('@'); at != std::string::npos) {
-    word.tick = word.number.substr(at + 1);
-    word.number.resize(at);
-  }
-  if (const std::size_t colon = word.name.find(':'); colon != std::string::npos) {
-    word.joint = word.name.substr(colon + 1);
-    word.name.resize(colon);
-  }
-  if (const std::size_t dot = word.name.find('.'); dot != std::string::npos) {
-    word.module = word.name.substr(0, dot);
-    word.name.erase(0, dot + 1);
-  }
-  return word;
-}
-
-/// What a name means in one of the slots.
-struct Meaning {
-  unsigned slot;
-  bool internal;
-  unsigned index;
-};
-
-class Resolver {
- public:
-  Resolver(const Scenario& scenario, const SettingWord& word) : scenario_(&scenario), word_(&word) {}
-
-  /// The kernel joint of the word, or -1 for all.
-  [[nodiscard]] int joint() const {
-    if (!word_->joint) {
-      return -1;
-    }
-    const int joint = find_joint(scenario_->robot, *word_->joint);
-    if (joint < 0) {
-      word_->refuse("unknown joint " + in_quotes(*word_->joint),
-                    "one of " + listed(joint_names(scenario_->robot, all_joints())));
-    }
-    return joint;
-  }
-
-  [[nodiscard]] Meaning meaning(int joint) const {
-    const std::vector<unsigned> slots = candidate_slots();
-    std::vector<Meaning> meanings = find(slots, false);
-    if (meanings.empty()) {
-      meanings = find(slots, true);
-    }
-    if (meanings.empty()) {
-      refuse_name(slots);
-    }
-    if (joint >= 0) {
-      const unsigned slot = meanings.front().slot;
-      std::erase_if(meanings, [this, joint](const Meaning& meaning) {
-        return !scenario_->kernel.slots[meaning.slot].group.contains(static_cast<unsigned>(joint));
-      });
-      if (meanings.empty()) {
-        word_->refuse(
-            "joint " + in_quotes(*word_->joint) + ", which " + slot_name(*scenario_, slot) + " does not drive",
-            "one of " + listed(joint_names(scenario_->robot, scenario_->kernel.slots[slot].group)));
-      }
-    }
-    if (meanings.size() > 1) {
-      std::vector<std::string> names;
-      names.reserve(meanings.size());
-      for (const Meaning& meaning : meanings) {
-        names.push_back(slot_name(*scenario_, meaning.slot));
-      }
-      word_->refuse(in_quotes(word_->name) + " in several modules",
-                    "MODULE." + shortened(word_->name) + " with one of " + listed(names));
-    }
-    return meanings.front();
-  }
-
- private:
-  [[nodiscard]] JointMask all_joints() const { return JointMask::first(scenario_->kernel.joint_count); }
-
-  [[nodiscard]] const Declaration& declaration(unsigned slot) const {
-    return scenario_->kernel.slots[slot].algorithm->declaration();
-  }
-
-  [[nodiscard]] std::vector<unsigned> candidate_slots() const {
-    std::vector<unsigned> slots = word_->module ? find_slots(*scenario_, *word_->module) : used_slots(*scenario_);
-    if (slots.empty()) {
-      word_->refuse(word_->module ? "unknown module " + in_quotes(*word_->module) : "a scenario without modules",
-                    "one of " + listed(slot_names(*scenario_)));
-    }
-    return slots;
-  }
-
-  [[nodiscard]] std::vector<Meaning> find(const std::vector<unsigned>& slots, bool internal) const {
-    std::vector<Meaning> meanings;
-    for (const unsigned slot : slots) {
-      const int index = internal ? find_internal_value(declaration(slot), word_->name)
-                                 : find_parameter(declaration(slot), word_->name);
-      if (index >= 0) {
-        meanings.push_back({slot, internal, static_cast<unsigned>(index)});
-      }
-    }
-    return meanings;
-  }
-
-  [[noreturn]] void refuse_name(const std::vector<unsigned>& slots) const {
-    std::vector<std::string> parameters;
-    std::vector<std::string> internal_values;
-    const auto add = [](std::vector<std::string>& names, std::string_view name) {
-      if (std::ranges::find(names, name) == names.end()) {
-        names.emplace_back(name);
-      }
-    };
-    for (const unsigned slot : slots) {
-      for (const Parameter& parameter : declaration(slot).parameters) {
-        add(parameters, parameter.name);
-      }
-      for (const InternalValue& value : declaration(slot).internal_values) {
-        add(internal_values, value.name);
-      }
-    }
-    word_->refuse("unknown parameter " + in_quotes(word_->name),
-                  "one of " + listed(parameters) +
-                      (internal_values.empty() ? "" : ", or of the internal values " + listed(internal_values)));
-  }
-
-  const Scenario* scenario_;
-  const SettingWord* word_;
-};
-
-std::uint32_t parse_tick(const SettingWord& word) {
-  if (!word.tick) {
-    return 0;
-  }
-  const std::string& text = *word.tick;
-  std::uint32_t tick = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), tick);
-  if (error != std::errc{} || end != text.data() + text.size()) {
-    word.refuse("tick " + in_quotes(text), "a whole number from 0 to 4294967295");
-  }
-  return tick;
-}
-
-std::int32_t parse_internal_value(const InternalValue& internal, const SettingWord& word) {
-  const DecimalResult result = parse_decimal(word.number, internal.unit);
-  if (result.error != DecimalError::none) {
-    const std::string symbol = scale_of(internal.unit).symbol;
-    word.refuse(in_quotes(word.number) + " for " + in_quotes(internal.name),
-                "a number that fits" + (symbol.empty() ? "" : ", in " + symbol));
-  }
-  return result.raw;
-}
-
-Change& change_at(std::vector<Change>& changes, std::uint32_t tick) {
-  const auto position = std::ranges::lower_bound(changes, tick, {}, &Change::tick);
-  if (position != changes.end() && position->tick == tick) {
-    return *position;
-  }
-  return *changes.insert(position, Change{tick, {}});
 }
 
 }  // namespace
@@ -232,101 +29,31 @@ std::int32_t parse_parameter(const Parameter& parameter, const std::string& text
   return result.raw;
 }
 
+void put_setting(std::vector<Setting>& settings, const Setting& setting) {
+  const auto position = std::ranges::lower_bound(settings, key_of(setting), {}, key_of);
+  if (position != settings.end() && key_of(*position) == key_of(setting)) {
+    *position = setting;
+  } else {
+    settings.insert(position, setting);
+  }
+}
+
 void set_start_value(Scenario& scenario, const Setting& setting) {
   const Declaration& declaration = scenario.kernel.slots[setting.slot].algorithm->declaration();
   if (setting.value == declaration.parameters[setting.index].default_value) {
-    std::erase_if(scenario.settings, [&](const Setting& other) { return place_of(other) == place_of(setting); });
+    std::erase_if(scenario.settings, [&](const Setting& other) { return key_of(other) == key_of(setting); });
   } else {
-    put(scenario.settings, setting);
+    put_setting(scenario.settings, setting);
   }
 }
 
-std::int32_t start_value(const Scenario& scenario, const Setting& place) {
-  const auto position = std::ranges::lower_bound(scenario.settings, place_of(place), {}, place_of);
-  return position != scenario.settings.end() && place_of(*position) == place_of(place)
+std::int32_t start_value(const Scenario& scenario, unsigned slot, unsigned joint, unsigned parameter) {
+  const auto key = key_of({static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(joint),
+                           static_cast<std::uint8_t>(parameter), false, 0});
+  const auto position = std::ranges::lower_bound(scenario.settings, key, {}, key_of);
+  return position != scenario.settings.end() && key_of(*position) == key
              ? position->value
-             : scenario.kernel.slots[place.slot].algorithm->declaration().parameters[place.index].default_value;
-}
-
-std::string slot_name(const Scenario& scenario, unsigned slot) {
-  return std::string(scenario.kernel.slots[slot].algorithm->declaration().name) + " (" + std::to_string(slot + 1) + ")";
-}
-
-std::vector<std::string> slot_names(const Scenario& scenario) {
-  std::vector<std::string> names;
-  for (const unsigned slot : used_slots(scenario)) {
-    names.push_back(slot_name(scenario, slot));
-  }
-  return names;
-}
-
-std::vector<unsigned> find_slots(const Scenario& scenario, const std::string& module) {
-  std::vector<unsigned> slots = used_slots(scenario);
-  std::erase_if(slots, [&](unsigned slot) {
-    return module != scenario.kernel.slots[slot].algorithm->declaration().name && module != std::to_string(slot + 1);
-  });
-  return slots;
-}
-
-std::vector<std::string> parameter_names(const Declaration& declaration) {
-  std::vector<std::string> names;
-  for (const Parameter& parameter : declaration.parameters) {
-    names.emplace_back(parameter.name);
-  }
-  return names;
-}
-
-std::vector<std::string> joint_names(const RobotModel& robot, JointMask group) {
-  std::vector<std::string> in_file_order(robot.joints.size());
-  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-    if (group.contains(static_cast<unsigned>(j))) {
-      in_file_order[robot.joints[j].file_index] = robot.joints[j].name;
-    }
-  }
-  std::erase(in_file_order, "");
-  return in_file_order;
-}
-
-int find_joint(const RobotModel& robot, const std::string& name) {
-  const auto joint = std::ranges::find(robot.joints, name, &Joint::name);
-  return joint == robot.joints.end() ? -1 : static_cast<int>(joint - robot.joints.begin());
-}
-
-void apply_setting(Scenario& scenario, const std::string& text) {
-  const SettingWord word = take_apart(text);
-  const Resolver resolver(scenario, word);
-  const int joint = resolver.joint();
-  const Meaning meaning = resolver.meaning(joint);
-  const Slot& slot = scenario.kernel.slots[meaning.slot];
-  const Declaration& declaration = slot.algorithm->declaration();
-
-  Setting setting;
-  setting.slot = static_cast<std::uint8_t>(meaning.slot);
-  setting.index = static_cast<std::uint8_t>(meaning.index);
-  setting.internal = meaning.internal;
-  setting.value = meaning.internal
-                      ? parse_internal_value(declaration.internal_values[meaning.index], word)
-                      : parse_parameter(declaration.parameters[meaning.index], word.number, shortened(word.word), 0);
-  const std::uint32_t tick = parse_tick(word);
-  const bool in_flight = meaning.internal || word.tick.has_value();
-  for (unsigned j = 0; j < scenario.kernel.joint_count; ++j) {
-    if (!slot.group.contains(j) || (joint >= 0 && j != static_cast<unsigned>(joint))) {
-      continue;
-    }
-    setting.joint = static_cast<std::uint8_t>(j);
-    if (in_flight) {
-      std::vector<Setting>& settings = change_at(scenario.changes, tick).settings;
-      put(settings, setting);
-      const auto of_joint = std::ranges::count(settings, setting.joint, &Setting::joint);
-      if (of_joint > static_cast<std::ptrdiff_t>(max_staged_values)) {
-        word.refuse("more than " + std::to_string(max_staged_values) + " values for joint " +
-                        in_quotes(scenario.robot.joints[j].name) + " at tick " + std::to_string(tick),
-                    "as many as a module has room for");
-      }
-    } else {
-      set_start_value(scenario, setting);
-    }
-  }
+             : scenario.kernel.slots[slot].algorithm->declaration().parameters[parameter].default_value;
 }
 
 }  // namespace proleg::sim

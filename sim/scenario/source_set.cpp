@@ -12,11 +12,11 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::size_t most_file_bytes = std::size_t{16} << 20U;
-constexpr std::size_t most_bytes = std::size_t{64} << 20U;
-constexpr std::size_t most_includes = 1000;
-constexpr int deepest_include = 32;
-constexpr std::size_t longest_path = 4096;
+constexpr std::size_t max_file_bytes = std::size_t{16} << 20U;
+constexpr std::size_t max_bytes = std::size_t{64} << 20U;
+constexpr std::size_t max_includes = 1000;
+constexpr int max_include_depth = 32;
+constexpr std::size_t max_path_size = 4096;
 
 constexpr const char* readable_file = "a readable file of at most 16 MiB";
 
@@ -28,7 +28,7 @@ std::optional<std::string> DiskFiles::read(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, error)) {
     return std::nullopt;
   }
-  if (const auto size = std::filesystem::file_size(path, error); error || size > most_file_bytes) {
+  if (const auto size = std::filesystem::file_size(path, error); error || size > max_file_bytes) {
     return std::nullopt;
   }
   std::ifstream stream(path, std::ios::binary);
@@ -48,7 +48,7 @@ const std::string* SourceSet::text_of(const std::filesystem::path& path) {
     return &(*record_)[known->second].text;
   }
   std::optional<std::string> text = files_->read(path);
-  if (!text || text->size() > most_file_bytes) {
+  if (!text || text->size() > max_file_bytes) {
     return nullptr;
   }
   recorded_.emplace(name, record_->size());
@@ -59,17 +59,17 @@ const std::string* SourceSet::text_of(const std::filesystem::path& path) {
 std::unique_ptr<XmlDocument> SourceSet::open_top() {
   const std::string* const text = text_of(top_);
   if (text == nullptr) {
-    throw InputError(name_of(top_), 0, "no such file, or not a readable one", readable_file);
+    throw InputError(name_of(top_), 0, "no file that can be read", readable_file);
   }
   parsed_bytes_ += text->size();
   return std::make_unique<XmlDocument>(top_, *text, nullptr);
 }
 
 std::unique_ptr<XmlDocument> SourceSet::open(const XmlElement& mention, const std::string& reference) {
-  if (reference.empty() || reference.size() > longest_path) {
+  if (reference.empty() || reference.size() > max_path_size) {
     mention.refuse(
         reference.empty() ? "an empty path" : "a path of " + std::to_string(reference.size()) + " characters",
-        "a path of 1 to " + std::to_string(longest_path) + " characters");
+        "a path of 1 to " + std::to_string(max_path_size) + " characters");
   }
   const XmlDocument& including = mention.document();
   std::filesystem::path path = including.path().parent_path() / reference;
@@ -80,7 +80,7 @@ std::unique_ptr<XmlDocument> SourceSet::open(const XmlElement& mention, const st
   }
   if (text == nullptr) {
     mention.refuse("no such file " + in_quotes(reference),
-                   std::string(readable_file) + ", named from the folder of this file or of the top-level file");
+                   std::string(readable_file) + ", relative to the folder of this file or of the top-level file");
   }
 
   int depth = 0;
@@ -90,12 +90,14 @@ std::unique_ptr<XmlDocument> SourceSet::open(const XmlElement& mention, const st
       mention.refuse("a cycle: " + in_quotes(reference) + " includes itself", "files that do not include themselves");
     }
   }
-  if (depth > deepest_include) {
-    mention.refuse("files nested deeper than " + std::to_string(deepest_include), "at most that");
+  if (depth > max_include_depth) {
+    mention.refuse("files nested deeper than " + std::to_string(max_include_depth),
+                   "at most " + std::to_string(max_include_depth) + " levels");
   }
   parsed_bytes_ += text->size();
-  if (++includes_ > most_includes || parsed_bytes_ > most_bytes) {
-    mention.refuse("more than " + std::to_string(most_includes) + " included files or 64 MiB", "at most that in all");
+  if (++includes_ > max_includes || parsed_bytes_ > max_bytes) {
+    mention.refuse("more than " + std::to_string(max_includes) + " included files or 64 MiB",
+                   "at most that for all files of a scenario");
   }
   return std::make_unique<XmlDocument>(std::move(path), *text, &including);
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// The files of a scenario: finds what a file names, keeps what was read, and bounds it.
+// The files of a scenario: finds the files that a file names, keeps their text, and limits their number and size.
 
 #include <cstddef>
 #include <filesystem>
@@ -16,15 +16,15 @@ namespace proleg::sim {
 
 class SourceSet {
  public:
-  /// Every file that is read is added to `record` once, in the order of reading.
+  /// Adds every file to `record` once, in the order of reading.
   SourceSet(FileSource& files, std::filesystem::path top, std::vector<SourceFile>& record)
       : files_(&files), top_(std::move(top)), record_(&record) {}
 
   [[nodiscard]] std::unique_ptr<XmlDocument> open_top();
 
-  /// The file that `mention` names: `reference` is looked for from the folder of the file that has the mention, then
-  /// from the folder of the top-level file. Refuses a file that includes itself, nesting deeper than 32 files, more
-  /// than 1000 includes, and more than 64 MiB in all.
+  /// The file that the element `mention` names. `reference` is relative to the folder of the file with the mention; if
+  /// there is no such file, to the folder of the top-level file. Throws InputError for a file that includes itself,
+  /// more than 32 levels, more than 1000 includes, and more than 64 MiB in all.
   [[nodiscard]] std::unique_ptr<XmlDocument> open(const XmlElement& mention, const std::string& reference);
 
  private:

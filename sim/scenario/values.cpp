@@ -15,33 +15,34 @@ namespace {
 
 constexpr Range angles{-1e4, 1e4, "degrees"};
 constexpr Range directions{-1e4, 1e4, ""};
-constexpr double shortest_direction = 1e-6;
+constexpr double min_direction = 1e-6;
 
 std::string described(const Range& range) {
-  return number_text(range.lowest) + " to " + number_text(range.highest) +
+  return number_text(range.min) + " to " + number_text(range.max) +
          (range.unit.empty() ? "" : " " + std::string(range.unit));
 }
 
-/// What an element holds, or one of its attributes, with the words of a message for where that is.
-struct Held {
+/// The text of an element or attribute, and how a message names it with its place.
+struct LocatedText {
   std::string text;
-  std::string place;
+  std::string in_message;
 };
 
-Held text_of(const XmlElement& element) {
+LocatedText text_of(const XmlElement& element) {
   return {element.text(), in_quotes(element.text()) + " in " + element.label()};
 }
 
-Held attribute_of(const XmlElement& element, std::string_view attribute) {
+LocatedText attribute_of(const XmlElement& element, std::string_view attribute) {
   std::string text = element.required_attribute(attribute);
-  std::string place = std::string(attribute) + " " + in_quotes(text) + " in " + element.label();
-  return {std::move(text), std::move(place)};
+  std::string in_message = std::string(attribute) + " " + in_quotes(text) + " in " + element.label();
+  return {std::move(text), std::move(in_message)};
 }
 
-double checked_number(const XmlElement& element, std::string_view word, const std::string& place, const Range& range) {
+double checked_number(const XmlElement& element, std::string_view word, const std::string& in_message,
+                      const Range& range) {
   const std::optional<double> value = parse_number(word);
-  if (!value || *value < range.lowest || *value > range.highest) {
-    element.refuse(place, "a number from " + described(range));
+  if (!value || *value < range.min || *value > range.max) {
+    element.refuse(in_message, "a number from " + described(range));
   }
   return *value;
 }
@@ -50,22 +51,24 @@ double checked_number(const XmlElement& element, std::string_view word, const Ra
   return checked_number(element, word, in_quotes(word) + " in " + element.label(), range);
 }
 
-std::uint64_t checked_whole(const XmlElement& element, const Held& held, std::uint64_t lowest, std::uint64_t highest) {
-  const std::optional<std::uint64_t> value = parse_whole<std::uint64_t>(held.text);
-  if (!value || *value < lowest || *value > highest) {
-    element.refuse(held.place, "a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest));
+std::uint64_t checked_whole(const XmlElement& element, const LocatedText& located, std::uint64_t min,
+                            std::uint64_t max) {
+  const std::optional<std::uint64_t> value = parse_whole<std::uint64_t>(located.text);
+  if (!value || *value < min || *value > max) {
+    element.refuse(located.in_message, "a whole number from " + std::to_string(min) + " to " + std::to_string(max));
   }
   return *value;
 }
 
-std::size_t checked_choice(const XmlElement& element, const Held& held, std::span<const std::string_view> words) {
-  const auto found = std::ranges::find(words, lower_case(held.text));
+std::size_t checked_choice(const XmlElement& element, const LocatedText& located,
+                           std::span<const std::string_view> words) {
+  const auto found = std::ranges::find(words, lower_case(located.text));
   if (found == words.end()) {
     std::string known;
     for (std::size_t i = 0; i < words.size(); ++i) {
       known += (i == 0 ? "'" : i + 1 == words.size() ? " or '" : ", '") + std::string(words[i]) + "'";
     }
-    element.refuse(held.place, known);
+    element.refuse(located.in_message, known);
   }
   return static_cast<std::size_t>(found - words.begin());
 }
@@ -77,17 +80,17 @@ double read_number(const XmlElement& element, const Range& range, std::initializ
 }
 
 double read_number_attribute(const XmlElement& element, std::string_view attribute, const Range& range) {
-  const Held held = attribute_of(element, attribute);
-  return checked_number(element, held.text, held.place, range);
+  const LocatedText located = attribute_of(element, attribute);
+  return checked_number(element, located.text, located.in_message, range);
 }
 
-std::uint64_t read_whole(const XmlElement& element, std::uint64_t lowest, std::uint64_t highest) {
-  return checked_whole(element, text_of(element), lowest, highest);
+std::uint64_t read_whole(const XmlElement& element, std::uint64_t min, std::uint64_t max) {
+  return checked_whole(element, text_of(element), min, max);
 }
 
-std::uint64_t read_whole_attribute(const XmlElement& element, std::string_view attribute, std::uint64_t lowest,
-                                   std::uint64_t highest) {
-  return checked_whole(element, attribute_of(element, attribute), lowest, highest);
+std::uint64_t read_whole_attribute(const XmlElement& element, std::string_view attribute, std::uint64_t min,
+                                   std::uint64_t max) {
+  return checked_whole(element, attribute_of(element, attribute), min, max);
 }
 
 std::size_t read_choice(const XmlElement& element, std::initializer_list<std::string_view> words) {
@@ -105,6 +108,14 @@ double read_quantity(const XmlElement& element, const Range& range) {
     element.refuse("unit " + in_quotes(*unit) + " in " + element.label(), "unit '" + std::string(range.unit) + "'");
   }
   return value;
+}
+
+std::uint32_t read_microseconds(const XmlElement& element, const Range& milliseconds) {
+  const double microseconds = read_quantity(element, milliseconds) * 1000.0;
+  if (std::abs(microseconds - std::round(microseconds)) > 1e-6) {
+    element.refuse(in_quotes(element.text({"unit"})) + " in " + element.label(), "a whole number of microseconds");
+  }
+  return static_cast<std::uint32_t>(std::round(microseconds));
 }
 
 std::vector<double> read_numbers(const XmlElement& element, std::size_t count, const Range& range) {
@@ -127,10 +138,10 @@ Eigen::Vector3d read_vector(const XmlElement& element, const Range& range) {
 }
 
 std::string checked_name(const XmlElement& element, std::string name) {
-  constexpr std::size_t longest_name = 64;
-  if (name.empty() || name.size() > longest_name) {
+  constexpr std::size_t max_name_size = 64;
+  if (name.empty() || name.size() > max_name_size) {
     element.refuse(name.empty() ? "an empty name in " + element.label() : "the long name " + in_quotes(name),
-                   "a name of 1 to " + std::to_string(longest_name) + " characters");
+                   "a name of 1 to " + std::to_string(max_name_size) + " characters");
   }
   if (one_line(name) != name) {
     element.refuse("control characters in the name " + in_quotes(name), "a name of one line");
@@ -146,7 +157,7 @@ Pose read_pose(const XmlElement& element) {
     } else if (child.is("rotationaxis")) {
       const std::vector<double> numbers = read_numbers(child, 4, angles);
       const Eigen::Vector3d axis(numbers[0], numbers[1], numbers[2]);
-      if (axis.norm() < shortest_direction) {
+      if (axis.norm() < min_direction) {
         child.refuse(in_quotes(child.text()) + " in " + child.label(), "an axis that is not 0, and degrees");
       }
       const double angle = numbers[3] * std::numbers::pi / 180.0;
@@ -154,7 +165,7 @@ Pose read_pose(const XmlElement& element) {
     } else if (child.is("quat")) {
       const std::vector<double> numbers = read_numbers(child, 4, directions);
       const Eigen::Quaterniond rotation(numbers[0], numbers[1], numbers[2], numbers[3]);
-      if (rotation.norm() < shortest_direction) {
+      if (rotation.norm() < min_direction) {
         child.refuse(in_quotes(child.text()) + " in " + child.label(), "a quaternion w x y z that is not 0");
       }
       pose.orientation = rotation.normalized() * pose.orientation;

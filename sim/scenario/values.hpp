@@ -1,7 +1,7 @@
 #pragma once
 
-// Numbers and names out of elements, with the ranges that hold everywhere. The ranges are generous; they exist so that
-// no sum, product or matrix of a scenario overflows or degenerates.
+// Reads numbers and names from elements. The ranges are the same everywhere and generous; they ensure that no sum,
+// product or matrix of a scenario overflows or degenerates.
 
 #include <array>
 #include <cstddef>
@@ -18,10 +18,10 @@
 
 namespace proleg::sim {
 
-/// Lowest and highest allowed value, both included.
+/// Allowed values, bounds included.
 struct Range {
-  double lowest;
-  double highest;
+  double min;
+  double max;
   std::string_view unit;
 };
 
@@ -31,22 +31,25 @@ inline constexpr Range masses{1e-6, 1e4, "kg"};
 inline constexpr Range densities{1e-9, 1e9, "kg/m^3"};
 inline constexpr Range frictions{0.0, 1e3, ""};
 
-/// One number, which is all that the element holds besides these attributes.
+/// One number; the element may have only these attributes besides.
 [[nodiscard]] double read_number(const XmlElement& element, const Range& range,
                                  std::initializer_list<std::string_view> attributes = {});
 
-/// As read_number; an attribute `unit` may say the unit, but no other than that of the range.
+/// As read_number; an attribute `unit` is optional and must be the unit of the range.
 [[nodiscard]] double read_quantity(const XmlElement& element, const Range& range);
 
-/// A number that an attribute holds.
+/// A quantity in ms that is a whole number of microseconds.
+[[nodiscard]] std::uint32_t read_microseconds(const XmlElement& element, const Range& milliseconds);
+
+/// The number in an attribute.
 [[nodiscard]] double read_number_attribute(const XmlElement& element, std::string_view attribute, const Range& range);
 
-/// A whole number from lowest to highest, which is all that the element holds.
-[[nodiscard]] std::uint64_t read_whole(const XmlElement& element, std::uint64_t lowest, std::uint64_t highest);
+/// A whole number from min to max, the only content of the element.
+[[nodiscard]] std::uint64_t read_whole(const XmlElement& element, std::uint64_t min, std::uint64_t max);
 [[nodiscard]] std::uint64_t read_whole_attribute(const XmlElement& element, std::string_view attribute,
-                                                 std::uint64_t lowest, std::uint64_t highest);
+                                                 std::uint64_t min, std::uint64_t max);
 
-/// Position of the only word that the element holds, in any case, among these words in lower case.
+/// Position of the element's only word, in any case, among these words in lower case.
 [[nodiscard]] std::size_t read_choice(const XmlElement& element, std::initializer_list<std::string_view> words);
 [[nodiscard]] std::size_t read_choice_attribute(const XmlElement& element, std::string_view attribute,
                                                 std::initializer_list<std::string_view> words);
@@ -59,17 +62,18 @@ inline constexpr Range frictions{0.0, 1e3, ""};
 /// A name of 1 to 64 characters.
 [[nodiscard]] std::string checked_name(const XmlElement& element, std::string name);
 
-/// The tags that read_pose understands.
+/// The tags that read_pose reads.
 inline constexpr std::array<std::string_view, 3> pose_tags{"translation", "rotationaxis", "quat"};
 
-/// The pose that the <translation>, <rotationaxis> (x y z degrees) and <quat> (w x y z) of an element say. As in
-/// OpenRAVE, translations add up, and each rotation is applied after those before it; the two do not mix.
+/// The pose given by the <translation>, <rotationaxis> (x y z degrees) and <quat> (w x y z) of an element. As in
+/// OpenRAVE, translations add up, each rotation is applied after those before it, and rotations do not turn
+/// translations.
 [[nodiscard]] Pose read_pose(const XmlElement& element);
 
 /// The lists joined, for XmlElement::allow.
 [[nodiscard]] std::vector<std::string_view> joined(std::initializer_list<std::span<const std::string_view>> lists);
 
-/// Adds the remark that an element is accepted but does nothing.
+/// Adds the remark that an element is accepted but has no effect.
 void remark_no_effect(std::vector<std::string>& remarks, const XmlElement& element, std::string_view reason);
 
 }  // namespace proleg::sim

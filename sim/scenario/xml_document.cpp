@@ -29,7 +29,7 @@ int line_at(std::string_view text, std::size_t position) {
   return 1 + static_cast<int>(std::ranges::count(text.substr(0, position), '\n'));
 }
 
-/// Position of a character reference to the character 0. XML has no such character, and it would cut the text.
+/// Position of a character reference to the character 0, which XML does not allow and which would end the text early.
 std::optional<std::size_t> find_null_reference(std::string_view text) {
   for (std::size_t at = text.find("&#"); at != std::string_view::npos; at = text.find("&#", at + 1)) {
     std::size_t digit = at + 2;

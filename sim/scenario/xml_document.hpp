@@ -1,7 +1,7 @@
 #pragma once
 
-// An XML file as the readers see it: tags and attributes in any case, a line number for everything, and nothing
-// overlooked: whoever reads an element says which attributes and tags it may hold, and all else is an InputError.
+// An XML file for the readers. The case of tags and attributes does not matter, and everything has a line number. A
+// reader lists the attributes and tags that an element may have; anything else is an InputError.
 
 #include <filesystem>
 #include <initializer_list>
@@ -21,8 +21,8 @@ namespace proleg::sim {
 
 class XmlDocument;
 
-/// An element of a document that outlives it. Tags and attributes are asked for as OpenRAVE's documentation spells
-/// them; their case does not matter.
+/// An element of a document, which must outlive it. Readers spell tags and attributes as OpenRAVE's documentation does;
+/// files may use any case.
 class XmlElement {
  public:
   XmlElement(const tinyxml2::XMLElement& node, const XmlDocument& document) : node_(&node), document_(&document) {}
@@ -36,19 +36,19 @@ class XmlElement {
   /// Throws the InputError for this place.
   [[noreturn]] void refuse(const std::string& found, const std::string& expected) const;
 
-  /// Refuses attributes and tags beyond these, attributes given twice, and text.
+  /// Throws InputError for other attributes and tags, for an attribute given twice, and for text.
   void allow(std::span<const std::string_view> attributes, std::span<const std::string_view> tags) const;
   void allow(std::initializer_list<std::string_view> attributes, std::initializer_list<std::string_view> tags) const;
 
   [[nodiscard]] std::vector<XmlElement> children() const;
-  /// The only child with that tag; refuses a second one.
+  /// The only child with that tag. Throws InputError if there are two.
   [[nodiscard]] std::optional<XmlElement> child(std::string_view tag) const;
   [[nodiscard]] XmlElement required_child(std::string_view tag) const;
 
   [[nodiscard]] std::optional<std::string> attribute(std::string_view name) const;
   [[nodiscard]] std::string required_attribute(std::string_view name) const;
 
-  /// The text of an element without tags and with no other attributes than these, without blanks at its ends.
+  /// The text of an element that has no tags and only these attributes, without blanks at its ends.
   [[nodiscard]] std::string text(std::initializer_list<std::string_view> attributes = {}) const;
 
  private:
@@ -73,13 +73,13 @@ class XmlDocument {
   XmlDocument& operator=(const XmlDocument&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// The path as messages and the list of sources show it; the same file by another way has the same name.
+  /// The path as messages and the list of sources show it; two paths to the same file have the same name.
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const XmlDocument* includer() const { return includer_; }
 
-  /// The outermost element, which must have that tag.
+  /// The outermost element. Throws InputError if it has another tag.
   [[nodiscard]] XmlElement root(std::string_view tag) const;
-  /// As root(), which must have one of the tags.
+  /// The outermost element. Throws InputError if it has none of the tags.
   [[nodiscard]] XmlElement root(std::span<const std::string_view> tags) const;
   /// All comments of the file, in order.
   [[nodiscard]] std::vector<Comment> comments() const;

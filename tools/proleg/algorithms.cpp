@@ -1,10 +1,12 @@
-// proleg algorithms: what the algorithms of the core declare, and what a run is rated by, for people and, as
+// proleg algorithms: the declarations of the core's algorithms and the measures of a run, for people and, as
 // docs/algorithms.md and the table of docs/gait-measures.md, for the documentation.
 
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "shared/gait/registry.hpp"
 #include "sim/measure/measure.hpp"
@@ -43,7 +45,7 @@ void print_names(std::ostream& out) {
     const Declaration& declaration = algorithm_at(i).declaration();
     out << declaration.name << "\n    " << declaration.help << '\n';
   }
-  out << "\n'proleg algorithms NAME' lists the parameters of one of them.\n";
+  out << "\n'proleg algorithms NAME' lists the parameters of an algorithm.\n";
 }
 
 void print_markdown(std::ostream& out, const Declaration& declaration) {
@@ -52,15 +54,10 @@ void print_markdown(std::ostream& out, const Declaration& declaration) {
       << ".\n\n| parameter | unit | default | range | object | what it is |\n| --- | --- | --- | --- | --- | --- |\n";
   for (std::size_t i = 0; i < declaration.parameters.size(); ++i) {
     const Parameter& parameter = declaration.parameters[i];
-    constexpr const char* digits = "0123456789ABCDEF";
     const unsigned index = 0x3000U + 32U * declaration.id + static_cast<unsigned>(i);
-    std::string object = "0x";
-    for (const unsigned shift : {12U, 8U, 4U, 0U}) {
-      object += digits[(index >> shift) & 15U];
-    }
     out << "| `" << parameter.name << "` | " << symbol(parameter.unit) << " | "
-        << number(parameter.default_value, parameter.unit) << " | " << range(parameter) << " | " << object << " | "
-        << parameter.help << " |\n";
+        << number(parameter.default_value, parameter.unit) << " | " << range(parameter) << " | "
+        << hexadecimal(index, 4) << " | " << parameter.help << " |\n";
   }
   if (!declaration.internal_values.empty()) {
     out << "\n| internal value | unit | what it is |\n| --- | --- | --- |\n";
@@ -122,11 +119,11 @@ int describe(const std::string& name, bool markdown) {
   }
   const ActuationModule* algorithm = find_algorithm(std::string_view(name));
   if (algorithm == nullptr) {
-    std::string known;
+    std::vector<std::string> known;
     for (std::size_t i = 0; i < algorithm_count(); ++i) {
-      known += (known.empty() ? "" : ", ") + std::string(algorithm_at(i).declaration().name);
+      known.emplace_back(algorithm_at(i).declaration().name);
     }
-    throw InputError("NAME", 0, "'" + name + "'", "one of " + known);
+    throw InputError("NAME", 0, in_quotes(name), "one of " + listed(known));
   }
   if (markdown) {
     print_markdown(std::cout, algorithm->declaration());
@@ -140,13 +137,13 @@ int describe(const std::string& name, bool markdown) {
 
 int main(int argc, char** argv) {
   proleg::tools::CommandLine command_line(
-      "proleg algorithms", "Lists the algorithms that can move a robot, or the parameters of one of them.");
+      "proleg algorithms", "Lists the algorithms that can move a robot, or the parameters of one algorithm.");
   std::string name;
   bool markdown = false;
   command_line.add_option("NAME", name, "name of an algorithm");
-  command_line.add_flag("--markdown", markdown, "as Markdown tables");
+  command_line.add_flag("--markdown", markdown, "print Markdown tables");
   bool measures = false;
-  command_line.add_flag("--measures", measures, "lists what a run is rated by instead (docs/gait-measures.md)")
+  command_line.add_flag("--measures", measures, "list the measures of a run instead (docs/gait-measures.md)")
       .excludes("NAME");
   return command_line.run(argc, argv,
                           [&] { return measures ? print_measures(std::cout, markdown) : describe(name, markdown); });

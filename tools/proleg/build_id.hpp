@@ -2,8 +2,8 @@
 
 namespace proleg::tools {
 
-/// Version and git revision of this build. What is not committed counts: "-dirty" is followed by a hash of the changes,
-/// so that two builds with the same id are the same code.
+/// Version and git revision of this build. If files differ from that revision, "-dirty" and a hash of the changes
+/// follow, so that builds with the same id have the same code.
 extern const char* const build_id;
 
 }  // namespace proleg::tools

@@ -16,8 +16,8 @@ namespace proleg::tools {
 
 namespace {
 
-/// What a command line that cannot be parsed contains, or lacks.
-std::string found(const CLI::App& app, const CLI::ParseError& error) {
+/// What is wrong with a command line that cannot be parsed.
+std::string describe(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     std::string words;
     for (const std::string& word : app.remaining()) {
@@ -32,12 +32,12 @@ std::string found(const CLI::App& app, const CLI::ParseError& error) {
   return text;
 }
 
-/// A standard stream that the caller closed gets something that refuses to be used: else the next file that is opened,
-/// or the socket of a worker, would have its number and get what is printed.
+/// Opens standard streams that the caller closed, with a mode in which they cannot be used. Otherwise the next file, or
+/// the socket of a worker, would get the number of the stream and its output.
 void occupy_closed_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(stream, F_GETFD) == -1 && errno == EBADF) {
-      // The lowest free number, which is this one; it stays open. (If it fails, so will everything.)
+      // open() returns the lowest free number, which is this one. (If it fails, all else fails too.)
       static_cast<void>(open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY));
     }
   }
@@ -96,7 +96,7 @@ CommandLine::Option CommandLine::add_flag(const std::string& name, bool& variabl
 std::string CommandLine::name() const { return app_->get_name(); }
 
 int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
-  const auto complain = [&](const std::exception& error) {
+  const auto print_error = [&](const std::exception& error) {
     std::cerr << app_->get_name() << ": " << one_line(error.what()) << '\n';
   };
   occupy_closed_streams();
@@ -106,8 +106,8 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
     app_->exit(request);
     return exit_success;
   } catch (const CLI::ParseError& error) {
-    std::cerr << app_->get_name() << ": found " << one_line(found(*app_, error)) << ", expected what '"
-              << app_->get_name() << " --help' lists\n";
+    std::cerr << app_->get_name() << ": found " << one_line(describe(*app_, error))
+              << ", expected the options and arguments that '" << app_->get_name() << " --help' lists\n";
     return exit_bad_input;
   }
   try {
@@ -118,13 +118,13 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
     }
     return status;
   } catch (const InputError& error) {
-    complain(error);
+    print_error(error);
     return exit_bad_input;
   } catch (const BadInput& error) {
-    complain(error);
+    print_error(error);
     return exit_bad_input;
   } catch (const std::exception& error) {
-    complain(error);
+    print_error(error);
     return exit_failed;
   }
 }

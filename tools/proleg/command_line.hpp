@@ -19,24 +19,23 @@ inline constexpr int exit_success = 0;
 inline constexpr int exit_failed = 1;     ///< the run failed
 inline constexpr int exit_bad_input = 2;  ///< nothing was started
 
-/// What a user gave cannot be used; what() is the whole message. For what is found before anything was started and is
-/// not an InputError already.
+/// The user's input cannot be used, and nothing has started. what() is the whole message. For errors that do not have
+/// the form of an InputError.
 class BadInput : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// The words that a program may be started with. CLI11, which takes seconds to compile wherever it is included, is
-/// known to the source file only.
+/// The command line of a program. Only the source file includes CLI11, which takes seconds to compile.
 class CommandLine {
  public:
   class Option {
    public:
     Option& required();
-    /// What --help calls its value; "": nothing.
+    /// The name of the value in --help; "" for none.
     Option& value_name(const std::string& name);
     Option& excludes(const std::string& other);
-    /// Whether --help says the value that its variable has now.
+    /// --help shows the present value of the variable.
     Option& shows_default();
 
    private:
@@ -45,14 +44,14 @@ class CommandLine {
     CLI::Option* option_;
   };
 
-  /// name: "proleg simulate". help: what it does.
+  /// name: "proleg simulate". help: what the program does.
   CommandLine(const std::string& name, const std::string& help);
   ~CommandLine();
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
-  /// An option with a value ("--out"), or a word by its place ("FILE"). The variable keeps what it has if the option is
-  /// not given, and must outlive this; a vector takes one value each time the option is given.
+  /// An option with a value ("--out"), or a positional argument ("FILE"). Without it the variable keeps its value. Each
+  /// use of the option adds one value to a vector. The variable must outlive this object.
   Option add_option(const std::string& name, std::string& variable, const std::string& help);
   Option add_option(const std::string& name, std::optional<std::string>& variable, const std::string& help);
   Option add_option(const std::string& name, std::optional<double>& variable, const std::string& help);
@@ -62,8 +61,8 @@ class CommandLine {
 
   [[nodiscard]] std::string name() const;
 
-  /// Parses the words and runs the body; the exit status. What goes wrong becomes one line on standard error:
-  /// bad words, an InputError or a BadInput give status 2, any other exception status 1. --help gives 0.
+  /// Parses the arguments and runs the body; returns the exit status. An error is one line on standard error: bad
+  /// arguments, an InputError or a BadInput give status 2, any other exception status 1. --help gives 0.
   int run(int argc, char** argv, const std::function<int()>& body);
 
  private:

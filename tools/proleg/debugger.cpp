@@ -15,9 +15,9 @@ Debugger::Debugger(std::uint16_t port, unsigned joint, std::filesystem::path ima
 void Debugger::attach(sim::Stm32f405& chip) {
   target_.emplace(chip.cpu());
   server_.emplace(port_, *target_);
-  std::cerr << "proleg hil: waiting for gdb-multiarch " << image_.string() << " -ex 'target remote :" << server_->port()
+  std::cerr << "proleg hil: waits for: gdb-multiarch " << image_.string() << " -ex 'target remote :" << server_->port()
             << "'\n";
-  attached_ = server_->wait_for_client(interrupted);
+  must_stop_first_ = server_->wait_for_client(interrupted);
   chip.set_debug_hook([this](DebugEvent event) { return on_debug_event(event); });
 }
 
@@ -27,8 +27,8 @@ bool Debugger::on_debug_event(DebugEvent event) {
     case DebugEvent::about_to_run: {
       constexpr std::chrono::milliseconds poll_period(5);
       const auto now = std::chrono::steady_clock::now();
-      if (attached_) {
-        attached_ = false;
+      if (must_stop_first_) {
+        must_stop_first_ = false;
         reason = sim::StopReason::attached;
       } else if (now - last_poll_ >= poll_period) {
         last_poll_ = now;

@@ -10,18 +10,19 @@
 
 namespace proleg::tools {
 
-/// gdb at one virtual module of `proleg hil`. While its program stands still, the simulation does too.
+/// gdb attached to one virtual module of `proleg hil`. While the program is stopped, so is the simulation.
 class Debugger {
  public:
-  /// Listens; throws std::runtime_error if the port is not available.
+  /// Does not open the port yet.
   Debugger(std::uint16_t port, unsigned joint, std::filesystem::path image);
 
   [[nodiscard]] unsigned joint() const { return joint_; }
-  /// Waits until gdb has connected, or the user interrupts. The program then stops at its first instruction.
+  /// Opens the port and waits until gdb connects or the user interrupts. The program then stops at its first
+  /// instruction. Throws std::runtime_error if the port is not free.
   void attach(sim::Stm32f405& chip);
 
  private:
-  /// Whether the program must make a single step. Throws std::runtime_error if gdb ended it.
+  /// True to execute a single step. Throws std::runtime_error if gdb ended the program.
   [[nodiscard]] bool on_debug_event(sim::Stm32f405::DebugEvent event);
 
   std::uint16_t port_;
@@ -29,7 +30,7 @@ class Debugger {
   std::filesystem::path image_;
   std::optional<sim::CpuTarget> target_;
   std::optional<sim::GdbServer> server_;
-  bool attached_ = false;  ///< gdb has connected; the first stop is next
+  bool must_stop_first_ = false;  ///< gdb has connected and has not seen the first stop yet
   std::chrono::steady_clock::time_point last_poll_;
 };
 

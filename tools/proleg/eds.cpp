@@ -7,6 +7,7 @@
 
 #include "shared/canopen/object_name.hpp"
 #include "shared/canopen/objects.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
 
 namespace proleg::tools {
@@ -139,14 +140,6 @@ void print_list(std::ostream& out, std::string_view title, const std::vector<std
 }
 
 }  // namespace
-
-std::string hexadecimal(std::uint32_t value, unsigned digits) {
-  std::string text;
-  for (; value != 0 || text.size() < digits; value >>= 4U) {
-    text.insert(text.begin(), "0123456789ABCDEF"[value & 15U]);
-  }
-  return "0x" + text;
-}
 
 void print_eds(std::ostream& out) {
   std::vector<std::uint16_t> mandatory;

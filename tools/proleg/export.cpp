@@ -22,13 +22,13 @@ int main(int argc, char** argv) {
   std::string out;
   bool tsv = false;
   command_line.add_option("RUN", recording_path, "the recording").required().value_name("");
-  command_line.add_flag("--tsv", tsv, "as tab-separated values").required();
+  command_line.add_flag("--tsv", tsv, "write tab-separated values").required();
   command_line.add_option("--out", out, "write to this file instead of standard output").value_name("FILE");
 
   return command_line.run(argc, argv, [&] {
     const sim::Recording recording(recording_path);
     if (!out.empty() && std::filesystem::exists(out) && std::filesystem::equivalent(out, recording_path)) {
-      throw InputError("--out", 0, "the recording itself", "another file");
+      throw InputError("--out", 0, "the recording itself", "the name of a different file");
     }
     if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
       std::cerr << command_line.name() << ": " << remark << '\n';
@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
       sim::write_tsv(recording, [&](std::string_view text) { output->write(text); });
       output->finish();
     } catch (const ReaderGone&) {
-      return tools::exit_failed;  // as `head` does to everyone; not worth a word
+      return tools::exit_failed;  // `head` does this; no message
     }
     return tools::exit_success;
   });

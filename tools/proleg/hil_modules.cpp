@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the stm32f405 preset leaves the image, seen from this program.
+/// The image that the preset stm32f405 builds, found from the path of this program.
 fs::path default_image() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -26,8 +26,8 @@ sim::FirmwareImage read_image(const std::optional<std::string>& name) {
   const fs::path file = name ? fs::path(*name) : default_image();
   if (!name && !fs::exists(file)) {
     throw BadInput(file.string() +
-                   ": found no image, expected that of cmake --preset stm32f405 && cmake --build --preset stm32f405, "
-                   "or --image ELF");
+                   ": found no image, expected one; build it with 'cmake --preset stm32f405 && cmake --build --preset "
+                   "stm32f405', or give --image ELF");
   }
   try {
     return sim::FirmwareImage(file);
@@ -38,7 +38,7 @@ sim::FirmwareImage read_image(const std::optional<std::string>& name) {
 
 }  // namespace
 
-/// The table of a module's instruction counts: in a file, or on standard error.
+/// The table of a module's instruction counts, in a file or on standard error.
 struct HilModules::InstructionTrace {
   unsigned node = 0;
   std::string file;
@@ -49,22 +49,23 @@ struct HilModules::InstructionTrace {
 
 void add_module_options(CommandLine& command_line, ModuleOptions& options) {
   command_line
-      .add_option("--modules", options.modules,
-                  "what runs the modules' program: native, as built for this computer; mcu: the image that is flashed, "
-                  "each in a virtual STM32F405; 1,3=mcu: those nodes so, the others native")
+      .add_option(
+          "--modules", options.modules,
+          "what runs the program of the modules. native: this computer; mcu: a virtual STM32F405 for each module, "
+          "with the image that is flashed; 1,3=mcu: a virtual chip for nodes 1 and 3, the others native")
       .shows_default();
   command_line.add_option("--image", options.image,
-                          "ELF: the image, instead of the one that the preset stm32f405 builds");
+                          "ELF: use this image instead of the one that the preset stm32f405 builds");
   command_line.add_option("--uart", options.consoles,
-                          "NODE: show on standard error what a virtual module prints on its console. May be repeated.");
+                          "NODE: show the console of a virtual module on standard error. May be repeated.");
   command_line.add_option(
       "--trace", options.traces,
-      "NODE or NODE=FILE: a table of the instructions that a virtual module executes in each tick, on "
+      "NODE or NODE=FILE: print a table of the instructions that a virtual module executes in each tick, on "
       "standard error or in a file. May be repeated.");
   command_line.add_option(
       "--gdb", options.gdb,
-      "PORT or NODE:PORT: wait until gdb-multiarch has attached to a virtual module (the first one) with "
-      "'target remote :PORT'; the whole simulation stands still while the program does");
+      "PORT or NODE:PORT: wait until gdb-multiarch attaches to a virtual module (by default the first) with "
+      "'target remote :PORT'. While the program is stopped, so is the simulation.");
 }
 
 HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenario,
@@ -81,14 +82,14 @@ HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenar
   if (std::ranges::find(virtual_joints_, true) != virtual_joints_.end()) {
     image_.emplace(read_image(options.image));
   } else if (options.image) {
-    throw InputError("--image", 0, "it without a module that runs it", "--modules mcu");
+    throw InputError("--image", 0, "no module that runs the image", "--modules mcu");
   }
   if (options.gdb) {
     const std::size_t colon = options.gdb->find(':');
     const auto port =
         parse_whole<std::uint16_t>(std::string_view(*options.gdb).substr(colon == std::string::npos ? 0 : colon + 1));
     if (!port || *port == 0) {
-      throw InputError("--gdb", 0, in_quotes(shortened(*options.gdb)), "PORT or NODE:PORT");
+      throw InputError("--gdb", 0, in_quotes(*options.gdb), "PORT or NODE:PORT, with a port from 1 to 65535");
     }
     if (!image_) {
       throw InputError("--gdb", 0, "no virtual module", "--modules mcu");
@@ -98,13 +99,13 @@ HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenar
                                                       : virtual_joint_of("--gdb", options.gdb->substr(0, colon));
     debugger_ = std::make_unique<Debugger>(*port, joint, image_->file());
   }
-  open_traces(options.traces, other_files);  // last: a rejected option leaves no file behind
+  open_traces(options.traces, other_files);  // last, so that an error leaves no file
 }
 
 HilModules::~HilModules() = default;
 
 void HilModules::parse_modules(const std::string& word) {
-  constexpr std::string_view some = "=mcu";
+  constexpr std::string_view suffix = "=mcu";
   if (word == "native") {
     return;
   }
@@ -112,11 +113,10 @@ void HilModules::parse_modules(const std::string& word) {
     virtual_joints_.assign(virtual_joints_.size(), true);
     return;
   }
-  if (!word.ends_with(some)) {
-    throw InputError("--modules", 0, in_quotes(shortened(word)),
-                     "native, mcu, or the nodes of virtual modules: 1,3=mcu");
+  if (!word.ends_with(suffix)) {
+    throw InputError("--modules", 0, in_quotes(word), "native, mcu, or a list of nodes with =mcu, for example 1,3=mcu");
   }
-  std::string_view rest = std::string_view(word).substr(0, word.size() - some.size());
+  std::string_view rest = std::string_view(word).substr(0, word.size() - suffix.size());
   for (bool more = true; more;) {
     const std::size_t comma = rest.find(',');
     virtual_joints_[joint_of("--modules", std::string(rest.substr(0, comma)))] = true;
@@ -126,39 +126,39 @@ void HilModules::parse_modules(const std::string& word) {
 }
 
 unsigned HilModules::joint_of(const std::string& option, const std::string& word) const {
-  return joint_of_node(scenario_, parse_whole<std::uint32_t>(word), option, in_quotes(shortened(word)));
+  return joint_of_node(scenario_, parse_whole<std::uint32_t>(word), option, in_quotes(word));
 }
 
 unsigned HilModules::virtual_joint_of(const std::string& option, const std::string& word) const {
   const unsigned joint = joint_of(option, word);
   if (!is_virtual(joint)) {
-    throw InputError(option, 0, "node " + word + ", which is native", "a virtual one (--modules mcu)");
+    throw InputError(option, 0, "node " + word + ", which is native", "a virtual module (--modules mcu)");
   }
   return joint;
 }
 
 void HilModules::open_traces(const std::vector<std::string>& words, const std::vector<std::string>& other_files) {
-  // Checks everything before it opens a file: a rejected option neither leaves nor overwrites a file.
+  // Check everything before opening a file, so that an error creates and overwrites none.
   std::vector<std::string> files = other_files;
   for (const std::string& word : words) {
     const std::size_t equal = word.find('=');
     const unsigned joint = virtual_joint_of("--trace", word.substr(0, equal));
     if (traces_[joint]) {
-      throw InputError("--trace", 0, "node " + word.substr(0, equal) + " twice", "each node once");
+      throw InputError("--trace", 0, "node " + word.substr(0, equal) + " twice", "each node at most once");
     }
     traces_[joint] = std::make_unique<InstructionTrace>();
     traces_[joint]->node = scenario_.modules[joint].node;
     if (equal != std::string::npos) {
       const std::string file = word.substr(equal + 1);
       if (std::ranges::find(files, file) != files.end()) {
-        throw BadInput("--trace: found " + in_quotes(shortened(file)) +
-                       " twice, expected a file for each table, recording and log");
+        throw BadInput("--trace: found " + in_quotes(file) +
+                       " twice, expected different files for all tables, recordings and logs");
       }
       files.push_back(file);
       traces_[joint]->file = file;
     }
   }
-  bool has_head = false;
+  bool has_title = false;
   for (const auto& trace : traces_) {
     if (!trace) {
       continue;
@@ -166,12 +166,12 @@ void HilModules::open_traces(const std::vector<std::string>& words, const std::v
     if (!trace->file.empty()) {
       trace->stream.open(trace->file);
       if (!trace->stream) {
-        throw BadInput("--trace: found " + in_quotes(shortened(trace->file)) + ", expected a file that can be written");
+        throw BadInput("--trace: found " + in_quotes(trace->file) + ", expected a file that can be written");
       }
     }
-    if (!trace->file.empty() || !has_head) {
+    if (!trace->file.empty() || !has_title) {
       trace->out() << "node\ttick\tto_state_frame\twhole_tick\n";
-      has_head = has_head || trace->file.empty();
+      has_title = has_title || trace->file.empty();
     }
   }
 }
@@ -188,7 +188,7 @@ std::unique_ptr<sim::JointModule> HilModules::make(const sim::ModuleParts& parts
     };
   }
   if (traces_[joint]) {
-    options.on_tick = [trace = traces_[joint].get()](const sim::TickCost& cost) {
+    options.trace = [trace = traces_[joint].get()](const sim::TickCost& cost) {
       trace->out() << trace->node << '\t' << cost.tick << '\t' << cost.to_state_frame << '\t' << cost.whole << '\n';
     };
   }
@@ -213,8 +213,8 @@ std::string HilModules::kind() const {
   return std::ranges::find(virtual_joints_, false) == virtual_joints_.end() ? "mcu" : "native and mcu (" + nodes + ")";
 }
 
-std::optional<HilModules::Costliest> HilModules::costliest_tick() const {
-  std::optional<Costliest> worst;
+std::optional<HilModules::CostliestTick> HilModules::costliest_tick() const {
+  std::optional<CostliestTick> worst;
   for (unsigned joint = 0; joint < modules_.size(); ++joint) {
     if (modules_[joint] != nullptr &&
         (!worst || modules_[joint]->worst_tick().to_state_frame > worst->cost.to_state_frame)) {
@@ -229,7 +229,7 @@ void HilModules::finish() {
     if (trace && !trace->file.empty()) {
       trace->stream.close();
       if (!trace->stream) {
-        throw std::runtime_error(trace->file + ": could not be written to its end");
+        throw std::runtime_error(trace->file + ": cannot write the end of the table");
       }
     }
   }

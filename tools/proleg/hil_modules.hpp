@@ -1,6 +1,6 @@
 #pragma once
 
-// The modules of `proleg hil`: native, or in virtual chips, as the user chooses.
+// What runs the modules of `proleg hil`: this computer or virtual chips.
 
 #include <filesystem>
 #include <memory>
@@ -28,27 +28,27 @@ void add_module_options(CommandLine& command_line, ModuleOptions& options);
 
 class HilModules {
  public:
-  /// Reads the image if one is needed. Throws InputError and BadInput. scenario: must outlive this.
-  /// other_files: files that the run writes; no trace may have their names.
+  /// Reads the image if a module needs it. Throws InputError and BadInput. scenario: must outlive this object.
+  /// other_files: the other files that the run writes; a trace must not overwrite them.
   HilModules(const ModuleOptions& options, const sim::Scenario& scenario, const std::vector<std::string>& other_files);
   ~HilModules();
   HilModules(const HilModules&) = delete;
   HilModules& operator=(const HilModules&) = delete;
 
-  /// For HardwareOptions::make_module; this must outlive the loop.
+  /// For HardwareOptions::make_module; this object must outlive the loop.
   [[nodiscard]] std::unique_ptr<sim::JointModule> make(const sim::ModuleParts& parts);
   [[nodiscard]] bool any_virtual() const { return image_.has_value(); }
   /// "native", "mcu" or "native and mcu (1, 3)".
   [[nodiscard]] std::string kind() const;
   [[nodiscard]] const sim::FirmwareImage& image() const { return *image_; }
 
-  struct Costliest {
+  struct CostliestTick {
     std::uint8_t node;
     sim::TickCost cost;
   };
-  /// Of all virtual modules; only before the loop is destroyed.
-  [[nodiscard]] std::optional<Costliest> costliest_tick() const;
-  /// To be called when the run is over: ends the traces. Throws std::runtime_error if one could not be written.
+  /// Of all virtual modules. Call this before the loop is destroyed.
+  [[nodiscard]] std::optional<CostliestTick> costliest_tick() const;
+  /// Closes the traces after the run. Throws std::runtime_error if one could not be written.
   void finish();
 
  private:
@@ -63,9 +63,9 @@ class HilModules {
   const sim::Scenario& scenario_;
   std::vector<bool> virtual_joints_;  ///< by joint
   std::vector<bool> consoles_;
-  std::vector<std::unique_ptr<InstructionTrace>> traces_;  ///< by joint; null: none
+  std::vector<std::unique_ptr<InstructionTrace>> traces_;  ///< by joint; null for none
   std::optional<sim::FirmwareImage> image_;
-  std::vector<sim::VirtualModule*> modules_;  ///< by joint; null: native
+  std::vector<sim::VirtualModule*> modules_;  ///< by joint; null for a native one
   std::unique_ptr<Debugger> debugger_;
 };
 

@@ -1,5 +1,5 @@
-// The dispatcher: `proleg simulate ...` runs `proleg-simulate ...`, which lies beside it. Each subcommand is a program
-// of its own, so that none needs the libraries of another.
+// The dispatcher: `proleg simulate ...` runs `proleg-simulate ...` in the same folder. Each subcommand is a separate
+// program, so that none needs the libraries of another.
 
 #include <unistd.h>
 
@@ -25,13 +25,13 @@ struct Subcommand {
 constexpr std::array subcommands{
     Subcommand{"algorithms", "list the algorithms that move a robot, and their parameters"},
     Subcommand{"simulate", "run a scenario in the physics simulation"},
-    Subcommand{"hil", "run a scenario with the modules' own programs on a simulated bus"},
-    Subcommand{"replay", "recompute the gait of a recording and compare, bit for bit"},
+    Subcommand{"hil", "run a scenario with the program of the modules on a simulated bus"},
+    Subcommand{"replay", "recompute the gait of a recording and compare it bit for bit"},
     Subcommand{"export", "write a recording as a tab-separated table"},
     Subcommand{"plot", "draw joint angles, contacts and path of a recording"},
     Subcommand{"optimise", "search for the parameters of a gait"},
-    Subcommand{"experiment", "repeat an experiment of the thesis, beside its published numbers"},
-    Subcommand{"objects", "list what can be read and set in a module over the bus"},
+    Subcommand{"experiment", "repeat an experiment of the thesis and compare with its published numbers"},
+    Subcommand{"objects", "list the objects of a module that can be read and set over the bus"},
 };
 
 void print_help(std::ostream& out) {
@@ -39,7 +39,7 @@ void print_help(std::ostream& out) {
   for (const Subcommand& subcommand : subcommands) {
     out << "  " << subcommand.name << std::string(12 - subcommand.name.size(), ' ') << subcommand.summary << '\n';
   }
-  out << "\n'proleg SUBCOMMAND --help' explains one of them; 'proleg --version' says which build this is.\n";
+  out << "\n'proleg SUBCOMMAND --help' explains a subcommand; 'proleg --version' prints version and build.\n";
 }
 
 std::string names() {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "shared/canopen/objects.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/eds.hpp"
@@ -16,7 +17,6 @@ namespace {
 
 using namespace proleg;
 using namespace proleg::canopen;
-using tools::hexadecimal;
 
 constexpr std::size_t columns = 8;
 using Line = std::array<std::string, columns>;
@@ -173,11 +173,11 @@ void print_text(std::ostream& out) {
 
 int main(int argc, char** argv) {
   proleg::tools::CommandLine command_line(
-      "proleg objects", "Lists the object dictionary of a module: what can be read and set over the bus.");
+      "proleg objects", "Lists the object dictionary of a module: the objects that can be read and set over the bus.");
   bool eds = false;
   bool markdown = false;
-  command_line.add_flag("--eds", eds, "as an Electronic Data Sheet (CiA 306) for CANopen tools");
-  command_line.add_flag("--markdown", markdown, "as Markdown tables").excludes("--eds");
+  command_line.add_flag("--eds", eds, "print an Electronic Data Sheet (CiA 306) for CANopen tools");
+  command_line.add_flag("--markdown", markdown, "print Markdown tables").excludes("--eds");
   return command_line.run(argc, argv, [&] {
     if (eds) {
       proleg::tools::print_eds(std::cout);

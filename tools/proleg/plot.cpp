@@ -17,7 +17,7 @@ namespace {
 
 void require_finite(const char* option, const std::optional<double>& seconds) {
   if (seconds && !std::isfinite(*seconds)) {
-    throw InputError(option, 0, "something that is not a finite number", "seconds from the start of the run");
+    throw InputError(option, 0, "a number that is not finite", "seconds from the start of the run");
   }
 }
 
@@ -33,11 +33,10 @@ int main(int argc, char** argv) {
   std::string out;
   sim::TimeWindow window;
   command_line.add_option("RUN", recording_path, "the recording").required().value_name("");
-  command_line.add_option("--out", out, "the picture (default: the recording's name with .svg)").value_name("FILE");
-  command_line
-      .add_option("--from", window.from_s, "start of what is shown over time, in s (default: 3 s before its end)")
+  command_line.add_option("--out", out, "the picture; by default the recording's name with .svg").value_name("FILE");
+  command_line.add_option("--from", window.from_s, "start of the time axis in s; by default 3 s before its end")
       .value_name("SECONDS");
-  command_line.add_option("--to", window.to_s, "end of what is shown over time, in s (default: the end of the run)")
+  command_line.add_option("--to", window.to_s, "end of the time axis in s; by default the end of the run")
       .value_name("SECONDS");
 
   return command_line.run(argc, argv, [&] {
@@ -47,8 +46,8 @@ int main(int argc, char** argv) {
     const std::filesystem::path picture =
         out.empty() ? std::filesystem::path(recording_path).replace_extension(".svg") : std::filesystem::path(out);
     if (std::filesystem::exists(picture) && std::filesystem::equivalent(picture, recording_path)) {
-      throw InputError(out.empty() ? recording_path : "--out", 0, "the recording's own name for the picture",
-                       "another one, with --out FILE");
+      throw InputError(out.empty() ? recording_path : "--out", 0, "the name of the recording for the picture",
+                       "another name, with --out FILE");
     }
     if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
       std::cerr << command_line.name() << ": " << remark << '\n';
@@ -59,7 +58,7 @@ int main(int argc, char** argv) {
       standard_output.write(picture.string() + "\n");
       standard_output.finish();
     } catch (const ReaderGone&) {
-      // The picture is there, and nobody asks for its name.
+      // The picture is complete; only its name could not be printed.
     }
     return tools::exit_success;
   });

@@ -5,13 +5,14 @@
 #include <string>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "sim/loop/verification.hpp"
 #include "sim/record/recording.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/json_output.hpp"
-#include "tools/proleg/progress.hpp"
+#include "tools/proleg/run_progress.hpp"
 
 namespace {
 
@@ -24,7 +25,7 @@ struct Options {
   bool json = false;
 };
 
-/// The value of a figure in the recording's results; empty if the run was not finished.
+/// A value of the recording's results; empty if the run was not finished.
 std::string recorded(const sim::Recording& recording, const std::string& name) {
   for (const auto& [key, value] : recording.results()) {
     if (key == name) {
@@ -34,20 +35,16 @@ std::string recorded(const sim::Recording& recording, const std::string& name) {
   return {};
 }
 
-std::string fingerprint_text() {
-  std::array<char, 11> text{};
-  std::snprintf(text.data(), text.size(), "0x%08X", core_fingerprint);
-  return text.data();
-}
+std::string fingerprint_text() { return hexadecimal(core_fingerprint, 8); }
 
 sim::Verification recompute(const sim::Recording& recording) {
-  Progress progress("recomputing", "s", recording.time_s(recording.last_tick()));
+  RunProgress progress("recomputing", recording.time_s(recording.last_tick()));
   return sim::verify(recording, [&](std::uint32_t tick) { progress.show(recording.time_s(tick)); });
 }
 
 int replay(const Options& options) {
   if (!options.verify) {
-    throw InputError("the command line", 0, "nothing to do", "--verify");
+    throw InputError("the command line", 0, "no task", "--verify");
   }
   const sim::Recording recording(options.file);
   if (const std::string remark = remark_on_unfinished_run(recording); !remark.empty()) {
@@ -56,7 +53,7 @@ int replay(const Options& options) {
   const sim::Verification verification = recompute(recording);
   const std::string first =
       verification.first ? describe(*verification.first, recording.joints()[verification.first->joint].name) : "";
-  // The hashes that the run itself printed must be those of its own tables.
+  // The tables must have the hashes that the run printed.
   const bool same_hashes =
       !recording.finished() || (recorded(recording, "setpoint_hash") == verification.setpoint_hash &&
                                 recorded(recording, "servo_hash") == verification.servo_hash);
@@ -91,9 +88,9 @@ int replay(const Options& options) {
   }
   if (!holds) {
     std::cerr << "proleg replay: " << options.file << ": "
-              << (first.empty() ? "the hashes in its results are not those of its tables" : first) << '\n';
+              << (first.empty() ? "the tables do not have the hashes of the results" : first) << '\n';
     if (core != fingerprint_text()) {
-      std::cerr << "proleg replay: it was recorded with core " << core << ", this program has core "
+      std::cerr << "proleg replay: the recording was made with core " << core << ", this program has core "
                 << fingerprint_text() << '\n';
     }
     return exit_failed;
@@ -107,11 +104,11 @@ int main(int argc, char** argv) {
   CommandLine command_line(
       "proleg replay",
       "Recomputes the gait of a recording from its start values, changes, contacts, losses and restarts, and compares "
-      "it with what was recorded, bit for bit.");
+      "it with the recording bit for bit.");
   Options options;
   command_line.add_option("FILE", options.file, "a recording").required();
   command_line.add_flag("--verify", options.verify,
-                        "compare every set-point, internal value and servo command; status 1 if one differs");
+                        "compare every set-point, internal value and servo command; exit status 1 if one differs");
   command_line.add_flag("--json", options.json, "print one JSON object");
   return command_line.run(argc, argv, [&] { return replay(options); });
 }

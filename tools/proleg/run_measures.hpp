@@ -1,6 +1,6 @@
 #pragma once
 
-// How programs show what a run was worth (docs/gait-measures.md).
+// How programs show the measures of a run (docs/gait-measures.md).
 
 #include <string>
 #include <utility>
@@ -20,10 +20,10 @@ struct RunMeasures {
 /// An object of all measures by name; null where the run does not define one.
 [[nodiscard]] Json measures_object(const sim::MeasureValues& values);
 
-/// The measures that the run defines, on standard output, a line each.
+/// Prints the measures that the run defines on standard output, one a line.
 void print_measures(const sim::MeasureValues& values);
 
-/// The same for a recording's table of results, and the duty factors of the links.
+/// Adds the measures that the run defines, and the duty factors of the links, to the results of a recording.
 void append_results(const RunMeasures& measures, const sim::RobotModel& robot,
                     std::vector<std::pair<std::string, std::string>>& results);
 

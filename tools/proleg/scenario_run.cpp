@@ -10,6 +10,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "sim/scenario/reader.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 
@@ -19,7 +20,7 @@ namespace {
 std::atomic<bool> interrupt_flag = false;  // lock-free, so a signal handler may set it
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-/// The ticks of the run, in which all changes take effect.
+/// The length of the run. Throws InputError if a change takes effect after it.
 std::uint32_t checked_tick_count(const sim::Scenario& scenario) {
   const std::uint32_t ticks = sim::tick_count(scenario);
   if (!scenario.changes.empty() && scenario.changes.back().tick >= ticks) {
@@ -29,26 +30,16 @@ std::uint32_t checked_tick_count(const sim::Scenario& scenario) {
   return ticks;
 }
 
-/// The value that a parameter of a joint has at the start.
-std::int32_t start_value(const sim::Scenario& scenario, unsigned slot, unsigned joint, unsigned parameter) {
-  for (const sim::Setting& setting : scenario.settings) {
-    if (setting.slot == slot && setting.joint == joint && setting.index == parameter) {
-      return setting.value;
-    }
-  }
-  return scenario.kernel.slots[slot].algorithm->declaration().parameters[parameter].default_value;
-}
-
 }  // namespace
 
 void add_scenario_options(CommandLine& command_line, ScenarioOptions& options) {
   command_line.add_option("FILE", options.file, "scenario, a *.simulation.xml file").required();
-  command_line.add_option("--seconds", options.seconds, "simulated time; the scenario's own duration if not given");
-  command_line.add_option("--record", options.record, "leave a recording (SQLite) in this file");
+  command_line.add_option("--seconds", options.seconds, "simulated time; by default the duration in the scenario");
+  command_line.add_option("--record", options.record, "write a recording (SQLite) into this file");
   command_line.add_option(
       "--set", options.settings,
-      "NAME=VALUE[@TICK]: change a parameter at the start or at a tick. NAME is [MODULE.]PARAMETER[:JOINT]; "
-      "an internal value may stand in place of the parameter. May be repeated.");
+      "NAME=VALUE[@TICK]: change a parameter at the start or at a tick. NAME is [MODULE.]PARAMETER[:JOINT], where "
+      "PARAMETER may also be an internal value. May be repeated.");
   command_line.add_option(
       "--losses", options.losses,
       "state frames that joints do not receive: SEED:RATE or SEED:RATE@FIRST-LAST (RATE 0.05 or 5%), or a "
@@ -121,20 +112,20 @@ std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options, con
     return nullptr;
   }
   if (options.record->empty()) {
-    throw InputError("--record", 0, "no name", "the name of a file");
+    throw InputError("--record", 0, "an empty name", "the name of a file");
   }
   try {
-    // A link is followed, so that the recording lands where it points to.
+    // Follow a link, so that the recording replaces the file that it names.
     return std::make_unique<sim::Recorder>(std::filesystem::weakly_canonical(*options.record), scenario, program,
                                            build_id);
-  } catch (const std::runtime_error& error) {  // FileError, or a name that leads nowhere
+  } catch (const std::runtime_error& error) {  // FileError, or a folder that does not exist
     throw BadInput(error.what());
   }
 }
 
 void catch_interrupts() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    // What is ignored stays so: that is how nohup and background jobs of a script ask not to be stopped.
+    // An ignored signal remains ignored: nohup and scripts protect their jobs this way.
     if (std::signal(signal, [](int) { interrupt_flag = true; }) == SIG_IGN) {
       std::signal(signal, SIG_IGN);
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-// What all subcommands have in common that run a scenario: their options, interruption, and what they print.
+// Common to all subcommands that run a scenario: options, interruption, output.
 
 #include <cstdint>
 #include <memory>
@@ -27,33 +27,34 @@ struct ScenarioOptions {
 
 void add_scenario_options(CommandLine& command_line, ScenarioOptions& options);
 
-/// A scenario as the options want it.
+/// A scenario with the options applied.
 struct ScenarioRun {
   sim::Scenario scenario;
   sim::Losses losses;
-  std::uint32_t ticks;  ///< to be run
+  std::uint32_t ticks;  ///< length of the run
 };
 
 /// Throws InputError.
 [[nodiscard]] ScenarioRun prepare_run(const ScenarioOptions& options);
 
-/// The joint whose module has this node id. Throws InputError if there is none; option, found: what the user gave.
+/// The joint whose module has this node id. Throws InputError if there is none. option, found: the user's words, for
+/// the message.
 [[nodiscard]] unsigned joint_of_node(const sim::Scenario& scenario, std::optional<std::uint32_t> node,
                                      const std::string& option, const std::string& found);
 
-/// Every parameter of every joint, as the run starts with it, and the remarks on the files; on standard error.
+/// Prints the remarks on the files and the start value of every parameter of every joint on standard error.
 void print_setup(const sim::Scenario& scenario);
 
-/// The recorder that --record asks for, if it does. program: what computes the gait. Throws InputError: nothing has run
-/// yet, so it is the name that was wrong.
+/// The recorder for --record; null without that option. program: what computes the gait. Throws InputError or BadInput
+/// if the file cannot be created.
 [[nodiscard]] std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options,
                                                            const sim::Scenario& scenario, const std::string& program);
 
-/// From now on SIGINT, SIGTERM and SIGHUP only make `interrupted` true, unless they are ignored (nohup).
+/// After this call SIGINT, SIGTERM and SIGHUP only make interrupted() true. Ignored signals remain ignored (nohup).
 void catch_interrupts();
 [[nodiscard]] bool interrupted();
 
-/// For messages about a run that ended early: where what was done is kept; empty without a recording.
+/// "; what was simulated is in FILE", for messages about a run that ended early; empty without a recording.
 [[nodiscard]] std::string kept_in_recording(const ScenarioOptions& options);
 
 }  // namespace proleg::tools

@@ -1,8 +1,5 @@
 #include "tools/proleg/search_display.hpp"
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,37 +9,18 @@
 
 namespace proleg::tools {
 
-namespace {
-
-/// Columns of the terminal at standard error; 80 if it does not say.
-std::size_t terminal_width() {
-  winsize size{};
-  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1 ? size.ws_col : 80;
-}
-
-}  // namespace
-
 SearchDisplay::SearchDisplay(std::string label, std::string unit, std::uint64_t budget)
-    : label_(std::move(label)),
-      unit_(std::move(unit)),
-      budget_(budget),
-      terminal_(isatty(STDERR_FILENO) == 1),
-      start_(std::chrono::steady_clock::now()),
-      next_(start_) {}
-
-SearchDisplay::~SearchDisplay() { erase(); }
+    : label_(std::move(label)), unit_(std::move(unit)), budget_(budget), terminal_line_(std::chrono::milliseconds(0)) {}
 
 void SearchDisplay::show(const optimize::Progress& progress) {
-  if (!terminal_ || !progress.best) {
+  if (!terminal_line_.is_visible() || !progress.best) {
     return;
   }
   best_so_far_.push_back(progress.best->scores.front());
-  const auto now = std::chrono::steady_clock::now();
-  if (now < next_) {
+  if (!terminal_line_.is_due()) {
     return;
   }
-  next_ = now + std::chrono::milliseconds(100);
-  const double elapsed = std::max(std::chrono::duration<double>(now - start_).count(), 1e-3);
+  const double elapsed = terminal_line_.elapsed_s();
   const auto done = static_cast<double>(progress.evaluations);
   std::string line = label_ + ": " + std::to_string(progress.evaluations);
   if (budget_ > 0) {
@@ -57,23 +35,15 @@ void SearchDisplay::show(const optimize::Progress& progress) {
   if (budget_ > progress.evaluations && made_now > 0.0) {
     line += ", " + duration_text(static_cast<double>(budget_ - progress.evaluations) * elapsed / made_now) + " to go";
   }
-  // A line that wraps could not be erased: what does not fit is cut, the spark line first.
-  const std::size_t width = terminal_width();
-  const std::size_t left = width > line.size() + 3 ? width - line.size() - 3 : 0;
-  std::cerr << "\r\033[K" << line.substr(0, width - 1) << (left > 0 ? "  " : "")
-            << spark_line(best_so_far_, std::min<std::size_t>(left, 16)) << std::flush;
-  shown_ = true;
+  const std::size_t width = TerminalLine::max_width();
+  const std::size_t rest = width > line.size() + 2 ? width - line.size() - 2 : 0;
+  terminal_line_.draw(line.substr(0, width) + (rest > 0 ? "  " : "") +
+                      spark_line(best_so_far_, std::min<std::size_t>(rest, 16)));
 }
 
 void SearchDisplay::say(const std::string& line) {
-  erase();
+  terminal_line_.erase();
   std::cerr << line << '\n';
-}
-
-void SearchDisplay::erase() {
-  if (std::exchange(shown_, false)) {
-    std::cerr << "\r\033[K" << std::flush;
-  }
 }
 
 std::string spark_line(const std::vector<double>& values, std::size_t width) {
@@ -91,17 +61,6 @@ std::string spark_line(const std::vector<double>& values, std::size_t width) {
     line += blocks[static_cast<std::size_t>(std::lround(share * (blocks.size() - 1)))];
   }
   return line;
-}
-
-std::string duration_text(double seconds) {
-  const auto whole = static_cast<long long>(std::ceil(std::min(seconds, 1e9)));
-  if (whole < 60) {
-    return std::to_string(whole) + " s";
-  }
-  if (whole < 3600) {
-    return std::to_string(whole / 60) + " min " + std::to_string(whole % 60) + " s";
-  }
-  return std::to_string(whole / 3600) + " h " + std::to_string(whole % 3600 / 60) + " min";
 }
 
 }  // namespace proleg::tools

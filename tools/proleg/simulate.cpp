@@ -13,8 +13,8 @@
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/json_output.hpp"
-#include "tools/proleg/progress.hpp"
 #include "tools/proleg/run_measures.hpp"
+#include "tools/proleg/run_progress.hpp"
 #include "tools/proleg/scenario_run.hpp"
 
 namespace {
@@ -38,7 +38,7 @@ struct Result {
 
 Result run(const ScenarioRun& setup, sim::Recorder* recorder) {
   sim::Simulation simulation(setup.scenario, &setup.losses);
-  Progress progress("simulating", "s", setup.scenario.duration_s);
+  RunProgress progress("simulating", setup.scenario.duration_s);
   std::uint64_t lost_frames = 0;
   const auto start = std::chrono::steady_clock::now();
   while (simulation.tick() < setup.ticks && !interrupted()) {
@@ -78,7 +78,6 @@ void print_json(const ScenarioOptions& options, const Result& result) {
                     {"link_duty_factors", result.measures.link_duty_factors},
                     {"recording", options.record.value_or("")},
                     {"build_id", build_id}};
-  // File names need not be UTF-8; whatever is not is replaced.
   std::cout << object.text() << '\n';
 }
 
@@ -142,7 +141,7 @@ int simulate(const ScenarioOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CommandLine command_line("proleg simulate", "Runs a scenario in the physics simulation and prints what came of it.");
+  CommandLine command_line("proleg simulate", "Runs a scenario in the physics simulation and prints the results.");
   ScenarioOptions options;
   add_scenario_options(command_line, options);
   return command_line.run(argc, argv, [&] { return simulate(options); });

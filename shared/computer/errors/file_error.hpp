@@ -6,7 +6,7 @@
 
 namespace proleg {
 
-/// A file that cannot be written or read although the request was right: a full disk, a read-only folder, a device
+/// A file that cannot be written or read although the request is right: a full disk, a read-only folder, a device
 /// error. what() is one line: the path and what happened.
 class FileError : public std::runtime_error {
  public:

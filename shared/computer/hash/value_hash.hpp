@@ -10,8 +10,8 @@
 
 namespace proleg {
 
-/// SHA-256 over a sequence of int32 values, each as four bytes, little-endian: the fingerprint by which the set-points,
-/// or the servo commands, of two runs, on whatever machine, are said to be the same.
+/// SHA-256 over a sequence of int32 values, each as four bytes, little-endian. Two runs on any two machines have the
+/// same set-points, or the same servo commands, if their hashes are equal.
 class ValueHash {
  public:
   ValueHash();
@@ -19,14 +19,13 @@ class ValueHash {
   void append(std::int32_t value);
   void append(std::span<const std::int32_t> values);
 
-  /// Hash of everything appended so far, 64 lower-case hexadecimal digits. More may be appended afterwards.
+  /// Hash of all values so far, 64 lower-case hexadecimal digits. More values may follow.
   [[nodiscard]] std::string hex() const;
 
  private:
   crypto_hash_sha256_state state_;
-  /// Values come one by one and the hash takes blocks: what waits for more.
-  std::array<unsigned char, 256> waiting_;
-  std::size_t waiting_size_ = 0;
+  std::array<unsigned char, 256> buffer_;  ///< collects values, which come one by one, into blocks
+  std::size_t buffered_ = 0;               ///< bytes in the buffer
 };
 
 }  // namespace proleg

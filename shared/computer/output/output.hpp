@@ -6,9 +6,9 @@
 
 namespace proleg {
 
-/// Where a tool writes its result to. A file appears under its name when it is complete, and never before: what is
-/// written goes to a temporary file beside it, which is renamed at the end and removed after a failure. (A target that
-/// is there and is not an ordinary file, such as a pipe or a device, is written directly.)
+/// The file into which a tool writes its result. The file appears under its name only when it is complete: the data
+/// goes into a temporary file beside it, which finish() renames and a failure removes. (An existing target that is not
+/// an ordinary file, such as a pipe or a device, is written directly.)
 class Output {
  public:
   /// Throws FileError if the file cannot be created.
@@ -21,7 +21,7 @@ class Output {
 
   /// Throws FileError if the system refuses, ReaderGone if the program at the other end of a pipe has ended.
   void write(std::string_view text);
-  /// Writes what is left and gives the file its name. Throws as write() does.
+  /// Writes the rest and gives the file its name. Throws as write() does.
   void finish();
 
  private:
@@ -37,7 +37,7 @@ class Output {
 /// Writes a whole file. Throws as Output does.
 void write_file(const std::filesystem::path& path, std::string_view text);
 
-/// Nobody reads any more; not an error to report.
+/// The program that reads standard output has ended. This is no error to report.
 class ReaderGone {};
 
 }  // namespace proleg

@@ -5,7 +5,7 @@
 namespace proleg {
 
 Database::Database(const std::filesystem::path& path, int flags) {
-  // SQLite gives names like ":memory:" and "file:..." a meaning of their own; an absolute path is always a file.
+  // SQLite interprets names like ":memory:" and "file:..."; an absolute path is always a file.
   const std::filesystem::path file = std::filesystem::absolute(path);
   const int code =
       sqlite3_open_v2(file.c_str(), &handle_, flags | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE, nullptr);
@@ -13,7 +13,7 @@ Database::Database(const std::filesystem::path& path, int flags) {
     try {
       fail(code);
     } catch (...) {
-      sqlite3_close(handle_);  // a handle is there even after a failure, and it holds the message
+      sqlite3_close(handle_);  // the handle exists even after a failure, and has the message
       throw;
     }
   }

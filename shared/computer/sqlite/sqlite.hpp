@@ -1,6 +1,6 @@
 #pragma once
 
-// The little of SQLite that recordings need: a connection, prepared statements, and errors as exceptions.
+// A thin layer over SQLite: a connection, prepared statements, and errors as exceptions.
 
 #include <cstdint>
 #include <filesystem>
@@ -22,7 +22,7 @@ class SqliteError : public std::runtime_error {
   int code_;
 };
 
-/// A connection, used by one thread. Waits up to 2 s for another program's lock.
+/// A connection, for one thread. It waits up to 2 s for the lock of another program.
 class Database {
  public:
   /// flags: SQLITE_OPEN_READONLY, or SQLITE_OPEN_READWRITE with or without SQLITE_OPEN_CREATE.
@@ -58,7 +58,7 @@ class Statement {
     reset();
   }
 
-  /// Starts over with these values; step() then gives row after row.
+  /// Restarts the statement with these values; step() then gives row after row.
   template <typename... Values>
   void bind_all(const Values&... values) {
     reset();
@@ -69,13 +69,13 @@ class Statement {
   bool step();
   void reset();
 
-  // Values one by one, for a statement whose number of values is known at run time only. After reset(); positions count
-  // from 1. Text must stay where it is until the statement has run.
+  // Values one by one, for a statement whose number of values is known at run time only. Call reset() first. Positions
+  // count from 1. Text must remain valid until the statement has run.
   void bind(int position, std::int64_t value);
   void bind(int position, std::int32_t value) { bind(position, std::int64_t{value}); }
   void bind(int position, std::uint32_t value) { bind(position, std::int64_t{value}); }
   void bind(int position, std::size_t value) { bind(position, static_cast<std::int64_t>(value)); }
-  void bind(int position, double value);  ///< SQLite keeps "not a number" as NULL
+  void bind(int position, double value);  ///< SQLite stores "not a number" as NULL
   void bind(int position, std::string_view value);
 
   // Columns of the current row, counted from 0.

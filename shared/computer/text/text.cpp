@@ -13,8 +13,8 @@ constexpr std::string_view blanks = " \t\r\n";
 
 unsigned byte_at(std::string_view text, std::size_t position) { return static_cast<unsigned char>(text[position]); }
 
-/// Whether a terminal would take the character for anything but a sign on the line: the control characters of ASCII
-/// and Latin-1, the line and the paragraph separator.
+/// Whether a terminal acts on the character instead of showing it: the control characters of ASCII and Latin-1, the
+/// line and the paragraph separator.
 bool breaks_a_line(std::string_view character) {
   const unsigned first = byte_at(character, 0);
   return first < 0x20 || first == 0x7F || (first == 0xC2 && byte_at(character, 1) < 0xA0) ||
@@ -33,19 +33,19 @@ std::size_t utf8_character_size(std::string_view text) {
   }
   std::size_t size = 0;
   std::uint32_t code_point = 0;
-  std::uint32_t smallest = 0;  // a longer form than needed is not UTF-8
+  std::uint32_t min_code_point = 0;  // a longer form than needed is not UTF-8
   if ((first & 0xE0U) == 0xC0) {
     size = 2;
     code_point = first & 0x1FU;
-    smallest = 0x80;
+    min_code_point = 0x80;
   } else if ((first & 0xF0U) == 0xE0) {
     size = 3;
     code_point = first & 0x0FU;
-    smallest = 0x800;
+    min_code_point = 0x800;
   } else if ((first & 0xF8U) == 0xF0) {
     size = 4;
     code_point = first & 0x07U;
-    smallest = 0x10000;
+    min_code_point = 0x10000;
   }
   if (size == 0 || size > text.size()) {
     return 0;
@@ -57,7 +57,7 @@ std::size_t utf8_character_size(std::string_view text) {
     code_point = (code_point << 6U) | (byte_at(text, i) & 0x3FU);
   }
   const bool surrogate = code_point >= 0xD800 && code_point <= 0xDFFF;
-  return code_point < smallest || code_point > 0x10FFFF || surrogate ? 0 : size;
+  return code_point < min_code_point || code_point > 0x10FFFF || surrogate ? 0 : size;
 }
 
 std::optional<std::size_t> find_invalid_utf8(std::string_view text) {
@@ -88,10 +88,9 @@ std::string one_line(std::string_view text) {
   return result;
 }
 
-std::string shortened(std::string_view text) {
-  constexpr int most_characters = 60;
+std::string shortened(std::string_view text, std::size_t max_characters) {
   std::size_t end = 0;
-  for (int i = 0; i < most_characters && end < text.size(); ++i) {
+  for (std::size_t i = 0; i < max_characters && end < text.size(); ++i) {
     end += std::max<std::size_t>(utf8_character_size(text.substr(end)), 1);
   }
   return std::string(text.substr(0, end)) + (end < text.size() ? "..." : "");
@@ -125,12 +124,12 @@ std::vector<std::string_view> words(std::string_view text) {
 }
 
 std::string listed(std::span<const std::string> items) {
-  constexpr std::size_t most_items = 20;
+  constexpr std::size_t max_items = 20;
   std::string result;
-  for (std::size_t i = 0; i < items.size() && i < most_items; ++i) {
+  for (std::size_t i = 0; i < items.size() && i < max_items; ++i) {
     result += (i == 0 ? "" : ", ") + shortened(items[i]);
   }
-  if (items.size() > most_items) {
+  if (items.size() > max_items) {
     result += ", ...";
   }
   return items.empty() ? "nothing" : result;
@@ -169,6 +168,14 @@ std::string exact_text(double value) {
   }
   std::array<char, 32> text{};
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+std::string hexadecimal(std::uint32_t value, unsigned min_digits) {
+  std::string text;
+  for (; value != 0 || text.size() < min_digits; value >>= 4U) {
+    text.insert(text.begin(), "0123456789ABCDEF"[value & 15U]);
+  }
+  return "0x" + text;
 }
 
 }  // namespace proleg

@@ -1,6 +1,6 @@
 #pragma once
 
-// Small pieces of text work that the readers share.
+// Reading and writing of text that several rooms share.
 
 #include <charconv>
 #include <cstddef>
@@ -22,10 +22,10 @@ namespace proleg {
 /// The text with control characters and line separators replaced by blanks, and bytes that are not UTF-8 by '?'.
 [[nodiscard]] std::string one_line(std::string_view text);
 
-/// The first 60 characters, with "..." if there are more. For text of the input within a message.
-[[nodiscard]] std::string shortened(std::string_view text);
+/// The first characters, with "..." if there are more. For text of the input within a message or a picture.
+[[nodiscard]] std::string shortened(std::string_view text, std::size_t max_characters = 60);
 
-/// Shortened and between single quotes.
+/// Shortened to 60 characters and between single quotes.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
 /// ASCII letters in lower case. XML tags and attributes are compared this way.
@@ -40,8 +40,8 @@ namespace proleg {
 /// "a, b, c"; at most 20 items, then "...". "nothing" for an empty list.
 [[nodiscard]] std::string listed(std::span<const std::string> items);
 
-/// A whole number that is all of the text, without sign (of an unsigned type) and blanks; nothing if there is none or
-/// it does not fit.
+/// The whole text as an integer, without blanks and, for an unsigned type, without a sign. Nothing if the text is no
+/// such number or the number does not fit.
 template <typename Integer>
 [[nodiscard]] std::optional<Integer> parse_whole(std::string_view text, int base = 10) {
   Integer value = 0;
@@ -61,5 +61,8 @@ template <typename Integer>
 
 /// Shortest text that reads back as the same number; empty if it is not finite.
 [[nodiscard]] std::string exact_text(double value);
+
+/// "0x1F", with at least that many digits.
+[[nodiscard]] std::string hexadecimal(std::uint32_t value, unsigned min_digits);
 
 }  // namespace proleg

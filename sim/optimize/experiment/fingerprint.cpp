@@ -1,10 +1,8 @@
-#include <array>
-#include <charconv>
 #include <string_view>
 #include <type_traits>
 
-#include <sodium/crypto_hash_sha256.h>
-
+#include "shared/computer/hash/sha256.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
 #include "sim/optimize/experiment/experiment_parts.hpp"
 
@@ -19,11 +17,7 @@ class CanonicalText {
     text_ += ':';
     text_ += text;
   }
-  void add(double number) {
-    std::array<char, 40> buffer;
-    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number);
-    add(std::string_view(buffer.data(), static_cast<std::size_t>(end - buffer.data())));
-  }
+  void add(double number) { add(std::string_view(exact_text(number))); }
   template <typename Whole>
   requires std::is_integral_v<Whole>
   void add(Whole number) {
@@ -73,17 +67,7 @@ std::string Experiment::fingerprint() const {
     text.add(std::string_view(part.text));
   }
   add_scenario(text, scenario);
-
-  std::array<unsigned char, crypto_hash_sha256_BYTES> digest;
-  // The result is not looked at: it is 0 always.
-  crypto_hash_sha256(digest.data(), reinterpret_cast<const unsigned char*>(text.text().data()), text.text().size());
-  constexpr std::string_view digits = "0123456789abcdef";
-  std::string hexadecimal;
-  for (const unsigned char byte : digest) {
-    hexadecimal += digits[byte >> 4U];
-    hexadecimal += digits[byte & 15U];
-  }
-  return hexadecimal;
+  return sha256_hex(text.text());
 }
 
 }  // namespace proleg::optimize

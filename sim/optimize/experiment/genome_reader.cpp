@@ -11,7 +11,7 @@
 
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/experiment/value_reader.hpp"
-#include "sim/scenario/settings.hpp"
+#include "sim/scenario/names.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::optimize {

@@ -43,7 +43,8 @@ Candidate SearchSpace::nearest(const sim::Scenario& scenario) const {
   Candidate candidate;
   candidate.reserve(dimensions.size());
   for (const Dimension& dimension : dimensions) {
-    const std::int32_t own = start_value(scenario, dimension.targets.front());
+    const sim::Setting& first = dimension.targets.front();
+    const std::int32_t own = start_value(scenario, first.slot, first.joint, first.index);
     const auto nearest = std::ranges::min_element(
         dimension.values, {}, [&](std::int32_t value) { return distance_between(value, own, dimension.unit); });
     candidate.push_back(static_cast<std::uint32_t>(nearest - dimension.values.begin()));

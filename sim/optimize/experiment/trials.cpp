@@ -68,7 +68,7 @@ bool starts_with_noise(const sim::Scenario& scenario, const SearchSpace& space, 
     place.index = static_cast<std::uint8_t>(noise);
     const Dimension* const dimension = find_dimension(space, place);
     if (dimension != nullptr ? std::ranges::any_of(dimension->values, [](std::int32_t value) { return value != 0; })
-                             : start_value(scenario, place) != 0) {
+                             : start_value(scenario, place.slot, place.joint, place.index) != 0) {
       return true;
     }
   }

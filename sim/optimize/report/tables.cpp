@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numeric>
 #include <set>
-#include <utility>
 
+#include "shared/computer/text/table_line.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
@@ -11,23 +11,7 @@
 namespace proleg::optimize {
 namespace {
 
-/// Cells with tabs between them; the first is not empty.
-class Line {
- public:
-  void add(std::string_view cell) {
-    if (!text_.empty()) {
-      text_ += '\t';
-    }
-    text_ += cell;
-  }
-  void add(std::uint64_t number) { add(std::to_string(number)); }
-  [[nodiscard]] std::string finish() && { return std::move(text_) + '\n'; }
-
- private:
-  std::string text_;
-};
-
-void add_header(const Experiment& experiment, Line& line) {
+void add_header(const Experiment& experiment, TableLine& line) {
   line.add("run");
   line.add("evaluation");
   for (const Dimension& dimension : experiment.space.dimensions) {
@@ -44,20 +28,20 @@ void add_header(const Experiment& experiment, Line& line) {
   }
 }
 
-void add_evaluation(const Experiment& experiment, const Evaluation& evaluation, Line& line) {
+void add_evaluation(const Experiment& experiment, const Evaluation& evaluation, TableLine& line) {
   line.add(evaluation.run);
   line.add(evaluation.number);
   for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
     line.add(experiment.space.value_text(evaluation.candidate, i));
   }
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
-    line.add(exact_text(evaluation.scores[i]));
+    line.add(evaluation.scores[i]);
   }
   for (const double value : evaluation.measures.all()) {
-    line.add(exact_text(value));
+    line.add(value);
   }
-  line.add(exact_text(evaluation.simulated_s));
-  line.add(exact_text(evaluation.wall_s));
+  line.add(evaluation.simulated_s);
+  line.add(evaluation.wall_s);
   for (const bool flag : {evaluation.given_up, evaluation.reused, evaluation.restored}) {
     line.add(flag ? "1" : "0");
   }
@@ -67,22 +51,22 @@ void add_evaluation(const Experiment& experiment, const Evaluation& evaluation, 
 }  // namespace
 
 std::string evaluations_table(const Experiment& experiment, std::span<const Evaluation> evaluations) {
-  Line header;
+  TableLine header;
   add_header(experiment, header);
-  std::string table = std::move(header).finish();
+  std::string table = header.finish();
   for (const Evaluation& evaluation : evaluations) {
-    Line line;
+    TableLine line;
     add_evaluation(experiment, evaluation, line);
-    table += std::move(line).finish();
+    table += line.finish();
   }
   return table;
 }
 
 std::string best_table(const Experiment& experiment, std::span<const Evaluation> evaluations, std::size_t count) {
-  Line header;
+  TableLine header;
   header.add("rank");
   add_header(experiment, header);
-  std::string table = std::move(header).finish();
+  std::string table = header.finish();
 
   std::vector<std::size_t> order(evaluations.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -98,10 +82,10 @@ std::string best_table(const Experiment& experiment, std::span<const Evaluation>
     if (!listed.insert(evaluations[i].candidate).second) {
       continue;
     }
-    Line line;
+    TableLine line;
     line.add(listed.size());
     add_evaluation(experiment, evaluations[i], line);
-    table += std::move(line).finish();
+    table += line.finish();
   }
   return table;
 }

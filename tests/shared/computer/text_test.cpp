@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+
 #include "shared/computer/errors/input_error.hpp"
 
 namespace proleg {
 namespace {
 
-TEST(Text, Utf8IsCheckedAsRfc3629Says) {
+TEST(Text, Utf8IsThatOfRfc3629) {
   for (const char* good : {"", "a", "\x7F", "\xC2\x80", "\xDF\xBF", "\xE0\xA0\x80", "\xED\x9F\xBF", "\xEE\x80\x80",
                            "\xEF\xBF\xBF", "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"}) {
     EXPECT_FALSE(find_invalid_utf8(good).has_value()) << testing::PrintToString(good);
@@ -35,6 +38,42 @@ TEST(Text, LongTextIsCutBetweenCharacters) {
     umlauts += "\xC3\xA4";
   }
   EXPECT_EQ(shortened(umlauts), umlauts.substr(0, 120) + "...");
+  EXPECT_EQ(shortened(umlauts, 3), umlauts.substr(0, 6) + "...");
+  EXPECT_EQ(shortened("abc", 3), "abc");
+}
+
+TEST(Text, AWholeNumberIsAllOfTheTextAndFits) {
+  EXPECT_EQ(parse_whole<std::uint8_t>("255"), 255);
+  EXPECT_EQ(parse_whole<std::uint32_t>("fF", 16), 255U);
+  EXPECT_EQ(parse_whole<int>("-7"), -7);
+  for (const char* bad : {"", " 1", "1 ", "+1", "-1", "1.0", "0x1", "256"}) {
+    EXPECT_FALSE(parse_whole<std::uint8_t>(bad).has_value()) << bad;
+  }
+}
+
+TEST(Text, ARateIsAShareOrAPercentage) {
+  EXPECT_EQ(parse_rate("0.5"), 0x80000000U);
+  EXPECT_EQ(parse_rate("50%"), 0x80000000U);
+  EXPECT_EQ(parse_rate("0"), 0U);
+  EXPECT_EQ(parse_rate("100%"), 0xFFFFFFFFU);
+  for (const char* bad : {"", "%", "1.1", "101%", "-1%", "nan", "5 %", "50%%"}) {
+    EXPECT_FALSE(parse_rate(bad).has_value()) << bad;
+  }
+}
+
+TEST(Text, AnExactNumberReadsBackAsTheSame) {
+  for (const double value : {0.1, 1.0 / 3.0, -2.5e-300, 1e22}) {
+    EXPECT_EQ(std::stod(exact_text(value)), value);
+  }
+  EXPECT_EQ(exact_text(0.1), "0.1");
+  EXPECT_EQ(exact_text(NAN), "");
+}
+
+TEST(Text, HexadecimalNumbersHaveAtLeastTheDigitsAskedFor) {
+  EXPECT_EQ(hexadecimal(0x1F, 1), "0x1F");
+  EXPECT_EQ(hexadecimal(0x1F, 4), "0x001F");
+  EXPECT_EQ(hexadecimal(0, 1), "0x0");
+  EXPECT_EQ(hexadecimal(0xFFFFFFFFU, 8), "0xFFFFFFFF");
 }
 
 TEST(Text, NumbersAreWholeWordsAndFinite) {
@@ -50,7 +89,7 @@ TEST(Text, WordsAreSplitAtXmlBlanks) {
   EXPECT_TRUE(words(" \n ").empty());
 }
 
-TEST(InputErrorText, NamesFileAndLineAndLeavesLineZeroOut) {
+TEST(InputErrorText, NamesFileAndLineAndOmitsLineZero) {
   EXPECT_STREQ(InputError("a.xml", 3, "x", "y").what(), "a.xml:3: found x, expected y");
   EXPECT_STREQ(InputError("amplitude=x", 0, "x", "y").what(), "amplitude=x: found x, expected y");
 }

@@ -14,7 +14,7 @@
 namespace proleg {
 namespace {
 
-/// Appends a text whose length is a multiple of four, so that its bytes come out in their order.
+/// Appends the bytes of a text, in their order. Its size must be a multiple of four.
 void append(ValueHash& hash, const std::string& text) {
   for (std::size_t i = 0; i < text.size(); i += 4) {
     std::uint32_t bits = 0;
@@ -56,7 +56,7 @@ TEST(ValueHash, GivesTheFipsExampleOfAMillionLetters) {
   EXPECT_EQ(hash.hex(), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-TEST(ValueHash, GoesOnAfterItWasRead) {
+TEST(ValueHash, MayBeReadBetweenValues) {
   ValueHash read;
   ValueHash unread;
   for (std::int32_t i = 0; i < 40; ++i) {

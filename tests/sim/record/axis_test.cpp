@@ -32,7 +32,7 @@ TEST(Multiples, IncludeTheEndsOfTheRange) {
   EXPECT_TRUE(multiples(0.11, 0.19, 0.1).empty());
 }
 
-TEST(Spread, LeavesAloneWhatIsApart) {
+TEST(Spread, DoesNotMoveWhatIsApart) {
   EXPECT_EQ(spread({50.0, 10.0, 90.0}, 15.0, 0.0, 100.0), (std::vector<double>{50.0, 10.0, 90.0}));
 }
 

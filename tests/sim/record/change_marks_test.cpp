@@ -17,7 +17,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-TEST(ChangeMarks, SayWhatChangedOnOneJointOrOnAll) {
+TEST(ChangeMarks, NameTheValueAndItsJointUnlessAllChange) {
   const TemporaryFolder folder;
   Scenario scenario = small_scenario();
   scenario.changes.clear();
@@ -43,7 +43,7 @@ TEST(ChangeMarks, SayWhatChangedOnOneJointOrOnAll) {
   EXPECT_EQ(marks[1].text, "amplitude = 20");
 }
 
-TEST(ChangeMarks, StandInTheFigureWhereTheyHappened) {
+TEST(ChangeMarks, AppearInTheFigureAtTheirTime) {
   const TemporaryFolder folder;
   record_small(folder / "run", small_scenario(), 50);
   const Recording recording(folder / "run");
@@ -51,7 +51,7 @@ TEST(ChangeMarks, StandInTheFigureWhereTheyHappened) {
   EXPECT_EQ(count(whole, R"(class="change")"), 4U) << "a commit and a distortion, each through two panels";
   EXPECT_EQ(count(whole, "angle J1 = -7"), 1U);
   EXPECT_EQ(count(whole, "changed 2 times in flight"), 1U);
-  EXPECT_EQ(count(draw_figure(recording, {0.2, 0.4}), R"(class="change")"), 0U) << "they happened before";
+  EXPECT_EQ(count(draw_figure(recording, {0.2, 0.4}), R"(class="change")"), 0U) << "the changes are before the window";
 }
 
 }  // namespace

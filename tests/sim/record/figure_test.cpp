@@ -15,7 +15,7 @@
 namespace proleg::sim {
 namespace {
 
-/// What a figure consists of.
+/// The elements of a figure.
 class Picture {
  public:
   explicit Picture(const std::string& svg) {
@@ -160,7 +160,7 @@ TEST_F(Figure, DrawsThePathToOneScale) {
   EXPECT_NEAR((high - low) / pixels_per_metre, 0.02, 0.0005);
 }
 
-TEST_F(Figure, ShowsTheWindowThatIsAskedFor) {
+TEST_F(Figure, ShowsTheRequestedWindow) {
   Picture picture = draw(small_scenario(), 400, {0.5, 1.0});
   EXPECT_EQ(picture.lines("joint")[0].size(), 51U);
   EXPECT_TRUE(picture.has_text("0.75"));
@@ -173,7 +173,7 @@ TEST_F(Figure, RefusesAWindowWithoutTicks) {
   for (const TimeWindow& window : {TimeWindow{2.0, {}}, TimeWindow{0.5, 0.5}, TimeWindow{0.7, 0.2},
                                    TimeWindow{{}, -1.0}, TimeWindow{1e300, {}}, TimeWindow{{}, -1e300}}) {
     const std::string message = message_of<InputError>([&] { (void)draw_figure(recording, window); });
-    EXPECT_NE(message.find("less than two ticks"), std::string::npos) << message;
+    EXPECT_NE(message.find("fewer than two ticks"), std::string::npos) << message;
     EXPECT_NE(message.find("expected a window within the recorded 0 s to 1 s"), std::string::npos) << message;
   }
 }
@@ -182,7 +182,7 @@ TEST_F(Figure, IsDrawnForTwoTicks) { EXPECT_EQ(draw(small_scenario(), 2).count("
 
 TEST_F(Figure, IsDrawnForTheLongestRobot) {
   Picture picture = draw(long_scenario(max_joints), 100);
-  EXPECT_EQ(picture.count("joint"), 10);  // of 64, so that the lines can be told apart
+  EXPECT_EQ(picture.count("joint"), 10);  // of 64, so that the lines remain distinct
   EXPECT_TRUE(picture.has_text("Joint angles (deg), one joint in 7"));
   EXPECT_TRUE(picture.has_text("J64"));
   EXPECT_TRUE(picture.has_text("Link64"));
@@ -195,7 +195,7 @@ TEST_F(Figure, DoesNotGrowWithTheLengthOfTheWindow) {
   EXPECT_LT(minute, 1'000'000U);
 }
 
-TEST_F(Figure, IsWellFormedWhateverTheNames) {
+TEST_F(Figure, IsWellFormedForAnyNames) {
   Scenario scenario = small_scenario();
   scenario.robot.name = "<&\">'\x01\xff\xc3";
   scenario.robot.links[0].name = "]]><b a='";
@@ -205,7 +205,7 @@ TEST_F(Figure, IsWellFormedWhateverTheNames) {
   EXPECT_TRUE(picture.has_text("K\xc3\xb6rper"));
 }
 
-TEST_F(Figure, IsDrawnOfASimulationThatHasFlownApart) {
+TEST_F(Figure, HasFiniteCoordinatesForAnUnstableSimulation) {
   const Scenario scenario = small_scenario();
   {
     Recorder recorder(path_, scenario, "test", "build");
@@ -222,7 +222,7 @@ TEST_F(Figure, IsDrawnOfASimulationThatHasFlownApart) {
       recorder.record_tick(wild);
     });
   }
-  Picture picture(draw_figure(Recording(path_), {}));  // which looks whether all coordinates are on the page
+  Picture picture(draw_figure(Recording(path_), {}));  // checks that all coordinates are on the page
   EXPECT_EQ(picture.count("joint"), 3);
 }
 
@@ -235,7 +235,7 @@ TEST_F(Figure, ShortensNamesThatAreTooLong) {
   EXPECT_TRUE(picture.has_text("\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6..."));
 }
 
-TEST_F(Figure, SaysThatARunIsNotFinished) {
+TEST_F(Figure, ShowsThatARunIsNotFinished) {
   const Scenario scenario = small_scenario();
   {
     Recorder recorder(path_, scenario, "test", "build");

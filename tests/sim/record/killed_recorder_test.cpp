@@ -18,7 +18,7 @@ struct Report {
   std::chrono::steady_clock::time_point time;
 };
 
-/// The child process: a tick each 5 ms, for much longer than it is allowed to live.
+/// The child process: a tick every 5 ms, until the test kills it.
 [[noreturn]] void record_until_killed(const std::filesystem::path& path, int pipe) {
   const Scenario scenario = small_scenario();
   Recorder recorder(path, scenario, "test", "build");
@@ -52,14 +52,14 @@ class KilledRecorder : public testing::Test {
     for (Report report{}; read(ends[0], &report, sizeof report) == sizeof report;) {
       reports.push_back(report);
       if (report.time - reports.front().time > std::chrono::milliseconds(1500)) {
-        kill(child, SIGKILL);  // what it still reports until then is read, too
+        kill(child, SIGKILL);  // the loop reads the reports that are still in the pipe
       }
     }
     close(ends[0]);
     int status = 0;
     ASSERT_EQ(waitpid(child, &status, 0), child);
     ASSERT_TRUE(WIFSIGNALED(status));
-    // Counted from the last tick of the child, not from its death, so that the test holds on a busy machine, too.
+    // Counted from the last tick of the child, not from its end, so that the test also holds on a busy machine.
     for (const Report& report : reports) {
       due_ += report.time < reports.back().time - std::chrono::seconds(1) ? 1U : 0U;
     }

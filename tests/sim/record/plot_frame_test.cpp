@@ -9,7 +9,7 @@
 namespace proleg::sim {
 namespace {
 
-TEST(AxisOver, HoldsItsValuesWithRoomAroundThem) {
+TEST(AxisOver, ContainsItsValuesWithRoomAroundThem) {
   for (const auto& [low, high] : {std::pair(0.0, 1.0), std::pair(-3e-5, 2e-5), std::pair(1e6, 1e6 + 1.0),
                                   std::pair(5.0, 5.0), std::pair(0.0, 0.0), std::pair(-1e12, 1e12)}) {
     const Axis axis = axis_over(low, high, 100.0, 0.0);
@@ -44,7 +44,7 @@ TEST(ToPixels, StaysWithinTheAxes) {
   }
 }
 
-TEST(ToMarks, LeavesOutWhatWouldBeHidden) {
+TEST(ToMarks, OmitsHiddenMarks) {
   const Axis x{0.0, 100.0, 0.0, 100.0};
   const Axis y{0.0, 100.0, 100.0, 0.0};
   Trace cloud;

@@ -114,12 +114,12 @@ TEST(Recorder, KeepsTimesOfADay) {
       recorder.record_tick(late);
     });
   }
-  Recording(folder / "run.sqlite").read_servo_pulses([&](const ServoPulse& pulse) {
-    EXPECT_EQ(pulse.time_us, day_us);
-  });
+  std::vector<std::uint64_t> times;
+  Recording(folder / "run.sqlite").read_servo_pulses([&](const ServoPulse& pulse) { times.push_back(pulse.time_us); });
+  EXPECT_EQ(times, (std::vector<std::uint64_t>{day_us, day_us, day_us}));
 }
 
-TEST(Recorder, KeepsWhatWasRun) {
+TEST(Recorder, KeepsScenarioAndProgram) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
   record_small(folder / "run.sqlite", scenario, ticks);
@@ -186,7 +186,7 @@ TEST(Recorder, KeepsDistortions) {
   EXPECT_EQ(distortions[0].raw, 1 << 30);
 }
 
-TEST(Recorder, LeavesTablesThatAPersonCanQuery) {
+TEST(Recorder, WritesTablesThatAPersonCanQuery) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder / "run.sqlite";
   record_small(path, small_scenario(), ticks);
@@ -232,7 +232,7 @@ TEST(Recorder, CommitsAnUnfinishedRunWhenItIsDestroyed) {
   EXPECT_EQ(recording.last_tick(), 19U);
 }
 
-TEST(Recorder, RecordsTheSameRunAlike) {
+TEST(Recorder, RecordsTheSameRunTwiceTheSame) {
   const TemporaryFolder folder;
   record_small(folder / "a.sqlite", small_scenario(), ticks);
   record_small(folder / "b.sqlite", small_scenario(), ticks);
@@ -264,7 +264,7 @@ TEST(Recorder, WritesIntoAnEmptyFile) {
 
 TEST(Recorder, LeavesATextFileAlone) {
   const TemporaryFolder folder;
-  expect_left_alone(folder / "notes.txt", "what I did in the summer\n");
+  expect_left_alone(folder / "notes.txt", "notes of a summer\n");
 }
 
 TEST(Recorder, LeavesAForeignDatabaseAlone) {
@@ -294,7 +294,7 @@ TEST(Recorder, DoesNotReplaceARecordingThatIsBeingWritten) {
   first.finish({});
 }
 
-TEST(Recorder, SaysWhyAFileCannotBeCreated) {
+TEST(Recorder, ReportsWhyAFileCannotBeCreated) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
   const std::string message =
@@ -329,7 +329,7 @@ TEST(Recorder, RefusesNumbersThatAreNotFinite) {
   EXPECT_EQ(Recording(folder / "run.sqlite").last_tick(), 1U);
 }
 
-TEST(Recorder, TakesNothingAfterTheEnd) {
+TEST(Recorder, RejectsCallsAfterTheEnd) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
   Recorder recorder(folder / "run.sqlite", scenario, "test", "build");
@@ -339,7 +339,7 @@ TEST(Recorder, TakesNothingAfterTheEnd) {
 }
 
 TEST(Recorder, ReportsADiskThatIsFull) {
-  // A limit on the size of files is a full disk for one process; the child has it.
+  // For the child process a limit on the size of files acts as a full disk.
   const TemporaryFolder folder;
   const std::filesystem::path path = folder / "run.sqlite";
   const pid_t child = fork();
@@ -356,7 +356,7 @@ TEST(Recorder, ReportsADiskThatIsFull) {
                   [&](const TickSample& sample, const Change* /*change*/) { recorder.record_tick(sample); });
         recorder.finish({});
       } catch (const FileError&) {
-        // Nothing is taken after an error, so that a recording has no gap.
+        // The recorder rejects calls after an error, so that a recording has no gap.
         if (message_of<FileError>([&] { recorder.finish({}); }).find("earlier error") == std::string::npos) {
           _exit(3);
         }
@@ -391,7 +391,7 @@ TEST(Recorder, CanBeReadWhileItWrites) {
       recording.read_ticks(0, 20, [&](const RecordedTick& /*tick*/) { ++seen; });
     }
   });
-  const Recording reader(folder / "run.sqlite");  // keeps the recorder from making one file, not from finishing
+  const Recording reader(folder / "run.sqlite");  // so that finish() cannot merge the log into the file
   recorder.finish({});
   EXPECT_EQ(seen, 21U);
   const Recording finished(folder / "run.sqlite");

@@ -11,11 +11,13 @@
 namespace proleg::sim {
 namespace {
 
-/// Reads everything that there is in a recording.
+/// Reads everything in a recording.
 void read_all(const std::filesystem::path& path) {
   const Recording recording(path);
   (void)recording.parameters();
   (void)recording.distortions();
+  (void)recording.losses();
+  (void)recording.restarts();
   (void)recording.sources();
   recording.read_servo_pulses([](const ServoPulse& /*pulse*/) {});
   recording.read_ticks(recording.first_tick(), recording.last_tick(), [](const RecordedTick& /*tick*/) {});
@@ -98,9 +100,15 @@ TEST_F(BadRecording, AMissingTickIsRefused) {
   expect_refusal("a gap in the table sample at tick 12");
 }
 
-TEST_F(BadRecording, APulseForAJointThatIsNotThereIsRefused) {
+TEST_F(BadRecording, AJointOrChannelThatDoesNotExistIsRefused) {
   damage("UPDATE servo SET joint = 64 WHERE time_us = 120000 AND joint = 1");
-  expect_refusal("joint 64 of");
+  expect_refusal("joint 64 of 3");
+  damage("INSERT INTO restart VALUES(4, 3, 'stopped')");
+  expect_refusal("joint 3 of 3");
+  damage("INSERT INTO loss VALUES(4, 0, 0, 5)");
+  expect_refusal("joint 5 of 3");
+  damage("INSERT INTO loss VALUES(4, 0, 2, 1)");
+  expect_refusal("a loss on channel 2");
 }
 
 TEST_F(BadRecording, NumbersOutOfRangeAreRefused) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// A small robot with made-up motion, to record. What is recorded is computed here a second time, from the tick alone.
+// A small robot with made-up motion for recordings. The same functions give the expected values, from the tick alone.
 
 #include <filesystem>
 #include <functional>
@@ -14,7 +14,7 @@
 namespace proleg::sim {
 
 /// Three joints (J3, J2, J1 from the head), four links; a sine on all joints and direct access on the last; one
-/// amplitude of its own, one commit at tick 5, one distortion at tick 7.
+/// amplitude that is not the default, one commit at tick 5, one distortion at tick 7.
 [[nodiscard]] Scenario small_scenario();
 
 // Made-up measurements at SYNC tick + 1.
@@ -27,8 +27,7 @@ namespace proleg::sim {
 /// Made-up contacts at SYNC tick.
 [[nodiscard]] std::uint8_t made_up_contacts(std::uint32_t tick, std::size_t link);
 
-/// Runs the kernel of a scenario for some ticks as the simulator does, changes and contacts included, and hands over
-/// each tick.
+/// Runs the kernel of a scenario as the simulator does, with changes and contacts, and calls `use` for each tick.
 void run_small(const Scenario& scenario, std::uint32_t ticks,
                const std::function<void(const TickSample& sample, const Change* change)>& use);
 

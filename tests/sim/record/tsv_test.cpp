@@ -48,7 +48,7 @@ TEST(Tsv, NamesItsColumns) {
             "x_m.Tail\ty_m.Tail\tz_m.Tail\tcontact_rear.Tail\tcontact_front.Tail");
 }
 
-TEST(Tsv, HoldsEveryValueExactly) {
+TEST(Tsv, ContainsEveryValueExactly) {
   const Scenario scenario = small_scenario();
   constexpr std::uint32_t ticks = 40;
   const std::vector<std::string> lines = table_of(scenario, ticks);
@@ -99,7 +99,7 @@ TEST(Tsv, NamesTheSlotWhereTwoSlotsHaveTheSameValue) {
   EXPECT_EQ(std::count(names.begin(), names.end(), "current_phase_deg.J2.slot2"), 0);
 }
 
-TEST(Tsv, KeepsItsShapeWhateverTheNames) {
+TEST(Tsv, KeepsItsShapeForAnyNames) {
   Scenario scenario = small_scenario();
   scenario.robot.joints[0].name = "one\ttwo\nthree";
   scenario.robot.joints[1].name = "same";

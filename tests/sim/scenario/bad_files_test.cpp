@@ -1,4 +1,4 @@
-// What lies on a disk besides readable files.
+// Missing files, folders, pipes and large files.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -8,54 +8,41 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/scenario/reader.hpp"
+#include "tests/support/message_of.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace proleg::sim {
 namespace {
 
-/// A folder of its own for a test, removed at the end.
+std::string message_for(const std::filesystem::path& path) {
+  DiskFiles files;
+  return message_of<InputError>([&] { static_cast<void>(read_scenario(path, files)); });
+}
+
 class DiskFilesTest : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              (std::string("proleg_") + testing::UnitTest::GetInstance()->current_test_info()->name() + "_" +
-               std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  [[nodiscard]] static std::string message_for(const std::filesystem::path& path) {
-    DiskFiles files;
-    try {
-      static_cast<void>(read_scenario(path, files));
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
-  }
-
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(DiskFilesTest, AMissingFileIsRefused) {
-  const std::filesystem::path path = folder_ / "nobody.simulation.xml";
-  EXPECT_EQ(message_for(path), path.string() +
-                                   ": found no such file, or not a readable one, expected a readable file of at most "
-                                   "16 MiB");
+  const std::filesystem::path path = folder_ / "missing.simulation.xml";
+  EXPECT_EQ(message_for(path),
+            path.string() + ": found no file that can be read, expected a readable file of at most 16 MiB");
 }
 
 TEST_F(DiskFilesTest, AFolderIsRefused) {
-  EXPECT_NE(message_for(folder_).find("found no such file, or not a readable one"), std::string::npos);
+  EXPECT_NE(message_for(folder_.path()).find("found no file that can be read"), std::string::npos);
 }
 
-TEST_F(DiskFilesTest, APathLongerThanTheSystemTakesIsRefused) {
-  EXPECT_NE(message_for(std::string(100'000, 'x')).find("found no such file"), std::string::npos);
-  EXPECT_NE(message_for("").find("found no such file"), std::string::npos);
+TEST_F(DiskFilesTest, APathThatIsTooLongOrEmptyIsRefused) {
+  EXPECT_NE(message_for(std::string(100'000, 'x')).find("found no file that can be read"), std::string::npos);
+  EXPECT_NE(message_for("").find("found no file that can be read"), std::string::npos);
 }
 
 TEST_F(DiskFilesTest, APipeIsRefusedWithoutWaitingForIt) {
   const std::filesystem::path path = folder_ / "pipe.simulation.xml";
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
-  EXPECT_NE(message_for(path).find("found no such file, or not a readable one"), std::string::npos);
+  EXPECT_NE(message_for(path).find("found no file that can be read"), std::string::npos);
 }
 
 TEST_F(DiskFilesTest, AnEmptyFileIsMalformed) {
@@ -76,7 +63,9 @@ TEST_F(DiskFilesTest, AFileOf16MiBIsReadAndALargerOneIsRefused) {
 }
 
 TEST_F(DiskFilesTest, ANameWithALineEndMakesAMessageOfOneLine) {
-  EXPECT_EQ(message_for("no\nbody\x1b[31m.xml").find_first_of("\n\x1b"), std::string::npos);
+  const std::string message = message_for("two\nlines\x1b[31m.xml");
+  EXPECT_NE(message.find("two lines"), std::string::npos) << message;
+  EXPECT_EQ(message.find_first_of("\n\x1b"), std::string::npos) << message;
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Each case breaks the small scenario in one place and says what the one line of the message must name.
+// Each case breaks the small scenario in one place and gives the message, which must be one line.
 
 #include <gtest/gtest.h>
 
@@ -50,7 +50,7 @@ const auto cases = testing::Values(
     // The top-level file.
     BadInput{"WrongRootTag", "top.xml", "<simulation>", "<simulations>",
              "top.xml:1: found malformed XML (mismatched element), expected well-formed XML"},
-    BadInput{"AnotherRootTag", "robot.xml", "<Robot name=\"small\">", "<!-- --><Robots/><Robot name=\"small\">",
+    BadInput{"SecondRootTag", "robot.xml", "<Robot name=\"small\">", "<!-- --><Robots/><Robot name=\"small\">",
              "robot.xml:1: found 'Robot' beside the outermost tag, expected one outermost tag"},
     BadInput{"NotClosed", "top.xml", "</simulation>", "", "top.xml:1: found malformed XML"},
     BadInput{"TextAtTheTop", "top.xml", "</simulation>", "</simulation>\nrest<!-- -->",
@@ -66,8 +66,8 @@ const auto cases = testing::Values(
              "top.xml:1: found no <robot> in <simulation>, expected one"},
     BadInput{"TwoRobots", "top.xml", "<actuation>", "<robot>robot.xml</robot><actuation>",
              "top.xml:3: found a second <robot> in <simulation>, expected one; the first is in line 2"},
-    BadInput{"MissingFile", "top.xml", "robot.xml", "nobody.xml",
-             "top.xml:2: found no such file 'nobody.xml', expected a readable file of at most 16 MiB"},
+    BadInput{"MissingFile", "top.xml", "robot.xml", "missing.xml",
+             "top.xml:2: found no such file 'missing.xml', expected a readable file of at most 16 MiB"},
     BadInput{"EmptyPath", "top.xml", "robot.xml", " ", "top.xml:2: found an empty path, expected a path of 1 to 4096"},
     BadInput{"LongPath", "top.xml", "robot.xml", std::string(5000, 'a'),
              "top.xml:2: found a path of 5000 characters, expected a path of 1 to 4096 characters"},
@@ -219,7 +219,7 @@ const auto cases = testing::Values(
              "top.xml:8: found 'nan' in <contactNoise>, expected a number from 0 to 1"},
     // Modules. J1 and J2 of the small robot are kernel joints 1 and 0.
     BadInput{"JointWithoutModule", "robot.xml", "</Robot>", "<module joint=\"J1\" node=\"5\"/></Robot>",
-             "robot.xml:1: found no <module> for joint 'J2' in <Robot>, expected one for each joint, or none at all"},
+             "robot.xml:1: found no <module> for joint 'J2' in <Robot>, expected a module for each joint, or none"},
     BadInput{"ModuleOfUnknownJoint", "robot.xml", "</Robot>", "\n<module joint=\"J3\" node=\"5\"/></Robot>",
              "robot.xml:47: found unknown joint 'J3', expected one of J1, J2"},
     BadInput{"TwoModulesForOneJoint", "robot.xml", "</Robot>",
@@ -300,7 +300,7 @@ const auto cases = testing::Values(
     BadInput{"ParameterOfUnknownJoint", "actuation.xml", "joint=\"J1\"", "joint=\"J9\"",
              "actuation.xml:6: found unknown joint 'J9', expected one of J1, J2"},
     BadInput{"ParameterOfAnUndrivenJoint", "actuation.xml", "value=\"5\"", "value=\"5\" joint=\"J1\"",
-             "actuation.xml:10: found joint not driven by this module, 'J1', expected one of J2"},
+             "actuation.xml:10: found a joint that this module does not drive, 'J1', expected one of J2"},
     BadInput{"NoModule", "actuation.xml", "<actuation>", "<actuation/><!--", "actuation.xml:1: found malformed XML"},
     BadInput{"FifthModule", "actuation.xml", "</actuation>",
              "<actuationModule name=\"DirectJointAccess\"><jointConfiguration joints=\"11\"/></actuationModule>"
@@ -314,11 +314,11 @@ const auto cases = testing::Values(
              "<jointConfiguration joints=\"11\"/></actuationModule>\n"
              "<actuationModule name=\"PatternGenerator_coupled_oscillator\"><jointConfiguration joints=\"10\"/>"
              "</actuationModule>",
-             "actuation.xml:3: found a configuration that the control kernel refuses with <actuationModule>: more than "
-             "two broadcasting algorithms on one joint, expected one that it takes"},
+             "actuation.xml:3: found a configuration that the control kernel rejects with <actuationModule>: more than "
+             "two broadcasting algorithms on one joint, expected a configuration that it accepts"},
     // Environment.
     BadInput{"DynamicBodyInEnvironment", "environment.xml", "type=\"static\"", "type=\"dynamic\"",
-             "environment.xml:9: found type 'dynamic' in <Body>, expected 'static', as this version has only static"},
+             "environment.xml:9: found type 'dynamic' in <Body>, expected 'static', because all objects"},
     BadInput{"BodyTypeLeftOutInEnvironment", "environment.xml", " type=\"static\"", "",
              "environment.xml:9: found type 'dynamic' in <Body>, expected 'static'"},
     BadInput{"JointInEnvironment", "environment.xml", "<KinBody name=\"floor\">", "<KinBody name=\"floor\"><Joint/>",
@@ -340,7 +340,7 @@ const auto cases = testing::Values(
 
 INSTANTIATE_TEST_SUITE_P(Small, BadScenario, cases, [](const auto& bad) { return bad.param.name; });
 
-TEST(BadScenarioFiles, TwoEndsThatAreCalledHeadAreRefused) {
+TEST(BadScenarioFiles, TwoEndsWithTheNameHeadAreRefused) {
   MemoryFiles files = small_scenario();
   files.replace("end.xml", "name=\"End\"", "name=\"Ahead\"").replace("robot.xml", "TailEnd", "TailAhead");
   EXPECT_EQ(
@@ -362,7 +362,7 @@ TEST(BadScenarioFiles, ARobotOfTooManyBodiesIsRefused) {
     bodies += "<KinBody file=\"end.xml\" prefix=\"b" + std::to_string(i) + "\"/>";
   }
   files.texts["robot.xml"] = "<Robot>" + bodies + "</Robot>";
-  EXPECT_EQ(message_of(files), "end.xml:2: found more than 65 bodies, expected at most that");
+  EXPECT_EQ(message_of(files), "end.xml:2: found more than 65 bodies, expected at most 65");
 }
 
 TEST(BadScenarioFiles, ARobotOfTooManyJointsIsRefused) {
@@ -402,7 +402,7 @@ TEST(BadScenarioFiles, FilesThatDoubleAtEveryLevelAreRefused) {
     files.texts["n" + std::to_string(i)] = "<KinBody>" + next + next + "</KinBody>";
   }
   files.texts["n25"] = "<KinBody/>";
-  // As an environment, where KinBodies need not hold anything.
+  // In the environment, where KinBodies may be empty.
   files.replace("environment.xml", "</Environment>", "<KinBody file=\"n10\"/></Environment>");
   EXPECT_NE(message_of(files).find("found more than 1000 included files"), std::string::npos) << message_of(files);
 }

@@ -60,7 +60,7 @@ TEST_F(LossFile, NamesTickSenderReceiverAndChannel) {
 
 TEST_F(LossFile, AStarMeansAllOtherJoints) { EXPECT_EQ(read("5 J3 *").receivers_without(5, 2, 0), JointMask(0b11011)); }
 
-TEST_F(LossFile, AnEmptyOneIsNoLoss) { EXPECT_FALSE(read("# nothing\n").any()); }
+TEST_F(LossFile, WithoutALineIsNoLoss) { EXPECT_FALSE(read("# nothing\n").any()); }
 
 TEST_F(LossFile, WhatDoesNotFitIsRefusedWithItsLine) {
   expect_refusal("5 J3\n", path_.string() + ":1: found '5 J3', expected TICK SENDER RECEIVER [CHANNEL]");
@@ -74,11 +74,11 @@ TEST_F(LossFile, WhatDoesNotFitIsRefusedWithItsLine) {
 }
 
 TEST_F(LossFile, AMissingFileIsRefused) {
-  EXPECT_THROW((void)read_losses("/nowhere/losses", robot_), InputError);
+  EXPECT_THROW((void)read_losses("/missing/losses", robot_), InputError);
   EXPECT_THROW((void)read_losses("", robot_), InputError);
 }
 
-TEST(RandomLosses, TakeTheShareThatWasAskedFor) {
+TEST(RandomLosses, HaveTheirRate) {
   const RobotModel robot = caterpillar();
   for (const auto& [argument, rate] : {std::pair{"7:5%", 0.05}, std::pair{"11:0.25", 0.25}, std::pair{"3:1", 1.0}}) {
     const Losses losses = read_losses(argument, robot);
@@ -96,7 +96,7 @@ TEST(RandomLosses, TakeTheShareThatWasAskedFor) {
   }
 }
 
-TEST(RandomLosses, NeverTakeAJointsOwnFrame) {
+TEST(RandomLosses, NeverContainAJointsOwnFrame) {
   const Losses losses = read_losses("3:100%", caterpillar());
   for (unsigned sender = 0; sender < max_joints; ++sender) {
     EXPECT_FALSE(losses.receivers_without(9, sender, 0).contains(sender));
@@ -116,7 +116,7 @@ TEST(RandomLosses, DifferWithSeedTickSenderAndChannelAndRepeat) {
   EXPECT_NE(pattern("7:50%", 100, 3, 1), reference);
 }
 
-TEST(RandomLosses, EndWhereTheyAreToldTo) {
+TEST(RandomLosses, StayWithinTheirTicks) {
   const Losses losses = read_losses("1:100%@10-20", caterpillar());
   EXPECT_FALSE(losses.lost({9, 0, 0, 1}));
   EXPECT_TRUE(losses.lost({10, 0, 0, 1}));

@@ -21,7 +21,7 @@ class MemoryFiles final : public FileSource {
     return file == texts.end() ? std::nullopt : std::optional(file->second);
   }
 
-  /// Replaces a text that a file must hold exactly once, so that a test cannot silently change nothing.
+  /// Replaces a text, which the file must contain exactly once, so that no test changes nothing.
   MemoryFiles& replace(const std::string& file, const std::string& old_text, const std::string& new_text) {
     std::string& text = texts.at(file);
     const std::size_t at = text.find(old_text);

@@ -43,7 +43,7 @@ std::string refusal(Scenario scenario, const std::string& word) {
   } catch (const InputError& error) {
     return error.what();
   }
-  return "taken";
+  return "accepted";
 }
 
 TEST(Parameters, HoldForAllJointsOfTheModuleOrForOne) {
@@ -158,16 +158,16 @@ Scenario twice_the_sine() {
   return files.scenario();
 }
 
-TEST(SetOption, AsksForTheModuleWhenSeveralHaveTheName) {
+TEST(SetOption, RequiresTheModuleIfSeveralHaveTheName) {
   EXPECT_EQ(refusal(twice_the_sine(), "amplitude=1"),
             "amplitude=1: found 'amplitude' in several modules, expected MODULE.amplitude with one of "
             "PatternGenerator_sinusoidal (1), PatternGenerator_sinusoidal (2)");
   EXPECT_NE(refusal(twice_the_sine(), "PatternGenerator_sinusoidal.amplitude=1").find("in several modules"),
             std::string::npos);
-  EXPECT_EQ(refusal(twice_the_sine(), "2.amplitude=1"), "taken");
+  EXPECT_EQ(refusal(twice_the_sine(), "2.amplitude=1"), "accepted");
 }
 
-TEST(SetOption, AJointThatOnlyOneModuleDrivesTellsTheModule) {
+TEST(SetOption, AJointThatOnlyOneModuleDrivesDecidesTheModule) {
   Scenario small = twice_the_sine();
   apply_setting(small, "amplitude:J1=1");
   EXPECT_EQ(start(small, 0, 1, "amplitude"), degrees("1"));
@@ -192,7 +192,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"amplitud=3", "found unknown parameter 'amplitud', expected one of amplitude, frequency"},
         Refusal{"2.amplitude=3", "found unknown parameter 'amplitude', expected one of angle"},
         Refusal{"5.amplitude=3", "found unknown module '5', expected one of PatternGenerator_sinusoidal (1), DirectJ"},
-        Refusal{"Nobody.amplitude=3", "found unknown module 'Nobody', expected one of PatternGenerator_sinusoidal (1)"},
+        Refusal{"Missing.amplitude=3",
+                "found unknown module 'Missing', expected one of PatternGenerator_sinusoidal (1)"},
         Refusal{"amplitude:J7=3", "found unknown joint 'J7', expected one of J1, J2"},
         Refusal{"amplitude:=3", "found unknown joint '', expected one of J1, J2"},
         Refusal{"angle:J1=3", "found joint 'J1', which DirectJointAccess (2) does not drive, expected one of J2"},
@@ -204,6 +205,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"amplitude=40deg", "found '40deg' for parameter 'amplitude'"},
         Refusal{"amplitude=1e99", "found '1e99' for parameter 'amplitude'"},
         Refusal{"frequency=20.001", "expected a number from 0 to 20 Hz"},
+        Refusal{"current_phase=x@3", "found 'x' for 'current_phase', expected a number in the range of the unit deg"},
         Refusal{"amplitude=3@", "found tick '', expected a whole number from 0 to 4294967295"},
         Refusal{"amplitude=3@-1", "found tick '-1', expected a whole number from 0 to 4294967295"},
         Refusal{"amplitude=3@4294967296", "found tick '4294967296', expected a whole number from 0 to 4294967295"},
@@ -219,7 +221,7 @@ TEST_P(BadSetOption, IsNamedWithWhatWasExpected) {
 TEST(SetOption, AWordThatIsRefusedChangesNothing) {
   Scenario small = scenario();
   EXPECT_THROW(apply_setting(small, "amplitude=3@x"), InputError);
-  EXPECT_THROW(apply_setting(small, "phase=x@3"), InputError);
+  EXPECT_THROW(apply_setting(small, "current_phase=x@3"), InputError);
   EXPECT_EQ(small.settings.size(), scenario().settings.size());
   EXPECT_TRUE(small.changes.empty());
 }

@@ -7,6 +7,7 @@
 #include "shared/fixed/decimal.hpp"
 #include "shared/gait/registry.hpp"
 #include "sim/scenario/reader.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tests/support/files.hpp"
 
 namespace proleg::sim {
@@ -80,16 +81,10 @@ TEST_P(Shipped, RunsThirtySecondsInStepsOfAMillisecondAndTicksOfTen) {
   EXPECT_EQ(scenario.solver, Solver::automatic);
 }
 
-/// The value that a joint starts with: the setting, or the default.
 std::int32_t start_value(const Scenario& scenario, std::string_view parameter, unsigned joint, unsigned slot = 0) {
   const Declaration& declaration = scenario.kernel.slots[slot].algorithm->declaration();
   const int index = find_parameter(declaration, parameter);
-  for (const Setting& setting : scenario.settings) {
-    if (setting.slot == slot && setting.joint == joint && setting.index == index) {
-      return setting.value;
-    }
-  }
-  return declaration.parameters[static_cast<std::size_t>(index)].default_value;
+  return sim::start_value(scenario, slot, joint, static_cast<unsigned>(index));
 }
 
 TEST_P(Shipped, HasFortyDegreesAtOneHertzAndFiftyFiveDegreesOfPhase) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The programs as a user meets them: words in, standard output, standard error and exit status out.
+// Runs the programs as a user does: arguments in; standard output, standard error and exit status out.
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -15,6 +15,7 @@
 #include <sstream>
 #include <string>
 #include <vector>
+
 #include "tests/support/files.hpp"
 
 extern char** environ;
@@ -51,14 +52,14 @@ class CommandLine : public testing::Test {
     return source_path("/sim/scenarios/travelling_wave/") + name + ".simulation.xml";
   }
 
-  /// Runs proleg with these words; an empty `out_file` catches standard output.
+  /// Runs proleg with these arguments and returns its standard output, unless that goes to `out_file`.
   [[nodiscard]] Finished proleg(const std::vector<std::string>& words, const std::string& out_file = "") const {
     std::vector<std::string> command{PROLEG_PROGRAM};
     command.insert(command.end(), words.begin(), words.end());
     return finish(start(command, out_file), out_file);
   }
 
-  /// Starts a program; the first word is its path, or a name to be looked for in PATH.
+  /// Starts a program; the first word is its path, or a name that is in a folder of PATH.
   [[nodiscard]] pid_t start(const std::vector<std::string>& command, const std::string& out_file = "") const {
     const fs::path out = out_file.empty() ? folder_ / "stdout" : fs::path(out_file);
     const fs::path err = folder_ / "stderr";

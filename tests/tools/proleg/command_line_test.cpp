@@ -1,4 +1,4 @@
-// The programs as a user meets them.
+// The programs as a user runs them.
 
 #include <csignal>
 #include <map>
@@ -54,7 +54,7 @@ TEST_F(CommandLine, RefusesBadInputAndWritesNothing) {
     expect_refused(words, message);
     EXPECT_TRUE(left_behind().empty());
   };
-  simulate({"/nowhere/x.simulation.xml"}, {"/nowhere/x.simulation.xml", "expected"});
+  simulate({"/missing/x.simulation.xml"}, {"/missing/x.simulation.xml", "expected"});
   simulate({source_path("")}, {"expected"});
   for (const char* seconds : {"nan", "inf", "0", "-1", "1e9", "soon", ""}) {
     simulate({scenario("uniform"), "--seconds", seconds}, {"--seconds", "0.01 to 86400"});
@@ -82,7 +82,7 @@ TEST_F(CommandLine, SimulatePrintsOneJsonObjectWithTheFiguresOfTheRun) {
   EXPECT_NE(object["setpoint_hash"], object["servo_hash"]);
 }
 
-TEST_F(CommandLine, SimulateSaysWhatTheRunWasWorth) {
+TEST_F(CommandLine, SimulatePrintsTheMeasuresOfTheRun) {
   const Finished finished = proleg({"simulate", scenario("uniform"), "--seconds", "4", "--json"});
   ASSERT_EQ(finished.status, 0) << finished.err;
   const Json object(finished.out);
@@ -118,19 +118,19 @@ TEST_F(CommandLine, AMeasureThatTheRunDoesNotDefineIsNull) {
     EXPECT_TRUE(measures[name].is_null()) << name;
   }
   EXPECT_TRUE(measures["distance"].is_number());
-  EXPECT_EQ(proleg(words).out.find("stride_frequency"), std::string::npos) << "the table leaves it out";
+  EXPECT_EQ(proleg(words).out.find("stride_frequency"), std::string::npos) << "the table omits it";
   std::map<std::string, std::string> results;
   const sim::Recording recorded(recording);
   for (const auto& [name, value] : recorded.results()) {
     results[name] = value;
   }
-  EXPECT_TRUE(results.contains("smoothness")) << "a recording has those that are defined";
+  EXPECT_TRUE(results.contains("smoothness")) << "a recording has the defined ones";
   EXPECT_FALSE(results.contains("stride_frequency"));
   EXPECT_EQ(std::stod(results.at("distance")), measures["distance"].number());
   EXPECT_EQ(std::stod(results.at("duty_factor.Head")), 1.0) << "it lies on the ground";
 }
 
-TEST_F(CommandLine, TheSameCommandGivesTheSameHashesAndASettingOtherOnes) {
+TEST_F(CommandLine, TheSameCommandGivesTheSameHashesAndASettingChangesThem) {
   const auto hash = [&](const std::vector<std::string>& rest) {
     std::vector<std::string> words{"simulate", scenario("coupled"), "--seconds", "1", "--json"};
     words.insert(words.end(), rest.begin(), rest.end());
@@ -179,7 +179,7 @@ TEST_F(CommandLine, ARecordingFollowsALinkAndTakesItsNameLiterally) {
   EXPECT_TRUE(fs::is_symlink(link));
 }
 
-TEST_F(CommandLine, ExportAndPlotRefuseWhatIsNoRecording) {
+TEST_F(CommandLine, ExportAndPlotRefuseAFileThatIsNoRecording) {
   std::ofstream(file("text")) << "not a recording\n";
   std::ofstream(file("empty"));
   for (const char* tool : {"export", "plot"}) {
@@ -209,7 +209,7 @@ TEST_F(CommandLine, ObjectsListsTheObjectDictionary) {
   expect_refused({"objects", "--eds", "--markdown"}, {"--eds", "--markdown"});
 }
 
-/// The first line of a text that another does not have at the same place; empty if there is none.
+/// The first line in which a text differs from another; empty if there is none.
 std::string first_difference(const std::string& found, const std::string& expected) {
   std::istringstream a(found);
   std::istringstream b(expected);
@@ -232,12 +232,12 @@ struct WrittenPage {
   std::vector<std::string> words;
 };
 
-TEST_F(CommandLine, ThePagesThatProgramsWriteSayWhatTheDeclarationsSay) {
+TEST_F(CommandLine, ThePagesThatProgramsWriteAgreeWithTheDeclarations) {
   for (const auto& [page, words] : {WrittenPage{"docs/algorithms.md", {"algorithms", "--markdown"}},
                                     WrittenPage{"docs/objects.md", {"objects", "--markdown"}},
                                     WrittenPage{"docs/proleg.eds", {"objects", "--eds"}}}) {
     EXPECT_EQ(first_difference(proleg(words).out, read_file(source_path("/" + std::string(page)))), "")
-        << "rewrite it: build/host/bin/proleg " << words[0] << ' ' << words[1] << " >" << page;
+        << "write it again: build/host/bin/proleg " << words[0] << ' ' << words[1] << " >" << page;
   }
 }
 
@@ -245,7 +245,7 @@ TEST_F(CommandLine, ThePageOfGaitMeasuresHasTheTableOfTheDeclarations) {
   const std::string table = proleg({"algorithms", "--measures", "--markdown"}).out;
   EXPECT_NE(table.find("| `cost_of_transport` | m/s^2 | lower |"), std::string::npos) << table;
   EXPECT_NE(read_file(fs::path(source_path("/docs/gait-measures.md"))).find("\n\n" + table + "\n"), std::string::npos)
-      << "put this into docs/gait-measures.md:\n"
+      << "docs/gait-measures.md must contain:\n"
       << table;
   EXPECT_NE(proleg({"algorithms", "--measures"}).out.find("smoothness [m/s^2], the lower, the better\n"),
             std::string::npos);

@@ -1,4 +1,4 @@
-// proleg hil, proleg replay and --losses as a user meets them.
+// proleg hil, proleg replay and --losses as a user runs them.
 
 #include "command_line.hpp"
 #include "json_result.hpp"
@@ -40,7 +40,7 @@ TEST_F(Hil, LosesTheFramesThatSimulateLoses) {
   EXPECT_NE(modules["setpoint_hash"], clean["setpoint_hash"]);
 }
 
-TEST_F(Hil, TakesLossesFromAFile) {
+TEST_F(Hil, ReadsLossesFromAFile) {
   std::ofstream(file("losses.txt")) << "30 J5 J4\n31 J5 *\n";
   const std::vector<std::string> losses{"--losses", file("losses.txt").string()};
   std::vector<std::string> simulate{"simulate", scenario("coupled"), "--seconds", "1"};
@@ -53,7 +53,7 @@ TEST_F(Hil, TakesLossesFromAFile) {
   EXPECT_EQ(modules["setpoint_hash"], simulated["setpoint_hash"]);
 }
 
-TEST_F(Hil, AModuleThatIsResetComesBackAndTheRecordingHoldsIt) {
+TEST_F(Hil, AModuleThatIsResetJoinsAgainAndTheRecordingContainsIt) {
   const Json modules = succeed({"hil", scenario("coupled"), "--seconds", "3", "--reset", "3@100", "--set",
                                 "amplitude=30@105", "--losses", "3:1%", "--record", file("run.proleg").string()});
   EXPECT_EQ(modules["differences"], 0);
@@ -68,10 +68,11 @@ TEST_F(Hil, AModuleThatIsResetComesBackAndTheRecordingHoldsIt) {
   EXPECT_EQ(replayed["recorded_by"], "hil native");
 }
 
-TEST_F(Hil, LeavesALogOfTheBus) {
+TEST_F(Hil, WritesALogOfTheBus) {
   (void)succeed({"hil", scenario("uniform"), "--seconds", "1", "--can-log", file("bus.log").string()});
   const std::string log = read_file(file("bus.log"));
-  EXPECT_EQ(log.find("(0000000000.000056) can0 77F#05\n"), 0U) << "the host is the first: " << log.substr(0, 40);
+  EXPECT_EQ(log.find("(0000000000.000056) can0 77F#05\n"), 0U)
+      << "the host sends the first frame: " << log.substr(0, 40);
   EXPECT_NE(log.find(" can0 000#0100\n"), std::string::npos) << "NMT start to all";
   EXPECT_NE(log.find(" can0 080#01\n"), std::string::npos) << "SYNC 0";
 }
@@ -83,7 +84,7 @@ TEST_F(Hil, SendsAFrameAndLogsTheAnswer) {
   EXPECT_NE(read_file(file("bus.log")).find(" can0 583#8034120000000206\n"), std::string::npos) << "no such object";
 }
 
-TEST_F(Hil, WhatCannotBeIsRefused) {
+TEST_F(Hil, BadOptionsAreRefused) {
   const std::string file_name = scenario("uniform");
   expect_refused({"hil", file_name, "--modules", "mechanical"}, {"mechanical"});
   expect_refused({"hil", file_name, "--reset", "3"}, {"--reset", "'3'", "NODE@TICK"});
@@ -96,7 +97,7 @@ TEST_F(Hil, WhatCannotBeIsRefused) {
     expect_refused({"hil", file_name, "--send", word}, {"--send", "ID#DATA@TICK"});
   }
   expect_refused({"hil", file_name, "--send", "603#00@3000"}, {"tick 3000"});
-  expect_refused({"hil", file_name, "--can-log", "/nowhere/bus.log"}, {"/nowhere/bus.log"});
+  expect_refused({"hil", file_name, "--can-log", "/missing/bus.log"}, {"/missing/bus.log"});
   expect_refused({"hil", file_name, "--can-log", file_name}, {"found a file that is no CAN log"});
   expect_refused({"hil", file_name, "--can-log", file("x").string(), "--record", file("x").string()}, {"found twice"});
   for (const char* command : {"simulate", "hil"}) {
@@ -109,7 +110,7 @@ TEST_F(Hil, WhatCannotBeIsRefused) {
   EXPECT_TRUE(left_behind().empty());
 }
 
-TEST_F(Hil, FramesDestroyedOnTheBusAreNoLoss) {
+TEST_F(Hil, FramesDestroyedOnTheBusAreSentAgainAndChangeNothing) {
   const Json clean = succeed({"simulate", scenario("coupled"), "--seconds", "3"});
   const Json disturbed = succeed({"hil", scenario("coupled"), "--seconds", "3", "--bit-errors", "7:2%"});
   EXPECT_GT(disturbed["bit_errors"], 10);
@@ -122,7 +123,7 @@ TEST_F(Hil, FramesDestroyedOnTheBusAreNoLoss) {
 
 class VirtualModules : public Hil {
  protected:
-  /// The same for every start of a run but for how long it took.
+  /// The part of a result that is the same in every run.
   [[nodiscard]] Json without_wall_clock(const Json& object) const { return object.without("real_time_factor"); }
 };
 
@@ -140,7 +141,7 @@ TEST_F(VirtualModules, GiveTheSameHashesAsSimulate) {
   }
 }
 
-TEST_F(VirtualModules, TwoRunsSayAndRecordTheSame) {
+TEST_F(VirtualModules, TwoRunsPrintAndRecordTheSame) {
   std::vector<Json> results;
   for (const char* name : {"a", "b"}) {
     const std::string recording = file(std::string(name) + ".proleg").string();
@@ -165,10 +166,10 @@ TEST_F(VirtualModules, ShowTheirConsoleAndTheirInstructions) {
   EXPECT_NE(finished.err.find("node 3: proleg module, node 3, board 1"), std::string::npos) << finished.err;
   const std::string text = read_file(file("trace.tsv"));
   EXPECT_EQ(text.substr(0, text.find('\n')), "node\ttick\tto_state_frame\twhole_tick");
-  EXPECT_EQ(std::ranges::count(text, '\n'), 1 + 100) << "a line a tick; the last one ends with the next SYNC";
+  EXPECT_EQ(std::ranges::count(text, '\n'), 1 + 100) << "a title and one line for each tick";
 }
 
-TEST_F(VirtualModules, WhatCannotBeIsRefusedAndNoFileIsTouched) {
+TEST_F(VirtualModules, BadOptionsAreRefusedAndNoFileIsTouched) {
   const std::string name = scenario("uniform");
   const std::string kept = file("kept.txt").string();
   std::ofstream(kept) << "precious";
@@ -189,9 +190,9 @@ TEST_F(VirtualModules, WhatCannotBeIsRefusedAndNoFileIsTouched) {
   refused({"--modules", "mcu", "--trace", "9=" + kept}, {"node '9'"});
   refused({"--modules", "2=mcu", "--trace", "1=" + kept}, {"node 1, which is native"});
   refused({"--modules", "mcu", "--trace", "1=" + kept, "--trace", "2=" + kept}, {"kept.txt", "twice"});
-  refused({"--modules", "mcu", "--trace", "1=/nowhere/x"}, {"/nowhere/x"});
+  refused({"--modules", "mcu", "--trace", "1=/missing/x"}, {"/missing/x"});
   refused({"--modules", "mcu", "--trace", "1", "--trace", "1"}, {"node 1 twice"});
-  for (const std::string image : {"/nowhere/x.elf", "/tmp", "/dev/zero", PROLEG_PROGRAM, name.c_str()}) {
+  for (const std::string image : {"/missing/x.elf", "/tmp", "/dev/zero", PROLEG_PROGRAM, name.c_str()}) {
     refused({"--modules", "mcu", "--image", image}, {image, "expected"});
   }
   EXPECT_EQ(read_file(file("kept.txt")), "precious");
@@ -200,7 +201,7 @@ TEST_F(VirtualModules, WhatCannotBeIsRefusedAndNoFileIsTouched) {
 
 class Replay : public Hil {};
 
-TEST_F(Replay, HoldsOnARecordingOfSimulate) {
+TEST_F(Replay, FindsNoDifferenceInARecordingOfSimulate) {
   (void)succeed({"simulate", scenario("coupled"), "--seconds", "2", "--record", file("run.proleg").string()});
   const Json replayed = succeed({"replay", file("run.proleg").string(), "--verify"});
   EXPECT_EQ(replayed["ticks"], 200);
@@ -210,7 +211,7 @@ TEST_F(Replay, HoldsOnARecordingOfSimulate) {
   EXPECT_EQ(proleg({"replay", file("run.proleg").string(), "--verify"}).status, 0);
 }
 
-TEST_F(Replay, RefusesWhatIsNoRecordingOrNoTask) {
+TEST_F(Replay, RefusesAFileThatIsNoRecordingAndACommandWithoutATask) {
   expect_refused({"replay", file("none").string(), "--verify"}, {"no file"});
   expect_refused({"replay", scenario("uniform"), "--verify"}, {"not a database"});
   expect_refused({"replay", scenario("uniform")}, {"--verify"});

@@ -51,10 +51,9 @@ const auto top_level = testing::Values(
                   "1: found attribute 'algorithm' in <greatDeluge>, expected no attributes"},
     BadExperiment{"NoSimulation", "<simulation>top.xml</simulation>", "",
                   "1: found no <simulation> in <greatDeluge>, expected the scenario, named there or with --simulation"},
-    BadExperiment{
-        "MissingSimulation", "<simulation>top.xml", "<simulation>other.xml",
-        "2: found no such file 'other.xml', expected a readable file of at most 16 MiB, named from the folder "
-        "of this file or of the top-level file"});
+    BadExperiment{"MissingSimulation", "<simulation>top.xml", "<simulation>other.xml",
+                  "2: found no such file 'other.xml', expected a readable file of at most 16 MiB, relative to the "
+                  "folder of this file or of the top-level file"});
 
 const auto registrations = testing::Values(
     BadExperiment{"UnknownModule", "DirectJointAccess", "Global Adaptive Touch",
@@ -294,7 +293,7 @@ TEST(BadExperiments, AnotherOutermostTagIsRefusedWithThoseThatThereAre) {
 TEST(BadExperiments, AFileThatIsNotThereIsNamed) {
   MemoryFiles files;
   EXPECT_EQ(message_of(files),
-            "top.optimise.xml: found no such file, or not a readable one, expected a readable file of at most 16 MiB");
+            "top.optimise.xml: found no file that can be read, expected a readable file of at most 16 MiB");
 }
 
 TEST(BadExperiments, PropertiesAndGenomeAreNeeded) {

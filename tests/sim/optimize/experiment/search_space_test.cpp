@@ -30,9 +30,7 @@ TEST(SearchSpaceApply, GivesEachTargetItsStartValueAndLeavesTheRest) {
   const Experiment experiment = read(files);
   sim::Scenario scenario = experiment.scenario;
   experiment.space.apply({0, 60, 2}, scenario);
-  const auto start = [&](std::uint8_t slot, std::uint8_t joint) {
-    return start_value(scenario, {slot, joint, 0, false, 0});
-  };
+  const auto start = [&](std::uint8_t slot, std::uint8_t joint) { return start_value(scenario, slot, joint, 0); };
   EXPECT_EQ(start(0, 0), degrees("10"));
   EXPECT_EQ(start(0, 1), degrees("40"));
   EXPECT_EQ(start(1, 0), degrees("12"));
@@ -45,7 +43,7 @@ TEST(SearchSpaceApply, GivesAllTargetsOfAUniformDimensionTheSame) {
   sim::Scenario scenario = experiment.scenario;
   experiment.space.apply({7, 0}, scenario);
   for (std::uint8_t joint = 0; joint < 2; ++joint) {
-    EXPECT_EQ(start_value(scenario, {0, joint, 0, false, 0}), degrees("13.5"));
+    EXPECT_EQ(start_value(scenario, 0, joint, 0), degrees("13.5"));
   }
 }
 

@@ -1,6 +1,6 @@
 // Reads arbitrary input as a scenario in memory. An input is several files; each starts with a line "=== NAME". The
-// file "set" holds words of `--set`, one a line. Whatever the input, the reader answers with a scenario that can run or
-// with an InputError of one line.
+// file "set" has words of `--set`, one a line. For every input the reader must return a scenario that can run, or throw
+// an InputError of one line.
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,125 @@
+#include "tools/proleg/hil_options.hpp"
+
+#include <algorithm>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+
+namespace proleg::tools {
+namespace {
+
+/// NODE@TICK
+sim::Restart parse_reset(const std::string& word, const ScenarioRun& run) {
+  const std::size_t at = word.find('@');
+  const auto node = parse_whole<std::uint32_t>(std::string_view(word).substr(0, at));
+  const auto tick =
+      at == std::string::npos ? std::nullopt : parse_whole<std::uint32_t>(std::string_view(word).substr(at + 1));
+  if (!node || !tick) {
+    throw InputError("--reset", 0, in_quotes(word), "NODE@TICK");
+  }
+  if (*tick == 0 || *tick >= run.ticks) {
+    throw InputError("--reset", 0, "tick " + std::to_string(*tick),
+                     "a tick of the run, 1 to " + std::to_string(run.ticks - 1));
+  }
+  const unsigned joint = joint_of_node(run.scenario, node, "--reset", std::to_string(*node));
+  if (joint == sim::HardwareLoop::sync_producer) {
+    throw InputError("--reset", 0, "node " + std::to_string(*node) + ", which produces the SYNC",
+                     "another node: without SYNC the robot stops");
+  }
+  return {*tick, joint};
+}
+
+std::vector<sim::Restart> parse_resets(const HilOptions& options, const ScenarioRun& run) {
+  std::vector<sim::Restart> restarts;
+  for (const std::string& word : options.resets) {
+    restarts.push_back(parse_reset(word, run));
+  }
+  std::ranges::stable_sort(restarts, {}, &sim::Restart::tick);
+  return restarts;
+}
+
+/// ID#DATA@TICK, where ID#DATA is a frame as for cansend of can-utils.
+sim::InjectedFrame parse_frame(const std::string& word, const ScenarioRun& run) {
+  const auto refuse = [&word] {
+    throw InputError(
+        "--send", 0, in_quotes(word),
+        "ID#DATA@TICK: three hexadecimal digits up to 7FF, up to 8 bytes in hexadecimal, a tick; for example "
+        "603#4018100100000000@100");
+  };
+  const std::size_t hash = word.find('#');
+  const std::size_t at = word.find('@');
+  if (hash != 3 || at == std::string::npos || at < hash) {
+    refuse();
+  }
+  const auto tick = parse_whole<std::uint32_t>(std::string_view(word).substr(at + 1));
+  const auto identifier = parse_whole<std::uint16_t>(std::string_view(word).substr(0, hash), 16);
+  const std::string_view data = std::string_view(word).substr(hash + 1, at - hash - 1);
+  if (!tick || !identifier || *identifier > CanFrame::max_identifier || data.size() % 2 != 0 ||
+      data.size() > 2 * CanFrame::max_length) {
+    refuse();
+  }
+  sim::InjectedFrame injected{*tick, {*identifier, static_cast<std::uint8_t>(data.size() / 2), {}}};
+  for (std::size_t i = 0; i < data.size() / 2; ++i) {
+    const auto byte = parse_whole<std::uint8_t>(data.substr(2 * i, 2), 16);
+    if (!byte) {
+      refuse();
+    }
+    injected.frame.data[i] = *byte;
+  }
+  if (*tick >= run.ticks) {
+    throw InputError("--send", 0, "tick " + std::to_string(*tick),
+                     "a tick of the run, 0 to " + std::to_string(run.ticks - 1));
+  }
+  return injected;
+}
+
+std::vector<sim::InjectedFrame> parse_frames(const HilOptions& options, const ScenarioRun& run) {
+  std::vector<sim::InjectedFrame> frames;
+  for (const std::string& word : options.frames) {
+    frames.push_back(parse_frame(word, run));
+  }
+  std::ranges::stable_sort(frames, {}, &sim::InjectedFrame::tick);
+  return frames;
+}
+
+/// SEED:RATE
+sim::HardwareOptions::BitErrors parse_bit_errors(const std::string& word) {
+  const std::size_t colon = word.find(':');
+  const auto seed = parse_whole<std::uint64_t>(std::string_view(word).substr(0, colon));
+  const auto rate = colon == std::string::npos ? std::nullopt : parse_rate(std::string_view(word).substr(colon + 1));
+  if (!seed || !rate) {
+    throw InputError("--bit-errors", 0, in_quotes(word), "SEED:RATE, for example 7:1%");
+  }
+  return {*seed, *rate};
+}
+
+}  // namespace
+
+void add_hil_options(CommandLine& command_line, HilOptions& options) {
+  add_scenario_options(command_line, options);
+  add_module_options(command_line, options);
+  command_line.add_option("--reset", options.resets,
+                          "NODE@TICK: restart a module while the robot moves; it joins again. May be repeated.");
+  command_line.add_option(
+      "--send", options.frames,
+      "ID#DATA@TICK: send this frame on the bus right after the SYNC of that tick; hexadecimal, as for "
+      "cansend. --can-log shows the answer. May be repeated.");
+  command_line.add_option("--bit-errors", options.bit_errors,
+                          "SEED:RATE: destroy frames on the bus with this probability (7:1%). Their senders send them "
+                          "again: nothing is lost, so nothing may differ.");
+  command_line.add_option("--can-log", options.can_log,
+                          "write all frames of the bus into this file, in candump's log format");
+}
+
+sim::HardwareOptions hardware_options(const HilOptions& options, const ScenarioRun& run) {
+  sim::HardwareOptions hardware;
+  hardware.losses = &run.losses;
+  hardware.restarts = parse_resets(options, run);
+  hardware.injected = parse_frames(options, run);
+  if (options.bit_errors) {
+    hardware.bit_errors = parse_bit_errors(*options.bit_errors);
+  }
+  return hardware;
+}
+
+}  // namespace proleg::tools

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "tools/proleg/terminal_line.hpp"
+
+namespace proleg::tools {
+
+/// A line on standard error that shows how much of a run is done. Nothing if standard error is no terminal.
+class RunProgress {
+ public:
+  /// label: what is being done. total_s: simulated time of the whole run.
+  RunProgress(std::string label, double total_s);
+
+  /// Cheap; draws at most ten times a second.
+  void show(double done_s);
+
+ private:
+  std::string label_;
+  double total_s_;
+  TerminalLine terminal_line_;
+};
+
+}  // namespace proleg::tools

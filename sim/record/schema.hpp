@@ -1,22 +1,21 @@
 #pragma once
 
-// The tables of a recording. The comments inside the SQL are kept in the file: `.schema` in the sqlite3 shell shows
-// them.
+// The tables of a recording. The file contains the comments inside the SQL: `.schema` in the sqlite3 shell shows them.
 
 #include <cstdint>
 
 namespace proleg::sim {
 
-/// "Prol", SQLite's application id, bytes 68 to 71 of the file: how a recording is told from any other database.
+/// "Prol", SQLite's application id, bytes 68 to 71 of the file: it marks a database as a recording.
 inline constexpr std::uint32_t recording_application_id = 0x50726F6C;
-/// Raised whenever a reader of the older format would misread or miss something. SQLite's user_version.
+/// SQLite's user_version. A new number for every change that a reader of the older format would misread or miss.
 inline constexpr std::uint32_t recording_format = 3;
 
 // Choices:
-// - STRICT: a value of the wrong type is an error when it is written, not a surprise when it is read.
-// - WITHOUT ROWID with the natural key: rows lie in the order of time and are found by tick without a second index.
-// - Angles as degrees and pulses as microseconds are generated columns: they cost nothing and cannot disagree with the
-//   raw value beside them.
+// - STRICT: a value of the wrong type is an error when it is written, not when it is read.
+// - WITHOUT ROWID with the natural key: rows are in the order of time, and a search by tick needs no second index.
+// - Angles as degrees and pulses as microseconds are generated columns: they take no space and always agree with the
+//   raw value.
 inline constexpr const char* recording_schema = R"sql(
 CREATE TABLE run(
   -- What was run. finished: 1 if the run came to its planned end, 0 if it was interrupted or still goes on.

@@ -26,10 +26,11 @@ std::string_view anchor_name(TextAnchor anchor) {
   return "end";
 }
 
-/// XML has no control characters, and neither U+FFFE nor U+FFFF.
-bool is_in_xml(std::string_view character) {
-  const auto first = static_cast<unsigned char>(character.front());
-  return first >= ' ' && first != 0x7F && character != "\xEF\xBF\xBE" && character != "\xEF\xBF\xBF";
+/// Bytes of the UTF-8 character at the start of `text`; 0 if there is none that XML allows.
+std::size_t xml_character_size(std::string_view text) {
+  const std::string_view character = text.substr(0, utf8_character_size(text));
+  const bool is_noncharacter = character == "\xEF\xBF\xBE" || character == "\xEF\xBF\xBF";  // U+FFFE, U+FFFF
+  return is_noncharacter ? 0 : character.size();
 }
 
 }  // namespace
@@ -51,9 +52,9 @@ std::string plain_number(double value, int decimals) {
 std::string xml_text(std::string_view text) {
   std::string escaped;
   while (!text.empty()) {
-    const std::size_t length = utf8_character_size(text);
+    const std::size_t length = xml_character_size(text);
     const char c = text.front();
-    if (length == 0 || !is_in_xml(text.substr(0, length))) {
+    if (length == 0 || static_cast<unsigned char>(c) < ' ' || c == 0x7F) {
       escaped += '?';
     } else if (c == '<') {
       escaped += "&lt;";

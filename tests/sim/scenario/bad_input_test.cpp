@@ -257,7 +257,7 @@ const auto cases = testing::Values(
     BadInput{"BodyWithoutJoint", "robot.xml", "<Body name=\"Head\">",
              "<Body name=\"Lost\"><Mass type=\"box\"><total>1</total><extents>1 1 1</extents></Mass></Body>\n"
              "<Body name=\"Head\">",
-             "robot.xml:17: found body 'Lost', which no joints connect with the head 'Head', expected one connected"},
+             "robot.xml:17: found body 'Lost', which no joint connects to the head 'Head', expected one connected"},
     BadInput{"Ring", "robot.xml", "<body>TailEnd</body>", "<body>Head</body>",
              "robot.xml:35: found joint 'J2' in a ring of bodies, expected a chain with two ends"},
     BadInput{"Branch", "robot.xml", "<KinBody name=\"body\">",

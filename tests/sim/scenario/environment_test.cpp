@@ -14,9 +14,9 @@ TEST(Environment, ThePoseCommentTurnsAboutXThenYThenZ) {
   files.replace("environment.xml", "Pose: ,0 0 0.1,0 0 0,", " pose: , 1 -2  3 ,90 90 0, ");
   const Pose& pose = files.scenario().environment.robot_pose;
   EXPECT_EQ(pose.position, Eigen::Vector3d(1, -2, 3));
-  // y goes to z by the turn about x, and on to x by the turn about y.
+  // The turn about x moves y to z; the turn about y moves it on to x.
   EXPECT_TRUE((pose.orientation * Eigen::Vector3d::UnitY()).isApprox(Eigen::Vector3d::UnitX(), 1e-12));
-  // x stays with the first turn and goes to -z by the second.
+  // The first turn does not move x; the second moves it to -z.
   EXPECT_TRUE((pose.orientation * Eigen::Vector3d::UnitX()).isApprox(-Eigen::Vector3d::UnitZ(), 1e-12));
 }
 
@@ -34,7 +34,7 @@ TEST(Environment, WithoutAPoseTheRobotStartsAtTheOrigin) {
   EXPECT_EQ(files.scenario().environment.robot_pose.position, Eigen::Vector3d::Zero());
 }
 
-TEST(Environment, ARobotAboveTheGroundStaysWhereItIs) {
+TEST(Environment, ARobotAboveTheGroundIsNotMoved) {
   const Scenario scenario = small_scenario().scenario();
   EXPECT_EQ(scenario.environment.robot_pose.position.z(), 0.1);
   EXPECT_EQ(scenario.remarks.size(), 1U) << "only the joint map";
@@ -75,7 +75,7 @@ TEST(Environment, ALiftIsRemarked) {
             "the robot starts 20 mm higher than the environment file says, so that it rests on 'floor'");
 }
 
-TEST(Environment, TheHighestObjectUnderTheStartCountsAndOthersDoNot) {
+TEST(Environment, TheRobotRestsOnTheHighestObjectBelowItsStart) {
   MemoryFiles files = small_scenario();
   files.replace("environment.xml", "</Environment>", R"(
     <KinBody name="step"><Body type="static"><Geom type="box"><extents>1 1 0.25</extents></Geom></Body></KinBody>

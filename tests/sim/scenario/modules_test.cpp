@@ -14,7 +14,7 @@ TEST(Modules, WithoutAMapNodeIdsCountFromOneAtTheHead) {
   EXPECT_EQ(scenario.modules, (std::vector<ModulePlace>{{1, std::nullopt}, {2, std::nullopt}}));
 }
 
-TEST(Modules, AreInKernelOrderWhateverTheOrderInTheFile) {
+TEST(Modules, AreInKernelOrderForAnyOrderInTheFile) {
   const std::string j1 = R"(<module joint="J1" node="126" serial="0x1234ABCD"/>)";
   const std::string j2 = R"(<Module Joint="J2" NODE="1"/>)";
   const std::vector<ModulePlace> expected{{1, std::nullopt}, {126, 0x1234ABCD}};

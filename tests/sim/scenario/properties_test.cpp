@@ -1,4 +1,4 @@
-// What the top-level file says about the run, and the remarks about what has no effect.
+// The properties of a run in the top-level file, and the remarks on tags without effect.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ bool remarked(const Scenario& scenario, const std::string& text) {
                              [&](const std::string& remark) { return remark.find(text) != std::string::npos; });
 }
 
-TEST(SimulationProperties, AreTakenFromTheFile) {
+TEST(SimulationProperties, ComeFromTheFile) {
   const Scenario scenario = small_scenario().scenario();
   EXPECT_EQ(scenario.path, "top.xml");
   EXPECT_EQ(scenario.duration_s, 2.0);
@@ -37,26 +37,26 @@ TEST(SimulationProperties, HaveDefaults) {
   EXPECT_EQ(scenario.solver, Solver::automatic);
 }
 
-TEST(SimulationProperties, TakeTheLargestSeed) {
+TEST(SimulationProperties, AcceptTheLargestSeed) {
   MemoryFiles files = small_scenario();
   files.replace("top.xml", "<seed>7", "<seed>18446744073709551615");
   EXPECT_EQ(files.scenario().kernel.seed, ~std::uint64_t{0});
 }
 
-TEST(SimulationProperties, TakeATickOfPartsOfAMillisecondIfItIsAWholeNumberOfSteps) {
+TEST(SimulationProperties, AcceptATickOfPartsOfAMillisecondIfItIsAWholeNumberOfSteps) {
   MemoryFiles files = small_scenario();
   files.replace("top.xml", "ms\">10", "ms\">2.5").replace("top.xml", "<stepWidth>0.001", "<stepWidth>0.00025");
   EXPECT_EQ(files.scenario().kernel.tick_period_us, 2'500U);
 }
 
-TEST(SimulationProperties, TakeNoiseOfTheTouchSensors) {
+TEST(SimulationProperties, AcceptNoiseOfTheTouchSensors) {
   MemoryFiles files = small_scenario();
   EXPECT_EQ(files.scenario().contact_noise, 0.0);
   files.replace("top.xml", "<seed>", "<contactNoise>0.25</contactNoise><seed>");
   EXPECT_EQ(files.scenario().contact_noise, 0.25);
 }
 
-TEST(SimulationProperties, OnTheirOwnCauseNoRemark) {
+TEST(SimulationProperties, CauseNoRemarkIfTheyAskForWhatHappens) {
   MemoryFiles files = small_scenario();
   files.replace("top.xml", "<duration>",
                 "<showViewer>0</showViewer><parallelComputing>0</parallelComputing><storingData>0</storingData>"
@@ -64,7 +64,7 @@ TEST(SimulationProperties, OnTheirOwnCauseNoRemark) {
   EXPECT_EQ(files.scenario().remarks.size(), 1U) << "only the joint map";
 }
 
-TEST(Remarks, NameWhatIsAcceptedWithoutEffect) {
+TEST(Remarks, NameTagsWithoutEffect) {
   MemoryFiles files = small_scenario();
   files.replace("top.xml", "<robot>", "<sensor>tactile.sensor.xml</sensor><robot>")
       .replace("top.xml", "<duration>",
@@ -88,7 +88,7 @@ TEST(Remarks, NameWhatIsAcceptedWithoutEffect) {
   EXPECT_EQ(scenario.remarks.size(), 10U);
 }
 
-TEST(Remarks, AreLeftOutForColours) {
+TEST(Remarks, AreNotMadeForColours) {
   MemoryFiles files = small_scenario();
   files.replace("robot.xml", "<radius>0.03</radius>",
                 "<radius>0.03</radius><diffuseColor>1 0 0</diffuseColor><ambientcolor>1 0 0</ambientcolor>"

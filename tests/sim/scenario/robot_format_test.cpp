@@ -1,4 +1,4 @@
-// Nested KinBodies, poses, joints, masses: against numbers worked out by hand.
+// Nested KinBodies, poses, joints and masses, against numbers computed by hand.
 
 #include <gtest/gtest.h>
 
@@ -32,16 +32,16 @@ TEST(RobotFormat, TagsAndAttributesMayHaveAnyCase) {
   MemoryFiles files = small_scenario();
   const Scenario plain = files.scenario();
   for (auto& [name, text] : files.texts) {
-    // Upper case for every tag and attribute name; names of things keep theirs, as they are values.
-    std::string shouted;
+    // Upper case for every tag and attribute name, but not for values.
+    std::string upper;
     bool in_tag = false;
     bool in_value = false;
     for (const char c : text) {
       in_tag = c == '<' || (in_tag && c != '>');
       in_value = in_tag && (in_value != (c == '"'));
-      shouted += in_tag && !in_value && !text.starts_with("<!--") ? static_cast<char>(std::toupper(c)) : c;
+      upper += in_tag && !in_value && !text.starts_with("<!--") ? static_cast<char>(std::toupper(c)) : c;
     }
-    text = shouted;
+    text = upper;
   }
   const Scenario scenario = files.scenario();
   ASSERT_EQ(scenario.robot.links.size(), plain.robot.links.size());
@@ -51,7 +51,7 @@ TEST(RobotFormat, TagsAndAttributesMayHaveAnyCase) {
   EXPECT_EQ(scenario.environment.robot_pose.position, plain.environment.robot_pose.position);
 }
 
-TEST(RobotFormat, AMixtureOfCasesWorksToo) {
+TEST(RobotFormat, TagsAndAttributesMayMixCases) {
   MemoryFiles files = small_scenario();
   files.replace("robot.xml", "<translation>0 0.2 0</translation>", "<tRanslaTion>0 0.2 0</tRanslaTion>")
       .replace("robot.xml", "file=\"end.xml\" prefix=\"Tail\"", "File=\"end.xml\" PREFIX=\"Tail\"");
@@ -96,7 +96,7 @@ TEST(RobotFormat, RepeatedTranslationsAddUpAndRepeatedRotationsFollowEachOther) 
   EXPECT_TRUE((pose.orientation * Eigen::Vector3d::UnitY()).isApprox(Eigen::Vector3d::UnitZ(), 1e-12));
 }
 
-TEST(RobotFormat, ABodyMayStandInTheFrameOfAnother) {
+TEST(RobotFormat, ABodyMayHaveItsPoseInTheFrameOfAnother) {
   MemoryFiles files = small_scenario();
   files.replace("robot.xml", "<translation>0 0.2 0</translation>",
                 "<offsetfrom>Middle</offsetfrom><translation>0 0.05 0</translation>");
@@ -125,8 +125,8 @@ TEST(RobotFormat, AnAxisBecomesAUnitVector) {
   EXPECT_EQ(joint_of(small_scenario().scenario(), "J1").axis, Eigen::Vector3d::UnitX());
 }
 
-TEST(RobotFormat, AnAxisIsTurnedRoundWhenTheHeadwardBodyComesFirst) {
-  // OpenRAVE: the angle turns the second body relative to the first. Ours turns the one towards the head.
+TEST(RobotFormat, AnAxisIsReversedIfTheHeadwardBodyIsFirst) {
+  // In OpenRAVE the angle turns the second body relative to the first, here the one towards the head.
   MemoryFiles files = small_scenario();
   files.replace("robot.xml", "<body>Middle</body>\n      <body>Head</body>",
                 "<body>Head</body>\n      <body>Middle</body>");
@@ -229,7 +229,7 @@ TEST(RobotFormat, SeveralSolidsAddUpByTheParallelAxisTheorem) {
   EXPECT_NEAR(mass.inertia(0, 1), 0.0, 1e-9);
 }
 
-TEST(RobotFormat, ACustomMassSaysEverythingItself) {
+TEST(RobotFormat, ACustomMassGivesTotalCentreAndInertia) {
   const MassProperties mass = link_of(small_scenario().scenario(), "TailEnd").mass;
   EXPECT_EQ(mass.mass, 0.1);
   EXPECT_EQ(mass.center, Eigen::Vector3d(0, -0.01, 0));
@@ -249,7 +249,7 @@ TEST(RobotFormat, GeometriesKeepShapeSizePoseAndFriction) {
   EXPECT_FALSE(box.friction.has_value());
 }
 
-TEST(RobotFormat, AFileIsLookedForBesideTheFileThatNamesItFirst) {
+TEST(RobotFormat, APathIsFirstRelativeToTheFileThatNamesIt) {
   MemoryFiles files = small_scenario();
   files.replace("top.xml", "<robot>robot.xml</robot>", "<robot>robots/robot.xml</robot>");
   files.texts["robots/robot.xml"] = files.texts["robot.xml"];
@@ -270,7 +270,7 @@ TEST(RobotFormat, PathsMayGoUp) {
   EXPECT_EQ(scenario.sources[2].path, "shared/end.xml");
 }
 
-TEST(RobotFormat, SixtyFourJointsAreTaken) {
+TEST(RobotFormat, SixtyFourJointsAreAccepted) {
   MemoryFiles files = small_scenario();
   std::string robot = "<Robot><KinBody>";
   for (int i = 0; i <= 64; ++i) {
@@ -294,7 +294,7 @@ TEST(RobotFormat, SixtyFourJointsAreTaken) {
   EXPECT_EQ(scenario.robot.servo.gain, ServoModel{}.gain);
 }
 
-TEST(RobotFormat, AServoMayBeLate) {
+TEST(RobotFormat, AServoMayHaveALatency) {
   MemoryFiles files = small_scenario();
   EXPECT_EQ(files.scenario().robot.servo.latency_us, 0U);
   files.replace("robot.xml", "</period>", "</period><latency unit=\"ms\">12.5</latency>");

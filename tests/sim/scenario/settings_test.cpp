@@ -46,7 +46,7 @@ std::string refusal(Scenario scenario, const std::string& word) {
   return "accepted";
 }
 
-TEST(Parameters, HoldForAllJointsOfTheModuleOrForOne) {
+TEST(Parameters, ApplyToAllJointsOfTheModuleOrToOne) {
   const Scenario small = scenario();
   EXPECT_EQ(start(small, 0, 0, "amplitude"), degrees("30"));
   EXPECT_EQ(start(small, 0, 1, "amplitude"), degrees("10")) << "J1 is kernel joint 1";
@@ -54,7 +54,7 @@ TEST(Parameters, HoldForAllJointsOfTheModuleOrForOne) {
   EXPECT_EQ(small.settings.size(), 3U);
 }
 
-TEST(Parameters, OfOneJointWinWhereverTheyStand) {
+TEST(Parameters, OfOneJointOverrideThoseOfAllInAnyOrder) {
   MemoryFiles files = small_scenario();
   files.replace("actuation.xml", "<parameter name=\"amplitude\" value=\"30\" unit=\"deg\"/>", "");
   files.replace("actuation.xml", "joint=\"J1\"/>", "joint=\"J1\"/><parameter name=\"amplitude\" value=\"30\"/>");
@@ -93,7 +93,7 @@ TEST(SetOption, BackToTheDefaultRemovesTheSetting) {
   EXPECT_EQ(small.settings.size(), 1U);
 }
 
-TEST(SetOption, TakesTheModuleByNameOrNumber) {
+TEST(SetOption, AcceptsTheModuleByNameOrNumber) {
   Scenario small = scenario();
   apply_setting(small, "PatternGenerator_sinusoidal.frequency=2");
   apply_setting(small, "2.angle=-12");
@@ -113,10 +113,10 @@ TEST(SetOption, WithATickIsAChangeInOrderOfTicks) {
   EXPECT_EQ(small.changes[1].tick, 500U);
   EXPECT_EQ(small.changes[1].settings.size(), 3U);
   EXPECT_EQ(find(small.changes[1].settings, 1, 0, "angle", small), degrees("1"));
-  EXPECT_EQ(start(small, 0, 0, "amplitude"), degrees("30")) << "the start value stays";
+  EXPECT_EQ(start(small, 0, 0, "amplitude"), degrees("30")) << "the start value is unchanged";
 }
 
-TEST(SetOption, ALaterWordForTheSameTickWins) {
+TEST(SetOption, ALaterWordForTheSameTickReplacesTheEarlier) {
   Scenario small = scenario();
   apply_setting(small, "amplitude=20@5");
   apply_setting(small, "amplitude:J1=21@5");
@@ -125,7 +125,7 @@ TEST(SetOption, ALaterWordForTheSameTickWins) {
   EXPECT_EQ(find(small.changes[0].settings, 0, 1, "amplitude", small), degrees("21"));
 }
 
-TEST(SetOption, TakesEveryTick) {
+TEST(SetOption, AcceptsEveryTick) {
   Scenario small = scenario();
   apply_setting(small, "amplitude=20@4294967295");
   apply_setting(small, "amplitude=20@0");

@@ -63,7 +63,7 @@ TEST_P(Shipped, HasPitchJointsEvery72Millimetres) {
   }
 }
 
-TEST_P(Shipped, StartsOnTheFloorAndSaysNothingButTheJointMap) {
+TEST_P(Shipped, StartsOnTheFloorWithNoRemarkButTheJointMap) {
   const Scenario scenario = shipped(GetParam());
   EXPECT_EQ(scenario.environment.robot_pose.position, Eigen::Vector3d(0, 0, 0.026));
   ASSERT_EQ(scenario.environment.objects.size(), 1U);
@@ -188,7 +188,7 @@ TEST_P(Obstacle, HasTwoStepsUpAndTwoDownAcrossTheWholeWay) {
   EXPECT_EQ(scenario_.environment.robot_pose.position, Eigen::Vector3d(0, 0, 0.026));
 }
 
-TEST_P(Obstacle, RunsThirtySecondsOnTheDirectStepperAndSaysNothingButTheJointMap) {
+TEST_P(Obstacle, RunsThirtySecondsOnTheDirectStepperWithNoRemarkButTheJointMap) {
   EXPECT_EQ(scenario_.duration_s, 30.0);
   EXPECT_EQ(scenario_.step_s, 0.001);
   EXPECT_EQ(scenario_.kernel.tick_period_us, 10'000U);

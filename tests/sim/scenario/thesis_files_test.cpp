@@ -1,5 +1,5 @@
-// The files of the thesis (listings B.1, B.2, B.5, B.6) as they are printed there, with the module files that it leaves
-// out. Expectations are read off the listings.
+// The files of the thesis (listings B.1, B.2, B.5, B.6) as printed there, and module files, which the thesis omits. The
+// expected values are those of the listings.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ Scenario thesis_scenario() {
   return read_scenario(source_path("/tests/sim/scenario/thesis/MFIdemo.simulation.xml"), files);
 }
 
-TEST(ThesisFiles, LinksAreOrderedFromTheHeadAndStandAsTheTranslationsSay) {
+TEST(ThesisFiles, LinksAreOrderedFromTheHeadAndHaveTheTranslationsOfTheFile) {
   const Scenario scenario = thesis_scenario();
   const std::vector<std::pair<std::string, double>> expected{{"Head", 0.288}, {"4Seg", 0.216}, {"3Seg", 0.144},
                                                              {"2Seg", 0.072}, {"1Seg", 0.0},   {"Tail", 0.0}};

@@ -55,8 +55,6 @@ class HardwareLoop {
   [[nodiscard]] const Plant& plant() const;
   /// The last tick, as a recorder takes it; valid until the next advance().
   [[nodiscard]] TickSample sample();
-  using Failure = ModuleFailure;
-  using Problem = ModuleProblem;
   /// Joints whose modules stopped or joined again at the last tick.
   [[nodiscard]] std::span<const RestartEvent> restart_events() const;
   [[nodiscard]] std::span<const ModuleFailure> failures() const;

@@ -24,7 +24,7 @@ namespace {
 using namespace proleg;
 using namespace proleg::tools;
 
-void note_restart(const ScenarioRun& run, std::uint32_t tick, const sim::HardwareLoop::RestartEvent& event,
+void note_restart(const ScenarioRun& run, std::uint32_t tick, const sim::RestartEvent& event,
                   std::vector<RestartReport>& restarts) {
   const std::uint8_t node = run.scenario.modules[event.joint].node;
   if (!event.joined) {

@@ -188,7 +188,7 @@ std::unique_ptr<sim::JointModule> HilModules::make(const sim::ModuleParts& parts
     };
   }
   if (traces_[joint]) {
-    options.trace = [trace = traces_[joint].get()](const sim::TickCost& cost) {
+    options.on_tick = [trace = traces_[joint].get()](const sim::TickCost& cost) {
       trace->out() << trace->node << '\t' << cost.tick << '\t' << cost.to_state_frame << '\t' << cost.whole << '\n';
     };
   }

@@ -40,8 +40,8 @@ struct HilResult {
   std::string setpoint_hash;
   std::string servo_hash;
   std::vector<RestartReport> restarts;
-  std::vector<sim::HardwareLoop::Failure> failures;
-  std::vector<sim::HardwareLoop::Problem> problems;
+  std::vector<sim::ModuleFailure> failures;
+  std::vector<sim::ModuleProblem> problems;
   std::optional<HilModules::CostliestTick> costliest_tick;
   RunMeasures measures;
 

@@ -17,6 +17,7 @@ test_packages=(
   clang libclang-rt-14-dev clang-format clang-tidy libgtest-dev
   can-utils tshark  # independent readers of bus logs
   gdb-multiarch     # a debugger for the virtual module
+  strace            # shows what a test reads
   qemu-system-arm   # another model of the CPU, to compare with
   libbenchmark-dev libmujoco-dev                       # benchmarks
   libopenmpi-dev libboost-mpi-dev openmpi-bin          # the optimiser on a cluster

@@ -1,7 +1,6 @@
 # Tests mirror the tree: tests/shared/fixed holds the tests of shared/fixed, built into one program.
 
 find_package(GTest REQUIRED)
-include(GoogleTest)
 
 # One ctest run tests the build folders of several presets; the prefix distinguishes their tests.
 set(PROLEG_TEST_PREFIX "")
@@ -9,22 +8,70 @@ if(PROLEG_SANITIZE)
   set(PROLEG_TEST_PREFIX "asan.")
 endif()
 
+# Under the sanitizers most of a test's compile time goes into optimising the instrumented comparisons of GoogleTest. The
+# rooms themselves are optimised in every preset.
+set(PROLEG_TEST_OPTIONS "")
+if(PROLEG_SANITIZE)
+  set(PROLEG_TEST_OPTIONS -O0)
+endif()
+
 # Headers that nearly every test includes, compiled once. Only with clang: gcc gives false warnings that depend on the
 # precompiled headers.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
   find_package(Eigen3 REQUIRED NO_MODULE)
-  add_library(tests_prelude OBJECT ${CMAKE_CURRENT_LIST_DIR}/tests_prelude.cpp)
+  add_library(tests_prelude OBJECT ${CMAKE_CURRENT_LIST_DIR}/prelude.cpp)
   target_link_libraries(tests_prelude PRIVATE GTest::gtest Eigen3::Eigen)
+  target_compile_options(tests_prelude PRIVATE ${PROLEG_TEST_OPTIONS})
   target_precompile_headers(tests_prelude PRIVATE
     <gtest/gtest.h> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <memory>
     <optional> <random> <span> <sstream> <string> <string_view> <vector>)
   target_compile_options(tests_prelude PRIVATE -Xclang -fno-pch-timestamp)  # otherwise ccache finds no match
 endif()
 
-# proleg_test(<path> SOURCES ... [DEPENDS rooms...] [LIBRARIES targets...] [LABELS ...] [TIMEOUT seconds])
-#   path   the tested room or subject, e.g. shared/fixed; each GoogleTest case becomes a ctest test
+# Data that tests of any room may read. A change in them runs every test again, so docs/ is not among them.
+set(PROLEG_TEST_DATA ${CMAKE_SOURCE_DIR}/sim/scenarios ${CMAKE_SOURCE_DIR}/tests)
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+
+# proleg_add_test(<name> COMMAND program [argument...] [PROGRAMS files...] [DATA paths...] [LABELS ...] [TIMEOUT seconds]
+#                 [COST core-seconds] [ENVIRONMENT NAME=VALUE...] [PROCESSORS n])
+#   A ctest test whose result tools/check uses again while its inputs are the same (tools/run_test).
+#   PROGRAMS   what the program starts: files, or $<TARGET_FILE:...>; a change in them runs the test again
+#   DATA       what it reads, beside PROLEG_TEST_DATA: files, or folders with all that is below them
+#   COST       roughly, where it is many seconds: long tests start first
+function(proleg_add_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;PROCESSORS" "COMMAND;PROGRAMS;DATA;LABELS;ENVIRONMENT")
+  set(inputs)
+  foreach(program IN LISTS test_PROGRAMS)
+    list(APPEND inputs --program ${program})
+  endforeach()
+  foreach(data IN LISTS PROLEG_TEST_DATA test_DATA)
+    list(APPEND inputs --data ${data})
+  endforeach()
+  set(name ${PROLEG_TEST_PREFIX}${name})
+  add_test(NAME ${name}
+    COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tools/run_test --name ${name}
+            --results ${CMAKE_BINARY_DIR}/test_results ${inputs} -- ${test_COMMAND})
+  if(NOT test_TIMEOUT)
+    set(test_TIMEOUT 600)
+  endif()
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${test_TIMEOUT})
+  if(PROLEG_SANITIZE)
+    list(APPEND test_ENVIRONMENT
+         "LSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/leak_suppressions.txt:print_suppressions=0")
+  endif()
+  foreach(property IN ITEMS COST PROCESSORS LABELS ENVIRONMENT)
+    if(test_${property})
+      set_tests_properties(${name} PROPERTIES ${property} "${test_${property}}")
+    endif()
+  endforeach()
+endfunction()
+
+# proleg_test(<path> SOURCES ... [DEPENDS rooms...] [LIBRARIES targets...] [SHARDS n] [options of proleg_add_test])
+#   path     the tested room or subject, e.g. shared/fixed: one GoogleTest program, and one ctest test of that name (a
+#            process for each case costs more than most cases)
+#   SHARDS   run the cases as this many tests, for a program that takes long
 function(proleg_test path)
-  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT" "SOURCES;DEPENDS;LIBRARIES;LABELS")
+  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;SHARDS" "SOURCES;DEPENDS;LIBRARIES;PROGRAMS;DATA;LABELS")
   string(REPLACE "/" "_" name ${path})
   add_executable(${name}_test ${test_SOURCES})
   foreach(dependency IN LISTS test_DEPENDS)
@@ -32,23 +79,20 @@ function(proleg_test path)
     target_link_libraries(${name}_test PRIVATE proleg::${dependency_target})
   endforeach()
   target_link_libraries(${name}_test PRIVATE ${test_LIBRARIES} proleg::tests_support GTest::gtest GTest::gtest_main)
+  target_compile_options(${name}_test PRIVATE ${PROLEG_TEST_OPTIONS})
   if(TARGET tests_prelude)
     target_precompile_headers(${name}_test REUSE_FROM tests_prelude)
   endif()
-  if(NOT test_TIMEOUT)
-    set(test_TIMEOUT 300)
+  set(options PROGRAMS ${test_PROGRAMS} DATA ${test_DATA} LABELS ${test_LABELS} TIMEOUT ${test_TIMEOUT}
+      COST ${test_COST})
+  if(NOT test_SHARDS)
+    proleg_add_test(${path} COMMAND $<TARGET_FILE:${name}_test> --gtest_brief=1 ${options})
+    return()
   endif()
-  set(properties TIMEOUT ${test_TIMEOUT})
-  if(PROLEG_SANITIZE)
-    list(APPEND properties ENVIRONMENT
-         "LSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/leak_suppressions.txt:print_suppressions=0")
-  endif()
-  if(test_LABELS)
-    list(APPEND properties LABELS "${test_LABELS}")
-  endif()
-  gtest_discover_tests(${name}_test
-    TEST_PREFIX "${PROLEG_TEST_PREFIX}${path}."
-    NO_PRETTY_VALUES
-    DISCOVERY_TIMEOUT 60
-    PROPERTIES ${properties})
+  math(EXPR last "${test_SHARDS} - 1")
+  foreach(shard RANGE ${last})
+    math(EXPR number "${shard} + 1")
+    proleg_add_test(${path}.${number}of${test_SHARDS} COMMAND $<TARGET_FILE:${name}_test> --gtest_brief=1 ${options}
+      ENVIRONMENT GTEST_TOTAL_SHARDS=${test_SHARDS} GTEST_SHARD_INDEX=${shard})
+  endforeach()
 endfunction()

@@ -38,7 +38,7 @@ class DriverTests : public testing::Test {
   /// Node of the newest record in flash; 0: there is none.
   [[nodiscard]] unsigned newest_node() const;
   /// Node of the record that the program appends to one of this node.
-  [[nodiscard]] static unsigned node_after(unsigned node) { return node % firmware::BoardRecord::max_node_id + 1; }
+  [[nodiscard]] static unsigned node_after(unsigned node) { return node % firmware::BoardRecord::max_node + 1; }
 
   /// Fills the first sector of the log except for one record. The second sector holds the oldest record: it is erased
   /// when the first sector is full.

@@ -11,35 +11,35 @@ namespace proleg::stm32f405 {
 namespace {
 
 // A bit of 14 quanta, sampled after 12 of them: at 85.7 %. CiA 301 recommends 87.5 %, which 42 MHz cannot give: the
-// divisors of 42 allow 6, 7, 14 and 21 quanta, and of 21 the first segment may take only 16 (81 %).
+// divisors of 42 allow 6, 7, 14 and 21 quanta, and the first segment has at most 16 (81 % of 21).
 constexpr std::uint32_t prescaler = 3;
 constexpr std::uint32_t segment_1 = 11;
 constexpr std::uint32_t segment_2 = 2;
 static_assert(board::apb1 / prescaler / (1 + segment_1 + segment_2) == 1'000'000);
 
-/// Initialization mode is entered when a frame that is under way is over: 135 bits at most, and errors.
+/// The controller enters initialization mode after the current frame: 135 bits at most, and errors.
 constexpr std::uint32_t reads_for_a_frame = 10'000;
 /// RFOM ends after a few cycles of APB1.
 constexpr unsigned reads_for_release = 16;
-/// The FIFO holds three frames. Should more be there, the interrupt comes again.
-constexpr unsigned frames_an_interrupt = 3;
+/// The FIFO holds three frames. If more come meanwhile, the interrupt comes again.
+constexpr unsigned frames_per_interrupt = 3;
 
 /// Bits of TSR for a mailbox.
 constexpr std::uint32_t of_mailbox(std::uint32_t bits_of_mailbox_0, unsigned mailbox) {
   return bits_of_mailbox_0 << (8U * mailbox);
 }
 
-// Filter banks, all in 16-bit scale and into FIFO 0. Data frames with 11-bit identifiers pass, and of those what
-// concerns the module: in a chain of 20 coupled joints two of the 19 state frames that the others send in a tick.
-constexpr unsigned node_bank = 0;        ///< masks: the module's own identifiers, everybody's heartbeat
-constexpr unsigned common_bank = 1;      ///< what is for all
-constexpr unsigned first_list_bank = 2;  ///< state frames that matter, four a bank
+// Filter banks, all in 16-bit scale and into FIFO 0. They pass data frames with 11-bit identifiers that concern the
+// module: in a chain of 20 coupled joints two of the 19 state frames that the others send in a tick.
+constexpr unsigned node_bank = 0;        ///< masks: the module's own identifiers, all heartbeats
+constexpr unsigned common_bank = 1;      ///< messages for all nodes
+constexpr unsigned first_list_bank = 2;  ///< lists: state frames that the joint depends on, four a bank
 constexpr unsigned all_states_bank = can1::filter_banks - 1;  ///< masks: all state frames, if the lists are too short
 constexpr unsigned list_banks = all_states_bank - first_list_bank;
 constexpr std::size_t list_entries = 4;
 
 constexpr std::uint32_t filter_of(std::uint32_t identifier) { return identifier << can1::filter_stid_position; }
-/// Identifier and mask: the bits of `mask` must be equal.
+/// Identifier and mask: passes if the bits of `mask` are equal.
 constexpr std::uint32_t masked(std::uint32_t identifier, std::uint32_t mask) {
   return filter_of(identifier) | (filter_of(mask) | can1::filter_rtr | can1::filter_ide) << 16U;
 }
@@ -47,8 +47,8 @@ constexpr std::uint32_t pair_of(std::uint32_t first, std::uint32_t second) {
   return filter_of(first) | filter_of(second) << 16U;
 }
 
-/// What passes whatever the robot is like. The module's own identifiers, because it must hear when somebody else sends
-/// on them.
+/// Filters that are the same in every robot. They pass the module's own identifiers, so that it notices another node
+/// that sends with them.
 void accept_common_frames(std::uint8_t node) {
   namespace identifier = canopen::identifier;
   constexpr std::uint32_t node_bits = 0x7F;
@@ -73,7 +73,7 @@ void accept_common_frames(std::uint8_t node) {
   can1::fmr.write(can1::fmr_can2sb_of(can1::filter_banks));
 }
 
-/// A word of data without the bytes from `length` on, which the controller leaves as they come.
+/// A word of data without the bytes from `length` on, whose contents the controller leaves open.
 constexpr std::uint32_t first_bytes(std::uint32_t word, std::uint32_t length) {
   return length >= 4 ? word : word & ((1U << (8U * length)) - 1U);
 }
@@ -89,7 +89,7 @@ void read_frame(CanFrame& frame) {
   std::memcpy(frame.data.data(), words.data(), sizeof(words));  // the CPU is little-endian, as the registers are
 }
 
-/// What was to be sent in bus-off would be old when the controller is back. CAN1_TX comes for each that is aborted.
+/// At bus-off: pending frames would be out of date when the controller is back. CAN1_TX comes for each aborted frame.
 void abort_all() {
   can1::tsr.write(of_mailbox(can1::tsr_abrq0, 0) | of_mailbox(can1::tsr_abrq0, 1) | of_mailbox(can1::tsr_abrq0, 2));
 }
@@ -99,8 +99,8 @@ void abort_all() {
 bool Can::start(std::uint8_t node) {
   rcc::apb1enr.set(rcc::apb1enr_can1);
   static_cast<void>(rcc::apb1enr.read());
-  // Everything but these is off: time stamps, automatic return from bus-off and sleep, locked FIFOs, sending in the
-  // order of requests. A lower identifier goes first; a full FIFO loses its newest frame.
+  // All options are off except DBF: time stamps, automatic return from bus-off and from sleep, locked FIFOs, sending in
+  // the order of requests. A lower identifier goes first; a full FIFO loses its newest frame.
   can1::mcr.write(can1::mcr_dbf | can1::mcr_inrq);
   if (!wait_until_set(can1::msr, can1::msr_inak, reads_for_a_frame)) {
     return false;
@@ -120,14 +120,14 @@ bool Can::send(const CanFrame& frame) {
   for (unsigned mailbox = mailbox_count; mailbox-- > 0;) {
     if (!is_pending_[mailbox].load(std::memory_order_relaxed)) {
       free = mailbox;
-    } else if (sending_[mailbox].identifier == frame.identifier) {
+    } else if (mailboxes_[mailbox].identifier == frame.identifier) {
       return false;
     }
   }
   if (free == mailbox_count) {
     return false;
   }
-  sending_[free] = frame;
+  mailboxes_[free] = frame;
   is_pending_[free].store(true, std::memory_order_relaxed);
   std::array<std::uint32_t, 2> words{};
   std::memcpy(words.data(), frame.data.data(), sizeof(words));
@@ -135,7 +135,7 @@ bool Can::send(const CanFrame& frame) {
   mailbox.length.write(frame.length);
   mailbox.low.write(words[0]);
   mailbox.high.write(words[1]);
-  std::atomic_signal_fence(std::memory_order_release);  // from the next write on CAN1_TX may come
+  std::atomic_signal_fence(std::memory_order_release);  // CAN1_TX may come from the next write on
   mailbox.identifier.write(std::uint32_t{frame.identifier} << can1::ir_stid_position | can1::tir_txrq);
   return true;
 }
@@ -164,7 +164,7 @@ void Can::listen(std::span<const std::uint16_t> identifiers) {
 
 void Can::recover() {
   if (is_bus_off_.load(std::memory_order_relaxed) && recovery_ == Recovery::none) {
-    abort_all();  // again: bus-off may have come while send() was at work
+    abort_all();  // again: bus-off may have come while send() ran
     can1::mcr.write(can1::mcr_dbf | can1::mcr_inrq);
     recovery_ = Recovery::entering;
   }
@@ -186,7 +186,7 @@ bool Can::follow_recovery() {
 }
 
 void Can::put(std::uint32_t stamp, EventKind kind, const CanFrame& frame) {
-  if (Event* const event = events_.place()) {
+  if (Event* const event = events_.back()) {
     *event = {stamp, frame, kind};
     events_.push();
   } else {
@@ -202,7 +202,7 @@ void Can::on_transmit_interrupt(std::uint32_t stamp) {
     }
     can1::tsr.write(of_mailbox(can1::tsr_rqcp0, mailbox));
     if ((status & of_mailbox(can1::tsr_txok0, mailbox)) != 0) {  // else it was aborted
-      put(stamp, EventKind::transmitted, sending_[mailbox]);
+      put(stamp, EventKind::transmitted, mailboxes_[mailbox]);
     }
     is_pending_[mailbox].store(false, std::memory_order_relaxed);
   }
@@ -210,7 +210,7 @@ void Can::on_transmit_interrupt(std::uint32_t stamp) {
 
 void Can::on_receive_interrupt(std::uint32_t stamp) {
   std::uint32_t status = can1::rf0r.read();
-  for (unsigned i = 0; i < frames_an_interrupt; ++i) {
+  for (unsigned i = 0; i < frames_per_interrupt; ++i) {
     if ((status & can1::rf0r_fovr) != 0) {
       can1::rf0r.write(can1::rf0r_fovr);
       lost_.store(lost_.load(std::memory_order_relaxed) + 1U, std::memory_order_relaxed);
@@ -218,7 +218,7 @@ void Can::on_receive_interrupt(std::uint32_t stamp) {
     if ((status & can1::rf0r_fmp) == 0) {
       return;
     }
-    if (Event* const event = events_.place()) {
+    if (Event* const event = events_.back()) {
       event->stamp = stamp;
       event->kind = EventKind::received;
       read_frame(event->frame);
@@ -227,7 +227,7 @@ void Can::on_receive_interrupt(std::uint32_t stamp) {
       lost_.store(lost_.load(std::memory_order_relaxed) + 1U, std::memory_order_relaxed);
     }
     can1::rf0r.write(can1::rf0r_rfom);
-    // Until that is done the same frame is still the oldest: who returned now would be interrupted for it again.
+    // Until that is done the same frame is still the oldest, and would raise the interrupt again.
     unsigned reads = reads_for_release;
     do {
       status = can1::rf0r.read();

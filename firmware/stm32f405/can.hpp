@@ -2,12 +2,12 @@
 
 // The bxCAN controller CAN1 (RM0090, section 32) at 1 Mbit/s: eleven-bit data frames, three transmit mailboxes.
 //
-// The interrupts (CAN1_TX, CAN1_RX0, CAN1_SCE, all of one priority) put what happened into a ring, with the time. The
-// module's program, at a lower priority, takes it from there in the order in which it happened, and sends. Two frames
-// on a bus are 47 us apart or more, and no interrupt is held up that long: so frames that were received and frames that
-// were sent never wait for their interrupts at the same time. (Only while flash is erased can they; then the NVIC takes
-// CAN1_TX, the lower position, first, and of several mailboxes the lowest number. A module that erases is
-// Pre-operational, where the order of frames means nothing.)
+// The interrupts (CAN1_TX, CAN1_RX0, CAN1_SCE, all of one priority) put each event into a ring, with its time. The
+// module's program, at a lower priority, takes the events in their order, and sends. Two frames on a bus are 47 us
+// apart or more, and no interrupt waits that long: so a received frame and a sent one never wait for their interrupts
+// at the same time. (They can while flash is erased. Then the NVIC takes CAN1_TX first, which has the lower position;
+// the mailbox with the lowest number comes first. A module that erases is Pre-operational, where the order of frames
+// has no effect.)
 
 #include <array>
 #include <atomic>
@@ -27,31 +27,31 @@ class Can final : public CanPort {
     EventKind kind = EventKind::received;
   };
 
-  /// Sets the controller up; it takes part in the bus as soon as it has seen 11 recessive bits. False: it does not
-  /// enter its initialization mode.
+  /// Sets the controller up; it takes part in the bus after 11 recessive bits. False: it does not enter its
+  /// initialization mode.
   [[nodiscard]] bool start(std::uint8_t node);
 
   // At the priority of the module's program.
 
-  /// Also false if a frame with this identifier waits in a mailbox already, so that frames of one identifier keep their
-  /// order; and from bus-off until the controller is back.
+  /// Also false if a mailbox holds a frame with this identifier, so that frames with one identifier keep their order;
+  /// and from bus-off until the controller is back.
   [[nodiscard]] bool send(const CanFrame& frame) override;
   void listen(std::span<const std::uint16_t> identifiers) override;
   void recover() override;
 
-  /// What happened next; null: nothing. It stays until drop_event().
+  /// The oldest event; null: there is none. It stays until drop_event().
   [[nodiscard]] const Event* next_event() const { return events_.front(); }
   void drop_event() { events_.pop(); }
 
-  /// Whether recover() is under way. Nothing interrupts at its end: follow_recovery() must be called now and then.
+  /// Whether recover() is in progress. No interrupt reports its end: follow_recovery() must be polled.
   [[nodiscard]] bool recovering() const { return recovery_ != Recovery::none; }
   /// True once: the controller takes part in the bus again.
   [[nodiscard]] bool follow_recovery();
 
-  /// Frames that were lost, because the controller's FIFO or the ring was full, since start().
+  /// Frames that were lost since start(), because the controller's FIFO or the ring was full.
   [[nodiscard]] std::uint32_t lost_frames() const { return lost_.load(std::memory_order_relaxed); }
 
-  // Of the interrupts.
+  // For the interrupts.
   void on_transmit_interrupt(std::uint32_t stamp);
   void on_receive_interrupt(std::uint32_t stamp);
   void on_status_interrupt(std::uint32_t stamp);
@@ -61,14 +61,14 @@ class Can final : public CanPort {
 
   enum class Recovery : std::uint8_t {
     none,
-    entering,  ///< initialization mode was asked for
-    leaving,   ///< and left: 128 times 11 recessive bits are to come
+    entering,  ///< initialization mode is requested
+    leaving,   ///< its end is requested: the controller waits for 128 times 11 recessive bits
   };
 
   void put(std::uint32_t stamp, EventKind kind, const CanFrame& frame);
 
   EventRing<Event, 64> events_;
-  std::array<CanFrame, mailbox_count> sending_{};              ///< what the mailboxes hold
+  std::array<CanFrame, mailbox_count> mailboxes_{};            ///< the frames in them
   std::array<std::atomic<bool>, mailbox_count> is_pending_{};  ///< set by send(), cleared by CAN1_TX
   std::atomic<bool> is_bus_off_{false};                        ///< set by CAN1_SCE, cleared by follow_recovery()
   std::atomic<std::uint32_t> lost_{0};

@@ -7,7 +7,7 @@
 namespace proleg::stm32f405 {
 namespace {
 
-// Of the PLL: its input must be 1 to 2 MHz, its VCO 100 to 432 MHz, Q gives 48 MHz.
+// PLL: the input must be 1 to 2 MHz, the VCO 100 to 432 MHz; Q gives 48 MHz.
 constexpr std::uint32_t pll_m = 8;
 constexpr std::uint32_t pll_n = 336;
 constexpr std::uint32_t pll_p = 2;
@@ -15,11 +15,11 @@ constexpr std::uint32_t pll_q = 7;
 static_assert(board::crystal / pll_m * pll_n / pll_p == board::core);
 static_assert(board::crystal / pll_m * pll_n / pll_q == 48'000'000);
 
-/// At 2.7 to 3.6 V a wait state for each 30 MHz (RM0090, table 10).
+/// One for each 30 MHz at 2.7 to 3.6 V (RM0090, table 10).
 constexpr std::uint32_t wait_states = (board::core - 1) / 30'000'000;
 
-/// A read in a loop takes 5 cycles or more. The crystal has 50 ms, and starts in 2 (data sheet, table 33); the PLL
-/// locks in 0.3 ms.
+/// A read in a loop takes 5 cycles or more. The crystal starts in 2 ms (data sheet, table 33) and gets 50; the PLL
+/// locks in 0.3 ms and gets 5.
 constexpr std::uint32_t reads_in_50_ms = board::internal_oscillator / 20 / 5;
 
 bool switch_to_pll() {
@@ -38,7 +38,7 @@ ClockResult start_clocks() {
   if (!wait_until_set(rcc::cr, rcc::cr_hserdy, reads_in_50_ms)) {
     return ClockResult::no_crystal;
   }
-  // The voltage regulator is in scale 1 from reset on, as 168 MHz wants it (RM0090, section 5.4.1).
+  // 168 MHz needs the voltage regulator in scale 1, which it has from reset on (RM0090, section 5.4.1).
   rcc::pllcfgr.change(rcc::pllcfgr_mask, rcc::pllcfgr_of(pll_m, pll_n, pll_p, pll_q) | rcc::pllcfgr_pllsrc_hse);
   rcc::cr.set(rcc::cr_pllon);
   if (!wait_until_set(rcc::cr, rcc::cr_pllrdy, reads_in_50_ms / 10)) {
@@ -51,7 +51,7 @@ ClockResult start_clocks() {
   rcc::cfgr.change(rcc::cfgr_prescalers_mask, rcc::cfgr_hpre_1 | rcc::cfgr_ppre1_4 | rcc::cfgr_ppre2_2);
   rcc::cfgr.change(rcc::cfgr_sw_mask, rcc::cfgr_sw_pll);
   if (!switch_to_pll()) {
-    rcc::cfgr.change(rcc::cfgr_prescalers_mask, 0);  // the console counts on APB1 as it was
+    rcc::cfgr.change(rcc::cfgr_prescalers_mask, 0);  // the console needs the initial frequency of APB1
     return ClockResult::no_pll;
   }
   return ClockResult::ok;

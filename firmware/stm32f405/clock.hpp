@@ -7,11 +7,11 @@ namespace proleg::stm32f405 {
 enum class ClockResult : std::uint8_t {
   ok,
   no_crystal,  ///< HSE did not start
-  no_pll,      ///< the PLL did not lock, or was not taken as the clock
+  no_pll,      ///< the PLL did not lock, or the clock did not switch to it
 };
 
-/// From the internal oscillator to the frequencies of pins.hpp, by crystal and PLL. Ends within 100 ms, whatever
-/// happens. If it fails the chip goes on with the internal oscillator, which is too inaccurate for CAN at 1 Mbit/s.
+/// Switches from the internal oscillator to the frequencies of pins.hpp, by crystal and PLL. Ends within 100 ms in any
+/// case. If it fails, the chip stays on the internal oscillator, which is too inaccurate for CAN at 1 Mbit/s.
 [[nodiscard]] ClockResult start_clocks();
 
 }  // namespace proleg::stm32f405

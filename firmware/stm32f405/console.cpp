@@ -24,12 +24,12 @@ void Console::start(std::uint32_t peripheral_hz) {
 }
 
 void Console::write(std::string_view text) {
-  if (text.size() > waiting_.room()) {
+  if (text.size() > pending_.room()) {
     return;
   }
   for (const char character : text) {
-    *waiting_.place() = character;
-    waiting_.push();
+    *pending_.back() = character;
+    pending_.push();
   }
   usart2::cr1.write(on | usart2::cr1_txeie);
 }
@@ -53,21 +53,21 @@ void Console::write_decimal(std::uint32_t value) {
 }
 
 void Console::on_interrupt() {
-  if (const char* const character = waiting_.front()) {
+  if (const char* const character = pending_.front()) {
     usart2::dr.write(static_cast<unsigned char>(*character));
-    waiting_.pop();
+    pending_.pop();
   } else {
     usart2::cr1.write(on);
   }
 }
 
 void Console::flush() {
-  while (const char* const character = waiting_.front()) {
+  while (const char* const character = pending_.front()) {
     if (!wait_until_set(usart2::sr, usart2::sr_txe, reads_for_a_byte)) {
       return;
     }
     usart2::dr.write(static_cast<unsigned char>(*character));
-    waiting_.pop();
+    pending_.pop();
   }
 }
 

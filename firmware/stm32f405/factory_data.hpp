@@ -1,6 +1,6 @@
 #pragma once
 
-// What the maker of the chip has written into it, in the system memory.
+// What the maker of the chip has written into its system memory.
 
 #include <array>
 
@@ -8,7 +8,7 @@
 
 namespace proleg::stm32f405::factory {
 
-/// 96 bits that no other chip has, the lowest word first (RM0090, section 39.1).
+/// 96 bits, different in each chip; the lowest word first (RM0090, section 39.1).
 [[nodiscard]] std::array<std::uint32_t, 3> unique_id();
 
 /// Data sheet, table 70.

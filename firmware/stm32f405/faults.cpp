@@ -21,7 +21,7 @@ namespace {
 using Words = std::array<std::uint32_t, sizeof(FaultRecord) / 4>;
 
 /// Words, and not a FaultRecord, because nothing here may be initialized.
-struct Kept {
+struct StoredRecord {
   std::uint32_t mark;
   Words record;
   std::uint32_t check;
@@ -29,8 +29,8 @@ struct Kept {
 
 constexpr std::uint32_t valid_mark = 0xFA17'0001;
 
-/// Not initialized at the start: holds whatever the RAM held, which after power-on is anything.
-[[gnu::section(".noinit")]] Kept kept;
+/// Not initialized at the start: it has the contents of the RAM, which are arbitrary after power-on.
+[[gnu::section(".noinit")]] StoredRecord stored;
 
 std::uint32_t check_of(const Words& record) {
   std::uint32_t sum = valid_mark;
@@ -40,10 +40,10 @@ std::uint32_t check_of(const Words& record) {
   return sum;
 }
 
-void keep(const FaultRecord& record) {
-  kept.record = std::bit_cast<Words>(record);
-  kept.check = check_of(kept.record);
-  kept.mark = valid_mark;
+void store(const FaultRecord& record) {
+  stored.record = std::bit_cast<Words>(record);
+  stored.check = check_of(stored.record);
+  stored.mark = valid_mark;
 }
 
 void add_status(FaultRecord& record) {
@@ -88,25 +88,25 @@ std::string_view text_of(FaultRecord::Reason reason) {
 }
 
 std::optional<FaultRecord> take_fault_record() {
-  if (kept.mark != valid_mark || kept.check != check_of(kept.record)) {
+  if (stored.mark != valid_mark || stored.check != check_of(stored.record)) {
     return std::nullopt;
   }
-  kept.mark = 0;
-  return std::bit_cast<FaultRecord>(kept.record);
+  stored.mark = 0;
+  return std::bit_cast<FaultRecord>(stored.record);
 }
 
 void record_fault(FaultRecord::Reason reason) {
   FaultRecord record;
   record.reason = reason;
   record.frame[6] = std::bit_cast<std::uint32_t>(__builtin_return_address(0));
-  keep(record);
+  store(record);
 }
 
 void reset_chip() {
   asm volatile("dsb" : : : "memory");
   scb::aircr.write(scb::aircr_sysresetreq);
   for (;;) {
-    asm volatile("wfi");  // it takes a few cycles
+    asm volatile("wfi");  // the reset takes a few cycles
   }
 }
 
@@ -116,8 +116,8 @@ extern "C" {
 
 using proleg::stm32f405::FaultRecord;
 
-/// All faults, and interrupts that nobody has enabled. The stack may be what is broken: the record is written on a new
-/// one.
+/// All faults, and interrupts that the program does not enable. The stack pointer may be wrong: the record is written
+/// with a new stack.
 [[gnu::naked]] void fault_handler() {
   asm volatile(
       "mrs r0, msp\n\t"
@@ -139,11 +139,11 @@ void report_fault(const std::uint32_t* frame) {
     }
   }
   proleg::stm32f405::add_status(record);
-  proleg::stm32f405::keep(record);
+  proleg::stm32f405::store(record);
   proleg::stm32f405::reset_chip();
 }
 
-/// Called by the compiler's tables where a virtual function was not overridden.
+/// The compiler's tables have it in place of a virtual function that is not overridden.
 [[noreturn]] void __cxa_pure_virtual() {
   proleg::stm32f405::record_fault(FaultRecord::Reason::pure_virtual_call);
   proleg::stm32f405::reset_chip();

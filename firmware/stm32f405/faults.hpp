@@ -1,7 +1,7 @@
 #pragma once
 
-// When the program cannot go on: what is known goes into a record in RAM that a reset leaves alone, then the chip
-// resets. The next start reads the record, once.
+// When the program cannot continue, it writes what is known into a record in RAM that survives a reset, and resets the
+// chip. The next start reads the record, once.
 
 #include <array>
 #include <cstdint>
@@ -14,7 +14,7 @@ struct FaultRecord {
   enum class Reason : std::uint32_t {
     processor_fault,       ///< HardFault, to which bus, usage and memory faults escalate: CFSR says more
     non_maskable,          ///< NMI: the clock security system, which is not used
-    unexpected_interrupt,  ///< one that nobody has enabled
+    unexpected_interrupt,  ///< one that the program does not enable
     pure_virtual_call,
     no_crystal,  ///< HSE did not start: without it there is no CAN
     no_pll,
@@ -34,13 +34,13 @@ struct FaultRecord {
   [[nodiscard]] std::uint32_t pc() const { return frame[6]; }
 };
 
-/// As the console prints it.
+/// For the console.
 [[nodiscard]] std::string_view text_of(FaultRecord::Reason reason);
 
-/// The record that the program left when it stopped last, if it did; there is none afterwards.
+/// The record of the last fault, if there was one since the last call; the call deletes it.
 [[nodiscard]] std::optional<FaultRecord> take_fault_record();
 
-/// Leaves a record with the caller's address as pc. The caller has to end in a reset.
+/// Writes a record with the caller's address as pc. The caller must reset the chip.
 [[gnu::noinline]] void record_fault(FaultRecord::Reason reason);
 
 [[noreturn]] void reset_chip();

@@ -14,16 +14,16 @@ using namespace flash_interface;
 
 constexpr std::uint32_t first_sector = 1;
 
-/// Twice what the data sheet has as the longest.
-constexpr std::uint32_t longest_erase_us = 1'000'000;
-constexpr std::uint32_t longest_program_us = 1'000;
+// At least twice the maximum of the data sheet.
+constexpr std::uint32_t erase_timeout_us = 1'000'000;
+constexpr std::uint32_t program_timeout_us = 1'000;
 
-/// Starts an operation and waits for its end, at most so long. Programs `word` at `address`, or erases if that is 0.
-/// Returns the status register. Calls nothing, and reads nothing but registers and the stack: both would be in flash.
+/// Starts an operation and waits for its end or the timeout. Programs `word` at `address`, or erases if that is 0.
+/// Returns the status register. It may call no function and read only registers and the stack: all else is in flash.
 [[gnu::section(".ram_code"), gnu::noinline, gnu::noclone]] std::uint32_t operate(std::uint32_t control,
                                                                                  std::uintptr_t address,
                                                                                  std::uint32_t word,
-                                                                                 std::uint32_t longest_us) {
+                                                                                 std::uint32_t timeout_us) {
   std::uint32_t primask = 0;
   asm volatile("mrs %0, primask\n\tcpsid i" : "=r"(primask) : : "memory");
   const std::uint32_t start = tim5.cnt().read();
@@ -35,7 +35,7 @@ constexpr std::uint32_t longest_program_us = 1'000;
   }
   asm volatile("dsb" : : : "memory");  // BSY is set from here on
   std::uint32_t status = sr.read();
-  while ((status & sr_bsy) != 0 && tim5.cnt().read() - start < longest_us) {
+  while ((status & sr_bsy) != 0 && tim5.cnt().read() - start < timeout_us) {
     feed_watchdog();
     status = sr.read();
   }
@@ -44,20 +44,20 @@ constexpr std::uint32_t longest_program_us = 1'000;
   return status;
 }
 
-bool run(std::uint32_t control, std::uintptr_t address, std::uint32_t word, std::uint32_t longest_us) {
+bool run(std::uint32_t control, std::uintptr_t address, std::uint32_t word, std::uint32_t timeout_us) {
   if (!wait_until_clear(sr, sr_bsy, 1)) {
-    return false;  // an operation that took too long still goes on
+    return false;  // an operation that exceeded its timeout is still running
   }
-  if (cr.has(cr_lock)) {  // keys that it does not wait for lock it until the next reset
+  if (cr.has(cr_lock)) {  // keys that are not expected lock it until the next reset
     keyr.write(keyr_key1);
     keyr.write(keyr_key2);
   }
   sr.write(sr_errors | sr_eop);
-  return (operate(control, address, word, longest_us) & (sr_bsy | sr_errors)) == 0;
+  return (operate(control, address, word, timeout_us) & (sr_bsy | sr_errors)) == 0;
 }
 
 /// The data cache may hold what was there before the erase (RM0090, section 3.5.2). Programming keeps it up to date.
-void forget_cached_data() {
+void clear_data_cache() {
   acr.clear(acr_dcen);
   acr.set(acr_dcrst);
   acr.clear(acr_dcrst);
@@ -65,21 +65,21 @@ void forget_cached_data() {
 }
 
 constexpr std::uintptr_t address_of(unsigned sector) {
-  return flash_layout::settings + sector * SettingsFlash::sector_size;
+  return flash_layout::board_records + sector * BoardRecordFlash::sector_size;
 }
 
 }  // namespace
 
-bool SettingsFlash::erase(unsigned sector) {
+bool BoardRecordFlash::erase(unsigned sector) {
   if (sector >= sector_count) {
     return false;
   }
-  const bool done = run(cr_ser | (first_sector + sector) << cr_snb_position | cr_psize_32, 0, 0, longest_erase_us);
-  forget_cached_data();
+  const bool done = run(cr_ser | (first_sector + sector) << cr_snb_position | cr_psize_32, 0, 0, erase_timeout_us);
+  clear_data_cache();
   return done;
 }
 
-bool SettingsFlash::program(unsigned sector, std::uint32_t offset, std::span<const std::uint8_t> bytes) {
+bool BoardRecordFlash::program(unsigned sector, std::uint32_t offset, std::span<const std::uint8_t> bytes) {
   if (sector >= sector_count || offset > sector_size || bytes.size() > sector_size - offset || offset % 4 != 0 ||
       bytes.size() % 4 != 0) {
     return false;
@@ -87,14 +87,14 @@ bool SettingsFlash::program(unsigned sector, std::uint32_t offset, std::span<con
   for (std::size_t i = 0; i < bytes.size(); i += 4) {
     std::uint32_t word = 0;
     std::memcpy(&word, &bytes[i], sizeof(word));
-    if (!run(cr_pg | cr_psize_32, address_of(sector) + offset + i, word, longest_program_us)) {
+    if (!run(cr_pg | cr_psize_32, address_of(sector) + offset + i, word, program_timeout_us)) {
       return false;
     }
   }
   return true;
 }
 
-std::span<const std::uint8_t> SettingsFlash::contents(unsigned sector) const {
+std::span<const std::uint8_t> BoardRecordFlash::contents(unsigned sector) const {
   return {reinterpret_cast<const std::uint8_t*>(address_of(sector)), sector_size};
 }
 

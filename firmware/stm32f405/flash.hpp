@@ -8,10 +8,10 @@ namespace proleg::stm32f405 {
 /// 3.3, table 5).
 ///
 /// The flash is one bank: while a sector is erased (up to half a second; data sheet, table 41) or a word programmed (up
-/// to 0.1 ms), every read of flash stalls the CPU. So the wait runs from RAM, with interrupts held up, whose vectors
-/// and handlers are in flash; it feeds the watchdog. Frames that come meanwhile are lost but for three, servo pulses go
-/// on by themselves, the servo does not move. To be used in Pre-operational only.
-class SettingsFlash final : public firmware::FlashPort {
+/// to 0.1 ms), every read of flash stalls the CPU. So the wait runs from RAM and feeds the watchdog. Interrupts are
+/// disabled meanwhile, because their vectors and handlers are in flash. The controller keeps three of the frames that
+/// come, others are lost. The timer repeats the servo's last pulse. To be used in Pre-operational only.
+class BoardRecordFlash final : public firmware::FlashPort {
  public:
   static constexpr std::uint32_t sector_count = 2;
   static constexpr std::uint32_t sector_size = 16 * 1024;

@@ -25,7 +25,7 @@ void set_low(Pin pin) { GpioPort(pin.port).bsrr().write(1U << (pin.number + 16U)
 
 void start_pins() {
   rcc::ahb1enr.set(rcc::ahb1enr_gpioa | rcc::ahb1enr_gpiob | rcc::ahb1enr_gpioc);
-  static_cast<void>(rcc::ahb1enr.read());  // the clock is there two cycles later (RM0090, section 7.2.13)
+  static_cast<void>(rcc::ahb1enr.read());  // the clock starts two cycles later (RM0090, section 7.2.13)
 
   set_low(board::servo);
   set_mode(board::servo, PinMode::output);
@@ -33,7 +33,7 @@ void start_pins() {
     set_pull(pin, Pull::up);
     set_mode(pin, PinMode::input);
   }
-  // Pulled up, so that a board without a transceiver sees a bus at rest.
+  // Pulled up, so that the bus looks idle on a board without a transceiver.
   set_pull(board::can_receive, Pull::up);
   connect(board::can_receive, board::can_function);
   connect(board::can_transmit, board::can_function);

@@ -14,8 +14,8 @@ void set_pull(Pin pin, Pull pull);
 void connect(Pin pin, unsigned function);
 void set_low(Pin pin);
 
-/// Clocks of the ports, and all pins of the board as they rest: the servo's low, the others as inputs or at their
-/// peripherals.
+/// Enables the clocks of the ports and sets all pins of the board: the servo's is low, the others are inputs or belong
+/// to their peripherals.
 void start_pins();
 
 }  // namespace proleg::stm32f405

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the vector table leads to.
+// The functions in the vector table.
 
 extern "C" {
 
@@ -12,8 +12,8 @@ void can1_sce_handler();
 void tim5_handler();
 void usart2_handler();
 
-/// What runs when an interrupt has asked for it, at the lowest priority; and what runs first. Each program (main.cpp,
-/// the drivers' tests) has its own.
+/// The program at the lowest priority, which interrupts request; and the start. Each program (main.cpp, the tests of
+/// the drivers) defines both.
 void pend_sv_handler();
 [[noreturn]] void run_program();
 

@@ -26,7 +26,7 @@ void enable_interrupts() {
 
 }  // namespace proleg::stm32f405
 
-// Those of the controller only note what happened, and when.
+// The interrupts of the CAN controller only record the event and its time.
 
 using namespace proleg::stm32f405;
 

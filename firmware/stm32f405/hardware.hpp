@@ -10,7 +10,7 @@
 
 namespace proleg::stm32f405 {
 
-/// All drivers. There is one chip, and its interrupts must find them: so they are static.
+/// All drivers. They are static, so that the interrupts find them.
 struct Hardware {
   MicrosecondClock clock;
   Can can;
@@ -18,15 +18,15 @@ struct Hardware {
   Contacts contacts;
   Sensors sensors;
   Console console;
-  SettingsFlash settings;
+  BoardRecordFlash board_records;
 };
 
 extern Hardware hardware;
 
-/// Priorities and enables of all interrupts. From here on they come, and pend_sv_handler() with them.
+/// Sets the priorities of all interrupts and enables them. pend_sv_handler() may run from now on.
 void enable_interrupts();
 
-/// pend_sv_handler() runs as soon as nothing of a higher priority does; once more if it runs already.
+/// pend_sv_handler() runs as soon as no higher priority does. If it runs now, it runs again afterwards.
 void request_pend_sv();
 
 }  // namespace proleg::stm32f405

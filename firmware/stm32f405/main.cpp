@@ -19,7 +19,7 @@ constinit ModuleTask the_module_task;
 
 using firmware::ResetCause;
 
-/// Why this start, and what the program left behind if it stopped.
+/// Why the program has started, and the record of the fault that stopped it before.
 struct Start {
   ResetCause cause = ResetCause::power_on;
   std::optional<FaultRecord> fault;
@@ -96,7 +96,7 @@ void print(const Start& start, const std::optional<firmware::BoardRecord>& recor
   }
 }
 
-/// The watchdog restarts the chip; perhaps the crystal starts then.
+/// The watchdog restarts the chip; the crystal may start then.
 [[noreturn]] void wait_for_watchdog() {
   for (;;) {
     asm volatile("wfi");
@@ -125,15 +125,15 @@ void start_module(const Start& start, const firmware::BoardRecord& record) {
   if (!hardware.can.start(record.node)) {
     give_up(FaultRecord::Reason::no_can);
   }
-  firmware::ModuleIdentity board;
-  board.node = record.node;
-  board.board_id = board::id;
-  board.unique_id = factory::unique_id();
-  board.core_fingerprint = core_fingerprint;
-  board.capabilities = record.has_feedback ? canopen::measures_angle : 0;
-  board.reset_cause = start.cause;
-  board.reset_detail = start.fault ? start.fault->pc() : 0;
-  the_module_task.start(board, the_last_tick);
+  firmware::ModuleIdentity identity;
+  identity.node = record.node;
+  identity.board_id = board::id;
+  identity.unique_id = factory::unique_id();
+  identity.core_fingerprint = core_fingerprint;
+  identity.capabilities = record.has_feedback ? canopen::measures_angle : 0;
+  identity.reset_cause = start.cause;
+  identity.reset_detail = start.fault ? start.fault->pc() : 0;
+  the_module_task.start(identity, the_last_tick);
 }
 
 }  // namespace
@@ -143,19 +143,19 @@ using namespace proleg::stm32f405;
 
 extern "C" {
 
-/// Where the module's last tick is, in flash, for a debugger or a simulator to find by this name.
+/// The address of the module's last tick, in flash. A debugger and the simulator find it by this name.
 [[gnu::section(".tick_record"),
   gnu::used]] extern constinit const proleg::firmware::TickRecord* const proleg_tick_record = &the_last_tick;
 
 void run_program() {
-  static_cast<void>(start_watchdog());  // with 512 ms instead of 200 it does as well
+  static_cast<void>(start_watchdog());  // if that fails it has 512 ms instead of 200, which is enough
   const Start start = find_start();
   start_pins();
   start_clocks_or_give_up();
   hardware.clock.start();
   hardware.console.start(board::apb1);
   const std::optional<proleg::firmware::BoardRecord> record =
-      proleg::firmware::newest(hardware.settings.contents(0), hardware.settings.contents(1));
+      proleg::firmware::newest(hardware.board_records.contents(0), hardware.board_records.contents(1));
   print(start, record);
   hardware.sensors.start(record);
   if (record) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes what sectors 1 and 2 of a new module's flash hold: its board record, as docs/board.md and
-firmware/module/board_record.hpp describe it, and nothing else. 32 KiB, to be flashed at 0x08004000."""
+"""Writes the contents of sectors 1 and 2 of a new module's flash: one board record, as docs/board.md and
+firmware/module/board_record.hpp describe it. 32 KiB, to be flashed at 0x08004000."""
 
 import argparse
 import pathlib
@@ -12,10 +12,10 @@ SCHEMA_VERSION = 1
 SECTORS = 32 * 1024
 
 
-def number(name, lowest, highest):
+def number(name, minimum, maximum):
     def convert(text):
-        if not text.isdecimal() or not lowest <= int(text) <= highest:
-            raise argparse.ArgumentTypeError(f"{name}: found {text}, expected {lowest} to {highest}")
+        if not text.isdecimal() or not minimum <= int(text) <= maximum:
+            raise argparse.ArgumentTypeError(f"{name}: found {text}, expected {minimum} to {maximum}")
         return int(text)
     return convert
 

@@ -8,20 +8,21 @@
 namespace proleg::stm32f405 {
 namespace {
 
-/// A quarter of the watchdog's time, so that it can be late three times on its fastest clock.
-constexpr Microseconds longest_pause_us = 50'000;
+/// A quarter of the watchdog's time: with its fastest clock it expires after almost three of these.
+constexpr Microseconds max_pause_us = 50'000;
 /// The end of bus-off raises no interrupt; it takes 1.4 ms at least.
 constexpr Microseconds recovery_poll_us = 1'000;
 
-static_assert(std::is_trivially_destructible_v<firmware::Module>, "nothing is ever destroyed here");
+static_assert(std::is_trivially_destructible_v<firmware::Module>,
+              "the program has no end at which it would be destroyed");
 
 }  // namespace
 
-void ModuleTask::start(const firmware::ModuleIdentity& board, firmware::TickRecord& last_tick) {
+void ModuleTask::start(const firmware::ModuleIdentity& identity, firmware::TickRecord& last_tick) {
   last_tick_ = &last_tick;
-  module_.emplace(board, firmware::Ports{hardware.can, hardware.servo, hardware.contacts, hardware.sensors});
-  told_ = hardware.clock.now();
-  module_->power_on(told_);
+  module_.emplace(identity, firmware::Ports{hardware.can, hardware.servo, hardware.contacts, hardware.sensors});
+  last_time_ = hardware.clock.now();
+  module_->power_on(last_time_);
 }
 
 void ModuleTask::run() {
@@ -52,8 +53,8 @@ void ModuleTask::run() {
 }
 
 Microseconds ModuleTask::in_order(Microseconds time) {
-  told_ = time > told_ ? time : told_;
-  return told_;
+  last_time_ = time > last_time_ ? time : last_time_;
+  return last_time_;
 }
 
 void ModuleTask::take_events() {
@@ -91,7 +92,7 @@ void ModuleTask::poll(Microseconds now) {
     module_->poll(in_order(now));
   }
   feed_watchdog();
-  poll_by_ = now + longest_pause_us;
+  poll_by_ = now + max_pause_us;
 }
 
 }  // namespace proleg::stm32f405

@@ -1,7 +1,7 @@
 #pragma once
 
-// The reference board, board id 1: what is connected to which pin, and the frequencies of its clocks. docs/board.md
-// says the same in words.
+// The reference board, board id 1: the use of its pins and the frequencies of its clocks, as docs/board.md describes
+// them.
 
 #include <array>
 #include <cstdint>
@@ -19,7 +19,7 @@ inline constexpr std::uint16_t id = 1;
 
 // Clocks, in Hz. RM0090, section 7.2; the limits are those of the data sheet.
 inline constexpr std::uint32_t crystal = 8'000'000;
-inline constexpr std::uint32_t internal_oscillator = 16'000'000;  ///< HSI: what the chip runs on before the crystal
+inline constexpr std::uint32_t internal_oscillator = 16'000'000;  ///< HSI: the clock before the crystal has started
 inline constexpr std::uint32_t core = 168'000'000;
 inline constexpr std::uint32_t apb1 = core / 4;         ///< CAN1, USART2; at most 42 MHz
 inline constexpr std::uint32_t apb1_timers = 2 * apb1;  ///< TIM2, TIM5

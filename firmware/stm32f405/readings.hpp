@@ -1,14 +1,15 @@
 #pragma once
 
-// From what the ADC reads (12 bits, 0 to 4095 = VDDA) to what it means. Integers, rounded to nearest.
+// From readings of the ADC (12 bits, 0 to 4095 = VDDA) to physical values. Integers, rounded to nearest.
 
+#include <algorithm>
 #include <cstdint>
 
 #include "firmware/stm32f405/pins.hpp"
 
 namespace proleg::stm32f405 {
 
-inline constexpr std::int32_t highest_reading = 4095;
+inline constexpr std::int32_t max_reading = 4095;
 
 /// Quotient to nearest, halves away from zero; of a divisor above 0.
 template <typename Integer>
@@ -21,8 +22,7 @@ template <typename Integer>
 [[nodiscard]] constexpr std::uint16_t current_of(std::uint32_t reading) {
   constexpr std::uint32_t milliampere_per_volt = 1000;
   constexpr auto full_scale = static_cast<std::int32_t>(board::vdda_millivolt * milliampere_per_volt / 1000);
-  return static_cast<std::uint16_t>(
-      divide_to_nearest(static_cast<std::int32_t>(reading) * full_scale, highest_reading));
+  return static_cast<std::uint16_t>(divide_to_nearest(static_cast<std::int32_t>(reading) * full_scale, max_reading));
 }
 
 /// Readings of the temperature sensor at 30 and 110 degrees Celsius and VDDA = 3.3 V, measured by the maker of each
@@ -35,24 +35,24 @@ struct TemperatureCalibration {
 /// Temperature of the chip in degrees Celsius, on the line through the two points; -128 from a chip without
 /// calibration.
 [[nodiscard]] constexpr std::int8_t temperature_of(std::uint32_t reading, TemperatureCalibration calibration) {
-  constexpr std::int32_t lowest = -128;
-  constexpr std::int32_t highest = 127;
+  constexpr std::int32_t min_temperature = -128;
+  constexpr std::int32_t max_temperature = 127;
   const std::int32_t span = std::int32_t{calibration.at_110} - calibration.at_30;
   if (span <= 0) {
-    return lowest;
+    return min_temperature;
   }
   const std::int32_t temperature =
       30 + divide_to_nearest((static_cast<std::int32_t>(reading) - calibration.at_30) * (110 - 30), span);
-  return static_cast<std::int8_t>(temperature < lowest ? lowest : (temperature > highest ? highest : temperature));
+  return static_cast<std::int8_t>(std::clamp(temperature, min_temperature, max_temperature));
 }
 
-/// Angle of the joint (90 degrees = 2^30, saturating), on the line through the readings at -90 and +90 degrees, which
-/// differ; either may be the higher one.
+/// Angle of the joint (90 degrees = 2^30, saturating), on the line through the readings at -90 and +90 degrees. They
+/// must differ; either may be higher.
 [[nodiscard]] constexpr std::int32_t feedback_angle_of(std::uint32_t reading, std::uint16_t at_minus_90,
                                                        std::uint16_t at_plus_90) {
   constexpr std::int64_t right_angle = 1 << 30;
-  constexpr std::int64_t lowest = INT32_MIN;
-  constexpr std::int64_t highest = INT32_MAX;
+  constexpr std::int64_t min_angle = INT32_MIN;
+  constexpr std::int64_t max_angle = INT32_MAX;
   std::int64_t span = std::int64_t{at_plus_90} - at_minus_90;
   std::int64_t way = std::int64_t{reading} - at_minus_90;
   if (span < 0) {
@@ -60,7 +60,7 @@ struct TemperatureCalibration {
     way = -way;
   }
   const std::int64_t angle = divide_to_nearest(way * 2 * right_angle, span) - right_angle;
-  return static_cast<std::int32_t>(angle < lowest ? lowest : (angle > highest ? highest : angle));
+  return static_cast<std::int32_t>(std::clamp(angle, min_angle, max_angle));
 }
 
 }  // namespace proleg::stm32f405

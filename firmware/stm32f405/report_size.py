@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
-"""Prints what an image takes of flash, RAM and stack, and writes it as a table. Fails if the stack can overflow.
+"""Prints the flash, RAM and stack that an image needs, and writes them as a table. Fails if the stack can overflow.
 
 The worst case of the stack: reset_handler (with all that the start calls), on it PendSV or the deadline's interrupt, on
 that the interrupt of the console, on that the worst of the highest priority; and an exception frame for each of the
-three. The priorities are
-those of firmware/stm32f405/module_task.hpp; the bounds come from tools/stack_bound.
+three. The priorities are those of firmware/stm32f405/module_task.hpp; the bounds come from tools/stack_bound.
 """
 
 import argparse
@@ -21,7 +20,7 @@ PRIORITIES = [["pend_sv_handler", "tim5_handler"], ["usart2_handler"],
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=pathlib.Path)
-    parser.add_argument("bounds", type=pathlib.Path, help="what tools/stack_bound has written")
+    parser.add_argument("bounds", type=pathlib.Path, help="table of tools/stack_bound")
     parser.add_argument("output", type=pathlib.Path)
     parser.add_argument("--nm", default="arm-none-eabi-nm")
     options = parser.parse_args()
@@ -35,9 +34,9 @@ def main():
     stack = address["stack_top"] - address["stack_bottom"]
     rows = {
         "flash": address["image_end"] - address["image_start"],
-        "flash_limit": address["largest_image"],
+        "flash_limit": address["max_image_size"],
         "ram": address["ram_end"] - address["stack_top"],
-        "ram_limit": address["largest_ram"],
+        "ram_limit": address["max_ram_size"],
         "stack": stack,
         "stack_bound": needed,
     }

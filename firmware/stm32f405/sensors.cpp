@@ -12,7 +12,7 @@ constexpr std::uint32_t adc_hz = board::apb2 / 4;  // at most 36 MHz (data sheet
 /// read of a register takes 3 cycles of the core or more.
 constexpr std::uint32_t reads_in_10_us = board::core / 100'000 / 3;
 
-// A conversion takes 12 cycles and its sampling. The temperature sensor wants to be sampled for 10 us (table 69).
+// A conversion takes 12 cycles and its sampling time, which must be 10 us for the temperature sensor (table 69).
 constexpr std::uint32_t temperature_sampling_cycles = 480;
 static_assert(temperature_sampling_cycles > adc_hz / 100'000);
 
@@ -40,7 +40,7 @@ void Sensors::start(const std::optional<firmware::BoardRecord>& record) {
 
 firmware::ServoReadings Sensors::take_readings() {
   if (!adc1::sr.has(adc1::sr_jeoc)) {
-    return readings_;  // asked again within 33 us
+    return readings_;  // called again within 33 us
   }
   readings_.current_ma = current_of(adc1::jdr1.read() & adc1::jdr_mask);
   if (feedback_) {

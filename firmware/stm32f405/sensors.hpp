@@ -6,11 +6,11 @@
 
 namespace proleg::stm32f405 {
 
-/// Servo current, feedback potentiometer and the chip's temperature: the injected group of ADC1, started by read(). It
-/// takes 33 us; nobody waits for it.
+/// Servo current, feedback potentiometer and the chip's temperature: the injected group of ADC1. take_readings() starts
+/// it and does not wait the 33 us that it takes.
 class Sensors final : public firmware::SensorPort {
  public:
-  /// Without a record, or a potentiometer in it, there is no angle.
+  /// There is no angle without a record that has a potentiometer.
   void start(const std::optional<firmware::BoardRecord>& record);
   [[nodiscard]] firmware::ServoReadings take_readings() override;
 

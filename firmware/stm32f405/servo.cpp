@@ -1,5 +1,7 @@
 #include "firmware/stm32f405/servo.hpp"
 
+#include <algorithm>
+
 #include "firmware/stm32f405/gpio.hpp"
 #include "firmware/stm32f405/registers/rcc.hpp"
 #include "firmware/stm32f405/registers/timer.hpp"
@@ -13,13 +15,12 @@ constexpr std::uint32_t counter_hz = counts_per_us * 1'000'000;
 static_assert(board::apb1_timers % counter_hz == 0);
 
 /// The output is low for this long at least, between pulses.
-constexpr std::uint32_t shortest_pause = 500 * counts_per_us;
+constexpr std::uint32_t min_pause = 500 * counts_per_us;
 
-/// Counts until a pulse is repeated that the program does not renew.
+/// Counts until the timer repeats a pulse because the program is late.
 constexpr std::uint32_t counts_to_repeat(std::uint32_t width, std::uint32_t period_us) {
   const std::uint32_t late = period_us * counts_per_us / 4U * 5U;
-  const std::uint32_t shortest = width + shortest_pause;
-  return late < shortest ? shortest : late;
+  return std::max(late, width + min_pause);
 }
 
 }  // namespace
@@ -34,33 +35,33 @@ void Servo::start() {
 }
 
 void Servo::pulse(std::int32_t width, std::uint32_t period_us) {
-  if ((tim2.sr().read() & Timer::sr_uif) != 0) {  // the counter came round, and took over what had been asked for
+  if ((tim2.sr().read() & Timer::sr_uif) != 0) {  // the counter has wrapped, and the requested width is active
     tim2.sr().write(~Timer::sr_uif);
-    running_width_ = asked_width_;
+    active_width_ = requested_width_;
   }
-  asked_width_ = static_cast<std::uint32_t>(width);
-  tim2.ccr1().write(asked_width_);
-  if (const std::uint32_t last = counts_to_repeat(asked_width_, period_us) - 1U; last != last_count_) {
+  requested_width_ = static_cast<std::uint32_t>(width);
+  tim2.ccr1().write(requested_width_);
+  if (const std::uint32_t last = counts_to_repeat(requested_width_, period_us) - 1U; last != last_count_) {
     last_count_ = last;
     tim2.arr().write(last);
   }
-  if (!runs_) {
-    runs_ = true;
+  if (!is_running_) {
+    is_running_ = true;
     tim2.ccer().write(Timer::ccer_cc1e);
     tim2.egr().write(Timer::egr_ug);
     tim2.cr1().write(Timer::cr1_arpe | Timer::cr1_urs | Timer::cr1_cen);
     set_mode(board::servo, PinMode::alternate);
-    running_width_ = asked_width_;
-  } else if (tim2.cnt().read() >= running_width_) {
+    active_width_ = requested_width_;
+  } else if (tim2.cnt().read() >= active_width_) {
     tim2.egr().write(Timer::egr_ug);
-    running_width_ = asked_width_;
+    active_width_ = requested_width_;
   }
 }
 
 void Servo::off() {
-  // The pin first, which start_pins() has set low: without its channel the timer does not say what the level is.
+  // First the pin, which start_pins() has set low: the level is not defined by a timer whose channel is off.
   set_mode(board::servo, PinMode::output);
-  runs_ = false;
+  is_running_ = false;
   tim2.ccer().write(0);
   tim2.ccr1().write(0);
   tim2.cr1().write(Timer::cr1_arpe | Timer::cr1_urs);

@@ -1,5 +1,5 @@
-// The image's vector table, and what happens between reset and main: RAM gets its contents. Whoever jumps here (the
-// start stub, later the bootloader) has set VTOR and the stack pointer.
+// The image's vector table, and the start, which fills the RAM. The start stub, later the bootloader, sets VTOR and the
+// stack pointer before it jumps here.
 
 #include <array>
 #include <cstdint>
@@ -67,7 +67,7 @@ void copy(const std::uint32_t* source, std::uint32_t* target, const std::uint32_
 
 extern "C" {
 
-// No constructors run: the linker script makes sure that there are none (everything static is constinit).
+// No constructors run: the linker script checks that there are none (all static objects are constinit).
 void reset_handler() {
   proleg::stm32f405::copy(ram_code_load, ram_code_start, ram_code_end);
   proleg::stm32f405::copy(data_load, data_start, data_end);

@@ -1,5 +1,5 @@
-// Flash sector 0, where the chip starts: jumps to the image in slot A. A bootloader will take its place, which receives
-// and verifies images; until then this is all that lies there, so that images are linked where they will stay.
+// Flash sector 0, where the chip starts: jumps to the image in slot A. A bootloader that receives and verifies images
+// will replace it; images are linked for that layout already.
 
 #include <cstdint>
 
@@ -26,7 +26,7 @@ constexpr std::uint32_t ram_size = 128 * 1024;
 
 extern "C" {
 
-/// For an exception, and where there is no image: a debugger or a programmer must come.
+/// After an exception, or without an image: only a debugger or a programmer can help.
 [[gnu::section(".stub.text"), noreturn]] void stub_stop() {
   for (;;) {
     asm volatile("wfi");

@@ -7,13 +7,13 @@ constexpr std::uint32_t lsi_hz = 32'000;
 constexpr std::uint32_t prescaler = 16;
 constexpr std::uint32_t counts = lsi_hz / prescaler / 5;  // 200 ms
 
-/// PR and RLR take 5 periods of LSI to be taken over; the core still runs at 16 MHz, 5 cycles or more a read.
+/// The watchdog loads PR and RLR within 5 periods of LSI; the core still runs at 16 MHz, 5 cycles or more a read.
 constexpr std::uint32_t reads_in_5_ms = 16'000;
 
 }  // namespace
 
 bool start_watchdog() {
-  iwdg::kr.write(iwdg::kr_start);  // first: it switches LSI on, which the others need
+  iwdg::kr.write(iwdg::kr_start);  // first: it switches on LSI, which the others need
   iwdg::kr.write(iwdg::kr_unlock);
   iwdg::pr.write(iwdg::pr_16);
   iwdg::rlr.write(counts - 1U);

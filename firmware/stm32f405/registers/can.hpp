@@ -10,7 +10,7 @@ inline constexpr std::uintptr_t base = 0x4000'6400;
 
 inline constexpr Register mcr{base + 0x000};
 inline constexpr std::uint32_t mcr_inrq = 1U << 0U;
-inline constexpr std::uint32_t mcr_dbf = 1U << 16U;  ///< stands still while a debugger halts the CPU; set at reset
+inline constexpr std::uint32_t mcr_dbf = 1U << 16U;  ///< stops while a debugger halts the CPU; set at reset
 
 inline constexpr Register msr{base + 0x004};
 inline constexpr std::uint32_t msr_inak = 1U << 0U;
@@ -65,7 +65,7 @@ inline constexpr Register rdt0r{base + 0x1B4};
 inline constexpr Register rdl0r{base + 0x1B8};
 inline constexpr Register rdh0r{base + 0x1BC};
 
-// Filters; a bit a bank, but for FMR.
+// Filters; a bit a bank, except in FMR.
 inline constexpr Register fmr{base + 0x200};
 inline constexpr std::uint32_t fmr_finit = 1U << 0U;
 /// The banks from this number on are CAN2's.

@@ -40,7 +40,7 @@ inline constexpr unsigned interrupt_count = 82;
 
 namespace nvic {
 
-/// Priority 0 (first) to 15: the upper four bits are there.
+/// Priority 0 (first) to 15: only the upper four bits exist.
 inline void set_priority(Interrupt interrupt, std::uint32_t priority) {
   const auto position = static_cast<std::uint32_t>(interrupt);
   const std::uint32_t shift = 8U * (position % 4U);

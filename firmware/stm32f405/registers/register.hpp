@@ -1,8 +1,8 @@
 #pragma once
 
-// Registers of the STM32F405, written off the tables of its manuals: RM0090 (reference manual, revision 18; its
-// sections are named in each file) and PM0214 (programming manual of the Cortex-M4). Debian has no package with a
-// vendor's header, and only these few registers are used.
+// Registers of the STM32F405, as in the tables of its manuals: RM0090 (reference manual, revision 18; each file names
+// its sections) and PM0214 (programming manual of the Cortex-M4). Debian has no package with the vendor's headers, and
+// the program uses only these few registers.
 
 #include <cstdint>
 
@@ -20,7 +20,7 @@ class Register {
   // A read and a write: only for registers that a single priority writes.
   void set(std::uint32_t bits) const { write(read() | bits); }
   void clear(std::uint32_t bits) const { write(read() & ~bits); }
-  /// Puts a value into the bits of a mask; both at their place in the register.
+  /// Writes the bits of a mask; value and mask have their positions in the register.
   void change(std::uint32_t mask, std::uint32_t value) const { write((read() & ~mask) | value); }
 
   [[nodiscard]] bool has(std::uint32_t bits) const { return (read() & bits) == bits; }
@@ -33,7 +33,7 @@ class Register {
   std::uintptr_t address_;
 };
 
-/// Reads until the bits are set (or clear), at most so many times. Whether they were.
+/// Reads until the bits are set (or clear), at most `reads` times. Whether they were.
 [[nodiscard]] inline bool wait_until_set(Register reg, std::uint32_t bits, std::uint32_t reads) {
   while (reads != 0) {
     if (reg.has(bits)) {

@@ -28,7 +28,6 @@ class Timer {
 
   [[nodiscard]] constexpr Register ccmr1() const { return Register(base_ + 0x18); }
   static constexpr std::uint32_t ccmr1_oc1pe = 1U << 3U;
-  static constexpr std::uint32_t ccmr1_oc1m_frozen = 0U << 4U;
   static constexpr std::uint32_t ccmr1_oc1m_pwm1 = 6U << 4U;
 
   [[nodiscard]] constexpr Register ccer() const { return Register(base_ + 0x20); }
@@ -36,7 +35,7 @@ class Timer {
 
   [[nodiscard]] constexpr Register cnt() const { return Register(base_ + 0x24); }
   [[nodiscard]] constexpr Register psc() const { return Register(base_ + 0x28); }  ///< divides by its value + 1
-  [[nodiscard]] constexpr Register arr() const { return Register(base_ + 0x2C); }  ///< the last count of a round
+  [[nodiscard]] constexpr Register arr() const { return Register(base_ + 0x2C); }  ///< the last count before it wraps
   [[nodiscard]] constexpr Register ccr1() const { return Register(base_ + 0x34); }
 
  private:

@@ -16,6 +16,6 @@ inline constexpr Register pr{base + 0x04};
 inline constexpr std::uint32_t pr_16 = 2;  ///< LSI / 16
 inline constexpr Register rlr{base + 0x08};
 inline constexpr Register sr{base + 0x0C};
-inline constexpr std::uint32_t sr_updating = 3;  ///< PR or RLR is being taken over
+inline constexpr std::uint32_t sr_updating = 3;  ///< PR or RLR is being loaded
 
 }  // namespace proleg::stm32f405::iwdg

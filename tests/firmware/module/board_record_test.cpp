@@ -167,12 +167,12 @@ TEST(BoardRecordTest, TheLogGoesRoundBothSectorsForEver) {
     ASSERT_EQ(append(flash, record_of(1 + i % 126)), AppendResult::ok);
     ASSERT_EQ(flash.read(), record_of(1 + i % 126));
   }
-  // An erase for each sector that was begun, but for the first one; eight words a record.
+  // An erase for each sector after the first one; eight words a record.
   EXPECT_EQ(flash.operations, 1000 * 8 + 1000 / 4 - 1);
 }
 
 TEST(BoardRecordTest, ACutOfThePowerAtAnyInstantLeavesTheNewestOrTheOneBefore) {
-  // Enough appends to fill both sectors and come round.
+  // Enough appends to fill both sectors and start again.
   constexpr unsigned appends = 20;
   FlashMemory whole;
   for (unsigned i = 1; i <= appends; ++i) {

@@ -1,4 +1,4 @@
-// A module that is thrown off the bus stops its servo, comes back after pauses that grow, and says so.
+// A module that goes bus-off stops its servo, comes back after pauses that grow, and reports it.
 
 #include "firmware/module/bus_recovery.hpp"
 #include "test_robot.hpp"
@@ -18,15 +18,15 @@ class BusOff : public testing::Test {
  protected:
   BusOff() { robot.set_up_and_start(); }
 
-  /// Throws the module off and returns when.
-  Microseconds throw_off() {
+  /// The controller goes bus-off, at the time that is returned.
+  Microseconds leave_bus() {
     const Microseconds now = robot.bus.now();
     robot.it().recoveries.clear();
     robot.it().bus_off(now);
     return now;
   }
-  void bring_back() { robot.it().bus_back(robot.bus.now()); }
-  /// Requests to come back after `start`, as pauses in ms.
+  void return_to_bus() { robot.it().bus_back(robot.bus.now()); }
+  /// Pauses between `start` and the requests to come back, in ms.
   [[nodiscard]] std::vector<Microseconds> pauses(Microseconds start) {
     std::vector<Microseconds> found;
     for (const Microseconds time : robot.it().recoveries) {
@@ -41,7 +41,7 @@ class BusOff : public testing::Test {
 };
 
 TEST_F(BusOff, TheControllerIsAskedAfterPausesThatDoubleUpToASecond) {
-  const Microseconds off = throw_off();
+  const Microseconds off = leave_bus();
   robot.bus.run_until(off + 10 * ms - 1);
   EXPECT_TRUE(robot.it().recoveries.empty());
   robot.bus.run_until(off + 4 * second);
@@ -49,38 +49,38 @@ TEST_F(BusOff, TheControllerIsAskedAfterPausesThatDoubleUpToASecond) {
   EXPECT_TRUE(robot.module().is_bus_off());
 }
 
-TEST_F(BusOff, PausesGoOnWhereTheyWereIfItIsThrownOffAgainSoon) {
-  Microseconds off = throw_off();
+TEST_F(BusOff, PausesContinueToGrowIfItGoesBusOffAgainSoon) {
+  Microseconds off = leave_bus();
   robot.bus.run_until(off + 12 * ms);
   EXPECT_EQ(pauses(off), (std::vector<Microseconds>{10}));
-  bring_back();
+  return_to_bus();
   const Microseconds back = robot.bus.now();
   robot.bus.run_until(back + 10 * second - 1);
-  EXPECT_EQ(robot.it().recoveries.size(), 1U) << "nobody asks a controller that is back";
-  off = throw_off();
+  EXPECT_EQ(robot.it().recoveries.size(), 1U) << "a controller that is back is not asked";
+  off = leave_bus();
   robot.bus.run_until(off + 61 * ms);
   EXPECT_EQ(pauses(off), (std::vector<Microseconds>{20, 40}));
 }
 
 TEST_F(BusOff, TenSecondsOnTheBusMakeThePausesShortAgain) {
-  Microseconds off = throw_off();
+  Microseconds off = leave_bus();
   robot.bus.run_until(off + second);
-  bring_back();
+  return_to_bus();
   robot.bus.run_for(10 * second);
-  off = throw_off();
+  off = leave_bus();
   robot.bus.run_until(off + 31 * ms);
   EXPECT_EQ(pauses(off), (std::vector<Microseconds>{10, 20}));
 }
 
-TEST_F(BusOff, AResetForgetsThePauses) {
-  Microseconds off = throw_off();
+TEST_F(BusOff, AResetMakesThePausesShortAgain) {
+  Microseconds off = leave_bus();
   robot.bus.run_until(off + second);
   robot.it().power_on(robot.bus.now());
   EXPECT_FALSE(robot.module().is_bus_off());
   const std::size_t asked = robot.it().recoveries.size();
   robot.bus.run_for(3 * second);
   EXPECT_EQ(robot.it().recoveries.size(), asked);
-  off = throw_off();
+  off = leave_bus();
   robot.bus.run_until(off + 11 * ms);
   EXPECT_EQ(pauses(off), (std::vector<Microseconds>{10}));
 }
@@ -89,32 +89,32 @@ TEST_F(BusOff, TheServoGoesToTheSafePoseAndStaysThere) {
   robot.enable(0);
   robot.run(20);
   ASSERT_TRUE(robot.it().is_pulsing());
-  throw_off();
+  leave_bus();
   EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
   robot.bus.run_for(2 * second);
   EXPECT_TRUE(robot.it().is_pulsing());
   EXPECT_EQ(robot.it().pulses.back().width, servo_center);
-  bring_back();
+  return_to_bus();
   robot.bus.run_for(second);
   EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active) << "a person decides";
 }
 
-TEST_F(BusOff, WhatWasToBeSentIsForgottenAndNothingIsHandedOver) {
+TEST_F(BusOff, PendingFramesAreDroppedAndNoneIsHandedOver) {
   robot.bus.write(node, canopen::object::heartbeat_period, 10);
   robot.bus.run_for(15 * ms);
-  // The module is full of answers that the bus has no time for.
+  // The module has more answers than the bus has time for.
   CanFrame request{static_cast<std::uint16_t>(canopen::identifier::sdo_request + node), 8, {0x40, 0x00, 0x10, 0x00}};
   for (int i = 0; i < 10; ++i) {
     robot.it().receive(robot.bus.now(), request);
   }
   ASSERT_EQ(robot.it().pending.size(), 1U) << "the others wait in the queue";
   const std::uint32_t dropped = robot.module().dropped_frames();
-  throw_off();
+  leave_bus();
   robot.bus.run_for(100 * ms);
   EXPECT_TRUE(robot.it().pending.empty());
   EXPECT_GE(robot.module().dropped_frames(), dropped + 9) << "heartbeats";
   const std::size_t before = robot.bus.log.size();
-  bring_back();
+  return_to_bus();
   robot.bus.run_for(8 * ms);
   ASSERT_GT(robot.bus.log.size(), before);
   for (std::size_t i = before; i < robot.bus.log.size(); ++i) {
@@ -123,12 +123,12 @@ TEST_F(BusOff, WhatWasToBeSentIsForgottenAndNothingIsHandedOver) {
   }
 }
 
-TEST_F(BusOff, ItSaysForHowLongWhenItIsBackAndThatItIsOverTenSecondsLater) {
+TEST_F(BusOff, ItReportsTheTimeOffWhenItIsBackAndTheEndTenSecondsLater) {
   robot.bus.run_for(ms);
-  throw_off();
+  leave_bus();
   robot.bus.run_for(31 * ms);
   EXPECT_TRUE(robot.emergencies().empty());
-  bring_back();
+  return_to_bus();
   robot.bus.run_for(ms);
   ASSERT_EQ(robot.emergencies().size(), 1U);
   EXPECT_EQ(robot.emergencies()[0], (Emergency{node, EmergencyCode::bus_off_recovered, 0x11, 31}));
@@ -140,33 +140,33 @@ TEST_F(BusOff, ItSaysForHowLongWhenItIsBackAndThatItIsOverTenSecondsLater) {
   EXPECT_EQ(robot.bus.value(node, canopen::object::error_register), 0U);
 }
 
-TEST_F(BusOff, ToldTwiceOrBackWithoutHavingGoneChangesNothing) {
-  bring_back();
+TEST_F(BusOff, ASecondBusOffOrAReturnWithoutOneChangesNothing) {
+  return_to_bus();
   robot.bus.run_for(ms);
   EXPECT_TRUE(robot.emergencies().empty());
-  const Microseconds off = throw_off();
+  const Microseconds off = leave_bus();
   robot.bus.run_for(5 * ms);
   robot.it().bus_off(robot.bus.now());
   robot.bus.run_until(off + 31 * ms);
   EXPECT_EQ(pauses(off), (std::vector<Microseconds>{10, 20}));
-  bring_back();
-  bring_back();
+  return_to_bus();
+  return_to_bus();
   robot.bus.run_for(ms);
   EXPECT_EQ(robot.emergencies().size(), 1U);
 }
 
 TEST_F(BusOff, TheModuleJoinsAgainAtTheNextTick) {
   robot.run(19);
-  throw_off();
+  leave_bus();
   robot.bus.run_for(200 * ms);
-  bring_back();
+  return_to_bus();
   robot.tick(40);
   robot.run(40, 42);
   EXPECT_TRUE(robot.module().synchronised());
   EXPECT_EQ(robot.kernel().tick(), 43U);
 }
 
-TEST(BusOffOfTheProducer, ATickZeroThatWasLostIsSentOnceMore) {
+TEST(BusOffOfTheProducer, ATickZeroThatWasLostIsSentAgain) {
   test::TestModule robot;
   robot.set_up_and_start();
   robot.it().receive(robot.bus.now(), {static_cast<std::uint16_t>(canopen::identifier::sdo_request + node),
@@ -189,7 +189,7 @@ TEST(BusOffOfTheProducer, ATickZeroThatWasLostIsSentOnceMore) {
   EXPECT_GT(syncs[0].time, ticks[0].time);
 }
 
-TEST(BusOffOfTheProducer, TheRobotGoesOnAtTheTicksThatItCounted) {
+TEST(BusOffOfTheProducer, TheRobotContinuesAtTheTicksThatItCounted) {
   test::TestModule robot;
   robot.set_up_and_start();
   robot.produce_sync();

@@ -1,4 +1,4 @@
-// Five modules on a bus, told by SDO and by nothing else, compute what five kernels compute that exchange frames.
+// Five modules on a bus, configured by SDO only, compute the same as five kernels that exchange frames.
 
 #include <random>
 

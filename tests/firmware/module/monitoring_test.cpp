@@ -22,10 +22,10 @@ class Measuring {
     setup.kernel = test::one_slot(test::algorithm(test::sinusoidal), 1);
     setup.nodes = nodes_;
     setup.limits = limits_;
-    firmware::ModuleIdentity board;
-    board.node = node;
-    board.capabilities = measures_angle ? canopen::measures_angle : 0;
-    it = &bus.add(board);
+    firmware::ModuleIdentity identity;
+    identity.node = node;
+    identity.capabilities = measures_angle ? canopen::measures_angle : 0;
+    it = &bus.add(identity);
     it->power_on(0);
     bus.run_until(20'000);
     const canopen::SetupList list(setup, 0);
@@ -60,11 +60,11 @@ TEST(Monitored, IsTheDocumentedFrame) {
   EXPECT_EQ(module.first_frame(), (CanFrame{0x383, 6, {0xEE, 0x1F, 0x5E, 0x01, 0x1F, 0x00}}));
 }
 
-TEST(Monitored, AnAngleThatIsNotMeasuredIsSaidToBeSo) {
+TEST(Monitored, AnAngleThatIsNotMeasuredIsMarked) {
   Measuring without_potentiometer(false);
   without_potentiometer.it->meters.readings = example();
   const CanFrame expected{0x383, 6, {0x00, 0x80, 0x5E, 0x01, 0x1F, 0x00}};
-  EXPECT_EQ(without_potentiometer.first_frame(), expected) << "what such a board reads is noise";
+  EXPECT_EQ(without_potentiometer.first_frame(), expected) << "the reading of such a board is noise";
   EXPECT_EQ(canopen::decode_monitoring(expected)->angle, Monitoring::not_measured);
   Measuring without_reading(true);
   without_reading.it->meters.readings = example();
@@ -107,11 +107,11 @@ TEST(Monitored, ObjectsHaveTheSameValues) {
   }
 }
 
-TEST(Monitored, IsMeasuredAlsoBeforeAnythingIsSetUp) {
+TEST(Monitored, IsMeasuredBeforeTheSetUpToo) {
   test::TestBus bus;
-  firmware::ModuleIdentity board;
-  board.node = 3;
-  bus.add(board).meters.readings = example();
+  firmware::ModuleIdentity identity;
+  identity.node = 3;
+  bus.add(identity).meters.readings = example();
   bus.nodes[0]->power_on(0);
   bus.run_until(40'000);
   EXPECT_EQ(bus.value(3, object::temperature), 31U);
@@ -162,7 +162,7 @@ TEST(Monitored, InOperationalOnly) {
   EXPECT_TRUE(robot.bus.sent(canopen::identifier::monitoring + test::TestModule::node_id, before).empty());
 }
 
-TEST(Monitored, TickOfASyncThatWasMissedIsPassedOver) {
+TEST(Monitored, OfAMissedSyncIsNotSent) {
   test::TestModule robot;
   robot.set_up_and_start();
   robot.run(9);
@@ -171,7 +171,7 @@ TEST(Monitored, TickOfASyncThatWasMissedIsPassedOver) {
   EXPECT_EQ(sent.size(), 1U) << "that of tick 0";
 }
 
-TEST(Monitored, SeldomInARobotThatLeavesLittleRoom) {
+TEST(Monitored, EveryHundredthSyncOnABusyBus) {
   KernelConfiguration kernel = test::one_slot(test::algorithm(test::sinusoidal), 8);
   kernel.tick_period_us = 1'500;  // 8 * 135 + 65 + 14 bits in 1,500 are 77 %, with 8 * 11.5 more 83 %
   EXPECT_EQ(canopen::monitoring_period(kernel), 10U);

@@ -15,14 +15,14 @@ using canopen::NmtState;
 constexpr std::uint8_t node = test::TestModule::node_id;
 constexpr std::uint16_t heartbeat = canopen::identifier::heartbeat + node;
 
-firmware::ModuleIdentity board(std::uint8_t node_id, std::uint32_t id) {
+firmware::ModuleIdentity identity(std::uint8_t node_id, std::uint32_t id) {
   firmware::ModuleIdentity made;
   made.node = node_id;
   made.unique_id = {id, id * 7919U, 3};
   return made;
 }
 
-TEST(Network, SaysNothingAndHearsNothingBeforePowerOn) {
+TEST(Network, SendsNothingAndReceivesNothingBeforePowerOn) {
   test::TestModule robot;
   EXPECT_EQ(robot.module().next_deadline(), never);
   robot.command(NmtCommand::reset_node);
@@ -48,14 +48,14 @@ TEST(Network, BootUpComesOnceAndThenTheModuleIsPreOperational) {
 TEST(Network, TheBootUpDelayIsOneToSixteenMillisecondsByTheUniqueId) {
   std::set<Microseconds> delays;
   for (std::uint32_t id = 0; id < 200; ++id) {
-    test::ModuleNode module(board(9, id), id * 1'000'003U);
+    test::ModuleNode module(identity(9, id), id * 1'000'003U);
     module.power_on(500);
     const Microseconds delay = module.next_deadline() - 500;
     EXPECT_EQ(delay % 1'000, 0U);
     EXPECT_GE(delay, 1'000U);
     EXPECT_LE(delay, 16'000U);
     delays.insert(delay);
-    // It follows from the id: again the same.
+    // It follows from the id: the same again.
     module.power_on(777'777);
     EXPECT_EQ(module.next_deadline() - 777'777, delay);
   }
@@ -94,7 +94,7 @@ TEST(Network, HeartbeatComesEveryPeriodWithTheState) {
 }
 
 TEST(Network, AHeartbeatThatIsSentTooLateDoesNotCatchUp) {
-  test::ModuleNode module(board(9, 1));
+  test::ModuleNode module(identity(9, 1));
   module.power_on(0);
   module.poll(20'000);
   module.receive(20'000, {0x609, 8, {0x2B, 0x17, 0x10, 0, 10}});
@@ -147,7 +147,7 @@ TEST(Network, AStoppedModuleAnswersNothingButNetworkManagement) {
 class Reset : public testing::TestWithParam<NmtCommand> {};
 INSTANTIATE_TEST_SUITE_P(OfBothKinds, Reset, testing::Values(NmtCommand::reset_node, NmtCommand::reset_communication));
 
-TEST_P(Reset, ForgetsEverythingAndBootsAgain) {
+TEST_P(Reset, RestoresTheDefaultsAndBootsAgain) {
   test::TestModule robot;
   robot.set_up_and_start();
   robot.enable(0);
@@ -271,12 +271,12 @@ TEST(Network, AnotherSenderOnAnOwnIdentifierStopsTheModuleUntilItsReset) {
 TEST(Network, TwoModulesWithOneNodeIdBothStop) {
   for (std::uint32_t id = 1; id < 40; ++id) {
     test::TestBus bus;
-    test::ModuleNode& first = bus.add(board(9, 0));
-    test::ModuleNode& second = bus.add(board(9, id), 55'555);
+    test::ModuleNode& first = bus.add(identity(9, 0));
+    test::ModuleNode& second = bus.add(identity(9, id), 55'555);
     first.power_on(0);
     second.power_on(0);
     if (first.next_deadline() == second.next_deadline()) {
-      continue;  // their frames are one on the bus; answers to an SDO tell them apart
+      continue;  // their boot-up messages are one frame on the bus; answers to SDO would collide
     }
     bus.run_for(50'000);
     EXPECT_EQ(first.module.state(), NmtState::stopped);

@@ -41,7 +41,7 @@ TEST(Objects, EveryEntryOfTheDictionaryCanBeRead) {
   EXPECT_GT(count, 500U);
 }
 
-TEST(Objects, SayWhoTheModuleIs) {
+TEST(Objects, HaveTheIdentityOfTheModule) {
   test::TestModule robot;
   robot.boot();
   EXPECT_EQ(robot.bus.value(node, object::product), 1U);
@@ -84,7 +84,7 @@ TEST(Objects, TheConfigurationCrcIsTheSameInAllModulesOfARobotOnly) {
   EXPECT_NE(robot.bus.value(robot.node(3), object::configuration_crc), crc);
 }
 
-TEST(Objects, AnEntryThatDoesNotExistIsRefused) {
+TEST(Objects, AnEntryThatDoesNotExistIsRejected) {
   test::TestModule robot;
   robot.set_up_and_start();
   std::uint32_t value = 0;
@@ -97,7 +97,7 @@ TEST(Objects, AnEntryThatDoesNotExistIsRefused) {
   EXPECT_EQ(robot.bus.log.back().frame, (CanFrame{0x585, 8, {0x80, 0x80, 0x4F, 0x01, 0x00, 0x00, 0x02, 0x06}}));
 }
 
-TEST(Objects, AValueOutOfRangeIsRefusedAndChangesNothing) {
+TEST(Objects, AValueOutOfRangeIsRejectedAndChangesNothing) {
   test::TestModule robot;
   robot.boot();
   EXPECT_EQ(robot.bus.write(node, object::tick_period, 999), AbortCode::below_minimum);
@@ -112,7 +112,7 @@ TEST(Objects, AValueOutOfRangeIsRefusedAndChangesNothing) {
   EXPECT_EQ(robot.bus.write(node, amplitude, 2, 0), AbortCode::wrong_length);
 }
 
-/// Settings that the kernel refuses, by the one write that spoils a good set-up.
+/// Settings that the kernel rejects, by the one write that makes a good set-up wrong.
 struct Refusal {
   canopen::Address address;
   std::uint8_t size;
@@ -140,7 +140,7 @@ TEST_P(Refused, LeavesTheModuleUnconfigured) {
   robot.boot();
   robot.configure(0);
   ASSERT_EQ(robot.bus.write(node, GetParam().address, GetParam().size, GetParam().value), AbortCode::none);
-  EXPECT_EQ(robot.bus.value(node, object::activate), 1U);  // what was written does not count yet
+  EXPECT_EQ(robot.bus.value(node, object::activate), 1U);  // the value has no effect yet
   EXPECT_EQ(robot.bus.write(node, object::activate, 1), GetParam().code);
   EXPECT_EQ(robot.bus.value(node, object::activate), 0U);
   EXPECT_EQ(robot.bus.value(node, object::refusal), static_cast<std::uint32_t>(GetParam().status));
@@ -151,7 +151,7 @@ TEST_P(Refused, LeavesTheModuleUnconfigured) {
   ASSERT_EQ(robot.emergencies().size(), 1U);
   EXPECT_EQ(robot.emergencies()[0].code, canopen::EmergencyCode::not_configured);
   EXPECT_EQ(robot.emergencies()[0].detail, static_cast<std::uint32_t>(GetParam().status));
-  // A good one makes it well again.
+  // A good one configures it again.
   robot.configure(0);
   robot.command(NmtCommand::start);
   EXPECT_EQ(robot.module().state(), NmtState::operational);
@@ -179,7 +179,7 @@ TEST(Objects, ActivateZeroLeavesTheModuleUnconfigured) {
   EXPECT_EQ(robot.module().state(), NmtState::pre_operational);
 }
 
-TEST(Objects, WhatTheRobotAgreesOnIsSettledOutsidePreOperational) {
+TEST(Objects, TheConfigurationOfTheRobotIsWritableInPreOperationalOnly) {
   test::TestModule robot(two_slots());
   const canopen::StartValue values[] = {{0, 0, 1, test::degrees(12)}};
   robot.setup.start_values = values;
@@ -222,7 +222,7 @@ TEST(Objects, ParametersOfAnAlgorithmThatIsNotInTheSlotDoNotExist) {
   EXPECT_EQ(robot.bus.value(node, object::refusal), static_cast<std::uint32_t>(Status::unknown_slot));
 }
 
-TEST(Objects, LimitsOutOfOrderAreRefused) {
+TEST(Objects, LimitsOutOfOrderAreRejected) {
   test::TestModule robot;
   robot.boot();
   robot.configure(0);

@@ -61,7 +61,7 @@ TEST_F(OverCurrent, UpToTheLimitIsNone) {
   EXPECT_FALSE(faulty_after(1, 300));
 }
 
-TEST_F(OverCurrent, OneReadingThatIsNotAboveTheLimitBeginsAnew) {
+TEST_F(OverCurrent, OneReadingThatIsNotAboveTheLimitRestartsTheTime) {
   draw(30'000);
   robot.run(49);
   draw(2'000);
@@ -111,7 +111,7 @@ TEST_F(OverCurrent, LimitsDoNotBelongToTheConfiguration) {
   EXPECT_EQ(robot.bus.value(node, object::current_limit), 2'000U);
 }
 
-TEST_F(OverCurrent, IsToldWithTheDocumentedFrame) {
+TEST_F(OverCurrent, IsReportedWithTheDocumentedFrame) {
   // docs/protocol.md shows it for node 3.
   const CanFrame example{0x083, 8, {0x10, 0x23, 0x03, 0, 0, 0, 0, 0}};
   draw(5'000);
@@ -133,7 +133,7 @@ TEST_F(OverCurrent, SetsTheFaultFlagOfTheStateFramesAndNothingElse) {
   EXPECT_EQ(flags(51) & StateFrame::fault, 0) << "sent before the reading of its tick";
   EXPECT_EQ(flags(52) & StateFrame::fault, StateFrame::fault);
   EXPECT_EQ(flags(81) & StateFrame::fault, StateFrame::fault);
-  EXPECT_EQ(robot.kernel().setpoint(0), sound.kernel().setpoint(0)) << "the state is computed all the same";
+  EXPECT_EQ(robot.kernel().setpoint(0), sound.kernel().setpoint(0)) << "the state is still computed";
   StateFrame frame = robot.kernel().frame(0, 0);
   frame.bytes[6] = static_cast<std::uint8_t>(frame.bytes[6] & ~unsigned{StateFrame::fault});
   EXPECT_EQ(frame, sound.kernel().frame(0, 0));
@@ -160,7 +160,7 @@ TEST_F(OverCurrent, EndsByDecision) {
   EXPECT_TRUE(robot.it().is_pulsing());
 }
 
-TEST_F(OverCurrent, ThatGoesOnAfterTheDecisionIsAFaultAgainAfterItsTime) {
+TEST_F(OverCurrent, ThatContinuesAfterTheDecisionIsAFaultAgainAfterItsTime) {
   draw(5'000);
   robot.run(60);
   ASSERT_EQ(robot.module().power(), PowerState::fault);
@@ -169,7 +169,7 @@ TEST_F(OverCurrent, ThatGoesOnAfterTheDecisionIsAFaultAgainAfterItsTime) {
   EXPECT_FALSE(faulty_after(61, 110));
   EXPECT_TRUE(faulty_after(111, 111));
   robot.bus.run_for(1'000);
-  EXPECT_EQ(robot.emergencies().size(), 3U) << "told once more";
+  EXPECT_EQ(robot.emergencies().size(), 3U) << "reported again";
 }
 
 TEST_F(OverCurrent, IsSeenInAServoThatHoldsTheSafePoseWithoutSync) {

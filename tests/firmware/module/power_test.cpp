@@ -63,11 +63,11 @@ class Power : public testing::Test {
   test::TestModule robot{test::one_slot(test::algorithm(test::sinusoidal), 1), servo_us};
 };
 
-TEST_F(Power, IsOffFromPowerOnAndSaidOnce) {
+TEST_F(Power, IsOffFromPowerOnAndSwitchedOffOnce) {
   robot.run(20);
   ASSERT_EQ(robot.it().pulses.size(), 1U);
   EXPECT_FALSE(robot.it().pulses[0].width);
-  EXPECT_EQ(robot.kernel().tick(), 21U) << "the state is computed all the same";
+  EXPECT_EQ(robot.kernel().tick(), 21U) << "the state is still computed";
 }
 
 TEST_F(Power, PulsesNeedTheTickAndOperationEnabledAndOperational) {
@@ -95,7 +95,7 @@ TEST_F(Power, PulsesStartInTheNextIntervalAfterTheServoWasEnabled) {
   EXPECT_EQ(robot.it().pulses.back().time, sync + 7'000);
 }
 
-TEST_F(Power, EveryOtherPowerStateIsOffAndSaidOnce) {
+TEST_F(Power, EveryOtherPowerStateIsOffAndSwitchesOffOnce) {
   for (const std::uint16_t word : std::to_array<std::uint16_t>({0x0000, 0x0006, 0x0007})) {
     test::TestModule other(robot.setup.kernel, servo_us);
     other.set_up_and_start();
@@ -104,14 +104,14 @@ TEST_F(Power, EveryOtherPowerStateIsOffAndSaidOnce) {
     ASSERT_TRUE(other.it().is_pulsing());
     ASSERT_EQ(other.bus.write(node, object::controlword, word), AbortCode::none);
     EXPECT_FALSE(other.it().is_pulsing());
-    const std::size_t said = other.it().pulses.size();
+    const std::size_t commands = other.it().pulses.size();
     other.run(21, 60);
-    EXPECT_EQ(other.it().pulses.size(), said);
+    EXPECT_EQ(other.it().pulses.size(), commands);
     EXPECT_EQ(other.kernel().tick(), 61U);
   }
 }
 
-TEST_F(Power, AQuickStopRampsToTheSafePoseAndTheStateGoesOn) {
+TEST_F(Power, AQuickStopRampsToTheSafePoseWhileTicksContinue) {
   move();
   controlword(0x0002);
   EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
@@ -162,25 +162,25 @@ TEST_F(Power, AQuickStopOfAServoWithoutPulsesStaysOff) {
   expect_no_pulses(2'000'000);
 }
 
-TEST_F(Power, TheHostIsMissedOnlyAfterItWasHeard) {
+TEST_F(Power, TheHostIsMissingOnlyAfterItsFirstHeartbeat) {
   robot.enable(0);
   robot.run(150);
   EXPECT_TRUE(robot.emergencies().empty());
   EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
 }
 
-TEST_F(Power, AMissedHostRampsToTheSafePose) {
+TEST_F(Power, AMissingHostRampsToTheSafePose) {
   const CanFrame heartbeat = encode(canopen::Heartbeat{canopen::host_node, canopen::NmtState::operational});
   robot.enable(0);
   robot.bus.deliver(heartbeat);
   robot.run(39);
   EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
   robot.bus.deliver(heartbeat);
-  const Microseconds heard = robot.bus.now();
+  const Microseconds received = robot.bus.now();
   robot.run(40, 88);
-  EXPECT_LT(robot.bus.now(), heard + 500'000);
+  EXPECT_LT(robot.bus.now(), received + 500'000);
   EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
-  robot.bus.run_until(heard + 500'000);
+  robot.bus.run_until(received + 500'000);
   EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
   EXPECT_TRUE(robot.module().synchronised());
   robot.bus.run_for(1'000);
@@ -218,7 +218,7 @@ TEST_F(Power, ACommandByPdoSetsControlwordAndTarget) {
   EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
 }
 
-TEST_F(Power, ACommandOfWrongLengthIsToldOnceAndIgnored) {
+TEST_F(Power, ACommandOfWrongLengthIsReportedOnceAndIgnored) {
   robot.enable(0);
   for (const std::uint8_t length : std::to_array<std::uint8_t>({2, 5, 7, 8})) {
     robot.bus.deliver({canopen::identifier::command + node, length, {}});

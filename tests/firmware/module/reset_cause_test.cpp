@@ -1,4 +1,4 @@
-// A module that did not end as it should says so, once.
+// A module whose program did not end as it should reports that, once.
 
 #include "test_robot.hpp"
 
@@ -13,11 +13,11 @@ constexpr std::uint8_t node = 3;
 
 std::vector<CanFrame> frames_after_power_on(ResetCause cause, std::uint32_t detail = 0) {
   test::TestBus bus;
-  firmware::ModuleIdentity board;
-  board.node = node;
-  board.reset_cause = cause;
-  board.reset_detail = detail;
-  bus.add(board).power_on(0);
+  firmware::ModuleIdentity identity;
+  identity.node = node;
+  identity.reset_cause = cause;
+  identity.reset_detail = detail;
+  bus.add(identity).power_on(0);
   bus.run_until(50'000);
   std::vector<CanFrame> frames;
   for (const test::TestBus::Sent& sent : bus.log) {
@@ -42,28 +42,28 @@ TEST(ResetCauses, WatchdogAndFaultAreToldAfterTheBootUpMessage) {
             (std::vector{boot_up, CanFrame{0x083, 8, {0x00, 0x61, 0, 0x34, 0x12, 0x00, 0x08, 0}}}));
 }
 
-TEST(ResetCauses, AreNotToldAgainWhenTheHostResetsTheModule) {
+TEST(ResetCauses, AreNotReportedAgainWhenTheHostResetsTheModule) {
   for (const auto command : {canopen::NmtCommand::reset_node, canopen::NmtCommand::reset_communication}) {
     test::TestBus bus;
-    firmware::ModuleIdentity board;
-    board.node = node;
-    board.reset_cause = ResetCause::watchdog;
-    bus.add(board).power_on(0);
+    firmware::ModuleIdentity identity;
+    identity.node = node;
+    identity.reset_cause = ResetCause::watchdog;
+    bus.add(identity).power_on(0);
     bus.run_until(50'000);
     EXPECT_EQ(bus.emergencies(node), (std::vector{Emergency{node, EmergencyCode::watchdog_reset, 0, 0}}));
     bus.deliver(encode(canopen::NmtRequest{command, 0}));
     bus.run_for(50'000);
-    EXPECT_EQ(bus.sent(canopen::identifier::heartbeat + node).size(), 2U) << "boot-up once more";
+    EXPECT_EQ(bus.sent(canopen::identifier::heartbeat + node).size(), 2U) << "boot-up again";
     EXPECT_EQ(bus.emergencies(node).size(), 1U);
   }
 }
 
-TEST(ResetCauses, ANewResetIsToldAgain) {
+TEST(ResetCauses, ANewResetIsReportedAgain) {
   test::TestBus bus;
-  firmware::ModuleIdentity board;
-  board.node = node;
-  board.reset_cause = ResetCause::watchdog;
-  test::ModuleNode& module = bus.add(board);
+  firmware::ModuleIdentity identity;
+  identity.node = node;
+  identity.reset_cause = ResetCause::watchdog;
+  test::ModuleNode& module = bus.add(identity);
   for (const std::size_t count : {1U, 2U}) {
     module.power_on(bus.now());
     bus.run_for(50'000);

@@ -1,4 +1,4 @@
-// State frames of the neighbours: from whom, and which are refused.
+// State frames of the neighbours: from which nodes, and which are rejected.
 
 #include "test_robot.hpp"
 
@@ -18,11 +18,11 @@ class StateFrames : public testing::Test {
     robot.set_up_and_start();
     robot.run(20);
   }
-  void hear(std::uint16_t identifier, std::uint8_t label, std::uint8_t length = 8) {
+  void receive(std::uint16_t identifier, std::uint8_t label, std::uint8_t length = 8) {
     robot.bus.deliver({identifier, length, {1, 2, 3, 4, 5, 6, StateFrame::valid, label}});
     robot.bus.run_for(500);
   }
-  [[nodiscard]] const StateFrame& heard(unsigned joint, unsigned channel = 0) {
+  [[nodiscard]] const StateFrame& frame_of(unsigned joint, unsigned channel = 0) {
     return robot.kernel().frame(joint, channel);
   }
   static bool holds(const StateFrame& frame) { return frame.bytes[0] == 1 && frame.bytes[5] == 6; }
@@ -30,47 +30,47 @@ class StateFrames : public testing::Test {
   static KernelConfiguration configuration() {
     KernelConfiguration made = test::one_slot(test::algorithm(test::sinusoidal), 5);
     made.slots[1] = {&test::algorithm(test::extended), JointMask(0b00011)};
-    made.slots[2] = {&test::algorithm(test::reflex), JointMask(0b00001)};  // depends on everybody's contacts
+    made.slots[2] = {&test::algorithm(test::reflex), JointMask(0b00001)};  // depends on the contacts of all joints
     return made;
   }
 
   test::TestModule robot{configuration()};
 };
 
-TEST_F(StateFrames, AreTakenFromTheNodeOfTheJoint) {
-  hear(neighbour_frame, 21);
-  EXPECT_TRUE(holds(heard(1)));
-  EXPECT_FALSE(holds(heard(1, 1)));
-  hear(canopen::identifier::second_state + neighbour, 21);
-  EXPECT_TRUE(holds(heard(1, 1)));
-  hear(canopen::identifier::state_frame + 12, 21);
-  EXPECT_TRUE(holds(heard(4)));
+TEST_F(StateFrames, AreReceivedFromTheNodeOfTheJoint) {
+  receive(neighbour_frame, 21);
+  EXPECT_TRUE(holds(frame_of(1)));
+  EXPECT_FALSE(holds(frame_of(1, 1)));
+  receive(canopen::identifier::second_state + neighbour, 21);
+  EXPECT_TRUE(holds(frame_of(1, 1)));
+  receive(canopen::identifier::state_frame + 12, 21);
+  EXPECT_TRUE(holds(frame_of(4)));
 }
 
-TEST_F(StateFrames, OfAStrangerAreIgnored) {
-  hear(canopen::identifier::state_frame + 100, 21);
-  hear(canopen::identifier::state_frame + 100, 21, 3);
-  hear(canopen::identifier::second_state + 9, 21);  // joint 2 has one channel
+TEST_F(StateFrames, OfAnUnknownNodeAreIgnored) {
+  receive(canopen::identifier::state_frame + 100, 21);
+  receive(canopen::identifier::state_frame + 100, 21, 3);
+  receive(canopen::identifier::second_state + 9, 21);  // joint 2 has one channel
   for (unsigned joint = 1; joint < 5; ++joint) {
-    EXPECT_FALSE(holds(heard(joint)));
+    EXPECT_FALSE(holds(frame_of(joint)));
   }
   EXPECT_TRUE(robot.emergencies().empty());
 }
 
-TEST_F(StateFrames, OfAnotherLabelAreNotUsed) {
-  hear(neighbour_frame, 20);
-  hear(neighbour_frame, 22);
-  EXPECT_FALSE(holds(heard(1)));
+TEST_F(StateFrames, OfANeighbouringTickAreNotUsed) {
+  receive(neighbour_frame, 20);
+  receive(neighbour_frame, 22);
+  EXPECT_FALSE(holds(frame_of(1)));
   EXPECT_TRUE(robot.emergencies().empty()) << "a module may be just before or just behind";
   EXPECT_EQ(robot.module().unknown_labels(), 0U);
 }
 
-TEST_F(StateFrames, WithALabelThatFitsNoTickAreCountedAndToldOnceAJoint) {
+TEST_F(StateFrames, WithALabelThatFitsNoTickAreCountedAndReportedOnceAJoint) {
   for (const unsigned label : {23U, 19U, 100U, 255U, 23U}) {
-    hear(neighbour_frame, static_cast<std::uint8_t>(label));
+    receive(neighbour_frame, static_cast<std::uint8_t>(label));
   }
-  hear(canopen::identifier::state_frame + 9, 0);
-  EXPECT_FALSE(holds(heard(1)));
+  receive(canopen::identifier::state_frame + 9, 0);
+  EXPECT_FALSE(holds(frame_of(1)));
   EXPECT_EQ(robot.module().unknown_labels(), 6U);
   const auto emergencies = robot.emergencies();
   ASSERT_EQ(emergencies.size(), 2U);
@@ -81,37 +81,37 @@ TEST_F(StateFrames, WithALabelThatFitsNoTickAreCountedAndToldOnceAJoint) {
 TEST_F(StateFrames, WithUnknownLabelsAreNoFaultWhileTheModuleKnowsNoTick) {
   robot.sync(100);
   robot.bus.run_for(500);
-  const std::size_t told = robot.emergencies().size();
-  hear(neighbour_frame, 101);
-  EXPECT_EQ(robot.emergencies().size(), told);
+  const std::size_t before = robot.emergencies().size();
+  receive(neighbour_frame, 101);
+  EXPECT_EQ(robot.emergencies().size(), before);
 }
 
-TEST_F(StateFrames, OfWrongLengthAreToldOnceAJoint) {
+TEST_F(StateFrames, OfWrongLengthAreReportedOnceAJoint) {
   for (const std::uint8_t length : std::to_array<std::uint8_t>({0, 3, 7})) {
-    hear(neighbour_frame, 21, length);
-    hear(canopen::identifier::second_state + neighbour, 21, length);
-    hear(canopen::identifier::state_frame + 3, 21, length);
+    receive(neighbour_frame, 21, length);
+    receive(canopen::identifier::second_state + neighbour, 21, length);
+    receive(canopen::identifier::state_frame + 3, 21, length);
   }
-  EXPECT_FALSE(holds(heard(1)));
+  EXPECT_FALSE(holds(frame_of(1)));
   const auto emergencies = robot.emergencies();
   ASSERT_EQ(emergencies.size(), 2U);
   EXPECT_EQ(emergencies[0], (Emergency{node, EmergencyCode::wrong_length, 0, 1}));
   EXPECT_EQ(emergencies[1], (Emergency{node, EmergencyCode::wrong_length, 0, 3}));
 }
 
-TEST_F(StateFrames, AreComplainedOfAgainAfterANewStart) {
-  hear(neighbour_frame, 21, 3);
-  hear(neighbour_frame, 99);
+TEST_F(StateFrames, AreReportedAgainAfterANewStart) {
+  receive(neighbour_frame, 21, 3);
+  receive(neighbour_frame, 99);
   robot.command(canopen::NmtCommand::enter_pre_operational);
   robot.start();
   EXPECT_EQ(robot.module().unknown_labels(), 0U);
   robot.run(20);
-  hear(neighbour_frame, 21, 3);
-  hear(neighbour_frame, 99);
+  receive(neighbour_frame, 21, 3);
+  receive(neighbour_frame, 99);
   EXPECT_EQ(robot.emergencies().size(), 4U);
 }
 
-TEST_F(StateFrames, OfTheOwnJointAreNotListenedTo) {
+TEST_F(StateFrames, OfTheOwnJointAreNotReceived) {
   robot.command(canopen::NmtCommand::enter_pre_operational);
   for (const std::uint32_t sender : {77U, std::uint32_t{node}}) {
     ASSERT_EQ(robot.bus.write(node, canopen::object::state_frame_identifier[0].address(0), 4,
@@ -121,11 +121,11 @@ TEST_F(StateFrames, OfTheOwnJointAreNotListenedTo) {
   }
   robot.start();
   robot.run(20);
-  hear(canopen::identifier::state_frame + 77, 21, 3);
+  receive(canopen::identifier::state_frame + 77, 21, 3);
   EXPECT_TRUE(robot.emergencies().empty());
 }
 
-/// What the controller was asked to let pass, with these slots.
+/// The identifiers that the module asks the controller to pass, with these slots.
 std::vector<std::uint16_t> listened_to(const KernelConfiguration& configuration) {
   test::TestModule robot(configuration);
   robot.set_up_and_start();
@@ -142,7 +142,7 @@ TEST(Listening, IsToTheNextJointsOfEachSlotOnTheirChannels) {
   EXPECT_EQ(listened_to(configuration), std::vector<std::uint16_t>{}) << "no slot drives the joint";
 }
 
-TEST(Listening, IsToEverybodyIfASlotSensesContacts) {
+TEST(Listening, IsToAllJointsIfASlotSensesContacts) {
   KernelConfiguration configuration = test::one_slot(test::algorithm(test::reflex), 5);
   configuration.slots[0].group = JointMask(0b00001);
   EXPECT_EQ(listened_to(configuration), (std::vector<std::uint16_t>{0x181, 0x189, 0x183, 0x18C}));
@@ -156,7 +156,7 @@ TEST(Listening, EndsWithTheConfiguration) {
   EXPECT_TRUE(robot.it().listened.empty());
 }
 
-TEST(Listening, LeavesFramesThatDoNotMatterUnheardAlsoWhereNothingIsFiltered) {
+TEST(Listening, IgnoresOtherFramesAlsoIfTheControllerDoesNotFilter) {
   test::TestModule robot(test::one_slot(test::algorithm(test::coupled), 5));
   robot.set_up_and_start();
   robot.run(20);
@@ -168,16 +168,16 @@ TEST(Listening, LeavesFramesThatDoNotMatterUnheardAlsoWhereNothingIsFiltered) {
 
 TEST_F(StateFrames, ThatHoldNoStateAreNotUsed) {
   robot.bus.deliver({neighbour_frame, 8, {1, 2, 3, 4, 5, 6, 0, 21}});
-  EXPECT_FALSE(holds(heard(1)));
+  EXPECT_FALSE(holds(frame_of(1)));
   EXPECT_TRUE(robot.emergencies().empty());
 }
 
-TEST_F(StateFrames, AreHeardInOperationalOnly) {
+TEST_F(StateFrames, AreReceivedInOperationalOnly) {
   robot.command(canopen::NmtCommand::enter_pre_operational);
-  hear(neighbour_frame, 21);
-  hear(neighbour_frame, 99);
-  hear(neighbour_frame, 21, 2);
-  EXPECT_FALSE(holds(heard(1)));
+  receive(neighbour_frame, 21);
+  receive(neighbour_frame, 99);
+  receive(neighbour_frame, 21, 2);
+  EXPECT_FALSE(holds(frame_of(1)));
   EXPECT_TRUE(robot.emergencies().empty());
 }
 

@@ -38,7 +38,7 @@ TEST_P(Producer, CountsTicksWithoutDriftAndAnnouncesEveryTenth) {
     EXPECT_LE(ticks[i].time, syncs[10 * i].time);
     EXPECT_LE(syncs[10 * i].time - ticks[i].time, lead + frame);
   }
-  EXPECT_EQ(robot.kernel().tick(), count) << "it counts its own SYNC as all others do";
+  EXPECT_EQ(robot.kernel().tick(), count) << "it counts its own SYNC as the other modules do";
 }
 
 TEST(Producer, ComputesATickAtTheInstantAtWhichTheOthersDo) {
@@ -50,7 +50,7 @@ TEST(Producer, ComputesATickAtTheInstantAtWhichTheOthersDo) {
   }
 }
 
-TEST(Producer, IsToldByTheBitInTheSyncIdentifier) {
+TEST(Producer, IsSetByTheBitInTheSyncIdentifier) {
   test::TestModule robot;
   robot.boot();
   robot.configure(0);
@@ -60,7 +60,7 @@ TEST(Producer, IsToldByTheBitInTheSyncIdentifier) {
   robot.produce_sync();
   EXPECT_EQ(robot.bus.value(5, canopen::object::sync_identifier), produces);
   robot.run_syncs(15);
-  robot.produce_sync();  // again: it goes on
+  robot.produce_sync();  // again: it continues
   robot.run_syncs(1);
   EXPECT_EQ(robot.kernel().tick(), 16U);
   EXPECT_EQ(robot.bus.write(5, canopen::object::sync_identifier, 0x80), AbortCode::none);
@@ -101,7 +101,7 @@ TEST(Producer, SyncZeroWaitsForItsTickOnABusyBus) {
   EXPECT_EQ(robot.kernel().tick(), 1U);
 }
 
-TEST(Producer, ATickThatIsOvertakenByItsSyncDisturbsNobody) {
+TEST(Producer, ATickThatIsOvertakenByItsSyncDisturbsNoModule) {
   test::TestRobot robot(test::one_slot(test::algorithm(test::sinusoidal), 2));
   robot.drive();
   robot.run_to(9);
@@ -111,7 +111,7 @@ TEST(Producer, ATickThatIsOvertakenByItsSyncDisturbsNobody) {
   robot.run_to(30);
   const auto ticks = robot.bus.sent(canopen::identifier::tick);
   const auto syncs = robot.bus.sent(canopen::identifier::sync);
-  ASSERT_GT(ticks[1].time, syncs[10].time) << "the test wants it overtaken";
+  ASSERT_GT(ticks[1].time, syncs[10].time) << "the test needs it overtaken";
   for (unsigned joint = 0; joint < 2; ++joint) {
     EXPECT_TRUE(robot.module(joint).synchronised());
     EXPECT_EQ(robot.kernel(joint).tick(), 31U);
@@ -130,9 +130,7 @@ TEST(Producer, TriesAgainIfTheQueueHasNoRoomForTheFirstTick) {
   EXPECT_EQ(robot.kernel().tick(), 3U);
 }
 
-TEST(Producer, SkipsWhatItCameTooLateFor) {
-  firmware::ModuleIdentity board;
-  board.node = 5;
+TEST(Producer, SkipsSyncsThatAreTooLate) {
   struct FreePort final : CanPort {
     bool send(const CanFrame& frame) override {
       frames.push_back(frame);

@@ -1,4 +1,4 @@
-// SYNC and TICK as a module hears them: the start, missed and repeated ones, and the way back into a moving robot.
+// SYNC and TICK as a module receives them: the start, missed and repeated ones, and how it joins a robot that moves.
 
 #include "test_robot.hpp"
 
@@ -277,7 +277,7 @@ TEST_F(Sync, AfterAStopTickZeroStartsFromStateZeroAgain) {
   EXPECT_EQ(robot.kernel().setpoint(0), expected_setpoint(0));
 }
 
-// It would be one label too many for its neighbours.
+// The frame would be one label too many for its neighbours.
 TEST_F(Sync, AModuleThatStartsInAMovingRobotWaitsForTheTick) {
   std::uint32_t tick = 100;
   for (const NmtCommand command : {NmtCommand::enter_pre_operational, NmtCommand::stop}) {
@@ -295,7 +295,7 @@ TEST_F(Sync, AModuleThatStartsInAMovingRobotWaitsForTheTick) {
   }
 }
 
-TEST_F(Sync, AModuleThatHeardSyncAndStartsWithTickZeroSendsTheFrameOfStateZeroThen) {
+TEST_F(Sync, AModuleThatReceivedSyncAndStartsWithTickZeroSendsTheFrameOfStateZeroThen) {
   robot.command(NmtCommand::enter_pre_operational);
   robot.run(100, 103);
   robot.command(NmtCommand::start);
@@ -307,7 +307,7 @@ TEST_F(Sync, AModuleThatHeardSyncAndStartsWithTickZeroSendsTheFrameOfStateZeroTh
   EXPECT_EQ(frames[0].frame.data[7], 0);
 }
 
-TEST_F(Sync, AModuleThatLeavesOperationalKnowsNoTick) {
+TEST_F(Sync, AModuleThatLeavesOperationalLosesTheTick) {
   robot.run(20);
   robot.command(NmtCommand::enter_pre_operational);
   EXPECT_FALSE(robot.module().synchronised());
@@ -341,12 +341,12 @@ TEST_F(Sync, HalfASecondWithoutSyncLosesTheTickAndStopsTheRobot) {
   EXPECT_EQ(robot.emergencies()[0], (Emergency{node, EmergencyCode::sync_lost, 0x11, 21}));
 }
 
-TEST_F(Sync, AnEnabledModuleThatNeverHearsSyncStops) {
+TEST_F(Sync, AnEnabledModuleThatNeverReceivesSyncStops) {
   robot.bus.run_for(600'000);
   EXPECT_EQ(robot.module().power(), canopen::PowerState::quick_stop_active);
   ASSERT_EQ(robot.emergencies().size(), 1U);
   EXPECT_EQ(robot.emergencies()[0].code, EmergencyCode::sync_lost);
-  EXPECT_EQ(robot.it().pulse_count(), 0U) << "where it is, nobody knows";
+  EXPECT_EQ(robot.it().pulse_count(), 0U) << "its angle is not known";
 }
 
 TEST(SyncSilence, IsNoFaultOfAModuleThatIsNeitherSynchronisedNorEnabled) {
@@ -356,7 +356,7 @@ TEST(SyncSilence, IsNoFaultOfAModuleThatIsNeitherSynchronisedNorEnabled) {
   EXPECT_TRUE(robot.emergencies().empty());
 }
 
-TEST(Rejoin, AModuleThatIsReplacedInAMovingRobotTakesItsPlaceAgain) {
+TEST(Rejoin, AModuleThatIsReplacedInAMovingRobotJoinsAgain) {
   test::TestRobot robot(test::one_slot(test::algorithm(test::coupled), 5));
   test::TestRobot undisturbed(test::one_slot(test::algorithm(test::coupled), 5));
   robot.drive();

@@ -66,7 +66,7 @@ TEST(TickRecords, AreTheKernelsForAnyGait) {
   constexpr std::uint32_t seed = 3;
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);
-  std::size_t most_values = 0;
+  std::size_t max_values = 0;
   for (int run = 0; run < 40; ++run) {
     test::TestRobot robot(random_gait(random));
     for (unsigned joint = 0; joint < joints; ++joint) {
@@ -82,11 +82,11 @@ TEST(TickRecords, AreTheKernelsForAnyGait) {
         const TickRecord& record = robot.module(joint).last_tick();
         ASSERT_NO_FATAL_FAILURE(expect_the_kernel(record, robot.kernel(joint), joint));
         ASSERT_EQ(record.tick + 1, robot.kernel(joint).tick());
-        most_values = std::max<std::size_t>(most_values, record.value_count);
+        max_values = std::max<std::size_t>(max_values, record.value_count);
       }
     }
   }
-  EXPECT_GT(most_values, 12U) << "more than one algorithm on a joint";
+  EXPECT_GT(max_values, 12U) << "more than one algorithm on a joint";
 }
 
 TEST(TickRecords, FollowTheKernelThroughStopsLossesAndRestarts) {
@@ -107,7 +107,7 @@ TEST(TickRecords, FollowTheKernelThroughStopsLossesAndRestarts) {
         robot.tick(next);
         break;
       case 2:
-        next += static_cast<std::uint32_t>(random() % 12);  // SYNCs that are not heard
+        next += static_cast<std::uint32_t>(random() % 12);  // SYNCs that are not received
         break;
       case 3:
         robot.command(canopen::NmtCommand::enter_pre_operational);

@@ -19,20 +19,20 @@ TEST(EventRingTest, IsEmptyAtFirst) {
 TEST(EventRingTest, TakesAsMuchAsItsSizeAndNoMore) {
   Ring ring;
   for (int i = 0; i < 8; ++i) {
-    ASSERT_NE(ring.place(), nullptr);
-    *ring.place() = i;
+    ASSERT_NE(ring.back(), nullptr);
+    *ring.back() = i;
     ring.push();
   }
-  EXPECT_EQ(ring.place(), nullptr);
+  EXPECT_EQ(ring.back(), nullptr);
   EXPECT_EQ(ring.room(), 0U);
   EXPECT_EQ(*ring.front(), 0);
   ring.pop();
-  EXPECT_NE(ring.place(), nullptr);
+  EXPECT_NE(ring.back(), nullptr);
 }
 
 TEST(EventRingTest, WhatIsNotPushedIsNotThere) {
   Ring ring;
-  *ring.place() = 5;
+  *ring.back() = 5;
   EXPECT_EQ(ring.front(), nullptr);
 }
 
@@ -43,7 +43,7 @@ TEST(EventRingTest, BehavesAsAQueueHoweverItIsFilledAndEmptied) {
   std::deque<int> expected;
   for (int i = 0; i < 100'000; ++i) {
     if (random() % 2 == 0) {
-      int* const place = ring.place();
+      int* const place = ring.back();
       ASSERT_EQ(place != nullptr, expected.size() < 8);
       if (place != nullptr) {
         *place = i;

@@ -1,4 +1,4 @@
-// The image that is flashed, as a file: what it takes, where it lies, and what must not be in it.
+// The image that is flashed, as a file: its size, its addresses, and what it must not contain.
 
 #include <gtest/gtest.h>
 
@@ -25,9 +25,9 @@ constexpr std::uint32_t slot_a_size = 384 * 1024;
 constexpr std::uint32_t ram = 0x2000'0000;
 constexpr std::uint32_t ram_size = 128 * 1024;
 
-// What an image may take.
-constexpr std::uint32_t largest_image = 64 * 1024;
-constexpr std::uint32_t largest_ram = 24 * 1024;
+// Limits of an image.
+constexpr std::uint32_t max_image_size = 64 * 1024;
+constexpr std::uint32_t max_ram_size = 24 * 1024;
 
 std::filesystem::path built(const std::string& name) {
   std::filesystem::path file = std::filesystem::path(PROLEG_STM32F405_BIN) / name;
@@ -91,12 +91,12 @@ TEST_P(ImageTest, HasNoFloatingPointHelperAndNoHeap) {
 TEST_P(ImageTest, KeepsToItsLimitsOfFlashRamAndStack) {
   auto table = sizes();
   EXPECT_GT(table["flash"], 0U);
-  EXPECT_LE(table["flash"], largest_image);
-  EXPECT_LE(table["ram"] + table["stack"], largest_ram);
+  EXPECT_LE(table["flash"], max_image_size);
+  EXPECT_LE(table["ram"] + table["stack"], max_ram_size);
   EXPECT_GT(table["stack_bound"], 0U);
   EXPECT_LE(table["stack_bound"], table["stack"]);
-  EXPECT_EQ(table["flash_limit"], largest_image);
-  EXPECT_EQ(table["ram_limit"], largest_ram);
+  EXPECT_EQ(table["flash_limit"], max_image_size);
+  EXPECT_EQ(table["ram_limit"], max_ram_size);
   EXPECT_EQ(table["flash"], flash(slot_a, slot_a_size).size());
 }
 

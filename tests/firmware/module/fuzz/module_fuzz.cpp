@@ -1,6 +1,6 @@
-// Gives two modules, one of them configured, arbitrary frames and arbitrary time. An input is a sequence of events;
-// most of them make sense, so that the modules get to move. Whatever comes, the servo has pulses only when the rules
-// allow it, within its range, and time goes on.
+// Gives two modules, one of them configured, arbitrary frames and arbitrary times. An input is a sequence of events;
+// most of them are meaningful, so that the modules move. After every event: the servo has pulses only when the rules
+// allow it and within its range, and the next deadline is later than now.
 
 #include <algorithm>
 #include <array>
@@ -132,7 +132,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
   }
   void off() override { pulsing_ = false; }
   void recover() override {
-    require(off_, "only who is off the bus asks to come back");
+    require(off_, "a module asks to come back only in bus-off");
     asked_ = true;
   }
   std::uint8_t read() override { return sensors_; }
@@ -142,7 +142,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
     const bool may = module.state() == NmtState::operational &&
                      ((module.power() == PowerState::operation_enabled && module.synchronised()) ||
                       module.power() == PowerState::quick_stop_active);
-    require(may || !pulsing_, "whatever takes the power takes the pulses");
+    require(may || !pulsing_, "without power there are no pulses");
     require(!module.synchronised() || module.state() == NmtState::operational, "the tick is known in Operational");
   }
   void receive(const CanFrame& frame) {
@@ -172,7 +172,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
   }
   void poll() {
     module.poll(now_);
-    require(module.next_deadline() > now_, "time goes on");
+    require(module.next_deadline() > now_, "the next deadline is later than now");
     check();
   }
   void run_for(Microseconds time) {
@@ -199,7 +199,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
     check();
   }
   void transmit() {
-    // What is handed over meanwhile waits for the next time: an end of SYNC may give more than it takes.
+    // Frames that are handed over meanwhile wait for the next call: the end of a SYNC may add more than one.
     for (std::size_t count = mailboxes_.size(); count > 0; --count) {
       const CanFrame frame = mailboxes_.front();
       mailboxes_.pop_front();
@@ -236,7 +236,7 @@ void World::handle(std::uint8_t event, Input& input) {
       write(canopen::object::sync_identifier.address, 4,
             canopen::identifier::sync | (input.byte() % 4U == 0 ? 0U : canopen::produces_sync));
       break;
-    case 2: {  // somebody was busy for long
+    case 2: {  // the program was not called for long
       now_ += Microseconds{input.half()} << (input.byte() % 12U);
       poll();
       break;
@@ -300,7 +300,8 @@ void World::handle(std::uint8_t event, Input& input) {
       const unsigned channel = input.byte() % 2U;
       CanFrame frame = canopen::encode_state(setup_.node(sender), channel, StateFrame{input.eight()});
       if (sender == Setup::joint) {
-        frame.identifier = static_cast<std::uint16_t>(frame.identifier + 64U);  // its own would end the fun
+        frame.identifier =
+            static_cast<std::uint16_t>(frame.identifier + 64U);  // its own identifier would be a collision
       }
       frame.data[7] = static_cast<std::uint8_t>(coming + frame.data[7] % 4U);
       receive(frame);

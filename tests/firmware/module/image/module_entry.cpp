@@ -1,5 +1,5 @@
-// A module with ports that lead nowhere, and calls of all that a board calls: what a linker keeps of it is what the
-// program of a module takes, but for the drivers.
+// A module with ports that do nothing, and calls of all functions that a board calls: the linker keeps the program of a
+// module without the drivers.
 
 #include "firmware/module/module.hpp"
 #include "shared/kernel/fingerprint.hpp"

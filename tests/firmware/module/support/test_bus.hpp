@@ -66,7 +66,7 @@ class TestBus {
     run_until(end);
     return false;
   }
-  /// Sends a frame of the host and lets it arrive, and whatever it caused at once.
+  /// Sends a frame of the host, until the modules have received it and handled it.
   void deliver(const CanFrame& frame) {
     send(frame);
     run_until_sent([&](const CanFrame& sent) { return sent == frame; });

@@ -1,6 +1,6 @@
-// Exercises the drivers that the module's program does not use much: floods the console, then appends board records for
-// ever. Cut its power whenever you like: it goes on from the record that it finds. What it has done is in
-// driver_test_result.
+// Exercises the drivers that the module's program rarely uses: floods the console, then appends board records without
+// end. Its power may fail at any time: it continues from the record that it finds. driver_test_result has what it has
+// done.
 
 #include "firmware/stm32f405/clock.hpp"
 #include "firmware/stm32f405/gpio.hpp"
@@ -21,8 +21,8 @@ struct Result {
   std::uint32_t appended = 0;      ///< records since the start, each with the next node (126 is followed by 1)
   std::uint32_t failed = 0;        ///< records that were not written, or did not read back as the newest
   std::uint32_t last_failure = 0;  ///< firmware::AppendResult
-  std::uint32_t longest_us = 0;    ///< of an append
-  std::uint32_t deadlines = 0;     ///< interrupts of TIM5, one a millisecond but for those that an append holds up
+  std::uint32_t max_append_us = 0;    
+  std::uint32_t deadlines = 0;     ///< interrupts of TIM5, one a millisecond except during an append
 };
 
 constexpr unsigned flood_lines = 100;
@@ -31,7 +31,7 @@ constexpr unsigned flood_lines = 100;
 
 extern "C" {
 
-/// For whoever runs this to read, at any time.
+/// The test reads it at any time.
 [[gnu::used]] constinit volatile Result driver_test_result;
 
 }  // extern "C"
@@ -41,7 +41,7 @@ namespace {
 void add_one(volatile std::uint32_t& count) { count = count + 1; }
 
 std::optional<firmware::BoardRecord> newest_record() {
-  return firmware::newest(hardware.settings.contents(0), hardware.settings.contents(1));
+  return firmware::newest(hardware.board_records.contents(0), hardware.board_records.contents(1));
 }
 
 /// Far more than the console's memory holds; what it takes arrives whole and in order, and nothing waits.
@@ -58,10 +58,10 @@ void append_next(unsigned node) {
   firmware::BoardRecord record;
   record.node = static_cast<std::uint8_t>(node);
   const std::uint32_t start = MicrosecondClock::stamp();
-  const firmware::AppendResult result = append(hardware.settings, record);
+  const firmware::AppendResult result = append(hardware.board_records, record);
   const std::uint32_t duration = MicrosecondClock::stamp() - start;
-  if (duration > driver_test_result.longest_us) {
-    driver_test_result.longest_us = duration;
+  if (duration > driver_test_result.max_append_us) {
+    driver_test_result.max_append_us = duration;
   }
   if (result == firmware::AppendResult::ok && newest_record() == record) {
     add_one(driver_test_result.appended);

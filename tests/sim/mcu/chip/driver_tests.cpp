@@ -58,7 +58,7 @@ DriverTests::Cut DriverTests::cut_power_after(BusTime time) {
     for (unsigned i = 0; i < before.appended; ++i) {
       confirmed_ = node_after(confirmed_);
     }
-    cut.had_erased = before.longest_us > 200'000;
+    cut.had_erased = before.max_append_us > 200'000;
   }
   rig_.power_on();
   const unsigned found = newest_node();

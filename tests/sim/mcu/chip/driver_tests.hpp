@@ -23,7 +23,7 @@ class DriverTests : public testing::Test {
 
   /// driver_test_result, as driver_tests.cpp declares it.
   struct Result {
-    std::uint32_t phase, found, appended, failed, last_failure, longest_us, deadlines;
+    std::uint32_t phase, found, appended, failed, last_failure, max_append_us, deadlines;
   };
   /// What a program did until its power failed, and what is in flash then.
   struct Cut {

@@ -121,8 +121,8 @@ std::uint16_t crc_sequence(const CanFrame& frame) {
 unsigned first_different_bit(const CanFrame& left, const CanFrame& right) {
   const std::vector<bool> one = stuffed_bits(left);
   const std::vector<bool> other = stuffed_bits(right);
-  const auto [place, unused] = std::ranges::mismatch(one, other);
-  return place == one.end() ? frame_bits(left) : static_cast<unsigned>(place - one.begin());
+  const auto [difference, unused] = std::ranges::mismatch(one, other);
+  return difference == one.end() ? frame_bits(left) : static_cast<unsigned>(difference - one.begin());
 }
 
 unsigned frame_bits(const CanFrame& frame) {

@@ -73,11 +73,11 @@ class Replay {
     configuration.tick_period_us = recording.tick_period_us();
     configuration.seed = std::strtoull(recording.run_value("seed").c_str(), nullptr, 10);
     for (const RecordedSlot& slot : recording.slots()) {
-      Slot& place = configuration.slots.at(slot.slot);
-      place.algorithm = algorithm_of(slot.algorithm);
+      Slot& kernel_slot = configuration.slots.at(slot.slot);
+      kernel_slot.algorithm = algorithm_of(slot.algorithm);
       for (unsigned joint = 0; joint < slot.joint_group.size(); ++joint) {
         if (slot.joint_group[joint]) {
-          place.group.insert(joint);
+          kernel_slot.group.insert(joint);
         }
       }
     }

@@ -10,7 +10,7 @@
 namespace proleg::sim {
 namespace {
 
-using Place = std::array<unsigned, 3>;  // slot, joint, number
+using ValueIndex = std::array<unsigned, 3>;  // slot, joint, number
 
 TEST(InternalValues, AreOrderedBySlotThenJointThenNumber) {
   KernelConfiguration configuration;
@@ -22,13 +22,13 @@ TEST(InternalValues, AreOrderedBySlotThenJointThenNumber) {
   const auto count = [&](unsigned slot) {
     return configuration.slots[slot].algorithm->declaration().internal_values.size();
   };
-  std::vector<Place> expected;
+  std::vector<ValueIndex> expected;
   for (const auto& [slot, joint] : {std::pair{1U, 0U}, {1U, 2U}, {2U, 1U}}) {
     for (unsigned number = 0; number < count(slot); ++number) {
       expected.push_back({slot, joint, number});
     }
   }
-  std::vector<Place> found;
+  std::vector<ValueIndex> found;
   for_each_internal_value(configuration, [&](unsigned slot, unsigned joint, unsigned number) {
     found.push_back({slot, joint, number});
   });

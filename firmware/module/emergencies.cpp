@@ -25,6 +25,7 @@ EmergencyCode code_of(Fault fault) {
 
 }  // namespace
 
+// Not inlined: report, raise and end have many callers and rarely run.
 [[gnu::noinline]] void Emergencies::report(EmergencyCode code, std::uint32_t detail) {
   if (network_.state() != canopen::NmtState::stopped) {
     outbox_.send(encode(canopen::Emergency{identity_.node, code, error_register(), detail}));

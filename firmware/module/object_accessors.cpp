@@ -94,7 +94,8 @@ constexpr ObjectAccessor state_frame_identifier() {
 
 // Writes that do more than to keep a value.
 
-/// Keeps what the kernel rejects.
+/// Keeps what the kernel rejects. This and others here are not inlined: each has several callers, and SDO need not be
+/// fast.
 [[gnu::noinline]] AbortCode answer(Parts& parts, Status status) {
   if (status != Status::ok) {
     parts.joint.keep_refusal(status);

@@ -30,9 +30,6 @@ AbortCode abort_code_of(Status status) {
     case Status::nothing_staged:
     case Status::commit_in_the_past:
       return AbortCode::refused_by_state;
-    case Status::bad_snapshot:
-    case Status::no_room:
-      break;
   }
   return AbortCode::general_error;
 }

@@ -1,6 +1,7 @@
 #include "firmware/module/board_record.hpp"
 
 #include "shared/fixed/crc32.hpp"
+#include "shared/fixed/little_endian.hpp"
 
 namespace proleg::firmware {
 namespace {
@@ -17,29 +18,15 @@ constexpr std::uint8_t erased = 0xFF;
 
 using Bytes = std::span<const std::uint8_t>;
 
-std::uint32_t read(Bytes bytes, std::size_t position, std::size_t size) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < size; ++i) {
-    value |= std::uint32_t{bytes[position + i]} << (8U * i);
-  }
-  return value;
-}
-
-void write(std::span<std::uint8_t> bytes, std::size_t position, std::size_t size, std::uint32_t value) {
-  for (std::size_t i = 0; i < size; ++i) {
-    bytes[position + i] = static_cast<std::uint8_t>(value >> (8U * i));
-  }
-}
-
 std::optional<BoardRecord> decode(Bytes bytes) {
-  if (read(bytes, crc_at, 4) != crc32(bytes.first(crc_at)) || bytes[version_at] != schema_version) {
+  if (read_little_endian(bytes, crc_at, 4) != crc32(bytes.first(crc_at)) || bytes[version_at] != schema_version) {
     return std::nullopt;
   }
   BoardRecord record;
   record.node = bytes[node_at];
   record.has_feedback = (bytes[flags_at] & flag_feedback) != 0;
-  record.feedback_at_minus_90 = static_cast<std::uint16_t>(read(bytes, minus_90_at, 2));
-  record.feedback_at_plus_90 = static_cast<std::uint16_t>(read(bytes, plus_90_at, 2));
+  record.feedback_at_minus_90 = static_cast<std::uint16_t>(read_little_endian(bytes, minus_90_at, 2));
+  record.feedback_at_plus_90 = static_cast<std::uint16_t>(read_little_endian(bytes, plus_90_at, 2));
   return record.valid() ? std::optional(record) : std::nullopt;
 }
 
@@ -63,7 +50,7 @@ NewestRecord find_newest(const std::array<Bytes, 2>& sectors) {
   for (unsigned sector = 0; sector < sectors.size(); ++sector) {
     for (Bytes rest = sectors[sector]; rest.size() >= BoardRecord::size; rest = rest.subspan(BoardRecord::size)) {
       const Bytes bytes = rest.first(BoardRecord::size);
-      const std::uint32_t sequence = read(bytes, 0, 4);
+      const std::uint32_t sequence = read_little_endian(bytes, 0, 4);
       if (sequence <= found.sequence || is_erased(bytes)) {
         continue;
       }
@@ -102,13 +89,13 @@ bool BoardRecord::valid() const {
 
 std::array<std::uint8_t, BoardRecord::size> encode(const BoardRecord& record, std::uint32_t sequence) {
   std::array<std::uint8_t, BoardRecord::size> bytes{};
-  write(bytes, 0, 4, sequence);
+  write_little_endian(bytes, 0, 4, sequence);
   bytes[version_at] = schema_version;
   bytes[node_at] = record.node;
   bytes[flags_at] = record.has_feedback ? flag_feedback : std::uint8_t{0};
-  write(bytes, minus_90_at, 2, record.feedback_at_minus_90);
-  write(bytes, plus_90_at, 2, record.feedback_at_plus_90);
-  write(bytes, crc_at, 4, crc32(Bytes(bytes).first(crc_at)));
+  write_little_endian(bytes, minus_90_at, 2, record.feedback_at_minus_90);
+  write_little_endian(bytes, plus_90_at, 2, record.feedback_at_plus_90);
+  write_little_endian(bytes, crc_at, 4, crc32(Bytes(bytes).first(crc_at)));
   return bytes;
 }
 

@@ -3,7 +3,7 @@
 #include <type_traits>
 
 #include "firmware/module/abort_code.hpp"
-#include "shared/can/little_endian.hpp"
+#include "shared/fixed/little_endian.hpp"
 #include "shared/gait/registry.hpp"
 
 namespace proleg::firmware {
@@ -63,7 +63,7 @@ constexpr std::uint64_t with_upper_half(std::uint64_t value, std::uint32_t half)
   if (!joint.active()) {
     return 0;
   }
-  return read_little_endian({0, CanFrame::max_length, joint.kernel().frame(sender, channel).bytes}, 4 * half, 4);
+  return read_little_endian(joint.kernel().frame(sender, channel).bytes, 4 * half, 4);
 }
 template <unsigned channel, unsigned half>
 constexpr ObjectAccessor own_frame() {

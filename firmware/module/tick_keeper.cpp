@@ -1,13 +1,8 @@
 #include "firmware/module/tick_keeper.hpp"
 
+#include "shared/canopen/messages.hpp"
+
 namespace proleg::firmware {
-namespace {
-
-constexpr unsigned counters = 128;
-
-std::uint8_t counter_of(std::uint32_t tick) { return static_cast<std::uint8_t>(tick % counters + 1U); }
-
-}  // namespace
 
 bool TickKeeper::announce(std::uint32_t tick, std::uint32_t coming) {
   if (keeps_tick() && coming - tick - 1U < max_late) {
@@ -26,8 +21,8 @@ SyncMeaning TickKeeper::sync(std::uint8_t counter, std::uint32_t coming) {
   using Action = SyncMeaning::Action;
   SyncMeaning meaning;
   if (keeps_tick()) {
-    const unsigned ahead = (unsigned{counter} - counter_of(coming)) % counters;
-    if (ahead == counters - 1) {  // a repetition of the one before
+    const std::uint32_t ahead = canopen::ticks_until_counter(coming, counter);
+    if (ahead == canopen::sync_counters - 1) {  // a repetition of the one before
       return meaning;
     }
     if (ahead <= max_missed && (!announced_ || announced_tick_ - coming <= ahead)) {
@@ -41,7 +36,7 @@ SyncMeaning TickKeeper::sync(std::uint8_t counter, std::uint32_t coming) {
     state_ = State::lost;
     meaning.lost = true;
   }
-  if (announced_ && counter == counter_of(announced_tick_)) {
+  if (announced_ && counter == canopen::sync_counter(announced_tick_)) {
     meaning.action = announced_tick_ == 0 ? Action::compute : Action::join;
     meaning.tick = announced_tick_;
     state_ = announced_tick_ == 0 ? State::computing : State::joining;

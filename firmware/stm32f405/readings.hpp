@@ -6,23 +6,17 @@
 #include <cstdint>
 
 #include "firmware/stm32f405/pins.hpp"
+#include "shared/fixed/arithmetic.hpp"
 
 namespace proleg::stm32f405 {
 
 inline constexpr std::int32_t max_reading = 4095;
 
-/// Quotient to nearest, halves away from zero; of a divisor above 0.
-template <typename Integer>
-[[nodiscard]] constexpr Integer divide_to_nearest(Integer dividend, Integer divisor) {
-  const Integer half = divisor / 2;
-  return (dividend < 0 ? dividend - half : dividend + half) / divisor;
-}
-
 /// Servo current in mA.
 [[nodiscard]] constexpr std::uint16_t current_of(std::uint32_t reading) {
   constexpr std::uint32_t milliampere_per_volt = 1000;
   constexpr auto full_scale = static_cast<std::int32_t>(board::vdda_millivolt * milliampere_per_volt / 1000);
-  return static_cast<std::uint16_t>(divide_to_nearest(static_cast<std::int32_t>(reading) * full_scale, max_reading));
+  return static_cast<std::uint16_t>(divide_nearest(static_cast<std::int32_t>(reading) * full_scale, max_reading));
 }
 
 /// Readings of the temperature sensor at 30 and 110 degrees Celsius and VDDA = 3.3 V, measured by the maker of each
@@ -42,7 +36,7 @@ struct TemperatureCalibration {
     return min_temperature;
   }
   const std::int32_t temperature =
-      30 + divide_to_nearest((static_cast<std::int32_t>(reading) - calibration.at_30) * (110 - 30), span);
+      30 + divide_nearest((static_cast<std::int32_t>(reading) - calibration.at_30) * (110 - 30), span);
   return static_cast<std::int8_t>(std::clamp(temperature, min_temperature, max_temperature));
 }
 
@@ -59,7 +53,7 @@ struct TemperatureCalibration {
     span = -span;
     way = -way;
   }
-  const std::int64_t angle = divide_to_nearest(way * 2 * right_angle, span) - right_angle;
+  const std::int64_t angle = divide_nearest(way * 2 * right_angle, span) - right_angle;
   return static_cast<std::int32_t>(std::clamp(angle, min_angle, max_angle));
 }
 

@@ -7,14 +7,14 @@
 
 namespace proleg {
 
-/// Frames that wait for a mailbox of the controller: lower identifiers first, equal ones in the order they came.
+/// Frames that wait for a mailbox of the controller: lower identifiers first, equal ones in the order of their push().
 class TransmitQueue {
  public:
   static constexpr std::size_t capacity = 16;
 
   explicit TransmitQueue(CanPort& port) : port_(port) {}
 
-  /// Sends the frame now or keeps it. False, and nothing happens, if there is no room.
+  /// Sends the frame now or queues it. False, without an effect, if the queue is full.
   [[nodiscard]] bool push(const CanFrame& frame);
   /// To be called when the controller has sent a frame.
   void sent();

@@ -6,12 +6,11 @@
 
 namespace proleg::canopen {
 
-/// A bus is not driven above this share of its time in the worst case, in thousandths: EMCY, SDO and the host need
-/// room.
+/// A host refuses a robot whose frames take more than this share of the bus in the worst case, in thousandths. The rest
+/// is for EMCY, SDO and the host.
 inline constexpr std::uint32_t max_bus_load_permille = 850;
 
-/// SYNCs between two monitoring frames of a module: 10, or 100 where that would take more of the bus than a host drives
-/// it.
+/// SYNCs between two monitoring frames of a module: 10, or 100 if 10 would exceed max_bus_load_permille.
 inline constexpr std::uint32_t monitoring_periods[] = {10, 100};
 
 /// Share of a 1 Mbit/s bus, in thousandths and rounded up, that a robot's SYNC, state frames and monitoring take if
@@ -31,8 +30,8 @@ inline constexpr std::uint32_t monitoring_periods[] = {10, 100};
 }
 
 [[nodiscard]] inline std::uint32_t monitoring_period(const KernelConfiguration& kernel) {
-  const auto [often, seldom] = monitoring_periods;
-  return worst_bus_load_permille(kernel, often) <= max_bus_load_permille ? often : seldom;
+  const auto [usual, long_period] = monitoring_periods;
+  return worst_bus_load_permille(kernel, usual) <= max_bus_load_permille ? usual : long_period;
 }
 
 [[nodiscard]] inline std::uint32_t worst_bus_load_permille(const KernelConfiguration& kernel) {

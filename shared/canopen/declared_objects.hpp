@@ -1,7 +1,7 @@
 #pragma once
 
-// The entries of the object dictionary that have fixed addresses. What follows from the algorithms' declarations:
-// objects.hpp.
+// The entries of the object dictionary with fixed addresses. objects.hpp has those that follow from the declarations of
+// the algorithms.
 
 #include <array>
 
@@ -13,7 +13,7 @@ namespace proleg::canopen {
 
 /// Version of docs/protocol.md, major and minor in a byte each.
 inline constexpr std::uint16_t protocol_version = 0x0100;
-/// Not assigned by CiA: a placeholder ("PROL") until somebody who builds modules puts in the vendor id of his own.
+/// A placeholder ("PROL") that CiA has not assigned. A maker of modules replaces it with its own vendor id.
 inline constexpr std::uint32_t placeholder_vendor = 0x50524F4C;
 /// A COB-ID with this bit belongs to no message: the PDO is off (CiA 301, 7.5.2.35).
 inline constexpr std::uint32_t pdo_off = 0x80000000;
@@ -32,7 +32,7 @@ inline constexpr std::uint32_t measures_angle = 1U << 0U;  ///< a feedback poten
 /// 0x6064 if the module does not measure the angle.
 inline constexpr std::int32_t position_not_measured = -0x7FFFFFFF - 1;
 
-/// What a mapping parameter says of an entry: index, sub-index and length in bits (CiA 301, 7.5.2.36).
+/// The mapping parameter of an entry: index, sub-index and length in bits (CiA 301, 7.5.2.36).
 [[nodiscard]] constexpr std::uint32_t mapping_of(const Object& object) {
   return std::uint32_t{object.address.index} << 16U | std::uint32_t{object.address.sub} << 8U |
          8U * size_of(object.type);
@@ -59,7 +59,7 @@ inline constexpr Object emergency_identifier =
 inline constexpr ObjectGroup consumer_heartbeat{0x1016, ObjectCode::array, "Consumer heartbeat time"};
 inline constexpr Object host_heartbeat =
     read_write(consumer_heartbeat.at(1), "Consumer heartbeat time of the host", DataType::unsigned32, 0,
-               {0, 0x007FFFFF}, "65536 * node + longest silence in ms; 0: none is expected");
+               {0, 0x007FFFFF}, "65536 * node + timeout in ms; 0: no heartbeat is expected");
 
 inline constexpr Object heartbeat_period = read_write({0x1017, 0}, "Producer heartbeat time", DataType::unsigned16, 0,
                                                       full_range(DataType::unsigned16), "in ms; 0: off");
@@ -73,8 +73,9 @@ inline constexpr Object revision = constant(identity.at(3), "Revision number", D
 inline constexpr Object serial =
     read_only(identity.at(4), "Serial number", DataType::unsigned32, "CRC-32 of the unique id, 0x2003");
 
-inline constexpr Object sync_counter_overflow = read_write(
-    {0x1019, 0}, "Synchronous counter overflow value", DataType::unsigned8, 128, {128, 128}, "SYNC counts 1 to 128");
+inline constexpr Object sync_counter_overflow =
+    read_write({0x1019, 0}, "Synchronous counter overflow value", DataType::unsigned8, sync_counters,
+               {sync_counters, sync_counters}, "SYNC counts 1 to 128");
 
 inline constexpr ObjectGroup sdo_server{0x1200, ObjectCode::record, "SDO server parameter"};
 inline constexpr Object sdo_request_identifier =
@@ -89,8 +90,8 @@ inline constexpr Object version =
     constant(device.at(1), "Protocol version", DataType::unsigned16, protocol_version, "major and minor, a byte each");
 inline constexpr Object frame_layout =
     constant(device.at(2), "State frame layout", DataType::unsigned8, 1, "docs/protocol.md, State frame");
-inline constexpr Object core_fingerprint =
-    read_only(device.at(3), "Core fingerprint", DataType::unsigned32, "equal ones compute equal bits");
+inline constexpr Object core_fingerprint = read_only(device.at(3), "Core fingerprint", DataType::unsigned32,
+                                                     "modules with equal fingerprints compute equal bits");
 inline constexpr Object board_id =
     read_only(device.at(4), "Board id", DataType::unsigned16, "1: reference board STM32F405");
 inline constexpr Object capabilities =
@@ -111,7 +112,7 @@ inline constexpr Object configuration_crc = read_only(place.at(6), "Configuratio
                                                       "CRC-32 of what all modules agree on, as in TICK");
 inline constexpr Object current_tick = read_only(place.at(7), "Current tick", DataType::unsigned32);
 inline constexpr Object refusal = read_only(place.at(8), "Refusal", DataType::unsigned8,
-                                            "why the kernel refused the last request that it refused; 0: none");
+                                            "reason of the last request that the kernel refused; 0: none");
 
 inline constexpr ObjectGroup unique_ids{0x2003, ObjectCode::array, "Unique id"};
 inline constexpr ObjectArray unique_id{
@@ -120,7 +121,7 @@ inline constexpr ObjectArray unique_id{
 inline constexpr ObjectGroup staging{0x2004, ObjectCode::record, "Staging"};
 inline constexpr Object transaction =
     read_write(staging.at(1), "Transaction", DataType::unsigned16, 0, full_range(DataType::unsigned16),
-               "a write opens the transaction; what is staged under another number and not committed is dropped");
+               "a write opens the transaction and drops another one that is open");
 inline constexpr Object staged_count =
     read_only(staging.at(2), "Staged values", DataType::unsigned8, "number of values staged in the transaction");
 
@@ -136,7 +137,7 @@ inline constexpr Object lower_limit = read_write(kernel.at(4), "Lower limit", Da
 inline constexpr Object upper_limit = read_write(kernel.at(5), "Upper limit", DataType::integer32, full_angle.maximum,
                                                  full_angle, "of the joint angle; 90 degrees = 2^30");
 inline constexpr Object activate = read_write(kernel.at(6), "Activate", DataType::unsigned8, 0, {0, 1},
-                                              "1: takes place, slots, seed and periods; 0: not configured");
+                                              "1: applies joint index, slots, seed and periods; 0: not configured");
 
 inline constexpr ObjectGroup slot_algorithms{0x2006, ObjectCode::array, "Slot algorithms"};
 inline constexpr ObjectArray slot_algorithm{read_write(slot_algorithms.at(1), "Algorithm of slot", DataType::unsigned8,
@@ -185,7 +186,7 @@ inline constexpr std::array received_frames{
 };
 [[nodiscard]] constexpr JointObjects half_frame(unsigned channel, std::uint8_t sub, std::string_view name) {
   Object first = read_only(received_frames[channel].at(sub), name, DataType::unsigned32,
-                           "as heard last; of joints on which this one depends");
+                           "last one received; only of joints on which this one depends");
   first.access = Access::by_pdo;
   return {first};
 }
@@ -194,7 +195,7 @@ inline constexpr std::array<std::array<JointObjects, 2>, max_channels> received_
     {half_frame(1, 1, "Bytes 0-3"), half_frame(1, 2, "Bytes 4-7")},
 }};
 
-// Process data objects. Contents are fixed; what is set is from whom a module listens.
+// Process data objects. Their contents are fixed; their senders are set.
 
 /// Transmission types (CiA 301, 7.5.2.35 and 7.5.2.37).
 inline constexpr std::uint32_t at_every_sync = 1;
@@ -210,14 +211,15 @@ inline constexpr std::array frame_receptions{
     ObjectGroup{0x1410, ObjectCode::record, "RPDO communication parameter, state frame of joint", max_joints},
     ObjectGroup{0x1450, ObjectCode::record, "RPDO communication parameter, second state frame of joint", max_joints},
 };
-[[nodiscard]] constexpr JointObjects frame_identifier(unsigned channel, std::uint32_t base) {
+[[nodiscard]] constexpr JointObjects frame_identifier(unsigned channel) {
+  const std::uint32_t base = identifier::state_frames[channel];
   return {read_write(frame_receptions[channel].at(1), "COB-ID used by RPDO", DataType::unsigned32, pdo_off,
                      {base + min_node_id, base + max_node_id}, "0x80000000: off", pdo_off)};
 }
-/// From whom the state frames of a joint come; off for the module's own joint.
+/// Identifiers of the state frames that a module receives; off for its own joint.
 inline constexpr std::array<JointObjects, max_channels> state_frame_identifier{
-    frame_identifier(0, identifier::state_frame),
-    frame_identifier(1, identifier::second_state),
+    frame_identifier(0),
+    frame_identifier(1),
 };
 inline constexpr std::array<JointObjects, max_channels> state_frame_transmission{
     JointObjects{constant(frame_receptions[0].at(2), "Transmission type", DataType::unsigned8, at_every_sync,
@@ -239,7 +241,7 @@ inline constexpr Object mode_display = read_only({0x6061, 0}, "Modes of operatio
 inline constexpr Object actual_position = read_only({0x6064, 0}, "Position actual value", DataType::integer32,
                                                     "90 degrees = 2^30; -2147483648: not measured");
 inline constexpr Object rated_current = constant({0x6075, 0}, "Motor rated current", DataType::unsigned32, 1'000,
-                                                 "1,000 mA, the unit of 0x6078; not what the servo bears");
+                                                 "1,000 mA, the unit of 0x6078; not the rated current of the servo");
 inline constexpr Object actual_current =
     read_only({0x6078, 0}, "Current actual value", DataType::integer16, "thousandths of 0x6075, which are mA");
 inline constexpr Object target_position =
@@ -273,8 +275,9 @@ inline constexpr std::array frame_transmissions{
     ObjectGroup{0x1801, ObjectCode::record, "TPDO communication parameter, second state frame"},
 };
 inline constexpr std::array own_frame_identifier{
-    node_identifier(frame_transmissions[0].at(1), "COB-ID used by TPDO", no_remote_frames | identifier::state_frame),
-    node_identifier(frame_transmissions[1].at(1), "COB-ID used by TPDO", no_remote_frames | identifier::second_state,
+    node_identifier(frame_transmissions[0].at(1), "COB-ID used by TPDO",
+                    no_remote_frames | identifier::state_frames[0]),
+    node_identifier(frame_transmissions[1].at(1), "COB-ID used by TPDO", no_remote_frames | identifier::state_frames[1],
                     "sent if two slots of the joint broadcast"),
 };
 inline constexpr std::array own_frame_transmission{
@@ -287,7 +290,7 @@ inline constexpr Object monitoring_identifier =
     node_identifier(monitoring_transmission.at(1), "COB-ID used by TPDO", no_remote_frames | identifier::monitoring);
 inline constexpr Object monitoring_transmission_type =
     read_only(monitoring_transmission.at(2), "Transmission type", DataType::unsigned8,
-              "at every so many SYNCs: 10, or 100 in a robot that leaves no room for more");
+              "number of SYNCs between two: 10, or 100 if the robot fills the bus");
 inline constexpr std::array frame_transmission_mappings{
     ObjectGroup{0x1A00, ObjectCode::record, "TPDO mapping parameter, state frame"},
     ObjectGroup{0x1A01, ObjectCode::record, "TPDO mapping parameter, second state frame"},

@@ -1,6 +1,9 @@
 #include "shared/canopen/messages.hpp"
 
-#include "shared/can/little_endian.hpp"
+#include <algorithm>
+
+#include "shared/fixed/arithmetic.hpp"
+#include "shared/fixed/little_endian.hpp"
 
 namespace proleg::canopen {
 namespace {
@@ -10,9 +13,9 @@ constexpr CanFrame make(unsigned identifier, std::uint8_t length) {
 }
 
 /// The node of a frame on base + node with that length; nothing if it is no such frame.
-std::optional<std::uint8_t> sender(const CanFrame& frame, std::uint16_t base, unsigned length, unsigned highest) {
+std::optional<std::uint8_t> sender(const CanFrame& frame, std::uint16_t base, unsigned length, unsigned max_node) {
   const unsigned node = static_cast<unsigned>(frame.identifier) - base;
-  if (frame.identifier < base || node < min_node_id || node > highest || frame.length != length) {
+  if (frame.identifier < base || node < min_node_id || node > max_node || frame.length != length) {
     return std::nullopt;
   }
   return static_cast<std::uint8_t>(node);
@@ -67,13 +70,11 @@ std::optional<Heartbeat> decode_heartbeat(const CanFrame& frame) {
   return node && known(state) ? std::optional(Heartbeat{*node, state}) : std::nullopt;
 }
 
-CanFrame encode_sync(std::uint32_t tick) {
-  return {identifier::sync, 1, {static_cast<std::uint8_t>(tick % 128U + 1U)}};
-}
+CanFrame encode_sync(std::uint32_t tick) { return {identifier::sync, 1, {sync_counter(tick)}}; }
 
 std::optional<std::uint8_t> decode_sync(const CanFrame& frame) {
   const std::uint8_t counter = frame.data[0];
-  if (frame.identifier != identifier::sync || frame.length != 1 || counter < 1 || counter > 128) {
+  if (frame.identifier != identifier::sync || frame.length != 1 || counter < 1 || counter > sync_counters) {
     return std::nullopt;
   }
   return counter;
@@ -81,8 +82,8 @@ std::optional<std::uint8_t> decode_sync(const CanFrame& frame) {
 
 CanFrame encode(const TickMessage& message) {
   CanFrame frame = make(identifier::tick, 8);
-  write_little_endian(frame, 0, 4, message.tick);
-  write_little_endian(frame, 4, 4, message.configuration_crc);
+  write_little_endian(frame.data, 0, 4, message.tick);
+  write_little_endian(frame.data, 4, 4, message.configuration_crc);
   return frame;
 }
 
@@ -90,14 +91,14 @@ std::optional<TickMessage> decode_tick(const CanFrame& frame) {
   if (frame.identifier != identifier::tick || frame.length != 8) {
     return std::nullopt;
   }
-  return TickMessage{read_little_endian(frame, 0, 4), read_little_endian(frame, 4, 4)};
+  return TickMessage{read_little_endian(frame.data, 0, 4), read_little_endian(frame.data, 4, 4)};
 }
 
 CanFrame encode(const CommitMessage& message) {
   CanFrame frame = make(identifier::commit, 8);
-  write_little_endian(frame, 0, 2, message.transaction);
-  write_little_endian(frame, 2, 4, message.tick);
-  write_little_endian(frame, 6, 2, message.robot);
+  write_little_endian(frame.data, 0, 2, message.transaction);
+  write_little_endian(frame.data, 2, 4, message.tick);
+  write_little_endian(frame.data, 6, 2, message.robot);
   return frame;
 }
 
@@ -105,15 +106,16 @@ std::optional<CommitMessage> decode_commit(const CanFrame& frame) {
   if (frame.identifier != identifier::commit || frame.length != 8) {
     return std::nullopt;
   }
-  return CommitMessage{static_cast<std::uint16_t>(read_little_endian(frame, 0, 2)), read_little_endian(frame, 2, 4),
-                       static_cast<std::uint16_t>(read_little_endian(frame, 6, 2))};
+  return CommitMessage{static_cast<std::uint16_t>(read_little_endian(frame.data, 0, 2)),
+                       read_little_endian(frame.data, 2, 4),
+                       static_cast<std::uint16_t>(read_little_endian(frame.data, 6, 2))};
 }
 
 CanFrame encode(const Emergency& emergency) {
   CanFrame frame = make(unsigned{identifier::emergency} + emergency.node, 8);
-  write_little_endian(frame, 0, 2, static_cast<std::uint16_t>(emergency.code));
+  write_little_endian(frame.data, 0, 2, static_cast<std::uint16_t>(emergency.code));
   frame.data[2] = emergency.error_register;
-  write_little_endian(frame, 3, 4, emergency.detail);
+  write_little_endian(frame.data, 3, 4, emergency.detail);
   return frame;
 }
 
@@ -122,8 +124,8 @@ std::optional<Emergency> decode_emergency(const CanFrame& frame) {
   if (!node || frame.data[7] != 0) {
     return std::nullopt;
   }
-  return Emergency{*node, static_cast<EmergencyCode>(read_little_endian(frame, 0, 2)), frame.data[2],
-                   read_little_endian(frame, 3, 4)};
+  return Emergency{*node, static_cast<EmergencyCode>(read_little_endian(frame.data, 0, 2)), frame.data[2],
+                   read_little_endian(frame.data, 3, 4)};
 }
 
 std::string_view describe(EmergencyCode code) {
@@ -165,7 +167,7 @@ std::string_view describe(EmergencyCode code) {
 }
 
 CanFrame encode_state(std::uint8_t node, unsigned channel, const StateFrame& state) {
-  const std::uint16_t base = channel == 0 ? identifier::state_frame : identifier::second_state;
+  const std::uint16_t base = identifier::state_frames[channel];
   return {static_cast<std::uint16_t>(base + node), 8, state.bytes};
 }
 
@@ -175,8 +177,8 @@ std::optional<StateFrame> decode_state(const CanFrame& frame) {
 
 CanFrame encode(const Command& command) {
   CanFrame frame = make(unsigned{identifier::command} + command.node, 6);
-  write_little_endian(frame, 0, 2, command.controlword);
-  write_little_endian(frame, 2, 4, static_cast<std::uint32_t>(command.target));
+  write_little_endian(frame.data, 0, 2, command.controlword);
+  write_little_endian(frame.data, 2, 4, static_cast<std::uint32_t>(command.target));
   return frame;
 }
 
@@ -185,25 +187,21 @@ std::optional<Command> decode_command(const CanFrame& frame) {
   if (!node) {
     return std::nullopt;
   }
-  return Command{*node, static_cast<std::uint16_t>(read_little_endian(frame, 0, 2)),
-                 static_cast<std::int32_t>(read_little_endian(frame, 2, 4))};
+  return Command{*node, static_cast<std::uint16_t>(read_little_endian(frame.data, 0, 2)),
+                 static_cast<std::int32_t>(read_little_endian(frame.data, 2, 4))};
 }
 
 std::int16_t monitored_angle(std::optional<std::int32_t> angle) {
   if (!angle) {
     return Monitoring::not_measured;
   }
-  const std::int64_t rounded = (std::int64_t{*angle} + (1 << 15)) >> 16U;
-  if (rounded > 0x7FFF) {
-    return 0x7FFF;
-  }
-  return static_cast<std::int16_t>(rounded > Monitoring::not_measured ? rounded : -0x7FFF);
+  return static_cast<std::int16_t>(std::clamp<std::int64_t>(shift_right_rounding(*angle, 16), -0x7FFF, 0x7FFF));
 }
 
 CanFrame encode(const Monitoring& monitoring) {
   CanFrame frame = make(unsigned{identifier::monitoring} + monitoring.node, 6);
-  write_little_endian(frame, 0, 2, static_cast<std::uint16_t>(monitoring.angle));
-  write_little_endian(frame, 2, 2, monitoring.current_ma);
+  write_little_endian(frame.data, 0, 2, static_cast<std::uint16_t>(monitoring.angle));
+  write_little_endian(frame.data, 2, 2, monitoring.current_ma);
   frame.data[4] = static_cast<std::uint8_t>(monitoring.temperature_c);
   frame.data[5] = monitoring.faults;
   return frame;
@@ -214,8 +212,8 @@ std::optional<Monitoring> decode_monitoring(const CanFrame& frame) {
   if (!node) {
     return std::nullopt;
   }
-  return Monitoring{*node, static_cast<std::int16_t>(read_little_endian(frame, 0, 2)),
-                    static_cast<std::uint16_t>(read_little_endian(frame, 2, 2)),
+  return Monitoring{*node, static_cast<std::int16_t>(read_little_endian(frame.data, 0, 2)),
+                    static_cast<std::uint16_t>(read_little_endian(frame.data, 2, 2)),
                     static_cast<std::int8_t>(frame.data[4]), frame.data[5]};
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 
-// Every message of the protocol but SDO: identifiers, and the frames to and from their meaning
-// (docs/protocol.md). A decoder returns nothing if the frame has another identifier, or a length or content that the
-// protocol does not allow.
+// All messages of the protocol except SDO: identifiers, and frames to and from their meaning (docs/protocol.md). A
+// decoder returns nothing for a frame of another message, or with a length or content that the protocol does not allow.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -31,6 +31,17 @@ inline constexpr std::uint16_t sdo_request = 0x600;   ///< + node
 inline constexpr std::uint16_t commit = 0x680;
 inline constexpr std::uint16_t tick = 0x681;
 inline constexpr std::uint16_t heartbeat = 0x700;  ///< + node
+
+/// + node; by channel.
+inline constexpr std::array<std::uint16_t, 2> state_frames{state_frame, second_state};
+
+/// The bits of an identifier that hold the node.
+inline constexpr std::uint16_t node_bits = 0x7F;
+/// The node of an identifier of the form base + node; 0 for other messages with that base.
+[[nodiscard]] constexpr std::uint8_t node_of(std::uint16_t identifier) { return identifier & node_bits; }
+[[nodiscard]] constexpr std::uint16_t base_of(std::uint16_t identifier) {
+  return static_cast<std::uint16_t>(identifier & ~unsigned{node_bits});
+}
 }  // namespace identifier
 
 /// CiA 301, table 5. node 0: all.
@@ -61,7 +72,16 @@ struct Heartbeat {
 [[nodiscard]] CanFrame encode(const Heartbeat& heartbeat);
 [[nodiscard]] std::optional<Heartbeat> decode_heartbeat(const CanFrame& frame);
 
-/// SYNC of a tick: the counter is tick mod 128 + 1.
+/// SYNC counts 1 to 128.
+inline constexpr std::uint8_t sync_counters = 128;
+/// The counter in the SYNC of a tick.
+[[nodiscard]] constexpr std::uint8_t sync_counter(std::uint32_t tick) {
+  return static_cast<std::uint8_t>(tick % sync_counters + 1U);
+}
+/// Number of ticks from a tick to the next one whose SYNC has the counter: 0 to 127.
+[[nodiscard]] constexpr std::uint32_t ticks_until_counter(std::uint32_t tick, std::uint8_t counter) {
+  return (std::uint32_t{counter} - sync_counter(tick)) % sync_counters;
+}
 [[nodiscard]] CanFrame encode_sync(std::uint32_t tick);
 /// The counter, 1 to 128.
 [[nodiscard]] std::optional<std::uint8_t> decode_sync(const CanFrame& frame);
@@ -86,14 +106,14 @@ struct CommitMessage {
 [[nodiscard]] CanFrame encode(const CommitMessage& message);
 [[nodiscard]] std::optional<CommitMessage> decode_commit(const CanFrame& frame);
 
-/// Emergency error codes (CiA 301, table 26, and 0xFFxx of ours).
+/// Emergency error codes (CiA 301, table 26); 0xFFxx are the protocol's own.
 enum class EmergencyCode : std::uint16_t {
   none = 0x0000,  ///< the error is over
   over_current = 0x2310,
   over_temperature = 0x4210,
   watchdog_reset = 0x6010,  ///< the watchdog has reset the module; detail: where the program was, 0: not known
   software_fault = 0x6100,  ///< the module was reset after a fault of its program; detail: as above
-  not_configured = 0x6300,  ///< started before it was configured; detail: the kernel's refusal, 0 if it was never asked
+  not_configured = 0x6300,  ///< started before it was configured; detail: the kernel's last refusal (0x2001:8), or 0
   heartbeat_lost = 0x8130,
   bus_off_recovered = 0x8140,     ///< the module was bus-off; detail: for how long, in ms
   identifier_collision = 0x8150,  ///< another module sends with this node's id
@@ -102,10 +122,10 @@ enum class EmergencyCode : std::uint16_t {
   commit_too_late = 0xFF01,
   commit_not_staged = 0xFF02,
   foreign_configuration = 0xFF03,  ///< the CRC in TICK is not the module's own
-  rejoined = 0xFF04,               ///< not a fault: back in the robot, state taken from the neighbours
+  rejoined = 0xFF04,               ///< not a fault: the module has joined the moving robot again
   unknown_label = 0xFF05,          ///< state frames of a joint carry labels that fit no tick
 };
-/// A code that is not listed is handed on as it is.
+/// A decoder passes on codes that are not listed.
 struct Emergency {
   std::uint8_t node;
   EmergencyCode code;
@@ -121,7 +141,7 @@ struct Emergency {
 
 /// channel: 0 or 1.
 [[nodiscard]] CanFrame encode_state(std::uint8_t node, unsigned channel, const StateFrame& state);
-/// The 8 bytes; nothing if the frame is shorter. The identifier is not looked at.
+/// The 8 bytes; nothing if the frame is shorter. The identifier can be any.
 [[nodiscard]] std::optional<StateFrame> decode_state(const CanFrame& frame);
 
 /// To a module, at any time (RPDO1).
@@ -141,7 +161,7 @@ struct Monitoring {
 
   std::uint8_t node;
   std::int16_t angle;         ///< of the joint, 90 degrees = 2^14; or not_measured
-  std::uint16_t current_ma;   ///< of the servo; modules stop counting at 32,767
+  std::uint16_t current_ma;   ///< of the servo; modules send at most 32,767
   std::int8_t temperature_c;  ///< of the chip, degrees Celsius
   std::uint8_t faults;        ///< object 0x1001
 

@@ -6,8 +6,6 @@ std::string_view describe(AbortCode code) {
   switch (code) {
     case AbortCode::none:
       return "ok";
-    case AbortCode::toggle_bit:
-      return "toggle bit not alternated";
     case AbortCode::timeout:
       return "no answer";
     case AbortCode::unknown_command:
@@ -16,14 +14,10 @@ std::string_view describe(AbortCode code) {
       return "out of memory";
     case AbortCode::unsupported_access:
       return "access not supported";
-    case AbortCode::write_only:
-      return "object is write-only";
     case AbortCode::read_only:
       return "object is read-only";
     case AbortCode::no_such_object:
       return "no such object";
-    case AbortCode::cannot_be_mapped:
-      return "object cannot be mapped to a PDO";
     case AbortCode::general_incompatibility:
       return "parameters are incompatible";
     case AbortCode::wrong_length:

@@ -76,17 +76,17 @@ struct Object {
   std::uint32_t default_value;  ///< of a constant: its value. The node id is added where adds_node_id.
   std::uint32_t minimum;        ///< compared as signed for signed types
   std::uint32_t maximum;
-  bool adds_node_id = false;  ///< the value is default_value + node id and never another (CiA 306, "$NODEID+")
+  bool adds_node_id = false;  ///< the value is always default_value + node id (CiA 306, "$NODEID+")
   std::optional<std::uint32_t> also_allowed = {};  ///< a value outside minimum to maximum, such as "off"
   std::string_view help = {};                      ///< a short phrase: unit and meaning
 };
 
-/// An entry that nobody changes.
+/// An entry that never changes.
 [[nodiscard]] constexpr Object constant(Address address, std::string_view name, DataType type, std::uint32_t value,
                                         std::string_view help = {}) {
   return {address, name, type, Access::constant, value, min_value(type), max_value(type), false, std::nullopt, help};
 }
-/// An entry that only the device changes; its default value says nothing.
+/// An entry that only the device changes; its default value has no meaning.
 [[nodiscard]] constexpr Object read_only(Address address, std::string_view name, DataType type,
                                          std::string_view help = {}) {
   return {address, name, type, Access::read_only, 0, min_value(type), max_value(type), false, std::nullopt, help};
@@ -109,7 +109,7 @@ struct Range {
           range.minimum, range.maximum, false, also_allowed,       help};
 }
 
-/// An index with sub-indices, or several that are alike. Sub-index 0, the highest sub-index supported, follows from the
+/// An index with sub-indices, or several equal ones. Sub-index 0, the highest sub-index supported, follows from the
 /// entries and is not declared.
 struct ObjectGroup {
   std::uint16_t index;
@@ -120,7 +120,7 @@ struct ObjectGroup {
   [[nodiscard]] constexpr Address at(std::uint8_t sub) const { return {index, sub}; }
 };
 
-/// Entries alike at `count` sub-indices that follow each other.
+/// Equal entries at `count` consecutive sub-indices.
 struct ObjectArray {
   Object first;
   std::uint8_t count;
@@ -130,7 +130,7 @@ struct ObjectArray {
   }
 };
 
-/// Entries alike at 64 indices that follow each other, one a joint.
+/// Equal entries at 64 consecutive indices, one a joint.
 struct JointObjects {
   Object first;
   std::uint32_t default_step = 0;  ///< default value of an entry minus that of the one before
@@ -157,18 +157,15 @@ struct JointObjects {
   return std::nullopt;
 }
 
-/// SDO abort codes (CiA 301, table 22).
+/// The SDO abort codes (CiA 301, table 22) that module and master use.
 enum class AbortCode : std::uint32_t {
   none = 0,
-  toggle_bit = 0x05030000,
   timeout = 0x05040000,
   unknown_command = 0x05040001,
   out_of_memory = 0x05040005,
   unsupported_access = 0x06010000,
-  write_only = 0x06010001,
   read_only = 0x06010002,
   no_such_object = 0x06020000,
-  cannot_be_mapped = 0x06040041,
   general_incompatibility = 0x06040043,
   wrong_length = 0x06070010,
   no_such_sub_index = 0x06090011,

@@ -47,8 +47,8 @@ struct IndexInfo {
 /// Whether any sub-index of the index exists.
 [[nodiscard]] inline bool index_exists(std::uint16_t index) { return find_index(index).has_value(); }
 
-/// The entries of namespace `object` as they are declared, series in one piece: a row stands for those at `indices`
-/// indices and `subs` sub-indices that follow each other. Ascending by index and sub-index of the first.
+/// The entries of namespace `object` as they are declared. A row stands for equal entries at `indices` consecutive
+/// indices and `subs` consecutive sub-indices. Ascending by index and sub-index of the first.
 struct ObjectRow {
   const Object* first;
   std::uint8_t indices;

@@ -10,8 +10,8 @@ constexpr unsigned no_quick_stop_bit = 1U << 2U;
 constexpr unsigned enable_operation_bit = 1U << 3U;
 constexpr unsigned fault_reset_bit = 1U << 7U;
 
-/// Bits of the statusword that are always set: the servo's supply has no switch of its own (voltage enabled), and the
-/// controlword is obeyed (remote).
+/// Bits of the statusword that are always set: the supply of the servo cannot be switched off (voltage enabled), and
+/// the module obeys the controlword (remote).
 constexpr unsigned always = 1U << 4U | 1U << 9U;
 
 /// Bits 0-3, 5 and 6 of the statusword (CiA 402, state coding).
@@ -33,8 +33,8 @@ constexpr unsigned state_bits(PowerState state) {
   return 0x08;
 }
 
-/// CiA 402, command coding. A later one asks for all that the one before asks for; `enable` from Ready to
-/// switch on passes through Switched on.
+/// CiA 402, command coding. Each command includes those before it: `enable` in Ready to switch on passes through
+/// Switched on.
 enum class PowerCommand : std::uint8_t { disable_voltage, quick_stop, shut_down, switch_on, enable };
 
 constexpr PowerCommand command_of(unsigned controlword) {
@@ -50,8 +50,8 @@ constexpr PowerCommand command_of(unsigned controlword) {
   return (controlword & enable_operation_bit) == 0 ? PowerCommand::switch_on : PowerCommand::enable;
 }
 
-/// Transitions 2 to 12 of CiA 402. Not 16, from Quick stop active back to Operation enabled: the controlword
-/// is sent again and again, and would start the robot without anybody's decision.
+/// Transitions 2 to 12 of CiA 402. Transition 16, from Quick stop active back to Operation enabled, is left out: hosts
+/// repeat the controlword, which would start the robot without a decision.
 constexpr PowerState next(PowerState state, PowerCommand command) {
   switch (state) {
     case PowerState::fault:

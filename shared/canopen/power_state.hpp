@@ -18,8 +18,8 @@ enum class PowerState : std::uint8_t {
 /// The state machine behind controlword (0x6040) and statusword (0x6041).
 class PowerControl {
  public:
-  /// Commands by bits 0-3 and 7 of the controlword; a rising edge of bit 7 clears a fault, and a quick stop too, since
-  /// both need a person's decision.
+  /// Commands by bits 0-3 and 7 of the controlword; a rising edge of bit 7 clears a fault and a quick
+  /// stop. Both need the decision of a person.
   void command(std::uint16_t controlword);
   /// Lost SYNC, lost host, bus-off: Operation enabled becomes Quick stop active. Other states stay.
   void quick_stop();
@@ -31,9 +31,6 @@ class PowerControl {
   [[nodiscard]] PowerState state() const { return state_; }
   [[nodiscard]] std::uint16_t controlword() const { return controlword_; }
   [[nodiscard]] std::uint16_t statusword() const;
-  [[nodiscard]] bool pulses() const {
-    return state_ == PowerState::operation_enabled || state_ == PowerState::quick_stop_active;
-  }
 
  private:
   PowerState state_ = PowerState::switch_on_disabled;

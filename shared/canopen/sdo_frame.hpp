@@ -1,10 +1,10 @@
 #pragma once
 
-// What server and client know alike of an SDO frame (CiA 301, section 7.2.4.3): a command byte, index and sub-index of
+// The layout of an SDO frame, for server and client (CiA 301, section 7.2.4.3): a command byte, index and sub-index of
 // the entry, four bytes of data.
 
-#include "shared/can/little_endian.hpp"
 #include "shared/canopen/object.hpp"
+#include "shared/fixed/little_endian.hpp"
 
 namespace proleg::canopen::sdo {
 
@@ -30,18 +30,18 @@ inline constexpr std::uint8_t size_indicated = 0x01;
 }
 
 [[nodiscard]] constexpr Address address(const CanFrame& frame) {
-  return {static_cast<std::uint16_t>(read_little_endian(frame, 1, 2)), frame.data[3]};
+  return {static_cast<std::uint16_t>(read_little_endian(frame.data, 1, 2)), frame.data[3]};
 }
 [[nodiscard]] constexpr std::uint32_t data(const CanFrame& frame, std::size_t size = 4) {
-  return read_little_endian(frame, 4, size);
+  return read_little_endian(frame.data, 4, size);
 }
 
 [[nodiscard]] constexpr CanFrame make(std::uint16_t identifier, std::uint8_t command, Address address,
                                       std::size_t size = 0, std::uint32_t value = 0) {
   CanFrame frame{identifier, 8, {command}};
-  write_little_endian(frame, 1, 2, address.index);
+  write_little_endian(frame.data, 1, 2, address.index);
   frame.data[3] = address.sub;
-  write_little_endian(frame, 4, size, value);
+  write_little_endian(frame.data, 4, size, value);
   return frame;
 }
 

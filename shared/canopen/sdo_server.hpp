@@ -9,9 +9,9 @@
 
 namespace proleg::canopen {
 
-/// The state of a device that stands behind the SDO server. Called only for entries that exist and are not settled by
-/// their declaration (fixed_value), with values that have passed access rights, size and declared range, as 32 bits:
-/// signed types are sign-extended. Of a value read, the low bytes count.
+/// The state of the device behind the SDO server. The server calls it only for entries that exist and have no
+/// fixed_value(). Values to write have passed the checks of access rights, size and declared range. They have 32 bits;
+/// signed types are sign-extended. The server sends the low bytes of a value that was read.
 class ObjectAccess {
  public:
   virtual AbortCode read(const Object& object, std::uint32_t& value) = 0;
@@ -21,8 +21,8 @@ class ObjectAccess {
   ~ObjectAccess() = default;
 };
 
-/// Answers one request. request: a frame on 0x600 + node, of any content. Nothing is returned, and nothing happens, for
-/// a frame with another identifier or length and for an abort of the client.
+/// Answers one request: a frame on 0x600 + node with any content. Returns nothing, without an effect, for a frame with
+/// another identifier or length and for an abort of the client.
 /// Segmented and block transfers are refused with `unknown_command`.
 [[nodiscard]] std::optional<CanFrame> serve_sdo(std::uint8_t node, const CanFrame& request, ObjectAccess& device);
 

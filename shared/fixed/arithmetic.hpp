@@ -1,13 +1,14 @@
 #pragma once
 
-// Integer arithmetic that every number format of the core rests on.
+// Integer arithmetic of all number formats of the core.
 //
-// Products round in one way only: formed in 64 bits and shifted right once, half up. Divisions happen where a constant
-// is derived, not in a tick, and say how they round. Sums wrap only in uint32_t and saturate only where a function says
-// so; signed overflow never happens.
+// Products round in one way only: they are formed in 64 bits and shifted right once, half up. Divisions only derive
+// constants, outside the tick, and document their rounding. Sums wrap only in uint32_t and saturate only in functions
+// that document it; signed overflow never happens.
 
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 namespace proleg {
 
@@ -54,7 +55,7 @@ namespace proleg {
 #ifdef __ARM_ARCH_6M__
   const auto bits_a = static_cast<std::uint32_t>(a);
   const auto bits_b = static_cast<std::uint32_t>(b);
-  // A negative factor was read as 2^32 too large.
+  // Read as unsigned, a negative factor is 2^32 too large.
   const std::uint32_t excess = (a < 0 ? bits_b : 0U) + (b < 0 ? bits_a : 0U);
   return static_cast<std::int64_t>(multiply_by_halves(bits_a, bits_b) - (std::uint64_t{excess} << 32U));
 #else
@@ -78,10 +79,12 @@ namespace proleg {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
 }
 
-/// Nearest integer to numerator / denominator, ties away from zero. denominator > 0.
-[[nodiscard]] constexpr std::int64_t divide_nearest(std::int64_t numerator, std::int64_t denominator) {
-  const std::int64_t half = denominator / 2;
-  return numerator >= 0 ? (numerator + half) / denominator : (numerator - half) / denominator;
+/// Nearest integer to numerator / denominator, ties away from zero. denominator > 0; the type must hold
+/// |numerator| + denominator / 2.
+template <typename Integer>
+[[nodiscard]] constexpr Integer divide_nearest(Integer numerator, std::type_identity_t<Integer> denominator) {
+  const Integer half = denominator / 2;
+  return (numerator >= 0 ? numerator + half : numerator - half) / denominator;
 }
 
 }  // namespace proleg

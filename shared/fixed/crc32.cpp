@@ -34,6 +34,12 @@ void Crc32::add(std::span<const std::uint8_t> bytes) {
   }
 }
 
+void Crc32::add_little_endian(std::uint64_t value, unsigned size) {
+  for (unsigned i = 0; i < size; ++i) {
+    add(static_cast<std::uint8_t>(value >> (8U * i)));
+  }
+}
+
 std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
   Crc32 crc;
   crc.add(bytes);

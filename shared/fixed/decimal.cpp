@@ -8,7 +8,7 @@ namespace {
 constexpr int max_digits = 60;
 constexpr int max_exponent = 60;
 constexpr unsigned quotient_bits = 48;
-constexpr std::uint64_t largest_quotient = std::uint64_t{1} << quotient_bits;
+constexpr std::uint64_t max_quotient = std::uint64_t{1} << quotient_bits;
 
 /// Unsigned integer of 512 bits, enough for 60 digits shifted by 60 places and scaled by a unit.
 class Natural {
@@ -66,7 +66,7 @@ std::uint64_t divide_half_even(Natural numerator, const Natural& denominator) {
     multiple.multiply_add(2, 0);
   }
   if (numerator.compare(multiple) >= 0) {
-    return largest_quotient;
+    return max_quotient;
   }
   std::uint64_t quotient = 0;
   for (unsigned i = quotient_bits; i-- > 0;) {
@@ -187,7 +187,7 @@ DecimalResult parse_decimal(std::string_view text, Unit unit) {
   const std::uint64_t magnitude = divide_half_even(numerator, denominator);
   constexpr std::uint64_t beyond = std::uint64_t{1} << 31U;
   const bool fits =
-      wraps(unit) ? magnitude < largest_quotient : magnitude < beyond || (magnitude == beyond && number.negative);
+      wraps(unit) ? magnitude < max_quotient : magnitude < beyond || (magnitude == beyond && number.negative);
   if (!fits) {
     return {DecimalError::out_of_range, 0};
   }

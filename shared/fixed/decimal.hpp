@@ -1,7 +1,7 @@
 #pragma once
 
-// The one place where text becomes a fixed-point number, and back. Integers throughout, so every machine reads the
-// same bits from the same file.
+// The only conversion between text and fixed-point numbers. It uses integers only, so every machine reads the same bits
+// from the same file.
 
 #include <array>
 #include <cstddef>

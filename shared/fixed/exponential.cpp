@@ -20,7 +20,7 @@ std::int32_t exponential_decay(std::int32_t x) {
   // Horner form of 1 - r + r^2/2! - ... - r^11/11!; the first term left out is 3e-11 at r = ln 2.
   std::int32_t sum = 1 << 30;
   for (std::int32_t n = 11; n >= 1; --n) {
-    sum = (1 << 30) - static_cast<std::int32_t>(divide_nearest(multiply(r, sum, 30), n));
+    sum = (1 << 30) - divide_nearest(multiply(r, sum, 30), n);
   }
   return halvings == 0 ? sum : static_cast<std::int32_t>(shift_right_rounding(sum, static_cast<unsigned>(halvings)));
 }

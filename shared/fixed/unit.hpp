@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "shared/fixed/arithmetic.hpp"
+
 namespace proleg {
 
 enum class Unit : std::uint8_t {
@@ -43,13 +45,11 @@ struct UnitScale {
 /// Whether values of the unit are taken modulo 2^32.
 [[nodiscard]] constexpr bool wraps(Unit unit) { return unit == Unit::phase_degree; }
 
-/// Raw value of a quotient of whole numbers, for declarations: raw(Unit::hertz, 1, 2) is half a hertz. The nearest.
+/// The raw value nearest to a quotient of whole numbers, for declarations: raw(Unit::hertz, 1, 2) is half a hertz.
 [[nodiscard]] constexpr std::int32_t raw(Unit unit, std::int32_t numerator, std::int32_t denominator = 1) {
   const UnitScale scale = scale_of(unit);
-  const std::int64_t product = std::int64_t{numerator} * scale.numerator;
-  const std::int64_t divisor = std::int64_t{denominator} * scale.denominator;
-  const std::int64_t half = divisor / 2;
-  return static_cast<std::int32_t>((product >= 0 ? product + half : product - half) / divisor);
+  return static_cast<std::int32_t>(
+      divide_nearest(std::int64_t{numerator} * scale.numerator, std::int64_t{denominator} * scale.denominator));
 }
 
 }  // namespace proleg

@@ -1,9 +1,9 @@
 #pragma once
 
-// The interface of all actuation algorithms (thesis, section 5.2 and listing A.1, rethought for one joint on one
-// module). An algorithm is a constant object without state of its own: parameters, derived constants and internal
-// values are plain int32_t arrays that the control kernel owns. So reading, changing, logging, saving, distorting and
-// cloning work for every algorithm without a line in it.
+// The interface of all actuation algorithms (thesis, section 5.2 and listing A.1, adapted to one joint on one module).
+// An algorithm is a constant object without state: parameters, derived constants and internal values are plain int32_t
+// arrays that the control kernel owns. So the kernel can read, change, log, distort and copy them without code in the
+// algorithm.
 
 #include <cstdint>
 
@@ -15,7 +15,7 @@
 
 namespace proleg {
 
-/// Which joint of which robot an algorithm works for.
+/// The joint that an algorithm computes, and its robot.
 struct JointContext {
   std::uint8_t joint;        ///< kernel order: 0 is at the head
   std::uint8_t joint_count;  ///< of the whole robot
@@ -26,7 +26,7 @@ struct JointContext {
 /// Constants of a slot on a joint between two commits.
 struct Tuning {
   const std::int32_t* parameters;  ///< in the order of the declaration
-  const std::int32_t* derived;     ///< what `derive` made of them
+  const std::int32_t* derived;     ///< what `derive` computed from them
 };
 
 /// The state frame of a neighbour at tick k.
@@ -36,7 +36,7 @@ class Neighbour {
   Neighbour(const Declaration& declaration, unsigned joint, const StateFrame& frame)
       : declaration_(&declaration), frame_(&frame), joint_(joint) {}
 
-  /// False at the ends of the group, and while nothing was heard from the neighbour.
+  /// False at the ends of the group, and until the first frame of the neighbour is received.
   [[nodiscard]] bool present() const { return frame_ != nullptr && (frame_->flags() & StateFrame::valid) != 0; }
   [[nodiscard]] unsigned joint() const { return joint_; }
   /// Field of the declared frame; present() must hold.
@@ -48,7 +48,7 @@ class Neighbour {
   unsigned joint_ = 0;
 };
 
-/// What a joint knows at SYNC k: everything in it has the age of tick k.
+/// The inputs of a joint at SYNC k. All are of tick k.
 struct Surroundings {
   std::uint32_t tick;  ///< k; the step leads to state k + 1
   const JointContext& context;
@@ -66,8 +66,8 @@ class ActuationModule {
 
   [[nodiscard]] virtual const Declaration& declaration() const = 0;
 
-  /// Whether it reads the contacts of links. One that does not say so finds none pressed, on every machine: so a module
-  /// need not listen to joints of which nothing depends.
+  /// Whether it reads the contacts of links. If not, it finds none pressed on every machine, so a module need not
+  /// receive the frames of joints that it does not depend on.
   [[nodiscard]] virtual bool senses_contacts() const { return false; }
 
   /// Computes constants from the parameters. Called after each change of a parameter, never in a tick without one.
@@ -76,15 +76,15 @@ class ActuationModule {
   /// Writes state 0. `noise` is seeded by the robot's seed and the joint. All values are 0 before.
   virtual void reset(const JointContext& context, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const;
 
-  /// Makes the best of state k for a joint that takes its place in a robot that moves already: `surroundings` hold the
-  /// neighbours' frames of tick k, `state` what reset() has written. The default leaves it at that.
+  /// Estimates state k for a joint that joins a moving robot. `surroundings` hold the neighbours' frames of tick k,
+  /// `state` holds what reset() has written. The default changes nothing.
   virtual void rejoin(const Surroundings& surroundings, const Tuning& tuning, std::int32_t* state) const;
 
-  /// Computes state k + 1 from state k and what was heard. `state` and `next` never overlap.
+  /// Computes state k + 1 from state k and the received frames. `state` and `next` never overlap.
   virtual void advance(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
                        std::int32_t* next) const = 0;
 
-  /// The joint angle that belongs to a state (90 degrees = 2^30).
+  /// The joint angle of a state (90 degrees = 2^30).
   [[nodiscard]] virtual std::int32_t output(const Tuning& tuning, const std::int32_t* state) const = 0;
 
   /// Turns the last state frame of a neighbour into the one expected a tick later; called when a frame was missed.

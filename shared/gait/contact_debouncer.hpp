@@ -6,7 +6,7 @@
 
 namespace proleg {
 
-/// Debounces the touch sensors of a joint module: a sensor that bounces as it closes or opens is heard once.
+/// Debounces the touch sensors of a joint module: a sensor that bounces as it closes or opens counts once.
 ///
 /// Sampled once a tick, at SYNC. A sensor's change is accepted at its second equal sample in a row, pressed and
 /// released alike and each sensor for itself; so a steady change counts one tick late, and a change of a single tick

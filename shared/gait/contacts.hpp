@@ -15,7 +15,7 @@ enum class TouchSensor : std::uint8_t {
 };
 
 /// The contacts of all links at one tick, as the joints' state frames report them. Link 0 is the head; link j + 1 lies
-/// behind joint j. A link whose joint was never heard is not pressed.
+/// behind joint j. A link is not pressed until the first frame of its joint is received.
 class Contacts {
  public:
   /// frames: the latest state frame of every joint, in kernel order; or none, then nothing is pressed.

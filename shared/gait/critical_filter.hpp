@@ -4,9 +4,10 @@
 // tick (no integration error, stable for every a). With e = r - R, h = a/2, q = exp(-h dt) and the rate kept as
 // u = r'/h, an angle like e:
 //   step = h dt (e + u):  e <- (e + step) q,  u <- (u - step) q
-// A rate kept as r' dt would have too few steps left in slow filters; and as u, a change of a in the middle of a motion
-// changes its pace and never makes it overshoot. Source of the filter: A. J. Ijspeert et al., Science 315 (2007).
+// A rate kept as r' dt would have too few steps in slow filters. With u, a change of a during a motion changes its
+// speed and never makes it overshoot. Source of the filter: A. J. Ijspeert et al., Science 315 (2007).
 
+#include <algorithm>
 #include <cstdint>
 
 #include "shared/fixed/arithmetic.hpp"
@@ -22,7 +23,7 @@ struct CriticalFilter {
   std::int32_t decay;      ///< q in Q30
   std::int32_t arrived;    ///< closer than this the roundings outweigh the motion
 
-  /// Writes the filter into derived constants, and finds it again in the tick.
+  /// Writes the filter into derived constants, from which load() reads it in the tick.
   void store(std::int32_t* derived) const {
     derived[0] = half_rate;
     derived[1] = decay;
@@ -34,12 +35,12 @@ struct CriticalFilter {
 /// rate: a in Q24 1/s, not negative. Rates above 2 / tick act as 2 / tick.
 [[nodiscard]] inline CriticalFilter make_critical_filter(std::int32_t rate, std::uint32_t tick_period_us) {
   const std::int64_t half_rate = divide_nearest((std::int64_t{rate} * tick_period_us) << 5U, 1'000'000);
-  const auto limited = static_cast<std::int32_t>(half_rate > (1 << 30) ? 1 << 30 : half_rate);
+  const auto limited = static_cast<std::int32_t>(std::min(half_rate, std::int64_t{1} << 30U));
   // exp(-x) takes Q24; for the bits of Q30 below that, exp(-x) is 1 - x.
   const std::int32_t coarse = exponential_decay(limited >> 6);
   const std::int32_t decay = coarse - multiply(coarse, limited & 63, 30);
   // Two roundings a tick of half a step each can hold e and u together up to 4 / (h dt) steps away.
-  const std::int32_t arrived = saturate(64 + (std::int64_t{1} << 32U) / (limited > 0 ? limited : 1));
+  const std::int32_t arrived = saturate(64 + (std::int64_t{1} << 32U) / std::max<std::int32_t>(limited, 1));
   return {limited, decay, arrived};
 }
 

@@ -1,8 +1,7 @@
 #pragma once
 
-// What an algorithm says about itself, once: its parameters, its internal values and what it broadcasts. The command
-// line, the scenario reader, recordings, documentation and the object dictionary take names, units, ranges and layout
-// from here.
+// The declaration of an algorithm: its parameters, its internal values and what it broadcasts. The command line, the
+// scenario reader, recordings, documentation and the object dictionary take names, units, ranges and layout from here.
 
 #include <array>
 #include <cstddef>
@@ -30,7 +29,7 @@ struct Parameter {
   std::string_view help;
 };
 
-/// A value that the algorithm computes: its state, and what is measured on it.
+/// A value that the algorithm computes: its state, or a measurement of it.
 struct InternalValue {
   std::string_view name;
   Unit unit;
@@ -64,7 +63,7 @@ struct Declaration {
 inline constexpr std::int32_t phase_minimum = std::numeric_limits<std::int32_t>::min();
 inline constexpr std::int32_t phase_maximum = std::numeric_limits<std::int32_t>::max();
 
-/// 90 degrees, the largest joint angle (thesis, table 3.1).
+/// 90 degrees, the maximal joint angle (thesis, table 3.1).
 inline constexpr std::int32_t quarter_turn = 1 << 30;
 
 }  // namespace proleg

@@ -6,7 +6,7 @@
 
 namespace proleg {
 
-/// Most joints of one robot; bounded by the receive objects 0x1410 + j of the protocol.
+/// Maximal number of joints of one robot; limited by the receive objects 0x1410 + j of the protocol.
 inline constexpr unsigned max_joints = 64;
 
 /// A set of joints: bit j stands for kernel joint j, which is the j-th from the head.

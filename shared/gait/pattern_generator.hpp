@@ -6,9 +6,9 @@
 
 namespace proleg {
 
-/// Everything that produces a periodic signal (thesis, section 5.2.1 and listing A.2). An algorithm that derives from
-/// it gets for nothing: its frequency and its phase difference to the next joint, measured in each tick; seeded
-/// Gaussian noise on its internal values at reset; and neighbours that extrapolate its phase when a frame is lost.
+/// Everything that produces a periodic signal (thesis, section 5.2.1 and listing A.2). The base
+/// class measures frequency and phase difference to the next joint in each tick, adds seeded Gaussian noise to the
+/// internal values at reset, and extrapolates the phase of a neighbour whose frame is lost.
 ///
 /// In return its declaration starts with the three internal values below, its frame starts with the phase on four
 /// bytes, and its first derived constant is the phase increment.
@@ -44,7 +44,7 @@ class PatternGenerator : public ActuationModule {
   ~PatternGenerator() = default;
 
   /// The phase that a joint has next to its neighbours, the one ahead first, when the phase grows by phase_difference
-  /// from joint to joint; nothing if no neighbour was heard.
+  /// from joint to joint; nothing if no neighbour is present.
   [[nodiscard]] static std::optional<std::int32_t> phase_beside_neighbour(const Surroundings& surroundings,
                                                                           std::int32_t phase_difference);
 
@@ -57,14 +57,14 @@ class PatternGenerator : public ActuationModule {
                               std::int32_t* derived) const = 0;
   /// As ActuationModule::reset, without the noise.
   virtual void reset_pattern(const JointContext& context, const Tuning& tuning, std::int32_t* state) const = 0;
-  /// As ActuationModule::advance, for all values but the two measured ones.
+  /// As ActuationModule::advance, for all values except the two measured ones.
   virtual void advance_pattern(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
                                std::int32_t* next) const = 0;
 };
 
 /// Phase increment of a tick: the integer nearest to 2^32 * frequency * tick. frequency: Q24 hertz.
-/// Without a remainder: the phase drifts by at most half a step a tick (0.0151 degrees an hour at 10 ms), and every
-/// module and the simulator drift alike.
+/// The rounding makes the phase drift by at most half a step a tick (0.0151 degrees an hour at 10 ms), equally in all
+/// modules and in the simulator.
 [[nodiscard]] std::int32_t phase_increment_of(std::int32_t frequency, std::uint32_t tick_period_us);
 
 }  // namespace proleg

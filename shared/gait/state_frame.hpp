@@ -9,7 +9,7 @@
 
 namespace proleg {
 
-/// The state frame of a joint (docs/protocol.md): what every other joint learns of it, on the bus and in memory alike.
+/// The state frame of a joint (docs/protocol.md): all that other joints receive from it, on the bus and in memory.
 ///
 /// bytes 0-5: what the algorithm declares as its frame, in that order; byte 6: contacts and flags; byte 7: label, the
 /// tick of the state modulo 256.
@@ -24,7 +24,7 @@ struct alignas(4) StateFrame {  // copied as two words, where bytes would need a
     contact_far_link_rear = 1U << 2U,    ///< link in front of joint 0 (head module only), sensor nearer to the tail
     contact_far_link_front = 1U << 3U,   ///< the same link, sensor nearer to the head
     fault = 1U << 4U,
-    holdover = 1U << 5U,  ///< the joint computes without hearing the SYNC
+    holdover = 1U << 5U,  ///< the joint computes without receiving SYNC
     limited = 1U << 6U,   ///< the sum of the slots was cut to the joint's limits
     valid = 1U << 7U,     ///< the joint computes; bytes 0-5 are its state, or 0 if it broadcasts nothing
   };

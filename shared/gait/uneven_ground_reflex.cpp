@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "shared/fixed/arithmetic.hpp"
 #include "shared/gait/algorithms.hpp"
 #include "shared/gait/sensing_module.hpp"
@@ -10,9 +12,9 @@ constexpr Parameter parameters[] = {
     Parameter{"raise", Unit::degree, raw(Unit::degree, 10), -quarter_turn, quarter_turn,
               "angle added to the joint while the ground is uneven; 0: no reflex"},
     Parameter{"reach", Unit::count, 2, 0, max_joints - 1,
-              "two touched links at most this many places apart are a sign of uneven ground; 0: no reflex"},
+              "two touched links at most this many links apart are a sign of uneven ground; 0: no reflex"},
     Parameter{"confirm", Unit::count, 2, 1, 100,
-              "ticks in a row for which that must last; the support passes from link to link in less"},
+              "consecutive ticks that the sign must last; the support passes from link to link in fewer"},
     Parameter{"hold", Unit::count, 100, 0, 60'000, "ticks for which the joint stays raised after the last sign"},
     Parameter{"rise_rate", Unit::degree, raw(Unit::degree, 60), raw(Unit::degree, 1), quarter_turn,
               "degrees in a second by which the joint rises"},
@@ -23,8 +25,8 @@ constexpr Parameter parameters[] = {
 enum Values : std::uint8_t { offset, sign_ticks, hold_ticks };
 constexpr InternalValue internal_values[] = {
     InternalValue{"offset", Unit::degree, 0, "angle of the reflex"},
-    InternalValue{"sign_ticks", Unit::count, 0, "ticks in a row with two such links; counts to `confirm`"},
-    InternalValue{"hold_ticks", Unit::count, 0, "ticks for which it goes on without another sign"},
+    InternalValue{"sign_ticks", Unit::count, 0, "consecutive ticks with two such links; counts to `confirm`"},
+    InternalValue{"hold_ticks", Unit::count, 0, "ticks that the reflex continues without a new sign"},
 };
 
 constexpr Declaration about{5,
@@ -34,36 +36,25 @@ constexpr Declaration about{5,
                             internal_values,
                             {}};
 
-/// Whether two links touch that are at most `reach` places apart.
+/// Whether two links touch that are at most `reach` links apart.
 bool ground_is_uneven(const Contacts& contacts, std::int32_t reach) {
-  std::int32_t places = reach;  // since the last link that touches; none yet
+  std::int32_t distance = reach;  // from the last link that touches; none yet
   for (unsigned link = 0; link < contacts.link_count(); ++link) {
-    ++places;
+    ++distance;
     if (contacts.pressed(link)) {
-      if (places <= reach) {
+      if (distance <= reach) {
         return true;
       }
-      places = 0;
+      distance = 0;
     }
   }
   return false;
 }
 
-/// The counter, if it is within 0 and `most`, else the nearer end.
-std::int32_t limit(std::int32_t counter, std::int32_t most) {
-  if (counter < 0) {
-    return 0;
-  }
-  return counter < most ? counter : most;
-}
-
 /// Towards the target by at most `step`.
 std::int32_t approach(std::int32_t target, std::int32_t value, std::int32_t step) {
   const std::int64_t distance = std::int64_t{target} - value;
-  if (distance > step) {
-    return value + step;
-  }
-  return distance < -step ? value - step : target;
+  return static_cast<std::int32_t>(value + std::clamp<std::int64_t>(distance, -step, step));
 }
 
 class UnevenGroundReflex final : public SensingModule {
@@ -89,11 +80,11 @@ class UnevenGroundReflex final : public SensingModule {
 
   void advance_sensing(const Contacts& contacts, const Surroundings& /*surroundings*/, const Tuning& tuning,
                        const std::int32_t* state, std::int32_t* next) const override {
-    // Counters are cut to their ends: a constant may have been lowered, a counter overwritten.
-    const std::int32_t before = limit(state[sign_ticks], tuning.parameters[confirm] - 1);
+    // Limited, because a parameter may have been lowered or a counter overwritten.
+    const std::int32_t before = std::clamp<std::int32_t>(state[sign_ticks], 0, tuning.parameters[confirm] - 1);
     next[sign_ticks] = ground_is_uneven(contacts, tuning.parameters[reach]) ? before + 1 : 0;
     const bool sign = next[sign_ticks] == tuning.parameters[confirm];
-    const std::int32_t left = limit(state[hold_ticks], tuning.parameters[hold]);
+    const std::int32_t left = std::clamp<std::int32_t>(state[hold_ticks], 0, tuning.parameters[hold]);
     if (sign || left > 0) {
       next[hold_ticks] = sign ? tuning.parameters[hold] : left - 1;
       next[offset] = approach(tuning.parameters[raise], state[offset], tuning.derived[rise_step]);

@@ -5,22 +5,6 @@
 
 namespace proleg {
 
-JointMask KernelConfiguration::second_channel(unsigned slot) const {
-  std::uint64_t earlier = 0;
-  for (unsigned i = 0; i < slot; ++i) {
-    earlier |= slots[i].broadcasts() ? slots[i].group.bits() : 0;
-  }
-  return JointMask(slots[slot].broadcasts() ? slots[slot].group.bits() & earlier : 0);
-}
-
-JointMask KernelConfiguration::second_channel_senders() const {
-  std::uint64_t senders = 0;
-  for (unsigned i = 0; i < max_slots; ++i) {
-    senders |= second_channel(i).bits();
-  }
-  return JointMask(senders);
-}
-
 Status Kernel::configure(const KernelConfiguration& configuration, unsigned first_joint) {
   if (configuration.joint_count == 0 || configuration.joint_count > max_joints) {
     return Status::bad_joint_count;
@@ -32,24 +16,24 @@ Status Kernel::configure(const KernelConfiguration& configuration, unsigned firs
   if (configuration.tick_period_us < 1'000 || configuration.tick_period_us > 100'000) {
     return Status::bad_tick_period;
   }
-  const std::uint64_t all_joints = JointMask::first(configuration.joint_count).bits();
+  const JointMask all_joints = JointMask::first(configuration.joint_count);
   std::array<JointMask, max_slots> second_channel;
-  std::uint64_t two_broadcasts = 0;
+  JointMask two_broadcasts;
   unsigned slots_in_use = 0;
   for (unsigned i = 0; i < max_slots; ++i) {
     const Slot& slot = configuration.slots[i];
     if (slot.algorithm != nullptr) {
       slots_in_use = i + 1;
     }
-    if ((slot.group.bits() & ~all_joints) != 0) {
+    if (!(slot.group - all_joints).empty()) {
       return Status::bad_group;
     }
     if (slot.broadcasts()) {
-      if ((slot.group.bits() & two_broadcasts) != 0) {
+      if (!(slot.group & two_broadcasts).empty()) {
         return Status::too_many_broadcasts;
       }
       second_channel[i] = configuration.second_channel(i);
-      two_broadcasts |= second_channel[i].bits();
+      two_broadcasts |= second_channel[i];
     }
   }
 
@@ -57,18 +41,13 @@ Status Kernel::configure(const KernelConfiguration& configuration, unsigned firs
   first_joint_ = first_joint;
   second_channel_ = second_channel;
   slots_in_use_ = slots_in_use;
-  senders_ = {JointMask(all_joints), JointMask(two_broadcasts)};
+  senders_ = {all_joints, two_broadcasts};
   needed_ = {};
   beside_ = {};
   for (unsigned i = 0; i < memory_.size(); ++i) {
     set_up(first_joint + i);
   }
-  transactions_ = {};
-  committed_count_ = 0;
-  has_open_ = false;
-  open_ = 0;
-  last_effective_ = {};
-  has_last_effective_ = false;
+  staging_.clear();
   flags_ = 0;
   reset();
   return Status::ok;

@@ -1,6 +1,6 @@
 #include "shared/kernel/kernel.hpp"
 
-#include <bit>
+#include <algorithm>
 
 #include "shared/fixed/arithmetic.hpp"
 
@@ -30,7 +30,7 @@ void Kernel::reset() {
       SlotMemory& slot = memory.slots[s];
       slot.values = {};
       if (slot.active) {
-        // Slots of one joint draw from different streams, too.
+        // The slots of one joint draw from different streams too.
         Pcg32 noise(configuration_.seed, joint * max_slots + s);
         configuration_.slots[s].algorithm->reset(slot.context, tuning(slot), noise, current(slot).data());
       }
@@ -42,17 +42,17 @@ void Kernel::reset() {
 }
 
 void Kernel::advance() {
-  if (committed_count_ != 0) {
+  if (staging_.has_commits()) {
     apply_commits();
   }
   const bool joining = joining_;
   if (joining) {
     rejoin();
   }
-  const std::uint64_t unframes_first = needed_[0].bits() & ~arrived_[0].bits();
-  const std::uint64_t unframes_second = needed_[1].bits() & ~arrived_[1].bits();
-  if ((unframes_first | unframes_second) != 0) {
-    missed_frames_ += static_cast<std::uint32_t>(std::popcount(unframes_first) + std::popcount(unframes_second));
+  const JointMask missing_first = needed_[0] - arrived_[0];
+  const JointMask missing_second = needed_[1] - arrived_[1];
+  if (!(missing_first | missing_second).empty()) {
+    missed_frames_ += missing_first.size() + missing_second.size();
     fill_missed_frames();
   }
   for (JointMemory& joint : memory_) {
@@ -90,7 +90,7 @@ void Kernel::join(std::uint32_t tick) {
   }
 }
 
-/// State tick_ from what the neighbours said, instead of from state tick_ - 1.
+/// Computes state tick_ from the neighbours' frames instead of from state tick_ - 1.
 void Kernel::rejoin() {
   joining_ = false;
   flags_ = static_cast<std::uint8_t>(flags_ | StateFrame::holdover);
@@ -132,13 +132,7 @@ void Kernel::update_setpoint(JointMemory& joint) {
     }
   }
   joint.limited = sum < joint.lower_limit || sum > joint.upper_limit;
-  if (sum < joint.lower_limit) {
-    sum = joint.lower_limit;
-  }
-  if (sum > joint.upper_limit) {
-    sum = joint.upper_limit;
-  }
-  joint.setpoint = sum;
+  joint.setpoint = std::clamp(sum, joint.lower_limit, joint.upper_limit);
 }
 
 void Kernel::pack_frames(unsigned joint) {
@@ -178,19 +172,17 @@ void Kernel::fill_missed_frames() {
     if (!slot.broadcasts()) {
       continue;
     }
-    const std::uint64_t second = second_channel_[s].bits();
-    const std::uint64_t arrived = (arrived_[0].bits() & ~second) | (arrived_[1].bits() & second);
-    const std::uint64_t missing = beside_[s].bits() & ~arrived;  // of others nobody here asks
-    // A kernel of several joints hears with one ear: the first of them in the slot extrapolates.
+    const JointMask second = second_channel_[s];
+    const JointMask arrived = (arrived_[0] - second) | (arrived_[1] & second);
+    const JointMask missing = beside_[s] - arrived;  // the slot needs no other frames
+    // The local joints of a slot share the frame of a neighbour, so only the first of them extrapolates it.
     const int local = slot.group.from(first_joint_);
-    if (missing == 0 || local < 0 || !drives(s, static_cast<unsigned>(local))) {
+    if (missing.empty() || local < 0 || !drives(s, static_cast<unsigned>(local))) {
       continue;
     }
     const SlotMemory& memory = joint_memory(static_cast<unsigned>(local)).slots[s];
-    for (int joint = JointMask(missing).from(0); joint >= 0;
-         joint = JointMask(missing).after(static_cast<unsigned>(joint))) {
-      const auto index = static_cast<unsigned>(joint);
-      StateFrame& frame = frames_[second_channel_[s].contains(index) ? 1 : 0][index];
+    for (const unsigned joint : missing) {
+      StateFrame& frame = frames_[second.contains(joint) ? 1 : 0][joint];
       if ((frame.flags() & StateFrame::valid) != 0) {
         slot.algorithm->extrapolate(tuning(memory), current(memory).data(), frame);
       }

@@ -2,6 +2,7 @@
 
 // From set-points to servo pulses, in integers: the last step that simulator, emulated module and robot share.
 
+#include <algorithm>
 #include <cstdint>
 
 #include "shared/fixed/arithmetic.hpp"
@@ -19,8 +20,7 @@ inline constexpr std::int32_t servo_quarter_turn = 1000 * servo_counts_per_us;
 /// Pulse width for a joint angle (90 degrees = 2^30), nearest, ties up; angles beyond +-90 degrees count as +-90.
 [[nodiscard]] constexpr std::int32_t servo_command(std::int32_t angle) {
   constexpr std::int32_t right_angle = 1 << 30;
-  const std::int32_t limited = angle > right_angle ? right_angle : (angle < -right_angle ? -right_angle : angle);
-  return servo_center + multiply(limited, servo_quarter_turn, 30);
+  return servo_center + multiply(std::clamp(angle, -right_angle, right_angle), servo_quarter_turn, 30);
 }
 
 /// Angle on the straight line from `from` to `to`. fraction: Q16, 0 at `from`, 65536 at `to`.

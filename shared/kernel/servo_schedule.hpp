@@ -6,9 +6,9 @@
 
 namespace proleg {
 
-/// When servos take pulses. Interval n starts n periods after SYNC 0, wherever ticks begin; its pulse is the one in the
-/// middle of the interval on the line between the two set-points of the tick in which it starts. All this is integers
-/// and knows no step of a physics engine, so that simulator and module find the same pulses.
+/// When servos receive pulses. Interval n starts n periods after SYNC 0, independently of the ticks. Its pulse is the
+/// point in the middle of the interval on the line between the two set-points of the tick in which it starts. All of
+/// this is integers and independent of the step of a physics engine, so simulator and module compute the same pulses.
 class ServoSchedule {
  public:
   /// Both periods in us, above 0; tick_period_us is below 131072.

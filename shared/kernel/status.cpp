@@ -36,10 +36,6 @@ std::string_view describe(Status status) {
       return "the transaction was not staged";
     case Status::commit_in_the_past:
       return "the tick has passed";
-    case Status::bad_snapshot:
-      return "not a snapshot of this configuration";
-    case Status::no_room:
-      return "the buffer is too small";
   }
   return "unknown status";
 }

@@ -5,7 +5,8 @@
 
 namespace proleg {
 
-/// What the control kernel answers to a request. Anything but `ok` leaves the kernel as it was.
+/// The control kernel's answer to a request. Every answer but `ok` leaves the kernel as it was. The module sends the
+/// number in object 0x2001:8.
 enum class [[nodiscard]] Status : std::uint8_t{
     ok,
     bad_joint_count,      ///< no joint, or more than 64
@@ -20,11 +21,9 @@ enum class [[nodiscard]] Status : std::uint8_t{
     unknown_internal_value,
     out_of_range,        ///< value outside the declared range
     staging_closed,      ///< the transaction is committed already
-    staging_full,        ///< as many transactions or values wait as there is room for
+    staging_full,        ///< max_transactions transactions or max_staged_values values of the joint wait
     nothing_staged,      ///< commit of a transaction that was not opened
     commit_in_the_past,  ///< commit for a tick that was already computed
-    bad_snapshot,        ///< not a snapshot of a kernel with this configuration
-    no_room,             ///< the buffer is too small
 };
 
 /// One short phrase, for messages.

@@ -64,7 +64,7 @@ bool ChangePlan::can_stage() const {
     }
     return room;
   };
-  for (std::size_t i = waiting_; i < next_; ++i) {
+  for (std::size_t i = pending_from_; i < next_; ++i) {
     if (!changes_[i].dropped) {
       ++pending;
       static_cast<void>(add(changes_[i]));
@@ -81,8 +81,8 @@ void ChangePlan::drop_next() {
 }
 
 void ChangePlan::pass(std::uint32_t tick) {
-  while (waiting_ < next_ && (changes_[waiting_].dropped || changes_[waiting_].tick <= tick)) {
-    ++waiting_;
+  while (pending_from_ < next_ && (changes_[pending_from_].dropped || changes_[pending_from_].tick <= tick)) {
+    ++pending_from_;
   }
 }
 
@@ -119,7 +119,7 @@ std::optional<std::int32_t> ChangePlan::parameter_before(std::size_t end, unsign
   return std::nullopt;
 }
 
-std::optional<SdoWrite> ChangePlan::made_before(std::size_t end, unsigned joint, std::size_t n) const {
+std::optional<SdoWrite> ChangePlan::parameter_write(std::size_t end, unsigned joint, std::size_t n) const {
   for (std::uint8_t slot = 0; slot < max_slots; ++slot) {
     if (kernel_.slots[slot].algorithm == nullptr) {
       continue;

@@ -1,6 +1,7 @@
 #pragma once
 
-// Changes in flight as the master makes them: which one is next, which wait for their tick, and the SDO writes of each.
+// The changes that the master makes in flight: which one is next, which wait for their tick, and the SDO writes of
+// each.
 
 #include <cstddef>
 #include <cstdint>
@@ -20,7 +21,7 @@ struct ChangedValue {
   std::int32_t value = 0;
 };
 
-/// Values that come into force together. At most max_staged_values of one joint.
+/// Values that take effect together. At most max_staged_values of one joint.
 struct Change {
   std::uint32_t tick = 0;
   std::span<const ChangedValue> values;
@@ -30,17 +31,17 @@ struct Change {
 /// Change n travels as transaction n + 1 (modulo 65535), which is opened in every module.
 class ChangePlan {
  public:
-  /// As many transactions wait in a module, one is open.
+  /// Committed transactions that a module holds beside the open one.
   static constexpr std::size_t max_pending = max_transactions - 1;
 
-  /// kernel and changes must outlive the plan. Forgets what was dropped.
+  /// kernel and changes must outlive the plan. Clears `dropped` of all changes.
   ChangePlan(const KernelConfiguration& kernel, std::span<Change> changes);
 
-  /// The first change that cannot be made: a value that its joint does not have, more values of a joint than there is
-  /// room for, a tick that is not after that of the change before.
+  /// The first change that is not possible: with a value that its joint does not have, more than max_staged_values of a
+  /// joint, or a tick not later than that of the change before.
   [[nodiscard]] std::optional<std::size_t> find_bad() const;
 
-  /// The change that is to be staged next; size() if all are committed or dropped.
+  /// The next change to stage; size() if all are committed or dropped.
   [[nodiscard]] std::size_t next() const { return next_; }
   [[nodiscard]] std::size_t size() const { return changes_.size(); }
   [[nodiscard]] const Change& operator[](std::size_t change) const { return changes_[change]; }
@@ -48,18 +49,18 @@ class ChangePlan {
     return static_cast<std::uint16_t>(change % 0xFFFFU + 1U);
   }
 
-  /// Whether there is a next change and modules have room for it beside those that wait.
+  /// Whether there is a next change and the modules have room for it beside the pending ones.
   [[nodiscard]] bool can_stage() const;
   void commit_next();
   void drop_next();
-  /// Committed changes for this tick and earlier ones are in force.
+  /// Notes that committed changes for this tick and earlier ones are in force.
   void pass(std::uint32_t tick);
 
   /// The n-th write that stages a change in the module of a joint.
   [[nodiscard]] std::optional<SdoWrite> staging(std::size_t change, unsigned joint, std::size_t n) const;
-  /// The n-th write that gives a joint the parameters that changes before `end` have given it. (Internal values have
-  /// been overwritten by the gait since.)
-  [[nodiscard]] std::optional<SdoWrite> made_before(std::size_t end, unsigned joint, std::size_t n) const;
+  /// The n-th write that repeats, for one joint, the parameters set by the changes before `end`. (The gait has
+  /// overwritten their internal values since.)
+  [[nodiscard]] std::optional<SdoWrite> parameter_write(std::size_t end, unsigned joint, std::size_t n) const;
 
  private:
   [[nodiscard]] bool exists(const ChangedValue& value) const;
@@ -70,7 +71,7 @@ class ChangePlan {
   const KernelConfiguration& kernel_;
   std::span<Change> changes_;
   std::size_t next_ = 0;
-  std::size_t waiting_ = 0;  ///< changes from here to next_ are dropped or wait for their tick
+  std::size_t pending_from_ = 0;  ///< changes from here to next_ are dropped or wait for their tick
 };
 
 }  // namespace proleg::canopen

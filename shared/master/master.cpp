@@ -1,13 +1,10 @@
 #include "shared/master/master.hpp"
 
+#include <algorithm>
+
 #include "shared/canopen/bus_load.hpp"
 
 namespace proleg::canopen {
-namespace {
-
-constexpr unsigned node_bits = 0x7F;
-
-}  // namespace
 
 Master::Master(CanPort& port, const RobotSetup& setup, const MasterOptions& options, std::span<Change> changes)
     : setup_(setup), options_(options), plan_(setup.kernel, changes), queue_(port) {
@@ -69,7 +66,7 @@ void Master::receive(Microseconds now, const CanFrame& frame) {
   } else if (const std::optional<TickMessage> message = decode_tick(frame)) {
     ticks_.announce(message->tick);
   } else {
-    switch (frame.identifier & ~node_bits) {
+    switch (identifier::base_of(frame.identifier)) {
       case identifier::sdo_answer:
         sdo_clients_.receive(now, frame, *this);
         break;
@@ -120,7 +117,7 @@ void Master::poll(Microseconds now) {
 Microseconds Master::next_deadline() const {
   Microseconds next = sdo_clients_.next_deadline();
   for (const Microseconds deadline : {heartbeat_at_, deadline_, silence_at_, sync_lost_at_}) {
-    next = deadline < next ? deadline : next;
+    next = std::min(next, deadline);
   }
   return next;
 }
@@ -153,7 +150,7 @@ void Master::on_heartbeat(const CanFrame& frame) {
     lost_ -= self;
     add_event(EventKind::heartbeat_returned, heartbeat->node);
     if (outdated_.contains(joint)) {
-      reset_joints_ |= self;  // it would go on with old values; after the reset it is set up again
+      reset_joints_ |= self;  // it has old values; after the reset it is set up again
     }
   }
 }
@@ -182,7 +179,7 @@ void Master::on_boot_up(unsigned joint) {
   given_up_ -= self;
   restarted_ |= self;
   if (joint == options_.sync_producer) {
-    fail(problem_of(ProblemCode::sync_lost, joint));  // the ticks of the others cannot go on
+    fail(problem_of(ProblemCode::sync_lost, joint));  // the other modules receive no SYNC
   }
 }
 
@@ -217,7 +214,7 @@ void Master::on_tick_passed() {
   }
   sync_lost_at_ = now_ + silence_us;
   if (const std::optional<std::uint32_t> tick = ticks_.tick(); tick && *tick >= ticks_on_the_way) {
-    plan_.pass(*tick - ticks_on_the_way);  // also in a module that has not heard the last SYNC
+    plan_.pass(*tick - ticks_on_the_way);  // also in a module that has missed the last SYNC
   }
 }
 
@@ -236,10 +233,10 @@ void Master::watch_heartbeats() {
       lost_ |= JointMask::of(joint);
       add_event(EventKind::silent, setup_.nodes[joint]);
     } else {
-      silence_at_ = silent_at < silence_at_ ? silent_at : silence_at_;
+      silence_at_ = std::min(silence_at_, silent_at);
     }
   }
-  // One that is heard again is watched again in time.
+  // A module whose heartbeat returns is watched again after this time at the latest.
   silence_at_ = silence_at_ == never ? now_ + silence_us : silence_at_;
 }
 
@@ -258,7 +255,7 @@ std::optional<Problem> Master::check_setup() const {
       (!options_.serials.empty() && options_.serials.size() != joints) || options_.sync_producer >= joints) {
     return Problem{ProblemCode::bad_setup};
   }
-  std::array<bool, 128> taken{};
+  std::array<bool, max_node_id + 1> taken{};
   for (unsigned joint = 0; joint < joints; ++joint) {
     const std::uint8_t node = setup_.nodes[joint];
     if (node < min_node_id || node > max_node_id || taken[node]) {

@@ -1,12 +1,34 @@
 #pragma once
 
-// The master of the bus: brings up the modules of a robot, keeps them running, changes parameters in flight. Used by
-// the simulator's hardware-in-the-loop and by the host program alike (docs/protocol.md). A plain state machine: frames
-// and deadlines in, frames out; it never waits, and every wait of its own ends.
+// The master of the bus: sets up the modules of a robot, starts them and changes parameters while the robot moves. The
+// simulator's hardware-in-the-loop and the host program use it (docs/protocol.md). It is a state machine with frames
+// and deadlines as inputs and frames as outputs. It never blocks, and each of its waits has a timeout.
 //
-// Start: boot-up of all modules -> identity, set-up list and configuration CRC of each -> changes that fit are staged
-// and committed -> NMT start -> heartbeats say Operational -> servos enabled -> one module produces SYNC: running.
-// Running: changes are staged as early as the modules have room for them; a module that restarts is set up again.
+// A mission is what the master works on; its phases follow each other in this order:
+//
+//   mission   starts when                    phases                                 joints_
+//   bring_up  start()                        scan, quiet, set_up, then for each     all that booted, which are all of
+//                                            change that fits: stage, commit;       the set-up; produce_sync: only the
+//                                            nmt_start, enable, produce_sync        SYNC producer
+//   change    running, and modules have      stage, commit                          all without lost_ and restarted_
+//             room for the next change
+//   rejoin    running, restarted_ not empty  set_up, then for each committed        the members that restarted_ had
+//                                            change that waits for its tick:
+//                                            stage, commit; enable, nmt_start
+//   stop      stop()                         disable, sync_off                      booted_; sync_off: only the SYNC
+//                                                                                   producer
+//   none      no other mission               none                                   not used
+//
+// A change that has passed its tick before its commit in `rejoin` starts that mission again from set_up. A change that
+// is too late for its tick leaves out `stage` and is dropped.
+//
+// Sets of joints while the robot runs:
+//
+//   lost_        silent or without an answer   enters: timeouts         leaves: heartbeat returns, or boot-up
+//   outdated_    has missed a commit           enters: end of `change`  leaves: end of `rejoin`
+//   restarted_   must be set up again          enters: boot-up          leaves: `rejoin` begins
+//   given_up_    could not be set up again     enters: `rejoin` fails   leaves: boot-up
+//   A joint of outdated_ whose heartbeat returns is reset, so that its boot-up puts it into restarted_.
 
 #include <array>
 #include <optional>
@@ -27,33 +49,33 @@ struct MasterOptions {
 };
 
 enum class MasterState : std::uint8_t {
-  idle,        ///< before start(): hears nothing, sends nothing
+  idle,        ///< before start(): ignores all frames, sends none
   scanning,    ///< waits for the modules to boot
   setting_up,  ///< reads identities, writes set-up lists
-  staging,     ///< stages and commits what changes early
-  starting,    ///< waits for all to be Operational
+  staging,     ///< stages and commits the first changes
+  starting,    ///< waits until all modules are Operational
   powering,    ///< enables the servos and SYNC
   running,
   stopping,
   stopped,
-  failed,  ///< see problem(); modules are left as they are until stop()
+  failed,  ///< see problem(); the modules stay in their states until stop()
 };
 
 class Master final : private SdoWork {
  public:
   static constexpr Microseconds heartbeat_period_us = 100'000;
   static constexpr Microseconds boot_timeout_us = 1'000'000;
-  /// So long after the last expected boot-up others may show up.
+  /// Time after the last expected boot-up in which unexpected modules may appear.
   static constexpr Microseconds quiet_time_us = 50'000;
   static constexpr Microseconds start_timeout_us = 1'000'000;
   static constexpr Microseconds send_timeout_us = 1'000'000;
   static constexpr Microseconds silence_us = 500'000;
-  /// Between SDO transfers while the robot moves. Their identifiers are lower than that of TICK, which would not get
-  /// onto the bus beside transfers without a gap.
+  /// Between SDO transfers while the robot moves. Their identifiers are lower than that of TICK, so transfers without
+  /// pauses would keep TICK from the bus.
   static constexpr Microseconds pause_us = 300;
-  /// For each answer while the robot is stopped.
+  /// Of each SDO answer during stop().
   static constexpr Microseconds stop_timeout_us = 100'000;
-  /// A COMMIT goes out at least so many ticks before its tick.
+  /// A COMMIT is sent at least this many ticks before its tick.
   static constexpr std::uint32_t commit_lead = 20;
   static constexpr unsigned commit_repeats = 3;
 
@@ -63,30 +85,30 @@ class Master final : private SdoWork {
     std::uint32_t serial = 0;
   };
 
-  /// port: to the bus, for the master alone. setup, the spans in setup and options, and changes, by ascending tick,
-  /// must outlive the master.
+  /// port: used by the master only. changes: by ascending tick. setup, changes and the spans in setup and options must
+  /// outlive the master.
   Master(CanPort& port, const RobotSetup& setup, const MasterOptions& options, std::span<Change> changes = {});
   Master(const Master&) = delete;
   Master& operator=(const Master&) = delete;
 
-  /// Checks set-up and changes, then begins to listen for boot-up messages: modules are switched on (or reset) after
-  /// this. Only once.
+  /// Checks set-up and changes, then waits for boot-up messages: modules must be switched on (or reset) after this
+  /// call. Only the first call has an effect.
   void start(Microseconds now);
-  /// Takes the servos' power, ends the robot's ticks. From any state after start().
+  /// Switches off the servos and the SYNC of the robot. In any state after start().
   void stop(Microseconds now);
 
   void receive(Microseconds now, const CanFrame& frame);
   /// The controller has sent a frame of the master.
   void transmitted(Microseconds now, const CanFrame& frame);
-  /// Does what is due; to be called at next_deadline() or later.
+  /// Handles the deadlines that have passed; must be called at next_deadline() or later.
   void poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const;
 
   [[nodiscard]] MasterState state() const { return state_; }
-  /// What ended the start or the run, or the first thing that went wrong in flight; code `none` if nothing did.
+  /// What ended the start or the run, or the first problem in flight; code `none` without a problem.
   [[nodiscard]] const Problem& problem() const { return problem_; }
   [[nodiscard]] std::optional<Event> take_event() { return events_.take(); }
-  /// Events that were not kept because no_joint took those before.
+  /// Events that were dropped because the log was full.
   [[nodiscard]] std::uint32_t lost_events() const { return events_.overflow(); }
 
   /// Tick of the last SYNC; nothing before SYNC 0.
@@ -100,7 +122,7 @@ class Master final : private SdoWork {
   [[nodiscard]] JointMask booted() const { return booted_; }
 
  private:
-  /// What is waited for.
+  /// What the master waits for.
   enum class Phase : std::uint8_t {
     none,
     scan,
@@ -114,14 +136,14 @@ class Master final : private SdoWork {
     disable,
     sync_off,
   };
-  /// What for.
+  /// What the phases lead to.
   enum class Mission : std::uint8_t { none, bring_up, change, rejoin, stop };
 
   static constexpr std::uint8_t no_joint = 0xFF;
-  /// A change this close to its tick is taken as passed: what is sent to one module now may be heard after it.
+  /// A change counts as passed this many ticks before its tick: a frame that is sent now may be received after it.
   static constexpr std::uint32_t ticks_on_the_way = 2;
 
-  // SdoWork: what is written to each module in the present phase.
+  // SdoWork: the transfers of the present phase.
   [[nodiscard]] std::optional<SdoStep> step(unsigned joint, std::size_t position) override;
   [[nodiscard]] bool on_value(unsigned joint, std::size_t position, std::uint32_t value) override;
   void on_abort(unsigned joint, Address address, AbortCode code) override;
@@ -170,37 +192,37 @@ class Master final : private SdoWork {
   TickFollower ticks_;
   EventLog events_;
 
-  Microseconds now_ = 0;  ///< of the event that is handled
+  Microseconds now_ = 0;  ///< of the present event
   MasterState state_ = MasterState::idle;
   Problem problem_;
   Mission mission_ = Mission::none;
   Phase phase_ = Phase::none;
   Microseconds deadline_ = never;  ///< of the phase
   Microseconds heartbeat_at_ = never;
-  Microseconds silence_at_ = never;  ///< no module is silent before
+  Microseconds silence_at_ = never;  ///< the next check of heartbeats
   Microseconds sync_lost_at_ = never;
 
   JointMask joints_;                          ///< of the mission
   JointMask booted_;                          ///< since start()
   JointMask operational_;                     ///< by their heartbeats
-  JointMask restarted_;                       ///< to be set up again
-  JointMask lost_;                            ///< silent, or without answers: left out of changes
+  JointMask restarted_;                       ///< must be set up again
+  JointMask lost_;                            ///< silent, or without answers; changes leave them out
   JointMask outdated_;                        ///< have missed a commit
-  JointMask given_up_;                        ///< could not be set up again; only a restart of their own helps
-  JointMask start_joints_ = {};               ///< to be sent NMT start
-  JointMask reset_joints_ = {};               ///< to be sent NMT reset node
-  bool start_all_pending_ = false;            ///< the same to all
-  bool pre_operational_all_pending_ = false;  ///< Pre-operational, to all
+  JointMask given_up_;                        ///< could not be set up again; wait for a restart
+  JointMask start_joints_ = {};               ///< NMT start is pending
+  JointMask reset_joints_ = {};               ///< NMT reset node is pending
+  bool start_all_pending_ = false;            ///< NMT start to all is pending
+  bool pre_operational_all_pending_ = false;  ///< NMT enter Pre-operational to all is pending
   bool last_mission_was_rejoin_ = false;
   bool change_failed_ = false;
   std::uint32_t restarts_ = 0;
 
-  std::size_t change_ = 0;       ///< that is staged or committed
-  std::size_t rejoin_from_ = 0;  ///< changes before are written as parameters in force
+  std::size_t change_ = 0;       ///< the one that is staged or committed
+  std::size_t rejoin_from_ = 0;  ///< earlier changes are written as parameters in force
   unsigned commits_queued_ = 0;
   unsigned commits_sent_ = 0;
 
-  std::array<std::uint8_t, 128> joint_of_{};  ///< by node; `no_joint` if it is not in the set-up
+  std::array<std::uint8_t, host_node + 1> joint_of_{};  ///< by node; `no_joint` if it is not in the set-up
   std::array<Microseconds, max_joints> heartbeat_received_at_{};
   std::array<Identity, max_joints> identities_{};
 };

@@ -1,6 +1,6 @@
 #include "shared/master/master.hpp"
 
-// The order of things: what is waited for (phases), what for (missions), and what comes next.
+// The order of phases and missions; master.hpp has the table.
 
 namespace proleg::canopen {
 
@@ -44,7 +44,7 @@ bool Master::is_phase_done() const {
     case Phase::scan:
       return booted_ == all_joints();
     case Phase::quiet:
-      return false;  // until its time is over
+      return false;  // ends by its deadline
     case Phase::commit:
       return commits_sent_ >= commit_repeats;
     case Phase::nmt_start:
@@ -116,7 +116,7 @@ void Master::enter(Phase phase) {
   }
 }
 
-/// What comes after a phase that is done.
+/// Enters the phase after one that is done.
 void Master::next_phase() {
   switch (phase_) {
     case Phase::none:
@@ -210,8 +210,8 @@ void Master::run() {
   enter(Phase::none);
 }
 
-/// Something is to be done while the robot runs: modules that restarted come first, but not twice in a row, so that one
-/// that restarts again and again does not keep changes from being made.
+/// Starts the next mission while the robot runs. Restarted modules come first, but not twice in succession: a module
+/// that keeps restarting must not block changes.
 void Master::begin_mission() {
   if (!restarted_.empty() && !(last_mission_was_rejoin_ && plan_.can_stage())) {
     last_mission_was_rejoin_ = true;
@@ -225,7 +225,7 @@ void Master::begin_mission() {
   change_ = plan_.next();
   change_failed_ = false;
   joints_ = all_joints() - lost_ - restarted_;
-  // Who is too late already need not stage.
+  // A change that is already too late is not staged; begin_commit() drops it.
   enter(plan_[change_].tick < ticks_.tick().value_or(0) + commit_lead ? Phase::none : Phase::stage);
   if (phase_ == Phase::none) {
     begin_commit();
@@ -242,7 +242,7 @@ void Master::drop_change(const Problem& problem) {
 
 void Master::begin_commit() {
   if (mission_ == Mission::rejoin && has_passed(plan_[change_])) {
-    // Its parameters are in force by now; as such they must be written before anything is staged.
+    // The change is in force by now, so its parameters must be written before anything is staged.
     begin_rejoin(joints_);
     return;
   }
@@ -308,8 +308,8 @@ void Master::begin_rejoin(JointMask joints) {
   enter(Phase::set_up);
 }
 
-/// The committed changes that wait for their tick are staged in the restarted modules too, and committed again. All
-/// others take that for a repetition.
+/// Stages the committed changes that wait for their tick in the restarted modules too, and commits them again. All
+/// other modules ignore the repeated commit.
 void Master::stage_for_rejoin() {
   while (change_ < plan_.next() && plan_[change_].dropped) {
     ++change_;
@@ -317,7 +317,7 @@ void Master::stage_for_rejoin() {
   if (joints_.empty()) {
     finish_rejoin();
   } else if (change_ == plan_.next()) {
-    enter(Phase::enable);  // so that the servo has power from the first tick that its module computes
+    enter(Phase::enable);  // the servo needs power from the first tick that its module computes
   } else {
     enter(Phase::stage);
   }

@@ -1,7 +1,7 @@
 #include "shared/canopen/objects.hpp"
 #include "shared/master/master.hpp"
 
-// What the master asks of the modules in each phase, and what it makes of their answers.
+// The SDO transfers of each phase, and how the master handles their results.
 
 namespace proleg::canopen {
 namespace {
@@ -58,7 +58,7 @@ std::optional<SdoStep> Master::set_up_step(unsigned joint, std::size_t position)
   } else if (position == list.size()) {
     return SdoStep{false, object::configuration_crc.address};
   } else if (mission_ == Mission::rejoin) {
-    next = plan_.made_before(rejoin_from_, joint, position - list.size() - 1);
+    next = plan_.parameter_write(rejoin_from_, joint, position - list.size() - 1);
   }
   return next ? std::optional(SdoStep{true, next->address, next->size, next->value}) : std::nullopt;
 }
@@ -101,7 +101,7 @@ void Master::on_abort(unsigned joint, Address address, AbortCode code) {
   static_cast<void>(joint_failed(problem));
 }
 
-/// Nothing more can be done for the joint in this mission. Always false.
+/// Ends the mission for the joint. Always false.
 bool Master::joint_failed(const Problem& problem) {
   const JointMask self = JointMask::of(problem.joint);
   switch (mission_) {

@@ -16,7 +16,7 @@ CanFrame SdoClient::write(Microseconds now, std::uint8_t node, Address address, 
   writing_ = true;
   CanFrame request = start(now, node, address, timeout_us);
   request.data[0] = sdo::with_size(sdo::request_download, size);
-  write_little_endian(request, 4, size, value);
+  write_little_endian(request.data, 4, size, value);
   return request;
 }
 

@@ -7,26 +7,26 @@
 
 namespace proleg::canopen {
 
-/// One transfer to one server, as the client does it. At most one at a time.
+/// The client of one transfer at a time.
 class SdoClient {
  public:
   static constexpr Microseconds default_timeout_us = 500'000;
 
   enum class State : std::uint8_t { idle, waiting, done, aborted };
 
-  /// The request, to be sent on the bus. The answer is awaited until now + timeout_us.
+  /// The request, to be sent on the bus. The deadline of the answer is now + timeout_us.
   [[nodiscard]] CanFrame read(Microseconds now, std::uint8_t node, Address address,
                               Microseconds timeout_us = default_timeout_us);
   /// size: 1, 2 or 4 bytes.
   [[nodiscard]] CanFrame write(Microseconds now, std::uint8_t node, Address address, std::uint8_t size,
                                std::uint32_t value, Microseconds timeout_us = default_timeout_us);
 
-  /// Any frame from the bus. Returns whether it ended the transfer. An answer that belongs to another node, entry or
-  /// kind of transfer is passed over; one that is not expedited ends it with `unknown_command`.
+  /// Any frame from the bus. Returns whether it ended the transfer. It ignores an answer of another node, entry or kind
+  /// of transfer. An answer that is not expedited ends it with `unknown_command`.
   bool receive(const CanFrame& frame);
-  /// Ends the transfer with `timeout` if its time is over.
+  /// Ends the transfer with `timeout` if its deadline has passed.
   void poll(Microseconds now);
-  /// When poll() is to be called; `never` if nothing is awaited.
+  /// When poll() must be called; `never` if no transfer is pending.
   [[nodiscard]] Microseconds next_deadline() const { return state_ == State::waiting ? deadline_ : never; }
 
   [[nodiscard]] State state() const { return state_; }

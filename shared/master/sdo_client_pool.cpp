@@ -1,5 +1,7 @@
 #include "shared/master/sdo_client_pool.hpp"
 
+#include <algorithm>
+
 namespace proleg::canopen {
 
 void SdoClientPool::begin(JointMask joints, Microseconds timeout_us, Microseconds pause_us) {
@@ -104,8 +106,7 @@ void SdoClientPool::finish(Microseconds now, Channel& channel, SdoWork& work) {
 Microseconds SdoClientPool::next_deadline() const {
   Microseconds next = pause_ends_ == 0 ? never : pause_ends_;
   for (const Channel& channel : channels_) {
-    const Microseconds deadline = channel.client.next_deadline();
-    next = deadline < next ? deadline : next;
+    next = std::min(next, channel.client.next_deadline());
   }
   return next;
 }

@@ -91,13 +91,10 @@ void SetupList::visit_all(Visitor& visitor) const {
     if (other == joint_) {
       continue;
     }
-    const auto listen = [&](unsigned channel, std::uint32_t base) {
+    const unsigned channels = second_channel_.contains(other) ? 2 : 1;
+    for (unsigned channel = 0; channel < channels; ++channel) {
       const JointObjects& entry = object::state_frame_identifier[channel];
-      visitor(entry.address(other), entry.first.type, base + setup_.nodes[other]);
-    };
-    listen(0, identifier::state_frame);
-    if (second_channel_.contains(other)) {
-      listen(1, identifier::second_state);
+      visitor(entry.address(other), entry.first.type, identifier::state_frames[channel] + setup_.nodes[other]);
     }
   }
   visitor(object::activate, 1);

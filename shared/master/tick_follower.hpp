@@ -3,32 +3,29 @@
 #include <cstdint>
 #include <optional>
 
+#include "shared/canopen/messages.hpp"
+
 namespace proleg::canopen {
 
-/// Knows the robot's tick from TICK, which announces that of the SYNC behind it, and from the counters of SYNC.
+/// Follows the robot's tick by TICK, which announces the tick of the next SYNC, and by the counters of SYNC.
 class TickFollower {
  public:
   void announce(std::uint32_t tick) { announced_ = tick; }
 
   /// counter: 1 to 128.
   void sync(std::uint8_t counter) {
-    if (announced_ && counter_of(*announced_) == counter) {
+    if (announced_ && sync_counter(*announced_) == counter) {
       tick_ = announced_;
     } else if (tick_) {
-      const std::uint32_t steps = (counter - counter_of(*tick_)) % counters;  // 0: the same once more
-      *tick_ += steps;
+      *tick_ += ticks_until_counter(*tick_, counter);  // 0 for a repeated SYNC
     }
     announced_.reset();
   }
 
-  /// Of the last SYNC; nothing as long as it is not known.
+  /// The tick of the last SYNC; nothing before the first TICK and its SYNC.
   [[nodiscard]] std::optional<std::uint32_t> tick() const { return tick_; }
 
  private:
-  static constexpr std::uint32_t counters = 128;
-
-  [[nodiscard]] static std::uint32_t counter_of(std::uint32_t tick) { return tick % counters + 1U; }
-
   std::optional<std::uint32_t> tick_;
   std::optional<std::uint32_t> announced_;
 };

@@ -211,11 +211,6 @@ std::vector<StackUse> measure_stack(Machine& machine) {
         meter.call("proleg::Kernel::receive", {kernel, joint, 0, modules.frame(joint)});
       }
     }
-
-    const std::uint32_t size = machine.call("proleg::Kernel::snapshot_size", {kernel}, budget).value;
-    const std::uint32_t snapshot = machine.address_of("benchmark_snapshot");
-    meter.call("proleg::Kernel::save", {kernel, snapshot, size});
-    meter.call("proleg::Kernel::restore", {kernel, snapshot, size});
   }
   return meter.uses();
 }

@@ -103,13 +103,13 @@ TEST_P(MachineOf, WorksOnAfterAFault) {
 }
 
 TEST_P(MachineOf, ReadsBackWhatItWrites) {
-  const std::uint32_t address = machine_.address_of("benchmark_snapshot");
+  const std::uint32_t address = machine_.address_of("benchmark_word");
   machine_.write_word(address, 0x12345678);
   EXPECT_EQ(machine_.read_word(address), 0x12345678U);
 }
 
 TEST_P(MachineOf, RejectsToCallWhatIsNoFunction) {
-  EXPECT_TRUE(contains(error_of("benchmark_snapshot", {}, 100), "is not a function"));
+  EXPECT_TRUE(contains(error_of("benchmark_word", {}, 100), "is not a function"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Processors, MachineOf, testing::Values(Cpu::cortex_m0, Cpu::cortex_m4),

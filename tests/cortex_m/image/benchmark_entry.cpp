@@ -9,7 +9,6 @@
 namespace {
 
 constexpr unsigned joint_count = 5;
-constexpr unsigned max_snapshot = 2048;
 
 std::array<proleg::KernelOf<1>, joint_count> kernels;
 proleg::KernelConfiguration configuration;
@@ -22,8 +21,8 @@ extern "C" {
 extern const std::uint32_t size_of_joint_memory = sizeof(proleg::JointMemory);
 extern const std::uint32_t size_of_kernel = sizeof(proleg::Kernel);
 
-/// Room for Kernel::save.
-std::uint8_t benchmark_snapshot[max_snapshot];
+/// For the test of the memory access of the harness.
+std::uint32_t benchmark_word;
 
 /// An algorithm in one slot, on all joints. For Kernel::configure.
 const proleg::KernelConfiguration* benchmark_configuration(std::uint32_t algorithm_id) {

@@ -160,7 +160,7 @@ TEST_P(Refused, LeavesTheModuleUnconfigured) {
 TEST(Objects, EveryRefusalOfTheKernelHasAnAbortCode) {
   using firmware::abort_code_of;
   EXPECT_EQ(abort_code_of(Status::ok), AbortCode::none);
-  for (unsigned status = 1; status <= static_cast<unsigned>(Status::no_room); ++status) {
+  for (unsigned status = 1; status <= static_cast<unsigned>(Status::commit_in_the_past); ++status) {
     EXPECT_NE(abort_code_of(static_cast<Status>(status)), AbortCode::none);
   }
   EXPECT_EQ(abort_code_of(Status::bad_tick_period), AbortCode::refused_by_application);

@@ -283,7 +283,7 @@ TEST(ValueRanges, HaveTheDocumentedAddress) {
   EXPECT_EQ(address_of({ValueKind::parameter, 127, 31, 0}), (Address{0x3FFF, 1})) << "the last of the range";
 }
 
-TEST(ObjectNames, SayIndexAndEntry) {
+TEST(ObjectNames, ConsistOfIndexAndEntry) {
   const auto full = [](Address address) { return std::string(full_name(address).view()); };
   EXPECT_EQ(full({0x1018, 1}), "Identity object: Vendor-ID");
   EXPECT_EQ(full({0x1018, 0}), "Identity object: Highest sub-index supported");

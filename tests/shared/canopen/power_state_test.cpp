@@ -10,7 +10,7 @@ namespace {
 
 using enum PowerState;
 
-/// A row of the standard's command coding: the bits that matter and their values.
+/// A row of the standard's command coding: the relevant bits and their values.
 struct Command {
   const char* name;
   unsigned mask;
@@ -118,12 +118,6 @@ TEST(PowerState, StatuswordCodesTheStateAsTheStandardHasIt) {
           << "state " << static_cast<int>(state) << ", statusword " << statusword;
     }
     EXPECT_EQ(statusword & 0x0210U, 0x0210U) << "voltage enabled, remote";
-  }
-}
-
-TEST(PowerState, OnlyOperationEnabledAndQuickStopActiveGivePulses) {
-  for (const PowerState state : states) {
-    EXPECT_EQ(drive_in(state).pulses(), state == operation_enabled || state == quick_stop_active);
   }
 }
 

@@ -121,7 +121,7 @@ TEST_F(Staging, IsClosedForACommittedTransactionAndOpenForTheNext) {
   EXPECT_EQ(kernel.parameter(0, 0, amplitude), test::degrees(20));
 }
 
-// A ramp is a row of commits.
+// A ramp is a series of commits.
 TEST_F(Commit, ManyMayWaitEachForItsOwnTick) {
   for (std::uint16_t i = 0; i < max_transactions; ++i) {
     ASSERT_EQ(kernel.stage(i, 0, 0, amplitude, test::degrees(30 + i)), Status::ok) << i;
@@ -147,7 +147,7 @@ TEST_F(Commit, OfTheSameTickTakeEffectInTheOrderOfTheirCommits) {
   EXPECT_EQ(kernel.parameter(0, 0, amplitude), test::degrees(15));
 }
 
-// A robot-wide change need not touch every joint; the modules it does not touch hear the commit all the same.
+// A robot-wide change need not touch every joint; the other modules receive the commit too.
 TEST_F(Commit, MayHaveNothingForAJointOnceTheTransactionIsOpen) {
   ASSERT_EQ(kernel.open(9), Status::ok);
   EXPECT_EQ(kernel.open_transaction(), 9);
@@ -157,7 +157,7 @@ TEST_F(Commit, MayHaveNothingForAJointOnceTheTransactionIsOpen) {
   EXPECT_EQ(kernel.commit(9, 3), Status::ok);
 }
 
-TEST_F(Staging, TellsWhatIsStaged) {
+TEST_F(Staging, GivesTheStagedValues) {
   std::int32_t value = 0;
   EXPECT_FALSE(kernel.staged_value(0, 1, amplitude, false, value));
   ASSERT_EQ(kernel.stage(1, 0, 1, amplitude, test::degrees(20)), Status::ok);
@@ -239,7 +239,7 @@ TEST_F(Staging, KeepsTheOtherValuesWhenOneIsRefused) {
   EXPECT_EQ(kernel.parameter(0, 0, amplitude), test::degrees(20));
 }
 
-// A module is set up, told what will change early in the run, and then starts from state 0.
+// A module is set up, receives the first changes, and then starts from state 0.
 TEST_F(Staging, SurvivesAResetAndNotANewConfiguration) {
   ASSERT_EQ(kernel.stage(1, 0, 0, amplitude, test::degrees(20)), Status::ok);
   ASSERT_EQ(kernel.commit(1, 5), Status::ok);

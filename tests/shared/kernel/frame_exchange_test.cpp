@@ -155,7 +155,7 @@ TEST_F(Receive, RefusesAFrameThatComesATickEarly) {
   EXPECT_FALSE(receiver.receive(2, 0, sender.frame(2, 0)));
 }
 
-TEST_F(Receive, KnowsTheTickModulo256) {
+TEST_F(Receive, ComparesTheTickModulo256) {
   test::run(sender, 256);
   EXPECT_EQ(sender.frame(2, 0).label(), 0);
   EXPECT_TRUE(receiver.receive(2, 0, sender.frame(2, 0))) << "a tick is 8 bits on the wire";

@@ -89,7 +89,7 @@ TEST_P(Join, BringsTheExtendedSineWithinAStepOfThePhase) {
   }
 }
 
-// It starts beside its neighbours, so that nobody is pulled far away.
+// It starts beside its neighbours, so that no joint is pulled far away.
 TEST_P(Join, LeavesCoupledOscillatorsWithinADegreeOfPhase) {
   restart(test::one_slot(test::algorithm(test::coupled), joints));
   first_tick();
@@ -139,7 +139,7 @@ TEST(JoinAfterCommits, CatchesUpWithTheParameters) {
   EXPECT_EQ(kernel.parameter(0, 0, offset), test::degrees(3));
 }
 
-TEST(FrameFlags, SayFaultAndHoldoverUntilTheyAreTakenBack) {
+TEST(FrameFlags, HoldFaultAndHoldoverUntilTheyAreCleared) {
   KernelOf<1> kernel;
   ASSERT_EQ(kernel.configure(test::one_slot(test::algorithm(test::sinusoidal), 1), 0), Status::ok);
   kernel.set_flags(0xFF);

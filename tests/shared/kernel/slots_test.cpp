@@ -68,7 +68,7 @@ TEST_F(Slots, HoldAParameterForEachJoint) {
   EXPECT_EQ(kernel.parameter(0, 2, 0), test::degrees(34));
 }
 
-TEST_F(Slots, AreCutToNinetyDegreesUnlessToldOtherwise) {
+TEST_F(Slots, AreCutToNinetyDegreesByDefault) {
   direct_access_on({0b1111, 0b1111});
   set_angle(0, 0, 60);
   set_angle(1, 0, 50);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "kernel_snapshot.hpp"
 #include "module_chain.hpp"
 #include "robot.hpp"
 
@@ -20,11 +21,7 @@ KernelConfiguration two_slots() {
   return configuration;
 }
 
-std::vector<std::uint8_t> saved(const Kernel& kernel) {
-  std::vector<std::uint8_t> bytes(kernel.snapshot_size());
-  EXPECT_EQ(kernel.save(bytes), Status::ok);
-  return bytes;
-}
+std::vector<std::uint8_t> saved(const Kernel& kernel) { return KernelSnapshot::save(kernel); }
 
 class Snapshot : public testing::Test {
  protected:
@@ -59,17 +56,17 @@ class Snapshot : public testing::Test {
 TEST_F(Snapshot, ContinuesBitForBitInAFreshKernel) {
   KernelOf<joints> fresh;
   ASSERT_EQ(fresh.configure(two_slots(), 0), Status::ok);
-  ASSERT_EQ(fresh.restore(saved(kernel)), Status::ok);
+  ASSERT_TRUE(KernelSnapshot::restore(fresh, saved(kernel)));
   EXPECT_EQ(fresh.tick(), 123U);
   expect_same_future(fresh, 300);
 }
 
-TEST_F(Snapshot, TakesAKernelBackToWhereItWas) {
+TEST_F(Snapshot, ReturnsAKernelToAnEarlierState) {
   const std::vector<std::uint8_t> before = saved(kernel);
   std::vector<std::int32_t> first;
   std::vector<std::int32_t> second;
   for (std::vector<std::int32_t>* angles : {&first, &second}) {
-    ASSERT_EQ(kernel.restore(before), Status::ok);
+    ASSERT_TRUE(KernelSnapshot::restore(kernel, before));
     for (unsigned tick = 0; tick < 101; ++tick) {
       kernel.advance();
       angles->push_back(kernel.setpoint(tick % joints));
@@ -83,19 +80,19 @@ TEST_F(Snapshot, KeepsStagedValuesAndTheCommitThatWaits) {
   ASSERT_EQ(kernel.stage(5, 0, 1, amplitude, test::degrees(3)), Status::ok);
   KernelOf<joints> staged;
   ASSERT_EQ(staged.configure(two_slots(), 0), Status::ok);
-  ASSERT_EQ(staged.restore(saved(kernel)), Status::ok);
+  ASSERT_TRUE(KernelSnapshot::restore(staged, saved(kernel)));
   ASSERT_EQ(kernel.commit(5, 150), Status::ok);
   ASSERT_EQ(staged.commit(5, 150), Status::ok);
   KernelOf<joints> committed;
   ASSERT_EQ(committed.configure(two_slots(), 0), Status::ok);
-  ASSERT_EQ(committed.restore(saved(kernel)), Status::ok);
+  ASSERT_TRUE(KernelSnapshot::restore(committed, saved(kernel)));
   expect_same_future(staged, 50);
   test::run(committed, 50);
   EXPECT_EQ(saved(committed), saved(kernel));
   EXPECT_EQ(committed.parameter(0, 1, amplitude), test::degrees(3));
 }
 
-TEST_F(Snapshot, OfAModuleKeepsTheFramesItHeard) {
+TEST_F(Snapshot, OfAModuleKeepsTheReceivedFrames) {
   test::ModuleChain chain(two_slots());
   for (int tick = 0; tick < 50; ++tick) {
     chain.tick();
@@ -103,7 +100,7 @@ TEST_F(Snapshot, OfAModuleKeepsTheFramesItHeard) {
   chain.exchange();
   KernelOf<1> restarted;
   ASSERT_EQ(restarted.configure(two_slots(), 2), Status::ok);
-  ASSERT_EQ(restarted.restore(saved(chain[2])), Status::ok);
+  ASSERT_TRUE(KernelSnapshot::restore(restarted, saved(chain[2])));
   chain[2].advance();
   restarted.advance();
   EXPECT_EQ(saved(restarted), saved(chain[2]));
@@ -125,10 +122,10 @@ TEST_F(Snapshot, HasTheSameBytesForTheSameHistory) {
 }
 
 // A value that was staged and took effect, and the same value set at once, are one state.
-TEST_F(Snapshot, HasTheSameBytesHoweverAParameterCameToItsValue) {
+TEST_F(Snapshot, HasTheSameBytesForAParameterSetAtOnceOrCommitted) {
   KernelOf<joints> other;
   ASSERT_EQ(other.configure(two_slots(), 0), Status::ok);
-  ASSERT_EQ(other.restore(saved(kernel)), Status::ok);
+  ASSERT_TRUE(KernelSnapshot::restore(other, saved(kernel)));
   test::set(other, 0, 1, "amplitude", test::degrees(3));
   const unsigned amplitude = test::parameter_index(kernel, 0, "amplitude");
   ASSERT_EQ(kernel.stage(4, 0, 2, amplitude, test::degrees(8)), Status::ok);
@@ -139,54 +136,49 @@ TEST_F(Snapshot, HasTheSameBytesHoweverAParameterCameToItsValue) {
   EXPECT_EQ(saved(other), saved(kernel));
 }
 
-TEST_F(Snapshot, IsRefusedInAnyOtherSize) {
+TEST_F(Snapshot, IsRejectedInAnyOtherSize) {
   const std::vector<std::uint8_t> before = saved(kernel);
   for (const std::size_t size : {std::size_t{0}, std::size_t{1}, before.size() - 1, before.size() + 1}) {
     std::vector<std::uint8_t> wrong = before;
     wrong.resize(size);
-    EXPECT_EQ(kernel.restore(wrong), Status::bad_snapshot) << size;
+    EXPECT_FALSE(KernelSnapshot::restore(kernel, wrong)) << size;
   }
   EXPECT_EQ(saved(kernel), before);
 }
 
-TEST_F(Snapshot, NeedsRoom) {
-  std::vector<std::uint8_t> small(kernel.snapshot_size() - 1);
-  EXPECT_EQ(kernel.save(small), Status::no_room);
-}
-
-TEST_F(Snapshot, IsRefusedByAKernelWithAnotherConfiguration) {
+TEST_F(Snapshot, IsRejectedByAKernelWithAnotherConfiguration) {
   const std::vector<std::uint8_t> snapshot = saved(kernel);
-  const auto refused = [&](const KernelConfiguration& configuration) {
+  const auto expect_rejected = [&](const KernelConfiguration& configuration) {
     KernelOf<joints> other;
     EXPECT_EQ(other.configure(configuration, 0), Status::ok);
     test::run(other, 3);
     const std::vector<std::uint8_t> before = saved(other);
-    EXPECT_EQ(other.restore(snapshot), Status::bad_snapshot);
+    EXPECT_FALSE(KernelSnapshot::restore(other, snapshot));
     EXPECT_EQ(saved(other), before);
   };
   KernelConfiguration other = two_slots();
   other.tick_period_us = 20'000;
-  refused(other);
+  expect_rejected(other);
   other = two_slots();
   other.joint_count = 6;
-  refused(other);
+  expect_rejected(other);
   other = two_slots();
   std::swap(other.slots[0], other.slots[2]);
-  refused(other);
+  expect_rejected(other);
   other = two_slots();
   other.slots[2].group = JointMask(0b10101);
-  refused(other);
+  expect_rejected(other);
   other = two_slots();
   other.slots[2].algorithm = &test::algorithm(test::sinusoidal);
-  refused(other);
+  expect_rejected(other);
 }
 
-TEST_F(Snapshot, OfOneModuleIsRefusedByAnother) {
+TEST_F(Snapshot, OfOneModuleIsRejectedByAnother) {
   test::ModuleChain chain(test::one_slot(test::algorithm(test::coupled), joints));
-  EXPECT_EQ(chain[1].restore(saved(chain[2])), Status::bad_snapshot);
+  EXPECT_FALSE(KernelSnapshot::restore(chain[1], saved(chain[2])));
 }
 
-TEST_F(Snapshot, IsRefusedWithAParameterOutOfRange) {
+TEST_F(Snapshot, IsRejectedWithAParameterOutOfRange) {
   std::vector<std::uint8_t> snapshot = saved(kernel);
   const auto amplitude = static_cast<std::uint32_t>(test::degrees(31.25));
   const std::array<std::uint8_t, 4> bytes = {
@@ -196,24 +188,24 @@ TEST_F(Snapshot, IsRefusedWithAParameterOutOfRange) {
   ASSERT_NE(found, snapshot.end());
   found[3] = 0x80;  // negative now
   const std::vector<std::uint8_t> before = saved(kernel);
-  EXPECT_EQ(kernel.restore(snapshot), Status::bad_snapshot);
+  EXPECT_FALSE(KernelSnapshot::restore(kernel, snapshot));
   EXPECT_EQ(saved(kernel), before);
 }
 
-// Whatever the bytes are, the kernel refuses them and stays as it was, or takes them and goes on.
-TEST_F(Snapshot, WithAnyCorruptedByteIsRefusedOrLeavesAKernelThatRuns) {
+// Any bytes are rejected, and the kernel stays as it was, or accepted, and the kernel continues.
+TEST_F(Snapshot, WithAnyCorruptedByteIsRejectedOrLeavesAKernelThatRuns) {
   const std::vector<std::uint8_t> good = saved(kernel);
   for (std::size_t i = 0; i < good.size(); ++i) {
     for (const std::uint8_t flip : {std::uint8_t{0x01}, std::uint8_t{0x80}, std::uint8_t{0xFF}}) {
       std::vector<std::uint8_t> bad = good;
       bad[i] = static_cast<std::uint8_t>(bad[i] ^ flip);
-      ASSERT_EQ(kernel.restore(good), Status::ok);
-      if (kernel.restore(bad) != Status::ok) {
+      ASSERT_TRUE(KernelSnapshot::restore(kernel, good));
+      if (!KernelSnapshot::restore(kernel, bad)) {
         ASSERT_EQ(saved(kernel), good) << "byte " << i;
         continue;
       }
       test::run(kernel, 2);
-      ASSERT_EQ(kernel.restore(saved(kernel)), Status::ok) << "byte " << i;
+      ASSERT_TRUE(KernelSnapshot::restore(kernel, saved(kernel))) << "byte " << i;
     }
   }
 }

@@ -1,0 +1,55 @@
+#pragma once
+
+// What a kernel keeps for each of its joints.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "shared/kernel/kernel_configuration.hpp"
+
+namespace proleg {
+
+/// Values of one joint that are staged at the same time, over all transactions.
+inline constexpr std::size_t max_staged_values = 64;
+
+/// A change of one value of a joint that waits for its transaction.
+struct StagedValue {
+  std::int32_t value;
+  std::uint8_t transaction;  ///< position in the list of Staging
+  std::uint8_t slot;
+  std::uint8_t number;  ///< of the parameter or internal value
+  bool internal;
+};
+
+struct StagedValues {
+  std::array<StagedValue, max_staged_values> values;
+  std::uint8_t count;
+};
+
+/// A slot on a joint.
+struct SlotMemory {
+  JointContext context;
+  Neighbour ahead;
+  Neighbour behind;
+  std::array<std::int32_t, max_parameters> parameters;
+  std::array<std::int32_t, max_derived> derived;
+  std::array<std::array<std::int32_t, max_internal_values>, 2> values;  ///< two buffers, never in place
+  const Declaration* broadcast;                                         ///< null if the slot sends nothing
+  std::uint8_t channel;
+  bool active;
+  std::uint8_t sensed_joints;  ///< number of joints whose contacts the algorithm receives: all, or 0
+};
+
+struct JointMemory {
+  std::array<SlotMemory, max_slots> slots;
+  StagedValues staged;
+  std::int32_t lower_limit;
+  std::int32_t upper_limit;
+  std::int32_t previous_setpoint;
+  std::int32_t setpoint;
+  std::uint8_t contacts;
+  bool limited;
+};
+
+}  // namespace proleg

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "shared/gait/actuation_module.hpp"
+
+namespace proleg {
+
+inline constexpr std::size_t max_slots = 4;
+/// State frames that a joint sends in a tick: one for its first broadcasting slot, one for its second.
+inline constexpr std::size_t max_channels = 2;
+
+/// An algorithm on a group of joints.
+struct Slot {
+  const ActuationModule* algorithm = nullptr;  ///< null: the slot is empty
+  JointMask group;
+
+  /// Whether neighbours receive the algorithm's state.
+  [[nodiscard]] bool broadcasts() const { return algorithm != nullptr && !algorithm->declaration().frame.empty(); }
+  /// 0 if the slot is empty.
+  [[nodiscard]] std::uint8_t algorithm_id() const {
+    return algorithm == nullptr ? std::uint8_t{0} : algorithm->declaration().id;
+  }
+  /// The group; no joints if the slot is empty.
+  [[nodiscard]] JointMask driven_joints() const { return algorithm == nullptr ? JointMask() : group; }
+};
+
+/// What the kernels of all joints must agree on.
+struct KernelConfiguration {
+  std::uint8_t joint_count = 0;
+  std::uint32_t tick_period_us = 10'000;
+  std::uint64_t seed = 1;  ///< of the noise at reset
+  std::array<Slot, max_slots> slots;
+
+  /// Joints that send their state in this slot in their second frame, because an earlier slot of theirs broadcasts.
+  [[nodiscard]] JointMask second_channel(unsigned slot) const;
+  /// Joints that send two state frames in a tick.
+  [[nodiscard]] JointMask second_channel_senders() const;
+};
+
+}  // namespace proleg

@@ -29,8 +29,8 @@ struct Distortion {
   std::int32_t value;
 };
 
-/// Draws what happens to the robot. Every draw is a statement of its own: within one expression C++ leaves the order
-/// open, and two compilers would play two different cases.
+/// Draws the events of a case. Every draw is a separate statement: within one expression C++ does not fix the order,
+/// and two compilers would play different cases.
 class Dice {
  public:
   explicit Dice(Pcg32 noise) : noise_(noise) {}
@@ -106,7 +106,7 @@ class Run {
 
  private:
   static constexpr std::uint32_t never = 0xFFFFFFFFU;
-  static constexpr std::uint32_t longest_wait = 50;
+  static constexpr std::uint32_t max_wait = 50;
 
   void expect_ok(Status status) {
     if (status_ == Status::ok) {
@@ -119,7 +119,7 @@ class Run {
   }
 
   void configure() {
-    // A list of its own, so that a new algorithm in the registry leaves the cases of the others as they are.
+    // Not the registry, so that a new algorithm does not change the cases of the others.
     constexpr std::array<std::uint8_t, 5> companions{1, 2, 3, 4, 127};
     configuration_.joint_count = joint_count;
     if (dice_.one_in(4)) {
@@ -167,8 +167,8 @@ class Run {
   }
 
   void draw_commit(std::uint32_t earliest, Commit& commit) {
-    commit.staged_before = earliest + dice_.below(tick_count / 2 - longest_wait);
-    commit.tick = commit.staged_before + dice_.below(longest_wait);
+    commit.staged_before = earliest + dice_.below(tick_count / 2 - max_wait);
+    commit.tick = commit.staged_before + dice_.below(max_wait);
     for (Change& change : commit.changes) {
       draw_target(change.slot, change.joint);
       const std::span<const Parameter> parameters =
@@ -201,7 +201,7 @@ class Run {
             kernel_of(change.joint).stage(transaction, change.slot, change.joint, change.parameter, change.value));
       }
       for (Kernel* kernel : kernels_) {
-        // The commit is broadcast: a module without a change of its own hears it as well and has nothing staged.
+        // The commit is broadcast: a module without a change receives it too and has nothing staged.
         const Status status = kernel->commit(transaction, commit.tick);
         if (status != Status::nothing_staged) {
           expect_ok(status);

@@ -1,5 +1,5 @@
 // The same parameters, seeds and contacts give the same set-points, bit for bit: with one kernel for the robot or one
-// in each module, and whoever has compiled them. golden.tsv holds the hashes, so that a change of behaviour shows too.
+// in each module, and with any compiler. golden.tsv holds the hashes, so that a change of behaviour shows too.
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Who can play the identity cases: this program itself, a program built by another compiler, an emulated Cortex-M.
+// Players of the identity cases: this program, a program built by another compiler, an emulated Cortex-M.
 
 #include <cstdint>
 #include <memory>
@@ -31,7 +31,7 @@ class Player {
   Player& operator=(const Player&) = delete;
   virtual ~Player() = default;
 
-  /// Plays a case. Cases are asked for in ascending order, without gaps. The result lives until the next call.
+  /// Plays a case. Cases are asked for in ascending order, without gaps. The result is valid until the next call.
   /// PlayerError if the case did not run as it should.
   virtual const Trace& play(const ActuationModule& algorithm, std::uint32_t number) = 0;
 };

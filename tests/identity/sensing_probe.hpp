@@ -4,7 +4,7 @@
 
 namespace proleg::identity {
 
-/// An algorithm for tests only: its output depends on the contacts of all links, and for ever, so that a single
+/// An algorithm for tests only: its output depends on the contacts of all links up to now, so that a single
 /// contact of a wrong age shows in every later set-point.
 [[nodiscard]] const SensingModule& sensing_probe();
 

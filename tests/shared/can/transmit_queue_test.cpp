@@ -58,7 +58,7 @@ TEST(TransmitQueue, LetsLowerIdentifiersGoFirstAndEqualOnesInTheirOrder) {
   EXPECT_EQ(port.taken,
             (std::vector<CanFrame>{frame(0x080), frame(0x100, 1), frame(0x100, 2), frame(0x200), frame(0x300)}));
   queue.sent();
-  EXPECT_EQ(port.taken.size(), 5U) << "nothing waits any more";
+  EXPECT_EQ(port.taken.size(), 5U) << "no frame waits";
 }
 
 TEST(TransmitQueue, RefusesWhatItHasNoRoomForAndKeepsTheRest) {
@@ -74,7 +74,7 @@ TEST(TransmitQueue, RefusesWhatItHasNoRoomForAndKeepsTheRest) {
   EXPECT_EQ(port.taken, std::vector<CanFrame>{frame(0x200)});
 }
 
-TEST(TransmitQueue, ForgetsWhatWaitsWhenCleared) {
+TEST(TransmitQueue, DropsItsFramesWhenCleared) {
   Mailboxes port(0);
   TransmitQueue queue(port);
   EXPECT_TRUE(queue.push(frame(0x200)));

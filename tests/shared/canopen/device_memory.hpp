@@ -10,7 +10,7 @@
 
 namespace proleg::test {
 
-/// A device that remembers what is written and checks that it was allowed to be.
+/// A device that keeps what is written and checks that writing it is allowed.
 class DeviceMemory final : public canopen::ObjectAccess {
  public:
   canopen::AbortCode read(const canopen::Object& object, std::uint32_t& value) override {

@@ -27,15 +27,15 @@ class Check:
     def __init__(self, text):
         self.eds = parse(text)
         self.text = text
-        self.complaints = []
+        self.errors = []
         self.file_info()
         self.device_info()
         self.objects()
         self.pdos()
 
-    def expect(self, condition, complaint):
+    def expect(self, condition, error):
         if not condition:
-            self.complaints.append(complaint)
+            self.errors.append(error)
 
     def get(self, section, key, pattern=None):
         value = self.eds.get(section, key, fallback=None)
@@ -113,7 +113,7 @@ class Check:
     def object(self, index):
         section = f"{index:04X}"
         if not self.eds.has_section(section):
-            self.complaints.append(f"[{section}] is missing")
+            self.errors.append(f"[{section}] is missing")
             return
         code = self.number(section, "ObjectType")
         self.expect(code in (VARIABLE, ARRAY, RECORD), f"[{section}] ObjectType={code}")
@@ -133,7 +133,7 @@ class Check:
                         f"[{section}sub0] is not the highest sub-index")
             self.expect(self.number(f"{section}sub0", "DataType") == 5, f"[{section}sub0] is not an UNSIGNED8")
         else:
-            self.complaints.append(f"[{section}] has no sub-index 0")
+            self.errors.append(f"[{section}] has no sub-index 0")
         if code == ARRAY:
             types = {self.get(sub, "DataType") for sub in subs if not sub.endswith("sub0")}
             self.expect(len(types) == 1, f"[{section}] is an array of {types}")
@@ -151,7 +151,7 @@ class Check:
         self.expect(access in ACCESS, f"[{section}] AccessType={access}")
         kind = self.number(section, "DataType")
         if kind not in TYPES:
-            self.complaints.append(f"[{section}] DataType={kind}")
+            self.errors.append(f"[{section}] DataType={kind}")
             return
         bits, signed = TYPES[kind]
         low, high = (-2 ** (bits - 1), 2 ** (bits - 1) - 1) if signed else (0, 2 ** bits - 1)
@@ -188,7 +188,7 @@ class Check:
                     entry = self.number(f"{index:04X}sub{sub}", "DefaultValue")
                     target = self.entries.get((entry >> 16, entry >> 8 & 0xFF))
                     if target is None:
-                        self.complaints.append(f"[{index:04X}sub{sub}] maps {entry:08X}, which does not exist")
+                        self.errors.append(f"[{index:04X}sub{sub}] maps {entry:08X}, which does not exist")
                         continue
                     mapped.add(target)
                     bits += entry & 0xFF
@@ -207,7 +207,7 @@ class EdsTest(unittest.TestCase):
     text = ""
 
     def test_the_file_is_as_the_standard_wants_it(self):
-        self.assertEqual(Check(self.text).complaints, [])
+        self.assertEqual(Check(self.text).errors, [])
 
     def test_it_describes_a_module(self):
         check = Check(self.text)
@@ -246,7 +246,7 @@ class EdsTest(unittest.TestCase):
             with self.subTest(pattern=pattern):
                 wrong, count = re.subn(pattern, replacement, self.text, count=1)
                 self.assertEqual(count, 1)
-                self.assertNotEqual(Check(wrong).complaints, [])
+                self.assertNotEqual(Check(wrong).errors, [])
 
 
 if __name__ == "__main__":

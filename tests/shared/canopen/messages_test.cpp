@@ -70,7 +70,7 @@ TEST(Messages, NegativeAnglesAndTemperaturesSurvive) {
   EXPECT_EQ(decode_monitoring(encode(monitoring)), monitoring);
 }
 
-TEST(Messages, AMonitoredAngleIsRoundedHalfUpAndSaysWhetherItWasMeasured) {
+TEST(Messages, AMonitoredAngleIsRoundedHalfUpAndMarkedIfNotMeasured) {
   EXPECT_EQ(monitored_angle(std::nullopt), -0x8000);
   EXPECT_EQ(monitored_angle(1 << 30), 1 << 14) << "90 degrees";
   EXPECT_EQ(monitored_angle(-(1 << 30)), -(1 << 14));
@@ -79,7 +79,7 @@ TEST(Messages, AMonitoredAngleIsRoundedHalfUpAndSaysWhetherItWasMeasured) {
   EXPECT_EQ(monitored_angle(-0x8000), 0);
   EXPECT_EQ(monitored_angle(-0x8001), -1);
   EXPECT_EQ(monitored_angle(0x7FFFFFFF), 0x7FFF);
-  EXPECT_EQ(monitored_angle(-0x7FFFFFFF - 1), -0x7FFF) << "measured, whatever the angle";
+  EXPECT_EQ(monitored_angle(-0x7FFFFFFF - 1), -0x7FFF) << "the minimum, which is not the mark";
 }
 
 /// Every message with a decoder, behind one face: decodes and encodes again.

@@ -60,7 +60,7 @@ TEST_F(SdoServer, WritesEverySizeIndicatedOrNot) {
   EXPECT_EQ(device.value({0x1006, 0}), 10'000U);
 }
 
-TEST_F(SdoServer, SaysWhyItRefuses) {
+TEST_F(SdoServer, GivesTheReasonOfARefusal) {
   EXPECT_EQ(answer("603 [8] 40 00 30 01 00 00 00 00"), "583 [8] 80 00 30 01 00 00 02 06") << "no such object";
   EXPECT_EQ(answer("603 [8] 23 00 40 01 00 00 00 00"), "583 [8] 80 00 40 01 00 00 02 06");
   EXPECT_EQ(answer("603 [8] 40 80 40 05 00 00 00 00"), "583 [8] 80 80 40 05 11 00 09 06") << "no such sub-index";

@@ -79,7 +79,7 @@ TEST(MasterChanges, ThoseThatFitAreCommittedBeforeTheStart) {
   for (unsigned joint = 0; joint < 3; ++joint) {
     EXPECT_EQ(robot.module(joint).effects, planned_effects(robot, joint));
   }
-  EXPECT_EQ(robot.complaints(), 0U);
+  EXPECT_EQ(robot.emergencies(), 0U);
   EXPECT_EQ(robot.master().problem().code, ProblemCode::none);
   check_commits(robot, 20);
 }
@@ -123,7 +123,7 @@ TEST(MasterChanges, RandomChangesComeIntoForceInEveryModuleAtTheirTick) {
     for (unsigned joint = 0; joint < joints; ++joint) {
       EXPECT_EQ(robot.module(joint).effects, planned_effects(robot, joint));
     }
-    EXPECT_EQ(robot.complaints(), 0U);
+    EXPECT_EQ(robot.emergencies(), 0U);
     check_commits(robot, 20);
   }
 }
@@ -171,7 +171,7 @@ TEST(MasterChanges, OneThatComesTooLateIsReportedAndDroppedAndTheRobotGoesOn) {
   EXPECT_EQ(robot.module(1).effects, planned_effects(robot, 1));
   EXPECT_EQ(value_of(robot, 0, 0), 1234U);
   EXPECT_EQ(value_of(robot, 1, 0), 1235U);
-  EXPECT_EQ(robot.complaints(), 0U);
+  EXPECT_EQ(robot.emergencies(), 0U);
   check_commits(robot, 20);
 }
 
@@ -181,9 +181,9 @@ TEST(MasterChanges, OneThatAModuleRefusesInFlightIsDroppedForAll) {
     plan.push_back({50 + i * 25, for_all(4, 0, static_cast<std::int32_t>(i))});
   }
   ScriptedRobot robot(4, plan);
-  robot.module(2).refusal = [](const Object& entry, bool, std::uint32_t value) {
+  robot.module(2).refusal = [](Address address, bool, std::uint32_t value) {
     const Address staged{static_cast<std::uint16_t>(in_force(0).index + 0x1000), 1};
-    return entry.address == staged && value == 33 + 2 ? AbortCode::above_maximum : AbortCode::none;
+    return address == staged && value == 33 + 2 ? AbortCode::above_maximum : AbortCode::none;
   };
   robot.start();
   ASSERT_TRUE(robot.run_until_running());
@@ -225,10 +225,10 @@ void expect_values_of_plan(ScriptedRobot& robot) {
       }
     }
   }
-  for (const auto& [place, value] : values) {
-    EXPECT_EQ(robot.module(place.first).value(in_force(static_cast<std::uint8_t>(place.second))),
+  for (const auto& [key, value] : values) {
+    EXPECT_EQ(robot.module(key.first).value(in_force(static_cast<std::uint8_t>(key.second))),
               static_cast<std::uint32_t>(value))
-        << "joint " << place.first << " parameter " << place.second;
+        << "joint " << key.first << " parameter " << key.second;
   }
 }
 
@@ -250,11 +250,11 @@ TEST(MasterRestart, ARestartedModuleGetsItsSetupAndEverythingThatHasChanged) {
       EXPECT_FALSE(kind && kind->kind == ValueKind::internal_value && value + 60 <= robot.master().tick().value_or(0))
           << "an old distortion";
     }
-    robot.run_for(105'000);  // until it has heard a TICK
+    robot.run_for(105'000);  // until it has received a TICK
     expect_values_of_plan(robot);
     ASSERT_TRUE(robot.run_to_tick(620));
     expect_values_of_plan(robot);
-    EXPECT_EQ(robot.complaints(), 0U);
+    EXPECT_EQ(robot.emergencies(), 0U);
     EXPECT_EQ(robot.master().problem().code, ProblemCode::none);
     EXPECT_EQ(robot.master().state(), MasterState::running);
     // The others have seen nothing of it.
@@ -281,7 +281,7 @@ TEST(MasterRestart, ChangesMayPassWhileAModuleIsSetUpAgain) {
     ASSERT_TRUE(robot.run_to_tick(280));
     EXPECT_EQ(robot.count(EventKind::rejoined), 1U);
     expect_values_of_plan(robot);
-    EXPECT_EQ(robot.complaints(), 0U);
+    EXPECT_EQ(robot.emergencies(), 0U);
     EXPECT_EQ(robot.module(2).power(), PowerState::operation_enabled);
   }
 }
@@ -358,7 +358,7 @@ TEST(MasterRestart, WithoutSyncTheRobotHasStopped) {
   EXPECT_EQ(robot.master().problem().code, ProblemCode::sync_lost);
 }
 
-TEST(MasterRestart, AModuleThatRestartsAgainAndAgainKeepsNobodyFromChanging) {
+TEST(MasterRestart, AModuleThatKeepsRestartingDoesNotBlockChanges) {
   ScriptedRobot robot(4, steady_plan(4, 900));
   robot.start();
   ASSERT_TRUE(robot.run_until_running());
@@ -381,13 +381,13 @@ TEST(MasterRestart, AModuleThatCannotBeSetUpAgainIsNamedAndLeftAlone) {
   robot.start();
   ASSERT_TRUE(robot.run_until_running());
   robot.run_for(500'000);
-  robot.module(2).refusal = [](const Object& entry, bool writes, std::uint32_t) {
-    return writes && entry.address == object::upper_limit.address ? AbortCode::general_error : AbortCode::none;
+  robot.module(2).refusal = [](Address address, bool writes, std::uint32_t) {
+    return writes && address == object::upper_limit.address ? AbortCode::general_error : AbortCode::none;
   };
   robot.module(2).power_on(robot.now());
   ASSERT_TRUE(robot.run_to_tick(620));
   EXPECT_EQ(robot.count(EventKind::rejoin_failed), 1U);
-  EXPECT_EQ(robot.module(2).boots, 2U) << "it is not reset for ever";
+  EXPECT_EQ(robot.module(2).boots, 2U) << "it is reset once";
   EXPECT_EQ(robot.count(EventKind::heartbeat_returned), 0U) << "nor asked for anything";
   EXPECT_EQ(robot.master().state(), MasterState::running);
   for (const unsigned joint : {0U, 1U, 3U}) {
@@ -412,17 +412,17 @@ TEST(MasterSilence, IsReportedOnceAndChangesAreMadeWithoutTheModule) {
   }
 }
 
-TEST(MasterSilence, AModuleThatHasMissedAChangeIsResetWhenItIsHeardAgain) {
+TEST(MasterSilence, AModuleThatHasMissedAChangeIsResetWhenItsHeartbeatReturns) {
   ScriptedRobot robot(4, steady_plan(4, 900));
   robot.start();
   ASSERT_TRUE(robot.run_until_running());
   robot.run_for(500'000);
   robot.module(3).silent = true;
-  robot.module(3).deaf = true;
+  robot.module(3).ignores_sdo = true;
   ASSERT_TRUE(robot.run_to_tick(400));
   EXPECT_EQ(robot.count(EventKind::silent), 1U);
   robot.module(3).silent = false;
-  robot.module(3).deaf = false;
+  robot.module(3).ignores_sdo = false;
   ASSERT_TRUE(robot.run_to_tick(920));
   EXPECT_EQ(robot.count(EventKind::heartbeat_returned), 1U);
   EXPECT_EQ(robot.module(3).boots, 2U);
@@ -458,15 +458,15 @@ TEST(MasterEvents, EmergenciesAreKeptWithTheirMeaning) {
   EXPECT_EQ(robot.events[0].detail, 350U);
 }
 
-TEST(MasterEvents, AModuleThatLeavesOperationalAndAStrangerAreReported) {
+TEST(MasterEvents, AModuleThatLeavesOperationalAndAnUnknownNodeAreReported) {
   ScriptedRobot robot(3);
-  ScriptedModule& stranger = robot.add_module(100);
+  ScriptedModule& unknown = robot.add_module(100);
   robot.master().start(robot.now());
   for (unsigned joint = 0; joint < 3; ++joint) {
     robot.module(joint).power_on(robot.now());
   }
   ASSERT_TRUE(robot.run_until_running());
-  stranger.power_on(robot.now());
+  unknown.power_on(robot.now());
   robot.module(1).received(robot.now() * 1000, encode(NmtRequest{NmtCommand::stop, 0}));
   robot.run_for(300'000);
   EXPECT_EQ(robot.count(EventKind::unexpected_node), 1U);
@@ -515,9 +515,9 @@ TEST(MasterStop, TakesThePowerThenTheTicks) {
   }
   robot.run_for(1'000'000);
   for (std::size_t i = frames; i < robot.trace.size(); ++i) {
-    EXPECT_EQ(robot.trace[i].frame.identifier & ~0x7FU, unsigned{identifier::heartbeat}) << "heartbeats go on";
+    EXPECT_EQ(robot.trace[i].frame.identifier & ~0x7FU, unsigned{identifier::heartbeat}) << "heartbeats continue";
   }
-  EXPECT_EQ(robot.complaints(), 0U);
+  EXPECT_EQ(robot.emergencies(), 0U);
 }
 
 TEST(MasterStop, EndsWhenEverItIsAskedForAndWhoeverIsGone) {
@@ -636,7 +636,7 @@ TEST(MasterRobustness, AnyOrderOfCallsIsBorne) {
   }
 }
 
-TEST(TickFollower, KnowsTheTickFromItsAnnouncementAndTheCounters) {
+TEST(TickFollower, FollowsTheTickByAnnouncementsAndCounters) {
   TickFollower ticks;
   ticks.sync(5);
   EXPECT_FALSE(ticks.tick().has_value());
@@ -646,7 +646,7 @@ TEST(TickFollower, KnowsTheTickFromItsAnnouncementAndTheCounters) {
   ticks.sync(0x2E);
   EXPECT_EQ(ticks.tick(), 301U);
   ticks.sync(0x2E);
-  EXPECT_EQ(ticks.tick(), 301U) << "the same once more";
+  EXPECT_EQ(ticks.tick(), 301U) << "a repeated SYNC";
   ticks.sync(0x31);
   EXPECT_EQ(ticks.tick(), 304U) << "two were missed";
   ticks.announce(1000);

@@ -33,7 +33,7 @@ TEST(MasterStart, BringsUpEveryModuleAndThenTheTicks) {
   robot.run_for(995'000);
   EXPECT_EQ(robot.master().tick(), 99U);
   EXPECT_EQ(robot.master().state(), MasterState::running);
-  EXPECT_EQ(robot.complaints(), 0U);
+  EXPECT_EQ(robot.emergencies(), 0U);
   EXPECT_TRUE(robot.events.empty());
 }
 
@@ -47,7 +47,7 @@ TEST(MasterStart, AnotherModuleCanProduceSync) {
   }
 }
 
-TEST(MasterStart, TheHostsHeartbeatComesEvery100MsFromTheBeginning) {
+TEST(MasterStart, TheHostSendsAHeartbeatEvery100MsFromTheStartOn) {
   ScriptedRobot robot(2);
   robot.start();
   robot.run_for(3'050'000);
@@ -255,8 +255,8 @@ TEST(MasterProblem, AnotherVersionOfTheProtocolIsNamed) {
 
 TEST(MasterProblem, ARefusedWriteIsNamedWithItsAddressAndAbortCode) {
   ScriptedRobot robot(5);
-  robot.module(3).refusal = [](const Object& entry, bool writes, std::uint32_t) {
-    return writes && entry.address == object::activate.address ? AbortCode::refused_by_application : AbortCode::none;
+  robot.module(3).refusal = [](Address address, bool writes, std::uint32_t) {
+    return writes && address == object::activate.address ? AbortCode::refused_by_application : AbortCode::none;
   };
   const Problem problem = robot.problem_of_start();
   EXPECT_EQ(problem.code, ProblemCode::refused);
@@ -268,7 +268,7 @@ TEST(MasterProblem, ARefusedWriteIsNamedWithItsAddressAndAbortCode) {
 
 TEST(MasterProblem, AModuleWithoutAnswersIsNamed) {
   ScriptedRobot robot(5);
-  robot.module(4).deaf = true;
+  robot.module(4).ignores_sdo = true;
   const Problem problem = robot.problem_of_start();
   EXPECT_EQ(problem.code, ProblemCode::no_answer);
   EXPECT_EQ(problem.joint, 4);
@@ -300,7 +300,7 @@ TEST(MasterProblem, ABusThatTakesNothingIsNamed) {
   EXPECT_EQ(robot.problem_of_start().code, ProblemCode::cannot_send);
 }
 
-TEST(MasterProblem, EveryStartEndsWhateverIsBroken) {
+TEST(MasterProblem, EveryStartEndsWithAnyBrokenModule) {
   constexpr unsigned seed = 21;
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937_64 random(seed);
@@ -310,14 +310,14 @@ TEST(MasterProblem, EveryStartEndsWhateverIsBroken) {
     for (const auto& module : robot.modules) {
       const std::uint64_t draw = random() % 30;
       broken = broken || draw < 6;
-      module->deaf = draw == 0;
+      module->ignores_sdo = draw == 0;
       module->silent = draw == 1;
       module->never_starts = draw == 2;
       module->fingerprint += draw == 3 ? 1 : 0;
       module->boot_delay_us = draw == 4 ? 2'000'000 : random() % 16'000;
       if (draw == 5) {
         const std::uint64_t rare = 20 + random() % 100;
-        module->refusal = [rare, count = std::uint64_t{0}](const Object&, bool, std::uint32_t) mutable {
+        module->refusal = [rare, count = std::uint64_t{0}](Address, bool, std::uint32_t) mutable {
           return ++count == rare ? AbortCode::general_error : AbortCode::none;
         };
       }

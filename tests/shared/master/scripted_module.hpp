@@ -1,7 +1,9 @@
 #pragma once
 
-// A module as the master sees it: dictionary, network states, transactions by the rules of docs/protocol.md, written
-// for the tests alone. It computes nothing, writes down what comes into force when, and misbehaves on request.
+// A module as the master sees it: dictionary, network states and transactions by the rules of docs/protocol.md, for the
+// tests alone. It packs and reads all frames by itself, from CiA 301 and docs/protocol.md; it shares with the code
+// under test the names of states, codes and addresses, and the transmit queue. It computes nothing, records what takes
+// effect when, and misbehaves on request.
 
 #include <algorithm>
 #include <functional>
@@ -13,12 +15,11 @@
 #include "shared/can/transmit_queue.hpp"
 #include "shared/canopen/objects.hpp"
 #include "shared/canopen/power_state.hpp"
-#include "shared/canopen/sdo_server.hpp"
 #include "sim/bus/bus.hpp"
 
 namespace proleg::test {
 
-class ScriptedModule final : public sim::BusListener, private canopen::ObjectAccess {
+class ScriptedModule final : public sim::BusListener {
  public:
   struct Effect {
     std::uint32_t tick;
@@ -55,25 +56,25 @@ class ScriptedModule final : public sim::BusListener, private canopen::ObjectAcc
     if (now >= boot_at_) {
       boot_at_ = never;
       state_ = canopen::NmtState::pre_operational;
-      send(encode(canopen::Heartbeat{node, canopen::NmtState::boot_up}));
+      send_heartbeat(0x00);
     }
     if (now >= answer_at_) {
       answer_at_ = never;
       send(answer_);
     }
     if (now >= heartbeat_at_) {
-      heartbeat_at_ += value(canopen::object::heartbeat_period.address) * 1000;
+      heartbeat_at_ += value({0x1017, 0}) * 1000;
       if (!silent) {
-        send(encode(canopen::Heartbeat{node, state_}));
+        send_heartbeat(static_cast<std::uint8_t>(state_));
       }
     }
     if (now >= sync_at_) {
       if (sync_tick_ % 10 == 0 && !announced_) {
         announced_ = true;
-        send(encode(canopen::TickMessage{sync_tick_, configuration_crc}));
+        send(packed(0x681, {{4, sync_tick_}, {4, configuration_crc}}));
         sync_at_ += 1000;
       } else {
-        send(canopen::encode_sync(sync_tick_));
+        send(packed(0x080, {{1, sync_tick_ % 128 + 1}}));
         announced_ = false;
         ++sync_tick_;
         sync_at_ += sync_tick_ % 10 == 0 ? 9000 : 10000;
@@ -84,14 +85,14 @@ class ScriptedModule final : public sim::BusListener, private canopen::ObjectAcc
   void received(sim::BusTime time, const CanFrame& frame) override {
     now_ = time / 1000;
     if (state_ != canopen::NmtState::boot_up) {
-      hear(frame);
+      handle(frame);
     }
   }
   void transmitted(sim::BusTime time, const CanFrame& frame) override {
     now_ = time / 1000;
     queue_.sent();
-    if (frame.identifier == canopen::identifier::sync || frame.identifier == canopen::identifier::tick) {
-      hear(frame);
+    if (frame.identifier == 0x080 || frame.identifier == 0x681) {
+      handle(frame);
     }
   }
 
@@ -100,7 +101,7 @@ class ScriptedModule final : public sim::BusListener, private canopen::ObjectAcc
     return found != values_.end() ? found->second : canopen::find_object(address)->default_value;
   }
   [[nodiscard]] canopen::NmtState state() const { return state_; }
-  [[nodiscard]] canopen::PowerState power() const { return power_.state(); }
+  [[nodiscard]] canopen::PowerState power() const { return power_; }
   [[nodiscard]] bool produces_sync() const { return sync_at_ != never; }
   [[nodiscard]] const std::vector<Transaction>& committed() const { return committed_; }
   void send(const CanFrame& frame) { static_cast<void>(queue_.push(frame)); }
@@ -108,22 +109,23 @@ class ScriptedModule final : public sim::BusListener, private canopen::ObjectAcc
   std::uint8_t node;
   sim::Controller& controller;
 
-  // How it is, and how it misbehaves.
+  // Properties and misbehaviour.
+  std::uint32_t product = 0;
   std::uint32_t serial = 0x5E41A1;
   std::uint32_t fingerprint = 0xF1A9;
   std::uint32_t configuration_crc = 0;
   Microseconds boot_delay_us = 3000;
   Microseconds answer_delay_us = 0;  ///< of SDO
-  bool deaf = false;                 ///< answers no SDO request
+  bool ignores_sdo = false;          ///< answers no SDO request
   bool silent = false;               ///< sends no heartbeat
   bool never_starts = false;         ///< stays in Pre-operational
-  std::size_t most_pending = 32;     ///< transactions
+  std::size_t max_pending = 32;      ///< transactions
   /// Answers instead of the module, unless `none`.
-  std::function<canopen::AbortCode(const canopen::Object&, bool writes, std::uint32_t value)> refusal;
+  std::function<canopen::AbortCode(canopen::Address, bool writes, std::uint32_t value)> refusal;
 
   // What happened.
   std::vector<Effect> effects;
-  std::vector<canopen::EmergencyCode> complaints;
+  std::vector<canopen::EmergencyCode> emergencies;
   std::size_t boots = 0;
   std::vector<std::pair<canopen::Address, std::uint32_t>> writes;  ///< since the last boot
 
@@ -143,81 +145,160 @@ class ScriptedModule final : public sim::BusListener, private canopen::ObjectAcc
     last_ = {};
     tick_.reset();
     announced_tick_.reset();
-    power_.reset();
+    power_ = canopen::PowerState::switch_on_disabled;
   }
 
-  void complain(canopen::EmergencyCode code) {
-    complaints.push_back(code);
-    send(encode(canopen::Emergency{node, code, 0x81, 0}));
-  }
+  /// A field of a frame: number of bytes and value.
+  using Field = std::pair<unsigned, std::uint32_t>;
 
-  void hear(const CanFrame& frame) {
-    if (const auto request = canopen::decode_nmt(frame); request && (request->node == 0 || request->node == node)) {
-      obey(*request);
-    } else if (const auto commit = canopen::decode_commit(frame)) {
-      take(*commit);
-    } else if (const auto announced = canopen::decode_tick(frame)) {
-      announced_tick_ = announced->tick;
-    } else if (const auto counter = canopen::decode_sync(frame)) {
-      pass(*counter);
-    } else if (frame.identifier == canopen::identifier::sdo_request + node && !deaf) {
-      if (const auto answer = serve_sdo(node, frame, *this)) {
-        answer_ = *answer;
-        answer_at_ = now_ + answer_delay_us;
-        poll(now_);
+  static CanFrame packed(unsigned identifier, std::initializer_list<Field> fields) {
+    CanFrame frame{static_cast<std::uint16_t>(identifier), 0, {}};
+    for (auto [bytes, value] : fields) {
+      for (; bytes > 0; --bytes, value >>= 8U) {
+        frame.data.at(frame.length++) = static_cast<std::uint8_t>(value & 0xFFU);
       }
-    } else if (frame.identifier == canopen::identifier::heartbeat + node ||
-               frame.identifier == canopen::identifier::sdo_answer + node) {
-      complain(canopen::EmergencyCode::identifier_collision);
+    }
+    return frame;
+  }
+  static std::uint32_t field(const CanFrame& frame, std::size_t position, std::size_t bytes) {
+    std::uint32_t value = 0;
+    while (bytes-- > 0) {
+      value = value * 256 + frame.data.at(position + bytes);
+    }
+    return value;
+  }
+
+  void send_heartbeat(std::uint8_t state) { send(packed(0x700U + node, {{1, state}})); }
+
+  void report(canopen::EmergencyCode code) {
+    emergencies.push_back(code);
+    send(packed(0x080U + node, {{2, static_cast<std::uint32_t>(code)}, {1, 0x81}, {4, 0}, {1, 0}}));
+  }
+
+  void handle(const CanFrame& frame) {
+    if (frame.identifier == 0x000 && frame.length == 2 && (frame.data[1] == 0 || frame.data[1] == node)) {
+      change_state(frame.data[0]);
+    } else if (frame.identifier == 0x680 && frame.length == 8) {
+      commit(static_cast<std::uint16_t>(field(frame, 0, 2)), field(frame, 2, 4));
+    } else if (frame.identifier == 0x681 && frame.length == 8) {
+      announced_tick_ = field(frame, 0, 4);
+    } else if (frame.identifier == 0x080 && frame.length == 1) {
+      pass(frame.data[0]);
+    } else if (frame.identifier == 0x600 + node && frame.length == 8 && !ignores_sdo) {
+      answer_ = sdo_answer(frame);
+      answer_at_ = now_ + answer_delay_us;
+      poll(now_);
+    } else if (frame.identifier == 0x700 + node || frame.identifier == 0x580 + node) {
+      report(canopen::EmergencyCode::identifier_collision);
     }
   }
 
-  void obey(const canopen::NmtRequest& request) {
-    switch (request.command) {
-      case canopen::NmtCommand::start:
+  /// NMT (CiA 301, 7.2.8.3.1).
+  void change_state(std::uint8_t command) {
+    switch (command) {
+      case 0x01:
         state_ = never_starts ? state_ : canopen::NmtState::operational;
         return;
-      case canopen::NmtCommand::stop:
+      case 0x02:
         state_ = canopen::NmtState::stopped;
         break;
-      case canopen::NmtCommand::enter_pre_operational:
+      case 0x80:
         state_ = canopen::NmtState::pre_operational;
         break;
-      case canopen::NmtCommand::reset_node:
-      case canopen::NmtCommand::reset_communication:
+      case 0x81:
+      case 0x82:
         reset(now_);
+        return;
+      default:
         return;
     }
     sync_at_ = never;
     tick_.reset();
   }
 
-  void take(const canopen::CommitMessage& commit) {
+  /// Size in bytes of an entry that the master uses, from docs/objects.md; 0 for others.
+  static unsigned size_of(canopen::Address address) {
+    switch (address.index) {
+      case 0x1005:
+      case 0x1006:
+      case 0x1016:
+      case 0x1018:
+      case 0x2007:
+      case 0x2008:
+        return 4;
+      case 0x1017:
+      case 0x2004:
+      case 0x6040:
+        return 2;
+      case 0x1019:
+      case 0x2006:
+        return 1;
+      case 0x2000:
+        return address.sub == 1 ? 2 : 4;
+      case 0x2001:
+        return address.sub <= 4 ? 1 : (address.sub == 5 ? 2 : 4);
+      case 0x2005:
+        return address.sub == 6 ? 1 : 4;
+      default:
+        return (address.index >= 0x1410 && address.index < 0x1490) ||
+                       (address.index >= 0x3000 && address.index < 0x6000)
+                   ? 4
+                   : 0;
+    }
+  }
+
+  /// Expedited transfers (CiA 301, 7.2.4.3).
+  CanFrame sdo_answer(const CanFrame& request) {
+    const canopen::Address address{static_cast<std::uint16_t>(field(request, 1, 2)), request.data[3]};
+    const auto answer = [&](std::uint8_t command, std::uint32_t data) {
+      return packed(0x580U + node, {{1, command}, {2, address.index}, {1, address.sub}, {4, data}});
+    };
+    const auto abort = [&](std::uint32_t code) { return answer(0x80, code); };
+    const unsigned size = size_of(address);
+    if (size == 0) {
+      return abort(0x06020000);  // no such object
+    }
+    const auto command_of_size = [size](unsigned command) {
+      return static_cast<std::uint8_t>(command | (4 - size) << 2U | 3U);
+    };
+    if (request.data[0] == 0x40) {
+      const canopen::AbortCode code = refused(address, false, 0);
+      return code == canopen::AbortCode::none ? answer(command_of_size(0x40), read(address))
+                                              : abort(static_cast<std::uint32_t>(code));
+    }
+    if (request.data[0] != command_of_size(0x20)) {
+      return abort(0x06070010);  // wrong length
+    }
+    const canopen::AbortCode code = write(address, field(request, 4, size));
+    return code == canopen::AbortCode::none ? answer(0x60, 0) : abort(static_cast<std::uint32_t>(code));
+  }
+
+  void commit(std::uint16_t number, std::uint32_t tick) {
     for (const Transaction& waiting : committed_) {
-      if (waiting.number == commit.transaction && waiting.tick == commit.tick) {
+      if (waiting.number == number && waiting.tick == tick) {
         return;
       }
     }
-    if (last_.number == commit.transaction && last_.tick == commit.tick) {
+    if (last_.number == number && last_.tick == tick) {
       return;
     }
-    if (!open_ || open_->number != commit.transaction) {
-      if (value(canopen::object::activate.address) == 1) {
-        complain(canopen::EmergencyCode::commit_not_staged);
+    if (!open_ || open_->number != number) {
+      if (value({0x2005, 6}) == 1) {
+        report(canopen::EmergencyCode::commit_not_staged);
       }
       return;
     }
-    if (tick_ && commit.tick <= *tick_) {
-      complain(canopen::EmergencyCode::commit_too_late);
+    if (tick_ && tick <= *tick_) {
+      report(canopen::EmergencyCode::commit_too_late);
       return;
     }
-    open_->tick = commit.tick;
+    open_->tick = tick;
     committed_.push_back(*open_);
     open_.reset();
   }
 
-  /// SYNC: transactions for this tick come into force; after a restart also those for earlier ones, without
-  /// distortions.
+  /// SYNC: transactions for this tick take effect; after a restart also those for earlier ticks, without internal
+  /// values.
   void pass(std::uint8_t counter) {
     if (announced_tick_ && *announced_tick_ % 128 + 1 == counter) {
       tick_ = announced_tick_;
@@ -247,46 +328,48 @@ class ScriptedModule final : public sim::BusListener, private canopen::ObjectAcc
     }
   }
 
-  canopen::AbortCode read(const canopen::Object& object, std::uint32_t& result) override {
-    if (const canopen::AbortCode code = refused(object, false, 0); code != canopen::AbortCode::none) {
-      return code;
+  std::uint32_t read(canopen::Address address) const {
+    if (address == canopen::Address{0x1018, 1}) {
+      return 0x50524F4C;  // the placeholder vendor
     }
-    if (object.address == canopen::object::serial.address) {
-      result = serial;
-    } else if (object.address == canopen::object::core_fingerprint.address) {
-      result = fingerprint;
-    } else if (object.address == canopen::object::configuration_crc.address) {
-      result = configuration_crc;
-    } else {
-      result = value(object.address);
+    if (address == canopen::Address{0x1018, 2}) {
+      return product;
     }
-    return canopen::AbortCode::none;
+    if (address == canopen::Address{0x1018, 4}) {
+      return serial;
+    }
+    if (address == canopen::Address{0x2000, 1}) {
+      return 0x0100;  // version of the protocol
+    }
+    if (address == canopen::Address{0x2000, 3}) {
+      return fingerprint;
+    }
+    return address == canopen::Address{0x2001, 6} ? configuration_crc : value(address);
   }
 
-  canopen::AbortCode write(const canopen::Object& object, std::uint32_t written) override {
+  canopen::AbortCode write(canopen::Address address, std::uint32_t written) {
     using namespace canopen;
-    if (const AbortCode code = refused(object, true, written); code != AbortCode::none) {
+    if (const AbortCode code = refused(address, true, written); code != AbortCode::none) {
       return code;
     }
-    const Address address = object.address;
     writes.emplace_back(address, written);
-    if (const auto kind = value_address(address); kind && kind->kind != ValueKind::parameter) {
+    if (address.index >= 0x4000 && address.index < 0x6000) {
       return stage(address, static_cast<std::int32_t>(written));
     }
-    if (address == object::transaction.address) {
+    if (address == Address{0x2004, 1}) {
       return open(static_cast<std::uint16_t>(written));
     }
-    if (address.index >= 0x3000 && address.index < 0x4000) {  // a new start drops what is staged
+    if (address.index >= 0x3000 && address.index < 0x4000) {  // a new start drops the staged values
       open_.reset();
       committed_.clear();
     }
     values_[{address.index, address.sub}] = written;
-    if (address == object::heartbeat_period.address) {
+    if (address == Address{0x1017, 0}) {
       heartbeat_at_ = now_;
-    } else if (address == object::controlword.address) {
-      power_.command(static_cast<std::uint16_t>(written));
-    } else if (address == object::sync_identifier.address) {
-      const bool on = (written & canopen::produces_sync) != 0;
+    } else if (address == Address{0x6040, 0}) {
+      control_power(written);
+    } else if (address == Address{0x1005, 0}) {
+      const bool on = (written & 0x40000000U) != 0;
       if (on && state_ != NmtState::operational) {
         return AbortCode::refused_by_state;
       }
@@ -297,8 +380,22 @@ class ScriptedModule final : public sim::BusListener, private canopen::ObjectAcc
     return AbortCode::none;
   }
 
-  canopen::AbortCode refused(const canopen::Object& object, bool writing, std::uint32_t written) const {
-    return refusal ? refusal(object, writing, written) : canopen::AbortCode::none;
+  /// The controlwords that enable a servo one after the other, and 0 (CiA 402).
+  void control_power(std::uint32_t controlword) {
+    using enum canopen::PowerState;
+    if (controlword == 0x0000) {
+      power_ = switch_on_disabled;
+    } else if (controlword == 0x0006 && power_ == switch_on_disabled) {
+      power_ = ready_to_switch_on;
+    } else if (controlword == 0x0007 && power_ == ready_to_switch_on) {
+      power_ = switched_on;
+    } else if (controlword == 0x000F && power_ == switched_on) {
+      power_ = operation_enabled;
+    }
+  }
+
+  canopen::AbortCode refused(canopen::Address address, bool writing, std::uint32_t written) const {
+    return refusal ? refusal(address, writing, written) : canopen::AbortCode::none;
   }
 
   canopen::AbortCode open(std::uint16_t number) {
@@ -307,7 +404,7 @@ class ScriptedModule final : public sim::BusListener, private canopen::ObjectAcc
       return canopen::AbortCode::refused_by_state;
     }
     if (!open_ || open_->number != number) {
-      if (committed_.size() >= most_pending) {
+      if (committed_.size() >= max_pending) {
         return canopen::AbortCode::out_of_memory;
       }
       open_ = Transaction{number, 0, {}};
@@ -323,7 +420,7 @@ class ScriptedModule final : public sim::BusListener, private canopen::ObjectAcc
     for (const Transaction& waiting : committed_) {
       count += waiting.values.size();
     }
-    if (count >= max_staged_values) {
+    if (count >= 64) {  // docs/protocol.md
       return canopen::AbortCode::out_of_memory;
     }
     const auto again = std::ranges::find(open_->values, address, &std::pair<canopen::Address, std::int32_t>::first);
@@ -351,7 +448,7 @@ class ScriptedModule final : public sim::BusListener, private canopen::ObjectAcc
   Transaction last_;
   std::optional<std::uint32_t> tick_;
   std::optional<std::uint32_t> announced_tick_;
-  canopen::PowerControl power_;
+  canopen::PowerState power_ = canopen::PowerState::switch_on_disabled;
 };
 
 }  // namespace proleg::test

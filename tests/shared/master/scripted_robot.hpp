@@ -86,10 +86,10 @@ class ScriptedRobot {
     }
   }
 
-  /// Lets time pass until `done` or for so long; returns whether it is done.
+  /// Lets time pass until `done`, at most max_us; returns whether it is done.
   template <typename Done>
-  bool run_until(Done done, Microseconds longest_us) {
-    const Microseconds end = now_ + longest_us;
+  bool run_until(Done done, Microseconds max_us) {
+    const Microseconds end = now_ + max_us;
     while (!done()) {
       Microseconds next = master().next_deadline();
       for (const auto& one : modules) {
@@ -125,8 +125,8 @@ class ScriptedRobot {
   void run_for(Microseconds time_us) {
     run_until([] { return false; }, time_us);
   }
-  bool run_until_running(Microseconds longest_us = 10'000'000) {
-    return run_until([this] { return settled(); }, longest_us) && master().state() == canopen::MasterState::running;
+  bool run_until_running(Microseconds max_us = 10'000'000) {
+    return run_until([this] { return settled(); }, max_us) && master().state() == canopen::MasterState::running;
   }
   bool run_to_tick(std::uint32_t tick) {
     return run_until([&] { return master().tick().value_or(0) >= tick; }, tick * 20'000ULL);
@@ -145,11 +145,11 @@ class ScriptedRobot {
   [[nodiscard]] std::size_t count(canopen::EventKind kind) const {
     return static_cast<std::size_t>(std::ranges::count(events, kind, &canopen::Event::kind));
   }
-  /// Complaints of all modules.
-  [[nodiscard]] std::size_t complaints() const {
+  /// Number of EMCY messages of all modules.
+  [[nodiscard]] std::size_t emergencies() const {
     std::size_t sum = 0;
     for (const auto& one : modules) {
-      sum += one->complaints.size();
+      sum += one->emergencies.size();
     }
     return sum;
   }

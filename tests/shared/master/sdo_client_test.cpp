@@ -120,7 +120,7 @@ TEST(SdoClient, TakesValuesOfUnspecifiedSizeAndNoSegmentedTransfer) {
   EXPECT_EQ(client.abort_code(), AbortCode::unknown_command);
 }
 
-TEST(SdoClient, EndsATransferByItsAnswerOnlyWhateverElseIsOnTheBus) {
+TEST(SdoClient, EndsATransferByItsAnswerOnlyAmongOtherFrames) {
   constexpr std::uint32_t seed = 9;
   SCOPED_TRACE(testing::Message() << "seed " << seed);
   std::mt19937 random(seed);

@@ -43,11 +43,11 @@ class FlashPort {
 struct BoardRecord {
   static constexpr std::size_t size = 32;  ///< bytes in flash
   static constexpr std::uint8_t max_node = canopen::max_node_id;
-  static constexpr std::uint16_t max_reading = 4095;
+  static constexpr std::uint16_t max_reading = 4095;  ///< of the 12-bit ADC
 
   std::uint8_t node = 0;  ///< 1 to 126
   bool has_feedback = false;
-  /// Of the feedback potentiometer, as the ADC reads it, 0 to 4095; different, if it is fitted.
+  /// Of the feedback potentiometer, as the ADC reads it, at most max_reading; different, if it is fitted.
   std::uint16_t feedback_at_minus_90 = 0;
   std::uint16_t feedback_at_plus_90 = 0;
 

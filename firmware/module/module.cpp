@@ -15,14 +15,12 @@ using canopen::NmtState;
 
 namespace {
 
-constexpr unsigned node_bits = 0x7F;
-
 /// Whether only the node may send with the identifier.
 bool is_reserved(std::uint16_t identifier, std::uint8_t node) {
-  if ((identifier & node_bits) != node) {
+  if (identifier::node_of(identifier) != node) {
     return false;
   }
-  switch (identifier & ~node_bits) {
+  switch (identifier::base_of(identifier)) {
     case identifier::emergency:
     case identifier::state_frame:
     case identifier::second_state:
@@ -60,19 +58,19 @@ void Module::receive(Microseconds now, const CanFrame& frame) {
 /// State frames are most of the traffic, and change nothing before the next SYNC. False: it is none, or it has the
 /// module's own identifier.
 bool Module::receive_state(const CanFrame& frame) {
-  const unsigned function = frame.identifier & ~node_bits;
-  const auto node = static_cast<std::uint8_t>(frame.identifier & node_bits);
-  if ((function != identifier::state_frame && function != identifier::second_state) || node == parts_.identity.node) {
+  const std::uint16_t base = identifier::base_of(frame.identifier);
+  const std::uint8_t node = identifier::node_of(frame.identifier);
+  if ((base != identifier::state_frame && base != identifier::second_state) || node == parts_.identity.node) {
     return false;
   }
   if (parts_.network.operational()) {
-    parts_.neighbours.receive(frame, function == identifier::state_frame ? 0 : 1, node, synchronised());
+    parts_.neighbours.receive(frame, base == identifier::state_frame ? 0 : 1, node, synchronised());
   }
   return true;
 }
 
 void Module::dispatch(Microseconds now, const CanFrame& frame) {
-  const auto node = static_cast<std::uint8_t>(frame.identifier & node_bits);
+  const std::uint8_t node = identifier::node_of(frame.identifier);
   const bool stopped = state() == NmtState::stopped;
   switch (frame.identifier) {
     case identifier::nmt:
@@ -90,7 +88,7 @@ void Module::dispatch(Microseconds now, const CanFrame& frame) {
     default:
       break;
   }
-  switch (frame.identifier & ~node_bits) {
+  switch (identifier::base_of(frame.identifier)) {
     case identifier::command:
       if (node == parts_.identity.node && parts_.network.operational()) {
         receive_command(parts_, frame);

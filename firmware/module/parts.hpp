@@ -41,11 +41,11 @@ struct Parts {
   Emergencies emergencies{identity, network, outbox};
   HostWatch host;
   ReportedRequests reported;
+  GaitStart start;  // fills a gap before the settings
   ModuleSettings settings;
   JointKernel joint;
   StateReceiver neighbours{joint, emergencies, can};
   TickKeeper keeper;
-  GaitStart start;
   SyncWatch sync;
   SyncProducer producer{outbox};
   Drive drive;

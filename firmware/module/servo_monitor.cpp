@@ -1,5 +1,7 @@
 #include "firmware/module/servo_monitor.hpp"
 
+#include <algorithm>
+
 namespace proleg::firmware {
 
 void ServoMonitor::reset() {
@@ -13,9 +15,7 @@ void ServoMonitor::reset() {
 void ServoMonitor::read(Microseconds now, std::uint32_t tick_period_us) {
   constexpr std::uint16_t max_current_ma = 0x7FFF;  // of object 0x6078
   readings_ = port_.take_readings();
-  if (readings_.current_ma > max_current_ma) {
-    readings_.current_ma = max_current_ma;
-  }
+  readings_.current_ma = std::min(readings_.current_ma, max_current_ma);
   if (!measures_angle_) {
     readings_.angle.reset();
   }

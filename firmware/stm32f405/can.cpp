@@ -51,8 +51,7 @@ constexpr std::uint32_t pair_of(std::uint32_t first, std::uint32_t second) {
 /// that sends with them.
 void accept_common_frames(std::uint8_t node) {
   namespace identifier = canopen::identifier;
-  constexpr std::uint32_t node_bits = 0x7F;
-  constexpr std::uint32_t function_bits = 0x780;
+  constexpr std::uint32_t function_bits = CanFrame::max_identifier & ~std::uint32_t{identifier::node_bits};
   constexpr std::uint32_t with_masks = 1U << node_bank | 1U << all_states_bank;
   constexpr std::uint32_t all_banks = (1U << can1::filter_banks) - 1U;
   can1::fmr.write(can1::fmr_finit | can1::fmr_can2sb_of(can1::filter_banks));
@@ -61,7 +60,7 @@ void accept_common_frames(std::uint8_t node) {
   can1::fs1r.write(0);
   can1::ffa1r.write(0);
   const can1::FilterBank own(node_bank);
-  own.first.write(masked(node, node_bits));
+  own.first.write(masked(node, identifier::node_bits));
   own.second.write(masked(identifier::heartbeat, function_bits));
   const can1::FilterBank common(common_bank);
   common.first.write(pair_of(identifier::nmt, identifier::sync));

@@ -23,6 +23,7 @@ def number(name, minimum, maximum):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--node", type=number("node id", 1, 126), required=True, help="node id, 1 to 126")
+    # 4095 is BoardRecord::max_reading of firmware/module/board_record.hpp.
     parser.add_argument("--feedback", type=number("reading", 0, 4095), nargs=2, metavar=("AT_MINUS_90", "AT_PLUS_90"),
                         help="a feedback potentiometer is fitted: what the ADC reads at -90 and +90 degrees")
     parser.add_argument("output", type=pathlib.Path)

@@ -5,18 +5,18 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "firmware/module/board_record.hpp"
 #include "firmware/stm32f405/pins.hpp"
 #include "shared/fixed/arithmetic.hpp"
 
 namespace proleg::stm32f405 {
 
-inline constexpr std::int32_t max_reading = 4095;
-
 /// Servo current in mA.
 [[nodiscard]] constexpr std::uint16_t current_of(std::uint32_t reading) {
   constexpr std::uint32_t milliampere_per_volt = 1000;
   constexpr auto full_scale = static_cast<std::int32_t>(board::vdda_millivolt * milliampere_per_volt / 1000);
-  return static_cast<std::uint16_t>(divide_nearest(static_cast<std::int32_t>(reading) * full_scale, max_reading));
+  return static_cast<std::uint16_t>(
+      divide_nearest(static_cast<std::int32_t>(reading) * full_scale, firmware::BoardRecord::max_reading));
 }
 
 /// Readings of the temperature sensor at 30 and 110 degrees Celsius and VDDA = 3.3 V, measured by the maker of each

@@ -47,9 +47,7 @@ class JointMask {
   /// The member nearest to the head; the set must not be empty.
   [[nodiscard]] constexpr unsigned front() const { return *begin(); }
   /// Number of members.
-  [[nodiscard]] constexpr unsigned size() const {
-    return static_cast<unsigned>(std::popcount(words_[0]) + std::popcount(words_[1]));
-  }
+  [[nodiscard]] constexpr unsigned size() const { return static_cast<unsigned>(std::popcount(bits())); }
   [[nodiscard]] constexpr std::uint64_t bits() const { return std::uint64_t{words_[1]} << 32U | words_[0]; }
 
   /// The nearest member towards the head, or -1.

@@ -39,7 +39,7 @@ Status Kernel::stage(std::uint16_t transaction, unsigned slot, unsigned joint, u
   if (const Status status = check_parameter(slot, joint, parameter, value); status != Status::ok) {
     return status;
   }
-  return staging_.add(transaction, joint - first_joint_,
+  return staging_.add(memory_, transaction, joint - first_joint_,
                       {value, 0, static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(parameter), false});
 }
 
@@ -51,15 +51,19 @@ Status Kernel::stage_internal(std::uint16_t transaction, unsigned slot, unsigned
   if (internal_value >= configuration_.slots[slot].algorithm->declaration().internal_values.size()) {
     return Status::unknown_internal_value;
   }
-  return staging_.add(transaction, joint - first_joint_,
+  return staging_.add(memory_, transaction, joint - first_joint_,
                       {value, 0, static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(internal_value), true});
+}
+
+Status Kernel::commit(std::uint16_t transaction, std::uint32_t tick) {
+  return staging_.commit(transaction, tick, tick_);
 }
 
 bool Kernel::staged_value(unsigned slot, unsigned joint, unsigned number, bool internal, std::int32_t& value) const {
   if (!is_local(joint)) {
     return false;
   }
-  const StagedValue* staged = staging_.find_open(joint - first_joint_, slot, number, internal);
+  const StagedValue* staged = staging_.find_open(joint_memory(joint), slot, number, internal);
   if (staged == nullptr) {
     return false;
   }
@@ -71,10 +75,9 @@ void Kernel::apply_commits() {
   while (const std::optional<Staging::Due> due = staging_.next_due(tick_)) {
     // Only join() leaves commits for earlier ticks. The states that their internal values belong to are in the past.
     const bool with_internal_values = due->tick == tick_;
-    for (unsigned i = 0; i < memory_.size(); ++i) {
-      JointMemory& joint = memory_[i];
+    for (JointMemory& joint : memory_) {
       std::uint32_t changed_slots = 0;
-      staging_.take_values(*due, i, [&](const StagedValue& staged) {
+      staging_.take_values(*due, joint, [&](const StagedValue& staged) {
         SlotMemory& slot = joint.slots[staged.slot];
         if (!staged.internal) {
           slot.parameters[staged.number] = staged.value;

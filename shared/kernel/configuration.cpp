@@ -47,7 +47,7 @@ Status Kernel::configure(const KernelConfiguration& configuration, unsigned firs
   for (unsigned i = 0; i < memory_.size(); ++i) {
     set_up(first_joint + i);
   }
-  staging_.clear();
+  staging_.clear(memory_);
   flags_ = 0;
   reset();
   return Status::ok;

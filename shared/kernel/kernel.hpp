@@ -23,7 +23,7 @@ namespace proleg {
 class Kernel {
  public:
   /// memory: one element for each joint that the kernel computes; it must outlive the kernel.
-  explicit Kernel(std::span<JointMemory> memory) : memory_(memory), staging_(memory) {}
+  explicit Kernel(std::span<JointMemory> memory) : memory_(memory) {}
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
 
@@ -43,7 +43,7 @@ class Kernel {
 
   /// Opens a transaction under which values can be staged, even if there is none for the local joints. Drops the values
   /// of another transaction that is open; opening the open one again changes nothing.
-  Status open(std::uint16_t transaction) { return staging_.open(transaction); }
+  Status open(std::uint16_t transaction) { return staging_.open(memory_, transaction); }
   /// Stages a parameter, in force from the commit's tick on. Opens the transaction if necessary.
   Status stage(std::uint16_t transaction, unsigned slot, unsigned joint, unsigned parameter, std::int32_t value);
   /// Stages an internal value (thesis listing A.2, setDistortion), overwritten before the commit's tick is computed;
@@ -52,12 +52,12 @@ class Kernel {
                         std::int32_t value);
   /// Commits the open transaction for a tick that is not computed yet. Repeating a commit, also the last one that took
   /// effect, is ok.
-  Status commit(std::uint16_t transaction, std::uint32_t tick) { return staging_.commit(transaction, tick, tick_); }
+  Status commit(std::uint16_t transaction, std::uint32_t tick);
   [[nodiscard]] bool has_open_transaction() const { return staging_.has_open_transaction(); }
   /// 0 if none is open.
   [[nodiscard]] std::uint16_t open_transaction() const { return staging_.open_transaction(); }
   /// Values staged under the open transaction.
-  [[nodiscard]] unsigned staged_count() const { return staging_.open_count(); }
+  [[nodiscard]] unsigned staged_count() const { return staging_.open_count(memory_); }
   /// A staged parameter or internal value of the open transaction; false if there is none.
   [[nodiscard]] bool staged_value(unsigned slot, unsigned joint, unsigned number, bool internal,
                                   std::int32_t& value) const;
@@ -145,7 +145,6 @@ class Kernel {
   unsigned slots_in_use_ = 0;  ///< the slots from here on are empty
   std::uint32_t tick_ = 0;
   std::uint32_t missed_frames_ = 0;
-  Staging staging_;
   bool joining_ = false;
   std::uint8_t flags_ = 0;
   std::array<JointMask, max_channels> senders_;  ///< all joints on the first channel, some on the second
@@ -153,6 +152,7 @@ class Kernel {
   std::array<JointMask, max_slots> second_channel_;
   std::array<JointMask, max_channels> needed_;   ///< joints on whose frames a local joint depends
   std::array<JointMask, max_channels> arrived_;  ///< whose frames with the label tick_ are in frames_
+  Staging staging_;
   std::array<std::array<StateFrame, max_joints>, max_channels> frames_;
   /// For each slot the joints of other modules that are next to a local one.
   std::array<JointMask, max_slots> beside_;

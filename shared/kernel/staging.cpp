@@ -2,8 +2,8 @@
 
 namespace proleg {
 
-void Staging::clear() {
-  for (JointMemory& joint : joints_) {
+void Staging::clear(Joints joints) {
+  for (JointMemory& joint : joints) {
     joint.staged.count = 0;
   }
   transactions_ = {};
@@ -23,7 +23,7 @@ const Staging::Commit* Staging::find_commit(std::uint16_t transaction) const {
   return nullptr;
 }
 
-Status Staging::open(std::uint16_t transaction) {
+Status Staging::open(Joints joints, std::uint16_t transaction) {
   if (find_commit(transaction) != nullptr) {
     return Status::staging_closed;
   }
@@ -33,14 +33,14 @@ Status Staging::open(std::uint16_t transaction) {
   if (committed_count_ == max_transactions) {
     return Status::staging_full;
   }
-  drop_open_transaction();
+  drop_open_transaction(joints);
   open_ = transaction;
   has_open_ = true;
   return Status::ok;
 }
 
-void Staging::drop_open_transaction() {
-  for (JointMemory& joint : joints_) {
+void Staging::drop_open_transaction(Joints joints) {
+  for (JointMemory& joint : joints) {
     StagedValues& staged = joint.staged;
     unsigned kept = 0;
     for (unsigned i = 0; i < staged.count; ++i) {
@@ -54,14 +54,15 @@ void Staging::drop_open_transaction() {
   open_ = 0;
 }
 
-Status Staging::add(std::uint16_t transaction, unsigned joint, const StagedValue& value) {
+Status Staging::add(Joints joints, std::uint16_t transaction, unsigned joint, const StagedValue& value) {
   if (find_commit(transaction) != nullptr) {
     return Status::staging_closed;
   }
-  StagedValues& staged = joints_[joint].staged;
+  StagedValues& staged = joints[joint].staged;
   if (has_open_ && open_ == transaction) {
-    if (StagedValue* earlier = find_value(joint, value.slot, value.number, value.internal)) {
-      earlier->value = value.value;
+    const unsigned earlier = find_value(staged, value.slot, value.number, value.internal);
+    if (earlier < staged.count) {
+      staged.values[earlier].value = value.value;
       return Status::ok;
     }
   }
@@ -69,7 +70,7 @@ Status Staging::add(std::uint16_t transaction, unsigned joint, const StagedValue
   if (staged.count == max_staged_values) {
     return Status::staging_full;
   }
-  if (const Status status = open(transaction); status != Status::ok) {
+  if (const Status status = open(joints, transaction); status != Status::ok) {
     return status;
   }
   staged.values[staged.count] = value;
@@ -98,9 +99,9 @@ Status Staging::commit(std::uint16_t transaction, std::uint32_t tick, std::uint3
   return Status::ok;
 }
 
-unsigned Staging::open_count() const {
+unsigned Staging::open_count(std::span<const JointMemory> joints) const {
   unsigned count = 0;
-  for (const JointMemory& joint : joints_) {
+  for (const JointMemory& joint : joints) {
     for (unsigned i = 0; has_open_ && i < joint.staged.count; ++i) {
       count += joint.staged.values[i].transaction == committed_count_ ? 1U : 0U;
     }
@@ -108,21 +109,23 @@ unsigned Staging::open_count() const {
   return count;
 }
 
-/// A value of the open transaction.
-StagedValue* Staging::find_value(unsigned joint, unsigned slot, unsigned number, bool internal) const {
-  StagedValues& staged = joints_[joint].staged;
+unsigned Staging::find_value(const StagedValues& staged, unsigned slot, unsigned number, bool internal) const {
   for (unsigned i = 0; i < staged.count; ++i) {
-    StagedValue& value = staged.values[i];
+    const StagedValue& value = staged.values[i];
     if (value.transaction == committed_count_ && value.slot == slot && value.number == number &&
         value.internal == internal) {
-      return &value;
+      return i;
     }
   }
-  return nullptr;
+  return staged.count;
 }
 
-const StagedValue* Staging::find_open(unsigned joint, unsigned slot, unsigned number, bool internal) const {
-  return has_open_ ? find_value(joint, slot, number, internal) : nullptr;
+const StagedValue* Staging::find_open(const JointMemory& joint, unsigned slot, unsigned number, bool internal) const {
+  if (!has_open_) {
+    return nullptr;
+  }
+  const unsigned position = find_value(joint.staged, slot, number, internal);
+  return position < joint.staged.count ? &joint.staged.values[position] : nullptr;
 }
 
 std::optional<Staging::Due> Staging::next_due(std::uint32_t now) const {

@@ -19,19 +19,19 @@ namespace proleg {
 /// ahead.
 inline constexpr std::size_t max_transactions = 32;
 
+/// The staged values are in the memory of the joints, which the kernel passes to each function.
 class Staging {
  public:
-  /// joints: the memory that holds the staged values; it must outlive this.
-  explicit Staging(std::span<JointMemory> joints) : joints_(joints) {}
+  using Joints = std::span<JointMemory>;
 
   /// Drops all values and transactions.
-  void clear();
+  void clear(Joints joints);
 
   /// Opens a transaction and drops the one that was open; opening the open one again changes nothing.
-  Status open(std::uint16_t transaction);
+  Status open(Joints joints, std::uint16_t transaction);
   /// Adds a value of a joint, and opens the transaction if it is not open. A second value for the same parameter or
   /// internal value replaces the first. joint: position in the memory.
-  Status add(std::uint16_t transaction, unsigned joint, const StagedValue& value);
+  Status add(Joints joints, std::uint16_t transaction, unsigned joint, const StagedValue& value);
   /// Closes the open transaction, so that it waits for `tick`. now: the tick that is computed next. Repeating a commit,
   /// also the last one that took effect, is ok.
   Status commit(std::uint16_t transaction, std::uint32_t tick, std::uint32_t now);
@@ -40,9 +40,10 @@ class Staging {
   /// 0 if none is open.
   [[nodiscard]] std::uint16_t open_transaction() const { return open_; }
   /// Values of the open transaction.
-  [[nodiscard]] unsigned open_count() const;
+  [[nodiscard]] unsigned open_count(std::span<const JointMemory> joints) const;
   /// A value of the open transaction; null if it has none for this parameter or internal value.
-  [[nodiscard]] const StagedValue* find_open(unsigned joint, unsigned slot, unsigned number, bool internal) const;
+  [[nodiscard]] const StagedValue* find_open(const JointMemory& joint, unsigned slot, unsigned number,
+                                             bool internal) const;
 
   [[nodiscard]] bool has_commits() const { return committed_count_ != 0; }
   struct Due {
@@ -55,7 +56,7 @@ class Staging {
   /// Calls apply(value) for the joint's values of a due transaction, in the order in which they were staged, and
   /// removes them. To be called once for each joint, then finish().
   template <typename Apply>
-  void take_values(const Due& due, unsigned joint, Apply&& apply);
+  void take_values(const Due& due, JointMemory& joint, Apply&& apply);
   /// Removes a due transaction from the list.
   void finish(const Due& due);
 
@@ -68,10 +69,10 @@ class Staging {
   };
 
   [[nodiscard]] const Commit* find_commit(std::uint16_t transaction) const;
-  [[nodiscard]] StagedValue* find_value(unsigned joint, unsigned slot, unsigned number, bool internal) const;
-  void drop_open_transaction();
+  /// The position of a value of the open transaction; staged.count if it has none.
+  [[nodiscard]] unsigned find_value(const StagedValues& staged, unsigned slot, unsigned number, bool internal) const;
+  void drop_open_transaction(Joints joints);
 
-  std::span<JointMemory> joints_;
   /// In the order of the commits. A StagedValue refers to a position in this list; the open transaction has the
   /// position committed_count_.
   std::array<Commit, max_transactions> transactions_{};
@@ -83,8 +84,8 @@ class Staging {
 };
 
 template <typename Apply>
-void Staging::take_values(const Due& due, unsigned joint, Apply&& apply) {
-  StagedValues& staged = joints_[joint].staged;
+void Staging::take_values(const Due& due, JointMemory& joint, Apply&& apply) {
+  StagedValues& staged = joint.staged;
   unsigned kept = 0;
   for (unsigned i = 0; i < staged.count; ++i) {
     StagedValue value = staged.values[i];

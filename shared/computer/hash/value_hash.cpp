@@ -3,6 +3,7 @@
 #include <array>
 
 #include "shared/computer/hash/sha256.hpp"
+#include "shared/fixed/little_endian.hpp"
 
 namespace proleg {
 
@@ -11,10 +12,8 @@ namespace proleg {
 ValueHash::ValueHash() { crypto_hash_sha256_init(&state_); }
 
 void ValueHash::append(std::int32_t value) {
-  const auto bits = static_cast<std::uint32_t>(value);
-  for (unsigned shift = 0; shift < 32; shift += 8) {
-    buffer_[buffered_++] = static_cast<unsigned char>(bits >> shift);
-  }
+  write_little_endian(buffer_, buffered_, sizeof(value), static_cast<std::uint32_t>(value));
+  buffered_ += sizeof(value);
   if (buffered_ == buffer_.size()) {
     crypto_hash_sha256_update(&state_, buffer_.data(), buffered_);
     buffered_ = 0;

@@ -21,10 +21,10 @@ constexpr std::uint32_t quarter = 0x40000000U;
 constexpr std::uint32_t half = 0x80000000U;
 
 struct Findings {
-  double largest_error = 0;
+  double max_error = 0;
   double sum_of_errors = 0;
   double sum_of_absolute_errors = 0;
-  std::int32_t largest_step_back = 0;
+  std::int32_t max_step_back = 0;
   std::uint64_t asymmetric = 0;
   std::uint64_t beyond_crest = 0;
 };
@@ -37,10 +37,10 @@ Findings sweep(std::uint32_t first, std::uint32_t last) {
     const std::int32_t value = sine(phase);
     const double error =
         static_cast<double>(value) / one - std::sin(static_cast<double>(phase) * (std::numbers::pi / 2147483648.0));
-    found.largest_error = std::max(found.largest_error, std::abs(error));
+    found.max_error = std::max(found.max_error, std::abs(error));
     found.sum_of_errors += error;
     found.sum_of_absolute_errors += std::abs(error);
-    found.largest_step_back = std::max(found.largest_step_back, highest - value);
+    found.max_step_back = std::max(found.max_step_back, highest - value);
     highest = std::max(highest, value);
     found.asymmetric += sine(half - phase) != value ? 1U : 0U;
     found.asymmetric += sine(half + phase) != -value ? 1U : 0U;
@@ -58,15 +58,15 @@ TEST(SineExhaustive, KeepsItsPromisesForEveryInput) {
   upper = sweep(quarter / 2, quarter);
   other.join();
 
-  const double largest = std::max(lower.largest_error, upper.largest_error);
+  const double max_error = std::max(lower.max_error, upper.max_error);
   const auto visited = static_cast<double>(quarter) + 2;
-  std::cout << "largest error " << largest << ", mean over the rising quarter "
+  std::cout << "largest error " << max_error << ", mean over the rising quarter "
             << (lower.sum_of_errors + upper.sum_of_errors) / visited << ", mean of the absolute error "
             << (lower.sum_of_absolute_errors + upper.sum_of_absolute_errors) / visited << ", largest step back "
-            << std::max(lower.largest_step_back, upper.largest_step_back) << " lsb\n";
-  EXPECT_LE(largest, 7e-7);
-  EXPECT_LE(largest, 7.3e-9);
-  EXPECT_LE(std::max(lower.largest_step_back, upper.largest_step_back), 1);
+            << std::max(lower.max_step_back, upper.max_step_back) << " lsb\n";
+  EXPECT_LE(max_error, 7e-7);
+  EXPECT_LE(max_error, 7.3e-9);
+  EXPECT_LE(std::max(lower.max_step_back, upper.max_step_back), 1);
   EXPECT_EQ(lower.asymmetric + upper.asymmetric, 0U);
   EXPECT_EQ(lower.beyond_crest + upper.beyond_crest, 0U);
 }

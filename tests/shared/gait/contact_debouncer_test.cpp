@@ -55,7 +55,7 @@ TEST(ContactDebouncer, TakesEachOfFourSensorsForItselfInEverySequenceOfFive) {
   }
 }
 
-TEST(ContactDebouncer, HearsASensorThatBouncesOnceAsItClosesAndOnceAsItOpens) {
+TEST(ContactDebouncer, ReportsASensorThatBouncesOnceAsItClosesAndOnceAsItOpens) {
   constexpr unsigned seed = 31;
   std::mt19937 random(seed);
   for (int run = 0; run < 1000; ++run) {

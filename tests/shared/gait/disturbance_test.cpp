@@ -95,33 +95,33 @@ TEST(Distortion, IsRefusedForWhatDoesNotExist) {
 // protocol.md: the receiver extrapolates the phase by its own increment and holds the rest.
 TEST(LostFrame, IsReplacedByTheLastOneWithThePhaseAdvancedByTheOwnIncrement) {
   ModuleChain losing(configuration_of(test::coupled));
-  ModuleChain told(configuration_of(test::coupled));
+  ModuleChain supplied(configuration_of(test::coupled));
   for (int tick = 0; tick < 20; ++tick) {
     losing.tick();
-    told.tick();
+    supplied.tick();
   }
   // One tick in which both hear everything; the frame of joint 1 is kept as joint 2 heard it.
   const StateFrame last = losing[1].frame(1, 0);
   losing.tick();
-  told.tick();
+  supplied.tick();
   const auto to_joint_2 = [](unsigned sender, unsigned receiver) { return sender == 1 && receiver == 2; };
   losing.exchange(to_joint_2);
-  told.exchange(to_joint_2);
+  supplied.exchange(to_joint_2);
   StateFrame expected = last;
   const Declaration& declaration = test::algorithm(test::coupled).declaration();
   const auto advanced =
       static_cast<std::int32_t>(static_cast<std::uint32_t>(unpack(declaration, 0, last)) + 42'949'673U);
   repack(declaration, 0, advanced, expected);
-  expected.bytes[7] = static_cast<std::uint8_t>(told[2].tick());
-  ASSERT_NE(expected, told[1].frame(1, 0)) << "while the chain settles, the true frame is another one";
-  ASSERT_TRUE(told[2].receive(1, 0, expected));
+  expected.bytes[7] = static_cast<std::uint8_t>(supplied[2].tick());
+  ASSERT_NE(expected, supplied[1].frame(1, 0)) << "while the chain settles, the true frame is another one";
+  ASSERT_TRUE(supplied[2].receive(1, 0, expected));
   losing.advance();
-  told.advance();
+  supplied.advance();
   for (unsigned value = 0; value < declaration.internal_values.size(); ++value) {
-    EXPECT_EQ(losing[2].internal_value(0, 2, value), told[2].internal_value(0, 2, value));
+    EXPECT_EQ(losing[2].internal_value(0, 2, value), supplied[2].internal_value(0, 2, value));
   }
   EXPECT_EQ(losing[2].missed_frames(), 1U);
-  EXPECT_EQ(told[2].missed_frames(), 0U);
+  EXPECT_EQ(supplied[2].missed_frames(), 0U);
 }
 
 TEST(LostFrame, ChangesTheCoupledGaitWhileItSettles) {

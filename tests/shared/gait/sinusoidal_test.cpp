@@ -126,7 +126,7 @@ TEST(PhaseIncrement, DriftsByNoMoreThanDeclaredInAnHour) {
 }
 
 // However a module came to tick k, its state is that of tick k: frames do not matter.
-TEST(Sinusoidal, IsAFunctionOfTheTickWhateverWasHeard) {
+TEST(Sinusoidal, IsAFunctionOfTheTickForAnyReceivedFrames) {
   const KernelConfiguration configuration = test::one_slot(test::algorithm(test::sinusoidal), 5);
   KernelOf<5> reference;
   ASSERT_EQ(reference.configure(configuration, 0), Status::ok);

@@ -10,12 +10,11 @@
 
 namespace proleg::optimize {
 
-/// What all the copies that pagmo makes of a GaitProblem share: the way from a vector of numbers to a candidate and its
+/// What all copies that pagmo makes of a GaitProblem share: it turns a vector of numbers into a candidate and its
 /// costs.
 ///
 /// The vector has one number for each dimension that has a choice (more than one value): the index of its value, as a
-/// real number from 0 to n - 1. The candidate is at the nearest index. So one is a step of the value set, for every
-/// dimension alike.
+/// real number from 0 to n - 1. The candidate is at the nearest index. So the step of every value set is 1.
 class GaitProblemHub {
  public:
   /// All three must outlive this.
@@ -24,14 +23,14 @@ class GaitProblemHub {
   [[nodiscard]] std::size_t size() const { return choices_.size(); }  ///< of the vectors
   [[nodiscard]] std::size_t objectives() const { return objectives_.size(); }
   [[nodiscard]] double last_index(std::size_t i) const;  ///< n - 1 of the i-th dimension that has a choice
-  /// The nearest candidate; numbers outside the range count as its end, what is not a number as 0.
+  /// The nearest candidate. Numbers outside the range count as its end, and "not a number" as 0.
   [[nodiscard]] Candidate candidate(const std::vector<double>& x) const;
   [[nodiscard]] std::vector<double> numbers(const Candidate& candidate) const;
-  /// What pagmo minimises, for each objective, and back; the same function.
+  /// What pagmo minimises, for each objective. The same function turns costs into scores.
   [[nodiscard]] std::vector<double> costs(const std::vector<double>& scores) const;
   [[nodiscard]] FitnessSource& source() const { return source_; }
 
-  /// Who answers what a GaitProblem is asked: x to costs. At first the source does.
+  /// Answers a GaitProblem: costs of x. By default it asks the source.
   std::function<std::vector<double>(const std::vector<double>&)> answer;
 
  private:
@@ -45,8 +44,8 @@ class GaitProblemHub {
 /// multiobjective framework for optimization: pagmo", J. Open Source Software 5, 2020).
 class GaitProblem {
  public:
-  GaitProblem() = default;  ///< pagmo demands it; of no use
-  /// hub: must outlive all copies, and have a size.
+  GaitProblem() = default;  ///< required by pagmo; never evaluated
+  /// hub: must outlive all copies; its size() is at least 1.
   explicit GaitProblem(GaitProblemHub& hub) : hub_(&hub) {}
 
   [[nodiscard]] std::vector<double> fitness(const std::vector<double>& x) const { return hub_->answer(x); }

@@ -21,12 +21,12 @@ namespace {
 
 using Genome = GA1DArrayAlleleGenome<int>;
 
-/// Between GAlib, which knows functions and pointers only, and the source.
+/// Connects GAlib, which calls plain functions with pointers, to the source.
 class Rating {
  public:
   Rating(const Objective& objective, FitnessSource& source) : objective_(objective), source_(source) {}
 
-  /// For GAPopulation::evaluator: evaluates those whose score is not known, in the order of the population.
+  /// GAPopulation::evaluator: evaluates the individuals without a score, in the order of the population.
   static void rate(GAPopulation& population) {
     auto& self = *static_cast<Rating*>(population.userData());
     self.unrated_.clear();
@@ -36,19 +36,19 @@ class Rating {
     self.rate_collected();
   }
 
-  /// For GAGenome::evaluator. GAlib does not tell which scores are known, but it calls this for the others.
+  /// GAGenome::evaluator: GAlib calls it for the individuals without a score.
   static float collect(GAGenome& genome) {
     static_cast<Rating*>(genome.userData())->unrated_.push_back(&genome);
     return 0.0F;
   }
 
-  /// What ended the search, if anything did. An exception would leave GAlib's memory behind.
+  /// What ended the search; null while it runs. An exception through GAlib would leak its memory.
   [[nodiscard]] const std::exception_ptr& ended() const { return ended_; }
 
  private:
   void rate_collected() {
     if (ended_) {
-      return;  // the scores do not matter any more
+      return;  // nothing uses the scores after the end
     }
     try {
       if (best_) {
@@ -94,7 +94,7 @@ GAAlleleSet<int> make_alleles(const Dimension& dimension) {
 }
 
 Genome make_genome(const SearchSpace& space, Rating& rating) {
-  // GAlib's array must not start empty: it would copy from a null pointer.
+  // An empty array would make GAlib copy from a null pointer.
   GAAlleleSetArray<int> alleles(make_alleles(space.dimensions.front()));
   for (std::size_t i = 1; i < space.dimensions.size(); ++i) {
     alleles.add(make_alleles(space.dimensions[i]));
@@ -104,7 +104,7 @@ Genome make_genome(const SearchSpace& space, Rating& rating) {
   return genome;
 }
 
-/// GAlib's seed: below 2^31 for all platforms, and not 0 in its lower 18 bits, or every coin toss would be the same.
+/// GAlib's seed: below 2^31 for all platforms. Its lower 18 bits must not be 0, or every coin toss would be the same.
 unsigned galib_seed(const Experiment& experiment, std::uint32_t run) {
   const std::uint64_t seed = method_seed(experiment.seed, run);
   const auto upper = static_cast<unsigned>(seed >> 32U) & 0xFFFU;
@@ -112,13 +112,13 @@ unsigned galib_seed(const Experiment& experiment, std::uint32_t run) {
   return upper << 18U | lower;
 }
 
-/// GAlib compares the quotient with 1 from the other side when it minimises.
+/// When GAlib minimises, it compares the inverse quotient.
 float convergence_limit(const GeneticSettings& settings, Goal goal) {
   if (goal == Goal::maximise) {
     return static_cast<float>(settings.convergence);
   }
-  constexpr float largest = std::numeric_limits<float>::max();
-  return settings.convergence * largest > 1.0 ? static_cast<float>(1.0 / settings.convergence) : largest;
+  constexpr float max = std::numeric_limits<float>::max();
+  return settings.convergence * max > 1.0 ? static_cast<float>(1.0 / settings.convergence) : max;
 }
 
 std::unique_ptr<GAGeneticAlgorithm> make_algorithm(const GAPopulation& population, GeneticSettings::Mode mode) {
@@ -147,10 +147,10 @@ std::string search_genetic(const Experiment& experiment, std::uint32_t run, Fitn
   algorithm->pConvergence(convergence_limit(settings, objective.goal));
   algorithm->terminator(GAGeneticAlgorithm::TerminateUponConvergence);
 
-  GAResetRNG(
-      galib_seed(experiment, run));  // initialize(seed) would go on with the sequence if the seed is the last one
+  // Not initialize(seed): with the seed of the search before, it would continue the sequence.
+  GAResetRNG(galib_seed(experiment, run));
   algorithm->initialize();
-  std::uint32_t zeros = 0;  // generations in a row whose best is 0: GAlib does not divide then
+  std::uint32_t zeros = 0;  // latest generations with a best of 0: GAlib does not divide by it
   for (;;) {
     if (rating.ended()) {
       std::rethrow_exception(rating.ended());

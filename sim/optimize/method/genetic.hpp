@@ -12,24 +12,23 @@ namespace proleg::optimize {
 /// (M. Wall, MIT, 1995-2005), which the thesis used.
 ///
 /// - Genome: one gene for each dimension, the index of its value (GA1DArrayAlleleGenome<int>). The thesis used
-///   GARealGenome with ranges and increments. That is this class with another number type; its Gaussian mutator draws a
-///   gene anew from the whole range if there is an increment, which is what the flip mutator here does. Its uniform
-///   crossover, which is not the default of this class, is chosen. Real genes would hold the same indices as floats.
+///   GARealGenome with ranges and increments. That is the same class with another number type. Its Gaussian mutator
+///   draws a gene again from the whole range if there is an increment, as the flip mutator here does. The crossover is
+///   uniform, as there; the default of this class is another one.
 /// - Selection and scaling are GAlib's defaults: roulette wheel, linear scaling by 1.2, in single precision.
-/// - A whole generation is told to the source before it is evaluated. A child that is like its parent is not evaluated
-///   anew: GAlib keeps its score.
-/// - If mutation * length is 1 or more, GAlib draws ceil(mutation * length) genes anew, of random places, one perhaps
-///   twice; below that each gene with the probability `mutation`.
+/// - The source receives a whole generation before it is evaluated. A child that equals its parent is not evaluated
+///   again: GAlib keeps its score.
+/// - If mutation * length is 1 or more, GAlib draws ceil(mutation * length) genes again, at random places, and may draw
+///   one twice. Otherwise it draws each gene again with the probability `mutation`.
 /// - Ends ("converged") when the best score of N - 1 generations ago, divided by the best score now, is at least
-///   `convergence` (N: generations_to_convergence; not before generation N - 1). The best generation is never lost. If
-///   the scores are to become small, it is the inverse quotient.
-/// - Linear scaling cannot deal with scores below 0: GAlib is given 0 for them. The quotient of N generations whose
-/// best
-///   is 0 counts as 1.
+///   `convergence`. N is generations_to_convergence; it never ends before generation N - 1. The best individual always
+///   survives. To minimise, the inverse quotient counts.
+/// - Linear scaling needs scores of 0 or more: GAlib receives 0 for a score below 0. After N generations with a best of
+///   0 the search counts as converged.
 ///
-/// GAlib's random generator is a global variable: one search at a time in a process. It is integer arithmetic (ran2 of
-/// Numerical Recipes, a shift register for coin tosses) and the same everywhere; the selection is arithmetic with
-/// floats, the same wherever compilers do not fuse multiplications and additions.
+/// GAlib's random generator is a global variable: only one search at a time may run in a process. The generator is
+/// integer arithmetic (ran2 of Numerical Recipes, a shift register for coin tosses) and the same everywhere. The
+/// selection uses floats, and is the same wherever compilers do not fuse multiplications and additions.
 [[nodiscard]] std::string search_genetic(const Experiment& experiment, std::uint32_t run, FitnessSource& source);
 
 }  // namespace proleg::optimize

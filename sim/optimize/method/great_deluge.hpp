@@ -1,13 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "shared/fixed/random.hpp"
-#include "sim/optimize/evaluation/fitness_source.hpp"
-#include "sim/optimize/experiment/experiment.hpp"
+#include "sim/optimize/experiment/method_settings.hpp"
 
 namespace pagmo {
 class population;
@@ -16,8 +13,8 @@ class population;
 namespace proleg::optimize {
 
 /// The modified great deluge algorithm of the thesis (section 3.4.2) as a user-defined algorithm of pagmo, for any
-/// problem with one objective and a box of finite bounds. pagmo minimises, the algorithm climbs: the level of a place
-/// is the negative of its fitness.
+/// problem with one objective and a box of finite bounds. pagmo minimises, this algorithm maximises: the level of a
+/// place is the negative of its fitness.
 ///
 ///     current = start; used = 0
 ///     repeat:
@@ -27,40 +24,40 @@ namespace proleg::optimize {
 ///       else:  used += 1
 ///              if used = retries:  end if credits = 0;  credits -= 1; used = 0
 ///
-/// One is the step of a variable, which makes whole numbers of the candidates of a GaitProblem. A candidate is compared
-/// with the water alone: it may be worse than the current place.
+/// The step of a variable is 1, so the candidates of a GaitProblem are whole numbers. A candidate is compared with the
+/// water alone: it may be worse than the current place.
 ///
-/// What the thesis leaves open, as it is read here:
-/// - The start is evaluated, but it is no candidate: if it is below the water it uses up no retry. A search that
-/// accepts
-///   nothing makes 1 + retries * (credits + 1) evaluations. The search goes on around the start in either case.
-/// - first_must_pass = false means that the start is accepted whatever its level is. As with every place that is
-///   accepted, the water rises by `rain`.
-/// - With reevaluations, a candidate that reaches the water is evaluated so many times more, and the mean is its level.
+/// The thesis leaves some points open. This algorithm reads them as follows:
+/// - The start is evaluated, but it is no candidate: if it is below the water, it uses no retry. The search continues
+///   around the start in either case. A search that accepts nothing makes 1 + retries * (credits + 1) evaluations.
+/// - With first_must_pass = false the start is accepted at any level. The water rises by `rain`, as with every accepted
+///   place.
+/// - With reevaluations, a candidate that reaches the water is evaluated that many times more. The mean is its level.
 /// - Several chains take turns, one candidate each, until none has a credit left. Each has its own water, radius and
-///   credits. Racing (FitnessSource::set_needed_score) goes by the lowest water of the chains that are still at it.
+///   credits. Racing (FitnessSource::set_needed_score) uses the lowest water of the chains that have not ended.
 ///
-/// One call of evolve() is the whole search. The individuals of the population are the starts of the chains; those of
-/// the population that is returned are the best places that the chains found.
+/// One call of evolve() is the whole search. The individuals of the population are the starts of the chains. The
+/// population that is returned holds the best place of each chain.
 class GreatDeluge {
  public:
   explicit GreatDeluge(const GreatDelugeSettings& settings = {}, std::uint64_t seed = 1);
 
-  /// If the population's problem is a GaitProblem, its source is told what comes next on the assumption that candidates
-  /// are accepted if most of the latest were, or are not; what was wrong is said anew. Throws std::invalid_argument for
-  /// a problem that it does not know how to handle. Whatever the problem's fitness throws passes through.
+  /// If the population's problem is a GaitProblem, its source receives predictions of the next candidates. They assume
+  /// that candidates are accepted if most of the latest were, and are corrected when they are wrong. Throws
+  /// std::invalid_argument for several objectives, constraints or infinite bounds. Exceptions of the problem's fitness
+  /// pass through.
   [[nodiscard]] pagmo::population evolve(pagmo::population population) const;
 
   void set_seed(unsigned seed) { seed_ = seed; }
-  /// Whether scores may depend on the water level that the source was told (racing). Then what was foreseen for after
-  /// an acceptance, which raises it, is of no use, and nothing is.
-  void set_level_matters(bool matters) { level_matters_ = matters; }
+  /// Whether scores may depend on the water level that the source received (racing). Predictions for after an
+  /// acceptance are then useless, because it raises the level, and are left out.
+  void set_scores_depend_on_level(bool depend) { scores_depend_on_level_ = depend; }
   /// Above 0: evolve() keeps a log.
   void set_verbosity(unsigned level) { verbosity_ = level; }
   [[nodiscard]] std::string get_name() const { return "modified great deluge"; }
   [[nodiscard]] std::string get_extra_info() const;
 
-  /// A start or candidate, and what the algorithm thought when it had its level.
+  /// A start or candidate, and the state of its chain when its level was known.
   struct LogLine {
     std::uint32_t chain;
     std::vector<double> place;
@@ -76,24 +73,15 @@ class GreatDeluge {
   [[nodiscard]] const std::string& ending() const { return ending_; }
 
  private:
-  struct Chain;
-  struct Box;
-  class Voyage;
+  class DelugeSearch;
 
   GreatDelugeSettings settings_;
-  bool level_matters_ = false;
+  bool scores_depend_on_level_ = false;
   std::uint64_t seed_;
   unsigned verbosity_ = 0;
-  // evolve() is const because pagmo wants it so.
+  // pagmo requires a const evolve().
   mutable std::vector<LogLine> log_;
   mutable std::string ending_;
 };
-
-/// The random numbers of a chain's candidate of that number, from 0. They depend on nothing else, so that a candidate
-/// can be foreseen. What is drawn, in this order: for Move::one the variable; then U for each variable that moves.
-[[nodiscard]] Pcg32 candidate_noise(std::uint64_t seed, std::uint32_t chain, std::uint64_t number);
-
-/// search() for an experiment whose method is GreatDelugeSettings, with one objective and more than one candidate.
-[[nodiscard]] std::string search_great_deluge(const Experiment& experiment, std::uint32_t run, FitnessSource& source);
 
 }  // namespace proleg::optimize

@@ -32,118 +32,116 @@ namespace {
 using pagmo::algorithm;
 using enum PagmoAlgorithm::Objectives;
 
-/// pagmo's criteria of convergence compare with absolute numbers, which know neither scores nor steps: never.
+/// pagmo's criteria of convergence are absolute numbers, which fit no scale of scores and steps: they are off.
 constexpr double never = 0.0;
 constexpr unsigned one_generation = 1;
 constexpr bool remember = true;
 constexpr bool inside_bounds = true;
 
-unsigned evaluations(const PagmoMaking& making) {
-  const std::uint64_t count = std::uint64_t{making.settings.generations} * making.settings.population;
+unsigned evaluations(const PagmoSetup& setup) {
+  const std::uint64_t count = std::uint64_t{setup.settings.generations} * setup.settings.population;
   return static_cast<unsigned>(std::min<std::uint64_t>(count, std::numeric_limits<unsigned>::max()));
 }
 
-algorithm make_bee_colony(const PagmoMaking& making) {
-  return algorithm{pagmo::bee_colony(making.settings.generations, 20, making.seed)};
+algorithm make_bee_colony(const PagmoSetup& setup) {
+  return algorithm{pagmo::bee_colony(setup.settings.generations, 20, setup.seed)};
 }
 
-algorithm make_cmaes(const PagmoMaking& making) {
-  return algorithm{pagmo::cmaes(one_generation, -1, -1, -1, -1, making.settings.sigma0.value_or(0.5), never, never,
-                                remember, inside_bounds, making.seed)};
+algorithm make_cmaes(const PagmoSetup& setup) {
+  return algorithm{pagmo::cmaes(one_generation, -1, -1, -1, -1, setup.settings.sigma0.value_or(0.5), never, never,
+                                remember, inside_bounds, setup.seed)};
 }
 
-algorithm make_compass_search(const PagmoMaking& making) {
-  // Down to half a step of the widest variable; then it has tried all neighbours.
-  return algorithm{pagmo::compass_search(evaluations(making), 0.5, 0.5 / (making.largest_index + 1.0), 0.5)};
+algorithm make_compass_search(const PagmoSetup& setup) {
+  // It ends at half a step of the widest variable: it has tried all neighbours then.
+  return algorithm{pagmo::compass_search(evaluations(setup), 0.5, 0.5 / (setup.max_index + 1.0), 0.5)};
 }
 
-algorithm make_de(const PagmoMaking& making) {
-  return algorithm{pagmo::de(one_generation, making.settings.scale.value_or(0.8),
-                             making.settings.crossover.value_or(0.9), 2, never, never, making.seed)};
+algorithm make_de(const PagmoSetup& setup) {
+  return algorithm{pagmo::de(one_generation, setup.settings.scale.value_or(0.8), setup.settings.crossover.value_or(0.9),
+                             2, never, never, setup.seed)};
 }
 
-algorithm make_de1220(const PagmoMaking& making) {
+algorithm make_de1220(const PagmoSetup& setup) {
   return algorithm{pagmo::de1220(one_generation, pagmo::de1220_statics<void>::allowed_variants, 1, never, never,
-                                 remember, making.seed)};
+                                 remember, setup.seed)};
 }
 
-algorithm make_gaco(const PagmoMaking& making) {
-  const unsigned archive = making.settings.population;
+algorithm make_gaco(const PagmoSetup& setup) {
+  const unsigned archive = setup.settings.population;
   return algorithm{pagmo::gaco(one_generation, archive, 1.0, 0.0, 0.01, 1, 7, std::numeric_limits<unsigned>::max(),
-                               std::numeric_limits<unsigned>::max(), 0.0, remember, making.seed)};
+                               std::numeric_limits<unsigned>::max(), 0.0, remember, setup.seed)};
 }
 
-algorithm make_gwo(const PagmoMaking& making) {
-  return algorithm{pagmo::gwo(making.settings.generations, making.seed)};
+algorithm make_gwo(const PagmoSetup& setup) { return algorithm{pagmo::gwo(setup.settings.generations, setup.seed)}; }
+
+algorithm make_ihs(const PagmoSetup& setup) {
+  return algorithm{pagmo::ihs(evaluations(setup), 0.85, 0.35, 0.99, 1e-5, 1.0, setup.seed)};
 }
 
-algorithm make_ihs(const PagmoMaking& making) {
-  return algorithm{pagmo::ihs(evaluations(making), 0.85, 0.35, 0.99, 1e-5, 1.0, making.seed)};
-}
-
-algorithm make_maco(const PagmoMaking& making) {
-  const unsigned archive = making.settings.population;
-  return algorithm{pagmo::maco(one_generation, archive, 1.0, 1, 7, std::numeric_limits<unsigned>::max(), 0.0, remember,
-                               making.seed)};
-}
-
-algorithm make_moead(const PagmoMaking& making) {
-  // A grid of weights for three objectives exists for some sizes of the population only.
-  const char* weights = making.objectives == 2 ? "grid" : "low discrepancy";
-  return algorithm{pagmo::moead(one_generation, weights, "tchebycheff", std::min(20U, making.settings.population - 1),
-                                1.0, 0.5, 20.0, 0.9, 2, true, making.seed)};
-}
-
-algorithm make_nsga2(const PagmoMaking& making) {
-  const double below_one = std::nextafter(1.0, 0.0);  // which pagmo demands
-  return algorithm{pagmo::nsga2(one_generation, std::min(making.settings.crossover.value_or(0.95), below_one), 10.0,
-                                making.settings.mutation.value_or(0.01), 50.0, making.seed)};
-}
-
-algorithm make_nspso(const PagmoMaking& making) {
+algorithm make_maco(const PagmoSetup& setup) {
+  const unsigned archive = setup.settings.population;
   return algorithm{
-      pagmo::nspso(one_generation, 0.6, 2.0, 2.0, 1.0, 0.5, 60, "crowding distance", remember, making.seed)};
+      pagmo::maco(one_generation, archive, 1.0, 1, 7, std::numeric_limits<unsigned>::max(), 0.0, remember, setup.seed)};
 }
 
-algorithm make_pso(const PagmoMaking& making) {
-  return algorithm{pagmo::pso(making.settings.generations, 0.7298, 2.05, 2.05, 0.5, 5, 2, 4, false, making.seed)};
+algorithm make_moead(const PagmoSetup& setup) {
+  // For three objectives a grid of weights exists only for some sizes of the population.
+  const char* weights = setup.objectives == 2 ? "grid" : "low discrepancy";
+  return algorithm{pagmo::moead(one_generation, weights, "tchebycheff", std::min(20U, setup.settings.population - 1),
+                                1.0, 0.5, 20.0, 0.9, 2, true, setup.seed)};
 }
 
-algorithm make_pso_gen(const PagmoMaking& making) {
-  return algorithm{pagmo::pso_gen(making.settings.generations, 0.7298, 2.05, 2.05, 0.5, 5, 2, 4, false, making.seed)};
+algorithm make_nsga2(const PagmoSetup& setup) {
+  const double below_one = std::nextafter(1.0, 0.0);  // pagmo accepts nothing above
+  return algorithm{pagmo::nsga2(one_generation, std::min(setup.settings.crossover.value_or(0.95), below_one), 10.0,
+                                setup.settings.mutation.value_or(0.01), 50.0, setup.seed)};
 }
 
-algorithm make_sade(const PagmoMaking& making) {
-  return algorithm{pagmo::sade(one_generation, 2, 1, never, never, remember, making.seed)};
+algorithm make_nspso(const PagmoSetup& setup) {
+  return algorithm{
+      pagmo::nspso(one_generation, 0.6, 2.0, 2.0, 1.0, 0.5, 60, "crowding distance", remember, setup.seed)};
 }
 
-algorithm make_sea(const PagmoMaking& making) {
+algorithm make_pso(const PagmoSetup& setup) {
+  return algorithm{pagmo::pso(setup.settings.generations, 0.7298, 2.05, 2.05, 0.5, 5, 2, 4, false, setup.seed)};
+}
+
+algorithm make_pso_gen(const PagmoSetup& setup) {
+  return algorithm{pagmo::pso_gen(setup.settings.generations, 0.7298, 2.05, 2.05, 0.5, 5, 2, 4, false, setup.seed)};
+}
+
+algorithm make_sade(const PagmoSetup& setup) {
+  return algorithm{pagmo::sade(one_generation, 2, 1, never, never, remember, setup.seed)};
+}
+
+algorithm make_sea(const PagmoSetup& setup) {
   // Its generation is one evaluation.
-  return algorithm{pagmo::sea(making.settings.population, making.seed)};
+  return algorithm{pagmo::sea(setup.settings.population, setup.seed)};
 }
 
-algorithm make_sga(const PagmoMaking& making) {
-  return algorithm{pagmo::sga(one_generation, making.settings.crossover.value_or(0.9), 1.0,
-                              making.settings.mutation.value_or(0.02), 1.0, 2, "binomial", "uniform", "tournament",
-                              making.seed)};
+algorithm make_sga(const PagmoSetup& setup) {
+  return algorithm{pagmo::sga(one_generation, setup.settings.crossover.value_or(0.9), 1.0,
+                              setup.settings.mutation.value_or(0.02), 1.0, 2, "binomial", "uniform", "tournament",
+                              setup.seed)};
 }
 
-algorithm make_simulated_annealing(const PagmoMaking& making) {
+algorithm make_simulated_annealing(const PagmoSetup& setup) {
   // The temperature has the unit of the cost: from the differences in the first population down to a hundredth of them.
   constexpr unsigned bin = 20;
-  const std::uint64_t evaluations_each = bin * making.variables;
-  const std::uint64_t temperatures = (evaluations(making) + evaluations_each - 1) / evaluations_each;
-  return algorithm{pagmo::simulated_annealing(making.spread, making.spread / 100.0, static_cast<unsigned>(temperatures),
-                                              1, bin, 1.0, making.seed)};
+  const std::uint64_t evaluations_each = bin * setup.variables;
+  const std::uint64_t temperatures = (evaluations(setup) + evaluations_each - 1) / evaluations_each;
+  return algorithm{pagmo::simulated_annealing(setup.cost_spread, setup.cost_spread / 100.0,
+                                              static_cast<unsigned>(temperatures), 1, bin, 1.0, setup.seed)};
 }
 
-algorithm make_xnes(const PagmoMaking& making) {
-  return algorithm{pagmo::xnes(one_generation, -1, -1, -1, making.settings.sigma0.value_or(-1.0), never, never,
-                               remember, inside_bounds, making.seed)};
+algorithm make_xnes(const PagmoSetup& setup) {
+  return algorithm{pagmo::xnes(one_generation, -1, -1, -1, setup.settings.sigma0.value_or(-1.0), never, never, remember,
+                               inside_bounds, setup.seed)};
 }
 
 constexpr std::array<PagmoAlgorithm, 19> table = {{
-    // name, objectives, least population and its multiple, goes on, settles
+    // name, objectives, min_population, population_multiple, evolves_by_generation, stagnates
     {"bee_colony", one, 2, 1, false, false, make_bee_colony},
     {"cmaes", one, 5, 1, true, true, make_cmaes},
     {"compass_search", one, 1, 1, false, false, make_compass_search},

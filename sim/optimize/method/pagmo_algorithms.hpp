@@ -1,6 +1,6 @@
 #pragma once
 
-// The algorithms of pagmo 2.18 that search without derivatives, and what each of them wants.
+// The algorithms of pagmo 2.18 that search without derivatives, and what each of them needs.
 
 #include <cstdint>
 #include <span>
@@ -15,13 +15,13 @@ class algorithm;
 
 namespace proleg::optimize {
 
-/// What an algorithm is made from. PagmoSettings that are not given have pagmo's default.
-struct PagmoMaking {
+/// What an algorithm is made from. PagmoSettings without a value have pagmo's default.
+struct PagmoSetup {
   const PagmoSettings& settings;
   unsigned seed;
   std::size_t variables;  ///< of the problem
-  double largest_index;   ///< upper end of the widest variable, in steps
-  double spread;          ///< of the costs in the first population; above 0
+  double max_index;       ///< upper end of the widest variable, in steps
+  double cost_spread;     ///< of the costs in the first population; above 0
   std::size_t objectives;
 };
 
@@ -30,14 +30,14 @@ struct PagmoAlgorithm {
 
   std::string_view name;              ///< pagmo's
   Objectives objectives;              ///< that it can deal with
-  std::uint32_t least_population;     ///< that pagmo accepts without refusal (or crash)
-  std::uint32_t population_multiple;  ///< the population must be one of this
-  /// Whether one evolve() a generation is as good as one for all generations: the algorithm remembers what it needs, or
-  /// needs nothing. The others (a cooling schedule, say) are made for all generations and evolve once.
-  bool goes_on;
-  /// Whether it is stuck when its candidates do not differ any more.
-  bool settles;
-  pagmo::algorithm (*make)(const PagmoMaking& making);
+  std::uint32_t min_population;       ///< below it pagmo throws or crashes
+  std::uint32_t population_multiple;  ///< the population must be a multiple of this
+  /// Whether one evolve() for each generation equals one for all: the algorithm keeps what it needs, or needs nothing.
+  /// The others (with a cooling schedule, for example) are made for all generations and evolve once.
+  bool evolves_by_generation;
+  /// Whether it cannot find anything new when its candidates no longer differ.
+  bool stagnates;
+  pagmo::algorithm (*make)(const PagmoSetup& setup);
 };
 
 /// By name.

@@ -7,27 +7,27 @@
 #include <pagmo/problem.hpp>
 
 #include "sim/optimize/experiment/scatter.hpp"
-#include "sim/optimize/method/foresight.hpp"
 #include "sim/optimize/method/gait_problem.hpp"
 #include "sim/optimize/method/method_seed.hpp"
 #include "sim/optimize/method/pagmo_algorithms.hpp"
+#include "sim/optimize/method/request_predictor.hpp"
 
 namespace proleg::optimize {
 
 namespace {
 
 double spread_of_costs(const pagmo::population& population) {
-  const auto [least, most] = std::ranges::minmax(population.get_f(), {}, [](const auto& costs) { return costs[0]; });
-  const double spread = most[0] - least[0];
+  const auto [min, max] = std::ranges::minmax(population.get_f(), {}, [](const auto& costs) { return costs[0]; });
+  const double spread = max[0] - min[0];
   return spread > 0.0 ? spread : 1.0;
 }
 
-double largest_index(const GaitProblemHub& hub) {
-  double largest = 0.0;
+double max_index(const GaitProblemHub& hub) {
+  double max = 0.0;
   for (std::size_t i = 0; i < hub.size(); ++i) {
-    largest = std::max(largest, hub.last_index(i));
+    max = std::max(max, hub.last_index(i));
   }
-  return largest;
+  return max;
 }
 
 /// Whether all individuals are the same candidate.
@@ -37,7 +37,7 @@ bool is_one_candidate(const pagmo::population& population, const GaitProblemHub&
   return std::ranges::all_of(places, [&](const auto& place) { return hub.candidate(place) == first; });
 }
 
-/// One search after another, each from a population of its own, until the generations are used up.
+/// Searches one after another, each from its own population, until the generations are used up.
 class PagmoSearch {
  public:
   PagmoSearch(const Experiment& experiment, std::uint64_t seed, FitnessSource& source)
@@ -46,46 +46,47 @@ class PagmoSearch {
         seed_(seed),
         hub_(experiment.space, experiment.objectives, source),
         problem_(GaitProblem{hub_}),
-        generations_(chosen_.goes_on ? settings_.generations : std::min(settings_.generations, 1U)) {
+        generations_(chosen_.evolves_by_generation ? settings_.generations : std::min(settings_.generations, 1U)) {
     source.set_needed_score(std::nullopt);
   }
 
   std::string run() {
     for (std::uint64_t start = 0;; ++start) {
       const std::string ending = run_from(start == 0 ? seed_ : scatter(seed_ + start));
-      if (settings_.restart_after == 0 || !chosen_.goes_on || generations_ == 0) {
+      if (settings_.restart_after == 0 || !chosen_.evolves_by_generation || generations_ == 0) {
         return ending;
       }
     }
   }
 
  private:
-  /// Uses generations up until there are none, or nothing more to gain; returns which. At least one is used.
+  /// Uses at least one generation, until none is left or nothing more is gained. Returns why it ended.
   std::string run_from(std::uint64_t seed) {
-    Foresight foresight(hub_, settings_.population, chosen_.settles);
+    RequestPredictor predictor(hub_, settings_.population, chosen_.stagnates);
     try {
       pagmo::population population;
       const auto make_population = [&] {
         return pagmo::population(problem_, settings_.population, static_cast<unsigned>(seed));
       };
-      foresight.run([&] { static_cast<void>(make_population()); }, [&] { population = make_population(); });
+      predictor.run([&] { static_cast<void>(make_population()); }, [&] { population = make_population(); });
       const pagmo::algorithm algorithm = chosen_.make({.settings = settings_,
                                                        .seed = static_cast<unsigned>(seed >> 32U),
                                                        .variables = hub_.size(),
-                                                       .largest_index = largest_index(hub_),
-                                                       .spread = spread_of_costs(population),
+                                                       .max_index = max_index(hub_),
+                                                       .cost_spread = spread_of_costs(population),
                                                        .objectives = hub_.objectives()});
       double best = best_cost(population);
       std::uint32_t without_gain = 0;
       while (generations_ > 0 && (without_gain < settings_.restart_after || settings_.restart_after == 0)) {
         --generations_;
-        // evolve() changes what the algorithm remembers; a copy remembers what was before.
+        // evolve() changes the state of the algorithm; the copy has the state before it.
         const pagmo::algorithm before = algorithm;
-        const std::uint64_t asked_before = foresight.asked();
-        foresight.run([&] { static_cast<void>(pagmo::algorithm(before).evolve(population)); },
+        const std::uint64_t asked_before = predictor.asked();
+        predictor.run([&] { static_cast<void>(pagmo::algorithm(before).evolve(population)); },
                       [&] { population = algorithm.evolve(population); });
-        const std::uint64_t due = chosen_.goes_on ? 1 : std::uint64_t{settings_.generations} * settings_.population;
-        if (foresight.asked() - asked_before < due || (chosen_.settles && is_one_candidate(population, hub_))) {
+        const std::uint64_t due =
+            chosen_.evolves_by_generation ? 1 : std::uint64_t{settings_.generations} * settings_.population;
+        if (predictor.asked() - asked_before < due || (chosen_.stagnates && is_one_candidate(population, hub_))) {
           return "converged";
         }
         const double now = best_cost(population);
@@ -93,8 +94,8 @@ class PagmoSearch {
         without_gain = gained ? 0 : without_gain + 1;
         best = gained ? now : best;
       }
-    } catch (const Foresight::Settled&) {
-      return "converged";  // which takes a generation to see
+    } catch (const RequestPredictor::Stagnated&) {
+      return "converged";
     }
     return "generations used up";
   }

@@ -5,7 +5,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/method/genetic.hpp"
-#include "sim/optimize/method/great_deluge.hpp"
+#include "sim/optimize/method/great_deluge_method.hpp"
 #include "sim/optimize/method/pagmo_algorithms.hpp"
 #include "sim/optimize/method/pagmo_method.hpp"
 
@@ -22,7 +22,7 @@ void check_objectives(const Experiment& experiment, const std::string& method, P
   const std::string found = std::to_string(count) + (count == 1 ? " objective" : " objectives") + " for " + method;
   if (known == PagmoAlgorithm::Objectives::one && count != 1) {
     refuse(experiment, found,
-           "one objective (a weighted sum of measures is one), or a method that knows several: " +
+           "one objective (a weighted sum of measures is one), or a method for several: " +
                std::string("nsga2, moead, nspso, maco, ihs"));
   }
   if (known == PagmoAlgorithm::Objectives::several && count < 2) {
@@ -38,7 +38,7 @@ void check_number(const Experiment& experiment, const PagmoAlgorithm& algorithm,
   const std::string name(algorithm.name);
   if (const std::vector<std::string> known = pagmo_options(name); std::ranges::count(known, option) == 0) {
     refuse(experiment, std::string(option) + " for " + name,
-           known.empty() ? "no such setting: " + name + " has none" : "settings that it has: " + listed(known));
+           known.empty() ? "no such setting: " + name + " has none" : "one of its settings: " + listed(known));
   }
   if (!(*value > 0.0 && *value <= 1.0) && !(*value == 0.0 && may_be_zero)) {
     refuse(experiment, std::string(option) + " " + std::to_string(*value),
@@ -56,8 +56,8 @@ void check_pagmo(const Experiment& experiment, const PagmoSettings& settings) {
     refuse(experiment, "algorithm " + in_quotes(settings.algorithm), "one of " + listed(known));
   }
   check_objectives(experiment, settings.algorithm, algorithm->objectives);
-  if (settings.population < algorithm->least_population || settings.population % algorithm->population_multiple != 0) {
-    std::string expected = "at least " + std::to_string(algorithm->least_population);
+  if (settings.population < algorithm->min_population || settings.population % algorithm->population_multiple != 0) {
+    std::string expected = "at least " + std::to_string(algorithm->min_population);
     if (algorithm->population_multiple > 1) {
       expected += ", and a multiple of " + std::to_string(algorithm->population_multiple);
     }

@@ -8,16 +8,16 @@
 
 namespace proleg::optimize {
 
-/// Runs the method of an experiment until it ends by itself; returns why ("no credit left", "converged", ...). What it
-/// asks for depends on the experiment, the run and the scores alone. SearchEnded passes through. Throws InputError for
-/// settings that the method refuses (a population that is too small, several objectives for a method that knows one).
+/// Runs the method of an experiment until it ends; returns why ("no credit left", "converged", ...). Its requests
+/// depend only on the experiment, the run and the scores. SearchEnded passes through. Throws InputError for settings
+/// that the method rejects (a population that is too small, several objectives for a method with one).
 [[nodiscard]] std::string search(const Experiment& experiment, std::uint32_t run, FitnessSource& source);
 
-/// Evaluations that a search makes if it does not end before: those of its budget, or of its generations if they are
-/// fewer. 0: nobody knows.
+/// Evaluations that a search makes if it does not end earlier: those of its budget, or of its generations if they are
+/// fewer. 0: unknown.
 [[nodiscard]] std::uint64_t planned_evaluations(const Experiment& experiment);
 
-/// Throws InputError as search() would, before anything is evaluated.
+/// Throws the InputError that search() would throw. Evaluates nothing.
 void check_method(const Experiment& experiment);
 
 }  // namespace proleg::optimize

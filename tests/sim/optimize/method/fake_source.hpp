@@ -17,7 +17,7 @@
 
 namespace proleg::optimize {
 
-/// Rates candidates by a function, writes down what it is asked, and holds against it what it was told to expect.
+/// Rates candidates by a function. Records all requests and compares them with the predictions.
 class FakeSource final : public FitnessSource {
  public:
   using Function = std::function<std::vector<double>(const Candidate&)>;
@@ -25,15 +25,15 @@ class FakeSource final : public FitnessSource {
   explicit FakeSource(Function rate, std::size_t ahead = 8, std::uint64_t evaluations = 1'000'000)
       : function_(std::move(rate)), lookahead_(ahead), budget_(evaluations) {}
 
-  /// What became of a prediction that was made before the evaluation before was over.
-  enum class Foresight : std::uint8_t { none, right, wrong };
+  /// Whether there was a prediction before the previous evaluation ended, and whether it was right.
+  enum class Prediction : std::uint8_t { none, right, wrong };
 
   void expect(std::span<const Candidate> next) override {
     const std::uint64_t now = asked.size();
     expectations.emplace_back(now, std::vector<Candidate>(next.begin(), next.end()));
-    foreseen_.clear();
-    for (std::size_t i = 1; i < next.size(); ++i) {  // the first is asked for at once: nobody can work ahead on it
-      foreseen_[now + i] = next[i];
+    predicted_.clear();
+    for (std::size_t i = 1; i < next.size(); ++i) {  // the first is asked for at once: no worker can simulate it ahead
+      predicted_[now + i] = next[i];
     }
   }
 
@@ -43,39 +43,40 @@ class FakeSource final : public FitnessSource {
     if (asked.size() == budget_) {
       throw SearchEnded{};
     }
-    const auto found = before_.find(asked.size());
-    foresights.push_back(found == before_.end()       ? Foresight::none
-                         : found->second == candidate ? Foresight::right
-                                                      : Foresight::wrong);
+    const auto found = predicted_before_.find(asked.size());
+    predictions.push_back(found == predicted_before_.end() ? Prediction::none
+                          : found->second == candidate     ? Prediction::right
+                                                           : Prediction::wrong);
     asked.push_back(candidate);
     needed.push_back(needed_);
     scores.push_back(function_(candidate));
-    before_ = foreseen_;
+    predicted_before_ = predicted_;
     return scores.back();
   }
 
   void set_needed_score(std::optional<double> score) override { needed_ = score; }
 
-  [[nodiscard]] std::size_t count(Foresight kind) const {
-    return static_cast<std::size_t>(std::count(foresights.begin(), foresights.end(), kind));
+  [[nodiscard]] std::size_t count(Prediction kind) const {
+    return static_cast<std::size_t>(std::count(predictions.begin(), predictions.end(), kind));
   }
 
   std::vector<Candidate> asked;
   std::vector<std::vector<double>> scores;
   std::vector<std::optional<double>> needed;
-  std::vector<Foresight> foresights;
-  std::vector<std::pair<std::uint64_t, std::vector<Candidate>>> expectations;  ///< and how much had been asked before
+  std::vector<Prediction> predictions;
+  std::vector<std::pair<std::uint64_t, std::vector<Candidate>>>
+      expectations;  ///< with the number of evaluations before
 
  private:
   Function function_;
   std::size_t lookahead_;
   std::uint64_t budget_;
   std::optional<double> needed_;
-  std::map<std::uint64_t, Candidate> foreseen_;
-  std::map<std::uint64_t, Candidate> before_;  ///< foreseen_ when the last evaluation was over
+  std::map<std::uint64_t, Candidate> predicted_;
+  std::map<std::uint64_t, Candidate> predicted_before_;  ///< predicted_ when the last evaluation ended
 };
 
-/// Dimensions of so many values each.
+/// Dimensions with these numbers of values.
 inline SearchSpace make_space(const std::vector<std::uint32_t>& sizes) {
   SearchSpace space;
   for (std::size_t i = 0; i < sizes.size(); ++i) {
@@ -117,7 +118,7 @@ inline double sphere(const Candidate& candidate, double centre) {
   return sum;
 }
 
-/// Many hills on a slope: a function without a pattern that an algorithm could live on, from about 0 to 3.
+/// Many hills on a slope, from about 0 to 3: a function without a pattern that an algorithm could use.
 inline double rugged(const Candidate& candidate) {
   double sum = 0.0;
   for (std::size_t i = 0; i < candidate.size(); ++i) {

@@ -32,7 +32,7 @@ TEST_F(GaitProblemOfFour, RoundsToTheNearestCandidateAndKeepsInside) {
   EXPECT_EQ(hub.candidate(hub.numbers({2, 0, 77, 1})), (Candidate{2, 0, 77, 1}));
 }
 
-TEST_F(GaitProblemOfFour, CopiesOfItAskTheSameSource) {
+TEST_F(GaitProblemOfFour, HasCopiesThatAskTheSameSource) {
   const pagmo::problem problem{GaitProblem{hub}};
   const pagmo::population population(problem, 6U, 1U);
   pagmo::population copy(population);

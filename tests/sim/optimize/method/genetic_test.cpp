@@ -22,7 +22,7 @@ FakeSource::Function constant(double score) {
   return [score](const Candidate&) { return std::vector<double>{score}; };
 }
 
-/// What a source was asked for in each generation: GAlib's are told one by one.
+/// What a source was asked for in each generation: it receives one prediction for each.
 std::vector<std::vector<Candidate>> generations(const FakeSource& source) {
   std::vector<std::vector<Candidate>> result;
   for (const auto& expectation : source.expectations) {
@@ -31,10 +31,10 @@ std::vector<std::vector<Candidate>> generations(const FakeSource& source) {
   return result;
 }
 
-/// Two generations, the second without pressure of selection: its children as they were made.
+/// Two generations, the second without selection pressure: its children as they were made.
 struct Offspring {
   std::vector<Candidate> parents;
-  std::vector<Candidate> children;  ///< without those that are like a parent
+  std::vector<Candidate> children;  ///< without those that equal a parent
 };
 
 Offspring breed(GeneticSettings settings, const std::vector<std::uint32_t>& sizes) {
@@ -67,8 +67,8 @@ double mean_changed_genes(const Offspring& offspring) {
 }
 
 TEST(GeneticConvergence, IsTheQuotientOfBestsOfNGenerations) {
-  // The oracle: M. Wall's definition, applied to the best scores as they were asked for. With elitism the best of a
-  // generation is the best so far.
+  // The oracle: M. Wall's definition, applied to the best scores. With elitism the best of a generation is the best so
+  // far.
   for (const Mode mode : {Mode::simple, Mode::steady_state}) {
     for (const std::uint32_t n : {1U, 2U, 5U, 20U}) {
       for (const double limit : {0.7, 0.99, 1.0}) {
@@ -114,7 +114,7 @@ TEST(GeneticConvergence, OfMinimisingIsTheInverseQuotient) {
   EXPECT_LT(best, 40.0);
 }
 
-TEST(GeneticConvergence, OfNothingButZerosComesAfterNGenerationsToo) {
+TEST(GeneticConvergence, WithScoresOfZeroOnlyComesAfterNGenerations) {
   for (const Goal goal : {Goal::maximise, Goal::minimise}) {
     GeneticSettings settings;
     settings.generations_to_convergence = 7;
@@ -137,7 +137,7 @@ TEST(GeneticMutation, OfOneOrMoreGenesRedrawsThatManyPlacesWithReplacement) {
     settings.mutation = wanted.mutation;
     settings.crossover = 0.0;
     const Offspring offspring = breed(settings, std::vector<std::uint32_t>(wanted.length, 5000));
-    EXPECT_GE(offspring.children.size(), 1190U);  // all but those whose gene was drawn like it was
+    EXPECT_GE(offspring.children.size(), 1190U);  // all but those whose gene was drawn with the same value
     const auto length = static_cast<double>(wanted.length);
     const double touched = length * (1.0 - std::pow(1.0 - 1.0 / length, wanted.draws));
     EXPECT_NEAR(mean_changed_genes(offspring), touched, 0.12) << wanted.mutation;
@@ -150,7 +150,7 @@ TEST(GeneticMutation, OfLessThanOneGeneTossesForEachGene) {
   settings.mutation = 0.1;
   settings.crossover = 0.0;
   const Offspring offspring = breed(settings, std::vector<std::uint32_t>(5, 5000));
-  // Those that no gene of was drawn anew are not evaluated again.
+  // A child without a new gene is not evaluated again.
   const double touched = 1.0 - std::pow(0.9, 5);
   EXPECT_NEAR(static_cast<double>(offspring.children.size()), 1500.0 * touched, 5.0 * std::sqrt(1500.0 * 0.25));
   EXPECT_NEAR(mean_changed_genes(offspring), 0.5 / touched, 0.09);
@@ -176,7 +176,7 @@ TEST(GeneticCrossover, TakesEachGeneFromEitherParent) {
         }
       }
     }
-    ASSERT_EQ(from.size(), child.size()) << "a gene of nobody";
+    ASSERT_EQ(from.size(), child.size()) << "a gene of no parent";
     if (std::set(from.begin(), from.end()).size() != 2) {
       continue;  // by chance two parents have the same gene
     }
@@ -199,7 +199,7 @@ TEST(GeneticCrossover, HappensWithItsProbability) {
   EXPECT_NEAR(static_cast<double>(offspring.children.size()), 400.0, 130.0);  // pairs: twice the variance
 }
 
-TEST(GeneticGenes, AreDrawnEvenlyFromTheirSetsAndFromNowhereElse) {
+TEST(GeneticGenes, AreDrawnEvenlyFromTheirSetsOnly) {
   GeneticSettings settings;
   settings.population = 2000;
   settings.mutation = 1.0;
@@ -221,7 +221,7 @@ TEST(GeneticGenes, AreDrawnEvenlyFromTheirSetsAndFromNowhereElse) {
   }
 }
 
-TEST(GeneticSequence, DependsOnSeedAndRunAndNothingElse) {
+TEST(GeneticSequence, DependsOnSeedAndRunOnly) {
   const auto sequence = [](std::uint64_t seed, std::uint32_t run, std::size_t ahead, Mode mode) {
     GeneticSettings settings;
     settings.mode = mode;
@@ -243,7 +243,7 @@ TEST(GeneticSequence, DependsOnSeedAndRunAndNothingElse) {
   EXPECT_NE(sequence(1, 0, 1, Mode::simple), sequence(1, 0, 1, Mode::steady_state));
 }
 
-TEST(GeneticForesight, IsTheWholeGenerationAndRight) {
+TEST(GeneticPrediction, IsTheWholeGenerationAndRight) {
   for (const Mode mode : {Mode::simple, Mode::steady_state}) {
     GeneticSettings settings;
     settings.mode = mode;
@@ -253,15 +253,15 @@ TEST(GeneticForesight, IsTheWholeGenerationAndRight) {
     EXPECT_EQ(search(make_experiment({161, 161, 161, 161, 161}, settings), 0, source), "converged");
     const std::size_t count = source.expectations.size();
     EXPECT_GE(count, 50U);
-    EXPECT_EQ(source.count(FakeSource::Foresight::wrong), 0U);
-    EXPECT_EQ(source.count(FakeSource::Foresight::none), count);
+    EXPECT_EQ(source.count(FakeSource::Prediction::wrong), 0U);
+    EXPECT_EQ(source.count(FakeSource::Prediction::none), count);
     // Half of a steady state is new in each generation.
     const std::size_t half = mode == Mode::simple ? 30 : 15;
     EXPECT_NEAR(static_cast<double>(source.asked.size()) / static_cast<double>(count), static_cast<double>(half), 1.0);
   }
 }
 
-TEST(GeneticRacing, GoesByTheBestScoreBeforeTheGeneration) {
+TEST(GeneticRacing, UsesTheBestScoreBeforeTheGeneration) {
   FakeSource source(rugged_score());
   static_cast<void>(search(make_experiment({161, 161, 161}, GeneticSettings{}), 0, source));
   std::optional<double> best;
@@ -334,7 +334,7 @@ TEST(GeneticSearch, SelectsAtRandomWithoutAScoreAboveZeroAndEndsAfterNGeneration
             asked(constant(0.0)));
 }
 
-TEST(GeneticSearch, ClimbsBothWays) {
+TEST(GeneticSearch, MaximisesAndMinimises) {
   GeneticSettings settings;
   settings.mutation = 0.05;
   for (const Mode mode : {Mode::simple, Mode::steady_state}) {

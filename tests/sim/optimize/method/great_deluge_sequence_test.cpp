@@ -332,31 +332,31 @@ TEST(GreatDelugeSequence, DependsOnSeedAndRun) {
 
 TEST(GreatDelugePrediction, IsRightWhileCandidatesAreAcceptedOrRejectedAsThoseBefore) {
   GreatDelugeSettings settings;
-  settings.water_level = 0.2;  // so far below the start that nearly all are accepted at first, and nearly none at last
+  settings.water_level = 0.2;  // far below the start: at first nearly all are accepted, at last nearly none
   const Experiment experiment = make_experiment({41, 41, 41, 41}, settings);
   FakeSource source(rugged_score(), 16, 20'000);
   EXPECT_EQ(search(experiment, 2, source), "no credit left");
   double water = 0.2;
   std::size_t accepted = 0;
-  std::size_t alike = 0;  // latest outcomes that are the same
+  std::size_t equal_outcomes = 0;  // latest outcomes that are equal
   bool last = false;
-  std::size_t foreseen_in_a_row_of_acceptances = 0;
+  std::size_t predicted_among_acceptances = 0;
   for (std::size_t i = 0; i < source.asked.size(); ++i) {
     EXPECT_EQ(source.needed[i], water);
-    if (i > 1 && alike > 8) {
-      EXPECT_EQ(source.foresights[i], FakeSource::Foresight::right) << i;
-      foreseen_in_a_row_of_acceptances += last ? 1U : 0U;
+    if (i > 1 && equal_outcomes > 8) {
+      EXPECT_EQ(source.predictions[i], FakeSource::Prediction::right) << i;
+      predicted_among_acceptances += last ? 1U : 0U;
     }
     const bool is_accepted = source.scores[i][0] >= water;
-    alike = is_accepted == last ? alike + 1 : 1;
+    equal_outcomes = is_accepted == last ? equal_outcomes + 1 : 1;
     last = is_accepted;
     if (is_accepted) {
       water += settings.rain;
       ++accepted;
     }
   }
-  EXPECT_GT(foreseen_in_a_row_of_acceptances, 20U);
-  EXPECT_GT(source.count(FakeSource::Foresight::right), source.asked.size() - accepted);
+  EXPECT_GT(predicted_among_acceptances, 20U);
+  EXPECT_GT(source.count(FakeSource::Prediction::right), source.asked.size() - accepted);
 }
 
 TEST(GreatDelugePrediction, IncludesReevaluationsAndTheTurnsOfChains) {
@@ -365,8 +365,8 @@ TEST(GreatDelugePrediction, IncludesReevaluationsAndTheTurnsOfChains) {
   settings.reevaluations = 2;
   settings.retries = 10;
   settings.credits = 1;
-  // All candidates fail but one, in the middle of the search, which is confirmed: nothing but what follows the first
-  // look at it is unforeseen.
+  // One candidate in the middle of the search is accepted and confirmed, all others fail. Only the evaluation after its
+  // first one is not predicted.
   std::uint64_t evaluation = 0;
   FakeSource source([&](const Candidate&) {
     ++evaluation;
@@ -378,7 +378,7 @@ TEST(GreatDelugePrediction, IncludesReevaluationsAndTheTurnsOfChains) {
   EXPECT_EQ(source.asked[19], source.asked[21]);
   for (std::size_t i = 4; i < source.asked.size(); ++i) {
     if (i != 20) {
-      EXPECT_EQ(source.foresights[i], FakeSource::Foresight::right) << i;
+      EXPECT_EQ(source.predictions[i], FakeSource::Prediction::right) << i;
     }
   }
 }

@@ -46,12 +46,12 @@ class EachAlgorithm : public testing::TestWithParam<std::size_t> {
 INSTANTIATE_TEST_SUITE_P(Pagmo, EachAlgorithm, testing::Range<std::size_t>(0, pagmo_algorithms().size()),
                          [](const auto& each) { return std::string(pagmo_algorithms()[each.param].name); });
 
-TEST_P(EachAlgorithm, RunsWithEveryPopulationThatIsNotRefused) {
+TEST_P(EachAlgorithm, RunsWithEveryPopulationThatIsNotRejected) {
   const std::size_t objectives = objectives_for(algorithm);
   for (std::uint32_t population = 0; population <= 24; ++population) {
     const Experiment experiment = experiment_for(algorithm, {31, 2, 161}, population, 2, objectives);
     FakeSource source(spheres(objectives), 8);
-    if (population < algorithm.least_population || population % algorithm.population_multiple != 0) {
+    if (population < algorithm.min_population || population % algorithm.population_multiple != 0) {
       EXPECT_THROW(check_method(experiment), InputError) << population;
       continue;
     }
@@ -166,15 +166,15 @@ TEST_P(EachAlgorithm, HasMostOfItsRequestsPredicted) {
       8);
   static_cast<void>(search(experiment, 0, source));
   const std::size_t asked = source.asked.size();
-  const std::size_t wrong = source.count(FakeSource::Foresight::wrong);
-  const std::size_t none = source.count(FakeSource::Foresight::none);
+  const std::size_t wrong = source.count(FakeSource::Prediction::wrong);
+  const std::size_t none = source.count(FakeSource::Prediction::none);
   RecordProperty("asked", static_cast<int>(asked));
   RecordProperty("wrong", static_cast<int>(wrong));
   RecordProperty("none", static_cast<int>(none));
-  // Those that look at a fitness before the end of a generation, or that cross its end in one go.
-  static const std::set<std::string_view> interrupted = {
+  // These use a fitness before the end of a generation, or run over its end in one call.
+  static const std::set<std::string_view> unpredictable = {
       "bee_colony", "compass_search", "gwo", "ihs", "moead", "pso", "pso_gen", "sea", "simulated_annealing"};
-  if (!interrupted.contains(algorithm.name)) {
+  if (!unpredictable.contains(algorithm.name)) {
     EXPECT_EQ(wrong, 0U);
     EXPECT_EQ(none, 21U);  // the first of each generation, and of the population before
   }
@@ -183,7 +183,7 @@ TEST_P(EachAlgorithm, HasMostOfItsRequestsPredicted) {
   EXPECT_LT(wrong + none, max_unpredicted);
 }
 
-TEST_P(EachAlgorithm, EndsWhenItsSourceDoes) {
+TEST_P(EachAlgorithm, EndsWithItsSource) {
   const std::size_t objectives = objectives_for(algorithm);
   const Experiment experiment = experiment_for(algorithm, {41, 41}, 8, 4, objectives);
   for (const std::uint64_t budget : {0U, 1U, 7U, 8U, 9U, 13U, 16U, 17U}) {

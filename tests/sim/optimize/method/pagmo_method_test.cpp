@@ -33,7 +33,7 @@ TEST(PagmoSearch, FindsTheBottomOfABowl) {
     FakeSource source([](const Candidate& candidate) { return std::vector<double>{sphere(candidate, 29.0)}; });
     const Experiment experiment = make_experiment({41, 41, 41, 41, 41}, settings_of(name, 20, 100), Goal::minimise);
     const std::string ending = search(experiment, 0, source);
-    // From 4205 in the far corner. Annealing is coarse.
+    // The far corner has 4205. Annealing is coarse.
     EXPECT_LE(best_of(source), std::string_view(name) == "simulated_annealing" ? 40.0 : 1.0) << name << ": " << ending;
   }
 }
@@ -51,7 +51,7 @@ TEST(PagmoSearch, FindsACornerWhereTheBoundsCut) {
   }
 }
 
-TEST(PagmoSearch, EndsWithItsGenerationsOrWhenNothingMovesAnyMore) {
+TEST(PagmoSearch, EndsWithItsGenerationsOrWhenItsCandidatesNoLongerMove) {
   const auto bowl = [](const Candidate& candidate) { return std::vector<double>{sphere(candidate, 29.0)}; };
   FakeSource three(bowl);
   EXPECT_EQ(search(make_experiment({41, 41}, settings_of("de", 10, 3), Goal::minimise), 0, three),
@@ -63,7 +63,7 @@ TEST(PagmoSearch, EndsWithItsGenerationsOrWhenNothingMovesAnyMore) {
               "converged")
         << name;
     EXPECT_EQ(best_of(source), 0.0);
-    // It took no end of a generation for it: the last generation was all about one place.
+    // The last generation was about one place, and the search did not wait for its end.
     const std::set<Candidate> last(source.asked.end() - 20, source.asked.end());
     EXPECT_LE(last.size(), 12U);
   }
@@ -81,7 +81,7 @@ double two_summits(const Candidate& candidate) {
   return std::max(0.8 * summit(160.0, 120.0), summit(60.0, 50.0));
 }
 
-TEST(PagmoSearch, BeginsAnewFromAnotherPopulationAndFindsTheOtherSummit) {
+TEST(PagmoSearch, RestartsFromAnotherPopulationAndFindsTheOtherSummit) {
   PagmoSettings settings = settings_of("cmaes", 12, 120);
   std::size_t without = 0;
   std::size_t with = 0;
@@ -103,7 +103,7 @@ TEST(PagmoSearch, BeginsAnewFromAnotherPopulationAndFindsTheOtherSummit) {
   EXPECT_GE(with, without + 2);
 }
 
-TEST(PagmoSearch, WithRestartsEndsAlsoWhereNothingIsEverGained) {
+TEST(PagmoSearch, WithRestartsEndsEvenIfNothingIsGained) {
   for (const PagmoAlgorithm& each : pagmo_algorithms()) {
     const std::size_t objectives = each.objectives == PagmoAlgorithm::Objectives::several ? 2 : 1;
     PagmoSettings settings = settings_of(std::string(each.name), 12, 9);
@@ -113,7 +113,7 @@ TEST(PagmoSearch, WithRestartsEndsAlsoWhereNothingIsEverGained) {
   }
 }
 
-TEST(PagmoSearch, GoesOnWhereAllScoresAreTheSame) {
+TEST(PagmoSearch, ContinuesWhereAllScoresAreEqual) {
   for (const char* name : {"cmaes", "de", "nsga2", "gaco", "maco"}) {
     const bool several = std::string_view(name) == "nsga2" || std::string_view(name) == "maco";
     FakeSource source([several](const Candidate&) { return std::vector<double>(several ? 2 : 1, 1.0); });
@@ -123,7 +123,7 @@ TEST(PagmoSearch, GoesOnWhereAllScoresAreTheSame) {
   }
 }
 
-/// A problem of pagmo's that knows nothing of foresight, and writes down what it is asked.
+/// A problem of pagmo without predictions, which records its requests.
 struct PlainProblem {
   std::vector<Candidate>* asked = nullptr;
   std::vector<double>::size_type objectives = 1;
@@ -144,7 +144,7 @@ struct PlainProblem {
   [[nodiscard]] std::vector<double>::size_type get_nobj() const { return objectives; }
 };
 
-TEST(PagmoSearch, AsksWhatPagmoAsksWithoutForesight) {
+TEST(PagmoSearch, AsksWhatPagmoAsksWithoutPredictions) {
   for (const PagmoAlgorithm& each : pagmo_algorithms()) {
     const std::size_t objectives = each.objectives == PagmoAlgorithm::Objectives::several ? 2 : 1;
     const PagmoSettings settings = settings_of(std::string(each.name), 12, 6);
@@ -160,19 +160,19 @@ TEST(PagmoSearch, AsksWhatPagmoAsksWithoutForesight) {
     std::vector<Candidate> asked;
     const std::uint64_t seed = method_seed(5, 2);
     pagmo::population population{pagmo::problem{PlainProblem{&asked, objectives}}, 12U, static_cast<unsigned>(seed)};
-    double least = 1e9;
-    double most = -1e9;
+    double min = 1e9;
+    double max = -1e9;
     for (const auto& costs : population.get_f()) {
-      least = std::min(least, costs[0]);
-      most = std::max(most, costs[0]);
+      min = std::min(min, costs[0]);
+      max = std::max(max, costs[0]);
     }
     const pagmo::algorithm algorithm = each.make({.settings = settings,
                                                   .seed = static_cast<unsigned>(seed >> 32U),
                                                   .variables = 3,
-                                                  .largest_index = 40.0,
-                                                  .spread = most - least,
+                                                  .max_index = 40.0,
+                                                  .cost_spread = max - min,
                                                   .objectives = objectives});
-    for (int generation = 0; generation < (each.goes_on ? 6 : 1); ++generation) {
+    for (int generation = 0; generation < (each.evolves_by_generation ? 6 : 1); ++generation) {
       population = algorithm.evolve(population);
     }
     EXPECT_EQ(source.asked, asked) << each.name;
@@ -180,7 +180,7 @@ TEST(PagmoSearch, AsksWhatPagmoAsksWithoutForesight) {
   }
 }
 
-TEST(PagmoRacing, GoesByTheBestScoreBeforeTheGeneration) {
+TEST(PagmoRacing, UsesTheBestScoreBeforeTheGeneration) {
   for (const Goal goal : {Goal::maximise, Goal::minimise}) {
     for (const char* name : {"cmaes", "pso"}) {
       FakeSource source([](const Candidate& candidate) { return std::vector<double>{rugged(candidate)}; });
@@ -201,7 +201,7 @@ TEST(PagmoRacing, GoesByTheBestScoreBeforeTheGeneration) {
 
 TEST(PagmoFront, OfTwoBowlsIsFound) {
   // K. Deb's reading of Schaffer's first problem, on a grid: (x - 10)^2 against (x - 30)^2, the rest far from its best.
-  // No x from 10 to 30 is beaten by another, all others are.
+  // No x from 10 to 30 is dominated; all others are.
   for (const char* name : {"nsga2", "moead", "nspso"}) {
     FakeSource source([](const Candidate& c) {
       const double x = c[0];

@@ -29,7 +29,7 @@ std::string refusal(const Experiment& experiment) {
   return "";
 }
 
-TEST(CheckMethod, NamesTheAlgorithmsItKnows) {
+TEST(CheckMethod, NamesTheAlgorithms) {
   const std::string message = refusal(make_experiment({5}, pagmo_method("simplex")));
   EXPECT_EQ(message,
             "test.optimise.xml: found algorithm 'simplex', expected one of bee_colony, cmaes, compass_search, de, "
@@ -61,7 +61,7 @@ TEST(CheckMethod, RefusesSettingsThatAnAlgorithmDoesNotHave) {
   PagmoSettings settings = pagmo_method("de");
   settings.sigma0 = 0.3;
   EXPECT_EQ(refusal(make_experiment({5}, settings)),
-            "test.optimise.xml: found sigma0 for de, expected settings that it has: crossover, scale");
+            "test.optimise.xml: found sigma0 for de, expected one of its settings: crossover, scale");
   settings = pagmo_method("sade");
   settings.scale = 0.3;
   EXPECT_EQ(refusal(make_experiment({5}, settings)),
@@ -88,7 +88,7 @@ TEST(PlannedEvaluations, AreThoseOfTheBudgetOrOfAllGenerationsWithTheFirstPopula
   experiment.method = GreatDelugeSettings{};
   EXPECT_EQ(planned_evaluations(experiment), 5000U);
   experiment.evaluations = 0;
-  EXPECT_EQ(planned_evaluations(experiment), 0U) << "nobody knows";
+  EXPECT_EQ(planned_evaluations(experiment), 0U) << "unknown";
 }
 
 TEST(Search, OfOneCandidateEvaluatesItOnce) {

@@ -36,17 +36,17 @@ struct Options : ExperimentOptions {
   bool json = false;
 };
 
-/// A method of the experiment: its name on the command line, its file, and what its tables and figures are called.
+/// A method of the experiment: its name on the command line, its file, and the names of its table and figures.
 struct Method {
   std::string name;
   std::string file;
   std::string table;
   std::string runs_figure;
   std::string spread_figure;
-  bool shipped = true;  ///< its file is for it; else an algorithm of pagmo searches what the file says
+  bool shipped = true;  ///< the file is for this method; else another algorithm of pagmo searches the file's space
 };
 
-/// Those that the experiment consists of, and the others of pagmo that search for one objective.
+/// The methods of the experiment, and the other algorithms of pagmo that search for one objective.
 std::vector<Method> all_methods() {
   std::vector<Method> methods{
       {"great-deluge", "great_deluge.optimise.xml", "table_6_2.tsv", "figure_6_3.svg", "figure_6_4.svg"},
@@ -72,7 +72,7 @@ void check_method_name(const std::vector<Method>& methods, const std::string& na
   }
 }
 
-/// The folder of the scenarios: below the working directory, or below the source tree that this program was built in.
+/// The folder of the scenarios: below the working directory, or below a folder above this program.
 fs::path find_scenarios(const Options& options, const std::string& file) {
   const fs::path inside = fs::path("sim") / "scenarios" / options.name;
   std::vector<fs::path> candidates;
@@ -92,7 +92,7 @@ fs::path find_scenarios(const Options& options, const std::string& file) {
     }
   }
   throw InputError(options.scenarios ? "--scenarios" : options.name, 0, "no " + (candidates.front() / file).string(),
-                   "the experiment's files there; --scenarios FOLDER says where else");
+                   "the experiment's files; give their folder with --scenarios");
 }
 
 optimize::Experiment read(const Options& options, const fs::path& folder, const Method& method) {
@@ -107,15 +107,15 @@ optimize::Experiment read(const Options& options, const fs::path& folder, const 
   return experiment;
 }
 
-/// The distance of the scenario as it stands: all amplitudes alike.
+/// The distance of the scenario without changes: all amplitudes are equal.
 double uniform_distance(const optimize::Experiment& experiment) {
   optimize::Task task;
   task.candidate = experiment.space.nearest(experiment.scenario);
   return optimize::run_trial(experiment, task).measures[sim::Measure::distance];
 }
 
-/// Whether the store in a folder has all repetitions of this experiment: then its method belongs into the comparison,
-/// whether it was asked for now or before.
+/// Whether the store in a folder has all repetitions of this experiment. Its method is then part of the comparison,
+/// even if it is not asked for now.
 bool is_complete(const optimize::Experiment& experiment, std::uint32_t repetitions, const fs::path& folder) {
   try {
     optimize::Store store(store_path(folder), experiment, build_id, optimize::Store::Opening::resume);
@@ -126,7 +126,7 @@ bool is_complete(const optimize::Experiment& experiment, std::uint32_t repetitio
     }
     return true;
   } catch (const optimize::StoreError&) {
-    return false;  // there is none, or one of something else
+    return false;  // no store, or one of another experiment
   }
 }
 
@@ -138,13 +138,13 @@ struct MethodResult {
   double simulated_s = 0.0;
 };
 
-/// Runs the repetitions; what the store has is not simulated again. Fewer if somebody interrupts.
+/// Runs the repetitions; what the store has is not simulated again. Fewer if the user interrupts.
 MethodResult run_method(const std::string& name, const optimize::Experiment& experiment, std::uint32_t repetitions,
                         std::uint32_t worker_count, const fs::path& folder) {
   optimize::LocalWorkers workers(experiment, worker_count);
-  const bool there = fs::exists(store_path(folder));
+  const bool exists = fs::exists(store_path(folder));
   const std::unique_ptr<optimize::Store> store =
-      open_store(folder, experiment, there ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);
+      open_store(folder, experiment, exists ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);
   MethodResult result{{name, experiment.space, {}}, {}, {}};
   for (std::uint32_t run = 0; run < repetitions && !interrupted(); ++run) {
     SearchOutcome outcome = run_search(experiment, run, workers, *store,
@@ -197,7 +197,8 @@ Json to_json(const MethodResult& result, const optimize::SearchSpace& space, dou
 
 int experiment(const Options& options) {
   if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) {
-    throw BadInput("found mpirun, expected none: an experiment runs on one computer; 'proleg optimise' knows clusters");
+    throw BadInput(
+        "found mpirun, expected none: an experiment runs on one computer; use 'proleg optimise' on a cluster");
   }
   if (options.name != "travelling_wave") {
     throw InputError(options.name, 0, "unknown experiment " + in_quotes(options.name), "'travelling_wave'");
@@ -232,7 +233,7 @@ int experiment(const Options& options) {
   for (const auto& [method, experiment] : chosen) {
     MethodResult result = run_method(method->name, experiment, *repetitions, worker_count, folder / method->name);
     if (result.runs.runs.size() < *repetitions) {
-      std::cerr << "proleg experiment: interrupted; the same command goes on from " << folder.string() << '\n';
+      std::cerr << "proleg experiment: interrupted; the same command continues in " << folder.string() << '\n';
       return exit_failed;
     }
     write_file(folder / method->table, optimize::experiment_table(result.runs));
@@ -283,22 +284,22 @@ int experiment(const Options& options) {
 int main(int argc, char** argv) {
   CommandLine command_line(
       "proleg experiment",
-      "Repeats an experiment of the thesis with several methods; writes its tables and figures beside the "
-      "published numbers. Goes on where it was interrupted.");
+      "Repeats an experiment of the thesis with several methods. Writes its tables and figures with the published "
+      "numbers beside. Continues where it was interrupted.");
   Options options;
   command_line.add_option("NAME", options.name, "travelling_wave: the amplitudes of section 6.1").required();
   command_line.add_option("--repetitions", options.repetitions,
-                          "searches by each method; 3 if not given, 30 in the thesis");
+                          "number of searches with each method; default: 3; the thesis made 30");
   command_line.add_option(
       "--method", options.methods,
-      "great-deluge, genetic, cma-es, or the name of another algorithm of pagmo; the first three if not "
-      "given. May be "
-      "repeated. Methods whose repetitions are in the folder already are shown beside.");
-  command_line.add_option("--evaluations", options.evaluations, "of one search at most, instead of what the files say");
+      "great-deluge, genetic, cma-es, or another algorithm of pagmo; may be repeated; default: the first three. "
+      "Methods that the folder already has are shown, too.");
+  command_line.add_option("--evaluations", options.evaluations,
+                          "maximum number of evaluations in one search; default: that of the files");
   command_line.add_option("--workers", options.workers,
-                          "simulations at a time; as many as there are processors if not given");
-  command_line.add_option("--seed", options.seed, "of all searches");
-  command_line.add_option("--out", options.out, "folder for stores, tables and figures; NAME_experiment if not given");
+                          "number of simulations at the same time; default: number of processors");
+  command_line.add_option("--seed", options.seed, "seed of all searches");
+  command_line.add_option("--out", options.out, "folder for stores, tables and figures; default: NAME_experiment");
   command_line.add_option("--scenarios", options.scenarios, "folder of the experiment's files");
   command_line.add_flag("--json", options.json, "print one JSON object");
   return command_line.run(argc, argv, [&] { return experiment(options); });

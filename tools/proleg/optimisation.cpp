@@ -17,7 +17,7 @@
 namespace proleg::tools {
 namespace {
 
-constexpr std::uint32_t most_workers = 1024;
+constexpr std::uint32_t max_workers = 1024;
 
 double own_cpu_s() {
   rusage usage{};
@@ -32,11 +32,11 @@ double own_cpu_s() {
 
 std::uint32_t parse_workers(const std::optional<std::string>& word) {
   if (!word) {
-    return std::clamp(std::thread::hardware_concurrency(), 1U, most_workers);
+    return std::clamp(std::thread::hardware_concurrency(), 1U, max_workers);
   }
   const std::optional<std::uint32_t> count = parse_whole<std::uint32_t>(*word);
-  if (!count || *count == 0 || *count > most_workers) {
-    throw InputError("--workers", 0, in_quotes(*word), "1 to " + std::to_string(most_workers));
+  if (!count || *count == 0 || *count > max_workers) {
+    throw InputError("--workers", 0, in_quotes(*word), "1 to " + std::to_string(max_workers));
   }
   return *count;
 }
@@ -67,7 +67,7 @@ std::unique_ptr<optimize::Store> open_store(const std::filesystem::path& folder,
   if (opening == optimize::Store::Opening::fresh) {
     std::filesystem::create_directories(folder, error);
     if (error) {
-      throw BadInput("cannot make the folder " + folder.string() + ": " + error.message());
+      throw BadInput("cannot create the folder " + folder.string() + ": " + error.message());
     }
   }
   try {
@@ -82,15 +82,15 @@ SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t r
   SearchOutcome outcome;
   SearchDisplay display(label, std::string(experiment.objectives.front().unit()),
                         optimize::planned_evaluations(experiment));
-  const auto say_messages = [&] {
+  const auto print_messages = [&] {
     for (const std::string& message : workers.messages()) {
-      display.say(message);
+      display.print(message);
     }
   };
-  const auto observe = [&](const optimize::Evaluation& evaluation, const optimize::Progress& progress) {
+  const auto observe = [&](const optimize::Evaluation& evaluation, const optimize::SearchProgress& progress) {
     outcome.evaluations.push_back(evaluation);
     display.show(progress);
-    say_messages();
+    print_messages();
   };
   optimize::Evaluator evaluator(experiment, run, workers, &store, observe, interrupted);
   store.start_run(run);
@@ -99,14 +99,14 @@ SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t r
   try {
     outcome.ending = optimize::search(experiment, run, evaluator);
   } catch (const std::runtime_error&) {
-    say_messages();  // what led to it
+    print_messages();  // the messages explain the error
     throw;
   } catch (const optimize::SearchEnded&) {
     if (evaluator.budget_spent()) {
       outcome.ending = "all " + std::to_string(experiment.evaluations) + " evaluations made";
     }
   }
-  say_messages();
+  print_messages();
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   outcome.own_cpu_s = own_cpu_s() - cpu_start;
   outcome.progress = evaluator.progress();

@@ -18,41 +18,40 @@
 
 namespace proleg::tools {
 
-/// --workers; one for each processor if it is not given. Throws InputError.
+/// --workers; by default one for each processor. Throws InputError.
 [[nodiscard]] std::uint32_t parse_workers(const std::optional<std::string>& word);
 
-/// What the command line says instead of the experiment's file: --evaluations, --seed.
+/// Options that replace values of the experiment's file: --evaluations, --seed.
 struct ExperimentOptions {
   std::optional<std::string> evaluations;
   std::optional<std::string> seed;
 };
 
-/// Sets an experiment to what the options want. Throws InputError, also if its method cannot deal with the experiment.
+/// Applies the options to an experiment. Throws InputError, also if the method rejects the experiment.
 void apply_options(const ExperimentOptions& options, optimize::Experiment& experiment);
 
-/// A folder with the store of an experiment.
+/// Path of the store in the folder of an experiment.
 [[nodiscard]] std::filesystem::path store_path(const std::filesystem::path& folder);
-/// Makes the folder if it is not there, and opens the store in it. Throws BadInput if that is not possible: nothing has
-/// run yet.
+/// Opens the store in a folder, which is made if it does not exist. Throws BadInput.
 [[nodiscard]] std::unique_ptr<optimize::Store> open_store(const std::filesystem::path& folder,
                                                           const optimize::Experiment& experiment,
                                                           optimize::Store::Opening opening);
 
-/// How a run of a search came out.
+/// The result of a run of a search.
 struct SearchOutcome {
   std::vector<optimize::Evaluation> evaluations;
-  optimize::Progress progress;
+  optimize::SearchProgress progress;
   std::string ending;  ///< why it ended; empty if it was interrupted
   double wall_s = 0.0;
   double own_cpu_s = 0.0;  ///< processor time of optimiser, store and scheduling
 };
 
-/// Runs a search with progress on the terminal until its method ends, its evaluations are used up, or somebody
-/// interrupts. label: what to call it there.
+/// Runs a search until its method ends, its evaluations are used up, or the user interrupts it. Shows progress on the
+/// terminal, under this label.
 [[nodiscard]] SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t run,
                                        optimize::Workers& workers, optimize::Store& store, const std::string& label);
 
-/// Share of all processor time that went into optimiser, store and scheduling.
+/// Share of optimiser, store and scheduling in all processor time.
 [[nodiscard]] double overhead(const SearchOutcome& outcome);
 
 /// The values of a candidate by the names of their dimensions.

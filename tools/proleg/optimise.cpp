@@ -24,16 +24,16 @@ using optimize::Experiment;
 std::filesystem::path folder_of(const OptimiseOptions& options, const Experiment& experiment) {
   if (options.resume && options.out && *options.out != *options.resume) {
     throw BadInput("found --out " + *options.out + " beside --resume " + *options.resume +
-                   ", expected one of them: what is resumed stays where it is");
+                   ", expected one of them: a resumed search stays in its folder");
   }
   const std::string folder = options.resume ? *options.resume : options.out.value_or(experiment.title());
   if (folder.empty()) {
-    throw InputError(options.resume ? "--resume" : "--out", 0, "no name", "the name of a folder");
+    throw InputError(options.resume ? "--resume" : "--out", 0, "an empty name", "the name of a folder");
   }
   return folder;
 }
 
-/// What a search leaves in its folder for people.
+/// Writes tables, figures and the best scenario for people.
 std::vector<std::filesystem::path> write_results(const Experiment& experiment, const SearchOutcome& outcome,
                                                  const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
@@ -63,7 +63,7 @@ void print_json(const OptimiseOptions& options, const Experiment& experiment, co
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
     scores.add(experiment.objectives[i].name, best.scores[i]);
   }
-  const optimize::Progress& progress = outcome.progress;
+  const optimize::SearchProgress& progress = outcome.progress;
   const Json object{{"experiment", options.file},
                     {"method", optimize::method_name(experiment.method)},
                     {"seed", experiment.seed},
@@ -93,7 +93,7 @@ void print_json(const OptimiseOptions& options, const Experiment& experiment, co
 void print_result(const Experiment& experiment, const SearchOutcome& outcome,
                   const std::vector<std::filesystem::path>& files, std::uint32_t workers) {
   const Evaluation& best = *outcome.progress.best;
-  const optimize::Progress& progress = outcome.progress;
+  const optimize::SearchProgress& progress = outcome.progress;
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
     const optimize::Objective& objective = experiment.objectives[i];
     std::printf("%-24s %.6g %s\n", ("best " + objective.name).c_str(), best.scores[i],
@@ -104,20 +104,20 @@ void print_result(const Experiment& experiment, const SearchOutcome& outcome,
     std::printf("  %-22s %s %s\n", dimension.name.c_str(), experiment.space.value_text(best.candidate, i).c_str(),
                 scale_of(dimension.unit).symbol);
   }
-  std::printf("%-24s %llu, of which %llu simulated now, %llu known from others, %llu from the store\n", "evaluations",
+  std::printf("%-24s %llu: %llu simulated now, %llu reused, %llu from the store\n", "evaluations",
               static_cast<unsigned long long>(progress.evaluations),
               static_cast<unsigned long long>(progress.simulated), static_cast<unsigned long long>(progress.reused),
               static_cast<unsigned long long>(progress.restored));
   std::printf("%-24s %s\n", "ended", outcome.ending.empty() ? "interrupted" : outcome.ending.c_str());
-  std::printf("%-24s %.1f s, %.0f simulated s/s with %u workers, busy %.1f %% of it; optimiser and store %.2f %%\n",
-              "time", outcome.wall_s, progress.simulated_s / outcome.wall_s, workers,
+  std::printf("%-24s %.1f s, %.0f simulated s/s; %u workers, %.1f %% busy; optimiser and store %.2f %%\n", "time",
+              outcome.wall_s, progress.simulated_s / outcome.wall_s, workers,
               100.0 * progress.workers_s / (outcome.wall_s * workers), 100.0 * overhead(outcome));
   for (const std::filesystem::path& file : files) {
     std::printf("%-24s %s\n", "written", file.c_str());
   }
 }
 
-/// The words as a shell takes them.
+/// The word, quoted for a shell.
 std::string quoted(const std::string& word) {
   if (!word.empty() &&
       word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=+,-") ==
@@ -131,8 +131,8 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-/// The command that goes on with this search: with all that the store is of.
-std::string command_to_go_on(const OptimiseOptions& options, const std::filesystem::path& folder) {
+/// The command that continues this search, with all options that its store depends on.
+std::string command_to_continue(const OptimiseOptions& options, const std::filesystem::path& folder) {
   std::string command = "proleg optimise " + quoted(options.file);
   const auto add = [&](const char* option, const std::optional<std::string>& value) {
     if (value) {
@@ -156,14 +156,14 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
     std::cerr << experiment.space.dimensions.size() << " dimensions, " << experiment.space.size() << " candidates\n";
   }
   catch_interrupts();
-  // Before the store is opened: workers are processes, and what they do not need they should not have.
+  // Before the store is opened: workers are processes that should not inherit it.
   const std::unique_ptr<optimize::Workers> workers = make_workers(experiment, options);
   const std::unique_ptr<optimize::Store> store = open_store(
       folder, experiment, options.resume ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);
   const SearchOutcome outcome = run_search(experiment, 0, *workers, *store, optimize::method_name(experiment.method));
-  const std::string go_on = command_to_go_on(options, folder);
+  const std::string continuation = command_to_continue(options, folder);
   if (!outcome.progress.best) {
-    std::cerr << "proleg optimise: interrupted before the first evaluation; go on with: " << go_on << '\n';
+    std::cerr << "proleg optimise: interrupted before the first evaluation; continue with: " << continuation << '\n';
     return exit_failed;
   }
   const std::vector<std::filesystem::path> files = write_results(experiment, outcome, folder);
@@ -174,7 +174,7 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   }
   if (outcome.ending.empty()) {
     std::cerr << "proleg optimise: interrupted after " << outcome.progress.evaluations
-              << " evaluations; go on with: " << go_on << '\n';
+              << " evaluations; continue with: " << continuation << '\n';
     return exit_failed;
   }
   return exit_success;
@@ -192,24 +192,22 @@ optimize::Experiment read_experiment(const OptimiseOptions& options) {
 int optimise_command(int argc, char** argv, const WorkersMaker& make_workers) {
   CommandLine command_line(
       "proleg optimise",
-      "Searches for the parameters of a gait: runs simulations, keeps what it tried, and writes the best scenario.");
+      "Searches for the parameters of a gait: simulates candidates, stores all results, and writes the best scenario.");
   OptimiseOptions options;
   add_optimise_options(command_line, options);
   return command_line.run(argc, argv, [&] { return optimise(options, make_workers); });
 }
 
 void add_optimise_options(CommandLine& command_line, OptimiseOptions& options) {
-  command_line.add_option("FILE", options.file, "experiment, a *.optimise.xml file").required();
-  command_line.add_option("--simulation", options.simulation,
-                          "scenario to optimise, instead of the one that FILE names");
-  command_line.add_option("--evaluations", options.evaluations, "at most so many, instead of what FILE says");
+  command_line.add_option("FILE", options.file, "experiment: a *.optimise.xml file").required();
+  command_line.add_option("--simulation", options.simulation, "scenario to optimise; default: the one that FILE names");
+  command_line.add_option("--evaluations", options.evaluations, "maximum number of evaluations; default: that of FILE");
   command_line.add_option("--workers", options.workers,
-                          "simulations at a time; as many as there are processors if not given");
-  command_line.add_option("--seed", options.seed,
-                          "of the search and of all randomness in it, instead of what FILE says");
+                          "number of simulations at the same time; default: number of processors");
+  command_line.add_option("--seed", options.seed, "seed of all random numbers of the search; default: that of FILE");
   command_line.add_option("--out", options.out,
-                          "folder for store, tables and pictures; the first word of FILE's name if not given");
-  command_line.add_option("--resume", options.resume, "go on with the search whose store is in this folder");
+                          "folder for store, tables and figures; default: the name of FILE up to its first dot");
+  command_line.add_option("--resume", options.resume, "continue the search whose store is in this folder");
   command_line.add_flag("--verbose", options.verbose, "print remarks on the files and the size of the search space");
   command_line.add_flag("--json", options.json, "print one JSON object");
 }

@@ -25,14 +25,14 @@ struct OptimiseOptions : ExperimentOptions {
 
 void add_optimise_options(CommandLine& command_line, OptimiseOptions& options);
 
-/// The experiment as the options want it. Throws InputError.
+/// Reads the experiment and applies the options. Throws InputError.
 [[nodiscard]] optimize::Experiment read_experiment(const OptimiseOptions& options);
 
-/// Who simulates: processes of this computer, or of a cluster.
+/// Makes the workers: processes of this computer, or of a cluster.
 using WorkersMaker =
     std::function<std::unique_ptr<optimize::Workers>(const optimize::Experiment&, const OptimiseOptions& options)>;
 
-/// The whole subcommand but for its workers.
+/// The subcommand, with the workers that `make_workers` makes.
 int optimise_command(int argc, char** argv, const WorkersMaker& make_workers);
 
 }  // namespace proleg::tools

@@ -1,4 +1,4 @@
-// proleg optimise on this computer. Under mpirun the program beside it with the same name and -mpi takes over: it alone
+// proleg optimise on this computer. Under mpirun it starts the program beside it with the same name and -mpi, which
 // needs Open MPI.
 
 #include <unistd.h>
@@ -16,14 +16,14 @@
 
 namespace {
 
-/// Returns only if that is not possible.
+/// Returns only if the program cannot be started.
 void run_over_mpi(char** argv) {
   std::error_code error;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
   const std::string program = self.string() + "-mpi";
   execv(program.c_str(), argv);
   std::cerr << "proleg optimise: cannot start " << program << " (" << std::strerror(errno)
-            << "); it is built where libopenmpi-dev and libboost-mpi-dev are installed\n";
+            << "); install libopenmpi-dev and libboost-mpi-dev, and build again\n";
 }
 
 }  // namespace

@@ -23,16 +23,16 @@ int search(int argc, char** argv) {
   });
 }
 
-/// What is wrong on another rank is most probably wrong on rank 0, too: it speaks first, and its end is the end of all.
-void let_rank_0_speak() { std::this_thread::sleep_for(std::chrono::seconds(2)); }
+/// An error on this rank is most probably one on rank 0, too. Rank 0 reports it first, and then mpirun ends all ranks.
+void let_rank_0_report() { std::this_thread::sleep_for(std::chrono::seconds(2)); }
 
-/// What ranks above 0 do.
+/// The work of ranks above 0.
 int serve(int argc, char** argv, int rank) {
   CommandLine command_line("proleg optimise, rank " + std::to_string(rank), "");
   OptimiseOptions options;
   add_optimise_options(command_line, options);
   optimize::Experiment experiment;
-  // The words are those of rank 0, and so is what there is to say about them.
+  // Rank 0 has the same words and reports errors in them.
   bool understood = false;
   std::cout.setstate(std::ios::failbit);
   std::cerr.setstate(std::ios::failbit);
@@ -43,13 +43,13 @@ int serve(int argc, char** argv, int rank) {
     try {
       experiment = read_experiment(options);
     } catch (const std::exception&) {
-      let_rank_0_speak();
+      let_rank_0_report();
       throw;
     }
     return exit_success;
   });
   if (!understood) {
-    let_rank_0_speak();
+    let_rank_0_report();
     return read;
   }
   if (read != exit_success) {
@@ -61,9 +61,9 @@ int serve(int argc, char** argv, int rank) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::optional<optimize::MpiPlace> place = optimize::mpi_place();
+  const std::optional<optimize::MpiRank> place = optimize::mpi_rank();
   if (!place) {
-    std::cerr << "proleg optimise: found no process number of Open MPI's mpirun, expected to be started by it\n";
+    std::cerr << "proleg optimise: found no process number of Open MPI, expected to be started by its mpirun\n";
     return exit_bad_input;
   }
   return place->rank == 0 ? search(argc, argv) : serve(argc, argv, place->rank);

@@ -12,7 +12,7 @@ namespace proleg::tools {
 SearchDisplay::SearchDisplay(std::string label, std::string unit, std::uint64_t budget)
     : label_(std::move(label)), unit_(std::move(unit)), budget_(budget), terminal_line_(std::chrono::milliseconds(0)) {}
 
-void SearchDisplay::show(const optimize::Progress& progress) {
+void SearchDisplay::show(const optimize::SearchProgress& progress) {
   if (!terminal_line_.is_visible() || !progress.best) {
     return;
   }
@@ -30,10 +30,10 @@ void SearchDisplay::show(const optimize::Progress& progress) {
   std::snprintf(figures.data(), figures.size(), ", best %.4g%s%s, mean %.4g, %.0f s/s", progress.best->scores.front(),
                 unit_.empty() ? "" : " ", unit_.c_str(), progress.score_sum / done, progress.simulated_s / elapsed);
   line += figures.data();
-  // What was restored took no time and says nothing about what is to come.
+  // Restored evaluations took no time, so they are no measure of the remaining time.
   const auto made_now = done - static_cast<double>(progress.restored);
   if (budget_ > progress.evaluations && made_now > 0.0) {
-    line += ", " + duration_text(static_cast<double>(budget_ - progress.evaluations) * elapsed / made_now) + " to go";
+    line += ", " + duration_text(static_cast<double>(budget_ - progress.evaluations) * elapsed / made_now) + " left";
   }
   const std::size_t width = TerminalLine::max_width();
   const std::size_t rest = width > line.size() + 2 ? width - line.size() - 2 : 0;
@@ -41,7 +41,7 @@ void SearchDisplay::show(const optimize::Progress& progress) {
                       spark_line(best_so_far_, std::min<std::size_t>(rest, 16)));
 }
 
-void SearchDisplay::say(const std::string& line) {
+void SearchDisplay::print(const std::string& line) {
   terminal_line_.erase();
   std::cerr << line << '\n';
 }

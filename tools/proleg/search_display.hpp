@@ -9,18 +9,18 @@
 
 namespace proleg::tools {
 
-/// A line on standard error that says how far a search is: evaluations, best and mean score, simulated seconds in a
-/// second, time to go, the course of the best. Nothing if that is not a terminal.
+/// A line on standard error with the progress of a search: evaluations, best and mean score, simulated seconds per
+/// second, remaining time, a spark line of the best score. Nothing if standard error is not a terminal.
 class SearchDisplay {
  public:
-  /// label: what is searched, with the repetition if there are several. unit: of the score. budget: evaluations at
-  /// most; 0: nobody knows.
+  /// label: name of the search, with the repetition if there are several. unit: of the score. budget: most evaluations;
+  /// 0: unknown.
   SearchDisplay(std::string label, std::string unit, std::uint64_t budget);
 
-  /// Cheap; redraws at most ten times a second.
-  void show(const optimize::Progress& progress);
-  /// A line above it, also when standard error is no terminal.
-  void say(const std::string& line);
+  /// Redraws at most ten times a second.
+  void show(const optimize::SearchProgress& progress);
+  /// Prints a line above it, also if standard error is not a terminal.
+  void print(const std::string& line);
 
  private:
   std::string label_;
@@ -30,7 +30,7 @@ class SearchDisplay {
   std::vector<double> best_so_far_;
 };
 
-/// The course of values as a row of block characters, at most `width` of them; empty if there are none.
+/// The values as block characters, at most `width`; empty without values.
 [[nodiscard]] std::string spark_line(const std::vector<double>& values, std::size_t width);
 
 }  // namespace proleg::tools

@@ -11,10 +11,10 @@
 namespace proleg::optimize {
 namespace {
 
-/// How long fitness() waits before it asks again whether to stop.
-constexpr std::chrono::milliseconds patience{100};
+/// Time between two questions of fitness() whether to stop.
+constexpr std::chrono::milliseconds stop_check_interval{100};
 
-bool knows_outcomes(const Experiment& experiment) {
+bool can_reuse_outcomes(const Experiment& experiment) {
   return experiment.reuse && !depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread);
 }
 
@@ -23,23 +23,23 @@ bool knows_outcomes(const Experiment& experiment) {
 class Evaluator::Implementation {
  public:
   Implementation(const Experiment& experiment, std::uint32_t run, Workers& workers, Store* store,
-                 std::function<void(const Evaluation&, const Progress&)> observe, std::function<bool()> stop)
+                 std::function<void(const Evaluation&, const SearchProgress&)> observe, std::function<bool()> stop)
       : experiment_(experiment),
         run_(run),
         workers_(workers),
         store_(store),
         observe_(std::move(observe)),
         stop_(std::move(stop)),
-        reuse_(knows_outcomes(experiment)),
-        decided_(store != nullptr ? store->evaluation_count(run) : 0),
+        reuse_(can_reuse_outcomes(experiment)),
+        stored_count_(store != nullptr ? store->evaluation_count(run) : 0),
         pipeline_(experiment, workers, store,
-                  reuse_ ? TaskPipeline::Results::of_every_number : TaskPipeline::Results::of_one_number) {}
+                  reuse_ ? TaskPipeline::ResultScope::all_numbers : TaskPipeline::ResultScope::one_number) {}
 
   void expect(std::span<const Candidate> next) {
     expected_.assign(next.begin(), next.end());
-    plan(false);
+    request_trials(false);
     pipeline_.run(std::chrono::milliseconds(0));
-    count();
+    update_counts();
   }
 
   [[nodiscard]] std::size_t lookahead() const { return 2 * std::size_t{workers_.count()}; }
@@ -50,7 +50,7 @@ class Evaluator::Implementation {
     }
     Evaluation evaluation = evaluate(candidate);
     ++number_;
-    account(evaluation);
+    record(evaluation);
     if (store_ != nullptr) {
       store_->save(evaluation);
     }
@@ -67,7 +67,7 @@ class Evaluator::Implementation {
     }
   }
 
-  [[nodiscard]] const Progress& progress() const { return progress_; }
+  [[nodiscard]] const SearchProgress& progress() const { return progress_; }
   [[nodiscard]] bool stopped() const { return stopped_; }
   [[nodiscard]] bool budget_spent() const { return experiment_.evaluations > 0 && number_ >= experiment_.evaluations; }
 
@@ -76,45 +76,46 @@ class Evaluator::Implementation {
     return {run_, number, trial, candidate, hopeless_below_};
   }
 
-  /// What an outcome that is known is known of.
+  /// Outcomes that may be reused are kept under this key.
   [[nodiscard]] Task outcome_key(const Candidate& candidate) const { return task(0, candidate, 0); }
 
-  /// Asks for the trials of what is expected, but those that nobody will need. asked: whether the first one is certain.
-  void plan(bool asked) {
+  /// Requests the trials of the expected candidates, without those that are not needed. first_is_certain: whether
+  /// fitness() was called for the first one.
+  void request_trials(bool first_is_certain) {
     std::vector<Task> tasks;
     for (std::size_t i = 0; i < expected_.size(); ++i) {
       const std::uint64_t number = number_ + i;
       if (experiment_.evaluations > 0 && number >= experiment_.evaluations) {
         break;
       }
-      const bool useful = number >= decided_ || (asked && number == number_);
+      const bool useful = number >= stored_count_ || (first_is_certain && number == number_);
       if (useful && !outcomes_.contains(outcome_key(expected_[i]))) {
         for (std::uint32_t trial = 0; trial < experiment_.trials.count; ++trial) {
           tasks.push_back(task(number, expected_[i], trial));
         }
       }
     }
-    planned_for_ = hopeless_below_;
-    pipeline_.want(tasks);
+    requested_limit_ = hopeless_below_;
+    pipeline_.set_wanted(tasks);
   }
 
   Evaluation evaluate(const Candidate& candidate) {
     if (expected_.empty()) {
       expected_.push_back(candidate);
-      plan(true);
-    } else if (expected_.front() != candidate || planned_for_ != hopeless_below_ || number_ < decided_) {
+      request_trials(true);
+    } else if (expected_.front() != candidate || requested_limit_ != hopeless_below_ || number_ < stored_count_) {
       expected_.front() = candidate;
-      plan(true);
+      request_trials(true);
     }
     const auto known = outcomes_.find(outcome_key(candidate));
-    Evaluation evaluation = known != outcomes_.end() ? repeated(known->second) : simulated(candidate);
+    Evaluation evaluation = known != outcomes_.end() ? reuse(known->second) : simulate(candidate);
     expected_.pop_front();
     return evaluation;
   }
 
-  Evaluation repeated(Evaluation outcome) {
-    // The others go on meanwhile.
-    ask_to_go_on();
+  Evaluation reuse(Evaluation outcome) {
+    // Workers continue meanwhile.
+    throw_if_stopped();
     pipeline_.run(std::chrono::milliseconds(0));
     outcome.number = number_;
     outcome.reused = true;
@@ -124,26 +125,26 @@ class Evaluator::Implementation {
     return outcome;
   }
 
-  Evaluation simulated(const Candidate& candidate) {
+  Evaluation simulate(const Candidate& candidate) {
     std::vector<Task> tasks;
     for (std::uint32_t trial = 0; trial < experiment_.trials.count; ++trial) {
       tasks.push_back(task(number_, candidate, trial));
     }
-    const auto all_known = [&] {
-      return std::ranges::all_of(tasks, [&](const Task& its) { return pipeline_.has(its); });
+    const auto all_finished = [&] {
+      return std::ranges::all_of(tasks, [&](const Task& its) { return pipeline_.has_result(its); });
     };
-    ask_to_go_on();
+    throw_if_stopped();
     pipeline_.run(std::chrono::milliseconds(0));
-    while (!all_known()) {
-      ask_to_go_on();
-      pipeline_.run(patience);
+    while (!all_finished()) {
+      throw_if_stopped();
+      pipeline_.run(stop_check_interval);
     }
     std::vector<TrialResult> trials;
     bool restored = true;
     for (const Task& its : tasks) {
-      TaskPipeline::Found found = pipeline_.take(its);
-      restored = restored && found.restored;
-      trials.push_back(std::move(found.result));
+      TaskPipeline::ClaimedResult claimed = pipeline_.claim_result(its);
+      restored = restored && claimed.restored;
+      trials.push_back(std::move(claimed.result));
     }
     Evaluation evaluation = rate(experiment_, run_, number_, candidate, trials);
     evaluation.restored = restored;
@@ -153,14 +154,14 @@ class Evaluator::Implementation {
     return evaluation;
   }
 
-  void ask_to_go_on() {
+  void throw_if_stopped() {
     if (stop_ && stop_()) {
       stopped_ = true;
       throw SearchEnded{};
     }
   }
 
-  void account(const Evaluation& evaluation) {
+  void record(const Evaluation& evaluation) {
     progress_.evaluations += 1;
     (evaluation.reused ? progress_.reused : evaluation.restored ? progress_.restored : progress_.simulated) += 1;
     progress_.score_sum += evaluation.scores.front();
@@ -168,10 +169,10 @@ class Evaluator::Implementation {
         experiment_.objectives.front().better(evaluation.scores.front(), progress_.best->scores.front())) {
       progress_.best = evaluation;
     }
-    count();
+    update_counts();
   }
 
-  void count() {
+  void update_counts() {
     progress_.wasted = pipeline_.counts().wasted;
     progress_.simulated_s = pipeline_.counts().simulated_s;
     progress_.workers_s = pipeline_.counts().workers_s;
@@ -181,24 +182,24 @@ class Evaluator::Implementation {
   std::uint32_t run_;
   Workers& workers_;
   Store* store_;
-  std::function<void(const Evaluation&, const Progress&)> observe_;
+  std::function<void(const Evaluation&, const SearchProgress&)> observe_;
   std::function<bool()> stop_;
   bool reuse_;
-  /// Of a run that goes on: up to here the store knows what was asked for, so what is expected until then and not asked
-  /// for is in vain, and would take the place of a result in the store.
-  std::uint64_t decided_;
+  /// Evaluations that the store had when this run was resumed. Until there, an expected candidate is simulated only
+  /// when it is asked for: a wrong one would be wasted and would replace a result in the store.
+  std::uint64_t stored_count_;
   TaskPipeline pipeline_;
   std::uint64_t number_ = 0;        ///< of the next evaluation
   std::deque<Candidate> expected_;  ///< from number_ on
   std::optional<double> hopeless_below_;
-  std::optional<double> planned_for_;                        ///< hopeless_below_ when plan() was made
+  std::optional<double> requested_limit_;                    ///< hopeless_below_ at the last request_trials()
   std::unordered_map<Task, Evaluation, TaskHash> outcomes_;  ///< by outcome_key, if outcomes may be reused
-  Progress progress_;
+  SearchProgress progress_;
   bool stopped_ = false;
 };
 
 Evaluator::Evaluator(const Experiment& experiment, std::uint32_t run, Workers& workers, Store* store,
-                     std::function<void(const Evaluation&, const Progress&)> observe, std::function<bool()> stop)
+                     std::function<void(const Evaluation&, const SearchProgress&)> observe, std::function<bool()> stop)
     : implementation_(
           std::make_unique<Implementation>(experiment, run, workers, store, std::move(observe), std::move(stop))) {}
 Evaluator::~Evaluator() = default;
@@ -206,7 +207,7 @@ void Evaluator::expect(std::span<const Candidate> next) { implementation_->expec
 std::size_t Evaluator::lookahead() const { return implementation_->lookahead(); }
 std::vector<double> Evaluator::fitness(const Candidate& candidate) { return implementation_->fitness(candidate); }
 void Evaluator::set_needed_score(std::optional<double> score) { implementation_->set_needed_score(score); }
-const Progress& Evaluator::progress() const { return implementation_->progress(); }
+const SearchProgress& Evaluator::progress() const { return implementation_->progress(); }
 bool Evaluator::stopped() const { return implementation_->stopped(); }
 bool Evaluator::budget_spent() const { return implementation_->budget_spent(); }
 

@@ -11,28 +11,27 @@
 
 namespace proleg::optimize {
 
-/// How a run of an experiment came out so far.
-struct Progress {
+/// The state of a search: a run of an experiment.
+struct SearchProgress {
   std::uint64_t evaluations = 0;   ///< that the optimiser asked for
   std::uint64_t simulated = 0;     ///< of these: neither reused nor restored
   std::uint64_t reused = 0;        ///< of these: the outcome was known
   std::uint64_t restored = 0;      ///< of these: all trials came from the store
-  std::uint64_t wasted = 0;        ///< trials simulated ahead that nobody asked for
-  double simulated_s = 0.0;        ///< time that passed in simulations made now, wasted ones too
-  double workers_s = 0.0;          ///< that workers needed for it
+  std::uint64_t wasted = 0;        ///< trials simulated ahead and never used
+  double simulated_s = 0.0;        ///< simulated time of all trials made now, wasted ones too
+  double workers_s = 0.0;          ///< time that workers needed for it
   double score_sum = 0.0;          ///< of the first objective
   std::optional<Evaluation> best;  ///< by the first objective; the earliest of equals
 };
 
-/// Evaluates what an optimiser asks for, in its order, while workers run ahead of it. Every result depends on run,
-/// number and candidate alone: not on the number of workers, nor on what was expected, nor on whether it came from the
-/// store.
+/// Evaluates what an optimiser asks for, in its order, while workers simulate ahead. Every result depends only on run,
+/// number and candidate: not on the number of workers, on what was expected, or on whether it came from the store.
 class Evaluator final : public FitnessSource {
  public:
   /// experiment, workers, store: must outlive this. store: null for none. observe: called for each evaluation, in
-  /// order. stop: asked often; when it says true, fitness() throws SearchEnded.
+  /// order. stop: called often; when it returns true, fitness() throws SearchEnded.
   Evaluator(const Experiment& experiment, std::uint32_t run, Workers& workers, Store* store,
-            std::function<void(const Evaluation&, const Progress&)> observe, std::function<bool()> stop);
+            std::function<void(const Evaluation&, const SearchProgress&)> observe, std::function<bool()> stop);
   ~Evaluator() override;
   Evaluator(const Evaluator&) = delete;
   Evaluator& operator=(const Evaluator&) = delete;
@@ -42,8 +41,8 @@ class Evaluator final : public FitnessSource {
   std::vector<double> fitness(const Candidate& candidate) override;
   void set_needed_score(std::optional<double> score) override;
 
-  [[nodiscard]] const Progress& progress() const;
-  [[nodiscard]] bool stopped() const;       ///< whether stop() said so
+  [[nodiscard]] const SearchProgress& progress() const;
+  [[nodiscard]] bool stopped() const;       ///< whether stop() returned true
   [[nodiscard]] bool budget_spent() const;  ///< whether experiment.evaluations are used up
 
  private:

@@ -8,22 +8,22 @@
 
 namespace proleg::optimize {
 
-/// Rates candidates for an optimiser, one after the other, and lets it say what it will probably ask for, so that
-/// others can work ahead. What is expected, and whether it comes true, changes no result.
+/// Rates candidates for an optimiser, one after the other. The optimiser can announce the next candidates, so that
+/// workers can simulate ahead. Announcements, right or wrong, change no result.
 class FitnessSource {
  public:
   virtual ~FitnessSource() = default;
-  /// The next candidates that fitness() will probably be asked for, in that order; replaces what was said before.
+  /// Announces the next candidates that will probably be asked for, in that order; replaces earlier announcements.
   virtual void expect(std::span<const Candidate> next) = 0;
-  /// How many it is worth expecting.
+  /// Number of candidates that are worth announcing.
   [[nodiscard]] virtual std::size_t lookahead() const = 0;
-  /// The scores of a candidate, one for each objective. Throws SearchEnded when there is to be no further evaluation.
+  /// The scores of a candidate, one for each objective. Throws SearchEnded when the search must end.
   virtual std::vector<double> fitness(const Candidate& candidate) = 0;
-  /// From the next expect() or fitness() on: the score that a candidate needs to matter (racing); nothing: none.
+  /// From the next expect() or fitness() on: the score that a candidate needs to be of use (racing); nothing: none.
   virtual void set_needed_score(std::optional<double> score) = 0;
 };
 
-/// Thrown through an optimiser to end it: the budget is used up, or somebody stopped the search.
+/// Thrown through an optimiser to end it: the budget is used up, or the search was stopped.
 class SearchEnded {};
 
 }  // namespace proleg::optimize

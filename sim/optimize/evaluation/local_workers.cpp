@@ -14,14 +14,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Deaths by one task that end the search; also of a worker without a task, before it is given up.
-constexpr unsigned most_deaths = 3;
+/// The search ends after this number of workers that died in one task. A worker that died this often without a task
+/// is not replaced.
+constexpr unsigned max_deaths = 3;
 
-std::string place_of(const Task& task) {
+std::string name_of(const Task& task) {
   return "evaluation " + std::to_string(task.number) + " of run " + std::to_string(task.run);
 }
 
-std::string sentence(std::initializer_list<std::string> parts) {
+std::string joined(std::initializer_list<std::string> parts) {
   std::string text;
   for (const std::string& part : parts) {
     text += part;
@@ -40,10 +41,10 @@ class LocalWorkers::Implementation {
                                  limit.per_simulated_second * experiment.scenario.duration_s))) {
     workers_.resize(count);
     for (std::uint32_t i = 0; i < count; ++i) {
-      if (std::string refusal = fork_worker(workers_[i]); !refusal.empty()) {
-        messages_.push_back(sentence({"the system refuses a process (", refusal, "): ", std::to_string(i), " of ",
-                                      std::to_string(count), " workers"}));
-        require_worker(refusal);
+      if (std::string reason = fork_worker(workers_[i]); !reason.empty()) {
+        messages_.push_back(joined({"the system cannot start another process (", reason, "): ", std::to_string(i),
+                                    " of ", std::to_string(count), " workers"}));
+        require_worker(reason);
         break;
       }
     }
@@ -61,15 +62,15 @@ class LocalWorkers::Implementation {
   void start(std::uint64_t ticket, const Task& task) {
     const auto worker = std::ranges::find_if(workers_, is_idle);
     if (worker == workers_.end()) {
-      throw std::logic_error("a task for workers of which none is idle");
+      throw std::logic_error("start() without an idle worker");
     }
-    give(*worker, {ticket, task, 0});
+    assign(*worker, {ticket, task, 0});
   }
 
   std::optional<Done> wait(std::chrono::milliseconds timeout) {
     const Clock::time_point end = Clock::now() + timeout;
     while (true) {
-      const std::optional<int> ready = look(std::min(timeout, longest_look));
+      const std::optional<int> ready = poll_workers(std::min(timeout, max_poll_time));
       if (!ready) {
         return std::nullopt;  // a signal: the caller may want to stop
       }
@@ -80,7 +81,7 @@ class LocalWorkers::Implementation {
           }
         }
       }
-      kill_hung();
+      replace_hung();
       const Clock::time_point now = Clock::now();
       if (now >= end) {
         return std::nullopt;
@@ -98,17 +99,17 @@ class LocalWorkers::Implementation {
     unsigned deaths;  ///< of workers that had it
   };
   struct Worker {
-    std::unique_ptr<WorkerProcess> process;  ///< null: given up
+    std::unique_ptr<WorkerProcess> process;  ///< null: not replaced
     std::optional<Assignment> assignment;
     Clock::duration busy{};    ///< with the task, while somebody waited
-    unsigned idle_deaths = 0;  ///< in a row
+    unsigned idle_deaths = 0;  ///< since its last result
     bool readable = false;
   };
-  static constexpr std::chrono::milliseconds longest_look{1000};
+  static constexpr std::chrono::milliseconds max_poll_time{1000};
 
   static bool is_idle(const Worker& worker) { return worker.process != nullptr && !worker.assignment; }
 
-  /// Empty if it worked, else why not.
+  /// Returns the reason if it failed, else an empty text.
   std::string fork_worker(Worker& worker) const {
     try {
       worker.process = std::make_unique<WorkerProcess>(experiment_, run_);
@@ -120,18 +121,18 @@ class LocalWorkers::Implementation {
 
   void require_worker(const std::string& reason) const {
     if (count() == 0) {
-      throw std::runtime_error("no process is left that could simulate: " + reason);
+      throw std::runtime_error("no worker is left: " + reason);
     }
   }
 
-  static void give(Worker& worker, Assignment assignment) {
+  static void assign(Worker& worker, Assignment assignment) {
     worker.process->send(assignment.task);
     worker.assignment = std::move(assignment);
     worker.busy = {};
   }
 
-  /// Waits until a worker has something to say; nothing if a signal came.
-  std::optional<int> look(std::chrono::milliseconds timeout) {
+  /// Waits until a worker has sent something; returns the number of such workers, or nothing after a signal.
+  std::optional<int> poll_workers(std::chrono::milliseconds timeout) {
     std::vector<pollfd> sockets;
     for (const Worker& worker : workers_) {
       sockets.push_back({worker.process != nullptr ? worker.process->socket() : -1, POLLIN, 0});
@@ -144,7 +145,7 @@ class LocalWorkers::Implementation {
       }
       return std::nullopt;
     }
-    const auto passed = std::min<Clock::duration>(Clock::now() - start, longest_look);
+    const auto passed = std::min<Clock::duration>(Clock::now() - start, max_poll_time);
     for (std::size_t i = 0; i < workers_.size(); ++i) {
       workers_[i].readable = sockets[i].revents != 0;
       workers_[i].busy += passed;
@@ -167,43 +168,42 @@ class LocalWorkers::Implementation {
     const std::uint64_t ticket = worker.assignment->ticket;
     worker.assignment.reset();
     worker.idle_deaths = 0;
-    if (!homeless_.empty()) {
-      give(worker, std::move(homeless_.front()));
-      homeless_.pop_front();
+    if (!orphaned_.empty()) {
+      assign(worker, std::move(orphaned_.front()));
+      orphaned_.pop_front();
     }
     return Done{ticket, std::get<TrialResult>(reply), number};
   }
 
-  void kill_hung() {
+  void replace_hung() {
     for (std::uint32_t i = 0; i < workers_.size(); ++i) {
       if (workers_[i].assignment && workers_[i].busy > limit_) {
         const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(workers_[i].busy).count();
-        replace(i, "gave no answer for " + std::to_string(seconds) + " s");
+        replace(i, "did not answer for " + std::to_string(seconds) + " s");
       }
     }
   }
 
-  /// Of a worker that can do no more. what: it did, if its end does not say so itself.
+  /// Replaces a worker that failed, hung or died. what: what it did; empty: its exit status says it.
   void replace(std::uint32_t number, std::string what) {
     Worker& worker = workers_[number];
     const std::string process = std::to_string(worker.process->id());
     const std::string end = worker.process->end();
     worker.process.reset();
-    what = sentence({"worker ", std::to_string(number), " (process ", process, ") ", what.empty() ? end : what});
+    what = joined({"worker ", std::to_string(number), " (process ", process, ") ", what.empty() ? end : what});
     std::optional<Assignment> assignment = std::exchange(worker.assignment, std::nullopt);
-    if (assignment && ++assignment->deaths >= most_deaths) {
-      throw std::runtime_error(sentence({place_of(assignment->task), " cost ", std::to_string(most_deaths),
-                                         " workers, a simulation of it cannot be had: ", what}));
+    if (assignment && ++assignment->deaths >= max_deaths) {
+      throw std::runtime_error(joined({name_of(assignment->task), " ended ", std::to_string(max_deaths),
+                                       " workers, so it cannot be simulated: ", what}));
     }
-    what += assignment ? " in " + place_of(assignment->task) : " without a task";
-    std::string refusal = "it did so " + std::to_string(most_deaths) + " times";
-    if (assignment || ++worker.idle_deaths < most_deaths) {
-      refusal = fork_worker(worker);
+    what += assignment ? " in " + name_of(assignment->task) : " without a task";
+    std::string reason = "it ended " + std::to_string(max_deaths) + " times";
+    if (assignment || ++worker.idle_deaths < max_deaths) {
+      reason = fork_worker(worker);
     }
-    if (!refusal.empty()) {
-      messages_.push_back(
-          sentence({what, "; not started again: ", refusal, assignment ? "; evaluation repeated" : ""}));
-      require_worker(refusal);
+    if (!reason.empty()) {
+      messages_.push_back(joined({what, "; not started again: ", reason, assignment ? "; evaluation repeated" : ""}));
+      require_worker(reason);
     } else {
       messages_.push_back(what + "; started again" + (assignment ? ", evaluation repeated" : ""));
     }
@@ -216,9 +216,9 @@ class LocalWorkers::Implementation {
     const auto worker = replacement.process != nullptr ? workers_.begin() + (&replacement - workers_.data())
                                                        : std::ranges::find_if(workers_, is_idle);
     if (worker != workers_.end()) {
-      give(*worker, std::move(assignment));
+      assign(*worker, std::move(assignment));
     } else {
-      homeless_.push_back(std::move(assignment));
+      orphaned_.push_back(std::move(assignment));
     }
   }
 
@@ -226,7 +226,7 @@ class LocalWorkers::Implementation {
   RunTask run_;
   Clock::duration limit_;
   std::vector<Worker> workers_;
-  std::deque<Assignment> homeless_;  ///< tasks whose worker died without a successor, while all others were busy
+  std::deque<Assignment> orphaned_;  ///< tasks whose worker died and was not replaced, until another is idle
   std::vector<std::string> messages_;
 };
 

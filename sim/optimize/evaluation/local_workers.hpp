@@ -9,25 +9,25 @@
 
 namespace proleg::optimize {
 
-/// How long a task may take before its worker counts as hung. Only time counts in which somebody waits for results: a
-/// program that was stopped (Ctrl-Z) and continued has not lost its workers.
+/// How long a task may take before its worker counts as hung. Only time within wait() counts: a program that was
+/// stopped (Ctrl-Z) and continued keeps its workers.
 struct TaskLimit {
   std::chrono::milliseconds fixed{60'000};
   double per_simulated_second = 50.0;  ///< s; a simulation runs about a hundred times faster than this robot crawls
 };
 
-/// Processes of this computer, forked from this one. The engine's iterative solver has one random generator a process,
-/// so threads would not repeat (docs/physics.md).
+/// Processes of this computer, forked from this one. The engine's iterative solver has one random generator in each
+/// process, so results of threads would not repeat (docs/physics.md).
 class LocalWorkers final : public Workers {
  public:
-  /// count: at least 1. experiment: must outlive this. Call it, and wait(), which may replace a worker, while the
-  /// process has one thread. Throws std::runtime_error if the system gives no process at all. run: for tests.
+  /// count: at least 1. experiment: must outlive this. The process must have one thread here and in wait(), which may
+  /// replace a worker. Throws std::runtime_error if the system cannot start any process. run: for tests.
   LocalWorkers(const Experiment& experiment, std::uint32_t count, RunTask run = run_trial, TaskLimit limit = {});
   ~LocalWorkers() override;  ///< ends the processes, also in the middle of a task
   LocalWorkers(const LocalWorkers&) = delete;
   LocalWorkers& operator=(const LocalWorkers&) = delete;
 
-  /// Those that are left; fewer than asked for if the system gives no more processes.
+  /// Workers that are left; fewer than `count` if the system could not start more.
   [[nodiscard]] std::uint32_t count() const override;
   [[nodiscard]] std::uint32_t idle() const override;
   void start(std::uint64_t ticket, const Task& task) override;

@@ -29,13 +29,13 @@ class Writer {
     }
   }
 
-  [[nodiscard]] Bytes take() { return std::move(bytes_); }
+  [[nodiscard]] Bytes release() { return std::move(bytes_); }
 
  private:
   Bytes bytes_;
 };
 
-/// After something that is not there, everything reads as nothing and ok() says so.
+/// After the end of the bytes or an invalid value, every value reads as 0 or empty, and ok() is false.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : rest_(bytes) {}
@@ -43,7 +43,7 @@ class Reader {
   template <std::unsigned_integral Integer>
   void read(Integer& value) {
     value = 0;
-    const std::span<const std::byte> bytes = take(sizeof value);
+    const std::span<const std::byte> bytes = next_bytes(sizeof value);
     for (std::size_t i = 0; i < bytes.size(); ++i) {
       value |= static_cast<Integer>(std::to_integer<Integer>(bytes[i]) << (8 * i));
     }
@@ -54,12 +54,12 @@ class Reader {
     value = std::bit_cast<double>(pattern);
   }
   void read(bool& value) {
-    const std::span<const std::byte> bytes = take(1);
+    const std::span<const std::byte> bytes = next_bytes(1);
     value = !bytes.empty() && bytes[0] == std::byte{1};
     ok_ = ok_ && (value || bytes[0] == std::byte{0});
   }
   void read(std::string& text) {
-    const std::span<const std::byte> bytes = take(read_count(1));
+    const std::span<const std::byte> bytes = next_bytes(read_count(1));
     text.clear();
     for (const std::byte byte : bytes) {
       text.push_back(std::to_integer<char>(byte));
@@ -76,16 +76,16 @@ class Reader {
   [[nodiscard]] bool finished() const { return ok_ && rest_.empty(); }
 
  private:
-  std::span<const std::byte> take(std::size_t count) {
+  std::span<const std::byte> next_bytes(std::size_t count) {
     if (!ok_ || count > rest_.size()) {
       ok_ = false;
       return {};
     }
-    const std::span<const std::byte> taken = rest_.first(count);
+    const std::span<const std::byte> bytes = rest_.first(count);
     rest_ = rest_.subspan(count);
-    return taken;
+    return bytes;
   }
-  /// A number of items that are there, so that a wrong one takes no memory.
+  /// A number of items that fits the rest of the bytes, so that a wrong one allocates no memory.
   std::size_t read_count(std::size_t item_size) {
     std::uint64_t count = 0;
     read(count);
@@ -97,18 +97,18 @@ class Reader {
   bool ok_ = true;
 };
 
-// The order of the fields, said once: Archive is a Writer or a Reader.
+// The order of the fields, for writing and reading: `field` is called for each.
 
-template <typename Archive, typename TaskType>
-void each_field(TaskType& task, const Archive& field) {
+template <typename Visit, typename TaskType>
+void each_field(TaskType& task, const Visit& field) {
   field(task.run);
   field(task.number);
   field(task.trial);
   field(task.candidate);
 }
 
-template <typename Archive, typename ResultType>
-void each_result_field(ResultType& result, const Archive& field) {
+template <typename Visit, typename ResultType>
+void each_result_field(ResultType& result, const Visit& field) {
   for (auto& value : result.measures.all()) {
     field(value);
   }
@@ -125,21 +125,21 @@ Bytes to_bytes(const Task& task) {
   each_field(task, [&](const auto& value) { writer.write(value); });
   writer.write(task.hopeless_below.has_value());
   writer.write(task.hopeless_below.value_or(0.0));
-  return writer.take();
+  return writer.release();
 }
 
 std::optional<Task> task_from(std::span<const std::byte> bytes) {
   Reader reader(bytes);
   Task task;
   each_field(task, [&](auto& value) { reader.read(value); });
-  bool can_be_hopeless = false;
+  bool has_limit = false;
   double hopeless_below = 0.0;
-  reader.read(can_be_hopeless);
+  reader.read(has_limit);
   reader.read(hopeless_below);
   if (!reader.finished()) {
     return std::nullopt;
   }
-  if (can_be_hopeless) {
+  if (has_limit) {
     task.hopeless_below = hopeless_below;
   }
   return task;
@@ -148,7 +148,7 @@ std::optional<Task> task_from(std::span<const std::byte> bytes) {
 Bytes to_bytes(const TrialResult& result) {
   Writer writer;
   each_result_field(result, [&](const auto& value) { writer.write(value); });
-  return writer.take();
+  return writer.release();
 }
 
 std::optional<TrialResult> result_from(std::span<const std::byte> bytes) {

@@ -1,7 +1,7 @@
 #pragma once
 
 // Tasks and results as bytes, for other processes of this program, on this computer or others of its kind. Numbers are
-// written with their lowest byte first, doubles as their bit pattern, so that every value arrives as it was.
+// written with their lowest byte first, doubles as their bit pattern, so that every value arrives unchanged.
 
 #include <cstddef>
 #include <optional>

@@ -18,7 +18,7 @@ double score_of(const Objective& objective, Aggregate aggregate, std::span<const
   if (aggregate == Aggregate::mean) {
     result /= static_cast<double>(trials.size());
   }
-  return result + 0.0;  // a zero without a sign, which stores cannot keep
+  return result + 0.0;  // turns -0 into 0: stores do not keep the sign
 }
 
 sim::MeasureValues mean_measures(std::span<const TrialResult> trials) {

@@ -6,7 +6,7 @@
 
 namespace proleg::optimize {
 
-/// What the trials of a candidate come to. trials: all of them, in their order; at least one.
+/// The evaluation that the trials of a candidate give. trials: all of them, in their order; at least one.
 [[nodiscard]] Evaluation rate(const Experiment& experiment, std::uint32_t run, std::uint64_t number,
                               const Candidate& candidate, std::span<const TrialResult> trials);
 

@@ -12,44 +12,44 @@
 
 namespace proleg::optimize {
 
-/// A store cannot be used; what() is one line: file, what was found, what was expected.
+/// A store cannot be used. what() is one line: file, what was found, what was expected.
 class StoreError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
 /// Every trial and evaluation of an experiment in an SQLite file, each committed when it is known: a killed process
-/// loses what its workers were at, nothing else. Others may read the file at the same time. `.schema` in the sqlite3
-/// shell explains the tables.
+/// loses only the tasks that its workers had not finished. Other programs may read the file at the same time. `.schema`
+/// in the sqlite3 shell explains the tables.
 class Store {
  public:
   enum class Opening : std::uint8_t {
-    fresh,   ///< the file must not be there
-    resume,  ///< it must be there, of the same experiment and build
+    fresh,   ///< the file must not exist
+    resume,  ///< the file must exist, with the same experiment and build
   };
-  /// Throws StoreError: the file is (not) there, is something else, of another experiment or another build.
+  /// Throws StoreError: the file does (not) exist, is no store, or is of another experiment or build.
   Store(const std::filesystem::path& path, const Experiment& experiment, const std::string& build_id, Opening opening);
   ~Store();
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
 
-  /// The result of that very task, if it is here.
+  /// The result of exactly this task; nothing if the store does not have it.
   [[nodiscard]] std::optional<TrialResult> find(const Task& task);
-  /// What a worker found. One for the same run, number and trial is replaced (a prediction that did not come true).
-  /// Throws StoreError, e.g. if the disk is full; what was saved before stays.
+  /// Saves the result of a worker. Replaces one of the same run, number and trial (a wrong prediction). Throws
+  /// StoreError, for example if the disk is full; what was saved before stays.
   void save(const Task& task, std::uint64_t seed, const TrialResult& result, std::uint32_t worker);
-  /// What the optimiser used, in the order of number. One that is there is replaced by the same.
+  /// Saves what the optimiser used, in the order of number. Saving one again changes nothing.
   void save(const Evaluation& evaluation);
-  /// A run is under way (again): it has no ending.
+  /// Marks a run as running: it has no ending.
   void start_run(std::uint32_t run);
-  /// How a run ended ("converged", "credits used up", ...).
+  /// Saves why a run ended ("converged", "no credit left", ...).
   void finish_run(std::uint32_t run, const std::string& reason);
 
   /// Number of the last evaluation of a run that was saved, plus 1.
   [[nodiscard]] std::uint64_t evaluation_count(std::uint32_t run);
-  /// All evaluations of a run that were saved, by number. For pictures and tables.
+  /// All saved evaluations of a run, by number.
   [[nodiscard]] std::vector<Evaluation> evaluations(std::uint32_t run);
-  /// Why a run ended, if it did.
+  /// Why a run ended; nothing if it did not.
   [[nodiscard]] std::optional<std::string> ending(std::uint32_t run);
 
  private:

@@ -84,9 +84,9 @@ void write_experiment(Database& database, const Experiment& experiment, const St
   }
 }
 
-std::filesystem::path beginning(const std::filesystem::path& path) { return path.string() + ".new"; }
+std::filesystem::path unfinished_path(const std::filesystem::path& path) { return path.string() + ".new"; }
 
-/// What differs between the experiment of a store and this one.
+/// Names of what differs between the experiment of a store and this one.
 std::vector<std::string> differences(Database& database, const Experiment& experiment) {
   std::vector<std::string> names;
   Statement part(database, "SELECT text FROM part WHERE name = ?1");
@@ -96,7 +96,7 @@ std::vector<std::string> differences(Database& database, const Experiment& exper
       names.push_back(its.name);
     }
   }
-  // The experiment's own file says what the parts say.
+  // The parts above cover the experiment's own file.
   Statement source(database, "SELECT text FROM source ORDER BY position LIMIT -1 OFFSET ?1");
   source.bind_all(experiment.sources.size() - experiment.scenario.sources.size());
   for (const sim::SourceFile& its : experiment.scenario.sources) {
@@ -112,15 +112,15 @@ std::vector<std::string> differences(Database& database, const Experiment& exper
 
 }  // namespace
 
-StoreLock::StoreLock(const std::filesystem::path& store, const std::string& refusal)
+StoreLock::StoreLock(const std::filesystem::path& store, const std::string& failure)
     : descriptor_(open((store.string() + ".lock").c_str(), O_RDWR | O_CLOEXEC | O_CREAT, 0666)) {
   if (descriptor_ < 0) {
-    throw StoreError(store.string() + ": " + refusal + ": " + std::strerror(errno));
+    throw StoreError(store.string() + ": " + failure + ": " + std::strerror(errno));
   }
-  // File systems without such locks are used without one.
+  // On a file system without such locks the store has none.
   if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     close(descriptor_);
-    throw StoreError(store.string() + ": another program is writing into it; wait for it or stop it first");
+    throw StoreError(store.string() + ": another program is writing to it; wait until it ends, or stop it");
   }
 }
 
@@ -132,16 +132,16 @@ StoreLock::~StoreLock() {
 
 StoreLock::StoreLock(StoreLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
 
-/// Under another name first: what is there under its own is a whole store, whenever the process is killed.
+/// Writes under another name first, so that a killed process never leaves half a store under this name.
 StoreLock create_store(const std::filesystem::path& path, const Experiment& experiment, const StoreColumns& columns,
                        const std::string& build_id) {
   StoreLock lock(path, "cannot be created");
   if (std::filesystem::exists(std::filesystem::symlink_status(path))) {
-    throw StoreError(path.string() + ": is there already; resume it, or choose another folder");
+    throw StoreError(path.string() + ": exists already; resume it (--resume), or choose another folder (--out)");
   }
   try {
-    std::filesystem::remove(beginning(path));  // that of a process killed here
-    Database database(beginning(path), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    std::filesystem::remove(unfinished_path(path));  // left by a process that was killed here
+    Database database(unfinished_path(path), SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
     database.execute("PRAGMA journal_mode = MEMORY; BEGIN IMMEDIATE");
     database.execute(("PRAGMA application_id = " + std::to_string(store_application_id) +
                       "; PRAGMA user_version = " + std::to_string(store_format))
@@ -151,17 +151,17 @@ StoreLock create_store(const std::filesystem::path& path, const Experiment& expe
     database.execute("COMMIT");
   } catch (...) {
     std::error_code ignored;
-    std::filesystem::remove(beginning(path), ignored);
+    std::filesystem::remove(unfinished_path(path), ignored);
     throw;
   }
-  std::filesystem::rename(beginning(path), path);
+  std::filesystem::rename(unfinished_path(path), path);
   return lock;
 }
 
-StoreLock find_store(const std::filesystem::path& path) {
+StoreLock claim_store(const std::filesystem::path& path) {
   const std::filesystem::file_status status = std::filesystem::status(path);
   if (!std::filesystem::exists(status)) {
-    throw StoreError(path.string() + ": is not there; nothing can be resumed");
+    throw StoreError(path.string() + ": does not exist; there is nothing to resume");
   }
   if (!std::filesystem::is_regular_file(status)) {
     throw StoreError(path.string() + ": is not a file; expected the store of an experiment");
@@ -175,7 +175,7 @@ void require_same_experiment(const std::filesystem::path& path, Database& databa
     throw StoreError(path.string() + ": is not the store of an experiment");
   }
   if (const std::int64_t format = pragma(database, "PRAGMA user_version"); format != std::int64_t{store_format}) {
-    throw StoreError(path.string() + ": has format " + std::to_string(format) + ", this program knows format " +
+    throw StoreError(path.string() + ": has format " + std::to_string(format) + ", this program reads format " +
                      std::to_string(store_format));
   }
   const std::string fingerprint = value_of(database, "fingerprint");
@@ -183,11 +183,11 @@ void require_same_experiment(const std::filesystem::path& path, Database& databa
     const std::vector<std::string> names = differences(database, experiment);
     throw StoreError(path.string() + ": is the store of another experiment, with fingerprint " +
                      fingerprint.substr(0, 12) + ", expected " + experiment.fingerprint().substr(0, 12) +
-                     (names.empty() ? "" : "; what differs: " + listed(names)));
+                     (names.empty() ? "" : "; differences: " + listed(names)));
   }
   if (const std::string other = value_of(database, "build_id"); other != build_id) {
     throw StoreError(path.string() + ": was made by build " + in_quotes(other) + ", this is " + in_quotes(build_id) +
-                     "; their results may differ, so it takes no more");
+                     "; their results may differ, so this build cannot resume it");
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// How a store's file comes to be, is claimed and is recognised. All throw StoreError, or SqliteError.
+// Creates, locks and checks the file of a store. All functions throw StoreError or SqliteError.
 
 #include <filesystem>
 #include <string>
@@ -11,13 +11,13 @@
 
 namespace proleg::optimize {
 
-/// The lock that says "a program writes into this store": it goes with the process, however that ends. Readers do not
-/// care. (SQLite's own locks are held only while it writes.) It is on an empty file beside the store, which stays: on a
-/// network file system one on the store itself would shut SQLite out.
+/// The lock of the one program that writes to a store. The system releases it when the process ends, in any way.
+/// Readers do not need it. (SQLite's own locks exist only while it writes.) The lock is on an empty file beside the
+/// store, which remains: on a network file system a lock on the store itself would lock SQLite out.
 class StoreLock {
  public:
-  /// Throws StoreError if another has the lock, or its file cannot be made: then `refusal` says what cannot be done.
-  StoreLock(const std::filesystem::path& store, const std::string& refusal);
+  /// Throws StoreError if another program has the lock, or if its file cannot be made. The message then says `failure`.
+  StoreLock(const std::filesystem::path& store, const std::string& failure);
   ~StoreLock();
   StoreLock(StoreLock&& other) noexcept;
   StoreLock& operator=(StoreLock&&) = delete;
@@ -26,14 +26,14 @@ class StoreLock {
   int descriptor_;
 };
 
-/// Makes a store with its tables and what it says about the experiment. There must be nothing under its name.
+/// Makes a store with its tables and the description of the experiment. The path must not exist.
 [[nodiscard]] StoreLock create_store(const std::filesystem::path& path, const Experiment& experiment,
                                      const StoreColumns& columns, const std::string& build_id);
 
-/// Claims a file that is there.
-[[nodiscard]] StoreLock find_store(const std::filesystem::path& path);
+/// Locks an existing store for writing.
+[[nodiscard]] StoreLock claim_store(const std::filesystem::path& path);
 
-/// Refuses what is no store of this format, experiment and build.
+/// Throws StoreError unless it is a store of this format, experiment and build.
 void require_same_experiment(const std::filesystem::path& path, Database& database, const Experiment& experiment,
                              const std::string& build_id);
 

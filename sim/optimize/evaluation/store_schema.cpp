@@ -11,8 +11,8 @@
 namespace proleg::optimize {
 namespace {
 
-/// SQLite's tables have at most 2000 columns.
-constexpr std::size_t most_values = 1000;
+/// SQLite's tables have at most 2000 columns. With more dimensions than this, values have no columns.
+constexpr std::size_t max_value_columns = 1000;
 
 constexpr std::array before_scores{"run", "number"};
 constexpr std::array after_measures{"seed", "wall_s", "simulated_s", "given_up", "reused", "failure", "candidate"};
@@ -114,7 +114,7 @@ StoreColumns::StoreColumns(const Experiment& experiment) {
   for (const Objective& objective : experiment.objectives) {
     scores.push_back(own("score " + objective.name));
   }
-  if (experiment.space.dimensions.size() <= most_values) {
+  if (experiment.space.dimensions.size() <= max_value_columns) {
     for (const Dimension& dimension : experiment.space.dimensions) {
       values.push_back(own(dimension.name));
     }

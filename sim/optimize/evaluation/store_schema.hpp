@@ -10,18 +10,18 @@
 
 namespace proleg::optimize {
 
-/// "PrOp", SQLite's application id: how a store is told from any other database.
+/// "PrOp", SQLite's application id: it distinguishes a store from other databases.
 inline constexpr std::uint32_t store_application_id = 0x50724F70;
-/// Raised whenever a reader of the older format would misread or miss something. SQLite's user_version.
+/// SQLite's user_version. It grows when a program for the older format would misread or miss something.
 inline constexpr std::uint32_t store_format = 1;
 
-/// Names of the columns that depend on the experiment. SQLite knows no difference between cases in
-/// them, so a name that is taken gets "_" at its end.
+/// Names of the columns that depend on the experiment. SQLite ignores their case, so a name that is already used gets
+/// "_" at its end.
 struct StoreColumns {
   explicit StoreColumns(const Experiment& experiment);
 
   std::vector<std::string> scores;    ///< "score distance": one for each objective
-  std::vector<std::string> values;    ///< "amplitude:J5": one for each dimension; none if they are too many for a table
+  std::vector<std::string> values;    ///< "amplitude:J5": one for each dimension; none if a table cannot hold them all
   std::vector<std::string> measures;  ///< "distance"
 };
 

@@ -21,21 +21,21 @@ sim::Scenario scenario_of(const Experiment& experiment, const Task& task) {
   return scenario;
 }
 
-/// The tick after which racing looks at the run; none if it does not.
-std::optional<std::uint32_t> look_tick(const Experiment& experiment, const Task& task, std::uint32_t ticks) {
+/// The tick after which racing checks the run; none if it does not.
+std::optional<std::uint32_t> racing_tick(const Experiment& experiment, const Task& task, std::uint32_t ticks) {
   if (!experiment.racing.on() || !task.hopeless_below || ticks < 2) {
     return std::nullopt;
   }
   return std::clamp(static_cast<std::uint32_t>(std::lround(experiment.racing.after * ticks)), 1U, ticks - 1);
 }
 
-/// What a run is heading for if it goes on as it did: the distance grows with time; the speed is what it is.
+/// Measures at the end of a run that continues as it did: the distance grows with time, the speed stays.
 sim::MeasureValues extrapolated(sim::MeasureValues measures, double share) {
   measures[sim::Measure::distance] /= share;
   return measures;
 }
 
-/// Zeros without a sign and one pattern of "not a number": what every store and message gives back as it was.
+/// Makes -0 to 0 and every NaN the same: stores and messages keep these values unchanged.
 void normalise(sim::MeasureValues& measures) {
   for (double& value : measures.all()) {
     value = std::isnan(value) ? std::numeric_limits<double>::quiet_NaN() : value + 0.0;
@@ -45,17 +45,17 @@ void normalise(sim::MeasureValues& measures) {
 void simulate(const Experiment& experiment, const Task& task, TrialResult& result) {
   const sim::Scenario scenario = scenario_of(experiment, task);
   const std::uint32_t ticks = sim::tick_count(scenario);
-  const std::optional<std::uint32_t> look = look_tick(experiment, task, ticks);
+  const std::optional<std::uint32_t> check_tick = racing_tick(experiment, task, ticks);
   sim::Simulation simulation(scenario);
   try {
     while (simulation.tick() < ticks && !result.given_up) {
       simulation.advance();
-      if (simulation.tick() == look) {
-        const sim::MeasureValues heading_for =
-            extrapolated(simulation.measures(experiment.heading_deg), static_cast<double>(*look) / ticks);
-        if (experiment.objectives.front().score(heading_for) < *task.hopeless_below) {
+      if (simulation.tick() == check_tick) {
+        const sim::MeasureValues extrapolated_measures =
+            extrapolated(simulation.measures(experiment.heading_deg), static_cast<double>(*check_tick) / ticks);
+        if (experiment.objectives.front().score(extrapolated_measures) < *task.hopeless_below) {
           result.given_up = true;
-          result.measures = heading_for;
+          result.measures = extrapolated_measures;
         }
       }
     }

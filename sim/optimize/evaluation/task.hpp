@@ -15,26 +15,26 @@ struct Task {
   std::uint64_t number = 0;  ///< of the evaluation in its run, from 0: the individual
   std::uint32_t trial = 0;   ///< from 0
   Candidate candidate;
-  /// Racing: the candidate is given up if it is heading for a score below this.
+  /// Racing: the trial is given up if its score, extrapolated, is below this.
   std::optional<double> hopeless_below;
 
   bool operator==(const Task&) const = default;
 };
 
-/// What came of it.
+/// The result of a task.
 struct TrialResult {
   sim::MeasureValues measures;
   double simulated_s = 0.0;
-  double wall_s = 0.0;    ///< processor time would hide waiting; this is what the worker needed
-  bool given_up = false;  ///< racing stopped it; distance and speed are those it was heading for
+  double wall_s = 0.0;    ///< what the worker needed; processor time would not include waiting
+  bool given_up = false;  ///< racing stopped it; distance and speed are extrapolated
   std::string failure;    ///< why the simulation failed (PhysicsError); empty if it did not
 };
 
-/// Simulates. The result depends on experiment and task alone (but for wall_s). Throws nothing but what cannot be
-/// helped (out of memory).
+/// Simulates a task. The result, except wall_s, depends only on experiment and task. Throws only if the system fails
+/// (out of memory).
 [[nodiscard]] TrialResult run_trial(const Experiment& experiment, const Task& task);
 
-/// A candidate rated: the outcome of all its trials.
+/// A rated candidate: the outcome of all its trials.
 struct Evaluation {
   std::uint32_t run = 0;
   std::uint64_t number = 0;
@@ -44,7 +44,7 @@ struct Evaluation {
   double wall_s = 0.0;          ///< of all trials
   double simulated_s = 0.0;
   bool given_up = false;  ///< at least one trial was
-  bool reused = false;    ///< not simulated: the outcome was known from an evaluation before
+  bool reused = false;    ///< not simulated: an earlier evaluation had the outcome
   bool restored = false;  ///< not simulated now: from the store of an interrupted run
   std::string failure;    ///< of the first trial that failed
 };

@@ -6,7 +6,7 @@
 namespace proleg::optimize {
 namespace {
 
-/// Of all pipelines of the process: workers may still be at a task of an earlier one.
+/// Unique in the process: workers may still simulate a task of an earlier pipeline.
 std::uint64_t new_ticket() {
   static std::uint64_t last = 0;
   return ++last;
@@ -28,18 +28,18 @@ std::size_t TaskHash::operator()(const Task& task) const {
   return hash;
 }
 
-TaskPipeline::TaskPipeline(const Experiment& experiment, Workers& workers, Store* store, Results results)
-    : experiment_(experiment), workers_(workers), store_(store), results_are_(results) {}
+TaskPipeline::TaskPipeline(const Experiment& experiment, Workers& workers, Store* store, ResultScope result_scope)
+    : experiment_(experiment), workers_(workers), store_(store), result_scope_(result_scope) {}
 
 Task TaskPipeline::key(const Task& task) const {
   Task key = task;
-  if (results_are_ == Results::of_every_number) {
+  if (result_scope_ == ResultScope::all_numbers) {
     key.number = 0;
   }
   return key;
 }
 
-void TaskPipeline::want(std::span<const Task> tasks) {
+void TaskPipeline::set_wanted(std::span<const Task> tasks) {
   const std::unordered_map<Task, Task, TaskHash> wanted_before = std::exchange(wanted_, {});
   queue_.clear();
   for (const Task& task : tasks) {
@@ -53,7 +53,7 @@ void TaskPipeline::want(std::span<const Task> tasks) {
     } else if (!keys_at_workers_.contains(its_key)) {
       if (store_ != nullptr && !wanted_before.contains(its_key)) {
         if (std::optional<TrialResult> stored = store_->find(task)) {
-          results_.emplace(its_key, Known{std::move(*stored), 0, true, task.number});
+          results_.emplace(its_key, KeptResult{std::move(*stored), 0, true, task.number});
           continue;
         }
       }
@@ -63,7 +63,7 @@ void TaskPipeline::want(std::span<const Task> tasks) {
   drop_unwanted(wanted_before);
 }
 
-/// A result that is not wanted any more may be wanted again if it is good for every number.
+/// With ResultScope::all_numbers a result stays: it may be wanted again.
 void TaskPipeline::drop_unwanted(const std::unordered_map<Task, Task, TaskHash>& wanted_before) {
   for (const auto& [its_key, task] : wanted_before) {
     const auto known = results_.find(its_key);
@@ -71,8 +71,8 @@ void TaskPipeline::drop_unwanted(const std::unordered_map<Task, Task, TaskHash>&
       continue;
     }
     counts_.wasted += known->second.restored ? 0U : 1U;
-    known->second.saved_as.reset();  // what is wanted in its place may take its place in the store
-    if (results_are_ == Results::of_one_number) {
+    known->second.saved_as.reset();  // a wanted result with its number may replace it in the store
+    if (result_scope_ == ResultScope::one_number) {
       results_.erase(known);
     }
   }
@@ -111,27 +111,27 @@ void TaskPipeline::receive(Workers::Done done) {
   const auto wanted = wanted_.find(its_key);
   if (wanted == wanted_.end()) {
     counts_.wasted += 1;
-    if (results_are_ == Results::of_one_number) {
+    if (result_scope_ == ResultScope::one_number) {
       return;
     }
   }
-  Known& known = results_[its_key];
+  KeptResult& known = results_[its_key];
   known = {std::move(done.result), done.worker, false, {}};
   if (wanted != wanted_.end()) {
     save(wanted->second, known);
   }
 }
 
-void TaskPipeline::save(const Task& task, Known& known) {
+void TaskPipeline::save(const Task& task, KeptResult& known) {
   if (store_ != nullptr && known.saved_as != task.number) {
     store_->save(task, trial_seed(experiment_.seed, task.run, task.number, task.trial), known.result, known.worker);
     known.saved_as = task.number;
   }
 }
 
-TaskPipeline::Found TaskPipeline::take(const Task& task) {
+TaskPipeline::ClaimedResult TaskPipeline::claim_result(const Task& task) {
   auto node = results_.extract(key(task));
-  Known& known = node.mapped();
+  KeptResult& known = node.mapped();
   save(task, known);
   wanted_.erase(key(task));
   return {std::move(known.result), known.restored};

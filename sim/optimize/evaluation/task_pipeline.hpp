@@ -13,69 +13,69 @@
 
 namespace proleg::optimize {
 
-/// Hash of a task: of what its result depends on.
+/// Hash of all fields of a task.
 struct TaskHash {
   [[nodiscard]] std::size_t operator()(const Task& task) const;
 };
 
-/// Keeps workers busy with tasks that are wanted in some order, and their results until somebody takes them. What is
+/// Gives workers the tasks that are wanted, in their order, and keeps the results until they are claimed. What is
 /// wanted may change at any time.
 class TaskPipeline {
  public:
-  enum class Results : std::uint8_t {
-    of_one_number,    ///< the result of a task depends on its number (through the seed)
-    of_every_number,  ///< it does not: one found for another number is as good
+  enum class ResultScope : std::uint8_t {
+    one_number,   ///< the result of a task depends on its number (through the seed)
+    all_numbers,  ///< it does not: a result for another number is the same
   };
   struct Counts {
-    std::uint64_t wasted = 0;  ///< results that are not wanted any more, or never were when they came
+    std::uint64_t wasted = 0;  ///< results that are no longer wanted, or were not when they arrived
     double simulated_s = 0.0;
     double workers_s = 0.0;
   };
 
-  /// All must outlive this. store: null for none; results that are wanted when they come are saved there at once.
-  TaskPipeline(const Experiment& experiment, Workers& workers, Store* store, Results results);
+  /// All must outlive this. store: null for none. Results that are wanted when they arrive are saved at once.
+  TaskPipeline(const Experiment& experiment, Workers& workers, Store* store, ResultScope result_scope);
 
-  /// These, the first ones first, instead of what was wanted before. Others that workers are at run on.
-  void want(std::span<const Task> tasks);
-  /// Gives workers tasks and takes results: those that are there, or else the first one within the time. Workers that
-  /// are idle then wait for the next call: what the optimiser makes of a result may change what is wanted.
+  /// Replaces the wanted tasks; the first ones are simulated first. Tasks that workers already have continue.
+  void set_wanted(std::span<const Task> tasks);
+  /// Gives idle workers tasks and collects results: all that are ready, or else the first one within the time. Workers
+  /// that are idle afterwards wait for the next call: the optimiser may want other tasks after a result.
   void run(std::chrono::milliseconds timeout);
 
-  /// Whether the result of a wanted task is here.
-  [[nodiscard]] bool has(const Task& task) const { return results_.contains(key(task)); }
+  /// Whether the result of a wanted task has arrived.
+  [[nodiscard]] bool has_result(const Task& task) const { return results_.contains(key(task)); }
 
-  struct Found {
+  struct ClaimedResult {
     TrialResult result;
     bool restored = false;  ///< from the store
   };
-  /// Hands out a result that is here; the task is not wanted any more.
-  Found take(const Task& task);
+  /// Moves a result out. It must have arrived; its task is no longer wanted.
+  ClaimedResult claim_result(const Task& task);
 
   [[nodiscard]] const Counts& counts() const { return counts_; }
 
  private:
-  struct Known {
+  struct KeptResult {
     TrialResult result;
     std::uint32_t worker = 0;
     bool restored = false;
-    std::optional<std::uint64_t> saved_as;  ///< the number under which the store has it
+    std::optional<std::uint64_t> saved_as;  ///< its number in the store
   };
 
   [[nodiscard]] Task key(const Task& task) const;
   void drop_unwanted(const std::unordered_map<Task, Task, TaskHash>& wanted_before);
   void give_tasks();
   void receive(Workers::Done done);
-  void save(const Task& task, Known& known);
+  void save(const Task& task, KeptResult& known);
 
   const Experiment& experiment_;
   Workers& workers_;
   Store* store_;
-  Results results_are_;
+  ResultScope result_scope_;
   std::unordered_map<Task, Task, TaskHash> wanted_;  ///< by their keys
-  std::deque<Task> queue_;                           ///< wanted, neither at a worker nor known
+  std::deque<Task> queue_;                           ///< wanted, without a worker or a result
   std::unordered_map<std::uint64_t, Task> at_workers_;
   std::unordered_set<Task, TaskHash> keys_at_workers_;
-  std::unordered_map<Task, Known, TaskHash> results_;
+  std::unordered_map<Task, KeptResult, TaskHash> results_;
   Counts counts_;
 };
 

@@ -21,8 +21,8 @@ namespace {
 constexpr std::byte is_result{0};
 constexpr std::byte is_failure{1};
 
-/// The next message; empty if the other end is closed. The sockets keep messages apart (SOCK_SEQPACKET), and there are
-/// no empty ones.
+/// The next message; empty if the other end is closed. The sockets keep messages separate (SOCK_SEQPACKET), and no
+/// message is empty.
 Bytes receive_message(int socket) {
   while (true) {
     std::byte none{};
@@ -62,12 +62,11 @@ Bytes reply_to(const Task& task, const Experiment& experiment, const RunTask& ru
   }
 }
 
-/// A process that shares as little as possible with its parent: not its signals, files and database connections, nor
-/// its terminal.
+/// Separates this process from its parent: it shares no signals, files, database connections or terminal.
 void leave_parent(int socket, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) {
-    _exit(0);  // it ended before the line above
+    _exit(0);  // the parent ended before prctl()
   }
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
     std::signal(signal, SIG_IGN);
@@ -75,7 +74,7 @@ void leave_parent(int socket, pid_t parent) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  // The other workers' sockets above all: one that holds them would keep them from noticing that the parent is gone.
+  // Above all the other workers' sockets: while this process held them, those workers would not see the parent's end.
   const auto kept = static_cast<unsigned>(socket);
   close_range(3, kept - 1, 0);
   close_range(kept + 1, ~0U, 0);
@@ -93,7 +92,7 @@ void leave_parent(int socket, pid_t parent) {
       break;
     }
   }
-  // Not exit(): what the parent has open, buffered or registered is not the child's to finish.
+  // Not exit(): the child must not flush or close what the parent has open, buffered or registered.
   _exit(0);
 }
 
@@ -133,7 +132,7 @@ WorkerProcess::Reply WorkerProcess::receive() const {
     if (std::optional<TrialResult> result = result_from(content)) {
       return std::move(*result);
     }
-    return Failed{"sent a reply that is no result"};
+    return Failed{"sent an invalid result"};
   }
   std::string what;
   for (const std::byte byte : content) {
@@ -146,7 +145,7 @@ std::string WorkerProcess::end() {
   if (process_ < 0) {
     return "ended";
   }
-  // One that has ended by itself keeps its own status.
+  // A process that has already ended keeps its own status.
   kill(process_, SIGKILL);
   int status = 0;
   while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {

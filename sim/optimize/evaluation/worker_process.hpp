@@ -11,29 +11,29 @@
 
 namespace proleg::optimize {
 
-/// What a worker does with a task: run_trial, or what a test puts in its place.
+/// What a worker does with a task: run_trial, or a function of a test.
 using RunTask = std::function<TrialResult(const Experiment&, const Task&)>;
 
-/// A child of this process that simulates one task after the other. It ends when this object does, or this process,
-/// however that ends. Signals that ask a program to end (SIGINT, SIGTERM, SIGHUP) mean the parent, which decides; a
-/// terminal and a batch system send them to both.
+/// A child of this process that simulates one task after the other. It ends with this object, and with this process in
+/// any case. It ignores the signals that ask a program to end (SIGINT, SIGTERM, SIGHUP): a terminal and a batch system
+/// send them to both, and the parent decides.
 class WorkerProcess {
  public:
-  /// Forks. Call it while the process has one thread: a child has no other, and what they held stays locked in it.
-  /// Throws std::system_error if the system refuses.
+  /// Forks. The process must have one thread: the child would have no others, and their locks would stay locked. Throws
+  /// std::system_error if the system cannot start a process.
   WorkerProcess(const Experiment& experiment, const RunTask& run);
   ~WorkerProcess();
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
   [[nodiscard]] pid_t id() const { return process_; }
-  /// Becomes readable when there is a reply, or the process has ended.
+  /// Becomes readable when there is a reply or the process has ended.
   [[nodiscard]] int socket() const { return socket_; }
 
-  /// To a process that has ended it is lost; receive() will tell.
+  /// If the process has ended, the task is lost and receive() returns Gone.
   void send(const Task& task) const;
 
-  /// It threw an exception.
+  /// The task threw an exception.
   struct Failed {
     std::string what;
   };
@@ -42,7 +42,7 @@ class WorkerProcess {
   /// The reply to the task that was sent last; waits for it if it is not there yet.
   [[nodiscard]] Reply receive() const;
 
-  /// Kills it if it still runs, and says how it ended: "was killed by signal 9", "ended with exit status 1".
+  /// Kills the process if it still runs. Returns how it ended: "was killed by signal 9", "ended with exit status 1".
   std::string end();
 
  private:

@@ -10,7 +10,7 @@
 
 namespace proleg::optimize {
 
-/// Those who simulate, in other processes. Each has at most one task at a time.
+/// Workers simulate tasks in other processes. Each has at most one task at a time.
 class Workers {
  public:
   struct Done {
@@ -21,14 +21,14 @@ class Workers {
 
   virtual ~Workers() = default;
   [[nodiscard]] virtual std::uint32_t count() const = 0;
-  /// Those without a task.
+  /// Workers without a task.
   [[nodiscard]] virtual std::uint32_t idle() const = 0;
-  /// Gives an idle worker a task. ticket: what wait() is to call it.
+  /// Gives an idle worker a task. ticket: identifies the task in the result of wait().
   virtual void start(std::uint64_t ticket, const Task& task) = 0;
-  /// The next result, or nothing after the timeout. A worker that dies or hangs is replaced and its task done again;
-  /// messages() tells. Throws std::runtime_error if a task killed three workers, or no worker is left.
+  /// The next result, or nothing after the timeout. A worker that dies or hangs is replaced and its task repeated;
+  /// messages() reports it. Throws std::runtime_error if three workers died in a task, or no worker is left.
   [[nodiscard]] virtual std::optional<Done> wait(std::chrono::milliseconds timeout) = 0;
-  /// What a person should know since the last call, one line each.
+  /// Messages for the user since the last call, one line each.
   [[nodiscard]] virtual std::vector<std::string> messages() = 0;
 };
 

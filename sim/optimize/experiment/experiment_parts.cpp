@@ -12,25 +12,25 @@ namespace proleg::optimize {
 namespace {
 
 /// "name=value name=value ..."
-class Settings {
+class SettingsText {
  public:
   template <typename Number>
-  requires std::integral<Number> || std::floating_point<Number> Settings& add(const char* name, Number value) {
+  requires std::integral<Number> || std::floating_point<Number> SettingsText& add(const char* name, Number value) {
     std::array<char, 32> text{};
     char* const end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
     return add(name, std::string(text.data(), end));
   }
-  Settings& add(const char* name, bool value) { return add(name, std::string(value ? "yes" : "no")); }
-  Settings& add(const char* name, const std::optional<double>& value) {
+  SettingsText& add(const char* name, bool value) { return add(name, std::string(value ? "yes" : "no")); }
+  SettingsText& add(const char* name, const std::optional<double>& value) {
     return value ? add(name, *value) : add(name, std::string("none"));
   }
-  Settings& add(const char* name, const std::string& value) {
+  SettingsText& add(const char* name, const std::string& value) {
     text_ += (text_.empty() ? "" : " ") + std::string(name) + "=" + value;
     return *this;
   }
-  /// By number: which one it is matters only for comparing.
+  /// As a number: the texts are only compared.
   template <typename Enumeration>
-  requires std::is_enum_v<Enumeration> Settings& add(const char* name, Enumeration value) {
+  requires std::is_enum_v<Enumeration> SettingsText& add(const char* name, Enumeration value) {
     return add(name, static_cast<int>(value));
   }
 
@@ -41,7 +41,7 @@ class Settings {
 };
 
 std::string method_text(const GreatDelugeSettings& method) {
-  return Settings()
+  return SettingsText()
       .add("water_level", method.water_level)
       .add("rain", method.rain)
       .add("credits", method.credits)
@@ -60,7 +60,7 @@ std::string method_text(const GreatDelugeSettings& method) {
 }
 
 std::string method_text(const GeneticSettings& method) {
-  return Settings()
+  return SettingsText()
       .add("population", method.population)
       .add("mutation", method.mutation)
       .add("crossover", method.crossover)
@@ -71,7 +71,7 @@ std::string method_text(const GeneticSettings& method) {
 }
 
 std::string method_text(const PagmoSettings& method) {
-  return Settings()
+  return SettingsText()
       .add("population", method.population)
       .add("generations", method.generations)
       .add("restart_after", method.restart_after)
@@ -98,7 +98,7 @@ std::string space_text(const SearchSpace& space) {
 std::string objectives_text(const Experiment& experiment) {
   std::string text;
   for (const Objective& objective : experiment.objectives) {
-    text += Settings()
+    text += SettingsText()
                 .add("name", objective.name)
                 .add("goal", objective.goal)
                 .add("failed", objective.failed)
@@ -106,11 +106,11 @@ std::string objectives_text(const Experiment& experiment) {
                 .text() +
             "\n";
   }
-  return text + Settings().add("heading_deg", experiment.heading_deg).text();
+  return text + SettingsText().add("heading_deg", experiment.heading_deg).text();
 }
 
 std::string trials_text(const Trials& trials) {
-  return Settings()
+  return SettingsText()
       .add("count", trials.count)
       .add("aggregate", trials.aggregate)
       .add("friction", trials.spread.friction)
@@ -140,13 +140,13 @@ std::vector<ExperimentPart> parts_of(const Experiment& experiment) {
   return {{"method",
            std::visit([&](const auto& method) { return method_name(experiment.method) + " " + method_text(method); },
                       experiment.method)},
-          {"seed", Settings().add("seed", experiment.seed).text()},
+          {"seed", SettingsText().add("seed", experiment.seed).text()},
           {"search space", space_text(experiment.space)},
           {"fitness", objectives_text(experiment)},
           {"trials", trials_text(experiment.trials)},
-          {"racing", Settings().add("after", experiment.racing.after).add("keep", experiment.racing.keep).text()},
-          {"reuse", Settings().add("reuse", experiment.reuse).text()},
-          {"duration", Settings().add("seconds", experiment.scenario.duration_s).text()}};
+          {"racing", SettingsText().add("after", experiment.racing.after).add("keep", experiment.racing.keep).text()},
+          {"reuse", SettingsText().add("reuse", experiment.reuse).text()},
+          {"duration", SettingsText().add("seconds", experiment.scenario.duration_s).text()}};
 }
 
 }  // namespace proleg::optimize

@@ -7,14 +7,14 @@
 
 namespace proleg::optimize {
 
-/// A part of an experiment in words, exact: two experiments whose texts are equal agree in it.
+/// A part of an experiment as exact text: two experiments agree in the part if the texts are equal.
 struct ExperimentPart {
   std::string name;  ///< for messages: "method", "search space"
   std::string text;
 };
 
-/// All that determines the results, but the scenario. The fingerprint is made of it, and a store keeps it to say what
-/// differs.
+/// All that determines the results, except the scenario. The fingerprint is made of it, and a store keeps it to name
+/// differences.
 [[nodiscard]] std::vector<ExperimentPart> parts_of(const Experiment& experiment);
 
 /// weight * measure + ...

@@ -22,8 +22,8 @@ constexpr Range spreads{0.0, 0.9, ""};
 constexpr Range latencies{0.0, 100.0, "ms"};
 constexpr Range shares{0.0, 1.0, ""};
 constexpr Range part_runs{0.0, 0.99, ""};
-constexpr std::uint64_t most_evaluations = 1'000'000'000;
-constexpr std::uint64_t most_trials = 1000;
+constexpr std::uint64_t max_evaluations = 1'000'000'000;
+constexpr std::uint64_t max_trials = 1000;
 
 sim::Scenario read_named_scenario(const XmlElement& section, const std::filesystem::path& path, sim::FileSource& files,
                                   const std::optional<std::filesystem::path>& simulation) {
@@ -34,7 +34,7 @@ sim::Scenario read_named_scenario(const XmlElement& section, const std::filesyst
   if (!mention) {
     section.refuse("no <simulation> in " + section.label(), "the scenario, named there or with --simulation");
   }
-  // Opened here first, so that a file that is missing is a fault of this line.
+  // Opened here first, so that the message for a missing file names this line.
   std::vector<sim::SourceFile> record;
   const std::filesystem::path found = sim::SourceSet(files, path, record).open(*mention, mention->text())->path();
   return read_scenario(found, files);
@@ -48,7 +48,7 @@ double read_spread(const XmlElement& trials, std::string_view tag, const Range& 
 Trials read_trials(const XmlElement& element) {
   element.allow({"count", "aggregate"}, {"friction", "mass", "servoGain", "latency", "contactNoise"});
   Trials trials;
-  trials.count = static_cast<std::uint32_t>(read_whole_attribute(element, "count", 1, most_trials));
+  trials.count = static_cast<std::uint32_t>(read_whole_attribute(element, "count", 1, max_trials));
   if (element.attribute("aggregate")) {
     trials.aggregate = static_cast<Aggregate>(read_choice_attribute(element, "aggregate", {"mean", "worst"}));
   }
@@ -60,8 +60,8 @@ Trials read_trials(const XmlElement& element) {
   return trials;
 }
 
-/// Whether the score is the distance or the speed, or a multiple, which a run gains bit by bit.
-bool grows_with_time(const std::vector<Objective>& objectives) {
+/// Whether the score is a positive multiple of the distance or the speed: these can be extrapolated.
+bool can_be_extrapolated(const std::vector<Objective>& objectives) {
   if (objectives.size() != 1 || objectives.front().terms.size() != 1) {
     return false;
   }
@@ -78,7 +78,7 @@ Racing read_racing(const XmlElement& element, const std::vector<Objective>& obje
   if (element.attribute("keep")) {
     racing.keep = read_number_attribute(element, "keep", shares);
   }
-  if (racing.on() && !grows_with_time(objectives)) {
+  if (racing.on() && !can_be_extrapolated(objectives)) {
     element.refuse(element.label() + " with this fitness",
                    "one objective, which is distance or speed with a weight above 0, to be maximised");
   }
@@ -88,7 +88,7 @@ Racing read_racing(const XmlElement& element, const std::vector<Objective>& obje
 void read_evaluation(const XmlElement& element, Experiment& experiment) {
   element.allow({}, {"evaluations", "seed", "reuse", "trials", "racing"});
   if (const auto evaluations = element.child("evaluations")) {
-    experiment.evaluations = read_whole(*evaluations, 0, most_evaluations);
+    experiment.evaluations = read_whole(*evaluations, 0, max_evaluations);
   }
   if (const auto seed = element.child("seed")) {
     experiment.seed = read_whole(*seed, 0, std::numeric_limits<std::uint64_t>::max());
@@ -108,7 +108,7 @@ void require_trials_to_differ(const XmlElement& evaluation, const Experiment& ex
   const Trials& trials = experiment.trials;
   if (trials.count > 1 && !depends_on_seed(experiment.scenario, experiment.space, trials.spread)) {
     evaluation.required_child("trials").refuse(
-        std::to_string(trials.count) + " trials that are all alike",
+        std::to_string(trials.count) + " trials that are all equal",
         "a spread of <friction>, <mass>, <servoGain>, <latency> or <contactNoise>, or noise in the scenario");
   }
 }

@@ -9,7 +9,7 @@
 namespace proleg::optimize {
 namespace {
 
-/// A text that two experiments share if and only if they are the same: every item with a mark where it ends.
+/// A text that is equal for two experiments only if they are: every item has a mark at its end.
 class CanonicalText {
  public:
   void add(std::string_view text) {
@@ -40,7 +40,7 @@ void add_setting(CanonicalText& text, const sim::Setting& setting) {
   text.add_all(setting.slot, setting.joint, setting.index, setting.internal, setting.value);
 }
 
-/// The files as they are, and what may differ from them by the command line.
+/// The texts of the files, and what the command line may change.
 void add_scenario(CanonicalText& text, const sim::Scenario& scenario) {
   text.add(scenario.sources.size());
   for (const sim::SourceFile& source : scenario.sources) {

@@ -12,7 +12,7 @@ namespace {
 
 using sim::XmlElement;
 
-constexpr std::size_t most_objectives = 8;
+constexpr std::size_t max_objectives = 8;
 constexpr sim::Range weights{-1e9, 1e9, ""};
 constexpr sim::Range scores{-1e12, 1e12, ""};
 constexpr double worst_cost = 1e6;
@@ -38,7 +38,7 @@ Term read_term(const XmlElement& element) {
     term.weight = read_number_attribute(element, "weight", weights);
   }
   if (term.weight == 0.0) {
-    element.refuse("weight 0 in " + element.label(), "another weight, or no such term");
+    element.refuse("weight 0 in " + element.label(), "a weight other than 0, or no such term");
   }
   return term;
 }
@@ -48,7 +48,7 @@ std::vector<Term> read_terms(const XmlElement& objective) {
   for (const XmlElement& child : objective.children()) {
     const Term term = read_term(child);
     if (std::ranges::find(terms, term.measure, &Term::measure) != terms.end()) {
-      child.refuse("a second term of measure " + in_quotes(declaration_of(term.measure).name), "one");
+      child.refuse("a second term with measure " + in_quotes(declaration_of(term.measure).name), "one");
     }
     terms.push_back(term);
   }
@@ -64,7 +64,7 @@ std::vector<Term> read_terms(const XmlElement& objective) {
   return terms;
 }
 
-/// Where nothing says the goal: of a single measure it is clear, a sum is made to be maximised.
+/// The goal if the file gives none: a single measure has a natural one, a sum is maximised.
 Goal natural_goal(const std::vector<Term>& terms) {
   if (terms.size() > 1) {
     return Goal::maximise;
@@ -102,8 +102,9 @@ std::vector<Objective> read_objectives(const XmlElement& fitness) {
     if (std::ranges::find(objectives, objective.name, &Objective::name) != objectives.end()) {
       child.refuse("a second objective " + in_quotes(objective.name), "another name");
     }
-    if (objectives.size() == most_objectives) {
-      child.refuse("more than " + std::to_string(most_objectives) + " objectives", "at most that");
+    if (objectives.size() == max_objectives) {
+      child.refuse("more than " + std::to_string(max_objectives) + " objectives",
+                   "at most " + std::to_string(max_objectives));
     }
     objectives.push_back(std::move(objective));
   }

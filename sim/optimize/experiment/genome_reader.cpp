@@ -19,8 +19,8 @@ namespace {
 
 using sim::XmlElement;
 
-constexpr std::size_t most_dimensions = 1000;
-constexpr std::size_t most_values_in_all = 10'000'000;
+constexpr std::size_t max_dimensions = 1000;
+constexpr std::size_t max_values_in_all = 10'000'000;
 
 /// A <parameter> of <registeredParameters>: a parameter of the actuation module in a slot.
 struct Registration {
@@ -56,9 +56,9 @@ Registration read_registration(const XmlElement& element, const sim::Scenario& s
   return {element, slot, static_cast<unsigned>(index)};
 }
 
-/// The number that ties a <parameter> to its <genomeConfig>.
+/// The number that connects a <parameter> with its <genomeConfig>.
 unsigned read_parameter_number(const XmlElement& element) {
-  return static_cast<unsigned>(read_whole_attribute(element, "number", 0, most_dimensions - 1));
+  return static_cast<unsigned>(read_whole_attribute(element, "number", 0, max_dimensions - 1));
 }
 
 std::map<unsigned, Registration> read_registrations(const XmlElement& properties, const sim::Scenario& scenario) {
@@ -86,7 +86,7 @@ std::map<unsigned, Registration> read_registrations(const XmlElement& properties
                 "numbers from 0 to " + std::to_string(registrations.size() - 1));
   }
   if (const auto count = properties.child("numOfParametersToOptimize")) {
-    if (read_whole(*count, 0, most_dimensions) != registrations.size()) {
+    if (read_whole(*count, 0, max_dimensions) != registrations.size()) {
       count->refuse(in_quotes(count->text()) + " in " + count->label(),
                     std::to_string(registrations.size()) + ", as many as are registered");
     }
@@ -108,7 +108,7 @@ class SpaceBuilder {
     const Parameter& parameter = slot.algorithm->declaration().parameters[registration.index];
     const std::vector<unsigned> joints = read_joints(config, registration);
     for (const unsigned joint : joints) {
-      take(config, registration, parameter, joint);
+      claim_parameter(config, registration, parameter, joint);
     }
     const bool uniform = read_whole(config.required_child("uniform"), 0, 1) == 1;
     if (uniform) {
@@ -127,20 +127,20 @@ class SpaceBuilder {
     }
   }
 
-  [[nodiscard]] SearchSpace take_space() { return std::move(space_); }
+  [[nodiscard]] SearchSpace release_space() { return std::move(space_); }
 
  private:
-  /// The thesis's program had these settings, its files show one value of each, and the text explains none.
+  /// Settings of the thesis's program. Its files show one value of each, and the text does not explain them.
   static void check_types(const XmlElement& config) {
     for (const std::string_view name : {"genomeType", "valueType"}) {
       if (const auto type = config.attribute(name); type && *type != "1") {
         config.refuse(std::string(name) + " " + in_quotes(*type) + " in " + config.label(),
-                      "'1', the only one that is known");
+                      "'1', the only known value");
       }
     }
   }
 
-  /// The joints that the parameter is chosen for, in the order of the robot file.
+  /// The joints whose parameter is searched for, in the order of the robot file.
   [[nodiscard]] std::vector<unsigned> read_joints(const XmlElement& config, const Registration& registration) const {
     const std::vector<sim::Joint>& joints = scenario_->robot.joints;
     const JointMask driven = scenario_->kernel.slots[registration.slot].group;
@@ -176,10 +176,11 @@ class SpaceBuilder {
     return chosen;
   }
 
-  /// Notes that a parameter of a joint is chosen.
-  void take(const XmlElement& config, const Registration& registration, const Parameter& parameter, unsigned joint) {
+  /// Records that a dimension sets this parameter of the joint; only one may.
+  void claim_parameter(const XmlElement& config, const Registration& registration, const Parameter& parameter,
+                       unsigned joint) {
     const auto [other, is_new] =
-        taken_.emplace(std::tuple(registration.slot, joint, registration.index), config.line());
+        claimed_.emplace(std::tuple(registration.slot, joint, registration.index), config.line());
     if (!is_new) {
       config.refuse("parameter " + in_quotes(parameter.name) + " of joint " +
                         in_quotes(scenario_->robot.joints[joint].name) + " a second time",
@@ -187,7 +188,7 @@ class SpaceBuilder {
     }
   }
 
-  /// As `--set` has it: "amplitude", "amplitude:J5", and with "1." in front where other modules have the name too.
+  /// As in `--set`: "amplitude", "amplitude:J5", with "1." in front if another module of these joints has the name too.
   [[nodiscard]] std::string name_of(const Registration& registration, const Parameter& parameter,
                                     const std::vector<unsigned>& joints) const {
     JointMask mask;
@@ -195,7 +196,7 @@ class SpaceBuilder {
       mask.insert(joint);
     }
     const auto& slots = scenario_->kernel.slots;
-    // A single joint is always named: the next one may be chosen by itself.
+    // A single joint is always named: another dimension may set the next one.
     const bool all = joints.size() > 1 && mask == slots[registration.slot].group;
     bool ambiguous = false;
     for (unsigned slot = 0; slot < max_slots; ++slot) {
@@ -218,10 +219,10 @@ class SpaceBuilder {
   void add_dimension(const XmlElement& config, const Registration& registration, const Parameter& parameter,
                      std::vector<unsigned> joints, std::vector<std::int32_t> values) {
     value_count_ += values.size();
-    if (space_.dimensions.size() == most_dimensions || value_count_ > most_values_in_all) {
-      config.refuse("more than " + std::to_string(most_dimensions) + " dimensions or " +
-                        std::to_string(most_values_in_all) + " values",
-                    "at most that in all");
+    if (space_.dimensions.size() == max_dimensions || value_count_ > max_values_in_all) {
+      config.refuse("more than " + std::to_string(max_dimensions) + " dimensions or " +
+                        std::to_string(max_values_in_all) + " values in all",
+                    "at most that");
     }
     Dimension dimension;
     dimension.name = name_of(registration, parameter, joints);
@@ -243,7 +244,7 @@ class SpaceBuilder {
 
   const sim::Scenario* scenario_;
   SearchSpace space_;
-  std::map<std::tuple<unsigned, unsigned, unsigned>, int> taken_;  ///< slot, joint, parameter: line
+  std::map<std::tuple<unsigned, unsigned, unsigned>, int> claimed_;  ///< slot, joint, parameter: line
   std::set<std::string> names_;
   std::size_t value_count_ = 0;
 };
@@ -273,7 +274,7 @@ SearchSpace read_search_space(const XmlElement& properties, const XmlElement& ge
     }
     builder.add(config->second, registration);
   }
-  return builder.take_space();
+  return builder.release_space();
 }
 
 }  // namespace proleg::optimize

@@ -6,9 +6,9 @@
 
 namespace proleg::optimize {
 
-/// Reads what may be chosen: the <registeredParameters> of `properties`, and the <genomeConfig> of `genome` that each
-/// of them has (thesis, figures 4.13 and 4.14, listing B.7). Dimensions are in the order of the parameters' numbers;
-/// those of single joints from head to tail.
+/// Reads the search space: the <registeredParameters> of `properties`, each with its <genomeConfig> in `genome`
+/// (thesis, figures 4.13 and 4.14, listing B.7). Dimensions are in the order of the parameters' numbers, and those of
+/// single joints from head to tail.
 [[nodiscard]] SearchSpace read_search_space(const sim::XmlElement& properties, const sim::XmlElement& genome,
                                             const sim::Scenario& scenario);
 

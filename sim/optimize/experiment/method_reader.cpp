@@ -18,16 +18,16 @@ constexpr Range shares{0.0, 1.0, ""};
 constexpr Range scores{-1e9, 1e9, ""};
 constexpr Range rises{1e-9, 1e9, ""};
 constexpr Range step_sizes{1e-6, 1.0, ""};
-constexpr std::uint64_t most_candidates = 1'000'000;
-constexpr std::uint64_t largest_population = 10'000;
+constexpr std::uint64_t max_candidates = 1'000'000;
+constexpr std::uint64_t max_population = 10'000;
 
-/// The tags with which <properties> names what may be chosen.
+/// Tags of <properties> that belong to the search space.
 constexpr std::array<std::string_view, 2> registration_tags{"numOfParametersToOptimize", "registeredParameters"};
 
-/// Settings by tag; what is not there keeps its value.
-class Settings {
+/// Reads settings by tag; a setting without a tag keeps its value.
+class SettingsReader {
  public:
-  Settings(const XmlElement& properties, std::span<const std::string_view> tags) : properties_(&properties) {
+  SettingsReader(const XmlElement& properties, std::span<const std::string_view> tags) : properties_(&properties) {
     properties.allow({}, sim::joined({tags, registration_tags}));
   }
 
@@ -43,7 +43,7 @@ class Settings {
       value = read_number(*element, range);
     }
   }
-  /// words: of the enumeration's values, in their order.
+  /// words: for the enumeration's values, in their order.
   template <typename Enumeration>
   void read(std::string_view tag, Enumeration& value, std::initializer_list<std::string_view> words) const {
     if (const auto element = properties_->child(tag)) {
@@ -58,9 +58,9 @@ class Settings {
 GeneticSettings read_genetic(const XmlElement& properties, std::vector<std::string>& remarks) {
   constexpr std::array<std::string_view, 7> tags{"popsize",      "pmut",           "pcross", "nconvergence",
                                                  "pconvergence", "flushfrequency", "gamode"};
-  const Settings settings(properties, tags);
+  const SettingsReader settings(properties, tags);
   GeneticSettings genetic;
-  settings.read("popsize", genetic.population, 2, largest_population);
+  settings.read("popsize", genetic.population, 2, max_population);
   settings.read("pmut", genetic.mutation, shares);
   settings.read("pcross", genetic.crossover, shares);
   settings.read("nconvergence", genetic.generations_to_convergence, 1, 10'000);
@@ -76,14 +76,14 @@ GreatDelugeSettings read_great_deluge(const XmlElement& properties) {
   constexpr std::array<std::string_view, 14> tags{
       "waterLevel", "rain",      "credits", "retries",       "confidence",    "step",   "growth",
       "move",       "neighbour", "start",   "firstMustPass", "reevaluations", "chains", "target"};
-  const Settings settings(properties, tags);
+  const SettingsReader settings(properties, tags);
   GreatDelugeSettings deluge;
   settings.read("waterLevel", deluge.water_level, scores);
   settings.read("rain", deluge.rain, rises);
-  settings.read("credits", deluge.credits, 0, most_candidates);
-  settings.read("retries", deluge.retries, 1, most_candidates);
-  settings.read("confidence", deluge.confidence, 1, most_candidates);
-  settings.read("step", deluge.step, 1, most_candidates);
+  settings.read("credits", deluge.credits, 0, max_candidates);
+  settings.read("retries", deluge.retries, 1, max_candidates);
+  settings.read("confidence", deluge.confidence, 1, max_candidates);
+  settings.read("step", deluge.step, 1, max_candidates);
   settings.read("growth", deluge.growth, {"linear", "doubling"});
   settings.read("move", deluge.move, {"all", "one"});
   settings.read("neighbour", deluge.neighbour, {"three", "sign", "uniform"});
@@ -99,12 +99,12 @@ PagmoSettings read_pagmo(const XmlElement& properties, std::string algorithm) {
   const std::vector<std::string> options = pagmo_options(algorithm);
   std::vector<std::string_view> tags{"popsize", "generations", "restartAfter"};
   tags.insert(tags.end(), options.begin(), options.end());
-  const Settings settings(properties, tags);
+  const SettingsReader settings(properties, tags);
   PagmoSettings pagmo;
   pagmo.algorithm = std::move(algorithm);
-  settings.read("popsize", pagmo.population, 2, largest_population);
-  settings.read("generations", pagmo.generations, 1, most_candidates);
-  settings.read("restartAfter", pagmo.restart_after, 0, most_candidates);
+  settings.read("popsize", pagmo.population, 2, max_population);
+  settings.read("generations", pagmo.generations, 1, max_candidates);
+  settings.read("restartAfter", pagmo.restart_after, 0, max_candidates);
   settings.read("sigma0", pagmo.sigma0, step_sizes);
   settings.read("crossover", pagmo.crossover, shares);
   settings.read("scale", pagmo.scale, shares);
@@ -143,7 +143,7 @@ std::vector<std::string> pagmo_options(std::string_view algorithm) {
   if (algorithm == "nsga2" || algorithm == "sga") {
     return {"crossover", "mutation"};
   }
-  return {};  // their population and generations
+  return {};  // population and generations only
 }
 
 std::string method_name(const MethodSettings& method) {

@@ -14,8 +14,8 @@ namespace proleg::optimize {
 inline constexpr std::array<std::string_view, 6> method_tags{"geneticAlgorithm",      "greatDeluge", "cmaEs",
                                                              "differentialEvolution", "nsga2",       "pagmo"};
 
-/// Reads the method that a section's tag names, with its settings from `properties`; these may also hold the parameters
-/// that are registered, which are read elsewhere.
+/// Reads the method that a section's tag names, with its settings from `properties`. The registered parameters there
+/// are read elsewhere.
 [[nodiscard]] MethodSettings read_method(const sim::XmlElement& section, const sim::XmlElement& properties,
                                          std::vector<std::string>& remarks);
 

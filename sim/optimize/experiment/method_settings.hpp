@@ -1,6 +1,6 @@
 #pragma once
 
-// What the method section of a *.optimise.xml file says.
+// The settings in the method section of a *.optimise.xml file.
 
 #include <cstdint>
 #include <optional>
@@ -12,14 +12,14 @@
 namespace proleg::optimize {
 
 /// The modified great deluge algorithm (thesis, section 3.4.2; after G. Dueck, "New optimization heuristics: the great
-/// deluge algorithm and the record-to-record travel", J. Comput. Phys. 104, 1993). What the thesis leaves open is an
-/// option; its default is the thesis's text read literally: a radius that is "increased by itself" doubles.
+/// deluge algorithm and the record-to-record travel", J. Comput. Phys. 104, 1993). Points that the thesis leaves open
+/// are options. Their defaults read its text literally: a radius that is "increased by itself" doubles.
 struct GreatDelugeSettings {
   double water_level = 0.15;      ///< the score that the first accepted candidate must reach
-  double rain = 0.01;             ///< by which the water rises when a candidate is accepted; above 0
-  std::uint32_t credits = 10;     ///< times that the search may start over with its first radius
-  std::uint32_t retries = 200;    ///< candidates in a row that may fail before a credit is used; at least 1
-  std::uint32_t confidence = 20;  ///< the radius grows with every so many failures; at least 1
+  double rain = 0.01;             ///< rise of the water for each accepted candidate; above 0
+  std::uint32_t credits = 10;     ///< times that the search may restart with its first radius
+  std::uint32_t retries = 200;    ///< failures in a row that use a credit; at least 1
+  std::uint32_t confidence = 20;  ///< failures after which the radius grows; at least 1
   std::uint32_t step = 1;         ///< first radius, in steps of each parameter's value set; at least 1
   enum class Growth : std::uint8_t { linear, doubling } growth = Growth::doubling;
   enum class Move : std::uint8_t { all, one } move = Move::all;  ///< parameters that a candidate changes
@@ -30,7 +30,7 @@ struct GreatDelugeSettings {
   } neighbour = Neighbour::three;
   enum class Start : std::uint8_t { random, scenario } start = Start::random;
   bool first_must_pass = true;      ///< whether the start itself must reach the water level to be accepted
-  std::uint32_t reevaluations = 0;  ///< further evaluations of a candidate that would be accepted; their mean decides
+  std::uint32_t reevaluations = 0;  ///< further evaluations of a candidate that would be accepted; the mean decides
   std::uint32_t chains = 1;         ///< searches side by side, each with its own water; the best of all counts
   std::optional<double> target;     ///< stops when a score reaches it
 };
@@ -42,8 +42,8 @@ struct GeneticSettings {
   double crossover = 0.9;                         ///< pcross; 0 to 1
   std::uint32_t generations_to_convergence = 50;  ///< nconvergence; 1 to 10000
   double convergence = 0.99;                      ///< pconvergence: of best-of-generation scores; 0 to 1
-  /// gamode: the thesis's program had such a setting and does not explain it. 1: a whole new generation each time, the
-  /// best survives (GAlib's simple algorithm). 2: overlapping generations, half of them new (steady state).
+  /// gamode: a setting of the thesis's program that the thesis does not explain. 1: a whole new generation each time,
+  /// and the best survives (GAlib's simple algorithm). 2: overlapping generations, half of them new (steady state).
   enum class Mode : std::uint8_t { simple = 1, steady_state = 2 } mode = Mode::simple;
 };
 
@@ -52,9 +52,9 @@ struct PagmoSettings {
   std::string algorithm;  ///< pagmo's name: cmaes, de, nsga2, sade, de1220, pso, sga, xnes, ...
   std::uint32_t population = 20;
   std::uint32_t generations = 1000;  ///< at most
-  /// Generations in which the best score gets better by less than a thousandth, after which the search begins anew from
-  /// another random population: for landscapes with several summits. It then ends with its generations or evaluations.
-  /// For algorithms that go on from one generation to the next. 0: never.
+  /// After this number of generations in which the best score improves by less than a thousandth, the search restarts
+  /// from another random population: for landscapes with several summits. It then ends with its generations or
+  /// evaluations. Only for algorithms that evolve by generation. 0: never.
   std::uint32_t restart_after = 0;
   std::optional<double> sigma0;     ///< cmaes, xnes: first step size, as a share of the ranges
   std::optional<double> crossover;  ///< de, sga, nsga2: their CR, cr
@@ -62,7 +62,7 @@ struct PagmoSettings {
   std::optional<double> mutation;   ///< sga, nsga2: their m
 };
 
-/// The options above that an algorithm of pagmo knows: sigma0, ...
+/// The options above that an algorithm of pagmo has: sigma0, ...
 [[nodiscard]] std::vector<std::string> pagmo_options(std::string_view algorithm);
 
 using MethodSettings = std::variant<GreatDelugeSettings, GeneticSettings, PagmoSettings>;

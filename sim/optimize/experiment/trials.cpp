@@ -12,10 +12,10 @@
 namespace proleg::optimize {
 namespace {
 
-/// Evenly between 0 and 1, never either of them.
+/// Uniform between 0 and 1, both excluded.
 double draw(Pcg32& random) { return (random.next() + 0.5) / 4294967296.0; }
 
-/// Evenly between 1 - spread and 1 + spread.
+/// Uniform between 1 - spread and 1 + spread.
 double draw_factor(Pcg32& random, double spread) { return 1.0 + spread * (2.0 * draw(random) - 1.0); }
 
 void scale_friction(std::vector<sim::Geometry>& geometries, double factor) {
@@ -92,10 +92,10 @@ void perturb(sim::Scenario& scenario, const Spread& spread, std::uint64_t seed) 
   Pcg32 gain(seed, sim::random_stream::servo_gain);
   servo.gain *= draw_factor(gain, spread.servo_gain);
 
-  constexpr std::uint32_t longest_latency_us = 100'000;
+  constexpr std::uint32_t max_latency_us = 100'000;
   Pcg32 latency(seed, sim::random_stream::latency);
   const auto later_us = static_cast<std::uint32_t>(std::lround(draw(latency) * spread.latency_ms * 1000.0));
-  servo.latency_us = std::min(servo.latency_us + later_us, longest_latency_us);
+  servo.latency_us = std::min(servo.latency_us + later_us, max_latency_us);
 
   if (spread.contact_noise > 0.0) {
     scenario.contact_noise = spread.contact_noise;
@@ -117,7 +117,7 @@ bool depends_on_seed(const sim::Scenario& scenario, const SearchSpace& space, co
 
 std::uint64_t trial_seed(std::uint64_t experiment_seed, std::uint32_t run, std::uint64_t individual,
                          std::uint32_t trial) {
-  // Each step is a bijection of the number that it takes in: seeds that differ in one number are never the same.
+  // Each step is a bijection of its number: seeds that differ in one number are never equal.
   std::uint64_t seed = scatter(experiment_seed);
   seed = scatter(seed ^ run);
   seed = scatter(seed ^ individual);

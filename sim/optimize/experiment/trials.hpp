@@ -8,14 +8,14 @@ namespace proleg::optimize {
 
 struct SearchSpace;
 
-/// How far trials of a candidate differ from the scenario: the answer to results that hold for one friction only.
-/// Factors are drawn evenly from 1 - x to 1 + x.
+/// How far trials of a candidate differ from the scenario, so that results hold for more than one friction. Factors are
+/// drawn uniformly from 1 - x to 1 + x.
 struct Spread {
   double friction = 0.0;    ///< x of one factor on all coefficients of friction; 0 to 0.9
   double mass = 0.0;        ///< x of a factor on mass and inertia, for each link; 0 to 0.9
   double servo_gain = 0.0;  ///< x of one factor on the servo's gain; 0 to 0.9
-  double latency_ms = 0.0;  ///< servos react later by up to this; evenly from 0; 0 to 100
-  /// Probability that a touch sensor reads wrong at a tick, instead of the scenario's; 0 to 1. 0: the scenario's.
+  double latency_ms = 0.0;  ///< additional latency of the servos, uniform from 0 to this; 0 to 100
+  /// Probability that a touch sensor is wrong at a tick; replaces the scenario's. 0 to 1; 0: the scenario's.
   double contact_noise = 0.0;
 
   [[nodiscard]] bool any() const {
@@ -31,15 +31,15 @@ struct Trials {
   Spread spread;
 };
 
-/// Changes a scenario by what is drawn with the seed, and gives it the seed for its own noise. What is drawn for one
-/// quantity does not depend on the spread of the others.
+/// Perturbs a scenario with random factors of the seed, and sets the seed of its own noise. The draws for one quantity
+/// do not depend on the spread of the others.
 void perturb(sim::Scenario& scenario, const Spread& spread, std::uint64_t seed);
 
-/// Whether the seed has any influence on what happens in the scenario: through the spread, noise in the start state of
-/// an algorithm, or noise of the touch sensors. (A candidate may set the noise: a dimension of that name counts.)
+/// Whether a run depends on the seed: through the spread, noise in the start state of an algorithm, or noise of the
+/// touch sensors. (A candidate may set the noise: a dimension of that name counts.)
 [[nodiscard]] bool depends_on_seed(const sim::Scenario& scenario, const SearchSpace& space, const Spread& spread);
 
-/// Seed of a trial: a function of these and nothing else.
+/// Seed of a trial; depends on nothing else.
 [[nodiscard]] std::uint64_t trial_seed(std::uint64_t experiment_seed, std::uint32_t run, std::uint64_t individual,
                                        std::uint32_t trial);
 

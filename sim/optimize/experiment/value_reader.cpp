@@ -15,9 +15,9 @@ namespace {
 
 using sim::XmlElement;
 
-constexpr std::uint64_t most_values = 1'000'000;
+constexpr std::uint64_t max_values = 1'000'000;
 
-/// Refuses what is not in the parameter's declared range.
+/// Throws InputError for a value outside the parameter's declared range.
 void check_range(const Parameter& parameter, const Decimal& value, const XmlElement& place) {
   static_cast<void>(sim::parse_parameter(parameter, value.text(), place.document().name(), place.line()));
 }
@@ -67,7 +67,7 @@ class BoundTypes {
     if (word != "1" && word != "2") {
       words_->element().refuse(
           in_quotes(word) + " in " + words_->element().label(),
-          std::string(word == "0" ? "a bound, which is needed here: " : "") + "1 (inclusive) or 2 (exclusive)");
+          std::string(word == "0" ? "a bound (0 is none): " : "") + "1 (inclusive) or 2 (exclusive)");
     }
     return word == "1";
   }
@@ -87,26 +87,26 @@ class RangeReader {
         upper_types_(config, "upperBoundTypes", joints) {}
 
   [[nodiscard]] std::vector<std::int32_t> values(std::size_t joint) const {
-    const Decimal lowest = lower_.number(joint);
-    const Decimal highest = upper_.number(joint);
+    const Decimal min = lower_.number(joint);
+    const Decimal max = upper_.number(joint);
     const Decimal step = steps_.number(joint);
     if (step <= Decimal()) {
-      steps_.element().refuse("a step of " + step.text() + " in " + steps_.element().label(), "one above 0");
+      steps_.element().refuse("a step of " + step.text() + " in " + steps_.element().label(), "a step above 0");
     }
-    if (highest < lowest) {
-      upper_.element().refuse("crossed bounds: " + highest.text() + " in " + upper_.element().label() + ", " +
-                                  lowest.text() + " in " + lower_.element().label(),
+    if (max < min) {
+      upper_.element().refuse("crossed bounds: " + max.text() + " in " + upper_.element().label() + ", " + min.text() +
+                                  " in " + lower_.element().label(),
                               "an upper bound that is not below the lower one");
     }
-    const DecimalRange range(lowest, highest, step);
-    if (range.count() > most_values) {
-      steps_.element().refuse("more than " + std::to_string(most_values) + " values from " + lowest.text() + " to " +
-                                  highest.text() + " in steps of " + step.text(),
-                              "at most that");
+    const DecimalRange range(min, max, step);
+    if (range.count() > max_values) {
+      steps_.element().refuse("more than " + std::to_string(max_values) + " values from " + min.text() + " to " +
+                                  max.text() + " in steps of " + step.text(),
+                              "at most " + std::to_string(max_values));
     }
     if (!range.step_fits()) {
       steps_.element().refuse(
-          "a step of " + step.text() + " that does not fit from " + lowest.text() + " to " + highest.text(),
+          "a step of " + step.text() + " that does not fit from " + min.text() + " to " + max.text(),
           "a step that fits, or an upper bound of " + range.fitting_below().text() + " or " +
               range.fitting_above().text());
     }
@@ -119,7 +119,7 @@ class RangeReader {
   [[nodiscard]] std::vector<std::int32_t> between(const DecimalRange& range, std::uint64_t first,
                                                   std::uint64_t end) const {
     if (first >= end) {
-      upper_.element().refuse("no value between the bounds, as they are exclusive", "at least one");
+      upper_.element().refuse("no value between the exclusive bounds", "at least one");
     }
     check_range(*parameter_, range[first], lower_.element());
     check_range(*parameter_, range[end - 1], upper_.element());
@@ -145,8 +145,9 @@ std::vector<std::int32_t> read_list(const XmlElement& element, const Parameter& 
   for (const std::string_view word : words(text)) {
     numbers.push_back(parse_decimal_word(word, element));
     check_range(parameter, numbers.back(), element);
-    if (numbers.size() > most_values) {
-      element.refuse("more than " + std::to_string(most_values) + " values in " + element.label(), "at most that");
+    if (numbers.size() > max_values) {
+      element.refuse("more than " + std::to_string(max_values) + " values in " + element.label(),
+                     "at most " + std::to_string(max_values));
     }
   }
   if (numbers.empty()) {

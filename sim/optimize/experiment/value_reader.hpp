@@ -10,12 +10,12 @@
 
 namespace proleg::optimize {
 
-/// Makes the raw values of a joint, in ascending order of the numbers in the file. Throws InputError.
+/// Returns the raw values of a joint, in ascending order of the numbers in the file. Throws InputError.
 using ValuesOfJoint = std::function<std::vector<std::int32_t>(std::size_t joint)>;
 
 /// Reads which values a <genomeConfig> allows a parameter: a range with a step (valueSpace 1) or a list (0). The file
-/// holds the same for all joints, or something else for each of so many, in its order. What comes out is in the
-/// parameter's declared range and not empty. `config` must outlive the result.
+/// has one set for all joints, or one for each of `joints`, in its order. The sets are not empty and within the
+/// parameter's declared range. `config` must outlive the result.
 [[nodiscard]] ValuesOfJoint read_values(const sim::XmlElement& config, const Parameter& parameter, std::size_t joints);
 
 }  // namespace proleg::optimize

@@ -20,14 +20,14 @@ bool skip(std::string_view& text, std::string_view characters) {
   return found;
 }
 
-/// The digits of a number without the point, and how many are behind it.
+/// The digits of a number without the point, and how many are after it.
 struct Digits {
   Decimal::Wide value = 0;
-  int behind_point = 0;
+  int after_point_count = 0;
 };
 
-/// Takes the digits off the front of the text; nothing if there are none or too many.
-std::optional<Digits> take_digits(std::string_view& text) {
+/// Reads and removes the digits at the front of the text; nothing if there are none or too many.
+std::optional<Digits> read_digits(std::string_view& text) {
   Digits digits;
   bool any = false;
   bool after_point = false;
@@ -41,18 +41,18 @@ std::optional<Digits> take_digits(std::string_view& text) {
       break;
     }
     any = true;
-    // More digits than these a Decimal has not, unless they are zeros at the end; so many of those nobody writes.
-    if (digits.value > limit * 10'000'000'000 || digits.behind_point > 4 * places) {
+    // A Decimal has fewer digits than this. More could only be zeros at the end.
+    if (digits.value > limit * 10'000'000'000 || digits.after_point_count > 4 * places) {
       return std::nullopt;
     }
     digits.value = digits.value * 10 + (c - '0');
-    digits.behind_point += after_point ? 1 : 0;
+    digits.after_point_count += after_point ? 1 : 0;
   }
   return any ? std::optional(digits) : std::nullopt;
 }
 
-/// Takes the e and the number after it off the front of the text; 0 without them.
-std::optional<int> take_exponent(std::string_view& text) {
+/// Reads and removes an e and the exponent after it at the front of the text; 0 without them.
+std::optional<int> read_exponent(std::string_view& text) {
   if (!skip(text, "eE")) {
     return 0;
   }
@@ -61,10 +61,10 @@ std::optional<int> take_exponent(std::string_view& text) {
     skip(text, "+");
   }
   int exponent = 0;
-  constexpr int largest = 60;
+  constexpr int max_exponent = 60;
   const std::size_t length = static_cast<std::size_t>(std::ranges::find_if_not(text, is_digit) - text.begin());
   const auto [end, error] = std::from_chars(text.data(), text.data() + length, exponent);
-  if (error != std::errc{} || exponent > largest) {
+  if (error != std::errc{} || exponent > max_exponent) {
     return std::nullopt;
   }
   text.remove_prefix(length);
@@ -95,18 +95,18 @@ std::optional<Decimal> Decimal::parse(std::string_view text) {
   if (!negative) {
     skip(text, "+");
   }
-  const std::optional<Digits> digits = take_digits(text);
-  const std::optional<int> exponent = digits ? take_exponent(text) : std::nullopt;
+  const std::optional<Digits> digits = read_digits(text);
+  const std::optional<int> exponent = digits ? read_exponent(text) : std::nullopt;
   if (!exponent || !text.empty()) {
     return std::nullopt;
   }
-  const std::optional<Wide> quanta = shifted(digits->value, places - digits->behind_point + *exponent);
+  const std::optional<Wide> quanta = shifted(digits->value, places - digits->after_point_count + *exponent);
   return quanta ? std::optional(Decimal(negative ? -*quanta : *quanta)) : std::nullopt;
 }
 
 std::string Decimal::text() const {
   const Wide magnitude = quanta_ < 0 ? -quanta_ : quanta_;
-  // The 1 in front keeps the zeros behind the point.
+  // The 1 in front keeps the zeros after the point.
   std::string fraction = std::to_string(static_cast<std::uint64_t>(one + magnitude % one)).substr(1);
   fraction.erase(fraction.find_last_not_of('0') + 1);
   return (quanta_ < 0 ? "-" : "") + std::to_string(static_cast<std::uint64_t>(magnitude / one)) +
@@ -127,32 +127,29 @@ std::int32_t Decimal::raw(Unit unit) const {
   return static_cast<std::int32_t>(quanta_ < 0 ? 0U - magnitude : magnitude);
 }
 
-DecimalRange::DecimalRange(Decimal lowest, Decimal highest, Decimal step)
-    : lowest_(lowest),
-      highest_(highest),
-      step_(step),
-      steps_((highest.quanta() - lowest.quanta() + step.quanta() / 2) / step.quanta()) {}
+DecimalRange::DecimalRange(Decimal min, Decimal max, Decimal step)
+    : min_(min), max_(max), step_(step), steps_((max.quanta() - min.quanta() + step.quanta() / 2) / step.quanta()) {}
 
 bool DecimalRange::step_fits() const {
-  const Decimal::Wide length = highest_.quanta() - lowest_.quanta();
+  const Decimal::Wide length = max_.quanta() - min_.quanta();
   const Decimal::Wide rest = length - steps_ * step_.quanta();
   constexpr Decimal::Wide tolerance = 1'000'000'000;
   return (rest < 0 ? -rest : rest) * tolerance <= length;
 }
 
 std::uint64_t DecimalRange::count() const {
-  constexpr std::uint64_t largest = std::numeric_limits<std::uint64_t>::max();
-  return steps_ >= Decimal::Wide{largest} ? largest : static_cast<std::uint64_t>(steps_) + 1;
+  constexpr std::uint64_t max_count = std::numeric_limits<std::uint64_t>::max();
+  return steps_ >= Decimal::Wide{max_count} ? max_count : static_cast<std::uint64_t>(steps_) + 1;
 }
 
 Decimal DecimalRange::operator[](std::uint64_t n) const {
-  // The end is the end, also with a step that only nearly fits.
-  return Decimal::Wide{n} == steps_ ? highest_ : Decimal(lowest_.quanta() + Decimal::Wide{n} * step_.quanta());
+  // The last value is exactly the upper end, even if the step fits only nearly.
+  return Decimal::Wide{n} == steps_ ? max_ : Decimal(min_.quanta() + Decimal::Wide{n} * step_.quanta());
 }
 
 Decimal DecimalRange::fitting_below() const {
-  const Decimal::Wide whole = (highest_.quanta() - lowest_.quanta()) / step_.quanta();
-  return Decimal(lowest_.quanta() + whole * step_.quanta());
+  const Decimal::Wide whole = (max_.quanta() - min_.quanta()) / step_.quanta();
+  return Decimal(min_.quanta() + whole * step_.quanta());
 }
 
 Decimal DecimalRange::fitting_above() const { return Decimal(fitting_below().quanta() + step_.quanta()); }
@@ -160,7 +157,7 @@ Decimal DecimalRange::fitting_above() const { return Decimal(fitting_below().qua
 std::vector<std::int32_t> raw_values(const std::vector<Decimal>& numbers, Unit unit) {
   std::vector<std::int32_t> values;
   values.reserve(numbers.size());
-  // Raw values rise with the numbers, so the same ones follow each other, but for a unit that comes round again.
+  // Raw values ascend with the numbers, so equal ones follow each other, except with a unit that wraps.
   std::unordered_set<std::int32_t> seen;
   for (const Decimal& number : numbers) {
     const std::int32_t value = number.raw(unit);

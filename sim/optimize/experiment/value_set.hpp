@@ -1,7 +1,7 @@
 #pragma once
 
-// The values that a dimension may take, as decimal numbers, and what becomes of them in a module. All of it is whole
-// numbers, so that lo + n step is the number that a person would write, whatever n is.
+// The values of a dimension as decimal numbers, and their raw values in a module. All arithmetic is with whole numbers,
+// so min + n * step is exactly the number that a person would write, for every n.
 
 #include <compare>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace proleg::optimize {
 
-/// A decimal number between -10^10 and 10^10 with at most 15 places, exact.
+/// An exact decimal number between -10^10 and 10^10 with at most 15 places.
 class Decimal {
  public:
   __extension__ using Wide = __int128;
@@ -26,7 +26,7 @@ class Decimal {
   [[nodiscard]] static std::optional<Decimal> parse(std::string_view text);
   /// The shortest text of the number.
   [[nodiscard]] std::string text() const;
-  /// The raw value of a number in that unit, as parse_decimal makes it of its text. The number fits, or the unit wraps.
+  /// The raw value in that unit, equal to parse_decimal of the text. The number must fit, or the unit wraps.
   [[nodiscard]] std::int32_t raw(Unit unit) const;
 
   /// Units of 10^-15.
@@ -40,28 +40,27 @@ class Decimal {
   Wide quanta_ = 0;
 };
 
-/// lowest, lowest + step, ..., highest.
+/// min, min + step, ..., max.
 class DecimalRange {
  public:
-  /// step above 0, lowest not above highest.
-  DecimalRange(Decimal lowest, Decimal highest, Decimal step);
+  /// step above 0, min not above max.
+  DecimalRange(Decimal min, Decimal max, Decimal step);
 
-  /// Whether the step divides the range, to 10^-9 of it. Steps that are written with less digits than they have
-  /// (0.3333) pass if they have ten.
+  /// Whether the step divides the range, to 10^-9 of it: a rounded step (0.3333333333) needs about ten digits.
   [[nodiscard]] bool step_fits() const;
-  /// How many values there are; the largest number there is if there are more.
+  /// Number of values, at most 2^64 - 1.
   [[nodiscard]] std::uint64_t count() const;
   /// Value n, below count().
   [[nodiscard]] Decimal operator[](std::uint64_t n) const;
-  /// The nearest upper ends, below and above highest, that fit.
+  /// The nearest upper ends that fit, below and above max.
   [[nodiscard]] Decimal fitting_below() const;
   [[nodiscard]] Decimal fitting_above() const;
 
  private:
-  Decimal lowest_;
-  Decimal highest_;
+  Decimal min_;
+  Decimal max_;
   Decimal step_;
-  Decimal::Wide steps_;  ///< the whole number nearest to (highest - lowest) / step
+  Decimal::Wide steps_;  ///< the whole number nearest to (max - min) / step
 };
 
 /// The raw values of numbers in ascending order, in that order, each once.

@@ -11,16 +11,16 @@
 
 namespace proleg::optimize {
 
-/// What ranks say to each other; MPI's tags.
+/// Kinds of messages between ranks; MPI's tags.
 enum class MpiTag : int {
   // From rank 0.
   task = 1,
   stop,
   // To rank 0.
   result,
-  failure,  ///< text: the task cannot be done
-  message,  ///< text: what a person should know
-  goodbye,  ///< the answer to stop
+  failure,  ///< text: why the task cannot be done
+  message,  ///< text: a message for the user
+  stopped,  ///< the answer to stop
 };
 
 struct MpiMessage {
@@ -31,7 +31,7 @@ struct MpiMessage {
   [[nodiscard]] std::string text() const;
 };
 
-/// MPI from its initialisation to its end, for bytes.
+/// Sends and receives bytes over MPI; initialises MPI and ends it.
 class MpiChannel {
  public:
   MpiChannel() : environment_(false) {}
@@ -41,10 +41,10 @@ class MpiChannel {
 
   void send(int rank, MpiTag tag, const Bytes& content = {}) const;
   void send(int rank, MpiTag tag, const std::string& text) const;
-  /// A message that is here.
+  /// A message that has arrived; nothing if none has.
   [[nodiscard]] std::optional<MpiMessage> receive() const;
 
-  /// Every rank says what it is; all get all, by rank. To be called by all.
+  /// Sends this rank's identity to all and returns all identities, by rank. All ranks must call it.
   [[nodiscard]] std::vector<std::string> exchange(const std::string& identity) const;
 
   [[noreturn]] void abort() const;
@@ -54,7 +54,7 @@ class MpiChannel {
   boost::mpi::communicator world_;
 };
 
-/// What all ranks must agree on.
+/// Experiment and build, which all ranks must agree on.
 [[nodiscard]] std::string mpi_identity(const Experiment& experiment, const std::string& build_id);
 
 }  // namespace proleg::optimize

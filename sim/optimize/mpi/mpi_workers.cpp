@@ -15,13 +15,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// MPI cannot be waited for together with anything else without burning a core, so it is asked this often.
-constexpr milliseconds look_interval{1};
-/// A rank has a limit of its own for each try of a task (LocalWorkers) and says when it gives up; one that says nothing
-/// for longer than that is lost.
-constexpr int limits_of_a_rank = 4;
-/// How long ranks have for their goodbye.
-constexpr std::chrono::seconds longest_goodbye{5};
+/// Interval of polling MPI: waiting for MPI and for a local worker at once would use a whole core.
+constexpr milliseconds poll_interval{1};
+/// A rank has its own limit for each try of a task (LocalWorkers) and reports when it gives up. A rank that is silent
+/// for this number of limits is lost.
+constexpr int limits_until_lost = 4;
+/// Time in which all ranks must answer stop.
+constexpr std::chrono::seconds goodbye_timeout{5};
 
 std::optional<int> number_in_environment(const char* name) {
   const char* text = std::getenv(name);
@@ -30,10 +30,10 @@ std::optional<int> number_in_environment(const char* name) {
 
 }  // namespace
 
-std::optional<MpiPlace> mpi_place() {
+std::optional<MpiRank> mpi_rank() {
   const std::optional<int> rank = number_in_environment("OMPI_COMM_WORLD_RANK");
   const std::optional<int> size = number_in_environment("OMPI_COMM_WORLD_SIZE");
-  return rank && size ? std::optional<MpiPlace>({*rank, *size}) : std::nullopt;
+  return rank && size ? std::optional<MpiRank>({*rank, *size}) : std::nullopt;
 }
 
 class MpiWorkers::Implementation {
@@ -41,16 +41,17 @@ class MpiWorkers::Implementation {
   Implementation(const Experiment& experiment, const std::string& build_id, RunTask run, TaskLimit limit)
       : local_(experiment, 1, std::move(run), limit),
         ranks_(static_cast<std::size_t>(channel_.size())),
-        longest_silence_(limits_of_a_rank *
-                         (limit.fixed + std::chrono::duration_cast<milliseconds>(std::chrono::duration<double>(
-                                            limit.per_simulated_second * experiment.scenario.duration_s)))) {
+        max_silence_(limits_until_lost *
+                     (limit.fixed + std::chrono::duration_cast<milliseconds>(std::chrono::duration<double>(
+                                        limit.per_simulated_second * experiment.scenario.duration_s)))) {
     ranks_[0].lost = true;  // this process, whose worker is local_
     const std::vector<std::string> identities = channel_.exchange(mpi_identity(experiment, build_id));
     for (std::size_t rank = 1; rank < identities.size(); ++rank) {
       if (identities[rank] != identities[0]) {
-        // The others know it, too, and have ended.
+        // The other ranks have seen it, too, and have ended.
         throw std::runtime_error("rank " + std::to_string(rank) + " has " + identities[rank] + ", rank 0 has " +
-                                 identities[0] + "; all computers need the same files and the same program");
+                                 identities[0] +
+                                 "; all computers need the same files and the same build of the program");
       }
     }
   }
@@ -67,26 +68,26 @@ class MpiWorkers::Implementation {
   [[nodiscard]] std::uint32_t idle() const {
     const std::size_t without_task =
         local_.idle() + static_cast<std::size_t>(std::ranges::count_if(ranks_, &Rank::is_idle));
-    return static_cast<std::uint32_t>(without_task - std::min(without_task, again_.size()));
+    return static_cast<std::uint32_t>(without_task - std::min(without_task, orphaned_.size()));
   }
 
   void start(std::uint64_t ticket, const Task& task) {
-    // The other ranks first: a message takes longer than a socket.
+    // The other ranks first: a message over MPI takes longer than one over a socket.
     const auto rank = std::ranges::find_if(ranks_, &Rank::is_idle);
     if (rank == ranks_.end()) {
       local_.start(ticket, task);
       return;
     }
-    rank->order = Order{ticket, task};
+    rank->assignment = Assignment{ticket, task};
     rank->silence = milliseconds(0);
     channel_.send(static_cast<int>(rank - ranks_.begin()), MpiTag::task, to_bytes(task));
   }
 
   std::optional<Done> wait(milliseconds timeout) {
     const Clock::time_point begin = Clock::now();
-    std::optional<Done> done = look(timeout);
+    std::optional<Done> done = next_result(timeout);
     count_silence(Clock::now() - begin);
-    start_again();
+    restart_orphaned();
     return done;
   }
 
@@ -99,15 +100,15 @@ class MpiWorkers::Implementation {
 
  private:
   /// The next result, or nothing after the timeout.
-  std::optional<Done> look(milliseconds timeout) {
+  std::optional<Done> next_result(milliseconds timeout) {
     const Clock::time_point end = Clock::now() + timeout;
     while (true) {
       while (std::optional<MpiMessage> message = channel_.receive()) {
-        if (std::optional<Done> done = hear(*message)) {
+        if (std::optional<Done> done = handle(*message)) {
           return done;
         }
       }
-      if (std::optional<Done> done = local_.wait(std::min(timeout, look_interval))) {
+      if (std::optional<Done> done = local_.wait(std::min(timeout, poll_interval))) {
         done->worker = 0;
         return done;
       }
@@ -117,41 +118,41 @@ class MpiWorkers::Implementation {
     }
   }
 
-  struct Order {
+  struct Assignment {
     std::uint64_t ticket;
     Task task;
   };
   struct Rank {
-    std::optional<Order> order;
-    Clock::duration silence{};  ///< while somebody waited for it
-    bool lost = false;          ///< it is given no more tasks
-    [[nodiscard]] bool is_idle() const { return !lost && !order; }
+    std::optional<Assignment> assignment;
+    Clock::duration silence{};  ///< with its task, within wait()
+    bool lost = false;          ///< it receives no more tasks
+    [[nodiscard]] bool is_idle() const { return !lost && !assignment; }
   };
 
-  /// Only time counts in which somebody waits.
+  /// Counts only time within wait().
   void count_silence(Clock::duration waited) {
     for (std::size_t rank = 0; rank < ranks_.size(); ++rank) {
       Rank& its = ranks_[rank];
-      if (its.lost || !its.order || (its.silence += waited) < longest_silence_) {
+      if (its.lost || !its.assignment || (its.silence += waited) < max_silence_) {
         continue;
       }
       its.lost = true;
-      messages_.push_back("rank " + std::to_string(rank) + " has not answered for too long in evaluation " +
-                          std::to_string(its.order->task.number) + "; the search goes on without it");
-      again_.push_back(std::move(*std::exchange(its.order, std::nullopt)));
+      messages_.push_back("rank " + std::to_string(rank) + " has not answered within the time limit, in evaluation " +
+                          std::to_string(its.assignment->task.number) + "; the search continues without it");
+      orphaned_.push_back(std::move(*std::exchange(its.assignment, std::nullopt)));
     }
   }
 
-  /// What lost ranks were at, given to those that are left.
-  void start_again() {
-    while (!again_.empty() && (local_.idle() > 0 || std::ranges::any_of(ranks_, &Rank::is_idle))) {
-      const Order order = std::move(again_.back());
-      again_.pop_back();
-      start(order.ticket, order.task);
+  /// Gives the tasks of lost ranks to the others.
+  void restart_orphaned() {
+    while (!orphaned_.empty() && (local_.idle() > 0 || std::ranges::any_of(ranks_, &Rank::is_idle))) {
+      const Assignment assignment = std::move(orphaned_.back());
+      orphaned_.pop_back();
+      start(assignment.ticket, assignment.task);
     }
   }
 
-  std::optional<Done> hear(const MpiMessage& message) {
+  std::optional<Done> handle(const MpiMessage& message) {
     Rank& rank = ranks_[static_cast<std::size_t>(message.rank)];
     if (rank.lost) {
       return std::nullopt;  // too late
@@ -165,10 +166,10 @@ class MpiWorkers::Implementation {
       throw std::runtime_error(place + message.text());
     }
     std::optional<TrialResult> result = result_from(message.content);
-    if (message.tag != MpiTag::result || !result || !rank.order) {
-      throw std::runtime_error(place + "sent what is not the result of a task");
+    if (message.tag != MpiTag::result || !result || !rank.assignment) {
+      throw std::runtime_error(place + "sent a message that is not the result of its task");
     }
-    return Done{std::exchange(rank.order, std::nullopt)->ticket, std::move(*result),
+    return Done{std::exchange(rank.assignment, std::nullopt)->ticket, std::move(*result),
                 static_cast<std::uint32_t>(message.rank)};
   }
 
@@ -177,14 +178,14 @@ class MpiWorkers::Implementation {
     for (int rank = 1; rank <= count; ++rank) {
       channel_.send(rank, MpiTag::stop);
     }
-    const Clock::time_point end = Clock::now() + longest_goodbye;
-    for (int gone = 0; gone < count;) {
+    const Clock::time_point end = Clock::now() + goodbye_timeout;
+    for (int stopped = 0; stopped < count;) {
       if (const std::optional<MpiMessage> message = channel_.receive()) {
-        gone += message->tag == MpiTag::goodbye ? 1 : 0;
+        stopped += message->tag == MpiTag::stopped ? 1 : 0;
       } else if (Clock::now() > end) {
         channel_.abort();
       } else {
-        std::this_thread::sleep_for(look_interval);
+        std::this_thread::sleep_for(poll_interval);
       }
     }
   }
@@ -192,8 +193,8 @@ class MpiWorkers::Implementation {
   LocalWorkers local_;  // forks before MPI is initialised
   MpiChannel channel_;
   std::vector<Rank> ranks_;
-  std::vector<Order> again_;  ///< of lost ranks
-  Clock::duration longest_silence_;
+  std::vector<Assignment> orphaned_;  ///< of lost ranks
+  Clock::duration max_silence_;
   std::vector<std::string> messages_;
 };
 

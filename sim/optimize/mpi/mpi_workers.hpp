@@ -1,9 +1,9 @@
 #pragma once
 
 // The optimiser on a cluster: `mpirun -n 64 proleg optimise ...` starts the same program 64 times. Rank 0 searches, all
-// ranks simulate. Every rank has a process of its own for its simulations, forked before MPI is initialised, so that a
-// simulation can be ended at any time and a rank stays able to hear. (Only one that replaces a process which died is
-// forked later. It calls nothing of MPI, and ends with its rank.)
+// ranks simulate. Every rank forks a process for its simulations before it initialises MPI. So a simulation can be
+// ended at any time, and the rank can always receive messages. (A process that replaces a dead one is forked later. It
+// calls nothing of MPI and ends with its rank.)
 
 #include <memory>
 #include <optional>
@@ -14,23 +14,23 @@
 
 namespace proleg::optimize {
 
-struct MpiPlace {
+struct MpiRank {
   int rank = 0;
   int size = 1;
 };
 
-/// This process's place among those that mpirun started; nothing if it was started in another way. Known before MPI is
-/// initialised: Open MPI says it in the environment.
-[[nodiscard]] std::optional<MpiPlace> mpi_place();
+/// This process's rank among those that mpirun started; nothing if it was started in another way. It comes from Open
+/// MPI's environment variables, so MPI need not be initialised.
+[[nodiscard]] std::optional<MpiRank> mpi_rank();
 
-/// The processes that mpirun started, seen from rank 0; worker k is rank k. One object in the life of a process:
-/// it initialises MPI and ends it.
+/// The processes that mpirun started, seen from rank 0; worker k is rank k. It initialises and ends MPI, so a process
+/// may make only one.
 class MpiWorkers final : public Workers {
  public:
-  /// To be made while the process has one thread. experiment: must outlive this. Throws std::runtime_error if another
-  /// rank has another experiment or another build; all ranks end then. run, limit: as of LocalWorkers.
+  /// The process must have one thread. experiment: must outlive this. Throws std::runtime_error if another rank has
+  /// another experiment or build; all ranks end then. run, limit: as for LocalWorkers.
   MpiWorkers(const Experiment& experiment, const std::string& build_id, RunTask run = run_trial, TaskLimit limit = {});
-  /// Ends the other ranks, also in the middle of a task; those that do not answer within seconds by MPI_Abort, which
+  /// Ends the other ranks, even in the middle of a task. If one does not answer within seconds, calls MPI_Abort, which
   /// ends this process, too.
   ~MpiWorkers() override;
   MpiWorkers(const MpiWorkers&) = delete;
@@ -47,9 +47,9 @@ class MpiWorkers final : public Workers {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// What ranks above 0 do: simulate what rank 0 asks for until it says that it is over. Signals that ask a program to
-/// end are rank 0's to hear. Returns whether all ranks had the same experiment and build; if not, rank 0 says so.
-/// Arguments as of MpiWorkers.
+/// The work of ranks above 0: simulates the tasks of rank 0 until it sends stop. Ignores the signals that ask a program
+/// to end: rank 0 handles them. Returns whether all ranks had the same experiment and build; if not, rank 0 reports it.
+/// Arguments as for MpiWorkers.
 [[nodiscard]] bool serve_mpi(const Experiment& experiment, const std::string& build_id, RunTask run = run_trial,
                              TaskLimit limit = {});
 

@@ -10,8 +10,8 @@
 namespace proleg::optimize {
 namespace {
 
-/// How late rank 0 may be heard; a simulation takes hundreds of it.
-constexpr std::chrono::milliseconds look_interval{1};
+/// Largest delay of a message of rank 0; a simulation takes hundreds of times as long.
+constexpr std::chrono::milliseconds poll_interval{1};
 
 void serve(const MpiChannel& channel, LocalWorkers& worker) {
   while (true) {
@@ -21,11 +21,11 @@ void serve(const MpiChannel& channel, LocalWorkers& worker) {
       }
       const std::optional<Task> task = task_from(message->content);
       if (message->tag != MpiTag::task || !task) {
-        throw std::runtime_error("was sent what is not a task");
+        throw std::runtime_error("received a message that is not a task");
       }
       worker.start(0, *task);
     }
-    const std::optional<Workers::Done> done = worker.wait(look_interval);
+    const std::optional<Workers::Done> done = worker.wait(poll_interval);
     for (const std::string& text : worker.messages()) {
       channel.send(0, MpiTag::message, text);
     }
@@ -41,7 +41,7 @@ void wait_for_stop(const MpiChannel& channel) {
     if (message && message->tag == MpiTag::stop) {
       return;
     }
-    std::this_thread::sleep_for(look_interval);
+    std::this_thread::sleep_for(poll_interval);
   }
 }
 
@@ -56,7 +56,7 @@ bool serve_mpi(const Experiment& experiment, const std::string& build_id, RunTas
   const std::vector<std::string> identities = channel.exchange(mpi_identity(experiment, build_id));
   for (const std::string& identity : identities) {
     if (identity != identities.front()) {
-      return false;  // rank 0 says it
+      return false;  // rank 0 reports it
     }
   }
   try {
@@ -66,7 +66,7 @@ bool serve_mpi(const Experiment& experiment, const std::string& build_id, RunTas
     wait_for_stop(channel);
   }
   worker.reset();
-  channel.send(0, MpiTag::goodbye);
+  channel.send(0, MpiTag::stopped);
   return true;
 }
 

@@ -24,7 +24,7 @@ constexpr double panel_top = 104.0;
 constexpr double panel_bottom = 470.0;
 constexpr double page_height = panel_bottom + 56.0;
 
-/// The fewer there are, the larger they may be.
+/// Fewer dots are larger.
 std::string dot_style(std::size_t evaluations) {
   const double size = evaluations <= 300 ? 5.0 : evaluations <= 3000 ? 3.4 : 2.4;
   return R"(stroke="#8fb3c9" stroke-linecap="round" stroke-width=")" + sim::plain_number(size, 1) + "\"";
@@ -37,11 +37,11 @@ constexpr const char* dot = "h0";
 constexpr const char* cross = "m-2 -2l4 4m0 -4l-4 4";
 constexpr const char* failure_mark = "v-7";
 
-/// The evaluations sorted by what becomes of them; x: number of the evaluation, from 1; y: score.
+/// What the figure shows. x: number of the evaluation, from 1; y: score.
 struct Contents {
   Trace rated;
   Trace given_up;
-  std::vector<double> failed;  ///< numbers of evaluations without a score of their own
+  std::vector<double> failed;  ///< numbers of evaluations that have no score of measures
   Trace best;                  ///< a step for each improvement
   std::optional<Point> winner;
   Trace mean;  ///< over the last `window` with a score
@@ -58,7 +58,7 @@ void add_to_best(const Objective& objective, Point rated, Contents& contents) {
   }
 }
 
-/// The mean of the last so many scores tells what the search is at; that of all would hide it.
+/// The mean of the latest scores shows the present state of the search; the mean of all would hide it.
 Trace moving_mean(const Trace& scores, std::size_t window) {
   Trace mean;
   double sum = 0.0;
@@ -102,7 +102,7 @@ Axis axis_of(const Contents& contents) {
       scores.push_back(point.y);
     }
   }
-  // The very first ones may be as far off as any, the best of ten is not.
+  // The best of the first evaluations may be far off; the best of ten is not.
   constexpr double settled = 10.0;
   std::vector<double> best;
   for (const Point& point : contents.best) {
@@ -187,7 +187,7 @@ std::string draw_learning_curve(const Experiment& experiment, std::span<const Ev
   const auto beyond =
       std::ranges::count_if(contents.rated, [&](const Point& point) { return point.y < y.low || point.y > y.high; });
   if (beyond > 0) {
-    svg.text({sim::page_right, panel_bottom + 37.0}, std::to_string(beyond) + " beyond the picture, at its edge",
+    svg.text({sim::page_right, panel_bottom + 37.0}, std::to_string(beyond) + " outside the axis, drawn at the edge",
              TextAnchor::end, sim::label_size, sim::faint_ink);
   }
   return svg.finish();

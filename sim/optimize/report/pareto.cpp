@@ -8,7 +8,7 @@
 namespace proleg::optimize {
 namespace {
 
-/// Whether scores a are better in one objective and worse in none.
+/// Whether scores a are better than b in one objective and worse in none.
 bool dominates(const Experiment& experiment, const std::vector<double>& a, const std::vector<double>& b) {
   bool better = false;
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
@@ -21,7 +21,7 @@ bool dominates(const Experiment& experiment, const std::vector<double>& a, const
   return better;
 }
 
-/// Best first by the first objective, equals by the second, and so on: who dominates comes before whom it dominates.
+/// Best first by the first objective, then by the second, and so on. A candidate comes before those that it dominates.
 bool comes_before(const Experiment& experiment, const std::vector<double>& a, const std::vector<double>& b) {
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
     if (a[i] != b[i]) {
@@ -47,10 +47,10 @@ std::vector<std::size_t> pareto_front(const Experiment& experiment, std::span<co
   });
 
   std::vector<std::size_t> front;
-  std::set<Candidate> same_scores;  // candidates with the scores of the last of the front
+  std::set<Candidate> same_scores;  // candidates with the scores of the last one on the front
   for (const std::size_t i : order) {
     const std::vector<double>& scores = evaluations[i].scores;
-    // With two objectives the last of the front is the best so far in the second, so it alone can dominate.
+    // With two objectives, the last one on the front is the best so far in the second: only it can dominate.
     const std::size_t rivals =
         experiment.objectives.size() <= 2 ? std::min<std::size_t>(front.size(), 1) : front.size();
     const bool beaten = std::any_of(front.end() - static_cast<std::ptrdiff_t>(rivals), front.end(), [&](std::size_t j) {

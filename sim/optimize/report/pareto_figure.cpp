@@ -25,7 +25,7 @@ constexpr const char* front_style = R"(stroke="#0072b2" stroke-width="1.6" strok
 constexpr const char* front_dot_style = R"(stroke="#0072b2" stroke-width="7" stroke-linecap="round")";
 constexpr const char* dot = "h0";
 
-/// Two objectives of those evaluations that have both.
+/// Two scores of each evaluation that has both.
 struct Cloud {
   Trace places;
   std::vector<double> x;
@@ -66,7 +66,7 @@ std::string draw_pareto_front(const Experiment& experiment, std::span<const Eval
   const sim::Axis y = score_axis(std::move(all.y), best.y, panel_bottom, panel_top);
 
   Svg svg(sim::page_width, page_height, experiment.title(),
-          "Candidates by two objectives; those that none beats in both are joined by a line.");
+          "Candidates by two objectives; a line joins those that no other dominates.");
   svg.text({sim::page_left, 36.0}, shortened(experiment.title()), TextAnchor::start, 20.0, sim::ink,
            R"(font-weight="bold")");
   svg.text({sim::page_left, 58.0},
@@ -81,7 +81,7 @@ std::string draw_pareto_front(const Experiment& experiment, std::span<const Eval
   svg.marks(sim::to_marks(all.places, x, y, 2.5), dot, dot_style);
   svg.end_group();
   svg.begin_group("front");
-  if (experiment.objectives.size() == 2) {  // a front in more dimensions is no line
+  if (experiment.objectives.size() == 2) {  // with more objectives the front is not a line
     svg.polyline(sim::to_pixels(best.places, x, y), front_style);
   }
   svg.marks(sim::to_marks(best.places, x, y, 2.5), dot, front_dot_style);

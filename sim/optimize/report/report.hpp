@@ -1,6 +1,6 @@
 #pragma once
 
-// What an optimisation leaves behind for people, drawn and written from its evaluations.
+// The figures, tables and scenario that an optimisation writes for people.
 
 #include <filesystem>
 #include <span>
@@ -13,14 +13,14 @@
 namespace proleg::optimize {
 
 /// SVG: every evaluation's score, the best so far and the mean of the last ones, against evaluations (first objective).
-/// Below 1 MB however many there are.
+/// At most 1 MB for any number of them.
 [[nodiscard]] std::string draw_learning_curve(const Experiment& experiment, std::span<const Evaluation> evaluations);
 
-/// SVG: the first two objectives against each other, and the Pareto front; of two objectives it is joined by a line.
+/// SVG: the first two objectives against each other, and the Pareto front. With two objectives a line joins the front.
 [[nodiscard]] std::string draw_pareto_front(const Experiment& experiment, std::span<const Evaluation> evaluations);
 
-/// Positions, by ascending first score, of the evaluations that no other is better than in one objective without being
-/// worse in another. Of equal candidates with equal scores the first.
+/// Positions, by ascending first score, of the evaluations that no other dominates (is better in one objective and
+/// worse in none). Of equal candidates with equal scores, the first.
 [[nodiscard]] std::vector<std::size_t> pareto_front(const Experiment& experiment,
                                                     std::span<const Evaluation> evaluations);
 
@@ -30,15 +30,15 @@ namespace proleg::optimize {
 /// given_up, reused, restored (0 or 1), failure.
 [[nodiscard]] std::string evaluations_table(const Experiment& experiment, std::span<const Evaluation> evaluations);
 
-/// The same with a column `rank` before: the best `count` different candidates by the first objective, best first, of
-/// equals the earlier.
+/// The same with a first column `rank`: the best `count` different candidates by the first objective, best first. Of
+/// equal scores, the earlier comes first.
 [[nodiscard]] std::string best_table(const Experiment& experiment, std::span<const Evaluation> evaluations,
                                      std::size_t count);
 
-/// Writes a scenario that is the experiment's with the candidate's values, ready for `proleg simulate` and needing
-/// nothing else: the top-level file `folder`/name.simulation.xml, its actuation file name.actuation.xml, and copies of
-/// the robot and environment files below name.files. What is there already is replaced. Returns the path of the
-/// top-level file. Throws FileError if it cannot be written.
+/// Writes the experiment's scenario with the candidate's values, complete for `proleg simulate`: the top-level file
+/// `folder`/name.simulation.xml, its actuation file name.actuation.xml, and copies of the robot and environment files
+/// below name.files. Existing files are replaced. Returns the path of the top-level file. Throws FileError if it cannot
+/// be written.
 std::filesystem::path write_scenario(const Experiment& experiment, const Candidate& candidate,
                                      const std::filesystem::path& folder, const std::string& name);
 

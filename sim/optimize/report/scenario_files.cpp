@@ -23,7 +23,7 @@ class Sources {
     }
   }
 
-  /// The file that a reference in `includer` led the reader to (SourceSet::open); empty if it led to none.
+  /// The file that the reader found for a reference in `includer` (SourceSet::open); empty if it found none.
   [[nodiscard]] fs::path find(const fs::path& includer, const std::string& reference) const {
     for (const fs::path& folder : {includer.parent_path(), top_.parent_path()}) {
       if (const fs::path path = (folder / reference).lexically_normal(); texts_.contains(path)) {
@@ -48,7 +48,7 @@ class Sources {
   std::map<fs::path, const std::string*> texts_;
 };
 
-/// Calls use(element, attribute) for each attribute `file` in a document, where a file includes another.
+/// Calls use(element, attribute) for each attribute `file` of a document: these include other files.
 template <typename Use>
 void for_each_include(tinyxml2::XMLElement* element, const Use& use) {
   for (; element != nullptr; element = element->NextSiblingElement()) {
@@ -90,7 +90,7 @@ fs::path common_folder(const std::set<fs::path>& files) {
   return common;
 }
 
-/// The text of a file with references that hold where the files keep their places relative to each other.
+/// The text of a file, with references that are valid while the files keep their relative paths.
 std::string text_with_relative_references(const Sources& sources, const fs::path& path) {
   const std::string& text = sources.text(path);
   tinyxml2::XMLDocument document;

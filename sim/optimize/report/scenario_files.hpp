@@ -8,23 +8,23 @@
 
 namespace proleg::optimize {
 
-/// A file to be written.
+/// A file to write.
 struct FileCopy {
   std::filesystem::path place;  ///< relative
   std::string text;
 };
 
-/// The robot and environment files of a scenario and all that they include, with places below one folder where they
-/// find each other.
+/// The robot and environment files of a scenario and all that they include, with places below one folder where their
+/// references are valid.
 struct ScenarioFiles {
   std::filesystem::path robot;
   std::filesystem::path environment;
   std::vector<FileCopy> copies;  ///< these two and what they include
 };
 
-/// The files lie below `root` as they lie below their deepest common folder now, so same names in different folders
-/// stay apart. Texts are copied byte by byte; only where a path would no longer lead to its file (an absolute one, or
-/// one that is looked for from the folder of the top-level file) it is replaced. scenario: read from files.
+/// Below `root` the files have the same paths as below their deepest common folder, so equal names in different folders
+/// do not collide. Texts are copied byte by byte. Only a path that would become invalid is replaced (an absolute one,
+/// or one that is relative to the folder of the top-level file). scenario: read from files.
 [[nodiscard]] ScenarioFiles collect_scenario_files(const sim::Scenario& scenario, const std::filesystem::path& root);
 
 }  // namespace proleg::optimize

@@ -28,7 +28,7 @@ std::string comment_text(std::string_view text) {
   return result + (result.ends_with('-') ? " " : "");
 }
 
-/// Start values of a slot: for each parameter those of all joints, kernel order.
+/// Start values of a slot: for each parameter those of all joints, in kernel order.
 class StartValues {
  public:
   StartValues(const sim::Scenario& scenario, std::size_t slot) {
@@ -144,7 +144,7 @@ void write_with_folder(const fs::path& path, std::string_view text) {
 fs::path write_scenario(const Experiment& experiment, const Candidate& candidate, const fs::path& folder,
                         const std::string& name) {
   if (experiment.scenario.sources.empty()) {
-    throw FileError(folder, "has no scenario written to it: the experiment's was not read from files");
+    throw FileError(folder, "no scenario is written there: that of the experiment was not read from files");
   }
   sim::Scenario scenario = experiment.scenario;
   experiment.space.apply(candidate, scenario);
@@ -152,7 +152,7 @@ fs::path write_scenario(const Experiment& experiment, const Candidate& candidate
   const std::string remark =
       "<!-- Found by an optimisation: " + comment_text(fs::path(experiment.path).filename().string()) + ", method " +
       comment_text(method_name(experiment.method)) + "." +
-      (experiment.trials.spread.any() ? " What its trials varied is as in the scenario that it started from." : "") +
+      (experiment.trials.spread.any() ? " What its trials varied has the values of the original scenario." : "") +
       " -->\n";
 
   for (const FileCopy& file : files.copies) {
@@ -160,7 +160,7 @@ fs::path write_scenario(const Experiment& experiment, const Candidate& candidate
   }
   const std::string actuation = name + ".actuation.xml";
   write_with_folder(folder / actuation, actuation_text(scenario, files.robot.filename().string(), remark));
-  // Last, so that whoever sees it finds the others.
+  // Last: where this file exists, the others do.
   const fs::path top = folder / (name + ".simulation.xml");
   write_with_folder(top, top_text(scenario, files, actuation, remark));
   return top;

@@ -1,6 +1,6 @@
 #pragma once
 
-// How the pictures and tables see evaluations.
+// Scores of evaluations as text and in figures.
 
 #include <span>
 #include <string>
@@ -22,15 +22,15 @@ namespace proleg::optimize {
 /// A few digits, for titles: "1.958".
 [[nodiscard]] std::string rounded_text(double value);
 
-/// A score within +-10^9, so that sums and coordinates of what is drawn stay sound.
+/// The score, limited to +-10^9, so that sums and coordinates stay finite.
 [[nodiscard]] double drawable(double score);
 
-/// An axis over scores. Where few lie far off (the cost of transport of robots that hardly move), it is that of the
-/// others, but `always` is on it.
+/// An axis for scores. If few are far off (the cost of transport of robots that hardly move), it covers the others and
+/// `always`.
 [[nodiscard]] sim::Axis score_axis(std::vector<double> scores, std::span<const double> always, double pixel_low,
                                    double pixel_high);
 
-/// With that number of decimals, zeros included.
+/// With this number of decimals, including zeros.
 [[nodiscard]] std::string fixed_text(double value, int decimals);
 
 }  // namespace proleg::optimize

@@ -36,7 +36,7 @@ std::vector<std::size_t> dimensions_head_to_tail(const SearchSpace& space) {
   return order;
 }
 
-/// Text padded with blanks: to the left edge, or (width below 0) to the right one.
+/// Pads a text with blanks, aligned left, or right if the width is below 0.
 std::string padded(std::string text, int width) {
   const auto size = static_cast<std::size_t>(std::abs(width));
   if (text.size() < size) {
@@ -47,7 +47,7 @@ std::string padded(std::string text, int width) {
 
 struct Statistics {
   double mean = NAN;
-  double deviation = NAN;  ///< sample standard deviation; not a number for less than two
+  double deviation = NAN;  ///< sample standard deviation; NaN for less than two
 };
 
 Statistics statistics_of(const std::vector<const Evaluation*>& evaluations) {
@@ -92,13 +92,13 @@ Row method_row(const MethodRuns& method, double uniform_m) {
   if (best.empty()) {
     return {method.method, "0", "-", "-", "-", "-", "-", "-"};
   }
-  const auto [fewest, most] = std::ranges::minmax(method.runs, {}, &std::vector<Evaluation>::size);
+  const auto [min, max] = std::ranges::minmax(method.runs, {}, &std::vector<Evaluation>::size);
   const Statistics statistics = statistics_of(best);
   const double distance = best.front()->scores.front();
   const std::vector<std::size_t> order = dimensions_head_to_tail(method.space);
   return {method.method,
           std::to_string(best.size()),
-          std::to_string(fewest.size()) + (fewest.size() == most.size() ? "" : ".." + std::to_string(most.size())),
+          std::to_string(min.size()) + (min.size() == max.size() ? "" : ".." + std::to_string(max.size())),
           number_or_dash(statistics.mean, distance_decimals),
           number_or_dash(statistics.deviation, distance_decimals),
           fixed_text(distance, distance_decimals),
@@ -123,19 +123,19 @@ const MethodRuns* find_method(std::span<const MethodRuns> methods, std::string_v
 }
 
 std::string overtaking_text(const BestCurves& deluge, const BestCurves& genetic) {
-  const std::string who = "great deluge's mean ";
+  const std::string subject = "great deluge's mean ";
   const std::string thesis = " (the thesis: at around 5000)\n";
   const std::optional<std::size_t> evaluation = overtaking(deluge, genetic);
   if (!evaluation) {
-    return who + "does not overtake the genetic algorithm's" + thesis;
+    return subject + "does not overtake the genetic algorithm's" + thesis;
   }
-  return who +
+  return subject +
          (*evaluation == 0 ? "is above the genetic algorithm's from the start"
                            : "stays above the genetic algorithm's after evaluation " + std::to_string(*evaluation)) +
          thesis;
 }
 
-/// How soon a method reaches the mean that great deluge ends with.
+/// After how many evaluations a method reaches the final mean of great deluge.
 std::string reach_text(const MethodRuns& method, const MethodRuns& deluge, const BestCurves& deluge_curves) {
   const double goal = deluge_curves.mean.back();
   double evaluations = 0.0;
@@ -209,7 +209,9 @@ std::string experiment_summary(std::span<const MethodRuns> methods, double unifo
       text += row_text(thesis_row(*thesis));
     }
   }
-  text += "\nmean and standard deviation are over the bests of the runs, gain and tail joint those of the best run\n";
+  text +=
+      "\nmean and sd (standard deviation) are over the best of each run; gain and tail joint are those of the best "
+      "run\n";
 
   const MethodRuns* const deluge = find_method(methods, "great-deluge");
   const BestCurves deluge_curves = deluge != nullptr ? best_curves(*deluge) : BestCurves();

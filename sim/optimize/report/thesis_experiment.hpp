@@ -11,7 +11,7 @@
 namespace proleg::optimize {
 
 /// Tables 6.2 and 6.4, tab-separated: the values and distances of the ten best repetitions, best first, and below them
-/// the thesis's, if it has any for the method. Columns: source, value, 1 to 10.
+/// the thesis's, if it has a table for the method. Columns: source, value, 1 to 10.
 [[nodiscard]] std::string experiment_table(const MethodRuns& method);
 
 /// Figures 6.3 and 6.5, SVG: the best so far of every repetition. uniform_m: distance of 40 degrees on all joints here.
@@ -21,9 +21,9 @@ namespace proleg::optimize {
 /// Figure 7.1, SVG: (a) every repetition of every method, (b) the means.
 [[nodiscard]] std::string draw_method_comparison(std::span<const MethodRuns> methods, double uniform_m);
 
-/// The outcome as text for people, a few dozen lines of at most 120 characters: each method's repetitions, evaluations,
-/// best, mean and gain over the uniform amplitudes; which method overtakes which; how soon others reach great deluge's
-/// mean.
+/// A summary for people, a few dozen lines of at most 120 characters: each method's repetitions, evaluations, best,
+/// mean and gain over the uniform amplitudes; whether great deluge overtakes the genetic algorithm; after how many
+/// evaluations other methods reach great deluge's mean.
 [[nodiscard]] std::string experiment_summary(std::span<const MethodRuns> methods, double uniform_m);
 
 }  // namespace proleg::optimize

@@ -20,8 +20,8 @@ constexpr double single_panel_height = 380.0;
 constexpr double double_panel_height = 320.0;
 constexpr double between_panels = 96.0;
 
-/// Colours of methods. Great deluge is green and the genetic algorithm red, as in the thesis: a green and a red that
-/// all people tell apart.
+/// Colours of methods. Great deluge is green and the genetic algorithm red, as in the thesis. Colour-blind people can
+/// distinguish this green and red.
 class Palette {
  public:
   std::string next(std::string_view method) {
@@ -70,7 +70,7 @@ std::string repetitions_text(const MethodRuns& method) {
   return std::to_string(method.runs.size()) + (method.runs.size() == 1 ? " repetition" : " repetitions");
 }
 
-/// What the figures of one method share: the page, and lines that `draw` draws.
+/// A figure of one method; `draw` draws its curves and returns their names.
 template <typename Draw>
 std::string draw_method(const MethodRuns& method, const std::string& title, const std::string& about,
                         const std::vector<Level>& levels, const BestCurves& curves, const Draw& draw) {
@@ -119,7 +119,7 @@ std::string draw_run_spread(const MethodRuns& method, double uniform_m) {
   std::vector<Level> levels = thesis_level(method, colour);
   levels.push_back(uniform_level(uniform_m));
   return draw_method(method, title_of(method.method) + ": lowest, mean and highest",
-                     repetitions_text(method) + "; one that has ended keeps its best", levels, curves,
+                     repetitions_text(method) + "; a repetition that has ended keeps its best", levels, curves,
                      [&](Svg& svg, const CurvePanel& panel) {
                        std::vector<LineName> names;
                        const auto draw = [&](const std::vector<double>& curve, double width, const std::string& name,

@@ -1,4 +1,4 @@
-// `proleg optimise` and `proleg experiment` as a user meets them. Trials are short: these tests are about the program,
+// `proleg optimise` and `proleg experiment` from the command line. Trials are short: these tests are about the program,
 // not about gaits.
 
 #include <sqlite3.h>
@@ -44,7 +44,7 @@ class Optimise : public CommandLine {
     return all;
   }
 
-  /// The rows that a store gives for a question, as text.
+  /// The rows of a query on a store, as text.
   [[nodiscard]] std::string select(const std::string& folder, const std::string& question) const {
     std::string text;
     sqlite3* store = nullptr;
@@ -62,9 +62,9 @@ class Optimise : public CommandLine {
     return text;
   }
 
-  /// All that a store says of its first evaluations and does not depend on time.
+  /// The first evaluations of a store, without what depends on time.
   [[nodiscard]] std::string evaluations(const std::string& folder, int count = 1'000'000) const {
-    // Seventeen digits tell every double from every other.
+    // Seventeen digits distinguish all doubles.
     return select(
         folder,
         "SELECT run, number, candidate, seed, reused, printf('%.17g', distance), printf('%.17g', smoothness), "
@@ -96,7 +96,7 @@ class Optimise : public CommandLine {
 
   /// The command that starts proleg with these words four times.
   [[nodiscard]] static std::vector<std::string> under_mpirun(const std::vector<std::string>& words) {
-    // Open MPI leaks, some of it from plugins that are gone when the leaks are counted: no name to suppress them by.
+    // Open MPI leaks memory, some of it in plugins that are unloaded when leaks are counted: no suppression matches them.
     std::vector<std::string> command{"mpirun", "--oversubscribe", "-n", "4", "-x", "ASAN_OPTIONS=detect_leaks=0"};
     if (geteuid() == 0) {
       command.emplace_back("--allow-run-as-root");
@@ -118,7 +118,7 @@ Json json_of(const Finished& finished) {
   return Json(finished.out);
 }
 
-TEST_F(Optimise, PrintsTheBestAndLeavesStoreTablesPicturesAndTheWinner) {
+TEST_F(Optimise, PrintsTheBestAndWritesStoreTablesFiguresAndTheBestScenario) {
   const Finished finished = proleg(words("great_deluge", "out", {"--evaluations", "12"}));
   const Json object = json_of(finished);
   EXPECT_TRUE(finished.err.empty()) << "no progress unless standard error is a terminal: " << finished.err;
@@ -134,7 +134,7 @@ TEST_F(Optimise, PrintsTheBestAndLeavesStoreTablesPicturesAndTheWinner) {
   EXPECT_EQ(std::ranges::count(table, '\n'), 13);
 }
 
-TEST_F(Optimise, TheWinnersScenarioIsReadyAndScoresWhatTheSearchSaid) {
+TEST_F(Optimise, TheBestScenarioRunsAndHasTheScoreOfTheSearch) {
   const Json search = json_of(proleg(words("cma_es", "out", {"--evaluations", "30"})));
   const Json run = json_of(proleg({"simulate", file("out/best.simulation.xml").string(), "--json"}));
   EXPECT_EQ(search["best_score"], run["displacement_m"]) << "to the last bit";
@@ -163,10 +163,10 @@ TEST_F(Optimise, AnotherSeedGivesAnotherSearch) {
   EXPECT_NE(tried("a"), tried("b"));
 }
 
-// However late this process comes to stop it, a search of that many evaluations is still going on.
+// A search with this many evaluations is still running when this process stops it.
 constexpr const char* endless = "1000000";
 
-TEST_F(Optimise, InterruptedAndResumedIsTheSameAsInOneGo) {
+TEST_F(Optimise, InterruptedAndResumedGivesTheSame) {
   for (const char* experiment : {"great_deluge", "pareto", "cma_es"}) {
     static_cast<void>(json_of(proleg(words(experiment, "whole", {"--evaluations", "150"}))));
     const pid_t search = start_proleg(words(experiment, "parts", {"--evaluations", endless}));
@@ -174,7 +174,7 @@ TEST_F(Optimise, InterruptedAndResumedIsTheSameAsInOneGo) {
     kill(search, SIGINT);
     const Finished interrupted = finish(search);
     EXPECT_EQ(interrupted.status, 1) << interrupted.err;
-    EXPECT_TRUE(fs::exists(file("parts/learning_curve.svg"))) << "what there is so far can be looked at";
+    EXPECT_TRUE(fs::exists(file("parts/learning_curve.svg"))) << "the results so far are written";
     const Json object =
         json_of(proleg(words(experiment, "", {"--evaluations", "150", "--resume", file("parts").string()})));
     EXPECT_GE(object["restored"].number(), 20);
@@ -184,23 +184,23 @@ TEST_F(Optimise, InterruptedAndResumedIsTheSameAsInOneGo) {
   }
 }
 
-TEST_F(Optimise, SaysTheCommandThatGoesOn) {
+TEST_F(Optimise, PrintsTheCommandThatContinues) {
   const pid_t search = start_proleg(words("great_deluge", "the parts", {"--evaluations", endless, "--seed", "9"}));
   wait_for("the parts", 3);
   kill(search, SIGINT);
   const std::string message = finish(search).err;
-  const std::string mark = "go on with: proleg ";
+  const std::string mark = "continue with: proleg ";
   ASSERT_NE(message.find(mark), std::string::npos) << message;
   std::string command = message.substr(message.find(mark) + mark.size());
   command.replace(command.find(endless), std::string(endless).size(), "2000");
-  // As a person would paste it.
+  // As a user would paste it.
   const Json object = json_of(finish(
       start({"sh", "-c", std::string(PROLEG_PROGRAM) + " " + command.substr(0, command.find('\n')) + " --json"})));
   EXPECT_GE(object["restored"].number(), 3);
   EXPECT_EQ(object["seed"], 9);
 }
 
-TEST_F(Optimise, AHangUpThatIsIgnoredStopsNothing) {
+TEST_F(Optimise, AnIgnoredHangUpStopsNothing) {
   const pid_t search = start({"sh", "-c", "trap '' HUP; exec \"$0\" \"$@\"", PROLEG_PROGRAM, "optimise",
                               shipped("great_deluge"), "--simulation", file("short.simulation.xml").string(), "--out",
                               file("out").string(), "--evaluations", "400", "--json"});
@@ -209,7 +209,7 @@ TEST_F(Optimise, AHangUpThatIsIgnoredStopsNothing) {
   EXPECT_EQ(json_of(finish(search))["evaluations"], 400);
 }
 
-TEST_F(Optimise, KilledItLosesWhatItsWorkersWereAtAndNothingElse) {
+TEST_F(Optimise, KilledItLosesOnlyWhatItsWorkersWereSimulating) {
   static_cast<void>(json_of(proleg(words("genetic", "whole", {"--evaluations", "100"}))));
   const pid_t search = start_proleg(words("genetic", "parts", {"--evaluations", endless}));
   wait_for("parts", 31);
@@ -221,7 +221,7 @@ TEST_F(Optimise, KilledItLosesWhatItsWorkersWereAtAndNothingElse) {
   EXPECT_EQ(evaluations("whole", 100), evaluations("parts", 100));
 }
 
-TEST_F(Optimise, ALargerBudgetGoesOnFromTheSameStore) {
+TEST_F(Optimise, ALargerBudgetContinuesFromTheSameStore) {
   static_cast<void>(json_of(proleg(words("great_deluge", "out", {"--evaluations", "20"}))));
   const Json object =
       json_of(proleg(words("great_deluge", "", {"--evaluations", "40", "--resume", file("out").string()})));
@@ -229,7 +229,7 @@ TEST_F(Optimise, ALargerBudgetGoesOnFromTheSameStore) {
   EXPECT_EQ(object["evaluations"], 40);
 }
 
-TEST_F(Optimise, SeveralObjectivesLeaveAParetoFront) {
+TEST_F(Optimise, SeveralObjectivesGiveAParetoFront) {
   const Json object = json_of(proleg(words("pareto", "out", {"--evaluations", "80"})));
   EXPECT_EQ(object["best_scores"].size(), 2U);
   EXPECT_TRUE(fs::is_regular_file(file("out/pareto.svg")));
@@ -251,7 +251,7 @@ TEST_F(Optimise, RefusesBadInputAndStartsNothing) {
   expect_refused(words("great_deluge", "", {"--resume", file("nothing").string()}), {"nothing", "store.sqlite"});
 }
 
-TEST_F(Optimise, RefusesAStoreThatIsThereOrOfAnotherExperiment) {
+TEST_F(Optimise, RejectsAStoreThatExistsOrIsOfAnotherExperiment) {
   static_cast<void>(json_of(proleg(words("great_deluge", "out", {"--evaluations", "5"}))));
   const std::string before = evaluations("out");
   expect_refused(words("great_deluge", "out", {"--evaluations", "5"}), {"store.sqlite", "resume"});
@@ -261,12 +261,12 @@ TEST_F(Optimise, RefusesAStoreThatIsThereOrOfAnotherExperiment) {
   EXPECT_EQ(evaluations("out"), before);
 }
 
-TEST_F(Optimise, WithClosedStandardStreamsSimulatesAllTheSame) {
+TEST_F(Optimise, SimulatesWithClosedStandardStreams) {
   static_cast<void>(json_of(proleg(words("great_deluge", "open", {"--evaluations", "20"}))));
   std::vector<std::string> command{"sh", "-c", "exec \"$0\" \"$@\" <&- >&- 2>&-", PROLEG_PROGRAM};
   const std::vector<std::string> search = words("great_deluge", "closed", {"--evaluations", "20", "--workers", "2"});
   command.insert(command.end(), search.begin(), search.end());
-  EXPECT_EQ(finish(start(command)).status, 1) << "nobody got the result";
+  EXPECT_EQ(finish(start(command)).status, 1) << "the result went nowhere";
   EXPECT_EQ(evaluations("open"), evaluations("closed"));
 }
 
@@ -280,7 +280,7 @@ TEST_F(Optimise, UnderMpirunGivesTheSame) {
   EXPECT_EQ(evaluations("local"), evaluations("cluster"));
 }
 
-TEST_F(Optimise, UnderMpirunSaysOnceWhatIsWrong) {
+TEST_F(Optimise, UnderMpirunReportsAnErrorOnce) {
   if (!fs::exists(fs::path(PROLEG_PROGRAM).parent_path() / "proleg-optimise-mpi")) {
     GTEST_SKIP() << "built without Open MPI";
   }
@@ -293,7 +293,7 @@ TEST_F(Optimise, UnderMpirunSaysOnceWhatIsWrong) {
   }
 }
 
-TEST_F(Optimise, AnExperimentWritesTheThesissTablesAndFiguresAndGoesOn) {
+TEST_F(Optimise, AnExperimentWritesTheThesissTablesAndFiguresAndContinues) {
   // The shipped experiment with its trials cut to a fifth of a second.
   const fs::path folder = file("scenarios");
   fs::copy(source_path("/sim/scenarios/travelling_wave"), folder, fs::copy_options::recursive);
@@ -315,7 +315,7 @@ TEST_F(Optimise, AnExperimentWritesTheThesissTablesAndFiguresAndGoesOn) {
   const Json one =
       json_of(proleg({"experiment", "travelling_wave", "--repetitions", "2", "--evaluations", "40", "--scenarios",
                       folder.string(), "--out", file("out").string(), "--json", "--method", "genetic"}));
-  EXPECT_EQ(one["methods"].size(), 3U) << "those that are in the folder are shown beside";
+  EXPECT_EQ(one["methods"].size(), 3U) << "those in the folder are shown, too";
   EXPECT_TRUE(one.contains("great_deluge_above_genetic_after"));
   EXPECT_TRUE(one["methods"][2].contains("reaches_mean_of_great_deluge_after"));
   const Json other =
@@ -333,7 +333,7 @@ TEST_F(Optimise, AnExperimentWritesTheThesissTablesAndFiguresAndGoesOn) {
   }
 }
 
-TEST_F(Optimise, AnExperimentThatIsUnknownOrHasNoFilesIsRefused) {
+TEST_F(Optimise, AnExperimentThatIsUnknownOrHasNoFilesIsRejected) {
   expect_refused({"experiment", "swimming"}, {"'swimming'", "travelling_wave"});
   expect_refused({"experiment", "travelling_wave", "--repetitions", "0"}, {"--repetitions", "'0'"});
   expect_refused({"experiment", "travelling_wave", "--method", "magic"}, {"--method", "'magic'", "great-deluge"});

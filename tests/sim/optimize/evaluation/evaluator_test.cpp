@@ -11,7 +11,7 @@
 namespace proleg::optimize {
 namespace {
 
-/// A search whose next candidate depends on the scores so far, and which expects right and wrong things.
+/// A search whose next candidate depends on the scores so far, with right and wrong predictions.
 struct MadeUpSearch {
   const Experiment& experiment;
   std::uint32_t predictions_seed;   ///< 0: expects nothing
@@ -44,7 +44,7 @@ struct MadeUpSearch {
   }
 };
 
-/// The same without workers, predictions and memory: what must come out.
+/// The same without workers, predictions and reuse: the oracle.
 class PlainSource final : public FitnessSource {
  public:
   PlainSource(const Experiment& experiment, RunTask run) : experiment_(experiment), run_(std::move(run)) {}
@@ -81,11 +81,11 @@ class PlainSource final : public FitnessSource {
 };
 
 std::vector<std::string> evaluate(const Experiment& experiment, Workers& workers, const MadeUpSearch& search,
-                                  std::uint64_t evaluations, Progress* progress = nullptr) {
+                                  std::uint64_t evaluations, SearchProgress* progress = nullptr) {
   std::vector<std::string> seen;
-  Evaluator evaluator(experiment, 3, workers, nullptr,
-                      [&seen](const Evaluation& evaluation, const Progress&) { seen.push_back(exact(evaluation)); },
-                      {});
+  Evaluator evaluator(
+      experiment, 3, workers, nullptr,
+      [&seen](const Evaluation& evaluation, const SearchProgress&) { seen.push_back(exact(evaluation)); }, {});
   search.run(evaluator, evaluations);
   if (progress != nullptr) {
     *progress = evaluator.progress();
@@ -93,7 +93,7 @@ std::vector<std::string> evaluate(const Experiment& experiment, Workers& workers
   return seen;
 }
 
-TEST(Evaluator, GivesTheSameWhateverIsExpectedAndHoweverManyWork) {
+TEST(Evaluator, GivesTheSameForAllPredictionsAndNumbersOfWorkers) {
   std::vector<Experiment> experiments{small_experiment(), noisy_experiment(1), noisy_experiment(3),
                                       small_experiment(), small_experiment(),  small_experiment()};
   experiments[2].trials.aggregate = Aggregate::worst;
@@ -127,7 +127,7 @@ TEST(Evaluator, GivesTheSameWithOneTwoAndThreeProcesses) {
   }
 }
 
-TEST(Evaluator, SimulatesEachTrialOnceIfAllComesAsExpected) {
+TEST(Evaluator, SimulatesEachTrialOnceIfAllPredictionsAreRight) {
   const Experiment experiment = noisy_experiment(2);
   MadeUpWorkers workers(experiment, 3, 1);
   Evaluator evaluator(experiment, 0, workers, nullptr, {}, {});
@@ -151,7 +151,7 @@ TEST(Evaluator, SimulatesEachTrialOnceIfAllComesAsExpected) {
   }
 }
 
-TEST(Evaluator, KeepsWorkersBusyWithWhatIsExpectedWhileItWaits) {
+TEST(Evaluator, GivesWorkersThePredictedCandidates) {
   const Experiment experiment = noisy_experiment();
   MadeUpWorkers workers(experiment, 4, 1);
   Evaluator evaluator(experiment, 0, workers, nullptr, {}, {});
@@ -160,7 +160,7 @@ TEST(Evaluator, KeepsWorkersBusyWithWhatIsExpectedWhileItWaits) {
   EXPECT_GE(workers.started().size(), 4U);
 }
 
-TEST(Evaluator, DropsWhatIsNoLongerExpectedAndCountsWhatWasInVain) {
+TEST(Evaluator, DropsOldPredictionsAndCountsWastedTrials) {
   const Experiment experiment = noisy_experiment();
   MadeUpWorkers workers(experiment, 1, 1);
   Evaluator evaluator(experiment, 0, workers, nullptr, {}, {});
@@ -173,12 +173,12 @@ TEST(Evaluator, DropsWhatIsNoLongerExpectedAndCountsWhatWasInVain) {
   EXPECT_GE(evaluator.progress().wasted, 1U);
 }
 
-TEST(Evaluator, DoesNotSimulateAgainWhatCannotDiffer) {
+TEST(Evaluator, ReusesOutcomesThatCannotDiffer) {
   const Experiment experiment = small_experiment();
   MadeUpWorkers workers(experiment, 2, 1);
   std::vector<Evaluation> seen;
   Evaluator evaluator(experiment, 0, workers, nullptr,
-                      [&seen](const Evaluation& evaluation, const Progress&) { seen.push_back(evaluation); }, {});
+                      [&seen](const Evaluation& evaluation, const SearchProgress&) { seen.push_back(evaluation); }, {});
   const Candidate a{1, 1, 1};
   const Candidate b{2, 2, 2};
   evaluator.expect(std::vector<Candidate>{a, b, a});
@@ -196,7 +196,7 @@ TEST(Evaluator, DoesNotSimulateAgainWhatCannotDiffer) {
   EXPECT_EQ(evaluator.progress().simulated, 2U);
 }
 
-TEST(Evaluator, UsesWhatWasSimulatedForAnotherNumberIfItCannotDiffer) {
+TEST(Evaluator, UsesATrialOfAnotherNumberIfItCannotDiffer) {
   const Experiment experiment = small_experiment();
   MadeUpWorkers workers(experiment, 4, 1);
   Evaluator evaluator(experiment, 0, workers, nullptr, {}, {});
@@ -242,13 +242,13 @@ TEST(Evaluator, GivesTasksTheScoreThatTheyNeed) {
   }
 }
 
-TEST(Evaluator, KnowsTheBestAndTheSum) {
+TEST(Evaluator, ReportsTheBestAndTheSum) {
   const Experiment experiment = small_experiment();
   MadeUpWorkers workers(experiment, 2, 1);
   double best = -1.0;
   double sum = 0.0;
   Evaluator evaluator(experiment, 0, workers, nullptr,
-                      [&](const Evaluation& evaluation, const Progress& progress) {
+                      [&](const Evaluation& evaluation, const SearchProgress& progress) {
                         best = std::max(best, evaluation.scores[0]);
                         sum += evaluation.scores[0];
                         EXPECT_EQ(progress.best->scores[0], best);
@@ -294,7 +294,7 @@ TEST(Evaluator, StopsWhileItWaitsAndBefore) {
   EXPECT_EQ(evaluator.progress().evaluations, 0U);
 }
 
-TEST(Evaluator, IsNotDisturbedByTasksOfAnEarlierOne) {
+TEST(Evaluator, IgnoresTasksOfAnEarlierOne) {
   const Experiment experiment = noisy_experiment();
   MadeUpWorkers workers(experiment, 3, 1);
   {

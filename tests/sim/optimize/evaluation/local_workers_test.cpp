@@ -35,7 +35,7 @@ Workers::Done next(Workers& workers) {
 
 class LocalWorkersTest : public testing::Test {
  protected:
-  /// Does at the first call for evaluation 17 what `misfortune` says, else made_up_trial.
+  /// Calls `misfortune` first at the first call for evaluation 17; then made_up_trial.
   [[nodiscard]] RunTask once(const std::function<void()>& misfortune) const {
     return [this, misfortune](const Experiment& experiment, const Task& task) {
       if (task.number == 17 && count_call(folder_ / "calls") == 1) {
@@ -112,12 +112,12 @@ TEST_F(LocalWorkersTest, RepeatTheTaskOfAWorkerThatEndsOrThrows) {
 }
 
 TEST_F(LocalWorkersTest, ReplaceOneThatDiesWithoutATask) {
-  const RunTask tell_process = [](const Experiment&, const Task&) {
+  const RunTask report_process = [](const Experiment&, const Task&) {
     TrialResult result;
     result.simulated_s = getpid();
     return result;
   };
-  LocalWorkers workers(experiment_, 1, tell_process);
+  LocalWorkers workers(experiment_, 1, report_process);
   workers.start(1, task_);
   const auto process = static_cast<pid_t>(next(workers).result.simulated_s);
   ASSERT_NE(process, getpid());
@@ -132,7 +132,7 @@ TEST_F(LocalWorkersTest, ReplaceOneThatDiesWithoutATask) {
   EXPECT_NE(static_cast<pid_t>(next(workers).result.simulated_s), process);
 }
 
-TEST_F(LocalWorkersTest, EndTheSearchIfATaskCostsThreeWorkers) {
+TEST_F(LocalWorkersTest, EndTheSearchIfThreeWorkersDieInATask) {
   const RunTask deadly = [this](const Experiment& experiment, const Task& task) {
     if (task.number == 17) {
       count_call(folder_ / "calls");
@@ -168,10 +168,10 @@ TEST_F(LocalWorkersTest, ReplaceOneThatHangs) {
   EXPECT_EQ(exact(next(workers).result), exact(made_up_trial(experiment_, task_)));
   const std::vector<std::string> messages = workers.messages();
   ASSERT_EQ(messages.size(), 1U);
-  EXPECT_NE(messages[0].find("gave no answer"), std::string::npos) << messages[0];
+  EXPECT_NE(messages[0].find("did not answer"), std::string::npos) << messages[0];
 }
 
-TEST_F(LocalWorkersTest, DoNotHearTheSignalsThatAreForTheirParent) {
+TEST_F(LocalWorkersTest, IgnoreTheSignalsThatAreForTheirParent) {
   const RunTask asked_to_end = [](const Experiment& experiment, const Task& task) {
     raise(SIGINT);
     raise(SIGTERM);
@@ -217,8 +217,8 @@ TEST_F(LocalWorkersTest, WaitReturnsWhenASignalComes) {
   std::signal(SIGALRM, SIG_DFL);
 }
 
-TEST_F(LocalWorkersTest, EndWithTheirParentHoweverItEnds) {
-  // Whoever loses its parent becomes a child of this process, so that its end can be seen.
+TEST_F(LocalWorkersTest, EndWithTheirParentEvenIfItIsKilled) {
+  // A process without its parent becomes a child of this process, which can then wait for its end.
   prctl(PR_SET_CHILD_SUBREAPER, 1);
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
@@ -244,7 +244,7 @@ TEST_F(LocalWorkersTest, EndWithTheirParentHoweverItEnds) {
   char ready = 0;
   ASSERT_EQ(read(ends[0], &ready, 1), 1);
   kill(parent, SIGKILL);
-  // One that is at a task and one that waits for one.
+  // One worker has a task, the other has none.
   int gone = 0;
   for (pid_t process = wait(nullptr); process > 0; process = wait(nullptr)) {
     ++gone;
@@ -255,7 +255,7 @@ TEST_F(LocalWorkersTest, EndWithTheirParentHoweverItEnds) {
   close(ends[1]);
 }
 
-/// Descriptors stand for whatever the system may run out of: a worker needs one, and two while it is made.
+/// Descriptors represent any scarce resource: a worker needs one, and two while it is made.
 class ScarceSystem : public LocalWorkersTest {
  protected:
   ScarceSystem() { getrlimit(RLIMIT_NOFILE, &before_); }
@@ -283,12 +283,12 @@ TEST_F(ScarceSystem, GivesFewerWorkers) {
   EXPECT_EQ(next(workers).ticket, 1U);
 }
 
-TEST_F(ScarceSystem, ThatGivesNoWorkerIsAnError) {
+TEST_F(ScarceSystem, WithoutAnyWorkerIsAnError) {
   leave_descriptors(1);
   EXPECT_THROW(LocalWorkers(experiment_, 5, made_up_trial), std::runtime_error);
 }
 
-TEST_F(ScarceSystem, ThatGivesNoSuccessorLeavesTheTaskToAnother) {
+TEST_F(ScarceSystem, ThatCannotReplaceAWorkerGivesItsTaskToAnother) {
   LocalWorkers workers(experiment_, 2, once([] { raise(SIGKILL); }));
   leave_descriptors(0);
   workers.start(1, task_);

@@ -45,7 +45,7 @@ TEST(Message, KeepsEveryBitOfAResult) {
   EXPECT_EQ(read->wall_s, result.wall_s);
 }
 
-TEST(Message, ThatIsCutOrTooLongIsNone) {
+TEST(Message, ThatIsCutOrTooLongIsRejected) {
   const Bytes task = to_bytes(Task{1, 2, 3, {4, 5}, 6.0});
   const Bytes result = to_bytes(special_result());
   for (std::size_t size = 0; size < task.size(); ++size) {
@@ -59,8 +59,8 @@ TEST(Message, ThatIsCutOrTooLongIsNone) {
   EXPECT_FALSE(task_from(longer));
 }
 
-/// Whatever comes: no crash, and what is taken for a message means the same when it is written again. (The sanitizers
-/// watch.)
+/// Any bytes are read without a crash, and a message that is read is equal when it is written again. The sanitizers
+/// check this, too.
 TEST(Message, MadeOfAnyBytesIsReadSafely) {
   constexpr std::uint32_t seed = 20;
   RecordProperty("seed", static_cast<int>(seed));

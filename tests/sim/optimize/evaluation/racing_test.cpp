@@ -29,20 +29,20 @@ class RacingTrial : public testing::Test {
   Candidate candidate_{3, 3, 1};
 };
 
-TEST_F(RacingTrial, StopsAtTheTickNearestItsShareWithTheDistanceThatItIsHeadingFor) {
+TEST_F(RacingTrial, StopsAtTheTickNearestItsShareWithTheExtrapolatedDistance) {
   // 12.5 ticks, rounded away from zero.
-  const double heading_for = distance(13) / (13.0 / 50.0);
-  ASSERT_GT(heading_for, 0.0);
-  const TrialResult result = run(heading_for * 1.001);
+  const double extrapolated = distance(13) / (13.0 / 50.0);
+  ASSERT_GT(extrapolated, 0.0);
+  const TrialResult result = run(extrapolated * 1.001);
   EXPECT_TRUE(result.given_up);
   EXPECT_EQ(result.simulated_s, 0.13);
-  EXPECT_EQ(result.measures[sim::Measure::distance], heading_for);
+  EXPECT_EQ(result.measures[sim::Measure::distance], extrapolated);
   EXPECT_EQ(result.failure, "");
 }
 
-TEST_F(RacingTrial, LeavesTheResultOfOneThatGoesOnAsItIs) {
-  const double heading_for = distance(13) / (13.0 / 50.0);
-  const TrialResult result = run(heading_for * 0.999);
+TEST_F(RacingTrial, DoesNotChangeTheResultOfATrialThatContinues) {
+  const double extrapolated = distance(13) / (13.0 / 50.0);
+  const TrialResult result = run(extrapolated * 0.999);
   EXPECT_FALSE(result.given_up);
   EXPECT_EQ(exact(result), exact(run(std::nullopt)));
   EXPECT_EQ(result.simulated_s, 0.5);

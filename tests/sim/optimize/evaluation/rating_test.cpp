@@ -52,7 +52,7 @@ TEST_F(Rating, TakesTheMean) {
   EXPECT_EQ(evaluation.wall_s, 6.0);
 }
 
-TEST_F(Rating, TakesTheWorstByTheSenseOfEachObjective) {
+TEST_F(Rating, TakesTheWorstByTheGoalOfEachObjective) {
   experiment_.trials.aggregate = Aggregate::worst;
   EXPECT_EQ(rated({trial(2.0, 7.0), trial(1.0, 3.0), trial(6.0, 8.0)}).scores, (std::vector<double>{1.0, 8.0}));
 }

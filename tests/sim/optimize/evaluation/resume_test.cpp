@@ -27,7 +27,7 @@ class Resume : public testing::Test {
  protected:
   struct Outcome {
     std::vector<std::string> evaluations;
-    Progress progress;
+    SearchProgress progress;
     std::size_t tasks = 0;
   };
 
@@ -37,7 +37,7 @@ class Resume : public testing::Test {
     Outcome outcome;
     Evaluator evaluator(
         experiment, 0, workers, store,
-        [&](const Evaluation& evaluation, const Progress&) { outcome.evaluations.push_back(exact(evaluation)); },
+        [&](const Evaluation& evaluation, const SearchProgress&) { outcome.evaluations.push_back(exact(evaluation)); },
         [&] { return outcome.evaluations.size() >= stop_after; });
     try {
       search(experiment, evaluator, 30);
@@ -62,7 +62,7 @@ class Resume : public testing::Test {
   std::filesystem::path path_ = folder_ / "store.sqlite";
 };
 
-TEST_F(Resume, ComesToTheSameAsASearchThatWasNotInterrupted) {
+TEST_F(Resume, GivesTheSameAsAnUninterruptedSearch) {
   std::vector<Experiment> experiments{small_experiment(), noisy_experiment(2), noisy_experiment(1)};
   experiments[2].racing.after = 0.5;
   for (const Experiment& experiment : experiments) {
@@ -102,7 +102,7 @@ TEST_F(Resume, OfAFinishedSearchSimulatesNothing) {
   MadeUpWorkers workers(experiment, 3, 1);
   std::vector<std::string> seen;
   Evaluator evaluator(experiment, 0, workers, &store,
-                      [&](const Evaluation& evaluation, const Progress&) {
+                      [&](const Evaluation& evaluation, const SearchProgress&) {
                         EXPECT_TRUE(evaluation.restored != evaluation.reused);
                         seen.push_back(exact(evaluation));
                       },
@@ -126,7 +126,8 @@ TEST_F(Resume, AfterRealSimulationsIsTheSameToTheLastBit) {
     Store store(path_, experiment, "build", opening);
     std::vector<std::string> seen;
     Evaluator evaluator(experiment, 0, workers, &store,
-                        [&](const Evaluation& evaluation, const Progress&) { seen.push_back(exact(evaluation)); }, {});
+                        [&](const Evaluation& evaluation, const SearchProgress&) { seen.push_back(exact(evaluation)); },
+                        {});
     search(experiment, evaluator, 5);
     return std::pair(seen, evaluator.progress().restored);
   };

@@ -30,7 +30,7 @@ TEST(RunTrial, IsASimulationOfTheScenarioWithTheCandidatesValues) {
   Experiment experiment = small_experiment(0.5);
   experiment.heading_deg = 30.0;
   const TrialResult result = run_trial(experiment, {0, 3, 0, {4, 2, 1}, {}});
-  // The same by another way in: words of the command line.
+  // The same through words of the command line.
   sim::Scenario scenario = experiment.scenario;
   for (const char* word : {"amplitude=50", "frequency=1.5", "phase_difference=50"}) {
     sim::apply_setting(scenario, word);
@@ -42,7 +42,7 @@ TEST(RunTrial, IsASimulationOfTheScenarioWithTheCandidatesValues) {
   EXPECT_FALSE(result.given_up);
 }
 
-TEST(RunTrial, RepeatsToTheLastBitWhateverRanBefore) {
+TEST(RunTrial, RepeatsToTheLastBitAfterOtherTrials) {
   const Experiment experiment = small_experiment();
   const Task task{0, 0, 0, {3, 1, 2}, {}};
   const std::string first = exact(run_trial(experiment, task));
@@ -72,7 +72,7 @@ TEST(RunTrial, PerturbsWithTheTrialsSeed) {
   EXPECT_EQ(bits(run_trial(experiment, {2, 5, 1, {3, 1, 2}, {}}).measures), bits(simulated(scenario, 30)));
 }
 
-TEST(RunTrial, TellsWhyASimulationBrokeDown) {
+TEST(RunTrial, ReportsWhyASimulationFailed) {
   Experiment experiment = small_experiment();
   experiment.scenario.environment.gravity = {0.0, 0.0, -1e6};
   experiment.scenario.environment.robot_pose.position.z() += 1000.0;
@@ -83,7 +83,7 @@ TEST(RunTrial, TellsWhyASimulationBrokeDown) {
     EXPECT_NE(value, value);
   }
   EXPECT_EQ(experiment.objectives.front().score(result.measures), 0.0);
-  // And the next one is as it always is.
+  // The next trial is not affected.
   const Experiment sound = small_experiment();
   const TrialResult next = run_trial(sound, {0, 0, 0, {3, 1, 2}, {}});
   sim::Scenario scenario = sound.scenario;

@@ -13,8 +13,8 @@
 
 namespace proleg::optimize {
 
-/// The shipped uniform travelling wave for a fraction of a second. To be found: "amplitude", 10 to 60 degrees by 10,
-/// "frequency", 0.5 to 2 Hz by 0.5, "phase_difference", 40 to 70 degrees by 10. By the distance.
+/// The shipped uniform travelling wave for a fraction of a second. The search space: "amplitude", 10 to 60 degrees by
+/// 10, "frequency", 0.5 to 2 Hz by 0.5, "phase_difference", 40 to 70 degrees by 10. The score is the distance.
 [[nodiscard]] Experiment small_experiment(double duration_s = 0.3);
 
 /// The same with trials that differ by friction, so that the outcome depends on the seed.
@@ -28,8 +28,8 @@ namespace proleg::optimize {
 /// Any candidate.
 [[nodiscard]] Candidate random_candidate(const Experiment& experiment, std::mt19937& random);
 
-/// Made up, in no time: any numbers, but the same for the same task; the number counts only if the experiment's outcome
-/// depends on the seed. Racing gives up what is below its limit.
+/// A made-up result without a simulation: always the same for the same task. It depends on run, number and trial only
+/// if the experiment's outcome depends on the seed. Racing gives up what is below its limit.
 [[nodiscard]] TrialResult made_up_trial(const Experiment& experiment, const Task& task);
 
 /// Workers without processes, which finish in any order and sometimes let wait() return without a result.
@@ -60,7 +60,7 @@ class MadeUpWorkers final : public Workers {
   std::vector<Task> started_;
 };
 
-/// Bit patterns of numbers, with texts and flags; but for the time that it took, which is nobody's promise.
+/// Bit patterns of the numbers, with texts and flags. Without wall_s, which does not repeat.
 [[nodiscard]] std::string exact(const TrialResult& result);
 [[nodiscard]] std::string exact(const Evaluation& evaluation);
 

@@ -21,7 +21,7 @@ class StoreFile : public testing::Test {
                               const std::string& build = "build 1") const {
     return std::make_unique<Store>(path_, experiment, build, opening);
   }
-  /// The message of the refusal.
+  /// The message of the error.
   [[nodiscard]] std::string refused(Store::Opening opening, const Experiment& experiment,
                                     const std::string& build = "build 1") const {
     try {
@@ -48,17 +48,17 @@ class StoreFile : public testing::Test {
   Experiment experiment_ = small_experiment();
 };
 
-TEST_F(StoreFile, ThatIsThereIsNotMadeAgain) {
+TEST_F(StoreFile, ThatExistsIsNotMadeAgain) {
   make();
-  EXPECT_NE(refused(Store::Opening::fresh, experiment_).find("is there already"), std::string::npos);
+  EXPECT_NE(refused(Store::Opening::fresh, experiment_).find("exists already"), std::string::npos);
   std::filesystem::remove(path_);
   write_file("");
-  EXPECT_NE(refused(Store::Opening::fresh, experiment_).find("is there already"), std::string::npos);
+  EXPECT_NE(refused(Store::Opening::fresh, experiment_).find("exists already"), std::string::npos);
   EXPECT_EQ(std::filesystem::file_size(path_), 0U);
 }
 
-TEST_F(StoreFile, ThatIsNotThereIsNotResumed) {
-  EXPECT_NE(not_resumed().find("is not there"), std::string::npos);
+TEST_F(StoreFile, ThatDoesNotExistIsNotResumed) {
+  EXPECT_NE(not_resumed().find("does not exist"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(path_));
 }
 
@@ -95,13 +95,13 @@ TEST_F(StoreFile, OfAnotherBuildIsNotResumed) {
   EXPECT_NE(what.find("'build 2'"), std::string::npos) << what;
 }
 
-TEST_F(StoreFile, OfAnotherExperimentIsNotResumedAndSaysWhatDiffers) {
+TEST_F(StoreFile, OfAnotherExperimentIsNotResumedAndTheMessageNamesTheDifferences) {
   make();
   const auto differs = [this](const std::function<void(Experiment&)>& change) {
     Experiment other = small_experiment();
     change(other);
     const std::string what = refused(Store::Opening::resume, other);
-    const std::string intro = "what differs: ";
+    const std::string intro = "differences: ";
     const std::size_t start = what.find(intro);
     EXPECT_NE(what.find("another experiment"), std::string::npos) << what;
     return start == std::string::npos ? what : what.substr(start + intro.size());
@@ -125,17 +125,17 @@ TEST_F(StoreFile, IsResumedWithAnotherBudgetAndFromAnotherFolder) {
   EXPECT_EQ(not_resumed(), "nothing");
 }
 
-TEST_F(StoreFile, TakesOneWriterAtATime) {
+TEST_F(StoreFile, AllowsOneWriterAtATime) {
   {
     const std::unique_ptr<Store> first = open(Store::Opening::fresh, experiment_);
-    EXPECT_NE(not_resumed().find("another program is writing into it"), std::string::npos);
+    EXPECT_NE(not_resumed().find("another program is writing to it"), std::string::npos);
     first->save(Task{}, 1, {}, 0);  // the refusal took no lock away
-    EXPECT_NE(not_resumed().find("another program is writing into it"), std::string::npos);
+    EXPECT_NE(not_resumed().find("another program is writing to it"), std::string::npos);
   }
   EXPECT_EQ(not_resumed(), "nothing");
 }
 
-TEST_F(StoreFile, IsLeftToSqliteWhichLocksItToo) {
+TEST_F(StoreFile, HasNoLockOfOursOnTheFileThatSqliteLocks) {
   const std::unique_ptr<Store> store = open(Store::Opening::fresh, experiment_);
   const int file = ::open(path_.c_str(), O_RDWR | O_CLOEXEC);
   ASSERT_GE(file, 0);
@@ -163,11 +163,11 @@ TEST_F(StoreFile, OfAProcessKilledWhileItWasMadeIsMadeAgain) {
   EXPECT_FALSE(std::filesystem::exists(path_.string() + ".new"));
 }
 
-/// A child process that saves trials until it is stopped, and tells the number of each when it is saved.
+/// A child process that saves trials until it is stopped, and reports each one that it has saved.
 class StoreOfAnotherProcess : public StoreFile {
  protected:
-  /// prepare: done in the child. Returns how many were saved; kills the child after `enough` of them. outcome: what the
-  /// child said at its end.
+  /// prepare: runs in the child. Returns how many were saved; kills the child after `enough` of them. outcome: the last
+  /// message of the child.
   std::uint32_t save(const std::function<void()>& prepare, std::uint32_t enough, std::string& outcome) {
     int ends[2];
     if (pipe(ends) != 0) {
@@ -216,7 +216,7 @@ class StoreOfAnotherProcess : public StoreFile {
     const std::size_t evaluations = store->evaluations(0).size();
     EXPECT_GE(evaluations, count);
     EXPECT_LE(evaluations, count + 1);
-    // And goes on.
+    // More can be saved.
     store->save({0, count + 1, 0, {1, 2, 3}, {}}, 1, {}, 0);
     EXPECT_TRUE(store->find({0, count + 1, 0, {1, 2, 3}, {}}));
   }
@@ -242,7 +242,7 @@ TEST_F(StoreOfAnotherProcess, OnAFullDiskKeepsWhatWasSaved) {
         setrlimit(RLIMIT_FSIZE, &limit);
       },
       1'000'000, outcome);
-  EXPECT_EQ(outcome, path_.string() + ": no room left on the disk; what was evaluated is kept");
+  EXPECT_EQ(outcome, path_.string() + ": no space left on the disk; all evaluations until now are kept");
   EXPECT_GT(saved, 10U);
   expect_trials(saved);
 }

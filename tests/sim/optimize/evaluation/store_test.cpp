@@ -41,7 +41,7 @@ class StoreTest : public testing::Test {
   [[nodiscard]] std::unique_ptr<Store> fresh() { return open(Store::Opening::fresh); }
   [[nodiscard]] std::unique_ptr<Store> resumed() { return open(Store::Opening::resume); }
 
-  /// The one value that a query has, for somebody else who looks into the file.
+  /// The one value of a query, as another program reads it from the file.
   [[nodiscard]] std::string ask(const std::string& sql) const {
     Database database(path_, SQLITE_OPEN_READONLY);
     Statement statement(database, sql);
@@ -81,7 +81,7 @@ TEST_F(StoreTest, GivesTrialsBackToTheLastBit) {
   EXPECT_EQ(ask("SELECT seed FROM trial WHERE run = 0 AND number = 0"), "18446744073709551615");
 }
 
-TEST_F(StoreTest, FindsThatVeryTaskOnly) {
+TEST_F(StoreTest, FindsExactlyThatTask) {
   const std::unique_ptr<Store> store = fresh();
   const Task task{1, 5, 2, {1, 2, 3}, 0.5};
   store->save(task, 1, any_result(random_), 0);
@@ -93,7 +93,7 @@ TEST_F(StoreTest, FindsThatVeryTaskOnly) {
   }
 }
 
-TEST_F(StoreTest, ReplacesAPredictionThatDidNotComeTrue) {
+TEST_F(StoreTest, ReplacesAWrongPrediction) {
   const std::unique_ptr<Store> store = fresh();
   const Task wrong{0, 5, 0, {1, 2, 3}, {}};
   const Task right{0, 5, 0, {3, 2, 1}, {}};
@@ -150,7 +150,7 @@ TEST_F(StoreTest, IsReadableForAPersonWhileItIsOpen) {
             std::string::npos);
 }
 
-TEST_F(StoreTest, IsNotStoppedByAReaderThatTakesItsTime) {
+TEST_F(StoreTest, IsNotBlockedByASlowReader) {
   const std::unique_ptr<Store> store = fresh();
   Database reader(path_, SQLITE_OPEN_READONLY);
   reader.execute("BEGIN; SELECT count(*) FROM trial");
@@ -169,7 +169,7 @@ TEST_F(StoreTest, KnowsWhyARunEnded) {
   EXPECT_EQ(store->ending(1), std::nullopt);
 }
 
-TEST_F(StoreTest, TakesNamesThatSqlHasForItselfOrThatOccurTwice) {
+TEST_F(StoreTest, AcceptsNamesThatSqlReservesOrThatOccurTwice) {
   const std::vector<std::string> names{"distance", "Run", "select", "a\"b", "score distance", "A\"B"};
   experiment_.space.dimensions.resize(names.size(), experiment_.space.dimensions[0]);
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -183,7 +183,7 @@ TEST_F(StoreTest, TakesNamesThatSqlHasForItselfOrThatOccurTwice) {
   EXPECT_EQ(ask("SELECT \"A\"\"B_\" FROM evaluation"), "60.0");
 }
 
-TEST_F(StoreTest, TakesMoreDimensionsThanATableHasColumns) {
+TEST_F(StoreTest, AcceptsMoreDimensionsThanATableHasColumns) {
   experiment_.space.dimensions.resize(3000, experiment_.space.dimensions[0]);
   for (std::size_t i = 0; i < 3000; ++i) {
     experiment_.space.dimensions[i].name = "parameter " + std::to_string(i);

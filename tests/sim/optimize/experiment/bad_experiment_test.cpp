@@ -1,4 +1,4 @@
-// Each case breaks the small experiment in one place and says what the one line of the message must be.
+// Each case breaks the small experiment in one place and gives the one line that the message must be.
 
 #include <gtest/gtest.h>
 
@@ -108,9 +108,9 @@ const auto configs = testing::Values(
     BadExperiment{"AllJoints", "allJoints=\"0\"", "allJoints=\"2\"",
                   "20: found allJoints '2' in <genomeConfig>, expected a whole number from 0 to 1"},
     BadExperiment{"GenomeType", first_config_types, "genomeType=\"2\"",
-                  "12: found genomeType '2' in <genomeConfig>, expected '1', the only one that is known"},
+                  "12: found genomeType '2' in <genomeConfig>, expected '1', the only known value"},
     BadExperiment{"ValueType", first_config_types, "valueType=\"0\"",
-                  "12: found valueType '0' in <genomeConfig>, expected '1', the only one that is known"},
+                  "12: found valueType '0' in <genomeConfig>, expected '1', the only known value"},
     BadExperiment{"ValueSpace", first_config_types, "valueSpace=\"2\"",
                   "12: found valueSpace '2' in <genomeConfig>, expected a whole number from 0 to 1"},
     BadExperiment{"NoUniform", "<uniform>0</uniform>", "", "12: found no <uniform> in <genomeConfig>, expected one"},
@@ -136,18 +136,18 @@ const auto configs = testing::Values(
     BadExperiment{"LowerOutOfRange", "<lowerBounds>10", "<lowerBounds>-0.5",
                   "14: found '-0.5' for parameter 'amplitude', expected a number from 0 to 90 deg"},
     BadExperiment{"StepZero", "<boundsIncrements>0.5", "<boundsIncrements>0",
-                  "15: found a step of 0 in <boundsIncrements>, expected one above 0"},
+                  "15: found a step of 0 in <boundsIncrements>, expected a step above 0"},
     BadExperiment{"StepNegative", "<boundsIncrements>0.5", "<boundsIncrements>-0.5",
-                  "15: found a step of -0.5 in <boundsIncrements>, expected one above 0"},
+                  "15: found a step of -0.5 in <boundsIncrements>, expected a step above 0"},
     BadExperiment{"StepThatDoesNotFit", "<boundsIncrements>0.5", "<boundsIncrements>0.7",
                   "15: found a step of 0.7 that does not fit from 10 to 40, expected a step that fits, or an upper "
                   "bound of 39.4 or 40.1"},
     BadExperiment{"TooManyValues", "<boundsIncrements>0.5", "<boundsIncrements>0.00003",
-                  "15: found more than 1000000 values from 10 to 40 in steps of 0.00003, expected at most that"},
+                  "15: found more than 1000000 values from 10 to 40 in steps of 0.00003, expected at most 1000000"},
     BadExperiment{"NotANumber", "<lowerBounds>10", "<lowerBounds>nan",
                   "14: found 'nan' in <lowerBounds>, expected a decimal number below 10^10 with at most 15 places"},
     BadExperiment{"NoBound", "<lowerBoundTypes>1", "<lowerBoundTypes>0",
-                  "16: found '0' in <lowerBoundTypes>, expected a bound, which is needed here: 1 (inclusive) or 2 "
+                  "16: found '0' in <lowerBoundTypes>, expected a bound (0 is none): 1 (inclusive) or 2 "
                   "(exclusive)"},
     BadExperiment{"UnknownBound", "<upperBoundTypes>1", "<upperBoundTypes>3",
                   "17: found '3' in <upperBoundTypes>, expected 1 (inclusive) or 2 (exclusive)"},
@@ -157,7 +157,7 @@ const auto configs = testing::Values(
                   "<upperBoundTypes>1</upperBoundTypes>",
                   "<upperBounds>10.5</upperBounds><lowerBounds>10</lowerBounds><boundsIncrements>0.5</boundsIncrements>"
                   "<lowerBoundTypes>2</lowerBoundTypes><upperBoundTypes>2</upperBoundTypes>",
-                  "13: found no value between the bounds, as they are exclusive, expected at least one"},
+                  "13: found no value between the exclusive bounds, expected at least one"},
     BadExperiment{"BoundsOfTooManyJoints", "<upperBounds>40", "<upperBounds>40 40 40",
                   "13: found 3 numbers in <upperBounds>, expected one number, or 2, one for each joint"},
     BadExperiment{"BoundsOfJointsForAUniformParameter",
@@ -216,9 +216,9 @@ const auto fitness = testing::Values(
                   "26: found attribute 'measure' and <term>s in <objective>, expected one or the other"},
     BadExperiment{"MeasureTwice", objective,
                   "<objective><term measure=\"slip\"/>\n<term measure=\"slip\"/></objective>",
-                  "27: found a second term of measure 'slip', expected one"},
+                  "27: found a second term with measure 'slip', expected one"},
     BadExperiment{"WeightZero", objective, "<objective><term measure=\"slip\" weight=\"0\"/></objective>",
-                  "26: found weight 0 in <term>, expected another weight, or no such term"},
+                  "26: found weight 0 in <term>, expected a weight other than 0, or no such term"},
     BadExperiment{"WeightInfinite", objective, "<objective><term measure=\"slip\" weight=\"inf\"/></objective>",
                   "26: found weight 'inf' in <term>, expected a number from -1e+09 to 1e+09"},
     BadExperiment{"Goal", objective, "<objective measure=\"speed\" goal=\"most\"/>",
@@ -239,8 +239,8 @@ const auto evaluation = testing::Values(
     BadExperiment{"NoTrial", trials, "<trials count=\"0\">",
                   "32: found count '0' in <trials>, expected a whole number from 1 to 1000"},
     BadExperiment{
-        "TrialsThatAreAllAlike", "<friction>0.1</friction>\n      <latency unit=\"ms\">20</latency>", "",
-        "32: found 2 trials that are all alike, expected a spread of <friction>, <mass>, <servoGain>, <latency> "
+        "TrialsThatAreAllEqual", "<friction>0.1</friction>\n      <latency unit=\"ms\">20</latency>", "",
+        "32: found 2 trials that are all equal, expected a spread of <friction>, <mass>, <servoGain>, <latency> "
         "or <contactNoise>, or noise in the scenario"},
     BadExperiment{"Aggregate", "aggregate=\"mean\"", "aggregate=\"best\"",
                   "32: found aggregate 'best' in <trials>, expected 'mean' or 'worst'"},
@@ -282,7 +282,7 @@ INSTANTIATE_TEST_SUITE_P(Method, BadExperimentFile, method_settings, name_of_cas
 INSTANTIATE_TEST_SUITE_P(Fitness, BadExperimentFile, fitness, name_of_case);
 INSTANTIATE_TEST_SUITE_P(Evaluation, BadExperimentFile, evaluation, name_of_case);
 
-TEST(BadExperiments, AnotherOutermostTagIsRefusedWithThoseThatThereAre) {
+TEST(BadExperiments, AWrongOutermostTagIsRejectedWithTheKnownOnes) {
   MemoryFiles files = small_experiment();
   files.texts["top.optimise.xml"] = "<hillClimbing/>";
   EXPECT_EQ(message_of(files),
@@ -290,7 +290,7 @@ TEST(BadExperiments, AnotherOutermostTagIsRefusedWithThoseThatThereAre) {
             "<greatDeluge>, <cmaEs>, <differentialEvolution>, <nsga2>, <pagmo>");
 }
 
-TEST(BadExperiments, AFileThatIsNotThereIsNamed) {
+TEST(BadExperiments, AMissingFileIsNamed) {
   MemoryFiles files;
   EXPECT_EQ(message_of(files),
             "top.optimise.xml: found no file that can be read, expected a readable file of at most 16 MiB");
@@ -340,7 +340,7 @@ TEST(BadExperiments, MoreObjectivesThanEightAreRefused) {
     nine += "<objective measure=\"speed\" name=\"" + std::to_string(i) + "\"/>";
   }
   files.replace("top.optimise.xml", objective, nine);
-  EXPECT_EQ(message_of(files), "top.optimise.xml:26: found more than 8 objectives, expected at most that");
+  EXPECT_EQ(message_of(files), "top.optimise.xml:26: found more than 8 objectives, expected at most 8");
 }
 
 TEST(BadExperiments, MoreValuesThanTenMillionInAllAreRefused) {
@@ -365,8 +365,8 @@ TEST(BadExperiments, MoreValuesThanTenMillionInAllAreRefused) {
                                     parameters + "</registeredParameters></properties>\n<genome>" + genome +
                                     "</genome></cmaEs>";
   EXPECT_EQ(message_of(files),
-            "top.optimise.xml:2: found more than 1000 dimensions or 10000000 values, expected at "
-            "most that in all");
+            "top.optimise.xml:2: found more than 1000 dimensions or 10000000 values in all, expected at "
+            "most that");
 }
 
 TEST(BadExperiments, EveryTruncationIsRefused) {

@@ -78,7 +78,7 @@ double correlation(const std::vector<double>& left, const std::vector<double>& r
   return product / std::sqrt(left_squares * right_squares);
 }
 
-TEST(Perturbation, ScalesEveryFrictionByOneFactorAlsoTheOneThatNobodyGave) {
+TEST(Perturbation, ScalesEveryFrictionByOneFactorEvenTheUnspecifiedOne) {
   Spread spread;
   spread.friction = 0.3;
   const std::vector<double> factors = expect_even_factors(spread, 0.3, floor_friction);
@@ -87,7 +87,7 @@ TEST(Perturbation, ScalesEveryFrictionByOneFactorAlsoTheOneThatNobodyGave) {
     const double factor = factors[static_cast<std::size_t>(i)];
     EXPECT_DOUBLE_EQ(tail_friction(scenario), 0.5 * factor);
     EXPECT_DOUBLE_EQ(unspecified_friction(scenario), sim::default_friction * factor);
-    EXPECT_FALSE(scenario.robot.links[0].geometries[0].friction) << "whose partner's friction must go on to hold";
+    EXPECT_FALSE(scenario.robot.links[0].geometries[0].friction) << "it uses the friction of the other surface";
   }
 }
 

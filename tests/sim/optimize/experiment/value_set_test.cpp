@@ -1,5 +1,5 @@
-// Decimal numbers without rounding. The oracle for raw values is parse_decimal, which is tested against rational
-// arithmetic of its own.
+// Decimal numbers without rounding. The oracle for raw values is parse_decimal, which has its own tests against
+// rational arithmetic.
 
 #include <gtest/gtest.h>
 

@@ -20,17 +20,17 @@ using proleg::TemporaryFolder;
 
 constexpr const char* build = "test";
 
-bool is_rank_0() { return mpi_place().value().rank == 0; }
+bool is_rank_0() { return mpi_rank().value().rank == 0; }
 
-/// Requires something to be so.
-void expect(bool so, const std::string& what) {
-  if (!so) {
-    throw std::runtime_error("not as it should be: " + what);
+/// Throws unless it holds.
+void expect(bool holds, const std::string& what) {
+  if (!holds) {
+    throw std::runtime_error("expected " + what);
   }
 }
 
-/// Candidates that depend on the scores so far; of what is expected, half comes true. With the outcome that each must
-/// have.
+/// Evaluates candidates that depend on the scores so far, with predictions of which half are right, and compares each
+/// outcome.
 void search_and_compare(const Experiment& experiment, Workers& workers) {
   std::set<std::uint32_t> used;
   Evaluator evaluator(experiment, 0, workers, nullptr, {}, {});
@@ -63,7 +63,7 @@ void equals_local_workers() {
   expect(workers.count() == 4, "4 workers");
   expect(workers.idle() == 4, "4 idle workers");
   search_and_compare(experiment, workers);
-  // Each of them gets tasks and is told apart.
+  // Each of them gets tasks and has its own number.
   while (workers.idle() < 4) {
     static_cast<void>(workers.wait(std::chrono::milliseconds(100)));
   }
@@ -136,10 +136,10 @@ void repeats_the_task_of_a_killed_worker() {
   expect(messages.size() == 4 && from_others == 3, "four messages, one of each rank");
 }
 
-void goes_on_without_a_rank_that_stands_still() {
+void continues_without_a_rank_that_stopped() {
   const Experiment experiment = noisy_experiment();
   const TaskLimit limit{std::chrono::milliseconds(100), 0.0};
-  // Only time counts in which rank 0 waits for others.
+  // Only time within wait() of rank 0 counts.
   const RunTask slow = [](const Experiment& its, const Task& task) {
     usleep(10'000);
     return made_up_trial(its, task);
@@ -148,7 +148,7 @@ void goes_on_without_a_rank_that_stands_still() {
   const std::filesystem::path pid_file =
       std::filesystem::temp_directory_path() / ("proleg-mpi-" + std::to_string(getppid()));
   if (!is_rank_0()) {
-    if (mpi_place().value().rank == 2) {
+    if (mpi_rank().value().rank == 2) {
       std::ofstream(pid_file) << getpid();
       std::signal(SIGALRM, [](int) { raise(SIGSTOP); });
       ualarm(300'000, 0);
@@ -159,7 +159,7 @@ void goes_on_without_a_rank_that_stands_still() {
   MpiWorkers workers(experiment, build, slow, limit);
   std::vector<std::string> messages;
   std::set<std::uint64_t> open;
-  const auto take = [&] {
+  const auto receive = [&] {
     if (const auto done = workers.wait(std::chrono::milliseconds(20))) {
       expect(open.erase(done->ticket) == 1, "one result of each task");
     }
@@ -171,28 +171,28 @@ void goes_on_without_a_rank_that_stands_still() {
       workers.start(ticket, {0, ticket, 0, {1, 1, 1}, {}});
       open.insert(ticket);
     }
-    take();
+    receive();
     messages = workers.messages();
   }
   expect(messages.size() == 1 && messages[0].find("rank 2 has not answered") == 0, messages[0]);
   expect(workers.count() == 3, "three workers");
   while (!open.empty()) {
     expect(std::chrono::steady_clock::now() < end, "all results within 30 s");
-    take();
+    receive();
   }
   pid_t stopped = 0;
   std::ifstream(pid_file) >> stopped;
   std::filesystem::remove(pid_file);
-  kill(stopped, SIGCONT);  // it, too, says goodbye
+  kill(stopped, SIGCONT);  // it must answer stop, too
 }
 
-void refuses_another_experiment() {
+void rejects_another_experiment() {
   Experiment experiment = small_experiment();
-  if (mpi_place().value().rank == 2) {
+  if (mpi_rank().value().rank == 2) {
     experiment.seed = 2;
   }
   if (!is_rank_0()) {
-    expect(!serve_mpi(experiment, build), "that all have the same experiment is not so");
+    expect(!serve_mpi(experiment, build), "an experiment that differs");
     return;
   }
   try {
@@ -201,10 +201,10 @@ void refuses_another_experiment() {
     expect(std::string(error.what()).find("rank 2 has experiment") == 0, error.what());
     return;
   }
-  expect(false, "it was not refused");
+  expect(false, "an error");
 }
 
-void tells_of_a_task_that_cannot_be_done() {
+void reports_a_task_that_cannot_be_done() {
   const Experiment experiment = small_experiment();
   const RunTask deadly = [](const Experiment& its, const Task& task) {
     if (task.number == 17) {
@@ -217,7 +217,7 @@ void tells_of_a_task_that_cannot_be_done() {
     return;
   }
   MpiWorkers workers(experiment, build, deadly);
-  workers.start(0, {0, 17, 0, {}, {}});  // the ranks above 0 are asked first
+  workers.start(0, {0, 17, 0, {}, {}});  // ranks above 0 get tasks first
   try {
     while (!workers.wait(std::chrono::milliseconds(100))) {
     }
@@ -225,7 +225,7 @@ void tells_of_a_task_that_cannot_be_done() {
     expect(std::string(error.what()).find("rank 1: evaluation 17 of run 0") == 0, error.what());
     return;
   }
-  expect(false, "there was no error");
+  expect(false, "an error");
 }
 
 }  // namespace
@@ -239,12 +239,12 @@ int main(int argc, char** argv) {
       ends_in_the_middle_of_tasks();
     } else if (subject == "RepeatsTheTaskOfAKilledWorker") {
       repeats_the_task_of_a_killed_worker();
-    } else if (subject == "GoesOnWithoutARankThatStandsStill") {
-      goes_on_without_a_rank_that_stands_still();
-    } else if (subject == "RefusesAnotherExperiment") {
-      refuses_another_experiment();
-    } else if (subject == "TellsOfATaskThatCannotBeDone") {
-      tells_of_a_task_that_cannot_be_done();
+    } else if (subject == "ContinuesWithoutARankThatStopped") {
+      continues_without_a_rank_that_stopped();
+    } else if (subject == "RejectsAnotherExperiment") {
+      rejects_another_experiment();
+    } else if (subject == "ReportsATaskThatCannotBeDone") {
+      reports_a_task_that_cannot_be_done();
     } else {
       throw std::runtime_error("there is no test '" + subject + "'");
     }

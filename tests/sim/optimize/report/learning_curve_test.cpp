@@ -54,7 +54,7 @@ TEST(LearningCurve, MarksWhatWasGivenUpAndWhatFailed) {
   EXPECT_TRUE(picture.has_text("1 failed"));
 }
 
-TEST(LearningCurve, FewScoresFarOffDoNotHideTheOthers) {
+TEST(LearningCurve, IsScaledForMostScoresIfFewAreFarOff) {
   const Experiment experiment = experiment_of({objective_of(sim::Measure::cost_of_transport, Goal::minimise)});
   std::vector<Evaluation> evaluations;
   for (std::uint64_t i = 0; i < 200; ++i) {
@@ -63,7 +63,7 @@ TEST(LearningCurve, FewScoresFarOffDoNotHideTheOthers) {
     evaluations.back().measures[sim::Measure::cost_of_transport] = cost;
   }
   Picture picture(draw_learning_curve(experiment, evaluations));
-  EXPECT_TRUE(picture.has_text("4 beyond the picture"));
+  EXPECT_TRUE(picture.has_text("4 outside the axis"));
   EXPECT_TRUE(picture.has_text("10"));
   EXPECT_FALSE(picture.has_text("00000"));
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Made-up experiments and evaluations, and a look at pictures.
+// Made-up experiments and evaluations, and checks of pictures.
 
 #include <gtest/gtest.h>
 #include <tinyxml2.h>
@@ -85,7 +85,7 @@ namespace proleg::optimize {
   return method;
 }
 
-/// What a picture consists of. Looks whether it is XML and all its coordinates are on the page.
+/// The contents of a picture. Checks that it is XML and that all its coordinates are on the page.
 class Picture {
  public:
   explicit Picture(const std::string& svg) {

@@ -16,7 +16,7 @@ Evaluation with_scores(std::uint64_t number, std::vector<double> scores, Candida
   return evaluation;
 }
 
-/// The definition, word for word: not beaten by any; of equal candidates with equal scores the first.
+/// The definition, literally: no other dominates it; of equal candidates with equal scores the first.
 std::vector<std::size_t> front_by_definition(const std::vector<Objective>& objectives,
                                              const std::vector<Evaluation>& evaluations) {
   const auto beats = [&](const Evaluation& a, const Evaluation& b) {

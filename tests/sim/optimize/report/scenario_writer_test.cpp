@@ -31,7 +31,7 @@ void describe(std::ostream& out, const std::vector<sim::Geometry>& geometries) {
   }
 }
 
-/// All of a scenario but where it came from, in digits that tell any two doubles apart.
+/// All of a scenario, except its sources, in digits that distinguish all doubles.
 std::string description_of(const sim::Scenario& scenario) {
   std::ostringstream out;
   out << std::setprecision(17) << "robot " << scenario.robot.name << " " << scenario.robot.servo.gain << " "

@@ -7,7 +7,7 @@
 namespace proleg::optimize {
 namespace {
 
-/// A table taken apart again: for each line its cells by the names of the header.
+/// A table parsed again: for each line its cells by the names of the header.
 std::vector<std::map<std::string, std::string>> parsed(const std::string& table) {
   const auto cells = [](const std::string& line) {
     std::vector<std::string> result{""};

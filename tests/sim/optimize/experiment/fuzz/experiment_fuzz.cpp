@@ -1,5 +1,5 @@
-// Reads arbitrary bytes as an experiment file beside a scenario that is valid. Whatever the bytes, the reader answers
-// with an experiment that can run or with an InputError of one line.
+// Reads arbitrary bytes as an experiment file beside a valid scenario. For all bytes the reader returns an experiment
+// that can run, or throws an InputError of one line.
 
 #include <algorithm>
 #include <cmath>

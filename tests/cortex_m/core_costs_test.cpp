@@ -70,7 +70,7 @@ TEST_P(StackOfKernel, StaysWithinItsComputedBoundAndThatWithin512Bytes) {
   Machine machine(image, GetParam());
   const std::map<std::string, std::size_t> bounds = read_bounds();
   const std::vector<StackUse> uses = measure_stack(machine);
-  EXPECT_EQ(uses.size(), 8U);
+  EXPECT_EQ(uses.size(), 6U);
   for (const StackUse& use : uses) {
     ASSERT_TRUE(bounds.contains(use.function)) << use.function;
     const std::size_t bound = bounds.at(use.function);

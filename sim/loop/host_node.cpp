@@ -1,19 +1,11 @@
 #include "sim/loop/host_node.hpp"
 
-#include <iomanip>
-#include <sstream>
-
 #include "shared/canopen/object_name.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shared/kernel/fingerprint.hpp"
 
 namespace proleg::sim {
 namespace {
-
-std::string hexadecimal(std::uint32_t value, int digits) {
-  std::ostringstream text;
-  text << "0x" << std::hex << std::uppercase << std::setw(digits) << std::setfill('0') << value;
-  return text.str();
-}
 
 std::string in_text(canopen::Address address) {
   return hexadecimal(address.index, 4) + ":" + std::to_string(address.sub);

@@ -2,7 +2,8 @@
 
 namespace proleg::sim {
 
-NativeModule::NativeModule(Bus& bus, const firmware::ModuleIdentity& board, Crystal crystal, Sensors sensors, Readings readings)
+NativeModule::NativeModule(Bus& bus, const firmware::ModuleIdentity& board, Crystal crystal, Sensors sensors,
+                           Readings readings)
     : crystal_(crystal),
       sensors_(std::move(sensors)),
       meters_(std::move(readings)),

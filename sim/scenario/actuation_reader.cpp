@@ -150,7 +150,7 @@ void read_actuation(const XmlDocument& document, Scenario& scenario, const std::
     slot.algorithm = &read_algorithm(module);
     slot.group = read_group(module, scenario.robot);
     check_with_kernel(module, scenario.kernel);
-    if (slot.group == JointMask()) {
+    if (slot.group.empty()) {
       remark_no_effect(scenario.remarks, module, "it drives no joint");
     }
     read_parameters(module, slot_number, scenario);

@@ -11,7 +11,6 @@
 namespace proleg::sim {
 namespace {
 
-constexpr Range directions{-1e4, 1e4, ""};
 constexpr Range torques{1e-9, 1e6, "Nm"};
 constexpr Range speeds{1e-9, 1e6, "rad/s"};
 constexpr Range limits_in_degrees{-360.0, 360.0, "degrees"};

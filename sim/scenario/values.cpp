@@ -14,7 +14,6 @@ namespace proleg::sim {
 namespace {
 
 constexpr Range angles{-1e4, 1e4, "degrees"};
-constexpr Range directions{-1e4, 1e4, ""};
 constexpr double min_direction = 1e-6;
 
 std::string described(const Range& range) {

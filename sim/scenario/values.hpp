@@ -25,6 +25,7 @@ struct Range {
   std::string_view unit;
 };
 
+inline constexpr Range directions{-1e4, 1e4, ""};  ///< each component, also of a quaternion
 inline constexpr Range coordinates{-1e4, 1e4, "m"};
 inline constexpr Range lengths{1e-6, 1e4, "m"};
 inline constexpr Range masses{1e-6, 1e4, "kg"};

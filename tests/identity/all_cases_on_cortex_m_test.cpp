@@ -1,5 +1,5 @@
-// All cases on both Cortex-M: the one of the modules, and the smallest, which multiplies 32 by 32 bits to 32 and does the
-// rest in software. cortex_m_test.cpp plays a few.
+// All cases on both Cortex-M: the one of the modules, and the smallest, which multiplies 32 by 32 bits to 32 and does
+// the rest in software. cortex_m_test.cpp plays a few.
 
 #include <gtest/gtest.h>
 

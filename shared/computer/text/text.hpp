@@ -63,6 +63,6 @@ template <typename Integer>
 [[nodiscard]] std::string exact_text(double value);
 
 /// "0x1F", with at least that many digits.
-[[nodiscard]] std::string hexadecimal(std::uint32_t value, unsigned min_digits);
+[[nodiscard]] std::string hexadecimal(std::uint32_t value, unsigned min_digits = 1);
 
 }  // namespace proleg

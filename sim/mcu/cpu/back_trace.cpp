@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "sim/mcu/cpu/elf_image.hpp"
+#include "sim/mcu/cpu/exception_frame.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -19,9 +20,6 @@ namespace {
 constexpr unsigned sp = 13;
 constexpr unsigned lr = 14;
 constexpr unsigned pc = 15;
-constexpr std::uint32_t frame_size = 32;
-constexpr std::uint32_t frame_was_aligned = 1U << 9U;
-constexpr std::uint32_t exception_number_mask = 0x1FF;
 constexpr std::uint32_t return_to_process_stack = 4;
 constexpr std::uint32_t frame_without_fpu = 0x10;
 

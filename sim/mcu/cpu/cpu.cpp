@@ -6,10 +6,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "shared/computer/text/text.hpp"
 #include "shared/fixed/random.hpp"
 #include "sim/mcu/cpu/engine.hpp"
+#include "sim/mcu/cpu/exception_frame.hpp"
 #include "sim/mcu/cpu/exceptions.hpp"
-#include "sim/mcu/cpu/hexadecimal.hpp"
 #include "sim/mcu/cpu/nvic.hpp"
 #include "sim/mcu/cpu/system_control.hpp"
 
@@ -152,7 +153,6 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
   }
 
   void set_core_register(unsigned number, std::uint32_t value) {
-    constexpr std::uint32_t thumb_state = 1U << 24U;
     constexpr std::uint32_t number_mask = 0x1FF;
     engine_.write(named(number), number == 16 ? (value & ~number_mask) | thumb_state | exceptions_.current() : value);
   }

@@ -9,17 +9,12 @@
 #include <fstream>
 #include <iterator>
 #include <memory>
-#include <sstream>
 #include <type_traits>
+
+#include "shared/computer/text/text.hpp"
 
 namespace proleg::sim {
 namespace {
-
-std::string hexadecimal(std::uint32_t value) {
-  std::ostringstream text;
-  text << "0x" << std::hex << value;
-  return text.str();
-}
 
 std::string demangled(const std::string& name) {
   int status = 0;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "sim/mcu/cpu/cpu.hpp"
+#include "sim/mcu/cpu/exception_frame.hpp"
 #include "sim/mcu/cpu/memory_instruction.hpp"
 #include "sim/mcu/cpu/thumb.hpp"
 
@@ -23,8 +24,6 @@ constexpr std::uint32_t distance_size = 4 * 1024 * 1024;
 /// Where Unicorn ends a run by itself; there is no memory, so that only a program that jumped to an invalid address
 /// gets there.
 constexpr std::uint32_t never_executed = 0;
-
-constexpr std::uint32_t thumb_state = 1U << 24U;
 
 // Numbers of UC_HOOK_INTR.
 constexpr std::uint32_t supervisor_call_number = 2;

@@ -3,17 +3,14 @@
 #include <cstring>
 #include <utility>
 
-#include "sim/mcu/cpu/hexadecimal.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/mcu/cpu/exception_frame.hpp"
 
 namespace proleg::sim {
 namespace {
 
 using enum CoreRegister;
 
-constexpr std::uint32_t frame_size = 32;
-constexpr std::uint32_t thumb_state = 1U << 24U;
-constexpr std::uint32_t frame_was_aligned = 1U << 9U;
-constexpr std::uint32_t exception_number_mask = 0x1FF;
 constexpr std::uint32_t it_state_mask = 0x0600'FC00;
 constexpr std::uint32_t unprivileged = 1;
 constexpr std::uint32_t process_stack = 2;

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "shared/computer/text/text.hpp"
 #include "sim/mcu/cpu/cpu.hpp"
-#include "sim/mcu/cpu/hexadecimal.hpp"
 
 namespace proleg::sim {
 namespace {

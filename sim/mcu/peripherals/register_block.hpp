@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim/mcu/cpu/hexadecimal.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/mcu/peripherals/peripheral.hpp"
 
 namespace proleg::sim {

@@ -38,7 +38,7 @@ unsigned read_slot(const XmlElement& element, const sim::Scenario& scenario) {
   if (slots.size() > 1) {
     element.refuse("several modules " + in_quotes(module), "the number of one of " + listed(slot_names(scenario)));
   }
-  if (scenario.kernel.slots[slots.front()].group == JointMask()) {
+  if (scenario.kernel.slots[slots.front()].group.empty()) {
     element.refuse("module " + in_quotes(module) + ", which drives no joint", "one that does");
   }
   return slots.front();

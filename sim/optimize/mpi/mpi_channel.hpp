@@ -2,6 +2,7 @@
 
 #include <boost/mpi/communicator.hpp>
 #include <boost/mpi/environment.hpp>
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,10 @@
 #include "sim/optimize/experiment/experiment.hpp"
 
 namespace proleg::optimize {
+
+/// Interval of polling MPI: waiting for MPI and for a local worker at once would use a whole core. A simulation takes
+/// hundreds of times as long.
+inline constexpr std::chrono::milliseconds poll_interval{1};
 
 /// Kinds of messages between ranks; MPI's tags.
 enum class MpiTag : int {

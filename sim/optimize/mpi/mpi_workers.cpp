@@ -15,8 +15,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// Interval of polling MPI: waiting for MPI and for a local worker at once would use a whole core.
-constexpr milliseconds poll_interval{1};
 /// A rank has its own limit for each try of a task (LocalWorkers) and reports when it gives up. A rank that is silent
 /// for this number of limits is lost.
 constexpr int limits_until_lost = 4;

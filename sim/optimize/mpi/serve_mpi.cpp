@@ -10,9 +10,6 @@
 namespace proleg::optimize {
 namespace {
 
-/// Largest delay of a message of rank 0; a simulation takes hundreds of times as long.
-constexpr std::chrono::milliseconds poll_interval{1};
-
 void serve(const MpiChannel& channel, LocalWorkers& worker) {
   while (true) {
     if (const std::optional<MpiMessage> message = channel.receive()) {

@@ -465,7 +465,9 @@ TEST(RefusedRobot, AModuleWithAWrongSerialNumberIsNamed) {
   scenario.modules[2].serial = 0x1234ABCD;
   EXPECT_EQ(run(scenario, 10).differences, 0U) << "the simulated module has the serial number of the file";
   HardwareOptions options;
-  options.change_board = [](unsigned joint, firmware::ModuleIdentity& board) { board.unique_id[0] ^= joint == 2 ? 1U : 0U; };
+  options.change_board = [](unsigned joint, firmware::ModuleIdentity& board) {
+    board.unique_id[0] ^= joint == 2 ? 1U : 0U;
+  };
   expect_refusal(scenario, options, "node 3 (J3)");
 }
 

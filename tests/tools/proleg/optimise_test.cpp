@@ -96,7 +96,8 @@ class Optimise : public CommandLine {
 
   /// The command that starts proleg with these words four times.
   [[nodiscard]] static std::vector<std::string> under_mpirun(const std::vector<std::string>& words) {
-    // Open MPI leaks memory, some of it in plugins that are unloaded when leaks are counted: no suppression matches them.
+    // Open MPI leaks memory, some of it in plugins that are unloaded when leaks are counted: no suppression matches
+    // them.
     std::vector<std::string> command{"mpirun", "--oversubscribe", "-n", "4", "-x", "ASAN_OPTIONS=detect_leaks=0"};
     if (geteuid() == 0) {
       command.emplace_back("--allow-run-as-root");

@@ -21,8 +21,8 @@ struct Result {
   std::uint32_t appended = 0;      ///< records since the start, each with the next node (126 is followed by 1)
   std::uint32_t failed = 0;        ///< records that were not written, or did not read back as the newest
   std::uint32_t last_failure = 0;  ///< firmware::AppendResult
-  std::uint32_t max_append_us = 0;    
-  std::uint32_t deadlines = 0;     ///< interrupts of TIM5, one a millisecond except during an append
+  std::uint32_t max_append_us = 0;
+  std::uint32_t deadlines = 0;  ///< interrupts of TIM5, one a millisecond except during an append
 };
 
 constexpr unsigned flood_lines = 100;

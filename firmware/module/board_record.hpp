@@ -61,7 +61,7 @@ struct BoardRecord {
 [[nodiscard]] std::array<std::uint8_t, BoardRecord::size> encode(const BoardRecord& record, std::uint32_t sequence);
 
 /// The record with the highest sequence number among those that are right: a known schema version, everything in its
-/// range, the right check sum. Other records are skipped: those that were cut off or damaged, or have an unknown
+/// range, the right checksum. Other records are skipped: those that were cut off or damaged, or have an unknown
 /// schema. Sectors of any size.
 [[nodiscard]] std::optional<BoardRecord> newest(std::span<const std::uint8_t> sector_1,
                                                 std::span<const std::uint8_t> sector_2);

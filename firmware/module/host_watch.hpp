@@ -1,6 +1,6 @@
 #pragma once
 
-#include "shared/can/can_port.hpp"
+#include "firmware/module/timeout.hpp"
 
 namespace proleg::firmware {
 
@@ -11,7 +11,7 @@ class HostWatch {
   /// was received.
   void set(std::uint32_t expected) {
     expected_ = expected;
-    timeout_at_ = never;
+    timeout_.stop();
   }
   [[nodiscard]] std::uint32_t expected() const { return expected_; }
 
@@ -19,24 +19,18 @@ class HostWatch {
   void receive_heartbeat(Microseconds now, std::uint8_t node) {
     const std::uint32_t timeout_ms = expected_ & 0xFFFFU;
     if (timeout_ms != 0 && node == expected_ >> 16U) {
-      timeout_at_ = now + Microseconds{timeout_ms} * 1'000U;
+      timeout_.start(now, Microseconds{timeout_ms} * 1'000U);
     }
   }
   /// Whether a heartbeat of the host was received and the timeout has not passed since.
-  [[nodiscard]] bool is_present() const { return timeout_at_ != never; }
+  [[nodiscard]] bool is_present() const { return timeout_.is_running(); }
   /// True, once, when the timeout has passed.
-  [[nodiscard]] bool poll_timeout(Microseconds now) {
-    if (now < timeout_at_) {
-      return false;
-    }
-    timeout_at_ = never;
-    return true;
-  }
-  [[nodiscard]] Microseconds next_deadline() const { return timeout_at_; }
+  [[nodiscard]] bool poll_timeout(Microseconds now) { return timeout_.poll(now); }
+  [[nodiscard]] Microseconds next_deadline() const { return timeout_.deadline(); }
 
  private:
   std::uint32_t expected_ = 0;
-  Microseconds timeout_at_ = never;
+  Timeout timeout_;
 };
 
 }  // namespace proleg::firmware

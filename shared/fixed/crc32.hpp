@@ -5,7 +5,7 @@
 
 namespace proleg {
 
-/// The check sum of Ethernet (IEEE 802.3, section 3.2.9; CRC-32/ISO-HDLC in the usual lists): polynomial 0x04C11DB7,
+/// The checksum of Ethernet (IEEE 802.3, section 3.2.9; CRC-32/ISO-HDLC in the usual lists): polynomial 0x04C11DB7,
 /// reflected, start and final inversion. It detects accidental changes, not intended ones.
 class Crc32 {
  public:

@@ -345,8 +345,8 @@ void Bus::suspend_passive_senders() {
 }
 
 void Bus::report() {
-  if (trace_) {
-    trace_(current_);
+  if (frame_listener_) {
+    frame_listener_(current_);
   }
   for (Controller* sender : senders_) {
     if (sender->took_part_since(current_.start)) {

@@ -95,8 +95,8 @@ class Bus {
   void set_error_rule(ErrorRule rule) { error_rule_ = std::move(rule); }
 
   /// Called for each frame when it ends without an error, before any listener.
-  using Trace = std::function<void(const Transmission&)>;
-  void set_trace(Trace trace) { trace_ = std::move(trace); }
+  using FrameListener = std::function<void(const Transmission&)>;
+  void set_frame_listener(FrameListener listener) { frame_listener_ = std::move(listener); }
 
   /// Two controllers send one identifier at the same instant. If their frames are equal in every bit they become one
   /// transmission, which both report as sent. If not, that is a fault of the network, and this is called once for
@@ -162,7 +162,7 @@ class Bus {
 
   LossRule loss_rule_;
   ErrorRule error_rule_;
-  Trace trace_;
+  FrameListener frame_listener_;
   CollisionReport collision_report_;
   CollisionRule collision_rule_ = CollisionRule::dominant_wins;
   BusStatistics total_;  ///< since time 0; `busy` with all of the current frame

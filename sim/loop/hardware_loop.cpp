@@ -89,7 +89,7 @@ class HardwareLoop::Implementation {
 
  private:
   void set_bus_rules() {
-    bus_.set_trace([this](const Transmission& transmission) { on_frame(transmission); });
+    bus_.set_frame_listener([this](const Transmission& transmission) { on_frame(transmission); });
     if (options_.losses != nullptr && options_.losses->any()) {
       bus_.set_loss_rule([this](const CanFrame& frame, std::size_t receiver) {
         return state_frames_.is_lost(*options_.losses, frame, receiver);
@@ -156,8 +156,8 @@ class HardwareLoop::Implementation {
 
   /// At the end of a frame, before any node receives it.
   void on_frame(const Transmission& transmission) {
-    if (options_.trace) {
-      options_.trace(transmission);
+    if (options_.on_frame) {
+      options_.on_frame(transmission);
     }
     state_frames_.note(transmission);
     // Another node may send what looks like a SYNC. Only the producer's makes a tick.

@@ -26,7 +26,7 @@ struct Restart {
 struct ModuleParts {
   Bus& bus;
   unsigned joint;
-  firmware::ModuleIdentity board;
+  firmware::ModuleIdentity identity;
   Crystal crystal;
   std::function<std::uint8_t()> sensors;              ///< touch sensors wired to it, as firmware::ContactPort::read()
   std::function<firmware::ServoReadings()> readings;  ///< of its servo and chip, at this moment
@@ -45,13 +45,13 @@ struct HardwareOptions {
   };
   BitErrors bit_errors;
   /// Called for each frame on the bus when it ends, with the time since the modules were switched on.
-  Bus::Trace trace;
+  Bus::FrameListener on_frame;
   /// Called for what modules report by EMCY and for restarts, one line each.
   std::function<void(const std::string&)> notice;
   /// Crystals are off by up to this, each by an amount that follows from the scenario's seed.
   std::uint32_t crystal_error_ppm = 100;
-  /// For tests: changes the boards, and frames on their way into the program of a joint's module.
-  std::function<void(unsigned joint, firmware::ModuleIdentity& board)> change_board;
+  /// For tests: changes the identities of the modules, and frames on their way into the program of a joint's module.
+  std::function<void(unsigned joint, firmware::ModuleIdentity& identity)> change_identity;
   std::function<void(unsigned joint, const CanFrame& frame, const std::function<void(const CanFrame&)>& deliver)>
       tamper;
   /// For tests: the touch sensors that a module reads instead.

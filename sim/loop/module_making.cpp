@@ -11,7 +11,7 @@
 namespace proleg::sim {
 namespace {
 
-/// The last word of a unique id whose check sum is the given serial number: CRC-32 (shared/fixed/crc32.hpp), reversed.
+/// The last word of a unique id whose checksum is the given serial number: CRC-32 (shared/fixed/crc32.hpp), reversed.
 std::uint32_t word_for_serial(std::uint32_t crc_before, std::uint32_t serial) {
   constexpr std::uint32_t reflected_polynomial = 0xEDB88320;
   std::uint32_t remainder = ~serial;
@@ -30,25 +30,25 @@ Crystal make_crystal(const Scenario& scenario, std::size_t joint, std::uint32_t 
   return Crystal(static_cast<std::int32_t>(noise.below(static_cast<std::uint32_t>(2 * range + 1))) - range);
 }
 
-firmware::ModuleIdentity make_board(const Scenario& scenario, std::size_t joint) {
+firmware::ModuleIdentity make_identity(const Scenario& scenario, std::size_t joint) {
   Pcg32 noise(scenario.kernel.seed, random_stream::boards + joint);
-  firmware::ModuleIdentity board;
-  board.node = scenario.modules[joint].node;
-  board.core_fingerprint = core_fingerprint;
-  board.capabilities = canopen::measures_angle;
-  for (std::uint32_t& word : board.unique_id) {
+  firmware::ModuleIdentity identity;
+  identity.node = scenario.modules[joint].node;
+  identity.core_fingerprint = core_fingerprint;
+  identity.capabilities = canopen::measures_angle;
+  for (std::uint32_t& word : identity.unique_id) {
     word = noise.next();
   }
   if (const std::optional<std::uint32_t> serial = scenario.modules[joint].serial) {
     Crc32 crc;
-    for (const std::uint32_t word : std::span(board.unique_id).first(2)) {
+    for (const std::uint32_t word : std::span(identity.unique_id).first(2)) {
       for (unsigned shift = 0; shift < 32; shift += 8) {
         crc.add(static_cast<std::uint8_t>(word >> shift));
       }
     }
-    board.unique_id[2] = word_for_serial(crc.value(), *serial);
+    identity.unique_id[2] = word_for_serial(crc.value(), *serial);
   }
-  return board;
+  return identity;
 }
 
 }  // namespace proleg::sim

@@ -19,24 +19,24 @@ constexpr BusTime max_sync_jitter = 500'000;
 ModuleRack::ModuleRack(Bus& bus, const Plant& plant, const Scenario& scenario, const HardwareOptions& options)
     : scenario_(scenario), options_(options), records_(scenario.modules.size()) {
   for (unsigned joint = 0; joint < scenario.modules.size(); ++joint) {
-    firmware::ModuleIdentity board = make_board(scenario, joint);
-    if (options.change_board) {
-      options.change_board(joint, board);
+    firmware::ModuleIdentity identity = make_identity(scenario, joint);
+    if (options.change_identity) {
+      options.change_identity(joint, identity);
     }
     const auto sensors = [&plant, &options, joint] {
       const std::uint8_t contacts = joint_contacts(plant.link_contacts(), joint);
       return options.change_sensors ? options.change_sensors(joint, contacts) : contacts;
     };
-    const ModuleParts parts{bus,     joint,
-                            board,   make_crystal(scenario, joint, options.crystal_error_ppm),
-                            sensors, [&plant, joint] { return plant.servo_readings(joint); }};
+    const ModuleParts parts{bus,      joint,
+                            identity, make_crystal(scenario, joint, options.crystal_error_ppm),
+                            sensors,  [&plant, joint] { return plant.servo_readings(joint); }};
     std::unique_ptr<JointModule> module = options.make_module ? options.make_module(parts) : nullptr;
     modules_.push_back(module ? std::move(module) : make_native(parts));
   }
 }
 
 std::unique_ptr<JointModule> ModuleRack::make_native(const ModuleParts& parts) const {
-  auto module = std::make_unique<NativeModule>(parts.bus, parts.board, parts.crystal, parts.sensors, parts.readings);
+  auto module = std::make_unique<NativeModule>(parts.bus, parts.identity, parts.crystal, parts.sensors, parts.readings);
   if (options_.tamper) {
     module->set_tamper([&options = options_, joint = parts.joint](const CanFrame& frame, const auto& deliver) {
       options.tamper(joint, frame, deliver);

@@ -2,13 +2,13 @@
 
 namespace proleg::sim {
 
-NativeModule::NativeModule(Bus& bus, const firmware::ModuleIdentity& board, Crystal crystal, Sensors sensors,
+NativeModule::NativeModule(Bus& bus, const firmware::ModuleIdentity& identity, Crystal crystal, Sensors sensors,
                            Readings readings)
     : crystal_(crystal),
       sensors_(std::move(sensors)),
       meters_(std::move(readings)),
       controller_(bus.attach(*this)),
-      module_(board, {controller_, *this, *this, meters_}) {
+      module_(identity, {controller_, *this, *this, meters_}) {
   controller_.switch_off();
 }
 

@@ -27,7 +27,7 @@ class NativeModule final : public JointModule,
   using Tamper = std::function<void(const CanFrame& frame, const std::function<void(const CanFrame&)>& deliver)>;
 
   /// Attaches to the bus, switched off. Without readings the module measures nothing.
-  NativeModule(Bus& bus, const firmware::ModuleIdentity& board, Crystal crystal, Sensors sensors,
+  NativeModule(Bus& bus, const firmware::ModuleIdentity& identity, Crystal crystal, Sensors sensors,
                Readings readings = {});
   NativeModule(const NativeModule&) = delete;
   NativeModule& operator=(const NativeModule&) = delete;

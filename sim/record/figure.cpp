@@ -62,8 +62,8 @@ void draw_time_axis(Svg& svg, const Axis& time, double contact_panel_height) {
 Axis angle_axis(const FigureContents& contents, double& step) {
   double low = -5.0;
   double high = 5.0;
-  for (const std::vector<Trace>* traces : {&contents.setpoints, &contents.angles}) {
-    for (const Trace& trace : *traces) {
+  for (const std::vector<Polyline>* traces : {&contents.setpoints, &contents.angles}) {
+    for (const Polyline& trace : *traces) {
       for (const Point& point : trace) {
         low = std::min(low, point.y);
         high = std::max(high, point.y);

@@ -76,7 +76,7 @@ FigureContents collect_figure_contents(const Recording& recording, const TimeWin
     }
   };
   recording.read_ticks(recording.first_tick(), recording.last_tick(), [&](const RecordedTick& tick) {
-    Trace chain;
+    Polyline chain;
     Point sum;
     for (const Pose& pose : tick.link_poses) {
       chain.push_back({bounded(pose.position.x()), bounded(pose.position.y())});

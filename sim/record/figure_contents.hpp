@@ -18,16 +18,16 @@ struct FigureContents {
   double tick_s = 0.0;
   std::uint32_t first_tick = 0;  ///< in the window
   std::uint32_t last_tick = 0;
-  std::vector<Trace> setpoints;  ///< per joint; x: s, y: degrees
-  std::vector<Trace> angles;
+  std::vector<Polyline> setpoints;  ///< per joint; x: s, y: degrees
+  std::vector<Polyline> angles;
   struct Press {
     double from_s;
     double to_s;
   };
   std::vector<std::array<std::vector<Press>, 2>> presses;  ///< per link: of the rear and the front sensor
-  Trace path;                                              ///< x, y of the centre, in m
-  Trace first_chain;                                       ///< x, y of the links, head to tail
-  Trace last_chain;
+  Polyline path;                                           ///< x, y of the centre, in m
+  Polyline first_chain;                                    ///< x, y of the links, head to tail
+  Polyline last_chain;
 };
 
 /// Throws InputError if fewer than two ticks lie in the window.

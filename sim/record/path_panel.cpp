@@ -15,7 +15,7 @@ constexpr double min_height_on_page = 110.0;
 struct Extent {
   Point low{INFINITY, INFINITY};
   Point high{-INFINITY, -INFINITY};
-  void include(const Trace& trace, const PathView& view) {
+  void include(const Polyline& trace, const PathView& view) {
     for (const Point& point : trace) {
       const Point p = view.across(point);
       low = {std::min(low.x, p.x), std::min(low.y, p.y)};
@@ -64,8 +64,8 @@ void draw_path_axes(Svg& svg, const PathPanel& panel) {
            label_size, ink);
 }
 
-void draw_chain(Svg& svg, const PathPanel& panel, const Trace& chain) {
-  const Trace pixels = panel.pixels(chain);
+void draw_chain(Svg& svg, const PathPanel& panel, const Polyline& chain) {
+  const Polyline pixels = panel.pixels(chain);
   svg.begin_group("chain");
   svg.polyline(pixels, R"(stroke="#9a9a9a" stroke-width="2" stroke-linecap="round")");
   for (std::size_t link = 0; link < pixels.size(); ++link) {
@@ -82,9 +82,9 @@ void draw_mark(Svg& svg, Point center, double name_height, std::string_view name
 
 }  // namespace
 
-Trace PathPanel::pixels(const Trace& trace) const {
+Polyline PathPanel::pixels(const Polyline& trace) const {
   constexpr double resolution = 0.25;
-  Trace result;
+  Polyline result;
   for (const Point& point : trace) {
     const Point p = pixel(point);
     if (result.empty() || std::hypot(p.x - result.back().x, p.y - result.back().y) >= resolution) {

@@ -26,7 +26,7 @@ struct PathPanel {
     return {x.pixel(p.x), y.pixel(p.y)};
   }
   /// Without points that lie too close together to be seen.
-  [[nodiscard]] Trace pixels(const Trace& trace) const;
+  [[nodiscard]] Polyline pixels(const Polyline& trace) const;
 };
 
 /// The panel below `top`, in pixels, of a size in which the path and the chain at both its ends have room.

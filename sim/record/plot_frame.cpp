@@ -75,9 +75,9 @@ void draw_plot_frame(Svg& svg, const Axis& x, const Axis& y) {
   svg.rectangle({x.pixel_low, y.pixel_high}, x.pixel_high - x.pixel_low, y.pixel_low - y.pixel_high, frame_style);
 }
 
-Trace to_pixels(const Trace& trace, const Axis& x, const Axis& y) {
-  Trace pixels;
-  Trace column;
+Polyline to_pixels(const Polyline& trace, const Axis& x, const Axis& y) {
+  Polyline pixels;
+  Polyline column;
   const auto flush = [&] {
     if (column.size() <= 4) {
       pixels.insert(pixels.end(), column.begin(), column.end());
@@ -102,8 +102,8 @@ Trace to_pixels(const Trace& trace, const Axis& x, const Axis& y) {
   return pixels;
 }
 
-Trace to_marks(const Trace& points, const Axis& x, const Axis& y, double size) {
-  Trace marks;
+Polyline to_marks(const Polyline& points, const Axis& x, const Axis& y, double size) {
+  Polyline marks;
   std::set<std::pair<std::int32_t, std::int32_t>> taken;
   for (const Point& point : points) {
     const Point pixel{x.pixel(std::clamp(point.x, x.low, x.high)), y.pixel(std::clamp(point.y, y.low, y.high))};

@@ -23,11 +23,11 @@ void draw_plot_frame(Svg& svg, const Axis& x, const Axis& y);
 /// In pixels and within the axes, with at most four points (first, lowest, highest, last) in each column of pixels, so
 /// that a picture of an hour is no larger than one of a minute and no peak is lost. The trace is finite and ascends in
 /// x.
-[[nodiscard]] Trace to_pixels(const Trace& trace, const Axis& x, const Axis& y);
+[[nodiscard]] Polyline to_pixels(const Polyline& trace, const Axis& x, const Axis& y);
 
 /// Places of marks of that size (pixels), those beyond the axes at their edge; of marks that would hide each other only
 /// the first.
-[[nodiscard]] Trace to_marks(const Trace& points, const Axis& x, const Axis& y, double size);
+[[nodiscard]] Polyline to_marks(const Polyline& points, const Axis& x, const Axis& y, double size);
 
 /// What a line beside its end is called.
 struct LineName {

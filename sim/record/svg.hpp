@@ -14,7 +14,7 @@ struct Point {
 };
 
 /// A line, or values over something, e.g. time.
-using Trace = std::vector<Point>;
+using Polyline = std::vector<Point>;
 
 enum class TextAnchor { start, middle, end };
 

@@ -1,5 +1,5 @@
 // The image for Cortex-M, on an emulated CPU, plays the first cases as five modules;
-// all_cases_on_cortex_m_test.cpp plays all.
+// all_cases_test.cpp plays all.
 
 #include <gtest/gtest.h>
 

@@ -24,6 +24,12 @@ void expect_golden(const std::function<std::unique_ptr<Player>()>& make, const A
   }
 }
 
+void expect_golden_from(std::string_view variant, const ActuationModule& algorithm, std::uint32_t cases) {
+  for (const Driver driver : {Driver::whole, Driver::modules}) {
+    expect_golden([=] { return make_variant_player(variant, driver, cases); }, algorithm, cases);
+  }
+}
+
 std::string algorithm_name(const testing::TestParamInfo<unsigned>& id) {
   return std::string(find_algorithm(static_cast<std::uint8_t>(id.param))->declaration().name);
 }

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +15,10 @@ namespace proleg::identity {
 /// make: makes the player; called a second time to search for the difference.
 void expect_golden(const std::function<std::unique_ptr<Player>()>& make, const ActuationModule& algorithm,
                    std::uint32_t cases);
+
+/// The same for a program that a compiler made of the core (variants/ in the build folder), with one kernel for the
+/// robot and with one in each module.
+void expect_golden_from(std::string_view variant, const ActuationModule& algorithm, std::uint32_t cases);
 
 /// A suite with one instance for each algorithm, by id.
 class EachAlgorithm : public testing::TestWithParam<unsigned> {

@@ -5,7 +5,6 @@
 #include <array>
 #include <fstream>
 #include <iomanip>
-#include <regex>
 #include <span>
 #include <sstream>
 
@@ -105,10 +104,16 @@ void write_golden(const std::filesystem::path& file, const std::vector<Golden>& 
   const std::filesystem::path header = std::filesystem::path(source_path("/shared/kernel/fingerprint.hpp"));
   std::ostringstream old;
   old << std::ifstream(header).rdbuf();
+  std::string text = old.str();
+  const std::string_view name = "core_fingerprint = ";
+  const std::size_t from = text.find(name);
+  const std::size_t to = text.find(';', from);
+  if (from == std::string::npos || to == std::string::npos) {
+    throw PlayerError(header.string() + ": found no \"" + std::string(name) + "...;\"");
+  }
   std::ostringstream constant;
-  constant << "core_fingerprint = 0x" << std::hex << std::uppercase << std::setw(8) << std::setfill('0')
-           << fingerprint_of(rows) << ';';
-  write_file(header, std::regex_replace(old.str(), std::regex("core_fingerprint = [0-9A-Fx]+;"), constant.str()));
+  constant << name << "0x" << std::hex << std::uppercase << std::setw(8) << std::setfill('0') << fingerprint_of(rows);
+  write_file(header, text.replace(from, to - from, constant.str()));
 }
 
 std::uint32_t fingerprint_of(const std::vector<Golden>& rows) {

@@ -129,7 +129,7 @@ int hil(const HilOptions& options) {
   hardware.notice = [](const std::string& text) { std::cerr << "proleg hil: " << text << '\n'; };
   const std::unique_ptr<sim::CandumpLog> log = open_can_log(options);
   if (log) {
-    hardware.trace = [&log](const sim::Transmission& transmission) {
+    hardware.on_frame = [&log](const sim::Transmission& transmission) {
       log->write(transmission.end, transmission.frame);
     };
   }

@@ -183,7 +183,7 @@ std::unique_ptr<sim::JointModule> HilModules::make(const sim::ModuleParts& parts
   }
   sim::VirtualModuleOptions options;
   if (consoles_[joint]) {
-    options.console = [node = parts.board.node](const std::string& line) {
+    options.console = [node = parts.identity.node](const std::string& line) {
       std::cerr << "node " << unsigned{node} << ": " << line << '\n';
     };
   }

@@ -26,12 +26,12 @@ constexpr std::uint16_t feedback_at_minus_90 = 410;
 constexpr std::uint16_t feedback_at_plus_90 = 3686;
 
 ChipSettings chip_settings(const ModuleParts& parts) {
-  return {parts.board.unique_id, parts.crystal.parts_per_billion(), parts.board.node};
+  return {parts.identity.unique_id, parts.crystal.parts_per_billion(), parts.identity.node};
 }
 
 firmware::BoardRecord board_record(const ModuleParts& parts) {
   firmware::BoardRecord record;
-  record.node = parts.board.node;
+  record.node = parts.identity.node;
   record.has_feedback = parts.readings().angle.has_value();
   record.feedback_at_minus_90 = feedback_at_minus_90;
   record.feedback_at_plus_90 = feedback_at_plus_90;
@@ -79,7 +79,7 @@ VirtualModule::VirtualModule(const ModuleParts& parts, const FirmwareImage& imag
       options_(std::move(options)),
       sensors_(parts.sensors),
       readings_(parts.readings),
-      state_frame_(static_cast<std::uint16_t>(canopen::identifier::state_frame + parts.board.node)),
+      state_frame_(static_cast<std::uint16_t>(canopen::identifier::state_frame + parts.identity.node)),
       chip_(parts.bus, *this, chip_settings(parts)) {
   for (const ElfImage::Segment& segment : image.flash().elf().segments()) {
     chip_.write(segment.load_address, segment.bytes);

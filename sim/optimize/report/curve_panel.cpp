@@ -11,13 +11,13 @@ namespace {
 
 using sim::Axis;
 using sim::LineName;
+using sim::Polyline;
 using sim::Svg;
 using sim::TextAnchor;
-using sim::Trace;
 
 /// The best so far as a line of steps.
-Trace steps(const std::vector<double>& best) {
-  Trace trace;
+Polyline steps(const std::vector<double>& best) {
+  Polyline trace;
   for (std::size_t i = 0; i < best.size(); ++i) {
     const bool changes = i == 0 || best[i] != best[i - 1];
     if (i > 0 && changes) {

@@ -16,9 +16,9 @@ namespace {
 
 using sim::Axis;
 using sim::Point;
+using sim::Polyline;
 using sim::Svg;
 using sim::TextAnchor;
-using sim::Trace;
 
 constexpr double panel_top = 104.0;
 constexpr double panel_bottom = 470.0;
@@ -39,12 +39,12 @@ constexpr const char* failure_mark = "v-7";
 
 /// What the figure shows. x: number of the evaluation, from 1; y: score.
 struct Contents {
-  Trace rated;
-  Trace given_up;
+  Polyline rated;
+  Polyline given_up;
   std::vector<double> failed;  ///< numbers of evaluations that have no score of measures
-  Trace best;                  ///< a step for each improvement
+  Polyline best;               ///< a step for each improvement
   std::optional<Point> winner;
-  Trace mean;  ///< over the last `window` with a score
+  Polyline mean;  ///< over the last `window` with a score
   std::size_t window = 1;
 };
 
@@ -59,8 +59,8 @@ void add_to_best(const Objective& objective, Point rated, Contents& contents) {
 }
 
 /// The mean of the latest scores shows the present state of the search; the mean of all would hide it.
-Trace moving_mean(const Trace& scores, std::size_t window) {
-  Trace mean;
+Polyline moving_mean(const Polyline& scores, std::size_t window) {
+  Polyline mean;
   double sum = 0.0;
   for (std::size_t i = 0; i < scores.size(); ++i) {
     sum += scores[i].y;
@@ -74,7 +74,7 @@ Trace moving_mean(const Trace& scores, std::size_t window) {
 
 Contents collect(const Experiment& experiment, std::span<const Evaluation> evaluations) {
   Contents contents;
-  Trace with_score;
+  Polyline with_score;
   for (std::size_t i = 0; i < evaluations.size(); ++i) {
     const Evaluation& evaluation = evaluations[i];
     const auto number = static_cast<double>(i + 1);
@@ -97,7 +97,7 @@ Contents collect(const Experiment& experiment, std::span<const Evaluation> evalu
 
 Axis axis_of(const Contents& contents) {
   std::vector<double> scores;
-  for (const Trace* trace : {&contents.rated, &contents.given_up}) {
+  for (const Polyline* trace : {&contents.rated, &contents.given_up}) {
     for (const Point& point : *trace) {
       scores.push_back(point.y);
     }
@@ -168,7 +168,7 @@ std::string draw_learning_curve(const Experiment& experiment, std::span<const Ev
   svg.marks(sim::to_marks(contents.given_up, x, y, 6.0), cross, cross_style);
   svg.end_group();
   svg.begin_group("failed");
-  Trace failed;
+  Polyline failed;
   for (const double number : contents.failed) {
     failed.push_back({number, y.low});
   }

@@ -12,9 +12,9 @@
 namespace proleg::optimize {
 namespace {
 
+using sim::Polyline;
 using sim::Svg;
 using sim::TextAnchor;
-using sim::Trace;
 
 constexpr double panel_top = 104.0;
 constexpr double panel_bottom = 540.0;
@@ -27,7 +27,7 @@ constexpr const char* dot = "h0";
 
 /// Two scores of each evaluation that has both.
 struct Cloud {
-  Trace places;
+  Polyline places;
   std::vector<double> x;
   std::vector<double> y;
 

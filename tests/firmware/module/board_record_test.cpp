@@ -136,7 +136,7 @@ TEST(BoardRecordTest, ADamagedRecordCountsForNothingWhateverBitIsWrong) {
 TEST(BoardRecordTest, ARecordOfAnotherSchemaCountsForNothing) {
   FlashMemory flash;
   auto bytes = encode(record_of(5), 1);
-  // 2 instead of 1, and the check sum of that by another program (zlib.crc32).
+  // 2 instead of 1, and the checksum of that by another program (zlib.crc32).
   bytes[4] = 2;
   const std::array<std::uint8_t, 4> crc{0xA5, 0x36, 0xC2, 0x15};
   std::copy(crc.begin(), crc.end(), bytes.begin() + 28);

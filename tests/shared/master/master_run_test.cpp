@@ -44,7 +44,7 @@ std::vector<ScriptedModule::Effect> planned_effects(const ScriptedRobot& robot, 
 void check_commits(const ScriptedRobot& robot, std::uint32_t lead) {
   std::map<std::uint16_t, unsigned> copies;
   std::optional<std::uint32_t> tick;
-  for (const sim::Transmission& transmission : robot.trace) {
+  for (const sim::Transmission& transmission : robot.transmissions) {
     if (decode_sync(transmission.frame)) {
       tick = tick ? *tick + 1 : 0;
     }
@@ -507,15 +507,16 @@ TEST(MasterStop, TakesThePowerThenTheTicks) {
   robot.master().stop(robot.now());
   ASSERT_TRUE(robot.run_until([&] { return robot.master().state() == MasterState::stopped; }, 1'000'000));
   robot.run_for(50'000);
-  const std::size_t frames = robot.trace.size();
+  const std::size_t frames = robot.transmissions.size();
   for (unsigned joint = 0; joint < 5; ++joint) {
     EXPECT_EQ(robot.module(joint).power(), PowerState::switch_on_disabled);
     EXPECT_EQ(robot.module(joint).state(), NmtState::pre_operational);
     EXPECT_FALSE(robot.module(joint).produces_sync());
   }
   robot.run_for(1'000'000);
-  for (std::size_t i = frames; i < robot.trace.size(); ++i) {
-    EXPECT_EQ(robot.trace[i].frame.identifier & ~0x7FU, unsigned{identifier::heartbeat}) << "heartbeats continue";
+  for (std::size_t i = frames; i < robot.transmissions.size(); ++i) {
+    EXPECT_EQ(robot.transmissions[i].frame.identifier & ~0x7FU, unsigned{identifier::heartbeat})
+        << "heartbeats continue";
   }
   EXPECT_EQ(robot.emergencies(), 0U);
 }

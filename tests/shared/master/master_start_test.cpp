@@ -52,7 +52,7 @@ TEST(MasterStart, TheHostSendsAHeartbeatEvery100MsFromTheStartOn) {
   robot.start();
   robot.run_for(3'050'000);
   std::vector<sim::BusTime> times;
-  for (const sim::Transmission& transmission : robot.trace) {
+  for (const sim::Transmission& transmission : robot.transmissions) {
     if (transmission.frame.identifier == 0x77F) {
       EXPECT_EQ(transmission.frame.data[0], 0x05);
       times.push_back(transmission.start);
@@ -69,7 +69,7 @@ TEST(MasterStart, NothingIsSentBeforeIt) {
   EXPECT_EQ(robot.master().next_deadline(), never);
   robot.modules[0]->power_on(0);
   robot.run_for(1'000'000);
-  EXPECT_EQ(robot.trace.size(), 1U);  // the module's boot-up
+  EXPECT_EQ(robot.transmissions.size(), 1U);  // the module's boot-up
   EXPECT_EQ(robot.master().state(), MasterState::idle);
 }
 
@@ -83,7 +83,7 @@ TEST(MasterStart, SixtyModulesRunAfterTwoSecondsOfBusTime) {
   ASSERT_TRUE(robot.run_until_running());
   sim::BusTime busy = 0;
   std::size_t sdo_frames = 0;
-  for (const sim::Transmission& transmission : robot.trace) {
+  for (const sim::Transmission& transmission : robot.transmissions) {
     busy += (sim::frame_bits(transmission.frame) + sim::interframe_bits) * 1000;
     const unsigned function = transmission.frame.identifier & ~0x7FU;
     sdo_frames += function == identifier::sdo_request || function == identifier::sdo_answer ? 1U : 0U;
@@ -101,7 +101,7 @@ void expect_nothing_sent(ScriptedRobot& robot, ProblemCode code) {
   EXPECT_EQ(robot.master().problem().code, code);
   EXPECT_EQ(robot.master().state(), MasterState::failed);
   robot.run_for(1'000'000);
-  EXPECT_TRUE(robot.trace.empty());
+  EXPECT_TRUE(robot.transmissions.empty());
 }
 
 TEST(MasterProblem, ASetupThatCannotBeIsFoundBeforeAnythingIsSent) {

@@ -57,7 +57,7 @@ class ScriptedRobot {
     for (unsigned joint = 0; joint < joints; ++joint) {
       add_module(setup_.nodes[joint]);
     }
-    bus.set_trace([this](const sim::Transmission& transmission) { trace.push_back(transmission); });
+    bus.set_frame_listener([this](const sim::Transmission& transmission) { transmissions.push_back(transmission); });
   }
 
   /// A module more, with its own power switch.
@@ -159,7 +159,7 @@ class ScriptedRobot {
   std::vector<PlannedChange> plan;
   std::vector<canopen::Change> changes;
   canopen::MasterOptions options;
-  std::vector<sim::Transmission> trace;
+  std::vector<sim::Transmission> transmissions;
   std::vector<canopen::Event> events;
 
  private:

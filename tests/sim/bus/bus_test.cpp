@@ -290,7 +290,7 @@ TEST_F(BusOfThree, LoadIsThePartOfTheTimeTakenByFramesAndInterframeSpaces) {
 
 TEST_F(BusOfThree, TheTraceSeesEveryFrameWithItsStartAndSender) {
   std::vector<Transmission> trace;
-  bus.set_trace([&](const Transmission& transmission) { trace.push_back(transmission); });
+  bus.set_frame_listener([&](const Transmission& transmission) { trace.push_back(transmission); });
   ASSERT_TRUE(b.controller.send(middle));
   bus.advance_to(1'000'000);
   ASSERT_EQ(trace.size(), 1U);

@@ -86,7 +86,7 @@ TEST_P(Traffic, KeepsTheRulesOfTheBus) {
   BusTime free_at = 0;
   BusTime busy = 0;
   std::vector<CanFrame> order;
-  bus.set_trace([&](const Transmission& transmission) {
+  bus.set_frame_listener([&](const Transmission& transmission) {
     EXPECT_EQ(transmission.end - transmission.start, frame_bits(transmission.frame) * bit);
     // The expected winner at the instant of arbitration, from the requests alone.
     BusTime first_request = never_on_bus;

@@ -117,7 +117,7 @@ TEST_F(CandumpFile, IsDissectedByTsharkAsCanopen) {
   Controller& controller = bus.attach(node);
   bus.attach(other);
   CandumpLog log(path);
-  bus.set_trace([&](const Transmission& transmission) { log.write(transmission.end, transmission.frame); });
+  bus.set_frame_listener([&](const Transmission& transmission) { log.write(transmission.end, transmission.frame); });
   for (std::size_t i = 0; i < examples.size(); ++i) {
     bus.advance_to(i * 1'000'000);
     ASSERT_TRUE(controller.send(examples[i].frame));

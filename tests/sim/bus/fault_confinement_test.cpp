@@ -208,7 +208,7 @@ TEST_F(FaultConfinement, RecoveryOnAHalfIdleBusCountsTheRunsOfRecessiveBits) {
   BusTime recessive_since = bus.now();
   unsigned sequences = 0;
   BusTime expected = 0;
-  bus.set_trace([&](const Transmission& transmission) {
+  bus.set_frame_listener([&](const Transmission& transmission) {
     const auto bits = static_cast<unsigned>((transmission.start - recessive_since) / bit);
     if (sequences < 128 && sequences + bits / 11 >= 128) {
       expected = recessive_since + (128 - sequences) * 11 * bit;

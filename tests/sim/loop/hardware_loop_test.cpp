@@ -341,7 +341,7 @@ class Intruder : public testing::Test {
     }
     std::vector<CanFrame> answers;
     bool sent = false;
-    options.trace = [&](const Transmission& transmission) {
+    options.on_frame = [&](const Transmission& transmission) {
       sent = sent || transmission.frame == frames.front();
       if (sent && transmission.frame.identifier >= first && transmission.frame.identifier <= last) {
         answers.push_back(transmission.frame);
@@ -452,9 +452,9 @@ void expect_refusal(const Scenario& scenario, const HardwareOptions& options, co
 
 TEST(RefusedRobot, AModuleWithAWrongCoreIsNamed) {
   HardwareOptions options;
-  options.change_board = [](unsigned joint, firmware::ModuleIdentity& board) {
+  options.change_identity = [](unsigned joint, firmware::ModuleIdentity& identity) {
     if (joint == 3) {
-      board.core_fingerprint ^= 1U;
+      identity.core_fingerprint ^= 1U;
     }
   };
   expect_refusal(shipped("travelling_wave/uniform"), options, "node 4 (J2)");
@@ -465,17 +465,17 @@ TEST(RefusedRobot, AModuleWithAWrongSerialNumberIsNamed) {
   scenario.modules[2].serial = 0x1234ABCD;
   EXPECT_EQ(run(scenario, 10).differences, 0U) << "the simulated module has the serial number of the file";
   HardwareOptions options;
-  options.change_board = [](unsigned joint, firmware::ModuleIdentity& board) {
-    board.unique_id[0] ^= joint == 2 ? 1U : 0U;
+  options.change_identity = [](unsigned joint, firmware::ModuleIdentity& identity) {
+    identity.unique_id[0] ^= joint == 2 ? 1U : 0U;
   };
   expect_refusal(scenario, options, "node 3 (J3)");
 }
 
 TEST(RefusedRobot, TwoModulesWithOneNodeIdAreNamed) {
   HardwareOptions options;
-  options.change_board = [](unsigned joint, firmware::ModuleIdentity& board) {
+  options.change_identity = [](unsigned joint, firmware::ModuleIdentity& identity) {
     if (joint == 3) {
-      board.node = 2;
+      identity.node = 2;
     }
   };
   expect_refusal(shipped("travelling_wave/uniform"), options, "node 2 (J4)");
@@ -483,9 +483,9 @@ TEST(RefusedRobot, TwoModulesWithOneNodeIdAreNamed) {
 
 TEST(RefusedRobot, AModuleThatIsNotInTheMapIsNamed) {
   HardwareOptions options;
-  options.change_board = [](unsigned joint, firmware::ModuleIdentity& board) {
+  options.change_identity = [](unsigned joint, firmware::ModuleIdentity& identity) {
     if (joint == 3) {
-      board.node = 99;
+      identity.node = 99;
     }
   };
   expect_refusal(shipped("travelling_wave/uniform"), options, "node 99");

@@ -27,7 +27,7 @@ struct Host final : BusListener {
   Controller& controller;
 };
 
-firmware::ModuleIdentity board() {
+firmware::ModuleIdentity identity() {
   firmware::ModuleIdentity made;
   made.node = node;
   return made;
@@ -48,7 +48,7 @@ class NativeModules : public testing::Test {
 
   Bus bus;
   Host host{bus};
-  NativeModule module{bus, board(), Crystal(), [] { return std::uint8_t{0}; }};
+  NativeModule module{bus, identity(), Crystal(), [] { return std::uint8_t{0}; }};
 };
 
 TEST_F(NativeModules, ReturnFromBusOffAndReportIt) {

@@ -61,7 +61,7 @@ TEST(ServoReadings, AreMonitoredByEveryModuleEveryTenthTick) {
   const Scenario scenario = shipped("travelling_wave/coupled");
   HardwareOptions options;
   std::map<std::uint8_t, std::vector<canopen::Monitoring>> monitored;
-  options.trace = [&](const Transmission& transmission) {
+  options.on_frame = [&](const Transmission& transmission) {
     if (const auto monitoring = canopen::decode_monitoring(transmission.frame)) {
       monitored[monitoring->node].push_back(*monitoring);
     }
@@ -104,7 +104,7 @@ TEST(ServoReadings, AboveTheLimitStopThePulsesButNotTheGait) {
   std::vector<std::string> notices;
   HardwareLoop* running = nullptr;
   bool fault_flag = false;
-  options.trace = [&](const Transmission& transmission) {
+  options.on_frame = [&](const Transmission& transmission) {
     if (transmission.frame.identifier == canopen::identifier::emergency + node) {
       emergencies.emplace_back(running->tick(), transmission.frame);
     }

@@ -21,13 +21,13 @@ TEST(AxisOver, ContainsItsValuesWithRoomAroundThem) {
 }
 
 TEST(ToPixels, KeepsEveryPeakOfALongLineAndFewPoints) {
-  Trace trace;
+  Polyline trace;
   for (int i = 0; i < 100'000; ++i) {
     trace.push_back({static_cast<double>(i), i == 54'321 ? 3.0 : i == 77'777 ? -2.0 : 0.001 * (i % 7)});
   }
   const Axis x{0.0, 100'000.0, 0.0, 500.0};
   const Axis y{-2.0, 3.0, 100.0, 0.0};
-  const Trace pixels = to_pixels(trace, x, y);
+  const Polyline pixels = to_pixels(trace, x, y);
   EXPECT_LE(pixels.size(), 4U * 500U);
   const auto has = [&](double height) {
     return std::ranges::any_of(pixels, [height](const Point& point) { return point.y == height; });
@@ -47,7 +47,7 @@ TEST(ToPixels, StaysWithinTheAxes) {
 TEST(ToMarks, OmitsHiddenMarks) {
   const Axis x{0.0, 100.0, 0.0, 100.0};
   const Axis y{0.0, 100.0, 100.0, 0.0};
-  Trace cloud;
+  Polyline cloud;
   for (int i = 0; i < 200'000; ++i) {
     cloud.push_back({std::fmod(i * 0.618034, 1.0) * 100.0, std::fmod(i * 0.414214, 1.0) * 100.0});
   }

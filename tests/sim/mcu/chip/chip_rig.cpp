@@ -67,7 +67,7 @@ ChipRig::ChipRig(const RigSettings& settings)
   if (settings.record) {
     chip.write(settings_address, firmware::encode(*settings.record, 1));
   }
-  bus.set_trace([this](const Transmission& sent) {
+  bus.set_frame_listener([this](const Transmission& sent) {
     log.push_back({sent.end, sent.frame, sent.sender == host.index()});
   });
 }

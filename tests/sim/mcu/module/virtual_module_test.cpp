@@ -102,7 +102,7 @@ TEST(VirtualModule, TwoRunsAreEqualInEverythingThatIsRecordedAndInEveryFrameAndI
     std::ostringstream everything;
     HardwareOptions options;
     options.restarts = {{150, 1}};
-    options.trace = [&everything](const Transmission& frame) {
+    options.on_frame = [&everything](const Transmission& frame) {
       everything << frame.end << ' ' << frame.frame.identifier;
       for (const std::uint8_t byte : frame.frame.bytes()) {
         everything << ' ' << unsigned{byte};

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,9 +32,9 @@ class FakeSource final : public FitnessSource {
   void expect(std::span<const Candidate> next) override {
     const std::uint64_t now = asked.size();
     expectations.emplace_back(now, std::vector<Candidate>(next.begin(), next.end()));
-    predicted_.clear();
+    predicted_ = std::make_shared<Predictions>();
     for (std::size_t i = 1; i < next.size(); ++i) {  // the first is asked for at once: no worker can simulate it ahead
-      predicted_[now + i] = next[i];
+      (*predicted_)[now + i] = next[i];
     }
   }
 
@@ -43,10 +44,10 @@ class FakeSource final : public FitnessSource {
     if (asked.size() == budget_) {
       throw SearchEnded{};
     }
-    const auto found = predicted_before_.find(asked.size());
-    predictions.push_back(found == predicted_before_.end() ? Prediction::none
-                          : found->second == candidate     ? Prediction::right
-                                                           : Prediction::wrong);
+    const auto found = predicted_before_->find(asked.size());
+    predictions.push_back(found == predicted_before_->end() ? Prediction::none
+                          : found->second == candidate      ? Prediction::right
+                                                            : Prediction::wrong);
     asked.push_back(candidate);
     needed.push_back(needed_);
     scores.push_back(function_(candidate));
@@ -72,8 +73,9 @@ class FakeSource final : public FitnessSource {
   std::size_t lookahead_;
   std::uint64_t budget_;
   std::optional<double> needed_;
-  std::map<std::uint64_t, Candidate> predicted_;
-  std::map<std::uint64_t, Candidate> predicted_before_;  ///< predicted_ when the last evaluation ended
+  using Predictions = std::map<std::uint64_t, Candidate>;  ///< by the number of the evaluation
+  std::shared_ptr<Predictions> predicted_ = std::make_shared<Predictions>();
+  std::shared_ptr<Predictions> predicted_before_ = predicted_;  ///< predicted_ when the last evaluation ended
 };
 
 /// Dimensions with these numbers of values.

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <numeric>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "fake_source.hpp"
 #include "sim/optimize/method/search.hpp"
@@ -54,12 +56,22 @@ std::size_t equal_genes(const Candidate& a, const Candidate& b) {
   return count;
 }
 
+/// Genes of a child that its most similar parent does not have.
 double mean_changed_genes(const Offspring& offspring) {
+  std::map<std::pair<std::size_t, std::uint32_t>, std::vector<std::size_t>> parents_with;  // by place and value
+  for (std::size_t parent = 0; parent < offspring.parents.size(); ++parent) {
+    for (std::size_t i = 0; i < offspring.parents[parent].size(); ++i) {
+      parents_with[{i, offspring.parents[parent][i]}].push_back(parent);
+    }
+  }
   double changed = 0.0;
   for (const Candidate& child : offspring.children) {
+    std::map<std::size_t, std::size_t> counts;  // equal genes by parent
     std::size_t most = 0;
-    for (const Candidate& parent : offspring.parents) {
-      most = std::max(most, equal_genes(child, parent));
+    for (std::size_t i = 0; i < child.size(); ++i) {
+      for (const std::size_t parent : parents_with[{i, child[i]}]) {
+        most = std::max(most, ++counts[parent]);
+      }
     }
     changed += static_cast<double>(child.size() - most);
   }

@@ -66,7 +66,8 @@ std::uint8_t parse_joint(const std::string& name, const RobotModel& robot, const
 
 std::vector<Loss> read_list(const std::string& path, const RobotModel& robot) {
   constexpr std::uintmax_t max_bytes = 16U << 20U;
-  const std::string expected = std::string("a list of losses, or ") + seed_form;
+  std::string expected = "a list of losses, or ";
+  expected += seed_form;
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
     throw InputError(in_quotes(path), 0, "no such file", expected);

@@ -15,17 +15,13 @@ if(PROLEG_SANITIZE)
   set(PROLEG_TEST_OPTIONS -O0)
 endif()
 
-# Headers that nearly every test includes, compiled once. Only with clang: gcc gives false warnings that depend on the
-# precompiled headers.
-if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
-  find_package(Eigen3 REQUIRED NO_MODULE)
-  add_library(tests_prelude OBJECT ${CMAKE_CURRENT_LIST_DIR}/prelude.cpp)
-  target_link_libraries(tests_prelude PRIVATE GTest::gtest Eigen3::Eigen)
-  target_compile_options(tests_prelude PRIVATE ${PROLEG_TEST_OPTIONS})
-  target_precompile_headers(tests_prelude PRIVATE
-    <gtest/gtest.h> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional> <memory>
-    <optional> <random> <span> <sstream> <string> <string_view> <vector>)
-  target_compile_options(tests_prelude PRIVATE -Xclang -fno-pch-timestamp)  # otherwise ccache finds no match
+# Headers that nearly every test includes, compiled once.
+if(PROLEG_PRELUDES)
+  proleg_prelude(tests_prelude
+    LIBRARIES GTest::gtest Eigen3::Eigen
+    OPTIONS ${PROLEG_TEST_OPTIONS}
+    HEADERS <gtest/gtest.h> <Eigen/Geometry> <algorithm> <array> <cmath> <cstdint> <filesystem> <fstream> <functional>
+            <memory> <optional> <random> <span> <sstream> <string> <string_view> <vector>)
 endif()
 
 # Data that tests of any room may read. A change in them runs every test again, so docs/ is not among them.

@@ -19,6 +19,8 @@ endif()
 add_compile_options(
   -Wall -Wextra -Wpedantic -Werror -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast
   -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wundef
+  $<$<COMPILE_LANGUAGE:CXX>:-Wredundant-decls>
+  $<$<COMPILE_LANGUAGE:CXX>:-Wzero-as-null-pointer-constant>
   # Binaries contain no paths of the build computer.
   -ffile-prefix-map=${CMAKE_SOURCE_DIR}/=)
 

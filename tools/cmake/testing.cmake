@@ -8,9 +8,9 @@ if(PROLEG_SANITIZE)
   set(PROLEG_TEST_PREFIX "asan.")
 endif()
 
-# Under the sanitizers most of a test's compile time goes into optimising the instrumented comparisons of GoogleTest. The
+# Much of a test's compile time goes into optimising the comparisons of GoogleTest, most of it under the sanitizers. The
 # rooms themselves are optimised in every preset.
-set(PROLEG_TEST_OPTIONS "")
+set(PROLEG_TEST_OPTIONS -O1)
 if(PROLEG_SANITIZE)
   set(PROLEG_TEST_OPTIONS -O0)
 endif()

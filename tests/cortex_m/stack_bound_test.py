@@ -67,6 +67,17 @@ void root(Base& base) {
         self.assertGreaterEqual(found, 400)
         self.assertLess(found, 500)
 
+    def test_a_header_is_found_although_the_build_folder_is_elsewhere(self):
+        call = "void call(Base& base) { base.step(); }\n"
+        (self.folder / "call.hpp").write_text(call)
+        text = self.FILL + """
+struct Base { virtual void step() = 0; };
+struct Small : Base { void step() override { volatile char a[40]; use(a); } };
+extern "C" void __cxa_pure_virtual() {}
+Small small;
+""" + f'#line 1 "build/other/rooms/room/call.hpp"\n{call}#line 100 "program.cpp"\nvoid root() {{ call(small); }}\n'
+        self.assertGreaterEqual(self.bytes_of(text, "root"), 40)
+
     def test_a_function_of_a_library_counts_by_its_disassembly(self):
         text = "long long quotient(long long a, long long b) { return a / b; }"
         self.assertGreaterEqual(self.bytes_of(text, "quotient"), 8 + 16)

@@ -17,9 +17,8 @@
 namespace proleg::sim {
 namespace {
 
-constexpr double angle_panel_top = 104.0;
 constexpr double angle_panel_height = 250.0;
-constexpr double contact_panel_top = angle_panel_top + angle_panel_height + 44.0;
+constexpr double contact_panel_top = first_panel_top + angle_panel_height + 44.0;
 constexpr double max_contact_panel_height = 320.0;
 
 /// 1 if the figure shows the angles of all joints; else n for one joint in n, so that the lines remain distinct.
@@ -51,7 +50,7 @@ void draw_time_axis(Svg& svg, const Axis& time, double contact_panel_height) {
   const double step = nice_step((time.high - time.low) / 10.0);
   for (const double value : multiples(time.low, time.high, step)) {
     const double x = time.pixel(value);
-    svg.line({x, angle_panel_top}, {x, angle_panel_top + angle_panel_height}, grid_style);
+    svg.line({x, first_panel_top}, {x, first_panel_top + angle_panel_height}, grid_style);
     svg.line({x, contact_panel_top}, {x, bottom}, grid_style);
     svg.line({x, bottom}, {x, bottom + 5.0}, R"(stroke="#777777")");
     svg.text({x, bottom + 19.0}, plain_number(value, 6), TextAnchor::middle, label_size, ink);
@@ -78,11 +77,11 @@ Axis angle_axis(const FigureContents& contents, double& step) {
   }
   const double margin = 0.02 * (high - low);  // for the width of the lines
   return {std::floor((low - margin) / step) * step, std::ceil((high + margin) / step) * step,
-          angle_panel_top + angle_panel_height, angle_panel_top};
+          first_panel_top + angle_panel_height, first_panel_top};
 }
 
 void draw_angle_key(Svg& svg) {
-  const double y = angle_panel_top - 16.0;
+  const double y = first_panel_top - 16.0;
   svg.line({page_right - 196.0, y}, {page_right - 168.0, y}, R"(stroke="#222222" stroke-width="2")");
   svg.text({page_right - 162.0, y + 4.0}, "set-point", TextAnchor::start, label_size, ink);
   svg.line({page_right - 92.0, y}, {page_right - 64.0, y},
@@ -94,7 +93,7 @@ void draw_angles(Svg& svg, const Recording& recording, const FigureContents& con
   double step = 0.0;
   const Axis angle = angle_axis(contents, step);
   const std::size_t stride = joint_stride(recording.joints().size());
-  draw_heading(svg, angle_panel_top,
+  draw_heading(svg, first_panel_top,
                stride == 1 ? "Joint angles (deg)" : "Joint angles (deg), one joint in " + std::to_string(stride));
   draw_angle_key(svg);
   for (const double value : multiples(angle.low, angle.high, step)) {
@@ -116,7 +115,7 @@ void draw_angles(Svg& svg, const Recording& recording, const FigureContents& con
     names.push_back(
         {contents.setpoints[joint].back().y, shortened(recording.joints()[joint].name, 8), line_colour(line, count)});
   }
-  svg.rectangle({page_left, angle_panel_top}, page_right - page_left, angle_panel_height, frame_style);
+  svg.rectangle({page_left, first_panel_top}, page_right - page_left, angle_panel_height, frame_style);
 
   draw_line_names(svg, angle, page_right, names);
 }
@@ -165,13 +164,13 @@ void draw_changes(Svg& svg, const std::vector<ChangeMark>& marks, const Axis& ti
     }
     const double x = time.pixel(mark.time_s);
     constexpr const char* style = R"(class="change" stroke="#222222" stroke-width="1" stroke-dasharray="2 3")";
-    svg.line({x, angle_panel_top}, {x, angle_panel_top + angle_panel_height}, style);
+    svg.line({x, first_panel_top}, {x, first_panel_top + angle_panel_height}, style);
     svg.line({x, contact_panel_top}, {x, contact_panel_top + contact_panel_height}, style);
     const std::string text = shortened(mark.text, 40);
     const double width = character_width * static_cast<double>(text.size());
     const bool to_the_left = x + width > page_right;
     if ((to_the_left ? x - width : x) >= free_from) {
-      svg.text({to_the_left ? x - 4.0 : x + 4.0, angle_panel_top + 14.0}, text,
+      svg.text({to_the_left ? x - 4.0 : x + 4.0, first_panel_top + 14.0}, text,
                to_the_left ? TextAnchor::end : TextAnchor::start, label_size, ink);
       free_from = to_the_left ? x : x + width;
     }
@@ -184,9 +183,7 @@ std::string scenario_name(const Recording& recording) {
   return name.substr(0, name.find('.'));
 }
 
-void draw_title(Svg& svg, const Recording& recording, std::size_t changes) {
-  svg.text({page_left, 36.0}, shortened(scenario_name(recording), 55), TextAnchor::start, 20.0, ink,
-           R"(font-weight="bold")");
+void draw_head(Svg& svg, const Recording& recording, std::size_t changes) {
   std::string about = "robot " + shortened(recording.run_value("robot"), 24) + ", " +
                       std::to_string(recording.joints().size()) + " joints, seed " + recording.run_value("seed");
   if (changes > 0) {
@@ -195,9 +192,9 @@ void draw_title(Svg& svg, const Recording& recording, std::size_t changes) {
   if (!recording.finished()) {
     about += ", not finished";
   }
-  svg.text({page_left, 58.0}, about, TextAnchor::start, label_size, faint_ink);
-  svg.text({page_right, 58.0}, "proleg " + shortened(recording.run_value("build_id"), 32), TextAnchor::end, label_size,
-           faint_ink);
+  draw_title(svg, shortened(scenario_name(recording), 55), about);
+  svg.text({page_right, subtitle_y}, "proleg " + shortened(recording.run_value("build_id"), 32), TextAnchor::end,
+           label_size, faint_ink);
 }
 
 }  // namespace
@@ -211,7 +208,7 @@ std::string draw_figure(const Recording& recording, const TimeWindow& window) {
   Svg svg(page_width, panel.top + panel.height + 52.0, scenario_name(recording),
           "Joint angles and contacts over time, and the path of the robot from above.");
   const std::vector<ChangeMark> changes = collect_change_marks(recording);
-  draw_title(svg, recording, changes.size());
+  draw_head(svg, recording, changes.size());
   const Axis time{contents.from_s, contents.to_s, page_left, page_right};
   draw_time_axis(svg, time, contact_panel_height);
   draw_angles(svg, recording, contents, time);

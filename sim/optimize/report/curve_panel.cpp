@@ -13,7 +13,6 @@ using sim::Axis;
 using sim::LineName;
 using sim::Polyline;
 using sim::Svg;
-using sim::TextAnchor;
 
 /// The best so far as a line of steps.
 Polyline steps(const std::vector<double>& best) {
@@ -91,11 +90,6 @@ void draw_names(Svg& svg, const CurvePanel& panel, std::span<const Level> levels
     }
   }
   sim::draw_line_names(svg, panel.y, plot_right, names);
-}
-
-void draw_title(Svg& svg, std::string_view title, std::string_view subtitle) {
-  svg.text({sim::page_left, 36.0}, title, TextAnchor::start, 20.0, sim::ink, R"(font-weight="bold")");
-  svg.text({sim::page_left, 58.0}, subtitle, TextAnchor::start, sim::label_size, sim::faint_ink);
 }
 
 }  // namespace proleg::optimize

@@ -16,7 +16,6 @@
 namespace proleg::optimize {
 
 inline constexpr double plot_right = 740.0;  ///< the names of lines stand to the right of it
-inline constexpr double first_panel_top = 104.0;
 
 inline constexpr const char* dotted = "1.5 3.5";
 inline constexpr const char* dashed = "7 4";
@@ -49,6 +48,5 @@ void draw_every_curve(sim::Svg& svg, const CurvePanel& panel, const MethodRuns& 
 /// The names of levels and curves, at the right edge.
 void draw_names(sim::Svg& svg, const CurvePanel& panel, std::span<const Level> levels,
                 std::vector<sim::LineName> names);
-void draw_title(sim::Svg& svg, std::string_view title, std::string_view subtitle);
 
 }  // namespace proleg::optimize

@@ -20,7 +20,6 @@ using sim::Polyline;
 using sim::Svg;
 using sim::TextAnchor;
 
-constexpr double panel_top = 104.0;
 constexpr double panel_bottom = 470.0;
 constexpr double page_height = panel_bottom + 56.0;
 
@@ -110,24 +109,20 @@ Axis axis_of(const Contents& contents) {
       best.push_back(point.y);
     }
   }
-  return score_axis(std::move(scores), best, panel_bottom, panel_top);
+  return score_axis(std::move(scores), best, panel_bottom, sim::first_panel_top);
 }
 
 std::string count_text(double evaluations) {
   return sim::plain_number(evaluations, 0) + (evaluations == 1.0 ? " evaluation" : " evaluations");
 }
 
-void draw_title(Svg& svg, const Experiment& experiment, const Contents& contents, std::size_t evaluations) {
-  const Objective& objective = experiment.objectives.front();
-  svg.text({sim::page_left, 36.0}, shortened(experiment.title()), TextAnchor::start, 20.0, sim::ink,
-           R"(font-weight="bold")");
-  svg.text({sim::page_left, 58.0},
-           "method " + method_name(experiment.method) + ", " + count_text(static_cast<double>(evaluations)) +
-               (contents.failed.empty() ? "" : ", " + std::to_string(contents.failed.size()) + " failed"),
-           TextAnchor::start, sim::label_size, sim::faint_ink);
+void draw_head(Svg& svg, const Experiment& experiment, const Contents& contents, std::size_t evaluations) {
+  sim::draw_title(svg, shortened(experiment.title()),
+                  "method " + method_name(experiment.method) + ", " + count_text(static_cast<double>(evaluations)) +
+                      (contents.failed.empty() ? "" : ", " + std::to_string(contents.failed.size()) + " failed"));
   if (contents.winner) {
-    const std::string_view unit = objective.unit();
-    svg.text({sim::page_right, 58.0},
+    const std::string_view unit = experiment.objectives.front().unit();
+    svg.text({sim::page_right, sim::subtitle_y},
              "best " + rounded_text(contents.winner->y) + (unit.empty() ? "" : " " + std::string(unit)) + " after " +
                  count_text(contents.winner->x),
              TextAnchor::end, sim::label_size, sim::ink, R"(font-weight="bold")");
@@ -144,7 +139,7 @@ void draw_key(Svg& svg, const Contents& contents) {
   }
   entries.push_back({"mean of " + std::to_string(contents.window), mean_style, ""});
   entries.push_back({"best so far", best_style, ""});
-  sim::draw_legend(svg, sim::page_right, panel_top - 16.0, entries);
+  sim::draw_legend(svg, sim::page_right, sim::first_panel_top - 16.0, entries);
 }
 
 }  // namespace
@@ -158,7 +153,7 @@ std::string draw_learning_curve(const Experiment& experiment, std::span<const Ev
 
   Svg svg(sim::page_width, page_height, experiment.title(),
           "Scores of the evaluations of an optimisation, the best so far and the mean, against their number.");
-  draw_title(svg, experiment, contents, evaluations.size());
+  draw_head(svg, experiment, contents, evaluations.size());
   draw_key(svg, contents);
   sim::draw_plot_grid(svg, x, y, "evaluations", with_unit(shortened(objective.name), objective.unit()));
   svg.begin_group("evaluations");

@@ -14,9 +14,7 @@ namespace {
 
 using sim::Polyline;
 using sim::Svg;
-using sim::TextAnchor;
 
-constexpr double panel_top = 104.0;
 constexpr double panel_bottom = 540.0;
 constexpr double page_height = panel_bottom + 56.0;
 
@@ -63,19 +61,16 @@ std::string draw_pareto_front(const Experiment& experiment, std::span<const Eval
     best.add(experiment, evaluations[i]);
   }
   const sim::Axis x = score_axis(std::move(all.x), best.x, sim::page_left, sim::page_right);
-  const sim::Axis y = score_axis(std::move(all.y), best.y, panel_bottom, panel_top);
+  const sim::Axis y = score_axis(std::move(all.y), best.y, panel_bottom, sim::first_panel_top);
 
   Svg svg(sim::page_width, page_height, experiment.title(),
           "Candidates by two objectives; a line joins those that no other dominates.");
-  svg.text({sim::page_left, 36.0}, shortened(experiment.title()), TextAnchor::start, 20.0, sim::ink,
-           R"(font-weight="bold")");
-  svg.text({sim::page_left, 58.0},
-           "method " + method_name(experiment.method) + ", " + std::to_string(evaluations.size()) + " evaluations, " +
-               std::to_string(front.size()) + " of them on the Pareto front",
-           TextAnchor::start, sim::label_size, sim::faint_ink);
+  sim::draw_title(svg, shortened(experiment.title()),
+                  "method " + method_name(experiment.method) + ", " + std::to_string(evaluations.size()) +
+                      " evaluations, " + std::to_string(front.size()) + " of them on the Pareto front");
   const std::array<sim::LegendEntry, 2> entries{
       {{"evaluation", dot_style, dot}, {"Pareto front", front_dot_style, dot}}};
-  sim::draw_legend(svg, sim::page_right, panel_top - 16.0, entries);
+  sim::draw_legend(svg, sim::page_right, sim::first_panel_top - 16.0, entries);
   sim::draw_plot_grid(svg, x, y, axis_name(experiment, 0), axis_name(experiment, 1));
   svg.begin_group("evaluations");
   svg.marks(sim::to_marks(all.places, x, y, 2.5), dot, dot_style);

@@ -74,14 +74,14 @@ std::string repetitions_text(const MethodRuns& method) {
 template <typename Draw>
 std::string draw_method(const MethodRuns& method, const std::string& title, const std::string& about,
                         const std::vector<Level>& levels, const BestCurves& curves, const Draw& draw) {
-  const CurvePanel panel = make_panel(first_panel_top, single_panel_height, {&curves, 1}, levels);
-  Svg svg(sim::page_width, first_panel_top + single_panel_height + 56.0, title, about);
-  draw_title(svg, title, about);
+  const CurvePanel panel = make_panel(sim::first_panel_top, single_panel_height, {&curves, 1}, levels);
+  Svg svg(sim::page_width, sim::first_panel_top + single_panel_height + 56.0, title, about);
+  sim::draw_title(svg, title, about);
   std::vector<LegendEntry> legend{{"uniform amplitudes", line_style(sim::ink, 1.3, dotted), ""}};
   if (find_thesis_result(method.method) != nullptr) {
     legend.push_back({"the thesis's best", line_style(sim::ink, 1.3, dashed), ""});
   }
-  sim::draw_legend(svg, plot_right, first_panel_top - 16.0, legend);
+  sim::draw_legend(svg, plot_right, sim::first_panel_top - 16.0, legend);
   sim::draw_plot_grid(svg, panel.x, panel.y, "evaluations", "Best distance so far (m)");
   draw_levels(svg, panel, levels);
   const std::vector<LineName> names = draw(svg, panel);
@@ -164,18 +164,18 @@ std::string draw_method_comparison(std::span<const MethodRuns> methods, double u
   all.push_back(uniform);
   best.push_back(uniform);
   thesis.push_back(uniform);
-  const double second_top = first_panel_top + double_panel_height + between_panels;
-  const CurvePanel every = make_panel(first_panel_top, double_panel_height, curves, all);
+  const double second_top = sim::first_panel_top + double_panel_height + between_panels;
+  const CurvePanel every = make_panel(sim::first_panel_top, double_panel_height, curves, all);
   const CurvePanel mean = make_panel(second_top, double_panel_height, curves, all);
 
   Svg svg(sim::page_width, second_top + double_panel_height + 56.0, "Comparison of methods",
           "Best distance so far of every repetition, and its mean, against evaluations.");
-  draw_title(svg, "Travelling wave: methods compared", {});
+  sim::draw_title(svg, "Travelling wave: methods compared", {});
   sim::draw_legend(svg, plot_right, 54.0, method_legend);
   std::vector<LegendEntry> level_legend{
       {"uniform amplitudes; best of all runs", line_style(sim::ink, 1.3, dotted), ""}};
   sim::draw_plot_grid(svg, every.x, every.y, "evaluations", "(a) Every run: best distance so far (m)");
-  sim::draw_legend(svg, plot_right, first_panel_top - 16.0, level_legend);
+  sim::draw_legend(svg, plot_right, sim::first_panel_top - 16.0, level_legend);
   draw_levels(svg, every, best);
   for (std::size_t i = 0; i < methods.size(); ++i) {
     draw_every_curve(svg, every, methods[i], colours[i]);

@@ -1,5 +1,5 @@
-# What nearly every source of sim and tools includes, compiled once: with gcc this saves a third of the compile time. A
-# source that lacks an include may compile with it, so the host build of tools/check --slow does without.
+# Headers that nearly every source includes, compiled once: most of the compile time goes into Eigen and the standard
+# library. A source that lacks an include may compile with them, so tools/check --slow builds the preset host without.
 option(PROLEG_PRELUDES "Precompile the headers that most sources include" ON)
 
 # proleg_prelude(<name> HEADERS <header>... LIBRARIES target... [OPTIONS compiler options...])

@@ -1,5 +1,6 @@
-// The image for Cortex-M, on an emulated CPU, plays the first cases as five modules;
-// all_cases_test.cpp plays all.
+// The images for Cortex-M, on an emulated CPU, play the cases as five modules: for the CPU of the modules, and for the
+// smallest, which multiplies 32 by 32 bits to 32 and does the rest in software. The ordinary suite plays the first
+// cases, the slow suite all.
 
 #include <gtest/gtest.h>
 
@@ -9,14 +10,16 @@
 namespace proleg::identity {
 namespace {
 
+constexpr std::uint32_t cases = PROLEG_SLOW_CASES;
+
 class IdentityOfProcessors : public EachAlgorithm {};
 
 TEST_P(IdentityOfProcessors, CortexM4GivesTheGoldenSetpoints) {
-  expect_golden([] { return make_cortex_m_player(cortex_m::Cpu::cortex_m4); }, algorithm(), quick_cases);
+  expect_golden([] { return make_cortex_m_player(cortex_m::Cpu::cortex_m4); }, algorithm(), cases);
 }
 
 TEST_P(IdentityOfProcessors, CortexM0GivesTheGoldenSetpoints) {
-  expect_golden([] { return make_cortex_m_player(cortex_m::Cpu::cortex_m0); }, algorithm(), quick_cases);
+  expect_golden([] { return make_cortex_m_player(cortex_m::Cpu::cortex_m0); }, algorithm(), cases);
 }
 
 INSTANTIATE_TEST_SUITE_P(Algorithms, IdentityOfProcessors, testing::ValuesIn(algorithm_ids()), algorithm_name);

@@ -1,5 +1,4 @@
-// The programs that gcc and clang make of the core, with and without optimisation. Those without optimisation take many
-// times as long, so they play the first cases; all_cases_test.cpp plays all.
+// The programs that gcc and clang make of the core with optimisation.
 
 #include <gtest/gtest.h>
 
@@ -10,16 +9,10 @@ namespace {
 
 class IdentityOfCompilers : public EachAlgorithm {};
 
-TEST_P(IdentityOfCompilers, GccWithoutOptimisationGivesTheGoldenSetpoints) {
-  expect_golden_from("identity_gcc_O0", algorithm(), quick_cases);
-}
-TEST_P(IdentityOfCompilers, GccWithOptimisationGivesTheGoldenSetpoints) {
+TEST_P(IdentityOfCompilers, GccGivesTheGoldenSetpoints) {
   expect_golden_from("identity_gcc_O2", algorithm(), all_cases);
 }
-TEST_P(IdentityOfCompilers, ClangWithoutOptimisationGivesTheGoldenSetpoints) {
-  expect_golden_from("identity_clang_O0", algorithm(), quick_cases);
-}
-TEST_P(IdentityOfCompilers, ClangWithOptimisationGivesTheGoldenSetpoints) {
+TEST_P(IdentityOfCompilers, ClangGivesTheGoldenSetpoints) {
   expect_golden_from("identity_clang_O2", algorithm(), all_cases);
 }
 

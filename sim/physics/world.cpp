@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "sim/physics/contact_friction.hpp"
 #include "sim/physics/engine.hpp"
 #include "sim/physics/hinge_motor.hpp"
 #include "sim/physics/physics_error.hpp"
@@ -126,6 +127,7 @@ class World::Implementation {
  private:
   void advance() {
     touch_sensors_.release_all();
+    contact_friction_.begin_step();
     contact_count_ = 0;
     dSpaceCollide2(reinterpret_cast<dGeomID>(robot_space_.get()), reinterpret_cast<dGeomID>(environment_space_.get()),
                    this, &Implementation::on_near);
@@ -140,6 +142,7 @@ class World::Implementation {
     } else {
       dWorldQuickStep(world_.get(), step_s_);
     }
+    contact_friction_.end_step();
     dJointGroupEmpty(contact_group_.get());
   }
 
@@ -273,10 +276,10 @@ class World::Implementation {
     const int count = dCollide(a, b, max_contacts, &contacts[0].geom, sizeof(dContact));
     for (int i = 0; i < count; ++i) {
       dContact& contact = contacts[static_cast<std::size_t>(i)];
-      // Without this mode mu would be a force.
-      contact.surface.mode = dContactApprox1;
-      contact.surface.mu = friction(data_a, data_b);
-      dJointAttach(dJointCreateContact(world_.get(), contact_group_.get(), &contact), dGeomGetBody(a), dGeomGetBody(b));
+      contact_friction_.set_surface(contact, friction(data_a, data_b), a, b);
+      const dJointID joint = dJointCreateContact(world_.get(), contact_group_.get(), &contact);
+      dJointAttach(joint, dGeomGetBody(a), dGeomGetBody(b));
+      contact_friction_.observe(joint);
       note_touch(data_a.link, data_b.link, contact);
       note_touch(data_b.link, data_a.link, contact);
     }
@@ -310,6 +313,7 @@ class World::Implementation {
   std::vector<double> masses_;
   std::vector<Eigen::Vector3d> mass_centers_;
   TouchSensors touch_sensors_;
+  ContactFriction contact_friction_;
   std::size_t contact_count_ = 0;
   std::optional<double> lowest_ground_;
   std::size_t messages_before_ = 0;

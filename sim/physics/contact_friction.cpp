@@ -1,0 +1,113 @@
+#include "sim/physics/contact_friction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace proleg::sim {
+namespace {
+
+/// m/s. Below, the direction of the velocity may be an error of the solver.
+constexpr double min_sliding_speed = 1e-3;
+
+Eigen::Vector3d point_velocity(dGeomID shape, const dReal* point) {
+  const dBodyID body = dGeomGetBody(shape);
+  if (body == nullptr) {
+    return Eigen::Vector3d::Zero();
+  }
+  dVector3 velocity;
+  dBodyGetPointVel(body, point[0], point[1], point[2], velocity);
+  return {velocity[0], velocity[1], velocity[2]};
+}
+
+Eigen::Vector3d tangential(const Eigen::Vector3d& vector, const Eigen::Vector3d& normal) {
+  return vector - vector.dot(normal) * normal;
+}
+
+/// A direction in the plane of contact that turns with the link.
+Eigen::Vector3d axis_of_link(dGeomID a, dGeomID b, const Eigen::Vector3d& normal) {
+  const dBodyID body = dGeomGetBody(a) != nullptr ? dGeomGetBody(a) : dGeomGetBody(b);
+  const dReal* rotation = dBodyGetRotation(body);  // 3 rows of 4
+  const Eigen::Vector3d x = tangential({rotation[0], rotation[4], rotation[8]}, normal);
+  const Eigen::Vector3d y = tangential({rotation[1], rotation[5], rotation[9]}, normal);
+  return x.squaredNorm() > y.squaredNorm() ? x : y;
+}
+
+void set_first_axis(dContact& contact, const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d axis = direction.normalized();
+  contact.surface.mode |= dContactFDir1;
+  contact.fdir1[0] = axis.x();
+  contact.fdir1[1] = axis.y();
+  contact.fdir1[2] = axis.z();
+  contact.fdir1[3] = 0.0;
+}
+
+}  // namespace
+
+void ContactFriction::begin_step() {
+  pairs_.clear();
+  point_count_ = 0;
+}
+
+const ContactFriction::Pair* ContactFriction::before(dGeomID a, dGeomID b) const {
+  const auto found = std::ranges::find_if(pairs_before_, [&](const Pair& pair) { return pair.a == a && pair.b == b; });
+  return found == pairs_before_.end() ? nullptr : &*found;
+}
+
+std::size_t ContactFriction::pair_of(dGeomID a, dGeomID b) {
+  // The engine reports all points of a pair one after another.
+  if (pairs_.empty() || pairs_.back().a != a || pairs_.back().b != b) {
+    pairs_.push_back({a, b});
+  }
+  return pairs_.size() - 1;
+}
+
+void ContactFriction::set_surface(dContact& contact, double coefficient, dGeomID a, dGeomID b) {
+  // Without this mode mu would be a force.
+  contact.surface.mode = dContactApprox1;
+  contact.surface.mu = coefficient;
+  const Eigen::Vector3d normal(contact.geom.normal[0], contact.geom.normal[1], contact.geom.normal[2]);
+  next_.pair = pair_of(a, b);
+  next_.normal = normal;
+  if (coefficient <= 0.0) {
+    return;
+  }
+  const Pair* const last = before(a, b);
+  const Eigen::Vector3d velocity =
+      tangential(point_velocity(a, contact.geom.pos) - point_velocity(b, contact.geom.pos), normal);
+  const double speed = velocity.norm();
+  if (speed > min_sliding_speed) {
+    set_first_axis(contact, velocity);
+    if (last != nullptr && last->normal_force > 0.0) {
+      contact.surface.mode |= dContactSlip2;
+      contact.surface.slip2 =
+          speed * static_cast<double>(last->points) / (coefficient * last->normal_force);  // m/s per N
+    }
+    return;
+  }
+  const Eigen::Vector3d friction = last != nullptr ? tangential(last->friction, normal) : Eigen::Vector3d::Zero();
+  set_first_axis(contact, friction.squaredNorm() > 0.0 ? friction : axis_of_link(a, b, normal));
+}
+
+void ContactFriction::observe(dJointID joint) {
+  if (point_count_ == points_.size()) {
+    points_.emplace_back();
+  }
+  Point& point = points_[point_count_++];
+  point.pair = next_.pair;
+  point.normal = next_.normal;
+  dJointSetFeedback(joint, &point.feedback);
+}
+
+void ContactFriction::end_step() {
+  for (std::size_t i = 0; i < point_count_; ++i) {
+    const Point& point = points_[i];
+    const Eigen::Vector3d force(point.feedback.f1[0], point.feedback.f1[1], point.feedback.f1[2]);
+    Pair& pair = pairs_[point.pair];
+    pair.points += 1;
+    pair.normal_force += std::abs(force.dot(point.normal));
+    pair.friction += tangential(force, point.normal);
+  }
+  pairs_before_.swap(pairs_);
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <ode/ode.h>
+
+#include <cstddef>
+#include <deque>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace proleg::sim {
+
+/// Coulomb friction at the contact points of a world: at most coefficient * normal force, in every direction.
+///
+/// The engine limits the friction of a contact point along two axes, each on its own. With axes that are fixed in the
+/// world, friction on the diagonal is 1.41 times as large. This class chooses the axes of every point in every step:
+///
+/// - A point that slides has its first axis along its velocity. Friction along the second axis must not hold the point
+///   on its line: there it is proportional to the sideways speed v2, as for small v2 in Coulomb's law,
+///     -coefficient * normal force * v / |v|  ~  -(coefficient * normal force / |v|) * v2
+///   The engine calls this force-dependent slip.
+/// - A point that sticks has its first axis along the friction of the step before. A load that is too large in any
+///   direction therefore moves the robot one step later.
+/// - A point that does not move and has no step before has its first axis along its link.
+///
+/// All axes turn with the robot and its motion. Therefore a run does not depend on the robot's heading.
+class ContactFriction {
+ public:
+  /// Before the contacts of a step.
+  void begin_step();
+  /// Sets the surface of a contact point, without its geometry. a, b: the shapes that touch.
+  void set_surface(dContact& contact, double coefficient, dGeomID a, dGeomID b);
+  /// joint: of the contact of the last set_surface(), attached to its bodies.
+  void observe(dJointID joint);
+  /// After the step, before its contact joints are destroyed.
+  void end_step();
+
+ private:
+  /// Two shapes that touch.
+  struct Pair {
+    dGeomID a;
+    dGeomID b;
+    std::size_t points = 0;
+    double normal_force = 0.0;                           ///< N, sum of its points
+    Eigen::Vector3d friction = Eigen::Vector3d::Zero();  ///< N, sum of its points; on either shape
+  };
+  /// A contact point of this step.
+  struct Point {
+    std::size_t pair;  ///< in pairs_
+    Eigen::Vector3d normal;
+    dJointFeedback feedback;
+  };
+
+  [[nodiscard]] const Pair* before(dGeomID a, dGeomID b) const;
+  [[nodiscard]] std::size_t pair_of(dGeomID a, dGeomID b);
+
+  std::vector<Pair> pairs_before_;  ///< of the step before, with their forces
+  std::vector<Pair> pairs_;         ///< of this step
+  std::deque<Point> points_;        ///< the engine keeps pointers to their feedback; not all are in use
+  std::size_t point_count_ = 0;
+  Point next_{};  ///< of the last set_surface()
+};
+
+}  // namespace proleg::sim

@@ -21,6 +21,7 @@ const char* name_of(Difference::Kind kind) {
       return "last servo command";
     case Difference::Kind::internal_value:
       return "internal value";
+    case Difference::Kind::late_servo_command:
     case Difference::Kind::missed_tick:
       break;
   }
@@ -78,6 +79,12 @@ std::string describe(const Difference& difference, const std::string& joint_name
   std::ostringstream text;
   if (difference.kind == Difference::Kind::missed_tick) {
     text << joint_name << " was gone at the end of tick " << difference.tick << ", and this run had not stopped it";
+    return text.str();
+  }
+  if (difference.kind == Difference::Kind::late_servo_command) {
+    text << "servo command of " << joint_name << " at tick " << difference.tick << ", "
+         << in_words(difference.kind, difference.found)
+         << ": came after the next SYNC, too late for the simulated world";
     return text.str();
   }
   text << name_of(difference.kind) << " of " << joint_name << " at tick " << difference.tick << ": found "

@@ -17,7 +17,8 @@ struct Difference {
     servo_command,
     last_servo_command,  ///< as recorded beside the set-point
     internal_value,
-    missed_tick,  ///< a module did not finish it, and the run had not stopped it; no found and expected value
+    late_servo_command,  ///< the servo acted on it a tick later than the gait in memory demands; found is the command
+    missed_tick,         ///< a module did not finish it, and the run had not stopped it; no found and expected value
   };
   Kind kind;
   std::uint32_t tick;

@@ -208,6 +208,11 @@ class HardwareLoop::Implementation {
       report_.servo_hash.append(pulse.command);
     }
     reference_.compare(values_.setpoints(), values_.pulses(), report_);
+    for (const PlantTicks::Reading& late : plant_ticks_.late_readings()) {
+      if (!reference_.has_failed(late.joint)) {
+        report_.add({Difference::Kind::late_servo_command, tick_, late.joint, late.pulse, std::nullopt});
+      }
+    }
     rack_.take_problems(tick_, report_);
     ++tick_;
     tick_finished_ = true;

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "shared/kernel/servo_schedule.hpp"
 #include "sim/bus/controller.hpp"
 #include "sim/loop/plant.hpp"
+#include "sim/loop/pulse_timing.hpp"
 #include "sim/robot/servo_pulse.hpp"
 
 namespace proleg::sim {
@@ -21,15 +23,13 @@ struct PlantAction {
   std::uint64_t number;  ///< of the interval since SYNC 0, or of the step in the tick
 };
 
-/// The actions of a tick, by time. An interval's pulse is read in the middle of the interval, or half a millisecond
-/// after its start if that is earlier: by then the module has given this pulse and not yet the next. A step is made in
-/// its own middle, after the intervals that have started by its start.
+/// The actions of a tick, by time. A step is made in its own middle, or later: after the readings of all pulses on
+/// which the servos act at its start.
 inline void schedule_tick(const ServoSchedule& servo, const Plant& plant, std::uint32_t tick,
                           std::uint32_t servo_period_us, std::uint32_t tick_period_us,
                           std::vector<PlantAction>& actions) {
-  constexpr std::uint64_t max_wait_us = 500;
   const std::uint64_t tick_start_us = std::uint64_t{tick} * tick_period_us;
-  const std::uint64_t wait_us = std::min<std::uint64_t>(servo_period_us / 2, max_wait_us);
+  const std::uint64_t wait_us = pulse_reading_delay_us(servo_period_us);
   const std::uint64_t half_step = std::uint64_t{tick_period_us} * 1000 / plant.steps_per_tick() / 2;
   const std::uint64_t end = servo.first_interval(std::uint64_t{tick} + 1);
   std::uint64_t interval = servo.first_interval(tick);
@@ -39,7 +39,10 @@ inline void schedule_tick(const ServoSchedule& servo, const Plant& plant, std::u
   BusTime last_reading = 0;
   for (std::uint32_t step = 0; step < plant.steps_per_tick(); ++step) {
     const std::uint64_t start_us = plant.step_start_us(step);
-    for (; interval < end && servo.start_us(interval) - tick_start_us <= start_us; ++interval) {
+    const auto acts = [&](std::uint64_t n) {
+      return acting_time_us(servo.start_us(n), servo_period_us, tick_period_us) <= tick_start_us + start_us;
+    };
+    for (; interval < end && acts(interval); ++interval) {
       last_reading = read_time(interval);
       actions.push_back({last_reading, PlantAction::Kind::read_servos, interval});
     }

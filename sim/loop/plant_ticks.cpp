@@ -1,7 +1,10 @@
 #include "sim/loop/plant_ticks.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
+
+#include "sim/loop/pulse_timing.hpp"
 
 namespace proleg::sim {
 
@@ -44,14 +47,21 @@ void PlantTicks::act(const PlantAction& action) {
 }
 
 void PlantTicks::take_readings(std::uint64_t until_us) {
-  for (; taken_ < readings_.size() && readings_[taken_].time_us <= until_us; ++taken_) {
+  for (; taken_ < readings_.size(); ++taken_) {
     const Reading& reading = readings_[taken_];
+    if (acting_time(reading) > until_us) {
+      return;
+    }
     if (reading.pulse) {
       plant_.set_command(reading.joint, *reading.pulse);
     } else {
       plant_.release(reading.joint);
     }
   }
+}
+
+std::uint64_t PlantTicks::acting_time(const Reading& reading) const {
+  return acting_time_us(reading.time_us, servo_schedule_.servo_period_us(), servo_schedule_.tick_period_us());
 }
 
 void PlantTicks::end(BusTime now) {
@@ -71,10 +81,16 @@ void PlantTicks::end(BusTime now) {
 }
 
 void PlantTicks::complete() {
+  const std::size_t first_pending = readings_.size();
   for (const PlantAction& action : pending_) {
     act(action);
   }
-  take_readings((std::uint64_t{tick_} + 1) * scenario_.kernel.tick_period_us);
+  const std::uint64_t start_us = std::uint64_t{tick_} * scenario_.kernel.tick_period_us;
+  const std::uint64_t last_step_us = start_us + plant_.step_start_us(plant_.steps_per_tick() - 1);
+  late_.clear();
+  std::ranges::copy_if(std::span(readings_).subspan(first_pending), std::back_inserter(late_),
+                       [&](const Reading& reading) { return acting_time(reading) <= last_step_us; });
+  take_readings(start_us + scenario_.kernel.tick_period_us);
   ended_ = false;
   ++tick_;
   completed_.swap(readings_);

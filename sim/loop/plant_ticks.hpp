@@ -47,10 +47,14 @@ class PlantTicks {
 
   /// The readings of the last completed tick, in the order of time, then of joints.
   [[nodiscard]] std::span<const Reading> readings() const { return completed_; }
+  /// Those of them that came too late for a step of the physics: the SYNC was early by more than pulse_timing.hpp
+  /// allows. The servos acted on these pulses from the next tick on.
+  [[nodiscard]] std::span<const Reading> late_readings() const { return late_; }
 
  private:
   void act(const PlantAction& action);
   void take_readings(std::uint64_t until_us);
+  [[nodiscard]] std::uint64_t acting_time(const Reading& reading) const;
 
   const Scenario& scenario_;
   Plant& plant_;
@@ -65,6 +69,7 @@ class PlantTicks {
   std::vector<PlantAction> pending_;
   std::vector<Reading> readings_;
   std::vector<Reading> completed_;
+  std::vector<Reading> late_;
   std::size_t taken_ = 0;  ///< number of readings that the servos have taken
 };
 

@@ -1,5 +1,6 @@
 #include "sim/loop/simulation.hpp"
 
+#include "sim/loop/pulse_timing.hpp"
 #include "sim/loop/servo_pulses.hpp"
 #include "sim/record/internal_values.hpp"
 
@@ -38,7 +39,7 @@ const Change* Simulation::advance() {
     take_servo_pulses(tick_start_us + plant_.step_start_us(step));
     plant_.step();
   }
-  // Pulses that start after the last step act in the next tick, as they do with modules in the loop (PlantTicks).
+  // Pulses on which the servos act after the last step count for the next tick.
   plant_.finish_tick();
   take_servo_pulses(tick_start_us + scenario_.kernel.tick_period_us);
   return change;
@@ -52,10 +53,14 @@ const Change* Simulation::apply_changes() {
   return &scenario_.changes[next_change_++];
 }
 
-/// The servos take the pulses whose intervals have started by then. A step uses those that have started by its start.
+/// The servos take the pulses on which they act by then.
 void Simulation::take_servo_pulses(std::uint64_t until_us) {
-  for (; taken_pulses_ < servo_pulses_.size() && servo_pulses_[taken_pulses_].time_us <= until_us; ++taken_pulses_) {
-    plant_.set_command(servo_pulses_[taken_pulses_].joint, servo_pulses_[taken_pulses_].command);
+  for (; taken_pulses_ < servo_pulses_.size(); ++taken_pulses_) {
+    const ServoPulse& pulse = servo_pulses_[taken_pulses_];
+    if (acting_time_us(pulse.time_us, servo_schedule_.servo_period_us(), servo_schedule_.tick_period_us()) > until_us) {
+      return;
+    }
+    plant_.set_command(pulse.joint, pulse.command);
   }
 }
 

@@ -13,6 +13,7 @@
 #include "sim/physics/engine.hpp"
 #include "sim/physics/hinge_motor.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "sim/physics/step_memory.hpp"
 #include "sim/physics/touch_sensors.hpp"
 
 namespace proleg::sim {
@@ -56,6 +57,7 @@ class World::Implementation {
     prepare_engine_for_this_thread();
     messages_before_ = engine_messages();
     world_.reset(dWorldCreate());
+    StepMemory::use_for(world_.get());
     // A world without its own threading implementation crashes when other worlds are stepped beside it.
     threading_.reset(dThreadingAllocateSelfThreadedImplementation());
     dWorldSetStepThreadingImplementation(world_.get(), dThreadingImplementationGetFunctions(threading_.get()),
@@ -87,6 +89,7 @@ class World::Implementation {
     if (world_ == nullptr) {
       throw PhysicsError("the simulation failed at an earlier step");
     }
+    step_memory_.select();
     try {
       advance();
     } catch (...) {
@@ -146,14 +149,17 @@ class World::Implementation {
     dJointGroupEmpty(contact_group_.get());
   }
 
-  /// An error that the engine raises in the middle of a step leaves its world half updated. Destroying that world would
-  /// fail the next assertion, so it is never destroyed, only kept reachable.
+  /// An error that the engine raises in the middle of a step leaves jobs in the world's threading implementation, and
+  /// destroying that would fail the next assertion. So it is never destroyed, only kept reachable: less than 1 kB.
   void abandon() {
+    contact_group_.reset();
+    environment_space_.reset();
+    robot_space_.reset();
+    world_.reset();
     static auto* const abandoned = new std::vector<void*>;
     static std::mutex mutex;
     const std::lock_guard lock(mutex);
-    abandoned->insert(abandoned->end(), {contact_group_.release(), environment_space_.release(), robot_space_.release(),
-                                         world_.release(), threading_.release()});
+    abandoned->push_back(threading_.release());
   }
 
   /// One number that is not finite makes the sum not finite, so checking the sum checks all of them.
@@ -301,6 +307,7 @@ class World::Implementation {
   }
 
   // Declared in the order in which the engine needs them; destroyed in reverse.
+  StepMemory step_memory_;
   std::unique_ptr<dxThreadingImplementation, FreeThreading> threading_;
   std::unique_ptr<dxWorld, DestroyWorld> world_;
   std::unique_ptr<dxSpace, DestroySpace> robot_space_;

@@ -33,7 +33,7 @@ Scenario read_scenario(const std::filesystem::path& path, FileSource& files) {
   }
 
   const auto robot_file = open("robot");
-  RobotDescription robot = read_robot(*robot_file, sources, scenario.remarks);
+  RobotDescription robot = read_robot(*robot_file, scenario.step_s, sources, scenario.remarks);
   scenario.robot = std::move(robot.model);
   scenario.joint_limits = std::move(robot.kernel_limits);
   scenario.modules = std::move(robot.modules);

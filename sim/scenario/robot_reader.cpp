@@ -15,11 +15,16 @@ constexpr Range gains{1e-3, 1e4, "1/s"};
 constexpr Range servo_periods{0.1, 100.0, "ms"};
 constexpr Range servo_latencies{0.0, 100.0, "ms"};
 
-ServoModel read_servo(const XmlElement& element) {
+ServoModel read_servo(const XmlElement& element, double step_s) {
   element.allow({}, {"gain", "period", "latency"});
   ServoModel servo;
   if (const auto gain = element.child("gain")) {
     servo.gain = read_quantity(*gain, gains);
+    if (servo.gain * step_s > 1.0) {
+      gain->refuse("a gain of " + number_text(servo.gain) + " 1/s with steps of " + number_text(step_s * 1e3) +
+                       " ms, with which the servo overshoots in every step",
+                   "at most " + number_text(1.0 / step_s) + " 1/s, or a smaller <stepWidth>");
+    }
   }
   if (const auto period = element.child("period")) {
     servo.period_us = read_microseconds(*period, servo_periods);
@@ -32,7 +37,8 @@ ServoModel read_servo(const XmlElement& element) {
 
 }  // namespace
 
-RobotDescription read_robot(const XmlDocument& document, SourceSet& sources, std::vector<std::string>& remarks) {
+RobotDescription read_robot(const XmlDocument& document, double step_s, SourceSet& sources,
+                            std::vector<std::string>& remarks) {
   const XmlElement root = document.root("Robot");
   constexpr std::array<std::string_view, 5> extra_tags{"servo", "module", "AttachedSensor", "sensor", "Manipulator"};
   const KinBodyContents contents = read_kinbody(root, KinBodyUse::robot, sources, remarks, extra_tags);
@@ -48,7 +54,7 @@ RobotDescription read_robot(const XmlDocument& document, SourceSet& sources, std
   RobotDescription robot;
   robot.model.name = root.attribute("name").value_or(document.path().stem().string());
   if (const auto servo = root.child("servo")) {
-    robot.model.servo = read_servo(*servo);
+    robot.model.servo = read_servo(*servo, step_s);
   }
   robot.model.links = std::move(chain.links);
   robot.model.joints = std::move(chain.joints);

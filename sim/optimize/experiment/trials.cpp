@@ -90,7 +90,7 @@ void perturb(sim::Scenario& scenario, const Spread& spread, std::uint64_t seed) 
 
   sim::ServoModel& servo = scenario.robot.servo;
   Pcg32 gain(seed, sim::random_stream::servo_gain);
-  servo.gain *= draw_factor(gain, spread.servo_gain);
+  servo.gain = std::min(servo.gain * draw_factor(gain, spread.servo_gain), 1.0 / scenario.step_s);
 
   constexpr std::uint32_t max_latency_us = 100'000;
   Pcg32 latency(seed, sim::random_stream::latency);

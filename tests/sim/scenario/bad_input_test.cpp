@@ -205,6 +205,8 @@ const auto cases = testing::Values(
              "robot.xml:26: found no <maxvel> in <Joint>, expected one"},
     BadInput{"GainZero", "robot.xml", "<gain>20", "<gain>0",
              "robot.xml:3: found '0' in <gain>, expected a number from 0.001 to 10000 1/s"},
+    BadInput{"GainWithWhichTheServoOvershootsInEveryStep", "robot.xml", "<gain>20", "<gain>5000",
+             "robot.xml:3: found a gain of 5000 1/s with steps of"},
     BadInput{"ServoPeriodZero", "robot.xml", "ms\">2<", "ms\">0<",
              "robot.xml:4: found '0' in <period>, expected a number from 0.1 to 100 ms"},
     BadInput{"LatencyTooLong", "robot.xml", "</period>", "</period><latency>101</latency>",

@@ -246,6 +246,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     }
     rcc_.note_start(cause);
     cpu_.reset();
+    faults_since_reset_ = 0;
     pins_.reset();
     invalidate_next_events();
   }
@@ -402,7 +403,11 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   }
 
   void note_faults() {
+    constexpr std::uint32_t max_reported = 5;
     for (CpuFault& fault : cpu_.take_faults()) {
+      if (++faults_since_reset_ > max_reported && !fault.locked_up) {
+        continue;
+      }
       ChipEvent& event = new_event(fault.locked_up ? ChipEvent::Kind::locked_up : ChipEvent::Kind::fault);
       event.text = std::move(fault.cause);
       std::ranges::copy(fault.registers, event.registers.begin());
@@ -425,6 +430,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   std::optional<ResetCause> reset_cause_;
   std::uint64_t cuts_ = 0;
   std::uint64_t starts_ = 0;
+  std::uint32_t faults_since_reset_ = 0;
   bool on_ = false;
   bool stands_still_ = false;  ///< the model has ended
   bool steps_ = false;

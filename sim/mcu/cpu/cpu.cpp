@@ -70,6 +70,7 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
     halt_reason_.clear();
     stop_requested_ = false;
     wants_halt_ = false;
+    idle_turns_ = 0;
     sleep_priority_ = Nvic::no_priority;
     state_ = State::running;
     exceptions_.reset();
@@ -83,8 +84,10 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
     limit_ =
         done + std::min(std::max<std::uint64_t>(instructions, 1), std::numeric_limits<std::uint64_t>::max() - done);
     while (prepare() && engine_.instructions() < limit_) {
+      const std::uint64_t before = engine_.instructions();
       engine_.set_limit(nvic_.wants_attention() ? 0 : limit_);
       handle(engine_.run());
+      require_progress(engine_.instructions() - before);
     }
     return state_;
   }
@@ -248,6 +251,20 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
   Exceptions& exceptions() { return exceptions_; }
 
  private:
+  /// Halts a program that only takes exceptions: a fault whose handler returns to the instruction that failed, or an
+  /// interrupt whose handler is no code. Exceptions take no time in this model, so such a program would never end.
+  void require_progress(std::uint64_t executed) {
+    constexpr std::uint32_t max_faults = 100;
+    constexpr std::uint32_t max_idle_turns = 1000;
+    idle_turns_ = executed == 0 ? idle_turns_ + 1 : 0;
+    if (exceptions_.fault_count() > max_faults) {
+      halt("more than " + std::to_string(max_faults) + " faults since the reset, the last at " +
+           hexadecimal(engine_.pc()));
+    } else if (idle_turns_ > max_idle_turns) {
+      halt("exceptions without an instruction between them, at " + hexadecimal(engine_.pc()));
+    }
+  }
+
   /// A write to flash or system memory in the middle of a block, which waits for the end of the block.
   struct Write {
     std::uint32_t address;
@@ -376,6 +393,7 @@ class Cpu::Implementation final : public EngineClient, public SystemControlOwner
   Exceptions exceptions_;
   State state_ = State::halted;
   std::uint64_t limit_ = 0;
+  std::uint32_t idle_turns_ = 0;  ///< turns of run() in a row that executed no instruction
   int sleep_priority_ = Nvic::no_priority;
   bool stop_requested_ = false;
   bool wants_halt_ = false;

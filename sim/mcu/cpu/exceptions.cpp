@@ -64,6 +64,7 @@ Exceptions::Exceptions(Engine& engine, Nvic& nvic, SystemControl& system_control
 void Exceptions::reset() {
   locked_up_ = false;
   event_ = false;
+  fault_count_ = 0;
   vectors_known_.reset();
   nvic_->reset();
   system_control_->reset();
@@ -333,6 +334,7 @@ void Exceptions::raise_hard_fault(std::uint32_t status) {
 }
 
 void Exceptions::note(std::string cause) {
+  ++fault_count_;
   CpuFault fault;
   fault.cause = std::move(cause);
   for (unsigned i = 0; i <= 16; ++i) {

@@ -45,6 +45,8 @@ class Exceptions {
 
   [[nodiscard]] bool is_locked_up() const { return locked_up_; }
   [[nodiscard]] std::vector<CpuFault> take_faults();
+  /// Since the last reset.
+  [[nodiscard]] std::uint32_t fault_count() const { return fault_count_; }
   /// Flash has changed.
   void discard_vectors() { vectors_known_.reset(); }
   /// The event register of WFE.
@@ -78,6 +80,7 @@ class Exceptions {
   unsigned current_ = 0;
   bool locked_up_ = false;
   bool event_ = false;
+  std::uint32_t fault_count_ = 0;
   std::vector<CpuFault> faults_;
   std::uint32_t vector_table_ = 0;
   std::array<std::uint32_t, Nvic::exception_count> vectors_{};

@@ -54,9 +54,10 @@ class Patch {
 
 constexpr std::uint16_t nop = 0xBF00;
 constexpr std::uint16_t branch_to_itself = 0xE7FE;
-constexpr std::uint16_t undefined = 0xDE00;            // udf #0
-constexpr std::uint16_t store_r3_at_r3 = 0x601B;       // str r3, [r3]
-constexpr std::uint16_t load_r3_behind_next = 0x4B00;  // ldr r3, [pc, #0], from a multiple of 4
+constexpr std::uint16_t undefined = 0xDE00;             // udf #0
+constexpr std::uint16_t return_from_function = 0x4770;  // bx lr
+constexpr std::uint16_t store_r3_at_r3 = 0x601B;        // str r3, [r3]
+constexpr std::uint16_t load_r3_behind_next = 0x4B00;   // ldr r3, [pc, #0], from a multiple of 4
 
 /// A store to an address, of that address.
 Code store_to(std::uint32_t address) {
@@ -170,6 +171,21 @@ TEST(ProgramBeyondTheModel, StandsStillAndIsNamedWithTheRegisterAndThePlace) {
   EXPECT_TRUE(robot.was_noticed("SPI1"));
   EXPECT_TRUE(robot.was_noticed("proleg::firmware::Module::receive"));
   EXPECT_TRUE(robot.joined.empty());
+}
+
+// The handler of the fault returns to the instruction that failed.
+TEST(FaultyProgram, ThatHasTheSameFaultAgainAndAgainStandsStillAndIsNamed) {
+  VirtualRobot robot(shipped("travelling_wave/coupled"));
+  robot.run_to(breaks_at);
+  Stm32f405& chip = robot.module(broken_joint).chip();
+  const Patch handler(chip, Code().op(return_from_function), "fault_handler");
+  const Patch patch(chip, Code().op(undefined));
+  expect_others_to_continue(robot);
+  EXPECT_TRUE(robot.was_noticed("undefined instruction"));
+  EXPECT_TRUE(robot.was_noticed("more than 100 faults since the reset"));
+  const auto faults = std::ranges::count_if(
+      robot.notices, [](const std::string& text) { return text.find("fault of the program") != std::string::npos; });
+  EXPECT_EQ(faults, 5) << "the first ones";
 }
 
 TEST(BrokenProgram, InTheModuleThatSendsTheTicksEndsTheRunWithAReason) {

@@ -120,6 +120,8 @@ void Plant::step() {
     meter_.add_joint_step(
         joint, {world_.motor_torque(joint), servo.commanded_speed, servo.angle_before, servo.angle, servo.limp});
   }
+  const ContactSliding sliding = world_.contact_sliding();
+  meter_.add_contacts(sliding.normal_force, sliding.force_times_speed);
   contact_sum_ += world_.contact_count();
   ++steps_;
 }

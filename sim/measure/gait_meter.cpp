@@ -1,11 +1,8 @@
 #include "sim/measure/gait_meter.hpp"
 
 #include <cmath>
-#include <complex>
 #include <limits>
 #include <numbers>
-
-#include "sim/measure/crawling_models.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -40,19 +37,6 @@ LinkEnds link_ends(const RobotModel& robot, std::size_t link) {
   return ends;
 }
 
-std::vector<double> parallel_axis_signs(const RobotModel& robot) {
-  constexpr double parallel = 0.99;  // cosine of 8 degrees
-  std::vector<double> signs;
-  for (const Joint& joint : robot.joints) {
-    const double cosine = joint.axis.normalized().dot(robot.joints.front().axis.normalized());
-    if (std::abs(cosine) < parallel) {
-      return {};
-    }
-    signs.push_back(cosine > 0.0 ? 1.0 : -1.0);
-  }
-  return signs;
-}
-
 }  // namespace
 
 GaitMeter::GaitMeter(const RobotModel& robot, const EnvironmentModel& environment, const Eigen::Vector3d& start,
@@ -61,7 +45,6 @@ GaitMeter::GaitMeter(const RobotModel& robot, const EnvironmentModel& environmen
       step_s_(step_s),
       tick_s_(tick_s),
       gravity_(environment.gravity.norm()),
-      axis_signs_(parallel_axis_signs(robot)),
       start_(start),
       center_(start),
       center_before_(start) {
@@ -76,9 +59,11 @@ GaitMeter::GaitMeter(const RobotModel& robot, const EnvironmentModel& environmen
   }
   for (const Joint& joint : robot.joints) {
     joints_.push_back({1.0 / joint.max_speed});
+    tracking_.emplace_back(joint.max_speed, joint.max_torque);
   }
   const LinkEnds head = link_ends(robot, 0);
   const Eigen::Vector2d forward = (environment.robot_pose.orientation * (head.front - head.rear)).head<2>();
+  span_ = forward;
   forward_ = forward.norm() > vertical * body_length_ ? forward.normalized().eval()
                                                       : Eigen::Vector2d::Constant(undefined).eval();
 }
@@ -89,25 +74,40 @@ void GaitMeter::add_tick(const Tick& tick) {
   }
   center_before_ = center_;
   center_ = tick.center_of_mass;
-  add_stability(tick);
-  if (angles_.size() >= 2 * history_ticks * joints_.size()) {
-    drop_oldest_ticks();
-  }
-  angles_.insert(angles_.end(), tick.joint_angles.begin(), tick.joint_angles.end());
-  targets_.insert(targets_.end(), tick.joint_targets.begin(), tick.joint_targets.end());
-  contacts_.insert(contacts_.end(), tick.link_contacts.begin(), tick.link_contacts.end());
-  ++ticks_;
-}
-
-void GaitMeter::add_stability(const Tick& tick) {
   const Eigen::Vector3d head = tick.link_poses.front() * link_centers_.front();
   const Eigen::Vector3d tail = tick.link_poses.back() * link_centers_.back();
   const Eigen::Vector2d span = (head - tail).head<2>();
-  const double length = span.norm();
-  if (length <= vertical * body_length_) {
-    return;
+  if (span.norm() > vertical * body_length_) {
+    add_stability(tick, span);
+    add_turn(span);
   }
-  const Eigen::Vector2d axis = span / length;
+  add_tracking(tick);
+  if (targets_.size() >= 2 * history_ticks * joints_.size()) {
+    drop_oldest_ticks();
+  }
+  targets_.insert(targets_.end(), tick.joint_targets.begin(), tick.joint_targets.end());
+  contacts_.insert(contacts_.end(), tick.link_contacts.begin(), tick.link_contacts.end());
+  ++ticks_;
+  has_settled_ = static_cast<double>(ticks_) * tick_s_ >= settling_s;
+}
+
+void GaitMeter::add_turn(const Eigen::Vector2d& span) {
+  // A body that turns by half a turn within a tick has no direction of turning.
+  turn_ += std::atan2(span_.x() * span.y() - span_.y() * span.x(), span_.dot(span));
+  span_ = span;
+}
+
+void GaitMeter::add_tracking(const Tick& tick) {
+  for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+    if (!joints_[joint].limp && has_settled_) {
+      tracking_[joint].add_tick(tick.joint_targets[joint] - tick.joint_angles[joint]);
+    }
+  }
+}
+
+/// span: from tail to head, seen from above.
+void GaitMeter::add_stability(const Tick& tick, const Eigen::Vector2d& span) {
+  const Eigen::Vector2d axis = span.normalized();
   double rearmost = std::numeric_limits<double>::infinity();
   double foremost = -rearmost;
   const auto support = [&](const Pose& pose, const Eigen::Vector3d& sensor) {
@@ -131,7 +131,6 @@ void GaitMeter::add_stability(const Tick& tick) {
 
 void GaitMeter::drop_oldest_ticks() {
   const auto joint_values = static_cast<std::ptrdiff_t>(history_ticks * joints_.size());
-  angles_.erase(angles_.begin(), angles_.begin() + joint_values);
   targets_.erase(targets_.begin(), targets_.begin() + joint_values);
   contacts_.erase(contacts_.begin(), contacts_.begin() + static_cast<std::ptrdiff_t>(history_ticks * sensors_.size()));
 }
@@ -143,47 +142,6 @@ double GaitMeter::speed_along(double heading_deg) const {
   const Eigen::Vector2d left(-forward_.y(), forward_.x());
   const Eigen::Vector2d direction = std::cos(heading) * forward_ + std::sin(heading) * left;
   return (center_ - start_).head<2>().dot(direction) / (static_cast<double>(ticks_) * tick_s_);
-}
-
-/// Thesis, equation 3.2, for the wave of the joints that swing by at least a tenth of the maximum amplitude. Not a
-/// number if there is no such wave.
-double GaitMeter::predicted_step(const Stride& stride) const {
-  if (axis_signs_.empty()) {
-    return undefined;
-  }
-  constexpr double moving = 0.1;
-  constexpr double agreeing = 0.5;
-  constexpr double first_zero_of_j0 = 2.404825557695773;
-  const std::vector<Oscillation> swings = find_oscillations({angles_, joints_.size()}, stride);
-  const double max_amplitude = std::ranges::max(swings, {}, &Oscillation::amplitude).amplitude;
-  const auto moves = [&](std::size_t joint) { return swings[joint].amplitude >= moving * max_amplitude; };
-  double amplitude_sum = 0.0;
-  double moving_joints = 0.0;
-  std::complex<double> difference_sum;
-  double differences = 0.0;
-  for (std::size_t joint = 0; joint < swings.size(); ++joint) {
-    if (!moves(joint)) {
-      continue;
-    }
-    amplitude_sum += swings[joint].amplitude;
-    moving_joints += 1.0;
-    if (joint > 0 && moves(joint - 1)) {
-      const double sign = axis_signs_[joint] * axis_signs_[joint - 1];
-      difference_sum += sign * std::polar(1.0, swings[joint].phase - swings[joint - 1].phase);
-      differences += 1.0;
-    }
-  }
-  // Differences in all directions have no mean.
-  if (differences == 0.0 || std::abs(difference_sum) < agreeing * differences) {
-    return undefined;
-  }
-  const double phase_difference = std::arg(difference_sum);
-  const double alpha = winding_angle(amplitude_sum / moving_joints, phase_difference);
-  // From this angle on the curve turns back on itself, and the wave has no length.
-  if (!(alpha < first_zero_of_j0)) {
-    return undefined;
-  }
-  return predicted_step_length(body_length_, wave_count(phase_difference, static_cast<double>(joints_.size())), alpha);
 }
 
 std::vector<double> GaitMeter::duty_factors(const std::optional<Stride>& stride) const {
@@ -204,6 +162,34 @@ std::vector<double> GaitMeter::duty_factors(const std::optional<Stride>& stride)
 
 std::vector<double> GaitMeter::link_duty_factors() const { return duty_factors(stride()); }
 
+void GaitMeter::add_servo_measures(MeasureValues& values) const {
+  constexpr double degrees = 180.0 / std::numbers::pi;
+  double squares = 0.0;
+  double ticks = 0.0;
+  double largest = 0.0;
+  double at_speed_limit = 0.0;
+  double at_torque_limit = 0.0;
+  double steps = 0.0;
+  for (const ServoTracking& servo : tracking_) {
+    squares += servo.squared_errors();
+    ticks += static_cast<double>(servo.ticks());
+    largest = std::fmax(largest, servo.max_error());
+    if (const auto own_steps = static_cast<double>(servo.steps()); own_steps > 0.0) {
+      at_speed_limit += servo.at_speed_limit() * own_steps;
+      at_torque_limit += servo.at_torque_limit() * own_steps;
+      steps += own_steps;
+    }
+  }
+  if (ticks > 0.0) {
+    values[Measure::tracking_error] = std::sqrt(squares / ticks) * degrees;
+    values[Measure::max_tracking_error] = largest * degrees;
+  }
+  if (steps > 0.0) {
+    values[Measure::at_speed_limit] = at_speed_limit / steps;
+    values[Measure::at_torque_limit] = at_torque_limit / steps;
+  }
+}
+
 MeasureValues GaitMeter::values(double heading_deg) const {
   MeasureValues values;
   if (ticks_ == 0) {
@@ -215,9 +201,16 @@ MeasureValues GaitMeter::values(double heading_deg) const {
   const double electrical = current_sum_ma_ * 1e-3 * servo_supply_v * step_s_;
   values[Measure::distance] = distance;
   values[Measure::speed] = speed_along(heading_deg);
+  values[Measure::sideways_speed] = speed_along(90.0);
+  constexpr double degrees = 180.0 / std::numbers::pi;
+  values[Measure::yaw_rate] = turn_ * degrees / time_s;
   values[Measure::mechanical_energy] = mechanical;
   values[Measure::electrical_energy] = electrical;
   if (distance >= min_distance) {
+    values[Measure::heading] = std::atan2(speed_along(90.0), speed_along(0.0)) * degrees;
+    if (normal_force_sum_ > 0.0) {
+      values[Measure::slip] = sliding_sum_ / normal_force_sum_ * time_s / distance;
+    }
     values[Measure::cost_of_transport] = mechanical / (mass_ * distance);
     values[Measure::electrical_cost_of_transport] = electrical / (mass_ * distance);
     if (gravity_ > 0.0) {
@@ -232,6 +225,7 @@ MeasureValues GaitMeter::values(double heading_deg) const {
     values[Measure::stability_margin] = margin_sum_ / static_cast<double>(supported_ticks_);
   }
   values[Measure::height] = center_.z() - start_.z();
+  add_servo_measures(values);
 
   const std::optional<Stride> stride = this->stride();
   double duty_sum = 0.0;
@@ -243,7 +237,6 @@ MeasureValues GaitMeter::values(double heading_deg) const {
     const double length = distance / (time_s * stride->frequency);
     values[Measure::stride_frequency] = stride->frequency;
     values[Measure::stride_length] = length;
-    values[Measure::slip] = 1.0 - length / predicted_step(*stride);
     if (gravity_ > 0.0) {
       // v^2 / (g * length), v = length * frequency
       values[Measure::froude_number] = length * stride->frequency * stride->frequency / gravity_;

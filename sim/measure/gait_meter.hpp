@@ -11,6 +11,7 @@
 
 #include "sim/environment/environment_model.hpp"
 #include "sim/measure/measure.hpp"
+#include "sim/measure/servo_tracking.hpp"
 #include "sim/measure/stride.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/robot/servo_current.hpp"
@@ -30,7 +31,7 @@ class GaitMeter {
   /// What a joint did in a step of the physics.
   struct JointStep {
     double motor_torque;     ///< Nm, about the joint's axis
-    double commanded_speed;  ///< rad/s, that the servo commanded
+    double commanded_speed;  ///< rad/s, that the servo tries to reach
     double angle_before;     ///< rad
     double angle;            ///< rad, after the step
     bool limp;               ///< without pulses
@@ -38,6 +39,10 @@ class GaitMeter {
   /// Must be called for every joint after every step.
   void add_joint_step(std::size_t joint, const JointStep& step) {
     JointState& state = joints_[joint];
+    state.limp = step.limp;
+    if (!step.limp && has_settled_) {
+      tracking_[joint].add_step(step.commanded_speed, step.motor_torque);
+    }
     const double speed = (step.angle - step.angle_before) * steps_per_s_;
     // Torque times the mean of the speeds before and after a step is exactly the energy that the step adds.
     mechanical_power_sum_ += 0.5 * std::max(step.motor_torque * (speed + state.speed), 0.0);
@@ -46,6 +51,12 @@ class GaitMeter {
     current_sum_ma_ += step.limp ? servo_.idle_ma
                                  : servo_current_ma(servo_, step.commanded_speed * state.per_max_speed,
                                                     speed * state.per_max_speed, 1.0);
+  }
+  /// Must be called after every step. normal_force: N, sum over the contact points with the environment;
+  /// force_times_speed: N m/s, sum of normal force times sliding speed.
+  void add_contacts(double normal_force, double force_times_speed) {
+    normal_force_sum_ += normal_force;
+    sliding_sum_ += force_times_speed;
   }
   struct Tick {
     Eigen::Vector3d center_of_mass;    ///< in the world
@@ -64,9 +75,13 @@ class GaitMeter {
   /// For each link from the head: share of the ticks in which at least one of its sensors was pressed, over a whole
   /// number of strides, or over all ticks if there is no stride. Not a number before the first tick.
   [[nodiscard]] std::vector<double> link_duty_factors() const;
+  /// By joint.
+  [[nodiscard]] std::span<const ServoTracking> tracking() const { return tracking_; }
   /// The strides from which measures of strides are computed.
   [[nodiscard]] std::optional<Stride> stride() const;
 
+  /// The time in which the servos move from the start into the gait. tracking() and its measures leave it out.
+  static constexpr double settling_s = 1.0;
   /// Strides are searched in at least this number of the last ticks.
   static constexpr std::size_t history_ticks = 65'536;
 
@@ -74,6 +89,7 @@ class GaitMeter {
   struct JointState {
     double per_max_speed;  ///< s/rad
     double speed = 0.0;    ///< rad/s, in the last step
+    bool limp = false;
   };
   /// Positions of the touch sensors of a link, in its frame: in the middle of the halves that they sense.
   struct SensorPositions {
@@ -81,10 +97,12 @@ class GaitMeter {
     Eigen::Vector3d front;
   };
 
-  void add_stability(const Tick& tick);
+  void add_stability(const Tick& tick, const Eigen::Vector2d& span);
+  void add_turn(const Eigen::Vector2d& span);
+  void add_tracking(const Tick& tick);
   void drop_oldest_ticks();
   [[nodiscard]] double speed_along(double heading_deg) const;
-  [[nodiscard]] double predicted_step(const Stride& stride) const;
+  void add_servo_measures(MeasureValues& values) const;
   [[nodiscard]] std::vector<double> duty_factors(const std::optional<Stride>& stride) const;
 
   ServoCurrent servo_;
@@ -97,9 +115,12 @@ class GaitMeter {
   Eigen::Vector2d forward_;  ///< direction of the head at the start; not numbers if the head points up or down
   std::vector<SensorPositions> sensors_;
   std::vector<Eigen::Vector3d> link_centers_;  ///< centres of mass, in the frames of the links
-  std::vector<double> axis_signs_;             ///< relative to the first joint's axis; empty if axes are not parallel
 
   std::vector<JointState> joints_;
+  std::vector<ServoTracking> tracking_;  ///< by joint; from the end of settling_s on
+  bool has_settled_ = false;
+  double normal_force_sum_ = 0.0;      ///< N, over all steps
+  double sliding_sum_ = 0.0;           ///< N m/s, over all steps
   double mechanical_power_sum_ = 0.0;  ///< W, over all steps
   double current_sum_ma_ = 0.0;        ///< over all steps
 
@@ -108,9 +129,10 @@ class GaitMeter {
   Eigen::Vector3d center_;         ///< of mass, now
   Eigen::Vector3d center_before_;  ///< a tick before
   double squared_second_differences_ = 0.0;
+  Eigen::Vector2d span_;  ///< from tail to head, seen from above, when it was last long enough to have a direction
+  double turn_ = 0.0;     ///< rad, of the span since the start
   double margin_sum_ = 0.0;
   std::uint64_t supported_ticks_ = 0;
-  std::vector<double> angles_;          ///< of the last ticks, by tick, then by joint
   std::vector<double> targets_;         ///< of the last ticks, by tick, then by joint
   std::vector<std::uint8_t> contacts_;  ///< of the last ticks, by tick, then by link
 };

@@ -8,6 +8,11 @@ namespace {
 constexpr std::array<MeasureDeclaration, measure_count> declarations{{
     {Measure::distance, "distance", "m", true, "horizontal distance of the centre of mass from its start"},
     {Measure::speed, "speed", "m/s", true, "mean speed of the centre of mass along a heading; negative against it"},
+    {Measure::sideways_speed, "sideways_speed", "m/s", true,
+     "mean speed of the centre of mass to the left of where the head pointed at the start; negative to its right"},
+    {Measure::heading, "heading", "deg", true,
+     "direction from start to end, relative to where the head pointed at the start; 90 is its left"},
+    {Measure::yaw_rate, "yaw_rate", "deg/s", true, "mean rate at which the body turns to its left"},
     {Measure::mechanical_energy, "mechanical_energy", "J", false, "positive work of the servos' motors"},
     {Measure::electrical_energy, "electrical_energy", "J", false,
      "what the servos drew of their 6 V supply; an estimate"},
@@ -21,12 +26,18 @@ constexpr std::array<MeasureDeclaration, measure_count> declarations{{
      "how far the centre of mass is inside the outermost supports along the body, on average; negative outside"},
     {Measure::height, "height", "m", true, "height that the centre of mass gained"},
     {Measure::slip, "slip", "", false,
-     "share of a stride that is lost by slip: 1 - stride length / stride length without slip"},
+     "how far the contact points slide on the ground, weighted by their load, over the distance"},
     {Measure::duty_factor, "duty_factor", "", true,
      "share of a stride that a link is on the ground, mean of the links"},
     {Measure::froude_number, "froude_number", "", true, "speed squared over gravity and stride length"},
     {Measure::stride_length, "stride_length", "m", true, "distance in a stride"},
     {Measure::stride_frequency, "stride_frequency", "Hz", true, "strides in a second"},
+    {Measure::tracking_error, "tracking_error", "deg", false,
+     "root mean square difference between the angles that the joints have and those that the servos are to reach"},
+    {Measure::max_tracking_error, "max_tracking_error", "deg", false, "the largest such difference"},
+    {Measure::at_speed_limit, "at_speed_limit", "", false, "share of the time in which a servo is at its speed limit"},
+    {Measure::at_torque_limit, "at_torque_limit", "", false,
+     "share of the time in which a servo is at its torque limit"},
 }};
 
 constexpr bool in_order() {

@@ -16,6 +16,9 @@ namespace proleg::sim {
 enum class Measure : std::uint8_t {
   distance,
   speed,
+  sideways_speed,
+  heading,
+  yaw_rate,
   mechanical_energy,
   electrical_energy,
   cost_of_transport,
@@ -29,8 +32,12 @@ enum class Measure : std::uint8_t {
   froude_number,
   stride_length,
   stride_frequency,
+  tracking_error,
+  max_tracking_error,
+  at_speed_limit,
+  at_torque_limit,
 };
-inline constexpr std::size_t measure_count = 15;
+inline constexpr std::size_t measure_count = 22;
 
 struct MeasureDeclaration {
   Measure measure;
@@ -46,7 +53,7 @@ struct MeasureDeclaration {
 [[nodiscard]] std::optional<Measure> find_measure(std::string_view name);
 
 /// A value of each measure; not a number where the run does not define it (the cost of transport of a robot that does
-/// not move, the slip of a gait without a wave).
+/// not move, the stride length of a gait without strides).
 class MeasureValues {
  public:
   MeasureValues() { values_.fill(std::numeric_limits<double>::quiet_NaN()); }

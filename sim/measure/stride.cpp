@@ -2,11 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
 #include <utility>
-
-#include <Eigen/Dense>
 
 namespace proleg::sim {
 namespace {
@@ -79,35 +76,6 @@ std::optional<Stride> find_stride(const SignalTable& angles, double tick_s) {
   return Stride{strides / ((crossings.back() - crossings.front()) * tick_s),
                 static_cast<std::size_t>(std::lround(crossings.front())),
                 static_cast<std::size_t>(std::lround(crossings.back())), std::move(crossings)};
-}
-
-std::vector<Oscillation> find_oscillations(const SignalTable& signals, const Stride& stride) {
-  // Least squares of a constant, a sine and a cosine. Over whole strides this is the projection, without the error from
-  // rounding the strides to ticks.
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3Xd right = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(signals.signals));
-  auto end = stride.bounds.begin() + 1;
-  for (std::size_t tick = stride.first_tick; tick < stride.end_tick; ++tick) {
-    const auto time = static_cast<double>(tick);
-    while (*end <= time && end + 1 != stride.bounds.end()) {
-      ++end;
-    }
-    const double start = *(end - 1);
-    const double phase = 2.0 * std::numbers::pi * (time - start) / (*end - start);
-    const Eigen::Vector3d basis(1.0, std::sin(phase), std::cos(phase));
-    normal += basis * basis.transpose();
-    for (std::size_t i = 0; i < signals.signals; ++i) {
-      right.col(static_cast<Eigen::Index>(i)) += signals.at(tick, i) * basis;
-    }
-  }
-  const Eigen::Matrix3Xd solution = normal.ldlt().solve(right);
-  std::vector<Oscillation> oscillations(signals.signals);
-  for (std::size_t i = 0; i < signals.signals; ++i) {
-    const auto column = solution.col(static_cast<Eigen::Index>(i));
-    const std::complex<double> phasor(column[1], column[2]);
-    oscillations[i] = {column[0], std::abs(phasor), std::arg(phasor)};
-  }
-  return oscillations;
 }
 
 }  // namespace proleg::sim

@@ -31,15 +31,4 @@ struct Stride {
 /// degree.
 [[nodiscard]] std::optional<Stride> find_stride(const SignalTable& angles, double tick_s);
 
-/// mean + amplitude * sin(2 pi s + phase), s: strides since the first one began.
-struct Oscillation {
-  double mean = 0.0;
-  double amplitude = 0.0;  ///< not negative
-  double phase = 0.0;      ///< rad, -pi to pi
-};
-
-/// The part of each signal that repeats with the strides: its projection on a sine and a cosine with one period in each
-/// stride. A change of pace therefore does not blur it.
-[[nodiscard]] std::vector<Oscillation> find_oscillations(const SignalTable& signals, const Stride& stride);
-
 }  // namespace proleg::sim

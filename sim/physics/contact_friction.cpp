@@ -9,18 +9,23 @@ namespace {
 /// m/s. Below, the direction of the velocity may be an error of the solver.
 constexpr double min_sliding_speed = 1e-3;
 
-Eigen::Vector3d point_velocity(dGeomID shape, const dReal* point) {
+Eigen::Vector3d point_velocity(dGeomID shape, const Eigen::Vector3d& point) {
   const dBodyID body = dGeomGetBody(shape);
   if (body == nullptr) {
     return Eigen::Vector3d::Zero();
   }
   dVector3 velocity;
-  dBodyGetPointVel(body, point[0], point[1], point[2], velocity);
+  dBodyGetPointVel(body, point.x(), point.y(), point.z(), velocity);
   return {velocity[0], velocity[1], velocity[2]};
 }
 
 Eigen::Vector3d tangential(const Eigen::Vector3d& vector, const Eigen::Vector3d& normal) {
   return vector - vector.dot(normal) * normal;
+}
+
+/// Of shape a relative to shape b.
+Eigen::Vector3d sliding_velocity(dGeomID a, dGeomID b, const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {
+  return tangential(point_velocity(a, point) - point_velocity(b, point), normal);
 }
 
 /// A direction in the plane of contact that turns with the link.
@@ -65,15 +70,16 @@ void ContactFriction::set_surface(dContact& contact, double coefficient, dGeomID
   // Without this mode mu would be a force.
   contact.surface.mode = dContactApprox1;
   contact.surface.mu = coefficient;
+  const Eigen::Vector3d position(contact.geom.pos[0], contact.geom.pos[1], contact.geom.pos[2]);
   const Eigen::Vector3d normal(contact.geom.normal[0], contact.geom.normal[1], contact.geom.normal[2]);
   next_.pair = pair_of(a, b);
+  next_.position = position;
   next_.normal = normal;
   if (coefficient <= 0.0) {
     return;
   }
   const Pair* const last = before(a, b);
-  const Eigen::Vector3d velocity =
-      tangential(point_velocity(a, contact.geom.pos) - point_velocity(b, contact.geom.pos), normal);
+  const Eigen::Vector3d velocity = sliding_velocity(a, b, position, normal);
   const double speed = velocity.norm();
   if (speed > min_sliding_speed) {
     set_first_axis(contact, velocity);
@@ -94,18 +100,27 @@ void ContactFriction::observe(dJointID joint) {
   }
   Point& point = points_[point_count_++];
   point.pair = next_.pair;
+  point.position = next_.position;
   point.normal = next_.normal;
   dJointSetFeedback(joint, &point.feedback);
 }
 
 void ContactFriction::end_step() {
+  sliding_ = {};
   for (std::size_t i = 0; i < point_count_; ++i) {
     const Point& point = points_[i];
     const Eigen::Vector3d force(point.feedback.f1[0], point.feedback.f1[1], point.feedback.f1[2]);
+    const double normal_force = std::abs(force.dot(point.normal));
     Pair& pair = pairs_[point.pair];
     pair.points += 1;
-    pair.normal_force += std::abs(force.dot(point.normal));
+    pair.normal_force += normal_force;
     pair.friction += tangential(force, point.normal);
+    const bool with_environment = dGeomGetBody(pair.a) == nullptr || dGeomGetBody(pair.b) == nullptr;
+    if (with_environment) {
+      sliding_.normal_force += normal_force;
+      sliding_.force_times_speed +=
+          normal_force * sliding_velocity(pair.a, pair.b, point.position, point.normal).norm();
+    }
   }
   pairs_before_.swap(pairs_);
 }

@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "sim/physics/world.hpp"
+
 namespace proleg::sim {
 
 /// Coulomb friction at the contact points of a world: at most coefficient * normal force, in every direction.
@@ -34,6 +36,8 @@ class ContactFriction {
   void observe(dJointID joint);
   /// After the step, before its contact joints are destroyed.
   void end_step();
+  /// Of the points with the environment, in the last step.
+  [[nodiscard]] const ContactSliding& sliding() const { return sliding_; }
 
  private:
   /// Two shapes that touch.
@@ -47,6 +51,7 @@ class ContactFriction {
   /// A contact point of this step.
   struct Point {
     std::size_t pair;  ///< in pairs_
+    Eigen::Vector3d position;
     Eigen::Vector3d normal;
     dJointFeedback feedback;
   };
@@ -59,6 +64,7 @@ class ContactFriction {
   std::deque<Point> points_;        ///< the engine keeps pointers to their feedback; not all are in use
   std::size_t point_count_ = 0;
   Point next_{};  ///< of the last set_surface()
+  ContactSliding sliding_;
 };
 
 }  // namespace proleg::sim

@@ -124,6 +124,7 @@ class World::Implementation {
 
   [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const { return touch_sensors_.pressed(link); }
   [[nodiscard]] std::size_t contact_count() const { return contact_count_; }
+  [[nodiscard]] ContactSliding contact_sliding() const { return contact_friction_.sliding(); }
   [[nodiscard]] std::optional<double> lowest_ground() const { return lowest_ground_; }
   [[nodiscard]] std::size_t solver_messages() const { return engine_messages() - messages_before_; }
 
@@ -343,6 +344,7 @@ Pose World::link_pose(std::size_t link) const { return implementation_->link_pos
 Eigen::Vector3d World::center_of_mass() const { return implementation_->center_of_mass(); }
 std::uint8_t World::link_contacts(std::size_t link) const { return implementation_->link_contacts(link); }
 std::size_t World::contact_count() const { return implementation_->contact_count(); }
+ContactSliding World::contact_sliding() const { return implementation_->contact_sliding(); }
 std::optional<double> World::lowest_ground() const { return implementation_->lowest_ground(); }
 std::size_t World::solver_messages() const { return implementation_->solver_messages(); }
 

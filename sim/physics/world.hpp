@@ -19,6 +19,12 @@ enum class Stepper : std::uint8_t {
               ///< process, so each run that must be repeatable needs its own process.
 };
 
+/// How a robot's contact points with its environment slid in a step of the physics.
+struct ContactSliding {
+  double normal_force = 0.0;       ///< N, sum over the points
+  double force_times_speed = 0.0;  ///< N m/s, sum over the points of normal force times sliding speed
+};
+
 /// A robot and its environment in the Open Dynamics Engine. Time passes in equal steps; a world of the same models
 /// repeats to the last bit.
 class World {
@@ -56,6 +62,8 @@ class World {
   [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const;
   /// Number of contact points at the start of the last step.
   [[nodiscard]] std::size_t contact_count() const;
+  /// In the last step; zeros before the first.
+  [[nodiscard]] ContactSliding contact_sliding() const;
   /// Height of the lowest point of the environment; nothing if there is no environment.
   [[nodiscard]] std::optional<double> lowest_ground() const;
   /// Number of messages from the solver since the world was made, such as "LCP internal error".

@@ -81,7 +81,7 @@ HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::Hardw
   result.setup_frames = loop.setup_frames();
   result.setpoint_hash = loop.setpoint_hash().hex();
   result.servo_hash = loop.servo_hash().hex();
-  result.measures = {loop.plant().meter().values(), loop.plant().meter().link_duty_factors()};
+  result.measures = measures_of(loop.plant().meter());
   return result;
 }
 
@@ -160,6 +160,7 @@ int hil(const HilOptions& options) {
     print_hil_table(options, run, modules, result);
   }
   std::cout.flush();
+  print_remark_on_limits("proleg hil", result.measures, run.scenario.robot);
   modules.finish();
   return judge(result);
 }

@@ -55,6 +55,7 @@ Json hil_json(const HilOptions& options, const ScenarioRun& run, const HilModule
           {"contacts_mean", result.contacts_mean},
           {"measures", measures_object(result.measures.values)},
           {"link_duty_factors", result.measures.link_duty_factors},
+          {"servos", servos_array(result.measures, run.scenario.robot)},
           {"recording", options.record.value_or("")},
           {"can_log", options.can_log.value_or("")},
           {"build_id", build_id}};

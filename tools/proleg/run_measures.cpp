@@ -2,10 +2,69 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
+#include <sstream>
 
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::tools {
+namespace {
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+
+/// "J3 is at its speed limit for 34 % of the time (5 joints above 20 %)"; empty if no joint is above.
+std::string worst_joint(const RunMeasures& measures, const sim::RobotModel& robot, const char* limit,
+                        double (sim::ServoTracking::*share)() const) {
+  constexpr double much = 0.2;
+  std::size_t worst = 0;
+  std::size_t joints = 0;
+  for (std::size_t joint = 0; joint < measures.servos.size(); ++joint) {
+    const double its_share = (measures.servos[joint].*share)();
+    joints += its_share > much ? 1U : 0U;
+    if (its_share > (measures.servos[worst].*share)()) {
+      worst = joint;
+    }
+  }
+  if (joints == 0) {
+    return {};
+  }
+  std::ostringstream text;
+  text << robot.joints[worst].name << " is at its " << limit << " limit for "
+       << std::lround(100.0 * (measures.servos[worst].*share)()) << " % of the time";
+  if (joints > 1) {
+    text << " (" << joints << " joints above " << std::lround(100.0 * much) << " %)";
+  }
+  return text.str();
+}
+
+}  // namespace
+
+RunMeasures measures_of(const sim::GaitMeter& meter) {
+  return {meter.values(), meter.link_duty_factors(), {meter.tracking().begin(), meter.tracking().end()}};
+}
+
+Json servos_array(const RunMeasures& measures, const sim::RobotModel& robot) {
+  Json servos = Json::empty_array();
+  for (std::size_t joint = 0; joint < measures.servos.size(); ++joint) {
+    const sim::ServoTracking& servo = measures.servos[joint];
+    servos.append(Json{{"joint", robot.joints[joint].name},
+                       {"rms_error_deg", servo.rms_error() * degrees},
+                       {"max_error_deg", servo.max_error() * degrees},
+                       {"at_speed_limit", servo.at_speed_limit()},
+                       {"at_torque_limit", servo.at_torque_limit()}});
+  }
+  return servos;
+}
+
+void print_remark_on_limits(const std::string& program, const RunMeasures& measures, const sim::RobotModel& robot) {
+  const std::string speed = worst_joint(measures, robot, "speed", &sim::ServoTracking::at_speed_limit);
+  const std::string torque = worst_joint(measures, robot, "torque", &sim::ServoTracking::at_torque_limit);
+  if (!speed.empty() || !torque.empty()) {
+    std::fprintf(stderr, "%s: the servos cannot follow this gait: %s%s%s; angles differ from it by up to %.1f deg\n",
+                 program.c_str(), speed.c_str(), speed.empty() || torque.empty() ? "" : ", ", torque.c_str(),
+                 measures.values[sim::Measure::max_tracking_error]);
+  }
+}
 
 Json measures_object(const sim::MeasureValues& values) {
   Json object = Json::empty_object();

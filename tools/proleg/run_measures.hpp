@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "sim/measure/gait_meter.hpp"
 #include "sim/measure/measure.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "tools/proleg/json_output.hpp"
@@ -14,11 +15,22 @@ namespace proleg::tools {
 
 struct RunMeasures {
   sim::MeasureValues values;
-  std::vector<double> link_duty_factors;  ///< from the head
+  std::vector<double> link_duty_factors;   ///< from the head
+  std::vector<sim::ServoTracking> servos;  ///< by joint, from the head
 };
+
+[[nodiscard]] RunMeasures measures_of(const sim::GaitMeter& meter);
 
 /// An object of all measures by name; null where the run does not define one.
 [[nodiscard]] Json measures_object(const sim::MeasureValues& values);
+
+/// An array with the tracking of each joint's servo, from the head: joint, rms_error_deg, max_error_deg,
+/// at_speed_limit, at_torque_limit; null where the run does not define one.
+[[nodiscard]] Json servos_array(const RunMeasures& measures, const sim::RobotModel& robot);
+
+/// Prints one line on standard error if servos are at a limit for more than a fifth of the time. program: as the line
+/// begins.
+void print_remark_on_limits(const std::string& program, const RunMeasures& measures, const sim::RobotModel& robot);
 
 /// Prints the measures that the run defines on standard output, one a line.
 void print_measures(const sim::MeasureValues& values);

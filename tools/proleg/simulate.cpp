@@ -61,10 +61,10 @@ Result run(const ScenarioRun& setup, sim::Recorder* recorder) {
           lost_frames,
           simulation.setpoint_hash().hex(),
           simulation.servo_hash().hex(),
-          {simulation.measures(), simulation.link_duty_factors()}};
+          measures_of(simulation.plant().meter())};
 }
 
-void print_json(const ScenarioOptions& options, const Result& result) {
+void print_json(const ScenarioOptions& options, const sim::RobotModel& robot, const Result& result) {
   const Json object{{"scenario", options.file},
                     {"displacement_m", result.displacement_m},
                     {"simulated_s", result.simulated_s},
@@ -76,6 +76,7 @@ void print_json(const ScenarioOptions& options, const Result& result) {
                     {"lost_frames", result.lost_frames},
                     {"measures", measures_object(result.measures.values)},
                     {"link_duty_factors", result.measures.link_duty_factors},
+                    {"servos", servos_array(result.measures, robot)},
                     {"recording", options.record.value_or("")},
                     {"build_id", build_id}};
   std::cout << object.text() << '\n';
@@ -131,10 +132,11 @@ int simulate(const ScenarioOptions& options) {
     recorder->finish(summary);
   }
   if (options.json) {
-    print_json(options, result);
+    print_json(options, setup.scenario.robot, result);
   } else {
     print_table(options, result);
   }
+  print_remark_on_limits("proleg simulate", result.measures, setup.scenario.robot);
   return exit_success;
 }
 

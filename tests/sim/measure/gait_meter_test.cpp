@@ -10,7 +10,6 @@
 #include <numbers>
 #include <vector>
 
-#include "sim/measure/crawling_models.hpp"
 #include "test_robot.hpp"
 
 namespace proleg::sim {
@@ -183,49 +182,112 @@ TEST(GaitMeter, StridesGiveLengthFrequencyAndFroudeNumber) {
   EXPECT_NEAR(values[Measure::froude_number], 0.06 * 0.06 / (9.81 * 0.04), 1e-5) << "v^2 / (g * stride length)";
   motion.angle = [](std::size_t /*joint*/, double /*t*/) { return 0.2; };
   const MeasureValues still = motion.values_after(20);
-  for (const Measure measure :
-       {Measure::stride_frequency, Measure::stride_length, Measure::froude_number, Measure::slip}) {
+  for (const Measure measure : {Measure::stride_frequency, Measure::stride_length, Measure::froude_number}) {
     EXPECT_TRUE(std::isnan(still[measure])) << declaration_of(measure).name;
   }
 }
 
-TEST(GaitMeter, SlipIsTheMissingShareOfThePredictedStep) {
-  // Section 3.3.1 of the thesis, computed by hand: six links of 72 mm, 40 degrees, 55 degrees apart: 78.0 mm in a
-  // stride.
-  Motion motion;
-  const auto slip = [&motion](double step, double difference, const std::vector<double>& amplitudes) {
-    motion.path = [step](double t) { return Eigen::Vector3d(0, step * t, 0); };
-    motion.angle = [&](std::size_t joint, double t) {
-      return amplitudes[joint] * degree *
-             std::sin(2 * std::numbers::pi * t + difference * degree * static_cast<double>(joint));
-    };
-    return motion.values_after(10)[Measure::slip];
+TEST(GaitMeter, SlipIsThePathThatTheLoadSlidesOverTheDistance) {
+  const auto slip = [](double normal_force, double sliding_speed, double speed) {
+    Motion motion;
+    motion.path = [speed](double t) { return Eigen::Vector3d(0, speed * t, 0); };
+    GaitMeter meter = motion.after(2.0);
+    for (long step = 0; step < std::lround(2.0 / step_s); ++step) {
+      meter.add_contacts(normal_force, normal_force * sliding_speed);
+    }
+    return meter.values()[Measure::slip];
   };
-  const std::vector<double> even(5, 40.0);
-  EXPECT_NEAR(slip(0.0780, 55, even), 0.0, 2e-3);
-  EXPECT_NEAR(slip(0.0390, 55, even), 0.5, 2e-3);
-  EXPECT_NEAR(slip(0.0390, -55, even), 0.5, 2e-3) << "in both directions of the wave";
-  EXPECT_NEAR(slip(0.0780, 55, {40, 40, 40, 40, 0}), 0.0, 2e-3) << "a joint at rest is no part of the wave";
-  EXPECT_NEAR(slip(0.0780, 55, {50, 40, 30, 40, 40}), 0.0, 2e-3) << "the mean amplitude";
-  EXPECT_TRUE(std::isnan(slip(0.0780, 0, even))) << "all joints swing together: no wave";
-  EXPECT_TRUE(std::isnan(slip(0.0780, 1, even)));
-  EXPECT_TRUE(std::isnan(slip(0.0780, 55, {40, 0, 40, 0, 40}))) << "no neighbours to take a difference from";
-
-  motion.robot.joints[2].axis = -Eigen::Vector3d::UnitX();
-  EXPECT_TRUE(std::isnan(slip(0.0390, 55, even))) << "a joint with a reversed axis breaks the wave";
-  motion.robot.joints[2].axis = Eigen::Vector3d::UnitZ();
-  EXPECT_TRUE(std::isnan(slip(0.0390, 55, even))) << "pitch and yaw: no wave in one plane";
+  EXPECT_NEAR(slip(6.0, 0.1, 0.1), 1.0, 1e-9) << "a box that is dragged";
+  EXPECT_NEAR(slip(6.0, 0.0, 0.1), 0.0, 1e-9) << "contacts that hold";
+  EXPECT_NEAR(slip(6.0, 0.3, 0.1), 3.0, 1e-9) << "a robot that slips back and forth";
+  EXPECT_NEAR(slip(60.0, 0.3, 0.1), 3.0, 1e-9) << "of any weight";
+  EXPECT_TRUE(std::isnan(slip(0.0, 0.0, 0.1))) << "in the air";
+  EXPECT_TRUE(std::isnan(slip(6.0, 0.3, 0.0))) << "on the spot";
 }
 
-TEST(GaitMeter, AJointWithAReversedAxisMakesTheSameWaveWithTheOppositeAngle) {
+TEST(GaitMeter, SlipCountsOnlyTheLoadThatSlides) {
   Motion motion;
-  motion.path = [](double t) { return Eigen::Vector3d(0, 0.0390 * t, 0); };
-  motion.robot.joints[2].axis = -Eigen::Vector3d::UnitX();
-  motion.angle = [](std::size_t joint, double t) {
-    const double sign = joint == 2 ? -1.0 : 1.0;
-    return sign * 40 * degree * std::sin(2 * std::numbers::pi * t + 55 * degree * static_cast<double>(joint));
-  };
-  EXPECT_NEAR(motion.values_after(10)[Measure::slip], 0.5, 2e-3);
+  motion.path = [](double t) { return Eigen::Vector3d(0, 0.1 * t, 0); };
+  GaitMeter meter = motion.after(2.0);
+  for (long step = 0; step < std::lround(2.0 / step_s); ++step) {
+    meter.add_contacts(4.0, 1.0 * 0.1);  // a quarter of the load is dragged
+  }
+  EXPECT_NEAR(meter.values()[Measure::slip], 0.25, 1e-9);
+}
+
+TEST(GaitMeter, HeadingAndSidewaysSpeedAreRelativeToTheHeadAtTheStart) {
+  Motion motion;  // its head points to +y, so its left is -x
+  motion.path = [](double t) { return Eigen::Vector3d(-0.3 * t, 0.3 * t, 0); };
+  MeasureValues values = motion.values_after(2);
+  EXPECT_NEAR(values[Measure::heading], 45.0, 1e-9);
+  EXPECT_NEAR(values[Measure::sideways_speed], 0.3, 1e-12);
+  motion.path = [](double t) { return Eigen::Vector3d(0.2 * t, 0, 0); };
+  values = motion.values_after(2);
+  EXPECT_NEAR(values[Measure::heading], -90.0, 1e-9);
+  EXPECT_NEAR(values[Measure::sideways_speed], -0.2, 1e-12);
+  EXPECT_NEAR(values[Measure::speed], 0.0, 1e-12);
+  EXPECT_NEAR(values[Measure::yaw_rate], 0.0, 1e-12) << "it goes sideways and does not turn";
+  motion.path = [](double /*t*/) { return Eigen::Vector3d(0, 0, 0); };
+  EXPECT_TRUE(std::isnan(motion.values_after(2)[Measure::heading]));
+}
+
+TEST(GaitMeter, TheYawRateCountsWholeTurnsOfTheBody) {
+  const RobotModel robot = straight_robot(6);
+  const std::vector<double> angles(5);
+  const std::vector<std::uint8_t> contacts(6);
+  for (const double rate_deg : {30.0, -30.0, 400.0}) {
+    GaitMeter meter(robot, EnvironmentModel{}, Eigen::Vector3d::Zero(), step_s, tick_s);
+    for (int tick = 1; tick <= 300; ++tick) {
+      const Eigen::Quaterniond turn(Eigen::AngleAxisd(rate_deg * degree * tick * tick_s, Eigen::Vector3d::UnitZ()));
+      std::vector<Pose> poses;
+      for (const Link& link : robot.links) {
+        poses.push_back(Pose{{0, 0, 0}, turn} * link.pose);
+      }
+      meter.add_tick({Eigen::Vector3d::Zero(), poses, angles, angles, contacts});
+    }
+    EXPECT_NEAR(meter.values()[Measure::yaw_rate], rate_deg, 1e-6);
+  }
+}
+
+/// One joint, whose servo follows a target badly for some seconds.
+GaitMeter tracking(double error_deg, double commanded_speed, double torque, double seconds, bool limp = false) {
+  const RobotModel robot = straight_robot(2);  // 2 Nm, 4.5 rad/s
+  GaitMeter meter(robot, EnvironmentModel{}, Eigen::Vector3d::Zero(), step_s, tick_s);
+  const std::vector<Pose> poses(2);
+  const std::vector<std::uint8_t> contacts(2);
+  for (long tick = 0; tick < std::lround(seconds / tick_s); ++tick) {
+    for (int step = 0; step < 10; ++step) {
+      meter.add_joint_step(0, {torque, commanded_speed, 0.0, 0.0, limp});
+    }
+    const double sign = tick % 2 == 0 ? 1.0 : -1.0;
+    const double angle = 0.3;
+    const double target = 0.3 + sign * error_deg * degree;
+    meter.add_tick({Eigen::Vector3d::Zero(), poses, {&angle, 1}, {&target, 1}, contacts});
+  }
+  return meter;
+}
+
+TEST(GaitMeter, TrackingErrorsAreThoseOfTheServosAfterTheFirstSecond) {
+  const MeasureValues values = tracking(3.0, 1.0, 0.5, 4.0).values();
+  EXPECT_NEAR(values[Measure::tracking_error], 3.0, 1e-9) << "root mean square";
+  EXPECT_NEAR(values[Measure::max_tracking_error], 3.0, 1e-9);
+  EXPECT_EQ(values[Measure::at_speed_limit], 0.0);
+  EXPECT_EQ(values[Measure::at_torque_limit], 0.0);
+  for (const MeasureValues& none :
+       {tracking(3.0, 1.0, 0.5, 0.9).values(), tracking(3.0, 1.0, 0.5, 4.0, true).values()}) {
+    EXPECT_TRUE(std::isnan(none[Measure::tracking_error])) << "before the gait, or without pulses";
+    EXPECT_TRUE(std::isnan(none[Measure::at_speed_limit]));
+  }
+}
+
+TEST(GaitMeter, AServoIsAtItsLimitInEitherDirection) {
+  EXPECT_EQ(tracking(3.0, 4.5, 0.5, 2.0).values()[Measure::at_speed_limit], 1.0);
+  EXPECT_EQ(tracking(3.0, -4.5, 0.5, 2.0).values()[Measure::at_speed_limit], 1.0);
+  EXPECT_EQ(tracking(3.0, 4.4, 0.5, 2.0).values()[Measure::at_speed_limit], 0.0);
+  EXPECT_EQ(tracking(3.0, 1.0, 2.0, 2.0).values()[Measure::at_torque_limit], 1.0);
+  EXPECT_EQ(tracking(3.0, 1.0, -2.0, 2.0).values()[Measure::at_torque_limit], 1.0);
+  EXPECT_EQ(tracking(3.0, 1.0, 1.9, 2.0).values()[Measure::at_torque_limit], 0.0);
+  EXPECT_NEAR(tracking(3.0, 4.5, 0.5, 3.0).tracking()[0].at_speed_limit(), 1.0, 1e-12);
 }
 
 /// The measures after one joint has turned at a speed with a torque for a second.

@@ -21,6 +21,13 @@ struct Signals {
   [[nodiscard]] SignalTable table() const { return {samples, count}; }
 };
 
+/// mean + amplitude * sin(2 pi frequency t + phase)
+struct Oscillation {
+  double mean;
+  double amplitude;
+  double phase;
+};
+
 /// Samples of oscillations of one frequency.
 Signals oscillating(const std::vector<Oscillation>& oscillations, double frequency, double seconds) {
   Signals signals{{}, oscillations.size()};
@@ -44,26 +51,7 @@ TEST(Stride, HasTheFrequencyOfTheSignalForEveryPeriod) {
   }
 }
 
-TEST(Stride, GivesAmplitudeAndPhaseOfEverySignal) {
-  for (const double frequency : {0.7, 1.0, std::numbers::e}) {
-    const std::vector<Oscillation> expected{
-        {0.0, 40 * degree, 0.0}, {0.1, 30 * degree, -55 * degree}, {-0.3, 1 * degree, 3.0}, {0.2, 0.0, 0.0}};
-    const Signals signals = oscillating(expected, frequency, 12.3);
-    const auto stride = find_stride(signals.table(), tick_s);
-    ASSERT_TRUE(stride);
-    const std::vector<Oscillation> found = find_oscillations(signals.table(), *stride);
-    ASSERT_EQ(found.size(), expected.size());
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      EXPECT_NEAR(found[i].amplitude, expected[i].amplitude, 3e-3 * expected[0].amplitude) << i;
-      if (expected[i].amplitude > 0) {
-        const double difference = found[i].phase - found[0].phase - (expected[i].phase - expected[0].phase);
-        EXPECT_NEAR(std::remainder(difference, turn), 0.0, 1e-3) << i;
-      }
-    }
-  }
-}
-
-TEST(Stride, RunningBackwardsHasTheSameFrequencyAndTheOppositePhaseDifferences) {
+TEST(Stride, RunningBackwardsHasTheSameFrequency) {
   Signals forward = oscillating({{0.0, 0.6, 0.0}, {0.0, 0.6, 1.0}}, 1.0, 10);
   Signals backward{{}, 2};
   for (std::size_t tick = forward.samples.size() / 2; tick-- > 0;) {
@@ -73,10 +61,6 @@ TEST(Stride, RunningBackwardsHasTheSameFrequencyAndTheOppositePhaseDifferences) 
   const auto back = find_stride(backward.table(), tick_s);
   ASSERT_TRUE(there && back);
   EXPECT_NEAR(there->frequency, back->frequency, 1e-6);
-  const auto swings_there = find_oscillations(forward.table(), *there);
-  const auto swings_back = find_oscillations(backward.table(), *back);
-  EXPECT_NEAR(std::remainder(swings_there[1].phase - swings_there[0].phase, turn), 1.0, 1e-6);
-  EXPECT_NEAR(std::remainder(swings_back[1].phase - swings_back[0].phase, turn), -1.0, 1e-6);
 }
 
 TEST(Stride, IsFoundDespiteNoiseHarmonicsAndAnOffset) {
@@ -92,7 +76,7 @@ TEST(Stride, IsFoundDespiteNoiseHarmonicsAndAnOffset) {
   EXPECT_NEAR(stride->frequency, 1.3, 0.01) << "seed 7";
 }
 
-TEST(Stride, AChangeOfPaceDoesNotBlurAmplitudesAndPhases) {
+TEST(Stride, OfAGaitThatChangesItsPaceHasTheMeanFrequency) {
   Signals signals{{}, 3};
   double phase = 0.0;
   for (int tick = 0; tick < 3000; ++tick) {
@@ -105,11 +89,6 @@ TEST(Stride, AChangeOfPaceDoesNotBlurAmplitudesAndPhases) {
   const double strides = static_cast<double>(stride->bounds.size() - 1);
   EXPECT_NEAR(stride->frequency, strides / ((stride->bounds.back() - stride->bounds.front()) * tick_s), 1e-12);
   EXPECT_NEAR(strides, phase / turn - 2, 1.0);
-  const std::vector<Oscillation> found = find_oscillations(signals.table(), *stride);
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_NEAR(found[i].amplitude, 0.6 - 0.1 * static_cast<double>(i), 0.01);
-    EXPECT_NEAR(std::remainder(found[i].phase + static_cast<double>(i), turn), 0.0, 0.02);
-  }
 }
 
 TEST(Stride, TheFirstOneIsLeftOut) {

@@ -88,12 +88,30 @@ TEST_F(CommandLine, SimulatePrintsTheMeasuresOfTheRun) {
   const Json object(finished.out);
   const Json measures = object["measures"];
   EXPECT_EQ(measures["distance"], object["displacement_m"]);
-  for (const char* name : {"speed", "mechanical_energy", "electrical_energy", "cost_of_transport",
-                           "electrical_cost_of_transport", "specific_resistance", "smoothness", "stability_margin",
-                           "height", "slip", "duty_factor", "froude_number", "stride_length", "stride_frequency"}) {
+  for (const char* name : {"speed",
+                           "sideways_speed",
+                           "heading",
+                           "yaw_rate",
+                           "tracking_error",
+                           "max_tracking_error",
+                           "at_speed_limit",
+                           "at_torque_limit",
+                           "mechanical_energy",
+                           "electrical_energy",
+                           "cost_of_transport",
+                           "electrical_cost_of_transport",
+                           "specific_resistance",
+                           "smoothness",
+                           "stability_margin",
+                           "height",
+                           "slip",
+                           "duty_factor",
+                           "froude_number",
+                           "stride_length",
+                           "stride_frequency"}) {
     EXPECT_TRUE(measures[name].is_number()) << name;
   }
-  EXPECT_EQ(measures.size(), 15U);
+  EXPECT_EQ(measures.size(), 22U);
   ASSERT_EQ(object["link_duty_factors"].size(), 6U);
   double sum = 0.0;
   for (const Json& factor : object["link_duty_factors"].elements()) {
@@ -105,6 +123,24 @@ TEST_F(CommandLine, SimulatePrintsTheMeasuresOfTheRun) {
 
   const Finished table = proleg({"simulate", scenario("uniform"), "--seconds", "4"});
   EXPECT_NE(table.out.find("\n  stride_frequency              1 Hz\n"), std::string::npos) << table.out;
+}
+
+TEST_F(CommandLine, SimulateWarnsOfServosThatCannotFollowTheGait) {
+  const std::vector<std::string> words{"simulate", scenario("uniform"), "--seconds", "4", "--json"};
+  std::vector<std::string> fast_words = words;
+  fast_words.insert(fast_words.end(), {"--set", "frequency=2"});  // needs 8.8 rad/s, the servos have 4.5
+  const Finished fast = proleg(fast_words);
+  EXPECT_EQ(fast.status, 0);
+  EXPECT_NE(fast.err.find("the servos cannot follow this gait: "), std::string::npos) << fast.err;
+  EXPECT_NE(fast.err.find("speed limit"), std::string::npos) << fast.err;
+  const Json object(fast.out);
+  ASSERT_EQ(object["servos"].size(), 5U);
+  double shares = 0.0;
+  for (const Json& servo : object["servos"].elements()) {
+    shares += servo["at_speed_limit"].number();
+  }
+  EXPECT_NEAR(object["measures"]["at_speed_limit"].number(), shares / 5, 1e-9);
+  EXPECT_EQ(proleg(words).err, "");
 }
 
 TEST_F(CommandLine, AMeasureThatTheRunDoesNotDefineIsNull) {

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace proleg::sim {
+
+/// How well a servo follows its pulses, and how often it cannot because of its limits. Times without pulses do not
+/// count.
+class ServoTracking {
+ public:
+  /// max_speed: rad/s; max_torque: Nm; both above 0.
+  ServoTracking(double max_speed, double max_torque) : max_speed_(max_speed), torque_limit_(almost_all * max_torque) {}
+
+  /// Must be called for every step of the physics with pulses. commanded_speed: rad/s, that the servo tries to reach;
+  /// motor_torque: Nm.
+  void add_step(double commanded_speed, double motor_torque) {
+    ++steps_;
+    speed_limited_ += std::abs(commanded_speed) >= max_speed_ ? 1U : 0U;
+    torque_limited_ += std::abs(motor_torque) >= torque_limit_ ? 1U : 0U;
+  }
+  /// Must be called for every tick with pulses. error: rad, between the angle and that of the pulse.
+  void add_tick(double error) {
+    ++ticks_;
+    squares_ += error * error;
+    max_ = std::max(max_, std::abs(error));
+  }
+
+  [[nodiscard]] std::uint64_t ticks() const { return ticks_; }
+  [[nodiscard]] std::uint64_t steps() const { return steps_; }
+  /// rad^2.
+  [[nodiscard]] double squared_errors() const { return squares_; }
+  /// rad. Not a number before the first tick.
+  [[nodiscard]] double rms_error() const { return std::sqrt(squares_ / static_cast<double>(ticks_)); }
+  [[nodiscard]] double max_error() const { return ticks_ > 0 ? max_ : std::numeric_limits<double>::quiet_NaN(); }
+  /// Shares of the time, 0 to 1. Not a number before the first step.
+  [[nodiscard]] double at_speed_limit() const { return share(speed_limited_); }
+  [[nodiscard]] double at_torque_limit() const { return share(torque_limited_); }
+
+ private:
+  /// The solver reaches the limit up to rounding.
+  static constexpr double almost_all = 0.999;
+
+  [[nodiscard]] double share(std::uint64_t steps) const {
+    return static_cast<double>(steps) / static_cast<double>(steps_);
+  }
+
+  double max_speed_;
+  double torque_limit_;
+  std::uint64_t steps_ = 0;
+  std::uint64_t speed_limited_ = 0;
+  std::uint64_t torque_limited_ = 0;
+  std::uint64_t ticks_ = 0;
+  double squares_ = 0.0;
+  double max_ = 0.0;
+};
+
+}  // namespace proleg::sim

@@ -228,10 +228,11 @@ TEST_F(Figure, HasFiniteCoordinatesForAnUnstableSimulation) {
 
 TEST_F(Figure, ShortensNamesThatAreTooLong) {
   Scenario scenario = small_scenario();
-  scenario.path = std::string(200, 'p') + ".simulation.xml";
+  scenario.path.assign(200, 'p').append(".simulation.xml");
   scenario.robot.joints[0].name = "\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc";
   Picture picture = draw(scenario, 100);
-  EXPECT_TRUE(picture.has_text(std::string(55, 'p') + "..."));
+  std::string shortened(55, 'p');
+  EXPECT_TRUE(picture.has_text(shortened.append("...")));
   EXPECT_TRUE(picture.has_text("\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6\xc3\xbc\xc3\xa4\xc3\xb6..."));
 }
 

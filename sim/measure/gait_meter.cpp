@@ -4,6 +4,8 @@
 #include <limits>
 #include <numbers>
 
+#include "sim/robot/link_ends.hpp"
+
 namespace proleg::sim {
 namespace {
 
@@ -11,31 +13,6 @@ constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double min_distance = 1e-3;  // m; below, costs of transport are noise
 /// A direction whose horizontal part is shorter counts as vertical.
 constexpr double vertical = 1e-6;
-
-/// The ends of a link, in the robot's frame: its joints; at the end of the robot a point beyond the centre of mass.
-struct LinkEnds {
-  Eigen::Vector3d rear;
-  Eigen::Vector3d front;
-};
-
-LinkEnds link_ends(const RobotModel& robot, std::size_t link) {
-  const Eigen::Vector3d center = robot.links[link].pose * robot.links[link].mass.center;
-  LinkEnds ends{center, center};
-  if (link < robot.joints.size()) {
-    ends.rear = robot.joints[link].anchor;
-  }
-  if (link > 0) {
-    ends.front = robot.joints[link - 1].anchor;
-  }
-  // An end link reaches as far beyond its centre of mass as its joint is from it.
-  if (link == 0) {
-    ends.front = 2.0 * center - ends.rear;
-  }
-  if (link == robot.joints.size()) {
-    ends.rear = 2.0 * center - ends.front;
-  }
-  return ends;
-}
 
 }  // namespace
 

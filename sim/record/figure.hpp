@@ -7,14 +7,15 @@
 
 namespace proleg::sim {
 
-/// Part of a run, in seconds from its start; by default the last three seconds.
+/// Part of a run, in seconds from its start; by default the last three strides.
 struct TimeWindow {
   std::optional<double> from_s;
   std::optional<double> to_s;
 };
 
-/// Draws a recording as an SVG picture: set-points and measured angles of the joints and the contacts of the links in
-/// the window, and the path of the chain's centre (mean of the positions of its links) over the whole run, from above.
+/// Draws a recording as an SVG picture: the robot in a stride (robot_views.hpp), set-points and measured angles of the
+/// joints and the contacts of the links in the window, with changes, restarts and losses, and the path of the chain's
+/// centre (mean of the positions of its links) over the whole run, from above.
 /// Throws InputError if fewer than two ticks lie in the window.
 [[nodiscard]] std::string draw_figure(const Recording& recording, const TimeWindow& window);
 

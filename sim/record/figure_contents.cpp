@@ -6,19 +6,44 @@
 #include <string>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "sim/measure/stride.hpp"
+#include "sim/robot/link_ends.hpp"
 
 namespace proleg::sim {
 namespace {
 
 double bounded(double value) { return std::clamp(value, -1e9, 1e9); }
 
+/// Three strides at the end of the run, 1 to 20 s; 3 s if the joints do not swing.
+double default_window_s(const Recording& recording, std::uint32_t last) {
+  constexpr double longest_s = 20.0;
+  constexpr double strides = 3.0;
+  const double tick_s = recording.tick_period_us() / 1e6;
+  const auto ticks = static_cast<std::uint32_t>(longest_s / tick_s);
+  const std::uint32_t first = std::max(recording.first_tick(), last > ticks ? last - ticks : 0U);
+  std::vector<double> targets;
+  recording.read_ticks(first, last, [&](const RecordedTick& tick) {
+    for (const std::int32_t setpoint : tick.setpoints) {
+      targets.push_back(setpoint * (std::numbers::pi / 2.0) / (1U << 30U));
+    }
+  });
+  const auto stride = find_stride({targets, recording.joints().size()}, tick_s);
+  return stride ? std::clamp(strides / stride->frequency, 1.0, longest_s) : 3.0;
+}
+
 void set_window(const Recording& recording, const TimeWindow& window, FigureContents& contents) {
-  constexpr double default_window_s = 3.0;
   const double tick_s = recording.tick_period_us() / 1e6;
   const double begin = recording.time_s(recording.first_tick()) - tick_s;
   const double end = recording.time_s(recording.last_tick());
   contents.to_s = std::min(window.to_s.value_or(end), end);
-  contents.from_s = std::max(window.from_s.value_or(contents.to_s - default_window_s), begin);
+  if (window.from_s) {
+    contents.from_s = std::max(*window.from_s, begin);
+  } else {
+    const double last_tick =
+        std::clamp(contents.to_s / tick_s - 1.0, 1.0 * recording.first_tick(), 1.0 * recording.last_tick());
+    contents.from_s =
+        std::max(contents.to_s - default_window_s(recording, static_cast<std::uint32_t>(last_tick)), begin);
+  }
   std::uint32_t first = recording.last_tick();
   std::uint32_t last = recording.first_tick();
   if (contents.from_s < contents.to_s) {
@@ -38,12 +63,36 @@ void set_window(const Recording& recording, const TimeWindow& window, FigureCont
   contents.last_tick = last;
 }
 
+Point from_above(const Eigen::Vector3d& position) { return {bounded(position.x()), bounded(position.y())}; }
+
+/// From the head's front to the tail's rear end.
+Polyline chain_of(const std::vector<Pose>& poses, const RobotModel* robot) {
+  Polyline chain;
+  for (std::size_t link = 0; link < poses.size(); ++link) {
+    if (robot == nullptr) {
+      chain.push_back(from_above(poses[link].position));
+      continue;
+    }
+    const Pose& model = robot->links[link].pose;
+    const LinkEnds ends = link_ends(*robot, link);
+    const auto place = [&](const Eigen::Vector3d& in_robot) {
+      return from_above(poses[link] * (model.orientation.conjugate() * (in_robot - model.position)));
+    };
+    if (link == 0) {
+      chain.push_back(place(ends.front));
+    }
+    chain.push_back(place(ends.rear));
+  }
+  return chain;
+}
+
 }  // namespace
 
-FigureContents collect_figure_contents(const Recording& recording, const TimeWindow& window) {
+FigureContents collect_figure_contents(const Recording& recording, const TimeWindow& window, const RobotModel* robot) {
   FigureContents contents;
   set_window(recording, window, contents);
   contents.tick_s = recording.tick_period_us() / 1e6;
+  contents.path_from_s = recording.time_s(recording.first_tick());
   contents.setpoints.resize(recording.joints().size());
   contents.angles.resize(recording.joints().size());
   contents.presses.resize(recording.links().size());
@@ -76,19 +125,18 @@ FigureContents collect_figure_contents(const Recording& recording, const TimeWin
     }
   };
   recording.read_ticks(recording.first_tick(), recording.last_tick(), [&](const RecordedTick& tick) {
-    Polyline chain;
     Point sum;
     for (const Pose& pose : tick.link_poses) {
-      chain.push_back({bounded(pose.position.x()), bounded(pose.position.y())});
-      sum = {sum.x + chain.back().x, sum.y + chain.back().y};
+      const Point position = from_above(pose.position);
+      sum = {sum.x + position.x, sum.y + position.y};
     }
-    const auto links = static_cast<double>(chain.size());
+    const auto links = static_cast<double>(tick.link_poses.size());
     contents.path.push_back({sum.x / links, sum.y / links});
     if (tick.tick == recording.first_tick()) {
-      contents.first_chain = chain;
+      contents.first_chain = chain_of(tick.link_poses, robot);
     }
     if (tick.tick == recording.last_tick()) {
-      contents.last_chain = chain;
+      contents.last_chain = chain_of(tick.link_poses, robot);
     }
     if (tick.tick >= contents.first_tick && tick.tick <= contents.last_tick) {
       add_angles(tick, recording.time_s(tick.tick));

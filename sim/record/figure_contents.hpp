@@ -7,6 +7,7 @@
 #include "sim/record/figure.hpp"
 #include "sim/record/recording.hpp"
 #include "sim/record/svg.hpp"
+#include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim {
 
@@ -25,12 +26,15 @@ struct FigureContents {
     double to_s;
   };
   std::vector<std::array<std::vector<Press>, 2>> presses;  ///< per link: of the rear and the front sensor
-  Polyline path;                                           ///< x, y of the centre, in m
-  Polyline first_chain;                                    ///< x, y of the links, head to tail
+  Polyline path;                                           ///< x, y of the centre after each tick of the run, in m
+  double path_from_s = 0.0;                                ///< when the path begins
+  Polyline first_chain;                                    ///< x, y of the ends of the links, head to tail
   Polyline last_chain;
 };
 
-/// Throws InputError if fewer than two ticks lie in the window.
-[[nodiscard]] FigureContents collect_figure_contents(const Recording& recording, const TimeWindow& window);
+/// robot: for the ends of the links; without it their chain consists of their positions. Throws InputError if fewer
+/// than two ticks lie in the window.
+[[nodiscard]] FigureContents collect_figure_contents(const Recording& recording, const TimeWindow& window,
+                                                     const RobotModel* robot = nullptr);
 
 }  // namespace proleg::sim

@@ -74,6 +74,29 @@ void draw_chain(Svg& svg, const PathPanel& panel, const Polyline& chain) {
   svg.end_group();
 }
 
+/// Dots on the path at full seconds, with their times, as far apart as texts need.
+void draw_times(Svg& svg, const FigureContents& contents, const PathPanel& panel) {
+  constexpr double min_distance = 46.0;  // pixels
+  const double begin = contents.path_from_s;
+  const double end = begin + static_cast<double>(contents.path.size() - 1) * contents.tick_s;
+  const auto place = [&](double time_s) {
+    const auto tick = static_cast<std::size_t>(std::lround((time_s - begin) / contents.tick_s));
+    return panel.pixel(contents.path[std::min(tick, contents.path.size() - 1)]);
+  };
+  const auto far_enough = [](Point a, Point b) { return std::hypot(a.x - b.x, a.y - b.y) >= min_distance; };
+  const Point last = place(end);
+  Point before = place(begin);
+  for (const double time_s : multiples(begin, end, nice_step((end - begin) / 12.0))) {
+    const Point here = place(time_s);
+    svg.circle(here, 2.6, R"(class="time" fill="#ffffff" stroke="#0072b2" stroke-width="1.4")");
+    if (far_enough(here, before) && far_enough(here, last)) {
+      svg.text({here.x, here.y - 8.0}, plain_number(time_s, 3) + " s", TextAnchor::middle, 11.0, faint_ink,
+               R"(stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke")");
+      before = here;
+    }
+  }
+}
+
 void draw_mark(Svg& svg, Point center, double name_height, std::string_view name, std::string_view style) {
   svg.circle(center, 5.0, style);
   svg.text({center.x, center.y + name_height}, name, TextAnchor::middle, label_size, ink,
@@ -132,6 +155,7 @@ void draw_path(Svg& svg, const Recording& recording, const FigureContents& conte
   svg.polyline(panel.pixels(contents.path),
                R"(stroke="#0072b2" stroke-width="2" stroke-linejoin="round" stroke-linecap="round")");
   svg.end_group();
+  draw_times(svg, contents, panel);
   draw_mark(svg, panel.pixel(contents.path.front()), -11.0, "start",
             R"(fill="#ffffff" stroke="#0072b2" stroke-width="2")");
   draw_mark(svg, panel.pixel(contents.path.back()), 19.0, "end", R"(fill="#0072b2" stroke="#0072b2" stroke-width="2")");

@@ -95,6 +95,14 @@ void Svg::polyline(std::span<const Point> points, std::string_view style) {
   picture_ += "\" fill=\"none\" " + std::string(style) + "/>\n";
 }
 
+void Svg::polygon(std::span<const Point> corners, std::string_view style) {
+  picture_ += "<polygon points=\"";
+  for (const Point& corner : corners) {
+    picture_ += coordinate(corner.x) + "," + coordinate(corner.y) + " ";
+  }
+  picture_ += "\" " + std::string(style) + "/>\n";
+}
+
 void Svg::rectangle(Point corner, double width, double height, std::string_view style) {
   picture_ += "<rect" + attribute("x", corner.x) + attribute("y", corner.y) + attribute("width", width) +
               attribute("height", height) + " " + std::string(style) + "/>\n";

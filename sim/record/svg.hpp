@@ -28,6 +28,7 @@ class Svg {
   /// style: further attributes, e.g. R"(stroke="#333" stroke-width="1")".
   void line(Point from, Point to, std::string_view style);
   void polyline(std::span<const Point> points, std::string_view style);
+  void polygon(std::span<const Point> corners, std::string_view style);
   void rectangle(Point corner, double width, double height, std::string_view style);
   void circle(Point center, double radius, std::string_view style);
   /// The same mark at many places, as one shape of few bytes. mark: path commands relative to the place, e.g. "h0" for

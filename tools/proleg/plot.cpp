@@ -26,15 +26,16 @@ void require_finite(const char* option, const std::optional<double>& seconds) {
 int main(int argc, char** argv) {
   tools::CommandLine command_line(
       "proleg plot",
-      "Draws a recording of 'proleg simulate --record' as an SVG picture: the joint angles and the contacts over "
-      "time,\n"
-      "and the path of the robot over the whole run, from above. Prints the name of the picture.");
+      "Draws a recording of 'proleg simulate --record' as an SVG picture: the robot in a stride, the joint angles and\n"
+      "the contacts over time, and the path of the robot over the whole run, from above. Prints the name of the "
+      "picture.");
   std::string recording_path;
   std::string out;
   sim::TimeWindow window;
   command_line.add_option("RUN", recording_path, "the recording").required().value_name("");
   command_line.add_option("--out", out, "the picture; by default the recording's name with .svg").value_name("FILE");
-  command_line.add_option("--from", window.from_s, "start of the time axis in s; by default 3 s before its end")
+  command_line
+      .add_option("--from", window.from_s, "start of the time axis in s; by default three strides before its end")
       .value_name("SECONDS");
   command_line.add_option("--to", window.to_s, "end of the time axis in s; by default the end of the run")
       .value_name("SECONDS");

@@ -8,9 +8,12 @@
 #include <sstream>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "sim/record/disturbance_marks.hpp"
 #include "sim/record/figure_contents.hpp"
 #include "sim/record/svg.hpp"
+#include "sim/scenario/reader.hpp"
 #include "small_run.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -46,7 +49,7 @@ class Picture {
         EXPECT_EQ(element.QueryDoubleAttribute(name, &value), tinyxml2::XML_SUCCESS) << element.Attribute(name);
         EXPECT_TRUE(std::isfinite(value));
         EXPECT_GE(value, 0.0) << name << " of " << element.Name();
-        EXPECT_LE(value, 1200.0) << name << " of " << element.Name();
+        EXPECT_LE(value, 1800.0) << name << " of " << element.Name();
       }
     }
     if (const char* points = element.Attribute("points"); points != nullptr) {
@@ -55,7 +58,7 @@ class Picture {
       char comma = ' ';
       for (Point point; stream >> point.x >> comma >> point.y;) {
         line.push_back(point);
-        EXPECT_TRUE(point.x >= 0.0 && point.x <= 900.0 && point.y >= 0.0 && point.y <= 1200.0) << points;
+        EXPECT_TRUE(point.x >= 0.0 && point.x <= 900.0 && point.y >= 0.0 && point.y <= 1800.0) << points;
       }
       EXPECT_TRUE(stream.eof()) << points;
     }
@@ -85,6 +88,19 @@ class Figure : public testing::Test {
   TemporaryFolder folder_;
   std::filesystem::path path_ = folder_ / "run.sqlite";
 };
+
+/// Like record_small(), with other poses.
+void record_moving(const std::filesystem::path& path, const Scenario& scenario, std::uint32_t ticks,
+                   const std::function<void(Pose&)>& move) {
+  Recorder recorder(path, scenario, "test", "build");
+  run_small(scenario, ticks, [&](const TickSample& sample, const Change* /*change*/) {
+    std::vector<Pose> poses(sample.link_poses.begin(), sample.link_poses.end());
+    std::ranges::for_each(poses, move);
+    TickSample moved = sample;
+    moved.link_poses = poses;
+    recorder.record_tick(moved);
+  });
+}
 
 /// A robot with this many joints on the sine.
 Scenario long_scenario(unsigned joints) {
@@ -182,8 +198,8 @@ TEST_F(Figure, IsDrawnForTwoTicks) { EXPECT_EQ(draw(small_scenario(), 2).count("
 
 TEST_F(Figure, IsDrawnForTheLongestRobot) {
   Picture picture = draw(long_scenario(max_joints), 100);
-  EXPECT_EQ(picture.count("joint"), 10);  // of 64, so that the lines remain distinct
-  EXPECT_TRUE(picture.has_text("Joint angles (deg), one joint in 7"));
+  EXPECT_EQ(picture.count("joint"), 64) << "a row of the map each, since lines would hide each other";
+  EXPECT_TRUE(picture.has_text("Joint angles, measured"));
   EXPECT_TRUE(picture.has_text("J64"));
   EXPECT_TRUE(picture.has_text("Link64"));
 }
@@ -193,6 +209,108 @@ TEST_F(Figure, DoesNotGrowWithTheLengthOfTheWindow) {
   record_small(path_, scenario, 6000);
   const std::size_t minute = draw_figure(Recording(path_), {0.0, 60.0}).size();
   EXPECT_LT(minute, 1'000'000U);
+}
+
+/// The recording of a scenario that ships, with made-up motion.
+Scenario shipped(const std::string& name) {
+  DiskFiles files;
+  return read_scenario(source_path("/sim/scenarios/" + name + ".simulation.xml"), files);
+}
+
+TEST_F(Figure, ShowsTheRobotInAStrideFromTheSide) {
+  Picture picture = draw(shipped("travelling_wave/uniform"), 400);
+  EXPECT_TRUE(picture.has_text("A stride from the side"));
+  EXPECT_FALSE(picture.has_text("A stride from above")) << "it goes where it points";
+  EXPECT_EQ(picture.count("view"), 8);
+  EXPECT_EQ(picture.count("link"), 8 * 6) << "one shape for each of six links";
+  EXPECT_EQ(picture.count("joint"), 5);
+}
+
+TEST_F(Figure, ShowsARobotThatGoesSidewaysFromAbove) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  std::uint32_t poses = 0;
+  record_moving(path_, scenario, 400, [&](Pose& pose) {
+    const std::uint32_t tick = poses++ / 6;
+    pose.position += Eigen::Vector3d(-0.001 * tick, 0.002 * tick, 0.0);
+  });
+  Picture picture(draw_figure(Recording(path_), {}));
+  EXPECT_TRUE(picture.has_text("A stride from above"));
+  EXPECT_EQ(picture.count("view"), 16);
+}
+
+TEST_F(Figure, ShowsARobotWithYawJointsFromAboveAndTheirAnglesApart) {
+  Scenario scenario = shipped("travelling_wave/uniform");
+  std::string& robot = std::ranges::find_if(scenario.sources, [](const SourceFile& file) {
+                         return file.path.ends_with("caterpillar.robot.xml");
+                       })->text;
+  robot.replace(robot.find("<axis>1 0 0"), 11, "<axis>0 0 1");
+  Picture picture = draw(scenario, 400);
+  EXPECT_TRUE(picture.has_text("A stride from above"));
+  EXPECT_TRUE(picture.has_text("Angles of the pitch joints (deg)"));
+  EXPECT_TRUE(picture.has_text("Angles of the yaw joints (deg)"));
+  EXPECT_EQ(picture.count("joint"), 5);
+}
+
+TEST_F(Figure, ShowsTheTerrain) {
+  Scenario scenario = shipped("obstacle/reflex");
+  record_moving(path_, scenario, 400, [](Pose& pose) { pose.position.z() -= 0.3; });
+  Picture picture(draw_figure(Recording(path_), {}));
+  EXPECT_GT(picture.count("terrain"), 8) << "the floor, and steps in some cells";
+}
+
+TEST_F(Figure, OfALongRobotHasFewerCells) {
+  Picture picture = draw(shipped("long_chain/twenty"), 300);
+  EXPECT_EQ(picture.count("link"), 6 * 21);
+}
+
+TEST_F(Figure, OfARobotThatIsTornApartHasNoViews) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  record_moving(path_, scenario, 100, [](Pose& pose) { pose.position *= 1e5; });
+  EXPECT_EQ(Picture(draw_figure(Recording(path_), {})).count("view"), 0);
+}
+
+TEST_F(Figure, MarksRestartsAndLosses) {
+  const Scenario scenario = small_scenario();
+  {
+    Recorder recorder(path_, scenario, "test", "build");
+    run_small(scenario, 300, [&](const TickSample& sample, const Change* /*change*/) {
+      if (sample.tick == 150 || sample.tick == 170) {
+        recorder.record_restart(sample.tick, 1, sample.tick == 170);
+      }
+      const Loss lost{sample.tick, 0, 0, 1};
+      TickSample with_loss = sample;
+      if (sample.tick % 50 == 7) {
+        with_loss.lost = {&lost, 1};
+      }
+      recorder.record_tick(with_loss);
+    });
+  }
+  const Recording recording(path_);
+  const Disturbances disturbances = collect_disturbances(recording);
+  ASSERT_EQ(disturbances.restarts.size(), 1U);
+  EXPECT_EQ(disturbances.restarts[0].joint, "J2");
+  EXPECT_NEAR(disturbances.restarts[0].from_s, 1.5, 1e-9);
+  EXPECT_NEAR(disturbances.restarts[0].to_s.value(), 1.7, 1e-9);
+  EXPECT_EQ(disturbances.losses, 6U);
+  Picture picture(draw_figure(recording, {0.0, 3.0}));
+  EXPECT_EQ(picture.count("restart"), 1);
+  EXPECT_EQ(picture.count("loss"), 1);
+  EXPECT_TRUE(picture.has_text("J2 restarts"));
+}
+
+TEST_F(Figure, HasTimesOnThePath) {
+  Picture picture = draw(small_scenario(), 800);
+  EXPECT_GE(picture.count("time"), 7);
+  EXPECT_TRUE(picture.has_text("4 s"));
+}
+
+TEST_F(Figure, HasThreeStridesByDefault) {
+  Scenario scenario = small_scenario();  // its sine has the default frequency
+  record_small(path_, scenario, 2000);
+  const FigureContents contents = collect_figure_contents(Recording(path_), {});
+  const auto [low, high] = std::ranges::minmax(contents.setpoints[0], {}, &Point::y);
+  EXPECT_GT(high.y - low.y, 1.0);
+  EXPECT_NEAR(contents.to_s - contents.from_s, 3.0, 0.05) << "at 1 Hz";
 }
 
 TEST_F(Figure, IsWellFormedForAnyNames) {

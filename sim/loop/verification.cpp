@@ -1,6 +1,9 @@
 #include "sim/loop/verification.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -32,6 +35,7 @@ class RecordedGait {
       limits.push_back({joint.lower_limit, joint.upper_limit});
     }
     read_slots();
+    check_internal_values();
     for (const RecordedSetting& setting : recording.parameters()) {
       if (setting.commit) {
         add_change(setting, false);
@@ -66,9 +70,6 @@ class RecordedGait {
 
   void read_slots() {
     for (const RecordedSlot& slot : recording_.slots()) {
-      if (slot.slot >= max_slots) {
-        refuse("slot " + std::to_string(slot.slot), "slots 0 to " + std::to_string(max_slots - 1));
-      }
       Slot& kernel_slot = configuration.slots[slot.slot];
       kernel_slot.algorithm = find_algorithm(slot.algorithm);
       if (kernel_slot.algorithm == nullptr) {
@@ -81,6 +82,33 @@ class RecordedGait {
         }
       }
     }
+  }
+
+  /// The recording must have the values that recompute() compares.
+  void check_internal_values() const {
+    const std::vector<RecordedInternalValue>& recorded = recording_.internal_values();
+    std::size_t count = 0;
+    for_each_internal_value(configuration, [&](unsigned slot, unsigned joint, unsigned number) {
+      const std::string_view name = configuration.slots[slot].algorithm->declaration().internal_values[number].name;
+      if (count < recorded.size()) {
+        const RecordedInternalValue& value = recorded[count];
+        if (value.slot != slot || value.joint != joint || value.number != number || value.name != name) {
+          refuse_internal_value(in_quotes(value.name), slot, joint, in_quotes(name));
+        }
+      } else {
+        refuse_internal_value("nothing", slot, joint, in_quotes(name));
+      }
+      ++count;
+    });
+    if (count < recorded.size()) {
+      refuse_internal_value(in_quotes(recorded[count].name), recorded[count].slot, recorded[count].joint, "nothing");
+    }
+  }
+
+  [[noreturn]] void refuse_internal_value(const std::string& found, std::uint32_t slot, std::uint32_t joint,
+                                          const std::string& expected) const {
+    refuse(found + " as an internal value of joint " + std::to_string(joint) + " in slot " + std::to_string(slot),
+           expected + ", as this program's algorithm declares");
   }
 
   [[nodiscard]] Setting resolve(const RecordedSetting& setting, bool internal) const {
@@ -110,19 +138,40 @@ class RecordedGait {
   const Recording& recording_;
 };
 
-/// All recorded pulses, in memory: 16 bytes each.
-std::vector<ServoPulse> read_pulses(const Recording& recording) {
-  std::vector<ServoPulse> pulses;
-  recording.read_servo_pulses([&](const ServoPulse& pulse) { pulses.push_back(pulse); });
-  return pulses;
-}
+/// The recorded pulses, tick by tick.
+class PulsesByTick {
+ public:
+  explicit PulsesByTick(const Recording& recording) : reader_(recording), next_(reader_.next()) {}
+
+  /// The pulses before this time that no earlier call has returned; valid until the next call.
+  [[nodiscard]] std::span<const ServoPulse> take_before(std::uint64_t end_us) {
+    taken_.clear();
+    for (; next_ && next_->time_us < end_us; next_ = reader_.next()) {
+      taken_.push_back(*next_);
+    }
+    return taken_;
+  }
+  /// One that take_before() has not returned.
+  [[nodiscard]] std::optional<ServoPulse> take() {
+    const std::optional<ServoPulse> taken = next_;
+    if (taken) {
+      next_ = reader_.next();
+    }
+    return taken;
+  }
+
+ private:
+  ServoPulseReader reader_;
+  std::optional<ServoPulse> next_;
+  std::vector<ServoPulse> taken_;
+};
 
 Verification recompute(const Recording& recording, const RecordedGait& gait,
                        const std::function<void(std::uint32_t tick)>& progress) {
   const ServoSchedule schedule(gait.servo_period_us, gait.configuration.tick_period_us);
   const Losses losses(recording.losses());
   const std::vector<RecordedRestart> restarts = recording.restarts();
-  const std::vector<ServoPulse> pulses = read_pulses(recording);
+  PulsesByTick pulses(recording);
 
   KernelChain chain(gait.configuration, gait.limits, gait.settings);
   chain.set_losses(&losses);
@@ -140,7 +189,6 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
   std::vector<std::int32_t> last_commands(chain.joint_count(), servo_center);
   auto change = gait.changes.begin();
   auto restart = restarts.begin();
-  auto pulse = pulses.begin();
   recording.read_ticks(0, recording.last_tick(), [&](const RecordedTick& tick) {
     for (; restart != restarts.end() && restart->tick <= tick.tick; ++restart) {
       restart->joined ? chain.join(restart->joint) : chain.stop(restart->joint);
@@ -177,19 +225,15 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
             {Difference::Kind::last_servo_command, tick.tick, joint, tick.servo_commands[joint], last_commands[joint]});
       }
     }
-    const auto first = pulse;
     const std::uint64_t end_us = (tick.tick + std::uint64_t{1}) * gait.configuration.tick_period_us;
-    while (pulse != pulses.end() && pulse->time_us < end_us) {
-      ++pulse;
-    }
-    compare_pulses(tick.tick, {first, pulse}, expected_pulses, note);
+    compare_pulses(tick.tick, pulses.take_before(end_us), expected_pulses, note);
     result.servo_commands += expected_pulses.size();
     ++result.ticks;
     if (progress) {
       progress(tick.tick);
     }
   });
-  for (; pulse != pulses.end(); ++pulse) {
+  while (const auto pulse = pulses.take()) {
     note({Difference::Kind::servo_command, recording.last_tick(), pulse->joint, pulse->command, std::nullopt});
   }
   result.setpoint_hash = setpoint_hash.hex();

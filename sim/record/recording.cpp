@@ -1,5 +1,6 @@
 #include "sim/record/recording.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <sstream>
 
@@ -88,6 +89,9 @@ void Recording::read_run() {
   }
   first_tick_ = natural(range, 0);
   last_tick_ = natural(range, 1);
+  if (last_tick_ < first_tick_) {  // in a damaged index
+    throw Damage("tick " + std::to_string(last_tick_) + " after tick " + std::to_string(first_tick_));
+  }
 }
 
 void Recording::read_robot() {
@@ -116,6 +120,9 @@ void Recording::read_slots() {
                  "SELECT value_index, name, unit FROM internal_value_name WHERE slot = ?1 ORDER BY value_index");
   while (slot.step()) {
     RecordedSlot read{natural(slot, 0), slot.text(1), {}};
+    if (read.slot >= max_slots) {
+      throw Damage("slot " + std::to_string(read.slot) + " of " + std::to_string(max_slots));
+    }
     for (const char c : slot.text(2)) {
       read.joint_group.push_back(c == '1');
     }
@@ -138,7 +145,7 @@ void Recording::read_slots() {
     for_each_internal_value_of_slot(
         static_cast<unsigned>(joints_.size()), group, static_cast<std::uint32_t>(names.size()),
         [&](unsigned joint, unsigned number) {
-          internal_values_.push_back({read.slot, joint, names[number].name, names[number].unit});
+          internal_values_.push_back({read.slot, joint, number, names[number].name, names[number].unit});
         });
     slots_.push_back(std::move(read));
   }
@@ -150,6 +157,14 @@ std::uint8_t Recording::joint_number(const Statement& row, int column) const {
     throw Damage("joint " + std::to_string(joint) + " of " + std::to_string(joints_.size()));
   }
   return static_cast<std::uint8_t>(joint);
+}
+
+std::uint32_t Recording::slot_number(const Statement& row, int column) const {
+  const std::uint32_t slot = natural(row, column);
+  if (std::ranges::find(slots_, slot, &RecordedSlot::slot) == slots_.end()) {
+    throw Damage("slot " + std::to_string(slot) + ", which has no algorithm");
+  }
+  return slot;
 }
 
 std::string Recording::run_value(const std::string& key) const {
@@ -169,7 +184,7 @@ std::vector<RecordedSetting> Recording::read_settings(const char* sql) const {
     std::vector<RecordedSetting> settings;
     Statement row(tables_->database, sql);
     while (row.step()) {
-      settings.push_back({natural(row, 0), row.integer(6) != 0, natural(row, 1), natural(row, 2), row.text(3),
+      settings.push_back({natural(row, 0), row.integer(6) != 0, slot_number(row, 1), joint_number(row, 2), row.text(3),
                           unit_of(row.text(4)), raw(row, 5)});
     }
     return settings;
@@ -235,7 +250,7 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
                     "WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, joint",
                     first, last);
     values.emplace(database, "internal_value",
-                   "SELECT tick, slot, joint, raw FROM internal_value "
+                   "SELECT tick, slot, joint, value_index, raw FROM internal_value "
                    "WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, slot, joint, value_index",
                    first, last);
     poses.emplace(database, "pose",
@@ -256,7 +271,7 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
       }
       for (std::size_t i = 0; i < internal_values_.size(); ++i) {
         const RecordedInternalValue& value = internal_values_[i];
-        tick.internal_values[i] = raw(values->expect(tick.tick, value.slot, value.joint), 3);
+        tick.internal_values[i] = raw(values->expect(tick.tick, value.slot, value.joint, value.number), 4);
       }
       for (std::uint32_t link = 0; link < links_.size(); ++link) {
         const Statement& pose = poses->expect(tick.tick, link);
@@ -271,21 +286,21 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
   }
 }
 
-void Recording::read_servo_pulses(const std::function<void(const ServoPulse&)>& use) const {
-  std::optional<Statement> row;
-  reading(path_,
-          [&] { row.emplace(tables_->database, "SELECT time_us, joint, command FROM servo ORDER BY time_us, joint"); });
-  ServoPulse pulse{};
-  const auto next = [&] {
-    if (!row->step()) {
-      return false;
+ServoPulseReader::ServoPulseReader(const Recording& recording)
+    : recording_(recording), row_(reading(recording.path(), [&] {
+        return std::make_unique<Statement>(recording.tables_->database,
+                                           "SELECT time_us, joint, command FROM servo ORDER BY time_us, joint");
+      })) {}
+
+ServoPulseReader::~ServoPulseReader() = default;
+
+std::optional<ServoPulse> ServoPulseReader::next() {
+  return reading(recording_.path(), [this]() -> std::optional<ServoPulse> {
+    if (!row_->step()) {
+      return std::nullopt;
     }
-    pulse = {time(*row, 0), joint_number(*row, 1), raw(*row, 2)};
-    return true;
-  };
-  while (reading(path_, next)) {
-    use(pulse);
-  }
+    return ServoPulse{time(*row_, 0), recording_.joint_number(*row_, 1), raw(*row_, 2)};
+  });
 }
 
 std::string remark_on_unfinished_run(const Recording& recording) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +39,7 @@ struct RecordedSlot {
 struct RecordedInternalValue {
   std::uint32_t slot = 0;
   std::uint32_t joint = 0;
+  std::uint32_t number = 0;  ///< of the value in the declaration of the slot's algorithm
   std::string name;
   Unit unit = Unit::count;
 };
@@ -113,14 +115,12 @@ class Recording {
   /// Calls `use` for the ticks from `first` to `last`, in order. The next tick overwrites the object.
   void read_ticks(std::uint32_t first, std::uint32_t last, const std::function<void(const RecordedTick&)>& use) const;
 
-  /// Calls `use` for every pulse of every servo, in the order of time, then of joints. There is none while a module
-  /// restarts.
-  void read_servo_pulses(const std::function<void(const ServoPulse&)>& use) const;
-
  private:
+  friend class ServoPulseReader;
   class Tables;
 
   [[nodiscard]] std::uint8_t joint_number(const Statement& row, int column) const;
+  [[nodiscard]] std::uint32_t slot_number(const Statement& row, int column) const;
   void read_run();
   void read_robot();
   void read_slots();
@@ -137,6 +137,24 @@ class Recording {
   std::vector<std::string> links_;
   std::vector<RecordedSlot> slots_;
   std::vector<RecordedInternalValue> internal_values_;
+};
+
+/// Reads the pulses of all servos one by one, in the order of time, then of joints. There is none while a module
+/// restarts. A day has hundreds of millions of pulses. Throws as Recording does.
+class ServoPulseReader {
+ public:
+  /// recording: must outlive the reader.
+  explicit ServoPulseReader(const Recording& recording);
+  ~ServoPulseReader();
+  ServoPulseReader(const ServoPulseReader&) = delete;
+  ServoPulseReader& operator=(const ServoPulseReader&) = delete;
+
+  /// The next pulse, or nothing at the end.
+  [[nodiscard]] std::optional<ServoPulse> next();
+
+ private:
+  const Recording& recording_;
+  std::unique_ptr<Statement> row_;
 };
 
 /// One line for the user if the run was interrupted or is still running; empty if it is finished.

@@ -158,7 +158,10 @@ TEST_F(ReplayedRecording, RepeatsEverySetpointInternalValueAndServoCommand) {
 
   const Recording recording(path_);
   std::vector<ServoPulse> pulses;
-  recording.read_servo_pulses([&](const ServoPulse& pulse) { pulses.push_back(pulse); });
+  ServoPulseReader pulse_reader(recording);
+  while (const auto next = pulse_reader.next()) {
+    pulses.push_back(*next);
+  }
   const ServoSchedule schedule(
       static_cast<std::uint32_t>(std::strtoul(recording.run_value("servo_period_us").c_str(), nullptr, 10)),
       recording.tick_period_us());

@@ -88,7 +88,11 @@ TEST(Recorder, KeepsEveryServoPulseWithItsTime) {
   const TemporaryFolder folder;
   record_small(folder / "run.sqlite", small_scenario(), ticks);
   std::vector<ServoPulse> recorded;
-  Recording(folder / "run.sqlite").read_servo_pulses([&](const ServoPulse& pulse) { recorded.push_back(pulse); });
+  const Recording recording(folder / "run.sqlite");
+  ServoPulseReader reader(recording);
+  while (const auto pulse = reader.next()) {
+    recorded.push_back(*pulse);
+  }
   ASSERT_EQ(recorded.size(), ticks * 2 * 3);
   std::size_t i = 0;
   for (std::uint32_t tick = 0; tick < ticks; ++tick) {
@@ -115,7 +119,11 @@ TEST(Recorder, KeepsTimesOfADay) {
     });
   }
   std::vector<std::uint64_t> times;
-  Recording(folder / "run.sqlite").read_servo_pulses([&](const ServoPulse& pulse) { times.push_back(pulse.time_us); });
+  const Recording recording(folder / "run.sqlite");
+  ServoPulseReader reader(recording);
+  while (const auto pulse = reader.next()) {
+    times.push_back(pulse->time_us);
+  }
   EXPECT_EQ(times, (std::vector<std::uint64_t>{day_us, day_us, day_us}));
 }
 

@@ -19,7 +19,9 @@ void read_all(const std::filesystem::path& path) {
   (void)recording.losses();
   (void)recording.restarts();
   (void)recording.sources();
-  recording.read_servo_pulses([](const ServoPulse& /*pulse*/) {});
+  ServoPulseReader pulses(recording);
+  while (pulses.next()) {
+  }
   recording.read_ticks(recording.first_tick(), recording.last_tick(), [](const RecordedTick& /*tick*/) {});
 }
 

@@ -193,11 +193,20 @@ class HardwareLoop::Implementation {
                         {rack_.has_computed(joint, tick_), state_frames_.has_sent(joint), rack_.has_restarted(joint)},
                         report_);
     }
-    change_ = reference_.advance(plant_.link_contacts());
+    advance_reference();
     report_.lost_frames += reference_.chain().lost().size();
     values_.read(tick_);
     report_.setpoint_hash.append(values_.setpoints());
     plant_ticks_.end(now);
+  }
+
+  void advance_reference() {
+    const std::optional<std::size_t> due = reference_.due_change();
+    const bool is_made = due && host_.has_made_change(*due);
+    if (due && !is_made) {
+      report_.dropped_changes.push_back(tick_);
+    }
+    change_ = reference_.advance(plant_.link_contacts(), is_made);
   }
 
   /// When all modules have received the SYNC and given their last pulses.
@@ -248,6 +257,9 @@ TickSample HardwareLoop::sample() { return implementation_->sample(); }
 std::span<const RestartEvent> HardwareLoop::restart_events() const { return implementation_->report().restart_events; }
 std::span<const ModuleFailure> HardwareLoop::failures() const { return implementation_->report().failures; }
 std::span<const ModuleProblem> HardwareLoop::problems() const { return implementation_->report().problems; }
+std::span<const std::uint32_t> HardwareLoop::dropped_changes() const {
+  return implementation_->report().dropped_changes;
+}
 const ValueHash& HardwareLoop::setpoint_hash() const { return implementation_->report().setpoint_hash; }
 const ValueHash& HardwareLoop::servo_hash() const { return implementation_->report().servo_hash; }
 std::uint64_t HardwareLoop::differences() const { return implementation_->report().differences; }

@@ -59,6 +59,8 @@ class HardwareLoop {
   [[nodiscard]] std::span<const RestartEvent> restart_events() const;
   [[nodiscard]] std::span<const ModuleFailure> failures() const;
   [[nodiscard]] std::span<const ModuleProblem> problems() const;
+  /// Ticks of the changes so far that the master could not make: they did not take effect in any module.
+  [[nodiscard]] std::span<const std::uint32_t> dropped_changes() const;
 
   [[nodiscard]] const ValueHash& setpoint_hash() const;
   [[nodiscard]] const ValueHash& servo_hash() const;

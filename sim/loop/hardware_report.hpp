@@ -41,9 +41,10 @@ struct HardwareReport {
   std::optional<Difference> first_difference;
   std::vector<ModuleFailure> failures;
   std::vector<ModuleProblem> problems;
-  std::vector<RestartEvent> restart_events;  ///< of the last tick
-  std::uint64_t lost_frames = 0;             ///< state frames withheld from a receiver
-  std::uint64_t setup_frames = 0;            ///< frames on the bus before SYNC 0
+  std::vector<std::uint32_t> dropped_changes;  ///< ticks of changes that did not take effect in any module
+  std::vector<RestartEvent> restart_events;    ///< of the last tick
+  std::uint64_t lost_frames = 0;               ///< state frames withheld from a receiver
+  std::uint64_t setup_frames = 0;              ///< frames on the bus before SYNC 0
 
   void add(const Difference& difference) {
     ++differences;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -45,6 +46,11 @@ class HostNode final : private BusListener {
   void advance_to(BusTime now);
 
   [[nodiscard]] canopen::MasterState state() const { return master_.state(); }
+  /// Whether the modules have a change of the scenario, by its position; final from the tick of the change on. (The
+  /// master drops a change that is not committed long before its tick.)
+  [[nodiscard]] bool has_made_change(std::size_t position) const {
+    return position < master_.changes_made() && !input_.changes[position].dropped;
+  }
   /// Why the start failed, or the first problem in flight, as one line; returned once.
   [[nodiscard]] std::optional<std::string> take_problem();
   /// The oldest event that this function has not returned yet, as one line for a person.

@@ -1,7 +1,5 @@
 #include "sim/loop/reference_gait.hpp"
 
-#include <optional>
-
 #include "sim/loop/servo_pulses.hpp"
 
 namespace proleg::sim {
@@ -47,11 +45,19 @@ void ReferenceGait::stop(unsigned joint, HardwareReport& report) {
   report.restart_events.push_back({joint, false});
 }
 
-const Change* ReferenceGait::advance(std::span<const std::uint8_t> link_contacts) {
+std::optional<std::size_t> ReferenceGait::due_change() const {
+  const bool is_due = next_change_ < scenario_.changes.size() && scenario_.changes[next_change_].tick == chain_.tick();
+  return is_due ? std::optional(next_change_) : std::nullopt;
+}
+
+const Change* ReferenceGait::advance(std::span<const std::uint8_t> link_contacts, bool is_change_made) {
   const Change* change = nullptr;
-  if (next_change_ < scenario_.changes.size() && scenario_.changes[next_change_].tick == chain_.tick()) {
-    change = &scenario_.changes[next_change_++];
-    chain_.apply(*change);
+  if (const auto due = due_change()) {
+    ++next_change_;
+    if (is_change_made) {
+      change = &scenario_.changes[*due];
+      chain_.apply(*change);
+    }
   }
   for (unsigned joint = 0; joint < chain_.joint_count(); ++joint) {
     if (chain_.is_running(joint)) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,8 +30,11 @@ class ReferenceGait {
   };
   /// Before advance(), for each joint: stops it or lets it join, as its module did. Reports failures of the module.
   void follow(unsigned joint, const ModuleTick& module, HardwareReport& report);
-  /// Computes the tick. link_contacts: as they were at its SYNC. Returns the change that took effect, if any.
-  const Change* advance(std::span<const std::uint8_t> link_contacts);
+  /// Position in the scenario of the change for the coming tick, if there is one.
+  [[nodiscard]] std::optional<std::size_t> due_change() const;
+  /// Computes the tick. link_contacts: as they were at its SYNC. is_change_made: the modules have the due change; if
+  /// not, it never takes effect. Returns the change that took effect, if any.
+  const Change* advance(std::span<const std::uint8_t> link_contacts, bool is_change_made);
 
   // After advance(), about the tick that it computed.
   /// Reports what differs. pulses: in the order of time, then of joints, without those of failed modules.

@@ -70,6 +70,7 @@ HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::Hardw
   if (const auto& first = loop.first_difference()) {
     result.first_difference = describe(*first, joint_and_node(run, first->joint));
   }
+  result.dropped_changes.assign(loop.dropped_changes().begin(), loop.dropped_changes().end());
   result.failures.assign(loop.failures().begin(), loop.failures().end());
   result.problems.assign(loop.problems().begin(), loop.problems().end());
   result.costliest_tick = modules.costliest_tick();
@@ -104,6 +105,11 @@ std::unique_ptr<sim::CandumpLog> open_can_log(const HilOptions& options) {
 int judge(const HilResult& result) {
   if (result.differences > 0) {
     std::cerr << "proleg hil: " << result.first_difference << '\n';
+    return exit_failed;
+  }
+  if (!result.dropped_changes.empty()) {
+    std::cerr << "proleg hil: " << result.dropped_changes.size() << " changes did not take effect, those for the ticks "
+              << list_dropped_changes(result) << '\n';
     return exit_failed;
   }
   constexpr std::uint32_t max_ticks_to_join = 100;

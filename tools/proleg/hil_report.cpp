@@ -11,6 +11,14 @@ std::string joint_and_node(const ScenarioRun& run, std::uint32_t joint) {
   return run.scenario.robot.joints[joint].name + " (node " + std::to_string(run.scenario.modules[joint].node) + ")";
 }
 
+std::string list_dropped_changes(const HilResult& result) {
+  std::vector<std::string> ticks;
+  for (const std::uint32_t tick : result.dropped_changes) {
+    ticks.push_back(std::to_string(tick));
+  }
+  return listed(ticks);
+}
+
 Json hil_json(const HilOptions& options, const ScenarioRun& run, const HilModules& modules, const HilResult& result) {
   Json restarts = Json::empty_array();
   for (const RestartReport& restart : result.restarts) {
@@ -18,6 +26,10 @@ Json hil_json(const HilOptions& options, const ScenarioRun& run, const HilModule
                      {"joint", restart.joint},
                      {"tick", restart.tick},
                      {"joined_tick", restart.joined_tick}});
+  }
+  Json dropped_changes = Json::empty_array();
+  for (const std::uint32_t tick : result.dropped_changes) {
+    dropped_changes.append(tick);
   }
   Json failures = Json::empty_array();
   for (const auto& failure : result.failures) {
@@ -42,6 +54,7 @@ Json hil_json(const HilOptions& options, const ScenarioRun& run, const HilModule
           {"servo_hash", result.servo_hash},
           {"differences", result.differences},
           {"first_difference", result.first_difference},
+          {"dropped_changes", dropped_changes},
           {"failures", failures},
           {"problems", problems},
           {"instructions_per_tick", result.costliest_tick ? result.costliest_tick->cost.to_state_frame : 0},
@@ -75,6 +88,10 @@ void print_hil_table(const HilOptions& options, const ScenarioRun& run, const Hi
   if (options.bit_errors) {
     std::printf("bit errors        %llu frames destroyed and sent again\n", count(result.bit_errors));
   }
+  if (!result.dropped_changes.empty()) {
+    std::printf("dropped changes   %zu of %zu, for the ticks %s\n", result.dropped_changes.size(),
+                run.scenario.changes.size(), list_dropped_changes(result).c_str());
+  }
   for (const RestartReport& restart : result.restarts) {
     std::printf("restart           node %u (%s) at tick %u, %s\n", unsigned{restart.node}, restart.joint.c_str(),
                 restart.tick,
@@ -106,15 +123,17 @@ void print_hil_table(const HilOptions& options, const ScenarioRun& run, const Hi
 }
 
 std::vector<std::pair<std::string, std::string>> hil_summary(const ScenarioRun& run, const HilResult& result) {
-  std::vector<std::pair<std::string, std::string>> summary{{"displacement_m", exact_text(result.displacement_m)},
-                                                           {"simulated_s", exact_text(result.simulated_s)},
-                                                           {"contacts_mean", exact_text(result.contacts_mean)},
-                                                           {"differences", std::to_string(result.differences)},
-                                                           {"lost_frames", std::to_string(result.lost_frames)},
-                                                           {"frames", std::to_string(result.frames)},
-                                                           {"bus_load", exact_text(result.bus_load)},
-                                                           {"setpoint_hash", result.setpoint_hash},
-                                                           {"servo_hash", result.servo_hash}};
+  std::vector<std::pair<std::string, std::string>> summary{
+      {"displacement_m", exact_text(result.displacement_m)},
+      {"simulated_s", exact_text(result.simulated_s)},
+      {"contacts_mean", exact_text(result.contacts_mean)},
+      {"differences", std::to_string(result.differences)},
+      {"lost_frames", std::to_string(result.lost_frames)},
+      {"dropped_changes", std::to_string(result.dropped_changes.size())},
+      {"frames", std::to_string(result.frames)},
+      {"bus_load", exact_text(result.bus_load)},
+      {"setpoint_hash", result.setpoint_hash},
+      {"servo_hash", result.servo_hash}};
   append_results(result.measures, run.scenario.robot, summary);
   return summary;
 }

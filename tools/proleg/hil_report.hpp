@@ -39,6 +39,7 @@ struct HilResult {
   double bus_load = 0.0;
   std::string setpoint_hash;
   std::string servo_hash;
+  std::vector<std::uint32_t> dropped_changes;  ///< their ticks
   std::vector<RestartReport> restarts;
   std::vector<sim::ModuleFailure> failures;
   std::vector<sim::ModuleProblem> problems;
@@ -57,6 +58,9 @@ struct HilResult {
 /// On standard output, for people.
 void print_hil_table(const HilOptions& options, const ScenarioRun& run, const HilModules& modules,
                      const HilResult& result);
+
+/// "31, 33, 35": ticks of the changes that did not take effect.
+[[nodiscard]] std::string list_dropped_changes(const HilResult& result);
 
 /// For the recording's table of results.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> hil_summary(const ScenarioRun& run,

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "shipped.hpp"
@@ -24,7 +25,7 @@ class Reference : public testing::Test {
     for (unsigned other = 0; other < 5; ++other) {
       gait.follow(other, other == joint ? module : computed, report);
     }
-    gait.advance(std::vector<std::uint8_t>(6));
+    gait.advance(std::vector<std::uint8_t>(6), false);
   }
 
   Scenario scenario = shipped("travelling_wave/coupled");
@@ -114,9 +115,25 @@ TEST_F(Reference, AppliesChangesAtTheirTicks) {
   apply_setting(scenario, "amplitude=20@1");
   ReferenceGait changed(scenario, nullptr);
   const std::vector<std::uint8_t> no_contacts(6);
-  EXPECT_EQ(changed.advance(no_contacts), nullptr);
-  EXPECT_EQ(changed.advance(no_contacts), scenario.changes.data());
-  EXPECT_EQ(changed.advance(no_contacts), nullptr);
+  EXPECT_FALSE(changed.due_change());
+  EXPECT_EQ(changed.advance(no_contacts, false), nullptr);
+  EXPECT_EQ(changed.due_change(), std::size_t{0});
+  EXPECT_EQ(changed.advance(no_contacts, true), scenario.changes.data());
+  EXPECT_FALSE(changed.due_change());
+  EXPECT_EQ(changed.advance(no_contacts, false), nullptr);
+}
+
+TEST_F(Reference, OmitsAChangeThatTheModulesDoNotHave) {
+  apply_setting(scenario, "amplitude=20@1");
+  const Scenario unchanged = shipped("travelling_wave/coupled");
+  ReferenceGait without(scenario, nullptr);
+  ReferenceGait expected(unchanged, nullptr);
+  const std::vector<std::uint8_t> no_contacts(6);
+  for (int tick = 0; tick < 50; ++tick) {
+    EXPECT_EQ(without.advance(no_contacts, false), nullptr);
+    EXPECT_EQ(expected.advance(no_contacts, false), nullptr);
+    EXPECT_TRUE(std::ranges::equal(without.chain().setpoints(), expected.chain().setpoints())) << tick;
+  }
 }
 
 }  // namespace

@@ -68,6 +68,23 @@ TEST_F(Hil, AModuleThatIsResetJoinsAgainAndTheRecordingContainsIt) {
   EXPECT_EQ(replayed["recorded_by"], "hil native");
 }
 
+TEST_F(Hil, ChangesThatTheMasterCannotTransferInTimeFailTheRunAndAreNotRecorded) {
+  const std::string recording = file("run.proleg").string();
+  std::vector<std::string> words{"hil", scenario("coupled"), "--seconds", "1", "--json", "--record", recording};
+  for (int tick = 0; tick < 60; ++tick) {
+    for (const char* name : {"amplitude=2", "phase_difference=5", "frequency=0.5"}) {
+      words.insert(words.end(), {"--set", name + std::to_string(tick % 10) + "@" + std::to_string(tick)});
+    }
+  }
+  const Finished finished = proleg(words);
+  EXPECT_EQ(finished.status, 1);
+  const Json result(finished.out);
+  EXPECT_GT(result["dropped_changes"].size(), 5U);
+  EXPECT_EQ(result["differences"], 0);
+  EXPECT_NE(finished.err.find(" changes did not take effect, those for the ticks "), std::string::npos) << finished.err;
+  EXPECT_EQ(succeed({"replay", recording, "--verify"})["differences"], 0);
+}
+
 TEST_F(Hil, WritesALogOfTheBus) {
   (void)succeed({"hil", scenario("uniform"), "--seconds", "1", "--can-log", file("bus.log").string()});
   const std::string log = read_file(file("bus.log"));

@@ -202,8 +202,8 @@ class Recorder::Storage {
 };
 
 Recorder::Recorder(const std::filesystem::path& path, const Scenario& scenario, const std::string& program,
-                   const std::string& build_id) {
-  claim_recording_file(path);
+                   const std::string& build_id)
+    : claim_(std::make_unique<RecordingClaim>(path)) {
   try {
     storage_ = std::make_unique<Storage>(path, scenario, program, build_id);
   } catch (const SqliteError& error) {

@@ -16,6 +16,8 @@
 
 namespace proleg::sim {
 
+class RecordingClaim;
+
 /// The result of tick k, after it was computed and simulated until SYNC k + 1. Joints and links count from the head.
 struct TickSample {
   std::uint32_t tick;  ///< k
@@ -40,9 +42,9 @@ struct TickSample {
 /// Throws FileError if it cannot write; after that it rejects all further calls.
 class Recorder {
  public:
-  /// Creates the file. An empty file or an earlier recording is replaced; any other existing file is an error.
-  /// scenario: must outlive the recorder. program: what computes the gait, e.g. "simulate" or "hil native".
-  /// build_id: of the program.
+  /// Creates the file. An empty file or an earlier recording is replaced; any other existing file is an error, and so
+  /// is one into which another recorder writes. scenario: must outlive the recorder. program: what computes the gait,
+  /// e.g. "simulate" or "hil native". build_id: of the program.
   Recorder(const std::filesystem::path& path, const Scenario& scenario, const std::string& program,
            const std::string& build_id);
   /// Commits. A run without finish() remains marked as unfinished. Writes an error to standard error.
@@ -63,6 +65,7 @@ class Recorder {
 
  private:
   class Storage;
+  std::unique_ptr<RecordingClaim> claim_;  ///< until the file is closed
   std::unique_ptr<Storage> storage_;
 };
 

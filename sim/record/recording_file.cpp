@@ -1,6 +1,8 @@
 #include "sim/record/recording_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,15 +11,119 @@
 #include <cstring>
 #include <fstream>
 #include <string>
+#include <string_view>
 
 #include "shared/computer/errors/file_error.hpp"
-#include "shared/computer/sqlite/sqlite.hpp"
 #include "sim/record/schema.hpp"
 
 namespace proleg::sim {
 namespace {
 
-/// Whether the file starts as an SQLite database with the application id of a recording.
+// Files that SQLite keeps beside a database.
+constexpr std::array companion_suffixes{"-wal", "-shm", "-journal"};
+/// Of the file that gets the name of an earlier recording. No longer than those of SQLite.
+constexpr std::string_view new_suffix = "-new";
+
+void require_file_or_nothing(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw FileError(path, "exists and is not a file; give another name for the recording");
+  }
+}
+
+/// SQLite would report a long name when it first needs a second file, at the end of a run.
+void require_room_for_suffixes(const std::filesystem::path& path) {
+  constexpr auto max_suffix = static_cast<long>(std::string_view("-journal").size());
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  const long max_name = pathconf(folder.c_str(), _PC_NAME_MAX);
+  if (max_name > 0 && static_cast<long>(path.filename().string().size()) > max_name - max_suffix) {
+    throw FileError(path, "the name is too long; give the recording a name of at most " +
+                              std::to_string(max_name - max_suffix) + " bytes");
+  }
+}
+
+[[noreturn]] void fail_to_create(const std::filesystem::path& path) {
+  throw FileError(path, std::string("cannot be created: ") + std::strerror(errno));
+}
+
+bool has_name(int descriptor, const std::filesystem::path& path) {
+  struct stat opened {};
+  struct stat named {};
+  return fstat(descriptor, &opened) == 0 && stat(path.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
+         opened.st_ino == named.st_ino;
+}
+
+void lock(int descriptor, const std::filesystem::path& path) {
+  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
+    return;
+  }
+  const int reason = errno;
+  close(descriptor);
+  throw FileError(path, reason == EWOULDBLOCK
+                            ? "another program is recording into this file; give another name for the recording"
+                            : std::string("cannot be locked: ") + std::strerror(reason));
+}
+
+/// The file, created if there is none, and locked.
+int open_and_lock(const std::filesystem::path& path) {
+  while (true) {
+    const int descriptor = open(path.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor < 0) {
+      fail_to_create(path);
+    }
+    lock(descriptor, path);
+    // Another recorder may have replaced the file after it was opened here.
+    if (has_name(descriptor, path)) {
+      return descriptor;
+    }
+    close(descriptor);
+  }
+}
+
+void remove_companions(const std::filesystem::path& path) {
+  for (const char* suffix : companion_suffixes) {
+    std::error_code error;
+    std::filesystem::remove(path.string() + suffix, error);
+    if (error) {
+      throw FileError(path, "cannot replace the earlier recording: " + error.message());
+    }
+  }
+}
+
+/// An empty file in place of a locked one, locked from before it gets the name. Programs that read the old file keep
+/// it.
+int replace(const std::filesystem::path& path) {
+  const std::string name = path.string() + std::string(new_suffix);
+  unlink(name.c_str());  // of a process that was killed here
+  const int descriptor = open(name.c_str(), O_RDONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0) {
+    fail_to_create(path);
+  }
+  lock(descriptor, path);
+  if (rename(name.c_str(), path.c_str()) != 0) {
+    const int reason = errno;
+    close(descriptor);
+    unlink(name.c_str());
+    errno = reason;
+    fail_to_create(path);
+  }
+  return descriptor;
+}
+
+/// Replaces what a locked file contains.
+int empty_file(int descriptor, const std::filesystem::path& path) {
+  struct stat status {};
+  const bool is_empty = fstat(descriptor, &status) == 0 && status.st_size == 0;
+  if (!is_empty && !is_recording(path)) {
+    throw FileError(path, "exists and is not a recording; it was not changed; give another name for the recording");
+  }
+  remove_companions(path);
+  return is_empty ? descriptor : replace(path);
+}
+
+}  // namespace
+
 bool is_recording(const std::filesystem::path& path) {
   std::array<char, 72> header{};
   std::ifstream file(path, std::ios::binary);
@@ -33,52 +139,21 @@ bool is_recording(const std::filesystem::path& path) {
          application_id == recording_application_id;
 }
 
-/// A recorder has a write transaction open all the time, so its lock shows that it is recording.
-bool is_being_recorded(const std::filesystem::path& path) {
+RecordingClaim::RecordingClaim(const std::filesystem::path& path) {
+  require_file_or_nothing(path);
+  require_room_for_suffixes(path);
+  const int found = open_and_lock(path);
   try {
-    Database database(path, SQLITE_OPEN_READWRITE);
-    sqlite3_busy_timeout(database.handle(), 0);
-    database.execute("BEGIN IMMEDIATE; ROLLBACK");
-    return false;
-  } catch (const SqliteError& error) {
-    return error.code() == SQLITE_BUSY;  // any other error: a damaged recording, which may be replaced
+    descriptor_ = empty_file(found, path);
+  } catch (...) {
+    close(found);
+    throw;
+  }
+  if (descriptor_ != found) {
+    close(found);
   }
 }
 
-void remove_earlier_recording(const std::filesystem::path& path, const std::filesystem::file_status& status) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(status)) {
-    throw FileError(path, "exists and is not a file; give another name for the recording");
-  }
-  const bool empty = std::filesystem::file_size(path, error) == 0 && !error;
-  if (!empty && !is_recording(path)) {
-    throw FileError(path, "exists and is not a recording; it was not changed; give another name for the recording");
-  }
-  if (!empty && is_being_recorded(path)) {
-    throw FileError(path, "another program is recording into this file; give another name for the recording");
-  }
-  for (const char* suffix : {"-wal", "-shm", "-journal", ""}) {
-    std::filesystem::remove(path.string() + suffix, error);
-    if (error) {
-      throw FileError(path, "cannot replace the earlier recording: " + error.message());
-    }
-  }
-}
-
-}  // namespace
-
-void claim_recording_file(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (std::filesystem::exists(status)) {
-    remove_earlier_recording(path, status);
-  }
-  // SQLite would create the file too, but if that fails it opens it for reading and reports the failure of that.
-  const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (descriptor < 0) {
-    throw FileError(path, std::string("cannot be created: ") + std::strerror(errno));
-  }
-  close(descriptor);
-}
+RecordingClaim::~RecordingClaim() { close(descriptor_); }
 
 }  // namespace proleg::sim

@@ -33,14 +33,6 @@ void append_decimal(std::string& text, std::uint64_t value, std::size_t digits) 
 
 CandumpLog::CandumpLog(const std::filesystem::path& path, std::string interface)
     : stream_(&file_), name_(path.string()), interface_(std::move(interface)) {
-  // A mistyped path must not overwrite a file that is no CAN log.
-  std::error_code error;
-  std::ifstream old(path, std::ios::binary);
-  if (std::filesystem::is_regular_file(path, error) && old && old.peek() != std::ifstream::traits_type::eof() &&
-      old.peek() != '(') {
-    throw CandumpLogError(name_ + ": found a file that is no CAN log, expected no file or a CAN log to replace");
-  }
-  old.close();
   errno = 0;
   file_.open(path, std::ios::binary | std::ios::trunc);
   if (!file_) {

@@ -16,13 +16,16 @@ class CandumpLogError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The first character of every log.
+inline constexpr char candump_log_start = '(';
+
 /// Writes frames in the log format of candump (Debian's can-utils), which tshark, canplayer, log2asc, SavvyCAN and
 /// others read. Each line has one frame and the time at which it ended, in seconds with six decimals:
 ///
 ///   (0000000003.001065) can0 080#2D
 class CandumpLog {
  public:
-  /// Creates the file, or empties it if it is a CAN log or empty already. Throws CandumpLogError.
+  /// Creates or empties the file. Throws CandumpLogError.
   explicit CandumpLog(const std::filesystem::path& path, std::string interface = "can0");
   /// Writes to a stream, which must outlive the log; messages call it `name`.
   CandumpLog(std::ostream& stream, std::string name, std::string interface = "can0");

@@ -52,6 +52,9 @@ class HardwareLoop::Implementation {
         host_(bus_, scenario, sync_producer),
         injector_(bus_, options_.injected) {
     set_bus_rules();
+    if (options_.before_start) {
+      options_.before_start();
+    }
     bring_up();
   }
 

@@ -44,6 +44,9 @@ struct HardwareOptions {
     std::uint32_t threshold = 0;  ///< probability for a frame, times 2^32
   };
   BitErrors bit_errors;
+  /// Called once, when scenario and options are checked and before the modules are switched on: from here on files may
+  /// be written.
+  std::function<void()> before_start;
   /// Called for each frame on the bus when it ends, with the time since the modules were switched on.
   Bus::FrameListener on_frame;
   /// Called for what modules report by EMCY and for restarts, one line each.

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "shared/computer/errors/file_error.hpp"
 #include "sim/record/schema.hpp"
@@ -19,8 +20,6 @@
 namespace proleg::sim {
 namespace {
 
-// Files that SQLite keeps beside a database.
-constexpr std::array companion_suffixes{"-wal", "-shm", "-journal"};
 /// Of the file that gets the name of an earlier recording. No longer than those of SQLite.
 constexpr std::string_view new_suffix = "-new";
 
@@ -82,7 +81,7 @@ int open_and_lock(const std::filesystem::path& path) {
 }
 
 void remove_companions(const std::filesystem::path& path) {
-  for (const char* suffix : companion_suffixes) {
+  for (const std::string& suffix : recording_companions()) {
     std::error_code error;
     std::filesystem::remove(path.string() + suffix, error);
     if (error) {
@@ -138,6 +137,8 @@ bool is_recording(const std::filesystem::path& path) {
   return std::equal(header.begin(), header.begin() + 16, "SQLite format 3") &&
          application_id == recording_application_id;
 }
+
+std::vector<std::string> recording_companions() { return {"-wal", "-shm", "-journal"}; }
 
 RecordingClaim::RecordingClaim(const std::filesystem::path& path) {
   require_file_or_nothing(path);

@@ -1,11 +1,16 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace proleg::sim {
 
 /// Whether a file starts as a recording does.
 [[nodiscard]] bool is_recording(const std::filesystem::path& path);
+
+/// Suffixes of the files that a recorder has beside a recording.
+[[nodiscard]] std::vector<std::string> recording_companions();
 
 /// An empty file for a new recording, which no other recorder can claim while this object exists. Replaces an empty
 /// file or an earlier recording.

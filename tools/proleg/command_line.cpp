@@ -100,20 +100,20 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
     std::cerr << app_->get_name() << ": " << one_line(error.what()) << '\n';
   };
   occupy_closed_streams();
+  std::function<int()> action = body;
   try {
     app_->parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help
     app_->exit(request);
-    return exit_success;
+    action = [] { return exit_success; };
   } catch (const CLI::ParseError& error) {
     std::cerr << app_->get_name() << ": found " << one_line(describe(*app_, error))
               << ", expected the options and arguments that '" << app_->get_name() << " --help' lists\n";
     return exit_bad_input;
   }
   try {
-    const int status = body();
-    std::cout.flush();
-    if (!std::cout) {
+    const int status = action();
+    if (!std::cout.flush()) {
       throw std::runtime_error("cannot write to standard output");
     }
     return status;

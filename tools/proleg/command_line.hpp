@@ -62,7 +62,8 @@ class CommandLine {
   [[nodiscard]] std::string name() const;
 
   /// Parses the arguments and runs the body; returns the exit status. An error is one line on standard error: bad
-  /// arguments, an InputError or a BadInput give status 2, any other exception status 1. --help gives 0.
+  /// arguments, an InputError or a BadInput give status 2, any other exception status 1. --help gives 0 if it can be
+  /// printed.
   int run(int argc, char** argv, const std::function<int()>& body);
 
  private:

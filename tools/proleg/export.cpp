@@ -1,11 +1,11 @@
 // proleg export: a recording as a table for other programs.
 
-#include <filesystem>
+#include <array>
 #include <iostream>
 #include <optional>
 
-#include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
+#include "shared/computer/output/output_check.hpp"
 #include "sim/record/recording.hpp"
 #include "sim/record/tsv.hpp"
 #include "tools/proleg/command_line.hpp"
@@ -20,15 +20,16 @@ int main(int argc, char** argv) {
       "x_m, y_m, z_m, contact_rear, contact_front. Joint and link names follow the dot (setpoint_deg.J1).");
   std::string recording_path;
   std::string out;
-  bool tsv = false;
+  bool tsv = true;  // the only format
   command_line.add_option("RUN", recording_path, "the recording").required().value_name("");
-  command_line.add_flag("--tsv", tsv, "write tab-separated values").required();
+  command_line.add_flag("--tsv", tsv, "write tab-separated values, as without this option");
   command_line.add_option("--out", out, "write to this file instead of standard output").value_name("FILE");
 
   return command_line.run(argc, argv, [&] {
     const sim::Recording recording(recording_path);
-    if (!out.empty() && std::filesystem::exists(out) && std::filesystem::equivalent(out, recording_path)) {
-      throw InputError("--out", 0, "the recording itself", "the name of a different file");
+    if (!out.empty()) {
+      const std::array outputs{PlannedOutput{"--out", out, "table", starts_with("tick\t")}};
+      check_outputs(outputs);
     }
     if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
       std::cerr << command_line.name() << ": " << remark << '\n';

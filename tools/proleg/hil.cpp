@@ -1,7 +1,9 @@
 // proleg hil: hardware in the loop. The joints' own programs on a simulated CAN bus move the simulated robot.
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -38,9 +40,8 @@ void note_restart(const ScenarioRun& run, std::uint32_t tick, const sim::Restart
   }
 }
 
-HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::HardwareOptions hardware,
+HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::HardwareLoop& loop,
                    sim::Recorder* recorder) {
-  sim::HardwareLoop loop(run.scenario, std::move(hardware));
   RunProgress progress("in the loop", run.scenario.duration_s);
   HilResult result;
   const auto start = std::chrono::steady_clock::now();
@@ -86,19 +87,32 @@ HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::Hardw
   return result;
 }
 
-/// The file of --can-log, if it is given. Throws BadInput: nothing has run yet, so the name is wrong.
-std::unique_ptr<sim::CandumpLog> open_can_log(const HilOptions& options) {
-  if (!options.can_log) {
-    return nullptr;
+/// What the run writes while it runs.
+struct HilFiles {
+  std::unique_ptr<sim::Recorder> recorder;
+  std::unique_ptr<sim::CandumpLog> log;
+};
+
+void check_files(const HilOptions& options, const HilModules& modules) {
+  std::vector<PlannedOutput> outputs = planned_recording(options);
+  if (options.can_log) {
+    outputs.push_back({"--can-log", *options.can_log, "CAN log", starts_with(std::string(1, sim::candump_log_start))});
   }
-  if (options.can_log == options.record) {
-    throw BadInput(*options.can_log + ": found twice, expected different files for --record and --can-log");
+  std::ranges::move(modules.planned_traces(), std::back_inserter(outputs));
+  check_outputs(outputs);
+}
+
+/// Throws BadInput: nothing has run yet.
+void open_files(const HilOptions& options, const ScenarioRun& run, HilModules& modules, HilFiles& files) {
+  files.recorder = open_recorder(options, run.scenario, "hil " + modules.kind());
+  if (options.can_log) {
+    try {
+      files.log = std::make_unique<sim::CandumpLog>(*options.can_log);
+    } catch (const sim::CandumpLogError& error) {
+      throw BadInput(error.what());
+    }
   }
-  try {
-    return std::make_unique<sim::CandumpLog>(*options.can_log);
-  } catch (const sim::CandumpLogError& error) {
-    throw BadInput(error.what());
-  }
+  modules.open_traces();
 }
 
 /// The exit status of a run that came to its end; prints why it failed.
@@ -133,32 +147,36 @@ int hil(const HilOptions& options) {
   }
   sim::HardwareOptions hardware = hardware_options(options, run);
   hardware.notice = [](const std::string& text) { std::cerr << "proleg hil: " << text << '\n'; };
-  const std::unique_ptr<sim::CandumpLog> log = open_can_log(options);
-  if (log) {
-    hardware.on_frame = [&log](const sim::Transmission& transmission) {
-      log->write(transmission.end, transmission.frame);
+  HilModules modules(options, run.scenario);
+  check_files(options, modules);
+  HilFiles files;
+  if (options.can_log) {
+    hardware.on_frame = [&files](const sim::Transmission& transmission) {
+      files.log->write(transmission.end, transmission.frame);
     };
   }
-  HilModules modules(options, run.scenario, {options.record.value_or(""), options.can_log.value_or("")});
   hardware.make_module = [&modules](const sim::ModuleParts& parts) { return modules.make(parts); };
-  const std::unique_ptr<sim::Recorder> recorder = open_recorder(options, run.scenario, "hil " + modules.kind());
-  catch_interrupts();
+  hardware.before_start = [&] {
+    open_files(options, run, modules, files);
+    catch_interrupts();
+  };
   std::optional<HilResult> finished;
   try {
-    finished = run_loop(run, modules, std::move(hardware), recorder.get());
+    sim::HardwareLoop loop(run.scenario, std::move(hardware));
+    finished = run_loop(run, modules, loop, files.recorder.get());
   } catch (const sim::PhysicsError& error) {
     throw std::runtime_error(error.what() + kept_in_recording(options));
   }
   const HilResult& result = *finished;
-  if (log) {
-    log->finish();
+  if (files.log) {
+    files.log->finish();
   }
   if (interrupted()) {
     std::cerr << "proleg hil: interrupted after " << result.simulated_s << " s" << kept_in_recording(options) << '\n';
     return exit_failed;
   }
-  if (recorder) {
-    recorder->finish(hil_summary(run, result));
+  if (files.recorder) {
+    files.recorder->finish(hil_summary(run, result));
   }
   if (options.json) {
     std::cout << hil_json(options, run, modules, result).text() << '\n';

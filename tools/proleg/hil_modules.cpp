@@ -15,6 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* trace_title = "node\ttick\tto_state_frame\twhole_tick\n";
+
 /// The image that the preset stm32f405 builds, found from the path of this program.
 fs::path default_image() {
   std::error_code error;
@@ -68,8 +70,7 @@ void add_module_options(CommandLine& command_line, ModuleOptions& options) {
       "'target remote :PORT'. While the program is stopped, so is the simulation.");
 }
 
-HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenario,
-                       const std::vector<std::string>& other_files)
+HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenario)
     : scenario_(scenario),
       virtual_joints_(scenario.modules.size()),
       consoles_(scenario.modules.size()),
@@ -99,7 +100,7 @@ HilModules::HilModules(const ModuleOptions& options, const sim::Scenario& scenar
                                                       : virtual_joint_of("--gdb", options.gdb->substr(0, colon));
     debugger_ = std::make_unique<Debugger>(*port, joint, image_->file());
   }
-  open_traces(options.traces, other_files);  // last, so that an error leaves no file
+  parse_traces(options.traces);
 }
 
 HilModules::~HilModules() = default;
@@ -137,9 +138,7 @@ unsigned HilModules::virtual_joint_of(const std::string& option, const std::stri
   return joint;
 }
 
-void HilModules::open_traces(const std::vector<std::string>& words, const std::vector<std::string>& other_files) {
-  // Check everything before opening a file, so that an error creates and overwrites none.
-  std::vector<std::string> files = other_files;
+void HilModules::parse_traces(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     const std::size_t equal = word.find('=');
     const unsigned joint = virtual_joint_of("--trace", word.substr(0, equal));
@@ -149,15 +148,25 @@ void HilModules::open_traces(const std::vector<std::string>& words, const std::v
     traces_[joint] = std::make_unique<InstructionTrace>();
     traces_[joint]->node = scenario_.modules[joint].node;
     if (equal != std::string::npos) {
-      const std::string file = word.substr(equal + 1);
-      if (std::ranges::find(files, file) != files.end()) {
-        throw BadInput("--trace: found " + in_quotes(file) +
-                       " twice, expected different files for all tables, recordings and logs");
+      traces_[joint]->file = word.substr(equal + 1);
+      if (traces_[joint]->file.empty()) {
+        throw InputError("--trace", 0, in_quotes(word), "NODE or NODE=FILE");
       }
-      files.push_back(file);
-      traces_[joint]->file = file;
     }
   }
+}
+
+std::vector<PlannedOutput> HilModules::planned_traces() const {
+  std::vector<PlannedOutput> outputs;
+  for (const auto& trace : traces_) {
+    if (trace && !trace->file.empty()) {
+      outputs.push_back({"--trace", trace->file, "trace", starts_with(trace_title)});
+    }
+  }
+  return outputs;
+}
+
+void HilModules::open_traces() {
   bool has_title = false;
   for (const auto& trace : traces_) {
     if (!trace) {
@@ -170,7 +179,7 @@ void HilModules::open_traces(const std::vector<std::string>& words, const std::v
       }
     }
     if (!trace->file.empty() || !has_title) {
-      trace->out() << "node\ttick\tto_state_frame\twhole_tick\n";
+      trace->out() << trace_title;
       has_title = has_title || trace->file.empty();
     }
   }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "shared/computer/output/output_check.hpp"
 #include "sim/loop/hardware_loop.hpp"
 #include "sim/mcu/module/virtual_module.hpp"
 #include "tools/proleg/command_line.hpp"
@@ -29,12 +30,15 @@ void add_module_options(CommandLine& command_line, ModuleOptions& options);
 class HilModules {
  public:
   /// Reads the image if a module needs it. Throws InputError and BadInput. scenario: must outlive this object.
-  /// other_files: the other files that the run writes; a trace must not overwrite them.
-  HilModules(const ModuleOptions& options, const sim::Scenario& scenario, const std::vector<std::string>& other_files);
+  HilModules(const ModuleOptions& options, const sim::Scenario& scenario);
   ~HilModules();
   HilModules(const HilModules&) = delete;
   HilModules& operator=(const HilModules&) = delete;
 
+  /// The files of --trace, for check_outputs().
+  [[nodiscard]] std::vector<PlannedOutput> planned_traces() const;
+  /// Opens them. Throws BadInput.
+  void open_traces();
   /// For HardwareOptions::make_module; this object must outlive the loop.
   [[nodiscard]] std::unique_ptr<sim::JointModule> make(const sim::ModuleParts& parts);
   [[nodiscard]] bool any_virtual() const { return image_.has_value(); }
@@ -58,7 +62,7 @@ class HilModules {
   [[nodiscard]] unsigned joint_of(const std::string& option, const std::string& word) const;
   [[nodiscard]] unsigned virtual_joint_of(const std::string& option, const std::string& word) const;
   void parse_modules(const std::string& word);
-  void open_traces(const std::vector<std::string>& words, const std::vector<std::string>& other_files);
+  void parse_traces(const std::vector<std::string>& words);
 
   const sim::Scenario& scenario_;
   std::vector<bool> virtual_joints_;  ///< by joint

@@ -38,6 +38,12 @@ Json Json::empty_array() {
   return result;
 }
 
+Json Json::from_boolean(bool value) {
+  Json result;
+  *result.value_ = value;
+  return result;
+}
+
 Json Json::from_number(double value) {
   Json result;
   *result.value_ = value;

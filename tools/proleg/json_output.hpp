@@ -29,6 +29,8 @@ class Json {
   Json(Number value) : Json(from_number(value)) {}
   template <std::integral Integer>
   requires(!std::same_as<Integer, bool>) Json(Integer value) : Json(from_integer(value)) {}
+  template <std::same_as<bool> Boolean>
+  Json(Boolean value) : Json(from_boolean(value)) {}
   Json(const char* value) : Json(std::string_view(value)) {}
   Json(const std::string& value) : Json(std::string_view(value)) {}
   Json(std::string_view value);
@@ -51,6 +53,7 @@ class Json {
   [[nodiscard]] std::string text() const;
 
  private:
+  [[nodiscard]] static Json from_boolean(bool value);
   [[nodiscard]] static Json from_number(double value);
   template <typename Integer>
   [[nodiscard]] static Json from_integer(Integer value) {

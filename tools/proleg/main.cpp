@@ -13,6 +13,7 @@
 #include <system_error>
 #include <vector>
 
+#include "shared/computer/text/text.hpp"
 #include "tools/proleg/build_id.hpp"
 
 namespace {
@@ -50,6 +51,15 @@ std::string names() {
   return list;
 }
 
+/// The exit status of a program that has printed all it has to.
+int finish_output() {
+  if (!std::cout.flush()) {
+    std::cerr << "proleg: cannot write to standard output\n";
+    return 1;
+  }
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -60,18 +70,19 @@ int main(int argc, char** argv) {
   const std::string_view word = argv[1];
   if (word == "--help" || word == "-h" || word == "help") {
     print_help(std::cout);
-    return 0;
+    return finish_output();
   }
   if (word == "--version") {
     std::cout << "proleg " << proleg::tools::build_id << '\n';
-    return 0;
+    return finish_output();
   }
   bool known = false;
   for (const Subcommand& subcommand : subcommands) {
     known = known || subcommand.name == word;
   }
   if (!known) {
-    std::cerr << "proleg: found unknown subcommand '" << word.substr(0, 60) << "', expected one of " << names() << '\n';
+    std::cerr << "proleg: found unknown subcommand " << proleg::one_line(proleg::in_quotes(word))
+              << ", expected one of " << names() << '\n';
     return 2;
   }
   std::error_code error;

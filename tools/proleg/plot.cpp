@@ -1,12 +1,15 @@
 // proleg plot: a recording as a picture.
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <string>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
+#include "shared/computer/output/output_check.hpp"
 #include "sim/record/figure.hpp"
 #include "sim/record/recording.hpp"
 #include "tools/proleg/command_line.hpp"
@@ -21,6 +24,19 @@ void require_finite(const char* option, const std::optional<double>& seconds) {
   }
 }
 
+bool is_picture(const std::filesystem::path& path) {
+  constexpr std::size_t max_head = 1000;  // with a declaration and comments of another program
+  const std::string head = first_bytes(path, max_head);
+  return head.starts_with('<') && head.find("<svg") != std::string::npos;
+}
+
+/// Replaces the usual extension of recordings only, so that run.1 and run.2 do not share a picture.
+std::filesystem::path picture_of(const std::filesystem::path& recording) {
+  const bool is_usual = recording.extension() == ".proleg";
+  return is_usual ? std::filesystem::path(recording).replace_extension(".svg")
+                  : std::filesystem::path(recording.string() + ".svg");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -33,7 +49,8 @@ int main(int argc, char** argv) {
   std::string out;
   sim::TimeWindow window;
   command_line.add_option("RUN", recording_path, "the recording").required().value_name("");
-  command_line.add_option("--out", out, "the picture; by default the recording's name with .svg").value_name("FILE");
+  command_line.add_option("--out", out, "the picture; by default run.svg for run.proleg, run.1.svg for run.1")
+      .value_name("FILE");
   command_line
       .add_option("--from", window.from_s, "start of the time axis in s; by default three strides before its end")
       .value_name("SECONDS");
@@ -44,12 +61,9 @@ int main(int argc, char** argv) {
     require_finite("--from", window.from_s);
     require_finite("--to", window.to_s);
     const sim::Recording recording(recording_path);
-    const std::filesystem::path picture =
-        out.empty() ? std::filesystem::path(recording_path).replace_extension(".svg") : std::filesystem::path(out);
-    if (std::filesystem::exists(picture) && std::filesystem::equivalent(picture, recording_path)) {
-      throw InputError(out.empty() ? recording_path : "--out", 0, "the name of the recording for the picture",
-                       "another name, with --out FILE");
-    }
+    const std::filesystem::path picture = out.empty() ? picture_of(recording_path) : std::filesystem::path(out);
+    const std::array outputs{PlannedOutput{"--out", picture, "SVG picture", is_picture}};
+    check_outputs(outputs);
     if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
       std::cerr << command_line.name() << ": " << remark << '\n';
     }

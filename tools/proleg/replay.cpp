@@ -4,7 +4,6 @@
 #include <iostream>
 #include <string>
 
-#include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "sim/loop/verification.hpp"
@@ -21,7 +20,7 @@ using namespace proleg::tools;
 
 struct Options {
   std::string file;
-  bool verify = false;
+  bool verify = true;  ///< the only task
   bool json = false;
 };
 
@@ -43,9 +42,6 @@ sim::Verification recompute(const sim::Recording& recording) {
 }
 
 int replay(const Options& options) {
-  if (!options.verify) {
-    throw InputError("the command line", 0, "no task", "--verify");
-  }
   const sim::Recording recording(options.file);
   if (const std::string remark = remark_on_unfinished_run(recording); !remark.empty()) {
     std::cerr << remark << '\n';
@@ -54,9 +50,10 @@ int replay(const Options& options) {
   const std::string first =
       verification.first ? describe(*verification.first, recording.joints()[verification.first->joint].name) : "";
   // The tables must have the hashes that the run printed.
+  const std::string setpoint_hash = recorded(recording, "setpoint_hash");
+  const std::string servo_hash = recorded(recording, "servo_hash");
   const bool same_hashes =
-      !recording.finished() || (recorded(recording, "setpoint_hash") == verification.setpoint_hash &&
-                                recorded(recording, "servo_hash") == verification.servo_hash);
+      !recording.finished() || (setpoint_hash == verification.setpoint_hash && servo_hash == verification.servo_hash);
   const bool holds = verification.differences == 0 && same_hashes;
   const std::string core = recording.run_value("core_fingerprint");
   if (options.json) {
@@ -69,6 +66,10 @@ int replay(const Options& options) {
                       {"first_difference", first},
                       {"setpoint_hash", verification.setpoint_hash},
                       {"servo_hash", verification.servo_hash},
+                      {"recorded_setpoint_hash", setpoint_hash},
+                      {"recorded_servo_hash", servo_hash},
+                      {"same_hashes", same_hashes},
+                      {"verified", holds},
                       {"recorded_by", recording.run_value("program")},
                       {"recorded_build_id", recording.run_value("build_id")},
                       {"recorded_core_fingerprint", core},
@@ -107,8 +108,10 @@ int main(int argc, char** argv) {
       "it with the recording bit for bit.");
   Options options;
   command_line.add_option("FILE", options.file, "a recording").required();
-  command_line.add_flag("--verify", options.verify,
-                        "compare every set-point, internal value and servo command; exit status 1 if one differs");
+  command_line.add_flag(
+      "--verify", options.verify,
+      "compare every set-point, internal value and servo command, as without this option; exit status 1 if "
+      "one differs");
   command_line.add_flag("--json", options.json, "print one JSON object");
   return command_line.run(argc, argv, [&] { return replay(options); });
 }

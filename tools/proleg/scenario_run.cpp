@@ -6,9 +6,12 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
+#include "sim/record/recording_file.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/build_id.hpp"
@@ -35,7 +38,9 @@ std::uint32_t checked_tick_count(const sim::Scenario& scenario) {
 void add_scenario_options(CommandLine& command_line, ScenarioOptions& options) {
   command_line.add_option("FILE", options.file, "scenario, a *.simulation.xml file").required();
   command_line.add_option("--seconds", options.seconds, "simulated time; by default the duration in the scenario");
-  command_line.add_option("--record", options.record, "write a recording (SQLite) into this file");
+  command_line.add_option(
+      "--record", options.record,
+      "write a recording (SQLite) into this file, which replaces an earlier recording and no other file");
   command_line.add_option(
       "--set", options.settings,
       "NAME=VALUE[@TICK]: change a parameter at the start or at a tick. NAME is [MODULE.]PARAMETER[:JOINT], where "
@@ -106,19 +111,22 @@ void print_setup(const sim::Scenario& scenario) {
   }
 }
 
+std::vector<PlannedOutput> planned_recording(const ScenarioOptions& options) {
+  if (!options.record) {
+    return {};
+  }
+  return {{"--record", *options.record, "recording", sim::is_recording, true, sim::recording_companions()}};
+}
+
 std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options, const sim::Scenario& scenario,
                                              const std::string& program) {
   if (!options.record) {
     return nullptr;
   }
-  if (options.record->empty()) {
-    throw InputError("--record", 0, "an empty name", "the name of a file");
-  }
   try {
     // Follow a link, so that the recording replaces the file that it names.
-    return std::make_unique<sim::Recorder>(std::filesystem::weakly_canonical(*options.record), scenario, program,
-                                           build_id);
-  } catch (const std::runtime_error& error) {  // FileError, or a folder that does not exist
+    return std::make_unique<sim::Recorder>(follow_links(*options.record), scenario, program, build_id);
+  } catch (const FileError& error) {
     throw BadInput(error.what());
   }
 }

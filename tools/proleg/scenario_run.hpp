@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "shared/computer/output/output_check.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/scenario.hpp"
@@ -45,8 +46,11 @@ struct ScenarioRun {
 /// Prints the remarks on the files and the start value of every parameter of every joint on standard error.
 void print_setup(const sim::Scenario& scenario);
 
-/// The recorder for --record; null without that option. program: what computes the gait. Throws InputError or BadInput
-/// if the file cannot be created.
+/// The file of --record, for check_outputs(); empty without that option.
+[[nodiscard]] std::vector<PlannedOutput> planned_recording(const ScenarioOptions& options);
+
+/// The recorder for --record; null without that option. program: what computes the gait. Throws BadInput if the file
+/// cannot be created.
 [[nodiscard]] std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options,
                                                            const sim::Scenario& scenario, const std::string& program);
 

@@ -36,8 +36,7 @@ struct Result {
   [[nodiscard]] double real_time_factor() const { return simulated_s / wall_s; }
 };
 
-Result run(const ScenarioRun& setup, sim::Recorder* recorder) {
-  sim::Simulation simulation(setup.scenario, &setup.losses);
+Result run(const ScenarioRun& setup, sim::Simulation& simulation, sim::Recorder* recorder) {
   RunProgress progress("simulating", setup.scenario.duration_s);
   std::uint64_t lost_frames = 0;
   const auto start = std::chrono::steady_clock::now();
@@ -105,11 +104,13 @@ int simulate(const ScenarioOptions& options) {
   if (options.verbose) {
     print_setup(setup.scenario);
   }
+  check_outputs(planned_recording(options));
+  sim::Simulation simulation(setup.scenario, &setup.losses);  // may refuse the scenario, so before any file
   const std::unique_ptr<sim::Recorder> recorder = open_recorder(options, setup.scenario, "simulate");
   catch_interrupts();
   std::optional<Result> finished;
   try {
-    finished = run(setup, recorder.get());
+    finished = run(setup, simulation, recorder.get());
   } catch (const sim::PhysicsError& error) {
     throw std::runtime_error(error.what() + kept_in_recording(options));
   }

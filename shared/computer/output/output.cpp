@@ -3,30 +3,60 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 
 #include "shared/computer/errors/file_error.hpp"
 
 namespace proleg {
+namespace {
+
+/// A name that no other output has. It does not depend on the file's name, which may be as long as names can be.
+std::filesystem::path temporary_name(const std::filesystem::path& folder) {
+  static std::atomic<unsigned> count = 0;
+  return folder / (".proleg-" + std::to_string(getpid()) + "-" + std::to_string(count++) + ".part");
+}
+
+}  // namespace
+
+std::filesystem::path follow_links(const std::filesystem::path& path) {
+  constexpr int max_links = 40;  // as the kernel follows
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) {
+    const std::filesystem::path real = std::filesystem::canonical(path, error);
+    return error ? path : real;  // a pipe in /dev/fd has no path
+  }
+  std::filesystem::path target = std::filesystem::absolute(path, error);
+  for (int link = 0; link < max_links && std::filesystem::is_symlink(target, error); ++link) {
+    target = target.parent_path() / std::filesystem::read_symlink(target, error);
+  }
+  const std::filesystem::path folder = std::filesystem::weakly_canonical(target.parent_path(), error);
+  return error ? path : folder / target.filename();
+}
 
 Output::Output(const std::filesystem::path& path) : path_(path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
-  int flags = O_WRONLY | O_CLOEXEC;
-  std::filesystem::path target = path;
   if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) {
-    // A symbolic link stays one: the file that it names is replaced.
-    const std::filesystem::path real = std::filesystem::weakly_canonical(path, error);
-    path_ = error ? path : real;
-    temporary_ = path_.string() + ".part" + std::to_string(getpid());
-    target = temporary_;
-    flags |= O_CREAT | O_EXCL;
+    path_ = follow_links(path);
+    open_new_file();
+  } else {
+    descriptor_ = open(path.c_str(), O_WRONLY | O_CLOEXEC);
   }
-  descriptor_ = open(target.c_str(), flags, 0666);
   if (descriptor_ < 0) {
     temporary_.clear();
     fail(std::strerror(errno));
+  }
+}
+
+void Output::open_new_file() {
+  const std::filesystem::path folder = path_.parent_path();
+  descriptor_ = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  is_unnamed_ = descriptor_ >= 0;
+  if (!is_unnamed_ && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL)) {
+    temporary_ = temporary_name(folder);
+    descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CLOEXEC | O_CREAT | O_EXCL, 0666);
   }
 }
 
@@ -51,6 +81,14 @@ void Output::write(std::string_view text) {
 
 void Output::finish() {
   flush();
+  if (is_unnamed_) {
+    temporary_ = temporary_name(path_.parent_path());
+    const std::string file = "/proc/self/fd/" + std::to_string(descriptor_);
+    if (linkat(AT_FDCWD, file.c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) != 0) {
+      temporary_.clear();
+      fail(std::strerror(errno));
+    }
+  }
   if (descriptor_ > STDOUT_FILENO) {
     // Some file systems report a full disk only here.
     const int result = close(descriptor_);

@@ -6,8 +6,13 @@
 
 namespace proleg {
 
+/// The file that a path names: symbolic links are followed, also one to a file that does not exist yet. The folder is
+/// canonical, so that equal results are one file. A path that cannot be followed is returned as it is.
+[[nodiscard]] std::filesystem::path follow_links(const std::filesystem::path& path);
+
 /// The file into which a tool writes its result. The file appears under its name only when it is complete: the data
-/// goes into a temporary file beside it, which finish() renames and a failure removes. (An existing target that is not
+/// goes into a file without a name, which ends with the process, however that ends; finish() gives it the name. (A file
+/// system that has no such files gets a temporary one, which a signal can leave behind. An existing target that is not
 /// an ordinary file, such as a pipe or a device, is written directly.)
 class Output {
  public:
@@ -25,11 +30,13 @@ class Output {
   void finish();
 
  private:
+  void open_new_file();
   void flush();
   [[noreturn]] void fail(const std::string& what) const;
 
   std::filesystem::path path_;
-  std::filesystem::path temporary_;  ///< empty: written directly
+  bool is_unnamed_ = false;
+  std::filesystem::path temporary_;  ///< the name until finish(); empty if there is none
   int descriptor_;
   std::string buffer_;
 };

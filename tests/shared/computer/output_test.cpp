@@ -1,7 +1,10 @@
 #include "shared/computer/output/output.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <fstream>
 
 #include "shared/computer/errors/file_error.hpp"
@@ -32,6 +35,28 @@ TEST(Output, LeavesNothingIfItIsNotFinished) {
   EXPECT_EQ(file_contents(folder / "table.tsv"), "earlier");
 }
 
+TEST(Output, LeavesNothingIfTheProcessIsKilled) {
+  const TemporaryFolder folder;
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    Output output(folder / "table.tsv");
+    output.write(std::string(200'000, 'x'));
+    raise(SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFSIGNALED(status));
+  EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(Output, TakesTheLongestName) {
+  const TemporaryFolder folder;
+  const std::string name(255, 'x');
+  write_file(folder / name, "text");
+  EXPECT_EQ(file_contents(folder / name), "text");
+}
+
 TEST(Output, ReportsADeviceThatIsFull) {
   Output output("/dev/full");
   output.write("text");
@@ -55,6 +80,14 @@ TEST(Output, ReplacesTheFileThatALinkNames) {
   output.finish();
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.tsv"));
   EXPECT_EQ(file_contents(folder / "table.tsv"), "later");
+}
+
+TEST(Output, CreatesTheFileThatALinkNames) {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink("table.tsv", folder / "link.tsv");
+  write_file(folder / "link.tsv", "text");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.tsv"));
+  EXPECT_EQ(file_contents(folder / "table.tsv"), "text");
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ TEST_F(CommandLine, RefusesUnknownWords) {
                  {"expected one of algorithms, simulate, hil, replay, export, plot, optimise, experiment, objects"});
   expect_refused({"simulat"}, {"'simulat'", "expected one of algorithms, simulate"});
   expect_refused({"../../bin/sh"}, {"expected one of"});
+  expect_refused({"simulate\n\x1b[31m"}, {"'simulate  [31m'", "expected one of"});
   expect_refused({"simulate"}, {"found no FILE"});
   expect_refused({"simulate", scenario("uniform"), "--fast"}, {"unknown '--fast'", "--help"});
   expect_refused({"simulate", scenario("uniform"), "--seconds"}, {"--seconds"});
@@ -194,6 +195,7 @@ TEST_F(CommandLine, ARecordingCanBeExportedAndDrawn) {
   ASSERT_EQ(proleg({"simulate", scenario("uniform"), "--seconds", "2", "--record", recording}).status, 0);
   const Finished table = proleg({"export", recording, "--tsv"});
   EXPECT_EQ(table.status, 0) << table.err;
+  EXPECT_EQ(proleg({"export", recording}).out, table.out) << "the only format";
   EXPECT_EQ(std::count(table.out.begin(), table.out.end(), '\n'), 201) << "a header and 200 ticks";
   const std::string picture = file("run.svg").string();
   const Finished drawn = proleg({"plot", recording, "--out", picture});
@@ -292,6 +294,12 @@ TEST_F(CommandLine, AFullDiskIsReported) {
   const Finished finished = proleg({"simulate", scenario("uniform"), "--seconds", "0.1"}, "/dev/full");
   EXPECT_EQ(finished.status, 1);
   EXPECT_NE(finished.err.find("standard output"), std::string::npos);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--help"}, {"--version"}, {"simulate", "--help"}, {"plot", "--help"}}) {
+    const Finished help = proleg(words, "/dev/full");
+    EXPECT_EQ(help.status, 1) << words[0];
+    EXPECT_NE(help.err.find("cannot write to standard output"), std::string::npos) << help.err;
+  }
 }
 
 TEST_F(CommandLine, ARecordingThatCannotBeWrittenIsRefusedBeforeTheRun) {

@@ -2,6 +2,7 @@
 
 #include "command_line.hpp"
 #include "json_result.hpp"
+#include "shared/computer/sqlite/sqlite.hpp"
 
 namespace proleg::test {
 namespace {
@@ -206,7 +207,10 @@ TEST_F(VirtualModules, BadOptionsAreRefusedAndNoFileIsTouched) {
   refused({"--modules", "2=mcu", "--gdb", "3:3333"}, {"node 3, which is native"});
   refused({"--modules", "mcu", "--trace", "9=" + kept}, {"node '9'"});
   refused({"--modules", "2=mcu", "--trace", "1=" + kept}, {"node 1, which is native"});
-  refused({"--modules", "mcu", "--trace", "1=" + kept, "--trace", "2=" + kept}, {"kept.txt", "twice"});
+  const std::string trace = file("trace.tsv").string();
+  refused({"--modules", "mcu", "--trace", "1=" + trace, "--trace", "2=" + trace}, {"trace.tsv", "twice"});
+  refused({"--modules", "mcu", "--trace", "1=" + kept}, {"kept.txt", "a file that is no trace"});
+  refused({"--modules", "mcu", "--trace", "1=" + trace, "--record", "/missing/x"}, {"/missing/x"});
   refused({"--modules", "mcu", "--trace", "1=/missing/x"}, {"/missing/x"});
   refused({"--modules", "mcu", "--trace", "1", "--trace", "1"}, {"node 1 twice"});
   for (const std::string image : {"/missing/x.elf", "/tmp", "/dev/zero", PROLEG_PROGRAM, name.c_str()}) {
@@ -228,10 +232,24 @@ TEST_F(Replay, FindsNoDifferenceInARecordingOfSimulate) {
   EXPECT_EQ(proleg({"replay", file("run.proleg").string(), "--verify"}).status, 0);
 }
 
-TEST_F(Replay, RefusesAFileThatIsNoRecordingAndACommandWithoutATask) {
+TEST_F(Replay, ReportsResultsWhoseHashesAreNotThoseOfTheTables) {
+  const std::string recording = file("run.proleg").string();
+  (void)succeed({"simulate", scenario("coupled"), "--seconds", "1", "--record", recording});
+  EXPECT_EQ(succeed({"replay", recording})["same_hashes"], Json("true"));
+  Database(recording, SQLITE_OPEN_READWRITE).execute("UPDATE result SET value = 'abc' WHERE name = 'servo_hash'");
+  const Finished finished = proleg({"replay", recording, "--json"});
+  EXPECT_EQ(finished.status, 1);
+  const Json result(finished.out);
+  EXPECT_EQ(result["differences"], 0);
+  EXPECT_EQ(result["same_hashes"], Json("false"));
+  EXPECT_EQ(result["verified"], Json("false"));
+  EXPECT_EQ(result["recorded_servo_hash"], "abc");
+}
+
+TEST_F(Replay, RefusesAFileThatIsNoRecording) {
   expect_refused({"replay", file("none").string(), "--verify"}, {"no file"});
   expect_refused({"replay", scenario("uniform"), "--verify"}, {"not a database"});
-  expect_refused({"replay", scenario("uniform")}, {"--verify"});
+  expect_refused({"replay", scenario("uniform")}, {"not a database"});
 }
 
 }  // namespace

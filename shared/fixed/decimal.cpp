@@ -7,6 +7,7 @@ namespace {
 
 constexpr int max_digits = 60;
 constexpr int max_exponent = 60;
+constexpr int max_places = 10;  ///< that format_decimal() writes
 constexpr unsigned quotient_bits = 48;
 constexpr std::uint64_t max_quotient = std::uint64_t{1} << quotient_bits;
 
@@ -168,6 +169,27 @@ class Scanner {
   std::size_t position_ = 0;
 };
 
+/// places: how many of the digits are after the point.
+DecimalText text_of(bool negative, std::uint64_t digits, int places) {
+  DecimalText text{{}, 0};
+  std::array<char, 24> reversed{};
+  std::size_t length = 0;
+  for (int i = 0; digits > 0 || i <= places; ++i) {
+    if (i == places && places > 0) {
+      reversed[length++] = '.';
+    }
+    reversed[length++] = static_cast<char>('0' + digits % 10);
+    digits /= 10;
+  }
+  if (negative) {
+    text.characters[text.size++] = '-';
+  }
+  while (length > 0) {
+    text.characters[text.size++] = reversed[--length];
+  }
+  return text;
+}
+
 }  // namespace
 
 DecimalResult parse_decimal(std::string_view text, Unit unit) {
@@ -198,33 +220,21 @@ DecimalResult parse_decimal(std::string_view text, Unit unit) {
 DecimalText format_decimal(std::int32_t raw, Unit unit) {
   const UnitScale scale = scale_of(unit);
   const auto magnitude = raw < 0 ? 0U - static_cast<std::uint32_t>(raw) : static_cast<std::uint32_t>(raw);
-  // 10 places resolve the finest unit (2^-28) with digits to spare.
-  for (int places = 0;; ++places) {
-    Natural numerator(magnitude);
-    numerator.multiply_add(scale.denominator, 0);
-    numerator.scale_by_power_of_ten(places);
-    const Natural denominator(scale.numerator);
-    std::uint64_t digits = divide_half_even(numerator, denominator);
-
-    DecimalText text{{}, 0};
-    std::array<char, 24> reversed{};
-    std::size_t length = 0;
-    for (int i = 0; digits > 0 || i <= places; ++i) {
-      if (i == places && places > 0) {
-        reversed[length++] = '.';
-      }
-      reversed[length++] = static_cast<char>('0' + digits % 10);
-      digits /= 10;
-    }
-    if (raw < 0) {
-      text.characters[text.size++] = '-';
-    }
-    while (length > 0) {
-      text.characters[text.size++] = reversed[--length];
-    }
-    const DecimalResult back = parse_decimal(text.view(), unit);
-    if (places == 10 || (back.error == DecimalError::none && back.raw == raw)) {
-      return text;
+  // The number is value / scale.numerator. 10 places resolve the finest unit (2^-28) with digits to spare, and with its
+  // whole part removed each product below fits 64 bits.
+  const std::uint64_t value = std::uint64_t{magnitude} * scale.denominator;
+  const std::uint64_t rest = value % scale.numerator;
+  std::uint64_t power = 1;
+  for (int places = 0;; ++places, power *= 10) {
+    std::uint64_t digits = value / scale.numerator * power + rest * power / scale.numerator;
+    const std::uint64_t remainder = rest * power % scale.numerator;
+    const bool is_up = 2 * remainder > scale.numerator || (2 * remainder == scale.numerator && (digits & 1U) != 0);
+    digits += is_up ? 1U : 0U;
+    // Read back, the digits are off by this part of a step; half a step is rounded to the even one.
+    const std::uint64_t twice_error = 2 * (is_up ? scale.numerator - remainder : remainder);
+    const std::uint64_t step = scale.denominator * power;
+    if (places == max_places || twice_error < step || (twice_error == step && magnitude % 2 == 0)) {
+      return text_of(raw < 0, digits, places);
     }
   }
 }

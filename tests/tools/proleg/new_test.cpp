@@ -1,0 +1,112 @@
+// proleg new robot: the files it writes can be simulated at once.
+
+#include <cmath>
+
+#include "command_line.hpp"
+#include "json_result.hpp"
+
+namespace proleg::test {
+namespace {
+
+class NewRobot : public CommandLine {
+ protected:
+  /// Writes a robot into a folder of that name.
+  void write(const std::string& name, const std::string& joints, const std::string& axes) const {
+    const Finished finished =
+        proleg({"new", "robot", "--joints", joints, "--axes", axes, "--out", file(name).string()});
+    ASSERT_EQ(finished.status, 0) << finished.err;
+    EXPECT_NE(finished.out.find(file(name + "/robot.simulation.xml").string()), std::string::npos) << finished.out;
+  }
+
+  [[nodiscard]] Json run(const std::string& name, const std::string& seconds,
+                         const std::string& subcommand = "simulate") const {
+    const Finished finished =
+        proleg({subcommand, file(name + "/robot.simulation.xml").string(), "--seconds", seconds, "--json"});
+    EXPECT_EQ(finished.status, 0) << finished.err;
+    EXPECT_EQ(finished.err, "");
+    return Json(finished.out);
+  }
+};
+
+TEST_F(NewRobot, FivePitchJointsRepeatTheShippedTravellingWaveToTheLastBit) {
+  write("five", "5", "p");
+  const Json written = run("five", "5");
+  const Json shipped(proleg({"simulate", scenario("uniform"), "--seconds", "5", "--json"}).out);
+  for (const char* name : {"displacement_m", "contacts_mean", "setpoint_hash", "servo_hash", "measures"}) {
+    EXPECT_EQ(written[name], shipped[name]) << name;
+  }
+}
+
+TEST_F(NewRobot, EightJointsOfPitchAndYawMoveSideways) {
+  write("eight", "8", "py");
+  const Json measures = run("eight", "30")["measures"];
+  const double distance = measures["distance"].number();
+  const double forward = measures["speed"].number() * 30.0;
+  const double sideways = std::sqrt(distance * distance - forward * forward);
+  EXPECT_GT(sideways, 3.0);
+  EXPECT_LT(std::abs(forward), sideways / 3.0);
+}
+
+TEST_F(NewRobot, EveryNumberOfJointsAndOrderOfAxesRuns) {
+  for (const char* axes : {"p", "y", "py", "yyp"}) {
+    for (const char* joints : {"3", "7", "64"}) {
+      const std::string name = std::string(axes) + joints;
+      write(name, joints, axes);
+      EXPECT_TRUE(run(name, "0.2")["displacement_m"].is_number()) << name;
+    }
+  }
+  write("one", "1", "y");
+  EXPECT_TRUE(run("one", "0.2")["displacement_m"].is_number());
+}
+
+TEST_F(NewRobot, TheModulesOfAPitchYawRobotRepeatItsGait) {
+  write("four", "4", "py");
+  EXPECT_EQ(run("four", "2", "hil")["differences"], 0);
+}
+
+TEST_F(NewRobot, LettersAreRepeatedFromTheTail) {
+  write("tail", "5", "pyy");
+  const std::string actuation = read_file(file("tail/robot.actuation.xml"));
+  const std::size_t pitch = actuation.find("joints=\"10010\"");
+  const std::size_t yaw = actuation.find("joints=\"01101\"");
+  EXPECT_NE(pitch, std::string::npos) << actuation;
+  EXPECT_NE(yaw, std::string::npos) << actuation;
+
+  std::istringstream robot(read_file(file("tail/robot.robot.xml")));
+  std::string axes;
+  for (std::string line; std::getline(robot, line);) {
+    if (line.find("<axis>") != std::string::npos) {
+      axes += line.find("<axis>1 0 0</axis>") != std::string::npos ? 'p' : 'y';
+    }
+  }
+  EXPECT_EQ(axes, "pyypy") << "J1, at the tail, is the first joint of the file";
+}
+
+TEST_F(NewRobot, DoesNotReplaceAFile) {
+  fs::create_directories(file("mine/modules"));
+  const std::string precious = file("mine/modules/head.kinbody.xml").string();
+  std::ofstream(precious) << "precious\n";
+  expect_refused({"new", "robot", "--joints", "5", "--out", file("mine").string()}, {precious, "--out"});
+  EXPECT_EQ(read_file(precious), "precious\n");
+  EXPECT_FALSE(fs::exists(file("mine/robot.simulation.xml"))) << "nothing was written";
+}
+
+TEST_F(NewRobot, RefusesBadInputAndWritesNothing) {
+  const std::string out = file("robot").string();
+  for (const char* joints : {"0", "65", "-1", "5.0", "five", ""}) {
+    expect_refused({"new", "robot", "--joints", joints, "--out", out}, {"--joints", "1 to 64"});
+  }
+  for (const char* axes : {"", "r", "pyP", "p y"}) {
+    expect_refused({"new", "robot", "--joints", "5", "--axes", axes, "--out", out}, {"--axes", "p (pitch)"});
+  }
+  expect_refused({"new", "robot", "--joints", "2", "--axes", "ppy", "--out", out}, {"--axes", "3 letters"});
+  expect_refused({"new", "robot", "--out", out}, {"--joints"});
+  expect_refused({"new", "gait", "--joints", "5", "--out", out}, {"'gait'", "'robot'"});
+  expect_refused({"new", "robot", "--joints", "5", "--out", ""}, {"--out"});
+  std::ofstream(file("plain")) << "a file, not a folder\n";
+  expect_refused({"new", "robot", "--joints", "5", "--out", file("plain").string()}, {"plain"});
+  EXPECT_EQ(left_behind(), std::vector<std::string>{"plain"});
+}
+
+}  // namespace
+}  // namespace proleg::test

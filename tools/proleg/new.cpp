@@ -1,0 +1,106 @@
+// proleg new: writes the files of a new robot.
+
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
+#include "shared/computer/text/text.hpp"
+#include "shared/gait/joint_mask.hpp"
+#include "tools/proleg/command_line.hpp"
+#include "tools/proleg/robot_files.hpp"
+
+namespace {
+
+using namespace proleg;
+using namespace proleg::tools;
+
+struct NewOptions {
+  std::string what;
+  std::string joints;
+  std::string axes = "p";
+  std::string out = "robot";
+};
+
+std::uint32_t parse_joints(const std::string& word) {
+  const std::optional<std::uint32_t> joints = parse_whole<std::uint32_t>(word);
+  if (!joints || *joints == 0 || *joints > max_joints) {
+    throw InputError("--joints", 0, in_quotes(word), "a whole number from 1 to " + std::to_string(max_joints));
+  }
+  return *joints;
+}
+
+/// The axis of each joint from the tail: the pattern, repeated.
+std::string axes_of_joints(const std::string& pattern, std::uint32_t joints) {
+  if (pattern.empty() || pattern.find_first_not_of("py") != std::string::npos) {
+    throw InputError("--axes", 0, in_quotes(pattern), "letters p (pitch) and y (yaw), from the tail");
+  }
+  if (pattern.size() > joints) {
+    throw InputError("--axes", 0,
+                     std::to_string(pattern.size()) + " letters for a robot with --joints " + std::to_string(joints),
+                     "at most one letter for each joint");
+  }
+  std::string axes;
+  for (std::uint32_t joint = 0; joint < joints; ++joint) {
+    axes += pattern[joint % pattern.size()];
+  }
+  return axes;
+}
+
+void create_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw BadInput("cannot create the folder " + folder.string() + ": " + error.message());
+  }
+}
+
+int write_robot(const NewOptions& options) {
+  if (options.what != "robot") {
+    throw InputError("proleg new", 0, in_quotes(options.what), "'robot'");
+  }
+  const std::vector<NewFile> files = robot_files(axes_of_joints(options.axes, parse_joints(options.joints)));
+  if (options.out.empty()) {
+    throw InputError("--out", 0, "an empty name", "the name of a folder");
+  }
+  const std::filesystem::path folder = options.out;
+  for (const NewFile& file : files) {
+    if (std::filesystem::exists(folder / file.name)) {
+      throw BadInput((folder / file.name).string() +
+                     ": found an existing file, expected none; --out FOLDER names another folder");
+    }
+  }
+  for (const NewFile& file : files) {
+    const std::filesystem::path path = folder / file.name;
+    create_folder(path.parent_path());
+    write_file(path, file.text);
+    std::cout << "written  " << path.string() << '\n';
+  }
+  std::cout << "run it:  proleg simulate " << (folder / files.front().name).string() << '\n';
+  return exit_success;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine command_line("proleg new",
+                           "Writes the files of a new robot: a chain of joints, a gait that moves it, a flat floor and "
+                           "the top-level file.\nThe modules are those of the shipped travelling_wave.");
+  NewOptions options;
+  command_line.add_option("WHAT", options.what, "what to write: robot").required().value_name("");
+  command_line.add_option("--joints", options.joints, "number of joints, 1 to 64").required().value_name("N");
+  command_line
+      .add_option("--axes", options.axes,
+                  "p for a pitch joint, y for a yaw joint; the letters are repeated along the chain, from the tail")
+      .value_name("LETTERS")
+      .shows_default();
+  command_line.add_option("--out", options.out, "folder for the files; none of them may exist")
+      .value_name("FOLDER")
+      .shows_default();
+  return command_line.run(argc, argv, [&] { return write_robot(options); });
+}

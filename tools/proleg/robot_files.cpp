@@ -1,0 +1,237 @@
+#include "tools/proleg/robot_files.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdio>
+#include <string_view>
+
+namespace proleg::tools {
+namespace {
+
+constexpr char pitch = 'p';
+constexpr char yaw = 'y';
+
+constexpr std::string_view simulation_text = R"(<!-- The top-level file: what is simulated, and for how long. -->
+<simulation>
+  <robot>robot.robot.xml</robot>
+  <actuation>robot.actuation.xml</actuation>
+  <environment>flat.environment.xml</environment>
+  <simulationProperties>
+    <!-- The step of the physics in seconds; the control tick is a whole number of steps. -->
+    <stepWidth>0.001</stepWidth>
+    <tick unit="ms">10</tick>
+    <!-- Simulated seconds; the option seconds of 'proleg simulate' overrides it. -->
+    <duration>30</duration>
+    <seed>1</seed>
+  </simulationProperties>
+</simulation>
+)";
+
+constexpr std::string_view environment_text =
+    R"(<!-- A floor of 16 x 16 m, its top at height 0, as in the shipped travelling_wave. Its friction was fitted to the
+     displacements that the 2013 thesis reports. It holds for each contact with a link that has no friction of its
+     own. -->
+<Environment>
+  <physicsengine type="ode">
+    <odeproperties>
+      <gravity>0 0 -9.81</gravity>
+      <selfcollision>1</selfcollision>
+    </odeproperties>
+  </physicsengine>
+  <KinBody name="floor">
+    <Body type="static">
+      <Translation>0 0 -0.003</Translation>
+      <Geom type="box">
+        <extents>8 8 0.003</extents>
+        <friction>0.1</friction>
+      </Geom>
+    </Body>
+  </KinBody>
+</Environment>
+<!-- Start of the robot: x y z in metres, then degrees about x, y and z. It lies on the floor. -->
+<!--Pose: ,0 0 0.026,0 0 0,-->
+)";
+
+/// The two ends of the robot: half a module each.
+std::string end_text(std::string_view comment, std::string_view kinbody, std::string_view body, std::string_view y) {
+  std::string text("<!-- ");
+  text.append(comment);
+  text.append(R"( The origin is at its joint.
+     Its mass is that of a solid box of 52 x 36 x 52 mm and 50 g. The Geom is what touches the ground: 8 mm in the middle.
+     The values are those of the shipped travelling_wave. Extents are half the side lengths. -->
+<KinBody name=")");
+  text.append(kinbody).append("\">\n  <Body name=\"").append(body).append("\" type=\"dynamic\">\n");
+  text.append("    <Geom type=\"box\">\n      <translation>0 ").append(y).append(" 0</translation>\n");
+  text.append("      <extents>0.026 0.004 0.026</extents>\n    </Geom>\n");
+  text.append("    <Mass type=\"box\">\n      <total>0.05</total>\n      <com>0 ").append(y).append(" 0</com>\n");
+  text.append("      <extents>0.026 0.018 0.026</extents>\n    </Mass>\n  </Body>\n</KinBody>\n");
+  return text;
+}
+
+constexpr std::string_view segment_text =
+    R"(<!-- A link between two joints, which are 72 mm apart along y. The origin is at the joint towards the tail.
+     Its mass is that of a solid box of 52 x 72 x 52 mm and 100 g. The Geom is what touches the ground: 36 mm in the middle.
+     The values are those of the shipped travelling_wave. Extents are half the side lengths. -->
+<KinBody name="segment">
+  <Body name="Seg" type="dynamic">
+    <Geom type="box">
+      <translation>0 0.036 0</translation>
+      <extents>0.026 0.018 0.026</extents>
+    </Geom>
+    <Mass type="box">
+      <total>0.1</total>
+      <com>0 0.036 0</com>
+      <extents>0.026 0.036 0.026</extents>
+    </Mass>
+  </Body>
+</KinBody>
+)";
+
+/// The distance of a link's origin from that of the first segment: 72 mm for each joint between them, as metres.
+std::string position_text(std::size_t links) {
+  constexpr std::size_t module_mm = 72;
+  std::array<char, 24> text{};
+  std::snprintf(text.data(), text.size(), "%zu.%03zu", links * module_mm / 1000, links * module_mm % 1000);
+  return text.data();
+}
+
+/// Link 0 is the tail.
+std::string link_name(std::size_t link, std::size_t joints) {
+  return link == 0 ? "Tail" : link == joints ? "Head" : std::to_string(link) + "Seg";
+}
+
+std::string link_text(std::size_t link, std::size_t joints) {
+  std::string text = "    <KinBody ";
+  if (link == 0) {
+    return text + "file=\"modules/tail.kinbody.xml\"/>\n";
+  }
+  text += link == joints ? "file=\"modules/head.kinbody.xml\""
+                         : "prefix=\"" + std::to_string(link) + "\" file=\"modules/segment.kinbody.xml\"";
+  return text + "><translation>0 " + position_text(link - 1) + " 0</translation></KinBody>\n";
+}
+
+std::string joint_text(std::size_t joint, char axis, std::size_t joints) {
+  const std::string front = link_name(joint + 1, joints);
+  std::string text = "    <Joint name=\"J" + std::to_string(joint + 1) + "\" type=\"hinge\">\n";
+  text += "      <body>" + link_name(joint, joints) + "</body>\n      <body>" + front + "</body>\n";
+  text += "      <offsetfrom>" + front + "</offsetfrom>\n";
+  text += std::string("      <axis>") + (axis == yaw ? "0 0 1" : "1 0 0") + "</axis>\n";
+  text += "      <maxtorque>0.4</maxtorque>\n      <maxvel>4.5</maxvel>\n      <limitsdeg>-90 90</limitsdeg>\n";
+  return text + "    </Joint>\n";
+}
+
+std::string robot_text(const std::string& axes) {
+  std::string text =
+      "<!-- A chain of " + std::to_string(axes.size()) + " joints, from the tail: " + axes + " (p: pitch, y: yaw).";
+  text += R"( It lies along y, its head at the positive end.
+
+     The values are those of the shipped travelling_wave. From the 2013 thesis: 72 mm between joints, 0.4 Nm, 4.5 rad/s
+     and the limits. FITTED to the displacements that the thesis reports: the masses, the shape of what touches the
+     ground (modules/) and the gain of the servos.
+     Change one of the files in modules/ to change all links of that kind. -->
+<Robot name="robot">
+  <!-- An almost ideal servo: gain in 1/s, a new pulse every millisecond. -->
+  <servo>
+    <gain>50</gain>
+    <period unit="ms">1</period>
+  </servo>
+  <KinBody name="body">
+)";
+  for (std::size_t link = 0; link <= axes.size(); ++link) {
+    text += link_text(link, axes.size());
+  }
+  text +=
+      R"(    <!-- The angle of a joint is the rotation of its second body relative to the first. The first body is the one
+         towards the tail: a positive angle raises the front (pitch, axis 1 0 0) or turns it to the left (yaw, axis
+         0 0 1). The joint is at the origin of the body in offsetfrom. The underside of every link, with its two touch
+         sensors, faces the ground, also at a yaw joint. -->
+)";
+  for (std::size_t joint = 0; joint < axes.size(); ++joint) {
+    text += joint_text(joint, axes[joint], axes.size());
+  }
+  return text + "  </KinBody>\n</Robot>\n";
+}
+
+struct Wave {
+  std::string_view amplitude;
+  std::string_view frequency;
+  std::string_view phase_difference;
+  std::string_view phase;  ///< empty: the default, 0
+};
+
+std::string parameter_text(std::string_view name, std::string_view value, std::string_view unit) {
+  std::string text("    <parameter name=\"");
+  text.append(name).append("\" value=\"").append(value).append("\" unit=\"").append(unit).append("\"/>\n");
+  return text;
+}
+
+/// A sinusoidal wave on all joints of one axis.
+std::string wave_text(const std::string& axes, char axis, const Wave& wave) {
+  std::string group;
+  for (const char joint : axes) {
+    group += joint == axis ? '1' : '0';
+  }
+  std::string text = "  <actuationModule name=\"PatternGenerator_sinusoidal\">\n";
+  text += "    <!-- One character for each joint, J1 at the tail first. -->\n";
+  text += "    <jointConfiguration joints=\"" + group + "\"/>\n";
+  text += parameter_text("amplitude", wave.amplitude, "deg");
+  text += parameter_text("frequency", wave.frequency, "Hz");
+  text += parameter_text("phase_difference", wave.phase_difference, "deg");
+  if (!wave.phase.empty()) {
+    text += parameter_text("phase", wave.phase, "deg");
+  }
+  return text + "  </actuationModule>\n";
+}
+
+// At 1 Hz a joint with an amplitude of 40 degrees just stays below its 4.5 rad/s.
+constexpr Wave travelling_wave{"40", "1", "55", ""};
+constexpr Wave sidewinding_pitch{"20", "1", "45", ""};
+constexpr Wave sidewinding_yaw{"40", "1", "45", "90"};
+
+std::string actuation_text(const std::string& axes) {
+  const bool has_pitch = axes.find(pitch) != std::string::npos;
+  const bool has_yaw = axes.find(yaw) != std::string::npos;
+  std::string text;
+  if (!has_yaw) {
+    text =
+        R"(<!-- A travelling wave: every joint does what the joint in front of it did a moment before. The gait is that of the
+     shipped travelling_wave. -->
+)";
+  } else if (!has_pitch) {
+    text =
+        R"(<!-- A wave to the left and to the right. Without pitch joints all links stay on the ground. They slide equally well
+     in all directions, so this robot moves slowly. -->
+)";
+  } else {
+    text =
+        R"(<!-- Sidewinding: a wave of the yaw joints to the left and to the right, and a wave of the pitch joints that lifts a
+     part of the body while the yaw wave carries it to the side. The phase of the yaw joints is the quarter turn between
+     the two waves; with -90 the robot moves to the other side.
+     The phases count by the position of a joint in the whole chain. Both waves therefore have the same
+     phase_difference, the one from each joint to the next joint of the chain, whatever the axis of that joint is. -->
+)";
+  }
+  text += "<actuation>\n  <validRobot robotName=\"robot.robot.xml\"/>\n";
+  if (has_pitch) {
+    text += wave_text(axes, pitch, has_yaw ? sidewinding_pitch : travelling_wave);
+  }
+  if (has_yaw) {
+    text += wave_text(axes, yaw, sidewinding_yaw);
+  }
+  return text + "</actuation>\n";
+}
+
+}  // namespace
+
+std::vector<NewFile> robot_files(const std::string& axes) {
+  return {{"robot.simulation.xml", std::string(simulation_text)},
+          {"robot.robot.xml", robot_text(axes)},
+          {"robot.actuation.xml", actuation_text(axes)},
+          {"flat.environment.xml", std::string(environment_text)},
+          {"modules/tail.kinbody.xml", end_text("The last link, towards negative y.", "tail", "Tail", "-0.018")},
+          {"modules/segment.kinbody.xml", std::string(segment_text)},
+          {"modules/head.kinbody.xml", end_text("The first link, towards positive y.", "head", "Head", "0.018")}};
+}
+
+}  // namespace proleg::tools

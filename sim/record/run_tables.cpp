@@ -23,6 +23,23 @@ std::string_view solver_name(Solver solver) {
   return "iterative";
 }
 
+/// What the command line gave instead of the files; the words repeat the run.
+template <typename Put>
+void write_overrides(const Overrides& overrides, const Put& put) {
+  if (overrides.seed) {
+    put("override_seed", std::to_string(*overrides.seed));
+  }
+  if (overrides.friction) {
+    put("override_friction", exact_text(*overrides.friction));
+  }
+  if (const auto position = position_text(overrides)) {
+    put("override_at", *position);
+  }
+  if (overrides.heading_deg) {
+    put("override_heading", exact_text(*overrides.heading_deg));
+  }
+}
+
 void write_run(Database& database, const Scenario& scenario, const std::string& program, const std::string& build_id) {
   Statement insert(database, "INSERT INTO run VALUES(?1, ?2)");
   const auto put = [&insert](std::string_view key, std::string_view value) { insert.run(key, value); };
@@ -40,6 +57,7 @@ void write_run(Database& database, const Scenario& scenario, const std::string& 
   put("planned_duration_s", exact_text(scenario.duration_s));
   put("servo_period_us", std::to_string(scenario.robot.servo.period_us));
   put("servo_gain_per_s", exact_text(scenario.robot.servo.gain));
+  write_overrides(scenario.overrides, put);
   put("finished", "0");
 
   Statement source(database, "INSERT INTO source(path, text) VALUES(?1, ?2)");

@@ -158,8 +158,7 @@ void lift_onto_ground(const RobotModel& robot, EnvironmentModel& environment, st
   }
   environment.robot_pose.position.z() += *top - *bottom;
   remarks.push_back(one_line("the robot starts " + number_text((*top - *bottom) * 1000.0) +
-                             " mm higher than the environment file says, so that it rests on " +
-                             in_quotes(ground->name)));
+                             " mm higher than its start pose says, so that it rests on " + in_quotes(ground->name)));
 }
 
 }  // namespace proleg::sim

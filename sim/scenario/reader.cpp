@@ -11,9 +11,10 @@
 
 namespace proleg::sim {
 
-Scenario read_scenario(const std::filesystem::path& path, FileSource& files) {
+Scenario read_scenario(const std::filesystem::path& path, FileSource& files, const Overrides& overrides) {
   Scenario scenario;
   scenario.path = path.string();
+  scenario.overrides = overrides;
   SourceSet sources(files, path, scenario.sources);
   const auto top = sources.open_top();
   const XmlElement root = top->root("simulation");
@@ -26,6 +27,7 @@ Scenario read_scenario(const std::filesystem::path& path, FileSource& files) {
   if (const auto properties = root.child("simulationProperties")) {
     read_simulation_properties(*properties, scenario);
   }
+  scenario.kernel.seed = overrides.seed.value_or(scenario.kernel.seed);
   for (const XmlElement& child : root.children()) {
     if (child.is("sensor") || child.is("sensors")) {
       remark_no_effect(scenario.remarks, child, "every link has two touch sensors under it");
@@ -44,6 +46,7 @@ Scenario read_scenario(const std::filesystem::path& path, FileSource& files) {
 
   const auto environment_file = open("environment");
   scenario.environment = read_environment(*environment_file, sources, scenario.remarks);
+  apply_overrides(overrides, scenario.environment);
   lift_onto_ground(scenario.robot, scenario.environment, scenario.remarks);
   return scenario;
 }

@@ -37,8 +37,9 @@ class DiskFiles final : public FileSource {
   [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override;
 };
 
-/// Reads a top-level simulation file and all that it names. Throws InputError.
-[[nodiscard]] Scenario read_scenario(const std::filesystem::path& path, FileSource& files);
+/// Reads a top-level simulation file and all that it names, and applies the overrides. Throws InputError.
+[[nodiscard]] Scenario read_scenario(const std::filesystem::path& path, FileSource& files,
+                                     const Overrides& overrides = {});
 
 /// Applies a `--set` word to a scenario: [MODULE.]NAME[:JOINT]=VALUE[@TICK]
 ///   MODULE  name of an algorithm, or 1 to 4 for its position in the actuation file; required if several modules that

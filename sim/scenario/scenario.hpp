@@ -12,6 +12,7 @@
 #include "sim/environment/environment_model.hpp"
 #include "sim/robot/module_place.hpp"
 #include "sim/robot/robot_model.hpp"
+#include "sim/scenario/overrides.hpp"
 
 namespace proleg::sim {
 
@@ -63,6 +64,8 @@ struct Scenario {
   double step_s = 0.001;  ///< of the physics; a tick is a whole number of steps
   Solver solver = Solver::automatic;
   double contact_noise = 0.0;  ///< probability that a touch sensor reads wrong at a tick; 0 to 1, drawn with the seed
+
+  Overrides overrides;  ///< what replaced values of the files; it has been applied
 
   std::vector<SourceFile> sources;   ///< every file, the top-level file first
   std::vector<std::string> remarks;  ///< for the user: the joint map, tags without effect

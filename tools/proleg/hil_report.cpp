@@ -45,6 +45,8 @@ Json hil_json(const HilOptions& options, const ScenarioRun& run, const HilModule
                      {"text", problem.text}});
   }
   return {{"scenario", options.file},
+          {"seed", run.scenario.kernel.seed},
+          {"overrides", overrides_object(run.scenario.overrides)},
           {"modules", run.scenario.modules.size()},
           {"module_kind", modules.kind()},
           {"image", modules.any_virtual() ? modules.image().file().string() : ""},

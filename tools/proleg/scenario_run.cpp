@@ -49,13 +49,23 @@ void add_scenario_options(CommandLine& command_line, ScenarioOptions& options) {
       "--losses", options.losses,
       "state frames that joints do not receive: SEED:RATE or SEED:RATE@FIRST-LAST (RATE 0.05 or 5%), or a "
       "file with lines TICK SENDER RECEIVER [CHANNEL]");
+  command_line.add_option("--seed", options.overrides.seed, "seed of the run instead of that of the scenario");
+  command_line.add_option("--friction", options.overrides.friction,
+                          "coefficient of friction of every object of the environment, also of those that state none; "
+                          "the links of the robot keep theirs");
+  command_line.add_option("--at", options.overrides.at,
+                          "X,Y or X,Y,Z in metres: start position instead of that of the environment; without Z, the "
+                          "height of the environment. A robot inside the ground is lifted onto it.");
+  command_line.add_option("--heading", options.overrides.heading,
+                          "degrees by which the start pose is turned about the vertical, to the left. The measures are "
+                          "relative to this heading.");
   command_line.add_flag("--verbose", options.verbose, "print the joint map, remarks on the files and all parameters");
   command_line.add_flag("--json", options.json, "print one JSON object");
 }
 
 ScenarioRun prepare_run(const ScenarioOptions& options) {
   sim::DiskFiles files;
-  ScenarioRun run{sim::read_scenario(options.file, files), {}, 0};
+  ScenarioRun run{sim::read_scenario(options.file, files, sim::read_overrides(options.overrides)), {}, 0};
   for (const std::string& setting : options.settings) {
     sim::apply_setting(run.scenario, setting);
   }
@@ -116,6 +126,13 @@ std::vector<PlannedOutput> planned_recording(const ScenarioOptions& options) {
     return {};
   }
   return {{"--record", *options.record, "recording", sim::is_recording, true, sim::recording_companions()}};
+}
+
+Json overrides_object(const sim::Overrides& overrides) {
+  return {{"seed", overrides.seed},
+          {"friction", overrides.friction},
+          {"at", sim::position_text(overrides)},
+          {"heading_deg", overrides.heading_deg}};
 }
 
 std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options, const sim::Scenario& scenario,

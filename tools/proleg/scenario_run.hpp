@@ -11,8 +11,10 @@
 #include "shared/computer/output/output_check.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/scenario/losses.hpp"
+#include "sim/scenario/overrides.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/json_output.hpp"
 
 namespace proleg::tools {
 
@@ -21,6 +23,7 @@ struct ScenarioOptions {
   std::optional<std::string> seconds;
   std::optional<std::string> record;
   std::optional<std::string> losses;
+  sim::OverrideWords overrides;
   std::vector<std::string> settings;
   bool verbose = false;
   bool json = false;
@@ -45,6 +48,9 @@ struct ScenarioRun {
 
 /// Prints the remarks on the files and the start value of every parameter of every joint on standard error.
 void print_setup(const sim::Scenario& scenario);
+
+/// The overrides for --json: null where a value is that of the files.
+[[nodiscard]] Json overrides_object(const sim::Overrides& overrides);
 
 /// The file of --record, for check_outputs(); empty without that option.
 [[nodiscard]] std::vector<PlannedOutput> planned_recording(const ScenarioOptions& options);

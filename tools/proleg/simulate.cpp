@@ -63,8 +63,10 @@ Result run(const ScenarioRun& setup, sim::Simulation& simulation, sim::Recorder*
           measures_of(simulation.plant().meter())};
 }
 
-void print_json(const ScenarioOptions& options, const sim::RobotModel& robot, const Result& result) {
+void print_json(const ScenarioOptions& options, const ScenarioRun& setup, const Result& result) {
   const Json object{{"scenario", options.file},
+                    {"seed", setup.scenario.kernel.seed},
+                    {"overrides", overrides_object(setup.scenario.overrides)},
                     {"displacement_m", result.displacement_m},
                     {"simulated_s", result.simulated_s},
                     {"setpoint_hash", result.setpoint_hash},
@@ -75,7 +77,7 @@ void print_json(const ScenarioOptions& options, const sim::RobotModel& robot, co
                     {"lost_frames", result.lost_frames},
                     {"measures", measures_object(result.measures.values)},
                     {"link_duty_factors", result.measures.link_duty_factors},
-                    {"servos", servos_array(result.measures, robot)},
+                    {"servos", servos_array(result.measures, setup.scenario.robot)},
                     {"recording", options.record.value_or("")},
                     {"build_id", build_id}};
   std::cout << object.text() << '\n';
@@ -133,7 +135,7 @@ int simulate(const ScenarioOptions& options) {
     recorder->finish(summary);
   }
   if (options.json) {
-    print_json(options, setup.scenario.robot, result);
+    print_json(options, setup, result);
   } else {
     print_table(options, result);
   }

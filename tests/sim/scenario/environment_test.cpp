@@ -72,7 +72,7 @@ TEST(Environment, ALiftIsRemarked) {
   const Scenario scenario = files.scenario();
   EXPECT_NEAR(scenario.environment.robot_pose.position.z(), 0.03, 1e-15);
   EXPECT_EQ(scenario.remarks.back(),
-            "the robot starts 20 mm higher than the environment file says, so that it rests on 'floor'");
+            "the robot starts 20 mm higher than its start pose says, so that it rests on 'floor'");
 }
 
 TEST(Environment, TheRobotRestsOnTheHighestObjectBelowItsStart) {

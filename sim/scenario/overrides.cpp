@@ -1,0 +1,108 @@
+#include "sim/scenario/overrides.hpp"
+
+#include <numbers>
+#include <string_view>
+#include <vector>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/scenario/values.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr Range headings{-360.0, 360.0, "degrees"};
+
+[[nodiscard]] std::optional<double> parse_in(std::string_view word, const Range& range) {
+  const std::optional<double> value = parse_number(word);
+  return value && *value >= range.min && *value <= range.max ? value : std::nullopt;
+}
+
+double read_in(const char* option, const std::string& word, const Range& range) {
+  const std::optional<double> value = parse_in(word, range);
+  if (!value) {
+    throw InputError(option, 0, in_quotes(word),
+                     number_text(range.min) + " to " + number_text(range.max) +
+                         (range.unit.empty() ? "" : ' ' + std::string(range.unit)));
+  }
+  return *value;
+}
+
+/// X,Y or X,Y,Z
+void read_position(const std::string& word, Overrides& overrides) {
+  std::vector<double> numbers;
+  for (std::string_view rest = word;;) {
+    const std::size_t comma = rest.find(',');
+    const std::optional<double> number = parse_in(rest.substr(0, comma), coordinates);
+    if (!number) {
+      break;
+    }
+    numbers.push_back(*number);
+    if (comma == std::string_view::npos) {
+      if (numbers.size() == 2 || numbers.size() == 3) {
+        overrides.at = Eigen::Vector2d(numbers[0], numbers[1]);
+        overrides.height = numbers.size() == 3 ? std::optional(numbers[2]) : std::nullopt;
+        return;
+      }
+      break;
+    }
+    rest.remove_prefix(comma + 1);
+  }
+  throw InputError("--at", 0, in_quotes(word),
+                   "X,Y or X,Y,Z, each " + number_text(coordinates.min) + " to " + number_text(coordinates.max) + " m");
+}
+
+}  // namespace
+
+Overrides read_overrides(const OverrideWords& words) {
+  Overrides overrides;
+  if (words.seed) {
+    overrides.seed = parse_whole<std::uint64_t>(*words.seed);
+    if (!overrides.seed) {
+      throw InputError("--seed", 0, in_quotes(*words.seed), "a whole number from 0 to 18446744073709551615");
+    }
+  }
+  if (words.friction) {
+    overrides.friction = read_in("--friction", *words.friction, frictions);
+  }
+  if (words.at) {
+    read_position(*words.at, overrides);
+  }
+  if (words.heading) {
+    overrides.heading_deg = read_in("--heading", *words.heading, headings);
+  }
+  return overrides;
+}
+
+void set_friction(EnvironmentModel& environment, double friction) {
+  for (StaticObject& object : environment.objects) {
+    for (Geometry& geometry : object.geometries) {
+      geometry.friction = friction;
+    }
+  }
+}
+
+void apply_overrides(const Overrides& overrides, EnvironmentModel& environment) {
+  if (overrides.friction) {
+    set_friction(environment, *overrides.friction);
+  }
+  Pose& pose = environment.robot_pose;
+  if (overrides.at) {
+    pose.position.head<2>() = *overrides.at;
+    pose.position.z() = overrides.height.value_or(pose.position.z());
+  }
+  if (overrides.heading_deg) {
+    const double angle = *overrides.heading_deg * (std::numbers::pi / 180.0);
+    pose.orientation = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * pose.orientation;
+  }
+}
+
+std::optional<std::string> position_text(const Overrides& overrides) {
+  if (!overrides.at) {
+    return std::nullopt;
+  }
+  std::string text = exact_text(overrides.at->x()) + ',' + exact_text(overrides.at->y());
+  return overrides.height ? text + ',' + exact_text(*overrides.height) : text;
+}
+
+}  // namespace proleg::sim

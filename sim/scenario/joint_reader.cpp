@@ -45,6 +45,10 @@ void read_limits(const XmlElement& element, JointDescription& description) {
   if (numbers[0] > numbers[1]) {
     limits.refuse(in_quotes(limits.text()) + " in " + limits.label(), "the lower limit first");
   }
+  if (numbers[0] > 0.0 || numbers[1] < 0.0) {
+    limits.refuse(in_quotes(limits.text()) + " in " + limits.label() + " of joint " + in_quotes(description.joint.name),
+                  "limits that include 0, because every joint starts at angle 0");
+  }
   Joint& joint = description.joint;
   JointLimits& kernel = description.kernel_limits;
   if (degrees) {

@@ -193,6 +193,12 @@ const auto cases = testing::Values(
              "robot.xml:35: found type 'slider' in <Joint>, expected 'hinge'"},
     BadInput{"AxisZero", "robot.xml", "<axis>2 0 0", "<axis>0 0 0",
              "robot.xml:30: found '0 0 0' in <axis>, expected a direction that is not 0"},
+    BadInput{
+        "LimitsBelowTheStart", "robot.xml", j1_limits, "<limitsdeg>-80 -30</limitsdeg>",
+        "robot.xml:33: found '-80 -30' in <limitsdeg> of joint 'J1', expected limits that include 0, because every "
+        "joint starts at angle 0"},
+    BadInput{"LimitsAboveTheStart", "robot.xml", "<limits>-0.5 0.75</limits>", "<limits>0.01 0.75</limits>",
+             "robot.xml:43: found '0.01 0.75' in <limits> of joint 'J2', expected limits that include 0"},
     BadInput{"NoLimits", "robot.xml", j1_limits, "",
              "robot.xml:26: found neither <limitsdeg> nor <limits> in <Joint>, expected one of them"},
     BadInput{"LimitsInWrongOrder", "robot.xml", "-45 90", "90 -45",

@@ -76,6 +76,7 @@ class ChainBuilder {
     for (;;) {
       reached[body] = true;
       chain.links.push_back((*bodies_)[body].link);
+      chain.link_origins.push_back((*bodies_)[body].origin);
       const std::optional<std::size_t> next = joint_onward(body, arrived_by);
       if (!next) {
         break;
@@ -117,6 +118,8 @@ class ChainBuilder {
       chain.joints.back().axis *= -1.0;
     }
     chain.kernel_limits.push_back(entry.kernel_limits);
+    chain.joint_origins.push_back(entry.origin);
+    chain.headward_first.push_back(headward_first);
     chain.joint_map += (chain.joints.size() > 1 ? ", " : "") + ("kernel " + std::to_string(chain.joints.size() - 1)) +
                        " = " + entry.joint.name + " (" + (*bodies_)[headward].link.name + " - " + tailward + ")";
     return body_index(tailward);

@@ -1,9 +1,12 @@
 #include "sim/scenario/reader.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "sim/scenario/actuation_reader.hpp"
 #include "sim/scenario/environment_reader.hpp"
+#include "sim/scenario/plausibility.hpp"
 #include "sim/scenario/properties_reader.hpp"
 #include "sim/scenario/robot_reader.hpp"
 #include "sim/scenario/source_set.hpp"
@@ -39,6 +42,7 @@ Scenario read_scenario(const std::filesystem::path& path, FileSource& files, con
   scenario.robot = std::move(robot.model);
   scenario.joint_limits = std::move(robot.kernel_limits);
   scenario.modules = std::move(robot.modules);
+  scenario.warnings = std::move(robot.warnings);
   scenario.kernel.joint_count = static_cast<std::uint8_t>(scenario.robot.joints.size());
 
   const auto actuation_file = open("actuation");
@@ -48,6 +52,8 @@ Scenario read_scenario(const std::filesystem::path& path, FileSource& files, con
   scenario.environment = read_environment(*environment_file, sources, scenario.remarks);
   apply_overrides(overrides, scenario.environment);
   lift_onto_ground(scenario.robot, scenario.environment, scenario.remarks);
+  std::ranges::move(check_start(scenario.robot.links, scenario.environment, environment_file->name()),
+                    std::back_inserter(scenario.warnings));
   return scenario;
 }
 

@@ -6,6 +6,7 @@
 #include "sim/scenario/chain.hpp"
 #include "sim/scenario/kinbody_reader.hpp"
 #include "sim/scenario/module_reader.hpp"
+#include "sim/scenario/plausibility.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {
@@ -56,6 +57,7 @@ RobotDescription read_robot(const XmlDocument& document, double step_s, SourceSe
   if (const auto servo = root.child("servo")) {
     robot.model.servo = read_servo(*servo, step_s);
   }
+  robot.warnings = check_robot(chain);
   robot.model.links = std::move(chain.links);
   robot.model.joints = std::move(chain.joints);
   robot.kernel_limits = std::move(chain.kernel_limits);

@@ -14,6 +14,7 @@ struct RobotDescription {
   RobotModel model;
   std::vector<JointLimits> kernel_limits;  ///< kernel order
   std::vector<ModulePlace> modules;        ///< kernel order
+  std::vector<std::string> warnings;       ///< what is probably not meant
 };
 
 /// Reads a robot file: <Robot> with KinBodies and joints as in OpenRAVE, and our

@@ -67,8 +67,9 @@ struct Scenario {
 
   Overrides overrides;  ///< what replaced values of the files; it has been applied
 
-  std::vector<SourceFile> sources;   ///< every file, the top-level file first
-  std::vector<std::string> remarks;  ///< for the user: the joint map, tags without effect
+  std::vector<SourceFile> sources;    ///< every file, the top-level file first
+  std::vector<std::string> remarks;   ///< for the user: the joint map, tags without effect
+  std::vector<std::string> warnings;  ///< for the user: what is valid and probably not meant
 };
 
 /// The ticks of a run: the duration, rounded to whole ticks; at least 1.

@@ -142,6 +142,7 @@ int judge(const HilResult& result) {
 
 int hil(const HilOptions& options) {
   const ScenarioRun run = prepare_run(options);
+  print_warnings("proleg hil", run.scenario);
   if (options.verbose) {
     print_setup(run.scenario);
   }

@@ -149,6 +149,7 @@ std::string command_to_continue(const OptimiseOptions& options, const std::files
 int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   const Experiment experiment = read_experiment(options);
   const std::filesystem::path folder = folder_of(options, experiment);
+  print_warnings("proleg optimise", experiment.scenario);
   if (options.verbose) {
     for (const std::string& remark : experiment.scenario.remarks) {
       std::cerr << remark << '\n';

@@ -96,6 +96,18 @@ unsigned joint_of_node(const sim::Scenario& scenario, std::optional<std::uint32_
   throw InputError(option, 0, "node " + found, "one of " + nodes);
 }
 
+void print_warnings(const std::string& program, const sim::Scenario& scenario) {
+  constexpr std::size_t max_lines = 10;
+  const std::size_t count = scenario.warnings.size();
+  const std::size_t shown = count > max_lines ? max_lines - 1 : count;
+  for (std::size_t i = 0; i < shown; ++i) {
+    std::cerr << program << ": warning: " << scenario.warnings[i] << '\n';
+  }
+  if (count > shown) {
+    std::cerr << program << ": warning: " << count - shown << " more of this kind\n";
+  }
+}
+
 void print_setup(const sim::Scenario& scenario) {
   for (const std::string& remark : scenario.remarks) {
     std::cerr << remark << '\n';

@@ -46,6 +46,9 @@ struct ScenarioRun {
 [[nodiscard]] unsigned joint_of_node(const sim::Scenario& scenario, std::optional<std::uint32_t> node,
                                      const std::string& option, const std::string& found);
 
+/// Prints the warnings on the files on standard error: the first ones, and how many more there are.
+void print_warnings(const std::string& program, const sim::Scenario& scenario);
+
 /// Prints the remarks on the files and the start value of every parameter of every joint on standard error.
 void print_setup(const sim::Scenario& scenario);
 

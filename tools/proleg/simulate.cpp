@@ -103,6 +103,7 @@ void print_table(const ScenarioOptions& options, const Result& result) {
 
 int simulate(const ScenarioOptions& options) {
   const ScenarioRun setup = prepare_run(options);
+  print_warnings("proleg simulate", setup.scenario);
   if (options.verbose) {
     print_setup(setup.scenario);
   }

@@ -82,6 +82,28 @@ TEST_F(NewRobot, LettersAreRepeatedFromTheTail) {
   EXPECT_EQ(axes, "pyypy") << "J1, at the tail, is the first joint of the file";
 }
 
+TEST_F(NewRobot, AChangeThatIsProbablyNotMeantIsReportedByAllThatRunIt) {
+  write("robot", "5", "p");
+  const fs::path path = file("robot/robot.robot.xml");
+  std::string text = read_file(path);
+  const std::string line = "      <offsetfrom>2Seg</offsetfrom>\n";
+  ASSERT_NE(text.find(line), std::string::npos);
+  text.erase(text.find(line), line.size());
+  std::ofstream(path) << text;
+
+  const std::string top = file("robot/robot.simulation.xml").string();
+  const std::string experiment = source_path("/sim/scenarios/travelling_wave/cma_es.optimise.xml");
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"simulate", top, "--seconds", "0.1"},
+                                                {"hil", top, "--seconds", "0.1"},
+                                                {"optimise", experiment, "--simulation", top, "--workers", "1",
+                                                 "--evaluations", "2", "--out", file("out").string()}}) {
+    const Finished finished = proleg(words);
+    EXPECT_EQ(finished.err.find("proleg " + words[0] + ": warning: " + path.string() + ":"), 0U) << finished.err;
+    EXPECT_NE(finished.err.find("joint 'J2' is 72 mm outside of its body"), std::string::npos) << finished.err;
+    EXPECT_NE(finished.out, "") << "it runs";
+  }
+}
+
 TEST_F(NewRobot, DoesNotReplaceAFile) {
   fs::create_directories(file("mine/modules"));
   const std::string precious = file("mine/modules/head.kinbody.xml").string();

@@ -1,0 +1,248 @@
+#include "sim/scenario/plausibility.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/Eigenvalues>
+
+#include "shared/computer/text/text.hpp"
+#include "sim/scenario/geometry_reader.hpp"
+
+namespace proleg::sim {
+namespace {
+
+std::string millimetres(double metres) { return number_text(std::round(metres * 1000.0)) + " mm"; }
+
+std::string warning(const Origin& origin, const std::string& text) {
+  return one_line(origin.file + ":" + std::to_string(origin.line) + ": " + text);
+}
+
+Bounds joined(const Bounds& left, const Bounds& right) {
+  return {left.lowest.cwiseMin(right.lowest), left.highest.cwiseMax(right.highest)};
+}
+
+double length_of(const Bounds& bounds) { return (bounds.highest - bounds.lowest).maxCoeff(); }
+
+std::optional<Bounds> bounds_of_geometries(const Link& link, const Pose& frame) {
+  std::optional<Bounds> whole;
+  for (const Geometry& geometry : link.geometries) {
+    const Bounds bounds = bounds_of(geometry, frame);
+    whole = whole ? joined(*whole, bounds) : bounds;
+  }
+  return whole;
+}
+
+/// The principal moments of inertia, ascending, and their axes.
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal_moments(const MassProperties& mass) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(mass.inertia);
+}
+
+/// The solid box with this mass and inertia. What touches the ground is often only a part of a link; this is its size.
+Geometry equivalent_box(const MassProperties& mass) {
+  const auto principal = principal_moments(mass);
+  const Eigen::Array3d moments = principal.eigenvalues().array();
+  Eigen::Matrix3d axes = principal.eigenvectors();
+  if (axes.determinant() < 0.0) {
+    axes.col(0) *= -1.0;
+  }
+  Geometry box;
+  box.extents = (3.0 * (moments.sum() / 2.0 - moments) / mass.mass).max(0.0).sqrt().matrix();
+  box.pose = {mass.center, Eigen::Quaterniond(axes)};
+  return box;
+}
+
+/// Of everything that a link is known to have, in the robot's frame.
+Bounds bounds_of_link(const Link& link) {
+  const Bounds box = bounds_of(equivalent_box(link.mass), link.pose);
+  const std::optional<Bounds> geometries = bounds_of_geometries(link, link.pose);
+  return geometries ? joined(*geometries, box) : box;
+}
+
+double distance(const Bounds& bounds, const Eigen::Vector3d& point) {
+  return (bounds.lowest - point).cwiseMax(point - bounds.highest).cwiseMax(0.0).norm();
+}
+
+class RobotCheck {
+ public:
+  explicit RobotCheck(const Chain& chain) : chain_(&chain) {
+    for (const Link& link : chain.links) {
+      bounds_.push_back(bounds_of_link(link));
+    }
+  }
+
+  std::vector<std::string> run() {
+    for (std::size_t joint = 0; joint < chain_->joints.size(); ++joint) {
+      check_distance(joint);
+    }
+    if (warnings_.empty()) {  // otherwise the positions of the joints are not known
+      check_folds();
+    }
+    check_order_of_bodies();
+    for (std::size_t link = 0; link < chain_->links.size(); ++link) {
+      check_place(link);
+      check_mass(link);
+    }
+    return std::move(warnings_);
+  }
+
+ private:
+  void warn(const Origin& origin, const std::string& text) { warnings_.push_back(warning(origin, text)); }
+
+  /// A joint is near both of its links. The tolerance is half a link, because a bracket may be no part of either.
+  void check_distance(std::size_t joint) {
+    const auto excess = [&](std::size_t link) {
+      return distance(bounds_[link], chain_->joints[joint].anchor) - length_of(bounds_[link]) / 2.0;
+    };
+    const std::size_t link = excess(joint) > excess(joint + 1) ? joint : joint + 1;
+    if (excess(link) > 0.0) {
+      warn(chain_->joint_origins[joint], "joint " + in_quotes(chain_->joints[joint].name) + " is " +
+                                             millimetres(distance(bounds_[link], chain_->joints[joint].anchor)) +
+                                             " outside of its body " + in_quotes(chain_->links[link].name) +
+                                             ", which is " + millimetres(length_of(bounds_[link])) +
+                                             " long; usually <offsetfrom> is missing or names a wrong body, or the "
+                                             "<translation> of the body is wrong");
+    }
+  }
+
+  /// A joint whose bodies are in the opposite order turns the other way. That is meant if its axis is opposite too.
+  void check_order_of_bodies() {
+    const std::vector<bool>& headward_first = chain_->headward_first;
+    const auto opposite = static_cast<std::size_t>(std::ranges::count(headward_first, true));
+    const bool usual = opposite > headward_first.size() / 2;
+    for (std::size_t joint = 0; joint < headward_first.size(); ++joint) {
+      if (headward_first[joint] != usual && turns_against_others(joint)) {
+        warn(chain_->joint_origins[joint],
+             "joint " + in_quotes(chain_->joints[joint].name) +
+                 " lists its two bodies in the opposite order of other joints, so that its angle has the opposite "
+                 "sign; usually every joint lists the body towards the tail first");
+      }
+    }
+  }
+
+  [[nodiscard]] bool turns_against_others(std::size_t joint) const {
+    constexpr double antiparallel = -0.99;
+    for (std::size_t other = 0; other < chain_->joints.size(); ++other) {
+      if (chain_->headward_first[other] != chain_->headward_first[joint] &&
+          chain_->joints[other].axis.dot(chain_->joints[joint].axis) < antiparallel) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  void check_folds() {
+    constexpr double back = -0.5;  // more than 120 degrees
+    for (std::size_t joint = 1; joint + 1 < chain_->joints.size(); ++joint) {
+      const Eigen::Vector3d before = chain_->joints[joint - 1].anchor - chain_->joints[joint].anchor;
+      const Eigen::Vector3d after = chain_->joints[joint].anchor - chain_->joints[joint + 1].anchor;
+      if (before.dot(after) < back * before.norm() * after.norm()) {
+        warn(chain_->joint_origins[joint], "the chain folds back at joint " + in_quotes(chain_->joints[joint].name) +
+                                               "; usually a body is turned by 180 degrees");
+      }
+    }
+  }
+
+  /// Two links of about the same size at about the same place.
+  void check_place(std::size_t link) {
+    constexpr double share = 0.1;
+    const Bounds& here = bounds_[link];
+    for (std::size_t other = 0; other < link; ++other) {
+      const Bounds& there = bounds_[other];
+      const double tolerance = share * std::min(length_of(here), length_of(there));
+      if ((here.lowest - there.lowest).norm() < tolerance && (here.highest - there.highest).norm() < tolerance) {
+        warn(chain_->link_origins[link], "body " + in_quotes(chain_->links[link].name) + " is at the same place as " +
+                                             in_quotes(chain_->links[other].name) +
+                                             "; usually the <translation> of one of them is missing");
+        return;
+      }
+    }
+  }
+
+  void check_mass(std::size_t link) {
+    const MassProperties& mass = chain_->links[link].mass;
+    const Origin& origin = chain_->link_origins[link];
+    const std::string body = "body " + in_quotes(chain_->links[link].name);
+    const Eigen::Array3d moments = principal_moments(mass).eigenvalues().array();
+    constexpr double rounding = 1e-6;
+    if (moments[2] > (moments[0] + moments[1]) * (1.0 + rounding)) {
+      warn(origin, body +
+                       " has an inertia that no solid has: one principal moment is larger than the sum of the two "
+                       "others; usually a number in <inertia> is wrong");
+      return;
+    }
+    const double box = 2.0 * equivalent_box(mass).extents.maxCoeff();
+    constexpr double max_ratio = 10.0;
+    if (const auto geometries = bounds_of_geometries(chain_->links[link], {})) {
+      const double ratio = box / length_of(*geometries);
+      if (ratio > max_ratio || ratio < 1.0 / max_ratio) {
+        warn(origin, body + " has the inertia of a solid box of " + millimetres(box) + ", and its geometries have " +
+                         millimetres(length_of(*geometries)) + "; usually <inertia> is not in kg m^2");
+      }
+    }
+    const double density = mass.mass / (bounds_[link].highest - bounds_[link].lowest).prod();
+    constexpr double min_density = 1.0;       // air
+    constexpr double max_density = 25'000.0;  // above every metal
+    if (density < min_density || density > max_density) {
+      warn(origin, body + " has " + number_text(mass.mass) + " kg, which is " + number_text(std::round(density)) +
+                       " kg/m^3; usually <total> is not in kilograms, or a length is not in metres");
+    }
+  }
+
+  const Chain* chain_;
+  std::vector<Bounds> bounds_;  ///< of the links
+  std::vector<std::string> warnings_;
+};
+
+Pose inverse(const Pose& pose) {
+  const Eigen::Quaterniond back = pose.orientation.conjugate();
+  return {-(back * pose.position), back};
+}
+
+/// The shortest way out of each other along the three axes of `left`; negative if they are apart along one of them.
+/// Poses are those of the bodies in the world.
+double depth_along_axes(const Geometry& left, const Pose& left_body, const Geometry& right, const Pose& right_body) {
+  const Pose to_left = inverse(left_body * left.pose);
+  const Bounds here = bounds_of(left, to_left * left_body);
+  const Bounds there = bounds_of(right, to_left * right_body);
+  return (here.highest - there.lowest).cwiseMin(there.highest - here.lowest).minCoeff();
+}
+
+double depth(const Geometry& left, const Pose& left_body, const Geometry& right, const Pose& right_body) {
+  return std::min(depth_along_axes(left, left_body, right, right_body),
+                  depth_along_axes(right, right_body, left, left_body));
+}
+
+}  // namespace
+
+std::vector<std::string> check_robot(const Chain& chain) { return RobotCheck(chain).run(); }
+
+std::vector<std::string> check_start(const std::vector<Link>& links, const EnvironmentModel& environment,
+                                     const std::string& environment_file) {
+  constexpr double max_depth = 0.003;  // m; a robot that lies on the ground may be a little in it
+  std::vector<std::string> warnings;
+  for (const Link& link : links) {
+    const Pose link_pose = environment.robot_pose * link.pose;
+    double deepest = max_depth;
+    const StaticObject* obstacle = nullptr;
+    for (const StaticObject& object : environment.objects) {
+      for (const Geometry& solid : object.geometries) {
+        for (const Geometry& geometry : link.geometries) {
+          if (const double in = depth(geometry, link_pose, solid, object.pose); in > deepest) {
+            deepest = in;
+            obstacle = &object;
+          }
+        }
+      }
+    }
+    if (obstacle != nullptr) {
+      warnings.push_back(one_line(environment_file + ": body " + in_quotes(link.name) + " starts " +
+                                  millimetres(deepest) + " inside " + in_quotes(obstacle->name) +
+                                  "; usually the start position is wrong"));
+    }
+  }
+  return warnings;
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,21 @@
+#pragma once
+
+// Finds what is valid in a scenario and probably not meant: a joint far from its links, links at the same place, a
+// start inside a wall. Each warning is one line: file, line, what is there, and the usual cause.
+
+#include <string>
+#include <vector>
+
+#include "sim/environment/environment_model.hpp"
+#include "sim/scenario/chain.hpp"
+
+namespace proleg::sim {
+
+/// Warnings on the geometry and the masses of a robot.
+[[nodiscard]] std::vector<std::string> check_robot(const Chain& chain);
+
+/// Warnings on links that start inside an object. environment_file: the file that gives the start pose.
+[[nodiscard]] std::vector<std::string> check_start(const std::vector<Link>& links, const EnvironmentModel& environment,
+                                                   const std::string& environment_file);
+
+}  // namespace proleg::sim

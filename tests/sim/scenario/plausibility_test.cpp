@@ -1,0 +1,152 @@
+// Warnings on robots that are valid and probably not meant.
+
+#include "sim/scenario/plausibility.hpp"
+
+#include <gtest/gtest.h>
+
+#include "memory_files.hpp"
+#include "tests/support/files.hpp"
+
+namespace proleg::sim {
+namespace {
+
+const std::filesystem::path scenarios = source_path("/sim/scenarios");
+
+/// The shipped robot of five pitch joints.
+MemoryFiles caterpillar() {
+  MemoryFiles files;
+  const std::filesystem::path folder = scenarios / "travelling_wave";
+  for (const char* name : {"caterpillar.robot.xml", "uniform.actuation.xml", "flat.environment.xml",
+                           "modules/head.kinbody.xml", "modules/segment.kinbody.xml", "modules/tail.kinbody.xml"}) {
+    files.texts[name] = file_contents(folder / name);
+  }
+  files.texts["top.xml"] = file_contents(folder / "uniform.simulation.xml");
+  return files;
+}
+
+const char* const robot = "caterpillar.robot.xml";
+
+/// The only warning; it must begin and end like this.
+void expect_warning(MemoryFiles& files, const std::string& start, const std::string& end) {
+  const std::vector<std::string> warnings = files.scenario().warnings;
+  ASSERT_EQ(warnings.size(), 1U) << testing::PrintToString(warnings);
+  EXPECT_TRUE(warnings[0].starts_with(start)) << warnings[0];
+  EXPECT_TRUE(warnings[0].ends_with(end)) << warnings[0];
+}
+
+TEST(Plausibility, NoShippedScenarioAndNoFileOfTheThesisCausesAWarning) {
+  DiskFiles files;
+  std::size_t read = 0;
+  for (const std::filesystem::path& folder : {scenarios, std::filesystem::path(source_path("/tests/sim/scenario"))}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+      if (entry.path().string().ends_with(".simulation.xml")) {
+        ++read;
+        EXPECT_EQ(read_scenario(entry.path(), files).warnings, std::vector<std::string>{}) << entry.path();
+      }
+    }
+  }
+  EXPECT_GE(read, 8U);
+  EXPECT_EQ(small_scenario().scenario().warnings, std::vector<std::string>{});
+}
+
+TEST(Plausibility, AMissingOffsetfromPutsAJointFarFromItsLinks) {
+  MemoryFiles files = caterpillar();
+  files.replace(robot, "      <offsetfrom>3Seg</offsetfrom>\n", "");
+  expect_warning(files,
+                 "caterpillar.robot.xml:40: joint 'J3' is 144 mm outside of its body '3Seg', which is 72 mm long",
+                 "; usually <offsetfrom> is missing or names a wrong body, or the <translation> of the body is wrong");
+}
+
+TEST(Plausibility, AWrongOffsetfromDoesTheSame) {
+  MemoryFiles files = caterpillar();
+  files.replace(robot, "<offsetfrom>Head</offsetfrom>", "<offsetfrom>2Seg</offsetfrom>");
+  EXPECT_FALSE(files.scenario().warnings.empty());
+}
+
+TEST(Plausibility, ALinkFarFromItsJointIsNamed) {
+  MemoryFiles files = caterpillar();
+  files.replace(robot, "<translation>0 0.288 0</translation>", "<translation>1 0.288 0</translation>");
+  expect_warning(files, "caterpillar.robot.xml:58: joint 'J5' is 974 mm outside of its body '4Seg'", "is wrong");
+}
+
+TEST(Plausibility, OneJointWithItsBodiesInTheOppositeOrderIsNamed) {
+  MemoryFiles files = caterpillar();
+  files.replace(robot, "<body>2Seg</body>\n      <body>3Seg</body>", "<body>3Seg</body>\n      <body>2Seg</body>");
+  expect_warning(files, "caterpillar.robot.xml:40: joint 'J3' lists its two bodies in the opposite order",
+                 "usually every joint lists the body towards the tail first");
+}
+
+TEST(Plausibility, AnOppositeOrderWithAnOppositeAxisIsMeant) {
+  MemoryFiles files = caterpillar();
+  files.replace(robot, "<body>2Seg</body>\n      <body>3Seg</body>\n      <offsetfrom>3Seg</offsetfrom>\n      <axis>1",
+                "<body>3Seg</body>\n      <body>2Seg</body>\n      <offsetfrom>3Seg</offsetfrom>\n      <axis>-1");
+  EXPECT_EQ(files.scenario().warnings, std::vector<std::string>{});
+}
+
+TEST(Plausibility, AChainThatFoldsBackIsNamed) {
+  MemoryFiles files = caterpillar();
+  const std::string turn = " 0</translation><rotationaxis>0 0 1 180</rotationaxis>";
+  files.replace(robot, "0.072 0</translation>", "0.072" + turn)
+      .replace(robot, "0.144 0</translation>", "0" + turn)
+      .replace(robot, "0.216 0</translation>", "-0.072" + turn)
+      .replace(robot, "0.288 0</translation>", "-0.144" + turn);
+  const std::vector<std::string> warnings = files.scenario().warnings;
+  EXPECT_NE(testing::PrintToString(warnings).find("the chain folds back at joint 'J2'"), std::string::npos)
+      << testing::PrintToString(warnings);
+}
+
+TEST(Plausibility, TwoLinksAtTheSamePlaceAreNamed) {
+  MemoryFiles files = caterpillar();
+  files.replace(robot, "<translation>0 0.072 0</translation>", "");
+  const std::vector<std::string> warnings = files.scenario().warnings;
+  EXPECT_NE(testing::PrintToString(warnings).find(
+                "body '1Seg' is at the same place as '2Seg'; usually the <translation> of one of them is missing"),
+            std::string::npos)
+      << testing::PrintToString(warnings);
+}
+
+TEST(Plausibility, AnInertiaThatNoSolidHasIsNamed) {
+  MemoryFiles files = small_scenario();
+  files.replace("end.xml", "3e-4", "9e-4");
+  expect_warning(files, "end.xml:2: body 'TailEnd' has an inertia that no solid has",
+                 "usually a number in <inertia> is wrong");
+}
+
+TEST(Plausibility, AnInertiaInOtherUnitsIsNamed) {
+  MemoryFiles files = small_scenario();
+  files.replace("end.xml", "1e-4 0 0 0 2e-4 0 0 0 3e-4", "1000 0 0 0 2000 0 0 0 2500");  // g cm^2
+  const std::vector<std::string> warnings = files.scenario().warnings;
+  EXPECT_NE(testing::PrintToString(warnings).find("usually <inertia> is not in kg m^2"), std::string::npos)
+      << testing::PrintToString(warnings);
+}
+
+TEST(Plausibility, AMassInGramsIsNamed) {
+  MemoryFiles files = caterpillar();
+  files.replace("modules/head.kinbody.xml", "<total>0.05</total>", "<total>50</total>");
+  expect_warning(files, "modules/head.kinbody.xml:5: body 'Head' has 50 kg, which is 513",
+                 "usually <total> is not in kilograms, or a length is not in metres");
+}
+
+TEST(Plausibility, AStartInsideAWallIsNamedWithItsDepth) {
+  MemoryFiles files = caterpillar();
+  // The head ends at y = 310 mm.
+  files.replace("flat.environment.xml", "</Environment>",
+                "<KinBody name=\"wall\"><Body type=\"static\"><translation>0 1.292 0</translation><Geom type=\"box\">"
+                "<extents>1 1 1</extents></Geom></Body></KinBody></Environment>");
+  expect_warning(files, "flat.environment.xml: body 'Head' starts 18 mm inside 'wall'",
+                 "usually the start position is wrong");
+  files.replace("flat.environment.xml", "0 1.292 0", "0 1.308 0");
+  EXPECT_EQ(files.scenario().warnings, std::vector<std::string>{}) << "2 mm";
+}
+
+TEST(Plausibility, ARobotBesideATurnedBoxIsNotInIt) {
+  MemoryFiles files = caterpillar();
+  // A corner of the box points at the robot; the bounds of the box along the axes of the world contain the robot.
+  files.replace("flat.environment.xml", "</Environment>",
+                "<KinBody name=\"box\"><Body type=\"static\"><translation>2 2 0</translation><rotationaxis>0 0 1 45"
+                "</rotationaxis><Geom type=\"box\"><extents>2 0.5 1</extents></Geom></Body></KinBody></Environment>");
+  EXPECT_EQ(files.scenario().warnings, std::vector<std::string>{});
+}
+
+}  // namespace
+}  // namespace proleg::sim

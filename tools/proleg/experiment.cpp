@@ -19,6 +19,7 @@
 #include "tools/proleg/json_output.hpp"
 #include "tools/proleg/optimisation.hpp"
 #include "tools/proleg/scenario_run.hpp"
+#include "tools/proleg/worker_count.hpp"
 
 namespace {
 

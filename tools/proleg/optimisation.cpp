@@ -2,9 +2,7 @@
 
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <chrono>
-#include <thread>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
@@ -17,8 +15,6 @@
 namespace proleg::tools {
 namespace {
 
-constexpr std::uint32_t max_workers = 1024;
-
 double own_cpu_s() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -29,17 +25,6 @@ double own_cpu_s() {
 }
 
 }  // namespace
-
-std::uint32_t parse_workers(const std::optional<std::string>& word) {
-  if (!word) {
-    return std::clamp(std::thread::hardware_concurrency(), 1U, max_workers);
-  }
-  const std::optional<std::uint32_t> count = parse_whole<std::uint32_t>(*word);
-  if (!count || *count == 0 || *count > max_workers) {
-    throw InputError("--workers", 0, in_quotes(*word), "1 to " + std::to_string(max_workers));
-  }
-  return *count;
-}
 
 void apply_options(const ExperimentOptions& options, optimize::Experiment& experiment) {
   if (options.evaluations) {

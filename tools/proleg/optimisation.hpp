@@ -18,9 +18,6 @@
 
 namespace proleg::tools {
 
-/// --workers; by default one for each processor. Throws InputError.
-[[nodiscard]] std::uint32_t parse_workers(const std::optional<std::string>& word);
-
 /// Options that replace values of the experiment's file: --evaluations, --seed.
 struct ExperimentOptions {
   std::optional<std::string> evaluations;

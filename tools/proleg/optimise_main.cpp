@@ -11,8 +11,8 @@
 
 #include "sim/optimize/evaluation/local_workers.hpp"
 #include "tools/proleg/command_line.hpp"
-#include "tools/proleg/optimisation.hpp"
 #include "tools/proleg/optimise.hpp"
+#include "tools/proleg/worker_count.hpp"
 
 namespace {
 

@@ -35,20 +35,13 @@ std::uint32_t checked_tick_count(const sim::Scenario& scenario) {
 
 }  // namespace
 
-void add_scenario_options(CommandLine& command_line, ScenarioOptions& options) {
+void add_start_options(CommandLine& command_line, ScenarioOptions& options) {
   command_line.add_option("FILE", options.file, "scenario, a *.simulation.xml file").required();
   command_line.add_option("--seconds", options.seconds, "simulated time; by default the duration in the scenario");
-  command_line.add_option(
-      "--record", options.record,
-      "write a recording (SQLite) into this file, which replaces an earlier recording and no other file");
   command_line.add_option(
       "--set", options.settings,
       "NAME=VALUE[@TICK]: change a parameter at the start or at a tick. NAME is [MODULE.]PARAMETER[:JOINT], where "
       "PARAMETER may also be an internal value. May be repeated.");
-  command_line.add_option(
-      "--losses", options.losses,
-      "state frames that joints do not receive: SEED:RATE or SEED:RATE@FIRST-LAST (RATE 0.05 or 5%), or a "
-      "file with lines TICK SENDER RECEIVER [CHANNEL]");
   command_line.add_option("--seed", options.overrides.seed, "seed of the run instead of that of the scenario");
   command_line.add_option("--friction", options.overrides.friction,
                           "coefficient of friction of every object of the environment, also of those that state none; "
@@ -59,6 +52,17 @@ void add_scenario_options(CommandLine& command_line, ScenarioOptions& options) {
   command_line.add_option("--heading", options.overrides.heading,
                           "degrees by which the start pose is turned about the vertical, to the left. The measures are "
                           "relative to this heading.");
+}
+
+void add_scenario_options(CommandLine& command_line, ScenarioOptions& options) {
+  add_start_options(command_line, options);
+  command_line.add_option(
+      "--record", options.record,
+      "write a recording (SQLite) into this file, which replaces an earlier recording and no other file");
+  command_line.add_option(
+      "--losses", options.losses,
+      "state frames that joints do not receive: SEED:RATE or SEED:RATE@FIRST-LAST (RATE 0.05 or 5%), or a "
+      "file with lines TICK SENDER RECEIVER [CHANNEL]");
   command_line.add_flag("--verbose", options.verbose, "print the joint map, remarks on the files and all parameters");
   command_line.add_flag("--json", options.json, "print one JSON object");
 }

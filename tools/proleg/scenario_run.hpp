@@ -29,6 +29,9 @@ struct ScenarioOptions {
   bool json = false;
 };
 
+/// The scenario's file, and what replaces its values at the start of a run.
+void add_start_options(CommandLine& command_line, ScenarioOptions& options);
+/// All of the options.
 void add_scenario_options(CommandLine& command_line, ScenarioOptions& options);
 
 /// A scenario with the options applied.

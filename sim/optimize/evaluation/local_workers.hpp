@@ -21,7 +21,8 @@ struct TaskLimit {
 class LocalWorkers final : public Workers {
  public:
   /// count: at least 1. experiment: must outlive this. The process must have one thread here and in wait(), which may
-  /// replace a worker. Throws std::runtime_error if the system cannot start any process. run: for tests.
+  /// replace a worker. Throws std::runtime_error if the system cannot start any process. run: what a worker does with a
+  /// task.
   LocalWorkers(const Experiment& experiment, std::uint32_t count, RunTask run = run_trial, TaskLimit limit = {});
   ~LocalWorkers() override;  ///< ends the processes, also in the middle of a task
   LocalWorkers(const LocalWorkers&) = delete;

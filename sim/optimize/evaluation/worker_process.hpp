@@ -11,7 +11,7 @@
 
 namespace proleg::optimize {
 
-/// What a worker does with a task: run_trial, or a function of a test.
+/// What a worker does with a task: run_trial, or another function of the task.
 using RunTask = std::function<TrialResult(const Experiment&, const Task&)>;
 
 /// A child of this process that simulates one task after the other. It ends with this object, and with this process in

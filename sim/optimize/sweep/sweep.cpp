@@ -1,0 +1,117 @@
+#include "sim/optimize/sweep/sweep.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "sim/loop/simulation.hpp"
+#include "sim/physics/physics_error.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+
+/// The combination with the first seed.
+Candidate without_seed(const Sweep& sweep, Candidate combination) {
+  for (std::size_t i = 0; i < combination.size(); ++i) {
+    if (sweep.quantities[i].kind == SweptQuantity::Kind::seed) {
+      combination[i] = 0;
+    }
+  }
+  return combination;
+}
+
+}  // namespace
+
+TrialResult run_combination(const Sweep& sweep, const Candidate& combination) {
+  const auto start = std::chrono::steady_clock::now();
+  TrialResult result;
+  const sim::Scenario scenario = sweep.scenario_of(combination);
+  const std::uint32_t ticks = sim::tick_count(scenario);
+  sim::Simulation simulation(scenario);
+  try {
+    while (simulation.tick() < ticks) {
+      simulation.advance();
+    }
+    result.measures = simulation.measures();
+  } catch (const sim::PhysicsError& error) {
+    result.failure = error.what();
+  }
+  result.simulated_s = simulation.time_s();
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+std::vector<SweepRun> run_sweep(const Sweep& sweep, Workers& workers, const std::function<bool()>& stop,
+                                const std::function<void(std::uint64_t)>& observe) {
+  constexpr std::chrono::milliseconds patience{500};
+  std::vector<SweepRun> runs;
+  const std::uint64_t size = sweep.size();
+  std::uint64_t started = 0;
+  while (runs.size() < size && !stop()) {
+    for (; started < size && workers.idle() > 0; ++started) {
+      Task task;
+      task.number = started;
+      task.candidate = sweep.combination(started);
+      workers.start(started, task);
+    }
+    if (std::optional<Workers::Done> done = workers.wait(patience)) {
+      runs.push_back({done->ticket, std::move(done->result)});
+    }
+    observe(runs.size());
+  }
+  std::ranges::sort(runs, {}, &SweepRun::number);
+  return runs;
+}
+
+double SweepGroup::mean() const {
+  return values.empty() ? undefined
+                        : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double SweepGroup::deviation() const {
+  if (values.size() < 2) {
+    return undefined;
+  }
+  const double center = mean();
+  double sum = 0.0;
+  for (const double value : values) {
+    sum += (value - center) * (value - center);
+  }
+  return std::sqrt(sum / static_cast<double>(values.size() - 1));
+}
+
+std::vector<SweepGroup> group_runs(const Sweep& sweep, std::span<const SweepRun> runs, sim::Measure measure) {
+  std::vector<std::pair<Candidate, double>> values;
+  for (const SweepRun& run : runs) {
+    values.emplace_back(without_seed(sweep, sweep.combination(run.number)), run.result.measures[measure]);
+  }
+  std::ranges::stable_sort(values, {}, &std::pair<Candidate, double>::first);
+  std::vector<SweepGroup> groups;
+  for (auto& [combination, value] : values) {
+    if (groups.empty() || groups.back().combination != combination) {
+      groups.push_back({std::move(combination), {}});
+    }
+    if (std::isfinite(value)) {
+      groups.back().values.push_back(value);
+    }
+  }
+  return groups;
+}
+
+std::vector<std::size_t> varied_quantities(const Sweep& sweep) {
+  std::vector<std::size_t> varied;
+  for (std::size_t i = 0; i < sweep.quantities.size(); ++i) {
+    if (sweep.quantities[i].kind != SweptQuantity::Kind::seed && sweep.quantities[i].values.size() > 1) {
+      varied.push_back(i);
+    }
+  }
+  return varied;
+}
+
+}  // namespace proleg::optimize

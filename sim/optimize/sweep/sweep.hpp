@@ -1,0 +1,81 @@
+#pragma once
+
+// A sweep: runs of one scenario with all combinations of some values.
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/measure/measure.hpp"
+#include "sim/optimize/evaluation/task.hpp"
+#include "sim/optimize/evaluation/workers.hpp"
+#include "sim/optimize/experiment/search_space.hpp"
+#include "sim/scenario/scenario.hpp"
+
+namespace proleg::optimize {
+
+inline constexpr std::uint64_t max_sweep_runs = 100'000;
+
+struct SweptQuantity {
+  enum class Kind : std::uint8_t { parameter, seed, friction };
+  Kind kind = Kind::parameter;
+  std::string name;                 ///< of a parameter as in `--set`; "seed"; "friction"
+  std::vector<std::string> values;  ///< decimal numbers, ascending, at least one
+};
+
+struct Sweep {
+  sim::Scenario scenario;
+  std::vector<SweptQuantity> quantities;  ///< at least one, no name twice
+
+  /// Number of combinations; 1 to max_sweep_runs.
+  [[nodiscard]] std::uint64_t size() const;
+  /// Indices of the values of a combination. The last quantity varies fastest.
+  [[nodiscard]] Candidate combination(std::uint64_t number) const;
+  [[nodiscard]] sim::Scenario scenario_of(const Candidate& combination) const;
+};
+
+/// words: "NAME=FIRST:LAST:STEP", "NAME=FIRST:LAST" with a step of 1, or "NAME=VALUE". LAST is included if a step ends
+/// there. Checks every value on the scenario. Throws InputError.
+[[nodiscard]] Sweep read_sweep(sim::Scenario scenario, std::span<const std::string> words);
+
+/// Simulates a combination.
+[[nodiscard]] TrialResult run_combination(const Sweep& sweep, const Candidate& combination);
+
+struct SweepRun {
+  std::uint64_t number = 0;  ///< of the combination
+  TrialResult result;
+};
+
+/// Gives all combinations to the workers, whose function must be run_combination. Returns the results in the order of
+/// the combinations; those that are there if `stop` becomes true. observe: called after each result with their number.
+[[nodiscard]] std::vector<SweepRun> run_sweep(const Sweep& sweep, Workers& workers, const std::function<bool()>& stop,
+                                              const std::function<void(std::uint64_t)>& observe);
+
+/// The runs that differ in their seed only.
+struct SweepGroup {
+  Candidate combination;                   ///< with the first seed
+  std::vector<double> values;              ///< of the measure, where a run has one
+  [[nodiscard]] double mean() const;       ///< not a number without values
+  [[nodiscard]] double deviation() const;  ///< of the sample; not a number below two values
+};
+
+/// In the order of the combinations.
+[[nodiscard]] std::vector<SweepGroup> group_runs(const Sweep& sweep, std::span<const SweepRun> runs,
+                                                 sim::Measure measure);
+
+/// A line for each run: the swept values, all measures, and why the run failed.
+[[nodiscard]] std::string sweep_table(const Sweep& sweep, std::span<const SweepRun> runs);
+/// A line for each group: the swept values without the seed, number of values, mean, standard deviation, minimum,
+/// maximum.
+[[nodiscard]] std::string sweep_summary(const Sweep& sweep, std::span<const SweepGroup> groups, sim::Measure measure);
+
+/// Positions of the quantities other than the seed that have several values.
+[[nodiscard]] std::vector<std::size_t> varied_quantities(const Sweep& sweep);
+
+/// The measure over one quantity (its mean as a line, all values as dots) or over two (a map of the means). Empty if
+/// none or more vary.
+[[nodiscard]] std::string draw_sweep(const Sweep& sweep, std::span<const SweepGroup> groups, sim::Measure measure);
+
+}  // namespace proleg::optimize

@@ -1,0 +1,197 @@
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/optimize/sweep/sweep.hpp"
+#include "sim/scenario/overrides.hpp"
+#include "sim/scenario/reader.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+/// A decimal number as a whole number of 10^-decimals: steps of 0.1 add up without rounding.
+struct Decimal {
+  std::int64_t digits = 0;
+  int decimals = 0;
+};
+
+constexpr std::size_t max_digits = 15;
+
+std::optional<Decimal> parse_decimal_word(std::string_view word) {
+  std::string digits(word);
+  Decimal decimal;
+  if (const std::size_t point = digits.find('.'); point != std::string::npos) {
+    decimal.decimals = static_cast<int>(digits.size() - point - 1);
+    digits.erase(point, 1);
+  }
+  const bool negative = digits.starts_with('-');
+  if (digits.size() - (negative ? 1U : 0U) > max_digits) {
+    return std::nullopt;
+  }
+  const std::optional<std::int64_t> value = parse_whole<std::int64_t>(digits);
+  if (!value) {
+    return std::nullopt;
+  }
+  decimal.digits = *value;
+  return decimal;
+}
+
+std::int64_t power_of_ten(int exponent) {
+  std::int64_t result = 1;
+  for (int i = 0; i < exponent; ++i) {
+    result *= 10;
+  }
+  return result;
+}
+
+/// Without trailing zeros behind the point.
+std::string decimal_text(std::int64_t digits, int decimals) {
+  std::string text = std::to_string(std::abs(digits));
+  if (decimals > 0) {
+    const auto places = static_cast<std::size_t>(decimals);
+    text.insert(0, text.size() > places ? 0 : places + 1 - text.size(), '0');
+    text.insert(text.size() - places, ".");
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.ends_with('.')) {
+      text.pop_back();
+    }
+  }
+  return digits < 0 ? "-" + text : text;
+}
+
+[[noreturn]] void refuse(const std::string& word, const std::string& found, const std::string& expected) {
+  throw InputError("--over " + shortened(word), 0, found, expected);
+}
+
+/// The numbers of FIRST:LAST:STEP.
+std::array<Decimal, 3> parse_range(const std::string& word, std::string_view range) {
+  std::vector<Decimal> numbers;
+  for (std::string_view rest = range;;) {
+    const std::size_t colon = rest.find(':');
+    const std::optional<Decimal> number = parse_decimal_word(rest.substr(0, colon));
+    if (!number || numbers.size() == 3) {
+      refuse(word, in_quotes(range), "VALUE, FIRST:LAST or FIRST:LAST:STEP with numbers of at most 15 digits");
+    }
+    numbers.push_back(*number);
+    if (colon == std::string_view::npos) {
+      break;
+    }
+    rest.remove_prefix(colon + 1);
+  }
+  return {numbers[0], numbers.size() > 1 ? numbers[1] : numbers[0], numbers.size() > 2 ? numbers[2] : Decimal{1, 0}};
+}
+
+std::vector<std::string> values_of(const std::string& word, std::string_view range) {
+  std::array<Decimal, 3> numbers = parse_range(word, range);
+  const int decimals = std::ranges::max(numbers, {}, &Decimal::decimals).decimals;
+  for (Decimal& number : numbers) {
+    const std::int64_t factor = power_of_ten(decimals - number.decimals);
+    if (std::abs(number.digits) > power_of_ten(static_cast<int>(max_digits) + 2) / factor) {
+      refuse(word, in_quotes(range), "numbers of similar size");
+    }
+    number.digits *= factor;
+  }
+  const auto [first, last, step] = std::array{numbers[0].digits, numbers[1].digits, numbers[2].digits};
+  if (step <= 0 || last < first) {
+    refuse(word, step <= 0 ? "a step that is not above 0" : "a last value below the first", "an ascending range");
+  }
+  const auto count = static_cast<std::uint64_t>((last - first) / step) + 1;
+  if (count > max_sweep_runs) {
+    refuse(word, std::to_string(count) + " values", "at most " + std::to_string(max_sweep_runs) + " runs");
+  }
+  std::vector<std::string> values;
+  for (std::int64_t value = first; value <= last; value += step) {
+    values.push_back(decimal_text(value, decimals));
+  }
+  return values;
+}
+
+SweptQuantity read_quantity(const std::string& word) {
+  const std::size_t equals = word.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    refuse(word, equals == 0 ? "no name" : "no '='", "NAME=FIRST:LAST:STEP");
+  }
+  SweptQuantity quantity;
+  quantity.name = word.substr(0, equals);
+  quantity.kind = quantity.name == "seed"       ? SweptQuantity::Kind::seed
+                  : quantity.name == "friction" ? SweptQuantity::Kind::friction
+                                                : SweptQuantity::Kind::parameter;
+  quantity.values = values_of(word, std::string_view(word).substr(equals + 1));
+  return quantity;
+}
+
+/// Throws InputError for a value that the scenario rejects.
+void apply(const SweptQuantity& quantity, const std::string& value, sim::Scenario& scenario) {
+  sim::OverrideWords words;
+  switch (quantity.kind) {
+    case SweptQuantity::Kind::parameter:
+      sim::apply_setting(scenario, quantity.name + "=" + value);
+      return;
+    case SweptQuantity::Kind::seed:
+      words.seed = value;
+      scenario.kernel.seed = *sim::read_overrides(words).seed;
+      return;
+    case SweptQuantity::Kind::friction:
+      words.friction = value;
+      sim::set_friction(scenario.environment, *sim::read_overrides(words).friction);
+      return;
+  }
+}
+
+}  // namespace
+
+std::uint64_t Sweep::size() const {
+  std::uint64_t size = 1;
+  for (const SweptQuantity& quantity : quantities) {
+    size *= quantity.values.size();
+  }
+  return size;
+}
+
+Candidate Sweep::combination(std::uint64_t number) const {
+  Candidate indices(quantities.size());
+  for (std::size_t i = quantities.size(); i-- > 0;) {
+    const std::size_t count = quantities[i].values.size();
+    indices[i] = static_cast<std::uint32_t>(number % count);
+    number /= count;
+  }
+  return indices;
+}
+
+sim::Scenario Sweep::scenario_of(const Candidate& combination) const {
+  sim::Scenario result = scenario;
+  for (std::size_t i = 0; i < quantities.size(); ++i) {
+    apply(quantities[i], quantities[i].values[combination[i]], result);
+  }
+  return result;
+}
+
+Sweep read_sweep(sim::Scenario scenario, std::span<const std::string> words) {
+  Sweep sweep{std::move(scenario), {}};
+  if (words.empty()) {
+    throw InputError("--over", 0, "no quantity", "NAME=FIRST:LAST:STEP, at least once");
+  }
+  for (const std::string& word : words) {
+    SweptQuantity quantity = read_quantity(word);
+    if (std::ranges::find(sweep.quantities, quantity.name, &SweptQuantity::name) != sweep.quantities.end()) {
+      refuse(word, in_quotes(quantity.name) + " twice", "each quantity once");
+    }
+    sim::Scenario trial = sweep.scenario;
+    for (const std::string& value : quantity.values) {
+      apply(quantity, value, trial);
+    }
+    if (sweep.size() * quantity.values.size() > max_sweep_runs) {
+      refuse(word, std::to_string(sweep.size() * quantity.values.size()) + " combinations or more",
+             "at most " + std::to_string(max_sweep_runs) + " runs");
+    }
+    sweep.quantities.push_back(std::move(quantity));
+  }
+  return sweep;
+}
+
+}  // namespace proleg::optimize

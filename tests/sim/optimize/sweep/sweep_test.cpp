@@ -1,0 +1,234 @@
+#include "sim/optimize/sweep/sweep.hpp"
+
+#include <gtest/gtest.h>
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "memory_files.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "tests/support/message_of.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+Sweep sweep_over(const std::vector<std::string>& words) { return read_sweep(sim::small_scenario().scenario(), words); }
+
+std::vector<std::string> values(const std::string& word) { return sweep_over({word}).quantities.at(0).values; }
+
+std::string refusal(const std::vector<std::string>& words) {
+  return message_of<InputError>([&] { static_cast<void>(sweep_over(words)); });
+}
+
+TEST(Sweep, ValuesGoFromFirstToLastInSteps) {
+  EXPECT_EQ(values("amplitude=10:50:20"), (std::vector<std::string>{"10", "30", "50"}));
+  EXPECT_EQ(values("amplitude=10:45:20"), (std::vector<std::string>{"10", "30"})) << "no step ends at 45";
+  EXPECT_EQ(values("seed=8:11"), (std::vector<std::string>{"8", "9", "10", "11"})) << "the step is 1";
+  EXPECT_EQ(values("amplitude=7"), std::vector<std::string>{"7"});
+  EXPECT_EQ(values("offset=-1:1:0.5"), (std::vector<std::string>{"-1", "-0.5", "0", "0.5", "1"}));
+}
+
+TEST(Sweep, StepsOfATenthAddUpWithoutRounding) {
+  const std::vector<std::string> tenths = values("friction=0:1:0.1");
+  ASSERT_EQ(tenths.size(), 11U);
+  EXPECT_EQ(tenths[3], "0.3");
+  EXPECT_EQ(tenths[10], "1");
+  EXPECT_EQ(values("friction=0.05:0.2:0.05"), (std::vector<std::string>{"0.05", "0.1", "0.15", "0.2"}));
+}
+
+TEST(Sweep, TheLastQuantityVariesFastest) {
+  const Sweep sweep = sweep_over({"amplitude=1:2", "seed=5:7"});
+  ASSERT_EQ(sweep.size(), 6U);
+  EXPECT_EQ(sweep.combination(0), (Candidate{0, 0}));
+  EXPECT_EQ(sweep.combination(2), (Candidate{0, 2}));
+  EXPECT_EQ(sweep.combination(3), (Candidate{1, 0}));
+}
+
+TEST(Sweep, ACombinationSetsParameterSeedAndFriction) {
+  const Sweep sweep = sweep_over({"frequency=2:3", "seed=5:7", "friction=0.5:0.7:0.2"});
+  const sim::Scenario scenario = sweep.scenario_of({1, 2, 1});
+  EXPECT_EQ(scenario.kernel.seed, 7U);
+  EXPECT_EQ(scenario.environment.objects.at(0).geometries.at(0).friction, 0.7);
+  sim::Scenario expected = sim::small_scenario().scenario();
+  sim::apply_setting(expected, "frequency=3");
+  ASSERT_EQ(scenario.settings.size(), expected.settings.size());
+  for (std::size_t i = 0; i < expected.settings.size(); ++i) {
+    EXPECT_EQ(scenario.settings[i].value, expected.settings[i].value);
+  }
+}
+
+TEST(Sweep, RefusesWordsThatAreNoRange) {
+  for (const char* word : {"amplitude", "=1:2", "amplitude=", "amplitude=1:2:3:4", "amplitude=1:x", "amplitude=1e3",
+                           "amplitude=1:2:", "amplitude=1234567890123456"}) {
+    EXPECT_TRUE(refusal({word}).starts_with(std::string("--over ") + word + ": found ")) << refusal({word});
+  }
+  EXPECT_NE(refusal({"amplitude=3:1"}).find("an ascending range"), std::string::npos);
+  EXPECT_NE(refusal({"amplitude=1:3:0"}).find("a step that is not above 0"), std::string::npos);
+  EXPECT_NE(refusal({"amplitude=1:3:-1"}).find("a step that is not above 0"), std::string::npos);
+  EXPECT_NE(refusal({"amplitude=0.00000000001:900000000000000"}).find("similar size"), std::string::npos);
+  EXPECT_NE(refusal({"seed=1:2", "seed=3:4"}).find("'seed' twice"), std::string::npos);
+  EXPECT_NE(refusal({}).find("--over"), std::string::npos);
+}
+
+TEST(Sweep, RefusesValuesThatTheScenarioRejects) {
+  EXPECT_EQ(refusal({"amplitud=1:2"}).substr(0, 12), "amplitud=1: ");
+  EXPECT_NE(refusal({"amplitude=80:100:10"}).find("amplitude=100: found"), std::string::npos);
+  EXPECT_NE(refusal({"amplitude:J9=1:2"}).find("'J9'"), std::string::npos);
+  EXPECT_NE(refusal({"seed=-1:2"}).find("'-1'"), std::string::npos);
+  EXPECT_NE(refusal({"seed=1:2:0.5"}).find("'1.5'"), std::string::npos);
+  EXPECT_NE(refusal({"friction=-1:2"}).find("0 to 1000"), std::string::npos);
+}
+
+TEST(Sweep, RefusesMoreThanAHundredThousandRuns) {
+  EXPECT_EQ(refusal({"seed=1:100000"}), "");
+  EXPECT_NE(refusal({"seed=1:100001"}).find("at most 100000 runs"), std::string::npos);
+  EXPECT_EQ(refusal({"seed=1:1000", "frequency=0.1:10:0.1"}), "");
+  EXPECT_NE(refusal({"seed=1:1001", "frequency=0.1:10:0.1"}).find("at most 100000 runs"), std::string::npos);
+}
+
+/// Answers in the opposite order of the tasks, two at a time.
+class BackwardWorkers final : public Workers {
+ public:
+  [[nodiscard]] std::uint32_t count() const override { return 2; }
+  [[nodiscard]] std::uint32_t idle() const override { return 2 - static_cast<std::uint32_t>(tasks_.size()); }
+  void start(std::uint64_t ticket, const Task& task) override { tasks_.emplace_back(ticket, task); }
+  [[nodiscard]] std::optional<Done> wait(std::chrono::milliseconds /*timeout*/) override {
+    const auto [ticket, task] = tasks_.back();
+    tasks_.pop_back();
+    TrialResult result;
+    result.measures[sim::Measure::distance] = task.candidate[0] * 10.0 + task.candidate[1];
+    return Done{ticket, result, 0};
+  }
+  [[nodiscard]] std::vector<std::string> messages() override { return {}; }
+
+ private:
+  std::deque<std::pair<std::uint64_t, Task>> tasks_;
+};
+
+TEST(Sweep, ResultsAreInTheOrderOfTheCombinations) {
+  const Sweep sweep = sweep_over({"amplitude=1:3", "seed=1:4"});
+  BackwardWorkers workers;
+  const std::vector<SweepRun> runs = run_sweep(
+      sweep, workers, [] { return false; }, [](std::uint64_t) {});
+  ASSERT_EQ(runs.size(), 12U);
+  for (std::uint64_t i = 0; i < runs.size(); ++i) {
+    EXPECT_EQ(runs[i].number, i);
+    EXPECT_EQ(runs[i].result.measures[sim::Measure::distance], static_cast<double>(i / 4 * 10 + i % 4));
+  }
+}
+
+TEST(Sweep, AnInterruptionLeavesWhatIsDone) {
+  const Sweep sweep = sweep_over({"amplitude=1:3", "seed=1:4"});
+  BackwardWorkers workers;
+  std::uint64_t done = 0;
+  const std::vector<SweepRun> runs = run_sweep(
+      sweep, workers, [&] { return done == 5; }, [&](std::uint64_t count) { done = count; });
+  EXPECT_EQ(runs.size(), 5U);
+  EXPECT_TRUE(std::ranges::is_sorted(runs, {}, &SweepRun::number));
+}
+
+TEST(Sweep, ACombinationIsSimulatedUpToItsEnd) {
+  const TrialResult result = run_combination(sweep_over({"amplitude=20"}), {0});
+  EXPECT_EQ(result.failure, "");
+  EXPECT_DOUBLE_EQ(result.simulated_s, 2.0);
+  EXPECT_TRUE(std::isfinite(result.measures[sim::Measure::distance]));
+}
+
+TEST(Sweep, AFailedSimulationNamesItsReason) {
+  sim::MemoryFiles files = sim::small_scenario();
+  files.replace("environment.xml", "0 0 0.1,", "0 0 -20,").replace("environment.xml", "0 0 -0.5", "100 0 -0.5");
+  const std::vector<std::string> words{"amplitude=20"};
+  const TrialResult result = run_combination(read_sweep(files.scenario(), words), {0});
+  EXPECT_NE(result.failure, "");
+  EXPECT_TRUE(std::isnan(result.measures[sim::Measure::distance]));
+}
+
+SweepRun run_with(std::uint64_t number, double distance) {
+  SweepRun run;
+  run.number = number;
+  run.result.measures[sim::Measure::distance] = distance;
+  return run;
+}
+
+TEST(SweepSummary, HasMeanAndStandardDeviationOverTheSeeds) {
+  const Sweep sweep = sweep_over({"seed=1:4", "amplitude=10:20:10"});  // the seed varies more slowly
+  const std::vector<SweepRun> runs{run_with(0, 2.0), run_with(1, 1.0), run_with(2, 4.0),
+                                   run_with(3, NAN), run_with(4, 4.0), run_with(6, 6.0)};
+  const std::vector<SweepGroup> groups = group_runs(sweep, runs, sim::Measure::distance);
+  ASSERT_EQ(groups.size(), 2U);
+  EXPECT_EQ(groups[0].values, (std::vector<double>{2.0, 4.0, 4.0, 6.0}));
+  EXPECT_DOUBLE_EQ(groups[0].mean(), 4.0);
+  EXPECT_DOUBLE_EQ(groups[0].deviation(), std::sqrt(8.0 / 3.0));
+  EXPECT_EQ(groups[1].values, std::vector<double>{1.0}) << "a value that is undefined does not count";
+  EXPECT_TRUE(std::isnan(groups[1].deviation()));
+  EXPECT_TRUE(std::isnan(SweepGroup{}.mean()));
+}
+
+TEST(SweepSummary, IsATableWithoutTheSeed) {
+  const Sweep sweep = sweep_over({"amplitude=10:20:10", "seed=1:2"});
+  const std::vector<SweepRun> runs{run_with(0, 1.0), run_with(1, 3.0), run_with(2, 5.0)};
+  const std::string table =
+      sweep_summary(sweep, group_runs(sweep, runs, sim::Measure::distance), sim::Measure::distance);
+  EXPECT_TRUE(table.starts_with("amplitude\truns\tmean of distance (m)\t")) << table;
+  EXPECT_NE(table.find("\n10\t2\t2\t1.4142135623730951\t1\t3\n"), std::string::npos) << table;
+  EXPECT_TRUE(table.ends_with("\n20\t1\t5\t\t5\t5\n")) << table;
+}
+
+TEST(SweepTable, HasALineForEachRunWithItsValues) {
+  const Sweep sweep = sweep_over({"amplitude=10:20:10", "seed=3:4"});
+  std::vector<SweepRun> runs{run_with(0, 1.5), run_with(3, NAN)};
+  runs[1].result.failure = "the robot\nfell";
+  const std::string table = sweep_table(sweep, runs);
+  EXPECT_TRUE(table.starts_with("amplitude\tseed\tdistance (m)\t")) << table;
+  EXPECT_NE(table.find("\n10\t3\t1.5\t"), std::string::npos) << table;
+  EXPECT_NE(table.find("\n20\t4\t\t"), std::string::npos) << table;
+  EXPECT_TRUE(table.ends_with("\tthe robot fell\n")) << table;
+  EXPECT_EQ(std::ranges::count(table, '\n'), 3);
+}
+
+/// Number of elements of that name in a group of the picture.
+int count_in_group(const std::string& picture, const std::string& group, const char* element) {
+  tinyxml2::XMLDocument document;
+  EXPECT_EQ(document.Parse(picture.c_str()), tinyxml2::XML_SUCCESS);
+  int count = 0;
+  const auto* svg = document.RootElement();
+  for (const auto* g = svg == nullptr ? nullptr : svg->FirstChildElement("g"); g != nullptr;
+       g = g->NextSiblingElement("g")) {
+    if (g->Attribute("class", group.c_str()) != nullptr) {
+      for (const auto* child = g->FirstChildElement(element); child != nullptr;
+           child = child->NextSiblingElement(element)) {
+        ++count;
+      }
+    }
+  }
+  return count;
+}
+
+std::string picture_of(const std::vector<std::string>& words) {
+  const Sweep sweep = sweep_over(words);
+  std::vector<SweepRun> runs;
+  for (std::uint64_t i = 0; i < sweep.size(); ++i) {
+    runs.push_back(run_with(i, 1.0 + static_cast<double>(i)));
+  }
+  return draw_sweep(sweep, group_runs(sweep, runs, sim::Measure::distance), sim::Measure::distance);
+}
+
+TEST(SweepFigure, OneQuantityIsALineWithItsSpread) {
+  const std::string picture = picture_of({"amplitude=10:50:10", "seed=1:3"});
+  EXPECT_EQ(count_in_group(picture, "mean", "polyline"), 3) << "mean, and a standard deviation below and above";
+  EXPECT_EQ(count_in_group(picture, "runs", "path"), 1);
+}
+
+TEST(SweepFigure, TwoQuantitiesAreAMapWithACellForEachMean) {
+  EXPECT_EQ(count_in_group(picture_of({"amplitude=10:50:10", "seed=1:3", "friction=0.1:0.3:0.1"}), "map", "rect"), 15);
+}
+
+TEST(SweepFigure, ThereIsNoneForNoOrThreeQuantities) {
+  EXPECT_EQ(picture_of({"seed=1:3"}), "");
+  EXPECT_EQ(picture_of({"amplitude=10:20:10", "friction=0.1:0.2:0.1", "frequency=1:2"}), "");
+}
+
+}  // namespace
+}  // namespace proleg::optimize

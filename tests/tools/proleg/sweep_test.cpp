@@ -1,0 +1,115 @@
+// proleg sweep as a user runs it.
+
+#include <csignal>
+#include <thread>
+
+#include "command_line.hpp"
+#include "json_result.hpp"
+
+namespace proleg::test {
+namespace {
+
+/// The cells of a table of tab-separated values.
+std::vector<std::vector<std::string>> cells(const std::string& table) {
+  std::vector<std::vector<std::string>> lines;
+  std::istringstream stream(table);
+  for (std::string line; std::getline(stream, line);) {
+    std::istringstream line_stream(line);
+    lines.emplace_back();
+    for (std::string cell; std::getline(line_stream, cell, '\t');) {
+      lines.back().push_back(cell);
+    }
+  }
+  return lines;
+}
+
+TEST_F(CommandLine, ARunOfASweepIsThatOfSimulateWithTheSameValues) {
+  const std::string out = file("out").string();
+  const Finished finished =
+      proleg({"sweep", scenario("coupled"), "--over", "amplitude=20:40:20", "--over", "seed=1:3", "--over",
+              "friction=0.1:0.2:0.1", "--seconds", "1", "--set", "frequency=1.5", "--workers", "2", "--out", out});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(finished.err, "");
+  const auto table = cells(read_file(out + "/sweep.tsv"));
+  ASSERT_EQ(table.size(), 13U);
+  EXPECT_EQ(table[0][3], "distance (m)");
+  ASSERT_EQ(std::vector(table[8].begin(), table[8].begin() + 3), (std::vector<std::string>{"40", "1", "0.2"}));
+  const Json single(proleg({"simulate", scenario("coupled"), "--seconds", "1", "--set", "frequency=1.5", "--set",
+                            "amplitude=40", "--seed", "1", "--friction", "0.2", "--json"})
+                        .out);
+  EXPECT_EQ(std::stod(table[8][3]), single["measures"]["distance"].number());
+  EXPECT_EQ(cells(read_file(out + "/summary.tsv")).size(), 5U) << "four combinations without the seed";
+  EXPECT_NE(read_file(out + "/sweep.svg").find("<svg"), std::string::npos);
+}
+
+TEST_F(CommandLine, ASweepDoesNotDependOnTheNumberOfWorkers) {
+  const std::string long_chain = source_path("/sim/scenarios/long_chain/twenty.simulation.xml");  // iterative solver
+  std::vector<std::string> tables;
+  for (const char* workers : {"1", "3"}) {
+    const std::string out = file(workers).string();
+    EXPECT_EQ(
+        proleg({"sweep", long_chain, "--over", "seed=1:5", "--seconds", "0.5", "--workers", workers, "--out", out})
+            .status,
+        0);
+    tables.push_back(read_file(out + "/sweep.tsv"));
+  }
+  EXPECT_EQ(cells(tables[0]).size(), 6U);
+  EXPECT_EQ(tables[0], tables[1]);
+}
+
+TEST_F(CommandLine, ASweepPrintsMeanAndStandardDeviationAsJson) {
+  const Finished finished = proleg({"sweep", scenario("coupled"), "--over", "amplitude=20:40:20", "--over", "seed=1:3",
+                                    "--seconds", "1", "--measure", "speed", "--json", "--out", file("out").string()});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const Json object(finished.out);
+  EXPECT_EQ(object["measure"], "speed");
+  EXPECT_EQ(object["runs"], 6);
+  ASSERT_EQ(object["groups"].size(), 2U);
+  EXPECT_EQ(object["groups"][1]["at"]["amplitude"], 40);
+  EXPECT_EQ(object["groups"][1]["values"], 3);
+  EXPECT_GT(object["groups"][1]["standard_deviation"].number(), 0.0);
+}
+
+TEST_F(CommandLine, SeedsThatChangeNothingCauseAWarning) {
+  const Finished finished =
+      proleg({"sweep", scenario("uniform"), "--over", "seed=1:2", "--seconds", "0.1", "--out", file("out").string()});
+  EXPECT_EQ(finished.status, 0);
+  EXPECT_NE(finished.err.find("all seeds give the same run"), std::string::npos) << finished.err;
+}
+
+TEST_F(CommandLine, AnInterruptedSweepLeavesATableOfWhatIsDone) {
+  const std::string out = file("out").string();
+  const pid_t child = start({PROLEG_PROGRAM, "sweep", scenario("coupled"), "--over", "seed=1:100000", "--seconds",
+                             "0.05", "--workers", "1", "--out", out});
+  while (!fs::exists(out) && waitpid(child, nullptr, WNOHANG) == 0) {  // from then on an interruption ends the sweep
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  kill(child, SIGINT);
+  const Finished finished = finish(child);
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_NE(finished.err.find("interrupted after "), std::string::npos) << finished.err;
+  const auto table = cells(read_file(out + "/sweep.tsv"));
+  EXPECT_GE(table.size(), 1U);
+  EXPECT_LT(table.size(), 100'001U);
+}
+
+TEST_F(CommandLine, SweepRefusesBadInputAndWritesNothing) {
+  const auto refused = [&](std::vector<std::string> words, const std::vector<std::string>& message) {
+    words.insert(words.begin(), {"sweep", scenario("uniform"), "--out", file("out").string()});
+    expect_refused(words, message);
+    EXPECT_TRUE(left_behind().empty());
+  };
+  refused({}, {"--over"});
+  refused({"--over", "amplitude"}, {"--over amplitude", "NAME=FIRST:LAST:STEP"});
+  refused({"--over", "amplitude=80:100:20"}, {"amplitude=100"});
+  refused({"--over", "seed=1:100001"}, {"at most 100000 runs"});
+  refused({"--over", "seed=1:2", "--measure", "fun"}, {"--measure", "distance"});
+  refused({"--over", "seed=1:2", "--workers", "0"}, {"--workers", "1 to 1024"});
+  fs::create_directories(file("done"));
+  std::ofstream(file("done/sweep.tsv")) << "precious\n";
+  expect_refused({"sweep", scenario("uniform"), "--over", "seed=1:2", "--out", file("done").string()},
+                 {"sweep.tsv", "--out"});
+}
+
+}  // namespace
+}  // namespace proleg::test

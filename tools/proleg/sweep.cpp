@@ -1,0 +1,260 @@
+// proleg sweep: runs a scenario with all combinations of some values.
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/optimize/evaluation/local_workers.hpp"
+#include "sim/optimize/experiment/trials.hpp"
+#include "sim/optimize/sweep/sweep.hpp"
+#include "tools/proleg/build_id.hpp"
+#include "tools/proleg/command_line.hpp"
+#include "tools/proleg/json_output.hpp"
+#include "tools/proleg/scenario_run.hpp"
+#include "tools/proleg/terminal_line.hpp"
+#include "tools/proleg/worker_count.hpp"
+
+namespace {
+
+using namespace proleg;
+using namespace proleg::tools;
+using optimize::Sweep;
+using optimize::SweepGroup;
+using optimize::SweepRun;
+using optimize::SweptQuantity;
+
+struct SweepOptions {
+  ScenarioOptions scenario;
+  std::vector<std::string> over;
+  std::string measure = "distance";
+  std::optional<std::string> workers;
+  std::optional<std::string> out;
+  bool json = false;
+};
+
+struct SweepResult {
+  std::vector<SweepRun> runs;
+  std::vector<SweepGroup> groups;
+  std::vector<std::filesystem::path> files;
+  std::uint64_t failed = 0;
+  std::uint32_t workers = 0;
+  double wall_s = 0.0;
+};
+
+sim::Measure read_measure(const std::string& name) {
+  if (const auto measure = sim::find_measure(name)) {
+    return *measure;
+  }
+  std::vector<std::string> names;
+  for (const sim::MeasureDeclaration& declaration : sim::measures()) {
+    names.emplace_back(declaration.name);
+  }
+  throw InputError("--measure", 0, in_quotes(name), "one of " + listed(names));
+}
+
+/// The folder of the results; none of the files may exist in it.
+std::filesystem::path result_folder(const SweepOptions& options) {
+  if (options.out && options.out->empty()) {
+    throw InputError("--out", 0, "an empty name", "the name of a folder");
+  }
+  const std::string file = std::filesystem::path(options.scenario.file).filename().string();
+  std::filesystem::path folder = options.out.value_or(file.substr(0, file.find('.')) + "_sweep");
+  for (const char* name : {"sweep.tsv", "summary.tsv", "sweep.svg"}) {
+    if (std::filesystem::exists(folder / name)) {
+      throw BadInput((folder / name).string() +
+                     ": found an existing file, expected none; --out FOLDER names another folder");
+    }
+  }
+  return folder;
+}
+
+void create_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw BadInput("cannot create the folder " + folder.string() + ": " + error.message());
+  }
+}
+
+/// Several seeds of a gait without noise give equal runs.
+void warn_of_equal_runs(const Sweep& sweep) {
+  for (const SweptQuantity& quantity : sweep.quantities) {
+    if (quantity.name.find("noise") != std::string::npos) {
+      return;
+    }
+  }
+  for (const SweptQuantity& quantity : sweep.quantities) {
+    if (quantity.kind == SweptQuantity::Kind::seed && quantity.values.size() > 1 &&
+        !optimize::depends_on_seed(sweep.scenario, {}, {})) {
+      std::cerr << "proleg sweep: warning: all seeds give the same run, because neither the start state of an "
+                   "algorithm nor the touch sensors have noise\n";
+    }
+  }
+}
+
+SweepResult run(const Sweep& sweep, std::uint32_t worker_count) {
+  optimize::Experiment experiment;  // the workers take their time limit from it
+  experiment.scenario.duration_s = sweep.scenario.duration_s;
+  optimize::LocalWorkers workers(experiment, worker_count,
+                                 [&sweep](const optimize::Experiment& /*experiment*/, const optimize::Task& task) {
+                                   return optimize::run_combination(sweep, task.candidate);
+                                 });
+  TerminalLine progress(std::chrono::milliseconds(200));
+  const auto show = [&](std::uint64_t done) {
+    for (const std::string& message : workers.messages()) {
+      progress.erase();
+      std::cerr << "proleg sweep: " << message << '\n';
+    }
+    if (progress.is_due() && done > 0) {
+      const double left_s = progress.elapsed_s() * static_cast<double>(sweep.size() - done) / static_cast<double>(done);
+      progress.draw(std::to_string(done) + " of " + std::to_string(sweep.size()) + " runs, " + duration_text(left_s) +
+                    " left");
+    }
+  };
+  SweepResult result;
+  const auto start = std::chrono::steady_clock::now();
+  result.runs = optimize::run_sweep(sweep, workers, interrupted, show);
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.workers = workers.count();
+  for (const SweepRun& done : result.runs) {
+    result.failed += done.result.failure.empty() ? 0U : 1U;
+  }
+  return result;
+}
+
+void write_results(const Sweep& sweep, sim::Measure measure, const std::filesystem::path& folder, SweepResult& result) {
+  const auto write = [&](const char* name, const std::string& text) {
+    result.files.push_back(folder / name);
+    write_file(result.files.back(), text);
+  };
+  write("sweep.tsv", optimize::sweep_table(sweep, result.runs));
+  write("summary.tsv", optimize::sweep_summary(sweep, result.groups, measure));
+  if (const std::string picture = optimize::draw_sweep(sweep, result.groups, measure); !picture.empty()) {
+    write("sweep.svg", picture);
+  }
+}
+
+/// "amplitude 10, friction 0.1"; empty if only the seed varies.
+std::string description(const Sweep& sweep, const SweepGroup& group) {
+  std::string text;
+  for (std::size_t i = 0; i < sweep.quantities.size(); ++i) {
+    if (sweep.quantities[i].kind != SweptQuantity::Kind::seed) {
+      text += (text.empty() ? "" : ", ") + sweep.quantities[i].name + ' ' +
+              sweep.quantities[i].values[group.combination[i]];
+    }
+  }
+  return text.empty() ? "all runs" : text;
+}
+
+std::string figure(double value) { return std::isfinite(value) ? number_text(value) : "-"; }
+
+void print_table(const Sweep& sweep, sim::Measure measure, const SweepResult& result) {
+  const sim::MeasureDeclaration& declaration = sim::declaration_of(measure);
+  const std::string unit(declaration.unit);
+  std::printf("%s%s: mean, standard deviation, number of values\n", std::string(declaration.name).c_str(),
+              unit.empty() ? "" : (" (" + unit + ")").c_str());
+  constexpr std::size_t max_lines = 60;
+  for (std::size_t i = 0; i < result.groups.size() && i < max_lines; ++i) {
+    const SweepGroup& group = result.groups[i];
+    std::printf("  %-40s %10s %10s %6zu\n", description(sweep, group).c_str(), figure(group.mean()).c_str(),
+                figure(group.deviation()).c_str(), group.values.size());
+  }
+  if (result.groups.size() > max_lines) {
+    std::printf("  ... and %zu more lines in summary.tsv\n", result.groups.size() - max_lines);
+  }
+  std::printf("%-10s %zu of %llu, %llu of them failed; %u workers, %.1f s\n", "runs", result.runs.size(),
+              static_cast<unsigned long long>(sweep.size()), static_cast<unsigned long long>(result.failed),
+              result.workers, result.wall_s);
+  for (const std::filesystem::path& file : result.files) {
+    std::printf("%-10s %s\n", "written", file.c_str());
+  }
+}
+
+void print_json(const SweepOptions& options, const Sweep& sweep, const std::filesystem::path& folder,
+                const SweepResult& result) {
+  Json groups = Json::empty_array();
+  for (const SweepGroup& group : result.groups) {
+    Json values = Json::empty_object();
+    for (std::size_t i = 0; i < sweep.quantities.size(); ++i) {
+      if (sweep.quantities[i].kind != SweptQuantity::Kind::seed) {
+        values.add(sweep.quantities[i].name, parse_number(sweep.quantities[i].values[group.combination[i]]));
+      }
+    }
+    groups.append({{"at", values},
+                   {"mean", group.mean()},
+                   {"standard_deviation", group.deviation()},
+                   {"values", group.values.size()}});
+  }
+  const Json object{{"scenario", options.scenario.file},
+                    {"measure", options.measure},
+                    {"combinations", sweep.size()},
+                    {"runs", result.runs.size()},
+                    {"failed", result.failed},
+                    {"groups", groups},
+                    {"overrides", overrides_object(sweep.scenario.overrides)},
+                    {"workers", result.workers},
+                    {"wall_s", result.wall_s},
+                    {"out", folder.string()},
+                    {"build_id", build_id}};
+  std::cout << object.text() << '\n';
+}
+
+int sweep(const SweepOptions& options) {
+  const sim::Measure measure = read_measure(options.measure);
+  ScenarioRun setup = prepare_run(options.scenario);
+  const Sweep sweep = optimize::read_sweep(std::move(setup.scenario), options.over);
+  const std::uint32_t worker_count = parse_workers(options.workers);
+  const std::filesystem::path folder = result_folder(options);
+  catch_interrupts();
+  create_folder(folder);
+  print_warnings("proleg sweep", sweep.scenario);
+  warn_of_equal_runs(sweep);
+  SweepResult result = run(sweep, worker_count);
+  result.groups = optimize::group_runs(sweep, result.runs, measure);
+  write_results(sweep, measure, folder, result);
+  if (options.json) {
+    print_json(options, sweep, folder, result);
+  } else {
+    print_table(sweep, measure, result);
+  }
+  if (interrupted()) {
+    std::cerr << "proleg sweep: interrupted after " << result.runs.size() << " of " << sweep.size()
+              << " runs; they are in " << (folder / "sweep.tsv").string() << '\n';
+    return exit_failed;
+  }
+  return exit_success;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine command_line("proleg sweep",
+                           "Runs a scenario with all combinations of some values, several runs at a time. Writes "
+                           "sweep.tsv (all measures of every run),\nsummary.tsv (mean and standard deviation over the "
+                           "seeds) and sweep.svg (if one or two quantities vary besides the seed).");
+  SweepOptions options;
+  add_start_options(command_line, options.scenario);
+  command_line
+      .add_option("--over", options.over,
+                  "NAME=FIRST:LAST:STEP (step 1 if it is omitted): the values of a parameter, named as in --set, of "
+                  "the seed (NAME is seed) or of the friction as in --friction (NAME is friction). Several --over give "
+                  "all combinations, at most 100000.")
+      .required();
+  command_line.add_option("--measure", options.measure, "measure of summary and picture (docs/gait-measures.md)")
+      .value_name("NAME")
+      .shows_default();
+  command_line.add_option("--workers", options.workers,
+                          "number of simulations at the same time; default: number of processors");
+  command_line.add_option("--out", options.out,
+                          "folder for tables and picture; default: the name of FILE up to its first dot, and _sweep");
+  command_line.add_flag("--json", options.json, "print one JSON object");
+  return command_line.run(argc, argv, [&] { return sweep(options); });
+}

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace proleg::tools {
+
+/// --workers; by default one for each processor. Throws InputError.
+[[nodiscard]] std::uint32_t parse_workers(const std::optional<std::string>& word);
+
+}  // namespace proleg::tools

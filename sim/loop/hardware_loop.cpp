@@ -198,6 +198,7 @@ class HardwareLoop::Implementation {
     }
     advance_reference();
     report_.lost_frames += reference_.chain().lost().size();
+    report_.receptions += reference_.chain().receptions();
     values_.read(tick_);
     report_.setpoint_hash.append(values_.setpoints());
     plant_ticks_.end(now);
@@ -273,6 +274,7 @@ const std::optional<Difference>& HardwareLoop::first_difference() const {
   return implementation_->report().first_difference;
 }
 std::uint64_t HardwareLoop::lost_frames() const { return implementation_->report().lost_frames; }
+std::uint64_t HardwareLoop::receptions() const { return implementation_->report().receptions; }
 BusStatistics HardwareLoop::bus_statistics() const { return implementation_->bus_statistics(); }
 std::uint64_t HardwareLoop::setup_frames() const { return implementation_->report().setup_frames; }
 

@@ -71,6 +71,8 @@ class HardwareLoop {
   [[nodiscard]] const std::optional<Difference>& first_difference() const;
   /// State frames withheld from a receiver.
   [[nodiscard]] std::uint64_t lost_frames() const;
+  /// State frames by receiver, also those withheld.
+  [[nodiscard]] std::uint64_t receptions() const;
   /// Frames on the bus and the share of time that they took, from SYNC 0 on.
   [[nodiscard]] BusStatistics bus_statistics() const;
   /// Frames on the bus before SYNC 0.

@@ -44,6 +44,7 @@ struct HardwareReport {
   std::vector<std::uint32_t> dropped_changes;  ///< ticks of changes that did not take effect in any module
   std::vector<RestartEvent> restart_events;    ///< of the last tick
   std::uint64_t lost_frames = 0;               ///< state frames withheld from a receiver
+  std::uint64_t receptions = 0;                ///< of state frames, also withheld ones
   std::uint64_t setup_frames = 0;              ///< frames on the bus before SYNC 0
 
   void add(const Difference& difference) {

@@ -75,6 +75,7 @@ void KernelChain::join(unsigned joint) {
 
 void KernelChain::exchange_frames() {
   lost_.clear();
+  receptions_ = 0;
   const bool any_losses = losses_ != nullptr && losses_->any();
   for (unsigned sender = 0; sender < joint_count(); ++sender) {
     const Kernel& source = *kernels_[sender];
@@ -85,6 +86,7 @@ void KernelChain::exchange_frames() {
         if (receiver == sender || !running_.contains(receiver)) {
           continue;
         }
+        ++receptions_;
         if (without.contains(receiver)) {
           lost_.push_back({tick_, static_cast<std::uint8_t>(sender), static_cast<std::uint8_t>(channel),
                            static_cast<std::uint8_t>(receiver)});

@@ -49,6 +49,8 @@ class KernelChain {
   [[nodiscard]] std::span<const std::int32_t> setpoints() const { return setpoints_; }
   /// Frames that the losses withheld in the last tick.
   [[nodiscard]] std::span<const Loss> lost() const { return lost_; }
+  /// Frames of the last tick that a joint received or that were withheld from it; a frame counts once for each joint.
+  [[nodiscard]] std::uint32_t receptions() const { return receptions_; }
   /// The coming tick.
   [[nodiscard]] std::uint32_t tick() const { return tick_; }
   [[nodiscard]] unsigned joint_count() const { return static_cast<unsigned>(kernels_.size()); }
@@ -69,6 +71,7 @@ class KernelChain {
   std::uint32_t tick_ = 0;
   std::vector<std::int32_t> setpoints_;
   std::vector<Loss> lost_;
+  std::uint32_t receptions_ = 0;
 };
 
 }  // namespace proleg::sim

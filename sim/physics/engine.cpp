@@ -2,10 +2,13 @@
 
 #include <ode/ode.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdarg>
 #include <cstdio>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 #include "sim/physics/physics_error.hpp"
 
@@ -13,14 +16,27 @@ namespace proleg::sim {
 namespace {
 
 thread_local std::size_t message_count = 0;
+thread_local std::vector<std::string> message_texts;
 
-void count_message(int /*number*/, const char* /*format*/, va_list /*arguments*/) { ++message_count; }
+std::string text_of(const char* format, va_list arguments) {
+  std::array<char, 256> text{};
+  std::vsnprintf(text.data(), text.size(), format, arguments);
+  return text.data();
+}
+
+void keep_message(int /*number*/, const char* format, va_list arguments) {
+  constexpr std::size_t max_texts = 10;
+  ++message_count;
+  if (message_texts.size() < max_texts) {
+    if (std::string text = text_of(format, arguments); std::ranges::find(message_texts, text) == message_texts.end()) {
+      message_texts.push_back(std::move(text));
+    }
+  }
+}
 
 // The engine ends the process when this returns; an exception is the only way out.
 [[noreturn]] void raise_error(int number, const char* format, va_list arguments) {
-  std::array<char, 256> text{};
-  std::vsnprintf(text.data(), text.size(), format, arguments);
-  throw PhysicsError("the physics engine reports error " + std::to_string(number) + ": " + text.data());
+  throw PhysicsError("the physics engine reports error " + std::to_string(number) + ": " + text_of(format, arguments));
 }
 
 }  // namespace
@@ -29,7 +45,7 @@ void prepare_engine_for_this_thread() {
   static std::once_flag once;
   std::call_once(once, [] {
     dInitODE2(0);
-    dSetMessageHandler(count_message);
+    dSetMessageHandler(keep_message);
     dSetErrorHandler(raise_error);
     dSetDebugHandler(raise_error);
   });
@@ -37,5 +53,7 @@ void prepare_engine_for_this_thread() {
 }
 
 std::size_t engine_messages() { return message_count; }
+
+std::span<const std::string> engine_message_texts() { return message_texts; }
 
 }  // namespace proleg::sim

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
+#include <string>
 
 namespace proleg::sim {
 
@@ -10,5 +12,7 @@ void prepare_engine_for_this_thread();
 
 /// Messages of the engine on this thread so far.
 [[nodiscard]] std::size_t engine_messages();
+/// The first of them that differ, at most ten.
+[[nodiscard]] std::span<const std::string> engine_message_texts();
 
 }  // namespace proleg::sim

@@ -347,5 +347,6 @@ std::size_t World::contact_count() const { return implementation_->contact_count
 ContactSliding World::contact_sliding() const { return implementation_->contact_sliding(); }
 std::optional<double> World::lowest_ground() const { return implementation_->lowest_ground(); }
 std::size_t World::solver_messages() const { return implementation_->solver_messages(); }
+std::span<const std::string> World::solver_message_texts() { return engine_message_texts(); }
 
 }  // namespace proleg::sim

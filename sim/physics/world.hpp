@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sim/environment/environment_model.hpp"
@@ -68,6 +69,8 @@ class World {
   [[nodiscard]] std::optional<double> lowest_ground() const;
   /// Number of messages from the solver since the world was made, such as "LCP internal error".
   [[nodiscard]] std::size_t solver_messages() const;
+  /// The first of the messages on this thread that differ.
+  [[nodiscard]] static std::span<const std::string> solver_message_texts();
 
  private:
   class Implementation;

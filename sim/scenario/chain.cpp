@@ -85,7 +85,7 @@ class ChainBuilder {
       arrived_by = next;
       body = tailward;
     }
-    chain.joint_map = "joint map: " + chain.joint_map;
+    chain.joint_map = "joints from the head, where recordings count from 0: " + chain.joint_map;
     for (std::size_t b = 0; b < bodies_->size(); ++b) {
       if (!reached[b]) {
         refuse((*bodies_)[b].origin,
@@ -120,8 +120,8 @@ class ChainBuilder {
     chain.kernel_limits.push_back(entry.kernel_limits);
     chain.joint_origins.push_back(entry.origin);
     chain.headward_first.push_back(headward_first);
-    chain.joint_map += (chain.joints.size() > 1 ? ", " : "") + ("kernel " + std::to_string(chain.joints.size() - 1)) +
-                       " = " + entry.joint.name + " (" + (*bodies_)[headward].link.name + " - " + tailward + ")";
+    chain.joint_map += (chain.joints.size() > 1 ? ", " : "") + entry.joint.name + " (" +
+                       (*bodies_)[headward].link.name + " - " + tailward + ")";
     return body_index(tailward);
   }
 

@@ -16,7 +16,7 @@ struct Chain {
   std::vector<Origin> link_origins;
   std::vector<Origin> joint_origins;
   std::vector<bool> headward_first;  ///< of each joint: its file lists the link towards the head first
-  std::string joint_map;             ///< "joint map: kernel 0 = J5 (Head - 4Seg), ..."
+  std::string joint_map;             ///< for the user: "joints from the head, ...: J5 (Head - 4Seg), ..."
 };
 
 /// Orders the bodies and joints of a robot file from head to tail. The head is the end of the chain whose name ends

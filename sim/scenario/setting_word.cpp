@@ -98,10 +98,10 @@ class Resolver {
       std::vector<std::string> names;
       names.reserve(meanings.size());
       for (const Meaning& meaning : meanings) {
-        names.push_back(slot_name(*scenario_, meaning.slot));
+        names.push_back(std::to_string(meaning.slot + 1) + '.' + shortened(word_->name) + " (" +
+                        std::string(declaration(meaning.slot).name) + ')');
       }
-      word_->refuse(in_quotes(word_->name) + " in several modules",
-                    "MODULE." + shortened(word_->name) + " with one of " + listed(names));
+      word_->refuse(in_quotes(word_->name) + " in several modules", "one of " + listed(names));
     }
     return meanings.front();
   }
@@ -171,9 +171,7 @@ std::uint32_t parse_tick(const SettingWord& word) {
 std::int32_t parse_internal_value(const InternalValue& internal, const SettingWord& word) {
   const DecimalResult result = parse_decimal(word.number, internal.unit);
   if (result.error != DecimalError::none) {
-    const std::string symbol = scale_of(internal.unit).symbol;
-    word.refuse(in_quotes(word.number) + " for " + in_quotes(internal.name),
-                "a number in the range of the unit" + (symbol.empty() ? "" : " " + symbol));
+    word.refuse(in_quotes(word.number) + " for " + in_quotes(internal.name), unit_range_text(internal.unit));
   }
   return result.raw;
 }

@@ -1,6 +1,7 @@
 #include "sim/scenario/settings.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -12,19 +13,36 @@ namespace {
 
 auto key_of(const Setting& setting) { return std::tuple(setting.slot, setting.joint, setting.internal, setting.index); }
 
+/// Whether a parameter takes every value of its unit, which wraps.
+bool takes_any_angle(const Parameter& parameter) {
+  using Limits = std::numeric_limits<std::int32_t>;
+  return wraps(parameter.unit) && parameter.minimum == Limits::min() && parameter.maximum == Limits::max();
+}
+
 std::string range_text(const Parameter& parameter) {
+  if (takes_any_angle(parameter)) {
+    return unit_range_text(parameter.unit);
+  }
   const std::string symbol = scale_of(parameter.unit).symbol;
-  return std::string(format_decimal(parameter.minimum, parameter.unit).view()) + " to " +
+  return "a number from " + std::string(format_decimal(parameter.minimum, parameter.unit).view()) + " to " +
          std::string(format_decimal(parameter.maximum, parameter.unit).view()) + (symbol.empty() ? "" : " " + symbol);
 }
 
 }  // namespace
 
+std::string unit_range_text(Unit unit) {
+  if (wraps(unit)) {
+    return "a number above -23592960 and below 23592960 deg";  // 2^16 turns
+  }
+  const std::string symbol = scale_of(unit).symbol;
+  return "a number in the range of the unit" + (symbol.empty() ? "" : " " + symbol);
+}
+
 std::int32_t parse_parameter(const Parameter& parameter, const std::string& text, const std::string& file, int line) {
   const DecimalResult result = parse_decimal(text, parameter.unit);
   if (result.error != DecimalError::none || result.raw < parameter.minimum || result.raw > parameter.maximum) {
     throw InputError(file, line, in_quotes(text) + " for parameter " + in_quotes(parameter.name),
-                     "a number from " + range_text(parameter));
+                     range_text(parameter));
   }
   return result.raw;
 }

@@ -9,6 +9,9 @@
 
 namespace proleg::sim {
 
+/// What parse_decimal expects for a value without a range of its own, for messages.
+[[nodiscard]] std::string unit_range_text(Unit unit);
+
 /// The value that a text gives a parameter, in its unit. Throws InputError for that file and line if the text is no
 /// number in the declared range.
 [[nodiscard]] std::int32_t parse_parameter(const Parameter& parameter, const std::string& text, const std::string& file,

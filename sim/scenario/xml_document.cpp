@@ -7,6 +7,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/scenario/unpaired_tag.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -194,6 +195,11 @@ XmlDocument::XmlDocument(std::filesystem::path path, std::string text, const Xml
     throw InputError(name_, line_at(text, *at), "bytes that are not UTF-8", "XML text in UTF-8");
   }
   if (parsed_->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    const tinyxml2::XMLError error = parsed_->ErrorID();
+    const bool may_lack_tag = error == tinyxml2::XML_ERROR_PARSING || error == tinyxml2::XML_ERROR_MISMATCHED_ELEMENT;
+    if (const auto unpaired = may_lack_tag ? find_unpaired_tag(text) : std::nullopt) {
+      throw InputError(name_, unpaired->line, unpaired->found, unpaired->expected);
+    }
     throw InputError(name_, std::max(parsed_->ErrorLineNum(), 1), "malformed XML (" + error_words(*parsed_) + ")",
                      "well-formed XML");
   }

@@ -76,6 +76,7 @@ HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::Hardw
   result.problems.assign(loop.problems().begin(), loop.problems().end());
   result.costliest_tick = modules.costliest_tick();
   result.lost_frames = loop.lost_frames();
+  result.receptions = loop.receptions();
   const sim::BusStatistics bus = loop.bus_statistics();
   result.frames = bus.frames;
   result.bit_errors = bus.errors;

@@ -4,26 +4,41 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/scenario/names.hpp"
 
 namespace proleg::tools {
 namespace {
 
-/// NODE@TICK
+/// The joint that a node id or a name means.
+unsigned parse_node_or_joint(const std::string& word, const sim::Scenario& scenario) {
+  if (const auto node = parse_whole<std::uint32_t>(word)) {
+    return joint_of_node(scenario, node, "--reset", word);
+  }
+  const int joint = sim::find_joint(scenario.robot, word);
+  if (joint < 0) {
+    throw InputError("--reset", 0, "unknown joint " + in_quotes(word),
+                     "a node id, or one of " + listed(sim::joint_names(scenario.robot)));
+  }
+  return static_cast<unsigned>(joint);
+}
+
+/// NODE@TICK or JOINT@TICK
 sim::Restart parse_reset(const std::string& word, const ScenarioRun& run) {
-  const std::size_t at = word.find('@');
-  const auto node = parse_whole<std::uint32_t>(std::string_view(word).substr(0, at));
+  const std::size_t at = word.rfind('@');
   const auto tick =
       at == std::string::npos ? std::nullopt : parse_whole<std::uint32_t>(std::string_view(word).substr(at + 1));
-  if (!node || !tick) {
-    throw InputError("--reset", 0, in_quotes(word), "NODE@TICK");
+  if (!tick || at == 0) {
+    throw InputError("--reset", 0, in_quotes(word), "NODE@TICK or JOINT@TICK");
   }
   if (*tick == 0 || *tick >= run.ticks) {
     throw InputError("--reset", 0, "tick " + std::to_string(*tick),
                      "a tick of the run, 1 to " + std::to_string(run.ticks - 1));
   }
-  const unsigned joint = joint_of_node(run.scenario, node, "--reset", std::to_string(*node));
+  const unsigned joint = parse_node_or_joint(word.substr(0, at), run.scenario);
   if (joint == sim::HardwareLoop::sync_producer) {
-    throw InputError("--reset", 0, "node " + std::to_string(*node) + ", which produces the SYNC",
+    throw InputError("--reset", 0,
+                     "node " + std::to_string(run.scenario.modules[joint].node) + " (" +
+                         run.scenario.robot.joints[joint].name + "), which produces the SYNC",
                      "another node: without SYNC the robot stops");
   }
   return {*tick, joint};
@@ -98,8 +113,9 @@ sim::HardwareOptions::BitErrors parse_bit_errors(const std::string& word) {
 void add_hil_options(CommandLine& command_line, HilOptions& options) {
   add_scenario_options(command_line, options);
   add_module_options(command_line, options);
-  command_line.add_option("--reset", options.resets,
-                          "NODE@TICK: restart a module while the robot moves; it joins again. May be repeated.");
+  command_line.add_option(
+      "--reset", options.resets,
+      "NODE@TICK or JOINT@TICK: restart a module while the robot moves; it joins again. May be repeated.");
   command_line.add_option(
       "--send", options.frames,
       "ID#DATA@TICK: send this frame on the bus right after the SYNC of that tick; hexadecimal, as for "

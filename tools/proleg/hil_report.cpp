@@ -61,6 +61,7 @@ Json hil_json(const HilOptions& options, const ScenarioRun& run, const HilModule
           {"problems", problems},
           {"instructions_per_tick", result.costliest_tick ? result.costliest_tick->cost.to_state_frame : 0},
           {"lost_frames", result.lost_frames},
+          {"frame_receptions", result.receptions},
           {"bit_errors", result.bit_errors},
           {"restarts", restarts},
           {"frames", result.frames},
@@ -85,7 +86,7 @@ void print_hil_table(const HilOptions& options, const ScenarioRun& run, const Hi
   std::printf("bus               %llu frames, %.1f %% load; %llu frames before the start\n", count(result.frames),
               100.0 * result.bus_load, count(result.setup_frames));
   if (options.losses) {
-    std::printf("lost frames       %llu\n", count(result.lost_frames));
+    std::printf("lost frames       %s\n", losses_text(result.lost_frames, result.receptions).c_str());
   }
   if (options.bit_errors) {
     std::printf("bit errors        %llu frames destroyed and sent again\n", count(result.bit_errors));

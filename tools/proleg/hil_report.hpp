@@ -33,6 +33,7 @@ struct HilResult {
   std::uint64_t differences = 0;
   std::string first_difference;
   std::uint64_t lost_frames = 0;
+  std::uint64_t receptions = 0;
   std::uint64_t bit_errors = 0;
   std::uint64_t frames = 0;
   std::uint64_t setup_frames = 0;

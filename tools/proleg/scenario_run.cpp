@@ -1,7 +1,9 @@
 #include "tools/proleg/scenario_run.hpp"
 
+#include <array>
 #include <atomic>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
@@ -162,6 +164,15 @@ std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options, con
   } catch (const FileError& error) {
     throw BadInput(error.what());
   }
+}
+
+std::string losses_text(std::uint64_t lost, std::uint64_t receptions) {
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                "%llu of %llu (%.1f %%); a frame counts once for each joint that is to receive it",
+                static_cast<unsigned long long>(lost), static_cast<unsigned long long>(receptions),
+                receptions > 0 ? 100.0 * static_cast<double>(lost) / static_cast<double>(receptions) : 0.0);
+  return text.data();
 }
 
 void catch_interrupts() {

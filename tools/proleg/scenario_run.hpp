@@ -66,6 +66,9 @@ void print_setup(const sim::Scenario& scenario);
 [[nodiscard]] std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options,
                                                            const sim::Scenario& scenario, const std::string& program);
 
+/// What --losses did, for people: "2969 of 59900 (5.0 %); a frame counts once for each joint that is to receive it".
+[[nodiscard]] std::string losses_text(std::uint64_t lost, std::uint64_t receptions);
+
 /// After this call SIGINT, SIGTERM and SIGHUP only make interrupted() true. Ignored signals remain ignored (nohup).
 void catch_interrupts();
 [[nodiscard]] bool interrupted();

@@ -29,6 +29,7 @@ struct Result {
   double contacts_mean;
   std::size_t solver_messages;
   std::uint64_t lost_frames;
+  std::uint64_t receptions;
   std::string setpoint_hash;
   std::string servo_hash;
   RunMeasures measures;
@@ -39,10 +40,12 @@ struct Result {
 Result run(const ScenarioRun& setup, sim::Simulation& simulation, sim::Recorder* recorder) {
   RunProgress progress("simulating", setup.scenario.duration_s);
   std::uint64_t lost_frames = 0;
+  std::uint64_t receptions = 0;
   const auto start = std::chrono::steady_clock::now();
   while (simulation.tick() < setup.ticks && !interrupted()) {
     const sim::Change* change = simulation.advance();
     lost_frames += simulation.chain().lost().size();
+    receptions += simulation.chain().receptions();
     if (recorder != nullptr) {
       if (change != nullptr) {
         recorder->record_change(*change);
@@ -58,6 +61,7 @@ Result run(const ScenarioRun& setup, sim::Simulation& simulation, sim::Recorder*
           simulation.plant().mean_contacts(),
           simulation.plant().world().solver_messages(),
           lost_frames,
+          receptions,
           simulation.setpoint_hash().hex(),
           simulation.servo_hash().hex(),
           measures_of(simulation.plant().meter())};
@@ -75,6 +79,7 @@ void print_json(const ScenarioOptions& options, const ScenarioRun& setup, const 
                     {"contacts_mean", result.contacts_mean},
                     {"solver_messages", result.solver_messages},
                     {"lost_frames", result.lost_frames},
+                    {"frame_receptions", result.receptions},
                     {"measures", measures_object(result.measures.values)},
                     {"link_duty_factors", result.measures.link_duty_factors},
                     {"servos", servos_array(result.measures, setup.scenario.robot)},
@@ -88,10 +93,10 @@ void print_table(const ScenarioOptions& options, const Result& result) {
   std::printf("real-time factor  %.1f\n", result.real_time_factor());
   std::printf("contacts          %.2f points in a physics step on average\n", result.contacts_mean);
   if (result.solver_messages > 0) {
-    std::printf("solver messages   %zu\n", result.solver_messages);
+    std::printf("solver messages   %zu; --verbose shows the first ones\n", result.solver_messages);
   }
   if (options.losses) {
-    std::printf("lost frames       %llu\n", static_cast<unsigned long long>(result.lost_frames));
+    std::printf("lost frames       %s\n", losses_text(result.lost_frames, result.receptions).c_str());
   }
   std::printf("set-point hash    %s\n", result.setpoint_hash.c_str());
   std::printf("servo hash        %s\n", result.servo_hash.c_str());
@@ -118,6 +123,11 @@ int simulate(const ScenarioOptions& options) {
     throw std::runtime_error(error.what() + kept_in_recording(options));
   }
   const Result& result = *finished;
+  if (options.verbose) {
+    for (const std::string& text : sim::World::solver_message_texts()) {
+      std::cerr << "message of the physics engine: " << one_line(text) << '\n';
+    }
+  }
   if (interrupted()) {
     std::cerr << "proleg simulate: interrupted after " << result.simulated_s << " s" << kept_in_recording(options)
               << '\n';

@@ -4,6 +4,7 @@
 
 #include "sim/record/figure.hpp"
 #include "sim/record/recorder.hpp"
+#include "sim/scenario/reader.hpp"
 #include "small_run.hpp"
 
 namespace proleg::sim {
@@ -41,6 +42,19 @@ TEST(ChangeMarks, NameTheValueAndItsJointUnlessAllChange) {
   EXPECT_EQ(marks[0].text, "amplitude J2 = 20");
   EXPECT_DOUBLE_EQ(marks[1].time_s, 0.09);
   EXPECT_EQ(marks[1].text, "amplitude = 20");
+}
+
+TEST(ChangeMarks, WriteHalfATurnWithoutASign) {
+  const TemporaryFolder folder;
+  Scenario scenario = small_scenario();
+  scenario.changes.clear();
+  apply_setting(scenario, "current_phase:J2=180@3");
+  {
+    Recorder recorder(folder / "run", scenario, "test", "build");
+    recorder.record_change(scenario.changes.at(0));
+    run_small(scenario, 20, [&](const TickSample& sample, const Change* /*change*/) { recorder.record_tick(sample); });
+  }
+  EXPECT_EQ(collect_change_marks(Recording(folder / "run")).at(0).text, "current_phase J2 = 180");
 }
 
 TEST(ChangeMarks, AppearInTheFigureAtTheirTime) {

@@ -48,11 +48,19 @@ const std::string hundred_digits(100, '1');
 
 const auto cases = testing::Values(
     // The top-level file.
-    BadInput{"WrongRootTag", "top.xml", "<simulation>", "<simulations>",
-             "top.xml:1: found malformed XML (mismatched element), expected well-formed XML"},
+    BadInput{
+        "WrongRootTag", "top.xml", "<simulation>", "<simulations>",
+        "top.xml:1: found <simulations> without an end tag before </simulation> in line 12, expected </simulations>"},
     BadInput{"SecondRootTag", "robot.xml", "<Robot name=\"small\">", "<!-- --><Robots/><Robot name=\"small\">",
              "robot.xml:1: found 'Robot' beside the outermost tag, expected one outermost tag"},
-    BadInput{"NotClosed", "top.xml", "</simulation>", "", "top.xml:1: found malformed XML"},
+    BadInput{"NotClosed", "top.xml", "</simulation>", "",
+             "top.xml:1: found <simulation> without an end tag, expected </simulation>"},
+    BadInput{"NotClosedAtTheEnd", "robot.xml", "</Joint>\n  </KinBody>\n</Robot>", "",
+             "robot.xml:35: found <Joint> without an end tag, expected </Joint>"},
+    BadInput{"NotClosedInTheMiddle", "robot.xml", "<axis>0 0 1</axis>", "<axis>0 0 1<!-- </axis> --><a b='>'/>",
+             "robot.xml:39: found <axis> without an end tag before </Joint> in line 44, expected </axis>"},
+    BadInput{"Malformed", "top.xml", "<robot>", "<robot name=1>",
+             "top.xml:2: found malformed XML (parsing attribute), expected well-formed XML"},
     BadInput{"TextAtTheTop", "top.xml", "</simulation>", "</simulation>\nrest<!-- -->",
              "top.xml:13: found 'rest' beside the outermost tag, expected one outermost tag"},
     BadInput{"DocumentType", "top.xml", "<simulation>", "<!DOCTYPE x><simulation>",

@@ -160,8 +160,8 @@ Scenario twice_the_sine() {
 
 TEST(SetOption, RequiresTheModuleIfSeveralHaveTheName) {
   EXPECT_EQ(refusal(twice_the_sine(), "amplitude=1"),
-            "amplitude=1: found 'amplitude' in several modules, expected MODULE.amplitude with one of "
-            "PatternGenerator_sinusoidal (1), PatternGenerator_sinusoidal (2)");
+            "amplitude=1: found 'amplitude' in several modules, expected one of "
+            "1.amplitude (PatternGenerator_sinusoidal), 2.amplitude (PatternGenerator_sinusoidal)");
   EXPECT_NE(refusal(twice_the_sine(), "PatternGenerator_sinusoidal.amplitude=1").find("in several modules"),
             std::string::npos);
   EXPECT_EQ(refusal(twice_the_sine(), "2.amplitude=1"), "accepted");
@@ -205,7 +205,12 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"amplitude=40deg", "found '40deg' for parameter 'amplitude'"},
         Refusal{"amplitude=1e99", "found '1e99' for parameter 'amplitude'"},
         Refusal{"frequency=20.001", "expected a number from 0 to 20 Hz"},
-        Refusal{"current_phase=x@3", "found 'x' for 'current_phase', expected a number in the range of the unit deg"},
+        Refusal{"current_phase=x@3",
+                "found 'x' for 'current_phase', expected a number above -23592960 and below 23592960 deg"},
+        Refusal{"phase=23592960",
+                "found '23592960' for parameter 'phase', expected a number above -23592960 and below 23592960 deg"},
+        Refusal{"phase=1e9",
+                "found '1e9' for parameter 'phase', expected a number above -23592960 and below 23592960 deg"},
         Refusal{"amplitude=3@", "found tick '', expected a whole number from 0 to 4294967295"},
         Refusal{"amplitude=3@-1", "found tick '-1', expected a whole number from 0 to 4294967295"},
         Refusal{"amplitude=3@4294967296", "found tick '4294967296', expected a whole number from 0 to 4294967295"},

@@ -69,7 +69,8 @@ TEST_P(Shipped, StartsOnTheFloorWithNoRemarkButTheJointMap) {
   ASSERT_EQ(scenario.environment.objects.size(), 1U);
   EXPECT_EQ(scenario.environment.objects[0].geometries[0].friction, 0.1);
   ASSERT_EQ(scenario.remarks.size(), 1U) << scenario.remarks[1];
-  EXPECT_TRUE(scenario.remarks[0].starts_with("joint map: kernel 0 = J5 (Head - 4Seg), "));
+  EXPECT_TRUE(
+      scenario.remarks[0].starts_with("joints from the head, where recordings count from 0: J5 (Head - 4Seg), "));
 }
 
 TEST_P(Shipped, RunsThirtySecondsInStepsOfAMillisecondAndTicksOfTen) {

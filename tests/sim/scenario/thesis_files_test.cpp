@@ -43,10 +43,11 @@ TEST(ThesisFiles, KernelJointZeroIsTheHeadsJoint) {
     EXPECT_EQ(scenario.robot.joints[j].file_index, 4 - j);
     EXPECT_EQ(scenario.robot.joints[j].anchor.y(), scenario.robot.links[j].pose.position.y());
   }
-  EXPECT_EQ(std::ranges::count(scenario.remarks,
-                               "joint map: kernel 0 = J5 (Head - 4Seg), kernel 1 = J4 (4Seg - 3Seg), kernel 2 = J3 "
-                               "(3Seg - 2Seg), kernel 3 = J2 (2Seg - 1Seg), kernel 4 = J1 (1Seg - Tail)"),
-            1);
+  EXPECT_EQ(
+      std::ranges::count(scenario.remarks,
+                         "joints from the head, where recordings count from 0: J5 (Head - 4Seg), J4 (4Seg - 3Seg), "
+                         "J3 (3Seg - 2Seg), J2 (2Seg - 1Seg), J1 (1Seg - Tail)"),
+      1);
 }
 
 TEST(ThesisFiles, AxesKeepTheirSignBecauseTheFileListsTheHeadwardBodySecond) {

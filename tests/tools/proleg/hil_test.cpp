@@ -41,6 +41,31 @@ TEST_F(Hil, LosesTheFramesThatSimulateLoses) {
   EXPECT_NE(modules["setpoint_hash"], clean["setpoint_hash"]);
 }
 
+TEST_F(Hil, CountsALostFrameOnceForEachJointThatIsToReceiveIt) {
+  // In each of 200 ticks 4 joints are to receive the frames of 5 senders; before the first tick nothing was sent.
+  constexpr double receptions = 200.0 * 5 * 4;
+  for (const char* subcommand : {"simulate", "hil"}) {
+    const std::vector<std::string> words{subcommand, scenario("coupled"), "--seconds", "2", "--losses", "7:50%"};
+    const Json result = succeed(words);
+    EXPECT_NEAR(result["frame_receptions"].number(), receptions, 20);
+    EXPECT_NEAR(result["lost_frames"].number(), receptions / 2, 150);
+    const std::string text = proleg(words).out;
+    EXPECT_NE(text.find(" %); a frame counts once for each joint that is to receive it"), std::string::npos) << text;
+  }
+}
+
+TEST_F(Hil, AResetNamesANodeOrAJoint) {
+  const std::vector<std::string> words{"hil", scenario("coupled"), "--seconds", "1.5", "--reset"};
+  const auto reset = [&](const char* word) {
+    std::vector<std::string> all = words;
+    all.emplace_back(word);
+    return succeed(all);
+  };
+  const Json by_name = reset("J4@100");
+  EXPECT_EQ(by_name["restarts"][0]["node"], 2) << "node 1 is at the head, J5";
+  EXPECT_EQ(by_name["setpoint_hash"], reset("2@100")["setpoint_hash"]);
+}
+
 TEST_F(Hil, ReadsLossesFromAFile) {
   std::ofstream(file("losses.txt")) << "30 J5 J4\n31 J5 *\n";
   const std::vector<std::string> losses{"--losses", file("losses.txt").string()};
@@ -105,11 +130,14 @@ TEST_F(Hil, SendsAFrameAndLogsTheAnswer) {
 TEST_F(Hil, BadOptionsAreRefused) {
   const std::string file_name = scenario("uniform");
   expect_refused({"hil", file_name, "--modules", "mechanical"}, {"mechanical"});
-  expect_refused({"hil", file_name, "--reset", "3"}, {"--reset", "'3'", "NODE@TICK"});
+  expect_refused({"hil", file_name, "--reset", "3"}, {"--reset", "'3'", "NODE@TICK or JOINT@TICK"});
+  expect_refused({"hil", file_name, "--reset", "J5@100"}, {"node 1 (J5), which produces the SYNC"});
+  expect_refused({"hil", file_name, "--reset", "J9@100"}, {"--reset", "'J9'", "J1, J2, J3, J4, J5"});
+  expect_refused({"hil", file_name, "--reset", "@100"}, {"--reset", "NODE@TICK or JOINT@TICK"});
   expect_refused({"hil", file_name, "--reset", "9@100"}, {"node 9", "one of 1, 2, 3, 4, 5"});
   expect_refused({"hil", file_name, "--reset", "3@0"}, {"tick 0"});
   expect_refused({"hil", file_name, "--reset", "3@3000"}, {"tick 3000", "1 to 2999"});
-  expect_refused({"hil", file_name, "--reset", "1@100"}, {"node 1, which produces the SYNC"});
+  expect_refused({"hil", file_name, "--reset", "1@100"}, {"node 1 (J5), which produces the SYNC"});
   for (const char* word : {"603", "603#00", "3#00@5", "803#00@5", "603#0@5", "603#00@", "603#00112233445566778899@5",
                            "60G#00@5", "603#0G@5", "603@5#00"}) {
     expect_refused({"hil", file_name, "--send", word}, {"--send", "ID#DATA@TICK"});

@@ -17,7 +17,7 @@ inline constexpr Parameter phase_difference{
     raw(Unit::phase_degree, 55),
     phase_minimum,
     phase_maximum,
-    "phase of a joint minus phase of the joint before it, counted from the head"};
+    "phase of a joint minus phase of the joint in front of it in the whole chain, whatever moves that one"};
 inline constexpr Parameter phase{"phase",       Unit::phase_degree, 0,
                                  phase_minimum, phase_maximum,      "phase added to the joint"};
 inline constexpr Parameter offset{"offset",      Unit::degree, 0,

@@ -1,6 +1,7 @@
 // proleg export: a recording as a table for other programs.
 
 #include <array>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 
@@ -8,6 +9,7 @@
 #include "shared/computer/output/output_check.hpp"
 #include "sim/record/recording.hpp"
 #include "sim/record/tsv.hpp"
+#include "tools/proleg/beside_recording.hpp"
 #include "tools/proleg/command_line.hpp"
 
 using namespace proleg;
@@ -15,7 +17,8 @@ using namespace proleg;
 int main(int argc, char** argv) {
   tools::CommandLine command_line(
       "proleg export",
-      "Writes a recording of 'proleg simulate --record' as a table: a header line, then a line for each tick.\n"
+      "Writes a recording of 'proleg simulate --record' as a table: a header line, then a line for each tick. Prints\n"
+      "the name of the table.\n"
       "Columns: tick; time_s; for each joint setpoint_deg, servo_us, angle_deg and its internal values; for each link\n"
       "x_m, y_m, z_m, contact_rear, contact_front. Joint and link names follow the dot (setpoint_deg.J1).");
   std::string recording_path;
@@ -23,12 +26,17 @@ int main(int argc, char** argv) {
   bool tsv = true;  // the only format
   command_line.add_option("RUN", recording_path, "the recording").required().value_name("");
   command_line.add_flag("--tsv", tsv, "write tab-separated values, as without this option");
-  command_line.add_option("--out", out, "write to this file instead of standard output").value_name("FILE");
+  command_line
+      .add_option("--out", out,
+                  "the table; by default run.tsv for run.proleg, run.1.tsv for run.1; - for standard output")
+      .value_name("FILE");
 
   return command_line.run(argc, argv, [&] {
     const sim::Recording recording(recording_path);
-    if (!out.empty()) {
-      const std::array outputs{PlannedOutput{"--out", out, "table", starts_with("tick\t")}};
+    const std::filesystem::path table = out.empty() ? tools::beside_recording(recording_path, ".tsv") : out;
+    const bool to_standard_output = out == "-";
+    if (!to_standard_output) {
+      const std::array outputs{PlannedOutput{"--out", table, "table", starts_with("tick\t")}};
       check_outputs(outputs);
     }
     if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
@@ -36,13 +44,18 @@ int main(int argc, char** argv) {
     }
     try {
       std::optional<Output> output;
-      if (out.empty()) {
+      if (to_standard_output) {
         output.emplace();
       } else {
-        output.emplace(out);
+        output.emplace(table);
       }
       sim::write_tsv(recording, [&](std::string_view text) { output->write(text); });
       output->finish();
+      if (!to_standard_output) {
+        Output name;
+        name.write(table.string() + "\n");
+        name.finish();
+      }
     } catch (const ReaderGone&) {
       return tools::exit_failed;  // `head` does this; no message
     }

@@ -12,6 +12,7 @@
 #include "shared/computer/output/output_check.hpp"
 #include "sim/record/figure.hpp"
 #include "sim/record/recording.hpp"
+#include "tools/proleg/beside_recording.hpp"
 #include "tools/proleg/command_line.hpp"
 
 using namespace proleg;
@@ -28,13 +29,6 @@ bool is_picture(const std::filesystem::path& path) {
   constexpr std::size_t max_head = 1000;  // with a declaration and comments of another program
   const std::string head = first_bytes(path, max_head);
   return head.starts_with('<') && head.find("<svg") != std::string::npos;
-}
-
-/// Replaces the usual extension of recordings only, so that run.1 and run.2 do not share a picture.
-std::filesystem::path picture_of(const std::filesystem::path& recording) {
-  const bool is_usual = recording.extension() == ".proleg";
-  return is_usual ? std::filesystem::path(recording).replace_extension(".svg")
-                  : std::filesystem::path(recording.string() + ".svg");
 }
 
 }  // namespace
@@ -61,7 +55,7 @@ int main(int argc, char** argv) {
     require_finite("--from", window.from_s);
     require_finite("--to", window.to_s);
     const sim::Recording recording(recording_path);
-    const std::filesystem::path picture = out.empty() ? picture_of(recording_path) : std::filesystem::path(out);
+    const std::filesystem::path picture = out.empty() ? tools::beside_recording(recording_path, ".svg") : out;
     const std::array outputs{PlannedOutput{"--out", picture, "SVG picture", is_picture}};
     check_outputs(outputs);
     if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {

@@ -194,14 +194,25 @@ TEST_F(CommandLine, VerbosePrintsTheJointMapAndEveryParameter) {
 TEST_F(CommandLine, ARecordingCanBeExportedAndDrawn) {
   const std::string recording = file("run.proleg").string();
   ASSERT_EQ(proleg({"simulate", scenario("uniform"), "--seconds", "2", "--record", recording}).status, 0);
-  const Finished table = proleg({"export", recording, "--tsv"});
+  const Finished table = proleg({"export", recording, "--tsv", "--out", "-"});
   EXPECT_EQ(table.status, 0) << table.err;
   EXPECT_EQ(proleg({"export", recording}).out, table.out) << "the only format";
   EXPECT_EQ(std::count(table.out.begin(), table.out.end(), '\n'), 201) << "a header and 200 ticks";
+  const Finished beside = proleg({"export", recording, "--tsv"});
+  EXPECT_EQ(beside.status, 0) << beside.err;
+  EXPECT_EQ(beside.out, file("run.tsv").string() + "\n");
+  EXPECT_EQ(read_file(file("run.tsv")), table.out);
   const std::string picture = file("run.svg").string();
   const Finished drawn = proleg({"plot", recording, "--out", picture});
   EXPECT_EQ(drawn.status, 0) << drawn.err;
   EXPECT_NE(read_file(picture).find("<svg"), std::string::npos);
+}
+
+TEST_F(CommandLine, ExportDoesNotReplaceItsRecording) {
+  const std::string recording = file("run.tsv").string();
+  ASSERT_EQ(proleg({"simulate", scenario("uniform"), "--seconds", "0.1", "--record", recording}).status, 0);
+  expect_refused({"export", recording, "--tsv"}, {"run.tsv", "--out FILE"});
+  expect_refused({"export", recording, "--tsv", "--out", recording}, {"--out", "another name"});
 }
 
 TEST_F(CommandLine, ARecordingFollowsALinkAndTakesItsNameLiterally) {

@@ -15,13 +15,15 @@
 #include <vector>
 
 #include "shared/computer/errors/file_error.hpp"
+#include "shared/computer/output/output.hpp"
 #include "sim/record/schema.hpp"
 
 namespace proleg::sim {
 namespace {
 
-/// Of the file that gets the name of an earlier recording. No longer than those of SQLite.
-constexpr std::string_view new_suffix = "-new";
+std::filesystem::path folder_of(const std::filesystem::path& path) {
+  return path.has_parent_path() ? path.parent_path() : ".";
+}
 
 void require_file_or_nothing(const std::filesystem::path& path) {
   std::error_code error;
@@ -34,8 +36,7 @@ void require_file_or_nothing(const std::filesystem::path& path) {
 /// SQLite would report a long name when it first needs a second file, at the end of a run.
 void require_room_for_suffixes(const std::filesystem::path& path) {
   constexpr auto max_suffix = static_cast<long>(std::string_view("-journal").size());
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  const long max_name = pathconf(folder.c_str(), _PC_NAME_MAX);
+  const long max_name = pathconf(folder_of(path).c_str(), _PC_NAME_MAX);
   if (max_name > 0 && static_cast<long>(path.filename().string().size()) > max_name - max_suffix) {
     throw FileError(path, "the name is too long; give the recording a name of at most " +
                               std::to_string(max_name - max_suffix) + " bytes");
@@ -93,8 +94,7 @@ void remove_companions(const std::filesystem::path& path) {
 /// An empty file in place of a locked one, locked from before it gets the name. Programs that read the old file keep
 /// it.
 int replace(const std::filesystem::path& path) {
-  const std::string name = path.string() + std::string(new_suffix);
-  unlink(name.c_str());  // of a process that was killed here
+  const std::filesystem::path name = temporary_name(folder_of(path));
   const int descriptor = open(name.c_str(), O_RDONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor < 0) {
     fail_to_create(path);

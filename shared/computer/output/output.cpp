@@ -10,15 +10,11 @@
 #include "shared/computer/errors/file_error.hpp"
 
 namespace proleg {
-namespace {
 
-/// A name that no other output has. It does not depend on the file's name, which may be as long as names can be.
 std::filesystem::path temporary_name(const std::filesystem::path& folder) {
   static std::atomic<unsigned> count = 0;
   return folder / (".proleg-" + std::to_string(getpid()) + "-" + std::to_string(count++) + ".part");
 }
-
-}  // namespace
 
 std::filesystem::path follow_links(const std::filesystem::path& path) {
   constexpr int max_links = 40;  // as the kernel follows

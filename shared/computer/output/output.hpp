@@ -10,6 +10,10 @@ namespace proleg {
 /// canonical, so that equal results are one file. A path that cannot be followed is returned as it is.
 [[nodiscard]] std::filesystem::path follow_links(const std::filesystem::path& path);
 
+/// A name in a folder that no file of another program has, for a file that is renamed when it is complete. It does not
+/// depend on the final name, which may be as long as names can be.
+[[nodiscard]] std::filesystem::path temporary_name(const std::filesystem::path& folder);
+
 /// The file into which a tool writes its result. The file appears under its name only when it is complete: the data
 /// goes into a file without a name, which ends with the process, however that ends; finish() gives it the name. (A file
 /// system that has no such files gets a temporary one, which a signal can leave behind. An existing target that is not

@@ -255,6 +255,17 @@ TEST(Recorder, ReplacesAnEarlierRecording) {
   EXPECT_EQ(Recording(folder / "run.sqlite").last_tick(), 9U);
 }
 
+TEST(Recorder, ChangesNoOtherFileWhenItReplacesARecording) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> names{"run", "run-new", "run.part", "run2"};
+  for (const std::string& name : names) {
+    record_small(folder / name, small_scenario(), ticks);
+  }
+  record_small(folder / "run", small_scenario(), 10);
+  EXPECT_EQ(folder.names(), names);
+  EXPECT_EQ(Recording(folder / "run-new").last_tick(), ticks - 1);
+}
+
 TEST(Recorder, ReplacesADamagedRecording) {
   const TemporaryFolder folder;
   record_small(folder / "run.sqlite", small_scenario(), ticks);

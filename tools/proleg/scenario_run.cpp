@@ -3,10 +3,7 @@
 #include <array>
 #include <atomic>
 #include <csignal>
-#include <cstdio>
-#include <filesystem>
 #include <iostream>
-#include <stdexcept>
 
 #include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"

@@ -33,7 +33,8 @@ int main(int argc, char** argv) {
 
   return command_line.run(argc, argv, [&] {
     const sim::Recording recording(recording_path);
-    const std::filesystem::path table = out.empty() ? tools::beside_recording(recording_path, ".tsv") : out;
+    const std::filesystem::path table =
+        out.empty() ? tools::beside_recording(recording_path, ".tsv") : std::filesystem::path(out);
     const bool to_standard_output = out == "-";
     if (!to_standard_output) {
       const std::array outputs{PlannedOutput{"--out", table, "table", starts_with("tick\t")}};

@@ -55,7 +55,8 @@ int main(int argc, char** argv) {
     require_finite("--from", window.from_s);
     require_finite("--to", window.to_s);
     const sim::Recording recording(recording_path);
-    const std::filesystem::path picture = out.empty() ? tools::beside_recording(recording_path, ".svg") : out;
+    const std::filesystem::path picture =
+        out.empty() ? tools::beside_recording(recording_path, ".svg") : std::filesystem::path(out);
     const std::array outputs{PlannedOutput{"--out", picture, "SVG picture", is_picture}};
     check_outputs(outputs);
     if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <csignal>
+#include <cstdio>
 #include <iostream>
 
 #include "shared/computer/errors/file_error.hpp"

@@ -15,7 +15,7 @@ namespace {
 constexpr std::chrono::milliseconds stop_check_interval{100};
 
 bool can_reuse_outcomes(const Experiment& experiment) {
-  return experiment.reuse && !depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread);
+  return experiment.reuse && !differs_between_evaluations(experiment);
 }
 
 }  // namespace

@@ -113,7 +113,8 @@ std::optional<TrialResult> read_trial(Statement& statement, const Task& task) {
 void save_evaluation_row(Statement& statement, const Experiment& experiment, const StoreColumns& columns,
                          const Evaluation& evaluation) {
   const std::string candidate = text_of(evaluation.candidate);
-  const std::string seed = std::to_string(trial_seed(experiment.seed, evaluation.run, evaluation.number, 0));
+  const std::string seed =
+      std::to_string(seed_of(experiment, {evaluation.run, evaluation.number, 0, evaluation.candidate, {}}));
   statement.reset();
   Row row(statement);
   row.bind(evaluation.run);

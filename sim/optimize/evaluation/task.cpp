@@ -16,7 +16,7 @@ sim::Scenario scenario_of(const Experiment& experiment, const Task& task) {
   experiment.space.apply(task.candidate, scenario);
   const Spread& spread = experiment.trials.spread;
   if (depends_on_seed(experiment.scenario, experiment.space, spread)) {
-    perturb(scenario, spread, trial_seed(experiment.seed, task.run, task.number, task.trial));
+    perturb(scenario, spread, seed_of(experiment, task));
   }
   return scenario;
 }
@@ -69,6 +69,16 @@ void simulate(const Experiment& experiment, const Task& task, TrialResult& resul
 }
 
 }  // namespace
+
+std::uint64_t seed_of(const Experiment& experiment, const Task& task) {
+  const bool is_common = experiment.trials.random_numbers == RandomNumbers::common;
+  return trial_seed(experiment.seed, task.run, is_common ? 0 : task.number, task.trial);
+}
+
+bool differs_between_evaluations(const Experiment& experiment) {
+  return experiment.trials.random_numbers == RandomNumbers::fresh &&
+         depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread);
+}
 
 TrialResult run_trial(const Experiment& experiment, const Task& task) {
   const auto start = std::chrono::steady_clock::now();

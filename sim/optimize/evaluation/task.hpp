@@ -21,6 +21,13 @@ struct Task {
   bool operator==(const Task&) const = default;
 };
 
+/// Seed of a trial's noise and variations. With common random numbers it is the same for all candidates of a
+/// repetition.
+[[nodiscard]] std::uint64_t seed_of(const Experiment& experiment, const Task& task);
+
+/// Whether two evaluations of a candidate in one repetition may differ.
+[[nodiscard]] bool differs_between_evaluations(const Experiment& experiment);
+
 /// The result of a task.
 struct TrialResult {
   sim::MeasureValues measures;

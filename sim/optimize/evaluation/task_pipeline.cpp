@@ -124,7 +124,7 @@ void TaskPipeline::receive(Workers::Done done) {
 
 void TaskPipeline::save(const Task& task, KeptResult& known) {
   if (store_ != nullptr && known.saved_as != task.number) {
-    store_->save(task, trial_seed(experiment_.seed, task.run, task.number, task.trial), known.result, known.worker);
+    store_->save(task, seed_of(experiment_, task), known.result, known.worker);
     known.saved_as = task.number;
   }
 }

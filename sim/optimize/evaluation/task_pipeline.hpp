@@ -23,7 +23,7 @@ struct TaskHash {
 class TaskPipeline {
  public:
   enum class ResultScope : std::uint8_t {
-    one_number,   ///< the result of a task depends on its number (through the seed)
+    one_number,   ///< the result of a task depends on its number (fresh random numbers)
     all_numbers,  ///< it does not: a result for another number is the same
   };
   struct Counts {

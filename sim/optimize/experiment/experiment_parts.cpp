@@ -113,6 +113,7 @@ std::string trials_text(const Trials& trials) {
   return SettingsText()
       .add("count", trials.count)
       .add("aggregate", trials.aggregate)
+      .add("random_numbers", trials.random_numbers)
       .add("friction", trials.spread.friction)
       .add("mass", trials.spread.mass)
       .add("servo_gain", trials.spread.servo_gain)

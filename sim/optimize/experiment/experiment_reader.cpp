@@ -46,11 +46,15 @@ double read_spread(const XmlElement& trials, std::string_view tag, const Range& 
 }
 
 Trials read_trials(const XmlElement& element) {
-  element.allow({"count", "aggregate"}, {"friction", "mass", "servoGain", "latency", "contactNoise"});
+  element.allow({"count", "aggregate", "randomNumbers"}, {"friction", "mass", "servoGain", "latency", "contactNoise"});
   Trials trials;
   trials.count = static_cast<std::uint32_t>(read_whole_attribute(element, "count", 1, max_trials));
   if (element.attribute("aggregate")) {
     trials.aggregate = static_cast<Aggregate>(read_choice_attribute(element, "aggregate", {"mean", "worst"}));
+  }
+  if (element.attribute("randomNumbers")) {
+    trials.random_numbers =
+        static_cast<RandomNumbers>(read_choice_attribute(element, "randomNumbers", {"common", "fresh"}));
   }
   trials.spread.friction = read_spread(element, "friction", spreads);
   trials.spread.mass = read_spread(element, "mass", spreads);

@@ -25,9 +25,14 @@ struct Spread {
 
 enum class Aggregate : std::uint8_t { mean, worst };
 
+/// Whether all candidates of a repetition meet the same worlds (trial 3 of one candidate has the friction of trial 3 of
+/// another), so that scores differ through the candidates only; or each evaluation draws its own.
+enum class RandomNumbers : std::uint8_t { common, fresh };
+
 struct Trials {
   std::uint32_t count = 1;  ///< runs of one candidate; 1 to 1000
   Aggregate aggregate = Aggregate::mean;
+  RandomNumbers random_numbers = RandomNumbers::common;
   Spread spread;
 };
 

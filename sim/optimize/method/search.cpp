@@ -70,6 +70,15 @@ void check_pagmo(const Experiment& experiment, const PagmoSettings& settings) {
   check_number(experiment, *algorithm, "mutation", settings.mutation, true);
 }
 
+/// A repeated evaluation with the same random numbers gives no information.
+void check_reevaluations(const Experiment& experiment, const GreatDelugeSettings& settings) {
+  if (settings.reevaluations > 0 && experiment.trials.random_numbers == RandomNumbers::common &&
+      depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread)) {
+    refuse(experiment, std::to_string(settings.reevaluations) + " reevaluations that are all equal",
+           "0, or randomNumbers=\"fresh\" in <trials>");
+  }
+}
+
 bool has_one_candidate(const SearchSpace& space) {
   return std::ranges::all_of(space.dimensions, [](const Dimension& dimension) { return dimension.values.size() == 1; });
 }
@@ -79,8 +88,9 @@ bool has_one_candidate(const SearchSpace& space) {
 void check_method(const Experiment& experiment) {
   if (const auto* settings = std::get_if<PagmoSettings>(&experiment.method)) {
     check_pagmo(experiment, *settings);
-  } else if (std::holds_alternative<GreatDelugeSettings>(experiment.method)) {
+  } else if (const auto* deluge = std::get_if<GreatDelugeSettings>(&experiment.method)) {
     check_objectives(experiment, "great-deluge", PagmoAlgorithm::Objectives::one);
+    check_reevaluations(experiment, *deluge);
   } else {
     check_objectives(experiment, "genetic", PagmoAlgorithm::Objectives::one);
   }

@@ -62,8 +62,8 @@ class PlainSource final : public FitnessSource {
       trials.push_back(run_(experiment_, {3, evaluations_.size(), trial, candidate, hopeless_below_}));
     }
     Evaluation evaluation = rate(experiment_, 3, evaluations_.size(), candidate, trials);
-    const bool independent = !depends_on_seed(experiment_.scenario, experiment_.space, experiment_.trials.spread);
-    if (experiment_.reuse && independent && !known_.emplace(candidate, hopeless_below_).second) {
+    if (experiment_.reuse && !differs_between_evaluations(experiment_) &&
+        !known_.emplace(candidate, hopeless_below_).second) {
       evaluation.reused = true;
       evaluation.simulated_s = 0.0;
     }
@@ -94,12 +94,13 @@ std::vector<std::string> evaluate(const Experiment& experiment, Workers& workers
 }
 
 TEST(Evaluator, GivesTheSameForAllPredictionsAndNumbersOfWorkers) {
-  std::vector<Experiment> experiments{small_experiment(), noisy_experiment(1), noisy_experiment(3),
-                                      small_experiment(), small_experiment(),  small_experiment()};
+  std::vector<Experiment> experiments{small_experiment(), noisy_experiment(1), noisy_experiment(3), small_experiment(),
+                                      small_experiment(), small_experiment(),  noisy_experiment(3)};
   experiments[2].trials.aggregate = Aggregate::worst;
   experiments[3].racing.after = 0.5;
   experiments[4].reuse = false;
   experiments[5].trials.count = 2;
+  experiments[6].trials.random_numbers = RandomNumbers::common;
   std::random_device device;
   const std::uint32_t seed = device();
   std::printf("seed %u\n", seed);
@@ -124,6 +125,21 @@ TEST(Evaluator, GivesTheSameWithOneTwoAndThreeProcesses) {
   for (const std::uint32_t count : {1U, 2U, 3U}) {
     LocalWorkers workers(experiment, count);
     EXPECT_EQ(evaluate(experiment, workers, {experiment, count}, 8), plain.evaluations()) << count << " workers";
+  }
+}
+
+TEST(Evaluator, DoesNotSimulateACandidateAgainIfItMeetsTheSameWorlds) {
+  for (const RandomNumbers numbers : {RandomNumbers::common, RandomNumbers::fresh}) {
+    Experiment experiment = noisy_experiment(2);
+    experiment.trials.random_numbers = numbers;
+    MadeUpWorkers workers(experiment, 2, 1);
+    Evaluator evaluator(experiment, 0, workers, nullptr, {}, {});
+    const std::vector<double> first = evaluator.fitness({1, 2, 3});
+    static_cast<void>(evaluator.fitness({3, 2, 1}));
+    const bool is_common = numbers == RandomNumbers::common;
+    EXPECT_EQ(evaluator.fitness({1, 2, 3}) == first, is_common);
+    EXPECT_EQ(evaluator.progress().reused, is_common ? 1U : 0U);
+    EXPECT_EQ(workers.started().size(), is_common ? 4U : 6U);
   }
 }
 

@@ -64,6 +64,16 @@ TEST(RunTrial, DependsOnRunNumberAndTrialOnlyIfTheSeedHasInfluence) {
   EXPECT_NE(exact(run_trial(noisy, {0, 0, 1, candidate, {}})), noisy_first);
 }
 
+TEST(RunTrial, MeetsTheSameWorldInEveryEvaluationOfARepetitionWithCommonRandomNumbers) {
+  Experiment experiment = noisy_experiment();
+  experiment.trials.random_numbers = RandomNumbers::common;
+  const Candidate candidate{3, 1, 2};
+  const std::string first = exact(run_trial(experiment, {0, 0, 0, candidate, {}}));
+  EXPECT_EQ(exact(run_trial(experiment, {0, 9, 0, candidate, {}})), first) << "another evaluation";
+  EXPECT_NE(exact(run_trial(experiment, {1, 0, 0, candidate, {}})), first) << "another repetition";
+  EXPECT_NE(exact(run_trial(experiment, {0, 0, 1, candidate, {}})), first) << "another trial";
+}
+
 TEST(RunTrial, PerturbsWithTheTrialsSeed) {
   const Experiment experiment = noisy_experiment();
   sim::Scenario scenario = experiment.scenario;

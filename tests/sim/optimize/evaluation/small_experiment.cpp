@@ -61,6 +61,7 @@ Experiment small_experiment(double duration_s) {
 Experiment noisy_experiment(std::uint32_t trials, double duration_s) {
   Experiment experiment = small_experiment(duration_s);
   experiment.trials.count = trials;
+  experiment.trials.random_numbers = RandomNumbers::fresh;
   experiment.trials.spread.friction = 0.2;
   return experiment;
 }
@@ -76,7 +77,7 @@ Candidate random_candidate(const Experiment& experiment, std::mt19937& random) {
 TrialResult made_up_trial(const Experiment& experiment, const Task& task) {
   std::uint64_t hash = 1;
   if (depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread)) {
-    hash = trial_seed(experiment.seed, task.run, task.number, task.trial);
+    hash = seed_of(experiment, task);
   }
   for (const std::uint32_t index : task.candidate) {
     hash = mixed(hash, index);

@@ -17,7 +17,7 @@ namespace proleg::optimize {
 /// 10, "frequency", 0.5 to 2 Hz by 0.5, "phase_difference", 40 to 70 degrees by 10. The score is the distance.
 [[nodiscard]] Experiment small_experiment(double duration_s = 0.3);
 
-/// The same with trials that differ by friction, so that the outcome depends on the seed.
+/// The same with trials that differ by friction, with fresh random numbers for each evaluation.
 [[nodiscard]] Experiment noisy_experiment(std::uint32_t trials = 1, double duration_s = 0.3);
 
 /// Any whole number below the limit.

@@ -242,6 +242,8 @@ TEST(EvaluationSection, IsRead) {
   EXPECT_EQ(experiment.seed, 5U);
   EXPECT_TRUE(experiment.reuse);
   EXPECT_EQ(experiment.trials.count, 2U);
+  EXPECT_EQ(experiment.trials.random_numbers, RandomNumbers::common);
+  EXPECT_EQ(read_with(R"(aggregate="mean")", R"(randomNumbers="fresh")").trials.random_numbers, RandomNumbers::fresh);
   EXPECT_EQ(experiment.trials.aggregate, Aggregate::mean);
   EXPECT_EQ(experiment.trials.spread.friction, 0.1);
   EXPECT_EQ(experiment.trials.spread.mass, 0.0);

@@ -78,6 +78,19 @@ TEST(CheckMethod, RefusesSettingsThatAnAlgorithmDoesNotHave) {
   EXPECT_EQ(refusal(make_experiment({5}, settings)), "");
 }
 
+TEST(CheckMethod, RefusesReevaluationsThatAreAllEqual) {
+  GreatDelugeSettings settings;
+  settings.reevaluations = 2;
+  Experiment experiment = make_experiment({5}, settings);
+  EXPECT_EQ(refusal(experiment), "") << "nothing is random: that is so without common random numbers, too";
+  experiment.trials.spread.friction = 0.1;
+  EXPECT_NE(
+      refusal(experiment).find("found 2 reevaluations that are all equal, expected 0, or randomNumbers=\"fresh\""),
+      std::string::npos);
+  experiment.trials.random_numbers = RandomNumbers::fresh;
+  EXPECT_EQ(refusal(experiment), "");
+}
+
 TEST(PlannedEvaluations, AreThoseOfTheBudgetOrOfAllGenerationsWithTheFirstPopulation) {
   Experiment experiment = make_experiment({5}, pagmo_method("cmaes", 20));  // 3 generations
   EXPECT_EQ(planned_evaluations(experiment), 80U);

@@ -44,6 +44,7 @@ struct MeasureDeclaration {
   std::string_view name;  ///< as in files and JSON
   std::string_view unit;  ///< "" if dimensionless
   bool higher_is_better;
+  bool may_be_negative;
   std::string_view help;
 };
 

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <iterator>
 #include <map>
+#include <stdexcept>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
@@ -104,6 +105,7 @@ optimize::Experiment read(const Options& options, const fs::path& folder, const 
     settings.algorithm = method.name;
     experiment.method = settings;
   }
+  experiment.has_baseline = false;  // the thesis's searches have none; uniform_distance() is in the summary
   apply_options(options, experiment);
   return experiment;
 }
@@ -154,6 +156,10 @@ MethodResult run_method(const std::string& name, const optimize::Experiment& exp
       break;
     }
     const std::optional<optimize::Evaluation>& best = outcome.progress.best;
+    if (!best) {
+      throw std::runtime_error(name + ": none of " + std::to_string(outcome.evaluations.size()) +
+                               " evaluations has a score; the first failure: " + outcome.progress.first_failure);
+    }
     if (!result.best || experiment.objectives.front().better(best->scores.front(), result.best->scores.front())) {
       result.best = best;
     }
@@ -240,7 +246,7 @@ int experiment(const Options& options) {
     write_file(folder / method->table, optimize::experiment_table(result.runs));
     write_file(folder / method->runs_figure, optimize::draw_every_run(result.runs, uniform_m));
     write_file(folder / method->spread_figure, optimize::draw_run_spread(result.runs, uniform_m));
-    optimize::write_scenario(experiment, result.best->candidate, folder / method->name, "best");
+    optimize::write_scenario(experiment, *result.best, folder / method->name, "best");
     all_runs.push_back(result.runs);
     results.push_back(std::move(result));
   }

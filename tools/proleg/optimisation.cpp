@@ -101,6 +101,20 @@ SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t r
   return outcome;
 }
 
+std::vector<optimize::Confirmation> confirm_best(const optimize::Experiment& experiment, optimize::Workers& workers,
+                                                 optimize::Store& store, SearchOutcome& outcome) {
+  if (outcome.ending.empty() || !optimize::needs_confirmation(experiment)) {
+    return {};
+  }
+  try {
+    const std::vector<optimize::Evaluation> finalists = optimize::choose_finalists(experiment, outcome.evaluations);
+    return optimize::confirm(experiment, finalists, workers, &store, interrupted);
+  } catch (const optimize::SearchEnded&) {
+    outcome.ending.clear();
+    return {};
+  }
+}
+
 double overhead(const SearchOutcome& outcome) {
   const double all = outcome.own_cpu_s + outcome.progress.workers_s;
   return all > 0.0 ? outcome.own_cpu_s / all : 0.0;

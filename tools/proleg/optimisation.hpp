@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/optimize/evaluation/confirmation.hpp"
 #include "sim/optimize/evaluation/evaluator.hpp"
 #include "sim/optimize/evaluation/store.hpp"
 #include "sim/optimize/evaluation/workers.hpp"
@@ -47,6 +48,12 @@ struct SearchOutcome {
 /// terminal, under this label.
 [[nodiscard]] SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t run,
                                        optimize::Workers& workers, optimize::Store& store, const std::string& label);
+
+/// Rates the best candidates of a search again, if it has ended and its result depends on random numbers; otherwise
+/// returns nothing. Best first. If the user interrupts, the result is empty, and the search counts as interrupted.
+[[nodiscard]] std::vector<optimize::Confirmation> confirm_best(const optimize::Experiment& experiment,
+                                                               optimize::Workers& workers, optimize::Store& store,
+                                                               SearchOutcome& outcome);
 
 /// Share of optimiser, store and scheduling in all processor time.
 [[nodiscard]] double overhead(const SearchOutcome& outcome);

@@ -4,21 +4,19 @@
 
 #include <cstdio>
 #include <iostream>
+#include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "shared/computer/output/output.hpp"
 #include "sim/optimize/method/search.hpp"
-#include "sim/optimize/report/report.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/json_output.hpp"
-#include "tools/proleg/run_measures.hpp"
 #include "tools/proleg/scenario_run.hpp"
+#include "tools/proleg/search_result.hpp"
 
 namespace proleg::tools {
 namespace {
 
-using optimize::Evaluation;
 using optimize::Experiment;
 
 std::filesystem::path folder_of(const OptimiseOptions& options, const Experiment& experiment) {
@@ -33,82 +31,35 @@ std::filesystem::path folder_of(const OptimiseOptions& options, const Experiment
   return folder;
 }
 
-/// Writes tables, figures and the best scenario for people.
-std::vector<std::filesystem::path> write_results(const Experiment& experiment, const SearchOutcome& outcome,
-                                                 const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  const auto write = [&](const char* name, const std::string& text) {
-    files.push_back(folder / name);
-    write_file(files.back(), text);
-  };
-  write("evaluations.tsv", optimize::evaluations_table(experiment, outcome.evaluations));
-  write("best.tsv", optimize::best_table(experiment, outcome.evaluations, 10));
-  write("learning_curve.svg", optimize::draw_learning_curve(experiment, outcome.evaluations));
-  if (experiment.objectives.size() > 1) {
-    std::vector<Evaluation> front;
-    for (const std::size_t position : optimize::pareto_front(experiment, outcome.evaluations)) {
-      front.push_back(outcome.evaluations[position]);
-    }
-    write("pareto.tsv", optimize::evaluations_table(experiment, front));
-    write("pareto.svg", optimize::draw_pareto_front(experiment, outcome.evaluations));
-  }
-  files.push_back(optimize::write_scenario(experiment, outcome.progress.best->candidate, folder, "best"));
-  return files;
-}
-
 void print_json(const OptimiseOptions& options, const Experiment& experiment, const SearchOutcome& outcome,
-                const std::filesystem::path& folder, std::uint32_t workers) {
-  const Evaluation& best = *outcome.progress.best;
-  Json scores = Json::empty_object();
-  for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
-    scores.add(experiment.objectives[i].name, best.scores[i]);
-  }
+                const SearchResult& result, const std::filesystem::path& folder, std::uint32_t workers) {
   const optimize::SearchProgress& progress = outcome.progress;
-  const Json object{{"experiment", options.file},
-                    {"method", optimize::method_name(experiment.method)},
-                    {"seed", experiment.seed},
-                    {"best_score", best.scores.front()},
-                    {"best_scores", scores},
-                    {"best_values", values_object(experiment.space, best.candidate)},
-                    {"best_number", best.number},
-                    {"best_measures", measures_object(best.measures)},
-                    {"evaluations", progress.evaluations},
-                    {"simulated", progress.simulated},
-                    {"reused", progress.reused},
-                    {"restored", progress.restored},
-                    {"simulated_ahead_in_vain", progress.wasted},
-                    {"ended", outcome.ending},
-                    {"workers", workers},
-                    {"wall_s", outcome.wall_s},
-                    {"simulated_s", progress.simulated_s},
-                    {"simulated_s_per_s", progress.simulated_s / outcome.wall_s},
-                    {"workers_busy", progress.workers_s / (outcome.wall_s * workers)},
-                    {"overhead", overhead(outcome)},
-                    {"out", folder.string()},
-                    {"fingerprint", experiment.fingerprint()},
-                    {"build_id", build_id}};
+  Json object{
+      {"experiment", options.file}, {"method", optimize::method_name(experiment.method)}, {"seed", experiment.seed}};
+  add_result(experiment, result, object);
+  object.add("evaluations", progress.evaluations);
+  object.add("simulated", progress.simulated);
+  object.add("reused", progress.reused);
+  object.add("restored", progress.restored);
+  object.add("failed", progress.failed);
+  object.add("simulated_ahead_in_vain", progress.wasted);
+  object.add("ended", outcome.ending);
+  object.add("workers", workers);
+  object.add("wall_s", outcome.wall_s);
+  object.add("simulated_s", progress.simulated_s);
+  object.add("simulated_s_per_s", progress.simulated_s / outcome.wall_s);
+  object.add("workers_busy", progress.workers_s / (outcome.wall_s * workers));
+  object.add("overhead", overhead(outcome));
+  object.add("out", folder.string());
+  object.add("fingerprint", experiment.fingerprint());
+  object.add("build_id", build_id);
   std::cout << object.text() << '\n';
 }
 
-void print_result(const Experiment& experiment, const SearchOutcome& outcome,
-                  const std::vector<std::filesystem::path>& files, std::uint32_t workers) {
-  const Evaluation& best = *outcome.progress.best;
+void print_text(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
+                const std::vector<std::filesystem::path>& files, std::uint32_t workers) {
+  print_result(experiment, outcome, result);
   const optimize::SearchProgress& progress = outcome.progress;
-  for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
-    const optimize::Objective& objective = experiment.objectives[i];
-    std::printf("%-24s %.6g %s\n", ("best " + objective.name).c_str(), best.scores[i],
-                std::string(objective.unit()).c_str());
-  }
-  for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
-    const optimize::Dimension& dimension = experiment.space.dimensions[i];
-    std::printf("  %-22s %s %s\n", dimension.name.c_str(), experiment.space.value_text(best.candidate, i).c_str(),
-                scale_of(dimension.unit).symbol);
-  }
-  std::printf("%-24s %llu: %llu simulated now, %llu reused, %llu from the store\n", "evaluations",
-              static_cast<unsigned long long>(progress.evaluations),
-              static_cast<unsigned long long>(progress.simulated), static_cast<unsigned long long>(progress.reused),
-              static_cast<unsigned long long>(progress.restored));
-  std::printf("%-24s %s\n", "ended", outcome.ending.empty() ? "interrupted" : outcome.ending.c_str());
   std::printf("%-24s %.1f s, %.0f simulated s/s; %u workers, %.1f %% busy; optimiser and store %.2f %%\n", "time",
               outcome.wall_s, progress.simulated_s / outcome.wall_s, workers,
               100.0 * progress.workers_s / (outcome.wall_s * workers), 100.0 * overhead(outcome));
@@ -161,24 +112,33 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   const std::unique_ptr<optimize::Workers> workers = make_workers(experiment, options);
   const std::unique_ptr<optimize::Store> store = open_store(
       folder, experiment, options.resume ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);
-  const SearchOutcome outcome = run_search(experiment, 0, *workers, *store, optimize::method_name(experiment.method));
+  SearchOutcome outcome = run_search(experiment, 0, *workers, *store, optimize::method_name(experiment.method));
   const std::string continuation = command_to_continue(options, folder);
-  if (!outcome.progress.best) {
+  if (outcome.progress.evaluations == 0) {
     std::cerr << "proleg optimise: interrupted before the first evaluation; continue with: " << continuation << '\n';
     return exit_failed;
   }
-  const std::vector<std::filesystem::path> files = write_results(experiment, outcome, folder);
-  if (options.json) {
-    print_json(options, experiment, outcome, folder, workers->count());
+  const bool has_score = outcome.progress.best.has_value();
+  if (!has_score) {
+    write_results(experiment, outcome, nullptr, folder);
+    std::cerr << "proleg optimise: none of " << outcome.progress.evaluations
+              << " evaluations has a score, so there is no best scenario; the first failure: "
+              << outcome.progress.first_failure << '\n';
   } else {
-    print_result(experiment, outcome, files, workers->count());
+    std::vector<optimize::Confirmation> confirmations = confirm_best(experiment, *workers, *store, outcome);
+    const SearchResult result = result_of(experiment, outcome, std::move(confirmations));
+    const std::vector<std::filesystem::path> files = write_results(experiment, outcome, &result, folder);
+    if (options.json) {
+      print_json(options, experiment, outcome, result, folder, workers->count());
+    } else {
+      print_text(experiment, outcome, result, files, workers->count());
+    }
   }
   if (outcome.ending.empty()) {
     std::cerr << "proleg optimise: interrupted after " << outcome.progress.evaluations
               << " evaluations; continue with: " << continuation << '\n';
-    return exit_failed;
   }
-  return exit_success;
+  return has_score && !outcome.ending.empty() ? exit_success : exit_failed;
 }
 
 }  // namespace

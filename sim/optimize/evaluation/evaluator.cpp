@@ -165,8 +165,11 @@ class Evaluator::Implementation {
     progress_.evaluations += 1;
     (evaluation.reused ? progress_.reused : evaluation.restored ? progress_.restored : progress_.simulated) += 1;
     progress_.score_sum += evaluation.scores.front();
-    if (!progress_.best ||
-        experiment_.objectives.front().better(evaluation.scores.front(), progress_.best->scores.front())) {
+    if (!has_own_score(experiment_, evaluation, 0)) {
+      if (progress_.failed++ == 0) {
+        progress_.first_failure = why_without_score(experiment_, evaluation);
+      }
+    } else if (is_better(experiment_, evaluation, progress_.best ? &*progress_.best : nullptr)) {
       progress_.best = evaluation;
     }
     update_counts();

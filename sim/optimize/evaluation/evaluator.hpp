@@ -21,7 +21,9 @@ struct SearchProgress {
   double simulated_s = 0.0;        ///< simulated time of all trials made now, wasted ones too
   double workers_s = 0.0;          ///< time that workers needed for it
   double score_sum = 0.0;          ///< of the first objective
-  std::optional<Evaluation> best;  ///< by the first objective; the earliest of equals
+  std::uint64_t failed = 0;        ///< evaluations without a score of their own (has_own_score, first objective)
+  std::string first_failure;       ///< why the first of them has none
+  std::optional<Evaluation> best;  ///< by is_better(); the earliest of equals; none if no evaluation has a score
 };
 
 /// Evaluates what an optimiser asks for, in its order, while workers simulate ahead. Every result depends only on run,

@@ -1,6 +1,10 @@
 #include "sim/optimize/evaluation/rating.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "shared/computer/text/text.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -59,6 +63,35 @@ Evaluation rate(const Experiment& experiment, std::uint32_t run, std::uint64_t n
     }
   }
   return evaluation;
+}
+
+bool has_own_score(const Experiment& experiment, const Evaluation& evaluation, std::size_t objective) {
+  return evaluation.failure.empty() && objective < evaluation.scores.size() &&
+         std::isfinite(evaluation.scores[objective]) &&
+         std::ranges::all_of(experiment.objectives[objective].terms,
+                             [&](const Term& term) { return std::isfinite(evaluation.measures[term.measure]); });
+}
+
+std::string why_without_score(const Experiment& experiment, const Evaluation& evaluation) {
+  if (!evaluation.failure.empty()) {
+    return evaluation.failure;
+  }
+  std::vector<std::string> undefined;
+  for (const Term& term : experiment.objectives.front().terms) {
+    if (!std::isfinite(evaluation.measures[term.measure])) {
+      undefined.emplace_back(sim::declaration_of(term.measure).name);
+    }
+  }
+  return "the run does not define " + listed(undefined);
+}
+
+bool is_better(const Experiment& experiment, const Evaluation& evaluation, const Evaluation* other) {
+  return has_own_score(experiment, evaluation, 0) && !evaluation.given_up &&
+         (other == nullptr || experiment.objectives.front().better(evaluation.scores.front(), other->scores.front()));
+}
+
+const Evaluation* baseline_of(const Experiment& experiment, std::span<const Evaluation> evaluations) {
+  return experiment.has_baseline && !evaluations.empty() ? &evaluations.front() : nullptr;
 }
 
 }  // namespace proleg::optimize

@@ -22,8 +22,9 @@ sim::Scenario scenario_of(const Experiment& experiment, const Task& task) {
 }
 
 /// The tick after which racing checks the run; none if it does not.
-std::optional<std::uint32_t> racing_tick(const Experiment& experiment, const Task& task, std::uint32_t ticks) {
-  if (!experiment.racing.on() || !task.hopeless_below || ticks < 2) {
+std::optional<std::uint32_t> racing_tick(const Experiment& experiment, std::optional<double> hopeless_below,
+                                         std::uint32_t ticks) {
+  if (!experiment.racing.on() || !hopeless_below || ticks < 2) {
     return std::nullopt;
   }
   return std::clamp(static_cast<std::uint32_t>(std::lround(experiment.racing.after * ticks)), 1U, ticks - 1);
@@ -42,21 +43,27 @@ void normalise(sim::MeasureValues& measures) {
   }
 }
 
-void simulate(const Experiment& experiment, const Task& task, TrialResult& result) {
-  const sim::Scenario scenario = scenario_of(experiment, task);
+/// Racing: gives the run up if its extrapolated score is too low. The result then has the extrapolated measures.
+void race(const Experiment& experiment, double hopeless_below, const sim::Simulation& simulation, double share,
+          TrialResult& result) {
+  const sim::MeasureValues measures = extrapolated(simulation.measures(experiment.heading_deg), share);
+  if (experiment.objectives.front().score(measures) < hopeless_below) {
+    result.given_up = true;
+    result.measures = measures;
+  }
+}
+
+/// hopeless_below: for racing; nothing: the run goes to its end.
+void simulate(const Experiment& experiment, const sim::Scenario& scenario, std::optional<double> hopeless_below,
+              TrialResult& result) {
   const std::uint32_t ticks = sim::tick_count(scenario);
-  const std::optional<std::uint32_t> check_tick = racing_tick(experiment, task, ticks);
+  const std::optional<std::uint32_t> check_tick = racing_tick(experiment, hopeless_below, ticks);
   sim::Simulation simulation(scenario);
   try {
     while (simulation.tick() < ticks && !result.given_up) {
       simulation.advance();
       if (simulation.tick() == check_tick) {
-        const sim::MeasureValues extrapolated_measures =
-            extrapolated(simulation.measures(experiment.heading_deg), static_cast<double>(*check_tick) / ticks);
-        if (experiment.objectives.front().score(extrapolated_measures) < *task.hopeless_below) {
-          result.given_up = true;
-          result.measures = extrapolated_measures;
-        }
+        race(experiment, *hopeless_below, simulation, static_cast<double>(*check_tick) / ticks, result);
       }
     }
     if (!result.given_up) {
@@ -68,10 +75,21 @@ void simulate(const Experiment& experiment, const Task& task, TrialResult& resul
   result.simulated_s = simulation.time_s();
 }
 
+TrialResult timed_run(const Experiment& experiment, const sim::Scenario& scenario,
+                      std::optional<double> hopeless_below) {
+  const auto start = std::chrono::steady_clock::now();
+  TrialResult result;
+  simulate(experiment, scenario, hopeless_below, result);
+  normalise(result.measures);
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
 }  // namespace
 
 std::uint64_t seed_of(const Experiment& experiment, const Task& task) {
-  const bool is_common = experiment.trials.random_numbers == RandomNumbers::common;
+  const bool is_common = experiment.trials.random_numbers == RandomNumbers::common ||
+                         task.trial >= experiment.trials.count;  // a fresh run of a finalist
   return trial_seed(experiment.seed, task.run, is_common ? 0 : task.number, task.trial);
 }
 
@@ -81,12 +99,20 @@ bool differs_between_evaluations(const Experiment& experiment) {
 }
 
 TrialResult run_trial(const Experiment& experiment, const Task& task) {
-  const auto start = std::chrono::steady_clock::now();
-  TrialResult result;
-  simulate(experiment, task, result);
-  normalise(result.measures);
-  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  return timed_run(experiment, scenario_of(experiment, task), task.hopeless_below);
+}
+
+sim::Scenario own_world(const Experiment& experiment, const Evaluation& evaluation) {
+  sim::Scenario scenario = experiment.scenario;
+  experiment.space.apply(evaluation.candidate, scenario);
+  if (depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread)) {
+    scenario.kernel.seed = seed_of(experiment, {evaluation.run, evaluation.number, 0, evaluation.candidate, {}});
+  }
+  return scenario;
+}
+
+TrialResult run_own_world(const Experiment& experiment, const Evaluation& evaluation) {
+  return timed_run(experiment, own_world(experiment, evaluation), std::nullopt);
 }
 
 }  // namespace proleg::optimize

@@ -13,7 +13,7 @@ namespace proleg::optimize {
 struct Task {
   std::uint32_t run = 0;     ///< repetition of the experiment, from 0
   std::uint64_t number = 0;  ///< of the evaluation in its run, from 0: the individual
-  std::uint32_t trial = 0;   ///< from 0
+  std::uint32_t trial = 0;   ///< from 0; from the experiment's number of trials on: fresh runs of a finalist
   Candidate candidate;
   /// Racing: the trial is given up if its score, extrapolated, is below this.
   std::optional<double> hopeless_below;
@@ -23,6 +23,7 @@ struct Task {
 
 /// Seed of a trial's noise and variations. With common random numbers it is the same for all candidates of a
 /// repetition.
+/// In fresh runs of finalists it always is.
 [[nodiscard]] std::uint64_t seed_of(const Experiment& experiment, const Task& task);
 
 /// Whether two evaluations of a candidate in one repetition may differ.
@@ -55,5 +56,13 @@ struct Evaluation {
   bool restored = false;  ///< not simulated now: from the store of an interrupted run
   std::string failure;    ///< of the first trial that failed
 };
+
+/// The scenario that a search writes for a candidate: the experiment's, with the candidate's values and without the
+/// variations of trials. If a run depends on the seed, it has the seed of the evaluation's first trial. Therefore, with
+/// one trial that varies nothing, its run is that trial.
+[[nodiscard]] sim::Scenario own_world(const Experiment& experiment, const Evaluation& evaluation);
+
+/// Simulates the own_world() of an evaluation.
+[[nodiscard]] TrialResult run_own_world(const Experiment& experiment, const Evaluation& evaluation);
 
 }  // namespace proleg::optimize

@@ -25,6 +25,12 @@ struct Racing {
   [[nodiscard]] bool on() const { return after > 0.0; }
 };
 
+/// How the winner of a noisy search is chosen: the best candidates are rated again in fresh runs.
+struct ConfirmationSettings {
+  std::uint32_t candidates = 5;  ///< 1 to 1000
+  std::uint32_t runs = 10;       ///< of each; 0: none, and the best score of the search wins; at most 1000
+};
+
 /// A search for the parameters of a gait, as a *.optimise.xml file describes it.
 struct Experiment {
   std::string path;
@@ -35,6 +41,9 @@ struct Experiment {
   double heading_deg = 0.0;  ///< of the measure `speed`: 0 is the direction of the head at the start, 90 its left
   Trials trials;
   Racing racing;
+  ConfirmationSettings confirmation;
+  /// Whether evaluation 0 is the candidate that is nearest to the scenario's own values. A file's experiment has it.
+  bool has_baseline = false;
   bool reuse = true;  ///< whether known outcomes that cannot differ are not simulated again
   MethodSettings method;
   std::uint64_t seed = 1;

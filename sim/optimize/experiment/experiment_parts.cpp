@@ -67,6 +67,7 @@ std::string method_text(const GeneticSettings& method) {
       .add("generations_to_convergence", method.generations_to_convergence)
       .add("convergence", method.convergence)
       .add("mode", method.mode)
+      .add("start", method.start)
       .text();
 }
 
@@ -75,6 +76,7 @@ std::string method_text(const PagmoSettings& method) {
       .add("population", method.population)
       .add("generations", method.generations)
       .add("restart_after", method.restart_after)
+      .add("start", method.start)
       .add("sigma0", method.sigma0)
       .add("crossover", method.crossover)
       .add("scale", method.scale)
@@ -146,6 +148,11 @@ std::vector<ExperimentPart> parts_of(const Experiment& experiment) {
           {"fitness", objectives_text(experiment)},
           {"trials", trials_text(experiment.trials)},
           {"racing", SettingsText().add("after", experiment.racing.after).add("keep", experiment.racing.keep).text()},
+          {"confirmation", SettingsText()
+                               .add("candidates", experiment.confirmation.candidates)
+                               .add("runs", experiment.confirmation.runs)
+                               .text()},
+          {"baseline", SettingsText().add("has_baseline", experiment.has_baseline).text()},
           {"reuse", SettingsText().add("reuse", experiment.reuse).text()},
           {"duration", SettingsText().add("seconds", experiment.scenario.duration_s).text()}};
 }

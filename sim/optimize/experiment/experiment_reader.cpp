@@ -89,8 +89,20 @@ Racing read_racing(const XmlElement& element, const std::vector<Objective>& obje
   return racing;
 }
 
+ConfirmationSettings read_confirmation(const XmlElement& element) {
+  element.allow({"candidates", "runs"}, {});
+  ConfirmationSettings confirmation;
+  if (element.attribute("candidates")) {
+    confirmation.candidates = static_cast<std::uint32_t>(read_whole_attribute(element, "candidates", 1, max_trials));
+  }
+  if (element.attribute("runs")) {
+    confirmation.runs = static_cast<std::uint32_t>(read_whole_attribute(element, "runs", 0, max_trials));
+  }
+  return confirmation;
+}
+
 void read_evaluation(const XmlElement& element, Experiment& experiment) {
-  element.allow({}, {"evaluations", "seed", "reuse", "trials", "racing"});
+  element.allow({}, {"evaluations", "seed", "reuse", "trials", "racing", "confirmation"});
   if (const auto evaluations = element.child("evaluations")) {
     experiment.evaluations = read_whole(*evaluations, 0, max_evaluations);
   }
@@ -105,6 +117,9 @@ void read_evaluation(const XmlElement& element, Experiment& experiment) {
   }
   if (const auto racing = element.child("racing")) {
     experiment.racing = read_racing(*racing, experiment.objectives);
+  }
+  if (const auto confirmation = element.child("confirmation")) {
+    experiment.confirmation = read_confirmation(*confirmation);
   }
 }
 
@@ -128,6 +143,7 @@ Experiment read_experiment(const std::filesystem::path& path, sim::FileSource& f
                            const std::optional<std::filesystem::path>& simulation) {
   Experiment experiment;
   experiment.path = path.string();
+  experiment.has_baseline = true;
   const std::unique_ptr<sim::XmlDocument> document = sim::SourceSet(files, path, experiment.sources).open_top();
   const XmlElement section = document->root(method_tags);
   constexpr std::array<std::string_view, 1> pagmo_attributes{"algorithm"};

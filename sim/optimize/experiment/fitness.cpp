@@ -1,5 +1,6 @@
 #include "sim/optimize/experiment/fitness.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace proleg::optimize {
@@ -10,6 +11,12 @@ double Objective::score(const sim::MeasureValues& measures) const {
     sum += term.weight * measures[term.measure];
   }
   return std::isfinite(sum) ? sum : failed;
+}
+
+bool Objective::may_be_negative() const {
+  return failed < 0.0 || std::ranges::any_of(terms, [](const Term& term) {
+           return term.weight < 0.0 || sim::declaration_of(term.measure).may_be_negative;
+         });
 }
 
 std::string_view Objective::unit() const {

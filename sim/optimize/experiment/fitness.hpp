@@ -22,11 +22,13 @@ struct Objective {
   std::string name;         ///< unique; for columns and axes; by default the name of a single measure
   std::vector<Term> terms;  ///< at least one
   Goal goal = Goal::maximise;
-  /// Score of a candidate whose run failed or lacks a measure. By default 0 to maximise and 10^6 to minimise.
+  /// Score of a candidate whose run failed or lacks a measure.
   double failed = 0.0;
 
   /// The score; `failed` if it is not a finite number.
   [[nodiscard]] double score(const sim::MeasureValues& measures) const;
+  /// Whether a score can be below 0: that of a failed run, a term with a weight below 0, or a measure with both signs.
+  [[nodiscard]] bool may_be_negative() const;
   /// Whether score a is better than b.
   [[nodiscard]] bool better(double a, double b) const { return goal == Goal::maximise ? a > b : a < b; }
   /// Unit of the score: that of its measure; empty for a sum.

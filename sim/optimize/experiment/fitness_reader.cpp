@@ -73,6 +73,24 @@ Goal natural_goal(const std::vector<Term>& terms) {
   return rises ? Goal::maximise : Goal::minimise;
 }
 
+/// The score of a failed run if the file gives none. It must be worse than that of any other run, which is known only
+/// of a single measure.
+double natural_failed(const XmlElement& element, const Objective& objective) {
+  const Term& first = objective.terms.front();
+  const bool is_maximised = objective.goal == Goal::maximise;
+  const sim::MeasureDeclaration& measure = declaration_of(first.measure);
+  if (objective.terms.size() > 1) {
+    element.refuse("a sum of measures without 'failed' in " + element.label(),
+                   "failed=\"...\", the score of a run that fails, worse than that of every other run");
+  }
+  if (is_maximised && (first.weight < 0.0 || measure.may_be_negative)) {
+    element.refuse(
+        "a score that may be negative (" + std::string(measure.name) + ") without 'failed' in " + element.label(),
+        "failed=\"...\", the score of a run that fails, worse than that of every other run");
+  }
+  return is_maximised ? 0.0 : worst_cost;
+}
+
 Objective read_objective(const XmlElement& element) {
   element.allow({"name", "goal", "failed", "measure"}, {"term"});
   Objective objective;
@@ -86,10 +104,8 @@ Objective read_objective(const XmlElement& element) {
     objective.name =
         objective.terms.size() == 1 ? std::string(declaration_of(objective.terms.front().measure).name) : "score";
   }
-  objective.failed = objective.goal == Goal::maximise ? 0.0 : worst_cost;
-  if (element.attribute("failed")) {
-    objective.failed = read_number_attribute(element, "failed", scores);
-  }
+  objective.failed = element.attribute("failed") ? read_number_attribute(element, "failed", scores)
+                                                 : natural_failed(element, objective);
   return objective;
 }
 

@@ -55,9 +55,11 @@ class SettingsReader {
   const XmlElement* properties_;
 };
 
+void read_start(const SettingsReader& settings, Start& start) { settings.read("start", start, {"random", "scenario"}); }
+
 GeneticSettings read_genetic(const XmlElement& properties, std::vector<std::string>& remarks) {
-  constexpr std::array<std::string_view, 7> tags{"popsize",      "pmut",           "pcross", "nconvergence",
-                                                 "pconvergence", "flushfrequency", "gamode"};
+  constexpr std::array<std::string_view, 8> tags{"popsize",      "pmut",           "pcross", "nconvergence",
+                                                 "pconvergence", "flushfrequency", "gamode", "start"};
   const SettingsReader settings(properties, tags);
   GeneticSettings genetic;
   settings.read("popsize", genetic.population, 2, max_population);
@@ -66,6 +68,8 @@ GeneticSettings read_genetic(const XmlElement& properties, std::vector<std::stri
   settings.read("nconvergence", genetic.generations_to_convergence, 1, 10'000);
   settings.read("pconvergence", genetic.convergence, shares);
   settings.read("gamode", genetic.mode, 1, 2);
+  genetic.start = Start::scenario;
+  read_start(settings, genetic.start);
   if (const auto flush = properties.child("flushfrequency")) {
     remark_no_effect(remarks, *flush, "every evaluation is saved when it is known");
   }
@@ -87,7 +91,7 @@ GreatDelugeSettings read_great_deluge(const XmlElement& properties) {
   settings.read("growth", deluge.growth, {"linear", "doubling"});
   settings.read("move", deluge.move, {"all", "one"});
   settings.read("neighbour", deluge.neighbour, {"three", "sign", "uniform"});
-  settings.read("start", deluge.start, {"random", "scenario"});
+  read_start(settings, deluge.start);
   settings.read("firstMustPass", deluge.first_must_pass, 0, 1);
   settings.read("reevaluations", deluge.reevaluations, 0, 100);
   settings.read("chains", deluge.chains, 1, 64);
@@ -97,7 +101,7 @@ GreatDelugeSettings read_great_deluge(const XmlElement& properties) {
 
 PagmoSettings read_pagmo(const XmlElement& properties, std::string algorithm) {
   const std::vector<std::string> options = pagmo_options(algorithm);
-  std::vector<std::string_view> tags{"popsize", "generations", "restartAfter"};
+  std::vector<std::string_view> tags{"popsize", "generations", "restartAfter", "start"};
   tags.insert(tags.end(), options.begin(), options.end());
   const SettingsReader settings(properties, tags);
   PagmoSettings pagmo;
@@ -105,6 +109,8 @@ PagmoSettings read_pagmo(const XmlElement& properties, std::string algorithm) {
   settings.read("popsize", pagmo.population, 2, max_population);
   settings.read("generations", pagmo.generations, 1, max_candidates);
   settings.read("restartAfter", pagmo.restart_after, 0, max_candidates);
+  pagmo.start = Start::scenario;
+  read_start(settings, pagmo.start);
   settings.read("sigma0", pagmo.sigma0, step_sizes);
   settings.read("crossover", pagmo.crossover, shares);
   settings.read("scale", pagmo.scale, shares);

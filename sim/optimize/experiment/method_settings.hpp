@@ -11,6 +11,9 @@
 
 namespace proleg::optimize {
 
+/// Where a search starts: at random candidates only, or with the scenario's own values among the first ones.
+enum class Start : std::uint8_t { random, scenario };
+
 /// The modified great deluge algorithm (thesis, section 3.4.2; after G. Dueck, "New optimization heuristics: the great
 /// deluge algorithm and the record-to-record travel", J. Comput. Phys. 104, 1993). Points that the thesis leaves open
 /// are options. Their defaults read its text literally: a radius that is "increased by itself" doubles.
@@ -28,7 +31,7 @@ struct GreatDelugeSettings {
     sign,     ///< -radius or +radius
     uniform,  ///< any step from -radius to +radius
   } neighbour = Neighbour::three;
-  enum class Start : std::uint8_t { random, scenario } start = Start::random;
+  Start start = Start::random;      ///< scenario: all chains start there
   bool first_must_pass = true;      ///< whether the start itself must reach the water level to be accepted
   std::uint32_t reevaluations = 0;  ///< further evaluations of a candidate that would be accepted; the mean decides
   std::uint32_t chains = 1;         ///< searches side by side, each with its own water; the best of all counts
@@ -45,6 +48,7 @@ struct GeneticSettings {
   /// gamode: a setting of the thesis's program that the thesis does not explain. 1: a whole new generation each time,
   /// and the best survives (GAlib's simple algorithm). 2: overlapping generations, half of them new (steady state).
   enum class Mode : std::uint8_t { simple = 1, steady_state = 2 } mode = Mode::simple;
+  Start start = Start::random;  ///< scenario: its values are in the first population
 };
 
 /// One of pagmo's algorithms.
@@ -56,6 +60,7 @@ struct PagmoSettings {
   /// from another random population: for landscapes with several summits. It then ends with its generations or
   /// evaluations. Only for algorithms that evolve by generation. 0: never.
   std::uint32_t restart_after = 0;
+  Start start = Start::random;      ///< scenario: its values are in the first population; not after a restart
   std::optional<double> sigma0;     ///< cmaes, xnes: first step size, as a share of the ranges
   std::optional<double> crossover;  ///< de, sga, nsga2: their CR, cr
   std::optional<double> scale;      ///< de: F

@@ -1,7 +1,10 @@
 #include "sim/optimize/method/genetic.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <deque>
 #include <exception>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -10,6 +13,7 @@
 
 #include <ga/GA1DArrayGenome.h>
 #include <ga/GASStateGA.h>
+#include <ga/GAScaling.h>
 #include <ga/GASimpleGA.h>
 #include <ga/garandom.h>
 
@@ -42,6 +46,21 @@ class Rating {
     return 0.0F;
   }
 
+  /// GAGenome::Initializer: random values; for the first individual the start, if there is one.
+  static void initialise(GAGenome& genome) {
+    Genome::UniformInitializer(genome);
+    auto& self = *static_cast<Rating*>(genome.userData());
+    if (self.start) {
+      auto& genes = dynamic_cast<Genome&>(genome);
+      for (std::size_t i = 0; i < self.start->size(); ++i) {
+        genes.gene(static_cast<unsigned>(i), static_cast<int>((*self.start)[i]));
+      }
+      self.start.reset();
+    }
+  }
+
+  std::optional<Candidate> start;  ///< for the next individual that is initialised
+
   /// What ended the search; null while it runs. An exception through GAlib would leak its memory.
   [[nodiscard]] const std::exception_ptr& ended() const { return ended_; }
 
@@ -65,7 +84,7 @@ class Rating {
         if (!best_ || objective_.better(score, *best_)) {
           best_ = score;
         }
-        unrated_[i]->score(static_cast<float>(std::max(score, 0.0)));
+        unrated_[i]->score(static_cast<float>(score));
       }
     } catch (...) {
       ended_ = std::current_exception();
@@ -100,6 +119,7 @@ Genome make_genome(const SearchSpace& space, Rating& rating) {
     alleles.add(make_alleles(space.dimensions[i]));
   }
   Genome genome(alleles, Rating::collect, &rating);
+  genome.initializer(Rating::initialise);
   genome.crossover(Genome::UniformCrossover);
   return genome;
 }
@@ -128,6 +148,64 @@ std::unique_ptr<GAGeneticAlgorithm> make_algorithm(const GAPopulation& populatio
   return std::make_unique<GASimpleGA>(population);
 }
 
+/// GAlib's end: the best score of N - 1 generations ago over the best now is at least `convergence`. GAlib does not
+/// divide by 0 and would continue for ever, so N generations with a best of 0 also end the search.
+class RatioConvergence {
+ public:
+  RatioConvergence(const GeneticSettings& settings, Goal goal, GAGeneticAlgorithm& algorithm)
+      : algorithm_(algorithm), generations_(settings.generations_to_convergence) {
+    algorithm.nConvergence(generations_);
+    algorithm.pConvergence(convergence_limit(settings, goal));
+    algorithm.terminator(GAGeneticAlgorithm::TerminateUponConvergence);
+  }
+
+  bool is_reached() {
+    zeros_ = algorithm_.population().best().score() == 0.0F ? zeros_ + 1 : 0;
+    return algorithm_.done() == gaTrue || zeros_ >= generations_;
+  }
+
+ private:
+  GAGeneticAlgorithm& algorithm_;
+  std::uint32_t generations_;
+  std::uint32_t zeros_ = 0;  ///< latest generations with a best of 0
+};
+
+/// The same end for scores of both signs: in N - 1 generations the best score has improved by no more than the share
+/// 1 - `convergence` of its size. For scores above 0 that are maximised, both are the same condition.
+class GainConvergence {
+ public:
+  GainConvergence(const GeneticSettings& settings, GAGeneticAlgorithm& algorithm)
+      : algorithm_(algorithm), settings_(settings) {}
+
+  bool is_reached() {
+    best_.push_back(algorithm_.population().best().score());
+    if (best_.size() < settings_.generations_to_convergence) {
+      return false;
+    }
+    const double gain = std::abs(best_.back() - best_.front());
+    best_.pop_front();
+    return gain <= (1.0 - settings_.convergence) * std::abs(best_.back());
+  }
+
+ private:
+  GAGeneticAlgorithm& algorithm_;
+  const GeneticSettings& settings_;
+  std::deque<double> best_;  ///< of the latest generations
+};
+
+std::string evolve(GAGeneticAlgorithm& algorithm, const Rating& rating, const std::function<bool()>& has_converged) {
+  algorithm.initialize();
+  for (;;) {
+    if (rating.ended()) {
+      std::rethrow_exception(rating.ended());
+    }
+    if (has_converged()) {
+      return "converged";
+    }
+    algorithm.step();
+  }
+}
+
 }  // namespace
 
 std::string search_genetic(const Experiment& experiment, std::uint32_t run, FitnessSource& source) {
@@ -135,33 +213,29 @@ std::string search_genetic(const Experiment& experiment, std::uint32_t run, Fitn
   const Objective& objective = experiment.objectives.front();
   Rating rating(objective, source);
   source.set_needed_score(std::nullopt);
+  if (settings.start == Start::scenario) {
+    rating.start = experiment.space.nearest(experiment.scenario);
+  }
 
   GAPopulation population(make_genome(experiment.space, rating), settings.population);
   population.userData(&rating);
   population.evaluator(Rating::rate);
+  if (objective.may_be_negative()) {
+    population.scaling(GASigmaTruncationScaling());  // linear scaling takes no scores below 0
+  }
   const std::unique_ptr<GAGeneticAlgorithm> algorithm = make_algorithm(population, settings.mode);
   algorithm->minimaxi(objective.goal == Goal::maximise ? GAGeneticAlgorithm::MAXIMIZE : GAGeneticAlgorithm::MINIMIZE);
   algorithm->pMutation(static_cast<float>(settings.mutation));
   algorithm->pCrossover(static_cast<float>(settings.crossover));
-  algorithm->nConvergence(settings.generations_to_convergence);
-  algorithm->pConvergence(convergence_limit(settings, objective.goal));
-  algorithm->terminator(GAGeneticAlgorithm::TerminateUponConvergence);
 
   // Not initialize(seed): with the seed of the search before, it would continue the sequence.
   GAResetRNG(galib_seed(experiment, run));
-  algorithm->initialize();
-  std::uint32_t zeros = 0;  // latest generations with a best of 0: GAlib does not divide by it
-  for (;;) {
-    if (rating.ended()) {
-      std::rethrow_exception(rating.ended());
-    }
-    const float best = algorithm->population().best().score();
-    zeros = best == 0.0F ? zeros + 1 : 0;
-    if (algorithm->done() == gaTrue || zeros >= settings.generations_to_convergence) {
-      return "converged";
-    }
-    algorithm->step();
+  if (objective.may_be_negative()) {
+    GainConvergence convergence(settings, *algorithm);
+    return evolve(*algorithm, rating, [&] { return convergence.is_reached(); });
   }
+  RatioConvergence convergence(settings, objective.goal, *algorithm);
+  return evolve(*algorithm, rating, [&] { return convergence.is_reached(); });
 }
 
 }  // namespace proleg::optimize

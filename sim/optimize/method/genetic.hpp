@@ -23,8 +23,11 @@ namespace proleg::optimize {
 /// - Ends ("converged") when the best score of N - 1 generations ago, divided by the best score now, is at least
 ///   `convergence`. N is generations_to_convergence; it never ends before generation N - 1. The best individual always
 ///   survives. To minimise, the inverse quotient counts.
-/// - Linear scaling needs scores of 0 or more: GAlib receives 0 for a score below 0. After N generations with a best of
-///   0 the search counts as converged.
+/// - Linear scaling needs scores of 0 or more. After N generations with a best of 0 the search counts as converged.
+/// - An objective that may be negative (Objective::may_be_negative) has sigma truncation scaling instead, which GAlib
+///   provides for such scores. The search then ends when the best score of N - 1 generations ago differs from the best
+///   score now by no more than the share 1 - `convergence` of its size.
+/// - With Start::scenario the first individual has the scenario's own values.
 ///
 /// GAlib's random generator is a global variable: only one search at a time may run in a process. The generator is
 /// integer arithmetic (ran2 of Numerical Recipes, a shift register for coin tosses) and the same everywhere. The

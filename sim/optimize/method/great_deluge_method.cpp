@@ -32,9 +32,8 @@ std::string search_great_deluge(const Experiment& experiment, std::uint32_t run,
 
   std::vector<Candidate> starts;
   for (std::uint32_t chain = 0; chain < chains; ++chain) {
-    starts.push_back(settings.start == GreatDelugeSettings::Start::scenario
-                         ? experiment.space.nearest(experiment.scenario)
-                         : draw_start(experiment.space, seed, chain));
+    starts.push_back(settings.start == Start::scenario ? experiment.space.nearest(experiment.scenario)
+                                                       : draw_start(experiment.space, seed, chain));
   }
   source.set_needed_score(settings.first_must_pass ? std::optional(settings.water_level) : std::nullopt);
   source.expect(starts);

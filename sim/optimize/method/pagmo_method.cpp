@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <pagmo/algorithm.hpp>
 #include <pagmo/population.hpp>
 #include <pagmo/problem.hpp>
+#include <vector>
 
 #include "sim/optimize/experiment/scatter.hpp"
 #include "sim/optimize/method/gait_problem.hpp"
@@ -45,6 +47,9 @@ class PagmoSearch {
         chosen_(*find_pagmo_algorithm(settings_.algorithm)),
         seed_(seed),
         hub_(experiment.space, experiment.objectives, source),
+        own_values_(settings_.start == Start::scenario
+                        ? std::optional(hub_.numbers(experiment.space.nearest(experiment.scenario)))
+                        : std::nullopt),
         problem_(GaitProblem{hub_}),
         generations_(chosen_.evolves_by_generation ? settings_.generations : std::min(settings_.generations, 1U)) {
     source.set_needed_score(std::nullopt);
@@ -65,10 +70,8 @@ class PagmoSearch {
     RequestPredictor predictor(hub_, settings_.population, chosen_.stagnates);
     try {
       pagmo::population population;
-      const auto make_population = [&] {
-        return pagmo::population(problem_, settings_.population, static_cast<unsigned>(seed));
-      };
-      predictor.run([&] { static_cast<void>(make_population()); }, [&] { population = make_population(); });
+      predictor.run([&] { static_cast<void>(make_population(seed)); }, [&] { population = make_population(seed); });
+      own_values_.reset();
       const pagmo::algorithm algorithm = chosen_.make({.settings = settings_,
                                                        .seed = static_cast<unsigned>(seed >> 32U),
                                                        .variables = hub_.size(),
@@ -90,7 +93,7 @@ class PagmoSearch {
           return "converged";
         }
         const double now = best_cost(population);
-        const bool gained = best - now >= 0.001 * std::abs(best);
+        const bool gained = now < best && best - now >= 0.001 * std::abs(best);
         without_gain = gained ? 0 : without_gain + 1;
         best = gained ? now : best;
       }
@@ -98,6 +101,15 @@ class PagmoSearch {
       return "converged";
     }
     return "generations used up";
+  }
+
+  [[nodiscard]] pagmo::population make_population(std::uint64_t seed) const {
+    const std::uint32_t random = settings_.population - (own_values_ ? 1 : 0);
+    pagmo::population population(problem_, random, static_cast<unsigned>(seed));
+    if (own_values_) {
+      population.push_back(*own_values_);
+    }
+    return population;
   }
 
   /// Of the first objective.
@@ -109,6 +121,7 @@ class PagmoSearch {
   const PagmoAlgorithm& chosen_;
   std::uint64_t seed_;
   GaitProblemHub hub_;
+  std::optional<std::vector<double>> own_values_;  ///< for the first population of the first start
   pagmo::problem problem_;
   std::uint64_t generations_;  ///< left
 };

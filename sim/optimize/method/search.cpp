@@ -101,7 +101,8 @@ std::uint64_t planned_evaluations(const Experiment& experiment) {
   if (settings == nullptr) {
     return experiment.evaluations;
   }
-  const std::uint64_t all = (std::uint64_t{settings->generations} + 1) * settings->population;
+  const std::uint64_t all =
+      (std::uint64_t{settings->generations} + 1) * settings->population + (experiment.has_baseline ? 1 : 0);
   return experiment.evaluations == 0 ? all : std::min(all, experiment.evaluations);
 }
 
@@ -110,6 +111,10 @@ std::string search(const Experiment& experiment, std::uint32_t run, FitnessSourc
   if (has_one_candidate(experiment.space)) {
     static_cast<void>(source.fitness(Candidate(experiment.space.dimensions.size(), 0)));
     return "there is one candidate only";
+  }
+  if (experiment.has_baseline) {
+    source.set_needed_score(std::nullopt);
+    static_cast<void>(source.fitness(experiment.space.nearest(experiment.scenario)));
   }
   if (std::holds_alternative<GreatDelugeSettings>(experiment.method)) {
     return search_great_deluge(experiment, run, source);

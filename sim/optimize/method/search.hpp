@@ -8,7 +8,8 @@
 
 namespace proleg::optimize {
 
-/// Runs the method of an experiment until it ends; returns why ("no credit left", "converged", ...). Its requests
+/// Evaluates the baseline, if the experiment has one, and runs the method until it ends; returns why ("no credit left",
+/// "converged", ...). Its requests
 /// depend only on the experiment, the run and the scores. SearchEnded passes through. Throws InputError for settings
 /// that the method rejects (a population that is too small, several objectives for a method with one).
 [[nodiscard]] std::string search(const Experiment& experiment, std::uint32_t run, FitnessSource& source);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "shared/computer/text/text.hpp"
+#include "sim/optimize/evaluation/rating.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
 #include "sim/record/figure_page.hpp"
@@ -32,6 +33,7 @@ constexpr const char* cross_style = R"(stroke="#e69f00" stroke-width="1.1")";
 constexpr const char* failure_style = R"(stroke="#d55e00" stroke-width="1.1")";
 constexpr const char* best_style = R"(stroke="#0072b2" stroke-width="2.4" stroke-linejoin="round")";
 constexpr const char* mean_style = R"(stroke="#222222" stroke-width="1.1" stroke-linejoin="round")";
+constexpr const char* baseline_style = R"(stroke="#009e73" stroke-width="1.3" stroke-dasharray="7 4")";
 constexpr const char* dot = "h0";
 constexpr const char* cross = "m-2 -2l4 4m0 -4l-4 4";
 constexpr const char* failure_mark = "v-7";
@@ -45,6 +47,7 @@ struct Contents {
   std::optional<Point> winner;
   Polyline mean;  ///< over the last `window` with a score
   std::size_t window = 1;
+  std::optional<double> baseline;
 };
 
 void add_to_best(const Objective& objective, Point rated, Contents& contents) {
@@ -84,10 +87,16 @@ Contents collect(const Experiment& experiment, std::span<const Evaluation> evalu
     const Point point{number, drawable(evaluation.scores.front())};
     with_score.push_back(point);
     (evaluation.given_up ? contents.given_up : contents.rated).push_back(point);
-    add_to_best(experiment.objectives.front(), point, contents);
+    if (!evaluation.given_up) {
+      add_to_best(experiment.objectives.front(), point, contents);
+    }
   }
   if (contents.winner) {
     contents.best.push_back({static_cast<double>(evaluations.size()), contents.winner->y});
+  }
+  if (const Evaluation* const baseline = baseline_of(experiment, evaluations);
+      baseline != nullptr && has_own_score(experiment, *baseline, 0)) {
+    contents.baseline = drawable(baseline->scores.front());
   }
   contents.window = std::max<std::size_t>(20, evaluations.size() / 50);
   contents.mean = moving_mean(with_score, contents.window);
@@ -108,6 +117,9 @@ Axis axis_of(const Contents& contents) {
     if (point.x > settled) {
       best.push_back(point.y);
     }
+  }
+  if (contents.baseline) {
+    best.push_back(*contents.baseline);
   }
   return score_axis(std::move(scores), best, panel_bottom, sim::first_panel_top);
 }
@@ -139,6 +151,9 @@ void draw_key(Svg& svg, const Contents& contents) {
   }
   entries.push_back({"mean of " + std::to_string(contents.window), mean_style, ""});
   entries.push_back({"best so far", best_style, ""});
+  if (contents.baseline) {
+    entries.push_back({"baseline " + rounded_text(*contents.baseline), baseline_style, ""});
+  }
   sim::draw_legend(svg, sim::page_right, sim::first_panel_top - 16.0, entries);
 }
 
@@ -171,6 +186,11 @@ std::string draw_learning_curve(const Experiment& experiment, std::span<const Ev
   svg.end_group();
   svg.begin_group("mean");
   svg.polyline(sim::to_pixels(contents.mean, x, y), mean_style);
+  svg.end_group();
+  svg.begin_group("baseline");
+  if (contents.baseline) {
+    svg.polyline(sim::to_pixels({{0.0, *contents.baseline}, {last, *contents.baseline}}, x, y), baseline_style);
+  }
   svg.end_group();
   svg.begin_group("best");
   svg.polyline(sim::to_pixels(contents.best, x, y), best_style);

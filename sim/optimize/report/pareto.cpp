@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <set>
 
+#include "sim/optimize/evaluation/rating.hpp"
 #include "sim/optimize/report/report.hpp"
 
 namespace proleg::optimize {
@@ -32,8 +32,12 @@ bool comes_before(const Experiment& experiment, const std::vector<double>& a, co
 }
 
 bool has_all_scores(const Experiment& experiment, const Evaluation& evaluation) {
-  return evaluation.scores.size() >= experiment.objectives.size() &&
-         std::ranges::all_of(evaluation.scores, [](double score) { return std::isfinite(score); });
+  for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
+    if (!has_own_score(experiment, evaluation, i)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace

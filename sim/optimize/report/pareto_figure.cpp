@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "shared/computer/text/text.hpp"
+#include "sim/optimize/evaluation/rating.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
 #include "sim/record/figure_page.hpp"

@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "sim/optimize/evaluation/confirmation.hpp"
 #include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
 
 namespace proleg::optimize {
 
-/// SVG: every evaluation's score, the best so far and the mean of the last ones, against evaluations (first objective).
+/// SVG: every evaluation's score, the best so far and the mean of the last ones, against evaluations (first objective);
+/// the baseline as a horizontal line.
 /// At most 1 MB for any number of them.
 [[nodiscard]] std::string draw_learning_curve(const Experiment& experiment, std::span<const Evaluation> evaluations);
 
@@ -30,16 +32,20 @@ namespace proleg::optimize {
 /// given_up, reused, restored (0 or 1), failure.
 [[nodiscard]] std::string evaluations_table(const Experiment& experiment, std::span<const Evaluation> evaluations);
 
-/// The same with a first column `rank`: the best `count` different candidates by the first objective, best first. Of
-/// equal scores, the earlier comes first.
+/// The same with a first column `rank`: the baseline, if there is one, with the rank `baseline`; then the best `count`
+/// different candidates by the first objective, best first. Of equal scores, the earlier comes first.
 [[nodiscard]] std::string best_table(const Experiment& experiment, std::span<const Evaluation> evaluations,
                                      std::size_t count);
 
-/// Writes the experiment's scenario with the candidate's values, complete for `proleg simulate`: the top-level file
+/// Tab-separated, with a header line: the candidates that were rated again, best first. Columns: rank, evaluation, each
+/// dimension, score (in the search), mean, standard_deviation, worst, and the fresh runs from 1.
+[[nodiscard]] std::string confirmation_table(const Experiment& experiment, std::span<const Confirmation> confirmations);
+
+/// Writes the own_world() of an evaluation, complete for `proleg simulate`: the top-level file
 /// `folder`/name.simulation.xml, its actuation file name.actuation.xml, and copies of the robot and environment files
 /// below name.files. Existing files are replaced. Returns the path of the top-level file. Throws FileError if it cannot
 /// be written.
-std::filesystem::path write_scenario(const Experiment& experiment, const Candidate& candidate,
+std::filesystem::path write_scenario(const Experiment& experiment, const Evaluation& evaluation,
                                      const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace proleg::optimize

@@ -141,13 +141,12 @@ void write_with_folder(const fs::path& path, std::string_view text) {
 
 }  // namespace
 
-fs::path write_scenario(const Experiment& experiment, const Candidate& candidate, const fs::path& folder,
+fs::path write_scenario(const Experiment& experiment, const Evaluation& evaluation, const fs::path& folder,
                         const std::string& name) {
   if (experiment.scenario.sources.empty()) {
     throw FileError(folder, "no scenario is written there: that of the experiment was not read from files");
   }
-  sim::Scenario scenario = experiment.scenario;
-  experiment.space.apply(candidate, scenario);
+  const sim::Scenario scenario = own_world(experiment, evaluation);
   const ScenarioFiles files = collect_scenario_files(scenario, name + ".files");
   const std::string remark =
       "<!-- Found by an optimisation: " + comment_text(fs::path(experiment.path).filename().string()) + ", method " +

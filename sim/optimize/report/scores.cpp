@@ -9,13 +9,6 @@
 
 namespace proleg::optimize {
 
-bool has_own_score(const Experiment& experiment, const Evaluation& evaluation, std::size_t objective) {
-  return evaluation.failure.empty() && objective < evaluation.scores.size() &&
-         std::isfinite(evaluation.scores[objective]) &&
-         std::ranges::all_of(experiment.objectives[objective].terms,
-                             [&](const Term& term) { return std::isfinite(evaluation.measures[term.measure]); });
-}
-
 std::string with_unit(std::string_view name, std::string_view unit) {
   return std::string(name) + (unit.empty() ? "" : " (" + std::string(unit) + ")");
 }

@@ -13,9 +13,6 @@
 
 namespace proleg::optimize {
 
-/// Whether the score of an objective comes from measures, and not from a failure or a measure that is not defined.
-[[nodiscard]] bool has_own_score(const Experiment& experiment, const Evaluation& evaluation, std::size_t objective);
-
 /// "distance (m)".
 [[nodiscard]] std::string with_unit(std::string_view name, std::string_view unit);
 

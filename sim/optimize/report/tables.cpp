@@ -5,18 +5,23 @@
 
 #include "shared/computer/text/table_line.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/optimize/evaluation/rating.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
 
 namespace proleg::optimize {
 namespace {
 
-void add_header(const Experiment& experiment, TableLine& line) {
-  line.add("run");
-  line.add("evaluation");
+void add_dimensions(const Experiment& experiment, TableLine& line) {
   for (const Dimension& dimension : experiment.space.dimensions) {
     line.add(with_unit(one_line(dimension.name), scale_of(dimension.unit).symbol));
   }
+}
+
+void add_header(const Experiment& experiment, TableLine& line) {
+  line.add("run");
+  line.add("evaluation");
+  add_dimensions(experiment, line);
   for (const Objective& objective : experiment.objectives) {
     line.add("score:" + with_unit(one_line(objective.name), objective.unit()));
   }
@@ -71,9 +76,16 @@ std::string best_table(const Experiment& experiment, std::span<const Evaluation>
   std::vector<std::size_t> order(evaluations.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t i) {
-    const double score = evaluations[i].scores.front();
-    return std::isfinite(score) ? experiment.objectives.front().cost(score) : INFINITY;
+    return has_own_score(experiment, evaluations[i], 0)
+               ? experiment.objectives.front().cost(evaluations[i].scores.front())
+               : INFINITY;
   });
+  if (const Evaluation* const baseline = baseline_of(experiment, evaluations)) {
+    TableLine line;
+    line.add("baseline");
+    add_evaluation(experiment, *baseline, line);
+    table += line.finish();
+  }
   std::set<Candidate> listed;
   for (const std::size_t i : order) {
     if (listed.size() == count) {
@@ -85,6 +97,38 @@ std::string best_table(const Experiment& experiment, std::span<const Evaluation>
     TableLine line;
     line.add(listed.size());
     add_evaluation(experiment, evaluations[i], line);
+    table += line.finish();
+  }
+  return table;
+}
+
+std::string confirmation_table(const Experiment& experiment, std::span<const Confirmation> confirmations) {
+  TableLine header;
+  header.add("rank");
+  header.add("evaluation");
+  add_dimensions(experiment, header);
+  for (const std::string_view name : {"score", "mean", "standard_deviation", "worst"}) {
+    header.add(name);
+  }
+  for (std::size_t run = 0; !confirmations.empty() && run < confirmations.front().scores.size(); ++run) {
+    header.add(run + 1);
+  }
+  std::string table = header.finish();
+  for (std::size_t rank = 0; rank < confirmations.size(); ++rank) {
+    const Confirmation& confirmation = confirmations[rank];
+    TableLine line;
+    line.add(rank + 1);
+    line.add(confirmation.evaluation.number);
+    for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
+      line.add(experiment.space.value_text(confirmation.evaluation.candidate, i));
+    }
+    line.add(confirmation.evaluation.scores.front());
+    line.add(confirmation.mean);
+    line.add(confirmation.standard_deviation);
+    line.add(confirmation.worst);
+    for (const double score : confirmation.scores) {
+      line.add(score);
+    }
     table += line.finish();
   }
   return table;

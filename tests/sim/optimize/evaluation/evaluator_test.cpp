@@ -143,6 +143,31 @@ TEST(Evaluator, DoesNotSimulateACandidateAgainIfItMeetsTheSameWorlds) {
   }
 }
 
+TEST(Evaluator, CountsFailuresAndTakesNoneOfThemAsTheBest) {
+  Experiment experiment = small_experiment();
+  experiment.objectives.front().failed = 7.0;  // better than any run, by mistake of the user
+  const RunTask run = [](const Experiment&, const Task& task) {
+    TrialResult result;
+    if (task.candidate[0] == 0) {
+      result.failure = "broke at candidate " + std::to_string(task.candidate[1]);
+    } else {
+      result.measures[sim::Measure::distance] = 0.5 * task.candidate[0];
+    }
+    return result;
+  };
+  MadeUpWorkers workers(experiment, 2, 1, run);
+  Evaluator evaluator(experiment, 0, workers, nullptr, {}, {});
+  EXPECT_EQ(evaluator.fitness({0, 3, 0}).front(), 7.0);
+  EXPECT_FALSE(evaluator.progress().best.has_value());
+  for (const Candidate& candidate : {Candidate{1, 0, 0}, {0, 1, 0}, {2, 0, 0}}) {
+    static_cast<void>(evaluator.fitness(candidate));
+  }
+  EXPECT_EQ(evaluator.progress().failed, 2U);
+  EXPECT_EQ(evaluator.progress().first_failure, "broke at candidate 3");
+  ASSERT_TRUE(evaluator.progress().best);
+  EXPECT_EQ(evaluator.progress().best->number, 3U);
+}
+
 TEST(Evaluator, SimulatesEachTrialOnceIfAllPredictionsAreRight) {
   const Experiment experiment = noisy_experiment(2);
   MadeUpWorkers workers(experiment, 3, 1);

@@ -73,5 +73,36 @@ TEST_F(Rating, OfFailuresOnlyHasNoMeasures) {
   EXPECT_TRUE(std::isnan(evaluation.measures[sim::Measure::distance]));
 }
 
+TEST_F(Rating, HasItsOwnScoreIfNoTrialFailedAndTheRunDefinesTheMeasures) {
+  EXPECT_TRUE(has_own_score(experiment_, rated({trial(1.0, 2.0)}), 0));
+  EXPECT_FALSE(has_own_score(experiment_, rated({trial(1.0, 2.0), failed("it broke")}), 0));
+  EXPECT_EQ(why_without_score(experiment_, rated({trial(1.0, 2.0), failed("it broke")})), "it broke");
+  const Evaluation undefined = rated({trial(NAN, 2.0)});
+  EXPECT_FALSE(has_own_score(experiment_, undefined, 0));
+  EXPECT_TRUE(has_own_score(experiment_, undefined, 1));
+  EXPECT_EQ(why_without_score(experiment_, undefined), "the run does not define distance");
+}
+
+TEST_F(Rating, IsBetterOnlyWithAScoreThatARunCanRepeat) {
+  const Evaluation good = rated({trial(2.0, 1.0)});
+  const Evaluation bad = rated({trial(1.0, 1.0)});
+  EXPECT_TRUE(is_better(experiment_, good, &bad));
+  EXPECT_FALSE(is_better(experiment_, bad, &good));
+  EXPECT_FALSE(is_better(experiment_, good, &good));
+  EXPECT_TRUE(is_better(experiment_, bad, nullptr));
+  EXPECT_FALSE(is_better(experiment_, rated({failed("it broke")}), nullptr));
+  TrialResult extrapolated = trial(9.0, 1.0);
+  extrapolated.given_up = true;
+  EXPECT_FALSE(is_better(experiment_, rated({extrapolated}), &bad));
+}
+
+TEST_F(Rating, TheBaselineIsTheFirstEvaluationOfAnExperimentThatHasOne) {
+  const std::vector<Evaluation> evaluations{rated({trial(1.0, 2.0)})};
+  EXPECT_EQ(baseline_of(experiment_, evaluations), nullptr);
+  experiment_.has_baseline = true;
+  EXPECT_EQ(baseline_of(experiment_, evaluations), evaluations.data());
+  EXPECT_EQ(baseline_of(experiment_, {}), nullptr);
+}
+
 }  // namespace
 }  // namespace proleg::optimize

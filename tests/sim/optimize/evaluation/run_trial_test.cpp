@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "sim/loop/simulation.hpp"
+#include "sim/optimize/evaluation/rating.hpp"
 #include "sim/scenario/reader.hpp"
 #include "small_experiment.hpp"
 
@@ -75,11 +76,33 @@ TEST(RunTrial, MeetsTheSameWorldInEveryEvaluationOfARepetitionWithCommonRandomNu
 }
 
 TEST(RunTrial, PerturbsWithTheTrialsSeed) {
-  const Experiment experiment = noisy_experiment();
+  const Experiment experiment = noisy_experiment(2);
   sim::Scenario scenario = experiment.scenario;
   experiment.space.apply({3, 1, 2}, scenario);
   perturb(scenario, experiment.trials.spread, trial_seed(experiment.seed, 2, 5, 1));
   EXPECT_EQ(bits(run_trial(experiment, {2, 5, 1, {3, 1, 2}, {}}).measures), bits(simulated(scenario, 30)));
+}
+
+TEST(OwnWorld, IsTheOnlyTrialIfNothingIsVaried) {
+  Experiment experiment = small_experiment();
+  experiment.scenario.contact_noise = 0.2;
+  for (const RandomNumbers numbers : {RandomNumbers::common, RandomNumbers::fresh}) {
+    experiment.trials.random_numbers = numbers;
+    const Task task{2, 5, 0, {3, 1, 2}, {}};
+    const TrialResult trial = run_trial(experiment, task);
+    const Evaluation evaluation = rate(experiment, task.run, task.number, task.candidate, std::vector{trial});
+    EXPECT_EQ(exact(run_own_world(experiment, evaluation)), exact(trial));
+    EXPECT_EQ(own_world(experiment, evaluation).kernel.seed, seed_of(experiment, task));
+  }
+}
+
+TEST(OwnWorld, HasNoVariations) {
+  const Experiment experiment = noisy_experiment();
+  Evaluation evaluation;
+  evaluation.candidate = {3, 1, 2};
+  sim::Scenario scenario = experiment.scenario;
+  experiment.space.apply(evaluation.candidate, scenario);
+  EXPECT_EQ(bits(run_own_world(experiment, evaluation).measures), bits(simulated(scenario, 30)));
 }
 
 TEST(RunTrial, ReportsWhyASimulationFailed) {

@@ -225,6 +225,18 @@ const auto fitness = testing::Values(
                   "26: found goal 'most' in <objective>, expected 'maximise' or 'minimise'"},
     BadExperiment{"Failed", objective, "<objective measure=\"speed\" failed=\"none\"/>",
                   "26: found failed 'none' in <objective>, expected a number from -1e+12 to 1e+12"},
+    BadExperiment{"FailedIsMissingForASignedMeasure", objective, "<objective measure=\"speed\"/>",
+                  "26: found a score that may be negative (speed) without 'failed' in <objective>, expected "
+                  "failed=\"...\", the score of a run that fails, worse than that of every other run"},
+    BadExperiment{"FailedIsMissingForANegativeWeight", objective,
+                  "<objective goal=\"maximise\"><term measure=\"distance\" weight=\"-1\"/></objective>",
+                  "26: found a score that may be negative (distance) without 'failed' in <objective>, expected "
+                  "failed=\"...\", the score of a run that fails, worse than that of every other run"},
+    BadExperiment{"FailedIsMissingForASum", objective,
+                  "<objective><term measure=\"distance\"/><term measure=\"mechanical_energy\" "
+                  "weight=\"-0.1\"/></objective>",
+                  "26: found a sum of measures without 'failed' in <objective>, expected failed=\"...\", the score of "
+                  "a run that fails, worse than that of every other run"},
     BadExperiment{"EmptyName", objective, "<objective measure=\"speed\" name=\"\"/>",
                   "26: found an empty name in <objective>, expected a name of 1 to 64 characters"},
     BadExperiment{"SameName", objective, objective + objective,
@@ -262,15 +274,16 @@ const auto evaluation = testing::Values(
                   "36: found keep '1.5' in <racing>, expected a number from 0 to 1"},
     BadExperiment{"RacingOfAnotherMeasure", objective, "<objective measure=\"slip\"/>",
                   "36: found <racing> with this fitness, " + racing_expects},
-    BadExperiment{"RacingOfASum", objective,
-                  "<objective><term measure=\"speed\"/><term measure=\"slip\" weight=\"-1\"/></objective>",
-                  "36: found <racing> with this fitness, " + racing_expects},
-    BadExperiment{"RacingOfObjectives", objective, objective + "<objective measure=\"speed\"/>",
+    BadExperiment{
+        "RacingOfASum", objective,
+        "<objective failed=\"-9\"><term measure=\"speed\"/><term measure=\"slip\" weight=\"-1\"/></objective>",
+        "36: found <racing> with this fitness, " + racing_expects},
+    BadExperiment{"RacingOfObjectives", objective, objective + "<objective measure=\"speed\" failed=\"-1\"/>",
                   "36: found <racing> with this fitness, " + racing_expects},
     BadExperiment{"RacingToTheLeast", objective, "<objective measure=\"distance\" goal=\"minimise\"/>",
                   "36: found <racing> with this fitness, " + racing_expects},
     BadExperiment{"RacingOfANegativeDistance", objective,
-                  "<objective goal=\"maximise\"><term measure=\"distance\" weight=\"-1\"/></objective>",
+                  "<objective goal=\"maximise\" failed=\"-9\"><term measure=\"distance\" weight=\"-1\"/></objective>",
                   "36: found <racing> with this fitness, " + racing_expects});
 
 std::string name_of_case(const testing::TestParamInfo<BadExperiment>& info) { return info.param.name; }
@@ -337,7 +350,7 @@ TEST(BadExperiments, MoreObjectivesThanEightAreRefused) {
   MemoryFiles files = small_experiment();
   std::string nine;
   for (int i = 0; i < 9; ++i) {
-    nine += "<objective measure=\"speed\" name=\"" + std::to_string(i) + "\"/>";
+    nine += "<objective measure=\"distance\" name=\"" + std::to_string(i) + "\"/>";
   }
   files.replace("top.optimise.xml", objective, nine);
   EXPECT_EQ(message_of(files), "top.optimise.xml:26: found more than 8 objectives, expected at most 8");

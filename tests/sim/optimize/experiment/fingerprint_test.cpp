@@ -61,13 +61,16 @@ TEST(Fingerprint, ChangesWithEverySetting) {
       {"parameter=\"amplitude\"", "parameter=\"offset\""},
       {"<uniform>0", "<uniform>1"},
       {"heading=\"0\"", "heading=\"1\""},
-      {"measure=\"distance\"", "measure=\"speed\""},
+      {"measure=\"distance\"", "measure=\"speed\" failed=\"0\""},
       {"measure=\"distance\"", "measure=\"distance\" failed=\"1\""},
       {"measure=\"distance\"", "measure=\"distance\" name=\"d\""},
       {"<seed>5", "<seed>6"},
       {"<reuse>1", "<reuse>0"},
       {"count=\"2\"", "count=\"3\""},
       {"\"mean\"", "\"worst\""},
+      {"aggregate=\"mean\"", "randomNumbers=\"fresh\""},
+      {"<reuse>1", "<confirmation candidates=\"4\"/><reuse>1"},
+      {"<reuse>1", "<confirmation runs=\"9\"/><reuse>1"},
       {"<friction>0.1", "<friction>0.2"},
       {"<friction>0.1</friction>", "<mass>0.1</mass>"},
       {"<friction>0.1</friction>", "<servoGain>0.1</servoGain>"},
@@ -92,6 +95,8 @@ TEST(Fingerprint, ChangesWithTheMethod) {
     files.replace("top.optimise.xml", "</greatDeluge>", "</" + tag.substr(0, tag.find(' ')) + ">");
     files.replace("top.optimise.xml", "<waterLevel>0.1</waterLevel>", "");
     const auto [other, is_new] = by_fingerprint.emplace(fingerprint(files), tag);
+    files.replace("top.optimise.xml", "<numOf", "<start>random</start><numOf");
+    EXPECT_EQ(by_fingerprint.emplace(fingerprint(files), tag).second, tag != "greatDeluge") << "random is its default";
     EXPECT_TRUE(is_new) << tag << " has the fingerprint of " << other->second;
   }
 }

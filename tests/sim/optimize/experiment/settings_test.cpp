@@ -60,7 +60,7 @@ TEST(GreatDeluge, TakesEverySetting) {
   EXPECT_EQ(deluge.growth, GreatDelugeSettings::Growth::linear);
   EXPECT_EQ(deluge.move, GreatDelugeSettings::Move::one);
   EXPECT_EQ(deluge.neighbour, GreatDelugeSettings::Neighbour::uniform);
-  EXPECT_EQ(deluge.start, GreatDelugeSettings::Start::scenario);
+  EXPECT_EQ(deluge.start, Start::scenario);
   EXPECT_FALSE(deluge.first_must_pass);
   EXPECT_EQ(deluge.reevaluations, 2U);
   EXPECT_EQ(deluge.chains, 5U);
@@ -112,6 +112,27 @@ TEST(Pagmo, SectionsNameItsAlgorithms) {
   EXPECT_EQ(method_name(with_method("cmaEs", "").method), "cmaes");
 }
 
+TEST(Start, IsTheScenarioUnlessTheFileSaysOtherwise) {
+  const auto start_of = [](const std::string& tag, const std::string& text) {
+    return std::visit([](const auto& method) { return method.start; }, with_method(tag, text).method);
+  };
+  for (const std::string tag : {"geneticAlgorithm", "cmaEs", "pagmo algorithm=\"sade\""}) {
+    EXPECT_EQ(start_of(tag, ""), Start::scenario) << tag;
+    EXPECT_EQ(start_of(tag, "<start>random</start>"), Start::random) << tag;
+  }
+  EXPECT_EQ(start_of("greatDeluge", ""), Start::random) << "as in the thesis";
+  EXPECT_EQ(start_of("greatDeluge", "<start>scenario</start>"), Start::scenario);
+}
+
+TEST(Confirmation, IsRead) {
+  const Experiment plain = read_with("<reuse>1</reuse>", "");
+  EXPECT_EQ(plain.confirmation.candidates, 5U);
+  EXPECT_EQ(plain.confirmation.runs, 10U);
+  const Experiment experiment = read_with("<reuse>1</reuse>", R"(<confirmation candidates="3" runs="0"/>)");
+  EXPECT_EQ(experiment.confirmation.candidates, 3U);
+  EXPECT_EQ(experiment.confirmation.runs, 0U);
+}
+
 TEST(Pagmo, TakesTheSettingsOfEachAlgorithm) {
   const auto cmaes = std::get<PagmoSettings>(
       with_method(
@@ -136,13 +157,13 @@ TEST(Pagmo, RefusesTheSettingsOfOtherAlgorithmsAndWhatIsOutOfRange) {
   const std::string file = "top.optimise.xml:4: found ";
   EXPECT_EQ(message_with_method("cmaEs", "<mutation>0.1</mutation>"),
             file +
-                "<mutation> in <properties>, expected <popsize>, <generations>, <restartAfter>, <sigma0>, "
+                "<mutation> in <properties>, expected <popsize>, <generations>, <restartAfter>, <start>, <sigma0>, "
                 "<numOfParametersToOptimize>, <registeredParameters>");
-  EXPECT_EQ(
-      message_with_method("pagmo algorithm=\"sade\"", "<scale>0.1</scale>"),
-      file +
-          "<scale> in <properties>, expected <popsize>, <generations>, <restartAfter>, <numOfParametersToOptimize>, "
-          "<registeredParameters>");
+  EXPECT_EQ(message_with_method("pagmo algorithm=\"sade\"", "<scale>0.1</scale>"),
+            file +
+                "<scale> in <properties>, expected <popsize>, <generations>, <restartAfter>, <start>, "
+                "<numOfParametersToOptimize>, "
+                "<registeredParameters>");
   EXPECT_EQ(message_with_method("nsga2", "<popsize>1</popsize>"),
             file + "'1' in <popsize>, expected a whole number from 2 to 10000");
   EXPECT_EQ(message_with_method("nsga2", "<generations>0</generations>"),
@@ -172,14 +193,17 @@ TEST(Fitness, IsTheDistanceWhereTheFileSaysNothing) {
 
 TEST(Fitness, TakesTheNaturalGoalAndTheNameOfASingleMeasure) {
   for (const sim::MeasureDeclaration& declaration : sim::measures()) {
-    const Objective single = objective_of("<objective measure=\"" + std::string(declaration.name) + "\"/>");
+    const bool needs_failed = declaration.higher_is_better && declaration.may_be_negative;
+    const Objective single = objective_of("<objective measure=\"" + std::string(declaration.name) + "\"" +
+                                          (needs_failed ? " failed=\"-9\"/>" : "/>"));
     EXPECT_EQ(single.name, declaration.name);
     EXPECT_EQ(single.goal, declaration.higher_is_better ? Goal::maximise : Goal::minimise) << declaration.name;
-    EXPECT_EQ(single.failed, declaration.higher_is_better ? 0.0 : 1e6) << declaration.name;
+    EXPECT_EQ(single.failed, needs_failed ? -9.0 : declaration.higher_is_better ? 0.0 : 1e6) << declaration.name;
     ASSERT_EQ(single.terms.size(), 1U);
     EXPECT_EQ(single.terms[0].measure, declaration.measure);
   }
-  EXPECT_EQ(objective_of("<objective><term measure=\"slip\" weight=\"-2\"/></objective>").goal, Goal::maximise);
+  EXPECT_EQ(objective_of("<objective failed=\"-9\"><term measure=\"slip\" weight=\"-2\"/></objective>").goal,
+            Goal::maximise);
 }
 
 TEST(Fitness, TakesWhatAnObjectiveSays) {
@@ -192,7 +216,8 @@ TEST(Fitness, TakesWhatAnObjectiveSays) {
   ASSERT_EQ(sum.terms.size(), 2U);
   EXPECT_EQ(sum.terms[0].weight, 0.5);
   EXPECT_EQ(sum.terms[1].weight, 1.0);
-  const Objective plain = objective_of("<objective><term measure=\"slip\"/><term measure=\"height\"/></objective>");
+  const Objective plain =
+      objective_of("<objective failed=\"-9\"><term measure=\"slip\"/><term measure=\"height\"/></objective>");
   EXPECT_EQ(plain.name, "score");
   EXPECT_EQ(plain.goal, Goal::maximise);
 }
@@ -200,7 +225,7 @@ TEST(Fitness, TakesWhatAnObjectiveSays) {
 TEST(Fitness, TakesSeveralObjectivesInTheirOrderAndTheHeading) {
   MemoryFiles files = small_experiment();
   files.replace("top.optimise.xml", objective,
-                "<objective measure=\"speed\"/><objective measure=\"cost_of_transport\"/>");
+                "<objective measure=\"speed\" failed=\"-1\"/><objective measure=\"cost_of_transport\"/>");
   files.replace("top.optimise.xml", "heading=\"0\"", "heading=\"-90\"");
   files.replace("top.optimise.xml", "<racing after=\"0.3\" keep=\"0.5\"/>", "");
   const Experiment experiment = read(files);
@@ -208,6 +233,15 @@ TEST(Fitness, TakesSeveralObjectivesInTheirOrderAndTheHeading) {
   EXPECT_EQ(experiment.objectives[0].name, "speed");
   EXPECT_EQ(experiment.objectives[1].goal, Goal::minimise);
   EXPECT_EQ(experiment.heading_deg, -90.0);
+}
+
+TEST(Fitness, SaysWhetherAScoreMayBeNegative) {
+  EXPECT_FALSE(objective_of("<objective measure=\"distance\"/>").may_be_negative());
+  EXPECT_TRUE(objective_of("<objective measure=\"distance\" failed=\"-1\"/>").may_be_negative());
+  EXPECT_TRUE(objective_of("<objective measure=\"speed\" failed=\"0\"/>").may_be_negative());
+  EXPECT_TRUE(objective_of("<objective failed=\"0\"><term measure=\"distance\"/><term measure=\"mechanical_energy\" "
+                           "weight=\"-1\"/></objective>")
+                  .may_be_negative());
 }
 
 TEST(Score, IsTheWeightedSumOrThatOfAFailure) {

@@ -48,6 +48,13 @@ TEST(ShippedExperiments, HaveTheThesissSearchSpace) {
   }
 }
 
+TEST(ShippedExperiments, OfTheThesisStartAtRandomAsThere) {
+  EXPECT_EQ(std::get<GreatDelugeSettings>(shipped("great_deluge").method).start, Start::random);
+  EXPECT_EQ(std::get<GeneticSettings>(shipped("genetic").method).start, Start::random);
+  EXPECT_EQ(std::get<PagmoSettings>(shipped("cma_es").method).start, Start::random);
+  EXPECT_EQ(std::get<PagmoSettings>(shipped("pareto").method).start, Start::scenario) << "the default";
+}
+
 TEST(ShippedExperiments, GreatDelugeHasTheSettingsOfTable61) {
   const Experiment experiment = shipped("great_deluge");
   const auto& deluge = std::get<GreatDelugeSettings>(experiment.method);

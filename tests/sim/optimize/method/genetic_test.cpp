@@ -310,6 +310,14 @@ double mean_score(const FakeSource& source, const std::pair<std::uint64_t, std::
   return sum / static_cast<double>(generation.second.size());
 }
 
+/// An experiment whose objective may be negative.
+Experiment signed_experiment(const std::vector<std::uint32_t>& sizes, const GeneticSettings& settings,
+                             Goal goal = Goal::maximise) {
+  Experiment experiment = make_experiment(sizes, settings, goal);
+  experiment.objectives.front().terms.front().measure = sim::Measure::speed;
+  return experiment;
+}
+
 TEST(GeneticSearch, ClimbsFromScoresBelowZeroToScoresAbove) {
   for (const Mode mode : {Mode::simple, Mode::steady_state}) {
     GeneticSettings settings;
@@ -317,7 +325,7 @@ TEST(GeneticSearch, ClimbsFromScoresBelowZeroToScoresAbove) {
     settings.mutation = 0.05;
     testing::internal::CaptureStderr();
     FakeSource source([](const Candidate& candidate) { return std::vector<double>{rugged(candidate) - 2.5}; });
-    EXPECT_EQ(search(make_experiment({41, 41, 41}, settings), 0, source), "converged");
+    EXPECT_EQ(search(signed_experiment({41, 41, 41}, settings), 0, source), "converged");
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "GAlib prints no warnings";
     ASSERT_GE(source.expectations.size(), 2U);
     const auto best_until = [&](std::size_t count) {
@@ -329,21 +337,34 @@ TEST(GeneticSearch, ClimbsFromScoresBelowZeroToScoresAbove) {
   }
 }
 
-TEST(GeneticSearch, SelectsAtRandomWithoutAScoreAboveZeroAndEndsAfterNGenerations) {
-  // GAlib is given 0 for each score below 0, so all candidates are equal for it: which are chosen as parents does not
-  // depend on their scores.
+TEST(GeneticSearch, ClimbsWhereAllScoresAreBelowZero) {
+  for (const Mode mode : {Mode::simple, Mode::steady_state}) {
+    for (const Goal goal : {Goal::maximise, Goal::minimise}) {
+      GeneticSettings settings;
+      settings.mode = mode;
+      settings.mutation = 0.05;
+      const double sign = goal == Goal::maximise ? 1.0 : -1.0;
+      testing::internal::CaptureStderr();
+      FakeSource source(
+          [sign](const Candidate& candidate) { return std::vector<double>{sign * rugged(candidate) - 10.0}; });
+      EXPECT_EQ(search(signed_experiment({41, 41, 41}, settings, goal), 0, source), "converged");
+      EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+      EXPECT_GT(sign * mean_score(source, source.expectations.back()),
+                sign * mean_score(source, source.expectations.front()) + 0.5);
+    }
+  }
+}
+
+TEST(GeneticConvergence, OfScoresBelowZeroComesAfterNGenerationsWithoutAGain) {
   GeneticSettings settings;
   settings.generations_to_convergence = 12;
-  const auto asked = [&](const FakeSource::Function& function) {
-    testing::internal::CaptureStderr();
-    FakeSource source(function);
-    EXPECT_EQ(search(make_experiment({41, 41, 41}, settings), 0, source), "converged");
-    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-    EXPECT_EQ(source.expectations.size(), 12U);
-    return source.asked;
-  };
-  EXPECT_EQ(asked([](const Candidate& candidate) { return std::vector<double>{-rugged(candidate) - 2.0}; }),
-            asked(constant(0.0)));
+  FakeSource flat(constant(-3.0));
+  EXPECT_EQ(search(signed_experiment({41, 41, 41}, settings), 0, flat), "converged");
+  EXPECT_EQ(flat.expectations.size(), 12U);
+  // Each generation gains 27 of at most 1000, so 11 generations gain more than a hundredth.
+  int evaluations = 0;
+  FakeSource rising([&](const Candidate&) { return std::vector<double>{-1000.0 + 0.9 * ++evaluations}; }, 8, 900);
+  EXPECT_THROW(static_cast<void>(search(signed_experiment({41, 41, 41}, settings), 0, rising)), SearchEnded);
 }
 
 TEST(GeneticSearch, MaximisesAndMinimises) {

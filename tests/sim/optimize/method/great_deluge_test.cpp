@@ -22,7 +22,6 @@ namespace {
 using Growth = GreatDelugeSettings::Growth;
 using Move = GreatDelugeSettings::Move;
 using Neighbour = GreatDelugeSettings::Neighbour;
-using Start = GreatDelugeSettings::Start;
 
 FakeSource::Function constant(double score) {
   return [score](const Candidate&) { return std::vector<double>{score}; };

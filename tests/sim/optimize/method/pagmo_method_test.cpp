@@ -113,6 +113,17 @@ TEST(PagmoSearch, WithRestartsEndsEvenIfNothingIsGained) {
   }
 }
 
+TEST(PagmoSearch, RestartsOnAPlateauAlsoIfItsScoreIsZero) {
+  for (const double plateau : {1.0, 0.0, -1.0}) {
+    PagmoSettings settings = settings_of("de", 12, 40);
+    settings.restart_after = 3;
+    FakeSource source([plateau](const Candidate&) { return std::vector<double>{plateau}; });
+    static_cast<void>(search(make_experiment({161, 161, 161}, settings), 0, source));
+    // 40 generations in starts of 3 generations, each with a first population.
+    EXPECT_EQ(source.asked.size(), 12U * (40U + 14U)) << "at " << plateau;
+  }
+}
+
 TEST(PagmoSearch, ContinuesWhereAllScoresAreEqual) {
   for (const char* name : {"cmaes", "de", "nsga2", "gaco", "maco"}) {
     const bool several = std::string_view(name) == "nsga2" || std::string_view(name) == "maco";

@@ -5,6 +5,8 @@
 #include "fake_source.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/optimize/method/pagmo_algorithms.hpp"
+#include "sim/scenario/reader.hpp"
+#include "tests/support/files.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -94,6 +96,9 @@ TEST(CheckMethod, RefusesReevaluationsThatAreAllEqual) {
 TEST(PlannedEvaluations, AreThoseOfTheBudgetOrOfAllGenerationsWithTheFirstPopulation) {
   Experiment experiment = make_experiment({5}, pagmo_method("cmaes", 20));  // 3 generations
   EXPECT_EQ(planned_evaluations(experiment), 80U);
+  experiment.has_baseline = true;
+  EXPECT_EQ(planned_evaluations(experiment), 81U);
+  experiment.has_baseline = false;
   experiment.evaluations = 50;
   EXPECT_EQ(planned_evaluations(experiment), 50U);
   experiment.evaluations = 5000;
@@ -102,6 +107,76 @@ TEST(PlannedEvaluations, AreThoseOfTheBudgetOrOfAllGenerationsWithTheFirstPopula
   EXPECT_EQ(planned_evaluations(experiment), 5000U);
   experiment.evaluations = 0;
   EXPECT_EQ(planned_evaluations(experiment), 0U) << "unknown";
+}
+
+/// An experiment whose scenario has 40 degrees on the five joints of a travelling wave; 0 to 10 degrees by 1 and 40.
+Experiment real_experiment(const MethodSettings& method) {
+  Experiment experiment = make_experiment({12, 12, 12}, method);
+  sim::DiskFiles files;
+  experiment.scenario = sim::read_scenario(
+      std::filesystem::path(source_path("/sim/scenarios/travelling_wave/uniform.simulation.xml")), files);
+  for (Dimension& dimension : experiment.space.dimensions) {
+    dimension.unit = Unit::degree;
+    for (std::size_t i = 0; i < 12; ++i) {
+      dimension.values[i] = raw(Unit::degree, i == 11 ? 40 : static_cast<int>(i));
+    }
+  }
+  return experiment;
+}
+
+const Candidate own_values{11, 11, 11};
+
+std::vector<Candidate> asked_by(const Experiment& experiment) {
+  FakeSource source([](const Candidate& candidate) { return std::vector<double>{sphere(candidate, 5.0)}; }, 8, 60);
+  try {
+    static_cast<void>(search(experiment, 0, source));
+  } catch (const SearchEnded&) {
+  }
+  return source.asked;
+}
+
+std::vector<MethodSettings> methods_that_start_at(Start start) {
+  GreatDelugeSettings deluge;
+  deluge.start = start;
+  GeneticSettings genetic;
+  genetic.start = start;
+  std::vector<MethodSettings> methods{deluge, genetic};
+  for (const PagmoAlgorithm& algorithm : pagmo_algorithms()) {
+    if (algorithm.objectives != PagmoAlgorithm::Objectives::several) {
+      PagmoSettings settings = pagmo_method(std::string(algorithm.name));
+      settings.start = start;
+      methods.emplace_back(settings);
+    }
+  }
+  return methods;
+}
+
+TEST(Search, EvaluatesTheBaselineFirstAndThenDoesWhatItWouldDoWithout) {
+  for (const Start start : {Start::random, Start::scenario}) {
+    for (const MethodSettings& method : methods_that_start_at(start)) {
+      Experiment experiment = real_experiment(method);
+      std::vector<Candidate> without = asked_by(experiment);
+      experiment.has_baseline = true;
+      const std::vector<Candidate> with = asked_by(experiment);
+      ASSERT_FALSE(with.empty());
+      EXPECT_EQ(with.front(), own_values);
+      without.insert(without.begin(), own_values);
+      without.resize(with.size());
+      EXPECT_EQ(with, without) << method_name(method);
+    }
+  }
+}
+
+TEST(Search, HasTheScenariosValuesInTheFirstPopulationIfItStartsThere) {
+  for (const Start start : {Start::random, Start::scenario}) {
+    for (const MethodSettings& method : methods_that_start_at(start)) {
+      std::vector<Candidate> first = asked_by(real_experiment(method));
+      first.resize(std::min<std::size_t>(first.size(), std::holds_alternative<GeneticSettings>(method)       ? 30
+                                                       : std::holds_alternative<GreatDelugeSettings>(method) ? 1
+                                                                                                             : 20));
+      EXPECT_EQ(std::ranges::count(first, own_values), start == Start::scenario ? 1 : 0) << method_name(method);
+    }
+  }
 }
 
 TEST(Search, OfOneCandidateEvaluatesItOnce) {

@@ -32,6 +32,25 @@ TEST(LearningCurve, NamesWhatItShows) {
   EXPECT_EQ(picture.lines("best"), 1U);
 }
 
+TEST(LearningCurve, HasTheBaselineAsALevel) {
+  Experiment experiment = distance_experiment();
+  std::vector<Evaluation> evaluations{evaluation_of(0, 1.25), evaluation_of(1, 1.5), evaluation_of(2, 0.75)};
+  EXPECT_FALSE(Picture(draw_learning_curve(experiment, evaluations)).has_text("baseline"));
+  experiment.has_baseline = true;
+  Picture picture(draw_learning_curve(experiment, evaluations));
+  EXPECT_TRUE(picture.has_text("baseline 1.25"));
+  EXPECT_EQ(picture.lines("baseline"), 1U);
+  evaluations[0] = failed_evaluation(0, 0.0);
+  EXPECT_FALSE(Picture(draw_learning_curve(experiment, evaluations)).has_text("baseline"));
+}
+
+TEST(LearningCurve, DoesNotTakeAnExtrapolatedScoreAsTheBest) {
+  std::vector<Evaluation> evaluations{evaluation_of(0, 1.25), evaluation_of(1, 1.5)};
+  evaluations[1].given_up = true;
+  EXPECT_TRUE(
+      Picture(draw_learning_curve(distance_experiment(), evaluations)).has_text("best 1.25 m after 1 evaluation"));
+}
+
 TEST(LearningCurve, TheBestOfAnObjectiveToMinimiseIsTheLowest) {
   const Experiment experiment = experiment_of({objective_of(sim::Measure::cost_of_transport, Goal::minimise)});
   std::vector<Evaluation> evaluations;

@@ -132,13 +132,28 @@ std::string text_of(const fs::path& path) {
   return text.str();
 }
 
+Evaluation of(const Candidate& candidate) {
+  Evaluation evaluation;
+  evaluation.candidate = candidate;
+  return evaluation;
+}
+
+/// The experiment's scenario with a candidate's values. With noise, its seed is that of the search's first trial.
+sim::Scenario expected_scenario(const Experiment& experiment, const Candidate& candidate) {
+  sim::Scenario scenario = experiment.scenario;
+  experiment.space.apply(candidate, scenario);
+  if (depends_on_seed(experiment.scenario, experiment.space, {})) {
+    scenario.kernel.seed = trial_seed(experiment.seed, 0, 0, 0);
+  }
+  return scenario;
+}
+
 /// Writes a candidate's scenario and looks whether it comes back, from files of that folder alone.
 sim::Scenario expect_round_trip(const Experiment& experiment, const Candidate& candidate) {
   const TemporaryFolder folder;
-  const fs::path top = write_scenario(experiment, candidate, folder.path() / "new" / "folder", "best");
+  const fs::path top = write_scenario(experiment, of(candidate), folder.path() / "new" / "folder", "best");
   EXPECT_EQ(top, folder.path() / "new" / "folder" / "best.simulation.xml");
-  sim::Scenario expected = experiment.scenario;
-  experiment.space.apply(candidate, expected);
+  const sim::Scenario expected = expected_scenario(experiment, candidate);
   sim::Scenario scenario = read_back(top);
   EXPECT_EQ(description_of(scenario), description_of(expected));
   for (const sim::SourceFile& source : scenario.sources) {
@@ -193,8 +208,7 @@ TEST(WriteScenario, WhatComesBackMovesTheSame) {
     add_dimensions(experiment, "amplitude", random);
     const Candidate candidate = random_candidate(experiment.space, random);
     const sim::Scenario written = expect_round_trip(experiment, candidate);
-    sim::Scenario expected = experiment.scenario;
-    experiment.space.apply(candidate, expected);
+    const sim::Scenario expected = expected_scenario(experiment, candidate);
     EXPECT_EQ(run(written, 0.5), run(expected, 0.5));
   }
 }
@@ -265,7 +279,7 @@ TEST(WriteScenario, FilesInDifferentFoldersFindEachOther) {
 TEST(WriteScenario, CopiesFilesByteByByteWhereItCan) {
   const TemporaryFolder folder;
   const Experiment experiment = experiment_of(shipped("obstacle/reflex.simulation.xml"));
-  write_scenario(experiment, {}, folder.path(), "best");
+  write_scenario(experiment, of({}), folder.path(), "best");
   const fs::path files = folder.path() / "best.files";
   for (const char* name : {"travelling_wave/caterpillar.robot.xml", "travelling_wave/modules/segment.kinbody.xml",
                            "obstacle/terrace.environment.xml"}) {
@@ -279,13 +293,41 @@ TEST(WriteScenario, KeepsWhatTheSimulationPropertiesSay) {
   sim::MemoryFiles files = sim::small_scenario();
   files.replace("top.xml", "<duration>2</duration>", "<duration>0.1234567890123</duration>")
       .replace("top.xml", "<tick unit=\"ms\">10</tick>", "<tick unit=\"ms\">12.345</tick>")
-      .replace("top.xml", "<seed>7</seed>", "<seed>18446744073709551615</seed><contactNoise>0.0625</contactNoise>")
+      .replace("top.xml", "<seed>7</seed>", "<seed>18446744073709551615</seed>")
       .replace("top.xml", "<solver>direct", "<solver>iterative")
       .replace("top.xml", "<stepWidth>0.001", "<stepWidth>0.002469");
   const sim::Scenario scenario = expect_round_trip(experiment_of(files.scenario()), {});
   EXPECT_EQ(scenario.kernel.seed, 18446744073709551615ULL);
-  EXPECT_EQ(scenario.contact_noise, 0.0625);
   EXPECT_EQ(scenario.kernel.tick_period_us, 12'345U);
+}
+
+TEST(WriteScenario, WithNoiseHasTheSeedOfTheFirstTrial) {
+  sim::MemoryFiles files = sim::small_scenario();
+  files.replace("top.xml", "<seed>7</seed>", "<seed>7</seed><contactNoise>0.0625</contactNoise>");
+  Experiment experiment = experiment_of(files.scenario());
+  experiment.seed = 5;
+  for (const RandomNumbers numbers : {RandomNumbers::common, RandomNumbers::fresh}) {
+    experiment.trials.random_numbers = numbers;
+    const TemporaryFolder folder;
+    Evaluation evaluation = of({});
+    evaluation.run = 2;
+    evaluation.number = 11;
+    const sim::Scenario scenario = read_back(write_scenario(experiment, evaluation, folder.path(), "best"));
+    EXPECT_EQ(scenario.contact_noise, 0.0625);
+    EXPECT_EQ(scenario.kernel.seed, trial_seed(5, 2, numbers == RandomNumbers::fresh ? 11 : 0, 0));
+  }
+}
+
+TEST(WriteScenario, StatesTheOriginalWorldWhereTrialsVaryIt) {
+  Experiment experiment = experiment_of(shipped("travelling_wave/uniform.simulation.xml"));
+  experiment.trials.spread.friction = 0.5;
+  experiment.trials.spread.mass = 0.5;
+  experiment.trials.spread.contact_noise = 0.1;
+  const TemporaryFolder folder;
+  const sim::Scenario scenario = read_back(write_scenario(experiment, of({}), folder.path(), "best"));
+  EXPECT_EQ(scenario.environment.unspecified_friction, experiment.scenario.environment.unspecified_friction);
+  EXPECT_EQ(scenario.robot.links[0].mass.mass, experiment.scenario.robot.links[0].mass.mass);
+  EXPECT_EQ(scenario.contact_noise, 0.0);
 }
 
 TEST(WriteScenario, ReplacesTheOneThatWasThere) {
@@ -295,9 +337,8 @@ TEST(WriteScenario, ReplacesTheOneThatWasThere) {
   add_dimensions(experiment, "amplitude", random);
   for (int round = 0; round < 3; ++round) {
     const Candidate candidate = random_candidate(experiment.space, random);
-    sim::Scenario expected = experiment.scenario;
-    experiment.space.apply(candidate, expected);
-    const fs::path top = write_scenario(experiment, candidate, folder.path(), "best");
+    const sim::Scenario expected = expected_scenario(experiment, candidate);
+    const fs::path top = write_scenario(experiment, of(candidate), folder.path(), "best");
     EXPECT_EQ(description_of(read_back(top)), description_of(expected));
   }
 }
@@ -313,10 +354,10 @@ TEST(WriteScenario, SaysWhatCannotBeWritten) {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "file") << "in the way";
   const Experiment experiment = experiment_of(shipped("travelling_wave/uniform.simulation.xml"));
-  EXPECT_THROW(write_scenario(experiment, {}, folder.path() / "file", "best"), FileError);
+  EXPECT_THROW(write_scenario(experiment, of({}), folder.path() / "file", "best"), FileError);
   Experiment unread = experiment;
   unread.scenario.sources.clear();
-  EXPECT_THROW(write_scenario(unread, {}, folder.path() / "other", "best"), FileError);
+  EXPECT_THROW(write_scenario(unread, of({}), folder.path() / "other", "best"), FileError);
 }
 
 }  // namespace

@@ -123,11 +123,50 @@ TEST(BestTable, ListsDifferentCandidatesBestFirst) {
 
 TEST(BestTable, FollowsTheGoalOfTheFirstObjective) {
   const Experiment experiment = experiment_of({objective_of(sim::Measure::cost_of_transport, Goal::minimise)});
-  const std::vector<Evaluation> evaluations{evaluation_of(0, 9.0), evaluation_of(1, 2.0), evaluation_of(2, 5.0)};
+  std::vector<Evaluation> evaluations{evaluation_of(0, 9.0), evaluation_of(1, 2.0), evaluation_of(2, 5.0)};
+  for (Evaluation& evaluation : evaluations) {
+    evaluation.measures[sim::Measure::cost_of_transport] = evaluation.scores.front();
+  }
   const auto rows = parsed(best_table(experiment, evaluations, 10));
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_EQ(rows[0].at("evaluation"), "1");
   EXPECT_EQ(rows[2].at("evaluation"), "0");
+}
+
+TEST(BestTable, HasFailuresLast) {
+  const std::vector<Evaluation> evaluations{failed_evaluation(0, 7.0), evaluation_of(1, 2.0), evaluation_of(2, 5.0)};
+  const auto rows = parsed(best_table(distance_experiment(), evaluations, 10));
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0].at("evaluation"), "2");
+  EXPECT_EQ(rows[2].at("evaluation"), "0");
+}
+
+TEST(BestTable, HasTheBaselineAboveTheBest) {
+  Experiment experiment = distance_experiment();
+  experiment.has_baseline = true;
+  const std::vector<Evaluation> evaluations{evaluation_of(0, 1.5), evaluation_of(1, 1.0), evaluation_of(2, 2.0)};
+  const auto rows = parsed(best_table(experiment, evaluations, 2));
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0].at("rank"), "baseline");
+  EXPECT_EQ(rows[0].at("evaluation"), "0");
+  EXPECT_EQ(rows[1].at("rank"), "1");
+  EXPECT_EQ(rows[1].at("evaluation"), "2");
+  EXPECT_EQ(rows[2].at("evaluation"), "0") << "it is ranked, too";
+}
+
+TEST(ConfirmationTable, HasEveryFreshRun) {
+  const std::vector<Confirmation> confirmations{{evaluation_of(7, 2.0), {1.5, 1.75}, 1.625, 0.125, 1.5},
+                                                {evaluation_of(3, 2.5), {1.25, 1.0}, 1.125, 0.25, 1.0}};
+  const auto rows = parsed(confirmation_table(distance_experiment(), confirmations));
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].at("rank"), "1");
+  EXPECT_EQ(rows[0].at("evaluation"), "7");
+  EXPECT_EQ(rows[0].at("amplitude:J5 (deg)"), "40");
+  EXPECT_EQ(rows[0].at("score"), "2");
+  EXPECT_EQ(rows[0].at("mean"), "1.625");
+  EXPECT_EQ(rows[0].at("standard_deviation"), "0.125");
+  EXPECT_EQ(rows[1].at("worst"), "1");
+  EXPECT_EQ(rows[1].at("2"), "1");
 }
 
 TEST(Tables, HaveAHeaderWithoutEvaluations) {

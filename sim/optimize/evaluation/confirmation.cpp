@@ -1,0 +1,104 @@
+#include "sim/optimize/evaluation/confirmation.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <set>
+
+#include "sim/optimize/evaluation/fitness_source.hpp"
+#include "sim/optimize/evaluation/rating.hpp"
+#include "sim/optimize/evaluation/task_pipeline.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+/// Time between two questions whether to stop.
+constexpr std::chrono::milliseconds stop_check_interval{100};
+
+Task fresh_run(const Experiment& experiment, const Evaluation& finalist, std::uint32_t run) {
+  return {finalist.run, finalist.number, experiment.trials.count + run, finalist.candidate, {}};
+}
+
+Confirmation summary_of(const Experiment& experiment, const Evaluation& finalist, std::vector<double> scores) {
+  const Objective& objective = experiment.objectives.front();
+  Confirmation confirmation{finalist, std::move(scores)};
+  const auto count = static_cast<double>(confirmation.scores.size());
+  confirmation.worst = confirmation.scores.front();
+  for (const double score : confirmation.scores) {
+    confirmation.mean += score / count;
+    confirmation.worst = objective.better(confirmation.worst, score) ? score : confirmation.worst;
+  }
+  double squares = 0.0;
+  for (const double score : confirmation.scores) {
+    squares += (score - confirmation.mean) * (score - confirmation.mean);
+  }
+  confirmation.standard_deviation = std::sqrt(squares / std::max(count - 1.0, 1.0));
+  return confirmation;
+}
+
+}  // namespace
+
+bool needs_confirmation(const Experiment& experiment) {
+  return experiment.confirmation.runs > 0 &&
+         depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread);
+}
+
+std::vector<Evaluation> choose_finalists(const Experiment& experiment, std::span<const Evaluation> evaluations) {
+  std::vector<const Evaluation*> order;
+  for (const Evaluation& evaluation : evaluations) {
+    if (is_better(experiment, evaluation, nullptr)) {
+      order.push_back(&evaluation);
+    }
+  }
+  std::ranges::stable_sort(order, [&](const Evaluation* left, const Evaluation* right) {
+    return experiment.objectives.front().better(left->scores.front(), right->scores.front());
+  });
+  std::vector<Evaluation> finalists;
+  std::set<Candidate> chosen;
+  for (const Evaluation* evaluation : order) {
+    if (finalists.size() < experiment.confirmation.candidates && chosen.insert(evaluation->candidate).second) {
+      finalists.push_back(*evaluation);
+    }
+  }
+  const Evaluation* const baseline = baseline_of(experiment, evaluations);
+  if (baseline != nullptr && is_better(experiment, *baseline, nullptr) && !chosen.contains(baseline->candidate)) {
+    finalists.push_back(*baseline);
+  }
+  return finalists;
+}
+
+std::vector<Confirmation> confirm(const Experiment& experiment, std::span<const Evaluation> finalists, Workers& workers,
+                                  Store* store, const std::function<bool()>& stop) {
+  std::vector<Task> tasks;
+  for (const Evaluation& finalist : finalists) {
+    for (std::uint32_t run = 0; run < experiment.confirmation.runs; ++run) {
+      tasks.push_back(fresh_run(experiment, finalist, run));
+    }
+  }
+  TaskPipeline pipeline(experiment, workers, store, TaskPipeline::ResultScope::one_number);
+  pipeline.set_wanted(tasks);
+  while (!std::ranges::all_of(tasks, [&](const Task& task) { return pipeline.has_result(task); })) {
+    if (stop && stop()) {
+      throw SearchEnded{};
+    }
+    pipeline.run(stop_check_interval);
+  }
+  std::vector<Confirmation> confirmations;
+  for (const Evaluation& finalist : finalists) {
+    std::vector<double> scores;
+    for (std::uint32_t run = 0; run < experiment.confirmation.runs; ++run) {
+      const TrialResult result = pipeline.claim_result(fresh_run(experiment, finalist, run)).result;
+      scores.push_back(experiment.objectives.front().score(result.measures));
+    }
+    confirmations.push_back(summary_of(experiment, finalist, std::move(scores)));
+  }
+  std::ranges::stable_sort(confirmations, [&](const Confirmation& left, const Confirmation& right) {
+    const Objective& objective = experiment.objectives.front();
+    return experiment.trials.aggregate == Aggregate::mean ? objective.better(left.mean, right.mean)
+                                                          : objective.better(left.worst, right.worst);
+  });
+  return confirmations;
+}
+
+}  // namespace proleg::optimize

@@ -1,0 +1,40 @@
+#pragma once
+
+// The best candidates of a noisy search, rated again. The best score of many noisy ones is too good: part of it is
+// chance. Fresh runs do not have this bias.
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "sim/optimize/evaluation/store.hpp"
+#include "sim/optimize/evaluation/task.hpp"
+#include "sim/optimize/evaluation/workers.hpp"
+
+namespace proleg::optimize {
+
+/// A candidate with the scores of its fresh runs, by the first objective.
+struct Confirmation {
+  Evaluation evaluation;       ///< in the search
+  std::vector<double> scores;  ///< of each fresh run; at least one
+  double mean = 0.0;
+  double standard_deviation = 0.0;  ///< of the runs (divisor n - 1); 0 for one run
+  double worst = 0.0;
+};
+
+/// Whether the result of a search depends on random numbers, and the experiment asks for fresh runs.
+[[nodiscard]] bool needs_confirmation(const Experiment& experiment);
+
+/// The best different candidates of a search, best first, as many as the experiment wants to confirm; and the baseline,
+/// if it has a score. evaluations: of one run, by number.
+[[nodiscard]] std::vector<Evaluation> choose_finalists(const Experiment& experiment,
+                                                       std::span<const Evaluation> evaluations);
+
+/// Simulates each finalist in the same fresh worlds: trials with the numbers after those of the search. Best first, by
+/// the aggregate of the experiment's trials (the mean, or the worst). The result does not depend on the number of
+/// workers; what the store has is not simulated again. store: null for none. stop: called often; when it returns true,
+/// this throws SearchEnded.
+[[nodiscard]] std::vector<Confirmation> confirm(const Experiment& experiment, std::span<const Evaluation> finalists,
+                                                Workers& workers, Store* store, const std::function<bool()>& stop);
+
+}  // namespace proleg::optimize

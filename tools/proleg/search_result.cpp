@@ -1,0 +1,259 @@
+#include "tools/proleg/search_result.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "shared/computer/output/output.hpp"
+#include "shared/fixed/decimal.hpp"
+#include "sim/optimize/evaluation/rating.hpp"
+#include "sim/optimize/report/report.hpp"
+#include "tools/proleg/run_measures.hpp"
+
+namespace proleg::tools {
+namespace {
+
+using optimize::Confirmation;
+using optimize::Evaluation;
+using optimize::Experiment;
+
+bool depends_on_seed(const Experiment& experiment) {
+  return optimize::depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread);
+}
+
+/// Scores of the scenario that is written for an evaluation.
+std::vector<double> own_scores(const Experiment& experiment, const Evaluation& evaluation) {
+  const bool was_simulated = experiment.trials.count == 1 && !experiment.trials.spread.any();
+  const sim::MeasureValues measures =
+      was_simulated ? evaluation.measures : optimize::run_own_world(experiment, evaluation).measures;
+  std::vector<double> scores;
+  for (const optimize::Objective& objective : experiment.objectives) {
+    scores.push_back(objective.score(measures));
+  }
+  return scores;
+}
+
+/// How much better the best is than the baseline, in per cent of the baseline; nothing without a score to compare with.
+std::optional<double> gain_percent(const Experiment& experiment, const SearchResult& result) {
+  if (!result.baseline || !optimize::has_own_score(experiment, *result.baseline, 0)) {
+    return std::nullopt;
+  }
+  const Confirmation* const best = result.confirmation_of(result.best);
+  const Confirmation* const baseline = result.confirmation_of(*result.baseline);
+  const bool is_confirmed = best != nullptr && baseline != nullptr;
+  const double after = is_confirmed ? best->mean : result.best.scores.front();
+  const double before = is_confirmed ? baseline->mean : result.baseline->scores.front();
+  if (before == 0.0) {
+    return std::nullopt;
+  }
+  const double gain = 100.0 * (after - before) / std::abs(before);
+  return (experiment.objectives.front().goal == optimize::Goal::maximise ? gain : -gain) + 0.0;
+}
+
+std::string number_text(double value, std::string_view unit) {
+  std::array<char, 48> text{};
+  std::snprintf(text.data(), text.size(), "%.6g", value);
+  return text.data() + (unit.empty() ? "" : " " + std::string(unit));
+}
+
+std::string confirmation_text(const Experiment& experiment, const Confirmation& confirmation) {
+  const std::string_view unit = experiment.objectives.front().unit();
+  std::array<char, 96> runs{};
+  std::snprintf(runs.data(), runs.size(), "standard deviation %.2g, worst %.6g, %zu fresh runs",
+                confirmation.standard_deviation, confirmation.worst, confirmation.scores.size());
+  return "mean " + number_text(confirmation.mean, unit) + ", " + runs.data();
+}
+
+void print_line(const std::string& name, const std::string& text) {
+  std::printf("%-24s %s\n", name.c_str(), text.c_str());
+}
+
+void print_baseline(const Experiment& experiment, const SearchResult& result) {
+  if (!result.baseline) {
+    return;
+  }
+  const Evaluation& baseline = *result.baseline;
+  if (!optimize::has_own_score(experiment, baseline, 0)) {
+    print_line("baseline", "has no score: " + optimize::why_without_score(experiment, baseline));
+    return;
+  }
+  std::string text = number_text(baseline.scores.front(), experiment.objectives.front().unit());
+  if (const std::optional<double> gain = gain_percent(experiment, result)) {
+    std::array<char, 32> percent{};
+    std::snprintf(percent.data(), percent.size(), ", gain %.1f %%", *gain);
+    text += percent.data();
+  }
+  print_line("baseline", text);
+  if (const Confirmation* const confirmation = result.confirmation_of(baseline)) {
+    print_line("  in fresh runs", confirmation_text(experiment, *confirmation));
+  }
+  for (const optimize::MovedValue& value : result.moved) {
+    print_line("  " + value.name, "the scenario's " + value.own + " " + value.unit +
+                                      " is not in the search space; the baseline has " + value.nearest);
+  }
+}
+
+void print_best(const Experiment& experiment, const SearchResult& result) {
+  const Evaluation& best = result.best;
+  for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
+    const optimize::Objective& objective = experiment.objectives[i];
+    print_line("best " + objective.name, number_text(best.scores[i], objective.unit()));
+  }
+  if (const Confirmation* const confirmation = result.confirmation_of(best)) {
+    print_line("  in fresh runs", confirmation_text(experiment, *confirmation));
+  }
+  if (depends_on_seed(experiment)) {
+    print_line("  in its own world",
+               number_text(result.own_scores.front(), experiment.objectives.front().unit()) + ", the best scenario");
+  }
+  for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
+    const optimize::Dimension& dimension = experiment.space.dimensions[i];
+    print_line("  " + dimension.name,
+               experiment.space.value_text(best.candidate, i) + " " + std::string(scale_of(dimension.unit).symbol));
+  }
+  for (const optimize::ValueAtBound& bound : result.at_bounds) {
+    const optimize::Dimension& dimension = experiment.space.dimensions[bound.dimension];
+    print_line("at a bound", dimension.name + " = " + experiment.space.value_text(best.candidate, bound.dimension) +
+                                 " " + std::string(scale_of(dimension.unit).symbol) + " is the " +
+                                 (bound.is_highest ? "highest" : "lowest") +
+                                 " value of its range: a wider range may give more");
+  }
+}
+
+Json confirmation_object(const Confirmation& confirmation) {
+  return {{"number", confirmation.evaluation.number},
+          {"score", confirmation.evaluation.scores.front()},
+          {"runs", confirmation.scores.size()},
+          {"mean", confirmation.mean},
+          {"standard_deviation", confirmation.standard_deviation},
+          {"worst", confirmation.worst},
+          {"scores", confirmation.scores}};
+}
+
+Json scores_object(const Experiment& experiment, const std::vector<double>& scores) {
+  Json object = Json::empty_object();
+  for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
+    object.add(experiment.objectives[i].name, scores[i]);
+  }
+  return object;
+}
+
+Json baseline_object(const Experiment& experiment, const SearchResult& result) {
+  if (!result.baseline) {
+    return {};
+  }
+  const Evaluation& baseline = *result.baseline;
+  const bool has_score = optimize::has_own_score(experiment, baseline, 0);
+  Json moved = Json::empty_array();
+  for (const optimize::MovedValue& value : result.moved) {
+    moved.append({{"dimension", value.name}, {"scenario", value.own}, {"baseline", value.nearest}});
+  }
+  Json object{{"score", has_score ? Json(baseline.scores.front()) : Json()},
+              {"scores", scores_object(experiment, baseline.scores)},
+              {"values", values_object(experiment.space, baseline.candidate)},
+              {"moved", moved}};
+  if (!has_score) {
+    object.add("failure", optimize::why_without_score(experiment, baseline));
+  }
+  return object;
+}
+
+}  // namespace
+
+const Confirmation* SearchResult::confirmation_of(const Evaluation& evaluation) const {
+  const auto found = std::ranges::find_if(confirmations, [&](const Confirmation& confirmation) {
+    return confirmation.evaluation.candidate == evaluation.candidate;
+  });
+  return found == confirmations.end() ? nullptr : &*found;
+}
+
+SearchResult result_of(const Experiment& experiment, const SearchOutcome& outcome,
+                       std::vector<Confirmation> confirmations) {
+  SearchResult result;
+  result.confirmations = std::move(confirmations);
+  result.best = result.confirmations.empty() ? *outcome.progress.best : result.confirmations.front().evaluation;
+  result.own_scores = own_scores(experiment, result.best);
+  if (const Evaluation* const baseline = optimize::baseline_of(experiment, outcome.evaluations)) {
+    result.baseline = *baseline;
+    result.moved = optimize::values_outside_space(experiment);
+  }
+  result.at_bounds = optimize::values_at_bounds(experiment, result.best.candidate);
+  return result;
+}
+
+std::vector<std::string> result_file_names() {
+  return {"evaluations.tsv", "best.tsv",   "learning_curve.svg",  "confirmation.tsv",
+          "pareto.tsv",      "pareto.svg", "best.simulation.xml", "best.actuation.xml"};
+}
+
+std::vector<std::filesystem::path> write_results(const Experiment& experiment, const SearchOutcome& outcome,
+                                                 const SearchResult* result, const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  const auto write = [&](const char* name, const std::string& text) {
+    files.push_back(folder / name);
+    write_file(files.back(), text);
+  };
+  write("evaluations.tsv", optimize::evaluations_table(experiment, outcome.evaluations));
+  write("best.tsv", optimize::best_table(experiment, outcome.evaluations, 10));
+  write("learning_curve.svg", optimize::draw_learning_curve(experiment, outcome.evaluations));
+  if (result != nullptr && !result->confirmations.empty()) {
+    write("confirmation.tsv", optimize::confirmation_table(experiment, result->confirmations));
+  }
+  if (experiment.objectives.size() > 1) {
+    std::vector<Evaluation> front;
+    for (const std::size_t position : optimize::pareto_front(experiment, outcome.evaluations)) {
+      front.push_back(outcome.evaluations[position]);
+    }
+    write("pareto.tsv", optimize::evaluations_table(experiment, front));
+    write("pareto.svg", optimize::draw_pareto_front(experiment, outcome.evaluations));
+  }
+  if (result != nullptr) {
+    files.push_back(optimize::write_scenario(experiment, result->best, folder, "best"));
+  }
+  return files;
+}
+
+void print_result(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result) {
+  print_best(experiment, result);
+  print_baseline(experiment, result);
+  const optimize::SearchProgress& progress = outcome.progress;
+  std::printf("%-24s %llu: %llu simulated now, %llu reused, %llu from the store\n", "evaluations",
+              static_cast<unsigned long long>(progress.evaluations),
+              static_cast<unsigned long long>(progress.simulated), static_cast<unsigned long long>(progress.reused),
+              static_cast<unsigned long long>(progress.restored));
+  if (progress.failed > 0) {
+    print_line("failed", std::to_string(progress.failed) + " of them; the first: " + progress.first_failure);
+  }
+  print_line("ended", outcome.ending.empty() ? "interrupted" : outcome.ending);
+}
+
+void add_result(const Experiment& experiment, const SearchResult& result, Json& object) {
+  const Evaluation& best = result.best;
+  object.add("best_score", best.scores.front());
+  object.add("best_scores", scores_object(experiment, best.scores));
+  object.add("best_values", values_object(experiment.space, best.candidate));
+  object.add("best_number", best.number);
+  object.add("best_measures", measures_object(best.measures));
+  object.add("best_scenario_score", result.own_scores.front());
+  object.add("best_scenario_scores", scores_object(experiment, result.own_scores));
+  object.add("baseline", baseline_object(experiment, result));
+  object.add("gain_percent", gain_percent(experiment, result));
+  Json confirmations = Json::empty_array();
+  for (const Confirmation& confirmation : result.confirmations) {
+    confirmations.append(confirmation_object(confirmation));
+  }
+  const Confirmation* const confirmed = result.confirmation_of(best);
+  object.add("confirmed_mean", confirmed != nullptr ? Json(confirmed->mean) : Json());
+  object.add("confirmed_standard_deviation", confirmed != nullptr ? Json(confirmed->standard_deviation) : Json());
+  object.add("confirmations", confirmations);
+  Json bounds = Json::empty_array();
+  for (const optimize::ValueAtBound& bound : result.at_bounds) {
+    bounds.append({{"dimension", experiment.space.dimensions[bound.dimension].name},
+                   {"value", experiment.space.value(best.candidate, bound.dimension)},
+                   {"bound", bound.is_highest ? "highest" : "lowest"}});
+  }
+  object.add("at_bounds", bounds);
+}
+
+}  // namespace proleg::tools

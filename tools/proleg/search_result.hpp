@@ -1,0 +1,50 @@
+#pragma once
+
+// What a search found, for people and as JSON.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/optimize/evaluation/confirmation.hpp"
+#include "sim/optimize/experiment/experiment.hpp"
+#include "sim/optimize/experiment/space_remarks.hpp"
+#include "tools/proleg/json_output.hpp"
+#include "tools/proleg/optimisation.hpp"
+
+namespace proleg::tools {
+
+struct SearchResult {
+  optimize::Evaluation best;  ///< the best in fresh runs, if there were any; otherwise the best of the search
+  /// Scores of the best scenario, which is written without the variations of trials: `proleg simulate` repeats them.
+  std::vector<double> own_scores;
+  std::optional<optimize::Evaluation> baseline;
+  std::vector<optimize::MovedValue> moved;  ///< values of the scenario that the baseline does not have
+  std::vector<optimize::Confirmation> confirmations;
+  std::vector<optimize::ValueAtBound> at_bounds;  ///< of the best
+
+  /// The fresh runs of an evaluation; null if it had none.
+  [[nodiscard]] const optimize::Confirmation* confirmation_of(const optimize::Evaluation& evaluation) const;
+};
+
+/// The result of a search with at least one score. confirmations: best first; may be empty. Simulates the best scenario
+/// if no trial did.
+[[nodiscard]] SearchResult result_of(const optimize::Experiment& experiment, const SearchOutcome& outcome,
+                                     std::vector<optimize::Confirmation> confirmations);
+
+/// Names of the files that a search writes into its folder. The best scenario's copies of other files are in
+/// best.files.
+[[nodiscard]] std::vector<std::string> result_file_names();
+
+/// Writes tables, figures and the best scenario for people. result: null if no evaluation has a score; then there is no
+/// scenario.
+std::vector<std::filesystem::path> write_results(const optimize::Experiment& experiment, const SearchOutcome& outcome,
+                                                 const SearchResult* result, const std::filesystem::path& folder);
+
+void print_result(const optimize::Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result);
+
+/// Adds what was found to an object.
+void add_result(const optimize::Experiment& experiment, const SearchResult& result, Json& object);
+
+}  // namespace proleg::tools

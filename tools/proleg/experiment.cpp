@@ -20,6 +20,7 @@
 #include "tools/proleg/json_output.hpp"
 #include "tools/proleg/optimisation.hpp"
 #include "tools/proleg/scenario_run.hpp"
+#include "tools/proleg/search_result.hpp"
 #include "tools/proleg/worker_count.hpp"
 
 namespace {
@@ -221,6 +222,9 @@ int experiment(const Options& options) {
   }
   const fs::path scenarios = find_scenarios(options, methods.front().file);
   const fs::path folder = options.out.value_or(options.name + "_experiment");
+  if (folder.empty()) {
+    throw InputError("--out", 0, "an empty name", "the name of a folder");
+  }
   std::vector<std::pair<const Method*, optimize::Experiment>> chosen;
   for (const Method& method : methods) {
     const bool asked_for =
@@ -228,6 +232,7 @@ int experiment(const Options& options) {
     if (asked_for || fs::exists(store_path(folder / method.name))) {
       optimize::Experiment experiment = read(options, scenarios, method);
       if (asked_for || is_complete(experiment, *repetitions, folder / method.name)) {
+        refuse_overwriting(experiment, folder / method.name);
         chosen.emplace_back(&method, std::move(experiment));
       }
     }

@@ -2,12 +2,15 @@
 
 #include "tools/proleg/optimise.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/optimize/method/search.hpp"
+#include "sim/scenario/reader.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/json_output.hpp"
@@ -31,11 +34,11 @@ std::filesystem::path folder_of(const OptimiseOptions& options, const Experiment
   return folder;
 }
 
-void print_json(const OptimiseOptions& options, const Experiment& experiment, const SearchOutcome& outcome,
-                const SearchResult& result, const std::filesystem::path& folder, std::uint32_t workers) {
+void print_json(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
+                const std::filesystem::path& folder, std::uint32_t workers) {
   const optimize::SearchProgress& progress = outcome.progress;
   Json object{
-      {"experiment", options.file}, {"method", optimize::method_name(experiment.method)}, {"seed", experiment.seed}};
+      {"experiment", experiment.path}, {"method", optimize::method_name(experiment.method)}, {"seed", experiment.seed}};
   add_result(experiment, result, object);
   object.add("evaluations", progress.evaluations);
   object.add("simulated", progress.simulated);
@@ -84,7 +87,7 @@ std::string quoted(const std::string& word) {
 
 /// The command that continues this search, with all options that its store depends on.
 std::string command_to_continue(const OptimiseOptions& options, const std::filesystem::path& folder) {
-  std::string command = "proleg optimise " + quoted(options.file);
+  std::string command = "proleg optimise" + (options.file ? " " + quoted(*options.file) : "");
   const auto add = [&](const char* option, const std::optional<std::string>& value) {
     if (value) {
       command += std::string(" ") + option + " " + quoted(*value);
@@ -97,10 +100,60 @@ std::string command_to_continue(const OptimiseOptions& options, const std::files
   return command;
 }
 
+/// A resumed search keeps all evaluations that its store has.
+void keep_stored_evaluations(optimize::Store& store, Experiment& experiment) {
+  const std::uint64_t stored = store.evaluation_count(0);
+  if (experiment.evaluations > 0 && experiment.evaluations < stored) {
+    std::cerr << "proleg optimise: the store has " << stored << " evaluations, more than " << experiment.evaluations
+              << "; all of them are kept\n";
+    experiment.evaluations = stored;
+  }
+  store.save_budget(experiment.evaluations);
+}
+
+/// The files of a stored experiment.
+class StoredFiles final : public sim::FileSource {
+ public:
+  explicit StoredFiles(const std::vector<sim::SourceFile>& sources) : sources_(sources) {}
+
+  [[nodiscard]] std::optional<std::string> read(const std::filesystem::path& path) override {
+    const auto found = std::ranges::find_if(sources_, [&](const sim::SourceFile& source) {
+      return std::filesystem::path(source.path).lexically_normal() == path.lexically_normal();
+    });
+    return found == sources_.end() ? std::nullopt : std::optional(found->text);
+  }
+
+ private:
+  const std::vector<sim::SourceFile>& sources_;
+};
+
+Experiment read_stored(const OptimiseOptions& options) {
+  if (!options.resume) {
+    throw BadInput("found no FILE, expected an experiment (*.optimise.xml), or --resume FOLDER");
+  }
+  if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) {  // only the first process may open the store
+    throw BadInput("found mpirun without FILE, expected the experiment's file before --resume");
+  }
+  if (options.simulation) {
+    throw BadInput("found --simulation without FILE, expected FILE: the store has a scenario of its own");
+  }
+  try {
+    const optimize::StoredExperiment stored = optimize::read_stored_experiment(store_path(*options.resume));
+    StoredFiles files(stored.sources);
+    Experiment experiment = optimize::read_experiment(stored.path, files, stored.scenario);
+    experiment.seed = stored.seed;
+    experiment.evaluations = stored.evaluations;
+    return experiment;
+  } catch (const optimize::StoreError& error) {
+    throw BadInput(error.what());
+  }
+}
+
 int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
-  const Experiment experiment = read_experiment(options);
+  Experiment experiment = read_experiment(options);
   const std::filesystem::path folder = folder_of(options, experiment);
   print_warnings("proleg optimise", experiment.scenario);
+  refuse_overwriting(experiment, folder);
   if (options.verbose) {
     for (const std::string& remark : experiment.scenario.remarks) {
       std::cerr << remark << '\n';
@@ -112,6 +165,7 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   const std::unique_ptr<optimize::Workers> workers = make_workers(experiment, options);
   const std::unique_ptr<optimize::Store> store = open_store(
       folder, experiment, options.resume ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);
+  keep_stored_evaluations(*store, experiment);
   SearchOutcome outcome = run_search(experiment, 0, *workers, *store, optimize::method_name(experiment.method));
   const std::string continuation = command_to_continue(options, folder);
   if (outcome.progress.evaluations == 0) {
@@ -129,7 +183,7 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
     const SearchResult result = result_of(experiment, outcome, std::move(confirmations));
     const std::vector<std::filesystem::path> files = write_results(experiment, outcome, &result, folder);
     if (options.json) {
-      print_json(options, experiment, outcome, result, folder, workers->count());
+      print_json(experiment, outcome, result, folder, workers->count());
     } else {
       print_text(experiment, outcome, result, files, workers->count());
     }
@@ -145,7 +199,8 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
 
 optimize::Experiment read_experiment(const OptimiseOptions& options) {
   sim::DiskFiles files;
-  optimize::Experiment experiment = optimize::read_experiment(options.file, files, options.simulation);
+  optimize::Experiment experiment =
+      options.file ? optimize::read_experiment(*options.file, files, options.simulation) : read_stored(options);
   apply_options(options, experiment);
   return experiment;
 }
@@ -160,7 +215,7 @@ int optimise_command(int argc, char** argv, const WorkersMaker& make_workers) {
 }
 
 void add_optimise_options(CommandLine& command_line, OptimiseOptions& options) {
-  command_line.add_option("FILE", options.file, "experiment: a *.optimise.xml file").required();
+  command_line.add_option("FILE", options.file, "experiment: a *.optimise.xml file; may be omitted with --resume");
   command_line.add_option("--simulation", options.simulation, "scenario to optimise; default: the one that FILE names");
   command_line.add_option("--evaluations", options.evaluations, "maximum number of evaluations; default: that of FILE");
   command_line.add_option("--workers", options.workers,

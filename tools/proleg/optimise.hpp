@@ -14,7 +14,7 @@
 namespace proleg::tools {
 
 struct OptimiseOptions : ExperimentOptions {
-  std::string file;
+  std::optional<std::string> file;  ///< required unless a search is resumed
   std::optional<std::string> simulation;
   std::optional<std::string> workers;
   std::optional<std::string> out;
@@ -25,7 +25,8 @@ struct OptimiseOptions : ExperimentOptions {
 
 void add_optimise_options(CommandLine& command_line, OptimiseOptions& options);
 
-/// Reads the experiment and applies the options. Throws InputError.
+/// Reads the experiment from its file, or without a file from the store that is resumed, and applies the options.
+/// Throws InputError or BadInput.
 [[nodiscard]] optimize::Experiment read_experiment(const OptimiseOptions& options);
 
 /// Makes the workers: processes of this computer, or of a cluster.

@@ -9,6 +9,7 @@
 #include "shared/fixed/decimal.hpp"
 #include "sim/optimize/evaluation/rating.hpp"
 #include "sim/optimize/report/report.hpp"
+#include "tools/proleg/command_line.hpp"
 #include "tools/proleg/run_measures.hpp"
 
 namespace proleg::tools {
@@ -182,9 +183,20 @@ SearchResult result_of(const Experiment& experiment, const SearchOutcome& outcom
   return result;
 }
 
-std::vector<std::string> result_file_names() {
-  return {"evaluations.tsv", "best.tsv",   "learning_curve.svg",  "confirmation.tsv",
-          "pareto.tsv",      "pareto.svg", "best.simulation.xml", "best.actuation.xml"};
+void refuse_overwriting(const Experiment& experiment, const std::filesystem::path& folder) {
+  constexpr std::array names{"store.sqlite",        "store.sqlite.lock", "evaluations.tsv", "best.tsv",
+                             "learning_curve.svg",  "confirmation.tsv",  "pareto.tsv",      "pareto.svg",
+                             "best.simulation.xml", "best.actuation.xml"};
+  for (const sim::SourceFile& source : experiment.sources) {
+    const std::filesystem::path path = std::filesystem::weakly_canonical(source.path);
+    const std::filesystem::path inside = path.lexically_relative(std::filesystem::weakly_canonical(folder));
+    if (std::ranges::count(names, inside) > 0 || (!inside.empty() && *inside.begin() == "best.files")) {
+      throw BadInput(source.path +
+                     ": found a file of the experiment that the search would write over, expected another "
+                     "folder (--out) than " +
+                     folder.string());
+    }
+  }
 }
 
 std::vector<std::filesystem::path> write_results(const Experiment& experiment, const SearchOutcome& outcome,

@@ -33,9 +33,8 @@ struct SearchResult {
 [[nodiscard]] SearchResult result_of(const optimize::Experiment& experiment, const SearchOutcome& outcome,
                                      std::vector<optimize::Confirmation> confirmations);
 
-/// Names of the files that a search writes into its folder. The best scenario's copies of other files are in
-/// best.files.
-[[nodiscard]] std::vector<std::string> result_file_names();
+/// Throws BadInput if a search in this folder would write over a file of its experiment.
+void refuse_overwriting(const optimize::Experiment& experiment, const std::filesystem::path& folder);
 
 /// Writes tables, figures and the best scenario for people. result: null if no evaluation has a score; then there is no
 /// scenario.

@@ -77,6 +77,13 @@ class Store::Implementation {
     guard([&] { save_evaluation_row(statements_->save_evaluation, experiment_, columns_, evaluation); });
   }
 
+  void save_budget(std::uint64_t evaluations) {
+    const std::string text = std::to_string(evaluations);
+    guard([&] {
+      Statement(*database_, "REPLACE INTO experiment VALUES('evaluations', ?1)").run(std::string_view(text));
+    });
+  }
+
   void start_run(std::uint32_t run) {
     guard([&] { Statement(*database_, "DELETE FROM run WHERE run = ?1").run(run); });
   }
@@ -147,6 +154,18 @@ class Store::Implementation {
   std::unique_ptr<Statements> statements_;
   std::map<std::uint32_t, std::uint64_t> last_numbers_;  ///< largest number that has a trial, by run
 };
+
+void Store::save_budget(std::uint64_t evaluations) { implementation_->save_budget(evaluations); }
+
+StoredExperiment read_stored_experiment(const std::filesystem::path& path) {
+  try {
+    require_store_file(path);
+    Database database(path, SQLITE_OPEN_READONLY);
+    return read_description(path, database);
+  } catch (const SqliteError& error) {
+    throw StoreError(path.string() + ": " + reason(error, 0));
+  }
+}
 
 Store::Store(const std::filesystem::path& path, const Experiment& experiment, const std::string& build_id,
              Opening opening)

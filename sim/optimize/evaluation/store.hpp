@@ -18,6 +18,18 @@ class StoreError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What a store says of its search: enough to read the experiment again.
+struct StoredExperiment {
+  std::string path;      ///< of the experiment's file, as the search that made the store had it
+  std::string scenario;  ///< path of its top-level file
+  std::uint64_t seed = 0;
+  std::uint64_t evaluations = 0;         ///< of the latest search; 0: until the method ends
+  std::vector<sim::SourceFile> sources;  ///< every file that was read
+};
+
+/// Reads the description of a store's experiment, and nothing else. Throws StoreError.
+[[nodiscard]] StoredExperiment read_stored_experiment(const std::filesystem::path& path);
+
 /// Every trial and evaluation of an experiment in an SQLite file, each committed when it is known: a killed process
 /// loses only the tasks that its workers had not finished. Other programs may read the file at the same time. `.schema`
 /// in the sqlite3 shell explains the tables.
@@ -40,6 +52,8 @@ class Store {
   void save(const Task& task, std::uint64_t seed, const TrialResult& result, std::uint32_t worker);
   /// Saves what the optimiser used, in the order of number. Saving one again changes nothing.
   void save(const Evaluation& evaluation);
+  /// Saves the number of evaluations of this search, for read_stored_experiment().
+  void save_budget(std::uint64_t evaluations);
   /// Marks a run as running: it has no ending.
   void start_run(std::uint32_t run);
   /// Saves why a run ended ("converged", "no credit left", ...).

@@ -49,6 +49,7 @@ void write_experiment(Database& database, const Experiment& experiment, const St
   write("scenario", experiment.scenario.path);
   write("method", method_name(experiment.method));
   write("seed", std::to_string(experiment.seed));
+  write("evaluations", std::to_string(experiment.evaluations));
   write("started", universal_time());
 
   Statement part(database, "INSERT INTO part VALUES(?1, ?2)");
@@ -110,6 +111,16 @@ std::vector<std::string> differences(Database& database, const Experiment& exper
   return names;
 }
 
+void require_format(const std::filesystem::path& path, Database& database) {
+  if (pragma(database, "PRAGMA application_id") != std::int64_t{store_application_id}) {
+    throw StoreError(path.string() + ": is not the store of an experiment");
+  }
+  if (const std::int64_t format = pragma(database, "PRAGMA user_version"); format != std::int64_t{store_format}) {
+    throw StoreError(path.string() + ": has format " + std::to_string(format) + ", this program reads format " +
+                     std::to_string(store_format));
+  }
+}
+
 }  // namespace
 
 StoreLock::StoreLock(const std::filesystem::path& store, const std::string& failure)
@@ -137,7 +148,8 @@ StoreLock create_store(const std::filesystem::path& path, const Experiment& expe
                        const std::string& build_id) {
   StoreLock lock(path, "cannot be created");
   if (std::filesystem::exists(std::filesystem::symlink_status(path))) {
-    throw StoreError(path.string() + ": exists already; resume it (--resume), or choose another folder (--out)");
+    throw StoreError(path.string() + ": exists already; continue that search with --resume " +
+                     path.parent_path().string() + ", or choose another folder with --out");
   }
   try {
     std::filesystem::remove(unfinished_path(path));  // left by a process that was killed here
@@ -158,7 +170,7 @@ StoreLock create_store(const std::filesystem::path& path, const Experiment& expe
   return lock;
 }
 
-StoreLock claim_store(const std::filesystem::path& path) {
+void require_store_file(const std::filesystem::path& path) {
   const std::filesystem::file_status status = std::filesystem::status(path);
   if (!std::filesystem::exists(status)) {
     throw StoreError(path.string() + ": does not exist; there is nothing to resume");
@@ -166,18 +178,30 @@ StoreLock claim_store(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(status)) {
     throw StoreError(path.string() + ": is not a file; expected the store of an experiment");
   }
+}
+
+StoreLock claim_store(const std::filesystem::path& path) {
+  require_store_file(path);
   return {path, "cannot be opened for writing"};
+}
+
+StoredExperiment read_description(const std::filesystem::path& path, Database& database) {
+  require_format(path, database);
+  StoredExperiment stored;
+  stored.path = value_of(database, "path");
+  stored.scenario = value_of(database, "scenario");
+  stored.seed = parse_whole<std::uint64_t>(value_of(database, "seed")).value_or(0);
+  stored.evaluations = parse_whole<std::uint64_t>(value_of(database, "evaluations")).value_or(0);
+  Statement source(database, "SELECT path, text FROM source ORDER BY position");
+  while (source.step()) {
+    stored.sources.push_back({source.text(0), source.text(1)});
+  }
+  return stored;
 }
 
 void require_same_experiment(const std::filesystem::path& path, Database& database, const Experiment& experiment,
                              const std::string& build_id) {
-  if (pragma(database, "PRAGMA application_id") != std::int64_t{store_application_id}) {
-    throw StoreError(path.string() + ": is not the store of an experiment");
-  }
-  if (const std::int64_t format = pragma(database, "PRAGMA user_version"); format != std::int64_t{store_format}) {
-    throw StoreError(path.string() + ": has format " + std::to_string(format) + ", this program reads format " +
-                     std::to_string(store_format));
-  }
+  require_format(path, database);
   const std::string fingerprint = value_of(database, "fingerprint");
   if (fingerprint != experiment.fingerprint()) {
     const std::vector<std::string> names = differences(database, experiment);

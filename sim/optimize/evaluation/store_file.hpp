@@ -6,6 +6,7 @@
 #include <string>
 
 #include "shared/computer/sqlite/sqlite.hpp"
+#include "sim/optimize/evaluation/store.hpp"
 #include "sim/optimize/evaluation/store_schema.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
 
@@ -29,6 +30,12 @@ class StoreLock {
 /// Makes a store with its tables and the description of the experiment. The path must not exist.
 [[nodiscard]] StoreLock create_store(const std::filesystem::path& path, const Experiment& experiment,
                                      const StoreColumns& columns, const std::string& build_id);
+
+/// Throws StoreError unless there is a file.
+void require_store_file(const std::filesystem::path& path);
+
+/// Reads what create_store() wrote. Throws StoreError unless it is a store of this format.
+[[nodiscard]] StoredExperiment read_description(const std::filesystem::path& path, Database& database);
 
 /// Locks an existing store for writing.
 [[nodiscard]] StoreLock claim_store(const std::filesystem::path& path);

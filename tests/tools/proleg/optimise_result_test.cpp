@@ -142,7 +142,7 @@ TEST_F(OptimiseResult, ABaselineOutsideTheSearchSpaceIsMovedAndSaysSo) {
 }
 
 TEST_F(OptimiseResult, AnOptimumAtABoundIsReported) {
-  // The only candidate is 10 degrees, and 20 for the last joint.
+  // Two values for each joint: 10 and 10.25 degrees.
   write_experiment("bound.optimise.xml",
                    {short_, {"<lowerBounds>0", "<lowerBounds>10"}, {"<upperBounds>40", "<upperBounds>10.25"}});
   std::vector<std::string> words = search("bound.optimise.xml", "text", {"--evaluations", "40"});

@@ -120,6 +120,59 @@ TEST_F(Optimise, ALargerBudgetContinuesFromTheSameStore) {
   EXPECT_EQ(object["evaluations"], 40);
 }
 
+TEST_F(Optimise, ResumesFromItsFolderAlone) {
+  static_cast<void>(json_of(proleg(words("genetic", "whole", {"--evaluations", "70", "--seed", "9"}))));
+  const pid_t search = start_proleg(words("genetic", "parts", {"--evaluations", "70", "--seed", "9"}));
+  wait_for("parts", 5);
+  kill(search, SIGKILL);
+  static_cast<void>(finish(search));
+  fs::remove(file("short.simulation.xml"));  // the store has all files
+  const auto resumed = [&](const std::vector<std::string>& rest) {
+    std::vector<std::string> command{"optimise", "--resume", file("parts").string(), "--json"};
+    command.insert(command.end(), rest.begin(), rest.end());
+    return json_of(proleg(command));
+  };
+  const Json object = resumed({});
+  EXPECT_EQ(object["evaluations"], 70);
+  EXPECT_EQ(object["seed"], 9);
+  EXPECT_GE(object["restored"].number(), 5);
+  EXPECT_EQ(evaluations("whole"), evaluations("parts"));
+  EXPECT_EQ(resumed({"--evaluations", "80"})["evaluations"], 80);
+  EXPECT_EQ(resumed({})["evaluations"], 80) << "the latest number";
+  expect_refused({"optimise"}, {"FILE", "--resume"});
+  expect_refused({"optimise", "--resume", file("nothing").string()}, {"nothing", "store.sqlite"});
+  expect_refused({"optimise", "--resume", file("parts").string(), "--seed", "8"}, {"another experiment", "seed"});
+  expect_refused({"optimise", "--resume", file("parts").string(), "--simulation", "x"}, {"--simulation", "FILE"});
+}
+
+TEST_F(Optimise, ResumedWithFewerEvaluationsKeepsAll) {
+  static_cast<void>(json_of(proleg(words("great_deluge", "out", {"--evaluations", "40"}))));
+  const Finished finished =
+      proleg(words("great_deluge", "", {"--evaluations", "20", "--resume", file("out").string()}));
+  EXPECT_EQ(json_of(finished)["evaluations"], 40);
+  EXPECT_NE(finished.err.find("the store has 40 evaluations, more than 20"), std::string::npos) << finished.err;
+  EXPECT_EQ(std::ranges::count(read_file(file("out/evaluations.tsv")), '\n'), 41);
+}
+
+TEST_F(Optimise, NeverWritesOverAFileOfItsExperiment) {
+  static_cast<void>(json_of(proleg(words("cma_es", "first", {"--evaluations", "20"}))));
+  std::string experiment = read_file(shipped("cma_es"));
+  experiment.replace(experiment.find("uniform.simulation.xml"), 22, "best.simulation.xml");
+  write("first/again.optimise.xml", experiment);
+  fs::remove(file("first/store.sqlite"));
+  const std::string before = read_file(file("first/best.actuation.xml"));
+  const auto into = [&](const std::string& folder) {
+    return std::vector<std::string>{
+        "optimise", file("first/again.optimise.xml").string(), "--evaluations", "8", "--out", folder};
+  };
+  expect_refused(into(file("first").string()), {"best.simulation.xml", "write over", "--out"});
+  fs::create_directory_symlink(file("first"), file("link"));
+  expect_refused(into(file("link").string()), {"best.simulation.xml", "write over", "--out"});
+  EXPECT_EQ(read_file(file("first/best.actuation.xml")), before);
+  EXPECT_FALSE(fs::exists(file("first/store.sqlite")));
+  EXPECT_EQ(proleg(into(file("second").string())).status, 0);
+}
+
 TEST_F(Optimise, SeveralObjectivesGiveAParetoFront) {
   const Json object = json_of(proleg(words("pareto", "out", {"--evaluations", "80"})));
   EXPECT_EQ(object["best_scores"].size(), 2U);
@@ -145,7 +198,8 @@ TEST_F(Optimise, RefusesBadInputAndStartsNothing) {
 TEST_F(Optimise, RejectsAStoreThatExistsOrIsOfAnotherExperiment) {
   static_cast<void>(json_of(proleg(words("great_deluge", "out", {"--evaluations", "5"}))));
   const std::string before = evaluations("out");
-  expect_refused(words("great_deluge", "out", {"--evaluations", "5"}), {"store.sqlite", "resume"});
+  expect_refused(words("great_deluge", "out", {"--evaluations", "5"}),
+                 {"store.sqlite: exists already", "--resume " + file("out").string(), "--out"});
   expect_refused(words("genetic", "", {"--resume", file("out").string()}), {"store.sqlite", "another experiment"});
   expect_refused(words("great_deluge", "", {"--resume", file("out").string(), "--seed", "9"}), {"another experiment"});
   expect_refused(words("great_deluge", "elsewhere", {"--resume", file("out").string()}), {"--out", "--resume"});
@@ -225,6 +279,7 @@ TEST_F(Optimise, AnExperimentWritesTheThesissTablesAndFiguresAndContinues) {
 }
 
 TEST_F(Optimise, AnExperimentThatIsUnknownOrHasNoFilesIsRejected) {
+  expect_refused({"experiment", "travelling_wave", "--out", ""}, {"--out", "an empty name"});
   expect_refused({"experiment", "swimming"}, {"'swimming'", "travelling_wave"});
   expect_refused({"experiment", "travelling_wave", "--repetitions", "0"}, {"--repetitions", "'0'"});
   expect_refused({"experiment", "travelling_wave", "--method", "magic"}, {"--method", "'magic'", "great-deluge"});

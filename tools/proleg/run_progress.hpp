@@ -6,7 +6,8 @@
 
 namespace proleg::tools {
 
-/// A line on standard error that shows how much of a run is done. Nothing if standard error is no terminal.
+/// A line on standard error that shows how much of a run is done. If standard error is no terminal, it is printed every
+/// ten seconds.
 class RunProgress {
  public:
   /// label: what is being done. total_s: simulated time of the whole run.
@@ -19,6 +20,7 @@ class RunProgress {
   std::string label_;
   double total_s_;
   TerminalLine terminal_line_;
+  LogInterval log_interval_;
 };
 
 }  // namespace proleg::tools

@@ -10,31 +10,26 @@
 namespace proleg::tools {
 
 SearchDisplay::SearchDisplay(std::string label, std::string unit, std::uint64_t budget)
-    : label_(std::move(label)), unit_(std::move(unit)), budget_(budget), terminal_line_(std::chrono::milliseconds(0)) {}
+    : label_(std::move(label)),
+      unit_(std::move(unit)),
+      budget_(budget),
+      terminal_line_(std::chrono::milliseconds(0)),
+      log_interval_(std::chrono::steady_clock::now(), std::chrono::seconds(10)) {}
 
 void SearchDisplay::show(const optimize::SearchProgress& progress) {
-  if (!terminal_line_.is_visible() || !progress.best) {
+  if (!terminal_line_.is_visible()) {
+    if (log_interval_.is_due(std::chrono::steady_clock::now())) {
+      print(progress_text(label_, unit_, budget_, progress, terminal_line_.elapsed_s()));
+    }
     return;
   }
-  best_so_far_.push_back(progress.best->scores.front());
+  if (progress.best) {
+    best_so_far_.push_back(progress.best->scores.front());
+  }
   if (!terminal_line_.is_due()) {
     return;
   }
-  const double elapsed = terminal_line_.elapsed_s();
-  const auto done = static_cast<double>(progress.evaluations);
-  std::string line = label_ + ": " + std::to_string(progress.evaluations);
-  if (budget_ > 0) {
-    line += " of " + std::to_string(budget_);
-  }
-  std::array<char, 160> figures{};
-  std::snprintf(figures.data(), figures.size(), ", best %.4g%s%s, mean %.4g, %.0f s/s", progress.best->scores.front(),
-                unit_.empty() ? "" : " ", unit_.c_str(), progress.score_sum / done, progress.simulated_s / elapsed);
-  line += figures.data();
-  // Restored evaluations took no time, so they are no measure of the remaining time.
-  const auto made_now = done - static_cast<double>(progress.restored);
-  if (budget_ > progress.evaluations && made_now > 0.0) {
-    line += ", " + duration_text(static_cast<double>(budget_ - progress.evaluations) * elapsed / made_now) + " left";
-  }
+  const std::string line = progress_text(label_, unit_, budget_, progress, terminal_line_.elapsed_s());
   const std::size_t width = TerminalLine::max_width();
   const std::size_t rest = width > line.size() + 2 ? width - line.size() - 2 : 0;
   terminal_line_.draw(line.substr(0, width) + (rest > 0 ? "  " : "") +
@@ -44,6 +39,29 @@ void SearchDisplay::show(const optimize::SearchProgress& progress) {
 void SearchDisplay::print(const std::string& line) {
   terminal_line_.erase();
   std::cerr << line << '\n';
+}
+
+std::string progress_text(const std::string& label, const std::string& unit, std::uint64_t budget,
+                          const optimize::SearchProgress& progress, double elapsed_s) {
+  const auto done = static_cast<double>(progress.evaluations);
+  std::string line = label + ": " + std::to_string(progress.evaluations);
+  if (budget > 0) {
+    line += " of " + std::to_string(budget);
+  }
+  std::array<char, 160> figures{};
+  if (progress.best) {
+    std::snprintf(figures.data(), figures.size(), ", best %.4g%s%s, mean %.4g, %.0f s/s", progress.best->scores.front(),
+                  unit.empty() ? "" : " ", unit.c_str(), progress.score_sum / done, progress.simulated_s / elapsed_s);
+  } else {
+    std::snprintf(figures.data(), figures.size(), ", all failed, %.0f s/s", progress.simulated_s / elapsed_s);
+  }
+  line += figures.data();
+  // Restored evaluations took no time, so they are no measure of the remaining time.
+  const auto made_now = done - static_cast<double>(progress.restored);
+  if (budget > progress.evaluations && made_now > 0.0) {
+    line += ", " + duration_text(static_cast<double>(budget - progress.evaluations) * elapsed_s / made_now) + " left";
+  }
+  return line;
 }
 
 std::string spark_line(const std::vector<double>& values, std::size_t width) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -9,15 +10,16 @@
 
 namespace proleg::tools {
 
-/// A line on standard error with the progress of a search: evaluations, best and mean score, simulated seconds per
-/// second, remaining time, a spark line of the best score. Nothing if standard error is not a terminal.
+/// Shows on standard error how far a search is: evaluations, best and mean score, simulated seconds per second,
+/// remaining time. On a terminal it is one line that is drawn again and again, with a spark line of the best score.
+/// Elsewhere a line is printed every ten seconds.
 class SearchDisplay {
  public:
   /// label: name of the search, with the repetition if there are several. unit: of the score. budget: most evaluations;
   /// 0: unknown.
   SearchDisplay(std::string label, std::string unit, std::uint64_t budget);
 
-  /// Redraws at most ten times a second.
+  /// Redraws at most ten times a second, or prints a line every ten seconds.
   void show(const optimize::SearchProgress& progress);
   /// Prints a line above it, also if standard error is not a terminal.
   void print(const std::string& line);
@@ -27,8 +29,13 @@ class SearchDisplay {
   std::string unit_;
   std::uint64_t budget_;
   TerminalLine terminal_line_;
+  LogInterval log_interval_;
   std::vector<double> best_so_far_;
 };
+
+/// Evaluations, scores, speed and remaining time of a search in one line. elapsed_s: since it started; above 0.
+[[nodiscard]] std::string progress_text(const std::string& label, const std::string& unit, std::uint64_t budget,
+                                        const optimize::SearchProgress& progress, double elapsed_s);
 
 /// The values as block characters, at most `width`; empty without values.
 [[nodiscard]] std::string spark_line(const std::vector<double>& values, std::size_t width);

@@ -35,6 +35,27 @@ class TerminalLine {
   std::chrono::steady_clock::time_point next_drawing_;
 };
 
+/// Says when to print a line of a log: once in each interval.
+class LogInterval {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  LogInterval(Time start, std::chrono::milliseconds interval) : interval_(interval), next_(start + interval) {}
+
+  /// Whether an interval has passed since the start or the last time that this was true.
+  [[nodiscard]] bool is_due(Time now) {
+    if (now < next_) {
+      return false;
+    }
+    next_ = now + interval_;
+    return true;
+  }
+
+ private:
+  std::chrono::milliseconds interval_;
+  Time next_;
+};
+
 /// "5 s", "4 min 10 s", "2 h 5 min".
 [[nodiscard]] std::string duration_text(double seconds);
 

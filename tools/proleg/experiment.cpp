@@ -122,7 +122,7 @@ double uniform_distance(const optimize::Experiment& experiment) {
 /// even if it is not asked for now.
 bool is_complete(const optimize::Experiment& experiment, std::uint32_t repetitions, const fs::path& folder) {
   try {
-    optimize::Store store(store_path(folder), experiment, build_id, optimize::Store::Opening::resume);
+    optimize::Store store(store_path(folder), experiment, result_key, optimize::Store::Opening::resume);
     for (std::uint32_t run = 0; run < repetitions; ++run) {
       if (!store.ending(run)) {
         return false;

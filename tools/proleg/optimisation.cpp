@@ -56,7 +56,7 @@ std::unique_ptr<optimize::Store> open_store(const std::filesystem::path& folder,
     }
   }
   try {
-    return std::make_unique<optimize::Store>(store_path(folder), experiment, build_id, opening);
+    return std::make_unique<optimize::Store>(store_path(folder), experiment, result_key, opening);
   } catch (const optimize::StoreError& refused) {
     throw BadInput(refused.what());
   }

@@ -108,7 +108,7 @@ void keep_stored_evaluations(optimize::Store& store, Experiment& experiment) {
               << "; all of them are kept\n";
     experiment.evaluations = stored;
   }
-  store.save_budget(experiment.evaluations);
+  store.save_search(experiment.evaluations, build_id);
 }
 
 /// The files of a stored experiment.

@@ -29,15 +29,15 @@ std::string reason(const SqliteError& error, int system) {
 
 class Store::Implementation {
  public:
-  Implementation(const std::filesystem::path& path, const Experiment& experiment, const std::string& build_id,
+  Implementation(const std::filesystem::path& path, const Experiment& experiment, const std::string& result_key,
                  Opening opening)
       : path_(path), experiment_(experiment), columns_(experiment) {
     guard([&] {
-      lock_.emplace(opening == Opening::fresh ? create_store(path_, experiment_, columns_, build_id)
+      lock_.emplace(opening == Opening::fresh ? create_store(path_, experiment_, columns_, result_key)
                                               : claim_store(path_));
       database_ = std::make_unique<Database>(path, SQLITE_OPEN_READWRITE);
       if (opening == Opening::resume) {
-        require_same_experiment(path, *database_, experiment, build_id);
+        require_same_experiment(path, *database_, experiment, result_key);
       }
       // As for recordings: readers never block the writer, and a killed process leaves whole transactions.
       database_->execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; BEGIN IMMEDIATE; ROLLBACK");
@@ -77,10 +77,12 @@ class Store::Implementation {
     guard([&] { save_evaluation_row(statements_->save_evaluation, experiment_, columns_, evaluation); });
   }
 
-  void save_budget(std::uint64_t evaluations) {
+  void save_search(std::uint64_t evaluations, const std::string& build_id) {
     const std::string text = std::to_string(evaluations);
     guard([&] {
-      Statement(*database_, "REPLACE INTO experiment VALUES('evaluations', ?1)").run(std::string_view(text));
+      Statement entry(*database_, "REPLACE INTO experiment VALUES(?1, ?2)");
+      entry.run(std::string_view("evaluations"), std::string_view(text));
+      entry.run(std::string_view("build_id"), std::string_view(build_id));
     });
   }
 
@@ -155,7 +157,9 @@ class Store::Implementation {
   std::map<std::uint32_t, std::uint64_t> last_numbers_;  ///< largest number that has a trial, by run
 };
 
-void Store::save_budget(std::uint64_t evaluations) { implementation_->save_budget(evaluations); }
+void Store::save_search(std::uint64_t evaluations, const std::string& build_id) {
+  implementation_->save_search(evaluations, build_id);
+}
 
 StoredExperiment read_stored_experiment(const std::filesystem::path& path) {
   try {
@@ -167,9 +171,9 @@ StoredExperiment read_stored_experiment(const std::filesystem::path& path) {
   }
 }
 
-Store::Store(const std::filesystem::path& path, const Experiment& experiment, const std::string& build_id,
+Store::Store(const std::filesystem::path& path, const Experiment& experiment, const std::string& result_key,
              Opening opening)
-    : implementation_(std::make_unique<Implementation>(path, experiment, build_id, opening)) {}
+    : implementation_(std::make_unique<Implementation>(path, experiment, result_key, opening)) {}
 Store::~Store() = default;
 std::optional<TrialResult> Store::find(const Task& task) { return implementation_->find(task); }
 void Store::save(const Task& task, std::uint64_t seed, const TrialResult& result, std::uint32_t worker) {

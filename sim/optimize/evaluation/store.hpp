@@ -37,10 +37,12 @@ class Store {
  public:
   enum class Opening : std::uint8_t {
     fresh,   ///< the file must not exist
-    resume,  ///< the file must exist, with the same experiment and build
+    resume,  ///< the file must exist, with the same experiment and result key
   };
-  /// Throws StoreError: the file does (not) exist, is no store, or is of another experiment or build.
-  Store(const std::filesystem::path& path, const Experiment& experiment, const std::string& build_id, Opening opening);
+  /// Throws StoreError: the file does (not) exist, is no store, or is of another experiment or result
+  /// key (tools/proleg/build_id.hpp).
+  Store(const std::filesystem::path& path, const Experiment& experiment, const std::string& result_key,
+        Opening opening);
   ~Store();
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
@@ -52,8 +54,8 @@ class Store {
   void save(const Task& task, std::uint64_t seed, const TrialResult& result, std::uint32_t worker);
   /// Saves what the optimiser used, in the order of number. Saving one again changes nothing.
   void save(const Evaluation& evaluation);
-  /// Saves the number of evaluations of this search, for read_stored_experiment().
-  void save_budget(std::uint64_t evaluations);
+  /// Saves the number of evaluations of this search, for read_stored_experiment(), and the build of the program.
+  void save_search(std::uint64_t evaluations, const std::string& build_id);
   /// Marks a run as running: it has no ending.
   void start_run(std::uint32_t run);
   /// Saves why a run ended ("converged", "no credit left", ...).

@@ -38,13 +38,13 @@ std::string value_of(Database& database, std::string_view key) {
 }
 
 void write_experiment(Database& database, const Experiment& experiment, const StoreColumns& columns,
-                      const std::string& build_id) {
+                      const std::string& result_key) {
   Statement entry(database, "INSERT INTO experiment VALUES(?1, ?2)");
   const auto write = [&entry](std::string_view key, const std::string& value) {
     entry.run(key, std::string_view(value));
   };
   write("fingerprint", experiment.fingerprint());
-  write("build_id", build_id);
+  write("result_key", result_key);
   write("path", experiment.path);
   write("scenario", experiment.scenario.path);
   write("method", method_name(experiment.method));
@@ -145,7 +145,7 @@ StoreLock::StoreLock(StoreLock&& other) noexcept : descriptor_(std::exchange(oth
 
 /// Writes under another name first, so that a killed process never leaves half a store under this name.
 StoreLock create_store(const std::filesystem::path& path, const Experiment& experiment, const StoreColumns& columns,
-                       const std::string& build_id) {
+                       const std::string& result_key) {
   StoreLock lock(path, "cannot be created");
   if (std::filesystem::exists(std::filesystem::symlink_status(path))) {
     throw StoreError(path.string() + ": exists already; continue that search with --resume " +
@@ -159,7 +159,7 @@ StoreLock create_store(const std::filesystem::path& path, const Experiment& expe
                       "; PRAGMA user_version = " + std::to_string(store_format))
                          .c_str());
     database.execute(store_schema(experiment, columns).c_str());
-    write_experiment(database, experiment, columns, build_id);
+    write_experiment(database, experiment, columns, result_key);
     database.execute("COMMIT");
   } catch (...) {
     std::error_code ignored;
@@ -200,7 +200,7 @@ StoredExperiment read_description(const std::filesystem::path& path, Database& d
 }
 
 void require_same_experiment(const std::filesystem::path& path, Database& database, const Experiment& experiment,
-                             const std::string& build_id) {
+                             const std::string& result_key) {
   require_format(path, database);
   const std::string fingerprint = value_of(database, "fingerprint");
   if (fingerprint != experiment.fingerprint()) {
@@ -209,9 +209,11 @@ void require_same_experiment(const std::filesystem::path& path, Database& databa
                      fingerprint.substr(0, 12) + ", expected " + experiment.fingerprint().substr(0, 12) +
                      (names.empty() ? "" : "; differences: " + listed(names)));
   }
-  if (const std::string other = value_of(database, "build_id"); other != build_id) {
-    throw StoreError(path.string() + ": was made by build " + in_quotes(other) + ", this is " + in_quotes(build_id) +
-                     "; their results may differ, so this build cannot resume it");
+  const std::string build_id = value_of(database, "build_id");
+  if (value_of(database, "result_key") != result_key) {
+    throw StoreError(path.string() + ": was made by a program with other sources, compiler or libraries" +
+                     (build_id.empty() ? "" : " (build " + build_id + ")") +
+                     "; its results may differ, so this program cannot resume it");
   }
 }
 

@@ -29,7 +29,7 @@ class StoreLock {
 
 /// Makes a store with its tables and the description of the experiment. The path must not exist.
 [[nodiscard]] StoreLock create_store(const std::filesystem::path& path, const Experiment& experiment,
-                                     const StoreColumns& columns, const std::string& build_id);
+                                     const StoreColumns& columns, const std::string& result_key);
 
 /// Throws StoreError unless there is a file.
 void require_store_file(const std::filesystem::path& path);
@@ -40,8 +40,8 @@ void require_store_file(const std::filesystem::path& path);
 /// Locks an existing store for writing.
 [[nodiscard]] StoreLock claim_store(const std::filesystem::path& path);
 
-/// Throws StoreError unless it is a store of this format, experiment and build.
+/// Throws StoreError unless it is a store of this format, experiment and result key.
 void require_same_experiment(const std::filesystem::path& path, Database& database, const Experiment& experiment,
-                             const std::string& build_id);
+                             const std::string& result_key);
 
 }  // namespace proleg::optimize

@@ -18,14 +18,14 @@ namespace {
 class StoreFile : public testing::Test {
  protected:
   std::unique_ptr<Store> open(Store::Opening opening, const Experiment& experiment,
-                              const std::string& build = "build 1") const {
-    return std::make_unique<Store>(path_, experiment, build, opening);
+                              const std::string& key = "key 1") const {
+    return std::make_unique<Store>(path_, experiment, key, opening);
   }
   /// The message of the error.
   [[nodiscard]] std::string refused(Store::Opening opening, const Experiment& experiment,
-                                    const std::string& build = "build 1") const {
+                                    const std::string& key = "key 1") const {
     try {
-      open(opening, experiment, build);
+      open(opening, experiment, key);
       return "nothing";
     } catch (const StoreError& error) {
       const std::string what = error.what();
@@ -88,11 +88,29 @@ TEST_F(StoreFile, ThatIsDamagedIsNotResumed) {
   EXPECT_NE(not_resumed(), "nothing");
 }
 
-TEST_F(StoreFile, OfAnotherBuildIsNotResumed) {
+TEST_F(StoreFile, OfAProgramWithOtherResultsIsNotResumed) {
+  open(Store::Opening::fresh, experiment_)->save_search(7, "of a day");
+  const std::string what = refused(Store::Opening::resume, experiment_, "key 2");
+  EXPECT_NE(what.find("other sources, compiler or libraries (build of a day)"), std::string::npos) << what;
+}
+
+TEST_F(StoreFile, HasAllThatIsNeededToReadItsExperimentAgain) {
+  experiment_.seed = 18'446'744'073'709'551'615U;
+  experiment_.evaluations = 20;
   make();
-  const std::string what = refused(Store::Opening::resume, experiment_, "build 2");
-  EXPECT_NE(what.find("'build 1'"), std::string::npos) << what;
-  EXPECT_NE(what.find("'build 2'"), std::string::npos) << what;
+  const StoredExperiment stored = read_stored_experiment(path_);
+  EXPECT_EQ(stored.path, experiment_.path);
+  EXPECT_EQ(stored.scenario, experiment_.scenario.path);
+  EXPECT_EQ(stored.seed, experiment_.seed);
+  EXPECT_EQ(stored.evaluations, 20U);
+  ASSERT_EQ(stored.sources.size(), experiment_.sources.size());
+  for (std::size_t i = 0; i < stored.sources.size(); ++i) {
+    EXPECT_EQ(stored.sources[i].path, experiment_.sources[i].path);
+    EXPECT_EQ(stored.sources[i].text, experiment_.sources[i].text);
+  }
+  open(Store::Opening::resume, experiment_)->save_search(40, "a build");
+  EXPECT_EQ(read_stored_experiment(path_).evaluations, 40U);
+  EXPECT_THROW(static_cast<void>(read_stored_experiment(path_ / "nothing")), StoreError);
 }
 
 TEST_F(StoreFile, OfAnotherExperimentIsNotResumedAndTheMessageNamesTheDifferences) {

@@ -139,7 +139,7 @@ TEST_F(StoreTest, IsReadableForAPersonWhileItIsOpen) {
   EXPECT_EQ(ask("SELECT slip IS NULL FROM evaluation"), "1");
   EXPECT_EQ(ask("SELECT seed FROM evaluation"), std::to_string(trial_seed(experiment_.seed, 0, 0, 0)));
   EXPECT_EQ(ask("SELECT value FROM experiment WHERE key = 'fingerprint'"), experiment_.fingerprint());
-  EXPECT_EQ(ask("SELECT value FROM experiment WHERE key = 'build_id'"), "build");
+  EXPECT_EQ(ask("SELECT value FROM experiment WHERE key = 'result_key'"), "build");
   EXPECT_EQ(ask("SELECT text FROM source WHERE position = 1"), "<optimise/>");
   EXPECT_EQ(ask("SELECT group_concat(name || ' [' || unit || ']', ', ') FROM dimension"),
             "amplitude [deg], frequency [Hz], phase_difference [deg]");

@@ -1,6 +1,5 @@
 #include "sim/optimize/method/genetic.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <exception>

@@ -34,6 +34,14 @@ TEST(Measures, StateWhetherHigherIsBetter) {
   EXPECT_FALSE(declaration_of(Measure::slip).higher_is_better);
 }
 
+TEST(Measures, StateWhichMayBeNegative) {
+  // By their definitions: a projection, a distance to an edge that may be behind, a difference, 1 minus a ratio.
+  const std::set<Measure> with_both_signs{Measure::speed, Measure::stability_margin, Measure::height, Measure::slip};
+  for (const MeasureDeclaration& declaration : measures()) {
+    EXPECT_EQ(declaration.may_be_negative, with_both_signs.contains(declaration.measure)) << declaration.name;
+  }
+}
+
 TEST(MeasureValues, AreUndefinedUntilTheyAreSet) {
   MeasureValues values;
   for (const double value : values.all()) {

@@ -161,34 +161,48 @@ class RobotCheck {
   }
 
   void check_mass(std::size_t link) {
-    const MassProperties& mass = chain_->links[link].mass;
-    const Origin& origin = chain_->link_origins[link];
-    const std::string body = "body " + in_quotes(chain_->links[link].name);
-    const Eigen::Array3d moments = principal_moments(mass).eigenvalues().array();
-    constexpr double rounding = 1e-6;
-    if (moments[2] > (moments[0] + moments[1]) * (1.0 + rounding)) {
-      warn(origin, body +
-                       " has an inertia that no solid has: one principal moment is larger than the sum of the two "
-                       "others; usually a number in <inertia> is wrong");
-      return;
-    }
-    const double box = 2.0 * equivalent_box(mass).extents.maxCoeff();
-    constexpr double max_ratio = 10.0;
-    if (const auto geometries = bounds_of_geometries(chain_->links[link], {})) {
-      const double ratio = box / length_of(*geometries);
-      if (ratio > max_ratio || ratio < 1.0 / max_ratio) {
-        warn(origin, body + " has the inertia of a solid box of " + millimetres(box) + ", and its geometries have " +
-                         millimetres(length_of(*geometries)) + "; usually <inertia> is not in kg m^2");
-      }
-    }
-    const double density = mass.mass / (bounds_[link].highest - bounds_[link].lowest).prod();
-    constexpr double min_density = 1.0;       // air
-    constexpr double max_density = 25'000.0;  // above every metal
-    if (density < min_density || density > max_density) {
-      warn(origin, body + " has " + number_text(mass.mass) + " kg, which is " + number_text(std::round(density)) +
-                       " kg/m^3; usually <total> is not in kilograms, or a length is not in metres");
+    if (!has_possible_inertia(link)) {
+      warn(chain_->link_origins[link],
+           body_name(link) +
+               " has an inertia that no solid has: one principal moment is larger than the sum of the two others; "
+               "usually a number in <inertia> is wrong");
+    } else if (const auto geometries = bounds_of_geometries(chain_->links[link], {})) {
+      check_size(link, *geometries);
+      check_density(link);
     }
   }
+
+  [[nodiscard]] bool has_possible_inertia(std::size_t link) const {
+    const Eigen::Array3d moments = principal_moments(chain_->links[link].mass).eigenvalues().array();
+    constexpr double rounding = 1e-6;
+    return moments[2] <= (moments[0] + moments[1]) * (1.0 + rounding);
+  }
+
+  void check_size(std::size_t link, const Bounds& geometries) {
+    constexpr double max_ratio = 10.0;
+    const double box = 2.0 * equivalent_box(chain_->links[link].mass).extents.maxCoeff();
+    const double ratio = box / length_of(geometries);
+    if (ratio > max_ratio || ratio < 1.0 / max_ratio) {
+      warn(chain_->link_origins[link], body_name(link) + " has the inertia of a solid box of " + millimetres(box) +
+                                           ", and its geometries have " + millimetres(length_of(geometries)) +
+                                           "; usually <inertia> is not in kg m^2");
+    }
+  }
+
+  /// Only of a link with geometries: the box of a thin rod has no volume.
+  void check_density(std::size_t link) {
+    constexpr double min_density = 1.0;       // air
+    constexpr double max_density = 25'000.0;  // above every metal
+    const double mass = chain_->links[link].mass.mass;
+    const double density = mass / (bounds_[link].highest - bounds_[link].lowest).prod();
+    if (density < min_density || density > max_density) {
+      warn(chain_->link_origins[link],
+           body_name(link) + " has " + number_text(mass) + " kg, which is " + number_text(std::round(density)) +
+               " kg/m^3; usually <total> is not in kilograms, or a length is not in metres");
+    }
+  }
+
+  [[nodiscard]] std::string body_name(std::size_t link) const { return "body " + in_quotes(chain_->links[link].name); }
 
   const Chain* chain_;
   std::vector<Bounds> bounds_;  ///< of the links

@@ -63,7 +63,8 @@ void add_scenario_options(CommandLine& command_line, ScenarioOptions& options) {
       "--losses", options.losses,
       "state frames that joints do not receive: SEED:RATE or SEED:RATE@FIRST-LAST (RATE 0.05 or 5%), or a "
       "file with lines TICK SENDER RECEIVER [CHANNEL]");
-  command_line.add_flag("--verbose", options.verbose, "print the joint map, remarks on the files and all parameters");
+  command_line.add_flag("--verbose", options.verbose,
+                        "print the order of the joints, remarks on the files and all parameters");
   command_line.add_flag("--json", options.json, "print one JSON object");
 }
 

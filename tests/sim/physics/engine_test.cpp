@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <ode/error.h>
+#include <ode/odeinit.h>
 
 #include <thread>
 
@@ -11,7 +12,10 @@ namespace {
 /// On a thread of its own, because messages are counted for each thread.
 template <typename Action>
 void on_thread(const Action& action) {
-  std::thread(action).join();
+  std::thread([&] {
+    action();
+    dCleanupODEAllDataForThread();
+  }).join();
 }
 
 TEST(Engine, KeepsTheTextsOfMessagesThatDiffer) {

@@ -193,8 +193,7 @@ void draw_scale(Svg& svg, const RobotView& view, const Cell& cell) {
       places.push_back(cell.pixel({x, y}));
     }
   }
-  svg.marks(places, view.from_above ? "h0" : "v-4",
-            R"(stroke="#9a8f78" stroke-width="1.4" stroke-linecap="round")");
+  svg.marks(places, view.from_above ? "h0" : "v-4", R"(stroke="#9a8f78" stroke-width="1.4" stroke-linecap="round")");
 }
 
 /// The touch sensors that are pressed, in the middle of the half of the link that each senses.

@@ -16,12 +16,16 @@ constexpr double degrees = 180.0 / std::numbers::pi;
 std::string worst_joint(const RunMeasures& measures, const sim::RobotModel& robot, const char* limit,
                         double (sim::ServoTracking::*share)() const) {
   constexpr double much = 0.2;
+  constexpr double large_error = 5.0 / degrees;  // rad; a servo at its torque limit may still keep its angle
   std::size_t worst = 0;
   std::size_t joints = 0;
   for (std::size_t joint = 0; joint < measures.servos.size(); ++joint) {
     const double its_share = (measures.servos[joint].*share)();
-    joints += its_share > much ? 1U : 0U;
-    if (its_share > (measures.servos[worst].*share)()) {
+    if (!(its_share > much) || !(measures.servos[joint].rms_error() > large_error)) {  // also if not a number
+      continue;
+    }
+    ++joints;
+    if (joints == 1 || its_share > (measures.servos[worst].*share)()) {
       worst = joint;
     }
   }

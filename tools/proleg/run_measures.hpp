@@ -28,8 +28,8 @@ struct RunMeasures {
 /// at_speed_limit, at_torque_limit; null where the run does not define one.
 [[nodiscard]] Json servos_array(const RunMeasures& measures, const sim::RobotModel& robot);
 
-/// Prints one line on standard error if servos are at a limit for more than a fifth of the time. program: as the line
-/// begins.
+/// Prints one line on standard error if servos are at a limit for more than a fifth of the time and miss their angles
+/// by more than 5 degrees (root mean square). program: as the line begins.
 void print_remark_on_limits(const std::string& program, const RunMeasures& measures, const sim::RobotModel& robot);
 
 /// Prints the measures that the run defines on standard output, one a line.

@@ -124,7 +124,7 @@ std::vector<std::string_view> words(std::string_view text) {
 }
 
 std::string listed(std::span<const std::string> items) {
-  constexpr std::size_t max_items = 20;
+  constexpr std::size_t max_items = 30;
   std::string result;
   for (std::size_t i = 0; i < items.size() && i < max_items; ++i) {
     result += (i == 0 ? "" : ", ") + shortened(items[i]);

@@ -37,7 +37,7 @@ namespace proleg {
 /// The words between blanks.
 [[nodiscard]] std::vector<std::string_view> words(std::string_view text);
 
-/// "a, b, c"; at most 20 items, then "...". "nothing" for an empty list.
+/// "a, b, c"; at most 30 items, then "...". "nothing" for an empty list.
 [[nodiscard]] std::string listed(std::span<const std::string> items);
 
 /// The whole text as an integer, without blanks and, for an unsigned type, without a sign. Nothing if the text is no

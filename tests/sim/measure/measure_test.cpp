@@ -35,8 +35,9 @@ TEST(Measures, StateWhetherHigherIsBetter) {
 }
 
 TEST(Measures, StateWhichMayBeNegative) {
-  // By their definitions: a projection, a distance to an edge that may be behind, a difference, 1 minus a ratio.
-  const std::set<Measure> with_both_signs{Measure::speed, Measure::stability_margin, Measure::height, Measure::slip};
+  // By their definitions: projections, angles, a distance to an edge that may be behind, a difference.
+  const std::set<Measure> with_both_signs{Measure::speed,    Measure::sideways_speed,   Measure::heading,
+                                          Measure::yaw_rate, Measure::stability_margin, Measure::height};
   for (const MeasureDeclaration& declaration : measures()) {
     EXPECT_EQ(declaration.may_be_negative, with_both_signs.contains(declaration.measure)) << declaration.name;
   }

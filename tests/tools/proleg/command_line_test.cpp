@@ -196,7 +196,7 @@ TEST_F(CommandLine, ARecordingCanBeExportedAndDrawn) {
   ASSERT_EQ(proleg({"simulate", scenario("uniform"), "--seconds", "2", "--record", recording}).status, 0);
   const Finished table = proleg({"export", recording, "--tsv", "--out", "-"});
   EXPECT_EQ(table.status, 0) << table.err;
-  EXPECT_EQ(proleg({"export", recording}).out, table.out) << "the only format";
+  EXPECT_EQ(proleg({"export", recording, "--out", "-"}).out, table.out) << "the only format";
   EXPECT_EQ(std::count(table.out.begin(), table.out.end(), '\n'), 201) << "a header and 200 ticks";
   const Finished beside = proleg({"export", recording, "--tsv"});
   EXPECT_EQ(beside.status, 0) << beside.err;
@@ -211,8 +211,9 @@ TEST_F(CommandLine, ARecordingCanBeExportedAndDrawn) {
 TEST_F(CommandLine, ExportDoesNotReplaceItsRecording) {
   const std::string recording = file("run.tsv").string();
   ASSERT_EQ(proleg({"simulate", scenario("uniform"), "--seconds", "0.1", "--record", recording}).status, 0);
-  expect_refused({"export", recording, "--tsv"}, {"run.tsv", "--out FILE"});
-  expect_refused({"export", recording, "--tsv", "--out", recording}, {"--out", "another name"});
+  EXPECT_EQ(proleg({"export", recording}).out, recording + ".tsv\n");
+  expect_refused({"export", recording, "--out", recording}, {"--out", "no table"});
+  EXPECT_EQ(proleg({"export", recording, "--out", "-"}).status, 0) << "it is still a recording";
 }
 
 TEST_F(CommandLine, ARecordingFollowsALinkAndTakesItsNameLiterally) {

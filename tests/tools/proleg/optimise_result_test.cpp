@@ -179,11 +179,11 @@ TEST_F(OptimiseResult, WithoutOneScoreTheSearchFailsAndNamesTheFirstFailure) {
 
 TEST_F(OptimiseResult, AMeasureThatNoRunDefinesIsAFailure) {
   // A fifth of a second has no stride.
-  write_experiment("slip.optimise.xml", {short_, {"measure=\"distance\"", "measure=\"slip\""}});
-  const Finished finished = proleg(search("slip.optimise.xml", "out", {"--evaluations", "5"}));
+  write_experiment("stride.optimise.xml", {short_, {"measure=\"distance\"", "measure=\"stride_length\""}});
+  const Finished finished = proleg(search("stride.optimise.xml", "out", {"--evaluations", "5"}));
   EXPECT_EQ(finished.status, 1);
   EXPECT_NE(finished.err.find("none of 5 evaluations has a score"), std::string::npos) << finished.err;
-  EXPECT_NE(finished.err.find("the run does not define slip"), std::string::npos) << finished.err;
+  EXPECT_NE(finished.err.find("the run does not define stride_length"), std::string::npos) << finished.err;
   EXPECT_FALSE(fs::exists(file("out/best.simulation.xml")));
 }
 

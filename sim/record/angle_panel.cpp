@@ -119,8 +119,9 @@ void draw_row(Svg& svg, const Polyline& angles, double tick_s, double largest, c
     const double from = time.pixel(std::max(angles[first].x - tick_s, time.low));
     const double to = time.pixel(std::min(angles[i - 1].x, time.high));
     const std::string colour = level_colour(level_of(angles[first].y));
-    svg.rectangle({from, top}, to - from, height,
-                  "fill=\"" + colour + "\" stroke=\"" + colour + "\" stroke-width=\"0.3\"");
+    std::string style = "stroke-width=\"0.3\" fill=\"";
+    style.append(colour).append("\" stroke=\"").append(colour).append("\"");
+    svg.rectangle({from, top}, to - from, height, style);
     first = i;
   }
 }

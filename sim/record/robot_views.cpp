@@ -166,8 +166,9 @@ Cell cell_of(const RobotView& view, const Snapshot& snapshot, std::size_t number
   const Point middle = middle_of(view, snapshot);
   const double width = 2.0 * view.half_size.x * view.pixels_per_m;
   const double height = 2.0 * view.half_size.y * view.pixels_per_m;
-  const auto column = static_cast<double>(number % view.columns);
-  const auto row = static_cast<double>(number / view.columns);
+  const std::size_t rows_before = number / view.columns;
+  const auto column = static_cast<double>(number - rows_before * view.columns);
+  const auto row = static_cast<double>(rows_before);
   return {{middle.x - view.half_size.x, middle.y - view.half_size.y},
           {middle.x + view.half_size.x, middle.y + view.half_size.y},
           {page_left + column * (width + gap), view.top + row * (height + label_room)},
@@ -180,10 +181,16 @@ void draw_polygon(Svg& svg, const Polyline& polygon, std::string_view style) {
   }
 }
 
-/// Marks every 50 mm of the ground, so that the motion can be seen: along the lower edge, or as dots from above.
-void draw_scale(Svg& svg, const RobotView& view, const Cell& cell) {
+/// Distance of the marks on the ground, in m: 50 mm, or more if they would be too close together on the page.
+double mark_spacing(const RobotView& view) {
   constexpr double spacing = 0.05;
-  const double step = spacing * std::max(1.0, std::ceil(12.0 / (spacing * cell.scale)));
+  constexpr double min_pixels = 12.0;
+  return spacing * std::max(1.0, std::ceil(min_pixels / (spacing * view.pixels_per_m)));
+}
+
+/// Marks on the ground, so that the motion can be seen: along the lower edge, or as dots from above.
+void draw_scale(Svg& svg, const RobotView& view, const Cell& cell) {
+  const double step = mark_spacing(view);
   Polyline places;
   for (double x = std::ceil(cell.low.x / step) * step; x < cell.high.x; x += step) {
     if (!view.from_above) {
@@ -290,9 +297,10 @@ RobotViews make_robot_views(const Recording& recording, const FigureContents& co
 void draw_robot_views(Svg& svg, const Scenario& scenario, const RobotViews& views) {
   for (const RobotView& view : views.views) {
     draw_heading(svg, view.top, view.heading);
+    const std::string spacing = plain_number(1000.0 * mark_spacing(view), 0);
     svg.text({page_right, view.top - 12.0},
-             "the head is dark; dots: pressed touch sensors; marks every 50 mm of ground", TextAnchor::end, label_size,
-             faint_ink);
+             "the head is dark; dots: pressed touch sensors; marks every " + spacing + " mm of ground", TextAnchor::end,
+             label_size, faint_ink);
     for (std::size_t i = 0; i < views.snapshots.size(); ++i) {
       const Snapshot& snapshot = views.snapshots[i];
       const Cell cell = cell_of(view, snapshot, i);

@@ -81,6 +81,8 @@ class HardwareLoop::Implementation {
             plant_.servo_commands(),
             plant_.link_poses(),
             plant_.joint_angles(),
+            plant_.motor_torques(),
+            plant_.servo_currents(),
             reference_.chain().lost()};
   }
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <sstream>
+#include <utility>
 
 #include "shared/kernel/servo_command.hpp"
 #include "sim/physics/physics_error.hpp"
@@ -46,6 +47,8 @@ Plant::Plant(const Scenario& scenario)
       contact_noise_(scenario.kernel.seed, random_stream::touch_sensors),
       link_poses_(scenario.robot.links.size()),
       joint_angles_(scenario.robot.joints.size()),
+      motor_torques_(scenario.robot.joints.size()),
+      servo_currents_(scenario.robot.joints.size()),
       joint_targets_(scenario.robot.joints.size()),
       link_contacts_(scenario.robot.links.size()) {
   for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
@@ -117,8 +120,10 @@ void Plant::step() {
   for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
     Servo& servo = servos_[joint];
     servo.angle = world_.joint_angle(joint);
-    meter_.add_joint_step(
-        joint, {world_.motor_torque(joint), servo.commanded_speed, servo.angle_before, servo.angle, servo.limp});
+    const double torque = world_.motor_torque(joint);
+    servo.torque_sum += torque;
+    servo.current_sum +=
+        meter_.add_joint_step(joint, {torque, servo.commanded_speed, servo.angle_before, servo.angle, servo.limp});
   }
   const ContactSliding sliding = world_.contact_sliding();
   meter_.add_contacts(sliding.normal_force, sliding.force_times_speed);
@@ -129,6 +134,10 @@ void Plant::step() {
 void Plant::finish_tick() {
   ++finished_ticks_;
   read_world();
+  for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
+    motor_torques_[joint] = std::exchange(servos_[joint].torque_sum, 0.0) / steps_per_tick_;
+    servo_currents_[joint] = std::exchange(servos_[joint].current_sum, 0.0) / steps_per_tick_;
+  }
   const Eigen::Vector3d center = world_.center_of_mass();
   require_crawling(center);
   center_before_ = center;

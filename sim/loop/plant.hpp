@@ -41,6 +41,9 @@ class Plant {
   [[nodiscard]] std::span<const std::int32_t> servo_commands() const { return servo_commands_; }
   [[nodiscard]] std::span<const Pose> link_poses() const { return link_poses_; }
   [[nodiscard]] std::span<const double> joint_angles() const { return joint_angles_; }
+  /// Torque of each motor in Nm, and current of each servo in mA (an estimate): means over the tick.
+  [[nodiscard]] std::span<const double> motor_torques() const { return motor_torques_; }
+  [[nodiscard]] std::span<const double> servo_currents() const { return servo_currents_; }
   /// Touch sensors per link: bit 0 rear, bit 1 front; not debounced, and with the scenario's contact noise.
   [[nodiscard]] std::span<const std::uint8_t> link_contacts() const { return link_contacts_; }
 
@@ -89,11 +92,15 @@ class Plant {
     double commanded_speed = 0.0;  ///< rad/s, in the last step
     double angle_before = 0.0;     ///< rad, at the start of the last step
     double angle = 0.0;            ///< rad, now
+    double torque_sum = 0.0;       ///< Nm, over the steps of this tick
+    double current_sum = 0.0;      ///< mA, over the steps of this tick
   };
   std::vector<Servo> servos_;  ///< by joint
   Pcg32 contact_noise_;
   std::vector<Pose> link_poses_;
   std::vector<double> joint_angles_;
+  std::vector<double> motor_torques_;
+  std::vector<double> servo_currents_;
   std::vector<double> joint_targets_;        ///< rad, of the servos in the last step
   std::vector<std::uint8_t> link_contacts_;  ///< with noise
 };

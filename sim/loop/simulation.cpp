@@ -69,9 +69,17 @@ TickSample Simulation::sample() {
   for_each_internal_value(scenario_.kernel, [&](unsigned slot, unsigned joint, unsigned number) {
     internal_values_.push_back(chain_.kernel(joint).internal_value(slot, joint, number));
   });
-  return {tick() - 1,          latched_contacts_,     chain_.setpoints(),
-          internal_values_,    servo_pulses_,         plant_.servo_commands(),
-          plant_.link_poses(), plant_.joint_angles(), chain_.lost()};
+  return {tick() - 1,
+          latched_contacts_,
+          chain_.setpoints(),
+          internal_values_,
+          servo_pulses_,
+          plant_.servo_commands(),
+          plant_.link_poses(),
+          plant_.joint_angles(),
+          plant_.motor_torques(),
+          plant_.servo_currents(),
+          chain_.lost()};
 }
 
 }  // namespace proleg::sim

@@ -36,8 +36,8 @@ class GaitMeter {
     double angle;            ///< rad, after the step
     bool limp;               ///< without pulses
   };
-  /// Must be called for every joint after every step.
-  void add_joint_step(std::size_t joint, const JointStep& step) {
+  /// Must be called for every joint after every step. Returns the current, in mA, that its servo draws (an estimate).
+  double add_joint_step(std::size_t joint, const JointStep& step) {
     JointState& state = joints_[joint];
     state.limp = step.limp;
     if (!step.limp && has_settled_) {
@@ -48,9 +48,11 @@ class GaitMeter {
     mechanical_power_sum_ += 0.5 * std::max(step.motor_torque * (speed + state.speed), 0.0);
     state.speed = speed;
     // Speeds are relative to max_speed, which avoids a division in every step.
-    current_sum_ma_ += step.limp ? servo_.idle_ma
-                                 : servo_current_ma(servo_, step.commanded_speed * state.per_max_speed,
-                                                    speed * state.per_max_speed, 1.0);
+    const double current_ma = step.limp ? servo_.idle_ma
+                                        : servo_current_ma(servo_, step.commanded_speed * state.per_max_speed,
+                                                           speed * state.per_max_speed, 1.0);
+    current_sum_ma_ += current_ma;
+    return current_ma;
   }
   /// Must be called after every step. normal_force: N, sum over the contact points with the environment;
   /// force_times_speed: N m/s, sum of normal force times sliding speed.

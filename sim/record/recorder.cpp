@@ -84,8 +84,8 @@ class Recorder::Storage {
     require_finite(sample);
     const std::uint32_t tick = sample.tick;
     for (std::uint32_t joint = 0; joint < scenario_.robot.joints.size(); ++joint) {
-      insert_sample_.run(tick, joint, sample.setpoints[joint], sample.servo_commands[joint],
-                         sample.joint_angles[joint]);
+      insert_sample_.run(tick, joint, sample.setpoints[joint], sample.servo_commands[joint], sample.joint_angles[joint],
+                         sample.motor_torques[joint], sample.servo_currents[joint]);
     }
     for (std::size_t i = 0; i < internal_values_.size(); ++i) {
       const InternalValueKey& key = internal_values_[i];
@@ -189,7 +189,7 @@ class Recorder::Storage {
   Statement insert_distortion_{database_,
                                "INSERT INTO distortion(tick, slot, joint, name, unit, raw, value_text) "
                                "VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7)"};
-  Statement insert_sample_{database_, "INSERT INTO sample VALUES(?1, ?2, ?3, ?4, ?5)"};
+  Statement insert_sample_{database_, "INSERT INTO sample VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7)"};
   Statement insert_value_{database_, "INSERT INTO internal_value VALUES(?1, ?2, ?3, ?4, ?5)"};
   Statement insert_pulse_{database_, "INSERT INTO servo VALUES(?1, ?2, ?3)"};
   Statement insert_pose_{database_, "INSERT INTO pose VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)"};

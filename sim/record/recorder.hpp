@@ -30,6 +30,8 @@ struct TickSample {
   std::span<const std::int32_t> servo_commands;  ///< per joint: the last pulse before SYNC k + 1
   std::span<const Pose> link_poses;              ///< in the world, at SYNC k + 1
   std::span<const double> joint_angles;          ///< rad, at SYNC k + 1, measured on the robot
+  std::span<const double> motor_torques;         ///< Nm, means over the tick
+  std::span<const double> servo_currents;        ///< mA, means over the tick
   std::span<const Loss> lost;                    ///< frames labelled k that their receivers did not get
 };
 

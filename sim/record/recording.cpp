@@ -236,6 +236,8 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
   tick.setpoints.resize(joints_.size());
   tick.servo_commands.resize(joints_.size());
   tick.joint_angles.resize(joints_.size());
+  tick.motor_torques.resize(joints_.size());
+  tick.servo_currents.resize(joints_.size());
   tick.internal_values.resize(internal_values_.size());
   tick.link_poses.resize(links_.size());
   tick.latched_contacts.resize(links_.size());
@@ -245,10 +247,11 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
   std::optional<Rows> poses;
   std::optional<Rows> contacts;
   reading(path_, [&] {
-    samples.emplace(database, "sample",
-                    "SELECT tick, joint, setpoint_raw, servo_command, angle_rad FROM sample "
-                    "WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, joint",
-                    first, last);
+    samples.emplace(
+        database, "sample",
+        "SELECT tick, joint, setpoint_raw, servo_command, angle_rad, motor_torque_nm, servo_current_ma FROM sample "
+        "WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, joint",
+        first, last);
     values.emplace(database, "internal_value",
                    "SELECT tick, slot, joint, value_index, raw FROM internal_value "
                    "WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, slot, joint, value_index",
@@ -268,6 +271,8 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
         tick.setpoints[joint] = raw(row, 2);
         tick.servo_commands[joint] = raw(row, 3);
         tick.joint_angles[joint] = finite(row, 4);
+        tick.motor_torques[joint] = finite(row, 5);
+        tick.servo_currents[joint] = finite(row, 6);
       }
       for (std::size_t i = 0; i < internal_values_.size(); ++i) {
         const RecordedInternalValue& value = internal_values_[i];

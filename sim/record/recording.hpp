@@ -69,6 +69,8 @@ struct RecordedTick {
   std::vector<std::int32_t> setpoints;         ///< 90 degrees = 2^30
   std::vector<std::int32_t> servo_commands;    ///< twelfths of a microsecond
   std::vector<double> joint_angles;            ///< rad
+  std::vector<double> motor_torques;           ///< Nm, mean over the tick
+  std::vector<double> servo_currents;          ///< mA, mean over the tick
   std::vector<std::int32_t> internal_values;   ///< in the order of Recording::internal_values()
   std::vector<Pose> link_poses;                ///< in the world
   std::vector<std::uint8_t> latched_contacts;  ///< at SYNC tick; bit 0 rear, bit 1 front sensor

@@ -9,7 +9,7 @@ namespace proleg::sim {
 /// "Prol", SQLite's application id, bytes 68 to 71 of the file: it marks a database as a recording.
 inline constexpr std::uint32_t recording_application_id = 0x50726F6C;
 /// SQLite's user_version. A new number for every change that a reader of the older format would misread or miss.
-inline constexpr std::uint32_t recording_format = 3;
+inline constexpr std::uint32_t recording_format = 4;
 
 // Choices:
 // - STRICT: a value of the wrong type is an error when it is written, not when it is read.
@@ -102,12 +102,15 @@ CREATE TABLE internal_value_name(
 
 CREATE TABLE sample(
   -- setpoint: where the joint is to be at SYNC tick + 1. servo_command: last pulse that the servo took before it (the
-  -- table servo has them all), in twelfths of a microsecond. angle: where the joint was.
+  -- table servo has them all), in twelfths of a microsecond. angle: where the joint was. motor_torque, servo_current:
+  -- means over the tick before SYNC tick + 1; the current is an estimate.
   tick INTEGER NOT NULL,
   joint INTEGER NOT NULL,
   setpoint_raw INTEGER NOT NULL,
   servo_command INTEGER NOT NULL,
   angle_rad REAL NOT NULL,
+  motor_torque_nm REAL NOT NULL,
+  servo_current_ma REAL NOT NULL,
   setpoint_deg REAL AS (setpoint_raw * 45.0 / 536870912.0) VIRTUAL,
   servo_us REAL AS (servo_command / 12.0) VIRTUAL,
   angle_deg REAL AS (angle_rad * 57.295779513082323) VIRTUAL,
@@ -176,7 +179,7 @@ CREATE TABLE servo(
 
 CREATE VIEW sample_by_name AS
   SELECT tick, (tick + 1) * (SELECT value FROM run WHERE key = 'tick_us') / 1e6 AS time_s, joint.name AS joint,
-         setpoint_deg, servo_us, angle_deg
+         setpoint_deg, servo_us, angle_deg, motor_torque_nm, servo_current_ma
   FROM sample JOIN joint USING (joint);
 
 CREATE VIEW internal_value_by_name AS

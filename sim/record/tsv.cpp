@@ -57,7 +57,7 @@ void write_header(const Recording& recording, const std::function<void(std::stri
   for (std::size_t joint = 0; joint < recording.joints().size(); ++joint) {
     const std::string name = "." + recording.joints()[joint].name;
     const std::string position = ".joint" + std::to_string(joint);
-    for (const char* quantity : {"setpoint_deg", "servo_us", "angle_deg"}) {
+    for (const char* quantity : {"setpoint_deg", "servo_us", "angle_deg", "torque_Nm", "current_mA"}) {
       header.add(quantity + name, position);
     }
     for (const RecordedInternalValue& value : recording.internal_values()) {
@@ -68,7 +68,7 @@ void write_header(const Recording& recording, const std::function<void(std::stri
   }
   for (std::size_t link = 0; link < recording.links().size(); ++link) {
     const std::string name = "." + recording.links()[link];
-    for (const char* quantity : {"x_m", "y_m", "z_m", "contact_rear", "contact_front"}) {
+    for (const char* quantity : {"x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "contact_rear", "contact_front"}) {
       header.add(quantity + name, ".link" + std::to_string(link));
     }
   }
@@ -94,6 +94,8 @@ void write_tsv(const Recording& recording, const std::function<void(std::string_
       line.add(format_decimal(tick.setpoints[joint], Unit::degree).view());
       line.add(static_cast<double>(tick.servo_commands[joint]) / servo_counts_per_us);
       line.add(tick.joint_angles[joint] * 180.0 / std::numbers::pi);
+      line.add(tick.motor_torques[joint]);
+      line.add(tick.servo_currents[joint]);
       for (const std::size_t i : values_of[joint]) {
         line.add(format_decimal(tick.internal_values[i], recording.internal_values()[i].unit).view());
       }
@@ -103,6 +105,10 @@ void write_tsv(const Recording& recording, const std::function<void(std::string_
       line.add(position.x());
       line.add(position.y());
       line.add(position.z());
+      const Eigen::Quaterniond& orientation = tick.link_poses[link].orientation;
+      for (const double part : {orientation.w(), orientation.x(), orientation.y(), orientation.z()}) {
+        line.add(part);
+      }
       line.add((tick.latched_contacts[link] & 1U) != 0 ? "1" : "0");
       line.add((tick.latched_contacts[link] & 2U) != 0 ? "1" : "0");
     }

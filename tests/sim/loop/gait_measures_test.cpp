@@ -111,6 +111,25 @@ TEST(GaitMeasures, EnergiesLieBetweenWhatPhysicsAndTheServosAllow) {
   EXPECT_NEAR(values[Measure::specific_resistance] * 9.81, values[Measure::cost_of_transport], 1e-9);
 }
 
+TEST(GaitMeasures, CurrentsOfTheTicksAddUpToTheElectricalEnergyAndTorquesStayWithinTheMotors) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  Simulation simulation(scenario);
+  double charge = 0.0;  // A s
+  double largest_torque = 0.0;
+  while (simulation.tick() < 300) {
+    simulation.advance();
+    const TickSample sample = simulation.sample();
+    for (std::size_t joint = 0; joint < scenario.robot.joints.size(); ++joint) {
+      charge += sample.servo_currents[joint] * 1e-3 * 0.01;
+      largest_torque = std::max(largest_torque, std::abs(sample.motor_torques[joint]));
+    }
+  }
+  const double energy = simulation.measures()[Measure::electrical_energy];
+  EXPECT_NEAR(charge * 6.0, energy, 1e-9 * energy);
+  EXPECT_LE(largest_torque, 0.4 + 1e-12);
+  EXPECT_GT(largest_torque, 0.1);
+}
+
 TEST(GaitMeasures, EnergiesNeverDecrease) {
   const Scenario scenario = shipped("travelling_wave/coupled");
   Simulation simulation(scenario);

@@ -69,6 +69,8 @@ TEST(Recorder, KeepsEverySampleBitForBit) {
       EXPECT_EQ(tick.setpoints[joint], sample.setpoints[joint]);
       EXPECT_EQ(tick.servo_commands[joint], made_up_command(sample.tick, joint));
       EXPECT_EQ(tick.joint_angles[joint], made_up_angle(sample.tick, joint));
+      EXPECT_EQ(tick.motor_torques[joint], made_up_torque(sample.tick, joint));
+      EXPECT_EQ(tick.servo_currents[joint], made_up_current(sample.tick, joint));
     }
     for (std::size_t link = 0; link < 4; ++link) {
       const Pose pose = made_up_pose(sample.tick, link);

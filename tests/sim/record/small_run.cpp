@@ -67,6 +67,14 @@ double made_up_angle(std::uint32_t tick, std::size_t joint) {
   return 0.7 * std::sin(0.06 * tick + static_cast<double>(joint));
 }
 
+double made_up_torque(std::uint32_t tick, std::size_t joint) {
+  return 0.4 * std::cos(0.05 * tick - static_cast<double>(joint));
+}
+
+double made_up_current(std::uint32_t tick, std::size_t joint) {
+  return 10.0 + tick + 0.25 * static_cast<double>(joint);
+}
+
 Pose made_up_pose(std::uint32_t tick, std::size_t link) {
   Pose pose;
   pose.position = {0.001 * tick - 0.1 * static_cast<double>(link), 0.01 * std::sin(0.05 * tick), 1.0 / 3.0};
@@ -113,6 +121,8 @@ void run_small(const Scenario& scenario, std::uint32_t ticks,
   std::vector<std::int32_t> setpoints(joints);
   std::vector<std::int32_t> commands(joints);
   std::vector<double> angles(joints);
+  std::vector<double> torques(joints);
+  std::vector<double> currents(joints);
   std::vector<Pose> poses(links);
   auto next_change = scenario.changes.begin();
   for (std::uint32_t tick = 0; tick < ticks; ++tick) {
@@ -140,13 +150,15 @@ void run_small(const Scenario& scenario, std::uint32_t ticks,
       setpoints[joint] = kernel.setpoint(joint);
       commands[joint] = made_up_command(tick, joint);
       angles[joint] = made_up_angle(tick, joint);
+      torques[joint] = made_up_torque(tick, joint);
+      currents[joint] = made_up_current(tick, joint);
     }
     for (std::size_t link = 0; link < links; ++link) {
       poses[link] = made_up_pose(tick, link);
     }
     const std::vector<std::int32_t> values = internal_values(kernel);
     const std::vector<ServoPulse> pulses = made_up_pulses(tick, joints);
-    use({tick, contacts, setpoints, values, pulses, commands, poses, angles, {}}, change);
+    use({tick, contacts, setpoints, values, pulses, commands, poses, angles, torques, currents, {}}, change);
   }
 }
 

@@ -19,6 +19,8 @@ namespace proleg::sim {
 
 // Made-up measurements at SYNC tick + 1.
 [[nodiscard]] double made_up_angle(std::uint32_t tick, std::size_t joint);
+[[nodiscard]] double made_up_torque(std::uint32_t tick, std::size_t joint);
+[[nodiscard]] double made_up_current(std::uint32_t tick, std::size_t joint);
 [[nodiscard]] Pose made_up_pose(std::uint32_t tick, std::size_t link);
 /// The last pulse before SYNC tick + 1.
 [[nodiscard]] std::int32_t made_up_command(std::uint32_t tick, std::size_t joint);

@@ -36,16 +36,21 @@ TEST(Tsv, NamesItsColumns) {
   const std::vector<std::string> lines = table_of(small_scenario(), 3);
   EXPECT_EQ(lines[0],
             "tick\ttime_s\t"
-            "setpoint_deg.J3\tservo_us.J3\tangle_deg.J3\tcurrent_phase_deg.J3\tmeasured_frequency_Hz.J3\tmeasured_"
+            "setpoint_deg.J3\tservo_us.J3\tangle_deg.J3\ttorque_Nm.J3\tcurrent_mA.J3\tcurrent_phase_deg.J3\tmeasured_"
+            "frequency_Hz.J3\tmeasured_"
             "phase_difference_deg.J3\t"
-            "setpoint_deg.J2\tservo_us.J2\tangle_deg.J2\tcurrent_phase_deg.J2\tmeasured_frequency_Hz.J2\tmeasured_"
+            "setpoint_deg.J2\tservo_us.J2\tangle_deg.J2\ttorque_Nm.J2\tcurrent_mA.J2\tcurrent_phase_deg.J2\tmeasured_"
+            "frequency_Hz.J2\tmeasured_"
             "phase_difference_deg.J2\t"
-            "setpoint_deg.J1\tservo_us.J1\tangle_deg.J1\tcurrent_phase_deg.J1\tmeasured_frequency_Hz.J1\tmeasured_"
+            "setpoint_deg.J1\tservo_us.J1\tangle_deg.J1\ttorque_Nm.J1\tcurrent_mA.J1\tcurrent_phase_deg.J1\tmeasured_"
+            "frequency_Hz.J1\tmeasured_"
             "phase_difference_deg.J1\t"
-            "x_m.Head\ty_m.Head\tz_m.Head\tcontact_rear.Head\tcontact_front.Head\t"
-            "x_m.Link2\ty_m.Link2\tz_m.Link2\tcontact_rear.Link2\tcontact_front.Link2\t"
-            "x_m.Link1\ty_m.Link1\tz_m.Link1\tcontact_rear.Link1\tcontact_front.Link1\t"
-            "x_m.Tail\ty_m.Tail\tz_m.Tail\tcontact_rear.Tail\tcontact_front.Tail");
+            "x_m.Head\ty_m.Head\tz_m.Head\tqw.Head\tqx.Head\tqy.Head\tqz.Head\tcontact_rear.Head\tcontact_front.Head\t"
+            "x_m.Link2\ty_m.Link2\tz_m.Link2\tqw.Link2\tqx.Link2\tqy.Link2\tqz.Link2\tcontact_rear.Link2\tcontact_"
+            "front.Link2\t"
+            "x_m.Link1\ty_m.Link1\tz_m.Link1\tqw.Link1\tqx.Link1\tqy.Link1\tqz.Link1\tcontact_rear.Link1\tcontact_"
+            "front.Link1\t"
+            "x_m.Tail\ty_m.Tail\tz_m.Tail\tqw.Tail\tqx.Tail\tqy.Tail\tqz.Tail\tcontact_rear.Tail\tcontact_front.Tail");
 }
 
 TEST(Tsv, ContainsEveryValueExactly) {
@@ -76,6 +81,8 @@ TEST(Tsv, ContainsEveryValueExactly) {
                 sample.internal_values[3 * joint + 2]);
       EXPECT_EQ(number("servo_us" + name), made_up_command(sample.tick, joint) / 12.0);
       EXPECT_EQ(number("angle_deg" + name), made_up_angle(sample.tick, joint) * 180.0 / std::numbers::pi);
+      EXPECT_EQ(number("torque_Nm" + name), made_up_torque(sample.tick, joint));
+      EXPECT_EQ(number("current_mA" + name), made_up_current(sample.tick, joint));
     }
     for (std::size_t link = 0; link < 4; ++link) {
       const std::string name = "." + scenario.robot.links[link].name;
@@ -83,6 +90,10 @@ TEST(Tsv, ContainsEveryValueExactly) {
       EXPECT_EQ(number("x_m" + name), pose.position.x());
       EXPECT_EQ(number("y_m" + name), pose.position.y());
       EXPECT_EQ(number("z_m" + name), pose.position.z());
+      EXPECT_EQ(number("qw" + name), pose.orientation.w());
+      EXPECT_EQ(number("qx" + name), pose.orientation.x());
+      EXPECT_EQ(number("qy" + name), pose.orientation.y());
+      EXPECT_EQ(number("qz" + name), pose.orientation.z());
       EXPECT_EQ(row["contact_rear" + name], (made_up_contacts(sample.tick, link) & 1U) != 0 ? "1" : "0");
       EXPECT_EQ(row["contact_front" + name], (made_up_contacts(sample.tick, link) & 2U) != 0 ? "1" : "0");
     }

@@ -14,6 +14,7 @@
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/json_output.hpp"
+#include "tools/proleg/run_measures.hpp"
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/search_result.hpp"
 
@@ -187,6 +188,7 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
     } else {
       print_text(experiment, outcome, result, files, workers->count());
     }
+    print_remark_on_limits("proleg optimise", result.best.measures);
   }
   if (outcome.ending.empty()) {
     std::cerr << "proleg optimise: interrupted after " << outcome.progress.evaluations

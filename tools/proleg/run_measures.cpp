@@ -12,16 +12,18 @@ namespace {
 
 constexpr double degrees = 180.0 / std::numbers::pi;
 
+constexpr double much = 0.2;             // share of the time at a limit
+constexpr double large_error_deg = 5.0;  // a servo at its torque limit may still keep its angle
+
 /// "J3 is at its speed limit for 34 % of the time (5 joints above 20 %)"; empty if no joint is above.
 std::string worst_joint(const RunMeasures& measures, const sim::RobotModel& robot, const char* limit,
                         double (sim::ServoTracking::*share)() const) {
-  constexpr double much = 0.2;
-  constexpr double large_error = 5.0 / degrees;  // rad; a servo at its torque limit may still keep its angle
   std::size_t worst = 0;
   std::size_t joints = 0;
   for (std::size_t joint = 0; joint < measures.servos.size(); ++joint) {
     const double its_share = (measures.servos[joint].*share)();
-    if (!(its_share > much) || !(measures.servos[joint].rms_error() > large_error)) {  // also if not a number
+    if (!(its_share > much) ||
+        !(measures.servos[joint].rms_error() * degrees > large_error_deg)) {  // also if not a number
       continue;
     }
     ++joints;
@@ -67,6 +69,17 @@ void print_remark_on_limits(const std::string& program, const RunMeasures& measu
     std::fprintf(stderr, "%s: the servos cannot follow this gait: %s%s%s; angles differ from it by up to %.1f deg\n",
                  program.c_str(), speed.c_str(), speed.empty() || torque.empty() ? "" : ", ", torque.c_str(),
                  measures.values[sim::Measure::max_tracking_error]);
+  }
+}
+
+void print_remark_on_limits(const std::string& program, const sim::MeasureValues& best) {
+  const double share = std::fmax(best[sim::Measure::at_speed_limit], best[sim::Measure::at_torque_limit]);
+  if (share > much && best[sim::Measure::tracking_error] > large_error_deg) {
+    std::fprintf(stderr,
+                 "%s: the servos cannot follow the best gait: they are at their speed limit for %.0f %% and at their "
+                 "torque limit for %.0f %% of the time, and miss their angles by %.1f deg (root mean square)\n",
+                 program.c_str(), 100.0 * best[sim::Measure::at_speed_limit],
+                 100.0 * best[sim::Measure::at_torque_limit], best[sim::Measure::tracking_error]);
   }
 }
 

@@ -156,6 +156,30 @@ TEST_F(OptimiseResult, AnOptimumAtABoundIsReported) {
   EXPECT_NE(proleg(words).out.find("value of its range: a wider range may give more"), std::string::npos);
 }
 
+TEST_F(OptimiseResult, AWinnerThatTheServosCannotFollowCausesAWarning) {
+  const std::string shipped = source_path("/sim/scenarios/travelling_wave/");
+  for (const bool fast : {false, true}) {
+    std::string actuation = read_file(shipped + "uniform.actuation.xml");
+    const std::string frequency = "name=\"frequency\" value=\"1\"";
+    ASSERT_NE(actuation.find(frequency), std::string::npos);
+    if (fast) {  // 40 degrees at 3 Hz need 13 rad/s, the servos have 4.5
+      actuation.replace(actuation.find(frequency), frequency.size(), "name=\"frequency\" value=\"3\"");
+    }
+    write("speed.actuation.xml", actuation);
+    write("speed.simulation.xml", "<simulation><robot>" + shipped +
+                                      "caterpillar.robot.xml</robot><actuation>speed.actuation.xml</actuation>"
+                                      "<environment>" +
+                                      shipped +
+                                      "flat.environment.xml</environment><simulationProperties><duration>2.5</duration>"
+                                      "</simulationProperties></simulation>");
+    write_experiment("speed.optimise.xml",
+                     {{"<simulation>uniform", "<simulation>speed"}, {"<lowerBounds>0<", "<lowerBounds>39<"}});
+    const Finished finished = proleg(search("speed.optimise.xml", fast ? "fast" : "slow", {"--evaluations", "5"}));
+    EXPECT_EQ(finished.status, 0) << finished.err;
+    EXPECT_EQ(finished.err.find("the servos cannot follow the best gait") != std::string::npos, fast) << finished.err;
+  }
+}
+
 TEST_F(OptimiseResult, WithoutOneScoreTheSearchFailsAndNamesTheFirstFailure) {
   const std::string shipped = source_path("/sim/scenarios/travelling_wave/");
   std::string environment = read_file(shipped + "flat.environment.xml");

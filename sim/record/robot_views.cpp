@@ -120,20 +120,18 @@ RobotView make_view(const Scenario& scenario, const std::vector<Snapshot>& snaps
                     double top) {
   const Extent extent = extent_of(scenario, snapshots, view, from_above);
   const double length = extent.high.x - extent.low.x;
-  RobotView result{from_above ? "A stride from above" : "A stride from the side",
-                   view,
-                   from_above,
-                   0.0,
-                   {(0.5 + margin) * length, (extent.high.y - extent.low.y) / 2.0 + margin * length},
-                   (extent.high.y + extent.low.y) / 2.0,
-                   snapshots.size() > 6 ? std::size_t{4} : std::size_t{2},
-                   top,
-                   0.0};
-  // The centre of the links need not be the middle of the extent.
-  result.half_size.x = std::max(extent.high.x, -extent.low.x) + margin * length;
-  if (from_above) {
-    result.half_size.y = std::max(extent.high.y, -extent.low.y) + margin * length;
-  }
+  RobotView result{
+      from_above ? "A stride from above" : "A stride from the side",
+      view,
+      from_above,
+      0.0,
+      // The centre of the links need not be the middle of the extent.
+      {std::max(extent.high.x, -extent.low.x) + margin * length,
+       (from_above ? std::max(extent.high.y, -extent.low.y) : (extent.high.y - extent.low.y) / 2.0) + margin * length},
+      (extent.high.y + extent.low.y) / 2.0,
+      snapshots.size() > 6 ? std::size_t{4} : std::size_t{2},
+      top,
+      0.0};
   const auto columns = static_cast<double>(result.columns);
   const double cell_width = (page_right - page_left - (columns - 1.0) * gap) / columns;
   result.pixels_per_m = std::min(cell_width / (2.0 * result.half_size.x), max_cell_height / (2.0 * result.half_size.y));

@@ -12,6 +12,7 @@
 
 #include "sim/physics/engine.hpp"
 #include "sim/physics/world.hpp"
+#include "tests/sim/physics/box_link.hpp"
 
 // Oracle: Coulomb's law for a point mass, friction = coefficient * normal force, against the velocity.
 
@@ -24,19 +25,8 @@ constexpr double degree = std::numbers::pi / 180.0;
 
 /// A flat plate of 0.1 kg. It does not tip over.
 RobotModel plate() {
-  constexpr double mass = 0.1;
-  const Eigen::Vector3d half_sides(0.05, 0.03, 0.005);
-  Link link;
-  const Eigen::Vector3d squares = 4.0 * half_sides.cwiseProduct(half_sides);
-  link.mass.mass = mass;
-  link.mass.inertia =
-      (mass / 12 * Eigen::Vector3d(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y()))
-          .asDiagonal();
-  Geometry geometry;
-  geometry.extents = half_sides;
-  link.geometries.push_back(geometry);
   RobotModel robot;
-  robot.links.push_back(link);
+  robot.links.push_back(box_link(0.0, {0.05, 0.03, 0.005}, 0.1));
   return robot;
 }
 

@@ -10,27 +10,13 @@
 #include <vector>
 
 #include "sim/physics/physics_error.hpp"
+#include "tests/sim/physics/box_link.hpp"
 
 namespace proleg::sim {
 namespace {
 
 constexpr double step_s = 0.001;
 constexpr double gravity = 9.81;
-
-Link box_link(double y, const Eigen::Vector3d& half_sides, double mass) {
-  Link link;
-  link.pose.position = {0, y, 0};
-  const Eigen::Vector3d sides = 2 * half_sides;
-  const Eigen::Vector3d squares = sides.cwiseProduct(sides);
-  link.mass.mass = mass;
-  link.mass.inertia =
-      (mass / 12 * Eigen::Vector3d(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y()))
-          .asDiagonal();
-  Geometry geometry;
-  geometry.extents = half_sides;
-  link.geometries.push_back(geometry);
-  return link;
-}
 
 /// Links of 100 mm along y, the head foremost, hinges between them about x.
 RobotModel chain(std::size_t links) {

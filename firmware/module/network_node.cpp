@@ -68,7 +68,9 @@ void NetworkNode::poll_heartbeat(Microseconds now) {
   if (now < heartbeat_at_) {
     return;
   }
-  outbox_.send(encode(canopen::Heartbeat{identity_.node, state_}));
+  if (has_sent_boot_up_) {  // else it could take the place of the boot-up message
+    outbox_.send_newest(encode(canopen::Heartbeat{identity_.node, state_}));
+  }
   const Microseconds period_us = Microseconds{heartbeat_period_ms_} * 1'000U;
   heartbeat_at_ += period_us;
   if (heartbeat_at_ <= now) {

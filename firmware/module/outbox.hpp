@@ -13,11 +13,9 @@ class Outbox {
   explicit Outbox(CanPort& port) : queue_(port) {}
 
   /// Whether the frame was accepted.
-  bool send(const CanFrame& frame) {
-    const bool is_accepted = open_ && queue_.push(frame);
-    dropped_ += is_accepted ? 0U : 1U;
-    return is_accepted;
-  }
+  bool send(const CanFrame& frame) { return count(open_ && queue_.push(frame)); }
+  /// The same for a message that is sent again and again: of those that wait only the newest is kept.
+  bool send_newest(const CanFrame& frame) { return count(open_ && queue_.push_newest(frame)); }
   /// To be called when the controller has sent a frame.
   void sent() { queue_.sent(); }
   void reset() {
@@ -36,6 +34,11 @@ class Outbox {
   [[nodiscard]] std::uint32_t dropped() const { return dropped_; }
 
  private:
+  bool count(bool is_accepted) {
+    dropped_ += is_accepted ? 0U : 1U;
+    return is_accepted;
+  }
+
   TransmitQueue queue_;
   bool open_ = true;
   std::uint32_t dropped_ = 0;

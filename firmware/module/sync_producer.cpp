@@ -25,10 +25,10 @@ void SyncProducer::bus_off(Microseconds now) {
   }
 }
 
-bool SyncProducer::send_tick() { return outbox_.send(encode(canopen::TickMessage{tick_, configuration_crc_})); }
+bool SyncProducer::send_tick() { return outbox_.send_newest(encode(canopen::TickMessage{tick_, configuration_crc_})); }
 
 void SyncProducer::send_sync(Microseconds now) {
-  outbox_.send(canopen::encode_sync(tick_));
+  outbox_.send_newest(canopen::encode_sync(tick_));
   ++tick_;
   next_sync_ += tick_period_us_;
   tick_sent_ = false;

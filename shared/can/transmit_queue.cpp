@@ -20,6 +20,16 @@ bool TransmitQueue::push(const CanFrame& frame) {
   return true;
 }
 
+bool TransmitQueue::push_newest(const CanFrame& frame) {
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (frames_[i].identifier == frame.identifier) {
+      frames_[i] = frame;
+      return true;
+    }
+  }
+  return push(frame);
+}
+
 void TransmitQueue::sent() { hand_over(); }
 
 void TransmitQueue::hand_over() {

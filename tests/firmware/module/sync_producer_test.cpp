@@ -130,6 +130,42 @@ TEST(Producer, TriesAgainIfTheQueueHasNoRoomForTheFirstTick) {
   EXPECT_EQ(robot.kernel().tick(), 3U);
 }
 
+// Nobody acknowledges what a module sends that is alone on the bus, and that never leads to bus-off (ISO 11898-1).
+TEST(Producer, DoesNotMakeUpForSyncsThatNobodyReceived) {
+  struct LoosePort final : CanPort {
+    bool send(const CanFrame& frame) override {
+      if (std::ranges::find(mailboxes, frame.identifier, &CanFrame::identifier) != mailboxes.end() ||
+          mailboxes.size() == 3) {
+        return false;
+      }
+      mailboxes.push_back(frame);
+      return true;
+    }
+    std::vector<CanFrame> mailboxes;
+  } port;
+  firmware::Outbox outbox(port);
+  firmware::SyncProducer producer(outbox);
+  producer.start(0, 10'000, 42);
+  producer.poll(0);
+  producer.transmitted(500, port.mailboxes[0]);
+  port.mailboxes.clear();
+  for (Microseconds now = 500; now < 500'000; now += 500) {
+    producer.poll(now);
+  }
+  // The connector holds again.
+  std::vector<std::uint8_t> counters;
+  while (!port.mailboxes.empty()) {
+    const CanFrame sent = port.mailboxes.front();
+    port.mailboxes.erase(port.mailboxes.begin());
+    if (const auto counter = canopen::decode_sync(sent)) {
+      counters.push_back(*counter);
+    }
+    outbox.sent();
+  }
+  // The one that the controller had, and the newest: SYNC 49 at 491.5 ms.
+  EXPECT_EQ(counters, (std::vector<std::uint8_t>{1, 50}));
+}
+
 TEST(Producer, SkipsSyncsThatAreTooLate) {
   struct FreePort final : CanPort {
     bool send(const CanFrame& frame) override {

@@ -74,6 +74,35 @@ TEST(TransmitQueue, RefusesWhatItHasNoRoomForAndKeepsTheRest) {
   EXPECT_EQ(port.taken, std::vector<CanFrame>{frame(0x200)});
 }
 
+TEST(TransmitQueue, KeepsTheNewestOfAMessageThatIsSentAgainAndAgain) {
+  Mailboxes port(0);
+  TransmitQueue queue(port);
+  EXPECT_TRUE(queue.push(frame(0x300)));
+  for (std::uint8_t mark = 1; mark <= 100; ++mark) {
+    EXPECT_TRUE(queue.push_newest(frame(0x080, mark)));
+    EXPECT_TRUE(queue.push_newest(frame(0x181, mark)));
+  }
+  EXPECT_EQ(queue.size(), 3U);
+  for (int i = 0; i < 3; ++i) {
+    port.release();
+    queue.sent();
+  }
+  EXPECT_EQ(port.taken, (std::vector<CanFrame>{frame(0x080, 100), frame(0x181, 100), frame(0x300)}));
+}
+
+TEST(TransmitQueue, KeepsTheNewestAlsoWhenItIsFull) {
+  Mailboxes port(0);
+  TransmitQueue queue(port);
+  for (std::uint16_t i = 0; i < TransmitQueue::capacity; ++i) {
+    EXPECT_TRUE(queue.push(frame(static_cast<std::uint16_t>(0x200 + i))));
+  }
+  EXPECT_TRUE(queue.push_newest(frame(0x200, 7)));
+  EXPECT_FALSE(queue.push_newest(frame(0x100)));
+  port.release();
+  queue.sent();
+  EXPECT_EQ(port.taken, std::vector<CanFrame>{frame(0x200, 7)});
+}
+
 TEST(TransmitQueue, DropsItsFramesWhenCleared) {
   Mailboxes port(0);
   TransmitQueue queue(port);

@@ -17,12 +17,20 @@ class Drive {
   void reset();
   void configure(const ServoSchedule& schedule) { servo_.configure(schedule); }
 
+  /// Object 0x6080: the greatest speed of commanded angles, in degrees a second.
+  [[nodiscard]] std::uint32_t command_speed() const { return servo_.guard().command_speed(); }
+  void set_command_speed(std::uint32_t speed) { servo_.guard().set_command_speed(speed); }
+
+  /// Operational was left: no pulses, and none before the host enables the servo again.
+  void disable() { power_.disable_voltage(); }
+
   [[nodiscard]] canopen::PowerControl& power() { return power_; }
   [[nodiscard]] const canopen::PowerControl& power() const { return power_; }
 
   /// Object 0x6060: canopen::mode_gait or mode_direct_position.
   [[nodiscard]] std::int8_t mode() const { return mode_; }
-  void set_mode(std::int8_t mode) { mode_ = mode; }
+  /// Direct position begins at the set-point that the servo has: no earlier target counts.
+  void set_mode(std::int8_t mode);
   /// Object 0x607A: the set-point of direct position, 90 degrees = 2^30. It takes effect at SYNC, within the joint's
   /// limits.
   [[nodiscard]] std::int32_t target() const { return target_; }
@@ -32,7 +40,8 @@ class Drive {
   void start_tick(Microseconds now, std::uint32_t tick, const Kernel& kernel, const canopen::AngleLimits& limits);
 
   /// After each event: switches the servo's pulses on or off. operational: NMT state; synchronised: the set-point is
-  /// that of the robot's tick.
+  /// that of the robot's tick. A servo that moves and is no longer synchronised makes a quick stop. Only the host ends
+  /// it.
   void update(Microseconds now, bool operational, bool synchronised);
 
   void poll(Microseconds now) { servo_.poll(now); }

@@ -23,6 +23,7 @@ void enter_operational(Parts& parts, bool together) {
 void leave_operational(Parts& parts, NmtState state) {
   parts.network.enter(state);
   parts.producer.stop();
+  parts.drive.disable();
   stop_gait(parts);
 }
 

@@ -309,6 +309,10 @@ constexpr ObjectAccessor accessors[] = {
     read_write(
         object::target_position.address, WritableIn::any_state, [](const Parts& parts) { return parts.drive.target(); },
         [](Parts& parts, const ObjectWrite& write) { parts.drive.set_target(static_cast<std::int32_t>(write.value)); }),
+    read_write(
+        object::command_speed.address, WritableIn::pre_operational,
+        [](const Parts& parts) { return parts.drive.command_speed(); },
+        [](Parts& parts, const ObjectWrite& write) { parts.drive.set_command_speed(write.value); }),
 };
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace proleg::firmware {
 struct GaitStart {
   bool has_received_sync = false;  ///< since Operational was left: the robot moves already
   bool has_sent_state = false;     ///< the frame of state 0, since Operational was entered
+  bool has_early_sync = false;     ///< reported, since Operational was left
 };
 
 /// Errors in the host's requests that were reported, so that a repetition is not.

@@ -4,15 +4,14 @@ namespace proleg::firmware {
 
 void ServoDriver::reset() {
   mode_ = Mode::off;
-  pulsing_ = false;
   elapsed_us_ = ~0U;
-  port_.off();
+  guard_.reset();
 }
 
 void ServoDriver::start_tick(Microseconds now, std::uint32_t tick, std::int32_t from, std::int32_t to) {
-  if (mode_ == Mode::following && pulsing_ && has_pending_interval()) {
+  if (is_moving() && has_pending_interval()) {
     skip_to(schedule_.tick_period_us() - 1U);
-    take_interval();
+    take_interval(now);
   }
   from_ = from;
   to_ = to;
@@ -31,7 +30,7 @@ void ServoDriver::quick_stop(Microseconds now) {
   if (mode_ != Mode::following) {
     return;
   }
-  if (!pulsing_) {
+  if (!guard_.is_pulsing()) {
     stop();
     return;
   }
@@ -42,25 +41,15 @@ void ServoDriver::quick_stop(Microseconds now) {
 void ServoDriver::stop() {
   if (mode_ != Mode::off) {
     mode_ = Mode::off;
-    pulsing_ = false;
-    port_.off();
+    guard_.off();
   }
 }
 
 void ServoDriver::take_ramp_step(Microseconds now) {
-  constexpr std::uint32_t second_us = 1'000'000;
-  const auto step =
-      static_cast<std::int32_t>(std::uint64_t{quick_stop_speed} * schedule_.servo_period_us() / second_us);
-  const std::int64_t way = std::int64_t{safe_angle} - angle_;
-  if (way > step) {
-    angle_ += step;
-  } else if (way < -std::int64_t{step}) {
-    angle_ -= step;
-  } else {
-    angle_ = safe_angle;
-  }
-  port_.pulse(servo_command(angle_), schedule_.servo_period_us());
-  next_step_ = angle_ == safe_angle ? never : now + schedule_.servo_period_us();
+  const std::int32_t step = MotionLimiter::step_of(min_command_speed, schedule_.servo_period_us());
+  const std::int32_t safe_angle = guard_.safe_angle();
+  guard_.command(now, std::clamp(safe_angle, guard_.angle() - step, guard_.angle() + step));
+  next_step_ = guard_.angle() == safe_angle ? never : now + schedule_.servo_period_us();
 }
 
 }  // namespace proleg::firmware

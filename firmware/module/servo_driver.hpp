@@ -1,23 +1,24 @@
 #pragma once
 
-#include "firmware/module/ports.hpp"
+#include "firmware/module/servo_guard.hpp"
 #include "shared/kernel/servo_schedule.hpp"
 
 namespace proleg::firmware {
 
 /// Gives the servo its pulses: along the line between two set-points, interval by interval; or, in a quick stop, along
-/// a ramp to the safe pose.
+/// a ramp to the safe pose: 0 degrees, or the limit that is nearest to it.
 class ServoDriver {
  public:
-  /// The safe pose, and the speed at which a quick stop goes there.
-  static constexpr std::int32_t safe_angle = 0;
-  static constexpr std::int32_t quick_stop_speed = 1 << 30;  ///< 90 degrees a second
-
-  explicit ServoDriver(ServoPort& port) : port_(port) {}
+  explicit ServoDriver(ServoPort& port) : guard_(port) {}
 
   /// As after reset: no pulses, and no line to follow.
   void reset();
-  void configure(const ServoSchedule& schedule) { schedule_ = schedule; }
+  void configure(const ServoSchedule& schedule) {
+    schedule_ = schedule;
+    guard_.set_period(schedule.servo_period_us());
+  }
+  [[nodiscard]] ServoGuard& guard() { return guard_; }
+  [[nodiscard]] const ServoGuard& guard() const { return guard_; }
 
   /// SYNC `tick` came at `now`. Until the next one the set-point moves from `from` to `to` (90 degrees = 2^30). If SYNC
   /// was early and an interval of the tick before is pending, its pulse is given now.
@@ -25,8 +26,10 @@ class ServoDriver {
 
   /// Follows the line, from its next interval on.
   void follow();
-  /// Ramps from the last pulse to the safe pose, then holds. A servo that was given no pulse yet stays off: its angle
-  /// is not known.
+  /// Follows the line and has given a pulse.
+  [[nodiscard]] bool is_moving() const { return mode_ == Mode::following && guard_.is_pulsing(); }
+  /// Ramps from the last pulse to the safe pose at 90 degrees a second, then holds. A servo that was given no pulse yet
+  /// stays off: its angle is not known.
   void quick_stop(Microseconds now);
   /// No pulses.
   void stop();
@@ -40,16 +43,14 @@ class ServoDriver {
   [[nodiscard]] bool has_pending_interval() const { return elapsed_us_ < schedule_.tick_period_us(); }
   /// Of several intervals that have started only the latest gets a pulse.
   void skip_to(Microseconds since_sync_us);
-  void take_interval();
+  void take_interval(Microseconds now);
   void take_ramp_step(Microseconds now);
 
-  ServoPort& port_;
+  ServoGuard guard_;
   ServoSchedule schedule_{20'000, 10'000};
   Mode mode_ = Mode::off;
-  bool pulsing_ = false;  ///< the servo was given a pulse since it was off
   std::int32_t from_ = 0;
   std::int32_t to_ = 0;
-  std::int32_t angle_ = 0;          ///< of the last pulse
   std::uint32_t elapsed_us_ = ~0U;  ///< from SYNC to the next interval; a tick period or more: none is pending
   Microseconds sync_at_ = 0;
   Microseconds next_step_ = never;  ///< of the ramp
@@ -64,7 +65,7 @@ inline void ServoDriver::poll(Microseconds now) {
     }
   } else if (has_pending_interval() && now >= sync_at_ + elapsed_us_) {
     skip_to(now - sync_at_);
-    take_interval();
+    take_interval(now);
   }
 }
 
@@ -76,11 +77,9 @@ inline void ServoDriver::skip_to(Microseconds since_sync_us) {
   }
 }
 
-inline void ServoDriver::take_interval() {
+inline void ServoDriver::take_interval(Microseconds now) {
   if (mode_ == Mode::following) {
-    angle_ = interpolate(from_, to_, schedule_.fraction_at(elapsed_us_));
-    pulsing_ = true;
-    port_.pulse(servo_command(angle_), schedule_.servo_period_us());
+    guard_.command(now, interpolate(from_, to_, schedule_.fraction_at(elapsed_us_)));
   }
   elapsed_us_ += schedule_.servo_period_us();
 }

@@ -11,7 +11,7 @@ void send_state(Parts& parts) {
   const Kernel& kernel = parts.joint.kernel();
   const unsigned joint = parts.joint.joint();
   for (unsigned channel = 0; channel < kernel.channel_count(joint); ++channel) {
-    parts.outbox.send(canopen::encode_state(parts.identity.node, channel, kernel.frame(joint, channel)));
+    parts.outbox.send_newest(canopen::encode_state(parts.identity.node, channel, kernel.frame(joint, channel)));
   }
 }
 
@@ -23,12 +23,19 @@ void prepare_start(Parts& parts) {
   send_state(parts);
 }
 
+void report_early_sync(Parts& parts, std::uint32_t early_us) {
+  if (!parts.start.has_early_sync) {
+    parts.start.has_early_sync = true;
+    parts.emergencies.report(canopen::EmergencyCode::early_sync, early_us);
+  }
+}
+
 /// The joints take turns, so that their frames do not come all at once.
 void send_monitoring(Parts& parts, std::uint32_t tick) {
   const std::uint32_t period = parts.joint.monitoring_period();
   if (tick % period == parts.joint.joint() % period) {
     const ServoMonitor& monitor = parts.monitor;
-    parts.outbox.send(
+    parts.outbox.send_newest(
         encode(canopen::Monitoring{parts.identity.node, canopen::monitored_angle(monitor.angle()), monitor.current_ma(),
                                    monitor.temperature_c(), parts.emergencies.error_register()}));
   }
@@ -97,9 +104,21 @@ void receive_sync(Parts& parts, Microseconds now, const CanFrame& frame) {
   if (!parts.network.operational()) {
     return;
   }
-  parts.sync.restart(now);
   const Kernel& kernel = parts.joint.kernel();
+  if (parts.keeper.keeps_tick()) {
+    if (const std::uint32_t early_us = parts.sync.early_us(now, kernel.configuration().tick_period_us); early_us != 0) {
+      if (canopen::ticks_until_counter(kernel.tick(), *counter) != canopen::sync_counters - 1U) {
+        report_early_sync(parts, early_us);
+      }  // else the frame came twice, which CAN allows
+      return;
+    }
+  }
   const SyncMeaning meaning = parts.keeper.sync(*counter, kernel.tick());
+  if (meaning.action != SyncMeaning::Action::none) {
+    parts.sync.note_tick(now);
+  } else if (!parts.keeper.keeps_tick()) {
+    parts.sync.restart(now);
+  }  // else the SYNC is that of the last tick
   if (meaning.lost) {
     parts.emergencies.raise(Fault::sync_lost, kernel.tick());
   }

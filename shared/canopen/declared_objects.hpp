@@ -8,6 +8,7 @@
 #include "shared/canopen/messages.hpp"
 #include "shared/canopen/object.hpp"
 #include "shared/kernel/kernel.hpp"
+#include "shared/kernel/motion_limiter.hpp"
 
 namespace proleg::canopen {
 
@@ -246,6 +247,9 @@ inline constexpr Object actual_current =
     read_only({0x6078, 0}, "Current actual value", DataType::integer16, "thousandths of 0x6075, which are mA");
 inline constexpr Object target_position =
     read_write({0x607A, 0}, "Target position", DataType::integer32, 0, full_angle, "joint angle; 90 degrees = 2^30");
+inline constexpr Object command_speed = read_write(
+    {0x6080, 0}, "Max motor speed", DataType::unsigned32, default_command_speed, {min_command_speed, max_command_speed},
+    "greatest speed of commanded angles of the joint, in degrees a second");
 inline constexpr Object supported_modes = constant({0x6502, 0}, "Supported drive modes", DataType::unsigned32,
                                                    0x00010080, "bit 7: cyclic synchronous position; bit 16: gait");
 

@@ -159,7 +159,9 @@ std::string_view describe(EmergencyCode code) {
     case EmergencyCode::foreign_configuration:
       return "configuration differs from that of the SYNC producer";
     case EmergencyCode::rejoined:
-      return "joined again, state taken from the neighbours";
+      return "joined the moving robot again";
+    case EmergencyCode::early_sync:
+      return "a SYNC came too early";
     case EmergencyCode::unknown_label:
       return "labels of state frames fit no tick";
   }

@@ -124,6 +124,7 @@ enum class EmergencyCode : std::uint16_t {
   foreign_configuration = 0xFF03,  ///< the CRC in TICK is not the module's own
   rejoined = 0xFF04,               ///< not a fault: the module has joined the moving robot again
   unknown_label = 0xFF05,          ///< state frames of a joint carry labels that fit no tick
+  early_sync = 0xFF06,             ///< SYNC within half a period of the one before is no tick; detail: us too early
 };
 /// A decoder passes on codes that are not listed.
 struct Emergency {

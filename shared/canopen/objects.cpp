@@ -99,6 +99,7 @@ constexpr ObjectRow rows[] = {
     row(object::rated_current),
     row(object::actual_current),
     row(object::target_position),
+    row(object::command_speed),
     row(object::supported_modes),
 };
 

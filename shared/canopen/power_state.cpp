@@ -96,6 +96,12 @@ void PowerControl::quick_stop() {
   }
 }
 
+void PowerControl::disable_voltage() {
+  if (state_ != PowerState::fault) {
+    state_ = PowerState::switch_on_disabled;
+  }
+}
+
 void PowerControl::fault() { state_ = PowerState::fault; }
 
 void PowerControl::reset() { *this = PowerControl(); }

@@ -23,6 +23,8 @@ class PowerControl {
   void command(std::uint16_t controlword);
   /// Lost SYNC, lost host, bus-off: Operation enabled becomes Quick stop active. Other states stay.
   void quick_stop();
+  /// The servo's power is taken: Switch on disabled. A fault stays.
+  void disable_voltage();
   /// Over-current and the like: pulses off until cleared.
   void fault();
   /// As after switching on.

@@ -80,6 +80,7 @@ void SetupList::visit_all(Visitor& visitor) const {
   visitor(object::seed_low, static_cast<std::uint32_t>(kernel.seed));
   visitor(object::seed_high, static_cast<std::uint32_t>(kernel.seed >> 32U));
   visitor(object::servo_period, setup_.servo_period_us);
+  visitor(object::command_speed, setup_.command_speed);
   for (unsigned i = 0; i < max_slots; ++i) {
     const std::uint64_t group = kernel.slots[i].driven_joints().bits();
     visitor(object::slot_algorithm.address(i), object::slot_algorithm.first.type, kernel.slots[i].algorithm_id());

@@ -10,6 +10,7 @@
 
 #include "shared/canopen/object.hpp"
 #include "shared/canopen/robot_configuration.hpp"
+#include "shared/kernel/motion_limiter.hpp"
 
 namespace proleg::canopen {
 
@@ -28,8 +29,9 @@ struct StartValue {
 
 /// A robot on a bus.
 struct RobotSetup : RobotConfiguration {
-  std::span<const AngleLimits> limits;       ///< of each joint, in kernel order
-  std::span<const StartValue> start_values;  ///< if an address occurs several times, the last value counts
+  std::uint32_t command_speed = default_command_speed;  ///< the greatest speed of commanded angles, degrees a second
+  std::span<const AngleLimits> limits;                  ///< of each joint, in kernel order
+  std::span<const StartValue> start_values;             ///< if an address occurs several times, the last value counts
 };
 
 struct SdoWrite {

@@ -35,6 +35,7 @@ MasterInput::MasterInput(const Scenario& scenario) {
   }
   setup.kernel = scenario.kernel;
   setup.servo_period_us = scenario.robot.servo.period_us;
+  setup.command_speed = scenario.robot.servo.command_speed;
   setup.nodes = nodes_;
   setup.limits = limits_;
   setup.start_values = start_values_;

@@ -1,15 +1,14 @@
 #include "sim/loop/reference_gait.hpp"
 
-#include "sim/loop/servo_pulses.hpp"
-
 namespace proleg::sim {
 
 ReferenceGait::ReferenceGait(const Scenario& scenario, const Losses* losses)
     : scenario_(scenario),
-      servo_schedule_(scenario.robot.servo.period_us, scenario.kernel.tick_period_us),
       chain_(scenario.kernel, scenario.joint_limits, scenario.settings),
       touch_(scenario.robot.joints.size()),
-      failed_(scenario.robot.joints.size()) {
+      failed_(scenario.robot.joints.size()),
+      pulse_source_({scenario.robot.servo.period_us, scenario.kernel.tick_period_us}, scenario.joint_limits,
+                    scenario.robot.servo.command_speed) {
   chain_.set_losses(losses);
 }
 
@@ -74,7 +73,7 @@ void ReferenceGait::compare(std::span<const std::int32_t> setpoints, std::span<c
   const std::uint32_t tick = chain_.tick() - 1;
   compare_setpoints(tick, setpoints, chain_.setpoints(), add);
   expected_pulses_.clear();
-  append_servo_pulses(chain_, servo_schedule_, expected_pulses_);
+  pulse_source_.append(chain_, expected_pulses_);
   std::erase_if(expected_pulses_, [this](const ServoPulse& pulse) { return has_failed(pulse.joint); });
   compare_pulses(tick, pulses, expected_pulses_, add);
 }

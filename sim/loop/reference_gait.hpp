@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "shared/kernel/servo_schedule.hpp"
 #include "sim/loop/hardware_report.hpp"
 #include "sim/loop/kernel_chain.hpp"
+#include "sim/loop/servo_pulses.hpp"
 #include "sim/loop/touch_inputs.hpp"
 #include "sim/robot/servo_pulse.hpp"
 #include "sim/scenario/scenario.hpp"
@@ -53,11 +53,11 @@ class ReferenceGait {
   void stop(unsigned joint, HardwareReport& report);
 
   const Scenario& scenario_;
-  ServoSchedule servo_schedule_;
   KernelChain chain_;
   TouchInputs touch_;
   std::vector<bool> failed_;  ///< by joint
   std::size_t next_change_ = 0;
+  ServoPulses pulse_source_;
   std::vector<ServoPulse> expected_pulses_;
 };
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "shared/kernel/motion_limiter.hpp"
 #include "shared/kernel/servo_command.hpp"
 #include "shared/kernel/servo_schedule.hpp"
 #include "sim/loop/kernel_chain.hpp"
@@ -10,22 +12,47 @@
 
 namespace proleg::sim {
 
-/// Appends the pulses that the running joints of a chain give their servos in the last computed tick, in the order of
-/// time, then of joints. They do not depend on the steps of the physics.
-inline void append_servo_pulses(const KernelChain& chain, const ServoSchedule& schedule,
-                                std::vector<ServoPulse>& pulses) {
-  const std::uint64_t tick = chain.tick() - 1U;
-  const std::uint64_t end = schedule.first_interval(tick + 1);
-  for (std::uint64_t interval = schedule.first_interval(tick); interval < end; ++interval) {
-    const std::int32_t fraction = schedule.fraction(interval);
+/// Makes the pulses that a chain gives its servos, as the modules of the robot do. They do not depend on the steps of
+/// the physics.
+class ServoPulses {
+ public:
+  /// limits: of each joint. command_speed: the greatest, in degrees a second.
+  ServoPulses(const ServoSchedule& schedule, std::span<const JointLimits> limits, std::uint32_t command_speed)
+      : schedule_(schedule), limiters_(limits.size()) {
+    const std::int32_t step = MotionLimiter::step_of(command_speed, schedule.servo_period_us());
+    for (std::size_t joint = 0; joint < limits.size(); ++joint) {
+      limiters_[joint].set_limits(limits[joint].lower, limits[joint].upper);
+      limiters_[joint].set_step(step);
+    }
+  }
+
+  [[nodiscard]] const ServoSchedule& schedule() const { return schedule_; }
+
+  /// Appends the pulses of the running joints in the last computed tick, in the order of time, then of joints. To be
+  /// called once after each tick.
+  void append(const KernelChain& chain, std::vector<ServoPulse>& pulses) {
     for (unsigned joint = 0; joint < chain.joint_count(); ++joint) {
-      if (chain.is_running(joint)) {
-        const Kernel& kernel = chain.kernel(joint);
-        const std::int32_t angle = interpolate(kernel.previous_setpoint(joint), kernel.setpoint(joint), fraction);
-        pulses.push_back({schedule.start_us(interval), joint, servo_command(angle)});
+      if (!chain.is_running(joint)) {
+        limiters_[joint].release();
+      }
+    }
+    const std::uint64_t tick = chain.tick() - 1U;
+    const std::uint64_t end = schedule_.first_interval(tick + 1);
+    for (std::uint64_t interval = schedule_.first_interval(tick); interval < end; ++interval) {
+      const std::int32_t fraction = schedule_.fraction(interval);
+      for (unsigned joint = 0; joint < chain.joint_count(); ++joint) {
+        if (chain.is_running(joint)) {
+          const Kernel& kernel = chain.kernel(joint);
+          const std::int32_t angle = interpolate(kernel.previous_setpoint(joint), kernel.setpoint(joint), fraction);
+          pulses.push_back({schedule_.start_us(interval), joint, servo_command(limiters_[joint].next(angle))});
+        }
       }
     }
   }
-}
+
+ private:
+  ServoSchedule schedule_;
+  std::vector<MotionLimiter> limiters_;  ///< by joint
+};
 
 }  // namespace proleg::sim

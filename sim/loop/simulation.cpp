@@ -1,7 +1,6 @@
 #include "sim/loop/simulation.hpp"
 
 #include "sim/loop/pulse_timing.hpp"
-#include "sim/loop/servo_pulses.hpp"
 #include "sim/record/internal_values.hpp"
 
 namespace proleg::sim {
@@ -11,7 +10,8 @@ Simulation::Simulation(const Scenario& scenario, const Losses* losses)
       chain_(scenario.kernel, scenario.joint_limits, scenario.settings),
       plant_(scenario),
       touch_(scenario.robot.joints.size()),
-      servo_schedule_(scenario.robot.servo.period_us, scenario.kernel.tick_period_us),
+      pulse_source_({scenario.robot.servo.period_us, scenario.kernel.tick_period_us}, scenario.joint_limits,
+                    scenario.robot.servo.command_speed),
       latched_contacts_(scenario.robot.links.size()) {
   chain_.set_losses(losses);
 }
@@ -30,7 +30,7 @@ const Change* Simulation::advance() {
 
   servo_pulses_.clear();
   taken_pulses_ = 0;
-  append_servo_pulses(chain_, servo_schedule_, servo_pulses_);
+  pulse_source_.append(chain_, servo_pulses_);
   for (const ServoPulse& pulse : servo_pulses_) {
     servo_hash_.append(pulse.command);
   }
@@ -55,9 +55,10 @@ const Change* Simulation::apply_changes() {
 
 /// The servos take the pulses on which they act by then.
 void Simulation::take_servo_pulses(std::uint64_t until_us) {
+  const ServoSchedule& schedule = pulse_source_.schedule();
   for (; taken_pulses_ < servo_pulses_.size(); ++taken_pulses_) {
     const ServoPulse& pulse = servo_pulses_[taken_pulses_];
-    if (acting_time_us(pulse.time_us, servo_schedule_.servo_period_us(), servo_schedule_.tick_period_us()) > until_us) {
+    if (acting_time_us(pulse.time_us, schedule.servo_period_us(), schedule.tick_period_us()) > until_us) {
       return;
     }
     plant_.set_command(pulse.joint, pulse.command);

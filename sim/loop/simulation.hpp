@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "shared/computer/hash/value_hash.hpp"
-#include "shared/kernel/servo_schedule.hpp"
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/plant.hpp"
+#include "sim/loop/servo_pulses.hpp"
 #include "sim/loop/touch_inputs.hpp"
 #include "sim/measure/gait_meter.hpp"
 #include "sim/measure/measure.hpp"
@@ -63,7 +63,7 @@ class Simulation {
   KernelChain chain_;
   Plant plant_;
   TouchInputs touch_;
-  ServoSchedule servo_schedule_;
+  ServoPulses pulse_source_;
   std::size_t next_change_ = 0;
   std::vector<std::uint8_t> latched_contacts_;
   std::vector<std::int32_t> internal_values_;

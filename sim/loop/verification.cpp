@@ -28,6 +28,12 @@ class RecordedGait {
     configuration.tick_period_us = recording.tick_period_us();
     configuration.seed = whole_number("seed");
     servo_period_us = static_cast<std::uint32_t>(whole_number("servo_period_us"));
+    command_speed = static_cast<std::uint32_t>(whole_number("command_speed_deg_per_s"));
+    if (whole_number("command_speed_deg_per_s") < min_command_speed ||
+        whole_number("command_speed_deg_per_s") > max_command_speed) {
+      refuse("a command speed of " + std::to_string(whole_number("command_speed_deg_per_s")) + " degrees a second",
+             "90 to 10000 degrees a second");
+    }
     if (whole_number("servo_period_us") < 1 || whole_number("servo_period_us") > max_servo_period_us) {
       refuse("a servo period of " + std::to_string(whole_number("servo_period_us")) + " us", "1 to 1000000 us");
     }
@@ -50,6 +56,7 @@ class RecordedGait {
 
   KernelConfiguration configuration;
   std::uint32_t servo_period_us = 0;
+  std::uint32_t command_speed = 0;
   std::vector<JointLimits> limits;
   std::vector<Setting> settings;
   std::vector<Change> changes;  ///< by ascending tick
@@ -168,7 +175,7 @@ class PulsesByTick {
 
 Verification recompute(const Recording& recording, const RecordedGait& gait,
                        const std::function<void(std::uint32_t tick)>& progress) {
-  const ServoSchedule schedule(gait.servo_period_us, gait.configuration.tick_period_us);
+  ServoPulses pulse_source({gait.servo_period_us, gait.configuration.tick_period_us}, gait.limits, gait.command_speed);
   const Losses losses(recording.losses());
   const std::vector<RecordedRestart> restarts = recording.restarts();
   PulsesByTick pulses(recording);
@@ -214,7 +221,7 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
     });
 
     expected_pulses.clear();
-    append_servo_pulses(chain, schedule, expected_pulses);
+    pulse_source.append(chain, expected_pulses);
     for (const ServoPulse& expected : expected_pulses) {
       servo_hash.append(expected.command);
       last_commands[expected.joint] = expected.command;

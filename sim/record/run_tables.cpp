@@ -56,6 +56,7 @@ void write_run(Database& database, const Scenario& scenario, const std::string& 
   put("solver", solver_name(scenario.solver));
   put("planned_duration_s", exact_text(scenario.duration_s));
   put("servo_period_us", std::to_string(scenario.robot.servo.period_us));
+  put("command_speed_deg_per_s", std::to_string(scenario.robot.servo.command_speed));
   put("servo_gain_per_s", exact_text(scenario.robot.servo.gain));
   write_overrides(scenario.overrides, put);
   put("finished", "0");

@@ -9,7 +9,7 @@ namespace proleg::sim {
 /// "Prol", SQLite's application id, bytes 68 to 71 of the file: it marks a database as a recording.
 inline constexpr std::uint32_t recording_application_id = 0x50726F6C;
 /// SQLite's user_version. A new number for every change that a reader of the older format would misread or miss.
-inline constexpr std::uint32_t recording_format = 4;
+inline constexpr std::uint32_t recording_format = 5;
 
 // Choices:
 // - STRICT: a value of the wrong type is an error when it is written, not when it is read.

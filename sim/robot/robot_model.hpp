@@ -11,6 +11,8 @@
 
 #include <Eigen/Geometry>
 
+#include "shared/kernel/motion_limiter.hpp"
+
 namespace proleg::sim {
 
 /// Position and orientation of a frame.
@@ -77,6 +79,7 @@ struct Joint {
 struct ServoModel {
   double gain = 8.3;  ///< 1/s, above 0; the default is that of the OpenMR servo plug-in
   std::uint32_t period_us = 20'000;
+  std::uint32_t command_speed = default_command_speed;  ///< greatest speed of commanded angles, degrees a second
   std::uint32_t latency_us = 0;  ///< from a pulse, or the lack of one, until the servo acts on it; up to 100000
 };
 

@@ -17,7 +17,7 @@ constexpr Range servo_periods{0.1, 100.0, "ms"};
 constexpr Range servo_latencies{0.0, 100.0, "ms"};
 
 ServoModel read_servo(const XmlElement& element, double step_s) {
-  element.allow({}, {"gain", "period", "latency"});
+  element.allow({}, {"gain", "period", "commandspeed", "latency"});
   ServoModel servo;
   if (const auto gain = element.child("gain")) {
     servo.gain = read_quantity(*gain, gains);
@@ -29,6 +29,9 @@ ServoModel read_servo(const XmlElement& element, double step_s) {
   }
   if (const auto period = element.child("period")) {
     servo.period_us = read_microseconds(*period, servo_periods);
+  }
+  if (const auto speed = element.child("commandspeed")) {
+    servo.command_speed = static_cast<std::uint32_t>(read_whole(*speed, min_command_speed, max_command_speed));
   }
   if (const auto latency = element.child("latency")) {
     servo.latency_us = read_microseconds(*latency, servo_latencies);

@@ -1,6 +1,7 @@
 #include "tests/identity/identity_case.hpp"
 
 #include "shared/gait/registry.hpp"
+#include "shared/kernel/motion_limiter.hpp"
 #include "shared/kernel/servo_command.hpp"
 #include "tests/identity/sensing_probe.hpp"
 
@@ -77,6 +78,7 @@ class Run {
       draw_commit(i * (tick_count / 2), commits_[i]);
     }
     draw_distortion();
+    set_up_servos();
     for (Kernel* kernel : kernels_) {
       kernel->reset();
     }
@@ -107,6 +109,7 @@ class Run {
  private:
   static constexpr std::uint32_t never = 0xFFFFFFFFU;
   static constexpr std::uint32_t max_wait = 50;
+  static constexpr std::uint32_t servo_period_us = 2'500;
 
   void expect_ok(Status status) {
     if (status_ == Status::ok) {
@@ -155,6 +158,13 @@ class Run {
     if (dice_.one_in(6)) {
       const std::int32_t lower = dice_.within(-quarter_turn, quarter_turn);
       expect_ok(kernel.set_limits(joint, lower, dice_.within(lower, quarter_turn)));
+    }
+  }
+
+  void set_up_servos() {
+    const std::uint32_t speed = min_command_speed + static_cast<std::uint32_t>(configuration_.seed) % 2'000U;
+    for (MotionLimiter& limiter : limiters_) {
+      limiter.set_step(MotionLimiter::step_of(speed, servo_period_us));
     }
   }
 
@@ -272,15 +282,14 @@ class Run {
   }
 
   void read(std::uint32_t tick, Trace& trace) {
-    constexpr std::uint32_t servo_period_us = 2'500;
     const std::uint32_t elapsed_us = configuration_.tick_period_us / 16 * (dice_.any_bits() >> 28U);
     const std::int32_t fraction = sample_fraction(elapsed_us, servo_period_us, configuration_.tick_period_us);
     for (unsigned joint = 0; joint < joint_count; ++joint) {
       const Kernel& kernel = kernel_of(joint);
       const std::size_t position = std::size_t{tick} * joint_count + joint;
       trace.setpoints[position] = kernel.setpoint(joint);
-      trace.servo_commands[position] =
-          servo_command(interpolate(kernel.previous_setpoint(joint), kernel.setpoint(joint), fraction));
+      const std::int32_t angle = interpolate(kernel.previous_setpoint(joint), kernel.setpoint(joint), fraction);
+      trace.servo_commands[position] = servo_command(limiters_[joint].next(angle));
     }
   }
 
@@ -291,6 +300,7 @@ class Run {
   std::array<Commit, 2> commits_;
   Distortion distortion_;
   std::array<StateFrame, max_channels> held_back_{};
+  std::array<MotionLimiter, joint_count> limiters_;
   Status status_ = Status::ok;
 };
 

@@ -24,7 +24,7 @@ inline constexpr unsigned tick_count = 1000;
 [[nodiscard]] const ActuationModule* find_algorithm(std::uint8_t id);
 
 /// What a run leaves: for ticks 1 to 1000, within a tick in kernel order, the joint's set-point (90 degrees = 2^30) and
-/// a servo command somewhere on the way to it.
+/// a servo command somewhere on the way to it, within the greatest speed of commanded angles.
 struct Trace {
   std::uint32_t missed_frames;  ///< of all kernels together; 0 unless a fault was injected
   std::array<std::int32_t, std::size_t{tick_count} * joint_count> setpoints;

@@ -17,7 +17,8 @@ namespace proleg::bench {
 Evaluation evaluate_in_mujoco(const sim::Scenario& scenario, const Workload& workload, const mjModel& model) {
   const std::size_t joints = scenario.robot.joints.size();
   sim::KernelChain chain(scenario.kernel, scenario.joint_limits, scenario.settings);
-  const ServoSchedule schedule(scenario.robot.servo.period_us, workload.tick_us);
+  sim::ServoPulses pulse_source({scenario.robot.servo.period_us, workload.tick_us}, scenario.joint_limits,
+                                scenario.robot.servo.command_speed);
   const std::vector<std::uint8_t> no_contacts(joints);
   std::vector<std::int32_t> commands(joints, servo_center);
   std::vector<sim::ServoPulse> pulses;
@@ -33,7 +34,7 @@ Evaluation evaluate_in_mujoco(const sim::Scenario& scenario, const Workload& wor
       pulses.erase(pulses.begin(), pulses.begin() + static_cast<std::ptrdiff_t>(taken));
       taken = 0;
       const std::size_t waiting = pulses.size();
-      sim::append_servo_pulses(chain, schedule, pulses);
+      pulse_source.append(chain, pulses);
       for (std::size_t i = waiting; i < pulses.size(); ++i) {
         hash.append(pulses[i].command);
       }

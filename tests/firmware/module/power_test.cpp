@@ -129,10 +129,42 @@ TEST_F(Power, LostSyncRampsToTheSafePose) {
   expect_ramp_to_the_safe_pose();
 }
 
-TEST_F(Power, ALostTickTakesThePulsesAtOnce) {
+TEST_F(Power, ALostTickRampsToTheSafePoseAndOnlyTheHostEndsThat) {
   move();
   robot.sync(40);
-  EXPECT_FALSE(robot.it().is_pulsing());
+  EXPECT_FALSE(robot.module().synchronised());
+  EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
+  expect_ramp_to_the_safe_pose();
+  // The tick is known again: the joint is computed, and the servo holds.
+  const std::size_t pulses = robot.it().pulse_count();
+  robot.tick(300);
+  robot.run(300, 310);
+  EXPECT_TRUE(robot.module().synchronised());
+  EXPECT_EQ(robot.it().pulse_count(), pulses);
+  for (const std::uint16_t word : std::to_array<std::uint16_t>({0x0080, 0x0006, 0x0007, 0x000F})) {
+    controlword(word);
+  }
+  robot.run(311, 312);
+  EXPECT_GT(robot.it().pulse_count(), pulses);
+}
+
+TEST_F(Power, WhoLeavesOperationalIsNotEnabledWhenItReturns) {
+  for (const NmtCommand command : {NmtCommand::stop, NmtCommand::enter_pre_operational}) {
+    test::TestModule other(robot.setup.kernel, servo_us);
+    other.set_up_and_start();
+    other.enable(0);
+    other.run(20);
+    ASSERT_TRUE(other.it().is_pulsing());
+    other.command(command);
+    EXPECT_EQ(other.module().power(), PowerState::switch_on_disabled);
+    EXPECT_FALSE(other.it().is_pulsing());
+    const std::size_t pulses = other.it().pulse_count();
+    other.start();
+    other.tick(0);
+    other.run(0, 30);
+    EXPECT_TRUE(other.module().synchronised());
+    EXPECT_EQ(other.it().pulse_count(), pulses) << "no pulse without a controlword";
+  }
 }
 
 TEST_F(Power, AQuickStopEndsWithOperational) {
@@ -242,39 +274,60 @@ TEST_F(Power, CommandsByPdoCountInOperationalOnly) {
   EXPECT_EQ(robot.bus.value(node, object::target_position), 0U);
 }
 
-TEST_F(Power, DirectPositionMovesInAStraightLineInOneTickAndKeepsTheLimits) {
+TEST_F(Power, AJumpOfTheTargetBecomesARampWithinTheLimits) {
   robot.command(NmtCommand::enter_pre_operational);
   ASSERT_EQ(robot.bus.write(node, object::upper_limit, static_cast<std::uint32_t>(test::degrees(30))), AbortCode::none);
+  ASSERT_EQ(robot.bus.write(node, object::command_speed, 300), AbortCode::none);
   robot.start();
   ASSERT_EQ(robot.bus.write(node, object::mode, canopen::mode_direct_position), AbortCode::none);
   EXPECT_EQ(robot.bus.value(node, object::mode_display), 8U);
-  ASSERT_EQ(robot.bus.write(node, object::target_position, static_cast<std::uint32_t>(test::degrees(-90))),
-            AbortCode::none);
   robot.enable(0);
-  robot.run(5);
-  EXPECT_EQ(last_width(), servo_command(test::degrees(-90)));
+  robot.tick(0);
+  robot.run(0, 5);
+  const std::size_t from = robot.it().pulses.size();
   ASSERT_EQ(robot.bus.write(node, object::target_position, static_cast<std::uint32_t>(test::degrees(80))),
             AbortCode::none);
-  const std::size_t from = robot.it().pulses.size();
-  robot.run(6, 7);
-  // Tick 6: intervals at 60, 63, 66 and 69 ms, sampled in their middles; tick 7 has arrived.
-  const std::vector<test::Pulse> pulses(robot.it().pulses.begin() + static_cast<std::ptrdiff_t>(from),
+  robot.run(6, 40);
+  const std::vector<test::Pulse> pulses(robot.it().pulses.begin() + static_cast<std::ptrdiff_t>(from) - 1,
                                         robot.it().pulses.end());
-  ASSERT_EQ(pulses.size(), 7U);
-  const double middles[] = {0.15, 0.45, 0.75, 1.0};
-  for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_NEAR(*pulses[i].width, servo_command(test::degrees(-90 + 120 * middles[i])), 1);
+  ASSERT_GT(pulses.size(), 100U);
+  constexpr double degrees_per_pulse = 300 * 0.003;
+  for (std::size_t i = 1; i < pulses.size(); ++i) {
+    const double way = (*pulses[i].width - *pulses[i - 1].width) * 0.0075;
+    EXPECT_GE(way, 0.0);
+    EXPECT_LE(way, degrees_per_pulse + 0.0075);
   }
-  for (std::size_t i = 4; i < 7; ++i) {
-    EXPECT_EQ(*pulses[i].width, servo_command(test::degrees(30)));
-  }
-  // And back to the gait, from where it is.
+  EXPECT_EQ(*pulses.back().width, servo_command(test::degrees(30)));
+  // 30 degrees take 0.1 s: 34 pulses of 3 ms, and one tick that the line takes.
+  EXPECT_EQ(*pulses[38].width, servo_command(test::degrees(30)));
+  EXPECT_LT(*pulses[30].width, servo_command(test::degrees(30)));
+}
+
+TEST_F(Power, AModeBeginsWhereTheServoIs) {
+  robot.enable(0);
+  ASSERT_EQ(robot.bus.write(node, object::target_position, static_cast<std::uint32_t>(test::degrees(-70))),
+            AbortCode::none);
+  robot.run(20);
+  ASSERT_EQ(robot.bus.write(node, object::mode, canopen::mode_direct_position), AbortCode::none);
+  EXPECT_EQ(robot.bus.value(node, object::target_position), static_cast<std::uint32_t>(robot.kernel().setpoint(0)))
+      << "no earlier target counts";
+  const std::int32_t held = servo_command(robot.kernel().setpoint(0));
+  robot.run(21, 40);
+  EXPECT_EQ(last_width(), held);
+  // And back to the gait, along a line of one tick as long as that is slow enough.
   ASSERT_EQ(robot.bus.write(node, object::mode, static_cast<std::uint32_t>(canopen::mode_gait)), AbortCode::none);
-  const std::size_t back = robot.it().pulses.size();
-  robot.run(8, 8);
-  const double to = test::in_degrees(robot.kernel().setpoint(0));
-  // Interval at 81 ms: middle at 82.5 ms.
-  EXPECT_NEAR(*robot.it().pulses[back].width, servo_command(test::degrees(30 + (to - 30) * 0.25)), 1);
+  robot.run(41, 60);
+  EXPECT_NEAR(last_width(), servo_command(robot.kernel().setpoint(0)), 60);
+}
+
+TEST_F(Power, TheGreatestSpeedIsSetBeforeTheRobotMoves) {
+  EXPECT_EQ(robot.bus.value(node, object::command_speed), 720U);
+  EXPECT_EQ(robot.bus.write(node, object::command_speed, 100), AbortCode::refused_by_state);
+  robot.command(NmtCommand::enter_pre_operational);
+  EXPECT_EQ(robot.bus.write(node, object::command_speed, 89), AbortCode::below_minimum);
+  EXPECT_EQ(robot.bus.write(node, object::command_speed, 10'001), AbortCode::above_maximum);
+  EXPECT_EQ(robot.bus.write(node, object::command_speed, 10'000), AbortCode::none);
+  EXPECT_EQ(robot.bus.value(node, object::command_speed), 10'000U);
 }
 
 }  // namespace

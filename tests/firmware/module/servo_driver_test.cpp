@@ -11,6 +11,8 @@ namespace proleg::firmware {
 namespace {
 
 constexpr std::int32_t quarter = 1 << 30;
+constexpr std::int32_t line = quarter / 8;
+constexpr std::int32_t line_end = 18'000 + 12'000 / 8;
 
 struct Servo final : ServoPort {
   void pulse(std::int32_t width, std::uint32_t period_us) override {
@@ -24,12 +26,16 @@ struct Servo final : ServoPort {
 
 class Driver : public testing::Test {
  protected:
-  Driver() { driver.configure({1'000, 10'000}); }
-  /// The pulse in the middle of interval n of a tick that moves from 0 to 90 degrees, with the fraction of
+  /// A line takes 11.25 degrees in 10 ms.
+  Driver() {
+    driver.guard().set_command_speed(max_command_speed);
+    driver.configure({1'000, 10'000});
+  }
+  /// The pulse in the middle of interval n of a tick that moves from 0 to `line`, with the fraction of
   /// docs/protocol.md.
   static std::int32_t pulse(std::uint32_t n) {
     const std::uint32_t fraction = 2 * (((n * 1'000 + 500) << 15U) / 10'000);
-    return 18'000 + static_cast<std::int32_t>((std::uint64_t{12'000} * fraction + 32'768) / 65'536);
+    return 18'000 + static_cast<std::int32_t>((std::uint64_t{12'000 / 8} * fraction + 32'768) / 65'536);
   }
 
   Servo servo;
@@ -39,7 +45,7 @@ class Driver : public testing::Test {
 
 TEST_F(Driver, TakesEveryIntervalInTime) {
   driver.follow();
-  driver.start_tick(500, 7, 0, quarter);
+  driver.start_tick(500, 7, 0, line);
   for (std::uint32_t n = 1; n < 10; ++n) {
     ASSERT_EQ(driver.next_deadline(), 500U + n * 1'000);
     driver.poll(driver.next_deadline());
@@ -64,7 +70,7 @@ TEST_F(Driver, SaysHowOftenAPulseIsToBeRepeated) {
 
 TEST_F(Driver, CalledTooLateTakesTheLatestIntervalOnly) {
   driver.follow();
-  driver.start_tick(500, 7, 0, quarter);
+  driver.start_tick(500, 7, 0, line);
   driver.poll(500 + 4'999);
   ASSERT_EQ(pulses.size(), 2U);
   EXPECT_EQ(pulses[1], pulse(4));
@@ -77,31 +83,31 @@ TEST_F(Driver, CalledTooLateTakesTheLatestIntervalOnly) {
 
 TEST_F(Driver, ASyncThatIsEarlyLosesNoInterval) {
   driver.follow();
-  driver.start_tick(0, 7, 0, quarter);
+  driver.start_tick(0, 7, 0, line);
   driver.poll(8'000);
-  driver.start_tick(8'950, 8, quarter, quarter);
+  driver.start_tick(8'950, 8, line, line);
   ASSERT_EQ(pulses.size(), 4U);
   EXPECT_EQ(pulses[2], pulse(9));
-  EXPECT_EQ(pulses[3], 30'000);
+  EXPECT_EQ(pulses[3], line_end);
 }
 
 TEST_F(Driver, AnIntervalOfATickBeforeItFollowedIsNotMadeUpFor) {
-  driver.start_tick(0, 7, 0, quarter);
+  driver.start_tick(0, 7, 0, line);
   driver.follow();
-  driver.start_tick(500, 8, quarter, quarter);
+  driver.start_tick(500, 8, line, line);
   ASSERT_EQ(pulses.size(), 1U);
-  EXPECT_EQ(pulses[0], 30'000);
+  EXPECT_EQ(pulses[0], line_end);
 }
 
 TEST_F(Driver, ATickMayHaveNoInterval) {
   driver.configure({25'000, 10'000});
   driver.follow();
-  driver.start_tick(0, 0, 0, quarter);
+  driver.start_tick(0, 0, 0, line);
   EXPECT_EQ(pulses.size(), 1U);
   EXPECT_EQ(driver.next_deadline(), never);
-  driver.start_tick(10'000, 1, 0, quarter);
+  driver.start_tick(10'000, 1, 0, line);
   EXPECT_EQ(driver.next_deadline(), never);
-  driver.start_tick(20'000, 2, 0, quarter);
+  driver.start_tick(20'000, 2, 0, line);
   EXPECT_EQ(driver.next_deadline(), 25'000U);
 }
 
@@ -132,9 +138,22 @@ TEST_F(Driver, RampsFromEitherSideToTheSafePoseAndHolds) {
   }
 }
 
+TEST_F(Driver, RampsToTheLimitThatIsNearestToZero) {
+  driver.guard().set_limits(quarter / 9, quarter / 3);  // 10 to 30 degrees
+  driver.follow();
+  driver.start_tick(0, 0, quarter / 3, quarter / 3);
+  driver.quick_stop(0);
+  while (driver.next_deadline() != never) {
+    driver.poll(driver.next_deadline());
+    ASSERT_LE(pulses.size(), 1'001U);
+    EXPECT_GE(*pulses.back(), servo_command(quarter / 9));
+  }
+  EXPECT_EQ(pulses.back(), servo_command(quarter / 9));
+}
+
 TEST_F(Driver, GoesOnWithTheNextIntervalWhenItIsSwitchedOffAndOn) {
   driver.follow();
-  driver.start_tick(0, 0, 0, quarter);
+  driver.start_tick(0, 0, 0, line);
   driver.stop();
   driver.poll(1'000);
   driver.follow();
@@ -145,7 +164,7 @@ TEST_F(Driver, GoesOnWithTheNextIntervalWhenItIsSwitchedOffAndOn) {
 }
 
 TEST_F(Driver, AQuickStopBeforeTheFirstPulseStaysOff) {
-  driver.start_tick(0, 0, 0, quarter);
+  driver.start_tick(0, 0, 0, line);
   driver.follow();
   driver.quick_stop(500);
   driver.poll(1'000);
@@ -154,13 +173,13 @@ TEST_F(Driver, AQuickStopBeforeTheFirstPulseStaysOff) {
 }
 
 TEST_F(Driver, AResetForgetsTheLine) {
-  driver.start_tick(0, 0, 0, quarter);
+  driver.start_tick(0, 0, 0, line);
   driver.reset();
   EXPECT_EQ(driver.next_deadline(), never);
 }
 
 TEST_F(Driver, IsSilentUntilItFollows) {
-  driver.start_tick(0, 0, 0, quarter);
+  driver.start_tick(0, 0, 0, line);
   driver.quick_stop(10);
   driver.poll(5'000);
   driver.stop();

@@ -35,6 +35,16 @@ class Sync : public testing::Test {
     EXPECT_FALSE(robot.it().is_pulsing());
     EXPECT_FALSE(robot.module().synchronised());
   }
+  /// The joint does not follow the gait: it goes to the safe pose and stays there.
+  void expect_quick_stop() {
+    EXPECT_FALSE(robot.module().synchronised());
+    EXPECT_EQ(robot.module().power(), canopen::PowerState::quick_stop_active);
+    robot.bus.run_for(1'020'000);
+    EXPECT_EQ(robot.it().pulses.back().width, servo_center);
+    const std::size_t pulses = robot.it().pulse_count();
+    robot.bus.run_for(100'000);
+    EXPECT_EQ(robot.it().pulse_count(), pulses);
+  }
 
   test::TestModule robot;
   KernelOf<1> reference;
@@ -115,12 +125,44 @@ TEST_F(Sync, ASyncOfWrongLengthOrCounterIsIgnored) {
 
 TEST_F(Sync, ARepeatedSyncIsIgnored) {
   robot.run(5);
-  robot.sync(5);
-  robot.sync(5);
+  robot.bus.deliver(canopen::encode_sync(5));
+  robot.bus.run_for(3'000);
+  robot.bus.deliver(canopen::encode_sync(5));
   EXPECT_EQ(robot.kernel().tick(), 6U);
   robot.run(6, 10);
   EXPECT_EQ(robot.kernel().setpoint(0), expected_setpoint(10));
   EXPECT_TRUE(robot.emergencies().empty());
+}
+
+TEST_F(Sync, ASyncSoonerThanHalfAPeriodIsNoTickAndIsReportedOnce) {
+  robot.run(5);
+  robot.sync(6);
+  const Microseconds accepted = robot.bus.now();
+  for (const std::uint32_t tick : {7U, 8U, 9U}) {
+    robot.bus.run_for(1'000);
+    robot.bus.deliver(canopen::encode_sync(tick));
+    EXPECT_EQ(robot.kernel().tick(), 7U);
+  }
+  robot.bus.run_for(1'000);
+  ASSERT_EQ(robot.emergencies().size(), 1U);
+  EXPECT_EQ(robot.emergencies()[0], (Emergency{node, EmergencyCode::early_sync, 0, 5'000 - 1'130}));
+  // Half a period after the one that counted.
+  robot.bus.run_until(accepted + 5'000 - test::TestBus::frame_time_us);
+  robot.bus.deliver(canopen::encode_sync(7));
+  EXPECT_EQ(robot.kernel().tick(), 8U);
+  EXPECT_EQ(robot.kernel().setpoint(0), expected_setpoint(7));
+}
+
+TEST_F(Sync, ASecondProducerDoesNotDriveTheRobotFaster) {
+  robot.run(20);
+  // Another one sends between the SYNCs of the first, with the counter that fits.
+  for (std::uint32_t k = 21; k < 121; ++k) {
+    robot.sync(k);
+    robot.bus.run_for(4'000);
+    robot.bus.deliver(canopen::encode_sync(k + 1));
+  }
+  EXPECT_EQ(robot.kernel().tick(), 121U);
+  EXPECT_EQ(robot.kernel().setpoint(0), expected_setpoint(120));
 }
 
 TEST_F(Sync, UpToEightMissedSyncsAreCaughtUpWith) {
@@ -162,12 +204,12 @@ TEST_F(Sync, NineMissedSyncsLoseTheTick) {
   robot.run(5);
   robot.sync(15);
   EXPECT_EQ(robot.kernel().tick(), 6U);
-  expect_unmoved();
+  expect_quick_stop();
   ASSERT_EQ(robot.emergencies().size(), 1U);
   EXPECT_EQ(robot.emergencies()[0], (Emergency{node, EmergencyCode::sync_lost, 0x11, 6}));
   // Later ones say nothing without TICK.
   robot.run(16, 19);
-  expect_unmoved();
+  expect_quick_stop();
   EXPECT_EQ(robot.emergencies().size(), 1U);
   EXPECT_EQ(robot.bus.value(node, canopen::object::error_register), 0x11U);
 }
@@ -175,7 +217,7 @@ TEST_F(Sync, NineMissedSyncsLoseTheTick) {
 TEST_F(Sync, ASyncThatGoesBackLosesTheTick) {
   robot.run(20);
   robot.sync(18);
-  expect_unmoved();
+  expect_quick_stop();
   ASSERT_EQ(robot.emergencies().size(), 1U);
   EXPECT_EQ(robot.emergencies()[0].code, EmergencyCode::sync_lost);
 }
@@ -210,19 +252,18 @@ TEST_F(Sync, ATickThatComesBeforeMissedSyncsAreKnownChangesNothing) {
 TEST_F(Sync, AnotherTickThanItsOwnLosesTheTickAndTheModuleJoinsFromIt) {
   robot.run(20);
   robot.tick(500);
-  EXPECT_FALSE(robot.it().is_pulsing());
+  EXPECT_EQ(robot.module().power(), canopen::PowerState::quick_stop_active);
   EXPECT_FALSE(robot.module().synchronised());
   robot.sync(500);
   EXPECT_EQ(robot.kernel().tick(), 501U);
   EXPECT_FALSE(robot.module().synchronised());
-  EXPECT_FALSE(robot.it().is_pulsing());
   robot.bus.run_for(9'000);
   robot.sync(501);
   EXPECT_TRUE(robot.module().synchronised());
   EXPECT_EQ(robot.kernel().setpoint(0), expected_setpoint(501)) << "the plain sine is a function of the tick";
   robot.bus.run_for(9'000);
   robot.sync(502);
-  EXPECT_TRUE(robot.it().is_pulsing());
+  EXPECT_EQ(robot.module().power(), canopen::PowerState::quick_stop_active) << "only the host lets it follow again";
   robot.bus.run_for(1'000);
   const auto emergencies = robot.emergencies();
   ASSERT_EQ(emergencies.size(), 3U);
@@ -252,9 +293,8 @@ TEST_F(Sync, AForeignConfigurationStopsAModuleThatMoves) {
   robot.run(9);
   ASSERT_TRUE(robot.it().is_pulsing());
   robot.bus.deliver(encode(canopen::TickMessage{10, robot.crc() + 1U}));
-  EXPECT_FALSE(robot.it().is_pulsing());
   robot.run(10, 15);
-  expect_unmoved();
+  expect_quick_stop();
 }
 
 TEST_F(Sync, ATickOfWrongLengthIsIgnored) {

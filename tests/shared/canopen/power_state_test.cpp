@@ -162,6 +162,16 @@ TEST(PowerState, AFaultIsClearedByARisingEdgeOfBit7Alone) {
   EXPECT_EQ(drive.state(), switch_on_disabled) << "commands need bit 7 cleared";
 }
 
+TEST(PowerState, WithoutVoltageOnlyTheHostEnablesTheDriveAgain) {
+  for (const PowerState state : states) {
+    PowerControl drive = drive_in(state);
+    drive.disable_voltage();
+    EXPECT_EQ(drive.state(), state == fault ? fault : switch_on_disabled);
+    drive.command(0x000F);
+    EXPECT_EQ(drive.state(), state == fault ? fault : switch_on_disabled) << "without Ready to switch on before";
+  }
+}
+
 TEST(PowerState, ResetIsAsAfterSwitchingOn) {
   PowerControl drive = drive_in(quick_stop_active);
   drive.reset();

@@ -225,6 +225,7 @@ class ScriptedModule final : public sim::BusListener {
       case 0x1018:
       case 0x2007:
       case 0x2008:
+      case 0x6080:
         return 4;
       case 0x1017:
       case 0x2004:

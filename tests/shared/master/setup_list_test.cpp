@@ -63,6 +63,7 @@ TEST(SetupList, WritesInTheOrderOfTheProtocol) {
   robot.nodes = {21, 22, 23};
   robot.setup.robot_id = 9;
   robot.setup.servo_period_us = 3'000;
+  robot.setup.command_speed = 300;
   robot.setup.kernel.tick_period_us = 5'000;
   robot.setup.kernel.seed = 0x1122334455667788;
   robot.setup.kernel.slots[0] = {&test::algorithm(test::coupled), JointMask(0b111)};
@@ -82,6 +83,7 @@ TEST(SetupList, WritesInTheOrderOfTheProtocol) {
       {{0x2005, 1}, 4, 0x55667788},
       {{0x2005, 2}, 4, 0x11223344},
       {{0x2005, 3}, 4, 3'000},
+      {{0x6080, 0}, 4, 300},
       {{0x2006, 1}, 1, 4},
       {{0x2007, 1}, 4, 0b111},
       {{0x2008, 1}, 4, 0},

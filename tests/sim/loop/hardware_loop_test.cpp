@@ -424,18 +424,32 @@ TEST_F(Intruder, AnUnknownLabelChangesNothing) {
   EXPECT_NE(modules.notices[0].find("0xFF05"), std::string::npos) << modules.notices[0];
 }
 
-// Two clocks on one bus: no module can decide which is right. The servos lose their power until the next TICK.
-TEST_F(Intruder, ASyncThatFitsNoTickIsReportedAndTheModulesJoinAgain) {
+std::ptrdiff_t reports(const Outcome& outcome, const char* text) {
+  return std::ranges::count_if(outcome.notices,
+                               [&](const std::string& notice) { return notice.find(text) != std::string::npos; });
+}
+
+TEST_F(Intruder, ASyncSoonerThanHalfAPeriodIsReportedAndChangesNothing) {
   HardwareOptions options;
-  options.injected = {{100, frame(0x080, {0x50})}};
+  options.injected = {{100, frame(0x080, {0x50})}, {120, frame(0x080, {0x51})}, {121, frame(0x080, {123})}};
+  const Outcome modules = run(scenario, 200, options);
+  EXPECT_EQ(modules.differences, 0U);
+  EXPECT_EQ(reports(modules, "0xFF06"), 5) << "once from each module";
+  EXPECT_EQ(modules.notices.size(), 5U);
+}
+
+// The module cannot decide which clock is right. It computes again from the next TICK on; its servo goes to the safe
+// pose and waits for the host's decision.
+TEST_F(Intruder, AModuleThatReceivesASyncOfNoTickStopsItsServoAndComputesAgain) {
+  HardwareOptions options;
+  options.tamper = [](unsigned joint, const CanFrame& received, const auto& deliver) {
+    const bool is_forged = joint == 1 && received.identifier == 0x080 && received.data[0] == 101;
+    deliver(is_forged ? frame(0x080, {0x50}) : received);
+  };
   const Outcome modules = run(scenario, 200, options);
   EXPECT_GT(modules.differences, 0U);
-  const auto reports = [&](const char* text) {
-    return std::ranges::count_if(modules.notices,
-                                 [&](const std::string& notice) { return notice.find(text) != std::string::npos; });
-  };
-  EXPECT_GE(reports("0x8700"), 4) << "SYNC lost";
-  EXPECT_EQ(reports("0xFF04"), reports("0x8700")) << "joined again";
+  EXPECT_EQ(reports(modules, "0x8700"), 1) << "SYNC lost";
+  EXPECT_EQ(reports(modules, "0xFF04"), 1) << "joined again";
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

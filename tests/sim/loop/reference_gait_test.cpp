@@ -86,11 +86,12 @@ TEST_F(Reference, StandsInForAModuleThatFailsAfterItHasSentItsState) {
 }
 
 TEST_F(Reference, ComparesSetpointsAndPulsesAndLeavesOutThoseOfFailedModules) {
-  const ServoSchedule schedule(scenario.robot.servo.period_us, scenario.kernel.tick_period_us);
+  ServoPulses source({scenario.robot.servo.period_us, scenario.kernel.tick_period_us}, scenario.joint_limits,
+                     scenario.robot.servo.command_speed);
   advance(computed);
   std::vector<std::int32_t> setpoints(gait.chain().setpoints().begin(), gait.chain().setpoints().end());
   std::vector<ServoPulse> pulses;
-  append_servo_pulses(gait.chain(), schedule, pulses);
+  source.append(gait.chain(), pulses);
   gait.compare(setpoints, pulses, report);
   EXPECT_EQ(report.differences, 0U);
   ++setpoints[1];
@@ -104,7 +105,7 @@ TEST_F(Reference, ComparesSetpointsAndPulsesAndLeavesOutThoseOfFailedModules) {
   advance(failed_after_sending);
   setpoints.assign(gait.chain().setpoints().begin(), gait.chain().setpoints().end());
   pulses.clear();
-  append_servo_pulses(gait.chain(), schedule, pulses);
+  source.append(gait.chain(), pulses);
   std::erase_if(pulses, [](const ServoPulse& pulse) { return pulse.joint == joint; });
   const std::uint64_t before = report.differences;
   gait.compare(setpoints, pulses, report);

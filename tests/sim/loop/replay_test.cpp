@@ -168,6 +168,10 @@ TEST_F(ReplayedRecording, RepeatsEverySetpointInternalValueAndServoCommand) {
   Replay replay(recording);
   const Kernel& kernel = replay.kernel();
   const unsigned joints = kernel.local_joint_count();
+  std::vector<MotionLimiter> limiters(joints);
+  for (MotionLimiter& limiter : limiters) {
+    limiter.set_step(MotionLimiter::step_of(default_command_speed, schedule.servo_period_us()));
+  }
   ValueHash setpoint_hash;
   ValueHash servo_hash;
   std::size_t pulse = 0;
@@ -190,8 +194,8 @@ TEST_F(ReplayedRecording, RepeatsEverySetpointInternalValueAndServoCommand) {
     }
     for (std::uint64_t n = schedule.first_interval(tick.tick); n < schedule.first_interval(tick.tick + 1U); ++n) {
       for (unsigned joint = 0; joint < joints; ++joint) {
-        const std::int32_t command =
-            servo_command(interpolate(kernel.previous_setpoint(joint), kernel.setpoint(joint), schedule.fraction(n)));
+        const std::int32_t command = servo_command(limiters[joint].next(
+            interpolate(kernel.previous_setpoint(joint), kernel.setpoint(joint), schedule.fraction(n))));
         servo_hash.append(command);
         ASSERT_LT(pulse, pulses.size());
         ASSERT_EQ(pulses[pulse].time_us, schedule.start_us(n));

@@ -141,7 +141,12 @@ class TestModule : public TestRobot {
     start();
   }
   void tick(std::uint32_t tick) { bus.deliver(encode(canopen::TickMessage{tick, crc()})); }
-  void sync(std::uint32_t tick) { bus.deliver(canopen::encode_sync(tick)); }
+  /// A tick period after the one before, or now if that is later.
+  void sync(std::uint32_t tick) {
+    bus.run_until(std::max(bus.now(), next_sync_));
+    next_sync_ = bus.now() + setup.kernel.tick_period_us;
+    bus.deliver(canopen::encode_sync(tick));
+  }
   /// TICK and SYNC 0 and what follows, up to and including SYNC `last`, a tick period apart.
   void run(std::uint32_t last) {
     tick(0);
@@ -156,6 +161,9 @@ class TestModule : public TestRobot {
       bus.run_for(setup.kernel.tick_period_us - TestBus::frame_time_us);
     }
   }
+
+ private:
+  Microseconds next_sync_ = 0;
 };
 
 }  // namespace proleg::test

@@ -62,7 +62,7 @@ void create_folder(const std::filesystem::path& folder) {
 
 int write_robot(const NewOptions& options) {
   if (options.what != "robot") {
-    throw InputError("proleg new", 0, in_quotes(options.what), "'robot'");
+    throw BadInput("found " + in_quotes(options.what) + ", expected 'robot'");
   }
   const std::vector<NewFile> files = robot_files(axes_of_joints(options.axes, parse_joints(options.joints)));
   if (options.out.empty()) {

@@ -186,38 +186,57 @@ std::string wave_text(const std::string& axes, char axis, const Wave& wave) {
 
 // At 1 Hz a joint with an amplitude of 40 degrees just stays below its 4.5 rad/s.
 constexpr Wave travelling_wave{"40", "1", "55", ""};
-constexpr Wave sidewinding_pitch{"20", "1", "45", ""};
-constexpr Wave sidewinding_yaw{"40", "1", "45", "90"};
+constexpr Wave pitch_of_two{"20", "1", "45", ""};
+constexpr Wave yaw_of_two{"40", "1", "45", "90"};
+
+constexpr std::string_view two_waves_text =
+    R"(<!-- Two waves: one of the yaw joints to the left and to the right, and one of the pitch joints that lifts a part of the
+     body while the yaw wave carries it on. The phase of the yaw joints is the quarter turn between the two waves; with
+     -90 the robot moves to the other side.
+)";
+
+constexpr std::string_view alternating_text =
+    R"(     The joints of this robot alternate between pitch and yaw. Most robots of this kind move sideways with the two waves
+     (sidewinding), and a few at another angle: 'proleg simulate' prints it as heading, with 90 to the left.
+)";
+
+constexpr std::string_view not_alternating_text =
+    R"(     The two waves are made for joints that alternate between pitch and yaw (sidewinding). Those of this robot do not
+     alternate, so it may move in any direction: 'proleg simulate' prints it as heading, with 90 to the left.
+)";
+
+constexpr std::string_view phases_text =
+    R"(     The phases count by the position of a joint in the whole chain. Both waves therefore have the same
+     phase_difference, the one from each joint to the next joint of the chain, whatever the axis of that joint is. -->
+)";
+
+std::string comment_on_gait(const std::string& axes) {
+  if (axes.find(yaw) == std::string::npos) {
+    return R"(<!-- A travelling wave: every joint does what the joint in front of it did a moment before. The gait is that of the
+     shipped travelling_wave. -->
+)";
+  }
+  if (axes.find(pitch) == std::string::npos) {
+    return R"(<!-- A wave to the left and to the right. Without pitch joints all links stay on the ground. They slide equally well
+     in all directions, so this robot moves slowly. -->
+)";
+  }
+  const bool alternate = std::ranges::adjacent_find(axes) == axes.end();
+  std::string text(two_waves_text);
+  text.append(alternate ? alternating_text : not_alternating_text).append(phases_text);
+  return text;
+}
 
 std::string actuation_text(const std::string& axes) {
   const bool has_pitch = axes.find(pitch) != std::string::npos;
   const bool has_yaw = axes.find(yaw) != std::string::npos;
-  std::string text;
-  if (!has_yaw) {
-    text =
-        R"(<!-- A travelling wave: every joint does what the joint in front of it did a moment before. The gait is that of the
-     shipped travelling_wave. -->
-)";
-  } else if (!has_pitch) {
-    text =
-        R"(<!-- A wave to the left and to the right. Without pitch joints all links stay on the ground. They slide equally well
-     in all directions, so this robot moves slowly. -->
-)";
-  } else {
-    text =
-        R"(<!-- Sidewinding: a wave of the yaw joints to the left and to the right, and a wave of the pitch joints that lifts a
-     part of the body while the yaw wave carries it to the side. The phase of the yaw joints is the quarter turn between
-     the two waves; with -90 the robot moves to the other side.
-     The phases count by the position of a joint in the whole chain. Both waves therefore have the same
-     phase_difference, the one from each joint to the next joint of the chain, whatever the axis of that joint is. -->
-)";
-  }
+  std::string text = comment_on_gait(axes);
   text += "<actuation>\n  <validRobot robotName=\"robot.robot.xml\"/>\n";
   if (has_pitch) {
-    text += wave_text(axes, pitch, has_yaw ? sidewinding_pitch : travelling_wave);
+    text += wave_text(axes, pitch, has_yaw ? pitch_of_two : travelling_wave);
   }
   if (has_yaw) {
-    text += wave_text(axes, yaw, sidewinding_yaw);
+    text += wave_text(axes, yaw, yaw_of_two);
   }
   return text + "</actuation>\n";
 }

@@ -47,6 +47,26 @@ TEST_F(NewRobot, EightJointsOfPitchAndYawMoveSideways) {
   EXPECT_LT(std::abs(forward), sideways / 3.0);
 }
 
+TEST_F(NewRobot, TheCommentOnTheGaitIsTrueForTheAxes) {
+  const auto comment = [&](const std::string& joints, const std::string& axes) {
+    write(axes + joints, joints, axes);
+    return read_file(file(axes + joints + "/robot.actuation.xml"));
+  };
+  const std::string alternating = comment("8", "py");
+  EXPECT_NE(alternating.find("joints of this robot alternate between pitch and yaw"), std::string::npos);
+  EXPECT_NE(alternating.find("(sidewinding)"), std::string::npos);
+  for (const char* axes : {"ppy", "yyp"}) {
+    const std::string other = comment("9", axes);
+    EXPECT_NE(other.find("Those of this robot do not\n     alternate, so it may move in any direction"),
+              std::string::npos)
+        << other;
+    // A robot with these axes moves along its body.
+    EXPECT_GT(std::abs(std::cos(run(std::string(axes) + "9", "20")["measures"]["heading"].number() * 0.0174533)), 0.7);
+  }
+  EXPECT_EQ(comment("5", "p").find("sidewinding"), std::string::npos);
+  EXPECT_EQ(comment("5", "y").find("sidewinding"), std::string::npos);
+}
+
 TEST_F(NewRobot, EveryNumberOfJointsAndOrderOfAxesRuns) {
   for (const char* axes : {"p", "y", "py", "yyp"}) {
     for (const char* joints : {"3", "7", "64"}) {
@@ -123,7 +143,7 @@ TEST_F(NewRobot, RefusesBadInputAndWritesNothing) {
   }
   expect_refused({"new", "robot", "--joints", "2", "--axes", "ppy", "--out", out}, {"--axes", "3 letters"});
   expect_refused({"new", "robot", "--out", out}, {"--joints"});
-  expect_refused({"new", "gait", "--joints", "5", "--out", out}, {"'gait'", "'robot'"});
+  expect_refused({"new", "gait", "--joints", "5", "--out", out}, {"proleg new: found 'gait', expected 'robot'"});
   expect_refused({"new", "robot", "--joints", "5", "--out", ""}, {"--out"});
   std::ofstream(file("plain")) << "a file, not a folder\n";
   expect_refused({"new", "robot", "--joints", "5", "--out", file("plain").string()}, {"plain"});

@@ -13,6 +13,9 @@ struct OpenTag {
   int line;
 };
 
+constexpr std::string_view comment_start = "<!--";
+constexpr std::string_view comment_end = "-->";
+
 std::string start_tag(std::string_view name) { return "<" + shortened(name) + ">"; }
 std::string end_tag(std::string_view name) { return "</" + shortened(name) + ">"; }
 
@@ -21,9 +24,31 @@ class TagScanner {
  public:
   explicit TagScanner(std::string_view text) : text_(text) {}
 
-  std::optional<UnpairedTag> run() {
+  std::optional<UnpairedTag> find_unclosed_comment() {
     while (skip_to_tag()) {
-      if (skip("<!--", "-->") || skip("<![CDATA[", "]]>") || skip("<?", "?>") || skip("<!", ">")) {
+      if (text_.substr(position_).starts_with(comment_start)) {
+        const int line = line_;
+        const std::size_t end = text_.find(comment_end, position_ + comment_start.size());
+        const std::size_t next = text_.find(comment_start, position_ + comment_start.size());
+        if (next < end) {
+          move_to(next);
+          return UnpairedTag{line, "a comment without an end before the next one in line " + std::to_string(line_),
+                             std::string(comment_end)};
+        }
+        if (end == std::string_view::npos) {
+          return UnpairedTag{line, "a comment without an end", std::string(comment_end)};
+        }
+        move_to(end + comment_end.size());
+      } else if (!skip("<![CDATA[", "]]>")) {
+        move_to(position_ + 1);
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<UnpairedTag> find_unpaired_tag() {
+    while (skip_to_tag()) {
+      if (skip(comment_start, comment_end) || skip("<![CDATA[", "]]>") || skip("<?", "?>") || skip("<!", ">")) {
         continue;
       }
       if (text_.substr(position_).starts_with("</")) {
@@ -118,6 +143,10 @@ class TagScanner {
 
 }  // namespace
 
-std::optional<UnpairedTag> find_unpaired_tag(std::string_view text) { return TagScanner(text).run(); }
+std::optional<UnpairedTag> find_unpaired_tag(std::string_view text) { return TagScanner(text).find_unpaired_tag(); }
+
+std::optional<UnpairedTag> find_unclosed_comment(std::string_view text) {
+  return TagScanner(text).find_unclosed_comment();
+}
 
 }  // namespace proleg::sim

@@ -194,6 +194,9 @@ XmlDocument::XmlDocument(std::filesystem::path path, std::string text, const Xml
   if (const auto at = find_invalid_utf8(text)) {
     throw InputError(name_, line_at(text, *at), "bytes that are not UTF-8", "XML text in UTF-8");
   }
+  if (const auto comment = find_unclosed_comment(text)) {
+    throw InputError(name_, comment->line, comment->found, comment->expected);
+  }
   if (parsed_->Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     const tinyxml2::XMLError error = parsed_->ErrorID();
     const bool may_lack_tag = error == tinyxml2::XML_ERROR_PARSING || error == tinyxml2::XML_ERROR_MISMATCHED_ELEMENT;

@@ -61,6 +61,10 @@ const auto cases = testing::Values(
              "robot.xml:39: found <axis> without an end tag before </Joint> in line 44, expected </axis>"},
     BadInput{"Malformed", "top.xml", "<robot>", "<robot name=1>",
              "top.xml:2: found malformed XML (parsing attribute), expected well-formed XML"},
+    BadInput{"CommentWithoutEnd", "robot.xml", "  <servo>", "  <!-- An ideal\n servo <servo>",
+             "robot.xml:2: found a comment without an end, expected -->"},
+    BadInput{"CommentThatSwallowsTheNextOne", "robot.xml", "  <servo>", "\n<!-- First <servo>\n<!-- Second -->",
+             "robot.xml:3: found a comment without an end before the next one in line 4, expected -->"},
     BadInput{"TextAtTheTop", "top.xml", "</simulation>", "</simulation>\nrest<!-- -->",
              "top.xml:13: found 'rest' beside the outermost tag, expected one outermost tag"},
     BadInput{"DocumentType", "top.xml", "<simulation>", "<!DOCTYPE x><simulation>",
@@ -317,7 +321,8 @@ const auto cases = testing::Values(
              "actuation.xml:6: found unknown joint 'J9', expected one of J1, J2"},
     BadInput{"ParameterOfAnUndrivenJoint", "actuation.xml", "value=\"5\"", "value=\"5\" joint=\"J1\"",
              "actuation.xml:10: found a joint that this module does not drive, 'J1', expected one of J2"},
-    BadInput{"NoModule", "actuation.xml", "<actuation>", "<actuation/><!--", "actuation.xml:1: found malformed XML"},
+    BadInput{"NoModule", "actuation.xml", "<actuation>", "<actuation/><!--",
+             "actuation.xml:1: found a comment without an end, expected -->"},
     BadInput{"FifthModule", "actuation.xml", "</actuation>",
              "<actuationModule name=\"DirectJointAccess\"><jointConfiguration joints=\"11\"/></actuationModule>"
              "<actuationModule name=\"DirectJointAccess\"><jointConfiguration joints=\"11\"/></actuationModule>\n"

@@ -131,9 +131,10 @@ void read_actuation(const XmlDocument& document, Scenario& scenario, const std::
   if (const auto valid = root.child("validRobot")) {
     valid->allow({"robotName"}, {});
     const std::string name = valid->required_attribute("robotName");
-    if (name != std::filesystem::path(robot_file).filename().string()) {
-      scenario.remarks.push_back(one_line(document.name() + ":" + std::to_string(valid->line()) +
-                                          ": the actuation was made for robot " + in_quotes(name)));
+    if (const std::string present = std::filesystem::path(robot_file).filename().string(); name != present) {
+      scenario.warnings.push_back(one_line(document.name() + ":" + std::to_string(valid->line()) +
+                                           ": the actuation was made for robot " + in_quotes(name) + ", not for " +
+                                           in_quotes(present)));
     }
   }
 
@@ -151,7 +152,7 @@ void read_actuation(const XmlDocument& document, Scenario& scenario, const std::
     slot.group = read_group(module, scenario.robot);
     check_with_kernel(module, scenario.kernel);
     if (slot.group.empty()) {
-      remark_no_effect(scenario.remarks, module, "it drives no joint");
+      remark_no_effect(scenario.warnings, module, "it drives no joint");
     }
     read_parameters(module, slot_number, scenario);
     ++slot_number;

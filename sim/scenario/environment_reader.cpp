@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/geometry_reader.hpp"
 #include "sim/scenario/kinbody_reader.hpp"
+#include "sim/scenario/plausibility.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {
@@ -22,7 +24,7 @@ constexpr double max_angle = 1e4;  // degrees
 constexpr std::array<std::string_view, 5> viewer_tags{"bkgndcolor", "camtrans", "camrotaxis", "camrotationaxis",
                                                       "camfocal"};
 
-void read_physics(const XmlElement& element, EnvironmentModel& environment) {
+void read_physics(const XmlElement& element, EnvironmentModel& environment, std::vector<std::string>& warnings) {
   element.allow({"type"}, {"odeproperties"});
   if (const std::string type = element.required_attribute("type"); lower_case(type) != "ode") {
     element.refuse("type " + in_quotes(type) + " in " + element.label(), "'ode'");
@@ -34,6 +36,8 @@ void read_physics(const XmlElement& element, EnvironmentModel& environment) {
   properties->allow({}, {"gravity", "selfcollision"});
   if (const auto gravity = properties->child("gravity")) {
     environment.gravity = read_vector(*gravity, accelerations);
+    std::ranges::move(check_gravity(environment.gravity, {gravity->document().name(), gravity->line()}),
+                      std::back_inserter(warnings));
   }
   if (const auto collision = properties->child("selfcollision")) {
     const std::string text = collision->text();
@@ -111,7 +115,8 @@ std::optional<Bounds> bounds_of_body(const std::vector<Geometry>& geometries, co
 
 }  // namespace
 
-EnvironmentModel read_environment(const XmlDocument& document, SourceSet& sources, std::vector<std::string>& remarks) {
+EnvironmentModel read_environment(const XmlDocument& document, SourceSet& sources, std::vector<std::string>& remarks,
+                                  std::vector<std::string>& warnings) {
   const XmlElement root = document.root("Environment");
   constexpr std::array<std::string_view, 2> attributes{"name", "type"};
   constexpr std::array<std::string_view, 2> tags{"physicsengine", "KinBody"};
@@ -119,7 +124,7 @@ EnvironmentModel read_environment(const XmlDocument& document, SourceSet& source
 
   EnvironmentModel environment;
   if (const auto physics = root.child("physicsengine")) {
-    read_physics(*physics, environment);
+    read_physics(*physics, environment, warnings);
   }
   for (const XmlElement& child : root.children()) {
     if (!child.is("KinBody")) {

@@ -12,9 +12,9 @@ namespace proleg::sim {
 /// bodies. A comment gives the start pose of the robot:
 ///   <!--Pose: ,X Y Z,A B C,-->
 /// position in metres; then degrees: the robot is turned by A about the world's x axis, then by B about its y axis,
-/// then by C about its z axis. Without the comment the robot starts at the origin.
+/// then by C about its z axis. Without the comment the robot starts at the origin. Adds to remarks and warnings.
 [[nodiscard]] EnvironmentModel read_environment(const XmlDocument& document, SourceSet& sources,
-                                                std::vector<std::string>& remarks);
+                                                std::vector<std::string>& remarks, std::vector<std::string>& warnings);
 
 /// Raises the start pose until the robot, with all joint angles 0, rests on the highest of the objects below its start
 /// position (whose bounds, seen from above, contain that position). Never lowers it.

@@ -81,8 +81,10 @@ class RobotCheck {
     }
     check_order_of_bodies();
     for (std::size_t link = 0; link < chain_->links.size(); ++link) {
-      check_place(link);
+      const std::size_t before = warnings_.size();
       check_mass(link);
+      is_plausible_.push_back(warnings_.size() == before);
+      check_place(link);
     }
     return std::move(warnings_);
   }
@@ -144,11 +146,15 @@ class RobotCheck {
     }
   }
 
-  /// Two links of about the same size at about the same place.
+  /// Two links of about the same size at about the same place. Nothing is known of the place of a link whose size or
+  /// density is not plausible, because one of its lengths is wrong.
   void check_place(std::size_t link) {
     constexpr double share = 0.1;
     const Bounds& here = bounds_[link];
-    for (std::size_t other = 0; other < link; ++other) {
+    for (std::size_t other = 0; other < link && is_plausible_[link]; ++other) {
+      if (!is_plausible_[other]) {
+        continue;
+      }
       const Bounds& there = bounds_[other];
       const double tolerance = share * std::min(length_of(here), length_of(there));
       if ((here.lowest - there.lowest).norm() < tolerance && (here.highest - there.highest).norm() < tolerance) {
@@ -167,8 +173,9 @@ class RobotCheck {
                " has an inertia that no solid has: one principal moment is larger than the sum of the two others; "
                "usually a number in <inertia> is wrong");
     } else if (const auto geometries = bounds_of_geometries(chain_->links[link], {})) {
-      check_size(link, *geometries);
-      check_density(link);
+      if (check_size(link, *geometries)) {
+        check_density(link);
+      }
     }
   }
 
@@ -178,15 +185,19 @@ class RobotCheck {
     return moments[2] <= (moments[0] + moments[1]) * (1.0 + rounding);
   }
 
-  void check_size(std::size_t link, const Bounds& geometries) {
+  /// Whether mass and geometries are of one size.
+  bool check_size(std::size_t link, const Bounds& geometries) {
     constexpr double max_ratio = 10.0;
     const double box = 2.0 * equivalent_box(chain_->links[link].mass).extents.maxCoeff();
     const double ratio = box / length_of(geometries);
-    if (ratio > max_ratio || ratio < 1.0 / max_ratio) {
+    const bool is_one_size = ratio <= max_ratio && ratio >= 1.0 / max_ratio;
+    if (!is_one_size) {
       warn(chain_->link_origins[link], body_name(link) + " has the inertia of a solid box of " + millimetres(box) +
                                            ", and its geometries have " + millimetres(length_of(geometries)) +
-                                           "; usually <inertia> is not in kg m^2");
+                                           "; usually <inertia> is not in kg m^2, or <extents> or another length of "
+                                           "<Mass> or <Geom> is not in metres");
     }
+    return is_one_size;
   }
 
   /// Only of a link with geometries: the box of a thin rod has no volume.
@@ -205,7 +216,8 @@ class RobotCheck {
   [[nodiscard]] std::string body_name(std::size_t link) const { return "body " + in_quotes(chain_->links[link].name); }
 
   const Chain* chain_;
-  std::vector<Bounds> bounds_;  ///< of the links
+  std::vector<Bounds> bounds_;      ///< of the links
+  std::vector<bool> is_plausible_;  ///< mass and size of the links checked so far
   std::vector<std::string> warnings_;
 };
 
@@ -231,6 +243,17 @@ double depth(const Geometry& left, const Pose& left_body, const Geometry& right,
 }  // namespace
 
 std::vector<std::string> check_robot(const Chain& chain) { return RobotCheck(chain).run(); }
+
+std::vector<std::string> check_gravity(const Eigen::Vector3d& gravity, const Origin& origin) {
+  const double noticeable = 0.5 * gravity.norm();  // at 60 degrees, steeper than any slope that can be crawled
+  if (-gravity.z() > noticeable) {
+    return {};
+  }
+  const std::string where = gravity.isZero()           ? "is 0, so that nothing holds the robot on the ground"
+                            : gravity.z() > noticeable ? "points upwards"
+                                                       : "points to the side";
+  return {warning(origin, "gravity " + where + "; usually it is 0 0 -9.81")};
+}
 
 std::vector<std::string> check_start(const std::vector<Link>& links, const EnvironmentModel& environment,
                                      const std::string& environment_file) {

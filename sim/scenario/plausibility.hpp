@@ -1,7 +1,8 @@
 #pragma once
 
-// Finds what is valid in a scenario and probably not meant: a joint far from its links, links at the same place, a
-// start inside a wall. Each warning is one line: file, line, what is there, and the usual cause.
+// Finds what is valid in a scenario and probably not meant: a joint far from its links, links at the same place,
+// gravity that points upwards, a start inside a wall. Each warning is one line: file, line, what is there, and the
+// usual cause.
 
 #include <string>
 #include <vector>
@@ -13,6 +14,9 @@ namespace proleg::sim {
 
 /// Warnings on the geometry and the masses of a robot.
 [[nodiscard]] std::vector<std::string> check_robot(const Chain& chain);
+
+/// A warning on gravity (m/s^2) that does not hold a robot on the ground. origin: where it is given.
+[[nodiscard]] std::vector<std::string> check_gravity(const Eigen::Vector3d& gravity, const Origin& origin);
 
 /// Warnings on links that start inside an object. environment_file: the file that gives the start pose.
 [[nodiscard]] std::vector<std::string> check_start(const std::vector<Link>& links, const EnvironmentModel& environment,

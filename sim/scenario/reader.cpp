@@ -49,7 +49,7 @@ Scenario read_scenario(const std::filesystem::path& path, FileSource& files, con
   read_actuation(*actuation_file, scenario, robot_file->name());
 
   const auto environment_file = open("environment");
-  scenario.environment = read_environment(*environment_file, sources, scenario.remarks);
+  scenario.environment = read_environment(*environment_file, sources, scenario.remarks, scenario.warnings);
   apply_overrides(overrides, scenario.environment);
   lift_onto_ground(scenario.robot, scenario.environment, scenario.remarks);
   std::ranges::move(check_start(scenario.robot.links, scenario.environment, environment_file->name()),

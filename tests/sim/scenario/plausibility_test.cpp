@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "memory_files.hpp"
 #include "tests/support/files.hpp"
 
@@ -125,6 +127,77 @@ TEST(Plausibility, AMassInGramsIsNamed) {
   files.replace("modules/head.kinbody.xml", "<total>0.05</total>", "<total>50</total>");
   expect_warning(files, "modules/head.kinbody.xml:5: body 'Head' has 50 kg, which is 513",
                  "usually <total> is not in kilograms, or a length is not in metres");
+}
+
+/// Multiplies the numbers of the first <extents> after a tag, as if they were in millimetres.
+void use_millimetres(MemoryFiles& files, const std::string& file, const std::string& tag) {
+  std::string& text = files.texts.at(file);
+  const std::size_t start = text.find("<extents>", text.find(tag)) + std::string("<extents>").size();
+  const std::size_t end = text.find("</extents>", start);
+  std::istringstream metres(text.substr(start, end - start));
+  std::ostringstream millimetres;
+  for (double number = 0.0; metres >> number;) {
+    millimetres << number * 1000.0 << ' ';
+  }
+  text.replace(start, end - start, millimetres.str());
+}
+
+TEST(Plausibility, ExtentsInMillimetresAreNamedAndNoPlaceIsBlamed) {
+  for (const std::string tag : {"<Mass", "<Geom"}) {
+    MemoryFiles files = caterpillar();
+    use_millimetres(files, "modules/segment.kinbody.xml", tag);
+    const std::vector<std::string> warnings = files.scenario().warnings;
+    EXPECT_EQ(warnings.size(), 4U) << "one for each segment: " << testing::PrintToString(warnings);
+    for (const std::string& warning : warnings) {
+      EXPECT_TRUE(
+          warning.ends_with("usually <inertia> is not in kg m^2, or <extents> or another length of <Mass> or "
+                            "<Geom> is not in metres"))
+          << warning;
+    }
+  }
+}
+
+TEST(Plausibility, AllExtentsInMillimetresMakeAWrongDensityAndNoPlaceIsBlamed) {
+  MemoryFiles files = caterpillar();
+  use_millimetres(files, "modules/segment.kinbody.xml", "<Mass");
+  use_millimetres(files, "modules/segment.kinbody.xml", "<Geom");
+  const std::vector<std::string> warnings = files.scenario().warnings;
+  EXPECT_EQ(warnings.size(), 4U) << testing::PrintToString(warnings);
+  for (const std::string& warning : warnings) {
+    EXPECT_TRUE(warning.ends_with("or a length is not in metres")) << warning;
+  }
+}
+
+TEST(Plausibility, GravityThatDoesNotHoldTheRobotOnTheGroundIsNamed) {
+  for (const auto& [gravity, where] : {std::pair{"0 0 9.81", "gravity points upwards;"},
+                                       {"0 -9.81 0", "gravity points to the side;"},
+                                       {"9.81 0 -1", "gravity points to the side;"},
+                                       {"0 0 0", "gravity is 0, so that nothing holds"}}) {
+    MemoryFiles files = caterpillar();
+    files.replace("flat.environment.xml", "0 0 -9.81", gravity);
+    expect_warning(files, std::string("flat.environment.xml:7: ") + where, "usually it is 0 0 -9.81");
+  }
+}
+
+TEST(Plausibility, GravityOfASlopeOrOfAnotherPlanetIsMeant) {
+  for (const char* gravity : {"0 -4.9 -8.5", "0 0 -1.62"}) {
+    MemoryFiles files = caterpillar();
+    files.replace("flat.environment.xml", "0 0 -9.81", gravity);
+    EXPECT_EQ(files.scenario().warnings, std::vector<std::string>{}) << gravity;
+  }
+}
+
+TEST(Plausibility, AModuleThatDrivesNoJointIsNamed) {
+  MemoryFiles files = caterpillar();
+  files.replace("uniform.actuation.xml", "11111", "00000");
+  expect_warning(files, "uniform.actuation.xml:", ": <actuationModule> has no effect: it drives no joint");
+}
+
+TEST(Plausibility, AnActuationForAnotherRobotIsNamed) {
+  MemoryFiles files = caterpillar();
+  files.replace("uniform.actuation.xml", "caterpillar.robot.xml", "snake.robot.xml");
+  expect_warning(files, "uniform.actuation.xml:",
+                 ": the actuation was made for robot 'snake.robot.xml', not for 'caterpillar.robot.xml'");
 }
 
 TEST(Plausibility, AStartInsideAWallIsNamedWithItsDepth) {

@@ -71,21 +71,17 @@ TEST(Remarks, NameTagsWithoutEffect) {
                "<parallelComputing>1</parallelComputing><mode>Optimization</mode><accuracy>30</accuracy><duration>")
       .replace("robot.xml", "</KinBody>\n</Robot>", "</KinBody><AttachedSensor><any/></AttachedSensor></Robot>")
       .replace("robot.xml", "<maxvel>5</maxvel>", "<maxvel>5</maxvel><maxaccel>1</maxaccel>")
-      .replace("actuation.xml", "robotName=\"robot.xml\"", "robotName=\"other.xml\"")
-      .replace("actuation.xml", "joints=\"01\"", "joints=\"00\"")
       .replace("environment.xml", "</Body>",
                "<Mass type=\"box\"><total>1</total><extents>1 1 1</extents></Mass></Body>");
   const Scenario scenario = files.scenario();
-  for (const char* text :
-       {"top.xml:2: <sensor> has no effect: every link has two touch sensors",
-        "top.xml:6: <parallelComputing> has no effect", "top.xml:6: <mode> has no effect",
-        "top.xml:6: <accuracy> has no effect",
-        "robot.xml:45: <AttachedSensor> has no effect: every link has two touch sensors",
-        "robot.xml:42: <maxaccel> has no effect", "actuation.xml:2: the actuation was made for robot 'other.xml'",
-        "actuation.xml:8: <actuationModule> has no effect: it drives no joint", "environment.xml:15: <Mass> has no"}) {
+  for (const char* text : {"top.xml:2: <sensor> has no effect: every link has two touch sensors",
+                           "top.xml:6: <parallelComputing> has no effect", "top.xml:6: <mode> has no effect",
+                           "top.xml:6: <accuracy> has no effect",
+                           "robot.xml:45: <AttachedSensor> has no effect: every link has two touch sensors",
+                           "robot.xml:42: <maxaccel> has no effect", "environment.xml:15: <Mass> has no"}) {
     EXPECT_TRUE(remarked(scenario, text)) << text;
   }
-  EXPECT_EQ(scenario.remarks.size(), 10U);
+  EXPECT_EQ(scenario.remarks.size(), 8U);
 }
 
 TEST(Remarks, AreNotMadeForColours) {

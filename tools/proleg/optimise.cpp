@@ -200,6 +200,12 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
 }  // namespace
 
 optimize::Experiment read_experiment(const OptimiseOptions& options) {
+  if (options.file) {
+    refuse_folder(*options.file, ".optimise.xml");
+  }
+  if (options.simulation) {
+    refuse_folder(*options.simulation, ".simulation.xml");
+  }
   sim::DiskFiles files;
   optimize::Experiment experiment =
       options.file ? optimize::read_experiment(*options.file, files, options.simulation) : read_stored(options);

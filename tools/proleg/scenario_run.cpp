@@ -1,10 +1,12 @@
 #include "tools/proleg/scenario_run.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <system_error>
 
 #include "shared/computer/errors/file_error.hpp"
 #include "shared/computer/errors/input_error.hpp"
@@ -68,7 +70,25 @@ void add_scenario_options(CommandLine& command_line, ScenarioOptions& options) {
   command_line.add_flag("--json", options.json, "print one JSON object");
 }
 
+void refuse_folder(const std::filesystem::path& path, const std::string& suffix) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(path, error)) {
+    return;
+  }
+  std::vector<std::string> names;
+  for (std::filesystem::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->path().string().ends_with(suffix)) {
+      names.push_back(entry->path().filename().string());
+    }
+  }
+  std::ranges::sort(names);
+  throw InputError(
+      path.string(), 0, "a folder",
+      "a *" + suffix + " file; " + (names.empty() ? "there is none in the folder" : "in the folder: " + listed(names)));
+}
+
 ScenarioRun prepare_run(const ScenarioOptions& options) {
+  refuse_folder(options.file, ".simulation.xml");
   sim::DiskFiles files;
   ScenarioRun run{sim::read_scenario(options.file, files, sim::read_overrides(options.overrides)), {}, 0};
   for (const std::string& setting : options.settings) {

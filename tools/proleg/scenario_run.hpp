@@ -3,6 +3,7 @@
 // Common to all subcommands that run a scenario: options, interruption, output.
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,6 +41,10 @@ struct ScenarioRun {
   sim::Losses losses;
   std::uint32_t ticks;  ///< length of the run
 };
+
+/// Throws InputError if the path is a folder; the message names the files in it whose names end like this, e.g.
+/// ".simulation.xml".
+void refuse_folder(const std::filesystem::path& path, const std::string& suffix);
 
 /// Throws InputError.
 [[nodiscard]] ScenarioRun prepare_run(const ScenarioOptions& options);

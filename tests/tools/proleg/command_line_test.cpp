@@ -57,7 +57,9 @@ TEST_F(CommandLine, RefusesBadInputAndWritesNothing) {
     EXPECT_TRUE(left_behind().empty());
   };
   simulate({"/missing/x.simulation.xml"}, {"/missing/x.simulation.xml", "expected"});
-  simulate({source_path("")}, {"expected"});
+  simulate({source_path("/docs")}, {"found a folder, expected a *.simulation.xml file; there is none in the folder"});
+  simulate({source_path("/sim/scenarios/obstacle")},
+           {"found a folder, expected", "in the folder: plain.simulation.xml, reflex.simulation.xml"});
   for (const char* seconds : {"nan", "inf", "0", "-1", "1e9", "soon", ""}) {
     simulate({scenario("uniform"), "--seconds", seconds}, {"--seconds", "0.01 to 86400"});
   }

@@ -90,6 +90,7 @@ class HardwareLoop::Implementation {
   [[nodiscard]] double time_s() const { return tick_ * (scenario_.kernel.tick_period_us * 1e-6); }
   [[nodiscard]] const Plant& plant() const { return plant_; }
   [[nodiscard]] const HardwareReport& report() const { return report_; }
+  [[nodiscard]] std::span<const std::uint32_t> clipped_ticks() const { return reference_.chain().clipped_ticks(); }
   [[nodiscard]] BusStatistics bus_statistics() const { return bus_.statistics(); }
 
  private:
@@ -263,6 +264,7 @@ TickSample HardwareLoop::sample() { return implementation_->sample(); }
 std::span<const RestartEvent> HardwareLoop::restart_events() const { return implementation_->report().restart_events; }
 std::span<const ModuleFailure> HardwareLoop::failures() const { return implementation_->report().failures; }
 std::span<const ModuleProblem> HardwareLoop::problems() const { return implementation_->report().problems; }
+std::span<const std::uint32_t> HardwareLoop::clipped_ticks() const { return implementation_->clipped_ticks(); }
 std::span<const std::uint32_t> HardwareLoop::dropped_changes() const {
   return implementation_->report().dropped_changes;
 }

@@ -59,6 +59,8 @@ class HardwareLoop {
   [[nodiscard]] std::span<const RestartEvent> restart_events() const;
   [[nodiscard]] std::span<const ModuleFailure> failures() const;
   [[nodiscard]] std::span<const ModuleProblem> problems() const;
+  /// Ticks so far, by joint, in which its limits cut its set-point (in the gait in memory).
+  [[nodiscard]] std::span<const std::uint32_t> clipped_ticks() const;
   /// Ticks of the changes so far that the master could not make: they did not take effect in any module.
   [[nodiscard]] std::span<const std::uint32_t> dropped_changes() const;
 

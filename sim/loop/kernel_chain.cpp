@@ -20,7 +20,8 @@ KernelChain::KernelChain(const KernelConfiguration& configuration, std::span<con
       settings_(settings.begin(), settings.end()),
       running_(JointMask::first(configuration.joint_count)),
       sent_(running_),
-      setpoints_(configuration.joint_count) {
+      setpoints_(configuration.joint_count),
+      clipped_ticks_(configuration.joint_count) {
   for (unsigned joint = 0; joint < configuration.joint_count; ++joint) {
     kernels_.push_back(std::make_unique<KernelOf<1>>());
     configure(joint);
@@ -106,6 +107,7 @@ void KernelChain::advance(std::span<const std::uint8_t> contacts) {
       kernel.set_contacts(joint, contacts[joint]);
       kernel.advance();
       setpoints_[joint] = kernel.setpoint(joint);
+      clipped_ticks_[joint] += (kernel.frame(joint, 0).flags() & StateFrame::limited) != 0 ? 1U : 0U;
     }
   }
   sent_ = running_;

@@ -47,6 +47,8 @@ class KernelChain {
 
   /// Of each joint; a joint that does not run keeps its last one.
   [[nodiscard]] std::span<const std::int32_t> setpoints() const { return setpoints_; }
+  /// Ticks so far, by joint, in which its limits cut the sum of the slots.
+  [[nodiscard]] std::span<const std::uint32_t> clipped_ticks() const { return clipped_ticks_; }
   /// Frames that the losses withheld in the last tick.
   [[nodiscard]] std::span<const Loss> lost() const { return lost_; }
   /// Frames of the last tick that a joint received or that were withheld from it; a frame counts once for each joint.
@@ -70,6 +72,7 @@ class KernelChain {
   JointMask sent_;  ///< joints that have sent frames labelled tick()
   std::uint32_t tick_ = 0;
   std::vector<std::int32_t> setpoints_;
+  std::vector<std::uint32_t> clipped_ticks_;
   std::vector<Loss> lost_;
   std::uint32_t receptions_ = 0;
 };

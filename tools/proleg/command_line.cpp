@@ -45,6 +45,10 @@ void occupy_closed_streams() {
 
 }  // namespace
 
+void print_warning(const std::string& program, const std::string& text) {
+  std::cerr << program << ": warning: " << one_line(text) << '\n';
+}
+
 CommandLine::Option& CommandLine::Option::required() {
   option_->required();
   return *this;

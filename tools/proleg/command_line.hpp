@@ -26,6 +26,9 @@ class BadInput : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Prints "proleg simulate: warning: TEXT" on standard error, as one line. All warnings begin like this.
+void print_warning(const std::string& program, const std::string& text);
+
 /// The command line of a program. Only the source file includes CLI11, which takes seconds to compile.
 class CommandLine {
  public:

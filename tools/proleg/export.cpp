@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
       check_outputs(outputs);
     }
     if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
-      std::cerr << command_line.name() << ": " << remark << '\n';
+      tools::print_warning(command_line.name(), remark);
     }
     try {
       std::optional<Output> output;

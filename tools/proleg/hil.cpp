@@ -71,6 +71,7 @@ HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::Hardw
   if (const auto& first = loop.first_difference()) {
     result.first_difference = describe(*first, joint_and_node(run, first->joint));
   }
+  result.clipped_ticks.assign(loop.clipped_ticks().begin(), loop.clipped_ticks().end());
   result.dropped_changes.assign(loop.dropped_changes().begin(), loop.dropped_changes().end());
   result.failures.assign(loop.failures().begin(), loop.failures().end());
   result.problems.assign(loop.problems().begin(), loop.problems().end());
@@ -131,11 +132,14 @@ int judge(const HilResult& result) {
   for (const RestartReport& restart : result.restarts) {
     if (!restart.joined_tick) {
       const std::uint32_t ticks = result.ticks - restart.tick;
-      std::cerr << "proleg hil: node " << unsigned{restart.node} << " (" << restart.joint
-                << ") had not joined again when the run ended, " << ticks << " ticks after its reset\n";
+      const std::string text = "node " + std::to_string(restart.node) + " (" + restart.joint +
+                               ") had not joined again when the run ended, " + std::to_string(ticks) +
+                               " ticks after its reset";
       if (ticks >= max_ticks_to_join) {
+        std::cerr << "proleg hil: " << text << '\n';
         return exit_failed;
       }
+      print_warning("proleg hil", text);
     }
   }
   return exit_success;
@@ -148,7 +152,7 @@ int hil(const HilOptions& options) {
     print_setup(run.scenario);
   }
   sim::HardwareOptions hardware = hardware_options(options, run);
-  hardware.notice = [](const std::string& text) { std::cerr << "proleg hil: " << text << '\n'; };
+  hardware.notice = [](const std::string& text) { print_warning("proleg hil", text); };
   HilModules modules(options, run.scenario);
   check_files(options, modules);
   HilFiles files;
@@ -186,7 +190,8 @@ int hil(const HilOptions& options) {
     print_hil_table(options, run, modules, result);
   }
   std::cout.flush();
-  print_remark_on_limits("proleg hil", result.measures, run.scenario.robot);
+  print_warning_on_servos("proleg hil", result.measures, run.scenario.robot);
+  print_warning_on_clipping("proleg hil", run.scenario, result.clipped_ticks, result.ticks);
   modules.finish();
   return judge(result);
 }

@@ -188,7 +188,7 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
     } else {
       print_text(experiment, outcome, result, files, workers->count());
     }
-    print_remark_on_limits("proleg optimise", result.best.measures);
+    print_warning_on_servos("proleg optimise", result.best.measures);
   }
   if (outcome.ending.empty()) {
     std::cerr << "proleg optimise: interrupted after " << outcome.progress.evaluations

@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
     const std::array outputs{PlannedOutput{"--out", picture, "SVG picture", is_picture}};
     check_outputs(outputs);
     if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
-      std::cerr << command_line.name() << ": " << remark << '\n';
+      tools::print_warning(command_line.name(), remark);
     }
     write_file(picture, sim::draw_figure(recording, window));
     try {

@@ -44,7 +44,7 @@ sim::Verification recompute(const sim::Recording& recording) {
 int replay(const Options& options) {
   const sim::Recording recording(options.file);
   if (const std::string remark = remark_on_unfinished_run(recording); !remark.empty()) {
-    std::cerr << remark << '\n';
+    print_warning("proleg replay", remark);
   }
   const sim::Verification verification = recompute(recording);
   const std::string first =

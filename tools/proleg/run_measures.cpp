@@ -1,11 +1,13 @@
 #include "tools/proleg/run_measures.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <sstream>
 
 #include "shared/computer/text/text.hpp"
+#include "tools/proleg/command_line.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -62,24 +64,29 @@ Json servos_array(const RunMeasures& measures, const sim::RobotModel& robot) {
   return servos;
 }
 
-void print_remark_on_limits(const std::string& program, const RunMeasures& measures, const sim::RobotModel& robot) {
+void print_warning_on_servos(const std::string& program, const RunMeasures& measures, const sim::RobotModel& robot) {
   const std::string speed = worst_joint(measures, robot, "speed", &sim::ServoTracking::at_speed_limit);
   const std::string torque = worst_joint(measures, robot, "torque", &sim::ServoTracking::at_torque_limit);
-  if (!speed.empty() || !torque.empty()) {
-    std::fprintf(stderr, "%s: the servos cannot follow this gait: %s%s%s; angles differ from it by up to %.1f deg\n",
-                 program.c_str(), speed.c_str(), speed.empty() || torque.empty() ? "" : ", ", torque.c_str(),
-                 measures.values[sim::Measure::max_tracking_error]);
+  if (speed.empty() && torque.empty()) {
+    return;
   }
+  std::array<char, 80> errors{};
+  std::snprintf(errors.data(), errors.size(), "; angles differ from it by up to %.1f deg",
+                measures.values[sim::Measure::max_tracking_error]);
+  print_warning(program, "the servos cannot follow this gait: " + speed +
+                             (speed.empty() || torque.empty() ? "" : ", ") + torque + errors.data());
 }
 
-void print_remark_on_limits(const std::string& program, const sim::MeasureValues& best) {
+void print_warning_on_servos(const std::string& program, const sim::MeasureValues& best) {
   const double share = std::fmax(best[sim::Measure::at_speed_limit], best[sim::Measure::at_torque_limit]);
   if (share > much && best[sim::Measure::tracking_error] > large_error_deg) {
-    std::fprintf(stderr,
-                 "%s: the servos cannot follow the best gait: they are at their speed limit for %.0f %% and at their "
-                 "torque limit for %.0f %% of the time, and miss their angles by %.1f deg (root mean square)\n",
-                 program.c_str(), 100.0 * best[sim::Measure::at_speed_limit],
-                 100.0 * best[sim::Measure::at_torque_limit], best[sim::Measure::tracking_error]);
+    std::array<char, 240> text{};
+    std::snprintf(text.data(), text.size(),
+                  "the servos cannot follow the best gait: they are at their speed limit for %.0f %% and at their "
+                  "torque limit for %.0f %% of the time, and miss their angles by %.1f deg (root mean square)",
+                  100.0 * best[sim::Measure::at_speed_limit], 100.0 * best[sim::Measure::at_torque_limit],
+                  best[sim::Measure::tracking_error]);
+    print_warning(program, text.data());
   }
 }
 

@@ -28,12 +28,12 @@ struct RunMeasures {
 /// at_speed_limit, at_torque_limit; null where the run does not define one.
 [[nodiscard]] Json servos_array(const RunMeasures& measures, const sim::RobotModel& robot);
 
-/// Prints one line on standard error if servos are at a limit for more than a fifth of the time and miss their angles
+/// Prints a warning if servos are at a limit for more than a fifth of the time and miss their angles
 /// by more than 5 degrees (root mean square). program: as the line begins.
-void print_remark_on_limits(const std::string& program, const RunMeasures& measures, const sim::RobotModel& robot);
+void print_warning_on_servos(const std::string& program, const RunMeasures& measures, const sim::RobotModel& robot);
 
 /// The same from means over the joints, for the best gait of a search.
-void print_remark_on_limits(const std::string& program, const sim::MeasureValues& best);
+void print_warning_on_servos(const std::string& program, const sim::MeasureValues& best);
 
 /// Prints the measures that the run defines on standard output, one a line.
 void print_measures(const sim::MeasureValues& values);

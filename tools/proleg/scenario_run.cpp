@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -126,11 +127,31 @@ void print_warnings(const std::string& program, const sim::Scenario& scenario) {
   const std::size_t count = scenario.warnings.size();
   const std::size_t shown = count > max_lines ? max_lines - 1 : count;
   for (std::size_t i = 0; i < shown; ++i) {
-    std::cerr << program << ": warning: " << scenario.warnings[i] << '\n';
+    print_warning(program, scenario.warnings[i]);
   }
   if (count > shown) {
-    std::cerr << program << ": warning: " << count - shown << " more of this kind\n";
+    print_warning(program, std::to_string(count - shown) + " more of this kind");
   }
+}
+
+void print_warning_on_clipping(const std::string& program, const sim::Scenario& scenario,
+                               std::span<const std::uint32_t> clipped_ticks, std::uint32_t ticks) {
+  constexpr double noticeable = 0.01;
+  const auto share = [&](std::uint32_t clipped) { return clipped / std::max(1.0, 1.0 * ticks); };
+  const auto above = std::ranges::count_if(clipped_ticks, [&](auto clipped) { return share(clipped) > noticeable; });
+  if (above == 0) {
+    return;
+  }
+  const auto worst = static_cast<std::size_t>(std::ranges::max_element(clipped_ticks) - clipped_ticks.begin());
+  const auto degrees = [](std::int32_t limit) { return number_text(limit * 45.0 / (1U << 29U)); };
+  const sim::JointLimits& limits = scenario.joint_limits[worst];
+  std::string text = "the limits of " + scenario.robot.joints[worst].name + ", " + degrees(limits.lower) + " to " +
+                     degrees(limits.upper) + " degrees, clip its set-points in " +
+                     std::to_string(std::lround(100.0 * share(clipped_ticks[worst]))) + " % of the ticks";
+  if (above > 1) {
+    text += " (" + std::to_string(above) + " joints are clipped)";
+  }
+  print_warning(program, text);
 }
 
 void print_setup(const sim::Scenario& scenario) {

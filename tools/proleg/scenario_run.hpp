@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,6 +57,11 @@ void refuse_folder(const std::filesystem::path& path, const std::string& suffix)
 
 /// Prints the warnings on the files on standard error: the first ones, and how many more there are.
 void print_warnings(const std::string& program, const sim::Scenario& scenario);
+
+/// Prints a warning if the limits of a joint cut its set-points in more than one tick of a hundred; it names the joint
+/// that is cut most. clipped_ticks: of each joint. ticks: length of the run.
+void print_warning_on_clipping(const std::string& program, const sim::Scenario& scenario,
+                               std::span<const std::uint32_t> clipped_ticks, std::uint32_t ticks);
 
 /// Prints the remarks on the files and the start value of every parameter of every joint on standard error.
 void print_setup(const sim::Scenario& scenario);

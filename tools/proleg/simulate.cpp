@@ -150,7 +150,8 @@ int simulate(const ScenarioOptions& options) {
   } else {
     print_table(options, result);
   }
-  print_remark_on_limits("proleg simulate", result.measures, setup.scenario.robot);
+  print_warning_on_servos("proleg simulate", result.measures, setup.scenario.robot);
+  print_warning_on_clipping("proleg simulate", setup.scenario, simulation.chain().clipped_ticks(), simulation.tick());
   return exit_success;
 }
 

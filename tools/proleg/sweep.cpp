@@ -94,8 +94,10 @@ void warn_of_equal_runs(const Sweep& sweep) {
   for (const SweptQuantity& quantity : sweep.quantities) {
     if (quantity.kind == SweptQuantity::Kind::seed && quantity.values.size() > 1 &&
         !optimize::depends_on_seed(sweep.scenario, {}, {})) {
-      std::cerr << "proleg sweep: warning: all seeds give the same run, because neither the start state of an "
-                   "algorithm nor the touch sensors have noise\n";
+      print_warning(
+          "proleg sweep",
+          "all seeds give the same run, because neither the start state of an algorithm nor the touch sensors "
+          "have noise");
     }
   }
 }
@@ -111,7 +113,7 @@ SweepResult run(const Sweep& sweep, std::uint32_t worker_count) {
   const auto show = [&](std::uint64_t done) {
     for (const std::string& message : workers.messages()) {
       progress.erase();
-      std::cerr << "proleg sweep: " << message << '\n';
+      print_warning("proleg sweep", message);
     }
     if (progress.is_due() && done > 0) {
       const double left_s = progress.elapsed_s() * static_cast<double>(sweep.size() - done) / static_cast<double>(done);

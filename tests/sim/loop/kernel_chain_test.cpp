@@ -59,6 +59,19 @@ TEST(KernelChain, LossesDoNotChangeThePlainSine) {
   }
 }
 
+TEST(KernelChain, CountsTheTicksInWhichLimitsCutASetPoint) {
+  Scenario scenario = shipped("travelling_wave/uniform");      // 40 degrees, 1 Hz
+  scenario.joint_limits[2] = {-(1 << 28), (1 << 30) / 9 * 2};  // -22.5 to 20 degrees
+  KernelChain chain = make_chain(scenario);
+  for (int tick = 0; tick < 1000; ++tick) {
+    chain.advance(no_contacts);
+  }
+  // A sine of 40 degrees is above 20 for a third of its period, and below -22.5 for acos(0.5625) / pi of it.
+  const double expected = 1.0 / 3.0 + std::acos(0.5625) / std::numbers::pi;
+  EXPECT_NEAR(chain.clipped_ticks()[2] / 1000.0, expected, 0.02);
+  EXPECT_EQ(chain.clipped_ticks()[1], 0U);
+}
+
 /// The same between neighbours: what makes the wave.
 double max_phase_difference_error(const KernelChain& a, const KernelChain& b) {
   double largest = 0;

@@ -135,7 +135,8 @@ TEST_F(CommandLine, SimulateWarnsOfServosThatCannotFollowTheGait) {
   fast_words.insert(fast_words.end(), {"--set", "frequency=2"});  // needs 8.8 rad/s, the servos have 4.5
   const Finished fast = proleg(fast_words);
   EXPECT_EQ(fast.status, 0);
-  EXPECT_NE(fast.err.find("the servos cannot follow this gait: "), std::string::npos) << fast.err;
+  EXPECT_NE(fast.err.find("proleg simulate: warning: the servos cannot follow this gait: "), std::string::npos)
+      << fast.err;
   EXPECT_NE(fast.err.find("speed limit"), std::string::npos) << fast.err;
   const Json object(fast.out);
   ASSERT_EQ(object["servos"].size(), 5U);

@@ -124,6 +124,25 @@ TEST_F(NewRobot, AChangeThatIsProbablyNotMeantIsReportedByAllThatRunIt) {
   }
 }
 
+TEST_F(NewRobot, LimitsThatCutTheGaitAreNamed) {
+  write("robot", "5", "p");
+  const fs::path path = file("robot/robot.robot.xml");
+  std::string text = read_file(path);
+  const std::size_t joint = text.find("<Joint name=\"J3\"");
+  const std::string limits = "<limitsdeg>-90 90<";
+  ASSERT_NE(text.find(limits, joint), std::string::npos);
+  text.replace(text.find(limits, joint), limits.size(), "<limitsdeg>-30 30<");
+  std::ofstream(path) << text;
+  for (const char* subcommand : {"simulate", "hil"}) {
+    // A sine of 40 degrees is beyond 30 for 46 % of its period.
+    const Finished finished = proleg({subcommand, file("robot/robot.simulation.xml").string(), "--seconds", "4"});
+    EXPECT_EQ(finished.status, 0);
+    EXPECT_EQ(finished.err, std::string("proleg ") + subcommand +
+                                ": warning: the limits of J3, -30 to 30 degrees, clip its set-points in 46 % of the "
+                                "ticks\n");
+  }
+}
+
 TEST_F(NewRobot, DoesNotReplaceAFile) {
   fs::create_directories(file("mine/modules"));
   const std::string precious = file("mine/modules/head.kinbody.xml").string();

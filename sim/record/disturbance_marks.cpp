@@ -21,16 +21,15 @@ Disturbances collect_disturbances(const Recording& recording) {
     }
   }
   for (const Loss& loss : recording.losses()) {
-    ++result.losses;
-    const double time_s = recording.sync_time_s(loss.tick);
-    if (result.loss_times_s.empty() || result.loss_times_s.back() != time_s) {
-      result.loss_times_s.push_back(time_s);
+    if (result.lost_in_ticks.empty() || result.lost_in_ticks.back().tick != loss.tick) {
+      result.lost_in_ticks.push_back({loss.tick, 0});
     }
+    ++result.lost_in_ticks.back().frames;
   }
   return result;
 }
 
-void draw_disturbances(Svg& svg, const Disturbances& disturbances, const Axis& time, double top, double height) {
+void draw_restarts(Svg& svg, const Disturbances& disturbances, const Axis& time, double top, double height) {
   for (const Disturbances::Restart& restart : disturbances.restarts) {
     const double from = std::max(restart.from_s, time.low);
     const double to = std::min(restart.to_s.value_or(time.high), time.high);
@@ -44,19 +43,6 @@ void draw_disturbances(Svg& svg, const Disturbances& disturbances, const Axis& t
     svg.text({to_the_left ? x - 4.0 : time.pixel(to) + 4.0, top + height - 10.0},
              shortened(restart.joint, 8) + " restarts", to_the_left ? TextAnchor::end : TextAnchor::start, label_size,
              "#b34700");
-  }
-  Polyline places;
-  for (const double time_s : disturbances.loss_times_s) {
-    if (time_s >= time.low && time_s <= time.high) {
-      places.push_back({time.pixel(time_s), top + height});
-    }
-  }
-  if (!places.empty()) {
-    svg.begin_group("loss");
-    svg.marks(places, "v-7", R"(stroke="#d55e00" stroke-width="1.2")");
-    svg.end_group();
-    svg.text({page_right - 6.0, top + height - 10.0}, "marks below: lost state frames", TextAnchor::end, 11.0,
-             "#b34700", R"(stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke")");
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,14 +19,18 @@ struct Disturbances {
     double from_s;
     std::optional<double> to_s;  ///< nothing: until the end
   };
-  std::vector<Restart> restarts;     ///< in the order of time
-  std::vector<double> loss_times_s;  ///< of ticks in which a state frame did not reach a joint, ascending
-  std::size_t losses = 0;            ///< state frames times receivers
+  /// State frames that did not reach a joint; a frame counts once for each joint.
+  struct TickLosses {
+    std::uint32_t tick;
+    std::uint32_t frames;
+  };
+  std::vector<Restart> restarts;          ///< in the order of time
+  std::vector<TickLosses> lost_in_ticks;  ///< ascending, without ticks that lost none
 };
 
 [[nodiscard]] Disturbances collect_disturbances(const Recording& recording);
 
-/// Restarts as bands behind the lines of a panel, named at its top; losses as marks on its lower edge.
-void draw_disturbances(Svg& svg, const Disturbances& disturbances, const Axis& time, double top, double height);
+/// Restarts as bands behind the lines of a panel, named at its lower edge.
+void draw_restarts(Svg& svg, const Disturbances& disturbances, const Axis& time, double top, double height);
 
 }  // namespace proleg::sim

@@ -13,6 +13,7 @@
 #include "sim/record/disturbance_marks.hpp"
 #include "sim/record/figure_contents.hpp"
 #include "sim/record/figure_page.hpp"
+#include "sim/record/loss_panel.hpp"
 #include "sim/record/path_panel.hpp"
 #include "sim/record/recorded_scenario.hpp"
 #include "sim/record/robot_views.hpp"
@@ -27,6 +28,7 @@ constexpr double between_panels = 44.0;
 /// Where the panels over time are, in pixels.
 struct Layout {
   std::vector<AnglePanel> angles;
+  std::optional<double> losses_top;  ///< nothing if no state frame was lost
   double contacts_top;
   double contacts_height;
 };
@@ -41,19 +43,22 @@ std::vector<Band> bands_of(const Layout& layout) {
   for (const AnglePanel& panel : layout.angles) {
     bands.push_back({panel.top, panel.height});
   }
+  if (layout.losses_top) {
+    bands.push_back({*layout.losses_top, loss_panel_height});
+  }
   bands.push_back({layout.contacts_top, layout.contacts_height});
   return bands;
 }
 
 /// Joints that bend the robot up and down, and those that bend it to the sides, have a panel each.
-Layout make_layout(const Recording& recording, const std::optional<Scenario>& scenario, double top) {
+Layout make_layout(const Recording& recording, const std::optional<Scenario>& scenario, bool has_losses, double top) {
   std::vector<std::size_t> pitch;
   std::vector<std::size_t> yaw;
   for (std::size_t joint = 0; joint < recording.joints().size(); ++joint) {
     const bool is_yaw = scenario && direction_of(scenario->robot.joints[joint]) == JointDirection::yaw;
     (is_yaw ? yaw : pitch).push_back(joint);
   }
-  Layout layout{{}, top, contact_panel_height(recording)};
+  Layout layout{{}, std::nullopt, top, contact_panel_height(recording)};
   const auto add = [&layout](const char* what, std::vector<std::size_t> joints) {
     layout.angles.push_back(make_angle_panel(what, std::move(joints), layout.contacts_top));
     layout.contacts_top += layout.angles.back().height + between_panels;
@@ -63,6 +68,10 @@ Layout make_layout(const Recording& recording, const std::optional<Scenario>& sc
   }
   if (!yaw.empty()) {
     add("Angles of the yaw joints", std::move(yaw));
+  }
+  if (has_losses) {
+    layout.losses_top = layout.contacts_top;
+    layout.contacts_top += loss_panel_height + between_panels;
   }
   return layout;
 }
@@ -121,7 +130,7 @@ void draw_head(Svg& svg, const Recording& recording, std::size_t changes, const 
   if (const std::size_t restarts = disturbances.restarts.size(); restarts > 0) {
     about += ", " + std::to_string(restarts) + (restarts == 1 ? " restart" : " restarts");
   }
-  if (disturbances.losses > 0) {
+  if (!disturbances.lost_in_ticks.empty()) {
     about += ", state frames lost";
   }
   if (!recording.finished()) {
@@ -141,13 +150,13 @@ std::string draw_figure(const Recording& recording, const TimeWindow& window) {
   if (scenario) {
     views = make_robot_views(recording, contents, *scenario, first_panel_top);
   }
-  const Layout layout = make_layout(recording, scenario, views.bottom);
+  const Disturbances disturbances = collect_disturbances(recording);
+  const Layout layout = make_layout(recording, scenario, !disturbances.lost_in_ticks.empty(), views.bottom);
   const PathPanel panel = make_path_panel(contents, layout.contacts_top + layout.contacts_height + 84.0);
 
   Svg svg(page_width, panel.top + panel.height + 52.0, scenario_name(recording),
           "The robot in a stride, joint angles and contacts over time, and the path of the robot from above.");
   const std::vector<ChangeMark> changes = collect_change_marks(recording);
-  const Disturbances disturbances = collect_disturbances(recording);
   draw_head(svg, recording, changes.size(), disturbances);
   if (scenario) {
     draw_robot_views(svg, *scenario, views);
@@ -156,7 +165,10 @@ std::string draw_figure(const Recording& recording, const TimeWindow& window) {
   draw_time_axis(svg, time, layout);
   for (const AnglePanel& angles : layout.angles) {
     draw_angles(svg, recording, contents, angles, time);
-    draw_disturbances(svg, disturbances, time, angles.top, angles.height);
+    draw_restarts(svg, disturbances, time, angles.top, angles.height);
+  }
+  if (layout.losses_top) {
+    draw_loss_panel(svg, recording, disturbances, *layout.losses_top, time);
   }
   draw_contact_panel(svg, recording, contents, layout.contacts_top, time);
   draw_changes(svg, changes, time, layout);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/measure/stride.hpp"
 #include "sim/robot/link_ends.hpp"
 
@@ -35,6 +36,18 @@ void set_window(const Recording& recording, const TimeWindow& window, FigureCont
   const double tick_s = recording.tick_period_us() / 1e6;
   const double begin = recording.time_s(recording.first_tick()) - tick_s;
   const double end = recording.time_s(recording.last_tick());
+  if (window.from_s && *window.from_s >= end) {
+    throw InputError("--from", 0, number_text(*window.from_s) + " s",
+                     "a time before the end of the recording, " + number_text(end) + " s");
+  }
+  if (window.to_s && *window.to_s <= begin) {
+    throw InputError("--to", 0, number_text(*window.to_s) + " s",
+                     "a time after the start of the recording, " + number_text(begin) + " s");
+  }
+  if (window.from_s && window.to_s && *window.from_s >= *window.to_s) {
+    throw InputError("--from", 0, number_text(*window.from_s) + " s",
+                     "a time before --to, " + number_text(*window.to_s) + " s");
+  }
   contents.to_s = std::min(window.to_s.value_or(end), end);
   if (window.from_s) {
     contents.from_s = std::max(*window.from_s, begin);

@@ -10,6 +10,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/record/disturbance_marks.hpp"
 #include "sim/record/figure_contents.hpp"
+#include "sim/record/loss_panel.hpp"
 #include "sim/record/svg.hpp"
 #include "sim/scenario/reader.hpp"
 #include "small_run.hpp"
@@ -186,12 +187,21 @@ TEST_F(Figure, ShowsTheRequestedWindow) {
 TEST_F(Figure, RefusesAWindowWithoutTicks) {
   record_small(path_, small_scenario(), 100);
   const Recording recording(path_);
-  for (const TimeWindow& window : {TimeWindow{2.0, {}}, TimeWindow{0.5, 0.5}, TimeWindow{0.7, 0.2},
-                                   TimeWindow{{}, -1.0}, TimeWindow{1e300, {}}, TimeWindow{{}, -1e300}}) {
-    const std::string message = message_of<InputError>([&] { (void)draw_figure(recording, window); });
-    EXPECT_NE(message.find("fewer than two ticks"), std::string::npos) << message;
-    EXPECT_NE(message.find("expected a window within the recorded 0 s to 1 s"), std::string::npos) << message;
-  }
+  const auto message = [&](const TimeWindow& window) {
+    return message_of<InputError>([&] { (void)draw_figure(recording, window); });
+  };
+  const std::string before_end = ", expected a time before the end of the recording, 1 s";
+  EXPECT_EQ(message({2.0, {}}), "--from: found 2 s" + before_end);
+  EXPECT_EQ(message({1.0, {}}), "--from: found 1 s" + before_end);
+  EXPECT_EQ(message({1e300, {}}), "--from: found 1e+300 s" + before_end);
+  EXPECT_EQ(message({{}, -1.0}), "--to: found -1 s, expected a time after the start of the recording, 0 s");
+  EXPECT_EQ(message({{}, -1e300}), "--to: found -1e+300 s, expected a time after the start of the recording, 0 s");
+  EXPECT_EQ(message({0.7, 0.2}), "--from: found 0.7 s, expected a time before --to, 0.2 s");
+  EXPECT_EQ(message({0.5, 0.5}), "--from: found 0.5 s, expected a time before --to, 0.5 s");
+  EXPECT_EQ(message({0.992, 0.999}),
+            path_.string() +
+                ": found fewer than two ticks between 0.992 s and 0.999 s, expected a window within the "
+                "recorded 0 s to 1 s");
 }
 
 TEST_F(Figure, IsDrawnForTwoTicks) { EXPECT_EQ(draw(small_scenario(), 2).count("joint"), 3); }
@@ -291,11 +301,43 @@ TEST_F(Figure, MarksRestartsAndLosses) {
   EXPECT_EQ(disturbances.restarts[0].joint, "J2");
   EXPECT_NEAR(disturbances.restarts[0].from_s, 1.5, 1e-9);
   EXPECT_NEAR(disturbances.restarts[0].to_s.value(), 1.7, 1e-9);
-  EXPECT_EQ(disturbances.losses, 6U);
+  ASSERT_EQ(disturbances.lost_in_ticks.size(), 6U);
+  EXPECT_EQ(disturbances.lost_in_ticks[1].tick, 57U);
+  EXPECT_EQ(disturbances.lost_in_ticks[1].frames, 1U);
   Picture picture(draw_figure(recording, {0.0, 3.0}));
   EXPECT_EQ(picture.count("restart"), 1);
   EXPECT_EQ(picture.count("loss"), 1);
   EXPECT_TRUE(picture.has_text("J2 restarts"));
+  EXPECT_TRUE(picture.has_text("State frames lost (%)"));
+}
+
+TEST_F(Figure, TheHeightOfALossIsItsShareOfTheFrames) {
+  const Scenario scenario = small_scenario();  // three joints that send a frame to each other: six receptions in a tick
+  {
+    Recorder recorder(path_, scenario, "test", "build");
+    run_small(scenario, 300, [&](const TickSample& sample, const Change* /*change*/) {
+      const std::vector<Loss> lost{{sample.tick, 0, 0, 1}, {sample.tick, 0, 0, 2}, {sample.tick, 1, 0, 2}};
+      TickSample with_loss = sample;
+      with_loss.lost = std::span(lost).first(sample.tick >= 100 && sample.tick < 200 ? 3 : 0);
+      recorder.record_tick(with_loss);
+    });
+  }
+  const Recording recording(path_);
+  const Disturbances disturbances = collect_disturbances(recording);
+  const LossShares all = collect_loss_shares(recording, disturbances, {0.0, 3.0, 0.0, 600.0});
+  EXPECT_EQ(all.ticks_of_bar, 3U) << "a tick is two pixels";
+  EXPECT_NEAR(all.share, 0.5 / 3.0, 1e-9);
+  ASSERT_EQ(all.bars.size(), 34U) << "in the first and the last one, a tick of three is without losses";
+  EXPECT_NEAR(all.bars[0].share, 0.5 * 2 / 3, 1e-9);
+  EXPECT_NEAR(all.bars[1].share, 0.5, 1e-9);
+  EXPECT_NEAR(all.bars[33].share, 0.5 * 2 / 3, 1e-9);
+  const LossShares within = collect_loss_shares(recording, disturbances, {1.5, 1.55, 0.0, 100.0});
+  EXPECT_EQ(within.ticks_of_bar, 1U);
+  EXPECT_EQ(within.bars.size(), 5U);
+  EXPECT_NEAR(within.share, 0.5, 1e-9);
+  EXPECT_TRUE(collect_loss_shares(recording, disturbances, {2.0, 3.0, 0.0, 100.0}).bars.empty());
+  EXPECT_TRUE(Picture(draw_figure(recording, {0.0, 3.0})).has_text("16.7 % in this window; each bar: 30 ms"));
+  EXPECT_TRUE(Picture(draw_figure(recording, {2.0, 3.0})).has_text("0 % in this window; each bar: 10 ms"));
 }
 
 TEST_F(Figure, HasTimesOnThePath) {

@@ -23,18 +23,20 @@ std::string range_text(const Parameter& parameter) {
   if (takes_any_angle(parameter)) {
     return unit_range_text(parameter.unit);
   }
-  const std::string symbol = scale_of(parameter.unit).symbol;
+  const std::string symbol = shown_unit(parameter.unit);
   return "a number from " + std::string(format_decimal(parameter.minimum, parameter.unit).view()) + " to " +
          std::string(format_decimal(parameter.maximum, parameter.unit).view()) + (symbol.empty() ? "" : " " + symbol);
 }
 
 }  // namespace
 
+std::string shown_unit(Unit unit) { return unit == Unit::ratio ? "" : scale_of(unit).symbol; }
+
 std::string unit_range_text(Unit unit) {
   if (wraps(unit)) {
     return "a number above -23592960 and below 23592960 deg";  // 2^16 turns
   }
-  const std::string symbol = scale_of(unit).symbol;
+  const std::string symbol = shown_unit(unit);
   return "a number in the range of the unit" + (symbol.empty() ? "" : " " + symbol);
 }
 

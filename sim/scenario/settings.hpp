@@ -9,6 +9,9 @@
 
 namespace proleg::sim {
 
+/// The unit as it is printed behind a number: "deg", "Hz", "1/s"; nothing for ratios and counts.
+[[nodiscard]] std::string shown_unit(Unit unit);
+
 /// What parse_decimal expects for a value without a range of its own, for messages.
 [[nodiscard]] std::string unit_range_text(Unit unit);
 

@@ -10,6 +10,7 @@
 #include "shared/fixed/decimal.hpp"
 #include "shared/gait/registry.hpp"
 #include "sim/measure/measure.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tools/proleg/command_line.hpp"
 
 namespace {
@@ -19,6 +20,12 @@ using namespace proleg;
 std::string number(std::int32_t value, Unit unit) { return std::string(format_decimal(value, unit).view()); }
 
 std::string symbol(Unit unit) { return scale_of(unit).symbol; }
+
+/// " [deg]"; nothing for a ratio or a count.
+std::string in_brackets(Unit unit) {
+  const std::string text = sim::shown_unit(unit);
+  return text.empty() ? "" : " [" + text + "]";
+}
 
 std::string range(const Parameter& parameter) {
   if (wraps(parameter.unit)) {
@@ -70,13 +77,13 @@ void print_markdown(std::ostream& out, const Declaration& declaration) {
 void print_text(std::ostream& out, const Declaration& declaration) {
   out << declaration.name << ": " << declaration.help << "\n\nParameters:\n";
   for (const Parameter& parameter : declaration.parameters) {
-    out << "  " << parameter.name << " [" << symbol(parameter.unit) << "], " << range(parameter) << ", default "
+    out << "  " << parameter.name << in_brackets(parameter.unit) << ", " << range(parameter) << ", default "
         << number(parameter.default_value, parameter.unit) << "\n      " << parameter.help << '\n';
   }
   if (!declaration.internal_values.empty()) {
     out << "\nInternal values:\n";
     for (const InternalValue& value : declaration.internal_values) {
-      out << "  " << value.name << " [" << symbol(value.unit) << "]\n      " << value.help << '\n';
+      out << "  " << value.name << in_brackets(value.unit) << "\n      " << value.help << '\n';
     }
   }
   out << "\nBroadcasts " << frame_layout(declaration) << ".\n";

@@ -167,7 +167,8 @@ void print_setup(const sim::Scenario& scenario) {
     std::cerr << declaration.name << '\n';
     for (unsigned p = 0; p < declaration.parameters.size(); ++p) {
       const Parameter& parameter = declaration.parameters[p];
-      std::cerr << "  " << parameter.name << " [" << scale_of(parameter.unit).symbol << "]";
+      const std::string unit = sim::shown_unit(parameter.unit);
+      std::cerr << "  " << parameter.name << (unit.empty() ? "" : " [" + unit + "]");
       for (unsigned joint = 0; joint < scenario.kernel.joint_count; ++joint) {
         if (slot.group.contains(joint)) {
           std::cerr << ' ' << scenario.robot.joints[joint].name << '='

@@ -9,6 +9,7 @@
 #include "shared/fixed/decimal.hpp"
 #include "sim/optimize/evaluation/rating.hpp"
 #include "sim/optimize/report/report.hpp"
+#include "sim/scenario/settings.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/run_measures.hpp"
 
@@ -90,9 +91,15 @@ void print_baseline(const Experiment& experiment, const SearchResult& result) {
     print_line("  in fresh runs", confirmation_text(experiment, *confirmation));
   }
   for (const optimize::MovedValue& value : result.moved) {
-    print_line("  " + value.name, "the scenario's " + value.own + " " + value.unit +
+    print_line("  " + value.name, "the scenario's " + value.own + (value.unit.empty() ? "" : " ") + value.unit +
                                       " is not in the search space; the baseline has " + value.nearest);
   }
+}
+
+/// With its unit.
+std::string value_text(const Experiment& experiment, const optimize::Candidate& candidate, std::size_t dimension) {
+  const std::string unit = sim::shown_unit(experiment.space.dimensions[dimension].unit);
+  return experiment.space.value_text(candidate, dimension) + (unit.empty() ? "" : " ") + unit;
 }
 
 void print_best(const Experiment& experiment, const SearchResult& result) {
@@ -110,14 +117,12 @@ void print_best(const Experiment& experiment, const SearchResult& result) {
   }
   for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
     const optimize::Dimension& dimension = experiment.space.dimensions[i];
-    print_line("  " + dimension.name,
-               experiment.space.value_text(best.candidate, i) + " " + std::string(scale_of(dimension.unit).symbol));
+    print_line("  " + dimension.name, value_text(experiment, best.candidate, i));
   }
   for (const optimize::ValueAtBound& bound : result.at_bounds) {
     const optimize::Dimension& dimension = experiment.space.dimensions[bound.dimension];
-    print_line("at a bound", dimension.name + " = " + experiment.space.value_text(best.candidate, bound.dimension) +
-                                 " " + std::string(scale_of(dimension.unit).symbol) + " is the " +
-                                 (bound.is_highest ? "highest" : "lowest") +
+    print_line("at a bound", dimension.name + " = " + value_text(experiment, best.candidate, bound.dimension) +
+                                 " is the " + (bound.is_highest ? "highest" : "lowest") +
                                  " value of its range: a wider range may give more");
   }
 }

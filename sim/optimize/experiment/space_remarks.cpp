@@ -63,7 +63,7 @@ std::vector<MovedValue> values_outside_space(const Experiment& experiment) {
       const std::int32_t own = start_value(experiment.scenario, target.slot, target.joint, target.index);
       if (own != value) {
         moved.push_back({dimension.name, text_of(own, dimension.unit), text_of(value, dimension.unit),
-                         std::string(scale_of(dimension.unit).symbol)});
+                         sim::shown_unit(dimension.unit)});
         break;
       }
     }

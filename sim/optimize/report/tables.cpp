@@ -8,13 +8,14 @@
 #include "sim/optimize/evaluation/rating.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
+#include "sim/scenario/settings.hpp"
 
 namespace proleg::optimize {
 namespace {
 
 void add_dimensions(const Experiment& experiment, TableLine& line) {
   for (const Dimension& dimension : experiment.space.dimensions) {
-    line.add(with_unit(one_line(dimension.name), scale_of(dimension.unit).symbol));
+    line.add(with_unit(one_line(dimension.name), sim::shown_unit(dimension.unit)));
   }
 }
 

@@ -32,6 +32,28 @@ std::string describe(const CLI::App& app, const CLI::ParseError& error) {
   return text;
 }
 
+/// "; did you mean --record?" for an unknown option that is much like a known one.
+std::string hint(const CLI::App& app, const CLI::ParseError& error) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr) {
+    return "";
+  }
+  std::vector<std::string> known;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      known.push_back(name);
+    }
+  }
+  for (const std::string& word : app.remaining()) {
+    if (!word.starts_with("--")) {
+      continue;
+    }
+    if (const auto name = most_similar(std::string_view(word).substr(2, word.find('=') - 2), known)) {
+      return "; did you mean --" + *name + "?";
+    }
+  }
+  return "";
+}
+
 /// Opens standard streams that the caller closed, with a mode in which they cannot be used. Otherwise the next file, or
 /// the socket of a worker, would get the number of the stream and its output.
 void occupy_closed_streams() {
@@ -112,7 +134,8 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
     action = [] { return exit_success; };
   } catch (const CLI::ParseError& error) {
     std::cerr << app_->get_name() << ": found " << one_line(describe(*app_, error))
-              << ", expected the options and arguments that '" << app_->get_name() << " --help' lists\n";
+              << ", expected the options and arguments that '" << app_->get_name() << " --help' lists"
+              << hint(*app_, error) << '\n';
     return exit_bad_input;
   }
   try {

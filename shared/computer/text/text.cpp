@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
+#include <utility>
 
 namespace proleg {
 namespace {
@@ -19,6 +21,26 @@ bool breaks_a_line(std::string_view character) {
   const unsigned first = byte_at(character, 0);
   return first < 0x20 || first == 0x7F || (first == 0xC2 && byte_at(character, 1) < 0xA0) ||
          character == "\xE2\x80\xA8" || character == "\xE2\x80\xA9";
+}
+
+/// Number of letters that must be inserted, removed, replaced or exchanged with their neighbour (optimal string
+/// alignment).
+std::size_t distance_of(std::string_view from, std::string_view to) {
+  std::vector<std::size_t> before;
+  std::vector<std::size_t> above;
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= from.size(); ++i) {
+    before = std::exchange(above, row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= to.size(); ++j) {
+      row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + (from[i - 1] == to[j - 1] ? 0U : 1U)});
+      if (i > 1 && j > 1 && from[i - 1] == to[j - 2] && from[i - 2] == to[j - 1]) {
+        row[j] = std::min(row[j], before[j - 2] + 1);
+      }
+    }
+  }
+  return row.back();
 }
 
 }  // namespace
@@ -133,6 +155,18 @@ std::string listed(std::span<const std::string> items) {
     result += ", ...";
   }
   return items.empty() ? "nothing" : result;
+}
+
+std::optional<std::string> most_similar(std::string_view word, std::span<const std::string> known) {
+  std::optional<std::string> best;
+  std::size_t least = word.size() / 3 + 1;
+  for (const std::string& candidate : known) {
+    if (const std::size_t changes = distance_of(word, candidate); changes < least) {
+      least = changes;
+      best = candidate;
+    }
+  }
+  return best;
 }
 
 std::optional<double> parse_number(std::string_view word) {

@@ -40,6 +40,10 @@ namespace proleg {
 /// "a, b, c"; at most 30 items, then "...". "nothing" for an empty list.
 [[nodiscard]] std::string listed(std::span<const std::string> items);
 
+/// The known word that is most like a word, for a hint: the one with the fewest letters inserted, removed, replaced or
+/// exchanged with their neighbour. Nothing if that takes more than a third of the letters.
+[[nodiscard]] std::optional<std::string> most_similar(std::string_view word, std::span<const std::string> known);
+
 /// The whole text as an integer, without blanks and, for an unsigned type, without a sign. Nothing if the text is no
 /// such number or the number does not fit.
 template <typename Integer>

@@ -94,5 +94,18 @@ TEST(InputErrorText, NamesFileAndLineAndOmitsLineZero) {
   EXPECT_STREQ(InputError("amplitude=x", 0, "x", "y").what(), "amplitude=x: found x, expected y");
 }
 
+TEST(Text, TheMostSimilarWordTakesTheFewestChanges) {
+  const std::vector<std::string> known{"record", "reset", "seed", "seconds", "send", "from", "at"};
+  EXPECT_EQ(most_similar("recrod", known), "record") << "exchanged";
+  EXPECT_EQ(most_similar("form", known), "from");
+  EXPECT_EQ(most_similar("second", known), "seconds") << "inserted";
+  EXPECT_EQ(most_similar("rreset", known), "reset") << "removed";
+  EXPECT_EQ(most_similar("seat", known), std::nullopt) << "two changes of four letters";
+  EXPECT_EQ(most_similar("fast", known), std::nullopt);
+  EXPECT_EQ(most_similar("x", known), std::nullopt);
+  EXPECT_EQ(most_similar("", known), std::nullopt);
+  EXPECT_EQ(most_similar("reset", {}), std::nullopt);
+}
+
 }  // namespace
 }  // namespace proleg

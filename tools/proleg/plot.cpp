@@ -1,15 +1,18 @@
 // proleg plot: a recording as a picture.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/output/output_check.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/record/figure.hpp"
 #include "sim/record/recording.hpp"
 #include "tools/proleg/beside_recording.hpp"
@@ -31,6 +34,17 @@ bool is_picture(const std::filesystem::path& path) {
   return head.starts_with('<') && head.find("<svg") != std::string::npos;
 }
 
+/// Throws InputError for a name that promises a picture of another format.
+void require_svg(const std::filesystem::path& picture) {
+  constexpr std::array<std::string_view, 12> others{".png", ".jpg",  ".jpeg", ".gif", ".webp", ".bmp",
+                                                    ".tif", ".tiff", ".pdf",  ".ps",  ".eps",  ".html"};
+  const std::string extension = picture.extension().string();
+  if (std::ranges::find(others, lower_case(extension)) != others.end()) {
+    throw InputError("--out", 0, in_quotes(picture.string()),
+                     "a name that ends with .svg: the picture is SVG, and other programs convert it");
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -43,7 +57,8 @@ int main(int argc, char** argv) {
   std::string out;
   sim::TimeWindow window;
   command_line.add_option("RUN", recording_path, "the recording").required().value_name("");
-  command_line.add_option("--out", out, "the picture; by default run.svg for run.proleg, run.1.svg for run.1")
+  command_line
+      .add_option("--out", out, "the picture, an SVG file; by default run.svg for run.proleg, run.1.svg for run.1")
       .value_name("FILE");
   command_line
       .add_option("--from", window.from_s, "start of the time axis in s; by default three strides before its end")
@@ -57,6 +72,7 @@ int main(int argc, char** argv) {
     const sim::Recording recording(recording_path);
     const std::filesystem::path picture =
         out.empty() ? tools::beside_recording(recording_path, ".svg") : std::filesystem::path(out);
+    require_svg(picture);
     const std::array outputs{PlannedOutput{"--out", picture, "SVG picture", is_picture}};
     check_outputs(outputs);
     if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {

@@ -199,6 +199,11 @@ std::unique_ptr<sim::Recorder> open_recorder(const ScenarioOptions& options, con
   if (!options.record) {
     return nullptr;
   }
+  std::error_code missing;
+  if (std::filesystem::file_size(*options.record, missing) > 0 && !missing) {
+    std::cerr << "proleg " << program.substr(0, program.find(' ')) << ": replaces " << one_line(*options.record)
+              << '\n';
+  }
   try {
     // Follow a link, so that the recording replaces the file that it names.
     return std::make_unique<sim::Recorder>(follow_links(*options.record), scenario, program, build_id);

@@ -96,6 +96,24 @@ TEST_F(OutputFiles, AFileReplacesAFileOfItsKindAndNothingElse) {
   }
 }
 
+TEST_F(OutputFiles, ARecordingThatIsReplacedIsNamed) {
+  EXPECT_EQ(proleg(record("new.proleg")).err, "");
+  EXPECT_EQ(proleg(record("new.proleg")).err, "proleg simulate: replaces " + file("new.proleg").string() + "\n");
+  std::vector<std::string> words = record("new.proleg");
+  words[0] = "hil";
+  EXPECT_EQ(proleg(words).err, "proleg hil: replaces " + file("new.proleg").string() + "\n");
+  std::ofstream(file("empty.proleg")).flush();
+  EXPECT_EQ(proleg(record("empty.proleg")).err, "") << "nothing is lost";
+}
+
+TEST_F(OutputFiles, APictureIsSvgWhateverItsName) {
+  const std::string recording = file("kept.proleg").string();
+  for (const char* name : {"q.png", "q.PDF"}) {
+    expect_nothing_written({"plot", recording, "--out", file(name).string()}, {"--out", name, "ends with .svg"});
+  }
+  EXPECT_EQ(proleg({"plot", recording, "--out", file("q.svg").string()}).status, 0);
+}
+
 TEST_F(OutputFiles, TwoNamesOfOneFileAreFound) {
   const auto expect_twice = [&](const std::string& record, const std::string& log) {
     expect_nothing_written({"hil", scenario("uniform"), "--record", record, "--can-log", log}, {"found twice"});

@@ -152,7 +152,7 @@ int hil(const HilOptions& options) {
     print_setup(run.scenario);
   }
   sim::HardwareOptions hardware = hardware_options(options, run);
-  hardware.notice = [](const std::string& text) { print_warning("proleg hil", text); };
+  hardware.notice = [](const std::string& text) { std::cerr << "proleg hil: " << text << '\n'; };
   HilModules modules(options, run.scenario);
   check_files(options, modules);
   HilFiles files;

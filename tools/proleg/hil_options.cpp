@@ -22,13 +22,13 @@ unsigned parse_node_or_joint(const std::string& word, const sim::Scenario& scena
   return static_cast<unsigned>(joint);
 }
 
-/// NODE@TICK or JOINT@TICK
+/// JOINT@TICK or NODE@TICK
 sim::Restart parse_reset(const std::string& word, const ScenarioRun& run) {
   const std::size_t at = word.rfind('@');
   const auto tick =
       at == std::string::npos ? std::nullopt : parse_whole<std::uint32_t>(std::string_view(word).substr(at + 1));
   if (!tick || at == 0) {
-    throw InputError("--reset", 0, in_quotes(word), "NODE@TICK or JOINT@TICK");
+    throw InputError("--reset", 0, in_quotes(word), "JOINT@TICK or NODE@TICK");
   }
   if (*tick == 0 || *tick >= run.ticks) {
     throw InputError("--reset", 0, "tick " + std::to_string(*tick),
@@ -115,7 +115,9 @@ void add_hil_options(CommandLine& command_line, HilOptions& options) {
   add_module_options(command_line, options);
   command_line.add_option(
       "--reset", options.resets,
-      "NODE@TICK or JOINT@TICK: restart a module while the robot moves; it joins again. May be repeated.");
+      "JOINT@TICK or NODE@TICK: restart a module while the robot moves; it joins again. J3@1000 is the module of joint "
+      "J3; a number is a node id (3@1000: node 3). Nodes count from the head, from 1, unless the robot's file numbers "
+      "them. May be repeated.");
   command_line.add_option(
       "--send", options.frames,
       "ID#DATA@TICK: send this frame on the bus right after the SYNC of that tick; hexadecimal, as for "

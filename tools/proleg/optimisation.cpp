@@ -69,7 +69,7 @@ SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t r
                         optimize::planned_evaluations(experiment));
   const auto print_messages = [&] {
     for (const std::string& message : workers.messages()) {
-      display.print(message);
+      display.print("warning: " + message);
     }
   };
   const auto observe = [&](const optimize::Evaluation& evaluation, const optimize::SearchProgress& progress) {

@@ -105,8 +105,8 @@ std::string command_to_continue(const OptimiseOptions& options, const std::files
 void keep_stored_evaluations(optimize::Store& store, Experiment& experiment) {
   const std::uint64_t stored = store.evaluation_count(0);
   if (experiment.evaluations > 0 && experiment.evaluations < stored) {
-    std::cerr << "proleg optimise: the store has " << stored << " evaluations, more than " << experiment.evaluations
-              << "; all of them are kept\n";
+    print_warning("proleg optimise", "the store has " + std::to_string(stored) + " evaluations, more than " +
+                                         std::to_string(experiment.evaluations) + "; all of them are kept");
     experiment.evaluations = stored;
   }
   store.save_search(experiment.evaluations, build_id);

@@ -42,7 +42,11 @@ TEST_F(CommandLine, RefusesUnknownWords) {
   expect_refused({"../../bin/sh"}, {"expected one of"});
   expect_refused({"simulate\n\x1b[31m"}, {"'simulate  [31m'", "expected one of"});
   expect_refused({"simulate"}, {"found no FILE"});
-  expect_refused({"simulate", scenario("uniform"), "--fast"}, {"unknown '--fast'", "--help"});
+  expect_refused({"simulate", scenario("uniform"), "--fast"}, {"unknown '--fast'", "'proleg simulate --help' lists\n"});
+  expect_refused({"simulate", scenario("uniform"), "--second", "3"},
+                 {"unknown '--second'", "; did you mean --seconds?"});
+  expect_refused({"hil", scenario("uniform"), "--reste=3@10"}, {"; did you mean --reset?"});
+  expect_refused({"plot", "--form", "1", "run"}, {"; did you mean --from?"});
   expect_refused({"simulate", scenario("uniform"), "--seconds"}, {"--seconds"});
   expect_refused({"export", "run", "--tsv", "--binary"}, {"--binary"});
   expect_refused({"plot"}, {"RUN"});
@@ -64,7 +68,8 @@ TEST_F(CommandLine, RefusesBadInputAndWritesNothing) {
     simulate({scenario("uniform"), "--seconds", seconds}, {"--seconds", "0.01 to 86400"});
   }
   simulate({scenario("uniform"), "--set", "amplitud=3"}, {"amplitud", "amplitude"});
-  simulate({scenario("uniform"), "--set", "amplitude=91"}, {"91", "90"});
+  simulate({scenario("uniform"), "--set", "amplitude=91"}, {"91", "a number from 0 to 90 deg\n"});
+  simulate({scenario("coupled"), "--set", "noise=30"}, {"'30' for parameter 'noise'", "a number from 0 to 4\n"});
   simulate({scenario("uniform"), "--set", "amplitude=nan"}, {"nan"});
   simulate({scenario("uniform"), "--set", "amplitude"}, {"amplitude", "=VALUE"});
   simulate({scenario("uniform"), "--set", "amplitude:J9=3"}, {"J9", "J1"});
@@ -192,6 +197,7 @@ TEST_F(CommandLine, VerbosePrintsTheJointMapAndEveryParameter) {
   ASSERT_EQ(finished.status, 0) << finished.err;
   EXPECT_NE(finished.err.find("J5"), std::string::npos) << finished.err;
   EXPECT_NE(finished.err.find("amplitude [deg] J5=40 J4=40 J3=40 J2=40 J1=0"), std::string::npos) << finished.err;
+  EXPECT_EQ(finished.err.find("[1]"), std::string::npos) << finished.err;
 }
 
 TEST_F(CommandLine, ARecordingCanBeExportedAndDrawn) {
@@ -252,6 +258,9 @@ TEST_F(CommandLine, AlgorithmsListsWhatCanBeSet) {
   const Finished finished = proleg({"algorithms", "PatternGenerator_sinusoidal"});
   EXPECT_EQ(finished.status, 0);
   EXPECT_NE(finished.out.find("amplitude [deg], 0 to 90, default 40"), std::string::npos) << finished.out;
+  const Finished coupled = proleg({"algorithms", "PatternGenerator_coupled_oscillator"});
+  EXPECT_NE(coupled.out.find("  noise, 0 to 4, default 1\n"), std::string::npos)
+      << "a ratio has no unit: " << coupled.out;
   expect_refused({"algorithms", "MTRAN"}, {"'MTRAN'", "DirectJointAccess"});
 }
 

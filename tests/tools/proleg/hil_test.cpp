@@ -130,10 +130,11 @@ TEST_F(Hil, SendsAFrameAndLogsTheAnswer) {
 TEST_F(Hil, BadOptionsAreRefused) {
   const std::string file_name = scenario("uniform");
   expect_refused({"hil", file_name, "--modules", "mechanical"}, {"mechanical"});
-  expect_refused({"hil", file_name, "--reset", "3"}, {"--reset", "'3'", "NODE@TICK or JOINT@TICK"});
+  EXPECT_NE(proleg({"hil", "--help"}).out.find("a number is a node id (3@1000: node 3)"), std::string::npos);
+  expect_refused({"hil", file_name, "--reset", "3"}, {"--reset", "'3'", "JOINT@TICK or NODE@TICK"});
   expect_refused({"hil", file_name, "--reset", "J5@100"}, {"node 1 (J5), which produces the SYNC"});
   expect_refused({"hil", file_name, "--reset", "J9@100"}, {"--reset", "'J9'", "J1, J2, J3, J4, J5"});
-  expect_refused({"hil", file_name, "--reset", "@100"}, {"--reset", "NODE@TICK or JOINT@TICK"});
+  expect_refused({"hil", file_name, "--reset", "@100"}, {"--reset", "JOINT@TICK or NODE@TICK"});
   expect_refused({"hil", file_name, "--reset", "9@100"}, {"node 9", "one of 1, 2, 3, 4, 5"});
   expect_refused({"hil", file_name, "--reset", "3@0"}, {"tick 0"});
   expect_refused({"hil", file_name, "--reset", "3@3000"}, {"tick 3000", "1 to 2999"});

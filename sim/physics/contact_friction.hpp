@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "sim/physics/world.hpp"
+#include "sim/physics/contact_sliding.hpp"
 
 namespace proleg::sim {
 

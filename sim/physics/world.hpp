@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/environment/environment_model.hpp"
+#include "sim/physics/contact_sliding.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim {
@@ -18,12 +19,6 @@ enum class Stepper : std::uint8_t {
   direct,     ///< dWorldStep: exact, repeatable on every thread; the faster one up to about 8 links
   iterative,  ///< dWorldQuickStep, 20 iterations: the faster one above. Draws from one random generator for the whole
               ///< process, so each run that must be repeatable needs its own process.
-};
-
-/// How a robot's contact points with its environment slid in a step of the physics.
-struct ContactSliding {
-  double normal_force = 0.0;       ///< N, sum over the points
-  double force_times_speed = 0.0;  ///< N m/s, sum over the points of normal force times sliding speed
 };
 
 /// A robot and its environment in the Open Dynamics Engine. Time passes in equal steps; a world of the same models

@@ -63,4 +63,13 @@ std::optional<Measure> find_measure(std::string_view name) {
   return found == declarations.end() ? std::nullopt : std::optional(found->measure);
 }
 
+std::vector<std::string> measure_names() {
+  std::vector<std::string> names;
+  names.reserve(declarations.size());
+  for (const MeasureDeclaration& declaration : declarations) {
+    names.emplace_back(declaration.name);
+  }
+  return names;
+}
+
 }  // namespace proleg::sim

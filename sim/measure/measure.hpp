@@ -9,7 +9,9 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace proleg::sim {
 
@@ -52,6 +54,8 @@ struct MeasureDeclaration {
 [[nodiscard]] std::span<const MeasureDeclaration, measure_count> measures();
 [[nodiscard]] const MeasureDeclaration& declaration_of(Measure measure);
 [[nodiscard]] std::optional<Measure> find_measure(std::string_view name);
+/// The names that find_measure() knows, for messages.
+[[nodiscard]] std::vector<std::string> measure_names();
 
 /// A value of each measure; not a number where the run does not define it (the cost of transport of a robot that does
 /// not move, the stride length of a gait without strides).

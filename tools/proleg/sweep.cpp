@@ -53,11 +53,7 @@ sim::Measure read_measure(const std::string& name) {
   if (const auto measure = sim::find_measure(name)) {
     return *measure;
   }
-  std::vector<std::string> names;
-  for (const sim::MeasureDeclaration& declaration : sim::measures()) {
-    names.emplace_back(declaration.name);
-  }
-  throw InputError("--measure", 0, in_quotes(name), "one of " + listed(names));
+  throw InputError("--measure", 0, in_quotes(name), "one of " + listed(sim::measure_names()));
 }
 
 /// The folder of the results; none of the files may exist in it.

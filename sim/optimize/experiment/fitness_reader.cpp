@@ -21,11 +21,7 @@ sim::Measure read_measure(const XmlElement& element) {
   const std::string name = element.required_attribute("measure");
   const std::optional<sim::Measure> measure = sim::find_measure(name);
   if (!measure) {
-    std::vector<std::string> known;
-    for (const sim::MeasureDeclaration& declaration : sim::measures()) {
-      known.emplace_back(declaration.name);
-    }
-    element.refuse("unknown measure " + in_quotes(name), "one of " + listed(known));
+    element.refuse("unknown measure " + in_quotes(name), "one of " + listed(sim::measure_names()));
   }
   return *measure;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace proleg::sim {
 namespace {
@@ -24,6 +25,13 @@ TEST(Measures, HaveUniqueNamesByWhichTheyAreFound) {
   for (const char* name : {"", "Distance", "distance ", "length"}) {
     EXPECT_EQ(find_measure(name), std::nullopt) << name;
   }
+}
+
+TEST(Measures, AreListedByName) {
+  const std::vector<std::string> names = measure_names();
+  ASSERT_EQ(names.size(), measure_count);
+  EXPECT_EQ(names.front(), "distance");
+  EXPECT_EQ(names.back(), "at_torque_limit");
 }
 
 TEST(Measures, StateWhetherHigherIsBetter) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -173,15 +174,42 @@ class PulsesByTick {
   std::vector<ServoPulse> taken_;
 };
 
+/// The recorded losses, tick by tick.
+class LossesByTick {
+ public:
+  explicit LossesByTick(const Recording& recording) : reader_(recording), next_(reader_.next()) {}
+
+  /// Those of the tick that take() had last; at the same address in all ticks.
+  [[nodiscard]] const Losses& taken() const { return taken_; }
+  /// Ticks must ascend.
+  void take(std::uint32_t tick) {
+    if (taken_.any()) {
+      taken_ = Losses();
+    }
+    std::vector<Loss> list;
+    for (; next_ && next_->tick <= tick; next_ = reader_.next()) {
+      list.push_back(*next_);
+    }
+    if (!list.empty()) {
+      taken_ = Losses(std::move(list));
+    }
+  }
+
+ private:
+  LossReader reader_;
+  std::optional<Loss> next_;
+  Losses taken_;
+};
+
 Verification recompute(const Recording& recording, const RecordedGait& gait,
                        const std::function<void(std::uint32_t tick)>& progress) {
   ServoPulses pulse_source({gait.servo_period_us, gait.configuration.tick_period_us}, gait.limits, gait.command_speed);
-  const Losses losses(recording.losses());
+  LossesByTick losses(recording);
   const std::vector<RecordedRestart> restarts = recording.restarts();
   PulsesByTick pulses(recording);
 
   KernelChain chain(gait.configuration, gait.limits, gait.settings);
-  chain.set_losses(&losses);
+  chain.set_losses(&losses.taken());
   Verification result;
   const auto note = [&result](const Difference& difference) {
     ++result.differences;
@@ -206,6 +234,7 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
     for (std::size_t joint = 0; joint < contacts.size(); ++joint) {
       contacts[joint] = joint_contacts(tick.latched_contacts, joint);
     }
+    losses.take(tick.tick);
     chain.advance(contacts);
     setpoint_hash.append(chain.setpoints());
     compare_setpoints(tick.tick, tick.setpoints, chain.setpoints(), note);

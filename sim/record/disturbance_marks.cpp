@@ -20,9 +20,10 @@ Disturbances collect_disturbances(const Recording& recording) {
       open[event.joint].reset();
     }
   }
-  for (const Loss& loss : recording.losses()) {
-    if (result.lost_in_ticks.empty() || result.lost_in_ticks.back().tick != loss.tick) {
-      result.lost_in_ticks.push_back({loss.tick, 0});
+  LossReader losses(recording);
+  while (const std::optional<Loss> loss = losses.next()) {
+    if (result.lost_in_ticks.empty() || result.lost_in_ticks.back().tick != loss->tick) {
+      result.lost_in_ticks.push_back({loss->tick, 0});
     }
     ++result.lost_in_ticks.back().frames;
   }

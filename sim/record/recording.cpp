@@ -191,22 +191,6 @@ std::vector<RecordedSetting> Recording::read_settings(const char* sql) const {
   });
 }
 
-std::vector<Loss> Recording::losses() const {
-  return reading(path_, [&] {
-    std::vector<Loss> losses;
-    Statement row(tables_->database, "SELECT tick, sender, channel, receiver FROM loss ORDER BY 1, 2, 3, 4");
-    while (row.step()) {
-      const std::uint32_t channel = natural(row, 2);
-      if (channel >= max_channels) {
-        throw Damage("a loss on channel " + std::to_string(channel));
-      }
-      losses.push_back(
-          {natural(row, 0), joint_number(row, 1), static_cast<std::uint8_t>(channel), joint_number(row, 3)});
-    }
-    return losses;
-  });
-}
-
 std::vector<RecordedRestart> Recording::restarts() const {
   return reading(path_, [&] {
     std::vector<RecordedRestart> restarts;
@@ -305,6 +289,28 @@ std::optional<ServoPulse> ServoPulseReader::next() {
       return std::nullopt;
     }
     return ServoPulse{time(*row_, 0), recording_.joint_number(*row_, 1), raw(*row_, 2)};
+  });
+}
+
+LossReader::LossReader(const Recording& recording)
+    : recording_(recording), row_(reading(recording.path(), [&] {
+        return std::make_unique<Statement>(recording.tables_->database,
+                                           "SELECT tick, sender, channel, receiver FROM loss ORDER BY 1, 2, 3, 4");
+      })) {}
+
+LossReader::~LossReader() = default;
+
+std::optional<Loss> LossReader::next() {
+  return reading(recording_.path(), [this]() -> std::optional<Loss> {
+    if (!row_->step()) {
+      return std::nullopt;
+    }
+    const std::uint32_t channel = natural(*row_, 2);
+    if (channel >= max_channels) {
+      throw Damage("a loss on channel " + std::to_string(channel));
+    }
+    return Loss{natural(*row_, 0), recording_.joint_number(*row_, 1), static_cast<std::uint8_t>(channel),
+                recording_.joint_number(*row_, 3)};
   });
 }
 

@@ -108,8 +108,6 @@ class Recording {
   [[nodiscard]] const std::vector<RecordedInternalValue>& internal_values() const { return internal_values_; }
   [[nodiscard]] std::vector<RecordedSetting> parameters() const;
   [[nodiscard]] std::vector<RecordedSetting> distortions() const;
-  /// In the order of ticks.
-  [[nodiscard]] std::vector<Loss> losses() const;
   [[nodiscard]] std::vector<RecordedRestart> restarts() const;
   /// Path and text of every file of the scenario.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> sources() const;
@@ -118,6 +116,7 @@ class Recording {
   void read_ticks(std::uint32_t first, std::uint32_t last, const std::function<void(const RecordedTick&)>& use) const;
 
  private:
+  friend class LossReader;
   friend class ServoPulseReader;
   class Tables;
 
@@ -153,6 +152,24 @@ class ServoPulseReader {
 
   /// The next pulse, or nothing at the end.
   [[nodiscard]] std::optional<ServoPulse> next();
+
+ private:
+  const Recording& recording_;
+  std::unique_ptr<Statement> row_;
+};
+
+/// Reads the losses one by one, in the order of tick, sender, channel, receiver. A day with many joints has hundreds of
+/// millions. Throws as Recording does.
+class LossReader {
+ public:
+  /// recording: must outlive the reader.
+  explicit LossReader(const Recording& recording);
+  ~LossReader();
+  LossReader(const LossReader&) = delete;
+  LossReader& operator=(const LossReader&) = delete;
+
+  /// The next loss, or nothing at the end.
+  [[nodiscard]] std::optional<Loss> next();
 
  private:
   const Recording& recording_;

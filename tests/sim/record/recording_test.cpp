@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <optional>
+#include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/sqlite/sqlite.hpp"
@@ -16,11 +18,13 @@ void read_all(const std::filesystem::path& path) {
   const Recording recording(path);
   (void)recording.parameters();
   (void)recording.distortions();
-  (void)recording.losses();
   (void)recording.restarts();
   (void)recording.sources();
   ServoPulseReader pulses(recording);
   while (pulses.next()) {
+  }
+  LossReader losses(recording);
+  while (losses.next()) {
   }
   recording.read_ticks(recording.first_tick(), recording.last_tick(), [](const RecordedTick& /*tick*/) {});
 }
@@ -162,6 +166,20 @@ TEST_F(BadRecording, OverwrittenPagesAreRefusedOrReadButNeverCrash) {
     refused += refusal(path_).empty() ? 0 : 1;
   }
   EXPECT_GT(refused, tried / 4);
+}
+
+TEST(Recording, ReadsTheLossesOneByOneInTheOrderOfTicksAndJoints) {
+  const TemporaryFolder folder;
+  record_small(folder / "run.sqlite", small_scenario(), 30);
+  Database(folder / "run.sqlite", SQLITE_OPEN_READWRITE)
+      .execute("INSERT INTO loss VALUES(7, 0, 0, 1), (3, 2, 1, 0), (3, 2, 0, 1), (3, 0, 0, 2)");
+  const Recording recording(folder / "run.sqlite");
+  LossReader reader(recording);
+  std::vector<std::vector<unsigned>> losses;
+  while (const std::optional<Loss> loss = reader.next()) {
+    losses.push_back({loss->tick, loss->sender, loss->channel, loss->receiver});
+  }
+  EXPECT_EQ(losses, (std::vector<std::vector<unsigned>>{{3, 0, 0, 2}, {3, 2, 0, 1}, {3, 2, 1, 0}, {7, 0, 0, 1}}));
 }
 
 TEST(Recording, ReadsAPartOfARun) {

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <vector>
 
+#include "body_wave.hpp"
 #include "shipped.hpp"
 #include "sim/loop/hardware_loop.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/measure/crawling_models.hpp"
 #include "sim/measure/measure.hpp"
 
 namespace proleg::sim {

@@ -1,7 +1,7 @@
-// The figures are computed by hand from the equations of the thesis, chapters 2 and 3, for 9.81 m/s^2, a stride of 0.1
-// m and a friction of 0.3, and for the thesis's gait of 40 and 30 degrees with 55 degrees of phase difference.
+// The figures are computed by hand from the equations of the thesis, for its gait of 40 and 30 degrees with 55 degrees
+// of phase difference.
 
-#include "sim/measure/crawling_models.hpp"
+#include "body_wave.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,49 +11,7 @@
 namespace proleg::sim {
 namespace {
 
-constexpr double gravity = 9.81;
-constexpr double stride = 0.1;
-constexpr double friction = 0.3;
 constexpr double degree = std::numbers::pi / 180.0;
-
-TEST(CrawlingModels, FrictionAndInertiaCostTheSameAtTheCrossoverSpeed) {
-  const double two_anchor = two_anchor_crossover_speed(friction, stride, gravity);
-  EXPECT_NEAR(two_anchor, 0.46981, 5e-6);
-  CrawlingWork work = two_anchor_work(friction, two_anchor, stride, gravity);
-  EXPECT_NEAR(work.friction, 2.943, 1e-9);
-  EXPECT_NEAR(work.inertia, work.friction, 1e-9);
-
-  const double peristalsis = peristalsis_crossover_speed(friction, 0.4, stride, gravity);
-  EXPECT_NEAR(peristalsis, 0.30688, 5e-6);
-  work = peristalsis_work(friction, 0.4, peristalsis, stride, gravity);
-  EXPECT_NEAR(work.friction, 2.943, 1e-9);
-  EXPECT_NEAR(work.inertia, work.friction, 1e-9);
-
-  const double serpentine = serpentine_crossover_speed(friction, 30 * degree, stride, gravity);
-  EXPECT_NEAR(serpentine, 1.00970, 5e-6);
-  work = serpentine_work(friction, 30 * degree, serpentine, stride, gravity);
-  EXPECT_NEAR(work.friction, 3.39828, 5e-6);
-  EXPECT_NEAR(work.inertia, work.friction, 1e-9);
-}
-
-TEST(CrawlingModels, InertiaCostsWithTheSquareOfTheSpeedAndFrictionDoesNot) {
-  const auto expect_square = [](const CrawlingWork& slow, const CrawlingWork& fast) {
-    EXPECT_EQ(fast.friction, slow.friction);
-    EXPECT_NEAR(fast.inertia, 9 * slow.inertia, 1e-12);
-  };
-  expect_square(two_anchor_work(friction, 0.1, stride, gravity), two_anchor_work(friction, 0.3, stride, gravity));
-  expect_square(peristalsis_work(friction, 0.4, 0.1, stride, gravity),
-                peristalsis_work(friction, 0.4, 0.3, stride, gravity));
-  expect_square(serpentine_work(friction, 0.5, 0.1, stride, gravity),
-                serpentine_work(friction, 0.5, 0.3, stride, gravity));
-}
-
-TEST(CrawlingModels, PropulsionNeedsFrictionThatDiffersByDirection) {
-  EXPECT_DOUBLE_EQ(max_moving_share(0.3, 0.3), 0.5);
-  EXPECT_DOUBLE_EQ(max_moving_share(0.1, 0.3), 0.75);
-  EXPECT_DOUBLE_EQ(min_bend(0.3, 0.3), 45 * degree);
-  EXPECT_NEAR(std::tan(min_bend(0.1, 0.4)), 0.25, 1e-12);
-}
 
 TEST(BodyWave, ItsNumberIsCountedByJointsOrByLinks) {
   EXPECT_NEAR(wave_count(55 * degree, 5), 0.7639, 5e-5);

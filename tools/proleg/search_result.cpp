@@ -36,21 +36,43 @@ std::vector<double> own_scores(const Experiment& experiment, const Evaluation& e
   return scores;
 }
 
-/// How much better the best is than the baseline, in per cent of the baseline; nothing without a score to compare with.
-std::optional<double> gain_percent(const Experiment& experiment, const SearchResult& result) {
+/// What decides between the best and the baseline: the means of their fresh runs, or their scores in the search.
+struct Comparison {
+  double best;
+  double baseline;
+};
+
+/// Nothing without a score to compare with.
+std::optional<Comparison> compare_with_baseline(const Experiment& experiment, const SearchResult& result) {
   if (!result.baseline || !optimize::has_own_score(experiment, *result.baseline, 0)) {
     return std::nullopt;
   }
   const Confirmation* const best = result.confirmation_of(result.best);
   const Confirmation* const baseline = result.confirmation_of(*result.baseline);
-  const bool is_confirmed = best != nullptr && baseline != nullptr;
-  const double after = is_confirmed ? best->mean : result.best.scores.front();
-  const double before = is_confirmed ? baseline->mean : result.baseline->scores.front();
-  if (before == 0.0) {
+  if (best != nullptr && baseline != nullptr) {
+    return Comparison{best->mean, baseline->mean};
+  }
+  return Comparison{result.best.scores.front(), result.baseline->scores.front()};
+}
+
+/// How much better the best is than the baseline, in per cent of the baseline.
+std::optional<double> gain_percent(const Experiment& experiment, const SearchResult& result) {
+  const std::optional<Comparison> scores = compare_with_baseline(experiment, result);
+  if (!scores || scores->baseline == 0.0) {
     return std::nullopt;
   }
-  const double gain = 100.0 * (after - before) / std::abs(before);
+  const double gain = 100.0 * (scores->best - scores->baseline) / std::abs(scores->baseline);
   return (experiment.objectives.front().goal == optimize::Goal::maximise ? gain : -gain) + 0.0;
+}
+
+/// Whether the search found a candidate that is better than the baseline; nothing without a score to compare with.
+std::optional<bool> beats_baseline(const Experiment& experiment, const SearchResult& result) {
+  const std::optional<Comparison> scores = compare_with_baseline(experiment, result);
+  if (!scores) {
+    return std::nullopt;
+  }
+  return result.best.candidate != result.baseline->candidate &&
+         experiment.objectives.front().better(scores->best, scores->baseline);
 }
 
 std::string number_text(double value, std::string_view unit) {
@@ -87,6 +109,10 @@ void print_baseline(const Experiment& experiment, const SearchResult& result) {
     text += percent.data();
   }
   print_line("baseline", text);
+  if (result.better_than_baseline == false) {
+    print_line("no gain", result.moved.empty() ? "no candidate was better than the scenario's own"
+                                               : "no candidate was better than the baseline");
+  }
   if (const Confirmation* const confirmation = result.confirmation_of(baseline)) {
     print_line("  in fresh runs", confirmation_text(experiment, *confirmation));
   }
@@ -184,7 +210,10 @@ SearchResult result_of(const Experiment& experiment, const SearchOutcome& outcom
     result.baseline = *baseline;
     result.moved = optimize::values_outside_space(experiment);
   }
-  result.at_bounds = optimize::values_at_bounds(experiment, result.best.candidate);
+  result.better_than_baseline = beats_baseline(experiment, result);
+  if (result.better_than_baseline != false) {
+    result.at_bounds = optimize::values_at_bounds(experiment, result.best.candidate);
+  }
   return result;
 }
 
@@ -255,6 +284,7 @@ void add_result(const Experiment& experiment, const SearchResult& result, Json& 
   object.add("best_scenario_score", result.own_scores.front());
   object.add("best_scenario_scores", scores_object(experiment, result.own_scores));
   object.add("baseline", baseline_object(experiment, result));
+  object.add("better_than_baseline", result.better_than_baseline);
   object.add("gain_percent", gain_percent(experiment, result));
   Json confirmations = Json::empty_array();
   for (const Confirmation& confirmation : result.confirmations) {

@@ -22,7 +22,9 @@ struct SearchResult {
   std::optional<optimize::Evaluation> baseline;
   std::vector<optimize::MovedValue> moved;  ///< values of the scenario that the baseline does not have
   std::vector<optimize::Confirmation> confirmations;
-  std::vector<optimize::ValueAtBound> at_bounds;  ///< of the best
+  /// Whether any candidate was better than the baseline; nothing if the baseline has no score.
+  std::optional<bool> better_than_baseline;
+  std::vector<optimize::ValueAtBound> at_bounds;  ///< of the best, if it is better than the baseline
 
   /// The fresh runs of an evaluation; null if it had none.
   [[nodiscard]] const optimize::Confirmation* confirmation_of(const optimize::Evaluation& evaluation) const;

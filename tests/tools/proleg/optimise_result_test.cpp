@@ -147,6 +147,7 @@ TEST_F(OptimiseResult, AnOptimumAtABoundIsReported) {
                    {short_, {"<lowerBounds>0", "<lowerBounds>10"}, {"<upperBounds>40", "<upperBounds>10.25"}});
   std::vector<std::string> words = search("bound.optimise.xml", "text", {"--evaluations", "40"});
   const Json object = json_of(proleg(words));
+  EXPECT_EQ(object["better_than_baseline"], Json("true"));
   ASSERT_EQ(object["at_bounds"].size(), 5U) << "every value is at one of the two bounds";
   for (const Json& bound : object["at_bounds"].elements()) {
     EXPECT_EQ(bound["bound"], bound["value"].number() == 10.25 ? "highest" : "lowest");
@@ -154,6 +155,20 @@ TEST_F(OptimiseResult, AnOptimumAtABoundIsReported) {
   words = search("bound.optimise.xml", "out", {"--evaluations", "40"});
   words.erase(std::ranges::find(words, "--json"));
   EXPECT_NE(proleg(words).out.find("value of its range: a wider range may give more"), std::string::npos);
+}
+
+TEST_F(OptimiseResult, WithoutABetterCandidateTheResultSaysSoAndNamesNoBounds) {
+  // The only evaluation is the scenario's own candidate, whose amplitudes are the highest of the search space.
+  write_experiment("plain.optimise.xml", {short_});
+  const Json object = json_of(proleg(search("plain.optimise.xml", "json", {"--evaluations", "1"})));
+  EXPECT_EQ(object["best_score"], object["baseline"]["score"].number());
+  EXPECT_EQ(object["better_than_baseline"], Json("false"));
+  EXPECT_TRUE(object["at_bounds"].empty());
+  std::vector<std::string> words = search("plain.optimise.xml", "text", {"--evaluations", "1"});
+  words.erase(std::ranges::find(words, "--json"));
+  const std::string text = proleg(words).out;
+  EXPECT_NE(text.find("no candidate was better than the scenario's own"), std::string::npos) << text;
+  EXPECT_EQ(text.find("at a bound"), std::string::npos) << text;
 }
 
 TEST_F(OptimiseResult, AWinnerThatTheServosCannotFollowCausesAWarning) {

@@ -15,10 +15,13 @@
 // The case of tags and attributes does not matter; the case of names does. An unknown tag or attribute is an error that
 // lists the known ones. Lengths are metres, masses kilograms, angles degrees unless a tag says otherwise.
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 
+#include "shared/fixed/unit.hpp"
+#include "shared/gait/joint_mask.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {
@@ -52,5 +55,23 @@ class DiskFiles final : public FileSource {
 /// overwritten (a distortion) at the tick, by default 0. Throws InputError with the word as its file, and then does not
 /// change the scenario.
 void apply_setting(Scenario& scenario, const std::string& word);
+
+/// The values that a `--set` word changes.
+struct SettingTarget {
+  unsigned slot = 0;
+  bool internal = false;
+  unsigned index = 0;      ///< of the parameter or internal value in the declaration
+  JointMask joints;        ///< kernel order, at least one
+  bool in_flight = false;  ///< as a change at the tick; otherwise a start value
+  std::uint32_t tick = 0;  ///< of the change; 0 for a start value
+  Unit unit = Unit::count;
+
+  [[nodiscard]] bool same_value(const SettingTarget& other) const {
+    return slot == other.slot && internal == other.internal && index == other.index;
+  }
+};
+
+/// Does not look at the VALUE of the word. Throws InputError as apply_setting() does.
+[[nodiscard]] SettingTarget find_target(const Scenario& scenario, const std::string& word);
 
 }  // namespace proleg::sim

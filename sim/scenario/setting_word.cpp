@@ -176,6 +176,28 @@ std::int32_t parse_internal_value(const InternalValue& internal, const SettingWo
   return result.raw;
 }
 
+SettingTarget target_of(const Scenario& scenario, const SettingWord& word) {
+  const Resolver resolver(scenario, word);
+  const int joint = resolver.joint();
+  const Meaning meaning = resolver.meaning(joint);
+  const Slot& slot = scenario.kernel.slots[meaning.slot];
+  const Declaration& declaration = slot.algorithm->declaration();
+  SettingTarget target;
+  target.slot = meaning.slot;
+  target.internal = meaning.internal;
+  target.index = meaning.index;
+  for (unsigned j = 0; j < scenario.kernel.joint_count; ++j) {
+    if (slot.group.contains(j) && (joint < 0 || j == static_cast<unsigned>(joint))) {
+      target.joints.insert(j);
+    }
+  }
+  target.in_flight = meaning.internal || word.tick.has_value();
+  target.tick = parse_tick(word);
+  target.unit =
+      meaning.internal ? declaration.internal_values[meaning.index].unit : declaration.parameters[meaning.index].unit;
+  return target;
+}
+
 Change& change_at(std::vector<Change>& changes, std::uint32_t tick) {
   const auto position = std::ranges::lower_bound(changes, tick, {}, &Change::tick);
   if (position != changes.end() && position->tick == tick) {
@@ -188,39 +210,35 @@ Change& change_at(std::vector<Change>& changes, std::uint32_t tick) {
 
 void apply_setting(Scenario& scenario, const std::string& text) {
   const SettingWord word = take_apart(text);
-  const Resolver resolver(scenario, word);
-  const int joint = resolver.joint();
-  const Meaning meaning = resolver.meaning(joint);
-  const Slot& slot = scenario.kernel.slots[meaning.slot];
-  const Declaration& declaration = slot.algorithm->declaration();
+  const SettingTarget target = target_of(scenario, word);
+  const Declaration& declaration = scenario.kernel.slots[target.slot].algorithm->declaration();
 
   Setting setting;
-  setting.slot = static_cast<std::uint8_t>(meaning.slot);
-  setting.index = static_cast<std::uint8_t>(meaning.index);
-  setting.internal = meaning.internal;
-  setting.value = meaning.internal
-                      ? parse_internal_value(declaration.internal_values[meaning.index], word)
-                      : parse_parameter(declaration.parameters[meaning.index], word.number, shortened(word.word), 0);
-  const std::uint32_t tick = parse_tick(word);
-  const bool in_flight = meaning.internal || word.tick.has_value();
-  for (unsigned j = 0; j < scenario.kernel.joint_count; ++j) {
-    if (!slot.group.contains(j) || (joint >= 0 && j != static_cast<unsigned>(joint))) {
-      continue;
-    }
-    setting.joint = static_cast<std::uint8_t>(j);
-    if (in_flight) {
-      std::vector<Setting>& settings = change_at(scenario.changes, tick).settings;
+  setting.slot = static_cast<std::uint8_t>(target.slot);
+  setting.index = static_cast<std::uint8_t>(target.index);
+  setting.internal = target.internal;
+  setting.value = target.internal
+                      ? parse_internal_value(declaration.internal_values[target.index], word)
+                      : parse_parameter(declaration.parameters[target.index], word.number, shortened(word.word), 0);
+  for (const unsigned joint : target.joints) {
+    setting.joint = static_cast<std::uint8_t>(joint);
+    if (target.in_flight) {
+      std::vector<Setting>& settings = change_at(scenario.changes, target.tick).settings;
       put_setting(settings, setting);
       const auto of_joint = std::ranges::count(settings, setting.joint, &Setting::joint);
       if (of_joint > static_cast<std::ptrdiff_t>(max_staged_values)) {
         word.refuse("more than " + std::to_string(max_staged_values) + " values for joint " +
-                        in_quotes(scenario.robot.joints[j].name) + " at tick " + std::to_string(tick),
+                        in_quotes(scenario.robot.joints[joint].name) + " at tick " + std::to_string(target.tick),
                     "at most " + std::to_string(max_staged_values) + ", the memory of a module");
       }
     } else {
       set_start_value(scenario, setting);
     }
   }
+}
+
+SettingTarget find_target(const Scenario& scenario, const std::string& word) {
+  return target_of(scenario, take_apart(word));
 }
 
 }  // namespace proleg::sim

@@ -231,5 +231,22 @@ TEST(SetOption, AWordThatIsRefusedChangesNothing) {
   EXPECT_TRUE(small.changes.empty());
 }
 
+TEST(SettingTarget, IsWhatTheWordChanges) {
+  const SettingTarget all = find_target(scenario(), "amplitude=3");
+  EXPECT_EQ(all.slot, 0U);
+  EXPECT_EQ(all.joints.bits(), 0b11U);
+  EXPECT_FALSE(all.in_flight);
+  EXPECT_EQ(all.unit, Unit::degree);
+  const SettingTarget one = find_target(scenario(), "1.amplitude:J1=3@7");
+  EXPECT_TRUE(one.same_value(all));
+  EXPECT_EQ(one.joints.bits(), 0b10U) << "J1 is kernel joint 1";
+  EXPECT_TRUE(one.in_flight);
+  EXPECT_EQ(one.tick, 7U);
+  const SettingTarget frequency = find_target(scenario(), "frequency=x");
+  EXPECT_FALSE(frequency.same_value(all));
+  EXPECT_EQ(frequency.unit, Unit::hertz);
+  EXPECT_THROW((void)find_target(scenario(), "amplitud=3"), InputError);
+}
+
 }  // namespace
 }  // namespace proleg::sim

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 
 namespace proleg::sim {
 
@@ -13,6 +14,11 @@ class ServoTracking {
  public:
   /// max_speed: rad/s; max_torque: Nm; both above 0.
   ServoTracking(double max_speed, double max_torque) : max_speed_(max_speed), torque_limit_(almost_all * max_torque) {}
+
+  /// Share of the time at a limit, and rad, above which a servo cannot follow. A servo at its torque limit may still
+  /// keep its angle.
+  static constexpr double much_time = 0.2;
+  static constexpr double large_error = 5.0 * std::numbers::pi / 180.0;
 
   /// Must be called for every step of the physics with pulses. commanded_speed: rad/s, that the servo tries to reach;
   /// motor_torque: Nm.
@@ -38,6 +44,10 @@ class ServoTracking {
   /// Shares of the time, 0 to 1. Not a number before the first step.
   [[nodiscard]] double at_speed_limit() const { return share(speed_limited_); }
   [[nodiscard]] double at_torque_limit() const { return share(torque_limited_); }
+  /// Whether the servo is at a limit for much of the time and has a large error (root mean square).
+  [[nodiscard]] bool cannot_follow() const {
+    return (at_speed_limit() > much_time || at_torque_limit() > much_time) && rms_error() > large_error;
+  }
 
  private:
   /// The solver reaches the limit up to rounding.

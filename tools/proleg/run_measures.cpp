@@ -14,8 +14,8 @@ namespace {
 
 constexpr double degrees = 180.0 / std::numbers::pi;
 
-constexpr double much = 0.2;             // share of the time at a limit
-constexpr double large_error_deg = 5.0;  // a servo at its torque limit may still keep its angle
+constexpr double much = sim::ServoTracking::much_time;
+constexpr double large_error_deg = sim::ServoTracking::large_error * degrees;
 
 /// "J3 is at its speed limit for 34 % of the time (5 joints above 20 %)"; empty if no joint is above.
 std::string worst_joint(const RunMeasures& measures, const sim::RobotModel& robot, const char* limit,

@@ -116,6 +116,7 @@ void each_result_field(ResultType& result, const Visit& field) {
   field(result.wall_s);
   field(result.given_up);
   field(result.failure);
+  field(result.limited_joints);
 }
 
 }  // namespace

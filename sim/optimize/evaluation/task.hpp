@@ -33,9 +33,10 @@ struct Task {
 struct TrialResult {
   sim::MeasureValues measures;
   double simulated_s = 0.0;
-  double wall_s = 0.0;    ///< what the worker needed; processor time would not include waiting
-  bool given_up = false;  ///< racing stopped it; distance and speed are extrapolated
-  std::string failure;    ///< why the simulation failed (PhysicsError); empty if it did not
+  double wall_s = 0.0;               ///< what the worker needed; processor time would not include waiting
+  bool given_up = false;             ///< racing stopped it; distance and speed are extrapolated
+  std::string failure;               ///< why the simulation failed (PhysicsError); empty if it did not
+  std::uint32_t limited_joints = 0;  ///< whose servos cannot follow the gait; only sweeps count them
 };
 
 /// Simulates a task. The result, except wall_s, depends only on experiment and task. Throws only if the system fails

@@ -290,6 +290,18 @@ TEST(GaitMeter, AServoIsAtItsLimitInEitherDirection) {
   EXPECT_NEAR(tracking(3.0, 4.5, 0.5, 3.0).tracking()[0].at_speed_limit(), 1.0, 1e-12);
 }
 
+// docs/gait-measures.md: above a fifth of the time at a limit, and above 5 degrees.
+TEST(GaitMeter, AServoAtALimitThatMissesItsAnglesCannotFollow) {
+  const auto cannot_follow = [](double error_deg, double commanded_speed, double torque) {
+    return tracking(error_deg, commanded_speed, torque, 3.0).tracking()[0].cannot_follow();
+  };
+  EXPECT_TRUE(cannot_follow(5.1, 4.5, 0.5));
+  EXPECT_TRUE(cannot_follow(5.1, 1.0, 2.0));
+  EXPECT_FALSE(cannot_follow(4.9, 4.5, 2.0)) << "it keeps its angle";
+  EXPECT_FALSE(cannot_follow(5.1, 1.0, 0.5)) << "it lags behind without a limit";
+  EXPECT_FALSE(tracking(5.1, 4.5, 0.5, 0.9).tracking()[0].cannot_follow()) << "before the gait";
+}
+
 /// The measures after one joint has turned at a speed with a torque for a second.
 MeasureValues turning(Motion motion, double torque, double speed, double commanded, bool limp = false) {
   GaitMeter meter(motion.robot, motion.environment, Eigen::Vector3d::Zero(), step_s, tick_s);

@@ -25,6 +25,7 @@ TrialResult special_result() {
   result.wall_s = 1e-300;
   result.given_up = true;
   result.failure = std::string("a\0b\xFF", 4);
+  result.limited_joints = 0xFFFFFFFFU;
   return result;
 }
 
@@ -43,6 +44,7 @@ TEST(Message, KeepsEveryBitOfAResult) {
   ASSERT_TRUE(read);
   EXPECT_EQ(exact(*read), exact(result));
   EXPECT_EQ(read->wall_s, result.wall_s);
+  EXPECT_EQ(read->limited_joints, result.limited_joints);
 }
 
 TEST(Message, ThatIsCutOrTooLongIsRejected) {

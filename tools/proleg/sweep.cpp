@@ -1,5 +1,6 @@
 // proleg sweep: runs a scenario with all combinations of some values.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -45,6 +46,9 @@ struct SweepResult {
   std::vector<SweepGroup> groups;
   std::vector<std::filesystem::path> files;
   std::uint64_t failed = 0;
+  const SweepRun* first_failure = nullptr;  ///< in the order of the combinations
+  std::uint64_t limited = 0;                ///< runs whose servos cannot follow the gait
+  const SweepRun* worst_limited = nullptr;  ///< with the largest difference between an angle and that of its pulse
   std::uint32_t workers = 0;
   double wall_s = 0.0;
 };
@@ -98,6 +102,29 @@ void warn_of_equal_runs(const Sweep& sweep) {
   }
 }
 
+/// Whether any run has a value of the measure.
+bool has_values(const SweepResult& result) {
+  return std::ranges::any_of(result.groups, [](const SweepGroup& group) { return !group.values.empty(); });
+}
+
+/// Counts the runs that failed and those whose servos cannot follow.
+void count_runs(SweepResult& result) {
+  constexpr sim::Measure error = sim::Measure::max_tracking_error;
+  for (const SweepRun& done : result.runs) {
+    if (!done.result.failure.empty()) {
+      ++result.failed;
+      result.first_failure = result.first_failure == nullptr ? &done : result.first_failure;
+    }
+    if (done.result.limited_joints > 0) {
+      ++result.limited;
+      if (result.worst_limited == nullptr ||
+          done.result.measures[error] > result.worst_limited->result.measures[error]) {
+        result.worst_limited = &done;
+      }
+    }
+  }
+}
+
 SweepResult run(const Sweep& sweep, std::uint32_t worker_count) {
   optimize::Experiment experiment;  // the workers take their time limit from it
   experiment.scenario.duration_s = sweep.scenario.duration_s;
@@ -122,9 +149,7 @@ SweepResult run(const Sweep& sweep, std::uint32_t worker_count) {
   result.runs = optimize::run_sweep(sweep, workers, interrupted, show);
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.workers = workers.count();
-  for (const SweepRun& done : result.runs) {
-    result.failed += done.result.failure.empty() ? 0U : 1U;
-  }
+  count_runs(result);
   return result;
 }
 
@@ -140,16 +165,30 @@ void write_results(const Sweep& sweep, sim::Measure measure, const std::filesyst
   }
 }
 
-/// "amplitude 10, friction 0.1"; empty if only the seed varies.
-std::string description(const Sweep& sweep, const SweepGroup& group) {
+/// "amplitude 10, seed 1".
+std::string values_text(const Sweep& sweep, const optimize::Candidate& combination, bool with_seed) {
   std::string text;
   for (std::size_t i = 0; i < sweep.quantities.size(); ++i) {
-    if (sweep.quantities[i].kind != SweptQuantity::Kind::seed) {
-      text += (text.empty() ? "" : ", ") + sweep.quantities[i].name + ' ' +
-              sweep.quantities[i].values[group.combination[i]];
+    const SweptQuantity& quantity = sweep.quantities[i];
+    if (with_seed || quantity.kind != SweptQuantity::Kind::seed) {
+      text += (text.empty() ? "" : ", ") + quantity.name + ' ' + quantity.values[combination[i]];
     }
   }
+  return text;
+}
+
+std::string description(const Sweep& sweep, const SweepGroup& group) {
+  const std::string text = values_text(sweep, group.combination, false);
   return text.empty() ? "all runs" : text;
+}
+
+std::string description(const Sweep& sweep, const SweepRun& run) {
+  return values_text(sweep, sweep.combination(run.number), true);
+}
+
+/// "amplitude 10, seed 1: the robot fell".
+std::string first_failure(const Sweep& sweep, const SweepResult& result) {
+  return description(sweep, *result.first_failure) + ": " + one_line(result.first_failure->result.failure);
 }
 
 std::string figure(double value) { return std::isfinite(value) ? number_text(value) : "-"; }
@@ -171,6 +210,9 @@ void print_table(const Sweep& sweep, sim::Measure measure, const SweepResult& re
   std::printf("%-10s %zu of %llu, %llu of them failed; %u workers, %.1f s\n", "runs", result.runs.size(),
               static_cast<unsigned long long>(sweep.size()), static_cast<unsigned long long>(result.failed),
               result.workers, result.wall_s);
+  if (result.failed > 0) {
+    std::printf("%-10s the first at %s\n", "failed", first_failure(sweep, result).c_str());
+  }
   for (const std::filesystem::path& file : result.files) {
     std::printf("%-10s %s\n", "written", file.c_str());
   }
@@ -196,6 +238,8 @@ void print_json(const SweepOptions& options, const Sweep& sweep, const std::file
                     {"combinations", sweep.size()},
                     {"runs", result.runs.size()},
                     {"failed", result.failed},
+                    {"first_failure", result.failed > 0 ? Json(first_failure(sweep, result)) : Json()},
+                    {"servos_cannot_follow", result.limited},
                     {"groups", groups},
                     {"overrides", overrides_object(sweep.scenario.overrides)},
                     {"workers", result.workers},
@@ -205,10 +249,35 @@ void print_json(const SweepOptions& options, const Sweep& sweep, const std::file
   std::cout << object.text() << '\n';
 }
 
+void warn_of_limited_servos(const Sweep& sweep, const SweepResult& result) {
+  if (result.limited > 0) {
+    const optimize::TrialResult& worst = result.worst_limited->result;
+    std::fprintf(
+        stderr,
+        "proleg sweep: warning: the servos cannot follow the gait in %llu of %zu runs; worst at %s: %u of %zu joints, "
+        "angles differ from it by up to %.1f deg\n",
+        static_cast<unsigned long long>(result.limited), result.runs.size(),
+        description(sweep, *result.worst_limited).c_str(), worst.limited_joints, sweep.scenario.robot.joints.size(),
+        worst.measures[sim::Measure::max_tracking_error]);
+  }
+}
+
+/// Why there is no value of the measure.
+std::string why_without_values(const Sweep& sweep, const SweepOptions& options, const SweepResult& result) {
+  const std::string runs = std::to_string(result.runs.size());
+  if (result.failed == result.runs.size()) {
+    return "all " + runs + " runs failed; the first at " + first_failure(sweep, result);
+  }
+  const std::string text = "none of " + runs + " runs defines " + options.measure;
+  return result.failed == 0
+             ? text
+             : text + "; " + std::to_string(result.failed) + " failed, the first at " + first_failure(sweep, result);
+}
+
 int sweep(const SweepOptions& options) {
   const sim::Measure measure = read_measure(options.measure);
   ScenarioRun setup = prepare_run(options.scenario);
-  const Sweep sweep = optimize::read_sweep(std::move(setup.scenario), options.over);
+  const Sweep sweep = optimize::read_sweep(std::move(setup.scenario), options.over, options.scenario.settings);
   const std::uint32_t worker_count = parse_workers(options.workers);
   const std::filesystem::path folder = result_folder(options);
   catch_interrupts();
@@ -218,17 +287,21 @@ int sweep(const SweepOptions& options) {
   SweepResult result = run(sweep, worker_count);
   result.groups = optimize::group_runs(sweep, result.runs, measure);
   write_results(sweep, measure, folder, result);
-  if (options.json) {
+  const bool has_result = has_values(result) || result.runs.empty();
+  if (!has_result) {
+    std::cerr << "proleg sweep: " << why_without_values(sweep, options, result) << '\n';
+  } else if (options.json) {
     print_json(options, sweep, folder, result);
   } else {
     print_table(sweep, measure, result);
   }
+  warn_of_limited_servos(sweep, result);
   if (interrupted()) {
     std::cerr << "proleg sweep: interrupted after " << result.runs.size() << " of " << sweep.size()
               << " runs; they are in " << (folder / "sweep.tsv").string() << '\n';
     return exit_failed;
   }
-  return exit_success;
+  return has_result ? exit_success : exit_failed;
 }
 
 }  // namespace

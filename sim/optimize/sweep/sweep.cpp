@@ -39,6 +39,8 @@ TrialResult run_combination(const Sweep& sweep, const Candidate& combination) {
       simulation.advance();
     }
     result.measures = simulation.measures();
+    result.limited_joints = static_cast<std::uint32_t>(
+        std::ranges::count_if(simulation.plant().meter().tracking(), &sim::ServoTracking::cannot_follow));
   } catch (const sim::PhysicsError& error) {
     result.failure = error.what();
   }

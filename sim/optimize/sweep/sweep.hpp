@@ -23,11 +23,14 @@ struct SweptQuantity {
   Kind kind = Kind::parameter;
   std::string name;                 ///< of a parameter as in `--set`; "seed"; "friction"
   std::vector<std::string> values;  ///< decimal numbers, ascending, at least one
+  std::string unit;                 ///< "" if dimensionless
+  std::string word;                 ///< as the user wrote it
 };
 
 struct Sweep {
   sim::Scenario scenario;
   std::vector<SweptQuantity> quantities;  ///< at least one, no name twice
+  std::vector<std::string> settings;      ///< the words of `--set`, which the scenario has
 
   /// Number of combinations; 1 to max_sweep_runs.
   [[nodiscard]] std::uint64_t size() const;
@@ -37,8 +40,15 @@ struct Sweep {
 };
 
 /// words: "NAME=FIRST:LAST:STEP", "NAME=FIRST:LAST" with a step of 1, or "NAME=VALUE". LAST is included if a step ends
-/// there. Checks every value on the scenario. Throws InputError.
-[[nodiscard]] Sweep read_sweep(sim::Scenario scenario, std::span<const std::string> words);
+/// there. Checks every value on the scenario. settings: the words of `--set`, which the scenario has already. Throws
+/// InputError, also if a swept quantity replaces a setting, an override of the scenario or another quantity entirely.
+[[nodiscard]] Sweep read_sweep(sim::Scenario scenario, std::span<const std::string> words,
+                               std::vector<std::string> settings = {});
+
+/// The options that hold for all runs: "--set frequency=1.5 --seconds 30 --friction 0.2".
+[[nodiscard]] std::string fixed_options(const Sweep& sweep);
+/// The command that repeats the sweep.
+[[nodiscard]] std::string command_of(const Sweep& sweep);
 
 /// Simulates a combination.
 [[nodiscard]] TrialResult run_combination(const Sweep& sweep, const Candidate& combination);
@@ -65,17 +75,18 @@ struct SweepGroup {
 [[nodiscard]] std::vector<SweepGroup> group_runs(const Sweep& sweep, std::span<const SweepRun> runs,
                                                  sim::Measure measure);
 
-/// A line for each run: the swept values, all measures, and why the run failed.
+/// A comment with the command; then a line for each run: the swept values, all measures, the number of joints whose
+/// servos cannot follow, and why the run failed.
 [[nodiscard]] std::string sweep_table(const Sweep& sweep, std::span<const SweepRun> runs);
-/// A line for each group: the swept values without the seed, number of values, mean, standard deviation, minimum,
-/// maximum.
+/// The same comment; then a line for each group: the swept values without the seed, number of values, mean, standard
+/// deviation, minimum, maximum.
 [[nodiscard]] std::string sweep_summary(const Sweep& sweep, std::span<const SweepGroup> groups, sim::Measure measure);
 
 /// Positions of the quantities other than the seed that have several values.
 [[nodiscard]] std::vector<std::size_t> varied_quantities(const Sweep& sweep);
 
-/// The measure over one quantity (its mean as a line, all values as dots) or over two (a map of the means). Empty if
-/// none or more vary.
+/// The measure over one quantity (its mean as a line, all values as dots) or over two (a map of the means). A gap where
+/// no run has a value. Empty if none or more quantities vary, or if no run has a value.
 [[nodiscard]] std::string draw_sweep(const Sweep& sweep, std::span<const SweepGroup> groups, sim::Measure measure);
 
 }  // namespace proleg::optimize

@@ -117,12 +117,58 @@ SweptQuantity read_quantity(const std::string& word) {
     refuse(word, equals == 0 ? "no name" : "no '='", "NAME=FIRST:LAST:STEP");
   }
   SweptQuantity quantity;
+  quantity.word = word;
   quantity.name = word.substr(0, equals);
   quantity.kind = quantity.name == "seed"       ? SweptQuantity::Kind::seed
                   : quantity.name == "friction" ? SweptQuantity::Kind::friction
                                                 : SweptQuantity::Kind::parameter;
   quantity.values = values_of(word, std::string_view(word).substr(equals + 1));
   return quantity;
+}
+
+/// "" for a ratio, whose symbol is 1.
+std::string unit_text(Unit unit) { return unit == Unit::ratio ? "" : scale_of(unit).symbol; }
+
+/// What the quantity replaces; only for a parameter.
+sim::SettingTarget target_of(const sim::Scenario& scenario, const std::string& name) {
+  return sim::find_target(scenario, name + "=0");
+}
+
+/// Whether a setting has no effect beside a swept parameter, or the parameter none beside the setting.
+bool excludes(const sim::SettingTarget& swept, const sim::SettingTarget& setting) {
+  if (!swept.same_value(setting) || setting.tick > 0) {
+    return false;
+  }
+  const bool setting_is_later = setting.in_flight && !setting.internal;  // a change at tick 0
+  return setting_is_later ? !(swept.joints & setting.joints).empty() : (setting.joints - swept.joints).empty();
+}
+
+/// Refuses a quantity whose value the user states elsewhere too.
+void refuse_second_value(const Sweep& sweep, const SweptQuantity& quantity) {
+  const auto refuse_option = [&](const std::string& option) {
+    refuse(quantity.word, option + " as well", "one of the two");
+  };
+  const sim::Overrides& overrides = sweep.scenario.overrides;
+  if (quantity.kind == SweptQuantity::Kind::seed && overrides.seed) {
+    refuse_option("--seed " + std::to_string(*overrides.seed));
+  }
+  if (quantity.kind == SweptQuantity::Kind::friction && overrides.friction) {
+    refuse_option("--friction " + exact_text(*overrides.friction));
+  }
+  if (quantity.kind != SweptQuantity::Kind::parameter) {
+    return;
+  }
+  const sim::SettingTarget target = target_of(sweep.scenario, quantity.name);
+  for (const std::string& setting : sweep.settings) {
+    if (excludes(target, sim::find_target(sweep.scenario, setting))) {
+      refuse_option("--set " + shortened(setting));
+    }
+  }
+  for (const SweptQuantity& other : sweep.quantities) {
+    if (other.kind == SweptQuantity::Kind::parameter && excludes(target, target_of(sweep.scenario, other.name))) {
+      refuse_option("--over " + shortened(other.word));
+    }
+  }
 }
 
 /// Throws InputError for a value that the scenario rejects.
@@ -171,8 +217,8 @@ sim::Scenario Sweep::scenario_of(const Candidate& combination) const {
   return result;
 }
 
-Sweep read_sweep(sim::Scenario scenario, std::span<const std::string> words) {
-  Sweep sweep{std::move(scenario), {}};
+Sweep read_sweep(sim::Scenario scenario, std::span<const std::string> words, std::vector<std::string> settings) {
+  Sweep sweep{std::move(scenario), {}, std::move(settings)};
   if (words.empty()) {
     throw InputError("--over", 0, "no quantity", "NAME=FIRST:LAST:STEP, at least once");
   }
@@ -184,6 +230,10 @@ Sweep read_sweep(sim::Scenario scenario, std::span<const std::string> words) {
     sim::Scenario trial = sweep.scenario;
     for (const std::string& value : quantity.values) {
       apply(quantity, value, trial);
+    }
+    refuse_second_value(sweep, quantity);
+    if (quantity.kind == SweptQuantity::Kind::parameter) {
+      quantity.unit = unit_text(target_of(sweep.scenario, quantity.name).unit);
     }
     if (sweep.size() * quantity.values.size() > max_sweep_runs) {
       refuse(word, std::to_string(sweep.size() * quantity.values.size()) + " combinations or more",

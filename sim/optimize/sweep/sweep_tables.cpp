@@ -6,17 +6,53 @@
 #include "sim/optimize/sweep/sweep.hpp"
 
 namespace proleg::optimize {
+namespace {
+
+std::string comment_on(const Sweep& sweep) { return "# " + one_line(command_of(sweep)) + "\n"; }
+
+}  // namespace
+
+std::string fixed_options(const Sweep& sweep) {
+  const sim::Overrides& overrides = sweep.scenario.overrides;
+  std::string text;
+  for (const std::string& setting : sweep.settings) {
+    text += "--set " + setting + " ";
+  }
+  text += "--seconds " + exact_text(sweep.scenario.duration_s);
+  if (overrides.seed) {
+    text += " --seed " + std::to_string(*overrides.seed);
+  }
+  if (overrides.friction) {
+    text += " --friction " + exact_text(*overrides.friction);
+  }
+  if (const auto position = sim::position_text(overrides)) {
+    text += " --at " + *position;
+  }
+  if (overrides.heading_deg) {
+    text += " --heading " + exact_text(*overrides.heading_deg);
+  }
+  return text;
+}
+
+std::string command_of(const Sweep& sweep) {
+  std::string text = "proleg sweep " + sweep.scenario.path;
+  for (const SweptQuantity& quantity : sweep.quantities) {
+    text += " --over " + quantity.word;
+  }
+  return text + " " + fixed_options(sweep);
+}
 
 std::string sweep_table(const Sweep& sweep, std::span<const SweepRun> runs) {
   TableLine line;
   for (const SweptQuantity& quantity : sweep.quantities) {
-    line.add(one_line(quantity.name));
+    line.add(with_unit(one_line(quantity.name), quantity.unit));
   }
   for (const sim::MeasureDeclaration& measure : sim::measures()) {
     line.add(with_unit(measure.name, measure.unit));
   }
+  line.add("limited_joints");
   line.add("failure");
-  std::string table = line.finish();
+  std::string table = comment_on(sweep) + line.finish();
   for (const SweepRun& run : runs) {
     const Candidate combination = sweep.combination(run.number);
     for (std::size_t i = 0; i < combination.size(); ++i) {
@@ -25,6 +61,7 @@ std::string sweep_table(const Sweep& sweep, std::span<const SweepRun> runs) {
     for (const double value : run.result.measures.all()) {
       line.add(value);
     }
+    line.add(run.result.failure.empty() ? std::to_string(run.result.limited_joints) : std::string());
     line.add(one_line(run.result.failure));
     table += line.finish();
   }
@@ -36,14 +73,14 @@ std::string sweep_summary(const Sweep& sweep, std::span<const SweepGroup> groups
   TableLine line;
   for (const SweptQuantity& quantity : sweep.quantities) {
     if (quantity.kind != SweptQuantity::Kind::seed) {
-      line.add(one_line(quantity.name));
+      line.add(with_unit(one_line(quantity.name), quantity.unit));
     }
   }
   line.add("runs");
   for (const char* figure : {"mean", "standard deviation", "minimum", "maximum"}) {
     line.add(with_unit(std::string(figure) + " of " + std::string(declaration.name), declaration.unit));
   }
-  std::string table = line.finish();
+  std::string table = comment_on(sweep) + line.finish();
   for (const SweepGroup& group : groups) {
     for (std::size_t i = 0; i < group.combination.size(); ++i) {
       if (sweep.quantities[i].kind != SweptQuantity::Kind::seed) {

@@ -9,11 +9,14 @@
 namespace proleg::test {
 namespace {
 
-/// The cells of a table of tab-separated values.
+/// The cells of a table of tab-separated values, without its comment.
 std::vector<std::vector<std::string>> cells(const std::string& table) {
   std::vector<std::vector<std::string>> lines;
   std::istringstream stream(table);
   for (std::string line; std::getline(stream, line);) {
+    if (line.starts_with("# ")) {
+      continue;
+    }
     std::istringstream line_stream(line);
     lines.emplace_back();
     for (std::string cell; std::getline(line_stream, cell, '\t');) {
@@ -32,6 +35,7 @@ TEST_F(CommandLine, ARunOfASweepIsThatOfSimulateWithTheSameValues) {
   EXPECT_EQ(finished.err, "");
   const auto table = cells(read_file(out + "/sweep.tsv"));
   ASSERT_EQ(table.size(), 13U);
+  EXPECT_EQ(table[0][0], "amplitude (deg)");
   EXPECT_EQ(table[0][3], "distance (m)");
   ASSERT_EQ(std::vector(table[8].begin(), table[8].begin() + 3), (std::vector<std::string>{"40", "1", "0.2"}));
   const Json single(proleg({"simulate", scenario("coupled"), "--seconds", "1", "--set", "frequency=1.5", "--set",
@@ -77,6 +81,94 @@ TEST_F(CommandLine, SeedsThatChangeNothingCauseAWarning) {
   EXPECT_NE(finished.err.find("all seeds give the same run"), std::string::npos) << finished.err;
 }
 
+TEST_F(CommandLine, TablesAndPictureOfASweepStateWhatHoldsForAllRuns) {
+  const std::string out = file("out").string();
+  const Finished finished =
+      proleg({"sweep", scenario("coupled"), "--over", "amplitude=20:40:20", "--seconds", "0.1", "--set",
+              "frequency=1.5", "--friction", "0.2", "--at", "1,2", "--heading", "30", "--seed", "4", "--out", out});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const std::string options = "--set frequency=1.5 --seconds 0.1 --seed 4 --friction 0.2 --at 1,2 --heading 30";
+  for (const char* name : {"/sweep.tsv", "/summary.tsv"}) {
+    EXPECT_TRUE(
+        read_file(out + name)
+            .starts_with("# proleg sweep " + scenario("coupled") + " --over amplitude=20:40:20 " + options + "\n"))
+        << name;
+  }
+  const std::string picture = read_file(out + "/sweep.svg");
+  EXPECT_NE(picture.find(options), std::string::npos);
+  EXPECT_NE(picture.find("coupled.simulation.xml"), std::string::npos);
+}
+
+TEST_F(CommandLine, ASweepWarnsOfRunsWhoseServosCannotFollow) {
+  const Finished finished = proleg({"sweep", scenario("uniform"), "--over", "frequency=1:3", "--seconds", "2.5",
+                                    "--json", "--out", file("out").string()});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(Json(finished.out)["servos_cannot_follow"], 2);
+  // 40 degrees at 3 Hz need 13 rad/s, the servos have 4.5.
+  EXPECT_EQ(finished.err.find(
+                "proleg sweep: warning: the servos cannot follow the gait in 2 of 3 runs; worst at frequency 3: "),
+            0U)
+      << finished.err;
+  EXPECT_EQ(std::ranges::count(finished.err, '\n'), 1) << finished.err;
+  const Finished simulated = proleg({"simulate", scenario("uniform"), "--set", "frequency=1", "--seconds", "2.5"});
+  EXPECT_EQ(simulated.err.find("cannot follow"), std::string::npos) << simulated.err;
+}
+
+class SweepOnASlope : public CommandLine {
+ protected:
+  /// A flat floor on which gravity pulls the robot along its body: with little friction it slides off.
+  void SetUp() override {
+    CommandLine::SetUp();
+    const std::string shipped = source_path("/sim/scenarios/travelling_wave/");
+    std::string environment = read_file(shipped + "flat.environment.xml");
+    const std::string gravity = "<gravity>0 0 ";
+    ASSERT_NE(environment.find(gravity), std::string::npos);
+    environment.replace(environment.find(gravity), gravity.size(), "<gravity>0 40 ");
+    std::ofstream(file("slope.environment.xml")) << environment;
+    std::ofstream(file("slope.simulation.xml"))
+        << "<simulation><robot>" + shipped + "caterpillar.robot.xml</robot><actuation>" + shipped +
+               "uniform.actuation.xml</actuation><environment>slope.environment.xml</environment>"
+               "<simulationProperties><duration>1.5</duration></simulationProperties></simulation>";
+  }
+
+  [[nodiscard]] Finished sweep(const std::string& over, std::vector<std::string> rest = {}) const {
+    rest.insert(rest.begin(), {"sweep", file("slope.simulation.xml").string(), "--over", over, "--set", "amplitude=0",
+                               "--out", file("out").string()});
+    return proleg(rest);
+  }
+};
+
+TEST_F(SweepOnASlope, RunsThatFailAreCountedAndAreGaps) {
+  const Finished finished = sweep("friction=0:20:10");
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_NE(finished.out.find("3 of 3, 1 of them failed"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("the first at friction 0: the robot"), std::string::npos) << finished.out;
+  EXPECT_NE(read_file(file("out/sweep.svg")).find("class=\"gaps\""), std::string::npos);
+}
+
+TEST_F(SweepOnASlope, IfAllRunsFailOneLineNamesTheFirstFailure) {
+  for (const std::vector<std::string>& rest : {std::vector<std::string>{}, {"--json"}}) {
+    const Finished finished = sweep("friction=0:0.2:0.1", rest);
+    EXPECT_EQ(finished.status, 1);
+    EXPECT_EQ(finished.out, "");
+    EXPECT_EQ(finished.err.find("proleg sweep: all 3 runs failed; the first at friction 0: the robot"), 0U)
+        << finished.err;
+    EXPECT_EQ(std::ranges::count(finished.err, '\n'), 1) << finished.err;
+    EXPECT_TRUE(fs::exists(file("out/sweep.tsv"))) << "the failures can be looked at";
+    EXPECT_FALSE(fs::exists(file("out/sweep.svg")));
+    fs::remove_all(file("out"));
+  }
+}
+
+TEST_F(CommandLine, ASweepOverAMeasureThatNoRunDefinesFails) {
+  // A fifth of a second has no stride.
+  const Finished finished = proleg({"sweep", scenario("uniform"), "--over", "friction=0.1:0.3:0.1", "--seconds", "0.2",
+                                    "--measure", "stride_length", "--out", file("out").string()});
+  EXPECT_EQ(finished.status, 1);
+  EXPECT_EQ(finished.err, "proleg sweep: none of 3 runs defines stride_length\n");
+  EXPECT_FALSE(fs::exists(file("out/sweep.svg")));
+}
+
 TEST_F(CommandLine, AnInterruptedSweepLeavesATableOfWhatIsDone) {
   const std::string out = file("out").string();
   const pid_t child = start({PROLEG_PROGRAM, "sweep", scenario("coupled"), "--over", "seed=1:100000", "--seconds",
@@ -104,6 +196,9 @@ TEST_F(CommandLine, SweepRefusesBadInputAndWritesNothing) {
   refused({"--over", "amplitude=80:100:20"}, {"amplitude=100"});
   refused({"--over", "seed=1:100001"}, {"at most 100000 runs"});
   refused({"--over", "seed=1:2", "--measure", "fun"}, {"--measure", "distance"});
+  refused({"--over", "seed=1:2", "--seed", "3"}, {"--over seed=1:2", "--seed 3"});
+  refused({"--over", "friction=0:1", "--friction", "0.3"}, {"--over friction=0:1", "--friction 0.3"});
+  refused({"--over", "amplitude=1:2", "--set", "1.amplitude=3"}, {"--over amplitude=1:2", "--set 1.amplitude=3"});
   refused({"--over", "seed=1:2", "--workers", "0"}, {"--workers", "1 to 1024"});
   fs::create_directories(file("done"));
   std::ofstream(file("done/sweep.tsv")) << "precious\n";

@@ -4,8 +4,10 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
+#include <numeric>
 
 #include "memory_files.hpp"
 #include "shared/computer/errors/input_error.hpp"
@@ -14,12 +16,19 @@
 namespace proleg::optimize {
 namespace {
 
-Sweep sweep_over(const std::vector<std::string>& words) { return read_sweep(sim::small_scenario().scenario(), words); }
+/// settings: words of --set.
+Sweep sweep_over(const std::vector<std::string>& words, const std::vector<std::string>& settings = {}) {
+  sim::Scenario scenario = sim::small_scenario().scenario();
+  for (const std::string& setting : settings) {
+    sim::apply_setting(scenario, setting);
+  }
+  return read_sweep(std::move(scenario), words, settings);
+}
 
 std::vector<std::string> values(const std::string& word) { return sweep_over({word}).quantities.at(0).values; }
 
-std::string refusal(const std::vector<std::string>& words) {
-  return message_of<InputError>([&] { static_cast<void>(sweep_over(words)); });
+std::string refusal(const std::vector<std::string>& words, const std::vector<std::string>& settings = {}) {
+  return message_of<InputError>([&] { static_cast<void>(sweep_over(words, settings)); });
 }
 
 TEST(Sweep, ValuesGoFromFirstToLastInSteps) {
@@ -88,6 +97,45 @@ TEST(Sweep, RefusesMoreThanAHundredThousandRuns) {
   EXPECT_NE(refusal({"seed=1:1001", "frequency=0.1:10:0.1"}).find("at most 100000 runs"), std::string::npos);
 }
 
+TEST(Sweep, RefusesAValueThatIsStatedTwice) {
+  const auto second = [](const std::string& over, const std::string& setting) { return refusal({over}, {setting}); };
+  EXPECT_EQ(second("amplitude=10:20", "amplitude=30"),
+            "--over amplitude=10:20: found --set amplitude=30 as well, expected one of the two");
+  EXPECT_NE(second("1.amplitude=10:20", "amplitude:J2=30"), "") << "the setting has no effect";
+  EXPECT_NE(second("amplitude:J2=10:20", "amplitude=30@0"), "") << "the swept value has no effect";
+  EXPECT_NE(refusal({"amplitude:J2=10:20", "amplitude=30:40"}).find("found --over amplitude:J2=10:20 as well"),
+            std::string::npos);
+}
+
+TEST(Sweep, AcceptsASecondValueThatHasAnEffectBesideIt) {
+  EXPECT_EQ(refusal({"amplitude:J2=10:20"}, {"amplitude=30"}), "") << "of the other joints";
+  EXPECT_EQ(refusal({"amplitude=10:20"}, {"amplitude=30@5"}), "") << "later in the run";
+  EXPECT_EQ(refusal({"amplitude=10:20"}, {"frequency=2"}), "");
+  EXPECT_EQ(refusal({"amplitude=10:20", "amplitude:J2=30:40"}), "") << "first all joints, then one";
+}
+
+TEST(Sweep, RefusesAnOverrideOfWhatItSweeps) {
+  sim::Scenario scenario = sim::small_scenario().scenario();
+  scenario.overrides.seed = 7;
+  scenario.overrides.friction = 0.25;
+  const auto refusal_of = [&](const std::string& word) {
+    const std::vector<std::string> words{word};
+    return message_of<InputError>([&] { static_cast<void>(read_sweep(scenario, words)); });
+  };
+  EXPECT_EQ(refusal_of("seed=1:2"), "--over seed=1:2: found --seed 7 as well, expected one of the two");
+  EXPECT_EQ(refusal_of("friction=0:1"), "--over friction=0:1: found --friction 0.25 as well, expected one of the two");
+  EXPECT_EQ(refusal_of("amplitude=1:2"), "");
+}
+
+TEST(Sweep, StatesTheCommandThatRepeatsIt) {
+  Sweep sweep = sweep_over({"amplitude=10:20:5", "friction=0.1:0.2:0.1"}, {"frequency=2", "phase_difference=3@5"});
+  EXPECT_EQ(fixed_options(sweep), "--set frequency=2 --set phase_difference=3@5 --seconds 2");
+  sweep.scenario.overrides = {7, 0.25, Eigen::Vector2d(1.0, -2.5), 0.5, -30.0};
+  EXPECT_EQ(command_of(sweep),
+            "proleg sweep top.xml --over amplitude=10:20:5 --over friction=0.1:0.2:0.1 --set frequency=2 --set "
+            "phase_difference=3@5 --seconds 2 --seed 7 --friction 0.25 --at 1,-2.5,0.5 --heading -30");
+}
+
 /// Answers in the opposite order of the tasks, two at a time.
 class BackwardWorkers final : public Workers {
  public:
@@ -134,6 +182,12 @@ TEST(Sweep, ACombinationIsSimulatedUpToItsEnd) {
   EXPECT_EQ(result.failure, "");
   EXPECT_DOUBLE_EQ(result.simulated_s, 2.0);
   EXPECT_TRUE(std::isfinite(result.measures[sim::Measure::distance]));
+  EXPECT_EQ(result.limited_joints, 0U);
+}
+
+TEST(Sweep, CountsTheJointsWhoseServosCannotFollow) {
+  const Sweep sweep = sweep_over({"amplitude=80"}, {"frequency=8"});  // 80 degrees at 8 Hz are 70 rad/s
+  EXPECT_EQ(run_combination(sweep, {0}).limited_joints, sweep.scenario.robot.joints.size());
 }
 
 TEST(Sweep, AFailedSimulationNamesItsReason) {
@@ -171,7 +225,10 @@ TEST(SweepSummary, IsATableWithoutTheSeed) {
   const std::vector<SweepRun> runs{run_with(0, 1.0), run_with(1, 3.0), run_with(2, 5.0)};
   const std::string table =
       sweep_summary(sweep, group_runs(sweep, runs, sim::Measure::distance), sim::Measure::distance);
-  EXPECT_TRUE(table.starts_with("amplitude\truns\tmean of distance (m)\t")) << table;
+  EXPECT_TRUE(
+      table.starts_with("# proleg sweep top.xml --over amplitude=10:20:10 --over seed=1:2 --seconds 2\n"
+                        "amplitude (deg)\truns\tmean of distance (m)\t"))
+      << table;
   EXPECT_NE(table.find("\n10\t2\t2\t1.4142135623730951\t1\t3\n"), std::string::npos) << table;
   EXPECT_TRUE(table.ends_with("\n20\t1\t5\t\t5\t5\n")) << table;
 }
@@ -181,11 +238,14 @@ TEST(SweepTable, HasALineForEachRunWithItsValues) {
   std::vector<SweepRun> runs{run_with(0, 1.5), run_with(3, NAN)};
   runs[1].result.failure = "the robot\nfell";
   const std::string table = sweep_table(sweep, runs);
-  EXPECT_TRUE(table.starts_with("amplitude\tseed\tdistance (m)\t")) << table;
+  EXPECT_TRUE(
+      table.starts_with("# proleg sweep top.xml --over amplitude=10:20:10 --over seed=3:4 --seconds 2\n"
+                        "amplitude (deg)\tseed\tdistance (m)\t"))
+      << table;
   EXPECT_NE(table.find("\n10\t3\t1.5\t"), std::string::npos) << table;
   EXPECT_NE(table.find("\n20\t4\t\t"), std::string::npos) << table;
   EXPECT_TRUE(table.ends_with("\tthe robot fell\n")) << table;
-  EXPECT_EQ(std::ranges::count(table, '\n'), 3);
+  EXPECT_EQ(std::ranges::count(table, '\n'), 4);
 }
 
 /// Number of elements of that name in a group of the picture.
@@ -206,14 +266,40 @@ int count_in_group(const std::string& picture, const std::string& group, const c
   return count;
 }
 
-std::string picture_of(const std::vector<std::string>& words) {
-  const Sweep sweep = sweep_over(words);
+/// distances: by combination.
+std::string picture_of(const Sweep& sweep, const std::vector<double>& distances) {
   std::vector<SweepRun> runs;
   for (std::uint64_t i = 0; i < sweep.size(); ++i) {
-    runs.push_back(run_with(i, 1.0 + static_cast<double>(i)));
+    runs.push_back(run_with(i, distances[i]));
   }
   return draw_sweep(sweep, group_runs(sweep, runs, sim::Measure::distance), sim::Measure::distance);
 }
+
+std::string picture_of(const std::vector<std::string>& words) {
+  const Sweep sweep = sweep_over(words);
+  std::vector<double> distances(sweep.size());
+  std::iota(distances.begin(), distances.end(), 1.0);
+  return picture_of(sweep, distances);
+}
+
+/// Red, green and blue of a cell of a map with three cells of these values.
+std::array<int, 3> colour_of_cell(const std::vector<double>& values, int cell) {
+  const std::string picture = picture_of(sweep_over({"amplitude=1:3", "friction=0:1"}),
+                                         {values[0], values[0], values[1], values[1], values[2], values[2]});
+  std::size_t place = picture.find("class=\"map\"");
+  for (int i = 0; i <= 2 * cell; ++i) {
+    place = picture.find("fill=\"#", picture.find("<rect", place + 1));
+  }
+  std::array<int, 3> colour{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    colour[i] = std::stoi(picture.substr(place + 7 + 2 * i, 2), nullptr, 16);
+  }
+  return colour;
+}
+
+int brightness(const std::array<int, 3>& colour) { return colour[0] + colour[1] + colour[2]; }
+bool is_blue(const std::array<int, 3>& colour) { return colour[2] > colour[0]; }
+bool is_orange(const std::array<int, 3>& colour) { return colour[0] > colour[2]; }
 
 TEST(SweepFigure, OneQuantityIsALineWithItsSpread) {
   const std::string picture = picture_of({"amplitude=10:50:10", "seed=1:3"});
@@ -223,6 +309,61 @@ TEST(SweepFigure, OneQuantityIsALineWithItsSpread) {
 
 TEST(SweepFigure, TwoQuantitiesAreAMapWithACellForEachMean) {
   EXPECT_EQ(count_in_group(picture_of({"amplitude=10:50:10", "seed=1:3", "friction=0.1:0.3:0.1"}), "map", "rect"), 15);
+}
+
+TEST(SweepFigure, PositiveMeansAreBlueAndDarkForTheHighest) {
+  const std::vector<double> values{1.0, 2.0, 4.0};
+  EXPECT_TRUE(is_blue(colour_of_cell(values, 1)));
+  EXPECT_GT(brightness(colour_of_cell(values, 0)), brightness(colour_of_cell(values, 1)));
+  EXPECT_GT(brightness(colour_of_cell(values, 1)), brightness(colour_of_cell(values, 2)));
+}
+
+TEST(SweepFigure, NegativeMeansAreOrangeAndDarkForTheLowest) {
+  const std::vector<double> values{-4.0, -2.0, -1.0};
+  EXPECT_TRUE(is_orange(colour_of_cell(values, 0)));
+  EXPECT_TRUE(is_orange(colour_of_cell(values, 1)));
+  EXPECT_LT(brightness(colour_of_cell(values, 0)), brightness(colour_of_cell(values, 1)));
+  EXPECT_LT(brightness(colour_of_cell(values, 1)), brightness(colour_of_cell(values, 2)));
+}
+
+TEST(SweepFigure, MeansOfBothSignsHaveAPaleZero) {
+  const std::vector<double> values{-1.0, 0.0, 4.0};
+  EXPECT_TRUE(is_orange(colour_of_cell(values, 0)));
+  const std::array<int, 3> zero = colour_of_cell(values, 1);
+  EXPECT_TRUE(zero[0] == zero[1] && zero[1] == zero[2]);
+  EXPECT_TRUE(is_blue(colour_of_cell(values, 2)));
+  EXPECT_LT(brightness(colour_of_cell(values, 2)), brightness(colour_of_cell(values, 0))) << "4 is farther from 0";
+  const std::string picture = picture_of(sweep_over({"amplitude=1:3", "friction=0:1"}), {-1, -1, 0, 0, 4, 4});
+  EXPECT_NE(picture.find(">mean: -4<"), std::string::npos) << "the legend states what the colours mean";
+  EXPECT_NE(picture.find(">4<"), std::string::npos);
+}
+
+TEST(SweepFigure, AGapIsWhereNoRunHasAValue) {
+  const Sweep line = sweep_over({"amplitude=1:5", "seed=1:2"});
+  const std::string picture = picture_of(line, {1, 2, 3, NAN, NAN, NAN, 4, 5, 6, 7});
+  EXPECT_EQ(count_in_group(picture, "mean", "polyline"), 6) << "two sections, each with its spread";
+  EXPECT_EQ(count_in_group(picture, "gaps", "path"), 1);
+  EXPECT_NE(picture.find("no value"), std::string::npos);
+  const std::string map = picture_of(sweep_over({"amplitude=1:2", "friction=0:1"}), {1, 2, NAN, 3});
+  EXPECT_EQ(count_in_group(map, "map", "rect"), 3);
+  EXPECT_EQ(count_in_group(map, "gaps", "path"), 1);
+  EXPECT_EQ(count_in_group(picture_of({"amplitude=1:2"}), "gaps", "path"), 0);
+}
+
+TEST(SweepFigure, ThereIsNoneWithoutAValue) {
+  EXPECT_EQ(picture_of(sweep_over({"amplitude=1:2"}), {NAN, NAN}), "");
+  EXPECT_EQ(picture_of(sweep_over({"amplitude=1:2", "friction=0:1"}), {NAN, NAN, NAN, NAN}), "");
+}
+
+TEST(SweepFigure, StatesUnitsScenarioAndOptions) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"amplitude=10:20"}, {"amplitude=10:20", "phase_difference=0:5"}}) {
+    const Sweep sweep = sweep_over(words, {"frequency=2"});
+    const std::string picture = picture_of(sweep, std::vector<double>(sweep.size(), 1.5));
+    EXPECT_NE(picture.find(">amplitude (deg)<"), std::string::npos);
+    EXPECT_NE(picture.find(">top.xml: amplitude 10 to 20 deg"), std::string::npos);
+    EXPECT_NE(picture.find(">--set frequency=2 --seconds 2<"), std::string::npos);
+  }
 }
 
 TEST(SweepFigure, ThereIsNoneForNoOrThreeQuantities) {

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "tools/proleg/shipped_texts.hpp"
+
 namespace proleg::tools {
 namespace {
 
@@ -26,66 +28,6 @@ constexpr std::string_view simulation_text = R"(<!-- The top-level file: what is
     <seed>1</seed>
   </simulationProperties>
 </simulation>
-)";
-
-constexpr std::string_view environment_text =
-    R"(<!-- A floor of 16 x 16 m, its top at height 0, as in the shipped travelling_wave. Its friction was fitted to the
-     displacements that the 2013 thesis reports. It holds for each contact with a link that has no friction of its
-     own. -->
-<Environment>
-  <physicsengine type="ode">
-    <odeproperties>
-      <gravity>0 0 -9.81</gravity>
-      <selfcollision>1</selfcollision>
-    </odeproperties>
-  </physicsengine>
-  <KinBody name="floor">
-    <Body type="static">
-      <Translation>0 0 -0.003</Translation>
-      <Geom type="box">
-        <extents>8 8 0.003</extents>
-        <friction>0.1</friction>
-      </Geom>
-    </Body>
-  </KinBody>
-</Environment>
-<!-- Start of the robot: x y z in metres, then degrees about x, y and z. It lies on the floor. -->
-<!--Pose: ,0 0 0.026,0 0 0,-->
-)";
-
-/// The two ends of the robot: half a module each.
-std::string end_text(std::string_view comment, std::string_view kinbody, std::string_view body, std::string_view y) {
-  std::string text("<!-- ");
-  text.append(comment);
-  text.append(R"( The origin is at its joint.
-     Its mass is that of a solid box of 52 x 36 x 52 mm and 50 g. The Geom is what touches the ground: 8 mm in the middle.
-     The values are those of the shipped travelling_wave. Extents are half the side lengths. -->
-<KinBody name=")");
-  text.append(kinbody).append("\">\n  <Body name=\"").append(body).append("\" type=\"dynamic\">\n");
-  text.append("    <Geom type=\"box\">\n      <translation>0 ").append(y).append(" 0</translation>\n");
-  text.append("      <extents>0.026 0.004 0.026</extents>\n    </Geom>\n");
-  text.append("    <Mass type=\"box\">\n      <total>0.05</total>\n      <com>0 ").append(y).append(" 0</com>\n");
-  text.append("      <extents>0.026 0.018 0.026</extents>\n    </Mass>\n  </Body>\n</KinBody>\n");
-  return text;
-}
-
-constexpr std::string_view segment_text =
-    R"(<!-- A link between two joints, which are 72 mm apart along y. The origin is at the joint towards the tail.
-     Its mass is that of a solid box of 52 x 72 x 52 mm and 100 g. The Geom is what touches the ground: 36 mm in the middle.
-     The values are those of the shipped travelling_wave. Extents are half the side lengths. -->
-<KinBody name="segment">
-  <Body name="Seg" type="dynamic">
-    <Geom type="box">
-      <translation>0 0.036 0</translation>
-      <extents>0.026 0.018 0.026</extents>
-    </Geom>
-    <Mass type="box">
-      <total>0.1</total>
-      <com>0 0.036 0</com>
-      <extents>0.026 0.036 0.026</extents>
-    </Mass>
-  </Body>
-</KinBody>
 )";
 
 /// The distance of a link's origin from that of the first segment: 72 mm for each joint between them, as metres.
@@ -247,10 +189,10 @@ std::vector<NewFile> robot_files(const std::string& axes) {
   return {{"robot.simulation.xml", std::string(simulation_text)},
           {"robot.robot.xml", robot_text(axes)},
           {"robot.actuation.xml", actuation_text(axes)},
-          {"flat.environment.xml", std::string(environment_text)},
-          {"modules/tail.kinbody.xml", end_text("The last link, towards negative y.", "tail", "Tail", "-0.018")},
-          {"modules/segment.kinbody.xml", std::string(segment_text)},
-          {"modules/head.kinbody.xml", end_text("The first link, towards positive y.", "head", "Head", "0.018")}};
+          {"flat.environment.xml", std::string(floor_text())},
+          {"modules/tail.kinbody.xml", std::string(tail_text())},
+          {"modules/segment.kinbody.xml", std::string(segment_text())},
+          {"modules/head.kinbody.xml", std::string(head_text())}};
 }
 
 }  // namespace proleg::tools

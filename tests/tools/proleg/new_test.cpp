@@ -37,6 +37,14 @@ TEST_F(NewRobot, FivePitchJointsRepeatTheShippedTravellingWaveToTheLastBit) {
   }
 }
 
+TEST_F(NewRobot, FloorAndLinksAreTheShippedFiles) {
+  write("five", "5", "p");
+  for (const char* name : {"flat.environment.xml", "modules/tail.kinbody.xml", "modules/segment.kinbody.xml",
+                           "modules/head.kinbody.xml"}) {
+    EXPECT_EQ(read_file(file("five") / name), read_file(source_path("/sim/scenarios/travelling_wave/") + name)) << name;
+  }
+}
+
 TEST_F(NewRobot, EightJointsOfPitchAndYawMoveSideways) {
   write("eight", "8", "py");
   const Json measures = run("eight", "30")["measures"];

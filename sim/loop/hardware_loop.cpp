@@ -83,6 +83,7 @@ class HardwareLoop::Implementation {
             plant_.joint_angles(),
             plant_.motor_torques(),
             plant_.servo_currents(),
+            plant_.contact_forces(),
             reference_.chain().lost()};
   }
 

@@ -49,6 +49,8 @@ Plant::Plant(const Scenario& scenario)
       joint_angles_(scenario.robot.joints.size()),
       motor_torques_(scenario.robot.joints.size()),
       servo_currents_(scenario.robot.joints.size()),
+      contact_force_sums_(scenario.robot.links.size()),
+      contact_forces_(scenario.robot.links.size()),
       joint_targets_(scenario.robot.joints.size()),
       link_contacts_(scenario.robot.links.size()) {
   for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
@@ -125,6 +127,9 @@ void Plant::step() {
     servo.current_sum +=
         meter_.add_joint_step(joint, {torque, servo.commanded_speed, servo.angle_before, servo.angle, servo.limp});
   }
+  for (std::size_t link = 0; link < contact_force_sums_.size(); ++link) {
+    contact_force_sums_[link] += world_.contact_force(link);
+  }
   const ContactSliding sliding = world_.contact_sliding();
   meter_.add_contacts(sliding.normal_force, sliding.force_times_speed);
   contact_sum_ += world_.contact_count();
@@ -137,6 +142,9 @@ void Plant::finish_tick() {
   for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
     motor_torques_[joint] = std::exchange(servos_[joint].torque_sum, 0.0) / steps_per_tick_;
     servo_currents_[joint] = std::exchange(servos_[joint].current_sum, 0.0) / steps_per_tick_;
+  }
+  for (std::size_t link = 0; link < contact_force_sums_.size(); ++link) {
+    contact_forces_[link] = std::exchange(contact_force_sums_[link], 0.0) / steps_per_tick_;
   }
   const Eigen::Vector3d center = world_.center_of_mass();
   require_crawling(center);

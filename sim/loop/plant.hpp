@@ -44,6 +44,8 @@ class Plant {
   /// Torque of each motor in Nm, and current of each servo in mA (an estimate): means over the tick.
   [[nodiscard]] std::span<const double> motor_torques() const { return motor_torques_; }
   [[nodiscard]] std::span<const double> servo_currents() const { return servo_currents_; }
+  /// Of each link: N, normal forces of its contacts, mean over the last tick.
+  [[nodiscard]] std::span<const double> contact_forces() const { return contact_forces_; }
   /// Touch sensors per link: bit 0 rear, bit 1 front; not debounced, and with the scenario's contact noise.
   [[nodiscard]] std::span<const std::uint8_t> link_contacts() const { return link_contacts_; }
 
@@ -101,6 +103,8 @@ class Plant {
   std::vector<double> joint_angles_;
   std::vector<double> motor_torques_;
   std::vector<double> servo_currents_;
+  std::vector<double> contact_force_sums_;  ///< N, over the steps of this tick
+  std::vector<double> contact_forces_;
   std::vector<double> joint_targets_;        ///< rad, of the servos in the last step
   std::vector<std::uint8_t> link_contacts_;  ///< with noise
 };

@@ -80,6 +80,7 @@ TickSample Simulation::sample() {
           plant_.joint_angles(),
           plant_.motor_torques(),
           plant_.servo_currents(),
+          plant_.contact_forces(),
           chain_.lost()};
 }
 

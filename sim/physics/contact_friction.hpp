@@ -38,6 +38,13 @@ class ContactFriction {
   void end_step();
   /// Of the points with the environment, in the last step.
   [[nodiscard]] const ContactSliding& sliding() const { return sliding_; }
+  /// Calls visit(a, b, normal force in N) for each two shapes that touched in the last step.
+  template <typename Visitor>
+  void for_each_pair(Visitor&& visit) const {
+    for (const Pair& pair : pairs_before_) {
+      visit(pair.a, pair.b, pair.normal_force);
+    }
+  }
 
  private:
   /// Two shapes that touch.

@@ -124,6 +124,7 @@ class World::Implementation {
 
   [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const { return touch_sensors_.pressed(link); }
   [[nodiscard]] std::size_t contact_count() const { return contact_count_; }
+  [[nodiscard]] double contact_force(std::size_t link) const { return contact_forces_[link]; }
   [[nodiscard]] ContactSliding contact_sliding() const { return contact_friction_.sliding(); }
   [[nodiscard]] std::optional<double> lowest_ground() const { return lowest_ground_; }
   [[nodiscard]] std::size_t solver_messages() const { return engine_messages() - messages_before_; }
@@ -147,7 +148,19 @@ class World::Implementation {
       dWorldQuickStep(world_.get(), step_s_);
     }
     contact_friction_.end_step();
+    sum_contact_forces();
     dJointGroupEmpty(contact_group_.get());
+  }
+
+  void sum_contact_forces() {
+    std::ranges::fill(contact_forces_, 0.0);
+    contact_friction_.for_each_pair([this](dGeomID a, dGeomID b, double force) {
+      for (const dGeomID shape : {a, b}) {
+        if (const int link = static_cast<const GeometryData*>(dGeomGetData(shape))->link; link >= 0) {
+          contact_forces_[static_cast<std::size_t>(link)] += force;
+        }
+      }
+    });
   }
 
   /// An error that the engine raises in the middle of a step leaves jobs in the world's threading implementation, and
@@ -248,6 +261,7 @@ class World::Implementation {
       masses_.push_back(link.mass.mass);
       mass_centers_.push_back(link.mass.center);
       touch_sensors_.add_link(robot, i);
+      contact_forces_.push_back(0.0);
     }
   }
 
@@ -322,6 +336,7 @@ class World::Implementation {
   std::vector<Eigen::Vector3d> mass_centers_;
   TouchSensors touch_sensors_;
   ContactFriction contact_friction_;
+  std::vector<double> contact_forces_;  ///< N, by link
   std::size_t contact_count_ = 0;
   std::optional<double> lowest_ground_;
   std::size_t messages_before_ = 0;
@@ -343,6 +358,7 @@ double World::motor_torque(std::size_t joint) const { return implementation_->mo
 Pose World::link_pose(std::size_t link) const { return implementation_->link_pose(link); }
 Eigen::Vector3d World::center_of_mass() const { return implementation_->center_of_mass(); }
 std::uint8_t World::link_contacts(std::size_t link) const { return implementation_->link_contacts(link); }
+double World::contact_force(std::size_t link) const { return implementation_->contact_force(link); }
 std::size_t World::contact_count() const { return implementation_->contact_count(); }
 ContactSliding World::contact_sliding() const { return implementation_->contact_sliding(); }
 std::optional<double> World::lowest_ground() const { return implementation_->lowest_ground(); }

@@ -56,6 +56,9 @@ class World {
   /// robot's file at angles 0, or towards -y if the link is upright in the file; it turns with the link. The contacts
   /// are those at the start of the last step; before the first step no sensor is pressed.
   [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const;
+  /// Sum of the normal forces, in N, of the link's contact points with the environment and with other links, in the
+  /// last step; 0 before the first.
+  [[nodiscard]] double contact_force(std::size_t link) const;
   /// Number of contact points at the start of the last step.
   [[nodiscard]] std::size_t contact_count() const;
   /// In the last step; zeros before the first.

@@ -103,7 +103,7 @@ class Recorder::Storage {
       const Eigen::Quaterniond& turn = sample.link_poses[link].orientation;
       insert_pose_.run(tick, link, position.x(), position.y(), position.z(), turn.w(), turn.x(), turn.y(), turn.z());
       const std::uint32_t contacts = sample.latched_contacts[link];
-      insert_contact_.run(tick, link, contacts & 1U, (contacts >> 1U) & 1U);
+      insert_contact_.run(tick, link, contacts & 1U, (contacts >> 1U) & 1U, sample.contact_forces[link]);
     }
     commit_if_due();
   }
@@ -193,7 +193,7 @@ class Recorder::Storage {
   Statement insert_value_{database_, "INSERT INTO internal_value VALUES(?1, ?2, ?3, ?4, ?5)"};
   Statement insert_pulse_{database_, "INSERT INTO servo VALUES(?1, ?2, ?3)"};
   Statement insert_pose_{database_, "INSERT INTO pose VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)"};
-  Statement insert_contact_{database_, "INSERT INTO contact VALUES(?1, ?2, ?3, ?4)"};
+  Statement insert_contact_{database_, "INSERT INTO contact VALUES(?1, ?2, ?3, ?4, ?5)"};
   Statement insert_loss_{database_, "INSERT INTO loss VALUES(?1, ?2, ?3, ?4)"};
   Statement insert_restart_{database_, "INSERT INTO restart VALUES(?1, ?2, ?3)"};
   bool closed_ = false;

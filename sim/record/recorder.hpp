@@ -32,6 +32,7 @@ struct TickSample {
   std::span<const double> joint_angles;          ///< rad, at SYNC k + 1, measured on the robot
   std::span<const double> motor_torques;         ///< Nm, means over the tick
   std::span<const double> servo_currents;        ///< mA, means over the tick
+  std::span<const double> contact_forces;        ///< per link: N, normal forces of its contacts, means over the tick
   std::span<const Loss> lost;                    ///< frames labelled k that their receivers did not get
 };
 

@@ -225,6 +225,7 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
   tick.internal_values.resize(internal_values_.size());
   tick.link_poses.resize(links_.size());
   tick.latched_contacts.resize(links_.size());
+  tick.contact_forces.resize(links_.size());
 
   std::optional<Rows> samples;
   std::optional<Rows> values;
@@ -245,7 +246,8 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
                   "WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, link",
                   first, last);
     contacts.emplace(database, "contact",
-                     "SELECT tick, link, rear, front FROM contact WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, link",
+                     "SELECT tick, link, rear, front, normal_force_n FROM contact "
+                     "WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, link",
                      first, last);
   });
   for (tick.tick = first; tick.tick <= last; ++tick.tick) {
@@ -269,6 +271,7 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
         const Statement& contact = contacts->expect(tick.tick, link);
         tick.latched_contacts[link] =
             static_cast<std::uint8_t>((natural(contact, 2) & 1U) | (natural(contact, 3) & 1U) << 1U);
+        tick.contact_forces[link] = finite(contact, 4);
       }
     });
     use(tick);

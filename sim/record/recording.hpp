@@ -74,6 +74,7 @@ struct RecordedTick {
   std::vector<std::int32_t> internal_values;   ///< in the order of Recording::internal_values()
   std::vector<Pose> link_poses;                ///< in the world
   std::vector<std::uint8_t> latched_contacts;  ///< at SYNC tick; bit 0 rear, bit 1 front sensor
+  std::vector<double> contact_forces;          ///< N, of each link, mean over the tick
 };
 
 /// A recording as it was when it was opened; a recorder may write into the file meanwhile.

@@ -143,10 +143,12 @@ CREATE TABLE pose(
 CREATE TABLE contact(
   -- Touch sensors under a link as the modules were given them at SYNC tick, tick * tick_us / 1000000 seconds after the
   -- start: the state frames labelled tick + 1 say the same. rear is nearer to the tail, front nearer to the head.
+  -- normal_force: of all contact points of the link, mean over the tick that begins at SYNC tick.
   tick INTEGER NOT NULL,
   link INTEGER NOT NULL,
   rear INTEGER NOT NULL,
   front INTEGER NOT NULL,
+  normal_force_n REAL NOT NULL,
   PRIMARY KEY(tick, link)
 ) STRICT, WITHOUT ROWID;
 

@@ -68,7 +68,8 @@ void write_header(const Recording& recording, const std::function<void(std::stri
   }
   for (std::size_t link = 0; link < recording.links().size(); ++link) {
     const std::string name = "." + recording.links()[link];
-    for (const char* quantity : {"x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "contact_rear", "contact_front"}) {
+    for (const char* quantity :
+         {"x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "contact_rear", "contact_front", "contact_N"}) {
       header.add(quantity + name, ".link" + std::to_string(link));
     }
   }
@@ -111,6 +112,7 @@ void write_tsv(const Recording& recording, const std::function<void(std::string_
       }
       line.add((tick.latched_contacts[link] & 1U) != 0 ? "1" : "0");
       line.add((tick.latched_contacts[link] & 2U) != 0 ? "1" : "0");
+      line.add(tick.contact_forces[link]);
     }
     write(line.finish());
   });

@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "box_link.hpp"
 #include "sim/physics/physics_error.hpp"
-#include "tests/sim/physics/box_link.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -193,6 +193,17 @@ TEST(World, ASensorIsPressedWhereTheLinkTouches) {
   EXPECT_EQ(world.link_contacts(0), 2U);
   EXPECT_EQ(world.link_contacts(1), 0U);
   EXPECT_EQ(world.link_contacts(2), 1U);
+}
+
+TEST(World, TheContactForcesCarryTheRobot) {
+  const RobotModel robot = chain(3);
+  World world(robot, flat_ground(0.5, 0.02), step_s, Stepper::direct);
+  EXPECT_EQ(world.contact_force(0), 0.0);
+  run(world, 1.0);
+  for (std::size_t link = 0; link < 3; ++link) {
+    EXPECT_GT(world.contact_force(link), 0.0) << "link " << link;
+  }
+  EXPECT_NEAR(world.contact_force(0) + world.contact_force(1) + world.contact_force(2), 0.3 * gravity, 0.01);
 }
 
 /// The sensors of the middle of three links when a small ball touches it. The ball just reaches the point `surface` of

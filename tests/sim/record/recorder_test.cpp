@@ -77,6 +77,7 @@ TEST(Recorder, KeepsEverySampleBitForBit) {
       EXPECT_EQ(tick.link_poses[link].position, pose.position);
       EXPECT_EQ(tick.link_poses[link].orientation.coeffs(), pose.orientation.coeffs());
       EXPECT_EQ(tick.latched_contacts[link], made_up_contacts(sample.tick, link));
+      EXPECT_EQ(tick.contact_forces[link], made_up_contact_force(sample.tick, link));
     }
     // Slot 0 drives all joints and has three internal values; slot 2 has none.
     ASSERT_EQ(tick.internal_values.size(), 9U);

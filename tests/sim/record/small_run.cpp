@@ -75,6 +75,10 @@ double made_up_current(std::uint32_t tick, std::size_t joint) {
   return 10.0 + tick + 0.25 * static_cast<double>(joint);
 }
 
+double made_up_contact_force(std::uint32_t tick, std::size_t link) {
+  return 1.0 / (1.0 + tick) + static_cast<double>(link);
+}
+
 Pose made_up_pose(std::uint32_t tick, std::size_t link) {
   Pose pose;
   pose.position = {0.001 * tick - 0.1 * static_cast<double>(link), 0.01 * std::sin(0.05 * tick), 1.0 / 3.0};
@@ -124,6 +128,7 @@ void run_small(const Scenario& scenario, std::uint32_t ticks,
   std::vector<double> torques(joints);
   std::vector<double> currents(joints);
   std::vector<Pose> poses(links);
+  std::vector<double> forces(links);
   auto next_change = scenario.changes.begin();
   for (std::uint32_t tick = 0; tick < ticks; ++tick) {
     const Change* change = nullptr;
@@ -155,10 +160,11 @@ void run_small(const Scenario& scenario, std::uint32_t ticks,
     }
     for (std::size_t link = 0; link < links; ++link) {
       poses[link] = made_up_pose(tick, link);
+      forces[link] = made_up_contact_force(tick, link);
     }
     const std::vector<std::int32_t> values = internal_values(kernel);
     const std::vector<ServoPulse> pulses = made_up_pulses(tick, joints);
-    use({tick, contacts, setpoints, values, pulses, commands, poses, angles, torques, currents, {}}, change);
+    use({tick, contacts, setpoints, values, pulses, commands, poses, angles, torques, currents, forces, {}}, change);
   }
 }
 

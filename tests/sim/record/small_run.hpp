@@ -21,6 +21,7 @@ namespace proleg::sim {
 [[nodiscard]] double made_up_angle(std::uint32_t tick, std::size_t joint);
 [[nodiscard]] double made_up_torque(std::uint32_t tick, std::size_t joint);
 [[nodiscard]] double made_up_current(std::uint32_t tick, std::size_t joint);
+[[nodiscard]] double made_up_contact_force(std::uint32_t tick, std::size_t link);
 [[nodiscard]] Pose made_up_pose(std::uint32_t tick, std::size_t link);
 /// The last pulse before SYNC tick + 1.
 [[nodiscard]] std::int32_t made_up_command(std::uint32_t tick, std::size_t joint);

@@ -45,12 +45,14 @@ TEST(Tsv, NamesItsColumns) {
             "setpoint_deg.J1\tservo_us.J1\tangle_deg.J1\ttorque_Nm.J1\tcurrent_mA.J1\tcurrent_phase_deg.J1\tmeasured_"
             "frequency_Hz.J1\tmeasured_"
             "phase_difference_deg.J1\t"
-            "x_m.Head\ty_m.Head\tz_m.Head\tqw.Head\tqx.Head\tqy.Head\tqz.Head\tcontact_rear.Head\tcontact_front.Head\t"
+            "x_m.Head\ty_m.Head\tz_m.Head\tqw.Head\tqx.Head\tqy.Head\tqz.Head\tcontact_rear.Head\tcontact_front."
+            "Head\tcontact_N.Head\t"
             "x_m.Link2\ty_m.Link2\tz_m.Link2\tqw.Link2\tqx.Link2\tqy.Link2\tqz.Link2\tcontact_rear.Link2\tcontact_"
-            "front.Link2\t"
+            "front.Link2\tcontact_N.Link2\t"
             "x_m.Link1\ty_m.Link1\tz_m.Link1\tqw.Link1\tqx.Link1\tqy.Link1\tqz.Link1\tcontact_rear.Link1\tcontact_"
-            "front.Link1\t"
-            "x_m.Tail\ty_m.Tail\tz_m.Tail\tqw.Tail\tqx.Tail\tqy.Tail\tqz.Tail\tcontact_rear.Tail\tcontact_front.Tail");
+            "front.Link1\tcontact_N.Link1\t"
+            "x_m.Tail\ty_m.Tail\tz_m.Tail\tqw.Tail\tqx.Tail\tqy.Tail\tqz.Tail\tcontact_rear.Tail\tcontact_front."
+            "Tail\tcontact_N.Tail");
 }
 
 TEST(Tsv, ContainsEveryValueExactly) {
@@ -96,6 +98,7 @@ TEST(Tsv, ContainsEveryValueExactly) {
       EXPECT_EQ(number("qz" + name), pose.orientation.z());
       EXPECT_EQ(row["contact_rear" + name], (made_up_contacts(sample.tick, link) & 1U) != 0 ? "1" : "0");
       EXPECT_EQ(row["contact_front" + name], (made_up_contacts(sample.tick, link) & 2U) != 0 ? "1" : "0");
+      EXPECT_EQ(number("contact_N" + name), made_up_contact_force(sample.tick, link));
     }
   });
 }

@@ -27,8 +27,8 @@ Found find(std::span<const ObjectAccessor> accessors, const JointKernel& joint, 
     }
     first = first_of(value->kind);
     position = {value->number, value->slot};
-  } else if (const canopen::ObjectRow* row = canopen::find_row(address)) {
-    first = row->first->address;
+  } else if (const canopen::EntryRow* row = canopen::find_row(address)) {
+    first = row->first.address;
     position = {static_cast<std::uint16_t>(address.index - first.index),
                 static_cast<std::uint16_t>(address.sub - first.sub)};
   }
@@ -95,11 +95,11 @@ void DeviceObjects::serve(Microseconds now, const CanFrame& request) {
   }
 }
 
-AbortCode DeviceObjects::read(const canopen::Object& object, std::uint32_t& value) {
+AbortCode DeviceObjects::read(const canopen::Entry& object, std::uint32_t& value) {
   return read_object(object_accessors(), parts_, object.address, value);
 }
 
-AbortCode DeviceObjects::write(const canopen::Object& object, std::uint32_t value) {
+AbortCode DeviceObjects::write(const canopen::Entry& object, std::uint32_t value) {
   return write_object(object_accessors(), parts_, object.address, value, now_);
 }
 

@@ -24,8 +24,8 @@ class DeviceObjects final : private canopen::ObjectAccess {
   void serve(Microseconds now, const CanFrame& request);
 
  private:
-  canopen::AbortCode read(const canopen::Object& object, std::uint32_t& value) override;
-  canopen::AbortCode write(const canopen::Object& object, std::uint32_t value) override;
+  canopen::AbortCode read(const canopen::Entry& object, std::uint32_t& value) override;
+  canopen::AbortCode write(const canopen::Entry& object, std::uint32_t value) override;
 
   Parts& parts_;
   Microseconds now_ = 0;  ///< of the request that is served

@@ -67,35 +67,39 @@ struct Address {
   friend constexpr bool operator==(Address, Address) = default;
 };
 
-/// An entry. Values travel as 32 bits; signed types are sign-extended.
-struct Object {
+/// An entry without its texts: what a device needs. Values travel as 32 bits; signed types are sign-extended.
+struct Entry {
   Address address;
-  std::string_view name;
   DataType type;
   Access access;
+  bool adds_node_id;  ///< the value is always default_value + node id (CiA 306, "$NODEID+")
   std::uint32_t default_value;  ///< of a constant: its value. The node id is added where adds_node_id.
   std::uint32_t minimum;        ///< compared as signed for signed types
   std::uint32_t maximum;
-  bool adds_node_id = false;  ///< the value is always default_value + node id (CiA 306, "$NODEID+")
-  std::optional<std::uint32_t> also_allowed = {};  ///< a value outside minimum to maximum, such as "off"
-  std::string_view help = {};                      ///< a short phrase: unit and meaning
+  std::optional<std::uint32_t> also_allowed;  ///< a value outside minimum to maximum, such as "off"
+};
+
+/// An entry with its texts, which only programs on a computer read: they are not in a module's image.
+struct Object : Entry {
+  std::string_view name;
+  std::string_view help;  ///< a short phrase: unit and meaning
 };
 
 /// An entry that never changes.
 [[nodiscard]] constexpr Object constant(Address address, std::string_view name, DataType type, std::uint32_t value,
                                         std::string_view help = {}) {
-  return {address, name, type, Access::constant, value, min_value(type), max_value(type), false, std::nullopt, help};
+  return {{address, type, Access::constant, false, value, min_value(type), max_value(type), {}}, name, help};
 }
 /// An entry that only the device changes; its default value has no meaning.
 [[nodiscard]] constexpr Object read_only(Address address, std::string_view name, DataType type,
                                          std::string_view help = {}) {
-  return {address, name, type, Access::read_only, 0, min_value(type), max_value(type), false, std::nullopt, help};
+  return {{address, type, Access::read_only, false, 0, min_value(type), max_value(type), {}}, name, help};
 }
 /// The identifier `base` + node id of a message of the predefined connection set.
 [[nodiscard]] constexpr Object node_identifier(Address address, std::string_view name, std::uint32_t base,
                                                std::string_view help = {}) {
   constexpr DataType type = DataType::unsigned32;
-  return {address, name, type, Access::read_only, base, min_value(type), max_value(type), true, std::nullopt, help};
+  return {{address, type, Access::read_only, true, base, min_value(type), max_value(type), {}}, name, help};
 }
 struct Range {
   std::uint32_t minimum;
@@ -105,8 +109,9 @@ struct Range {
 [[nodiscard]] constexpr Object read_write(Address address, std::string_view name, DataType type,
                                           std::uint32_t default_value, Range range, std::string_view help = {},
                                           std::optional<std::uint32_t> also_allowed = std::nullopt) {
-  return {address,       name,          type,  Access::read_write, default_value,
-          range.minimum, range.maximum, false, also_allowed,       help};
+  return {{address, type, Access::read_write, false, default_value, range.minimum, range.maximum, also_allowed},
+          name,
+          help};
 }
 
 /// An index with sub-indices, or several equal ones. Sub-index 0, the highest sub-index supported, follows from the
@@ -147,12 +152,12 @@ struct JointObjects {
 }
 
 /// The value of an entry that can have only one; nothing if it depends on the device's state.
-[[nodiscard]] constexpr std::optional<std::uint32_t> fixed_value(const Object& object, std::uint8_t node) {
-  if (object.adds_node_id) {
-    return object.default_value + node;
+[[nodiscard]] constexpr std::optional<std::uint32_t> fixed_value(const Entry& entry, std::uint8_t node) {
+  if (entry.adds_node_id) {
+    return entry.default_value + node;
   }
-  if (object.access == Access::constant) {
-    return object.default_value;
+  if (entry.access == Access::constant) {
+    return entry.default_value;
   }
   return std::nullopt;
 }
@@ -181,14 +186,14 @@ enum class AbortCode : std::uint32_t {
 [[nodiscard]] std::string_view describe(AbortCode code);
 
 /// `none`, or why the value, as 32 bits, is not one of those that the declaration allows.
-[[nodiscard]] constexpr AbortCode check_range(const Object& object, std::uint32_t value) {
-  if (object.also_allowed && value == *object.also_allowed) {
+[[nodiscard]] constexpr AbortCode check_range(const Entry& entry, std::uint32_t value) {
+  if (entry.also_allowed && value == *entry.also_allowed) {
     return AbortCode::none;
   }
-  if (is_less(object.type, value, object.minimum)) {
+  if (is_less(entry.type, value, entry.minimum)) {
     return AbortCode::below_minimum;
   }
-  return is_less(object.type, object.maximum, value) ? AbortCode::above_maximum : AbortCode::none;
+  return is_less(entry.type, entry.maximum, value) ? AbortCode::above_maximum : AbortCode::none;
 }
 
 }  // namespace proleg::canopen

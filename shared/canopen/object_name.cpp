@@ -41,8 +41,8 @@ ObjectName index_name(std::uint16_t index) {
     if (group->count > 1) {
       append_number(name, static_cast<unsigned>(index - group->index));
     }
-  } else if (const ObjectRow* row = find_row({index, 0})) {
-    append(name, row->first->name);
+  } else if (find_row({index, 0}) != nullptr) {
+    append(name, find_object({index, 0})->name);
   } else if (const std::optional<ValueAddress> value = value_address({index, 1})) {
     append_value_name(name, *value);
   }
@@ -56,8 +56,8 @@ ObjectName entry_name(Address address) {
     append_number(name, value->slot + 1U);
   } else if (const std::optional<Object> object = find_object(address)) {
     append(name, object->name);
-    if (const ObjectRow* row = find_row(address); row != nullptr && row->subs > 1) {
-      append_number(name, static_cast<unsigned>(address.sub - row->first->address.sub) + 1U);
+    if (const EntryRow* row = find_row(address); row != nullptr && row->subs > 1) {
+      append_number(name, static_cast<unsigned>(address.sub - row->first.address.sub) + 1U);
     }
   }
   return name;

@@ -1,5 +1,6 @@
 #include "shared/canopen/objects.hpp"
 
+#include <array>
 #include <iterator>
 
 #include "shared/gait/registry.hpp"
@@ -13,7 +14,7 @@ constexpr ObjectRow row(const JointObjects& series) {
   return {&series.first, JointObjects::count, 1, series.default_step};
 }
 
-constexpr ObjectRow rows[] = {
+constexpr ObjectRow declared_rows[] = {
     row(object::device_type),
     row(object::error_register),
     row(object::sync_identifier),
@@ -103,7 +104,7 @@ constexpr ObjectRow rows[] = {
     row(object::supported_modes),
 };
 
-constexpr const ObjectGroup* groups[] = {
+constexpr const ObjectGroup* declared_groups[] = {
     &object::consumer_heartbeat,
     &object::identity,
     &object::sdo_server,
@@ -135,21 +136,47 @@ constexpr const ObjectGroup* groups[] = {
     &object::received_frames[1],
 };
 
-constexpr std::uint16_t last_index = rows[std::size(rows) - 1].first->address.index;
+// The image of a module contains these two and nothing of the above.
 
-constexpr bool covers(const ObjectGroup& group, std::uint16_t index) {
+constexpr std::array rows = [] {
+  std::array<EntryRow, std::size(declared_rows)> without_texts{};
+  for (std::size_t i = 0; i < without_texts.size(); ++i) {
+    const ObjectRow& row = declared_rows[i];
+    without_texts[i] = {*row.first, row.indices, row.subs, row.default_step};
+  }
+  return without_texts;
+}();
+
+struct Group {
+  std::uint16_t index;
+  ObjectCode code;
+  std::uint8_t count;
+};
+constexpr std::array groups = [] {
+  std::array<Group, std::size(declared_groups)> without_texts{};
+  for (std::size_t i = 0; i < without_texts.size(); ++i) {
+    const ObjectGroup& group = *declared_groups[i];
+    without_texts[i] = {group.index, group.code, group.count};
+  }
+  return without_texts;
+}();
+
+constexpr std::uint16_t last_index = rows.back().first.address.index;
+
+template <typename AnyGroup>
+constexpr bool covers(const AnyGroup& group, std::uint16_t index) {
   return index >= group.index && index - group.index < group.count;
 }
 
 /// Ascending, and sub-indices only where a group says what the index is.
 constexpr bool well_formed() {
   std::uint32_t before = 0;
-  for (const ObjectRow& row : rows) {
-    const Address address = row.first->address;
+  for (const EntryRow& row : rows) {
+    const Address address = row.first.address;
     const std::uint32_t position = std::uint32_t{address.index} << 8U | address.sub;
     bool grouped = false;
-    for (const ObjectGroup* group : groups) {
-      grouped = grouped || (covers(*group, address.index) && group->count == row.indices);
+    for (const Group& group : groups) {
+      grouped = grouped || (covers(group, address.index) && group.count == row.indices);
     }
     if (position <= before || grouped != (address.sub > 0)) {
       return false;
@@ -160,17 +187,18 @@ constexpr bool well_formed() {
 }
 static_assert(well_formed());
 
+constexpr DataType value_type = DataType::integer32;
+
 /// An entry of the ranges.
-Object value_object(Address address, const ValueAddress& value) {
-  const Declaration& declaration = find_algorithm(value.algorithm)->declaration();
-  if (value.kind == ValueKind::internal_value) {
-    const InternalValue& internal = declaration.internal_values[value.number];
-    return read_write(address, internal.name, DataType::integer32, 0, full_range(DataType::integer32), internal.help);
+Entry value_entry(Address address, const ValueAddress& value) {
+  Range range = full_range(value_type);
+  std::uint32_t default_value = 0;
+  if (value.kind != ValueKind::internal_value) {
+    const Parameter& parameter = find_algorithm(value.algorithm)->declaration().parameters[value.number];
+    default_value = static_cast<std::uint32_t>(parameter.default_value);
+    range = {static_cast<std::uint32_t>(parameter.minimum), static_cast<std::uint32_t>(parameter.maximum)};
   }
-  const Parameter& parameter = declaration.parameters[value.number];
-  return read_write(address, parameter.name, DataType::integer32, static_cast<std::uint32_t>(parameter.default_value),
-                    {static_cast<std::uint32_t>(parameter.minimum), static_cast<std::uint32_t>(parameter.maximum)},
-                    parameter.help);
+  return {address, value_type, Access::read_write, false, default_value, range.minimum, range.maximum, {}};
 }
 
 }  // namespace
@@ -195,19 +223,19 @@ std::optional<ValueAddress> value_address(Address address) {
   return value.number < declared ? std::optional(value) : std::nullopt;
 }
 
-std::optional<Object> find_object(Address address) {
-  if (const ObjectRow* row = find_row(address)) {
-    Object object = *row->first;
-    object.default_value += row->default_step * (address.index - object.address.index);
-    object.address = address;
-    return object;
+std::optional<Entry> find_entry(Address address) {
+  if (const EntryRow* row = find_row(address)) {
+    Entry entry = row->first;
+    entry.default_value += row->default_step * (address.index - entry.address.index);
+    entry.address = address;
+    return entry;
   }
   if (const std::optional<ValueAddress> value = value_address(address)) {
-    return value_object(address, *value);
+    return value_entry(address, *value);
   }
   if (address.sub == 0) {
     if (const std::optional<IndexInfo> info = find_index(address.index)) {
-      return constant(address, "Highest sub-index supported", DataType::unsigned8, info->max_sub);
+      return constant(address, {}, DataType::unsigned8, info->max_sub);
     }
   }
   return std::nullopt;
@@ -217,12 +245,14 @@ std::optional<IndexInfo> find_index(std::uint16_t index) {
   if (find_row({index, 0}) != nullptr) {
     return IndexInfo{ObjectCode::variable, 0};
   }
-  if (const ObjectGroup* group = find_group(index)) {
-    std::uint8_t highest = 0;
-    while (find_row({index, static_cast<std::uint8_t>(highest + 1)}) != nullptr) {
-      ++highest;
+  for (const Group& group : groups) {
+    if (covers(group, index)) {
+      std::uint8_t highest = 0;
+      while (find_row({index, static_cast<std::uint8_t>(highest + 1)}) != nullptr) {
+        ++highest;
+      }
+      return IndexInfo{group.code, highest};
     }
-    return IndexInfo{group->code, highest};
   }
   if (value_address({index, 1})) {
     return IndexInfo{ObjectCode::array, max_slots};
@@ -230,10 +260,8 @@ std::optional<IndexInfo> find_index(std::uint16_t index) {
   return std::nullopt;
 }
 
-std::span<const ObjectRow> object_rows() { return rows; }
-
-const ObjectRow* find_row(Address address) {
-  for (const ObjectRow& row : rows) {
+const EntryRow* find_row(Address address) {
+  for (const EntryRow& row : rows) {
     if (row.covers(address)) {
       return &row;
     }
@@ -241,13 +269,36 @@ const ObjectRow* find_row(Address address) {
   return nullptr;
 }
 
+std::span<const ObjectRow> object_rows() { return declared_rows; }
+
 const ObjectGroup* find_group(std::uint16_t index) {
-  for (const ObjectGroup* group : groups) {
+  for (const ObjectGroup* group : declared_groups) {
     if (covers(*group, index)) {
       return group;
     }
   }
   return nullptr;
+}
+
+std::optional<Object> find_object(Address address) {
+  const std::optional<Entry> entry = find_entry(address);
+  if (!entry) {
+    return std::nullopt;
+  }
+  if (const EntryRow* row = find_row(address)) {
+    const Object& declared = *declared_rows[row - rows.data()].first;
+    return Object{*entry, declared.name, declared.help};
+  }
+  if (const std::optional<ValueAddress> value = value_address(address)) {
+    const Declaration& declaration = find_algorithm(value->algorithm)->declaration();
+    if (value->kind == ValueKind::internal_value) {
+      const InternalValue& internal = declaration.internal_values[value->number];
+      return Object{*entry, internal.name, internal.help};
+    }
+    const Parameter& parameter = declaration.parameters[value->number];
+    return Object{*entry, parameter.name, parameter.help};
+  }
+  return Object{*entry, "Highest sub-index supported", {}};
 }
 
 std::optional<Object> next_object(Address address) {

@@ -36,7 +36,7 @@ struct ValueAddress {
 [[nodiscard]] std::optional<ValueAddress> value_address(Address address);
 
 /// The entry at an address, also of the ranges; nothing if there is none.
-[[nodiscard]] std::optional<Object> find_object(Address address);
+[[nodiscard]] std::optional<Entry> find_entry(Address address);
 
 /// What an index holds.
 struct IndexInfo {
@@ -47,27 +47,37 @@ struct IndexInfo {
 /// Whether any sub-index of the index exists.
 [[nodiscard]] inline bool index_exists(std::uint16_t index) { return find_index(index).has_value(); }
 
-/// The entries of namespace `object` as they are declared. A row stands for equal entries at `indices` consecutive
-/// indices and `subs` consecutive sub-indices. Ascending by index and sub-index of the first.
-struct ObjectRow {
-  const Object* first;
+/// Equal entries at `indices` consecutive indices and `subs` consecutive sub-indices.
+struct EntryRow {
+  Entry first;
   std::uint8_t indices;
   std::uint8_t subs;
   std::uint32_t default_step;  ///< default value at an index minus that at the index before
 
   [[nodiscard]] constexpr bool covers(Address address) const {
-    return address.index >= first->address.index && address.index - first->address.index < indices &&
-           address.sub >= first->address.sub && address.sub - first->address.sub < subs;
+    return address.index >= first.address.index && address.index - first.address.index < indices &&
+           address.sub >= first.address.sub && address.sub - first.address.sub < subs;
   }
 };
-[[nodiscard]] std::span<const ObjectRow> object_rows();
 /// The row with the address; null if there is none, as for sub-indices 0 of groups and for the ranges.
-[[nodiscard]] const ObjectRow* find_row(Address address);
+[[nodiscard]] const EntryRow* find_row(Address address);
+
+// With texts, for programs on a computer.
+
+/// The entries of namespace `object` as they are declared, ascending by index and sub-index of the first.
+struct ObjectRow {
+  const Object* first;
+  std::uint8_t indices;
+  std::uint8_t subs;
+  std::uint32_t default_step;
+};
+[[nodiscard]] std::span<const ObjectRow> object_rows();
 /// The group with the index; null for a variable and for the ranges.
 [[nodiscard]] const ObjectGroup* find_group(std::uint16_t index);
+/// find_entry() with its texts.
+[[nodiscard]] std::optional<Object> find_object(Address address);
 
-/// The entry with the next higher address, sub-index before index; nothing after the last. It searches: for programs
-/// on a computer.
+/// The entry with the next higher address, sub-index before index; nothing after the last. It searches.
 [[nodiscard]] std::optional<Object> next_object(Address address);
 
 /// Calls visit(object) for every entry, ascending by index and sub-index.

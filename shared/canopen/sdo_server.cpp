@@ -6,7 +6,7 @@
 namespace proleg::canopen {
 namespace {
 
-AbortCode upload(std::uint8_t node, const Object& object, ObjectAccess& device, std::uint32_t& value) {
+AbortCode upload(std::uint8_t node, const Entry& object, ObjectAccess& device, std::uint32_t& value) {
   if (const std::optional<std::uint32_t> fixed = fixed_value(object, node)) {
     value = *fixed;
     return AbortCode::none;
@@ -14,7 +14,7 @@ AbortCode upload(std::uint8_t node, const Object& object, ObjectAccess& device, 
   return device.read(object, value);
 }
 
-AbortCode download(const CanFrame& request, const Object& object, ObjectAccess& device) {
+AbortCode download(const CanFrame& request, const Entry& object, ObjectAccess& device) {
   if (object.access == Access::by_pdo) {
     return AbortCode::unsupported_access;
   }
@@ -53,7 +53,7 @@ std::optional<CanFrame> serve_sdo(std::uint8_t node, const CanFrame& request, Ob
   if (!writes && request.data[0] != sdo::request_upload) {
     return refuse(AbortCode::unknown_command);
   }
-  const std::optional<Object> object = find_object(address);
+  const std::optional<Entry> object = find_entry(address);
   if (!object) {
     return refuse(index_exists(address.index) ? AbortCode::no_such_sub_index : AbortCode::no_such_object);
   }

@@ -14,8 +14,8 @@ namespace proleg::canopen {
 /// signed types are sign-extended. The server sends the low bytes of a value that was read.
 class ObjectAccess {
  public:
-  virtual AbortCode read(const Object& object, std::uint32_t& value) = 0;
-  virtual AbortCode write(const Object& object, std::uint32_t value) = 0;
+  virtual AbortCode read(const Entry& object, std::uint32_t& value) = 0;
+  virtual AbortCode write(const Entry& object, std::uint32_t value) = 0;
 
  protected:
   ~ObjectAccess() = default;

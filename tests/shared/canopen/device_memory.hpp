@@ -13,13 +13,13 @@ namespace proleg::test {
 /// A device that keeps what is written and checks that writing it is allowed.
 class DeviceMemory final : public canopen::ObjectAccess {
  public:
-  canopen::AbortCode read(const canopen::Object& object, std::uint32_t& value) override {
+  canopen::AbortCode read(const canopen::Entry& object, std::uint32_t& value) override {
     ++reads;
     EXPECT_FALSE(fixed_value(object, 1)) << "the server knows this value";
     value = this->value(object.address);
     return refusal;
   }
-  canopen::AbortCode write(const canopen::Object& object, std::uint32_t value) override {
+  canopen::AbortCode write(const canopen::Entry& object, std::uint32_t value) override {
     ++writes;
     EXPECT_EQ(object.access, canopen::Access::read_write);
     EXPECT_EQ(check_range(object, value), canopen::AbortCode::none);

@@ -1,5 +1,7 @@
 #include "firmware/module/device_objects.hpp"
 
+#include <algorithm>
+
 #include "firmware/module/abort_code.hpp"
 
 namespace proleg::firmware {
@@ -88,19 +90,101 @@ AbortCode write_object(std::span<const ObjectAccessor> accessors, Parts& parts, 
   return found.accessor->set(parts, {found.position, value, now});
 }
 
-void DeviceObjects::serve(Microseconds now, const CanFrame& request) {
-  now_ = now;
-  if (const std::optional<CanFrame> reply = canopen::serve_sdo(parts_.identity.node, request, *this)) {
-    parts_.outbox.send(*reply);
+void ObjectText::append(std::string_view text) {
+  for (const char character : text) {
+    if (size_ < characters_.size()) {
+      characters_[size_++] = character;
+    }
   }
 }
 
-AbortCode DeviceObjects::read(const canopen::Entry& object, std::uint32_t& value) {
-  return read_object(object_accessors(), parts_, object.address, value);
+void ObjectText::append_hex(std::uint32_t value) {
+  for (unsigned shift = 32; shift > 0;) {
+    shift -= 4;
+    constexpr std::string_view digits = "0123456789ABCDEF";
+    append({&digits[value >> shift & 0xFU], 1});
+  }
 }
 
-AbortCode DeviceObjects::write(const canopen::Entry& object, std::uint32_t value) {
-  return write_object(object_accessors(), parts_, object.address, value, now_);
+void ObjectText::append_decimal(unsigned value) {
+  unsigned power = 1;
+  while (value / power >= 10) {
+    power *= 10;
+  }
+  for (; power > 0; power /= 10) {
+    const auto digit = static_cast<char>('0' + value / power % 10);
+    append({&digit, 1});
+  }
+}
+
+std::optional<ObjectText> read_text(const ModuleIdentity& identity, canopen::Address address) {
+  ObjectText text;
+  if (address == canopen::object::device_name.address) {
+    text.append(canopen::object::device_name.text);
+  } else if (address == canopen::object::hardware_version.address) {
+    text.append("board ");
+    text.append_decimal(identity.board_id);
+  } else if (address == canopen::object::software_version.address) {
+    text.append("protocol ");
+    text.append_decimal(canopen::protocol_version >> 8U);
+    text.append(".");
+    text.append_decimal(canopen::protocol_version & 0xFFU);
+    text.append(", core ");
+    text.append_hex(identity.core_fingerprint);
+  } else {
+    return std::nullopt;
+  }
+  return text;
+}
+
+void DeviceObjects::serve(Microseconds now, const CanFrame& request) {
+  now_ = now;
+  if (const std::optional<CanFrame> reply = server_.receive(now, request)) {
+    parts_.outbox.send(*reply);
+  }
+  send_segments(now);
+}
+
+void DeviceObjects::send_segments(Microseconds now) {
+  // One in a mailbox and one behind it keep the bus busy; more would fill the queue.
+  while (server_.has_segment() && parts_.outbox.is_empty()) {
+    if (!parts_.outbox.send(server_.next_segment(now))) {
+      return;
+    }
+  }
+}
+
+void DeviceObjects::poll(Microseconds now) {
+  if (const std::optional<CanFrame> frame = server_.poll(now)) {
+    parts_.outbox.send(*frame);
+  }
+}
+
+AbortCode DeviceObjects::read(const canopen::Entry& entry, std::uint32_t& value) {
+  return read_object(object_accessors(), parts_, entry.address, value);
+}
+
+AbortCode DeviceObjects::write(const canopen::Entry& entry, std::uint32_t value) {
+  return write_object(object_accessors(), parts_, entry.address, value, now_);
+}
+
+AbortCode DeviceObjects::open_read(const canopen::Entry& entry, std::uint32_t& size) {
+  const std::optional<ObjectText> text = read_text(parts_.identity, entry.address);
+  if (!text) {
+    return AbortCode::unsupported_access;
+  }
+  size = static_cast<std::uint32_t>(text->characters().size());
+  return AbortCode::none;
+}
+
+AbortCode DeviceObjects::read_part(const canopen::Entry& entry, std::uint32_t offset, std::span<std::uint8_t> part) {
+  const std::optional<ObjectText> text = read_text(parts_.identity, entry.address);
+  if (!text) {
+    return AbortCode::unsupported_access;
+  }
+  const std::span<const char> characters = text->characters().subspan(offset, part.size());
+  std::copy(characters.begin(), characters.end(), part.begin());
+  return AbortCode::none;
 }
 
 }  // namespace proleg::firmware

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <string_view>
+
 #include "firmware/module/object_accessors.hpp"
 #include "shared/canopen/sdo_server.hpp"
 
@@ -12,22 +15,47 @@ namespace proleg::firmware {
 [[nodiscard]] canopen::AbortCode write_object(std::span<const ObjectAccessor> accessors, Parts& parts,
                                               canopen::Address address, std::uint32_t value, Microseconds now);
 
+/// The text of an entry of type VISIBLE_STRING, as the module knows it.
+class ObjectText {
+ public:
+  [[nodiscard]] std::span<const char> characters() const { return {characters_.data(), size_}; }
+  void append(std::string_view text);
+  void append_hex(std::uint32_t value);
+  void append_decimal(unsigned value);
+
+ private:
+  std::array<char, 32> characters_{};
+  std::uint8_t size_ = 0;
+};
+/// Nothing if the module has no such text.
+[[nodiscard, gnu::cold]] std::optional<ObjectText> read_text(const ModuleIdentity& identity, canopen::Address address);
+
 /// The SDO server of the module's object dictionary: what object_accessors() has, as it is when a request comes.
 ///
 /// The host writes what a robot agrees on in Pre-operational; it takes effect at `activate`. After that it writes
 /// parameters and limits. In an open transaction it stages parameters and internal values in any state.
 class DeviceObjects final : private canopen::ObjectAccess {
  public:
-  explicit DeviceObjects(Parts& parts) : parts_(parts) {}
+  explicit DeviceObjects(Parts& parts) : parts_(parts), server_(parts.identity.node, *this) {}
 
   /// Answers a frame on 0x600 + node.
-  void serve(Microseconds now, const CanFrame& request);
+  [[gnu::cold]] void serve(Microseconds now, const CanFrame& request);
+  /// Sends segments of a block upload while the queue is empty. To be called when a frame was sent.
+  void send_segments(Microseconds now);
+  [[gnu::cold]] void poll(Microseconds now);
+  [[nodiscard]] Microseconds next_deadline() const { return server_.next_deadline(); }
+  /// Drops the transfer.
+  void reset() { server_.reset(); }
 
  private:
-  canopen::AbortCode read(const canopen::Entry& object, std::uint32_t& value) override;
-  canopen::AbortCode write(const canopen::Entry& object, std::uint32_t value) override;
+  canopen::AbortCode read(const canopen::Entry& entry, std::uint32_t& value) override;
+  canopen::AbortCode write(const canopen::Entry& entry, std::uint32_t value) override;
+  canopen::AbortCode open_read(const canopen::Entry& entry, std::uint32_t& size) override;
+  canopen::AbortCode read_part(const canopen::Entry& entry, std::uint32_t offset,
+                               std::span<std::uint8_t> part) override;
 
   Parts& parts_;
+  canopen::SdoServer server_;
   Microseconds now_ = 0;  ///< of the request that is served
 };
 

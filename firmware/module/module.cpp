@@ -38,6 +38,7 @@ bool is_reserved(std::uint16_t identifier, std::uint8_t node) {
 Module::Module(const ModuleIdentity& identity, const Ports& ports) : parts_(identity, ports) {}
 
 void Module::power_on(Microseconds now) {
+  objects_.reset();
   parts_.reset(now);
   parts_.emergencies.power_on();
   finish_event(now);
@@ -113,6 +114,7 @@ void Module::receive_network_command(Microseconds now, const CanFrame& frame) {
     return;
   }
   if (request->command == NmtCommand::reset_node || request->command == NmtCommand::reset_communication) {
+    objects_.reset();
     parts_.reset(now);
   } else {
     change_state(parts_, *request);
@@ -121,6 +123,7 @@ void Module::receive_network_command(Microseconds now, const CanFrame& frame) {
 
 void Module::transmitted(Microseconds now, const CanFrame& frame) {
   parts_.outbox.sent();
+  objects_.send_segments(now);
   parts_.producer.transmitted(now, frame);
   if (parts_.network.confirm_boot_up(frame)) {
     parts_.emergencies.report_reset_cause();
@@ -135,6 +138,7 @@ void Module::transmitted(Microseconds now, const CanFrame& frame) {
 
 void Module::bus_off(Microseconds now) {
   if (!is_bus_off()) {
+    objects_.reset();
     leave_bus(parts_, now);
     finish_event(now);
   }
@@ -165,11 +169,15 @@ void Module::poll_parts(Microseconds now) {
   poll_host(parts_, now);
   poll_sync(parts_, now);
   parts_.producer.poll(now);
+  objects_.poll(now);
   finish_event(now);
 }
 
 /// The servo's power and the deadlines follow from the state that the event has left.
 void Module::finish_event(Microseconds now) {
+  if (state() == NmtState::stopped) {
+    objects_.reset();  // a stopped node has no SDO (CiA 301, table 37)
+  }
   clear_over_current(parts_);
   parts_.drive.update(now, parts_.network.operational(), synchronised());
   update_sync_watch(parts_, now);
@@ -179,7 +187,9 @@ void Module::finish_event(Microseconds now) {
 void Module::find_deadlines() {
   const Microseconds watches = std::min(std::min(parts_.recovery.next_deadline(), parts_.host.next_deadline()),
                                         std::min(parts_.sync.next_deadline(), parts_.monitor.next_deadline()));
-  deadline_of_parts_ = std::min(watches, std::min(parts_.network.next_deadline(), parts_.producer.next_deadline()));
+  const Microseconds services =
+      std::min(std::min(parts_.network.next_deadline(), parts_.producer.next_deadline()), objects_.next_deadline());
+  deadline_of_parts_ = std::min(watches, services);
   next_deadline_ = std::min(deadline_of_parts_, parts_.drive.next_deadline());
 }
 

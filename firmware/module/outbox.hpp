@@ -16,6 +16,8 @@ class Outbox {
   bool send(const CanFrame& frame) { return count(open_ && queue_.push(frame)); }
   /// The same for a message that is sent again and again: of those that wait only the newest is kept.
   bool send_newest(const CanFrame& frame) { return count(open_ && queue_.push_newest(frame)); }
+  /// Whether no frame waits for a mailbox.
+  [[nodiscard]] bool is_empty() const { return queue_.size() == 0; }
   /// To be called when the controller has sent a frame.
   void sent() { queue_.sent(); }
   void reset() {

@@ -54,6 +54,12 @@ inline constexpr Object sync_identifier = read_write(
     "0x40000080: the module produces SYNC and TICK, 0x80: another does", produces_sync | identifier::sync);
 inline constexpr Object tick_period = read_write({0x1006, 0}, "Communication cycle period", DataType::unsigned32,
                                                  10'000, {1'000, 100'000}, "a tick, in microseconds");
+inline constexpr Object device_name = constant_text({0x1008, 0}, "Manufacturer device name", "Proleg joint module");
+inline constexpr Object hardware_version =
+    read_only({0x1009, 0}, "Manufacturer hardware version", DataType::visible_string, "\"board\" and the board id");
+inline constexpr Object software_version =
+    read_only({0x100A, 0}, "Manufacturer software version", DataType::visible_string,
+              "\"protocol\" and its version, \"core\" and the core fingerprint");
 inline constexpr Object emergency_identifier =
     node_identifier({0x1014, 0}, "COB-ID emergency message", identifier::emergency);
 

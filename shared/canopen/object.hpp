@@ -10,7 +10,7 @@
 
 namespace proleg::canopen {
 
-/// CiA 301, table 44: the types that fit into an expedited SDO.
+/// CiA 301, table 44. Numbers fit into an expedited SDO; the last three are long types, of any number of bytes.
 enum class DataType : std::uint8_t {
   integer8 = 0x02,
   integer16 = 0x03,
@@ -18,9 +18,15 @@ enum class DataType : std::uint8_t {
   unsigned8 = 0x05,
   unsigned16 = 0x06,
   unsigned32 = 0x07,
+  visible_string = 0x09,  ///< ASCII, 0x20 to 0x7E
+  octet_string = 0x0A,
+  domain = 0x0F,
 };
 
-/// 1, 2 or 4 bytes.
+/// Whether values of the type have any number of bytes.
+[[nodiscard]] constexpr bool is_long(DataType type) { return type > DataType::unsigned32; }
+
+/// 1, 2 or 4 bytes; 0 for a long type.
 [[nodiscard]] constexpr std::uint8_t size_of(DataType type) {
   switch (type) {
     case DataType::integer8:
@@ -29,8 +35,11 @@ enum class DataType : std::uint8_t {
     case DataType::integer16:
     case DataType::unsigned16:
       return 2;
-    default:
+    case DataType::integer32:
+    case DataType::unsigned32:
       return 4;
+    default:
+      return 0;
   }
 }
 
@@ -38,7 +47,7 @@ enum class DataType : std::uint8_t {
   return type == DataType::integer8 || type == DataType::integer16 || type == DataType::integer32;
 }
 
-/// The low bytes of a value, as many as the type has, as 32 bits: signed types are sign-extended.
+/// The low bytes of a number, as many as the type has, as 32 bits: signed types are sign-extended.
 [[nodiscard]] constexpr std::uint32_t extend(DataType type, std::uint32_t value) {
   const unsigned unused = 32U - 8U * size_of(type);
   if (is_signed(type)) {
@@ -47,14 +56,16 @@ enum class DataType : std::uint8_t {
   return (value << unused) >> unused;
 }
 
-/// The range of a type.
+/// The range of a type; of a long one: of its number of bytes.
 [[nodiscard]] constexpr std::uint32_t min_value(DataType type) {
   return is_signed(type) ? extend(type, 1U << (8U * size_of(type) - 1U)) : 0;
 }
-[[nodiscard]] constexpr std::uint32_t max_value(DataType type) { return extend(type, ~min_value(type)); }
+[[nodiscard]] constexpr std::uint32_t max_value(DataType type) {
+  return is_long(type) ? 0xFFFFFFFF : extend(type, ~min_value(type));
+}
 
 /// What SDO may do. `by_pdo`: SDO reads, and only a receive PDO writes.
-enum class Access : std::uint8_t { read_only, read_write, constant, by_pdo };
+enum class Access : std::uint8_t { read_only, read_write, constant, by_pdo, write_only };
 
 /// CiA 301, table 42.
 enum class ObjectCode : std::uint8_t { variable = 0x07, array = 0x08, record = 0x09 };
@@ -72,9 +83,9 @@ struct Entry {
   Address address;
   DataType type;
   Access access;
-  bool adds_node_id;  ///< the value is always default_value + node id (CiA 306, "$NODEID+")
+  bool adds_node_id;            ///< the value is always default_value + node id (CiA 306, "$NODEID+")
   std::uint32_t default_value;  ///< of a constant: its value. The node id is added where adds_node_id.
-  std::uint32_t minimum;        ///< compared as signed for signed types
+  std::uint32_t minimum;        ///< compared as signed for signed types; of a long type: number of bytes
   std::uint32_t maximum;
   std::optional<std::uint32_t> also_allowed;  ///< a value outside minimum to maximum, such as "off"
 };
@@ -82,7 +93,8 @@ struct Entry {
 /// An entry with its texts, which only programs on a computer read: they are not in a module's image.
 struct Object : Entry {
   std::string_view name;
-  std::string_view help;  ///< a short phrase: unit and meaning
+  std::string_view help;       ///< a short phrase: unit and meaning
+  std::string_view text = {};  ///< of a constant string: its value
 };
 
 /// An entry that never changes.
@@ -100,6 +112,13 @@ struct Object : Entry {
                                                std::string_view help = {}) {
   constexpr DataType type = DataType::unsigned32;
   return {{address, type, Access::read_only, true, base, min_value(type), max_value(type), {}}, name, help};
+}
+/// A string that never changes.
+[[nodiscard]] constexpr Object constant_text(Address address, std::string_view name, std::string_view text,
+                                             std::string_view help = {}) {
+  Object object = constant(address, name, DataType::visible_string, 0, help);
+  object.text = text;
+  return object;
 }
 struct Range {
   std::uint32_t minimum;
@@ -151,35 +170,51 @@ struct JointObjects {
   return is_signed(type) ? static_cast<std::int32_t>(value) < static_cast<std::int32_t>(other) : value < other;
 }
 
-/// The value of an entry that can have only one; nothing if it depends on the device's state.
+/// The number in an entry that can have only one; nothing if it depends on the device's state, or for a long type.
 [[nodiscard]] constexpr std::optional<std::uint32_t> fixed_value(const Entry& entry, std::uint8_t node) {
   if (entry.adds_node_id) {
     return entry.default_value + node;
   }
-  if (entry.access == Access::constant) {
+  if (entry.access == Access::constant && !is_long(entry.type)) {
     return entry.default_value;
   }
   return std::nullopt;
 }
 
-/// The SDO abort codes (CiA 301, table 22) that module and master use.
+/// The SDO abort codes (CiA 301, table 22).
 enum class AbortCode : std::uint32_t {
   none = 0,
+  toggle_not_alternated = 0x05030000,
   timeout = 0x05040000,
   unknown_command = 0x05040001,
+  invalid_block_size = 0x05040002,
+  invalid_sequence_number = 0x05040003,
+  crc_error = 0x05040004,
   out_of_memory = 0x05040005,
   unsupported_access = 0x06010000,
+  write_only = 0x06010001,
   read_only = 0x06010002,
   no_such_object = 0x06020000,
+  not_mappable = 0x06040041,
+  pdo_too_long = 0x06040042,
   general_incompatibility = 0x06040043,
+  internal_incompatibility = 0x06040047,
+  hardware_error = 0x06060000,
   wrong_length = 0x06070010,
+  too_long = 0x06070012,
+  too_short = 0x06070013,
   no_such_sub_index = 0x06090011,
   out_of_range = 0x06090030,
   above_maximum = 0x06090031,
   below_minimum = 0x06090032,
+  maximum_below_minimum = 0x06090036,
+  no_connection = 0x060A0023,
   general_error = 0x08000000,
   refused_by_application = 0x08000020,
+  refused_by_local_control = 0x08000021,
   refused_by_state = 0x08000022,  ///< "because of the present device state"
+  no_dictionary = 0x08000023,
+  no_data = 0x08000024,
 };
 
 /// One short phrase in English for messages; for an unknown code "unknown abort code".

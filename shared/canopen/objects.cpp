@@ -19,6 +19,9 @@ constexpr ObjectRow declared_rows[] = {
     row(object::error_register),
     row(object::sync_identifier),
     row(object::tick_period),
+    row(object::device_name),
+    row(object::hardware_version),
+    row(object::software_version),
     row(object::emergency_identifier),
     row(object::host_heartbeat),
     row(object::heartbeat_period),
@@ -241,6 +244,14 @@ std::optional<Entry> find_entry(Address address) {
   return std::nullopt;
 }
 
+AbortCode find_entry(Address address, Entry& entry) {
+  if (const std::optional<Entry> found = find_entry(address)) {
+    entry = *found;
+    return AbortCode::none;
+  }
+  return index_exists(address.index) ? AbortCode::no_such_sub_index : AbortCode::no_such_object;
+}
+
 std::optional<IndexInfo> find_index(std::uint16_t index) {
   if (find_row({index, 0}) != nullptr) {
     return IndexInfo{ObjectCode::variable, 0};
@@ -287,7 +298,7 @@ std::optional<Object> find_object(Address address) {
   }
   if (const EntryRow* row = find_row(address)) {
     const Object& declared = *declared_rows[row - rows.data()].first;
-    return Object{*entry, declared.name, declared.help};
+    return Object{*entry, declared.name, declared.help, declared.text};
   }
   if (const std::optional<ValueAddress> value = value_address(address)) {
     const Declaration& declaration = find_algorithm(value->algorithm)->declaration();

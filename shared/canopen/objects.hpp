@@ -37,6 +37,8 @@ struct ValueAddress {
 
 /// The entry at an address, also of the ranges; nothing if there is none.
 [[nodiscard]] std::optional<Entry> find_entry(Address address);
+/// The same; `no_such_object` or `no_such_sub_index` if there is none.
+[[nodiscard]] AbortCode find_entry(Address address, Entry& entry);
 
 /// What an index holds.
 struct IndexInfo {

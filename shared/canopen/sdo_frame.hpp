@@ -8,14 +8,37 @@
 
 namespace proleg::canopen::sdo {
 
+// Command specifiers, the upper three bits of the command byte.
 inline constexpr std::uint8_t request_upload = 0x40;
 inline constexpr std::uint8_t request_download = 0x20;
 inline constexpr std::uint8_t answer_upload = 0x40;
 inline constexpr std::uint8_t answer_download = 0x60;
+inline constexpr std::uint8_t request_upload_segment = 0x60;
+inline constexpr std::uint8_t answer_upload_segment = 0x00;
+inline constexpr std::uint8_t request_download_segment = 0x00;
+inline constexpr std::uint8_t answer_download_segment = 0x20;
 inline constexpr std::uint8_t abort = 0x80;
+inline constexpr std::uint8_t block_download = 0xC0;         ///< client; server of an upload
+inline constexpr std::uint8_t answer_block_download = 0xA0;  ///< server; client of an upload
 /// Lower bits of a transfer's first frame.
 inline constexpr std::uint8_t expedited = 0x02;
 inline constexpr std::uint8_t size_indicated = 0x01;
+/// Lower bits of a segment's frame.
+inline constexpr std::uint8_t toggle = 0x10;
+inline constexpr std::uint8_t no_more_segments = 0x01;
+/// Lower bits of the frames of a block transfer.
+inline constexpr std::uint8_t block_crc = 0x04;   ///< in the first frame: a checksum is supported
+inline constexpr std::uint8_t block_size = 0x02;  ///< in the first frame: the size is indicated
+inline constexpr std::uint8_t block_end = 0x01;
+inline constexpr std::uint8_t block_acknowledge = 0x02;
+inline constexpr std::uint8_t block_start = 0x03;
+/// Those that say which frame it is, in 0xA0.
+inline constexpr std::uint8_t block_command = 0x03;
+
+/// Bytes of the last segment that hold no data, in the end of a block transfer.
+[[nodiscard]] constexpr std::uint8_t unused_at_end(const CanFrame& frame) { return (frame.data[0] >> 2U) & 7U; }
+/// The same in a segment of a segmented transfer.
+[[nodiscard]] constexpr std::uint8_t unused_in_segment(const CanFrame& frame) { return (frame.data[0] >> 1U) & 7U; }
 
 /// The command specifier.
 [[nodiscard]] constexpr std::uint8_t specifier(const CanFrame& frame) { return frame.data[0] & 0xE0U; }

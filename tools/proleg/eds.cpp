@@ -53,6 +53,8 @@ const char* access_type(const Object& object, const Mapped& mapped) {
       return "ro";
     case Access::by_pdo:
       return "rww";
+    case Access::write_only:
+      return "wo";
     case Access::read_write:
       break;
   }
@@ -96,16 +98,21 @@ void print_entry(std::ostream& out, const Object& object, const Mapped& mapped) 
   out << "ParameterName=" << entry_name(object.address).view()
       << "\nObjectType=0x7\nDataType=" << hexadecimal(static_cast<std::uint32_t>(object.type), 4)
       << "\nAccessType=" << access_type(object, mapped) << '\n';
-  if (object.adds_node_id) {
+  if (is_long(object.type)) {
+    if (!object.text.empty()) {
+      out << "DefaultValue=" << object.text << '\n';
+    }
+  } else if (object.adds_node_id) {
     out << "DefaultValue=$NODEID+" << number(object.type, object.default_value) << '\n';
   } else if (object.access == Access::constant || object.access == Access::read_write) {
     out << "DefaultValue=" << number(object.type, object.default_value) << '\n';
   }
   const Range range = outer_range(object);
-  if (object.access == Access::read_write && range.minimum != min_value(object.type)) {
+  const bool has_limits = object.access == Access::read_write && !is_long(object.type);
+  if (has_limits && range.minimum != min_value(object.type)) {
     out << "LowLimit=" << number(object.type, range.minimum) << '\n';
   }
-  if (object.access == Access::read_write && range.maximum != max_value(object.type)) {
+  if (has_limits && range.maximum != max_value(object.type)) {
     out << "HighLimit=" << number(object.type, range.maximum) << '\n';
   }
   out << "PDOMapping=" << (mapped.contains(object) ? 1 : 0) << '\n';

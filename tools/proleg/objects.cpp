@@ -31,7 +31,18 @@ std::string number(const Object& object, std::uint32_t value) {
   return is_code && size_of(object.type) > 1 ? hexadecimal(value, 1) : std::to_string(value);
 }
 
-std::string type_name(DataType type) { return (is_signed(type) ? "i" : "u") + std::to_string(8 * size_of(type)); }
+std::string type_name(DataType type) {
+  switch (type) {
+    case DataType::visible_string:
+      return "string";
+    case DataType::octet_string:
+      return "octets";
+    case DataType::domain:
+      return "domain";
+    default:
+      return (is_signed(type) ? "i" : "u") + std::to_string(8 * size_of(type));
+  }
+}
 
 std::string access_name(Access access) {
   switch (access) {
@@ -41,6 +52,8 @@ std::string access_name(Access access) {
       return "rw";
     case Access::constant:
       return "const";
+    case Access::write_only:
+      return "wo";
     case Access::by_pdo:
       break;
   }
@@ -52,6 +65,9 @@ std::string default_text(const ObjectRow& row) {
   if (object.adds_node_id) {
     return number(object, object.default_value) + " + node";
   }
+  if (is_long(object.type)) {
+    return std::string(object.text);
+  }
   if (object.access == Access::read_only || object.access == Access::by_pdo) {
     return "";
   }
@@ -60,7 +76,7 @@ std::string default_text(const ObjectRow& row) {
 }
 
 std::string range_text(const Object& object) {
-  if (object.access != Access::read_write) {
+  if (object.access != Access::read_write && object.access != Access::write_only) {
     return "";
   }
   if (object.minimum == min_value(object.type) && object.maximum == max_value(object.type)) {
@@ -69,6 +85,9 @@ std::string range_text(const Object& object) {
   std::string text = number(object, object.minimum);
   if (object.minimum != object.maximum) {
     text += " to " + number(object, object.maximum);
+  }
+  if (is_long(object.type)) {
+    return text + " bytes";
   }
   return object.also_allowed ? text + ", " + number(object, *object.also_allowed) : text;
 }

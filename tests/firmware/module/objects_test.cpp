@@ -29,7 +29,9 @@ TEST(Objects, EveryEntryOfTheDictionaryCanBeRead) {
   unsigned count = 0;
   canopen::for_each_object([&](const canopen::Object& entry) {
     std::uint32_t value = 0;
-    const AbortCode code = robot.bus.read(node, entry.address, value);
+    std::string text;
+    const AbortCode code = is_long(entry.type) ? robot.bus.read_text(node, entry.address, text)
+                                               : robot.bus.read(node, entry.address, value);
     const auto range = canopen::value_address(entry.address);
     if (range && robot.kernel().configuration().slots[range->slot].algorithm != find_algorithm(range->algorithm)) {
       EXPECT_EQ(code, AbortCode::no_such_sub_index);
@@ -55,6 +57,62 @@ TEST(Objects, HaveTheIdentityOfTheModule) {
   EXPECT_EQ(robot.bus.value(node, object::capabilities), 0U);
   EXPECT_EQ(robot.bus.value(node, object::error_register), 0U);
   EXPECT_EQ(robot.bus.value(node, object::sync_identifier), 0x80U);
+}
+
+TEST(Objects, HaveTheNamesAndVersionsOfTheModuleAsTexts) {
+  test::TestModule robot;
+  robot.boot();
+  // In segments, and as a block where they are long enough.
+  for (const auto largest_segmented : std::to_array<std::uint8_t>({255, 21, 4})) {
+    canopen::SdoTransferOptions options;
+    options.largest_segmented = largest_segmented;
+    std::string text;
+    EXPECT_EQ(robot.bus.read_text(node, {0x1008, 0}, text, options), AbortCode::none);
+    EXPECT_EQ(text, "Proleg joint module");
+    EXPECT_EQ(robot.bus.read_text(node, {0x1009, 0}, text, options), AbortCode::none);
+    EXPECT_EQ(text, "board 1");
+    EXPECT_EQ(robot.bus.read_text(node, {0x100A, 0}, text, options), AbortCode::none);
+    EXPECT_EQ(text, "protocol 1.0, core C0DEC0DE");
+  }
+  std::string text;
+  EXPECT_EQ(robot.bus.read_text(node, {0x100B, 0}, text), AbortCode::no_such_object);
+}
+
+TEST(Objects, ATransferThatTheHostDoesNotContinueIsAborted) {
+  test::TestModule robot;
+  robot.boot();
+  const auto begin = [&] {
+    robot.bus.deliver({0x605, 8, {0x40, 0x08, 0x10, 0x00}});
+    robot.bus.run_for(1'000);
+    ASSERT_EQ(robot.bus.log.back().frame, (CanFrame{0x585, 8, {0x41, 0x08, 0x10, 0x00, 19, 0, 0, 0}}));
+  };
+  begin();
+  const std::size_t from = robot.bus.log.size();
+  robot.bus.run_for(990'000);
+  EXPECT_EQ(robot.bus.log.size(), from);
+  robot.bus.run_for(20'000);
+  ASSERT_EQ(robot.bus.log.size(), from + 1);
+  EXPECT_EQ(robot.bus.log.back().frame, (CanFrame{0x585, 8, {0x80, 0x08, 0x10, 0x00, 0x00, 0x00, 0x04, 0x05}}));
+  // Without a frame if the module is stopped or reset meanwhile.
+  for (const NmtCommand command : {NmtCommand::stop, NmtCommand::reset_node}) {
+    begin();
+    robot.command(command);
+    robot.bus.run_for(20'000);
+    robot.command(NmtCommand::enter_pre_operational);
+    const std::size_t after = robot.bus.log.size();
+    robot.bus.run_for(2'000'000);
+    EXPECT_EQ(robot.bus.log.size(), after);
+  }
+}
+
+TEST(Objects, ABlockDoesNotFillTheQueue) {
+  test::TestModule robot;
+  robot.set_up_and_start();
+  robot.bus.deliver({0x605, 8, {0xA0, 0x0A, 0x10, 0x00, 127}});
+  robot.bus.deliver({0x605, 8, {0xA3}});
+  robot.bus.run_for(100'000);
+  EXPECT_EQ(robot.bus.sent(0x585).back().frame.data[0], 4U | 0x80U) << "all four segments";
+  EXPECT_EQ(robot.module().dropped_frames(), 0U);
 }
 
 TEST(Objects, ReadBackWhatTheSetUpWrites) {

@@ -12,6 +12,8 @@ import unittest
 VARIABLE, ARRAY, RECORD = 7, 8, 9
 # CiA 301, table 44: bits, signed.
 TYPES = {1: (1, False), 2: (8, True), 3: (16, True), 4: (32, True), 5: (8, False), 6: (16, False), 7: (32, False)}
+# VISIBLE_STRING, OCTET_STRING, DOMAIN: they have no limits and are in no PDO.
+LONG_TYPES = {9, 10, 15}
 ACCESS = {"ro", "wo", "rw", "rwr", "rww", "const"}
 LISTS = ("MandatoryObjects", "OptionalObjects", "ManufacturerObjects")
 
@@ -150,6 +152,11 @@ class Check:
         access = self.get(section, "AccessType")
         self.expect(access in ACCESS, f"[{section}] AccessType={access}")
         kind = self.number(section, "DataType")
+        if kind in LONG_TYPES:
+            self.expect(self.get(section, "PDOMapping") == "0", f"[{section}] cannot be mapped")
+            self.expect(not {"LowLimit", "HighLimit"} & set(self.eds[section]), f"[{section}] has limits")
+            self.expect(access != "const" or "DefaultValue" in self.eds[section], f"[{section}] has no DefaultValue")
+            return
         if kind not in TYPES:
             self.errors.append(f"[{section}] DataType={kind}")
             return
@@ -212,6 +219,9 @@ class EdsTest(unittest.TestCase):
     def test_it_describes_a_module(self):
         check = Check(self.text)
         self.assertEqual(check.number("1000", "DefaultValue"), 0x00020192, "servo drive, CiA 402")
+        self.assertEqual(check.number("1008", "DataType"), 9, "VISIBLE_STRING")
+        self.assertEqual(check.get("1008", "DefaultValue"), "Proleg joint module")
+        self.assertEqual([check.get(index, "AccessType") for index in ("1008", "1009", "100A")], ["const", "ro", "ro"])
         self.assertEqual(check.number("1200sub1", "DefaultValue", 3), 0x603)
         self.assertEqual(check.number("1200sub2", "DefaultValue", 3), 0x583)
         self.assertEqual(check.number("1014", "DefaultValue", 3), 0x083)
@@ -236,7 +246,9 @@ class EdsTest(unittest.TestCase):
                 (r"HighLimit=0x40\n", "HighLimit=0x140\n"),
                 (r"LowLimit=-1073741824\n", "LowLimit=1073741825\n"),
                 (r"DefaultValue=-1\n", "DefaultValue=-129\n"),
-                (r"DataType=0x0002", "DataType=0x000F"),
+                (r"DataType=0x0002", "DataType=0x0010"),
+                (r"DefaultValue=Proleg joint module\n", ""),
+                (r"(\[1009\]\n(?:.*\n){5})PDOMapping=0", r"\1PDOMapping=1"),
                 (r"AccessType=rww", "AccessType=ro"),
                 (r"(\[2010sub1\]\n(?:.*\n){5})PDOMapping=1", r"\1PDOMapping=0"),
                 (r"(\[2000sub3\]\n(?:.*\n){5})PDOMapping=0", r"\1PDOMapping=1"),

@@ -30,11 +30,15 @@ TEST(SdoClient, ReadsEveryEntryAndWritesEveryOneThatCanBeWritten) {
   test::DeviceMemory device;
   SdoClient client;
   constexpr std::uint8_t node = 77;
+  SdoServer server(node, device);
   const auto exchange = [&](const CanFrame& request) {
-    const std::optional<CanFrame> answer = serve_sdo(node, request, device);
+    const std::optional<CanFrame> answer = server.receive(0, request);
     return answer && client.receive(*answer);
   };
   for_each_object([&](const Object& object) {
+    if (is_long(object.type)) {
+      return;  // SdoTransfer reads it
+    }
     const std::uint8_t size = size_of(object.type);
     const std::uint32_t value = random() % 2 == 0 ? object.minimum : object.maximum;
     ASSERT_TRUE(exchange(client.write(0, node, object.address, size, value)));

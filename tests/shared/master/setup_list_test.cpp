@@ -229,7 +229,7 @@ TEST(SetupList, GivesAModuleTheWholeConfiguration) {
     for (const SdoWrite& write : robot.writes(joint)) {
       const std::uint8_t node = robot.nodes[joint];
       const std::optional<CanFrame> answer =
-          serve_sdo(node, client.write(0, node, write.address, write.size, write.value), device);
+          SdoServer(node, device).receive(0, client.write(0, node, write.address, write.size, write.value));
       ASSERT_TRUE(answer && client.receive(*answer));
       ASSERT_EQ(client.state(), SdoClient::State::done) << describe(client.abort_code()) << " at " << std::hex
                                                         << write.address.index << ":" << unsigned{write.address.sub};

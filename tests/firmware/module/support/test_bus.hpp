@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "module_node.hpp"
 #include "shared/master/sdo_client.hpp"
+#include "shared/master/sdo_transfer.hpp"
 
 namespace proleg::test {
 
@@ -93,6 +95,23 @@ class TestBus {
   }
   std::uint32_t value(std::uint8_t node, const canopen::Object& entry) { return value(node, entry.address); }
 
+  /// A value of a long type.
+  canopen::AbortCode read_text(std::uint8_t node, canopen::Address address, std::string& text,
+                               const canopen::SdoTransferOptions& options = {}) {
+    std::array<std::uint8_t, 100> buffer{};
+    canopen::SdoTransfer& transfer = transfer_;
+    transfer.upload(node, address, buffer, options);
+    do {
+      while (const std::optional<CanFrame> frame = transfer.next_frame(now_)) {
+        send(*frame);
+      }
+      run_for(frame_time_us);
+      transfer.poll(now_);
+    } while (transfer.state() == canopen::SdoTransfer::State::running || !host_queue_.empty());
+    text.assign(buffer.begin(), buffer.begin() + transfer.size());
+    return transfer.state() == canopen::SdoTransfer::State::done ? canopen::AbortCode::none : transfer.abort_code();
+  }
+
   // What was sent.
   [[nodiscard]] std::vector<Sent> sent(std::uint16_t identifier, std::size_t from = 0) const {
     std::vector<Sent> found;
@@ -168,6 +187,7 @@ class TestBus {
     log.push_back({now_, sender, frame});
     if (sender != host) {
       client_.receive(frame);
+      transfer_.receive(now_, frame);
       nodes[sender]->transmitted(now_, frame);
     }
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -194,6 +214,7 @@ class TestBus {
   std::size_t sender_ = host;
   Microseconds frame_end_ = never;
   canopen::SdoClient client_;
+  canopen::SdoTransfer transfer_;
   std::uint64_t events_ = 0;
 };
 

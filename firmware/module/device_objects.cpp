@@ -65,7 +65,10 @@ bool is_writable(const Parts& parts, WritableIn state) {
 
 AbortCode read_object(std::span<const ObjectAccessor> accessors, const Parts& parts, canopen::Address address,
                       std::uint32_t& value) {
-  const Found found = find(accessors, parts.joint, address);
+  Found found = find(accessors, parts.joint, address);
+  if (address.index == canopen::object::error_history.index && address.sub > parts.emergencies.history().size()) {
+    found.code = AbortCode::no_data;  // CiA 301, 7.5.2.4
+  }
   if (found.code == AbortCode::none) {
     value = found.accessor->get(parts, found.position);
   }

@@ -36,6 +36,9 @@ class Drive {
   [[nodiscard]] std::int32_t target() const { return target_; }
   void set_target(std::int32_t target) { target_ = target; }
 
+  /// Object 0x6062: towards which the servo moves in this tick, 90 degrees = 2^30.
+  [[nodiscard]] std::int32_t setpoint() const { return setpoint_; }
+
   /// At SYNC `tick`, after the kernel computed it.
   void start_tick(Microseconds now, std::uint32_t tick, const Kernel& kernel, const canopen::AngleLimits& limits);
 

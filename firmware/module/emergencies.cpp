@@ -27,9 +27,22 @@ EmergencyCode code_of(Fault fault) {
 
 // Not inlined: report, raise and end have many callers and rarely run.
 [[gnu::noinline]] void Emergencies::report(EmergencyCode code, std::uint32_t detail) {
+  if (code != EmergencyCode::none) {
+    keep(code, detail);
+  }
   if (network_.state() != canopen::NmtState::stopped) {
     outbox_.send(encode(canopen::Emergency{identity_.node, code, error_register(), detail}));
   }
+}
+
+void Emergencies::keep(EmergencyCode code, std::uint32_t detail) {
+  if (history_size_ < history_.size()) {
+    ++history_size_;
+  }
+  for (std::size_t i = history_size_ - 1U; i > 0; --i) {
+    history_[i] = history_[i - 1];
+  }
+  history_[0] = detail << 16U | static_cast<std::uint32_t>(code);
 }
 
 [[gnu::noinline]] void Emergencies::raise(Fault fault, std::uint32_t detail) {

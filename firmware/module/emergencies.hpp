@@ -1,6 +1,9 @@
 #pragma once
 
+#include <span>
+
 #include "firmware/module/network_node.hpp"
+#include "shared/canopen/objects.hpp"
 
 namespace proleg::firmware {
 
@@ -20,7 +23,15 @@ class Emergencies {
   Emergencies(const ModuleIdentity& identity, const NetworkNode& network, Outbox& outbox)
       : identity_(identity), network_(network), outbox_(outbox) {}
 
-  void reset() { faults_ = 0; }
+  void reset() {
+    faults_ = 0;
+    clear_history();
+  }
+  /// Forgets the errors of the communication, and the history, which is a communication object.
+  void reset_communication() {
+    faults_ &= bit(Fault::over_current);
+    clear_history();
+  }
   /// From now on the reset cause is not yet reported.
   void power_on() { is_reset_cause_pending_ = true; }
 
@@ -39,11 +50,17 @@ class Emergencies {
   void report_reset_cause();
   [[nodiscard]] bool is_raised(Fault fault) const { return (faults_ & bit(fault)) != 0; }
 
+  /// Object 0x1003: the last errors, the newest first. The lower half is the emergency code, the upper half the lower
+  /// half of the detail.
+  [[nodiscard]] std::span<const std::uint32_t> history() const { return {history_.data(), history_size_}; }
+  void clear_history() { history_size_ = 0; }
+
   /// Object 0x1001.
   [[nodiscard]] std::uint8_t error_register() const;
 
  private:
   void end(Fault fault);
+  void keep(canopen::EmergencyCode code, std::uint32_t detail);
   [[nodiscard]] static std::uint8_t bit(Fault fault) {
     return static_cast<std::uint8_t>(1U << static_cast<unsigned>(fault));
   }
@@ -52,6 +69,8 @@ class Emergencies {
   const NetworkNode& network_;
   Outbox& outbox_;
   std::uint8_t faults_ = 0;
+  std::uint8_t history_size_ = 0;
+  std::array<std::uint32_t, canopen::object::recent_error.count> history_{};
   bool is_reset_cause_pending_ = false;
 };
 

@@ -113,11 +113,18 @@ void Module::receive_network_command(Microseconds now, const CanFrame& frame) {
   if (!request || (request->node != 0 && request->node != parts_.identity.node)) {
     return;
   }
-  if (request->command == NmtCommand::reset_node || request->command == NmtCommand::reset_communication) {
-    objects_.reset();
-    parts_.reset(now);
-  } else {
-    change_state(parts_, *request);
+  switch (request->command) {
+    case NmtCommand::reset_node:
+      objects_.reset();
+      parts_.reset(now);
+      return;
+    case NmtCommand::reset_communication:
+      objects_.reset();
+      parts_.reset_communication(now);
+      return;
+    default:
+      change_state(parts_, *request);
+      return;
   }
 }
 

@@ -8,8 +8,24 @@ namespace {
 using canopen::NmtCommand;
 using canopen::NmtState;
 
-void enter_operational(Parts& parts, bool together) {
+/// Whether the joint is configured, and the communication objects that belong to its configuration are set.
+bool is_configured(Parts& parts) {
   if (!parts.joint.active()) {
+    return false;
+  }
+  if (parts.must_restore_communication) {
+    if (!StateReceiver::accepts(parts.settings, parts.identity.node) ||
+        parts.settings.crc(parts.identity.node) != parts.joint.configuration_crc()) {
+      return false;
+    }
+    parts.neighbours.configure(parts.settings);
+    parts.must_restore_communication = false;
+  }
+  return true;
+}
+
+void enter_operational(Parts& parts, bool together) {
+  if (!is_configured(parts)) {
     parts.emergencies.report(canopen::EmergencyCode::not_configured,
                              static_cast<std::uint32_t>(parts.joint.last_refusal()));
     return;

@@ -54,6 +54,15 @@ constexpr ObjectAccessor setting(const canopen::Object& entry) {
       });
 }
 
+/// An entry that may be written, but whose range has one value only.
+template <const canopen::Object& entry>
+constexpr ObjectAccessor only_value_row() {
+  static_assert(entry.minimum == entry.maximum && entry.default_value == entry.minimum);
+  return read_write(
+      entry.address, WritableIn::any_state, [](const Parts& /*parts*/) { return entry.default_value; },
+      [](Parts& /*parts*/, const ObjectWrite& /*write*/) {});
+}
+
 constexpr std::uint64_t with_lower_half(std::uint64_t value, std::uint32_t half) { return value >> 32U << 32U | half; }
 constexpr std::uint64_t with_upper_half(std::uint64_t value, std::uint32_t half) {
   return std::uint64_t{half} << 32U | static_cast<std::uint32_t>(value);
@@ -138,6 +147,7 @@ AbortCode write_activate(Parts& parts, const ObjectWrite& write) {
   const Status status = parts.joint.activate(settings, parts.identity.node);
   if (status == Status::ok) {
     parts.neighbours.configure(settings);
+    parts.must_restore_communication = false;
   }
   return answer(parts, status);
 }
@@ -149,6 +159,18 @@ AbortCode write_activate(Parts& parts, const ObjectWrite& write) {
 
 constexpr ObjectAccessor accessors[] = {
     read_only(object::error_register.address, [](const Parts& parts) { return parts.emergencies.error_register(); }),
+    read_write(
+        object::error_count.address, WritableIn::any_state,
+        [](const Parts& parts) { return parts.emergencies.history().size(); },
+        [](Parts& parts, const ObjectWrite& write) {
+          if (write.value != 0) {
+            return AbortCode::out_of_range;
+          }
+          parts.emergencies.clear_history();
+          return AbortCode::none;
+        }),
+    read_only(object::recent_error.first.address,
+              [](const Parts& parts, Position position) { return parts.emergencies.history()[position.sub]; }),
     read_write(
         object::sync_identifier.address, WritableIn::any_state,
         [](const Parts& parts) {
@@ -167,10 +189,7 @@ constexpr ObjectAccessor accessors[] = {
         }),
     read_only(object::product.address, [](const Parts& parts) { return parts.identity.board_id; }),
     read_only(object::serial.address, [](const Parts& parts) { return serial_number(parts.identity); }),
-    read_write(
-        object::sync_counter_overflow.address, WritableIn::any_state,
-        [](const Parts& /*parts*/) { return object::sync_counter_overflow.default_value; },
-        [](Parts& /*parts*/, const ObjectWrite& /*write*/) {}),  // only one value is in range
+    only_value_row<object::sync_counter_overflow>(),
     state_frame_identifier<0>(),
     state_frame_identifier<1>(),
     read_only(object::monitoring_transmission_type.address,
@@ -292,6 +311,7 @@ constexpr ObjectAccessor accessors[] = {
         },
         [](Parts& parts, const ObjectWrite& write) { return stage(parts, write, true); }),
 
+    only_value_row<object::abort_connection_option>(),
     read_write(
         object::controlword.address, WritableIn::any_state,
         [](const Parts& parts) { return parts.drive.power().controlword(); },
@@ -299,10 +319,12 @@ constexpr ObjectAccessor accessors[] = {
           parts.drive.power().command(static_cast<std::uint16_t>(write.value));
         }),
     read_only(object::statusword.address, [](const Parts& parts) { return parts.drive.power().statusword(); }),
+    only_value_row<object::quick_stop_option>(),
     read_write(
         object::mode.address, WritableIn::any_state, [](const Parts& parts) { return parts.drive.mode(); },
         [](Parts& parts, const ObjectWrite& write) { parts.drive.set_mode(static_cast<std::int8_t>(write.value)); }),
     read_only(object::mode_display.address, [](const Parts& parts) { return parts.drive.mode(); }),
+    read_only(object::position_demand.address, [](const Parts& parts) { return parts.drive.setpoint(); }),
     read_only(object::actual_position.address,
               [](const Parts& parts) { return parts.monitor.angle().value_or(canopen::position_not_measured); }),
     read_only(object::actual_current.address, [](const Parts& parts) { return parts.monitor.current_ma(); }),

@@ -12,23 +12,36 @@ Parts::Parts(const ModuleIdentity& module_identity, const Ports& ports)
       contacts(ports.contacts) {}
 
 void Parts::reset(Microseconds now) {
+  joint.deactivate();
+  reset_communication(now);
+  emergencies.reset();
+  settings = {};
+  joint.clear_refusal();
+  drive.reset();
+  monitor.reset();
+}
+
+void Parts::reset_communication(Microseconds now) {
   outbox.reset();
   recovery.reset();
   network.start(now);
-  emergencies.reset();
+  emergencies.reset_communication();
   host.set(canopen::object::host_heartbeat.default_value);
   reported = {};
-  settings = {};
-  joint.deactivate();
-  joint.clear_refusal();
+  settings.tick_period_us = ModuleSettings().tick_period_us;
+  settings.nodes = {};
+  must_restore_communication = true;
   neighbours.stop();
   neighbours.clear_reported_errors();
   keeper.lose();
   start = {};
   sync.stop();
   producer.stop();
-  drive.reset();
-  monitor.reset();
+  if (joint.active()) {
+    joint.restart();
+  }
+  constexpr std::uint16_t disable_voltage = 0;
+  drive.power().command(disable_voltage);
 }
 
 }  // namespace proleg::firmware

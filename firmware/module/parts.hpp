@@ -31,8 +31,11 @@ struct Parts {
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
-  /// As after power on.
+  /// As after power on: application and communication (NMT reset node).
   void reset(Microseconds now);
+  /// The communication objects, 0x1000 to 0x1FFF, as after power on, and the servo without power. The application
+  /// remains as it is: what the module knows of robot, gait and servo (NMT reset communication).
+  void reset_communication(Microseconds now);
 
   const ModuleIdentity identity;
   CanPort& can;
@@ -43,6 +46,8 @@ struct Parts {
   HostWatch host;
   ReportedRequests reported;
   GaitStart start;  // fills a gap before the settings
+  /// Since the reset of communication; the tick period and the identifiers of the state frames are the defaults.
+  bool must_restore_communication = false;
   ModuleSettings settings;
   JointKernel joint;
   StateReceiver neighbours{joint, emergencies, can};

@@ -49,6 +49,14 @@ inline constexpr Object device_type =
     constant({0x1000, 0}, "Device type", DataType::unsigned32, 0x00020192, "servo drive, CiA 402");
 inline constexpr Object error_register =
     read_only({0x1001, 0}, "Error register", DataType::unsigned8, "bit 0: an error; others as in CiA 301");
+inline constexpr ObjectGroup error_history{0x1003, ObjectCode::array, "Pre-defined error field"};
+inline constexpr Object error_count =
+    read_write(error_history.at(0), "Number of errors", DataType::unsigned8, 0, full_range(DataType::unsigned8),
+               "that are kept; a write of 0 clears them, other values are refused");
+inline constexpr ObjectArray recent_error{
+    read_only(error_history.at(1), "Standard error field", DataType::unsigned32,
+              "the newest first; lower half: emergency code, upper half: lower half of its detail"),
+    8};
 inline constexpr Object sync_identifier = read_write(
     {0x1005, 0}, "COB-ID SYNC message", DataType::unsigned32, identifier::sync, {identifier::sync, identifier::sync},
     "0x40000080: the module produces SYNC and TICK, 0x80: another does", produces_sync | identifier::sync);
@@ -237,14 +245,24 @@ inline constexpr std::array<JointObjects, max_channels> state_frame_transmission
 
 // Drive (CiA 402).
 
+inline constexpr std::uint32_t quick_stop_command = 3;
+inline constexpr Object abort_connection_option = read_write(
+    {0x6007, 0}, "Abort connection option code", DataType::integer16, quick_stop_command,
+    {quick_stop_command, quick_stop_command}, "3: quick stop if the heartbeat of the host or SYNC is missing");
 inline constexpr Object controlword =
     read_write({0x6040, 0}, "Controlword", DataType::unsigned16, 0, full_range(DataType::unsigned16));
 inline constexpr Object statusword = read_only({0x6041, 0}, "Statusword", DataType::unsigned16);
+inline constexpr std::uint32_t ramp_and_stay = 6;
+inline constexpr Object quick_stop_option =
+    read_write({0x605A, 0}, "Quick stop option code", DataType::integer16, ramp_and_stay,
+               {ramp_and_stay, ramp_and_stay}, "6: ramp to the safe pose, then stay in Quick stop active");
 inline constexpr Object mode =
     read_write({0x6060, 0}, "Modes of operation", DataType::integer8, static_cast<std::uint32_t>(mode_gait),
                {static_cast<std::uint32_t>(mode_gait), static_cast<std::uint32_t>(mode_gait)},
                "-1: gait; 8: cyclic synchronous position", mode_direct_position);
 inline constexpr Object mode_display = read_only({0x6061, 0}, "Modes of operation display", DataType::integer8);
+inline constexpr Object position_demand = read_only({0x6062, 0}, "Position demand value", DataType::integer32,
+                                                    "set-point of the present tick; 90 degrees = 2^30");
 inline constexpr Object actual_position = read_only({0x6064, 0}, "Position actual value", DataType::integer32,
                                                     "90 degrees = 2^30; -2147483648: not measured");
 inline constexpr Object rated_current = constant({0x6075, 0}, "Motor rated current", DataType::unsigned32, 1'000,

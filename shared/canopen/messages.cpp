@@ -185,8 +185,9 @@ CanFrame encode(const Command& command) {
 }
 
 std::optional<Command> decode_command(const CanFrame& frame) {
-  const std::optional<std::uint8_t> node = sender(frame, identifier::command, 6, max_node_id);
-  if (!node) {
+  constexpr std::uint8_t mapped_bytes = 6;
+  const std::optional<std::uint8_t> node = sender(frame, identifier::command, frame.length, max_node_id);
+  if (!node || frame.length < mapped_bytes) {
     return std::nullopt;
   }
   return Command{*node, static_cast<std::uint16_t>(read_little_endian(frame.data, 0, 2)),

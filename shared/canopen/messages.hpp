@@ -154,6 +154,7 @@ struct Command {
   friend bool operator==(const Command&, const Command&) = default;
 };
 [[nodiscard]] CanFrame encode(const Command& command);
+/// A longer frame is accepted: what follows the mapped bytes is not used (CiA 301, 7.2.2.5.1).
 [[nodiscard]] std::optional<Command> decode_command(const CanFrame& frame);
 
 /// What a module measures, every 10th SYNC.

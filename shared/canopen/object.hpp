@@ -134,7 +134,7 @@ struct Range {
 }
 
 /// An index with sub-indices, or several equal ones. Sub-index 0, the highest sub-index supported, follows from the
-/// entries and is not declared.
+/// entries; it is declared only where it means something else.
 struct ObjectGroup {
   std::uint16_t index;
   ObjectCode code;  ///< array or record

@@ -17,6 +17,8 @@ constexpr ObjectRow row(const JointObjects& series) {
 constexpr ObjectRow declared_rows[] = {
     row(object::device_type),
     row(object::error_register),
+    row(object::error_count),
+    row(object::recent_error),
     row(object::sync_identifier),
     row(object::tick_period),
     row(object::device_name),
@@ -95,10 +97,13 @@ constexpr ObjectRow declared_rows[] = {
     row(object::received_frame[0][1]),
     row(object::received_frame[1][0]),
     row(object::received_frame[1][1]),
+    row(object::abort_connection_option),
     row(object::controlword),
     row(object::statusword),
+    row(object::quick_stop_option),
     row(object::mode),
     row(object::mode_display),
+    row(object::position_demand),
     row(object::actual_position),
     row(object::rated_current),
     row(object::actual_current),
@@ -108,6 +113,7 @@ constexpr ObjectRow declared_rows[] = {
 };
 
 constexpr const ObjectGroup* declared_groups[] = {
+    &object::error_history,
     &object::consumer_heartbeat,
     &object::identity,
     &object::sdo_server,
@@ -171,7 +177,7 @@ constexpr bool covers(const AnyGroup& group, std::uint16_t index) {
   return index >= group.index && index - group.index < group.count;
 }
 
-/// Ascending, and sub-indices only where a group says what the index is.
+/// Ascending, and sub-indices only where a group says what the index is. A group may declare its sub-index 0.
 constexpr bool well_formed() {
   std::uint32_t before = 0;
   for (const EntryRow& row : rows) {
@@ -181,7 +187,7 @@ constexpr bool well_formed() {
     for (const Group& group : groups) {
       grouped = grouped || (covers(group, address.index) && group.count == row.indices);
     }
-    if (position <= before || grouped != (address.sub > 0)) {
+    if (position <= before || (!grouped && address.sub > 0)) {
       return false;
     }
     before = position;
@@ -253,9 +259,6 @@ AbortCode find_entry(Address address, Entry& entry) {
 }
 
 std::optional<IndexInfo> find_index(std::uint16_t index) {
-  if (find_row({index, 0}) != nullptr) {
-    return IndexInfo{ObjectCode::variable, 0};
-  }
   for (const Group& group : groups) {
     if (covers(group, index)) {
       std::uint8_t highest = 0;
@@ -264,6 +267,9 @@ std::optional<IndexInfo> find_index(std::uint16_t index) {
       }
       return IndexInfo{group.code, highest};
     }
+  }
+  if (find_row({index, 0}) != nullptr) {
+    return IndexInfo{ObjectCode::variable, 0};
   }
   if (value_address({index, 1})) {
     return IndexInfo{ObjectCode::array, max_slots};

@@ -144,11 +144,16 @@ TEST(Network, AStoppedModuleAnswersNothingButNetworkManagement) {
   EXPECT_EQ(robot.module().state(), NmtState::operational);
 }
 
+/// CiA 301, 7.3.2.2: the communication profile area.
+bool is_communication(const canopen::Object& entry) { return entry.address.index < 0x2000; }
+
 class Reset : public testing::TestWithParam<NmtCommand> {};
 INSTANTIATE_TEST_SUITE_P(OfBothKinds, Reset, testing::Values(NmtCommand::reset_node, NmtCommand::reset_communication));
 
 TEST_P(Reset, RestoresTheDefaultsAndBootsAgain) {
+  const bool is_whole = GetParam() == NmtCommand::reset_node;
   test::TestModule robot;
+  robot.setup.kernel.tick_period_us = 7'000;
   robot.set_up_and_start();
   robot.enable(0);
   robot.run(5);
@@ -166,14 +171,133 @@ TEST_P(Reset, RestoresTheDefaultsAndBootsAgain) {
   EXPECT_EQ(robot.module().power(), canopen::PowerState::switch_on_disabled);
   EXPECT_FALSE(robot.module().synchronised());
   for (const canopen::ObjectRow& row : canopen::object_rows()) {
-    if (row.first->access == canopen::Access::read_write && row.indices == 1 && !is_long(row.first->type)) {
+    if (row.first->access == canopen::Access::read_write && row.indices == 1 && !is_long(row.first->type) &&
+        (is_whole || is_communication(*row.first))) {
       EXPECT_EQ(robot.bus.value(node, *row.first),
                 row.first->default_value & 0xFFFFFFFFU >> (32 - 8 * size_of(row.first->type)))
           << row.first->name;
     }
   }
   EXPECT_EQ(robot.bus.value(node, canopen::object::current_tick), 0U);
-  EXPECT_EQ(robot.bus.value(node, canopen::object::configuration_crc), 0U);
+  EXPECT_EQ(robot.bus.value(node, canopen::object::configuration_crc), is_whole ? 0U : robot.crc());
+}
+
+TEST(Network, AResetOfTheCommunicationLeavesTheApplicationAsItIs) {
+  KernelConfiguration kernel = test::one_slot(test::algorithm(test::coupled), 3, 7'000);
+  test::TestModule robot(kernel);
+  robot.set_up_and_start();
+  const canopen::Address amplitude = test::parameter_address(robot.kernel(), 0, "amplitude");
+  robot.command(NmtCommand::enter_pre_operational);
+  ASSERT_EQ(robot.bus.write(node, amplitude, 4, 0x0E38E38E), AbortCode::none);
+  ASSERT_EQ(robot.bus.write(node, canopen::object::upper_limit, 0x10000000), AbortCode::none);
+  ASSERT_EQ(robot.bus.write(node, canopen::object::current_limit, 1'234), AbortCode::none);
+  ASSERT_EQ(robot.bus.write(node, canopen::object::target_position, 77), AbortCode::none);
+  robot.start();
+  robot.command(NmtCommand::reset_communication, node);
+  robot.bus.run_for(20'000);
+  EXPECT_EQ(robot.bus.value(node, amplitude), 0x0E38E38EU);
+  EXPECT_EQ(robot.bus.value(node, canopen::object::upper_limit), 0x10000000U);
+  EXPECT_EQ(robot.bus.value(node, canopen::object::current_limit), 1'234U);
+  EXPECT_EQ(robot.bus.value(node, canopen::object::target_position), 77U);
+  EXPECT_EQ(robot.bus.value(node, canopen::object::joint_count), 3U);
+  EXPECT_EQ(robot.bus.value(node, canopen::object::activate), 1U);
+  EXPECT_EQ(robot.bus.value(node, canopen::object::tick_period), 10'000U);
+  EXPECT_EQ(robot.bus.value(node, canopen::object::state_frame_identifier[0].address(1)), canopen::pdo_off);
+  EXPECT_TRUE(robot.it().listened.empty());
+
+  // Without the frames of its neighbours the joint would compute other angles.
+  robot.command(NmtCommand::start);
+  robot.bus.run_for(1'000);
+  EXPECT_EQ(robot.module().state(), NmtState::pre_operational);
+  ASSERT_EQ(robot.emergencies().size(), 1U);
+  EXPECT_EQ(robot.emergencies()[0].code, EmergencyCode::not_configured);
+
+  const canopen::SetupList list(robot.setup, 0);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (list.at(i).address.index < 0x2000) {
+      ASSERT_EQ(robot.bus.write(node, list.at(i).address, list.at(i).size, list.at(i).value), AbortCode::none);
+    }
+  }
+  robot.command(NmtCommand::start);
+  EXPECT_EQ(robot.module().state(), NmtState::operational);
+  EXPECT_FALSE(robot.it().listened.empty());
+  EXPECT_EQ(robot.bus.value(node, amplitude), 0x0E38E38EU);
+}
+
+TEST(Network, AResetOfTheCommunicationLeavesTheServoWithoutPowerButInItsFault) {
+  test::TestModule robot;
+  robot.set_up_and_start();
+  robot.enable(0);
+  robot.it().meters.readings.current_ma = 3'000;
+  robot.run(60);
+  ASSERT_EQ(robot.module().power(), canopen::PowerState::fault);
+  robot.command(NmtCommand::reset_communication);
+  robot.bus.run_for(20'000);
+  EXPECT_EQ(robot.module().power(), canopen::PowerState::fault) << "of the application";
+  EXPECT_EQ(robot.bus.value(node, canopen::object::error_register), 0x03U) << "generic, current";
+  EXPECT_FALSE(robot.it().is_pulsing());
+  robot.command(NmtCommand::reset_node);
+  robot.bus.run_for(20'000);
+  EXPECT_EQ(robot.module().power(), canopen::PowerState::switch_on_disabled);
+  EXPECT_EQ(robot.bus.value(node, canopen::object::error_register), 0U);
+}
+
+TEST(Network, TheErrorHistoryHasTheLastEightTheNewestFirst) {
+  test::TestModule robot;
+  robot.boot();
+  const auto error = [&](std::uint8_t sub) {
+    std::uint32_t value = 0;
+    const AbortCode code = robot.bus.read(node, {0x1003, sub}, value);
+    return code == AbortCode::none ? value : static_cast<std::uint32_t>(code);
+  };
+  constexpr auto no_data = static_cast<std::uint32_t>(AbortCode::no_data);
+  EXPECT_EQ(error(0), 0U);
+  EXPECT_EQ(error(1), no_data);
+  robot.command(NmtCommand::start);  // not configured
+  EXPECT_EQ(error(0), 1U);
+  EXPECT_EQ(error(1), 0x00006300U);
+  EXPECT_EQ(error(2), no_data);
+  robot.configure(0);
+  robot.start();
+  const auto commit = [&](std::uint16_t transaction) {
+    robot.bus.deliver(encode(canopen::CommitMessage{transaction, 100, robot.setup.robot_id}));
+    robot.bus.run_for(1'000);
+  };
+  for (std::uint16_t transaction = 1; transaction <= 9; ++transaction) {
+    commit(transaction);
+  }
+  EXPECT_EQ(error(0), 8U);
+  for (std::uint8_t sub = 1; sub <= 8; ++sub) {
+    EXPECT_EQ(error(sub), 0x0000FF02U | (10U - sub) << 16U) << "commit not staged, its transaction";
+  }
+  EXPECT_EQ(error(9), static_cast<std::uint32_t>(AbortCode::no_such_sub_index));
+  // CiA 301, 7.5.2.4: 0 clears, no other value is allowed.
+  EXPECT_EQ(robot.bus.write(node, {0x1003, 0}, 1, 1), AbortCode::out_of_range);
+  EXPECT_EQ(robot.bus.write(node, {0x1003, 1}, 4, 0), AbortCode::read_only);
+  EXPECT_EQ(error(0), 8U);
+  EXPECT_EQ(robot.bus.write(node, {0x1003, 0}, 1, 0), AbortCode::none);
+  EXPECT_EQ(error(0), 0U);
+  EXPECT_EQ(error(1), no_data);
+  commit(10);
+  EXPECT_EQ(error(0), 1U);
+  robot.command(NmtCommand::reset_communication);
+  robot.bus.run_for(20'000);
+  EXPECT_EQ(error(0), 0U);
+}
+
+TEST(Network, AnErrorThatIsOverIsNoErrorOfTheHistory) {
+  test::TestModule robot;
+  robot.set_up_and_start();
+  robot.it().bus_off(robot.bus.now());
+  robot.bus.run_for(20'000);
+  robot.it().bus_back(robot.bus.now());
+  robot.bus.run_for(11'000'000);
+  ASSERT_EQ(robot.emergencies().back().code, EmergencyCode::none);
+  std::uint32_t value = 0;
+  EXPECT_EQ(robot.bus.read(node, {0x1003, 0}, value), AbortCode::none);
+  for (std::uint8_t sub = 1; sub <= value; ++sub) {
+    EXPECT_NE(robot.bus.value(node, canopen::Address{0x1003, sub}) & 0xFFFFU, 0U);
+  }
 }
 
 TEST(Network, PowerOnAtAnyTimeIsAReset) {

@@ -32,6 +32,10 @@ TEST(Objects, EveryEntryOfTheDictionaryCanBeRead) {
     std::string text;
     const AbortCode code = is_long(entry.type) ? robot.bus.read_text(node, entry.address, text)
                                                : robot.bus.read(node, entry.address, value);
+    if (entry.address.index == 0x1003 && entry.address.sub > 0) {
+      EXPECT_EQ(code, AbortCode::no_data) << "no error so far";
+      return;
+    }
     const auto range = canopen::value_address(entry.address);
     if (range && robot.kernel().configuration().slots[range->slot].algorithm != find_algorithm(range->algorithm)) {
       EXPECT_EQ(code, AbortCode::no_such_sub_index);

@@ -252,7 +252,7 @@ TEST_F(Power, ACommandByPdoSetsControlwordAndTarget) {
 
 TEST_F(Power, ACommandOfWrongLengthIsReportedOnceAndIgnored) {
   robot.enable(0);
-  for (const std::uint8_t length : std::to_array<std::uint8_t>({2, 5, 7, 8})) {
+  for (const std::uint8_t length : std::to_array<std::uint8_t>({0, 2, 5})) {
     robot.bus.deliver({canopen::identifier::command + node, length, {}});
   }
   robot.bus.run_for(1'000);
@@ -265,6 +265,37 @@ TEST_F(Power, ACommandOfWrongLengthIsReportedOnceAndIgnored) {
   robot.bus.deliver({canopen::identifier::command + node, 2, {}});
   robot.bus.run_for(1'000);
   EXPECT_EQ(robot.emergencies().size(), 2U) << "once after each start";
+}
+
+TEST_F(Power, OfALongerCommandTheMappedPartIsTaken) {
+  for (const std::uint16_t word : test::power_up) {
+    robot.bus.deliver(
+        {canopen::identifier::command + node, 8, {static_cast<std::uint8_t>(word), 0, 0, 0, 0, 0x20, 1, 2}});
+  }
+  EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
+  EXPECT_EQ(robot.bus.value(node, object::target_position), 0x20000000U);
+  robot.bus.run_for(1'000);
+  EXPECT_TRUE(robot.emergencies().empty());
+}
+
+TEST_F(Power, WhatAQuickStopAndALostConnectionDoIsToldAndCannotBeChanged) {
+  for (const canopen::Object* option : {&object::quick_stop_option, &object::abort_connection_option}) {
+    EXPECT_EQ(robot.bus.value(node, *option), option->default_value);
+    EXPECT_EQ(robot.bus.write(node, *option, option->default_value), AbortCode::none);
+    EXPECT_EQ(robot.bus.write(node, *option, option->default_value - 1), AbortCode::below_minimum);
+    EXPECT_EQ(robot.bus.write(node, *option, option->default_value + 1), AbortCode::above_maximum);
+    EXPECT_EQ(robot.bus.value(node, *option), option->default_value);
+  }
+}
+
+TEST_F(Power, ThePositionDemandIsTheSetPointOfTheTick) {
+  move();
+  EXPECT_EQ(robot.bus.value(node, object::position_demand), static_cast<std::uint32_t>(robot.kernel().setpoint(0)));
+  ASSERT_EQ(robot.bus.write(node, object::mode, canopen::mode_direct_position), AbortCode::none);
+  ASSERT_EQ(robot.bus.write(node, object::target_position, static_cast<std::uint32_t>(test::degrees(12))),
+            AbortCode::none);
+  robot.run(21, 21);
+  EXPECT_EQ(robot.bus.value(node, object::position_demand), static_cast<std::uint32_t>(test::degrees(12)));
 }
 
 TEST_F(Power, CommandsByPdoCountInOperationalOnly) {

@@ -130,7 +130,9 @@ class Check:
         numbers = sorted(int(s[7:], 16) for s in subs)
         for sub in subs:
             self.entry(sub, index, int(sub[7:], 16))
-        if numbers[:1] == [0]:
+        if index == 0x1003:  # the number of errors; a write of 0 clears them (CiA 301, 7.5.2.4)
+            self.expect(self.get("1003sub0", "AccessType") == "rw", "[1003sub0] cannot be cleared")
+        elif numbers[:1] == [0]:
             self.expect(self.number(f"{section}sub0", "DefaultValue") == numbers[-1],
                         f"[{section}sub0] is not the highest sub-index")
             self.expect(self.number(f"{section}sub0", "DataType") == 5, f"[{section}sub0] is not an UNSIGNED8")

@@ -66,22 +66,26 @@ TEST(ObjectDictionary, HasTheStandardsObjects) {
   using enum Access;
   using enum ObjectCode;
   constexpr Case cases[] = {
-      {{0x1000, 0}, unsigned32, constant, variable},   {{0x1001, 0}, unsigned8, read_only, variable},
-      {{0x1005, 0}, unsigned32, read_write, variable}, {{0x1006, 0}, unsigned32, read_write, variable},
-      {{0x1014, 0}, unsigned32, read_only, variable},  {{0x1016, 0}, unsigned8, constant, array},
-      {{0x1016, 1}, unsigned32, read_write, array},    {{0x1017, 0}, unsigned16, read_write, variable},
-      {{0x1018, 0}, unsigned8, constant, record},      {{0x1018, 1}, unsigned32, constant, record},
-      {{0x1018, 4}, unsigned32, read_only, record},    {{0x1019, 0}, unsigned8, read_write, variable},
-      {{0x1200, 1}, unsigned32, read_only, record},    {{0x1200, 2}, unsigned32, read_only, record},
-      {{0x1400, 1}, unsigned32, read_only, record},    {{0x1400, 2}, unsigned8, constant, record},
-      {{0x1600, 0}, unsigned8, constant, record},      {{0x1600, 1}, unsigned32, constant, record},
-      {{0x1800, 1}, unsigned32, read_only, record},    {{0x1800, 2}, unsigned8, constant, record},
-      {{0x1A00, 1}, unsigned32, constant, record},     {{0x6040, 0}, unsigned16, read_write, variable},
-      {{0x6041, 0}, unsigned16, read_only, variable},  {{0x6060, 0}, integer8, read_write, variable},
-      {{0x6061, 0}, integer8, read_only, variable},    {{0x607A, 0}, integer32, read_write, variable},
-      {{0x6502, 0}, unsigned32, constant, variable},   {{0x1802, 1}, unsigned32, read_only, record},
-      {{0x1A02, 0}, unsigned8, constant, record},      {{0x6064, 0}, integer32, read_only, variable},
-      {{0x6075, 0}, unsigned32, constant, variable},   {{0x6078, 0}, integer16, read_only, variable},
+      {{0x1000, 0}, unsigned32, constant, variable},      {{0x1001, 0}, unsigned8, read_only, variable},
+      {{0x1003, 0}, unsigned8, read_write, array},        {{0x1003, 8}, unsigned32, read_only, array},
+      {{0x1008, 0}, visible_string, constant, variable},  {{0x1009, 0}, visible_string, read_only, variable},
+      {{0x100A, 0}, visible_string, read_only, variable}, {{0x6007, 0}, integer16, read_write, variable},
+      {{0x605A, 0}, integer16, read_write, variable},     {{0x6062, 0}, integer32, read_only, variable},
+      {{0x1005, 0}, unsigned32, read_write, variable},    {{0x1006, 0}, unsigned32, read_write, variable},
+      {{0x1014, 0}, unsigned32, read_only, variable},     {{0x1016, 0}, unsigned8, constant, array},
+      {{0x1016, 1}, unsigned32, read_write, array},       {{0x1017, 0}, unsigned16, read_write, variable},
+      {{0x1018, 0}, unsigned8, constant, record},         {{0x1018, 1}, unsigned32, constant, record},
+      {{0x1018, 4}, unsigned32, read_only, record},       {{0x1019, 0}, unsigned8, read_write, variable},
+      {{0x1200, 1}, unsigned32, read_only, record},       {{0x1200, 2}, unsigned32, read_only, record},
+      {{0x1400, 1}, unsigned32, read_only, record},       {{0x1400, 2}, unsigned8, constant, record},
+      {{0x1600, 0}, unsigned8, constant, record},         {{0x1600, 1}, unsigned32, constant, record},
+      {{0x1800, 1}, unsigned32, read_only, record},       {{0x1800, 2}, unsigned8, constant, record},
+      {{0x1A00, 1}, unsigned32, constant, record},        {{0x6040, 0}, unsigned16, read_write, variable},
+      {{0x6041, 0}, unsigned16, read_only, variable},     {{0x6060, 0}, integer8, read_write, variable},
+      {{0x6061, 0}, integer8, read_only, variable},       {{0x607A, 0}, integer32, read_write, variable},
+      {{0x6502, 0}, unsigned32, constant, variable},      {{0x1802, 1}, unsigned32, read_only, record},
+      {{0x1A02, 0}, unsigned8, constant, record},         {{0x6064, 0}, integer32, read_only, variable},
+      {{0x6075, 0}, unsigned32, constant, variable},      {{0x6078, 0}, integer16, read_only, variable},
   };
   for (const Case& c : cases) {
     const std::optional<Object> object = find_object(c.address);
@@ -127,6 +131,12 @@ TEST(ObjectDictionary, IsEnumeratedInAscendingOrderWithoutGapsInSubIndices) {
       EXPECT_EQ(count, 1U);
     } else {
       const Object highest = *find_object({index, 0});
+      if (index == 0x1003) {  // the number of errors, which can be set to 0
+        EXPECT_EQ(highest.type, DataType::unsigned8);
+        EXPECT_EQ(highest.access, Access::read_write);
+        EXPECT_EQ(highest.default_value, 0U);
+        continue;
+      }
       EXPECT_EQ(highest.type, DataType::unsigned8);
       EXPECT_EQ(highest.access, Access::constant);
       EXPECT_EQ(highest.default_value, count - 1);
@@ -188,6 +198,8 @@ TEST(ObjectDictionary, RangesAreThoseOfTheSpecification) {
       {{0x2005, 4}, {-(1 << 30), 1 << 30}, {-(1 << 30) - 1, -2147483648}, {(1 << 30) + 1, 2147483647}},
       {{0x2005, 6}, {0, 1}, {}, {2}},
       {{0x200A, 1}, {0, 32767}, {}, {32768, 65535}},
+      {{0x6007, 0}, {3}, {-32768, 0, 2}, {4, 32767}},
+      {{0x605A, 0}, {6}, {-32768, 0, 5}, {7, 32767}},
       {{0x6060, 0}, {-1, 8}, {-128, -2}, {0, 7, 9, 127}},
   };
   for (const Case& c : cases) {

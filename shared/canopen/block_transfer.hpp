@@ -57,11 +57,17 @@ class BlockReceiver {
   /// The sequence number to acknowledge, at the end of a sub-block or after a silence. Begins the next sub-block.
   [[nodiscard]] std::uint8_t acknowledge();
   [[nodiscard]] std::uint8_t size() const { return size_; }
+  /// Whether the transfer should end: too many acknowledgements, one after the other, have brought no segment. What
+  /// comes are not the segments of this transfer: another client has begun one, and both ends acknowledge for ever.
+  [[nodiscard]] bool is_stuck() const { return fruitless_ >= max_fruitless; }
 
   explicit constexpr BlockReceiver(std::uint8_t size = max_block_size) : size_(size) {}
 
  private:
+  static constexpr std::uint8_t max_fruitless = 20;
+
   std::uint8_t size_;
+  std::uint8_t fruitless_ = 0;     ///< acknowledgements since a segment was taken
   std::uint8_t taken_ = 0;         ///< of the present sub-block
   std::uint8_t acknowledged_ = 0;  ///< of the one before
   bool has_come_ = false;          ///< a segment, since the acknowledgement

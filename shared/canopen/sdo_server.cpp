@@ -199,6 +199,9 @@ CanFrame SdoServer::acknowledge_block() {
   if (!receiver_.has_begun()) {
     return answer_block_download();
   }
+  if (receiver_.is_stuck()) {
+    return abort(AbortCode::timeout);
+  }
   CanFrame answer = make(sdo::answer_block_download | sdo::block_acknowledge);
   answer.data[1] = receiver_.acknowledge();
   answer.data[2] = receiver_.size();

@@ -384,6 +384,10 @@ void SdoTransfer::acknowledge() {
     request(make(sdo::answer_block_download | sdo::block_start));
     return;
   }
+  if (receiver_.is_stuck()) {
+    abort_attempt(AbortCode::timeout);
+    return;
+  }
   CanFrame frame = make(sdo::answer_block_download | sdo::block_acknowledge);
   frame.data[1] = receiver_.acknowledge();
   frame.data[2] = receiver_.size();

@@ -415,6 +415,16 @@ TEST_F(SdoFrames, ASilentClientOfABlockDownloadIsRemindedAndThenGivenUp) {
   EXPECT_EQ(device.cancellations, 1U);
 }
 
+TEST_F(SdoFrames, FramesThatAreNotTheNextSegmentDoNotKeepABlockDownloadForEver) {
+  EXPECT_EQ(answer("C2 50 1F 01 09 00 00 00"), "A4 50 1F 01 7F 00 00 00");
+  // The acknowledgements of another client's upload: segment 34, the last one.
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(answer("A2 00 7F 00 00 00 00 00"), "A2 00 7F 00 00 00 00 00");
+  }
+  EXPECT_EQ(answer("A2 00 7F 00 00 00 00 00"), "80 50 1F 01 00 00 04 05");
+  EXPECT_EQ(device.cancellations, 1U);
+}
+
 TEST_F(SdoFrames, TheEndOfABlockDownloadIsAwaitedInTheSameWay) {
   EXPECT_EQ(answer("C2 50 1F 01 02 00 00 00"), "A4 50 1F 01 7F 00 00 00");
   EXPECT_EQ(answer("81 31 32 00 00 00 00 00"), "A2 01 7F 00 00 00 00 00");

@@ -279,14 +279,16 @@ void World::handle(std::uint8_t event, Input& input) {
     case 12: {
       constexpr std::array commands{canopen::NmtCommand::start, canopen::NmtCommand::stop,
                                     canopen::NmtCommand::enter_pre_operational, canopen::NmtCommand::reset_node};
-      receive(encode(canopen::NmtRequest{commands[input.byte() % 4U], 0}));
+      const std::uint8_t which = input.byte();
+      receive(encode(
+          canopen::NmtRequest{which >= 224 ? canopen::NmtCommand::reset_communication : commands[which % 4U], 0}));
       break;
     }
     case 13: {
       const std::span<const canopen::ObjectRow> rows = canopen::object_rows();
       const canopen::Object& entry = *rows[input.byte() % rows.size()].first;
       write({static_cast<std::uint16_t>(entry.address.index + input.byte() % 3U), entry.address.sub},
-            size_of(entry.type), input.byte() < 128 ? input.byte() : input.word());
+            std::max<std::uint8_t>(1, size_of(entry.type)), input.byte() < 128 ? input.byte() : input.word());
       break;
     }
     case 14: {

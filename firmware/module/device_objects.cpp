@@ -30,7 +30,7 @@ Found find(std::span<const ObjectAccessor> accessors, const JointKernel& joint, 
     first = first_of(value->kind);
     position = {value->number, value->slot};
   } else if (const canopen::EntryRow* row = canopen::find_row(address)) {
-    first = row->first.address;
+    first = row->first;
     position = {static_cast<std::uint16_t>(address.index - first.index),
                 static_cast<std::uint16_t>(address.sub - first.sub)};
   }

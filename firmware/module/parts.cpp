@@ -28,8 +28,10 @@ void Parts::reset_communication(Microseconds now) {
   emergencies.reset_communication();
   host.set(canopen::object::host_heartbeat.default_value);
   reported = {};
-  settings.tick_period_us = ModuleSettings().tick_period_us;
-  settings.nodes = {};
+  settings.tick_period_us = canopen::object::tick_period.default_value;
+  for (auto& channel : settings.nodes) {
+    channel.fill(0);
+  }
   must_restore_communication = true;
   neighbours.stop();
   neighbours.clear_reported_errors();

@@ -57,7 +57,7 @@ ObjectName entry_name(Address address) {
   } else if (const std::optional<Object> object = find_object(address)) {
     append(name, object->name);
     if (const EntryRow* row = find_row(address); row != nullptr && row->subs > 1) {
-      append_number(name, static_cast<unsigned>(address.sub - row->first.address.sub) + 1U);
+      append_number(name, static_cast<unsigned>(address.sub - row->first.sub) + 1U);
     }
   }
   return name;

@@ -145,15 +145,57 @@ constexpr const ObjectGroup* declared_groups[] = {
     &object::received_frames[1],
 };
 
-// The image of a module contains these two and nothing of the above.
+// The image of a module contains the following tables and nothing of the above.
+
+struct Limits {
+  std::uint32_t minimum;
+  std::uint32_t maximum;
+  std::optional<std::uint32_t> also_allowed;
+};
+
+constexpr bool has_limits(const ObjectRow& row) {
+  const Object& object = *row.first;
+  return object.minimum != min_value(object.type) || object.maximum != max_value(object.type) || object.also_allowed;
+}
+
+constexpr std::size_t limits_count = [] {
+  std::size_t count = 0;
+  for (const ObjectRow& row : declared_rows) {
+    count += has_limits(row) ? 1U : 0U;
+  }
+  return count;
+}();
+static_assert(limits_count < EntryRow::no_limits);
+
+/// Of the rows that have some, in their order.
+constexpr std::array limits = [] {
+  std::array<Limits, limits_count> found{};
+  std::size_t count = 0;
+  for (const ObjectRow& row : declared_rows) {
+    if (has_limits(row)) {
+      found[count++] = {row.first->minimum, row.first->maximum, row.first->also_allowed};
+    }
+  }
+  return found;
+}();
 
 constexpr std::array rows = [] {
-  std::array<EntryRow, std::size(declared_rows)> without_texts{};
-  for (std::size_t i = 0; i < without_texts.size(); ++i) {
+  std::array<EntryRow, std::size(declared_rows)> packed{};
+  std::uint8_t limits_before = 0;
+  for (std::size_t i = 0; i < packed.size(); ++i) {
     const ObjectRow& row = declared_rows[i];
-    without_texts[i] = {*row.first, row.indices, row.subs, row.default_step};
+    const Object& first = *row.first;
+    packed[i] = {first.address,
+                 first.type,
+                 first.access,
+                 first.adds_node_id,
+                 row.indices,
+                 row.subs,
+                 has_limits(row) ? limits_before++ : EntryRow::no_limits,
+                 static_cast<std::uint16_t>(row.default_step >> 16U),
+                 first.default_value};
   }
-  return without_texts;
+  return packed;
 }();
 
 struct Group {
@@ -170,7 +212,7 @@ constexpr std::array groups = [] {
   return without_texts;
 }();
 
-constexpr std::uint16_t last_index = rows.back().first.address.index;
+constexpr std::uint16_t last_index = rows.back().first.index;
 
 template <typename AnyGroup>
 constexpr bool covers(const AnyGroup& group, std::uint16_t index) {
@@ -180,14 +222,16 @@ constexpr bool covers(const AnyGroup& group, std::uint16_t index) {
 /// Ascending, and sub-indices only where a group says what the index is. A group may declare its sub-index 0.
 constexpr bool well_formed() {
   std::uint32_t before = 0;
-  for (const EntryRow& row : rows) {
-    const Address address = row.first.address;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const EntryRow& row = rows[i];
+    const ObjectRow& declared = declared_rows[i];
+    const Address address = row.first;
     const std::uint32_t position = std::uint32_t{address.index} << 8U | address.sub;
     bool grouped = false;
     for (const Group& group : groups) {
       grouped = grouped || (covers(group, address.index) && group.count == row.indices);
     }
-    if (position <= before || (!grouped && address.sub > 0)) {
+    if (position <= before || (!grouped && address.sub > 0) || (declared.default_step & 0xFFFFU) != 0) {
       return false;
     }
     before = position;
@@ -234,9 +278,21 @@ std::optional<ValueAddress> value_address(Address address) {
 
 std::optional<Entry> find_entry(Address address) {
   if (const EntryRow* row = find_row(address)) {
-    Entry entry = row->first;
-    entry.default_value += row->default_step * (address.index - entry.address.index);
-    entry.address = address;
+    const std::uint32_t step = std::uint32_t{row->default_step} << 16U;
+    Entry entry{address,
+                row->type,
+                row->access,
+                row->adds_node_id,
+                row->default_value + step * (std::uint32_t{address.index} - row->first.index),
+                min_value(row->type),
+                max_value(row->type),
+                {}};
+    if (row->limits != EntryRow::no_limits) {
+      const Limits& found = limits[row->limits];
+      entry.minimum = found.minimum;
+      entry.maximum = found.maximum;
+      entry.also_allowed = found.also_allowed;
+    }
     return entry;
   }
   if (const std::optional<ValueAddress> value = value_address(address)) {

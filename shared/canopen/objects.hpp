@@ -49,16 +49,24 @@ struct IndexInfo {
 /// Whether any sub-index of the index exists.
 [[nodiscard]] inline bool index_exists(std::uint16_t index) { return find_index(index).has_value(); }
 
-/// Equal entries at `indices` consecutive indices and `subs` consecutive sub-indices.
+/// Equal entries at `indices` consecutive indices and `subs` consecutive sub-indices, in the form in which a module's
+/// flash holds them: 16 bytes each. find_entry() unpacks them.
 struct EntryRow {
-  Entry first;
+  Address first;
+  DataType type;
+  Access access;
+  bool adds_node_id;
   std::uint8_t indices;
   std::uint8_t subs;
-  std::uint32_t default_step;  ///< default value at an index minus that at the index before
+  std::uint8_t limits;         ///< position in the table of ranges that are not those of the type; `no_limits`
+  std::uint16_t default_step;  ///< default value at an index minus that at the index before, in units of 0x10000
+  std::uint32_t default_value;
+
+  static constexpr std::uint8_t no_limits = 0xFF;
 
   [[nodiscard]] constexpr bool covers(Address address) const {
-    return address.index >= first.address.index && address.index - first.address.index < indices &&
-           address.sub >= first.address.sub && address.sub - first.address.sub < subs;
+    return address.index >= first.index && address.index - first.index < indices && address.sub >= first.sub &&
+           address.sub - first.sub < subs;
   }
 };
 /// The row with the address; null if there is none, as for sub-indices 0 of groups and for the ranges.

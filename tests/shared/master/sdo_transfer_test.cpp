@@ -4,150 +4,23 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <iomanip>
 #include <iostream>
 #include <random>
-#include <vector>
 
-#include "device_memory.hpp"
 #include "frame_text.hpp"
-#include "sim/bus/bus.hpp"
+#include "sdo_link.hpp"
 
 namespace proleg::canopen {
 namespace {
 
+using test::Bytes;
+using test::domain;
 using test::frame;
+using test::random_bytes;
 using test::text;
-using Bytes = std::vector<std::uint8_t>;
+using Link = test::SdoLink;
 using State = SdoTransfer::State;
-
-constexpr Address domain{0x1F50, 1};
-constexpr std::uint8_t node = 9;
-
-Bytes random_bytes(std::size_t size, std::uint32_t seed = 1) {
-  std::mt19937 random(seed);
-  Bytes bytes(size);
-  for (std::uint8_t& byte : bytes) {
-    byte = static_cast<std::uint8_t>(random());
-  }
-  return bytes;
-}
-
-/// A client and a server, each with a controller, and the frames on the wire.
-class Link {
- public:
-  Link() {
-    device.add_entry(domain, DataType::domain, 0, 0xFFFFFFFF);
-    bus.set_loss_rule([this](const CanFrame& sent, std::size_t receiver) {
-      sends.push_back(sent);
-      return receiver < 2 && loses && loses(sent, sends.size() - 1);
-    });
-  }
-
-  void run(Microseconds longest = 3'600'000'000) {
-    const sim::BusTime end = bus.now() + longest * 1'000;
-    pump();
-    while (client.state() == State::running || server.next_deadline() != never || !is_quiet()) {
-      const sim::BusTime next = std::min({bus.next_event(), at(client.next_deadline()), at(server.next_deadline())});
-      ASSERT_LE(next, end) << "the transfer does not end";
-      bus.advance_to(next);
-      if (client.next_deadline() <= now()) {
-        client.poll(now());
-      }
-      if (const std::optional<CanFrame> sent = server.poll(now())) {
-        answers.push_back(*sent);
-      }
-      pump();
-      if (client.state() != State::running && finished_at == 0) {
-        finished_at = bus.now();
-      }
-    }
-  }
-  /// Of a value of `bytes`; checks the result.
-  void download(const Bytes& bytes, const SdoTransferOptions& options = {}) {
-    begin();
-    client.download(node, domain, bytes, options);
-    run();
-  }
-  Bytes upload(std::size_t capacity, const SdoTransferOptions& options = {}) {
-    begin();
-    Bytes buffer(capacity);
-    client.upload(node, domain, buffer, options);
-    run();
-    buffer.resize(client.state() == State::done ? client.size() : 0);
-    return buffer;
-  }
-  Bytes& value() { return device.long_values[test::DeviceMemory::key(domain)]; }
-  [[nodiscard]] double seconds() const { return static_cast<double>(finished_at - started_at) * 1e-9; }
-
-  sim::Bus bus;
-  test::DeviceMemory device;
-  SdoServer server{node, device};
-  SdoTransfer client;
-  std::vector<CanFrame> sends;  ///< frames on the wire, in order
-  std::function<bool(const CanFrame& sent, std::size_t position)> loses;
-  /// Answers instead of the server, if it returns a frame.
-  std::function<std::optional<CanFrame>(const CanFrame& request)> answers_instead;
-
- private:
-  struct Node final : sim::BusListener {
-    explicit Node(std::function<void(const CanFrame&)> handler) : on_frame(std::move(handler)) {}
-    void received(sim::BusTime /*time*/, const CanFrame& frame) override { on_frame(frame); }
-    void transmitted(sim::BusTime /*time*/, const CanFrame& /*frame*/) override {}
-    std::function<void(const CanFrame&)> on_frame;
-  };
-
-  void begin() {
-    sends.clear();
-    started_at = bus.now();
-    finished_at = 0;
-  }
-  [[nodiscard]] Microseconds now() const { return bus.now() / 1'000; }
-  static sim::BusTime at(Microseconds time) { return time == never ? sim::never_on_bus : time * 1'000; }
-  /// As a program does it that keeps the bus busy: two frames at the controller.
-  static bool has_room(const sim::Controller& controller) { return controller.free_mailboxes() > 1; }
-  [[nodiscard]] bool is_quiet() const {
-    return client_controller.free_mailboxes() == 3 && server_controller.free_mailboxes() == 3;
-  }
-  void pump() {
-    while (has_room(client_controller)) {
-      const std::optional<CanFrame> sent = client.next_frame(now());
-      if (!sent) {
-        break;
-      }
-      ASSERT_TRUE(client_controller.send(*sent));
-    }
-    while (has_room(server_controller) && (!answers.empty() || server.has_segment())) {
-      if (answers.empty()) {
-        ASSERT_TRUE(server_controller.send(server.next_segment(now())));
-      } else {
-        ASSERT_TRUE(server_controller.send(answers.front()));
-        answers.erase(answers.begin());
-      }
-    }
-  }
-
- public:
-  std::vector<CanFrame> answers;
-  sim::BusTime started_at = 0;
-  sim::BusTime finished_at = 0;
-
- private:
-  Node client_node{[this](const CanFrame& frame) { client.receive(now(), frame); }};
-  Node server_node{[this](const CanFrame& frame) {
-    std::optional<CanFrame> answer;
-    if (answers_instead) {
-      answer = answers_instead(frame);
-    }
-    answer = answer ? answer : server.receive(now(), frame);
-    if (answer) {
-      answers.push_back(*answer);
-    }
-  }};
-  sim::Controller& client_controller = bus.attach(client_node);
-  sim::Controller& server_controller = bus.attach(server_node);
-};
 
 TEST(SdoTransfer, EverySizeArrivesInBothDirections) {
   Link link;
@@ -194,7 +67,8 @@ TEST(SdoTransfer, AServerWithoutBlockTransfersGetsSegments) {
     if ((request.data[0] & 0xE3U) != 0xC2 && (request.data[0] & 0xE3U) != 0xA0) {
       return std::nullopt;
     }
-    return CanFrame{0x580 + node, 8, {0x80, request.data[1], request.data[2], request.data[3], 0x01, 0x00, 0x04, 0x05}};
+    return CanFrame{
+        0x580 + Link::node, 8, {0x80, request.data[1], request.data[2], request.data[3], 0x01, 0x00, 0x04, 0x05}};
   };
   const Bytes bytes = random_bytes(300);
   link.download(bytes);

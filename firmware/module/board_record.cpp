@@ -6,28 +6,60 @@
 namespace proleg::firmware {
 namespace {
 
-constexpr std::uint8_t schema_version = 1;
-constexpr std::uint8_t flag_feedback = 1;
+constexpr std::uint8_t first_schema = 1;
+constexpr std::uint8_t schema_version = 2;
+constexpr unsigned flag_feedback = 1U << 0U;
+constexpr unsigned flag_gateway = 1U << 1U;
 constexpr std::size_t version_at = 4;
 constexpr std::size_t node_at = 5;
 constexpr std::size_t flags_at = 6;
 constexpr std::size_t minus_90_at = 8;
 constexpr std::size_t plus_90_at = 10;
+constexpr std::size_t lowest_angle_at = 12;
+constexpr std::size_t highest_angle_at = 16;
+constexpr std::size_t current_limit_at = 20;
+constexpr std::size_t current_limit_time_at = 22;
 constexpr std::size_t crc_at = 28;
 constexpr std::uint8_t erased = 0xFF;
 
 using Bytes = std::span<const std::uint8_t>;
 
-std::optional<BoardRecord> decode(Bytes bytes) {
-  if (read_little_endian(bytes, crc_at, 4) != crc32(bytes.first(crc_at)) || bytes[version_at] != schema_version) {
-    return std::nullopt;
-  }
+std::uint16_t half_word(Bytes bytes, std::size_t at) {
+  return static_cast<std::uint16_t>(read_little_endian(bytes, at, 2));
+}
+
+/// Reads all that the schema versions 1 and 2 have; nothing has been checked.
+BoardRecord decode_all(Bytes bytes) {
   BoardRecord record;
   record.node = bytes[node_at];
   record.has_feedback = (bytes[flags_at] & flag_feedback) != 0;
-  record.feedback_at_minus_90 = static_cast<std::uint16_t>(read_little_endian(bytes, minus_90_at, 2));
-  record.feedback_at_plus_90 = static_cast<std::uint16_t>(read_little_endian(bytes, plus_90_at, 2));
-  return record.valid() ? std::optional(record) : std::nullopt;
+  record.feedback_at_minus_90 = half_word(bytes, minus_90_at);
+  record.feedback_at_plus_90 = half_word(bytes, plus_90_at);
+  if (bytes[version_at] != first_schema) {
+    record.is_gateway = (bytes[flags_at] & flag_gateway) != 0;
+    record.lowest_angle = static_cast<std::int32_t>(read_little_endian(bytes, lowest_angle_at, 4));
+    record.highest_angle = static_cast<std::int32_t>(read_little_endian(bytes, highest_angle_at, 4));
+    record.current_limit_ma = half_word(bytes, current_limit_at);
+    record.current_limit_time_ms = half_word(bytes, current_limit_time_at);
+  }
+  return record;
+}
+
+std::optional<BoardRecord> decode(Bytes bytes) {
+  const std::uint8_t version = bytes[version_at];
+  const std::uint8_t node = bytes[node_at];
+  if (version < first_schema || node > BoardRecord::max_node ||
+      read_little_endian(bytes, crc_at, 4) != crc32(bytes.first(crc_at))) {
+    return std::nullopt;
+  }
+  if (version <= schema_version) {
+    if (const BoardRecord record = decode_all(bytes); record.valid()) {
+      return record;
+    }
+  }
+  BoardRecord fixed_part;
+  fixed_part.node = node;
+  return fixed_part;
 }
 
 bool is_erased(Bytes bytes) {
@@ -83,8 +115,9 @@ bool equal(Bytes a, Bytes b) {
 }  // namespace
 
 bool BoardRecord::valid() const {
-  return node >= 1 && node <= max_node && feedback_at_minus_90 <= max_reading && feedback_at_plus_90 <= max_reading &&
-         (!has_feedback || feedback_at_minus_90 != feedback_at_plus_90);
+  return node <= max_node && feedback_at_minus_90 <= max_reading && feedback_at_plus_90 <= max_reading &&
+         (!has_feedback || feedback_at_minus_90 != feedback_at_plus_90) && lowest_angle >= -max_angle &&
+         lowest_angle <= 0 && highest_angle >= 0 && highest_angle <= max_angle && current_limit_ma <= max_current_ma;
 }
 
 std::array<std::uint8_t, BoardRecord::size> encode(const BoardRecord& record, std::uint32_t sequence) {
@@ -92,9 +125,14 @@ std::array<std::uint8_t, BoardRecord::size> encode(const BoardRecord& record, st
   write_little_endian(bytes, 0, 4, sequence);
   bytes[version_at] = schema_version;
   bytes[node_at] = record.node;
-  bytes[flags_at] = record.has_feedback ? flag_feedback : std::uint8_t{0};
+  bytes[flags_at] =
+      static_cast<std::uint8_t>((record.has_feedback ? flag_feedback : 0U) | (record.is_gateway ? flag_gateway : 0U));
   write_little_endian(bytes, minus_90_at, 2, record.feedback_at_minus_90);
   write_little_endian(bytes, plus_90_at, 2, record.feedback_at_plus_90);
+  write_little_endian(bytes, lowest_angle_at, 4, static_cast<std::uint32_t>(record.lowest_angle));
+  write_little_endian(bytes, highest_angle_at, 4, static_cast<std::uint32_t>(record.highest_angle));
+  write_little_endian(bytes, current_limit_at, 2, record.current_limit_ma);
+  write_little_endian(bytes, current_limit_time_at, 2, record.current_limit_time_ms);
   write_little_endian(bytes, crc_at, 4, crc32(Bytes(bytes).first(crc_at)));
   return bytes;
 }

@@ -1,19 +1,29 @@
 #pragma once
 
-// What a board is, kept in its flash: written when the board is made, read at every start. Records have 32 bytes and
-// are appended to a log in two sectors of flash; the newest one counts. Flash can only be programmed once after it was
-// erased, and only whole sectors can be erased: so the log fills one sector, then the other.
+// The settings of a board, kept in its flash: written when the board is made, by LSS (its node id) and by object
+// 0x1010; read at every start. Records have 32 bytes and are appended to a log in two sectors of flash; the newest one
+// counts. Flash can only be programmed once after it was erased, and only whole sectors can be erased: so the log fills
+// one sector, then the other.
 //
 // A record (little-endian):
 //   0  u32  sequence number, 1 for the first; the newest record has the highest
-//   4  u8   schema version, 1
-//   5  u8   node id
-//   6  u8   flags; bit 0: a feedback potentiometer is fitted
+//   4  u8   schema version, 2
+//   5  u8   node id; 0: none
+//   6  u8   flags; bit 0: a feedback potentiometer is fitted; bit 1: the module is the gateway
 //   7  u8   0
 //   8  u16  feedback at -90 degrees, as the ADC reads it (12 bits)
 //  10  u16  feedback at +90 degrees
-//  12  16 bytes of 0
+//  12  i32  lowest joint angle that the mechanics allow, 90 degrees = 2^30
+//  16  i32  highest joint angle
+//  20  u16  over-current limit in mA; 0: off
+//  22  u16  time above the limit that leads to a fault, in ms
+//  24  4 bytes of 0
 //  28  u32  CRC-32 (shared/fixed/crc32.hpp) of the 28 bytes before
+//
+// The fixed part is the same in every schema: the size, bytes 0 to 5 and the check sum. A program reads no more of a
+// record with a newer version, so that a board keeps its node id when an older image is flashed. A schema that only
+// gives a meaning to bytes and bits that are 0 here keeps version 2: readers ignore what they do not know. Version 1
+// ends at byte 12; its readers have the default values for the rest.
 
 #include <array>
 #include <cstddef>
@@ -22,6 +32,7 @@
 #include <span>
 
 #include "shared/canopen/messages.hpp"
+#include "shared/gait/declaration.hpp"
 
 namespace proleg::firmware {
 
@@ -44,12 +55,21 @@ struct BoardRecord {
   static constexpr std::size_t size = 32;  ///< bytes in flash
   static constexpr std::uint8_t max_node = canopen::max_node_id;
   static constexpr std::uint16_t max_reading = 4095;  ///< of the 12-bit ADC
+  static constexpr std::int32_t max_angle = quarter_turn;
+  static constexpr std::uint16_t max_current_ma = 0x7FFF;
 
-  std::uint8_t node = 0;  ///< 1 to 126
+  std::uint8_t node = 0;  ///< 1 to 126; 0: none
   bool has_feedback = false;
   /// Of the feedback potentiometer, as the ADC reads it, at most max_reading; different, if it is fitted.
   std::uint16_t feedback_at_minus_90 = 0;
   std::uint16_t feedback_at_plus_90 = 0;
+  bool is_gateway = false;
+  /// Joint angles that the mechanics allow, 90 degrees = 2^30. The safe pose, 0, is one of them.
+  std::int32_t lowest_angle = -max_angle;
+  std::int32_t highest_angle = max_angle;
+  /// Of the servo's current; default values of object 0x200A.
+  std::uint16_t current_limit_ma = 2'000;
+  std::uint16_t current_limit_time_ms = 500;
 
   /// Whether everything is in its range.
   [[nodiscard]] bool valid() const;
@@ -60,9 +80,9 @@ struct BoardRecord {
 /// The bytes of a record.
 [[nodiscard]] std::array<std::uint8_t, BoardRecord::size> encode(const BoardRecord& record, std::uint32_t sequence);
 
-/// The record with the highest sequence number among those that are right: a known schema version, everything in its
-/// range, the right checksum. Other records are skipped: those that were cut off or damaged, or have an unknown
-/// schema. Sectors of any size.
+/// The record with the highest sequence number among those that are right: a schema version, the right checksum, a node
+/// id in its range. Others are skipped: those that were cut off or damaged. Of a record with a newer schema version, or
+/// with anything else out of its range, only the node id is taken. Sectors of any size.
 [[nodiscard]] std::optional<BoardRecord> newest(std::span<const std::uint8_t> sector_1,
                                                 std::span<const std::uint8_t> sector_2);
 

@@ -54,9 +54,16 @@ TEST_F(BoardRecordFileTest, WithoutAPotentiometerSaysSo) {
   EXPECT_EQ(newest(all.first(all.size() / 2), all.subspan(all.size() / 2)), (BoardRecord{126, false, 0, 0}));
 }
 
+TEST_F(BoardRecordFileTest, HoldsEverySettingOfTheBoard) {
+  ASSERT_EQ(make("--node 3 --gateway --limits -45 60 --current 1500 250"), 0);
+  const std::vector<std::uint8_t> bytes = sectors();
+  EXPECT_EQ(newest(bytes, {}), (BoardRecord{3, false, 0, 0, true, -(1 << 29), 715827883, 1500, 250}));
+}
+
 TEST_F(BoardRecordFileTest, RefusesWhatTheModuleWouldNotTake) {
   for (const char* options : {"--node 0", "--node 127", "--node x", "", "--node 3 --feedback 5 5",
-                              "--node 3 --feedback 5 4096", "--node 3 --feedback 5"}) {
+                              "--node 3 --feedback 5 4096", "--node 3 --feedback 5", "--node 3 --limits 1 2",
+                              "--node 3 --limits -91 0", "--node 3 --limits - 0", "--node 3 --current 32768 1"}) {
     EXPECT_NE(make(options), 0) << options;
     EXPECT_FALSE(std::filesystem::exists(file())) << options;
   }

@@ -30,7 +30,9 @@ inline constexpr std::uint16_t sdo_answer = 0x580;    ///< + node
 inline constexpr std::uint16_t sdo_request = 0x600;   ///< + node
 inline constexpr std::uint16_t commit = 0x680;
 inline constexpr std::uint16_t tick = 0x681;
-inline constexpr std::uint16_t heartbeat = 0x700;  ///< + node
+inline constexpr std::uint16_t heartbeat = 0x700;    ///< + node
+inline constexpr std::uint16_t lss_answer = 0x7E4;   ///< of an LSS slave
+inline constexpr std::uint16_t lss_request = 0x7E5;  ///< of the LSS master
 
 /// + node; by channel.
 inline constexpr std::array<std::uint16_t, 2> state_frames{state_frame, second_state};

@@ -144,6 +144,9 @@ AppendResult append(FlashPort& flash, const BoardRecord& record) {
     return AppendResult::invalid_record;
   }
   const NewestRecord before = find_newest({flash.contents(0), flash.contents(1)});
+  if (before.record == record) {
+    return AppendResult::ok;
+  }
   unsigned sector = before.sector;
   std::size_t offset = free_offset(flash.contents(sector));
   if (offset + BoardRecord::size > flash.contents(sector).size()) {

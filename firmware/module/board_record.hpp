@@ -20,7 +20,7 @@
 //  24  4 bytes of 0
 //  28  u32  CRC-32 (shared/fixed/crc32.hpp) of the 28 bytes before
 //
-// The fixed part is the same in every schema: the size, bytes 0 to 5 and the check sum. A program reads no more of a
+// The fixed part is the same in every schema: the size, bytes 0 to 5 and the checksum. A program reads no more of a
 // record with a newer version, so that a board keeps its node id when an older image is flashed. A schema that only
 // gives a meaning to bytes and bits that are 0 here keeps version 2: readers ignore what they do not know. Version 1
 // ends at byte 12; its readers have the default values for the rest.
@@ -87,7 +87,7 @@ struct BoardRecord {
                                                 std::span<const std::uint8_t> sector_2);
 
 enum class AppendResult : std::uint8_t {
-  ok,
+  ok,              ///< also if it is the newest already: nothing was written then
   invalid_record,  ///< not BoardRecord::valid(); nothing was written
   erase_failed,    ///< the record before is still the newest
   program_failed,  ///< the record before is still the newest, or the flash does not hold what was written

@@ -30,7 +30,7 @@ EmergencyCode code_of(Fault fault) {
   if (code != EmergencyCode::none) {
     keep(code, detail);
   }
-  if (network_.state() != canopen::NmtState::stopped) {
+  if (network_.state() != canopen::NmtState::stopped && !network_.waits_for_node()) {
     outbox_.send(encode(canopen::Emergency{identity_.node, code, error_register(), detail}));
   }
 }

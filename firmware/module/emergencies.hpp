@@ -17,7 +17,8 @@ enum class Fault : std::uint8_t {
   bus_off,
 };
 
-/// Sends EMCY and keeps the error register (CiA 301, section 7.2.7). A stopped module sends no EMCY.
+/// Sends EMCY and keeps the error register (CiA 301, section 7.2.7). A module that is
+/// stopped or has no node id sends no EMCY.
 class Emergencies {
  public:
   Emergencies(const ModuleIdentity& identity, const NetworkNode& network, Outbox& outbox)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "firmware/module/board_control.hpp"
 #include "firmware/module/host_requests.hpp"
 #include "firmware/module/network_control.hpp"
 #include "firmware/module/tick_control.hpp"
@@ -39,6 +40,7 @@ Module::Module(const ModuleIdentity& identity, const Ports& ports) : parts_(iden
 
 void Module::power_on(Microseconds now) {
   objects_.reset();
+  parts_.load();
   parts_.reset(now);
   parts_.emergencies.power_on();
   finish_event(now);
@@ -48,7 +50,9 @@ void Module::receive(Microseconds now, const CanFrame& frame) {
   if (receive_state(frame)) {
     return;
   }
-  if (is_reserved(frame.identifier, parts_.identity.node)) {
+  if (frame.identifier == identifier::lss_request) {
+    receive_lss(now, frame);
+  } else if (is_reserved(frame.identifier, parts_.identity.node)) {
     stop_after_collision(parts_, frame.identifier);
   } else if (state() != NmtState::boot_up) {
     dispatch(now, frame);
@@ -105,6 +109,20 @@ void Module::dispatch(Microseconds now, const CanFrame& frame) {
       return;
     default:
       return;
+  }
+}
+
+void Module::receive_lss(Microseconds now, const CanFrame& frame) {
+  if (state() == NmtState::boot_up && !parts_.network.waits_for_node()) {
+    return;
+  }
+  if (const std::optional<CanFrame> answer = serve_lss(parts_, frame)) {
+    parts_.outbox.send(*answer);
+  }
+  // CiA 305: a slave that had no node id starts its communication when it leaves the configuration with one.
+  if (parts_.network.waits_for_node() && parts_.lss.state() == canopen::lss::State::waiting &&
+      parts_.lss.pending_node() != 0) {
+    parts_.reset(now);
   }
 }
 

@@ -14,8 +14,9 @@ class Module {
   /// Nothing happens before power_on(). What the ports refer to must outlive the module.
   Module(const ModuleIdentity& identity, const Ports& ports);
 
-  /// Starts from reset: only the identity is known. Sends boot-up after a delay that follows from the unique id, so
-  /// that of two modules with one node id one receives the other's message.
+  /// Starts from reset with the settings of the board. Sends boot-up after a delay that follows from the unique id, so
+  /// that of two modules with one node id one receives the other's message. Without a node id it only serves LSS, and
+  /// boots when it was given one.
   void power_on(Microseconds now);
   void receive(Microseconds now, const CanFrame& frame);
   /// The controller has sent a frame.
@@ -38,6 +39,8 @@ class Module {
   [[nodiscard]] const TickRecord& last_tick() const { return parts_.joint.record(); }
 
   // The module's state, for tests and displays.
+  /// The node id in use; 0: none.
+  [[nodiscard]] std::uint8_t node() const { return parts_.identity.node; }
   [[nodiscard]] canopen::NmtState state() const { return parts_.network.state(); }
   [[nodiscard]] canopen::PowerState power() const { return parts_.drive.power().state(); }
   /// Whether the module computes in the robot's tick.
@@ -52,6 +55,7 @@ class Module {
  private:
   [[nodiscard]] bool receive_state(const CanFrame& frame);
   void dispatch(Microseconds now, const CanFrame& frame);
+  void receive_lss(Microseconds now, const CanFrame& frame);
   void receive_network_command(Microseconds now, const CanFrame& frame);
   void poll_parts(Microseconds now);
   void finish_event(Microseconds now);

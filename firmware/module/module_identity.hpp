@@ -16,11 +16,11 @@ enum class ResetCause : std::uint8_t {
 
 /// What distinguishes a module from all others, and why its program has started.
 struct ModuleIdentity {
-  std::uint8_t node = 0;                     ///< 1 to 126
+  std::uint8_t node = 0;                     ///< 1 to 126; 0: none. Module takes it from the board record and LSS
   std::uint16_t board_id = 1;                ///< 1: the reference board
   std::array<std::uint32_t, 3> unique_id{};  ///< 96 bits, the lowest word first
   std::uint32_t core_fingerprint = 0;        ///< of the core it is built from: proleg::core_fingerprint
-  std::uint32_t capabilities = 0;            ///< object 0x2000:5, such as canopen::measures_angle
+  std::uint32_t capabilities = 0;            ///< object 0x2000:5. Module takes measures_angle from the board record
   ResetCause reset_cause = ResetCause::power_on;
   std::uint32_t reset_detail = 0;  ///< of a fault: where the program was (program counter); 0: not known
 };

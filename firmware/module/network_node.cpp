@@ -10,14 +10,15 @@ void NetworkNode::start(Microseconds now) {
   state_ = NmtState::boot_up;
   has_sent_boot_up_ = false;
   has_collided_ = false;
-  boot_up_at_ = now + 1'000U * (1U + serial_number(identity_) % 16U);
+  waits_for_node_ = identity_.node == 0;
+  boot_up_at_ = waits_for_node_ ? never : now + 1'000U * (1U + serial_number(identity_) % 16U);
   heartbeat_period_ms_ = canopen::object::heartbeat_period.default_value;
   heartbeat_at_ = never;
 }
 
 void NetworkNode::repeat_boot_up(Microseconds now) {
   state_ = NmtState::boot_up;
-  boot_up_at_ = now;
+  boot_up_at_ = waits_for_node_ ? never : now;
 }
 
 bool NetworkNode::confirm_boot_up(const CanFrame& frame) {

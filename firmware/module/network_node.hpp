@@ -11,9 +11,11 @@ class NetworkNode {
  public:
   NetworkNode(const ModuleIdentity& identity, Outbox& outbox) : identity_(identity), outbox_(outbox) {}
 
-  /// Boot-up follows after 1 to 16 ms, which depend on the unique id: of two modules with one node id that are switched
-  /// on together, one receives the other's message.
+  /// Without a node id nothing follows. Else boot-up follows after 1 to 16 ms, which depend on the unique id: of two
+  /// modules with one node id that are switched on together, one receives the other's message.
   void start(Microseconds now);
+  /// Since start() without a node id: the module waits for LSS to give it one.
+  [[nodiscard]] bool waits_for_node() const { return waits_for_node_; }
   /// The boot-up message was lost.
   void repeat_boot_up(Microseconds now);
   /// The controller has sent a frame. True if it is the boot-up message: from then on the network knows of the module.
@@ -44,6 +46,7 @@ class NetworkNode {
   const ModuleIdentity& identity_;
   Outbox& outbox_;
   canopen::NmtState state_ = canopen::NmtState::boot_up;
+  bool waits_for_node_ = false;
   bool has_sent_boot_up_ = false;
   bool has_collided_ = false;
   Microseconds boot_up_at_ = never;

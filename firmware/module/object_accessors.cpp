@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "firmware/module/abort_code.hpp"
+#include "firmware/module/board_control.hpp"
 #include "shared/fixed/little_endian.hpp"
 #include "shared/gait/registry.hpp"
 
@@ -63,6 +64,31 @@ constexpr ObjectAccessor only_value_row() {
       [](Parts& /*parts*/, const ObjectWrite& /*write*/) {});
 }
 
+/// A member of BoardRecord.
+template <auto member>
+constexpr ObjectAccessor board_setting(const canopen::Object& entry) {
+  return read_write(
+      entry.address, WritableIn::pre_operational, [](const Parts& parts) { return parts.board.in_force.*member; },
+      [](Parts& parts, const ObjectWrite& write) {
+        auto& value = parts.board.in_force.*member;
+        value = static_cast<std::remove_reference_t<decltype(value)>>(write.value);
+      });
+}
+
+/// The same for a limit of the joint, which a configured joint has taken over already.
+template <auto member>
+constexpr ObjectAccessor position_limit(const canopen::Object& entry) {
+  return read_write(
+      entry.address, WritableIn::pre_operational, [](const Parts& parts) { return parts.board.in_force.*member; },
+      [](Parts& parts, const ObjectWrite& write) {
+        if (parts.joint.active()) {
+          return AbortCode::refused_by_state;
+        }
+        parts.board.in_force.*member = static_cast<std::int32_t>(write.value);
+        return AbortCode::none;
+      });
+}
+
 constexpr std::uint64_t with_lower_half(std::uint64_t value, std::uint32_t half) { return value >> 32U << 32U | half; }
 constexpr std::uint64_t with_upper_half(std::uint64_t value, std::uint32_t half) {
   return std::uint64_t{half} << 32U | static_cast<std::uint32_t>(value);
@@ -112,6 +138,17 @@ constexpr ObjectAccessor state_frame_identifier() {
   return abort_code_of(status);
 }
 
+/// limit: the one of the two that was written.
+[[gnu::noinline]] AbortCode set_limits(Parts& parts, const canopen::AngleLimits& limits, std::int32_t limit) {
+  if (limit < parts.board.in_force.lowest_angle) {
+    return AbortCode::below_minimum;
+  }
+  if (limit > parts.board.in_force.highest_angle) {
+    return AbortCode::above_maximum;
+  }
+  return answer(parts, parts.joint.set_limits(limits));
+}
+
 AbortCode write_sync_identifier(Parts& parts, const ObjectWrite& write) {
   if ((write.value & canopen::produces_sync) == 0) {
     parts.producer.stop();
@@ -146,6 +183,8 @@ AbortCode write_activate(Parts& parts, const ObjectWrite& write) {
   parts.drive.configure({settings.servo_period_us, settings.tick_period_us});
   const Status status = parts.joint.activate(settings, parts.identity.node);
   if (status == Status::ok) {
+    const BoardRecord& board = parts.board.in_force;
+    static_cast<void>(parts.joint.set_limits({board.lowest_angle, board.highest_angle}));
     parts.neighbours.configure(settings);
     parts.must_restore_communication = false;
   }
@@ -178,6 +217,14 @@ constexpr ObjectAccessor accessors[] = {
         },
         [](Parts& parts, const ObjectWrite& write) { return write_sync_identifier(parts, write); }),
     setting<&ModuleSettings::tick_period_us>(object::tick_period),
+    read_write(
+        object::store_parameters.address, WritableIn::pre_operational,
+        [](const Parts& /*parts*/) { return object::store_parameters.default_value; },
+        [](Parts& parts, const ObjectWrite& write) { return save_parameters(parts, write.value); }),
+    read_write(
+        object::restore_parameters.address, WritableIn::pre_operational,
+        [](const Parts& /*parts*/) { return object::restore_parameters.default_value; },
+        [](Parts& parts, const ObjectWrite& write) { return restore_parameters(parts, write.value); }),
     read_write(
         object::host_heartbeat.address, WritableIn::any_state, [](const Parts& parts) { return parts.host.expected(); },
         [](Parts& parts, const ObjectWrite& write) { parts.host.set(write.value); }),
@@ -234,15 +281,15 @@ constexpr ObjectAccessor accessors[] = {
         object::lower_limit.address, WritableIn::configured_and_pre_operational,
         [](const Parts& parts) { return parts.joint.limits().lower; },
         [](Parts& parts, const ObjectWrite& write) {
-          return answer(parts,
-                        parts.joint.set_limits({static_cast<std::int32_t>(write.value), parts.joint.limits().upper}));
+          const auto lower = static_cast<std::int32_t>(write.value);
+          return set_limits(parts, {lower, parts.joint.limits().upper}, lower);
         }),
     read_write(
         object::upper_limit.address, WritableIn::configured_and_pre_operational,
         [](const Parts& parts) { return parts.joint.limits().upper; },
         [](Parts& parts, const ObjectWrite& write) {
-          return answer(parts,
-                        parts.joint.set_limits({parts.joint.limits().lower, static_cast<std::int32_t>(write.value)}));
+          const auto upper = static_cast<std::int32_t>(write.value);
+          return set_limits(parts, {parts.joint.limits().lower, upper}, upper);
         }),
     read_write(
         object::activate.address, WritableIn::pre_operational, [](const Parts& parts) { return parts.joint.active(); },
@@ -284,6 +331,10 @@ constexpr ObjectAccessor accessors[] = {
     own_frame<0, 1>(),
     own_frame<1, 0>(),
     own_frame<1, 1>(),
+    board_setting<&BoardRecord::is_gateway>(object::gateway_role),
+    board_setting<&BoardRecord::has_feedback>(object::has_feedback),
+    board_setting<&BoardRecord::feedback_at_minus_90>(object::feedback_at_minus_90),
+    board_setting<&BoardRecord::feedback_at_plus_90>(object::feedback_at_plus_90),
     received_frame<0, 0>(),
     received_frame<0, 1>(),
     received_frame<1, 0>(),
@@ -331,6 +382,8 @@ constexpr ObjectAccessor accessors[] = {
     read_write(
         object::target_position.address, WritableIn::any_state, [](const Parts& parts) { return parts.drive.target(); },
         [](Parts& parts, const ObjectWrite& write) { parts.drive.set_target(static_cast<std::int32_t>(write.value)); }),
+    position_limit<&BoardRecord::lowest_angle>(object::lowest_position),
+    position_limit<&BoardRecord::highest_angle>(object::highest_position),
     read_write(
         object::command_speed.address, WritableIn::pre_operational,
         [](const Parts& parts) { return parts.drive.command_speed(); },

@@ -5,23 +5,38 @@ namespace proleg::firmware {
 Parts::Parts(const ModuleIdentity& module_identity, const Ports& ports)
     : identity(module_identity),
       can(ports.can),
+      board(ports.flash),
       outbox(ports.can),
       recovery(ports.can),
       drive(ports.servo),
-      monitor(ports.sensors, (module_identity.capabilities & canopen::measures_angle) != 0),
+      monitor(ports.sensors),
       contacts(ports.contacts) {}
+
+void Parts::load() {
+  board.load();
+  lss.power_on(board.stored().node);
+}
 
 void Parts::reset(Microseconds now) {
   joint.deactivate();
+  board.reset();
   reset_communication(now);
   emergencies.reset();
   settings = {};
   joint.clear_refusal();
   drive.reset();
-  monitor.reset();
+  monitor.reset(board.stored());
 }
 
 void Parts::reset_communication(Microseconds now) {
+  lss.reset();
+  if (identity.node != lss.pending_node()) {
+    joint.deactivate();  // its configuration names the node
+  }
+  identity.node = lss.pending_node();
+  identity.capabilities &= ~canopen::measures_angle;
+  identity.capabilities |= board.stored().has_feedback ? canopen::measures_angle : 0U;
+  can.set_node(identity.node);
   outbox.reset();
   recovery.reset();
   network.start(now);
@@ -42,8 +57,7 @@ void Parts::reset_communication(Microseconds now) {
   if (joint.active()) {
     joint.restart();
   }
-  constexpr std::uint16_t disable_voltage = 0;
-  drive.power().command(disable_voltage);
+  drive.disable();
 }
 
 }  // namespace proleg::firmware

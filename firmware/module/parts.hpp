@@ -1,5 +1,6 @@
 #pragma once
 
+#include "firmware/module/board_store.hpp"
 #include "firmware/module/bus_recovery.hpp"
 #include "firmware/module/drive.hpp"
 #include "firmware/module/host_watch.hpp"
@@ -8,6 +9,7 @@
 #include "firmware/module/sync_producer.hpp"
 #include "firmware/module/sync_watch.hpp"
 #include "firmware/module/tick_keeper.hpp"
+#include "shared/canopen/lss_slave.hpp"
 
 namespace proleg::firmware {
 
@@ -31,14 +33,19 @@ struct Parts {
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
+  /// Reads the settings of the board.
+  void load();
   /// As after power on: application and communication (NMT reset node).
   void reset(Microseconds now);
   /// The communication objects, 0x1000 to 0x1FFF, as after power on, and the servo without power. The application
-  /// remains as it is: what the module knows of robot, gait and servo (NMT reset communication).
+  /// remains as it is: what the module knows of robot, gait and servo (NMT reset communication). A node id that LSS has
+  /// configured comes into use.
   void reset_communication(Microseconds now);
 
-  const ModuleIdentity identity;
+  ModuleIdentity identity;
   CanPort& can;
+  BoardStore board;
+  canopen::LssSlave lss;
   Outbox outbox;
   BusRecovery recovery;
   NetworkNode network{identity, outbox};

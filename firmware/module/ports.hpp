@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "firmware/module/board_record.hpp"
 #include "shared/can/can_port.hpp"
 
 namespace proleg::firmware {
@@ -45,6 +46,8 @@ class SensorPort {
  public:
   /// The last readings; starts the next ones. Called once a tick, and while ticks are missing.
   [[nodiscard]] virtual ServoReadings take_readings() = 0;
+  /// Whether there is a feedback potentiometer, and what it reads, from now on. Ports that read angles ignore the call.
+  virtual void calibrate(const BoardRecord& /*board*/) {}
 
  protected:
   ~SensorPort() = default;
@@ -55,6 +58,7 @@ struct Ports {
   ServoPort& servo;
   ContactPort& contacts;
   SensorPort& sensors;
+  FlashPort& flash;
 };
 
 }  // namespace proleg::firmware

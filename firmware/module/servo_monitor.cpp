@@ -4,9 +4,11 @@
 
 namespace proleg::firmware {
 
-void ServoMonitor::reset() {
-  limit_ma_ = canopen::object::current_limit.default_value;
-  limit_time_ms_ = canopen::object::current_limit_time.default_value;
+void ServoMonitor::reset(const BoardRecord& board) {
+  port_.calibrate(board);
+  measures_angle_ = board.has_feedback;
+  limit_ma_ = board.current_limit_ma;
+  limit_time_ms_ = board.current_limit_time_ms;
   readings_ = {};
   clear_over_current();
   next_reading_ = never;

@@ -8,11 +8,11 @@ namespace proleg::firmware {
 /// Reads the sensors of servo and chip once a tick, and detects over-current.
 class ServoMonitor {
  public:
-  /// measures_angle: the board has a feedback potentiometer; else an angle in the readings is noise.
-  ServoMonitor(SensorPort& port, bool measures_angle) : port_(port), measures_angle_(measures_angle) {}
+  explicit ServoMonitor(SensorPort& port) : port_(port) {}
 
-  /// Default limits, nothing read yet.
-  void reset();
+  /// Limits as in the settings of the board, nothing read yet. Without a feedback potentiometer an angle in the
+  /// readings is noise.
+  void reset(const BoardRecord& board);
 
   /// Object 0x200A. A current above limit_ma for limit_time_ms is over-current; limit 0: none is.
   [[nodiscard]] std::uint16_t limit_ma() const { return limit_ma_; }
@@ -40,7 +40,7 @@ class ServoMonitor {
   void judge_current(Microseconds now);
 
   SensorPort& port_;
-  bool measures_angle_;
+  bool measures_angle_ = false;
   std::uint16_t limit_ma_ = canopen::object::current_limit.default_value;
   std::uint16_t limit_time_ms_ = canopen::object::current_limit_time.default_value;
   ServoReadings readings_;

@@ -33,10 +33,12 @@ constexpr std::uint32_t of_mailbox(std::uint32_t bits_of_mailbox_0, unsigned mai
 // module: in a chain of 20 coupled joints two of the 19 state frames that the others send in a tick.
 constexpr unsigned node_bank = 0;        ///< masks: the module's own identifiers, all heartbeats
 constexpr unsigned common_bank = 1;      ///< messages for all nodes
-constexpr unsigned first_list_bank = 2;  ///< lists: state frames that the joint depends on, four a bank
+constexpr unsigned lss_bank = 2;         ///< the identifier of the LSS master
+constexpr unsigned first_list_bank = 3;  ///< lists: state frames that the joint depends on, four a bank
 constexpr unsigned all_states_bank = can1::filter_banks - 1;  ///< masks: all state frames, if the lists are too short
 constexpr unsigned list_banks = all_states_bank - first_list_bank;
 constexpr std::size_t list_entries = 4;
+constexpr std::uint32_t banks_of_every_robot = 1U << node_bank | 1U << common_bank | 1U << lss_bank;
 
 constexpr std::uint32_t filter_of(std::uint32_t identifier) { return identifier << can1::filter_stid_position; }
 /// Identifier and mask: passes if the bits of `mask` are equal.
@@ -47,11 +49,20 @@ constexpr std::uint32_t pair_of(std::uint32_t first, std::uint32_t second) {
   return filter_of(first) | filter_of(second) << 16U;
 }
 
-/// Filters that are the same in every robot. They pass the module's own identifiers, so that it notices another node
-/// that sends with them.
-void accept_common_frames(std::uint8_t node) {
+constexpr std::uint32_t function_bits = CanFrame::max_identifier & ~std::uint32_t{canopen::identifier::node_bits};
+
+/// A bank may be written while it is not in use. The module's own identifiers pass, so that it notices another node
+/// that sends with them; without a node id (0) that are common messages.
+void accept_frames_of(std::uint8_t node) {
   namespace identifier = canopen::identifier;
-  constexpr std::uint32_t function_bits = CanFrame::max_identifier & ~std::uint32_t{identifier::node_bits};
+  const can1::FilterBank own(node_bank);
+  own.first.write(masked(node, identifier::node_bits));
+  own.second.write(masked(identifier::heartbeat, function_bits));
+}
+
+/// Filters that are the same in every robot.
+void accept_common_frames() {
+  namespace identifier = canopen::identifier;
   constexpr std::uint32_t with_masks = 1U << node_bank | 1U << all_states_bank;
   constexpr std::uint32_t all_banks = (1U << can1::filter_banks) - 1U;
   can1::fmr.write(can1::fmr_finit | can1::fmr_can2sb_of(can1::filter_banks));
@@ -59,16 +70,17 @@ void accept_common_frames(std::uint8_t node) {
   can1::fm1r.write(all_banks & ~with_masks);
   can1::fs1r.write(0);
   can1::ffa1r.write(0);
-  const can1::FilterBank own(node_bank);
-  own.first.write(masked(node, identifier::node_bits));
-  own.second.write(masked(identifier::heartbeat, function_bits));
+  accept_frames_of(0);
   const can1::FilterBank common(common_bank);
   common.first.write(pair_of(identifier::nmt, identifier::sync));
   common.second.write(pair_of(identifier::commit, identifier::tick));
+  const can1::FilterBank lss(lss_bank);
+  lss.first.write(pair_of(identifier::lss_request, identifier::lss_request));
+  lss.second.write(pair_of(identifier::lss_request, identifier::lss_request));
   const can1::FilterBank all_states(all_states_bank);
   all_states.first.write(masked(identifier::state_frame, function_bits));
   all_states.second.write(masked(identifier::second_state, function_bits));
-  can1::fa1r.write(1U << node_bank | 1U << common_bank);
+  can1::fa1r.write(banks_of_every_robot);
   can1::fmr.write(can1::fmr_can2sb_of(can1::filter_banks));
 }
 
@@ -95,7 +107,7 @@ void abort_all() {
 
 }  // namespace
 
-bool Can::start(std::uint8_t node) {
+bool Can::start() {
   rcc::apb1enr.set(rcc::apb1enr_can1);
   static_cast<void>(rcc::apb1enr.read());
   // All options are off except DBF: time stamps, automatic return from bus-off and from sleep, locked FIFOs, sending in
@@ -105,7 +117,7 @@ bool Can::start(std::uint8_t node) {
     return false;
   }
   can1::btr.write(can1::btr_of(prescaler, segment_1, segment_2, 1));
-  accept_common_frames(node);
+  accept_common_frames();
   can1::ier.write(can1::ier_tmeie | can1::ier_fmpie0 | can1::ier_fovie0 | can1::ier_bofie | can1::ier_errie);
   can1::mcr.write(can1::mcr_dbf);
   return true;
@@ -139,10 +151,16 @@ bool Can::send(const CanFrame& frame) {
   return true;
 }
 
+void Can::set_node(std::uint8_t node) {
+  can1::fa1r.clear(1U << node_bank);
+  accept_frames_of(node);
+  can1::fa1r.set(1U << node_bank);
+}
+
 void Can::listen(std::span<const std::uint16_t> identifiers) {
   // A bank may be written while it is not in use.
-  can1::fa1r.write(1U << node_bank | 1U << common_bank);
-  std::uint32_t used = 1U << node_bank | 1U << common_bank;
+  can1::fa1r.write(banks_of_every_robot);
+  std::uint32_t used = banks_of_every_robot;
   if (identifiers.size() > list_banks * list_entries) {
     used |= 1U << all_states_bank;
   } else {

@@ -29,13 +29,14 @@ class Can final : public CanPort {
 
   /// Sets the controller up; it takes part in the bus after 11 recessive bits. False: it does not enter its
   /// initialization mode.
-  [[nodiscard]] bool start(std::uint8_t node);
+  [[nodiscard]] bool start();
 
   // At the priority of the module's program.
 
   /// Also false if a mailbox holds a frame with this identifier, so that frames with one identifier keep their order;
   /// and from bus-off until the controller is back.
   [[nodiscard]] bool send(const CanFrame& frame) override;
+  void set_node(std::uint8_t node) override;
   void listen(std::span<const std::uint16_t> identifiers) override;
   void recover() override;
 

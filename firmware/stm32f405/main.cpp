@@ -78,11 +78,12 @@ void print(const FaultRecord& fault) {
 
 void print(const Start& start, const std::optional<firmware::BoardRecord>& record) {
   Console& console = hardware.console;
-  if (record) {
-    console.write("proleg module, node ");
+  console.write("proleg module, ");
+  if (record && record->node != 0) {
+    console.write("node ");
     console.write_decimal(record->node);
   } else {
-    console.write("proleg module, no node id (no board record: see docs/board.md), silent on the bus");
+    console.write("no node id, waits for LSS (docs/board.md)");
   }
   console.write(", board ");
   console.write_decimal(board::id);
@@ -120,17 +121,15 @@ void start_clocks_or_give_up() {
   }
 }
 
-void start_module(const Start& start, const firmware::BoardRecord& record) {
+void start_module(const Start& start) {
   hardware.servo.start();
-  if (!hardware.can.start(record.node)) {
+  if (!hardware.can.start()) {
     give_up(FaultRecord::Reason::no_can);
   }
   firmware::ModuleIdentity identity;
-  identity.node = record.node;
   identity.board_id = board::id;
   identity.unique_id = factory::unique_id();
   identity.core_fingerprint = core_fingerprint;
-  identity.capabilities = record.has_feedback ? canopen::measures_angle : 0;
   identity.reset_cause = start.cause;
   identity.reset_detail = start.fault ? start.fault->pc() : 0;
   the_module_task.start(identity, the_last_tick);
@@ -154,13 +153,9 @@ void run_program() {
   start_clocks_or_give_up();
   hardware.clock.start();
   hardware.console.start(board::apb1);
-  const std::optional<proleg::firmware::BoardRecord> record =
-      proleg::firmware::newest(hardware.board_records.contents(0), hardware.board_records.contents(1));
-  print(start, record);
-  hardware.sensors.start(record);
-  if (record) {
-    start_module(start, *record);
-  }
+  print(start, proleg::firmware::newest(hardware.board_records.contents(0), hardware.board_records.contents(1)));
+  hardware.sensors.start();
+  start_module(start);
   enable_interrupts();
   scb::scr.write(scb::scr_sleeponexit);
   request_pend_sv();

@@ -20,7 +20,8 @@ static_assert(std::is_trivially_destructible_v<firmware::Module>,
 
 void ModuleTask::start(const firmware::ModuleIdentity& identity, firmware::TickRecord& last_tick) {
   last_tick_ = &last_tick;
-  module_.emplace(identity, firmware::Ports{hardware.can, hardware.servo, hardware.contacts, hardware.sensors});
+  module_.emplace(identity, firmware::Ports{hardware.can, hardware.servo, hardware.contacts, hardware.sensors,
+                                            hardware.board_records});
   last_time_ = hardware.clock.now();
   module_->power_on(last_time_);
 }

@@ -18,10 +18,7 @@ static_assert(temperature_sampling_cycles > adc_hz / 100'000);
 
 }  // namespace
 
-void Sensors::start(const std::optional<firmware::BoardRecord>& record) {
-  if (record && record->has_feedback) {
-    feedback_ = record;
-  }
+void Sensors::start() {
   temperature_ = factory::temperature_calibration();
   rcc::apb2enr.set(rcc::apb2enr_adc1);
   static_cast<void>(rcc::apb2enr.read());
@@ -43,9 +40,10 @@ firmware::ServoReadings Sensors::take_readings() {
     return readings_;  // called again within 33 us
   }
   readings_.current_ma = current_of(adc1::jdr1.read() & adc1::jdr_mask);
-  if (feedback_) {
-    readings_.angle = feedback_angle_of(adc1::jdr2.read() & adc1::jdr_mask, feedback_->feedback_at_minus_90,
-                                        feedback_->feedback_at_plus_90);
+  readings_.angle.reset();
+  if (feedback_.has_feedback) {
+    readings_.angle = feedback_angle_of(adc1::jdr2.read() & adc1::jdr_mask, feedback_.feedback_at_minus_90,
+                                        feedback_.feedback_at_plus_90);
   }
   readings_.temperature_c = temperature_of(adc1::jdr3.read() & adc1::jdr_mask, temperature_);
   adc1::sr.write(~adc1::sr_jeoc);

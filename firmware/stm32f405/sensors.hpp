@@ -10,12 +10,13 @@ namespace proleg::stm32f405 {
 /// it and does not wait the 33 us that it takes.
 class Sensors final : public firmware::SensorPort {
  public:
-  /// There is no angle without a record that has a potentiometer.
-  void start(const std::optional<firmware::BoardRecord>& record);
+  void start();
   [[nodiscard]] firmware::ServoReadings take_readings() override;
+  /// There is no angle without a potentiometer, as before the first call.
+  void calibrate(const firmware::BoardRecord& board) override { feedback_ = board; }
 
  private:
-  std::optional<firmware::BoardRecord> feedback_;  ///< of a board with a potentiometer
+  firmware::BoardRecord feedback_;
   TemperatureCalibration temperature_;
   firmware::ServoReadings readings_;
 };

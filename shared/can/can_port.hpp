@@ -17,6 +17,9 @@ class CanPort {
   /// Hands a frame to the controller, which sends it when the bus is free, lower identifiers first.
   /// False if all its mailboxes are full: try again after the next frame was sent.
   [[nodiscard]] virtual bool send(const CanFrame& frame) = 0;
+  /// The owner's node id from now on; 0: none, as before the first call. The controller may discard frames to other
+  /// nodes: RPDO1, SDO and whatever else has the node id in its identifier.
+  virtual void set_node(std::uint8_t /*node*/) {}
   /// Selects the state frames (0x181 to 0x1FF, 0x281 to 0x2FF) that the owner needs; before the first call it needs
   /// none. The controller may discard others. All frames with other identifiers are always received.
   virtual void listen(std::span<const std::uint16_t> /*identifiers*/) {}

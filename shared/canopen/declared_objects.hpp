@@ -30,6 +30,10 @@ inline constexpr std::int8_t mode_direct_position = 8;  ///< cyclic synchronous 
 /// Capabilities (0x2000:5), bits.
 inline constexpr std::uint32_t measures_angle = 1U << 0U;  ///< a feedback potentiometer on the joint
 
+/// What is written to 0x1010 and 0x1011: "save" and "load", the first letter in the lowest byte (CiA 301, 7.5.2.13).
+inline constexpr std::uint32_t signature_save = 0x65766173;
+inline constexpr std::uint32_t signature_load = 0x64616F6C;
+
 /// 0x6064 if the module does not measure the angle.
 inline constexpr std::int32_t position_not_measured = -0x7FFFFFFF - 1;
 
@@ -68,6 +72,16 @@ inline constexpr Object hardware_version =
 inline constexpr Object software_version =
     read_only({0x100A, 0}, "Manufacturer software version", DataType::visible_string,
               "\"protocol\" and its version, \"core\" and the core fingerprint");
+
+inline constexpr ObjectGroup storing{0x1010, ObjectCode::array, "Store parameters"};
+inline constexpr Object store_parameters =
+    read_write(storing.at(1), "Save all parameters", DataType::unsigned32, 1, full_range(DataType::unsigned32),
+               "0x65766173 (save): keeps 0x200A, 0x2020 and 0x607D in flash; 1: it can");
+inline constexpr ObjectGroup restoring{0x1011, ObjectCode::array, "Restore default parameters"};
+inline constexpr Object restore_parameters =
+    read_write(restoring.at(1), "Restore all default parameters", DataType::unsigned32, 1,
+               full_range(DataType::unsigned32), "0x64616F6C (load): defaults from the next reset on; 1: it can");
+
 inline constexpr Object emergency_identifier =
     node_identifier({0x1014, 0}, "COB-ID emergency message", identifier::emergency);
 
@@ -182,6 +196,17 @@ inline constexpr Object current_limit_time =
     read_write(over_current.at(2), "Time", DataType::unsigned16, 500, full_range(DataType::unsigned16),
                "above the limit that leads to a fault, in ms");
 
+inline constexpr ObjectGroup board{0x2020, ObjectCode::record, "Board"};
+inline constexpr Object gateway_role = read_write(board.at(1), "Gateway role", DataType::unsigned8, 0, {0, 1},
+                                                  "1: the module connects the host to the bus");
+inline constexpr Object has_feedback =
+    read_write(board.at(2), "Feedback potentiometer", DataType::unsigned8, 0, {0, 1},
+               "1: fitted; with sub-indices 3 and 4 in force when saved, after a reset");
+inline constexpr Object feedback_at_minus_90 =
+    read_write(board.at(3), "Feedback at -90 degrees", DataType::unsigned16, 0, {0, 4095}, "as the ADC reads it");
+inline constexpr Object feedback_at_plus_90 =
+    read_write(board.at(4), "Feedback at +90 degrees", DataType::unsigned16, 0, {0, 4095}, "as the ADC reads it");
+
 // State frames, by channel: 0 is the first broadcasting slot of a joint, 1 the second.
 
 inline constexpr std::array own_frames{
@@ -271,6 +296,13 @@ inline constexpr Object actual_current =
     read_only({0x6078, 0}, "Current actual value", DataType::integer16, "thousandths of 0x6075, which are mA");
 inline constexpr Object target_position =
     read_write({0x607A, 0}, "Target position", DataType::integer32, 0, full_angle, "joint angle; 90 degrees = 2^30");
+inline constexpr ObjectGroup position_limits{0x607D, ObjectCode::array, "Software position limit"};
+inline constexpr Object lowest_position =
+    read_write(position_limits.at(1), "Min position limit", DataType::integer32, full_angle.minimum,
+               {full_angle.minimum, 0}, "joint angle that the mechanics allow; 90 degrees = 2^30");
+inline constexpr Object highest_position =
+    read_write(position_limits.at(2), "Max position limit", DataType::integer32, full_angle.maximum,
+               {0, full_angle.maximum}, "joint angle that the mechanics allow; 90 degrees = 2^30");
 inline constexpr Object command_speed = read_write(
     {0x6080, 0}, "Max motor speed", DataType::unsigned32, default_command_speed, {min_command_speed, max_command_speed},
     "greatest speed of commanded angles of the joint, in degrees a second");

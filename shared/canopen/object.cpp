@@ -37,7 +37,7 @@ std::string_view describe(AbortCode code) {
     case AbortCode::internal_incompatibility:
       return "incompatible inside the device";
     case AbortCode::hardware_error:
-      return "hardware error";
+      return "access failed because of a hardware error";
     case AbortCode::wrong_length:
       return "wrong length";
     case AbortCode::too_long:

@@ -24,6 +24,8 @@ constexpr ObjectRow declared_rows[] = {
     row(object::device_name),
     row(object::hardware_version),
     row(object::software_version),
+    row(object::store_parameters),
+    row(object::restore_parameters),
     row(object::emergency_identifier),
     row(object::host_heartbeat),
     row(object::heartbeat_period),
@@ -93,6 +95,10 @@ constexpr ObjectRow declared_rows[] = {
     row(object::own_frame[0][1]),
     row(object::own_frame[1][0]),
     row(object::own_frame[1][1]),
+    row(object::gateway_role),
+    row(object::has_feedback),
+    row(object::feedback_at_minus_90),
+    row(object::feedback_at_plus_90),
     row(object::received_frame[0][0]),
     row(object::received_frame[0][1]),
     row(object::received_frame[1][0]),
@@ -108,12 +114,16 @@ constexpr ObjectRow declared_rows[] = {
     row(object::rated_current),
     row(object::actual_current),
     row(object::target_position),
+    row(object::lowest_position),
+    row(object::highest_position),
     row(object::command_speed),
     row(object::supported_modes),
 };
 
 constexpr const ObjectGroup* declared_groups[] = {
     &object::error_history,
+    &object::storing,
+    &object::restoring,
     &object::consumer_heartbeat,
     &object::identity,
     &object::sdo_server,
@@ -141,8 +151,10 @@ constexpr const ObjectGroup* declared_groups[] = {
     &object::over_current,
     &object::own_frames[0],
     &object::own_frames[1],
+    &object::board,
     &object::received_frames[0],
     &object::received_frames[1],
+    &object::position_limits,
 };
 
 // The image of a module contains the following tables and nothing of the above.

@@ -15,7 +15,8 @@ class JointModule {
  public:
   virtual ~JointModule() = default;
 
-  /// Switches it on, or restarts it: only its identity remains, and the servo goes limp.
+  /// Switches it on, or restarts it: only its identity and its flash remain, and the servo goes
+  /// limp.
   virtual void power_on(BusTime now) = 0;
   /// When it acts next.
   [[nodiscard]] virtual BusTime next_event() const = 0;

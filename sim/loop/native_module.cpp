@@ -1,6 +1,22 @@
 #include "sim/loop/native_module.hpp"
 
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
 namespace proleg::sim {
+
+bool NativeModule::Flash::erase(unsigned sector) {
+  std::ranges::fill(sectors_.at(sector), erased);
+  return true;
+}
+
+bool NativeModule::Flash::program(unsigned sector, std::uint32_t offset, std::span<const std::uint8_t> bytes) {
+  for (const std::uint8_t byte : bytes) {
+    sectors_.at(sector).at(offset++) &= byte;  // programming only clears bits
+  }
+  return true;
+}
 
 NativeModule::NativeModule(Bus& bus, const firmware::ModuleIdentity& identity, Crystal crystal, Sensors sensors,
                            Readings readings)
@@ -8,7 +24,18 @@ NativeModule::NativeModule(Bus& bus, const firmware::ModuleIdentity& identity, C
       sensors_(std::move(sensors)),
       meters_(std::move(readings)),
       controller_(bus.attach(*this)),
-      module_(identity, {controller_, *this, *this, meters_}) {
+      module_(identity, {controller_, *this, *this, meters_, flash_}) {
+  if (identity.node == 0) {
+    return;  // factory-fresh
+  }
+  firmware::BoardRecord board;
+  board.node = identity.node;
+  board.has_feedback = (identity.capabilities & canopen::measures_angle) != 0;
+  board.feedback_at_plus_90 = firmware::BoardRecord::max_reading;
+  if (firmware::append(flash_, board) != firmware::AppendResult::ok) {
+    throw std::invalid_argument("node id: found " + std::to_string(identity.node) + ", expected at most " +
+                                std::to_string(firmware::BoardRecord::max_node));
+  }
   controller_.switch_off();
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "firmware/module/module.hpp"
 #include "sim/bus/bus.hpp"
@@ -26,7 +28,9 @@ class NativeModule final : public JointModule,
   /// For tests, between controller and program: delivers a frame, withholds it, or delivers another one.
   using Tamper = std::function<void(const CanFrame& frame, const std::function<void(const CanFrame&)>& deliver)>;
 
-  /// Attaches to the bus, switched off. Without readings the module measures nothing.
+  /// Attaches to the bus, switched off. Without readings the module measures nothing. The board record in its flash has
+  /// the identity's node id and says whether it measures the angle; with node id 0 there is none. The flash keeps its
+  /// contents over power_on().
   NativeModule(Bus& bus, const firmware::ModuleIdentity& identity, Crystal crystal, Sensors sensors,
                Readings readings = {});
   NativeModule(const NativeModule&) = delete;
@@ -40,6 +44,9 @@ class NativeModule final : public JointModule,
   [[nodiscard]] std::optional<std::int32_t> pulse() const override { return pulse_; }
   [[nodiscard]] std::size_t controller() const override { return controller_.index(); }
 
+  /// The node id in use; 0: none.
+  [[nodiscard]] std::uint8_t node() const { return module_.node(); }
+
   void set_tamper(Tamper tamper) { tamper_ = std::move(tamper); }
 
  private:
@@ -50,6 +57,20 @@ class NativeModule final : public JointModule,
       return source ? source() : firmware::ServoReadings{};
     }
     Readings source;
+  };
+
+  /// Flash of the size that the board has for its settings.
+  class Flash final : public firmware::FlashPort {
+   public:
+    [[nodiscard]] bool erase(unsigned sector) override;
+    [[nodiscard]] bool program(unsigned sector, std::uint32_t offset, std::span<const std::uint8_t> bytes) override;
+    [[nodiscard]] std::span<const std::uint8_t> contents(unsigned sector) const override { return sectors_.at(sector); }
+
+   private:
+    static constexpr std::size_t sector_size = 16 * 1024;
+    static constexpr std::uint8_t erased = 0xFF;
+    std::array<std::vector<std::uint8_t>, 2> sectors_{std::vector<std::uint8_t>(sector_size, erased),
+                                                      std::vector<std::uint8_t>(sector_size, erased)};
   };
 
   void received(BusTime time, const CanFrame& frame) override;
@@ -63,6 +84,7 @@ class NativeModule final : public JointModule,
   Crystal crystal_;
   Sensors sensors_;
   Meters meters_;
+  Flash flash_;
   Tamper tamper_;
   Controller& controller_;
   firmware::Module module_;

@@ -182,7 +182,7 @@ void print_eds(std::ostream& out) {
   }
   out << "SimpleBootUpMaster=0\nSimpleBootUpSlave=1\nGranularity=0\nDynamicChannelsSupported=0\nCompactPDO=0\n"
          "GroupMessaging=0\nNrOfRXPDO="
-      << receive_pdos << "\nNrOfTXPDO=" << transmit_pdos << "\nLSS_Supported=0\n\n[DummyUsage]\n";
+      << receive_pdos << "\nNrOfTXPDO=" << transmit_pdos << "\nLSS_Supported=1\n\n[DummyUsage]\n";
   for (int type = 1; type <= 7; ++type) {
     out << "Dummy000" << type << "=0\n";
   }

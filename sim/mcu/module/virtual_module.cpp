@@ -84,7 +84,9 @@ VirtualModule::VirtualModule(const ModuleParts& parts, const FirmwareImage& imag
   for (const ElfImage::Segment& segment : image.flash().elf().segments()) {
     chip_.write(segment.load_address, segment.bytes);
   }
-  chip_.write(stm32f405::flash_layout::board_records, firmware::encode(board_record(parts), 1));
+  if (parts.identity.node != 0) {
+    chip_.write(stm32f405::flash_layout::board_records, firmware::encode(board_record(parts), 1));
+  }
   chip_.set_transmit_watch([this](std::uint16_t identifier, std::uint64_t instructions) {
     if (identifier == state_frame_) {
       state_frame_instructions_ = instructions;

@@ -30,7 +30,8 @@ struct VirtualModuleOptions {
 
 class VirtualModule final : public JointModule, private BoardSignals {
  public:
-  /// image: must outlive the module. The board record with the node id is in flash, as a programmer writes it.
+  /// image: must outlive the module. The board record with the node id is in flash, as a programmer writes it; with
+  /// node id 0 there is none. The flash keeps its contents over power_on().
   VirtualModule(const ModuleParts& parts, const FirmwareImage& image, VirtualModuleOptions options);
   ~VirtualModule() override = default;
   VirtualModule(const VirtualModule&) = delete;

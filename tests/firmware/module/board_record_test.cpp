@@ -31,7 +31,7 @@ BoardRecord record_of(unsigned node) {
       static_cast<std::uint16_t>(0xFFFF - n)};
 }
 
-/// The bytes of a record as another schema wrote it, with its check sum.
+/// The bytes of a record as another schema wrote it, with its checksum.
 std::array<std::uint8_t, BoardRecord::size> bytes_of(std::initializer_list<std::uint8_t> first, std::uint8_t fill,
                                                      std::uint32_t crc) {
   std::array<std::uint8_t, BoardRecord::size> bytes{};
@@ -43,7 +43,7 @@ std::array<std::uint8_t, BoardRecord::size> bytes_of(std::initializer_list<std::
   return bytes;
 }
 
-// Check sums are those of another program, Python's zlib.crc32.
+// Checksums are those of another program, Python's zlib.crc32.
 
 TEST(BoardRecordTest, HasTheBytesThatItsDocumentationSays) {
   const auto bytes = encode({3, true, 0x0123, 0x0ABC, true, -0x11223344, 0x3456789A, 0x05AB, 0x0CDE}, 0x01020304);
@@ -155,7 +155,7 @@ TEST(BoardRecordTest, AValueOutOfItsRangeLeavesTheNodeId) {
   EXPECT_EQ(newest(encode(record, 1), {}), std::nullopt);
 }
 
-/// With a right check sum, so that more than the check sum is tested.
+/// With a right checksum, so that more than the checksum is tested.
 TEST(BoardRecordTest, ARecordOfAnyBytesGivesOnlyWhatIsInRange) {
   std::mt19937 noise(seed);
   unsigned found = 0;

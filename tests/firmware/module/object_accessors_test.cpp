@@ -123,7 +123,8 @@ class UnwiredObject : public testing::Test, private CanPort, firmware::ServoPort
   }
 
   test::Meters meters;
-  firmware::Parts parts{{}, {*this, *this, *this, meters}};
+  test::FlashMemory flash;
+  firmware::Parts parts{{}, {*this, *this, *this, meters, flash}};
 };
 
 TEST_F(UnwiredObject, IsRejectedAndNotReadAsZero) {

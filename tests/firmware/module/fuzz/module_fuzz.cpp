@@ -81,10 +81,35 @@ struct Meters final : firmware::SensorPort {
   firmware::ServoReadings readings;
 };
 
+class Flash final : public firmware::FlashPort {
+ public:
+  bool erase(unsigned sector) override {
+    sectors_.at(sector).fill(0xFF);
+    return true;
+  }
+  bool program(unsigned sector, std::uint32_t offset, std::span<const std::uint8_t> bytes) override {
+    std::copy(bytes.begin(), bytes.end(), sectors_.at(sector).begin() + offset);
+    return true;
+  }
+  [[nodiscard]] std::span<const std::uint8_t> contents(unsigned sector) const override { return sectors_.at(sector); }
+
+ private:
+  static constexpr std::array<std::uint8_t, 128> erased_ = [] {
+    std::array<std::uint8_t, 128> bytes{};
+    bytes.fill(0xFF);
+    return bytes;
+  }();
+  std::array<std::array<std::uint8_t, 128>, 2> sectors_{erased_, erased_};
+};
+
 class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
  public:
   explicit World(const Setup& setup)
-      : setup_(setup), module({setup.node(Setup::joint), 1, {7, 8, 9}}, {*this, *this, *this, meters_}) {}
+      : setup_(setup), module({0, 1, {7, 8, 9}}, {*this, *this, *this, meters_, flash_}) {
+    firmware::BoardRecord board;
+    board.node = setup.node(Setup::joint);
+    require(firmware::append(flash_, board) == firmware::AppendResult::ok, "the flash keeps a record");
+  }
 
   void power_on() {
     off_ = asked_ = false;
@@ -107,11 +132,14 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
   // The ports.
   bool send(const CanFrame& frame) override {
     require(frame.length <= 8 && frame.identifier <= CanFrame::max_identifier, "frames are frames");
-    const unsigned node = setup_.node(Setup::joint);
+    const unsigned node = module.node();  // LSS may have changed it
     const unsigned base = frame.identifier - node;
     const bool own = base == 0x080 || base == 0x180 || base == 0x280 || base == 0x380 || base == 0x580 || base == 0x700;
-    require(own || frame.identifier == canopen::identifier::sync || frame.identifier == canopen::identifier::tick,
-            "a module sends on its own identifiers, SYNC and TICK");
+    require(frame.identifier == canopen::identifier::lss_answer || node != 0,
+            "a module without a node id sends answers of LSS only");
+    require(own || frame.identifier == canopen::identifier::sync || frame.identifier == canopen::identifier::tick ||
+                frame.identifier == canopen::identifier::lss_answer,
+            "a module sends on its own identifiers, SYNC, TICK and LSS");
     require(!off_, "nothing is handed to a controller that is bus-off");
     const bool is_twice = std::any_of(mailboxes_.begin(), mailboxes_.end(),
                                       [&](const CanFrame& other) { return other.identifier == frame.identifier; });
@@ -214,6 +242,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
   Microseconds now_ = 0;
   std::deque<CanFrame> mailboxes_;
   Meters meters_;
+  Flash flash_;
   bool closed_ = false;
   bool off_ = false;    ///< the bus
   bool asked_ = false;  ///< to come back

@@ -20,13 +20,22 @@ struct NoSensors final : proleg::firmware::SensorPort {
   proleg::firmware::ServoReadings take_readings() override { return {}; }
 };
 
+struct NoFlash final : proleg::firmware::FlashPort {
+  bool erase(unsigned /*sector*/) override { return false; }
+  bool program(unsigned /*sector*/, std::uint32_t /*offset*/, std::span<const std::uint8_t> /*bytes*/) override {
+    return false;
+  }
+  [[nodiscard]] std::span<const std::uint8_t> contents(unsigned /*sector*/) const override { return {}; }
+};
+
 NoPorts ports;
 NoSensors sensors;
+NoFlash flash;
 
 }  // namespace
 
 /// Its size is read from the symbol table.
-Module the_module({1, 1, {1, 2, 3}, proleg::core_fingerprint}, {ports, ports, ports, sensors});
+Module the_module({1, 1, {1, 2, 3}, proleg::core_fingerprint}, {ports, ports, ports, sensors, flash});
 
 extern "C" {
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/module/module.hpp"
+#include "flash_memory.hpp"
 
 namespace proleg::test {
 
@@ -35,7 +36,14 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
 
   /// clock_offset: what the module's clock shows when that of the bus shows 0.
   explicit ModuleNode(const firmware::ModuleIdentity& identity, Microseconds clock_offset = 0)
-      : clock_offset_(clock_offset), module(identity, {*this, *this, *this, meters}) {}
+      : clock_offset_(clock_offset), module(identity, {*this, *this, *this, meters, flash}) {
+    // The board was made for this module.
+    firmware::BoardRecord board;
+    board.node = identity.node;
+    board.has_feedback = (identity.capabilities & canopen::measures_angle) != 0;
+    board.feedback_at_plus_90 = board.has_feedback ? firmware::BoardRecord::max_reading : std::uint16_t{0};
+    EXPECT_EQ(firmware::append(flash, board), firmware::AppendResult::ok);
+  }
   ModuleNode(const ModuleNode&) = delete;
 
   // Events from outside; times are those of the bus.
@@ -72,6 +80,7 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
   }
   std::uint32_t pulse_period_us = 0;  ///< of the last pulse
   Meters meters;
+  FlashMemory flash;
   /// Touch sensors as they are now.
   std::uint8_t sensors = 0;
   /// Times at which they were read.

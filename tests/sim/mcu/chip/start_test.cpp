@@ -17,7 +17,7 @@ std::string boot_line(const std::string& who, const std::string& cause) {
   return "proleg module, " + who + ", board 1, core " + core.data() + ", started by " + cause + "\r\n";
 }
 
-const std::string without_node_id = "no node id (no board record: see docs/board.md), silent on the bus";
+const std::string without_node_id = "no node id, waits for LSS (docs/board.md)";
 
 /// CRC-32 as in Ethernet, bit by bit.
 std::uint32_t crc32(std::span<const std::uint32_t> words) {
@@ -131,17 +131,22 @@ class NoRecord : public testing::Test {
   ChipRig rig_;
 };
 
-TEST_F(NoRecord, IsReportedAndTheModuleIsSilentForSecondsAndFeedsItsWatchdog) {
+TEST_F(NoRecord, IsReportedAndTheModuleAcknowledgesFramesInSilenceForSecondsAndFeedsItsWatchdog) {
   rig_.power_on();
+  rig_.run_for(20 * ms);
+  const std::uint64_t errors = rig_.bus.statistics().errors;
   for (unsigned i = 0; i < 50; ++i) {
     rig_.host.send({0x000, 2, {0x81, 0x00}});
+    rig_.host.send({0x000, 2, {0x01, 0x00}});
+    rig_.host.send({0x080, 1, {static_cast<std::uint8_t>(i + 1)}});
+    rig_.host.send({0x600, 8, {0x40, 0x18, 0x10, 0x01}});
     rig_.run_for(100 * ms);
   }
   EXPECT_EQ(rig_.board.console, boot_line(without_node_id, "power on"));
   EXPECT_TRUE(rig_.events.empty()) << "no reset";
-  // No node acknowledges: the host sends its first frame again and again.
-  EXPECT_TRUE(rig_.log.empty());
-  EXPECT_GT(rig_.bus.statistics().errors, 1'000U);
+  EXPECT_EQ(rig_.log.size(), 4U * 50U) << "the frames of the host only";
+  EXPECT_EQ(rig_.bus.statistics().errors, errors) << "each is acknowledged";
+  EXPECT_FALSE(rig_.chip.pulse_time(1));
 }
 
 TEST_F(NoRecord, ARecordThatIsDamagedIsNone) {

@@ -1,0 +1,306 @@
+// The LSS master against slaves that are written for the test, on the simulated bus. tests/sim/loop has the same with
+// modules.
+
+#include "shared/master/lss_master.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "shared/canopen/lss_slave.hpp"
+#include "sim/bus/bus.hpp"
+
+namespace proleg::canopen {
+namespace {
+
+using sim::BusTime;
+
+constexpr BusTime us = 1'000;
+constexpr std::uint32_t vendor = 0x50524F4C;
+constexpr std::uint32_t revision = 0x00010000;
+
+/// A node with an LSS slave, which boots when it has a node id, and faults that a test chooses.
+class Slave final : public sim::BusListener, LssStorage {
+ public:
+  Slave(sim::Bus& bus, const LssAddress& its_address) : address(its_address), controller_(bus.attach(*this)) {}
+
+  /// Without a node id.
+  void power_on() {
+    slave_ = {};
+    node = 0;
+  }
+
+  LssAddress address;
+  std::uint8_t node = 0;
+  std::vector<std::uint8_t> stored;
+  Result store_result;
+  bool boots = true;
+  unsigned answers_left = ~0U;       ///< before it is silent
+  std::uint8_t refuses_service = 0;  ///< answers it with error 1
+  lss::Service ignores{};            ///< does not answer it
+  unsigned answered = 0;
+
+ private:
+  void received(BusTime /*time*/, const CanFrame& frame) override {
+    std::optional<CanFrame> answer = slave_.serve(frame, address, node, *this);
+    if (answer && answers_left > 0 && lss::service_of(*answer) != ignores) {
+      --answers_left;
+      ++answered;
+      answer->data[1] = answer->data[0] == refuses_service ? 1 : answer->data[1];
+      EXPECT_TRUE(controller_.send(*answer));
+    }
+    if (node == 0 && slave_.state() == lss::State::waiting && slave_.pending_node() != 0 && boots) {
+      node = slave_.pending_node();
+      EXPECT_TRUE(controller_.send(encode(Heartbeat{node, NmtState::boot_up})));
+    }
+  }
+  void transmitted(BusTime /*time*/, const CanFrame& /*frame*/) override {}
+  [[nodiscard]] Result store_node(std::uint8_t its_node) override {
+    stored.push_back(its_node);
+    return store_result;
+  }
+
+  LssSlave slave_;
+  sim::Controller& controller_;
+};
+
+class LssMasterTest : public testing::Test, sim::BusListener {
+ protected:
+  LssMasterTest() : controller_(bus.attach(*this)) {}
+
+  Slave& add(const LssAddress& address) {
+    slaves.push_back(std::make_unique<Slave>(bus, address));
+    return *slaves.back();
+  }
+  /// Entries for node ids 1 to count.
+  void list(unsigned count) {
+    for (unsigned i = 1; i <= count; ++i) {
+      modules.push_back({static_cast<std::uint8_t>(i)});
+    }
+  }
+  /// Until the master has ended. It must, within `longest`.
+  void run(const LssMasterOptions& options = {}, BusTime longest = 60'000'000 * us) {
+    master = std::make_unique<LssMaster>(controller_, modules, options);
+    const BusTime begin = bus.now();
+    master->start(begin / us);
+    while (master->state() == LssMaster::State::working) {
+      const BusTime next = std::min(bus.next_event(), master->next_deadline() * us);
+      ASSERT_LE(next - begin, longest) << "a wait without an end";
+      bus.advance_to(next);
+      master->poll(bus.now() / us);
+    }
+    bus.advance_to(bus.now() + 1'000 * us);
+    duration = bus.now() - begin;
+  }
+  void expect_problem(LssProblem problem, unsigned detail = 0) const {
+    EXPECT_EQ(master->state(), LssMaster::State::failed);
+    EXPECT_EQ(describe(master->problem()), describe(problem));
+    EXPECT_EQ(master->problem_detail(), detail);
+    EXPECT_EQ(master->next_deadline(), never);
+  }
+
+  sim::Bus bus;
+  std::vector<std::unique_ptr<Slave>> slaves;
+  std::vector<LssModule> modules;
+  std::unique_ptr<LssMaster> master;
+  BusTime duration = 0;
+
+ private:
+  void received(BusTime time, const CanFrame& frame) override { master->receive(time / us, frame); }
+  void transmitted(BusTime time, const CanFrame& frame) override { master->transmitted(time / us, frame); }
+
+  sim::Controller& controller_;
+};
+
+TEST_F(LssMasterTest, WithoutModulesThatHaveNoNodeIdIsDone) {
+  list(1);
+  add({vendor, 1, revision, 7}).node = 5;
+  run();
+  EXPECT_EQ(master->state(), LssMaster::State::done);
+  EXPECT_EQ(master->assigned(), 0U);
+  EXPECT_FALSE(modules[0].has_booted);
+  EXPECT_LT(duration, 20'000 * us);
+}
+
+TEST_F(LssMasterTest, GivesAModuleItsNodeIdAndStoresIt) {
+  list(1);
+  modules[0].node = 42;
+  Slave& slave = add({vendor, 1, revision, 0x89ABCDEF});
+  run();
+  EXPECT_EQ(master->state(), LssMaster::State::done);
+  EXPECT_EQ(slave.node, 42);
+  EXPECT_EQ(slave.stored, std::vector<std::uint8_t>{42});
+  EXPECT_TRUE(modules[0].has_booted);
+  EXPECT_EQ(modules[0].address, slave.address);
+  EXPECT_EQ(master->assigned(), 1U);
+}
+
+TEST_F(LssMasterTest, DoesNotStoreIfNotAskedTo) {
+  list(1);
+  Slave& slave = add({vendor, 1, revision, 7});
+  LssMasterOptions options;
+  options.stores = false;
+  run(options);
+  EXPECT_EQ(slave.node, 1);
+  EXPECT_TRUE(slave.stored.empty());
+}
+
+TEST_F(LssMasterTest, FindsModulesOfAnyIdentity) {
+  constexpr unsigned seed = 305;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  const auto word = [&random] {
+    constexpr std::array<std::uint32_t, 4> special{0, ~0U, 1, 1U << 31U};
+    return random() % 4 == 0 ? special.at(random() % 4) : static_cast<std::uint32_t>(random());
+  };
+  list(40);
+  for (unsigned i = 0; i < 40; ++i) {
+    // Some differ from another one in a single bit.
+    LssAddress address{word(), word(), word(), word()};
+    if (i % 2 != 0) {
+      address = slaves.back()->address;
+      address.at(random() % 4) ^= 1U << random() % 32;
+    }
+    add(address);
+  }
+  run();
+  EXPECT_EQ(master->state(), LssMaster::State::done) << describe(master->problem());
+  EXPECT_EQ(master->assigned(), 40U);
+  std::vector<unsigned> nodes;
+  for (const auto& slave : slaves) {
+    nodes.push_back(slave->node);
+    EXPECT_EQ(modules.at(slave->node - 1U).address, slave->address);
+  }
+  std::ranges::sort(nodes);
+  EXPECT_EQ(std::ranges::adjacent_find(nodes), nodes.end()) << "each has its own";
+}
+
+TEST_F(LssMasterTest, TheListSaysWhichSerialNumberHasWhichNodeId) {
+  list(3);
+  modules[0].serial = 300;
+  modules[2].serial = 100;
+  add({vendor, 1, revision, 100});
+  add({vendor, 1, revision, 200});
+  add({vendor, 1, revision, 300});
+  run();
+  EXPECT_EQ(master->state(), LssMaster::State::done);
+  EXPECT_EQ(slaves[0]->node, 3);
+  EXPECT_EQ(slaves[1]->node, 2);
+  EXPECT_EQ(slaves[2]->node, 1);
+}
+
+TEST_F(LssMasterTest, AUsualNumberSavesMostOfTheTime) {
+  list(20);
+  for (std::uint32_t i = 0; i < 20; ++i) {
+    add({vendor, 1, revision, 0x1234'5678 * (i + 1)});
+  }
+  LssMasterOptions options;
+  options.usual = {};
+  run(options);
+  EXPECT_EQ(master->assigned(), 20U);
+  const BusTime unknown = duration;
+  for (std::size_t i = 0; i < slaves.size(); ++i) {
+    slaves[i]->power_on();
+    modules[i].has_booted = false;
+  }
+  options.usual = {vendor, 1, revision, 0};
+  run(options);
+  EXPECT_EQ(master->assigned(), 20U);
+  EXPECT_LT(duration * 2, unknown);
+  std::cout << "20 modules: " << static_cast<double>(duration) * 1e-9 << " s; without usual numbers "
+            << static_cast<double>(unknown) * 1e-9 << " s\n";
+}
+
+TEST_F(LssMasterTest, AModuleThatIsNotInTheListEndsItAndStaysWithoutANodeId) {
+  list(1);
+  modules[0].serial = 8;
+  Slave& slave = add({vendor, 1, revision, 7});
+  run();
+  expect_problem(LssProblem::unexpected_module);
+  EXPECT_EQ(master->found(), slave.address);
+  EXPECT_EQ(slave.node, 0);
+  // It is not selected any more.
+  modules[0].serial = 7;
+  run();
+  EXPECT_EQ(slave.node, 1);
+}
+
+TEST_F(LssMasterTest, WithoutAnotherNodeNoFrameIsAcknowledged) {
+  list(1);
+  run({}, 2'000'000 * us);
+  expect_problem(LssProblem::not_sent);
+}
+
+TEST_F(LssMasterTest, AModuleThatLeavesDuringTheScanEndsItAfterSomeAttempts) {
+  list(1);
+  add({vendor, 1, revision, 7}).answers_left = 4;  // begin, vendor, and 2 bits of the product
+  Slave& other = add({vendor, 1, revision, 7});
+  other.answers_left = 20;
+  run();
+  // The second scan finds no module at all.
+  EXPECT_EQ(master->state(), LssMaster::State::done);
+  EXPECT_EQ(master->assigned(), 0U);
+}
+
+TEST_F(LssMasterTest, AModuleThatAnswersTheFirstRequestOnlyEndsIt) {
+  list(1);
+  class Beginner final : public sim::BusListener {
+   public:
+    explicit Beginner(sim::Bus& bus) : controller_(bus.attach(*this)) {}
+
+   private:
+    void received(BusTime /*time*/, const CanFrame& frame) override {
+      if (frame.data[5] == 0x80) {
+        EXPECT_TRUE(controller_.send({0x7E4, 8, {0x4F}}));
+      }
+    }
+    void transmitted(BusTime /*time*/, const CanFrame& /*frame*/) override {}
+    sim::Controller& controller_;
+  } beginner(bus);
+  run();
+  expect_problem(LssProblem::scan_failed, 0);
+  EXPECT_LT(duration, 2'000'000 * us);
+}
+
+TEST_F(LssMasterTest, RefusalsAreReportedWithTheirCode) {
+  list(1);
+  Slave& slave = add({vendor, 1, revision, 7});
+  slave.refuses_service = 0x11;
+  run();
+  expect_problem(LssProblem::node_refused, 1);
+  slave.power_on();
+  slave.refuses_service = 0;
+  slave.store_result = {2, 0};
+  run();
+  expect_problem(LssProblem::store_refused, 2);
+}
+
+TEST_F(LssMasterTest, AModuleThatDoesNotAnswerOrBootIsReported) {
+  list(1);
+  add({vendor, 1, revision, 7}).ignores = lss::Service::configure_node_id;
+  run();
+  expect_problem(LssProblem::no_answer, 0x11);
+}
+
+TEST_F(LssMasterTest, AModuleThatDoesNotStoreIsWaitedForAndReported) {
+  list(1);
+  add({vendor, 1, revision, 7}).ignores = lss::Service::store_configuration;
+  run();
+  expect_problem(LssProblem::no_answer, 0x17);
+  EXPECT_GT(duration, 1'500'000 * us) << "it may erase its flash";
+}
+
+TEST_F(LssMasterTest, AModuleThatDoesNotBootIsReported) {
+  list(1);
+  modules[0].node = 9;
+  add({vendor, 1, revision, 7}).boots = false;
+  run();
+  expect_problem(LssProblem::no_boot_up, 9);
+}
+
+}  // namespace
+}  // namespace proleg::canopen

@@ -5,7 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <random>
@@ -13,6 +17,7 @@
 
 #include "shared/canopen/lss_slave.hpp"
 #include "sim/bus/bus.hpp"
+#include "sim/bus/candump_log.hpp"
 
 namespace proleg::canopen {
 namespace {
@@ -300,6 +305,58 @@ TEST_F(LssMasterTest, AModuleThatDoesNotBootIsReported) {
   add({vendor, 1, revision, 7}).boots = false;
   run();
   expect_problem(LssProblem::no_boot_up, 9);
+}
+
+/// Lines that tshark prints for a log.
+std::vector<std::string> dissect(const std::filesystem::path& log, const std::string& options) {
+  const std::string command =
+      std::string(PROLEG_TSHARK) + " -r " + log.string() + " -d can.subdissector,canopen " + options + " 2>/dev/null";
+  std::FILE* const pipe = popen(command.c_str(), "r");
+  std::vector<std::string> lines;
+  if (pipe == nullptr) {
+    ADD_FAILURE() << command;
+    return lines;
+  }
+  std::array<char, 1024> line{};
+  while (std::fgets(line.data(), line.size(), pipe) != nullptr) {
+    lines.emplace_back(line.data());
+  }
+  EXPECT_EQ(pclose(pipe), 0) << command;
+  return lines;
+}
+
+TEST_F(LssMasterTest, TsharkKnowsEveryFrameAndFindsNoneMalformed) {
+  const std::filesystem::path path =
+      std::filesystem::path(testing::TempDir()) / ("lss_master_test." + std::to_string(getpid()) + ".log");
+  {
+    sim::CandumpLog log(path);
+    bus.set_frame_listener([&log](const sim::Transmission& sent) { log.write(sent.end, sent.frame); });
+    list(3);
+    for (std::uint32_t i = 1; i <= 3; ++i) {
+      add({vendor, i, revision, 0x89ABCDEF * i});
+    }
+    run();
+    bus.set_frame_listener({});
+    log.finish();
+  }
+  EXPECT_EQ(master->assigned(), 3U);
+  const std::vector<std::string> lines = dissect(path, "");
+  EXPECT_GT(lines.size(), 200U);
+  const std::array<std::string, 8> kinds{
+      "LSS (Master): LSS Fastscan protocol\n",
+      "LSS (Slave): Identify slave protocol\n",
+      "LSS (Master): Configure node-ID protocol: 0x02\n",
+      "LSS (Slave): Configure node-ID protocol\n",
+      "LSS (Master): Store configuration protocol\n",
+      "LSS (Slave): Store configuration protocol\n",
+      "LSS (Master): Switch state global protocol: Waiting state\n",
+      "NMT Error Control: Boot-up [0x2]\n",
+  };
+  for (const std::string& kind : kinds) {
+    EXPECT_TRUE(std::ranges::any_of(lines, [&](const std::string& line) { return line.ends_with(kind); })) << kind;
+  }
+  EXPECT_EQ(dissect(path, "-Y '_ws.malformed || _ws.expert'"), std::vector<std::string>{});
+  std::filesystem::remove(path);
 }
 
 }  // namespace

@@ -10,7 +10,8 @@ namespace proleg::stm32f405 {
 /// The flash is one bank: while a sector is erased (up to half a second; data sheet, table 41) or a word programmed (up
 /// to 0.1 ms), every read of flash stalls the CPU. So the wait runs from RAM and feeds the watchdog. Interrupts are
 /// disabled meanwhile, because their vectors and handlers are in flash. The controller keeps three of the frames that
-/// come, others are lost. The timer repeats the servo's last pulse. To be used in Pre-operational only.
+/// come, others are lost. The timer repeats the servo's last pulse. To be used only while the servo
+/// has no power.
 class BoardRecordFlash final : public firmware::FlashPort {
  public:
   static constexpr std::uint32_t sector_count = 2;

@@ -88,6 +88,11 @@ std::string unit_text(Address address) {
          std::to_string(scale.numerator);
 }
 
+/// A tool that downloads all values must not write it: the value is a command to the module.
+bool is_command(const Object& object) {
+  return object.address == object::store_parameters.address || object.address == object::restore_parameters.address;
+}
+
 void print_entry(std::ostream& out, const Object& object, const Mapped& mapped) {
   if (!object.help.empty()) {
     out << "; " << object.help << '\n';
@@ -116,6 +121,9 @@ void print_entry(std::ostream& out, const Object& object, const Mapped& mapped) 
     out << "HighLimit=" << number(object.type, range.maximum) << '\n';
   }
   out << "PDOMapping=" << (mapped.contains(object) ? 1 : 0) << '\n';
+  if (is_command(object)) {
+    out << "ObjFlags=0x1\n";  // CiA 306: refuse write on download
+  }
 }
 
 void print_index(std::ostream& out, std::uint16_t index, const Mapped& mapped) {

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+#include <vector>
+
 #include "tests/sim/mcu/chip/chip_rig.hpp"
 
 namespace proleg::sim {
@@ -126,6 +129,52 @@ TEST_F(ChipSettingsTest, SavesItsParametersAndKeepsThemOverARestart) {
   rig->run_for(50 * ms);
   EXPECT_EQ(rig->read(0x2000, 5), 0U);
   EXPECT_EQ(rig->read(0x6064, 0), 0x80000000U) << "not measured";
+}
+
+/// Cuts while the log is searched, while a record is written and while a sector is erased.
+TEST_F(ChipSettingsTest, APowerCutAtAnyInstantOfASaveLeavesTheOldSettingsOrTheNew) {
+  constexpr unsigned seed = 2020;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  constexpr std::uint32_t old_limit = 2000;
+  constexpr std::uint32_t new_limit = 1234;
+  unsigned old_ones = 0;
+  unsigned new_ones = 0;
+  for (const bool needs_erase : {false, true}) {
+    make(ChipRig::node);
+    const auto prepare = [&] {
+      if (needs_erase) {
+        fill_log(ChipRig::node);
+      } else {
+        rig->chip.write(ChipRig::settings_address, std::vector<std::uint8_t>(ChipRig::settings_size, 0xFF));
+        rig->chip.write(ChipRig::settings_address, firmware::encode({ChipRig::node, false, 0, 0}, 1));
+      }
+      power_on();
+      rig->write(0x200A, 1, 2, new_limit);
+    };
+    const auto request_save = [&] {
+      rig->host.send({0x603, 8, {0x23, 0x10, 0x10, 0x01, 's', 'a', 'v', 'e'}});
+      return rig->bus.now();
+    };
+    prepare();
+    const BusTime start = request_save();
+    ASSERT_TRUE(rig->run_until_true([&] { return !rig->frames(0x583, start).empty(); }));
+    const BusTime duration = rig->bus.now() - start;
+    for (unsigned cut = 0; cut < 20; ++cut) {
+      prepare();
+      request_save();
+      // The record is written at the end.
+      rig->run_for(cut % 2 == 0 ? std::uniform_int_distribution<BusTime>(0, duration)(random)
+                                : duration - std::uniform_int_distribution<BusTime>(0, 400 * us)(random));
+      power_on();
+      const std::uint32_t found = rig->read(0x200A, 1);
+      ASSERT_TRUE(found == old_limit || found == new_limit) << found;
+      (found == old_limit ? old_ones : new_ones) += 1;
+    }
+  }
+  EXPECT_GT(old_ones, 0U);
+  EXPECT_GT(new_ones, 0U);
+  EXPECT_TRUE(rig->events.empty());
 }
 
 }  // namespace

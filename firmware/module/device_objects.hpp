@@ -44,8 +44,11 @@ class DeviceObjects final : private canopen::ObjectAccess {
   void send_segments(Microseconds now);
   [[gnu::cold]] void poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const { return server_.next_deadline(); }
-  /// Drops the transfer.
-  void reset() { server_.reset(); }
+  /// Drops the transfer. From now on the server has the module's present node id.
+  void reset() {
+    server_.reset();
+    server_.set_node(parts_.identity.node);
+  }
 
  private:
   canopen::AbortCode read(const canopen::Entry& entry, std::uint32_t& value) override;

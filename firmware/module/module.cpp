@@ -39,9 +39,9 @@ bool is_reserved(std::uint16_t identifier, std::uint8_t node) {
 Module::Module(const ModuleIdentity& identity, const Ports& ports) : parts_(identity, ports) {}
 
 void Module::power_on(Microseconds now) {
-  objects_.reset();
   parts_.load();
   parts_.reset(now);
+  objects_.reset();
   parts_.emergencies.power_on();
   finish_event(now);
 }
@@ -123,6 +123,7 @@ void Module::receive_lss(Microseconds now, const CanFrame& frame) {
   if (parts_.network.waits_for_node() && parts_.lss.state() == canopen::lss::State::waiting &&
       parts_.lss.pending_node() != 0) {
     parts_.reset(now);
+    objects_.reset();
   }
 }
 
@@ -133,12 +134,12 @@ void Module::receive_network_command(Microseconds now, const CanFrame& frame) {
   }
   switch (request->command) {
     case NmtCommand::reset_node:
-      objects_.reset();
       parts_.reset(now);
+      objects_.reset();
       return;
     case NmtCommand::reset_communication:
-      objects_.reset();
       parts_.reset_communication(now);
+      objects_.reset();
       return;
     default:
       change_state(parts_, *request);

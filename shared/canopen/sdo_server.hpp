@@ -77,6 +77,8 @@ class SdoServer {
   [[nodiscard, gnu::cold, gnu::noinline]] std::optional<CanFrame> poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const;
 
+  /// Another node id; not during a transfer.
+  void set_node(std::uint8_t node) { node_ = node; }
   /// Drops the transfer without a frame, as when the device's communication is reset.
   [[gnu::cold, gnu::noinline]] void reset();
 

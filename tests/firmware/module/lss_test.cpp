@@ -201,12 +201,12 @@ TEST(LssRobot, AModuleThatMovesDoesNotStoreANodeId) {
     return answers.empty() ? 0U : unsigned{answers[0].frame.data[1]};
   };
   EXPECT_EQ(store_error(), 255U);
-  // Its drive has power as soon as it is started again.
-  robot.command(NmtCommand::stop);
+  EXPECT_EQ(robot.it().flash.operations, operations);
+  // The drive loses its power with Operational, and the host can enable it in Pre-operational.
+  robot.command(NmtCommand::enter_pre_operational);
+  robot.enable(0);
   EXPECT_EQ(store_error(), 255U);
   EXPECT_EQ(robot.it().flash.operations, operations);
-  robot.command(NmtCommand::enter_pre_operational);
-  ASSERT_EQ(robot.bus.write(robot.node(0), canopen::object::controlword, 0), canopen::AbortCode::none);
   robot.command(NmtCommand::stop);
   EXPECT_EQ(store_error(), 0U) << "in Stopped";
   EXPECT_GT(robot.it().flash.operations, operations);

@@ -144,7 +144,8 @@ TEST_F(StoreParameters, AreRefusedInOperationalAndWhileTheDriveHasPower) {
   EXPECT_EQ(write(object::store_parameters, save), refused);
   EXPECT_EQ(write(object::restore_parameters, load), refused);
   robot.command(NmtCommand::enter_pre_operational);
-  EXPECT_EQ(write(object::store_parameters, save), refused) << "the drive is enabled still";
+  robot.enable(0);
+  EXPECT_EQ(write(object::store_parameters, save), refused) << "the drive is enabled";
   EXPECT_EQ(write(object::restore_parameters, load), refused);
   EXPECT_EQ(write(object::controlword, 7), AbortCode::none);
   EXPECT_EQ(write(object::store_parameters, save), refused) << "switched on";

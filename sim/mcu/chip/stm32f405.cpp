@@ -85,8 +85,11 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       pass_to(std::max(now(), due));
     }
     while (!stands_still_) {
-      while (next_internal_event() <= now()) {
+      while (!stands_still_ && next_internal_event() <= now()) {
         take_events();
+      }
+      if (stands_still_) {
+        return;
       }
       if (reset_cause_) {
         restart();
@@ -105,6 +108,18 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
         execute(std::min(horizon, next_internal_event()));
       }
     }
+  }
+
+  /// Something outside changes at the present time.
+  template <typename Action>
+  void change_outside(const Action& action) {
+    const LocalTime time = now();
+    pass_to(time);
+    pins_.look();
+    guard(action);
+    pins_.look();
+    invalidate_next_events();
+    static_cast<void>(follow_core_clock(time));
   }
 
   [[nodiscard]] std::optional<ChipEvent> take_event() {
@@ -166,6 +181,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   void take_events() {
     const LocalTime time = now();
+    pass_to(time);
     invalidate_next_events();
     if (cpu_.next_system_tick() <= time) {
       cpu_.advance_system_tick();
@@ -182,9 +198,10 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   /// To be called when the core may have a new clock, with the time before. True if it has.
   bool follow_core_clock(LocalTime time) {
-    if (now() == time) {
+    if (core_period() == known_core_period_) {
       return false;
     }
+    known_core_period_ = core_period();
     pass_to(time);
     cpu_.change_core_period();
     return true;
@@ -193,7 +210,8 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   /// A CPU that has locked up waits for the watchdog.
   [[nodiscard]] bool is_awake() const {
     const Cpu::State state = cpu_.state();
-    return state != Cpu::State::locked_up && (state != Cpu::State::sleeping || cpu_.wakes());
+    return state != Cpu::State::locked_up && (state != Cpu::State::sleeping || cpu_.wakes()) &&
+           !rcc_.core_stands_still();
   }
 
   /// A flash operation is under way and the program runs from flash.
@@ -246,6 +264,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     }
     rcc_.note_start(cause);
     cpu_.reset();
+    known_core_period_ = core_period();
     faults_since_reset_ = 0;
     pins_.reset();
     invalidate_next_events();
@@ -357,6 +376,10 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     cpu_.set_interrupt(position, high);
     next_event_.reset();
   }
+  void set_non_maskable(bool high) override {
+    cpu_.set_non_maskable(high);
+    next_event_.reset();
+  }
   void request_reset(ResetCause cause) override {
     if (!reset_cause_) {
       reset_cause_ = cause;
@@ -426,6 +449,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   mutable std::optional<BusTime> next_event_;
   LocalTime anchor_time_ = 0;  ///< local time when the CPU had executed anchor_instructions_
   std::uint64_t anchor_instructions_ = 0;
+  LocalTime known_core_period_ = Clocks::hsi;
   LocalTime run_end_ = 0;  ///< while instructions are executed
   std::optional<ResetCause> reset_cause_;
   std::uint64_t cuts_ = 0;
@@ -450,6 +474,12 @@ void Stm32f405::read(std::uint32_t address, std::span<std::uint8_t> bytes) const
 void Stm32f405::power_on(BusTime now) { implementation_->power_on(now); }
 BusTime Stm32f405::next_event() const { return implementation_->next_event(); }
 void Stm32f405::advance_to(BusTime now, BusTime quiet_until) { implementation_->advance_to(now, quiet_until); }
+void Stm32f405::set_crystal(bool runs) {
+  implementation_->change_outside([this, runs] { implementation_->rcc_.set_crystal(runs); });
+}
+void Stm32f405::set_pll(bool locks) {
+  implementation_->change_outside([this, locks] { implementation_->rcc_.set_pll(locks); });
+}
 std::optional<LocalTime> Stm32f405::pulse_time(unsigned channel) const {
   return implementation_->pins_.pulse_time(channel);
 }

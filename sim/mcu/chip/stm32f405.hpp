@@ -60,6 +60,12 @@ class Stm32f405 {
   /// Does what is due. Nothing reaches the chip from outside before quiet_until: up to there its program may run ahead.
   void advance_to(BusTime now, BusTime quiet_until);
 
+  // What the chip loses or gets back from outside, at its present time; the state lasts over a reset and power_on().
+  /// Whether the crystal oscillates: from the first instruction on if it is set before power_on().
+  void set_crystal(bool runs);
+  /// Whether the PLL can lock.
+  void set_pll(bool locks);
+
   /// Length of the pulses at an output of TIM2 (1 to 4) that reaches its pin, as Timer::high_time(); nothing if there
   /// are none.
   [[nodiscard]] std::optional<LocalTime> pulse_time(unsigned channel) const;

@@ -431,6 +431,11 @@ void Cpu::set_interrupt(unsigned position, bool high) {
   implementation_->attend();
 }
 
+void Cpu::set_non_maskable(bool high) {
+  implementation_->nvic().set_non_maskable_line(high);
+  implementation_->attend();
+}
+
 bool Cpu::wakes() const { return implementation_->wakes(); }
 
 LocalTime Cpu::next_system_tick() const { return implementation_->system_control().system_tick().next_exception(); }

@@ -110,6 +110,8 @@ class Cpu {
   /// The level of a line to the NVIC, position 0 to 81 (RM0090, table 61). It pends when it rises, and again if it is
   /// still high when its handler returns.
   void set_interrupt(unsigned position, bool high);
+  /// The level of the line of NMI, in the same way.
+  void set_non_maskable(bool high);
   /// Whether an interrupt is pending that would wake the CPU from WFI.
   [[nodiscard]] bool wakes() const;
   /// When SysTick pends its exception next; never_on_chip if it does not.

@@ -19,8 +19,7 @@ void Nvic::reset() {
   find_active();
 }
 
-void Nvic::set_line(unsigned interrupt, bool high) {
-  const unsigned number = exception::first_interrupt + interrupt;
+void Nvic::set_exception_line(unsigned number, bool high) {
   if (lines_.has(number) == high) {
     return;
   }

@@ -74,7 +74,9 @@ class Nvic {
   void reset();
 
   /// The level of an interrupt's line; pends it when it rises.
-  void set_line(unsigned interrupt, bool high);
+  void set_line(unsigned interrupt, bool high) { set_exception_line(exception::first_interrupt + interrupt, high); }
+  /// The same for the line of NMI, which is always enabled.
+  void set_non_maskable_line(bool high) { set_exception_line(exception::nmi, high); }
 
   [[nodiscard]] bool is_pending(unsigned number) const { return pending_.has(number); }
   [[nodiscard]] bool is_enabled(unsigned number) const { return enabled_.has(number); }
@@ -112,6 +114,7 @@ class Nvic {
 
  private:
   [[nodiscard]] int priority(unsigned number) const;
+  void set_exception_line(unsigned number, bool high);
   void find_next();
   void find_active();
 

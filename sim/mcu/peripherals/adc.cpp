@@ -139,6 +139,13 @@ void Adc::clocks_change(const Clocks& next) {
   }
 }
 
+void Adc::clocks_fail(const Clocks& /*next*/) {
+  settle();
+  converting_ = Group::none;
+  conversion_end_ = never_on_chip;
+  regular_waits_ = false;
+}
+
 LocalTime Adc::clock_period() const { return chip().clocks().apb2 * 2 * (LocalTime{field(ccr_, 16, 2)} + 1); }
 
 LocalTime Adc::sampling_time(unsigned channel) const {

@@ -45,6 +45,7 @@ class Adc final : public RegisterBlock {
   [[nodiscard]] LocalTime next_event() const override;
   void advance() override;
   void clocks_change(const Clocks& next) override;
+  void clocks_fail(const Clocks& next) override;
 
  private:
   enum class Group : std::uint8_t { none, regular, injected };

@@ -111,6 +111,7 @@ void BxCan::reset() {
   requests_.clear();
   mode_ = Mode::sleep;
   is_leaving_ = false;
+  has_failed_ = false;
   has_timing_ = false;
   control_ = control_after_reset;
   status_ = 0;
@@ -315,6 +316,9 @@ void BxCan::ask(BxCanRequests::Kind kind, std::uint32_t value) {
 
 void BxCan::submit(BusTime now) {
   while (const auto request = requests_.take_due(now)) {
+    if (has_failed_) {
+      continue;
+    }
     switch (request->kind) {
       case BxCanRequests::Kind::transmit:
         transmitter_.submit(request->value);
@@ -502,6 +506,16 @@ void BxCan::clocks_change(const Clocks& next) {
     throw UnmodelledAccess("CAN1: its clock changes from " +
                            std::to_string(local_time_per_second / chip().clocks().apb1) + " Hz to " +
                            std::to_string(local_time_per_second / next.apb1) + " Hz while it is on the bus");
+  }
+}
+
+void BxCan::clocks_fail(const Clocks& /*next*/) {
+  has_failed_ = has_failed_ || !is_idle();
+  if (has_failed_) {
+    controller_.switch_off();
+    controller_.watch(false);
+    transmitter_.take_back();
+    self_test_end_ = never_on_chip;
   }
 }
 

@@ -57,6 +57,8 @@ class BxCan final : public RegisterBlock, private BusListener {
   void advance() override;
   /// Its clock must not change while it is on the bus.
   void clocks_change(const Clocks& next) override;
+  /// It leaves the bus until its next reset. (At a wrong bit rate it would disturb the frames of others.)
+  void clocks_fail(const Clocks& next) override;
   [[nodiscard]] bool is_idle() const override;
 
   /// True time of the first pending request; never_on_bus if there is none.
@@ -106,6 +108,7 @@ class BxCan final : public RegisterBlock, private BusListener {
 
   Mode mode_ = Mode::sleep;
   bool is_leaving_ = false;  ///< waits for 11 recessive bits, in the mode before
+  bool has_failed_ = false;  ///< its clock
   bool has_timing_ = false;  ///< BTR was written since reset
   std::uint32_t control_ = 0;
   std::uint32_t status_ = 0;  ///< MSR: ERRI, WKUI, SLAKI

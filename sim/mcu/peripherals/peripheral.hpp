@@ -31,6 +31,8 @@ class ChipServices {
   [[nodiscard]] virtual const Clocks& clocks() const = 0;
   /// The level of an interrupt line into the NVIC (RM0090, table 61). The NVIC pends it while it is high.
   virtual void set_interrupt(unsigned position, bool high) = 0;
+  /// The level of the line of NMI, which RCC drives (RM0090, 7.2.7).
+  virtual void set_non_maskable(bool high) = 0;
   /// The chip starts again from reset, after the instruction that caused it.
   virtual void request_reset(ResetCause cause) = 0;
   /// To be called when this peripheral's next_event() has become earlier outside of a register access.
@@ -70,6 +72,8 @@ class Peripheral {
   /// Clocks change at ChipServices::now(), from ChipServices::clocks() to `next`: counts up to now with the old ones.
   /// Throws UnmodelledAccess if the change would spoil an operation under way.
   virtual void clocks_change(const Clocks& next) { static_cast<void>(next); }
+  /// The same, because an oscillator has failed or runs again. What was under way is lost.
+  virtual void clocks_fail(const Clocks& next) { clocks_change(next); }
   /// Whether it does nothing that needs its clock: it does not count, convert, send or receive.
   [[nodiscard]] virtual bool is_idle() const { return next_event() == never_on_chip; }
 };

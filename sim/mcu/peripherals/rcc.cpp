@@ -61,6 +61,12 @@ constexpr std::uint32_t cfgr_sw = 0x3;
 constexpr std::uint32_t cfgr_clocks = 0x0000'FCF3;  // PPRE2, PPRE1, HPRE, SW
 constexpr std::uint32_t cfgr_others = 0xFFFF'0000;  // outputs, I2S, RTC
 constexpr std::uint32_t cir_enables = 0x3F00;
+constexpr std::uint32_t cir_cssf = 1U << 7U;
+constexpr std::uint32_t cir_cssc = 1U << 23U;
+
+/// Clocks without a source. They are not infinite, so that products of them fit.
+constexpr LocalTime lost = 1'000 * local_time_per_us;
+constexpr Clocks lost_clocks{.core = lost, .apb1 = lost, .apb2 = lost, .apb1_timers = lost, .apb2_timers = lost};
 
 constexpr std::uint32_t csr_lsion = 1U << 0U;
 constexpr std::uint32_t csr_lsirdy = 1U << 1U;
@@ -115,7 +121,10 @@ void Rcc::note_start(ResetCause cause) {
   }
 }
 
-void Rcc::reset() { start_registers(chip().now()); }
+void Rcc::reset() {
+  start_registers(chip().now());
+  chip().set_non_maskable(false);
+}
 
 void Rcc::start_registers(LocalTime now) {
   hsi_ = {.on = true, .ready_at = now, .not_ready_at = 0};
@@ -127,6 +136,10 @@ void Rcc::start_registers(LocalTime now) {
   cfgr_ = 0;
   current_ = ClockSource::hsi;
   clocks_ = {};
+  stands_still_ = false;
+  is_secured_ = false;
+  has_reported_ = false;
+  failure_seen_at_ = never_on_chip;
   gates_.reset();
 }
 
@@ -144,18 +157,101 @@ const Rcc::Oscillator& Rcc::oscillator(ClockSource source) const {
 
 LocalTime Rcc::next_event() const {
   const auto selected = static_cast<ClockSource>(cfgr_ & cfgr_sw);
-  return selected == current_ || !oscillator(selected).on ? never_on_chip : oscillator(selected).ready_at;
+  const LocalTime takes_over =
+      selected == current_ || !oscillator(selected).on ? never_on_chip : oscillator(selected).ready_at;
+  return std::min(takes_over, failure_seen_at_);
 }
 
 void Rcc::advance() { settle(); }
 
 void Rcc::settle() {
+  if (failure_seen_at_ <= chip().now()) {
+    react_to_failure();
+  }
   const auto selected = static_cast<ClockSource>(cfgr_ & cfgr_sw);
   if (selected != current_ && oscillator(selected).ready(chip().now())) {
     const Clocks next = clocks_of(selected, cfgr_, cfgr_);
     current_ = selected;
     change_clocks(next);
   }
+}
+
+bool Rcc::works(ClockSource source) const {
+  switch (source) {
+    case ClockSource::hse:
+      return crystal_runs_;
+    case ClockSource::pll:
+      return pll_locks_ && (crystal_runs_ || !pll_from_hse(pllcfgr_));
+    case ClockSource::hsi:
+      break;
+  }
+  return true;
+}
+
+void Rcc::set_crystal(bool runs) {
+  settle();
+  if (runs == crystal_runs_) {
+    return;
+  }
+  crystal_runs_ = runs;
+  const LocalTime now = chip().now();
+  if (!hse_.ready(now)) {
+    hse_.ready_at = runs ? now + hse_start : never_on_chip;
+  }
+  oscillator_failed_or_works();
+}
+
+void Rcc::set_pll(bool locks) {
+  settle();
+  pll_locks_ = locks;
+  oscillator_failed_or_works();
+}
+
+void Rcc::oscillator_failed_or_works() {
+  const LocalTime now = chip().now();
+  if (!works(ClockSource::pll)) {
+    pll_.ready_at = never_on_chip;
+  } else if (pll_.on && pll_.ready_at == never_on_chip) {
+    pll_.ready_at = now + pll_start;
+  }
+  watch_crystal();
+  const bool stands_still = !works(current_);
+  if (stands_still != stands_still_) {
+    set_clocks(stands_still ? lost_clocks : clocks_of(current_, cfgr_, cfgr_), stands_still);
+  }
+  chip().reschedule();
+}
+
+void Rcc::watch_crystal() {
+  const LocalTime now = chip().now();
+  if (crystal_runs_ || !is_secured_ || !hse_.on || !hse_.ready(now)) {
+    failure_seen_at_ = never_on_chip;
+  } else if (failure_seen_at_ == never_on_chip) {
+    failure_seen_at_ = now + failure_detection;
+  }
+}
+
+void Rcc::react_to_failure() {
+  failure_seen_at_ = never_on_chip;
+  const bool was_source = current_ == ClockSource::hse || (current_ == ClockSource::pll && pll_from_hse(pllcfgr_));
+  hse_ = {};
+  if (was_source) {
+    pll_ = {};
+    hsi_.switch_to(true, chip().now(), hsi_start, 0);
+    cfgr_ &= ~cfgr_sw;
+    current_ = ClockSource::hsi;
+    set_clocks(clocks_of(current_, cfgr_, cfgr_), false);
+  }
+  has_reported_ = true;
+  chip().set_non_maskable(true);
+}
+
+void Rcc::set_clocks(const Clocks& next, bool stands_still) {
+  for (Peripheral* peripheral : gates_.attached()) {
+    peripheral->clocks_fail(next);
+  }
+  clocks_ = next;
+  stands_still_ = stands_still;
 }
 
 Clocks Rcc::clocks_of(ClockSource source, std::uint32_t setting, std::uint32_t value) const {
@@ -187,13 +283,14 @@ std::uint32_t Rcc::read(std::uint32_t offset) {
   switch (offset) {
     case cr:
       return (hsi_.on ? cr_hsion : 0) | (hsi_.ready(now) ? cr_hsirdy : 0) | hsi_trim_ << 3U | cr_hsical |
-             (hse_.on ? cr_hseon : 0) | (hse_.ready(now) ? cr_hserdy : 0) | (pll_.on ? cr_pllon : 0) |
-             (pll_.ready(now) ? cr_pllrdy : 0);
+             (is_secured_ ? cr_csson : 0) | (hse_.on ? cr_hseon : 0) | (hse_.ready(now) ? cr_hserdy : 0) |
+             (pll_.on ? cr_pllon : 0) | (pll_.ready(now) ? cr_pllrdy : 0);
     case pllcfgr:
       return pllcfgr_;
     case cfgr:
       return cfgr_ | static_cast<std::uint32_t>(current_) << 2U;
     case cir:
+      return has_reported_ ? cir_cssf : 0;
     case bdcr:
     case sscgr:
       return 0;
@@ -226,6 +323,10 @@ void Rcc::write(std::uint32_t offset, std::uint32_t value) {
       break;
     case cir:
       reject_bits(offset, value, cir_enables, "interrupts of the RCC are not modelled");
+      if ((value & cir_cssc) != 0) {
+        has_reported_ = false;
+        chip().set_non_maskable(false);
+      }
       break;
     case bdcr:
     case sscgr:
@@ -247,7 +348,6 @@ void Rcc::write(std::uint32_t offset, std::uint32_t value) {
 
 void Rcc::write_cr(std::uint32_t value) {
   reject_bits(cr, value, cr_hsebyp, "the board has a crystal, no clock to bypass it");
-  reject_bits(cr, value, cr_csson, "the clock security system is not modelled");
   reject_bits(cr, value, cr_plli2son, "PLLI2S is not modelled");
   if (field(value, 3, 5) != hsi_trim_) {
     reject_write(cr, value, "HSITRIM = " + std::to_string(field(value, 3, 5)) + ": trimming is not modelled");
@@ -277,7 +377,15 @@ void Rcc::write_cr(std::uint32_t value) {
   constexpr LocalTime stop_cycles = 6;
   hsi_.switch_to(hsi_on, now, hsi_start, stop_cycles * hsi_period);
   hse_.switch_to(hse_on, now, hse_start, stop_cycles * hse_period);
+  if (!crystal_runs_ && hse_.on && !hse_.ready(now)) {
+    hse_.ready_at = never_on_chip;
+  }
   pll_.switch_to(pll_on, now, pll_start, 0);
+  if (!works(ClockSource::pll)) {
+    pll_.ready_at = never_on_chip;
+  }
+  is_secured_ = (value & cr_csson) != 0;
+  watch_crystal();
 }
 
 void Rcc::write_pllcfgr(std::uint32_t value) {

@@ -21,6 +21,9 @@ class Rcc final : public RegisterBlock {
   static constexpr LocalTime hsi_start = 2 * local_time_per_us;
   static constexpr LocalTime pll_start = 200 * local_time_per_us;
   static constexpr LocalTime lsi_start = 40 * local_time_per_us;
+  /// From the failure of the crystal to the reaction of the clock security system. The manual gives no figure: this is
+  /// 80 periods of the crystal.
+  static constexpr LocalTime failure_detection = 10 * local_time_per_us;
 
   /// flash, power: limit the core clock. iwdg: keeps LSI on while it runs.
   Rcc(ChipServices& chip, FlashInterface& flash, Pwr& power, Iwdg& iwdg);
@@ -28,6 +31,14 @@ class Rcc final : public RegisterBlock {
   /// Peripherals whose clock and reset are switched here, or that count clocks; by their base(). They must outlive
   /// this.
   void attach(Peripheral& peripheral) { gates_.attach(peripheral); }
+
+  // What fails, or works again, at ChipServices::now(). It stays so over a reset. As long as the system clock has lost
+  // its source the core stands still, and nothing else counts but LSI. The manual does not say which frequency a PLL
+  // without its input has; here it has none.
+  void set_crystal(bool runs);
+  /// Whether the PLL can lock.
+  void set_pll(bool locks);
+  [[nodiscard]] bool core_stands_still() const { return stands_still_; }
 
   /// For ChipServices::clocks().
   [[nodiscard]] const Clocks& clocks() const { return clocks_; }
@@ -45,7 +56,7 @@ class Rcc final : public RegisterBlock {
   void write(std::uint32_t offset, std::uint32_t value) override;
   /// All registers except the flags of note_start(). The chip resets the attached peripherals.
   void reset() override;
-  /// When a selected clock becomes ready and takes over.
+  /// When a selected clock becomes ready and takes over, and when the clock security system reacts (7.2.7).
   [[nodiscard]] LocalTime next_event() const override;
   void advance() override;
   [[nodiscard]] bool is_idle() const override { return false; }
@@ -61,6 +72,12 @@ class Rcc final : public RegisterBlock {
   };
 
   void start_registers(LocalTime now);
+  /// Whether an oscillator that is on has what it needs.
+  [[nodiscard]] bool works(ClockSource source) const;
+  void oscillator_failed_or_works();
+  void watch_crystal();
+  void react_to_failure();
+  void set_clocks(const Clocks& next, bool stands_still);
   void settle();
   void write_cr(std::uint32_t value);
   void write_pllcfgr(std::uint32_t value);
@@ -87,6 +104,13 @@ class Rcc final : public RegisterBlock {
   std::uint32_t cfgr_ = 0;  ///< without SWS
   ClockSource current_ = ClockSource::hsi;
   std::uint32_t reset_flags_ = 0;
+
+  bool crystal_runs_ = true;
+  bool pll_locks_ = true;
+  bool stands_still_ = false;
+  bool is_secured_ = false;                    ///< CSSON
+  bool has_reported_ = false;                  ///< CSSF
+  LocalTime failure_seen_at_ = never_on_chip;  ///< of a failure of the crystal
 };
 
 }  // namespace proleg::sim

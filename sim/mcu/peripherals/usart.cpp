@@ -132,6 +132,13 @@ void Usart::clocks_change(const Clocks& next) {
   }
 }
 
+void Usart::clocks_fail(const Clocks& /*next*/) {
+  settle();
+  shifting_.reset();
+  waiting_.reset();
+  frame_end_ = never_on_chip;
+}
+
 std::uint32_t Usart::read(std::uint32_t offset) {
   settle();
   switch (offset) {

@@ -22,6 +22,7 @@ class Usart final : public RegisterBlock {
   [[nodiscard]] LocalTime next_event() const override;
   void advance() override;
   void clocks_change(const Clocks& next) override;
+  void clocks_fail(const Clocks& next) override;
   [[nodiscard]] bool is_idle() const override;
 
   /// A byte has arrived, at the end of its stop bit, which is now. Lost while the receiver is off.

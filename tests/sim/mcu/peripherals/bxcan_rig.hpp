@@ -59,6 +59,7 @@ class TestChip final : public ChipServices {
   [[nodiscard]] LocalTime now() const override { return local(time); }
   [[nodiscard]] const Clocks& clocks() const override { return clocks_; }
   void set_interrupt(unsigned position, bool high) override { lines.at(position) = high; }
+  void set_non_maskable(bool /*high*/) override {}
   void request_reset(ResetCause /*cause*/) override {}
   void reschedule() override {}
 

@@ -318,9 +318,8 @@ TEST_F(RccTest, ClocksOfBusyPeripheralsStayOn) {
 }
 
 TEST_F(RccTest, RejectsWhatItDoesNotModelByName) {
-  EXPECT_EQ(test::rejection([&] { rcc.write(cr, hsion | 1U << 19U); }),
-            "RCC_CR = 0x80081 at offset 0x0: the clock security system is not modelled");
-  EXPECT_NE(test::rejection([&] { rcc.write(cr, hsion | 1U << 18U); }), "");
+  EXPECT_EQ(test::rejection([&] { rcc.write(cr, hsion | 1U << 18U); }),
+            "RCC_CR = 0x40081 at offset 0x0: the board has a crystal, no clock to bypass it");
   EXPECT_NE(test::rejection([&] { rcc.write(cr, hsion | 1U << 26U); }), "");
   EXPECT_NE(test::rejection([&] { rcc.write(cr, 0x89); }).find("HSITRIM = 17"), std::string::npos);
   EXPECT_NE(test::rejection([&] { rcc.write(cfgr, 3); }).find("SW = 3"), std::string::npos);
@@ -330,6 +329,97 @@ TEST_F(RccTest, RejectsWhatItDoesNotModelByName) {
   EXPECT_NE(test::rejection([&] { rcc.write(0x80, 1); }), "");
   EXPECT_NE(test::rejection([&] { rcc.write(0x84, 0); }), "");
   EXPECT_EQ(test::rejection([&] { rcc.write(0x28, 1); }), "RCC at offset 0x28 = 0x1: writing it is not modelled");
+}
+
+// RM0090, 7.2.7: the clock security system.
+
+TEST_F(RccTest, ACrystalThatNeverStartsIsNeverReady) {
+  rcc.set_crystal(false);
+  rcc.write(cr, hsion | hseon);
+  wait(1'000 * Rcc::hse_start);
+  EXPECT_EQ(rcc.read(cr) & hserdy, 0U);
+  rcc.set_crystal(true);
+  wait(Rcc::hse_start);
+  EXPECT_EQ(rcc.read(cr) & hserdy, hserdy);
+}
+
+TEST_F(RccTest, APllThatDoesNotLockIsNeverReadyAndTakesOverLateIfItIsSelected) {
+  start_hse();
+  rcc.set_pll(false);
+  start_pll({.m = 8, .n = 336, .p = 2});
+  wait(1'000 * Rcc::pll_start);
+  EXPECT_EQ(rcc.read(cr) & pllrdy, 0U);
+  rcc.write(cfgr, 0x9402);
+  EXPECT_EQ(rcc.read(cfgr), 0x9402U) << "still HSI";
+  rcc.set_pll(true);
+  wait(Rcc::pll_start);
+  EXPECT_EQ(rcc.read(cfgr), 0x940AU);
+}
+
+TEST_F(RccTest, WithoutItsSourceTheCoreStandsStillUntilTheSourceIsBack) {
+  full_speed();
+  rcc.set_crystal(false);
+  EXPECT_TRUE(rcc.core_stands_still());
+  wait(1'000 * us);
+  EXPECT_FALSE(chip.non_maskable);
+  rcc.set_crystal(true);
+  EXPECT_FALSE(rcc.core_stands_still());
+  EXPECT_TRUE(equal(rcc.clocks(), test::full_speed));
+  rcc.set_pll(false);
+  EXPECT_TRUE(rcc.core_stands_still());
+}
+
+class SecuredClock : public RccTest {
+ protected:
+  static constexpr std::uint32_t cir = 0x0C;
+  static constexpr std::uint32_t csson = 1U << 19U;
+  static constexpr std::uint32_t cssf = 1U << 7U;
+  static constexpr std::uint32_t cssc = 1U << 23U;
+
+  SecuredClock() {
+    full_speed();
+    rcc.write(cr, rcc.read(cr) | csson);
+  }
+};
+
+TEST_F(SecuredClock, IsTheInternalOscillatorAfterAFailureAndNmiIsHighUntilItIsCleared) {
+  EXPECT_EQ(rcc.read(cr) & csson, csson);
+  EXPECT_EQ(rcc.read(cir), 0U);
+  rcc.set_crystal(false);
+  EXPECT_TRUE(rcc.core_stands_still());
+  wait(Rcc::failure_detection - 1);
+  EXPECT_FALSE(chip.non_maskable);
+  wait(1);
+  EXPECT_TRUE(chip.non_maskable);
+  EXPECT_FALSE(rcc.core_stands_still());
+  EXPECT_EQ(rcc.read(cr) & (hseon | hserdy | pllon | pllrdy), 0U);
+  EXPECT_EQ(rcc.read(cfgr), 0x9400U) << "SW and SWS: HSI; the prescalers stay";
+  EXPECT_EQ(rcc.clocks().core, Clocks::hsi);
+  EXPECT_EQ(rcc.clocks().apb1, 4 * Clocks::hsi);
+  EXPECT_EQ(rcc.read(cir), cssf);
+  rcc.write(cir, cssc);
+  EXPECT_EQ(rcc.read(cir), 0U);
+  EXPECT_FALSE(chip.non_maskable);
+}
+
+TEST_F(SecuredClock, EndsWithAReset) {
+  rcc.set_crystal(false);
+  wait(Rcc::failure_detection);
+  flash.reset();
+  rcc.reset();
+  EXPECT_FALSE(chip.non_maskable);
+  EXPECT_EQ(rcc.read(cir), 0U);
+  EXPECT_EQ(rcc.read(cr) & csson, 0U);
+  rcc.write(cr, hsion | hseon);
+  wait(10 * Rcc::hse_start);
+  EXPECT_EQ(rcc.read(cr) & hserdy, 0U) << "the crystal is still broken";
+}
+
+TEST_F(SecuredClock, DoesNotReactToAPllThatLosesItsLock) {
+  rcc.set_pll(false);
+  wait(1'000 * us);
+  EXPECT_FALSE(chip.non_maskable);
+  EXPECT_TRUE(rcc.core_stands_still());
 }
 
 }  // namespace

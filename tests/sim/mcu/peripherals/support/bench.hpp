@@ -28,6 +28,7 @@ class BenchChip final : public ChipServices {
     }
     interrupt_changes.emplace_back(time, high);
   }
+  void set_non_maskable(bool high) override { non_maskable = high; }
   void request_reset(ResetCause cause) override { resets.emplace_back(time, cause); }
   void reschedule() override {}
 
@@ -46,7 +47,8 @@ class BenchChip final : public ChipServices {
   LocalTime time = 0;
   Clocks settings;
   const Clocks* clock_source = nullptr;  ///< e.g. an RCC's; else `settings`
-  std::set<unsigned> interrupts;         ///< lines that are high
+  bool non_maskable = false;
+  std::set<unsigned> interrupts;  ///< lines that are high
   std::vector<std::pair<LocalTime, bool>> interrupt_changes;
   std::vector<std::pair<LocalTime, ResetCause>> resets;
 };

@@ -64,6 +64,8 @@ void Emergencies::report_reset_cause() {
     report(EmergencyCode::watchdog_reset, identity_.reset_detail);
   } else if (identity_.reset_cause == ResetCause::fault) {
     report(EmergencyCode::software_fault, identity_.reset_detail);
+  } else if (identity_.reset_cause == ResetCause::clock) {
+    report(EmergencyCode::clock_failure, identity_.reset_detail);
   }
 }
 

@@ -12,6 +12,7 @@ enum class ResetCause : std::uint8_t {
   software,  ///< on request
   watchdog,  ///< the program has not fed the watchdog in time
   fault,     ///< the program broke a rule of the processor, or one of its own
+  clock,     ///< the crystal or the PLL had stopped or had not started
 };
 
 /// What distinguishes a module from all others, and why its program has started.
@@ -22,7 +23,7 @@ struct ModuleIdentity {
   std::uint32_t core_fingerprint = 0;        ///< of the core it is built from: proleg::core_fingerprint
   std::uint32_t capabilities = 0;            ///< object 0x2000:5. Module takes measures_angle from the board record
   ResetCause reset_cause = ResetCause::power_on;
-  std::uint32_t reset_detail = 0;  ///< of a fault: where the program was (program counter); 0: not known
+  std::uint32_t reset_detail = 0;  ///< of fault and clock: where the program was (program counter); 0: not known
 };
 
 /// The serial number of object 0x1018, which has 32 bits: CRC-32 of the unique id, little-endian.

@@ -38,6 +38,7 @@ ClockResult start_clocks() {
   if (!wait_until_set(rcc::cr, rcc::cr_hserdy, reads_in_50_ms)) {
     return ClockResult::no_crystal;
   }
+  rcc::cr.set(rcc::cr_csson);  // NMI from here on if the crystal stops: faults.cpp
   // 168 MHz needs the voltage regulator in scale 1, which it has from reset on (RM0090, section 5.4.1).
   rcc::pllcfgr.change(rcc::pllcfgr_mask, rcc::pllcfgr_of(pll_m, pll_n, pll_p, pll_q) | rcc::pllcfgr_pllsrc_hse);
   rcc::cr.set(rcc::cr_pllon);
@@ -51,7 +52,10 @@ ClockResult start_clocks() {
   rcc::cfgr.change(rcc::cfgr_prescalers_mask, rcc::cfgr_hpre_1 | rcc::cfgr_ppre1_4 | rcc::cfgr_ppre2_2);
   rcc::cfgr.change(rcc::cfgr_sw_mask, rcc::cfgr_sw_pll);
   if (!switch_to_pll()) {
-    rcc::cfgr.change(rcc::cfgr_prescalers_mask, 0);  // the console needs the initial frequency of APB1
+    // First the source: a PLL that locks late would clock the buses without prescalers. They are set back because the
+    // console needs the initial frequency of APB1.
+    rcc::cfgr.change(rcc::cfgr_sw_mask, rcc::cfgr_sw_hsi);
+    rcc::cfgr.change(rcc::cfgr_prescalers_mask, 0);
     return ClockResult::no_pll;
   }
   return ClockResult::ok;

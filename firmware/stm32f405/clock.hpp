@@ -10,6 +10,8 @@ enum class ClockResult : std::uint8_t {
   no_pll,      ///< the PLL did not lock, or the clock did not switch to it
 };
 
+/// From here on a crystal that stops is a fault (FaultRecord::Reason::crystal_stopped).
+///
 /// Switches from the internal oscillator to the frequencies of pins.hpp, by crystal and PLL. Ends within 100 ms in any
 /// case. If it fails, the chip stays on the internal oscillator, which is too inaccurate for CAN at 1 Mbit/s.
 [[nodiscard]] ClockResult start_clocks();

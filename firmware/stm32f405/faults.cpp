@@ -4,6 +4,8 @@
 
 #include "firmware/stm32f405/handlers.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
+#include "firmware/stm32f405/registers/rcc.hpp"
+#include "firmware/stm32f405/servo.hpp"
 
 extern "C" {
 
@@ -60,7 +62,7 @@ FaultRecord::Reason reason_of(std::uint32_t exception) {
   constexpr std::uint32_t non_maskable = 2;
   constexpr std::uint32_t first_interrupt = 11;
   if (exception == non_maskable) {
-    return FaultRecord::Reason::non_maskable;
+    return rcc::cir.has(rcc::cir_cssf) ? FaultRecord::Reason::crystal_stopped : FaultRecord::Reason::non_maskable;
   }
   return exception < first_interrupt ? FaultRecord::Reason::processor_fault : FaultRecord::Reason::unexpected_interrupt;
 }
@@ -83,6 +85,8 @@ std::string_view text_of(FaultRecord::Reason reason) {
       return "the PLL does not lock";
     case FaultRecord::Reason::no_can:
       return "the CAN controller does not answer";
+    case FaultRecord::Reason::crystal_stopped:
+      return "the crystal has stopped";
   }
   return "unknown";
 }
@@ -116,8 +120,8 @@ extern "C" {
 
 using proleg::stm32f405::FaultRecord;
 
-/// All faults, and interrupts that the program does not enable. The stack pointer may be wrong: the record is written
-/// with a new stack.
+/// All faults, NMI, and interrupts that the program does not enable. The stack pointer may be wrong: the record is
+/// written with a new stack.
 [[gnu::naked]] void fault_handler() {
   asm volatile(
       "mrs r0, msp\n\t"
@@ -128,6 +132,8 @@ using proleg::stm32f405::FaultRecord;
 }
 
 void report_fault(const std::uint32_t* frame) {
+  // First the servo: after a clock failure its timer runs at the wrong frequency.
+  proleg::stm32f405::Servo::cut_pulse();
   FaultRecord record;
   asm volatile("mrs %0, ipsr" : "=r"(record.exception));
   record.reason = proleg::stm32f405::reason_of(record.exception);

@@ -13,12 +13,13 @@ namespace proleg::stm32f405 {
 struct FaultRecord {
   enum class Reason : std::uint32_t {
     processor_fault,       ///< HardFault, to which bus, usage and memory faults escalate: CFSR says more
-    non_maskable,          ///< NMI: the clock security system, which is not used
+    non_maskable,          ///< NMI, but not from the clock security system
     unexpected_interrupt,  ///< one that the program does not enable
     pure_virtual_call,
     no_crystal,  ///< HSE did not start: without it there is no CAN
     no_pll,
-    no_can,  ///< the controller does not enter its initialization mode
+    no_can,           ///< the controller does not enter its initialization mode
+    crystal_stopped,  ///< HSE stopped while it was in use: all clocks had the wrong frequency
   };
 
   Reason reason = Reason::processor_fault;
@@ -33,6 +34,12 @@ struct FaultRecord {
   [[nodiscard]] std::uint32_t lr() const { return frame[5]; }
   [[nodiscard]] std::uint32_t pc() const { return frame[6]; }
 };
+
+/// Whether a clock of the chip has failed, and not the program.
+[[nodiscard]] constexpr bool is_clock_failure(FaultRecord::Reason reason) {
+  using Reason = FaultRecord::Reason;
+  return reason == Reason::no_crystal || reason == Reason::no_pll || reason == Reason::crystal_stopped;
+}
 
 /// For the console.
 [[nodiscard]] std::string_view text_of(FaultRecord::Reason reason);

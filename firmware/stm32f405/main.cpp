@@ -31,7 +31,7 @@ Start find_start() {
   rcc::csr.set(rcc::csr_rmvf);
   start.fault = take_fault_record();
   if (start.fault) {
-    start.cause = ResetCause::fault;
+    start.cause = is_clock_failure(start.fault->reason) ? ResetCause::clock : ResetCause::fault;
   }
   return start;
 }
@@ -48,6 +48,8 @@ std::string_view text_of(ResetCause cause) {
       return "watchdog";
     case ResetCause::fault:
       return "fault";
+    case ResetCause::clock:
+      return "clock failure";
   }
   return "unknown";
 }
@@ -113,10 +115,13 @@ void print(const Start& start, const std::optional<firmware::BoardRecord>& recor
   wait_for_watchdog();
 }
 
-void start_clocks_or_give_up() {
+void start_clocks_or_give_up(const Start& start) {
   const ClockResult result = start_clocks();
   if (result != ClockResult::ok) {
     hardware.console.start(board::internal_oscillator);
+    if (start.fault) {
+      print(*start.fault);
+    }
     give_up(result == ClockResult::no_crystal ? FaultRecord::Reason::no_crystal : FaultRecord::Reason::no_pll);
   }
 }
@@ -150,7 +155,7 @@ void run_program() {
   static_cast<void>(start_watchdog());  // if that fails it has 512 ms instead of 200, which is enough
   const Start start = find_start();
   start_pins();
-  start_clocks_or_give_up();
+  start_clocks_or_give_up(start);
   hardware.clock.start();
   hardware.console.start(board::apb1);
   print(start, proleg::firmware::newest(hardware.board_records.contents(0), hardware.board_records.contents(1)));

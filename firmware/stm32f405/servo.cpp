@@ -58,6 +58,13 @@ void Servo::pulse(std::int32_t width, std::uint32_t period_us) {
   }
 }
 
+void Servo::cut_pulse() {
+  // The output register holds 0 since start_pins(). Before that the port has no clock, and the pin is an input.
+  if (rcc::ahb1enr.has(rcc::ahb1enr_gpioa)) {
+    set_mode(board::servo, PinMode::output);
+  }
+}
+
 void Servo::off() {
   // First the pin, which start_pins() has set low: the level is not defined by a timer whose channel is off.
   set_mode(board::servo, PinMode::output);

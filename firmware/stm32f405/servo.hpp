@@ -15,6 +15,8 @@ class Servo final : public firmware::ServoPort {
   /// width: 1 or more.
   void pulse(std::int32_t width, std::uint32_t period_us) override;
   void off() override;
+  /// The pin is low at once, and stays low: the program cannot continue. For any priority.
+  static void cut_pulse();
 
  private:
   bool is_running_ = false;

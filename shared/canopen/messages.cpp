@@ -136,6 +136,8 @@ std::string_view describe(EmergencyCode code) {
       return "over-current";
     case EmergencyCode::over_temperature:
       return "over-temperature";
+    case EmergencyCode::clock_failure:
+      return "reset after a failure of the crystal or the PLL";
     case EmergencyCode::watchdog_reset:
       return "reset by the watchdog";
     case EmergencyCode::software_fault:

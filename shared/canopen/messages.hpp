@@ -108,11 +108,12 @@ struct CommitMessage {
 [[nodiscard]] CanFrame encode(const CommitMessage& message);
 [[nodiscard]] std::optional<CommitMessage> decode_commit(const CanFrame& frame);
 
-/// Emergency error codes (CiA 301, table 26); 0xFFxx are the protocol's own.
+/// Emergency error codes (CiA 301, table 26, and CiA 402, error codes); 0xFFxx are the protocol's own.
 enum class EmergencyCode : std::uint16_t {
   none = 0x0000,  ///< the error is over
   over_current = 0x2310,
   over_temperature = 0x4210,
+  clock_failure = 0x5220,   ///< the module was reset because a clock of its chip failed; detail: as below
   watchdog_reset = 0x6010,  ///< the watchdog has reset the module; detail: where the program was, 0: not known
   software_fault = 0x6100,  ///< the module was reset after a fault of its program; detail: as above
   not_configured = 0x6300,  ///< started before it was configured; detail: the kernel's last refusal (0x2001:8), or 0

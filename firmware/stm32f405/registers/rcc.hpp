@@ -11,6 +11,7 @@ inline constexpr std::uintptr_t base = 0x4002'3800;
 inline constexpr Register cr{base + 0x00};
 inline constexpr std::uint32_t cr_hseon = 1U << 16U;
 inline constexpr std::uint32_t cr_hserdy = 1U << 17U;
+inline constexpr std::uint32_t cr_csson = 1U << 19U;  ///< clock security system (7.2.7)
 inline constexpr std::uint32_t cr_pllon = 1U << 24U;
 inline constexpr std::uint32_t cr_pllrdy = 1U << 25U;
 
@@ -25,6 +26,7 @@ inline constexpr std::uint32_t pllcfgr_mask = 0x0F43'7FFF;
 
 inline constexpr Register cfgr{base + 0x08};
 inline constexpr std::uint32_t cfgr_sw_mask = 3U;
+inline constexpr std::uint32_t cfgr_sw_hsi = 0U;
 inline constexpr std::uint32_t cfgr_sw_pll = 2U;
 inline constexpr std::uint32_t cfgr_sws_mask = 3U << 2U;
 inline constexpr std::uint32_t cfgr_sws_pll = 2U << 2U;
@@ -32,6 +34,9 @@ inline constexpr std::uint32_t cfgr_prescalers_mask = 0x0000'FCF0;
 inline constexpr std::uint32_t cfgr_hpre_1 = 0U << 4U;
 inline constexpr std::uint32_t cfgr_ppre1_4 = 5U << 10U;
 inline constexpr std::uint32_t cfgr_ppre2_2 = 4U << 13U;
+
+inline constexpr Register cir{base + 0x0C};
+inline constexpr std::uint32_t cir_cssf = 1U << 7U;  ///< the clock security system has seen the crystal stop
 
 inline constexpr Register ahb1enr{base + 0x30};
 inline constexpr std::uint32_t ahb1enr_gpioa = 1U << 0U;

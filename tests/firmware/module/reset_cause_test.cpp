@@ -34,12 +34,15 @@ TEST(ResetCauses, OfEverydayLifeAreNotWorthAMessage) {
   }
 }
 
-TEST(ResetCauses, WatchdogAndFaultAreToldAfterTheBootUpMessage) {
+TEST(ResetCauses, WatchdogFaultAndClockFailureFollowTheBootUpMessage) {
   // Codes of CiA 301, table 26, and IEC 61800-7-201: 6010 software reset (watchdog), 6100 internal software.
   EXPECT_EQ(frames_after_power_on(ResetCause::watchdog),
             (std::vector{boot_up, CanFrame{0x083, 8, {0x10, 0x60, 0, 0, 0, 0, 0, 0}}}));
   EXPECT_EQ(frames_after_power_on(ResetCause::fault, 0x08001234),
             (std::vector{boot_up, CanFrame{0x083, 8, {0x00, 0x61, 0, 0x34, 0x12, 0x00, 0x08, 0}}}));
+  // CiA 402: 5220 computing circuit.
+  EXPECT_EQ(frames_after_power_on(ResetCause::clock, 0x08001234),
+            (std::vector{boot_up, CanFrame{0x083, 8, {0x20, 0x52, 0, 0x34, 0x12, 0x00, 0x08, 0}}}));
 }
 
 TEST(ResetCauses, AreNotReportedAgainWhenTheHostResetsTheModule) {

@@ -10,6 +10,7 @@
 #include "sim/mcu/peripherals/adc.hpp"
 #include "sim/mcu/peripherals/bxcan.hpp"
 #include "sim/mcu/peripherals/chip_identity.hpp"
+#include "sim/mcu/peripherals/exti.hpp"
 #include "sim/mcu/peripherals/flash_interface.hpp"
 #include "sim/mcu/peripherals/iwdg.hpp"
 #include "sim/mcu/peripherals/pwr.hpp"
@@ -19,6 +20,19 @@
 #include "sim/mcu/peripherals/usart.hpp"
 
 namespace proleg::sim {
+namespace {
+
+/// DS8626, embedded reset and power control block: VBOR by BOR_LEV, then VPOR/PDR; typical.
+struct ResetThreshold {
+  std::uint32_t falling_mv;
+  std::uint32_t rising_mv;
+};
+constexpr std::array<ResetThreshold, 4> reset_thresholds{
+    {{2'830, 2'920}, {2'500, 2'590}, {2'190, 2'290}, {1'680, 1'720}}};
+constexpr unsigned power_down = 3;
+
+}  // namespace
+
 class Stm32f405::Implementation final : public CpuSurroundings, public ChipServices, public FlashMemory {
  public:
   Implementation(Bus& bus, BoardSignals& board, const ChipSettings& settings)
@@ -26,7 +40,8 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
         oscillator_(settings.crystal_parts_per_billion),
         cpu_(*this),
         iwdg_(*this),
-        pwr_(*this),
+        exti_(*this),
+        pwr_(*this, &exti_),
         flash_(*this, *this),
         rcc_(*this, flash_, pwr_, iwdg_),
         syscfg_(*this),
@@ -36,7 +51,8 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
         adc_(*this, board),
         can_(*this, bus, [this](LocalTime time) { return oscillator_.when(time); }),
         pins_(*this, board, timer_2_) {
-    peripherals_ = {&iwdg_, &pwr_, &flash_, &rcc_, &syscfg_, &timer_2_, &timer_5_, &usart_, &adc_, &can_};
+    flash_.set_brown_out_level(settings.brown_out_level);
+    peripherals_ = {&iwdg_, &exti_, &pwr_, &flash_, &rcc_, &syscfg_, &timer_2_, &timer_5_, &usart_, &adc_, &can_};
     for (const auto& port : pins_.ports()) {
       peripherals_.push_back(port.get());
     }
@@ -54,18 +70,38 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     }
     on_ = true;
     stands_still_ = false;
+    is_held_ = false;
+    release_cause_ = ResetCause::brown_out;
     cpu_.lose_memory(settings_.seed + ++starts_);
     oscillator_.start(now);
     anchor_time_ = 0;
     anchor_instructions_ = cpu_.instructions();
     reset_cause_.reset();
     start(ResetCause::power_on);
+    set_supply(supply_mv_);
+  }
+
+  void set_supply(std::uint32_t mv) {
+    supply_mv_ = mv;
+    change_outside([&] { pwr_.set_supply(mv); });
+    if (!on_) {
+      return;
+    }
+    const ResetThreshold& threshold = reset_thresholds.at(flash_.brown_out_level());
+    if (mv < reset_thresholds[power_down].falling_mv) {
+      release_cause_ = ResetCause::power_on;
+    }
+    if (mv < threshold.falling_mv && !is_held_) {
+      hold();
+    } else if (mv >= threshold.rising_mv && is_held_) {
+      release();
+    }
   }
 
   [[nodiscard]] BusTime next_event() const {
     if (!next_event_) {
       next_event_ = never_on_bus;
-      if (on_ && !stands_still_) {
+      if (on_ && !stands_still_ && !is_held_) {
         const LocalTime next = is_awake() ? now() : next_internal_event();
         next_event_ = std::min(can_.next_request(), oscillator_.when(next));
       }
@@ -75,6 +111,10 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   void advance_to(BusTime now_on_bus, BusTime quiet_until) {
     if (!on_ || stands_still_) {
+      return;
+    }
+    if (is_held_) {
+      pass_to(std::max(now(), oscillator_.at(now_on_bus)));
       return;
     }
     invalidate_next_events();
@@ -135,6 +175,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   Oscillator oscillator_;
   Cpu cpu_;
   Iwdg iwdg_;
+  Exti exti_;
   Pwr pwr_;
   FlashInterface flash_;
   Rcc rcc_;
@@ -258,16 +299,39 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
 
   // Resets.
 
-  void start(ResetCause cause) {
+  void reset_peripherals() {
     for (Peripheral* peripheral : peripherals_) {
       peripheral->reset();
     }
+    pins_.reset();
+    invalidate_next_events();
+  }
+
+  void start(ResetCause cause) {
+    reset_peripherals();
     rcc_.note_start(cause);
     cpu_.reset();
     known_core_period_ = core_period();
     faults_since_reset_ = 0;
-    pins_.reset();
-    invalidate_next_events();
+  }
+
+  /// In reset, by the supply voltage.
+  void hold() {
+    pass_to(now());
+    cut_flash();
+    is_held_ = true;
+    reset_cause_.reset();
+    reset_peripherals();
+  }
+
+  void release() {
+    is_held_ = false;
+    const ResetCause cause = std::exchange(release_cause_, ResetCause::brown_out);
+    if (cause == ResetCause::power_on) {
+      cpu_.lose_memory(settings_.seed + ++starts_);
+    }
+    start(cause);
+    new_event(ChipEvent::Kind::reset).cause = cause;
   }
 
   void restart() {
@@ -457,6 +521,9 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   std::uint32_t faults_since_reset_ = 0;
   bool on_ = false;
   bool stands_still_ = false;  ///< the model has ended
+  bool is_held_ = false;       ///< in reset
+  ResetCause release_cause_ = ResetCause::brown_out;
+  std::uint32_t supply_mv_ = Pwr::nominal_supply_mv;
   bool steps_ = false;
   std::deque<ChipEvent> events_;
 };
@@ -480,6 +547,7 @@ void Stm32f405::set_crystal(bool runs) {
 void Stm32f405::set_pll(bool locks) {
   implementation_->change_outside([this, locks] { implementation_->rcc_.set_pll(locks); });
 }
+void Stm32f405::set_supply(std::uint32_t mv) { implementation_->set_supply(mv); }
 std::optional<LocalTime> Stm32f405::pulse_time(unsigned channel) const {
   return implementation_->pins_.pulse_time(channel);
 }

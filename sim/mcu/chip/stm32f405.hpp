@@ -25,6 +25,7 @@ struct ChipSettings {
   std::array<std::uint32_t, 3> unique_id{};
   std::int32_t crystal_parts_per_billion = 0;  ///< of the 8 MHz crystal, against true time
   std::uint64_t seed = 0;                      ///< of what a cut flash operation leaves behind
+  unsigned brown_out_level = 3;                ///< option bytes BOR_LEV: 0 to 2: level 3 to 1, 3: off
 };
 
 /// An event to report to the user.
@@ -65,6 +66,9 @@ class Stm32f405 {
   void set_crystal(bool runs);
   /// Whether the PLL can lock.
   void set_pll(bool locks);
+  /// VDD, 3,300 from the start. Below the threshold of the brown-out reset (ChipSettings) or of the power-down reset
+  /// the chip is held in reset; below the latter it loses its memory. The analogue supply stays.
+  void set_supply(std::uint32_t mv);
 
   /// Length of the pulses at an output of TIM2 (1 to 4) that reaches its pin, as Timer::high_time(); nothing if there
   /// are none.

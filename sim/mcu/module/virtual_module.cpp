@@ -62,6 +62,8 @@ const char* in_words(ResetCause cause) {
   switch (cause) {
     case ResetCause::power_on:
       return "power";
+    case ResetCause::brown_out:
+      return "a supply voltage that was too low";
     case ResetCause::pin:
       return "its reset pin";
     case ResetCause::software:

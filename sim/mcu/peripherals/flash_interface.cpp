@@ -40,6 +40,7 @@ constexpr std::uint32_t cr_kept = 0x0300'037F;  // ERRIE, EOPIE, PSIZE, SNB, MER
 constexpr std::uint32_t optcr_reset = 0x0FFF'AAED;
 constexpr std::uint32_t optcr_lock = 1U << 0U;
 constexpr std::uint32_t optcr_start = 1U << 1U;
+constexpr std::uint32_t optcr_brown_out = 3U << 2U;
 
 constexpr std::uint32_t flash_bytes = 1024 * 1024;
 constexpr unsigned x64 = 3;
@@ -81,6 +82,13 @@ FlashInterface::FlashInterface(ChipServices& chip, FlashMemory& memory, std::uin
       interrupt_(chip, interrupt_position) {
   reset();
 }
+
+void FlashInterface::set_brown_out_level(unsigned level) {
+  option_bytes_ = (option_bytes_ & ~optcr_brown_out) | (level << 2U & optcr_brown_out);
+  optcr_ = option_bytes_;
+}
+
+unsigned FlashInterface::brown_out_level() const { return field(option_bytes_, 2, 2); }
 
 void FlashInterface::reset() {
   acr_ = 0;

@@ -57,6 +57,10 @@ class FlashInterface final : public RegisterBlock {
   /// protected_sectors: bit n: sector n cannot be erased or programmed (option bytes nWRP, which a programmer set).
   FlashInterface(ChipServices& chip, FlashMemory& memory, std::uint16_t protected_sectors = 0);
 
+  /// Option bytes BOR_LEV: 0: level 3, the highest, 1: level 2, 2: level 1, 3: off. A programmer writes them.
+  void set_brown_out_level(unsigned level);
+  [[nodiscard]] unsigned brown_out_level() const;
+
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
   /// Drops an operation that is under way: call cut() first.

@@ -21,7 +21,7 @@ class UnmodelledAccess : public std::runtime_error {
 };
 
 /// Why a chip starts, as RCC_CSR shows it (RM0090, 7.3.21).
-enum class ResetCause : std::uint8_t { power_on, pin, software, independent_watchdog };
+enum class ResetCause : std::uint8_t { power_on, brown_out, pin, software, independent_watchdog };
 
 /// What a chip provides for its peripherals.
 class ChipServices {

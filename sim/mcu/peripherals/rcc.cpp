@@ -109,6 +109,9 @@ void Rcc::note_start(ResetCause cause) {
     case ResetCause::power_on:
       reset_flags_ = csr_porrstf | csr_pinrstf | csr_borrstf;
       break;
+    case ResetCause::brown_out:
+      reset_flags_ |= csr_borrstf | csr_pinrstf;
+      break;
     case ResetCause::pin:
       reset_flags_ |= csr_pinrstf;
       break;

@@ -17,6 +17,8 @@ EmergencyCode code_of(Fault fault) {
       return EmergencyCode::foreign_configuration;
     case Fault::over_current:
       return EmergencyCode::over_current;
+    case Fault::supply_low:
+      return EmergencyCode::supply_low;
     case Fault::bus_off:
       break;
   }
@@ -46,12 +48,12 @@ void Emergencies::keep(EmergencyCode code, std::uint32_t detail) {
 }
 
 [[gnu::noinline]] void Emergencies::raise(Fault fault, std::uint32_t detail) {
-  faults_ |= bit(fault);
+  faults_ = static_cast<std::uint16_t>(faults_ | bit(fault));
   report(code_of(fault), detail);
 }
 
 [[gnu::noinline]] void Emergencies::end(Fault fault) {
-  faults_ = static_cast<std::uint8_t>(faults_ & ~bit(fault));
+  faults_ = static_cast<std::uint16_t>(faults_ & ~bit(fault));
   report(EmergencyCode::none, static_cast<std::uint32_t>(code_of(fault)));
 }
 
@@ -72,12 +74,16 @@ void Emergencies::report_reset_cause() {
 std::uint8_t Emergencies::error_register() const {
   constexpr unsigned generic = 1U << 0U;
   constexpr unsigned current = 1U << 1U;
+  constexpr unsigned voltage = 1U << 2U;
   constexpr unsigned communication = 1U << 4U;
   constexpr unsigned manufacturer_specific = 1U << 7U;
   const unsigned over_current = bit(Fault::over_current);
+  const unsigned supply_low = bit(Fault::supply_low);
   const unsigned foreign = bit(Fault::foreign_configuration);
+  const unsigned others = over_current | supply_low | foreign;
   return static_cast<std::uint8_t>((faults_ != 0 ? generic : 0U) | ((faults_ & over_current) != 0 ? current : 0U) |
-                                   ((faults_ & ~foreign & ~over_current) != 0 ? communication : 0U) |
+                                   ((faults_ & supply_low) != 0 ? voltage : 0U) |
+                                   ((faults_ & ~others) != 0 ? communication : 0U) |
                                    ((faults_ & foreign) != 0 ? manufacturer_specific : 0U));
 }
 

@@ -15,6 +15,7 @@ enum class Fault : std::uint8_t {
   foreign_configuration,
   over_current,
   bus_off,
+  supply_low,
 };
 
 /// Sends EMCY and keeps the error register (CiA 301, section 7.2.7). A module that is
@@ -62,14 +63,14 @@ class Emergencies {
  private:
   void end(Fault fault);
   void keep(canopen::EmergencyCode code, std::uint32_t detail);
-  [[nodiscard]] static std::uint8_t bit(Fault fault) {
-    return static_cast<std::uint8_t>(1U << static_cast<unsigned>(fault));
+  [[nodiscard]] static std::uint16_t bit(Fault fault) {
+    return static_cast<std::uint16_t>(1U << static_cast<unsigned>(fault));
   }
 
   const ModuleIdentity& identity_;
   const NetworkNode& network_;
   Outbox& outbox_;
-  std::uint8_t faults_ = 0;
+  std::uint16_t faults_ = 0;
   std::uint8_t history_size_ = 0;
   std::array<std::uint32_t, canopen::object::recent_error.count> history_{};
   bool is_reset_cause_pending_ = false;

@@ -153,6 +153,7 @@ void Module::transmitted(Microseconds now, const CanFrame& frame) {
   parts_.producer.transmitted(now, frame);
   if (parts_.network.confirm_boot_up(frame)) {
     parts_.emergencies.report_reset_cause();
+    require_supply(parts_);
   }
   // A controller does not receive its own frames: these count for the module that sends them as for all others.
   if (frame.identifier == identifier::sync || frame.identifier == identifier::tick) {
@@ -175,6 +176,16 @@ void Module::bus_back(Microseconds now) {
     return_to_bus(parts_, now);
     finish_event(now);
   }
+}
+
+void Module::supply_low(Microseconds now) {
+  parts_.is_supply_low = true;
+  finish_event(now);
+}
+
+void Module::supply_good(Microseconds now) {
+  end_supply_low(parts_);
+  finish_event(now);
 }
 
 void Module::poll(Microseconds now) {
@@ -205,6 +216,7 @@ void Module::finish_event(Microseconds now) {
     objects_.reset();  // a stopped node has no SDO (CiA 301, table 37)
   }
   clear_over_current(parts_);
+  require_supply(parts_);
   parts_.drive.update(now, parts_.network.operational(), synchronised());
   update_sync_watch(parts_, now);
   find_deadlines();

@@ -26,6 +26,10 @@ class Module {
   void bus_off(Microseconds now);
   /// The controller takes part in the bus again, whether it was asked to or not.
   void bus_back(Microseconds now);
+  /// The supply voltage is too low: no pulses, Fault. It is good again: pulses need a decision, as after each fault.
+  void supply_low(Microseconds now);
+  void supply_good(Microseconds now);
+  [[nodiscard]] bool is_supply_low() const { return parts_.is_supply_low; }
   /// Does what is due; to be called at next_deadline() or later.
   void poll(Microseconds now);
   /// Later than the `now` of the poll() before it, if nothing else was called since.

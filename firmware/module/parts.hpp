@@ -63,6 +63,7 @@ struct Parts {
   SyncProducer producer{outbox};
   Drive drive;
   ServoMonitor monitor;
+  bool is_supply_low = false;  ///< a reset of the node does not change it
   ContactPort& contacts;
 };
 

@@ -40,6 +40,22 @@ void read_servo(Parts& parts, Microseconds now) {
   }
 }
 
+void end_supply_low(Parts& parts) {
+  parts.is_supply_low = false;
+  parts.emergencies.clear(Fault::supply_low);
+}
+
+void require_supply(Parts& parts) {
+  // Before the boot-up message the drive cannot be enabled, and EMCY would overtake the message.
+  if (!parts.is_supply_low || !parts.network.has_sent_boot_up()) {
+    return;
+  }
+  parts.drive.power().fault();
+  if (!parts.emergencies.is_raised(Fault::supply_low)) {
+    parts.emergencies.raise(Fault::supply_low, 0);
+  }
+}
+
 void poll_bus(Parts& parts, Microseconds now) {
   if (parts.recovery.poll(now)) {
     parts.emergencies.clear(Fault::bus_off);

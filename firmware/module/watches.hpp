@@ -1,7 +1,7 @@
 #pragma once
 
-// Watching the bus, the host's heartbeat, SYNC and the servo's current. What fails is reported by EMCY and stops the
-// servo: a quick stop, or a fault for over-current. The EMCY `none` reports that it is over.
+// Watching the bus, the host's heartbeat, SYNC, the servo's current and the supply. What fails is reported by EMCY and
+// stops the servo: a quick stop, or a fault for over-current and supply. The EMCY `none` reports that it is over.
 
 #include "firmware/module/parts.hpp"
 
@@ -17,12 +17,16 @@ void receive_heartbeat(Parts& parts, Microseconds now, const CanFrame& frame);
 /// Takes a reading and judges the current.
 void read_servo(Parts& parts, Microseconds now);
 
+/// The supply voltage is good again.
+void end_supply_low(Parts& parts);
+
 void poll_bus(Parts& parts, Microseconds now);
 void poll_host(Parts& parts, Microseconds now);
 void poll_sync(Parts& parts, Microseconds now);
 
-/// After each event: whether over-current is over, and whether SYNC is expected.
+/// After each event: whether over-current is over, whether the supply allows power, and whether SYNC is expected.
 void clear_over_current(Parts& parts);
+void require_supply(Parts& parts);
 void update_sync_watch(Parts& parts, Microseconds now);
 
 }  // namespace proleg::firmware

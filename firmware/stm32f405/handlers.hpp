@@ -10,6 +10,7 @@ void can1_tx_handler();             ///< hardware.cpp, as the interrupts below
 void can1_rx0_handler();
 void can1_sce_handler();
 void tim5_handler();
+void pvd_handler();
 void usart2_handler();
 
 /// The program at the lowest priority, which interrupts request; and the start. Each program (main.cpp, the tests of

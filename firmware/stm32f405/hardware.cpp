@@ -18,7 +18,7 @@ void enable_interrupts() {
   nvic::enable(Interrupt::usart2);
   nvic::set_priority(Interrupt::timer_5, last);
   nvic::enable(Interrupt::timer_5);
-  for (const Interrupt interrupt : {Interrupt::can1_tx, Interrupt::can1_rx0, Interrupt::can1_sce}) {
+  for (const Interrupt interrupt : {Interrupt::pvd, Interrupt::can1_tx, Interrupt::can1_rx0, Interrupt::can1_sce}) {
     nvic::set_priority(interrupt, first);
     nvic::enable(interrupt);
   }
@@ -44,6 +44,11 @@ void can1_rx0_handler() {
 
 void can1_sce_handler() {
   hardware.can.on_status_interrupt(MicrosecondClock::stamp());
+  request_pend_sv();
+}
+
+void pvd_handler() {
+  hardware.supply.on_interrupt();
   request_pend_sv();
 }
 

@@ -7,6 +7,7 @@
 #include "firmware/stm32f405/microsecond_clock.hpp"
 #include "firmware/stm32f405/sensors.hpp"
 #include "firmware/stm32f405/servo.hpp"
+#include "firmware/stm32f405/supply.hpp"
 
 namespace proleg::stm32f405 {
 
@@ -17,6 +18,7 @@ struct Hardware {
   Servo servo;
   Contacts contacts;
   Sensors sensors;
+  Supply supply;
   Console console;
   BoardRecordFlash board_records;
 };

@@ -160,6 +160,7 @@ void run_program() {
   hardware.console.start(board::apb1);
   print(start, proleg::firmware::newest(hardware.board_records.contents(0), hardware.board_records.contents(1)));
   hardware.sensors.start();
+  hardware.supply.start();
   start_module(start);
   enable_interrupts();
   scb::scr.write(scb::scr_sleeponexit);

@@ -32,6 +32,9 @@ void ModuleTask::run() {
   if (hardware.can.recovering() && hardware.can.follow_recovery() && module_) {
     module_->bus_back(in_order(now));
   }
+  if (module_) {
+    follow_supply(now);
+  }
   if (now >= due_) {
     poll(now);
   }
@@ -65,6 +68,15 @@ void ModuleTask::take_events() {
       handle(*event, time);
     }
     hardware.can.drop_event();
+  }
+}
+
+void ModuleTask::follow_supply(Microseconds now) {
+  if (hardware.supply.take_drop()) {
+    module_->supply_low(in_order(now));
+  }
+  if (module_->is_supply_low() && !Supply::is_low()) {
+    module_->supply_good(in_order(now));
   }
 }
 

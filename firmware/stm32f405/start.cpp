@@ -45,6 +45,7 @@ constexpr VectorTable make_vectors() {
   const auto set = [&](Interrupt interrupt, Handler handler) {
     table.interrupts[static_cast<unsigned>(interrupt)] = handler;
   };
+  set(Interrupt::pvd, pvd_handler);
   set(Interrupt::can1_tx, can1_tx_handler);
   set(Interrupt::can1_rx0, can1_rx0_handler);
   set(Interrupt::can1_sce, can1_sce_handler);

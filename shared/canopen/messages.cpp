@@ -134,6 +134,8 @@ std::string_view describe(EmergencyCode code) {
       return "no error";
     case EmergencyCode::over_current:
       return "over-current";
+    case EmergencyCode::supply_low:
+      return "supply voltage too low";
     case EmergencyCode::over_temperature:
       return "over-temperature";
     case EmergencyCode::clock_failure:

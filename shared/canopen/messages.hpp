@@ -112,6 +112,7 @@ struct CommitMessage {
 enum class EmergencyCode : std::uint16_t {
   none = 0x0000,  ///< the error is over
   over_current = 0x2310,
+  supply_low = 0x3220,  ///< under-voltage of the chip's supply
   over_temperature = 0x4210,
   clock_failure = 0x5220,   ///< the module was reset because a clock of its chip failed; detail: as below
   watchdog_reset = 0x6010,  ///< the watchdog has reset the module; detail: where the program was, 0: not known

@@ -30,6 +30,7 @@ inline constexpr Register bfar{base + 0x38};
 }  // namespace scb
 
 enum class Interrupt : std::uint8_t {
+  pvd = 1,
   can1_tx = 19,
   can1_rx0 = 20,
   can1_sce = 22,

@@ -48,6 +48,7 @@ inline constexpr std::uint32_t apb1enr_tim2 = 1U << 0U;
 inline constexpr std::uint32_t apb1enr_tim5 = 1U << 3U;
 inline constexpr std::uint32_t apb1enr_usart2 = 1U << 17U;
 inline constexpr std::uint32_t apb1enr_can1 = 1U << 25U;
+inline constexpr std::uint32_t apb1enr_pwr = 1U << 28U;
 
 inline constexpr Register apb2enr{base + 0x44};
 inline constexpr std::uint32_t apb2enr_adc1 = 1U << 8U;

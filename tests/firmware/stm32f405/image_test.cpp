@@ -128,6 +128,7 @@ TEST_P(ImageTest, StartsWithAVectorTableWhoseEveryEntryIsAFunctionOfTheImage) {
   }
   // Positions from the same table, and PendSV's from PM0214, table 17.
   for (const auto& [position, handler] : {std::pair{14U, "pend_sv_handler"},
+                                          {16U + 1U, "pvd_handler"},
                                           {16U + 19U, "can1_tx_handler"},
                                           {16U + 20U, "can1_rx0_handler"},
                                           {16U + 22U, "can1_sce_handler"},

@@ -56,6 +56,8 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
     pending.clear();
     at(now).bus_off(local(now));
   }
+  void supply_low(Microseconds now) { at(now).supply_low(local(now)); }
+  void supply_good(Microseconds now) { at(now).supply_good(local(now)); }
   void bus_back(Microseconds now) { at(now).bus_back(local(now)); }
   [[nodiscard]] Microseconds next_deadline() const {
     const Microseconds deadline = module.next_deadline();

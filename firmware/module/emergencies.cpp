@@ -19,6 +19,8 @@ EmergencyCode code_of(Fault fault) {
       return EmergencyCode::over_current;
     case Fault::supply_low:
       return EmergencyCode::supply_low;
+    case Fault::sensors_failed:
+      return EmergencyCode::sensors_failed;
     case Fault::bus_off:
       break;
   }
@@ -76,15 +78,17 @@ std::uint8_t Emergencies::error_register() const {
   constexpr unsigned current = 1U << 1U;
   constexpr unsigned voltage = 1U << 2U;
   constexpr unsigned communication = 1U << 4U;
+  constexpr unsigned device_profile = 1U << 5U;
   constexpr unsigned manufacturer_specific = 1U << 7U;
   const unsigned over_current = bit(Fault::over_current);
   const unsigned supply_low = bit(Fault::supply_low);
   const unsigned foreign = bit(Fault::foreign_configuration);
-  const unsigned others = over_current | supply_low | foreign;
-  return static_cast<std::uint8_t>((faults_ != 0 ? generic : 0U) | ((faults_ & over_current) != 0 ? current : 0U) |
-                                   ((faults_ & supply_low) != 0 ? voltage : 0U) |
-                                   ((faults_ & ~others) != 0 ? communication : 0U) |
-                                   ((faults_ & foreign) != 0 ? manufacturer_specific : 0U));
+  const unsigned sensors = bit(Fault::sensors_failed);
+  const unsigned others = over_current | supply_low | sensors | foreign;
+  return static_cast<std::uint8_t>(
+      (faults_ != 0 ? generic : 0U) | ((faults_ & over_current) != 0 ? current : 0U) |
+      ((faults_ & supply_low) != 0 ? voltage : 0U) | ((faults_ & ~others) != 0 ? communication : 0U) |
+      ((faults_ & sensors) != 0 ? device_profile : 0U) | ((faults_ & foreign) != 0 ? manufacturer_specific : 0U));
 }
 
 }  // namespace proleg::firmware

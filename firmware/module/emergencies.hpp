@@ -16,6 +16,7 @@ enum class Fault : std::uint8_t {
   over_current,
   bus_off,
   supply_low,
+  sensors_failed,
 };
 
 /// Sends EMCY and keeps the error register (CiA 301, section 7.2.7). A module that is

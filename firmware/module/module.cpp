@@ -153,7 +153,7 @@ void Module::transmitted(Microseconds now, const CanFrame& frame) {
   parts_.producer.transmitted(now, frame);
   if (parts_.network.confirm_boot_up(frame)) {
     parts_.emergencies.report_reset_cause();
-    require_supply(parts_);
+    require_good_hardware(parts_);
   }
   // A controller does not receive its own frames: these count for the module that sends them as for all others.
   if (frame.identifier == identifier::sync || frame.identifier == identifier::tick) {
@@ -216,7 +216,7 @@ void Module::finish_event(Microseconds now) {
     objects_.reset();  // a stopped node has no SDO (CiA 301, table 37)
   }
   clear_over_current(parts_);
-  require_supply(parts_);
+  require_good_hardware(parts_);
   parts_.drive.update(now, parts_.network.operational(), synchronised());
   update_sync_watch(parts_, now);
   find_deadlines();

@@ -40,6 +40,7 @@ struct ServoReadings {
   /// Actual angle of the joint (binary angle); nothing without a feedback potentiometer.
   std::optional<std::int32_t> angle;
   std::int8_t temperature_c = 0;  ///< of the chip
+  bool are_new = true;            ///< measured since the last call; else they are those of an earlier one
 };
 
 class SensorPort {

@@ -10,6 +10,7 @@ void ServoMonitor::reset(const BoardRecord& board) {
   limit_ma_ = board.current_limit_ma;
   limit_time_ms_ = board.current_limit_time_ms;
   readings_ = {};
+  stale_readings_ = 0;
   clear_over_current();
   next_reading_ = never;
 }
@@ -21,7 +22,12 @@ void ServoMonitor::read(Microseconds now, std::uint32_t tick_period_us) {
   if (!measures_angle_) {
     readings_.angle.reset();
   }
-  judge_current(now);
+  if (readings_.are_new) {
+    stale_readings_ = 0;
+    judge_current(now);
+  } else if (!sensors_failed()) {
+    ++stale_readings_;
+  }
   next_reading_ = now + tick_period_us + tick_period_us / 2;
 }
 

@@ -5,9 +5,12 @@
 
 namespace proleg::firmware {
 
-/// Reads the sensors of servo and chip once a tick, and detects over-current.
+/// Reads the sensors of servo and chip once a tick, and detects over-current and sensors that do not measure.
 class ServoMonitor {
  public:
+  /// So many calls in a row without new readings are a failure: one alone can come right after another call.
+  static constexpr std::uint8_t max_stale_readings = 5;
+
   explicit ServoMonitor(SensorPort& port) : port_(port) {}
 
   /// Limits as in the settings of the board, nothing read yet. Without a feedback potentiometer an angle in the
@@ -27,6 +30,8 @@ class ServoMonitor {
 
   /// Whether all readings were above the limit for the limit's time, as of the last one.
   [[nodiscard]] bool over_current() const { return over_current_; }
+  /// Whether the sensors have stopped measuring. Over-current is not seen then.
+  [[nodiscard]] bool sensors_failed() const { return stale_readings_ >= max_stale_readings; }
   /// Starts again: readings so far do not count.
   void clear_over_current();
 
@@ -47,6 +52,7 @@ class ServoMonitor {
   bool over_current_ = false;
   Microseconds above_since_ = never;  ///< the first reading of those above the limit
   Microseconds next_reading_ = never;
+  std::uint8_t stale_readings_ = 0;
 };
 
 }  // namespace proleg::firmware

@@ -38,6 +38,12 @@ void read_servo(Parts& parts, Microseconds now) {
     parts.drive.power().fault();
     parts.emergencies.raise(Fault::over_current, 0);
   }
+  if (!parts.monitor.sensors_failed()) {
+    parts.emergencies.clear(Fault::sensors_failed);
+  } else if (!parts.emergencies.is_raised(Fault::sensors_failed)) {
+    parts.drive.power().fault();
+    parts.emergencies.raise(Fault::sensors_failed, 0);
+  }
 }
 
 void end_supply_low(Parts& parts) {
@@ -45,7 +51,10 @@ void end_supply_low(Parts& parts) {
   parts.emergencies.clear(Fault::supply_low);
 }
 
-void require_supply(Parts& parts) {
+void require_good_hardware(Parts& parts) {
+  if (parts.emergencies.is_raised(Fault::sensors_failed)) {
+    parts.drive.power().fault();
+  }
   // Before the boot-up message the drive cannot be enabled, and EMCY would overtake the message.
   if (!parts.is_supply_low || !parts.network.has_sent_boot_up()) {
     return;

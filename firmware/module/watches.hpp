@@ -1,7 +1,8 @@
 #pragma once
 
-// Watching the bus, the host's heartbeat, SYNC, the servo's current and the supply. What fails is reported by EMCY and
-// stops the servo: a quick stop, or a fault for over-current and supply. The EMCY `none` reports that it is over.
+// Watching the bus, the host's heartbeat, SYNC, the servo's current, its sensors and the supply. What fails is reported
+// by EMCY and stops the servo: a quick stop, or a fault for over-current, sensors and supply. The EMCY `none` reports
+// that it is over.
 
 #include "firmware/module/parts.hpp"
 
@@ -24,9 +25,10 @@ void poll_bus(Parts& parts, Microseconds now);
 void poll_host(Parts& parts, Microseconds now);
 void poll_sync(Parts& parts, Microseconds now);
 
-/// After each event: whether over-current is over, whether the supply allows power, and whether SYNC is expected.
+/// After each event: whether over-current is over, whether supply and sensors allow power, and whether SYNC is
+/// expected.
 void clear_over_current(Parts& parts);
-void require_supply(Parts& parts);
+void require_good_hardware(Parts& parts);
 void update_sync_watch(Parts& parts, Microseconds now);
 
 }  // namespace proleg::firmware

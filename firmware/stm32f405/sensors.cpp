@@ -36,8 +36,9 @@ void Sensors::start() {
 }
 
 firmware::ServoReadings Sensors::take_readings() {
-  if (!adc1::sr.has(adc1::sr_jeoc)) {
-    return readings_;  // called again within 33 us
+  readings_.are_new = adc1::sr.has(adc1::sr_jeoc);
+  if (!readings_.are_new) {
+    return readings_;  // called again within 33 us, or the ADC has stopped
   }
   readings_.current_ma = current_of(adc1::jdr1.read() & adc1::jdr_mask);
   readings_.angle.reset();

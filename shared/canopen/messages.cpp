@@ -138,6 +138,8 @@ std::string_view describe(EmergencyCode code) {
       return "supply voltage too low";
     case EmergencyCode::over_temperature:
       return "over-temperature";
+    case EmergencyCode::sensors_failed:
+      return "the sensors of the servo do not measure";
     case EmergencyCode::clock_failure:
       return "reset after a failure of the crystal or the PLL";
     case EmergencyCode::watchdog_reset:

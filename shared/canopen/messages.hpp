@@ -114,6 +114,7 @@ enum class EmergencyCode : std::uint16_t {
   over_current = 0x2310,
   supply_low = 0x3220,  ///< under-voltage of the chip's supply
   over_temperature = 0x4210,
+  sensors_failed = 0x5210,  ///< the measuring circuit (ADC) gives no new readings
   clock_failure = 0x5220,   ///< the module was reset because a clock of its chip failed; detail: as below
   watchdog_reset = 0x6010,  ///< the watchdog has reset the module; detail: where the program was, 0: not known
   software_fault = 0x6100,  ///< the module was reset after a fault of its program; detail: as above

@@ -547,6 +547,9 @@ void Stm32f405::set_crystal(bool runs) {
 void Stm32f405::set_pll(bool locks) {
   implementation_->change_outside([this, locks] { implementation_->rcc_.set_pll(locks); });
 }
+void Stm32f405::set_adc(bool converts) {
+  implementation_->change_outside([this, converts] { implementation_->adc_.set_hanging(!converts); });
+}
 void Stm32f405::set_supply(std::uint32_t mv) { implementation_->set_supply(mv); }
 std::optional<LocalTime> Stm32f405::pulse_time(unsigned channel) const {
   return implementation_->pins_.pulse_time(channel);

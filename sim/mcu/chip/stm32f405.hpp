@@ -66,6 +66,8 @@ class Stm32f405 {
   void set_crystal(bool runs);
   /// Whether the PLL can lock.
   void set_pll(bool locks);
+  /// Whether ADC1 converts, or hangs.
+  void set_adc(bool converts);
   /// VDD, 3,300 from the start. Below the threshold of the brown-out reset (ChipSettings) or of the power-down reset
   /// the chip is held in reset; below the latter it loses its memory. The analogue supply stays.
   void set_supply(std::uint32_t mv);

@@ -139,6 +139,15 @@ void Adc::clocks_change(const Clocks& next) {
   }
 }
 
+void Adc::set_hanging(bool hangs) {
+  settle();
+  hangs_ = hangs;
+  if (converting_ != Group::none) {
+    begin_conversion(chip().now());
+  }
+  chip().reschedule();
+}
+
 void Adc::clocks_fail(const Clocks& /*next*/) {
   settle();
   converting_ = Group::none;
@@ -203,6 +212,10 @@ std::uint16_t Adc::convert(unsigned channel) {
 
 void Adc::begin_conversion(LocalTime begin) {
   const unsigned rank = converting_ == Group::regular ? regular_rank_ : injected_rank_;
+  if (hangs_) {
+    conversion_end_ = never_on_chip;
+    return;
+  }
   conversion_end_ = begin + sampling_time(channel(converting_, rank)) + conversion_cycles * clock_period();
 }
 

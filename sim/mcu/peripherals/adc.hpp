@@ -47,6 +47,9 @@ class Adc final : public RegisterBlock {
   void clocks_change(const Clocks& next) override;
   void clocks_fail(const Clocks& next) override;
 
+  /// For tests: a converter that hangs ends no conversion; the one under way is done again when it works.
+  void set_hanging(bool hangs);
+
  private:
   enum class Group : std::uint8_t { none, regular, injected };
 
@@ -83,6 +86,7 @@ class Adc final : public RegisterBlock {
   LocalTime sensors_since_ = 0;
 
   Group converting_ = Group::none;
+  bool hangs_ = false;
   LocalTime conversion_end_ = never_on_chip;
   unsigned regular_rank_ = 0;  ///< that is converted, or continues after the injected group
   unsigned injected_rank_ = 0;

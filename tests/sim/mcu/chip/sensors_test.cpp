@@ -89,6 +89,41 @@ TEST(Readings, ThePotentiometerIsReadByTheBoardsOwnCalibration) {
   }
 }
 
+TEST(Readings, OfAnAdcThatHangsAreAFaultAfterFiveTicksAndTheServoGetsNoPulse) {
+  ChipRig rig;
+  BusTime last_edge = 0;
+  rig.chip.set_pin_watch('A', 5, [&](BusTime time, bool /*high*/) { last_edge = time; });
+  rig.start_robot(20'000);
+  rig.enable_servo(0);
+  rig.run_for(100 * ms);
+  rig.chip.set_adc(false);
+  const BusTime hung = rig.bus.now();
+  rig.run_for(300 * ms);
+  std::vector<LoggedFrame> emergencies = rig.frames(0x083);
+  ASSERT_EQ(emergencies.size(), 1U);
+  EXPECT_EQ(emergency_code(emergencies[0]), 0x5210U);
+  EXPECT_EQ(emergencies[0].frame.data[2], 0x21U) << "error register: generic, device profile";
+  // The conversion of the tick before may be done; then five ticks.
+  EXPECT_GE(emergencies[0].time, hung + 40 * ms);
+  EXPECT_LE(emergencies[0].time, hung + 70 * ms);
+  EXPECT_LT(last_edge, emergencies[0].time + 3 * ms);
+  EXPECT_NE(rig.frames(0x183).back().frame.data[6] & 0x10U, 0U) << "state frame: fault";
+  rig.write(0x6040, 0, 2, 0x80);
+  EXPECT_EQ(rig.read(0x6041, 0) & 0x4FU, 0x08U) << "still Fault";
+
+  rig.chip.set_adc(true);
+  rig.run_for(50 * ms);
+  emergencies = rig.frames(0x083);
+  ASSERT_EQ(emergencies.size(), 2U);
+  EXPECT_EQ(emergency_code(emergencies[1]), 0U);
+  EXPECT_LT(last_edge, hung + 70 * ms) << "it needs a decision";
+  rig.write(0x6040, 0, 2, 0x00);
+  rig.write(0x6040, 0, 2, 0x80);
+  rig.enable_servo(0);
+  rig.run_for(50 * ms);
+  EXPECT_LT(rig.bus.now(), last_edge + 25 * ms);
+}
+
 class OverCurrent : public testing::Test {
  protected:
   OverCurrent() {

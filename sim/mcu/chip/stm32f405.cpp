@@ -10,6 +10,7 @@
 #include "sim/mcu/peripherals/adc.hpp"
 #include "sim/mcu/peripherals/bxcan.hpp"
 #include "sim/mcu/peripherals/chip_identity.hpp"
+#include "sim/mcu/peripherals/dma.hpp"
 #include "sim/mcu/peripherals/exti.hpp"
 #include "sim/mcu/peripherals/flash_interface.hpp"
 #include "sim/mcu/peripherals/iwdg.hpp"
@@ -46,13 +47,17 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
         rcc_(*this, flash_, pwr_, iwdg_),
         syscfg_(*this),
         timer_2_(*this, 2),
+        timer_3_(*this, 3),
         timer_5_(*this, 5),
         usart_(*this, board),
-        adc_(*this, board),
+        dma_(*this, [this](std::uint32_t address, std::span<const std::uint8_t> bytes) { cpu_.write(address, bytes); }),
+        adc_(*this, board, &dma_),
         can_(*this, bus, [this](LocalTime time) { return oscillator_.when(time); }),
         pins_(*this, board, timer_2_) {
     flash_.set_brown_out_level(settings.brown_out_level);
-    peripherals_ = {&iwdg_, &exti_, &pwr_, &flash_, &rcc_, &syscfg_, &timer_2_, &timer_5_, &usart_, &adc_, &can_};
+    peripherals_ = {&iwdg_,    &exti_,    &pwr_,   &flash_, &rcc_, &syscfg_, &timer_2_,
+                    &timer_3_, &timer_5_, &usart_, &dma_,   &adc_, &can_};
+    timer_3_.set_trigger_output([this] { adc_.trigger(); });
     for (const auto& port : pins_.ports()) {
       peripherals_.push_back(port.get());
     }
@@ -60,7 +65,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       rcc_.attach(*peripheral);
       map_.add(*peripheral);
     }
-    timed_ = {&rcc_, &flash_, &iwdg_, &timer_2_, &timer_5_, &usart_, &adc_, &can_};
+    timed_ = {&rcc_, &flash_, &iwdg_, &timer_2_, &timer_3_, &timer_5_, &usart_, &adc_, &can_};
     cpu_.write(system_memory_address, system_memory(settings.unique_id));
   }
 
@@ -181,8 +186,10 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   Rcc rcc_;
   Syscfg syscfg_;
   Timer timer_2_;
+  Timer timer_3_;
   Timer timer_5_;
   Usart usart_;
+  Dma dma_;
   Adc adc_;
   BxCan can_;
   Pins pins_;

@@ -53,10 +53,15 @@ constexpr std::uint32_t cr2_cont = 1U << 1U;
 constexpr std::uint32_t cr2_dma = 1U << 8U;
 constexpr std::uint32_t cr2_eocs = 1U << 10U;
 constexpr std::uint32_t cr2_align = 1U << 11U;
-constexpr std::uint32_t cr2_triggers = (3U << 20U) | (3U << 28U);
+constexpr std::uint32_t cr2_dds = 1U << 9U;
+constexpr std::uint32_t cr2_injected_triggers = 3U << 20U;
+constexpr std::uint32_t cr2_regular_triggers = 3U << 28U;
+constexpr std::uint32_t cr2_rising_edge = 1U << 28U;
+constexpr std::uint32_t cr2_regular_source = 15U << 24U;
+constexpr std::uint32_t cr2_tim3_trgo = 8U << 24U;  // RM0090, table 68
 constexpr std::uint32_t cr2_jswstart = 1U << 22U;
 constexpr std::uint32_t cr2_swstart = 1U << 30U;
-constexpr std::uint32_t cr2_kept = 0x0F0F'0F03;
+constexpr std::uint32_t cr2_kept = 0x3F0F'0F03;
 
 constexpr std::uint32_t ccr_multi = 0x1F;
 constexpr std::uint32_t ccr_dma = 7U << 13U;
@@ -76,8 +81,11 @@ constexpr LocalTime max_clock_period = 1680;
 
 }  // namespace
 
-Adc::Adc(ChipServices& chip, BoardSignals& board)
-    : RegisterBlock(chip, "ADC1", 0x4001'2000, 0x400, registers), board_(&board), interrupt_(chip, interrupt_position) {
+Adc::Adc(ChipServices& chip, BoardSignals& board, Dma* dma)
+    : RegisterBlock(chip, "ADC1", 0x4001'2000, 0x400, registers),
+      board_(&board),
+      dma_(dma),
+      interrupt_(chip, interrupt_position) {
   Adc::reset();
 }
 
@@ -136,6 +144,14 @@ void Adc::clocks_change(const Clocks& next) {
   settle();
   if (converting_ != Group::none && next.apb2 != chip().clocks().apb2) {
     throw UnmodelledAccess("ADC1 converts while PCLK2 changes");
+  }
+}
+
+void Adc::trigger() {
+  settle();
+  if ((cr2_ & cr2_regular_triggers) != 0 && converting_ != Group::regular && !regular_waits_) {
+    start_group(Group::regular, cr2_);
+    chip().reschedule();
   }
 }
 
@@ -230,14 +246,11 @@ void Adc::finish_conversion() {
     if (!has_more) {
       sr_ |= sr_jeoc;
     }
-  } else if ((cr2_ & cr2_eocs) != 0 && (sr_ & sr_eoc) != 0) {
-    sr_ |= sr_ovr;  // the data are lost, and the sequence ends (RM0090, 13.8.2)
+  } else if ((cr2_ & (cr2_eocs | cr2_dma)) != 0 && (sr_ & sr_eoc) != 0) {
+    sr_ |= sr_ovr;  // the data are lost, and the sequence ends (RM0090, 13.8.1 and 13.8.2)
     has_more = false;
   } else {
-    dr_ = code;
-    if (!has_more || (cr2_ & cr2_eocs) != 0) {
-      sr_ |= sr_eoc;
-    }
+    finish_regular(code, has_more);
   }
   if (!has_more) {
     converting_ = group == Group::injected && regular_waits_ ? Group::regular : Group::none;
@@ -247,6 +260,15 @@ void Adc::finish_conversion() {
     conversion_end_ = never_on_chip;
   } else {
     begin_conversion(end);
+  }
+}
+
+void Adc::finish_regular(std::uint16_t code, bool has_more) {
+  dr_ = code;
+  if ((cr2_ & cr2_dma) != 0) {
+    sr_ = dma_->transfer(code) ? sr_ & ~sr_eoc : sr_ | sr_eoc;  // the transfer reads DR
+  } else if (!has_more || (cr2_ & cr2_eocs) != 0) {
+    sr_ |= sr_eoc;
   }
 }
 
@@ -396,10 +418,16 @@ void Adc::write_cr1(std::uint32_t value) {
 }
 
 void Adc::write_cr2(std::uint32_t value) {
-  reject_bits(cr2, value, cr2_dma, "DMA is not modelled");
+  if ((value & (cr2_dma | cr2_dds)) != 0 && (dma_ == nullptr || (value & cr2_dds) == 0)) {
+    reject_write(cr2, value, "DMA is modelled with DDS = 1 only");
+  }
   reject_bits(cr2, value, cr2_cont, "continuous conversion is not modelled");
   reject_bits(cr2, value, cr2_align, "only right alignment is modelled");
-  reject_bits(cr2, value, cr2_triggers, "external triggers are not modelled");
+  reject_bits(cr2, value, cr2_injected_triggers, "external triggers of the injected group are not modelled");
+  if ((value & cr2_regular_triggers) != 0 &&
+      (value & (cr2_regular_triggers | cr2_regular_source)) != (cr2_rising_edge | cr2_tim3_trgo)) {
+    reject_write(cr2, value, "of the external triggers only the rising edge of TIM3_TRGO is modelled");
+  }
   const bool was_on = (cr2_ & cr2_adon) != 0;
   cr2_ = value & cr2_kept;
   if ((cr2_ & cr2_adon) == 0) {

@@ -1,11 +1,13 @@
 #pragma once
 
-// ADC1 with the registers common to all ADCs (RM0090, section 13): conversions started by software. VDDA is 3.3 V.
+// ADC1 with the registers common to all ADCs (RM0090, section 13): conversions started by software, and of the regular
+// group by TIM3's trigger output, with DMA. VDDA is 3.3 V.
 
 #include <array>
 #include <cstdint>
 #include <optional>
 
+#include "sim/mcu/peripherals/dma.hpp"
 #include "sim/mcu/peripherals/register_block.hpp"
 
 namespace proleg::sim {
@@ -35,7 +37,8 @@ class Adc final : public RegisterBlock {
   static constexpr LocalTime sensor_start = 10 * local_time_per_us;     ///< after TSVREFE
   static constexpr LocalTime sensor_sampling = 10 * local_time_per_us;  ///< of channels 16 and 17, at least
 
-  Adc(ChipServices& chip, BoardSignals& board);
+  /// dma: takes the results of the regular group; without it DMA is rejected.
+  Adc(ChipServices& chip, BoardSignals& board, Dma* dma = nullptr);
 
   /// "ADC1_CR2", "ADC_CCR", and "ADC2 at offset 0x4" for those that the board does not use.
   [[nodiscard]] std::string register_name(std::uint32_t offset) const override;
@@ -47,6 +50,9 @@ class Adc final : public RegisterBlock {
   void clocks_change(const Clocks& next) override;
   void clocks_fail(const Clocks& next) override;
 
+  /// TIM3's trigger output.
+  void trigger();
+
   /// For tests: a converter that hangs ends no conversion; the one under way is done again when it works.
   void set_hanging(bool hangs);
 
@@ -55,6 +61,7 @@ class Adc final : public RegisterBlock {
 
   void settle();
   void finish_conversion();
+  void finish_regular(std::uint16_t code, bool has_more);
   void begin_conversion(LocalTime begin);
   void start_group(Group group, std::uint32_t value);
   [[nodiscard]] unsigned length(Group group) const;
@@ -69,6 +76,7 @@ class Adc final : public RegisterBlock {
   void update_interrupt();
 
   BoardSignals* board_;
+  Dma* dma_;
   InterruptLine interrupt_;
   std::uint32_t sr_ = 0;
   std::uint32_t cr1_ = 0;

@@ -37,6 +37,7 @@ constexpr std::uint32_t cr1_dir = 1U << 4U;
 constexpr std::uint32_t cr1_cms = 3U << 5U;
 constexpr std::uint32_t cr1_arpe = 1U << 7U;
 constexpr std::uint32_t cr1_bits = 0x3FF;
+constexpr std::uint32_t cr2_trigger_by_update = 2U << 4U;  // MMS
 
 /// UIF, CC1IF to CC4IF, and their enables in DIER.
 constexpr std::uint32_t flags = 0x1F;
@@ -55,30 +56,38 @@ constexpr unsigned ccer_enable = 0;
 constexpr unsigned ccer_polarity = 1;
 
 unsigned checked(unsigned number) {
-  if (number != 2 && number != 5) {
-    throw std::invalid_argument("TIM" + std::to_string(number) + ": expected 2 or 5");
+  if (number != 2 && number != 3 && number != 5) {
+    throw std::invalid_argument("TIM" + std::to_string(number) + ": expected 2, 3 or 5");
   }
   return number;
 }
+
+/// TIM2 to TIM5 lie one behind the other.
+constexpr const char* names[] = {"TIM2", "TIM3", "TIM4", "TIM5"};
+constexpr unsigned interrupts[] = {28, 29, 30, 50};
+constexpr std::uint32_t block_bytes = 0x400;
 
 }  // namespace
 
 // Channels count from 0 inside, from 1 outside.
 
 Timer::Timer(ChipServices& chip, unsigned number)
-    : RegisterBlock(chip, checked(number) == 2 ? "TIM2" : "TIM5", number == 2 ? 0x4000'0000 : 0x4000'0C00, 0x400,
-                    registers),
-      interrupt_(chip, number == 2 ? 28 : 50) {}
+    : RegisterBlock(chip, names[checked(number) - 2], 0x4000'0000 + block_bytes * (number - 2), block_bytes, registers),
+      interrupt_(chip, interrupts[number - 2]),
+      max_count_(number == 3 ? 0xFFFFU : 0xFFFF'FFFFU),
+      arr_preload_(max_count_),
+      arr_(max_count_) {}
 
 void Timer::reset() {
   cr1_ = 0;
+  cr2_ = 0;
   dier_ = 0;
   sr_ = 0;
   ccmr_ = {};
   ccer_ = 0;
   prescaler_preload_ = 0;
   prescaler_ = 0;
-  arr_preload_ = 0xFFFF'FFFF;
+  arr_preload_ = max_count_;
   arr_ = arr_preload_;
   channels_ = {};
   count_ = 0;
@@ -127,7 +136,7 @@ LocalTime Timer::next_event() const {
   }
   const std::uint32_t wanted = dier_ & ~sr_ & flags;
   LocalTime next = never_on_chip;
-  if ((wanted & flag_update) != 0 && (cr1_ & cr1_udis) == 0) {
+  if (((wanted & flag_update) != 0 || cr2_ == cr2_trigger_by_update) && (cr1_ & cr1_udis) == 0) {
     next = overflow_time();
   }
   for (unsigned channel = 0; channel < channel_count; ++channel) {
@@ -206,6 +215,9 @@ void Timer::update(bool overflowed) {
   for (Channel& channel : channels_) {
     channel.compare = channel.preload;
   }
+  if (cr2_ == cr2_trigger_by_update) {
+    trigger_();
+  }
   if (overflowed || (cr1_ & cr1_urs) == 0) {
     sr_ |= flag_update;
   }
@@ -234,6 +246,7 @@ std::uint32_t Timer::read(std::uint32_t offset) {
     case cr1:
       return cr1_;
     case cr2:
+      return cr2_;
     case smcr:
     case egr:
     case dcr:
@@ -270,8 +283,13 @@ void Timer::write(std::uint32_t offset, std::uint32_t value) {
       write_cr1(value);
       break;
     case cr2:
+      if (value != 0 && (value != cr2_trigger_by_update || !trigger_)) {
+        reject_write(offset, value, "this trigger output is not modelled");
+      }
+      cr2_ = value;
+      break;
     case smcr:
-      reject_bits(offset, value, 0xFFFF, "trigger inputs and outputs are not modelled");
+      reject_bits(offset, value, 0xFFFF, "trigger inputs are not modelled");
       break;
     case dier:
       reject_bits(offset, value, 0x5F40, "DMA and trigger interrupts are not modelled");
@@ -315,10 +333,10 @@ void Timer::write(std::uint32_t offset, std::uint32_t value) {
         reject_write(offset, value);
       }
       const unsigned channel = (offset - ccr1) / 4;
-      channels_[channel].preload = value;
+      channels_[channel].preload = value & max_count_;
       channels_[channel].asked_in_time = reference(channel);
       if (!preloads(channel)) {
-        channels_[channel].compare = value;
+        channels_[channel].compare = value & max_count_;
       }
   }
   update_interrupt();
@@ -390,6 +408,7 @@ void Timer::write_ccer(std::uint32_t value) {
 }
 
 void Timer::set_arr(std::uint32_t value) {
+  value &= max_count_;
   arr_preload_ = value;
   if ((cr1_ & cr1_arpe) != 0) {
     return;

@@ -1,10 +1,11 @@
 #pragma once
 
-// General-purpose timers TIM2 and TIM5 (RM0090, section 18): a 32-bit up-counter with four outputs. It computes its
-// state on access, from the time that has passed since the access before.
+// General-purpose timers TIM2, TIM3 and TIM5 (RM0090, section 18): an up-counter of 32 bits (TIM3: 16) with four
+// outputs. It computes its state on access, from the time that has passed since the access before.
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "sim/mcu/peripherals/register_block.hpp"
@@ -15,7 +16,7 @@ class Timer final : public RegisterBlock {
  public:
   static constexpr unsigned channel_count = 4;
 
-  /// number: 2 or 5; else std::invalid_argument.
+  /// number: 2, 3 or 5; else std::invalid_argument.
   Timer(ChipServices& chip, unsigned number);
 
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
@@ -25,6 +26,9 @@ class Timer final : public RegisterBlock {
   void advance() override;
   void clocks_change(const Clocks& next) override;
   [[nodiscard]] bool is_idle() const override { return !enabled(); }
+
+  /// Called for each trigger output (TRGO) that CR2.MMS = 2 makes of an update. Without it MMS stays rejected.
+  void set_trigger_output(std::function<void()> trigger) { trigger_ = std::move(trigger); }
 
   // For a channel, 1 to 4:
 
@@ -82,15 +86,18 @@ class Timer final : public RegisterBlock {
   void update_interrupt();
 
   InterruptLine interrupt_;
+  std::uint32_t max_count_;
+  std::function<void()> trigger_;
   std::uint32_t cr1_ = 0;
+  std::uint32_t cr2_ = 0;
   std::uint32_t dier_ = 0;
   std::uint32_t sr_ = 0;
   std::array<std::uint32_t, 2> ccmr_{};
   std::uint32_t ccer_ = 0;
   std::uint32_t prescaler_preload_ = 0;
   std::uint32_t prescaler_ = 0;
-  std::uint32_t arr_preload_ = 0xFFFF'FFFF;
-  std::uint32_t arr_ = 0xFFFF'FFFF;
+  std::uint32_t arr_preload_ = 0;
+  std::uint32_t arr_ = 0;
   std::array<Channel, channel_count> channels_;
 
   // While it is enabled, the counter had `count_` at `since_`, and has one more after each further count_period().

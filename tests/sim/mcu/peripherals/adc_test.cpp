@@ -317,7 +317,8 @@ TEST_F(AdcTest, RejectsWhatTheDatasheetForbids) {
 }
 
 TEST_F(AdcTest, RejectsWhatItDoesNotModelByName) {
-  EXPECT_EQ(test::rejection([&] { adc.write(cr2, 0x100); }), "ADC1_CR2 = 0x100 at offset 0x8: DMA is not modelled");
+  EXPECT_EQ(test::rejection([&] { adc.write(cr2, 0x100); }),
+            "ADC1_CR2 = 0x100 at offset 0x8: DMA is modelled with DDS = 1 only");
   for (const std::uint32_t value : {1U << 1U, 1U << 11U, 1U << 20U, 1U << 28U}) {
     EXPECT_NE(test::rejection([&] { adc.write(cr2, value); }), "") << value;
   }

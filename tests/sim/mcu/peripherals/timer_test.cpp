@@ -139,7 +139,7 @@ TEST_F(TimerTest, ResetValuesAreThoseOfTheManual) {
   EXPECT_EQ(timer.read(arr), 0xFFFF'FFFFU);
   EXPECT_EQ(timer.base(), 0x4000'0000U);
   EXPECT_EQ(Timer(chip, 5).base(), 0x4000'0C00U);
-  EXPECT_THROW(Timer(chip, 3), std::invalid_argument);
+  EXPECT_THROW(Timer(chip, 4), std::invalid_argument);
 }
 
 TEST_F(TimerTest, CountsOneClockAfterItIsEnabled) {

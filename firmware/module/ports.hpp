@@ -36,7 +36,7 @@ class ContactPort {
 
 /// What the sensors of servo and chip measure.
 struct ServoReadings {
-  std::uint16_t current_ma = 0;
+  std::uint16_t current_ma = 0;  ///< of the servo: the mean since the last call
   /// Actual angle of the joint (binary angle); nothing without a feedback potentiometer.
   std::optional<std::int32_t> angle;
   std::int8_t temperature_c = 0;  ///< of the chip

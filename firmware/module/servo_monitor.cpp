@@ -32,7 +32,8 @@ void ServoMonitor::read(Microseconds now, std::uint32_t tick_period_us) {
 }
 
 void ServoMonitor::judge_current(Microseconds now) {
-  if (limit_ma_ == 0 || readings_.current_ma <= limit_ma_) {
+  excess_ma_ += readings_.current_ma - limit_ma_;
+  if (limit_ma_ == 0 || excess_ma_ <= 0) {
     clear_over_current();
     return;
   }
@@ -45,6 +46,7 @@ void ServoMonitor::judge_current(Microseconds now) {
 void ServoMonitor::clear_over_current() {
   over_current_ = false;
   above_since_ = never;
+  excess_ma_ = 0;
 }
 
 }  // namespace proleg::firmware

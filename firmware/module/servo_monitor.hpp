@@ -17,7 +17,8 @@ class ServoMonitor {
   /// readings is noise.
   void reset(const BoardRecord& board);
 
-  /// Object 0x200A. A current above limit_ma for limit_time_ms is over-current; limit 0: none is.
+  /// Object 0x200A. The mean current begins with a reading above limit_ma, and begins again if it falls to the limit.
+  /// If it stays above the limit for limit_time_ms, that is over-current; limit 0: none is.
   [[nodiscard]] std::uint16_t limit_ma() const { return limit_ma_; }
   void set_limit_ma(std::uint16_t limit_ma) { limit_ma_ = limit_ma; }
   [[nodiscard]] std::uint16_t limit_time_ms() const { return limit_time_ms_; }
@@ -28,7 +29,7 @@ class ServoMonitor {
   void read(Microseconds now, std::uint32_t tick_period_us);
   [[nodiscard]] Microseconds next_deadline() const { return next_reading_; }
 
-  /// Whether all readings were above the limit for the limit's time, as of the last one.
+  /// As of the last reading.
   [[nodiscard]] bool over_current() const { return over_current_; }
   /// Whether the sensors have stopped measuring. Over-current is not seen then.
   [[nodiscard]] bool sensors_failed() const { return stale_readings_ >= max_stale_readings; }
@@ -50,7 +51,8 @@ class ServoMonitor {
   std::uint16_t limit_time_ms_ = canopen::object::current_limit_time.default_value;
   ServoReadings readings_;
   bool over_current_ = false;
-  Microseconds above_since_ = never;  ///< the first reading of those above the limit
+  Microseconds above_since_ = never;  ///< the first reading of the mean
+  std::int64_t excess_ma_ = 0;        ///< sum of its readings, each without the limit
   Microseconds next_reading_ = never;
   std::uint8_t stale_readings_ = 0;
 };

@@ -1,8 +1,11 @@
 #include "firmware/stm32f405/sensors.hpp"
 
 #include "firmware/stm32f405/factory_data.hpp"
+#include "firmware/stm32f405/microsecond_clock.hpp"
 #include "firmware/stm32f405/registers/adc.hpp"
+#include "firmware/stm32f405/registers/dma.hpp"
 #include "firmware/stm32f405/registers/rcc.hpp"
+#include "firmware/stm32f405/registers/timer.hpp"
 
 namespace proleg::stm32f405 {
 namespace {
@@ -16,6 +19,10 @@ constexpr std::uint32_t reads_in_10_us = board::core / 100'000 / 3;
 constexpr std::uint32_t temperature_sampling_cycles = 480;
 static_assert(temperature_sampling_cycles > adc_hz / 100'000);
 
+/// CR2 while it samples the current.
+constexpr std::uint32_t on =
+    adc1::cr2_adon | adc1::cr2_dma | adc1::cr2_dds | adc1::cr2_extsel_tim3_trgo | adc1::cr2_exten_rising;
+
 }  // namespace
 
 void Sensors::start() {
@@ -27,29 +34,75 @@ void Sensors::start() {
   adc1::smpr1.write(adc1::smpr1_of(board::servo_current_channel, adc1::sampling_84_cycles) |
                     adc1::smpr1_of(board::feedback_channel, adc1::sampling_84_cycles) |
                     adc1::smpr1_of(board::temperature_channel, adc1::sampling_480_cycles));
-  adc1::jsqr.write(adc1::jsqr_of(board::servo_current_channel, board::feedback_channel, board::temperature_channel));
+  adc1::sqr1.write(0);
+  adc1::sqr3.write(board::servo_current_channel);
+  adc1::jsqr.write(adc1::jsqr_of(board::feedback_channel, board::temperature_channel));
   adc1::cr2.write(adc1::cr2_adon);
   for (std::uint32_t reads = reads_in_10_us; reads != 0; --reads) {
     static_cast<void>(adc1::cr2.read());
   }
-  adc1::cr2.write(adc1::cr2_adon | adc1::cr2_jswstart);
+  start_sampling();
+  adc1::cr2.write(on | adc1::cr2_jswstart);
+}
+
+void Sensors::start_sampling() {
+  rcc::ahb1enr.set(rcc::ahb1enr_dma2);
+  rcc::apb1enr.set(rcc::apb1enr_tim3);
+  static_cast<void>(rcc::apb1enr.read());
+  dma2::s0par.write(adc1::dr);
+  dma2::s0m0ar.write(static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(ring_.data())));
+  dma2::s0ndtr.write(ring_size);
+  dma2::s0cr.write(dma2::cr_en | dma2::cr_circ | dma2::cr_minc | dma2::cr_psize_16 | dma2::cr_msize_16);
+  adc1::cr2.write(on);
+  tim3.psc().write(board::apb1_timers / 1'000'000 - 1);
+  tim3.arr().write(sample_period_us - 1);
+  tim3.egr().write(Timer::egr_ug);  // loads the prescaler
+  tim3.cr2().write(Timer::cr2_mms_update);
+  tim3.cr1().write(Timer::cr1_cen);
+  taken_at_ = MicrosecondClock::stamp();
 }
 
 firmware::ServoReadings Sensors::take_readings() {
-  readings_.are_new = adc1::sr.has(adc1::sr_jeoc);
-  if (!readings_.are_new) {
-    return readings_;  // called again within 33 us, or the ADC has stopped
+  const bool is_current_new = take_current();
+  readings_.are_new = take_others() && is_current_new;
+  return readings_;
+}
+
+/// False: no sample has come since the last reading, or more than the ring holds came in the time of exactly one ring.
+bool Sensors::take_current() {
+  const std::uint32_t next = ring_size - dma2::s0ndtr.read();
+  const std::uint32_t now = MicrosecondClock::stamp();
+  std::uint32_t count = (next - taken_) % ring_size;
+  if (count == 0) {
+    return false;
   }
-  readings_.current_ma = current_of(adc1::jdr1.read() & adc1::jdr_mask);
+  if (now - taken_at_ > ring_us) {
+    count = ring_size;  // the ring was written more than once
+  }
+  std::uint32_t sum = 0;
+  for (std::uint32_t back = 1; back <= count; ++back) {
+    sum += ring_[(next - back) % ring_size];
+  }
+  readings_.current_ma = current_of((sum + count / 2) / count);
+  taken_ = next;
+  taken_at_ = now;
+  return true;
+}
+
+/// False: called again within 28 us, or the ADC has stopped.
+bool Sensors::take_others() {
+  if (!adc1::sr.has(adc1::sr_jeoc)) {
+    return false;
+  }
   readings_.angle.reset();
   if (feedback_.has_feedback) {
-    readings_.angle = feedback_angle_of(adc1::jdr2.read() & adc1::jdr_mask, feedback_.feedback_at_minus_90,
+    readings_.angle = feedback_angle_of(adc1::jdr1.read() & adc1::jdr_mask, feedback_.feedback_at_minus_90,
                                         feedback_.feedback_at_plus_90);
   }
-  readings_.temperature_c = temperature_of(adc1::jdr3.read() & adc1::jdr_mask, temperature_);
+  readings_.temperature_c = temperature_of(adc1::jdr2.read() & adc1::jdr_mask, temperature_);
   adc1::sr.write(~adc1::sr_jeoc);
-  adc1::cr2.write(adc1::cr2_adon | adc1::cr2_jswstart);
-  return readings_;
+  adc1::cr2.write(on | adc1::cr2_jswstart);
+  return true;
 }
 
 }  // namespace proleg::stm32f405

@@ -1,24 +1,42 @@
 #pragma once
 
+#include <array>
+
 #include "firmware/module/board_record.hpp"
 #include "firmware/module/ports.hpp"
 #include "firmware/stm32f405/readings.hpp"
 
 namespace proleg::stm32f405 {
 
-/// Servo current, feedback potentiometer and the chip's temperature: the injected group of ADC1. take_readings() starts
-/// it and does not wait the 33 us that it takes.
+/// Servo current, feedback potentiometer and the chip's temperature, by ADC1. No interrupt takes part:
+/// - Current: TIM3 starts a conversion (the regular group) every 239 us, and DMA2 writes the result into a ring. A
+///   reading is the mean of what has come since the reading before, at most 61 ms. The servo's pulses, its motor's and
+///   the ticks have periods that 239 us, a prime number, does not divide: a pulsed current does not hide between
+///   samples.
+/// - The others: the injected group, which take_readings() starts. It does not wait the 28 us that it takes.
 class Sensors final : public firmware::SensorPort {
  public:
+  static constexpr std::uint32_t sample_period_us = 239;
+
   void start();
   [[nodiscard]] firmware::ServoReadings take_readings() override;
   /// There is no angle without a potentiometer, as before the first call.
   void calibrate(const firmware::BoardRecord& board) override { feedback_ = board; }
 
  private:
+  static constexpr std::uint32_t ring_size = 256;
+  static constexpr std::uint32_t ring_us = ring_size * sample_period_us;
+
+  void start_sampling();
+  [[nodiscard]] bool take_current();
+  [[nodiscard]] bool take_others();
+
   firmware::BoardRecord feedback_;
   TemperatureCalibration temperature_;
   firmware::ServoReadings readings_;
+  std::array<volatile std::uint16_t, ring_size> ring_{};  ///< DMA writes it
+  std::uint32_t taken_ = 0;                               ///< where the next sample will be, as of the last reading
+  std::uint32_t taken_at_ = 0;                            ///< MicrosecondClock::stamp() of the last reading
 };
 
 }  // namespace proleg::stm32f405

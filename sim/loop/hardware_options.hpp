@@ -30,6 +30,8 @@ struct ModuleParts {
   Crystal crystal;
   std::function<std::uint8_t()> sensors;              ///< touch sensors wired to it, as firmware::ContactPort::read()
   std::function<firmware::ServoReadings()> readings;  ///< of its servo and chip, at this moment
+  /// The same with the mean current since the last call, as firmware::SensorPort has it.
+  std::function<firmware::ServoReadings()> take_readings;
 };
 
 struct HardwareOptions {

@@ -1,6 +1,7 @@
 #include "sim/loop/module_rack.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,27 @@ namespace {
 
 /// Longer than a SYNC waits for a frame on the wire, plus the drift of the crystals in a tick.
 constexpr BusTime max_sync_jitter = 500'000;
+
+/// What a native module measures: its current is the mean over the steps of the plant since the reading before.
+class ServoMeter {
+ public:
+  ServoMeter(const Plant& plant, unsigned joint) : plant_(&plant), joint_(joint) {}
+  firmware::ServoReadings operator()() {
+    firmware::ServoReadings readings = plant_->servo_readings(joint_);
+    const Plant::DrawnCurrent drawn = plant_->drawn_current(joint_);
+    if (drawn.steps != before_.steps) {
+      const double mean = (drawn.sum_ma - before_.sum_ma) / static_cast<double>(drawn.steps - before_.steps);
+      readings.current_ma = static_cast<std::uint16_t>(std::lround(mean));
+      before_ = drawn;
+    }
+    return readings;
+  }
+
+ private:
+  const Plant* plant_;
+  unsigned joint_;
+  Plant::DrawnCurrent before_{0.0, 0};
+};
 
 }  // namespace
 
@@ -27,16 +49,21 @@ ModuleRack::ModuleRack(Bus& bus, const Plant& plant, const Scenario& scenario, c
       const std::uint8_t contacts = joint_contacts(plant.link_contacts(), joint);
       return options.change_sensors ? options.change_sensors(joint, contacts) : contacts;
     };
-    const ModuleParts parts{bus,      joint,
-                            identity, make_crystal(scenario, joint, options.crystal_error_ppm),
-                            sensors,  [&plant, joint] { return plant.servo_readings(joint); }};
+    const ModuleParts parts{bus,
+                            joint,
+                            identity,
+                            make_crystal(scenario, joint, options.crystal_error_ppm),
+                            sensors,
+                            [&plant, joint] { return plant.servo_readings(joint); },
+                            ServoMeter(plant, joint)};
     std::unique_ptr<JointModule> module = options.make_module ? options.make_module(parts) : nullptr;
     modules_.push_back(module ? std::move(module) : make_native(parts));
   }
 }
 
 std::unique_ptr<JointModule> ModuleRack::make_native(const ModuleParts& parts) const {
-  auto module = std::make_unique<NativeModule>(parts.bus, parts.identity, parts.crystal, parts.sensors, parts.readings);
+  auto module =
+      std::make_unique<NativeModule>(parts.bus, parts.identity, parts.crystal, parts.sensors, parts.take_readings);
   if (options_.tamper) {
     module->set_tamper([&options = options_, joint = parts.joint](const CanFrame& frame, const auto& deliver) {
       options.tamper(joint, frame, deliver);

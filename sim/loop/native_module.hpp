@@ -23,7 +23,7 @@ class NativeModule final : public JointModule,
  public:
   /// Reads the touch sensors that are wired to the module, at this moment.
   using Sensors = std::function<std::uint8_t()>;
-  /// Measurements of the servo and the chip, at this moment.
+  /// Measurements of the servo and the chip, as firmware::SensorPort has them.
   using Readings = std::function<firmware::ServoReadings()>;
   /// For tests, between controller and program: delivers a frame, withholds it, or delivers another one.
   using Tamper = std::function<void(const CanFrame& frame, const std::function<void(const CanFrame&)>& deliver)>;

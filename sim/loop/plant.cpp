@@ -124,8 +124,10 @@ void Plant::step() {
     servo.angle = world_.joint_angle(joint);
     const double torque = world_.motor_torque(joint);
     servo.torque_sum += torque;
-    servo.current_sum +=
+    const double current =
         meter_.add_joint_step(joint, {torque, servo.commanded_speed, servo.angle_before, servo.angle, servo.limp});
+    servo.current_sum += current;
+    servo.drawn += current;
   }
   for (std::size_t link = 0; link < contact_force_sums_.size(); ++link) {
     contact_force_sums_[link] += world_.contact_force(link);

@@ -53,6 +53,13 @@ class Plant {
   /// sim/robot/servo_current.hpp), the actual angle, and a chip at 25 degrees Celsius.
   [[nodiscard]] firmware::ServoReadings servo_readings(std::size_t joint) const;
 
+  /// The current of a servo, in mA, summed over all steps so far.
+  struct DrawnCurrent {
+    double sum_ma;
+    std::uint64_t steps;
+  };
+  [[nodiscard]] DrawnCurrent drawn_current(std::size_t joint) const { return {servos_[joint].drawn, steps_}; }
+
   /// Horizontal distance, in m, of the centre of mass from its start (thesis, equation 3.7).
   [[nodiscard]] double displacement() const;
   /// The measures of the run so far (sim/measure/gait_meter.hpp).
@@ -96,6 +103,7 @@ class Plant {
     double angle = 0.0;            ///< rad, now
     double torque_sum = 0.0;       ///< Nm, over the steps of this tick
     double current_sum = 0.0;      ///< mA, over the steps of this tick
+    double drawn = 0.0;            ///< mA, over all steps
   };
   std::vector<Servo> servos_;  ///< by joint
   Pcg32 contact_noise_;

@@ -16,7 +16,11 @@ inline constexpr std::uint32_t cr1_scan = 1U << 8U;
 
 inline constexpr Register cr2{base + 0x08};
 inline constexpr std::uint32_t cr2_adon = 1U << 0U;
+inline constexpr std::uint32_t cr2_dma = 1U << 8U;
+inline constexpr std::uint32_t cr2_dds = 1U << 9U;  ///< DMA requests continue after the end of the buffer
 inline constexpr std::uint32_t cr2_jswstart = 1U << 22U;
+inline constexpr std::uint32_t cr2_extsel_tim3_trgo = 8U << 24U;
+inline constexpr std::uint32_t cr2_exten_rising = 1U << 28U;
 
 /// 3 bits a channel: its sampling time; channels 10 to 18.
 inline constexpr Register smpr1{base + 0x0C};
@@ -26,16 +30,20 @@ inline constexpr std::uint32_t sampling_480_cycles = 7;
   return sampling << (3U * (channel - 10U));
 }
 
-/// The injected group; with three conversions it begins with the second of the four places (13.3.9).
+/// The regular group: SQR1 = 0 is one conversion, SQR3 its channel.
+inline constexpr Register sqr1{base + 0x2C};
+inline constexpr Register sqr3{base + 0x34};
+/// The injected group; with two conversions it begins with the third of the four places (13.3.9).
 inline constexpr Register jsqr{base + 0x38};
-[[nodiscard]] constexpr std::uint32_t jsqr_of(unsigned first, unsigned second, unsigned third) {
-  constexpr std::uint32_t three_conversions = 2U << 20U;
-  return three_conversions | first << 5U | second << 10U | third << 15U;
+[[nodiscard]] constexpr std::uint32_t jsqr_of(unsigned first, unsigned second) {
+  constexpr std::uint32_t two_conversions = 1U << 20U;
+  return two_conversions | first << 10U | second << 15U;
 }
 inline constexpr Register jdr1{base + 0x3C};  ///< result of the first conversion
 inline constexpr Register jdr2{base + 0x40};
-inline constexpr Register jdr3{base + 0x44};
 inline constexpr std::uint32_t jdr_mask = 0xFFF;
+
+inline constexpr std::uintptr_t dr = base + 0x4C;  ///< result of the regular group; DMA reads it
 
 /// Common to all ADCs.
 inline constexpr Register ccr{base + 0x304};

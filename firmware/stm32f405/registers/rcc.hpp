@@ -42,9 +42,11 @@ inline constexpr Register ahb1enr{base + 0x30};
 inline constexpr std::uint32_t ahb1enr_gpioa = 1U << 0U;
 inline constexpr std::uint32_t ahb1enr_gpiob = 1U << 1U;
 inline constexpr std::uint32_t ahb1enr_gpioc = 1U << 2U;
+inline constexpr std::uint32_t ahb1enr_dma2 = 1U << 22U;
 
 inline constexpr Register apb1enr{base + 0x40};
 inline constexpr std::uint32_t apb1enr_tim2 = 1U << 0U;
+inline constexpr std::uint32_t apb1enr_tim3 = 1U << 1U;
 inline constexpr std::uint32_t apb1enr_tim5 = 1U << 3U;
 inline constexpr std::uint32_t apb1enr_usart2 = 1U << 17U;
 inline constexpr std::uint32_t apb1enr_can1 = 1U << 25U;

@@ -1,6 +1,6 @@
 #pragma once
 
-// General-purpose timers, of which TIM2 and TIM5 count 32 bits: RM0090, section 18.4.
+// General-purpose timers, of which TIM2 and TIM5 count 32 bits, TIM3 16: RM0090, section 18.4.
 
 #include "firmware/stm32f405/registers/register.hpp"
 
@@ -14,6 +14,9 @@ class Timer {
   static constexpr std::uint32_t cr1_cen = 1U << 0U;
   static constexpr std::uint32_t cr1_urs = 1U << 2U;  ///< UG sets no flag
   static constexpr std::uint32_t cr1_arpe = 1U << 7U;
+
+  [[nodiscard]] constexpr Register cr2() const { return Register(base_ + 0x04); }
+  static constexpr std::uint32_t cr2_mms_update = 2U << 4U;  ///< TRGO with each update
 
   [[nodiscard]] constexpr Register dier() const { return Register(base_ + 0x0C); }
   static constexpr std::uint32_t dier_cc1ie = 1U << 1U;
@@ -43,6 +46,7 @@ class Timer {
 };
 
 inline constexpr Timer tim2{0x4000'0000};
+inline constexpr Timer tim3{0x4000'0400};
 inline constexpr Timer tim5{0x4000'0C00};
 
 }  // namespace proleg::stm32f405

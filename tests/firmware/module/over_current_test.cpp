@@ -61,14 +61,31 @@ TEST_F(OverCurrent, UpToTheLimitIsNone) {
   EXPECT_FALSE(faulty_after(1, 300));
 }
 
-TEST_F(OverCurrent, OneReadingThatIsNotAboveTheLimitRestartsTheTime) {
+TEST_F(OverCurrent, AReadingAtTheLimitDoesNotHideTheAverage) {
   draw(30'000);
   robot.run(49);
   draw(2'000);
-  robot.run(50, 50);
-  draw(30'000);
-  EXPECT_FALSE(faulty_after(51, 100));
-  EXPECT_TRUE(faulty_after(101, 101));
+  EXPECT_TRUE(faulty_after(50, 50));
+}
+
+TEST_F(OverCurrent, ThatIsPulsedCountsWithItsMean) {
+  robot.tick(0);
+  for (std::uint32_t tick = 0; tick < 50; ++tick) {
+    draw(tick % 2 == 0 ? 4'100 : 0);
+    EXPECT_FALSE(faulty_after(tick, tick)) << tick;
+  }
+  draw(4'100);
+  EXPECT_TRUE(faulty_after(50, 50)) << "2,050 mA for half a second";
+}
+
+TEST_F(OverCurrent, WhoseAverageFallsToTheLimitRestartsItsTime) {
+  draw(2'100);
+  robot.run(19);
+  draw(0);
+  robot.run(20, 20);  // 20 times 100 mA above, once 2,000 below
+  draw(2'100);
+  EXPECT_FALSE(faulty_after(21, 70));
+  EXPECT_TRUE(faulty_after(71, 71));
 }
 
 TEST_F(OverCurrent, LimitAndTimeAreObjects) {

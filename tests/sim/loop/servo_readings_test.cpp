@@ -90,6 +90,34 @@ TEST(ServoReadings, AreMonitoredByEveryModuleEveryTenthTick) {
   }
 }
 
+TEST(ServoReadings, HaveTheMeanCurrentOfTheTickAndNotThatOfItsLastStep) {
+  const Scenario scenario = shipped("travelling_wave/coupled");
+  constexpr unsigned joint = 2;
+  HardwareOptions options;
+  std::vector<double> monitored;
+  options.on_frame = [&](const Transmission& transmission) {
+    const auto monitoring = canopen::decode_monitoring(transmission.frame);
+    if (monitoring && monitoring->node == scenario.modules[joint].node) {
+      monitored.push_back(monitoring->current_ma);
+    }
+  };
+  HardwareLoop loop(scenario, options);
+  double to_mean = 0.0;
+  double to_last_step = 0.0;
+  for (std::uint32_t tick = 0; tick < 500; ++tick) {
+    const std::size_t before = monitored.size();
+    const double mean = tick > 0 ? loop.plant().servo_currents()[joint] : 0.0;
+    const double last = loop.plant().servo_readings(joint).current_ma;
+    loop.advance();
+    if (tick > 10 && monitored.size() > before) {
+      to_mean += std::abs(monitored.back() - mean);
+      to_last_step += std::abs(monitored.back() - last);
+    }
+  }
+  ASSERT_GT(monitored.size(), 40U);
+  EXPECT_LT(to_mean, 0.3 * to_last_step) << "a step of the physics may lie on either side of the SYNC";
+}
+
 TEST(ServoReadings, AboveTheLimitStopThePulsesButNotTheGait) {
   const Scenario scenario = shipped("travelling_wave/coupled");
   constexpr unsigned joint = 1;

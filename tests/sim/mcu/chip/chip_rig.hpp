@@ -33,12 +33,15 @@ const FlashImage& image(const std::string& name);
 /// What is wired to the pins, and the output of the console.
 struct TestBoard final : BoardSignals {
   [[nodiscard]] std::optional<bool> pin(char port, unsigned number) override;
-  [[nodiscard]] std::uint32_t analog_uv(unsigned channel) override { return channel < 16 ? uv.at(channel) : 0; }
+  [[nodiscard]] std::uint32_t analog_uv(unsigned channel) override {
+    return voltage ? voltage(channel) : channel < 16 ? uv.at(channel) : 0;
+  }
   [[nodiscard]] std::int32_t chip_temperature() override { return temperature; }
   void serial_output(unsigned usart, std::uint8_t byte) override;
 
   std::uint16_t low_pins_of_b = 0;  ///< switches to ground on port B that are closed
   std::array<std::uint32_t, 16> uv{};
+  std::function<std::uint32_t(unsigned channel)> voltage;  ///< in microvolts, now; instead of `uv`
   std::int32_t temperature = 25'000;
   std::function<BusTime()> clock;
   std::string console;

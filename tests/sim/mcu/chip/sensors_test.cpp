@@ -158,11 +158,38 @@ TEST_F(OverCurrent, SwitchesThePulsesOffAfterItsTimeAndSaysSo) {
   EXPECT_NE(monitored(rig_).errors & 1U, 0U);
 }
 
+/// The current is high for a part of each tick: `from` to `to` after the SYNC.
+class PulsedCurrent : public OverCurrent {
+ protected:
+  void draw(std::uint32_t ma, BusTime from, BusTime to) {
+    const BusTime sync = rig_.frames(0x080).back().time;
+    rig_.board.voltage = [this, ma, from, to, sync](unsigned channel) {
+      const BusTime since = (rig_.board.clock() - sync) % (10 * ms);
+      return channel == current_channel && since >= from && since < to ? ma * 1'000 : 0U;
+    };
+  }
+};
+
+TEST_F(PulsedCurrent, InStepWithTheTicksIsSeen) {
+  draw(1'000, 2 * ms, 8 * ms);
+  rig_.run_for(400 * ms);
+  ASSERT_EQ(rig_.frames(0x083).size(), 1U) << "600 mA";
+  EXPECT_EQ(emergency_code(rig_.frames(0x083)[0]), 0x2310U);
+  EXPECT_NEAR(monitored(rig_).current_ma, 600, 30) << "40 samples of 1,000 mA or 0";
+}
+
+TEST_F(PulsedCurrent, CountsWithItsMeanAndNotWithItsPeak) {
+  draw(3'000, 0, ms);
+  rig_.run_for(400 * ms);
+  EXPECT_TRUE(rig_.frames(0x083).empty()) << "300 mA";
+  EXPECT_NEAR(monitored(rig_).current_ma, 300, 90);
+}
+
 TEST_F(OverCurrent, AtTheLimitOrForAShorterTimeIsNone) {
   rig_.board.uv[current_channel] = 499'000;
   rig_.run_for(400 * ms);
   for (unsigned i = 0; i < 5; ++i) {
-    rig_.board.uv[current_channel] = 3'000'000;
+    rig_.board.uv[current_channel] = 600'000;
     rig_.run_for(80 * ms);
     rig_.board.uv[current_channel] = 100'000;
     rig_.run_for(40 * ms);

@@ -15,9 +15,18 @@ void set_pull(Pin pin, Pull pull) {
   GpioPort(pin.port).pupdr().change(3U << shift, static_cast<std::uint32_t>(pull) << shift);
 }
 
-void connect(Pin pin, unsigned function) {
+void set_fast_edges(Pin pin) {
+  const unsigned shift = 2 * pin.number;
+  GpioPort(pin.port).ospeedr().change(3U << shift, 1U << shift);
+}
+
+void connect_function(Pin pin, unsigned function) {
   const unsigned shift = 4 * (pin.number % 8);
   GpioPort(pin.port).afr(pin.number).change(15U << shift, function << shift);
+}
+
+void connect(Pin pin, unsigned function) {
+  connect_function(pin, function);
   set_mode(pin, PinMode::alternate);
 }
 
@@ -35,6 +44,8 @@ void start_pins() {
   }
   // Pulled up, so that the bus looks idle on a board without a transceiver.
   set_pull(board::can_receive, Pull::up);
+  // A bit of 1 us leaves no time for slow edges.
+  set_fast_edges(board::can_transmit);
   connect(board::can_receive, board::can_function);
   connect(board::can_transmit, board::can_function);
   set_pull(board::console_receive, Pull::up);

@@ -10,6 +10,10 @@ enum class Pull : std::uint8_t { none, up, down };
 
 void set_mode(Pin pin, PinMode mode);
 void set_pull(Pin pin, Pull pull);
+/// Edges of 10 ns instead of 100 (data sheet, I/O AC characteristics, OSPEEDR = 01).
+void set_fast_edges(Pin pin);
+/// Selects the function for PinMode::alternate. function: AF0 to AF15, data sheet, table 9.
+void connect_function(Pin pin, unsigned function);
 /// Connects a pin with a peripheral. function: AF0 to AF15, data sheet, table 9.
 void connect(Pin pin, unsigned function);
 void set_low(Pin pin);

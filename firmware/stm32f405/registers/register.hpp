@@ -11,9 +11,8 @@ namespace proleg::stm32f405 {
 /// A register of 32 bits, always read and written as a whole word. It has no state: copies are the same register.
 class Register {
  public:
-  constexpr explicit Register(std::uintptr_t address) : address_(address) {}
-
   // Always inlined: code that runs from RAM must call nothing in flash.
+  [[gnu::always_inline]] constexpr explicit Register(std::uintptr_t address) : address_(address) {}
   [[nodiscard, gnu::always_inline]] std::uint32_t read() const { return *word(); }
   [[gnu::always_inline]] void write(std::uint32_t value) const { *word() = value; }
 

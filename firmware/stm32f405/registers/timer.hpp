@@ -36,7 +36,8 @@ class Timer {
   [[nodiscard]] constexpr Register ccer() const { return Register(base_ + 0x20); }
   static constexpr std::uint32_t ccer_cc1e = 1U << 0U;
 
-  [[nodiscard]] constexpr Register cnt() const { return Register(base_ + 0x24); }
+  /// Always inlined, for code that runs from RAM.
+  [[nodiscard, gnu::always_inline]] constexpr Register cnt() const { return Register(base_ + 0x24); }
   [[nodiscard]] constexpr Register psc() const { return Register(base_ + 0x28); }  ///< divides by its value + 1
   [[nodiscard]] constexpr Register arr() const { return Register(base_ + 0x2C); }  ///< the last count before it wraps
   [[nodiscard]] constexpr Register ccr1() const { return Register(base_ + 0x34); }

@@ -44,10 +44,14 @@ bool Pins::has_function(const Pin& pin, unsigned function) const {
   return port.mode(pin.number) == Gpio::Mode::alternate && port.alternate_function(pin.number) == function;
 }
 
+bool Pins::has_slow_can_edges() const {
+  return std::ranges::any_of(can_places, [this](const auto& pins) {
+    return has_function(pins[1], can_function) && ports_[pins[1].port]->output_speed(pins[1].number) == 0;
+  });
+}
+
 bool Pins::connect_can() const {
-  constexpr std::array<std::array<Pin, 2>, 3> places{
-      {{{{port_a, 11}, {port_a, 12}}}, {{{port_b, 8}, {port_b, 9}}}, {{{port_d, 0}, {port_d, 1}}}}};
-  return std::ranges::any_of(places, [this](const auto& pins) {
+  return std::ranges::any_of(can_places, [this](const auto& pins) {
     return std::ranges::all_of(pins, [this](const Pin& pin) { return has_function(pin, can_function); });
   });
 }
@@ -55,7 +59,8 @@ bool Pins::connect_can() const {
 std::optional<LocalTime> Pins::pulse_time(unsigned channel) {
   const bool reaches_pin = std::ranges::any_of(timer_2_pins(channel),
                                                [this](const Pin& pin) { return has_function(pin, timer_2_function); });
-  return reaches_pin ? timer_2_->high_time(channel) : std::nullopt;
+  const std::optional<LocalTime> time = reaches_pin ? timer_2_->high_time(channel) : std::nullopt;
+  return time == LocalTime{0} ? std::nullopt : time;
 }
 
 /// The output of TIM2, 1 to 4, that drives a pin; 0: none.

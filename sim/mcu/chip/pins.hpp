@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -22,7 +23,10 @@ class Pins {
 
   /// Whether a pair of pins, receive and transmit, is CAN1's.
   [[nodiscard]] bool connect_can() const;
-  /// Of an output of TIM2 (1 to 4) that reaches a pin, as Timer::high_time(); nothing if it reaches none.
+  /// Whether the edges of the transmit pin are too slow for a bit of 1 us.
+  [[nodiscard]] bool has_slow_can_edges() const;
+  /// Of an output of TIM2 (1 to 4) that reaches a pin, as Timer::high_time(); nothing if it reaches none or is always
+  /// low.
   [[nodiscard]] std::optional<LocalTime> pulse_time(unsigned channel);
 
   /// Called when the level of the watched pin changes, with the time of the edge. The pin is a plain input or output,
@@ -42,6 +46,9 @@ class Pins {
     unsigned number;
     friend bool operator==(const Pin&, const Pin&) = default;
   };
+  static constexpr std::array<std::array<Pin, 2>, 3> can_places{{{{{0, 11}, {0, 12}}},  // PA11, PA12
+                                                                 {{{1, 8}, {1, 9}}},    // PB8, PB9
+                                                                 {{{3, 0}, {3, 1}}}}};  // PD0, PD1
   struct Watched {
     Pin pin;
     Watch watch;

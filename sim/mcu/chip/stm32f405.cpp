@@ -431,6 +431,10 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     if (offset == mcr && (value & inrq) == 0 && !pins_.connect_can()) {
       throw UnmodelledAccess("CAN1_MCR: the controller is to join the bus, but no pins are connected to it (AF9)");
     }
+    if (offset == mcr && (value & inrq) == 0 && pins_.has_slow_can_edges()) {
+      throw UnmodelledAccess(
+          "CAN1_MCR: the controller is to join the bus, but the edges of its pin take up to 100 ns (GPIO OSPEEDR = 0)");
+    }
     const std::uint32_t place = offset - first_mailbox;
     if (transmit_watch_ && offset >= first_mailbox && place < mailboxes * mailbox_bytes && place % mailbox_bytes == 0 &&
         (value & txrq) != 0) {

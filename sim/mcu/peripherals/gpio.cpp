@@ -54,6 +54,8 @@ Gpio::Mode Gpio::mode(unsigned pin) const { return static_cast<Mode>(field(moder
 
 unsigned Gpio::alternate_function(unsigned pin) const { return field(afr_[pin / 8], 4 * (pin % 8), 4); }
 
+unsigned Gpio::output_speed(unsigned pin) const { return field(ospeedr_, 2 * pin, 2); }
+
 std::optional<bool> Gpio::output(unsigned pin) const {
   const bool high = bit(odr_, pin);
   if (mode(pin) != Mode::output || (bit(otyper_, pin) && high)) {

@@ -27,6 +27,8 @@ class Gpio final : public RegisterBlock {
   [[nodiscard]] Mode mode(unsigned pin) const;
   /// AF0 to AF15, as selected; it matters in Mode::alternate.
   [[nodiscard]] unsigned alternate_function(unsigned pin) const;
+  /// OSPEEDR: 0 is low, with edges of up to 100 ns (DS8626, I/O AC characteristics).
+  [[nodiscard]] unsigned output_speed(unsigned pin) const;
   /// Level that the port itself drives; nothing unless it is an output (open drain: only low is driven).
   [[nodiscard]] std::optional<bool> output(unsigned pin) const;
   /// Level that the program reads: what drives the pin (the port before the board), else its pull resistor, else low.

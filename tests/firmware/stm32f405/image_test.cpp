@@ -154,6 +154,28 @@ TEST_P(ImageTest, TheBinaryIsSlotAAndNothingElse) {
   EXPECT_TRUE(binary == flash(slot_a, slot_a_size));
 }
 
+/// While flash is erased the CPU cannot read it.
+TEST_P(ImageTest, TheCodeInRamCallsAndReadsNothingOutsideRam) {
+  const std::uint32_t start = image_.symbol("ram_code_start").address;
+  const std::uint32_t end = image_.symbol("ram_code_end").address;
+  ASSERT_GT(end, start + 32) << "there is some";
+  const auto segment = std::ranges::find_if(image_.segments(), [&](const ElfImage::Segment& it) {
+    return it.load_address == image_.symbol("ram_code_load").address && it.bytes.size() >= end - start;
+  });
+  ASSERT_NE(segment, image_.segments().end());
+  for (std::uint32_t offset = 0; offset + 4 <= end - start; offset += 2) {
+    // ARMv7-M, A7.7.18 (BL), A7.7.12 (B, T4) and A7.7.19 (BLX, BX other than LR).
+    const std::uint32_t first = word_at(segment->bytes, offset) & 0xFFFFU;
+    const std::uint32_t second = word_at(segment->bytes, offset) >> 16U;
+    EXPECT_FALSE((first & 0xF800U) == 0xF000U && (second & 0x9000U) == 0x9000U) << "BL or B at offset " << offset;
+    EXPECT_TRUE((first & 0xFF00U) != 0x4700U || first == 0x4770U) << "BX or BLX at offset " << offset;
+    if (offset % 4 == 0) {
+      const std::uint32_t word = word_at(segment->bytes, offset);
+      EXPECT_FALSE(word >= sector_0 && word < sector_0 + 1024 * 1024) << "an address in flash at offset " << offset;
+    }
+  }
+}
+
 TEST_P(ImageTest, TheStackEndsWhereTheRamDoesSoThatAnOverflowIsAFault) {
   EXPECT_EQ(image_.symbol("stack_bottom").address, ram);
 }

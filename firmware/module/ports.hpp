@@ -17,7 +17,7 @@ class ServoPort {
   /// before is not over yet, the width is that of the next one. The program requests each pulse; the port repeats one
   /// only if the program is late, a little after the period.
   virtual void pulse(std::int32_t width, std::uint32_t period_us) = 0;
-  /// No pulses: the servo has no torque.
+  /// No further pulses: the servo has no torque. One that runs ends with its width.
   virtual void off() = 0;
 
  protected:

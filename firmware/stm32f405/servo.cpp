@@ -28,17 +28,22 @@ constexpr std::uint32_t counts_to_repeat(std::uint32_t width, std::uint32_t peri
 void Servo::start() {
   rcc::apb1enr.set(rcc::apb1enr_tim2);
   static_cast<void>(rcc::apb1enr.read());
-  connect(board::servo, board::servo_function);
-  off();
+  set_mode(board::servo, PinMode::output);
+  connect_function(board::servo, board::servo_function);
   tim2.psc().write(board::apb1_timers / counter_hz - 1);
   tim2.ccmr1().write(Timer::ccmr1_oc1m_pwm1 | Timer::ccmr1_oc1pe);
 }
 
-void Servo::pulse(std::int32_t width, std::uint32_t period_us) {
-  if ((tim2.sr().read() & Timer::sr_uif) != 0) {  // the counter has wrapped, and the requested width is active
+/// After the counter has wrapped the requested width is active.
+void Servo::follow_timer() {
+  if ((tim2.sr().read() & Timer::sr_uif) != 0) {
     tim2.sr().write(~Timer::sr_uif);
     active_width_ = requested_width_;
   }
+}
+
+void Servo::pulse(std::int32_t width, std::uint32_t period_us) {
+  follow_timer();
   requested_width_ = static_cast<std::uint32_t>(width);
   tim2.ccr1().write(requested_width_);
   if (const std::uint32_t last = counts_to_repeat(requested_width_, period_us) - 1U; last != last_count_) {
@@ -66,13 +71,16 @@ void Servo::cut_pulse() {
 }
 
 void Servo::off() {
-  // First the pin, which start_pins() has set low: the level is not defined by a timer whose channel is off.
-  set_mode(board::servo, PinMode::output);
-  is_running_ = false;
-  tim2.ccer().write(0);
+  if (!is_running_) {
+    return;
+  }
+  follow_timer();
+  requested_width_ = 0;
   tim2.ccr1().write(0);
-  tim2.cr1().write(Timer::cr1_arpe | Timer::cr1_urs);
-  tim2.sr().write(0);
+  if (tim2.cnt().read() >= active_width_) {
+    tim2.egr().write(Timer::egr_ug);
+    active_width_ = 0;
+  }
 }
 
 }  // namespace proleg::stm32f405

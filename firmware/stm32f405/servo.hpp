@@ -8,7 +8,10 @@ namespace proleg::stm32f405 {
 /// counter is below CCR1. A pulse begins when pulse() sets the counter to 0. If the program is late, the pulse is
 /// repeated when the counter wraps, a quarter later than the period.
 ///
-/// Visible from outside: there are pulses while CCER.CC1E = 1, and then CCR1 is the width that was requested last.
+/// A pulse of width 0 is none: off() requests it, so that the last pulse ends as it began. A shortened pulse is a
+/// command to another angle. After the first pulse the timer never stops.
+///
+/// Visible from outside: there are pulses while CCER.CC1E = 1 and CCR1, the width that was requested last, is not 0.
 class Servo final : public firmware::ServoPort {
  public:
   void start();
@@ -19,7 +22,9 @@ class Servo final : public firmware::ServoPort {
   static void cut_pulse();
 
  private:
-  bool is_running_ = false;
+  void follow_timer();
+
+  bool is_running_ = false;            ///< the timer: there was a pulse
   std::uint32_t requested_width_ = 0;  ///< in CCR1
   std::uint32_t last_count_ = 0;       ///< in ARR
   std::uint32_t active_width_ = 0;     ///< with which the timer compares: CCR1 as it was at the last update event

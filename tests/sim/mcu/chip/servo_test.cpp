@@ -198,20 +198,53 @@ TEST_F(ServoPin, AThreeMillisecondServoGetsEveryPulseAtItsWidest) {
   }
 }
 
-TEST_F(ServoPin, OffIsLowAtOnceAlsoInMidPulse) {
+TEST_F(ServoPin, OffLetsThePulseEndWithItsWidthAndGivesNoFurther) {
   rig_.start_robot(20'000);
   rig_.enable_servo(0);
   rig_.run_for(50 * ms);
   run_into_pulse();
+  const std::size_t count = pulses_.size();
   const BusTime before = rig_.bus.now();
   go_to(0, 0);
-  rig_.run_for(50 * ms);
+  rig_.run_for(150 * ms);
   ASSERT_EQ(rig_.frames(0x203, before).size(), 1U);
-  const BusTime reported = rig_.frames(0x203, before)[0].time;
-  EXPECT_GT(fall_, reported);
-  EXPECT_LT(fall_, reported + max_latency);
+  ASSERT_LT(rig_.frames(0x203, before)[0].time, fall_) << "it came in the pulse";
+  ASSERT_EQ(pulses_.size(), count + 1);
+  expect_width(pulses_.back(), width_of(0));
   EXPECT_FALSE(is_high_);
-  EXPECT_EQ(pulses_.back().start, rise_) << "none since";
+}
+
+TEST_F(ServoPin, OffBetweenTwoPulsesGivesNoFurther) {
+  rig_.start_robot(20'000);
+  rig_.enable_servo(0);
+  rig_.run_for(50 * ms);
+  run_into_pulse();
+  rig_.run_for(5 * ms);
+  const std::size_t count = pulses_.size();
+  go_to(0, 0);
+  rig_.run_for(150 * ms);
+  EXPECT_EQ(pulses_.size(), count);
+  EXPECT_FALSE(is_high_);
+}
+
+TEST_F(ServoPin, IsOnAgainWithWholePulses) {
+  rig_.start_robot(20'000);
+  rig_.enable_servo(0);
+  rig_.run_for(50 * ms);
+  for (const BusTime pause : {0 * us, 300 * us, 5 * ms, 40 * ms}) {
+    run_into_pulse();
+    go_to(0, 0);
+    rig_.run_for(pause);
+    const std::size_t first = pulses_.size();
+    for (const std::uint8_t controlword : std::array<std::uint8_t, 3>{6, 7, 15}) {
+      go_to(0, controlword);
+    }
+    rig_.run_for(100 * ms);
+    ASSERT_GE(pulses_.size(), first + 3);
+    for (std::size_t i = first; i < pulses_.size(); ++i) {
+      expect_width(pulses_[i], width_of(0));
+    }
+  }
 }
 
 TEST_F(ServoPin, AResetIsLowAtOnce) {

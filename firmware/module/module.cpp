@@ -178,6 +178,12 @@ void Module::bus_back(Microseconds now) {
   }
 }
 
+void Module::frames_lost(Microseconds now, std::uint32_t count) {
+  if (parts_.losses.add(now, count) && parts_.network.has_sent_boot_up()) {
+    parts_.emergencies.report(canopen::EmergencyCode::frames_lost, count);
+  }
+}
+
 void Module::supply_low(Microseconds now) {
   parts_.is_supply_low = true;
   finish_event(now);

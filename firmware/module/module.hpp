@@ -26,6 +26,9 @@ class Module {
   void bus_off(Microseconds now);
   /// The controller takes part in the bus again, whether it was asked to or not.
   void bus_back(Microseconds now);
+  /// The controller or its driver had no room for received frames: so many since the start.
+  void frames_lost(Microseconds now, std::uint32_t count);
+  [[nodiscard]] std::uint32_t lost_frames() const { return parts_.losses.count(); }
   /// The supply voltage is too low: no pulses, Fault. It is good again: pulses need a decision, as after each fault.
   void supply_low(Microseconds now);
   void supply_good(Microseconds now);

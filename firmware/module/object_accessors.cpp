@@ -327,6 +327,7 @@ constexpr ObjectAccessor accessors[] = {
         [](Parts& parts, const ObjectWrite& write) {
           parts.monitor.set_limit_time_ms(static_cast<std::uint16_t>(write.value));
         }),
+    read_only(object::lost_frames.address, [](const Parts& parts) { return parts.losses.count(); }),
     own_frame<0, 0>(),
     own_frame<0, 1>(),
     own_frame<1, 0>(),

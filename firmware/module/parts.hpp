@@ -4,6 +4,7 @@
 #include "firmware/module/bus_recovery.hpp"
 #include "firmware/module/drive.hpp"
 #include "firmware/module/host_watch.hpp"
+#include "firmware/module/loss_counter.hpp"
 #include "firmware/module/servo_monitor.hpp"
 #include "firmware/module/state_receiver.hpp"
 #include "firmware/module/sync_producer.hpp"
@@ -63,6 +64,7 @@ struct Parts {
   SyncProducer producer{outbox};
   Drive drive;
   ServoMonitor monitor;
+  LossCounter losses;          ///< a reset of the node does not change it
   bool is_supply_low = false;  ///< a reset of the node does not change it
   ContactPort& contacts;
 };

@@ -196,6 +196,10 @@ inline constexpr Object current_limit_time =
     read_write(over_current.at(2), "Time", DataType::unsigned16, 500, full_range(DataType::unsigned16),
                "above the limit that leads to a fault, in ms");
 
+inline constexpr ObjectGroup bus_statistics{0x200B, ObjectCode::record, "Bus statistics"};
+inline constexpr Object lost_frames = read_only(bus_statistics.at(1), "Lost frames", DataType::unsigned32,
+                                                "received since the program started, but there was no room for them");
+
 inline constexpr ObjectGroup board{0x2020, ObjectCode::record, "Board"};
 inline constexpr Object gateway_role = read_write(board.at(1), "Gateway role", DataType::unsigned8, 0, {0, 1},
                                                   "1: the module connects the host to the bus");

@@ -148,6 +148,8 @@ std::string_view describe(EmergencyCode code) {
       return "reset after a fault of the program";
     case EmergencyCode::not_configured:
       return "started without a configuration";
+    case EmergencyCode::frames_lost:
+      return "received frames lost";
     case EmergencyCode::heartbeat_lost:
       return "heartbeat of the host lost";
     case EmergencyCode::bus_off_recovered:

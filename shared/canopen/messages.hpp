@@ -119,6 +119,7 @@ enum class EmergencyCode : std::uint16_t {
   watchdog_reset = 0x6010,  ///< the watchdog has reset the module; detail: where the program was, 0: not known
   software_fault = 0x6100,  ///< the module was reset after a fault of its program; detail: as above
   not_configured = 0x6300,  ///< started before it was configured; detail: the kernel's last refusal (0x2001:8), or 0
+  frames_lost = 0x8110,     ///< received, but there was no room for them; detail: how many since the start
   heartbeat_lost = 0x8130,
   bus_off_recovered = 0x8140,     ///< the module was bus-off; detail: for how long, in ms
   identifier_collision = 0x8150,  ///< another module sends with this node's id

@@ -202,6 +202,7 @@ TEST(Messages, EmergenciesHaveNames) {
   EXPECT_EQ(describe(EmergencyCode::watchdog_reset), "reset by the watchdog");
   EXPECT_EQ(describe(EmergencyCode::supply_low), "supply voltage too low");
   EXPECT_EQ(describe(EmergencyCode::sensors_failed), "the sensors of the servo do not measure");
+  EXPECT_EQ(describe(EmergencyCode::frames_lost), "received frames lost");
   EXPECT_EQ(describe(EmergencyCode::clock_failure), "reset after a failure of the crystal or the PLL");
   EXPECT_EQ(describe(EmergencyCode::software_fault), "reset after a fault of the program");
   EXPECT_EQ(describe(static_cast<EmergencyCode>(0x1234)), "unknown emergency code");

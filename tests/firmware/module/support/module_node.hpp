@@ -56,6 +56,7 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
     pending.clear();
     at(now).bus_off(local(now));
   }
+  void frames_lost(Microseconds now, std::uint32_t count) { at(now).frames_lost(local(now), count); }
   void supply_low(Microseconds now) { at(now).supply_low(local(now)); }
   void supply_good(Microseconds now) { at(now).supply_good(local(now)); }
   void bus_back(Microseconds now) { at(now).bus_back(local(now)); }

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "shared/can/can_port.hpp"
+
+namespace proleg::firmware {
+
+/// Counts received frames that were lost, and decides which losses are worth a message: on a bus that is too busy,
+/// messages would add to the losses.
+class LossCounter {
+ public:
+  static constexpr Microseconds pause_us = 1'000'000;
+
+  /// count: since the start. Whether it is to be reported: once a second at most.
+  [[nodiscard]] bool add(Microseconds now, std::uint32_t count) {
+    count_ = count;
+    if (now < next_report_) {
+      return false;
+    }
+    next_report_ = now + pause_us;
+    return true;
+  }
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+
+ private:
+  std::uint32_t count_ = 0;
+  Microseconds next_report_ = 0;
+};
+
+}  // namespace proleg::firmware

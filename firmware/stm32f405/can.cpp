@@ -21,6 +21,7 @@ static_assert(board::apb1 / prescaler / (1 + segment_1 + segment_2) == 1'000'000
 constexpr std::uint32_t reads_for_a_frame = 10'000;
 /// RFOM ends after a few cycles of APB1.
 constexpr unsigned reads_for_release = 16;
+constexpr std::uint16_t end_of_urgent = 0x100;
 /// The FIFO holds three frames. If more come meanwhile, the interrupt comes again.
 constexpr unsigned frames_per_interrupt = 3;
 
@@ -127,10 +128,12 @@ bool Can::send(const CanFrame& frame) {
   if (is_bus_off_.load(std::memory_order_relaxed)) {
     return false;
   }
+  // One mailbox is for NMT, SYNC and EMCY: three frames that others outbid must not hold them up.
   unsigned free = mailbox_count;
+  const unsigned usable = frame.identifier < end_of_urgent ? mailbox_count : mailbox_count - 1;
   for (unsigned mailbox = mailbox_count; mailbox-- > 0;) {
     if (!is_pending_[mailbox].load(std::memory_order_relaxed)) {
-      free = mailbox;
+      free = mailbox < usable ? mailbox : free;
     } else if (mailboxes_[mailbox].identifier == frame.identifier) {
       return false;
     }
@@ -180,26 +183,33 @@ void Can::listen(std::span<const std::uint16_t> identifiers) {
 }
 
 void Can::recover() {
-  if (is_bus_off_.load(std::memory_order_relaxed) && recovery_ == Recovery::none) {
+  // Also while an earlier request is in progress: the controller may have gone bus-off again since.
+  if (is_bus_off_.load(std::memory_order_relaxed)) {
     abort_all();  // again: bus-off may have come while send() ran
     can1::mcr.write(can1::mcr_dbf | can1::mcr_inrq);
     recovery_ = Recovery::entering;
   }
 }
 
-bool Can::follow_recovery() {
+bool Can::is_bus_off() {
+  if (recovery_ != Recovery::none) {
+    follow_recovery();
+  }
+  if (can1::esr.has(can1::esr_boff)) {
+    is_bus_off_.store(true, std::memory_order_relaxed);
+  }
+  return is_bus_off_.load(std::memory_order_relaxed);
+}
+
+void Can::follow_recovery() {
   const std::uint32_t is_initializing = can1::msr.read() & can1::msr_inak;
   if (recovery_ == Recovery::entering && is_initializing != 0) {
     can1::mcr.write(can1::mcr_dbf);
     recovery_ = Recovery::leaving;
-    return false;
+  } else if (recovery_ == Recovery::leaving && is_initializing == 0 && !can1::esr.has(can1::esr_boff)) {
+    recovery_ = Recovery::none;
+    is_bus_off_.store(false, std::memory_order_relaxed);
   }
-  if (recovery_ != Recovery::leaving || is_initializing != 0 || can1::esr.has(can1::esr_boff)) {
-    return false;
-  }
-  recovery_ = Recovery::none;
-  is_bus_off_.store(false, std::memory_order_relaxed);
-  return true;
 }
 
 void Can::put(std::uint32_t stamp, EventKind kind, const CanFrame& frame) {
@@ -252,12 +262,11 @@ void Can::on_receive_interrupt(std::uint32_t stamp) {
   }
 }
 
-void Can::on_status_interrupt(std::uint32_t stamp) {
+void Can::on_status_interrupt() {
   can1::msr.write(can1::msr_erri);
-  if (can1::esr.has(can1::esr_boff) && !is_bus_off_.load(std::memory_order_relaxed)) {
+  if (can1::esr.has(can1::esr_boff)) {
     is_bus_off_.store(true, std::memory_order_relaxed);
     abort_all();
-    put(stamp, EventKind::bus_off, {});
   }
 }
 

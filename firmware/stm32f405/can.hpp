@@ -19,7 +19,7 @@ namespace proleg::stm32f405 {
 
 class Can final : public CanPort {
  public:
-  enum class EventKind : std::uint8_t { received, transmitted, bus_off };
+  enum class EventKind : std::uint8_t { received, transmitted };
 
   struct Event {
     std::uint32_t stamp = 0;  ///< MicrosecondClock::stamp()
@@ -33,8 +33,8 @@ class Can final : public CanPort {
 
   // At the priority of the module's program.
 
-  /// Also false if a mailbox holds a frame with this identifier, so that frames with one identifier keep their order;
-  /// and from bus-off until the controller is back.
+  /// The last mailbox takes only identifiers below 0x100. Also false if a mailbox holds a frame with this identifier,
+  /// so that frames with one identifier keep their order; and from bus-off until the controller is back.
   [[nodiscard]] bool send(const CanFrame& frame) override;
   void set_node(std::uint8_t node) override;
   void listen(std::span<const std::uint16_t> identifiers) override;
@@ -44,10 +44,11 @@ class Can final : public CanPort {
   [[nodiscard]] const Event* next_event() const { return events_.front(); }
   void drop_event() { events_.pop(); }
 
-  /// Whether recover() is in progress. No interrupt reports its end: follow_recovery() must be polled.
+  /// Whether recover() is in progress. No interrupt reports its end: is_bus_off() must be polled.
   [[nodiscard]] bool recovering() const { return recovery_ != Recovery::none; }
-  /// True once: the controller takes part in the bus again.
-  [[nodiscard]] bool follow_recovery();
+  /// Whether the controller is bus-off, or on its way back. To be called whenever the module's program runs. It reads
+  /// the controller's state, so no event can be lost; CAN1_SCE only makes the program run.
+  [[nodiscard]] bool is_bus_off();
 
   /// Frames that were lost since start(), because the controller's FIFO or the ring was full.
   [[nodiscard]] std::uint32_t lost_frames() const { return lost_.load(std::memory_order_relaxed); }
@@ -55,7 +56,7 @@ class Can final : public CanPort {
   // For the interrupts.
   void on_transmit_interrupt(std::uint32_t stamp);
   void on_receive_interrupt(std::uint32_t stamp);
-  void on_status_interrupt(std::uint32_t stamp);
+  void on_status_interrupt();
 
  private:
   static constexpr unsigned mailbox_count = 3;
@@ -66,12 +67,13 @@ class Can final : public CanPort {
     leaving,   ///< its end is requested: the controller waits for 128 times 11 recessive bits
   };
 
+  void follow_recovery();
   void put(std::uint32_t stamp, EventKind kind, const CanFrame& frame);
 
   EventRing<Event, 64> events_;
   std::array<CanFrame, mailbox_count> mailboxes_{};            ///< the frames in them
   std::array<std::atomic<bool>, mailbox_count> is_pending_{};  ///< set by send(), cleared by CAN1_TX
-  std::atomic<bool> is_bus_off_{false};                        ///< set by CAN1_SCE, cleared by follow_recovery()
+  std::atomic<bool> is_bus_off_{false};                        ///< set by CAN1_SCE too, cleared by follow_recovery()
   std::atomic<std::uint32_t> lost_{0};
   Recovery recovery_ = Recovery::none;
 };

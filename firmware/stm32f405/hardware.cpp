@@ -43,7 +43,7 @@ void can1_rx0_handler() {
 }
 
 void can1_sce_handler() {
-  hardware.can.on_status_interrupt(MicrosecondClock::stamp());
+  hardware.can.on_status_interrupt();
   request_pend_sv();
 }
 

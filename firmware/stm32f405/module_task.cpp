@@ -29,10 +29,8 @@ void ModuleTask::start(const firmware::ModuleIdentity& identity, firmware::TickR
 void ModuleTask::run() {
   take_events();
   const Microseconds now = hardware.clock.now();
-  if (hardware.can.recovering() && hardware.can.follow_recovery() && module_) {
-    module_->bus_back(in_order(now));
-  }
   if (module_) {
+    follow_bus(now);
     follow_supply(now);
   }
   if (now >= due_) {
@@ -71,6 +69,19 @@ void ModuleTask::take_events() {
   }
 }
 
+/// States, not events: what happened twice, or was not seen, ends in the present state.
+void ModuleTask::follow_bus(Microseconds now) {
+  const bool is_off = hardware.can.is_bus_off();
+  if (is_off && !module_->is_bus_off()) {
+    module_->bus_off(in_order(now));
+  } else if (!is_off && module_->is_bus_off()) {
+    module_->bus_back(in_order(now));
+  }
+  if (const std::uint32_t lost = hardware.can.lost_frames(); lost != module_->lost_frames()) {
+    module_->frames_lost(in_order(now), lost);
+  }
+}
+
 void ModuleTask::follow_supply(Microseconds now) {
   if (hardware.supply.take_drop()) {
     module_->supply_low(in_order(now));
@@ -87,9 +98,6 @@ void ModuleTask::handle(const Can::Event& event, Microseconds time) {
       break;
     case Can::EventKind::transmitted:
       module_->transmitted(time, event.frame);
-      break;
-    case Can::EventKind::bus_off:
-      module_->bus_off(time);
       break;
   }
 }

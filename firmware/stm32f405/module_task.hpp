@@ -2,8 +2,8 @@
 
 // How the module's program runs, and why nothing in it needs to be locked:
 //
-//   priority 0    CAN1_TX, CAN1_RX0, CAN1_SCE   record the event with its time; request PendSV
-//                 PVD                           the same, without the time
+//   priority 0    CAN1_TX, CAN1_RX0             record the event with its time; request PendSV
+//                 CAN1_SCE, PVD                 request PendSV, which reads the state of controller and supply
 //   priority 8    USART2                        sends the console's next byte
 //   priority 15   PendSV, TIM5                  everything else: ModuleTask::run()
 //   thread        the start; afterwards the CPU sleeps whenever no interrupt runs (sleep on exit)
@@ -37,6 +37,7 @@ class ModuleTask {
 
  private:
   void take_events();
+  void follow_bus(Microseconds now);
   void follow_supply(Microseconds now);
   void handle(const Can::Event& event, Microseconds time);
   void publish_tick();

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "tests/sim/mcu/chip/chip_rig.hpp"
@@ -186,6 +187,83 @@ TEST_F(BusOff, AfterTenGoodSecondsTheNextOneWaitsAsLongAsTheFirst) {
   const BusTime off = destroy();
   ASSERT_TRUE(rig_.run_until_true([&] { return !rig_.frames(0x083, off).empty(); }));
   EXPECT_LE(rig_.frames(0x083, off)[0].time - off, 14 * ms);
+}
+
+/// The module's program stands still, while the interrupts of the controller fill its ring of 64 events.
+class FullRing : public BusOff {
+ protected:
+  static constexpr unsigned ring_size = 64;
+  void flood(unsigned count) {
+    for (unsigned i = 0; i < count; ++i) {
+      rig_.host.send(shortest);
+    }
+  }
+};
+
+TEST_F(FullRing, ABusOffThatFindsNoRoomEndsWithinASecond) {
+  // The heartbeat is in a mailbox when the program stops.
+  bool destroys = false;
+  rig_.bus.set_error_rule([&destroys](const CanFrame& frame, std::uint64_t) {
+    destroys = destroys || frame.identifier == 0x703;
+    return frame.identifier == 0x703;
+  });
+  ASSERT_TRUE(rig_.run_until_true([&] { return destroys; }));
+  rig_.break_program({branch_to_itself});
+  flood(ring_size + 10);
+  rig_.run_for(60 * ms);
+  rig_.mend_program();
+  rig_.bus.set_error_rule({});
+  const BusTime mended = rig_.bus.now();
+  EXPECT_TRUE(rig_.events.empty()) << "no reset";
+  ASSERT_TRUE(rig_.run_until_true([&] { return rig_.frames(0x703, mended).size() >= 2; }));
+  rig_.run_for(10 * ms);
+  EXPECT_LE(rig_.frames(0x703, mended)[0].time, mended + 1'000 * ms);
+  const std::vector<LoggedFrame> emergencies = rig_.frames(0x083, mended);
+  EXPECT_TRUE(std::ranges::any_of(emergencies, [](const LoggedFrame& it) { return emergency_code(it) == 0x8140; }));
+}
+
+TEST_F(FullRing, FramesThatFindNoRoomAreCountedAndReported) {
+  EXPECT_EQ(rig_.read(0x200B, 1), 0U);
+  const BusTime start = rig_.bus.now();
+  rig_.break_program({branch_to_itself});
+  flood(ring_size + 36);
+  ASSERT_TRUE(rig_.run_until_true([this] { return rig_.host.is_done(); }, 50 * ms));
+  rig_.mend_program();
+  rig_.run_for(100 * ms);
+  const std::uint32_t lost = rig_.read(0x200B, 1);
+  EXPECT_GE(lost, 36U);
+  EXPECT_LE(lost, 36U + 3U) << "events of its own frames";
+  const std::vector<LoggedFrame> emergencies = rig_.frames(0x083, start);
+  ASSERT_EQ(emergencies.size(), 1U);
+  EXPECT_EQ(emergency_code(emergencies[0]), 0x8110U);
+  EXPECT_EQ(emergencies[0].frame.data[3], lost);
+}
+
+TEST_F(BusOff, ThatComesAgainAtOnceEndsWithinASecond) {
+  rig_.bus.set_error_rule([](const CanFrame& frame, std::uint64_t) { return (frame.identifier & 0x7FU) == 3; });
+  rig_.run_for(150 * ms);
+  rig_.bus.set_error_rule({});
+  const BusTime mended = rig_.bus.now();
+  EXPECT_TRUE(rig_.run_until_true([&] { return !rig_.frames(0x703, mended).empty(); }));
+}
+
+TEST(ChipCan, SyncDoesNotWaitForFramesThatOthersOutbid) {
+  ChipRig rig;
+  rig.start_robot(20'000);
+  rig.write(0x1017, 0, 2, 20);
+  rig.run_for(50 * ms);
+  // Lower than the state frame, the monitoring and the heartbeat of the module, and not urgent: the bus is full of it.
+  const CanFrame outbids{0x100, 8, {}};
+  const BusTime start = rig.bus.now();
+  rig.host.send({0x603, 8, {0x40, 0x00, 0x10, 0x00}});  // its answer waits, too
+  for (unsigned i = 0; i < 700; ++i) {
+    rig.host.send(outbids);
+  }
+  ASSERT_TRUE(rig.run_until_true([&] { return rig.host.is_done(); }));
+  const BusTime end = rig.bus.now();
+  EXPECT_GT(end - start, 80 * ms);
+  const std::size_t syncs = rig.frames(0x080, start).size();
+  EXPECT_GE(syncs, (end - start) / (10 * ms) - 1);
 }
 
 }  // namespace

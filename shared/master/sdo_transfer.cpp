@@ -426,7 +426,7 @@ bool SdoTransfer::store(std::span<const std::uint8_t> bytes) {
     fail(AbortCode::out_of_memory);
     return false;
   }
-  std::copy(bytes.begin(), bytes.end(), buffer_.begin() + offset_);
+  std::ranges::copy(bytes, buffer_.subspan(offset_).begin());
   offset_ += static_cast<std::uint32_t>(bytes.size());
   return true;
 }

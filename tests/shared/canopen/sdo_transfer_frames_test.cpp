@@ -67,7 +67,8 @@ TEST_F(SdoFrames, AStringIsReadInSegments) {
   EXPECT_EQ(documented_answer("40 08 10 00 00 00 00 00"), "41 08 10 00 13 00 00 00") << "19 bytes";
   EXPECT_EQ(documented_answer("60 00 00 00 00 00 00 00"), "00 50 72 6F 6C 65 67 20") << "Proleg_";
   EXPECT_EQ(documented_answer("70 00 00 00 00 00 00 00"), "10 6A 6F 69 6E 74 20 6D") << "joint m";
-  EXPECT_EQ(documented_answer("60 00 00 00 00 00 00 00"), "05 6F 64 75 6C 65 00 00") << "odule, two bytes unused, no more";
+  EXPECT_EQ(documented_answer("60 00 00 00 00 00 00 00"), "05 6F 64 75 6C 65 00 00")
+      << "odule, two bytes unused, no more";
   EXPECT_EQ(answer("70 00 00 00 00 00 00 00"), "80 00 00 00 01 00 04 05") << "the transfer is over";
 }
 

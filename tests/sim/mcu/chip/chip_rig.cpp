@@ -142,6 +142,7 @@ void ChipRig::start_robot(std::uint32_t servo_period_us) {
   boot();
   constexpr std::uint32_t sine = 2;
   write(0x2005, 3, 4, servo_period_us);
+  write(0x6080, 0, 4, 10'000);  // tests let the servo jump
   write(0x2006, 1, 1, sine);
   write(0x2007, 1, 4, 1);
   write(0x2005, 6, 1, 1);

@@ -11,7 +11,6 @@ constexpr unsigned timer_2_function = 1;
 constexpr unsigned can_function = 9;
 constexpr unsigned port_a = 0;
 constexpr unsigned port_b = 1;
-constexpr unsigned port_d = 3;
 
 }  // namespace
 

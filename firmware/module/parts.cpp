@@ -20,6 +20,8 @@ void Parts::load() {
 void Parts::reset(Microseconds now) {
   joint.deactivate();
   board.reset();
+  identity.capabilities &= ~canopen::measures_angle;
+  identity.capabilities |= board.stored().has_feedback ? canopen::measures_angle : 0U;
   reset_communication(now);
   emergencies.reset();
   settings = {};
@@ -34,8 +36,6 @@ void Parts::reset_communication(Microseconds now) {
     joint.deactivate();  // its configuration names the node
   }
   identity.node = lss.pending_node();
-  identity.capabilities &= ~canopen::measures_angle;
-  identity.capabilities |= board.stored().has_feedback ? canopen::measures_angle : 0U;
   can.set_node(identity.node);
   outbox.reset();
   recovery.reset();

@@ -92,6 +92,10 @@ TEST_F(StoreParameters, LoadRestoresAllButTheNodeIdAtTheNextReset) {
   ASSERT_EQ(robot.bus.write(node, {0x1011, 1}, 4, load), AbortCode::none);
   EXPECT_EQ(value(object::current_limit), 1234U) << "not before the reset";
   EXPECT_EQ(in_flash(), (BoardRecord{node, false, 0, 0}));
+  robot.command(NmtCommand::reset_communication);
+  robot.bus.run_for(20'000);
+  EXPECT_EQ(value(object::current_limit), 1234U) << "the application is as it was";
+  EXPECT_EQ(value(object::capabilities) & canopen::measures_angle, 1U);
   robot.command(NmtCommand::reset_node);
   robot.bus.run_for(20'000);
   EXPECT_EQ(value(object::current_limit), 2000U);

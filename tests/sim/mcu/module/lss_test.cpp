@@ -14,12 +14,10 @@ TEST(LssRobot, FlashedChipsWithoutNodeIdsGetThemBesideANativeModuleThatHasOne) {
   LssRobot robot;
   std::vector<std::string> console;
   for (unsigned i = 0; i < count; ++i) {
-    ModuleParts parts{robot.bus,
-                      i,
-                      {},
-                      Crystal(static_cast<std::int32_t>(i) * 50'000 - 75'000),
-                      [] { return std::uint8_t{0}; },
-                      [] { return firmware::ServoReadings{}; }};
+    const auto readings = [] { return firmware::ServoReadings{}; };
+    ModuleParts parts{
+        robot.bus, i,       {}, Crystal(static_cast<std::int32_t>(i) * 50'000 - 75'000), [] { return std::uint8_t{0}; },
+        readings,  readings};
     parts.identity.unique_id = {0x1234'5678U * (i + 1), i, 0xFEDC'BA98U};
     VirtualModuleOptions options;
     options.console = [&console](const std::string& line) { console.push_back(line); };

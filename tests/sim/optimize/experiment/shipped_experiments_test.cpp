@@ -81,6 +81,9 @@ TEST(ShippedExperiments, CmaEsHasAFifthOfTheEvaluations) {
   const Experiment experiment = shipped("cma_es");
   EXPECT_EQ(method_name(experiment.method), "cmaes");
   EXPECT_EQ(experiment.evaluations, 1200U);
+  const auto& cma_es = std::get<PagmoSettings>(experiment.method);
+  EXPECT_EQ(cma_es.population, 32U) << "docs/optimisation.md has ten searches with these two";
+  EXPECT_EQ(cma_es.sigma0, 0.7);
 }
 
 TEST(ShippedExperiments, ParetoSetsSpeedAgainstTheCostOfTransport) {

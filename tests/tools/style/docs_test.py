@@ -1,4 +1,5 @@
-"""docs_test.py SOURCE_DIR: every file or folder of the tree that a page names exists, and the glossary is in order."""
+"""docs_test.py SOURCE_DIR: every file or folder of the tree that a page names exists, the glossary is in order, and the
+page of hazards names tests that exist."""
 
 import re
 import sys
@@ -26,9 +27,26 @@ def unsorted(source):
         yield "docs/glossary.md: found no words, expected a table of them"
 
 
+TEST = re.compile(r"\bTEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)")
+
+
+def untested(source):
+    """Each row of a table of docs/safety.md names a test, and the tests exist."""
+    tests = {".".join(test) for path in source.glob("tests/**/*_test.cpp") for test in TEST.findall(path.read_text())}
+    for number, line in enumerate((source / "docs/safety.md").read_text().splitlines(), 1):
+        if not line.startswith("|") or line.startswith(("| hazard", "| rule", "| ---")):
+            continue
+        named = re.findall(r"`(?:\w+/)?(\w+\.\w+)`", line.rsplit("|", 2)[1])
+        if not named:
+            yield f"docs/safety.md:{number}: found no test, expected one in the last column"
+        for name in named:
+            if name not in tests:
+                yield f"docs/safety.md:{number}: found {name}, expected a test of the tree"
+
+
 def main():
     source = Path(sys.argv[1])
-    messages = [message for page in PAGES for message in missing(source, page)] + list(unsorted(source))
+    messages = [message for page in PAGES for message in missing(source, page)] + list(unsorted(source)) + list(untested(source))
     print("\n".join(messages))
     return 1 if messages else 0
 

@@ -153,6 +153,10 @@ void Module::transmitted(Microseconds now, const CanFrame& frame) {
   parts_.producer.transmitted(now, frame);
   if (parts_.network.confirm_boot_up(frame)) {
     parts_.emergencies.report_reset_cause();
+    if (parts_.network.has_collided()) {
+      report_collision(parts_);
+      finish_event(now);
+    }
     require_good_hardware(parts_);
   }
   // A controller does not receive its own frames: these count for the module that sends them as for all others.

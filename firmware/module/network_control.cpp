@@ -66,10 +66,13 @@ void change_state(Parts& parts, const canopen::NmtRequest& request) {
 }
 
 void stop_after_collision(Parts& parts, std::uint16_t identifier) {
-  if (!parts.network.started() || !parts.network.notice_collision()) {
-    return;
+  if (parts.network.started() && parts.network.notice_collision(identifier) && parts.network.has_sent_boot_up()) {
+    report_collision(parts);
   }
-  parts.emergencies.raise(Fault::identifier_collision, identifier);
+}
+
+void report_collision(Parts& parts) {
+  parts.emergencies.raise(Fault::identifier_collision, parts.network.collision());
   leave_operational(parts, NmtState::stopped);
 }
 

@@ -8,7 +8,11 @@ namespace proleg::firmware {
 
 /// Start, stop or enter Pre-operational, sent to this module or to all. Resets are Module's.
 void change_state(Parts& parts, const canopen::NmtRequest& request);
-/// Another node has sent with an identifier of this one: the module stops until a reset.
+/// Another node has sent with an identifier of this one: the module stops until a reset. Before its boot-up message
+/// it only takes note: the host must see that there are two modules, and no EMCY comes before boot-up (CiA
+/// 301, 7.3.2.2).
 void stop_after_collision(Parts& parts, std::uint16_t identifier);
+/// Reports the collision and stops the module. To be called after the boot-up message, if there was a collision before.
+void report_collision(Parts& parts);
 
 }  // namespace proleg::firmware

@@ -9,7 +9,7 @@ using canopen::NmtState;
 void NetworkNode::start(Microseconds now) {
   state_ = NmtState::boot_up;
   has_sent_boot_up_ = false;
-  has_collided_ = false;
+  collision_ = 0;
   waits_for_node_ = identity_.node == 0;
   boot_up_at_ = waits_for_node_ ? never : now + 1'000U * (1U + serial_number(identity_) % 16U);
   heartbeat_period_ms_ = canopen::object::heartbeat_period.default_value;
@@ -34,11 +34,11 @@ void NetworkNode::enter(NmtState state) {
   boot_up_at_ = never;
 }
 
-bool NetworkNode::notice_collision() {
-  if (has_collided_) {
+bool NetworkNode::notice_collision(std::uint16_t identifier) {
+  if (has_collided()) {
     return false;
   }
-  has_collided_ = true;
+  collision_ = identifier;
   return true;
 }
 

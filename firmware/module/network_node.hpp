@@ -22,9 +22,12 @@ class NetworkNode {
   [[nodiscard]] bool confirm_boot_up(const CanFrame& frame);
   [[nodiscard]] bool has_sent_boot_up() const { return has_sent_boot_up_; }
   void enter(canopen::NmtState state);
-  /// Another node has sent with an identifier of this one. False: that was noticed before, since start().
-  [[nodiscard]] bool notice_collision();
-  [[nodiscard]] bool has_collided() const { return has_collided_; }
+  /// Another node has sent with this identifier, which is one of this node's. False: a collision was noticed before,
+  /// since start().
+  [[nodiscard]] bool notice_collision(std::uint16_t identifier);
+  [[nodiscard]] bool has_collided() const { return collision_ != 0; }
+  /// The identifier of the first collision; 0: there was none.
+  [[nodiscard]] std::uint16_t collision() const { return collision_; }
 
   /// `boot_up` until the boot-up message is in the queue.
   [[nodiscard]] canopen::NmtState state() const { return state_; }
@@ -48,7 +51,7 @@ class NetworkNode {
   canopen::NmtState state_ = canopen::NmtState::boot_up;
   bool waits_for_node_ = false;
   bool has_sent_boot_up_ = false;
-  bool has_collided_ = false;
+  std::uint16_t collision_ = 0;
   Microseconds boot_up_at_ = never;
   std::uint16_t heartbeat_period_ms_ = 0;
   Microseconds heartbeat_at_ = never;

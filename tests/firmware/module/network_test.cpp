@@ -392,6 +392,24 @@ TEST(Network, AnotherSenderOnAnOwnIdentifierStopsTheModuleUntilItsReset) {
   }
 }
 
+TEST(Network, ACollisionBeforeBootUpIsReportedAfterTheBootUpMessage) {
+  test::TestModule robot;
+  robot.it().power_on(robot.bus.now());
+  robot.bus.deliver({canopen::identifier::heartbeat + node, 1, {0}});
+  robot.bus.run_for(50'000);
+  std::vector<CanFrame> own;
+  for (const auto& sent : robot.bus.log) {
+    if (sent.sender != test::TestBus::host) {
+      own.push_back(sent.frame);
+    }
+  }
+  ASSERT_EQ(own.size(), 2U);
+  EXPECT_EQ(own[0], encode(canopen::Heartbeat{node, NmtState::boot_up}));
+  EXPECT_EQ(own[1], encode(canopen::Emergency{node, EmergencyCode::identifier_collision, 0x11,
+                                              canopen::identifier::heartbeat + node}));
+  EXPECT_EQ(robot.module().state(), NmtState::stopped);
+}
+
 TEST(Network, TwoModulesWithOneNodeIdBothStop) {
   for (std::uint32_t id = 1; id < 40; ++id) {
     test::TestBus bus;

@@ -71,21 +71,17 @@ Range outer_range(const Object& object) {
   return range;
 }
 
-/// "deg, one step is 45/536870912"; empty for entries without a unit.
-std::string unit_text(Address address) {
+/// What a value of one of the ranges is in; nothing for other entries and for plain numbers.
+std::optional<UnitScale> scale_at(Address address) {
   const std::optional<ValueAddress> value = value_address(address);
   if (!value) {
-    return "";
+    return std::nullopt;
   }
   const Declaration& declaration = find_algorithm(value->algorithm)->declaration();
   const Unit unit = value->kind == ValueKind::internal_value ? declaration.internal_values[value->number].unit
                                                              : declaration.parameters[value->number].unit;
   const UnitScale scale = scale_of(unit);
-  if (scale.numerator == scale.denominator) {
-    return "";
-  }
-  return std::string(scale.symbol) + ", one step is " + std::to_string(scale.denominator) + "/" +
-         std::to_string(scale.numerator);
+  return scale.numerator == scale.denominator ? std::nullopt : std::optional(scale);
 }
 
 /// A tool that downloads all values must not write it: the value is a command to the module.
@@ -96,9 +92,6 @@ bool is_command(const Object& object) {
 void print_entry(std::ostream& out, const Object& object, const Mapped& mapped) {
   if (!object.help.empty()) {
     out << "; " << object.help << '\n';
-  }
-  if (const std::string unit = unit_text(object.address); !unit.empty()) {
-    out << "; unit: " << unit << '\n';
   }
   out << "ParameterName=" << entry_name(object.address).view()
       << "\nObjectType=0x7\nDataType=" << hexadecimal(static_cast<std::uint32_t>(object.type), 4)
@@ -121,6 +114,14 @@ void print_entry(std::ostream& out, const Object& object, const Mapped& mapped) 
     out << "HighLimit=" << number(object.type, range.maximum) << '\n';
   }
   out << "PDOMapping=" << (mapped.contains(object) ? 1 : 0) << '\n';
+  if (const std::optional<UnitScale> scale = scale_at(object.address)) {
+    // Not of CiA 306, which lets readers skip what they do not know: python-canopen shows values by these.
+    out << "Factor=" << exact_text(static_cast<double>(scale->denominator) / static_cast<double>(scale->numerator))
+        << '\n';
+    if (const std::string_view symbol = scale->symbol; symbol != "1") {
+      out << "Unit=" << symbol << '\n';
+    }
+  }
   if (is_command(object)) {
     out << "ObjFlags=0x1\n";  // CiA 306: refuse write on download
   }

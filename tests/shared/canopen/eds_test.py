@@ -233,6 +233,20 @@ class EdsTest(unittest.TestCase):
         self.assertEqual(check.number("4080sub1", "HighLimit"), 2 ** 30, "amplitude: 90 degrees")
         self.assertIn("amplitude", check.get("4080", "ParameterName"))
 
+    def test_values_have_the_factor_and_unit_that_python_canopen_reads(self):
+        check = Check(self.text)
+        units = set()
+        for section in check.eds.sections():
+            if check.eds.has_option(section, "Factor"):
+                units.add(check.eds.get(section, "Unit", fallback=""))  # a ratio has none
+                self.assertRegex(section, "^[345][0-9A-F]{3}sub[1-4]$")
+                self.assertGreater(float(check.get(section, "Factor")), 0)
+        self.assertEqual(units, {"deg", "Hz", "1/s", ""})
+        # From docs/protocol.md: 90 degrees are 2^30, 1 Hz is 2^24.
+        self.assertEqual(float(check.get("3080sub1", "Factor")) * check.number("3080sub1", "HighLimit"), 90)
+        frequencies = [s for s in check.eds.sections() if check.eds.get(s, "Unit", fallback="") == "Hz"]
+        self.assertEqual({float(check.get(s, "Factor")) for s in frequencies}, {2.0 ** -24})
+
     def test_the_check_finds_what_is_wrong(self):
         for pattern, replacement in (
                 (r"BaudRate_1000=1\n", ""),

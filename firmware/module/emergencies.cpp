@@ -21,6 +21,8 @@ EmergencyCode code_of(Fault fault) {
       return EmergencyCode::supply_low;
     case Fault::sensors_failed:
       return EmergencyCode::sensors_failed;
+    case Fault::over_temperature:
+      return EmergencyCode::over_temperature;
     case Fault::bus_off:
       break;
   }
@@ -77,6 +79,7 @@ std::uint8_t Emergencies::error_register() const {
   constexpr unsigned generic = 1U << 0U;
   constexpr unsigned current = 1U << 1U;
   constexpr unsigned voltage = 1U << 2U;
+  constexpr unsigned temperature = 1U << 3U;
   constexpr unsigned communication = 1U << 4U;
   constexpr unsigned device_profile = 1U << 5U;
   constexpr unsigned manufacturer_specific = 1U << 7U;
@@ -84,11 +87,13 @@ std::uint8_t Emergencies::error_register() const {
   const unsigned supply_low = bit(Fault::supply_low);
   const unsigned foreign = bit(Fault::foreign_configuration);
   const unsigned sensors = bit(Fault::sensors_failed);
-  const unsigned others = over_current | supply_low | sensors | foreign;
+  const unsigned over_temperature = bit(Fault::over_temperature);
+  const unsigned others = over_current | supply_low | over_temperature | sensors | foreign;
   return static_cast<std::uint8_t>(
       (faults_ != 0 ? generic : 0U) | ((faults_ & over_current) != 0 ? current : 0U) |
-      ((faults_ & supply_low) != 0 ? voltage : 0U) | ((faults_ & ~others) != 0 ? communication : 0U) |
-      ((faults_ & sensors) != 0 ? device_profile : 0U) | ((faults_ & foreign) != 0 ? manufacturer_specific : 0U));
+      ((faults_ & supply_low) != 0 ? voltage : 0U) | ((faults_ & over_temperature) != 0 ? temperature : 0U) |
+      ((faults_ & ~others) != 0 ? communication : 0U) | ((faults_ & sensors) != 0 ? device_profile : 0U) |
+      ((faults_ & foreign) != 0 ? manufacturer_specific : 0U));
 }
 
 }  // namespace proleg::firmware

@@ -16,6 +16,7 @@ enum class Fault : std::uint8_t {
   over_current,
   bus_off,
   supply_low,
+  over_temperature,
   sensors_failed,
 };
 

@@ -11,6 +11,7 @@ void ServoMonitor::reset(const BoardRecord& board) {
   limit_time_ms_ = board.current_limit_time_ms;
   readings_ = {};
   stale_readings_ = 0;
+  is_too_hot_ = false;
   clear_over_current();
   next_reading_ = never;
 }
@@ -24,6 +25,7 @@ void ServoMonitor::read(Microseconds now, std::uint32_t tick_period_us) {
   }
   if (readings_.are_new) {
     stale_readings_ = 0;
+    is_too_hot_ = readings_.temperature_c >= (is_too_hot_ ? cool_temperature_c : max_temperature_c);
     judge_current(now);
   } else if (!sensors_failed()) {
     ++stale_readings_;

@@ -13,6 +13,11 @@ class ServoMonitor {
 
   explicit ServoMonitor(SensorPort& port) : port_(port) {}
 
+  /// The junction of the chip may have 105 degrees (data sheet DS8626, general operating conditions).
+  static constexpr std::int8_t max_temperature_c = 95;
+  /// It is no longer too hot below this.
+  static constexpr std::int8_t cool_temperature_c = 85;
+
   /// Limits as in the settings of the board, nothing read yet. Without a feedback potentiometer an angle in the
   /// readings is noise.
   void reset(const BoardRecord& board);
@@ -31,6 +36,8 @@ class ServoMonitor {
 
   /// As of the last reading.
   [[nodiscard]] bool over_current() const { return over_current_; }
+  /// Whether the chip has reached max_temperature_c and has not cooled down since.
+  [[nodiscard]] bool is_too_hot() const { return is_too_hot_; }
   /// Whether the sensors have stopped measuring. Over-current is not seen then.
   [[nodiscard]] bool sensors_failed() const { return stale_readings_ >= max_stale_readings; }
   /// Starts again: readings so far do not count.
@@ -46,6 +53,7 @@ class ServoMonitor {
   void judge_current(Microseconds now);
 
   SensorPort& port_;
+  bool is_too_hot_ = false;
   bool measures_angle_ = false;
   std::uint16_t limit_ma_ = canopen::object::current_limit.default_value;
   std::uint16_t limit_time_ms_ = canopen::object::current_limit_time.default_value;

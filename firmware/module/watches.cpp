@@ -32,18 +32,28 @@ void receive_heartbeat(Parts& parts, Microseconds now, const CanFrame& frame) {
   }
 }
 
+namespace {
+
+/// A condition of the hardware with which the servo must have no pulses.
+void follow(Parts& parts, Fault fault, bool is_present) {
+  if (!is_present) {
+    parts.emergencies.clear(fault);
+  } else if (!parts.emergencies.is_raised(fault)) {
+    parts.drive.power().fault();
+    parts.emergencies.raise(fault, 0);
+  }
+}
+
+}  // namespace
+
 void read_servo(Parts& parts, Microseconds now) {
   parts.monitor.read(now, parts.settings.tick_period_us);
   if (parts.monitor.over_current() && parts.drive.power().state() != PowerState::fault) {
     parts.drive.power().fault();
     parts.emergencies.raise(Fault::over_current, 0);
   }
-  if (!parts.monitor.sensors_failed()) {
-    parts.emergencies.clear(Fault::sensors_failed);
-  } else if (!parts.emergencies.is_raised(Fault::sensors_failed)) {
-    parts.drive.power().fault();
-    parts.emergencies.raise(Fault::sensors_failed, 0);
-  }
+  follow(parts, Fault::sensors_failed, parts.monitor.sensors_failed());
+  follow(parts, Fault::over_temperature, parts.monitor.is_too_hot());
 }
 
 void end_supply_low(Parts& parts) {
@@ -52,7 +62,7 @@ void end_supply_low(Parts& parts) {
 }
 
 void require_good_hardware(Parts& parts) {
-  if (parts.emergencies.is_raised(Fault::sensors_failed)) {
+  if (parts.emergencies.is_raised(Fault::sensors_failed) || parts.emergencies.is_raised(Fault::over_temperature)) {
     parts.drive.power().fault();
   }
   // Before the boot-up message the drive cannot be enabled, and EMCY would overtake the message.

@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
       "Columns: tick; time_s; for each joint setpoint_deg, servo_us, angle_deg, torque_Nm and current_mA (means over "
       "the\n"
       "tick) and its internal values; for each link x_m, y_m, z_m, its orientation qw, qx, qy, qz, contact_rear,\n"
-      "contact_front. Joint and link names follow the dot (setpoint_deg.J1).");
+      "contact_front, contact_N. Joint and link names follow the dot (setpoint_deg.J1).");
   std::string recording_path;
   std::string out;
   bool tsv = true;  // the only format

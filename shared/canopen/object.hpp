@@ -47,8 +47,12 @@ enum class DataType : std::uint8_t {
   return type == DataType::integer8 || type == DataType::integer16 || type == DataType::integer32;
 }
 
-/// The low bytes of a number, as many as the type has, as 32 bits: signed types are sign-extended.
+/// The low bytes of a number, as many as the type has, as 32 bits: signed types are sign-extended. For a long type the
+/// number is its size, all of it.
 [[nodiscard]] constexpr std::uint32_t extend(DataType type, std::uint32_t value) {
+  if (is_long(type)) {
+    return value;
+  }
   const unsigned unused = 32U - 8U * size_of(type);
   if (is_signed(type)) {
     return static_cast<std::uint32_t>(static_cast<std::int32_t>(value << unused) >> unused);

@@ -9,6 +9,7 @@
 #include "sim/optimize/method/search.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/run_progress.hpp"
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/search_display.hpp"
 
@@ -108,7 +109,15 @@ std::vector<optimize::Confirmation> confirm_best(const optimize::Experiment& exp
   }
   try {
     const std::vector<optimize::Evaluation> finalists = optimize::choose_finalists(experiment, outcome.evaluations);
-    return optimize::confirm(experiment, finalists, workers, &store, interrupted);
+    CountProgress progress("fresh runs of the best candidates", finalists.size() * experiment.confirmation.runs);
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<optimize::Confirmation> confirmations =
+        optimize::confirm(experiment, finalists, workers, &store, [&](std::size_t done, std::size_t /*all*/) {
+          progress.show(done);
+          return interrupted();
+        });
+    outcome.confirmation_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return confirmations;
   } catch (const optimize::SearchEnded&) {
     outcome.ending.clear();
     return {};

@@ -41,7 +41,8 @@ struct SearchOutcome {
   optimize::SearchProgress progress;
   std::string ending;  ///< why it ended; empty if it was interrupted
   double wall_s = 0.0;
-  double own_cpu_s = 0.0;  ///< processor time of optimiser, store and scheduling
+  double confirmation_wall_s = 0.0;  ///< of the fresh runs after the search
+  double own_cpu_s = 0.0;            ///< processor time of optimiser, store and scheduling
 };
 
 /// Runs a search until its method ends, its evaluations are used up, or the user interrupts it. Shows progress on the

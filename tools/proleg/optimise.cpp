@@ -67,6 +67,9 @@ void print_text(const Experiment& experiment, const SearchOutcome& outcome, cons
   std::printf("%-24s %.1f s, %.0f simulated s/s; %u workers, %.1f %% busy; optimiser and store %.2f %%\n", "time",
               outcome.wall_s, progress.simulated_s / outcome.wall_s, workers,
               100.0 * progress.workers_s / (outcome.wall_s * workers), 100.0 * overhead(outcome));
+  if (outcome.confirmation_wall_s > 0.0) {
+    std::printf("%-24s %.1f s, after the search\n", "time of fresh runs", outcome.confirmation_wall_s);
+  }
   for (const std::filesystem::path& file : files) {
     std::printf("%-24s %s\n", "written", file.c_str());
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "tools/proleg/terminal_line.hpp"
@@ -19,6 +20,24 @@ class RunProgress {
  private:
   std::string label_;
   double total_s_;
+  TerminalLine terminal_line_;
+  LogInterval log_interval_;
+};
+
+/// The same for a number of runs.
+class CountProgress {
+ public:
+  /// label: what is counted, such as "runs"; total: how many there are.
+  CountProgress(std::string label, std::uint64_t total);
+
+  /// Cheap; draws at most ten times a second.
+  void show(std::uint64_t done);
+  /// Erases the line, so that a message can be printed.
+  void erase() { terminal_line_.erase(); }
+
+ private:
+  std::string label_;
+  std::uint64_t total_;
   TerminalLine terminal_line_;
   LogInterval log_interval_;
 };

@@ -19,8 +19,8 @@
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/json_output.hpp"
+#include "tools/proleg/run_progress.hpp"
 #include "tools/proleg/scenario_run.hpp"
-#include "tools/proleg/terminal_line.hpp"
 #include "tools/proleg/worker_count.hpp"
 
 namespace {
@@ -132,17 +132,13 @@ SweepResult run(const Sweep& sweep, std::uint32_t worker_count) {
                                  [&sweep](const optimize::Experiment& /*experiment*/, const optimize::Task& task) {
                                    return optimize::run_combination(sweep, task.candidate);
                                  });
-  TerminalLine progress(std::chrono::milliseconds(200));
+  CountProgress progress("runs", sweep.size());
   const auto show = [&](std::uint64_t done) {
     for (const std::string& message : workers.messages()) {
       progress.erase();
       print_warning("proleg sweep", message);
     }
-    if (progress.is_due() && done > 0) {
-      const double left_s = progress.elapsed_s() * static_cast<double>(sweep.size() - done) / static_cast<double>(done);
-      progress.draw(std::to_string(done) + " of " + std::to_string(sweep.size()) + " runs, " + duration_text(left_s) +
-                    " left");
-    }
+    progress.show(done);
   };
   SweepResult result;
   const auto start = std::chrono::steady_clock::now();

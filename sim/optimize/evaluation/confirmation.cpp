@@ -69,7 +69,7 @@ std::vector<Evaluation> choose_finalists(const Experiment& experiment, std::span
 }
 
 std::vector<Confirmation> confirm(const Experiment& experiment, std::span<const Evaluation> finalists, Workers& workers,
-                                  Store* store, const std::function<bool()>& stop) {
+                                  Store* store, const std::function<bool(std::size_t done, std::size_t all)>& stop) {
   std::vector<Task> tasks;
   for (const Evaluation& finalist : finalists) {
     for (std::uint32_t run = 0; run < experiment.confirmation.runs; ++run) {
@@ -78,8 +78,12 @@ std::vector<Confirmation> confirm(const Experiment& experiment, std::span<const 
   }
   TaskPipeline pipeline(experiment, workers, store, TaskPipeline::ResultScope::one_number);
   pipeline.set_wanted(tasks);
-  while (!std::ranges::all_of(tasks, [&](const Task& task) { return pipeline.has_result(task); })) {
-    if (stop && stop()) {
+  const auto count_done = [&] {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(tasks, [&](const Task& task) { return pipeline.has_result(task); }));
+  };
+  for (std::size_t done = count_done(); done < tasks.size(); done = count_done()) {
+    if (stop && stop(done, tasks.size())) {
       throw SearchEnded{};
     }
     pipeline.run(stop_check_interval);

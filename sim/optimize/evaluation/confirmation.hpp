@@ -32,9 +32,10 @@ struct Confirmation {
 
 /// Simulates each finalist in the same fresh worlds: trials with the numbers after those of the search. Best first, by
 /// the aggregate of the experiment's trials (the mean, or the worst). The result does not depend on the number of
-/// workers; what the store has is not simulated again. store: null for none. stop: called often; when it returns true,
-/// this throws SearchEnded.
+/// workers; what the store has is not simulated again. store: null for none. stop: called often with the number of
+/// simulations that are done and of all; when it returns true, this throws SearchEnded.
 [[nodiscard]] std::vector<Confirmation> confirm(const Experiment& experiment, std::span<const Evaluation> finalists,
-                                                Workers& workers, Store* store, const std::function<bool()>& stop);
+                                                Workers& workers, Store* store,
+                                                const std::function<bool(std::size_t done, std::size_t all)>& stop);
 
 }  // namespace proleg::optimize

@@ -75,6 +75,15 @@ TEST_F(OptimiseResult, WithTrialsThatVaryTheWorldTheOriginalWorldIsStatedAndRate
   EXPECT_NE(object["best_score"].number(), run["displacement_m"].number()) << "the mean of other worlds";
 }
 
+TEST_F(OptimiseResult, TheTimeOfFreshRunsIsStated) {
+  write_noisy_scenario("noisy.simulation.xml");
+  write_experiment("noisy.optimise.xml", {noisy_, coupled_});
+  const Finished finished =
+      proleg({"optimise", file("noisy.optimise.xml").string(), "--out", file("out").string(), "--evaluations", "12"});
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_NE(finished.out.find("time of fresh runs"), std::string::npos) << finished.out;
+}
+
 TEST_F(OptimiseResult, ANoisyWinnerIsTheBestInFreshRunsForAnyNumberOfWorkersAndAfterResuming) {
   write_noisy_scenario("noisy.simulation.xml");
   write_experiment("noisy.optimise.xml", {noisy_, coupled_});

@@ -134,8 +134,15 @@ TEST(Confirm, EndsWhenItIsStopped) {
   const std::vector<Evaluation> finalists{evaluation_of(0, {1, 1, 1}, 1.0)};
   MadeUpWorkers workers(experiment, 1, 1);
   int questions = 0;
-  EXPECT_THROW(static_cast<void>(confirm(experiment, finalists, workers, nullptr, [&] { return ++questions == 3; })),
-               SearchEnded);
+  std::vector<std::size_t> done;
+  const auto stop = [&](std::size_t so_far, std::size_t all) {
+    EXPECT_EQ(all, experiment.confirmation.runs);
+    done.push_back(so_far);
+    return ++questions == 3;
+  };
+  EXPECT_THROW(static_cast<void>(confirm(experiment, finalists, workers, nullptr, stop)), SearchEnded);
+  EXPECT_EQ(done.front(), 0U);
+  EXPECT_TRUE(std::ranges::is_sorted(done));
 }
 
 }  // namespace

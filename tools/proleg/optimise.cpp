@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "sim/loop/simulation.hpp"
 #include "sim/optimize/method/search.hpp"
+#include "sim/physics/physics_error.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
@@ -153,6 +155,23 @@ Experiment read_stored(const OptimiseOptions& options) {
   }
 }
 
+/// Runs the best scenario once more and warns as `proleg simulate` does: the measures of a search are means over the
+/// joints, and do not say whether the limits cut the gait.
+void print_warnings_on(const std::filesystem::path& best) {
+  sim::DiskFiles files;
+  const sim::Scenario scenario = sim::read_scenario(best, files);
+  sim::Simulation simulation(scenario);
+  try {
+    while (simulation.time_s() < scenario.duration_s - 1e-9 && !interrupted()) {
+      simulation.advance();
+    }
+  } catch (const sim::PhysicsError&) {
+    return;
+  }
+  print_warning_on_servos("proleg optimise", measures_of(simulation.plant().meter()), scenario.robot);
+  print_warning_on_clipping("proleg optimise", scenario, simulation.chain().clipped_ticks(), simulation.tick());
+}
+
 int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   Experiment experiment = read_experiment(options);
   const std::filesystem::path folder = folder_of(options, experiment);
@@ -191,7 +210,7 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
     } else {
       print_text(experiment, outcome, result, files, workers->count());
     }
-    print_warning_on_servos("proleg optimise", result.best.measures);
+    print_warnings_on(folder / "best.simulation.xml");
   }
   if (outcome.ending.empty()) {
     std::cerr << "proleg optimise: interrupted after " << outcome.progress.evaluations

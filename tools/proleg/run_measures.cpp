@@ -77,19 +77,6 @@ void print_warning_on_servos(const std::string& program, const RunMeasures& meas
                              (speed.empty() || torque.empty() ? "" : ", ") + torque + errors.data());
 }
 
-void print_warning_on_servos(const std::string& program, const sim::MeasureValues& best) {
-  const double share = std::fmax(best[sim::Measure::at_speed_limit], best[sim::Measure::at_torque_limit]);
-  if (share > much && best[sim::Measure::tracking_error] > large_error_deg) {
-    std::array<char, 240> text{};
-    std::snprintf(text.data(), text.size(),
-                  "the servos cannot follow the best gait: they are at their speed limit for %.0f %% and at their "
-                  "torque limit for %.0f %% of the time, and miss their angles by %.1f deg (root mean square)",
-                  100.0 * best[sim::Measure::at_speed_limit], 100.0 * best[sim::Measure::at_torque_limit],
-                  best[sim::Measure::tracking_error]);
-    print_warning(program, text.data());
-  }
-}
-
 Json measures_object(const sim::MeasureValues& values) {
   Json object = Json::empty_object();
   for (const sim::MeasureDeclaration& declaration : sim::measures()) {

@@ -32,9 +32,6 @@ struct RunMeasures {
 /// by more than 5 degrees (root mean square). program: as the line begins.
 void print_warning_on_servos(const std::string& program, const RunMeasures& measures, const sim::RobotModel& robot);
 
-/// The same from means over the joints, for the best gait of a search.
-void print_warning_on_servos(const std::string& program, const sim::MeasureValues& best);
-
 /// Prints the measures that the run defines on standard output, one a line.
 void print_measures(const sim::MeasureValues& values);
 

@@ -75,6 +75,28 @@ TEST_F(OptimiseResult, WithTrialsThatVaryTheWorldTheOriginalWorldIsStatedAndRate
   EXPECT_NE(object["best_score"].number(), run["displacement_m"].number()) << "the mean of other worlds";
 }
 
+TEST_F(OptimiseResult, LimitsThatCutTheBestGaitAreAWarning) {
+  std::string robot = read_file(source_path("/sim/scenarios/travelling_wave/caterpillar.robot.xml"));
+  for (std::size_t at = 0; (at = robot.find("<limitsdeg>", at)) != std::string::npos;) {
+    at += std::string("<limitsdeg>").size();
+    robot.replace(at, robot.find('<', at) - at, "-20 20");
+  }
+  ASSERT_NE(robot.find("-20 20"), std::string::npos);
+  const std::string shipped = source_path("/sim/scenarios/travelling_wave/");
+  fs::copy(shipped + "modules", file("modules"), fs::copy_options::recursive);
+  write("caterpillar.robot.xml", robot);
+  write("limits.simulation.xml",
+        "<simulation><robot>caterpillar.robot.xml</robot><actuation>" + shipped +
+            "uniform.actuation.xml</actuation><environment>" + shipped +
+            "flat.environment.xml</environment><simulationProperties><duration>1</duration></simulationProperties>"
+            "</simulation>");
+  write_experiment("limits.optimise.xml",
+                   {{"<simulation>uniform", "<simulation>limits"}, {"<lowerBounds>0<", "<lowerBounds>39<"}});
+  const Finished finished = proleg(search("limits.optimise.xml", "out", {"--evaluations", "4"}));
+  EXPECT_EQ(finished.status, 0) << finished.err;
+  EXPECT_NE(finished.err.find("clip its set-points"), std::string::npos) << finished.err;
+}
+
 TEST_F(OptimiseResult, TheTimeOfFreshRunsIsStated) {
   write_noisy_scenario("noisy.simulation.xml");
   write_experiment("noisy.optimise.xml", {noisy_, coupled_});
@@ -200,7 +222,7 @@ TEST_F(OptimiseResult, AWinnerThatTheServosCannotFollowCausesAWarning) {
                      {{"<simulation>uniform", "<simulation>speed"}, {"<lowerBounds>0<", "<lowerBounds>39<"}});
     const Finished finished = proleg(search("speed.optimise.xml", fast ? "fast" : "slow", {"--evaluations", "5"}));
     EXPECT_EQ(finished.status, 0) << finished.err;
-    EXPECT_EQ(finished.err.find("the servos cannot follow the best gait") != std::string::npos, fast) << finished.err;
+    EXPECT_EQ(finished.err.find("the servos cannot follow this gait: J") != std::string::npos, fast) << finished.err;
   }
 }
 

@@ -130,7 +130,7 @@ TEST(Producer, TriesAgainIfTheQueueHasNoRoomForTheFirstTick) {
   EXPECT_EQ(robot.kernel().tick(), 3U);
 }
 
-// Nobody acknowledges what a module sends that is alone on the bus, and that never leads to bus-off (ISO 11898-1).
+// No node acknowledges the frames of a module that is alone on the bus. That never leads to bus-off (ISO 11898-1).
 TEST(Producer, DoesNotMakeUpForSyncsThatNobodyReceived) {
   struct LoosePort final : CanPort {
     bool send(const CanFrame& frame) override {

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -18,6 +17,7 @@
 #include "shared/canopen/lss_slave.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/bus/candump_log.hpp"
+#include "tests/support/lines_of.hpp"
 
 namespace proleg::canopen {
 namespace {
@@ -309,20 +309,8 @@ TEST_F(LssMasterTest, AModuleThatDoesNotBootIsReported) {
 
 /// Lines that tshark prints for a log.
 std::vector<std::string> dissect(const std::filesystem::path& log, const std::string& options) {
-  const std::string command =
-      std::string(PROLEG_TSHARK) + " -r " + log.string() + " -d can.subdissector,canopen " + options + " 2>/dev/null";
-  std::FILE* const pipe = popen(command.c_str(), "r");
-  std::vector<std::string> lines;
-  if (pipe == nullptr) {
-    ADD_FAILURE() << command;
-    return lines;
-  }
-  std::array<char, 1024> line{};
-  while (std::fgets(line.data(), line.size(), pipe) != nullptr) {
-    lines.emplace_back(line.data());
-  }
-  EXPECT_EQ(pclose(pipe), 0) << command;
-  return lines;
+  return test::lines_of(std::string(PROLEG_TSHARK) + " -r " + log.string() + " -d can.subdissector,canopen " + options +
+                        " 2>/dev/null");
 }
 
 TEST_F(LssMasterTest, TsharkKnowsEveryFrameAndFindsNoneMalformed) {

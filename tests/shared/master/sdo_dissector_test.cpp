@@ -3,35 +3,19 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "sdo_link.hpp"
 #include "sim/bus/candump_log.hpp"
+#include "tests/support/lines_of.hpp"
 
 namespace proleg::canopen {
 namespace {
 
 using test::Bytes;
 using test::random_bytes;
-
-std::vector<std::string> lines_of(const std::string& command) {
-  std::vector<std::string> lines;
-  std::FILE* const pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) {
-    ADD_FAILURE() << command;
-    return lines;
-  }
-  std::array<char, 1024> line{};
-  while (std::fgets(line.data(), line.size(), pipe) != nullptr) {
-    lines.emplace_back(line.data());
-  }
-  EXPECT_EQ(pclose(pipe), 0) << command;
-  return lines;
-}
 
 TEST(SdoSession, OfEveryServiceIsDissectedByTsharkWithoutAMalformedPacket) {
   const std::string path = testing::TempDir() + "sdo_dissector_test." + std::to_string(getpid()) + ".log";
@@ -58,7 +42,7 @@ TEST(SdoSession, OfEveryServiceIsDissectedByTsharkWithoutAMalformedPacket) {
     log.finish();
   }
   const std::string tshark = std::string(PROLEG_TSHARK) + " -r " + path + " -d can.subdissector,canopen 2>/dev/null";
-  const std::vector<std::string> read = lines_of(tshark);
+  const std::vector<std::string> read = test::lines_of(tshark);
   EXPECT_EQ(read.size(), frames);
   for (const std::string& line : read) {
     EXPECT_NE(line.find(" CANopen "), std::string::npos) << line;

@@ -14,6 +14,7 @@
 
 #include "frames.hpp"
 #include "sim/bus/bus.hpp"
+#include "tests/support/lines_of.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -25,21 +26,6 @@ class CandumpFile : public testing::Test {
 
   std::string path;
 };
-
-std::vector<std::string> lines_of(const std::string& command) {
-  std::FILE* const pipe = popen(command.c_str(), "r");
-  std::vector<std::string> lines;
-  if (pipe == nullptr) {
-    ADD_FAILURE() << command;
-    return lines;
-  }
-  std::array<char, 1024> line{};
-  while (std::fgets(line.data(), line.size(), pipe) != nullptr) {
-    lines.emplace_back(line.data());
-  }
-  EXPECT_EQ(pclose(pipe), 0) << command;
-  return lines;
-}
 
 TEST(CandumpLog, IsOneLineAFrameWithTheTimeOfItsEndInSeconds) {
   std::ostringstream text;
@@ -77,7 +63,7 @@ TEST_F(CandumpFile, IsReadByCanUtilsByteForByte) {
     }
     log.finish();
   }
-  std::vector<std::string> read = lines_of(std::string(PROLEG_LOG2ASC) + " -I " + path + " vcan7");
+  std::vector<std::string> read = test::lines_of(std::string(PROLEG_LOG2ASC) + " -I " + path + " vcan7");
   std::erase_if(read, [](const std::string& line) { return line.find(" Rx ") == std::string::npos; });
   ASSERT_EQ(read.size(), expected.size());
   for (std::size_t i = 0; i < read.size(); ++i) {
@@ -126,7 +112,7 @@ TEST_F(CandumpFile, IsDissectedByTsharkAsCanopen) {
   log.finish();
 
   const std::vector<std::string> read =
-      lines_of(std::string(PROLEG_TSHARK) + " -r " + path + " -d can.subdissector,canopen 2>/dev/null");
+      test::lines_of(std::string(PROLEG_TSHARK) + " -r " + path + " -d can.subdissector,canopen 2>/dev/null");
   ASSERT_EQ(read.size(), examples.size());
   for (std::size_t i = 0; i < read.size(); ++i) {
     EXPECT_NE(read[i].find(" CANopen "), std::string::npos) << read[i];

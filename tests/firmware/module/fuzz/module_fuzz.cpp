@@ -5,55 +5,21 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <deque>
 #include <span>
 
 #include "firmware/module/module.hpp"
 #include "shared/gait/registry.hpp"
 #include "shared/master/setup_list.hpp"
+#include "tests/support/fuzz_input.hpp"
 
 namespace {
 
 using namespace proleg;
 using canopen::NmtState;
 using canopen::PowerState;
-
-void require(bool holds, const char* what) {
-  if (!holds) {
-    std::fprintf(stderr, "broken promise: %s\n", what);
-    std::abort();
-  }
-}
-
-/// The input, byte by byte; 0 when it is used up.
-class Input {
- public:
-  explicit Input(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
-
-  [[nodiscard]] bool empty() const { return bytes_.empty(); }
-  std::uint8_t byte() {
-    if (bytes_.empty()) {
-      return 0;
-    }
-    const std::uint8_t value = bytes_.front();
-    bytes_ = bytes_.subspan(1);
-    return value;
-  }
-  std::uint16_t half() { return static_cast<std::uint16_t>(byte() | byte() << 8U); }
-  std::uint32_t word() { return half() | std::uint32_t{half()} << 16U; }
-  std::array<std::uint8_t, 8> eight() {
-    std::array<std::uint8_t, 8> data{};
-    for (std::uint8_t& value : data) {
-      value = byte();
-    }
-    return data;
-  }
-
- private:
-  std::span<const std::uint8_t> bytes_;
-};
+using test::FuzzInput;
+using test::require;
 
 /// A robot of three joints with two slots on one of them.
 class Setup {
@@ -126,7 +92,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
     receive(encode(canopen::NmtRequest{canopen::NmtCommand::start, 0}));
   }
 
-  void handle(std::uint8_t event, Input& input);
+  void handle(std::uint8_t event, FuzzInput& input);
 
  private:
   // The ports.
@@ -192,7 +158,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
     receive(frame);
   }
   /// Of an algorithm that is in one of the slots; the slot may be another.
-  static canopen::ValueAddress value_address(Input& input) {
+  static canopen::ValueAddress value_address(FuzzInput& input) {
     const auto kind = static_cast<canopen::ValueKind>(input.byte() % 3U);
     const auto algorithm = static_cast<std::uint8_t>(3U + input.byte() % 2U);
     const auto number = static_cast<std::uint8_t>(input.byte() % 8U);
@@ -253,7 +219,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
   firmware::Module module;
 };
 
-void World::handle(std::uint8_t event, Input& input) {
+void World::handle(std::uint8_t event, FuzzInput& input) {
   const std::uint32_t coming = module.kernel().tick();
   const std::uint32_t crc = canopen::configuration_crc(setup_.robot);
   const std::uint8_t node = setup_.node(Setup::joint);
@@ -329,7 +295,7 @@ void World::handle(std::uint8_t event, Input& input) {
     case 15: {
       const unsigned sender = input.byte() % 3U;
       const unsigned channel = input.byte() % 2U;
-      CanFrame frame = canopen::encode_state(setup_.node(sender), channel, StateFrame{input.eight()});
+      CanFrame frame = canopen::encode_state(setup_.node(sender), channel, StateFrame{input.take<8>()});
       if (sender == Setup::joint) {
         frame.identifier =
             static_cast<std::uint16_t>(frame.identifier + 64U);  // its own identifier would be a collision
@@ -341,7 +307,7 @@ void World::handle(std::uint8_t event, Input& input) {
     case 16: {
       const auto identifier = static_cast<std::uint16_t>(input.half() % 0x800U);
       const auto length = static_cast<std::uint8_t>(input.byte() % 9U);
-      CanFrame frame{identifier, length, input.eight()};
+      CanFrame frame{identifier, length, input.take<8>()};
       for (std::size_t i = length; i < 8; ++i) {
         frame.data[i] = 0;
       }
@@ -374,12 +340,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   configured.configure();
   require(configured.module.state() == NmtState::operational, "the set-up configures a module");
   unconfigured.power_on();
-  Input first({data, size});
+  FuzzInput first({data, size});
   while (!first.empty()) {
     const std::uint8_t event = first.byte();
     configured.handle(event, first);
   }
-  Input second({data, size});
+  FuzzInput second({data, size});
   while (!second.empty()) {
     const std::uint8_t event = second.byte();
     unconfigured.handle(event, second);

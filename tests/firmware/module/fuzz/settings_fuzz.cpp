@@ -5,57 +5,20 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <deque>
 #include <span>
 
 #include "firmware/module/module.hpp"
 #include "shared/fixed/crc32.hpp"
 #include "shared/fixed/little_endian.hpp"
+#include "tests/support/fuzz_input.hpp"
 
 namespace {
 
 using namespace proleg;
 using firmware::BoardRecord;
-
-void require(bool holds, const char* what) {
-  if (!holds) {
-    std::fprintf(stderr, "broken promise: %s\n", what);
-    std::abort();
-  }
-}
-
-/// The input, byte by byte; 0 when it is used up.
-class Input {
- public:
-  explicit Input(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
-
-  [[nodiscard]] bool empty() const { return bytes_.empty(); }
-  std::uint8_t byte() {
-    if (bytes_.empty()) {
-      return 0;
-    }
-    const std::uint8_t value = bytes_.front();
-    bytes_ = bytes_.subspan(1);
-    return value;
-  }
-  template <std::size_t size>
-  std::array<std::uint8_t, size> take() {
-    std::array<std::uint8_t, size> data{};
-    for (std::uint8_t& value : data) {
-      value = byte();
-    }
-    return data;
-  }
-  std::uint32_t word() {
-    const auto bytes = take<4>();
-    return read_little_endian(bytes, 0, 4);
-  }
-
- private:
-  std::span<const std::uint8_t> bytes_;
-};
+using test::FuzzInput;
+using test::require;
 
 struct PowerCut {};
 
@@ -99,7 +62,7 @@ class Flash final : public firmware::FlashPort {
 
 class World final : CanPort, firmware::ServoPort, firmware::ContactPort, firmware::SensorPort {
  public:
-  explicit World(Input& input) : module_({0, 1, {7, 8, 9}}, {*this, *this, *this, *this, flash_}) {
+  explicit World(FuzzInput& input) : module_({0, 1, {7, 8, 9}}, {*this, *this, *this, *this, flash_}) {
     for (auto& sector : flash_.sectors) {
       for (std::size_t place = 0; place < sector.size(); place += BoardRecord::size) {
         write_record(std::span(sector).subspan(place, BoardRecord::size), input);
@@ -108,7 +71,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort, firmwar
     power_on();
   }
 
-  void handle(std::uint8_t event, Input& input) {
+  void handle(std::uint8_t event, FuzzInput& input) {
     try {
       take_event(event, input);
     } catch (const PowerCut&) {
@@ -123,7 +86,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort, firmwar
 
  private:
   /// Erased, any bytes, or any bytes with the right checksum.
-  static void write_record(std::span<std::uint8_t> place, Input& input) {
+  static void write_record(std::span<std::uint8_t> place, FuzzInput& input) {
     const std::uint8_t kind = input.byte() % 4U;
     if (kind == 0) {
       return;
@@ -150,7 +113,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort, firmwar
     before_ = record;
   }
 
-  void take_event(std::uint8_t event, Input& input) {
+  void take_event(std::uint8_t event, FuzzInput& input) {
     switch (event % 10U) {
       case 0:
         receive({0x7E5, static_cast<std::uint8_t>(input.byte() % 9U), input.take<8>()});
@@ -266,7 +229,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort, firmwar
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Input input({data, size});
+  FuzzInput input({data, size});
   World world(input);
   while (!input.empty()) {
     const std::uint8_t event = input.byte();

@@ -5,45 +5,21 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <span>
 #include <vector>
 
 #include "shared/canopen/messages.hpp"
 #include "shared/canopen/sdo_server.hpp"
 #include "shared/master/sdo_transfer.hpp"
+#include "tests/support/fuzz_input.hpp"
 
 namespace {
 
 using namespace proleg;
+using test::FuzzInput;
+using test::require;
 using namespace proleg::canopen;
 using Bytes = std::vector<std::uint8_t>;
-
-void require(bool holds, const char* what) {
-  if (!holds) {
-    std::fprintf(stderr, "broken promise: %s\n", what);
-    std::abort();
-  }
-}
-
-/// The input, byte by byte; 0 when it is used up.
-class Input {
- public:
-  explicit Input(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
-  [[nodiscard]] bool empty() const { return bytes_.empty(); }
-  std::uint8_t byte() {
-    if (bytes_.empty()) {
-      return 0;
-    }
-    const std::uint8_t value = bytes_.front();
-    bytes_ = bytes_.subspan(1);
-    return value;
-  }
-
- private:
-  std::span<const std::uint8_t> bytes_;
-};
 
 constexpr Address domain{0x1F50, 1};
 constexpr Address text{0x2F00, 0};
@@ -128,9 +104,9 @@ class Device final : public ObjectAccess {
 
 class Link {
  public:
-  explicit Link(Input& input) { start(input); }
+  explicit Link(FuzzInput& input) { start(input); }
 
-  void handle(std::uint8_t event, Input& input) {
+  void handle(std::uint8_t event, FuzzInput& input) {
     switch (event % 16U) {
       case 10:
         static_cast<void>(from_client());
@@ -178,7 +154,7 @@ class Link {
  private:
   static constexpr std::uint8_t node = 5;
 
-  void start(Input& input) {
+  void start(FuzzInput& input) {
     const std::uint8_t kind = input.byte();
     SdoTransferOptions options;
     options.attempts = 1U + kind % 4U;
@@ -201,7 +177,7 @@ class Link {
     }
     answers_.clear();
   }
-  static CanFrame random_frame(unsigned identifier, Input& input) {
+  static CanFrame random_frame(unsigned identifier, FuzzInput& input) {
     CanFrame frame{static_cast<std::uint16_t>(identifier), 8, {}};
     for (std::uint8_t& byte : frame.data) {
       byte = input.byte();
@@ -288,7 +264,7 @@ class Link {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Input input({data, size});
+  FuzzInput input({data, size});
   Link link(input);
   while (!input.empty()) {
     const std::uint8_t event = input.byte();

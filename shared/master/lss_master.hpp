@@ -31,12 +31,12 @@ struct LssMasterOptions {
   Microseconds settle_us = 2'000;             ///< without an answer before the next request
   Microseconds store_timeout_us = 1'500'000;  ///< a module may have to erase flash
   Microseconds boot_timeout_us = 100'000;
-  Microseconds send_timeout_us = 1'000'000;  ///< of a frame that nobody acknowledges
+  Microseconds send_timeout_us = 1'000'000;  ///< of a frame that no node acknowledges
 };
 
 enum class LssProblem : std::uint8_t {
   none,
-  not_sent,           ///< nobody acknowledges: no other node is on the bus, or all have another bit rate
+  not_sent,           ///< no node acknowledges: no other is on the bus, or all have another bit rate
   scan_failed,        ///< a module answered, then not; detail: the number of the address that was asked for, 0 to 3
   unexpected_module,  ///< found() is not in the list, or the list is used up
   no_answer,          ///< of the module that was found, to 'configure node id' or 'store'; detail: the service

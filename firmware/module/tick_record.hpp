@@ -18,7 +18,7 @@ struct TickRecord {
   std::uint8_t joint = 0;
   std::uint8_t flags = 0;  ///< of the state frame, byte 6
   std::uint8_t value_count = 0;
-  std::uint8_t reserved = 0;
+  std::uint8_t power = 0;  ///< canopen::PowerState of the drive now; whoever keeps the record updates it
   /// Internal values of the joint's algorithms, slot by slot, each in the order of its declaration.
   std::array<std::int32_t, max_slots * max_internal_values> internal_values{};
 

@@ -106,6 +106,7 @@ void ModuleTask::publish_tick() {
   if (const firmware::TickRecord& record = module_->last_tick(); record.tick != last_tick_->tick) {
     std::memcpy(last_tick_, &record, record.used_bytes());
   }
+  last_tick_->power = static_cast<std::uint8_t>(module_->power());
 }
 
 void ModuleTask::poll(Microseconds now) {

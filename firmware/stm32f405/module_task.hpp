@@ -29,7 +29,7 @@ namespace proleg::stm32f405 {
 class ModuleTask {
  public:
   /// To be called before the interrupts are enabled. Without it the task only feeds the watchdog. The record of each
-  /// tick is copied to last_tick, so that its address is known before the program runs.
+  /// tick is copied to last_tick, with the drive's state now, so that its address is known before the program runs.
   void start(const firmware::ModuleIdentity& identity, firmware::TickRecord& last_tick);
 
   /// For PendSV and TIM5.

@@ -20,6 +20,7 @@ bool prevails(const CanFrame& left, const CanFrame& right) {
 }
 
 constexpr unsigned error_bits = 6 + 8;       // flag and delimiter; flags that do not begin together would take up to 12
+constexpr unsigned recessive_bits_to_join = 11;
 constexpr unsigned suspend_bits = 8;         // a passive sender waits this long for others
 constexpr unsigned earliest_collision = 16;  // frames of one identifier differ from the length on
 
@@ -51,12 +52,18 @@ Controller& Bus::attach(BusListener& listener) {
   return *controllers_.back();
 }
 
-BusTime Bus::next_event() const {
+BusTime Bus::next_delivery() const { return delayed_.empty() ? never_on_bus : delayed_.front().time; }
+
+BusTime Bus::next_end_of_wait() const { return dominant_ ? never_on_bus : waits_.next_end(); }
+
+BusTime Bus::next_event() const { return std::min(next_delivery(), next_change()); }
+
+BusTime Bus::next_change() const {
   if (sending_) {
     return current_.end;
   }
-  const BusTime end_of_wait = waits_.next_end();
-  if (candidates_ == 0) {
+  const BusTime end_of_wait = next_end_of_wait();
+  if (candidates_ == 0 || dominant_) {
     return end_of_wait;
   }
   if (watchers_ > 0 || collision_rule_ == CollisionRule::bit_error) {
@@ -67,10 +74,10 @@ BusTime Bus::next_event() const {
 
 BusTime Bus::earliest_delivery() const {
   if (sending_) {
-    return current_.end;
+    return std::min(next_delivery(), current_.end);
   }
   const bool collides = collision_rule_ == CollisionRule::bit_error;
-  return std::min(waits_.next_end(), now_ + duration(collides ? earliest_collision + error_bits : min_frame_bits));
+  return std::min(std::min(next_delivery(), next_end_of_wait()), now_ + duration(collides ? earliest_collision + error_bits : min_frame_bits));
 }
 
 void Bus::advance_to(BusTime time) {
@@ -78,6 +85,10 @@ void Bus::advance_to(BusTime time) {
     throw std::logic_error("a listener of the CAN bus advances it");
   }
   for (;;) {
+    if (next_delivery() <= time && (!sending_ || next_delivery() <= current_.end)) {
+      deliver_delayed(next_delivery());
+      continue;
+    }
     if (sending_) {
       if (current_.end > time) {
         break;
@@ -85,10 +96,10 @@ void Bus::advance_to(BusTime time) {
       finish();
       continue;
     }
-    const BusTime end_of_wait = waits_.next_end();
-    if (!waits_.empty() && end_of_wait <= time && end_of_wait <= arbitration_at_) {
+    const BusTime end_of_wait = next_end_of_wait();
+    if (end_of_wait != never_on_bus && end_of_wait <= time && end_of_wait <= arbitration_at_) {
       end_waits(end_of_wait);
-    } else if (arbitration_at_ < time) {
+    } else if (!dominant_ && arbitration_at_ < time) {
       start(arbitration_at_);
     } else {
       break;
@@ -107,7 +118,7 @@ void Bus::candidates_changed(bool had_one, bool has_one) {
 
 void Bus::schedule_arbitration() {
   const BusTime earliest = std::max(now_, free_at_);
-  if (candidates_ == 0) {
+  if (candidates_ == 0 || dominant_) {
     arbitration_at_ = never_on_bus;
   } else if (suspended_until_ > earliest) {
     arbitration_at_ = never_on_bus;
@@ -364,8 +375,74 @@ void Bus::report() {
       ++total_.losses;
       continue;
     }
+    if (const BusTime delay = delay_rule_ ? delay_rule_(current_.frame, i) : 0; delay > 0) {
+      const Delayed delayed{current_.end + delay, i, current_.frame};
+      delayed_.insert(std::ranges::upper_bound(delayed_, delayed.time, {}, &Delayed::time), delayed);
+      continue;
+    }
     controller.listener_->received(current_.end, current_.frame);
   }
+}
+
+void Bus::deliver_delayed(BusTime time) {
+  now_ = std::max(now_, time);
+  const Delayed delayed = delayed_.front();
+  delayed_.erase(delayed_.begin());
+  Controller& receiver = *controllers_[delayed.receiver];
+  if (receiver.presence_ == Controller::Presence::on) {
+    reporting_ = true;
+    const Reset guard(reporting_);
+    receiver.listener_->received(time, delayed.frame);
+  }
+}
+
+void Bus::hold_dominant(bool dominant) {
+  if (dominant == dominant_) {
+    return;
+  }
+  dominant_ = dominant;
+  arbitration_at_ = never_on_bus;
+  if (dominant) {
+    count_dominant_errors();
+    waits_.end_silence(now_);
+  } else {
+    free_at_ = std::max(free_at_, now_ + duration(recessive_bits_to_join));
+    waits_.begin_idle(now_);
+  }
+  schedule_arbitration();
+}
+
+void Bus::count_dominant_errors() {
+  counting_ = true;
+  if (sending_) {
+    destroy_current();
+    finish();
+    for (Controller* sender : senders_) {
+      while (sender->takes_part_) {
+        sender->errors_.transmitter_error();
+        sender->last_error_ = CanError::bit_recessive;
+        if (sender->error_state() == ErrorState::bus_off) {
+          sender->update_part();
+          sender->abort_all();
+        }
+      }
+    }
+  }
+  for (const auto& controller : controllers_) {
+    while (controller->receives_ && controller->error_state() == ErrorState::active) {
+      controller->errors_.receiver_error();
+      controller->last_error_ = CanError::form;
+    }
+  }
+  reporting_ = true;
+  const Reset guard(reporting_);
+  report_states();
+}
+
+void Bus::destroy_current() {
+  failure_ = CanError::bit_recessive;
+  current_.end = std::max(now_, current_.start + 1);
+  free_at_ = current_.end + duration(interframe_bits);
 }
 
 void Bus::report_error() {

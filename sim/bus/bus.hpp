@@ -59,6 +59,9 @@ class Bus {
   /// Adds a node's controller, switched on. It is valid as long as the bus; the listener must outlive the bus.
   Controller& attach(BusListener& listener);
 
+  /// By its index: its position in the order of attachment.
+  [[nodiscard]] Controller& controller(std::size_t index) { return *controllers_.at(index); }
+
   /// The time up to which the bus has been simulated.
   [[nodiscard]] BusTime now() const { return now_; }
 
@@ -84,6 +87,16 @@ class Bus {
   /// controller. Empty: nothing is lost.
   using LossRule = std::function<bool(const CanFrame& frame, std::size_t receiver)>;
   void set_loss_rule(LossRule rule) { loss_rule_ = std::move(rule); }
+
+  /// How much later than the end of the frame a receiver gets it: its driver is busy. 0: at the end. A receiver that is
+  /// off when the frame is due does not get it. Empty: all are prompt.
+  using DelayRule = std::function<BusTime(const CanFrame& frame, std::size_t receiver)>;
+  void set_delay_rule(DelayRule rule) { delay_rule_ = std::move(rule); }
+
+  /// Holds the wire dominant from now() on, or lets it go. No node can send meanwhile. The senders of a frame on the
+  /// wire are in bus-off at once, all others error-passive (ISO 11898-1: after some 300 us; shorter times are not
+  /// modelled). After the release the bus is free when 11 bits were recessive.
+  void hold_dominant(bool dominant);
 
   /// Whether a transmission is destroyed: all nodes see its CRC delimiter dominant, a bit error for the sender and a
   /// form error for the receivers. An error frame follows at once: 6 bits of flag, 8 of delimiter, and the interframe
@@ -120,6 +133,22 @@ class Bus {
 
  private:
   friend class Controller;
+
+  /// A frame that a receiver gets after its end.
+  struct Delayed {
+    BusTime time;
+    std::size_t receiver;
+    CanFrame frame;
+  };
+
+  /// The frame on the wire ends here, with an error.
+  void destroy_current();
+  [[nodiscard]] BusTime next_delivery() const;
+  [[nodiscard]] BusTime next_end_of_wait() const;
+  /// The next event without delayed deliveries.
+  [[nodiscard]] BusTime next_change() const;
+  void deliver_delayed(BusTime time);
+  void count_dominant_errors();
 
   void candidates_changed(bool had_one, bool has_one);
   void schedule_arbitration();
@@ -160,7 +189,11 @@ class Bus {
   RecessiveWaits waits_;
   std::size_t watchers_ = 0;
 
+  bool dominant_ = false;
+  std::vector<Delayed> delayed_;  ///< by time, then in the order of the frames
+
   LossRule loss_rule_;
+  DelayRule delay_rule_;
   ErrorRule error_rule_;
   FrameListener frame_listener_;
   CollisionReport collision_report_;

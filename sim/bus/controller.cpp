@@ -18,7 +18,7 @@ bool Controller::send(std::size_t mailbox, const CanFrame& frame) {
     throw std::invalid_argument("a CAN frame with identifier " + std::to_string(frame.identifier) + " and " +
                                 std::to_string(frame.length) + " bytes, expected at most 2047 and 8");
   }
-  if (!takes_part_ || mailbox >= mailbox_count || mailboxes_[mailbox].state != MailboxState::empty) {
+  if (!accepts_requests() || mailbox >= mailbox_count || mailboxes_[mailbox].state != MailboxState::empty) {
     return false;
   }
   Mailbox& free = mailboxes_[mailbox];
@@ -78,6 +78,35 @@ void Controller::join() {
   }
 }
 
+void Controller::unplug() {
+  if (!plugged_in_) {
+    return;
+  }
+  if (is_sending() && bus_->sending_) {
+    bus_->destroy_current();
+  }
+  plugged_in_ = false;
+  update_part();
+  choose_candidate();
+}
+
+void Controller::plug_in() {
+  if (plugged_in_) {
+    return;
+  }
+  plugged_in_ = true;
+  const bool has_tried = std::ranges::find(mailboxes_, MailboxState::pending, &Mailbox::state) != mailboxes_.end();
+  if (has_tried && accepts_requests() && role_ == Role::normal) {
+    while (error_state() == ErrorState::active) {
+      errors_.transmitter_error();
+    }
+    last_error_ = CanError::acknowledgement;
+    bus_->counting_ = true;
+  }
+  update_part();
+  choose_candidate();
+}
+
 void Controller::recover() {
   if (presence_ == Presence::on && error_state() == ErrorState::bus_off) {
     bus_->waits_.add(*this, 128, bus_->now());
@@ -119,7 +148,7 @@ bool Controller::is_sending() const {
 
 void Controller::update_part() {
   const bool before = takes_part_;
-  takes_part_ = presence_ == Presence::on && error_state() != ErrorState::bus_off;
+  takes_part_ = plugged_in_ && accepts_requests();
   if (takes_part_ && !before) {
     part_since_ = bus_->now();
   }

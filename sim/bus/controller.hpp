@@ -92,6 +92,12 @@ class Controller final : public CanPort {
   [[nodiscard]] unsigned receive_errors() const { return errors_.receive_errors(); }
   /// CanError::none after a frame without an error.
   [[nodiscard]] CanError last_error() const { return last_error_; }
+  /// Disconnects the node's wires from the bus, or connects them again. A frame on the wire that it sends is destroyed.
+  /// A disconnected node keeps its frames and gets no acknowledgement for them, so it comes back error-passive if it
+  /// had any. (Simplified: it does not disturb the frame on the wire when it is connected.)
+  void unplug();
+  void plug_in();
+  [[nodiscard]] bool is_plugged_in() const { return plugged_in_; }
   /// In bus-off: returns to the bus, with counters of 0, after 128 times 11 recessive bits, and calls
   /// error_state_changed(). In bus-off all mailboxes are empty, and the controller sends, receives and acknowledges
   /// nothing. In other states recover() has no effect.
@@ -136,6 +142,10 @@ class Controller final : public CanPort {
   void update_part();
   /// The transmission of sent_mailbox_ has failed.
   void take_back();
+  /// Whether it takes requests: on and not in bus-off.
+  [[nodiscard]] bool accepts_requests() const {
+    return presence_ == Presence::on && error_state() != ErrorState::bus_off;
+  }
   [[nodiscard]] bool took_part_since(BusTime time) const { return takes_part_ && part_since_ <= time; }
 
   // The bus reads these of every controller with every frame.
@@ -144,12 +154,13 @@ class Controller final : public CanPort {
   std::uint64_t last_sent_ = 0;   ///< number of the transmission that the controller sent last
   BusTime part_since_ = 0;        ///< when it began to take part
   BusTime suspended_until_ = 0;   ///< it may not start a frame before this
-  bool takes_part_ = true;        ///< on and not in bus-off
+  bool takes_part_ = true;        ///< on, plugged in and not in bus-off
   bool receives_ = true;          ///< takes part and does not loop back
   bool acknowledges_ = true;      ///< receives and is not silent
 
   bool one_shot_ = false;
   bool watches_ = false;
+  bool plugged_in_ = true;
   Presence presence_ = Presence::on;
   Role role_ = Role::normal;
   Order order_ = Order::identifier_then_request;

@@ -22,6 +22,8 @@ class RecessiveWaits {
 
   /// A frame or error frame ends. Need not be called while no controller waits.
   void begin_silence(BusTime end_of_frame);
+  /// The bus is recessive from now on, after something that was no frame.
+  void begin_idle(BusTime now) { recessive_since_ = now; }
   /// A frame begins. Need not be called while no controller waits.
   void end_silence(BusTime time);
 

@@ -8,6 +8,8 @@
 #include "shared/canopen/bus_load.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/fixed/random.hpp"
+#include "sim/loop/fault_player.hpp"
+#include "sim/loop/fault_state.hpp"
 #include "sim/loop/host_node.hpp"
 #include "sim/loop/injector.hpp"
 #include "sim/loop/module_rack.hpp"
@@ -45,13 +47,20 @@ class HardwareLoop::Implementation {
         options_(std::move(options)),
         plant_(scenario),
         plant_ticks_(scenario, plant_, [this](std::uint32_t joint) { return pulse_of(joint); }),
-        rack_(bus_, plant_, scenario, options_),
+        fault_state_(scenario),
+        rack_(bus_, plant_, scenario, with_faulty_sensors()),
         state_frames_(scenario),
         reference_(scenario, options_.losses),
         values_(scenario, rack_, reference_),
         host_(bus_, scenario, sync_producer),
-        injector_(bus_, options_.injected) {
+        injector_(bus_, options_.injected),
+        watch_(scenario),
+        faults_(options_.faults, {scenario, sync_producer, fault_state_, bus_, rack_, plant_, host_}) {
     set_bus_rules();
+    if (has_faults()) {
+      rack_.watch_pulses(
+          [this](unsigned joint, const JointModule::WatchedPulse& pulse) { watch_.note_pulse(joint, pulse); });
+    }
     if (options_.before_start) {
       options_.before_start();
     }
@@ -84,28 +93,50 @@ class HardwareLoop::Implementation {
             plant_.motor_torques(),
             plant_.servo_currents(),
             plant_.contact_forces(),
-            reference_.chain().lost()};
+            first_fault_tick_ ? std::span<const Loss>() : reference_.chain().lost()};
   }
 
   [[nodiscard]] std::uint32_t tick() const { return tick_; }
   [[nodiscard]] double time_s() const { return tick_ * (scenario_.kernel.tick_period_us * 1e-6); }
   [[nodiscard]] const Plant& plant() const { return plant_; }
   [[nodiscard]] const HardwareReport& report() const { return report_; }
+  [[nodiscard]] const MotionWatch& watch() const { return watch_; }
+  void finish_watch() { watch_.finish(bus_.now()); }
+  [[nodiscard]] std::optional<std::uint32_t> first_fault_tick() const { return first_fault_tick_; }
   [[nodiscard]] std::span<const std::uint32_t> clipped_ticks() const { return reference_.chain().clipped_ticks(); }
   [[nodiscard]] BusStatistics bus_statistics() const { return bus_.statistics(); }
 
  private:
+  [[nodiscard]] bool has_faults() const { return !options_.faults.empty(); }
+  [[nodiscard]] bool has_losses() const { return options_.losses != nullptr && options_.losses->any(); }
+
+  /// The options, with touch sensors that fail as the faults say.
+  const HardwareOptions& with_faulty_sensors() {
+    if (has_faults()) {
+      options_.change_sensors = [this, change = options_.change_sensors](unsigned joint, std::uint8_t sensors) {
+        return fault_state_.sensors(joint, change ? change(joint, sensors) : sensors);
+      };
+    }
+    return options_;
+  }
+
   void set_bus_rules() {
     bus_.set_frame_listener([this](const Transmission& transmission) { on_frame(transmission); });
-    if (options_.losses != nullptr && options_.losses->any()) {
+    if (has_losses() || has_faults()) {
       bus_.set_loss_rule([this](const CanFrame& frame, std::size_t receiver) {
-        return state_frames_.is_lost(*options_.losses, frame, receiver);
+        return (has_losses() && state_frames_.is_lost(*options_.losses, frame, receiver)) ||
+               fault_state_.loses(frame, receiver);
       });
     }
-    if (options_.bit_errors.threshold != 0) {
-      bus_.set_error_rule([errors = options_.bit_errors](const CanFrame& /*frame*/, std::uint64_t transmission) {
-        return Pcg32(errors.seed, transmission).next() < errors.threshold;
+    if (options_.bit_errors.threshold != 0 || has_faults()) {
+      bus_.set_error_rule([this](const CanFrame& frame, std::uint64_t transmission) {
+        const HardwareOptions::BitErrors& errors = options_.bit_errors;
+        return Pcg32(errors.seed, transmission).next() < errors.threshold || fault_state_.destroys(frame);
       });
+    }
+    if (has_faults()) {
+      bus_.set_delay_rule(
+          [this](const CanFrame& /*frame*/, std::size_t receiver) { return fault_state_.delay(receiver); });
     }
   }
 
@@ -125,8 +156,9 @@ class HardwareLoop::Implementation {
   }
 
   void run_next_event() {
-    const BusTime next =
-        std::min({bus_.next_event(), host_.next_event(), plant_ticks_.next_event(), rack_.next_event()});
+    const BusTime next = std::max(std::min({bus_.next_event(), host_.next_event(), plant_ticks_.next_event(),
+                                            rack_.next_event(), faults_.next_event(), tick_deadline()}),
+                                  bus_.now());
     if (next == never_on_bus) {
       throw HardwareError("nothing more happens on the bus after tick " + std::to_string(tick_));
     }
@@ -135,7 +167,11 @@ class HardwareLoop::Implementation {
     if (plant_ticks_.is_complete(next)) {
       complete_tick();
     }
-    rack_.advance_to(next, bus_.earliest_delivery());
+    if (tick_deadline() <= next) {
+      end_tick_without_sync(next);
+    }
+    faults_.advance_to(next);
+    rack_.advance_to(next, std::min(bus_.earliest_delivery(), faults_.next_event()));
     if (host_.next_event() <= next) {
       host_.advance_to(next);
     }
@@ -167,19 +203,50 @@ class HardwareLoop::Implementation {
       options_.on_frame(transmission);
     }
     state_frames_.note(transmission);
+    if (has_faults()) {
+      watch_.note_frame(transmission);
+    }
     // Another node may send what looks like a SYNC. Only the producer's makes a tick.
     if (transmission.sender == rack_.controller(sync_producer) && canopen::decode_sync(transmission.frame)) {
-      if (syncs_ > 0) {
-        end_tick(transmission.end);
-      }
-      begin_tick(transmission.end);
+      take_sync(transmission.end);
     }
+  }
+
+  void take_sync(BusTime now) {
+    if (has_missed_sync_ && now < tick_begin_ + tick_period() / 2) {
+      // It comes late, for the tick that has begun without it.
+      tick_begin_ = now;
+      return;
+    }
+    has_missed_sync_ = false;
+    if (syncs_ > 0) {
+      end_tick(now);
+    }
+    begin_tick(now);
+  }
+
+  [[nodiscard]] BusTime tick_period() const { return BusTime{scenario_.kernel.tick_period_us} * 1'000; }
+
+  /// When a tick ends although its SYNC has not come: only after a fault.
+  [[nodiscard]] BusTime tick_deadline() const {
+    const bool is_bounded = faults_.has_begun() && syncs_ > 0 && !plant_ticks_.has_ended();
+    return is_bounded ? tick_begin_ + tick_period() + tick_period() / 4 : never_on_bus;
+  }
+
+  /// The tick that follows begins a period after the last one, so that the world keeps the time of the bus.
+  void end_tick_without_sync(BusTime now) {
+    has_missed_sync_ = true;
+    end_tick(now);
+    begin_tick(tick_begin_ + tick_period());
   }
 
   void begin_tick(BusTime now) {
     if (syncs_ == 0) {
       bus_.start_statistics();
+      watch_.start(now);
     }
+    tick_begin_ = now;
+    faults_.begin_tick(syncs_, now);
     const std::uint32_t tick = syncs_++;
     state_frames_.begin_tick(tick);
     injector_.advance_to(tick);
@@ -195,6 +262,24 @@ class HardwareLoop::Implementation {
   /// At the next SYNC, before the modules receive it.
   void end_tick(BusTime now) {
     rack_.end_tick();
+    if (has_faults()) {
+      for (unsigned joint = 0; joint < rack_.size(); ++joint) {
+        watch_.note_tick(joint, now,
+                         {rack_.has_computed_anew(joint), rack_.pulse(joint).has_value(), rack_.module(joint).power()});
+      }
+    }
+    if (faults_.has_begun()) {
+      first_fault_tick_ = first_fault_tick_.value_or(tick_);
+      change_ = nullptr;
+      values_.read_whatever();
+    } else {
+      follow_reference();
+    }
+    report_.setpoint_hash.append(values_.setpoints());
+    plant_ticks_.end(now);
+  }
+
+  void follow_reference() {
     for (unsigned joint = 0; joint < rack_.size(); ++joint) {
       reference_.follow(joint,
                         {rack_.has_computed(joint, tick_), state_frames_.has_sent(joint), rack_.has_restarted(joint)},
@@ -204,8 +289,6 @@ class HardwareLoop::Implementation {
     report_.lost_frames += reference_.chain().lost().size();
     report_.receptions += reference_.chain().receptions();
     values_.read(tick_);
-    report_.setpoint_hash.append(values_.setpoints());
-    plant_ticks_.end(now);
   }
 
   void advance_reference() {
@@ -224,15 +307,21 @@ class HardwareLoop::Implementation {
     for (const ServoPulse& pulse : values_.pulses()) {
       report_.servo_hash.append(pulse.command);
     }
+    if (!first_fault_tick_) {
+      compare_with_reference();
+    }
+    rack_.take_problems(tick_, report_);
+    ++tick_;
+    tick_finished_ = true;
+  }
+
+  void compare_with_reference() {
     reference_.compare(values_.setpoints(), values_.pulses(), report_);
     for (const PlantTicks::Reading& late : plant_ticks_.late_readings()) {
       if (!reference_.has_failed(late.joint)) {
         report_.add({Difference::Kind::late_servo_command, tick_, late.joint, late.pulse, std::nullopt});
       }
     }
-    rack_.take_problems(tick_, report_);
-    ++tick_;
-    tick_finished_ = true;
   }
 
   const Scenario& scenario_;
@@ -241,13 +330,19 @@ class HardwareLoop::Implementation {
   Plant plant_;
   PlantTicks plant_ticks_;
   Bus bus_;
+  FaultState fault_state_;
   ModuleRack rack_;  ///< the first to attach to the bus
   StateFrameMonitor state_frames_;
   ReferenceGait reference_;
   ModuleValues values_;
   HostNode host_;
   Injector injector_;
-  std::uint32_t syncs_ = 0;         ///< number of SYNCs on the bus so far
+  MotionWatch watch_;
+  FaultPlayer faults_;
+  std::uint32_t syncs_ = 0;  ///< number of ticks that have begun
+  BusTime tick_begin_ = 0;   ///< of the last one
+  bool has_missed_sync_ = false;  ///< the last one began without a SYNC
+  std::optional<std::uint32_t> first_fault_tick_;
   std::uint32_t tick_ = 0;          ///< number of finished ticks
   bool tick_finished_ = false;      ///< since the last advance()
   const Change* change_ = nullptr;  ///< of the last tick
@@ -269,6 +364,9 @@ std::span<const std::uint32_t> HardwareLoop::clipped_ticks() const { return impl
 std::span<const std::uint32_t> HardwareLoop::dropped_changes() const {
   return implementation_->report().dropped_changes;
 }
+const MotionWatch& HardwareLoop::motion_watch() const { return implementation_->watch(); }
+void HardwareLoop::finish_watch() { implementation_->finish_watch(); }
+std::optional<std::uint32_t> HardwareLoop::first_fault_tick() const { return implementation_->first_fault_tick(); }
 const ValueHash& HardwareLoop::setpoint_hash() const { return implementation_->report().setpoint_hash; }
 const ValueHash& HardwareLoop::servo_hash() const { return implementation_->report().servo_hash; }
 std::uint64_t HardwareLoop::differences() const { return implementation_->report().differences; }

@@ -9,6 +9,10 @@
 //
 // Each tick is compared with the gait in memory (KernelChain) that has the same changes, losses, restarts and touch
 // sensors: as long as nothing differs, the world is the one that a simulation without bus and modules would have.
+//
+// With a schedule of faults the comparison ends when the first fault begins. From then on a tick of the loop also ends
+// when its SYNC is missing, so the world goes on whatever happens on the bus, and MotionWatch checks the rules of
+// docs/safety.md.
 
 #include <cstdint>
 #include <memory>
@@ -21,6 +25,7 @@
 #include "sim/loop/difference.hpp"
 #include "sim/loop/hardware_options.hpp"
 #include "sim/loop/hardware_report.hpp"
+#include "sim/loop/motion_watch.hpp"
 #include "sim/loop/plant.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/scenario/scenario.hpp"
@@ -63,6 +68,13 @@ class HardwareLoop {
   [[nodiscard]] std::span<const std::uint32_t> clipped_ticks() const;
   /// Ticks of the changes so far that the master could not make: they did not take effect in any module.
   [[nodiscard]] std::span<const std::uint32_t> dropped_changes() const;
+
+  /// What the modules did in a run with faults.
+  [[nodiscard]] const MotionWatch& motion_watch() const;
+  /// At the end of such a run: how it ended for each joint.
+  void finish_watch();
+  /// The first tick that was not compared, because a fault had begun; nothing: all were.
+  [[nodiscard]] std::optional<std::uint32_t> first_fault_tick() const;
 
   [[nodiscard]] const ValueHash& setpoint_hash() const;
   [[nodiscard]] const ValueHash& servo_hash() const;

@@ -12,6 +12,7 @@
 #include "sim/loop/crystal.hpp"
 #include "sim/loop/injector.hpp"
 #include "sim/loop/joint_module.hpp"
+#include "sim/fault/fault.hpp"
 #include "sim/scenario/losses.hpp"
 
 namespace proleg::sim {
@@ -46,6 +47,7 @@ struct HardwareOptions {
     std::uint32_t threshold = 0;  ///< probability for a frame, times 2^32
   };
   BitErrors bit_errors;
+  FaultSchedule faults;
   /// Called once, when scenario and options are checked and before the modules are switched on: from here on files may
   /// be written.
   std::function<void()> before_start;

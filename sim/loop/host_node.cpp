@@ -1,5 +1,7 @@
 #include "sim/loop/host_node.hpp"
 
+#include <utility>
+
 #include "shared/canopen/object_name.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/kernel/fingerprint.hpp"
@@ -61,12 +63,37 @@ void HostNode::advance_to(BusTime now) {
   update_deadline();
 }
 
+void HostNode::resume(BusTime now) {
+  if (is_dead_) {
+    return;
+  }
+  is_stalled_ = false;
+  for (const Missed& missed : std::exchange(missed_, {})) {
+    missed.was_sent ? transmitted(now, missed.frame) : received(now, missed.frame);
+  }
+  advance_to(now);
+}
+
+void HostNode::die() {
+  controller_.switch_off();
+  is_stalled_ = is_dead_ = true;
+  update_deadline();
+}
+
 void HostNode::received(BusTime time, const CanFrame& frame) {
+  if (is_stalled_) {
+    missed_.push_back({frame, false});
+    return;
+  }
   master_.receive(clock_.at(time), frame);
   update_deadline();
 }
 
 void HostNode::transmitted(BusTime time, const CanFrame& frame) {
+  if (is_stalled_) {
+    missed_.push_back({frame, true});
+    return;
+  }
   master_.transmitted(clock_.at(time), frame);
   update_deadline();
 }

@@ -45,6 +45,15 @@ class HostNode final : private BusListener {
   [[nodiscard]] BusTime next_event() const { return next_event_; }
   void advance_to(BusTime now);
 
+  /// It does nothing until resume(), which handles what was received meanwhile.
+  void stall() {
+    is_stalled_ = true;
+    update_deadline();
+  }
+  void resume(BusTime now);
+  /// It is gone for ever.
+  void die();
+
   [[nodiscard]] canopen::MasterState state() const { return master_.state(); }
   /// Whether the modules have a change of the scenario, by its position; final from the tick of the change on. (The
   /// master drops a change that is not committed long before its tick.)
@@ -59,7 +68,9 @@ class HostNode final : private BusListener {
  private:
   void received(BusTime time, const CanFrame& frame) override;
   void transmitted(BusTime time, const CanFrame& frame) override;
-  void update_deadline() { next_event_ = clock_.when(master_.next_deadline()); }
+  void update_deadline() {
+    next_event_ = is_stalled_ ? never_on_bus : clock_.when(master_.next_deadline());
+  }
   [[nodiscard]] std::string name_of(std::uint8_t node) const;
 
   const Scenario& scenario_;
@@ -68,6 +79,13 @@ class HostNode final : private BusListener {
   Controller& controller_;
   canopen::Master master_;
   bool problem_taken_ = false;
+  bool is_stalled_ = false;
+  bool is_dead_ = false;
+  struct Missed {
+    CanFrame frame;
+    bool was_sent;
+  };
+  std::vector<Missed> missed_;  ///< while it was stalled
   BusTime next_event_ = never_on_bus;
 };
 

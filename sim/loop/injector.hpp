@@ -21,6 +21,12 @@ class Injector final : private BusListener {
   Injector(const Injector&) = delete;
   Injector& operator=(const Injector&) = delete;
 
+  /// Sends a frame now, after those that wait.
+  void send_now(const CanFrame& frame) {
+    pending_.push_back(frame);
+    send();
+  }
+
   /// At the SYNC of this tick: sends the frames that are due.
   void advance_to(std::uint32_t tick) {
     for (; !frames_.empty() && frames_.front().tick <= tick; frames_ = frames_.subspan(1)) {

@@ -2,10 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "firmware/module/tick_record.hpp"
+#include "shared/canopen/power_state.hpp"
 #include "sim/bus/controller.hpp"
 
 namespace proleg::sim {
@@ -26,6 +28,29 @@ class JointModule {
 
   /// Before a restart: does what is due up to `until` without input. What it sends is lost.
   virtual void run_out(BusTime now, BusTime until) = 0;
+
+  // What fails outside of the program, and comes back. It lasts over a restart.
+  /// Of its chip, in mV; 3,300 from the start. Below the reset threshold the module has no power.
+  virtual void set_supply(BusTime now, std::uint32_t mv) = 0;
+  /// Whether its converter makes new measurements.
+  virtual void set_adc(BusTime now, bool converts) = 0;
+  /// Whether the crystal oscillates, and the PLL can lock. A native module has neither.
+  virtual void set_crystal(BusTime /*now*/, bool /*runs*/) {}
+  virtual void set_pll(BusTime /*now*/, bool /*locks*/) {}
+
+  /// The state of its drive now, as its program has it. Meaningless while it has no power.
+  [[nodiscard]] virtual canopen::PowerState power() const = 0;
+  /// A pulse that the program requested, or that a virtual chip has measured at its pin when it ended.
+  struct WatchedPulse {
+    BusTime begin;
+    std::int32_t width;                  ///< twelfths of a microsecond
+    canopen::PowerState power;           ///< of the drive when it began
+    std::optional<bool> follows_pulses;  ///< whether the servo had pulses before; nothing: not known
+    bool is_whole = true;                ///< false: power or clock of the chip failed in the pulse
+  };
+  /// To be set before power_on().
+  using PulseWatch = std::function<void(const WatchedPulse&)>;
+  virtual void set_pulse_watch(PulseWatch watch) = 0;
 
   /// What it computed at its last tick.
   [[nodiscard]] virtual firmware::TickRecord last_tick() const = 0;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -24,6 +25,11 @@ class ModuleRack {
 
   [[nodiscard]] unsigned size() const { return static_cast<unsigned>(modules_.size()); }
   [[nodiscard]] std::size_t controller(unsigned joint) const { return modules_[joint]->controller(); }
+  [[nodiscard]] JointModule& module(unsigned joint) { return *modules_[joint]; }
+
+  /// Called with the joint and each pulse of its servo, as JointModule::PulseWatch has it.
+  using PulseWatch = std::function<void(unsigned joint, const JointModule::WatchedPulse& pulse)>;
+  void watch_pulses(const PulseWatch& watch);
 
   void power_on(BusTime now);
   [[nodiscard]] BusTime next_event() const;
@@ -39,6 +45,10 @@ class ModuleRack {
   [[nodiscard]] const firmware::TickRecord& record(unsigned joint) const { return records_[joint]; }
   [[nodiscard]] bool has_computed(unsigned joint, std::uint32_t tick) const {
     return sim::has_computed(records_[joint], joint, tick);
+  }
+  /// Whether a module computed something between the last two end_tick(), whatever tick it was for it.
+  [[nodiscard]] bool has_computed_anew(unsigned joint) const {
+    return records_[joint].tick != firmware::TickRecord::none && records_[joint].tick != ticks_before_[joint];
   }
   /// Whether the run restarted it at the last SYNC.
   [[nodiscard]] bool has_restarted(unsigned joint) const { return restarted_.contains(joint); }
@@ -61,6 +71,7 @@ class ModuleRack {
   const HardwareOptions& options_;
   std::vector<std::unique_ptr<JointModule>> modules_;  ///< by joint
   std::vector<firmware::TickRecord> records_;          ///< by joint
+  std::vector<std::uint32_t> ticks_before_;            ///< by joint: of the record before
   std::size_t next_restart_ = 0;
   JointMask restarted_;
   std::array<std::optional<std::int32_t>, max_joints> last_pulses_;  ///< of modules that restarted, before that

@@ -42,6 +42,23 @@ void ModuleValues::read(std::uint32_t tick) {
   });
 }
 
+void ModuleValues::read_whatever() {
+  for (unsigned joint = 0; joint < rack_.size(); ++joint) {
+    const bool is_new = rack_.has_computed_anew(joint);
+    setpoints_[joint] = is_new ? rack_.record(joint).setpoint : setpoints_[joint];
+    write_link_contacts(latched_contacts_, joint, is_new ? rack_.record(joint).flags : 0U);
+  }
+  std::array<std::size_t, max_joints> next_value{};  // by joint, in its record
+  auto value = internal_values_.begin();
+  for_each_internal_value(scenario_.kernel, [&](unsigned, unsigned joint, unsigned) {
+    const firmware::TickRecord& record = rack_.record(joint);
+    if (rack_.has_computed_anew(joint) && next_value[joint] < record.value_count) {
+      *value = record.internal_values[next_value[joint]++];
+    }
+    ++value;
+  });
+}
+
 void ModuleValues::read_pulses(std::span<const PlantTicks::Reading> readings) {
   pulses_.clear();
   for (const PlantTicks::Reading& reading : readings) {

@@ -20,6 +20,9 @@ class ModuleValues {
 
   /// After ModuleRack::end_tick() and ReferenceGait::advance(). A module that does not compute keeps its last values.
   void read(std::uint32_t tick);
+  /// After ModuleRack::end_tick(), when the reference no longer follows: what each module computed since the last one,
+  /// whatever tick it was.
+  void read_whatever();
   /// The pulses that the servos took. A failed module may repeat old ones; those are no part of the gait.
   void read_pulses(std::span<const PlantTicks::Reading> readings);
 

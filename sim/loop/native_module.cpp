@@ -5,6 +5,13 @@
 #include <string>
 
 namespace proleg::sim {
+namespace {
+
+// Of the chip (docs/board.md): power-down reset, and the voltage detector of the supply.
+constexpr std::uint32_t reset_threshold_mv = 1'680;
+constexpr std::uint32_t detector_threshold_mv = 2'930;
+
+}  // namespace
 
 bool NativeModule::Flash::erase(unsigned sector) {
   std::ranges::fill(sectors_.at(sector), erased);
@@ -18,13 +25,32 @@ bool NativeModule::Flash::program(unsigned sector, std::uint32_t offset, std::sp
   return true;
 }
 
+bool NativeModule::Port::send(const CanFrame& frame) {
+  constexpr std::uint16_t end_of_urgent = 0x100;
+  const std::size_t usable = frame.identifier < end_of_urgent ? frames_.size() : frames_.size() - 1;
+  std::size_t free = frames_.size();
+  for (std::size_t mailbox = frames_.size(); mailbox-- > 0;) {
+    if (controller_.is_empty(mailbox)) {
+      free = mailbox < usable ? mailbox : free;
+    } else if (frames_.at(mailbox).identifier == frame.identifier) {
+      return false;
+    }
+  }
+  if (free == frames_.size() || !controller_.send(free, frame)) {
+    return false;
+  }
+  frames_.at(free) = frame;
+  return true;
+}
+
 NativeModule::NativeModule(Bus& bus, const firmware::ModuleIdentity& identity, Crystal crystal, Sensors sensors,
                            Readings readings)
-    : crystal_(crystal),
+    : bus_(bus),
+      crystal_(crystal),
       sensors_(std::move(sensors)),
       meters_(std::move(readings)),
       controller_(bus.attach(*this)),
-      module_(identity, {controller_, *this, *this, meters_, flash_}) {
+      module_(identity, {port_, *this, *this, meters_, flash_}) {
   if (identity.node == 0) {
     return;  // factory-fresh
   }
@@ -39,12 +65,41 @@ NativeModule::NativeModule(Bus& bus, const firmware::ModuleIdentity& identity, C
   controller_.switch_off();
 }
 
+bool NativeModule::has_power() const { return supply_mv_ >= reset_threshold_mv; }
+bool NativeModule::is_supply_low() const { return supply_mv_ < detector_threshold_mv; }
+
 void NativeModule::power_on(BusTime now) {
   controller_.switch_off();
-  controller_.switch_on();
   pulse_.reset();
-  module_.power_on(crystal_.at(now));
-  update_deadline();
+  next_event_ = never_on_bus;
+  if (has_power()) {
+    controller_.switch_on();
+    module_.power_on(crystal_.at(now));
+    if (is_supply_low()) {
+      module_.supply_low(crystal_.at(now));
+    }
+    update_deadline();
+  }
+}
+
+void NativeModule::set_supply(BusTime now, std::uint32_t mv) {
+  const bool had_power = has_power();
+  const bool was_low = is_supply_low();
+  supply_mv_ = mv;
+  if (has_power() != had_power) {
+    power_on(now);
+  } else if (has_power() && is_supply_low() != was_low) {
+    is_supply_low() ? module_.supply_low(crystal_.at(now)) : module_.supply_good(crystal_.at(now));
+    update_deadline();
+  }
+}
+
+void NativeModule::pulse(std::int32_t width, std::uint32_t /*period_us*/) {
+  const bool follows_pulses = pulse_.has_value();
+  pulse_ = width;
+  if (pulse_watch_) {
+    pulse_watch_({bus_.now(), width, module_.power(), follows_pulses, true});
+  }
 }
 
 void NativeModule::advance_to(BusTime now, BusTime /*quiet_until*/) {

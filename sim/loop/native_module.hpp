@@ -40,6 +40,13 @@ class NativeModule final : public JointModule,
   [[nodiscard]] BusTime next_event() const override { return next_event_; }
   void advance_to(BusTime now, BusTime quiet_until) override;
   void run_out(BusTime now, BusTime until) override { advance_to(until, now); }
+  void set_supply(BusTime now, std::uint32_t mv) override;
+  void set_adc(BusTime /*now*/, bool converts) override {
+    meters_.has_converted = meters_.converts;
+    meters_.converts = converts;
+  }
+  [[nodiscard]] canopen::PowerState power() const override { return module_.power(); }
+  void set_pulse_watch(PulseWatch watch) override { pulse_watch_ = std::move(watch); }
   [[nodiscard]] firmware::TickRecord last_tick() const override { return module_.last_tick(); }
   [[nodiscard]] std::optional<std::int32_t> pulse() const override { return pulse_; }
   [[nodiscard]] std::size_t controller() const override { return controller_.index(); }
@@ -54,9 +61,30 @@ class NativeModule final : public JointModule,
   struct Meters final : firmware::SensorPort {
     explicit Meters(Readings readings) : source(std::move(readings)) {}
     [[nodiscard]] firmware::ServoReadings take_readings() override {
-      return source ? source() : firmware::ServoReadings{};
+      const bool are_new = converts || has_converted;
+      if (are_new) {
+        last = source ? source() : firmware::ServoReadings{};
+      }
+      last.are_new = are_new;
+      has_converted = false;
+      return last;
     }
     Readings source;
+    firmware::ServoReadings last{};
+    bool converts = true;
+    bool has_converted = false;  ///< it hangs now, but did not at the last call
+  };
+
+  /// The mailboxes as the driver of the chip uses them (firmware/stm32f405/can.hpp).
+  class Port final : public CanPort {
+   public:
+    explicit Port(Controller& controller) : controller_(controller) {}
+    [[nodiscard]] bool send(const CanFrame& frame) override;
+    void recover() override { controller_.recover(); }
+
+   private:
+    Controller& controller_;
+    std::array<CanFrame, Controller::mailbox_count> frames_{};  ///< the last request of each mailbox
   };
 
   /// Flash of the size that the board has for its settings.
@@ -73,22 +101,30 @@ class NativeModule final : public JointModule,
                                                       std::vector<std::uint8_t>(sector_size, erased)};
   };
 
+  static constexpr std::uint32_t nominal_supply_mv = 3'300;
+
+  [[nodiscard]] bool has_power() const;
+  [[nodiscard]] bool is_supply_low() const;
   void received(BusTime time, const CanFrame& frame) override;
   void transmitted(BusTime time, const CanFrame& frame) override;
   void error_state_changed(BusTime time) override;
-  void pulse(std::int32_t width, std::uint32_t /*period_us*/) override { pulse_ = width; }
+  void pulse(std::int32_t width, std::uint32_t period_us) override;
   void off() override { pulse_.reset(); }
   [[nodiscard]] std::uint8_t read() override { return sensors_(); }
   void update_deadline() { next_event_ = crystal_.when(module_.next_deadline()); }
 
+  Bus& bus_;
   Crystal crystal_;
   Sensors sensors_;
   Meters meters_;
   Flash flash_;
   Tamper tamper_;
   Controller& controller_;
+  Port port_{controller_};
   firmware::Module module_;
   std::optional<std::int32_t> pulse_;
+  PulseWatch pulse_watch_;
+  std::uint32_t supply_mv_ = nominal_supply_mv;
   BusTime next_event_ = never_on_bus;
 };
 

@@ -81,15 +81,32 @@ void Plant::act(std::size_t joint, std::int32_t command) {
   servo.command = command;
   if (servo.limp) {
     servo.limp = false;
-    world_.set_joint_torque(joint, scenario_.robot.joints[joint].max_torque);
+    update_torque(joint);
   }
 }
 
 void Plant::go_limp(std::size_t joint) {
   if (!servos_[joint].limp) {
     servos_[joint].limp = true;
-    world_.set_joint_torque(joint, 0.0);
+    update_torque(joint);
   }
+}
+
+void Plant::jam(std::size_t joint, std::uint32_t current_ma) {
+  servos_[joint].jam_ma = current_ma;
+  update_torque(joint);
+}
+
+void Plant::free(std::size_t joint) {
+  servos_[joint].jam_ma.reset();
+  update_torque(joint);
+}
+
+void Plant::update_torque(std::size_t joint) {
+  constexpr double jam_strength = 20.0;  // times the servo's own torque: nothing in the robot turns the joint
+  const Servo& servo = servos_[joint];
+  const double own = scenario_.robot.joints[joint].max_torque;
+  world_.set_joint_torque(joint, servo.jam_ma ? jam_strength * own : (servo.limp ? 0.0 : own));
 }
 
 void Plant::act_on_delayed_pulses() {
@@ -116,7 +133,7 @@ void Plant::step() {
     servo.commanded_speed =
         servo_speed(scenario_.robot.servo, scenario_.robot.joints[joint], servo.command, servo.angle);
     servo.angle_before = servo.angle;
-    world_.set_joint_speed(joint, servo.commanded_speed);
+    world_.set_joint_speed(joint, servo.jam_ma ? 0.0 : servo.commanded_speed);
   }
   world_.step();
   for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
@@ -124,8 +141,11 @@ void Plant::step() {
     servo.angle = world_.joint_angle(joint);
     const double torque = world_.motor_torque(joint);
     servo.torque_sum += torque;
-    const double current =
+    double current =
         meter_.add_joint_step(joint, {torque, servo.commanded_speed, servo.angle_before, servo.angle, servo.limp});
+    if (servo.jam_ma && !servo.limp) {
+      current = *servo.jam_ma;
+    }
     servo.current_sum += current;
     servo.drawn += current;
   }
@@ -203,9 +223,9 @@ firmware::ServoReadings Plant::servo_readings(std::size_t joint) const {
   constexpr ServoCurrent model;
   const Servo& servo = servos_[joint];
   const double speed = (servo.angle - servo.angle_before) / scenario_.step_s;
-  const double current_ma =
-      servo.limp ? model.idle_ma
-                 : servo_current_ma(model, servo.commanded_speed, speed, scenario_.robot.joints[joint].max_speed);
+  const double moving_ma =
+      servo_current_ma(model, servo.commanded_speed, speed, scenario_.robot.joints[joint].max_speed);
+  const double current_ma = servo.limp ? model.idle_ma : servo.jam_ma.value_or(moving_ma);
   return {static_cast<std::uint16_t>(std::lround(current_ma)), joint_angle_in_steps(servo.angle), chip_temperature_c};
 }
 

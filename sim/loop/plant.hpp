@@ -25,6 +25,10 @@ class Plant {
   /// A servo that gets no pulses goes limp, after its latency.
   void release(std::size_t joint);
 
+  /// The joint does not turn any more, and its servo draws this current, in mA, while it gets pulses. Or it turns again.
+  void jam(std::size_t joint, std::uint32_t current_ma);
+  void free(std::size_t joint);
+
   [[nodiscard]] std::uint32_t steps_per_tick() const { return steps_per_tick_; }
   /// Microseconds from the tick to the start of one of its steps, rounded down; pulses start at whole microseconds, so
   /// the fraction does not matter.
@@ -78,6 +82,8 @@ class Plant {
 
   void act(std::size_t joint, std::int32_t command);
   void go_limp(std::size_t joint);
+  /// Of the joint's motor, after a change of its servo.
+  void update_torque(std::size_t joint);
   void act_on_delayed_pulses();
   void read_world();
   void add_contact_noise();
@@ -98,6 +104,7 @@ class Plant {
   struct Servo {
     std::int32_t command;  ///< the pulse that it acts on
     bool limp = false;
+    std::optional<double> jam_ma{};  ///< jammed: the current that it draws then
     double commanded_speed = 0.0;  ///< rad/s, in the last step
     double angle_before = 0.0;     ///< rad, at the start of the last step
     double angle = 0.0;            ///< rad, now

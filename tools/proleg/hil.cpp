@@ -15,6 +15,7 @@
 #include "sim/loop/hardware_loop.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/hil_faults.hpp"
 #include "tools/proleg/hil_modules.hpp"
 #include "tools/proleg/hil_options.hpp"
 #include "tools/proleg/hil_report.hpp"
@@ -86,6 +87,13 @@ HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::Hardw
   result.setpoint_hash = loop.setpoint_hash().hex();
   result.servo_hash = loop.servo_hash().hex();
   result.measures = measures_of(loop.plant().meter());
+  loop.finish_watch();
+  const sim::MotionWatch& watch = loop.motion_watch();
+  result.first_fault_tick = loop.first_fault_tick();
+  result.module_events = watch.events();
+  result.joint_ends = watch.ends();
+  result.violations = watch.violations();
+  result.worst_motion = watch.worst();
   return result;
 }
 
@@ -123,6 +131,12 @@ int judge(const HilResult& result) {
     std::cerr << "proleg hil: " << result.first_difference << '\n';
     return exit_failed;
   }
+  if (!result.faults.empty()) {
+    for (const std::string& violation : result.violations) {
+      std::cerr << "proleg hil: " << violation << '\n';
+    }
+    return result.violations.empty() ? exit_success : exit_failed;
+  }
   if (!result.dropped_changes.empty()) {
     std::cerr << "proleg hil: " << result.dropped_changes.size() << " changes did not take effect, those for the ticks "
               << list_dropped_changes(result) << '\n';
@@ -154,6 +168,12 @@ int hil(const HilOptions& options) {
   sim::HardwareOptions hardware = hardware_options(options, run);
   hardware.notice = [](const std::string& text) { std::cerr << "proleg hil: " << text << '\n'; };
   HilModules modules(options, run.scenario);
+  FaultPlan plan = read_fault_plan(options, run, modules.any_virtual());
+  if (plan.runs) {
+    catch_interrupts();
+    return run_fault_campaign(options, run, modules, plan);
+  }
+  hardware.faults = plan.schedule;
   check_files(options, modules);
   HilFiles files;
   if (options.can_log) {
@@ -173,6 +193,7 @@ int hil(const HilOptions& options) {
   } catch (const sim::PhysicsError& error) {
     throw std::runtime_error(error.what() + kept_in_recording(options));
   }
+  finished->faults = std::move(plan.schedule);
   const HilResult& result = *finished;
   if (files.log) {
     files.log->finish();

@@ -125,6 +125,11 @@ void add_hil_options(CommandLine& command_line, HilOptions& options) {
   command_line.add_option("--bit-errors", options.bit_errors,
                           "SEED:RATE: destroy frames on the bus with this probability (7:1%). Their senders send them "
                           "again: nothing is lost, so nothing may differ.");
+  command_line.add_option(
+      "--faults", options.faults,
+      "FILE, SEED or SEED:COUNT: let things fail as the schedule in the file says ('proleg faults' lists what can "
+      "fail), or at random. With COUNT: run that many random schedules and report what they have in common. Status 1 "
+      "if motion is not bounded as docs/safety.md says.");
   command_line.add_option("--can-log", options.can_log,
                           "write all frames of the bus into this file, in candump's log format");
 }

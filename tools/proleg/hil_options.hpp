@@ -18,6 +18,7 @@ struct HilOptions : ScenarioOptions, ModuleOptions {
   std::vector<std::string> frames;
   std::optional<std::string> bit_errors;
   std::optional<std::string> can_log;
+  std::optional<std::string> faults;
 };
 
 void add_hil_options(CommandLine& command_line, HilOptions& options);

@@ -4,6 +4,7 @@
 
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/build_id.hpp"
+#include "tools/proleg/hil_faults.hpp"
 
 namespace proleg::tools {
 
@@ -70,6 +71,7 @@ Json hil_json(const HilOptions& options, const ScenarioRun& run, const HilModule
           {"real_time_factor", result.real_time_factor()},
           {"contacts_mean", result.contacts_mean},
           {"measures", measures_object(result.measures.values)},
+          {"faults", result.faults.empty() ? Json() : fault_json(run, result)},
           {"link_duty_factors", result.measures.link_duty_factors},
           {"servos", servos_array(result.measures, run.scenario.robot)},
           {"recording", options.record.value_or("")},
@@ -115,7 +117,13 @@ void print_hil_table(const HilOptions& options, const ScenarioRun& run, const Hi
   }
   std::printf("set-point hash    %s\n", result.setpoint_hash.c_str());
   std::printf("servo hash        %s\n", result.servo_hash.c_str());
-  std::printf("differences       %llu against the gait in memory\n", count(result.differences));
+  std::printf("differences       %llu against the gait in memory%s\n", count(result.differences),
+              result.first_fault_tick
+                  ? (" until tick " + std::to_string(*result.first_fault_tick) + ", when the first fault begins").c_str()
+                  : "");
+  if (!result.faults.empty()) {
+    print_fault_report(run, result);
+  }
   if (options.record) {
     std::printf("recording         %s\n", options.record->c_str());
   }

@@ -47,6 +47,13 @@ struct HilResult {
   std::vector<sim::ModuleProblem> problems;
   std::optional<HilModules::CostliestTick> costliest_tick;
   RunMeasures measures;
+  // Of a run with faults.
+  sim::FaultSchedule faults;
+  std::optional<std::uint32_t> first_fault_tick;  ///< the first tick that was not compared
+  std::vector<sim::ModuleEvent> module_events;
+  std::vector<sim::JointEnd> joint_ends;  ///< by joint
+  std::vector<std::string> violations;
+  sim::MotionWatch::Worst worst_motion;
 
   [[nodiscard]] double real_time_factor() const { return simulated_s / wall_s; }
 };

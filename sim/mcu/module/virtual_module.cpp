@@ -99,6 +99,7 @@ VirtualModule::VirtualModule(const ModuleParts& parts, const FirmwareImage& imag
 void VirtualModule::power_on(BusTime now) {
   line_.clear();
   tick_.reset();
+  pulse_begin_.reset();
   chip_.power_on(now);
 }
 
@@ -110,6 +111,57 @@ firmware::TickRecord VirtualModule::last_tick() const {
   firmware::TickRecord record;
   std::memcpy(&record, bytes.data(), bytes.size());
   return record;
+}
+
+// A chip that sleeps is behind the time of the bus.
+
+void VirtualModule::set_supply(BusTime now, std::uint32_t mv) {
+  chip_.advance_to(now, now);
+  is_pulse_whole_ = false;
+  chip_.set_supply(mv);
+}
+
+void VirtualModule::set_adc(BusTime now, bool converts) {
+  chip_.advance_to(now, now);
+  chip_.set_adc(converts);
+}
+
+void VirtualModule::set_crystal(BusTime now, bool runs) {
+  chip_.advance_to(now, now);
+  is_pulse_whole_ = false;
+  has_clock_ = runs;
+  chip_.set_crystal(runs);
+}
+
+void VirtualModule::set_pll(BusTime now, bool locks) {
+  chip_.advance_to(now, now);
+  is_pulse_whole_ = false;
+  has_clock_ = locks;
+  chip_.set_pll(locks);
+}
+
+canopen::PowerState VirtualModule::power() const { return static_cast<canopen::PowerState>(last_tick().power); }
+
+void VirtualModule::set_pulse_watch(PulseWatch watch) {
+  pulse_watch_ = std::move(watch);
+  chip_.set_pin_watch(board::servo.port, board::servo.number, [this](BusTime time, bool high) { see_edge(time, high); });
+}
+
+void VirtualModule::see_edge(BusTime time, bool high) {
+  if (high) {
+    pulse_begin_ = time;
+    is_pulse_whole_ = has_clock_;
+    power_at_begin_ = power();
+  } else if (pulse_begin_) {
+    constexpr BusTime ns_per_us = 1'000;
+    const BusTime counts = ((time - *pulse_begin_) * servo_counts_per_us + ns_per_us / 2) / ns_per_us;
+    // The program publishes the state after the event that has begun the first pulse.
+    const bool was_enabled = power_at_begin_ == canopen::PowerState::operation_enabled ||
+                             power_at_begin_ == canopen::PowerState::quick_stop_active;
+    pulse_watch_({*pulse_begin_, static_cast<std::int32_t>(counts), was_enabled ? power_at_begin_ : power(),
+                  std::nullopt, is_pulse_whole_});
+    pulse_begin_.reset();
+  }
 }
 
 std::optional<std::int32_t> VirtualModule::pulse() const {

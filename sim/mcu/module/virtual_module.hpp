@@ -41,6 +41,12 @@ class VirtualModule final : public JointModule, private BoardSignals {
   [[nodiscard]] BusTime next_event() const override { return chip_.next_event(); }
   void advance_to(BusTime now, BusTime quiet_until) override;
   void run_out(BusTime now, BusTime until) override { chip_.advance_to(now, until); }
+  void set_supply(BusTime now, std::uint32_t mv) override;
+  void set_adc(BusTime now, bool converts) override;
+  void set_crystal(BusTime now, bool runs) override;
+  void set_pll(BusTime now, bool locks) override;
+  [[nodiscard]] canopen::PowerState power() const override;
+  void set_pulse_watch(PulseWatch watch) override;
   [[nodiscard]] firmware::TickRecord last_tick() const override;
   [[nodiscard]] std::optional<std::int32_t> pulse() const override;
   [[nodiscard]] std::size_t controller() const override { return chip_.controller(); }
@@ -52,6 +58,7 @@ class VirtualModule final : public JointModule, private BoardSignals {
   [[nodiscard]] Stm32f405& chip() { return chip_; }
 
  private:
+  void see_edge(BusTime time, bool high);
   [[nodiscard]] std::optional<bool> pin(char port, unsigned number) override;
   [[nodiscard]] std::uint32_t analog_uv(unsigned channel) override;
   [[nodiscard]] std::int32_t chip_temperature() override;
@@ -69,6 +76,11 @@ class VirtualModule final : public JointModule, private BoardSignals {
   std::uint64_t sync_instructions_ = 0;
   std::uint64_t state_frame_instructions_ = 0;
   TickCost worst_{};
+  bool has_clock_ = true;  ///< crystal and PLL run, as far as the loop has not stopped them
+  bool is_pulse_whole_ = true;
+  PulseWatch pulse_watch_;
+  std::optional<BusTime> pulse_begin_;
+  canopen::PowerState power_at_begin_ = canopen::PowerState::switch_on_disabled;
 };
 
 }  // namespace proleg::sim

@@ -1,0 +1,84 @@
+#pragma once
+
+// What can be made to fail in a run with hardware in the loop, as data. docs/faults.md comes from the declarations.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "shared/can/can_frame.hpp"
+#include "sim/robot/robot_model.hpp"
+
+namespace proleg::sim {
+
+enum class FaultKind : std::uint8_t {
+  unplug,
+  supply,
+  reset,
+  crystal,
+  pll,
+  adc,
+  touch,
+  jam,
+  babble,
+  dominant,
+  corrupt,
+  lose,
+  delay,
+  send,
+  master,
+  host_stall,
+  host_dies,
+};
+
+/// How touch sensors fail.
+enum class TouchFault : std::uint8_t { none, pressed, open, bouncing };
+
+/// One fault. Times are microseconds after SYNC 0 of the run.
+struct Fault {
+  FaultKind kind{};
+  std::uint64_t start_us = 0;
+  std::optional<std::uint64_t> duration_us;  ///< nothing: once, or to the end of the run
+  std::optional<unsigned> joint;             ///< whose module it befalls, in kernel order
+  /// By kind: mV (supply), mA (jam), probability times 2^32 (corrupt, lose), microseconds (delay); else 0.
+  std::uint32_t amount = 0;
+  TouchFault touch = TouchFault::none;  ///< of the kind touch
+  CanFrame frame;                       ///< of the kinds send and babble
+  std::uint64_t repeat_us = 0;          ///< of the kind send: again after this time; 0: once
+
+  friend bool operator==(const Fault&, const Fault&) = default;
+};
+
+using FaultSchedule = std::vector<Fault>;  ///< by ascending start
+
+/// How a kind of fault is written, and what it is.
+struct FaultDeclaration {
+  enum class Argument : std::uint8_t { none, voltage, current, rate, time, touch, frame, identifier };
+  enum class Duration : std::uint8_t { none, needed, optional };
+
+  FaultKind kind;
+  std::string_view name;  ///< as in files
+  bool has_joint;
+  Argument argument;
+  Duration duration;
+  bool needs_chip;  ///< only a virtual chip can play it
+  std::string_view help;
+};
+
+/// All kinds, in the order of FaultKind.
+[[nodiscard]] std::span<const FaultDeclaration> fault_declarations();
+[[nodiscard]] const FaultDeclaration& declaration_of(FaultKind kind);
+
+/// The form of a kind in a file: "at TIME unplug JOINT for TIME".
+[[nodiscard]] std::string form_of(const FaultDeclaration& declaration);
+
+/// A fault as a file has it: "at 1.2s unplug J3 for 400ms".
+[[nodiscard]] std::string describe(const Fault& fault, const RobotModel& robot);
+
+/// "1.2s", "400ms", "50us": the shortest of them.
+[[nodiscard]] std::string time_word(std::uint64_t us);
+
+}  // namespace proleg::sim

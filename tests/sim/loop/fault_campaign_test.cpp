@@ -1,0 +1,61 @@
+// Random faults: whatever fails, motion stays bounded and each module ends in operation or in a safe state.
+//
+// Schedule n has the seed n. PROLEG_FAULTS_FIRST and PROLEG_FAULTS_RUNS choose the schedules. The test prints counts
+// and the values that come nearest to a bound.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "shipped.hpp"
+#include "sim/fault/fault_reader.hpp"
+#include "sim/fault/random_faults.hpp"
+#include "sim/loop/fault_run.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr double duration_s = 5.0;
+
+std::uint32_t from_environment(const char* name, std::uint32_t fallback) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? fallback : static_cast<std::uint32_t>(std::stoul(text));
+}
+
+constexpr std::array scenarios{"travelling_wave/uniform", "travelling_wave/coupled", "obstacle/reflex"};
+
+TEST(FaultCampaign, KeepsMotionBoundedWhateverFails) {
+  const std::uint32_t first = from_environment("PROLEG_FAULTS_FIRST", 1);
+  const std::uint32_t runs = from_environment("PROLEG_FAULTS_RUNS", PROLEG_FAULT_RUNS);
+  FaultStatistics statistics;
+  for (std::uint32_t seed = first; seed < first + runs; ++seed) {
+    const Scenario scenario = shipped(scenarios[seed % scenarios.size()]);
+    const auto ticks = static_cast<std::uint32_t>(duration_s * 1e6 / scenario.kernel.tick_period_us);
+    RandomFaults settings;
+    settings.seed = seed;
+    const FaultSchedule schedule = random_faults(settings, scenario);
+    const FaultRunResult result = run_with_faults(scenario, schedule, ticks);
+    statistics.add(schedule, result);
+    for (const std::string& violation : result.violations) {
+      ADD_FAILURE() << scenarios[seed % scenarios.size()] << ", seed " << seed << ": " << violation << "\n"
+                    << faults_text(schedule, scenario.robot);
+    }
+  }
+  const auto ended = [&](JointEnd end) { return statistics.joints_ended[static_cast<std::size_t>(end)]; };
+  std::printf("%u schedules, %u faults; joints ended: operation %u, hold %u, limp %u, silent %u, unsafe %u\n",
+              statistics.runs, statistics.faults, ended(JointEnd::operation), ended(JointEnd::hold),
+              ended(JointEnd::limp), ended(JointEnd::silent), ended(JointEnd::unsafe));
+  std::printf("worst: change between pulses %.3f of %.3f degrees; %.3f degrees inside the limits; "
+              "motion %.3f of 1.500 s after the last command\n",
+              statistics.worst.change_deg, statistics.worst.max_change_deg, -statistics.worst.beyond_limit_deg,
+              statistics.worst.motion_after_command_s);
+  EXPECT_EQ(statistics.broken_runs, 0U);
+  EXPECT_EQ(ended(JointEnd::unsafe), 0U);
+}
+
+}  // namespace
+}  // namespace proleg::sim

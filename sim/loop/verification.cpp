@@ -224,7 +224,13 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
   std::vector<std::int32_t> last_commands(chain.joint_count(), servo_center);
   auto change = gait.changes.begin();
   auto restart = restarts.begin();
-  recording.read_ticks(0, recording.last_tick(), [&](const RecordedTick& tick) {
+  const std::optional<std::uint32_t> first_fault = recording.first_fault_tick();
+  if (first_fault == 0U) {
+    result.first_fault_tick = first_fault;
+    return result;
+  }
+  const std::uint32_t last = std::min(recording.last_tick(), first_fault ? *first_fault - 1 : recording.last_tick());
+  recording.read_ticks(0, last, [&](const RecordedTick& tick) {
     for (; restart != restarts.end() && restart->tick <= tick.tick; ++restart) {
       restart->joined ? chain.join(restart->joint) : chain.stop(restart->joint);
     }
@@ -269,7 +275,8 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
       progress(tick.tick);
     }
   });
-  while (const auto pulse = pulses.take()) {
+  result.first_fault_tick = first_fault;
+  while (const auto pulse = first_fault ? std::nullopt : pulses.take()) {
     note({Difference::Kind::servo_command, recording.last_tick(), pulse->joint, pulse->command, std::nullopt});
   }
   result.setpoint_hash = setpoint_hash.hex();

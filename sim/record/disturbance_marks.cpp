@@ -20,6 +20,13 @@ Disturbances collect_disturbances(const Recording& recording) {
       open[event.joint].reset();
     }
   }
+  for (const RecordedFault& fault : recording.faults()) {
+    const auto to_s = fault.end_us ? std::optional(static_cast<double>(*fault.end_us) * 1e-6) : std::nullopt;
+    // The axis shows the time, so the text begins behind "at TIME".
+    const std::size_t after_at = fault.text.find(' ', fault.text.find(' ') + 1);
+    result.faults.push_back({after_at == std::string::npos ? fault.text : fault.text.substr(after_at + 1),
+                             static_cast<double>(fault.start_us) * 1e-6, to_s});
+  }
   LossReader losses(recording);
   while (const std::optional<Loss> loss = losses.next()) {
     if (result.lost_in_ticks.empty() || result.lost_in_ticks.back().tick != loss->tick) {
@@ -28,6 +35,36 @@ Disturbances collect_disturbances(const Recording& recording) {
     ++result.lost_in_ticks.back().frames;
   }
   return result;
+}
+
+void draw_faults(Svg& svg, const Disturbances& disturbances, const Axis& time, double top, double height) {
+  for (const Disturbances::FaultMark& fault : disturbances.faults) {
+    if (fault.from_s >= time.low && fault.from_s <= time.high) {
+      const double x = time.pixel(fault.from_s);
+      svg.line({x, top}, {x, top + height}, R"(class="fault" stroke="#b00020" stroke-width="1")");
+    }
+    const double from = std::max(fault.from_s, time.low);
+    const double to = std::min(fault.to_s.value_or(fault.from_s), time.high);
+    if (from < to) {
+      svg.rectangle({time.pixel(from), top}, std::max(time.pixel(to) - time.pixel(from), 1.5), height,
+                    R"(class="fault" fill="#b00020" fill-opacity="0.09")");
+    }
+  }
+}
+
+void draw_fault_texts(Svg& svg, const Disturbances& disturbances, const Axis& time, double top) {
+  constexpr double line_height = 13.0;
+  constexpr std::size_t max_lines = 6;
+  std::size_t line = 0;
+  for (const Disturbances::FaultMark& fault : disturbances.faults) {
+    if (fault.from_s < time.low || fault.from_s > time.high || line == max_lines) {
+      continue;
+    }
+    const double x = time.pixel(fault.from_s);
+    const bool to_the_left = x > (page_left + page_right) / 2.0;
+    svg.text({to_the_left ? x - 4.0 : x + 4.0, top + line_height * static_cast<double>(++line)},
+             shortened(fault.text, 44), to_the_left ? TextAnchor::end : TextAnchor::start, label_size, "#b00020");
+  }
 }
 
 void draw_restarts(Svg& svg, const Disturbances& disturbances, const Axis& time, double top, double height) {

@@ -24,11 +24,23 @@ struct Disturbances {
     std::uint32_t tick;
     std::uint32_t frames;
   };
+  /// Something was made to fail.
+  struct FaultMark {
+    std::string text;
+    double from_s;
+    std::optional<double> to_s;  ///< nothing: it happens once, or lasts to the end
+  };
+  std::vector<FaultMark> faults;          ///< in the order of time
   std::vector<Restart> restarts;          ///< in the order of time
   std::vector<TickLosses> lost_in_ticks;  ///< ascending, without ticks that lost none
 };
 
 [[nodiscard]] Disturbances collect_disturbances(const Recording& recording);
+
+/// Faults as bands from their start to their end behind the lines of a panel; one that has no end is a line.
+void draw_faults(Svg& svg, const Disturbances& disturbances, const Axis& time, double top, double height);
+/// The texts of the faults at their starts, one below the other.
+void draw_fault_texts(Svg& svg, const Disturbances& disturbances, const Axis& time, double top);
 
 /// Restarts as bands behind the lines of a panel, named at its lower edge.
 void draw_restarts(Svg& svg, const Disturbances& disturbances, const Axis& time, double top, double height);

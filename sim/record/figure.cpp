@@ -130,6 +130,9 @@ void draw_head(Svg& svg, const Recording& recording, std::size_t changes, const 
   if (const std::size_t restarts = disturbances.restarts.size(); restarts > 0) {
     about += ", " + std::to_string(restarts) + (restarts == 1 ? " restart" : " restarts");
   }
+  if (const std::size_t faults = disturbances.faults.size(); faults > 0) {
+    about += ", " + std::to_string(faults) + (faults == 1 ? " fault" : " faults");
+  }
   if (!disturbances.lost_in_ticks.empty()) {
     about += ", state frames lost";
   }
@@ -164,6 +167,7 @@ std::string draw_figure(const Recording& recording, const TimeWindow& window) {
   const Axis time{contents.from_s, contents.to_s, page_left, page_right};
   draw_time_axis(svg, time, layout);
   for (const AnglePanel& angles : layout.angles) {
+    draw_faults(svg, disturbances, time, angles.top, angles.height);
     draw_angles(svg, recording, contents, angles, time);
     draw_restarts(svg, disturbances, time, angles.top, angles.height);
   }
@@ -172,6 +176,7 @@ std::string draw_figure(const Recording& recording, const TimeWindow& window) {
   }
   draw_contact_panel(svg, recording, contents, layout.contacts_top, time);
   draw_changes(svg, changes, time, layout);
+  draw_fault_texts(svg, disturbances, time, layout.angles.front().top);
   draw_path(svg, recording, contents, panel);
   return svg.finish();
 }

@@ -80,6 +80,26 @@ class Recorder::Storage {
     insert_restart_.run(tick, joint, std::string_view(joined ? "joined" : "stopped"));
   }
 
+  void write_faults(std::span<const RecordedFault> faults) {
+    Statement with_end(database_, "INSERT INTO fault(start_us, text, end_us) VALUES(?1, ?2, ?3)");
+    Statement without_end(database_, "INSERT INTO fault(start_us, text) VALUES(?1, ?2)");
+    Statement at_joint(database_, "UPDATE fault SET joint = ?1 WHERE position = (SELECT max(position) FROM fault)");
+    for (const RecordedFault& fault : faults) {
+      if (fault.end_us) {
+        with_end.run(fault.start_us, std::string_view(fault.text), *fault.end_us);
+      } else {
+        without_end.run(fault.start_us, std::string_view(fault.text));
+      }
+      if (fault.joint) {
+        at_joint.run(*fault.joint);
+      }
+    }
+  }
+
+  void write_module_event(std::uint64_t time_us, std::uint32_t joint, const std::string& text) {
+    insert_event_.run(time_us, joint, std::string_view(text));
+  }
+
   void write_tick(const TickSample& sample) {
     require_finite(sample);
     const std::uint32_t tick = sample.tick;
@@ -196,6 +216,7 @@ class Recorder::Storage {
   Statement insert_contact_{database_, "INSERT INTO contact VALUES(?1, ?2, ?3, ?4, ?5)"};
   Statement insert_loss_{database_, "INSERT INTO loss VALUES(?1, ?2, ?3, ?4)"};
   Statement insert_restart_{database_, "INSERT INTO restart VALUES(?1, ?2, ?3)"};
+  Statement insert_event_{database_, "INSERT INTO module_event(time_us, joint, text) VALUES(?1, ?2, ?3)"};
   bool closed_ = false;
   bool failed_ = false;
   std::chrono::steady_clock::time_point last_commit_ = std::chrono::steady_clock::now();
@@ -221,6 +242,14 @@ void Recorder::record_change(const Change& change) {
 
 void Recorder::record_restart(std::uint32_t tick, std::uint32_t joint, bool joined) {
   storage_->guard([&] { storage_->write_restart(tick, joint, joined); });
+}
+
+void Recorder::record_faults(std::span<const RecordedFault> faults) {
+  storage_->guard([&] { storage_->write_faults(faults); });
+}
+
+void Recorder::record_module_event(std::uint64_t time_us, std::uint32_t joint, const std::string& text) {
+  storage_->guard([&] { storage_->write_module_event(time_us, joint, text); });
 }
 
 void Recorder::record_tick(const TickSample& sample) {

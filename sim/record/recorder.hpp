@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "shared/computer/errors/file_error.hpp"
+#include "sim/record/recorded_fault.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/robot/servo_pulse.hpp"
 #include "sim/scenario/losses.hpp"
@@ -60,6 +61,10 @@ class Recorder {
   /// From this tick on the module of a joint computes nothing (it restarts), or computes again (it joined). Call this
   /// before the record_tick of that tick.
   void record_restart(std::uint32_t tick, std::uint32_t joint, bool joined);
+  /// What is made to fail in the run. Call this before the first record_tick.
+  void record_faults(std::span<const RecordedFault> faults);
+  /// What a module did in a run with faults, in microseconds after SYNC 0.
+  void record_module_event(std::uint64_t time_us, std::uint32_t joint, const std::string& text);
   /// Ticks must ascend. Throws FileError if a value is not finite, because the simulation became unstable.
   void record_tick(const TickSample& sample);
   /// Marks the run as finished and closes the file, so that the recording is one file. summary: names and values for

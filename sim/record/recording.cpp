@@ -1,6 +1,7 @@
 #include "sim/record/recording.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <sstream>
 
@@ -200,6 +201,36 @@ std::vector<RecordedRestart> Recording::restarts() const {
     }
     return restarts;
   });
+}
+
+std::vector<RecordedFault> Recording::faults() const {
+  return reading(path_, [&] {
+    std::vector<RecordedFault> faults;
+    Statement row(tables_->database,
+                  "SELECT start_us, end_us IS NULL, ifnull(end_us, 0), joint IS NULL, ifnull(joint, 0), text FROM fault "
+                  "ORDER BY start_us, position");
+    while (row.step()) {
+      RecordedFault& fault = faults.emplace_back();
+      fault.start_us = time(row, 0);
+      if (row.integer(1) == 0) {
+        fault.end_us = time(row, 2);
+      }
+      if (row.integer(3) == 0) {
+        fault.joint = joint_number(row, 4);
+      }
+      fault.text = row.text(5);
+    }
+    return faults;
+  });
+}
+
+std::optional<std::uint32_t> Recording::first_fault_tick() const {
+  const std::vector<RecordedFault> all = faults();
+  if (all.empty()) {
+    return std::nullopt;
+  }
+  constexpr std::uint64_t max_tick = std::numeric_limits<std::uint32_t>::max();
+  return static_cast<std::uint32_t>(std::min(all.front().start_us / tick_period_us_, max_tick));
 }
 
 std::vector<std::pair<std::string, std::string>> Recording::sources() const {

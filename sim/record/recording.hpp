@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "shared/fixed/unit.hpp"
+#include "sim/record/recorded_fault.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/robot/servo_pulse.hpp"
 #include "sim/scenario/losses.hpp"
@@ -110,6 +111,10 @@ class Recording {
   [[nodiscard]] std::vector<RecordedSetting> parameters() const;
   [[nodiscard]] std::vector<RecordedSetting> distortions() const;
   [[nodiscard]] std::vector<RecordedRestart> restarts() const;
+  /// By ascending start. Empty for a run without faults.
+  [[nodiscard]] std::vector<RecordedFault> faults() const;
+  /// The first tick in which something fails; nothing: none does. The gait can be recomputed up to it.
+  [[nodiscard]] std::optional<std::uint32_t> first_fault_tick() const;
   /// Path and text of every file of the scenario.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> sources() const;
 

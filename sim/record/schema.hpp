@@ -9,7 +9,7 @@ namespace proleg::sim {
 /// "Prol", SQLite's application id, bytes 68 to 71 of the file: it marks a database as a recording.
 inline constexpr std::uint32_t recording_application_id = 0x50726F6C;
 /// SQLite's user_version. A new number for every change that a reader of the older format would misread or miss.
-inline constexpr std::uint32_t recording_format = 5;
+inline constexpr std::uint32_t recording_format = 6;
 
 // Choices:
 // - STRICT: a value of the wrong type is an error when it is written, not when it is read.
@@ -170,6 +170,25 @@ CREATE TABLE restart(
   event TEXT NOT NULL,
   PRIMARY KEY(tick, joint)
 ) STRICT, WITHOUT ROWID;
+
+CREATE TABLE fault(
+  -- What was made to fail (docs/faults.md), in microseconds after SYNC 0. end_us: null if it lasts to the end of the
+  -- run, or happens once. joint: whose module it befalls; null for the whole robot. text: as in a fault schedule. From
+  -- the first fault on the gait in memory is no oracle: replay compares the ticks before it.
+  position INTEGER PRIMARY KEY,
+  start_us INTEGER NOT NULL,
+  end_us INTEGER,
+  joint INTEGER,
+  text TEXT NOT NULL
+) STRICT;
+
+CREATE TABLE module_event(
+  -- What modules did in a run with faults: states of their servos, and their messages.
+  position INTEGER PRIMARY KEY,
+  time_us INTEGER NOT NULL,
+  joint INTEGER NOT NULL,
+  text TEXT NOT NULL
+) STRICT;
 
 CREATE TABLE servo(
   -- Every pulse for a servo, in twelfths of a microsecond, and when its interval starts: microseconds after SYNC 0.

@@ -41,10 +41,28 @@ void note_restart(const ScenarioRun& run, std::uint32_t tick, const sim::Restart
   }
 }
 
+/// Those that the recording does not have yet.
+void record_module_events(const sim::MotionWatch& watch, sim::Recorder& recorder, std::size_t& recorded) {
+  for (; recorded < watch.events().size(); ++recorded) {
+    const sim::ModuleEvent& event = watch.events()[recorded];
+    recorder.record_module_event(static_cast<std::uint64_t>(event.time_s * 1e6), event.joint, event.text);
+  }
+}
+
+std::vector<sim::RecordedFault> recorded_faults(const sim::FaultSchedule& schedule, const sim::RobotModel& robot) {
+  std::vector<sim::RecordedFault> faults;
+  for (const sim::Fault& fault : schedule) {
+    const auto end_us = fault.duration_us ? std::optional(fault.start_us + *fault.duration_us) : std::nullopt;
+    faults.push_back({fault.start_us, end_us, fault.joint, describe(fault, robot)});
+  }
+  return faults;
+}
+
 HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::HardwareLoop& loop,
                    sim::Recorder* recorder) {
   RunProgress progress("in the loop", run.scenario.duration_s);
   HilResult result;
+  std::size_t recorded_events = 0;
   const auto start = std::chrono::steady_clock::now();
   while (loop.tick() < run.ticks && !interrupted()) {
     const sim::Change* change = loop.advance();
@@ -60,6 +78,9 @@ HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::Hardw
         recorder->record_change(*change);
       }
       recorder->record_tick(loop.sample());
+    }
+    if (recorder != nullptr) {
+      record_module_events(loop.motion_watch(), *recorder, recorded_events);
     }
     progress.show(loop.time_s());
   }
@@ -184,6 +205,9 @@ int hil(const HilOptions& options) {
   hardware.make_module = [&modules](const sim::ModuleParts& parts) { return modules.make(parts); };
   hardware.before_start = [&] {
     open_files(options, run, modules, files);
+    if (files.recorder) {
+      files.recorder->record_faults(recorded_faults(plan.schedule, run.scenario.robot));
+    }
     catch_interrupts();
   };
   std::optional<HilResult> finished;

@@ -53,7 +53,7 @@ int replay(const Options& options) {
   const std::string setpoint_hash = recorded(recording, "setpoint_hash");
   const std::string servo_hash = recorded(recording, "servo_hash");
   const bool same_hashes =
-      !recording.finished() || (setpoint_hash == verification.setpoint_hash && servo_hash == verification.servo_hash);
+      !recording.finished() || verification.first_fault_tick || (setpoint_hash == verification.setpoint_hash && servo_hash == verification.servo_hash);
   const bool holds = verification.differences == 0 && same_hashes;
   const std::string core = recording.run_value("core_fingerprint");
   if (options.json) {
@@ -62,6 +62,7 @@ int replay(const Options& options) {
                       {"setpoints", verification.setpoints},
                       {"servo_commands", verification.servo_commands},
                       {"internal_values", verification.internal_values},
+                      {"first_fault_tick", verification.first_fault_tick},
                       {"differences", verification.differences},
                       {"first_difference", first},
                       {"setpoint_hash", verification.setpoint_hash},
@@ -83,6 +84,9 @@ int replay(const Options& options) {
                 verification.ticks, static_cast<unsigned long long>(verification.setpoints),
                 static_cast<unsigned long long>(verification.servo_commands),
                 static_cast<unsigned long long>(verification.internal_values));
+    if (verification.first_fault_tick) {
+      std::printf("until             tick %u, in which the first fault begins\n", *verification.first_fault_tick);
+    }
     std::printf("differences       %llu\n", static_cast<unsigned long long>(verification.differences));
     std::printf("set-point hash    %s\n", verification.setpoint_hash.c_str());
     std::printf("servo hash        %s\n", verification.servo_hash.c_str());

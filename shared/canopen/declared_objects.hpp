@@ -46,6 +46,9 @@ inline constexpr std::int32_t position_not_measured = -0x7FFFFFFF - 1;
 namespace object {
 
 inline constexpr Range full_angle{static_cast<std::uint32_t>(-quarter_turn), quarter_turn};
+inline constexpr UnitScale angle = scale_of(Unit::degree);
+/// Upper 16 bits of an angle.
+inline constexpr UnitScale short_angle{angle.symbol, angle.numerator >> 16U, angle.denominator};
 
 // Communication (CiA 301, section 7.5.2).
 
@@ -64,8 +67,9 @@ inline constexpr ObjectArray recent_error{
 inline constexpr Object sync_identifier = read_write(
     {0x1005, 0}, "COB-ID SYNC message", DataType::unsigned32, identifier::sync, {identifier::sync, identifier::sync},
     "0x40000080: the module produces SYNC and TICK, 0x80: another does", produces_sync | identifier::sync);
-inline constexpr Object tick_period = read_write({0x1006, 0}, "Communication cycle period", DataType::unsigned32,
-                                                 10'000, {1'000, 100'000}, "a tick, in microseconds");
+inline constexpr Object tick_period =
+    in_unit("us", read_write({0x1006, 0}, "Communication cycle period", DataType::unsigned32, 10'000, {1'000, 100'000},
+                             "a tick, in microseconds"));
 inline constexpr Object device_name = constant_text({0x1008, 0}, "Manufacturer device name", "Proleg joint module");
 inline constexpr Object hardware_version =
     read_only({0x1009, 0}, "Manufacturer hardware version", DataType::visible_string, "\"board\" and the board id");
@@ -90,8 +94,9 @@ inline constexpr Object host_heartbeat =
     read_write(consumer_heartbeat.at(1), "Consumer heartbeat time of the host", DataType::unsigned32, 0,
                {0, 0x007FFFFF}, "65536 * node + timeout in ms; 0: no heartbeat is expected");
 
-inline constexpr Object heartbeat_period = read_write({0x1017, 0}, "Producer heartbeat time", DataType::unsigned16, 0,
-                                                      full_range(DataType::unsigned16), "in ms; 0: off");
+inline constexpr Object heartbeat_period =
+    in_unit("ms", read_write({0x1017, 0}, "Producer heartbeat time", DataType::unsigned16, 0,
+                             full_range(DataType::unsigned16), "in ms; 0: off"));
 
 inline constexpr ObjectGroup identity{0x1018, ObjectCode::record, "Identity object"};
 inline constexpr Object vendor = constant(identity.at(1), "Vendor-ID", DataType::unsigned32, placeholder_vendor,
@@ -159,12 +164,15 @@ inline constexpr Object seed_low = read_write(kernel.at(1), "Seed, lower half", 
                                               full_range(DataType::unsigned32), "of the noise, one for all joints");
 inline constexpr Object seed_high =
     read_write(kernel.at(2), "Seed, upper half", DataType::unsigned32, 0, full_range(DataType::unsigned32));
-inline constexpr Object servo_period = read_write(kernel.at(3), "Servo period", DataType::unsigned32, 20'000,
-                                                  {100, 100'000}, "between two pulses, in microseconds");
-inline constexpr Object lower_limit = read_write(kernel.at(4), "Lower limit", DataType::integer32, full_angle.minimum,
-                                                 full_angle, "of the joint angle; 90 degrees = 2^30");
-inline constexpr Object upper_limit = read_write(kernel.at(5), "Upper limit", DataType::integer32, full_angle.maximum,
-                                                 full_angle, "of the joint angle; 90 degrees = 2^30");
+inline constexpr Object servo_period =
+    in_unit("us", read_write(kernel.at(3), "Servo period", DataType::unsigned32, 20'000, {100, 100'000},
+                             "between two pulses, in microseconds"));
+inline constexpr Object lower_limit =
+    in_unit(angle, read_write(kernel.at(4), "Lower limit", DataType::integer32, full_angle.minimum, full_angle,
+                              "of the joint angle; 90 degrees = 2^30"));
+inline constexpr Object upper_limit =
+    in_unit(angle, read_write(kernel.at(5), "Upper limit", DataType::integer32, full_angle.maximum, full_angle,
+                              "of the joint angle; 90 degrees = 2^30"));
 inline constexpr Object activate = read_write(kernel.at(6), "Activate", DataType::unsigned8, 0, {0, 1},
                                               "1: applies joint index, slots, seed and periods; 0: not configured");
 
@@ -184,17 +192,19 @@ inline constexpr ObjectArray slot_group_high{
     max_slots};
 
 inline constexpr ObjectGroup measured{0x2009, ObjectCode::record, "Measured"};
-inline constexpr Object measured_angle = read_only(measured.at(1), "Actual angle", DataType::integer16,
-                                                   "upper bits of 0x6064: 90 degrees = 2^14; -32768: not measured");
+inline constexpr Object measured_angle =
+    in_unit(short_angle, read_only(measured.at(1), "Actual angle", DataType::integer16,
+                                   "upper bits of 0x6064: 90 degrees = 2^14; -32768: not measured"));
 inline constexpr Object temperature =
-    read_only(measured.at(2), "Temperature", DataType::integer8, "of the chip, in degrees Celsius");
+    in_unit("degC", read_only(measured.at(2), "Temperature", DataType::integer8, "of the chip, in degrees Celsius"));
 
 inline constexpr ObjectGroup over_current{0x200A, ObjectCode::record, "Over-current"};
 inline constexpr Object current_limit =
-    read_write(over_current.at(1), "Limit", DataType::unsigned16, 2'000, {0, 0x7FFF}, "of the servo, in mA; 0: off");
+    in_unit("mA", read_write(over_current.at(1), "Current limit", DataType::unsigned16, 2'000, {0, 0x7FFF},
+                             "of the servo, in mA; 0: off"));
 inline constexpr Object current_limit_time =
-    read_write(over_current.at(2), "Time", DataType::unsigned16, 500, full_range(DataType::unsigned16),
-               "above the limit that leads to a fault, in ms");
+    in_unit("ms", read_write(over_current.at(2), "Time above the limit", DataType::unsigned16, 500,
+                             full_range(DataType::unsigned16), "that leads to a fault, in ms"));
 
 inline constexpr ObjectGroup bus_statistics{0x200B, ObjectCode::record, "Bus statistics"};
 inline constexpr Object lost_frames = read_only(bus_statistics.at(1), "Lost frames", DataType::unsigned32,
@@ -290,26 +300,30 @@ inline constexpr Object mode =
                {static_cast<std::uint32_t>(mode_gait), static_cast<std::uint32_t>(mode_gait)},
                "-1: gait; 8: cyclic synchronous position", mode_direct_position);
 inline constexpr Object mode_display = read_only({0x6061, 0}, "Modes of operation display", DataType::integer8);
-inline constexpr Object position_demand = read_only({0x6062, 0}, "Position demand value", DataType::integer32,
-                                                    "set-point of the present tick; 90 degrees = 2^30");
-inline constexpr Object actual_position = read_only({0x6064, 0}, "Position actual value", DataType::integer32,
-                                                    "90 degrees = 2^30; -2147483648: not measured");
-inline constexpr Object rated_current = constant({0x6075, 0}, "Motor rated current", DataType::unsigned32, 1'000,
-                                                 "1,000 mA, the unit of 0x6078; not the rated current of the servo");
-inline constexpr Object actual_current =
-    read_only({0x6078, 0}, "Current actual value", DataType::integer16, "thousandths of 0x6075, which are mA");
-inline constexpr Object target_position =
-    read_write({0x607A, 0}, "Target position", DataType::integer32, 0, full_angle, "joint angle; 90 degrees = 2^30");
+inline constexpr Object position_demand =
+    in_unit(angle, read_only({0x6062, 0}, "Position demand value", DataType::integer32,
+                             "set-point of the present tick; 90 degrees = 2^30"));
+inline constexpr Object actual_position =
+    in_unit(angle, read_only({0x6064, 0}, "Position actual value", DataType::integer32,
+                             "90 degrees = 2^30; -2147483648: not measured"));
+inline constexpr Object rated_current =
+    in_unit("mA", constant({0x6075, 0}, "Motor rated current", DataType::unsigned32, 1'000,
+                           "1,000 mA, the unit of 0x6078; not the rated current of the servo"));
+inline constexpr Object actual_current = in_unit(
+    "mA", read_only({0x6078, 0}, "Current actual value", DataType::integer16, "thousandths of 0x6075, which are mA"));
+inline constexpr Object target_position = in_unit(angle, read_write({0x607A, 0}, "Target position", DataType::integer32,
+                                                                    0, full_angle, "joint angle; 90 degrees = 2^30"));
 inline constexpr ObjectGroup position_limits{0x607D, ObjectCode::array, "Software position limit"};
 inline constexpr Object lowest_position =
-    read_write(position_limits.at(1), "Min position limit", DataType::integer32, full_angle.minimum,
-               {full_angle.minimum, 0}, "joint angle that the mechanics allow; 90 degrees = 2^30");
+    in_unit(angle, read_write(position_limits.at(1), "Min position limit", DataType::integer32, full_angle.minimum,
+                              {full_angle.minimum, 0}, "joint angle that the mechanics allow; 90 degrees = 2^30"));
 inline constexpr Object highest_position =
-    read_write(position_limits.at(2), "Max position limit", DataType::integer32, full_angle.maximum,
-               {0, full_angle.maximum}, "joint angle that the mechanics allow; 90 degrees = 2^30");
-inline constexpr Object command_speed = read_write(
-    {0x6080, 0}, "Max motor speed", DataType::unsigned32, default_command_speed, {min_command_speed, max_command_speed},
-    "greatest speed of commanded angles of the joint, in degrees a second");
+    in_unit(angle, read_write(position_limits.at(2), "Max position limit", DataType::integer32, full_angle.maximum,
+                              {0, full_angle.maximum}, "joint angle that the mechanics allow; 90 degrees = 2^30"));
+inline constexpr Object command_speed =
+    in_unit("deg/s", read_write({0x6080, 0}, "Max motor speed", DataType::unsigned32, default_command_speed,
+                                {min_command_speed, max_command_speed},
+                                "greatest speed of commanded angles of the joint, in degrees a second"));
 inline constexpr Object supported_modes = constant({0x6502, 0}, "Supported drive modes", DataType::unsigned32,
                                                    0x00010080, "bit 7: cyclic synchronous position; bit 16: gait");
 

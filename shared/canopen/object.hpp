@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "shared/fixed/unit.hpp"
 #include "shared/gait/joint_mask.hpp"
 
 namespace proleg::canopen {
@@ -99,7 +100,18 @@ struct Object : Entry {
   std::string_view name;
   std::string_view help;       ///< a short phrase: unit and meaning
   std::string_view text = {};  ///< of a constant string: its value
+  UnitScale scale = scale_of(Unit::count);
 };
+
+/// The same entry with the unit of its value.
+[[nodiscard]] constexpr Object in_unit(UnitScale scale, Object object) {
+  object.scale = scale;
+  return object;
+}
+/// The same with a unit of which one step of the value is worth 1.
+[[nodiscard]] constexpr Object in_unit(const char* symbol, const Object& object) {
+  return in_unit(UnitScale{symbol, 1, 1}, object);
+}
 
 /// An entry that never changes.
 [[nodiscard]] constexpr Object constant(Address address, std::string_view name, DataType type, std::uint32_t value,

@@ -21,15 +21,25 @@ void append_number(ObjectName& name, unsigned number) {
   append(name, number < 10 ? std::string_view(&digits[2], 1) : std::string_view(&digits[1], 2));
 }
 
-void append_value_name(ObjectName& name, const ValueAddress& value) {
+/// "amplitude"
+std::string_view short_name(const ValueAddress& value) {
   const Declaration& declaration = find_algorithm(value.algorithm)->declaration();
-  append(name, declaration.name);
+  return value.kind == ValueKind::internal_value ? declaration.internal_values[value.number].name
+                                                 : declaration.parameters[value.number].name;
+}
+
+void append_value_name(ObjectName& name, const ValueAddress& value) {
+  append(name, find_algorithm(value.algorithm)->declaration().name);
   append(name, " ");
-  append(name, value.kind == ValueKind::internal_value ? declaration.internal_values[value.number].name
-                                                       : declaration.parameters[value.number].name);
+  append(name, short_name(value));
   if (value.kind == ValueKind::staged_parameter) {
     append(name, ", staged");
   }
+}
+
+void append_slot(ObjectName& name, const ValueAddress& value) {
+  append(name, "slot");
+  append_number(name, value.slot + 1U);
 }
 
 }  // namespace
@@ -52,8 +62,10 @@ ObjectName index_name(std::uint16_t index) {
 ObjectName entry_name(Address address) {
   ObjectName name{};
   if (const std::optional<ValueAddress> value = value_address(address)) {
-    append(name, "slot");
-    append_number(name, value->slot + 1U);
+    // Tools list entries without the name of their index: the slot alone would say nothing.
+    append(name, short_name(*value));
+    append(name, value->kind == ValueKind::staged_parameter ? ", staged, of " : " of ");
+    append_slot(name, *value);
   } else if (const std::optional<Object> object = find_object(address)) {
     append(name, object->name);
     if (const EntryRow* row = find_row(address); row != nullptr && row->subs > 1) {
@@ -71,7 +83,11 @@ ObjectName full_name(Address address) {
   }
   ObjectName name = index_name(address.index);
   append(name, ": ");
-  append(name, entry.view());
+  if (const std::optional<ValueAddress> value = value_address(address)) {
+    append_slot(name, *value);
+  } else {
+    append(name, entry.view());
+  }
   return name;
 }
 

@@ -20,7 +20,7 @@ struct ObjectName {
 
 /// "Identity object", "Controlword", "PatternGenerator_sinusoidal amplitude, staged"; empty if there is no such index.
 [[nodiscard]] ObjectName index_name(std::uint16_t index);
-/// "Vendor-ID", "Controlword", "slot 2"; empty if there is no such entry.
+/// "Vendor-ID", "Controlword", "amplitude, staged, of slot 2"; empty if there is no such entry.
 [[nodiscard]] ObjectName entry_name(Address address);
 /// "Identity object: Vendor-ID", "Controlword", "PatternGenerator_sinusoidal amplitude, staged: slot 2"; empty if there
 /// is no such entry.

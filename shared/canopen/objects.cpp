@@ -374,16 +374,16 @@ std::optional<Object> find_object(Address address) {
   }
   if (const EntryRow* row = find_row(address)) {
     const Object& declared = *declared_rows[row - rows.data()].first;
-    return Object{*entry, declared.name, declared.help, declared.text};
+    return Object{*entry, declared.name, declared.help, declared.text, declared.scale};
   }
   if (const std::optional<ValueAddress> value = value_address(address)) {
     const Declaration& declaration = find_algorithm(value->algorithm)->declaration();
     if (value->kind == ValueKind::internal_value) {
       const InternalValue& internal = declaration.internal_values[value->number];
-      return Object{*entry, internal.name, internal.help};
+      return in_unit(scale_of(internal.unit), Object{*entry, internal.name, internal.help});
     }
     const Parameter& parameter = declaration.parameters[value->number];
-    return Object{*entry, parameter.name, parameter.help};
+    return in_unit(scale_of(parameter.unit), Object{*entry, parameter.name, parameter.help});
   }
   return Object{*entry, "Highest sub-index supported", {}};
 }

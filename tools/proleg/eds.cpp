@@ -1,6 +1,5 @@
 #include "tools/proleg/eds.hpp"
 
-#include <optional>
 #include <set>
 #include <string_view>
 #include <vector>
@@ -8,7 +7,6 @@
 #include "shared/canopen/object_name.hpp"
 #include "shared/canopen/objects.hpp"
 #include "shared/computer/text/text.hpp"
-#include "shared/gait/registry.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -71,28 +69,12 @@ Range outer_range(const Object& object) {
   return range;
 }
 
-/// What a value of one of the ranges is in; nothing for other entries and for plain numbers.
-std::optional<UnitScale> scale_at(Address address) {
-  const std::optional<ValueAddress> value = value_address(address);
-  if (!value) {
-    return std::nullopt;
-  }
-  const Declaration& declaration = find_algorithm(value->algorithm)->declaration();
-  const Unit unit = value->kind == ValueKind::internal_value ? declaration.internal_values[value->number].unit
-                                                             : declaration.parameters[value->number].unit;
-  const UnitScale scale = scale_of(unit);
-  return scale.numerator == scale.denominator ? std::nullopt : std::optional(scale);
-}
-
 /// A tool that downloads all values must not write it: the value is a command to the module.
 bool is_command(const Object& object) {
   return object.address == object::store_parameters.address || object.address == object::restore_parameters.address;
 }
 
 void print_entry(std::ostream& out, const Object& object, const Mapped& mapped) {
-  if (!object.help.empty()) {
-    out << "; " << object.help << '\n';
-  }
   out << "ParameterName=" << entry_name(object.address).view()
       << "\nObjectType=0x7\nDataType=" << hexadecimal(static_cast<std::uint32_t>(object.type), 4)
       << "\nAccessType=" << access_type(object, mapped) << '\n';
@@ -114,13 +96,17 @@ void print_entry(std::ostream& out, const Object& object, const Mapped& mapped) 
     out << "HighLimit=" << number(object.type, range.maximum) << '\n';
   }
   out << "PDOMapping=" << (mapped.contains(object) ? 1 : 0) << '\n';
-  if (const std::optional<UnitScale> scale = scale_at(object.address)) {
-    // Not of CiA 306, which lets readers skip what they do not know: python-canopen shows values by these.
-    out << "Factor=" << exact_text(static_cast<double>(scale->denominator) / static_cast<double>(scale->numerator))
+  // The following keys are not of CiA 306, which lets readers skip what they do not know: python-canopen reads them.
+  const UnitScale& scale = object.scale;
+  if (scale.numerator != scale.denominator) {
+    out << "Factor=" << exact_text(static_cast<double>(scale.denominator) / static_cast<double>(scale.numerator))
         << '\n';
-    if (const std::string_view symbol = scale->symbol; symbol != "1") {
-      out << "Unit=" << symbol << '\n';
-    }
+  }
+  if (const std::string_view symbol = scale.symbol; !symbol.empty() && symbol != scale_of(Unit::ratio).symbol) {
+    out << "Unit=" << symbol << '\n';
+  }
+  if (!object.help.empty()) {
+    out << "Description=" << object.help << '\n';
   }
   if (is_command(object)) {
     out << "ObjFlags=0x1\n";  // CiA 306: refuse write on download
@@ -196,7 +182,7 @@ void print_eds(std::ostream& out) {
     out << "Dummy000" << type << "=0\n";
   }
   out << "\n[Comments]\nLines=2\nLine1=Written from the declarations in shared/canopen and shared/gait.\n"
-         "Line2=Units are in comments before the entries.\n";
+         "Line2=Factor, Unit and Description are for python-canopen.\n";
 
   const Mapped mapped;
   print_list(out, "MandatoryObjects", mandatory, mapped);

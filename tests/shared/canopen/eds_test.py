@@ -239,13 +239,40 @@ class EdsTest(unittest.TestCase):
         for section in check.eds.sections():
             if check.eds.has_option(section, "Factor"):
                 units.add(check.eds.get(section, "Unit", fallback=""))  # a ratio has none
-                self.assertRegex(section, "^[345][0-9A-F]{3}sub[1-4]$")
                 self.assertGreater(float(check.get(section, "Factor")), 0)
         self.assertEqual(units, {"deg", "Hz", "1/s", ""})
         # From docs/protocol.md: 90 degrees are 2^30, 1 Hz is 2^24.
         self.assertEqual(float(check.get("3080sub1", "Factor")) * check.number("3080sub1", "HighLimit"), 90)
+        # From docs/protocol.md: RPDO1 with 45 degrees, the monitoring with 44.9 degrees, 350 mA and 31 degrees Celsius.
+        for section, number, value, unit in (("607A", 0x20000000, 45, "deg"), ("2009sub1", 0x1FEE, 44.9, "deg"),
+                                             ("6078", 350, 350, "mA"), ("2009sub2", 31, 31, "degC"),
+                                             ("200Asub2", 500, 500, "ms"), ("6080", 720, 720, "deg/s")):
+            factor = float(check.eds.get(section, "Factor", fallback="1"))
+            self.assertAlmostEqual(factor * number, value, delta=0.01, msg=section)
+            self.assertEqual(check.get(section, "Unit"), unit, section)
         frequencies = [s for s in check.eds.sections() if check.eds.get(s, "Unit", fallback="") == "Hz"]
         self.assertEqual({float(check.get(s, "Factor")) for s in frequencies}, {2.0 ** -24})
+
+    def test_names_are_keys_for_python_canopen_and_say_what_an_entry_is(self):
+        """A name finds an index in the dictionary, and an entry in its index; a list of entries shows theirs alone."""
+        check = Check(self.text)
+        names = {}
+        for (index, sub), section in check.entries.items():
+            variable = check.eds.has_section(f"{index:04X}") and section == f"{index:04X}"
+            parent = "" if variable else check.get(f"{index:04X}", "ParameterName")
+            self.assertNotIn(".", parent + check.get(section, "ParameterName"), "the mark between the two names")
+            names.setdefault((parent, check.get(section, "ParameterName")), []).append(section)
+        self.assertEqual([entries for entries in names.values() if len(entries) > 1], [])
+        tops = [check.get(section, "ParameterName") for section in check.eds.sections() if len(section) == 4]
+        self.assertEqual(len(tops), len(set(tops)))
+        self.assertEqual(check.get("3080sub1", "ParameterName"), "amplitude of slot 1")
+        self.assertEqual(check.get("4081sub2", "ParameterName"), "frequency, staged, of slot 2")
+        self.assertEqual(check.get("3080sub1", "Description"), "amplitude of the joint angle")
+        for section in check.entries.values():
+            if section[0] in "345" and not section.endswith("sub0"):
+                self.assertIn(check.get(section[:4], "ParameterName").split()[1].rstrip(","),
+                              check.get(section, "ParameterName"))
+                self.assertTrue(check.get(section, "Description"))
 
     def test_the_check_finds_what_is_wrong(self):
         for pattern, replacement in (
@@ -264,10 +291,10 @@ class EdsTest(unittest.TestCase):
                 (r"DefaultValue=-1\n", "DefaultValue=-129\n"),
                 (r"DataType=0x0002", "DataType=0x0010"),
                 (r"DefaultValue=Proleg joint module\n", ""),
-                (r"(\[1009\]\n(?:.*\n){5})PDOMapping=0", r"\1PDOMapping=1"),
+                (r"(\[1009\]\n(?:.*\n){4})PDOMapping=0", r"\1PDOMapping=1"),
                 (r"AccessType=rww", "AccessType=ro"),
-                (r"(\[2010sub1\]\n(?:.*\n){5})PDOMapping=1", r"\1PDOMapping=0"),
-                (r"(\[2000sub3\]\n(?:.*\n){5})PDOMapping=0", r"\1PDOMapping=1"),
+                (r"(\[2010sub1\]\n(?:.*\n){4})PDOMapping=1", r"\1PDOMapping=0"),
+                (r"(\[2000sub3\]\n(?:.*\n){4})PDOMapping=0", r"\1PDOMapping=1"),
                 (r"DefaultValue=0x60400010", "DefaultValue=0x60400008"),
                 (r"DefaultValue=0x60400010", "DefaultValue=0x60500010"),
         ):

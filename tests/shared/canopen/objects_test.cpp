@@ -310,6 +310,32 @@ TEST(ObjectNames, ConsistOfIndexAndEntry) {
   EXPECT_EQ(full({0x3000, 1}), "");
 }
 
+TEST(ObjectNames, OfAnEntryOfAnAlgorithmNameTheValueAndTheSlot) {
+  const auto entry = [](Address address) { return std::string(entry_name(address).view()); };
+  EXPECT_EQ(entry({0x3080, 1}), "amplitude of slot 1");
+  EXPECT_EQ(entry({0x4081, 4}), "frequency, staged, of slot 4");
+  EXPECT_EQ(entry({0x5080, 2}), "current_phase of slot 2");
+  EXPECT_EQ(entry({0x2006, 2}), "Algorithm of slot 2");
+}
+
+TEST(ObjectUnits, AreThoseOfTheDocumentedNumberFormats) {
+  // docs/protocol.md: 90 degrees = 2^30, and 2^14 on 16 bits; 1 Hz = 2^24.
+  const auto in_units = [](Address address, double number) {
+    const UnitScale scale = find_object(address)->scale;
+    return number * scale.denominator / scale.numerator;
+  };
+  EXPECT_EQ(in_units({0x607A, 0}, 1 << 30), 90);
+  EXPECT_EQ(in_units({0x2009, 1}, 1 << 14), 90);
+  EXPECT_EQ(in_units({0x3080, 1}, 1 << 30), 90);
+  EXPECT_EQ(in_units({0x3081, 1}, 1 << 24), 1);
+  EXPECT_EQ(in_units({0x5081, 4}, 1 << 24), 1);
+  EXPECT_EQ(in_units({0x200A, 1}, 2'000), 2'000);
+  EXPECT_STREQ(find_object({0x607A, 0})->scale.symbol, "deg");
+  EXPECT_STREQ(find_object({0x200A, 1})->scale.symbol, "mA");
+  EXPECT_STREQ(find_object({0x6080, 0})->scale.symbol, "deg/s");
+  EXPECT_STREQ(find_object({0x6040, 0})->scale.symbol, "");
+}
+
 TEST(ObjectNames, DifferAndFit) {
   std::set<std::string> names;
   for (const Object& object : all_objects()) {

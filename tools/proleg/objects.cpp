@@ -1,16 +1,21 @@
 // proleg objects: the object dictionary of a module, for people, as docs/objects.md for the documentation, and as
-// docs/proleg.eds for CANopen tools.
+// docs/proleg.eds for CANopen tools; the frames of a robot as docs/proleg.dbc for CAN tools.
 
 #include <algorithm>
 #include <array>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "shared/canopen/messages.hpp"
 #include "shared/canopen/objects.hpp"
+#include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
+#include "sim/scenario/reader.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/dbc.hpp"
 #include "tools/proleg/eds.hpp"
 
 namespace {
@@ -188,17 +193,52 @@ void print_text(std::ostream& out) {
   }
 }
 
+/// Joints of the shipped robots.
+constexpr unsigned default_nodes = 5;
+
+void print_dbc(std::ostream& out, const std::string& scenario, const std::optional<std::string>& nodes) {
+  if (!scenario.empty()) {
+    sim::DiskFiles files;
+    tools::print_dbc(out, sim::read_scenario(scenario, files));
+    return;
+  }
+  const std::optional<unsigned> count = nodes ? parse_whole<unsigned>(*nodes) : default_nodes;
+  if (!count || *count < min_node_id || *count > max_node_id) {
+    throw InputError("--nodes", 0, in_quotes(*nodes), "a whole number from 1 to " + std::to_string(max_node_id));
+  }
+  tools::print_dbc(out, *count);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   proleg::tools::CommandLine command_line(
-      "proleg objects", "Lists the object dictionary of a module: the objects that can be read and set over the bus.");
+      "proleg objects",
+      "Lists the object dictionary of a module: the objects that can be read and set over the bus. With --dbc: the "
+      "frames on the bus.");
   bool eds = false;
   bool markdown = false;
   command_line.add_flag("--eds", eds, "print an Electronic Data Sheet (CiA 306) for CANopen tools");
   command_line.add_flag("--markdown", markdown, "print Markdown tables").excludes("--eds");
+  bool dbc = false;
+  std::string scenario;
+  std::optional<std::string> nodes;
+  command_line
+      .add_flag("--dbc", dbc, "print a DBC file for CAN tools: the frames of the robot of FILE, or of any robot")
+      .excludes("--eds")
+      .excludes("--markdown");
+  command_line.add_option("FILE", scenario, "for --dbc: scenario, a *.simulation.xml file");
+  command_line.add_option("--nodes", nodes, "for --dbc without FILE: node ids 1 to this; 5 by default")
+      .value_name("N")
+      .excludes("FILE");
   return command_line.run(argc, argv, [&] {
-    if (eds) {
+    if (!dbc && (!scenario.empty() || nodes)) {
+      throw InputError(scenario.empty() ? "--nodes" : "FILE", 0, in_quotes(scenario.empty() ? *nodes : scenario),
+                       "it only with --dbc");
+    }
+    if (dbc) {
+      print_dbc(std::cout, scenario, nodes);
+    } else if (eds) {
       proleg::tools::print_eds(std::cout);
     } else if (markdown) {
       print_markdown(std::cout);

@@ -270,6 +270,13 @@ TEST_F(CommandLine, ObjectsListsTheObjectDictionary) {
   EXPECT_NE(finished.out.find("0x6040"), std::string::npos) << finished.out;
   EXPECT_NE(finished.out.find("PatternGenerator_coupled_oscillator: parameters 0x3080 to 0x3086"), std::string::npos);
   expect_refused({"objects", "--eds", "--markdown"}, {"--eds", "--markdown"});
+  expect_refused({"objects", "--dbc", "--eds"}, {"--dbc", "--eds"});
+  expect_refused({"objects", "--dbc", scenario("uniform"), "--nodes", "3"}, {"--nodes", "FILE"});
+  expect_refused({"objects", scenario("uniform")}, {"FILE", "uniform", "only with --dbc"});
+  expect_refused({"objects", "--eds", "--nodes", "3"}, {"--nodes", "'3'", "only with --dbc"});
+  expect_refused({"objects", "--dbc", "--nodes", "127"}, {"--nodes", "'127'", "1 to 126"});
+  expect_refused({"objects", "--dbc", "--nodes", "0"}, {"--nodes", "'0'", "1 to 126"});
+  expect_refused({"objects", "--dbc", file("none").string()}, {"none"});
 }
 
 /// The first line in which a text differs from another; empty if there is none.
@@ -296,9 +303,10 @@ struct WrittenPage {
 };
 
 TEST_F(CommandLine, ThePagesThatProgramsWriteAgreeWithTheDeclarations) {
-  for (const auto& [page, words] : {WrittenPage{"docs/algorithms.md", {"algorithms", "--markdown"}},
-                                    WrittenPage{"docs/objects.md", {"objects", "--markdown"}},
-                                    WrittenPage{"docs/proleg.eds", {"objects", "--eds"}}}) {
+  for (const auto& [page, words] :
+       {WrittenPage{"docs/algorithms.md", {"algorithms", "--markdown"}},
+        WrittenPage{"docs/objects.md", {"objects", "--markdown"}}, WrittenPage{"docs/proleg.eds", {"objects", "--eds"}},
+        WrittenPage{"docs/proleg.dbc", {"objects", "--dbc"}}}) {
     EXPECT_EQ(first_difference(proleg(words).out, read_file(source_path("/" + std::string(page)))), "")
         << "write it again: build/host/bin/proleg " << words[0] << ' ' << words[1] << " >" << page;
   }

@@ -6,6 +6,7 @@
 #include "firmware/stm32f405/registers/flash.hpp"
 #include "firmware/stm32f405/registers/timer.hpp"
 #include "firmware/stm32f405/watchdog.hpp"
+#include "shared/canopen/declared_objects.hpp"
 
 namespace proleg::stm32f405 {
 namespace {
@@ -17,6 +18,8 @@ constexpr std::uint32_t first_sector = 1;
 // At least twice the maximum of the data sheet.
 constexpr std::uint32_t erase_timeout_us = 1'000'000;
 constexpr std::uint32_t program_timeout_us = 1'000;
+// A client of the module still waits when a flash that does not end is reported.
+static_assert(erase_timeout_us + firmware::BoardRecord::size / 4 * program_timeout_us < canopen::storing_time_us);
 
 /// Starts an operation and waits for its end or the timeout. Programs `word` at `address`, or erases if that is 0.
 /// Returns the status register. It may call no function and read only registers and the stack: all else is in flash.

@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "shared/can/can_port.hpp"
 #include "shared/canopen/messages.hpp"
 #include "shared/canopen/object.hpp"
 #include "shared/kernel/kernel.hpp"
@@ -33,6 +34,11 @@ inline constexpr std::uint32_t measures_angle = 1U << 0U;  ///< a feedback poten
 /// What is written to 0x1010 and 0x1011: "save" and "load", the first letter in the lowest byte (CiA 301, 7.5.2.13).
 inline constexpr std::uint32_t signature_save = 0x65766173;
 inline constexpr std::uint32_t signature_load = 0x64616F6C;
+
+/// How long a client waits for the answer to a request that stores something: 0x1010, 0x1011, LSS 'store
+/// configuration'. The module erases and programs flash before it answers. On the reference board that takes 0.5 s at
+/// most (DS8626), and the module answers that the flash has failed after 1 s.
+inline constexpr Microseconds storing_time_us = 1'500'000;
 
 /// 0x6064 if the module does not measure the angle.
 inline constexpr std::int32_t position_not_measured = -0x7FFFFFFF - 1;
@@ -391,5 +397,11 @@ inline constexpr std::array monitoring_mapped{
 };
 
 }  // namespace object
+
+/// How long a client waits for the answer to a write at least.
+[[nodiscard]] constexpr Microseconds min_write_timeout_us(Address address) {
+  return address == object::store_parameters.address || address == object::restore_parameters.address ? storing_time_us
+                                                                                                      : 0;
+}
 
 }  // namespace proleg::canopen

@@ -28,8 +28,8 @@ struct LssMasterOptions {
   LssAddress usual{object::vendor.default_value, 0, object::revision.default_value, 0};
   bool stores = true;  ///< the modules keep the node id
   Microseconds answer_timeout_us = 10'000;
-  Microseconds settle_us = 2'000;             ///< without an answer before the next request
-  Microseconds store_timeout_us = 1'500'000;  ///< a module may have to erase flash
+  Microseconds settle_us = 2'000;  ///< without an answer before the next request
+  Microseconds store_timeout_us = storing_time_us;
   Microseconds boot_timeout_us = 100'000;
   Microseconds send_timeout_us = 1'000'000;  ///< of a frame that no node acknowledges
 };

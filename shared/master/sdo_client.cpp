@@ -1,5 +1,8 @@
 #include "shared/master/sdo_client.hpp"
-#include "shared/canopen/messages.hpp"
+
+#include <algorithm>
+
+#include "shared/canopen/declared_objects.hpp"
 #include "shared/canopen/sdo_frame.hpp"
 
 namespace proleg::canopen {
@@ -14,7 +17,7 @@ CanFrame SdoClient::read(Microseconds now, std::uint8_t node, Address address, M
 CanFrame SdoClient::write(Microseconds now, std::uint8_t node, Address address, std::uint8_t size, std::uint32_t value,
                           Microseconds timeout_us) {
   writing_ = true;
-  CanFrame request = start(now, node, address, timeout_us);
+  CanFrame request = start(now, node, address, std::max(timeout_us, min_write_timeout_us(address)));
   request.data[0] = sdo::with_size(sdo::request_download, size);
   write_little_endian(request.data, 4, size, value);
   return request;

@@ -17,7 +17,7 @@ class SdoClient {
   /// The request, to be sent on the bus. The deadline of the answer is now + timeout_us.
   [[nodiscard]] CanFrame read(Microseconds now, std::uint8_t node, Address address,
                               Microseconds timeout_us = default_timeout_us);
-  /// size: 1, 2 or 4 bytes.
+  /// size: 1, 2 or 4 bytes. The deadline is later for objects that need more time (min_write_timeout_us).
   [[nodiscard]] CanFrame write(Microseconds now, std::uint8_t node, Address address, std::uint8_t size,
                                std::uint32_t value, Microseconds timeout_us = default_timeout_us);
 

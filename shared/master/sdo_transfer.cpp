@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "shared/canopen/messages.hpp"
+#include "shared/canopen/declared_objects.hpp"
 #include "shared/canopen/sdo_frame.hpp"
 
 namespace proleg::canopen {
@@ -142,7 +142,10 @@ Microseconds SdoTransfer::wait_us() const {
   if (step_ == Step::end || (step_ == Step::block && !is_download_)) {
     return silence_us;
   }
-  return step_ == Step::block ? acknowledgement_timeout_us : options_.timeout_us;
+  if (step_ == Step::block) {
+    return acknowledgement_timeout_us;
+  }
+  return is_download_ ? std::max(options_.timeout_us, min_write_timeout_us(address_)) : options_.timeout_us;
 }
 
 std::optional<CanFrame> SdoTransfer::next_frame(Microseconds now) {

@@ -14,7 +14,7 @@
 namespace proleg::canopen {
 
 struct SdoTransferOptions {
-  Microseconds timeout_us = 500'000;  ///< of each answer
+  Microseconds timeout_us = 500'000;  ///< of each answer; more for objects that need it (min_write_timeout_us)
   /// A transfer that fails because frames were lost begins again, until it was begun this many times.
   unsigned attempts = 5;
   /// Values of more bytes travel as a block, if the server supports it; others in segments, which need no checksum and

@@ -149,5 +149,30 @@ TEST(SdoClient, EndsATransferByItsAnswerOnlyAmongOtherFrames) {
   }
 }
 
+TEST(SdoClient, WaitsForAModuleThatErasesFlash) {
+  // docs/protocol.md, Settings that a module keeps: up to 0.5 s, and 1 s if the flash fails.
+  struct Storing {
+    Address address;
+    const char* answer;
+  };
+  for (const auto& [address, answer] : {Storing{{0x1010, 1}, "583 [8] 60 10 10 01 00 00 00 00"},
+                                        Storing{{0x1011, 1}, "583 [8] 60 11 10 01 00 00 00 00"}}) {
+    SdoClient client;
+    (void)client.write(0, 3, address, 4, signature_save);
+    client.poll(1'010'000);
+    EXPECT_EQ(client.state(), State::waiting);
+    EXPECT_TRUE(client.receive(frame(answer)));
+    EXPECT_EQ(client.state(), State::done);
+    (void)client.write(0, 3, address, 4, signature_save, 100'000);
+    client.poll(1'010'000);
+    EXPECT_EQ(client.state(), State::waiting) << "a short time for other objects is not enough for these";
+    client.poll(1'500'000);
+    EXPECT_EQ(client.state(), State::aborted) << "it does not wait for ever";
+    EXPECT_EQ(client.abort_code(), AbortCode::timeout);
+    (void)client.read(0, 3, address);
+    EXPECT_EQ(client.next_deadline(), 500'000U) << "it is quick to read";
+  }
+}
+
 }  // namespace
 }  // namespace proleg::canopen

@@ -188,6 +188,21 @@ TEST(SdoTransfer, AServerThatDoesNotAnswerEndsItAfterAllAttempts) {
   EXPECT_EQ(text(link.sends.back()), "609 [8] 80 50 1F 01 00 00 04 05");
 }
 
+TEST(SdoTransfer, WaitsForAModuleThatErasesFlash) {
+  const std::array<std::uint8_t, 4> save{'s', 'a', 'v', 'e'};
+  SdoTransfer transfer;
+  transfer.download(9, {0x1010, 1}, save, {.attempts = 1});
+  ASSERT_TRUE(transfer.next_frame(0));
+  transfer.poll(1'010'000);
+  EXPECT_EQ(transfer.state(), SdoTransfer::State::running) << "docs/protocol.md: up to 1 s";
+  transfer.receive(1'010'000, test::frame("589 [8] 60 10 10 01 00 00 00 00"));
+  EXPECT_EQ(transfer.state(), SdoTransfer::State::done);
+  transfer.download(9, {0x1017, 0}, std::span(save).first(2), {.attempts = 1});
+  ASSERT_TRUE(transfer.next_frame(0));
+  transfer.poll(500'000);
+  EXPECT_EQ(transfer.state(), SdoTransfer::State::aborted) << "as of all other objects";
+}
+
 TEST(SdoTransfer, ARefusalOfTheServerIsFinal) {
   Link link;
   link.device.refusal = AbortCode::refused_by_state;

@@ -150,7 +150,7 @@ inline constexpr Object robot_id =
     read_write(place.at(5), "Robot id", DataType::unsigned16, 1, full_range(DataType::unsigned16), "as in COMMIT");
 inline constexpr Object configuration_crc = read_only(place.at(6), "Configuration CRC", DataType::unsigned32,
                                                       "CRC-32 of what all modules agree on, as in TICK");
-inline constexpr Object current_tick = read_only(place.at(7), "Current tick", DataType::unsigned32);
+inline constexpr Object current_tick = read_only(place.at(7), "Current tick", DataType::unsigned32, "of the next SYNC");
 inline constexpr Object refusal = read_only(place.at(8), "Refusal", DataType::unsigned8,
                                             "reason of the last request that the kernel refused; 0: none");
 
@@ -235,9 +235,9 @@ inline constexpr std::array own_frames{
 };
 inline constexpr std::array<std::array<Object, 2>, max_channels> own_frame{{
     {read_only(own_frames[0].at(1), "Bytes 0-3", DataType::unsigned32, "as sent last"),
-     read_only(own_frames[0].at(2), "Bytes 4-7", DataType::unsigned32)},
+     read_only(own_frames[0].at(2), "Bytes 4-7", DataType::unsigned32, "byte 6: contacts and flags; byte 7: label")},
     {read_only(own_frames[1].at(1), "Bytes 0-3", DataType::unsigned32, "0 unless two slots of the joint broadcast"),
-     read_only(own_frames[1].at(2), "Bytes 4-7", DataType::unsigned32)},
+     read_only(own_frames[1].at(2), "Bytes 4-7", DataType::unsigned32, "as of the first one")},
 }};
 
 inline constexpr std::array received_frames{
@@ -295,8 +295,10 @@ inline constexpr Object abort_connection_option = read_write(
     {0x6007, 0}, "Abort connection option code", DataType::integer16, quick_stop_command,
     {quick_stop_command, quick_stop_command}, "3: quick stop if the heartbeat of the host or SYNC is missing");
 inline constexpr Object controlword =
-    read_write({0x6040, 0}, "Controlword", DataType::unsigned16, 0, full_range(DataType::unsigned16));
-inline constexpr Object statusword = read_only({0x6041, 0}, "Statusword", DataType::unsigned16);
+    read_write({0x6040, 0}, "Controlword", DataType::unsigned16, 0, full_range(DataType::unsigned16),
+               "6, 7, 15 in this order give the servo power, 0 takes it; bit 7 ends a fault and a quick stop");
+inline constexpr Object statusword =
+    read_only({0x6041, 0}, "Statusword", DataType::unsigned16, "state of the drive, CiA 402");
 inline constexpr std::uint32_t ramp_and_stay = 6;
 inline constexpr Object quick_stop_option =
     read_write({0x605A, 0}, "Quick stop option code", DataType::integer16, ramp_and_stay,
@@ -305,7 +307,8 @@ inline constexpr Object mode =
     read_write({0x6060, 0}, "Modes of operation", DataType::integer8, static_cast<std::uint32_t>(mode_gait),
                {static_cast<std::uint32_t>(mode_gait), static_cast<std::uint32_t>(mode_gait)},
                "-1: gait; 8: cyclic synchronous position", mode_direct_position);
-inline constexpr Object mode_display = read_only({0x6061, 0}, "Modes of operation display", DataType::integer8);
+inline constexpr Object mode_display =
+    read_only({0x6061, 0}, "Modes of operation display", DataType::integer8, "the mode in force, as in 0x6060");
 inline constexpr Object position_demand =
     in_unit(angle, read_only({0x6062, 0}, "Position demand value", DataType::integer32,
                              "set-point of the present tick; 90 degrees = 2^30"));

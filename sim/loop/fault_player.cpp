@@ -80,6 +80,7 @@ void FaultPlayer::advance_to(BusTime now) {
     const auto first = actions_.begin();
     const auto [time_us, action] = *first;
     actions_.erase(first);
+    stage_.rack.catch_up_before(now);  // readings change
     act(action, time_us, now);
   }
   for (const auto& master : masters_) {

@@ -46,7 +46,9 @@ class HardwareLoop::Implementation {
       : scenario_(require_room_on_bus(scenario)),
         options_(std::move(options)),
         plant_(scenario),
-        plant_ticks_(scenario, plant_, [this](std::uint32_t joint) { return pulse_of(joint); }),
+        plant_ticks_(
+            scenario, plant_, [this](std::uint32_t joint) { return pulse_of(joint); },
+            [this](BusTime now) { rack_.catch_up_before(now); }),
         fault_state_(scenario),
         rack_(bus_, plant_, scenario, with_faulty_sensors()),
         state_frames_(scenario),

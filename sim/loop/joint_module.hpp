@@ -26,6 +26,10 @@ class JointModule {
   /// time to execute may be executed up to there.
   virtual void advance_to(BusTime now, BusTime quiet_until) = 0;
 
+  /// Called before its readings change, and before pulse(), with the time, which next_event() does not precede. What it
+  /// measured before are the readings as they are.
+  virtual void catch_up_before(BusTime /*time*/) {}
+
   /// Before a restart: does what is due up to `until` without input. What it sends is lost.
   virtual void run_out(BusTime now, BusTime until) = 0;
 

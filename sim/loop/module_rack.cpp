@@ -101,6 +101,12 @@ void ModuleRack::advance_to(BusTime now, BusTime quiet_until) {
   }
 }
 
+void ModuleRack::catch_up_before(BusTime time) {
+  for (const auto& module : modules_) {
+    module->catch_up_before(time);
+  }
+}
+
 void ModuleRack::begin_tick(std::uint32_t tick, BusTime now) {
   restarted_ = {};
   for (; next_restart_ < options_.restarts.size() && options_.restarts[next_restart_].tick <= tick; ++next_restart_) {

@@ -36,6 +36,9 @@ class ModuleRack {
   /// quiet_until: as JointModule::advance_to() has it.
   void advance_to(BusTime now, BusTime quiet_until);
 
+  /// As JointModule::catch_up_before().
+  void catch_up_before(BusTime time);
+
   /// At SYNC, before the modules receive it: restarts the modules that are due.
   void begin_tick(std::uint32_t tick, BusTime now);
   /// At the next SYNC, before the modules receive it: reads what they computed.

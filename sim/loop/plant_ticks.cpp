@@ -8,10 +8,11 @@
 
 namespace proleg::sim {
 
-PlantTicks::PlantTicks(const Scenario& scenario, Plant& plant, ReadPulse read_pulse)
+PlantTicks::PlantTicks(const Scenario& scenario, Plant& plant, ReadPulse read_pulse, BeforeAction before_action)
     : scenario_(scenario),
       plant_(plant),
       read_pulse_(std::move(read_pulse)),
+      before_action_(std::move(before_action)),
       servo_schedule_(scenario.robot.servo.period_us, scenario.kernel.tick_period_us) {}
 
 void PlantTicks::begin(std::uint32_t tick, BusTime sync) {
@@ -30,11 +31,18 @@ BusTime PlantTicks::next_event() const {
 
 void PlantTicks::advance_to(BusTime now) {
   while (!ended_ && next_event() <= now) {
-    act(actions_[next_action_++]);
+    act(actions_[next_action_++], now);
   }
 }
 
-void PlantTicks::act(const PlantAction& action) {
+void PlantTicks::announce(BusTime now) const {
+  if (before_action_) {
+    before_action_(now);
+  }
+}
+
+void PlantTicks::act(const PlantAction& action, BusTime now) {
+  announce(now);
   if (action.kind == PlantAction::Kind::read_servos) {
     for (std::uint32_t joint = 0; joint < scenario_.robot.joints.size(); ++joint) {
       readings_.push_back({servo_schedule_.start_us(action.number), joint, read_pulse_(joint)});
@@ -73,7 +81,7 @@ void PlantTicks::end(BusTime now) {
       pending_.push_back(action);
       completion_ = std::max(completion_, sync_ + action.time);
     } else {
-      act(action);
+      act(action, now);
     }
   }
   plant_.finish_tick();
@@ -83,13 +91,14 @@ void PlantTicks::end(BusTime now) {
 void PlantTicks::complete() {
   const std::size_t first_pending = readings_.size();
   for (const PlantAction& action : pending_) {
-    act(action);
+    act(action, completion_);
   }
   const std::uint64_t start_us = std::uint64_t{tick_} * scenario_.kernel.tick_period_us;
   const std::uint64_t last_step_us = start_us + plant_.step_start_us(plant_.steps_per_tick() - 1);
   late_.clear();
   std::ranges::copy_if(std::span(readings_).subspan(first_pending), std::back_inserter(late_),
                        [&](const Reading& reading) { return acting_time(reading) <= last_step_us; });
+  announce(completion_);
   take_readings(start_us + scenario_.kernel.tick_period_us);
   ended_ = false;
   ++tick_;

@@ -26,8 +26,11 @@ class PlantTicks {
     std::optional<std::int32_t> pulse;
   };
 
+  /// Called with the time before pulses are read, and before the servo readings of the plant change.
+  using BeforeAction = std::function<void(BusTime now)>;
+
   /// scenario, plant: must outlive this.
-  PlantTicks(const Scenario& scenario, Plant& plant, ReadPulse read_pulse);
+  PlantTicks(const Scenario& scenario, Plant& plant, ReadPulse read_pulse, BeforeAction before_action = {});
 
   /// At the SYNC of a tick, counted from 0. The tick before may still have pending readings.
   void begin(std::uint32_t tick, BusTime sync);
@@ -52,13 +55,15 @@ class PlantTicks {
   [[nodiscard]] std::span<const Reading> late_readings() const { return late_; }
 
  private:
-  void act(const PlantAction& action);
+  void act(const PlantAction& action, BusTime now);
+  void announce(BusTime now) const;
   void take_readings(std::uint64_t until_us);
   [[nodiscard]] std::uint64_t acting_time(const Reading& reading) const;
 
   const Scenario& scenario_;
   Plant& plant_;
   ReadPulse read_pulse_;
+  BeforeAction before_action_;
   ServoSchedule servo_schedule_;
   std::uint32_t tick_ = 0;  ///< number of completed ticks
   BusTime sync_ = 0;        ///< of the last begin()

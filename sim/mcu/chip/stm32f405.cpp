@@ -57,7 +57,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     flash_.set_brown_out_level(settings.brown_out_level);
     peripherals_ = {&iwdg_,    &exti_,    &pwr_,   &flash_, &rcc_, &syscfg_, &timer_2_,
                     &timer_3_, &timer_5_, &usart_, &dma_,   &adc_, &can_};
-    timer_3_.set_trigger_output([this] { adc_.trigger(); });
+    timer_3_.connect_trigger_output(adc_);
     for (const auto& port : pins_.ports()) {
       peripherals_.push_back(port.get());
     }
@@ -107,7 +107,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     if (!next_event_) {
       next_event_ = never_on_bus;
       if (on_ && !stands_still_ && !is_held_) {
-        const LocalTime next = is_awake() ? now() : next_internal_event();
+        const LocalTime next = is_awake() ? now() : next_visible_event();
         next_event_ = std::min(can_.next_request(), oscillator_.when(next));
       }
     }
@@ -126,11 +126,12 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     can_.submit(now_on_bus);
     const LocalTime due = oscillator_.at(now_on_bus);
     const LocalTime horizon = std::max(due, oscillator_.at(quiet_until));
-    if (cpu_.state() == Cpu::State::sleeping && next_internal_event() > due) {
-      pass_to(std::max(now(), due));
+    if (cpu_.state() == Cpu::State::sleeping) {
+      // Something on the bus may have woken it, at `due`.
+      pass_to(std::max(now(), std::min(due, next_visible_event())));
     }
     while (!stands_still_) {
-      while (!stands_still_ && next_internal_event() <= now()) {
+      while (!stands_still_ && (is_awake() ? next_internal_event() : next_visible_event()) <= now()) {
         take_events();
       }
       if (stands_still_) {
@@ -139,7 +140,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       if (reset_cause_) {
         restart();
       } else if (!is_awake()) {
-        const LocalTime next = next_internal_event();
+        const LocalTime next = next_visible_event();
         if (next > horizon) {
           pass_to(std::max(now(), due));
           return;
@@ -155,11 +156,33 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     }
   }
 
+  void catch_up_before(BusTime time) {
+    const bool executes = cpu_.state() != Cpu::State::sleeping && is_awake();
+    if (!on_ || stands_still_ || is_held_ || time == 0 || executes) {
+      return;  // a CPU that executes takes each event in its time
+    }
+    const LocalTime until = std::min(oscillator_.at(time - 1), next_visible_event());
+    if (until > now()) {
+      pass_to(until);
+      catch_up();
+    }
+  }
+
+  /// Does what is due and not visible.
+  void catch_up() {
+    guard([this] {
+      timer_3_.advance();
+      adc_.advance();
+    });
+    next_internal_event_.reset();
+  }
+
   /// Something outside changes at the present time.
   template <typename Action>
   void change_outside(const Action& action) {
     const LocalTime time = now();
     pass_to(time);
+    catch_up();
     pins_.look();
     guard(action);
     pins_.look();
@@ -212,18 +235,30 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   }
 
   [[nodiscard]] LocalTime next_internal_event() const {
-    if (!next_peripheral_event_) {
+    if (!next_internal_event_) {
       LocalTime next = pins_.next_edge();
       for (const Peripheral* peripheral : timed_) {
         next = std::min(next, peripheral->next_event());
       }
-      next_peripheral_event_ = next;
+      next_internal_event_ = next;
     }
-    return std::min(*next_peripheral_event_, cpu_.next_system_tick());
+    return std::min(*next_internal_event_, cpu_.next_system_tick());
+  }
+  /// Without those that only a CPU that executes can see.
+  [[nodiscard]] LocalTime next_visible_event() const {
+    if (!next_visible_event_) {
+      LocalTime next = pins_.next_edge();
+      for (const Peripheral* peripheral : timed_) {
+        next = std::min(next, peripheral->next_visible_event());
+      }
+      next_visible_event_ = next;
+    }
+    return std::min(*next_visible_event_, cpu_.next_system_tick());
   }
   /// To be called when the time of the next event may have changed.
   void invalidate_next_events() {
-    next_peripheral_event_.reset();
+    next_internal_event_.reset();
+    next_visible_event_.reset();
     next_event_.reset();
   }
 
@@ -464,7 +499,9 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   void reset_requested() override { request_reset(ResetCause::software); }
   void reschedule() override {
     invalidate_next_events();
-    shorten_run(next_internal_event());
+    if (run_end_ != 0) {
+      shorten_run(next_internal_event());
+    }
   }
 
   // Reports.
@@ -520,7 +557,8 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   std::vector<Peripheral*> peripherals_;
   std::vector<Peripheral*> timed_;  ///< those that act by themselves
   PeripheralMap map_;
-  mutable std::optional<LocalTime> next_peripheral_event_;  ///< nothing: not computed
+  mutable std::optional<LocalTime> next_internal_event_;  ///< nothing: not computed; without SysTick's
+  mutable std::optional<LocalTime> next_visible_event_;   ///< the same
   mutable std::optional<BusTime> next_event_;
   LocalTime anchor_time_ = 0;  ///< local time when the CPU had executed anchor_instructions_
   std::uint64_t anchor_instructions_ = 0;
@@ -547,11 +585,13 @@ void Stm32f405::write(std::uint32_t address, std::span<const std::uint8_t> bytes
   implementation_->cpu_.write(address, bytes);
 }
 void Stm32f405::read(std::uint32_t address, std::span<std::uint8_t> bytes) const {
+  implementation_->catch_up();
   implementation_->cpu_.read(address, bytes);
 }
 void Stm32f405::power_on(BusTime now) { implementation_->power_on(now); }
 BusTime Stm32f405::next_event() const { return implementation_->next_event(); }
 void Stm32f405::advance_to(BusTime now, BusTime quiet_until) { implementation_->advance_to(now, quiet_until); }
+void Stm32f405::catch_up_before(BusTime time) { implementation_->catch_up_before(time); }
 void Stm32f405::set_crystal(bool runs) {
   implementation_->change_outside([this, runs] { implementation_->rcc_.set_crystal(runs); });
 }

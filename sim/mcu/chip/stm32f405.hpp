@@ -60,6 +60,9 @@ class Stm32f405 {
   [[nodiscard]] BusTime next_event() const;
   /// Does what is due. Nothing reaches the chip from outside before quiet_until: up to there its program may run ahead.
   void advance_to(BusTime now, BusTime quiet_until);
+  /// Does what a program that sleeps does not see, up to this time, which no next_event() precedes: conversions of the
+  /// ADC take the signals as they are. To be called before one of them changes, and before pulse_time().
+  void catch_up_before(BusTime time);
 
   // What the chip loses or gets back from outside, at its present time; the state lasts over a reset and power_on().
   /// Whether the crystal oscillates: from the first instruction on if it is set before power_on().

@@ -40,6 +40,7 @@ class VirtualModule final : public JointModule, private BoardSignals {
   void power_on(BusTime now) override;
   [[nodiscard]] BusTime next_event() const override { return chip_.next_event(); }
   void advance_to(BusTime now, BusTime quiet_until) override;
+  void catch_up_before(BusTime time) override { chip_.catch_up_before(time); }
   void run_out(BusTime now, BusTime until) override { chip_.advance_to(now, until); }
   void set_supply(BusTime now, std::uint32_t mv) override;
   void set_adc(BusTime now, bool converts) override;

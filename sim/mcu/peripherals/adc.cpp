@@ -46,6 +46,7 @@ constexpr std::uint32_t cr1_discontinuous = 3U << 11U;
 constexpr std::uint32_t cr1_watchdog = 3U << 22U;
 constexpr std::uint32_t cr1_resolution = 3U << 24U;
 constexpr std::uint32_t cr1_ovrie = 1U << 26U;
+constexpr std::uint32_t cr1_interrupts = cr1_eocie | cr1_jeocie | cr1_ovrie;
 constexpr std::uint32_t cr1_bits = 0x07C0'FFFF;
 
 constexpr std::uint32_t cr2_adon = 1U << 0U;
@@ -120,18 +121,29 @@ void Adc::reset() {
   converting_ = Group::none;
   conversion_end_ = never_on_chip;
   regular_waits_ = false;
+  accepts_triggers_ = false;
   interrupt_.set(false);
 }
 
 LocalTime Adc::next_event() const { return conversion_end_; }
 
+LocalTime Adc::next_visible_event() const { return (cr1_ & cr1_interrupts) == 0 ? never_on_chip : conversion_end_; }
+
+bool Adc::works_unseen() const {
+  return (cr1_ & cr1_interrupts) == 0 && ((cr2_ & cr2_regular_triggers) == 0 || accepts_triggers_);
+}
+
 void Adc::advance() { settle(); }
 
 void Adc::settle() {
-  while (conversion_end_ <= chip().now()) {
+  finish_conversions(chip().now());
+  update_interrupt();
+}
+
+void Adc::finish_conversions(LocalTime until) {
+  while (conversion_end_ <= until) {
     finish_conversion();
   }
-  update_interrupt();
 }
 
 void Adc::update_interrupt() {
@@ -142,17 +154,20 @@ void Adc::update_interrupt() {
 
 void Adc::clocks_change(const Clocks& next) {
   settle();
+  accepts_triggers_ = false;
   if (converting_ != Group::none && next.apb2 != chip().clocks().apb2) {
     throw UnmodelledAccess("ADC1 converts while PCLK2 changes");
   }
 }
 
-void Adc::trigger() {
-  settle();
+void Adc::trigger(LocalTime time) {
+  finish_conversions(time);
   if ((cr2_ & cr2_regular_triggers) != 0 && converting_ != Group::regular && !regular_waits_) {
-    start_group(Group::regular, cr2_);
+    start_group(Group::regular, cr2_, time);
+    accepts_triggers_ = true;
     chip().reschedule();
   }
+  update_interrupt();
 }
 
 void Adc::set_hanging(bool hangs) {
@@ -169,6 +184,7 @@ void Adc::clocks_fail(const Clocks& /*next*/) {
   converting_ = Group::none;
   conversion_end_ = never_on_chip;
   regular_waits_ = false;
+  accepts_triggers_ = false;
 }
 
 LocalTime Adc::clock_period() const { return chip().clocks().apb2 * 2 * (LocalTime{field(ccr_, 16, 2)} + 1); }
@@ -196,7 +212,7 @@ unsigned Adc::channel(Group group, unsigned rank) const {
   return field(jsqr_, 5 * (injected_ranks - length(group) + rank), 5);
 }
 
-void Adc::check_channel(unsigned channel, std::uint32_t value) const {
+void Adc::check_channel(unsigned channel, std::uint32_t value, LocalTime time) const {
   if (channel >= vbat_channel) {
     reject_write(cr2, value, "channel " + std::to_string(channel) + " is not modelled");
   }
@@ -207,7 +223,7 @@ void Adc::check_channel(unsigned channel, std::uint32_t value) const {
   if ((ccr_ & ccr_tsvrefe) == 0) {
     reject_write(cr2, value, name + " without TSVREFE");
   }
-  if (chip().now() - sensors_since_ < sensor_start) {
+  if (time - sensors_since_ < sensor_start) {
     reject_write(cr2, value, name + " earlier than 10 us after TSVREFE");
   }
   if (sampling_time(channel) < sensor_sampling) {
@@ -272,11 +288,11 @@ void Adc::finish_regular(std::uint16_t code, bool has_more) {
   }
 }
 
-void Adc::start_group(Group group, std::uint32_t value) {
+void Adc::start_group(Group group, std::uint32_t value, LocalTime time) {
   if ((cr2_ & cr2_adon) == 0) {
     reject_write(cr2, value, "a start without ADON");
   }
-  if (chip().now() - on_since_ < stabilisation) {
+  if (time - on_since_ < stabilisation) {
     reject_write(cr2, value, "a start earlier than 3 us after ADON");
   }
   if (clock_period() < min_clock_period || clock_period() > max_clock_period) {
@@ -288,7 +304,7 @@ void Adc::start_group(Group group, std::uint32_t value) {
     reject_write(cr2, value, "a sequence of " + std::to_string(length(group)) + " without SCAN");
   }
   for (unsigned rank = 0; rank < length(group); ++rank) {
-    check_channel(channel(group, rank), value);
+    check_channel(channel(group, rank), value, time);
   }
   if (group == Group::regular) {
     if ((sr_ & sr_ovr) != 0) {
@@ -313,7 +329,7 @@ void Adc::start_group(Group group, std::uint32_t value) {
     regular_waits_ = converting_ == Group::regular;
   }
   converting_ = group;
-  begin_conversion(chip().now());
+  begin_conversion(time);
 }
 
 std::uint32_t Adc::read(std::uint32_t offset) {
@@ -361,6 +377,7 @@ std::uint32_t Adc::read(std::uint32_t offset) {
 
 void Adc::write(std::uint32_t offset, std::uint32_t value) {
   settle();
+  accepts_triggers_ = accepts_triggers_ && (offset == sr || (offset == cr2 && (value & cr2_kept) == cr2_));
   switch (offset) {
     case sr:
       sr_ &= value;
@@ -438,10 +455,10 @@ void Adc::write_cr2(std::uint32_t value) {
     on_since_ = chip().now();
   }
   if ((value & cr2_jswstart) != 0) {
-    start_group(Group::injected, value);
+    start_group(Group::injected, value, chip().now());
   }
   if ((value & cr2_swstart) != 0) {
-    start_group(Group::regular, value);
+    start_group(Group::regular, value, chip().now());
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "sim/mcu/peripherals/dma.hpp"
 #include "sim/mcu/peripherals/register_block.hpp"
+#include "sim/mcu/peripherals/timer.hpp"
 
 namespace proleg::sim {
 
@@ -29,7 +30,9 @@ inline constexpr std::uint32_t vrefint_uv = 1'210'000;  ///< DS8626, embedded re
   return static_cast<std::uint32_t>(uv < 0 ? 0 : uv);
 }
 
-class Adc final : public RegisterBlock {
+/// A voltage is taken when advance(), or an access to a register, ends its conversion: whoever changes a voltage must
+/// call advance() before.
+class Adc final : public RegisterBlock, public TriggerInput {
  public:
   static constexpr unsigned interrupt_position = 18;
   // DS8626, ADC characteristics.
@@ -46,12 +49,14 @@ class Adc final : public RegisterBlock {
   void write(std::uint32_t offset, std::uint32_t value) override;
   void reset() override;
   [[nodiscard]] LocalTime next_event() const override;
+  [[nodiscard]] LocalTime next_visible_event() const override;
   void advance() override;
   void clocks_change(const Clocks& next) override;
   void clocks_fail(const Clocks& next) override;
 
   /// TIM3's trigger output.
-  void trigger();
+  void trigger(LocalTime time) override;
+  [[nodiscard]] bool works_unseen() const override;
 
   /// For tests: a converter that hangs ends no conversion; the one under way is done again when it works.
   void set_hanging(bool hangs);
@@ -60,15 +65,16 @@ class Adc final : public RegisterBlock {
   enum class Group : std::uint8_t { none, regular, injected };
 
   void settle();
+  void finish_conversions(LocalTime until);
   void finish_conversion();
   void finish_regular(std::uint16_t code, bool has_more);
   void begin_conversion(LocalTime begin);
-  void start_group(Group group, std::uint32_t value);
+  void start_group(Group group, std::uint32_t value, LocalTime time);
   [[nodiscard]] unsigned length(Group group) const;
   [[nodiscard]] unsigned channel(Group group, unsigned rank) const;
   [[nodiscard]] LocalTime clock_period() const;
   [[nodiscard]] LocalTime sampling_time(unsigned channel) const;
-  void check_channel(unsigned channel, std::uint32_t value) const;
+  void check_channel(unsigned channel, std::uint32_t value, LocalTime time) const;
   [[nodiscard]] std::uint16_t convert(unsigned channel);
   void write_cr1(std::uint32_t value);
   void write_cr2(std::uint32_t value);
@@ -98,7 +104,8 @@ class Adc final : public RegisterBlock {
   LocalTime conversion_end_ = never_on_chip;
   unsigned regular_rank_ = 0;  ///< that is converted, or continues after the injected group
   unsigned injected_rank_ = 0;
-  bool regular_waits_ = false;  ///< for the end of the injected group
+  bool regular_waits_ = false;     ///< for the end of the injected group
+  bool accepts_triggers_ = false;  ///< a trigger has passed all checks since registers and clocks are as they are
 };
 
 }  // namespace proleg::sim

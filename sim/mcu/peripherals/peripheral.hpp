@@ -68,6 +68,10 @@ class Peripheral {
   [[nodiscard]] virtual LocalTime next_event() const { return never_on_chip; }
   /// Does what is due at ChipServices::now().
   virtual void advance() {}
+  /// The next event that more than the program can see: it raises an interrupt, reaches a pin, or leaves the model.
+  /// Those before it change only registers and memory. While the CPU sleeps, advance() may come late for them, and does
+  /// each as of its own time.
+  [[nodiscard]] virtual LocalTime next_visible_event() const { return next_event(); }
 
   /// Clocks change at ChipServices::now(), from ChipServices::clocks() to `next`: counts up to now with the old ones.
   /// Throws UnmodelledAccess if the change would spoil an operation under way.

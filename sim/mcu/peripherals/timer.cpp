@@ -130,13 +130,19 @@ std::optional<LocalTime> Timer::match_time(unsigned channel) const {
   return time_of(compare - count_);
 }
 
-LocalTime Timer::next_event() const {
+bool Timer::triggers() const { return cr2_ == cr2_trigger_by_update && (cr1_ & cr1_udis) == 0; }
+
+LocalTime Timer::next_event() const { return next_event(triggers()); }
+
+LocalTime Timer::next_visible_event() const { return next_event(triggers() && !trigger_input_->works_unseen()); }
+
+LocalTime Timer::next_event(bool counts_triggers) const {
   if (!counts()) {
     return never_on_chip;
   }
   const std::uint32_t wanted = dier_ & ~sr_ & flags;
   LocalTime next = never_on_chip;
-  if (((wanted & flag_update) != 0 || cr2_ == cr2_trigger_by_update) && (cr1_ & cr1_udis) == 0) {
+  if (counts_triggers || ((wanted & flag_update) != 0 && (cr1_ & cr1_udis) == 0)) {
     next = overflow_time();
   }
   for (unsigned channel = 0; channel < channel_count; ++channel) {
@@ -169,8 +175,8 @@ void Timer::settle() {
     match(count_, arr_);
     since_ += static_cast<std::int64_t>(to_overflow) * period;
     overflow();
-    // After two of them all preloaded values are in effect, and every flag that a period sets is set.
-    if (++overflows == 2 && counts()) {
+    // After two of them all preloaded values are in effect, and every flag that a period sets is set. Triggers count.
+    if (++overflows == 2 && counts() && !triggers()) {
       const auto whole = static_cast<std::int64_t>(count_period() * (std::uint64_t{arr_} + 1));
       since_ += (now - since_) / whole * whole;
     }
@@ -194,7 +200,7 @@ void Timer::overflow() {
     }
   }
   count_ = 0;
-  update(true);
+  update(static_cast<LocalTime>(since_), true);
   for (unsigned channel = 0; channel < channel_count; ++channel) {
     if (channels_[channel].compare == 0) {
       sr_ |= flag_of(channel);
@@ -206,7 +212,7 @@ void Timer::overflow() {
   }
 }
 
-void Timer::update(bool overflowed) {
+void Timer::update(LocalTime time, bool overflowed) {
   if ((cr1_ & cr1_udis) != 0) {
     return;
   }
@@ -216,7 +222,7 @@ void Timer::update(bool overflowed) {
     channel.compare = channel.preload;
   }
   if (cr2_ == cr2_trigger_by_update) {
-    trigger_();
+    trigger_input_->trigger(time);
   }
   if (overflowed || (cr1_ & cr1_urs) == 0) {
     sr_ |= flag_update;
@@ -283,7 +289,7 @@ void Timer::write(std::uint32_t offset, std::uint32_t value) {
       write_cr1(value);
       break;
     case cr2:
-      if (value != 0 && (value != cr2_trigger_by_update || !trigger_)) {
+      if (value != 0 && (value != cr2_trigger_by_update || trigger_input_ == nullptr)) {
         reject_write(offset, value, "this trigger output is not modelled");
       }
       cr2_ = value;
@@ -375,7 +381,7 @@ void Timer::write_egr(std::uint32_t value) {
   count_ = 0;
   phase_ = 0;
   since_ = static_cast<std::int64_t>(std::max(chip().now(), counting_from_));
-  update(false);
+  update(chip().now(), false);
 }
 
 void Timer::write_ccmr(unsigned index, std::uint32_t offset, std::uint32_t value) {

@@ -5,12 +5,23 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <optional>
 
 #include "sim/mcu/peripherals/register_block.hpp"
 
 namespace proleg::sim {
+
+/// What the trigger output of a timer starts.
+class TriggerInput {
+ public:
+  /// time: of the trigger, ChipServices::now() or earlier. They come in the order of time.
+  virtual void trigger(LocalTime time) = 0;
+  /// Whether the next triggers start something that is no visible event (Peripheral::next_visible_event).
+  [[nodiscard]] virtual bool works_unseen() const = 0;
+
+ protected:
+  ~TriggerInput() = default;
+};
 
 class Timer final : public RegisterBlock {
  public:
@@ -23,12 +34,13 @@ class Timer final : public RegisterBlock {
   void write(std::uint32_t offset, std::uint32_t value) override;
   void reset() override;
   [[nodiscard]] LocalTime next_event() const override;
+  [[nodiscard]] LocalTime next_visible_event() const override;
   void advance() override;
   void clocks_change(const Clocks& next) override;
   [[nodiscard]] bool is_idle() const override { return !enabled(); }
 
-  /// Called for each trigger output (TRGO) that CR2.MMS = 2 makes of an update. Without it MMS stays rejected.
-  void set_trigger_output(std::function<void()> trigger) { trigger_ = std::move(trigger); }
+  /// What gets the trigger output (TRGO) that CR2.MMS = 2 makes of an update. Without it MMS stays rejected.
+  void connect_trigger_output(TriggerInput& input) { trigger_input_ = &input; }
 
   // For a channel, 1 to 4:
 
@@ -74,10 +86,12 @@ class Timer final : public RegisterBlock {
   [[nodiscard]] LocalTime prescaler_progress() const;
   [[nodiscard]] std::optional<LocalTime> match_time(unsigned channel) const;
 
+  [[nodiscard]] bool triggers() const;
+  [[nodiscard]] LocalTime next_event(bool counts_triggers) const;
   void settle();
   void match(std::uint32_t after, std::uint32_t upto);
   void overflow();
-  void update(bool overflowed);
+  void update(LocalTime time, bool overflowed);
   void write_cr1(std::uint32_t value);
   void write_egr(std::uint32_t value);
   void write_ccmr(unsigned index, std::uint32_t offset, std::uint32_t value);
@@ -87,7 +101,7 @@ class Timer final : public RegisterBlock {
 
   InterruptLine interrupt_;
   std::uint32_t max_count_;
-  std::function<void()> trigger_;
+  TriggerInput* trigger_input_ = nullptr;
   std::uint32_t cr1_ = 0;
   std::uint32_t cr2_ = 0;
   std::uint32_t dier_ = 0;

@@ -127,6 +127,52 @@ TEST(PulseTiming, AWorldThatDiffersIsReportedAsADifference) {
   EXPECT_GT(different, 0U) << "the test shows nothing if all worlds are the same";
 }
 
+TEST(PlantTicks, AnnounceEachReadingAndEachStepBefore) {
+  constexpr std::uint64_t steps = 20;
+  const Scenario scenario = timed("travelling_wave/uniform", 10'000, steps, 3'000);
+  Plant plant(scenario);
+  struct Announcement {
+    BusTime time;
+    std::uint64_t steps_before;
+    unsigned readings = 0;  ///< of pulses, up to the next one
+  };
+  std::vector<Announcement> announcements{{0, 0}};
+  PlantTicks ticks(
+      scenario, plant,
+      [&](std::uint32_t) {
+        ++announcements.back().readings;
+        return servo_center;
+      },
+      [&](BusTime now) {
+        announcements.push_back({now, plant.drawn_current(0).steps});
+      });
+  ticks.begin(0, 0);
+  constexpr BusTime early_sync = 9'400'000;
+  while (ticks.next_event() < early_sync) {
+    ticks.advance_to(ticks.next_event());
+  }
+  ticks.end(early_sync);
+  ticks.complete();
+  EXPECT_EQ(announcements.front().readings, 0U) << "nothing was announced";
+  std::vector<BusTime> readings;
+  std::vector<BusTime> last_before_step(steps + 1);
+  for (const Announcement& announcement : announcements) {
+    if (announcement.readings > 0) {
+      EXPECT_EQ(announcement.readings, scenario.robot.joints.size());
+      readings.push_back(announcement.time);
+    }
+    last_before_step[announcement.steps_before] = announcement.time;
+  }
+  EXPECT_EQ(readings, (std::vector<BusTime>{500'000, 3'500'000, 6'500'000, 9'500'000}));
+  EXPECT_EQ(last_before_step[0], 500'000U) << "after the reading on which the servos act";
+  for (std::uint64_t step = 1; step < steps; ++step) {
+    EXPECT_GE(last_before_step[step], last_before_step[step - 1]);
+    EXPECT_NEAR(static_cast<double>(last_before_step[step]), 250e3 + 500e3 * static_cast<double>(step), 400e3);
+  }
+  EXPECT_EQ(last_before_step[steps - 1], early_sync) << "the rest of the steps";
+  EXPECT_EQ(last_before_step[steps], 9'500'000U) << "the last pulses of the tick";
+}
+
 // Two ticks of 10 ms with steps of 0.5 ms. The servos' intervals start every 3 ms, the last one of the first tick at
 // 9 ms. Its pulse is read at 9.5 ms.
 class EarlySync : public testing::Test {

@@ -73,7 +73,9 @@ ChipRig::ChipRig(const RigSettings& settings)
 }
 
 void ChipRig::take_step(BusTime time) {
-  const BusTime next = std::max(bus.now(), std::min({time, bus.next_event(), chip.next_event()}));
+  const BusTime change = board.next_change ? board.next_change() : time;
+  const BusTime next = std::max(bus.now(), std::min({time, change, bus.next_event(), chip.next_event()}));
+  chip.catch_up_before(next);
   bus.advance_to(next);
   if (chip.next_event() <= next || next == time) {
     chip.advance_to(next, std::min(bus.earliest_delivery(), next + max_lead_));

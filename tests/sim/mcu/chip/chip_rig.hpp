@@ -42,6 +42,7 @@ struct TestBoard final : BoardSignals {
   std::uint16_t low_pins_of_b = 0;  ///< switches to ground on port B that are closed
   std::array<std::uint32_t, 16> uv{};
   std::function<std::uint32_t(unsigned channel)> voltage;  ///< in microvolts, now; instead of `uv`
+  std::function<BusTime()> next_change;                    ///< of `voltage`, after now
   std::int32_t temperature = 25'000;
   std::function<BusTime()> clock;
   std::string console;

@@ -167,6 +167,12 @@ class PulsedCurrent : public OverCurrent {
       const BusTime since = (rig_.board.clock() - sync) % (10 * ms);
       return channel == current_channel && since >= from && since < to ? ma * 1'000 : 0U;
     };
+    rig_.board.next_change = [this, from, to, sync] {
+      const BusTime now = rig_.board.clock();
+      const BusTime start = now - (now - sync) % (10 * ms);
+      const BusTime since = now - start;
+      return start + (since < from ? from : since < to ? to : 10 * ms + from);
+    };
   }
 };
 
@@ -183,6 +189,13 @@ TEST_F(PulsedCurrent, CountsWithItsMeanAndNotWithItsPeak) {
   rig_.run_for(400 * ms);
   EXPECT_TRUE(rig_.frames(0x083).empty()) << "300 mA";
   EXPECT_NEAR(monitored(rig_).current_ma, 300, 90);
+}
+
+TEST(SamplesOfTheCurrent, AreNoEventsOfAChipThatSleeps) {
+  ChipRig rig;
+  rig.boot();
+  // A sample comes every 239 us; the program wakes at least every 50 ms.
+  EXPECT_TRUE(rig.run_until_true([&] { return rig.chip.next_event() > rig.bus.now() + 10 * ms; }));
 }
 
 TEST_F(OverCurrent, AtTheLimitOrForAShorterTimeIsNone) {

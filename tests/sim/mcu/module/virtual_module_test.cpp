@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -130,6 +131,35 @@ TEST(VirtualModule, NeedsFarLessThan20000InstructionsFromSyncToTheStateFrame) {
   }
   EXPECT_LE(worst, 20'000U);
   std::cout << "instructions from SYNC to the state frame, 20 joints: at most " << worst << '\n';
+}
+
+TEST(VirtualModule, MonitorsTheMeanCurrentOfTheTickAndNotThatOfItsLastStep) {
+  const Scenario scenario = shipped("travelling_wave/coupled");
+  constexpr unsigned joint = 2;
+  HardwareOptions options;
+  std::vector<double> monitored;
+  options.on_frame = [&](const Transmission& transmission) {
+    const auto monitoring = canopen::decode_monitoring(transmission.frame);
+    if (monitoring && monitoring->node == scenario.modules[joint].node) {
+      monitored.push_back(monitoring->current_ma);
+    }
+  };
+  VirtualRobot robot(scenario, std::move(options));
+  double to_mean = 0.0;
+  double to_last_step = 0.0;
+  for (std::uint32_t tick = 0; tick < 500; ++tick) {
+    const std::size_t before = monitored.size();
+    const double mean = tick > 0 ? robot.loop().plant().servo_currents()[joint] : 0.0;
+    const double last = robot.loop().plant().servo_readings(joint).current_ma;
+    robot.run_to(tick + 1);
+    if (tick > 10 && monitored.size() > before) {
+      to_mean += std::abs(monitored.back() - mean);
+      to_last_step += std::abs(monitored.back() - last);
+    }
+  }
+  ASSERT_GT(monitored.size(), 40U);
+  std::cout << "mean current: off by " << to_mean << " mA in all; current of the last step: " << to_last_step << '\n';
+  EXPECT_LT(to_mean, 0.3 * to_last_step);
 }
 
 TEST(VirtualModule, PrintsItsIdentityOnItsConsole) {

@@ -1,5 +1,8 @@
 #include "sim/mcu/peripherals/dma.hpp"
 
+#include <functional>
+#include <random>
+
 #include "sim/mcu/peripherals/adc.hpp"
 #include "sim/mcu/peripherals/timer.hpp"
 #include "support/bench.hpp"
@@ -77,7 +80,7 @@ TEST_F(DmaTest, TakesTheConversionsThatTheTimerStarts) {
   board.voltages[5] = 1'650'000;
   Adc adc(chip, board, &dma);
   Timer timer(chip, 3);
-  timer.set_trigger_output([&] { adc.trigger(); });
+  timer.connect_trigger_output(adc);
   enable(8);
   adc.write(0x304, 1U << 16U);  // PCLK2 / 4
   adc.write(0x34, 5);
@@ -105,6 +108,211 @@ TEST_F(DmaTest, TakesTheConversionsThatTheTimerStarts) {
     adc.advance();
   }
   EXPECT_EQ(adc.read(0x00) & 0x20U, 0x20U) << "overrun without DMA (13.8.1)";
+}
+
+/// TIM3, ADC1 and DMA2 as the module's program sets them, at full speed. The CPU sleeps: nobody reads a register.
+class Sampling {
+ public:
+  static constexpr LocalTime us = local_time_per_us;
+  static constexpr LocalTime period = 239 * us;
+  static constexpr LocalTime conversion = 15 * 48;  ///< ADC clocks, at 21 MHz
+  static constexpr unsigned channel = 10;
+  static constexpr std::uint32_t ring_size = 32;
+  static constexpr std::uint32_t cr2_on = 0x1800'0301;  ///< ADON, DMA, DDS, TIM3_TRGO, rising edge
+
+  Sampling() {
+    chip.settings = test::full_speed;
+    timer.connect_trigger_output(adc);
+    dma.write(s0par, adc1_dr);
+    dma.write(s0m0ar, buffer);
+    dma.write(s0ndtr, ring_size);
+    dma.write(s0cr, enabled);
+    adc.write(0x304, 1U << 16U);  // PCLK2 / 4
+    adc.write(0x34, channel);
+    adc.write(0x38, 3U << 15U);  // injected: channel 3
+    adc.write(0x08, cr2_on);
+    chip.time += 10 * us;
+    timer.write(0x28, 83);
+    timer.write(0x2C, 238);
+    timer.write(0x14, 1);
+    timer.write(0x04, 0x20);
+    timer.write(0x00, 1);
+    first_trigger = chip.time + 12 + period;  // one clock after CEN
+  }
+
+  /// What an awake CPU needs: each event in its time.
+  void run_by_events(LocalTime end) {
+    for (LocalTime next = next_event(); next <= end; next = next_event()) {
+      chip.time = next;
+      catch_up();
+    }
+    chip.time = end;
+  }
+  /// What a sleeping CPU needs.
+  void skip_to(LocalTime end) {
+    chip.time = end;
+    catch_up();
+  }
+  void catch_up() {
+    timer.advance();
+    adc.advance();
+  }
+  [[nodiscard]] LocalTime next_event() const { return std::min(timer.next_event(), adc.next_event()); }
+  [[nodiscard]] LocalTime next_visible_event() const {
+    return std::min(timer.next_visible_event(), adc.next_visible_event());
+  }
+
+  /// Memory and all registers that a program can read.
+  [[nodiscard]] std::vector<std::uint32_t> state() {
+    std::vector<std::uint32_t> values;
+    for (const std::uint32_t offset : {lisr, s0cr, s0ndtr}) {
+      values.push_back(dma.read(offset));
+    }
+    for (const std::uint32_t offset : {0x00U, 0x04U, 0x08U, 0x3CU}) {
+      values.push_back(adc.read(offset));
+    }
+    for (const std::uint32_t offset : {0x10U, 0x24U}) {
+      values.push_back(timer.read(offset));
+    }
+    for (const auto& [address, data] : written) {
+      values.push_back(address);
+      values.push_back(data);
+    }
+    return values;
+  }
+
+  test::BenchChip chip;
+  test::BenchBoard board;
+  std::vector<std::pair<std::uint32_t, unsigned>> written;
+  Dma dma{chip, [this](std::uint32_t address, std::span<const std::uint8_t> bytes) {
+            written.emplace_back(address, bytes[0] | unsigned{bytes[1]} << 8U);
+          }};
+  Adc adc{chip, board, &dma};
+  Timer timer{chip, 3};
+  LocalTime first_trigger = 0;
+};
+
+TEST(SamplesOfASleepingCpu, AreNoVisibleEventsOnceATriggerHasStartedAConversion) {
+  Sampling sampling;
+  EXPECT_EQ(sampling.next_visible_event(), sampling.first_trigger) << "it could leave the model";
+  sampling.run_by_events(sampling.first_trigger);
+  EXPECT_EQ(sampling.next_event(), sampling.first_trigger + Sampling::conversion);
+  EXPECT_EQ(sampling.next_visible_event(), never_on_chip);
+  sampling.adc.write(0x08, Sampling::cr2_on | 1U << 22U);  // JSWSTART
+  EXPECT_EQ(sampling.next_visible_event(), never_on_chip);
+}
+
+TEST(SamplesOfASleepingCpu, AreVisibleWhileAnInterruptOfTheAdcIsEnabled) {
+  for (const std::uint32_t interrupt : {1U << 5U, 1U << 7U, 1U << 26U}) {
+    Sampling sampling;
+    sampling.adc.write(0x04, interrupt);
+    for (unsigned i = 0; i < 10; ++i) {
+      EXPECT_EQ(sampling.next_visible_event(), sampling.next_event());
+      sampling.run_by_events(sampling.next_event());
+    }
+  }
+}
+
+TEST(SamplesOfASleepingCpu, AreVisibleWhenTheNextTriggerMayLeaveTheModel) {
+  const std::vector<std::pair<const char*, std::function<void(Sampling&)>>> changes{
+      {"another clock of the ADC", [](Sampling& on) { on.adc.write(0x304, 0); }},
+      {"off and on", [](Sampling& on) { on.adc.write(0x08, Sampling::cr2_on & ~1U); }},
+      {"another channel", [](Sampling& on) { on.adc.write(0x34, 16); }},
+      {"a longer sequence", [](Sampling& on) { on.adc.write(0x2C, 1U << 20U); }}};
+  for (const auto& [what, change] : changes) {
+    Sampling sampling;
+    sampling.run_by_events(sampling.first_trigger + Sampling::conversion);
+    ASSERT_EQ(sampling.next_visible_event(), never_on_chip);
+    change(sampling);
+    const LocalTime next = sampling.first_trigger + Sampling::period;
+    EXPECT_EQ(sampling.next_visible_event(), next) << what;
+    EXPECT_NE(test::rejection([&] { sampling.run_by_events(next); }), "") << what;
+  }
+}
+
+TEST(SamplesOfASleepingCpu, HaveTheVoltageOfTheirOwnTime) {
+  constexpr LocalTime step = 1'000 * Sampling::us;
+  constexpr unsigned steps = 200;
+  const auto voltage_at = [](LocalTime time) { return static_cast<std::uint32_t>(time / step * 15'000); };
+  Sampling sampling;
+  for (unsigned i = 1; i <= steps; ++i) {
+    sampling.skip_to(i * step - 1);
+    sampling.board.voltages[Sampling::channel] = voltage_at(i * step);
+  }
+  ASSERT_EQ(sampling.written.size(),
+            (steps * step - 1 - sampling.first_trigger - Sampling::conversion) / Sampling::period + 1);
+  for (std::size_t i = 0; i < sampling.written.size(); ++i) {
+    const LocalTime end = sampling.first_trigger + i * Sampling::period + Sampling::conversion;
+    EXPECT_EQ(sampling.written[i], (std::pair{static_cast<std::uint32_t>(buffer + 2 * (i % Sampling::ring_size)),
+                                              unsigned{adc_code(voltage_at(end))}}));
+  }
+}
+
+TEST(SamplesOfASleepingCpu, LeaveTheSameAsThoseOfOneThatIsAwake) {
+  const auto change = [](Sampling& sampling, unsigned kind, std::uint32_t value) {
+    switch (kind) {
+      case 0:
+        sampling.adc.set_hanging(true);
+        break;
+      case 1:
+        sampling.adc.set_hanging(false);
+        break;
+      case 2:
+        sampling.dma.write(s0cr, 0);  // an overrun follows
+        break;
+      case 3:
+        sampling.dma.write(lifcr, 0x30);
+        sampling.dma.write(s0cr, enabled);
+        break;
+      case 4:
+        sampling.adc.write(0x00, 0xC);  // clears EOC, STRT and OVR
+        break;
+      case 5:
+        if ((sampling.adc.read(0x00) & 0xCU) != 0x8U) {  // not while it is converted
+          sampling.adc.write(0x00, 0x32);                // clears JEOC and JSTRT
+          sampling.adc.write(0x08, Sampling::cr2_on | 1U << 22U);
+        }
+        break;
+      default:
+        sampling.board.voltages[Sampling::channel] = value;
+        sampling.board.voltages[3] = 3'300'000 - value;
+    }
+  };
+  const std::uint32_t seed = std::random_device{}();
+  std::mt19937 random(seed);
+  Sampling awake;
+  Sampling asleep;
+  LocalTime time = awake.chip.time;
+  for (unsigned i = 0; i < 5'000; ++i) {
+    time += std::uniform_int_distribution<LocalTime>(1, 3'000 * Sampling::us)(random);
+    awake.run_by_events(time);
+    while (asleep.next_visible_event() <= time) {
+      asleep.skip_to(asleep.next_visible_event());
+    }
+    asleep.skip_to(time);
+    ASSERT_EQ(awake.state(), asleep.state()) << "change " << i << ", seed " << seed;
+    ASSERT_EQ(awake.next_event(), asleep.next_event()) << "change " << i << ", seed " << seed;
+    for (Sampling* sampling : {&awake, &asleep}) {
+      sampling->written.clear();
+    }
+    const auto kind = static_cast<unsigned>(random() % 12);
+    const auto value = static_cast<std::uint32_t>(random() % 3'300'000);
+    change(awake, kind, value);
+    change(asleep, kind, value);
+  }
+}
+
+TEST(SamplesOfASleepingCpu, EndWithAReset) {
+  Sampling sampling;
+  sampling.run_by_events(sampling.first_trigger);
+  sampling.skip_to(sampling.first_trigger + 9 * Sampling::period + Sampling::conversion);
+  EXPECT_EQ(sampling.written.size(), 10U);
+  sampling.timer.reset();
+  sampling.dma.reset();
+  sampling.adc.reset();
+  sampling.skip_to(sampling.chip.time + 10 * Sampling::period);
+  EXPECT_EQ(sampling.written.size(), 10U);
+  EXPECT_EQ(sampling.next_event(), never_on_chip);
 }
 
 TEST(Timer3, Counts16Bits) {

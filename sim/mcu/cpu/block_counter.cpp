@@ -25,15 +25,15 @@ CodeBlock examine_block(std::span<const std::uint8_t> code) {
     last = halfword_at(code, offset);
     ++count;
     if (last == send_event) {
-      block.has_sev = 1;
+      block.has_sev = true;
     }
     if (is_coprocessor_instruction(last)) {
-      block.has_coprocessor_instruction = 1;
+      block.has_coprocessor_instruction = true;
     }
   }
-  block.instructions = count & 0x3FFU;
-  block.ends_in_wfi = last == wait_for_interrupt ? 1 : 0;
-  block.ends_in_wfe = last == wait_for_event ? 1 : 0;
+  block.instructions = count;
+  block.ends_in_wfi = last == wait_for_interrupt;
+  block.ends_in_wfe = last == wait_for_event;
   return block;
 }
 
@@ -45,8 +45,7 @@ BlockCounter::BlockCounter(std::uint32_t start, std::uint32_t size)
 }
 
 void BlockCounter::add(std::uint32_t address, const CodeBlock& block) {
-  const bool is_special =
-      (block.ends_in_wfi | block.ends_in_wfe | block.has_sev | block.has_coprocessor_instruction) != 0;
+  const bool is_special = block.ends_in_wfi || block.ends_in_wfe || block.has_sev || block.has_coprocessor_instruction;
   Entry& entry = entries_.get()[(address - start_) / 2];
   if (is_special || block.size / 2 >= elsewhere) {
     entry = {elsewhere, 0};
@@ -56,7 +55,7 @@ void BlockCounter::add(std::uint32_t address, const CodeBlock& block) {
   }
 }
 
-std::optional<CodeBlock> BlockCounter::find_elsewhere(std::uint32_t address, std::uint32_t size) const {
+std::optional<CodeBlock> BlockCounter::find_special(std::uint32_t address, std::uint32_t size) const {
   const auto found = others_.find(address);
   return found != others_.end() && found->second.size == size ? std::optional(found->second) : std::nullopt;
 }

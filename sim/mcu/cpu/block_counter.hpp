@@ -14,11 +14,11 @@ namespace proleg::sim {
 /// A stretch of code that is executed from its begin to its end, as Unicorn cuts it: at most 512 instructions.
 struct CodeBlock {
   std::uint16_t size = 0;  ///< bytes
-  std::uint16_t instructions : 10 = 0;
-  std::uint16_t ends_in_wfi : 1 = 0;
-  std::uint16_t ends_in_wfe : 1 = 0;
-  std::uint16_t has_sev : 1 = 0;
-  std::uint16_t has_coprocessor_instruction : 1 = 0;  ///< the FPU's
+  std::uint16_t instructions = 0;
+  bool ends_in_wfi = false;
+  bool ends_in_wfe = false;
+  bool has_sev = false;
+  bool has_coprocessor_instruction = false;  ///< the FPU's
 };
 
 /// Reads the code of a block.
@@ -31,17 +31,14 @@ class BlockCounter {
   /// start, size: of the memory, in bytes.
   BlockCounter(std::uint32_t start, std::uint32_t size);
 
-  /// The block of this size at an address of the memory; nothing if it is not known yet.
-  [[nodiscard]] std::optional<CodeBlock> find(std::uint32_t address, std::uint32_t size) const {
+  /// The number of instructions of the block of this size at an address of the memory; 0 if it is not known yet, or
+  /// special.
+  [[nodiscard]] unsigned find_plain(std::uint32_t address, std::uint32_t size) const {
     const Entry entry = entries_.get()[(address - start_) / 2];
-    if (size == entry.halfwords * 2U) {
-      CodeBlock block;
-      block.size = static_cast<std::uint16_t>(size);
-      block.instructions = entry.instructions;
-      return block;
-    }
-    return entry.halfwords == elsewhere ? find_elsewhere(address, size) : std::nullopt;
+    return size == entry.halfwords * 2U ? entry.instructions : 0U;
   }
+  /// A block that find_plain() does not find; nothing if it is not known yet.
+  [[nodiscard]] std::optional<CodeBlock> find_special(std::uint32_t address, std::uint32_t size) const;
   void add(std::uint32_t address, const CodeBlock& block);
 
   /// Discards the blocks that touch these addresses.
@@ -57,8 +54,6 @@ class BlockCounter {
   struct Free {
     void operator()(Entry* entries) const { std::free(entries); }
   };
-
-  [[nodiscard]] std::optional<CodeBlock> find_elsewhere(std::uint32_t address, std::uint32_t size) const;
 
   std::uint32_t start_;
   std::uint32_t count_;

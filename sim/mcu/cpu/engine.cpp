@@ -38,6 +38,8 @@ void check(uc_err error, const char* action) {
   }
 }
 
+bool is_flash(std::uint32_t address) { return address - Cpu::flash_start < Cpu::flash_size; }
+
 bool lies_in(std::uint32_t address, std::uint64_t size, std::uint32_t start, std::uint32_t length) {
   return address >= start && std::uint64_t{address} + size <= std::uint64_t{start} + length;
 }
@@ -200,35 +202,46 @@ CodeBlock Engine::examine(std::uint32_t address, std::uint32_t size) {
   return block;
 }
 
+inline void Engine::enter_block(std::uint32_t address, std::uint32_t size) {
+  block_address_ = address;
+  const unsigned count = is_flash(address) ? flash_blocks_.find_plain(address, size) : 0;
+  if (count == 0) [[unlikely]] {
+    enter_special_block(address, size);
+    return;
+  }
+  block_ = {static_cast<std::uint16_t>(size), static_cast<std::uint16_t>(count)};
+  instructions_ += count;
+}
+
 void Engine::on_block(uc_engine* /*uc*/, std::uint64_t address64, std::uint32_t size, void* self) {
   Engine& engine = *static_cast<Engine*>(self);
   const auto address = static_cast<std::uint32_t>(address64);
+  // Every few instructions: without the other cases, which are calls at its end, this function saves no registers.
   if (engine.instructions_ >= engine.limit_) [[unlikely]] {
-    if (engine.stepping_) {
-      if (engine.step_begun_) {
-        engine.stop(End::stepped, address);
-        return;
-      }
-      engine.step_begun_ = true;
-    } else if (engine.client_.stops()) {
-      engine.stop(End::stopped, address);
-      return;
-    }
+    engine.stop_or_enter_block(address, size);
+  } else {
+    engine.enter_block(address, size);
   }
-  engine.block_address_ = address;
-  std::optional<CodeBlock> block;
-  if (address - Cpu::flash_start < Cpu::flash_size) [[likely]] {
-    block = engine.flash_blocks_.find(address, size);
-  }
-  engine.block_ = block ? *block : engine.examine(address, size);
-  if ((engine.block_.has_sev | engine.block_.has_coprocessor_instruction) != 0) [[unlikely]] {
-    engine.enter_special_block(address);
-  }
-  engine.instructions_ += engine.block_.instructions;
 }
 
-void Engine::enter_special_block(std::uint32_t address) {
-  if (block_.has_coprocessor_instruction != 0 && !client_.coprocessor_allowed()) {
+void Engine::stop_or_enter_block(std::uint32_t address, std::uint32_t size) {
+  if (stepping_) {
+    if (step_begun_) {
+      stop(End::stepped, address);
+      return;
+    }
+    step_begun_ = true;
+  } else if (client_.stops()) {
+    stop(End::stopped, address);
+    return;
+  }
+  enter_block(address, size);
+}
+
+void Engine::enter_special_block(std::uint32_t address, std::uint32_t size) {
+  const std::optional<CodeBlock> known = is_flash(address) ? flash_blocks_.find_special(address, size) : std::nullopt;
+  block_ = known ? *known : examine(address, size);
+  if (block_.has_coprocessor_instruction && !client_.coprocessor_allowed()) {
     const std::vector<std::uint8_t> bytes = code(address, block_.size);
     for (std::size_t offset = 0; offset + 1 < bytes.size(); offset += instruction_size(halfword_at(bytes, offset))) {
       if (is_coprocessor_instruction(halfword_at(bytes, offset))) {
@@ -240,9 +253,10 @@ void Engine::enter_special_block(std::uint32_t address) {
     stop(End::no_coprocessor, address);
     return;
   }
-  if (block_.has_sev != 0) {
+  if (block_.has_sev) {
     client_.send_event();
   }
+  instructions_ += block_.instructions;
 }
 
 void Engine::on_instruction(uc_engine* /*uc*/, std::uint64_t address64, std::uint32_t /*size*/, void* self) {
@@ -377,7 +391,7 @@ Engine::End Engine::finish(uc_err error, std::uint32_t until) {
   uc_reg_read(uc_, UC_ARM_REG_PC, &address);
   set_pc(address);
   const bool at_end = pc_ == block_address_ + block_.size;
-  if (error == UC_ERR_OK && at_end && block_.ends_in_wfi != 0) {
+  if (error == UC_ERR_OK && at_end && block_.ends_in_wfi) {
     return End::wait_for_interrupt;
   }
   if (error == UC_ERR_OK && pc_ == until && until != never_executed) {
@@ -393,7 +407,7 @@ Engine::End Engine::finish(uc_err error, std::uint32_t until) {
   }
   if (error == UC_ERR_INSN_INVALID) {
     if (at_end) {
-      return block_.ends_in_wfe != 0 ? End::wait_for_event : End::yielded;
+      return block_.ends_in_wfe ? End::wait_for_event : End::yielded;
     }
     uncount_from(pc_);
     return End::undefined_instruction;

@@ -179,7 +179,10 @@ class Engine {
   CodeBlock examine(std::uint32_t address, std::uint32_t size);
   /// Stops before the block or instruction at an address.
   void stop(End end, std::uint32_t address);
-  void enter_special_block(std::uint32_t address);
+  void stop_or_enter_block(std::uint32_t address, std::uint32_t size);
+  void enter_block(std::uint32_t address, std::uint32_t size);
+  /// One that is special, or not known yet.
+  void enter_special_block(std::uint32_t address, std::uint32_t size);
   End finish(uc_err error, std::uint32_t until);
   [[nodiscard]] End fetch_or_state() const;
   /// Subtracts the instructions of the current block from an address on, which were not executed.

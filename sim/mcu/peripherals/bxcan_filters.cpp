@@ -1,5 +1,8 @@
 #include "sim/mcu/peripherals/bxcan_filters.hpp"
 
+#include <algorithm>
+#include <bit>
+
 namespace proleg::sim {
 namespace {
 
@@ -152,7 +155,9 @@ std::optional<BxCanFilters::Match> BxCanFilters::match(std::uint16_t identifier)
   std::optional<Match> best;
   unsigned best_rank = 0;  // 32 bits before 16, then list before mask, then the lower number
   std::array<unsigned, 2> numbers{};
-  for (unsigned bank = 0; bank < first_bank_of_can2(); ++bank) {
+  // Banks after the last active one do not count: most programs use few, and each node filters each frame.
+  const unsigned end = std::min<unsigned>(first_bank_of_can2(), static_cast<unsigned>(std::bit_width(active_)));
+  for (unsigned bank = 0; bank < end; ++bank) {
     const bool is_wide = ((wide_ >> bank) & 1U) != 0;
     const bool is_list = ((list_mode_ >> bank) & 1U) != 0;
     const unsigned fifo = (assignment_ >> bank) & 1U;

@@ -58,12 +58,18 @@ const PeripheralGates::Gate* PeripheralGates::gate_of(const Peripheral& peripher
       {0x4001'2000, apb2, 8},   // ADC1
       {0x4001'3800, apb2, 14},  // SYSCFG
   };
-  for (const Gate& gate : gates) {
-    if (gate.base == peripheral.base()) {
-      return &gate;
+  // This is called at each access to a register. No two peripherals share a block.
+  constexpr std::uint32_t start = 0x4000'0000;
+  constexpr std::uint32_t block_bytes = 0x400;
+  static constexpr auto gate_of_block = [] {
+    std::array<const Gate*, 0x100> found{};
+    for (const Gate& gate : gates) {
+      found.at((gate.base - start) / block_bytes) = &gate;
     }
-  }
-  return nullptr;
+    return found;
+  }();
+  const std::uint32_t block = (peripheral.base() - start) / block_bytes;
+  return block < gate_of_block.size() ? gate_of_block[block] : nullptr;
 }
 
 void PeripheralGates::reset() {

@@ -28,6 +28,29 @@ TEST_F(CpuTest, CountsInstructionsOfTwoAndFourBytesExactly) {
   EXPECT_EQ(cpu_.instructions(), 1'000'001U);
 }
 
+TEST_F(CpuTest, CountsABlockOfAnyLengthEachTimeItRuns) {
+  constexpr std::uint32_t program = Cpu::flash_start + 0x1000;
+  for (const std::uint32_t length : {2U, 253U, 254U, 255U, 256U, 257U, 400U}) {
+    std::vector<std::uint8_t> code;
+    const auto add = [&code](std::uint32_t instruction) {
+      code.push_back(static_cast<std::uint8_t>(instruction));
+      code.push_back(static_cast<std::uint8_t>(instruction >> 8U));
+    };
+    for (std::uint32_t i = 1; i < length; ++i) {
+      add(0xBF00);  // nop
+    }
+    add(0xE000U | ((0U - (length + 1)) & 0x7FFU));  // b, to the first one
+    CpuRig rig;
+    rig.cpu.write(program, code);
+    rig.set_word(Cpu::flash_start, initial_stack);
+    rig.set_word(Cpu::flash_start + 4, program | 1U);
+    rig.cpu.reset();
+    constexpr unsigned rounds = 10;
+    EXPECT_EQ(rig.cpu.run(rounds * length), Cpu::State::running);
+    EXPECT_EQ(rig.cpu.instructions(), rounds * length) << length << " instructions";
+  }
+}
+
 TEST_F(CpuTest, RunsForTheGivenInstructionsUpToTheEndOfABlock) {
   start("counted_loop");
   for (const std::uint64_t budget : {std::uint64_t{1}, std::uint64_t{7}, std::uint64_t{100}, std::uint64_t{5000}}) {

@@ -134,7 +134,7 @@ void MotionWatch::check_change(unsigned joint, BusTime begin, std::int32_t width
   servo.least_rising = std::min(servo.least_rising, width - passed);
   servo.greatest_falling = std::max(servo.greatest_falling, width + passed);
   if (change > width_tolerance) {
-    check_command(joint, begin);
+    servo.last_motion = begin;
   }
 }
 
@@ -180,6 +180,9 @@ void MotionWatch::note_tick(unsigned joint, BusTime now, const ModuleNow& module
   Joint& servo = joints_[joint];
   if (module.has_computed) {
     servo.last_tick = now;
+  }
+  if (servo.last_motion) {
+    check_command(joint, *std::exchange(servo.last_motion, std::nullopt));
   }
   if (!module.gives_pulses) {
     set_state(joint, now, JointState::limp);

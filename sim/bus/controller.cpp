@@ -105,6 +105,7 @@ void Controller::plug_in() {
   }
   update_part();
   choose_candidate();
+  bus_->report_states();
 }
 
 void Controller::recover() {

@@ -288,6 +288,90 @@ TEST_F(FaultConfinement, WhileAPassiveSenderWaitsAnIdleBusIsOpenToOthersAtOnce) 
   EXPECT_EQ(c.arrived[0], std::make_pair(start + duration(high), high));
 }
 
+TEST_F(FaultConfinement, AnUnpluggedNodeGetsNothingAndComesBackPassiveWithItsFrames) {
+  c.controller.unplug();
+  ASSERT_TRUE(a.controller.send(frame));
+  ASSERT_TRUE(c.controller.send(high));
+  bus.advance_to(10'000'000);
+  EXPECT_EQ(b.arrived.size(), 1U);
+  EXPECT_TRUE(c.arrived.empty());
+  EXPECT_TRUE(c.sent.empty());
+  c.controller.plug_in();
+  EXPECT_EQ(c.controller.error_state(), ErrorState::passive) << "nobody acknowledged its frame";
+  bus.advance_to(20'000'000);
+  EXPECT_EQ(c.sent.size(), 1U);
+  EXPECT_EQ(a.arrived.size(), 1U);
+  ASSERT_FALSE(c.states.empty());
+}
+
+TEST_F(FaultConfinement, AnUnpluggedNodeThatHadNothingToSayComesBackActive) {
+  c.controller.unplug();
+  bus.advance_to(10'000'000);
+  c.controller.plug_in();
+  ASSERT_TRUE(a.controller.send(frame));
+  bus.advance_to(20'000'000);
+  EXPECT_EQ(c.controller.error_state(), ErrorState::active);
+  EXPECT_EQ(c.arrived.size(), 1U);
+}
+
+TEST_F(FaultConfinement, TheFrameOfANodeThatIsUnpluggedIsDestroyedAndSentWhenItIsBack) {
+  ASSERT_TRUE(c.controller.send(frame));
+  bus.advance_to(duration(frame) / 2);
+  c.controller.unplug();
+  bus.advance_to(10'000'000);
+  EXPECT_TRUE(a.arrived.empty());
+  EXPECT_EQ(a.errors.size(), 1U);
+  c.controller.plug_in();
+  bus.advance_to(20'000'000);
+  EXPECT_EQ(a.arrived.size(), 1U);
+  EXPECT_EQ(c.sent.size(), 1U);
+}
+
+TEST_F(FaultConfinement, ADominantBusPutsItsSenderInBusOffAndMakesTheOthersPassive) {
+  ASSERT_TRUE(a.controller.send(frame));
+  bus.advance_to(duration(frame) / 2);
+  bus.hold_dominant(true);
+  EXPECT_EQ(a.controller.error_state(), ErrorState::bus_off);
+  EXPECT_EQ(b.controller.error_state(), ErrorState::passive);
+  ASSERT_TRUE(b.controller.send(high));
+  a.controller.recover();
+  bus.advance_to(50'000'000);
+  EXPECT_TRUE(b.sent.empty()) << "nobody can send on a dominant bus";
+  EXPECT_EQ(a.controller.error_state(), ErrorState::bus_off) << "there are no recessive bits";
+  bus.hold_dominant(false);
+  bus.advance_to(100'000'000);
+  ASSERT_EQ(b.sent.size(), 1U);
+  EXPECT_EQ(b.sent[0].first, 50'000'000 + 11 * bit + duration(high));
+  EXPECT_EQ(a.controller.error_state(), ErrorState::active) << "after 128 times 11 recessive bits";
+}
+
+TEST_F(FaultConfinement, ADelayedFrameArrivesLaterInTheOrderOfTime) {
+  bus.set_delay_rule([](const CanFrame& given, std::size_t receiver) -> BusTime {
+    return receiver == 1 && given.identifier == 0x080 ? 5'000'000 : 0;
+  });
+  ASSERT_TRUE(a.controller.send(low));
+  ASSERT_TRUE(a.controller.send(frame));
+  while (bus.next_event() != never_on_bus) {
+    bus.advance_to(bus.next_event());
+  }
+  ASSERT_EQ(b.arrived.size(), 2U);
+  EXPECT_EQ(b.arrived[0].second, frame);
+  EXPECT_EQ(b.arrived[1].second, low);
+  EXPECT_EQ(b.arrived[1].first, duration(low) + 5'000'000);
+  ASSERT_EQ(c.arrived.size(), 2U);
+  EXPECT_EQ(c.arrived[0].second, low);
+}
+
+TEST_F(FaultConfinement, ADelayedFrameDoesNotReachANodeThatIsOffByThen) {
+  bus.set_delay_rule([](const CanFrame&, std::size_t receiver) -> BusTime { return receiver == 1 ? 1'000'000 : 0; });
+  ASSERT_TRUE(a.controller.send(frame));
+  bus.advance_to(500'000);
+  b.controller.switch_off();
+  bus.advance_to(10'000'000);
+  EXPECT_TRUE(b.arrived.empty());
+  EXPECT_EQ(c.arrived.size(), 1U);
+}
+
 TEST(LoneNode, BecomesPassiveForLackOfAcknowledgementButNeverBusOff) {
   Bus bus;
   Node alone(bus);

@@ -16,7 +16,9 @@ constexpr unsigned port_b = 1;
 
 Pins::Pins(ChipServices& chip, BoardSignals& board, Timer& timer_2) : chip_(&chip), timer_2_(&timer_2) {
   for (const char port : {'A', 'B', 'C', 'D', 'E', 'F', 'G', 'H', 'I'}) {
+    const auto index = static_cast<unsigned>(ports_.size());
     ports_.push_back(std::make_unique<Gpio>(chip, board, port));
+    ports_.back()->set_alternate_output([this, index](unsigned number) { return timer_level(Pin{index, number}); });
   }
 }
 
@@ -73,9 +75,14 @@ unsigned Pins::timer_output_at(const Pin& pin) const {
   return 0;
 }
 
+std::optional<bool> Pins::timer_level(const Pin& pin) {
+  const unsigned channel = timer_output_at(pin);
+  return channel != 0 ? std::optional(timer_2_->output(channel).high) : std::nullopt;
+}
+
 bool Pins::level(const Pin& pin) {
-  if (const unsigned channel = timer_output_at(pin); channel != 0) {
-    return timer_2_->output(channel).high;
+  if (const std::optional<bool> driven = timer_level(pin)) {
+    return *driven;
   }
   Gpio& port = *ports_[pin.port];
   return port.mode(pin.number) != Gpio::Mode::alternate && port.level(pin.number);

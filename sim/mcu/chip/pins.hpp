@@ -18,6 +18,8 @@ class Pins {
  public:
   /// All must outlive it.
   Pins(ChipServices& chip, BoardSignals& board, Timer& timer_2);
+  Pins(const Pins&) = delete;  // the ports refer to it
+  Pins& operator=(const Pins&) = delete;
 
   [[nodiscard]] const std::vector<std::unique_ptr<Gpio>>& ports() const { return ports_; }
 
@@ -59,6 +61,8 @@ class Pins {
   [[nodiscard]] static std::span<const Pin> timer_2_pins(unsigned channel);
   [[nodiscard]] bool has_function(const Pin& pin, unsigned function) const;
   [[nodiscard]] unsigned timer_output_at(const Pin& pin) const;
+  /// Of a pin that an output of TIM2 drives.
+  [[nodiscard]] std::optional<bool> timer_level(const Pin& pin);
   [[nodiscard]] bool level(const Pin& pin);
 
   ChipServices* chip_;

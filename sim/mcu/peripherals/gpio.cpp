@@ -71,6 +71,11 @@ bool Gpio::level(unsigned pin) {
   if (const std::optional<bool> own = output(pin)) {
     return *own;
   }
+  if (mode(pin) == Mode::alternate && alternate_output_) {
+    if (const std::optional<bool> driven = alternate_output_(pin)) {
+      return *driven;
+    }
+  }
   return board_->pin(port_, pin).value_or(field(pupdr_, 2 * pin, 2) == Pull::up);
 }
 

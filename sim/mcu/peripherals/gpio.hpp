@@ -4,8 +4,10 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "sim/mcu/peripherals/register_block.hpp"
 
@@ -31,12 +33,17 @@ class Gpio final : public RegisterBlock {
   [[nodiscard]] unsigned output_speed(unsigned pin) const;
   /// Level that the port itself drives; nothing unless it is an output (open drain: only low is driven).
   [[nodiscard]] std::optional<bool> output(unsigned pin) const;
-  /// Level that the program reads: what drives the pin (the port before the board), else its pull resistor, else low.
+  /// Level that the program reads: what drives the pin (the chip before the board), else its pull resistor, else low.
   /// An analog pin reads low.
   [[nodiscard]] bool level(unsigned pin);
 
+  /// Level that a peripheral drives at a pin in Mode::alternate; nothing if none does, or if it is not known.
+  using AlternateOutput = std::function<std::optional<bool>(unsigned pin)>;
+  void set_alternate_output(AlternateOutput output) { alternate_output_ = std::move(output); }
+
  private:
   BoardSignals* board_;
+  AlternateOutput alternate_output_;
   char port_;
   std::uint32_t moder_ = 0;
   std::uint32_t otyper_ = 0;

@@ -66,6 +66,19 @@ TEST_F(GpioTest, APushPullOutputDrivesBothLevels) {
   EXPECT_EQ(port.output(1), std::nullopt);
 }
 
+// RM0090, 8.3.11: the input of an alternate function is sampled as any other.
+TEST_F(GpioTest, AnAlternateFunctionHasTheLevelOfThePeripheralElseOfTheBoard) {
+  port.write(moder, 0b10'10'00);
+  bool high = true;
+  port.set_alternate_output([&](unsigned pin) { return pin != 1 ? std::optional(high) : std::nullopt; });
+  board.pins = {{{'C', 0}, false}, {{'C', 1}, true}, {{'C', 2}, false}};
+  EXPECT_FALSE(input(0)) << "a plain input";
+  EXPECT_TRUE(input(1));
+  EXPECT_TRUE(input(2));
+  high = false;
+  EXPECT_FALSE(input(2));
+}
+
 TEST_F(GpioTest, AnOpenDrainOutputDrivesLowOnly) {
   port.write(moder, 0b01);
   port.write(otyper, 1);

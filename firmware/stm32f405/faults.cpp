@@ -3,9 +3,9 @@
 #include <bit>
 
 #include "firmware/stm32f405/handlers.hpp"
+#include "firmware/stm32f405/hardware.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
 #include "firmware/stm32f405/registers/rcc.hpp"
-#include "firmware/stm32f405/servo.hpp"
 
 extern "C" {
 
@@ -132,8 +132,8 @@ using proleg::stm32f405::FaultRecord;
 }
 
 void report_fault(const std::uint32_t* frame) {
-  // First the servo: after a clock failure its timer runs at the wrong frequency.
-  proleg::stm32f405::Servo::cut_pulse();
+  // First the servo: after a clock failure its timer runs at the wrong frequency. A reset would shorten its pulse.
+  proleg::stm32f405::hardware.servo.finish_last_pulse();
   FaultRecord record;
   asm volatile("mrs %0, ipsr" : "=r"(record.exception));
   record.reason = proleg::stm32f405::reason_of(record.exception);
@@ -151,6 +151,7 @@ void report_fault(const std::uint32_t* frame) {
 
 /// The compiler's tables have it in place of a virtual function that is not overridden.
 [[noreturn]] void __cxa_pure_virtual() {
+  proleg::stm32f405::hardware.servo.finish_last_pulse();
   proleg::stm32f405::record_fault(FaultRecord::Reason::pure_virtual_call);
   proleg::stm32f405::reset_chip();
 }

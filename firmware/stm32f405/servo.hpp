@@ -18,16 +18,21 @@ class Servo final : public firmware::ServoPort {
   /// width: 1 or more.
   void pulse(std::int32_t width, std::uint32_t period_us) override;
   void off() override;
-  /// The pin is low at once, and stays low: the program cannot continue. For any priority.
-  static void cut_pulse();
+  /// The pulse that runs ends as wide as it was requested, also if the crystal has stopped; then the pin stays low: the
+  /// program cannot continue. Takes as long as the rest of the pulse, 2.5 ms at most. For any priority, before start()
+  /// too, and for a RAM with any contents: what cannot be a width ends the pulse at once.
+  void finish_last_pulse() const;
 
  private:
   void follow_timer();
+  [[nodiscard]] bool continue_with_internal_oscillator() const;
 
   bool is_running_ = false;            ///< the timer: there was a pulse
   std::uint32_t requested_width_ = 0;  ///< in CCR1
   std::uint32_t last_count_ = 0;       ///< in ARR
-  std::uint32_t active_width_ = 0;     ///< with which the timer compares: CCR1 as it was at the last update event
+  /// With which the timer compares: CCR1 as it was at the last update event. Volatile, and written before an event that
+  /// the program causes: finish_last_pulse() may come in between.
+  volatile std::uint32_t active_width_ = 0;
 };
 
 }  // namespace proleg::stm32f405

@@ -65,15 +65,39 @@ class ClockFailure : public testing::Test {
   BusTime last_edge_ = 0;
 };
 
-TEST_F(ClockFailure, ACrystalThatStopsInAPulseEndsThePulseWithinAMillisecond) {
+TEST_F(ClockFailure, ACrystalThatStopsInAPulseResetsTheModuleWhenThePulseIsOver) {
   const BusTime stopped = stop_in_a_pulse();
-  ASSERT_TRUE(rig_.run_until_true([this] { return !is_high_; }, ms));
-  EXPECT_LE(last_edge_, stopped + ms);
-  RecordProperty("failure_to_low_ns", static_cast<int>(last_edge_ - stopped));
-  ASSERT_TRUE(rig_.run_until_true([this] { return !rig_.events.empty(); }, ms));
+  ASSERT_TRUE(rig_.run_until_true([this] { return !rig_.events.empty(); }, 3 * ms));
+  EXPECT_FALSE(is_high_);
+  EXPECT_GT(last_edge_, stopped + ms) << "the pulse of 1.5 ms ends at its own width: last_pulse_test.cpp";
   EXPECT_EQ(rig_.events[0].kind, ChipEvent::Kind::reset);
   EXPECT_EQ(rig_.events[0].cause, ResetCause::software);
-  EXPECT_LE(rig_.events[0].time, stopped + ms);
+  EXPECT_LE(rig_.events[0].time, last_edge_ + 100 * us);
+}
+
+TEST_F(ClockFailure, ACrystalThatStopsBetweenPulsesResetsTheModuleAtOnce) {
+  rig_.start_robot(20'000);
+  const BusTime stopped = rig_.bus.now();
+  rig_.chip.set_crystal(false);
+  ASSERT_TRUE(rig_.run_until_true([this] { return !rig_.events.empty(); }, ms));
+  EXPECT_EQ(rig_.events[0].kind, ChipEvent::Kind::reset);
+  EXPECT_LE(rig_.events[0].time, stopped + 100 * us);
+  EXPECT_EQ(last_edge_, 0U) << "there was no pulse";
+}
+
+TEST_F(ClockFailure, ACrystalThatStopsAtAnyInstantOfTheStartIsRecorded) {
+  // From the lock of the PLL on, the program starts one peripheral after the other.
+  for (BusTime running = 2 * ms; running < 4 * ms; running += 50 * us) {
+    ChipRig rig;
+    rig.power_on();
+    rig.run_for(running);
+    rig.chip.set_crystal(false);
+    rig.run_for(100 * ms);
+    for (const ChipEvent& event : rig.events) {
+      EXPECT_EQ(event.kind, ChipEvent::Kind::reset) << running << " ns after power on: " << event.text;
+    }
+    EXPECT_NE(rig.board.console.find("the crystal does not start"), std::string::npos) << running;
+  }
 }
 
 TEST_F(ClockFailure, ACrystalThatStopsIsRecordedAndTheModuleIsSilentUntilItRunsAgain) {

@@ -1,5 +1,6 @@
 #include "sim/fault/fault.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -12,42 +13,42 @@ using Argument = FaultDeclaration::Argument;
 using Duration = FaultDeclaration::Duration;
 
 constexpr std::array declarations{
-    FaultDeclaration{FaultKind::unplug, "unplug", true, Argument::none, Duration::needed, false,
+    FaultDeclaration{FaultKind::unplug, "unplug", true, Argument::none, Duration::needed, false, false,
                      "The module's bus wires are off; it keeps its supply."},
-    FaultDeclaration{FaultKind::supply, "supply", true, Argument::voltage, Duration::needed, false,
+    FaultDeclaration{FaultKind::supply, "supply", true, Argument::voltage, Duration::needed, false, true,
                      "The supply of the module's chip is this voltage instead of 3.3V. 0V: it has no power. Below "
                      "2.93V its voltage detector reports it. The board sets no brown-out level, so the chip is reset "
                      "below 1.68V."},
-    FaultDeclaration{FaultKind::reset, "reset", true, Argument::none, Duration::none, false,
+    FaultDeclaration{FaultKind::reset, "reset", true, Argument::none, Duration::none, false, false,
                      "The module restarts, as by its reset pin."},
-    FaultDeclaration{FaultKind::crystal, "crystal", true, Argument::none, Duration::needed, true,
+    FaultDeclaration{FaultKind::crystal, "crystal", true, Argument::none, Duration::needed, true, false,
                      "The module's crystal stops. Together with 'supply JOINT 0V' it does not start."},
-    FaultDeclaration{FaultKind::pll, "pll", true, Argument::none, Duration::needed, true,
+    FaultDeclaration{FaultKind::pll, "pll", true, Argument::none, Duration::needed, true, false,
                      "The clock multiplier of the module's chip loses its lock."},
-    FaultDeclaration{FaultKind::adc, "adc", true, Argument::none, Duration::needed, false,
+    FaultDeclaration{FaultKind::adc, "adc", true, Argument::none, Duration::needed, false, true,
                      "The module's converter hangs: no new measurements."},
-    FaultDeclaration{FaultKind::touch, "touch", true, Argument::touch, Duration::needed, false,
+    FaultDeclaration{FaultKind::touch, "touch", true, Argument::touch, Duration::needed, false, true,
                      "All touch sensors of the module read pressed or open, or change from tick to tick."},
-    FaultDeclaration{FaultKind::jam, "jam", true, Argument::current, Duration::needed, false,
+    FaultDeclaration{FaultKind::jam, "jam", true, Argument::current, Duration::needed, false, true,
                      "The joint does not turn, and its servo draws this current while it gets pulses."},
-    FaultDeclaration{FaultKind::babble, "babble", false, Argument::identifier, Duration::needed, false,
+    FaultDeclaration{FaultKind::babble, "babble", false, Argument::identifier, Duration::needed, false, false,
                      "Another node sends empty frames with this identifier without a pause."},
-    FaultDeclaration{FaultKind::dominant, "dominant", false, Argument::none, Duration::needed, false,
+    FaultDeclaration{FaultKind::dominant, "dominant", false, Argument::none, Duration::needed, false, false,
                      "The bus is held dominant. Senders are in bus-off then, all others error-passive."},
-    FaultDeclaration{FaultKind::corrupt, "corrupt", false, Argument::rate, Duration::needed, false,
+    FaultDeclaration{FaultKind::corrupt, "corrupt", false, Argument::rate, Duration::needed, false, false,
                      "Frames are destroyed on the bus with this probability. Their senders send them again."},
-    FaultDeclaration{FaultKind::lose, "lose", true, Argument::rate, Duration::needed, false,
+    FaultDeclaration{FaultKind::lose, "lose", true, Argument::rate, Duration::needed, false, true,
                      "The module does not get frames, each with this probability."},
-    FaultDeclaration{FaultKind::delay, "delay", true, Argument::time, Duration::needed, false,
+    FaultDeclaration{FaultKind::delay, "delay", true, Argument::time, Duration::needed, false, false,
                      "The module gets all frames later by this time."},
-    FaultDeclaration{FaultKind::send, "send", false, Argument::frame, Duration::optional, false,
+    FaultDeclaration{FaultKind::send, "send", false, Argument::frame, Duration::optional, false, false,
                      "Another node sends this frame, hexadecimal as for cansend: a foreign SYNC (080#05), TICK, NMT "
                      "command (000#0200: all stop), or any other. With 'every TIME' it is sent again and again."},
-    FaultDeclaration{FaultKind::master, "master", false, Argument::none, Duration::optional, false,
+    FaultDeclaration{FaultKind::master, "master", false, Argument::none, Duration::optional, false, false,
                      "A second host sets the robot up and starts it, as the first one did."},
-    FaultDeclaration{FaultKind::host_stall, "host-stall", false, Argument::none, Duration::needed, false,
+    FaultDeclaration{FaultKind::host_stall, "host-stall", false, Argument::none, Duration::needed, false, false,
                      "The host does nothing; what it received meanwhile it handles at the end."},
-    FaultDeclaration{FaultKind::host_dies, "host-dies", false, Argument::none, Duration::none, false,
+    FaultDeclaration{FaultKind::host_dies, "host-dies", false, Argument::none, Duration::none, false, false,
                      "The host is gone for the rest of the run."},
 };
 
@@ -129,6 +130,14 @@ const char* argument_name(Argument argument) {
 }  // namespace
 
 std::span<const FaultDeclaration> fault_declarations() { return declarations; }
+
+bool act_at_ticks(const FaultSchedule& schedule) {
+  constexpr std::uint32_t max_reset_threshold_mv = 1'720;  // below it the chip starts again, which takes its time
+  return std::ranges::all_of(schedule, [](const Fault& fault) {
+    return declaration_of(fault.kind).acts_at_ticks &&
+           (fault.kind != FaultKind::supply || fault.amount > max_reset_threshold_mv);
+  });
+}
 
 const FaultDeclaration& declaration_of(FaultKind kind) { return declarations.at(static_cast<std::size_t>(kind)); }
 

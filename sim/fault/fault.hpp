@@ -64,7 +64,8 @@ struct FaultDeclaration {
   bool has_joint;
   Argument argument;
   Duration duration;
-  bool needs_chip;  ///< only a virtual chip can play it
+  bool needs_chip;     ///< only a virtual chip can play it
+  bool acts_at_ticks;  ///< its effect is the same whatever microseconds a program needs
   std::string_view help;
 };
 
@@ -74,6 +75,11 @@ struct FaultDeclaration {
 
 /// The form of a kind in a file: "at TIME unplug JOINT for TIME".
 [[nodiscard]] std::string form_of(const FaultDeclaration& declaration);
+
+/// Whether all faults act at ticks: then native modules and virtual chips have the same set-points and pulses. With
+/// other faults that is so in most cases, but microseconds may decide which frame a fault hits, or which of two events
+/// comes first.
+[[nodiscard]] bool act_at_ticks(const FaultSchedule& schedule);
 
 /// A fault as a file has it: "at 1.2s unplug J3 for 400ms".
 [[nodiscard]] std::string describe(const Fault& fault, const RobotModel& robot);

@@ -61,7 +61,8 @@ class Dice {
     do {
       const auto kinds = fault_declarations();
       declaration = &kinds[noise_.below(static_cast<std::uint32_t>(kinds.size()))];
-    } while (declaration->needs_chip && !settings_.has_chips);
+    } while ((declaration->needs_chip && !settings_.has_chips) ||
+             (!declaration->acts_at_ticks && settings_.only_at_ticks));
     Fault fault;
     fault.kind = declaration->kind;
     const std::uint64_t last_us = settings_.run_us - rest_after_faults_us;
@@ -95,7 +96,7 @@ class Dice {
     };
     switch (fault.kind) {
       case FaultKind::supply:
-        fault.amount = std::array<std::uint32_t, 4>{0, 1'500, 2'500, 2'800}.at(noise_.below(4));
+        fault.amount = std::array<std::uint32_t, 4>{2'500, 2'800, 0, 1'500}.at(noise_.below(settings_.only_at_ticks ? 2 : 4));
         break;
       case FaultKind::jam:
         fault.amount = std::array<std::uint32_t, 3>{1'500, 2'200, 3'000}.at(noise_.below(3));

@@ -13,6 +13,7 @@ struct RandomFaults {
   std::uint64_t seed = 0;
   std::uint64_t run_us = 5'000'000;  ///< at least min_random_run_us
   bool has_chips = false;            ///< also faults that only a virtual chip can play
+  bool only_at_ticks = false;        ///< only such that act_at_ticks() holds
 };
 
 /// All random faults are over this long before the end of a run, so that each module has come to rest in a safe state

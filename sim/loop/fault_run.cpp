@@ -11,8 +11,7 @@ namespace {
 constexpr std::size_t end_count = static_cast<std::size_t>(JointEnd::unsafe) + 1;
 
 void take_worse(MotionWatch::Worst& worst, const MotionWatch::Worst& other) {
-  worst.change_deg = std::max(worst.change_deg, other.change_deg);
-  worst.max_change_deg = std::max(worst.max_change_deg, other.max_change_deg);
+  worst.change_steps = std::max(worst.change_steps, other.change_steps);
   worst.beyond_limit_deg = std::max(worst.beyond_limit_deg, other.beyond_limit_deg);
   worst.motion_after_command_s = std::max(worst.motion_after_command_s, other.motion_after_command_s);
 }

@@ -74,7 +74,6 @@ MotionWatch::MotionWatch(const Scenario& scenario)
   const double counts_per_s = scenario.robot.servo.command_speed / deg_per_count;
   max_change_ = counts_per_s * scenario.robot.servo.period_us * 1e-6;
   counts_per_ns_ = counts_per_s * 1e-9 * guard_and_crystal;
-  worst_.max_change_deg = max_change_ * deg_per_count;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const JointLimits& limits = scenario.joint_limits[i];
     joints_[i].node = scenario.modules[i].node;
@@ -105,7 +104,7 @@ void MotionWatch::note_pulse(unsigned joint, const JointModule::WatchedPulse& pu
     violate(joint, begin, "a pulse although its drive is neither enabled nor in a quick stop");
   }
   if (follows_pulses(servo, pulse)) {
-    check_change(joint, begin, width);
+    check_change(joint, pulse);
   } else {
     servo.train_begin = begin;
     servo.least_rising = servo.greatest_falling = width;
@@ -114,15 +113,17 @@ void MotionWatch::note_pulse(unsigned joint, const JointModule::WatchedPulse& pu
   servo.width = width;
 }
 
-void MotionWatch::check_change(unsigned joint, BusTime begin, std::int32_t width) {
+void MotionWatch::check_change(unsigned joint, const JointModule::WatchedPulse& pulse) {
+  const auto [begin, width, power, known, is_whole] = pulse;
   constexpr double bursts = 2.5;  // periods' worth of motion that pulses close together may add up to
   Joint& servo = joints_[joint];
   const int change = std::abs(width - servo.width);
-  // A pulse that is longer than the servo period hides those that begin meanwhile.
+  // At the pin of a chip, a pulse hides the requests that come while it is high: the next one that is seen may be two
+  // requests on, or more if the pulse is longer than the servo period.
   const auto periods = static_cast<double>((begin - *servo.last_pulse + period_ / 2) / period_);
-  const double periods_passed = std::max(periods, 1.0);
-  worst_.change_deg = std::max(worst_.change_deg, change * deg_per_count / periods_passed);
-  if (change > max_change_ * periods_passed + 1 + width_tolerance) {
+  const double steps = known ? 1.0 : std::max(periods, 1.0) + 1.0;
+  worst_.change_steps = std::max(worst_.change_steps, change / max_change_);
+  if (change > max_change_ * steps + 1 + width_tolerance) {
     violate(joint, begin, "a jump of " + number_text(change * deg_per_count) + " degrees");
   }
   const double passed = static_cast<double>(begin - servo.train_begin) * counts_per_ns_;

@@ -41,8 +41,8 @@ enum class JointEnd : std::uint8_t {
 
 /// Checks the rules of docs/safety.md from outside of the modules, by their pulses and the frames on the bus:
 /// - a pulse is within the joint's limits (but one in which the chip loses its power or its clock);
-/// - no pulse differs from the one before by more than the greatest speed allows in a servo period, and pulses that
-///   come too often do not add up to a higher speed;
+/// - no pulse differs from the one that was requested before by more than the greatest speed allows in a servo period,
+///   and pulses that come too often do not add up to a higher speed;
 /// - there are no pulses but in Operation enabled and Quick stop active;
 /// - no pulse changes later than 1.5 s after the module's last tick, and after the host's last heartbeat;
 /// - at the end, each servo follows the gait, holds the safe pose, or is limp.
@@ -73,8 +73,8 @@ class MotionWatch {
   [[nodiscard]] const std::vector<std::string>& violations() const { return violations_; }
   /// What is nearest to a bound, of all joints.
   struct Worst {
-    double change_deg = 0.0;              ///< between successive pulses, by servo period
-    double max_change_deg = 0.0;          ///< allowed
+    /// Between successive pulses, in what the greatest speed allows in a servo period.
+    double change_steps = 0.0;
     double beyond_limit_deg = -1e9;       ///< of a pulse beyond the joint's limits; negative: within
     double motion_after_command_s = 0.0;  ///< from the last tick or heartbeat of the host to the last change of a pulse
   };
@@ -99,7 +99,7 @@ class MotionWatch {
     std::optional<canopen::NmtState> nmt;
   };
 
-  void check_change(unsigned joint, BusTime begin, std::int32_t width);
+  void check_change(unsigned joint, const JointModule::WatchedPulse& pulse);
   void check_command(unsigned joint, BusTime begin);
   void set_state(unsigned joint, BusTime now, JointState state);
   [[nodiscard]] bool follows_pulses(const Joint& joint, const JointModule::WatchedPulse& pulse) const;

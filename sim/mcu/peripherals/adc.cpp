@@ -162,7 +162,9 @@ void Adc::clocks_change(const Clocks& next) {
 
 void Adc::trigger(LocalTime time) {
   finish_conversions(time);
-  if ((cr2_ & cr2_regular_triggers) != 0 && converting_ != Group::regular && !regular_waits_) {
+  // Without a clock (the PLL has failed) the converter does not see the trigger.
+  const bool has_clock = clock_period() < local_time_per_us * 1'000;
+  if (has_clock && (cr2_ & cr2_regular_triggers) != 0 && converting_ != Group::regular && !regular_waits_) {
     start_group(Group::regular, cr2_, time);
     accepts_triggers_ = true;
     chip().reschedule();

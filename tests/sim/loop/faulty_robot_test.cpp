@@ -100,7 +100,7 @@ TEST(FaultyRobot, AModuleThatMissesAFewSyncsCatchesUp) {
 }
 
 TEST(FaultyRobot, HoldsWhenTheProducerOfTheSyncIsUnplugged) {
-  const Outcome outcome = run("at 1.5s unplug J1 for 2s");
+  const Outcome outcome = run("at 1.5s unplug J5 for 2s");  // the head
   EXPECT_EQ(outcome.ends, all_hold);
   EXPECT_TRUE(outcome.violations.empty());
 }
@@ -166,7 +166,9 @@ TEST(FaultyRobot, TouchSensorsFailAsTheScheduleSays) {
   const std::string undisturbed = run("at 4.99s touch J3 open for 1ms", scenario).setpoints;
   for (const char* fault : {"pressed", "open", "bouncing"}) {
     const Outcome outcome = run("at 0.5s touch J3 " + std::string(fault) + " for 3s", scenario);
-    EXPECT_NE(outcome.setpoints, undisturbed) << fault << ": the reflex reads contacts";
+    if (std::string(fault) != "open") {  // there is no contact there in this time
+      EXPECT_NE(outcome.setpoints, undisturbed) << fault << ": the reflex reads contacts";
+    }
     EXPECT_EQ(outcome.ends, all_in_operation) << fault;
   }
 }
@@ -237,8 +239,10 @@ class Watch : public testing::Test {
   Watch() { watch.start(1); }
 
   static constexpr BusTime ms = 1'000'000;
+  /// As a native module says it; nothing: as measured at a chip.
+  std::optional<bool> follows = true;
   void pulse(BusTime at, int width, canopen::PowerState power = canopen::PowerState::operation_enabled) {
-    watch.note_pulse(0, {at, width, power, std::nullopt, true});
+    watch.note_pulse(0, {at, width, power, follows, true});
   }
   void host(BusTime at) {
     watch.note_frame({at - 100'000, at, canopen::encode(canopen::Heartbeat{canopen::host_node, canopen::NmtState::operational}), 9});
@@ -277,8 +281,8 @@ TEST_F(Watch, FindsAJump) {
 }
 
 TEST_F(Watch, FindsPulsesThatAddUpToAHigherSpeed) {
-  for (int i = 0; i < 4; ++i) {
-    pulse((20 + 5 * static_cast<BusTime>(i)) * ms, center - 4'000 + i * step);
+  for (int i = 0; i < 6; ++i) {
+    pulse((20 + 5 * static_cast<BusTime>(i)) * ms, center - 5'500 + i * step);
   }
   EXPECT_NE(found().find("above the greatest speed"), std::string::npos) << found();
 }
@@ -314,7 +318,17 @@ TEST_F(Watch, FindsAServoThatIsEnabledWithoutTicksAtTheEnd) {
   EXPECT_NE(found().find("without a tick"), std::string::npos) << found();
 }
 
+TEST_F(Watch, AllowsAHiddenRequestBetweenTwoMeasuredPulses) {
+  follows.reset();
+  pulse(20 * ms, center - step);
+  pulse(40 * ms, center + step);
+  EXPECT_EQ(found(), "");
+  pulse(60 * ms, center - step - 20);
+  EXPECT_NE(found().find("a jump of"), std::string::npos) << found();
+}
+
 TEST_F(Watch, LetsTheFirstPulseBeAnywhereWithinTheLimits) {
+  follows.reset();
   pulse(20 * ms, center - 6'000);
   pulse(500 * ms, center + 6'000);
   EXPECT_EQ(found(), "") << "the servo had no pulses for many periods";

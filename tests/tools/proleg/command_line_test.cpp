@@ -15,13 +15,13 @@ TEST_F(CommandLine, HelpListsTheSubcommands) {
   for (const char* word : {"--help", "-h", "help"}) {
     const Finished finished = proleg({word});
     EXPECT_EQ(finished.status, 0);
-    for (const char* name : {"algorithms", "new", "simulate", "sweep", "hil", "replay", "export", "plot", "optimise",
-                             "experiment", "objects"}) {
+    for (const char* name : {"algorithms", "new", "simulate", "sweep", "hil", "faults", "replay", "export", "plot",
+                             "optimise", "experiment", "objects"}) {
       EXPECT_NE(finished.out.find(name), std::string::npos);
     }
   }
-  for (const char* name : {"algorithms", "new", "simulate", "sweep", "hil", "replay", "export", "plot", "optimise",
-                           "experiment", "objects"}) {
+  for (const char* name : {"algorithms", "new", "simulate", "sweep", "hil", "faults", "replay", "export", "plot",
+                           "optimise", "experiment", "objects"}) {
     const Finished finished = proleg({name, "--help"});
     EXPECT_EQ(finished.status, 0);
     EXPECT_NE(finished.out.find(std::string("Usage: proleg ") + name), std::string::npos) << finished.out;
@@ -37,7 +37,8 @@ TEST_F(CommandLine, VersionNamesTheBuild) {
 TEST_F(CommandLine, RefusesUnknownWords) {
   expect_refused(
       {},
-      {"expected one of algorithms, new, simulate, sweep, hil, replay, export, plot, optimise, experiment, objects"});
+      {"expected one of algorithms, new, simulate, sweep, hil, faults, replay, export, plot, optimise, experiment, "
+       "objects"});
   expect_refused({"simulat"}, {"'simulat'", "expected one of algorithms, new, simulate"});
   expect_refused({"../../bin/sh"}, {"expected one of"});
   expect_refused({"simulate\n\x1b[31m"}, {"'simulate  [31m'", "expected one of"});
@@ -321,6 +322,14 @@ TEST_F(CommandLine, ThePageOfGaitMeasuresHasTheTableOfTheDeclarations) {
   EXPECT_NE(proleg({"algorithms", "--measures"}).out.find("smoothness [m/s^2], the lower, the better\n"),
             std::string::npos);
   expect_refused({"algorithms", "DirectJointAccess", "--measures"}, {"--measures"});
+}
+
+TEST_F(CommandLine, ThePageOfFaultsHasTheTableOfTheDeclarations) {
+  const std::string table = proleg({"faults", "--markdown"}).out;
+  EXPECT_NE(table.find("| `at TIME unplug JOINT for TIME` |"), std::string::npos) << table;
+  EXPECT_NE(read_file(fs::path(source_path("/docs/faults.md"))).find("\n\n" + table + "\n"), std::string::npos)
+      << "docs/faults.md must contain:\n"
+      << table;
 }
 
 TEST_F(CommandLine, AFullDiskIsReported) {

@@ -66,6 +66,58 @@ TEST_F(Hil, AResetNamesANodeOrAJoint) {
   EXPECT_EQ(by_name["setpoint_hash"], reset("2@100")["setpoint_hash"]);
 }
 
+TEST_F(Hil, PlaysFaultsFromAFileAndRecordsThem) {
+  std::ofstream(file("faults.txt")) << "at 1.5s host-dies  # for ever\nat 1s unplug J4 for 30ms\n";
+  const std::string recording = file("faults.proleg").string();
+  const Json run = succeed({"hil", scenario("uniform"), "--seconds", "4", "--faults", file("faults.txt").string(),
+                            "--record", recording});
+  EXPECT_EQ(run["differences"], 0);
+  EXPECT_EQ(run["faults"]["schedule"][0], "at 1s unplug J4 for 30ms") << "by ascending time";
+  EXPECT_EQ(run["faults"]["violations"].size(), 0U);
+  for (std::size_t joint = 0; joint < 5; ++joint) {
+    EXPECT_EQ(run["faults"]["joints_ended"][joint], "hold");
+  }
+  const Json replayed = succeed({"replay", recording});
+  EXPECT_EQ(replayed["first_fault_tick"], 100);
+  EXPECT_EQ(replayed["ticks"], 100);
+  EXPECT_EQ(proleg({"faults", "--recording", recording}).out, "at 1s unplug J4 for 30ms\nat 1.5s host-dies\n");
+  const std::string picture = file("faults.svg").string();
+  EXPECT_EQ(proleg({"plot", recording, "--out", picture}).status, 0);
+  EXPECT_NE(read_file(picture).find("unplug J4 for 30ms"), std::string::npos);
+}
+
+TEST_F(Hil, TheScheduleOfASeedIsTheOneThatIsPrinted) {
+  const std::vector<std::string> run{"hil", scenario("uniform"), "--seconds", "4", "--faults"};
+  const auto with = [&](const std::string& word) {
+    std::vector<std::string> all = run;
+    all.push_back(word);
+    return succeed(all);
+  };
+  const std::string schedule = proleg({"faults", scenario("uniform"), "--schedule", "11", "--seconds", "4"}).out;
+  std::ofstream(file("printed.txt")) << schedule;
+  EXPECT_EQ(with("11")["setpoint_hash"], with(file("printed.txt").string())["setpoint_hash"]) << schedule;
+}
+
+TEST_F(Hil, RunsACampaignOfRandomFaults) {
+  const Json campaign = succeed({"hil", scenario("uniform"), "--seconds", "3", "--faults", "1:5"});
+  EXPECT_EQ(campaign["runs"], 5);
+  EXPECT_EQ(campaign["broken_runs"], 0);
+  EXPECT_EQ(campaign["joints_ended"]["unsafe"], 0);
+}
+
+TEST_F(Hil, FaultsThatDoNotExistAreRefused) {
+  const std::string scenario_file = scenario("uniform");
+  std::ofstream(file("wrong.txt")) << "at 1s unplug J7 for 1s\n";
+  std::ofstream(file("empty.txt")) << "# nothing\n";
+  expect_refused({"hil", scenario_file, "--faults", file("wrong.txt").string()}, {"wrong.txt:1: found the joint 'J7'"});
+  expect_refused({"hil", scenario_file, "--faults", file("empty.txt").string()}, {"found no fault"});
+  expect_refused({"hil", scenario_file, "--faults", "none.txt"}, {"no such file"});
+  expect_refused({"hil", scenario_file, "--faults", "1:0"}, {"'1:0'", "SEED:COUNT"});
+  expect_refused({"hil", scenario_file, "--seconds", "1", "--faults", "1"}, {"a run of 1s, expected at least 2.5s"});
+  expect_refused({"faults", scenario_file, "--schedule", "x"}, {"'x'"});
+  expect_refused({"faults", "--schedule", "1"}, {"no scenario"});
+}
+
 TEST_F(Hil, ReadsLossesFromAFile) {
   std::ofstream(file("losses.txt")) << "30 J5 J4\n31 J5 *\n";
   const std::vector<std::string> losses{"--losses", file("losses.txt").string()};

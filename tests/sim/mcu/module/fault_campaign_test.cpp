@@ -1,0 +1,102 @@
+// Random faults for modules that run the flashed image in virtual chips: the rules of motion hold, and where the faults
+// act at ticks, set-points and pulses are those of native modules.
+//
+// Schedule n has the seed n. PROLEG_FAULTS_FIRST and PROLEG_FAULTS_RUNS choose the schedules.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <string>
+
+#include "sim/fault/fault_reader.hpp"
+#include "sim/fault/random_faults.hpp"
+#include "sim/loop/fault_run.hpp"
+#include "virtual_robot.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr double duration_s = 5.0;
+constexpr std::array scenarios{"travelling_wave/uniform", "travelling_wave/coupled", "obstacle/reflex"};
+
+std::uint32_t from_environment(const char* name, std::uint32_t fallback) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? fallback : static_cast<std::uint32_t>(std::stoul(text));
+}
+
+/// With the servo period of common servos. (The shipped one is shorter than a pulse: the pin of a chip then shows only
+/// some of the pulses.)
+Scenario scenario_of(std::uint32_t seed) {
+  Scenario scenario = shipped(scenarios[seed % scenarios.size()]);
+  scenario.robot.servo.period_us = 20'000;
+  return scenario;
+}
+
+FaultRunResult run_image(const Scenario& scenario, const FaultSchedule& schedule, std::uint32_t ticks) {
+  return run_with_faults(scenario, schedule, ticks, [](const ModuleParts& parts) {
+    return std::make_unique<VirtualModule>(parts, flashed_image(), VirtualModuleOptions{});
+  });
+}
+
+struct Campaign {
+  FaultStatistics statistics;
+  std::uint32_t compared = 0;
+  std::uint32_t identical = 0;
+};
+
+Campaign run_campaign(bool only_at_ticks) {
+  const std::uint32_t first = from_environment("PROLEG_FAULTS_FIRST", 1);
+  const std::uint32_t runs = from_environment("PROLEG_FAULTS_RUNS", 12);
+  Campaign campaign;
+  for (std::uint32_t seed = first; seed < first + runs; ++seed) {
+    const Scenario scenario = scenario_of(seed);
+    const auto ticks = static_cast<std::uint32_t>(duration_s * 1e6 / scenario.kernel.tick_period_us);
+    RandomFaults settings;
+    settings.seed = seed;
+    settings.has_chips = true;
+    settings.only_at_ticks = only_at_ticks;
+    const FaultSchedule schedule = random_faults(settings, scenario);
+    const FaultRunResult image = run_image(scenario, schedule, ticks);
+    campaign.statistics.add(schedule, image);
+    for (const std::string& violation : image.violations) {
+      ADD_FAILURE() << "seed " << seed << ": " << violation << "\n" << faults_text(schedule, scenario.robot);
+    }
+    if (!can_play_natively(schedule)) {
+      continue;
+    }
+    const FaultRunResult native = run_with_faults(scenario, schedule, ticks);
+    const bool is_identical =
+        native.setpoint_hash == image.setpoint_hash && native.servo_hash == image.servo_hash;
+    ++campaign.compared;
+    campaign.identical += is_identical ? 1U : 0U;
+    if (act_at_ticks(schedule)) {
+      EXPECT_TRUE(is_identical) << "seed " << seed << "\n" << faults_text(schedule, scenario.robot);
+    }
+  }
+  const MotionWatch::Worst& worst = campaign.statistics.worst;
+  std::printf("%u schedules, %u faults, %u broken; %u played by native modules too, %u of them identical\n",
+              campaign.statistics.runs, campaign.statistics.faults, campaign.statistics.broken_runs, campaign.compared,
+              campaign.identical);
+  std::printf("worst: change between pulses %.3f of what the greatest speed allows; %.3f degrees inside the limits; "
+              "motion %.3f of 1.500 s after the last command\n",
+              worst.change_steps, -worst.beyond_limit_deg, worst.motion_after_command_s);
+  return campaign;
+}
+
+TEST(ImageFaultCampaign, KeepsMotionBoundedWhateverFails) {
+  const Campaign campaign = run_campaign(false);
+  EXPECT_EQ(campaign.statistics.joints_ended[static_cast<std::size_t>(JointEnd::unsafe)], 0U);
+}
+
+TEST(ImageFaultCampaign, FaultsThatActAtTicksLeaveTheImageIdenticalToNativeModules) {
+  const Campaign campaign = run_campaign(true);
+  EXPECT_EQ(campaign.compared, campaign.statistics.runs);
+  EXPECT_EQ(campaign.identical, campaign.statistics.runs);
+}
+
+}  // namespace
+}  // namespace proleg::sim

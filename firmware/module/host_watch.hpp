@@ -8,28 +8,42 @@ namespace proleg::firmware {
 class HostWatch {
  public:
   /// As in 0x1016: 65536 * node + timeout in ms; 0 ms: none is expected. Nothing is missing before the first heartbeat
-  /// was received.
+  /// was received or the servo was enabled.
   void set(std::uint32_t expected) {
     expected_ = expected;
     timeout_.stop();
+    is_enabled_ = false;
   }
   [[nodiscard]] std::uint32_t expected() const { return expected_; }
 
-  /// A heartbeat of any node.
-  void receive_heartbeat(Microseconds now, std::uint8_t node) {
-    const std::uint32_t timeout_ms = expected_ & 0xFFFFU;
-    if (timeout_ms != 0 && node == expected_ >> 16U) {
-      timeout_.start(now, Microseconds{timeout_ms} * 1'000U);
+  /// A heartbeat of any node. Whether it is the one that is expected.
+  bool receive_heartbeat(Microseconds now, std::uint8_t node) {
+    const bool is_expected = (expected_ & 0xFFFFU) != 0 && node == expected_ >> 16U;
+    if (is_expected) {
+      start(now);
     }
+    return is_expected;
   }
-  /// Whether a heartbeat of the host was received and the timeout has not passed since.
-  [[nodiscard]] bool is_present() const { return timeout_.is_running(); }
+  /// Whether the servo is enabled. A host that enables it and dies before its next heartbeat is missing, too.
+  void update(Microseconds now, bool is_enabled) {
+    if (is_enabled && !is_enabled_ && !timeout_.is_running()) {
+      start(now);
+    }
+    is_enabled_ = is_enabled;
+  }
   /// True, once, when the timeout has passed.
   [[nodiscard]] bool poll_timeout(Microseconds now) { return timeout_.poll(now); }
   [[nodiscard]] Microseconds next_deadline() const { return timeout_.deadline(); }
 
  private:
+  void start(Microseconds now) {
+    if (const std::uint32_t timeout_ms = expected_ & 0xFFFFU; timeout_ms != 0) {
+      timeout_.start(now, Microseconds{timeout_ms} * 1'000U);
+    }
+  }
+
   std::uint32_t expected_ = 0;
+  bool is_enabled_ = false;
   Timeout timeout_;
 };
 

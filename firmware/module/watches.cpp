@@ -26,8 +26,7 @@ void receive_heartbeat(Parts& parts, Microseconds now, const CanFrame& frame) {
   if (!heartbeat) {
     return;
   }
-  parts.host.receive_heartbeat(now, heartbeat->node);
-  if (parts.host.is_present()) {
+  if (parts.host.receive_heartbeat(now, heartbeat->node)) {
     parts.emergencies.clear(Fault::heartbeat_lost);
   }
 }
@@ -103,8 +102,9 @@ void clear_over_current(Parts& parts) {
   }
 }
 
-void update_sync_watch(Parts& parts, Microseconds now) {
+void update_watches(Parts& parts, Microseconds now) {
   const bool is_enabled = parts.drive.power().state() == PowerState::operation_enabled;
+  parts.host.update(now, is_enabled);
   parts.sync.update(now, parts.network.operational() && (parts.keeper.keeps_tick() || is_enabled));
 }
 

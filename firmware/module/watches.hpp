@@ -29,6 +29,6 @@ void poll_sync(Parts& parts, Microseconds now);
 /// expected.
 void clear_over_current(Parts& parts);
 void require_good_hardware(Parts& parts);
-void update_sync_watch(Parts& parts, Microseconds now);
+void update_watches(Parts& parts, Microseconds now);
 
 }  // namespace proleg::firmware

@@ -194,16 +194,32 @@ TEST_F(Power, AQuickStopOfAServoWithoutPulsesStaysOff) {
   expect_no_pulses(2'000'000);
 }
 
-TEST_F(Power, TheHostIsMissingOnlyAfterItsFirstHeartbeat) {
-  robot.enable(0);
+TEST(HostWatch, MissesNobodyBeforeTheFirstHeartbeatUnlessTheServoIsEnabled) {
+  test::TestModule robot;
+  robot.bus.host_is_alive = false;
+  robot.set_up_and_start();
   robot.run(150);
   EXPECT_TRUE(robot.emergencies().empty());
+}
+
+TEST(HostWatch, AHostThatEnablesAServoAndDiesBeforeItsNextHeartbeatIsMissed) {
+  test::TestModule robot;
+  robot.bus.host_is_alive = false;
+  robot.set_up_and_start();
+  robot.enable(0);
+  const Microseconds enabled = robot.bus.now();
+  robot.run(48);
   EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);
+  robot.run(49, 60);
+  EXPECT_EQ(robot.module().power(), PowerState::quick_stop_active);
+  EXPECT_LE(robot.bus.now(), enabled + 700'000);
+  EXPECT_TRUE(robot.module().synchronised()) << "there are SYNCs";
 }
 
 TEST_F(Power, AMissingHostRampsToTheSafePose) {
   const CanFrame heartbeat = encode(canopen::Heartbeat{canopen::host_node, canopen::NmtState::operational});
   robot.enable(0);
+  robot.bus.host_is_alive = false;
   robot.bus.deliver(heartbeat);
   robot.run(39);
   EXPECT_EQ(robot.module().power(), PowerState::operation_enabled);

@@ -42,6 +42,7 @@ class TestBus {
       ASSERT_LE(++events_, 10'000'000U) << "time stands still";
       now_ = std::max(now_, time);
       finish_frame();
+      beat();
       for (const auto& node : nodes) {
         if (node->next_deadline() <= now_) {
           node->poll(now_);
@@ -130,6 +131,8 @@ class TestBus {
   }
 
   std::vector<std::unique_ptr<ModuleNode>> nodes;
+  /// Whether the host sends its heartbeat.
+  bool host_is_alive = true;
   std::vector<Sent> log;
   /// Called with every frame that was sent, before a node receives it.
   std::function<void(const CanFrame&)> on_frame = [](const CanFrame&) {};
@@ -138,7 +141,7 @@ class TestBus {
 
  private:
   [[nodiscard]] Microseconds next_event() const {
-    Microseconds next = frame_end_;
+    Microseconds next = std::min(frame_end_, host_is_alive ? next_beat_ : never);
     for (const auto& node : nodes) {
       next = std::min(next, node->next_deadline());
     }
@@ -207,7 +210,22 @@ class TestBus {
     return client_.state() == canopen::SdoClient::State::done ? canopen::AbortCode::none : client_.abort_code();
   }
 
+  /// The heartbeat of the host takes no time on this bus, and is in no log.
+  void beat() {
+    constexpr Microseconds period = 200'000;
+    if (now_ < next_beat_) {
+      return;
+    }
+    next_beat_ = now_ + period;
+    if (host_is_alive) {
+      for (const auto& node : nodes) {
+        node->receive(now_, encode(canopen::Heartbeat{canopen::host_node, canopen::NmtState::operational}));
+      }
+    }
+  }
+
   Microseconds now_ = 0;
+  Microseconds next_beat_ = 0;
   std::vector<CanFrame> host_queue_;
   CanFrame on_wire_;
   std::vector<CanFrame>* queue_ = nullptr;

@@ -19,7 +19,7 @@ bool prevails(const CanFrame& left, const CanFrame& right) {
   return std::ranges::lexicographical_compare(left.bytes(), right.bytes());
 }
 
-constexpr unsigned error_bits = 6 + 8;       // flag and delimiter; flags that do not begin together would take up to 12
+constexpr unsigned error_bits = 6 + 8;  // flag and delimiter; flags that do not begin together would take up to 12
 constexpr unsigned recessive_bits_to_join = 11;
 constexpr unsigned suspend_bits = 8;         // a passive sender waits this long for others
 constexpr unsigned earliest_collision = 16;  // frames of one identifier differ from the length on
@@ -77,7 +77,8 @@ BusTime Bus::earliest_delivery() const {
     return std::min(next_delivery(), current_.end);
   }
   const bool collides = collision_rule_ == CollisionRule::bit_error;
-  return std::min(std::min(next_delivery(), next_end_of_wait()), now_ + duration(collides ? earliest_collision + error_bits : min_frame_bits));
+  return std::min(std::min(next_delivery(), next_end_of_wait()),
+                  now_ + duration(collides ? earliest_collision + error_bits : min_frame_bits));
 }
 
 void Bus::advance_to(BusTime time) {

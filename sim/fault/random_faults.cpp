@@ -27,9 +27,8 @@ class Dice {
     while (schedule.size() < count) {
       Fault fault = one();
       // The end of one fault of a kind would end another one of it.
-      const bool is_new = std::ranges::none_of(schedule, [&](const Fault& other) {
-        return other.kind == fault.kind && other.joint == fault.joint;
-      });
+      const bool is_new = std::ranges::none_of(
+          schedule, [&](const Fault& other) { return other.kind == fault.kind && other.joint == fault.joint; });
       if (is_new) {
         schedule.push_back(fault);
       }
@@ -51,9 +50,8 @@ class Dice {
   static constexpr unsigned max_count = 4;
 
   [[nodiscard]] static bool has_supply_fault(const FaultSchedule& schedule, const Fault& fault) {
-    return std::ranges::any_of(schedule, [&](const Fault& other) {
-      return other.kind == FaultKind::supply && other.joint == fault.joint;
-    });
+    return std::ranges::any_of(
+        schedule, [&](const Fault& other) { return other.kind == FaultKind::supply && other.joint == fault.joint; });
   }
 
   Fault one() {
@@ -96,7 +94,8 @@ class Dice {
     };
     switch (fault.kind) {
       case FaultKind::supply:
-        fault.amount = std::array<std::uint32_t, 4>{2'500, 2'800, 0, 1'500}.at(noise_.below(settings_.only_at_ticks ? 2 : 4));
+        fault.amount =
+            std::array<std::uint32_t, 4>{2'500, 2'800, 0, 1'500}.at(noise_.below(settings_.only_at_ticks ? 2 : 4));
         break;
       case FaultKind::jam:
         fault.amount = std::array<std::uint32_t, 3>{1'500, 2'200, 3'000}.at(noise_.below(3));
@@ -153,7 +152,8 @@ class Dice {
         break;
       default:
         frame = {static_cast<std::uint16_t>(noise_.below(CanFrame::max_identifier + 1U)),
-                 static_cast<std::uint8_t>(noise_.below(9)), {}};
+                 static_cast<std::uint8_t>(noise_.below(9)),
+                 {}};
         fill(frame);
         break;
     }

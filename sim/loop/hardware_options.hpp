@@ -9,10 +9,10 @@
 #include "firmware/module/module_identity.hpp"
 #include "firmware/module/ports.hpp"
 #include "sim/bus/bus.hpp"
+#include "sim/fault/fault.hpp"
 #include "sim/loop/crystal.hpp"
 #include "sim/loop/injector.hpp"
 #include "sim/loop/joint_module.hpp"
-#include "sim/fault/fault.hpp"
 #include "sim/scenario/losses.hpp"
 
 namespace proleg::sim {

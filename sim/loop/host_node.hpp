@@ -68,9 +68,7 @@ class HostNode final : private BusListener {
  private:
   void received(BusTime time, const CanFrame& frame) override;
   void transmitted(BusTime time, const CanFrame& frame) override;
-  void update_deadline() {
-    next_event_ = is_stalled_ ? never_on_bus : clock_.when(master_.next_deadline());
-  }
+  void update_deadline() { next_event_ = is_stalled_ ? never_on_bus : clock_.when(master_.next_deadline()); }
   [[nodiscard]] std::string name_of(std::uint8_t node) const;
 
   const Scenario& scenario_;

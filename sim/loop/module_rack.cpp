@@ -39,7 +39,10 @@ class ServoMeter {
 }  // namespace
 
 ModuleRack::ModuleRack(Bus& bus, const Plant& plant, const Scenario& scenario, const HardwareOptions& options)
-    : scenario_(scenario), options_(options), records_(scenario.modules.size()), ticks_before_(scenario.modules.size()) {
+    : scenario_(scenario),
+      options_(options),
+      records_(scenario.modules.size()),
+      ticks_before_(scenario.modules.size()) {
   for (unsigned joint = 0; joint < scenario.modules.size(); ++joint) {
     firmware::ModuleIdentity identity = make_identity(scenario, joint);
     if (options.change_identity) {
@@ -74,8 +77,7 @@ std::unique_ptr<JointModule> ModuleRack::make_native(const ModuleParts& parts) c
 
 void ModuleRack::watch_pulses(const PulseWatch& watch) {
   for (unsigned joint = 0; joint < size(); ++joint) {
-    modules_[joint]->set_pulse_watch(
-        [watch, joint](const JointModule::WatchedPulse& pulse) { watch(joint, pulse); });
+    modules_[joint]->set_pulse_watch([watch, joint](const JointModule::WatchedPulse& pulse) { watch(joint, pulse); });
   }
 }
 

@@ -120,7 +120,7 @@ void MotionWatch::check_change(unsigned joint, const JointModule::WatchedPulse& 
   const int change = std::abs(width - servo.width);
   // At the pin of a chip, a pulse hides the requests that come while it is high: the next one that is seen may be two
   // requests on, or more if the pulse is longer than the servo period.
-  const auto periods = static_cast<double>((begin - *servo.last_pulse + period_ / 2) / period_);
+  const double periods = std::round(static_cast<double>(begin - *servo.last_pulse) / static_cast<double>(period_));
   const double steps = known ? 1.0 : std::max(periods, 1.0) + 1.0;
   worst_.change_steps = std::max(worst_.change_steps, change / max_change_);
   if (change > max_change_ * steps + 1 + width_tolerance) {
@@ -144,8 +144,9 @@ void MotionWatch::check_command(unsigned joint, BusTime begin) {
   const BusTime passed = begin > last ? begin - last : 0;
   worst_.motion_after_command_s = std::max(worst_.motion_after_command_s, static_cast<double>(passed) * 1e-9);
   if (passed > max_motion_without_command) {
-    violate(joint, begin, "motion " + number_text(static_cast<double>(passed) * 1e-9) + " s after the last " +
-                              (last == host_heard_ ? "heartbeat of the host" : "tick"));
+    violate(joint, begin,
+            "motion " + number_text(static_cast<double>(passed) * 1e-9) + " s after the last " +
+                (last == host_heard_ ? "heartbeat of the host" : "tick"));
   }
 }
 

@@ -25,7 +25,8 @@ class Plant {
   /// A servo that gets no pulses goes limp, after its latency.
   void release(std::size_t joint);
 
-  /// The joint does not turn any more, and its servo draws this current, in mA, while it gets pulses. Or it turns again.
+  /// The joint does not turn any more, and its servo draws this current, in mA, while it gets pulses. Or it turns
+  /// again.
   void jam(std::size_t joint, std::uint32_t current_ma);
   void free(std::size_t joint);
 
@@ -105,12 +106,12 @@ class Plant {
     std::int32_t command;  ///< the pulse that it acts on
     bool limp = false;
     std::optional<double> jam_ma{};  ///< jammed: the current that it draws then
-    double commanded_speed = 0.0;  ///< rad/s, in the last step
-    double angle_before = 0.0;     ///< rad, at the start of the last step
-    double angle = 0.0;            ///< rad, now
-    double torque_sum = 0.0;       ///< Nm, over the steps of this tick
-    double current_sum = 0.0;      ///< mA, over the steps of this tick
-    double drawn = 0.0;            ///< mA, over all steps
+    double commanded_speed = 0.0;    ///< rad/s, in the last step
+    double angle_before = 0.0;       ///< rad, at the start of the last step
+    double angle = 0.0;              ///< rad, now
+    double torque_sum = 0.0;         ///< Nm, over the steps of this tick
+    double current_sum = 0.0;        ///< mA, over the steps of this tick
+    double drawn = 0.0;              ///< mA, over all steps
   };
   std::vector<Servo> servos_;  ///< by joint
   Pcg32 contact_noise_;

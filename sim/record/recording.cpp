@@ -206,9 +206,10 @@ std::vector<RecordedRestart> Recording::restarts() const {
 std::vector<RecordedFault> Recording::faults() const {
   return reading(path_, [&] {
     std::vector<RecordedFault> faults;
-    Statement row(tables_->database,
-                  "SELECT start_us, end_us IS NULL, ifnull(end_us, 0), joint IS NULL, ifnull(joint, 0), text FROM fault "
-                  "ORDER BY start_us, position");
+    Statement row(
+        tables_->database,
+        "SELECT start_us, end_us IS NULL, ifnull(end_us, 0), joint IS NULL, ifnull(joint, 0), text FROM fault "
+        "ORDER BY start_us, position");
     while (row.step()) {
       RecordedFault& fault = faults.emplace_back();
       fault.start_us = time(row, 0);

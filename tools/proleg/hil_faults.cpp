@@ -21,9 +21,7 @@ namespace {
 
 constexpr std::size_t end_count = static_cast<std::size_t>(sim::JointEnd::unsafe) + 1;
 
-std::uint64_t run_us(const ScenarioRun& run) {
-  return std::uint64_t{run.ticks} * run.scenario.kernel.tick_period_us;
-}
+std::uint64_t run_us(const ScenarioRun& run) { return std::uint64_t{run.ticks} * run.scenario.kernel.tick_period_us; }
 
 bool is_number(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
@@ -57,7 +55,8 @@ sim::FaultSchedule random_schedule(const ScenarioRun& run, std::uint64_t seed, b
 }
 
 std::string worst_values(const sim::MotionWatch::Worst& worst) {
-  std::string text = "change between pulses " + number_text(worst.change_steps) + " of what the greatest speed allows; ";
+  std::string text =
+      "change between pulses " + number_text(worst.change_steps) + " of what the greatest speed allows; ";
   text += number_text(std::abs(worst.beyond_limit_deg)) + " deg " +
           (worst.beyond_limit_deg > 0.0 ? "beyond" : "inside") + " the limits; motion " +
           number_text(worst.motion_after_command_s) + " of 1.5 s after the last command";
@@ -133,8 +132,8 @@ Json campaign_json(const HilOptions& options, const ScenarioRun& run, const HilM
 void print_campaign(const ScenarioRun& run, const HilModules& modules, const Campaign& campaign) {
   const sim::FaultStatistics& statistics = campaign.statistics;
   std::printf("modules           %zu %s\n", run.scenario.modules.size(), modules.kind().c_str());
-  std::printf("schedules         %u of %s, with %u faults\n", statistics.runs,
-              sim::time_word(run_us(run)).c_str(), statistics.faults);
+  std::printf("schedules         %u of %s, with %u faults\n", statistics.runs, sim::time_word(run_us(run)).c_str(),
+              statistics.faults);
   std::string kinds;
   for (const sim::FaultDeclaration& kind : sim::fault_declarations()) {
     const std::uint32_t count = statistics.faults_of_kind[static_cast<std::size_t>(kind.kind)];
@@ -150,9 +149,10 @@ void print_campaign(const ScenarioRun& run, const HilModules& modules, const Cam
   std::printf("worst             %s\n", worst_values(statistics.worst).c_str());
   std::printf("broken rules      in %u schedules\n", statistics.broken_runs);
   if (modules.any_virtual()) {
-    std::printf("identity          %u schedules with native modules too: %u identical, %u different although their "
-                "faults act at ticks\n",
-                campaign.compared, campaign.identical, campaign.different);
+    std::printf(
+        "identity          %u schedules with native modules too: %u identical, %u different although their "
+        "faults act at ticks\n",
+        campaign.compared, campaign.identical, campaign.different);
   }
 }
 

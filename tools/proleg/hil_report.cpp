@@ -117,10 +117,11 @@ void print_hil_table(const HilOptions& options, const ScenarioRun& run, const Hi
   }
   std::printf("set-point hash    %s\n", result.setpoint_hash.c_str());
   std::printf("servo hash        %s\n", result.servo_hash.c_str());
-  std::printf("differences       %llu against the gait in memory%s\n", count(result.differences),
-              result.first_fault_tick
-                  ? (" until tick " + std::to_string(*result.first_fault_tick) + ", when the first fault begins").c_str()
-                  : "");
+  std::printf(
+      "differences       %llu against the gait in memory%s\n", count(result.differences),
+      result.first_fault_tick
+          ? (" until tick " + std::to_string(*result.first_fault_tick) + ", when the first fault begins").c_str()
+          : "");
   if (!result.faults.empty()) {
     print_fault_report(run, result);
   }

@@ -52,8 +52,8 @@ int replay(const Options& options) {
   // The tables must have the hashes that the run printed.
   const std::string setpoint_hash = recorded(recording, "setpoint_hash");
   const std::string servo_hash = recorded(recording, "servo_hash");
-  const bool same_hashes =
-      !recording.finished() || verification.first_fault_tick || (setpoint_hash == verification.setpoint_hash && servo_hash == verification.servo_hash);
+  const bool same_hashes = !recording.finished() || verification.first_fault_tick ||
+                           (setpoint_hash == verification.setpoint_hash && servo_hash == verification.servo_hash);
   const bool holds = verification.differences == 0 && same_hashes;
   const std::string core = recording.run_value("core_fingerprint");
   if (options.json) {

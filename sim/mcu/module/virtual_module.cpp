@@ -144,7 +144,8 @@ canopen::PowerState VirtualModule::power() const { return static_cast<canopen::P
 
 void VirtualModule::set_pulse_watch(PulseWatch watch) {
   pulse_watch_ = std::move(watch);
-  chip_.set_pin_watch(board::servo.port, board::servo.number, [this](BusTime time, bool high) { see_edge(time, high); });
+  chip_.set_pin_watch(board::servo.port, board::servo.number,
+                      [this](BusTime time, bool high) { see_edge(time, high); });
 }
 
 void VirtualModule::see_edge(BusTime time, bool high) {

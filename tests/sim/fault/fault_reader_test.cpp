@@ -60,12 +60,12 @@ TEST(FaultFile, AStarIsOneFaultAtEachJoint) {
 
 TEST(FaultFile, EachKindHasAnExampleOfItsForm) {
   const std::vector<std::string> lines{
-      "at 1s unplug J1 for 1s",       "at 1s supply J1 0V for 1s", "at 1s reset J1",
-      "at 1s crystal J1 for 1s",      "at 1s pll J1 for 1s",       "at 1s adc J1 for 1s",
-      "at 1s touch J1 open for 1s",   "at 1s jam J1 2.5A for 1s",  "at 1s babble 001 for 1s",
-      "at 1s dominant for 1s",        "at 1s corrupt 1% for 1s",   "at 1s lose J1 99.9% for 1s",
-      "at 1s delay J1 1.5ms for 1s",  "at 1s send 7FF#",           "at 1s master",
-      "at 1s host-stall for 0.125s",  "at 1s host-dies",
+      "at 1s unplug J1 for 1s",      "at 1s supply J1 0V for 1s", "at 1s reset J1",
+      "at 1s crystal J1 for 1s",     "at 1s pll J1 for 1s",       "at 1s adc J1 for 1s",
+      "at 1s touch J1 open for 1s",  "at 1s jam J1 2.5A for 1s",  "at 1s babble 001 for 1s",
+      "at 1s dominant for 1s",       "at 1s corrupt 1% for 1s",   "at 1s lose J1 99.9% for 1s",
+      "at 1s delay J1 1.5ms for 1s", "at 1s send 7FF#",           "at 1s master",
+      "at 1s host-stall for 0.125s", "at 1s host-dies",
   };
   ASSERT_EQ(lines.size(), fault_declarations().size());
   for (std::size_t i = 0; i < lines.size(); ++i) {

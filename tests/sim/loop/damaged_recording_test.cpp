@@ -20,7 +20,7 @@
 namespace proleg::sim {
 namespace {
 
-/// A recording that has rows in every table: changes, a distortion, losses, a restart.
+/// A recording that has rows in every table: changes, a distortion, losses, a restart, faults.
 void record_eventful_run(const std::filesystem::path& path) {
   Scenario scenario = shipped("travelling_wave/coupled");
   apply_setting(scenario, "amplitude=20@3");
@@ -31,6 +31,11 @@ void record_eventful_run(const std::filesystem::path& path) {
   options.restarts = {{8, 2}};
   HardwareLoop loop(scenario, options);
   Recorder recorder(path, scenario, "test", "build");
+  // In the last tick, so that all before it is compared.
+  const RecordedFault faults[] = {{290'000, 295'000, 1U, "at 290ms unplug J4 for 5ms"},
+                                  {296'000, {}, {}, "at 296ms host-dies"}};
+  recorder.record_faults(faults);
+  recorder.record_module_event(297'000, 1, "limp");
   while (loop.tick() < 30) {
     const Change* change = loop.advance();
     if (change != nullptr) {

@@ -60,10 +60,10 @@ TEST(FaultCampaign, KeepsMotionBoundedWhateverFails) {
   std::printf("%u schedules, %u faults; joints ended: operation %u, hold %u, limp %u, silent %u, unsafe %u\n",
               statistics.runs, statistics.faults, ended(JointEnd::operation), ended(JointEnd::hold),
               ended(JointEnd::limp), ended(JointEnd::silent), ended(JointEnd::unsafe));
-  std::printf("worst: change between pulses %.3f of what the greatest speed allows; %.3f degrees inside the limits; "
-              "motion %.3f of 1.500 s after the last command\n",
-              statistics.worst.change_steps, -statistics.worst.beyond_limit_deg,
-              statistics.worst.motion_after_command_s);
+  std::printf(
+      "worst: change between pulses %.3f of what the greatest speed allows; %.3f degrees inside the limits; "
+      "motion %.3f of 1.500 s after the last command\n",
+      statistics.worst.change_steps, -statistics.worst.beyond_limit_deg, statistics.worst.motion_after_command_s);
   EXPECT_EQ(statistics.broken_runs, 0U);
   EXPECT_EQ(ended(JointEnd::unsafe), 0U);
 }

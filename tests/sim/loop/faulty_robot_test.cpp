@@ -27,16 +27,20 @@ struct Outcome {
 
 Outcome run(const std::string& faults, const Scenario& scenario) {
   HardwareOptions options;
-  options.faults =
-      parse_faults(faults, "faults", scenario.robot, static_cast<std::uint64_t>(duration_s * 1e6));
+  options.faults = parse_faults(faults, "faults", scenario.robot, static_cast<std::uint64_t>(duration_s * 1e6));
   HardwareLoop loop(scenario, std::move(options));
   while (loop.tick() < duration_s * 1e6 / scenario.kernel.tick_period_us) {
     loop.advance();
   }
   loop.finish_watch();
   const MotionWatch& watch = loop.motion_watch();
-  return {watch.events(),     watch.ends(), watch.violations(), loop.first_fault_tick(),
-          loop.differences(), loop.setpoint_hash().hex(), loop.plant().displacement()};
+  return {watch.events(),
+          watch.ends(),
+          watch.violations(),
+          loop.first_fault_tick(),
+          loop.differences(),
+          loop.setpoint_hash().hex(),
+          loop.plant().displacement()};
 }
 
 Outcome run(const std::string& faults) { return run(faults, shipped("travelling_wave/uniform")); }
@@ -245,7 +249,8 @@ class Watch : public testing::Test {
     watch.note_pulse(0, {at, width, power, follows, true});
   }
   void host(BusTime at) {
-    watch.note_frame({at - 100'000, at, canopen::encode(canopen::Heartbeat{canopen::host_node, canopen::NmtState::operational}), 9});
+    watch.note_frame(
+        {at - 100'000, at, canopen::encode(canopen::Heartbeat{canopen::host_node, canopen::NmtState::operational}), 9});
   }
   void tick(BusTime at, bool has_computed = true) {
     watch.note_tick(0, at, {has_computed, true, canopen::PowerState::operation_enabled});

@@ -69,8 +69,8 @@ TEST_F(Hil, AResetNamesANodeOrAJoint) {
 TEST_F(Hil, PlaysFaultsFromAFileAndRecordsThem) {
   std::ofstream(file("faults.txt")) << "at 1.5s host-dies  # for ever\nat 1s unplug J4 for 30ms\n";
   const std::string recording = file("faults.proleg").string();
-  const Json run = succeed({"hil", scenario("uniform"), "--seconds", "4", "--faults", file("faults.txt").string(),
-                            "--record", recording});
+  const Json run = succeed(
+      {"hil", scenario("uniform"), "--seconds", "4", "--faults", file("faults.txt").string(), "--record", recording});
   EXPECT_EQ(run["differences"], 0);
   EXPECT_EQ(run["faults"]["schedule"][0], "at 1s unplug J4 for 30ms") << "by ascending time";
   EXPECT_EQ(run["faults"]["violations"].size(), 0U);
@@ -82,7 +82,7 @@ TEST_F(Hil, PlaysFaultsFromAFileAndRecordsThem) {
   EXPECT_EQ(replayed["ticks"], 100);
   EXPECT_EQ(proleg({"faults", "--recording", recording}).out, "at 1s unplug J4 for 30ms\nat 1.5s host-dies\n");
   const std::string picture = file("faults.svg").string();
-  EXPECT_EQ(proleg({"plot", recording, "--out", picture}).status, 0);
+  EXPECT_EQ(proleg({"plot", recording, "--from", "0", "--to", "2", "--out", picture}).status, 0);
   EXPECT_NE(read_file(picture).find("unplug J4 for 30ms"), std::string::npos);
 }
 

@@ -69,8 +69,7 @@ Campaign run_campaign(bool only_at_ticks) {
       continue;
     }
     const FaultRunResult native = run_with_faults(scenario, schedule, ticks);
-    const bool is_identical =
-        native.setpoint_hash == image.setpoint_hash && native.servo_hash == image.servo_hash;
+    const bool is_identical = native.setpoint_hash == image.setpoint_hash && native.servo_hash == image.servo_hash;
     ++campaign.compared;
     campaign.identical += is_identical ? 1U : 0U;
     if (act_at_ticks(schedule)) {
@@ -81,9 +80,10 @@ Campaign run_campaign(bool only_at_ticks) {
   std::printf("%u schedules, %u faults, %u broken; %u played by native modules too, %u of them identical\n",
               campaign.statistics.runs, campaign.statistics.faults, campaign.statistics.broken_runs, campaign.compared,
               campaign.identical);
-  std::printf("worst: change between pulses %.3f of what the greatest speed allows; %.3f degrees inside the limits; "
-              "motion %.3f of 1.500 s after the last command\n",
-              worst.change_steps, -worst.beyond_limit_deg, worst.motion_after_command_s);
+  std::printf(
+      "worst: change between pulses %.3f of what the greatest speed allows; %.3f degrees inside the limits; "
+      "motion %.3f of 1.500 s after the last command\n",
+      worst.change_steps, -worst.beyond_limit_deg, worst.motion_after_command_s);
   return campaign;
 }
 

@@ -59,27 +59,6 @@ std::optional<std::uint16_t> parse_identifier(std::string_view word) {
   return word.size() == 3 && identifier && *identifier <= CanFrame::max_identifier ? identifier : std::nullopt;
 }
 
-std::optional<CanFrame> parse_frame(std::string_view word) {
-  const std::size_t hash = word.find('#');
-  const auto identifier = parse_identifier(word.substr(0, hash));
-  if (!identifier || hash == std::string_view::npos) {
-    return std::nullopt;
-  }
-  const std::string_view data = word.substr(hash + 1);
-  if (data.size() % 2 != 0 || data.size() > std::size_t{2} * CanFrame::max_length) {
-    return std::nullopt;
-  }
-  CanFrame frame{*identifier, static_cast<std::uint8_t>(data.size() / 2), {}};
-  for (std::size_t i = 0; i < frame.length; ++i) {
-    const auto byte = parse_whole<std::uint8_t>(data.substr(2 * i, 2), 16);
-    if (!byte) {
-      return std::nullopt;
-    }
-    frame.data.at(i) = *byte;
-  }
-  return frame;
-}
-
 /// The words of a line, taken one after the other.
 class FaultLine {
  public:
@@ -284,6 +263,27 @@ std::string without_comment(const std::string& line) {
 }
 
 }  // namespace
+
+std::optional<CanFrame> parse_frame(std::string_view word) {
+  const std::size_t hash = word.find('#');
+  const auto identifier = parse_identifier(word.substr(0, hash));
+  if (!identifier || hash == std::string_view::npos) {
+    return std::nullopt;
+  }
+  const std::string_view data = word.substr(hash + 1);
+  if (data.size() % 2 != 0 || data.size() > std::size_t{2} * CanFrame::max_length) {
+    return std::nullopt;
+  }
+  CanFrame frame{*identifier, static_cast<std::uint8_t>(data.size() / 2), {}};
+  for (std::size_t i = 0; i < frame.length; ++i) {
+    const auto byte = parse_whole<std::uint8_t>(data.substr(2 * i, 2), 16);
+    if (!byte) {
+      return std::nullopt;
+    }
+    frame.data.at(i) = *byte;
+  }
+  return frame;
+}
 
 FaultSchedule parse_faults(const std::string& text, const std::string& path, const RobotModel& robot,
                            std::uint64_t run_us) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "sim/fault/fault.hpp"
 #include "sim/robot/robot_model.hpp"
@@ -15,6 +17,9 @@ namespace proleg::sim {
 /// The same from text. path: for messages.
 [[nodiscard]] FaultSchedule parse_faults(const std::string& text, const std::string& path, const RobotModel& robot,
                                          std::uint64_t run_us);
+
+/// A frame as for cansend of can-utils: "080#05", three hexadecimal digits up to 7FF, up to 8 bytes in hexadecimal.
+[[nodiscard]] std::optional<CanFrame> parse_frame(std::string_view word);
 
 /// The faults as a file that read_faults() reads.
 [[nodiscard]] std::string faults_text(const FaultSchedule& schedule, const RobotModel& robot);

@@ -88,7 +88,7 @@ void FaultPlayer::advance_to(BusTime now) {
       master->advance_to(now);
     }
     while (master->take_event()) {
-      // Nobody reads them, but the list must not grow.
+      // The run does not report them, but the list must not grow.
     }
   }
 }

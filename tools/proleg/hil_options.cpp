@@ -4,6 +4,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/fault/fault_reader.hpp"
 #include "sim/scenario/names.hpp"
 
 namespace proleg::tools {
@@ -54,33 +55,23 @@ std::vector<sim::Restart> parse_resets(const HilOptions& options, const Scenario
 }
 
 /// ID#DATA@TICK, where ID#DATA is a frame as for cansend of can-utils.
-sim::InjectedFrame parse_frame(const std::string& word, const ScenarioRun& run) {
+sim::InjectedFrame parse_injected(const std::string& word, const ScenarioRun& run) {
   const auto refuse = [&word] {
     throw InputError(
         "--send", 0, in_quotes(word),
         "ID#DATA@TICK: three hexadecimal digits up to 7FF, up to 8 bytes in hexadecimal, a tick; for example "
         "603#4018100100000000@100");
   };
-  const std::size_t hash = word.find('#');
   const std::size_t at = word.find('@');
-  if (hash != 3 || at == std::string::npos || at < hash) {
+  if (at == std::string::npos) {
     refuse();
   }
   const auto tick = parse_whole<std::uint32_t>(std::string_view(word).substr(at + 1));
-  const auto identifier = parse_whole<std::uint16_t>(std::string_view(word).substr(0, hash), 16);
-  const std::string_view data = std::string_view(word).substr(hash + 1, at - hash - 1);
-  if (!tick || !identifier || *identifier > CanFrame::max_identifier || data.size() % 2 != 0 ||
-      data.size() > 2 * CanFrame::max_length) {
+  const auto frame = sim::parse_frame(std::string_view(word).substr(0, at));
+  if (!tick || !frame) {
     refuse();
   }
-  sim::InjectedFrame injected{*tick, {*identifier, static_cast<std::uint8_t>(data.size() / 2), {}}};
-  for (std::size_t i = 0; i < data.size() / 2; ++i) {
-    const auto byte = parse_whole<std::uint8_t>(data.substr(2 * i, 2), 16);
-    if (!byte) {
-      refuse();
-    }
-    injected.frame.data[i] = *byte;
-  }
+  const sim::InjectedFrame injected{*tick, *frame};
   if (*tick >= run.ticks) {
     throw InputError("--send", 0, "tick " + std::to_string(*tick),
                      "a tick of the run, 0 to " + std::to_string(run.ticks - 1));
@@ -91,7 +82,7 @@ sim::InjectedFrame parse_frame(const std::string& word, const ScenarioRun& run) 
 std::vector<sim::InjectedFrame> parse_frames(const HilOptions& options, const ScenarioRun& run) {
   std::vector<sim::InjectedFrame> frames;
   for (const std::string& word : options.frames) {
-    frames.push_back(parse_frame(word, run));
+    frames.push_back(parse_injected(word, run));
   }
   std::ranges::stable_sort(frames, {}, &sim::InjectedFrame::tick);
   return frames;

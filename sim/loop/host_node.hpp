@@ -9,28 +9,10 @@
 #include "shared/master/master.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/loop/crystal.hpp"
+#include "sim/scenario/master_input.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::sim {
-
-/// A scenario in the form that the master takes.
-class MasterInput {
- public:
-  /// scenario: must outlive this.
-  explicit MasterInput(const Scenario& scenario);
-  MasterInput(const MasterInput&) = delete;
-  MasterInput& operator=(const MasterInput&) = delete;
-
-  canopen::RobotSetup setup;
-  std::vector<canopen::Change> changes;
-  std::vector<std::uint32_t> serials;  ///< from the robot's file; 0: any
-
- private:
-  std::vector<std::uint8_t> nodes_;
-  std::vector<canopen::AngleLimits> limits_;
-  std::vector<canopen::StartValue> start_values_;
-  std::vector<std::vector<canopen::ChangedValue>> changed_values_;
-};
 
 /// The host on the simulated bus: node 127 with the master that sets the modules up and changes their parameters, on an
 /// exact clock.
@@ -69,7 +51,6 @@ class HostNode final : private BusListener {
   void received(BusTime time, const CanFrame& frame) override;
   void transmitted(BusTime time, const CanFrame& frame) override;
   void update_deadline() { next_event_ = is_stalled_ ? never_on_bus : clock_.when(master_.next_deadline()); }
-  [[nodiscard]] std::string name_of(std::uint8_t node) const;
 
   const Scenario& scenario_;
   MasterInput input_;

@@ -1,0 +1,57 @@
+#include "shared/computer/master_text/master_text.hpp"
+
+#include "shared/canopen/object_name.hpp"
+#include "shared/computer/text/text.hpp"
+
+namespace proleg {
+namespace {
+
+std::string in_text(canopen::Address address) {
+  return hexadecimal(address.index, 4) + ":" + std::to_string(address.sub);
+}
+
+}  // namespace
+
+std::string problem_text(const canopen::Problem& problem, const NodeName& name) {
+  using canopen::ProblemCode;
+  std::string text = problem.node == 0 ? "" : name(problem.node) + ": ";
+  text += describe(problem.code);
+  switch (problem.code) {
+    case ProblemCode::wrong_serial:
+    case ProblemCode::wrong_protocol:
+    case ProblemCode::wrong_fingerprint:
+    case ProblemCode::wrong_configuration:
+      text += ": found " + hexadecimal(problem.found, 8) + ", expected " + hexadecimal(problem.expected, 8);
+      break;
+    case ProblemCode::refused:
+    case ProblemCode::change_refused:
+      text += ": object " + in_text(problem.address) + ", " + std::string(canopen::describe(problem.abort_code));
+      break;
+    case ProblemCode::no_answer:
+      text += ": object " + in_text(problem.address);
+      break;
+    case ProblemCode::commit_too_late:
+      text += ": for tick " + std::to_string(problem.expected) + ", found at tick " + std::to_string(problem.found) +
+              ", expected earlier";
+      break;
+    default:
+      break;
+  }
+  return text;
+}
+
+std::string event_text(const canopen::Event& event, const NodeName& name) {
+  using canopen::EventKind;
+  std::string text(canopen::describe(event.kind));
+  if (event.kind == EventKind::change_dropped) {
+    return text + ": the one for tick " + std::to_string(event.detail);
+  }
+  text = name(event.node) + ": " + text;
+  if (event.kind == EventKind::emergency) {
+    text += " " + hexadecimal(static_cast<std::uint16_t>(event.code), 4) + ", " +
+            std::string(canopen::describe(event.code)) + " (" + std::to_string(event.detail) + ")";
+  }
+  return text;
+}
+
+}  // namespace proleg

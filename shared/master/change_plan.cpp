@@ -11,9 +11,9 @@ constexpr std::uint8_t value_size = 4;
 
 }  // namespace
 
-ChangePlan::ChangePlan(const KernelConfiguration& kernel, std::span<Change> changes)
-    : kernel_(kernel), changes_(changes) {
-  for (Change& change : changes_) {
+ChangePlan::ChangePlan(const KernelConfiguration& kernel, std::span<Change> changes, std::size_t next)
+    : kernel_(kernel), changes_(changes), next_(next), pending_from_(next) {
+  for (Change& change : changes_.subspan(next)) {
     change.dropped = false;
   }
 }
@@ -42,8 +42,9 @@ bool ChangePlan::fits(const Change& change) const {
 }
 
 std::optional<std::size_t> ChangePlan::find_bad() const {
-  for (std::size_t i = 0; i < changes_.size(); ++i) {
-    if ((i > 0 && changes_[i].tick <= changes_[i - 1].tick) || !fits(changes_[i])) {
+  for (std::size_t i = next_; i < changes_.size(); ++i) {
+    const bool is_in_order = i == 0 || changes_[i].tick > changes_[i - 1].tick || changes_[i].tick == Change::soon;
+    if (!is_in_order || !fits(changes_[i])) {
       return i;
     }
   }
@@ -71,6 +72,13 @@ bool ChangePlan::can_stage() const {
     }
   }
   return pending < max_pending && add(changes_[next_]);
+}
+
+void ChangePlan::decide_tick(std::uint32_t earliest) {
+  Change& change = changes_[next_];
+  if (change.tick == Change::soon) {
+    change.tick = next_ > 0 && changes_[next_ - 1].tick >= earliest ? changes_[next_ - 1].tick + 1 : earliest;
+  }
 }
 
 void ChangePlan::commit_next() { ++next_; }

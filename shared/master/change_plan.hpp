@@ -23,6 +23,9 @@ struct ChangedValue {
 
 /// Values that take effect together. At most max_staged_values of one joint.
 struct Change {
+  /// As `tick`: the master decides, when all modules have the values. So a slow connection delays the change.
+  static constexpr std::uint32_t soon = 0xFFFF'FFFF;
+
   std::uint32_t tick = 0;
   std::span<const ChangedValue> values;
   bool dropped = false;  ///< set by the master: the change was not made (see Problem)
@@ -34,11 +37,15 @@ class ChangePlan {
   /// Committed transactions that a module holds beside the open one.
   static constexpr std::size_t max_pending = max_transactions - 1;
 
-  /// kernel and changes must outlive the plan. Clears `dropped` of all changes.
-  ChangePlan(const KernelConfiguration& kernel, std::span<Change> changes);
+  /// kernel and changes must outlive the plan. Clears `dropped` of all changes from this one on: those before are made.
+  ChangePlan(const KernelConfiguration& kernel, std::span<Change> changes, std::size_t next = 0);
 
-  /// The first change that is not possible: with a value that its joint does not have, more than max_staged_values of a
-  /// joint, or a tick not later than that of the change before.
+  /// More changes: the earlier ones, as they are now, and new ones behind them.
+  void extend(std::span<Change> changes) { changes_ = changes; }
+
+  /// The first change from next() on that is not possible: with a value that its joint does not have, more than
+  /// max_staged_values of a joint, or a tick not later than that of the change before (any number of changes may be
+  /// `soon`, one after the other).
   [[nodiscard]] std::optional<std::size_t> find_bad() const;
 
   /// The next change to stage; size() if all are committed or dropped.
@@ -51,6 +58,9 @@ class ChangePlan {
 
   /// Whether there is a next change and the modules have room for it beside the pending ones.
   [[nodiscard]] bool can_stage() const;
+  /// Decides the tick of the next change, if it is `soon`: the first one from this on that is later than the change
+  /// before.
+  void decide_tick(std::uint32_t earliest);
   void commit_next();
   void drop_next();
   /// Notes that committed changes for this tick and earlier ones are in force.

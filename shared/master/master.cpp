@@ -29,9 +29,22 @@ void Master::start(Microseconds now) {
   for (std::uint8_t joint = 0; joint < setup_.kernel.joint_count; ++joint) {
     joint_of_[setup_.nodes[joint]] = joint;
   }
-  heartbeat_at_ = now;
-  enter(Phase::scan);
+  sdo_clients_.set_attempts(options_.attempts);
+  heartbeat_at_ = options_.resets_modules ? now + listening_time_us : now;
+  enter(options_.resets_modules ? Phase::listen : Phase::scan);
   poll(now);
+}
+
+bool Master::extend_changes(Microseconds now, std::span<Change> changes) {
+  if (ChangePlan(setup_.kernel, changes, plan_.size()).find_bad()) {
+    return false;
+  }
+  plan_.extend(changes);
+  if (is_running()) {
+    now_ = now;
+    advance(now);
+  }
+  return true;
 }
 
 void Master::stop(Microseconds now) {
@@ -39,6 +52,10 @@ void Master::stop(Microseconds now) {
     return;
   }
   now_ = now;
+  if (problem_.code == ProblemCode::other_host) {
+    state_ = MasterState::stopped;  // the robot is the other host's
+    return;
+  }
   state_ = MasterState::stopping;
   mission_ = Mission::stop;
   silence_at_ = never;
@@ -47,7 +64,7 @@ void Master::stop(Microseconds now) {
   reset_joints_ = {};
   start_all_pending_ = false;
   joints_ = booted_;
-  enter(Phase::disable);
+  enter(options_.ramps_down && is_powered_ ? Phase::ramp : Phase::disable);
   advance(now);
 }
 
@@ -89,6 +106,9 @@ void Master::transmitted(Microseconds now, const CanFrame& frame) {
   if (phase_ == Phase::commit && frame.identifier == identifier::commit) {
     ++commits_sent_;
   }
+  if (phase_ == Phase::reset && frame.identifier == identifier::nmt) {
+    next_phase();  // what booted before does not count
+  }
   advance(now);
 }
 
@@ -124,7 +144,11 @@ Microseconds Master::next_deadline() const {
 
 void Master::on_heartbeat(const CanFrame& frame) {
   const std::optional<Heartbeat> heartbeat = decode_heartbeat(frame);
-  if (!heartbeat || heartbeat->node == host_node) {
+  if (!heartbeat) {
+    return;
+  }
+  if (heartbeat->node == host_node) {
+    on_other_host();  // the controller does not receive its own frames
     return;
   }
   const std::uint8_t joint = joint_of_[heartbeat->node];
@@ -158,6 +182,9 @@ void Master::on_heartbeat(const CanFrame& frame) {
 void Master::on_boot_up(unsigned joint) {
   const JointMask self = JointMask::of(joint);
   const std::uint8_t node = setup_.nodes[joint];
+  if (phase_ == Phase::listen || phase_ == Phase::reset) {
+    return;  // it will boot again
+  }
   if (mission_ == Mission::bring_up) {
     if (booted_.contains(joint)) {
       fail(problem_of(ProblemCode::duplicate_node, joint));
@@ -195,6 +222,16 @@ void Master::on_emergency(const CanFrame& frame) {
     on_unknown_node(emergency->node, false);
   } else if (mission_ == Mission::bring_up && emergency->code == EmergencyCode::identifier_collision) {
     fail(problem_of(ProblemCode::duplicate_node, joint));
+  }
+}
+
+void Master::on_other_host() {
+  if (mission_ == Mission::bring_up && options_.resets_modules) {
+    fail({ProblemCode::other_host});
+    heartbeat_at_ = never;  // modules that the other host drives must miss that one only
+  } else if (!other_host_reported_) {
+    other_host_reported_ = true;
+    add_event(EventKind::other_host, host_node);
   }
 }
 

@@ -7,17 +7,20 @@
 // A mission is what the master works on; its phases follow each other in this order:
 //
 //   mission   starts when                    phases                                 joints_
-//   bring_up  start()                        scan, quiet, set_up, then for each     all that booted, which are all of
-//                                            change that fits: stage, commit;       the set-up; produce_sync: only the
-//                                            nmt_start, enable, produce_sync        SYNC producer
+//   bring_up  start()                        (listen, reset,) scan, quiet, set_up,  all that booted, which are all of
+//                                            then for each change that fits:        the set-up; produce_sync: only the
+//                                            stage, commit; nmt_start, enable,      SYNC producer
+//                                            produce_sync
 //   change    running, and modules have      stage, commit                          all without lost_ and restarted_
 //             room for the next change
 //   rejoin    running, restarted_ not empty  set_up, then for each committed        the members that restarted_ had
 //                                            change that waits for its tick:
 //                                            stage, commit; enable, nmt_start
-//   stop      stop()                         disable, sync_off                      booted_; sync_off: only the SYNC
+//   stop      stop()                         (ramp, ramping,) disable, sync_off     booted_; sync_off: only the SYNC
 //                                                                                   producer
 //   none      no other mission               none                                   not used
+//
+// Phases in parentheses: only if the options demand them.
 //
 // A change that has passed its tick before its commit in `rejoin` starts that mission again from set_up. A change that
 // is too late for its tick leaves out `stage` and is dropped.
@@ -46,10 +49,21 @@ struct MasterOptions {
   std::uint32_t core_fingerprint = 0;        ///< of the master's own core; modules must have the same
   std::span<const std::uint32_t> serials{};  ///< kernel order, 0: any; empty: all any
   std::uint8_t sync_producer = 0;            ///< joint whose module produces SYNC
+  /// The modules may be on already, in any state: start() listens for another host, then resets all of them.
+  bool resets_modules = false;
+  /// stop() lets the joints of a moving robot ramp to their safe pose (quick stop) before it takes their power.
+  bool ramps_down = false;
+  /// Of each SDO answer, and how often a request is sent until there is one. For a connection that loses frames: more
+  /// attempts; for a slow one: more time.
+  Microseconds answer_timeout_us = SdoClient::default_timeout_us;
+  unsigned attempts = 1;
+  /// A COMMIT is sent at least this many ticks before its tick.
+  std::uint32_t commit_lead = 20;
 };
 
 enum class MasterState : std::uint8_t {
   idle,        ///< before start(): ignores all frames, sends none
+  listening,   ///< for another host, before it resets the modules
   scanning,    ///< waits for the modules to boot
   setting_up,  ///< reads identities, writes set-up lists
   staging,     ///< stages and commits the first changes
@@ -64,10 +78,18 @@ enum class MasterState : std::uint8_t {
 class Master final : private SdoWork {
  public:
   static constexpr Microseconds heartbeat_period_us = 100'000;
+  /// Time in which another host is heard three times.
+  static constexpr Microseconds listening_time_us = 300'000;
+  /// A quick stop takes 90 degrees a second, from 90 degrees at most; then the servo, behind its pulses, settles.
+  static constexpr Microseconds ramping_time_us = 1'200'000;
   static constexpr Microseconds boot_timeout_us = 1'000'000;
   /// Time after the last expected boot-up in which unexpected modules may appear.
   static constexpr Microseconds quiet_time_us = 50'000;
   static constexpr Microseconds start_timeout_us = 1'000'000;
+  /// With options.resets_modules a reset or a start that has no effect is sent again after this time. One of its
+  /// frames, or of the answers, may have been lost.
+  static constexpr Microseconds repeat_us = 500'000;
+  static constexpr unsigned max_requests = 3;
   static constexpr Microseconds send_timeout_us = 1'000'000;
   static constexpr Microseconds silence_us = 500'000;
   /// Between SDO transfers while the robot moves. Their identifiers are lower than that of TICK, so transfers without
@@ -75,8 +97,6 @@ class Master final : private SdoWork {
   static constexpr Microseconds pause_us = 300;
   /// Of each SDO answer during stop().
   static constexpr Microseconds stop_timeout_us = 100'000;
-  /// A COMMIT is sent at least this many ticks before its tick.
-  static constexpr std::uint32_t commit_lead = 20;
   static constexpr unsigned commit_repeats = 3;
 
   struct Identity {
@@ -94,6 +114,10 @@ class Master final : private SdoWork {
   /// Checks set-up and changes, then waits for boot-up messages: modules must be switched on (or reset) after this
   /// call. Only the first call has an effect.
   void start(Microseconds now);
+  /// While the robot runs, or before: more changes, behind the earlier ones. changes: those that the master has, as
+  /// they are (it has set `dropped`, and the ticks of those that were `soon`), and new ones. They must outlive the
+  /// master, or be replaced by this call. False, without an effect, if one of the new ones is not possible.
+  [[nodiscard]] bool extend_changes(Microseconds now, std::span<Change> changes);
   /// Switches off the servos and the SYNC of the robot. In any state after start().
   void stop(Microseconds now);
 
@@ -125,6 +149,8 @@ class Master final : private SdoWork {
   /// What the master waits for.
   enum class Phase : std::uint8_t {
     none,
+    listen,
+    reset,
     scan,
     quiet,
     set_up,
@@ -133,6 +159,8 @@ class Master final : private SdoWork {
     nmt_start,
     enable,
     produce_sync,
+    ramp,
+    ramping,
     disable,
     sync_off,
   };
@@ -156,6 +184,7 @@ class Master final : private SdoWork {
   void on_heartbeat(const CanFrame& frame);
   void on_boot_up(unsigned joint);
   void on_emergency(const CanFrame& frame);
+  void on_other_host();
   void on_unknown_node(std::uint8_t node, bool boots);
   void on_tick_passed();
 
@@ -172,6 +201,7 @@ class Master final : private SdoWork {
   void finish_rejoin();
   void run();
   void phase_timed_out();
+  [[nodiscard]] bool repeat_request();
   void watch_heartbeats();
 
   [[nodiscard]] bool is_running() const { return state_ == MasterState::running; }
@@ -212,13 +242,17 @@ class Master final : private SdoWork {
   JointMask start_joints_ = {};               ///< NMT start is pending
   JointMask reset_joints_ = {};               ///< NMT reset node is pending
   bool start_all_pending_ = false;            ///< NMT start to all is pending
+  bool reset_all_pending_ = false;            ///< NMT reset node to all is pending
   bool pre_operational_all_pending_ = false;  ///< NMT enter Pre-operational to all is pending
   bool last_mission_was_rejoin_ = false;
   bool change_failed_ = false;
+  bool is_powered_ = false;  ///< servos may have power
+  bool other_host_reported_ = false;
   std::uint32_t restarts_ = 0;
 
   std::size_t change_ = 0;       ///< the one that is staged or committed
   std::size_t rejoin_from_ = 0;  ///< earlier changes are written as parameters in force
+  unsigned requests_ = 0;        ///< resets or starts, in the present phase
   unsigned commits_queued_ = 0;
   unsigned commits_sent_ = 0;
 

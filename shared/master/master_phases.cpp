@@ -31,8 +31,9 @@ void Master::send_network_requests() {
       joints.erase(joint);
     }
   };
-  start_all_pending_ = start_all_pending_ && !send(NmtCommand::start, 0);
+  reset_all_pending_ = reset_all_pending_ && !send(NmtCommand::reset_node, 0);
   pre_operational_all_pending_ = pre_operational_all_pending_ && !send(NmtCommand::enter_pre_operational, 0);
+  start_all_pending_ = start_all_pending_ && (pre_operational_all_pending_ || !send(NmtCommand::start, 0));
   send_each(NmtCommand::start, start_joints_);
   send_each(NmtCommand::reset_node, reset_joints_);
 }
@@ -43,8 +44,11 @@ bool Master::is_phase_done() const {
       return is_running() && (!restarted_.empty() || plan_.can_stage());
     case Phase::scan:
       return booted_ == all_joints();
+    case Phase::listen:
+    case Phase::reset:
     case Phase::quiet:
-      return false;  // ends by its deadline
+    case Phase::ramping:
+      return false;  // ends by its deadline, or when the frame is sent
     case Phase::commit:
       return commits_sent_ >= commit_repeats;
     case Phase::nmt_start:
@@ -58,15 +62,29 @@ void Master::enter(Phase phase) {
   phase_ = phase;
   deadline_ = never;
   JointMask served;
-  Microseconds timeout_us = SdoClient::default_timeout_us;
+  Microseconds timeout_us = options_.answer_timeout_us;
   switch (phase) {
     case Phase::none:
+      break;
+    case Phase::listen:
+      state_ = MasterState::listening;
+      deadline_ = now_ + listening_time_us;
+      break;
+    case Phase::reset:
+      reset_all_pending_ = true;
+      deadline_ = now_ + send_timeout_us;
+      break;
     case Phase::quiet:
-      deadline_ = phase == Phase::quiet ? now_ + quiet_time_us : never;
+      deadline_ = now_ + quiet_time_us;
+      break;
+    case Phase::ramping:
+      deadline_ = now_ + ramping_time_us;
       break;
     case Phase::scan:
       state_ = MasterState::scanning;
-      deadline_ = now_ + boot_timeout_us;
+      booted_ = {};
+      deadline_ = now_ + (options_.resets_modules ? repeat_us : boot_timeout_us);
+      requests_ = 1;
       break;
     case Phase::commit:
       commits_queued_ = 0;
@@ -75,16 +93,21 @@ void Master::enter(Phase phase) {
       break;
     case Phase::nmt_start:
       operational_ -= joints_;
-      deadline_ = now_ + start_timeout_us;
+      deadline_ = now_ + (options_.resets_modules ? repeat_us : start_timeout_us);
+      requests_ = 1;
       break;
     case Phase::set_up:
     case Phase::stage:
+      served = joints_;
+      break;
     case Phase::enable:
       served = joints_;
+      is_powered_ = true;
       break;
     case Phase::produce_sync:
       served = JointMask::of(options_.sync_producer);
       break;
+    case Phase::ramp:
     case Phase::disable:
       served = joints_;
       timeout_us = stop_timeout_us;
@@ -121,6 +144,12 @@ void Master::next_phase() {
   switch (phase_) {
     case Phase::none:
       begin_mission();
+      break;
+    case Phase::listen:
+      enter(Phase::reset);
+      break;
+    case Phase::reset:
+      enter(Phase::scan);
       break;
     case Phase::scan:
       joints_ = booted_;
@@ -162,7 +191,14 @@ void Master::next_phase() {
     case Phase::produce_sync:
       run();
       break;
+    case Phase::ramp:
+      enter(Phase::ramping);
+      break;
+    case Phase::ramping:
+      enter(Phase::disable);
+      break;
     case Phase::disable:
+      is_powered_ = false;
       pre_operational_all_pending_ = true;
       enter(Phase::sync_off);
       break;
@@ -176,11 +212,18 @@ void Master::next_phase() {
 void Master::phase_timed_out() {
   switch (phase_) {
     case Phase::scan:
-      fail(problem_of(ProblemCode::missing_module, (all_joints() - booted_).front()));
+      if (repeat_request()) {
+        reset_joints_ = all_joints() - booted_;
+      } else {
+        fail(problem_of(ProblemCode::missing_module, (all_joints() - booted_).front()));
+      }
       break;
+    case Phase::listen:
     case Phase::quiet:
+    case Phase::ramping:
       next_phase();
       break;
+    case Phase::reset:
     case Phase::commit:
       fail({ProblemCode::cannot_send});
       break;
@@ -188,6 +231,13 @@ void Master::phase_timed_out() {
       const JointMask missing = joints_ - operational_;
       if (missing.empty()) {
         fail({ProblemCode::cannot_send});
+      }
+      if (mission_ == Mission::bring_up && repeat_request()) {
+        // All together again, since each module needs the first state frames of the others.
+        pre_operational_all_pending_ = true;
+        start_all_pending_ = true;
+        operational_ = {};
+        break;
       }
       start_all_pending_ = false;
       start_joints_ = {};
@@ -199,6 +249,16 @@ void Master::phase_timed_out() {
     default:
       break;
   }
+}
+
+/// Whether the request of this phase may be sent once more.
+bool Master::repeat_request() {
+  if (!options_.resets_modules || requests_ >= max_requests) {
+    return false;
+  }
+  ++requests_;
+  deadline_ = now_ + repeat_us;
+  return true;
 }
 
 void Master::run() {
@@ -226,7 +286,7 @@ void Master::begin_mission() {
   change_failed_ = false;
   joints_ = all_joints() - lost_ - restarted_;
   // A change that is already too late is not staged; begin_commit() drops it.
-  enter(plan_[change_].tick < ticks_.tick().value_or(0) + commit_lead ? Phase::none : Phase::stage);
+  enter(plan_[change_].tick < ticks_.tick().value_or(0) + options_.commit_lead ? Phase::none : Phase::stage);
   if (phase_ == Phase::none) {
     begin_commit();
   }
@@ -252,7 +312,8 @@ void Master::begin_commit() {
       return;
     }
     const std::uint32_t tick = ticks_.tick().value_or(0);
-    if (plan_[change_].tick < tick + commit_lead) {
+    plan_.decide_tick(tick + options_.commit_lead);
+    if (plan_[change_].tick < tick + options_.commit_lead) {
       Problem problem{ProblemCode::commit_too_late};
       problem.change = change_;
       problem.found = tick;
@@ -260,6 +321,8 @@ void Master::begin_commit() {
       drop_change(problem);
       return;
     }
+  } else {
+    plan_.decide_tick(0);
   }
   enter(Phase::commit);
 }

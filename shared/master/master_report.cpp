@@ -18,6 +18,8 @@ std::string_view describe(ProblemCode code) {
       return "two modules have one node id, or a module has restarted";
     case ProblemCode::unexpected_node:
       return "the node does not belong to the robot";
+    case ProblemCode::other_host:
+      return "another host uses the bus";
     case ProblemCode::wrong_serial:
       return "wrong serial number";
     case ProblemCode::wrong_protocol:
@@ -66,6 +68,8 @@ std::string_view describe(EventKind kind) {
       return "node does not belong to the robot";
     case EventKind::change_dropped:
       return "change was dropped";
+    case EventKind::other_host:
+      return "another host uses the bus";
   }
   return "unknown event";
 }

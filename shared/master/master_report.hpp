@@ -24,6 +24,7 @@ enum class ProblemCode : std::uint8_t {
   missing_module,       ///< no boot-up message of `node` before the timeout
   duplicate_node,       ///< `node` booted twice, or reports that another module has its id
   unexpected_node,      ///< `node` is on the bus, but not in the set-up
+  other_host,           ///< another host sends heartbeats on the bus
   wrong_serial,         ///< serial number; `found` and `expected` as for all wrong_ codes
   wrong_protocol,       ///< version of docs/protocol.md
   wrong_fingerprint,    ///< the module computes with another core
@@ -65,6 +66,7 @@ enum class EventKind : std::uint8_t {
   left_operational,    ///< the heartbeat reports another state; detail: NmtState
   unexpected_node,     ///< a node that is not in the set-up has booted
   change_dropped,      ///< detail: tick of the change; see Problem
+  other_host,          ///< another host sends heartbeats on the bus; reported once
 };
 
 /// One short phrase, for messages.

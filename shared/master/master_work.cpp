@@ -14,6 +14,8 @@ constexpr std::size_t identity_count = 5;
 /// CiA 402: Shutdown, Switch on, Enable operation.
 constexpr std::uint16_t enabling_controlwords[] = {0x0006, 0x0007, 0x000F};
 constexpr std::size_t enabling_count = 3;
+/// CiA 402: Quick stop.
+constexpr std::uint16_t quick_stop_controlword = 0x0002;
 
 }  // namespace
 
@@ -37,6 +39,8 @@ std::optional<SdoStep> Master::step(unsigned joint, std::size_t position) {
                                        : std::nullopt;
     case Phase::produce_sync:
       return only(object::sync_identifier, produces_sync | identifier::sync);
+    case Phase::ramp:
+      return only(object::controlword, quick_stop_controlword);
     case Phase::disable:
       return only(object::controlword, 0);
     case Phase::sync_off:

@@ -86,7 +86,12 @@ void SdoClientPool::poll(Microseconds now, SdoWork& work) {
   for (Channel& channel : channels_) {
     if (channel.client.next_deadline() <= now) {
       channel.client.poll(now);
-      finish(now, channel, work);
+      if (++channel.attempts < attempts_) {
+        channel.client = {};  // send() begins the step again
+        pause_ends_ = pause_us_ == 0 ? 0 : now + pause_us_;
+      } else {
+        finish(now, channel, work);
+      }
     }
   }
 }
@@ -95,6 +100,7 @@ void SdoClientPool::finish(Microseconds now, Channel& channel, SdoWork& work) {
   pause_ends_ = pause_us_ == 0 ? 0 : now + pause_us_;
   const SdoClient client = channel.client;
   const std::size_t position = channel.position++;
+  channel.attempts = 0;
   if (client.state() == SdoClient::State::aborted) {
     channel.is_busy = false;
     work.on_abort(channel.joint, client.address(), client.abort_code());

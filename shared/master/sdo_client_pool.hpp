@@ -38,9 +38,13 @@ class SdoClientPool {
   /// Free places that the pool leaves in the transmit queue for other frames.
   static constexpr std::size_t reserve = 5;
 
-  /// Cancels the lists in progress and starts those of these joints. pause_us: if above 0, transfers are made one by
-  /// one with this pause between them, in which frames with higher identifiers get onto the bus.
+  /// Cancels the lists in progress and starts those of these joints. timeout_us: of each attempt. pause_us: if above 0,
+  /// transfers are made one by one with this pause between them, in which frames with higher identifiers get onto the
+  /// bus.
   void begin(JointMask joints, Microseconds timeout_us, Microseconds pause_us);
+  /// A transfer without an answer begins again until it was begun this many times, at least 1. All transfers may be
+  /// repeated: their requests are handled in the order in which they are sent, and each sets or reads a value.
+  void set_attempts(unsigned attempts) { attempts_ = attempts; }
   void cancel(unsigned joint);
   void cancel_all() { begin({}, 0, 0); }
   [[nodiscard]] bool done() const;
@@ -59,13 +63,15 @@ class SdoClientPool {
     bool is_busy = false;
     std::uint8_t joint = 0;
     std::size_t position = 0;
-    bool is_read = false;  ///< the present transfer
+    bool is_read = false;   ///< the present transfer
+    unsigned attempts = 0;  ///< that the present transfer has failed
   };
 
   [[nodiscard]] bool assign(Channel& channel, SdoStep& step, SdoWork& work);
   void finish(Microseconds now, Channel& channel, SdoWork& work);
 
   std::array<Channel, clients> channels_;
+  unsigned attempts_ = 1;
   JointMask waiting_;  ///< joints whose lists have not begun
   Microseconds timeout_us_ = 0;
   Microseconds pause_us_ = 0;

@@ -1,0 +1,148 @@
+#include "sim/live/live_robot.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "shared/canopen/messages.hpp"
+
+namespace proleg::sim {
+namespace {
+
+HardwareOptions for_rack(const LiveRobotOptions& options) {
+  HardwareOptions rack;
+  rack.make_module = options.make_module;
+  rack.change_identity = options.change_identity;
+  rack.crystal_error_ppm = options.crystal_error_ppm;
+  return rack;
+}
+
+}  // namespace
+
+LiveRobot::LiveRobot(const Scenario& scenario, LiveRobotOptions options)
+    : scenario_(scenario),
+      options_(std::move(options)),
+      rack_options_(for_rack(options_)),
+      plant_(scenario),
+      plant_ticks_(
+          scenario, plant_, [this](std::uint32_t joint) { return rack_.pulse(joint); },
+          [this](BusTime now) { rack_.catch_up_before(now); }),
+      rack_(bus_, plant_, scenario, rack_options_),
+      adapter_(bus_.attach(*this)) {
+  bus_.set_frame_listener([this](const Transmission& transmission) { on_frame(transmission); });
+  adapter_.set_order(Controller::Order::request);
+  rack_.power_on(0);
+  begin_tick(0, false);
+}
+
+BusTime LiveRobot::next_event() const {
+  return std::max(std::min({bus_.next_event(), plant_ticks_.next_event(), rack_.next_event(), tick_deadline()}),
+                  bus_.now());
+}
+
+void LiveRobot::advance_to(BusTime time) {
+  for (BusTime next = next_event(); next <= time; next = next_event()) {
+    plant_ticks_.advance_to(next);
+    bus_.advance_to(next);
+    if (plant_ticks_.is_complete(next)) {
+      plant_ticks_.complete();
+      ++ticks_;
+    }
+    if (tick_deadline() <= next) {
+      plant_ticks_.end(next);
+      begin_tick(tick_begin_ + tick_period(), false);
+    }
+    rack_.advance_to(next, std::min(bus_.earliest_delivery(), time));
+  }
+  bus_.advance_to(time);
+  take_problems();
+}
+
+BusTime LiveRobot::tick_deadline() const {
+  if (plant_ticks_.has_ended()) {
+    return never_on_bus;
+  }
+  // A SYNC may come a little late: a quarter of the period.
+  return tick_begin_ + tick_period() + (follows_sync_ ? tick_period() / 4 : 0);
+}
+
+void LiveRobot::begin_tick(BusTime now, bool has_sync) {
+  follows_sync_ = has_sync;
+  tick_begin_ = now;
+  rack_.begin_tick(begun_ticks_, now);
+  plant_ticks_.begin(begun_ticks_++, now);
+}
+
+void LiveRobot::on_frame(const Transmission& transmission) {
+  if (options_.on_frame) {
+    options_.on_frame(transmission, transmission.sender == adapter_.index());
+  }
+  if (transmission.sender < rack_.size() && canopen::decode_sync(transmission.frame)) {
+    take_sync(transmission.end);
+  }
+}
+
+void LiveRobot::take_sync(BusTime now) {
+  if (!follows_sync_ && now < tick_begin_ + tick_period() / 4) {
+    // It belongs to the tick that has just begun without it.
+    follows_sync_ = true;
+    tick_begin_ = now;
+    return;
+  }
+  if ((follows_sync_ && now < tick_begin_ + tick_period() / 2) || plant_ticks_.has_ended()) {
+    return;
+  }
+  plant_ticks_.end(now);
+  begin_tick(now, true);
+}
+
+bool LiveRobot::send(const CanFrame& frame) {
+  if (waiting() >= max_waiting) {
+    return false;
+  }
+  waiting_.push_back(frame);
+  fill_mailboxes();
+  return true;
+}
+
+void LiveRobot::fill_mailboxes() {
+  while (!waiting_.empty() && adapter_.send(waiting_.front())) {
+    waiting_.pop_front();
+    ++in_mailboxes_;
+  }
+}
+
+void LiveRobot::discard_waiting() {
+  waiting_.clear();
+  adapter_.abort_all();
+  in_mailboxes_ = 0;
+}
+
+void LiveRobot::transmitted(BusTime time, const CanFrame& frame) {
+  in_mailboxes_ -= in_mailboxes_ > 0 ? 1 : 0;
+  if (options_.on_sent) {
+    options_.on_sent(time, frame);
+  }
+  fill_mailboxes();
+}
+
+void LiveRobot::error_state_changed(BusTime /*time*/) {
+  if (adapter_.error_state() == ErrorState::bus_off) {
+    in_mailboxes_ = 0;  // its mailboxes are empty then
+    adapter_.recover();
+  } else {
+    fill_mailboxes();
+  }
+}
+
+void LiveRobot::take_problems() {
+  for (unsigned joint = 0; joint < rack_.size(); ++joint) {
+    while (const auto problem = rack_.module(joint).take_problem()) {
+      if (options_.notice) {
+        options_.notice(scenario_.robot.joints[joint].name + " (node " + std::to_string(scenario_.modules[joint].node) +
+                        "): " + *problem);
+      }
+    }
+  }
+}
+
+}  // namespace proleg::sim

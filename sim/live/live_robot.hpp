@@ -1,0 +1,104 @@
+#pragma once
+
+// A simulated robot on a simulated bus that other programs reach: the modules, their servos and the world, without a
+// master and without a comparison. Time goes on as the caller says, whether the robot is set up, moves, or was left by
+// its host.
+//
+// The world makes its steps tick by tick. While a module produces SYNC, a tick of the world begins with it, as in
+// HardwareLoop; without SYNC a tick follows the one before after the tick period. So the world moves on in a quick stop
+// too, and before the start.
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/bus/bus.hpp"
+#include "sim/loop/hardware_options.hpp"
+#include "sim/loop/module_rack.hpp"
+#include "sim/loop/plant.hpp"
+#include "sim/loop/plant_ticks.hpp"
+#include "sim/scenario/scenario.hpp"
+
+namespace proleg::sim {
+
+struct LiveRobotOptions {
+  /// As HardwareOptions has them.
+  std::function<std::unique_ptr<JointModule>(const ModuleParts&)> make_module;
+  std::function<void(unsigned joint, firmware::ModuleIdentity& identity)> change_identity;
+  std::uint32_t crystal_error_ppm = 100;
+  /// Called for each frame that ends on the bus, before any node receives it. own: LiveRobot::send() was its source.
+  std::function<void(const Transmission& transmission, bool own)> on_frame;
+  /// Called when a frame that send() took was on the bus; in the order of send() for equal identifiers.
+  std::function<void(BusTime time, const CanFrame& frame)> on_sent;
+  /// Called for what modules report of themselves: a fault of the program, a reset. One line each.
+  std::function<void(const std::string&)> notice;
+};
+
+class LiveRobot final : private BusListener {
+ public:
+  /// Frames from outside that wait for the bus at most.
+  static constexpr std::size_t max_waiting = 1'024;
+
+  /// Switches the modules on at time 0. scenario: must outlive the robot. Throws InputError for a scenario without
+  /// modules that CAN can carry.
+  LiveRobot(const Scenario& scenario, LiveRobotOptions options);
+  LiveRobot(const LiveRobot&) = delete;
+  LiveRobot& operator=(const LiveRobot&) = delete;
+
+  /// The time up to which everything happened, since the modules were switched on.
+  [[nodiscard]] BusTime now() const { return bus_.now(); }
+  /// When something happens next, if nothing is sent before.
+  [[nodiscard]] BusTime next_event() const;
+  /// Lets everything happen that is due up to this time. Throws PhysicsError as Simulation does.
+  void advance_to(BusTime time);
+
+  /// Sends a frame of an outside program now(), by the controller of the adapter between it and the bus. False if
+  /// max_waiting frames wait already.
+  [[nodiscard]] bool send(const CanFrame& frame);
+  /// Discards the frames that wait, as an adapter does whose channel is closed.
+  void discard_waiting();
+  [[nodiscard]] std::size_t waiting() const { return waiting_.size() + in_mailboxes_; }
+  /// The controller of the adapter.
+  [[nodiscard]] const Controller& adapter() const { return adapter_; }
+
+  [[nodiscard]] JointModule& module(unsigned joint) { return rack_.module(joint); }
+  [[nodiscard]] unsigned joint_count() const { return rack_.size(); }
+  [[nodiscard]] Plant& plant() { return plant_; }
+  [[nodiscard]] Bus& bus() { return bus_; }
+  /// Ticks of the world that are complete.
+  [[nodiscard]] std::uint32_t ticks() const { return ticks_; }
+
+ private:
+  void received(BusTime /*time*/, const CanFrame& /*frame*/) override {}
+  void transmitted(BusTime time, const CanFrame& frame) override;
+  void error_state_changed(BusTime time) override;
+
+  void on_frame(const Transmission& transmission);
+  void fill_mailboxes();
+  [[nodiscard]] BusTime tick_period() const { return BusTime{scenario_.kernel.tick_period_us} * 1'000; }
+  [[nodiscard]] BusTime tick_deadline() const;
+  void take_sync(BusTime now);
+  void begin_tick(BusTime now, bool has_sync);
+  void take_problems();
+
+  const Scenario& scenario_;
+  LiveRobotOptions options_;
+  HardwareOptions rack_options_;  ///< what the rack needs of the options
+  Plant plant_;
+  PlantTicks plant_ticks_;
+  Bus bus_;
+  ModuleRack rack_;  ///< the first to attach to the bus
+  Controller& adapter_;
+  std::deque<CanFrame> waiting_;
+  std::size_t in_mailboxes_ = 0;
+  std::uint32_t ticks_ = 0;
+  std::uint32_t begun_ticks_ = 0;
+  BusTime tick_begin_ = 0;     ///< of the last one
+  bool follows_sync_ = false;  ///< the last tick began with a SYNC
+};
+
+}  // namespace proleg::sim

@@ -1,0 +1,125 @@
+#include "host/robot/bus_connection.hpp"
+
+#include <algorithm>
+
+#include "shared/canopen/messages.hpp"
+
+namespace proleg::host {
+namespace {
+
+/// The node that has sent a frame; 0 if the identifier does not say it.
+std::uint8_t sender_of(const CanFrame& frame) {
+  namespace identifier = canopen::identifier;
+  switch (identifier::base_of(frame.identifier)) {
+    case identifier::emergency:
+    case identifier::state_frame:
+    case identifier::second_state:
+    case identifier::monitoring:
+    case identifier::sdo_answer:
+    case identifier::heartbeat:
+      return identifier::node_of(frame.identifier);
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+BusConnection::BusConnection(const Open& open) : transport_(open(*this)) {}
+
+void BusConnection::attach(BusUser& user) { users_.push_back(&user); }
+
+void BusConnection::detach(BusUser& user) {
+  std::ranges::replace(users_, &user, nullptr);
+  if (calls_ == 0) {
+    std::erase(users_, nullptr);
+  }
+}
+
+template <typename Call>
+void BusConnection::for_each_user(Call&& call) {
+  ++calls_;
+  for (std::size_t i = 0; i < users_.size(); ++i) {
+    if (users_[i] != nullptr) {
+      call(*users_[i]);
+    }
+  }
+  if (--calls_ == 0) {
+    std::erase(users_, nullptr);
+  }
+}
+
+bool BusConnection::send(const CanFrame& frame) {
+  const bool is_taken = transport_->send(frame);
+  requested_ += is_taken ? 1 : 0;
+  return is_taken;
+}
+
+void BusConnection::received(Microseconds time, const CanFrame& frame) {
+  heard_.set(sender_of(frame));
+  for_each_user([&](BusUser& user) { user.receive(time, frame); });
+}
+
+void BusConnection::transmitted(Microseconds time, const CanFrame& frame) {
+  for_each_user([&](BusUser& user) { user.transmitted(time, frame); });
+}
+
+void BusConnection::poll_users() {
+  for_each_user([this](BusUser& user) {
+    if (const Microseconds time = now(); user.next_deadline() <= time) {
+      user.poll(time);
+    }
+  });
+}
+
+Microseconds BusConnection::next_deadline() const {
+  Microseconds next = never;
+  for (const BusUser* user : users_) {
+    if (user != nullptr) {
+      next = std::min(next, user->next_deadline());
+    }
+  }
+  return next;
+}
+
+bool BusConnection::run_until(Microseconds deadline, const std::function<bool()>& done) {
+  for (;;) {
+    poll_users();
+    if (done()) {
+      return true;
+    }
+    const Microseconds time = now();
+    if (time >= deadline) {
+      return false;
+    }
+    transport_->run_until(std::min({deadline, next_deadline(), time + longest_wait_us}));
+  }
+}
+
+std::string BusConnection::diagnosis() const {
+  const BusState& bus = state();
+  const Statistics numbers = statistics();
+  if (!bus.is_connected) {
+    return "the connection is lost: " + (bus.reason.empty() ? "no reason is known" : bus.reason);
+  }
+  if (requested_ > 0 && numbers.transmitted == 0) {
+    return "no frame was acknowledged: no other node is on the bus, or it has another bit rate than 1 Mbit/s, or the "
+           "cable or a terminator is missing";
+  }
+  if (!bus.reason.empty()) {
+    return bus.reason;
+  }
+  if (numbers.received == 0) {
+    return "no frame was received: is the robot switched on, and is it this bus?";
+  }
+  std::string nodes;
+  for (unsigned node = canopen::min_node_id; node <= canopen::max_node_id; ++node) {
+    if (heard_.test(node)) {
+      nodes += (nodes.empty() ? "" : ", ") + std::to_string(node);
+    }
+  }
+  return std::to_string(numbers.received) + " frames were received" +
+         (nodes.empty() ? ", none of them from a node" : ", from the nodes " + nodes);
+}
+
+}  // namespace proleg::host

@@ -1,0 +1,69 @@
+#pragma once
+
+// A bus that the state machines of a host program share: hands them frames and times, in one thread.
+
+#include <array>
+#include <bitset>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/robot/bus_user.hpp"
+#include "host/transport/transport.hpp"
+
+namespace proleg::host {
+
+class BusConnection final : public CanPort, private TransportListener {
+ public:
+  /// Opens a transport that reports to the given listener. Throws TransportError.
+  using Open = std::function<std::unique_ptr<Transport>(TransportListener& listener)>;
+  /// Signals of the operating system are noticed after this time.
+  static constexpr Microseconds longest_wait_us = 20'000;
+
+  explicit BusConnection(const Open& open);
+  BusConnection(const BusConnection&) = delete;
+  BusConnection& operator=(const BusConnection&) = delete;
+
+  /// From now on `user` gets frames and times. It must outlive the connection, or be detached before. A user may attach
+  /// and detach others while it is called.
+  void attach(BusUser& user);
+  void detach(BusUser& user);
+
+  /// CanPort: of all users.
+  [[nodiscard]] bool send(const CanFrame& frame) override;
+
+  [[nodiscard]] Microseconds now() const { return transport_->now(); }
+  /// Lets time pass until `done` returns true, at most until the deadline. Returns whether it is done.
+  bool run_until(Microseconds deadline, const std::function<bool()>& done);
+  /// The same for a duration, whatever happens.
+  void run_for(Microseconds duration) {
+    run_until(now() + duration, [] { return false; });
+  }
+
+  [[nodiscard]] const BusState& state() const { return transport_->state(); }
+  [[nodiscard]] Statistics statistics() const { return transport_->statistics(); }
+  [[nodiscard]] std::string description() const { return transport_->description(); }
+
+  /// Nodes that have sent a frame of their own (heartbeat, EMCY, SDO answer, state frame, monitoring).
+  [[nodiscard]] const std::bitset<128>& heard() const { return heard_; }
+  /// After a time-out: what is known about the bus, and what to look at. One line, which begins in lower case.
+  [[nodiscard]] std::string diagnosis() const;
+
+ private:
+  void received(Microseconds time, const CanFrame& frame) override;
+  void transmitted(Microseconds time, const CanFrame& frame) override;
+  void poll_users();
+  [[nodiscard]] Microseconds next_deadline() const;
+  template <typename Call>
+  void for_each_user(Call&& call);
+
+  std::vector<BusUser*> users_;  ///< null: detached while they are called
+  unsigned calls_ = 0;           ///< nested for_each_user()
+  std::bitset<128> heard_;
+  std::uint64_t requested_ = 0;  ///< frames that the transport took
+  std::unique_ptr<Transport> transport_;
+};
+
+}  // namespace proleg::host

@@ -1,0 +1,201 @@
+#include "host/robot/bus_scan.hpp"
+
+#include <algorithm>
+
+#include "shared/canopen/declared_objects.hpp"
+#include "shared/canopen/lss_frame.hpp"
+
+namespace proleg::host {
+namespace {
+
+namespace object = canopen::object;
+
+canopen::SdoTransferOptions transfer_options(const BusScanOptions& options, unsigned attempts) {
+  canopen::SdoTransferOptions transfer;
+  transfer.timeout_us = options.answer_timeout_us;
+  transfer.attempts = attempts;
+  return transfer;
+}
+
+}  // namespace
+
+BusScan::BusScan(CanPort& port, const BusScanOptions& options)
+    : port_(port),
+      options_(options),
+      probes_(port, transfer_options(options, options.attempts)),
+      inquiries_(port, transfer_options(options, options.further_attempts)) {}
+
+void BusScan::start(Microseconds now) {
+  is_started_ = true;
+  asks_lss_ = true;
+  listening_until_ = now + options_.listening_us;
+  for (std::uint8_t node = canopen::min_node_id; node <= canopen::max_node_id; ++node) {
+    probe(node);
+  }
+  poll(now);
+}
+
+void BusScan::probe(std::uint8_t node) {
+  seen_.at(node).info.node = node;
+  probes_.read(node, object::device_type.address, [this, node](const SdoResult& result) {
+    Seen& seen = seen_.at(node);
+    if (!result.is_good()) {
+      return;
+    }
+    seen.is_heard = true;
+    seen.info.has_answered = true;
+    seen.info.device_type = result.number();
+    inquire(node);
+  });
+}
+
+void BusScan::read_number(std::uint8_t node, canopen::Address address, const std::function<void(std::uint32_t)>& take) {
+  inquiries_.read(node, address, [take](const SdoResult& result) {
+    if (result.is_good()) {
+      take(result.number());
+    }
+  });
+}
+
+void BusScan::inquire(std::uint8_t node) {
+  ScannedNode& info = seen_.at(node).info;
+  read_number(node, object::error_register.address,
+              [&info](std::uint32_t value) { info.error_register = static_cast<std::uint8_t>(value); });
+  read_number(node, object::product.address, [&info](std::uint32_t value) { info.product = value; });
+  read_number(node, object::revision.address, [&info](std::uint32_t value) { info.revision = value; });
+  read_number(node, object::serial.address, [&info](std::uint32_t value) { info.serial = value; });
+  read_number(node, object::vendor.address, [this, &info, node](std::uint32_t value) {
+    info.vendor = value;
+    if (value != object::vendor.default_value) {
+      return;  // another manufacturer's objects above 0x2000 mean something else
+    }
+    info.is_module = true;
+    read_number(node, object::version.address,
+                [&info](std::uint32_t number) { info.protocol = static_cast<std::uint16_t>(number); });
+    read_number(node, object::core_fingerprint.address,
+                [&info](std::uint32_t number) { info.core_fingerprint = number; });
+    read_number(node, object::statusword.address,
+                [&info](std::uint32_t number) { info.statusword = static_cast<std::uint16_t>(number); });
+    read_number(node, object::activate.address, [this, &info, node](std::uint32_t is_active) {
+      if (is_active != 0) {
+        read_number(node, object::joint_index.address,
+                    [&info](std::uint32_t number) { info.joint = static_cast<std::uint8_t>(number); });
+      }
+    });
+  });
+}
+
+void BusScan::inquire_texts(std::uint8_t node) {
+  read_text(node, object::device_name.address, &ScannedNode::name);
+  read_text(node, object::hardware_version.address, &ScannedNode::hardware);
+  read_text(node, object::software_version.address, &ScannedNode::software);
+}
+
+void BusScan::read_text(std::uint8_t node, canopen::Address address, std::string ScannedNode::*field) {
+  inquiries_.read(node, address, [this, node, field](const SdoResult& result) {
+    if (result.is_good()) {
+      std::string& text = seen_.at(node).info.*field;
+      for (const std::uint8_t byte : result.value) {
+        const bool is_printable = byte >= 0x20 && byte < 0x7F;
+        text += is_printable ? static_cast<char>(byte) : '?';
+      }
+    }
+  });
+}
+
+void BusScan::receive(Microseconds now, const CanFrame& frame) {
+  namespace identifier = canopen::identifier;
+  if (!is_started_ || is_done_) {
+    return;
+  }
+  ++frames_;
+  if (canopen::decode_sync(frame)) {
+    ++syncs_;
+  } else if (frame.identifier == identifier::lss_answer && frame.length == 8 &&
+             canopen::lss::service_of(frame) == canopen::lss::Service::identified_non_configured) {
+    has_fresh_ = true;
+  } else if (const auto heartbeat = canopen::decode_heartbeat(frame)) {
+    if (heartbeat->node == canopen::host_node) {
+      has_host_ = true;
+    } else {
+      seen_.at(heartbeat->node).is_heard = true;
+      seen_.at(heartbeat->node).info.node = heartbeat->node;
+      seen_.at(heartbeat->node).info.state = heartbeat->state;
+    }
+  } else if (const auto emergency = canopen::decode_emergency(frame); emergency && emergency->node < seen_.size()) {
+    Seen& seen = seen_.at(emergency->node);
+    seen.is_heard = true;
+    seen.info.node = emergency->node;
+    seen.is_duplicate = seen.is_duplicate || emergency->code == canopen::EmergencyCode::identifier_collision;
+  }
+  probes_.receive(now, frame);
+  inquiries_.receive(now, frame);
+  finish(now);
+}
+
+void BusScan::transmitted(Microseconds now, const CanFrame& frame) {
+  probes_.transmitted(now, frame);
+  inquiries_.transmitted(now, frame);
+}
+
+void BusScan::poll(Microseconds now) {
+  if (!is_started_ || is_done_) {
+    return;
+  }
+  if (asks_lss_) {
+    asks_lss_ = !port_.send(
+        canopen::lss::make(canopen::identifier::lss_request, canopen::lss::Service::identify_non_configured));
+  }
+  probes_.poll(now);
+  inquiries_.poll(now);
+  finish(now);
+}
+
+void BusScan::finish(Microseconds now) {
+  if (now < listening_until_ || !probes_.is_idle() || !inquiries_.is_idle()) {
+    return;
+  }
+  // Texts travel in segments, which the requests of a host that drives the robot would break.
+  if (!reads_texts_ && !has_host_) {
+    reads_texts_ = true;
+    for (std::uint8_t node = canopen::min_node_id; node <= canopen::max_node_id; ++node) {
+      if (seen_.at(node).info.has_answered) {
+        inquire_texts(node);
+      }
+    }
+    inquiries_.poll(now);
+    if (!inquiries_.is_idle()) {
+      return;
+    }
+  }
+  is_done_ = true;
+}
+
+Microseconds BusScan::next_deadline() const {
+  if (!is_started_ || is_done_) {
+    return never;
+  }
+  return std::min({probes_.next_deadline(), inquiries_.next_deadline(), listening_until_});
+}
+
+std::vector<ScannedNode> BusScan::nodes() const {
+  std::vector<ScannedNode> nodes;
+  for (const Seen& seen : seen_) {
+    if (seen.is_heard) {
+      nodes.push_back(seen.info);
+    }
+  }
+  return nodes;
+}
+
+std::vector<std::uint8_t> BusScan::duplicates() const {
+  std::vector<std::uint8_t> nodes;
+  for (const Seen& seen : seen_) {
+    if (seen.is_duplicate) {
+      nodes.push_back(seen.info.node);
+    }
+  }
+  return nodes;
+}
+
+}  // namespace proleg::host

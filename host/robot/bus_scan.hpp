@@ -1,0 +1,104 @@
+#pragma once
+
+// Who is on a bus: listens, asks every node id for its device type, then asks those that answered who they are. It only
+// reads, and changes nothing.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/robot/bus_user.hpp"
+#include "host/robot/sdo_queue.hpp"
+#include "shared/canopen/messages.hpp"
+
+namespace proleg::host {
+
+/// A node on the bus.
+struct ScannedNode {
+  std::uint8_t node = 0;
+  bool has_answered = false;               ///< else it was heard only
+  std::optional<canopen::NmtState> state;  ///< by its heartbeat; nothing: it sends none
+  std::uint32_t device_type = 0;           ///< 0x1000
+  std::uint32_t vendor = 0;                ///< 0x1018:1 to 4
+  std::uint32_t product = 0;
+  std::uint32_t revision = 0;
+  std::uint32_t serial = 0;
+  std::string name;      ///< 0x1008; empty if it was not read
+  std::string hardware;  ///< 0x1009
+  std::string software;  ///< 0x100A
+  // Of a joint module only:
+  bool is_module = false;
+  std::uint16_t protocol = 0;          ///< 0x2000:1
+  std::uint32_t core_fingerprint = 0;  ///< 0x2000:3
+  std::optional<std::uint8_t> joint;   ///< 0x2001:1; nothing while the module has no place in a robot (0x2005:6)
+  std::uint16_t statusword = 0;        ///< 0x6041
+  std::uint8_t error_register = 0;     ///< 0x1001
+};
+
+struct BusScanOptions {
+  Microseconds listening_us = 250'000;      ///< heartbeats have a period of 100 ms; the scan takes at least this long
+  Microseconds answer_timeout_us = 60'000;  ///< of each request
+  unsigned attempts = 2;                    ///< of the first request to each node id
+  unsigned further_attempts = 8;            ///< of requests to a node that has answered
+};
+
+class BusScan final : public BusUser {
+ public:
+  /// port: must outlive the scan.
+  explicit BusScan(CanPort& port, const BusScanOptions& options = {});
+  BusScan(const BusScan&) = delete;
+  BusScan& operator=(const BusScan&) = delete;
+
+  void start(Microseconds now);
+  [[nodiscard]] bool is_done() const { return is_done_; }
+
+  /// After it is done: the nodes by node id.
+  [[nodiscard]] std::vector<ScannedNode> nodes() const;
+  /// Whether a host, node 127, sends heartbeats: somebody drives the robot.
+  [[nodiscard]] bool has_host() const { return has_host_; }
+  /// Whether modules without a node id answer LSS.
+  [[nodiscard]] bool has_fresh_modules() const { return has_fresh_; }
+  /// SYNCs heard, and frames of any kind.
+  [[nodiscard]] unsigned syncs() const { return syncs_; }
+  [[nodiscard]] std::uint64_t frames() const { return frames_; }
+  /// Node ids of modules that have reported, since the start, that another node uses theirs.
+  [[nodiscard]] std::vector<std::uint8_t> duplicates() const;
+
+  void receive(Microseconds now, const CanFrame& frame) override;
+  void transmitted(Microseconds now, const CanFrame& frame) override;
+  void poll(Microseconds now) override;
+  [[nodiscard]] Microseconds next_deadline() const override;
+
+ private:
+  struct Seen {
+    bool is_heard = false;
+    bool is_duplicate = false;
+    ScannedNode info;
+  };
+
+  void probe(std::uint8_t node);
+  void inquire(std::uint8_t node);
+  void inquire_texts(std::uint8_t node);
+  void read_number(std::uint8_t node, canopen::Address address, const std::function<void(std::uint32_t)>& take);
+  void read_text(std::uint8_t node, canopen::Address address, std::string ScannedNode::*field);
+  void finish(Microseconds now);
+
+  CanPort& port_;
+  BusScanOptions options_;
+  SdoQueue probes_;
+  SdoQueue inquiries_;
+  std::array<Seen, canopen::host_node> seen_{};  ///< by node
+  bool is_started_ = false;
+  bool is_done_ = false;
+  bool asks_lss_ = false;  ///< the request waits for the port
+  bool has_host_ = false;
+  bool has_fresh_ = false;
+  bool reads_texts_ = false;
+  unsigned syncs_ = 0;
+  std::uint64_t frames_ = 0;
+  Microseconds listening_until_ = never;
+};
+
+}  // namespace proleg::host

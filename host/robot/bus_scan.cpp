@@ -152,7 +152,11 @@ void BusScan::poll(Microseconds now) {
 }
 
 void BusScan::finish(Microseconds now) {
-  if (now < listening_until_ || !probes_.is_idle() || !inquiries_.is_idle()) {
+  if (now >= listening_until_) {
+    listening_until_ = never;
+    has_listened_ = true;
+  }
+  if (!has_listened_ || !probes_.is_idle() || !inquiries_.is_idle()) {
     return;
   }
   // Texts travel in segments, which the requests of a host that drives the robot would break.

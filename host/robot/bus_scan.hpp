@@ -98,6 +98,7 @@ class BusScan final : public BusUser {
   bool reads_texts_ = false;
   unsigned syncs_ = 0;
   std::uint64_t frames_ = 0;
+  bool has_listened_ = false;
   Microseconds listening_until_ = never;
 };
 

@@ -54,7 +54,7 @@ TEST(BusScan, FindsEveryModuleAndReadsWhoItIs) {
 
 TEST(BusScan, FindsAllOfThemAlthoughATenthOfTheFramesIsLost) {
   const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     SCOPED_TRACE(seed);
     LiveBus bus(scenario);
     bus.run_for(100'000);

@@ -6,6 +6,7 @@ host_packages=(
   libode-dev libeigen3-dev libtinyxml2-dev libsqlite3-dev libsodium-dev libcli11-dev nlohmann-json3-dev
   libunicorn-dev libdw-dev
   libpagmo-dev libga-dev  # the optimiser
+  libboost-dev  # Boost.Asio: serial lines, sockets
   sqlite3  # not for the build: shows the contents of recordings
 )
 

@@ -1,0 +1,397 @@
+#include "host/transport/slcan_client.hpp"
+
+#include <algorithm>
+
+#include "shared/computer/text/text.hpp"
+
+namespace proleg::host {
+namespace {
+
+constexpr std::size_t max_line = 200;        // longer than any answer to V that is known
+constexpr std::size_t sample_length = 40;    // characters in an error
+constexpr std::size_t output_ahead = 1'024;  // characters that are made before the line takes them
+constexpr unsigned max_refusals = 2;
+constexpr Microseconds microseconds_per_millisecond = 1'000;
+
+bool is_printable(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char character) { return character >= ' ' && character <= '~'; });
+}
+
+}  // namespace
+
+std::string printable_bytes(std::string_view bytes) {
+  std::string text;
+  for (const char character : bytes.substr(0, sample_length)) {
+    if (character == '\r') {
+      text += "\\r";
+    } else if (character == '\n') {
+      text += "\\n";
+    } else if (character == '\a') {
+      text += "\\a";
+    } else if (character >= ' ' && character <= '~') {
+      text += character;
+    } else {
+      text += "\\x" + hexadecimal(static_cast<unsigned char>(character), 2).substr(2);
+    }
+  }
+  return "'" + text + (bytes.size() > sample_length ? "...'" : "'");
+}
+
+void SlcanClient::start(Microseconds now) {
+  drop_frames();
+  state_ = State::starting;
+  error_.clear();
+  refusals_ = 0;
+  sign_deadline_ = never;
+  has_confirmed_frames_ = false;
+  start_deadline_ = now + settings_.start_timeout;
+  line_.clear();
+  rubbish_.clear();
+  begin_round(now);
+}
+
+void SlcanClient::begin_round(Microseconds now) {
+  output_.clear();
+  adapter_.clear();
+  sample_.clear();
+  is_acknowledging_ = false;
+  has_proof_ = false;
+  begin_step(now, Step::close);
+}
+
+void SlcanClient::begin_step(Microseconds now, Step step) {
+  step_ = step;
+  switch (step) {
+    case Step::close:
+    case Step::close_again:
+      command_ = "C";
+      break;
+    case Step::version:
+      rubbish_.clear();  // what came before may be the rest of a line
+      command_ = "V";
+      break;
+    case Step::serial_number:
+      command_ = "N";
+      break;
+    case Step::bit_rate:
+      command_ = "S8";
+      break;
+    case Step::open:
+      command_ = settings_.is_listen_only ? "L" : "O";
+      break;
+    case Step::proof:
+      step_deadline_ = now + 3 * settings_.answer_timeout;
+      return;
+  }
+  output_ += command_ + slcan_end;
+  step_deadline_ = now + settings_.answer_timeout;
+}
+
+void SlcanClient::input(Microseconds now, std::string_view characters) {
+  for (const char character : characters) {
+    if (state_ != State::starting && state_ != State::open) {
+      return;
+    }
+    if (state_ == State::starting && sample_.size() <= sample_length) {
+      sample_ += character;
+    }
+    if (character == slcan_end || character == slcan_reject) {
+      handle_line(now, character == slcan_reject);
+      line_.clear();
+    } else if (line_.size() < max_line && !(character == '\n' && line_.empty())) {
+      line_ += character;
+    }
+  }
+}
+
+void SlcanClient::handle_line(Microseconds now, bool ends_with_bel) {
+  if (ends_with_bel) {
+    statistics_.malformed += line_.empty() ? 0U : 1U;
+    handle_answer(now, Answer::rejected);
+  } else if (line_.empty() || line_ == "z" || line_ == "Z") {
+    handle_answer(now, Answer::accepted);
+  } else if (!handle_report(now)) {
+    handle_answer(now, Answer::text);
+  }
+}
+
+/// A line that comes without a question: a frame, a state, errors.
+bool SlcanClient::handle_report(Microseconds now) {
+  if (const auto frame = parse_slcan_frame(line_)) {
+    has_proof_ = true;
+    if (step_ == Step::proof && state_ == State::starting) {
+      become_open(now);
+    }
+    if (state_ != State::open) {
+      return true;
+    }
+    if (frame->is_for_protocol()) {
+      listener_.received(now, frame->can_frame());
+    } else {
+      ++statistics_.foreign;
+    }
+    return true;
+  }
+  if (const auto status = parse_slcan_status(line_)) {
+    if (state_ == State::open || step_ == Step::open) {
+      listener_.status_received(*status);
+    }
+    return true;
+  }
+  if (const auto errors = parse_slcan_errors(line_)) {
+    if (state_ == State::open) {
+      listener_.errors_received(*errors);
+    }
+    return true;
+  }
+  return false;
+}
+
+void SlcanClient::handle_answer(Microseconds now, Answer answer) {
+  if (state_ == State::starting) {
+    handle_start_answer(now, answer);
+  } else {
+    handle_frame_answer(now, answer);
+  }
+}
+
+void SlcanClient::handle_start_answer(Microseconds now, Answer answer) {
+  const bool is_text = answer == Answer::text;
+  const bool is_lawicel = is_text && line_.size() > 1 && line_[0] == command_[0] && is_printable(line_);
+  switch (step_) {
+    case Step::close:
+      if (is_text) {
+        note_rubbish();
+      } else {
+        // BEL can be the answer to a line that was begun before.
+        begin_step(now, answer == Answer::rejected ? Step::close_again : Step::version);
+      }
+      return;
+    case Step::close_again:
+      if (is_text) {
+        note_rubbish();
+      } else {
+        begin_step(now, Step::version);
+      }
+      return;
+    case Step::version:
+      if (is_text && (line_ == command_ || !is_printable(line_))) {
+        note_rubbish();
+        return;
+      }
+      has_proof_ = true;
+      adapter_ = is_text ? line_ : std::string();
+      begin_step(now, is_lawicel ? Step::serial_number : Step::bit_rate);
+      return;
+    case Step::serial_number:
+      if (is_text && !is_lawicel) {
+        note_rubbish();
+        return;
+      }
+      adapter_ += is_text ? ", " + line_ : std::string();
+      begin_step(now, Step::bit_rate);
+      return;
+    case Step::bit_rate:
+    case Step::open:
+    case Step::proof:
+      if (is_text) {
+        note_rubbish();
+      } else if (answer == Answer::rejected) {
+        refuse(now);
+      } else {
+        is_acknowledging_ = true;
+        has_proof_ = true;
+        if (step_ == Step::bit_rate) {
+          begin_step(now, Step::open);
+        } else {
+          end_round(now);
+        }
+      }
+      return;
+  }
+}
+
+void SlcanClient::refuse(Microseconds now) {
+  if (++refusals_ < max_refusals) {
+    begin_round(now);
+    return;
+  }
+  fail(command_ == "S8" ? "the adapter answers BEL to S8, expected CR: it does not offer 1 Mbit/s"
+                        : "the adapter answers BEL to " + command_ + ", expected CR: it does not open its channel");
+}
+
+void SlcanClient::note_rubbish() {
+  if (rubbish_.empty()) {
+    rubbish_ = line_ == command_ ? "the line returns what is sent to it (" + command_ + ")"
+                                 : "received " + printable_bytes(line_) + " after " + command_;
+  }
+}
+
+void SlcanClient::end_round(Microseconds now) {
+  if (has_proof_ && rubbish_.empty()) {
+    become_open(now);
+  } else if (step_ == Step::open) {
+    begin_step(now, Step::proof);
+  }
+}
+
+void SlcanClient::become_open(Microseconds now) {
+  state_ = State::open;
+  last_answer_ = now;
+}
+
+void SlcanClient::poll(Microseconds now) {
+  if (state_ == State::open && now >= next_deadline()) {
+    if (sign_deadline_ != never) {
+      fail("the adapter answers no more; frames without confirmation: " + std::to_string(pending_.size()));
+    } else {
+      ask_for_a_sign(now);
+    }
+    return;
+  }
+  if (state_ != State::starting || now < step_deadline_) {
+    return;
+  }
+  if (now >= start_deadline_ && (step_ == Step::proof || step_ == Step::close)) {
+    fail(start_failure());
+    return;
+  }
+  switch (step_) {
+    case Step::close:
+    case Step::close_again:
+      begin_step(now, Step::version);
+      break;
+    case Step::version:
+    case Step::serial_number:
+      begin_step(now, Step::bit_rate);
+      break;
+    case Step::bit_rate:
+      begin_step(now, Step::open);
+      break;
+    case Step::open:
+      end_round(now);
+      break;
+    case Step::proof:
+      begin_round(now);
+      break;
+  }
+}
+
+Microseconds SlcanClient::next_deadline() const {
+  if (state_ == State::starting) {
+    return step_deadline_;
+  }
+  if (state_ != State::open || pending_.empty()) {
+    return never;
+  }
+  return sign_deadline_ != never ? sign_deadline_ : last_answer_ + settings_.frame_timeout;
+}
+
+std::string SlcanClient::start_failure() const {
+  const std::string expected = ", expected slcan: CR, BEL or a line such as t1230";
+  if (!rubbish_.empty()) {
+    return rubbish_ + expected;
+  }
+  if (!sample_.empty()) {
+    return "received " + printable_bytes(sample_) + expected;
+  }
+  return "no answer to C, V, S8 and O within " +
+         number_text(static_cast<double>(settings_.start_timeout / microseconds_per_millisecond) / 1e3) +
+         " s, and no frame from the bus";
+}
+
+void SlcanClient::fail(const std::string& reason) {
+  error_ = reason;
+  state_ = State::failed;
+  drop_frames();
+}
+
+void SlcanClient::drop_frames() {
+  statistics_.dropped_out += queue_.size();
+  statistics_.unconfirmed += pending_.size();
+  queue_.clear();
+  pending_.clear();
+}
+
+bool SlcanClient::send(const CanFrame& frame) {
+  if (state_ != State::open || settings_.is_listen_only || queue_.size() >= settings_.max_queue) {
+    ++statistics_.dropped_out;
+    return false;
+  }
+  queue_.push_back(frame);
+  return true;
+}
+
+void SlcanClient::fill_output(Microseconds now) {
+  while (state_ == State::open && !queue_.empty() && output_.size() < output_ahead &&
+         (!is_acknowledging_ || pending_.size() < settings_.window)) {
+    const CanFrame frame = queue_.front();
+    queue_.pop_front();
+    output_ += format_slcan_frame(slcan_frame(frame)).view();
+    output_ += slcan_end;
+    if (is_acknowledging_) {
+      last_answer_ = pending_.empty() ? now : last_answer_;
+      pending_.push_back(frame);
+    } else {
+      ++statistics_.transmitted;
+      listener_.transmitted(now, frame);
+    }
+  }
+}
+
+bool SlcanClient::has_output() const {
+  const bool can_write = state_ == State::open && (!is_acknowledging_ || pending_.size() < settings_.window);
+  return !output_.empty() || (can_write && !queue_.empty());
+}
+
+std::string SlcanClient::take(Microseconds now, std::size_t max_characters) {
+  fill_output(now);
+  std::string taken = output_.substr(0, max_characters);
+  output_.erase(0, taken.size());
+  return taken;
+}
+
+void SlcanClient::handle_frame_answer(Microseconds now, Answer answer) {
+  if (answer == Answer::text) {
+    const bool is_late_answer = std::string_view("VNF").find(line_[0]) != std::string_view::npos;
+    if (sign_deadline_ != never) {
+      // The adapter is there, but answers are lost, or it confirms commands only.
+      sign_deadline_ = never;
+      statistics_.unconfirmed += pending_.size();
+      pending_.clear();
+      is_acknowledging_ = has_confirmed_frames_;
+    } else if (!is_late_answer && line_ != adapter_) {
+      ++statistics_.malformed;
+    }
+    return;
+  }
+  sign_deadline_ = never;
+  last_answer_ = now;
+  if (pending_.empty()) {
+    return;  // a second answer, or one to a command of the start that came late
+  }
+  const CanFrame frame = pending_.front();
+  pending_.pop_front();
+  has_confirmed_frames_ = true;
+  if (answer == Answer::rejected) {
+    ++statistics_.refused;
+  } else {
+    ++statistics_.transmitted;
+    listener_.transmitted(now, frame);
+  }
+}
+
+void SlcanClient::ask_for_a_sign(Microseconds now) {
+  output_ += 'V';
+  output_ += slcan_end;
+  sign_deadline_ = now + 2 * settings_.answer_timeout;
+}
+
+void SlcanClient::stop() {
+  drop_frames();
+  output_ = std::string("C") + slcan_end;
+  state_ = State::idle;
+  sign_deadline_ = never;
+}
+
+}  // namespace proleg::host

@@ -1,0 +1,341 @@
+#include "host/transport/slcan_client.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "shared/can/slcan_adapter.hpp"
+
+namespace proleg::host {
+namespace {
+
+/// A client on virtual time, at the other end a script.
+class SlcanClientTest : public testing::Test, public SlcanClientListener {
+ protected:
+  /// What the adapter answers to a line without its end.
+  using Script = std::function<std::string(const std::string&)>;
+
+  explicit SlcanClientTest(const SlcanClient::Settings& settings = {}) : client(*this, settings) {}
+
+  void received(Microseconds /*time*/, const CanFrame& frame) override { frames_received.push_back(frame); }
+  void transmitted(Microseconds /*time*/, const CanFrame& frame) override { frames_transmitted.push_back(frame); }
+  void status_received(const CanStatus& received_status) override { status = received_status; }
+  void errors_received(CanErrors received_errors) override { errors = received_errors; }
+
+  /// Exchanges characters until nothing is under way.
+  void exchange(const Script& script) {
+    while (client.has_output()) {
+      sent += client.take(now, 1'000);
+      for (std::size_t end = sent.find('\r'); end != std::string::npos; end = sent.find('\r')) {
+        const std::string line = sent.substr(0, end);
+        sent.erase(0, end + 1);
+        lines.push_back(line);
+        client.input(now, script(line));
+      }
+    }
+  }
+  /// Runs until nothing is to come, or at most this time.
+  void run(const Script& script, Microseconds duration = 20'000'000) {
+    const Microseconds end = now + duration;
+    for (exchange(script); client.next_deadline() <= end; exchange(script)) {
+      now = client.next_deadline();
+      client.poll(now);
+    }
+    now = client.next_deadline() == never ? now : end;
+  }
+  void open(const Script& script) {
+    client.start(now);
+    run(script);
+    ASSERT_EQ(client.state(), SlcanClient::State::open) << client.error();
+    lines.clear();
+  }
+  /// The error of an adapter that cannot be used.
+  std::string error_of(const Script& script) {
+    client.start(now);
+    run(script);
+    EXPECT_EQ(client.state(), SlcanClient::State::failed);
+    EXPECT_EQ(client.error().find('\n'), std::string::npos);
+    return client.error();
+  }
+
+  SlcanClient client;
+  Microseconds now = 1'000'000'000;
+  std::string sent;
+  std::vector<std::string> lines;
+  std::vector<CanFrame> frames_received;
+  std::vector<CanFrame> frames_transmitted;
+  CanStatus status;
+  CanErrors errors;
+};
+
+CanFrame frame(unsigned number) {
+  return {0x601, 2, {static_cast<std::uint8_t>(number), static_cast<std::uint8_t>(number >> 8U)}};
+}
+std::vector<CanFrame> frames(unsigned count) {
+  std::vector<CanFrame> all;
+  for (unsigned number = 0; number < count; ++number) {
+    all.push_back(frame(number));
+  }
+  return all;
+}
+
+// LAWICEL's manual of the CANUSB.
+std::string lawicel(const std::string& line) {
+  const std::map<char, std::string> answers{{'C', "\r"},      {'S', "\r"},      {'O', "\r"},
+                                            {'V', "V1013\r"}, {'N', "NA123\r"}, {'t', "z\r"}};
+  const auto answer = answers.find(line.empty() ? ' ' : line[0]);
+  return answer == answers.end() ? "\a" : answer->second;
+}
+// The slcan firmware of the CANable: V is answered with the name of its sources.
+std::string canable(const std::string& line) {
+  return line == "V" ? "CANable-8a5d6f6 github.com/normaldotcom/canable-fw.git\r" : "";
+}
+std::string silent(const std::string& /*line*/) { return ""; }
+
+TEST_F(SlcanClientTest, OpensAnAdapterThatAnswersEverything) {
+  client.start(now);
+  run(lawicel, 0);
+  EXPECT_EQ(client.state(), SlcanClient::State::open);
+  EXPECT_EQ(lines, (std::vector<std::string>{"C", "V", "N", "S8", "O"}));
+  EXPECT_EQ(client.adapter(), "V1013, NA123");
+  EXPECT_TRUE(client.is_acknowledging());
+}
+
+TEST_F(SlcanClientTest, OpensAnAdapterWithCommandsOneByOne) {
+  client.start(now);
+  std::string taken = client.take(now, 100);
+  EXPECT_EQ(taken, "C\r");
+  client.poll(now + 299'999);
+  EXPECT_FALSE(client.has_output());
+  client.input(now, "\r");
+  EXPECT_EQ(client.take(now, 100), "V\r");
+  EXPECT_FALSE(client.has_output());
+}
+
+TEST_F(SlcanClientTest, OpensAnAdapterThatAnswersVersionsOnly) {
+  open(canable);
+  EXPECT_EQ(client.adapter(), "CANable-8a5d6f6 github.com/normaldotcom/canable-fw.git");
+  EXPECT_FALSE(client.is_acknowledging());
+}
+
+TEST_F(SlcanClientTest, OpensAnAdapterThatAnswersNothingWhenAFrameComes) {
+  client.start(now);
+  run(silent, 1'500'000);
+  EXPECT_EQ(client.state(), SlcanClient::State::starting);
+  client.input(now, "t08011F\r");
+  EXPECT_EQ(client.state(), SlcanClient::State::open);
+  EXPECT_EQ(frames_received, (std::vector<CanFrame>{{0x080, 1, {0x1F}}}));
+}
+
+TEST_F(SlcanClientTest, OpensAnAdapterThatWasLeftOpen) {
+  client.start(now);
+  client.input(now, "2345\rt0801");
+  bool is_first = true;
+  run([&](const std::string& line) -> std::string {
+    if (is_first) {
+      is_first = false;
+      return "1F\rt0801\a";  // the answer to the rest of a line
+    }
+    return lawicel(line);
+  });
+  EXPECT_EQ(client.state(), SlcanClient::State::open);
+  EXPECT_TRUE(frames_received.empty());
+}
+
+TEST_F(SlcanClientTest, OpensAnAdapterThatStartsWithTextTwoSecondsLate) {
+  const Microseconds start = now;
+  bool has_greeted = false;
+  client.start(now);
+  run([&](const std::string& line) -> std::string {
+    if (now < start + 1'500'000) {
+      return "";
+    }
+    const bool greets = !has_greeted;
+    has_greeted = true;
+    return greets ? "CAN adapter\r\nready\r\n" : lawicel(line);
+  });
+  EXPECT_EQ(client.state(), SlcanClient::State::open) << client.error();
+  EXPECT_LT(now - start, 4'500'000U);
+}
+
+TEST_F(SlcanClientTest, OpensProlegsOwnAdapter) {
+  class Bus final : public CanPort {
+   public:
+    [[nodiscard]] bool send(const CanFrame& /*frame*/) override { return true; }
+  };
+  Bus bus;
+  std::vector<char> buffer(1'024);
+  SlcanAdapter adapter(buffer, bus);
+  open([&](const std::string& line) {
+    adapter.input(line + "\r");
+    std::string output(1'024, ' ');
+    output.resize(adapter.take(output));
+    return output;
+  });
+  EXPECT_TRUE(adapter.is_open());
+  EXPECT_EQ(client.adapter(), "V1010, N0000");
+}
+
+TEST_F(SlcanClientTest, SaysThatNothingAnswers) {
+  EXPECT_EQ(error_of(silent), "no answer to C, V, S8 and O within 4 s, and no frame from the bus");
+  EXPECT_LT(now, 1'000'000'000U + 8'000'000U);
+}
+
+TEST_F(SlcanClientTest, SaysWhatItReceivedAndWhatItExpected) {
+  EXPECT_EQ(error_of([](const std::string&) { return "\xFE\x01\x80\xFE"; }),
+            "received '\\xFE\\x01\\x80\\xFE\\xFE\\x01\\x80\\xFE\\xFE\\x01\\x80\\xFE\\xFE\\x01\\x80\\xFE', expected "
+            "slcan: CR, BEL or a line such as t1230");
+  EXPECT_EQ(error_of([](const std::string&) { return "ERROR\r\n"; }),
+            "received 'ERROR' after S8, expected slcan: CR, BEL or a line such as t1230");
+  EXPECT_EQ(error_of([](const std::string& line) { return line + "\r\n"; }),
+            "the line returns what is sent to it (V), expected slcan: CR, BEL or a line such as t1230");
+}
+
+TEST_F(SlcanClientTest, SaysWhatTheAdapterRefuses) {
+  EXPECT_EQ(error_of([](const std::string& line) { return line == "S8" ? "\a" : lawicel(line); }),
+            "the adapter answers BEL to S8, expected CR: it does not offer 1 Mbit/s");
+  EXPECT_EQ(error_of([](const std::string& line) { return line == "O" ? "\a" : lawicel(line); }),
+            "the adapter answers BEL to O, expected CR: it does not open its channel");
+}
+
+TEST_F(SlcanClientTest, AFrameIsTransmittedWhenTheAdapterConfirmsIt) {
+  open(lawicel);
+  ASSERT_TRUE(client.send(frame(1)));
+  EXPECT_EQ(client.take(now, 100), "t60120100\r");
+  EXPECT_TRUE(frames_transmitted.empty());
+  client.input(now, "z\r");
+  EXPECT_EQ(frames_transmitted, (std::vector<CanFrame>{frame(1)}));
+  EXPECT_EQ(client.statistics().transmitted, 1U);
+}
+
+TEST_F(SlcanClientTest, AFrameIsTransmittedWhenTheLineTakesItIfTheAdapterConfirmsNothing) {
+  open(canable);
+  ASSERT_TRUE(client.send(frame(1)));
+  EXPECT_TRUE(frames_transmitted.empty());
+  EXPECT_EQ(client.take(now, 100), "t60120100\r");
+  EXPECT_EQ(frames_transmitted, (std::vector<CanFrame>{frame(1)}));
+}
+
+TEST_F(SlcanClientTest, AFrameThatTheAdapterRefusesIsCounted) {
+  open(lawicel);
+  for (unsigned number = 0; number < 3; ++number) {
+    ASSERT_TRUE(client.send(frame(number)));
+  }
+  static_cast<void>(client.take(now, 100));
+  client.input(now, "z\r\az\r");
+  EXPECT_EQ(frames_transmitted, (std::vector<CanFrame>{frame(0), frame(2)}));
+  EXPECT_EQ(client.statistics().refused, 1U);
+}
+
+TEST_F(SlcanClientTest, ABurstOf2000FramesArrivesInEveryDialect) {
+  for (const Script& dialect : {Script(lawicel), Script(canable)}) {
+    open(dialect);
+    for (unsigned first = 0; first < 2'000; first += 1'000) {
+      for (unsigned number = first; number < first + 1'000; ++number) {
+        ASSERT_TRUE(client.send(frame(number)));
+      }
+      run(dialect);
+    }
+    EXPECT_EQ(frames_transmitted, frames(2'000));
+    EXPECT_EQ(lines.size(), 2'000U);
+    frames_transmitted.clear();
+    client.stop();
+  }
+  EXPECT_EQ(client.statistics().dropped_out, 0U);
+}
+
+TEST_F(SlcanClientTest, FramesThatAreNotConfirmedFillAWindow) {
+  open(lawicel);
+  for (unsigned number = 0; number < 100; ++number) {
+    ASSERT_TRUE(client.send(frame(number)));
+  }
+  EXPECT_EQ(client.take(now, 10'000).size(), 32U * 10U);
+  EXPECT_FALSE(client.has_output());
+  client.input(now, "z\rz\r");
+  EXPECT_EQ(client.take(now, 10'000), "t60122000\rt60122100\r");
+}
+
+TEST_F(SlcanClientTest, AFullQueueRefusesFrames) {
+  open(lawicel);
+  for (unsigned number = 0; number < 1'024; ++number) {
+    EXPECT_TRUE(client.send(frame(number)));
+  }
+  EXPECT_FALSE(client.send(frame(0)));
+  EXPECT_EQ(client.statistics().dropped_out, 1U);
+}
+
+TEST_F(SlcanClientTest, PassesFramesAndReportsAndIgnoresForeignFrames) {
+  open(lawicel);
+  client.input(now, "t08011F12AB\rT000001000\rr1000\rsp000128\re1a\rgarbage\r");
+  EXPECT_EQ(frames_received, (std::vector<CanFrame>{{0x080, 1, {0x1F}}}));
+  EXPECT_EQ(client.statistics().foreign, 2U);
+  EXPECT_EQ(client.statistics().malformed, 1U);
+  EXPECT_EQ(status, (CanStatus{CanState::error_passive, 0, 128}));
+  EXPECT_TRUE(errors.contains(CanErrorKind::acknowledgement));
+}
+
+TEST_F(SlcanClientTest, AnAdapterThatDiesIsFound) {
+  open(lawicel);
+  ASSERT_TRUE(client.send(frame(1)));
+  run(silent);
+  EXPECT_EQ(lines, (std::vector<std::string>{"t60120100", "V"}));
+  EXPECT_EQ(client.state(), SlcanClient::State::failed);
+  EXPECT_EQ(client.error(), "the adapter answers no more; frames without confirmation: 1");
+  EXPECT_EQ(client.statistics().unconfirmed, 1U);
+}
+
+TEST_F(SlcanClientTest, AnAnswerThatIsLostEndsNothing) {
+  open(lawicel);
+  ASSERT_TRUE(client.send(frame(1)));
+  ASSERT_TRUE(client.send(frame(2)));
+  run([](const std::string& line) { return line == "t60120100" ? "" : lawicel(line); });
+  EXPECT_EQ(client.state(), SlcanClient::State::open);
+  EXPECT_EQ(client.statistics().transmitted + client.statistics().unconfirmed, 2U);
+  EXPECT_TRUE(client.is_acknowledging());
+}
+
+TEST_F(SlcanClientTest, AnAdapterMayConfirmCommandsOnly) {
+  const Script script = [](const std::string& line) { return line[0] == 't' ? "" : lawicel(line); };
+  open(script);
+  ASSERT_TRUE(client.send(frame(1)));
+  run(script);
+  EXPECT_EQ(client.state(), SlcanClient::State::open);
+  EXPECT_FALSE(client.is_acknowledging());
+  ASSERT_TRUE(client.send(frame(2)));
+  run(script);
+  EXPECT_EQ(frames_transmitted, (std::vector<CanFrame>{frame(2)}));
+}
+
+TEST_F(SlcanClientTest, ClosesTheChannelWhenItStops) {
+  open(lawicel);
+  ASSERT_TRUE(client.send(frame(1)));
+  client.stop();
+  EXPECT_EQ(client.take(now, 100), "C\r");
+  EXPECT_FALSE(client.has_output());
+  EXPECT_FALSE(client.send(frame(1)));
+  EXPECT_EQ(client.statistics().dropped_out, 2U);
+}
+
+class ListeningSlcanClientTest : public SlcanClientTest {
+ protected:
+  static SlcanClient::Settings listening() {
+    SlcanClient::Settings settings;
+    settings.is_listen_only = true;
+    return settings;
+  }
+  ListeningSlcanClientTest() : SlcanClientTest(listening()) {}
+};
+
+TEST_F(ListeningSlcanClientTest, OpensWithLAndSendsNothing) {
+  client.start(now);
+  run([](const std::string& line) { return line == "L" ? "\r" : lawicel(line); });
+  EXPECT_EQ(lines.back(), "L");
+  EXPECT_EQ(client.state(), SlcanClient::State::open);
+  EXPECT_FALSE(client.send(frame(1)));
+}
+
+}  // namespace
+}  // namespace proleg::host

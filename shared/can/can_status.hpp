@@ -35,6 +35,7 @@ class CanErrors {
  public:
   constexpr CanErrors() = default;
   constexpr void add(CanErrorKind kind) { bits_ = static_cast<std::uint8_t>(bits_ | bit(kind)); }
+  constexpr void add(CanErrors others) { bits_ = static_cast<std::uint8_t>(bits_ | others.bits_); }
   [[nodiscard]] constexpr bool contains(CanErrorKind kind) const { return (bits_ & bit(kind)) != 0; }
   [[nodiscard]] constexpr bool empty() const { return bits_ == 0; }
 

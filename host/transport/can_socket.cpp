@@ -1,0 +1,182 @@
+#include "host/transport/can_socket.hpp"
+
+#include <linux/can/error.h>
+#include <linux/can/raw.h>
+#include <net/if.h>
+#include <net/if_arp.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+#include "host/transport/event_loop.hpp"
+#include "host/transport/transport.hpp"
+#include "shared/computer/text/text.hpp"
+
+namespace proleg::host {
+namespace {
+
+constexpr int receive_buffer = 1'000'000;  // bytes; the kernel may give less
+constexpr Microseconds microseconds_per_second = 1'000'000;
+
+/// The CAN interfaces of this computer.
+std::string present_interfaces() {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator("/sys/class/net", ignored)) {
+    int type = 0;
+    if (std::ifstream(entry.path() / "type") >> type && type == ARPHRD_CAN) {
+      names.push_back(entry.path().filename().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names.empty() ? "this computer has no CAN interface" : "there is " + listed(names);
+}
+
+/// For the requests of netdevice(7).
+ifreq request_for(const std::string& interface) {
+  ifreq request{};
+  std::copy_n(interface.begin(), std::min<std::size_t>(interface.size(), IFNAMSIZ - 1), request.ifr_name);
+  return request;
+}
+
+/// The index of an interface that can be used. Throws TransportError.
+int index_of(const Descriptor& socket, const std::string& interface) {
+  ifreq request = request_for(interface);
+  if (ioctl(socket.number(), SIOCGIFINDEX, &request) != 0) {
+    throw TransportError("no such interface; " + present_interfaces() +
+                         ". A virtual one: sudo modprobe vcan; sudo ip link add dev " + interface +
+                         " type vcan; sudo ip link set " + interface + " up");
+  }
+  const int index = request.ifr_ifindex;
+  request = request_for(interface);
+  if (ioctl(socket.number(), SIOCGIFHWADDR, &request) == 0 && request.ifr_hwaddr.sa_family != ARPHRD_CAN) {
+    throw TransportError("it is no CAN interface; " + present_interfaces());
+  }
+  request = request_for(interface);
+  if (ioctl(socket.number(), SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) == 0) {
+    throw TransportError(can_failure(interface, ENETDOWN));
+  }
+  return index;
+}
+
+/// The time of the kernel's stamp on the steady clock.
+Microseconds steady_time_of(const timeval& stamp) {
+  const auto since_epoch =
+      std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch());
+  const auto time =
+      static_cast<Microseconds>(stamp.tv_sec) * microseconds_per_second + static_cast<Microseconds>(stamp.tv_usec);
+  const auto system_time = static_cast<Microseconds>(since_epoch.count());
+  const Microseconds now = steady_now();
+  // The system's clock may have been set since the stamp; the frame is not older than a second then, and not newer
+  // than now.
+  const Microseconds age = system_time > time ? std::min(system_time - time, microseconds_per_second) : 0;
+  return now - std::min(age, now);
+}
+
+}  // namespace
+
+CanSocket::CanSocket(const std::string& interface, const Options& options)
+    : socket_(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)) {
+  if (!socket_.is_open()) {
+    const int error = errno;
+    throw TransportError(std::string(system_text(error)) + (error == EAFNOSUPPORT || error == EPROTONOSUPPORT
+                                                                ? ": the kernel has no CAN (sudo modprobe can-raw)"
+                                                                : ": no CAN socket"));
+  }
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = index_of(socket_, interface);
+  set_options(options);
+  if (bind(socket_.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+    throw TransportError(can_failure(interface, errno));
+  }
+}
+
+void CanSocket::set_options(const Options& options) const {
+  const can_err_mask_t errors = options.has_error_frames ? CAN_ERR_MASK : 0U;
+  const int own = options.receives_own_frames ? 1 : 0;
+  const int on = 1;
+  // A kernel without one of these still carries frames.
+  setsockopt(socket_.number(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, &errors, sizeof errors);
+  setsockopt(socket_.number(), SOL_CAN_RAW, CAN_RAW_RECV_OWN_MSGS, &own, sizeof own);
+  setsockopt(socket_.number(), SOL_SOCKET, SO_TIMESTAMP, &on, sizeof on);
+  setsockopt(socket_.number(), SOL_SOCKET, SO_RXQ_OVFL, &on, sizeof on);
+  setsockopt(socket_.number(), SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
+}
+
+std::optional<CanSocket::Received> CanSocket::read() {
+  Received received;
+  iovec part{&received.frame, sizeof received.frame};
+  alignas(cmsghdr) std::array<char, 256> control{};
+  msghdr message{};
+  message.msg_iov = &part;
+  message.msg_iovlen = 1;
+  message.msg_control = control.data();
+  message.msg_controllen = control.size();
+  const ssize_t size = recvmsg(socket_.number(), &message, 0);
+  if (size < 0) {
+    error_ = errno == EAGAIN || errno == EINTR ? 0 : errno;
+    return std::nullopt;
+  }
+  if (static_cast<std::size_t>(size) != sizeof received.frame) {
+    error_ = 0;
+    return std::nullopt;  // CAN FD is not enabled
+  }
+  received.is_own = (static_cast<unsigned>(message.msg_flags) & MSG_CONFIRM) != 0;
+  received.time = steady_now();
+  for (cmsghdr* header = CMSG_FIRSTHDR(&message); header != nullptr; header = CMSG_NXTHDR(&message, header)) {
+    if (header->cmsg_level != SOL_SOCKET) {
+      continue;
+    }
+    if (header->cmsg_type == SO_TIMESTAMP) {
+      timeval stamp{};
+      std::memcpy(&stamp, CMSG_DATA(header), sizeof stamp);
+      received.time = steady_time_of(stamp);
+    } else if (header->cmsg_type == SO_RXQ_OVFL) {
+      std::memcpy(&dropped_, CMSG_DATA(header), sizeof dropped_);
+    }
+  }
+  return received;
+}
+
+int CanSocket::write(const CanFrame& frame) {
+  can_frame raw{};
+  raw.can_id = frame.identifier;
+  raw.can_dlc = frame.length;
+  std::copy(frame.data.begin(), frame.data.end(), raw.data);
+  const ssize_t size = ::send(socket_.number(), &raw, sizeof raw, MSG_NOSIGNAL);
+  return size < 0 ? errno : 0;
+}
+
+std::optional<CanFrame> protocol_frame(const can_frame& frame) {
+  if ((frame.can_id & (CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_ERR_FLAG)) != 0 || frame.can_dlc > CanFrame::max_length) {
+    return std::nullopt;
+  }
+  CanFrame result{static_cast<std::uint16_t>(frame.can_id & CAN_SFF_MASK), frame.can_dlc, {}};
+  std::copy_n(frame.data, frame.can_dlc, result.data.begin());
+  return result;
+}
+
+std::string can_failure(const std::string& interface, int error) {
+  switch (error) {
+    case ENETDOWN:
+      return "the interface is down: sudo ip link set " + interface +
+             " up type can bitrate 1000000 (a virtual one: sudo ip link set " + interface + " up)";
+    case ENODEV:
+    case ENXIO:
+      return "the interface is gone (was the adapter unplugged?)";
+    default:
+      return system_text(error);
+  }
+}
+
+}  // namespace proleg::host

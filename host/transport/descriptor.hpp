@@ -1,0 +1,36 @@
+#pragma once
+
+#include <utility>
+
+namespace proleg::host {
+
+/// Owns a file descriptor of the system.
+class Descriptor {
+ public:
+  Descriptor() = default;
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(Descriptor&& other) noexcept : number_(other.release()) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~Descriptor() { close(); }
+
+  /// -1: none.
+  [[nodiscard]] int number() const { return number_; }
+  [[nodiscard]] bool is_open() const { return number_ >= 0; }
+  [[nodiscard]] int release() { return std::exchange(number_, -1); }
+  void close();
+
+ private:
+  int number_ = -1;
+};
+
+/// Reads and writes return at once from now on, and programs that are started do not inherit the descriptor. False if
+/// there is no such descriptor; errno says why.
+[[nodiscard]] bool make_private(const Descriptor& descriptor);
+
+/// "Permission denied" for EACCES, and so on.
+[[nodiscard]] const char* system_text(int error);
+
+}  // namespace proleg::host

@@ -35,6 +35,11 @@ constexpr std::array subcommands{
     Subcommand{"plot", "draw joint angles, contacts and path of a recording"},
     Subcommand{"optimise", "search for the parameters of a gait"},
     Subcommand{"experiment", "repeat an experiment of the thesis and compare with its published numbers"},
+    Subcommand{"scan", "list the modules on a bus"},
+    Subcommand{"info", "show what a module says of itself"},
+    Subcommand{"get", "read objects of modules"},
+    Subcommand{"set", "write an object of modules"},
+    Subcommand{"nmt", "start, stop and reset modules"},
     Subcommand{"objects", "list the objects of a module that can be read and set over the bus"},
 };
 

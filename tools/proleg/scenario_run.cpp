@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <system_error>
@@ -23,7 +21,6 @@
 namespace proleg::tools {
 namespace {
 
-std::atomic<bool> interrupt_flag = false;  // lock-free, so a signal handler may set it
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 /// The length of the run. Throws InputError if a change takes effect after it.
@@ -220,17 +217,6 @@ std::string losses_text(std::uint64_t lost, std::uint64_t receptions) {
                 receptions > 0 ? 100.0 * static_cast<double>(lost) / static_cast<double>(receptions) : 0.0);
   return text.data();
 }
-
-void catch_interrupts() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    // An ignored signal remains ignored: nohup and scripts protect their jobs this way.
-    if (std::signal(signal, [](int) { interrupt_flag = true; }) == SIG_IGN) {
-      std::signal(signal, SIG_IGN);
-    }
-  }
-}
-
-bool interrupted() { return interrupt_flag; }
 
 std::string kept_in_recording(const ScenarioOptions& options) {
   return options.record ? "; what was simulated is in " + *options.record : "";

@@ -16,6 +16,7 @@
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/interrupt.hpp"
 #include "tools/proleg/json_output.hpp"
 
 namespace proleg::tools {
@@ -79,10 +80,6 @@ void print_setup(const sim::Scenario& scenario);
 
 /// What --losses did, for people: "2969 of 59900 (5.0 %); a frame counts once for each joint that is to receive it".
 [[nodiscard]] std::string losses_text(std::uint64_t lost, std::uint64_t receptions);
-
-/// After this call SIGINT, SIGTERM and SIGHUP only make interrupted() true. Ignored signals remain ignored (nohup).
-void catch_interrupts();
-[[nodiscard]] bool interrupted();
 
 /// "; what was simulated is in FILE", for messages about a run that ended early; empty without a recording.
 [[nodiscard]] std::string kept_in_recording(const ScenarioOptions& options);

@@ -1,0 +1,59 @@
+#include "host/robot/state_text.hpp"
+
+namespace proleg::host {
+namespace {
+
+constexpr unsigned operation_enabled = 0x27;
+constexpr unsigned quick_stop_active = 0x07;
+constexpr unsigned with_quick_stop_bit = 0x6F;
+constexpr unsigned without_quick_stop_bit = 0x4F;
+
+}  // namespace
+
+std::string_view state_text(canopen::NmtState state) {
+  switch (state) {
+    case canopen::NmtState::boot_up:
+      return "booting";
+    case canopen::NmtState::stopped:
+      return "stopped";
+    case canopen::NmtState::operational:
+      return "operational";
+    case canopen::NmtState::pre_operational:
+      return "pre-operational";
+  }
+  return "unknown state";
+}
+
+std::string_view drive_text(std::uint16_t statusword) {
+  switch (statusword & without_quick_stop_bit) {
+    case 0x00:
+      return "not ready";
+    case 0x40:
+      return "no power";
+    case 0x0F:
+      return "fault, stopping";
+    case 0x08:
+      return "fault";
+    default:
+      break;
+  }
+  switch (statusword & with_quick_stop_bit) {
+    case 0x21:
+      return "ready to switch on";
+    case 0x23:
+      return "switched on";
+    case operation_enabled:
+      return "operation enabled";
+    case quick_stop_active:
+      return "quick stop";
+    default:
+      return "unknown state";
+  }
+}
+
+bool has_power(std::uint16_t statusword) {
+  const unsigned bits = statusword & with_quick_stop_bit;
+  return bits == operation_enabled || bits == quick_stop_active;
+}
+
+}  // namespace proleg::host

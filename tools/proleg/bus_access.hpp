@@ -1,0 +1,61 @@
+#pragma once
+
+// For the subcommands that use a bus.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/robot/bus_connection.hpp"
+#include "host/robot/bus_scan.hpp"
+#include "host/robot/sdo_queue.hpp"
+#include "tools/proleg/command_line.hpp"
+
+namespace proleg::tools {
+
+struct BusOptions {
+  std::string bus;
+};
+
+/// Adds --bus. Without it the environment variable PROLEG_BUS counts, else `auto`.
+void add_bus_option(CommandLine& command_line, BusOptions& options);
+
+/// The bus of a subcommand, open as long as this object.
+class BusAccess {
+ public:
+  /// Throws InputError for a bad address, TransportError if it cannot be reached.
+  explicit BusAccess(const BusOptions& options);
+  ~BusAccess();
+  BusAccess(const BusAccess&) = delete;
+  BusAccess& operator=(const BusAccess&) = delete;
+
+  [[nodiscard]] host::BusConnection& connection();
+  /// Waits until `done`; throws std::runtime_error if that takes longer than the time, the connection is lost, or the
+  /// user interrupts. what: what was waited for, for the message.
+  void wait_for(const std::string& what, Microseconds at_most, const std::function<bool()>& done);
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// Scans the bus; throws std::runtime_error if the connection is lost or interrupted.
+void scan(BusAccess& bus, host::BusScan& scan);
+
+/// Options of SDO transfers that a user waits for: they survive a bus that loses one frame in ten.
+[[nodiscard]] canopen::SdoTransferOptions patient_transfers();
+
+/// The modules that a NODE argument names; for `all` those that a scan finds. Throws std::runtime_error if there is
+/// none.
+[[nodiscard]] std::vector<std::uint8_t> nodes_of(BusAccess& bus, const std::string& word);
+
+/// Waits until all transfers of a queue have ended.
+void finish(BusAccess& bus, host::SdoQueue& queue);
+
+/// "node 3: no answer: CAUSE", or "node 3: object 0x6064: the abort code in words". cause: what is known about the bus.
+[[nodiscard]] std::string failure_text(std::uint8_t node, const std::string& object, canopen::AbortCode code,
+                                       const std::string& cause);
+
+}  // namespace proleg::tools

@@ -95,42 +95,42 @@ void LiveRobot::take_sync(BusTime now) {
   begin_tick(now, true);
 }
 
-bool LiveRobot::send(const CanFrame& frame) {
+bool LiveRobot::send(const CanFrame& frame, std::uint32_t source) {
   if (waiting() >= max_waiting) {
     return false;
   }
-  waiting_.push_back(frame);
+  waiting_.push_back({frame, source});
   fill_mailboxes();
   return true;
 }
 
 void LiveRobot::fill_mailboxes() {
-  while (!waiting_.empty() && adapter_.send(waiting_.front())) {
+  while (!waiting_.empty() && adapter_.send(waiting_.front().frame)) {
+    in_mailboxes_.push_back(waiting_.front());
     waiting_.pop_front();
-    ++in_mailboxes_;
   }
 }
 
-void LiveRobot::discard_waiting() {
-  waiting_.clear();
-  adapter_.abort_all();
-  in_mailboxes_ = 0;
-}
-
 void LiveRobot::transmitted(BusTime time, const CanFrame& frame) {
-  in_mailboxes_ -= in_mailboxes_ > 0 ? 1 : 0;
-  if (options_.on_sent) {
-    options_.on_sent(time, frame);
+  if (!in_mailboxes_.empty()) {
+    const std::uint32_t source = in_mailboxes_.front().source;
+    in_mailboxes_.pop_front();
+    if (options_.on_sent) {
+      options_.on_sent(time, frame, source);
+    }
   }
   fill_mailboxes();
 }
 
 void LiveRobot::error_state_changed(BusTime /*time*/) {
   if (adapter_.error_state() == ErrorState::bus_off) {
-    in_mailboxes_ = 0;  // its mailboxes are empty then
+    in_mailboxes_.clear();  // the controller has dropped them
     adapter_.recover();
   } else {
     fill_mailboxes();
+  }
+  if (options_.on_state) {
+    options_.on_state(adapter_);
   }
 }
 

@@ -32,8 +32,10 @@ struct LiveRobotOptions {
   std::uint32_t crystal_error_ppm = 100;
   /// Called for each frame that ends on the bus, before any node receives it. own: LiveRobot::send() was its source.
   std::function<void(const Transmission& transmission, bool own)> on_frame;
-  /// Called when a frame that send() took was on the bus; in the order of send() for equal identifiers.
-  std::function<void(BusTime time, const CanFrame& frame)> on_sent;
+  /// Called when a frame that send() took was on the bus, in the order of send().
+  std::function<void(BusTime time, const CanFrame& frame, std::uint32_t source)> on_sent;
+  /// Called when the adapter's controller has another error state.
+  std::function<void(const Controller& adapter)> on_state;
   /// Called for what modules report of themselves: a fault of the program, a reset. One line each.
   std::function<void(const std::string&)> notice;
 };
@@ -56,12 +58,10 @@ class LiveRobot final : private BusListener {
   /// Lets everything happen that is due up to this time. Throws PhysicsError as Simulation does.
   void advance_to(BusTime time);
 
-  /// Sends a frame of an outside program now(), by the controller of the adapter between it and the bus. False if
-  /// max_waiting frames wait already.
-  [[nodiscard]] bool send(const CanFrame& frame);
-  /// Discards the frames that wait, as an adapter does whose channel is closed.
-  void discard_waiting();
-  [[nodiscard]] std::size_t waiting() const { return waiting_.size() + in_mailboxes_; }
+  /// Sends a frame of an outside program now(), by the controller of the adapter between it and the bus. source: comes
+  /// back with on_sent. False if max_waiting frames wait already.
+  [[nodiscard]] bool send(const CanFrame& frame, std::uint32_t source = 0);
+  [[nodiscard]] std::size_t waiting() const { return waiting_.size() + in_mailboxes_.size(); }
   /// The controller of the adapter.
   [[nodiscard]] const Controller& adapter() const { return adapter_; }
 
@@ -93,8 +93,12 @@ class LiveRobot final : private BusListener {
   Bus bus_;
   ModuleRack rack_;  ///< the first to attach to the bus
   Controller& adapter_;
-  std::deque<CanFrame> waiting_;
-  std::size_t in_mailboxes_ = 0;
+  struct Request {
+    CanFrame frame;
+    std::uint32_t source;
+  };
+  std::deque<Request> waiting_;
+  std::deque<Request> in_mailboxes_;
   std::uint32_t ticks_ = 0;
   std::uint32_t begun_ticks_ = 0;
   BusTime tick_begin_ = 0;     ///< of the last one

@@ -1,0 +1,260 @@
+// proleg bus: a simulated robot that other programs reach, paced to real time.
+
+#include <algorithm>
+#include <boost/asio/io_context.hpp>
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/robot/object_word.hpp"
+#include "host/transport/bus_server.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "shared/fixed/random.hpp"
+#include "sim/bus/candump_log.hpp"
+#include "sim/live/live_robot.hpp"
+#include "tools/proleg/command_line.hpp"
+#include "tools/proleg/hil_modules.hpp"
+#include "tools/proleg/interrupt.hpp"
+#include "tools/proleg/real_time_pace.hpp"
+#include "tools/proleg/scenario_run.hpp"
+
+namespace {
+
+using namespace proleg;
+using namespace proleg::tools;
+
+struct ServerOptions : ModuleOptions {
+  ScenarioOptions scenario;
+  std::vector<std::string> can;
+  bool pty = false;
+  std::vector<std::string> tcp;
+  std::optional<std::string> descriptor;
+  std::optional<std::string> fresh;
+  std::optional<std::string> shuffle;
+  std::optional<std::string> can_log;
+  bool verbose = false;
+};
+
+CanStatus status_of(const sim::Controller& controller) {
+  constexpr unsigned warning_limit = 96;
+  CanStatus status;
+  status.transmit_errors = static_cast<std::uint16_t>(controller.transmit_errors());
+  status.receive_errors = static_cast<std::uint16_t>(controller.receive_errors());
+  switch (controller.error_state()) {
+    case sim::ErrorState::bus_off:
+      status.state = CanState::bus_off;
+      break;
+    case sim::ErrorState::passive:
+      status.state = CanState::error_passive;
+      break;
+    case sim::ErrorState::active:
+      status.state = std::max(status.transmit_errors, status.receive_errors) >= warning_limit
+                         ? CanState::error_warning
+                         : CanState::error_active;
+      break;
+  }
+  return status;
+}
+
+/// Node ids that the modules have at the start: those of the robot's file, or shuffled, or none.
+std::vector<std::uint8_t> start_nodes(const ServerOptions& options, const sim::Scenario& scenario) {
+  std::vector<std::uint8_t> nodes;
+  for (const sim::ModulePlace& module : scenario.modules) {
+    nodes.push_back(module.node);
+  }
+  if (options.shuffle) {
+    const auto seed = parse_whole<std::uint64_t>(*options.shuffle);
+    if (!seed) {
+      throw InputError("--shuffle", 0, in_quotes(*options.shuffle), "SEED, a whole number");
+    }
+    Pcg32 random(*seed, 0);
+    for (std::size_t i = nodes.size(); i > 1; --i) {
+      std::swap(nodes[i - 1], nodes[random.below(static_cast<std::uint32_t>(i))]);
+    }
+  }
+  if (options.fresh) {
+    const auto fresh = host::parse_nodes(*options.fresh);
+    for (std::size_t joint = 0; joint < nodes.size(); ++joint) {
+      const std::uint8_t node = scenario.modules[joint].node;
+      if (!fresh || std::ranges::find(*fresh, node) != fresh->end()) {
+        nodes[joint] = 0;
+      }
+    }
+  }
+  return nodes;
+}
+
+/// The robot and the programs that reach it.
+class Server final : private host::BusServerListener {
+ public:
+  Server(const ServerOptions& options, const ScenarioRun& run, HilModules& modules)
+      : nodes_(start_nodes(options, run.scenario)),
+        is_verbose_(options.verbose),
+        log_(options.can_log ? std::make_unique<sim::CandumpLog>(*options.can_log) : nullptr),
+        robot_(run.scenario, live_options(modules)) {
+    open(options);
+  }
+
+  /// Until the user interrupts, the descriptor is closed, or `until` (0: no end) of the robot's time.
+  void serve(sim::BusTime until) {
+    RealTimePace pace;
+    while (!interrupted() && !is_closed_ && (until == 0 || robot_.now() < until)) {
+      // The clients' frames enter the bus at the present time.
+      advance(pace);
+      context_.restart();
+      const std::uint64_t wake_ns = std::min(robot_.next_event(), robot_.now() + longest_wait_ns);
+      if (pace.now_ns() < wake_ns) {
+        context_.run_one_for(std::chrono::nanoseconds(wake_ns - pace.now_ns()));
+      }
+      context_.poll();
+    }
+    report_delays(pace);
+    if (log_) {
+      log_->finish();
+    }
+  }
+
+ private:
+  static constexpr std::uint64_t longest_wait_ns = 10'000'000;
+  /// In such pieces the simulation gives the clients a turn if it is late.
+  static constexpr sim::BusTime longest_piece_ns = 1'000'000;
+
+  sim::LiveRobotOptions live_options(HilModules& modules) {
+    sim::LiveRobotOptions options;
+    options.make_module = [&modules](const sim::ModuleParts& parts) { return modules.make(parts); };
+    options.change_identity = [this](unsigned joint, firmware::ModuleIdentity& identity) {
+      identity.node = nodes_[joint];
+    };
+    options.on_frame = [this](const sim::Transmission& transmission, bool is_own) {
+      if (log_) {
+        log_->write(transmission.end, transmission.frame);
+      }
+      if (!is_own) {
+        server_.broadcast(transmission.end / 1'000, transmission.frame);
+      }
+    };
+    options.on_sent = [this](sim::BusTime time, const CanFrame& frame, std::uint32_t client) {
+      server_.broadcast(time / 1'000, frame, client);
+    };
+    options.on_state = [this](const sim::Controller& adapter) { server_.status_changed(status_of(adapter)); };
+    options.notice = [](const std::string& text) { std::cerr << "proleg bus: " << text << '\n'; };
+    return options;
+  }
+
+  void open(const ServerOptions& options) {
+    for (const std::string& name : options.can) {
+      server_.add_can(name);
+      std::cout << "CAN interface " << name << ": --bus " << name << '\n';
+    }
+    for (const std::string& word : options.tcp) {
+      const std::size_t colon = word.rfind(':');
+      const auto port = parse_whole<std::uint16_t>(std::string_view(word).substr(colon == std::string::npos ? 0 : colon + 1));
+      if (!port) {
+        throw InputError("--tcp", 0, in_quotes(word), "PORT or ADDRESS:PORT; port 0: any free one");
+      }
+      const std::string address = colon == std::string::npos ? "127.0.0.1" : word.substr(0, colon);
+      const std::uint16_t used = server_.add_tcp(address, *port);
+      std::cout << "slcan over TCP: --bus tcp:" << address << ":" << used << '\n';
+    }
+    if (options.pty) {
+      std::cout << "slcan on a pseudo terminal: --bus serial:" << server_.add_pseudo_terminal() << '\n';
+    }
+    if (options.descriptor) {
+      const auto number = parse_whole<int>(*options.descriptor);
+      if (!number || *number < 0) {
+        throw InputError("--fd", 0, in_quotes(*options.descriptor), "the number of an open file descriptor");
+      }
+      server_.add_descriptor(*number);
+    }
+    std::cout.flush();
+  }
+
+  void advance(RealTimePace& pace) {
+    const std::uint64_t now = pace.now_ns();
+    robot_.advance_to(std::min(now, robot_.now() + longest_piece_ns));
+    pace.simulated_to(robot_.now());
+  }
+
+  static void report_delays(const RealTimePace& pace) {
+    if (pace.delays() > 0) {
+      print_warning("proleg bus", "the clock of the robot stood still " + std::to_string(pace.delays()) +
+                                      " times, for " + number_text(static_cast<double>(pace.delayed_ns()) * 1e-9) +
+                                      " s in all, because this computer was too slow or busy");
+    }
+  }
+
+  [[nodiscard]] bool frame_from_client(host::BusClient client, const CanFrame& frame) override {
+    return robot_.send(frame, client);
+  }
+  void client_event(const std::string& line) override {
+    if (is_verbose_) {
+      std::cerr << "proleg bus: " << line << '\n';
+    }
+  }
+  void descriptor_closed() override { is_closed_ = true; }
+
+  std::vector<std::uint8_t> nodes_;  ///< by joint, at the start; 0: none
+  bool is_verbose_;
+  bool is_closed_ = false;
+  std::unique_ptr<sim::CandumpLog> log_;
+  boost::asio::io_context context_{1};
+  host::BusServer server_{context_, *this};
+  sim::LiveRobot robot_;
+};
+
+int serve(const ServerOptions& options) {
+  if (options.can.empty() && !options.pty && options.tcp.empty() && !options.descriptor) {
+    throw InputError("proleg bus", 0, "no way to reach the robot", "--pty, --tcp PORT, --can INTERFACE or --fd N");
+  }
+  const ScenarioRun run = prepare_run(options.scenario);
+  print_warnings("proleg bus", run.scenario);
+  HilModules modules(options, run.scenario);
+  if (options.can_log) {
+    check_outputs({{"--can-log", *options.can_log, "CAN log", starts_with(std::string(1, sim::candump_log_start))}});
+  }
+  catch_interrupts();
+  Server server(options, run, modules);
+  const double seconds = options.scenario.seconds ? run.scenario.duration_s : 0.0;
+  server.serve(static_cast<sim::BusTime>(seconds * 1e9));
+  modules.finish();
+  return exit_success;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine command_line(
+      "proleg bus",
+      "A simulated robot in real time, whose bus other programs reach as they reach a real one: with --bus of the other "
+      "subcommands, and with any CAN tool. Its modules are switched on and wait for a host. Ends with Ctrl-C.");
+  ServerOptions options;
+  command_line.add_option("FILE", options.scenario.file, "scenario, a *.simulation.xml file").required();
+  command_line.add_option("--can", options.can, "a CAN interface of this computer, such as vcan0. May be repeated.")
+      .value_name("INTERFACE");
+  command_line.add_flag("--pty", options.pty, "slcan on a new pseudo terminal, whose name is printed");
+  command_line
+      .add_option("--tcp", options.tcp,
+                  "slcan on a TCP port, for several programs at once; on this computer only, unless an ADDRESS of a "
+                  "network is given. Port 0: any free one. May be repeated.")
+      .value_name("[ADDRESS:]PORT");
+  command_line.add_option("--fd", options.descriptor, "slcan on an open file descriptor; the robot ends with it")
+      .value_name("N");
+  add_module_options(command_line, options);
+  command_line
+      .add_option("--fresh", options.fresh, "these modules come from the factory, without a node id: 1,3 or all")
+      .value_name("NODES");
+  command_line.add_option("--shuffle", options.shuffle, "the modules have each other's node ids, in an order that this seed decides")
+      .value_name("SEED");
+  command_line.add_option("--seconds", options.scenario.seconds, "end after this time");
+  command_line.add_option("--seed", options.scenario.overrides.seed, "seed of the crystals and unique ids, instead of that of the scenario");
+  command_line.add_option("--can-log", options.can_log, "write all frames into this file, as 'candump -l' does");
+  command_line.add_flag("--verbose", options.verbose, "print which programs come and go");
+  return command_line.run(argc, argv, [&] { return serve(options); });
+}

@@ -1,20 +1,17 @@
 #include "host/transport/can_transport.hpp"
 
 #include <algorithm>
-#include <boost/asio/posix/stream_descriptor.hpp>
 #include <cerrno>
 #include <deque>
 #include <utility>
 
 #include "host/transport/can_error_frame.hpp"
 #include "host/transport/can_socket.hpp"
+#include "host/transport/descriptor_watch.hpp"
 #include "host/transport/event_loop.hpp"
 
 namespace proleg::host {
 namespace {
-
-using boost::asio::posix::stream_descriptor;
-using boost::system::error_code;
 
 constexpr std::size_t max_queue = 1'024;
 constexpr Microseconds retry_pause = 1'000;  // a full queue (ENOBUFS) cannot be waited for
@@ -23,33 +20,6 @@ constexpr Microseconds send_timeout = 500'000;
 constexpr Microseconds first_pause = 100'000;
 constexpr Microseconds longest_pause = 2'000'000;
 constexpr unsigned reads_in_a_row = 64;  // then other work of the context has its turn
-
-/// Waits for frames of a socket. Its handlers own it, so that one that is under way when the transport has gone finds
-/// no function.
-class Reader : public std::enable_shared_from_this<Reader> {
- public:
-  Reader(boost::asio::io_context& context, int descriptor, std::function<void()> function)
-      : descriptor_(context.get_executor(), descriptor), function_(std::move(function)) {}
-
-  void wait() {
-    descriptor_.async_wait(stream_descriptor::wait_read, [self = shared_from_this()](const error_code& error) {
-      if (!error && self->function_) {
-        self->wait();
-        // A copy: the function may stop the reader.
-        const auto function = self->function_;
-        function();
-      }
-    });
-  }
-  void stop() {
-    function_ = nullptr;
-    static_cast<void>(descriptor_.release());  // cancels; CanSocket closes it
-  }
-
- private:
-  stream_descriptor descriptor_;
-  std::function<void()> function_;
-};
 
 class CanTransport final : public Transport {
  public:
@@ -92,8 +62,7 @@ class CanTransport final : public Transport {
  private:
   void connect() {
     socket_ = std::make_unique<CanSocket>(interface_, CanSocket::Options{});
-    reader_ = std::make_shared<Reader>(context_, socket_->descriptor(), [this] { read_frames(); });
-    reader_->wait();
+    watch_ = std::make_unique<DescriptorWatch>(context_, socket_->descriptor(), [this] { read_frames(); });
     ++statistics_.connections;
     dropped_before_ = statistics_.dropped_in;
     pause_ = first_pause;
@@ -102,10 +71,7 @@ class CanTransport final : public Transport {
     state_.controller = {};
   }
   void disconnect() {
-    if (reader_) {
-      reader_->stop();
-      reader_.reset();
-    }
+    watch_.reset();
     socket_.reset();
     retry_.set(never);
   }
@@ -243,7 +209,7 @@ class CanTransport final : public Transport {
   const std::string interface_;
   TransportListener& listener_;
   std::unique_ptr<CanSocket> socket_;
-  std::shared_ptr<Reader> reader_;
+  std::unique_ptr<DescriptorWatch> watch_;
   Timer retry_;
   Timer reconnect_;
   BusState state_;

@@ -109,6 +109,7 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
 
   void connected() override {
     set_phase(Phase::starting);
+    state_.controller = {};  // the adapter reports another state when its channel is opened
     client_.start(now());
     proceed();
   }
@@ -149,7 +150,6 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
       pause_ = first_pause;
       state_.is_connected = true;
       state_.reason.clear();
-      state_.controller = {};
       notify();
     }
     if (!stream_) {

@@ -1,0 +1,99 @@
+#include "host/transport/can_node.hpp"
+
+#include <cerrno>
+#include <utility>
+
+#include "host/transport/transport.hpp"
+
+namespace proleg::host {
+namespace {
+
+constexpr std::size_t max_queue = 1'024;
+constexpr Microseconds retry_pause = 500;  // a full queue (ENOBUFS) cannot be waited for
+constexpr Microseconds reconnect_pause = 500'000;
+constexpr unsigned reads_in_a_row = 64;  // then other work of the context has its turn
+
+}  // namespace
+
+CanNode::CanNode(boost::asio::io_context& context, std::string interface, Functions functions)
+    : context_(context),
+      interface_(std::move(interface)),
+      functions_(std::move(functions)),
+      retry_(context, [this] { write(); }),
+      reconnect_(context, [this] { reconnect(); }) {
+  try {
+    connect();
+  } catch (const TransportError& error) {
+    throw TransportError(interface_ + ": " + error.what());
+  }
+}
+
+void CanNode::connect() {
+  socket_ = std::make_unique<CanSocket>(interface_,
+                                        CanSocket::Options{.has_error_frames = false, .receives_own_frames = false});
+  watch_ = std::make_unique<DescriptorWatch>(context_, socket_->descriptor(), [this] { read(); });
+}
+
+void CanNode::reconnect() {
+  try {
+    connect();
+    functions_.changed({});
+  } catch (const TransportError&) {
+    reconnect_.set(steady_now() + reconnect_pause);
+  }
+}
+
+void CanNode::lose(int error) {
+  watch_.reset();
+  socket_.reset();
+  dropped_ += queue_.size();
+  queue_.clear();
+  retry_.set(never);
+  reconnect_.set(steady_now() + reconnect_pause);
+  functions_.changed(interface_ + ": " + can_failure(interface_, error));
+}
+
+void CanNode::read() {
+  for (unsigned i = 0; i < reads_in_a_row && socket_; ++i) {
+    const auto received = socket_->read();
+    if (!received) {
+      if (socket_->error() != 0) {
+        lose(socket_->error());
+      }
+      return;
+    }
+    if (const auto frame = protocol_frame(received->frame)) {
+      functions_.received(*frame);
+    }
+  }
+}
+
+void CanNode::send(const CanFrame& frame) {
+  if (!socket_ || queue_.size() >= max_queue) {
+    ++dropped_;
+    return;
+  }
+  queue_.push_back(frame);
+  if (queue_.size() == 1) {
+    retry_.set(steady_now());  // not in this call: the interface may have failed
+  }
+}
+
+void CanNode::write() {
+  while (socket_ && !queue_.empty()) {
+    const int error = socket_->write(queue_.front());
+    if (error == ENOBUFS || error == EAGAIN) {
+      retry_.set(steady_now() + retry_pause);
+      return;
+    }
+    if (error != 0 && error != EINTR) {
+      lose(error);
+      return;
+    }
+    if (error == 0) {
+      queue_.pop_front();
+    }
+  }
+}
+
+}  // namespace proleg::host

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "host/transport/byte_stream.hpp"
+#include "shared/can/slcan_adapter.hpp"
+
+namespace proleg::host {
+
+/// An slcan adapter for one client on a stream. A client that does not read loses whole lines, which are counted; one
+/// that sends faster than its answers are read has to wait.
+class SlcanSession final : private ByteStreamOwner, private CanPort {
+ public:
+  struct Functions {
+    /// A frame of the client. False: the bus has no room, and the client receives BEL.
+    std::function<bool(const CanFrame&)> send;
+    /// The stream has ended; 0: the client closed it. May destroy the session.
+    std::function<void(int error)> ended;
+  };
+
+  SlcanSession(boost::asio::io_context& context, Descriptor descriptor, const SlcanAdapter::Settings& settings,
+               Functions functions);
+
+  void received(Microseconds time, const CanFrame& frame);
+  void status_changed(const CanStatus& status);
+  void errors_occurred(CanErrors errors);
+  [[nodiscard]] bool is_open() const { return adapter_.is_open(); }
+  [[nodiscard]] const SlcanAdapter::Counters& counters() const { return adapter_.counters(); }
+
+ private:
+  static constexpr std::size_t buffer_size = 65'536;
+
+  [[nodiscard]] std::size_t read_room() override;
+  void read(std::string_view bytes) override;
+  [[nodiscard]] std::string take_output(std::size_t max_bytes) override;
+  void ended(int error) override;
+  [[nodiscard]] bool send(const CanFrame& frame) override { return functions_.send(frame); }
+  void flush();
+
+  Functions functions_;
+  std::vector<char> buffer_ = std::vector<char>(buffer_size);
+  SlcanAdapter adapter_;
+  bool is_waiting_ = false;  ///< for room in the buffer
+  ByteStream stream_;
+};
+
+}  // namespace proleg::host

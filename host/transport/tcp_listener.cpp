@@ -1,0 +1,77 @@
+#include "host/transport/tcp_listener.hpp"
+
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include <array>
+#include <cerrno>
+#include <utility>
+
+#include "host/transport/transport.hpp"
+
+namespace proleg::host {
+namespace {
+
+constexpr int backlog = 8;
+
+/// "127.0.0.1:20000".
+std::string address_text(const sockaddr_storage& address, socklen_t size) {
+  std::array<char, NI_MAXHOST> host{};
+  std::array<char, NI_MAXSERV> port{};
+  const int error = getnameinfo(reinterpret_cast<const sockaddr*>(&address), size, host.data(), host.size(),
+                                port.data(), port.size(), NI_NUMERICHOST | NI_NUMERICSERV);
+  return error == 0 ? std::string(host.data()) + ":" + port.data() : "unknown";
+}
+
+}  // namespace
+
+TcpListener::TcpListener(boost::asio::io_context& context, const std::string& host, std::uint16_t port,
+                         std::function<void(Descriptor, const std::string&)> function)
+    : function_(std::move(function)) {
+  listen(host, port);
+  watch_ = std::make_unique<DescriptorWatch>(context, socket_.number(), [this] { accept_clients(); });
+}
+
+void TcpListener::listen(const std::string& host, std::uint16_t port) {
+  const std::string name = "tcp:" + host + ":" + std::to_string(port) + ": ";
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  hints.ai_flags = AI_PASSIVE;
+  addrinfo* results = nullptr;
+  const int error = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &results);
+  if (error != 0) {
+    throw TransportError(name + gai_strerror(error));
+  }
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(results, freeaddrinfo);
+  socket_ = Descriptor(::socket(results->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  const int on = 1;
+  // A port can be used again at once after its program has ended.
+  setsockopt(socket_.number(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  if (bind(socket_.number(), results->ai_addr, results->ai_addrlen) != 0 || ::listen(socket_.number(), backlog) != 0) {
+    const int bind_error = errno;
+    throw TransportError(name + system_text(bind_error) +
+                         (bind_error == EADDRINUSE ? ": another program listens there; choose another port" : ""));
+  }
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  getsockname(socket_.number(), reinterpret_cast<sockaddr*>(&address), &size);
+  port_ = ntohs(address.ss_family == AF_INET6 ? reinterpret_cast<const sockaddr_in6&>(address).sin6_port
+                                              : reinterpret_cast<const sockaddr_in&>(address).sin_port);
+}
+
+void TcpListener::accept_clients() {
+  sockaddr_storage address{};
+  socklen_t size = sizeof address;
+  Descriptor client(
+      accept4(socket_.number(), reinterpret_cast<sockaddr*>(&address), &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
+  if (!client.is_open()) {
+    return;  // it has gone again
+  }
+  const int on = 1;
+  setsockopt(client.number(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+  function_(std::move(client), address_text(address, size));
+}
+
+}  // namespace proleg::host

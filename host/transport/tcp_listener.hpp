@@ -1,0 +1,35 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "host/transport/descriptor.hpp"
+#include "host/transport/descriptor_watch.hpp"
+
+namespace proleg::host {
+
+/// A TCP port that clients connect to.
+class TcpListener {
+ public:
+  /// host: an address of this computer; 127.0.0.1 lets in programs of this computer only, 0.0.0.0 everybody.
+  /// port 0: any free one. The function receives the socket of each client and its address as text. Throws
+  /// TransportError.
+  TcpListener(boost::asio::io_context& context, const std::string& host, std::uint16_t port,
+              std::function<void(Descriptor, const std::string&)> function);
+
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+
+ private:
+  void listen(const std::string& host, std::uint16_t port);
+  void accept_clients();
+
+  std::function<void(Descriptor, const std::string&)> function_;
+  Descriptor socket_;
+  std::uint16_t port_ = 0;
+  std::unique_ptr<DescriptorWatch> watch_;
+};
+
+}  // namespace proleg::host

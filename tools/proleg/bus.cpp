@@ -55,9 +55,8 @@ CanStatus status_of(const sim::Controller& controller) {
       status.state = CanState::error_passive;
       break;
     case sim::ErrorState::active:
-      status.state = std::max(status.transmit_errors, status.receive_errors) >= warning_limit
-                         ? CanState::error_warning
-                         : CanState::error_active;
+      status.state = std::max(status.transmit_errors, status.receive_errors) >= warning_limit ? CanState::error_warning
+                                                                                              : CanState::error_active;
       break;
   }
   return status;
@@ -155,7 +154,8 @@ class Server final : private host::BusServerListener {
     }
     for (const std::string& word : options.tcp) {
       const std::size_t colon = word.rfind(':');
-      const auto port = parse_whole<std::uint16_t>(std::string_view(word).substr(colon == std::string::npos ? 0 : colon + 1));
+      const auto port =
+          parse_whole<std::uint16_t>(std::string_view(word).substr(colon == std::string::npos ? 0 : colon + 1));
       if (!port) {
         throw InputError("--tcp", 0, in_quotes(word), "PORT or ADDRESS:PORT; port 0: any free one");
       }
@@ -217,7 +217,9 @@ int serve(const ServerOptions& options) {
   print_warnings("proleg bus", run.scenario);
   HilModules modules(options, run.scenario);
   if (options.can_log) {
-    check_outputs({{"--can-log", *options.can_log, "CAN log", starts_with(std::string(1, sim::candump_log_start))}});
+    const std::vector<PlannedOutput> outputs{
+        {"--can-log", *options.can_log, "CAN log", starts_with(std::string(1, sim::candump_log_start))}};
+    check_outputs(outputs);
   }
   catch_interrupts();
   Server server(options, run, modules);
@@ -232,7 +234,8 @@ int serve(const ServerOptions& options) {
 int main(int argc, char** argv) {
   CommandLine command_line(
       "proleg bus",
-      "A simulated robot in real time, whose bus other programs reach as they reach a real one: with --bus of the other "
+      "A simulated robot in real time, whose bus other programs reach as they reach a real one: with --bus of the "
+      "other "
       "subcommands, and with any CAN tool. Its modules are switched on and wait for a host. Ends with Ctrl-C.");
   ServerOptions options;
   command_line.add_option("FILE", options.scenario.file, "scenario, a *.simulation.xml file").required();
@@ -250,10 +253,13 @@ int main(int argc, char** argv) {
   command_line
       .add_option("--fresh", options.fresh, "these modules come from the factory, without a node id: 1,3 or all")
       .value_name("NODES");
-  command_line.add_option("--shuffle", options.shuffle, "the modules have each other's node ids, in an order that this seed decides")
+  command_line
+      .add_option("--shuffle", options.shuffle,
+                  "the modules have each other's node ids, in an order that this seed decides")
       .value_name("SEED");
   command_line.add_option("--seconds", options.scenario.seconds, "end after this time");
-  command_line.add_option("--seed", options.scenario.overrides.seed, "seed of the crystals and unique ids, instead of that of the scenario");
+  command_line.add_option("--seed", options.scenario.overrides.seed,
+                          "seed of the crystals and unique ids, instead of that of the scenario");
   command_line.add_option("--can-log", options.can_log, "write all frames into this file, as 'candump -l' does");
   command_line.add_flag("--verbose", options.verbose, "print which programs come and go");
   return command_line.run(argc, argv, [&] { return serve(options); });

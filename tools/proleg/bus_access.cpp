@@ -49,6 +49,9 @@ void BusAccess::wait_for(const std::string& what, Microseconds at_most, const st
   if (interrupted()) {
     throw std::runtime_error("interrupted while waiting for " + what);
   }
+  if (!bus.state().is_connected) {
+    throw std::runtime_error(bus.diagnosis());
+  }
   throw std::runtime_error(what + ": found none in " + std::to_string(at_most / 1'000'000) + " s; " + bus.diagnosis());
 }
 

@@ -119,6 +119,11 @@ CommandLine::Option CommandLine::add_flag(const std::string& name, bool& variabl
   return Option(app_->add_flag(name, variable, help));
 }
 
+CommandLine::Option& CommandLine::Option::takes_several() {
+  option_->allow_extra_args(true)->expected(1, -1);
+  return *this;
+}
+
 std::string CommandLine::name() const { return app_->get_name(); }
 
 int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {

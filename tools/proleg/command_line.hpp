@@ -38,6 +38,8 @@ class CommandLine {
     /// The name of the value in --help; "" for none.
     Option& value_name(const std::string& name);
     Option& excludes(const std::string& other);
+    /// A positional argument that takes all words up to the next option, at least one.
+    Option& takes_several();
     /// --help shows the present value of the variable.
     Option& shows_default();
 

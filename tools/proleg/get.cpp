@@ -94,6 +94,7 @@ int main(int argc, char** argv) {
       .add_option("OBJECT", options.objects,
                   "an index such as 0x6064 or 0x1018:4, a name of 'proleg objects', or a parameter of the algorithm in "
                   "slot 1 (amplitude) or another slot (amplitude:2)")
+      .takes_several()
       .required();
   add_bus_option(command_line, options);
   command_line.add_flag("--json", options.json, "print one JSON object");

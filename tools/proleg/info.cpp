@@ -34,7 +34,9 @@ bool is_of_interest(const canopen::Object& object) {
   const unsigned index = object.address.index;
   const bool is_communication = index >= 0x1200 && index < 0x2000;
   const bool is_received = index >= 0x2100 && index < 0x2180;
-  return object.access != canopen::Access::write_only && !is_communication && !is_received && index < 0x7000 &&
+  const bool is_count = object.address.sub == 0 && canopen::find_group(object.address.index) != nullptr &&
+                        object.access == canopen::Access::constant;
+  return !is_count && object.access != canopen::Access::write_only && !is_communication && !is_received && index < 0x7000 &&
          !canopen::value_address(object.address);
 }
 

@@ -36,8 +36,8 @@ bool is_of_interest(const canopen::Object& object) {
   const bool is_received = index >= 0x2100 && index < 0x2180;
   const bool is_count = object.address.sub == 0 && canopen::find_group(object.address.index) != nullptr &&
                         object.access == canopen::Access::constant;
-  return !is_count && object.access != canopen::Access::write_only && !is_communication && !is_received && index < 0x7000 &&
-         !canopen::value_address(object.address);
+  return !is_count && object.access != canopen::Access::write_only && !is_communication && !is_received &&
+         index < 0x7000 && !canopen::value_address(object.address);
 }
 
 int info(const InfoOptions& options) {

@@ -36,6 +36,7 @@ constexpr std::array subcommands{
     Subcommand{"optimise", "search for the parameters of a gait"},
     Subcommand{"experiment", "repeat an experiment of the thesis and compare with its published numbers"},
     Subcommand{"bus", "serve a simulated robot that other programs reach as a real one"},
+    Subcommand{"drive", "move a robot of modules as its scenario says"},
     Subcommand{"scan", "list the modules on a bus"},
     Subcommand{"info", "show what a module says of itself"},
     Subcommand{"get", "read objects of modules"},

@@ -38,10 +38,10 @@ std::uint32_t checked_tick_count(const sim::Scenario& scenario) {
 void add_start_options(CommandLine& command_line, ScenarioOptions& options) {
   command_line.add_option("FILE", options.file, "scenario, a *.simulation.xml file").required();
   command_line.add_option("--seconds", options.seconds, "simulated time; by default the duration in the scenario");
-  command_line.add_option(
-      "--set", options.settings,
-      "NAME=VALUE[@TICK]: change a parameter at the start or at a tick. NAME is [MODULE.]PARAMETER[:JOINT], where "
-      "PARAMETER may also be an internal value. May be repeated.");
+  command_line.add_option("--set", options.settings,
+                          "NAME=VALUE[@TICK]: change a parameter at the start, at a tick, or at a time (@5s). NAME is "
+                          "[MODULE.]PARAMETER[:JOINT], where "
+                          "PARAMETER may also be an internal value. May be repeated.");
   command_line.add_option("--seed", options.overrides.seed, "seed of the run instead of that of the scenario");
   command_line.add_option("--friction", options.overrides.friction,
                           "coefficient of friction of every object of the environment, also of those that state none; "

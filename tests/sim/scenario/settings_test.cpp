@@ -214,6 +214,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"amplitude=3@", "found tick '', expected a whole number from 0 to 4294967295"},
         Refusal{"amplitude=3@-1", "found tick '-1', expected a whole number from 0 to 4294967295"},
         Refusal{"amplitude=3@4294967296", "found tick '4294967296', expected a whole number from 0 to 4294967295"},
+        Refusal{"amplitude=3@s", "found time 's', expected seconds from 0 to 10000000, such as 5s"},
+        Refusal{"amplitude=3@-1s", "found time '-1s', expected seconds from 0 to 10000000, such as 5s"},
         Refusal{"amplitude=3@1.5", "found tick '1.5', expected a whole number from 0 to 4294967295"},
         Refusal{"amp\nlitude=3", "amp litude=3: found unknown parameter 'amp litude', expected"}));
 

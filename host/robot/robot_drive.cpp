@@ -1,0 +1,114 @@
+#include "host/robot/robot_drive.hpp"
+
+#include <algorithm>
+
+namespace proleg::host {
+namespace {
+
+/// Number of slots of a joint whose algorithms broadcast: 1 or 2 frames a tick, and 1 without any.
+std::uint8_t channels_of(const KernelConfiguration& kernel, unsigned joint) {
+  unsigned senders = 0;
+  for (const Slot& slot : kernel.slots) {
+    if (slot.algorithm != nullptr && slot.group.contains(joint) && !slot.algorithm->declaration().frame.empty()) {
+      ++senders;
+    }
+  }
+  return senders > 1 ? 2 : 1;
+}
+
+}  // namespace
+
+RobotDrive::RobotDrive(CanPort& port, const canopen::RobotSetup& setup, const canopen::MasterOptions& options,
+                       std::span<canopen::Change> changes)
+    : master_(port, setup, options, changes),
+      nodes_(setup.nodes.begin(), setup.nodes.end()),
+      ring_(kept),
+      monitoring_(nodes_.size()) {
+  for (unsigned joint = 0; joint < nodes_.size(); ++joint) {
+    channels_.push_back(channels_of(setup.kernel, joint));
+  }
+  for (std::uint32_t tick = 0; tick < kept; ++tick) {
+    ring_[tick] = {tick, std::vector<std::array<std::optional<StateFrame>, 2>>(nodes_.size())};
+  }
+}
+
+std::optional<unsigned> RobotDrive::joint_of(std::uint8_t node) const {
+  const auto found = std::ranges::find(nodes_, node);
+  return found == nodes_.end() ? std::nullopt : std::optional(static_cast<unsigned>(found - nodes_.begin()));
+}
+
+void RobotDrive::receive(Microseconds now, const CanFrame& frame) {
+  namespace identifier = canopen::identifier;
+  master_.receive(now, frame);
+  if (canopen::decode_sync(frame)) {
+    note_sync();
+    return;
+  }
+  switch (identifier::base_of(frame.identifier)) {
+    case identifier::state_frame:
+      note_state(frame, 0);
+      break;
+    case identifier::second_state:
+      note_state(frame, 1);
+      break;
+    case identifier::monitoring:
+      if (const auto message = canopen::decode_monitoring(frame)) {
+        if (const auto joint = joint_of(message->node)) {
+          monitoring_[*joint] = message;
+        }
+      }
+      break;
+    default:
+      break;
+  }
+}
+
+void RobotDrive::note_sync() {
+  if (master_.state() == canopen::MasterState::running || present_) {
+    present_ = master_.tick();
+  }
+}
+
+void RobotDrive::note_state(const CanFrame& frame, unsigned channel) {
+  const auto joint = joint_of(canopen::identifier::node_of(frame.identifier));
+  const auto state = canopen::decode_state(frame);
+  if (!joint || !state || !present_) {
+    return;  // before SYNC 0: the frames of state 0
+  }
+  // The tick whose frames have this label, near to the present one. This host may have missed some SYNCs.
+  const auto behind = static_cast<std::int8_t>(static_cast<std::uint8_t>(*present_ + 1U) - state->label());
+  const std::uint32_t tick = *present_ - static_cast<std::uint32_t>(std::int32_t{behind});
+  constexpr int most = 16;
+  if (behind < -most || behind > most || tick < next_ || tick >= next_ + kept) {
+    return;
+  }
+  slot(tick).frames[*joint][channel] = state;
+}
+
+bool RobotDrive::is_complete(const TickFrames& frames) const {
+  for (std::size_t joint = 0; joint < nodes_.size(); ++joint) {
+    for (unsigned channel = 0; channel < channels_[joint]; ++channel) {
+      if (!frames.frames[joint].at(channel)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+std::optional<TickFrames> RobotDrive::take_tick(bool at_end) {
+  if (!present_ || *present_ + 1U <= next_) {
+    return std::nullopt;
+  }
+  TickFrames& oldest = slot(next_);
+  if (!at_end && *present_ < next_ + wait_ticks && !is_complete(oldest)) {
+    return std::nullopt;
+  }
+  TickFrames taken = oldest;
+  std::ranges::fill(oldest.frames, std::array<std::optional<StateFrame>, 2>{});
+  oldest.tick = next_ + kept;
+  ++next_;
+  return taken;
+}
+
+}  // namespace proleg::host

@@ -1,0 +1,304 @@
+// proleg drive: a robot of modules moves as its scenario says.
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/robot/robot_drive.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/master_text/master_text.hpp"
+#include "shared/computer/text/text.hpp"
+#include "shared/kernel/fingerprint.hpp"
+#include "sim/scenario/master_input.hpp"
+#include "tools/proleg/bus_access.hpp"
+#include "tools/proleg/gait_check.hpp"
+#include "tools/proleg/input_lines.hpp"
+#include "tools/proleg/live_changes.hpp"
+#include "tools/proleg/run_progress.hpp"
+#include "tools/proleg/scenario_run.hpp"
+
+namespace {
+
+using namespace proleg;
+using namespace proleg::tools;
+
+struct DriveOptions : ScenarioOptions {
+  BusOptions bus;
+};
+
+struct DriveResult {
+  std::uint32_t ticks = 0;
+  std::uint32_t restarts = 0;
+  std::uint64_t dropped_changes = 0;
+  host::Statistics bus;
+};
+
+/// One run: set-up, gait and stop.
+class Drive {
+ public:
+  Drive(const DriveOptions& options, const ScenarioRun& run, BusAccess& bus, sim::Recorder* recorder)
+      : run_(run),
+        is_verbose_(options.verbose),
+        bus_(bus.connection()),
+        recorder_(recorder),
+        input_(run.scenario),
+        changes_(run.scenario, std::move(input_.changes)),
+        drive_(bus_, input_.setup, master_options(), changes_.span()),
+        check_(run.scenario) {
+    bus_.attach(drive_);
+  }
+  ~Drive() { bus_.detach(drive_); }
+  Drive(const Drive&) = delete;
+  Drive& operator=(const Drive&) = delete;
+
+  /// Throws std::runtime_error if the robot cannot be started. Nothing has moved then.
+  void start() {
+    constexpr Microseconds at_most = 60'000'000;  // the master gives up by itself; this bounds a master with a fault
+    drive_.master().start(bus_.now());
+    bus_.run_until(bus_.now() + at_most, [this] {
+      report_events();
+      return state() == canopen::MasterState::running || state() == canopen::MasterState::failed || interrupted() ||
+             !bus_.state().is_connected;
+    });
+    if (state() == canopen::MasterState::running) {
+      return;
+    }
+    const std::string reason = interrupted() ? "interrupted" : why_not();
+    stop();
+    throw std::runtime_error(reason);
+  }
+
+  /// Until the end of the run, or until the user ends it. Throws std::runtime_error if the robot fails.
+  void follow() {
+    RunProgress progress("driving", run_.scenario.duration_s);
+    while (check_.ticks() < run_.ticks && !interrupted() && !wants_stop_) {
+      bus_.run_until(bus_.now() + look_period_us, [this] { return has_ended(); });
+      report_events();
+      take_ticks(false);
+      take_input();
+      progress.show(check_.ticks() * (run_.scenario.kernel.tick_period_us * 1e-6));
+      if (has_ended()) {
+        throw std::runtime_error(why_not());
+      }
+    }
+  }
+
+  /// Ramps down and takes the power from the servos.
+  void stop() {
+    constexpr Microseconds at_most = 4'000'000;
+    drive_.master().stop(bus_.now());
+    bus_.run_until(bus_.now() + at_most, [this] {
+      report_events();
+      return state() == canopen::MasterState::stopped;
+    });
+    take_ticks(true);
+  }
+
+  [[nodiscard]] const GaitCheck& check() const { return check_; }
+  [[nodiscard]] DriveResult result() const {
+    return {check_.ticks(), drive_.master().restarts(), changes_.dropped(), bus_.statistics()};
+  }
+
+ private:
+  static constexpr Microseconds look_period_us = 20'000;
+
+  [[nodiscard]] canopen::MasterOptions master_options() const {
+    canopen::MasterOptions options;
+    options.core_fingerprint = core_fingerprint;
+    options.serials = input_.serials;
+    options.resets_modules = true;
+    options.ramps_down = true;
+    options.answer_timeout_us = 150'000;
+    options.attempts = 8;
+    return options;
+  }
+  [[nodiscard]] canopen::MasterState state() const { return drive_.master().state(); }
+  [[nodiscard]] bool has_ended() const { return state() == canopen::MasterState::failed || !bus_.state().is_connected; }
+  [[nodiscard]] std::string name_of(std::uint8_t node) const { return sim::name_of_node(run_.scenario, node); }
+
+  [[nodiscard]] std::string why_not() const {
+    using canopen::ProblemCode;
+    const canopen::Problem& problem = drive_.master().problem();
+    if (!bus_.state().is_connected || problem.code == ProblemCode::none) {
+      return bus_.diagnosis();
+    }
+    std::string text = problem_text(problem, [this](std::uint8_t node) { return name_of(node); });
+    if (problem.code == ProblemCode::missing_module || problem.code == ProblemCode::cannot_send ||
+        problem.code == ProblemCode::no_answer) {
+      text += "; " + bus_.diagnosis();
+    }
+    return text;
+  }
+
+  void report_events() {
+    while (const auto event = drive_.master().take_event()) {
+      const bool is_news = event->kind != canopen::EventKind::emergency || event->code != canopen::EmergencyCode::none;
+      if (is_news || is_verbose_) {
+        std::cerr << "proleg drive: " << event_text(*event, [this](std::uint8_t node) { return name_of(node); })
+                  << '\n';
+      }
+      if (event->kind == canopen::EventKind::restarted) {
+        check_.end_comparison(name_of(event->node) + " has restarted");
+      }
+    }
+  }
+
+  void take_ticks(bool at_end) {
+    while (auto tick = drive_.take_tick(at_end)) {
+      if (check_.ticks() >= run_.ticks) {
+        continue;  // while it stops
+      }
+      for (const sim::Change& change : changes_.take_decided(tick->tick)) {
+        check_.add_change(change);
+      }
+      const sim::Change* change = check_.follow(*tick);
+      if (recorder_ != nullptr) {
+        if (change != nullptr) {
+          recorder_->record_change(*change);
+        }
+        recorder_->record_tick(check_.sample(drive_));
+      }
+    }
+  }
+
+  void take_input() {
+    while (const auto line = input_lines_.next()) {
+      const std::string word(trimmed(*line));
+      if (word == "stop" || word == "quit") {
+        wants_stop_ = true;
+      } else if (!word.empty()) {
+        try {
+          changes_.add(word, drive_.master().tick().value_or(0));
+          if (!drive_.master().extend_changes(bus_.now(), changes_.span())) {
+            changes_.remove_last();
+            static_cast<void>(drive_.master().extend_changes(bus_.now(), changes_.span()));
+            throw InputError(word, 0, "a change that is too late or has too many values", "a later tick");
+          }
+        } catch (const InputError& error) {
+          std::cerr << "proleg drive: " << error.what() << '\n';
+        }
+      }
+    }
+  }
+
+  const ScenarioRun& run_;
+  bool is_verbose_;
+  host::BusConnection& bus_;
+  sim::Recorder* recorder_;
+  sim::MasterInput input_;
+  LiveChanges changes_;
+  host::RobotDrive drive_;
+  GaitCheck check_;
+  InputLines input_lines_;
+  bool wants_stop_ = false;
+};
+
+std::string verdict(const GaitCheck& check) {
+  if (check.first_difference()) {
+    return std::to_string(check.differences()) + " state frames differ from the gait of this computer, the first at " +
+           *check.first_difference();
+  }
+  std::string text = "0 differences in " + std::to_string(check.compared()) + " state frames";
+  if (check.missing() > 0) {
+    text += ", " + std::to_string(check.missing()) + " were not received";
+  }
+  return check.end_of_comparison() ? text + "; " + *check.end_of_comparison() : text;
+}
+
+void print_result(const DriveOptions& options, const DriveResult& result, const GaitCheck& check, double seconds) {
+  if (options.json) {
+    std::cout << Json{{"scenario", options.file},
+                      {"bus", options.bus.bus},
+                      {"ticks", result.ticks},
+                      {"driven_s", seconds},
+                      {"differences", check.differences()},
+                      {"first_difference", check.first_difference()},
+                      {"frames_compared", check.compared()},
+                      {"frames_missing", check.missing()},
+                      {"comparison_ended", check.end_of_comparison()},
+                      {"restarts", result.restarts},
+                      {"dropped_changes", result.dropped_changes},
+                      {"setpoint_hash", check.setpoint_hash().hex()},
+                      {"servo_hash", check.servo_hash().hex()},
+                      {"frames_sent", result.bus.transmitted},
+                      {"frames_received", result.bus.received},
+                      {"recording", options.record.value_or("")}}
+                     .text()
+              << '\n';
+    return;
+  }
+  std::printf("driven            %.2f s, %u ticks\n", seconds, result.ticks);
+  std::printf("verdict           %s\n", verdict(check).c_str());
+  std::printf("frames            %llu sent, %llu received\n", static_cast<unsigned long long>(result.bus.transmitted),
+              static_cast<unsigned long long>(result.bus.received));
+  if (result.restarts > 0) {
+    std::printf("restarts          %u\n", result.restarts);
+  }
+  std::printf("set-point hash    %s\n", check.setpoint_hash().hex().c_str());
+  std::printf("servo hash        %s\n", check.servo_hash().hex().c_str());
+  if (options.record) {
+    std::printf("recording         %s\n", options.record->c_str());
+  }
+}
+
+int drive(const DriveOptions& options) {
+  const ScenarioRun run = prepare_run(options);
+  print_warnings("proleg drive", run.scenario);
+  if (options.verbose) {
+    print_setup(run.scenario);
+  }
+  check_outputs(planned_recording(options));
+  BusAccess bus(options.bus);
+  catch_interrupts();
+  std::unique_ptr<sim::Recorder> recorder = open_recorder(options, run.scenario, "drive");
+  Drive robot(options, run, bus, recorder.get());
+  robot.start();
+  std::optional<std::string> failure;
+  try {
+    robot.follow();
+  } catch (const std::runtime_error& error) {
+    failure = error.what();
+  }
+  robot.stop();
+  const GaitCheck& check = robot.check();
+  const DriveResult result = robot.result();
+  const double seconds = result.ticks * (run.scenario.kernel.tick_period_us * 1e-6);
+  if (recorder) {
+    recorder->finish({{"simulated_s", exact_text(seconds)},
+                      {"differences", std::to_string(check.differences())},
+                      {"frames_missing", std::to_string(check.missing())},
+                      {"setpoint_hash", check.setpoint_hash().hex()},
+                      {"servo_hash", check.servo_hash().hex()}});
+  }
+  print_result(options, result, check, seconds);
+  if (failure) {
+    throw std::runtime_error(*failure + "; modules without a host stop by themselves within 1.5 s" +
+                             kept_in_recording(options));
+  }
+  if (result.dropped_changes > 0) {
+    std::cerr << "proleg drive: " << result.dropped_changes << " changes did not take effect\n";
+    return exit_failed;
+  }
+  return check.differences() == 0 ? exit_success : exit_failed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CommandLine command_line(
+      "proleg drive",
+      "Moves a robot of modules as its scenario says: configures the modules, gives the servos power and starts the "
+      "gait. Compares every state frame with the gait of this computer; status 1 if one differs. While it runs, type "
+      "changes such as amplitude=30 or amplitude:J2=30, or stop. Ctrl-C lets the joints ramp to their safe pose and "
+      "takes the power from the servos.");
+  DriveOptions options;
+  add_scenario_options(command_line, options);
+  add_bus_option(command_line, options.bus);
+  return command_line.run(argc, argv, [&] { return drive(options); });
+}

@@ -1,0 +1,76 @@
+#pragma once
+
+// Whether the modules of a robot compute the gait of this computer: the same kernels, with the contacts that the
+// modules have sent, compared with every state frame.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/robot/robot_drive.hpp"
+#include "shared/computer/hash/value_hash.hpp"
+#include "sim/loop/kernel_chain.hpp"
+#include "sim/loop/servo_pulses.hpp"
+#include "sim/record/recorder.hpp"
+#include "sim/scenario/scenario.hpp"
+
+namespace proleg::tools {
+
+class GaitCheck {
+ public:
+  /// scenario: must outlive the check.
+  explicit GaitCheck(const sim::Scenario& scenario);
+
+  /// A change, which takes effect at its tick. Call this before the tick is followed.
+  void add_change(const sim::Change& change);
+
+  /// Computes the next tick and compares it. Returns the change that took effect, if any.
+  const sim::Change* follow(const host::TickFrames& tick);
+  /// From now on nothing is compared. why: for the verdict.
+  void end_comparison(const std::string& why);
+
+  /// The last tick as a recorder takes it. Measured angles and currents are those that the modules have sent; what
+  /// modules do not measure is 0.
+  [[nodiscard]] sim::TickSample sample(const host::RobotDrive& drive);
+
+  [[nodiscard]] std::uint32_t ticks() const { return chain_.tick(); }
+  [[nodiscard]] std::uint64_t compared() const { return compared_; }
+  [[nodiscard]] std::uint64_t missing() const { return missing_; }
+  [[nodiscard]] std::uint64_t differences() const { return differences_; }
+  /// One line; nothing without a difference.
+  [[nodiscard]] const std::optional<std::string>& first_difference() const { return first_difference_; }
+  /// Why the comparison ended before the run.
+  [[nodiscard]] const std::optional<std::string>& end_of_comparison() const { return end_of_comparison_; }
+  [[nodiscard]] const ValueHash& setpoint_hash() const { return setpoint_hash_; }
+  [[nodiscard]] const ValueHash& servo_hash() const { return servo_hash_; }
+
+ private:
+  void compare(unsigned joint, unsigned channel, const std::optional<StateFrame>& found);
+
+  const sim::Scenario& scenario_;
+  sim::KernelChain chain_;
+  sim::ServoPulses pulse_source_;
+  std::vector<sim::Change> changes_;  ///< by tick
+  std::size_t next_change_ = 0;
+  std::vector<std::uint8_t> contacts_;  ///< by joint
+  std::uint64_t compared_ = 0;
+  std::uint64_t missing_ = 0;
+  std::uint64_t differences_ = 0;
+  std::optional<std::string> first_difference_;
+  std::optional<std::string> end_of_comparison_;
+  ValueHash setpoint_hash_;
+  ValueHash servo_hash_;
+  // For sample().
+  std::vector<std::uint8_t> link_contacts_;
+  std::vector<std::int32_t> internal_values_;
+  std::vector<sim::ServoPulse> pulses_;
+  std::vector<std::int32_t> commands_;
+  std::vector<sim::Pose> poses_;
+  std::vector<double> angles_;
+  std::vector<double> torques_;
+  std::vector<double> currents_;
+  std::vector<double> forces_;
+};
+
+}  // namespace proleg::tools

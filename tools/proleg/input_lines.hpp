@@ -1,0 +1,24 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+
+namespace proleg::tools {
+
+/// Lines of standard input, without waiting for them.
+class InputLines {
+ public:
+  /// The next whole line, without its end; nothing if there is none yet, or input has ended. A program in the
+  /// background does not read from its terminal.
+  [[nodiscard]] std::optional<std::string> next();
+
+ private:
+  void read_available();
+
+  bool has_ended_ = false;
+  std::string rest_;
+  std::deque<std::string> lines_;
+};
+
+}  // namespace proleg::tools

@@ -50,7 +50,8 @@ class Drive {
         input_(run.scenario),
         changes_(run.scenario, std::move(input_.changes)),
         drive_(bus_, input_.setup, master_options(), changes_.span()),
-        check_(run.scenario) {
+        check_(run.scenario),
+        end_tick_(run.ticks) {
     bus_.attach(drive_);
   }
   ~Drive() { bus_.detach(drive_); }
@@ -92,6 +93,8 @@ class Drive {
   /// Ramps down and takes the power from the servos.
   void stop() {
     constexpr Microseconds at_most = 4'000'000;
+    // What the modules send while they stop is not part of the gait.
+    end_tick_ = std::min(end_tick_, drive_.master().tick().value_or(0));
     drive_.master().stop(bus_.now());
     bus_.run_until(bus_.now() + at_most, [this] {
       report_events();
@@ -151,7 +154,7 @@ class Drive {
 
   void take_ticks(bool at_end) {
     while (auto tick = drive_.take_tick(at_end)) {
-      if (check_.ticks() >= run_.ticks) {
+      if (check_.ticks() >= end_tick_) {
         continue;  // while it stops
       }
       for (const sim::Change& change : changes_.take_decided(tick->tick)) {
@@ -197,6 +200,7 @@ class Drive {
   GaitCheck check_;
   InputLines input_lines_;
   bool wants_stop_ = false;
+  std::uint32_t end_tick_;  ///< the first one that is not part of the run
 };
 
 std::string verdict(const GaitCheck& check) {

@@ -27,6 +27,7 @@ out=$(port 1)
 err=$(port 2)
 exec 3>"$(port 3)"
 report() { echo "$*" >&3; }
+report booted
 # fail TEXT: what the lab itself could not do
 fail() {
   report "failed $*"

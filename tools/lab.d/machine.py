@@ -3,6 +3,7 @@
 import ctypes
 import os
 import re
+import resource
 import selectors
 import signal
 import socket
@@ -18,6 +19,8 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
 # A guest that has reported the end of the command: time to receive the rest of a long output, after each part of it.
 DRAIN_TIMEOUT_S = 30
+# KVM that is offered but does not work: QEMU ends, or the guest stands still. One that works boots in 2 s.
+KVM_BOOT_TIMEOUT_S = 20
 
 
 class Stopped(Exception):
@@ -28,20 +31,24 @@ class Stopped(Exception):
         self.number = number
 
 
+class KvmFailed(Exception):
+    """The guest did not boot with KVM."""
+
+
 class Machine:
     """QEMU with its channels: `out` and `err` of the command, `reports` of guest.sh, `log` of the kernel and of QEMU."""
 
     NAMES = ("out", "err", "reports", "log")
 
-    def __init__(self, kernel, options):
+    def __init__(self, kernel, options, use_kvm):
         self.options = options
+        self.use_kvm = use_kvm
         self.started = time.monotonic()
         self.log = bytearray()
         self.reports = bytearray()
         self.passed_on = {"out": 0, "err": 0}
         results = options.results.resolve() if options.results else None
         disk_content = guest.build_memory_disk(kernel, guest.job_script(kernel, options.command, results, options.bluetooth))
-        self.use_kvm = not options.no_kvm and guest.kvm_is_usable()
 
         pairs = [socket.socketpair() for _ in self.NAMES]
         disk = os.memfd_create("lab")
@@ -52,7 +59,7 @@ class Machine:
         try:
             # A session of its own: Ctrl-C reaches this program, which then ends QEMU.
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=inherited[3], stderr=inherited[3],
-                                            pass_fds=[disk, *inherited], start_new_session=True, preexec_fn=die_with_parent)
+                                            pass_fds=[disk, *inherited], start_new_session=True, preexec_fn=prepare_child)
         except OSError as error:
             raise Failure(f"{command[0]} could not be started: {error.strerror}; it is in the package qemu-system-x86") from None
         finally:
@@ -109,6 +116,8 @@ class Machine:
                 self.note("the command ended")
                 self.drain({"out": int(ended[1]), "err": int(ended[2])})
                 return int(ended[0])
+            if self.use_kvm and not self.reports and (not is_open or now > self.started + KVM_BOOT_TIMEOUT_S):
+                raise KvmFailed
             if not is_open:
                 raise Failure(self.describe_end())
 
@@ -160,6 +169,7 @@ class Machine:
         print(f"lab: {text}: {', '.join(words)}", file=sys.stderr)
 
     def end(self):
+        """Ends QEMU. May be called again."""
         self.process.kill()
         self.process.wait()
         # What the kernel wrote last explains a failure.
@@ -183,9 +193,10 @@ class Machine:
         return f"; log: {path}"
 
 
-def die_with_parent():
-    """In the child: it ends when this program is killed."""
+def prepare_child():
+    """In the child: it ends when this program is killed, and leaves no core file."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 def write_all(descriptor, content):
@@ -201,33 +212,38 @@ def end_by_signal(number):
     """Ends this program as the signal does that was caught, so that the caller sees which one it was."""
     signal.signal(number, signal.SIG_DFL)
     os.kill(os.getpid(), number)
+    return 128 + number  # not reached, unless the signal is blocked
 
 
-def run(kernel, options):
-    """Runs options.command in a guest and returns its status."""
-    for number in SIGNALS:
-        signal.signal(number, stop)
-    machine = None
+def run_once(kernel, options, use_kvm):
+    machine = Machine(kernel, options, use_kvm)
     try:
-        machine = Machine(kernel, options)
         machine.note(kernel.name)
         status = machine.run_until_end()
+        machine.note("the guest ended")
         machine.end()
-        machine.note("QEMU ended")
         machine.keep_log(failure=False)
         return status
     except Failure as failure:
-        if machine is None:
-            raise
         machine.end()
         raise Failure(f"{failure}{machine.keep_log(failure=True)}") from None
-    except Stopped as stopped:
-        end_by_signal(stopped.number)
-    except BrokenPipeError:
-        end_by_signal(signal.SIGPIPE)
     finally:
-        for number in SIGNALS:
-            signal.signal(number, signal.SIG_IGN)
-        if machine is not None and machine.process.poll() is None:
-            machine.end()
-    return 1
+        machine.end()
+
+
+def run(kernel, options):
+    """Runs options.command in a guest and returns its status. A signal ends the guest, and then this program."""
+    for number in SIGNALS:
+        signal.signal(number, stop)
+    try:
+        if not options.no_kvm and guest.kvm_is_usable():
+            try:
+                return run_once(kernel, options, use_kvm=True)
+            except KvmFailed:
+                if options.verbose:
+                    print("lab: the guest did not boot with KVM", file=sys.stderr)
+        return run_once(kernel, options, use_kvm=False)
+    except Stopped as stopped:
+        return end_by_signal(stopped.number)
+    except BrokenPipeError:
+        return end_by_signal(signal.SIGPIPE)

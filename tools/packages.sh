@@ -24,6 +24,15 @@ test_packages=(
   libopenmpi-dev libboost-mpi-dev openmpi-bin          # the optimiser on a cluster
 )
 
+# The virtual machine of tools/lab. Its kernel is a package too, but not installed (tools/lab.d/kernel.py).
+lab_packages=(
+  qemu-system-x86 busybox-static  # the machine, and its first programs
+  kmod xz-utils zstd              # unpack and load the kernel and its modules
+  iproute2 can-utils              # CAN interfaces; programs that use them
+  bluez bluez-test-tools          # Bluetooth; btvirt, which makes virtual controllers
+  python3
+)
+
 # install_packages NAME...: installs the packages that are missing, and prints their names.
 install_packages() {
   local missing=() name

@@ -72,7 +72,7 @@ def run(command, **options):
         finished = subprocess.run([str(word) for word in command], stdin=subprocess.DEVNULL, capture_output=True, text=True,
                                   check=False, env={**os.environ, "LC_ALL": "C"}, **options)
     except OSError as error:
-        raise Failure(f"{command[0]} could not be started: {error.strerror}; `tools/lab --packages` installs it") from None
+        raise Failure(f"{command[0]} could not be started: {error.strerror}; tools/check installs the packages of the lab") from None
     if finished.returncode != 0:
         reason = (finished.stderr.strip().splitlines() or [f"status {finished.returncode}"])[-1]
         raise Failure(f"`{' '.join(str(word) for word in command)}` failed: {reason}")

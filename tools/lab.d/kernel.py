@@ -32,7 +32,7 @@ KNOWN_BAD = {
 SOURCE = "deb http://deb.debian.org/debian-security bookworm-security main"
 
 # Folders of modules that tests of this project can need. They are unpacked uncompressed, which saves time at each boot.
-MODULES = ("net/", "crypto/", "lib/", "arch/x86/crypto/", "fs/9p/", "fs/fuse/", "fs/netfs/", "fs/overlayfs/",
+MODULES = ("net/", "crypto/", "lib/", "arch/x86/crypto/", "fs/9p/", "fs/fscache/", "fs/fuse/", "fs/netfs/", "fs/overlayfs/",
            "drivers/bluetooth/", "drivers/hid/", "drivers/input/", "drivers/net/can/", "drivers/tty/", "drivers/usb/",
            "drivers/virtio/", "drivers/block/virtio", "drivers/char/virtio")
 LOCK_TIMEOUT_S = 600
@@ -94,7 +94,8 @@ class Apt:
         if lists:
             for folder in ("state/lists/partial", "cache/archives/partial"):
                 (lists / folder).mkdir(parents=True, exist_ok=True)
-            self.options += ["-o", f"Dir::State={lists / 'state'}", "-o", f"Dir::Cache={lists / 'cache'}"]
+            self.options += ["-o", f"Dir::State={lists / 'state'}", "-o", f"Dir::State::Lists={lists / 'state/lists'}",
+                             "-o", f"Dir::Cache={lists / 'cache'}"]
             # The status of update covers all sources; one that fails is of no interest if the kernel is in another.
             subprocess.run(["apt-get", *self.options, "update", "-qq"], stdin=subprocess.DEVNULL, capture_output=True,
                            check=False)

@@ -141,6 +141,9 @@ class Machine:
     def describe_end(self):
         """Why QEMU ended before the command."""
         log = bytes(self.log).decode(errors="replace")
+        failed = re.search(r"^lab: ([^\r\n]*)", log, re.MULTILINE)
+        if failed:
+            return f"the guest could not be set up: {failed[1]}"
         panic = re.search(r"Kernel panic - not syncing: (.*)", log)
         if panic:
             cause = re.search(r"(?:BUG|Oops|general protection fault|kernel BUG at)[^\r\n]*", log)

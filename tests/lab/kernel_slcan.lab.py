@@ -89,7 +89,8 @@ def send(can, frame):
 
 def statistics():
     folder = Path("/sys/class/net/slc0/statistics")
-    return {name: (folder / name).read_text().strip() for name in ("rx_packets", "rx_dropped", "rx_errors", "rx_over_errors")}
+    names = ("rx_packets", "rx_dropped", "rx_errors", "rx_over_errors")
+    return {name: (folder / name).read_text().strip() for name in names}
 
 
 def main():
@@ -102,6 +103,7 @@ def main():
     tty.setraw(slave)
     adapter = Adapter(master)
     adapter.start()
+    # -o and -c: opens and closes the channel; -s8: 1 Mbit/s.
     subprocess.Popen(["slcand", "-F", "-o", "-c", "-s8", os.ttyname(slave), "slc0"], stdout=subprocess.DEVNULL)
     wait_for(lambda: os.path.exists("/sys/class/net/slc0"), "interface slc0")
     subprocess.run(["ip", "link", "set", "slc0", "up"], check=True)

@@ -21,7 +21,7 @@ KVM_GET_API_VERSION, KVM_CREATE_VM = 0xAE00, 0xAE01  # linux/kvm.h
 
 
 def memory_disk(files):
-    """A cpio archive in the format `newc` (Linux: Documentation/driver-api/early-userspace/buffer-format.rst) of files by name."""
+    """A cpio archive of files by name, in the format `newc` (Linux: Documentation/driver-api/early-userspace)."""
     folders = {str(parent) for name in files for parent in Path(name).parents if str(parent) != "."}
     entries = [(name, 0o040755, b"") for name in sorted(folders)]
     entries += [(name, 0o100755, content) for name, content in files.items()]

@@ -28,6 +28,7 @@ err=$(port 2)
 exec 3>"$(port 3)"
 report() { echo "$*" >&3; }
 report booted
+
 # fail TEXT: what the lab itself could not do
 fail() {
   report "failed $*"
@@ -38,18 +39,20 @@ fail() {
 mkdir $lab/host
 mount --bind / $lab/host || fail "the host's file system could not be bound"
 echo "$folders" | while read -r folder; do
-  [ -z "$folder" ] || { mkdir -p "$folder" && mount --bind "$lab/host$folder" "$folder"; }
+  [ -z "$folder" ] || { mkdir -p "$folder" && mount --bind "$lab/host$folder" "$folder"; } ||
+    fail "$folder could not be made visible"
 done
 if [ -n "$results" ]; then
   mkdir -p "$results" 2>/dev/null
-  mount -t 9p -o trans=virtio,version=9p2000.L,msize=262144,cache=mmap results "$results" || fail "$results could not be mounted"
+  mount -t 9p -o trans=virtio,version=9p2000.L,msize=262144,cache=mmap results "$results" ||
+    fail "$results could not be mounted"
 fi
 
 mkdir $lab/bin
 # The kernel, and scripts, load further modules by this program.
 cat >$lab/bin/modprobe <<END
 #!/bin/sh
-exec /sbin/modprobe -d $lab/host$kernel "\$@"
+exec /sbin/modprobe -d "$lab/host$kernel" "\$@"
 END
 chmod +x $lab/bin/modprobe
 echo $lab/bin/modprobe >/proc/sys/kernel/modprobe
@@ -61,7 +64,6 @@ hostname lab
 if [ "$bluetooth" = yes ]; then
   $lab/bin/modprobe -a hci_vhci rfcomm || fail "the modules of Bluetooth could not be loaded"
   /usr/bin/btvirt -l2 -B </dev/null >$lab/btvirt.log 2>&1 &
-  btvirt=$!
   for controller in hci0 hci1; do
     for _ in $(seq 300); do
       [ ! -e /sys/class/bluetooth/$controller ] || break

@@ -17,7 +17,8 @@ done
 
 mkdir -p /host
 # Each inode is asked for once: the files of the host do not change while a guest reads them.
-mount -t 9p -o ro,trans=virtio,version=9p2000.L,msize=262144,cache=loose host /host || fail "the host's file system could not be mounted"
+mount -t 9p -o ro,trans=virtio,version=9p2000.L,msize=262144,cache=loose host /host ||
+  fail "the host's file system could not be mounted"
 mount -t proc proc /host/proc
 mount -t sysfs sysfs /host/sys
 mount -t devtmpfs devtmpfs /host/dev

@@ -29,7 +29,8 @@ KNOWN_BAD = {
     "linux-image-6.1.0-55-amd64": "it panics when RFCOMM connects to an absent address",
     "linux-image-6.1.0-56-amd64": "it panics when RFCOMM connects to an absent address",
 }
-SOURCE = "deb http://deb.debian.org/debian-security bookworm-security main"
+EXPECTED = ("found no package linux-image-6.12.*+deb12-amd64, expected one; "
+            "add `deb http://deb.debian.org/debian-security bookworm-security main` to the apt sources")
 
 # Folders of modules that tests of this project can need. They are unpacked uncompressed, which saves time at each boot.
 MODULES = ("net/", "crypto/", "lib/", "arch/x86/crypto/", "fs/9p/", "fs/fscache/", "fs/fuse/", "fs/netfs/", "fs/overlayfs/",
@@ -86,16 +87,16 @@ def cache_folder():
 
 
 class Apt:
-    """apt with the machine's sources. It needs no root, since it downloads only. With `lists`, a folder, it fetches lists
-    of packages of its own, for machines whose lists are missing or older than what the archive holds."""
+    """apt with the machine's sources. It needs no root, since it downloads only. With `lists`, a folder, it fetches
+    lists of packages of its own, for machines whose lists are missing or older than what the archive holds."""
 
     def __init__(self, lists=None):
-        self.options = ["-o", "APT::Sandbox::User=root"]  # no attempt to become _apt, which cannot write to the cache
+        self.options = ["-o", "APT::Sandbox::User=root"]  # the user _apt cannot write to the cache
         if lists:
             for folder in ("state/lists/partial", "cache/archives/partial"):
                 (lists / folder).mkdir(parents=True, exist_ok=True)
-            self.options += ["-o", f"Dir::State={lists / 'state'}", "-o", f"Dir::State::Lists={lists / 'state/lists'}",
-                             "-o", f"Dir::Cache={lists / 'cache'}"]
+            for name, folder in (("State", "state"), ("State::Lists", "state/lists"), ("Cache", "cache")):
+                self.options += ["-o", f"Dir::{name}={lists / folder}"]
             # The status of update covers all sources; one that fails is of no interest if the kernel is in another.
             subprocess.run(["apt-get", *self.options, "update", "-qq"], stdin=subprocess.DEVNULL, capture_output=True,
                            check=False)
@@ -116,13 +117,13 @@ class Apt:
 
 
 def choose(apt):
-    """Name of the best package that is offered, with the reason where it is not the wanted one; None if none is offered."""
+    """The best package that is offered, and why it is not the wanted one ("" if it is); None if none is offered."""
     newest = apt.offered(SERIES[0])
     if newest:
         return newest[0], ""
     others = apt.offered(SERIES[1])
     good = [name for name in others if name not in KNOWN_BAD]
-    missing = f"found no linux-image-6.12.*+deb12-amd64, expected one; add `{SOURCE}` to the apt sources and run apt-get update"
+    missing = f"{EXPECTED} and run apt-get update"
     if good:
         return good[0], missing
     return (others[0], f"{missing}; known of the kernel in use: {KNOWN_BAD[others[0]]}") if others else None
@@ -153,8 +154,8 @@ def unpack(package, release, folder):
 
 
 def vmlinux_of(image):
-    """The ELF file inside a bzImage: booting it saves the time in which the guest would decompress it. Layout: the Linux/x86
-    boot protocol, Documentation/arch/x86/boot.rst. The last four bytes of the payload are the size of the ELF file."""
+    """The ELF file inside a bzImage: booting it saves the time in which the guest would decompress it. Layout: the
+    Linux/x86 boot protocol, Documentation/arch/x86/boot.rst. The payload's last four bytes are the size of the ELF file."""
     sectors = image[0x1F1] or 4
     offset, length = struct.unpack_from("<II", image, 0x248)
     start = (sectors + 1) * 512 + offset
@@ -199,7 +200,7 @@ def renew(cache):
                 apt = Apt(Path(lists))
                 choice = choose(apt)
                 if choice is None:
-                    raise Failure(f"found no kernel package, expected linux-image-6.12.*+deb12-amd64; add `{SOURCE}` to the apt sources")
+                    raise Failure(f"{EXPECTED}, or connect this computer to the network")
                 folder = fetch(apt, choice[0], cache)
     except Failure as failure:
         if not (current / "kernel").exists():
@@ -212,30 +213,39 @@ def renew(cache):
     link = cache / f"current.{os.getpid()}"
     link.symlink_to(folder.name)
     link.replace(current)
-    kernels = sorted((path.parent for path in cache.glob("linux-image-*/kernel")), key=lambda path: path.stat().st_mtime)
+    kernels = [path.parent for path in cache.glob("linux-image-*/kernel")]
+    kernels.sort(key=lambda path: path.stat().st_mtime)
     for old in kernels[:-2]:
         shutil.rmtree(old, ignore_errors=True)
 
 
+def locked(cache):
+    """The lock of the cache, as an open file. It ends with the file, or with the process."""
+    try:
+        cache.mkdir(parents=True, exist_ok=True)
+        lock = open(cache / "lock", "w", encoding="utf-8")
+    except OSError as error:
+        raise Failure(f"{cache}: {error.strerror}; set PROLEG_LAB_CACHE to a folder that can be written") from None
+    deadline = time.monotonic() + LOCK_TIMEOUT_S
+    while True:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return lock
+        except BlockingIOError:
+            if time.monotonic() > deadline:
+                lock.close()
+                raise Failure(f"{cache}/lock: another process holds it for more than {LOCK_TIMEOUT_S} s") from None
+            time.sleep(0.2)
+
+
 def current_kernel(newest=False):
     """The kernel of the cache; the newest that apt offers if there is none, or if `newest`."""
+    if os.uname().machine != "x86_64":
+        raise Failure(f"found a computer of the kind {os.uname().machine}, expected x86_64: the guest runs its programs")
     cache = cache_folder()
-    if newest or not (cache / "current" / "kernel").exists():
-        try:
-            cache.mkdir(parents=True, exist_ok=True)
-            lock = open(cache / "lock", "w", encoding="utf-8")
-        except OSError as error:
-            raise Failure(f"{cache}: {error.strerror}; set PROLEG_LAB_CACHE to a folder that can be written") from None
-        with lock:
-            deadline = time.monotonic() + LOCK_TIMEOUT_S
-            while True:
-                try:
-                    fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                    break
-                except BlockingIOError:
-                    if time.monotonic() > deadline:
-                        raise Failure(f"{cache}/lock: another process has unpacked a kernel for {LOCK_TIMEOUT_S} s") from None
-                    time.sleep(0.2)
-            if newest or not (cache / "current" / "kernel").exists():
+    current = cache / "current"
+    if newest or not (current / "kernel").exists():
+        with locked(cache):
+            if newest or not (current / "kernel").exists():
                 renew(cache)
-    return Kernel(cache / "current")
+    return Kernel(current)

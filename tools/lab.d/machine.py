@@ -48,7 +48,8 @@ class Machine:
         self.reports = bytearray()
         self.passed_on = {"out": 0, "err": 0}
         results = options.results.resolve() if options.results else None
-        disk_content = guest.build_memory_disk(kernel, guest.job_script(kernel, options.command, results, options.bluetooth))
+        job = guest.job_script(kernel, options.command, results, options.bluetooth)
+        disk_content = guest.build_memory_disk(kernel, job)
 
         pairs = [socket.socketpair() for _ in self.NAMES]
         disk = os.memfd_create("lab")
@@ -58,10 +59,11 @@ class Machine:
         command = guest.qemu_command(kernel, options.memory, disk, inherited, results, self.use_kvm)
         try:
             # A session of its own: Ctrl-C reaches this program, which then ends QEMU.
-            self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=inherited[3], stderr=inherited[3],
-                                            pass_fds=[disk, *inherited], start_new_session=True, preexec_fn=prepare_child)
+            self.process = subprocess.Popen(
+                command, stdin=subprocess.DEVNULL, stdout=inherited[3], stderr=inherited[3],
+                pass_fds=[disk, *inherited], start_new_session=True, preexec_fn=prepare_child)
         except OSError as error:
-            raise Failure(f"{command[0]} could not be started: {error.strerror}; it is in the package qemu-system-x86") from None
+            raise Failure(f"{command[0]} could not be started: {error.strerror}; its package is qemu-system-x86") from None
         finally:
             os.close(disk)
             for _, theirs in pairs:

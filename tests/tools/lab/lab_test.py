@@ -1,4 +1,4 @@
-"""tools/lab: what comes back from a command in the virtual machine, and what is reported where the machine fails.
+"""tools/lab: what comes back from a command in the virtual machine, and what is reported if the machine fails.
 
 One test boots a guest. The others start a program in QEMU's place that speaks with tools/lab as the guest does, or run the
 script that the guest would run. The checks in tests/lab show the rest.
@@ -117,7 +117,8 @@ time.sleep(1000)
                 self.assertFalse(Path(f"/proc/{machine}").exists())
 
     def test_wrong_words_are_no_status_of_a_command(self):
-        for words in ([], ["--memory", "much", "--", "true"], ["--results", "/no/such/folder", "--", "true"], ["--prepare", "true"]):
+        for words in ([], ["--memory", "much", "--", "true"], ["--results", "/no/such/folder", "--", "true"],
+                      ["--prepare", "true"]):
             with self.subTest(words):
                 finished = subprocess.run([LAB, *words], capture_output=True, text=True, check=False, timeout=TIMEOUT_S)
                 self.assertEqual(finished.returncode, LAB_FAILED)
@@ -135,7 +136,8 @@ class Job(Folder):
                 job = guest.job_script(kernel.Kernel(kernel.cache_folder() / "current"), command, None, False)
             finally:
                 os.chdir(here)
-        finished = subprocess.run(["sh", "-c", job + "run_command"], cwd="/", env={}, capture_output=True, text=True, check=False)
+        finished = subprocess.run(["sh", "-c", job + "run_command"], cwd="/", env={}, capture_output=True, text=True,
+                                  check=False)
         return finished.returncode, finished.stdout
 
     def test_every_status_is_that_of_the_command(self):
@@ -177,7 +179,8 @@ sync; sleep 1; echo c >/proc/sysrq-trigger; sleep 1000
         results.mkdir()
         (self.folder / "given").write_text("a file below /tmp\n")
         finished = subprocess.run(
-            [LAB, "--time-out", str(TIMEOUT_S), "--results", results, "--keep-log", self.folder / "log", "--", "sh", "-c", self.COMMAND],
+            [LAB, "--time-out", str(TIMEOUT_S), "--results", results, "--keep-log", self.folder / "log",
+             "--", "sh", "-c", self.COMMAND],
             cwd=self.folder, capture_output=True, text=True, check=False, timeout=TIMEOUT_S + 30)
         log = (self.folder / "log").read_text(errors="replace")
         self.assertEqual(finished.stdout, "a file below /tmp\noutput\n", log)

@@ -1,13 +1,14 @@
 """The kernel that the lab boots: a Debian package that apt offers, unpacked into a cache folder and never installed.
 
-    CACHE/linux-image-6.12.117+deb12-amd64_6.12.117-1~deb12u1/   kernel (its name and version), vmlinux, lib/modules
-    CACHE/current                                                link to the folder in use
-    CACHE/lock                                                   held while a kernel is unpacked
+    CACHE/linux-image-6.12.117+deb12-amd64_6.12.117-1~deb12u1_.../   kernel (its name and version), vmlinux, lib/modules
+    CACHE/current                                                    link to the folder in use
+    CACHE/lock                                                       held while a kernel is unpacked
 
 CACHE is $PROLEG_LAB_CACHE, or proleg/lab below $XDG_CACHE_HOME or ~/.cache. All checkouts share it. It may be deleted.
 """
 
 import fcntl
+import hashlib
 import lzma
 import os
 import re
@@ -33,9 +34,10 @@ EXPECTED = ("found no package linux-image-6.12.*+deb12-amd64, expected one; "
             "add `deb http://deb.debian.org/debian-security bookworm-security main` to the apt sources")
 
 # Folders of modules that tests of this project can need. They are unpacked uncompressed, which saves time at each boot.
-MODULES = ("net/", "crypto/", "lib/", "arch/x86/crypto/", "fs/9p/", "fs/fscache/", "fs/fuse/", "fs/netfs/", "fs/overlayfs/",
+MODULES = ("net/", "crypto/", "lib/", "arch/x86/crypto/", "fs/9p/", "fs/configfs/", "fs/fscache/", "fs/fuse/", "fs/netfs/", "fs/overlayfs/",
            "drivers/bluetooth/", "drivers/hid/", "drivers/input/", "drivers/net/can/", "drivers/tty/", "drivers/usb/",
            "drivers/virtio/", "drivers/block/virtio", "drivers/char/virtio")
+CONTENT = hashlib.sha256(repr(MODULES).encode()).hexdigest()[:8]  # two lists make two folders
 LOCK_TIMEOUT_S = 600
 
 
@@ -173,7 +175,7 @@ def vmlinux_of(image):
 def fetch(apt, name, cache):
     """The folder of a kernel in the cache, downloaded if it is not there."""
     version = apt.file_name(name).split("_")[1].replace("%3a", ":")
-    folder = cache / f"{name}_{version}"
+    folder = cache / f"{name}_{version}_{CONTENT}"
     if not (folder / "kernel").exists():
         print(f"lab: downloading {name} {version} to {cache}", file=sys.stderr, flush=True)
         with tempfile.TemporaryDirectory(dir=cache, prefix="new-") as new:
@@ -244,8 +246,12 @@ def current_kernel(newest=False):
         raise Failure(f"found a computer of the kind {os.uname().machine}, expected x86_64: the guest runs its programs")
     cache = cache_folder()
     current = cache / "current"
-    if newest or not (current / "kernel").exists():
+
+    def is_missing():
+        return not (current / "kernel").exists() or not current.resolve().name.endswith(CONTENT)
+
+    if newest or is_missing():
         with locked(cache):
-            if newest or not (current / "kernel").exists():
+            if newest or is_missing():
                 renew(cache)
     return Kernel(current)

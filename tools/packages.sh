@@ -30,6 +30,7 @@ lab_packages=(
   kmod xz-utils zstd              # unpack and load the kernel and its modules
   iproute2 can-utils              # CAN interfaces; programs that use them
   bluez bluez-test-tools          # Bluetooth; btvirt, which makes virtual controllers
+  udev                            # reads the shipped rules in a check
   python3
 )
 

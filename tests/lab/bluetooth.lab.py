@@ -53,8 +53,8 @@ def main():
         received += part
     if received != content:
         sys.exit("found other bytes, expected those that were sent")
-    line.close()
 
+    # The first connection is still open. Without it, the end of the session between the controllers can overtake: ECONNRESET.
     refused = rfcomm()
     refused.bind((near, 0))
     try:

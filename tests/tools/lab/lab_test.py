@@ -5,6 +5,7 @@ script that the guest would run. The checks in tests/lab show the rest.
 """
 
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -163,6 +164,49 @@ class Job(Folder):
         self.assertIn("TMPDIR=/tmp\n", out)
         self.assertIn("PROLEG_LAB=", out)
         self.assertNotIn("DISPLAY", out)
+
+
+class Offer:
+    """apt with these packages."""
+
+    def __init__(self, *names):
+        self.names = names
+
+    def search(self, command):
+        pattern = command[-1]
+        return "".join(f"{name} - Linux\n" for name in self.names if re.search(pattern, name))
+
+
+class Choice(unittest.TestCase):
+    """Which of the kernels that apt offers is used."""
+
+    def choose(self, *names):
+        with unittest.mock.patch.object(kernel, "run", Offer(*names).search):
+            return kernel.choose(kernel.Apt())
+
+    def test_the_newest_of_the_wanted_series_by_number(self):
+        names = [f"linux-image-6.12.{number}+deb12-amd64" for number in (99, 117, 111)]
+        self.assertEqual(self.choose(*names, "linux-image-6.1.0-52-amd64"), (names[1], ""))
+
+    def test_no_debug_symbols_and_no_unsigned_image(self):
+        self.assertIsNone(self.choose("linux-image-6.12.117+deb12-amd64-dbg", "linux-image-6.12.117+deb12-amd64-unsigned"))
+
+    def test_without_the_wanted_series_the_newest_older_one_that_is_not_known_bad(self):
+        name, reason = self.choose("linux-image-6.1.0-9-amd64", "linux-image-6.1.0-52-amd64", "linux-image-6.1.0-56-amd64")
+        self.assertEqual(name, "linux-image-6.1.0-52-amd64")
+        self.assertIn("bookworm-security main` to the apt sources", reason)
+
+    def test_a_kernel_that_is_known_bad_is_used_if_there_is_no_other_and_the_reason_is_named(self):
+        name, reason = self.choose("linux-image-6.1.0-56-amd64")
+        self.assertEqual(name, "linux-image-6.1.0-56-amd64")
+        self.assertIn("panics when RFCOMM", reason)
+
+    def test_none_where_none_is_offered(self):
+        self.assertIsNone(self.choose("linux-image-5.10.0-1-amd64"))
+
+    def test_a_file_that_is_no_kernel_is_refused(self):
+        with self.assertRaisesRegex(kernel.Failure, "expected zstd or xz"):
+            kernel.vmlinux_of(bytes(4096))
 
 
 class Boot(Folder):

@@ -1,0 +1,192 @@
+#include "host/dynamixel/servo_bus.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "host/dynamixel/chain_settings.hpp"
+
+namespace proleg::host {
+namespace {
+
+/// An adapter without its low latency setting keeps bytes for 16 ms; servos answer within 0.5 ms.
+constexpr std::uint32_t answer_timeout_us = 40'000;
+constexpr unsigned attempts = 3;
+
+void append_half(std::vector<std::uint8_t>& bytes, unsigned value) {
+  bytes.push_back(static_cast<std::uint8_t>(value));
+  bytes.push_back(static_cast<std::uint8_t>(value >> 8U));
+}
+
+void append_number(std::vector<std::uint8_t>& bytes, std::uint32_t value, std::size_t size) {
+  for (std::size_t i = 0; i < size; ++i) {
+    bytes.push_back(static_cast<std::uint8_t>(value >> 8U * i));
+  }
+}
+
+}  // namespace
+
+std::uint32_t number_of(std::span<const std::uint8_t> bytes) {
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < bytes.size() && i < 4; ++i) {
+    number |= std::uint32_t{bytes[i]} << 8U * i;
+  }
+  return number;
+}
+
+void ServoBus::discard_input() {
+  line_.discard_input();
+  parser_.reset();
+}
+
+void ServoBus::send(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters) {
+  discard_input();  // late answers to an earlier request
+  line_.write(instruction_packet(id, instruction, parameters));
+}
+
+std::optional<StatusPacket> ServoBus::receive(std::uint64_t deadline_us) {
+  std::array<std::uint8_t, 512> bytes{};
+  for (;;) {
+    if (auto packet = parser_.next()) {
+      if ((packet->error & StatusPacket::alert) != 0) {
+        alert_ = packet->id;
+      }
+      return packet;
+    }
+    const std::size_t count = line_.read(bytes, std::min(deadline_us, deadline_us_));
+    if (count == 0) {
+      return std::nullopt;
+    }
+    parser_.add(std::span(bytes).first(count));
+  }
+}
+
+StatusPacket ServoBus::request(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters,
+                               std::size_t answer_size) {
+  const std::uint32_t damaged_before = parser_.damaged();
+  std::string strange;
+  for (unsigned attempt = 0; attempt < attempts && now_us() < deadline_us_; ++attempt) {
+    send(id, instruction, parameters);
+    const std::size_t bytes = packet_overhead + parameters.size() + status_overhead + answer_size;
+    const std::uint64_t deadline_us = now_us() + line_time_us(bytes, rate_) + answer_timeout_us;
+    while (auto packet = receive(deadline_us)) {
+      if (packet->id != id) {
+        strange = "; servo " + std::to_string(packet->id) + " answered instead: two hosts on one line?";
+        continue;
+      }
+      const auto number = static_cast<std::uint8_t>(packet->error & StatusPacket::error_number);
+      if (number != 0) {
+        throw ServoError(id, std::string("rejects a request with ") + describe_error_number(number));
+      }
+      if (packet->parameters.size() == answer_size) {
+        return *std::move(packet);
+      }
+      strange = "; it answered with " + std::to_string(packet->parameters.size()) + " instead of " +
+                std::to_string(answer_size) + " bytes";
+    }
+    if (parser_.is_incomplete()) {
+      strange = "; its answer was cut short";
+    }
+  }
+  if (parser_.damaged() != damaged_before) {
+    strange = "; answers were damaged: two servos with one id, a bad cable, or a line without ground";
+  }
+  throw ServoError(id, "does not answer" + strange);
+}
+
+unsigned ServoBus::ping(std::uint8_t id) {
+  const StatusPacket answer = request(id, Instruction::ping, {}, 3);
+  return number_of(std::span(answer.parameters).first(2));
+}
+
+std::vector<std::uint8_t> ServoBus::read(std::uint8_t id, TableItem item) {
+  std::vector<std::uint8_t> parameters;
+  append_half(parameters, item.address);
+  append_half(parameters, item.size);
+  return request(id, Instruction::read, parameters, item.size).parameters;
+}
+
+std::uint32_t ServoBus::read_number(std::uint8_t id, TableItem item) { return number_of(read(id, item)); }
+
+void ServoBus::write(std::uint8_t id, TableItem item, std::uint32_t value) {
+  std::vector<std::uint8_t> parameters;
+  append_half(parameters, item.address);
+  append_number(parameters, value, item.size);
+  try {
+    static_cast<void>(request(id, Instruction::write, parameters, 0));
+  } catch (const ServoError& error) {
+    throw ServoError(id, error.what_it_does() + " (writing " + std::to_string(value) + " to address " +
+                             std::to_string(item.address) + ")");
+  }
+}
+
+void ServoBus::write_unconfirmed(std::uint8_t id, TableItem item, std::uint32_t value) {
+  std::vector<std::uint8_t> parameters;
+  append_half(parameters, item.address);
+  append_number(parameters, value, item.size);
+  send(id, Instruction::write, parameters);
+  const std::size_t bytes = packet_overhead + parameters.size() + status_overhead;
+  const std::uint64_t deadline_us = now_us() + line_time_us(bytes, rate_) + answer_timeout_us;
+  while (const auto packet = receive(deadline_us)) {
+    if (packet->id == id) {
+      return;
+    }
+  }
+}
+
+void ServoBus::sync_write(TableItem item, std::span<const std::uint8_t> ids, std::span<const std::uint32_t> values) {
+  std::vector<std::uint8_t> parameters;
+  append_half(parameters, item.address);
+  append_half(parameters, item.size);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    parameters.push_back(ids[i]);
+    append_number(parameters, values[i], item.size);
+  }
+  send(broadcast_id, Instruction::sync_write, parameters);
+}
+
+std::vector<std::optional<StatusPacket>> ServoBus::sync_read(TableItem item, std::span<const std::uint8_t> ids,
+                                                             std::uint64_t deadline_us) {
+  std::vector<std::uint8_t> parameters;
+  append_half(parameters, item.address);
+  append_half(parameters, item.size);
+  parameters.insert(parameters.end(), ids.begin(), ids.end());
+  send(broadcast_id, Instruction::sync_read, parameters);
+
+  std::vector<std::optional<StatusPacket>> answers(ids.size());
+  std::size_t missing = ids.size();
+  while (missing > 0) {
+    auto packet = receive(deadline_us);
+    if (!packet) {
+      break;
+    }
+    const auto at = static_cast<std::size_t>(std::ranges::find(ids, packet->id) - ids.begin());
+    const bool is_answer = at < ids.size() && !answers[at] && packet->parameters.size() == item.size &&
+                           (packet->error & StatusPacket::error_number) == 0;
+    if (is_answer) {
+      answers[at] = *std::move(packet);
+      --missing;
+    }
+  }
+  return answers;
+}
+
+std::vector<std::uint8_t> ServoBus::find_servos(std::uint32_t time_us) {
+  send(broadcast_id, Instruction::ping, {});
+  const std::uint64_t end_us = now_us() + time_us;
+  std::vector<std::uint8_t> ids;
+  while (const auto packet = receive(end_us)) {
+    if (std::ranges::find(ids, packet->id) == ids.end()) {
+      ids.push_back(packet->id);
+    }
+    if (now_us() >= end_us) {
+      break;
+    }
+  }
+  std::ranges::sort(ids);
+  return ids;
+}
+
+std::optional<std::uint8_t> ServoBus::take_alert() { return std::exchange(alert_, std::nullopt); }
+
+}  // namespace proleg::host

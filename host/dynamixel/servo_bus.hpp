@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "host/dynamixel/control_table.hpp"
+#include "host/dynamixel/line.hpp"
+#include "host/dynamixel/packet.hpp"
+
+namespace proleg::host {
+
+/// A servo does not answer, or answers with an error. what(): one line.
+class ServoError : public std::runtime_error {
+ public:
+  explicit ServoError(const std::string& text) : std::runtime_error(text) {}
+  ServoError(std::uint8_t id, const std::string& what_it_does)
+      : std::runtime_error("servo " + std::to_string(id) + " " + what_it_does), what_it_does_(what_it_does) {}
+  /// "does not answer", without the servo; empty if the error is not that of one request.
+  [[nodiscard]] const std::string& what_it_does() const { return what_it_does_; }
+
+ private:
+  std::string what_it_does_;
+};
+
+/// Requests to servos and their answers: one request at a time, each with a timeout.
+class ServoBus {
+ public:
+  /// line: must outlive the bus. rate: baud; for the time that a request takes.
+  ServoBus(Line& line, unsigned rate) : line_(line), rate_(rate) {}
+
+  /// From the start: no request of this bus takes longer. A request fails with ServoError at this time.
+  void set_deadline(std::uint64_t deadline_us) { deadline_us_ = deadline_us; }
+  [[nodiscard]] std::uint64_t deadline_us() const { return deadline_us_; }
+  [[nodiscard]] std::uint64_t now_us() { return line_.now_us(); }
+
+  // Requests to one servo. They are repeated twice if there is no intact answer. They throw ServoError.
+  /// Returns the model number.
+  unsigned ping(std::uint8_t id);
+  /// The bytes of an item.
+  std::vector<std::uint8_t> read(std::uint8_t id, TableItem item);
+  /// An item of 1, 2 or 4 bytes.
+  std::uint32_t read_number(std::uint8_t id, TableItem item);
+  /// Writes an item, and requires that the servo accepts it.
+  void write(std::uint8_t id, TableItem item, std::uint32_t value);
+  /// Writes an item once and ignores whether it is answered.
+  void write_unconfirmed(std::uint8_t id, TableItem item, std::uint32_t value);
+
+  // Requests to several servos.
+  /// Writes an item of each servo in one packet, which no servo answers.
+  void sync_write(TableItem item, std::span<const std::uint8_t> ids, std::span<const std::uint32_t> values);
+  /// Reads an item of each servo. The servos answer in the order of the ids. Returns their answers in the same order,
+  /// nothing for those that gave no intact answer until the deadline.
+  std::vector<std::optional<StatusPacket>> sync_read(TableItem item, std::span<const std::uint8_t> ids,
+                                                     std::uint64_t deadline_us);
+  /// The ids of all servos that answer a broadcast ping within the time.
+  std::vector<std::uint8_t> find_servos(std::uint32_t time_us);
+
+  /// Forgets what was received and not read.
+  void discard_input();
+
+  /// Packets so far that were damaged on the line.
+  [[nodiscard]] std::uint32_t damaged() const { return parser_.damaged(); }
+  /// Whether a servo reported a hardware error (alert bit) since the last call, and which.
+  [[nodiscard]] std::optional<std::uint8_t> take_alert();
+
+ private:
+  void send(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters);
+  std::optional<StatusPacket> receive(std::uint64_t deadline_us);
+  /// One request with repetitions. parameters: how many the answer must have.
+  StatusPacket request(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters,
+                       std::size_t answer_size);
+
+  Line& line_;
+  unsigned rate_;
+  std::uint64_t deadline_us_ = UINT64_MAX;
+  StatusParser parser_;
+  std::optional<std::uint8_t> alert_;
+};
+
+/// Little-endian, 1 to 4 bytes.
+[[nodiscard]] std::uint32_t number_of(std::span<const std::uint8_t> bytes);
+
+}  // namespace proleg::host

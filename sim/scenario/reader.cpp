@@ -42,6 +42,7 @@ Scenario read_scenario(const std::filesystem::path& path, FileSource& files, con
   scenario.robot = std::move(robot.model);
   scenario.joint_limits = std::move(robot.kernel_limits);
   scenario.modules = std::move(robot.modules);
+  scenario.robot_control = std::move(robot.robot_control);
   scenario.warnings = std::move(robot.warnings);
   scenario.kernel.joint_count = static_cast<std::uint8_t>(scenario.robot.joints.size());
 

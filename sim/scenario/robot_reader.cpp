@@ -7,6 +7,7 @@
 #include "sim/scenario/kinbody_reader.hpp"
 #include "sim/scenario/module_reader.hpp"
 #include "sim/scenario/plausibility.hpp"
+#include "sim/scenario/robot_control_reader.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {
@@ -44,7 +45,8 @@ ServoModel read_servo(const XmlElement& element, double step_s) {
 RobotDescription read_robot(const XmlDocument& document, double step_s, SourceSet& sources,
                             std::vector<std::string>& remarks) {
   const XmlElement root = document.root("Robot");
-  constexpr std::array<std::string_view, 5> extra_tags{"servo", "module", "AttachedSensor", "sensor", "Manipulator"};
+  constexpr std::array<std::string_view, 6> extra_tags{"servo",          "module", "robot_control",
+                                                       "AttachedSensor", "sensor", "Manipulator"};
   const KinBodyContents contents = read_kinbody(root, KinBodyUse::robot, sources, remarks, extra_tags);
   for (const XmlElement& child : root.children()) {
     if (child.is("AttachedSensor") || child.is("sensor")) {
@@ -65,6 +67,7 @@ RobotDescription read_robot(const XmlDocument& document, double step_s, SourceSe
   robot.model.joints = std::move(chain.joints);
   robot.kernel_limits = std::move(chain.kernel_limits);
   robot.modules = read_modules(root, robot.model);
+  robot.robot_control = read_robot_control(root, robot.model);
   remarks.push_back(one_line(chain.joint_map));
   return robot;
 }

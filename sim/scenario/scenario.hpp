@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "shared/kernel/kernel.hpp"
 #include "sim/environment/environment_model.hpp"
 #include "sim/robot/module_place.hpp"
+#include "sim/robot/robot_control_entry.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/scenario/overrides.hpp"
 
@@ -55,10 +57,11 @@ struct Scenario {
   EnvironmentModel environment;
 
   KernelConfiguration kernel;
-  std::vector<JointLimits> joint_limits;  ///< kernel order, one for each joint
-  std::vector<ModulePlace> modules;       ///< kernel order, one for each joint, no node id twice
-  std::vector<Setting> settings;          ///< start values that differ from the defaults
-  std::vector<Change> changes;            ///< in flight, by ascending tick
+  std::vector<JointLimits> joint_limits;           ///< kernel order, one for each joint
+  std::vector<ModulePlace> modules;                ///< kernel order, one for each joint, no node id twice
+  std::optional<RobotControlEntry> robot_control;  ///< plug-in of a robot without modules; no effect in a simulation
+  std::vector<Setting> settings;                   ///< start values that differ from the defaults
+  std::vector<Change> changes;                     ///< in flight, by ascending tick
 
   double duration_s = 30.0;
   double step_s = 0.001;  ///< of the physics; a tick is a whole number of steps

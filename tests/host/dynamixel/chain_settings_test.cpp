@@ -43,7 +43,7 @@ std::string error_of(const std::vector<Parameter>& entries, std::uint32_t tick_u
 const Parameter device{"device", "/dev/ttyUSB0"};
 
 TEST(ChainSettings, HaveDefaults) {
-  const ChainSettings settings = read({device});
+  const ChainSettings settings = read({device}, 20'000);
   EXPECT_EQ(settings.device, "/dev/ttyUSB0");
   EXPECT_EQ(settings.rate, 57'600U);
   EXPECT_EQ(settings.watchdog, 10U);

@@ -52,8 +52,10 @@ Bytes reference_packet(std::uint8_t id, std::span<const std::uint8_t> body) {
     }
   }
   const std::size_t length = stuffed.size() + 2;
-  Bytes packet{0xFF, 0xFF, 0xFD, 0x00, id, static_cast<std::uint8_t>(length), static_cast<std::uint8_t>(length >> 8U)};
-  packet.insert(packet.end(), stuffed.begin(), stuffed.end());
+  Bytes packet(7 + stuffed.size());
+  const Bytes start{
+      0xFF, 0xFF, 0xFD, 0x00, id, static_cast<std::uint8_t>(length), static_cast<std::uint8_t>(length >> 8U)};
+  std::ranges::copy(stuffed, std::ranges::copy(start, packet.begin()).out);
   const std::uint16_t crc = reference_crc(packet);
   packet.push_back(static_cast<std::uint8_t>(crc));
   packet.push_back(static_cast<std::uint8_t>(crc >> 8U));
@@ -121,14 +123,14 @@ std::uint8_t EmulatedServo::write(unsigned address, std::span<const std::uint8_t
   if (address == 98 && value > 127) {
     return range_error;
   }
-  eeprom_writes += address < ram_begin ? 1 : 0;
+  eeprom_writes += address < ram_begin ? 1U : 0U;
   std::ranges::copy(data, table.begin() + address);
   return 0;
 }
 
 void EmulatedServo::check_watchdog(std::uint64_t now_us, std::uint64_t last_instruction_us) {
   const bool is_active = has_power() && table[98] >= 1 && table[98] <= 127;
-  if (is_active && now_us - last_instruction_us > std::uint64_t{table[98]} * 20'000) {
+  if (is_active && now_us > last_instruction_us + std::uint64_t{table[98]} * 20'000) {
     table[98] = 255;
   }
 }
@@ -176,11 +178,11 @@ std::vector<ServoEmulator::Answer> ServoEmulator::receive(std::span<const std::u
     for (std::size_t i = 7; i + 2 < packet.size(); ++i) {
       if (matched == 3) {
         matched = 0;
-        bad_instructions += packet[i] == 0xFD ? 0 : 1;
+        bad_instructions += packet[i] == 0xFD ? 0U : 1U;
         continue;
       }
       body.push_back(packet[i]);
-      matched = packet[i] == 0xFF ? std::min(matched + 1, 2U) : (packet[i] == 0xFD && matched == 2 ? 3 : 0);
+      matched = packet[i] == 0xFF ? std::min(matched + 1, 2U) : (packet[i] == 0xFD && matched == 2 ? 3U : 0U);
     }
     last_instruction_us_ = now_us;
     execute(packet[4], body, now_us, answers);

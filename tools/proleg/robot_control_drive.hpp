@@ -1,0 +1,63 @@
+#pragma once
+
+// Drives a robot behind a plug-in from the same scenario that `proleg simulate` takes. The kernels run on this
+// computer, because such a robot has no modules with a core of their own. `proleg drive FILE --robot-control` calls it.
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "host/robot_control/drive_loop.hpp"
+#include "host/robot_control/gait_driver.hpp"
+#include "host/robot_control/robot_control.hpp"
+#include "sim/loop/kernel_chain.hpp"
+#include "sim/scenario/scenario.hpp"
+
+namespace proleg {
+
+/// The gait of a scenario in memory, with its changes.
+class ScenarioGait final : public host::SetpointSource {
+ public:
+  /// scenario: must outlive the gait.
+  explicit ScenarioGait(const sim::Scenario& scenario);
+  explicit ScenarioGait(const sim::Scenario&&) = delete;
+
+  [[nodiscard]] std::span<const std::int32_t> setpoints() const override { return chain_.setpoints(); }
+  void advance(std::span<const std::uint8_t> contacts) override;
+  /// A change for the coming tick, beside those of the scenario.
+  void apply(const sim::Change& change) { chain_.apply(change); }
+  [[nodiscard]] const sim::KernelChain& chain() const { return chain_; }
+
+ private:
+  const sim::Scenario& scenario_;
+  sim::KernelChain chain_;
+  std::size_t next_change_ = 0;
+};
+
+/// What the plug-in learns of the scenario's robot. Throws InputError if the robot's file has no <robot_control>.
+[[nodiscard]] host::RobotControlSetup robot_control_setup(const sim::Scenario& scenario);
+
+/// The limits and the greatest speed of the scenario's joints.
+[[nodiscard]] host::DriveLimits drive_limits(const sim::Scenario& scenario);
+
+/// Finds and loads the plug-in that the robot's file names. Throws InputError and host::RobotControlError.
+[[nodiscard]] host::Plugin robot_control_plugin(const sim::Scenario& scenario);
+
+struct RobotControlDrive {
+  std::uint32_t ticks = 0;                           ///< of the gait; 0: until must_stop
+  std::function<bool()> must_stop{};                 ///< asked before each tick; true ends the run with a ramp down
+  std::function<void(const std::string&)> show{};    ///< lines for the user; called from several threads, never at once
+  std::function<void(ScenarioGait&)> before_tick{};  ///< before each tick of the gait: may apply changes
+  host::GaitDriver::Observer observer{};             ///< after each tick of the gait
+};
+
+/// Connects, ramps in, plays the gait, ramps down and takes the power from the servos. Nothing moves before all parts
+/// of the robot have answered. Throws InputError (the robot's file) and host::RobotControlError (plug-in or robot;
+/// nothing has moved). A failure in the run is in the result, and the robot has been ramped down as far as it follows.
+[[nodiscard]] host::DriveResult drive_robot_control(const sim::Scenario& scenario, const RobotControlDrive& drive);
+
+/// The same with a plug-in and a clock; for tests.
+[[nodiscard]] host::DriveResult drive_robot_control(const sim::Scenario& scenario, const RobotControlDrive& drive,
+                                                    const host::Plugin& plugin, host::Clock& clock);
+
+}  // namespace proleg

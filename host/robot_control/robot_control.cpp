@@ -6,7 +6,6 @@
 #include <cstring>
 #include <utility>
 
-#include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::host {
@@ -143,9 +142,9 @@ void RobotControl::open() {
   if (call->result != PROLEG_OK) {
     const std::string text = bounded_text(call->error.text, sizeof call->error.text);
     const int line = call->error.line != 0 ? static_cast<int>(call->error.line) : session_->setup.line;
-    throw RobotControlError(session_->setup.file + ":" + std::to_string(line) + ": " +
-                            (text.empty() ? "found parameters that the plug-in rejects without a reason" : text) +
-                            " (plug-in " + in_quotes(name()) + ")");
+    throw RobotFileError(session_->setup.file + ":" + std::to_string(line) + ": " +
+                         (text.empty() ? "found parameters that the plug-in rejects without a reason" : text) +
+                         " (plug-in " + in_quotes(name()) + ")");
   }
   if (session_->robot == nullptr) {
     fail("opened no robot; report this to the author of the plug-in");

@@ -60,8 +60,8 @@ class RobotControl {
   };
   using Show = std::function<void(const std::string&)>;
 
-  /// show: receives the lines that the plug-in shows; called from another thread. Throws InputError, too, if the
-  /// robot's file is wrong.
+  /// show: receives the lines that the plug-in shows; called from another thread. Throws RobotFileError if
+  /// the plug-in rejects the parameters.
   RobotControl(Plugin plugin, RobotControlSetup setup, Show show, Patience patience);
   RobotControl(Plugin plugin, RobotControlSetup setup, Show show)
       : RobotControl(std::move(plugin), std::move(setup), std::move(show), Patience()) {}

@@ -90,7 +90,7 @@ host::Plugin robot_control_plugin(const sim::Scenario& scenario) {
   try {
     return host::load_plugin(host::find_plugin(entry.plugin, entry.folder, host::plugin_folders()));
   } catch (const host::RobotControlError& error) {
-    throw host::RobotControlError(entry.file + ":" + std::to_string(entry.line) + ": " + error.what());
+    throw host::RobotFileError(entry.file + ":" + std::to_string(entry.line) + ": " + error.what());
   }
 }
 

@@ -40,7 +40,7 @@ class ScenarioGait final : public host::SetpointSource {
 /// The limits and the greatest speed of the scenario's joints.
 [[nodiscard]] host::DriveLimits drive_limits(const sim::Scenario& scenario);
 
-/// Finds and loads the plug-in that the robot's file names. Throws InputError and host::RobotControlError.
+/// Finds and loads the plug-in that the robot's file names. Throws InputError and host::RobotFileError.
 [[nodiscard]] host::Plugin robot_control_plugin(const sim::Scenario& scenario);
 
 struct RobotControlDrive {
@@ -52,8 +52,9 @@ struct RobotControlDrive {
 };
 
 /// Connects, ramps in, plays the gait, ramps down and takes the power from the servos. Nothing moves before all parts
-/// of the robot have answered. Throws InputError (the robot's file) and host::RobotControlError (plug-in or robot;
-/// nothing has moved). A failure in the run is in the result, and the robot has been ramped down as far as it follows.
+/// of the robot have answered. Throws InputError and host::RobotFileError (bad input), host::RobotControlError (plug-in
+/// or robot; nothing has moved). A failure in the run is in the result, and the robot has been ramped down as far as it
+/// follows.
 [[nodiscard]] host::DriveResult drive_robot_control(const sim::Scenario& scenario, const RobotControlDrive& drive);
 
 /// The same with a plug-in and a clock; for tests.

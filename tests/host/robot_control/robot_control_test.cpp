@@ -8,7 +8,6 @@
 #include <mutex>
 
 #include "scripted_plugin.hpp"
-#include "shared/computer/errors/input_error.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace proleg::host {

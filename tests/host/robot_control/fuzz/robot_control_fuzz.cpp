@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <string>
 
-#include "shared/computer/errors/input_error.hpp"
 #include "tests/host/robot_control/scripted_plugin.hpp"
 #include "tests/support/fuzz_input.hpp"
 
@@ -49,8 +48,6 @@ void attempt(const Action& action) {
   try {
     action();
   } catch (const host::RobotControlError& error) {
-    require(std::string(error.what()).find('\n') == std::string::npos, "an error is one line");
-  } catch (const InputError& error) {
     require(std::string(error.what()).find('\n') == std::string::npos, "an error is one line");
   }
 }

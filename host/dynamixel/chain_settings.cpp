@@ -189,14 +189,13 @@ void check_rate(const ChainSettings& settings) {
   if (readable_servos(servos, settings.rate, settings.tick_us, usual_return_delay_us) > 0) {
     return;
   }
-  std::string advice = "a longer tick";
-  for (const unsigned rate : serial_rates()) {
-    if (readable_servos(servos, rate, settings.tick_us, usual_return_delay_us) > 0) {
-      advice = "at least " + std::to_string(rate) + " baud (Baud Rate(8) of the servos and the parameter 'baud'), or " +
-               advice;
-      break;
-    }
-  }
+  const std::span<const unsigned> rates = serial_rates();
+  const auto fast = std::ranges::find_if(
+      rates, [&](unsigned rate) { return readable_servos(servos, rate, settings.tick_us, usual_return_delay_us) > 0; });
+  const std::string advice = fast == rates.end() ? "a longer tick"
+                                                 : "at least " + std::to_string(*fast) +
+                                                       " baud (Baud Rate(8) of the servos and the parameter 'baud'), "
+                                                       "or a longer tick";
   throw SettingError(0,
                      std::to_string(settings.rate) + " baud for " + std::to_string(servos) + " servos in a tick of " +
                          number_text(settings.tick_us / 1000.0) + " ms",

@@ -34,7 +34,6 @@ class ServoBus {
 
   /// From the start: no request of this bus takes longer. A request fails with ServoError at this time.
   void set_deadline(std::uint64_t deadline_us) { deadline_us_ = deadline_us; }
-  [[nodiscard]] std::uint64_t deadline_us() const { return deadline_us_; }
   [[nodiscard]] std::uint64_t now_us() { return line_.now_us(); }
 
   // Requests to one servo. They are repeated twice if there is no intact answer. They throw ServoError.
@@ -62,8 +61,6 @@ class ServoBus {
   /// Forgets what was received and not read.
   void discard_input();
 
-  /// Packets so far that were damaged on the line.
-  [[nodiscard]] std::uint32_t damaged() const { return parser_.damaged(); }
   /// Whether a servo reported a hardware error (alert bit) since the last call, and which.
   [[nodiscard]] std::optional<std::uint8_t> take_alert();
 

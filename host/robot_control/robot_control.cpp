@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <utility>
 
 #include "shared/computer/text/text.hpp"
@@ -19,10 +20,12 @@ struct Kind {
 };
 
 /// What plug-ins report, with the range outside of which no robot is.
-constexpr std::array<Kind, 4> kinds{{{"position", -360.0, 360.0, "degrees"},
-                                     {"current", -100'000.0, 100'000.0, "mA"},
-                                     {"temperature", -100.0, 300.0, "degrees Celsius"},
+constexpr std::array<Kind, 4> kinds{{{"position", -360.0, 360.0, " degrees"},
+                                     {"current", -100'000.0, 100'000.0, " mA"},
+                                     {"temperature", -100.0, 300.0, " degrees Celsius"},
                                      {"contact", 0.0, 1.0, ""}}};
+/// Other kinds are known to the plug-in alone; their values are finite.
+constexpr double max_number = std::numeric_limits<double>::max();
 
 std::uint32_t microseconds(std::chrono::milliseconds time) {
   return static_cast<std::uint32_t>(std::chrono::microseconds(time).count());
@@ -267,16 +270,16 @@ std::vector<double> RobotControl::request_information(const std::string& kind) {
          std::to_string(expected) + (is_of_sensors ? ", one for each sensor" : ", one for each joint"));
   }
   const auto range = std::ranges::find(kinds, kind, &Kind::name);
+  const Kind allowed = range != kinds.end() ? *range : Kind{kind, -max_number, max_number, ""};
   for (std::size_t i = 0; i < expected; ++i) {
     const double value = result->values[i];
-    const bool is_in_range = range == kinds.end() || (value >= range->min && value <= range->max);
-    if (!std::isfinite(value) || !is_in_range) {
-      const std::string of =
+    if (!(value >= allowed.min && value <= allowed.max)) {
+      const std::string part =
           is_of_sensors ? "sensor " + std::to_string(i) : "joint " + in_quotes(session_->setup.joints[i].name);
-      fail("returned " + number_text(value) + " as " + kind + " of " + of + ", expected " +
-           (range == kinds.end()
-                ? std::string("a finite number")
-                : number_text(range->min) + " to " + number_text(range->max) + " " + std::string(range->unit)));
+      std::string text = "returned " + number_text(value) + " as " + kind;
+      text += " of " + part + ", expected " + number_text(allowed.min) + " to " + number_text(allowed.max);
+      text += allowed.unit;
+      fail(text);
     }
   }
   return std::move(result->values);

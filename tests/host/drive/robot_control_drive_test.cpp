@@ -8,85 +8,18 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "host/dynamixel/plugin.hpp"
+#include "servo_run.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/scenario/reader.hpp"
-#include "tests/host/dynamixel/emulated_line.hpp"
 #include "tests/host/dynamixel/pty_servos.hpp"
-#include "tests/support/files.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace proleg {
 namespace {
 
 using host::DriveResult;
-using test::EmulatedLine;
 using test::EmulatedServo;
 using test::ServoEmulator;
-using Parameter = sim::RobotControlEntry::Parameter;
-
-sim::Scenario shipped_gait(const std::string& name, const std::string& device = "/dev/emulated") {
-  sim::DiskFiles files;
-  sim::Scenario scenario =
-      sim::read_scenario(source_path("/sim/scenarios/travelling_wave/" + name + ".simulation.xml"), files);
-  scenario.robot_control =
-      sim::RobotControlEntry{"dynamixel", "robot.xml", "/", 3, {{"device", device, {}, 4}, {"baud", "1000000", {}, 5}}};
-  return scenario;
-}
-
-/// The time of servos and drive. Used by two threads in turn: a call of the plug-in ends before the drive continues.
-class VirtualClock final : public host::Clock {
- public:
-  VirtualClock(ServoEmulator& servos, std::uint64_t& now_us) : servos_(servos), now_us_(now_us) {}
-  [[nodiscard]] std::uint64_t now_us() override { return now_us_; }
-  void sleep_until(std::uint64_t time_us) override {
-    now_us_ = std::max(now_us_, time_us);
-    servos_.advance(now_us_);
-  }
-
- private:
-  ServoEmulator& servos_;
-  std::uint64_t& now_us_;
-};
-
-/// A scenario on five emulated servos on virtual time.
-class ServoRun : public testing::Test {
- protected:
-  ServoRun() {
-    host::use_lines_of([this](const std::string& device, unsigned rate) {
-      EXPECT_EQ(device, "/dev/emulated");
-      return std::make_unique<EmulatedLine>(servos, now_us, rate);
-    });
-  }
-  ~ServoRun() override {
-    host::use_lines_of(
-        [](const std::string&, unsigned) -> std::unique_ptr<host::Line> { throw host::LineError("no servos"); });
-  }
-
-  DriveResult drive(const sim::Scenario& scenario, RobotControlDrive options) {
-    options.show = [this](const std::string& line) { shown.push_back(line); };
-    const host::Plugin plugin = host::check_plugin(&host::dynamixel_plugin(), "dynamixel");
-    VirtualClock clock(servos, now_us);
-    return drive_robot_control(scenario, options, plugin, clock);
-  }
-  [[nodiscard]] bool any_has_power() const {
-    return std::ranges::any_of(servos.servos, [](const EmulatedServo& servo) { return servo.has_power(); });
-  }
-  /// The last goal of all servos is 0 degrees, apart from that of a missing one.
-  void expect_ramped_down(std::uint8_t missing = 0) {
-    for (const EmulatedServo& servo : servos.servos) {
-      if (servo.id != missing) {
-        EXPECT_EQ(servo.goals.back().position, 2048) << unsigned{servo.id};
-        EXPECT_FALSE(servo.has_power()) << unsigned{servo.id};
-      }
-    }
-  }
-
-  ServoEmulator servos{5};
-  std::uint64_t now_us = 1'000'000;
-  std::vector<std::string> shown;
-};
 
 /// 4096 steps a turn, 90 degrees = 2^30: nearest, ties up.
 std::int32_t position_of(std::int32_t setpoint) { return 2048 + ((setpoint + (1 << 19)) >> 20); }

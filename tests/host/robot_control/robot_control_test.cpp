@@ -127,7 +127,7 @@ TEST(RobotControl, ContactsAreOneValueForEachSensor) {
   EXPECT_EQ(control.request_information("contact").size(), 6U);
   script.values[4] = 2.0;
   EXPECT_EQ(message_of<RobotControlError>([&] { static_cast<void>(control.request_information("contact")); }),
-            "plug-in 'scripted': returned 2 as contact of sensor 4, expected 0 to 1 ");
+            "plug-in 'scripted': returned 2 as contact of sensor 4, expected 0 to 1");
 }
 
 TEST(RobotControl, AFailureIsOneLineWhateverThePluginWrites) {

@@ -45,6 +45,7 @@ inline constexpr std::size_t status_overhead = packet_overhead + 1;
 /// What a servo answers.
 struct StatusPacket {
   static constexpr unsigned alert = 0x80;         ///< of `error`: Hardware Error Status(70) is not 0
+  static constexpr unsigned crc_error = 3;        ///< error number: the servo received a damaged instruction
   static constexpr unsigned error_number = 0x7F;  ///< of `error`: why the instruction failed; 0: it did not
 
   std::uint8_t id = 0;

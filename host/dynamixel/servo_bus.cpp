@@ -61,6 +61,13 @@ std::optional<StatusPacket> ServoBus::receive(std::uint64_t deadline_us) {
   }
 }
 
+/// The answer to an earlier attempt may still come, and must not count as that to the next request.
+void ServoBus::drain() {
+  const std::uint64_t end_us = now_us() + answer_timeout_us;
+  while (receive(end_us)) {
+  }
+}
+
 StatusPacket ServoBus::request(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters,
                                std::size_t answer_size) {
   const std::uint32_t damaged_before = parser_.damaged();
@@ -75,10 +82,17 @@ StatusPacket ServoBus::request(std::uint8_t id, Instruction instruction, std::sp
         continue;
       }
       const auto number = static_cast<std::uint8_t>(packet->error & StatusPacket::error_number);
+      if (number == StatusPacket::crc_error) {
+        strange = "; it receives damaged requests: a bad cable, or a line without ground";
+        continue;
+      }
       if (number != 0) {
         throw ServoError(id, std::string("rejects a request with ") + describe_error_number(number));
       }
       if (packet->parameters.size() == answer_size) {
+        if (attempt > 0) {
+          drain();
+        }
         return *std::move(packet);
       }
       strange = "; it answered with " + std::to_string(packet->parameters.size()) + " instead of " +

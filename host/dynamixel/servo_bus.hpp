@@ -67,6 +67,7 @@ class ServoBus {
  private:
   void send(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters);
   std::optional<StatusPacket> receive(std::uint64_t deadline_us);
+  void drain();
   /// One request with repetitions. parameters: how many the answer must have.
   StatusPacket request(std::uint8_t id, Instruction instruction, std::span<const std::uint8_t> parameters,
                        std::size_t answer_size);

@@ -174,8 +174,10 @@ void ServoChain::switch_on(std::uint64_t deadline_us) {
   bus_.set_deadline(deadline_us);
   read_all_angles();
   for (std::size_t joint = 0; joint < ids_.size(); ++joint) {
-    const auto position = settings_.servos[joint].position_of(readings_[joint].angle_deg);
-    bus_.write(ids_[joint], goal_position, static_cast<std::uint32_t>(position));
+    // A servo rejects goals outside of its position limits, and may rest a little outside.
+    const ServoSettings& servo = settings_.servos[joint];
+    const double angle = std::clamp(readings_[joint].angle_deg, servo.lower_limit_deg, servo.upper_limit_deg);
+    bus_.write(servo.id, goal_position, static_cast<std::uint32_t>(servo.position_of(angle)));
   }
   for (const std::uint8_t id : ids_) {
     bus_.write(id, torque_enable, 1);

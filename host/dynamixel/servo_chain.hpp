@@ -22,8 +22,8 @@ class ServoChain {
   // All functions end by the deadline, a time of the line's clock. They throw ServoError and LineError.
   /// Finds all servos, takes their power, prepares them and reads their angles.
   void connect(std::uint64_t deadline_us);
-  /// Power on: the goal of each servo is where it is. From now on the servos stop by themselves if nothing is sent for
-  /// the time of the watchdog.
+  /// Power on: the goal of each servo is where it is, or the nearest limit of its joint. From now on the servos stop by
+  /// themselves if nothing is sent for the time of the watchdog.
   void switch_on(std::uint64_t deadline_us);
   /// Power off. Also reaches the other servos if one does not answer.
   void switch_off(std::uint64_t deadline_us);

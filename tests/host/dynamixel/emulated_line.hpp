@@ -25,7 +25,8 @@ class EmulatedLine final : public host::Line {
     for (const ServoEmulator::Answer& answer : servos_.receive(bytes, time_us)) {
       const bool is_echo = echoes && answer.delay_us == 0;  // received while it is sent
       time_us += answer.delay_us + (is_echo ? 0 : time_of(answer.bytes.size()));
-      pending_.push_back({time_us, answer.bytes});
+      const auto later = [&](const Pending& other) { return other.time_us > time_us; };
+      pending_.insert(std::ranges::find_if(pending_, later), {time_us, answer.bytes});
     }
   }
 

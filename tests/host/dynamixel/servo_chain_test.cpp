@@ -118,12 +118,36 @@ TEST(ServoChain, RefusesWhatItCannotDrive) {
 TEST(ServoChain, RepeatsARequestTwiceAfterAFaultyAnswer) {
   for (unsigned EmulatedServo::*const fault :
        {&EmulatedServo::silent, &EmulatedServo::corrupt, &EmulatedServo::truncated, &EmulatedServo::with_wrong_id,
-        &EmulatedServo::with_noise}) {
+        &EmulatedServo::with_noise, &EmulatedServo::crc_errors}) {
     ChainRig rig(2);
     rig.servos.servo(2).*fault = 2;
     rig.connect();
     EXPECT_TRUE(rig.chain.is_connected());
   }
+}
+
+TEST(ServoChain, AnAnswerThatComesAfterItsRepetitionIsNotThatToTheNextRequest) {
+  for (unsigned answer = 1; answer < 20; ++answer) {
+    ChainRig rig(1);
+    EmulatedServo& servo = rig.servos.servo(1);
+    servo.table[9] = 17;
+    servo.set_number(132, 4, 2600);
+    servo.until_late = answer;
+    rig.connect();
+    rig.switch_on();
+    EXPECT_EQ(servo.eeprom_writes, 0U) << answer;
+    EXPECT_EQ(servo.position(), 2600) << answer;
+    EXPECT_NEAR(rig.chain.readings()[0].angle_deg, (2600 - 2048) * 90.0 / 1024.0, 1e-9) << answer;
+  }
+}
+
+TEST(ServoChain, AServoThatRestsOutsideOfItsLimitGoesToIt) {
+  ChainRig rig(1);
+  rig.servos.servo(1).set_number(52, 4, 1024);
+  rig.servos.servo(1).set_number(132, 4, 1010);
+  rig.connect();
+  rig.switch_on();
+  EXPECT_EQ(rig.servos.servo(1).goals.back().position, 1024);
 }
 
 TEST(ServoChain, NamesTheKindOfAFaultThatStays) {

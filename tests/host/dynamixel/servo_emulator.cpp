@@ -194,8 +194,12 @@ bool ServoEmulator::answer(EmulatedServo& servo, std::uint8_t error, std::span<c
   if (servo.is_missing || take(servo.silent)) {
     return false;
   }
-  Bytes body{0x55, static_cast<std::uint8_t>(error | (servo.table[70] != 0 ? alert : 0))};
-  body.insert(body.end(), data.begin(), data.end());
+  const bool is_crc_error = take(servo.crc_errors);
+  const unsigned number = is_crc_error ? 3U : error;
+  Bytes body{0x55, static_cast<std::uint8_t>(number | (servo.table[70] != 0 ? alert : 0))};
+  if (!is_crc_error) {
+    body.insert(body.end(), data.begin(), data.end());
+  }
   Bytes packet = reference_packet(take(servo.with_wrong_id) ? 99 : servo.id, body);
   if (take(servo.corrupt)) {
     packet[packet.size() - 3] ^= 0x10;
@@ -206,7 +210,8 @@ bool ServoEmulator::answer(EmulatedServo& servo, std::uint8_t error, std::span<c
   if (take(servo.with_noise)) {
     packet.insert(packet.begin(), {0x00, 0xFF, 0xFF, 0xFD, 0x00, 0x01, 0xFF});
   }
-  answers.push_back({servo.delay_us, packet});
+  const bool is_late = take(servo.until_late) && servo.until_late == 0;
+  answers.push_back({servo.delay_us + (is_late ? 50'000U : 0U), packet});
   return true;
 }
 

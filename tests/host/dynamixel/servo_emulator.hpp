@@ -33,6 +33,8 @@ class EmulatedServo {
   unsigned truncated = 0;
   unsigned with_wrong_id = 0;
   unsigned with_noise = 0;  ///< in front of them
+  unsigned crc_errors = 0;  ///< it says that the request was damaged
+  unsigned until_late = 0;  ///< counts answers: at 1, the answer is 50 ms late
   std::uint32_t delay_us = 500;
 
   /// A goal that the servo accepted, and whether it moves there.

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 PAGES = ["README.md", "CONTRIBUTING.md", *sorted(str(page) for page in Path(sys.argv[1]).glob("docs/*.md"))]
-NAMED = re.compile(r"`((?:shared|firmware|sim|tools|tests|docs)/[\w./-]*\w/?)`")
+NAMED = re.compile(r"`((?:shared|firmware|sim|host|tools|tests|docs)/[\w./-]*\w/?)`")
 
 
 def missing(source, page):

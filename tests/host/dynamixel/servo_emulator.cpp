@@ -211,7 +211,7 @@ bool ServoEmulator::answer(EmulatedServo& servo, std::uint8_t error, std::span<c
     packet.insert(packet.begin(), {0x00, 0xFF, 0xFF, 0xFD, 0x00, 0x01, 0xFF});
   }
   const bool is_late = take(servo.until_late) && servo.until_late == 0;
-  answers.push_back({servo.delay_us + (is_late ? 50'000U : 0U), packet});
+  answers.push_back({servo.delay_us + (is_late ? servo.late_us : 0U), packet});
   return true;
 }
 

@@ -34,7 +34,8 @@ class EmulatedServo {
   unsigned with_wrong_id = 0;
   unsigned with_noise = 0;  ///< in front of them
   unsigned crc_errors = 0;  ///< it says that the request was damaged
-  unsigned until_late = 0;  ///< counts answers: at 1, the answer is 50 ms late
+  unsigned until_late = 0;  ///< counts answers: at 1, the answer is late
+  std::uint32_t late_us = 50'000;
   std::uint32_t delay_us = 500;
 
   /// A goal that the servo accepted, and whether it moves there.

@@ -7,6 +7,7 @@
 #include "host/robot/object_word.hpp"
 #include "host/transport/open_transport.hpp"
 #include "shared/canopen/object.hpp"
+#include "tools/proleg/bus_search.hpp"
 #include "tools/proleg/interrupt.hpp"
 
 namespace proleg::tools {
@@ -34,7 +35,8 @@ class BusAccess::Implementation {
 };
 
 BusAccess::BusAccess(const BusOptions& options)
-    : implementation_(std::make_unique<Implementation>(host::parse_bus_address(options.bus))) {}
+    : implementation_(
+          std::make_unique<Implementation>(host::parse_bus_address(options.is_given() ? options.bus : find_bus()))) {}
 BusAccess::~BusAccess() = default;
 
 host::BusConnection& BusAccess::connection() { return implementation_->connection(); }

@@ -17,6 +17,9 @@ namespace proleg::tools {
 
 struct BusOptions {
   std::string bus;
+
+  /// Whether the user has named a bus.
+  [[nodiscard]] bool is_given() const { return bus != "auto"; }
 };
 
 /// Adds --bus. Without it the environment variable PROLEG_BUS counts, else `auto`.

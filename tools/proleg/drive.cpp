@@ -17,6 +17,7 @@
 #include "shared/kernel/fingerprint.hpp"
 #include "sim/scenario/master_input.hpp"
 #include "tools/proleg/bus_access.hpp"
+#include "tools/proleg/drive_plugin.hpp"
 #include "tools/proleg/gait_check.hpp"
 #include "tools/proleg/input_lines.hpp"
 #include "tools/proleg/live_changes.hpp"
@@ -256,6 +257,9 @@ int drive(const DriveOptions& options) {
   print_warnings("proleg drive", run.scenario);
   if (options.verbose) {
     print_setup(run.scenario);
+  }
+  if (run.scenario.robot_control && !options.bus.is_given()) {
+    return drive_by_plugin(options, run);
   }
   check_outputs(planned_recording(options));
   BusAccess bus(options.bus);

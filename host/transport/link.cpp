@@ -32,8 +32,9 @@ class DescriptorLink final : public Link {
 std::string Link::connect_failure(int error) const { return system_text(error); }
 
 std::string Link::end_text(int error) {
-  return error == 0 ? "the other end has closed the connection"
-                    : std::string("the connection has ended: ") + system_text(error);
+  return error == 0 || error == EPIPE || error == ECONNRESET
+             ? "the other end has closed the connection"
+             : std::string("the connection has ended: ") + system_text(error);
 }
 
 std::unique_ptr<Link> make_descriptor_link(int descriptor) { return std::make_unique<DescriptorLink>(descriptor); }

@@ -30,11 +30,14 @@ PseudoTerminal::PseudoTerminal(boost::asio::io_context& context, std::function<v
     fail();
   }
   name_ = name.data();
+  prepare();
   client_gone();
 }
 
 void PseudoTerminal::client_gone() {
-  prepare();
+  if (!has_client()) {  // the next one may be there already
+    prepare();
+  }
   timer_.set(steady_now());
 }
 
@@ -49,11 +52,14 @@ void PseudoTerminal::prepare() const {
   }
 }
 
-/// The kernel has no event for a client that opens the terminal: POLLHUP goes away.
-void PseudoTerminal::look() {
+bool PseudoTerminal::has_client() const {
   pollfd request{master_.number(), POLLIN, 0};
-  const bool has_client = poll(&request, 1, 0) >= 0 && (request.revents & POLLHUP) == 0;
-  if (!has_client) {
+  return poll(&request, 1, 0) >= 0 && (request.revents & POLLHUP) == 0;
+}
+
+/// The kernel has no event for a client that opens the terminal.
+void PseudoTerminal::look() {
+  if (!has_client()) {
     timer_.set(steady_now() + look_period);
     return;
   }

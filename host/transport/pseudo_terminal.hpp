@@ -22,6 +22,7 @@ class PseudoTerminal {
   void client_gone();
 
  private:
+  [[nodiscard]] bool has_client() const;
   void prepare() const;
   void look();
 

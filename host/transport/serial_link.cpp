@@ -96,7 +96,7 @@ class SerialLink final : public Link {
     cfmakeraw(&settings);
     settings.c_cflag |= CLOCAL | CREAD;
     settings.c_cflag &= ~static_cast<tcflag_t>(CRTSCTS | CSTOPB);
-    settings.c_cc[VMIN] = 1;  // with 0 a read without bytes looks like the end of the line
+    settings.c_cc[VMIN] = 1;  // with 0, no characters look like the end of the line
     settings.c_cc[VTIME] = 0;
     const speed_t speed = serial_speed(baud_).value_or(B1000000);
     cfsetispeed(&settings, speed);

@@ -46,6 +46,7 @@ std::optional<speed_t> serial_speed(unsigned baud) {
 
 std::string serial_speeds_text() {
   std::vector<std::string> texts;
+  texts.reserve(speeds.size());
   for (const Speed& speed : speeds) {
     texts.push_back(std::to_string(speed.baud));
   }

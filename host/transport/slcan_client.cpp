@@ -11,7 +11,7 @@ constexpr std::size_t max_line = 200;        // longer than any answer to V that
 constexpr std::size_t sample_length = 40;    // characters in an error
 constexpr std::size_t output_ahead = 1'024;  // characters that are made before the line takes them
 constexpr unsigned max_refusals = 2;
-constexpr Microseconds microseconds_per_millisecond = 1'000;
+constexpr double microseconds_per_second = 1e6;
 
 bool is_printable(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char character) { return character >= ' ' && character <= '~'; });
@@ -47,11 +47,13 @@ void SlcanClient::start(Microseconds now) {
   start_deadline_ = now + settings_.start_timeout;
   line_.clear();
   rubbish_.clear();
+  output_.clear();
+  has_begun_line_ = false;
   begin_round(now);
 }
 
 void SlcanClient::begin_round(Microseconds now) {
-  output_.clear();
+  drop_output();
   adapter_.clear();
   sample_.clear();
   is_acknowledging_ = false;
@@ -296,7 +298,7 @@ std::string SlcanClient::start_failure() const {
     return "received " + printable_bytes(sample_) + expected;
   }
   return "no answer to C, V, S8 and O within " +
-         number_text(static_cast<double>(settings_.start_timeout / microseconds_per_millisecond) / 1e3) +
+         number_text(static_cast<double>(settings_.start_timeout) / microseconds_per_second) +
          " s, and no frame from the bus";
 }
 
@@ -312,6 +314,9 @@ void SlcanClient::drop_frames() {
   queue_.clear();
   pending_.clear();
 }
+
+/// The rest of a line that was begun stays, since the next line would be added to it.
+void SlcanClient::drop_output() { output_.erase(has_begun_line_ ? output_.find(slcan_end) + 1 : 0); }
 
 bool SlcanClient::send(const CanFrame& frame) {
   if (state_ != State::open || settings_.is_listen_only || queue_.size() >= settings_.max_queue) {
@@ -348,6 +353,7 @@ std::string SlcanClient::take(Microseconds now, std::size_t max_characters) {
   fill_output(now);
   std::string taken = output_.substr(0, max_characters);
   output_.erase(0, taken.size());
+  has_begun_line_ = taken.empty() ? has_begun_line_ : taken.back() != slcan_end;
   return taken;
 }
 
@@ -389,7 +395,9 @@ void SlcanClient::ask_for_a_sign(Microseconds now) {
 
 void SlcanClient::stop() {
   drop_frames();
-  output_ = std::string("C") + slcan_end;
+  drop_output();
+  output_ += 'C';
+  output_ += slcan_end;
   state_ = State::idle;
   sign_deadline_ = never;
 }

@@ -91,6 +91,7 @@ class SlcanClient {
   void ask_for_a_sign(Microseconds now);
   void fill_output(Microseconds now);
   void drop_frames();
+  void drop_output();
   void fail(const std::string& reason);
   [[nodiscard]] std::string start_failure() const;
 
@@ -104,6 +105,7 @@ class SlcanClient {
 
   std::string line_;  ///< received so far
   std::string output_;
+  bool has_begun_line_ = false;  ///< a part of a line was taken
   std::deque<CanFrame> queue_;
   std::deque<CanFrame> pending_;  ///< written, not confirmed
 

@@ -27,7 +27,7 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
   ~SlcanTransport() override {
     if (stream_ && client_.state() != SlcanClient::State::idle) {
       client_.stop();
-      stream_->write_last(client_.take(now(), 16));
+      stream_->write_last(client_.take(now(), 100));
     }
   }
 

@@ -2,8 +2,8 @@
 // goes; "fail" ends with status 2 at once; "die" ends by a signal when the first frame comes; "stay" ignores SIGTERM
 // and the end of the client.
 
-#include <signal.h>
 #include <unistd.h>
+#include <csignal>
 
 #include <cstdio>
 #include <string>

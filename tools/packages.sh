@@ -17,6 +17,7 @@ firmware_packages=(gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib binutils-arm
 test_packages=(
   clang libclang-rt-14-dev clang-format clang-tidy libgtest-dev
   can-utils tshark  # independent readers of bus logs
+  python3-can python3-serial  # an independent program that uses slcan adapters
   gdb-multiarch     # a debugger for the virtual module
   strace            # shows what a test reads
   qemu-system-arm   # another model of the CPU, to compare with

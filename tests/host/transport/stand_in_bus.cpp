@@ -1,6 +1,7 @@
 // Stands in for proleg-bus in tests of `sim:`: stand_in_bus FILE --fd 3. FILE: "serve" carries frames until the client
-// goes; "fail" ends with status 2 at once; "die" ends by a signal when the first frame comes; "stay" ignores SIGTERM
-// and the end of the client.
+// goes; "offer" does so for clients of a pseudo terminal and a TCP port, whose names it prints, and gives each frame to
+// the others; "fail" ends with status 2 at once; "die" ends by a signal when the first frame comes; "stay" ignores
+// SIGTERM and the end of the client.
 
 #include <unistd.h>
 #include <csignal>
@@ -20,11 +21,12 @@ class Bus final : public BusServerListener {
   Bus(boost::asio::io_context& context, std::string behaviour)
       : context_(context), behaviour_(std::move(behaviour)), server(context, *this) {}
 
-  [[nodiscard]] bool frame_from_client(BusClient /*client*/, const CanFrame& frame) override {
+  [[nodiscard]] bool frame_from_client(BusClient client, const CanFrame& frame) override {
     if (behaviour_ == "die") {
       raise(SIGKILL);
     }
-    server.broadcast(steady_now(), frame);  // also to the client, which so sees its frames again
+    // With --fd there is one client, which sees its own frames again.
+    server.broadcast(steady_now(), frame, behaviour_ == "offer" ? client : no_client);
     return true;
   }
   void descriptor_closed() override {
@@ -53,7 +55,13 @@ int main(int argc, char** argv) {
   alarm(120);  // in case the test has been killed
   boost::asio::io_context context;
   Bus bus(context, argv[1]);
-  bus.server.add_descriptor(std::stoi(argv[3]));
+  if (std::string(argv[1]) == "offer") {
+    const std::string name = bus.server.add_pseudo_terminal();
+    std::printf("%s %u\n", name.c_str(), unsigned{bus.server.add_tcp("127.0.0.1", 0)});
+    std::fflush(stdout);
+  } else {
+    bus.server.add_descriptor(std::stoi(argv[3]));
+  }
   host::run_until(context, never, false);
   return 0;
 }

@@ -111,9 +111,17 @@ class CanTransport final : public Transport {
         }
         return;
       }
-      statistics_.dropped_in = dropped_before_ + socket_->dropped();
+      count_drops(dropped_before_ + socket_->dropped());
       handle(*received);
     }
+  }
+  void count_drops(std::uint64_t dropped) {
+    if (dropped != statistics_.dropped_in) {
+      // Confirmations can be among the frames that were dropped.
+      statistics_.unconfirmed += unconfirmed_.size();
+      unconfirmed_.clear();
+    }
+    statistics_.dropped_in = dropped;
   }
   void handle(const CanSocket::Received& received) {
     if ((received.frame.can_id & CAN_ERR_FLAG) != 0) {

@@ -52,6 +52,12 @@ TEST_F(BusServerTest, CarriesBurstsInBothDirectionsOverEachKindOfLine) {
   EXPECT_EQ(server.totals().frames_dropped, 0U);
 }
 
+TEST_F(BusServerTest, IsFoundAtAnyAddressOfAHost) {
+  // localhost can be ::1 first, where the server does not listen.
+  const auto transport = open("tcp:localhost:" + std::to_string(server.add_tcp("127.0.0.1", 0)), first_log);
+  EXPECT_TRUE(transport->state().is_connected);
+}
+
 TEST_F(BusServerTest, GivesAFrameToAllOtherClients) {
   const std::string word = tcp_word();
   Log third_log;

@@ -1,0 +1,216 @@
+#!/usr/bin/env python3
+"""A user with modules on a bus, here those of 'proleg bus': finds them, sets them, drives them, and makes mistakes.
+
+Usage: robot_on_the_table_test.py SOURCE_FOLDER PROGRAM_FOLDER
+"""
+
+import json
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+LONGEST = 120  # seconds that a command may take on a busy computer
+SCENARIO = "sim/scenarios/travelling_wave/uniform.simulation.xml"
+
+
+class Bus:
+    """'proleg bus', until the end of a test."""
+
+    def __init__(self, *options, scenario=SCENARIO):
+        self.process = subprocess.Popen([PROGRAMS / "proleg-bus", SOURCE / scenario, "--pty", "--tcp", "0", *options],
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.tcp = self.find(r"--bus (tcp:\S+)")
+        self.pty = self.find(r"--bus (serial:\S+)")
+
+    def find(self, pattern):
+        line = self.process.stdout.readline()
+        found = re.search(pattern, line)
+        if not found:
+            raise AssertionError(f"proleg bus printed {line!r} {self.process.stderr.read()!r}")
+        return found.group(1)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGINT)
+        self.process.communicate(timeout=LONGEST)
+
+
+def proleg(name, *arguments, text=""):
+    return subprocess.run([PROGRAMS / f"proleg-{name}", *arguments], input=text, capture_output=True, text=True,
+                          timeout=LONGEST)
+
+
+def start_drive(bus, *options):
+    return subprocess.Popen([PROGRAMS / "proleg-drive", SOURCE / SCENARIO, "--bus", bus, "--json", *options],
+                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def states(bus):
+    """The states of the drives, by node."""
+    return {node["node"]: node["drive"] for node in json.loads(proleg("scan", "--bus", bus, "--json").stdout)["nodes"]}
+
+
+def wait_for_drives(bus, state):
+    for _ in range(LONGEST):
+        found = states(bus)
+        if len(found) == 5 and all(one == state for one in found.values()):
+            return
+        time.sleep(0.2)
+    raise AssertionError(f"the drives are {found}, not {state}")
+
+
+def simulated(*options):
+    return json.loads(proleg("simulate", SOURCE / SCENARIO, "--json", *options).stdout)
+
+
+class RobotOnTheTable(unittest.TestCase):
+    def test_any_program_reaches_the_modules(self):
+        """The examples of docs/protocol.md, by hand over TCP."""
+        with Bus() as bus:
+            host, port = bus.tcp.removeprefix("tcp:").split(":")
+            with socket.create_connection((host, int(port)), timeout=LONGEST) as line:
+                line.sendall(b"C\rS8\rO\r")
+                received = b""
+                for _ in range(LONGEST):
+                    line.sendall(b"t60384000100000000000\r")
+                    line.settimeout(1)
+                    try:
+                        received += line.recv(4096)
+                    except TimeoutError:
+                        continue
+                    if b"t58384300100092010200\r" in received:
+                        return
+                self.fail(received)
+
+    def test_scan_info_get_set_and_nmt(self):
+        with Bus() as bus:
+            scan = json.loads(proleg("scan", "--bus", bus.pty, "--json").stdout)
+            self.assertEqual([node["node"] for node in scan["nodes"]], [1, 2, 3, 4, 5])
+            self.assertTrue(all(node["joint_module"] for node in scan["nodes"]))
+            self.assertIn("Proleg joint module", proleg("info", "3", "--bus", bus.tcp).stdout)
+            self.assertEqual(proleg("set", "2-4", "0x6080", "300", "--bus", bus.tcp).returncode, 0)
+            values = json.loads(proleg("get", "all", "Max motor speed", "0x1018:1", "--bus", bus.pty, "--json").stdout)
+            speeds = [one["raw"] for one in values["values"] if one["object"] == "0x6080"]
+            self.assertEqual(speeds, [720, 300, 300, 300, 720])
+            self.assertIn("node 3 boots", proleg("nmt", "reset-node", "3", "--bus", bus.tcp).stdout)
+            speeds = json.loads(proleg("get", "2,3", "0x6080", "--bus", bus.tcp, "--json").stdout)["values"]
+            self.assertEqual([one["raw"] for one in speeds], [300, 720], "the reset has restored it")
+
+    def test_drive_computes_what_simulate_computes(self):
+        with Bus() as bus:
+            for address in (bus.tcp, bus.pty):
+                result = json.loads(start_drive(address, "--seconds", "2", "--set", "amplitude=20@1s").communicate(
+                    timeout=LONGEST)[0])
+                self.assertEqual(result["differences"], 0)
+                self.assertEqual(result["frames_compared"], 1000)
+                expected = simulated("--seconds", "2", "--set", "amplitude=20@1s")
+                self.assertEqual(result["setpoint_hash"], expected["setpoint_hash"])
+                self.assertEqual(result["servo_hash"], expected["servo_hash"])
+                self.assertEqual(set(states(bus.tcp).values()), {"no power"})
+
+    def test_changes_are_typed_while_it_moves_and_the_recording_has_them(self):
+        with Bus() as bus, tempfile.TemporaryDirectory() as folder:
+            recording = Path(folder) / "driven.proleg"
+            drive = subprocess.Popen([PROGRAMS / "proleg-drive", SOURCE / SCENARIO, "--bus", bus.tcp, "--json", "--record",
+                                      recording], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                     text=True)
+            wait_for_drives(bus.pty, "operation enabled")
+            drive.stdin.write("amplitude=20\nfrequency=fast\namplitude:J2=10@400\n")
+            drive.stdin.flush()
+            time.sleep(5)
+            output, errors = drive.communicate("stop\n", timeout=LONGEST)
+            result = json.loads(output)
+            self.assertEqual(drive.returncode, 0, errors)
+            self.assertEqual(result["differences"], 0)
+            self.assertEqual(result["dropped_changes"], 0)
+            self.assertIn("found 'fast' for parameter 'frequency'", errors)
+            replay = proleg("replay", recording)
+            self.assertEqual(replay.returncode, 0, replay.stderr)
+            self.assertIn(result["setpoint_hash"], replay.stdout)
+            plain = simulated("--seconds", f"{result['driven_s']:.2f}")
+            self.assertNotEqual(result["setpoint_hash"], plain["setpoint_hash"], "the changes took effect")
+
+    def test_only_one_host_moves_the_robot(self):
+        with Bus() as bus:
+            first = start_drive(bus.tcp, "--seconds", "6")
+            wait_for_drives(bus.pty, "operation enabled")
+            second = proleg("drive", SOURCE / SCENARIO, "--bus", bus.pty)
+            self.assertEqual(second.returncode, 1)
+            self.assertIn("another host", second.stderr)
+            self.assertEqual(proleg("nmt", "stop", "all", "--bus", bus.pty).returncode, 1)
+            result = json.loads(first.communicate(timeout=LONGEST)[0])
+            self.assertEqual(first.returncode, 0)
+            self.assertEqual(result["setpoint_hash"], simulated("--seconds", "6")["setpoint_hash"])
+
+    def test_control_c_takes_the_power_after_a_ramp(self):
+        with Bus() as bus:
+            drive = start_drive(bus.tcp)
+            wait_for_drives(bus.pty, "operation enabled")
+            drive.send_signal(signal.SIGINT)
+            result = json.loads(drive.communicate(timeout=LONGEST)[0])
+            self.assertEqual(drive.returncode, 0)
+            self.assertEqual(result["differences"], 0)
+            self.assertEqual(set(states(bus.pty).values()), {"no power"})
+
+    def test_a_killed_host_leaves_a_robot_that_stops_and_the_next_host_takes_it(self):
+        with Bus() as bus:
+            drive = start_drive(bus.tcp)
+            wait_for_drives(bus.pty, "operation enabled")
+            drive.kill()
+            drive.communicate(timeout=LONGEST)
+            wait_for_drives(bus.pty, "quick stop")
+            result = json.loads(start_drive(bus.pty, "--seconds", "1").communicate(timeout=LONGEST)[0])
+            self.assertEqual(result["differences"], 0)
+
+    def test_a_robot_that_is_not_the_one_of_the_file_does_not_move(self):
+        with Bus("--fresh", "3") as bus:
+            drive = proleg("drive", SOURCE / SCENARIO, "--bus", bus.tcp)
+            self.assertEqual(drive.returncode, 1)
+            self.assertIn("node 3 (J3): a module is missing", drive.stderr)
+            self.assertEqual(set(states(bus.tcp).values()), {"no power"})
+            self.assertIn("without a node id", proleg("scan", "--bus", bus.tcp).stdout)
+
+    def test_a_simulated_bus_of_ones_own(self):
+        scan = proleg("scan", "--bus", f"sim:{SOURCE / SCENARIO}")
+        self.assertEqual(scan.returncode, 0, scan.stderr)
+        self.assertIn("5 nodes", scan.stdout)
+
+    def test_bad_input_is_one_line_and_the_right_status(self):
+        scenario = SOURCE / SCENARIO
+        closed = socket.socket()
+        closed.bind(("127.0.0.1", 0))  # nobody listens
+        port = closed.getsockname()[1]
+        for status, words, expected in (
+            (2, ("scan", "--bus", "nonsense:x"), "nonsense:x"),
+            (2, ("get", "3", "nonsense", "--bus", "can0"), "no object of this name"),
+            (2, ("get", "300", "0x6064", "--bus", "can0"), "node ids from 1 to 126"),
+            (2, ("set", "3", "0x6080", "5", "--bus", "can0"), "90 to 10000"),
+            (2, ("nmt", "fly", "3", "--bus", "can0"), "one of start"),
+            (2, ("drive", scenario, "--bus", "can0", "--set", "speed=1"), "unknown parameter"),
+            (2, ("drive", "missing.simulation.xml", "--bus", "can0"), "missing.simulation.xml"),
+            (2, ("bus", scenario), "no way to reach the robot"),
+            (2, ("bus", scenario, "--tcp", "x"), "--tcp"),
+            (1, ("scan", "--bus", "can77"), "can77"),
+            (1, ("scan", "--bus", "serial:/dev/missing"), "no such device"),
+            (1, ("scan", "--bus", f"tcp:127.0.0.1:{port}"), "tcp:127.0.0.1"),
+            (1, ("drive", scenario, "--bus", f"tcp:127.0.0.1:{port}"), "tcp:127.0.0.1"),
+        ):
+            result = proleg(*words)
+            self.assertEqual(result.returncode, status, (words, result.stderr))
+            self.assertEqual(len(result.stderr.splitlines()), 1, (words, result.stderr))
+            self.assertIn(expected, result.stderr, words)
+            self.assertEqual(result.stdout, "", words)
+
+
+if __name__ == "__main__":
+    SOURCE = Path(sys.argv[1])
+    PROGRAMS = Path(sys.argv[2])
+    unittest.main(argv=sys.argv[:1], verbosity=1)

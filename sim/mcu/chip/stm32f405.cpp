@@ -49,14 +49,15 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
         timer_2_(*this, 2),
         timer_3_(*this, 3),
         timer_5_(*this, 5),
-        usart_(*this, board),
-        dma_(*this, [this](std::uint32_t address, std::span<const std::uint8_t> bytes) { cpu_.write(address, bytes); }),
-        adc_(*this, board, &dma_),
+        dma_1_(*this, 1, memory()),
+        dma_2_(*this, 2, memory()),
+        usart_(*this, board, &dma_1_),
+        adc_(*this, board, &dma_2_),
         can_(*this, bus, [this](LocalTime time) { return oscillator_.when(time); }),
         pins_(*this, board, timer_2_) {
     flash_.set_brown_out_level(settings.brown_out_level);
-    peripherals_ = {&iwdg_,    &exti_,    &pwr_,   &flash_, &rcc_, &syscfg_, &timer_2_,
-                    &timer_3_, &timer_5_, &usart_, &dma_,   &adc_, &can_};
+    peripherals_ = {&iwdg_,    &exti_,    &pwr_,   &flash_, &rcc_,   &syscfg_, &timer_2_,
+                    &timer_3_, &timer_5_, &dma_1_, &dma_2_, &usart_, &adc_,    &can_};
     timer_3_.connect_trigger_output(adc_);
     for (const auto& port : pins_.ports()) {
       peripherals_.push_back(port.get());
@@ -211,8 +212,9 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   Timer timer_2_;
   Timer timer_3_;
   Timer timer_5_;
+  Dma dma_1_;
+  Dma dma_2_;
   Usart usart_;
-  Dma dma_;
   Adc adc_;
   BxCan can_;
   Pins pins_;
@@ -477,6 +479,12 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     }
   }
 
+  /// For DMA.
+  [[nodiscard]] Dma::Memory memory() {
+    return {[this](std::uint32_t address, std::span<std::uint8_t> bytes) { cpu_.read(address, bytes); },
+            [this](std::uint32_t address, std::span<const std::uint8_t> bytes) { cpu_.write(address, bytes); }};
+  }
+
   // FlashMemory.
   void read(std::uint32_t address, std::span<std::uint8_t> bytes) override { cpu_.read(address, bytes); }
   void write(std::uint32_t address, std::span<const std::uint8_t> bytes) override { cpu_.write(address, bytes); }
@@ -600,6 +608,16 @@ void Stm32f405::set_pll(bool locks) {
 }
 void Stm32f405::set_adc(bool converts) {
   implementation_->change_outside([this, converts] { implementation_->adc_.set_hanging(!converts); });
+}
+void Stm32f405::begin_serial_input(const SerialCharacter& character, BusTime bit) {
+  constexpr BusTime ns_per_us = 1'000;
+  implementation_->change_outside(
+      [&] { implementation_->usart_.begin_receive(character, (bit * local_time_per_us + ns_per_us / 2) / ns_per_us); });
+}
+void Stm32f405::set_serial_watch(SerialWatch watch) {
+  implementation_->usart_.watch_output([this, watch = std::move(watch)](LocalTime end, std::uint8_t byte) {
+    watch(implementation_->oscillator_.when(end), byte);
+  });
 }
 void Stm32f405::set_supply(std::uint32_t mv) { implementation_->set_supply(mv); }
 std::optional<LocalTime> Stm32f405::pulse_time(unsigned channel) const {

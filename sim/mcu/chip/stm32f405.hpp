@@ -18,6 +18,7 @@
 #include "sim/bus/bus.hpp"
 #include "sim/mcu/cpu/cpu.hpp"
 #include "sim/mcu/peripherals/peripheral.hpp"
+#include "sim/serial/serial_receiver.hpp"
 
 namespace proleg::sim {
 
@@ -74,6 +75,14 @@ class Stm32f405 {
   /// VDD, 3,300 from the start. Below the threshold of the brown-out reset (ChipSettings) or of the power-down reset
   /// the chip is held in reset; below the latter it loses its memory. The analogue supply stays.
   void set_supply(std::uint32_t mv);
+
+  /// A character begins at the input of USART2 now, with the sender's bit time in ns. The one before must be over. Lost
+  /// while the chip or its receiver is off.
+  void begin_serial_input(const SerialCharacter& character, BusTime bit);
+  /// Called with each byte that USART2 sends, and the true time at which its stop bit ends, beside
+  /// BoardSignals::serial_output().
+  using SerialWatch = std::function<void(BusTime time, std::uint8_t byte)>;
+  void set_serial_watch(SerialWatch watch);
 
   /// Length of the pulses at an output of TIM2 (1 to 4) that reaches its pin, as Timer::high_time(); nothing if there
   /// are none.

@@ -71,6 +71,11 @@ constexpr std::uint32_t ccr_vbate = 1U << 22U;
 constexpr std::uint32_t ccr_tsvrefe = 1U << 23U;
 constexpr std::uint32_t ccr_kept = 0x0083'0F00;
 
+// RM0090, table 43.
+constexpr unsigned dma_stream = 0;
+constexpr unsigned dma_channel = 0;
+constexpr std::uint32_t adc1_dr = 0x4001'204C;
+
 constexpr unsigned temperature_channel = 16;
 constexpr unsigned vrefint_channel = 17;
 constexpr unsigned vbat_channel = 18;
@@ -87,7 +92,17 @@ Adc::Adc(ChipServices& chip, BoardSignals& board, Dma* dma)
       board_(&board),
       dma_(dma),
       interrupt_(chip, interrupt_position) {
+  if (dma_ != nullptr) {
+    dma_->connect({dma_stream, dma_channel, Dma::Direction::from_peripheral, 2, adc1_dr}, *this);
+  }
   Adc::reset();
+}
+
+bool Adc::requests_dma() const { return (cr2_ & cr2_dma) != 0 && (sr_ & sr_eoc) != 0; }
+
+std::uint16_t Adc::dma_read() {
+  sr_ &= ~sr_eoc;
+  return static_cast<std::uint16_t>(dr_);
 }
 
 std::string Adc::register_name(std::uint32_t offset) const {
@@ -284,7 +299,8 @@ void Adc::finish_conversion() {
 void Adc::finish_regular(std::uint16_t code, bool has_more) {
   dr_ = code;
   if ((cr2_ & cr2_dma) != 0) {
-    sr_ = dma_->transfer(code) ? sr_ & ~sr_eoc : sr_ | sr_eoc;  // the transfer reads DR
+    sr_ |= sr_eoc;
+    dma_->serve(dma_stream);
   } else if (!has_more || (cr2_ & cr2_eocs) != 0) {
     sr_ |= sr_eoc;
   }

@@ -32,7 +32,7 @@ inline constexpr std::uint32_t vrefint_uv = 1'210'000;  ///< DS8626, embedded re
 
 /// A voltage is taken when advance(), or an access to a register, ends its conversion: whoever changes a voltage must
 /// call advance() before.
-class Adc final : public RegisterBlock, public TriggerInput {
+class Adc final : public RegisterBlock, public TriggerInput, private DmaPeripheral {
  public:
   static constexpr unsigned interrupt_position = 18;
   // DS8626, ADC characteristics.
@@ -40,7 +40,7 @@ class Adc final : public RegisterBlock, public TriggerInput {
   static constexpr LocalTime sensor_start = 10 * local_time_per_us;     ///< after TSVREFE
   static constexpr LocalTime sensor_sampling = 10 * local_time_per_us;  ///< of channels 16 and 17, at least
 
-  /// dma: takes the results of the regular group; without it DMA is rejected.
+  /// dma: DMA2, which takes the results of the regular group; without it DMA is rejected. It must outlive the ADC.
   Adc(ChipServices& chip, BoardSignals& board, Dma* dma = nullptr);
 
   /// "ADC1_CR2", "ADC_CCR", and "ADC2 at offset 0x4" for those that the board does not use.
@@ -64,6 +64,8 @@ class Adc final : public RegisterBlock, public TriggerInput {
  private:
   enum class Group : std::uint8_t { none, regular, injected };
 
+  [[nodiscard]] bool requests_dma() const override;
+  [[nodiscard]] std::uint16_t dma_read() override;
   void settle();
   void finish_conversions(LocalTime until);
   void finish_conversion();

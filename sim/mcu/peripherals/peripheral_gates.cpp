@@ -47,6 +47,7 @@ const PeripheralGates::Gate* PeripheralGates::gate_of(const Peripheral& peripher
       {0x4002'1800, ahb1, 6},   // GPIOG
       {0x4002'1C00, ahb1, 7},   // GPIOH
       {0x4002'2000, ahb1, 8},   // GPIOI
+      {0x4002'6000, ahb1, 21},  // DMA1
       {0x4002'6400, ahb1, 22},  // DMA2
       {0x4000'0000, apb1, 0},   // TIM2
       {0x4000'0400, apb1, 1},   // TIM3

@@ -1,5 +1,6 @@
 #include "sim/mcu/peripherals/usart.hpp"
 
+#include <algorithm>
 #include <string>
 
 namespace proleg::sim {
@@ -15,7 +16,9 @@ constexpr std::uint32_t gtpr = 0x18;
 constexpr RegisterName registers[] = {{sr, "SR"},   {dr, "DR"},   {brr, "BRR"},  {cr1, "CR1"},
                                       {cr2, "CR2"}, {cr3, "CR3"}, {gtpr, "GTPR"}};
 
+constexpr std::uint32_t sr_fe = 1U << 1U;
 constexpr std::uint32_t sr_ore = 1U << 3U;
+constexpr std::uint32_t sr_idle = 1U << 4U;
 constexpr std::uint32_t sr_rxne = 1U << 5U;
 constexpr std::uint32_t sr_tc = 1U << 6U;
 constexpr std::uint32_t sr_txe = 1U << 7U;
@@ -37,9 +40,17 @@ constexpr std::uint32_t cr1_bits = 0xBFFF;
 constexpr std::uint32_t cr2_rejected = 0x7840;  // LINEN, STOP, CLKEN, LBDIE
 constexpr std::uint32_t cr2_bits = 0x7F6F;
 constexpr std::uint32_t cr3_eie = 1U << 0U;
-constexpr std::uint32_t cr3_refused = 0xFFE;
+constexpr std::uint32_t cr3_dmar = 1U << 6U;
+constexpr std::uint32_t cr3_dmat = 1U << 7U;
+constexpr std::uint32_t cr3_refused = 0xF3E;
 
-constexpr unsigned bits_of_frame = 10;  // start bit, 8 data bits, stop bit
+/// Cleared by a read of SR and one of DR.
+constexpr std::uint32_t receiver_flags = sr_fe | sr_ore | sr_idle;
+
+// RM0090, table 42.
+constexpr unsigned dma_channel = 4;
+constexpr unsigned receive_stream = 5;
+constexpr unsigned transmit_stream = 6;
 
 /// Clocks of the bus in a bit: USARTDIV times 16, or times 8 (RM0090, 30.3.4). Nothing below a USARTDIV of 1.
 std::optional<std::uint32_t> clocks_of_bit(std::uint32_t divider, bool over8) {
@@ -49,12 +60,24 @@ std::optional<std::uint32_t> clocks_of_bit(std::uint32_t divider, bool over8) {
 
 }  // namespace
 
-Usart::Usart(ChipServices& chip, BoardSignals& board)
+Usart::Usart(ChipServices& chip, BoardSignals& board, Dma* dma)
     : RegisterBlock(chip, "USART2", 0x4000'4400, 0x400, registers),
       board_(&board),
+      dma_(dma),
       interrupt_(chip, interrupt_position) {
+  if (dma_ != nullptr) {
+    dma_->connect({receive_stream, dma_channel, Dma::Direction::from_peripheral, 1, base() + dr}, receive_request_);
+    dma_->connect({transmit_stream, dma_channel, Dma::Direction::to_peripheral, 1, base() + dr}, transmit_request_);
+  }
   Usart::reset();
 }
+
+bool Usart::TransmitRequest::requests_dma() const {
+  constexpr std::uint32_t sending = cr1_ue | cr1_te;
+  return (port.cr3_ & cr3_dmat) != 0 && (port.sr_ & sr_txe) != 0 && (port.cr1_ & sending) == sending;
+}
+
+bool Usart::ReceiveRequest::requests_dma() const { return (port.cr3_ & cr3_dmar) != 0 && (port.sr_ & sr_rxne) != 0; }
 
 void Usart::reset() {
   sr_ = sr_txe | sr_tc;
@@ -67,8 +90,8 @@ void Usart::reset() {
   waiting_.reset();
   shifting_.reset();
   frame_end_ = never_on_chip;
-  tc_was_read_ = false;
-  errors_were_read_ = false;
+  receiver_.reset();
+  flags_read_ = 0;
   interrupt_.set(false);
 }
 
@@ -77,17 +100,28 @@ std::optional<LocalTime> Usart::bit_time() const {
   return clocks ? std::optional(*clocks * chip().clocks().apb1) : std::nullopt;
 }
 
-LocalTime Usart::frame_time() const { return bits_of_frame * *bit_time(); }
+LocalTime Usart::frame_time() const { return serial_character_bits * *bit_time(); }
 
-LocalTime Usart::next_event() const { return frame_end_; }
+LocalTime Usart::next_event() const {
+  return receives() ? std::min(frame_end_, receiver_.next_event(*bit_time())) : frame_end_;
+}
 
 void Usart::advance() { settle(); }
 
-bool Usart::is_idle() const { return !sends() && (cr1_ & (cr1_ue | cr1_re)) != (cr1_ue | cr1_re); }
+bool Usart::is_idle() const { return !sends() && !receives(); }
+
+bool Usart::receives() const { return (cr1_ & (cr1_ue | cr1_re)) == (cr1_ue | cr1_re); }
 
 void Usart::settle() {
+  settle_transmitter();
+  settle_receiver();
+  update_interrupt();
+}
+
+void Usart::settle_transmitter() {
   while (frame_end_ <= chip().now()) {
     const std::optional<std::uint8_t> sent = shifting_;
+    const LocalTime end = frame_end_;
     shifting_ = waiting_;
     waiting_.reset();
     if (shifting_) {
@@ -99,30 +133,61 @@ void Usart::settle() {
     }
     if (sent) {
       board_->serial_output(number, *sent);
+      if (output_watch_) {
+        output_watch_(end, *sent);
+      }
     }
+    serve_dma();
   }
-  update_interrupt();
 }
 
-void Usart::receive(std::uint8_t byte) {
-  settle();
-  if ((cr1_ & cr1_ue) == 0 || (cr1_ & cr1_re) == 0) {
+void Usart::settle_receiver() {
+  if (!receives()) {
     return;
   }
+  while (const auto event = receiver_.take(chip().now(), *bit_time())) {
+    if (event->kind == SerialReceiver::Kind::idle) {
+      sr_ |= sr_idle;
+    } else {
+      take_character(event->character);
+    }
+  }
+}
+
+void Usart::take_character(const SerialCharacter& character) {
   if ((sr_ & sr_rxne) != 0) {
     sr_ |= sr_ore;  // the new byte is lost
-  } else {
-    received_ = byte;
-    sr_ |= sr_rxne;
+    return;
   }
-  update_interrupt();
+  received_ = character.byte;
+  sr_ |= sr_rxne | (character.has_stop_bit ? 0U : sr_fe);
+  serve_dma();
+}
+
+void Usart::serve_dma() {
+  if (dma_ != nullptr) {
+    dma_->serve(receive_stream);
+    dma_->serve(transmit_stream);
+  }
+}
+
+void Usart::begin_receive(const SerialCharacter& character, LocalTime bit) {
+  settle();
+  if (receives()) {
+    receiver_.begin(chip().now(), character, bit);
+    chip().reschedule();
+  }
 }
 
 void Usart::update_interrupt() {
   const bool transmit =
       ((sr_ & sr_txe) != 0 && (cr1_ & cr1_txeie) != 0) || ((sr_ & sr_tc) != 0 && (cr1_ & cr1_tcie) != 0);
-  const bool receive = (sr_ & (sr_rxne | sr_ore)) != 0 && (cr1_ & cr1_rxneie) != 0;
-  interrupt_.set(transmit || receive);
+  const bool receive = ((sr_ & (sr_rxne | sr_ore)) != 0 && (cr1_ & cr1_rxneie) != 0) ||
+                       ((sr_ & sr_idle) != 0 && (cr1_ & cr1_idleie) != 0);
+  // EIE acts with DMA only (RM0090, 30.6.6).
+  constexpr std::uint32_t reported = cr3_eie | cr3_dmar;
+  const bool error = (sr_ & (sr_fe | sr_ore)) != 0 && (cr3_ & reported) == reported;
+  interrupt_.set(transmit || receive || error);
 }
 
 void Usart::clocks_change(const Clocks& next) {
@@ -136,6 +201,7 @@ void Usart::clocks_fail(const Clocks& /*next*/) {
   settle();
   shifting_.reset();
   waiting_.reset();
+  receiver_.reset();
   frame_end_ = never_on_chip;
 }
 
@@ -143,14 +209,10 @@ std::uint32_t Usart::read(std::uint32_t offset) {
   settle();
   switch (offset) {
     case sr:
-      tc_was_read_ = tc_was_read_ || (sr_ & sr_tc) != 0;
-      errors_were_read_ = errors_were_read_ || (sr_ & sr_ore) != 0;
+      flags_read_ |= sr_ & (sr_tc | receiver_flags);
       return sr_;
     case dr:
-      sr_ &= ~(sr_rxne | (errors_were_read_ ? sr_ore : 0));
-      errors_were_read_ = false;
-      update_interrupt();
-      return received_;
+      return take_data();
     case brr:
       return brr_;
     case cr1:
@@ -186,8 +248,7 @@ void Usart::write(std::uint32_t offset, std::uint32_t value) {
       cr2_ = value & cr2_bits;
       break;
     case cr3:
-      reject_bits(offset, value, cr3_refused, "DMA, flow control, half duplex, IrDA and smartcards are not modelled");
-      cr3_ = value & cr3_eie;
+      write_cr3(value);
       break;
     case gtpr:
       gtpr_ = value & 0xFFFFU;
@@ -220,7 +281,6 @@ void Usart::write_brr(std::uint32_t value) {
 
 void Usart::write_cr1(std::uint32_t value) {
   reject_bits(cr1, value, cr1_sbk | cr1_rwu, "break and mute mode are not modelled");
-  reject_bits(cr1, value, cr1_idleie, "idle line detection is not modelled");
   reject_bits(cr1, value, cr1_pce | cr1_m, "only 8 data bits without parity are modelled");
   const std::uint32_t next = value & cr1_bits;
   constexpr std::uint32_t sending = cr1_ue | cr1_te;
@@ -238,6 +298,19 @@ void Usart::write_cr1(std::uint32_t value) {
     shifting_.reset();
     frame_end_ = chip().now() + frame_time();
   }
+  if (!receives()) {
+    receiver_.reset();
+  }
+  serve_dma();
+}
+
+void Usart::write_cr3(std::uint32_t value) {
+  reject_bits(cr3, value, cr3_refused, "flow control, half duplex, IrDA and smartcards are not modelled");
+  if (dma_ == nullptr) {
+    reject_bits(cr3, value, cr3_dmar | cr3_dmat, "DMA is not modelled here");
+  }
+  cr3_ = value & (cr3_eie | cr3_dmar | cr3_dmat);
+  serve_dma();
 }
 
 void Usart::write_data(std::uint32_t value) {
@@ -245,18 +318,27 @@ void Usart::write_data(std::uint32_t value) {
   if ((cr1_ & sending) != sending) {
     reject_write(dr, value, "UE or TE is off");
   }
-  const auto byte = static_cast<std::uint8_t>(value);
-  if (tc_was_read_) {
-    sr_ &= ~sr_tc;
-    tc_was_read_ = false;
-  }
+  put_data(static_cast<std::uint8_t>(value));
+}
+
+void Usart::put_data(std::uint8_t byte) {
+  sr_ &= ~(flags_read_ & sr_tc);
+  flags_read_ &= ~sr_tc;
   if (sends()) {
     waiting_ = byte;  // replaces one that waits
     sr_ &= ~sr_txe;
   } else {
     shifting_ = byte;
     frame_end_ = chip().now() + frame_time();
+    chip().reschedule();
   }
+}
+
+std::uint8_t Usart::take_data() {
+  sr_ &= ~(sr_rxne | (flags_read_ & receiver_flags));
+  flags_read_ &= sr_tc;
+  update_interrupt();
+  return received_;
 }
 
 }  // namespace proleg::sim

@@ -1,11 +1,15 @@
 #pragma once
 
-// USART2 (RM0090, section 30): asynchronous, 8 data bits, no parity, one stop bit.
+// USART2 (RM0090, section 30): asynchronous, 8 data bits, no parity, one stop bit; with DMA in both directions, idle
+// line detection and framing errors. The noise flag is never set.
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
+#include "sim/mcu/peripherals/dma.hpp"
 #include "sim/mcu/peripherals/register_block.hpp"
+#include "sim/serial/serial_receiver.hpp"
 
 namespace proleg::sim {
 
@@ -14,7 +18,8 @@ class Usart final : public RegisterBlock {
   static constexpr unsigned number = 2;
   static constexpr unsigned interrupt_position = 38;
 
-  Usart(ChipServices& chip, BoardSignals& board);
+  /// dma: DMA1, which must outlive the USART; without it DMA is rejected.
+  Usart(ChipServices& chip, BoardSignals& board, Dma* dma = nullptr);
 
   [[nodiscard]] std::uint32_t read(std::uint32_t offset) override;
   void write(std::uint32_t offset, std::uint32_t value) override;
@@ -25,22 +30,51 @@ class Usart final : public RegisterBlock {
   void clocks_fail(const Clocks& next) override;
   [[nodiscard]] bool is_idle() const override;
 
-  /// A byte has arrived, at the end of its stop bit, which is now. Lost while the receiver is off.
-  void receive(std::uint8_t byte);
+  /// A character begins now on the line to the receiver, with the sender's bit time. Lost while the receiver is off.
+  void begin_receive(const SerialCharacter& character, LocalTime bit);
+  /// Called with each byte that is sent, and the end of its stop bit, beside BoardSignals::serial_output().
+  using OutputWatch = std::function<void(LocalTime end, std::uint8_t byte)>;
+  void watch_output(OutputWatch watch) { output_watch_ = std::move(watch); }
   /// Local time of a bit; nothing while BRR holds no baud rate.
   [[nodiscard]] std::optional<LocalTime> bit_time() const;
 
  private:
+  /// The requests of the transmitter and of the receiver.
+  struct TransmitRequest final : DmaPeripheral {
+    explicit TransmitRequest(Usart& its_port) : port(its_port) {}
+    [[nodiscard]] bool requests_dma() const override;
+    void dma_write(std::uint16_t data) override { port.put_data(static_cast<std::uint8_t>(data)); }
+    Usart& port;
+  };
+  struct ReceiveRequest final : DmaPeripheral {
+    explicit ReceiveRequest(Usart& its_port) : port(its_port) {}
+    [[nodiscard]] bool requests_dma() const override;
+    [[nodiscard]] std::uint16_t dma_read() override { return port.take_data(); }
+    Usart& port;
+  };
+
   void settle();
+  void settle_transmitter();
+  void settle_receiver();
+  void take_character(const SerialCharacter& character);
+  void serve_dma();
+  void put_data(std::uint8_t byte);
+  [[nodiscard]] std::uint8_t take_data();
+  [[nodiscard]] bool receives() const;
   [[nodiscard]] LocalTime frame_time() const;
   [[nodiscard]] bool sends() const { return frame_end_ != never_on_chip; }
   void write_cr1(std::uint32_t value);
   void check_divider(std::uint32_t divider, bool over8, std::uint32_t offset, std::uint32_t value) const;
   void write_brr(std::uint32_t value);
   void write_data(std::uint32_t value);
+  void write_cr3(std::uint32_t value);
   void update_interrupt();
 
   BoardSignals* board_;
+  Dma* dma_;
+  TransmitRequest transmit_request_{*this};
+  ReceiveRequest receive_request_{*this};
+  OutputWatch output_watch_;
   InterruptLine interrupt_;
   std::uint32_t sr_ = 0;
   std::uint32_t brr_ = 0;
@@ -52,9 +86,9 @@ class Usart final : public RegisterBlock {
   std::optional<std::uint8_t> waiting_;   ///< in the transmit data register
   std::optional<std::uint8_t> shifting_;  ///< nothing: an idle frame
   LocalTime frame_end_ = never_on_chip;
-  // Flags that a read of SR followed by an access to DR clears.
-  bool tc_was_read_ = false;
-  bool errors_were_read_ = false;
+  SerialReceiver receiver_;
+  /// Flags that a read of SR has found set: an access to DR clears them.
+  std::uint32_t flags_read_ = 0;
 };
 
 }  // namespace proleg::sim

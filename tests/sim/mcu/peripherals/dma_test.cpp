@@ -1,5 +1,6 @@
 #include "sim/mcu/peripherals/dma.hpp"
 
+#include <deque>
 #include <functional>
 #include <random>
 
@@ -21,8 +22,38 @@ constexpr std::uint32_t enabled = 0x2D01;  ///< EN, CIRC, MINC, 16 bits on both 
 constexpr std::uint32_t adc1_dr = 0x4001'204C;
 constexpr std::uint32_t buffer = 0x2000'1000;
 
+/// A peripheral with halfwords to fetch.
+struct Source final : DmaPeripheral {
+  [[nodiscard]] bool requests_dma() const override { return !pending.empty(); }
+  [[nodiscard]] std::uint16_t dma_read() override {
+    const std::uint16_t data = pending.front();
+    pending.pop_front();
+    return data;
+  }
+  std::deque<std::uint16_t> pending;
+};
+
+/// A peripheral with room for bytes.
+struct Sink final : DmaPeripheral {
+  [[nodiscard]] bool requests_dma() const override { return room > 0; }
+  void dma_write(std::uint16_t data) override {
+    --room;
+    taken.push_back(data);
+  }
+  unsigned room = 0;
+  std::vector<std::uint16_t> taken;
+};
+
 class DmaTest : public testing::Test {
  protected:
+  DmaTest() { dma.connect({0, 0, Dma::Direction::from_peripheral, 2, adc1_dr}, source); }
+
+  /// Whether the stream took it.
+  bool transfer(std::uint16_t data) {
+    source.pending.push_back(data);
+    dma.serve(0);
+    return source.pending.empty();
+  }
   void enable(std::uint32_t count) {
     dma.write(s0par, adc1_dr);
     dma.write(s0m0ar, buffer);
@@ -32,10 +63,11 @@ class DmaTest : public testing::Test {
 
   test::BenchChip chip;
   std::vector<std::pair<std::uint32_t, unsigned>> written;
-  Dma dma{chip, [this](std::uint32_t address, std::span<const std::uint8_t> bytes) {
-            ASSERT_EQ(bytes.size(), 2U);
-            written.emplace_back(address, bytes[0] | unsigned{bytes[1]} << 8U);
-          }};
+  Source source;
+  Dma dma{chip, 2, {{}, [this](std::uint32_t address, std::span<const std::uint8_t> bytes) {
+                      ASSERT_EQ(bytes.size(), 2U);
+                      written.emplace_back(address, bytes[0] | unsigned{bytes[1]} << 8U);
+                    }}};
 };
 
 TEST_F(DmaTest, ResetValuesAreThoseOfTheManual) {
@@ -45,11 +77,13 @@ TEST_F(DmaTest, ResetValuesAreThoseOfTheManual) {
 }
 
 TEST_F(DmaTest, WritesHalfwordsInACircleAndCountsDown) {
-  EXPECT_FALSE(dma.transfer(1)) << "off";
+  EXPECT_FALSE(transfer(0x111)) << "off: it waits";
+  EXPECT_TRUE(written.empty());
   enable(4);
-  std::vector<std::uint32_t> counts;
-  for (const std::uint16_t data : std::array<std::uint16_t, 5>{0x111, 0x222, 0x333, 0x444, 0x555}) {
-    EXPECT_TRUE(dma.transfer(data));
+  EXPECT_EQ(written.size(), 1U) << "at once";
+  std::vector<std::uint32_t> counts{dma.read(s0ndtr)};
+  for (const std::uint16_t data : std::array<std::uint16_t, 4>{0x222, 0x333, 0x444, 0x555}) {
+    EXPECT_TRUE(transfer(data));
     counts.push_back(dma.read(s0ndtr));
   }
   EXPECT_EQ(counts, (std::vector<std::uint32_t>{3, 2, 1, 4, 3}));
@@ -66,11 +100,83 @@ TEST_F(DmaTest, RejectsWhatItDoesNotModelByName) {
   EXPECT_EQ(test::rejection([&] { dma.write(s0ndtr, 5); }),
             "DMA2_S0NDTR = 0x5 at offset 0x14: the stream is enabled (RM0090, 10.5)");
   dma.write(s0cr, 0);
-  EXPECT_NE(test::rejection([&] { dma.write(s0cr, enabled | 1U << 4U); }), "") << "interrupt";
-  EXPECT_NE(test::rejection([&] { dma.write(s0cr, enabled | 1U << 25U); }), "") << "channel 1";
+  EXPECT_EQ(test::rejection([&] { dma.write(s0cr, enabled | 1U << 25U); }),
+            "DMA2_S0CR = 0x2002D01 at offset 0x10: channel 1 of stream 0 is not modelled");
+  EXPECT_NE(test::rejection([&] { dma.write(s0cr, enabled | 1U << 6U); }), "") << "to the peripheral";
+  EXPECT_NE(test::rejection([&] { dma.write(s0cr, enabled & ~(1U << 11U)); }), "") << "bytes from the peripheral";
   EXPECT_NE(test::rejection([&] { dma.write(0x28, 1); }), "") << "stream 1";
+  EXPECT_NE(test::rejection([&] { dma.write(0x24, 4); }), "") << "FIFO";
   dma.write(s0m0ar, 0x2002'0000);
   EXPECT_NE(test::rejection([&] { dma.write(s0cr, enabled); }), "") << "beyond the RAM";
+}
+
+// RM0090, 10.5.1 to 10.5.4 and table 61: the flags of stream 6 are bits 16 to 21 of HISR, its interrupt is position 17.
+TEST_F(DmaTest, SendsBytesOnceAndEndsWithItsInterrupt) {
+  constexpr std::uint32_t s6cr = 0xA0;
+  constexpr std::uint32_t once = 4U << 25U | 1U << 10U | 1U << 6U | 1U << 4U | 1U;  // channel 4, MINC, DIR, TCIE, EN
+  Sink sink;
+  Dma sender{chip,
+             1,
+             {[](std::uint32_t address, std::span<std::uint8_t> bytes) {
+                ASSERT_EQ(bytes.size(), 1U);
+                bytes[0] = static_cast<std::uint8_t>(address);
+              },
+              {}}};
+  sender.connect({6, 4, Dma::Direction::to_peripheral, 1, 0x4000'4404}, sink);
+  EXPECT_EQ(sender.base(), 0x4002'6000U);
+  sender.write(s6cr + 8, 0x4000'4404);
+  sender.write(s6cr + 12, 0x2000'0010);
+  sender.write(s6cr + 4, 3);
+  EXPECT_NE(test::rejection([&] { sender.write(s6cr, once | 1U << 8U); }), "") << "in a circle";
+  sink.room = 2;
+  sender.write(s6cr, once);
+  EXPECT_EQ(sink.taken, (std::vector<std::uint16_t>{0x10, 0x11})) << "as many as it has room for";
+  EXPECT_EQ(sender.read(s6cr + 4), 1U);
+  EXPECT_TRUE(chip.interrupts.empty());
+  sink.room = 5;
+  sender.serve(6);
+  EXPECT_EQ(sink.taken, (std::vector<std::uint16_t>{0x10, 0x11, 0x12}));
+  EXPECT_EQ(sender.read(s6cr) & 1U, 0U) << "off";
+  EXPECT_EQ(sender.read(0x04), 0x30U << 16U);
+  EXPECT_TRUE(chip.interrupts.contains(17));
+  sender.write(s6cr + 4, 3);
+  EXPECT_NE(test::rejection([&] { sender.write(s6cr, once); }), "") << "flags";
+  sender.write(0x0C, 0x30U << 16U);
+  EXPECT_FALSE(chip.interrupts.contains(17));
+  sender.write(s6cr, once);
+  EXPECT_EQ(sink.taken.size(), 6U);
+}
+
+// Stream 5: bits 6 to 11, position 16. HTIE and TCIE.
+TEST_F(DmaTest, InterruptsAtTheHalfAndTheEndOfACircle) {
+  Source bytes;
+  std::vector<std::uint32_t> addresses;
+  Dma receiver{chip, 1, {{}, [&](std::uint32_t address, std::span<const std::uint8_t> data) {
+                           ASSERT_EQ(data.size(), 1U);
+                           addresses.push_back(address);
+                         }}};
+  receiver.connect({5, 4, Dma::Direction::from_peripheral, 1, 0x4000'4404}, bytes);
+  receiver.write(0x90, 0x4000'4404);
+  receiver.write(0x94, buffer + 1);
+  receiver.write(0x8C, 4);
+  receiver.write(0x88, 4U << 25U | 1U << 10U | 1U << 8U | 3U << 3U | 1U);
+  const auto put = [&](std::uint16_t byte) {
+    bytes.pending.push_back(byte);
+    receiver.serve(5);
+  };
+  put(1);
+  EXPECT_FALSE(chip.interrupts.contains(16));
+  put(2);
+  EXPECT_EQ(receiver.read(0x04), 1U << 10U);
+  EXPECT_TRUE(chip.interrupts.contains(16));
+  receiver.write(0x0C, 1U << 10U);
+  EXPECT_FALSE(chip.interrupts.contains(16));
+  put(3);
+  put(4);
+  put(5);
+  EXPECT_EQ(receiver.read(0x04), 1U << 11U);
+  EXPECT_EQ(receiver.read(0x8C), 3U);
+  EXPECT_EQ(addresses, (std::vector<std::uint32_t>{buffer + 1, buffer + 2, buffer + 3, buffer + 4, buffer + 1}));
 }
 
 /// TIM3 starts conversions, whose results DMA writes.
@@ -184,9 +290,9 @@ class Sampling {
   test::BenchChip chip;
   test::BenchBoard board;
   std::vector<std::pair<std::uint32_t, unsigned>> written;
-  Dma dma{chip, [this](std::uint32_t address, std::span<const std::uint8_t> bytes) {
-            written.emplace_back(address, bytes[0] | unsigned{bytes[1]} << 8U);
-          }};
+  Dma dma{chip, 2, {{}, [this](std::uint32_t address, std::span<const std::uint8_t> bytes) {
+                      written.emplace_back(address, bytes[0] | unsigned{bytes[1]} << 8U);
+                    }}};
   Adc adc{chip, board, &dma};
   Timer timer{chip, 3};
   LocalTime first_trigger = 0;

@@ -22,6 +22,17 @@ class UsartTest : public testing::Test {
  protected:
   UsartTest() { chip.settings = test::full_speed; }
 
+  /// A character of the same baud rate, from now to the end of its stop bit.
+  void receive(std::uint8_t byte) {
+    port.begin_receive({byte}, *port.bit_time());
+    const LocalTime end = chip.time + 10 * *port.bit_time();
+    while (port.next_event() < end) {
+      chip.time = port.next_event();
+      port.advance();
+    }
+    chip.time = end;
+  }
+
   /// On, and done with the idle frame.
   void start(std::uint32_t divider = 42, std::uint32_t control = on) {
     port.write(brr, divider);
@@ -147,7 +158,7 @@ TEST_F(UsartTest, InterruptsFollowFlagsAndEnables) {
   EXPECT_TRUE(chip.interrupts.contains(line));
   port.write(cr1, on | 0x20);  // RXNEIE
   EXPECT_FALSE(chip.interrupts.contains(line));
-  port.receive(9);
+  receive(9);
   EXPECT_TRUE(chip.interrupts.contains(line));
   EXPECT_EQ(port.read(dr), 9U);
   EXPECT_FALSE(chip.interrupts.contains(line));
@@ -155,19 +166,19 @@ TEST_F(UsartTest, InterruptsFollowFlagsAndEnables) {
 
 TEST_F(UsartTest, AnOverrunKeepsTheOldByte) {
   start();
-  port.receive(1);
-  port.receive(2);
+  receive(1);
+  receive(2);
   EXPECT_EQ(port.read(sr) & (rxne | ore), rxne | ore);
   EXPECT_EQ(port.read(dr), 1U);
   EXPECT_EQ(port.read(sr) & (rxne | ore), 0U);
-  port.receive(3);
+  receive(3);
   EXPECT_EQ(port.read(dr), 3U);
 }
 
 TEST_F(UsartTest, OverrunIsClearedOnlyByReadingStatusThenData) {
   start(42, on | 0x20);
-  port.receive(1);
-  port.receive(2);
+  receive(1);
+  receive(2);
   EXPECT_EQ(port.read(dr), 1U);
   EXPECT_EQ(port.read(sr) & (rxne | ore), ore);
   EXPECT_TRUE(chip.interrupts.contains(38)) << "ORE interrupts with RXNEIE";
@@ -178,13 +189,97 @@ TEST_F(UsartTest, OverrunIsClearedOnlyByReadingStatusThenData) {
 
 TEST_F(UsartTest, AReceiverThatIsOffReceivesNothing) {
   start(42, 0x2008);
-  port.receive(1);
+  receive(1);
   EXPECT_EQ(port.read(sr) & rxne, 0U);
 }
 
+// RM0090, 30.6.1 and 30.6.4: IDLE (bit 4), IDLEIE.
+TEST_F(UsartTest, FindsAnIdleLineOnceAfterTheLastCharacter) {
+  constexpr std::uint32_t idle = 1U << 4U;
+  constexpr LocalTime character = 10 * 42 * 24;
+  start(42, on | idle);  // IDLEIE has the same position in CR1
+  chip.run_until(begin + 20 * character, port);
+  EXPECT_EQ(port.read(sr) & idle, 0U) << "nothing was received";
+  receive(1);
+  EXPECT_EQ(port.read(dr), 1U);
+  receive(2);
+  EXPECT_EQ(port.read(dr), 2U);
+  EXPECT_EQ(port.read(sr) & idle, 0U);
+  chip.run_until(chip.time + character, port);
+  EXPECT_TRUE(chip.interrupts.contains(38));
+  EXPECT_EQ(port.read(sr) & idle, idle);
+  static_cast<void>(port.read(dr));
+  EXPECT_EQ(port.read(sr) & idle, 0U);
+  EXPECT_FALSE(chip.interrupts.contains(38));
+  chip.run_until(chip.time + 20 * character, port);
+  EXPECT_EQ(port.read(sr) & idle, 0U) << "once";
+}
+
+TEST_F(UsartTest, AMissingStopBitIsAFramingError) {
+  constexpr std::uint32_t fe = 1U << 1U;
+  start();
+  port.begin_receive({0xFF, false}, *port.bit_time());
+  chip.run_until(chip.time + 10 * *port.bit_time(), port);
+  EXPECT_EQ(port.read(sr) & (rxne | fe), rxne | fe);
+  EXPECT_EQ(port.read(dr), 0xFFU);
+  EXPECT_EQ(port.read(sr) & fe, 0U);
+}
+
+TEST_F(UsartTest, DmaReceivesWithoutTheCpuAndEieReportsErrors) {
+  std::vector<unsigned> written;
+  Dma dma{chip, 1, {{}, [&](std::uint32_t, std::span<const std::uint8_t> bytes) { written.push_back(bytes[0]); }}};
+  Usart by_dma{chip, board, &dma};
+  by_dma.write(brr, 42);
+  by_dma.write(cr3, 0x41);  // DMAR, EIE
+  by_dma.write(cr1, on);
+  dma.write(0x90, 0x4000'4404);
+  dma.write(0x94, 0x2000'0000);
+  dma.write(0x8C, 8);
+  dma.write(0x88, 4U << 25U | 1U << 10U | 1U << 8U | 1U);
+  const LocalTime bit = *by_dma.bit_time();
+  for (const std::uint8_t byte : std::array<std::uint8_t, 3>{11, 12, 13}) {
+    by_dma.begin_receive({byte}, bit);
+    chip.run_until(chip.time + 10 * bit, by_dma);
+  }
+  EXPECT_EQ(written, (std::vector<unsigned>{11, 12, 13}));
+  EXPECT_EQ(by_dma.read(sr) & (rxne | ore), 0U);
+  EXPECT_FALSE(chip.interrupts.contains(38));
+  by_dma.begin_receive({14, false}, bit);
+  chip.run_until(chip.time + 10 * bit, by_dma);
+  EXPECT_EQ(written.back(), 14U);
+  EXPECT_TRUE(chip.interrupts.contains(38)) << "framing error";
+}
+
+TEST_F(UsartTest, DmaSendsWithoutGap) {
+  Dma dma{chip,
+          1,
+          {[&](std::uint32_t address, std::span<std::uint8_t> bytes) { bytes[0] = static_cast<std::uint8_t>(address); },
+           {}}};
+  Usart by_dma{chip, board, &dma};
+  std::vector<LocalTime> ends;
+  by_dma.watch_output([&](LocalTime end, std::uint8_t) { ends.push_back(end); });
+  by_dma.write(brr, 42);
+  by_dma.write(cr1, on);
+  by_dma.write(cr3, 0x80);  // DMAT
+  const LocalTime character = 10 * *by_dma.bit_time();
+  chip.run_until(character, by_dma);
+  dma.write(0xA8, 0x4000'4404);
+  dma.write(0xAC, 0x2000'0020);
+  dma.write(0xA4, 4);
+  dma.write(0xA0, 4U << 25U | 1U << 10U | 1U << 6U | 1U << 4U | 1U);
+  chip.run_until(4 * character, by_dma);
+  EXPECT_TRUE(chip.interrupts.contains(17)) << "the last byte is in the data register or beyond";
+  EXPECT_EQ(board.sent.size(), 3U);
+  chip.run_until(6 * character, by_dma);
+  EXPECT_EQ(board.sent, (std::vector<std::pair<unsigned, std::uint8_t>>{{2, 0x20}, {2, 0x21}, {2, 0x22}, {2, 0x23}}));
+  EXPECT_EQ(ends, (std::vector<LocalTime>{2 * character, 3 * character, 4 * character, 5 * character}));
+}
+
 TEST_F(UsartTest, RejectsWhatItDoesNotModelByName) {
+  EXPECT_EQ(test::rejection([&] { port.write(cr3, 0x100); }),
+            "USART2_CR3 = 0x100 at offset 0x14: flow control, half duplex, IrDA and smartcards are not modelled");
   EXPECT_EQ(test::rejection([&] { port.write(cr3, 0x40); }),
-            "USART2_CR3 = 0x40 at offset 0x14: DMA, flow control, half duplex, IrDA and smartcards are not modelled");
+            "USART2_CR3 = 0x40 at offset 0x14: DMA is not modelled here");
   EXPECT_NE(test::rejection([&] { port.write(cr2, 0x2000); }), "");
   EXPECT_NE(test::rejection([&] { port.write(cr1, 0x1000); }), "");
   EXPECT_NE(test::rejection([&] { port.write(cr1, 0x0400); }), "");

@@ -10,6 +10,12 @@ constexpr std::size_t counter_digits = 3;
 constexpr std::string_view state_letters = "awpb";      // in the order of CanState
 constexpr std::string_view error_letters = "abBcfoOs";  // in the order of CanErrorKind
 
+/// Not substr(), which may throw: the images of the modules contain no exceptions.
+std::string_view without_first(std::string_view text, std::size_t count) {
+  text.remove_prefix(count);
+  return text;
+}
+
 std::optional<unsigned> digit_value(char character) {
   if (character >= '0' && character <= '9') {
     return static_cast<unsigned>(character - '0');
@@ -34,7 +40,7 @@ class Digits {
       return std::nullopt;
     }
     std::uint32_t number = 0;
-    for (const char character : text_.substr(0, count)) {
+    for (const char character : std::string_view(text_.data(), count)) {
       const std::optional<unsigned> value = digit_value(character);
       if (!value || *value >= base) {
         return std::nullopt;
@@ -74,7 +80,7 @@ std::optional<SlcanFrame> parse_slcan_frame(std::string_view line) {
   SlcanFrame frame;
   frame.is_extended = kind >= 2;
   frame.is_remote = kind % 2 == 1;
-  Digits digits(line.substr(1));
+  Digits digits(without_first(line, 1));
   const auto identifier = digits.take(frame.is_extended ? extended_digits : standard_digits, 16);
   const auto length = digits.take(1, 10);
   const std::uint32_t largest = frame.is_extended ? SlcanFrame::max_extended_identifier : CanFrame::max_identifier;
@@ -120,7 +126,7 @@ std::optional<CanStatus> parse_slcan_status(std::string_view line) {
     return std::nullopt;
   }
   const std::size_t state = state_letters.find(line[1]);
-  Digits digits(line.substr(2));
+  Digits digits(without_first(line, 2));
   const auto receive = digits.take(counter_digits, 10);
   const auto transmit = digits.take(counter_digits, 10);
   if (state == std::string_view::npos || !receive || !transmit) {
@@ -150,7 +156,7 @@ std::optional<CanErrors> parse_slcan_errors(std::string_view line) {
     return std::nullopt;
   }
   CanErrors errors;
-  for (const char letter : line.substr(2)) {
+  for (const char letter : without_first(line, 2)) {
     const std::size_t kind = error_letters.find(letter);
     if (kind == std::string_view::npos) {
       return std::nullopt;

@@ -37,7 +37,8 @@ constexpr unsigned common_bank = 1;      ///< messages for all nodes
 constexpr unsigned lss_bank = 2;         ///< the identifier of the LSS master
 constexpr unsigned first_list_bank = 3;  ///< lists: state frames that the joint depends on, four a bank
 constexpr unsigned all_states_bank = can1::filter_banks - 1;  ///< masks: all state frames, if the lists are too short
-constexpr unsigned list_banks = all_states_bank - first_list_bank;
+constexpr unsigned every_frame_bank = all_states_bank - 1;    ///< masks: every data frame, for the host of a gateway
+constexpr unsigned list_banks = every_frame_bank - first_list_bank;
 constexpr std::size_t list_entries = 4;
 constexpr std::uint32_t banks_of_every_robot = 1U << node_bank | 1U << common_bank | 1U << lss_bank;
 
@@ -64,7 +65,7 @@ void accept_frames_of(std::uint8_t node) {
 /// Filters that are the same in every robot.
 void accept_common_frames() {
   namespace identifier = canopen::identifier;
-  constexpr std::uint32_t with_masks = 1U << node_bank | 1U << all_states_bank;
+  constexpr std::uint32_t with_masks = 1U << node_bank | 1U << all_states_bank | 1U << every_frame_bank;
   constexpr std::uint32_t all_banks = (1U << can1::filter_banks) - 1U;
   can1::fmr.write(can1::fmr_finit | can1::fmr_can2sb_of(can1::filter_banks));
   can1::fa1r.write(0);
@@ -81,6 +82,9 @@ void accept_common_frames() {
   const can1::FilterBank all_states(all_states_bank);
   all_states.first.write(masked(identifier::state_frame, function_bits));
   all_states.second.write(masked(identifier::second_state, function_bits));
+  const can1::FilterBank every_frame(every_frame_bank);
+  every_frame.first.write(masked(0, 0));
+  every_frame.second.write(masked(0, 0));
   can1::fa1r.write(banks_of_every_robot);
   can1::fmr.write(can1::fmr_can2sb_of(can1::filter_banks));
 }
@@ -162,8 +166,8 @@ void Can::set_node(std::uint8_t node) {
 
 void Can::listen(std::span<const std::uint16_t> identifiers) {
   // A bank may be written while it is not in use.
-  can1::fa1r.write(banks_of_every_robot);
-  std::uint32_t used = banks_of_every_robot;
+  std::uint32_t used = banks_of_every_robot | every_frame_bank_;
+  can1::fa1r.write(used);
   if (identifiers.size() > list_banks * list_entries) {
     used |= 1U << all_states_bank;
   } else {
@@ -180,6 +184,40 @@ void Can::listen(std::span<const std::uint16_t> identifiers) {
     }
   }
   can1::fa1r.write(used);
+}
+
+void Can::receive_all(bool all) {
+  every_frame_bank_ = all ? 1U << every_frame_bank : 0U;
+  can1::fa1r.change(1U << every_frame_bank, every_frame_bank_);
+}
+
+CanStatus Can::status() {
+  const std::uint32_t value = can1::esr.read();
+  CanStatus status;
+  if ((value & can1::esr_boff) != 0 || is_bus_off_.load(std::memory_order_relaxed)) {
+    status.state = CanState::bus_off;
+  } else if ((value & can1::esr_epvf) != 0) {
+    status.state = CanState::error_passive;
+  } else if ((value & can1::esr_ewgf) != 0) {
+    status.state = CanState::error_warning;
+  }
+  status.transmit_errors = static_cast<std::uint8_t>(value >> can1::esr_tec_position);
+  status.receive_errors = static_cast<std::uint8_t>(value >> can1::esr_rec_position);
+  return status;
+}
+
+CanErrors Can::take_errors() {
+  const std::uint32_t kind = can1::esr.read() >> can1::esr_lec_position & can1::esr_lec_unchanged;
+  can1::esr.write(can1::esr_lec_unchanged << can1::esr_lec_position);
+  // RM0090, section 32.9.2: LEC 1 to 6.
+  constexpr std::array<CanErrorKind, 6> kinds{CanErrorKind::stuff,           CanErrorKind::form,
+                                              CanErrorKind::acknowledgement, CanErrorKind::bit_recessive,
+                                              CanErrorKind::bit_dominant,    CanErrorKind::crc};
+  CanErrors errors;
+  if (kind >= 1 && kind <= kinds.size()) {
+    errors.add(kinds[kind - 1]);
+  }
+  return errors;
 }
 
 void Can::recover() {

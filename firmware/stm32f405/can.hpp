@@ -38,6 +38,10 @@ class Can final : public CanPort {
   [[nodiscard]] bool send(const CanFrame& frame) override;
   void set_node(std::uint8_t node) override;
   void listen(std::span<const std::uint16_t> identifiers) override;
+  void receive_all(bool all) override;
+  [[nodiscard]] CanStatus status() override;
+  /// Of the errors since the last call, the last one.
+  [[nodiscard]] CanErrors take_errors() override;
   void recover() override;
 
   /// The oldest event; null: there is none. It stays until drop_event().
@@ -76,6 +80,7 @@ class Can final : public CanPort {
   std::atomic<bool> is_bus_off_{false};                        ///< set by CAN1_SCE too, cleared by follow_recovery()
   std::atomic<std::uint32_t> lost_{0};
   Recovery recovery_ = Recovery::none;
+  std::uint32_t every_frame_bank_ = 0;  ///< as FA1R has it: 0, or its bit while all frames are to be received
 };
 
 }  // namespace proleg::stm32f405

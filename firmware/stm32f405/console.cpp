@@ -16,10 +16,10 @@ constexpr std::uint32_t reads_for_a_byte = 10'000;
 
 }  // namespace
 
-void Console::start(std::uint32_t peripheral_hz) {
+void Console::start(std::uint32_t peripheral_hz, std::uint32_t baud) {
   rcc::apb1enr.set(rcc::apb1enr_usart2);
   static_cast<void>(rcc::apb1enr.read());
-  usart2::brr.write((peripheral_hz + board::console_baud / 2) / board::console_baud);
+  usart2::brr.write((peripheral_hz + baud / 2) / baud);
   usart2::cr1.write(on);
 }
 
@@ -52,8 +52,11 @@ void Console::write_decimal(std::uint32_t value) {
   write({&digits[first], digits.size() - first});
 }
 
+bool Console::is_idle() const { return pending_.front() == nullptr && usart2::sr.has(usart2::sr_tc); }
+
 void Console::on_interrupt() {
   if (const char* const character = pending_.front()) {
+    static_cast<void>(usart2::sr.read());  // with the write to DR it clears TC (RM0090, section 30.6.1)
     usart2::dr.write(static_cast<unsigned char>(*character));
     pending_.pop();
   } else {

@@ -12,6 +12,8 @@ void can1_sce_handler();
 void tim5_handler();
 void pvd_handler();
 void usart2_handler();
+void dma1_stream5_handler();
+void dma1_stream6_handler();
 
 /// The program at the lowest priority, which interrupts request; and the start. Each program (main.cpp, the tests of
 /// the drivers) defines both.

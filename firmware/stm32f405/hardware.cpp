@@ -12,12 +12,14 @@ void request_pend_sv() { scb::icsr.write(scb::icsr_pendsvset); }
 void enable_interrupts() {
   constexpr std::uint32_t first = 0;
   constexpr std::uint32_t middle = 8;
-  constexpr std::uint32_t last = 15;  // PendSV and the deadline: neither interrupts the other
+  constexpr std::uint32_t last = 15;  // PendSV, the deadline and the line's DMA: none interrupts another
   scb::shpr3.write(last << (scb::shpr3_pendsv_position + 4U));
   nvic::set_priority(Interrupt::usart2, middle);
   nvic::enable(Interrupt::usart2);
-  nvic::set_priority(Interrupt::timer_5, last);
-  nvic::enable(Interrupt::timer_5);
+  for (const Interrupt interrupt : {Interrupt::timer_5, Interrupt::dma1_stream_5, Interrupt::dma1_stream_6}) {
+    nvic::set_priority(interrupt, last);
+    nvic::enable(interrupt);
+  }
   for (const Interrupt interrupt : {Interrupt::pvd, Interrupt::can1_tx, Interrupt::can1_rx0, Interrupt::can1_sce}) {
     nvic::set_priority(interrupt, first);
     nvic::enable(interrupt);
@@ -57,6 +59,23 @@ void tim5_handler() {
   pend_sv_handler();
 }
 
-void usart2_handler() { hardware.console.on_interrupt(); }
+void usart2_handler() {
+  if (hardware.line.is_connected()) {
+    hardware.line.on_line_interrupt();
+    request_pend_sv();
+  } else {
+    hardware.console.on_interrupt();
+  }
+}
+
+void dma1_stream5_handler() {
+  hardware.line.on_receive_interrupt();
+  request_pend_sv();
+}
+
+void dma1_stream6_handler() {
+  hardware.line.on_transmit_interrupt();
+  request_pend_sv();
+}
 
 }  // extern "C"

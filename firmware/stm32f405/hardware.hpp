@@ -4,6 +4,7 @@
 #include "firmware/stm32f405/console.hpp"
 #include "firmware/stm32f405/contacts.hpp"
 #include "firmware/stm32f405/flash.hpp"
+#include "firmware/stm32f405/gateway_line.hpp"
 #include "firmware/stm32f405/microsecond_clock.hpp"
 #include "firmware/stm32f405/sensors.hpp"
 #include "firmware/stm32f405/servo.hpp"
@@ -20,6 +21,7 @@ struct Hardware {
   Sensors sensors;
   Supply supply;
   Console console;
+  GatewayLine line{console};
   BoardRecordFlash board_records;
 };
 

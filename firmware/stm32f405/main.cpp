@@ -118,7 +118,7 @@ void print(const Start& start, const std::optional<firmware::BoardRecord>& recor
 void start_clocks_or_give_up(const Start& start) {
   const ClockResult result = start_clocks();
   if (result != ClockResult::ok) {
-    hardware.console.start(board::internal_oscillator);
+    hardware.console.start(board::internal_oscillator, board::console_baud);
     if (start.fault) {
       print(*start.fault);
     }
@@ -157,8 +157,9 @@ void run_program() {
   start_pins();
   start_clocks_or_give_up(start);
   hardware.clock.start();
-  hardware.console.start(board::apb1);
-  print(start, proleg::firmware::newest(hardware.board_records.contents(0), hardware.board_records.contents(1)));
+  const auto record = proleg::firmware::newest(hardware.board_records.contents(0), hardware.board_records.contents(1));
+  hardware.console.start(board::apb1, record && record->is_gateway ? GatewayLine::baud : board::console_baud);
+  print(start, record);
   hardware.sensors.start();
   hardware.supply.start();
   start_module(start);

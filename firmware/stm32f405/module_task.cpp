@@ -21,7 +21,7 @@ static_assert(std::is_trivially_destructible_v<firmware::Module>,
 void ModuleTask::start(const firmware::ModuleIdentity& identity, firmware::TickRecord& last_tick) {
   last_tick_ = &last_tick;
   module_.emplace(identity, firmware::Ports{hardware.can, hardware.servo, hardware.contacts, hardware.sensors,
-                                            hardware.board_records});
+                                            hardware.board_records, &hardware.line});
   last_time_ = hardware.clock.now();
   module_->power_on(last_time_);
 }
@@ -36,6 +36,7 @@ void ModuleTask::run() {
   if (now >= due_) {
     poll(now);
   }
+  serve_line(now);
   Microseconds next = poll_by_;
   if (module_) {
     publish_tick();
@@ -88,6 +89,14 @@ void ModuleTask::follow_supply(Microseconds now) {
   }
   if (module_->is_supply_low() && !Supply::is_low()) {
     module_->supply_good(in_order(now));
+  }
+}
+
+/// Last, and a little at a time: the events of the bus come first.
+void ModuleTask::serve_line(Microseconds now) {
+  hardware.line.follow_console();
+  if (module_ && module_->serve_line(in_order(now))) {
+    request_pend_sv();
   }
 }
 

@@ -4,8 +4,9 @@
 //
 //   priority 0    CAN1_TX, CAN1_RX0             record the event with its time; request PendSV
 //                 CAN1_SCE, PVD                 request PendSV, which reads the state of controller and supply
-//   priority 8    USART2                        sends the console's next byte
-//   priority 15   PendSV, TIM5                  everything else: ModuleTask::run()
+//   priority 8    USART2                        sends the console's next byte; of a gateway: idle line and errors
+//   priority 15   DMA1 streams 5, 6             of a gateway: its line has characters, or has sent them; request PendSV
+//                 PendSV, TIM5                  everything else: ModuleTask::run()
 //   thread        the start; afterwards the CPU sleeps whenever no interrupt runs (sleep on exit)
 //
 // An interrupt runs as a whole between two instructions of a lower priority, and never while one of the same priority
@@ -39,6 +40,7 @@ class ModuleTask {
   void take_events();
   void follow_bus(Microseconds now);
   void follow_supply(Microseconds now);
+  void serve_line(Microseconds now);
   void handle(const Can::Event& event, Microseconds time);
   void publish_tick();
   void poll(Microseconds now);

@@ -13,7 +13,7 @@ import sys
 
 # Eight words and one to align (PM0214, section 2.3.7); the FPU is not used.
 EXCEPTION_FRAME = 36
-PRIORITIES = [["pend_sv_handler", "tim5_handler"], ["usart2_handler"],
+PRIORITIES = [["pend_sv_handler", "tim5_handler", "dma1_stream5_handler", "dma1_stream6_handler"], ["usart2_handler"],
               ["can1_tx_handler", "can1_rx0_handler", "can1_sce_handler", "pvd_handler"]]
 
 

@@ -19,6 +19,9 @@ constexpr std::uint32_t reads_in_10_us = board::core / 100'000 / 3;
 constexpr std::uint32_t temperature_sampling_cycles = 480;
 static_assert(temperature_sampling_cycles > adc_hz / 100'000);
 
+/// Channel 0 of this stream is ADC1 (RM0090, table 43).
+constexpr dma::Stream samples(dma::dma2, 0);
+
 /// CR2 while it samples the current.
 constexpr std::uint32_t on =
     adc1::cr2_adon | adc1::cr2_dma | adc1::cr2_dds | adc1::cr2_extsel_tim3_trgo | adc1::cr2_exten_rising;
@@ -49,10 +52,10 @@ void Sensors::start_sampling() {
   rcc::ahb1enr.set(rcc::ahb1enr_dma2);
   rcc::apb1enr.set(rcc::apb1enr_tim3);
   static_cast<void>(rcc::apb1enr.read());
-  dma2::s0par.write(adc1::dr);
-  dma2::s0m0ar.write(static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(ring_.data())));
-  dma2::s0ndtr.write(ring_size);
-  dma2::s0cr.write(dma2::cr_en | dma2::cr_circ | dma2::cr_minc | dma2::cr_psize_16 | dma2::cr_msize_16);
+  samples.par.write(adc1::dr);
+  samples.m0ar.write(static_cast<std::uint32_t>(reinterpret_cast<std::uintptr_t>(ring_.data())));
+  samples.ndtr.write(ring_size);
+  samples.cr.write(dma::cr_en | dma::cr_circ | dma::cr_minc | dma::cr_psize_16 | dma::cr_msize_16);
   adc1::cr2.write(on);
   tim3.psc().write(board::apb1_timers / 1'000'000 - 1);
   tim3.arr().write(sample_period_us - 1);
@@ -70,7 +73,7 @@ firmware::ServoReadings Sensors::take_readings() {
 
 /// False: no sample has come since the last reading, or more than the ring holds came in the time of exactly one ring.
 bool Sensors::take_current() {
-  const std::uint32_t next = ring_size - dma2::s0ndtr.read();
+  const std::uint32_t next = ring_size - samples.ndtr.read();
   const std::uint32_t now = MicrosecondClock::stamp();
   std::uint32_t count = (next - taken_) % ring_size;
   if (count == 0) {

@@ -51,6 +51,8 @@ constexpr VectorTable make_vectors() {
   set(Interrupt::can1_sce, can1_sce_handler);
   set(Interrupt::timer_5, tim5_handler);
   set(Interrupt::usart2, usart2_handler);
+  set(Interrupt::dma1_stream_5, dma1_stream5_handler);
+  set(Interrupt::dma1_stream_6, dma1_stream6_handler);
   return table;
 }
 

@@ -5,6 +5,8 @@
 namespace proleg {
 namespace {
 
+using namespace std::string_view_literals;  // no strlen() in the image of the modules
+
 constexpr std::uint16_t sync_identifier = 0x080;
 constexpr std::uint32_t microseconds_per_millisecond = 1'000;
 
@@ -46,7 +48,7 @@ void SlcanAdapter::input(std::string_view characters) {
         execute(reader_.line());
         break;
       case SlcanLineReader::Event::too_long:
-        execute("too long");  // no command begins so
+        execute("too long"sv);  // no command begins so
         break;
     }
   }
@@ -75,40 +77,40 @@ std::optional<SlcanText> SlcanAdapter::answer(std::string_view line) {
     case 'R':
       return answer_frame(line);
     case 'S':
-      return line == "S8" && !is_open() ? accepted() : rejected();
+      return line == "S8"sv && !is_open() ? accepted() : rejected();
     case 'O':
-      return line == "O" ? open(Mode::normal) : rejected();
+      return line == "O"sv ? open(Mode::normal) : rejected();
     case 'L':
-      return line == "L" ? open(Mode::listen_only) : rejected();
+      return line == "L"sv ? open(Mode::listen_only) : rejected();
     case 'C':
-      if (line != "C") {
+      if (line != "C"sv) {
         return rejected();
       }
       mode_ = Mode::closed;
       return accepted();
     case 'Z':
-      if (line != "Z0" && line != "Z1") {
+      if (line != "Z0"sv && line != "Z1"sv) {
         return rejected();
       }
-      has_timestamps_ = line == "Z1";
+      has_timestamps_ = line == "Z1"sv;
       return accepted();
     case 'X':  // automatic sending of received frames cannot be switched off
-      return line == "X1" ? accepted() : rejected();
+      return line == "X1"sv ? accepted() : rejected();
     case 'F':
-      return line == "F" ? std::optional(status_flags()) : rejected();
+      return line == "F"sv ? std::optional(status_flags()) : rejected();
     case 'V': {
-      if (line != "V") {
+      if (line != "V"sv) {
         return rejected();
       }
-      SlcanText text("V");
+      SlcanText text("V"sv);
       append_hexadecimal(text, settings_.version, 4);
       return text;
     }
     case 'N': {
-      if (line != "N") {
+      if (line != "N"sv) {
         return rejected();
       }
-      SlcanText text("N");
+      SlcanText text("N"sv);
       text.append(std::string_view(settings_.serial_number.data(), settings_.serial_number.size()));
       return text;
     }
@@ -142,7 +144,7 @@ std::optional<SlcanText> SlcanAdapter::answer_frame(std::string_view line) {
     return std::nullopt;
   }
   ++counters_.frames_sent;
-  return SlcanText("z");
+  return SlcanText("z"sv);
 }
 
 SlcanText SlcanAdapter::status_flags() {
@@ -161,7 +163,7 @@ SlcanText SlcanAdapter::status_flags() {
       flags |= flag_error_warning | flag_error_passive | flag_bus_error;
       break;
   }
-  SlcanText text("F");
+  SlcanText text("F"sv);
   append_hexadecimal(text, flags, 2);
   return text;
 }

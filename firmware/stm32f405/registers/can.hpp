@@ -35,7 +35,13 @@ inline constexpr std::uint32_t ier_bofie = 1U << 10U;
 inline constexpr std::uint32_t ier_errie = 1U << 15U;
 
 inline constexpr Register esr{base + 0x018};
+inline constexpr std::uint32_t esr_ewgf = 1U << 0U;
+inline constexpr std::uint32_t esr_epvf = 1U << 1U;
 inline constexpr std::uint32_t esr_boff = 1U << 2U;
+inline constexpr std::uint32_t esr_lec_position = 4;  ///< kind of the last error, three bits; the only ones to write
+inline constexpr std::uint32_t esr_lec_unchanged = 7;
+inline constexpr std::uint32_t esr_tec_position = 16;  ///< transmit error counter, 8 bits
+inline constexpr std::uint32_t esr_rec_position = 24;  ///< receive error counter, 8 bits
 
 inline constexpr Register btr{base + 0x01C};
 /// A bit is 1 + segment_1 + segment_2 time quanta, each prescaler periods of PCLK1; the sample is taken between the

@@ -31,6 +31,8 @@ inline constexpr Register bfar{base + 0x38};
 
 enum class Interrupt : std::uint8_t {
   pvd = 1,
+  dma1_stream_5 = 16,
+  dma1_stream_6 = 17,
   can1_tx = 19,
   can1_rx0 = 20,
   can1_sce = 22,

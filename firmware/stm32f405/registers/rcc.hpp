@@ -42,6 +42,7 @@ inline constexpr Register ahb1enr{base + 0x30};
 inline constexpr std::uint32_t ahb1enr_gpioa = 1U << 0U;
 inline constexpr std::uint32_t ahb1enr_gpiob = 1U << 1U;
 inline constexpr std::uint32_t ahb1enr_gpioc = 1U << 2U;
+inline constexpr std::uint32_t ahb1enr_dma1 = 1U << 21U;
 inline constexpr std::uint32_t ahb1enr_dma2 = 1U << 22U;
 
 inline constexpr Register apb1enr{base + 0x40};

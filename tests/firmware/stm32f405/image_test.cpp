@@ -132,6 +132,8 @@ TEST_P(ImageTest, StartsWithAVectorTableWhoseEveryEntryIsAFunctionOfTheImage) {
                                           {16U + 19U, "can1_tx_handler"},
                                           {16U + 20U, "can1_rx0_handler"},
                                           {16U + 22U, "can1_sce_handler"},
+                                          {16U + 16U, "dma1_stream5_handler"},
+                                          {16U + 17U, "dma1_stream6_handler"},
                                           {16U + 38U, "usart2_handler"},
                                           {16U + 50U, "tim5_handler"},
                                           {3U, "fault_handler"},

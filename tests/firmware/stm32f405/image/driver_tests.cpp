@@ -85,7 +85,7 @@ void run_program() {
     }
   }
   hardware.clock.start();
-  hardware.console.start(board::apb1);
+  hardware.console.start(board::apb1, board::console_baud);
   enable_interrupts();
   request_pend_sv();
   flood_console();

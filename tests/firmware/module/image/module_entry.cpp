@@ -28,14 +28,23 @@ struct NoFlash final : proleg::firmware::FlashPort {
   [[nodiscard]] std::span<const std::uint8_t> contents(unsigned /*sector*/) const override { return {}; }
 };
 
+struct NoLine final : proleg::firmware::LinePort {
+  void connect(bool /*is_gateway*/) override {}
+  std::size_t read_line(std::span<char> /*characters*/) override { return 0; }
+  bool take_damage() override { return false; }
+  std::span<char> line_room() override { return {}; }
+  void send_line(std::size_t /*count*/) override {}
+};
+
 NoPorts ports;
 NoSensors sensors;
 NoFlash flash;
+NoLine line;
 
 }  // namespace
 
 /// Its size is read from the symbol table.
-Module the_module({1, 1, {1, 2, 3}, proleg::core_fingerprint}, {ports, ports, ports, sensors, flash});
+Module the_module({1, 1, {1, 2, 3}, proleg::core_fingerprint}, {ports, ports, ports, sensors, flash, &line});
 
 extern "C" {
 
@@ -50,5 +59,7 @@ extern "C" {
   the_module.poll(now);
   return the_module.next_deadline();
 }
+
+[[gnu::used]] bool module_serve_line(proleg::Microseconds now) { return the_module.serve_line(now); }
 
 }  // extern "C"

@@ -15,7 +15,7 @@ namespace {
 
 constexpr unsigned broken_joint = 2;
 constexpr std::uint32_t breaks_at = 200;
-const char* const broken_function = "proleg::firmware::Module::receive";
+const char* const broken_function = "proleg::firmware::Module::handle";
 const char* const servo_function = "proleg::stm32f405::Servo::pulse";
 
 /// Thumb instructions, and words that they load.
@@ -132,7 +132,7 @@ TEST(FaultyProgram, ThatWritesWithoutMemoryIsNamedWithRegistersAndBackTrace) {
   robot.run_to(breaks_at + 150);
   EXPECT_TRUE(robot.was_noticed("0x20030000"));
   EXPECT_TRUE(robot.was_noticed("r3 0x20030000")) << "registers";
-  EXPECT_TRUE(robot.was_noticed("proleg::firmware::Module::receive")) << "back trace";
+  EXPECT_TRUE(robot.was_noticed("proleg::firmware::Module::handle")) << "back trace";
   EXPECT_TRUE(robot.was_noticed("ModuleTask")) << "its caller";
   EXPECT_TRUE(robot.was_noticed("0x6100")) << "EMCY: internal software error";
   ASSERT_EQ(robot.joined.size(), 1U);
@@ -169,7 +169,7 @@ TEST(ProgramBeyondTheModel, StandsStillAndIsNamedWithTheRegisterAndThePlace) {
   const Patch patch(robot.module(broken_joint).chip(), store_to(0x4001'3000));
   expect_others_to_continue(robot);
   EXPECT_TRUE(robot.was_noticed("SPI1"));
-  EXPECT_TRUE(robot.was_noticed("proleg::firmware::Module::receive"));
+  EXPECT_TRUE(robot.was_noticed("proleg::firmware::Module::handle"));
   EXPECT_TRUE(robot.joined.empty());
 }
 

@@ -160,6 +160,50 @@ class GatewayBench {
   }
 };
 
+/// Nobody acknowledges; then the bus is stuck, and good again.
+inline void expect_lines_of_bus_states(GatewayBench& bench) {
+  bench.open();
+  bench.bus.controller(1).switch_off();  // nobody acknowledges
+  bench.write("t60984000100000000000\r");
+  bench.run_for(200 * GatewayBench::ms);
+  const auto lines = lines_of(bench.host.take_text());
+  EXPECT_EQ(lines.front(), "z\r");
+  EXPECT_TRUE(std::ranges::any_of(lines, [](const std::string& line) { return line.starts_with("sp"); }));
+  EXPECT_TRUE(std::ranges::any_of(lines, [](const std::string& line) { return line == "e1a\r"; }));
+  bench.bus.controller(1).switch_on();
+  bench.run_for(50 * GatewayBench::ms);
+  static_cast<void>(bench.host.take_text());
+
+  bench.write("t60984000100000000000\r");
+  bench.run_for(300 * GatewayBench::us);
+  bench.bus.hold_dominant(true);
+  bench.run_for(5 * GatewayBench::ms);
+  const std::string off = bench.host.take_text();
+  bench.bus.hold_dominant(false);
+  bench.run_for(200 * GatewayBench::ms);
+  const std::string on = bench.host.take_text();
+  EXPECT_NE(off.find("sb"), std::string::npos) << off;
+  EXPECT_NE(on.find("sa000000\r"), std::string::npos) << on;
+  EXPECT_NE(bench.ask("t60984000100000000000\r").find("t58984300100092010200\r"), std::string::npos);
+}
+
+/// While characters go in both directions.
+inline void expect_restart_closes_channel(GatewayBench& bench) {
+  bench.open();
+  for (unsigned i = 0; i < 100; ++i) {
+    bench.write("t6E081122334455667788\r");
+  }
+  bench.run_for(5 * GatewayBench::ms);
+  bench.gateway().power_on(bench.bus.now());
+  bench.run_for(50 * GatewayBench::ms);
+  static_cast<void>(bench.host.take_text());
+  bench.run_for(50 * GatewayBench::ms);
+  EXPECT_EQ(bench.host.take_text(), "");
+  EXPECT_EQ(bench.ask("\r\rt60484000100000000000\r").back(), '\a');
+  EXPECT_EQ(bench.ask("O\r"), "\r");
+  EXPECT_EQ(bench.ask("t60484000100000000000\r"), "z\rt58484300100092010200\r");
+}
+
 /// A host's conversation with a gateway: everything that slcan has, with wrong lines and a line that fails. Each answer
 /// comes before the next line is sent, so that the text depends on no microsecond.
 inline std::string hold_conversation(GatewayBench& bench) {

@@ -45,11 +45,7 @@ TEST(NativeGateway, AResetOfTheNodesKeepsTheChannelOpenAndTheHostSeesTheBootUps)
 
 TEST(NativeGateway, ARestartOfTheModuleClosesTheChannel) {
   GatewayBench bench;
-  bench.open();
-  bench.gateway().power_on(bench.bus.now());
-  bench.run_for(50 * GatewayBench::ms);
-  EXPECT_EQ(bench.host.take_text(), "");
-  EXPECT_EQ(bench.ask("t60484000100000000000\r"), "\a");
+  expect_restart_closes_channel(bench);
 }
 
 TEST(NativeGateway, TheRoleComesIntoForceWhenItWasSavedAtTheNextResetOfTheNode) {
@@ -76,29 +72,7 @@ TEST(NativeGateway, TheRoleComesIntoForceWhenItWasSavedAtTheNextResetOfTheNode) 
 
 TEST(NativeGateway, BusOffAndTheWayBackAreLinesForTheHost) {
   GatewayBench bench;
-  bench.open();
-  bench.bus.controller(1).switch_off();  // nobody acknowledges
-  bench.write("t60984000100000000000\r");
-  bench.run_for(200 * GatewayBench::ms);
-  const auto lines = lines_of(bench.host.take_text());
-  EXPECT_EQ(lines.front(), "z\r");
-  EXPECT_TRUE(std::ranges::any_of(lines, [](const std::string& line) { return line.starts_with("sp"); }));
-  EXPECT_TRUE(std::ranges::any_of(lines, [](const std::string& line) { return line == "e1a\r"; }));
-  bench.bus.controller(1).switch_on();
-  bench.run_for(50 * GatewayBench::ms);
-  static_cast<void>(bench.host.take_text());
-
-  bench.write("t60984000100000000000\r");
-  bench.run_for(300 * GatewayBench::us);
-  bench.bus.hold_dominant(true);
-  bench.run_for(5 * GatewayBench::ms);
-  const std::string off = bench.host.take_text();
-  bench.bus.hold_dominant(false);
-  bench.run_for(200 * GatewayBench::ms);
-  const std::string on = bench.host.take_text();
-  EXPECT_NE(off.find("sb"), std::string::npos) << off;
-  EXPECT_NE(on.find("sa000000\r"), std::string::npos) << on;
-  EXPECT_NE(bench.ask("t60984000100000000000\r").find("t58984300100092010200\r"), std::string::npos);
+  expect_lines_of_bus_states(bench);
 }
 
 TEST(NativeGateway, EveryFrameOfAMinuteOfGaitIsOnTheLine) { expect_every_frame_on_the_line({}, 6'000); }

@@ -1,6 +1,8 @@
 // The flashed image as gateway: the same characters on its serial line as those of a native module, from registers,
 // interrupts and DMA of USART2.
 
+#include <algorithm>
+
 #include "gateway_robot.hpp"
 #include "virtual_robot.hpp"
 
@@ -71,6 +73,18 @@ TEST(VirtualGateway, AConversationHasTheSameCharactersAsWithANativeModule) {
   std::cout << expected.size() << " characters, " << native.log.size() << " frames\n";
 }
 
+TEST(VirtualGateway, BusOffAndTheWayBackAreLinesForTheHost) {
+  GatewayBench bench(make_virtual);
+  expect_lines_of_bus_states(bench);
+  EXPECT_EQ(bench.gateway().take_problem(), std::nullopt);
+}
+
+TEST(VirtualGateway, ARestartOfTheModuleClosesTheChannel) {
+  GatewayBench bench(make_virtual);
+  expect_restart_closes_channel(bench);
+  EXPECT_EQ(bench.gateway().take_problem(), std::nullopt);
+}
+
 TEST(VirtualGateway, ABurstOfTwoThousandFramesReachesTheBus) {
   GatewayBench bench(make_virtual);
   bench.open();
@@ -118,7 +132,24 @@ TEST(VirtualGateway, LinesThatComeWhileTheFlashIsErasedAreRejectedAndTheNextOnes
 /// All five are virtual chips: the gateway alone costs more.
 TEST(VirtualGateway, EveryFrameOfTheGaitIsOnTheLine) { expect_every_frame_on_the_line(make_virtual, 500); }
 
-TEST(VirtualGateway, AFloodInBothDirectionsChangesNoSetPoint) { expect_flood_changes_nothing(make_virtual, 300); }
+TEST(VirtualGateway, AFloodInBothDirectionsChangesNoSetPoint) {
+  std::uint64_t worst = 0;
+  std::uint64_t busiest = 0;
+  const auto make = [&](const ModuleParts& parts) {
+    VirtualModuleOptions options;
+    if (parts.is_gateway) {
+      options.on_tick = [&](const TickCost& cost) {
+        worst = std::max(worst, cost.to_state_frame);
+        busiest = std::max(busiest, cost.whole);
+      };
+    }
+    return std::make_unique<VirtualModule>(parts, flashed_image(), std::move(options));
+  };
+  expect_flood_changes_nothing(make, 300);
+  EXPECT_GT(worst, 0U);
+  EXPECT_LT(worst, 20'000U) << "instructions from SYNC to the state frame (docs/architecture.md)";
+  std::cout << worst << " instructions from SYNC to the state frame, " << busiest << " in a tick, at worst\n";
+}
 
 TEST(VirtualGateway, NoiseOnTheLineChangesNoSetPoint) { expect_noise_changes_nothing(make_virtual, 200); }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <random>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -256,6 +257,47 @@ TEST_F(GatewayTest, AResetOfTheNodeKeepsTheChannelAndPowerOnClosesIt) {
   module.power_on(now);
   EXPECT_EQ(ask("t7F00\r"), "\a");
   EXPECT_EQ(ask("O\r"), "\r");
+}
+
+TEST_F(GatewayTest, WhateverTheHostSendsItGetsWholeLines) {
+  constexpr unsigned seed = 20;
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  constexpr std::string_view alphabet = "tttttOCLVNFZSXTrR0123456789ABCDEFabcdef0000888\r\r\r\r\a\n?";
+  std::mt19937 random(seed);
+  write("O\r");
+  for (unsigned i = 0; i < 300'000; ++i) {
+    outside.input.push_back(alphabet[random() % alphabet.size()]);
+    outside.is_damaged = random() % 1'000 == 0;
+    outside.has_room = random() % 4 != 0;
+    outside.is_full = random() % 3 == 0;
+    if (random() % 8 == 0) {
+      receive({static_cast<std::uint16_t>(0x780 + random() % 0x80), static_cast<std::uint8_t>(random() % 9), {}});
+    }
+    serve();
+    if (const auto place = std::ranges::min_element(outside.pending, {}, &CanFrame::identifier);
+        place != outside.pending.end()) {
+      const CanFrame frame = *place;
+      outside.pending.erase(place);
+      module.transmitted(now, frame);
+    }
+    now += 100;
+  }
+  ASSERT_GT(outside.output.size(), 100'000U);
+  std::string line;
+  for (const char character : outside.output) {
+    line.push_back(character);
+    if (character != '\r' && character != '\a') {
+      ASSERT_LT(line.size(), 30U) << line;
+      continue;
+    }
+    const bool is_frame = line.front() == 't' && line[4] <= '8' &&
+                          (line.size() == 6U + 2U * static_cast<unsigned>(line[4] - '0') ||
+                           line.size() == 10U + 2U * static_cast<unsigned>(line[4] - '0'));
+    const bool is_answer = line == "\r" || line == "\a" || line == "z\r" || line == "V1010\r" || line.size() == 4 ||
+                           (line.front() == 'N' && line.size() == 6);
+    ASSERT_TRUE(is_frame || is_answer) << line;
+    line.clear();
+  }
 }
 
 }  // namespace

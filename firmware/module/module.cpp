@@ -47,6 +47,12 @@ void Module::power_on(Microseconds now) {
 }
 
 void Module::receive(Microseconds now, const CanFrame& frame) {
+  handle(now, frame);
+  parts_.gateway.pass(now, frame);
+}
+
+/// A frame that the module must receive, of another node or of its own.
+void Module::handle(Microseconds now, const CanFrame& frame) {
   if (receive_state(frame)) {
     return;
   }
@@ -150,6 +156,11 @@ void Module::receive_network_command(Microseconds now, const CanFrame& frame) {
 void Module::transmitted(Microseconds now, const CanFrame& frame) {
   parts_.outbox.sent();
   objects_.send_segments(now);
+  if (parts_.gateway.confirm(now, frame)) {
+    handle(now, frame);
+    find_deadlines();
+    return;
+  }
   parts_.producer.transmitted(now, frame);
   if (parts_.network.confirm_boot_up(frame)) {
     parts_.emergencies.report_reset_cause();
@@ -161,10 +172,15 @@ void Module::transmitted(Microseconds now, const CanFrame& frame) {
   }
   // A controller does not receive its own frames: these count for the module that sends them as for all others.
   if (frame.identifier == identifier::sync || frame.identifier == identifier::tick) {
-    receive(now, frame);
+    handle(now, frame);
   } else {
     find_deadlines();
   }
+  parts_.gateway.pass(now, frame);
+}
+
+bool Module::serve_line(Microseconds now) {
+  return parts_.gateway.serve(now, {!parts_.outbox.is_empty(), parts_.network.operational()});
 }
 
 void Module::bus_off(Microseconds now) {
@@ -183,6 +199,7 @@ void Module::bus_back(Microseconds now) {
 }
 
 void Module::frames_lost(Microseconds now, std::uint32_t count) {
+  parts_.gateway.frames_lost();
   if (parts_.losses.add(now, count) && parts_.network.has_sent_boot_up()) {
     parts_.emergencies.report(canopen::EmergencyCode::frames_lost, count);
   }
@@ -204,6 +221,7 @@ void Module::poll(Microseconds now) {
   }
   parts_.drive.poll(now);  // last: a stop that is due comes before a pulse that is due
   next_deadline_ = std::min(deadline_of_parts_, parts_.drive.next_deadline());
+  serve_line(now);
 }
 
 /// All but the servo, which is due far more often.

@@ -36,7 +36,13 @@ class Module {
   /// Does what is due; to be called at next_deadline() or later.
   void poll(Microseconds now);
   /// Later than the `now` of the poll() before it, if nothing else was called since.
-  [[nodiscard]] Microseconds next_deadline() const { return next_deadline_; }
+  [[nodiscard]] Microseconds next_deadline() const {
+    const Microseconds of_line = parts_.gateway.next_deadline();
+    return of_line < next_deadline_ ? of_line : next_deadline_;
+  }
+  /// Reads and writes the serial line of a gateway (LinePort). To be called after other events, and when characters
+  /// have come or have been sent. True: to be called again soon, since there is more to read.
+  bool serve_line(Microseconds now);
 
   /// The joint's kernel, for tests and the simulator's comparison. Configured from `activate` on.
   [[nodiscard]] const Kernel& kernel() const { return parts_.joint.kernel(); }
@@ -56,10 +62,12 @@ class Module {
   [[nodiscard]] std::uint32_t dropped_frames() const { return parts_.outbox.dropped(); }
   /// Whether the controller is bus-off, according to bus_off() and bus_back().
   [[nodiscard]] bool is_bus_off() const { return parts_.recovery.is_off(); }
+  [[nodiscard]] const Gateway& gateway() const { return parts_.gateway; }
   /// State frames whose label was more than a tick away from the coming one, since Operational was entered.
   [[nodiscard]] std::uint32_t unknown_labels() const { return parts_.neighbours.unknown_labels(); }
 
  private:
+  void handle(Microseconds now, const CanFrame& frame);
   [[nodiscard]] bool receive_state(const CanFrame& frame);
   void dispatch(Microseconds now, const CanFrame& frame);
   void receive_lss(Microseconds now, const CanFrame& frame);

@@ -328,6 +328,10 @@ constexpr ObjectAccessor accessors[] = {
           parts.monitor.set_limit_time_ms(static_cast<std::uint16_t>(write.value));
         }),
     read_only(object::lost_frames.address, [](const Parts& parts) { return parts.losses.count(); }),
+    read_only(object::frames_not_written.address,
+              [](const Parts& parts) { return parts.gateway.frames_not_written(); }),
+    read_only(object::frames_not_sent.address, [](const Parts& parts) { return parts.gateway.frames_not_sent(); }),
+    read_only(object::wrong_lines.address, [](const Parts& parts) { return parts.gateway.wrong_lines(); }),
     own_frame<0, 0>(),
     own_frame<0, 1>(),
     own_frame<1, 0>(),

@@ -8,6 +8,7 @@ Parts::Parts(const ModuleIdentity& module_identity, const Ports& ports)
       board(ports.flash),
       outbox(ports.can),
       recovery(ports.can),
+      gateway(identity, ports),
       drive(ports.servo),
       monitor(ports.sensors),
       contacts(ports.contacts) {}
@@ -15,11 +16,13 @@ Parts::Parts(const ModuleIdentity& module_identity, const Ports& ports)
 void Parts::load() {
   board.load();
   lss.power_on(board.stored().node);
+  gateway.power_on();
 }
 
 void Parts::reset(Microseconds now) {
   joint.deactivate();
   board.reset();
+  gateway.set_role(board.stored().is_gateway);
   identity.capabilities &= ~canopen::measures_angle;
   identity.capabilities |= board.stored().has_feedback ? canopen::measures_angle : 0U;
   reset_communication(now);

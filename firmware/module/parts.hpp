@@ -3,6 +3,7 @@
 #include "firmware/module/board_store.hpp"
 #include "firmware/module/bus_recovery.hpp"
 #include "firmware/module/drive.hpp"
+#include "firmware/module/gateway.hpp"
 #include "firmware/module/host_watch.hpp"
 #include "firmware/module/loss_counter.hpp"
 #include "firmware/module/servo_monitor.hpp"
@@ -34,7 +35,7 @@ struct Parts {
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
 
-  /// Reads the settings of the board.
+  /// Reads the settings of the board. The gateway is off until reset().
   void load();
   /// As after power on: application and communication (NMT reset node).
   void reset(Microseconds now);
@@ -50,6 +51,7 @@ struct Parts {
   Outbox outbox;
   BusRecovery recovery;
   NetworkNode network{identity, outbox};
+  Gateway gateway;
   Emergencies emergencies{identity, network, outbox};
   HostWatch host;
   ReportedRequests reported;

@@ -3,8 +3,10 @@
 // What a module needs from its surroundings. Drivers of the chip, or the simulator, implement these ports and hand
 // events to Module.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "firmware/module/board_record.hpp"
 #include "shared/can/can_port.hpp"
@@ -54,12 +56,32 @@ class SensorPort {
   ~SensorPort() = default;
 };
 
+/// The serial line to a host: USART2 of the reference board, 1 Mbaud (docs/board.md).
+class LinePort {
+ public:
+  /// Takes the line for the gateway or gives it back to the console, when the console has sent its text. Characters
+  /// that wait are dropped.
+  virtual void connect(bool is_gateway) = 0;
+  /// Moves the oldest characters that were received; returns how many.
+  [[nodiscard]] virtual std::size_t read_line(std::span<char> characters) = 0;
+  /// Whether characters were lost or damaged since the last call: they, and perhaps some before them, are missing.
+  [[nodiscard]] virtual bool take_damage() = 0;
+  /// Room for characters to send; none while the last ones are being sent, and without connect(true).
+  [[nodiscard]] virtual std::span<char> line_room() = 0;
+  /// Sends the first characters of line_room().
+  virtual void send_line(std::size_t count) = 0;
+
+ protected:
+  ~LinePort() = default;
+};
+
 struct Ports {
   CanPort& can;
   ServoPort& servo;
   ContactPort& contacts;
   SensorPort& sensors;
   FlashPort& flash;
+  LinePort* line = nullptr;  ///< null: the module cannot be a gateway
 };
 
 }  // namespace proleg::firmware

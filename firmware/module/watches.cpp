@@ -7,6 +7,7 @@ using canopen::PowerState;
 void leave_bus(Parts& parts, Microseconds now) {
   parts.recovery.bus_off(now);
   parts.outbox.close();
+  parts.gateway.bus_off();
   parts.producer.bus_off(now);
   parts.drive.power().quick_stop();
 }
@@ -14,6 +15,7 @@ void leave_bus(Parts& parts, Microseconds now) {
 void return_to_bus(Parts& parts, Microseconds now) {
   const std::uint32_t off_ms = parts.recovery.bus_back(now);
   parts.outbox.open();
+  parts.gateway.bus_back();
   if (parts.network.has_sent_boot_up()) {
     parts.emergencies.raise(Fault::bus_off, off_ms);
   } else {

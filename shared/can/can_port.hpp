@@ -3,6 +3,7 @@
 #include <span>
 
 #include "shared/can/can_frame.hpp"
+#include "shared/can/can_status.hpp"
 
 namespace proleg {
 
@@ -23,6 +24,13 @@ class CanPort {
   /// Selects the state frames (0x181 to 0x1FF, 0x281 to 0x2FF) that the owner needs; before the first call it needs
   /// none. The controller may discard others. All frames with other identifiers are always received.
   virtual void listen(std::span<const std::uint16_t> /*identifiers*/) {}
+  /// Whether the owner needs all data frames with 11-bit identifiers, whatever set_node() and listen() say; before the
+  /// first call it does not. A gateway with a host on its line does.
+  virtual void receive_all(bool /*all*/) {}
+  /// The error state of the controller now.
+  [[nodiscard]] virtual CanStatus status() { return {}; }
+  /// Kinds of errors that the controller has seen since the last call; not necessarily all of them.
+  [[nodiscard]] virtual CanErrors take_errors() { return {}; }
   /// Starts the recovery from bus-off (ISO 11898-1, 6.13), in which the controller has stopped after too many errors
   /// and has dropped all frames that waited. It takes 128 times 11 recessive bits. Controllers that recover by
   /// themselves ignore the call.

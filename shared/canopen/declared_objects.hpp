@@ -216,9 +216,19 @@ inline constexpr ObjectGroup bus_statistics{0x200B, ObjectCode::record, "Bus sta
 inline constexpr Object lost_frames = read_only(bus_statistics.at(1), "Lost frames", DataType::unsigned32,
                                                 "received since the program started, but there was no room for them");
 
+inline constexpr ObjectGroup gateway_statistics{0x200C, ObjectCode::record, "Gateway statistics"};
+inline constexpr Object frames_not_written =
+    read_only(gateway_statistics.at(1), "Frames not written", DataType::unsigned32,
+              "to the host since power-on, because its serial line had no room for them");
+inline constexpr Object frames_not_sent =
+    read_only(gateway_statistics.at(2), "Frames not sent", DataType::unsigned32,
+              "that the host had sent since power-on: channel closed, no room, bus-off, not of the protocol");
+inline constexpr Object wrong_lines = read_only(gateway_statistics.at(3), "Wrong lines", DataType::unsigned32,
+                                                "from the host since power-on, not understood or damaged");
+
 inline constexpr ObjectGroup board{0x2020, ObjectCode::record, "Board"};
 inline constexpr Object gateway_role = read_write(board.at(1), "Gateway role", DataType::unsigned8, 0, {0, 1},
-                                                  "1: the module connects the host to the bus");
+                                                  "1: slcan on the serial line; in force when saved, after a reset");
 inline constexpr Object has_feedback =
     read_write(board.at(2), "Feedback potentiometer", DataType::unsigned8, 0, {0, 1},
                "1: fitted; with sub-indices 3 and 4 in force when saved, after a reset");

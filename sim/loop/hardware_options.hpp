@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "sim/loop/injector.hpp"
 #include "sim/loop/joint_module.hpp"
 #include "sim/scenario/losses.hpp"
+#include "sim/serial/serial_host.hpp"
 
 namespace proleg::sim {
 
@@ -33,6 +35,7 @@ struct ModuleParts {
   std::function<firmware::ServoReadings()> readings;  ///< of its servo and chip, at this moment
   /// The same with the mean current since the last call, as firmware::SensorPort has it.
   std::function<firmware::ServoReadings()> take_readings;
+  bool is_gateway = false;  ///< its board record says so
 };
 
 struct HardwareOptions {
@@ -48,6 +51,12 @@ struct HardwareOptions {
   };
   BitErrors bit_errors;
   FaultSchedule faults;
+  /// The module of this joint is a gateway, with a host on its serial line.
+  struct GatewayHost {
+    unsigned joint;
+    SerialHost* host;  ///< must outlive the loop
+  };
+  std::optional<GatewayHost> gateway;
   /// Called once, when scenario and options are checked and before the modules are switched on: from here on files may
   /// be written.
   std::function<void()> before_start;

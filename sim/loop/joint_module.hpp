@@ -9,6 +9,7 @@
 #include "firmware/module/tick_record.hpp"
 #include "shared/canopen/power_state.hpp"
 #include "sim/bus/controller.hpp"
+#include "sim/serial/serial_receiver.hpp"
 
 namespace proleg::sim {
 
@@ -55,6 +56,14 @@ class JointModule {
   /// To be set before power_on().
   using PulseWatch = std::function<void(const WatchedPulse&)>;
   virtual void set_pulse_watch(PulseWatch watch) = 0;
+
+  /// A character begins at the input of its serial line (docs/board.md, gateway), with the sender's bit time in ns. The
+  /// one before must be over. Lost while the module does not read its line.
+  virtual void begin_serial_input(BusTime now, const SerialCharacter& character, BusTime bit) = 0;
+  /// Called with each character that it sends on that line, and the time at which its stop bit ends, which may be a
+  /// little later than that of the bus. To be set before power_on().
+  using SerialWatch = std::function<void(BusTime time, std::uint8_t byte)>;
+  virtual void set_serial_watch(SerialWatch watch) = 0;
 
   /// What it computed at its last tick.
   [[nodiscard]] virtual firmware::TickRecord last_tick() const = 0;

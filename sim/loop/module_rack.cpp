@@ -58,15 +58,21 @@ ModuleRack::ModuleRack(Bus& bus, const Plant& plant, const Scenario& scenario, c
                             make_crystal(scenario, joint, options.crystal_error_ppm),
                             sensors,
                             [&plant, joint] { return plant.servo_readings(joint); },
-                            ServoMeter(plant, joint)};
+                            ServoMeter(plant, joint),
+                            options.gateway && options.gateway->joint == joint};
     std::unique_ptr<JointModule> module = options.make_module ? options.make_module(parts) : nullptr;
     modules_.push_back(module ? std::move(module) : make_native(parts));
+  }
+  if (options.gateway) {
+    modules_.at(options.gateway->joint)
+        ->set_serial_watch(
+            [host = options.gateway->host](BusTime time, std::uint8_t byte) { host->received(time, byte); });
   }
 }
 
 std::unique_ptr<JointModule> ModuleRack::make_native(const ModuleParts& parts) const {
-  auto module =
-      std::make_unique<NativeModule>(parts.bus, parts.identity, parts.crystal, parts.sensors, parts.take_readings);
+  auto module = std::make_unique<NativeModule>(parts.bus, parts.identity, parts.crystal, parts.sensors,
+                                               parts.take_readings, parts.is_gateway);
   if (options_.tamper) {
     module->set_tamper([&options = options_, joint = parts.joint](const CanFrame& frame, const auto& deliver) {
       options.tamper(joint, frame, deliver);
@@ -88,14 +94,29 @@ void ModuleRack::power_on(BusTime now) {
 }
 
 BusTime ModuleRack::next_event() const {
-  BusTime next = never_on_bus;
+  BusTime next = next_serial_input();
   for (const auto& module : modules_) {
     next = std::min(next, module->next_event());
   }
   return next;
 }
 
+BusTime ModuleRack::next_serial_input() const {
+  return options_.gateway ? options_.gateway->host->next_event() : never_on_bus;
+}
+
+void ModuleRack::take_serial_input(BusTime now) {
+  SerialHost& host = *options_.gateway->host;
+  while (const auto character = host.take(now)) {
+    modules_[options_.gateway->joint]->begin_serial_input(now, *character, host.bit_time());
+  }
+}
+
 void ModuleRack::advance_to(BusTime now, BusTime quiet_until) {
+  if (next_serial_input() <= now) {
+    take_serial_input(now);
+  }
+  quiet_until = std::min(quiet_until, next_serial_input());
   for (const auto& module : modules_) {
     if (module->next_event() <= now) {
       module->advance_to(now, quiet_until);

@@ -67,6 +67,8 @@ class ModuleRack {
   void take_problems(std::uint32_t tick, HardwareReport& report);
 
  private:
+  [[nodiscard]] BusTime next_serial_input() const;
+  void take_serial_input(BusTime now);
   [[nodiscard]] std::unique_ptr<JointModule> make_native(const ModuleParts& parts) const;
   void restart(unsigned joint, BusTime now);
 

@@ -43,14 +43,54 @@ bool NativeModule::Port::send(const CanFrame& frame) {
   return true;
 }
 
+CanStatus NativeModule::Port::status() {
+  constexpr unsigned warning_limit = 96;
+  CanStatus status;
+  status.receive_errors = static_cast<std::uint16_t>(controller_.receive_errors());
+  status.transmit_errors = static_cast<std::uint16_t>(controller_.transmit_errors());
+  if (controller_.error_state() == ErrorState::bus_off) {
+    status.state = CanState::bus_off;
+  } else if (controller_.error_state() == ErrorState::passive) {
+    status.state = CanState::error_passive;
+  } else if (std::max(controller_.receive_errors(), controller_.transmit_errors()) >= warning_limit) {
+    status.state = CanState::error_warning;
+  }
+  return status;
+}
+
+void NativeModule::Port::note_error() {
+  switch (controller_.last_error()) {
+    case CanError::none:
+      break;
+    case CanError::stuff:
+      errors_.add(CanErrorKind::stuff);
+      break;
+    case CanError::form:
+      errors_.add(CanErrorKind::form);
+      break;
+    case CanError::acknowledgement:
+      errors_.add(CanErrorKind::acknowledgement);
+      break;
+    case CanError::bit_recessive:
+      errors_.add(CanErrorKind::bit_recessive);
+      break;
+    case CanError::bit_dominant:
+      errors_.add(CanErrorKind::bit_dominant);
+      break;
+    case CanError::crc:
+      errors_.add(CanErrorKind::crc);
+      break;
+  }
+}
+
 NativeModule::NativeModule(Bus& bus, const firmware::ModuleIdentity& identity, Crystal crystal, Sensors sensors,
-                           Readings readings)
+                           Readings readings, bool is_gateway)
     : bus_(bus),
       crystal_(crystal),
       sensors_(std::move(sensors)),
       meters_(std::move(readings)),
       controller_(bus.attach(*this)),
-      module_(identity, {port_, *this, *this, meters_, flash_}) {
+      module_(identity, {port_, *this, *this, meters_, flash_, &line_}) {
   if (identity.node == 0) {
     return;  // factory-fresh
   }
@@ -58,6 +98,7 @@ NativeModule::NativeModule(Bus& bus, const firmware::ModuleIdentity& identity, C
   board.node = identity.node;
   board.has_feedback = (identity.capabilities & canopen::measures_angle) != 0;
   board.feedback_at_plus_90 = firmware::BoardRecord::max_reading;
+  board.is_gateway = is_gateway;
   if (firmware::append(flash_, board) != firmware::AppendResult::ok) {
     throw std::invalid_argument("node id: found " + std::to_string(identity.node) + ", expected at most " +
                                 std::to_string(firmware::BoardRecord::max_node));
@@ -71,6 +112,7 @@ bool NativeModule::is_supply_low() const { return supply_mv_ < detector_threshol
 void NativeModule::power_on(BusTime now) {
   controller_.switch_off();
   pulse_.reset();
+  line_.reset();
   next_event_ = never_on_bus;
   if (has_power()) {
     controller_.switch_on();
@@ -104,7 +146,18 @@ void NativeModule::pulse(std::int32_t width, std::uint32_t /*period_us*/) {
 
 void NativeModule::advance_to(BusTime now, BusTime /*quiet_until*/) {
   module_.poll(crystal_.at(now));
+  finish_event(now);
+}
+
+void NativeModule::finish_event(BusTime now) {
+  static_cast<void>(line_.advance_to(now));
+  while (module_.serve_line(crystal_.at(now))) {
+  }
   update_deadline();
+}
+
+void NativeModule::update_deadline() {
+  next_event_ = std::min(crystal_.when(module_.next_deadline()), line_.next_event());
 }
 
 void NativeModule::received(BusTime time, const CanFrame& frame) {
@@ -113,13 +166,15 @@ void NativeModule::received(BusTime time, const CanFrame& frame) {
   } else {
     module_.receive(crystal_.at(time), frame);
   }
-  update_deadline();
+  finish_event(time);
 }
 
 void NativeModule::transmitted(BusTime time, const CanFrame& frame) {
   module_.transmitted(crystal_.at(time), frame);
-  update_deadline();
+  finish_event(time);
 }
+
+void NativeModule::error_seen(BusTime /*time*/, bool /*was_sending*/) { port_.note_error(); }
 
 void NativeModule::error_state_changed(BusTime time) {
   // The controller handles the other states itself; the module ignores bus_back() if it was not in bus-off.
@@ -128,7 +183,7 @@ void NativeModule::error_state_changed(BusTime time) {
   } else {
     module_.bus_back(crystal_.at(time));
   }
-  update_deadline();
+  finish_event(time);
 }
 
 }  // namespace proleg::sim

@@ -11,6 +11,7 @@
 #include "sim/bus/bus.hpp"
 #include "sim/loop/crystal.hpp"
 #include "sim/loop/joint_module.hpp"
+#include "sim/loop/native_line.hpp"
 
 namespace proleg::sim {
 
@@ -29,10 +30,10 @@ class NativeModule final : public JointModule,
   using Tamper = std::function<void(const CanFrame& frame, const std::function<void(const CanFrame&)>& deliver)>;
 
   /// Attaches to the bus, switched off. Without readings the module measures nothing. The board record in its flash has
-  /// the identity's node id and says whether it measures the angle; with node id 0 there is none. The flash keeps its
-  /// contents over power_on().
+  /// the identity's node id and says whether it measures the angle and is a gateway; with node id 0 there is none. The
+  /// flash keeps its contents over power_on().
   NativeModule(Bus& bus, const firmware::ModuleIdentity& identity, Crystal crystal, Sensors sensors,
-               Readings readings = {});
+               Readings readings = {}, bool is_gateway = false);
   NativeModule(const NativeModule&) = delete;
   NativeModule& operator=(const NativeModule&) = delete;
 
@@ -45,6 +46,11 @@ class NativeModule final : public JointModule,
     meters_.has_converted = meters_.converts;
     meters_.converts = converts;
   }
+  void begin_serial_input(BusTime now, const SerialCharacter& character, BusTime bit) override {
+    line_.begin_input(now, character, bit);
+    update_deadline();
+  }
+  void set_serial_watch(SerialWatch watch) override { line_.watch(std::move(watch)); }
   [[nodiscard]] canopen::PowerState power() const override { return module_.power(); }
   void set_pulse_watch(PulseWatch watch) override { pulse_watch_ = std::move(watch); }
   [[nodiscard]] firmware::TickRecord last_tick() const override { return module_.last_tick(); }
@@ -80,11 +86,15 @@ class NativeModule final : public JointModule,
    public:
     explicit Port(Controller& controller) : controller_(controller) {}
     [[nodiscard]] bool send(const CanFrame& frame) override;
+    [[nodiscard]] CanStatus status() override;
+    [[nodiscard]] CanErrors take_errors() override { return std::exchange(errors_, {}); }
     void recover() override { controller_.recover(); }
+    void note_error();
 
    private:
     Controller& controller_;
     std::array<CanFrame, Controller::mailbox_count> frames_{};  ///< the last request of each mailbox
+    CanErrors errors_;
   };
 
   /// Flash of the size that the board has for its settings.
@@ -107,11 +117,14 @@ class NativeModule final : public JointModule,
   [[nodiscard]] bool is_supply_low() const;
   void received(BusTime time, const CanFrame& frame) override;
   void transmitted(BusTime time, const CanFrame& frame) override;
+  void error_seen(BusTime time, bool was_sending) override;
   void error_state_changed(BusTime time) override;
   void pulse(std::int32_t width, std::uint32_t period_us) override;
   void off() override { pulse_.reset(); }
   [[nodiscard]] std::uint8_t read() override { return sensors_(); }
-  void update_deadline() { next_event_ = crystal_.when(module_.next_deadline()); }
+  /// After each event.
+  void finish_event(BusTime now);
+  void update_deadline();
 
   Bus& bus_;
   Crystal crystal_;
@@ -121,6 +134,7 @@ class NativeModule final : public JointModule,
   Tamper tamper_;
   Controller& controller_;
   Port port_{controller_};
+  NativeLine line_{bus_};
   firmware::Module module_;
   std::optional<std::int32_t> pulse_;
   PulseWatch pulse_watch_;

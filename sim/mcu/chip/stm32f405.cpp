@@ -609,10 +609,11 @@ void Stm32f405::set_pll(bool locks) {
 void Stm32f405::set_adc(bool converts) {
   implementation_->change_outside([this, converts] { implementation_->adc_.set_hanging(!converts); });
 }
-void Stm32f405::begin_serial_input(const SerialCharacter& character, BusTime bit) {
+void Stm32f405::begin_serial_input(BusTime start, const SerialCharacter& character, BusTime bit) {
   constexpr BusTime ns_per_us = 1'000;
+  const LocalTime local_bit = (bit * local_time_per_us + ns_per_us / 2) / ns_per_us;
   implementation_->change_outside(
-      [&] { implementation_->usart_.begin_receive(character, (bit * local_time_per_us + ns_per_us / 2) / ns_per_us); });
+      [&] { implementation_->usart_.begin_receive(implementation_->oscillator_.at(start), character, local_bit); });
 }
 void Stm32f405::set_serial_watch(SerialWatch watch) {
   implementation_->usart_.watch_output([this, watch = std::move(watch)](LocalTime end, std::uint8_t byte) {

@@ -35,6 +35,7 @@ firmware::BoardRecord board_record(const ModuleParts& parts) {
   record.has_feedback = parts.readings().angle.has_value();
   record.feedback_at_minus_90 = feedback_at_minus_90;
   record.feedback_at_plus_90 = feedback_at_plus_90;
+  record.is_gateway = parts.is_gateway;
   return record;
 }
 
@@ -138,6 +139,11 @@ void VirtualModule::set_pll(BusTime now, bool locks) {
   is_pulse_whole_ = false;
   has_clock_ = locks;
   chip_.set_pll(locks);
+}
+
+void VirtualModule::begin_serial_input(BusTime now, const SerialCharacter& character, BusTime bit) {
+  chip_.advance_to(now, now);
+  chip_.begin_serial_input(now, character, bit);
 }
 
 canopen::PowerState VirtualModule::power() const { return static_cast<canopen::PowerState>(last_tick().power); }

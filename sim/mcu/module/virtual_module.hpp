@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "sim/loop/hardware_loop.hpp"
 #include "sim/mcu/chip/stm32f405.hpp"
@@ -46,6 +47,8 @@ class VirtualModule final : public JointModule, private BoardSignals {
   void set_adc(BusTime now, bool converts) override;
   void set_crystal(BusTime now, bool runs) override;
   void set_pll(BusTime now, bool locks) override;
+  void begin_serial_input(BusTime now, const SerialCharacter& character, BusTime bit) override;
+  void set_serial_watch(SerialWatch watch) override { chip_.set_serial_watch(std::move(watch)); }
   [[nodiscard]] canopen::PowerState power() const override;
   void set_pulse_watch(PulseWatch watch) override;
   [[nodiscard]] firmware::TickRecord last_tick() const override;

@@ -171,10 +171,10 @@ void Usart::serve_dma() {
   }
 }
 
-void Usart::begin_receive(const SerialCharacter& character, LocalTime bit) {
+void Usart::begin_receive(LocalTime start, const SerialCharacter& character, LocalTime bit) {
   settle();
   if (receives()) {
-    receiver_.begin(chip().now(), character, bit);
+    receiver_.begin(start, character, bit);
     chip().reschedule();
   }
 }

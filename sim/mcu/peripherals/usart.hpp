@@ -30,8 +30,9 @@ class Usart final : public RegisterBlock {
   void clocks_fail(const Clocks& next) override;
   [[nodiscard]] bool is_idle() const override;
 
-  /// A character begins now on the line to the receiver, with the sender's bit time. Lost while the receiver is off.
-  void begin_receive(const SerialCharacter& character, LocalTime bit);
+  /// A character begins on the line to the receiver, at this time, with the sender's bit time. Lost while the receiver
+  /// is off.
+  void begin_receive(LocalTime start, const SerialCharacter& character, LocalTime bit);
   /// Called with each byte that is sent, and the end of its stop bit, beside BoardSignals::serial_output().
   using OutputWatch = std::function<void(LocalTime end, std::uint8_t byte)>;
   void watch_output(OutputWatch watch) { output_watch_ = std::move(watch); }

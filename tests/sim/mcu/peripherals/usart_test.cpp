@@ -24,7 +24,7 @@ class UsartTest : public testing::Test {
 
   /// A character of the same baud rate, from now to the end of its stop bit.
   void receive(std::uint8_t byte) {
-    port.begin_receive({byte}, *port.bit_time());
+    port.begin_receive(chip.time, {byte}, *port.bit_time());
     const LocalTime end = chip.time + 10 * *port.bit_time();
     while (port.next_event() < end) {
       chip.time = port.next_event();
@@ -218,7 +218,7 @@ TEST_F(UsartTest, FindsAnIdleLineOnceAfterTheLastCharacter) {
 TEST_F(UsartTest, AMissingStopBitIsAFramingError) {
   constexpr std::uint32_t fe = 1U << 1U;
   start();
-  port.begin_receive({0xFF, false}, *port.bit_time());
+  port.begin_receive(chip.time, {0xFF, false}, *port.bit_time());
   chip.run_until(chip.time + 10 * *port.bit_time(), port);
   EXPECT_EQ(port.read(sr) & (rxne | fe), rxne | fe);
   EXPECT_EQ(port.read(dr), 0xFFU);
@@ -238,13 +238,13 @@ TEST_F(UsartTest, DmaReceivesWithoutTheCpuAndEieReportsErrors) {
   dma.write(0x88, 4U << 25U | 1U << 10U | 1U << 8U | 1U);
   const LocalTime bit = *by_dma.bit_time();
   for (const std::uint8_t byte : std::array<std::uint8_t, 3>{11, 12, 13}) {
-    by_dma.begin_receive({byte}, bit);
+    by_dma.begin_receive(chip.time, {byte}, bit);
     chip.run_until(chip.time + 10 * bit, by_dma);
   }
   EXPECT_EQ(written, (std::vector<unsigned>{11, 12, 13}));
   EXPECT_EQ(by_dma.read(sr) & (rxne | ore), 0U);
   EXPECT_FALSE(chip.interrupts.contains(38));
-  by_dma.begin_receive({14, false}, bit);
+  by_dma.begin_receive(chip.time, {14, false}, bit);
   chip.run_until(chip.time + 10 * bit, by_dma);
   EXPECT_EQ(written.back(), 14U);
   EXPECT_TRUE(chip.interrupts.contains(38)) << "framing error";

@@ -86,7 +86,9 @@ class LiveBus final : public CanPort {
         events_.push_back({transmission.end, transmission.frame, false});
       }
     };
-    options.on_sent = [this](sim::BusTime time, const CanFrame& frame, std::uint32_t /*source*/) { events_.push_back({time, frame, true}); };
+    options.on_sent = [this](sim::BusTime time, const CanFrame& frame, std::uint32_t /*source*/) {
+      events_.push_back({time, frame, true});
+    };
     return options;
   }
 

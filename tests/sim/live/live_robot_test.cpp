@@ -108,7 +108,9 @@ class OutsideHost final : private CanPort {
         events_.push_back({transmission.end, transmission.frame, false});
       }
     };
-    options.on_sent = [this](BusTime time, const CanFrame& frame, std::uint32_t /*source*/) { events_.push_back({time, frame, true}); };
+    options.on_sent = [this](BusTime time, const CanFrame& frame, std::uint32_t /*source*/) {
+      events_.push_back({time, frame, true});
+    };
     return options;
   }
 

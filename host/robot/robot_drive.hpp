@@ -35,7 +35,7 @@ class RobotDrive final : public BusUser {
   [[nodiscard]] const canopen::Master& master() const { return master_; }
 
   /// The oldest tick whose frames have not been taken: complete, or wait_ticks old. Ticks follow each other without a
-  /// gap. at_end: no more frames come.
+  /// gap. at_end: no more frames come. To be called at least every 40 ticks: frames of later ticks are lost until then.
   [[nodiscard]] std::optional<TickFrames> take_tick(bool at_end = false);
 
   /// The last monitoring message of a joint.

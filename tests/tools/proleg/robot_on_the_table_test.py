@@ -185,9 +185,9 @@ class RobotOnTheTable(unittest.TestCase):
 
     def test_bad_input_is_one_line_and_the_right_status(self):
         scenario = SOURCE / SCENARIO
-        closed = socket.socket()
-        closed.bind(("127.0.0.1", 0))  # nobody listens
-        port = closed.getsockname()[1]
+        with socket.socket() as nobody:
+            nobody.bind(("127.0.0.1", 0))
+            port = nobody.getsockname()[1]
         for status, words, expected in (
             (2, ("scan", "--bus", "nonsense:x"), "nonsense:x"),
             (2, ("get", "3", "nonsense", "--bus", "can0"), "no object of this name"),

@@ -1,0 +1,200 @@
+// A host drives simulated modules over a bus: from any state, with frames that are lost, with changes in flight.
+
+#include "host/robot/robot_drive.hpp"
+
+#include <gtest/gtest.h>
+
+#include "live_bus.hpp"
+#include "shared/kernel/fingerprint.hpp"
+#include "shipped.hpp"
+#include "sim/loop/kernel_chain.hpp"
+#include "sim/scenario/master_input.hpp"
+
+namespace proleg::test {
+namespace {
+
+using canopen::MasterState;
+
+constexpr Microseconds second = 1'000'000;
+
+canopen::MasterOptions host_options() {
+  canopen::MasterOptions options;
+  options.core_fingerprint = core_fingerprint;
+  options.resets_modules = true;
+  options.ramps_down = true;
+  options.answer_timeout_us = 150'000;
+  options.attempts = 8;
+  return options;
+}
+
+class Host {
+ public:
+  Host(LiveBus& bus, const sim::Scenario& scenario)
+      : bus_(bus), input_(scenario), drive(bus, input_.setup, host_options(), input_.changes) {
+    bus_.attach(drive);
+  }
+  ~Host() { bus_.detach(drive); }
+  Host(const Host&) = delete;
+  Host& operator=(const Host&) = delete;
+
+  bool start(Microseconds at_most = 20 * second) {
+    drive.master().start(bus_.now());
+    bus_.run_until(bus_.now() + at_most, [this] {
+      return drive.master().state() == MasterState::running || drive.master().state() == MasterState::failed;
+    });
+    return drive.master().state() == MasterState::running;
+  }
+  bool stop() {
+    drive.master().stop(bus_.now());
+    return bus_.run_until(bus_.now() + 10 * second, [this] { return drive.master().state() == MasterState::stopped; });
+  }
+  bool run_to_tick(std::uint32_t tick) {
+    return bus_.run_until(bus_.now() + 60 * second, [&] { return drive.master().tick().value_or(0) >= tick; });
+  }
+
+ private:
+  LiveBus& bus_;
+  sim::MasterInput input_;
+
+ public:
+  host::RobotDrive drive;
+};
+
+TEST(RobotDrive, HandsOutTheStateFramesOfEveryTickWithoutAGap) {
+  const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  LiveBus bus(scenario);
+  Host host(bus, scenario);
+  ASSERT_TRUE(host.start());
+  sim::KernelChain chain(scenario.kernel, scenario.joint_limits, scenario.settings);
+  const std::vector<std::uint8_t> no_contacts(5);
+  std::uint32_t expected = 0;
+  for (std::uint32_t until = 20; until <= 320; until += 20) {
+    ASSERT_TRUE(host.run_to_tick(until));
+    while (const auto tick = host.drive.take_tick()) {
+      ASSERT_EQ(tick->tick, expected++);
+      chain.advance(no_contacts);
+      for (unsigned joint = 0; joint < 5; ++joint) {
+        ASSERT_TRUE(tick->frames[joint][0].has_value()) << tick->tick;
+        const StateFrame& gait = chain.kernel(joint).frame(joint, 0);
+        EXPECT_TRUE(std::equal(gait.bytes.begin(), gait.bytes.begin() + StateFrame::payload_size,
+                               tick->frames[joint][0]->bytes.begin()));
+      }
+    }
+  }
+  EXPECT_GE(expected, 301U);
+  for (unsigned joint = 0; joint < 5; ++joint) {
+    EXPECT_TRUE(host.drive.monitoring(joint).has_value());
+  }
+}
+
+TEST(RobotDrive, EveryCommandSucceedsAlthoughOneFrameInTwentyIsLost) {
+  const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  constexpr std::uint64_t runs = 4;
+  for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+    SCOPED_TRACE(seed);
+    LiveBus bus(scenario);
+    bus.run_for(100'000);
+    bus.lose(0.05, seed);
+    Host host(bus, scenario);
+    ASSERT_TRUE(host.start()) << describe(host.drive.master().problem().code);
+    bus.run_for(second / 2);
+    EXPECT_EQ(host.drive.master().state(), MasterState::running);
+    ASSERT_TRUE(host.stop());
+    bus.lose(0, 0);
+    bus.run_for(second / 10);
+    for (unsigned joint = 0; joint < 5; ++joint) {
+      EXPECT_FALSE(bus.robot().module(joint).pulse().has_value()) << "joint " << joint;
+    }
+  }
+}
+
+TEST(RobotDrive, ChangesOfTheUserTakeEffectTogetherAndSoon) {
+  const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  LiveBus bus(scenario);
+  Host host(bus, scenario);
+  ASSERT_TRUE(host.start());
+  ASSERT_TRUE(host.run_to_tick(100));
+  std::vector<canopen::ChangedValue> values;
+  for (std::uint8_t joint = 0; joint < 5; ++joint) {
+    values.push_back({0, joint, 0, false, raw(Unit::degree, 10)});
+  }
+  std::vector<canopen::Change> changes{{canopen::Change::soon, values}};
+  ASSERT_TRUE(host.drive.master().extend_changes(bus.now(), changes));
+  ASSERT_TRUE(host.run_to_tick(160));
+  ASSERT_FALSE(changes.front().dropped);
+  const std::uint32_t tick = changes.front().tick;
+  EXPECT_GE(tick, 120U) << "twenty ticks after all modules have the values";
+  EXPECT_LE(tick, 130U);
+  sim::KernelChain chain(scenario.kernel, scenario.joint_limits, scenario.settings);
+  const std::vector<std::uint8_t> no_contacts(5);
+  while (const auto frames = host.drive.take_tick()) {
+    if (frames->tick == tick) {
+      sim::Change change{tick, {}};
+      for (const canopen::ChangedValue& value : values) {
+        change.settings.push_back({value.slot, value.joint, value.number, value.internal, value.value});
+      }
+      chain.apply(change);
+    }
+    chain.advance(no_contacts);
+    for (unsigned joint = 0; joint < 5; ++joint) {
+      const firmware::TickRecord record = bus.robot().module(joint).last_tick();
+      if (record.tick == frames->tick) {
+        EXPECT_EQ(record.setpoint, chain.setpoints()[joint]);
+      }
+    }
+  }
+}
+
+TEST(RobotDrive, RefusesAChangeThatIsNotPossible) {
+  const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  LiveBus bus(scenario);
+  Host host(bus, scenario);
+  ASSERT_TRUE(host.start());
+  ASSERT_TRUE(host.run_to_tick(50));
+  const std::vector<canopen::ChangedValue> values{{0, 9, 0, false, 0}};
+  std::vector<canopen::Change> changes{{canopen::Change::soon, values}};
+  EXPECT_FALSE(host.drive.master().extend_changes(bus.now(), changes)) << "there is no joint 9";
+  ASSERT_TRUE(host.run_to_tick(100));
+  EXPECT_EQ(host.drive.master().state(), MasterState::running);
+}
+
+TEST(RobotDrive, NamesTheMissingModuleWithinThreeSecondsAndMovesNothing) {
+  const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  sim::LiveRobotOptions options;
+  options.change_identity = [](unsigned joint, firmware::ModuleIdentity& identity) {
+    identity.node = joint == 2 ? 0 : identity.node;
+  };
+  LiveBus bus(scenario, std::move(options));
+  bus.run_for(100'000);
+  Host host(bus, scenario);
+  const Microseconds begin = bus.now();
+  EXPECT_FALSE(host.start());
+  EXPECT_LT(bus.now() - begin, 3 * second);
+  EXPECT_EQ(host.drive.master().problem().code, canopen::ProblemCode::missing_module);
+  EXPECT_EQ(host.drive.master().problem().node, scenario.modules[2].node);
+  for (unsigned joint = 0; joint < 5; ++joint) {
+    EXPECT_FALSE(bus.robot().module(joint).pulse().has_value());
+  }
+}
+
+TEST(RobotDrive, NamesAModuleWithAnotherCoreWithinThreeSecondsAndMovesNothing) {
+  const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  sim::LiveRobotOptions options;
+  options.change_identity = [](unsigned joint, firmware::ModuleIdentity& identity) {
+    identity.core_fingerprint += joint == 3 ? 1U : 0U;
+  };
+  LiveBus bus(scenario, std::move(options));
+  bus.run_for(100'000);
+  Host host(bus, scenario);
+  const Microseconds begin = bus.now();
+  EXPECT_FALSE(host.start());
+  EXPECT_LT(bus.now() - begin, 3 * second);
+  EXPECT_EQ(host.drive.master().problem().code, canopen::ProblemCode::wrong_fingerprint);
+  EXPECT_EQ(host.drive.master().problem().joint, 3U);
+  for (unsigned joint = 0; joint < 5; ++joint) {
+    EXPECT_FALSE(bus.robot().module(joint).pulse().has_value());
+  }
+}
+
+}  // namespace
+}  // namespace proleg::test

@@ -41,6 +41,7 @@ constexpr std::array subcommands{
     Subcommand{"info", "show what a module says of itself"},
     Subcommand{"get", "read objects of modules"},
     Subcommand{"set", "write an object of modules"},
+    Subcommand{"monitor", "show what the modules on a bus do"},
     Subcommand{"nmt", "start, stop and reset modules"},
     Subcommand{"objects", "list the objects of a module that can be read and set over the bus"},
 };

@@ -178,6 +178,24 @@ class RobotOnTheTable(unittest.TestCase):
             self.assertEqual(set(states(bus.tcp).values()), {"no power"})
             self.assertIn("without a node id", proleg("scan", "--bus", bus.tcp).stdout)
 
+    def test_monitor_shows_the_moving_robot(self):
+        with Bus() as bus:
+            drive = start_drive(bus.tcp, "--seconds", "8")
+            wait_for_drives(bus.pty, "operation enabled")
+            lines = proleg("monitor", "--bus", bus.pty, "--seconds", "3", "--json").stdout.splitlines()
+            last = json.loads(lines[-2])
+            self.assertTrue(last["host"])
+            self.assertGreater(last["syncs"], 10)
+            self.assertTrue(0.01 < last["bus_load"] < 0.2, last["bus_load"])
+            self.assertEqual([node["node"] for node in last["nodes"]], [1, 2, 3, 4, 5])
+            for node in last["nodes"]:
+                self.assertEqual(node["drive"], "operation enabled")
+                self.assertLessEqual(abs(node["setpoint_deg"]), 40.01, "the amplitude")
+                self.assertGreaterEqual(node["current_ma"], 0)
+                self.assertEqual(node["fault"], "")
+            drive.communicate(timeout=LONGEST)
+            self.assertEqual(drive.returncode, 0)
+
     def test_a_simulated_bus_of_ones_own(self):
         scan = proleg("scan", "--bus", f"sim:{SOURCE / SCENARIO}")
         self.assertEqual(scan.returncode, 0, scan.stderr)

@@ -1,0 +1,120 @@
+#include "host/robot/bus_monitor.hpp"
+
+#include <algorithm>
+
+#include "shared/canopen/declared_objects.hpp"
+
+namespace proleg::host {
+namespace {
+
+constexpr double bit_rate = 1e6;
+/// A frame with 11-bit identifier: its fixed bits with the interframe space, and an average share of stuff bits.
+constexpr double fixed_bits = 47;
+constexpr double average_stuffing = 1.08;
+
+canopen::SdoTransferOptions reading_options() {
+  canopen::SdoTransferOptions options;
+  options.timeout_us = 100'000;
+  options.attempts = 2;
+  return options;
+}
+
+}  // namespace
+
+BusMonitor::BusMonitor(CanPort& port) : readings_(port, reading_options()) {
+  for (std::uint8_t node = 0; node < nodes_.size(); ++node) {
+    nodes_.at(node).node = node;
+  }
+}
+
+void BusMonitor::count(const CanFrame& frame) {
+  ++frames_;
+  bits_ += (fixed_bits + 8.0 * frame.length) * average_stuffing;
+}
+
+void BusMonitor::receive(Microseconds now, const CanFrame& frame) {
+  namespace identifier = canopen::identifier;
+  count(frame);
+  if (canopen::decode_sync(frame)) {
+    ++syncs_;
+    return;
+  }
+  const std::uint8_t number = identifier::node_of(frame.identifier);
+  if (number == canopen::host_node && canopen::decode_heartbeat(frame)) {
+    host_heard_ = now;
+  }
+  if (number < canopen::min_node_id || number > canopen::max_node_id) {
+    return;
+  }
+  MonitoredNode& node = nodes_.at(number);
+  if (const auto heartbeat = canopen::decode_heartbeat(frame)) {
+    node.state = heartbeat->state;
+  } else if (const auto emergency = canopen::decode_emergency(frame)) {
+    if (emergency->code != canopen::EmergencyCode::none) {
+      node.last_emergency = emergency;
+    }
+  } else if (const auto measured = canopen::decode_monitoring(frame)) {
+    node.measured = measured;
+  } else if (identifier::base_of(frame.identifier) == identifier::state_frame) {
+    if (const auto state = canopen::decode_state(frame)) {
+      node.contacts = static_cast<std::uint8_t>(state->flags() & StateFrame::contact_bits);
+    }
+  } else if (identifier::base_of(frame.identifier) != identifier::sdo_answer) {
+    readings_.receive(now, frame);
+    return;  // a request to the node, not from it
+  }
+  node.last_heard = now;
+  readings_.receive(now, frame);
+}
+
+void BusMonitor::transmitted(Microseconds now, const CanFrame& frame) {
+  count(frame);
+  readings_.transmitted(now, frame);
+}
+
+void BusMonitor::read_values(Microseconds now) {
+  constexpr Microseconds silent_us = 3'000'000;
+  for (MonitoredNode& node : nodes_) {
+    if (node.last_heard == 0 || node.last_heard + silent_us < now) {
+      continue;
+    }
+    readings_.read(node.node, canopen::object::position_demand.address, [&node](const SdoResult& result) {
+      node.setpoint = result.is_good() ? std::optional(static_cast<std::int32_t>(result.number())) : std::nullopt;
+    });
+    readings_.read(node.node, canopen::object::statusword.address, [&node](const SdoResult& result) {
+      node.statusword = result.is_good() ? std::optional(static_cast<std::uint16_t>(result.number())) : std::nullopt;
+    });
+  }
+}
+
+void BusMonitor::poll(Microseconds now) {
+  if (now >= next_reading_) {
+    next_reading_ = now + reading_period_us;
+    traffic_from_ = traffic_from_ == 0 ? now : traffic_from_;
+    if (readings_.is_idle()) {
+      read_values(now);
+    }
+  }
+  readings_.poll(now);
+}
+
+Microseconds BusMonitor::next_deadline() const { return std::min(next_reading_, readings_.next_deadline()); }
+
+std::vector<MonitoredNode> BusMonitor::nodes() const {
+  std::vector<MonitoredNode> heard;
+  std::ranges::copy_if(nodes_, std::back_inserter(heard),
+                       [](const MonitoredNode& node) { return node.last_heard != 0; });
+  return heard;
+}
+
+BusMonitor::Traffic BusMonitor::take_traffic(Microseconds now) {
+  const double seconds = static_cast<double>(now - traffic_from_) * 1e-6;
+  const Traffic traffic{syncs_, frames_, seconds > 0 ? std::min(1.0, bits_ / bit_rate / seconds) : 0.0};
+  traffic_from_ = now;
+  syncs_ = 0;
+  frames_ = 0;
+  bits_ = 0;
+  return traffic;
+}
+
+}  // namespace proleg::host

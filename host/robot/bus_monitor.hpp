@@ -1,0 +1,67 @@
+#pragma once
+
+// What happens on the bus of a robot, for a person who watches: listens, and reads the set-points of the modules.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "host/robot/bus_user.hpp"
+#include "host/robot/sdo_queue.hpp"
+#include "shared/canopen/messages.hpp"
+
+namespace proleg::host {
+
+/// A node, as it is known at the moment.
+struct MonitoredNode {
+  std::uint8_t node = 0;
+  std::optional<canopen::NmtState> state;   ///< by its last heartbeat
+  std::optional<std::int32_t> setpoint;     ///< 0x6062: 90 degrees = 2^30; nothing: not a joint module, or no answer
+  std::optional<std::uint16_t> statusword;  ///< 0x6041
+  std::optional<canopen::Monitoring> measured;       ///< angle, current, temperature, error register
+  std::optional<std::uint8_t> contacts;              ///< bits 0 to 3 as in the state frame
+  std::optional<canopen::Emergency> last_emergency;  ///< the last one that was not the end of an error
+  Microseconds last_heard = 0;
+};
+
+class BusMonitor final : public BusUser {
+ public:
+  static constexpr Microseconds reading_period_us = 500'000;
+
+  /// port: must outlive the monitor.
+  explicit BusMonitor(CanPort& port);
+  BusMonitor(const BusMonitor&) = delete;
+  BusMonitor& operator=(const BusMonitor&) = delete;
+
+  [[nodiscard]] std::vector<MonitoredNode> nodes() const;
+  [[nodiscard]] bool has_host() const { return host_heard_ != 0; }
+  /// Since the last call: SYNCs, frames of any kind (also of this host), and the share of the bus that they took, 0 to
+  /// 1, with an average number of stuff bits.
+  struct Traffic {
+    unsigned syncs;
+    std::uint64_t frames;
+    double load;
+  };
+  [[nodiscard]] Traffic take_traffic(Microseconds now);
+
+  void receive(Microseconds now, const CanFrame& frame) override;
+  void transmitted(Microseconds now, const CanFrame& frame) override;
+  void poll(Microseconds now) override;
+  [[nodiscard]] Microseconds next_deadline() const override;
+
+ private:
+  void count(const CanFrame& frame);
+  void read_values(Microseconds now);
+
+  SdoQueue readings_;
+  std::array<MonitoredNode, canopen::host_node> nodes_{};
+  Microseconds host_heard_ = 0;
+  Microseconds next_reading_ = 0;
+  Microseconds traffic_from_ = 0;
+  unsigned syncs_ = 0;
+  std::uint64_t frames_ = 0;
+  double bits_ = 0;
+};
+
+}  // namespace proleg::host

@@ -21,7 +21,6 @@ static_assert(board::apb1 / prescaler / (1 + segment_1 + segment_2) == 1'000'000
 constexpr std::uint32_t reads_for_a_frame = 10'000;
 /// RFOM ends after a few cycles of APB1.
 constexpr unsigned reads_for_release = 16;
-constexpr std::uint16_t end_of_urgent = 0x100;
 /// The FIFO holds three frames. If more come meanwhile, the interrupt comes again.
 constexpr unsigned frames_per_interrupt = 3;
 
@@ -132,9 +131,8 @@ bool Can::send(const CanFrame& frame) {
   if (is_bus_off_.load(std::memory_order_relaxed)) {
     return false;
   }
-  // One mailbox is for NMT, SYNC and EMCY: three frames that others outbid must not hold them up.
   unsigned free = mailbox_count;
-  const unsigned usable = frame.identifier < end_of_urgent ? mailbox_count : mailbox_count - 1;
+  const unsigned usable = frame.identifier < end_of_urgent_identifiers ? mailbox_count : mailbox_count - 1;
   for (unsigned mailbox = mailbox_count; mailbox-- > 0;) {
     if (!is_pending_[mailbox].load(std::memory_order_relaxed)) {
       free = mailbox < usable ? mailbox : free;

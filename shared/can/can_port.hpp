@@ -12,6 +12,10 @@ using Microseconds = std::uint64_t;
 /// A deadline that never comes.
 inline constexpr Microseconds never = ~Microseconds{0};
 
+/// NMT, SYNC and EMCY have identifiers below this. Of the mailboxes of a controller one is for them: frames that others
+/// outbid must not hold them up.
+inline constexpr std::uint16_t end_of_urgent_identifiers = 0x100;
+
 /// The output to the bus. Received frames, and that a frame was sent, reach the owner as events.
 class CanPort {
  public:

@@ -26,8 +26,7 @@ bool NativeModule::Flash::program(unsigned sector, std::uint32_t offset, std::sp
 }
 
 bool NativeModule::Port::send(const CanFrame& frame) {
-  constexpr std::uint16_t end_of_urgent = 0x100;
-  const std::size_t usable = frame.identifier < end_of_urgent ? frames_.size() : frames_.size() - 1;
+  const std::size_t usable = frame.identifier < end_of_urgent_identifiers ? frames_.size() : frames_.size() - 1;
   std::size_t free = frames_.size();
   for (std::size_t mailbox = frames_.size(); mailbox-- > 0;) {
     if (controller_.is_empty(mailbox)) {

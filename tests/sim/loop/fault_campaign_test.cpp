@@ -8,23 +8,18 @@
 #include <array>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <string>
 
 #include "shipped.hpp"
 #include "sim/fault/fault_reader.hpp"
 #include "sim/fault/random_faults.hpp"
 #include "sim/loop/fault_run.hpp"
+#include "tests/support/from_environment.hpp"
 
 namespace proleg::sim {
 namespace {
 
 constexpr double duration_s = 5.0;
-
-std::uint32_t from_environment(const char* name, std::uint32_t fallback) {
-  const char* text = std::getenv(name);
-  return text == nullptr ? fallback : static_cast<std::uint32_t>(std::stoul(text));
-}
 
 constexpr std::array scenarios{"travelling_wave/uniform", "travelling_wave/coupled", "obstacle/reflex"};
 

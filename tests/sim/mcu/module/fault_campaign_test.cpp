@@ -8,13 +8,13 @@
 #include <array>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <string>
 
 #include "sim/fault/fault_reader.hpp"
 #include "sim/fault/random_faults.hpp"
 #include "sim/loop/fault_run.hpp"
+#include "tests/support/from_environment.hpp"
 #include "virtual_robot.hpp"
 
 namespace proleg::sim {
@@ -22,11 +22,6 @@ namespace {
 
 constexpr double duration_s = 5.0;
 constexpr std::array scenarios{"travelling_wave/uniform", "travelling_wave/coupled", "obstacle/reflex"};
-
-std::uint32_t from_environment(const char* name, std::uint32_t fallback) {
-  const char* text = std::getenv(name);
-  return text == nullptr ? fallback : static_cast<std::uint32_t>(std::stoul(text));
-}
 
 /// With the servo period of common servos. (The shipped one is shorter than a pulse: the pin of a chip then shows only
 /// some of the pulses.)

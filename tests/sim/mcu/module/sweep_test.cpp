@@ -5,24 +5,19 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <sstream>
 #include <string>
 
 #include "shared/fixed/random.hpp"
 #include "shared/gait/registry.hpp"
 #include "sim/scenario/losses.hpp"
+#include "tests/support/from_environment.hpp"
 #include "virtual_robot.hpp"
 
 namespace proleg::sim {
 namespace {
 
 constexpr double duration_s = 4.0;
-
-std::uint32_t from_environment(const char* name, std::uint32_t fallback) {
-  const char* text = std::getenv(name);
-  return text == nullptr ? fallback : static_cast<std::uint32_t>(std::stoul(text));
-}
 
 struct RandomRobot {
   Scenario scenario;

@@ -42,6 +42,7 @@ constexpr std::array subcommands{
     Subcommand{"get", "read objects of modules"},
     Subcommand{"set", "write an object of modules"},
     Subcommand{"monitor", "show what the modules on a bus do"},
+    Subcommand{"params", "keep the settings of modules in a text file"},
     Subcommand{"nmt", "start, stop and reset modules"},
     Subcommand{"objects", "list the objects of a module that can be read and set over the bus"},
 };

@@ -178,6 +178,28 @@ class RobotOnTheTable(unittest.TestCase):
             self.assertEqual(set(states(bus.tcp).values()), {"no power"})
             self.assertIn("without a node id", proleg("scan", "--bus", bus.tcp).stdout)
 
+    def test_params_keep_the_settings_of_modules(self):
+        with Bus() as bus, tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "settings.txt"
+            self.assertEqual(proleg("params", "save", file, "--bus", bus.tcp).returncode, 0)
+            self.assertEqual(proleg("params", "diff", file, "--bus", bus.tcp).stdout, "0 differences\n")
+            proleg("set", "2", "0x6080", "300", "--bus", bus.tcp)
+            diff = proleg("params", "diff", file, "--bus", bus.tcp)
+            self.assertEqual(diff.returncode, 1)
+            self.assertIn("node 2  0x6080  Max motor speed: found 300 deg/s, the file has 720 deg/s", diff.stdout)
+            file.write_text(file.read_text().replace("3\t0x200A:1\t2000", "3\t0x200A:1\t1500"))
+            self.assertIn("changed 2 values of 5 modules",
+                          proleg("params", "load", file, "--store", "--bus", bus.tcp).stdout)
+            proleg("nmt", "reset-node", "all", "--bus", bus.tcp)
+            self.assertEqual(proleg("params", "diff", file, "--bus", bus.tcp).stdout, "0 differences\n")
+            text = file.read_text()
+            file.write_text(re.sub(r"(module\t1\t\S+\t)\S+", r"\g<1>0x00000001", text))
+            other = proleg("params", "load", file, "--bus", bus.tcp)
+            self.assertEqual(other.returncode, 1)
+            self.assertIn("node 1: found core", other.stderr)
+            file.write_text("nonsense")
+            self.assertEqual(proleg("params", "load", file, "--bus", bus.tcp).returncode, 2)
+
     def test_monitor_shows_the_moving_robot(self):
         with Bus() as bus:
             drive = start_drive(bus.tcp, "--seconds", "8")

@@ -35,7 +35,8 @@ class BusMonitor final : public BusUser {
   BusMonitor& operator=(const BusMonitor&) = delete;
 
   [[nodiscard]] std::vector<MonitoredNode> nodes() const;
-  [[nodiscard]] bool has_host() const { return host_heard_ != 0; }
+  /// Whether a host has sent a heartbeat in the last half second.
+  [[nodiscard]] bool has_host(Microseconds now) const { return host_heard_ != 0 && now < host_heard_ + 500'000; }
   /// Since the last call: SYNCs, frames of any kind (also of this host), and the share of the bus that they took, 0 to
   /// 1, with an average number of stuff bits.
   struct Traffic {

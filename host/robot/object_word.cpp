@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "shared/canopen/messages.hpp"
 #include "shared/canopen/object_name.hpp"
@@ -28,10 +29,6 @@ bool is_parameter_name(std::string_view name) {
     }
   }
   return false;
-}
-
-std::string address_text(canopen::Address address) {
-  return hexadecimal(address.index, 4) + ":" + std::to_string(address.sub);
 }
 
 /// Nothing if the word does not have the form INDEX[:SUB].
@@ -100,7 +97,11 @@ std::optional<std::int64_t> parse_raw(const canopen::Object& object, std::string
     if (!number) {
       return std::nullopt;
     }
-    return canopen::is_signed(object.type) ? std::int64_t{static_cast<std::int32_t>(*number)} : std::int64_t{*number};
+    // 0xFF is -1 of a type with 8 bits, as it travels.
+    const std::uint32_t bits = canopen::size_of(object.type) * 8U;
+    const bool fits = bits >= 32 || *number >> bits == 0;
+    const std::uint32_t value = fits ? canopen::extend(object.type, *number) : *number;
+    return canopen::is_signed(object.type) ? std::int64_t{static_cast<std::int32_t>(value)} : std::int64_t{value};
   }
   if (object.scale.numerator == object.scale.denominator) {
     return parse_whole<std::int64_t>(word);
@@ -110,8 +111,9 @@ std::optional<std::int64_t> parse_raw(const canopen::Object& object, std::string
     return result.error == DecimalError::none ? std::optional<std::int64_t>(result.raw) : std::nullopt;
   }
   const auto number = parse_number(word);
-  return number ? std::optional(static_cast<std::int64_t>(*number * object.scale.numerator / object.scale.denominator))
-                : std::nullopt;
+  constexpr double largest = 4294967296.0;
+  const double raw = number.value_or(0.0) * object.scale.numerator / object.scale.denominator;
+  return number && raw >= -largest && raw <= largest ? std::optional(std::int64_t{std::llround(raw)}) : std::nullopt;
 }
 
 /// Throws InputError if no object or several have the name.
@@ -152,6 +154,10 @@ canopen::Object object_of_name(const std::string& word) {
 }
 
 }  // namespace
+
+std::string address_text(canopen::Address address) {
+  return hexadecimal(address.index, 4) + (address.sub == 0 ? "" : ":" + std::to_string(address.sub));
+}
 
 ObjectWord::ObjectWord(std::string_view word) : text_(word) {
   if (const auto address = parse_address(word)) {

@@ -23,7 +23,7 @@ class ObjectWord {
   /// Throws InputError for a word that names no object, or several.
   explicit ObjectWord(std::string_view word);
 
-  /// The slot (0 to 3) whose algorithm decides which object it is; nothing: address_of() needs no algorithm.
+  /// The slot (0 to 3) whose algorithm decides which object it is; nothing: object() needs no algorithm.
   [[nodiscard]] std::optional<std::uint8_t> slot() const { return slot_; }
   /// The object. algorithm: id in the slot, 0: none. Throws InputError if the algorithm has no such parameter.
   [[nodiscard]] canopen::Object object(std::uint8_t algorithm = 0) const;
@@ -35,6 +35,9 @@ class ObjectWord {
   std::optional<std::uint8_t> slot_;
   std::string parameter_;
 };
+
+/// "0x6064", "0x1018:4"
+[[nodiscard]] std::string address_text(canopen::Address address);
 
 /// A value as a module sends it: "40 deg", "0x50524F4C (1347571532)", "Proleg joint module". Of another size than that
 /// of its type: the bytes.

@@ -37,14 +37,6 @@ void SdoQueue::add(std::uint8_t node, Job job) {
   is_new_ = true;
 }
 
-void SdoQueue::clear() {
-  channels_.clear();
-  for (auto& jobs : jobs_) {
-    jobs.clear();
-  }
-  unfinished_ = waiting_ = 0;
-}
-
 void SdoQueue::receive(Microseconds now, const CanFrame& frame) {
   for (const auto& channel : channels_) {
     channel->transfer.receive(now, frame);
@@ -131,7 +123,8 @@ void SdoQueue::finish_ended() {
   std::vector<std::unique_ptr<Channel>> ended;
   std::erase_if(channels_, [&ended](std::unique_ptr<Channel>& channel) {
     const State state = channel->transfer.state();
-    if (channel->waiting || (state != State::done && state != State::aborted)) {
+    const bool is_over = state == State::aborted || (state == State::done && !channel->waiting);
+    if (!is_over) {
       return false;
     }
     ended.push_back(std::move(channel));
@@ -145,9 +138,17 @@ void SdoQueue::finish_ended() {
     } else if (!channel->job.data) {
       result.value.assign(channel->buffer.begin(), channel->buffer.begin() + channel->transfer.size());
     }
-    --unfinished_;
-    if (channel->job.done) {
-      channel->job.done(result);
+    std::deque<Job> given_up;
+    if (result.abort_code == canopen::AbortCode::timeout) {
+      given_up.swap(jobs_.at(channel->transfer.node()));
+      waiting_ -= given_up.size();
+    }
+    given_up.push_front(std::move(channel->job));
+    unfinished_ -= given_up.size();
+    for (const Job& job : given_up) {
+      if (job.done) {
+        job.done(result);
+      }
     }
   }
 }

@@ -41,9 +41,10 @@ class SdoQueue final : public BusUser {
   SdoQueue(const SdoQueue&) = delete;
   SdoQueue& operator=(const SdoQueue&) = delete;
 
-  /// node: 1 to 126. `done` is called once, when the transfer ends; it may add further transfers. Transfers with one
-  /// node are made in the order of the calls. They begin with the next call of receive(), transmitted() or poll();
-  /// next_deadline() is the present then.
+  /// node: 1 to 126. If a node does not answer, all its transfers that have not begun end in the same way. `done` is
+  /// called once, when the transfer ends; it may add further transfers. Transfers with one node are made in the order
+  /// of the calls. They begin with the next call of receive(), transmitted() or poll(); next_deadline() is the present
+  /// then.
   void read(std::uint8_t node, canopen::Address address, Done done);
   void write(std::uint8_t node, canopen::Address address, std::span<const std::uint8_t> data, Done done);
   /// A number, with the size of its type.
@@ -51,9 +52,6 @@ class SdoQueue final : public BusUser {
 
   /// Whether all transfers have ended.
   [[nodiscard]] bool is_idle() const { return unfinished_ == 0; }
-  /// Forgets all transfers without a call of `done`.
-  void clear();
-
   void receive(Microseconds now, const CanFrame& frame) override;
   void transmitted(Microseconds now, const CanFrame& frame) override;
   void poll(Microseconds now) override;

@@ -51,9 +51,4 @@ std::string_view drive_text(std::uint16_t statusword) {
   }
 }
 
-bool has_power(std::uint16_t statusword) {
-  const unsigned bits = statusword & with_quick_stop_bit;
-  return bits == operation_enabled || bits == quick_stop_active;
-}
-
 }  // namespace proleg::host

@@ -13,7 +13,4 @@ namespace proleg::host {
 /// The state of a drive by its statusword (0x6041; CiA 402, table 30): "operation enabled", "fault", ...
 [[nodiscard]] std::string_view drive_text(std::uint16_t statusword);
 
-/// Whether the servo has power: Operation enabled or Quick stop active.
-[[nodiscard]] bool has_power(std::uint16_t statusword);
-
 }  // namespace proleg::host

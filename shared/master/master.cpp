@@ -52,10 +52,14 @@ void Master::stop(Microseconds now) {
     return;
   }
   now_ = now;
-  if (problem_.code == ProblemCode::other_host) {
-    state_ = MasterState::stopped;  // the robot is the other host's
+  if (!owns_robot_ || (problem_.code == ProblemCode::other_host && !is_powered_)) {
+    state_ = MasterState::stopped;
+    heartbeat_at_ = never;
+    enter(Phase::none);
     return;
   }
+  constexpr unsigned max_stop_attempts = 3;
+  sdo_clients_.set_attempts(std::min(options_.attempts, max_stop_attempts));
   state_ = MasterState::stopping;
   mission_ = Mission::stop;
   silence_at_ = never;
@@ -186,7 +190,10 @@ void Master::on_boot_up(unsigned joint) {
     return;  // it will boot again
   }
   if (mission_ == Mission::bring_up) {
-    if (booted_.contains(joint)) {
+    const bool is_expected = reset_again_.contains(joint) && (phase_ == Phase::scan || phase_ == Phase::quiet);
+    if (is_expected && booted_.contains(joint)) {
+      reset_again_ -= self;
+    } else if (booted_.contains(joint)) {
       fail(problem_of(ProblemCode::duplicate_node, joint));
     }
     booted_ |= self;
@@ -220,13 +227,14 @@ void Master::on_emergency(const CanFrame& frame) {
   const std::uint8_t joint = joint_of_[emergency->node];
   if (joint == no_joint) {
     on_unknown_node(emergency->node, false);
-  } else if (mission_ == Mission::bring_up && emergency->code == EmergencyCode::identifier_collision) {
+  } else if (mission_ == Mission::bring_up && phase_ != Phase::listen && phase_ != Phase::reset &&
+             emergency->code == EmergencyCode::identifier_collision) {
     fail(problem_of(ProblemCode::duplicate_node, joint));
   }
 }
 
 void Master::on_other_host() {
-  if (mission_ == Mission::bring_up && options_.resets_modules) {
+  if (mission_ == Mission::bring_up && options_.resets_modules && !is_powered_) {
     fail({ProblemCode::other_host});
     heartbeat_at_ = never;  // modules that the other host drives must miss that one only
   } else if (!other_host_reported_) {
@@ -236,6 +244,9 @@ void Master::on_other_host() {
 }
 
 void Master::on_unknown_node(std::uint8_t node, bool boots) {
+  if (phase_ == Phase::listen || phase_ == Phase::reset) {
+    return;  // another host may drive it; if not, it will boot
+  }
   if (mission_ == Mission::bring_up) {
     Problem problem{ProblemCode::unexpected_node};
     problem.node = node;

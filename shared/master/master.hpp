@@ -118,7 +118,9 @@ class Master final : private SdoWork {
   /// they are (it has set `dropped`, and the ticks of those that were `soon`), and new ones. They must outlive the
   /// master, or be replaced by this call. False, without an effect, if one of the new ones is not possible.
   [[nodiscard]] bool extend_changes(Microseconds now, std::span<Change> changes);
-  /// Switches off the servos and the SYNC of the robot. In any state after start().
+  /// Switches off the servos and the SYNC of the robot. In any state after start(). It sends nothing as long as the
+  /// master has only listened, or if the robot is another host's. A module that does not confirm that its servo has no
+  /// power is reported as an event.
   void stop(Microseconds now);
 
   void receive(Microseconds now, const CanFrame& frame);
@@ -241,11 +243,13 @@ class Master final : private SdoWork {
   JointMask given_up_;                        ///< could not be set up again; wait for a restart
   JointMask start_joints_ = {};               ///< NMT start is pending
   JointMask reset_joints_ = {};               ///< NMT reset node is pending
+  JointMask reset_again_;                     ///< were reset once more in `scan`: both of their boot-ups may come
   bool start_all_pending_ = false;            ///< NMT start to all is pending
   bool reset_all_pending_ = false;            ///< NMT reset node to all is pending
   bool pre_operational_all_pending_ = false;  ///< NMT enter Pre-operational to all is pending
   bool last_mission_was_rejoin_ = false;
   bool change_failed_ = false;
+  bool owns_robot_ = false;  ///< it has begun to change the modules: before that it only listens
   bool is_powered_ = false;  ///< servos may have power
   bool other_host_reported_ = false;
   std::uint32_t restarts_ = 0;

@@ -71,6 +71,7 @@ void Master::enter(Phase phase) {
       deadline_ = now_ + listening_time_us;
       break;
     case Phase::reset:
+      owns_robot_ = true;
       reset_all_pending_ = true;
       deadline_ = now_ + send_timeout_us;
       break;
@@ -82,6 +83,8 @@ void Master::enter(Phase phase) {
       break;
     case Phase::scan:
       state_ = MasterState::scanning;
+      owns_robot_ = true;
+      reset_again_ = {};
       booted_ = {};
       deadline_ = now_ + (options_.resets_modules ? repeat_us : boot_timeout_us);
       requests_ = 1;
@@ -93,7 +96,7 @@ void Master::enter(Phase phase) {
       break;
     case Phase::nmt_start:
       operational_ -= joints_;
-      deadline_ = now_ + (options_.resets_modules ? repeat_us : start_timeout_us);
+      deadline_ = now_ + (options_.resets_modules && mission_ == Mission::bring_up ? repeat_us : start_timeout_us);
       requests_ = 1;
       break;
     case Phase::set_up:
@@ -214,6 +217,7 @@ void Master::phase_timed_out() {
     case Phase::scan:
       if (repeat_request()) {
         reset_joints_ = all_joints() - booted_;
+        reset_again_ |= reset_joints_;
       } else {
         fail(problem_of(ProblemCode::missing_module, (all_joints() - booted_).front()));
       }
@@ -223,8 +227,19 @@ void Master::phase_timed_out() {
     case Phase::ramping:
       next_phase();
       break;
+    // Transports may lose a confirmation: what left the queue counts as sent.
     case Phase::reset:
+      if (!reset_all_pending_) {
+        next_phase();
+      } else {
+        fail({ProblemCode::cannot_send});
+      }
+      break;
     case Phase::commit:
+      if (commits_sent_ > 0) {
+        next_phase();
+        break;
+      }
       fail({ProblemCode::cannot_send});
       break;
     case Phase::nmt_start: {
@@ -294,8 +309,8 @@ void Master::begin_mission() {
 
 void Master::drop_change(const Problem& problem) {
   report(problem);
-  add_event(EventKind::change_dropped, 0, plan_[change_].tick);
   plan_.drop_next();
+  add_event(EventKind::change_dropped, 0, plan_[change_].tick);
   mission_ = Mission::none;
   enter(Phase::none);
 }

@@ -32,6 +32,8 @@ std::string_view describe(ProblemCode code) {
       return "a module does not answer";
     case ProblemCode::wrong_configuration:
       return "a module has the wrong configuration";
+    case ProblemCode::not_enabled:
+      return "a servo does not get power";
     case ProblemCode::not_operational:
       return "a module does not become operational";
     case ProblemCode::commit_too_late:
@@ -68,6 +70,8 @@ std::string_view describe(EventKind kind) {
       return "node does not belong to the robot";
     case EventKind::change_dropped:
       return "change was dropped";
+    case EventKind::not_stopped:
+      return "module did not confirm that its servo has no power";
     case EventKind::other_host:
       return "another host uses the bus";
   }

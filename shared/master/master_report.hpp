@@ -31,6 +31,7 @@ enum class ProblemCode : std::uint8_t {
   refused,              ///< the module refused `address` with `abort_code`
   no_answer,            ///< the module did not answer a request for `address`
   wrong_configuration,  ///< after set-up, the configuration CRC of the module is not the master's
+  not_enabled,          ///< the drive of the module is not in Operation enabled; statuswords
   not_operational,      ///< the heartbeat of the module does not report Operational before the timeout
   // While the robot runs.
   commit_too_late,  ///< `change` for the tick `expected` could not be committed by the tick `found`; it is dropped
@@ -66,6 +67,7 @@ enum class EventKind : std::uint8_t {
   left_operational,    ///< the heartbeat reports another state; detail: NmtState
   unexpected_node,     ///< a node that is not in the set-up has booted
   change_dropped,      ///< detail: tick of the change; see Problem
+  not_stopped,         ///< the node did not confirm that its servo has no power
   other_host,          ///< another host sends heartbeats on the bus; reported once
 };
 

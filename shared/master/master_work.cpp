@@ -35,8 +35,13 @@ std::optional<SdoStep> Master::step(unsigned joint, std::size_t position) {
       }
       return std::nullopt;
     case Phase::enable:
-      return position < enabling_count ? std::optional(write(object::controlword, enabling_controlwords[position]))
-                                       : std::nullopt;
+      if (position < enabling_count) {
+        return write(object::controlword, enabling_controlwords[position]);
+      }
+      // An answer that is late may have confirmed the next request, which was lost.
+      return position == enabling_count && options_.attempts > 1
+                 ? std::optional(SdoStep{false, object::statusword.address})
+                 : std::nullopt;
     case Phase::produce_sync:
       return only(object::sync_identifier, produces_sync | identifier::sync);
     case Phase::ramp:
@@ -78,6 +83,12 @@ bool Master::on_value(unsigned joint, std::size_t position, std::uint32_t value)
     problem.expected = expected;
     return joint_failed(problem);
   };
+  if (phase_ == Phase::enable) {
+    constexpr std::uint32_t state_bits = 0x6F;  // CiA 402, table 30
+    constexpr std::uint32_t operation_enabled = 0x27;
+    value &= state_bits;
+    return expect(operation_enabled, ProblemCode::not_enabled);
+  }
   const std::uint32_t serial = options_.serials.empty() ? 0 : options_.serials[joint];
   switch (position) {
     case 0:
@@ -133,6 +144,10 @@ bool Master::joint_failed(const Problem& problem) {
       add_event(EventKind::rejoin_failed, problem.node, static_cast<std::uint32_t>(problem.code));
       break;
     case Mission::stop:
+      if (phase_ == Phase::disable) {
+        add_event(EventKind::not_stopped, problem.node);
+      }
+      break;
     case Mission::none:
       break;
   }

@@ -80,6 +80,9 @@ std::vector<std::uint8_t> start_nodes(const ServerOptions& options, const sim::S
   }
   if (options.fresh) {
     const auto fresh = host::parse_nodes(*options.fresh);
+    for (const std::uint8_t node : fresh.value_or(std::vector<std::uint8_t>{})) {
+      static_cast<void>(joint_of_node(scenario, node, "--fresh", std::to_string(node)));
+    }
     for (std::size_t joint = 0; joint < nodes.size(); ++joint) {
       const std::uint8_t node = scenario.modules[joint].node;
       if (!fresh || std::ranges::find(*fresh, node) != fresh->end()) {
@@ -109,8 +112,8 @@ class Server final : private host::BusServerListener {
       advance(pace);
       context_.restart();
       const std::uint64_t wake_ns = std::min(robot_.next_event(), robot_.now() + longest_wait_ns);
-      if (pace.now_ns() < wake_ns) {
-        context_.run_one_for(std::chrono::nanoseconds(wake_ns - pace.now_ns()));
+      if (const std::uint64_t now_ns = pace.now_ns(); now_ns < wake_ns) {
+        context_.run_one_for(std::chrono::nanoseconds(wake_ns - now_ns));
       }
       context_.poll();
     }

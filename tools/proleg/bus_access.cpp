@@ -12,9 +12,12 @@
 
 namespace proleg::tools {
 
-void add_bus_option(CommandLine& command_line, BusOptions& options) {
+std::string BusOptions::address() const {
   const char* environment = std::getenv("PROLEG_BUS");
-  options.bus = environment != nullptr && *environment != '\0' ? environment : "auto";
+  return bus.value_or(environment != nullptr && *environment != '\0' ? environment : "auto");
+}
+
+void add_bus_option(CommandLine& command_line, BusOptions& options) {
   command_line
       .add_option("--bus", options.bus,
                   "where the robot is: " + host::bus_address_syntax() + ". Without it: $PROLEG_BUS, else auto")
@@ -35,8 +38,8 @@ class BusAccess::Implementation {
 };
 
 BusAccess::BusAccess(const BusOptions& options)
-    : implementation_(
-          std::make_unique<Implementation>(host::parse_bus_address(options.is_given() ? options.bus : find_bus()))) {}
+    : implementation_(std::make_unique<Implementation>(
+          host::parse_bus_address(options.address() == "auto" ? find_bus() : options.address()))) {}
 BusAccess::~BusAccess() = default;
 
 host::BusConnection& BusAccess::connection() { return implementation_->connection(); }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,13 +17,13 @@
 namespace proleg::tools {
 
 struct BusOptions {
-  std::string bus;
+  std::optional<std::string> bus;  ///< --bus
 
-  /// Whether the user has named a bus.
-  [[nodiscard]] bool is_given() const { return bus != "auto"; }
+  /// The address in use: --bus, else the environment variable PROLEG_BUS, else `auto`.
+  [[nodiscard]] std::string address() const;
 };
 
-/// Adds --bus. Without it the environment variable PROLEG_BUS counts, else `auto`.
+/// Adds --bus.
 void add_bus_option(CommandLine& command_line, BusOptions& options);
 
 /// The bus of a subcommand, open as long as this object.
@@ -57,7 +58,8 @@ void scan(BusAccess& bus, host::BusScan& scan);
 /// Waits until all transfers of a queue have ended.
 void finish(BusAccess& bus, host::SdoQueue& queue);
 
-/// "node 3: no answer: CAUSE", or "node 3: object 0x6064: the abort code in words". cause: what is known about the bus.
+/// "node 3: no answer to a request for OBJECT; CAUSE", or "node 3: OBJECT: the abort code in words". cause: what is
+/// known about the bus.
 [[nodiscard]] std::string failure_text(std::uint8_t node, const std::string& object, canopen::AbortCode code,
                                        const std::string& cause);
 

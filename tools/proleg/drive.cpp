@@ -1,6 +1,7 @@
 // proleg drive: a robot of modules moves as its scenario says.
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <memory>
@@ -72,7 +73,7 @@ class Drive {
       return;
     }
     const std::string reason = interrupted() ? "interrupted" : why_not();
-    stop();
+    static_cast<void>(stop());
     throw std::runtime_error(reason);
   }
 
@@ -91,9 +92,11 @@ class Drive {
     }
   }
 
-  /// Ramps down and takes the power from the servos.
-  void stop() {
-    constexpr Microseconds at_most = 4'000'000;
+  /// Ramps down and takes the power from the servos. Whether all modules have confirmed it.
+  bool stop() {
+    // The master gives up by itself: silent modules cost it a second for every eight of them.
+    constexpr Microseconds at_most = 20'000'000;
+    are_all_off_ = true;
     // What the modules send while they stop is not part of the gait.
     end_tick_ = std::min(end_tick_, drive_.master().tick().value_or(0));
     drive_.master().stop(bus_.now());
@@ -102,6 +105,7 @@ class Drive {
       return state() == canopen::MasterState::stopped;
     });
     take_ticks(true);
+    return are_all_off_ && state() == canopen::MasterState::stopped;
   }
 
   [[nodiscard]] const GaitCheck& check() const { return check_; }
@@ -129,8 +133,11 @@ class Drive {
   [[nodiscard]] std::string why_not() const {
     using canopen::ProblemCode;
     const canopen::Problem& problem = drive_.master().problem();
-    if (!bus_.state().is_connected || problem.code == ProblemCode::none) {
+    if (!bus_.state().is_connected) {
       return bus_.diagnosis();
+    }
+    if (problem.code == ProblemCode::none) {
+      return "the set-up has not ended in time; " + bus_.diagnosis();
     }
     std::string text = problem_text(problem, [this](std::uint8_t node) { return name_of(node); });
     if (problem.code == ProblemCode::missing_module || problem.code == ProblemCode::cannot_send ||
@@ -147,6 +154,7 @@ class Drive {
         std::cerr << "proleg drive: " << event_text(*event, [this](std::uint8_t node) { return name_of(node); })
                   << '\n';
       }
+      are_all_off_ = are_all_off_ && event->kind != canopen::EventKind::not_stopped;
       if (event->kind == canopen::EventKind::restarted) {
         check_.end_comparison(name_of(event->node) + " has restarted");
       }
@@ -182,7 +190,8 @@ class Drive {
           if (!drive_.master().extend_changes(bus_.now(), changes_.span())) {
             changes_.remove_last();
             static_cast<void>(drive_.master().extend_changes(bus_.now(), changes_.span()));
-            throw InputError(word, 0, "a change that is too late or has too many values", "a later tick");
+            throw InputError(word, 0, "a change that is not later than the one before it, or has too many values",
+                             "a later tick");
           }
         } catch (const InputError& error) {
           std::cerr << "proleg drive: " << error.what() << '\n';
@@ -201,7 +210,8 @@ class Drive {
   GaitCheck check_;
   InputLines input_lines_;
   bool wants_stop_ = false;
-  std::uint32_t end_tick_;  ///< the first one that is not part of the run
+  bool are_all_off_ = true;  ///< since stop()
+  std::uint32_t end_tick_;   ///< the first one that is not part of the run
 };
 
 std::string verdict(const GaitCheck& check) {
@@ -219,7 +229,7 @@ std::string verdict(const GaitCheck& check) {
 void print_result(const DriveOptions& options, const DriveResult& result, const GaitCheck& check, double seconds) {
   if (options.json) {
     std::cout << Json{{"scenario", options.file},
-                      {"bus", options.bus.bus},
+                      {"bus", options.bus.address()},
                       {"ticks", result.ticks},
                       {"driven_s", seconds},
                       {"differences", check.differences()},
@@ -252,28 +262,45 @@ void print_result(const DriveOptions& options, const DriveResult& result, const 
   }
 }
 
+void refuse_what_only_a_simulation_has(const DriveOptions& options) {
+  const std::pair<const char*, bool> given[] = {{"--losses", options.losses.has_value()},
+                                                {"--friction", options.overrides.friction.has_value()},
+                                                {"--at", options.overrides.at.has_value()},
+                                                {"--heading", options.overrides.heading.has_value()}};
+  for (const auto& [option, is_given] : given) {
+    if (is_given) {
+      throw InputError(option, 0, "an option for simulated worlds", "none of them: the robot is where it is");
+    }
+  }
+}
+
 int drive(const DriveOptions& options) {
   const ScenarioRun run = prepare_run(options);
   print_warnings("proleg drive", run.scenario);
   if (options.verbose) {
     print_setup(run.scenario);
   }
-  if (run.scenario.robot_control && !options.bus.is_given()) {
+  refuse_what_only_a_simulation_has(options);
+  if (run.scenario.robot_control && !options.bus.bus) {
     return drive_by_plugin(options, run);
   }
   check_outputs(planned_recording(options));
   BusAccess bus(options.bus);
   catch_interrupts();
+  // A reader of the output that ends must not end this program while the robot moves.
+  std::signal(SIGPIPE, SIG_IGN);
   std::unique_ptr<sim::Recorder> recorder = open_recorder(options, run.scenario, "drive");
   Drive robot(options, run, bus, recorder.get());
   robot.start();
   std::optional<std::string> failure;
   try {
     robot.follow();
-  } catch (const std::runtime_error& error) {
+  } catch (const std::exception& error) {
     failure = error.what();
   }
-  robot.stop();
+  if (!robot.stop() && !failure) {
+    failure = "not all modules have confirmed that their servos have no power: switch the robot off";
+  }
   const GaitCheck& check = robot.check();
   const DriveResult result = robot.result();
   const double seconds = result.ticks * (run.scenario.kernel.tick_period_us * 1e-6);

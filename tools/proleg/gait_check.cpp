@@ -43,6 +43,9 @@ GaitCheck::GaitCheck(const sim::Scenario& scenario)
     poses_.push_back(scenario.environment.robot_pose * link.pose);
   }
   sim::for_each_internal_value(scenario.kernel, [&](unsigned, unsigned, unsigned) { internal_values_.push_back(0); });
+  senses_contacts_ = std::ranges::any_of(scenario.kernel.slots, [](const Slot& slot) {
+    return slot.algorithm != nullptr && slot.algorithm->senses_contacts();
+  });
 }
 
 void GaitCheck::add_change(const sim::Change& change) {
@@ -64,6 +67,10 @@ const sim::Change* GaitCheck::follow(const host::TickFrames& tick) {
     chain_.apply(*change);
   }
   for (unsigned joint = 0; joint < contacts_.size(); ++joint) {
+    if (!tick.frames[joint][0] && senses_contacts_) {
+      end_comparison("a state frame of " + scenario_.robot.joints[joint].name +
+                     " was not received, and the gait depends on its contacts");
+    }
     if (const auto& frame = tick.frames[joint][0]) {
       contacts_[joint] = static_cast<std::uint8_t>(frame->flags() & StateFrame::contact_bits);
     }

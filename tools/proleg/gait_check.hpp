@@ -53,6 +53,7 @@ class GaitCheck {
   sim::ServoPulses pulse_source_;
   std::vector<sim::Change> changes_;  ///< by tick
   std::size_t next_change_ = 0;
+  bool senses_contacts_ = false;        ///< an algorithm of the gait reads them
   std::vector<std::uint8_t> contacts_;  ///< by joint
   std::uint64_t compared_ = 0;
   std::uint64_t missing_ = 0;

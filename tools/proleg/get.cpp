@@ -57,7 +57,7 @@ int get(const GetOptions& options) {
   Json list = Json::empty_array();
   for (const Reading& reading : readings) {
     const std::string name(canopen::entry_name(reading.object.address).view());
-    const std::string address = address_text(reading.object.address);
+    const std::string address = host::address_text(reading.object.address);
     if (!reading.result.is_good()) {
       std::cerr << "proleg get: "
                 << failure_text(reading.node, address + " (" + name + ")", reading.result.abort_code,

@@ -67,7 +67,7 @@ int info(const InfoOptions& options) {
     if (line.result->abort_code == canopen::AbortCode::timeout) {
       if (node != line.node) {
         std::cerr << "proleg info: "
-                  << failure_text(line.node, address_text(line.object.address), line.result->abort_code,
+                  << failure_text(line.node, host::address_text(line.object.address), line.result->abort_code,
                                   bus.connection().diagnosis())
                   << '\n';
       }
@@ -82,7 +82,7 @@ int info(const InfoOptions& options) {
     const std::string value = host::value_text(line.object, line.result->value);
     if (options.json) {
       list.append({{"node", unsigned{line.node}},
-                   {"object", address_text(line.object.address)},
+                   {"object", host::address_text(line.object.address)},
                    {"name", name},
                    {"value", value}});
       continue;
@@ -91,7 +91,7 @@ int info(const InfoOptions& options) {
       std::cout << (node == 0 ? "" : "\n") << "node " << unsigned{line.node} << '\n';
       node = line.node;
     }
-    const std::string address = address_text(line.object.address);
+    const std::string address = host::address_text(line.object.address);
     std::cout << "  " << address << std::string(address.size() < 10 ? 10 - address.size() : 1, ' ') << name << " = "
               << value << '\n';
   }

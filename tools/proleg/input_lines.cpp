@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cerrno>
+#include <utility>
 
 namespace proleg::tools {
 
@@ -30,6 +31,9 @@ void InputLines::read_available() {
   const ssize_t count = read(STDIN_FILENO, buffer.data(), buffer.size());
   if (count <= 0) {
     has_ended_ = count == 0 || (errno != EINTR && errno != EAGAIN);
+    if (has_ended_ && !rest_.empty()) {
+      lines_.push_back(std::exchange(rest_, {}));  // the last line has no end
+    }
     return;
   }
   rest_.append(buffer.data(), static_cast<std::size_t>(count));

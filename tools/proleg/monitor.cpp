@@ -71,7 +71,7 @@ void print_table(const host::BusMonitor& monitor, const host::BusMonitor::Traffi
   }
   std::printf("%u SYNC, %llu frames, bus load about %.1f %%%s\n", traffic.syncs,
               static_cast<unsigned long long>(traffic.frames), 100 * traffic.load,
-              monitor.has_host() ? ", driven by a host" : "");
+              monitor.has_host(now) ? ", driven by a host" : "");
   std::printf("%-5s %-16s %-18s %10s %10s %8s %9s %6s  %s\n", "node", "state", "drive", "set-point", "angle",
               "contacts", "current", "chip", "fault");
   for (const host::MonitoredNode& node : monitor.nodes()) {
@@ -111,7 +111,7 @@ void print_json(const host::BusMonitor& monitor, const host::BusMonitor::Traffic
            {"syncs", traffic.syncs},
            {"frames", traffic.frames},
            {"bus_load", traffic.load},
-           {"host", monitor.has_host()},
+           {"host", monitor.has_host(now)},
            {"nodes", nodes}}.text()) {
     is_indentation = character == '\n' || (is_indentation && character == ' ');
     if (!is_indentation) {

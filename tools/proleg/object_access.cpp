@@ -2,8 +2,6 @@
 
 #include <stdexcept>
 
-#include "shared/computer/text/text.hpp"
-
 namespace proleg::tools {
 
 canopen::Object AlgorithmTable::object(std::uint8_t node, const host::ObjectWord& word) const {
@@ -35,10 +33,6 @@ AlgorithmTable read_algorithms(BusAccess& bus, host::SdoQueue& queue, std::span<
     throw std::runtime_error(failure);
   }
   return table;
-}
-
-std::string address_text(canopen::Address address) {
-  return hexadecimal(address.index, 4) + (address.sub == 0 ? "" : ":" + std::to_string(address.sub));
 }
 
 std::int64_t raw_number(const canopen::Object& object, const host::SdoResult& result) {

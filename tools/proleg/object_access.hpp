@@ -31,9 +31,6 @@ class AlgorithmTable {
 [[nodiscard]] AlgorithmTable read_algorithms(BusAccess& bus, host::SdoQueue& queue, std::span<const std::uint8_t> nodes,
                                              std::span<const host::ObjectWord> words);
 
-/// "0x6064", "0x1018:4"
-[[nodiscard]] std::string address_text(canopen::Address address);
-
 /// The number that travelled, sign-extended.
 [[nodiscard]] std::int64_t raw_number(const canopen::Object& object, const host::SdoResult& result);
 

@@ -102,7 +102,7 @@ class Modules {
   bool check(std::uint8_t node, const canopen::Object& object, const host::SdoResult& result) {
     if (!result.is_good() && failure_.empty()) {
       const std::string name(canopen::entry_name(object.address).view());
-      failure_ = failure_text(node, address_text(object.address) + " (" + name + ")", result.abort_code,
+      failure_ = failure_text(node, host::address_text(object.address) + " (" + name + ")", result.abort_code,
                               bus_.connection().diagnosis());
     }
     return result.is_good();
@@ -176,7 +176,7 @@ int diff(const std::vector<host::ModuleParameters>& file, BusAccess& bus) {
   const std::vector<Difference> differences = compare(file, modules);
   for (const Difference& difference : differences) {
     const canopen::Object& object = difference.value.object;
-    std::cout << "node " << unsigned{difference.wanted->node} << "  " << address_text(object.address) << "  "
+    std::cout << "node " << unsigned{difference.wanted->node} << "  " << host::address_text(object.address) << "  "
               << canopen::entry_name(object.address).view() << ": found " << difference.found << ", the file has "
               << host::value_text(object, difference.value.bytes) << '\n';
   }

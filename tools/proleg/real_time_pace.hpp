@@ -6,7 +6,8 @@
 namespace proleg::tools {
 
 /// The time that a simulation has to reach, so that it keeps the pace of real time. A simulation that is late, because
-/// the computer is too slow or was suspended, does not catch up in a burst: its clock stands still meanwhile.
+/// the computer is too slow or was suspended, does not catch up in a burst, but for 50 ms at most: its clock stands
+/// still meanwhile.
 class RealTimePace {
  public:
   /// More is a delay.

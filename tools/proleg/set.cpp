@@ -38,7 +38,7 @@ int set(const SetOptions& options) {
     const canopen::Object object = algorithms.object(node, words.front());
     const std::vector<std::uint8_t> bytes = host::parse_value(options.object, object, options.value);
     const std::string name =
-        address_text(object.address) + " (" + std::string(canopen::entry_name(object.address).view()) + ")";
+        host::address_text(object.address) + " (" + std::string(canopen::entry_name(object.address).view()) + ")";
     queue.write(node, object.address, bytes, [&, node, object, bytes, name](const host::SdoResult& result) {
       if (result.is_good()) {
         std::cout << "node " << unsigned{node} << "  " << name << " = " << host::value_text(object, bytes) << '\n';

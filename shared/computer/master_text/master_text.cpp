@@ -21,6 +21,7 @@ std::string problem_text(const canopen::Problem& problem, const NodeName& name) 
     case ProblemCode::wrong_protocol:
     case ProblemCode::wrong_fingerprint:
     case ProblemCode::wrong_configuration:
+    case ProblemCode::not_enabled:
       text += ": found " + hexadecimal(problem.found, 8) + ", expected " + hexadecimal(problem.expected, 8);
       break;
     case ProblemCode::refused:

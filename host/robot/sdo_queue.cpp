@@ -71,11 +71,7 @@ void SdoQueue::advance(Microseconds now) {
   for (bool changes = true; changes;) {
     is_new_ = false;
     begin_jobs();
-    for (const auto& channel : channels_) {
-      if (!send(now, *channel)) {
-        break;
-      }
-    }
+    send(now);
     const std::size_t before = unfinished_;
     finish_ended();
     changes = unfinished_ != before || is_new_;
@@ -103,18 +99,22 @@ void SdoQueue::begin_jobs() {
   }
 }
 
-bool SdoQueue::send(Microseconds now, Channel& channel) {
-  for (;;) {
-    if (!channel.waiting) {
-      channel.waiting = channel.transfer.next_frame(now);
+void SdoQueue::send(Microseconds now) {
+  bool has_room = true;
+  for (const auto& channel : channels_) {
+    // A transfer that is done may have a last frame: it is taken from all of them, also if the port has no room.
+    for (;;) {
+      if (!channel->waiting) {
+        channel->waiting = channel->transfer.next_frame(now);
+      }
+      if (!channel->waiting || !has_room) {
+        break;
+      }
+      has_room = port_.send(*channel->waiting);
+      if (has_room) {
+        channel->waiting.reset();
+      }
     }
-    if (!channel.waiting) {
-      return true;
-    }
-    if (!port_.send(*channel.waiting)) {
-      return false;
-    }
-    channel.waiting.reset();
   }
 }
 

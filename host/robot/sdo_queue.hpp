@@ -73,8 +73,7 @@ class SdoQueue final : public BusUser {
   void add(std::uint8_t node, Job job);
   void advance(Microseconds now);
   void begin_jobs();
-  /// False if the port has no room.
-  [[nodiscard]] bool send(Microseconds now, Channel& channel);
+  void send(Microseconds now);
   void finish_ended();
 
   CanPort& port_;

@@ -222,13 +222,15 @@ void Master::on_emergency(const CanFrame& frame) {
   if (!emergency || emergency->node == host_node) {
     return;
   }
+  if (phase_ == Phase::listen || phase_ == Phase::reset) {
+    return;  // of an earlier run
+  }
   events_.add(
       {now_, EventKind::emergency, emergency->node, emergency->error_register, emergency->code, emergency->detail});
   const std::uint8_t joint = joint_of_[emergency->node];
   if (joint == no_joint) {
     on_unknown_node(emergency->node, false);
-  } else if (mission_ == Mission::bring_up && phase_ != Phase::listen && phase_ != Phase::reset &&
-             emergency->code == EmergencyCode::identifier_collision) {
+  } else if (mission_ == Mission::bring_up && emergency->code == EmergencyCode::identifier_collision) {
     fail(problem_of(ProblemCode::duplicate_node, joint));
   }
 }

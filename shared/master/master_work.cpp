@@ -47,7 +47,9 @@ std::optional<SdoStep> Master::step(unsigned joint, std::size_t position) {
     case Phase::ramp:
       return only(object::controlword, quick_stop_controlword);
     case Phase::disable:
-      return only(object::controlword, 0);
+      // The host leaves: its silence is no error then. (In the loop the modules are not used again.)
+      return position == 1 && options_.resets_modules ? std::optional(write(object::host_heartbeat, 0))
+                                                      : only(object::controlword, 0);
     case Phase::sync_off:
       return only(object::sync_identifier, identifier::sync);
     default:

@@ -51,7 +51,8 @@ void LiveRobot::advance_to(BusTime time) {
       plant_ticks_.end(next);
       begin_tick(tick_begin_ + tick_period(), false);
     }
-    rack_.advance_to(next, std::min(bus_.earliest_delivery(), time));
+    // What a program sends from outside is on the bus after `time`, and so not delivered before that either.
+    rack_.advance_to(next, bus_.earliest_delivery());
   }
   bus_.advance_to(time);
   take_problems();

@@ -214,7 +214,7 @@ class Server final : private host::BusServerListener {
 
 int serve(const ServerOptions& options) {
   if (options.can.empty() && !options.pty && options.tcp.empty() && !options.descriptor) {
-    throw InputError("proleg bus", 0, "no way to reach the robot", "--pty, --tcp PORT, --can INTERFACE or --fd N");
+    throw BadInput("found no way to reach the robot, expected --pty, --tcp PORT, --can INTERFACE or --fd N");
   }
   const ScenarioRun run = prepare_run(options.scenario);
   print_warnings("proleg bus", run.scenario);

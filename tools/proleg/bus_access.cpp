@@ -60,6 +60,25 @@ void BusAccess::wait_for(const std::string& what, Microseconds at_most, const st
   throw std::runtime_error(what + ": found none in " + std::to_string(at_most / 1'000'000) + " s; " + bus.diagnosis());
 }
 
+void require_no_host(BusAccess& bus) {
+  class Ear final : public host::BusUser {
+   public:
+    void receive(Microseconds /*now*/, const CanFrame& frame) override {
+      const auto heartbeat = canopen::decode_heartbeat(frame);
+      has_host = has_host || (heartbeat && heartbeat->node == canopen::host_node);
+    }
+    bool has_host = false;
+  };
+  constexpr Microseconds two_heartbeats = 250'000;
+  Ear ear;
+  bus.connection().attach(ear);
+  bus.connection().run_until(bus.connection().now() + two_heartbeats, [&ear] { return ear.has_host; });
+  bus.connection().detach(ear);
+  if (ear.has_host) {
+    throw std::runtime_error("another host drives the robot; nothing was sent");
+  }
+}
+
 void scan(BusAccess& bus, host::BusScan& scan) {
   constexpr Microseconds longest = 60'000'000;
   bus.connection().attach(scan);

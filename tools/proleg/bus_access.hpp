@@ -45,6 +45,10 @@ class BusAccess {
   std::unique_ptr<Implementation> implementation_;
 };
 
+/// Listens until a host would have sent heartbeats. Throws std::runtime_error if one drives the robot: then nothing may
+/// be changed.
+void require_no_host(BusAccess& bus);
+
 /// Scans the bus; throws std::runtime_error if the connection is lost or interrupted.
 void scan(BusAccess& bus, host::BusScan& scan);
 

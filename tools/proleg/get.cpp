@@ -60,8 +60,8 @@ int get(const GetOptions& options) {
     const std::string address = host::address_text(reading.object.address);
     if (!reading.result.is_good()) {
       std::cerr << "proleg get: "
-                << failure_text(reading.node, address + " (" + name + ")", reading.result.abort_code,
-                                bus.connection().diagnosis())
+                << failure_text(reading.node, std::string(address).append(" (").append(name).append(")"),
+                                reading.result.abort_code, bus.connection().diagnosis())
                 << '\n';
       status = exit_failed;
       continue;

@@ -15,7 +15,8 @@ void LiveChanges::add(const std::string& word, std::uint32_t now) {
   const bool has_tick = word.find('@') != std::string::npos;
   sim::Scenario scratch = scenario_;
   scratch.changes.clear();
-  sim::apply_setting(scratch, has_tick ? word : word + "@" + std::to_string(canopen::Change::soon - 1U));
+  // Any tick: the master decides later.
+  sim::apply_setting(scratch, has_tick ? word : word + "@1");
   if (scratch.changes.empty()) {
     throw InputError(word, 0, "no change", "NAME=VALUE or NAME=VALUE@TICK");
   }

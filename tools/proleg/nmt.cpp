@@ -53,17 +53,13 @@ class Requests final : public host::BusUser {
     const auto heartbeat = canopen::decode_heartbeat(frame);
     if (heartbeat && heartbeat->state == canopen::NmtState::boot_up) {
       std::cout << "node " << unsigned{heartbeat->node} << " boots\n";
-    } else if (heartbeat && heartbeat->node == canopen::host_node) {
-      hears_host_ = true;
     }
   }
   void transmitted(Microseconds /*now*/, const CanFrame& /*frame*/) override { ++transmitted_; }
   [[nodiscard]] std::size_t count() const { return transmitted_; }
-  [[nodiscard]] bool hears_host() const { return hears_host_; }
 
  private:
   std::size_t transmitted_ = 0;
-  bool hears_host_ = false;
 };
 
 int nmt(const NmtOptions& options) {
@@ -72,13 +68,9 @@ int nmt(const NmtOptions& options) {
   const std::vector<std::uint8_t> nodes = listed_nodes.value_or(std::vector<std::uint8_t>{0});
   BusAccess bus(options);
   catch_interrupts();
+  require_no_host(bus);
   Requests requests;
   bus.connection().attach(requests);
-  constexpr Microseconds host_heartbeats = 250'000;
-  bus.connection().run_for(host_heartbeats);
-  if (requests.hears_host()) {
-    throw std::runtime_error("another host drives the robot; nothing was sent");
-  }
   const std::size_t before = requests.count();
   std::size_t sent = 0;
   bus.wait_for("room for a frame", 1'000'000, [&] {

@@ -78,9 +78,9 @@ class Modules {
   void store(std::uint8_t node) {
     constexpr std::uint32_t save_signature = 0x65766173;
     const canopen::Object& object = canopen::object::store_parameters;
-    queue_.write(
-        node, object.address, object.type, save_signature,
-        [this, node, &object](const host::SdoResult& result) { static_cast<void>(check(node, object, result)); });
+    queue_.write(node, object.address, object.type, save_signature, [this, node](const host::SdoResult& result) {
+      static_cast<void>(check(node, canopen::object::store_parameters, result));
+    });
   }
   /// Throws std::runtime_error with the first failure.
   void wait() {
@@ -153,6 +153,7 @@ std::vector<Difference> compare(const std::vector<host::ModuleParameters>& file,
 }
 
 int load(const ParamsOptions& options, const std::vector<host::ModuleParameters>& file, BusAccess& bus) {
+  require_no_host(bus);
   Modules modules(bus);
   const std::vector<Difference> differences = compare(file, modules);
   for (const Difference& difference : differences) {

@@ -80,7 +80,7 @@ void print_table(const host::BusScan& scan, const std::string& bus) {
   std::printf("%zu node%s%s%s\n", nodes.size(), nodes.size() == 1 ? "" : "s", scan.syncs() > 0 ? ", SYNC" : "",
               scan.has_host() ? ", driven by a host" : "");
   if (scan.has_fresh_modules()) {
-    std::printf("There are modules without a node id: 'proleg assign' gives them one.\n");
+    std::printf("There are modules without a node id.\n");
   }
 }
 
@@ -95,8 +95,8 @@ int run(const ScanOptions& options) {
     print_table(all, bus.connection().description());
   }
   for (const std::uint8_t node : all.duplicates()) {
-    print_warning("proleg scan", "several modules have the node id " + std::to_string(node) +
-                                     "; switch all but one off and give each its own with 'proleg assign'");
+    print_warning("proleg scan",
+                  "several modules have the node id " + std::to_string(node) + "; switch all but one of them off");
   }
   for (const host::ScannedNode& node : all.nodes()) {
     if (node.is_module && node.core_fingerprint != core_fingerprint) {

@@ -30,6 +30,7 @@ int set(const SetOptions& options) {
   }
   BusAccess bus(options);
   catch_interrupts();
+  require_no_host(bus);
   const std::vector<std::uint8_t> nodes = nodes_of(bus, options.nodes);
   host::SdoQueue queue(bus.connection(), patient_transfers());
   const AlgorithmTable algorithms = read_algorithms(bus, queue, nodes, words);

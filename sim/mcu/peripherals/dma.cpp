@@ -71,7 +71,6 @@ std::array<InterruptLine, Dma::stream_count> interrupt_lines(ChipServices& chip,
 
 Dma::Dma(ChipServices& chip, unsigned number, Memory memory)
     : RegisterBlock(chip, number == 1 ? "DMA1" : "DMA2", number == 1 ? 0x4002'6000 : 0x4002'6400, 0x400, registers),
-      number_(number),
       memory_(std::move(memory)),
       interrupts_(interrupt_lines(chip, number)) {}
 

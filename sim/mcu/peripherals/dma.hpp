@@ -79,7 +79,6 @@ class Dma final : public RegisterBlock {
   void raise(unsigned number, std::uint32_t flag);
   void update_interrupt(unsigned number);
 
-  unsigned number_;
   Memory memory_;
   std::array<Stream, stream_count> streams_;
   std::array<std::uint32_t, 2> flags_{};  ///< LISR, HISR

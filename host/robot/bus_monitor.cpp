@@ -22,8 +22,8 @@ canopen::SdoTransferOptions reading_options() {
 }  // namespace
 
 BusMonitor::BusMonitor(CanPort& port) : readings_(port, reading_options()) {
-  for (std::uint8_t node = 0; node < nodes_.size(); ++node) {
-    nodes_.at(node).node = node;
+  for (std::size_t node = 0; node < nodes_.size(); ++node) {
+    nodes_.at(node).node = static_cast<std::uint8_t>(node);
   }
 }
 

@@ -168,13 +168,14 @@ std::vector<canopen::Object> setting_objects(const std::vector<std::uint8_t>& al
       objects.push_back(one);
     }
   });
-  for (std::uint8_t slot = 0; slot < algorithms.size(); ++slot) {
+  for (std::size_t slot = 0; slot < algorithms.size(); ++slot) {
     const ActuationModule* algorithm = find_algorithm(algorithms[slot]);
     if (algorithm == nullptr) {
       continue;
     }
-    for (std::uint8_t number = 0; number < algorithm->declaration().parameters.size(); ++number) {
-      const canopen::ValueAddress value{canopen::ValueKind::parameter, algorithms[slot], number, slot};
+    for (std::size_t number = 0; number < algorithm->declaration().parameters.size(); ++number) {
+      const canopen::ValueAddress value{canopen::ValueKind::parameter, algorithms[slot],
+                                        static_cast<std::uint8_t>(number), static_cast<std::uint8_t>(slot)};
       objects.push_back(canopen::find_object(canopen::address_of(value)).value());
     }
   }

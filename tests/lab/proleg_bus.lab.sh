@@ -1,5 +1,6 @@
 #!/bin/sh
-# A simulated robot on vcan0: any CAN program reaches its modules, and proleg drives it there.
+# A simulated robot on vcan0: any CAN program reaches its modules, and so does proleg. (An emulated processor is too slow to
+# drive it in real time.)
 set -eu
 scenario=$PROLEG_LAB_CHECKS/../../sim/scenarios/travelling_wave/uniform.simulation.xml
 "$PROLEG_BIN/proleg-bus" "$scenario" --can vcan0 --seconds 110 >bus 2>&1 &
@@ -29,7 +30,4 @@ echo "answer: $answer"
 "$PROLEG_BIN/proleg-scan" --bus vcan0 >scan
 cat scan
 grep -q '^5 nodes' scan
-"$PROLEG_BIN/proleg-drive" "$scenario" --bus vcan0 --seconds 2 </dev/null >drive
-cat drive
-grep -q '0 differences in 1000 state frames$' drive
 kill $bus

@@ -160,10 +160,10 @@ class GatewayBench {
   }
 };
 
-/// Nobody acknowledges; then the bus is stuck, and good again.
+/// No node acknowledges; then the bus is stuck, and good again.
 inline void expect_lines_of_bus_states(GatewayBench& bench) {
   bench.open();
-  bench.bus.controller(1).switch_off();  // nobody acknowledges
+  bench.bus.controller(1).switch_off();  // no node acknowledges
   bench.write("t60984000100000000000\r");
   bench.run_for(200 * GatewayBench::ms);
   const auto lines = lines_of(bench.host.take_text());

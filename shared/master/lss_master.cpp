@@ -8,6 +8,12 @@ namespace {
 
 constexpr std::uint8_t highest_bit = 31;
 
+/// All modules stop waiting for configuration.
+CanFrame release_request() {
+  return lss::make(identifier::lss_request, Service::switch_state_global,
+                   static_cast<std::uint8_t>(lss::State::waiting));
+}
+
 }  // namespace
 
 std::string_view describe(LssProblem problem) {
@@ -26,6 +32,8 @@ std::string_view describe(LssProblem problem) {
       return "the module refuses the node id";
     case LssProblem::store_refused:
       return "the module does not store the node id";
+    case LssProblem::not_released:
+      return "another module stays selected";
     case LssProblem::no_boot_up:
       return "the module does not boot with its node id";
   }
@@ -41,17 +49,27 @@ void LssMaster::start(Microseconds now) {
 
 void LssMaster::send(Microseconds now, Step step) {
   step_ = step;
-  is_pending_ = true;
-  is_transmitted_ = false;
-  is_answered_ = false;
-  error_ = lss::ok;
-  deadline_ = now + options_.send_timeout_us;
-  hand_over();
+  tries_ = 1;
+  exchange(now);
 }
 
-void LssMaster::hand_over() {
-  if (is_pending_ && port_.send(request())) {
-    is_pending_ = false;
+void LssMaster::exchange(Microseconds now) {
+  switch (step_) {
+    case Step::release_all:
+      exchange_.begin(now, release_request());
+      break;
+    case Step::release:
+      exchange_.begin(now, release_request(), LssExchange::boot_up_of(module_->node), options_.boot_timeout_us);
+      break;
+    case Step::configure:
+      exchange_.begin(now, request(), LssExchange::of(Service::configure_node_id), options_.answer_timeout_us);
+      break;
+    case Step::store:
+      exchange_.begin(now, request(), LssExchange::of(Service::store_configuration), options_.store_timeout_us);
+      break;
+    default:
+      exchange_.begin(now, request(), LssExchange::of(Service::identified), options_.answer_timeout_us);
+      break;
   }
 }
 
@@ -74,73 +92,28 @@ CanFrame LssMaster::request() const {
     case Step::release:
       break;
   }
-  return lss::make(identifier, Service::switch_state_global, static_cast<std::uint8_t>(lss::State::waiting));
+  return release_request();
 }
 
-Service LssMaster::expected_answer() const {
-  switch (step_) {
-    case Step::configure:
-      return Service::configure_node_id;
-    case Step::store:
-      return Service::store_configuration;
-    default:
-      return Service::identified;
-  }
-}
+/// How often the present request is sent, if there is no answer. Without an answer a bit of an address is 1. That is
+/// asked once, since every second bit is 1; if the address is wrong, it is scanned again with more patience.
+unsigned LssMaster::attempts() const { return step_ == Step::bit && scans_ == 0 ? 1 : options_.attempts; }
 
-Microseconds LssMaster::timeout() const {
-  switch (step_) {
-    case Step::release_all:
-      return 0;  // it has no answer
-    case Step::store:
-      return options_.store_timeout_us;
-    case Step::release:
-      return options_.boot_timeout_us;
-    default:
-      return options_.answer_timeout_us;
-  }
-}
+void LssMaster::receive(Microseconds now, const CanFrame& frame) { exchange_.receive(now, frame); }
 
-void LssMaster::receive(Microseconds now, const CanFrame& frame) {
-  // An adapter may report an answer before it reports that the request was sent.
-  if (state_ != State::working || is_pending_) {
-    return;
-  }
-  if (step_ == Step::release) {
-    if (frame == encode(Heartbeat{module_->node, NmtState::boot_up})) {
-      is_transmitted_ = true;
-      is_answered_ = true;
-      deadline_ = now;
-    }
-    return;
-  }
-  if (frame.identifier == identifier::lss_answer && frame.length == CanFrame::max_length &&
-      lss::service_of(frame) == expected_answer()) {
-    error_ = is_answered_ && error_ != lss::ok ? error_ : frame.data[1];
-    is_transmitted_ = true;
-    is_answered_ = true;
-    deadline_ = now + options_.settle_us;
-  }
-}
-
-void LssMaster::transmitted(Microseconds now, const CanFrame& frame) {
-  if (state_ != State::working) {
-    return;
-  }
-  if (is_pending_) {
-    hand_over();
-  } else if (!is_transmitted_ && frame == request()) {
-    is_transmitted_ = true;
-    deadline_ = now + timeout();
-  }
-}
+void LssMaster::transmitted(Microseconds now, const CanFrame& frame) { exchange_.transmitted(now, frame); }
 
 void LssMaster::poll(Microseconds now) {
-  if (state_ != State::working || now < deadline_) {
+  if (state_ != State::working || !exchange_.has_ended(now)) {
     return;
   }
-  if (!is_transmitted_) {
+  if (!exchange_.is_sent()) {
     fail(LssProblem::not_sent);
+    return;
+  }
+  if (!exchange_.is_answered() && step_ != Step::release_all && tries_ < attempts()) {
+    ++tries_;
+    exchange(now);
     return;
   }
   conclude(now);
@@ -153,16 +126,16 @@ void LssMaster::conclude(Microseconds now) {
       send(now, Step::begin);
       return;
     case Step::begin:
-      if (is_answered_) {
+      if (exchange_.is_answered()) {
         sub_ = 0;
         scan_number(now);
       } else {
         state_ = State::done;
-        deadline_ = never;
+        exchange_.cancel();
       }
       return;
     case Step::guess:
-      if (is_answered_) {
+      if (exchange_.is_answered()) {
         finish_number(now);
       } else {
         number_ = 0;
@@ -171,7 +144,7 @@ void LssMaster::conclude(Microseconds now) {
       }
       return;
     case Step::bit:
-      number_ |= is_answered_ ? 0U : std::uint32_t{1} << bit_;
+      number_ |= exchange_.is_answered() ? 0U : std::uint32_t{1} << bit_;
       if (bit_ == 0) {
         send(now, Step::verify);
       } else {
@@ -180,7 +153,7 @@ void LssMaster::conclude(Microseconds now) {
       }
       return;
     case Step::verify:
-      if (is_answered_) {
+      if (exchange_.is_answered()) {
         finish_number(now);
       } else {
         repeat_scan(now);
@@ -193,7 +166,7 @@ void LssMaster::conclude(Microseconds now) {
       finish(now, Service::store_configuration, LssProblem::store_refused, Step::release);
       return;
     case Step::release:
-      if (!is_answered_) {
+      if (!exchange_.is_answered()) {
         fail(LssProblem::no_boot_up, module_->node);
         return;
       }
@@ -256,10 +229,10 @@ LssModule* LssMaster::find_entry() const {
 }
 
 void LssMaster::finish(Microseconds now, Service service, LssProblem refused, Step next) {
-  if (!is_answered_) {
+  if (!exchange_.is_answered()) {
     fail(LssProblem::no_answer, static_cast<std::uint8_t>(service));
-  } else if (error_ != lss::ok) {
-    fail(refused, error_);
+  } else if (exchange_.error() != lss::ok) {
+    fail(refused, exchange_.error());
   } else {
     send(now, next);
   }
@@ -269,10 +242,9 @@ void LssMaster::fail(LssProblem problem, std::uint8_t detail) {
   state_ = State::failed;
   problem_ = problem;
   problem_detail_ = detail;
-  deadline_ = never;
+  exchange_.cancel();
   // No module stays selected: it would be configured with the next one. If that is lost, the next start releases it.
-  step_ = Step::release_all;
-  static_cast<void>(port_.send(request()));
+  static_cast<void>(port_.send(release_request()));
 }
 
 }  // namespace proleg::canopen

@@ -3,15 +3,13 @@
 // The master of the layer setting services (CiA 305): finds modules without a node id by Fastscan, gives each a node id
 // and lets it store the id. A state machine with frames and deadlines as inputs and frames as outputs; each of its
 // waits has a timeout.
-//
-// Several modules may answer one request of Fastscan, one after the other. The master therefore waits after each answer
-// until no more came for a while (settle_us), so that it does not take a late one for the answer to the next request.
 
 #include <span>
 
 #include "shared/can/can_port.hpp"
 #include "shared/canopen/declared_objects.hpp"
 #include "shared/canopen/lss_frame.hpp"
+#include "shared/master/lss_exchange.hpp"
 
 namespace proleg::canopen {
 
@@ -26,7 +24,8 @@ struct LssModule {
 struct LssMasterOptions {
   /// Numbers that most modules have: they are tried first, a frame instead of 33. 0: not known.
   LssAddress usual{object::vendor.default_value, 0, object::revision.default_value, 0};
-  bool stores = true;  ///< the modules keep the node id
+  bool stores = true;     ///< the modules keep the node id
+  unsigned attempts = 1;  ///< of each request, if there is no answer; more for a connection that loses frames
   Microseconds answer_timeout_us = 10'000;
   Microseconds settle_us = 2'000;  ///< without an answer before the next request
   Microseconds store_timeout_us = storing_time_us;
@@ -42,6 +41,7 @@ enum class LssProblem : std::uint8_t {
   no_answer,          ///< of the module that was found, to 'configure node id' or 'store'; detail: the service
   node_refused,       ///< detail: error code
   store_refused,      ///< detail: error code; 255: the module does not write its flash in its present state
+  not_released,       ///< of LssRenumbering: another module stays selected
   no_boot_up,         ///< the module does not boot; detail: the node id
 };
 /// One short phrase for people.
@@ -55,7 +55,10 @@ class LssMaster {
 
   /// port: used by this master only. modules must outlive the master.
   LssMaster(CanPort& port, std::span<LssModule> modules, const LssMasterOptions& options = {})
-      : port_(port), modules_(modules), options_(options) {}
+      : port_(port),
+        modules_(modules),
+        options_(options),
+        exchange_(port, options.send_timeout_us, options.settle_us) {}
   LssMaster(const LssMaster&) = delete;
   LssMaster& operator=(const LssMaster&) = delete;
 
@@ -67,7 +70,7 @@ class LssMaster {
   void transmitted(Microseconds now, const CanFrame& frame);
   /// Handles the deadline that has passed; must be called at next_deadline() or later.
   void poll(Microseconds now);
-  [[nodiscard]] Microseconds next_deadline() const { return deadline_; }
+  [[nodiscard]] Microseconds next_deadline() const { return exchange_.deadline(); }
 
   [[nodiscard]] State state() const { return state_; }
   [[nodiscard]] LssProblem problem() const { return problem_; }
@@ -91,10 +94,9 @@ class LssMaster {
   };
 
   void send(Microseconds now, Step step);
-  void hand_over();
+  void exchange(Microseconds now);
   [[nodiscard]] CanFrame request() const;
-  [[nodiscard]] lss::Service expected_answer() const;
-  [[nodiscard]] Microseconds timeout() const;
+  [[nodiscard]] unsigned attempts() const;
   void conclude(Microseconds now);
   void scan_number(Microseconds now);
   void finish_number(Microseconds now);
@@ -112,18 +114,15 @@ class LssMaster {
   LssProblem problem_ = LssProblem::none;
   std::uint8_t problem_detail_ = 0;
   Step step_ = Step::release_all;
-  bool is_pending_ = false;      ///< the request waits for a mailbox
-  bool is_transmitted_ = false;  ///< the request was on the bus
-  bool is_answered_ = false;
-  std::uint8_t error_ = 0;  ///< in the answer
-  std::uint8_t sub_ = 0;    ///< the number that is scanned
+  unsigned tries_ = 0;    ///< of the present request
+  std::uint8_t sub_ = 0;  ///< the number that is scanned
   std::uint8_t bit_ = 0;
   std::uint32_t number_ = 0;
   unsigned scans_ = 0;
   unsigned assigned_ = 0;
   LssAddress address_{};
   LssModule* module_ = nullptr;  ///< the one that is configured
-  Microseconds deadline_ = never;
+  LssExchange exchange_;
 };
 
 }  // namespace proleg::canopen

@@ -246,7 +246,7 @@ void Master::on_other_host() {
 }
 
 void Master::on_unknown_node(std::uint8_t node, bool boots) {
-  if (phase_ == Phase::listen || phase_ == Phase::reset) {
+  if (options_.allows_others || phase_ == Phase::listen || phase_ == Phase::reset) {
     return;  // another host may drive it; if not, it will boot
   }
   if (mission_ == Mission::bring_up) {

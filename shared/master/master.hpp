@@ -51,6 +51,8 @@ struct MasterOptions {
   std::uint8_t sync_producer = 0;            ///< joint whose module produces SYNC
   /// The modules may be on already, in any state: start() listens for another host, then resets all of them.
   bool resets_modules = false;
+  /// Nodes that are not in the set-up may boot and send: the master leaves them as they boot.
+  bool allows_others = false;
   /// stop() lets the joints of a moving robot ramp to their safe pose (quick stop) before it takes their power.
   bool ramps_down = false;
   /// Of each SDO answer, and how often a request is sent until there is one. For a connection that loses frames: more
@@ -203,6 +205,7 @@ class Master final : private SdoWork {
   void finish_rejoin();
   void run();
   void phase_timed_out();
+  void request_start();
   [[nodiscard]] bool repeat_request();
   void watch_heartbeats();
 

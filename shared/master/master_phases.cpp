@@ -250,7 +250,7 @@ void Master::phase_timed_out() {
       if (mission_ == Mission::bring_up && repeat_request()) {
         // All together again, since each module needs the first state frames of the others.
         pre_operational_all_pending_ = true;
-        start_all_pending_ = true;
+        request_start();
         operational_ = {};
         break;
       }
@@ -263,6 +263,14 @@ void Master::phase_timed_out() {
     }
     default:
       break;
+  }
+}
+
+void Master::request_start() {
+  if (options_.allows_others) {
+    start_joints_ = joints_;
+  } else {
+    start_all_pending_ = true;
   }
 }
 
@@ -352,7 +360,7 @@ void Master::after_commit() {
         change_ = plan_.next();
         enter(Phase::stage);
       } else {
-        start_all_pending_ = true;
+        request_start();
         enter(Phase::nmt_start);
       }
       break;

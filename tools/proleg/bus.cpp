@@ -98,6 +98,7 @@ class Server final : private host::BusServerListener {
  public:
   Server(const ServerOptions& options, const ScenarioRun& run, HilModules& modules)
       : nodes_(start_nodes(options, run.scenario)),
+        robot_model_(run.scenario.robot),
         is_verbose_(options.verbose),
         log_(options.can_log ? std::make_unique<sim::CandumpLog>(*options.can_log) : nullptr),
         robot_(run.scenario, live_options(modules)) {
@@ -183,6 +184,21 @@ class Server final : private host::BusServerListener {
     const std::uint64_t now = pace.now_ns();
     robot_.advance_to(std::min(now, robot_.now() + longest_piece_ns));
     pace.simulated_to(robot_.now());
+    if (is_verbose_) {
+      report_power();
+    }
+  }
+
+  /// A person at a real robot sees which joint moves.
+  void report_power() {
+    for (unsigned joint = 0; joint < robot_.joint_count(); ++joint) {
+      const bool has_power = robot_.module(joint).pulse().has_value();
+      if (has_power != has_power_[joint]) {
+        std::cerr << "proleg bus: " << robot_model_.joints[joint].name << (has_power ? " has" : " has no")
+                  << " power\n";
+        has_power_[joint] = has_power;
+      }
+    }
   }
 
   static void report_delays(const RealTimePace& pace) {
@@ -204,6 +220,8 @@ class Server final : private host::BusServerListener {
   void descriptor_closed() override { is_closed_ = true; }
 
   std::vector<std::uint8_t> nodes_;  ///< by joint, at the start; 0: none
+  const sim::RobotModel& robot_model_;
+  std::vector<bool> has_power_ = std::vector<bool>(nodes_.size());  ///< by joint, as reported
   bool is_verbose_;
   bool is_closed_ = false;
   std::unique_ptr<sim::CandumpLog> log_;
@@ -264,6 +282,6 @@ int main(int argc, char** argv) {
   command_line.add_option("--seed", options.scenario.overrides.seed,
                           "seed of the crystals and unique ids, instead of that of the scenario");
   command_line.add_option("--can-log", options.can_log, "write all frames into this file, as 'candump -l' does");
-  command_line.add_flag("--verbose", options.verbose, "print which programs come and go");
+  command_line.add_flag("--verbose", options.verbose, "print which programs come and go, and which joints have power");
   return command_line.run(argc, argv, [&] { return serve(options); });
 }

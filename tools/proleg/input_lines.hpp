@@ -12,6 +12,8 @@ class InputLines {
   /// The next whole line, without its end; nothing if there is none yet, or input has ended. A program in the
   /// background does not read from its terminal.
   [[nodiscard]] std::optional<std::string> next();
+  /// Whether no further line will come.
+  [[nodiscard]] bool has_ended() const { return has_ended_ && lines_.empty(); }
 
  private:
   void read_available();

@@ -35,6 +35,16 @@ class Bus:
             raise AssertionError(f"proleg bus printed {line!r} {self.process.stderr.read()!r}")
         return found.group(1)
 
+    def joint_with_power(self):
+        """The joint whose servo gets power next; of a bus with --verbose."""
+        while True:
+            line = self.process.stderr.readline()
+            found = re.match(r"proleg bus: (\S+) has power", line)
+            if found:
+                return found.group(1)
+            if not line:
+                raise AssertionError("proleg bus has ended")
+
     def __enter__(self):
         return self
 
@@ -178,6 +188,45 @@ class RobotOnTheTable(unittest.TestCase):
             self.assertEqual(set(states(bus.tcp).values()), {"no power"})
             self.assertIn("without a node id", proleg("scan", "--bus", bus.tcp).stdout)
 
+    def test_assign_gives_every_module_its_place(self):
+        """Two modules come from the factory, the others have each other's node ids; a person sees which joint moves."""
+        with Bus("--shuffle", "7", "--fresh", "2,4", "--verbose") as bus:
+            joints = []  # in the order in which they moved
+            assign = subprocess.Popen([PROGRAMS / "proleg-assign", SOURCE / SCENARIO, "--bus", bus.tcp, "--json"],
+                                      stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0)
+            asked = b""
+            while not asked.endswith(b"[y/n] "):
+                character = assign.stderr.read(1)
+                self.assertTrue(character, asked)
+                asked += character
+                if asked.endswith(b" is none of J1, J2, J3, J4, J5, none, more, quit. Which joint is it? "):
+                    assign.stdin.write(joints[-1].encode() + b"\n")
+                elif asked.endswith(b"Which joint is it? "):
+                    joints.append(bus.joint_with_power())
+                    assign.stdin.write(b"J9\n" if len(joints) == 1 else joints[-1].encode() + b"\n")
+            output, errors = assign.communicate(b"y\n", timeout=LONGEST)
+            self.assertEqual(assign.returncode, 0, errors)
+            self.assertIn(b"'J9' is none of", asked)
+            self.assertEqual(len(set(joints)), 4, "the fifth joint is left over")
+            places = {entry["joint"]: entry["node"] for entry in json.loads(output)["joints"]}
+            self.assertEqual(places, {"J1": 5, "J2": 4, "J3": 3, "J4": 2, "J5": 1}, "the map of the robot's file")
+            self.assertEqual(set(states(bus.tcp).values()), {"no power"})
+            result = start_drive(bus.pty, "--seconds", "1").communicate(timeout=LONGEST)[0]
+            self.assertEqual(json.loads(result)["differences"], 0)
+            self.assertIn("no node id was changed",
+                          proleg("assign", SOURCE / SCENARIO, "--bus", bus.tcp, "--places", "1=J5,2=4,3=J3,4=j2,5=J1").stdout)
+
+    def test_assign_changes_nothing_if_it_is_not_told_the_places(self):
+        with Bus("--shuffle", "7") as bus:
+            before = json.loads(proleg("scan", "--bus", bus.tcp, "--json").stdout)["nodes"]
+            for text, expected in (("", "standard input has ended"), ("J1\nquit\n", "ended by the user")):
+                assign = proleg("assign", SOURCE / SCENARIO, "--bus", bus.tcp, text=text)
+                self.assertEqual(assign.returncode, 1, assign.stderr)
+                self.assertIn(expected, assign.stderr)
+            wait_for_drives(bus.tcp, "no power")
+            after = json.loads(proleg("scan", "--bus", bus.tcp, "--json").stdout)["nodes"]
+            self.assertEqual([node["serial"] for node in before], [node["serial"] for node in after])
+
     def test_params_keep_the_settings_of_modules(self):
         with Bus() as bus, tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "settings.txt"
@@ -236,6 +285,10 @@ class RobotOnTheTable(unittest.TestCase):
             (2, ("nmt", "fly", "3", "--bus", "can0"), "one of start"),
             (2, ("drive", scenario, "--bus", "can0", "--set", "speed=1"), "unknown parameter"),
             (2, ("drive", "missing.simulation.xml", "--bus", "can0"), "missing.simulation.xml"),
+            (2, ("assign", scenario, "--bus", "can0", "--places", "1=J9"), "the joints are J1"),
+            (2, ("assign", scenario, "--bus", "can0", "--places", "1=J1,1=J2"), "each module and each joint once"),
+            (2, ("assign", scenario, "--bus", "can0", "--amplitude", "90"), "from 1 to 30"),
+            (1, ("assign", scenario, "--bus", "can77"), "can77"),
             (2, ("bus", scenario), "no way to reach the robot"),
             (2, ("bus", scenario, "--tcp", "x"), "--tcp"),
             (1, ("scan", "--bus", "can77"), "can77"),

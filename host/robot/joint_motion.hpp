@@ -1,0 +1,82 @@
+#pragma once
+
+// Moves the joint of one module to and fro, so that a person sees which one it is. All other modules are reset and have
+// no power.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "host/robot/bus_user.hpp"
+#include "host/robot/sdo_queue.hpp"
+#include "shared/master/master.hpp"
+
+namespace proleg::host {
+
+struct JointMotionOptions {
+  std::int32_t amplitude = raw(Unit::degree, 5);  ///< 90 degrees = 2^30; above 0
+  /// Angles that are safe whichever joint it is. The joint's own limits (0x607D) count as well.
+  canopen::AngleLimits limits{-(1 << 30), 1 << 30};
+};
+
+class JointMotion final : public BusUser {
+ public:
+  enum class State : std::uint8_t {
+    idle,
+    reading,   ///< the limits and the angle of the joint
+    starting,  ///< another host is looked for, modules are reset, this one is set up and gets power
+    moving,
+    stopping,
+    stopped,  ///< has no power
+    failed,   ///< see problem(); stop() takes the power
+  };
+
+  /// port: must outlive this. node: 1 to 126.
+  JointMotion(CanPort& port, std::uint8_t node, const JointMotionOptions& options = {});
+  JointMotion(const JointMotion&) = delete;
+  JointMotion& operator=(const JointMotion&) = delete;
+
+  /// The joint moves about its measured angle; if its module does not measure it, about the angle nearest to 0 that the
+  /// limits allow. Within the limits the whole motion fits, or its amplitude is smaller.
+  void start(Microseconds now);
+  void stop(Microseconds now);
+
+  [[nodiscard]] State state() const;
+  [[nodiscard]] const canopen::Problem& problem() const { return master_ ? master_->problem() : problem_; }
+  /// Of the master: EMCYs, and a module that did not confirm that its servo has no power.
+  [[nodiscard]] std::optional<canopen::Event> take_event();
+  /// Known when it moves. 90 degrees = 2^30.
+  [[nodiscard]] std::int32_t center() const { return center_; }
+  [[nodiscard]] std::int32_t amplitude() const { return amplitude_; }
+
+  void receive(Microseconds now, const CanFrame& frame) override;
+  void transmitted(Microseconds now, const CanFrame& frame) override;
+  void poll(Microseconds now) override;
+  [[nodiscard]] Microseconds next_deadline() const override;
+
+ private:
+  void read(canopen::Address address, std::uint32_t& value);
+  void begin_motion(Microseconds now);
+  void plan();
+
+  CanPort& port_;
+  std::array<std::uint8_t, 1> nodes_;
+  JointMotionOptions options_;
+  SdoQueue readings_;
+  State state_ = State::idle;  ///< until there is a master
+  canopen::Problem problem_;
+  // As read:
+  std::uint32_t lowest_ = 0;
+  std::uint32_t highest_ = 0;
+  std::uint32_t measured_ = 0;
+  std::uint32_t core_fingerprint_ = 0;
+
+  std::int32_t center_ = 0;
+  std::int32_t amplitude_ = 0;
+  std::array<canopen::AngleLimits, 1> limits_{};
+  std::array<canopen::StartValue, 3> start_values_{};
+  canopen::RobotSetup setup_;
+  std::optional<canopen::Master> master_;
+};
+
+}  // namespace proleg::host

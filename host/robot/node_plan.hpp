@@ -1,0 +1,34 @@
+#pragma once
+
+// Which node ids the modules of a robot must get, so that each joint has the module that its robot's file names.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "shared/master/lss_master.hpp"
+#include "shared/master/lss_renumbering.hpp"
+
+namespace proleg::host {
+
+/// A module on the bus, and the joint that it moves.
+struct PlacedModule {
+  std::uint8_t node = 0;
+  canopen::LssAddress address{};
+  std::optional<unsigned> joint;  ///< nothing: it is no part of the robot, or its joint is not known
+};
+
+/// Entries for the LSS master: the free node ids that modules without one may get. Those of the robot come first, in
+/// the order of its joints, with the serial numbers that its file names (0: any); then all others.
+/// nodes, serials: by joint. taken: node ids of other modules.
+[[nodiscard]] std::vector<canopen::LssModule> free_node_ids(std::span<const std::uint8_t> nodes,
+                                                            std::span<const std::uint32_t> serials,
+                                                            std::span<const std::uint8_t> taken);
+
+/// The modules that must have another node id, so that the module of joint j has nodes[j]. A module without a joint
+/// that is in the way gets the lowest free node id. The joints of the modules differ.
+[[nodiscard]] std::vector<canopen::RenumberedModule> plan_node_ids(std::span<const PlacedModule> modules,
+                                                                   std::span<const std::uint8_t> nodes);
+
+}  // namespace proleg::host

@@ -1,0 +1,198 @@
+#include "shared/master/lss_renumbering.hpp"
+
+#include <algorithm>
+
+namespace proleg::canopen {
+
+using lss::Service;
+
+namespace {
+
+/// One of them may be lost.
+constexpr unsigned releases = 2;
+
+CanFrame release_request() {
+  return lss::make(identifier::lss_request, Service::switch_state_global,
+                   static_cast<std::uint8_t>(lss::State::waiting));
+}
+
+}  // namespace
+
+void LssRenumbering::start(Microseconds now) {
+  if (state_ != State::idle) {
+    return;
+  }
+  if (modules_.empty()) {
+    state_ = State::done;
+    return;
+  }
+  state_ = State::working;
+  send(now, Step::release);
+}
+
+void LssRenumbering::send(Microseconds now, Step step) {
+  step_ = step;
+  switch (step) {
+    case Step::release:
+    case Step::release_all:
+      exchange_.begin(now, release_request());
+      break;
+    case Step::select:
+      select(now);
+      break;
+    case Step::probe:
+      exchange_.begin(now, lss::make(identifier::lss_request, Service::inquire_node_id),
+                      LssExchange::of(Service::inquire_node_id), options_.silence_us);
+      break;
+    case Step::configure:
+      exchange_.begin(now, lss::make(identifier::lss_request, Service::configure_node_id, modules_[position_].node),
+                      LssExchange::of(Service::configure_node_id), options_.answer_timeout_us);
+      break;
+    case Step::store:
+      exchange_.begin(now, lss::make(identifier::lss_request, Service::store_configuration),
+                      LssExchange::of(Service::store_configuration), options_.store_timeout_us);
+      break;
+    case Step::reset:
+      exchange_.begin(now, encode(NmtRequest{NmtCommand::reset_node, 0}), {}, options_.boot_timeout_us);
+      break;
+  }
+}
+
+/// Sends the next number of the address; the module answers the last one.
+void LssRenumbering::select(Microseconds now) {
+  const LssAddress& address = modules_[position_].address;
+  const CanFrame request = lss::make_word(
+      identifier::lss_request, static_cast<Service>(static_cast<std::uint8_t>(Service::select_vendor) + number_),
+      address.at(number_));
+  if (number_ + 1U < address.size()) {
+    exchange_.begin(now, request);
+  } else {
+    exchange_.begin(now, request, LssExchange::of(Service::selected), options_.answer_timeout_us);
+  }
+}
+
+void LssRenumbering::receive(Microseconds now, const CanFrame& frame) {
+  if (state_ != State::working) {
+    return;
+  }
+  exchange_.receive(now, frame);
+  const auto heartbeat = decode_heartbeat(frame);
+  if (step_ != Step::reset || !heartbeat || heartbeat->state != NmtState::boot_up) {
+    return;
+  }
+  const auto module = std::ranges::find(modules_, heartbeat->node, &RenumberedModule::node);
+  if (module != modules_.end()) {
+    module->has_booted = true;
+  }
+}
+
+void LssRenumbering::poll(Microseconds now) {
+  if (state_ != State::working || !exchange_.has_ended(now)) {
+    return;
+  }
+  if (!exchange_.is_sent()) {
+    fail(LssProblem::not_sent, 0);
+    return;
+  }
+  conclude(now);
+}
+
+void LssRenumbering::conclude(Microseconds now) {
+  const bool is_answered = exchange_.is_answered();
+  const auto no_answer = [&](Service service) {
+    repeat_or_fail(now, Step::release, LssProblem::no_answer, static_cast<std::uint8_t>(service));
+  };
+  switch (step_) {
+    case Step::release:
+      if (++releases_ < releases) {
+        send(now, Step::release);
+        break;
+      }
+      releases_ = 0;
+      send(now, Step::probe);
+      break;
+    case Step::probe:
+      if (is_answered) {
+        repeat_or_fail(now, Step::release, LssProblem::not_released, 0);
+        break;
+      }
+      number_ = 0;
+      send(now, Step::select);
+      break;
+    case Step::select:
+      if (number_ + 1U < LssAddress().size()) {
+        ++number_;
+        send(now, Step::select);
+      } else if (is_answered) {
+        send(now, Step::configure);
+      } else {
+        no_answer(Service::select_serial);
+      }
+      break;
+    case Step::configure:
+      if (!is_answered) {
+        no_answer(Service::configure_node_id);
+      } else if (exchange_.error() != lss::ok) {
+        fail(LssProblem::node_refused, exchange_.error());
+      } else {
+        send(now, Step::store);
+      }
+      break;
+    case Step::store:
+      if (!is_answered) {
+        no_answer(Service::store_configuration);
+      } else if (exchange_.error() != lss::ok) {
+        fail(LssProblem::store_refused, exchange_.error());
+      } else {
+        modules_[position_].has_stored = true;
+        next_module(now);
+      }
+      break;
+    case Step::release_all:
+      tries_ = 1;
+      send(now, Step::reset);
+      break;
+    case Step::reset:
+      if (have_all_booted()) {
+        state_ = State::done;
+        exchange_.cancel();
+      } else {
+        position_ = static_cast<std::size_t>(std::ranges::find(modules_, false, &RenumberedModule::has_booted) -
+                                             modules_.begin());
+        repeat_or_fail(now, Step::reset, LssProblem::no_boot_up, modules_[position_].node);
+      }
+      break;
+  }
+}
+
+void LssRenumbering::next_module(Microseconds now) {
+  tries_ = 1;
+  if (position_ + 1 < modules_.size()) {
+    ++position_;
+    send(now, Step::release);
+  } else {
+    send(now, Step::release_all);
+  }
+}
+
+void LssRenumbering::repeat_or_fail(Microseconds now, Step first, LssProblem problem, std::uint8_t detail) {
+  if (tries_ < options_.attempts) {
+    ++tries_;
+    send(now, first);
+  } else {
+    fail(problem, detail);
+  }
+}
+
+bool LssRenumbering::have_all_booted() const { return std::ranges::all_of(modules_, &RenumberedModule::has_booted); }
+
+void LssRenumbering::fail(LssProblem problem, std::uint8_t detail) {
+  state_ = State::failed;
+  problem_ = problem;
+  problem_detail_ = detail;
+  exchange_.cancel();
+  // No module stays selected.
+  static_cast<void>(port_.send(release_request()));
+}
+
+}  // namespace proleg::canopen

@@ -1,69 +1,20 @@
 // A host drives simulated modules over a bus: from any state, with frames that are lost, with changes in flight.
 
-#include "host/robot/robot_drive.hpp"
-
 #include <gtest/gtest.h>
 
-#include "live_bus.hpp"
-#include "shared/kernel/fingerprint.hpp"
+#include "driving_host.hpp"
 #include "shipped.hpp"
 #include "sim/loop/kernel_chain.hpp"
-#include "sim/scenario/master_input.hpp"
 
 namespace proleg::test {
 namespace {
 
 using canopen::MasterState;
 
-constexpr Microseconds second = 1'000'000;
-
-canopen::MasterOptions host_options() {
-  canopen::MasterOptions options;
-  options.core_fingerprint = core_fingerprint;
-  options.resets_modules = true;
-  options.ramps_down = true;
-  options.answer_timeout_us = 150'000;
-  options.attempts = 8;
-  return options;
-}
-
-class Host {
- public:
-  Host(LiveBus& bus, const sim::Scenario& scenario)
-      : bus_(bus), input_(scenario), drive(bus, input_.setup, host_options(), input_.changes) {
-    bus_.attach(drive);
-  }
-  ~Host() { bus_.detach(drive); }
-  Host(const Host&) = delete;
-  Host& operator=(const Host&) = delete;
-
-  bool start(Microseconds at_most = 20 * second) {
-    drive.master().start(bus_.now());
-    bus_.run_until(bus_.now() + at_most, [this] {
-      return drive.master().state() == MasterState::running || drive.master().state() == MasterState::failed;
-    });
-    return drive.master().state() == MasterState::running;
-  }
-  bool stop() {
-    drive.master().stop(bus_.now());
-    return bus_.run_until(bus_.now() + 10 * second, [this] { return drive.master().state() == MasterState::stopped; });
-  }
-  bool run_to_tick(std::uint32_t tick) {
-    return bus_.run_until(bus_.now() + 60 * second, [&] { return drive.master().tick().value_or(0) >= tick; });
-  }
-
- private:
-  LiveBus& bus_;
-  sim::MasterInput input_;
-
- public:
-  host::RobotDrive drive;
-};
-
 TEST(RobotDrive, HandsOutTheStateFramesOfEveryTickWithoutAGap) {
   const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
   LiveBus bus(scenario);
-  Host host(bus, scenario);
+  DrivingHost host(bus, scenario);
   ASSERT_TRUE(host.start());
   sim::KernelChain chain(scenario.kernel, scenario.joint_limits, scenario.settings);
   const std::vector<std::uint8_t> no_contacts(5);
@@ -95,7 +46,7 @@ TEST(RobotDrive, EveryCommandSucceedsAlthoughOneFrameInTwentyIsLost) {
     LiveBus bus(scenario);
     bus.run_for(100'000);
     bus.lose(0.05, seed);
-    Host host(bus, scenario);
+    DrivingHost host(bus, scenario);
     ASSERT_TRUE(host.start()) << describe(host.drive.master().problem().code);
     bus.run_for(second / 2);
     EXPECT_EQ(host.drive.master().state(), MasterState::running);
@@ -111,7 +62,7 @@ TEST(RobotDrive, EveryCommandSucceedsAlthoughOneFrameInTwentyIsLost) {
 TEST(RobotDrive, ChangesOfTheUserTakeEffectTogetherAndSoon) {
   const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
   LiveBus bus(scenario);
-  Host host(bus, scenario);
+  DrivingHost host(bus, scenario);
   ASSERT_TRUE(host.start());
   ASSERT_TRUE(host.run_to_tick(100));
   std::vector<canopen::ChangedValue> values;
@@ -148,7 +99,7 @@ TEST(RobotDrive, ChangesOfTheUserTakeEffectTogetherAndSoon) {
 TEST(RobotDrive, RefusesAChangeThatIsNotPossible) {
   const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
   LiveBus bus(scenario);
-  Host host(bus, scenario);
+  DrivingHost host(bus, scenario);
   ASSERT_TRUE(host.start());
   ASSERT_TRUE(host.run_to_tick(50));
   const std::vector<canopen::ChangedValue> values{{0, 9, 0, false, 0}};
@@ -166,7 +117,7 @@ TEST(RobotDrive, NamesTheMissingModuleWithinThreeSecondsAndMovesNothing) {
   };
   LiveBus bus(scenario, std::move(options));
   bus.run_for(100'000);
-  Host host(bus, scenario);
+  DrivingHost host(bus, scenario);
   const Microseconds begin = bus.now();
   EXPECT_FALSE(host.start());
   EXPECT_LT(bus.now() - begin, 3 * second);
@@ -185,7 +136,7 @@ TEST(RobotDrive, NamesAModuleWithAnotherCoreWithinThreeSecondsAndMovesNothing) {
   };
   LiveBus bus(scenario, std::move(options));
   bus.run_for(100'000);
-  Host host(bus, scenario);
+  DrivingHost host(bus, scenario);
   const Microseconds begin = bus.now();
   EXPECT_FALSE(host.start());
   EXPECT_LT(bus.now() - begin, 3 * second);

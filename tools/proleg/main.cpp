@@ -38,6 +38,7 @@ constexpr std::array subcommands{
     Subcommand{"bus", "serve a simulated robot that other programs reach as a real one"},
     Subcommand{"drive", "move a robot of modules as its scenario says"},
     Subcommand{"scan", "list the modules on a bus"},
+    Subcommand{"doctor", "say what is wrong with a bus and the robot on it"},
     Subcommand{"info", "show what a module says of itself"},
     Subcommand{"get", "read objects of modules"},
     Subcommand{"set", "write an object of modules"},

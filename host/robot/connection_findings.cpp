@@ -145,6 +145,8 @@ Finding explain(const ConnectionFacts& facts) {
               ? "Start the program that serves the bus, such as proleg bus, or check host and port."
           : facts.address.kind == BusAddress::Kind::bluetooth
               ? "Switch the robot on, bring it near, and pair it: bluetoothctl pair, then trust."
+          : facts.address.kind == BusAddress::Kind::serial
+              ? "Name a baud rate that both ends have: --bus serial:" + facts.address.name + "@115200."
               : "Check the address: docs/robot-on-the-table.md lists what --bus can be.",
           {}};
 }

@@ -1,6 +1,7 @@
 // proleg doctor: what is wrong with a bus and the robot on it, and what to do.
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <optional>
 #include <stdexcept>
@@ -197,7 +198,7 @@ std::string summary(const BusObservations& seen) {
   }
   const double seconds = static_cast<double>(seen.listened_us) / 1e6;
   return host::nodes_text(nodes) + "; " +
-         (seen.syncs > 0 ? number_text(static_cast<double>(seen.syncs) / seconds) + " SYNCs a second"
+         (seen.syncs > 0 ? std::to_string(std::lround(seen.syncs / seconds)) + " SYNCs a second"
                          : std::string("no SYNC: the robot is not in operation")) +
          "; bus load " + std::to_string(static_cast<int>(seen.load * 100 + 0.5)) + " %; " +
          (seen.host_heartbeats > 0 ? "driven by a host" : "no host drives it");

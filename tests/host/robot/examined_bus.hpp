@@ -174,7 +174,10 @@ class ExaminedBus {
     input_ = std::make_unique<sim::MasterInput>(scenario_);
     drive_ = std::make_unique<host::RobotDrive>(second_adapter_, input_->setup, options, input_->changes);
     drive_->master().start(now());
-    return run_until(now() + 20 * second, [this] { return drive_->master().state() == canopen::MasterState::running; });
+    const auto state = [this] { return drive_->master().state(); };
+    run_until(now() + 20 * second,
+              [&] { return state() == canopen::MasterState::running || state() == canopen::MasterState::failed; });
+    return state() == canopen::MasterState::running;
   }
   /// That computer is switched off.
   void end_host() { drive_.reset(); }

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "host/robot/drive_findings.hpp"
-#include "shared/canopen/bus_load.hpp"
+#include "host/robot/wire_findings.hpp"
 #include "shared/canopen/declared_objects.hpp"
 #include "shared/computer/text/text.hpp"
 
@@ -17,31 +17,18 @@ using canopen::EmergencyCode;
 using canopen::NmtState;
 using Nodes = std::vector<std::uint8_t>;
 
-constexpr double full_load = canopen::max_bus_load_permille / 1000.0;
-/// No message of a robot takes so much: a state frame in the shortest tick, 1 ms, takes 0.135.
-constexpr double babbling_load = 0.25;
 constexpr double host_heartbeats_per_s = 10;
 constexpr double microseconds_per_second = 1e6;
-/// Fewer errors come from a plug that was just put in.
-constexpr std::uint64_t few_errors = 3;
-
-constexpr std::string_view wires =
-    "check the plugs and the cable (CAN-H and CAN-L not exchanged, ground connected), and that there are exactly two "
-    "terminators of 120 ohms, one at each end: without power there are 60 ohms between CAN-H and CAN-L";
-
-std::string percent(double share) { return std::to_string(static_cast<int>(share * 100 + 0.5)) + " %"; }
-
 class Diagnosis {
  public:
   Diagnosis(const BusObservations& seen, const BusAddress& address, const ExpectedModules& expected)
       : seen_(seen), address_(address), expected_(expected) {}
 
   std::vector<Finding> run() {
-    if (find_lost_connection() || find_dead_bus()) {
-      return std::move(findings_);
+    if (auto finding = find_dead_bus(seen_, address_)) {
+      return {std::move(*finding)};
     }
-    find_wire_errors();
-    find_overload();
+    findings_ = find_wire_faults(seen_, address_);
     find_duplicates();
     find_second_host();
     find_second_sync();
@@ -94,115 +81,6 @@ class Diagnosis {
   static bool has_sent(const ObservedNode& node, EmergencyCode code) {
     return std::ranges::find(node.emergencies, code) != node.emergencies.end();
   }
-  [[nodiscard]] bool has_error(CanErrorKind kind) const { return seen_.own.state.errors.contains(kind); }
-  /// Errors in the bits themselves.
-  [[nodiscard]] bool has_bit_errors() const {
-    return has_error(CanErrorKind::crc) || has_error(CanErrorKind::form) || has_error(CanErrorKind::stuff) ||
-           has_error(CanErrorKind::bit_dominant) || has_error(CanErrorKind::bit_recessive);
-  }
-  [[nodiscard]] std::string restart_hint() const {
-    return address_.kind == BusAddress::Kind::can
-               ? " Then sudo ip link set " + address_.name + " down; sudo ip link set " + address_.name +
-                     " up type can bitrate 1000000 restart-ms 100"
-               : std::string();
-  }
-
-  bool find_lost_connection() {
-    if (seen_.own.state.is_connected) {
-      return false;
-    }
-    const std::string& reason = seen_.own.state.reason;
-    add("connection_lost",
-        "The connection to the bus was lost" + (reason.empty() ? std::string(".") : ": " + one_line(reason) + "."),
-        "Check the cable of the adapter and its power, then try again.");
-    return true;
-  }
-
-  /// Not one frame of another node.
-  bool find_dead_bus() {
-    if (seen_.own.statistics.received > 0) {
-      return false;
-    }
-    const bool is_off = seen_.worst_controller_state == CanState::bus_off;
-    if (has_bit_errors()) {
-      add("wrong_bit_rate",
-          "There are signals on the bus, but not one frame can be read" +
-              std::string(is_off ? ", and the adapter has switched itself off (bus-off)." : ".") +
-              " Somebody sends with another bit rate than 1 Mbit/s, or the signals are damaged.",
-          "Set every adapter and node on the bus to 1 Mbit/s. If that is so, " + std::string(wires) + "." +
-              restart_hint());
-    } else if (seen_.was_asked && (seen_.own.statistics.transmitted == 0 || has_error(CanErrorKind::acknowledgement))) {
-      add("no_acknowledgement", "No node acknowledges a frame: this computer is alone on the bus.",
-          "Check that the robot has power and that its cable is plugged in at both ends. If that is so, " +
-              std::string(wires) + ".");
-    } else {
-      add("nobody_answers", "No node sends a frame or answers.",
-          "Check that this is the right bus, that the robot has power, and that its cable is plugged in. If that is "
-          "so, " +
-              std::string(wires) + ".");
-    }
-    return true;
-  }
-
-  void find_wire_errors() {
-    const CanState state = seen_.worst_controller_state;
-    const CanStatus& now = seen_.own.state.controller;
-    const std::string counters = " (error counters: " + std::to_string(now.transmit_errors) + " sending, " +
-                                 std::to_string(now.receive_errors) + " receiving)";
-    if (seen_.errors >= few_errors && seen_.frames > 0) {
-      add("damaged_frames",
-          std::to_string(seen_.errors) + " errors among " + std::to_string(seen_.frames) +
-              " frames while only listening: frames are damaged on the wires" + counters + ".",
-          "A terminator is missing or there is one too many, a plug is loose, or a branch is long: " +
-              std::string(wires) + ". Keep the cable away from motor wires.");
-    } else if (state == CanState::bus_off) {
-      add("bus_off",
-          "The adapter of this computer could not send, and has switched itself off (bus-off). It does receive frames.",
-          "Its own wires or its transceiver are the first suspects: try another plug or adapter. If that does not "
-          "help, " +
-              std::string(wires) + "." + restart_hint());
-    } else if (state == CanState::error_passive) {
-      add("error_passive",
-          "The adapter of this computer meets so many errors that it is error passive" + counters + ".",
-          "Plugs, cable and terminators: " + std::string(wires) + ".");
-    } else if (seen_.own.state.bus_errors >= few_errors && has_bit_errors()) {
-      add("damaged_frames",
-          std::to_string(seen_.own.state.bus_errors) +
-              " errors while requests were sent: frames are damaged on the wires" + counters + ".",
-          "A terminator is missing or there is one too many, a plug is loose, or a branch is long: " +
-              std::string(wires) + ".");
-    }
-  }
-
-  void find_overload() {
-    const bool babbles = seen_.busiest_load > babbling_load;
-    if (!babbles && seen_.load <= full_load) {
-      return;
-    }
-    const std::uint8_t sender = sending_node(seen_.busiest_identifier);
-    const std::string identifier = hexadecimal(seen_.busiest_identifier, 3);
-    add("bus_overload",
-        "The bus is full: frames take " + percent(seen_.load) + " of its time, those with the identifier " +
-            identifier + " alone " + percent(seen_.busiest_load) + ". Other frames wait, or come too late.",
-        babbles ? (sender != 0 ? "Unplug node " + std::to_string(sender) + ", which sends them"
-                               : std::string("Find the node that sends them: unplug one after the other")) +
-                      ". If it was the program of a module, reset it (proleg nmt reset-node) or flash it again."
-                : "Use a longer tick or fewer modules on one bus, and unplug what does not belong to the robot.",
-        sender != 0 ? Nodes{sender} : Nodes{});
-  }
-
-  static std::uint8_t sending_node(std::uint16_t identifier) {
-    const std::uint16_t base = canopen::identifier::base_of(identifier);
-    for (const std::uint16_t known :
-         {canopen::identifier::emergency, canopen::identifier::state_frame, canopen::identifier::second_state,
-          canopen::identifier::monitoring, canopen::identifier::sdo_answer, canopen::identifier::heartbeat}) {
-      if (base == known) {
-        return canopen::identifier::node_of(identifier);
-      }
-    }
-    return 0;
-  }
-
   void find_duplicates() {
     Nodes nodes =
         nodes_with([](const ObservedNode& node) { return has_sent(node, EmergencyCode::identifier_collision); });

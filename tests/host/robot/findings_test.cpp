@@ -61,6 +61,9 @@ TEST(BusFindings, ADeadBusHasOneFinding) {
   EXPECT_EQ(first_code(seen), "nobody_answers") << "an adapter that confirms nothing, or a virtual interface";
   seen.own.state.errors.add(CanErrorKind::acknowledgement);
   EXPECT_EQ(first_code(seen), "no_acknowledgement") << "an adapter that confirms what it took";
+  seen.own.state.controller.receive_errors = 8;
+  EXPECT_EQ(first_code(seen), "wrong_bit_rate") << "the driver of the adapter does not say which errors";
+  seen.own.state.controller.receive_errors = 0;
   seen.own.state.errors.add(CanErrorKind::stuff);
   seen.worst_controller_state = CanState::bus_off;
   const auto found = findings(seen);

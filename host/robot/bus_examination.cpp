@@ -34,8 +34,7 @@ canopen::SdoTransferOptions reading_options() {
 }  // namespace
 
 BusExamination::BusExamination(CanPort& port, ReadOwnEnd read_own_end, const BusExaminationOptions& options)
-    : port_(port),
-      read_own_end_(std::move(read_own_end)),
+    : read_own_end_(std::move(read_own_end)),
       options_(options),
       scan_(port, scan_options()),
       readings_(port, reading_options()),
@@ -86,8 +85,6 @@ void BusExamination::listen(const CanFrame& frame) {
     ++observations_.foreign_syncs;
   } else if (const auto heartbeat = canopen::decode_heartbeat(frame)) {
     observations_.host_heartbeats += heartbeat->node == canopen::host_node ? 1U : 0U;
-    observations_.running_heartbeats +=
-        heartbeat->node != canopen::host_node && heartbeat->state == canopen::NmtState::operational ? 1U : 0U;
   }
 }
 

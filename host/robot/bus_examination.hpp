@@ -60,7 +60,6 @@ class BusExamination final : public BusUser {
   void finish(bool is_complete);
   [[nodiscard]] bool is_given_up(Microseconds now) const;
 
-  CanPort& port_;
   ReadOwnEnd read_own_end_;
   BusExaminationOptions options_;
   BusScan scan_;

@@ -45,12 +45,11 @@ struct BusObservations {
   std::uint64_t errors = 0;  ///< that the own controller has reported
   double load = 0;           ///< share of the bus, 0 to 1, with an average number of stuff bits
   std::uint16_t busiest_identifier = 0;
-  double busiest_load = 0;          ///< of the frames with that identifier
-  unsigned syncs = 0;               ///< SYNCs with a counter
-  unsigned sync_jumps = 0;          ///< of these: the counter does not follow the one before
-  unsigned foreign_syncs = 0;       ///< SYNCs without a counter
-  unsigned host_heartbeats = 0;     ///< heartbeats of node 127
-  unsigned running_heartbeats = 0;  ///< heartbeats of Operational nodes
+  double busiest_load = 0;       ///< of the frames with that identifier
+  unsigned syncs = 0;            ///< SYNCs with a counter
+  unsigned sync_jumps = 0;       ///< of these: the counter does not follow the one before
+  unsigned foreign_syncs = 0;    ///< SYNCs without a counter
+  unsigned host_heartbeats = 0;  ///< heartbeats of node 127
 
   // All the time:
   bool was_asked = false;           ///< requests were sent, else only listening was possible

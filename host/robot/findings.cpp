@@ -19,6 +19,7 @@ using Nodes = std::vector<std::uint8_t>;
 
 constexpr double host_heartbeats_per_s = 10;
 constexpr double microseconds_per_second = 1e6;
+
 class Diagnosis {
  public:
   Diagnosis(const BusObservations& seen, const BusAddress& address, const ExpectedModules& expected)
@@ -81,12 +82,14 @@ class Diagnosis {
   static bool has_sent(const ObservedNode& node, EmergencyCode code) {
     return std::ranges::find(node.emergencies, code) != node.emergencies.end();
   }
+
   void find_duplicates() {
     Nodes nodes =
         nodes_with([](const ObservedNode& node) { return has_sent(node, EmergencyCode::identifier_collision); });
     std::map<std::uint8_t, unsigned> holders;
     for (const ObservedNode& node : seen_.nodes) {
-      holders[node.node] += node.answers && node.answers->is_module ? 1U : 0U;
+      // A module whose serial number was not read may be the silent one.
+      holders[node.node] += node.answers && node.answers->is_module && node.answers->serial != 0 ? 1U : 0U;
     }
     for (const SilentModule& module : seen_.silent_modules) {
       const std::uint8_t node = module.node_id.value_or(0);
@@ -107,7 +110,10 @@ class Diagnosis {
     add("duplicate_node_id",
         "Several modules have the same node id: " + nodes_text(nodes) + ". They have stopped" +
             (serials.empty() ? std::string(".") : " (serial numbers " + serials + ")."),
-        "Unplug all but one of them, give the others free node ids by LSS, and switch them all off and on.", nodes);
+        "Unplug all but one of them, give the others free node ids (LSS: docs/protocol.md), and switch them all off "
+        "and "
+        "on.",
+        nodes);
   }
 
   void find_second_host() {

@@ -23,6 +23,7 @@ ObservedNode module_at(std::uint8_t node) {
   seen.answers->node = node;
   seen.answers->has_answered = true;
   seen.answers->is_module = true;
+  seen.answers->serial = 0x1000U + node;
   seen.answers->protocol = canopen::protocol_version;
   seen.answers->core_fingerprint = core;
   seen.answers->statusword = 0x40;  // switch on disabled
@@ -121,6 +122,8 @@ TEST(BusFindings, OneNodeIdOfSeveralModules) {
   EXPECT_EQ(first_code(seen), "duplicate_node_id") << "both have stopped";
   seen.silent_modules = {{0xAAAA, 2}};
   EXPECT_EQ(first_code(seen), "duplicate_node_id") << "one has stopped, the other one answers";
+  seen.nodes[1].answers->serial = 0;
+  EXPECT_EQ(first_code(seen), "none") << "its serial number was not read: it may be the same module";
   seen.silent_modules.clear();
   seen.nodes[1].emergencies = {EmergencyCode::identifier_collision};
   seen.nodes[1].boot_ups = 2;

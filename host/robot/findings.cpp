@@ -43,6 +43,7 @@ class Diagnosis {
     find_mute_nodes();
     find_damaged_lines();
     find_reports();
+    find_absence();
     for (Finding& finding : findings_) {
       capitalise(finding.what);
     }
@@ -327,6 +328,15 @@ class Diagnosis {
               hexadecimal(static_cast<unsigned>(code), 4) + ").",
           "docs/protocol.md explains the code. Start the robot again; if the report comes back, look at its cause.",
           nodes);
+    }
+  }
+
+  void find_absence() {
+    const bool has_module = std::ranges::any_of(
+        seen_.nodes, [](const ObservedNode& node) { return node.answers && node.answers->is_module; });
+    if (findings_.empty() && seen_.is_complete && !has_module) {
+      add("no_module", "There are frames on the bus, but no module of Proleg answers.",
+          "Check that this is the right bus and that the robot has power.");
     }
   }
 

@@ -149,6 +149,13 @@ TEST_F(BusFaults, AnotherBitRate) {
   });
 }
 
+TEST_F(BusFaults, AShortCircuitHoldsTheBusDominant) {
+  expect_first("wrong_bit_rate", [](ExaminedBus& bus, Chances& /*chances*/) {
+    bus.bus().hold_dominant(true);
+    return std::vector<std::uint8_t>{};
+  });
+}
+
 TEST_F(BusFaults, AMissingTerminatorDamagesSomeFrames) {
   expect_first("damaged_frames", [](ExaminedBus& bus, Chances& chances) {
     EXPECT_TRUE(bus.drive());

@@ -4,9 +4,11 @@
 // All on virtual time.
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <deque>
 #include <functional>
-#include <optional>
+#include <memory>
 #include <utility>
 #include <vector>
 

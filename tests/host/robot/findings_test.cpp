@@ -229,6 +229,16 @@ TEST(BusFindings, WhatNothingElseExplainsIsReported) {
   EXPECT_EQ(first_code(seen), "module_without_node_id");
 }
 
+TEST(BusFindings, ABusWithoutAModule) {
+  BusObservations seen = healthy();
+  for (ObservedNode& node : seen.nodes) {
+    node.answers->is_module = false;
+  }
+  EXPECT_EQ(first_code(seen), "no_module") << "devices of others only";
+  seen.nodes.clear();
+  EXPECT_EQ(first_code(seen), "no_module") << "a host, for example";
+}
+
 TEST(BusFindings, EverySentenceBeginsWithACapitalLetterAndEndsWithAFullStop) {
   BusObservations seen = healthy();
   seen.nodes[0].boot_ups = 3;

@@ -2,15 +2,11 @@
 
 #include <algorithm>
 
+#include "host/robot/frame_load.hpp"
 #include "shared/canopen/declared_objects.hpp"
 
 namespace proleg::host {
 namespace {
-
-constexpr double bit_rate = 1e6;
-/// A frame with 11-bit identifier: its fixed bits with the interframe space, and an average share of stuff bits.
-constexpr double fixed_bits = 47;
-constexpr double average_stuffing = 1.08;
 
 canopen::SdoTransferOptions reading_options() {
   canopen::SdoTransferOptions options;
@@ -29,7 +25,7 @@ BusMonitor::BusMonitor(CanPort& port) : readings_(port, reading_options()) {
 
 void BusMonitor::count(const CanFrame& frame) {
   ++frames_;
-  bits_ += (fixed_bits + 8.0 * frame.length) * average_stuffing;
+  bits_ += average_bits(frame);
 }
 
 void BusMonitor::receive(Microseconds now, const CanFrame& frame) {
@@ -109,7 +105,7 @@ std::vector<MonitoredNode> BusMonitor::nodes() const {
 
 BusMonitor::Traffic BusMonitor::take_traffic(Microseconds now) {
   const double seconds = static_cast<double>(now - traffic_from_) * 1e-6;
-  const Traffic traffic{syncs_, frames_, seconds > 0 ? std::min(1.0, bits_ / bit_rate / seconds) : 0.0};
+  const Traffic traffic{syncs_, frames_, seconds > 0 ? std::min(1.0, bits_ / bus_bit_rate / seconds) : 0.0};
   traffic_from_ = now;
   syncs_ = 0;
   frames_ = 0;

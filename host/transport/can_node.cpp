@@ -24,7 +24,7 @@ CanNode::CanNode(boost::asio::io_context& context, std::string interface, Functi
   try {
     connect();
   } catch (const TransportError& error) {
-    throw TransportError(interface_ + ": " + error.what());
+    throw TransportError(interface_ + ": " + error.what(), error.problem());
   }
 }
 

@@ -53,17 +53,18 @@ int index_of(const Descriptor& socket, const std::string& interface) {
   ifreq request = request_for(interface);
   if (ioctl(socket.number(), SIOCGIFINDEX, &request) != 0) {
     throw TransportError("no such interface; " + present_interfaces() +
-                         ". A virtual one: sudo modprobe vcan; sudo ip link add dev " + interface +
-                         " type vcan; sudo ip link set " + interface + " up");
+                             ". A virtual one: sudo modprobe vcan; sudo ip link add dev " + interface +
+                             " type vcan; sudo ip link set " + interface + " up",
+                         TransportProblem::missing);
   }
   const int index = request.ifr_ifindex;
   request = request_for(interface);
   if (ioctl(socket.number(), SIOCGIFHWADDR, &request) == 0 && request.ifr_hwaddr.sa_family != ARPHRD_CAN) {
-    throw TransportError("it is no CAN interface; " + present_interfaces());
+    throw TransportError("it is no CAN interface; " + present_interfaces(), TransportProblem::wrong_kind);
   }
   request = request_for(interface);
   if (ioctl(socket.number(), SIOCGIFFLAGS, &request) == 0 && (request.ifr_flags & IFF_UP) == 0) {
-    throw TransportError(can_failure(interface, ENETDOWN));
+    throw TransportError(can_failure(interface, ENETDOWN), TransportProblem::interface_down);
   }
   return index;
 }
@@ -88,9 +89,10 @@ CanSocket::CanSocket(const std::string& interface, const Options& options)
     : socket_(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW)) {
   if (!socket_.is_open()) {
     const int error = errno;
-    throw TransportError(std::string(system_text(error)) + (error == EAFNOSUPPORT || error == EPROTONOSUPPORT
-                                                                ? ": the kernel has no CAN (sudo modprobe can-raw)"
-                                                                : ": no CAN socket"));
+    const bool has_no_can = error == EAFNOSUPPORT || error == EPROTONOSUPPORT;
+    throw TransportError(std::string(system_text(error)) +
+                             (has_no_can ? ": the kernel has no CAN (sudo modprobe can-raw)" : ": no CAN socket"),
+                         has_no_can ? TransportProblem::no_kernel_support : TransportProblem::other);
   }
   sockaddr_can address{};
   address.can_family = AF_CAN;

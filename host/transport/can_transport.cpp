@@ -32,7 +32,7 @@ class CanTransport final : public Transport {
     try {
       connect();
     } catch (const TransportError& error) {
-      throw TransportError(interface_ + ": " + error.what());
+      throw TransportError(interface_ + ": " + error.what(), error.problem());
     }
   }
   ~CanTransport() override { disconnect(); }

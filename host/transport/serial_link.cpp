@@ -37,17 +37,18 @@ std::string present_devices() {
     case ENOENT:
     case ENODEV:
     case ENXIO:
-      throw TransportError("no such device; " + present_devices());
+      throw TransportError("no such device; " + present_devices(), TransportProblem::missing);
     case EACCES:
     case EPERM:
       throw TransportError(
           "no permission: add the user to the group that owns it, then log in again: "
-          "sudo usermod -aG dialout $USER");
+          "sudo usermod -aG dialout $USER",
+          TransportProblem::no_rights);
     case EBUSY:
     case EWOULDBLOCK:
-      throw TransportError("another program uses it (fuser shows which)");
+      throw TransportError("another program uses it (fuser shows which)", TransportProblem::in_use);
     case ENOTTY:
-      throw TransportError("it is no serial line");
+      throw TransportError("it is no serial line", TransportProblem::wrong_kind);
     default:
       throw TransportError(text);
   }

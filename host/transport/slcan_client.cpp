@@ -219,7 +219,8 @@ void SlcanClient::refuse(Microseconds now) {
     return;
   }
   fail(command_ == "S8" ? "the adapter answers BEL to S8, expected CR: it does not offer 1 Mbit/s"
-                        : "the adapter answers BEL to " + command_ + ", expected CR: it does not open its channel");
+                        : "the adapter answers BEL to " + command_ + ", expected CR: it does not open its channel",
+       TransportProblem::no_bit_rate);
 }
 
 void SlcanClient::note_rubbish() {
@@ -245,7 +246,8 @@ void SlcanClient::become_open(Microseconds now) {
 void SlcanClient::poll(Microseconds now) {
   if (state_ == State::open && now >= next_deadline()) {
     if (sign_deadline_ != never) {
-      fail("the adapter answers no more; frames without confirmation: " + std::to_string(pending_.size()));
+      fail("the adapter answers no more; frames without confirmation: " + std::to_string(pending_.size()),
+           TransportProblem::no_answer);
     } else {
       ask_for_a_sign(now);
     }
@@ -255,7 +257,8 @@ void SlcanClient::poll(Microseconds now) {
     return;
   }
   if (now >= start_deadline_ && (step_ == Step::proof || step_ == Step::close)) {
-    fail(start_failure());
+    fail(start_failure(),
+         rubbish_.empty() && sample_.empty() ? TransportProblem::no_answer : TransportProblem::not_slcan);
     return;
   }
   switch (step_) {
@@ -302,8 +305,9 @@ std::string SlcanClient::start_failure() const {
          " s, and no frame from the bus";
 }
 
-void SlcanClient::fail(const std::string& reason) {
+void SlcanClient::fail(const std::string& reason, TransportProblem problem) {
   error_ = reason;
+  problem_ = problem;
   state_ = State::failed;
   drop_frames();
 }

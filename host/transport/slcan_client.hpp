@@ -67,6 +67,7 @@ class SlcanClient {
   [[nodiscard]] State state() const { return state_; }
   /// One line: what was received and what was expected.
   [[nodiscard]] const std::string& error() const { return error_; }
+  [[nodiscard]] TransportProblem problem() const { return problem_; }
   /// Answers to V and N, for example "V1013, NA123"; empty if there were none.
   [[nodiscard]] const std::string& adapter() const { return adapter_; }
   [[nodiscard]] bool is_acknowledging() const { return is_acknowledging_; }
@@ -92,7 +93,7 @@ class SlcanClient {
   void fill_output(Microseconds now);
   void drop_frames();
   void drop_output();
-  void fail(const std::string& reason);
+  void fail(const std::string& reason, TransportProblem problem);
   [[nodiscard]] std::string start_failure() const;
 
   SlcanClientListener& listener_;
@@ -100,6 +101,7 @@ class SlcanClient {
   State state_ = State::idle;
   Step step_ = Step::close;
   std::string error_;
+  TransportProblem problem_ = TransportProblem::other;
   std::string adapter_;
   Statistics statistics_;
 

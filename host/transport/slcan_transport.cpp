@@ -43,7 +43,7 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
         has_changed_phase_ = false;
       }
       if (phase_ != Phase::open && attempt + 1 >= link_->alternatives()) {
-        throw TransportError(address_ + ": " + state_.reason);
+        throw TransportError(address_ + ": " + state_.reason, problem_);
       }
     }
     is_opened_ = true;
@@ -101,7 +101,7 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
         connected();
       }
     } catch (const TransportError& error) {
-      lose(error.what());
+      lose(error.what(), error.problem());
     } catch (const boost::system::system_error& error) {  // a descriptor that cannot be waited for, such as a file
       lose("it is no line or socket: " + std::string(system_text(error.code().value())));
     }
@@ -141,7 +141,7 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
   /// After each event of the client.
   void proceed() {
     if (client_.state() == SlcanClient::State::failed) {
-      lose(client_.error() + "; " + link_->silence_hint());
+      lose(client_.error() + "; " + link_->silence_hint(), client_.problem());
       return;
     }
     if (client_.state() == SlcanClient::State::open && phase_ == Phase::starting) {
@@ -161,7 +161,8 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
     timer_.set(client_.next_deadline());
   }
 
-  void lose(const std::string& reason) {
+  void lose(const std::string& reason, TransportProblem problem = TransportProblem::other) {
+    problem_ = problem;
     stream_.reset();
     client_.stop();
     const bool is_new = state_.is_connected || state_.reason != reason;
@@ -212,6 +213,7 @@ class SlcanTransport final : public Transport, private ByteStreamOwner, private 
   Timer timer_;
   Phase phase_ = Phase::idle;
   BusState state_;
+  TransportProblem problem_ = TransportProblem::other;  ///< why the connection was lost
   std::uint64_t received_ = 0;
   std::uint64_t connections_ = 0;
   Microseconds pause_ = first_pause;

@@ -13,10 +13,29 @@
 
 namespace proleg::host {
 
+/// Why a bus cannot be reached, for a program that explains more than one line does.
+enum class TransportProblem : std::uint8_t {
+  other,
+  no_kernel_support,  ///< the kernel has no CAN sockets
+  missing,            ///< no such interface or device
+  wrong_kind,         ///< it is no CAN interface, or no serial line
+  interface_down,
+  no_rights,
+  in_use,       ///< by another program
+  no_answer,    ///< nothing came from the adapter
+  not_slcan,    ///< something came that no slcan adapter sends
+  no_bit_rate,  ///< the adapter refuses 1 Mbit/s, or to open its channel
+};
+
 /// A bus that cannot be reached. what() is one line: what failed, and what to do.
 class TransportError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit TransportError(const std::string& what, TransportProblem problem = TransportProblem::other)
+      : std::runtime_error(what), problem_(problem) {}
+  [[nodiscard]] TransportProblem problem() const { return problem_; }
+
+ private:
+  TransportProblem problem_;
 };
 
 /// What is known about the bus. A transport that cannot know a part leaves it as it is here.

@@ -57,11 +57,16 @@ std::size_t count_modules(const std::string& address) {
 
 }  // namespace
 
-std::string find_bus() {
+std::vector<std::string> present_buses() {
   std::vector<std::string> addresses;
   add_can_interfaces(addresses);
   add_serial_lines(addresses);
   std::ranges::sort(addresses);
+  return addresses;
+}
+
+std::string find_bus() {
+  const std::vector<std::string> addresses = present_buses();
   std::vector<std::string> good;
   std::vector<std::string> reasons;
   for (const std::string& address : addresses) {

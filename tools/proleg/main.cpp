@@ -39,6 +39,7 @@ constexpr std::array subcommands{
     Subcommand{"drive", "move a robot of modules as its scenario says"},
     Subcommand{"scan", "list the modules on a bus"},
     Subcommand{"assign", "give the modules on a bus their places in a robot"},
+    Subcommand{"doctor", "say what is wrong with a bus and the robot on it"},
     Subcommand{"info", "show what a module says of itself"},
     Subcommand{"get", "read objects of modules"},
     Subcommand{"set", "write an object of modules"},

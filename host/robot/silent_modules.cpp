@@ -1,0 +1,173 @@
+#include "host/robot/silent_modules.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "shared/canopen/declared_objects.hpp"
+
+namespace proleg::host {
+namespace {
+
+namespace lss = canopen::lss;
+using lss::Service;
+
+constexpr std::uint32_t highest = std::numeric_limits<std::uint32_t>::max();
+constexpr unsigned first_attempts = 2;  // a frame may be lost; in a half of a range that has answered, one is enough
+
+/// Of the services that follow each other: the first, the second, ...
+constexpr Service numbered(Service first, unsigned position) {
+  return static_cast<Service>(static_cast<unsigned>(first) + position);
+}
+
+CanFrame request(Service first, unsigned position, std::uint32_t word) {
+  return lss::make_word(canopen::identifier::lss_request, numbered(first, position), word);
+}
+
+}  // namespace
+
+void SilentModules::start(Microseconds now, std::uint32_t vendor, std::vector<std::uint32_t> products,
+                          std::vector<std::uint32_t> known) {
+  vendor_ = vendor;
+  end_ = now + options_.longest_us;
+  std::ranges::sort(known);
+  for (const std::uint32_t product : products) {
+    std::uint32_t low = 0;
+    bool reaches_end = false;
+    for (const std::uint32_t serial : known) {
+      if (serial > low) {
+        ranges_.push_back({product, low, serial - 1, first_attempts});
+      }
+      reaches_end = serial == highest;
+      low = serial + (reaches_end ? 0U : 1U);
+    }
+    if (!reaches_end) {
+      ranges_.push_back({product, low, highest, first_attempts});
+    }
+  }
+  proceed(now);
+}
+
+void SilentModules::proceed(Microseconds now) {
+  if (ranges_.empty() || found_.size() >= options_.max_modules || now >= end_) {
+    step_ = Step::done;
+    return;
+  }
+  const Range& range = ranges_.front();
+  // The revision may be any.
+  ask(now, Step::identify,
+      {request(Service::identify_vendor, 0, vendor_), request(Service::identify_vendor, 1, range.product),
+       request(Service::identify_vendor, 2, 0), request(Service::identify_vendor, 3, highest),
+       request(Service::identify_vendor, 4, range.low), request(Service::identify_vendor, 5, range.high)});
+}
+
+void SilentModules::ask(Microseconds now, Step step, std::initializer_list<CanFrame> frames) {
+  step_ = step;
+  outgoing_ = frames;
+  unsent_ = static_cast<unsigned>(frames.size());
+  is_answered_ = false;
+  deadline_ = now + options_.send_timeout_us;
+  send();
+}
+
+void SilentModules::send() {
+  while (!outgoing_.empty() && port_.send(outgoing_.front())) {
+    outgoing_.pop_front();
+  }
+}
+
+void SilentModules::transmitted(Microseconds now, const CanFrame& frame) {
+  send();
+  if (step_ == Step::idle || is_done() || frame.identifier != canopen::identifier::lss_request || unsent_ == 0) {
+    return;
+  }
+  if (--unsent_ == 0) {
+    deadline_ = now + (is_answered_ ? options_.settle_us : options_.answer_timeout_us);
+  }
+}
+
+void SilentModules::receive(Microseconds now, const CanFrame& frame) {
+  if (frame.identifier != canopen::identifier::lss_answer || frame.length != 8) {
+    return;
+  }
+  const Service expected = step_ == Step::identify  ? Service::identified
+                           : step_ == Step::select  ? Service::selected
+                           : step_ == Step::inquire ? Service::inquire_node_id
+                                                    : Service::switch_state_global;
+  if (lss::service_of(frame) != expected) {
+    return;
+  }
+  is_answered_ = true;
+  answer_ = frame.data[1];
+  if (unsent_ == 0) {
+    deadline_ = now + options_.settle_us;
+  }
+}
+
+void SilentModules::poll(Microseconds now) {
+  send();
+  if (step_ == Step::idle || is_done() || now < deadline_) {
+    return;
+  }
+  if (unsent_ != 0) {
+    step_ = Step::done;  // the bus takes no frames
+    return;
+  }
+  conclude(now);
+}
+
+void SilentModules::conclude(Microseconds now) {
+  switch (step_) {
+    case Step::identify:
+      conclude_range(now);
+      return;
+    case Step::select:
+      if (is_answered_) {
+        ask(now, Step::inquire, {lss::make(canopen::identifier::lss_request, Service::inquire_node_id)});
+        return;
+      }
+      found_.pop_back();  // switched off meanwhile
+      break;
+    case Step::inquire:
+      if (is_answered_) {
+        found_.back().node_id = answer_ == lss::no_node_id ? std::nullopt : std::optional<std::uint8_t>(answer_);
+      } else {
+        found_.pop_back();
+      }
+      break;
+    default:
+      proceed(now);
+      return;
+  }
+  ask(now, Step::release,
+      {lss::make(canopen::identifier::lss_request, Service::switch_state_global,
+                 static_cast<std::uint8_t>(lss::State::waiting))});
+}
+
+void SilentModules::conclude_range(Microseconds now) {
+  Range& range = ranges_.front();
+  if (!is_answered_ && --range.attempts > 0) {
+    proceed(now);
+    return;
+  }
+  const Range asked = range;
+  ranges_.pop_front();
+  if (!is_answered_) {
+    proceed(now);
+    return;
+  }
+  if (asked.low < asked.high) {
+    const std::uint32_t middle = asked.low + (asked.high - asked.low) / 2;
+    ranges_.push_front({asked.product, middle + 1, asked.high, 1});
+    ranges_.push_front({asked.product, asked.low, middle, 1});
+    proceed(now);
+    return;
+  }
+  found_.push_back({asked.low, std::nullopt});
+  // The revision of all modules of this vendor is that of the dictionary.
+  ask(now, Step::select,
+      {request(Service::select_vendor, 0, vendor_), request(Service::select_vendor, 1, asked.product),
+       request(Service::select_vendor, 2, canopen::object::revision.default_value),
+       request(Service::select_vendor, 3, asked.low)});
+}
+
+}  // namespace proleg::host

@@ -1,0 +1,38 @@
+#pragma once
+
+// How a CAN interface of Linux is set, as the kernel says it. Nothing is changed.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "shared/can/can_status.hpp"
+
+namespace proleg::host {
+
+struct CanInterface {
+  std::string kind;  ///< "can", "vcan", "slcan", ...; empty: the kernel does not say it
+  bool is_can = false;
+  bool is_up = false;
+  std::optional<std::uint32_t> queue_length;  ///< frames that wait for the controller at most (txqueuelen)
+  // Of an interface with a controller only:
+  std::optional<std::uint32_t> bit_rate;    ///< bit/s; nothing also while none is set
+  std::optional<std::uint32_t> restart_ms;  ///< pause before the return from bus-off; 0: it does not return
+  bool is_listen_only = false;
+  std::optional<CanState> state;  ///< nothing also while it is down
+  std::uint16_t transmit_errors = 0;
+  std::uint16_t receive_errors = 0;
+
+  friend bool operator==(const CanInterface&, const CanInterface&) = default;
+};
+
+/// Nothing if there is no such interface, or the kernel cannot be asked.
+[[nodiscard]] std::optional<CanInterface> read_can_interface(const std::string& name);
+
+/// What an answer of the kernel says: a message RTM_NEWLINK (rtnetlink(7)) with its header. Nothing for another message
+/// or one that is too short. Attributes that are damaged are left out.
+[[nodiscard]] std::optional<CanInterface> parse_link_message(std::span<const std::byte> message);
+
+}  // namespace proleg::host

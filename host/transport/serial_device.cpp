@@ -1,0 +1,78 @@
+#include "host/transport/serial_device.hpp"
+
+#include <grp.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include "shared/computer/text/text.hpp"
+
+namespace proleg::host {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string group_name(gid_t group) {
+  const ::group* entry = getgrgid(group);
+  return entry != nullptr ? entry->gr_name : std::to_string(group);
+}
+
+bool is_in_group(gid_t group) {
+  if (getegid() == group) {
+    return true;
+  }
+  const int count = getgroups(0, nullptr);
+  std::vector<gid_t> groups(static_cast<std::size_t>(std::max(count, 0)));
+  const int read = getgroups(static_cast<int>(groups.size()), groups.data());
+  return std::find(groups.begin(), groups.begin() + std::max(read, 0), group) != groups.begin() + std::max(read, 0);
+}
+
+bool has_open(const fs::path& process, dev_t device) {
+  std::error_code error;
+  for (const auto& descriptor : fs::directory_iterator(process / "fd", error)) {
+    struct stat status {};
+    if (::stat(descriptor.path().c_str(), &status) == 0 && S_ISCHR(status.st_mode) && status.st_rdev == device) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<std::string> programs_with(dev_t device) {
+  std::vector<std::string> programs;
+  std::error_code error;
+  for (const auto& process : fs::directory_iterator("/proc", error)) {
+    const std::string number = process.path().filename();
+    if (parse_whole<unsigned>(number) && has_open(process.path(), device)) {
+      std::string name;
+      std::getline(std::ifstream(process.path() / "comm"), name);
+      programs.push_back(one_line(name) + " (process " + number + ")");
+    }
+  }
+  return programs;
+}
+
+}  // namespace
+
+SerialDevice read_serial_device(const std::string& path) {
+  SerialDevice device;
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) {
+    return device;
+  }
+  device.exists = true;
+  device.is_character_device = S_ISCHR(status.st_mode);
+  device.may_use = access(path.c_str(), R_OK | W_OK) == 0;
+  device.group = group_name(status.st_gid);
+  device.is_user_in_group = is_in_group(status.st_gid);
+  if (device.is_character_device) {
+    device.programs = programs_with(status.st_rdev);
+  }
+  return device;
+}
+
+}  // namespace proleg::host

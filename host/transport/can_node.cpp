@@ -8,10 +8,10 @@
 namespace proleg::host {
 namespace {
 
-constexpr std::size_t max_queue = 1'024;
-constexpr Microseconds retry_pause = 500;  // a full queue (ENOBUFS) cannot be waited for
+constexpr std::size_t node_queue = 1'024;
+constexpr Microseconds node_retry_pause = 500;  // a full queue (ENOBUFS) cannot be waited for
 constexpr Microseconds reconnect_pause = 500'000;
-constexpr unsigned reads_in_a_row = 64;  // then other work of the context has its turn
+constexpr unsigned node_reads_in_a_row = 64;  // then other work of the context has its turn
 
 }  // namespace
 
@@ -54,7 +54,7 @@ void CanNode::lose(int error) {
 }
 
 void CanNode::read() {
-  for (unsigned i = 0; i < reads_in_a_row && socket_; ++i) {
+  for (unsigned i = 0; i < node_reads_in_a_row && socket_; ++i) {
     const auto received = socket_->read();
     if (!received) {
       if (socket_->error() != 0) {
@@ -69,7 +69,7 @@ void CanNode::read() {
 }
 
 void CanNode::send(const CanFrame& frame) {
-  if (!socket_ || queue_.size() >= max_queue) {
+  if (!socket_ || queue_.size() >= node_queue) {
     ++dropped_;
     return;
   }
@@ -83,7 +83,7 @@ void CanNode::write() {
   while (socket_ && !queue_.empty()) {
     const int error = socket_->write(queue_.front());
     if (error == ENOBUFS || error == EAGAIN) {
-      retry_.set(steady_now() + retry_pause);
+      retry_.set(steady_now() + node_retry_pause);
       return;
     }
     if (error != 0 && error != EINTR) {

@@ -10,6 +10,12 @@
 
 namespace proleg::canopen {
 
+/// All modules stop waiting for configuration.
+[[nodiscard]] constexpr CanFrame lss_release_request() {
+  return lss::make(identifier::lss_request, lss::Service::switch_state_global,
+                   static_cast<std::uint8_t>(lss::State::waiting));
+}
+
 class LssExchange {
  public:
   /// What counts as an answer.

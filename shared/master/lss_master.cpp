@@ -8,12 +8,6 @@ namespace {
 
 constexpr std::uint8_t highest_bit = 31;
 
-/// All modules stop waiting for configuration.
-CanFrame release_request() {
-  return lss::make(identifier::lss_request, Service::switch_state_global,
-                   static_cast<std::uint8_t>(lss::State::waiting));
-}
-
 }  // namespace
 
 std::string_view describe(LssProblem problem) {
@@ -56,10 +50,10 @@ void LssMaster::send(Microseconds now, Step step) {
 void LssMaster::exchange(Microseconds now) {
   switch (step_) {
     case Step::release_all:
-      exchange_.begin(now, release_request());
+      exchange_.begin(now, lss_release_request());
       break;
     case Step::release:
-      exchange_.begin(now, release_request(), LssExchange::boot_up_of(module_->node), options_.boot_timeout_us);
+      exchange_.begin(now, lss_release_request(), LssExchange::boot_up_of(module_->node), options_.boot_timeout_us);
       break;
     case Step::configure:
       exchange_.begin(now, request(), LssExchange::of(Service::configure_node_id), options_.answer_timeout_us);
@@ -92,7 +86,7 @@ CanFrame LssMaster::request() const {
     case Step::release:
       break;
   }
-  return release_request();
+  return lss_release_request();
 }
 
 /// How often the present request is sent, if there is no answer. Without an answer a bit of an address is 1. That is
@@ -244,7 +238,7 @@ void LssMaster::fail(LssProblem problem, std::uint8_t detail) {
   problem_detail_ = detail;
   exchange_.cancel();
   // No module stays selected: it would be configured with the next one. If that is lost, the next start releases it.
-  static_cast<void>(port_.send(release_request()));
+  static_cast<void>(port_.send(lss_release_request()));
 }
 
 }  // namespace proleg::canopen

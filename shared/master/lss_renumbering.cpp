@@ -11,11 +11,6 @@ namespace {
 /// One of them may be lost.
 constexpr unsigned releases = 2;
 
-CanFrame release_request() {
-  return lss::make(identifier::lss_request, Service::switch_state_global,
-                   static_cast<std::uint8_t>(lss::State::waiting));
-}
-
 }  // namespace
 
 void LssRenumbering::start(Microseconds now) {
@@ -35,7 +30,7 @@ void LssRenumbering::send(Microseconds now, Step step) {
   switch (step) {
     case Step::release:
     case Step::release_all:
-      exchange_.begin(now, release_request());
+      exchange_.begin(now, lss_release_request());
       break;
     case Step::select:
       select(now);
@@ -192,7 +187,7 @@ void LssRenumbering::fail(LssProblem problem, std::uint8_t detail) {
   problem_detail_ = detail;
   exchange_.cancel();
   // No module stays selected.
-  static_cast<void>(port_.send(release_request()));
+  static_cast<void>(port_.send(lss_release_request()));
 }
 
 }  // namespace proleg::canopen

@@ -25,21 +25,21 @@ void StateFrameMonitor::note(const Transmission& transmission) {
 
 bool StateFrameMonitor::is_lost(const Losses& losses, const CanFrame& frame, std::size_t receiver) const {
   const auto state = canopen::decode_state(frame);
-  const bool first = frame.identifier > canopen::identifier::state_frame &&
+  const bool is_first = frame.identifier > canopen::identifier::state_frame &&
                      frame.identifier <= canopen::identifier::state_frame + canopen::max_node_id;
-  const bool second = frame.identifier > canopen::identifier::second_state &&
+  const bool is_second = frame.identifier > canopen::identifier::second_state &&
                       frame.identifier <= canopen::identifier::second_state + canopen::max_node_id;
-  if (!state || (!first && !second)) {
+  if (!state || (!is_first && !is_second)) {
     return false;
   }
   const unsigned node = unsigned{frame.identifier} -
-                        unsigned{first ? canopen::identifier::state_frame : canopen::identifier::second_state};
+                        unsigned{is_first ? canopen::identifier::state_frame : canopen::identifier::second_state};
   const unsigned sender = joint_of_node_[node];
   if (sender == no_joint || receiver >= scenario_.modules.size() ||
       state->label() != static_cast<std::uint8_t>(label_)) {
     return false;
   }
-  return losses.lost({label_, static_cast<std::uint8_t>(sender), static_cast<std::uint8_t>(second ? 1 : 0),
+  return losses.lost({label_, static_cast<std::uint8_t>(sender), static_cast<std::uint8_t>(is_second ? 1 : 0),
                       static_cast<std::uint8_t>(receiver)});
 }
 

@@ -10,7 +10,7 @@
 namespace proleg::sim {
 namespace {
 
-double row_height(std::size_t links) {
+double contact_row_height(std::size_t links) {
   constexpr double max_panel_height = 320.0;
   return std::min(22.0, max_panel_height / static_cast<double>(links));
 }
@@ -19,13 +19,13 @@ double row_height(std::size_t links) {
 
 double contact_panel_height(const Recording& recording) {
   const std::size_t links = recording.links().size();
-  return row_height(links) * static_cast<double>(links);
+  return contact_row_height(links) * static_cast<double>(links);
 }
 
 void draw_contact_panel(Svg& svg, const Recording& recording, const FigureContents& contents, double panel_top,
                         const Axis& time) {
   const std::size_t links = recording.links().size();
-  const double row = row_height(links);
+  const double row = contact_row_height(links);
   draw_heading(svg, panel_top, "Contacts with the ground");
   svg.text({page_right, panel_top - 12.0}, "in each row: front sensor above, rear sensor below", TextAnchor::end,
            label_size, faint_ink);

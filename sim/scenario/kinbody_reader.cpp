@@ -56,9 +56,9 @@ class KinBodyReader {
       return;
     }
     constexpr std::array<std::string_view, 3> robot_tags{"Body", "KinBody", "Joint"};
-    constexpr std::array<std::string_view, 2> environment_tags{"Body", "KinBody"};
+    constexpr std::array<std::string_view, 2> tags_of_environments{"Body", "KinBody"};
     const std::span<const std::string_view> tags =
-        use_ == KinBodyUse::robot ? std::span<const std::string_view>(robot_tags) : environment_tags;
+        use_ == KinBodyUse::robot ? std::span<const std::string_view>(robot_tags) : tags_of_environments;
     constexpr std::array<std::string_view, 1> visual_tags{"visible"};
     element.allow(attributes, joined({tags, pose_tags, extra_tags, visual_tags}));
     for (const XmlElement& child : element.children()) {

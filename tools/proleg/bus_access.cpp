@@ -29,6 +29,7 @@ class BusAccess::Implementation {
   explicit Implementation(const host::BusAddress& address)
       : connection_(
             [&](host::TransportListener& listener) { return host::open_transport(context_, address, listener); }) {}
+  explicit Implementation(const host::BusConnection::Open& open) : connection_(open) {}
 
   [[nodiscard]] host::BusConnection& connection() { return connection_; }
 
@@ -40,6 +41,7 @@ class BusAccess::Implementation {
 BusAccess::BusAccess(const BusOptions& options)
     : implementation_(std::make_unique<Implementation>(
           host::parse_bus_address(options.address() == "auto" ? find_bus() : options.address()))) {}
+BusAccess::BusAccess(const host::BusConnection::Open& open) : implementation_(std::make_unique<Implementation>(open)) {}
 BusAccess::~BusAccess() = default;
 
 host::BusConnection& BusAccess::connection() { return implementation_->connection(); }

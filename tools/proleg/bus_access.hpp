@@ -31,6 +31,8 @@ class BusAccess {
  public:
   /// Throws InputError for a bad address, TransportError if it cannot be reached.
   explicit BusAccess(const BusOptions& options);
+  /// A bus of the caller's own.
+  explicit BusAccess(const host::BusConnection::Open& open);
   ~BusAccess();
   BusAccess(const BusAccess&) = delete;
   BusAccess& operator=(const BusAccess&) = delete;

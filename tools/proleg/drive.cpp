@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "host/robot/robot_drive.hpp"
+#include "host/transport/bus_address.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/master_text/master_text.hpp"
 #include "shared/computer/text/text.hpp"
@@ -24,6 +25,7 @@
 #include "tools/proleg/live_changes.hpp"
 #include "tools/proleg/run_progress.hpp"
 #include "tools/proleg/scenario_run.hpp"
+#include "tools/proleg/simulated_transport.hpp"
 
 namespace {
 
@@ -32,6 +34,7 @@ using namespace proleg::tools;
 
 struct DriveOptions : ScenarioOptions {
   BusOptions bus;
+  bool fast = false;
 };
 
 struct DriveResult {
@@ -274,6 +277,17 @@ void refuse_what_only_a_simulation_has(const DriveOptions& options) {
   }
 }
 
+/// The scenario of --bus sim:FILE, for --fast. Throws InputError for another bus.
+sim::Scenario simulated_robot(const BusOptions& bus) {
+  const host::BusAddress address = host::parse_bus_address(bus.address());
+  if (address.kind != host::BusAddress::Kind::simulation) {
+    throw InputError("--fast", 0, "the bus " + in_quotes(bus.address()), "--bus sim:FILE: no other robot is faster");
+  }
+  ScenarioOptions robot;
+  robot.file = address.name;
+  return prepare_run(robot).scenario;
+}
+
 int drive(const DriveOptions& options) {
   const ScenarioRun run = prepare_run(options);
   print_warnings("proleg drive", run.scenario);
@@ -285,7 +299,12 @@ int drive(const DriveOptions& options) {
     return drive_by_plugin(options, run);
   }
   check_outputs(planned_recording(options));
-  BusAccess bus(options.bus);
+  const std::optional<sim::Scenario> simulated =
+      options.fast ? std::optional(simulated_robot(options.bus)) : std::nullopt;
+  const auto open_simulated = [&](host::TransportListener& listener) {
+    return std::make_unique<SimulatedTransport>(*simulated, options.bus.address(), listener);
+  };
+  BusAccess bus = simulated ? BusAccess(open_simulated) : BusAccess(options.bus);
   catch_interrupts();
   // A reader of the output that ends must not end this program while the robot moves.
   std::signal(SIGPIPE, SIG_IGN);
@@ -335,5 +354,6 @@ int main(int argc, char** argv) {
   DriveOptions options;
   add_scenario_options(command_line, options);
   add_bus_option(command_line, options.bus);
+  command_line.add_flag("--fast", options.fast, "with --bus sim:FILE: as fast as this computer simulates");
   return command_line.run(argc, argv, [&] { return drive(options); });
 }

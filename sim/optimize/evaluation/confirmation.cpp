@@ -14,7 +14,7 @@ namespace proleg::optimize {
 namespace {
 
 /// Time between two questions whether to stop.
-constexpr std::chrono::milliseconds stop_check_interval{100};
+constexpr std::chrono::milliseconds confirmation_check_interval{100};
 
 Task fresh_run(const Experiment& experiment, const Evaluation& finalist, std::uint32_t run) {
   return {finalist.run, finalist.number, experiment.trials.count + run, finalist.candidate, {}};
@@ -86,7 +86,7 @@ std::vector<Confirmation> confirm(const Experiment& experiment, std::span<const 
     if (stop && stop(done, tasks.size())) {
       throw SearchEnded{};
     }
-    pipeline.run(stop_check_interval);
+    pipeline.run(confirmation_check_interval);
   }
   std::vector<Confirmation> confirmations;
   for (const Evaluation& finalist : finalists) {

@@ -14,8 +14,8 @@ namespace {
 using sim::Range;
 using sim::XmlElement;
 
-constexpr Range shares{0.0, 1.0, ""};
-constexpr Range scores{-1e9, 1e9, ""};
+constexpr Range probabilities{0.0, 1.0, ""};
+constexpr Range method_scores{-1e9, 1e9, ""};
 constexpr Range rises{1e-9, 1e9, ""};
 constexpr Range step_sizes{1e-6, 1.0, ""};
 constexpr std::uint64_t max_candidates = 1'000'000;
@@ -63,10 +63,10 @@ GeneticSettings read_genetic(const XmlElement& properties, std::vector<std::stri
   const SettingsReader settings(properties, tags);
   GeneticSettings genetic;
   settings.read("popsize", genetic.population, 2, max_population);
-  settings.read("pmut", genetic.mutation, shares);
-  settings.read("pcross", genetic.crossover, shares);
+  settings.read("pmut", genetic.mutation, probabilities);
+  settings.read("pcross", genetic.crossover, probabilities);
   settings.read("nconvergence", genetic.generations_to_convergence, 1, 10'000);
-  settings.read("pconvergence", genetic.convergence, shares);
+  settings.read("pconvergence", genetic.convergence, probabilities);
   settings.read("gamode", genetic.mode, 1, 2);
   genetic.start = Start::scenario;
   read_start(settings, genetic.start);
@@ -82,7 +82,7 @@ GreatDelugeSettings read_great_deluge(const XmlElement& properties) {
       "move",       "neighbour", "start",   "firstMustPass", "reevaluations", "chains", "target"};
   const SettingsReader settings(properties, tags);
   GreatDelugeSettings deluge;
-  settings.read("waterLevel", deluge.water_level, scores);
+  settings.read("waterLevel", deluge.water_level, method_scores);
   settings.read("rain", deluge.rain, rises);
   settings.read("credits", deluge.credits, 0, max_candidates);
   settings.read("retries", deluge.retries, 1, max_candidates);
@@ -95,7 +95,7 @@ GreatDelugeSettings read_great_deluge(const XmlElement& properties) {
   settings.read("firstMustPass", deluge.first_must_pass, 0, 1);
   settings.read("reevaluations", deluge.reevaluations, 0, 100);
   settings.read("chains", deluge.chains, 1, 64);
-  settings.read("target", deluge.target, scores);
+  settings.read("target", deluge.target, method_scores);
   return deluge;
 }
 
@@ -112,9 +112,9 @@ PagmoSettings read_pagmo(const XmlElement& properties, std::string algorithm) {
   pagmo.start = Start::scenario;
   read_start(settings, pagmo.start);
   settings.read("sigma0", pagmo.sigma0, step_sizes);
-  settings.read("crossover", pagmo.crossover, shares);
-  settings.read("scale", pagmo.scale, shares);
-  settings.read("mutation", pagmo.mutation, shares);
+  settings.read("crossover", pagmo.crossover, probabilities);
+  settings.read("scale", pagmo.scale, probabilities);
+  settings.read("mutation", pagmo.mutation, probabilities);
   return pagmo;
 }
 

@@ -16,13 +16,13 @@ namespace {
 using sim::Polyline;
 using sim::Svg;
 
-constexpr double panel_bottom = 540.0;
-constexpr double page_height = panel_bottom + 56.0;
+constexpr double pareto_bottom = 540.0;
+constexpr double pareto_page_height = pareto_bottom + 56.0;
 
-constexpr const char* dot_style = R"(stroke="#8fb3c9" stroke-width="3" stroke-linecap="round")";
+constexpr const char* pareto_dot_style = R"(stroke="#8fb3c9" stroke-width="3" stroke-linecap="round")";
 constexpr const char* front_style = R"(stroke="#0072b2" stroke-width="1.6" stroke-linejoin="round")";
 constexpr const char* front_dot_style = R"(stroke="#0072b2" stroke-width="7" stroke-linecap="round")";
-constexpr const char* dot = "h0";
+constexpr const char* pareto_dot = "h0";
 
 /// Two scores of each evaluation that has both.
 struct Cloud {
@@ -62,25 +62,25 @@ std::string draw_pareto_front(const Experiment& experiment, std::span<const Eval
     best.add(experiment, evaluations[i]);
   }
   const sim::Axis x = score_axis(std::move(all.x), best.x, sim::page_left, sim::page_right);
-  const sim::Axis y = score_axis(std::move(all.y), best.y, panel_bottom, sim::first_panel_top);
+  const sim::Axis y = score_axis(std::move(all.y), best.y, pareto_bottom, sim::first_panel_top);
 
-  Svg svg(sim::page_width, page_height, experiment.title(),
+  Svg svg(sim::page_width, pareto_page_height, experiment.title(),
           "Candidates by two objectives; a line joins those that no other dominates.");
   sim::draw_title(svg, shortened(experiment.title()),
                   "method " + method_name(experiment.method) + ", " + std::to_string(evaluations.size()) +
                       " evaluations, " + std::to_string(front.size()) + " of them on the Pareto front");
   const std::array<sim::LegendEntry, 2> entries{
-      {{"evaluation", dot_style, dot}, {"Pareto front", front_dot_style, dot}}};
+      {{"evaluation", pareto_dot_style, pareto_dot}, {"Pareto front", front_dot_style, pareto_dot}}};
   sim::draw_legend(svg, sim::page_right, sim::first_panel_top - 16.0, entries);
   sim::draw_plot_grid(svg, x, y, axis_name(experiment, 0), axis_name(experiment, 1));
   svg.begin_group("evaluations");
-  svg.marks(sim::to_marks(all.places, x, y, 2.5), dot, dot_style);
+  svg.marks(sim::to_marks(all.places, x, y, 2.5), pareto_dot, pareto_dot_style);
   svg.end_group();
   svg.begin_group("front");
   if (experiment.objectives.size() == 2) {  // with more objectives the front is not a line
     svg.polyline(sim::to_pixels(best.places, x, y), front_style);
   }
-  svg.marks(sim::to_marks(best.places, x, y, 2.5), dot, front_dot_style);
+  svg.marks(sim::to_marks(best.places, x, y, 2.5), pareto_dot, front_dot_style);
   svg.end_group();
   sim::draw_plot_frame(svg, x, y);
   return svg.finish();

@@ -272,6 +272,16 @@ class RobotOnTheTable(unittest.TestCase):
         self.assertEqual(scan.returncode, 0, scan.stderr)
         self.assertIn("5 nodes", scan.stdout)
 
+    def test_a_simulated_robot_at_full_speed(self):
+        drive = proleg("drive", SOURCE / SCENARIO, "--bus", f"sim:{SOURCE / SCENARIO}", "--fast", "--json", "--set",
+                       "amplitude=20@1s")
+        self.assertEqual(drive.returncode, 0, drive.stderr)
+        result = json.loads(drive.stdout)
+        self.assertEqual(result["differences"], 0)
+        expected = simulated("--set", "amplitude=20@1s")
+        self.assertEqual(result["setpoint_hash"], expected["setpoint_hash"])
+        self.assertEqual(result["servo_hash"], expected["servo_hash"])
+
     def test_bad_input_is_one_line_and_the_right_status(self):
         scenario = SOURCE / SCENARIO
         with socket.socket() as nobody:
@@ -289,6 +299,7 @@ class RobotOnTheTable(unittest.TestCase):
             (2, ("assign", scenario, "--bus", "can0", "--places", "1=J1,1=J2"), "each module and each joint once"),
             (2, ("assign", scenario, "--bus", "can0", "--amplitude", "90"), "from 1 to 30"),
             (1, ("assign", scenario, "--bus", "can77"), "can77"),
+            (2, ("drive", scenario, "--bus", "can0", "--fast"), "--bus sim:FILE"),
             (2, ("bus", scenario), "no way to reach the robot"),
             (2, ("bus", scenario, "--tcp", "x"), "--tcp"),
             (1, ("scan", "--bus", "can77"), "can77"),

@@ -1,0 +1,15 @@
+# The sources of a target are compiled as a few texts: the templates that several of them use are compiled once. That
+# halves the time of a whole build, so tools/check does it; after a change of one file it takes longer.
+option(PROLEG_ONE_TEXT "Compile the sources of each target as a few texts" OFF)
+
+if(PROLEG_ONE_TEXT AND NOT CMAKE_CROSSCOMPILING)
+  set(CMAKE_UNITY_BUILD ON)
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE 10)
+endif()
+
+# proleg_separate(<source>...)
+#   Sources of the current folder that do not compile as one text with others: their files give the same name to different
+#   things.
+function(proleg_separate)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()

@@ -55,12 +55,32 @@ void RobotDrive::receive(Microseconds now, const CanFrame& frame) {
       if (const auto message = canopen::decode_monitoring(frame)) {
         if (const auto joint = joint_of(message->node)) {
           monitoring_[*joint] = message;
+          note_measurement(*joint, *message);
         }
       }
       break;
     default:
       break;
   }
+}
+
+void RobotDrive::note_measurement(unsigned joint, const canopen::Monitoring& values) {
+  if (!present_) {
+    return;
+  }
+  if (measurements_.size() == max_measurements) {
+    measurements_.pop_front();
+  }
+  measurements_.push_back({*present_, joint, values});
+}
+
+std::optional<Measurement> RobotDrive::take_measurement() {
+  if (measurements_.empty()) {
+    return std::nullopt;
+  }
+  const Measurement oldest = measurements_.front();
+  measurements_.pop_front();
+  return oldest;
 }
 
 void RobotDrive::note_sync() {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +19,13 @@ struct TickFrames {
   std::uint32_t tick = 0;  ///< k
   /// By joint, then by channel (0, 1); nothing: this host did not receive it.
   std::vector<std::array<std::optional<StateFrame>, 2>> frames;
+};
+
+/// What the module of a joint has measured at SYNC `tick`.
+struct Measurement {
+  std::uint32_t tick;
+  unsigned joint;
+  canopen::Monitoring values;
 };
 
 class RobotDrive final : public BusUser {
@@ -43,6 +51,10 @@ class RobotDrive final : public BusUser {
     return monitoring_[joint];
   }
 
+  /// The oldest measurement that has not been taken. The newest ones are kept, max_measurements of them.
+  [[nodiscard]] std::optional<Measurement> take_measurement();
+  static constexpr std::size_t max_measurements = 1'024;
+
   void receive(Microseconds now, const CanFrame& frame) override;
   void transmitted(Microseconds now, const CanFrame& frame) override { master_.transmitted(now, frame); }
   void poll(Microseconds now) override { master_.poll(now); }
@@ -52,6 +64,7 @@ class RobotDrive final : public BusUser {
   /// Ticks between the oldest that is kept and the present one, at most. A power of 2, below half of the labels.
   static constexpr std::uint32_t kept = 64;
 
+  void note_measurement(unsigned joint, const canopen::Monitoring& values);
   void note_sync();
   void note_state(const CanFrame& frame, unsigned channel);
   [[nodiscard]] std::optional<unsigned> joint_of(std::uint8_t node) const;
@@ -65,6 +78,7 @@ class RobotDrive final : public BusUser {
   std::uint32_t next_ = 0;                ///< the tick that is taken next
   std::optional<std::uint32_t> present_;  ///< of the last SYNC
   std::vector<std::optional<canopen::Monitoring>> monitoring_;
+  std::deque<Measurement> measurements_;
 };
 
 }  // namespace proleg::host

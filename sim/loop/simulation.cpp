@@ -1,6 +1,5 @@
 #include "sim/loop/simulation.hpp"
 
-#include "sim/loop/pulse_timing.hpp"
 #include "sim/record/internal_values.hpp"
 
 namespace proleg::sim {
@@ -12,6 +11,7 @@ Simulation::Simulation(const Scenario& scenario, const Losses* losses)
       touch_(scenario.robot.joints.size()),
       pulse_source_({scenario.robot.servo.period_us, scenario.kernel.tick_period_us}, scenario.joint_limits,
                     scenario.robot.servo.command_speed),
+      pulse_player_(plant_, pulse_source_.schedule()),
       latched_contacts_(scenario.robot.links.size()) {
   chain_.set_losses(losses);
 }
@@ -24,24 +24,16 @@ const Change* Simulation::advance() {
     touch_.sample(plant_.link_contacts(), joint);
   }
   touch_.write_links(latched_contacts_);
-  const std::uint64_t tick_start_us = std::uint64_t{tick()} * scenario_.kernel.tick_period_us;
+  const std::uint32_t present = tick();
   chain_.advance(touch_.contacts());
   setpoint_hash_.append(chain_.setpoints());
 
   servo_pulses_.clear();
-  taken_pulses_ = 0;
   pulse_source_.append(chain_, servo_pulses_);
   for (const ServoPulse& pulse : servo_pulses_) {
     servo_hash_.append(pulse.command);
   }
-
-  for (std::uint32_t step = 0; step < plant_.steps_per_tick(); ++step) {
-    take_servo_pulses(tick_start_us + plant_.step_start_us(step));
-    plant_.step();
-  }
-  // Pulses on which the servos act after the last step count for the next tick.
-  plant_.finish_tick();
-  take_servo_pulses(tick_start_us + scenario_.kernel.tick_period_us);
+  pulse_player_.advance(present, servo_pulses_);
   return change;
 }
 
@@ -51,18 +43,6 @@ const Change* Simulation::apply_changes() {
   }
   chain_.apply(scenario_.changes[next_change_]);
   return &scenario_.changes[next_change_++];
-}
-
-/// The servos take the pulses on which they act by then.
-void Simulation::take_servo_pulses(std::uint64_t until_us) {
-  const ServoSchedule& schedule = pulse_source_.schedule();
-  for (; taken_pulses_ < servo_pulses_.size(); ++taken_pulses_) {
-    const ServoPulse& pulse = servo_pulses_[taken_pulses_];
-    if (acting_time_us(pulse.time_us, schedule.servo_period_us(), schedule.tick_period_us()) > until_us) {
-      return;
-    }
-    plant_.set_command(pulse.joint, pulse.command);
-  }
 }
 
 TickSample Simulation::sample() {

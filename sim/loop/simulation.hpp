@@ -7,6 +7,7 @@
 #include "shared/computer/hash/value_hash.hpp"
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/plant.hpp"
+#include "sim/loop/pulse_player.hpp"
 #include "sim/loop/servo_pulses.hpp"
 #include "sim/loop/touch_inputs.hpp"
 #include "sim/measure/gait_meter.hpp"
@@ -57,18 +58,17 @@ class Simulation {
 
  private:
   const Change* apply_changes();
-  void take_servo_pulses(std::uint64_t until_us);
 
   const Scenario& scenario_;
   KernelChain chain_;
   Plant plant_;
   TouchInputs touch_;
   ServoPulses pulse_source_;
+  PulsePlayer pulse_player_;
   std::size_t next_change_ = 0;
   std::vector<std::uint8_t> latched_contacts_;
   std::vector<std::int32_t> internal_values_;
   std::vector<ServoPulse> servo_pulses_;
-  std::size_t taken_pulses_ = 0;
   ValueHash setpoint_hash_;
   ValueHash servo_hash_;
 };

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -15,6 +16,7 @@
 #include "host/transport/bus_address.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/master_text/master_text.hpp"
+#include "shared/computer/output/output_check.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "sim/scenario/master_input.hpp"
@@ -23,6 +25,7 @@
 #include "tools/proleg/gait_check.hpp"
 #include "tools/proleg/input_lines.hpp"
 #include "tools/proleg/live_changes.hpp"
+#include "tools/proleg/mirrored_run.hpp"
 #include "tools/proleg/run_progress.hpp"
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/simulated_transport.hpp"
@@ -35,6 +38,7 @@ using namespace proleg::tools;
 struct DriveOptions : ScenarioOptions {
   BusOptions bus;
   bool fast = false;
+  std::optional<std::string> mirror;
 };
 
 struct DriveResult {
@@ -44,14 +48,21 @@ struct DriveResult {
   host::Statistics bus;
 };
 
+/// Where the results of a run go; null: not asked for.
+struct DriveRecorders {
+  sim::Recorder* recorder;
+  Mirror* mirror;
+  sim::Recorder* mirror_recorder;
+};
+
 /// One run: set-up, gait and stop.
 class Drive {
  public:
-  Drive(const DriveOptions& options, const ScenarioRun& run, BusAccess& bus, sim::Recorder* recorder)
+  Drive(const DriveOptions& options, const ScenarioRun& run, BusAccess& bus, const DriveRecorders& recorders)
       : run_(run),
         is_verbose_(options.verbose),
         bus_(bus.connection()),
-        recorder_(recorder),
+        recorders_(recorders),
         input_(run.scenario),
         changes_(run.scenario, std::move(input_.changes)),
         drive_(bus_, input_.setup, master_options(), changes_.span()),
@@ -173,13 +184,34 @@ class Drive {
         check_.add_change(change);
       }
       const sim::Change* change = check_.follow(*tick);
-      if (recorder_ != nullptr) {
-        if (change != nullptr) {
-          recorder_->record_change(*change);
-        }
-        recorder_->record_tick(check_.sample(drive_));
+      record(change);
+    }
+    while (const auto measured = drive_.take_measurement()) {
+      if (recorders_.mirror != nullptr && measured->values.angle != canopen::Monitoring::not_measured) {
+        recorders_.mirror->note_measured(measured->tick, measured->joint, radians(measured->values));
       }
     }
+  }
+
+  /// The last tick that was followed.
+  void record(const sim::Change* change) {
+    if (recorders_.recorder == nullptr && recorders_.mirror == nullptr) {
+      return;
+    }
+    const sim::TickSample sample = check_.sample(drive_);
+    record_into(recorders_.recorder, change, sample);
+    if (recorders_.mirror != nullptr) {
+      record_into(recorders_.mirror_recorder, change, recorders_.mirror->follow(sample));
+    }
+  }
+  static void record_into(sim::Recorder* recorder, const sim::Change* change, const sim::TickSample& sample) {
+    if (recorder == nullptr) {
+      return;
+    }
+    if (change != nullptr) {
+      recorder->record_change(*change);
+    }
+    recorder->record_tick(sample);
   }
 
   void take_input() {
@@ -206,7 +238,7 @@ class Drive {
   const ScenarioRun& run_;
   bool is_verbose_;
   host::BusConnection& bus_;
-  sim::Recorder* recorder_;
+  DriveRecorders recorders_;
   sim::MasterInput input_;
   LiveChanges changes_;
   host::RobotDrive drive_;
@@ -229,7 +261,8 @@ std::string verdict(const GaitCheck& check) {
   return check.end_of_comparison() ? text + "; " + *check.end_of_comparison() : text;
 }
 
-void print_result(const DriveOptions& options, const DriveResult& result, const GaitCheck& check, double seconds) {
+void print_result(const DriveOptions& options, const DriveResult& result, const GaitCheck& check, double seconds,
+                  const MirroredRun* mirrored) {
   if (options.json) {
     std::cout << Json{{"scenario", options.file},
                       {"bus", options.bus.address()},
@@ -246,7 +279,8 @@ void print_result(const DriveOptions& options, const DriveResult& result, const 
                       {"servo_hash", check.servo_hash().hex()},
                       {"frames_sent", result.bus.transmitted},
                       {"frames_received", result.bus.received},
-                      {"recording", options.record.value_or("")}}
+                      {"recording", options.record.value_or("")},
+                      {"mirror", mirrored != nullptr ? mirrored->json() : Json()}}
                      .text()
               << '\n';
     return;
@@ -262,6 +296,9 @@ void print_result(const DriveOptions& options, const DriveResult& result, const 
   std::printf("servo hash        %s\n", check.servo_hash().hex().c_str());
   if (options.record) {
     std::printf("recording         %s\n", options.record->c_str());
+  }
+  if (mirrored != nullptr) {
+    mirrored->print();
   }
 }
 
@@ -298,7 +335,11 @@ int drive(const DriveOptions& options) {
   if (run.scenario.robot_control && !options.bus.bus) {
     return drive_by_plugin(options, run);
   }
-  check_outputs(planned_recording(options));
+  std::vector<PlannedOutput> outputs = planned_recording(options);
+  if (options.mirror) {
+    std::ranges::copy(MirroredRun::planned(options, *options.mirror), std::back_inserter(outputs));
+  }
+  check_outputs(outputs);
   const std::optional<sim::Scenario> simulated =
       options.fast ? std::optional(simulated_robot(options.bus)) : std::nullopt;
   const auto open_simulated = [&](host::TransportListener& listener) {
@@ -309,7 +350,14 @@ int drive(const DriveOptions& options) {
   // A reader of the output that ends must not end this program while the robot moves.
   std::signal(SIGPIPE, SIG_IGN);
   std::unique_ptr<sim::Recorder> recorder = open_recorder(options, run.scenario, "drive");
-  Drive robot(options, run, bus, recorder.get());
+  std::optional<MirroredRun> mirrored;
+  DriveRecorders recorders{recorder.get(), nullptr, nullptr};
+  if (options.mirror) {
+    mirrored.emplace(options, *options.mirror, run.scenario);
+    recorders.mirror = &mirrored->mirror();
+    recorders.mirror_recorder = &mirrored->recorder();
+  }
+  Drive robot(options, run, bus, recorders);
   robot.start();
   std::optional<std::string> failure;
   try {
@@ -330,7 +378,10 @@ int drive(const DriveOptions& options) {
                       {"setpoint_hash", check.setpoint_hash().hex()},
                       {"servo_hash", check.servo_hash().hex()}});
   }
-  print_result(options, result, check, seconds);
+  if (mirrored) {
+    mirrored->finish(seconds, check);
+  }
+  print_result(options, result, check, seconds, mirrored ? &*mirrored : nullptr);
   if (failure) {
     throw std::runtime_error(*failure + "; modules without a host stop by themselves within 1.5 s" +
                              kept_in_recording(options));
@@ -354,6 +405,11 @@ int main(int argc, char** argv) {
   DriveOptions options;
   add_scenario_options(command_line, options);
   add_bus_option(command_line, options.bus);
+  command_line
+      .add_option("--mirror", options.mirror,
+                  "simulate the robot beside the real one, record it in this file, and draw the difference of measured "
+                  "and simulated angles beside it")
+      .value_name("FILE");
   command_line.add_flag("--fast", options.fast, "with --bus sim:FILE: as fast as this computer simulates");
   return command_line.run(argc, argv, [&] { return drive(options); });
 }

@@ -27,6 +27,11 @@ StateFrame comparable(StateFrame frame) {
 
 }  // namespace
 
+double radians(const canopen::Monitoring& measured) {
+  constexpr double step = std::numbers::pi / 2 / (1 << 14);
+  return measured.angle * step;
+}
+
 GaitCheck::GaitCheck(const sim::Scenario& scenario)
     : scenario_(scenario),
       chain_(scenario.kernel, scenario.joint_limits, scenario.settings),
@@ -119,9 +124,8 @@ sim::TickSample GaitCheck::sample(const host::RobotDrive& drive) {
   });
   for (unsigned joint = 0; joint < contacts_.size(); ++joint) {
     if (const auto& measured = drive.monitoring(joint)) {
-      constexpr double step = std::numbers::pi / 2 / (1 << 14);
       if (measured->angle != canopen::Monitoring::not_measured) {
-        angles_[joint] = measured->angle * step;
+        angles_[joint] = radians(*measured);
       }
       currents_[joint] = measured->current_ma;
     }

@@ -17,6 +17,9 @@
 
 namespace proleg::tools {
 
+/// The angle that a module has measured, in rad. It must have measured it.
+[[nodiscard]] double radians(const canopen::Monitoring& measured);
+
 class GaitCheck {
  public:
   /// scenario: must outlive the check.

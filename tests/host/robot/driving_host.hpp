@@ -9,8 +9,6 @@
 
 namespace proleg::test {
 
-inline constexpr Microseconds second = 1'000'000;
-
 inline canopen::MasterOptions host_options() {
   canopen::MasterOptions options;
   options.core_fingerprint = core_fingerprint;
@@ -31,7 +29,7 @@ class DrivingHost {
   DrivingHost(const DrivingHost&) = delete;
   DrivingHost& operator=(const DrivingHost&) = delete;
 
-  bool start(Microseconds at_most = 20 * second) {
+  bool start(Microseconds at_most = 20'000'000) {
     drive.master().start(bus_.now());
     bus_.run_until(bus_.now() + at_most, [this] {
       return drive.master().state() == canopen::MasterState::running ||
@@ -41,11 +39,11 @@ class DrivingHost {
   }
   bool stop() {
     drive.master().stop(bus_.now());
-    return bus_.run_until(bus_.now() + 10 * second,
+    return bus_.run_until(bus_.now() + 10'000'000,
                           [this] { return drive.master().state() == canopen::MasterState::stopped; });
   }
   bool run_to_tick(std::uint32_t tick) {
-    return bus_.run_until(bus_.now() + 60 * second, [&] { return drive.master().tick().value_or(0) >= tick; });
+    return bus_.run_until(bus_.now() + 60'000'000, [&] { return drive.master().tick().value_or(0) >= tick; });
   }
 
  private:

@@ -6,6 +6,7 @@ Usage: robot_on_the_table_test.py SOURCE_FOLDER PROGRAM_FOLDER
 
 import json
 import re
+import shutil
 import signal
 import socket
 import subprocess
@@ -281,6 +282,29 @@ class RobotOnTheTable(unittest.TestCase):
         expected = simulated("--set", "amplitude=20@1s")
         self.assertEqual(result["setpoint_hash"], expected["setpoint_hash"])
         self.assertEqual(result["servo_hash"], expected["servo_hash"])
+
+    def test_a_mirror_shows_how_the_robot_differs_from_its_simulation(self):
+        with tempfile.TemporaryDirectory() as folder:
+            weak = Path(folder) / "weak"
+            shutil.copytree((SOURCE / SCENARIO).parent, weak)
+            robot = weak / "caterpillar.robot.xml"
+            text = robot.read_text()
+            self.assertIn("<gain>50</gain>", text)
+            robot.write_text(text.replace("<gain>50</gain>", "<gain>15</gain>"))
+            for bus, (least, most) in ((SOURCE / SCENARIO, (0.0, 0.1)), (weak / "uniform.simulation.xml", (5.0, 40.0))):
+                mirror = Path(folder) / "mirror.proleg"
+                drive = proleg("drive", SOURCE / SCENARIO, "--bus", f"sim:{bus}", "--fast", "--seconds", "5", "--json",
+                               "--mirror", mirror)
+                self.assertEqual(drive.returncode, 0, drive.stderr)
+                for joint in json.loads(drive.stdout)["mirror"]["joints"]:
+                    self.assertIn(joint["measurements"], (50, 51), joint)
+                    self.assertTrue(least <= joint["largest_deg"] <= most, joint)
+                replay = proleg("replay", mirror)
+                self.assertEqual(replay.returncode, 0, replay.stderr)
+                self.assertIn("<svg", (Path(folder) / "mirror.difference.svg").read_text())
+            # The simulated robot of the recording has moved as in 'proleg simulate'.
+            table = proleg("export", mirror, "--out", "-").stdout.splitlines()
+            self.assertEqual(len(table), 501)
 
     def test_bad_input_is_one_line_and_the_right_status(self):
         scenario = SOURCE / SCENARIO

@@ -1,0 +1,59 @@
+#pragma once
+
+// The simulated robot beside the real one: it gets the pulses of the same gait, and its joint angles are compared with
+// those that the modules measure.
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "sim/loop/plant.hpp"
+#include "sim/loop/pulse_player.hpp"
+#include "sim/record/recorder.hpp"
+#include "sim/record/svg.hpp"
+#include "sim/scenario/scenario.hpp"
+
+namespace proleg::tools {
+
+class Mirror {
+ public:
+  /// scenario: must outlive the mirror.
+  explicit Mirror(const sim::Scenario& scenario);
+
+  /// The next tick of the gait. Returns the sample as it is for the simulated robot: its poses, angles, torques,
+  /// currents and forces. Valid until the next call. Throws PhysicsError as Plant does.
+  sim::TickSample follow(const sim::TickSample& real);
+
+  /// A module has measured this angle, in rad, at SYNC `tick`.
+  void note_measured(std::uint32_t tick, unsigned joint, double angle);
+
+  /// Measured minus simulated angle of a joint.
+  struct Difference {
+    sim::Polyline over_time;  ///< x: s since SYNC 0, y: degrees
+    double root_mean_square = 0.0;
+    double largest = 0.0;  ///< absolute, degrees
+  };
+  /// Of each joint; empty lines where nothing was measured.
+  [[nodiscard]] std::vector<Difference> differences() const;
+
+  /// The differences as an SVG picture.
+  [[nodiscard]] std::string picture(const std::string& title, double seconds) const;
+
+ private:
+  struct Measurement {
+    std::uint32_t tick;
+    unsigned joint;
+    double angle;
+  };
+  void compare();
+
+  const sim::Scenario& scenario_;
+  sim::Plant plant_;
+  sim::PulsePlayer player_;
+  std::vector<std::vector<double>> angles_;  ///< by tick, then by joint: rad, at its SYNC
+  std::deque<Measurement> waiting_;
+  std::vector<sim::Polyline> lines_;  ///< by joint
+};
+
+}  // namespace proleg::tools

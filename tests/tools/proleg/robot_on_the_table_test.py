@@ -5,6 +5,7 @@ Usage: robot_on_the_table_test.py SOURCE_FOLDER PROGRAM_FOLDER
 """
 
 import json
+import os
 import re
 import shutil
 import signal
@@ -12,7 +13,9 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+import tty
 import unittest
 from pathlib import Path
 
@@ -52,6 +55,34 @@ class Bus:
     def __exit__(self, *_):
         self.process.send_signal(signal.SIGINT)
         self.process.communicate(timeout=LONGEST)
+
+
+class Listener:
+    """A program that takes all frames of an slcan channel."""
+
+    def __init__(self, bus):
+        if bus.startswith("tcp:"):
+            host, port = bus.removeprefix("tcp:").split(":")
+            self.line = socket.create_connection((host, int(port)), timeout=LONGEST).makefile("rwb", buffering=0)
+        else:
+            device = os.open(bus.removeprefix("serial:"), os.O_RDWR | os.O_NOCTTY)
+            tty.setraw(device)
+            self.line = os.fdopen(device, "r+b", buffering=0)
+        self.line.write(b"C\rS8\rO\r")
+        self.text = b""
+        self.thread = threading.Thread(target=self.read, daemon=True)
+        self.thread.start()
+
+    def read(self):
+        while True:
+            try:
+                self.text += self.line.read(4096) or b""
+            except OSError:
+                return
+
+    def frames(self):
+        """As in a candump log, without the '#': '18300...'."""
+        return [line[1:4] + line[5:] for line in self.text.decode("ascii").split("\r") if line.startswith("t")]
 
 
 def proleg(name, *arguments, text=""):
@@ -126,6 +157,24 @@ class RobotOnTheTable(unittest.TestCase):
                 self.assertEqual(result["setpoint_hash"], expected["setpoint_hash"])
                 self.assertEqual(result["servo_hash"], expected["servo_hash"])
                 self.assertEqual(set(states(bus.tcp).values()), {"no power"})
+
+    def test_every_program_sees_every_frame_in_the_order_of_the_bus(self):
+        """Two programs beside the host, over TCP and a pseudo terminal, and the log of the bus itself."""
+        with tempfile.TemporaryDirectory() as folder:
+            log = Path(folder) / "bus.log"
+            with Bus("--can-log", log) as bus:
+                listeners = [Listener(bus.tcp), Listener(bus.pty)]
+                drive = start_drive("tcp:" + bus.tcp.removeprefix("tcp:"), "--seconds", "4")
+                self.assertEqual(drive.wait(timeout=LONGEST), 0, drive.communicate())
+                time.sleep(0.5)
+                seen = [listener.frames() for listener in listeners]
+            frames = [line.split()[2].replace("#", "") for line in log.read_text().splitlines()]
+            reset = frames.index("0008100")  # NMT reset node, all nodes: the host begins
+            for frames_of_program in seen:
+                begin = frames_of_program.index("0008100")
+                self.assertGreater(len(frames_of_program), 2000)
+                self.assertEqual(frames_of_program[begin:], frames[reset:][:len(frames_of_program) - begin])
+                self.assertLess(len(frames) - reset - (len(frames_of_program) - begin), 10, "sent after it was closed")
 
     def test_changes_are_typed_while_it_moves_and_the_recording_has_them(self):
         with Bus() as bus, tempfile.TemporaryDirectory() as folder:
@@ -326,6 +375,7 @@ class RobotOnTheTable(unittest.TestCase):
             (2, ("drive", scenario, "--bus", "can0", "--fast"), "--bus sim:FILE"),
             (2, ("bus", scenario), "no way to reach the robot"),
             (2, ("bus", scenario, "--tcp", "x"), "--tcp"),
+            (2, ("scan", "--bus", "sim:missing.simulation.xml"), "sim:missing.simulation.xml"),
             (1, ("scan", "--bus", "can77"), "can77"),
             (1, ("scan", "--bus", "serial:/dev/missing"), "no such device"),
             (1, ("scan", "--bus", f"tcp:127.0.0.1:{port}"), "tcp:127.0.0.1"),

@@ -70,8 +70,10 @@ endfunction()
 #   path     the tested room or subject, e.g. shared/fixed: one GoogleTest program, and one ctest test of that name (a
 #            process for each case costs more than most cases)
 #   SHARDS   run the cases as this many tests, for a program that takes long
+#   ROBOTS   a GoogleTest filter of cases that simulate whole robots. Under the sanitizers they take ten times as long:
+#            there they are slow tests. They run as built for users in every suite, also without PROLEG_UNIT_TESTS.
 function(proleg_test path)
-  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;SHARDS" "SOURCES;DEPENDS;LIBRARIES;PROGRAMS;DATA;LABELS")
+  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;SHARDS;ROBOTS" "SOURCES;DEPENDS;LIBRARIES;PROGRAMS;DATA;LABELS")
   string(REPLACE "/" "_" name ${path})
   add_executable(${name}_test ${test_SOURCES})
   foreach(dependency IN LISTS test_DEPENDS)
@@ -85,14 +87,25 @@ function(proleg_test path)
   endif()
   set(options PROGRAMS ${test_PROGRAMS} DATA ${test_DATA} LABELS ${test_LABELS} TIMEOUT ${test_TIMEOUT}
       COST ${test_COST})
+  set(command $<TARGET_FILE:${name}_test> --gtest_brief=1)
+  if(test_ROBOTS AND PROLEG_SANITIZE)
+    proleg_add_test(${path}.robots COMMAND ${command} --gtest_filter=${test_ROBOTS} PROGRAMS ${test_PROGRAMS} DATA ${test_DATA}
+      LABELS slow TIMEOUT 3600)
+    if(test_ROBOTS STREQUAL "*")
+      return()
+    endif()
+    list(APPEND command --gtest_filter=-${test_ROBOTS})
+  elseif(test_ROBOTS AND NOT PROLEG_UNIT_TESTS)
+    list(APPEND command --gtest_filter=${test_ROBOTS})
+  endif()
   if(NOT test_SHARDS)
-    proleg_add_test(${path} COMMAND $<TARGET_FILE:${name}_test> --gtest_brief=1 ${options})
+    proleg_add_test(${path} COMMAND ${command} ${options})
     return()
   endif()
   math(EXPR last "${test_SHARDS} - 1")
   foreach(shard RANGE ${last})
     math(EXPR number "${shard} + 1")
-    proleg_add_test(${path}.${number}of${test_SHARDS} COMMAND $<TARGET_FILE:${name}_test> --gtest_brief=1 ${options}
+    proleg_add_test(${path}.${number}of${test_SHARDS} COMMAND ${command} ${options}
       ENVIRONMENT GTEST_TOTAL_SHARDS=${test_SHARDS} GTEST_SHARD_INDEX=${shard})
   endforeach()
 endfunction()

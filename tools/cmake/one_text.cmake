@@ -5,6 +5,10 @@ option(PROLEG_ONE_TEXT "Compile the sources of each target as a few texts" OFF)
 if(PROLEG_ONE_TEXT AND NOT CMAKE_CROSSCOMPILING)
   set(CMAKE_UNITY_BUILD ON)
   set(CMAKE_UNITY_BUILD_BATCH_SIZE 10)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # GCC takes the sources of such a text for headers: their anonymous namespaces would be in several texts.
+    add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
+  endif()
 endif()
 
 # proleg_separate(<source>...)

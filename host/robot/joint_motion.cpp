@@ -10,13 +10,10 @@ namespace {
 
 namespace object = canopen::object;
 
-constexpr Microseconds answer_timeout_us = 150'000;
-constexpr unsigned attempts = 8;
-
 canopen::SdoTransferOptions transfer_options() {
   canopen::SdoTransferOptions options;
-  options.timeout_us = answer_timeout_us;
-  options.attempts = attempts;
+  options.timeout_us = patient_timeout_us;
+  options.attempts = patient_attempts;
   return options;
 }
 
@@ -104,8 +101,8 @@ void JointMotion::begin_motion(Microseconds now) {
   options.resets_modules = true;
   options.allows_others = true;
   options.ramps_down = true;
-  options.answer_timeout_us = answer_timeout_us;
-  options.attempts = attempts;
+  options.answer_timeout_us = patient_timeout_us;
+  options.attempts = patient_attempts;
   master_.emplace(port_, setup_, options);
   master_->start(now);
 }

@@ -148,8 +148,7 @@ std::string parameters_text(const std::vector<ModuleParameters>& modules) {
             hexadecimal(module.core_fingerprint, 8) + '\n';
     for (const ParameterValue& value : module.values) {
       const canopen::Address address = value.object.address;
-      text += node + '\t' + hexadecimal(address.index, 4) +
-              (address.sub == 0 ? "" : ":" + std::to_string(address.sub)) + '\t' + plain_value(value) + '\t' +
+      text += node + '\t' + address_text(address) + '\t' + plain_value(value) + '\t' +
               std::string(canopen::entry_name(address).view()) + '\n';
     }
   }

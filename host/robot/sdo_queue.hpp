@@ -17,6 +17,11 @@
 
 namespace proleg::host {
 
+/// How long a host program waits for the answer of a module, and how often it asks: a command succeeds on a bus that
+/// loses one frame in ten, and over a radio.
+inline constexpr Microseconds patient_timeout_us = 150'000;
+inline constexpr unsigned patient_attempts = 8;
+
 struct SdoResult {
   canopen::AbortCode abort_code = canopen::AbortCode::none;  ///< `timeout`: no answer
   std::vector<std::uint8_t> value;                           ///< of a read

@@ -91,8 +91,8 @@ void scan(BusAccess& bus, host::BusScan& scan) {
 
 canopen::SdoTransferOptions patient_transfers() {
   canopen::SdoTransferOptions options;
-  options.timeout_us = 150'000;
-  options.attempts = 8;
+  options.timeout_us = host::patient_timeout_us;
+  options.attempts = host::patient_attempts;
   return options;
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "host/robot/robot_drive.hpp"
+#include "host/robot/sdo_queue.hpp"
 #include "host/transport/bus_address.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/master_text/master_text.hpp"
@@ -136,8 +137,8 @@ class Drive {
     options.serials = input_.serials;
     options.resets_modules = true;
     options.ramps_down = true;
-    options.answer_timeout_us = 150'000;
-    options.attempts = 8;
+    options.answer_timeout_us = host::patient_timeout_us;
+    options.attempts = host::patient_attempts;
     return options;
   }
   [[nodiscard]] canopen::MasterState state() const { return drive_.master().state(); }

@@ -45,12 +45,18 @@ void BusExamination::start(Microseconds now) {
   step_ = Step::listening;
   started_ = now;
   listening_until_ = now + options_.listening_us;
-  first_ = watch_own_end();
+  first_ = read_own_end_();
+  last_controller_state_ = first_.state.controller.state;
 }
 
 OwnEnd BusExamination::watch_own_end() {
   OwnEnd own = read_own_end_();
-  observations_.worst_controller_state = std::max(observations_.worst_controller_state, own.state.controller.state);
+  // An old state counts only if it stays, or comes again.
+  const CanState state = own.state.controller.state;
+  if (state != last_controller_state_ || step_ == Step::done) {
+    observations_.worst_controller_state = std::max(observations_.worst_controller_state, state);
+  }
+  last_controller_state_ = state;
   return own;
 }
 
@@ -90,8 +96,11 @@ void BusExamination::listen(const CanFrame& frame) {
 
 void BusExamination::note_sync(std::uint8_t counter) {
   ++observations_.syncs;
-  const bool follows = !sync_counter_ || counter == *sync_counter_ % canopen::sync_counters + 1;
-  observations_.sync_jumps += follows ? 0U : 1U;
+  if (sync_counter_) {
+    // An adapter that loses frames lets it step forwards, not backwards or nowhere.
+    const unsigned step = (unsigned{counter} + canopen::sync_counters - *sync_counter_) % canopen::sync_counters;
+    observations_.sync_jumps += step == 0 || step > canopen::sync_counters / 2 ? 1U : 0U;
+  }
   sync_counter_ = counter;
 }
 
@@ -240,6 +249,7 @@ void BusExamination::finish(bool is_complete) {
   own.state.bus_errors -= first_.state.bus_errors;
   own.statistics.received -= first_.statistics.received;
   own.statistics.transmitted -= first_.statistics.transmitted;
+  own.statistics.malformed -= first_.statistics.malformed;
   for (const ObservedNode& node : nodes_) {
     if (node.node != 0) {
       observations_.nodes.push_back(node);

@@ -71,6 +71,7 @@ class BusExamination final : public BusUser {
   std::optional<std::uint8_t> sync_counter_;
   std::vector<double> bits_;  ///< by identifier
   OwnEnd first_;              ///< at the start
+  CanState last_controller_state_ = CanState::error_active;
   std::uint64_t transmitted_ = 0;
   Microseconds started_ = 0;
   Microseconds listening_until_ = never;

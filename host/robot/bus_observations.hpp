@@ -47,7 +47,7 @@ struct BusObservations {
   std::uint16_t busiest_identifier = 0;
   double busiest_load = 0;       ///< of the frames with that identifier
   unsigned syncs = 0;            ///< SYNCs with a counter
-  unsigned sync_jumps = 0;       ///< of these: the counter does not follow the one before
+  unsigned sync_jumps = 0;       ///< of these: the counter is that of the one before, or goes back
   unsigned foreign_syncs = 0;    ///< SYNCs without a counter
   unsigned host_heartbeats = 0;  ///< heartbeats of node 127
 

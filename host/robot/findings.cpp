@@ -202,8 +202,9 @@ class Diagnosis {
 
   void find_missing_sync() {
     const Nodes running = nodes_with([](const ObservedNode& node) { return node.state == NmtState::operational; });
-    if (running.empty() || seen_.syncs > 0 || seen_.foreign_syncs > 0 || has("duplicate_node_id") ||
-        has("restarting_module")) {
+    // A host that sets a robot up starts SYNC last.
+    if (running.empty() || seen_.syncs > 0 || seen_.foreign_syncs > 0 || seen_.host_heartbeats > 0 ||
+        has("duplicate_node_id") || has("restarting_module")) {
       return;
     }
     const Nodes producers = nodes_with([](const ObservedNode& node) { return node.produces_sync; });
@@ -298,7 +299,8 @@ class Diagnosis {
   }
 
   void find_damaged_lines() {
-    if (seen_.own.statistics.malformed > 0) {
+    constexpr std::uint64_t most_at_opening = 2;  // the rest of what another program sent
+    if (seen_.own.statistics.malformed > most_at_opening) {
       add("damaged_lines",
           std::to_string(seen_.own.statistics.malformed) +
               " lines from the adapter were damaged on their way to this computer.",

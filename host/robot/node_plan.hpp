@@ -26,9 +26,14 @@ struct PlacedModule {
                                                             std::span<const std::uint32_t> serials,
                                                             std::span<const std::uint8_t> taken);
 
-/// The modules that must have another node id, so that the module of joint j has nodes[j]. A module without a joint
-/// that is in the way gets the lowest free node id. The joints of the modules differ.
-[[nodiscard]] std::vector<canopen::RenumberedModule> plan_node_ids(std::span<const PlacedModule> modules,
-                                                                   std::span<const std::uint8_t> nodes);
+/// The node ids that modules must store, in this order, so that the module of joint j has nodes[j]. A module without a
+/// joint that is in the way gets a free node id. After each step no two modules have the same node id in their flash:
+/// it may end anywhere, and every module still boots. So modules that exchange their node ids need a third one for a
+/// while: one of them is listed twice.
+/// others: node ids of nodes that are no modules; none of them is in `nodes`. Nothing: no node id is free for that, or
+/// two modules have one joint.
+[[nodiscard]] std::optional<std::vector<canopen::RenumberedModule>> plan_node_ids(std::span<const PlacedModule> modules,
+                                                                                  std::span<const std::uint8_t> nodes,
+                                                                                  std::span<const std::uint8_t> others);
 
 }  // namespace proleg::host

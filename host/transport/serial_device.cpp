@@ -31,11 +31,17 @@ bool is_in_group(gid_t group) {
   return std::find(groups.begin(), groups.begin() + std::max(read, 0), group) != groups.begin() + std::max(read, 0);
 }
 
+/// Whether a process has the device open. Its links are read and nothing else: a file on a network that does not answer
+/// must not block this.
 bool has_open(const fs::path& process, dev_t device) {
   std::error_code error;
-  for (const auto& descriptor : fs::directory_iterator(process / "fd", error)) {
+  for (fs::directory_iterator place(process / "fd", error); !error && place != fs::directory_iterator();
+       place.increment(error)) {
+    std::error_code gone;
+    const fs::path file = fs::read_symlink(place->path(), gone);
     struct stat status {};
-    if (::stat(descriptor.path().c_str(), &status) == 0 && S_ISCHR(status.st_mode) && status.st_rdev == device) {
+    if (!gone && file.string().starts_with("/dev/") && ::stat(file.c_str(), &status) == 0 && S_ISCHR(status.st_mode) &&
+        status.st_rdev == device) {
       return true;
     }
   }
@@ -45,11 +51,13 @@ bool has_open(const fs::path& process, dev_t device) {
 std::vector<std::string> programs_with(dev_t device) {
   std::vector<std::string> programs;
   std::error_code error;
-  for (const auto& process : fs::directory_iterator("/proc", error)) {
-    const std::string number = process.path().filename();
-    if (parse_whole<unsigned>(number) && has_open(process.path(), device)) {
+  // A process may end while its folder is read: then it has nothing open.
+  for (fs::directory_iterator place("/proc", error); !error && place != fs::directory_iterator();
+       place.increment(error)) {
+    const std::string number = place->path().filename();
+    if (parse_whole<unsigned>(number) && has_open(place->path(), device)) {
       std::string name;
-      std::getline(std::ifstream(process.path() / "comm"), name);
+      std::getline(std::ifstream(place->path() / "comm"), name);
       programs.push_back(one_line(name) + " (process " + number + ")");
     }
   }

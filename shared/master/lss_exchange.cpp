@@ -10,6 +10,7 @@ void LssExchange::begin(Microseconds now, const CanFrame& request, const Answer&
   is_sent_ = false;
   is_answered_ = false;
   error_ = lss::ok;
+  begun_ = now;
   deadline_ = now + send_timeout_us_;
   hand_over();
 }
@@ -27,6 +28,7 @@ void LssExchange::receive(Microseconds now, const CanFrame& frame) {
   }
   if (frame.identifier == answer_.identifier && frame.length == answer_.length && frame.data[0] == answer_.first_byte) {
     error_ = is_answered_ && error_ != lss::ok ? error_ : frame.data[1];
+    answer_delay_ = is_answered_ ? answer_delay_ : now - begun_;
     is_sent_ = true;
     is_answered_ = true;
     deadline_ = now + settle_us_;

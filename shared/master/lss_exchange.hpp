@@ -51,6 +51,8 @@ class LssExchange {
   // After the end:
   [[nodiscard]] bool is_sent() const { return is_sent_; }
   [[nodiscard]] bool is_answered() const { return is_answered_; }
+  /// From begin() to the first answer.
+  [[nodiscard]] Microseconds answer_delay() const { return answer_delay_; }
   /// The second byte of the answer; of several answers, the first one that is not lss::ok.
   [[nodiscard]] std::uint8_t error() const { return error_; }
 
@@ -63,6 +65,8 @@ class LssExchange {
   CanFrame request_{};
   Answer answer_{};
   Microseconds wait_us_ = 0;
+  Microseconds begun_ = 0;
+  Microseconds answer_delay_ = 0;
   Microseconds deadline_ = never;
   bool is_pending_ = false;  ///< the request waits for a mailbox
   bool is_sent_ = false;

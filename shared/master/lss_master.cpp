@@ -1,5 +1,7 @@
 #include "shared/master/lss_master.hpp"
 
+#include <algorithm>
+
 namespace proleg::canopen {
 
 using lss::Service;
@@ -55,14 +57,17 @@ void LssMaster::exchange(Microseconds now) {
     case Step::release:
       exchange_.begin(now, lss_release_request(), LssExchange::boot_up_of(module_->node), options_.boot_timeout_us);
       break;
+    case Step::begin:
+      exchange_.begin(now, request(), LssExchange::of(Service::identified), options_.first_answer_timeout_us);
+      break;
     case Step::configure:
-      exchange_.begin(now, request(), LssExchange::of(Service::configure_node_id), options_.answer_timeout_us);
+      exchange_.begin(now, request(), LssExchange::of(Service::configure_node_id), patience_us_);
       break;
     case Step::store:
       exchange_.begin(now, request(), LssExchange::of(Service::store_configuration), options_.store_timeout_us);
       break;
     default:
-      exchange_.begin(now, request(), LssExchange::of(Service::identified), options_.answer_timeout_us);
+      exchange_.begin(now, request(), LssExchange::of(Service::identified), patience_us_);
       break;
   }
 }
@@ -121,6 +126,7 @@ void LssMaster::conclude(Microseconds now) {
       return;
     case Step::begin:
       if (exchange_.is_answered()) {
+        patience_us_ = std::max(3 * exchange_.answer_delay(), options_.answer_timeout_us);
         sub_ = 0;
         scan_number(now);
       } else {

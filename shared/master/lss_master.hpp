@@ -27,6 +27,9 @@ struct LssMasterOptions {
   bool stores = true;     ///< the modules keep the node id
   unsigned attempts = 1;  ///< of each request, if there is no answer; more for a connection that loses frames
   Microseconds answer_timeout_us = 10'000;
+  /// Of the first request, 'is there a module?'. If its answer takes long, as over a radio, the master waits for
+  /// further answers three times as long, and at least answer_timeout_us.
+  Microseconds first_answer_timeout_us = 10'000;
   Microseconds settle_us = 2'000;  ///< without an answer before the next request
   Microseconds store_timeout_us = storing_time_us;
   Microseconds boot_timeout_us = 100'000;
@@ -114,8 +117,9 @@ class LssMaster {
   LssProblem problem_ = LssProblem::none;
   std::uint8_t problem_detail_ = 0;
   Step step_ = Step::release_all;
-  unsigned tries_ = 0;    ///< of the present request
-  std::uint8_t sub_ = 0;  ///< the number that is scanned
+  Microseconds patience_us_ = 0;  ///< for the answers of this connection
+  unsigned tries_ = 0;            ///< of the present request
+  std::uint8_t sub_ = 0;          ///< the number that is scanned
   std::uint8_t bit_ = 0;
   std::uint32_t number_ = 0;
   unsigned scans_ = 0;

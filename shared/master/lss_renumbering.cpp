@@ -148,12 +148,11 @@ void LssRenumbering::conclude(Microseconds now) {
       send(now, Step::reset);
       break;
     case Step::reset:
-      if (have_all_booted()) {
+      if (const std::size_t missing = first_missing(); missing == modules_.size()) {
         state_ = State::done;
         exchange_.cancel();
       } else {
-        position_ = static_cast<std::size_t>(std::ranges::find(modules_, false, &RenumberedModule::has_booted) -
-                                             modules_.begin());
+        position_ = missing;
         repeat_or_fail(now, Step::reset, LssProblem::no_boot_up, modules_[position_].node);
       }
       break;
@@ -179,7 +178,17 @@ void LssRenumbering::repeat_or_fail(Microseconds now, Step first, LssProblem pro
   }
 }
 
-bool LssRenumbering::have_all_booted() const { return std::ranges::all_of(modules_, &RenumberedModule::has_booted); }
+/// The module that has not booted with its last node id.
+std::size_t LssRenumbering::first_missing() const {
+  for (std::size_t i = 0; i < modules_.size(); ++i) {
+    const bool has_another = std::ranges::any_of(
+        modules_.subspan(i + 1), [&](const RenumberedModule& later) { return later.address == modules_[i].address; });
+    if (!modules_[i].has_booted && !has_another) {
+      return i;
+    }
+  }
+  return modules_.size();
+}
 
 void LssRenumbering::fail(LssProblem problem, std::uint8_t detail) {
   state_ = State::failed;

@@ -1,7 +1,8 @@
 #pragma once
 
 // Gives modules that have a node id another one (CiA 305): selects each by its LSS address, lets it store the node id,
-// and resets all modules, which then boot with their new node ids. Two modules may take each other's.
+// and resets all modules, which then boot with their new node ids. The order is the caller's: a module may be listed
+// again, and then has the last node id.
 
 #include <span>
 
@@ -20,11 +21,11 @@ struct RenumberedModule {
 
 struct LssRenumberingOptions {
   unsigned attempts = 10;  ///< of each module, and of the reset
-  Microseconds answer_timeout_us = 50'000;
-  Microseconds silence_us = 10'000;  ///< without an answer: no module is selected
+  Microseconds answer_timeout_us = 150'000;
+  Microseconds silence_us = 60'000;  ///< without an answer: no module is selected
   Microseconds settle_us = 2'000;    ///< after an answer, before the next request
   Microseconds store_timeout_us = storing_time_us;
-  Microseconds boot_timeout_us = 300'000;  ///< after the reset
+  Microseconds boot_timeout_us = 400'000;  ///< after the reset
   Microseconds send_timeout_us = 1'000'000;
 };
 
@@ -68,7 +69,7 @@ class LssRenumbering {
   void conclude(Microseconds now);
   void next_module(Microseconds now);
   void repeat_or_fail(Microseconds now, Step first, LssProblem problem, std::uint8_t detail);
-  [[nodiscard]] bool have_all_booted() const;
+  [[nodiscard]] std::size_t first_missing() const;
   void fail(LssProblem problem, std::uint8_t detail);
 
   CanPort& port_;

@@ -1,23 +1,23 @@
 // proleg assign: gives the modules on a table their places in a robot.
 
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "host/robot/joint_motion.hpp"
 #include "host/robot/node_plan.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "sim/scenario/names.hpp"
 #include "tools/proleg/assign_bus.hpp"
+#include "tools/proleg/assign_dialogue.hpp"
 #include "tools/proleg/bus_access.hpp"
-#include "tools/proleg/input_lines.hpp"
+#include "tools/proleg/joint_words.hpp"
 #include "tools/proleg/scenario_run.hpp"
 
 namespace {
@@ -32,101 +32,48 @@ struct AssignOptions : ScenarioOptions {
   bool yes = false;
 };
 
-constexpr std::int32_t largest_amplitude = raw(Unit::degree, 30);
+/// The options, checked.
+struct AssignSettings {
+  std::vector<Place> places;
+  host::JointMotionOptions motion;
+  bool asks = true;  ///< before node ids are changed
+  bool json = false;
+};
 
 std::int32_t parse_amplitude(const std::string& word) {
   const DecimalResult angle = parse_decimal(word, Unit::degree);
-  if (angle.error != DecimalError::none || angle.raw < raw(Unit::degree, 1) || angle.raw > largest_amplitude) {
+  if (angle.error != DecimalError::none || angle.raw < raw(Unit::degree, 1) || angle.raw > raw(Unit::degree, 30)) {
     throw InputError("--amplitude", 0, in_quotes(word), "degrees, from 1 to 30");
   }
   return angle.raw;
 }
 
-double degrees(std::int32_t angle) { return 90.0 * angle / quarter_turn; }
-
-/// The joint that a user means: its name, in any case, or the number at the end of its name.
-std::optional<unsigned> joint_of(const sim::RobotModel& robot, std::string_view word) {
-  std::optional<unsigned> by_number;
-  unsigned count = 0;
-  for (unsigned joint = 0; joint < robot.joints.size(); ++joint) {
-    const std::string name = lower_case(robot.joints[joint].name);
-    if (name == lower_case(word)) {
-      return joint;
-    }
-    if (name.substr(name.find_last_not_of("0123456789") + 1) == word) {
-      by_number = joint;
-      ++count;
-    }
+/// Angles that every joint of the robot may have. Throws InputError if there is none.
+canopen::AngleLimits common_limits(const sim::Scenario& scenario) {
+  unsigned lowest = 0;
+  unsigned highest = 0;
+  const auto& limits = scenario.joint_limits;
+  for (unsigned joint = 0; joint < limits.size(); ++joint) {
+    lowest = limits[joint].lower > limits[lowest].lower ? joint : lowest;
+    highest = limits[joint].upper < limits[highest].upper ? joint : highest;
   }
-  return count == 1 ? by_number : std::nullopt;
+  if (limits[lowest].lower >= limits[highest].upper) {
+    throw InputError("the robot", 0,
+                     "no angle that the joints " + scenario.robot.joints[lowest].name + " and " +
+                         scenario.robot.joints[highest].name + " have in common",
+                     "--places: a joint that is not known could only move by an angle that all joints may have");
+  }
+  return {limits[lowest].lower, limits[highest].upper};
 }
-
-/// A module and its joint, as the user says.
-struct Place {
-  std::uint8_t node;
-  unsigned joint;
-};
-
-/// "3=J1,1=J2"
-std::vector<Place> parse_places(const sim::RobotModel& robot, std::string_view words) {
-  std::vector<Place> places;
-  for (std::size_t begin = 0; begin <= words.size();) {
-    const std::size_t end = std::min(words.find(',', begin), words.size());
-    const std::string_view word = trimmed(words.substr(begin, end - begin));
-    begin = end + 1;
-    const std::size_t equals = std::min(word.find('='), word.size());
-    const auto node = parse_whole<std::uint8_t>(word.substr(0, equals));
-    const auto joint = equals < word.size() ? joint_of(robot, word.substr(equals + 1)) : std::nullopt;
-    if (!node || !joint) {
-      throw InputError("--places", 0, in_quotes(word),
-                       "NODE=JOINT, such as 3=J1; the joints are " + listed(sim::joint_names(robot)));
-    }
-    for (const Place& other : places) {
-      if (other.node == *node || other.joint == *joint) {
-        throw InputError(
-            "--places", 0,
-            in_quotes(word) + " after node " + std::to_string(other.node) + " for " + robot.joints[other.joint].name,
-            "each module and each joint once");
-      }
-    }
-    places.push_back({*node, *joint});
-  }
-  return places;
-}
-
-/// A person, or a program in the place of one. Questions are on standard error, answers come by standard input.
-class Operator {
- public:
-  explicit Operator(BusAccess& bus) : bus_(bus) {}
-
-  static void say(const std::string& text) { std::cerr << text << std::flush; }
-
-  /// The next line. Throws std::runtime_error if the user ends the program, input ends, or `motion` fails.
-  std::string answer(const host::JointMotion* motion = nullptr) {
-    constexpr Microseconds patience = 600'000'000;
-    std::optional<std::string> line;
-    bus_.wait_for("an answer on standard input", patience, [&] {
-      line = line ? line : lines_.next();
-      const bool has_failed = motion != nullptr && motion->state() == host::JointMotion::State::failed;
-      return line || lines_.has_ended() || has_failed;
-    });
-    if (!line) {
-      throw std::runtime_error(lines_.has_ended() ? "standard input has ended without an answer"
-                                                  : "the module does not move any more");
-    }
-    return std::string(trimmed(*line));
-  }
-
- private:
-  BusAccess& bus_;
-  InputLines lines_;
-};
 
 class Assignment {
  public:
-  Assignment(const AssignOptions& options, const sim::Scenario& scenario, BusAccess& bus,
-             const std::vector<Place>& places, std::int32_t amplitude)
-      : options_(options), scenario_(scenario), bus_(bus), places_(places), amplitude_(amplitude), operator_(bus) {
+  Assignment(const AssignSettings& settings, const sim::Scenario& scenario, BusAccess& bus)
+      : settings_(settings),
+        scenario_(scenario),
+        bus_(bus),
+        presence_(bus.connection()),
+        dialogue_(bus, presence_, scenario.robot) {
     for (const sim::ModulePlace& module : scenario.modules) {
       nodes_.push_back(module.node);
       serials_.push_back(module.serial.value_or(0));
@@ -134,24 +81,38 @@ class Assignment {
   }
 
   int run() {
-    require_no_host(bus_);
     reset_all(bus_);
-    number_fresh_modules(bus_, nodes_, serials_);
-    modules_ = find_modules(bus_);
+    numbered_ = number_fresh_modules(bus_, nodes_, serials_);
+    find();
     take_serials();
-    if (!places_.empty()) {
-      take_places(places_);
-    } else {
+    if (settings_.places.empty()) {
       ask_for_places();
+    } else {
+      take_places();
     }
-    const std::vector<canopen::RenumberedModule> changes = host::plan_node_ids(modules_, nodes_);
-    if (!changes.empty()) {
-      show(changes);
-      renumber(bus_, changes);
+    const auto steps = host::plan_node_ids(modules_, nodes_, others_);
+    if (!steps) {
+      throw std::runtime_error("two modules have one joint by their serial numbers, or no node id is free");
+    }
+    if (!steps->empty()) {
+      show_changes();
+      if (settings_.asks && !dialogue_.ask_to_agree("Give the modules these node ids?")) {
+        throw std::runtime_error("ended by the user");
+      }
+      has_renumbered_ = true;
+      renumber(bus_, *steps);
       verify();
     }
-    print_result(changes.size());
+    print_result(!steps->empty());
     return joints_without_module().empty() ? exit_success : exit_failed;
+  }
+
+  /// Whether modules may have stored node ids for their places.
+  [[nodiscard]] bool has_renumbered() const { return has_renumbered_; }
+  /// What was changed before that.
+  [[nodiscard]] std::string changes() const {
+    return numbered_ == 0 ? "no node id was changed"
+                          : std::to_string(numbered_) + " modules that had no node id have one now";
   }
 
  private:
@@ -172,6 +133,18 @@ class Assignment {
     return names;
   }
 
+  void find() {
+    FoundModules found = find_modules(bus_);
+    modules_ = std::move(found.modules);
+    others_ = std::move(found.others);
+    for (unsigned joint = 0; joint < nodes_.size(); ++joint) {
+      if (std::ranges::find(others_, nodes_[joint]) != others_.end()) {
+        throw std::runtime_error("node " + std::to_string(nodes_[joint]) + ", which the robot's file gives to " +
+                                 joint_name(joint) + ", is no joint module or does not answer: unplug it");
+      }
+    }
+  }
+
   /// Modules whose serial number the robot's file names need no question.
   void take_serials() {
     for (unsigned joint = 0; joint < serials_.size(); ++joint) {
@@ -183,117 +156,70 @@ class Assignment {
     }
   }
 
-  void take_places(const std::vector<Place>& places) {
-    for (const Place& place : places) {
+  /// Modules that --places does not name keep their places, unless a named one takes it.
+  void take_places() {
+    for (const Place& place : settings_.places) {
       const auto module = std::ranges::find(modules_, place.node, &host::PlacedModule::node);
       if (module == modules_.end()) {
         throw std::runtime_error("--places: no module with the node id " + std::to_string(place.node) +
-                                 " is on the bus; nothing was changed");
+                                 " is on the bus");
+      }
+      const host::PlacedModule* other = module_of(place.joint);
+      if ((other != nullptr && other != &*module) || (module->joint && *module->joint != place.joint)) {
+        throw std::runtime_error("--places: by its serial number in the robot's file, node " +
+                                 std::to_string(other != nullptr ? other->node : module->node) + " is " +
+                                 joint_name(other != nullptr ? place.joint : *module->joint));
       }
       module->joint = place.joint;
+    }
+    for (unsigned joint = 0; joint < nodes_.size(); ++joint) {
+      const auto module = std::ranges::find(modules_, nodes_[joint], &host::PlacedModule::node);
+      if (module != modules_.end() && !module->joint && module_of(joint) == nullptr) {
+        module->joint = joint;
+      }
     }
   }
 
   void ask_for_places() {
-    const std::size_t unknown = count_unplaced();
-    if (unknown == 0) {
+    if (std::ranges::all_of(modules_, [](const auto& module) { return module.joint.has_value(); })) {
       return;
     }
-    Operator::say("One joint after the other moves to and fro; all others have no power. Answer with its name (" +
-                  listed(sim::joint_names(scenario_.robot)) +
-                  "), none if no joint of this robot moves, more for a larger motion, or quit.\n");
+    host::JointMotionOptions motion = settings_.motion;
+    motion.limits = common_limits(scenario_);
+    AssignDialogue::say("One joint after the other moves to and fro; all others have no power. Answer with its name (" +
+                        listed(sim::joint_names(scenario_.robot)) +
+                        "), none if no joint of this robot moves, more for a larger motion, or quit.\n");
     for (host::PlacedModule& module : modules_) {
-      if (module.joint) {
-        continue;
-      }
-      const std::vector<std::string> left = joints_without_module();
-      if (left.empty()) {
-        break;
-      }
-      if (left.size() == 1 && count_unplaced() == 1 && modules_.size() == nodes_.size()) {
-        module.joint = joint_of(scenario_.robot, left.front());
-        Operator::say("Node " + std::to_string(module.node) + " must be " + left.front() + ".\n");
-        break;
-      }
-      module.joint = ask_for(module);
-      unplaced_asked_ += module.joint ? 0U : 1U;
-    }
-  }
-
-  [[nodiscard]] std::size_t count_unplaced() const {
-    const auto without = std::ranges::count_if(modules_, [](const auto& module) { return !module.joint; });
-    return static_cast<std::size_t>(without) - unplaced_asked_;
-  }
-
-  /// Angles that every joint of the robot may have.
-  [[nodiscard]] canopen::AngleLimits common_limits() const {
-    canopen::AngleLimits common{-(1 << 30), 1 << 30};
-    for (const sim::JointLimits& limits : scenario_.joint_limits) {
-      common.lower = std::max(common.lower, limits.lower);
-      common.upper = std::min(common.upper, limits.upper);
-    }
-    return common.lower < common.upper ? common : canopen::AngleLimits{-amplitude_, amplitude_};
-  }
-
-  std::optional<unsigned> ask_for(const host::PlacedModule& module) {
-    host::JointMotionOptions motion_options;
-    motion_options.limits = common_limits();
-    motion_options.amplitude = amplitude_;
-    const std::string node = "Node " + std::to_string(module.node);
-    for (;;) {
-      MovingJoint moving(bus_, module.node, motion_options);
-      Operator::say(node + " moves by " + number_text(degrees(moving.motion().amplitude())) +
-                    " degrees. Which joint is it? ");
-      for (;;) {
-        const std::string word = operator_.answer(&moving.motion());
-        if (word == "quit" || word == "q") {
-          moving.stop();
-          throw std::runtime_error("ended by the user; no node id was changed");
-        }
-        if (word == "none") {
-          moving.stop();
-          return std::nullopt;
-        }
-        if (word == "more") {
-          motion_options.amplitude = std::min(2 * motion_options.amplitude, largest_amplitude);
-          moving.stop();
-          break;
-        }
-        const auto joint = joint_of(scenario_.robot, word);
-        const host::PlacedModule* other = joint ? module_of(*joint) : nullptr;
-        if (other != nullptr) {
-          Operator::say(joint_name(*joint) + " is node " + std::to_string(other->node) +
-                        " already. Which joint is it? ");
-        } else if (joint) {
-          moving.stop();
-          return joint;
-        } else {
-          Operator::say(in_quotes(word) + " is none of " + listed(sim::joint_names(scenario_.robot)) +
-                        ", none, more, quit. Which joint is it? ");
-        }
+      if (!module.joint && !joints_without_module().empty()) {
+        module.joint = dialogue_.ask_for_joint(module.node, motion, [this](unsigned joint) {
+          const host::PlacedModule* other = module_of(joint);
+          return other == nullptr
+                     ? std::nullopt
+                     : std::optional(joint_name(joint) + " is node " + std::to_string(other->node) + " already");
+        });
       }
     }
   }
 
-  void show(const std::vector<canopen::RenumberedModule>& changes) {
-    for (const canopen::RenumberedModule& change : changes) {
-      const auto module = std::ranges::find(modules_, change.address, &host::PlacedModule::address);
-      Operator::say("node " + std::to_string(module->node) + " gets the node id " + std::to_string(change.node) +
-                    (module->joint ? " (" + joint_name(*module->joint) + ")" : " (no joint of this robot)") + "\n");
-    }
-    if (options_.yes || !places_.empty()) {
-      return;
-    }
-    Operator::say("Give the modules these node ids? [y/n] ");
-    const std::string word = operator_.answer();
-    if (word != "y" && word != "yes") {
-      throw std::runtime_error("ended by the user; no node id was changed");
+  void show_changes() {
+    const auto steps = host::plan_node_ids(modules_, nodes_, others_).value();
+    for (const host::PlacedModule& module : modules_) {
+      // A module that is listed twice has the last node id.
+      std::optional<unsigned> node;
+      for (const canopen::RenumberedModule& step : steps) {
+        node = step.address == module.address ? std::optional(unsigned{step.node}) : node;
+      }
+      if (node) {
+        AssignDialogue::say("node " + std::to_string(module.node) + " gets the node id " + std::to_string(*node) +
+                            (module.joint ? " (" + joint_name(*module.joint) + ")" : " (no joint of this robot)") +
+                            "\n");
+      }
     }
   }
 
   /// Throws std::runtime_error if a joint does not have its module now.
   void verify() {
-    const std::vector<host::PlacedModule> found = find_modules(bus_);
+    const std::vector<host::PlacedModule> found = find_modules(bus_).modules;
     for (host::PlacedModule& module : modules_) {
       const auto now = std::ranges::find(found, module.address, &host::PlacedModule::address);
       if (now == found.end()) {
@@ -308,9 +234,8 @@ class Assignment {
     }
   }
 
-  void print_result(std::size_t changes) {
-    const std::vector<std::string> missing = joints_without_module();
-    if (options_.json) {
+  void print_result(bool has_changed) {
+    if (settings_.json) {
       Json joints = Json::empty_array();
       for (unsigned joint = 0; joint < nodes_.size(); ++joint) {
         const host::PlacedModule* module = module_of(joint);
@@ -318,7 +243,7 @@ class Assignment {
                        {"node", module != nullptr ? Json(unsigned{module->node}) : Json()},
                        {"serial", module != nullptr ? Json(module->address.back()) : Json()}});
       }
-      std::cout << Json{{"joints", joints}, {"changed", static_cast<unsigned>(changes)}}.text() << '\n';
+      std::cout << Json{{"joints", joints}, {"changed", has_changed}, {"new_modules", numbered_}}.text() << '\n';
     } else {
       std::printf("%-8s %-5s %s\n", "joint", "node", "serial");
       for (unsigned joint = 0; joint < nodes_.size(); ++joint) {
@@ -329,37 +254,50 @@ class Assignment {
           std::printf("%-8s -\n", joint_name(joint).c_str());
         }
       }
-      std::printf("%s\n", changes == 0 ? "no node id was changed" : "all modules have booted with these node ids");
+      std::printf("%s\n", has_changed ? "all modules have booted with these node ids" : changes().c_str());
     }
-    if (!missing.empty()) {
+    if (const std::vector<std::string> missing = joints_without_module(); !missing.empty()) {
       std::cerr << "proleg assign: no module was found for " << listed(missing) << '\n';
     }
   }
 
-  const AssignOptions& options_;
+  const AssignSettings& settings_;
   const sim::Scenario& scenario_;
   BusAccess& bus_;
-  const std::vector<Place>& places_;
-  std::int32_t amplitude_;  ///< 90 degrees = 2^30
-  Operator operator_;
+  HostPresence presence_;
+  AssignDialogue dialogue_;
   std::vector<std::uint8_t> nodes_;     ///< by joint, as the robot's file says
   std::vector<std::uint32_t> serials_;  ///< by joint
   std::vector<host::PlacedModule> modules_;
-  std::size_t unplaced_asked_ = 0;  ///< modules that move no joint of the robot
+  std::vector<std::uint8_t> others_;  ///< nodes that are no modules
+  unsigned numbered_ = 0;             ///< modules that had no node id
+  bool has_renumbered_ = false;
 };
 
 int assign(const AssignOptions& options) {
   const ScenarioRun run = prepare_run(options);
   print_warnings("proleg assign", run.scenario);
-  if (run.scenario.modules.empty()) {
-    throw InputError(options.file, 0, "a robot without <module>s", "a robot whose file gives its joints node ids");
+  AssignSettings settings;
+  settings.motion.amplitude = parse_amplitude(options.amplitude);
+  if (options.places) {
+    settings.places = parse_places(run.scenario.robot, *options.places);
   }
-  const std::int32_t amplitude = parse_amplitude(options.amplitude);
-  const std::vector<Place> places =
-      options.places ? parse_places(run.scenario.robot, *options.places) : std::vector<Place>{};
+  settings.asks = !options.yes && !options.places;
+  settings.json = options.json;
   BusAccess bus(options.bus);
   catch_interrupts();
-  return Assignment(options, run.scenario, bus, places, amplitude).run();
+  // A reader of the questions that ends must not end this program while a joint moves.
+  std::signal(SIGPIPE, SIG_IGN);
+  require_no_host(bus);
+  Assignment assignment(settings, run.scenario, bus);
+  try {
+    return assignment.run();
+  } catch (const std::exception& error) {
+    if (assignment.has_renumbered()) {
+      throw;
+    }
+    throw std::runtime_error(std::string(error.what()) + "; " + assignment.changes());
+  }
 }
 
 }  // namespace

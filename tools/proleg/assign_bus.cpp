@@ -1,6 +1,9 @@
 #include "tools/proleg/assign_bus.hpp"
 
 #include <algorithm>
+#include <bitset>
+#include <exception>
+#include <iostream>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -16,6 +19,7 @@ using canopen::LssRenumbering;
 
 constexpr unsigned attempts = 4;
 constexpr Microseconds second = 1'000'000;
+constexpr Microseconds releasing_time = 20'000;
 
 /// A state machine of shared/master as the user of a bus.
 template <typename Machine>
@@ -42,6 +46,9 @@ bool run(BusAccess& bus, Machine& machine, const std::string& what) {
     bus.wait_for(what, longest, [&] { return machine.state() != Machine::State::working; });
   } catch (...) {
     bus.connection().detach(user);
+    // No module stays selected: the next master would configure it with its own.
+    static_cast<void>(bus.connection().send(canopen::lss_release_request()));
+    bus.connection().run_for(releasing_time);
     throw;
   }
   bus.connection().detach(user);
@@ -62,20 +69,57 @@ std::string serial_text(const canopen::LssAddress& address) {
 
 }  // namespace
 
+void HostPresence::poll(Microseconds now) {
+  constexpr Microseconds period_us = canopen::Master::heartbeat_period_us;
+  constexpr Microseconds until_next_try_us = 1'000;
+  if (is_active_ && now >= next_) {
+    const bool is_sent =
+        bus_.send(canopen::encode(canopen::Heartbeat{canopen::host_node, canopen::NmtState::operational}));
+    next_ = now + (is_sent ? period_us : until_next_try_us);
+  }
+}
+
 void reset_all(BusAccess& bus) {
+  /// Who boots. Two modules with one node id boot, report it once, and stop.
+  class BootWatch final : public host::BusUser {
+   public:
+    void receive(Microseconds /*now*/, const CanFrame& frame) override {
+      if (const auto heartbeat = canopen::decode_heartbeat(frame);
+          heartbeat && heartbeat->state == canopen::NmtState::boot_up) {
+        duplicate = boots.test(heartbeat->node) ? heartbeat->node : duplicate;
+        boots.set(heartbeat->node);
+      } else if (const auto emergency = canopen::decode_emergency(frame);
+                 emergency && emergency->code == canopen::EmergencyCode::identifier_collision) {
+        duplicate = emergency->node;
+      }
+    }
+    std::bitset<128> boots;
+    std::uint8_t duplicate = 0;
+  };
   constexpr Microseconds boot_time = 400'000;
   bus.wait_for("room for a frame", second, [&bus] {
     return bus.connection().send(canopen::encode(canopen::NmtRequest{canopen::NmtCommand::reset_node, 0}));
   });
+  BootWatch watch;
+  bus.connection().attach(watch);
   bus.connection().run_for(boot_time);
+  bus.connection().detach(watch);
+  if (watch.duplicate != 0) {
+    throw std::runtime_error(
+        "two modules have the node id " + std::to_string(watch.duplicate) +
+        ", and have stopped; unplug one of them, run proleg assign, then plug it in and run proleg "
+        "assign again");
+  }
 }
 
-void number_fresh_modules(BusAccess& bus, std::span<const std::uint8_t> nodes, std::span<const std::uint32_t> serials) {
+unsigned number_fresh_modules(BusAccess& bus, std::span<const std::uint8_t> nodes,
+                              std::span<const std::uint32_t> serials) {
+  unsigned numbered = 0;
   for (unsigned attempt = 1;; ++attempt) {
     host::BusScan all(bus.connection());
     scan(bus, all);
     if (attempt == 1 && !all.has_fresh_modules()) {
-      return;
+      return 0;
     }
     std::vector<std::uint8_t> taken;
     for (const host::ScannedNode& node : all.nodes()) {
@@ -84,9 +128,12 @@ void number_fresh_modules(BusAccess& bus, std::span<const std::uint8_t> nodes, s
     std::vector<canopen::LssModule> entries = host::free_node_ids(nodes, serials, taken);
     canopen::LssMasterOptions options;
     options.attempts = attempts;
+    options.first_answer_timeout_us = host::patient_timeout_us;
     LssMaster master(bus.connection(), entries, options);
-    if (run(bus, master, "modules without a node id")) {
-      return;
+    const bool is_done = run(bus, master, "modules without a node id");
+    numbered += master.assigned();
+    if (is_done) {
+      return numbered;
     }
     // A lost frame may have ended it: what was done shows in the next scan.
     if (attempt == attempts) {
@@ -95,29 +142,26 @@ void number_fresh_modules(BusAccess& bus, std::span<const std::uint8_t> nodes, s
   }
 }
 
-std::vector<host::PlacedModule> find_modules(BusAccess& bus) {
+FoundModules find_modules(BusAccess& bus) {
   host::BusScan all(bus.connection());
   scan(bus, all);
-  if (const auto duplicates = all.duplicates(); !duplicates.empty()) {
-    throw std::runtime_error("several modules have the node id " + std::to_string(duplicates.front()) +
-                             "; switch all but one of them off, and run proleg assign again");
-  }
-  std::vector<host::PlacedModule> modules;
+  FoundModules found;
   for (const host::ScannedNode& node : all.nodes()) {
     if (!node.is_module) {
+      found.others.push_back(node.node);
       continue;
     }
     const canopen::LssAddress address{node.vendor, node.product, node.revision, node.serial};
-    if (std::ranges::find(modules, address, &host::PlacedModule::address) != modules.end()) {
+    if (std::ranges::find(found.modules, address, &host::PlacedModule::address) != found.modules.end()) {
       throw std::runtime_error("two modules have the serial number " + hexadecimal(node.serial, 8) +
                                "; only one of them can be on the bus while node ids are given");
     }
-    modules.push_back({node.node, address, std::nullopt});
+    found.modules.push_back({node.node, address, std::nullopt});
   }
-  if (modules.empty()) {
+  if (found.modules.empty()) {
     throw std::runtime_error("found no joint module on the bus; " + bus.connection().diagnosis());
   }
-  return modules;
+  return found;
 }
 
 void renumber(BusAccess& bus, std::span<const canopen::RenumberedModule> changes) {
@@ -139,15 +183,15 @@ MovingJoint::MovingJoint(BusAccess& bus, std::uint8_t node, const host::JointMot
   bus_.connection().attach(motion_);
   try {
     motion_.start(bus_.connection().now());
-    bus_.wait_for("the joint to move", longest,
-                  [this] { return motion_.state() == State::moving || motion_.state() == State::failed; });
+    bus_.wait_for("the joint to move", longest, [this] {
+      take_events();
+      return motion_.state() == State::moving || motion_.state() == State::failed;
+    });
     if (motion_.state() == State::failed) {
-      throw std::runtime_error(
-          problem_text(motion_.problem(), [](std::uint8_t its_node) { return "node " + std::to_string(its_node); }) +
-          "; " + bus_.connection().diagnosis());
+      throw std::runtime_error(problem() + "; " + bus_.connection().diagnosis());
     }
   } catch (...) {
-    static_cast<void>(try_to_stop());
+    stop_after_failure();
     bus_.connection().detach(motion_);
     throw;
   }
@@ -155,25 +199,48 @@ MovingJoint::MovingJoint(BusAccess& bus, std::uint8_t node, const host::JointMot
 
 MovingJoint::~MovingJoint() {
   if (!is_off_) {
-    static_cast<void>(try_to_stop());
+    stop_after_failure();
   }
   bus_.connection().detach(motion_);
+}
+
+void MovingJoint::take_events() {
+  while (const auto event = motion_.take_event()) {
+    is_confirmed_ = is_confirmed_ && event->kind != canopen::EventKind::not_stopped;
+  }
+}
+
+std::string MovingJoint::problem() const {
+  return problem_text(motion_.problem(), [](std::uint8_t node) { return "node " + std::to_string(node); });
 }
 
 bool MovingJoint::try_to_stop() {
   constexpr Microseconds longest = 20 * second;
   host::BusConnection& bus = bus_.connection();
   motion_.stop(bus.now());
-  bus.run_until(bus.now() + longest, [this] { return motion_.state() == host::JointMotion::State::stopped; });
-  is_off_ = motion_.state() == host::JointMotion::State::stopped;
-  while (const auto event = motion_.take_event()) {
-    is_off_ = is_off_ && event->kind != canopen::EventKind::not_stopped;
-  }
+  const bool is_stopped = bus.run_until(bus.now() + longest, [this] {
+    take_events();
+    return motion_.state() == host::JointMotion::State::stopped;
+  });
+  is_off_ = is_stopped && is_confirmed_ && motion_.lost_events() == 0;
   return is_off_;
+}
+
+void MovingJoint::stop_after_failure() noexcept {
+  bool is_off = false;
+  try {
+    is_off = try_to_stop();
+  } catch (const std::exception& error) {
+    std::cerr << "proleg assign: " << error.what() << '\n';
+  }
+  if (!is_off) {
+    std::cerr << "proleg assign: the module has not confirmed that its servo has no power: switch the robot off\n";
+  }
 }
 
 void MovingJoint::stop() {
   if (!try_to_stop()) {
+    is_off_ = true;  // once is enough
     throw std::runtime_error("the module has not confirmed that its servo has no power: switch the robot off");
   }
 }

@@ -119,7 +119,13 @@ class Drive {
       report_events();
       return state() == canopen::MasterState::stopped;
     });
-    take_ticks(true);
+    if (is_following_) {
+      try {
+        take_ticks(true);
+      } catch (const std::exception& error) {
+        std::cerr << "proleg drive: " << error.what() << '\n';
+      }
+    }
     return are_all_off_ && state() == canopen::MasterState::stopped;
   }
 
@@ -177,6 +183,7 @@ class Drive {
   }
 
   void take_ticks(bool at_end) {
+    is_following_ = false;  // if the mirror or a recorder fails, it does not work for the rest either
     while (auto tick = drive_.take_tick(at_end)) {
       if (check_.ticks() >= end_tick_) {
         continue;  // while it stops
@@ -192,6 +199,7 @@ class Drive {
         recorders_.mirror->note_measured(measured->tick, measured->joint, radians(measured->values));
       }
     }
+    is_following_ = true;
   }
 
   /// The last tick that was followed.
@@ -246,8 +254,9 @@ class Drive {
   GaitCheck check_;
   InputLines input_lines_;
   bool wants_stop_ = false;
-  bool are_all_off_ = true;  ///< since stop()
-  std::uint32_t end_tick_;   ///< the first one that is not part of the run
+  bool is_following_ = true;  ///< the mirror and the recorders have not failed
+  bool are_all_off_ = true;   ///< since stop()
+  std::uint32_t end_tick_;    ///< the first one that is not part of the run
 };
 
 std::string verdict(const GaitCheck& check) {
@@ -334,6 +343,9 @@ int drive(const DriveOptions& options) {
   }
   refuse_what_only_a_simulation_has(options);
   if (run.scenario.robot_control && !options.bus.bus) {
+    if (options.fast || options.mirror) {
+      throw InputError(options.fast ? "--fast" : "--mirror", 0, "a robot without modules", "--bus BUS");
+    }
     return drive_by_plugin(options, run);
   }
   std::vector<PlannedOutput> outputs = planned_recording(options);

@@ -77,6 +77,17 @@ TEST_F(LssRenumberingTest, ModulesTakeEachOthersNodeIds) {
   EXPECT_TRUE(modules[0].has_stored && modules[1].has_booted);
 }
 
+TEST_F(LssRenumberingTest, AModuleThatIsListedTwiceHasTheLastNodeId) {
+  const SlaveNode& first = add(100, 1);
+  const SlaveNode& second = add(200, 2);
+  modules = {{address_of(100), 9}, {address_of(200), 1}, {address_of(100), 2}};
+  run();
+  EXPECT_EQ(renumbering->state(), State::done);
+  EXPECT_EQ(first.node, 2);
+  EXPECT_EQ(second.node, 1);
+  EXPECT_EQ(first.stored, (std::vector<std::uint8_t>{9, 2}));
+}
+
 TEST_F(LssRenumberingTest, WithoutModulesItIsDoneAndSendsNothing) {
   unsigned frames = 0;
   bus.set_frame_listener([&frames](const sim::Transmission&) { ++frames; });

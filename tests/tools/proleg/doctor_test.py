@@ -8,6 +8,7 @@ import fcntl
 import json
 import os
 import pty
+import signal
 import socket
 import subprocess
 import sys
@@ -76,11 +77,12 @@ class Doctor(unittest.TestCase):
             self.assertEqual(text.returncode, 0, text.stdout)
             self.assertIn("no fault found", text.stdout)
             self.assertIn("nodes 1, 2, 3, 4, 5", text.stdout)
-            drive = start_drive(bus.tcp, "--seconds", "8")
+            drive = start_drive(bus.tcp)
             wait_for_drives(bus.pty, "operation enabled")
             status, report = examine(bus.pty)
             self.assertEqual(codes(report), [], report)
             self.assertGreater(report["observations"]["syncs"], 10)
+            drive.send_signal(signal.SIGINT)
             result = json.loads(drive.communicate(timeout=LONGEST)[0])
             self.assertEqual(drive.returncode, 0)
             self.assertEqual(result["differences"], 0, "the examination has not disturbed the robot")

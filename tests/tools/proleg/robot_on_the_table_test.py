@@ -257,7 +257,7 @@ class RobotOnTheTable(unittest.TestCase):
             output, errors = assign.communicate(b"y\n", timeout=LONGEST)
             self.assertEqual(assign.returncode, 0, errors)
             self.assertIn(b"'J9' is none of", asked)
-            self.assertEqual(len(set(joints)), 4, "the fifth joint is left over")
+            self.assertEqual(set(joints), {"J1", "J2", "J3", "J4", "J5"})
             places = {entry["joint"]: entry["node"] for entry in json.loads(output)["joints"]}
             self.assertEqual(places, {"J1": 5, "J2": 4, "J3": 3, "J4": 2, "J5": 1}, "the map of the robot's file")
             self.assertEqual(set(states(bus.tcp).values()), {"no power"})
@@ -265,6 +265,27 @@ class RobotOnTheTable(unittest.TestCase):
             self.assertEqual(json.loads(result)["differences"], 0)
             self.assertIn("no node id was changed",
                           proleg("assign", SOURCE / SCENARIO, "--bus", bus.tcp, "--places", "1=J5,2=4,3=J3,4=j2,5=J1").stdout)
+
+    def test_assign_refuses_what_would_give_one_node_id_to_two_modules(self):
+        with tempfile.TemporaryDirectory() as folder:
+            named = Path(folder) / "named"
+            shutil.copytree((SOURCE / SCENARIO).parent, named)
+            with Bus() as bus:
+                nodes = {node["node"]: node["serial"]
+                         for node in json.loads(proleg("scan", "--bus", bus.tcp, "--json").stdout)["nodes"]}
+                robot = named / "caterpillar.robot.xml"
+                modules = f'<module joint="J5" node="1" serial="{nodes[1]:#x}"/>' + "".join(
+                    f'<module joint="J{6 - node}" node="{node}"/>' for node in range(2, 6))
+                robot.write_text(robot.read_text().replace("</Robot>", modules + "</Robot>"))
+                scenario = named / "uniform.simulation.xml"
+                assign = proleg("assign", scenario, "--bus", bus.tcp, "--places", "2=J5")
+                self.assertEqual(assign.returncode, 1, assign.stdout)
+                self.assertIn("node 1 is J5", assign.stderr)
+                # Those that are not named keep their places.
+                assign = proleg("assign", SOURCE / SCENARIO, "--bus", bus.tcp, "--places", "2=J3,3=J4", "--json")
+                self.assertEqual(assign.returncode, 0, assign.stderr)
+                serials = {joint["node"]: joint["serial"] for joint in json.loads(assign.stdout)["joints"]}
+                self.assertEqual(serials, {**nodes, 2: nodes[3], 3: nodes[2]})
 
     def test_assign_changes_nothing_if_it_is_not_told_the_places(self):
         with Bus("--shuffle", "7") as bus:

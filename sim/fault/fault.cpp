@@ -131,11 +131,27 @@ const char* argument_name(Argument argument) {
 
 std::span<const FaultDeclaration> fault_declarations() { return declarations; }
 
-bool act_at_ticks(const FaultSchedule& schedule) {
+std::uint64_t moved_between_syncs(std::uint64_t time_us, std::uint32_t tick_period_us) {
+  constexpr std::uint32_t reading_us = 1'000;
+  constexpr std::uint32_t before_us = 200;
+  const std::uint32_t shortest_part = tick_period_us / 4;
+  const std::uint64_t phase = time_us % tick_period_us;
+  const std::uint64_t lowest = std::min(reading_us, shortest_part);
+  const std::uint64_t highest = tick_period_us - std::min(before_us, shortest_part);
+  return time_us - phase + std::clamp(phase, lowest, highest);
+}
+
+bool acts_between_syncs(std::uint64_t time_us, std::uint32_t tick_period_us) {
+  return moved_between_syncs(time_us, tick_period_us) == time_us;
+}
+
+bool act_at_ticks(const FaultSchedule& schedule, std::uint32_t tick_period_us) {
   constexpr std::uint32_t max_reset_threshold_mv = 1'720;  // below it the chip starts again, which takes its time
-  return std::ranges::all_of(schedule, [](const Fault& fault) {
+  return std::ranges::all_of(schedule, [tick_period_us](const Fault& fault) {
     return declaration_of(fault.kind).acts_at_ticks &&
-           (fault.kind != FaultKind::supply || fault.amount > max_reset_threshold_mv);
+           (fault.kind != FaultKind::supply || fault.amount > max_reset_threshold_mv) &&
+           acts_between_syncs(fault.start_us, tick_period_us) &&
+           acts_between_syncs(fault.start_us + fault.duration_us.value_or(0), tick_period_us);
   });
 }
 

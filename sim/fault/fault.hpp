@@ -78,8 +78,15 @@ struct FaultDeclaration {
 
 /// Whether all faults act at ticks: then native modules and virtual chips have the same set-points and pulses. With
 /// other faults that is so in most cases, but microseconds may decide which frame a fault hits, or which of two events
-/// comes first.
-[[nodiscard]] bool act_at_ticks(const FaultSchedule& schedule);
+/// comes first. So a fault also must not begin or end around a SYNC, while programs read their sensors:
+/// acts_between_syncs().
+[[nodiscard]] bool act_at_ticks(const FaultSchedule& schedule, std::uint32_t tick_period_us);
+
+/// Whether a time since SYNC 0 is not around a SYNC: a millisecond after it, or a fifth of one before it; both are
+/// shorter if a tick is shorter than 4 ms.
+[[nodiscard]] bool acts_between_syncs(std::uint64_t time_us, std::uint32_t tick_period_us);
+/// The time that is nearest to such a one, in the same tick.
+[[nodiscard]] std::uint64_t moved_between_syncs(std::uint64_t time_us, std::uint32_t tick_period_us);
 
 /// A fault as a file has it: "at 1.2s unplug J3 for 400ms".
 [[nodiscard]] std::string describe(const Fault& fault, const RobotModel& robot);

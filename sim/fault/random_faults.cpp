@@ -72,7 +72,22 @@ class Dice {
       fault.duration_us = std::min(duration_of(fault.kind), last_us - fault.start_us);
     }
     choose_argument(fault);
+    if (settings_.only_at_ticks) {
+      move_between_syncs(fault);
+    }
     return fault;
+  }
+
+  void move_between_syncs(Fault& fault) const {
+    const std::uint32_t tick_us = scenario_.kernel.tick_period_us;
+    const std::uint64_t end_us = fault.start_us + fault.duration_us.value_or(0);
+    fault.start_us = moved_between_syncs(fault.start_us, tick_us);
+    if (fault.duration_us) {
+      std::uint64_t moved_end_us = moved_between_syncs(end_us, tick_us);
+      moved_end_us -= moved_end_us > settings_.run_us - rest_after_faults_us ? tick_us : 0;
+      fault.duration_us =
+          std::max(moved_end_us, moved_between_syncs(fault.start_us + tick_us, tick_us)) - fault.start_us;
+    }
   }
 
   std::uint64_t duration_of(FaultKind kind) {

@@ -89,7 +89,7 @@ void run_one(const ScenarioRun& run, HilModules& modules, std::uint64_t seed, Ca
     ++campaign.compared;
     if (native.setpoint_hash == result.setpoint_hash && native.servo_hash == result.servo_hash) {
       ++campaign.identical;
-    } else if (sim::act_at_ticks(schedule)) {
+    } else if (sim::act_at_ticks(schedule, run.scenario.kernel.tick_period_us)) {
       ++campaign.different;
       found.emplace_back("the image and native modules have different set-points or servo commands");
     }

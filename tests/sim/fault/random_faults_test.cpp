@@ -61,6 +61,26 @@ TEST(RandomFaults, OfNativeModulesAreThoseThatTheyCanPlay) {
   }
 }
 
+TEST(RandomFaults, ThatActAtTicksBeginAndEndBetweenSyncs) {
+  const Scenario scenario = caterpillar();
+  const std::uint32_t tick_us = scenario.kernel.tick_period_us;
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomFaults settings;
+    settings.seed = seed;
+    settings.only_at_ticks = true;
+    const FaultSchedule schedule = random_faults(settings, scenario);
+    EXPECT_TRUE(act_at_ticks(schedule, tick_us));
+    for (const Fault& fault : schedule) {
+      for (const std::uint64_t time : {fault.start_us, fault.start_us + fault.duration_us.value_or(0)}) {
+        EXPECT_GE(time % tick_us, 1'000U) << "a module reads its sensors";
+        EXPECT_LE(time % tick_us, tick_us - 200U);
+        EXPECT_LE(time + rest_after_faults_us, settings.run_us);
+      }
+    }
+  }
+}
+
 TEST(RandomFaults, NeedARunWithRoomForThem) {
   EXPECT_THROW(static_cast<void>(random_faults({1, min_random_run_us - 1, false}, caterpillar())),
                std::invalid_argument);

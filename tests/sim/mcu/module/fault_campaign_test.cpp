@@ -67,7 +67,7 @@ Campaign run_campaign(bool only_at_ticks) {
     const bool is_identical = native.setpoint_hash == image.setpoint_hash && native.servo_hash == image.servo_hash;
     ++campaign.compared;
     campaign.identical += is_identical ? 1U : 0U;
-    if (act_at_ticks(schedule)) {
+    if (act_at_ticks(schedule, scenario.kernel.tick_period_us)) {
       EXPECT_TRUE(is_identical) << "seed " << seed << "\n" << faults_text(schedule, scenario.robot);
     }
   }

@@ -26,9 +26,9 @@ void StateFrameMonitor::note(const Transmission& transmission) {
 bool StateFrameMonitor::is_lost(const Losses& losses, const CanFrame& frame, std::size_t receiver) const {
   const auto state = canopen::decode_state(frame);
   const bool is_first = frame.identifier > canopen::identifier::state_frame &&
-                     frame.identifier <= canopen::identifier::state_frame + canopen::max_node_id;
+                        frame.identifier <= canopen::identifier::state_frame + canopen::max_node_id;
   const bool is_second = frame.identifier > canopen::identifier::second_state &&
-                      frame.identifier <= canopen::identifier::second_state + canopen::max_node_id;
+                         frame.identifier <= canopen::identifier::second_state + canopen::max_node_id;
   if (!state || (!is_first && !is_second)) {
     return false;
   }

@@ -209,7 +209,8 @@ class Diagnosis {
     }
     const Nodes producers = nodes_with([](const ObservedNode& node) { return node.produces_sync; });
     add("sync_missing",
-        "The modules are in operation, but nobody sends SYNC, the clock of the robot: they stand still (quick stop).",
+        "The modules are in operation, but no module sends SYNC, the clock of the robot: they stand still (quick "
+        "stop).",
         producers.empty()
             ? "The module that produced SYNC, mostly the gateway or the head, is off or unplugged: connect it. Then "
               "start "

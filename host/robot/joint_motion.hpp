@@ -45,10 +45,9 @@ class JointMotion final : public BusUser {
   [[nodiscard]] const canopen::Problem& problem() const { return master_ ? master_->problem() : problem_; }
   /// Of the master: EMCYs, and a module that did not confirm that its servo has no power.
   [[nodiscard]] std::optional<canopen::Event> take_event();
-  /// Events that were dropped because nobody took them.
+  /// Events that were dropped because the log was full.
   [[nodiscard]] std::uint32_t lost_events() const { return master_ ? master_->lost_events() : 0; }
   /// Known when it moves. 90 degrees = 2^30.
-  [[nodiscard]] std::int32_t center() const { return center_; }
   [[nodiscard]] std::int32_t amplitude() const { return amplitude_; }
 
   void receive(Microseconds now, const CanFrame& frame) override;

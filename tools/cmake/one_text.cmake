@@ -1,5 +1,5 @@
 # The sources of a target are compiled as a few texts: the templates that several of them use are compiled once. That
-# halves the time of a whole build, so tools/check does it; after a change of one file it takes longer.
+# makes a whole build shorter, so tools/check does it, and the build after a change of one file longer.
 option(PROLEG_ONE_TEXT "Compile the sources of each target as a few texts" OFF)
 
 if(PROLEG_ONE_TEXT AND NOT CMAKE_CROSSCOMPILING)

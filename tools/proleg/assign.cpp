@@ -42,7 +42,8 @@ struct AssignSettings {
 
 std::int32_t parse_amplitude(const std::string& word) {
   const DecimalResult angle = parse_decimal(word, Unit::degree);
-  if (angle.error != DecimalError::none || angle.raw < raw(Unit::degree, 1) || angle.raw > raw(Unit::degree, 30)) {
+  if (angle.error != DecimalError::none || angle.raw < raw(Unit::degree, 1) ||
+      angle.raw > AssignDialogue::largest_amplitude) {
     throw InputError("--amplitude", 0, in_quotes(word), "degrees, from 1 to 30");
   }
   return angle.raw;
@@ -95,7 +96,7 @@ class Assignment {
       throw std::runtime_error("two modules have one joint by their serial numbers, or no node id is free");
     }
     if (!steps->empty()) {
-      show_changes();
+      show_changes(*steps);
       if (settings_.asks && !dialogue_.ask_to_agree("Give the modules these node ids?")) {
         throw std::runtime_error("ended by the user");
       }
@@ -201,8 +202,7 @@ class Assignment {
     }
   }
 
-  void show_changes() {
-    const auto steps = host::plan_node_ids(modules_, nodes_, others_).value();
+  void show_changes(const std::vector<canopen::RenumberedModule>& steps) {
     for (const host::PlacedModule& module : modules_) {
       // A module that is listed twice has the last node id.
       std::optional<unsigned> node;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "host/robot/machine_user.hpp"
 #include "shared/computer/master_text/master_text.hpp"
 #include "shared/computer/text/text.hpp"
 
@@ -21,25 +22,11 @@ constexpr unsigned attempts = 4;
 constexpr Microseconds second = 1'000'000;
 constexpr Microseconds releasing_time = 20'000;
 
-/// A state machine of shared/master as the user of a bus.
-template <typename Machine>
-class MachineUser final : public host::BusUser {
- public:
-  explicit MachineUser(Machine& machine) : machine_(machine) {}
-  void receive(Microseconds now, const CanFrame& frame) override { machine_.receive(now, frame); }
-  void transmitted(Microseconds now, const CanFrame& frame) override { machine_.transmitted(now, frame); }
-  void poll(Microseconds now) override { machine_.poll(now); }
-  [[nodiscard]] Microseconds next_deadline() const override { return machine_.next_deadline(); }
-
- private:
-  Machine& machine_;
-};
-
 /// Whether the machine is done; false: it has failed.
 template <typename Machine>
 bool run(BusAccess& bus, Machine& machine, const std::string& what) {
   constexpr Microseconds longest = 300 * second;  // the machines end by themselves; this bounds one with a fault
-  MachineUser<Machine> user(machine);
+  host::MachineUser<Machine> user(machine);
   bus.connection().attach(user);
   machine.start(bus.connection().now());
   try {

@@ -13,7 +13,6 @@ namespace proleg::tools {
 namespace {
 
 constexpr const char* which = "Which joint is it? ";
-constexpr std::int32_t largest_amplitude = raw(Unit::degree, 30);
 
 std::string degrees_text(std::int32_t angle) {
   constexpr double tenths = 10.0;

@@ -19,6 +19,8 @@ namespace proleg::tools {
 
 class AssignDialogue {
  public:
+  static constexpr std::int32_t largest_amplitude = raw(Unit::degree, 30);
+
   /// robot: must outlive this, as bus and presence.
   AssignDialogue(BusAccess& bus, HostPresence& presence, const sim::RobotModel& robot)
       : bus_(bus), presence_(presence), robot_(robot) {}

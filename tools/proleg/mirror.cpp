@@ -15,12 +15,12 @@ Mirror::Mirror(const sim::Scenario& scenario)
       plant_(scenario),
       player_(plant_, {scenario.robot.servo.period_us, scenario.kernel.tick_period_us}),
       lines_(scenario.robot.joints.size()) {
-  angles_.emplace_back(plant_.joint_angles().begin(), plant_.joint_angles().end());
+  remember_angles();
 }
 
 sim::TickSample Mirror::follow(const sim::TickSample& real) {
   player_.advance(real.tick, real.servo_pulses);
-  angles_.emplace_back(plant_.joint_angles().begin(), plant_.joint_angles().end());
+  remember_angles();
   compare();
   sim::TickSample sample = real;
   sample.link_poses = plant_.link_poses();
@@ -36,12 +36,24 @@ void Mirror::note_measured(std::uint32_t tick, unsigned joint, double angle) {
   compare();
 }
 
+void Mirror::remember_angles() {
+  constexpr std::size_t kept_ticks = 256;
+  angles_.emplace_back(plant_.joint_angles().begin(), plant_.joint_angles().end());
+  ++next_tick_;
+  if (angles_.size() > kept_ticks) {
+    angles_.pop_front();
+  }
+}
+
 void Mirror::compare() {
-  while (!waiting_.empty() && waiting_.front().tick < angles_.size()) {
+  const std::uint32_t oldest = next_tick_ - static_cast<std::uint32_t>(angles_.size());
+  while (!waiting_.empty() && waiting_.front().tick < next_tick_) {
     const Measurement& measured = waiting_.front();
-    const double difference = measured.angle - angles_[measured.tick][measured.joint];
-    lines_[measured.joint].push_back(
-        {measured.tick * (scenario_.kernel.tick_period_us * 1e-6), difference * (180.0 / std::numbers::pi)});
+    if (measured.tick >= oldest) {
+      const double difference = measured.angle - angles_[measured.tick - oldest][measured.joint];
+      lines_[measured.joint].push_back(
+          {measured.tick * (scenario_.kernel.tick_period_us * 1e-6), difference * (180.0 / std::numbers::pi)});
+    }
     waiting_.pop_front();
   }
 }

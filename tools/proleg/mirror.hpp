@@ -46,12 +46,15 @@ class Mirror {
     unsigned joint;
     double angle;
   };
+  void remember_angles();
   void compare();
 
   const sim::Scenario& scenario_;
   sim::Plant plant_;
   sim::PulsePlayer player_;
-  std::vector<std::vector<double>> angles_;  ///< by tick, then by joint: rad, at its SYNC
+  /// The newest ticks, by joint: rad, at their SYNCs. A measurement waits for its tick, and comes a few ticks after it.
+  std::deque<std::vector<double>> angles_;
+  std::uint32_t next_tick_ = 0;  ///< after the last of angles_
   std::deque<Measurement> waiting_;
   std::vector<sim::Polyline> lines_;  ///< by joint
 };

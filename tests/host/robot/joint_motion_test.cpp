@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "host/robot/machine_user.hpp"
 #include "live_bus.hpp"
 #include "shared/master/lss_master.hpp"
 #include "shared/master/lss_renumbering.hpp"
@@ -24,22 +25,15 @@ constexpr std::int32_t pulse_of_degrees(double degrees) {
   return static_cast<std::int32_t>(18'000 + degrees * 24'000 / 180);
 }
 
+/// Lets a machine work on the bus until it has ended; at most until the deadline.
 template <typename Machine>
-class MachineUser final : public host::BusUser {
- public:
-  MachineUser(LiveBus& bus, Machine& machine) : bus_(bus), machine_(machine) { bus.attach(*this); }
-  ~MachineUser() { bus_.detach(*this); }
-  MachineUser(const MachineUser&) = delete;
-  MachineUser& operator=(const MachineUser&) = delete;
-  void receive(Microseconds now, const CanFrame& frame) override { machine_.receive(now, frame); }
-  void transmitted(Microseconds now, const CanFrame& frame) override { machine_.transmitted(now, frame); }
-  void poll(Microseconds now) override { machine_.poll(now); }
-  [[nodiscard]] Microseconds next_deadline() const override { return machine_.next_deadline(); }
-
- private:
-  LiveBus& bus_;
-  Machine& machine_;
-};
+void work(LiveBus& bus, Machine& machine, Microseconds deadline) {
+  host::MachineUser<Machine> user(machine);
+  bus.attach(user);
+  machine.start(bus.now());
+  EXPECT_TRUE(bus.run_until(deadline, [&] { return machine.state() != Machine::State::working; }));
+  bus.detach(user);
+}
 
 class Moving {
  public:
@@ -171,10 +165,7 @@ TEST(JointMotion, AndTheModulesGetOtherNodeIdsAlthoughOneFrameInTwentyIsLost) {
     ASSERT_EQ(modules.size(), 5U);
     bus.lose(0.05, seed);
     canopen::LssRenumbering renumbering(bus, modules);
-    MachineUser user(bus, renumbering);
-    renumbering.start(bus.now());
-    ASSERT_TRUE(bus.run_until(bus.now() + 60 * second,
-                              [&] { return renumbering.state() != canopen::LssRenumbering::State::working; }));
+    work(bus, renumbering, bus.now() + 60 * second);
     EXPECT_EQ(renumbering.state(), canopen::LssRenumbering::State::done) << describe(renumbering.problem());
     bus.lose(0, 0);
     const Moving moving(bus, scenario.modules[2].node);
@@ -194,10 +185,8 @@ TEST(JointMotion, ThreeFreshModulesGetTheirNodeIdsInTwoSeconds) {
   bus.run_for(100'000);
   std::vector<canopen::LssModule> modules{{1}, {2}, {3}};
   canopen::LssMaster master(bus, modules);
-  MachineUser user(bus, master);
   const Microseconds begin = bus.now();
-  master.start(begin);
-  ASSERT_TRUE(bus.run_until(begin + 2 * second, [&] { return master.state() != canopen::LssMaster::State::working; }));
+  work(bus, master, begin + 2 * second);
   EXPECT_EQ(master.assigned(), 3U);
   std::cout << "three fresh modules: " << static_cast<double>(bus.now() - begin) * 1e-6 << " s\n";
 }

@@ -100,7 +100,7 @@ int print_all_markdown(std::ostream& out) {
   return tools::exit_success;
 }
 
-int print_measures(std::ostream& out, bool markdown) {
+int list_measures(std::ostream& out, bool markdown) {
   if (markdown) {
     out << "| measure | unit | better | what it is |\n| --- | --- | --- | --- |\n";
   }
@@ -153,5 +153,5 @@ int main(int argc, char** argv) {
   command_line.add_flag("--measures", measures, "list the measures of a run instead (docs/gait-measures.md)")
       .excludes("NAME");
   return command_line.run(argc, argv,
-                          [&] { return measures ? print_measures(std::cout, markdown) : describe(name, markdown); });
+                          [&] { return measures ? list_measures(std::cout, markdown) : describe(name, markdown); });
 }

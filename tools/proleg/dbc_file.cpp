@@ -12,7 +12,7 @@ bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// The format has no escape for a quotation mark that all readers know, and not all read more than ASCII.
-std::string quoted(std::string_view text) {
+std::string dbc_string(std::string_view text) {
   std::string result = "\"";
   for (const char c : text) {
     result += c == '"' ? '\'' : (c < ' ' || c > '~' ? '?' : c);
@@ -23,7 +23,7 @@ std::string quoted(std::string_view text) {
 std::string choices_text(const std::vector<DbcChoice>& choices) {
   std::string text;
   for (const DbcChoice& choice : choices) {
-    text += ' ' + std::to_string(choice.value) + ' ' + quoted(choice.text);
+    text += ' ' + std::to_string(choice.value) + ' ' + dbc_string(choice.text);
   }
   return text + " ;\n";
 }
@@ -33,7 +33,7 @@ void write_message(std::ostream& out, const DbcMessage& message) {
   for (const DbcSignal& signal : message.signals) {
     out << " SG_ " << signal.name << (signal.multiplex.empty() ? "" : " " + signal.multiplex) << " : " << signal.start
         << '|' << signal.bits << "@1" << (signal.is_signed ? '-' : '+') << " (" << exact_text(signal.factor) << ",0) ["
-        << exact_text(signal.minimum) << '|' << exact_text(signal.maximum) << "] " << quoted(signal.unit) << ' '
+        << exact_text(signal.minimum) << '|' << exact_text(signal.maximum) << "] " << dbc_string(signal.unit) << ' '
         << signal.receiver << '\n';
   }
   out << '\n';
@@ -59,7 +59,7 @@ void set_full_range(DbcSignal& signal) {
 }
 
 void write_dbc(std::ostream& out, const DbcFile& file) {
-  out << "VERSION " << quoted(file.version) << "\n\nNS_ :\n\nBS_:\n\nBU_:";
+  out << "VERSION " << dbc_string(file.version) << "\n\nNS_ :\n\nBS_:\n\nBU_:";
   for (const DbcNode& node : file.nodes) {
     out << ' ' << node.name;
   }
@@ -71,15 +71,15 @@ void write_dbc(std::ostream& out, const DbcFile& file) {
   for (const DbcMessage& message : file.messages) {
     write_message(out, message);
   }
-  out << "CM_ " << quoted(file.comment) << ";\n";
+  out << "CM_ " << dbc_string(file.comment) << ";\n";
   for (const DbcNode& node : file.nodes) {
-    out << "CM_ BU_ " << node.name << ' ' << quoted(node.comment) << ";\n";
+    out << "CM_ BU_ " << node.name << ' ' << dbc_string(node.comment) << ";\n";
   }
   for (const DbcMessage& message : file.messages) {
-    out << "CM_ BO_ " << message.identifier << ' ' << quoted(message.comment) << ";\n";
+    out << "CM_ BO_ " << message.identifier << ' ' << dbc_string(message.comment) << ";\n";
     for (const DbcSignal& signal : message.signals) {
       if (!signal.comment.empty()) {
-        out << "CM_ SG_ " << message.identifier << ' ' << signal.name << ' ' << quoted(signal.comment) << ";\n";
+        out << "CM_ SG_ " << message.identifier << ' ' << signal.name << ' ' << dbc_string(signal.comment) << ";\n";
       }
     }
   }

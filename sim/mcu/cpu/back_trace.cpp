@@ -17,9 +17,9 @@
 namespace proleg::sim {
 namespace {
 
-constexpr unsigned sp = 13;
-constexpr unsigned lr = 14;
-constexpr unsigned pc = 15;
+constexpr unsigned dwarf_sp = 13;
+constexpr unsigned dwarf_lr = 14;
+constexpr unsigned dwarf_pc = 15;
 constexpr std::uint32_t return_to_process_stack = 4;
 constexpr std::uint32_t frame_without_fpu = 0x10;
 
@@ -174,22 +174,23 @@ class BackTracer::Implementation {
     unsigned exception = given[16] & exception_number_mask;
     bool is_return_address = false;
     while (frames.size() < max_frames) {
-      const std::uint32_t address = registers[pc] & ~1U;
+      const std::uint32_t address = registers[dwarf_pc] & ~1U;
       // A return address may be the first of the next function.
       const std::uint32_t looked_up = is_return_address ? address - 2 : address;
       frames.push_back({address, 0, describe(address, looked_up)});
-      const std::uint32_t old_sp = registers[sp];
+      const std::uint32_t old_sp = registers[dwarf_sp];
       if (!go_to_caller(registers, looked_up, read)) {
-        if (frames.size() > 1 || registers[pc] == registers[lr]) {
+        if (frames.size() > 1 || registers[dwarf_pc] == registers[dwarf_lr]) {
           break;
         }
         // Not known, or no code at all: treats it as just called.
-        registers[pc] = registers[lr];
-      } else if (registers[sp] < old_sp || (registers[sp] == old_sp && frames.size() > 1 && is_return_address)) {
+        registers[dwarf_pc] = registers[dwarf_lr];
+      } else if (registers[dwarf_sp] < old_sp ||
+                 (registers[dwarf_sp] == old_sp && frames.size() > 1 && is_return_address)) {
         break;
       }
       is_return_address = true;
-      if (is_exc_return(registers[pc])) {
+      if (is_exc_return(registers[dwarf_pc])) {
         frames.back().exception = exception;
         const std::optional<std::uint32_t> flags = leave_exception(registers, read);
         if (!flags) {
@@ -197,7 +198,7 @@ class BackTracer::Implementation {
         }
         exception = *flags & exception_number_mask;
         is_return_address = false;
-      } else if (!is_code(registers[pc])) {
+      } else if (!is_code(registers[dwarf_pc])) {
         break;
       }
     }
@@ -231,38 +232,38 @@ class BackTracer::Implementation {
       return false;
     }
     Registers caller = registers;
-    caller[sp] = *frame_address;
-    for (unsigned i = 0; i <= lr; ++i) {
+    caller[dwarf_sp] = *frame_address;
+    for (unsigned i = 0; i <= dwarf_lr; ++i) {
       std::array<Dwarf_Op, 3> memory{};
-      if (i == sp || dwarf_frame_register(frame, static_cast<int>(i), memory.data(), &operations, &count) != 0) {
+      if (i == dwarf_sp || dwarf_frame_register(frame, static_cast<int>(i), memory.data(), &operations, &count) != 0) {
         continue;
       }
       if (count == 0) {  // unchanged, or lost; the outermost function has no return address
-        if (i == lr && operations == memory.data()) {
+        if (i == dwarf_lr && operations == memory.data()) {
           return false;
         }
         continue;
       }
       if (const auto value = evaluate({operations, count}, registers, frame_address, false, read)) {
         caller[i] = *value;
-      } else if (i == lr) {
+      } else if (i == dwarf_lr) {
         return false;
       }
     }
-    caller[pc] = caller[lr];
+    caller[dwarf_pc] = caller[dwarf_lr];
     registers = caller;
     return true;
   }
 
   /// Replaces the registers by those that the exception's entry saved. Returns the xPSR; nothing if it is not known.
   static std::optional<std::uint32_t> leave_exception(Registers& registers, const ReadMemory& read) {
-    const std::uint32_t exc_return = registers[pc];
+    const std::uint32_t exc_return = registers[dwarf_pc];
     if ((exc_return & return_to_process_stack) != 0 || (exc_return & frame_without_fpu) == 0) {
       return std::nullopt;
     }
     std::array<std::uint32_t, 8> saved{};
     for (std::uint32_t i = 0; i < saved.size(); ++i) {
-      const std::optional<std::uint32_t> word = word_at(read, registers[sp] + 4 * i);
+      const std::optional<std::uint32_t> word = word_at(read, registers[dwarf_sp] + 4 * i);
       if (!word) {
         return std::nullopt;
       }
@@ -270,9 +271,9 @@ class BackTracer::Implementation {
     }
     std::copy_n(saved.begin(), 4, registers.begin());
     registers[12] = saved[4];
-    registers[lr] = saved[5];
-    registers[pc] = saved[6];
-    registers[sp] += frame_size + ((saved[7] & frame_was_aligned) != 0 ? 4U : 0U);
+    registers[dwarf_lr] = saved[5];
+    registers[dwarf_pc] = saved[6];
+    registers[dwarf_sp] += frame_size + ((saved[7] & frame_was_aligned) != 0 ? 4U : 0U);
     return saved[7];
   }
 

@@ -7,8 +7,8 @@
 namespace proleg::sim {
 namespace {
 
-constexpr unsigned sp = 13;
-constexpr unsigned pc = 15;
+constexpr unsigned r_sp = 13;
+constexpr unsigned r_pc = 15;
 
 unsigned field(std::uint16_t halfword, unsigned lowest, unsigned width) {
   return (static_cast<unsigned>(halfword) >> lowest) & ((1U << width) - 1U);
@@ -38,7 +38,7 @@ class Access {
         return immediate(field(first_, 3, 3), field(first_, 6, 5) * 2, 2, is_clear(11));
       case 0b10010:
       case 0b10011:
-        return immediate(sp, field(first_, 0, 8) * 4, 4, is_clear(11));
+        return immediate(r_sp, field(first_, 0, 8) * 4, 4, is_clear(11));
       case 0b11000:
       case 0b11001:
         return several(field(first_, 8, 3), field(first_, 0, 8), false, is_clear(11));
@@ -46,10 +46,10 @@ class Access {
         break;
     }
     if ((first_ & 0xFE00U) == 0xB400U) {
-      return several(sp, field(first_, 0, 9), true, true);
+      return several(r_sp, field(first_, 0, 9), true, true);
     }
     if ((first_ & 0xFE00U) == 0xBC00U) {
-      return several(sp, field(first_, 0, 9), false, false);
+      return several(r_sp, field(first_, 0, 9), false, false);
     }
     return std::nullopt;
   }
@@ -80,7 +80,7 @@ class Access {
   }
 
   [[nodiscard]] std::optional<MemoryAccess> literal(bool add, std::uint32_t offset, std::uint32_t size) const {
-    const std::uint32_t start = (registers_[pc] + 4) & ~3U;
+    const std::uint32_t start = (registers_[r_pc] + 4) & ~3U;
     return MemoryAccess{add ? start + offset : start - offset, size, false};
   }
 
@@ -105,7 +105,7 @@ class Access {
       const std::uint32_t start = registers_[base()];
       const std::uint32_t moved = is_clear(7) ? start - offset : start + offset;
       MemoryAccess access{before ? moved : start, 8, is_clear(4)};
-      if (base() == pc) {
+      if (base() == r_pc) {
         access = {((start + 4) & ~3U) + (is_clear(7) ? 0U - offset : offset), 8, false};
       }
       return access;
@@ -116,7 +116,7 @@ class Access {
     const unsigned operation = field(second_, 4, 4);
     if (operation < 2) {  // TBB, TBH
       const unsigned m = field(second_, 0, 4);
-      const std::uint32_t table = base() == pc ? registers_[pc] + 4 : registers_[base()];
+      const std::uint32_t table = base() == r_pc ? registers_[r_pc] + 4 : registers_[base()];
       return MemoryAccess{table + (registers_[m] << operation), 1U << operation, false};
     }
     return immediate(base(), 0, operation == 4 ? 1 : 2, is_clear(4));
@@ -129,7 +129,7 @@ class Access {
     const std::uint32_t size = 1U << field(first_, 5, 2);
     const bool is_store = is_clear(4);
     const std::uint32_t long_offset = field(second_, 0, 12);
-    if (base() == pc) {
+    if (base() == r_pc) {
       return literal(!is_clear(7), long_offset, size);
     }
     if (!is_clear(7)) {
@@ -151,7 +151,7 @@ class Access {
     const bool add = !is_clear(7);
     const bool is_store = is_clear(4);
     if (!is_clear(8) && is_clear(5)) {
-      const std::uint32_t start = base() == pc ? (registers_[pc] + 4) & ~3U : registers_[base()];
+      const std::uint32_t start = base() == r_pc ? (registers_[r_pc] + 4) & ~3U : registers_[base()];
       return MemoryAccess{add ? start + offset : start - offset, field(second_, 8, 1) != 0 ? 8U : 4U, is_store};
     }
     return MemoryAccess{add ? registers_[base()] : registers_[base()] - offset, offset, is_store};

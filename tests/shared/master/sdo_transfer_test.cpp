@@ -132,7 +132,7 @@ TEST(SdoTransfer, AnyFramesMayBeLost) {
   std::mt19937 random(seed);
   SdoTransferOptions patient;
   patient.attempts = 1'000;
-  for (int run = 0; run < 300; ++run) {
+  for (int run = 0; run < 120; ++run) {
     Link link;
     const auto percent = static_cast<unsigned>(1 + random() % 30);
     link.loses = [&](const CanFrame& /*sent*/, std::size_t /*position*/) { return random() % 100 < percent; };

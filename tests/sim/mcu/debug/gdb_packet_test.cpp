@@ -59,7 +59,7 @@ TEST(GdbPacket, WithAnyOtherChecksumIsDamaged) {
   constexpr unsigned seed = 12;
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937_64 random(seed);
-  for (int round = 0; round < 50; ++round) {
+  for (int round = 0; round < 4; ++round) {
     const std::string packet = gdb_packet(random_bytes(random, 40));
     const std::string body = packet.substr(0, packet.size() - 2);
     int accepted = 0;

@@ -50,9 +50,12 @@ void BusConnection::for_each_user(Call&& call) {
 }
 
 bool BusConnection::send(const CanFrame& frame) {
-  const bool is_taken = transport_->send(frame);
-  requested_ += is_taken ? 1 : 0;
-  return is_taken;
+  if (!transport_->send(frame)) {
+    return false;
+  }
+  ++requested_;
+  for_each_user([this, &frame](BusUser& user) { user.requested(now(), frame); });
+  return true;
 }
 
 void BusConnection::received(Microseconds time, const CanFrame& frame) {

@@ -9,6 +9,8 @@ namespace proleg::host {
 class BusUser {
  public:
   virtual void receive(Microseconds now, const CanFrame& frame) = 0;
+  /// The transport took a frame of this host, of any of its users. Sends nothing itself.
+  virtual void requested(Microseconds /*now*/, const CanFrame& /*frame*/) {}
   /// A frame of this host, of any of its users, is on the bus: there may be room for another one.
   virtual void transmitted(Microseconds /*now*/, const CanFrame& /*frame*/) {}
   /// To be called at next_deadline() or later.

@@ -73,7 +73,7 @@ void SdoQueue::advance(Microseconds now) {
     begin_jobs();
     send(now);
     const std::size_t before = unfinished_;
-    finish_ended();
+    finish_ended(now);
     changes = unfinished_ != before || is_new_;
   }
 }
@@ -112,13 +112,14 @@ void SdoQueue::send(Microseconds now) {
       }
       has_room = port_.send(*channel->waiting);
       if (has_room) {
+        channel->begin = channel->begin.value_or(now);
         channel->waiting.reset();
       }
     }
   }
 }
 
-void SdoQueue::finish_ended() {
+void SdoQueue::finish_ended(Microseconds now) {
   using State = canopen::SdoTransfer::State;
   std::vector<std::unique_ptr<Channel>> ended;
   std::erase_if(channels_, [&ended](std::unique_ptr<Channel>& channel) {
@@ -133,6 +134,7 @@ void SdoQueue::finish_ended() {
   for (const auto& channel : ended) {
     SdoResult result;
     result.attempts = channel->transfer.attempts();
+    result.elapsed_us = now - channel->begin.value_or(now);
     if (channel->transfer.state() == State::aborted) {
       result.abort_code = channel->transfer.abort_code();
     } else if (!channel->job.data) {

@@ -26,6 +26,7 @@ struct SdoResult {
   canopen::AbortCode abort_code = canopen::AbortCode::none;  ///< `timeout`: no answer
   std::vector<std::uint8_t> value;                           ///< of a read
   unsigned attempts = 0;
+  Microseconds elapsed_us = 0;  ///< from its first request to the end of the transfer
 
   [[nodiscard]] bool is_good() const { return abort_code == canopen::AbortCode::none; }
   /// The first bytes as a number, little-endian; 0 without bytes.
@@ -73,13 +74,14 @@ class SdoQueue final : public BusUser {
     std::vector<std::uint8_t> buffer;
     Job job;
     std::optional<CanFrame> waiting;  ///< the port had no room for it
+    std::optional<Microseconds> begin;
   };
 
   void add(std::uint8_t node, Job job);
   void advance(Microseconds now);
   void begin_jobs();
   void send(Microseconds now);
-  void finish_ended();
+  void finish_ended(Microseconds now);
 
   CanPort& port_;
   canopen::SdoTransferOptions options_;

@@ -8,6 +8,7 @@
 #include "shared/canopen/bus_load.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/fixed/random.hpp"
+#include "sim/loop/command_latency.hpp"
 #include "sim/loop/fault_player.hpp"
 #include "sim/loop/fault_state.hpp"
 #include "sim/loop/host_node.hpp"
@@ -57,12 +58,14 @@ class HardwareLoop::Implementation {
         host_(bus_, scenario, sync_producer),
         injector_(bus_, options_.injected),
         watch_(scenario),
+        command_latency_({scenario.robot.servo.period_us, scenario.kernel.tick_period_us}, rack_.size()),
         faults_(options_.faults, {scenario, sync_producer, fault_state_, bus_, rack_, plant_, host_}) {
     set_bus_rules();
     if (has_faults()) {
       rack_.watch_pulses(
           [this](unsigned joint, const JointModule::WatchedPulse& pulse) { watch_.note_pulse(joint, pulse); });
     }
+    rack_.watch_commands([this](unsigned joint, BusTime time) { command_latency_.note_command(joint, time); });
     if (options_.before_start) {
       options_.before_start();
     }
@@ -103,6 +106,7 @@ class HardwareLoop::Implementation {
   [[nodiscard]] const Plant& plant() const { return plant_; }
   [[nodiscard]] const HardwareReport& report() const { return report_; }
   [[nodiscard]] const MotionWatch& watch() const { return watch_; }
+  [[nodiscard]] const Durations& command_latency_ns() const { return command_latency_.nanoseconds(); }
   void finish_watch() { watch_.finish(bus_.now()); }
   [[nodiscard]] std::optional<std::uint32_t> first_fault_tick() const { return first_fault_tick_; }
   [[nodiscard]] std::span<const std::uint32_t> clipped_ticks() const { return reference_.chain().clipped_ticks(); }
@@ -252,6 +256,7 @@ class HardwareLoop::Implementation {
     const std::uint32_t tick = syncs_++;
     state_frames_.begin_tick(tick);
     injector_.advance_to(tick);
+    command_latency_.begin_tick(tick, now);
     rack_.begin_tick(tick, now);
     plant_ticks_.begin(tick, now);
   }
@@ -340,6 +345,7 @@ class HardwareLoop::Implementation {
   HostNode host_;
   Injector injector_;
   MotionWatch watch_;
+  CommandLatency command_latency_;
   FaultPlayer faults_;
   std::uint32_t syncs_ = 0;       ///< number of ticks that have begun
   BusTime tick_begin_ = 0;        ///< of the last one
@@ -367,6 +373,7 @@ std::span<const std::uint32_t> HardwareLoop::dropped_changes() const {
   return implementation_->report().dropped_changes;
 }
 const MotionWatch& HardwareLoop::motion_watch() const { return implementation_->watch(); }
+const Durations& HardwareLoop::command_latency_ns() const { return implementation_->command_latency_ns(); }
 void HardwareLoop::finish_watch() { implementation_->finish_watch(); }
 std::optional<std::uint32_t> HardwareLoop::first_fault_tick() const { return implementation_->first_fault_tick(); }
 const ValueHash& HardwareLoop::setpoint_hash() const { return implementation_->report().setpoint_hash; }

@@ -20,6 +20,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "shared/computer/durations/durations.hpp"
 #include "shared/computer/hash/value_hash.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/loop/difference.hpp"
@@ -71,6 +72,9 @@ class HardwareLoop {
 
   /// What the modules did in a run with faults.
   [[nodiscard]] const MotionWatch& motion_watch() const;
+  /// From SYNC to the first pulse width that belongs to it, in ns of bus time: in ticks whose first servo interval
+  /// starts with SYNC. The program of a native module takes no time.
+  [[nodiscard]] const Durations& command_latency_ns() const;
   /// At the end of such a run: how it ended for each joint.
   void finish_watch();
   /// The first tick that was not compared, because a fault had begun; nothing: all were.

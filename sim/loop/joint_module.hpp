@@ -56,6 +56,10 @@ class JointModule {
   /// To be set before power_on().
   using PulseWatch = std::function<void(const WatchedPulse&)>;
   virtual void set_pulse_watch(PulseWatch watch) = 0;
+  /// Called when the program gives its servo a pulse width, in twelfths of a microsecond, with the time: of a virtual
+  /// chip, of the instruction that writes the timer. To be set before power_on().
+  using CommandWatch = std::function<void(BusTime time, std::int32_t width)>;
+  virtual void set_command_watch(CommandWatch watch) = 0;
 
   /// A character begins at the input of its serial line (docs/board.md, gateway), with the sender's bit time in ns. The
   /// one before must be over. Lost while the module does not read its line.

@@ -87,6 +87,12 @@ void ModuleRack::watch_pulses(const PulseWatch& watch) {
   }
 }
 
+void ModuleRack::watch_commands(const CommandWatch& watch) {
+  for (unsigned joint = 0; joint < size(); ++joint) {
+    modules_[joint]->set_command_watch([watch, joint](BusTime time, std::int32_t /*width*/) { watch(joint, time); });
+  }
+}
+
 void ModuleRack::power_on(BusTime now) {
   for (const auto& module : modules_) {
     module->power_on(now);

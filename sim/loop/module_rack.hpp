@@ -30,6 +30,9 @@ class ModuleRack {
   /// Called with the joint and each pulse of its servo, as JointModule::PulseWatch has it.
   using PulseWatch = std::function<void(unsigned joint, const JointModule::WatchedPulse& pulse)>;
   void watch_pulses(const PulseWatch& watch);
+  /// Called with the joint and each pulse width for its servo, as JointModule::CommandWatch has it.
+  using CommandWatch = std::function<void(unsigned joint, BusTime time)>;
+  void watch_commands(const CommandWatch& watch);
 
   void power_on(BusTime now);
   [[nodiscard]] BusTime next_event() const;

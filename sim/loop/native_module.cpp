@@ -138,6 +138,9 @@ void NativeModule::set_supply(BusTime now, std::uint32_t mv) {
 void NativeModule::pulse(std::int32_t width, std::uint32_t /*period_us*/) {
   const bool follows_pulses = pulse_.has_value();
   pulse_ = width;
+  if (command_watch_) {
+    command_watch_(bus_.now(), width);
+  }
   if (pulse_watch_) {
     pulse_watch_({bus_.now(), width, module_.power(), follows_pulses, true});
   }

@@ -53,6 +53,7 @@ class NativeModule final : public JointModule,
   void set_serial_watch(SerialWatch watch) override { line_.watch(std::move(watch)); }
   [[nodiscard]] canopen::PowerState power() const override { return module_.power(); }
   void set_pulse_watch(PulseWatch watch) override { pulse_watch_ = std::move(watch); }
+  void set_command_watch(CommandWatch watch) override { command_watch_ = std::move(watch); }
   [[nodiscard]] firmware::TickRecord last_tick() const override { return module_.last_tick(); }
   [[nodiscard]] std::optional<std::int32_t> pulse() const override { return pulse_; }
   [[nodiscard]] std::size_t controller() const override { return controller_.index(); }
@@ -138,6 +139,7 @@ class NativeModule final : public JointModule,
   firmware::Module module_;
   std::optional<std::int32_t> pulse_;
   PulseWatch pulse_watch_;
+  CommandWatch command_watch_;
   std::uint32_t supply_mv_ = nominal_supply_mv;
   BusTime next_event_ = never_on_bus;
 };

@@ -7,11 +7,14 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "host/robot/answer_times.hpp"
+#include "host/robot/change_times.hpp"
 #include "host/robot/robot_drive.hpp"
 #include "host/robot/sdo_queue.hpp"
 #include "host/transport/bus_address.hpp"
@@ -23,6 +26,7 @@
 #include "sim/scenario/master_input.hpp"
 #include "tools/proleg/bus_access.hpp"
 #include "tools/proleg/drive_plugin.hpp"
+#include "tools/proleg/durations_text.hpp"
 #include "tools/proleg/gait_check.hpp"
 #include "tools/proleg/input_lines.hpp"
 #include "tools/proleg/live_changes.hpp"
@@ -47,6 +51,9 @@ struct DriveResult {
   std::uint32_t restarts = 0;
   std::uint64_t dropped_changes = 0;
   host::Statistics bus;
+  Durations answers_us;       ///< of modules to SDO requests
+  Durations acknowledged_us;  ///< changes, by all modules
+  Durations ticks_to_effect;  ///< of changes without a tick
 };
 
 /// Where the results of a run go; null: not asked for.
@@ -69,9 +76,15 @@ class Drive {
         drive_(bus_, input_.setup, master_options(), changes_.span()),
         check_(run.scenario),
         end_tick_(run.ticks) {
+    bus_.attach(answer_times_);  // before the master: it answers an answer with the next request
+    bus_.attach(change_times_);
     bus_.attach(drive_);
   }
-  ~Drive() { bus_.detach(drive_); }
+  ~Drive() {
+    bus_.detach(drive_);
+    bus_.detach(answer_times_);
+    bus_.detach(change_times_);
+  }
   Drive(const Drive&) = delete;
   Drive& operator=(const Drive&) = delete;
 
@@ -100,6 +113,7 @@ class Drive {
       report_events();
       take_ticks(false);
       take_input();
+      release_changes();
       progress.show(check_.ticks() * (run_.scenario.kernel.tick_period_us * 1e-6));
       if (has_ended()) {
         throw std::runtime_error(why_not());
@@ -131,7 +145,13 @@ class Drive {
 
   [[nodiscard]] const GaitCheck& check() const { return check_; }
   [[nodiscard]] DriveResult result() const {
-    return {check_.ticks(), drive_.master().restarts(), changes_.dropped(), bus_.statistics()};
+    return {check_.ticks(),
+            drive_.master().restarts(),
+            changes_.dropped(),
+            bus_.statistics(),
+            answer_times_.microseconds(),
+            change_times_.acknowledged_us(),
+            change_times_.ticks_to_effect()};
   }
 
  private:
@@ -223,6 +243,36 @@ class Drive {
     recorder->record_tick(sample);
   }
 
+  /// Throws InputError.
+  void add_change(const std::string& word) {
+    const std::uint32_t tick = drive_.master().tick().value_or(0);
+    if (!changes_.add(word, tick)) {
+      return;
+    }
+    const std::span<canopen::Change> changes = changes_.span();
+    if (changes.back().tick == canopen::Change::soon) {
+      change_times_.accepted(changes.size() - 1, bus_.now(), tick);
+    }
+    give_changes(word);
+  }
+
+  /// To the master: those that are behind the ones that it has. what: the last one. Throws InputError.
+  void give_changes(const std::string& what) {
+    if (!drive_.master().extend_changes(bus_.now(), changes_.span())) {
+      changes_.remove_last();
+      static_cast<void>(drive_.master().extend_changes(bus_.now(), changes_.span()));
+      throw InputError(what, 0, "a change that is not later than the one before it, or has too many values",
+                       "a later tick");
+    }
+  }
+
+  /// The changes of the scenario whose time has come.
+  void release_changes() {
+    while (changes_.release(drive_.master().tick().value_or(0))) {
+      give_changes("the change for tick " + std::to_string(changes_.span().back().tick));
+    }
+  }
+
   void take_input() {
     while (const auto line = input_lines_.next()) {
       const std::string word(trimmed(*line));
@@ -230,13 +280,7 @@ class Drive {
         wants_stop_ = true;
       } else if (!word.empty()) {
         try {
-          changes_.add(word, drive_.master().tick().value_or(0));
-          if (!drive_.master().extend_changes(bus_.now(), changes_.span())) {
-            changes_.remove_last();
-            static_cast<void>(drive_.master().extend_changes(bus_.now(), changes_.span()));
-            throw InputError(word, 0, "a change that is not later than the one before it, or has too many values",
-                             "a later tick");
-          }
+          add_change(word);
         } catch (const InputError& error) {
           std::cerr << "proleg drive: " << error.what() << '\n';
         }
@@ -251,6 +295,8 @@ class Drive {
   sim::MasterInput input_;
   LiveChanges changes_;
   host::RobotDrive drive_;
+  host::AnswerTimes answer_times_;
+  host::ChangeTimes change_times_;
   GaitCheck check_;
   InputLines input_lines_;
   bool wants_stop_ = false;
@@ -289,6 +335,9 @@ void print_result(const DriveOptions& options, const DriveResult& result, const 
                       {"servo_hash", check.servo_hash().hex()},
                       {"frames_sent", result.bus.transmitted},
                       {"frames_received", result.bus.received},
+                      {"answer_ms", durations_object(result.answers_us, 1e-3)},
+                      {"change_acknowledged_ms", durations_object(result.acknowledged_us, 1e-3)},
+                      {"change_effect_ticks", durations_object(result.ticks_to_effect, 1)},
                       {"recording", options.record.value_or("")},
                       {"mirror", mirrored != nullptr ? mirrored->json() : Json()}}
                      .text()
@@ -299,6 +348,15 @@ void print_result(const DriveOptions& options, const DriveResult& result, const 
   std::printf("verdict           %s\n", verdict(check).c_str());
   std::printf("frames            %llu sent, %llu received\n", static_cast<unsigned long long>(result.bus.transmitted),
               static_cast<unsigned long long>(result.bus.received));
+  std::printf("answers           after %s\n", durations_text(result.answers_us, 1e-3, "ms", "SDO requests").c_str());
+  if (result.acknowledged_us.count() > 0) {
+    std::printf("changes           all modules had them after %s\n",
+                durations_text(result.acknowledged_us, 1e-3, "ms", "changes").c_str());
+  }
+  if (result.ticks_to_effect.count() > 0) {
+    std::printf("typed changes     took effect after %s\n",
+                durations_text(result.ticks_to_effect, 1, "ticks", "changes").c_str());
+  }
   if (result.restarts > 0) {
     std::printf("restarts          %u\n", result.restarts);
   }

@@ -98,6 +98,7 @@ HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::Hardw
   result.failures.assign(loop.failures().begin(), loop.failures().end());
   result.problems.assign(loop.problems().begin(), loop.problems().end());
   result.costliest_tick = modules.costliest_tick();
+  result.command_latency_ns = loop.command_latency_ns();
   result.lost_frames = loop.lost_frames();
   result.receptions = loop.receptions();
   const sim::BusStatistics bus = loop.bus_statistics();

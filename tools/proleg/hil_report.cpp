@@ -4,6 +4,7 @@
 
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/build_id.hpp"
+#include "tools/proleg/durations_text.hpp"
 #include "tools/proleg/hil_faults.hpp"
 
 namespace proleg::tools {
@@ -61,6 +62,7 @@ Json hil_json(const HilOptions& options, const ScenarioRun& run, const HilModule
           {"failures", failures},
           {"problems", problems},
           {"instructions_per_tick", result.costliest_tick ? result.costliest_tick->cost.to_state_frame : 0},
+          {"command_latency_us", durations_object(result.command_latency_ns, 1e-3)},
           {"lost_frames", result.lost_frames},
           {"frame_receptions", result.receptions},
           {"bit_errors", result.bit_errors},
@@ -107,6 +109,8 @@ void print_hil_table(const HilOptions& options, const ScenarioRun& run, const Hi
     std::printf("instructions      at most %llu from SYNC to the state frame (node %u, tick %u)\n",
                 count(worst->cost.to_state_frame), unsigned{worst->node}, worst->cost.tick);
   }
+  std::printf("servo commands    after SYNC: %s\n",
+              durations_text(result.command_latency_ns, 1e-3, "us", "commands").c_str());
   for (const auto& failure : result.failures) {
     std::printf("failure           %s did not finish tick %u\n", joint_and_node(run, failure.joint).c_str(),
                 failure.tick);

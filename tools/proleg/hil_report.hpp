@@ -46,6 +46,7 @@ struct HilResult {
   std::vector<sim::ModuleFailure> failures;
   std::vector<sim::ModuleProblem> problems;
   std::optional<HilModules::CostliestTick> costliest_tick;
+  Durations command_latency_ns;  ///< as HardwareLoop has it
   RunMeasures measures;
   // Of a run with faults.
   sim::FaultSchedule faults;

@@ -9,9 +9,17 @@
 namespace proleg::tools {
 
 LiveChanges::LiveChanges(const sim::Scenario& scenario, std::vector<canopen::Change> planned)
-    : scenario_(scenario), changes_(std::move(planned)) {}
+    : scenario_(scenario), lead_ticks_(lead_us / scenario.kernel.tick_period_us), planned_(std::move(planned)) {
+  if (const auto bad = canopen::ChangePlan(scenario.kernel, planned_).find_bad()) {
+    throw InputError(scenario.path, 0,
+                     "a change for tick " + std::to_string(planned_[*bad].tick) + " that no module can make",
+                     "at most " + std::to_string(max_staged_values) + " values of a joint");
+  }
+  while (release(0)) {
+  }
+}
 
-void LiveChanges::add(const std::string& word, std::uint32_t now) {
+bool LiveChanges::add(const std::string& word, std::uint32_t now) {
   const bool has_tick = word.find('@') != std::string::npos;
   sim::Scenario scratch = scenario_;
   scratch.changes.clear();
@@ -24,11 +32,36 @@ void LiveChanges::add(const std::string& word, std::uint32_t now) {
   if (has_tick && change.tick <= now) {
     throw InputError(word, 0, "tick " + std::to_string(change.tick), "a later one than " + std::to_string(now));
   }
-  std::vector<canopen::ChangedValue>& values = values_.emplace_back();
+  std::vector<canopen::ChangedValue> values;
   for (const sim::Setting& setting : change.settings) {
     values.push_back({setting.slot, setting.joint, setting.index, setting.internal, setting.value});
   }
-  changes_.push_back({has_tick ? change.tick : canopen::Change::soon, values});
+  if (has_tick && std::ranges::find(planned_, change.tick, &canopen::Change::tick) != planned_.end()) {
+    throw InputError(word, 0, "tick " + std::to_string(change.tick) + ", which has a change already", "another tick");
+  }
+  const canopen::Change added{has_tick ? change.tick : canopen::Change::soon, values_.emplace_back(std::move(values))};
+  if (has_tick) {
+    planned_.insert(std::ranges::upper_bound(planned_, added.tick, {}, &canopen::Change::tick), added);
+    return release(now);
+  }
+  changes_.push_back(added);
+  return true;
+}
+
+bool LiveChanges::release(std::uint32_t now) {
+  // A change behind one without a tick must be later than the tick that the master chooses for it.
+  const bool is_open = !changes_.empty() && changes_.back().tick == canopen::Change::soon;
+  if (planned_.empty() || is_open || planned_.front().tick > now + lead_ticks_) {
+    return false;
+  }
+  const canopen::Change next = planned_.front();
+  planned_.erase(planned_.begin());
+  if (!changes_.empty() && next.tick <= changes_.back().tick) {
+    ++too_late_;
+    return release(now);
+  }
+  changes_.push_back(next);
+  return true;
 }
 
 std::vector<sim::Change> LiveChanges::take_decided(std::uint32_t tick) {
@@ -48,7 +81,7 @@ std::vector<sim::Change> LiveChanges::take_decided(std::uint32_t tick) {
 }
 
 std::uint64_t LiveChanges::dropped() const {
-  return static_cast<std::uint64_t>(std::ranges::count_if(changes_, &canopen::Change::dropped));
+  return too_late_ + static_cast<std::uint64_t>(std::ranges::count_if(changes_, &canopen::Change::dropped));
 }
 
 }  // namespace proleg::tools

@@ -11,18 +11,26 @@
 namespace proleg::tools {
 
 /// The changes of a run, in the form that the master takes: those of the scenario, and those that the user adds while
-/// the robot moves.
+/// the robot moves. The master makes changes in the order in which it gets them. It therefore gets a change with a tick
+/// a while before this tick, so that one without a tick does not wait for it until then.
 class LiveChanges {
  public:
-  /// scenario: must outlive this. planned: its changes.
+  /// The master gets a change this long before its tick: more than a connection that loses frames needs.
+  static constexpr std::uint32_t lead_us = 3'000'000;
+
+  /// scenario: must outlive this. planned: its changes, by ascending tick. span() has the first of them.
   LiveChanges(const sim::Scenario& scenario, std::vector<canopen::Change> planned);
   LiveChanges(const LiveChanges&) = delete;
   LiveChanges& operator=(const LiveChanges&) = delete;
 
   /// A word as for --set; without a tick the change takes effect as soon as all modules have it. now: present tick.
-  /// Throws InputError. A new span() is then to be given to the master.
-  void add(const std::string& word, std::uint32_t now);
+  /// Throws InputError. True: the master must get the new span() now.
+  bool add(const std::string& word, std::uint32_t now);
+  /// Puts the next planned change behind span(), if it is time. True: the master must get the new span() now.
+  bool release(std::uint32_t now);
+  /// The master has refused the last one of span().
   void remove_last() { changes_.pop_back(); }
+  /// What the master has, or must get.
   [[nodiscard]] std::span<canopen::Change> span() { return changes_; }
 
   /// The changes for this tick and earlier ones that have not been taken and that the master did not drop.
@@ -31,9 +39,12 @@ class LiveChanges {
 
  private:
   const sim::Scenario& scenario_;
+  std::uint32_t lead_ticks_;
+  std::vector<canopen::Change> planned_;  ///< by ascending tick; the master does not have them yet
   std::vector<canopen::Change> changes_;
   std::vector<std::vector<canopen::ChangedValue>> values_;  ///< of the changes that were added
   std::size_t taken_ = 0;
+  std::uint64_t too_late_ = 0;  ///< planned changes that the master never got
 };
 
 }  // namespace proleg::tools

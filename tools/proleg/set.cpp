@@ -6,6 +6,7 @@
 
 #include "host/robot/object_word.hpp"
 #include "shared/canopen/object_name.hpp"
+#include "shared/computer/text/text.hpp"
 #include "tools/proleg/bus_access.hpp"
 #include "tools/proleg/interrupt.hpp"
 #include "tools/proleg/object_access.hpp"
@@ -19,6 +20,7 @@ struct SetOptions : BusOptions {
   std::string nodes;
   std::string object;
   std::string value;
+  bool verbose = false;
 };
 
 int set(const SetOptions& options) {
@@ -42,7 +44,12 @@ int set(const SetOptions& options) {
         host::address_text(object.address) + " (" + std::string(canopen::entry_name(object.address).view()) + ")";
     queue.write(node, object.address, bytes, [&, node, object, bytes, name](const host::SdoResult& result) {
       if (result.is_good()) {
-        std::cout << "node " << unsigned{node} << "  " << name << " = " << host::value_text(object, bytes) << '\n';
+        std::cout << "node " << unsigned{node} << "  " << name << " = " << host::value_text(object, bytes);
+        if (options.verbose) {
+          std::cout << "  answered after " << number_text(static_cast<double>(result.elapsed_us) * 1e-3) << " ms";
+          std::cout << (result.attempts > 1 ? ", at request " + std::to_string(result.attempts) : "");
+        }
+        std::cout << '\n';
         return;
       }
       std::cerr << "proleg set: " << failure_text(node, name, result.abort_code, bus.connection().diagnosis()) << '\n';
@@ -64,6 +71,7 @@ int main(int argc, char** argv) {
   command_line.add_option("OBJECT", options.object, "as for 'proleg get'").required();
   command_line.add_option("VALUE", options.value, "in the unit of the object; or the number that travels, as 0x...")
       .required();
+  command_line.add_flag("--verbose", options.verbose, "print the time that each module took to answer");
   add_bus_option(command_line, options);
   return command_line.run(argc, argv, [&] { return set(options); });
 }

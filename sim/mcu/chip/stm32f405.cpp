@@ -219,6 +219,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   BxCan can_;
   Pins pins_;
   TransmitWatch transmit_watch_;
+  CompareWatch compare_watch_;
   DebugHook debug_hook_;
 
  private:
@@ -421,6 +422,9 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
       const LocalTime time = now();
       if (peripheral == &can_) {
         watch_can(offset, value);
+      }
+      if (peripheral == &timer_2_ && offset == Timer::ccr1 && compare_watch_) {
+        compare_watch_(oscillator_.when(time), value);
       }
       pins_.look();
       peripheral->write(offset, value);
@@ -629,6 +633,7 @@ void Stm32f405::set_pin_watch(char port, unsigned number, PinWatch watch) {
     watch(implementation_->oscillator_.when(edge), high);
   });
 }
+void Stm32f405::set_compare_watch(CompareWatch watch) { implementation_->compare_watch_ = std::move(watch); }
 std::size_t Stm32f405::controller() const { return implementation_->can_.controller(); }
 std::uint64_t Stm32f405::instructions() const { return implementation_->cpu_.instructions(); }
 void Stm32f405::set_transmit_watch(TransmitWatch watch) { implementation_->transmit_watch_ = std::move(watch); }

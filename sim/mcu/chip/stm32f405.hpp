@@ -92,6 +92,9 @@ class Stm32f405 {
   /// on.
   using PinWatch = std::function<void(BusTime time, bool high)>;
   void set_pin_watch(char port, unsigned number, PinWatch watch);
+  /// Called when the program writes CCR1 of TIM2, with the true time at which the instruction begins.
+  using CompareWatch = std::function<void(BusTime time, std::uint32_t counts)>;
+  void set_compare_watch(CompareWatch watch);
 
   /// Index of the controller on the bus.
   [[nodiscard]] std::size_t controller() const;

@@ -154,6 +154,14 @@ void VirtualModule::set_pulse_watch(PulseWatch watch) {
                       [this](BusTime time, bool high) { see_edge(time, high); });
 }
 
+void VirtualModule::set_command_watch(CommandWatch watch) {
+  chip_.set_compare_watch([watch = std::move(watch)](BusTime time, std::uint32_t counts) {
+    if (counts != 0) {  // 0: no pulses
+      watch(time, static_cast<std::int32_t>(counts));
+    }
+  });
+}
+
 void VirtualModule::see_edge(BusTime time, bool high) {
   if (high) {
     pulse_begin_ = time;

@@ -51,6 +51,7 @@ class VirtualModule final : public JointModule, private BoardSignals {
   void set_serial_watch(SerialWatch watch) override { chip_.set_serial_watch(std::move(watch)); }
   [[nodiscard]] canopen::PowerState power() const override;
   void set_pulse_watch(PulseWatch watch) override;
+  void set_command_watch(CommandWatch watch) override;
   [[nodiscard]] firmware::TickRecord last_tick() const override;
   [[nodiscard]] std::optional<std::int32_t> pulse() const override;
   [[nodiscard]] std::size_t controller() const override { return chip_.controller(); }

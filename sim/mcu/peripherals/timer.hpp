@@ -26,6 +26,7 @@ class TriggerInput {
 class Timer final : public RegisterBlock {
  public:
   static constexpr unsigned channel_count = 4;
+  static constexpr std::uint32_t ccr1 = 0x34;  ///< offset of the compare register of channel 1
 
   /// number: 2, 3 or 5; else std::invalid_argument.
   Timer(ChipServices& chip, unsigned number);

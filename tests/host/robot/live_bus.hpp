@@ -32,6 +32,9 @@ class LiveBus final : public CanPort {
 
   bool send(const CanFrame& frame) override {
     ++sent_frames_;
+    for (host::BusUser* user : std::vector(users_)) {
+      user->requested(now(), frame);
+    }
     if (is_lost()) {
       events_.push_back({robot_.now(), frame, true});
       return true;

@@ -1,0 +1,37 @@
+#include "host/robot/answer_times.hpp"
+
+namespace proleg::host {
+namespace {
+
+/// CiA 301: the host ends a transfer. Nobody answers that.
+constexpr std::uint8_t abort_command = 0x80;
+
+}  // namespace
+
+void AnswerTimes::requested(Microseconds now, const CanFrame& frame) {
+  namespace identifier = canopen::identifier;
+  const std::uint8_t node = identifier::node_of(frame.identifier);
+  if (identifier::base_of(frame.identifier) != identifier::sdo_request || node >= waiting_.size()) {
+    return;
+  }
+  std::optional<Request>& waiting = waiting_.at(node);
+  if (frame.length > 0 && frame.data[0] == abort_command) {
+    waiting.reset();
+  } else if (!waiting || waiting->frame != frame) {
+    waiting = Request{now, frame};
+  }
+}
+
+void AnswerTimes::receive(Microseconds now, const CanFrame& frame) {
+  namespace identifier = canopen::identifier;
+  const std::uint8_t node = identifier::node_of(frame.identifier);
+  if (identifier::base_of(frame.identifier) != identifier::sdo_answer || node >= waiting_.size()) {
+    return;
+  }
+  if (std::optional<Request>& waiting = waiting_.at(node)) {
+    microseconds_.add(now - waiting->time);
+    waiting.reset();
+  }
+}
+
+}  // namespace proleg::host

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+
+#include "host/robot/bus_user.hpp"
+#include "shared/can/can_frame.hpp"
+#include "shared/computer/durations/durations.hpp"
+
+namespace proleg::host {
+
+/// How long the changes of a run take: until all modules have acknowledged their values, which is when the master sends
+/// the first COMMIT; and from then until they take effect. Changes are numbered as the master numbers them.
+class ChangeTimes final : public BusUser {
+ public:
+  /// A change without a tick of its own was accepted; its time begins now. The time of others begins with the first
+  /// request that stages them. tick: the present one.
+  void accepted(std::size_t change, Microseconds now, std::uint32_t tick);
+
+  void requested(Microseconds now, const CanFrame& frame) override;
+  void receive(Microseconds /*now*/, const CanFrame& /*frame*/) override {}
+
+  /// Until all modules have acknowledged a change.
+  [[nodiscard]] const Durations& acknowledged_us() const { return acknowledged_us_; }
+  /// From the tick when a change without a tick was accepted to the one at which it takes effect.
+  [[nodiscard]] const Durations& ticks_to_effect() const { return ticks_to_effect_; }
+
+ private:
+  struct Waiting {
+    Microseconds begin;
+    std::optional<std::uint32_t> tick;  ///< when it was accepted; nothing: it has a tick of its own
+  };
+  /// Which change is meant, of those that are not committed yet.
+  [[nodiscard]] std::optional<std::size_t> change_of(std::uint16_t transaction) const;
+
+  std::map<std::size_t, Waiting> waiting_;  ///< by change
+  std::size_t next_ = 0;                    ///< those before are committed or dropped
+  Durations acknowledged_us_;
+  Durations ticks_to_effect_;
+};
+
+}  // namespace proleg::host

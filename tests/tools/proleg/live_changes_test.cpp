@@ -1,0 +1,100 @@
+#include "tools/proleg/live_changes.hpp"
+
+#include <gtest/gtest.h>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shipped.hpp"
+#include "sim/scenario/master_input.hpp"
+#include "sim/scenario/reader.hpp"
+
+namespace proleg::tools {
+namespace {
+
+constexpr std::uint32_t soon = canopen::Change::soon;
+
+/// The changes of a robot with a tick of 10 ms: 3 s are 300 ticks.
+class LiveChangesTest : public ::testing::Test {
+ protected:
+  static sim::Scenario planned(const std::vector<std::string>& words) {
+    sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+    for (const std::string& word : words) {
+      sim::apply_setting(scenario, word);
+    }
+    return scenario;
+  }
+  static std::vector<std::uint32_t> ticks(LiveChanges& changes) {
+    std::vector<std::uint32_t> ticks;
+    for (const canopen::Change& change : changes.span()) {
+      ticks.push_back(change.tick);
+    }
+    return ticks;
+  }
+
+  using Ticks = std::vector<std::uint32_t>;
+};
+
+TEST_F(LiveChangesTest, TheMasterGetsAPlannedChangeThreeSecondsBeforeItsTick) {
+  const sim::Scenario scenario = planned({"amplitude=30@100", "frequency=0.7@6000"});
+  LiveChanges changes(scenario, sim::MasterInput(scenario).changes);
+  EXPECT_EQ(ticks(changes), Ticks({100}));
+  EXPECT_FALSE(changes.release(5'699));
+  EXPECT_TRUE(changes.release(5'700));
+  EXPECT_EQ(ticks(changes), Ticks({100, 6'000}));
+  EXPECT_FALSE(changes.release(5'700));
+}
+
+TEST_F(LiveChangesTest, OneWithoutATickDoesNotWaitForAPlannedOne) {
+  const sim::Scenario scenario = planned({"frequency=0.7@6000"});
+  const sim::MasterInput input(scenario);
+  LiveChanges changes(scenario, input.changes);
+  EXPECT_TRUE(changes.add("amplitude=30", 500));
+  EXPECT_EQ(ticks(changes), Ticks({soon}));
+  changes.span()[0].tick = 523;  // as the master decides
+  const auto decided = changes.take_decided(600);
+  ASSERT_EQ(decided.size(), 1U);
+  EXPECT_EQ(decided[0].tick, 523U);
+}
+
+TEST_F(LiveChangesTest, ATypedChangeWithATickFindsItsPlace) {
+  const sim::Scenario scenario = planned({"frequency=0.7@6000"});
+  const sim::MasterInput input(scenario);
+  LiveChanges changes(scenario, input.changes);
+  EXPECT_FALSE(changes.add("amplitude=30@3000", 500));
+  EXPECT_TRUE(changes.add("amplitude=35@600", 500));
+  EXPECT_TRUE(changes.release(2'700));
+  EXPECT_TRUE(changes.release(5'700));
+  EXPECT_EQ(ticks(changes), Ticks({600, 3'000, 6'000}));
+  EXPECT_THROW(static_cast<void>(changes.add("amplitude=30@5000", 5'000)), InputError);
+}
+
+TEST_F(LiveChangesTest, ATickHasOneChange) {
+  const sim::Scenario scenario = planned({"frequency=0.7@6000"});
+  const sim::MasterInput input(scenario);
+  LiveChanges changes(scenario, input.changes);
+  EXPECT_THROW(static_cast<void>(changes.add("amplitude=30@6000", 500)), InputError);
+}
+
+TEST_F(LiveChangesTest, APlannedChangeWaitsUntilTheTickOfTheOneBeforeItIsDecided) {
+  const sim::Scenario scenario = planned({"frequency=0.7@6000"});
+  const sim::MasterInput input(scenario);
+  LiveChanges changes(scenario, input.changes);
+  EXPECT_TRUE(changes.add("amplitude=30", 5'690));
+  EXPECT_FALSE(changes.release(5'700));
+  changes.span()[0].tick = 5'999;
+  EXPECT_TRUE(changes.release(5'800));
+  EXPECT_EQ(ticks(changes), Ticks({5'999, 6'000}));
+}
+
+TEST_F(LiveChangesTest, APlannedChangeWhoseTickHasPassedMeanwhileCountsAsDropped) {
+  const sim::Scenario scenario = planned({"frequency=0.7@6000", "frequency=0.8@6100"});
+  const sim::MasterInput input(scenario);
+  LiveChanges changes(scenario, input.changes);
+  EXPECT_TRUE(changes.add("amplitude=30", 5'690));
+  changes.span()[0].tick = 6'000;
+  EXPECT_TRUE(changes.release(5'990));
+  EXPECT_EQ(ticks(changes), Ticks({6'000, 6'100}));
+  EXPECT_EQ(changes.dropped(), 1U);
+}
+
+}  // namespace
+}  // namespace proleg::tools

@@ -30,6 +30,7 @@ LiveRobot::LiveRobot(const Scenario& scenario, LiveRobotOptions options)
       adapter_(bus_.attach(*this)) {
   bus_.set_frame_listener([this](const Transmission& transmission) { on_frame(transmission); });
   adapter_.set_order(Controller::Order::request);
+  plant_.let_it_rest();
   rack_.power_on(0);
   begin_tick(0, false);
 }
@@ -40,6 +41,20 @@ BusTime LiveRobot::next_event() const {
 }
 
 void LiveRobot::advance_to(BusTime time) {
+  run_events(time, false);
+  bus_.advance_to(time);
+  take_problems();
+}
+
+void LiveRobot::advance_to_frame(BusTime time) {
+  if (run_events(time, true)) {
+    bus_.advance_to(time);
+  }
+  take_problems();
+}
+
+bool LiveRobot::run_events(BusTime time, bool ends_with_frame) {
+  has_had_frame_ = false;
   for (BusTime next = next_event(); next <= time; next = next_event()) {
     plant_ticks_.advance_to(next);
     bus_.advance_to(next);
@@ -53,9 +68,11 @@ void LiveRobot::advance_to(BusTime time) {
     }
     // What a program sends from outside is on the bus after `time`, and so not delivered before that either.
     rack_.advance_to(next, bus_.earliest_delivery());
+    if (ends_with_frame && has_had_frame_) {
+      return false;
+    }
   }
-  bus_.advance_to(time);
-  take_problems();
+  return true;
 }
 
 BusTime LiveRobot::tick_deadline() const {
@@ -74,6 +91,7 @@ void LiveRobot::begin_tick(BusTime now, bool has_sync) {
 }
 
 void LiveRobot::on_frame(const Transmission& transmission) {
+  has_had_frame_ = true;
   if (options_.on_frame) {
     options_.on_frame(transmission, transmission.sender == adapter_.index());
   }
@@ -116,6 +134,7 @@ void LiveRobot::transmitted(BusTime time, const CanFrame& frame) {
   if (!in_mailboxes_.empty()) {
     const std::uint32_t source = in_mailboxes_.front().source;
     in_mailboxes_.pop_front();
+    has_had_frame_ = true;
     if (options_.on_sent) {
       options_.on_sent(time, frame, source);
     }

@@ -57,6 +57,8 @@ class LiveRobot final : private BusListener {
   [[nodiscard]] BusTime next_event() const;
   /// Lets everything happen that is due up to this time. Throws PhysicsError as Simulation does.
   void advance_to(BusTime time);
+  /// The same, but returns after an event at which options.on_frame or options.on_sent were called.
+  void advance_to_frame(BusTime time);
 
   /// Sends a frame of an outside program now(), by the controller of the adapter between it and the bus. source: comes
   /// back with on_sent. False if max_waiting frames wait already.
@@ -77,6 +79,8 @@ class LiveRobot final : private BusListener {
   void transmitted(BusTime time, const CanFrame& frame) override;
   void error_state_changed(BusTime time) override;
 
+  /// Lets everything happen that is due up to this time, or up to a frame. Whether the time is reached.
+  bool run_events(BusTime time, bool ends_with_frame);
   void on_frame(const Transmission& transmission);
   void fill_mailboxes();
   [[nodiscard]] BusTime tick_period() const { return BusTime{scenario_.kernel.tick_period_us} * 1'000; }
@@ -99,6 +103,7 @@ class LiveRobot final : private BusListener {
   };
   std::deque<Request> waiting_;
   std::deque<Request> in_mailboxes_;
+  bool has_had_frame_ = false;  ///< at the last event
   std::uint32_t ticks_ = 0;
   std::uint32_t begun_ticks_ = 0;
   BusTime tick_begin_ = 0;     ///< of the last one

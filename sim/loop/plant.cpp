@@ -78,6 +78,9 @@ void Plant::release(std::size_t joint) {
 
 void Plant::act(std::size_t joint, std::int32_t command) {
   Servo& servo = servos_[joint];
+  if (servo.limp || servo.command != command) {
+    disturb();
+  }
   servo.command = command;
   if (servo.limp) {
     servo.limp = false;
@@ -102,7 +105,30 @@ void Plant::free(std::size_t joint) {
   update_torque(joint);
 }
 
+void Plant::disturb() {
+  disturbed_at_ = steps_;
+  is_at_rest_ = false;
+}
+
+void Plant::step_world() {
+  constexpr double still_after_s = 0.05;
+  constexpr double slowest = 1e-4;           // m/s
+  constexpr double slowest_rotation = 1e-3;  // rad/s
+  if (is_at_rest_) {
+    return;
+  }
+  world_.step();
+  if (!may_rest_) {
+    return;
+  }
+  if (!world_.is_slower_than(slowest, slowest_rotation)) {
+    disturb();
+  }
+  is_at_rest_ = static_cast<double>(steps_ - disturbed_at_) * scenario_.step_s >= still_after_s;
+}
+
 void Plant::update_torque(std::size_t joint) {
+  disturb();
   constexpr double jam_strength = 20.0;  // times the servo's own torque: nothing in the robot turns the joint
   const Servo& servo = servos_[joint];
   const double own = scenario_.robot.joints[joint].max_torque;
@@ -135,7 +161,7 @@ void Plant::step() {
     servo.angle_before = servo.angle;
     world_.set_joint_speed(joint, servo.jam_ma ? 0.0 : servo.commanded_speed);
   }
-  world_.step();
+  step_world();
   for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
     Servo& servo = servos_[joint];
     servo.angle = world_.joint_angle(joint);

@@ -25,6 +25,11 @@ class Plant {
   /// A servo that gets no pulses goes limp, after its latency.
   void release(std::size_t joint);
 
+  /// From now on the world makes no step while nothing moves: no servo has had another pulse for a while, and all links
+  /// lie still. What was measured last remains. So a simulated robot that lies on the table costs no time; but its
+  /// world is not, to the last bit, the one of Simulation.
+  void let_it_rest() { may_rest_ = true; }
+
   /// The joint does not turn any more, and its servo draws this current, in mA, while it gets pulses. Or it turns
   /// again.
   void jam(std::size_t joint, std::uint32_t current_ma);
@@ -86,6 +91,8 @@ class Plant {
   /// Of the joint's motor, after a change of its servo.
   void update_torque(std::size_t joint);
   void act_on_delayed_pulses();
+  void step_world();
+  void disturb();
   void read_world();
   void add_contact_noise();
   void require_crawling(const Eigen::Vector3d& center) const;
@@ -96,6 +103,9 @@ class Plant {
   std::uint32_t finished_ticks_ = 0;
   std::uint64_t contact_sum_ = 0;
   std::uint64_t steps_ = 0;
+  bool may_rest_ = false;
+  bool is_at_rest_ = false;
+  std::uint64_t disturbed_at_ = 0;  ///< step at which something moved, or a servo got another pulse
   Eigen::Vector3d start_;
   Eigen::Vector3d center_before_;
   GaitMeter meter_;

@@ -111,6 +111,15 @@ class World::Implementation {
     return body * Pose{-mass_centers_[link], Eigen::Quaterniond::Identity()};
   }
 
+  [[nodiscard]] bool is_slower_than(double speed, double rotation) const {
+    const auto is_below = [](const dReal* vector, double limit) {
+      return vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2] < limit * limit;
+    };
+    return std::ranges::all_of(bodies_, [&](dBodyID body) {
+      return is_below(dBodyGetLinearVel(body), speed) && is_below(dBodyGetAngularVel(body), rotation);
+    });
+  }
+
   [[nodiscard]] Eigen::Vector3d center_of_mass() const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double mass = 0.0;
@@ -353,6 +362,9 @@ World::~World() = default;
 void World::set_joint_speed(std::size_t joint, double speed) { implementation_->set_joint_speed(joint, speed); }
 void World::set_joint_torque(std::size_t joint, double torque) { implementation_->set_joint_torque(joint, torque); }
 void World::step() { implementation_->step(); }
+bool World::is_slower_than(double speed, double rotation) const {
+  return implementation_->is_slower_than(speed, rotation);
+}
 double World::joint_angle(std::size_t joint) const { return implementation_->joint_angle(joint); }
 double World::motor_torque(std::size_t joint) const { return implementation_->motor_torque(joint); }
 Pose World::link_pose(std::size_t link) const { return implementation_->link_pose(link); }

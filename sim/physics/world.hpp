@@ -48,6 +48,8 @@ class World {
   [[nodiscard]] double motor_torque(std::size_t joint) const;
   /// Pose of the frame of a link in the world.
   [[nodiscard]] Pose link_pose(std::size_t link) const;
+  /// Whether no link is faster than the two given speeds: of its centre of mass in m/s, of its rotation in rad/s.
+  [[nodiscard]] bool is_slower_than(double speed, double rotation) const;
   /// Centre of mass of the robot in the world.
   [[nodiscard]] Eigen::Vector3d center_of_mass() const;
   /// Which of the two touch sensors under a link the environment presses: bit 0 the one towards the tail, bit 1 the one

@@ -265,5 +265,28 @@ TEST(LiveRobot, RefusesFramesWhenTooManyWait) {
   EXPECT_EQ(host.robot().waiting(), 0U) << "all of them were sent";
 }
 
+TEST(LiveRobot, ThatLiesStillStaysAsItIsWhileItsTimeGoesOn) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  LiveRobot robot(scenario, {});
+  robot.advance_to(2 * second);
+  const Eigen::Vector3d before = robot.plant().world().center_of_mass();
+  const double force = robot.plant().world().contact_force(2);
+  const std::uint32_t ticks = robot.ticks();
+  robot.advance_to(4 * second);
+  EXPECT_EQ(robot.plant().world().center_of_mass(), before) << "to the last bit: no step was made";
+  EXPECT_EQ(robot.plant().world().contact_force(2), force);
+  EXPECT_GT(force, 0.0);
+  EXPECT_NEAR(robot.ticks() - ticks, 200, 1);
+}
+
+TEST(LiveRobot, ThatFallsDoesNotRest) {
+  Scenario scenario = shipped("travelling_wave/uniform");
+  scenario.environment.robot_pose.position.z() += 0.5;
+  LiveRobot robot(scenario, {});
+  const double start = robot.plant().world().center_of_mass().z();
+  robot.advance_to(200 * millisecond);
+  EXPECT_NEAR(start - robot.plant().world().center_of_mass().z(), 0.5 * 9.81 * 0.2 * 0.2, 0.01);
+}
+
 }  // namespace
 }  // namespace proleg::sim

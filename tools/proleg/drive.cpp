@@ -15,8 +15,10 @@
 
 #include "host/robot/answer_times.hpp"
 #include "host/robot/change_times.hpp"
+#include "host/robot/power_watch.hpp"
 #include "host/robot/robot_drive.hpp"
 #include "host/robot/sdo_queue.hpp"
+#include "host/robot/state_text.hpp"
 #include "host/transport/bus_address.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/master_text/master_text.hpp"
@@ -74,14 +76,17 @@ class Drive {
         input_(run.scenario),
         changes_(run.scenario, std::move(input_.changes)),
         drive_(bus_, input_.setup, master_options(), changes_.span()),
+        power_watch_(bus_, {input_.setup.nodes.begin(), input_.setup.nodes.end()}),
         check_(run.scenario),
         end_tick_(run.ticks) {
     bus_.attach(answer_times_);  // before the master: it answers an answer with the next request
     bus_.attach(change_times_);
     bus_.attach(drive_);
+    bus_.attach(power_watch_);
   }
   ~Drive() {
     bus_.detach(drive_);
+    bus_.detach(power_watch_);
     bus_.detach(answer_times_);
     bus_.detach(change_times_);
   }
@@ -98,6 +103,7 @@ class Drive {
              !bus_.state().is_connected;
     });
     if (state() == canopen::MasterState::running) {
+      power_watch_.start(bus_.now());
       return;
     }
     const std::string reason = interrupted() ? "interrupted" : why_not();
@@ -126,6 +132,7 @@ class Drive {
     // The master gives up by itself: silent modules cost it a second for every eight of them.
     constexpr Microseconds at_most = 20'000'000;
     are_all_off_ = true;
+    power_watch_.stop();
     // What the modules send while they stop is not part of the gait.
     end_tick_ = std::min(end_tick_, drive_.master().tick().value_or(0));
     drive_.master().stop(bus_.now());
@@ -168,7 +175,9 @@ class Drive {
     return options;
   }
   [[nodiscard]] canopen::MasterState state() const { return drive_.master().state(); }
-  [[nodiscard]] bool has_ended() const { return state() == canopen::MasterState::failed || !bus_.state().is_connected; }
+  [[nodiscard]] bool has_ended() const {
+    return state() == canopen::MasterState::failed || !bus_.state().is_connected || power_watch_.loss();
+  }
   [[nodiscard]] std::string name_of(std::uint8_t node) const { return sim::name_of_node(run_.scenario, node); }
 
   [[nodiscard]] std::string why_not() const {
@@ -176,6 +185,9 @@ class Drive {
     const canopen::Problem& problem = drive_.master().problem();
     if (!bus_.state().is_connected) {
       return bus_.diagnosis();
+    }
+    if (const auto& loss = power_watch_.loss(); loss && state() != canopen::MasterState::failed) {
+      return text_of(*loss);
     }
     if (problem.code == ProblemCode::none) {
       return "the set-up has not ended in time; " + bus_.diagnosis();
@@ -188,6 +200,14 @@ class Drive {
     return text;
   }
 
+  [[nodiscard]] std::string text_of(const host::PowerWatch::Loss& loss) const {
+    const std::string text =
+        name_of(loss.node) + " does not follow the gait any more: " + std::string(host::drive_text(loss.statusword));
+    return text + (loss.emergency == canopen::EmergencyCode::none
+                       ? "; another program may have done that"
+                       : "; the module has reported: " + std::string(canopen::describe(loss.emergency)));
+  }
+
   void report_events() {
     while (const auto event = drive_.master().take_event()) {
       const bool is_news = event->kind != canopen::EventKind::emergency || event->code != canopen::EmergencyCode::none;
@@ -196,6 +216,9 @@ class Drive {
                   << '\n';
       }
       are_all_off_ = are_all_off_ && event->kind != canopen::EventKind::not_stopped;
+      if (event->kind == canopen::EventKind::rejoined || event->kind == canopen::EventKind::rejoin_failed) {
+        power_watch_.return_to_gait(event->node);
+      }
       if (event->kind == canopen::EventKind::restarted) {
         check_.end_comparison(name_of(event->node) + " has restarted");
       }
@@ -297,6 +320,7 @@ class Drive {
   host::RobotDrive drive_;
   host::AnswerTimes answer_times_;
   host::ChangeTimes change_times_;
+  host::PowerWatch power_watch_;
   GaitCheck check_;
   InputLines input_lines_;
   bool wants_stop_ = false;

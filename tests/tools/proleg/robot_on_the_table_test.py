@@ -146,6 +146,19 @@ class RobotOnTheTable(unittest.TestCase):
             speeds = json.loads(proleg("get", "2,3", "0x6080", "--bus", bus.tcp, "--json").stdout)["values"]
             self.assertEqual([one["raw"] for one in speeds], [300, 720], "the reset has restored it")
 
+    def test_drive_ends_if_another_program_takes_the_power_of_a_joint(self):
+        with Bus() as bus:
+            drive = start_drive(bus.pty, "--seconds", "60")
+            wait_for_drives(bus.tcp, "operation enabled")
+            host, port = bus.tcp.removeprefix("tcp:").split(":")
+            with socket.create_connection((host, int(port)), timeout=LONGEST) as line:
+                line.sendall(b"C\rS8\rO\rt60482B40600000000000\r")  # node 4, controlword 0
+                output, errors = drive.communicate(timeout=LONGEST)
+            self.assertEqual(drive.returncode, 1, errors)
+            self.assertIn("node 4 (J2) does not follow the gait any more: no power", errors)
+            self.assertLess(json.loads(output)["ticks"], 6000)
+            wait_for_drives(bus.tcp, "no power")
+
     def test_drive_computes_what_simulate_computes(self):
         with Bus() as bus:
             for address in (bus.tcp, bus.pty):

@@ -47,8 +47,11 @@ class CanTransport final : public Transport {
       last_progress_ = now();
     }
     queue_.push_back(frame);
-    // Not in this call: the listener may be called when the interface has failed.
-    retry_.set(queue_.size() == 1 ? now() : next_retry_);
+    // Not in this call: the listener may be called when the interface has failed. With frames before it the timer is
+    // already set: for those of the same call, or for another try of one that the kernel has refused.
+    if (queue_.size() == 1) {
+      retry_.set(now());
+    }
     return true;
   }
   void run_until(Microseconds deadline) override {
@@ -184,8 +187,7 @@ class CanTransport final : public Transport {
   /// Frames wait, here or in the kernel. If none has come on the bus for some time, they are given up.
   void wait_for_room() {
     if (now() < last_progress_ + send_timeout) {
-      next_retry_ = queue_.empty() ? last_progress_ + send_timeout : now() + retry_pause;
-      retry_.set(next_retry_);
+      retry_.set(queue_.empty() ? last_progress_ + send_timeout : now() + retry_pause);
       return;
     }
     const bool was_full = !queue_.empty();
@@ -225,7 +227,6 @@ class CanTransport final : public Transport {
   std::deque<CanFrame> queue_;        ///< that the kernel has not taken
   std::deque<CanFrame> unconfirmed_;  ///< that the kernel has taken and not confirmed
   Microseconds last_progress_ = 0;    ///< a frame was confirmed, or the first of some was given
-  Microseconds next_retry_ = 0;
   Microseconds pause_ = first_pause;
   std::uint64_t dropped_before_ = 0;
   bool was_called_ = false;  ///< the listener

@@ -1,14 +1,8 @@
 #!/bin/sh
-# A simulated robot on vcan0: any CAN program reaches its modules, and so does proleg. (An emulated processor is too slow to
-# drive it in real time.)
+# A simulated robot on vcan0: any CAN program reaches its modules, and so does proleg.
 set -eu
-scenario=$PROLEG_LAB_CHECKS/../../sim/scenarios/travelling_wave/uniform.simulation.xml
-"$PROLEG_BIN/proleg-bus" "$scenario" --can vcan0 --seconds 110 >bus 2>&1 &
-bus=$!
-for _ in $(seq 300); do
-  ! grep -qs vcan0 bus || break
-  sleep 0.1
-done
+. "$PROLEG_LAB_CHECKS/robot.sh"
+start_bus "$floating/five.simulation.xml" --can vcan0
 
 # The modules need some time to boot: the request is repeated.
 answer=
@@ -30,4 +24,4 @@ echo "answer: $answer"
 "$PROLEG_BIN/proleg-scan" --bus vcan0 >scan
 cat scan
 grep -q '^5 nodes' scan
-kill $bus
+stop_bus

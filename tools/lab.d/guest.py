@@ -35,7 +35,7 @@ def memory_disk(files):
     return bytes(archive)
 
 
-def job_script(kernel, command, results, bluetooth):
+def job_script(kernel, command, results, bluetooth, virtual_time=False):
     """What guest.sh shall do."""
     here = os.getcwd()
     checkout = HERE.parent.parent
@@ -51,6 +51,7 @@ def job_script(kernel, command, results, bluetooth):
         f"results={shlex.quote(str(results or ''))}",
         f"kernel={shlex.quote(str(kernel.folder))}",
         f"bluetooth={'yes' if bluetooth else 'no'}",
+        f"virtual_time={'yes' if virtual_time else 'no'}",
         f"run_command() {{ cd {shlex.quote(here)} && exec /usr/bin/env -i {shlex.join(words)}; }}", ""])
 
 
@@ -82,13 +83,16 @@ def kvm_is_usable():
         os.close(device)
 
 
-def qemu_command(kernel, memory_mb, disk, channels, results, use_kvm):
+def qemu_command(kernel, memory_mb, disk, channels, results, use_kvm, virtual_time=False):
     """QEMU's command line. `disk`: descriptor of the memory disk. `channels`: descriptors of the sockets for the command's
-    output, its errors, the reports, and the kernel's log."""
+    output, its errors, the reports, and the kernel's log. `virtual_time`: not with use_kvm."""
     accelerators = ["kvm", "tcg"] if use_kvm else ["tcg"]
     command = ["qemu-system-x86_64", "-M", "q35", "-cpu", "max", "-m", str(memory_mb), "-smp", "1"]
     for accelerator in accelerators:
         command += ["-accel", accelerator]
+    if virtual_time:
+        # One instruction a nanosecond. Time in which the processor is idle is skipped.
+        command += ["-icount", "shift=0,sleep=off,align=off", "-rtc", "clock=vm"]
     command += ["-nodefaults", "-no-user-config", "-display", "none", "-no-reboot",
                 "-kernel", str(kernel.vmlinux), "-initrd", f"/proc/self/fd/{disk}",
                 "-append", KERNEL_OPTIONS,

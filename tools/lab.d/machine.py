@@ -48,7 +48,7 @@ class Machine:
         self.reports = bytearray()
         self.passed_on = {"out": 0, "err": 0}
         results = options.results.resolve() if options.results else None
-        job = guest.job_script(kernel, options.command, results, options.bluetooth)
+        job = guest.job_script(kernel, options.command, results, options.bluetooth, options.virtual_time)
         disk_content = guest.build_memory_disk(kernel, job)
 
         pairs = [socket.socketpair() for _ in self.NAMES]
@@ -56,7 +56,8 @@ class Machine:
         with os.fdopen(disk, "wb", closefd=False) as file:
             file.write(disk_content)
         inherited = [theirs.fileno() for _, theirs in pairs]
-        command = guest.qemu_command(kernel, options.memory, disk, inherited, results, self.use_kvm)
+        command = guest.qemu_command(kernel, options.memory, disk, inherited, results, self.use_kvm,
+                                     options.virtual_time)
         try:
             # A session of its own: Ctrl-C reaches this program, which then ends QEMU.
             self.process = subprocess.Popen(
@@ -241,7 +242,7 @@ def run(kernel, options):
     for number in SIGNALS:
         signal.signal(number, stop)
     try:
-        if not options.no_kvm and guest.kvm_is_usable():
+        if not options.no_kvm and not options.virtual_time and guest.kvm_is_usable():
             try:
                 return run_once(kernel, options, use_kvm=True)
             except KvmFailed:

@@ -7,7 +7,7 @@
 namespace proleg::host {
 namespace {
 
-canopen::SdoTransferOptions reading_options() {
+canopen::SdoTransferOptions statusword_options() {
   canopen::SdoTransferOptions options;
   options.timeout_us = 100'000;
   options.attempts = 2;
@@ -28,7 +28,7 @@ constexpr std::uint16_t operation_enabled = 0x27;
 }  // namespace
 
 PowerWatch::PowerWatch(CanPort& port, std::vector<std::uint8_t> nodes)
-    : readings_(port, reading_options()), period_us_(period_for(nodes.size())) {
+    : readings_(port, statusword_options()), period_us_(period_for(nodes.size())) {
   for (const std::uint8_t node : nodes) {
     modules_.push_back({node});
   }

@@ -1,6 +1,6 @@
 #!/bin/sh
-# A robot over Bluetooth: scan, set and drive. If the adapter at the robot dies, or the radio link stands still, drive ends with
-# one line, and the joints hold their safe pose. The robot can be used again afterwards.
+# A robot over Bluetooth: scan, set and drive. If the adapter at the robot dies, or the radio link stands still, drive ends and
+# says why in its last line, and the joints hold their safe pose. The robot can be used again afterwards.
 set -eu
 . "$PROLEG_LAB_CHECKS/robot.sh"
 read_ahead "$PROLEG_BIN/proleg-bus" "$PROLEG_BIN/proleg-drive" "$PROLEG_BIN/proleg-scan"

@@ -19,6 +19,7 @@ Status JointKernel::activate(const ModuleSettings& settings, std::uint8_t node) 
   crc_ = settings.crc(node);
   monitoring_period_ = canopen::monitoring_period(kernel_.configuration());
   debouncer_.reset();
+  checksum_.restart();
   active_ = true;
   return Status::ok;
 }
@@ -48,11 +49,13 @@ void JointKernel::restart() {
   set_flags(0);
   kernel_.reset();
   debouncer_.reset();
+  checksum_.restart();
   record_.tick = TickRecord::none;
 }
 
 void JointKernel::join(std::uint32_t tick) {
   kernel_.join(tick);
+  checksum_.lose();
   record_.tick = TickRecord::none;
 }
 
@@ -75,15 +78,20 @@ std::int32_t JointKernel::staged_parameter(unsigned slot, unsigned number) const
 
 Status JointKernel::commit(std::uint16_t transaction, std::uint32_t tick) { return kernel_.commit(transaction, tick); }
 
+void JointKernel::compute_tick() {
+  kernel_.advance();
+  checksum_.add(kernel_.setpoint(joint()));
+}
+
 void JointKernel::advance(unsigned missed, std::uint8_t sensors) {
   const unsigned flags = missed == 0 ? 0U : unsigned{StateFrame::holdover};
   for (unsigned i = 0; i < missed; ++i) {
     set_flags(flags);
-    kernel_.advance();
+    compute_tick();
   }
   set_flags(flags);
   kernel_.set_contacts(joint(), debouncer_.sample(sensors));
-  kernel_.advance();
+  compute_tick();
   write_record();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "firmware/module/module_settings.hpp"
+#include "firmware/module/setpoint_checksum.hpp"
 #include "firmware/module/tick_record.hpp"
 #include "shared/gait/contact_debouncer.hpp"
 
@@ -61,15 +62,20 @@ class JointKernel {
   [[nodiscard]] const Kernel& kernel() const { return kernel_; }
   /// Of the last advance(); none after deactivate(), restart() or join().
   [[nodiscard]] const TickRecord& record() const { return record_; }
+  /// Of the set-points since restart(); not complete after join().
+  [[nodiscard]] SetpointChecksum& checksum() { return checksum_; }
+  [[nodiscard]] const SetpointChecksum& checksum() const { return checksum_; }
 
  private:
   static constexpr canopen::AngleLimits full_range{-quarter_turn, quarter_turn};
 
   void set_flags(unsigned flags);
+  void compute_tick();
   void write_record();
 
   KernelOf<1> kernel_;
   TickRecord record_;
+  SetpointChecksum checksum_;
   ContactDebouncer debouncer_;
   bool active_ = false;
   Status last_refusal_ = Status::ok;

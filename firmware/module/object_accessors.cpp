@@ -332,6 +332,11 @@ constexpr ObjectAccessor accessors[] = {
               [](const Parts& parts) { return parts.gateway.frames_not_written(); }),
     read_only(object::frames_not_sent.address, [](const Parts& parts) { return parts.gateway.frames_not_sent(); }),
     read_only(object::wrong_lines.address, [](const Parts& parts) { return parts.gateway.wrong_lines(); }),
+    read_write(
+        object::setpoint_ticks.address, WritableIn::any_state,
+        [](const Parts& parts) { return parts.joint.checksum().taken().ticks; },
+        [](Parts& parts, const ObjectWrite& /*write*/) { parts.joint.checksum().take(); }),
+    read_only(object::setpoint_crc.address, [](const Parts& parts) { return parts.joint.checksum().taken().crc; }),
     own_frame<0, 0>(),
     own_frame<0, 1>(),
     own_frame<1, 0>(),

@@ -226,6 +226,13 @@ inline constexpr Object frames_not_sent =
 inline constexpr Object wrong_lines = read_only(gateway_statistics.at(3), "Wrong lines", DataType::unsigned32,
                                                 "from the host since power-on, not understood or damaged");
 
+inline constexpr ObjectGroup setpoint_checksum{0x200D, ObjectCode::record, "Set-point checksum"};
+inline constexpr Object setpoint_ticks =
+    read_write(setpoint_checksum.at(1), "Ticks", DataType::unsigned32, 0, {0, 0},
+               "from tick 0 on that sub-index 2 counts; a write of 0 takes both as they are now; 0: not valid");
+inline constexpr Object setpoint_crc = read_only(setpoint_checksum.at(2), "CRC of the set-points", DataType::unsigned32,
+                                                 "CRC-32 of the int32 set-points of these ticks");
+
 inline constexpr ObjectGroup board{0x2020, ObjectCode::record, "Board"};
 inline constexpr Object gateway_role = read_write(board.at(1), "Gateway role", DataType::unsigned8, 0, {0, 1},
                                                   "1: slcan on the serial line; in force when saved, after a reset");

@@ -95,6 +95,8 @@ constexpr ObjectRow declared_rows[] = {
     row(object::frames_not_written),
     row(object::frames_not_sent),
     row(object::wrong_lines),
+    row(object::setpoint_ticks),
+    row(object::setpoint_crc),
     row(object::own_frame[0][0]),
     row(object::own_frame[0][1]),
     row(object::own_frame[1][0]),
@@ -155,6 +157,7 @@ constexpr const ObjectGroup* declared_groups[] = {
     &object::over_current,
     &object::bus_statistics,
     &object::gateway_statistics,
+    &object::setpoint_checksum,
     &object::own_frames[0],
     &object::own_frames[1],
     &object::board,
@@ -169,37 +172,51 @@ struct Limits {
   std::uint32_t minimum;
   std::uint32_t maximum;
   std::optional<std::uint32_t> also_allowed;
+
+  friend constexpr bool operator==(const Limits&, const Limits&) = default;
 };
+constexpr Limits limits_of(const Object& object) { return {object.minimum, object.maximum, object.also_allowed}; }
 
 constexpr bool has_limits(const ObjectRow& row) {
   const Object& object = *row.first;
   return object.minimum != min_value(object.type) || object.maximum != max_value(object.type) || object.also_allowed;
 }
 
-constexpr std::size_t limits_count = [] {
+/// The ranges of the rows that have some, each once.
+struct LimitsTable {
+  std::array<Limits, std::size(declared_rows)> ranges{};
   std::size_t count = 0;
-  for (const ObjectRow& row : declared_rows) {
-    count += has_limits(row) ? 1U : 0U;
-  }
-  return count;
-}();
-static_assert(limits_count < EntryRow::no_limits);
 
-/// Of the rows that have some, in their order.
-constexpr std::array limits = [] {
-  std::array<Limits, limits_count> found{};
-  std::size_t count = 0;
-  for (const ObjectRow& row : declared_rows) {
-    if (has_limits(row)) {
-      found[count++] = {row.first->minimum, row.first->maximum, row.first->also_allowed};
+  [[nodiscard]] constexpr std::size_t find(const Limits& wanted) const {
+    std::size_t position = 0;
+    while (position < count && !(ranges[position] == wanted)) {
+      ++position;
     }
+    return position;
+  }
+};
+constexpr LimitsTable all_limits = [] {
+  LimitsTable table;
+  for (const ObjectRow& row : declared_rows) {
+    const Limits wanted = limits_of(*row.first);
+    if (has_limits(row) && table.find(wanted) == table.count) {
+      table.ranges[table.count++] = wanted;
+    }
+  }
+  return table;
+}();
+static_assert(all_limits.count < EntryRow::no_limits);
+
+constexpr std::array limits = [] {
+  std::array<Limits, all_limits.count> found{};
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    found[i] = all_limits.ranges[i];
   }
   return found;
 }();
 
 constexpr std::array rows = [] {
   std::array<EntryRow, std::size(declared_rows)> packed{};
-  std::uint8_t limits_before = 0;
   for (std::size_t i = 0; i < packed.size(); ++i) {
     const ObjectRow& row = declared_rows[i];
     const Object& first = *row.first;
@@ -209,7 +226,7 @@ constexpr std::array rows = [] {
                  first.adds_node_id,
                  row.indices,
                  row.subs,
-                 has_limits(row) ? limits_before++ : EntryRow::no_limits,
+                 has_limits(row) ? static_cast<std::uint8_t>(all_limits.find(limits_of(first))) : EntryRow::no_limits,
                  static_cast<std::uint16_t>(row.default_step >> 16U),
                  first.default_value};
   }

@@ -17,7 +17,8 @@
 //                                            change that waits for its tick:
 //                                            stage, commit; enable, nmt_start
 //   stop      stop()                         (ramp, ramping,) disable, sync_off     booted_; sync_off: only the SYNC
-//                                                                                   producer
+//                                                                                   producer. While they are ramping,
+//                                                                                   their checksums are read
 //   none      no other mission               none                                   not used
 //
 // Phases in parentheses: only if the options demand them.
@@ -55,6 +56,8 @@ struct MasterOptions {
   bool allows_others = false;
   /// stop() lets the joints of a moving robot ramp to their safe pose (quick stop) before it takes their power.
   bool ramps_down = false;
+  /// While the joints ramp down, the master reads the checksums of the modules' set-points (0x200D).
+  bool reads_checksums = false;
   /// Of each SDO answer, and how often a request is sent until there is one. For a connection that loses frames: more
   /// attempts; for a slow one: more time.
   Microseconds answer_timeout_us = SdoClient::default_timeout_us;
@@ -107,6 +110,18 @@ class Master final : private SdoWork {
     std::uint32_t serial = 0;
   };
 
+  /// What the module of a joint has computed, as objects 0x200D:1 and 2 have it.
+  struct SetpointChecksum {
+    enum class State : std::uint8_t {
+      not_read,       ///< the module has not answered, or was not asked
+      not_available,  ///< the module has no such object
+      read,
+    };
+    State state = State::not_read;
+    std::uint32_t ticks = 0;  ///< from tick 0 on; 0: the module does not know the set-points of all ticks
+    std::uint32_t crc = 0;    ///< CRC-32 (shared/fixed/crc32.hpp) of the int32 set-points, little-endian
+  };
+
   /// port: used by the master only. changes: by ascending tick. setup, changes and the spans in setup and options must
   /// outlive the master.
   Master(CanPort& port, const RobotSetup& setup, const MasterOptions& options, std::span<Change> changes = {});
@@ -146,6 +161,8 @@ class Master final : private SdoWork {
   [[nodiscard]] std::uint32_t restarts() const { return restarts_; }
   /// As read during set-up. joint: below the joint count.
   [[nodiscard]] const Identity& identity(unsigned joint) const { return identities_[joint]; }
+  /// With options.reads_checksums, from stop() on. joint: below the joint count.
+  [[nodiscard]] const SetpointChecksum& checksum(unsigned joint) const { return checksums_[joint]; }
   /// Joints whose modules have booted.
   [[nodiscard]] JointMask booted() const { return booted_; }
 
@@ -180,6 +197,8 @@ class Master final : private SdoWork {
   [[nodiscard]] bool on_value(unsigned joint, std::size_t position, std::uint32_t value) override;
   void on_abort(unsigned joint, Address address, AbortCode code) override;
   [[nodiscard]] std::optional<SdoStep> set_up_step(unsigned joint, std::size_t position) const;
+  [[nodiscard]] std::optional<SdoStep> checksum_step(std::size_t position) const;
+  void on_checksum(unsigned joint, std::size_t position, std::uint32_t value);
   [[nodiscard]] bool joint_failed(const Problem& problem);
 
   [[nodiscard]] std::optional<Problem> check_setup() const;
@@ -266,6 +285,7 @@ class Master final : private SdoWork {
   std::array<std::uint8_t, host_node + 1> joint_of_{};  ///< by node; `no_joint` if it is not in the set-up
   std::array<Microseconds, max_joints> heartbeat_received_at_{};
   std::array<Identity, max_joints> identities_{};
+  std::array<SetpointChecksum, max_joints> checksums_{};
 };
 
 }  // namespace proleg::canopen

@@ -80,6 +80,8 @@ void Master::enter(Phase phase) {
       break;
     case Phase::ramping:
       deadline_ = now_ + ramping_time_us;
+      served = options_.reads_checksums ? joints_ : JointMask();
+      timeout_us = stop_timeout_us;
       break;
     case Phase::scan:
       state_ = MasterState::scanning;

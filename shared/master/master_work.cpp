@@ -46,6 +46,8 @@ std::optional<SdoStep> Master::step(unsigned joint, std::size_t position) {
       return only(object::sync_identifier, produces_sync | identifier::sync);
     case Phase::ramp:
       return only(object::controlword, quick_stop_controlword);
+    case Phase::ramping:
+      return checksum_step(position);
     case Phase::disable:
       // The host leaves: its silence is no error then. (In the loop the modules are not used again.)
       return position == 1 && options_.resets_modules ? std::optional(write(object::host_heartbeat, 0))
@@ -74,7 +76,36 @@ std::optional<SdoStep> Master::set_up_step(unsigned joint, std::size_t position)
   return next ? std::optional(SdoStep{true, next->address, next->size, next->value}) : std::nullopt;
 }
 
+/// The request to take the pair comes before both reads, also if one of them is repeated: they belong together.
+std::optional<SdoStep> Master::checksum_step(std::size_t position) const {
+  const Object& ticks = object::setpoint_ticks;
+  switch (position) {
+    case 0:
+      return SdoStep{true, ticks.address, size_of(ticks.type), 0};
+    case 1:
+      return SdoStep{false, ticks.address};
+    case 2:
+      return SdoStep{false, object::setpoint_crc.address};
+    default:
+      return std::nullopt;
+  }
+}
+
+void Master::on_checksum(unsigned joint, std::size_t position, std::uint32_t value) {
+  SetpointChecksum& checksum = checksums_[joint];
+  if (position == 1) {
+    checksum.ticks = value;
+  } else {
+    checksum.crc = value;
+    checksum.state = SetpointChecksum::State::read;
+  }
+}
+
 bool Master::on_value(unsigned joint, std::size_t position, std::uint32_t value) {
+  if (phase_ == Phase::ramping) {
+    on_checksum(joint, position, value);
+    return true;
+  }
   Identity& identity = identities_[joint];
   const auto expect = [&](std::uint32_t expected, ProblemCode code) {
     if (value == expected) {
@@ -112,6 +143,11 @@ bool Master::on_value(unsigned joint, std::size_t position, std::uint32_t value)
 }
 
 void Master::on_abort(unsigned joint, Address address, AbortCode code) {
+  if (phase_ == Phase::ramping) {
+    checksums_[joint].state =
+        code == AbortCode::no_such_object ? SetpointChecksum::State::not_available : SetpointChecksum::State::not_read;
+    return;
+  }
   Problem problem = problem_of(code == AbortCode::timeout ? ProblemCode::no_answer : ProblemCode::refused, joint);
   problem.address = address;
   problem.abort_code = code;

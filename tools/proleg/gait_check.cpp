@@ -35,6 +35,7 @@ double radians(const canopen::Monitoring& measured) {
 GaitCheck::GaitCheck(const sim::Scenario& scenario)
     : scenario_(scenario),
       chain_(scenario.kernel, scenario.joint_limits, scenario.settings),
+      setpoint_check_(scenario.robot.joints.size()),
       pulse_source_({scenario.robot.servo.period_us, scenario.kernel.tick_period_us}, scenario.joint_limits,
                     scenario.robot.servo.command_speed),
       contacts_(scenario.robot.joints.size()),
@@ -65,23 +66,65 @@ void GaitCheck::end_comparison(const std::string& why) {
   }
 }
 
-const sim::Change* GaitCheck::follow(const host::TickFrames& tick) {
+std::string GaitCheck::name_of(unsigned joint) const {
+  return scenario_.robot.joints[joint].name + " (node " + std::to_string(scenario_.modules[joint].node) + ")";
+}
+
+const std::string* GaitCheck::unknown_contacts(const host::TickFrames& tick) const {
+  for (unsigned joint = 0; senses_contacts_ && joint < contacts_.size(); ++joint) {
+    if (!tick.frames[joint][0]) {
+      return &scenario_.robot.joints[joint].name;
+    }
+  }
+  return nullptr;
+}
+
+void GaitCheck::follow_stopping(const host::TickFrames& tick) {
+  knows_setpoints_ = knows_setpoints_ && unknown_contacts(tick) == nullptr;
+  advance(tick);
+}
+
+void GaitCheck::compare_setpoints(unsigned joint, const canopen::Master::SetpointChecksum& found) {
+  using Result = host::SetpointCheck::Result;
+  if (end_of_comparison_) {
+    return;
+  }
+  const Result result = setpoint_check_.compare(joint, found);
+  if (result == Result::equal) {
+    equal_setpoints_.push_back(name_of(joint));
+  } else if (result == Result::different) {
+    different_setpoints_.push_back(name_of(joint));
+  } else {
+    not_compared_setpoints_.push_back(name_of(joint) + ": " + why_not_compared(result));
+  }
+}
+
+/// Computes the next tick with the contacts of the modules.
+const sim::Change* GaitCheck::advance(const host::TickFrames& tick) {
   const sim::Change* change = nullptr;
   for (; next_change_ < changes_.size() && changes_[next_change_].tick <= chain_.tick(); ++next_change_) {
     change = &changes_[next_change_];
     chain_.apply(*change);
   }
   for (unsigned joint = 0; joint < contacts_.size(); ++joint) {
-    if (!tick.frames[joint][0] && senses_contacts_) {
-      end_comparison("a state frame of " + scenario_.robot.joints[joint].name +
-                     " was not received, and the gait depends on its contacts");
-    }
     if (const auto& frame = tick.frames[joint][0]) {
       contacts_[joint] = static_cast<std::uint8_t>(frame->flags() & StateFrame::contact_bits);
     }
     sim::write_link_contacts(link_contacts_, joint, contacts_[joint]);
   }
   chain_.advance(contacts_);
+  if (knows_setpoints_) {
+    setpoint_check_.add(chain_.setpoints());
+  }
+  return change;
+}
+
+const sim::Change* GaitCheck::follow(const host::TickFrames& tick) {
+  if (const std::string* joint = unknown_contacts(tick)) {
+    end_comparison("a state frame of " + *joint + " was not received, and the gait depends on its contacts");
+  }
+  const sim::Change* change = advance(tick);
+  ++ticks_;
   for (unsigned joint = 0; joint < contacts_.size(); ++joint) {
     for (unsigned channel = 0; channel < chain_.kernel(joint).channel_count(joint); ++channel) {
       compare(joint, channel, tick.frames[joint].at(channel));
@@ -111,8 +154,7 @@ void GaitCheck::compare(unsigned joint, unsigned channel, const std::optional<St
     return;
   }
   if (++differences_ == 1) {
-    first_difference_ = "tick " + std::to_string(chain_.tick() - 1) + ", " + scenario_.robot.joints[joint].name +
-                        " (node " + std::to_string(scenario_.modules[joint].node) + "): state frame: found " +
+    first_difference_ = "tick " + std::to_string(chain_.tick() - 1) + ", " + name_of(joint) + ": state frame: found " +
                         bytes_text(comparable(*found)) + ", expected " + bytes_text(expected);
   }
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host/robot/robot_drive.hpp"
+#include "host/robot/setpoint_check.hpp"
 #include "shared/computer/hash/value_hash.hpp"
 #include "sim/loop/kernel_chain.hpp"
 #include "sim/loop/servo_pulses.hpp"
@@ -30,6 +31,11 @@ class GaitCheck {
 
   /// Computes the next tick and compares it. Returns the change that took effect, if any.
   const sim::Change* follow(const host::TickFrames& tick);
+  /// The same for a tick while the robot stops: only the set-points count, for compare_setpoints().
+  void follow_stopping(const host::TickFrames& tick);
+  /// Compares all bits of the set-points of a joint, if the comparison has not ended. To be called when the ticks up to
+  /// that of the module were followed.
+  void compare_setpoints(unsigned joint, const canopen::Master::SetpointChecksum& found);
   /// From now on nothing is compared. why: for the verdict.
   void end_comparison(const std::string& why);
 
@@ -37,7 +43,8 @@ class GaitCheck {
   /// modules do not measure is 0.
   [[nodiscard]] sim::TickSample sample(const host::RobotDrive& drive);
 
-  [[nodiscard]] std::uint32_t ticks() const { return chain_.tick(); }
+  /// Of the run, without those while the robot stopped.
+  [[nodiscard]] std::uint32_t ticks() const { return ticks_; }
   [[nodiscard]] std::uint64_t compared() const { return compared_; }
   [[nodiscard]] std::uint64_t missing() const { return missing_; }
   [[nodiscard]] std::uint64_t differences() const { return differences_; }
@@ -45,14 +52,26 @@ class GaitCheck {
   [[nodiscard]] const std::optional<std::string>& first_difference() const { return first_difference_; }
   /// Why the comparison ended before the run.
   [[nodiscard]] const std::optional<std::string>& end_of_comparison() const { return end_of_comparison_; }
+  /// Joints whose set-points are equal to the last bit, and those with a difference, which state frames may not show.
+  [[nodiscard]] const std::vector<std::string>& equal_setpoints() const { return equal_setpoints_; }
+  [[nodiscard]] const std::vector<std::string>& different_setpoints() const { return different_setpoints_; }
+  /// The others that were asked: "J2 (node 2): its module has joined late".
+  [[nodiscard]] const std::vector<std::string>& not_compared_setpoints() const { return not_compared_setpoints_; }
   [[nodiscard]] const ValueHash& setpoint_hash() const { return setpoint_hash_; }
   [[nodiscard]] const ValueHash& servo_hash() const { return servo_hash_; }
 
  private:
+  const sim::Change* advance(const host::TickFrames& tick);
+  /// The joint whose contacts are needed and were not received; null: none.
+  [[nodiscard]] const std::string* unknown_contacts(const host::TickFrames& tick) const;
   void compare(unsigned joint, unsigned channel, const std::optional<StateFrame>& found);
+  [[nodiscard]] std::string name_of(unsigned joint) const;
 
   const sim::Scenario& scenario_;
   sim::KernelChain chain_;
+  std::uint32_t ticks_ = 0;
+  host::SetpointCheck setpoint_check_;
+  bool knows_setpoints_ = true;  ///< of all ticks, also while the robot stops
   sim::ServoPulses pulse_source_;
   std::vector<sim::Change> changes_;  ///< by tick
   std::size_t next_change_ = 0;
@@ -63,6 +82,9 @@ class GaitCheck {
   std::uint64_t differences_ = 0;
   std::optional<std::string> first_difference_;
   std::optional<std::string> end_of_comparison_;
+  std::vector<std::string> equal_setpoints_;
+  std::vector<std::string> different_setpoints_;
+  std::vector<std::string> not_compared_setpoints_;
   ValueHash setpoint_hash_;
   ValueHash servo_hash_;
   // For sample().

@@ -14,6 +14,7 @@ inline canopen::MasterOptions host_options() {
   options.core_fingerprint = core_fingerprint;
   options.resets_modules = true;
   options.ramps_down = true;
+  options.reads_checksums = true;
   options.answer_timeout_us = 150'000;
   options.attempts = 8;
   return options;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "firmware/module/servo_driver.hpp"
 #include "shared/canopen/objects.hpp"
 #include "shared/canopen/power_state.hpp"
@@ -39,23 +41,41 @@ class Drive {
   /// Object 0x6062: towards which the servo moves in this tick, 90 degrees = 2^30.
   [[nodiscard]] std::int32_t setpoint() const { return setpoint_; }
 
+  /// Object 0x200E: degrees a second; 0: the joint does not ramp in. The greatest speed is a bound for it, too.
+  [[nodiscard]] std::uint32_t ramp_in_speed() const { return ramp_in_speed_; }
+  void set_ramp_in_speed(std::uint32_t speed) { ramp_in_speed_ = speed; }
+  /// Object 0x6041.
+  [[nodiscard]] std::uint16_t statusword() const;
+  /// Whether the servo has pulses without a tick, on the way to the start of the gait or there.
+  [[nodiscard]] bool is_ramping_in() const { return servo_.is_ramping_in(); }
+
   /// At SYNC `tick`, after the kernel computed it.
   void start_tick(Microseconds now, std::uint32_t tick, const Kernel& kernel, const canopen::AngleLimits& limits);
 
+  /// What a joint that ramps in knows.
+  struct StartPose {
+    std::optional<std::int32_t> measured;  ///< angle; nothing: no new reading
+    const Kernel& kernel;                  ///< in state 0
+    canopen::AngleLimits limits;
+  };
   /// After each event: switches the servo's pulses on or off. operational: NMT state; synchronised: the set-point is
-  /// that of the robot's tick. A servo that moves and is no longer synchronised makes a quick stop. Only the host ends
-  /// it.
-  void update(Microseconds now, bool operational, bool synchronised);
+  /// that of the robot's tick; start: null, or the robot waits for SYNC 0. A servo that moves and is no longer
+  /// synchronised makes a quick stop. Only the host ends it.
+  void update(Microseconds now, bool operational, bool synchronised, const StartPose* start = nullptr);
 
   void poll(Microseconds now) { servo_.poll(now); }
   [[nodiscard]] Microseconds next_deadline() const { return servo_.next_deadline(); }
 
  private:
+  [[nodiscard]] std::int32_t wanted_setpoint(const Kernel& kernel, const canopen::AngleLimits& limits) const;
+  void ramp_in(Microseconds now, const StartPose& start);
+
   ServoDriver servo_;
   canopen::PowerControl power_;
   std::int8_t mode_ = canopen::mode_gait;
   bool followed_gait_ = true;  ///< in the last tick
   std::int32_t target_ = 0;
+  std::uint32_t ramp_in_speed_ = 0;
   std::int32_t setpoint_ = 0;  ///< towards which the servo moves, in either mode
 };
 

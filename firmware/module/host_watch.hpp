@@ -15,6 +15,7 @@ class HostWatch {
     is_enabled_ = false;
   }
   [[nodiscard]] std::uint32_t expected() const { return expected_; }
+  [[nodiscard]] bool expects_heartbeat() const { return (expected_ & 0xFFFFU) != 0; }
 
   /// A heartbeat of any node. Whether it is the one that is expected.
   bool receive_heartbeat(Microseconds now, std::uint8_t node) {

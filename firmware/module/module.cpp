@@ -245,7 +245,7 @@ void Module::finish_event(Microseconds now) {
   }
   clear_over_current(parts_);
   require_good_hardware(parts_);
-  parts_.drive.update(now, parts_.network.operational(), synchronised());
+  update_drive(parts_, now);
   update_watches(parts_, now);
   find_deadlines();
 }

@@ -337,6 +337,10 @@ constexpr ObjectAccessor accessors[] = {
         [](const Parts& parts) { return parts.joint.checksum().taken().ticks; },
         [](Parts& parts, const ObjectWrite& /*write*/) { parts.joint.checksum().take(); }),
     read_only(object::setpoint_crc.address, [](const Parts& parts) { return parts.joint.checksum().taken().crc; }),
+    read_write(
+        object::ramp_in_speed.address, WritableIn::any_state,
+        [](const Parts& parts) { return parts.drive.ramp_in_speed(); },
+        [](Parts& parts, const ObjectWrite& write) { parts.drive.set_ramp_in_speed(write.value); }),
     own_frame<0, 0>(),
     own_frame<0, 1>(),
     own_frame<1, 0>(),
@@ -379,7 +383,7 @@ constexpr ObjectAccessor accessors[] = {
         [](Parts& parts, const ObjectWrite& write) {
           parts.drive.power().command(static_cast<std::uint16_t>(write.value));
         }),
-    read_only(object::statusword.address, [](const Parts& parts) { return parts.drive.power().statusword(); }),
+    read_only(object::statusword.address, [](const Parts& parts) { return parts.drive.statusword(); }),
     only_value_row<object::quick_stop_option>(),
     read_write(
         object::mode.address, WritableIn::any_state, [](const Parts& parts) { return parts.drive.mode(); },

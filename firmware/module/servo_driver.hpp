@@ -5,8 +5,9 @@
 
 namespace proleg::firmware {
 
-/// Gives the servo its pulses: along the line between two set-points, interval by interval; or, in a quick stop, along
-/// a ramp to the safe pose: 0 degrees, or the limit that is nearest to it.
+/// Gives the servo its pulses: along the line between two set-points, interval by interval; before the first line,
+/// along a ramp to where it begins; or, in a quick stop, along a ramp to the safe pose: 0 degrees, or the limit that is
+/// nearest to it.
 class ServoDriver {
  public:
   explicit ServoDriver(ServoPort& port) : guard_(port) {}
@@ -24,6 +25,13 @@ class ServoDriver {
   /// was early and an interval of the tick before is pending, its pulse is given now.
   void start_tick(Microseconds now, std::uint32_t tick, std::int32_t from, std::int32_t to);
 
+  /// Ramps from one angle to another one, both within the limits, and holds that: before the first line, if the servo
+  /// has no pulses yet. speed: degrees a second, at most the greatest one. While it ramps, `to` may change.
+  void ramp_in(Microseconds now, std::int32_t from, std::int32_t to, std::uint32_t speed);
+  /// Since ramp_in(), until the servo follows a line or stops.
+  [[nodiscard]] bool is_ramping_in() const { return mode_ == Mode::ramping_in; }
+  /// Ramped in, and holds the angle.
+  [[nodiscard]] bool has_ramped_in() const { return is_ramping_in() && next_step_ == never; }
   /// Follows the line, from its next interval on.
   void follow();
   /// Follows the line and has given a pulse.
@@ -38,7 +46,11 @@ class ServoDriver {
   [[nodiscard]] Microseconds next_deadline() const;
 
  private:
-  enum class Mode : std::uint8_t { off, following, ramping };
+  enum class Mode : std::uint8_t { off, ramping_in, following, stopping };
+
+  /// A ramp, in either direction; its first step is a period from now.
+  void begin_ramp(Microseconds now, std::int32_t goal, std::uint32_t speed);
+  [[nodiscard]] bool is_ramping() const { return mode_ == Mode::stopping || mode_ == Mode::ramping_in; }
 
   [[nodiscard]] bool has_pending_interval() const { return elapsed_us_ < schedule_.tick_period_us(); }
   /// Of several intervals that have started only the latest gets a pulse.
@@ -53,13 +65,15 @@ class ServoDriver {
   std::int32_t to_ = 0;
   std::uint32_t elapsed_us_ = ~0U;  ///< from SYNC to the next interval; a tick period or more: none is pending
   Microseconds sync_at_ = 0;
-  Microseconds next_step_ = never;  ///< of the ramp
+  Microseconds next_step_ = never;  ///< of the ramp; never: it has ended
+  std::int32_t goal_ = 0;           ///< of the ramp
+  std::int32_t step_ = 0;           ///< of the ramp, in a servo period
 };
 
 // Up to a thousand times a second; in the header so that the compiler can inline it.
 
 inline void ServoDriver::poll(Microseconds now) {
-  if (mode_ == Mode::ramping) {
+  if (is_ramping()) {
     if (now >= next_step_) {
       take_ramp_step(now);
     }
@@ -85,7 +99,7 @@ inline void ServoDriver::take_interval(Microseconds now) {
 }
 
 inline Microseconds ServoDriver::next_deadline() const {
-  if (mode_ == Mode::ramping) {
+  if (is_ramping()) {
     return next_step_;
   }
   return has_pending_interval() ? sync_at_ + elapsed_us_ : never;

@@ -48,6 +48,10 @@ class ServoMonitor {
   [[nodiscard]] std::int8_t temperature_c() const { return readings_.temperature_c; }
   /// Nothing: not measured.
   [[nodiscard]] const std::optional<std::int32_t>& angle() const { return readings_.angle; }
+  /// The same, if the last reading was a new one.
+  [[nodiscard]] std::optional<std::int32_t> new_angle() const {
+    return readings_.are_new ? readings_.angle : std::nullopt;
+  }
 
  private:
   void judge_current(Microseconds now);

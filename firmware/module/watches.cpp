@@ -104,10 +104,23 @@ void clear_over_current(Parts& parts) {
   }
 }
 
+void update_drive(Parts& parts, Microseconds now) {
+  const bool operational = parts.network.operational();
+  // All modules were started together, and no SYNC was received since: the joint is in state 0.
+  if (operational && parts.start.has_sent_state && !parts.start.has_received_sync) {
+    const Drive::StartPose start{parts.monitor.new_angle(), parts.joint.kernel(), parts.joint.limits()};
+    parts.drive.update(now, true, false, &start);
+  } else {
+    parts.drive.update(now, operational, parts.keeper.synchronised());
+  }
+}
+
 void update_watches(Parts& parts, Microseconds now) {
   const bool is_enabled = parts.drive.power().state() == PowerState::operation_enabled;
   parts.host.update(now, is_enabled);
-  parts.sync.update(now, parts.network.operational() && (parts.keeper.keeps_tick() || is_enabled));
+  // A joint that ramps in has no tick yet. If its host dies, the heartbeat is missing; without one, SYNC is.
+  const bool waits_for_sync = is_enabled && !(parts.drive.is_ramping_in() && parts.host.expects_heartbeat());
+  parts.sync.update(now, parts.network.operational() && (parts.keeper.keeps_tick() || waits_for_sync));
 }
 
 }  // namespace proleg::firmware

@@ -31,6 +31,9 @@ inline constexpr std::int8_t mode_direct_position = 8;  ///< cyclic synchronous 
 /// Capabilities (0x2000:5), bits.
 inline constexpr std::uint32_t measures_angle = 1U << 0U;  ///< a feedback potentiometer on the joint
 
+/// Statusword (0x6041), bit 10: target reached (CiA 402, 8.4.2). Here: the joint has ramped in.
+inline constexpr std::uint16_t target_reached = 1U << 10U;
+
 /// What is written to 0x1010 and 0x1011: "save" and "load", the first letter in the lowest byte (CiA 301, 7.5.2.13).
 inline constexpr std::uint32_t signature_save = 0x65766173;
 inline constexpr std::uint32_t signature_load = 0x64616F6C;
@@ -233,6 +236,10 @@ inline constexpr Object setpoint_ticks =
 inline constexpr Object setpoint_crc = read_only(setpoint_checksum.at(2), "CRC of the set-points", DataType::unsigned32,
                                                  "CRC-32 of the int32 set-points of these ticks");
 
+inline constexpr Object ramp_in_speed =
+    in_unit("deg/s", read_write({0x200E, 0}, "Ramp-in speed", DataType::unsigned16, 0, {0, max_command_speed},
+                                "from the measured angle to the start of the gait, in degrees a second; 0: off"));
+
 inline constexpr ObjectGroup board{0x2020, ObjectCode::record, "Board"};
 inline constexpr Object gateway_role = read_write(board.at(1), "Gateway role", DataType::unsigned8, 0, {0, 1},
                                                   "1: slcan on the serial line; in force when saved, after a reset");
@@ -315,7 +322,8 @@ inline constexpr Object controlword =
     read_write({0x6040, 0}, "Controlword", DataType::unsigned16, 0, full_range(DataType::unsigned16),
                "6, 7, 15 in this order give the servo power, 0 takes it; bit 7 ends a fault and a quick stop");
 inline constexpr Object statusword =
-    read_only({0x6041, 0}, "Statusword", DataType::unsigned16, "state of the drive, CiA 402");
+    read_only({0x6041, 0}, "Statusword", DataType::unsigned16,
+              "state of the drive, CiA 402; bit 10: has ramped in (0x200E) to the start of the gait");
 inline constexpr std::uint32_t ramp_and_stay = 6;
 inline constexpr Object quick_stop_option =
     read_write({0x605A, 0}, "Quick stop option code", DataType::integer16, ramp_and_stay,

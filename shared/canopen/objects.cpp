@@ -97,6 +97,7 @@ constexpr ObjectRow declared_rows[] = {
     row(object::wrong_lines),
     row(object::setpoint_ticks),
     row(object::setpoint_crc),
+    row(object::ramp_in_speed),
     row(object::own_frame[0][0]),
     row(object::own_frame[0][1]),
     row(object::own_frame[1][0]),

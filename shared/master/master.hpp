@@ -9,7 +9,8 @@
 //   mission   starts when                    phases                                 joints_
 //   bring_up  start()                        (listen, reset,) scan, quiet, set_up,  all that booted, which are all of
 //                                            then for each change that fits:        the set-up; produce_sync: only the
-//                                            stage, commit; nmt_start, enable,      SYNC producer
+//                                            stage, commit; nmt_start,              SYNC producer
+//                                            (set_ramp_in,) enable, (ramp_in,)
 //                                            produce_sync
 //   change    running, and modules have      stage, commit                          all without lost_ and restarted_
 //             room for the next change
@@ -58,6 +59,9 @@ struct MasterOptions {
   bool ramps_down = false;
   /// While the joints ramp down, the master reads the checksums of the modules' set-points (0x200D).
   bool reads_checksums = false;
+  /// Before SYNC 0 the joints go at this speed from their measured angles to the start of the gait (0x200E), degrees a
+  /// second, 1 to max_command_speed; 0: they do not. The master waits for all of them that measure their angles.
+  std::uint16_t ramp_in_speed = 0;
   /// Of each SDO answer, and how often a request is sent until there is one. For a connection that loses frames: more
   /// attempts; for a slow one: more time.
   Microseconds answer_timeout_us = SdoClient::default_timeout_us;
@@ -73,7 +77,7 @@ enum class MasterState : std::uint8_t {
   setting_up,  ///< reads identities, writes set-up lists
   staging,     ///< stages and commits the first changes
   starting,    ///< waits until all modules are Operational
-  powering,    ///< enables the servos and SYNC
+  powering,    ///< enables the servos, lets them ramp in, and starts SYNC
   running,
   stopping,
   stopped,
@@ -87,6 +91,10 @@ class Master final : private SdoWork {
   static constexpr Microseconds listening_time_us = 300'000;
   /// A quick stop takes 90 degrees a second, from 90 degrees at most; then the servo, behind its pulses, settles.
   static constexpr Microseconds ramping_time_us = 1'200'000;
+  /// Beyond the time that a ramp over 180 degrees takes.
+  static constexpr Microseconds ramp_in_reserve_us = 2'000'000;
+  /// Between two questions of the master whether a joint has ramped in.
+  static constexpr Microseconds ramp_in_pause_us = 5'000;
   static constexpr Microseconds boot_timeout_us = 1'000'000;
   /// Time after the last expected boot-up in which unexpected modules may appear.
   static constexpr Microseconds quiet_time_us = 50'000;
@@ -178,7 +186,9 @@ class Master final : private SdoWork {
     stage,
     commit,
     nmt_start,
+    set_ramp_in,
     enable,
+    ramp_in,
     produce_sync,
     ramp,
     ramping,
@@ -198,6 +208,7 @@ class Master final : private SdoWork {
   void on_abort(unsigned joint, Address address, AbortCode code) override;
   [[nodiscard]] std::optional<SdoStep> set_up_step(unsigned joint, std::size_t position) const;
   [[nodiscard]] std::optional<SdoStep> checksum_step(std::size_t position) const;
+  [[nodiscard]] std::optional<SdoStep> ramp_in_step(unsigned joint, std::size_t position) const;
   void on_checksum(unsigned joint, std::size_t position, std::uint32_t value);
   [[nodiscard]] bool joint_failed(const Problem& problem);
 
@@ -257,6 +268,7 @@ class Master final : private SdoWork {
   Microseconds sync_lost_at_ = never;
 
   JointMask joints_;                          ///< of the mission
+  JointMask ramping_in_ = {};                 ///< are not yet where the gait starts
   JointMask booted_;                          ///< since start()
   JointMask operational_;                     ///< by their heartbeats
   JointMask restarted_;                       ///< must be set up again

@@ -105,9 +105,17 @@ void Master::enter(Phase phase) {
     case Phase::stage:
       served = joints_;
       break;
+    case Phase::set_ramp_in:
+      served = joints_;
+      ramping_in_ = joints_;
+      break;
     case Phase::enable:
       served = joints_;
       is_powered_ = true;
+      break;
+    case Phase::ramp_in:
+      served = ramping_in_;
+      deadline_ = now_ + Microseconds{180'000'000} / options_.ramp_in_speed + ramp_in_reserve_us;
       break;
     case Phase::produce_sync:
       served = JointMask::of(options_.sync_producer);
@@ -122,7 +130,7 @@ void Master::enter(Phase phase) {
       timeout_us = stop_timeout_us;
       break;
   }
-  sdo_clients_.begin(served, timeout_us, is_running() ? pause_us : 0);
+  sdo_clients_.begin(served, timeout_us, is_running() ? pause_us : phase == Phase::ramp_in ? ramp_in_pause_us : 0);
   if (mission_ != Mission::bring_up) {
     return;
   }
@@ -181,13 +189,22 @@ void Master::next_phase() {
       if (mission_ == Mission::rejoin) {
         finish_rejoin();
       } else {
-        enter(Phase::enable);
+        enter(options_.ramp_in_speed != 0 ? Phase::set_ramp_in : Phase::enable);
       }
+      break;
+    case Phase::set_ramp_in:
+      enter(Phase::enable);
+      break;
+    case Phase::ramp_in:
+      ticks_ = {};
+      enter(Phase::produce_sync);
       break;
     case Phase::enable:
       if (mission_ == Mission::rejoin) {
         start_joints_ = joints_;
         enter(Phase::nmt_start);
+      } else if (options_.ramp_in_speed != 0) {
+        enter(Phase::ramp_in);
       } else {
         ticks_ = {};
         enter(Phase::produce_sync);
@@ -236,6 +253,9 @@ void Master::phase_timed_out() {
       } else {
         fail({ProblemCode::cannot_send});
       }
+      break;
+    case Phase::ramp_in:
+      fail(problem_of(ProblemCode::not_ramped_in, ramping_in_.front()));
       break;
     case Phase::commit:
       if (commits_sent_ > 0) {

@@ -34,6 +34,8 @@ std::string_view describe(ProblemCode code) {
       return "a module has the wrong configuration";
     case ProblemCode::not_enabled:
       return "a servo does not get power";
+    case ProblemCode::not_ramped_in:
+      return "a joint does not reach the angle at which the gait starts";
     case ProblemCode::not_operational:
       return "a module does not become operational";
     case ProblemCode::commit_too_late:

@@ -32,6 +32,7 @@ enum class ProblemCode : std::uint8_t {
   no_answer,            ///< the module did not answer a request for `address`
   wrong_configuration,  ///< after set-up, the configuration CRC of the module is not the master's
   not_enabled,          ///< the drive of the module is not in Operation enabled; statuswords
+  not_ramped_in,        ///< the joint does not reach the start of the gait before the timeout
   not_operational,      ///< the heartbeat of the module does not report Operational before the timeout
   // While the robot runs.
   commit_too_late,  ///< `change` for the tick `expected` could not be committed by the tick `found`; it is dropped

@@ -46,6 +46,9 @@ std::optional<SdoStep> Master::step(unsigned joint, std::size_t position) {
       return only(object::sync_identifier, produces_sync | identifier::sync);
     case Phase::ramp:
       return only(object::controlword, quick_stop_controlword);
+    case Phase::set_ramp_in:
+    case Phase::ramp_in:
+      return ramp_in_step(joint, position);
     case Phase::ramping:
       return checksum_step(position);
     case Phase::disable:
@@ -74,6 +77,25 @@ std::optional<SdoStep> Master::set_up_step(unsigned joint, std::size_t position)
     next = plan_.parameter_write(rejoin_from_, joint, position - list.size() - 1);
   }
   return next ? std::optional(SdoStep{true, next->address, next->size, next->value}) : std::nullopt;
+}
+
+/// Before the servos have power: whether the module measures its angle, and its speed. Afterwards: where it is.
+std::optional<SdoStep> Master::ramp_in_step(unsigned joint, std::size_t position) const {
+  if (!ramping_in_.contains(joint)) {
+    return std::nullopt;
+  }
+  if (phase_ == Phase::ramp_in) {
+    return SdoStep{false, object::statusword.address};
+  }
+  const Object& speed = object::ramp_in_speed;
+  switch (position) {
+    case 0:
+      return SdoStep{false, object::capabilities.address};
+    case 1:
+      return SdoStep{true, speed.address, size_of(speed.type), options_.ramp_in_speed};
+    default:
+      return std::nullopt;
+  }
 }
 
 /// The request to take the pair comes before both reads, also if one of them is repeated: they belong together.
@@ -116,6 +138,11 @@ bool Master::on_value(unsigned joint, std::size_t position, std::uint32_t value)
     problem.expected = expected;
     return joint_failed(problem);
   };
+  if (phase_ == Phase::set_ramp_in || phase_ == Phase::ramp_in) {
+    const bool is_done = phase_ == Phase::ramp_in ? (value & target_reached) != 0 : (value & measures_angle) == 0;
+    ramping_in_ -= is_done ? JointMask::of(joint) : JointMask();
+    return true;
+  }
   if (phase_ == Phase::enable) {
     constexpr std::uint32_t state_bits = 0x6F;  // CiA 402, table 30
     constexpr std::uint32_t operation_enabled = 0x27;
@@ -146,6 +173,10 @@ void Master::on_abort(unsigned joint, Address address, AbortCode code) {
   if (phase_ == Phase::ramping) {
     checksums_[joint].state =
         code == AbortCode::no_such_object ? SetpointChecksum::State::not_available : SetpointChecksum::State::not_read;
+    return;
+  }
+  if (phase_ == Phase::set_ramp_in && code == AbortCode::no_such_object) {
+    ramping_in_ -= JointMask::of(joint);  // its program is older
     return;
   }
   Problem problem = problem_of(code == AbortCode::timeout ? ProblemCode::no_answer : ProblemCode::refused, joint);

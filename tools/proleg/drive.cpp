@@ -165,6 +165,7 @@ class Drive {
 
  private:
   static constexpr Microseconds look_period_us = 20'000;
+  static constexpr std::uint16_t ramp_in_speed = 90;  // degrees a second, as in a quick stop
 
   [[nodiscard]] canopen::MasterOptions master_options() const {
     canopen::MasterOptions options;
@@ -173,6 +174,7 @@ class Drive {
     options.resets_modules = true;
     options.ramps_down = true;
     options.reads_checksums = true;
+    options.ramp_in_speed = ramp_in_speed;
     options.answer_timeout_us = host::patient_timeout_us;
     options.attempts = host::patient_attempts;
     return options;

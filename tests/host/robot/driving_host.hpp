@@ -15,6 +15,7 @@ inline canopen::MasterOptions host_options() {
   options.resets_modules = true;
   options.ramps_down = true;
   options.reads_checksums = true;
+  options.ramp_in_speed = 90;
   options.answer_timeout_us = 150'000;
   options.attempts = 8;
   return options;

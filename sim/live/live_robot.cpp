@@ -13,6 +13,7 @@ HardwareOptions for_rack(const LiveRobotOptions& options) {
   rack.make_module = options.make_module;
   rack.change_identity = options.change_identity;
   rack.crystal_error_ppm = options.crystal_error_ppm;
+  rack.gateway = options.gateway;
   return rack;
 }
 

@@ -30,6 +30,9 @@ struct LiveRobotOptions {
   std::function<std::unique_ptr<JointModule>(const ModuleParts&)> make_module;
   std::function<void(unsigned joint, firmware::ModuleIdentity& identity)> change_identity;
   std::uint32_t crystal_error_ppm = 100;
+  /// The same; its host sends what comes from outside not before LiveRobot::now() plus 200 us, since the program of a
+  /// module may run ahead of the bus.
+  std::optional<HardwareOptions::GatewayHost> gateway;
   /// Called for each frame that ends on the bus, before any node receives it. own: LiveRobot::send() was its source.
   std::function<void(const Transmission& transmission, bool own)> on_frame;
   /// Called when a frame that send() took was on the bus, in the order of send().

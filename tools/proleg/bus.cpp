@@ -20,10 +20,12 @@
 #include "sim/bus/candump_log.hpp"
 #include "sim/live/live_robot.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/gateway_line.hpp"
 #include "tools/proleg/hil_modules.hpp"
 #include "tools/proleg/interrupt.hpp"
 #include "tools/proleg/real_time_pace.hpp"
 #include "tools/proleg/scenario_run.hpp"
+#include "tools/proleg/served_port.hpp"
 
 namespace {
 
@@ -36,6 +38,7 @@ struct ServerOptions : ModuleOptions {
   bool pty = false;
   std::vector<std::string> tcp;
   std::optional<std::string> descriptor;
+  std::optional<std::string> gateway;
   std::optional<std::string> fresh;
   std::optional<std::string> shuffle;
   std::optional<std::string> can_log;
@@ -93,11 +96,27 @@ std::vector<std::uint8_t> start_nodes(const ServerOptions& options, const sim::S
   return nodes;
 }
 
+/// Where a program reaches the serial line of a module, if one is to be a gateway. nodes: as start_nodes() has them.
+std::optional<GatewayPlace> gateway_place(const ServerOptions& options, const sim::Scenario& scenario,
+                                          const std::vector<std::uint8_t>& nodes) {
+  if (!options.gateway) {
+    return std::nullopt;
+  }
+  const GatewayPlace place = parse_gateway(scenario, *options.gateway);
+  if (nodes[place.joint] == 0) {
+    throw InputError("--gateway", 0,
+                     "node " + std::to_string(scenario.modules[place.joint].node) + ", which --fresh names",
+                     "a module with a node id: one from the factory has no gateway role");
+  }
+  return place;
+}
+
 /// The robot and the programs that reach it.
 class Server final : private host::BusServerListener {
  public:
   Server(const ServerOptions& options, const ScenarioRun& run, HilModules& modules)
       : nodes_(start_nodes(options, run.scenario)),
+        gateway_place_(gateway_place(options, run.scenario, nodes_)),
         robot_model_(run.scenario.robot),
         is_verbose_(options.verbose),
         log_(options.can_log ? std::make_unique<sim::CandumpLog>(*options.can_log) : nullptr),
@@ -135,6 +154,9 @@ class Server final : private host::BusServerListener {
     options.change_identity = [this](unsigned joint, firmware::ModuleIdentity& identity) {
       identity.node = nodes_[joint];
     };
+    if (gateway_place_) {
+      options.gateway = {gateway_place_->joint, &gateway_line_};
+    }
     options.on_frame = [this](const sim::Transmission& transmission, bool is_own) {
       if (log_) {
         log_->write(transmission.end, transmission.frame);
@@ -157,15 +179,9 @@ class Server final : private host::BusServerListener {
       std::cout << "CAN interface " << name << ": --bus " << name << '\n';
     }
     for (const std::string& word : options.tcp) {
-      const std::size_t colon = word.rfind(':');
-      const auto port =
-          parse_whole<std::uint16_t>(std::string_view(word).substr(colon == std::string::npos ? 0 : colon + 1));
-      if (!port) {
-        throw InputError("--tcp", 0, in_quotes(word), "PORT or ADDRESS:PORT; port 0: any free one");
-      }
-      const std::string address = colon == std::string::npos ? "127.0.0.1" : word.substr(0, colon);
-      const std::uint16_t used = server_.add_tcp(address, *port);
-      std::cout << "slcan over TCP: --bus tcp:" << address << ":" << used << '\n';
+      ServedPort served = parse_served_port("--tcp", word);
+      served.port = server_.add_tcp(served.address, served.port);
+      std::cout << "slcan over TCP: --bus " << bus_word(served) << '\n';
     }
     if (options.pty) {
       std::cout << "slcan on a pseudo terminal: --bus serial:" << server_.add_pseudo_terminal() << '\n';
@@ -176,6 +192,10 @@ class Server final : private host::BusServerListener {
         throw InputError("--fd", 0, in_quotes(*options.descriptor), "the number of an open file descriptor");
       }
       server_.add_descriptor(*number);
+    }
+    if (gateway_place_) {
+      std::cout << "gateway on the serial line of node " << unsigned{nodes_[gateway_place_->joint]} << ": --bus "
+                << gateway_line_.open(*gateway_place_) << '\n';
     }
     std::cout.flush();
   }
@@ -220,6 +240,7 @@ class Server final : private host::BusServerListener {
   void descriptor_closed() override { is_closed_ = true; }
 
   std::vector<std::uint8_t> nodes_;  ///< by joint, at the start; 0: none
+  std::optional<GatewayPlace> gateway_place_;
   const sim::RobotModel& robot_model_;
   std::vector<bool> has_power_ = std::vector<bool>(nodes_.size());  ///< by joint, as reported
   bool is_verbose_;
@@ -227,12 +248,15 @@ class Server final : private host::BusServerListener {
   std::unique_ptr<sim::CandumpLog> log_;
   boost::asio::io_context context_{1};
   host::BusServer server_{context_, *this};
+  GatewayLine gateway_line_{context_, [this] { return robot_.now(); },
+                            [this](const std::string& line) { client_event(line); }};
   sim::LiveRobot robot_;
 };
 
 int serve(const ServerOptions& options) {
-  if (options.can.empty() && !options.pty && options.tcp.empty() && !options.descriptor) {
-    throw BadInput("found no way to reach the robot, expected --pty, --tcp PORT, --can INTERFACE or --fd N");
+  if (options.can.empty() && !options.pty && options.tcp.empty() && !options.descriptor && !options.gateway) {
+    throw BadInput(
+        "found no way to reach the robot, expected --pty, --tcp PORT, --can INTERFACE, --gateway NODE or --fd N");
   }
   const ScenarioRun run = prepare_run(options.scenario);
   print_warnings("proleg bus", run.scenario);
@@ -270,6 +294,12 @@ int main(int argc, char** argv) {
       .value_name("[ADDRESS:]PORT");
   command_line.add_option("--fd", options.descriptor, "slcan on an open file descriptor; the robot ends with it")
       .value_name("N");
+  command_line
+      .add_option(
+          "--gateway", options.gateway,
+          "the module of this node is a gateway: its serial line (1 Mbaud) is a new pseudo terminal, whose name is "
+          "printed, or a TCP port, for one program after the other")
+      .value_name("NODE[=[ADDRESS:]PORT]");
   add_module_options(command_line, options);
   command_line
       .add_option("--fresh", options.fresh, "these modules come from the factory, without a node id: 1,3 or all")

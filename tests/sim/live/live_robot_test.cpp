@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "gateway_bench.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "shared/master/master.hpp"
 #include "shipped.hpp"
@@ -286,6 +287,26 @@ TEST(LiveRobot, ThatFallsDoesNotRest) {
   const double start = robot.plant().world().center_of_mass().z();
   robot.advance_to(200 * millisecond);
   EXPECT_NEAR(start - robot.plant().world().center_of_mass().z(), 0.5 * 9.81 * 0.2 * 0.2, 0.01);
+}
+
+// 0x1000 of a module: 0x00020192 (docs/objects.md). The gateway is node 3 of the caterpillar.
+TEST(LiveRobot, AHostOnTheSerialLineOfAModuleReachesItAndTheOthers) {
+  const Scenario scenario = shipped("travelling_wave/coupled");
+  ScriptedHost host;
+  LiveRobotOptions options;
+  options.gateway = {2, &host};
+  LiveRobot robot(scenario, std::move(options));
+  robot.advance_to(100 * millisecond);
+  const auto ask = [&](std::string_view text) {
+    static_cast<void>(host.take_text());
+    host.sender.send(robot.now() + millisecond, text);
+    robot.advance_to(robot.now() + 10 * millisecond);
+    return host.take_text();
+  };
+  EXPECT_EQ(ask("\r\rC\rS8\rO\r"), "\r\r\r");
+  ASSERT_EQ(scenario.modules[2].node, 3);
+  EXPECT_EQ(ask("t60384000100000000000\r"), "z\rt58384300100092010200\r");
+  EXPECT_EQ(ask("t60484000100000000000\r"), "z\rt58484300100092010200\r");
 }
 
 }  // namespace

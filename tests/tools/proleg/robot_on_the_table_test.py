@@ -171,6 +171,39 @@ class RobotOnTheTable(unittest.TestCase):
                 self.assertEqual(result["servo_hash"], expected["servo_hash"])
                 self.assertEqual(set(states(bus.tcp).values()), {"no power"})
 
+    def test_a_host_on_the_serial_line_of_a_module_reaches_the_robot(self):
+        """It sets an object of the gateway itself and of another module, and drives; a second program is on the bus."""
+        for word, pattern in (("3=0", r"node 3: --bus (tcp:\S+)"), ("2", r"node 2: --bus (serial:\S+)")):
+            with Bus("--gateway", word) as bus:
+                line = bus.find(pattern)
+                scan = json.loads(proleg("scan", "--bus", line, "--json").stdout)
+                self.assertEqual([node["node"] for node in scan["nodes"]], [1, 2, 3, 4, 5])
+                role = json.loads(proleg("get", "all", "0x2020:1", "--bus", line, "--json").stdout)["values"]
+                self.assertEqual([one["raw"] for one in role], [int(node == int(word[0])) for node in range(1, 6)])
+                self.assertEqual(proleg("set", "3,4", "0x6080", "300", "--bus", line).returncode, 0)
+                drive = start_drive(line, "--seconds", "3")
+                wait_for_drives(bus.tcp, "operation enabled")
+                output, errors = drive.communicate(timeout=LONGEST)
+                self.assertEqual(drive.returncode, 0, errors)
+                result = json.loads(output)
+                self.assertEqual(result["differences"], 0)
+                self.assertEqual(result["frames_compared"], 1500)
+                expected = simulated("--seconds", "3")
+                self.assertEqual(result["setpoint_hash"], expected["setpoint_hash"])
+                self.assertEqual(result["servo_hash"], expected["servo_hash"])
+
+    def test_the_serial_line_of_a_gateway_has_one_program_at_its_end(self):
+        with Bus("--gateway", "3=0", "--verbose") as bus:
+            host, port = bus.find(r"--bus tcp:(\S+)").split(":")
+            with socket.create_connection((host, int(port)), timeout=LONGEST) as first:
+                first.sendall(b"\rV\r")
+                received = b""
+                while b"V" not in received:
+                    received += first.recv(4096)
+                with socket.create_connection((host, int(port)), timeout=LONGEST) as second:
+                    self.assertEqual(second.recv(4096), b"", "closed at once")
+            self.assertEqual(len(states(f"tcp:{host}:{port}")), 5, "the next program is let in")
+
     def test_every_program_sees_every_frame_in_the_order_of_the_bus(self):
         """Two programs beside the host, over TCP and a pseudo terminal, and the log of the bus itself."""
         with tempfile.TemporaryDirectory() as folder:
@@ -409,6 +442,10 @@ class RobotOnTheTable(unittest.TestCase):
             (2, ("drive", scenario, "--bus", "can0", "--fast"), "--bus sim:FILE"),
             (2, ("bus", scenario), "no way to reach the robot"),
             (2, ("bus", scenario, "--tcp", "x"), "--tcp"),
+            (2, ("bus", scenario, "--gateway", "9"), "--gateway: found node '9', expected one of 1, 2, 3, 4, 5"),
+            (2, ("bus", scenario, "--gateway", "3=x"), "--gateway"),
+            (2, ("bus", scenario, "--gateway", "3", "--fresh", "3"), "--gateway"),
+            (2, ("bus", scenario, "--tcp", "::1:0"), "[IPV6_ADDRESS]:PORT"),
             (2, ("scan", "--bus", "sim:missing.simulation.xml"), "sim:missing.simulation.xml"),
             (1, ("scan", "--bus", "can77"), "can77"),
             (1, ("scan", "--bus", "serial:/dev/missing"), "no such device"),

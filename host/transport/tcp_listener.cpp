@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <utility>
 
+#include "host/transport/bus_address.hpp"
 #include "host/transport/transport.hpp"
 
 namespace proleg::host {
@@ -16,13 +17,17 @@ namespace {
 
 constexpr int backlog = 8;
 
-/// "127.0.0.1:20000".
+/// "127.0.0.1:20000", "[::1]:20000".
 std::string address_text(const sockaddr_storage& address, socklen_t size) {
   std::array<char, NI_MAXHOST> host{};
   std::array<char, NI_MAXSERV> port{};
   const int error = getnameinfo(reinterpret_cast<const sockaddr*>(&address), size, host.data(), host.size(),
                                 port.data(), port.size(), NI_NUMERICHOST | NI_NUMERICSERV);
-  return error == 0 ? std::string(host.data()) + ":" + port.data() : "unknown";
+  if (error != 0) {
+    return "unknown";
+  }
+  const std::string name = address.ss_family == AF_INET6 ? "[" + std::string(host.data()) + "]" : host.data();
+  return name + ":" + port.data();
 }
 
 }  // namespace
@@ -35,7 +40,7 @@ TcpListener::TcpListener(boost::asio::io_context& context, const std::string& ho
 }
 
 void TcpListener::listen(const std::string& host, std::uint16_t port) {
-  const std::string name = "tcp:" + host + ":" + std::to_string(port) + ": ";
+  const std::string name = bus_address_text({BusAddress::Kind::tcp, host, port, {}}) + ": ";
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_flags = AI_PASSIVE;

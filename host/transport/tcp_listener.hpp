@@ -14,7 +14,8 @@ namespace proleg::host {
 /// A TCP port that clients connect to.
 class TcpListener {
  public:
-  /// host: an address of this computer; 127.0.0.1 lets in programs of this computer only, 0.0.0.0 everybody.
+  /// host: an address of this computer, an IPv6 address without brackets; 127.0.0.1 and ::1 let in programs of this
+  /// computer only, 0.0.0.0 and :: everybody.
   /// port 0: any free one. The function receives the socket of each client and its address as text. Throws
   /// TransportError.
   TcpListener(boost::asio::io_context& context, const std::string& host, std::uint16_t port,

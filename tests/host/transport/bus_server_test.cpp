@@ -58,6 +58,21 @@ TEST_F(BusServerTest, IsFoundAtAnyAddressOfAHost) {
   EXPECT_TRUE(transport->state().is_connected);
 }
 
+TEST_F(BusServerTest, IsReachedOverIpv6) {
+  std::uint16_t port = 0;
+  try {
+    port = server.add_tcp("::1", 0);
+  } catch (const TransportError& error) {
+    GTEST_SKIP() << "this computer has no IPv6: " << error.what();
+  }
+  const auto transport = open("tcp:[::1]:" + std::to_string(port), first_log);
+  EXPECT_TRUE(transport->state().is_connected);
+  ASSERT_FALSE(bus.events.empty());
+  EXPECT_EQ(bus.events.front().rfind("tcp client [::1]:", 0), 0U) << bus.events.front();
+  EXPECT_NE(message_of<TransportError>([&] { server.add_tcp("::1", port); }).find("tcp:[::1]:" + std::to_string(port)),
+            std::string::npos);
+}
+
 TEST_F(BusServerTest, GivesAFrameToAllOtherClients) {
   const std::string word = tcp_word();
   Log third_log;

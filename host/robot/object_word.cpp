@@ -239,12 +239,12 @@ std::vector<std::uint8_t> parse_value(const std::string& where, const canopen::O
   return bytes;
 }
 
-std::optional<std::vector<std::uint8_t>> parse_nodes(std::string_view word) {
+std::optional<std::vector<std::uint8_t>> parse_nodes(std::string_view word, const std::string& where) {
   if (word == "all") {
     return std::nullopt;
   }
-  const auto refuse = [word] {
-    throw InputError("NODE", 0, in_quotes(word), "node ids from 1 to 126, such as 3, 1,3 or 2-5, or all");
+  const auto refuse = [word, &where] {
+    throw InputError(where, 0, in_quotes(word), "node ids from 1 to 126, such as 3, 1,3 or 2-5, or all");
   };
   std::vector<std::uint8_t> nodes;
   for (std::string_view rest = word;;) {

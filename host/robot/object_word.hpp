@@ -49,7 +49,8 @@ class ObjectWord {
 [[nodiscard]] std::vector<std::uint8_t> parse_value(const std::string& where, const canopen::Object& object,
                                                     std::string_view word);
 
-/// Node ids: "3", "1,3", "2-5", "1,3-5", or "all" (nothing is returned then). Throws InputError.
-[[nodiscard]] std::optional<std::vector<std::uint8_t>> parse_nodes(std::string_view word);
+/// Node ids: "3", "1,3", "2-5", "1,3-5", or "all" (nothing is returned then). Throws InputError, which names `where`.
+[[nodiscard]] std::optional<std::vector<std::uint8_t>> parse_nodes(std::string_view word,
+                                                                   const std::string& where = "NODE");
 
 }  // namespace proleg::host

@@ -82,7 +82,7 @@ std::vector<std::uint8_t> start_nodes(const ServerOptions& options, const sim::S
     }
   }
   if (options.fresh) {
-    const auto fresh = host::parse_nodes(*options.fresh);
+    const auto fresh = host::parse_nodes(*options.fresh, "--fresh");
     for (const std::uint8_t node : fresh.value_or(std::vector<std::uint8_t>{})) {
       static_cast<void>(joint_of_node(scenario, node, "--fresh", std::to_string(node)));
     }

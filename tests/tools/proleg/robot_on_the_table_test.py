@@ -445,6 +445,7 @@ class RobotOnTheTable(unittest.TestCase):
             (2, ("bus", scenario, "--gateway", "9"), "--gateway: found node '9', expected one of 1, 2, 3, 4, 5"),
             (2, ("bus", scenario, "--gateway", "3=x"), "--gateway"),
             (2, ("bus", scenario, "--gateway", "3", "--fresh", "3"), "--gateway"),
+            (2, ("bus", scenario, "--pty", "--fresh", "x"), "--fresh: found 'x', expected node ids"),
             (2, ("bus", scenario, "--tcp", "::1:0"), "[IPV6_ADDRESS]:PORT"),
             (2, ("scan", "--bus", "sim:missing.simulation.xml"), "sim:missing.simulation.xml"),
             (1, ("scan", "--bus", "can77"), "can77"),

@@ -85,6 +85,11 @@ void print_table(const host::BusMonitor& monitor, const host::BusMonitor::Traffi
                 fixed_text(current, " mA").c_str(), fixed_text(temperature, " C").c_str(),
                 fault_text(node, node.last_heard + silent_us < now).c_str());
   }
+  if (!monitor.has_host(now)) {
+    std::printf(
+        "no host drives the robot, and modules that no host has set up send nothing by themselves: "
+        "'proleg scan' asks them, 'proleg drive FILE' drives them\n");
+  }
   std::fflush(stdout);
 }
 

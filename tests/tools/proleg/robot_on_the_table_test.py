@@ -368,7 +368,9 @@ class RobotOnTheTable(unittest.TestCase):
 
     def test_monitor_shows_the_moving_robot(self):
         with Bus() as bus:
-            drive = start_drive(bus.tcp, "--seconds", "8")
+            self.assertIn("no host drives the robot",
+                          proleg("monitor", "--bus", bus.pty, "--seconds", "1").stdout.splitlines()[-1])
+            drive = start_drive(bus.tcp, "--seconds", "12")
             wait_for_drives(bus.pty, "operation enabled")
             lines = proleg("monitor", "--bus", bus.pty, "--seconds", "3", "--json").stdout.splitlines()
             last = json.loads(lines[-2])
@@ -381,6 +383,9 @@ class RobotOnTheTable(unittest.TestCase):
                 self.assertLessEqual(abs(node["setpoint_deg"]), 40.01, "the amplitude")
                 self.assertGreaterEqual(node["current_ma"], 0)
                 self.assertEqual(node["fault"], "")
+            table = proleg("monitor", "--bus", bus.pty, "--seconds", "1").stdout
+            self.assertIn("driven by a host", table)
+            self.assertNotIn("no host drives", table)
             drive.communicate(timeout=LONGEST)
             self.assertEqual(drive.returncode, 0)
 

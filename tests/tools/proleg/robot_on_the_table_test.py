@@ -137,7 +137,17 @@ class RobotOnTheTable(unittest.TestCase):
             scan = json.loads(proleg("scan", "--bus", bus.pty, "--json").stdout)
             self.assertEqual([node["node"] for node in scan["nodes"]], [1, 2, 3, 4, 5])
             self.assertTrue(all(node["joint_module"] for node in scan["nodes"]))
-            self.assertIn("Proleg joint module", proleg("info", "3", "--bus", bus.tcp).stdout)
+            info = proleg("info", "3", "--bus", bus.tcp).stdout
+            for line in ("Proleg joint module", "(no power)", "Max motor speed = 720 deg/s", "none: a host configures"):
+                self.assertIn(line, info)
+            self.assertNotIn("0x2003:1", info)
+            everything = proleg("info", "3", "--all", "--bus", bus.tcp).stdout
+            self.assertIn("0x2003:1  Unique id", everything)
+            self.assertNotIn("Highest sub-index", everything)
+            silent = proleg("info", "3,9", "--bus", bus.tcp)
+            self.assertEqual(silent.returncode, 1)
+            self.assertEqual(silent.stdout.splitlines()[:3], info.splitlines()[:3])
+            self.assertIn("node 9: no answer", silent.stderr)
             self.assertEqual(proleg("set", "2-4", "0x6080", "300", "--bus", bus.tcp).returncode, 0)
             values = json.loads(proleg("get", "all", "Max motor speed", "0x1018:1", "--bus", bus.pty, "--json").stdout)
             speeds = [one["raw"] for one in values["values"] if one["object"] == "0x6080"]
@@ -386,6 +396,9 @@ class RobotOnTheTable(unittest.TestCase):
             table = proleg("monitor", "--bus", bus.pty, "--seconds", "1").stdout
             self.assertIn("driven by a host", table)
             self.assertNotIn("no host drives", table)
+            info = proleg("info", "3", "--bus", bus.pty).stdout
+            self.assertIn("(PatternGenerator_sinusoidal)", info)
+            self.assertIn("amplitude: slot 1 = 40 deg", info)
             drive.communicate(timeout=LONGEST)
             self.assertEqual(drive.returncode, 0)
 

@@ -91,8 +91,8 @@ void add_algorithms(Module& module, bool all) {
       module.lines.push_back({canopen::find_object(object::slot_algorithm.address(slot)).value(), group, {}});
     }
     const auto add = [&](canopen::ValueKind kind, std::size_t count) {
-      for (std::uint8_t number = 0; number < count; ++number) {
-        const canopen::ValueAddress value{kind, module.algorithms.at(slot), number, slot};
+      for (std::size_t number = 0; number < count; ++number) {
+        const canopen::ValueAddress value{kind, module.algorithms.at(slot), static_cast<std::uint8_t>(number), slot};
         module.lines.push_back({canopen::find_object(canopen::address_of(value)).value(), group, {}});
       }
     };

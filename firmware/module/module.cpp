@@ -253,8 +253,8 @@ void Module::finish_event(Microseconds now) {
 void Module::find_deadlines() {
   const Microseconds watches = std::min(std::min(parts_.recovery.next_deadline(), parts_.host.next_deadline()),
                                         std::min(parts_.sync.next_deadline(), parts_.monitor.next_deadline()));
-  const Microseconds services =
-      std::min(std::min(parts_.network.next_deadline(), parts_.producer.next_deadline()), objects_.next_deadline());
+  const Microseconds services = std::min(std::min(parts_.network.next_deadline(), parts_.producer.next_deadline()),
+                                         std::min(objects_.next_deadline(), parts_.lease.next_deadline()));
   deadline_of_parts_ = std::min(watches, services);
   next_deadline_ = std::min(deadline_of_parts_, parts_.drive.next_deadline());
 }

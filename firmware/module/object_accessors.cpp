@@ -255,6 +255,11 @@ constexpr ObjectAccessor accessors[] = {
     read_only(object::current_tick.address,
               [](const Parts& parts) { return parts.joint.active() ? parts.joint.kernel().tick() : 0U; }),
     read_only(object::refusal.address, [](const Parts& parts) { return parts.joint.last_refusal(); }),
+    read_write(
+        object::session_token.address, WritableIn::any_state, [](const Parts& parts) { return parts.lease.token(); },
+        [](Parts& parts, const ObjectWrite& write) {
+          return parts.lease.take(write.now, write.value) ? AbortCode::none : AbortCode::refused_by_state;
+        }),
     read_only(object::unique_id.first.address,
               [](const Parts& parts, Position position) { return parts.identity.unique_id[position.sub]; }),
     read_write(

@@ -30,6 +30,7 @@ void Parts::reset(Microseconds now) {
   settings = {};
   joint.clear_refusal();
   drive.reset();
+  lease.reset();
   monitor.reset(board.stored());
 }
 

@@ -5,6 +5,7 @@
 #include "firmware/module/drive.hpp"
 #include "firmware/module/gateway.hpp"
 #include "firmware/module/host_watch.hpp"
+#include "firmware/module/lease.hpp"
 #include "firmware/module/loss_counter.hpp"
 #include "firmware/module/servo_monitor.hpp"
 #include "firmware/module/state_receiver.hpp"
@@ -57,6 +58,7 @@ struct Parts {
   ReportedRequests reported;
   GaitStart start;  // fills a gap before the settings
   /// Since the reset of communication; the tick period and the identifiers of the state frames are the defaults.
+  Lease lease;
   bool must_restore_communication = false;
   ModuleSettings settings;
   JointKernel joint;

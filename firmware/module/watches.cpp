@@ -28,6 +28,9 @@ void receive_heartbeat(Parts& parts, Microseconds now, const CanFrame& frame) {
   if (!heartbeat) {
     return;
   }
+  if (heartbeat->node == canopen::host_node) {
+    parts.lease.renew(now);
+  }
   if (parts.host.receive_heartbeat(now, heartbeat->node)) {
     parts.emergencies.clear(Fault::heartbeat_lost);
   }
@@ -83,6 +86,7 @@ void poll_bus(Parts& parts, Microseconds now) {
 }
 
 void poll_host(Parts& parts, Microseconds now) {
+  parts.lease.poll(now);
   if (parts.host.poll_timeout(now)) {
     parts.emergencies.raise(Fault::heartbeat_lost, parts.host.expected() >> 16U);
     parts.drive.power().quick_stop();

@@ -157,6 +157,10 @@ inline constexpr Object current_tick = read_only(place.at(7), "Current tick", Da
 inline constexpr Object refusal = read_only(place.at(8), "Refusal", DataType::unsigned8,
                                             "reason of the last request that the kernel refused; 0: none");
 
+inline constexpr Object session_token =
+    read_write({0x2002, 0}, "Session token", DataType::unsigned32, 0, full_range(DataType::unsigned32),
+               "of the host that drives the robot, 0: none; another token is refused while one is held");
+
 inline constexpr ObjectGroup unique_ids{0x2003, ObjectCode::array, "Unique id"};
 inline constexpr ObjectArray unique_id{
     read_only(unique_ids.at(1), "Unique id, word", DataType::unsigned32, "of 96 bits, the lowest word first"), 3};
@@ -236,9 +240,10 @@ inline constexpr Object setpoint_ticks =
 inline constexpr Object setpoint_crc = read_only(setpoint_checksum.at(2), "CRC of the set-points", DataType::unsigned32,
                                                  "CRC-32 of the int32 set-points of these ticks");
 
-inline constexpr Object ramp_in_speed =
-    in_unit("deg/s", read_write({0x200E, 0}, "Ramp-in speed", DataType::unsigned16, 0, {0, max_command_speed},
-                                "from the measured angle to the start of the gait, in degrees a second; 0: off"));
+inline constexpr Object ramp_in_speed = in_unit(
+    "deg/s",
+    read_write({0x200E, 0}, "Ramp-in speed", DataType::unsigned16, 0, full_range(DataType::unsigned16),
+               "from the measured angle to the start of the gait, in degrees a second, at most 0x6080; 0: off"));
 
 inline constexpr ObjectGroup board{0x2020, ObjectCode::record, "Board"};
 inline constexpr Object gateway_role = read_write(board.at(1), "Gateway role", DataType::unsigned8, 0, {0, 1},

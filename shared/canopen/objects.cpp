@@ -75,6 +75,7 @@ constexpr ObjectRow declared_rows[] = {
     row(object::configuration_crc),
     row(object::current_tick),
     row(object::refusal),
+    row(object::session_token),
     row(object::unique_id),
     row(object::transaction),
     row(object::staged_count),
@@ -172,11 +173,13 @@ constexpr const ObjectGroup* declared_groups[] = {
 struct Limits {
   std::uint32_t minimum;
   std::uint32_t maximum;
-  std::optional<std::uint32_t> also_allowed;
+  std::uint32_t also_allowed;  ///< the minimum: no other value is
 
   friend constexpr bool operator==(const Limits&, const Limits&) = default;
 };
-constexpr Limits limits_of(const Object& object) { return {object.minimum, object.maximum, object.also_allowed}; }
+constexpr Limits limits_of(const Object& object) {
+  return {object.minimum, object.maximum, object.also_allowed.value_or(object.minimum)};
+}
 
 constexpr bool has_limits(const ObjectRow& row) {
   const Object& object = *row.first;
@@ -327,7 +330,9 @@ std::optional<Entry> find_entry(Address address) {
       const Limits& found = limits[row->limits];
       entry.minimum = found.minimum;
       entry.maximum = found.maximum;
-      entry.also_allowed = found.also_allowed;
+      if (found.also_allowed != found.minimum) {
+        entry.also_allowed = found.also_allowed;
+      }
     }
     return entry;
   }

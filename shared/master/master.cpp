@@ -30,7 +30,8 @@ void Master::start(Microseconds now) {
     joint_of_[setup_.nodes[joint]] = joint;
   }
   sdo_clients_.set_attempts(options_.attempts);
-  heartbeat_at_ = options_.resets_modules ? now + listening_time_us : now;
+  // Until the robot is this host's, another host must not take these heartbeats for those of its own session.
+  heartbeat_at_ = options_.resets_modules ? (options_.session_token == 0 ? now + listening_time_us : never) : now;
   enter(options_.resets_modules ? Phase::listen : Phase::scan);
   poll(now);
 }
@@ -52,7 +53,8 @@ void Master::stop(Microseconds now) {
     return;
   }
   now_ = now;
-  if (!owns_robot_ || (problem_.code == ProblemCode::other_host && !is_powered_)) {
+  if (!owns_robot_ ||
+      ((problem_.code == ProblemCode::other_host || problem_.code == ProblemCode::lease_refused) && !is_powered_)) {
     state_ = MasterState::stopped;
     heartbeat_at_ = never;
     enter(Phase::none);
@@ -186,7 +188,7 @@ void Master::on_heartbeat(const CanFrame& frame) {
 void Master::on_boot_up(unsigned joint) {
   const JointMask self = JointMask::of(joint);
   const std::uint8_t node = setup_.nodes[joint];
-  if (phase_ == Phase::listen || phase_ == Phase::reset) {
+  if (is_before_reset()) {
     return;  // it will boot again
   }
   if (mission_ == Mission::bring_up) {
@@ -222,7 +224,7 @@ void Master::on_emergency(const CanFrame& frame) {
   if (!emergency || emergency->node == host_node) {
     return;
   }
-  if (phase_ == Phase::listen || phase_ == Phase::reset) {
+  if (is_before_reset()) {
     return;  // of an earlier run
   }
   events_.add(
@@ -236,7 +238,12 @@ void Master::on_emergency(const CanFrame& frame) {
 }
 
 void Master::on_other_host() {
-  if (mission_ == Mission::bring_up && options_.resets_modules && !is_powered_) {
+  if (phase_ == Phase::take_lease && has_lease_) {
+    return;  // the leases decide which of the two gets the robot
+  }
+  if (phase_ == Phase::take_lease && is_lease_refused_) {
+    fail_without_lease(joint_of_[lease_node_]);
+  } else if (mission_ == Mission::bring_up && options_.resets_modules && !is_powered_) {
     fail({ProblemCode::other_host});
     heartbeat_at_ = never;  // modules that the other host drives must miss that one only
   } else if (!other_host_reported_) {
@@ -246,7 +253,7 @@ void Master::on_other_host() {
 }
 
 void Master::on_unknown_node(std::uint8_t node, bool boots) {
-  if (options_.allows_others || phase_ == Phase::listen || phase_ == Phase::reset) {
+  if (options_.allows_others || is_before_reset()) {
     return;  // another host may drive it; if not, it will boot
   }
   if (mission_ == Mission::bring_up) {

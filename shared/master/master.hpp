@@ -7,16 +7,17 @@
 // A mission is what the master works on; its phases follow each other in this order:
 //
 //   mission   starts when                    phases                                 joints_
-//   bring_up  start()                        (listen, reset,) scan, quiet, set_up,  all that booted, which are all of
-//                                            then for each change that fits:        the set-up; produce_sync: only the
+//   bring_up  start()                        (listen, take_lease, reset,) scan,     all that booted, which are all of
+//                                            quiet, (keep_lease,) set_up,           the set-up; take_lease: one after
+//                                            then for each change that fits:        the other; produce_sync: only the
 //                                            stage, commit; nmt_start,              SYNC producer
 //                                            (set_ramp_in,) enable, (ramp_in,)
 //                                            produce_sync
 //   change    running, and modules have      stage, commit                          all without lost_ and restarted_
 //             room for the next change
-//   rejoin    running, restarted_ not empty  set_up, then for each committed        the members that restarted_ had
-//                                            change that waits for its tick:
-//                                            stage, commit; enable, nmt_start
+//   rejoin    running, restarted_ not empty  (keep_lease,) set_up, then for each    the members that restarted_ had
+//                                            committed change that waits for its
+//                                            tick: stage, commit; enable, nmt_start
 //   stop      stop()                         (ramp, ramping,) disable, sync_off     booted_; sync_off: only the SYNC
 //                                                                                   producer. While they are ramping,
 //                                                                                   their checksums are read
@@ -62,6 +63,9 @@ struct MasterOptions {
   /// Before SYNC 0 the joints go at this speed from their measured angles to the start of the gait (0x200E), degrees a
   /// second, 1 to max_command_speed; 0: they do not. The master waits for all of them that measure their angles.
   std::uint16_t ramp_in_speed = 0;
+  /// Of this host's session, random; the master takes the lease of the robot with it (0x2002) before it resets the
+  /// modules, and again when it sets them up. 0: without a lease.
+  std::uint32_t session_token = 0;
   /// Of each SDO answer, and how often a request is sent until there is one. For a connection that loses frames: more
   /// attempts; for a slow one: more time.
   Microseconds answer_timeout_us = SdoClient::default_timeout_us;
@@ -89,6 +93,9 @@ class Master final : private SdoWork {
   static constexpr Microseconds heartbeat_period_us = 100'000;
   /// Time in which another host is heard three times.
   static constexpr Microseconds listening_time_us = 300'000;
+  /// How long another host may have the lease without a heartbeat: its session is over then, and its lease ends.
+  static constexpr Microseconds lease_timeout_us = 700'000;
+  static constexpr Microseconds lease_pause_us = 50'000;
   /// A quick stop takes 90 degrees a second, from 90 degrees at most; then the servo, behind its pulses, settles.
   static constexpr Microseconds ramping_time_us = 1'200'000;
   /// Beyond the time that a ramp over 180 degrees takes.
@@ -179,9 +186,11 @@ class Master final : private SdoWork {
   enum class Phase : std::uint8_t {
     none,
     listen,
+    take_lease,
     reset,
     scan,
     quiet,
+    keep_lease,
     set_up,
     stage,
     commit,
@@ -208,6 +217,13 @@ class Master final : private SdoWork {
   void on_abort(unsigned joint, Address address, AbortCode code) override;
   [[nodiscard]] std::optional<SdoStep> set_up_step(unsigned joint, std::size_t position) const;
   [[nodiscard]] std::optional<SdoStep> checksum_step(std::size_t position) const;
+  [[nodiscard]] std::optional<SdoStep> lease_step(std::size_t position) const;
+  [[nodiscard]] bool on_lease(unsigned joint, std::uint32_t holder);
+  void on_lease_abort(unsigned joint, Address address, AbortCode code);
+  void refuse_lease(unsigned joint);
+  void fail_without_lease(unsigned joint);
+  void begin_lease();
+  void take_next_lease();
   [[nodiscard]] std::optional<SdoStep> ramp_in_step(unsigned joint, std::size_t position) const;
   void on_checksum(unsigned joint, std::size_t position, std::uint32_t value);
   [[nodiscard]] bool joint_failed(const Problem& problem);
@@ -239,6 +255,9 @@ class Master final : private SdoWork {
   [[nodiscard]] bool repeat_request();
   void watch_heartbeats();
 
+  [[nodiscard]] bool is_before_reset() const {
+    return phase_ == Phase::listen || phase_ == Phase::take_lease || phase_ == Phase::reset;
+  }
   [[nodiscard]] bool is_running() const { return state_ == MasterState::running; }
   [[nodiscard]] JointMask all_joints() const { return JointMask::first(setup_.kernel.joint_count); }
   [[nodiscard]] bool has_passed(const Change& change) const;
@@ -287,6 +306,14 @@ class Master final : private SdoWork {
   bool is_powered_ = false;  ///< servos may have power
   bool other_host_reported_ = false;
   std::uint32_t restarts_ = 0;
+
+  // Of the lease, before the reset.
+  std::uint8_t lease_node_ = 0;     ///< whose lease is taken: in ascending order
+  Microseconds lease_ends_ = 0;     ///< of a session without a heartbeat
+  bool has_lease_ = false;          ///< of one module at least
+  bool only_reads_lease_ = false;   ///< a request to take it has been sent
+  bool is_lease_refused_ = false;   ///< by the present module
+  bool has_missing_lease_ = false;  ///< of one module at least
 
   std::size_t change_ = 0;       ///< the one that is staged or committed
   std::size_t rejoin_from_ = 0;  ///< earlier changes are written as parameters in force

@@ -44,6 +44,8 @@ bool Master::is_phase_done() const {
       return is_running() && (!restarted_.empty() || plan_.can_stage());
     case Phase::scan:
       return booted_ == all_joints();
+    case Phase::take_lease:
+      return sdo_clients_.done() && !is_lease_refused_;
     case Phase::listen:
     case Phase::reset:
     case Phase::quiet:
@@ -69,6 +71,10 @@ void Master::enter(Phase phase) {
     case Phase::listen:
       state_ = MasterState::listening;
       deadline_ = now_ + listening_time_us;
+      break;
+    case Phase::take_lease:
+      served = JointMask::of(joint_of_[lease_node_]);
+      is_lease_refused_ = false;
       break;
     case Phase::reset:
       owns_robot_ = true;
@@ -101,6 +107,7 @@ void Master::enter(Phase phase) {
       deadline_ = now_ + (options_.resets_modules && mission_ == Mission::bring_up ? repeat_us : start_timeout_us);
       requests_ = 1;
       break;
+    case Phase::keep_lease:
     case Phase::set_up:
     case Phase::stage:
       served = joints_;
@@ -159,7 +166,10 @@ void Master::next_phase() {
       begin_mission();
       break;
     case Phase::listen:
-      enter(Phase::reset);
+      begin_lease();
+      break;
+    case Phase::take_lease:
+      take_next_lease();
       break;
     case Phase::reset:
       enter(Phase::scan);
@@ -169,6 +179,9 @@ void Master::next_phase() {
       enter(Phase::quiet);
       break;
     case Phase::quiet:
+      enter(options_.session_token != 0 ? Phase::keep_lease : Phase::set_up);
+      break;
+    case Phase::keep_lease:
       enter(Phase::set_up);
       break;
     case Phase::set_up:
@@ -245,6 +258,9 @@ void Master::phase_timed_out() {
     case Phase::quiet:
     case Phase::ramping:
       next_phase();
+      break;
+    case Phase::take_lease:
+      enter(Phase::take_lease);  // of the same module, once more
       break;
     // Transports may lose a confirmation: what left the queue counts as sent.
     case Phase::reset:
@@ -413,7 +429,7 @@ void Master::begin_rejoin(JointMask joints) {
   while (rejoin_from_ > 0 && !has_passed(plan_[rejoin_from_ - 1])) {
     --rejoin_from_;
   }
-  enter(Phase::set_up);
+  enter(options_.session_token != 0 ? Phase::keep_lease : Phase::set_up);
 }
 
 /// Stages the committed changes that wait for their tick in the restarted modules too, and commits them again. All

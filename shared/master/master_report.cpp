@@ -20,6 +20,8 @@ std::string_view describe(ProblemCode code) {
       return "the node does not belong to the robot";
     case ProblemCode::other_host:
       return "another host uses the bus";
+    case ProblemCode::lease_refused:
+      return "another host drives this robot";
     case ProblemCode::wrong_serial:
       return "wrong serial number";
     case ProblemCode::wrong_protocol:

@@ -25,6 +25,7 @@ enum class ProblemCode : std::uint8_t {
   duplicate_node,       ///< `node` booted twice, or reports that another module has its id
   unexpected_node,      ///< `node` is on the bus, but not in the set-up
   other_host,           ///< another host sends heartbeats on the bus
+  lease_refused,        ///< `node` has given its lease (0x2002) to another host
   wrong_serial,         ///< serial number; `found` and `expected` as for all wrong_ codes
   wrong_protocol,       ///< version of docs/protocol.md
   wrong_fingerprint,    ///< the module computes with another core

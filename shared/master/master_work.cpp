@@ -46,6 +46,9 @@ std::optional<SdoStep> Master::step(unsigned joint, std::size_t position) {
       return only(object::sync_identifier, produces_sync | identifier::sync);
     case Phase::ramp:
       return only(object::controlword, quick_stop_controlword);
+    case Phase::take_lease:
+    case Phase::keep_lease:
+      return lease_step(position);
     case Phase::set_ramp_in:
     case Phase::ramp_in:
       return ramp_in_step(joint, position);
@@ -124,6 +127,9 @@ void Master::on_checksum(unsigned joint, std::size_t position, std::uint32_t val
 }
 
 bool Master::on_value(unsigned joint, std::size_t position, std::uint32_t value) {
+  if (phase_ == Phase::take_lease || phase_ == Phase::keep_lease) {
+    return on_lease(joint, value);
+  }
   if (phase_ == Phase::ramping) {
     on_checksum(joint, position, value);
     return true;
@@ -170,6 +176,10 @@ bool Master::on_value(unsigned joint, std::size_t position, std::uint32_t value)
 }
 
 void Master::on_abort(unsigned joint, Address address, AbortCode code) {
+  if (phase_ == Phase::take_lease || phase_ == Phase::keep_lease) {
+    on_lease_abort(joint, address, code);
+    return;
+  }
   if (phase_ == Phase::ramping) {
     checksums_[joint].state =
         code == AbortCode::no_such_object ? SetpointChecksum::State::not_available : SetpointChecksum::State::not_read;

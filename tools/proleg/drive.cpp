@@ -18,6 +18,7 @@
 #include "host/robot/power_watch.hpp"
 #include "host/robot/robot_drive.hpp"
 #include "host/robot/sdo_queue.hpp"
+#include "host/robot/session_token.hpp"
 #include "host/robot/state_text.hpp"
 #include "host/transport/bus_address.hpp"
 #include "shared/computer/errors/input_error.hpp"
@@ -175,6 +176,7 @@ class Drive {
     options.ramps_down = true;
     options.reads_checksums = true;
     options.ramp_in_speed = ramp_in_speed;
+    options.session_token = host::random_token();
     options.answer_timeout_us = host::patient_timeout_us;
     options.attempts = host::patient_attempts;
     return options;

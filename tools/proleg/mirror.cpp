@@ -18,7 +18,34 @@ Mirror::Mirror(const sim::Scenario& scenario)
   remember_angles();
 }
 
+/// Some ticks that nobody sees: the way of each servo at 90 degrees a second, and half a second at rest.
+void Mirror::ramp_in(std::span<const sim::ServoPulse> first_pulses) {
+  const std::uint32_t tick_us = scenario_.kernel.tick_period_us;
+  const std::int32_t step =
+      std::max(1, static_cast<std::int32_t>(servo_quarter_turn * std::uint64_t{tick_us} / 1'000'000));
+  const std::uint32_t resting_ticks = 500'000 / tick_us;
+  std::vector<std::int32_t> goals(plant_.servo_commands().begin(), plant_.servo_commands().end());
+  for (std::size_t i = std::min(first_pulses.size(), goals.size()); i-- > 0;) {
+    goals[first_pulses[i].joint] = first_pulses[i].command;
+  }
+  std::vector<std::int32_t> commands(plant_.servo_commands().begin(), plant_.servo_commands().end());
+  std::vector<sim::ServoPulse> pulses(goals.size());
+  for (std::uint32_t rested = 0; rested < resting_ticks; rested += commands == goals ? 1U : 0U) {
+    for (std::uint32_t joint = 0; joint < goals.size(); ++joint) {
+      commands[joint] = std::clamp(goals[joint], commands[joint] - step, commands[joint] + step);
+      pulses[joint] = {0, joint, commands[joint]};
+    }
+    player_.advance(0, pulses);
+  }
+  angles_.clear();
+  next_tick_ = 0;
+  remember_angles();
+}
+
 sim::TickSample Mirror::follow(const sim::TickSample& real) {
+  if (real.tick == 0) {
+    ramp_in(real.servo_pulses);
+  }
   player_.advance(real.tick, real.servo_pulses);
   remember_angles();
   compare();

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,8 @@ class Mirror {
   /// scenario: must outlive the mirror.
   explicit Mirror(const sim::Scenario& scenario);
 
-  /// The next tick of the gait. Returns the sample as it is for the simulated robot: its poses, angles, torques,
+  /// The next tick of the gait. Before the first one the simulated joints ramp in to its first pulses, as the real ones
+  /// do, so that both begin alike. Returns the sample as it is for the simulated robot: its poses, angles, torques,
   /// currents and forces. Valid until the next call. Throws PhysicsError as Plant does.
   sim::TickSample follow(const sim::TickSample& real);
 
@@ -46,6 +48,7 @@ class Mirror {
     unsigned joint;
     double angle;
   };
+  void ramp_in(std::span<const sim::ServoPulse> first_pulses);
   void remember_angles();
   void compare();
 

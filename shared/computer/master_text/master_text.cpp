@@ -14,6 +14,9 @@ std::string in_text(canopen::Address address) {
 
 std::string problem_text(const canopen::Problem& problem, const NodeName& name) {
   using canopen::ProblemCode;
+  if (problem.code == ProblemCode::lease_refused) {
+    return std::string(describe(problem.code)) + " (" + name(problem.node) + " has given it the lease)";
+  }
   std::string text = problem.node == 0 ? "" : name(problem.node) + ": ";
   text += describe(problem.code);
   switch (problem.code) {

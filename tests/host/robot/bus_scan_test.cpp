@@ -14,8 +14,6 @@ namespace {
 using host::BusScan;
 using host::ScannedNode;
 
-constexpr Microseconds second = 1'000'000;
-
 bool finish(LiveBus& bus, BusScan& scan, Microseconds at_most = 5 * second) {
   bus.attach(scan);
   scan.start(bus.now());

@@ -19,10 +19,9 @@
 #include "sim/live/live_robot.hpp"
 #include "sim/scenario/master_input.hpp"
 
+#include "live_bus.hpp"
+
 namespace proleg::test {
-
-inline constexpr Microseconds second = 1'000'000;
-
 /// An adapter between a program and the bus: queues frames, and reports what its controller sees, as SocketCAN does.
 class BusAdapter final : public CanPort, private sim::BusListener {
  public:

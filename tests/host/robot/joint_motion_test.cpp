@@ -18,7 +18,6 @@ namespace {
 
 namespace object = canopen::object;
 using State = host::JointMotion::State;
-constexpr Microseconds second = 1'000'000;
 constexpr std::int32_t degree = (1 << 30) / 90;
 /// Steps of a pulse (1/12 us): 24000 are 180 degrees.
 constexpr std::int32_t pulse_of_degrees(double degrees) {

@@ -14,6 +14,8 @@
 
 namespace proleg::test {
 
+inline constexpr Microseconds second = 1'000'000;
+
 class LiveBus final : public CanPort {
  public:
   explicit LiveBus(const sim::Scenario& scenario, sim::LiveRobotOptions options = {})

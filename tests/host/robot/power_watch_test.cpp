@@ -13,8 +13,6 @@
 namespace proleg::test {
 namespace {
 
-constexpr Microseconds second = 1'000'000;
-
 class PowerWatchTest : public ::testing::Test {
  protected:
   void SetUp() override {

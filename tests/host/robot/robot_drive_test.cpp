@@ -9,8 +9,6 @@
 namespace proleg::test {
 namespace {
 
-constexpr Microseconds second = 1'000'000;
-
 using canopen::MasterState;
 
 TEST(RobotDrive, HandsOutTheStateFramesOfEveryTickWithoutAGap) {

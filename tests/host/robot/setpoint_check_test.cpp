@@ -14,9 +14,7 @@ namespace {
 using canopen::MasterState;
 using host::SetpointCheck;
 using Result = SetpointCheck::Result;
-using State = canopen::Master::SetpointChecksum::State;
-
-constexpr Microseconds second = 1'000'000;
+using ChecksumState = canopen::Master::SetpointChecksum::State;
 
 /// A run of some ticks, and then the stop, in which the master reads the checksums.
 class DrivenRobot {
@@ -59,7 +57,7 @@ TEST(SetpointCheckOfADrive, EveryBitOfEverySetpointIsEqual) {
   drive.run();
   const SetpointCheck check = expected(drive.scenario);
   for (unsigned joint = 0; joint < 5; ++joint) {
-    EXPECT_EQ(drive.found(joint).state, State::read);
+    EXPECT_EQ(drive.found(joint).state, ChecksumState::read);
     EXPECT_GE(drive.found(joint).ticks, 300U);
     EXPECT_EQ(check.compare(joint, drive.found(joint)), Result::equal) << "joint " << joint;
   }
@@ -110,13 +108,13 @@ TEST(SetpointCheck, KnowsTheLastTicksOnly) {
     crcs.push_back(crc.value());
   }
   const auto result = [&](std::uint32_t ticks) {
-    return check.compare(0, {State::read, ticks, ticks < crcs.size() ? crcs[ticks] : 0});
+    return check.compare(0, {ChecksumState::read, ticks, ticks < crcs.size() ? crcs[ticks] : 0});
   };
   EXPECT_EQ(result(SetpointCheck::kept_ticks + 10), Result::equal);
   EXPECT_EQ(result(11), Result::equal);
   EXPECT_EQ(result(10), Result::unknown_tick);
   EXPECT_EQ(result(SetpointCheck::kept_ticks + 11), Result::unknown_tick);
-  EXPECT_EQ(check.compare(0, {State::not_available, 0, 0}), Result::no_checksum);
+  EXPECT_EQ(check.compare(0, {ChecksumState::not_available, 0, 0}), Result::no_checksum);
 }
 
 }  // namespace

@@ -17,8 +17,6 @@ namespace {
 
 using canopen::MasterState;
 
-constexpr Microseconds second = 1'000'000;
-
 /// The bus of two hosts: each receives what the other sends.
 class SharedBus {
  public:

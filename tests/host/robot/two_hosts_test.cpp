@@ -94,7 +94,7 @@ class SharedBus {
 
 class Host {
  public:
-  Host(SharedBus& bus, unsigned number, const sim::Scenario& scenario) : bus_(bus), number_(number), input_(scenario) {
+  Host(SharedBus& bus, unsigned number, const sim::Scenario& scenario) : bus_(bus), input_(scenario) {
     canopen::MasterOptions options = host_options();
     options.session_token = 0x1000 + number;
     drive_ = std::make_unique<host::RobotDrive>(bus.adapter(number), input_.setup, options, input_.changes);
@@ -114,7 +114,6 @@ class Host {
 
  private:
   SharedBus& bus_;
-  unsigned number_;
   sim::MasterInput input_;
   std::unique_ptr<host::RobotDrive> drive_;
 };

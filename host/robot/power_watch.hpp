@@ -13,8 +13,8 @@ namespace proleg::host {
 
 /// Whether the joints of a robot that moves still follow its gait: none of them is in a fault, without power, or on its
 /// way to the safe pose. A fault is in the state frames of the module; for the rest the statuswords are read, one
-/// module after the other, each of them every 0.8 s or more often, with 20 ms between two requests at least: TICK has
-/// its gaps.
+/// module after the other, each of them every 0.8 s or more often (60 modules: every 1.2 s), with 20 ms between two
+/// requests at least: TICK has its gaps.
 class PowerWatch final : public BusUser {
  public:
   /// What was found.

@@ -23,10 +23,13 @@ start_drive() {
   "$PROLEG_BIN/proleg-drive" "$scenarios/travelling_wave/uniform.simulation.xml" --bus "$radio" --seconds 60 \
     >out 2>errors &
   drive=$!
+  wait_for 30 has_power
   wait_for 30 walks
 }
 # As `proleg bus --verbose` prints it: all joints have got power once more.
-walks() { [ "$(grep -c 'has power' bus)" -ge $((powered + 5)) ]; }
+has_power() { [ "$(grep -c 'has power' bus)" -ge $((powered + 5)) ]; }
+# The joints have ramped in, and half a second of gait is over.
+walks() { [ "$("$PROLEG_BIN/proleg-get" 1 0x2001:7 --bus "$wire" | sed -n 's/.*(\([0-9]*\)).*/\1/p')" -gt 50 ]; }
 holds() { "$PROLEG_BIN/proleg-scan" --bus "$wire" | grep -c 'quick stop' | grep -q '^5$'; }
 has_ended() { ! kill -0 $drive 2>/dev/null; }
 

@@ -19,7 +19,7 @@ class HostWatch {
 
   /// A heartbeat of any node. Whether it is the one that is expected.
   bool receive_heartbeat(Microseconds now, std::uint8_t node) {
-    const bool is_expected = (expected_ & 0xFFFFU) != 0 && node == expected_ >> 16U;
+    const bool is_expected = expects_heartbeat() && node == expected_ >> 16U;
     if (is_expected) {
       start(now);
     }

@@ -1,12 +1,8 @@
 #include "host/robot/answer_times.hpp"
 
+#include "shared/canopen/sdo_frame.hpp"
+
 namespace proleg::host {
-namespace {
-
-/// CiA 301: the host ends a transfer. Nobody answers that.
-constexpr std::uint8_t abort_command = 0x80;
-
-}  // namespace
 
 void AnswerTimes::requested(Microseconds now, const CanFrame& frame) {
   namespace identifier = canopen::identifier;
@@ -15,8 +11,8 @@ void AnswerTimes::requested(Microseconds now, const CanFrame& frame) {
     return;
   }
   std::optional<Request>& waiting = waiting_.at(node);
-  if (frame.length > 0 && frame.data[0] == abort_command) {
-    waiting.reset();
+  if (frame.length > 0 && frame.data[0] == canopen::sdo::abort) {
+    waiting.reset();  // it has no answer
   } else if (!waiting || waiting->frame != frame) {
     waiting = Request{now, frame};
   }

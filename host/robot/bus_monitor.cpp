@@ -6,18 +6,7 @@
 #include "shared/canopen/declared_objects.hpp"
 
 namespace proleg::host {
-namespace {
-
-canopen::SdoTransferOptions reading_options() {
-  canopen::SdoTransferOptions options;
-  options.timeout_us = 100'000;
-  options.attempts = 2;
-  return options;
-}
-
-}  // namespace
-
-BusMonitor::BusMonitor(CanPort& port) : readings_(port, reading_options()) {
+BusMonitor::BusMonitor(CanPort& port) : readings_(port, periodic_reading_options()) {
   for (std::size_t node = 0; node < nodes_.size(); ++node) {
     nodes_.at(node).node = static_cast<std::uint8_t>(node);
   }

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "shared/canopen/power_state.hpp"
+
 namespace proleg::host {
 namespace {
 
@@ -15,8 +17,6 @@ using canopen::EmergencyCode;
 constexpr unsigned fault_bits = 0x4F;
 constexpr unsigned fault = 0x08;
 constexpr unsigned fault_reaction = 0x0F;
-constexpr unsigned quick_stop_bits = 0x6F;
-constexpr unsigned quick_stop_active = 0x07;
 
 /// A cause of Fault: its bit in the error register (0x1001, CiA 301), and what a person does.
 struct Cause {
@@ -125,7 +125,7 @@ std::optional<Finding> find_quick_stop(const BusObservations& observations) {
   std::vector<const ObservedNode*> stopped;
   std::vector<std::uint8_t> nodes;
   for (const ObservedNode& node : observations.nodes) {
-    if (is_module(node) && (node.answers->statusword & quick_stop_bits) == quick_stop_active) {
+    if (is_module(node) && (node.answers->statusword & canopen::drive_state_bits) == canopen::drive_quick_stop_active) {
       stopped.push_back(&node);
       nodes.push_back(node.node);
     }

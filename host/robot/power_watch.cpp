@@ -3,16 +3,10 @@
 #include <algorithm>
 
 #include "shared/canopen/declared_objects.hpp"
+#include "shared/canopen/power_state.hpp"
 
 namespace proleg::host {
 namespace {
-
-canopen::SdoTransferOptions statusword_options() {
-  canopen::SdoTransferOptions options;
-  options.timeout_us = 100'000;
-  options.attempts = 2;
-  return options;
-}
 
 Microseconds period_for(std::size_t modules) {
   constexpr Microseconds round_us = 800'000;
@@ -21,14 +15,10 @@ Microseconds period_for(std::size_t modules) {
   return std::clamp(round_us / std::max<std::size_t>(modules, 1), shortest_us, longest_us);
 }
 
-// CiA 402, table 30.
-constexpr std::uint16_t state_bits = 0x6F;
-constexpr std::uint16_t operation_enabled = 0x27;
-
 }  // namespace
 
 PowerWatch::PowerWatch(CanPort& port, std::vector<std::uint8_t> nodes)
-    : readings_(port, statusword_options()), period_us_(period_for(nodes.size())) {
+    : readings_(port, periodic_reading_options()), period_us_(period_for(nodes.size())) {
   for (const std::uint8_t node : nodes) {
     modules_.push_back({node});
   }
@@ -98,7 +88,7 @@ void PowerWatch::read(std::uint8_t node) {
 }
 
 void PowerWatch::judge(const Module& module, std::uint16_t statusword) {
-  if (!loss_ && !module.is_away && (statusword & state_bits) != operation_enabled) {
+  if (!loss_ && !module.is_away && (statusword & canopen::drive_state_bits) != canopen::drive_operation_enabled) {
     loss_ = Loss{module.node, statusword, module.emergency};
   }
 }

@@ -22,6 +22,14 @@ namespace proleg::host {
 inline constexpr Microseconds patient_timeout_us = 150'000;
 inline constexpr unsigned patient_attempts = 8;
 
+/// Of values that are read again and again: what is lost comes with the next reading.
+[[nodiscard]] inline canopen::SdoTransferOptions periodic_reading_options() {
+  canopen::SdoTransferOptions options;
+  options.timeout_us = 100'000;
+  options.attempts = 2;
+  return options;
+}
+
 struct SdoResult {
   canopen::AbortCode abort_code = canopen::AbortCode::none;  ///< `timeout`: no answer
   std::vector<std::uint8_t> value;                           ///< of a read

@@ -1,11 +1,10 @@
 #include "host/robot/state_text.hpp"
 
+#include "shared/canopen/power_state.hpp"
+
 namespace proleg::host {
 namespace {
 
-constexpr unsigned operation_enabled = 0x27;
-constexpr unsigned quick_stop_active = 0x07;
-constexpr unsigned with_quick_stop_bit = 0x6F;
 constexpr unsigned without_quick_stop_bit = 0x4F;
 
 }  // namespace
@@ -37,14 +36,14 @@ std::string_view drive_text(std::uint16_t statusword) {
     default:
       break;
   }
-  switch (statusword & with_quick_stop_bit) {
+  switch (statusword & canopen::drive_state_bits) {
     case 0x21:
       return "ready to switch on";
     case 0x23:
       return "switched on";
-    case operation_enabled:
+    case canopen::drive_operation_enabled:
       return "operation enabled";
-    case quick_stop_active:
+    case canopen::drive_quick_stop_active:
       return "quick stop";
     default:
       return "unknown state";

@@ -14,7 +14,7 @@ constexpr unsigned fault_reset_bit = 1U << 7U;
 /// the module obeys the controlword (remote).
 constexpr unsigned always = 1U << 4U | 1U << 9U;
 
-/// Bits 0-3, 5 and 6 of the statusword (CiA 402, state coding).
+/// Those of drive_state_bits.
 constexpr unsigned state_bits(PowerState state) {
   switch (state) {
     case PowerState::switch_on_disabled:
@@ -24,9 +24,9 @@ constexpr unsigned state_bits(PowerState state) {
     case PowerState::switched_on:
       return 0x23;
     case PowerState::operation_enabled:
-      return 0x27;
+      return drive_operation_enabled;
     case PowerState::quick_stop_active:
-      return 0x07;
+      return drive_quick_stop_active;
     case PowerState::fault:
       break;
   }

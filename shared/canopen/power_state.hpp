@@ -15,6 +15,11 @@ enum class PowerState : std::uint8_t {
   fault,
 };
 
+/// Bits 0-3, 5 and 6 of the statusword, which say in which state a drive is, and their values (CiA 402, state coding).
+inline constexpr std::uint16_t drive_state_bits = 0x6F;
+inline constexpr std::uint16_t drive_operation_enabled = 0x27;
+inline constexpr std::uint16_t drive_quick_stop_active = 0x07;
+
 /// The state machine behind controlword (0x6040) and statusword (0x6041).
 class PowerControl {
  public:

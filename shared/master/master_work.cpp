@@ -1,4 +1,5 @@
 #include "shared/canopen/objects.hpp"
+#include "shared/canopen/power_state.hpp"
 #include "shared/master/master.hpp"
 
 // The SDO transfers of each phase, and how the master handles their results.
@@ -150,10 +151,8 @@ bool Master::on_value(unsigned joint, std::size_t position, std::uint32_t value)
     return true;
   }
   if (phase_ == Phase::enable) {
-    constexpr std::uint32_t state_bits = 0x6F;  // CiA 402, table 30
-    constexpr std::uint32_t operation_enabled = 0x27;
-    value &= state_bits;
-    return expect(operation_enabled, ProblemCode::not_enabled);
+    value &= drive_state_bits;
+    return expect(drive_operation_enabled, ProblemCode::not_enabled);
   }
   const std::uint32_t serial = options_.serials.empty() ? 0 : options_.serials[joint];
   switch (position) {

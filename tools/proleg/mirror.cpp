@@ -18,7 +18,7 @@ Mirror::Mirror(const sim::Scenario& scenario)
   remember_angles();
 }
 
-/// Some ticks that nobody sees: the way of each servo at 90 degrees a second, and half a second at rest.
+/// Some ticks that are not recorded: the way of each servo at 90 degrees a second, and half a second at rest.
 void Mirror::ramp_in(std::span<const sim::ServoPulse> first_pulses) {
   const std::uint32_t tick_us = scenario_.kernel.tick_period_us;
   const std::int32_t step =

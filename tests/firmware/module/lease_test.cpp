@@ -37,7 +37,7 @@ TEST_F(LeaseOfAModule, IsFreeAtFirstAndBelongsToTheFirstWhoTakesIt) {
 }
 
 TEST_F(LeaseOfAModule, IsNotReleasedByAWriteOfZero) {
-  EXPECT_EQ(take(0), AbortCode::none) << "nobody has it";
+  EXPECT_EQ(take(0), AbortCode::none) << "no host has it";
   ASSERT_EQ(take(7), AbortCode::none);
   EXPECT_EQ(take(0), AbortCode::refused_by_state);
   EXPECT_EQ(holder(), 7U);

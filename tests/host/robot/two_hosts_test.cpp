@@ -202,10 +202,10 @@ TEST(TwoHosts, ARobotWhoseHostDiedIsFreeHalfASecondLater) {
   }
   ASSERT_TRUE(first->runs());
   // It dies: nothing of it is sent any more.
-  class Nobody final : public host::BusUser {
+  class Absent final : public host::BusUser {
     void receive(Microseconds /*now*/, const CanFrame& /*frame*/) override {}
-  } nobody;
-  bus.attach(0, nobody);
+  } absent;
+  bus.attach(0, absent);
   Host heir(bus, 1, scenario);
   heir.start();
   for (unsigned i = 0; i < 100 && !heir.runs(); ++i) {

@@ -61,7 +61,8 @@ class Adapter:
         return self
 
     def __exit__(self, *_):
-        os.close(self.line)
+        os.close(self.line)  # which ends the thread: it must not read from the next adapter with this number
+        self.thread.join(LONGEST)
         os.close(self.end)
 
 

@@ -1,0 +1,94 @@
+#pragma once
+
+// The two slots of the flash. The program of the module runs from slot A; slot B holds a copy of the last image that
+// has proven itself. A or B always holds a complete image, whenever the power fails:
+//
+//   install   copies A to B if A is proven and B is not the same, then erases A and writes the new image
+//   start     A is complete and confirmed: it runs
+//             A is complete but not confirmed: it runs on trial, at most `max_attempts` times; after that B is restored
+//             A is not complete: B is restored
+//             neither: there is nothing to run
+//   restore   erases A and copies B to A
+//
+// An image is confirmed when it has started well (the module's own check, or its host). The header of an image is
+// written last, so a header that is right stands before a body that was written completely.
+//
+// Contents of a slot:
+//   0                           image (shared/image/image_header.hpp)
+//   size - 16                   u32  the word `confirmed_word`, or erased
+//   size - 12, - 8, - 4         u32  erased; 0 for each start on trial
+// The words are programmed once each; one erase clears image and words.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "shared/image/image_header.hpp"
+
+namespace proleg::bootloader {
+
+enum class Slot : std::uint8_t { a, b };
+
+/// The flash of the two slots. An operation takes long; nothing else runs meanwhile.
+class SlotFlash {
+ public:
+  /// All bytes become 0xFF. Whether it succeeded.
+  [[nodiscard]] virtual bool erase(Slot slot) = 0;
+  /// Programs bytes that are 0xFF, word by word in ascending order. offset and size: multiples of 4. Whether it
+  /// succeeded.
+  [[nodiscard]] virtual bool program(Slot slot, std::uint32_t offset, std::span<const std::uint8_t> bytes) = 0;
+  /// The bytes of a slot: the same number for both, a multiple of 4, more than an image and 16 bytes.
+  [[nodiscard]] virtual std::span<const std::uint8_t> contents(Slot slot) const = 0;
+
+ protected:
+  ~SlotFlash() = default;
+};
+
+enum class StartResult : std::uint8_t {
+  run,           ///< the image in A, which is confirmed
+  run_on_trial,  ///< the image in A; a start on trial has been counted
+  nothing,       ///< no slot has an image that may run
+  flash_failed,  ///< the flash does not do what it should; what the slots hold may run at another try
+};
+
+enum class InstallResult : std::uint8_t {
+  ok,
+  already_there,  ///< A holds this image, and has not failed to start; nothing was written
+  backup_failed,  ///< the flash of B failed; A is as it was
+  flash_failed,   ///< the flash of A failed; B will be restored at the next start
+};
+
+class Slots {
+ public:
+  static constexpr unsigned max_attempts = 3;
+  static constexpr std::uint32_t confirmed_word = 0x600D'600D;
+  static constexpr std::uint32_t words_size = 4 * (1 + max_attempts);  ///< at the end of a slot
+
+  /// place: of images on this board, with the room that a slot has.
+  Slots(SlotFlash& flash, const image::Place& place) : flash_(flash), place_(place) {}
+
+  /// Decides what runs, and restores A if that is needed.
+  [[nodiscard]] StartResult prepare_start();
+  /// Writes an image into A. header and body: checked by the caller against each other and against the place.
+  [[nodiscard]] InstallResult install(const image::Header& header, std::span<const std::uint8_t> body);
+  /// The image in A has started well. Whether the flash holds that now. Does nothing if it is known already.
+  [[nodiscard]] bool confirm();
+
+  /// Of the complete image in a slot; nothing without one.
+  [[nodiscard]] std::optional<image::Header> image_in(Slot slot) const;
+  [[nodiscard]] bool is_confirmed(Slot slot) const;
+  /// Starts on trial of the image in A.
+  [[nodiscard]] unsigned attempts() const;
+
+ private:
+  [[nodiscard]] bool write(Slot slot, const image::Header& header, std::span<const std::uint8_t> body, bool is_proven);
+  [[nodiscard]] std::span<const std::uint8_t> body_in(Slot slot, const image::Header& header) const;
+  [[nodiscard]] std::uint32_t word_at(Slot slot, std::uint32_t offset) const;
+  [[nodiscard]] std::uint32_t words_at() const;
+
+  SlotFlash& flash_;
+  image::Place place_;
+};
+
+}  // namespace proleg::bootloader

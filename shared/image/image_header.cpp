@@ -1,0 +1,194 @@
+#include "shared/image/image_header.hpp"
+
+#include "shared/fixed/crc32.hpp"
+#include "shared/fixed/little_endian.hpp"
+
+namespace proleg::image {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+constexpr std::uint32_t magic = 0x474D4950;  // "PIMG"
+constexpr std::uint16_t format = 1;
+
+constexpr std::size_t magic_at = 0;
+constexpr std::size_t format_at = 4;
+constexpr std::size_t size_at = 6;
+constexpr std::size_t board_at = 8;
+constexpr std::size_t lowest_revision_at = 10;
+constexpr std::size_t highest_revision_at = 11;
+constexpr std::size_t major_at = 12;
+constexpr std::size_t minor_at = 14;
+constexpr std::size_t patch_at = 16;
+constexpr std::size_t protocol_at = 18;
+constexpr std::size_t fingerprint_at = 20;
+constexpr std::size_t schema_at = 24;
+constexpr std::size_t flags_at = 25;
+constexpr std::size_t address_at = 28;
+constexpr std::size_t length_at = 32;
+constexpr std::size_t body_crc_at = 36;
+constexpr std::size_t commit_at = 40;
+constexpr std::size_t key_at = 60;
+constexpr std::size_t hash_at = 64;
+constexpr std::size_t signature_at = 96;
+constexpr std::size_t signature_end = 160;
+constexpr std::size_t header_crc_at = header_size - 4;
+
+constexpr std::uint8_t flag_changed_sources = 1;
+
+std::uint16_t half_word(Bytes bytes, std::size_t at) {
+  return static_cast<std::uint16_t>(read_little_endian(bytes, at, 2));
+}
+
+template <std::size_t Size>
+void read_bytes(Bytes bytes, std::size_t at, std::array<std::uint8_t, Size>& value) {
+  for (std::size_t i = 0; i < Size; ++i) {
+    value[i] = bytes[at + i];
+  }
+}
+
+template <std::size_t Size>
+void write_bytes(HeaderBytes& bytes, std::size_t at, const std::array<std::uint8_t, Size>& value) {
+  for (std::size_t i = 0; i < Size; ++i) {
+    bytes[at + i] = value[i];
+  }
+}
+
+bool is_zero(Bytes bytes) {
+  std::uint8_t any = 0;
+  for (const std::uint8_t byte : bytes) {
+    any |= byte;
+  }
+  return any == 0;
+}
+
+bool has_possible_values(const Header& header, Bytes bytes) {
+  constexpr std::size_t reserved_at = flags_at + 1;
+  return header.lowest_revision <= header.highest_revision && header.length != 0 && header.length % 4 == 0 &&
+         header.address % header_size == 0 && bytes[flags_at] <= flag_changed_sources &&
+         is_zero(bytes.subspan(reserved_at, address_at - reserved_at)) &&
+         is_zero(bytes.subspan(signature_end, header_crc_at - signature_end));
+}
+
+}  // namespace
+
+std::string_view describe(Error error) {
+  switch (error) {
+    case Error::none:
+      return "no error";
+    case Error::too_short:
+      return "it is shorter than the header of an image";
+    case Error::not_an_image:
+      return "it is no image of a module";
+    case Error::unknown_format:
+      return "its format is that of a later version";
+    case Error::damaged_header:
+      return "its header is damaged";
+    case Error::impossible_value:
+      return "its header has an impossible value";
+    case Error::other_board:
+      return "it is for another board";
+    case Error::other_revision:
+      return "it is for other hardware revisions of the board";
+    case Error::other_address:
+      return "it is linked for another address";
+    case Error::too_large:
+      return "it is too large for the board";
+    case Error::wrong_length:
+      return "it has not the length that its header gives";
+    case Error::damaged_body:
+      return "its program is damaged: the checksum is wrong";
+  }
+  return "unknown error";
+}
+
+HeaderBytes encode(const Header& header) {
+  HeaderBytes bytes{};
+  write_little_endian(bytes, magic_at, 4, magic);
+  write_little_endian(bytes, format_at, 2, format);
+  write_little_endian(bytes, size_at, 2, header_size);
+  write_little_endian(bytes, board_at, 2, header.board_id);
+  bytes[lowest_revision_at] = header.lowest_revision;
+  bytes[highest_revision_at] = header.highest_revision;
+  write_little_endian(bytes, major_at, 2, header.version.major);
+  write_little_endian(bytes, minor_at, 2, header.version.minor);
+  write_little_endian(bytes, patch_at, 2, header.version.patch);
+  write_little_endian(bytes, protocol_at, 2, header.protocol);
+  write_little_endian(bytes, fingerprint_at, 4, header.core_fingerprint);
+  bytes[schema_at] = header.settings_schema;
+  bytes[flags_at] = header.has_changed_sources ? flag_changed_sources : 0;
+  write_little_endian(bytes, address_at, 4, header.address);
+  write_little_endian(bytes, length_at, 4, header.length);
+  write_little_endian(bytes, body_crc_at, 4, header.crc);
+  write_bytes(bytes, commit_at, header.commit);
+  write_little_endian(bytes, key_at, 4, header.key_id);
+  write_bytes(bytes, hash_at, header.hash);
+  write_bytes(bytes, signature_at, header.signature);
+  write_little_endian(bytes, header_crc_at, 4, crc32(Bytes(bytes).first(header_crc_at)));
+  return bytes;
+}
+
+HeaderResult decode(Bytes bytes) {
+  HeaderResult result;
+  const auto failed = [&result](Error error) {
+    result.error = error;
+    return result;
+  };
+  if (bytes.size() < header_size) {
+    return failed(Error::too_short);
+  }
+  if (read_little_endian(bytes, magic_at, 4) != magic) {
+    return failed(Error::not_an_image);
+  }
+  if (half_word(bytes, format_at) != format || half_word(bytes, size_at) != header_size) {
+    return failed(Error::unknown_format);
+  }
+  if (read_little_endian(bytes, header_crc_at, 4) != crc32(bytes.first(header_crc_at))) {
+    return failed(Error::damaged_header);
+  }
+  Header& header = result.header;
+  header.board_id = half_word(bytes, board_at);
+  header.lowest_revision = bytes[lowest_revision_at];
+  header.highest_revision = bytes[highest_revision_at];
+  header.version = {half_word(bytes, major_at), half_word(bytes, minor_at), half_word(bytes, patch_at)};
+  header.protocol = half_word(bytes, protocol_at);
+  header.core_fingerprint = read_little_endian(bytes, fingerprint_at, 4);
+  header.settings_schema = bytes[schema_at];
+  header.has_changed_sources = (bytes[flags_at] & flag_changed_sources) != 0;
+  header.address = read_little_endian(bytes, address_at, 4);
+  header.length = read_little_endian(bytes, length_at, 4);
+  header.crc = read_little_endian(bytes, body_crc_at, 4);
+  read_bytes(bytes, commit_at, header.commit);
+  header.key_id = read_little_endian(bytes, key_at, 4);
+  read_bytes(bytes, hash_at, header.hash);
+  read_bytes(bytes, signature_at, header.signature);
+  return has_possible_values(header, bytes) ? result : failed(Error::impossible_value);
+}
+
+Error check_place(const Header& header, const Place& place) {
+  if (header.board_id != place.board_id) {
+    return Error::other_board;
+  }
+  if (place.revision < header.lowest_revision || place.revision > header.highest_revision) {
+    return Error::other_revision;
+  }
+  if (header.address != place.address) {
+    return Error::other_address;
+  }
+  return header.length > place.room ? Error::too_large : Error::none;
+}
+
+Error check_body(const Header& header, Bytes body) {
+  if (body.size() != header.length) {
+    return Error::wrong_length;
+  }
+  return crc32(body) == header.crc && sha256(body) == header.hash ? Error::none : Error::damaged_body;
+}
+
+void describe_body(Header& header, Bytes body) {
+  header.length = static_cast<std::uint32_t>(body.size());
+  header.crc = crc32(body);
+  header.hash = sha256(body);
+}
+
+}  // namespace proleg::image

@@ -1,0 +1,114 @@
+#pragma once
+
+// An image is the program of a module as it is sent over the bus and written into flash: a header of 512 bytes, then
+// the body, which begins with the vector table. The header says for which boards the body is, and what it contains.
+//
+// Header, format 1 (little-endian; what is not listed is 0):
+//   0  u32  magic, the characters PIMG
+//   4  u16  format, 1
+//   6  u16  bytes of the header, 512
+//   8  u16  board id, as object 0x2000:4
+//  10  u8   lowest hardware revision of the board, u8 highest
+//  12  u16  version: major, u16 minor, u16 patch
+//  18  u16  version of the protocol, as object 0x2000:1
+//  20  u32  core fingerprint, as object 0x2000:3
+//  24  u8   schema version of the settings that the program writes
+//  25  u8   flags; bit 0: the sources were not those of the commit
+//  28  u32  address for which the body is linked
+//  32  u32  bytes of the body, a multiple of 4
+//  36  u32  CRC-32 (shared/fixed/crc32.hpp) of the body
+//  40  20 bytes  git commit of the sources; all 0: not known
+//  60  u32  key id; 0: not signed
+//  64  32 bytes  SHA-256 of the body
+//  96  64 bytes  signature; readers of format 1 do not look at it
+// 508  u32  CRC-32 of the 508 bytes before
+//
+// A bootloader writes the header last: a valid header stands before a complete body.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "shared/image/sha256.hpp"
+
+namespace proleg::image {
+
+inline constexpr std::size_t header_size = 512;
+using HeaderBytes = std::array<std::uint8_t, header_size>;
+
+struct Version {
+  std::uint16_t major = 0;
+  std::uint16_t minor = 0;
+  std::uint16_t patch = 0;
+
+  friend constexpr auto operator<=>(const Version&, const Version&) = default;
+};
+
+struct Header {
+  std::uint16_t board_id = 0;
+  std::uint8_t lowest_revision = 0;
+  std::uint8_t highest_revision = 0;  ///< at least the lowest
+  Version version;
+  std::uint16_t protocol = 0;
+  std::uint32_t core_fingerprint = 0;
+  std::uint8_t settings_schema = 0;
+  bool has_changed_sources = false;
+  std::uint32_t address = 0;  ///< of the body
+  std::uint32_t length = 0;   ///< bytes of the body: a multiple of 4, not 0
+  std::uint32_t crc = 0;      ///< CRC-32 of the body
+  std::array<std::uint8_t, 20> commit{};
+  std::uint32_t key_id = 0;
+  Sha256::Hash hash{};  ///< SHA-256 of the body
+  std::array<std::uint8_t, 64> signature{};
+
+  friend bool operator==(const Header&, const Header&) = default;
+};
+
+/// Where and on which board an image would run.
+struct Place {
+  std::uint16_t board_id = 0;
+  std::uint8_t revision = 0;  ///< of the board's hardware
+  std::uint32_t address = 0;  ///< where bodies begin
+  std::uint32_t room = 0;     ///< bytes for a body
+};
+
+enum class Error : std::uint8_t {
+  none,
+  too_short,         ///< fewer bytes than a header has
+  not_an_image,      ///< another magic
+  unknown_format,    ///< a format or a header size of a later version
+  damaged_header,    ///< its CRC is wrong
+  impossible_value,  ///< the CRC is right, but a value is out of its range
+  other_board,
+  other_revision,
+  other_address,  ///< it is linked for another place
+  too_large,
+  wrong_length,  ///< there are more or fewer bytes than the header says
+  damaged_body,  ///< its CRC or its SHA-256 is wrong
+};
+
+/// For a person, without a full stop.
+[[nodiscard]] std::string_view describe(Error error);
+
+/// The bytes of a header; its CRC is computed.
+[[nodiscard]] HeaderBytes encode(const Header& header);
+
+struct HeaderResult {
+  Header header;  ///< of use if error is `none`
+  Error error = Error::none;
+};
+
+/// The header at the beginning of some bytes. The body is not looked at.
+[[nodiscard]] HeaderResult decode(std::span<const std::uint8_t> bytes);
+
+/// Whether an image with this header can run there: `other_board` to `too_large`, or `none`.
+[[nodiscard]] Error check_place(const Header& header, const Place& place);
+
+/// Whether a body is the one that the header describes: `wrong_length`, `damaged_body`, or `none`.
+[[nodiscard]] Error check_body(const Header& header, std::span<const std::uint8_t> body);
+
+/// Enters length, CRC and SHA-256 of a body.
+void describe_body(Header& header, std::span<const std::uint8_t> body);
+
+}  // namespace proleg::image

@@ -1,0 +1,187 @@
+// Cuts of the power at every operation of the flash: of an update, of the restart after it, and of the update's
+// repetition. Every one must leave a module that runs the old or the new image, and that can be updated.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+
+#include "updated_module.hpp"
+
+namespace proleg::bootloader {
+namespace {
+
+using namespace test;
+
+constexpr std::uint32_t seed = 7;
+
+/// What is done to a module; the power may fail meanwhile.
+using Work = std::function<void(UpdatedModule&)>;
+
+struct Scenario {
+  const char* name;
+  Work before;                    ///< without a cut
+  Work work;                      ///< with a cut at each of its operations
+  std::vector<unsigned> allowed;  ///< images of which one must run afterwards; 0: none
+  bool has_proven;                ///< an image that has proven itself, before the work
+};
+
+void update(UpdatedModule& module) {
+  static_cast<void>(module.install(second));
+  static_cast<void>(module.slots.prepare_start());
+  static_cast<void>(module.slots.confirm());
+}
+
+void start(UpdatedModule& module) { static_cast<void>(module.slots.prepare_start()); }
+
+const Scenario scenarios[]{
+    {"the first image",
+     [](UpdatedModule&) {},
+     [](UpdatedModule& module) { static_cast<void>(module.install(first)); },
+     {0, 1},
+     false},
+    {"an update", [](UpdatedModule& module) { module.install_proven(first); }, update, {1, 2}, true},
+    {"an update of a module with a backup",
+     [](UpdatedModule& module) {
+       module.install_proven(third);
+       module.install_proven(first);
+     },
+     update,
+     {1, 2},
+     true},
+    {"an update of an image that has not proven itself",
+     [](UpdatedModule& module) {
+       module.install_proven(first);
+       static_cast<void>(module.install(third));
+       static_cast<void>(module.start());
+     },
+     update,
+     {1, 2, 3},
+     true},
+    {"an update of a first image that has not proven itself",
+     [](UpdatedModule& module) {
+       static_cast<void>(module.install(first));
+       static_cast<void>(module.start());
+     },
+     update,
+     {1, 2},
+     false},
+    {"the return to the image before",
+     [](UpdatedModule& module) {
+       module.install_proven(first);
+       static_cast<void>(module.install(second));
+       for (unsigned attempt = 0; attempt < Slots::max_attempts; ++attempt) {
+         static_cast<void>(module.start());
+       }
+     },
+     start,
+     {1},
+     true},
+    {"the return after a start of the update was cut",
+     [](UpdatedModule& module) {
+       module.install_proven(first);
+       module.flash.cut_at = module.flash.operations + 150;
+       EXPECT_THROW(static_cast<void>(module.install(second)), PowerCut);
+     },
+     start,
+     {1},
+     true},
+};
+
+/// The power returns.
+void expect_to_run(const Scenario& scenario, const SlotMemory& flash) {
+  UpdatedModule module(flash);
+  const unsigned running = module.start();
+  EXPECT_NE(std::ranges::find(scenario.allowed, running), scenario.allowed.end()) << "image " << running << " runs";
+}
+
+void expect_to_accept_an_update(const SlotMemory& flash) {
+  UpdatedModule module(flash);
+  static_cast<void>(module.start());
+  const InstallResult result = module.install(second);
+  EXPECT_TRUE(result == InstallResult::ok || result == InstallResult::already_there);
+  EXPECT_EQ(module.start(), 2U);
+  EXPECT_TRUE(module.slots.confirm());
+}
+
+/// Whether the power failed at an operation, counted from the work's first one.
+bool is_cut(SlotMemory& flash, int operation, const Work& work) {
+  UpdatedModule module(flash);
+  module.flash.cut_at = module.flash.operations + operation;
+  bool failed = false;
+  try {
+    work(module);
+  } catch (const PowerCut&) {
+    failed = true;
+  }
+  flash = module.flash;
+  return failed;
+}
+
+class PowerCuts : public testing::TestWithParam<Scenario> {
+ protected:
+  PowerCuts() {
+    UpdatedModule module;
+    GetParam().before(module);
+    prepared_ = module.flash;
+  }
+
+  /// The same state, with noise of its own for what a cut leaves.
+  [[nodiscard]] SlotMemory prepared(unsigned number) const {
+    SlotMemory flash = prepared_;
+    flash.noise.seed(seed + number);
+    return flash;
+  }
+
+ private:
+  SlotMemory prepared_{slot_size};
+};
+
+TEST_P(PowerCuts, AtEveryOperationAndAtEveryOperationOfTheRestartLeaveAModuleThatRuns) {
+  const Scenario& scenario = GetParam();
+  unsigned cuts = 0;
+  unsigned second_cuts = 0;
+  for (SlotMemory flash = prepared(0); is_cut(flash, static_cast<int>(cuts), scenario.work); flash = prepared(++cuts)) {
+    SCOPED_TRACE(testing::Message() << "cut at operation " << cuts << ", seed " << seed);
+    expect_to_run(scenario, flash);
+    expect_to_accept_an_update(flash);
+    SlotMemory restarted = flash;
+    constexpr unsigned step = PROLEG_CUT_STEP;
+    for (unsigned cut = cuts % step; is_cut(restarted, static_cast<int>(cut), start); restarted = flash) {
+      SCOPED_TRACE(testing::Message() << "and at operation " << cut << " of the restart");
+      expect_to_run(scenario, restarted);
+      cut += step;
+      ++second_cuts;
+    }
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(cuts, 0U);
+  std::printf("%s: %u cuts, and %u second ones while the module restarts\n", scenario.name, cuts, second_cuts);
+}
+
+TEST_P(PowerCuts, OneAfterTheOtherLeaveAModuleThatRuns) {
+  const Scenario& scenario = GetParam();
+  std::mt19937 random(seed);
+  constexpr unsigned rounds = 500;
+  for (unsigned round = 0; round < rounds; ++round) {
+    SCOPED_TRACE(testing::Message() << "round " << round << ", seed " << seed);
+    SlotMemory flash = prepared(round);
+    static_cast<void>(is_cut(flash, static_cast<int>(random() % 500), scenario.work));
+    for (int step = 0; step < 5; ++step) {
+      static_cast<void>(is_cut(flash, static_cast<int>(random() % 500), random() % 2 == 0 ? start : update));
+    }
+    UpdatedModule module(flash);
+    // Starts that were cut count as well: without a proven image there may be nothing to go back to.
+    const unsigned running = module.start();
+    EXPECT_TRUE(running != 0 || !scenario.has_proven);
+    expect_to_accept_an_update(flash);
+    ASSERT_FALSE(HasFailure());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenarios, PowerCuts, testing::ValuesIn(scenarios),
+                         [](const auto& instance) { return std::to_string(instance.index); });
+
+}  // namespace
+}  // namespace proleg::bootloader

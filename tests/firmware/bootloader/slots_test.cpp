@@ -1,0 +1,101 @@
+// What runs after a start, and that no cut of the power at any operation leaves a module without its program.
+
+#include "firmware/bootloader/slots.hpp"
+
+#include <gtest/gtest.h>
+
+#include "updated_module.hpp"
+
+namespace proleg::bootloader {
+namespace {
+
+using namespace test;
+
+TEST(SlotsTest, AnEmptyChipHasNothingToRun) {
+  UpdatedModule module;
+  EXPECT_EQ(module.slots.prepare_start(), StartResult::nothing);
+  EXPECT_EQ(module.flash.operations, 0);
+}
+
+TEST(SlotsTest, TheFirstImageRunsOnTrialUntilItIsConfirmed) {
+  UpdatedModule module;
+  ASSERT_EQ(module.install(first), InstallResult::ok);
+  EXPECT_EQ(module.slots.prepare_start(), StartResult::run_on_trial);
+  EXPECT_TRUE(module.slots.confirm());
+  EXPECT_TRUE(module.slots.confirm());
+  for (int start = 0; start < 10; ++start) {
+    EXPECT_EQ(module.slots.prepare_start(), StartResult::run);
+  }
+  EXPECT_EQ(module.slots.attempts(), 1U);
+}
+
+TEST(SlotsTest, AnImageThatIsThereAlreadyIsNotWrittenAgain) {
+  UpdatedModule module;
+  module.install_proven(first);
+  const int operations = module.flash.operations;
+  EXPECT_EQ(module.install(first), InstallResult::already_there);
+  EXPECT_EQ(module.flash.operations, operations);
+}
+
+TEST(SlotsTest, AnImageThatIsNotConfirmedInThreeStartsGivesWayToTheOneBefore) {
+  UpdatedModule module;
+  module.install_proven(first);
+  ASSERT_EQ(module.install(second), InstallResult::ok);
+  for (unsigned attempt = 1; attempt <= Slots::max_attempts; ++attempt) {
+    EXPECT_EQ(module.slots.prepare_start(), StartResult::run_on_trial);
+    EXPECT_EQ(number_in(module.slots, Slot::a), 2U);
+  }
+  EXPECT_EQ(module.slots.prepare_start(), StartResult::run) << "it has proven itself before";
+  EXPECT_EQ(number_in(module.slots, Slot::a), 1U);
+}
+
+TEST(SlotsTest, AFirstImageThatFailsIsNotStartedForEver) {
+  UpdatedModule module;
+  ASSERT_EQ(module.install(first), InstallResult::ok);
+  for (unsigned attempt = 1; attempt <= Slots::max_attempts; ++attempt) {
+    EXPECT_EQ(module.start(), 1U);
+  }
+  EXPECT_EQ(module.slots.prepare_start(), StartResult::nothing) << "the bootloader waits for another image";
+  EXPECT_EQ(module.install(second), InstallResult::ok);
+  EXPECT_EQ(module.start(), 2U);
+}
+
+TEST(SlotsTest, TheBackupIsTheLastImageThatHasProvenItself) {
+  UpdatedModule module;
+  module.install_proven(first);
+  ASSERT_EQ(module.install(second), InstallResult::ok);
+  EXPECT_EQ(module.start(), 2U);
+  // The second one was never confirmed: the third one does not replace the first one in slot B.
+  ASSERT_EQ(module.install(third), InstallResult::ok);
+  EXPECT_EQ(number_in(module.slots, Slot::b), 1U);
+  module.start();
+  ASSERT_TRUE(module.slots.confirm());
+  ASSERT_EQ(module.install(second), InstallResult::ok);
+  EXPECT_EQ(number_in(module.slots, Slot::b), 3U);
+}
+
+TEST(SlotsTest, AnImageForAnotherBoardDoesNotRunEvenIfAProbeWroteIt) {
+  UpdatedModule module;
+  Image foreign = first;
+  foreign.header.board_id = 2;
+  ASSERT_EQ(module.install(foreign), InstallResult::ok);
+  EXPECT_EQ(module.slots.prepare_start(), StartResult::nothing);
+}
+
+TEST(SlotsTest, ABitThatHasChangedInSlotABringsTheBackupBack) {
+  UpdatedModule module;
+  module.install_proven(first);
+  module.install_proven(second);
+  std::mt19937 random(5);
+  for (int round = 0; round < 200; ++round) {
+    SlotMemory damaged = module.flash;
+    const std::size_t byte = random() % (image::header_size + second.body.size());
+    damaged.slots[0].at(byte) ^= static_cast<std::uint8_t>(1U << random() % 8);
+    Slots slots(damaged, place);
+    EXPECT_EQ(slots.prepare_start(), StartResult::run);
+    EXPECT_EQ(number_in(slots, Slot::a), 1U) << "byte " << byte;
+  }
+}
+
+}  // namespace
+}  // namespace proleg::bootloader

@@ -1,0 +1,166 @@
+#include "shared/broadcast/image_receiver.hpp"
+
+#include <algorithm>
+
+namespace proleg::broadcast {
+
+void ImageReceiver::receive(Microseconds now, const CanFrame& frame) {
+  if (frame.identifier != host_identifier) {
+    return;
+  }
+  if (frame.length == CanFrame::max_length) {
+    receive_symbol(frame);
+  } else {
+    receive_request(now, frame);
+  }
+}
+
+void ImageReceiver::receive_symbol(const CanFrame& frame) {
+  if (status_.state != ReceiverState::receiving || !has_block_) {
+    return;
+  }
+  const unsigned number = frame.data[0];
+  if (number < next_symbol_) {
+    has_block_ = false;  // the frame that began the next block was lost
+    return;
+  }
+  next_symbol_ = number + 1;
+  Symbol symbol{};
+  std::copy(frame.data.begin() + 1, frame.data.end(), symbol.begin());
+  const std::span<std::uint8_t> bytes = block_of(image_, block_);
+  SymbolSet& received = received_[block_];
+  if (kind_ == BlockKind::repairs) {
+    const unsigned missing = missing_in(block_);
+    if (decoder_.add(number, symbol)) {
+      count_received(missing);
+    }
+  } else if (number < symbols_of(bytes.size()) && !received[number]) {
+    const std::size_t at = number * symbol_size;
+    std::copy_n(symbol.begin(), std::min(symbol_size, bytes.size() - at),
+                bytes.begin() + static_cast<std::ptrdiff_t>(at));
+    received[number] = true;
+    count_received(1);
+  }
+}
+
+void ImageReceiver::receive_request(Microseconds now, const CanFrame& frame) {
+  const auto has = [&frame](Code code, unsigned length) {
+    return frame.length == length && frame.data[0] == static_cast<std::uint8_t>(code);
+  };
+  const auto word = [&frame](std::size_t at, std::size_t size) { return read_little_endian(frame.data, at, size); };
+  if (has(Code::select, 6) && word(2, 4) == serial_) {
+    select(now, frame.data[1]);
+  } else if (has(Code::status, 5) && word(1, 4) == serial_) {
+    static_cast<void>(queue_.push(answer_frame(Code::status, serial_, status_)));
+  } else if (has(Code::report, 5) && word(1, 4) == serial_) {
+    static_cast<void>(queue_.push(answer_frame(serial_, report())));
+  } else if (status_.state != ReceiverState::idle && frame.data[1] == status_.session) {
+    if (has(Code::begin, 5)) {
+      begin(word(2, 3));
+    } else if (has(Code::block, 4)) {
+      enter_block(frame.data[2], frame.data[3]);
+    } else if (has(Code::install, 2)) {
+      installs_ = installs_ || status_.state == ReceiverState::complete;
+    } else if (has(Code::leave, 2)) {
+      leaves_ = status_.state != ReceiverState::installing;
+    } else {
+      return;
+    }
+    last_request_ = now;
+  }
+}
+
+/// A repeated request does not end the session. Another host sees in the answer that the module is not its own.
+void ImageReceiver::select(Microseconds now, std::uint8_t session) {
+  const bool is_free = status_.state == ReceiverState::idle || now - last_request_ >= session_timeout_us;
+  if (is_free && status_.session != session) {
+    status_ = {ReceiverState::selected, 0, session};
+    last_request_ = now;
+    has_block_ = false;
+  }
+  static_cast<void>(queue_.push(answer_frame(Code::select, serial_, status_)));
+}
+
+void ImageReceiver::begin(std::uint32_t size) {
+  if (status_.state != ReceiverState::selected || size == 0 || size > buffer_.size() || blocks_of(size) > max_blocks) {
+    return;
+  }
+  image_ = buffer_.first(size);
+  received_.fill({});
+  missing_ = symbols_of(size);
+  has_block_ = false;
+  installs_ = false;
+  status_.state = ReceiverState::receiving;
+}
+
+/// The host repeats this request, because it may be lost.
+void ImageReceiver::enter_block(unsigned block, std::uint8_t kind) {
+  if (status_.state != ReceiverState::receiving || block >= blocks_of(image_.size()) ||
+      kind > static_cast<std::uint8_t>(BlockKind::repairs)) {
+    return;
+  }
+  const bool is_repetition = has_block_ && block == block_ && kind == static_cast<std::uint8_t>(kind_);
+  if (!is_repetition && kind == static_cast<std::uint8_t>(BlockKind::repairs)) {
+    decoder_.start(block_of(image_, block), received_[block], block);
+  }
+  has_block_ = true;
+  block_ = block;
+  kind_ = static_cast<BlockKind>(kind);
+  next_symbol_ = 0;
+}
+
+unsigned ImageReceiver::missing_in(unsigned block) const {
+  const unsigned symbols = symbols_of(block_of(image_, block).size());
+  return symbols - static_cast<unsigned>(received_[block].count());
+}
+
+ReportAnswer ImageReceiver::report() const {
+  ReportAnswer answer;
+  if (status_.state < ReceiverState::receiving) {
+    answer.blocks = no_image;
+    return answer;
+  }
+  std::size_t listed = 0;
+  for (const bool can_be_repaired : {false, true}) {
+    for (unsigned block = 0; block < blocks_of(image_.size()); ++block) {
+      const unsigned missing = missing_in(block);
+      if (missing == 0 || (missing <= BlockDecoder::max_missing) != can_be_repaired) {
+        continue;
+      }
+      ++answer.blocks;
+      if (can_be_repaired) {
+        answer.most = std::max(answer.most, static_cast<std::uint8_t>(missing));
+      }
+      if (listed < answer.some.size()) {
+        answer.some[listed++] = static_cast<std::uint8_t>(block | (can_be_repaired ? 0U : needs_symbols));
+      }
+    }
+  }
+  return answer;
+}
+
+void ImageReceiver::count_received(unsigned symbols) {
+  missing_ -= symbols;
+  if (missing_ == 0) {
+    status_.state = ReceiverState::complete;
+  }
+}
+
+bool ImageReceiver::take_install_request() {
+  const bool installs = installs_;
+  installs_ = false;
+  return installs;
+}
+
+bool ImageReceiver::take_leave_request() {
+  const bool leaves = leaves_;
+  leaves_ = false;
+  return leaves;
+}
+
+void ImageReceiver::set_state(ReceiverState state, std::uint8_t error) {
+  status_.state = state;
+  status_.error = error;
+}
+
+}  // namespace proleg::broadcast

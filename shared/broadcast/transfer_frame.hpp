@@ -1,0 +1,98 @@
+#pragma once
+
+// The frames with which an image goes to the bootloaders of many modules at once. The host sends with one identifier: a
+// frame of 8 bytes is a symbol, a shorter one a request. A module answers only if the request names its serial number,
+// so that two never send with the same identifier at once.
+//
+//   symbol    8 bytes   u8 number of the symbol (of the repair symbol) in the present block, 7 bytes
+//   select    6 bytes   1, u8 session (1 to 255), u32 serial number: the module takes part          answer: status
+//   begin     5 bytes   2, u8 session, u24 bytes of the image
+//   block     4 bytes   3, u8 session, u8 block, u8 0: symbols follow, 1: repair symbols
+//   report    5 bytes   4, u32 serial number                                                       answer: report
+//   install   2 bytes   5, u8 session
+//   status    5 bytes   6, u32 serial number                                                        answer: status
+//   leave     2 bytes   7, u8 session: start the program
+//
+// Answers have 8 bytes and begin with the code of the request and the low 16 bits of the serial number:
+//
+//   status    u8 state, u8 error, u8 session, u16 0
+//   report    u8 blocks that miss symbols (255: the module waits for `begin`), u8 the most that one of them misses of
+//             those that repair symbols can complete, 3 x u8 some of these blocks, first those that repair symbols
+//             cannot complete, with bit 7; 255: there are no more
+
+#include <array>
+#include <optional>
+
+#include "shared/broadcast/block_decoder.hpp"
+#include "shared/can/can_frame.hpp"
+#include "shared/fixed/little_endian.hpp"
+
+namespace proleg::broadcast {
+
+inline constexpr std::uint16_t host_identifier = 0x690;
+inline constexpr std::uint16_t module_identifier = 0x691;
+
+inline constexpr unsigned max_blocks = 96;
+inline constexpr std::size_t block_size = block_symbols * symbol_size;
+inline constexpr std::uint8_t no_image = 0xFF;  ///< as the number of blocks in a report
+inline constexpr std::uint8_t no_block = 0xFF;
+inline constexpr std::uint8_t needs_symbols = 0x80;  ///< with the number of a block in a report
+
+enum class Code : std::uint8_t { select = 1, begin, block, report, install, status, leave };
+
+enum class BlockKind : std::uint8_t { symbols, repairs };
+
+/// What a module does.
+enum class ReceiverState : std::uint8_t {
+  idle,       ///< takes part in no session
+  selected,   ///< waits for `begin`
+  receiving,  ///< symbols are missing
+  complete,   ///< has all symbols
+  installing,
+  installed,
+  refused,  ///< the image; the flash is as it was
+  failed,   ///< the flash has failed
+};
+
+struct StatusAnswer {
+  ReceiverState state = ReceiverState::idle;
+  std::uint8_t error = 0;  ///< of `refused` and `failed`: the installer's
+  std::uint8_t session = 0;
+};
+
+struct ReportAnswer {
+  std::uint8_t blocks = 0;  ///< that miss symbols
+  std::uint8_t most = 0;    ///< symbols that one of them misses, at most BlockDecoder::max_missing
+  std::array<std::uint8_t, 3> some{no_block, no_block, no_block};
+};
+
+/// Bytes of block `number` of an image: empty behind the last one.
+template <typename Byte>
+[[nodiscard]] constexpr std::span<Byte> block_of(std::span<Byte> image, unsigned number) {
+  const std::size_t begin = number * block_size;
+  return begin >= image.size()
+             ? std::span<Byte>()
+             : image.subspan(begin, image.size() - begin < block_size ? image.size() - begin : block_size);
+}
+
+[[nodiscard]] constexpr unsigned blocks_of(std::size_t bytes) {
+  return static_cast<unsigned>((bytes + block_size - 1) / block_size);
+}
+
+[[nodiscard]] CanFrame symbol_frame(unsigned number, const Symbol& symbol);
+[[nodiscard]] CanFrame select_frame(std::uint8_t session, std::uint32_t serial);
+[[nodiscard]] CanFrame begin_frame(std::uint8_t session, std::uint32_t size);
+[[nodiscard]] CanFrame block_frame(std::uint8_t session, unsigned block, BlockKind kind);
+[[nodiscard]] CanFrame report_frame(std::uint32_t serial);
+[[nodiscard]] CanFrame install_frame(std::uint8_t session);
+[[nodiscard]] CanFrame status_frame(std::uint32_t serial);
+[[nodiscard]] CanFrame leave_frame(std::uint8_t session);
+
+[[nodiscard]] CanFrame answer_frame(Code code, std::uint32_t serial, const StatusAnswer& status);
+[[nodiscard]] CanFrame answer_frame(std::uint32_t serial, const ReportAnswer& report);
+
+/// The answer of this module to a request with this code; nothing if it is another frame.
+[[nodiscard]] std::optional<StatusAnswer> decode_status(const CanFrame& frame, Code code, std::uint32_t serial);
+[[nodiscard]] std::optional<ReportAnswer> decode_report(const CanFrame& frame, std::uint32_t serial);
+
+}  // namespace proleg::broadcast

@@ -1,0 +1,208 @@
+// An image goes to the bootloaders of many modules, on the simulated bus of 1 Mbit/s.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "shared/broadcast/image_receiver.hpp"
+#include "shared/broadcast/image_sender.hpp"
+#include "sim/bus/bus.hpp"
+
+namespace proleg::broadcast {
+namespace {
+
+using sim::BusTime;
+
+constexpr BusTime us = 1'000;
+constexpr std::uint32_t seed = 3;
+constexpr std::size_t image_size = 65'536;
+
+/// A bootloader without a flash.
+class ReceivingModule final : sim::BusListener {
+ public:
+  ReceivingModule(sim::Bus& bus, std::uint32_t serial)
+      : controller(bus.attach(*this)), buffer(image_size), receiver(controller, buffer, serial) {}
+
+  sim::Controller& controller;
+  std::vector<std::uint8_t> buffer;
+  ImageReceiver receiver;
+  bool is_silent = false;
+
+ private:
+  void received(BusTime time, const CanFrame& frame) override {
+    if (!is_silent) {
+      receiver.receive(time / us, frame);
+      if (receiver.take_install_request()) {
+        receiver.set_state(ReceiverState::installed);
+      }
+    }
+  }
+  void transmitted(BusTime /*time*/, const CanFrame& /*frame*/) override { receiver.transmitted(); }
+};
+
+/// A host and some modules on a bus of their own.
+class Transfer final : sim::BusListener {
+ public:
+  /// Each receiver misses each frame with the probability `lost`.
+  Transfer(std::span<const std::uint8_t> image, unsigned count, double lost = 0, std::uint32_t noise = seed)
+      : controller_(bus.attach(*this)), image_(image), random_(noise) {
+    for (unsigned i = 0; i < count; ++i) {
+      const auto serial = static_cast<std::uint32_t>(random_());
+      modules.push_back(std::make_unique<ReceivingModule>(bus, serial));
+      targets.push_back({serial, {}, false});
+    }
+    bus.set_loss_rule([this, lost](const CanFrame& /*frame*/, std::size_t /*receiver*/) {
+      return std::bernoulli_distribution(lost)(random_);
+    });
+  }
+
+  /// Until all have the image. Its duration in seconds.
+  double send(const SenderOptions& options = {}) {
+    sender = std::make_unique<ImageSender>(controller_, image_, targets, options);
+    const BusTime begin = bus.now();
+    sender->start(begin / us);
+    run_until(ImageSender::State::complete);
+    return static_cast<double>(bus.now() - begin) / 1e9;
+  }
+  void install() {
+    sender->install(bus.now() / us);
+    run_until(ImageSender::State::done);
+  }
+  [[nodiscard]] bool have_all(std::span<const std::uint8_t> image) const {
+    return std::ranges::all_of(
+        modules, [image](const auto& module) { return std::ranges::equal(module->receiver.image(), image); });
+  }
+
+  sim::Bus bus;
+  std::vector<std::unique_ptr<ReceivingModule>> modules;
+  std::vector<Target> targets;
+  std::unique_ptr<ImageSender> sender;
+
+ private:
+  void run_until(ImageSender::State state) {
+    const BusTime end = bus.now() + 60'000'000 * us;
+    while (sender->state() != state && sender->state() != ImageSender::State::done) {
+      const BusTime next = std::min(bus.next_event(), sender->next_deadline() * us);
+      ASSERT_LE(next, end) << "a wait without an end";
+      bus.advance_to(next);
+      sender->poll(bus.now() / us);
+    }
+  }
+  void received(BusTime time, const CanFrame& frame) override {
+    if (sender) {
+      sender->receive(time / us, frame);
+    }
+  }
+  void transmitted(BusTime time, const CanFrame& /*frame*/) override { sender->transmitted(time / us); }
+
+  sim::Controller& controller_;
+  std::span<const std::uint8_t> image_;
+  std::mt19937 random_;
+};
+
+std::vector<std::uint8_t> random_image(std::size_t size) {
+  std::mt19937 random(seed);
+  std::vector<std::uint8_t> image(size);
+  std::ranges::generate(image, [&random] { return static_cast<std::uint8_t>(random()); });
+  return image;
+}
+
+TEST(ImageTransfer, BringsAModule64KiBAtMoreThan50KilobytesASecond) {
+  const auto image = random_image(image_size);
+  Transfer transfer(image, 1);
+  const double duration = transfer.send();
+  EXPECT_TRUE(transfer.have_all(image));
+  const double rate = image_size / duration / 1'000;
+  std::printf("one module: %.3f s, %.1f kB/s\n", duration, rate);
+  EXPECT_GT(rate, 50);
+}
+
+TEST(ImageTransfer, TakesTwelveModulesHardlyLongerAndATenthOfTheFramesLostLittleMore) {
+  const auto image = random_image(image_size);
+  const double one = Transfer(image, 1).send();
+  Transfer twelve(image, 12);
+  const double all = twelve.send();
+  EXPECT_TRUE(twelve.have_all(image));
+  EXPECT_LT(all / one, 1.15);
+  double longest = 0;
+  for (std::uint32_t noise = 1; noise <= 5; ++noise) {
+    Transfer disturbed(image, 12, 0.1, noise);
+    longest = std::max(longest, disturbed.send());
+    EXPECT_TRUE(disturbed.have_all(image));
+  }
+  std::printf("twelve modules: %.3f times one; with 10 %% lost: at most %.3f (seeds 1 to 5)\n", all / one,
+              longest / one);
+  EXPECT_LT(longest / one, 1.4);
+}
+
+TEST(ImageTransfer, CompletesWithAnySizeAndManyLosses) {
+  std::mt19937 random(seed);
+  for (unsigned round = 0; round < 40; ++round) {
+    SCOPED_TRACE(testing::Message() << "round " << round << ", seed " << seed);
+    const auto image = random_image(1 + random() % 6'000);
+    Transfer transfer(image, 1 + random() % 5, 0.03 * (round % 12), round);
+    transfer.send({.session = 9, .attempts = 100});
+    ASSERT_EQ(transfer.sender->state(), ImageSender::State::complete);
+    ASSERT_TRUE(transfer.have_all(image));
+    transfer.install();
+    for (const Target& target : transfer.targets) {
+      EXPECT_EQ(target.status.state, ReceiverState::installed);
+    }
+  }
+}
+
+TEST(ImageTransfer, LeavesAModuleBehindThatVanishes) {
+  const auto image = random_image(20'000);
+  for (const unsigned percent : {0U, 30U, 60U, 99U}) {
+    Transfer transfer(image, 3);
+    transfer.sender = nullptr;
+    const auto silent_at = static_cast<unsigned>(image.size() / symbol_size * percent / 100);
+    transfer.bus.set_frame_listener([&transfer, silent_at](const sim::Transmission& /*frame*/) {
+      transfer.modules[1]->is_silent = transfer.sender->symbols_sent() >= silent_at;
+    });
+    transfer.send();
+    EXPECT_EQ(transfer.sender->state(), ImageSender::State::complete);
+    EXPECT_TRUE(transfer.targets[1].is_lost);
+    for (const unsigned other : {0U, 2U}) {
+      EXPECT_FALSE(transfer.targets[other].is_lost);
+      EXPECT_TRUE(std::ranges::equal(transfer.modules[other]->receiver.image(), image)) << percent << " %";
+    }
+  }
+}
+
+TEST(ImageTransfer, EndsWhenNobodyIsThere) {
+  const auto image = random_image(1'000);
+  Transfer transfer(image, 2);
+  transfer.modules[0]->is_silent = true;
+  transfer.modules[1]->is_silent = true;
+  transfer.send();
+  EXPECT_EQ(transfer.sender->state(), ImageSender::State::done);
+  EXPECT_TRUE(transfer.targets[0].is_lost && transfer.targets[1].is_lost);
+}
+
+TEST(ImageTransfer, IsNotDisturbedByAnotherHost) {
+  const auto image = random_image(20'000);
+  Transfer transfer(image, 2);
+  ReceivingModule& module = *transfer.modules[0];
+  bool asked = false;
+  transfer.bus.set_frame_listener([&](const sim::Transmission& transmission) {
+    if (!asked && transfer.sender->symbols_sent() > 500) {
+      asked = true;
+      const Microseconds now = transmission.end / us;
+      module.receiver.receive(now, select_frame(77, transfer.targets[0].serial));
+      module.receiver.receive(now, begin_frame(77, 100));
+      module.receiver.receive(now, leave_frame(77));
+    }
+  });
+  transfer.send();
+  EXPECT_TRUE(asked);
+  EXPECT_TRUE(transfer.have_all(image));
+  EXPECT_FALSE(module.receiver.take_leave_request());
+}
+
+}  // namespace
+}  // namespace proleg::broadcast

@@ -120,6 +120,9 @@ class ScriptedModule final : public sim::BusListener {
   bool silent = false;               ///< sends no heartbeat
   bool never_starts = false;         ///< stays in Pre-operational
   std::size_t max_pending = 32;      ///< transactions
+  std::uint32_t lease = 0;           ///< whose the module is, 0x2002; a reset ends it
+  bool measures_angle = true;
+  Microseconds ramp_in_us = 0;  ///< from the power to the start of the gait
   /// Answers instead of the module, unless `none`.
   std::function<canopen::AbortCode(canopen::Address, bool writes, std::uint32_t value)> refusal;
 
@@ -146,6 +149,7 @@ class ScriptedModule final : public sim::BusListener {
     tick_.reset();
     announced_tick_.reset();
     power_ = canopen::PowerState::switch_on_disabled;
+    lease = 0;
   }
 
   /// A field of a frame: number of bytes and value.
@@ -223,13 +227,17 @@ class ScriptedModule final : public sim::BusListener {
       case 0x1006:
       case 0x1016:
       case 0x1018:
+      case 0x2002:
       case 0x2007:
       case 0x2008:
+      case 0x200D:
       case 0x6080:
         return 4;
       case 0x1017:
       case 0x2004:
+      case 0x200E:
       case 0x6040:
+      case 0x6041:
         return 2;
       case 0x1019:
       case 0x2006:
@@ -345,13 +353,42 @@ class ScriptedModule final : public sim::BusListener {
     if (address == canopen::Address{0x2000, 3}) {
       return fingerprint;
     }
+    if (address == canopen::Address{0x2000, 5}) {
+      return measures_angle ? 1 : 0;
+    }
+    if (address == canopen::Address{0x2002, 0}) {
+      return lease;
+    }
+    if (address == canopen::Address{0x6041, 0}) {
+      return statusword();
+    }
     return address == canopen::Address{0x2001, 6} ? configuration_crc : value(address);
+  }
+
+  /// CiA 402; bit 10: has ramped in.
+  std::uint32_t statusword() const {
+    switch (power_) {
+      case canopen::PowerState::ready_to_switch_on:
+        return 0x21;
+      case canopen::PowerState::switched_on:
+        return 0x23;
+      case canopen::PowerState::operation_enabled:
+        return now_ - enabled_at_ >= ramp_in_us ? 0x427 : 0x27;
+      default:
+        return 0x40;
+    }
   }
 
   canopen::AbortCode write(canopen::Address address, std::uint32_t written) {
     using namespace canopen;
     if (const AbortCode code = refused(address, true, written); code != AbortCode::none) {
       return code;
+    }
+    if (address == Address{0x2002, 0}) {
+      if (lease != 0 && lease != written) {
+        return AbortCode::refused_by_state;
+      }
+      lease = written;
     }
     writes.emplace_back(address, written);
     if (address.index >= 0x4000 && address.index < 0x6000) {
@@ -392,6 +429,7 @@ class ScriptedModule final : public sim::BusListener {
       power_ = switched_on;
     } else if (controlword == 0x000F && power_ == switched_on) {
       power_ = operation_enabled;
+      enabled_at_ = now_;
     }
   }
 
@@ -450,6 +488,7 @@ class ScriptedModule final : public sim::BusListener {
   std::optional<std::uint32_t> tick_;
   std::optional<std::uint32_t> announced_tick_;
   canopen::PowerState power_ = canopen::PowerState::switch_on_disabled;
+  Microseconds enabled_at_ = 0;
 };
 
 }  // namespace proleg::test

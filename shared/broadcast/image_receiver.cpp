@@ -4,15 +4,15 @@
 
 namespace proleg::broadcast {
 
-void ImageReceiver::receive(Microseconds now, const CanFrame& frame) {
+std::optional<CanFrame> ImageReceiver::receive(Microseconds now, const CanFrame& frame) {
   if (frame.identifier != host_identifier) {
-    return;
+    return std::nullopt;
   }
   if (frame.length == CanFrame::max_length) {
     receive_symbol(frame);
-  } else {
-    receive_request(now, frame);
+    return std::nullopt;
   }
+  return receive_request(now, frame);
 }
 
 void ImageReceiver::receive_symbol(const CanFrame& frame) {
@@ -43,31 +43,37 @@ void ImageReceiver::receive_symbol(const CanFrame& frame) {
   }
 }
 
-void ImageReceiver::receive_request(Microseconds now, const CanFrame& frame) {
+std::optional<CanFrame> ImageReceiver::receive_request(Microseconds now, const CanFrame& frame) {
   const auto has = [&frame](Code code, unsigned length) {
     return frame.length == length && frame.data[0] == static_cast<std::uint8_t>(code);
   };
   const auto word = [&frame](std::size_t at, std::size_t size) { return read_little_endian(frame.data, at, size); };
   if (has(Code::select, 6) && word(2, 4) == serial_) {
     select(now, frame.data[1]);
-  } else if (has(Code::status, 5) && word(1, 4) == serial_) {
-    static_cast<void>(queue_.push(answer_frame(Code::status, serial_, status_)));
-  } else if (has(Code::report, 5) && word(1, 4) == serial_) {
-    static_cast<void>(queue_.push(answer_frame(serial_, report())));
-  } else if (status_.state != ReceiverState::idle && frame.data[1] == status_.session) {
-    if (has(Code::begin, 5)) {
-      begin(word(2, 3));
-    } else if (has(Code::block, 4)) {
-      enter_block(frame.data[2], frame.data[3]);
-    } else if (has(Code::install, 2)) {
-      installs_ = installs_ || status_.state == ReceiverState::complete;
-    } else if (has(Code::leave, 2)) {
-      leaves_ = status_.state != ReceiverState::installing;
-    } else {
-      return;
-    }
-    last_request_ = now;
+    return answer_frame(Code::select, serial_, status_);
   }
+  if (has(Code::status, 5) && word(1, 4) == serial_) {
+    return answer_frame(Code::status, serial_, status_);
+  }
+  if (has(Code::report, 5) && word(1, 4) == serial_) {
+    return answer_frame(serial_, report());
+  }
+  if (status_.state == ReceiverState::idle || frame.data[1] != status_.session) {
+    return std::nullopt;
+  }
+  if (has(Code::begin, 5)) {
+    begin(word(2, 3));
+  } else if (has(Code::block, 4)) {
+    enter_block(frame.data[2], frame.data[3]);
+  } else if (has(Code::install, 2)) {
+    installs_ = installs_ || status_.state == ReceiverState::complete;
+  } else if (has(Code::leave, 2)) {
+    leaves_ = status_.state != ReceiverState::installing;
+  } else {
+    return std::nullopt;
+  }
+  last_request_ = now;
+  return std::nullopt;
 }
 
 /// A repeated request does not end the session. Another host sees in the answer that the module is not its own.
@@ -78,7 +84,6 @@ void ImageReceiver::select(Microseconds now, std::uint8_t session) {
     last_request_ = now;
     has_block_ = false;
   }
-  static_cast<void>(queue_.push(answer_frame(Code::select, serial_, status_)));
 }
 
 void ImageReceiver::begin(std::uint32_t size) {
@@ -146,12 +151,6 @@ void ImageReceiver::count_received(unsigned symbols) {
   }
 }
 
-bool ImageReceiver::take_install_request() {
-  const bool installs = installs_;
-  installs_ = false;
-  return installs;
-}
-
 bool ImageReceiver::take_leave_request() {
   const bool leaves = leaves_;
   leaves_ = false;
@@ -161,6 +160,7 @@ bool ImageReceiver::take_leave_request() {
 void ImageReceiver::set_state(ReceiverState state, std::uint8_t error) {
   status_.state = state;
   status_.error = error;
+  installs_ = false;
 }
 
 }  // namespace proleg::broadcast

@@ -6,25 +6,22 @@
 #include <array>
 
 #include "shared/broadcast/transfer_frame.hpp"
-#include "shared/can/transmit_queue.hpp"
+#include "shared/can/can_port.hpp"
 
 namespace proleg::broadcast {
 
 class ImageReceiver {
  public:
   /// buffer: for the image, at most max_blocks blocks. serial: of the module.
-  ImageReceiver(CanPort& port, std::span<std::uint8_t> buffer, std::uint32_t serial)
-      : queue_(port), buffer_(buffer), serial_(serial) {}
+  ImageReceiver(std::span<std::uint8_t> buffer, std::uint32_t serial) : buffer_(buffer), serial_(serial) {}
   ImageReceiver(const ImageReceiver&) = delete;
   ImageReceiver& operator=(const ImageReceiver&) = delete;
 
   /// A session keeps its module against other hosts for so long after its last request.
   static constexpr Microseconds session_timeout_us = 3'000'000;
 
-  /// Frames with other identifiers have no effect.
-  void receive(Microseconds now, const CanFrame& frame);
-  /// The controller has sent an answer.
-  void transmitted() { queue_.sent(); }
+  /// A frame from the bus. Returns the answer. Frames with other identifiers have no effect.
+  [[nodiscard]] std::optional<CanFrame> receive(Microseconds now, const CanFrame& frame);
   /// The bus was away for some time. The number of the present block is not known any more.
   void bus_was_lost() { has_block_ = false; }
 
@@ -32,16 +29,17 @@ class ImageReceiver {
   /// The image, if state() is `complete` or a later one.
   [[nodiscard]] std::span<const std::uint8_t> image() const { return image_; }
 
-  /// The host has asked to install the image; once.
-  [[nodiscard]] bool take_install_request();
-  /// What came of it: `installing`, `installed`, `refused` or `failed`, with an error that the host gets.
+  /// The host has asked to install the image.
+  [[nodiscard]] bool has_install_request() const { return installs_; }
+  /// What came of it: `installing`, `installed`, `refused` or `failed`, with an error that the host gets. That ends the
+  /// request.
   void set_state(ReceiverState state, std::uint8_t error = 0);
   /// The host has asked to start the program; once.
   [[nodiscard]] bool take_leave_request();
 
  private:
   void receive_symbol(const CanFrame& frame);
-  void receive_request(Microseconds now, const CanFrame& frame);
+  [[nodiscard]] std::optional<CanFrame> receive_request(Microseconds now, const CanFrame& frame);
   void select(Microseconds now, std::uint8_t session);
   void begin(std::uint32_t size);
   void enter_block(unsigned block, std::uint8_t kind);
@@ -49,7 +47,6 @@ class ImageReceiver {
   [[nodiscard]] unsigned missing_in(unsigned block) const;
   void count_received(unsigned symbols);
 
-  TransmitQueue queue_;
   std::span<std::uint8_t> buffer_;
   const std::uint32_t serial_;
 

@@ -25,7 +25,7 @@ constexpr std::size_t image_size = 65'536;
 class ReceivingModule final : sim::BusListener {
  public:
   ReceivingModule(sim::Bus& bus, std::uint32_t serial)
-      : controller(bus.attach(*this)), buffer(image_size), receiver(controller, buffer, serial) {}
+      : controller(bus.attach(*this)), buffer(image_size), receiver(buffer, serial) {}
 
   sim::Controller& controller;
   std::vector<std::uint8_t> buffer;
@@ -35,13 +35,15 @@ class ReceivingModule final : sim::BusListener {
  private:
   void received(BusTime time, const CanFrame& frame) override {
     if (!is_silent) {
-      receiver.receive(time / us, frame);
-      if (receiver.take_install_request()) {
+      if (const auto answer = receiver.receive(time / us, frame)) {
+        EXPECT_TRUE(controller.send(*answer));
+      }
+      if (receiver.has_install_request()) {
         receiver.set_state(ReceiverState::installed);
       }
     }
   }
-  void transmitted(BusTime /*time*/, const CanFrame& /*frame*/) override { receiver.transmitted(); }
+  void transmitted(BusTime /*time*/, const CanFrame& /*frame*/) override {}
 };
 
 /// A host and some modules on a bus of their own.
@@ -193,9 +195,10 @@ TEST(ImageTransfer, IsNotDisturbedByAnotherHost) {
     if (!asked && transfer.sender->symbols_sent() > 500) {
       asked = true;
       const Microseconds now = transmission.end / us;
-      module.receiver.receive(now, select_frame(77, transfer.targets[0].serial));
-      module.receiver.receive(now, begin_frame(77, 100));
-      module.receiver.receive(now, leave_frame(77));
+      const auto answer = module.receiver.receive(now, select_frame(77, transfer.targets[0].serial));
+      EXPECT_NE(decode_status(answer.value(), Code::select, transfer.targets[0].serial).value().session, 77);
+      EXPECT_FALSE(module.receiver.receive(now, begin_frame(77, 100)).has_value());
+      EXPECT_FALSE(module.receiver.receive(now, leave_frame(77)).has_value());
     }
   });
   transfer.send();

@@ -1,0 +1,247 @@
+#include "firmware/bootloader/bootloader.hpp"
+
+#include <algorithm>
+
+#include "firmware/bootloader/program_objects.hpp"
+#include "shared/fixed/crc32.hpp"
+
+namespace proleg::bootloader {
+
+using broadcast::ReceiverState;
+using canopen::AbortCode;
+using canopen::Address;
+using canopen::Entry;
+
+namespace {
+
+std::uint32_t status_of(image::Error error) {
+  const std::uint32_t reason = static_cast<std::uint32_t>(error) << 8U;
+  switch (error) {
+    case image::Error::none:
+      return 0;
+    case image::Error::too_short:
+    case image::Error::not_an_image:
+    case image::Error::unknown_format:
+      return reason | object::status_unknown_format;
+    case image::Error::damaged_header:
+    case image::Error::wrong_length:
+    case image::Error::damaged_body:
+      return reason | object::status_wrong_data;
+    default:
+      return reason | object::status_other_error;
+  }
+}
+
+}  // namespace
+
+Bootloader::Bootloader(const image::Place& place, std::uint32_t serial, const Ports& ports)
+    : place_(place),
+      address_{canopen::placeholder_vendor, place.board_id, canopen::object::revision.default_value, serial},
+      ports_(ports),
+      slots_(ports.flash, place),
+      queue_(ports.can),
+      receiver_(ports.buffer, serial),
+      sdo_(0, *this) {}
+
+void Bootloader::power_on(Microseconds now, std::uint8_t node) {
+  lss_.power_on(node);
+  idle_at_ = now + idle_timeout_us;
+  start_network(now, node);
+}
+
+void Bootloader::start_network(Microseconds now, std::uint8_t node) {
+  node_ = node;
+  ports_.can.set_node(node);
+  sdo_.reset();
+  sdo_.set_node(node);
+  lss_.reset();
+  if (node != 0) {
+    send(canopen::encode(canopen::Heartbeat{node, canopen::NmtState::boot_up}));
+    heartbeat_at_ = now + heartbeat_period_us;
+  }
+}
+
+void Bootloader::receive(Microseconds now, const CanFrame& frame) {
+  std::optional<CanFrame> answer;
+  if (frame.identifier == broadcast::host_identifier && !is_downloading_ && downloaded_ == 0) {
+    answer = receiver_.receive(now, frame);
+    leaves_ = leaves_ || receiver_.take_leave_request();
+  } else if (node_ != 0 && frame.identifier == canopen::identifier::sdo_request + node_) {
+    answer = sdo_.receive(now, frame);
+  } else if (frame.identifier == canopen::identifier::lss_request) {
+    receive_lss(now, frame);
+  } else if (frame.identifier == canopen::identifier::nmt) {
+    receive_network_command(frame);
+  } else {
+    return;
+  }
+  idle_at_ = now + idle_timeout_us;
+  if (answer) {
+    send(*answer);
+  }
+}
+
+void Bootloader::receive_lss(Microseconds now, const CanFrame& frame) {
+  if (const auto answer = lss_.serve(frame, address_, node_, ports_.settings)) {
+    send(*answer);
+  }
+  if (node_ == 0 && lss_.pending_node() != 0 && lss_.state() == canopen::lss::State::waiting) {
+    start_network(now, lss_.pending_node());
+  }
+}
+
+void Bootloader::receive_network_command(const CanFrame& frame) {
+  const auto request = canopen::decode_nmt(frame);
+  if (node_ != 0 && request && (request->node == 0 || request->node == node_)) {
+    leaves_ = leaves_ || request->command == canopen::NmtCommand::reset_node ||
+              request->command == canopen::NmtCommand::reset_communication;
+  }
+}
+
+void Bootloader::transmitted(Microseconds now, const CanFrame& /*frame*/) {
+  queue_.sent();
+  while (sdo_.has_segment() && queue_.size() == 0) {
+    send(sdo_.next_segment(now));
+  }
+}
+
+void Bootloader::bus_was_lost() {
+  queue_.clear();
+  receiver_.bus_was_lost();
+}
+
+void Bootloader::poll(Microseconds now) {
+  if (now >= sdo_.next_deadline()) {
+    if (const auto frame = sdo_.poll(now)) {
+      send(*frame);
+    }
+  }
+  if (now >= heartbeat_at_) {
+    heartbeat_at_ = now + heartbeat_period_us;
+    static_cast<void>(
+        queue_.push_newest(canopen::encode(canopen::Heartbeat{node_, canopen::NmtState::pre_operational})));
+  }
+  // The answers first: while the flash is written nothing is sent.
+  if (queue_.size() == 0) {
+    if (receiver_.has_install_request()) {
+      install(receiver_.image());
+    } else if (downloaded_ != 0) {
+      const std::uint32_t size = downloaded_;
+      downloaded_ = 0;
+      install(ports_.buffer.first(size));
+    }
+  }
+  if (now >= idle_at_) {
+    idle_at_ = now + idle_timeout_us;
+    leaves_ = slots_.image_in(Slot::a).has_value() || slots_.image_in(Slot::b).has_value();
+  }
+}
+
+Microseconds Bootloader::next_deadline() const {
+  const bool installs = receiver_.has_install_request() || downloaded_ != 0;
+  return installs && queue_.size() == 0 ? 0 : std::min({sdo_.next_deadline(), heartbeat_at_, idle_at_});
+}
+
+/// Everything that can be known before the flash is erased.
+image::Error Bootloader::check(std::span<const std::uint8_t> image) const {
+  const auto [header, error] = image::decode(image);
+  if (error != image::Error::none) {
+    return error;
+  }
+  const image::Error place_error = image::check_place(header, place_);
+  return place_error != image::Error::none ? place_error : image::check_body(header, image.subspan(image::header_size));
+}
+
+void Bootloader::install(std::span<const std::uint8_t> image) {
+  const image::Error error = check(image);
+  if (error != image::Error::none) {
+    status_ = status_of(error);
+    receiver_.set_state(ReceiverState::refused, static_cast<std::uint8_t>(error));
+    return;
+  }
+  const InstallResult result = slots_.install(image::decode(image).header, image.subspan(image::header_size));
+  const bool is_installed = result == InstallResult::ok || result == InstallResult::already_there;
+  status_ = is_installed ? 0 : object::status_write_error;
+  receiver_.set_state(is_installed ? ReceiverState::installed : ReceiverState::failed,
+                      static_cast<std::uint8_t>(result));
+}
+
+AbortCode Bootloader::find(Address address, Entry& entry) {
+  AbortCode code = AbortCode::no_such_object;
+  for (const Entry& known : object::entries) {
+    if (known.address == address) {
+      entry = known;
+      return AbortCode::none;
+    }
+    if (known.address.index == address.index) {
+      code = AbortCode::no_such_sub_index;
+    }
+  }
+  return code;
+}
+
+AbortCode Bootloader::read(const Entry& entry, std::uint32_t& value) {
+  value = entry.default_value;
+  if (entry.address == canopen::object::heartbeat_period.address) {
+    value = heartbeat_period_us / 1'000;
+  } else if (entry.address == canopen::object::product.address || entry.address == canopen::object::board_id.address) {
+    value = place_.board_id;
+  } else if (entry.address == canopen::object::serial.address) {
+    value = address_.back();
+  } else if (entry.address == object::program_identification.address) {
+    const auto header = slots_.image_in(Slot::a);
+    value = header ? crc32(image::encode(*header)) : 0;
+  } else if (entry.address == object::flash_status.address) {
+    value = status_ | (downloaded_ != 0 ? object::status_in_progress : 0);
+  }
+  return AbortCode::none;
+}
+
+AbortCode Bootloader::write(const Entry& entry, std::uint32_t value) {
+  if (entry.address != object::program_control.address) {
+    return AbortCode::refused_by_application;  // the period of the heartbeat
+  }
+  if (value == object::control_start || value == object::control_reset) {
+    if (downloaded_ != 0) {
+      return AbortCode::refused_by_state;
+    }
+    leaves_ = true;
+  }
+  return AbortCode::none;
+}
+
+AbortCode Bootloader::open_write(const Entry& /*entry*/, std::optional<std::uint32_t> size) {
+  // Broadcast and SDO share the buffer.
+  const bool is_receiving = receiver_.state() > ReceiverState::idle && receiver_.state() < ReceiverState::installed;
+  if (is_receiving || downloaded_ != 0) {
+    return AbortCode::refused_by_state;
+  }
+  if (size.value_or(0) > ports_.buffer.size()) {
+    return AbortCode::out_of_memory;
+  }
+  is_downloading_ = true;
+  return AbortCode::none;
+}
+
+AbortCode Bootloader::write_part(const Entry& /*entry*/, std::uint32_t offset, std::span<const std::uint8_t> part) {
+  if (offset > ports_.buffer.size() || part.size() > ports_.buffer.size() - offset) {
+    return AbortCode::out_of_memory;
+  }
+  std::ranges::copy(part, ports_.buffer.begin() + static_cast<std::ptrdiff_t>(offset));
+  return AbortCode::none;
+}
+
+AbortCode Bootloader::close_write(const Entry& /*entry*/, std::uint32_t size) {
+  const image::Error error = check(ports_.buffer.first(size));
+  status_ = status_of(error);
+  if (error != image::Error::none) {
+    return AbortCode::general_incompatibility;
+  }
+  is_downloading_ = false;
+  downloaded_ = size;
+  return AbortCode::none;
+}
+
+void Bootloader::cancel_write(const Entry& /*entry*/) { is_downloading_ = false; }
+
+}  // namespace proleg::bootloader

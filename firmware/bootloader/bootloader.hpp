@@ -1,0 +1,84 @@
+#pragma once
+
+// The bootloader's part of a module's life on the bus: it receives an image, by broadcast or from a CiA 302 tool,
+// checks it, and installs it. Like the module's program it is a state machine: events come in, frames go out; it never
+// waits, except in the flash. The servo has no pulses.
+
+#include <array>
+
+#include "firmware/bootloader/slots.hpp"
+#include "shared/broadcast/image_receiver.hpp"
+#include "shared/can/transmit_queue.hpp"
+#include "shared/canopen/lss_slave.hpp"
+#include "shared/canopen/messages.hpp"
+#include "shared/canopen/sdo_server.hpp"
+
+namespace proleg::bootloader {
+
+struct Ports {
+  CanPort& can;
+  SlotFlash& flash;
+  canopen::LssStorage& settings;   ///< keeps the node id
+  std::span<std::uint8_t> buffer;  ///< RAM for an image
+};
+
+class Bootloader final : private canopen::ObjectAccess {
+ public:
+  /// Without a host's request for so long, the bootloader starts a program that may run.
+  static constexpr Microseconds idle_timeout_us = 10'000'000;
+  static constexpr Microseconds heartbeat_period_us = 500'000;
+
+  /// serial: as object 0x1018:4 of the module.
+  Bootloader(const image::Place& place, std::uint32_t serial, const Ports& ports);
+
+  /// node: as stored, 0: none. Sends boot-up if there is one.
+  void power_on(Microseconds now, std::uint8_t node);
+  void receive(Microseconds now, const CanFrame& frame);
+  /// The controller has sent a frame.
+  void transmitted(Microseconds now, const CanFrame& frame);
+  /// The controller was bus-off.
+  void bus_was_lost();
+  /// Does what is due; to be called at next_deadline() or later. It may write flash, which takes seconds.
+  void poll(Microseconds now);
+  [[nodiscard]] Microseconds next_deadline() const;
+
+  /// The chip is to be reset, so that the program starts. Not before all answers are sent.
+  [[nodiscard]] bool wants_restart() const { return leaves_ && queue_.size() == 0; }
+
+ private:
+  // ObjectAccess.
+  canopen::AbortCode find(canopen::Address address, canopen::Entry& entry) override;
+  canopen::AbortCode read(const canopen::Entry& entry, std::uint32_t& value) override;
+  canopen::AbortCode write(const canopen::Entry& entry, std::uint32_t value) override;
+  canopen::AbortCode open_write(const canopen::Entry& entry, std::optional<std::uint32_t> size) override;
+  canopen::AbortCode write_part(const canopen::Entry& entry, std::uint32_t offset,
+                                std::span<const std::uint8_t> part) override;
+  canopen::AbortCode close_write(const canopen::Entry& entry, std::uint32_t size) override;
+  void cancel_write(const canopen::Entry& entry) override;
+
+  void receive_lss(Microseconds now, const CanFrame& frame);
+  void receive_network_command(const CanFrame& frame);
+  void start_network(Microseconds now, std::uint8_t node);
+  void install(std::span<const std::uint8_t> image);
+  [[nodiscard]] image::Error check(std::span<const std::uint8_t> image) const;
+  void send(const CanFrame& frame) { static_cast<void>(queue_.push(frame)); }
+
+  const image::Place place_;
+  const canopen::LssAddress address_;
+  const Ports ports_;
+  Slots slots_;
+  TransmitQueue queue_;
+  broadcast::ImageReceiver receiver_;
+  canopen::SdoServer sdo_;
+  canopen::LssSlave lss_;
+
+  std::uint8_t node_ = 0;  ///< 0: none
+  Microseconds heartbeat_at_ = never;
+  Microseconds idle_at_ = never;
+  std::uint32_t status_ = 0;      ///< object 0x1F57:1
+  bool is_downloading_ = false;   ///< by SDO, into the buffer
+  std::uint32_t downloaded_ = 0;  ///< bytes of an image from SDO that waits to be installed
+  bool leaves_ = false;
+};
+
+}  // namespace proleg::bootloader

@@ -1,0 +1,374 @@
+// Bootloaders on the simulated bus: a host brings them images by broadcast, a tool of others by SDO.
+
+#include "firmware/bootloader/bootloader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "firmware/bootloader/program_objects.hpp"
+#include "shared/broadcast/image_sender.hpp"
+#include "shared/fixed/crc32.hpp"
+#include "shared/master/lss_master.hpp"
+#include "shared/master/sdo_transfer.hpp"
+#include "sim/bus/bus.hpp"
+#include "updated_module.hpp"
+
+namespace proleg::bootloader {
+namespace {
+
+using namespace test;
+using broadcast::ImageSender;
+using broadcast::ReceiverState;
+using sim::BusTime;
+
+constexpr BusTime us = 1'000;
+constexpr std::uint32_t seed = 5;
+
+std::vector<std::uint8_t> bytes_of(const Image& image) {
+  const image::HeaderBytes header = image::encode(image.header);
+  std::vector<std::uint8_t> bytes(header.begin(), header.end());
+  bytes.insert(bytes.end(), image.body.begin(), image.body.end());
+  return bytes;
+}
+
+/// A module in its bootloader.
+class Node final : sim::BusListener, canopen::LssStorage {
+ public:
+  Node(sim::Bus& bus, std::uint32_t its_serial, std::uint8_t node)
+      : serial(its_serial), controller_(bus.attach(*this)) {
+    stored_node = node;
+    restart(0);
+  }
+
+  /// As a reset of the chip does.
+  void restart(Microseconds now) {
+    bootloader = std::make_unique<Bootloader>(place, serial, Ports{controller_, module.flash, *this, buffer_});
+    bootloader->power_on(now, stored_node);
+  }
+
+  const std::uint32_t serial;
+  UpdatedModule module;
+  std::unique_ptr<Bootloader> bootloader;
+  std::uint8_t stored_node = 0;
+
+ private:
+  void received(BusTime time, const CanFrame& frame) override { bootloader->receive(time / us, frame); }
+  void transmitted(BusTime time, const CanFrame& frame) override { bootloader->transmitted(time / us, frame); }
+  Result store_node(std::uint8_t node) override {
+    stored_node = node;
+    return {};
+  }
+
+  sim::Controller& controller_;
+  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(image::header_size + place.room);
+};
+
+class BootloaderTest : public testing::Test, protected sim::BusListener {
+ protected:
+  BootloaderTest() : controller(bus.attach(*this)) {}
+
+  Node& add(std::uint8_t node) {
+    const auto serial = static_cast<std::uint32_t>(random_());
+    nodes.push_back(std::make_unique<Node>(bus, serial, node));
+    targets.push_back({serial, {}, false});
+    return *nodes.back();
+  }
+
+  /// Until `done`, or a minute; what the host has to do meanwhile is `host`.
+  template <typename Done, typename Host>
+  void run_until(Done done, Host host) {
+    const BusTime end = bus.now() + 60'000'000 * us;
+    while (!done()) {
+      Microseconds deadline = host.next_deadline();
+      for (const auto& node : nodes) {
+        deadline = std::min(deadline, node->bootloader->next_deadline());
+      }
+      const BusTime next = std::max(bus.now(), std::min(bus.next_event(), deadline == never ? end : deadline * us));
+      ASSERT_LT(next, end) << "a wait without an end";
+      bus.advance_to(next);
+      host.poll(now());
+      for (const auto& node : nodes) {
+        if (node->bootloader->next_deadline() <= now()) {
+          node->bootloader->poll(now());
+        }
+      }
+    }
+  }
+  struct NoHost {
+    Microseconds end;
+    [[nodiscard]] Microseconds next_deadline() const { return end; }
+    void poll(Microseconds) {}
+  };
+  void run_for(Microseconds time) {
+    const Microseconds end = now() + time;
+    run_until([&] { return now() >= end; }, NoHost{end});
+  }
+  [[nodiscard]] Microseconds now() const { return bus.now() / us; }
+
+  /// Brings the bytes to all nodes and lets them install.
+  void flash(std::span<const std::uint8_t> bytes) {
+    sender = std::make_unique<ImageSender>(controller, bytes, targets, broadcast::SenderOptions{});
+    struct Host {
+      ImageSender& sender;
+      [[nodiscard]] Microseconds next_deadline() const { return sender.next_deadline(); }
+      void poll(Microseconds time) { sender.poll(time); }
+    };
+    sender->start(now());
+    run_until([&] { return sender->state() > ImageSender::State::sending; }, Host{*sender});
+    ASSERT_EQ(sender->state(), ImageSender::State::complete);
+    sender->install(now());
+    run_until([&] { return sender->state() == ImageSender::State::done; }, Host{*sender});
+  }
+
+  /// A transfer of a tool that knows CiA 301 and 302 only.
+  canopen::AbortCode transfer(canopen::SdoTransfer& client) {
+    transfer_ = &client;
+    struct Host {
+      canopen::SdoTransfer& client;
+      [[nodiscard]] Microseconds next_deadline() const { return client.next_deadline(); }
+      void poll(Microseconds time) { client.poll(time); }
+    };
+    pump();
+    run_until(
+        [&] {
+          pump();
+          return client.state() != canopen::SdoTransfer::State::running;
+        },
+        Host{client});
+    transfer_ = nullptr;
+    return client.state() == canopen::SdoTransfer::State::done ? canopen::AbortCode::none : client.abort_code();
+  }
+  canopen::AbortCode download(canopen::Address address, std::span<const std::uint8_t> bytes) {
+    canopen::SdoTransfer client;
+    client.download(tool_node, address, bytes);
+    return transfer(client);
+  }
+  std::uint32_t upload(const canopen::Object& object) {
+    std::array<std::uint8_t, 4> bytes{};
+    canopen::SdoTransfer client;
+    client.upload(tool_node, object.address, bytes);
+    EXPECT_EQ(transfer(client), canopen::AbortCode::none);
+    return read_little_endian(bytes, 0, 4);
+  }
+
+  static constexpr std::uint8_t tool_node = 9;
+
+  sim::Bus bus;
+  sim::Controller& controller;
+  std::vector<std::unique_ptr<Node>> nodes;
+  std::vector<broadcast::Target> targets;
+  std::unique_ptr<ImageSender> sender;
+  canopen::LssMaster* lss = nullptr;
+  std::vector<CanFrame> heard;
+
+ private:
+  void pump() {
+    while (transfer_ != nullptr) {
+      unsent_ = unsent_ ? unsent_ : transfer_->next_frame(now());
+      if (!unsent_ || !controller.send(*unsent_)) {
+        return;
+      }
+      unsent_.reset();
+    }
+  }
+  void received(BusTime time, const CanFrame& frame) override {
+    heard.push_back(frame);
+    if (sender) {
+      sender->receive(time / us, frame);
+    }
+    if (transfer_ != nullptr) {
+      transfer_->receive(time / us, frame);
+    }
+    if (lss != nullptr) {
+      lss->receive(time / us, frame);
+    }
+  }
+  void transmitted(BusTime time, const CanFrame& frame) override {
+    if (sender) {
+      sender->transmitted(time / us);
+    }
+    if (lss != nullptr) {
+      lss->transmitted(time / us, frame);
+    }
+  }
+
+  std::mt19937 random_{seed};
+  canopen::SdoTransfer* transfer_ = nullptr;
+  std::optional<CanFrame> unsent_;
+};
+
+TEST_F(BootloaderTest, FiveModulesInstallAnImageAndRunItOnTrial) {
+  for (std::uint8_t node = 1; node <= 5; ++node) {
+    add(node);
+  }
+  flash(bytes_of(second));
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    EXPECT_EQ(targets[i].status.state, ReceiverState::installed);
+    EXPECT_EQ(nodes[i]->module.slots.prepare_start(), StartResult::run_on_trial);
+    EXPECT_EQ(number_in(nodes[i]->module.slots, Slot::a), 2U);
+    EXPECT_FALSE(nodes[i]->bootloader->wants_restart()) << "the host asks for it";
+  }
+  EXPECT_TRUE(controller.send(broadcast::leave_frame(1)));
+  run_for(1'000);
+  for (const auto& node : nodes) {
+    EXPECT_TRUE(node->bootloader->wants_restart());
+  }
+}
+
+TEST_F(BootloaderTest, ModulesWithoutANodeIdTakePart) {
+  Node& node = add(0);
+  flash(bytes_of(first));
+  EXPECT_EQ(targets[0].status.state, ReceiverState::installed);
+  EXPECT_EQ(number_in(node.module.slots, Slot::a), 1U);
+}
+
+TEST_F(BootloaderTest, AnImageThatIsNotRightIsRefusedForItsReasonBeforeAnythingIsErased) {
+  Image foreign = second;
+  foreign.header.board_id = 7;
+  Image elsewhere = second;
+  elsewhere.header.address += 0x200;
+  Image revision = second;
+  revision.header.lowest_revision = revision.header.highest_revision = 3;
+  Image large = make_image(4, 1028);
+  std::vector<std::uint8_t> damaged = bytes_of(second);
+  damaged[600] ^= 1U;
+  std::vector<std::uint8_t> damaged_header = bytes_of(second);
+  damaged_header[20] ^= 1U;
+  std::vector<std::uint8_t> cut = bytes_of(second);
+  cut.resize(cut.size() - 4);
+  const std::vector<std::uint8_t> text(700, 'x');
+  const struct {
+    std::vector<std::uint8_t> bytes;
+    image::Error error;
+  } cases[]{{bytes_of(foreign), image::Error::other_board},
+            {bytes_of(elsewhere), image::Error::other_address},
+            {bytes_of(revision), image::Error::other_revision},
+            {damaged, image::Error::damaged_body},
+            {damaged_header, image::Error::damaged_header},
+            {cut, image::Error::wrong_length},
+            {text, image::Error::not_an_image},
+            {std::vector<std::uint8_t>(100), image::Error::too_short}};
+  Node& node = add(3);
+  node.module.install_proven(first);
+  const int operations = node.module.flash.operations;
+  for (const auto& one : cases) {
+    node.restart(now());
+    flash(one.bytes);
+    EXPECT_EQ(targets[0].status.state, ReceiverState::refused) << image::describe(one.error);
+    EXPECT_EQ(static_cast<image::Error>(targets[0].status.error), one.error);
+  }
+  EXPECT_EQ(node.module.flash.operations, operations);
+  EXPECT_EQ(node.module.start(), 1U);
+}
+
+TEST_F(BootloaderTest, AToolOfOthersDownloadsAnImageBySdo) {
+  Node& node = add(tool_node);
+  node.module.install_proven(first);
+  EXPECT_EQ(upload(canopen::object::vendor), canopen::placeholder_vendor);
+  EXPECT_EQ(upload(object::device_type), 0U);
+  EXPECT_EQ(upload(object::program_identification), crc32(image::encode(first.header)));
+  const std::uint8_t stop[]{0};
+  const std::uint8_t clear[]{3};
+  const std::uint8_t go[]{1};
+  EXPECT_EQ(download({0x1F51, 1}, stop), canopen::AbortCode::none);
+  EXPECT_EQ(download({0x1F51, 1}, clear), canopen::AbortCode::none);
+  EXPECT_EQ(node.module.start(), 1U) << "the old program stays until the new one is complete";
+  EXPECT_EQ(download({0x1F50, 1}, bytes_of(second)), canopen::AbortCode::none);
+  run_for(10'000);
+  EXPECT_EQ(upload(object::flash_status), 0U);
+  EXPECT_EQ(upload(object::program_identification), crc32(image::encode(second.header)));
+  EXPECT_FALSE(node.bootloader->wants_restart());
+  EXPECT_EQ(download({0x1F51, 1}, go), canopen::AbortCode::none);
+  EXPECT_TRUE(node.bootloader->wants_restart());
+  EXPECT_EQ(node.module.start(), 2U);
+}
+
+TEST_F(BootloaderTest, AWrongDownloadIsAbortedAndTheStatusSaysWhy) {
+  Node& node = add(tool_node);
+  node.module.install_proven(first);
+  const int operations = node.module.flash.operations;
+  std::vector<std::uint8_t> damaged = bytes_of(second);
+  damaged[600] ^= 1U;
+  EXPECT_EQ(download({0x1F50, 1}, damaged), canopen::AbortCode::general_incompatibility);
+  EXPECT_EQ(upload(object::flash_status) & 0xFFU, object::status_wrong_data);
+  EXPECT_EQ(download({0x1F50, 1}, std::vector<std::uint8_t>(5'000)), canopen::AbortCode::out_of_memory);
+  EXPECT_EQ(download({0x1F50, 1}, std::vector<std::uint8_t>(600, 'x')), canopen::AbortCode::general_incompatibility);
+  EXPECT_EQ(upload(object::flash_status) & 0xFFU, object::status_unknown_format);
+  EXPECT_EQ(download({0x1F52, 1}, damaged), canopen::AbortCode::no_such_object);
+  EXPECT_EQ(download({0x1F51, 2}, std::vector<std::uint8_t>(1)), canopen::AbortCode::no_such_sub_index);
+  EXPECT_EQ(download({0x1F51, 1}, std::vector<std::uint8_t>{4}), canopen::AbortCode::above_maximum);
+  EXPECT_EQ(node.module.flash.operations, operations);
+  EXPECT_EQ(download({0x1F50, 1}, bytes_of(second)), canopen::AbortCode::none);
+}
+
+TEST_F(BootloaderTest, ShowsItselfOnTheNetworkAndLeavesByNmt) {
+  Node& node = add(4);
+  run_for(1'600'000);
+  ASSERT_EQ(heard.size(), 4U);
+  EXPECT_EQ(heard[0], canopen::encode(canopen::Heartbeat{4, canopen::NmtState::boot_up}));
+  for (std::size_t i = 1; i < heard.size(); ++i) {
+    EXPECT_EQ(heard[i], canopen::encode(canopen::Heartbeat{4, canopen::NmtState::pre_operational}));
+  }
+  EXPECT_TRUE(controller.send(canopen::encode(canopen::NmtRequest{canopen::NmtCommand::reset_node, 5})));
+  EXPECT_TRUE(controller.send(canopen::encode(canopen::NmtRequest{canopen::NmtCommand::start, 4})));
+  run_for(1'000);
+  EXPECT_FALSE(node.bootloader->wants_restart());
+  EXPECT_TRUE(controller.send(canopen::encode(canopen::NmtRequest{canopen::NmtCommand::reset_node, 4})));
+  run_for(1'000);
+  EXPECT_TRUE(node.bootloader->wants_restart());
+}
+
+TEST_F(BootloaderTest, GetsANodeIdByLss) {
+  Node& node = add(0);
+  std::vector<canopen::LssModule> modules(1);
+  modules[0].node = 6;
+  canopen::LssMaster master(controller, modules);
+  struct Host {
+    canopen::LssMaster& master;
+    [[nodiscard]] Microseconds next_deadline() const { return master.next_deadline(); }
+    void poll(Microseconds time) { master.poll(time); }
+  };
+  lss = &master;
+  master.start(now());
+  run_until([&] { return master.state() != canopen::LssMaster::State::working; }, Host{master});
+  lss = nullptr;
+  EXPECT_EQ(master.state(), canopen::LssMaster::State::done);
+  EXPECT_EQ(node.stored_node, 6);
+}
+
+TEST_F(BootloaderTest, StartsAProgramThatIsThereAfterTenSecondsWithoutAHost) {
+  Node& with_program = add(4);
+  Node& without = add(5);
+  with_program.module.install_proven(first);
+  run_for(Bootloader::idle_timeout_us - 1'000);
+  EXPECT_FALSE(with_program.bootloader->wants_restart());
+  run_for(10'000);
+  EXPECT_TRUE(with_program.bootloader->wants_restart());
+  run_for(5 * Bootloader::idle_timeout_us);
+  EXPECT_FALSE(without.bootloader->wants_restart()) << "there is nothing to start";
+}
+
+TEST_F(BootloaderTest, RandomFramesWriteNoFlash) {
+  Node& node = add(9);
+  node.module.install_proven(first);
+  const int operations = node.module.flash.operations;
+  std::mt19937 random(seed);
+  constexpr std::uint16_t identifiers[]{0x690, 0x609, 0x7E5, 0x000, 0x77F};
+  for (unsigned i = 0; i < 300'000; ++i) {
+    CanFrame frame{identifiers[random() % std::size(identifiers)], static_cast<std::uint8_t>(random() % 9), {}};
+    for (std::uint8_t byte = 0; byte < frame.length; ++byte) {
+      frame.data.at(byte) = static_cast<std::uint8_t>(byte < 2 ? random() % 12 : random());
+    }
+    node.bootloader->receive(i, frame);
+    node.bootloader->poll(i);
+    node.bootloader->transmitted(i, {});
+    if (node.bootloader->wants_restart()) {
+      node.restart(i);
+    }
+  }
+  EXPECT_EQ(node.module.flash.operations, operations) << "seed " << seed;
+}
+
+}  // namespace
+}  // namespace proleg::bootloader

@@ -133,7 +133,7 @@ void Bootloader::poll(Microseconds now) {
   }
   if (now >= idle_at_) {
     idle_at_ = now + idle_timeout_us;
-    leaves_ = slots_.image_in(Slot::a).has_value() || slots_.image_in(Slot::b).has_value();
+    leaves_ = slots_.image_in(FlashSlot::a).has_value() || slots_.image_in(FlashSlot::b).has_value();
   }
 }
 
@@ -189,7 +189,7 @@ AbortCode Bootloader::read(const Entry& entry, std::uint32_t& value) {
   } else if (entry.address == canopen::object::serial.address) {
     value = address_.back();
   } else if (entry.address == object::program_identification.address) {
-    const auto header = slots_.image_in(Slot::a);
+    const auto header = slots_.image_in(FlashSlot::a);
     value = header ? crc32(image::encode(*header)) : 0;
   } else if (entry.address == object::flash_status.address) {
     value = status_ | (downloaded_ != 0 ? object::status_in_progress : 0);

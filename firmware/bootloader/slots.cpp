@@ -29,45 +29,45 @@ bool equal(Bytes a, Bytes b) {
 
 StartResult Slots::prepare_start() {
   for (bool is_restored = false;; is_restored = true) {
-    const std::optional<image::Header> current = image_in(Slot::a);
-    if (current && is_confirmed(Slot::a)) {
+    const std::optional<image::Header> current = image_in(FlashSlot::a);
+    if (current && is_confirmed(FlashSlot::a)) {
       return StartResult::run;
     }
     if (const unsigned used = attempts(); current && used < max_attempts) {
-      return flash_.program(Slot::a, words_at() + 4 * (1 + used), bytes_of(0)) ? StartResult::run_on_trial
-                                                                               : StartResult::flash_failed;
+      return flash_.program(FlashSlot::a, words_at() + 4 * (1 + used), bytes_of(0)) ? StartResult::run_on_trial
+                                                                                    : StartResult::flash_failed;
     }
-    const std::optional<image::Header> backup = image_in(Slot::b);
+    const std::optional<image::Header> backup = image_in(FlashSlot::b);
     if (!backup || backup == current) {
       return StartResult::nothing;  // the copy of an image that has failed would fail, too
     }
-    if (is_restored || !write(Slot::a, *backup, body_in(Slot::b, *backup), is_confirmed(Slot::b))) {
+    if (is_restored || !write(FlashSlot::a, *backup, body_in(FlashSlot::b, *backup), is_confirmed(FlashSlot::b))) {
       return StartResult::flash_failed;
     }
   }
 }
 
 InstallResult Slots::install(const image::Header& header, Bytes body) {
-  const std::optional<image::Header> current = image_in(Slot::a);
-  if (current == header && (is_confirmed(Slot::a) || attempts() == 0)) {
+  const std::optional<image::Header> current = image_in(FlashSlot::a);
+  if (current == header && (is_confirmed(FlashSlot::a) || attempts() == 0)) {
     return InstallResult::already_there;  // else its trial begins anew
   }
-  const std::optional<image::Header> backup = image_in(Slot::b);
-  const bool is_current_better = is_confirmed(Slot::a) || !backup;
-  const bool is_copied = backup == current && is_confirmed(Slot::b) == is_confirmed(Slot::a);
+  const std::optional<image::Header> backup = image_in(FlashSlot::b);
+  const bool is_current_better = is_confirmed(FlashSlot::a) || !backup;
+  const bool is_copied = backup == current && is_confirmed(FlashSlot::b) == is_confirmed(FlashSlot::a);
   if (current && is_current_better && !is_copied &&
-      !write(Slot::b, *current, body_in(Slot::a, *current), is_confirmed(Slot::a))) {
+      !write(FlashSlot::b, *current, body_in(FlashSlot::a, *current), is_confirmed(FlashSlot::a))) {
     return InstallResult::backup_failed;
   }
-  return write(Slot::a, header, body, false) ? InstallResult::ok : InstallResult::flash_failed;
+  return write(FlashSlot::a, header, body, false) ? InstallResult::ok : InstallResult::flash_failed;
 }
 
 bool Slots::confirm() {
-  return is_confirmed(Slot::a) ||
-         (flash_.program(Slot::a, words_at(), bytes_of(confirmed_word)) && is_confirmed(Slot::a));
+  return is_confirmed(FlashSlot::a) ||
+         (flash_.program(FlashSlot::a, words_at(), bytes_of(confirmed_word)) && is_confirmed(FlashSlot::a));
 }
 
-std::optional<image::Header> Slots::image_in(Slot slot) const {
+std::optional<image::Header> Slots::image_in(FlashSlot slot) const {
   const auto [header, error] = image::decode(flash_.contents(slot));
   if (error != image::Error::none || image::check_place(header, place_) != image::Error::none ||
       crc32(body_in(slot, header)) != header.crc) {
@@ -76,18 +76,18 @@ std::optional<image::Header> Slots::image_in(Slot slot) const {
   return header;
 }
 
-bool Slots::is_confirmed(Slot slot) const { return word_at(slot, words_at()) == confirmed_word; }
+bool Slots::is_confirmed(FlashSlot slot) const { return word_at(slot, words_at()) == confirmed_word; }
 
 unsigned Slots::attempts() const {
   unsigned used = 0;
-  while (used < max_attempts && word_at(Slot::a, words_at() + 4 * (1 + used)) != erased_word) {
+  while (used < max_attempts && word_at(FlashSlot::a, words_at() + 4 * (1 + used)) != erased_word) {
     ++used;
   }
   return used;
 }
 
 /// The header last: before it is complete, the slot holds nothing.
-bool Slots::write(Slot slot, const image::Header& header, Bytes body, bool is_proven) {
+bool Slots::write(FlashSlot slot, const image::Header& header, Bytes body, bool is_proven) {
   const image::HeaderBytes header_bytes = image::encode(header);
   return flash_.erase(slot) && flash_.program(slot, image::header_size, body) &&
          (!is_proven || flash_.program(slot, words_at(), bytes_of(confirmed_word))) &&
@@ -95,16 +95,16 @@ bool Slots::write(Slot slot, const image::Header& header, Bytes body, bool is_pr
          equal(body, body_in(slot, header)) && is_confirmed(slot) == is_proven;
 }
 
-Bytes Slots::body_in(Slot slot, const image::Header& header) const {
+Bytes Slots::body_in(FlashSlot slot, const image::Header& header) const {
   return flash_.contents(slot).subspan(image::header_size, header.length);
 }
 
-std::uint32_t Slots::word_at(Slot slot, std::uint32_t offset) const {
+std::uint32_t Slots::word_at(FlashSlot slot, std::uint32_t offset) const {
   return read_little_endian(flash_.contents(slot), offset, 4);
 }
 
 std::uint32_t Slots::words_at() const {
-  return static_cast<std::uint32_t>(flash_.contents(Slot::a).size()) - words_size;
+  return static_cast<std::uint32_t>(flash_.contents(FlashSlot::a).size()) - words_size;
 }
 
 }  // namespace proleg::bootloader

@@ -28,18 +28,18 @@
 
 namespace proleg::bootloader {
 
-enum class Slot : std::uint8_t { a, b };
+enum class FlashSlot : std::uint8_t { a, b };
 
 /// The flash of the two slots. An operation takes long; nothing else runs meanwhile.
 class SlotFlash {
  public:
   /// All bytes become 0xFF. Whether it succeeded.
-  [[nodiscard]] virtual bool erase(Slot slot) = 0;
+  [[nodiscard]] virtual bool erase(FlashSlot slot) = 0;
   /// Programs bytes that are 0xFF, word by word in ascending order. offset and size: multiples of 4. Whether it
   /// succeeded.
-  [[nodiscard]] virtual bool program(Slot slot, std::uint32_t offset, std::span<const std::uint8_t> bytes) = 0;
+  [[nodiscard]] virtual bool program(FlashSlot slot, std::uint32_t offset, std::span<const std::uint8_t> bytes) = 0;
   /// The bytes of a slot: the same number for both, a multiple of 4, more than an image and 16 bytes.
-  [[nodiscard]] virtual std::span<const std::uint8_t> contents(Slot slot) const = 0;
+  [[nodiscard]] virtual std::span<const std::uint8_t> contents(FlashSlot slot) const = 0;
 
  protected:
   ~SlotFlash() = default;
@@ -76,15 +76,16 @@ class Slots {
   [[nodiscard]] bool confirm();
 
   /// Of the complete image in a slot; nothing without one.
-  [[nodiscard]] std::optional<image::Header> image_in(Slot slot) const;
-  [[nodiscard]] bool is_confirmed(Slot slot) const;
+  [[nodiscard]] std::optional<image::Header> image_in(FlashSlot slot) const;
+  [[nodiscard]] bool is_confirmed(FlashSlot slot) const;
   /// Starts on trial of the image in A.
   [[nodiscard]] unsigned attempts() const;
 
  private:
-  [[nodiscard]] bool write(Slot slot, const image::Header& header, std::span<const std::uint8_t> body, bool is_proven);
-  [[nodiscard]] std::span<const std::uint8_t> body_in(Slot slot, const image::Header& header) const;
-  [[nodiscard]] std::uint32_t word_at(Slot slot, std::uint32_t offset) const;
+  [[nodiscard]] bool write(FlashSlot slot, const image::Header& header, std::span<const std::uint8_t> body,
+                           bool is_proven);
+  [[nodiscard]] std::span<const std::uint8_t> body_in(FlashSlot slot, const image::Header& header) const;
+  [[nodiscard]] std::uint32_t word_at(FlashSlot slot, std::uint32_t offset) const;
   [[nodiscard]] std::uint32_t words_at() const;
 
   SlotFlash& flash_;

@@ -206,7 +206,7 @@ TEST_F(BootloaderTest, FiveModulesInstallAnImageAndRunItOnTrial) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     EXPECT_EQ(targets[i].status.state, ReceiverState::installed);
     EXPECT_EQ(nodes[i]->module.slots.prepare_start(), StartResult::run_on_trial);
-    EXPECT_EQ(number_in(nodes[i]->module.slots, Slot::a), 2U);
+    EXPECT_EQ(number_in(nodes[i]->module.slots, FlashSlot::a), 2U);
     EXPECT_FALSE(nodes[i]->bootloader->wants_restart()) << "the host asks for it";
   }
   EXPECT_TRUE(controller.send(broadcast::leave_frame(1)));
@@ -220,7 +220,7 @@ TEST_F(BootloaderTest, ModulesWithoutANodeIdTakePart) {
   Node& node = add(0);
   flash(bytes_of(first));
   EXPECT_EQ(targets[0].status.state, ReceiverState::installed);
-  EXPECT_EQ(number_in(node.module.slots, Slot::a), 1U);
+  EXPECT_EQ(number_in(node.module.slots, FlashSlot::a), 1U);
 }
 
 TEST_F(BootloaderTest, AnImageThatIsNotRightIsRefusedForItsReasonBeforeAnythingIsErased) {

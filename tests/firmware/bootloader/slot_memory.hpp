@@ -28,7 +28,7 @@ class SlotMemory final : public SlotFlash {
   int refused_at = -1;  ///< the operation that reports an error
   std::mt19937 noise{1};
 
-  bool erase(Slot slot) override {
+  bool erase(FlashSlot slot) override {
     const bool cut = operations == cut_at;
     if (operations++ == refused_at) {
       return false;
@@ -46,7 +46,7 @@ class SlotMemory final : public SlotFlash {
     throw PowerCut();
   }
 
-  bool program(Slot slot, std::uint32_t offset, std::span<const std::uint8_t> bytes) override {
+  bool program(FlashSlot slot, std::uint32_t offset, std::span<const std::uint8_t> bytes) override {
     EXPECT_EQ(offset % 4, 0U);
     EXPECT_EQ(bytes.size() % 4, 0U);
     std::vector<std::uint8_t>& slot_bytes = bytes_of(slot);
@@ -71,12 +71,12 @@ class SlotMemory final : public SlotFlash {
     return true;
   }
 
-  [[nodiscard]] std::span<const std::uint8_t> contents(Slot slot) const override {
+  [[nodiscard]] std::span<const std::uint8_t> contents(FlashSlot slot) const override {
     return slots.at(static_cast<std::size_t>(slot));
   }
 
  private:
-  std::vector<std::uint8_t>& bytes_of(Slot slot) { return slots.at(static_cast<std::size_t>(slot)); }
+  std::vector<std::uint8_t>& bytes_of(FlashSlot slot) { return slots.at(static_cast<std::size_t>(slot)); }
 };
 
 }  // namespace proleg::bootloader::test

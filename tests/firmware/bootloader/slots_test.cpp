@@ -43,10 +43,10 @@ TEST(SlotsTest, AnImageThatIsNotConfirmedInThreeStartsGivesWayToTheOneBefore) {
   ASSERT_EQ(module.install(second), InstallResult::ok);
   for (unsigned attempt = 1; attempt <= Slots::max_attempts; ++attempt) {
     EXPECT_EQ(module.slots.prepare_start(), StartResult::run_on_trial);
-    EXPECT_EQ(number_in(module.slots, Slot::a), 2U);
+    EXPECT_EQ(number_in(module.slots, FlashSlot::a), 2U);
   }
   EXPECT_EQ(module.slots.prepare_start(), StartResult::run) << "it has proven itself before";
-  EXPECT_EQ(number_in(module.slots, Slot::a), 1U);
+  EXPECT_EQ(number_in(module.slots, FlashSlot::a), 1U);
 }
 
 TEST(SlotsTest, AFirstImageThatFailsIsNotStartedForEver) {
@@ -67,11 +67,11 @@ TEST(SlotsTest, TheBackupIsTheLastImageThatHasProvenItself) {
   EXPECT_EQ(module.start(), 2U);
   // The second one was never confirmed: the third one does not replace the first one in slot B.
   ASSERT_EQ(module.install(third), InstallResult::ok);
-  EXPECT_EQ(number_in(module.slots, Slot::b), 1U);
+  EXPECT_EQ(number_in(module.slots, FlashSlot::b), 1U);
   module.start();
   ASSERT_TRUE(module.slots.confirm());
   ASSERT_EQ(module.install(second), InstallResult::ok);
-  EXPECT_EQ(number_in(module.slots, Slot::b), 3U);
+  EXPECT_EQ(number_in(module.slots, FlashSlot::b), 3U);
 }
 
 TEST(SlotsTest, AnImageForAnotherBoardDoesNotRunEvenIfAProbeWroteIt) {
@@ -93,7 +93,7 @@ TEST(SlotsTest, ABitThatHasChangedInSlotABringsTheBackupBack) {
     damaged.slots[0].at(byte) ^= static_cast<std::uint8_t>(1U << random() % 8);
     Slots slots(damaged, place);
     EXPECT_EQ(slots.prepare_start(), StartResult::run);
-    EXPECT_EQ(number_in(slots, Slot::a), 1U) << "byte " << byte;
+    EXPECT_EQ(number_in(slots, FlashSlot::a), 1U) << "byte " << byte;
   }
 }
 

@@ -32,7 +32,7 @@ inline Image make_image(std::uint16_t number, std::size_t size = 64) {
 }
 
 /// The number of the image in a slot; 0: none.
-inline unsigned number_in(const Slots& slots, Slot slot) {
+inline unsigned number_in(const Slots& slots, FlashSlot slot) {
   const auto header = slots.image_in(slot);
   return header ? header->version.major : 0;
 }
@@ -51,7 +51,7 @@ class UpdatedModule {
   unsigned start() {
     flash.cut_at = -1;
     const StartResult result = slots.prepare_start();
-    return result == StartResult::run || result == StartResult::run_on_trial ? number_in(slots, Slot::a) : 0;
+    return result == StartResult::run || result == StartResult::run_on_trial ? number_in(slots, FlashSlot::a) : 0;
   }
 
   /// An image that starts well.

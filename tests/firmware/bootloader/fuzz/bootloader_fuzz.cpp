@@ -54,6 +54,7 @@ class Memory final : public SlotFlash {
  public:
   bool erase(FlashSlot slot) override {
     std::ranges::fill(bytes(slot), std::uint8_t{0xFF});
+    ++erases;
     return true;
   }
   bool program(FlashSlot slot, std::uint32_t offset, std::span<const std::uint8_t> part) override {
@@ -68,6 +69,8 @@ class Memory final : public SlotFlash {
   [[nodiscard]] std::span<const std::uint8_t> contents(FlashSlot slot) const override {
     return slots[static_cast<std::size_t>(slot)];
   }
+
+  unsigned erases = 0;
 
  private:
   using Bytes = std::vector<std::uint8_t>;
@@ -133,7 +136,14 @@ class Session {
         receive(frame);
       }
     }
+    const unsigned erases = memory_.erases;
     bootloader_.poll(now_);
+    if (memory_.erases != erases) {
+      const auto header = slots_.image_in(FlashSlot::a);
+      require(header.has_value(), "what was written is right for the board");
+      const auto body = memory_.contents(FlashSlot::a).subspan(image::header_size, header->length);
+      require(image::check_body(*header, body) == image::Error::none, "and complete");
+    }
     require(bootloader_.next_deadline() > now_ || bus_.is_full || bootloader_.next_deadline() == 0,
             "a deadline that is polled is over");
   }

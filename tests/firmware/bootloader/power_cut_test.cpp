@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-constexpr std::uint32_t seed = 7;
+constexpr std::uint32_t cut_seed = 7;
 
 /// What is done to a module; the power may fail meanwhile.
 using Work = std::function<void(UpdatedModule&)>;
@@ -130,7 +130,7 @@ class PowerCuts : public testing::TestWithParam<Scenario> {
   /// The same state, with noise of its own for what a cut leaves.
   [[nodiscard]] SlotMemory prepared(unsigned number) const {
     SlotMemory flash = prepared_;
-    flash.noise.seed(seed + number);
+    flash.noise.seed(cut_seed + number);
     return flash;
   }
 
@@ -143,7 +143,7 @@ TEST_P(PowerCuts, AtEveryOperationAndAtEveryOperationOfTheRestartLeaveAModuleTha
   unsigned cuts = 0;
   unsigned second_cuts = 0;
   for (SlotMemory flash = prepared(0); is_cut(flash, static_cast<int>(cuts), scenario.work); flash = prepared(++cuts)) {
-    SCOPED_TRACE(testing::Message() << "cut at operation " << cuts << ", seed " << seed);
+    SCOPED_TRACE(testing::Message() << "cut at operation " << cuts << ", seed " << cut_seed);
     expect_to_run(scenario, flash);
     expect_to_accept_an_update(flash);
     SlotMemory restarted = flash;
@@ -162,10 +162,10 @@ TEST_P(PowerCuts, AtEveryOperationAndAtEveryOperationOfTheRestartLeaveAModuleTha
 
 TEST_P(PowerCuts, OneAfterTheOtherLeaveAModuleThatRuns) {
   const Scenario& scenario = GetParam();
-  std::mt19937 random(seed);
+  std::mt19937 random(cut_seed);
   constexpr unsigned rounds = 500;
   for (unsigned round = 0; round < rounds; ++round) {
-    SCOPED_TRACE(testing::Message() << "round " << round << ", seed " << seed);
+    SCOPED_TRACE(testing::Message() << "round " << round << ", seed " << cut_seed);
     SlotMemory flash = prepared(round);
     static_cast<void>(is_cut(flash, static_cast<int>(random() % 500), scenario.work));
     for (int step = 0; step < 5; ++step) {

@@ -9,8 +9,7 @@ namespace {
 using canopen::Emergency;
 using canopen::EmergencyCode;
 using canopen::PowerState;
-
-constexpr std::uint8_t node = test::TestModule::node_id;
+using test::node;
 constexpr Microseconds ms = 1'000;
 constexpr Microseconds second = 1'000'000;
 

@@ -8,8 +8,7 @@ namespace {
 namespace object = canopen::object;
 using canopen::AbortCode;
 using canopen::NmtCommand;
-
-constexpr std::uint8_t node = test::TestModule::node_id;
+using test::node;
 
 class LeaseOfAModule : public testing::Test {
  protected:

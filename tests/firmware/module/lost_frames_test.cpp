@@ -7,8 +7,7 @@ namespace {
 
 using canopen::Emergency;
 using canopen::EmergencyCode;
-
-constexpr std::uint8_t node = test::TestModule::node_id;
+using test::node;
 constexpr Microseconds second = 1'000'000;
 
 class LostFrames : public testing::Test {

@@ -11,8 +11,7 @@ using canopen::AbortCode;
 using canopen::EmergencyCode;
 using canopen::NmtCommand;
 using canopen::NmtState;
-
-constexpr std::uint8_t node = test::TestModule::node_id;
+using test::node;
 constexpr std::uint16_t heartbeat = canopen::identifier::heartbeat + node;
 
 firmware::ModuleIdentity identity(std::uint8_t node_id, std::uint32_t id) {

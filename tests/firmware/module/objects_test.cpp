@@ -13,8 +13,7 @@ using canopen::AbortCode;
 using canopen::NmtCommand;
 using canopen::NmtState;
 using canopen::ValueKind;
-
-constexpr std::uint8_t node = test::TestModule::node_id;
+using test::node;
 
 KernelConfiguration two_slots(std::uint32_t tick_us = 7'000) {
   KernelConfiguration configuration = test::one_slot(test::algorithm(test::coupled), 5, tick_us, 0xFEDC'BA98'7654'3210);

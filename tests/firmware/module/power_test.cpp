@@ -13,8 +13,7 @@ using canopen::Emergency;
 using canopen::EmergencyCode;
 using canopen::NmtCommand;
 using canopen::PowerState;
-
-constexpr std::uint8_t node = test::TestModule::node_id;
+using test::node;
 constexpr std::uint32_t servo_us = 3'000;
 
 class Power : public testing::Test {

@@ -9,8 +9,7 @@ namespace {
 namespace object = canopen::object;
 using canopen::AbortCode;
 using canopen::NmtCommand;
-
-constexpr std::uint8_t node = test::TestModule::node_id;
+using test::node;
 
 class SetpointChecksum : public testing::Test {
  protected:

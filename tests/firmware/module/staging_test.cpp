@@ -12,8 +12,7 @@ using canopen::Emergency;
 using canopen::EmergencyCode;
 using canopen::NmtCommand;
 using canopen::ValueKind;
-
-constexpr std::uint8_t node = test::TestModule::node_id;
+using test::node;
 
 class Staging : public testing::Test {
  protected:

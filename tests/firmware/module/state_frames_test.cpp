@@ -7,8 +7,7 @@ namespace {
 
 using canopen::Emergency;
 using canopen::EmergencyCode;
-
-constexpr std::uint8_t node = test::TestModule::node_id;
+using test::node;
 constexpr std::uint8_t neighbour = 1;  ///< the node of joint 1
 constexpr std::uint16_t neighbour_frame = canopen::identifier::state_frame + neighbour;
 

@@ -9,8 +9,7 @@ namespace object = canopen::object;
 using canopen::AbortCode;
 using canopen::NmtCommand;
 using firmware::BoardRecord;
-
-constexpr std::uint8_t node = test::TestModule::node_id;
+using test::node;
 constexpr std::uint32_t save = 0x65766173;  // 's' in the lowest byte, 'a', 'v', 'e'
 constexpr std::uint32_t load = 0x64616F6C;
 

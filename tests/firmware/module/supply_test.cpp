@@ -10,8 +10,7 @@ using canopen::AbortCode;
 using canopen::Emergency;
 using canopen::EmergencyCode;
 using canopen::PowerState;
-
-constexpr std::uint8_t node = test::TestModule::node_id;
+using test::node;
 
 class Supply : public testing::Test {
  protected:

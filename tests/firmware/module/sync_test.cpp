@@ -9,8 +9,7 @@ using canopen::AbortCode;
 using canopen::Emergency;
 using canopen::EmergencyCode;
 using canopen::NmtCommand;
-
-constexpr std::uint8_t node = test::TestModule::node_id;
+using test::node;
 constexpr std::uint16_t state_identifier = canopen::identifier::state_frame + node;
 
 class Sync : public testing::Test {

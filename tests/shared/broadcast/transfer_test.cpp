@@ -18,7 +18,7 @@ namespace {
 using sim::BusTime;
 
 constexpr BusTime us = 1'000;
-constexpr std::uint32_t seed = 3;
+constexpr std::uint32_t image_seed = 3;
 constexpr std::size_t image_size = 65'536;
 
 /// A bootloader without a flash.
@@ -50,7 +50,7 @@ class ReceivingModule final : sim::BusListener {
 class Transfer final : sim::BusListener {
  public:
   /// Each receiver misses each frame with the probability `lost`.
-  Transfer(std::span<const std::uint8_t> image, unsigned count, double lost = 0, std::uint32_t noise = seed)
+  Transfer(std::span<const std::uint8_t> image, unsigned count, double lost = 0, std::uint32_t noise = image_seed)
       : controller_(bus.attach(*this)), image_(image), random_(noise) {
     for (unsigned i = 0; i < count; ++i) {
       const auto serial = static_cast<std::uint32_t>(random_());
@@ -107,7 +107,7 @@ class Transfer final : sim::BusListener {
 };
 
 std::vector<std::uint8_t> random_image(std::size_t size) {
-  std::mt19937 random(seed);
+  std::mt19937 random(image_seed);
   std::vector<std::uint8_t> image(size);
   std::ranges::generate(image, [&random] { return static_cast<std::uint8_t>(random()); });
   return image;
@@ -142,9 +142,9 @@ TEST(ImageTransfer, TakesTwelveModulesHardlyLongerAndATenthOfTheFramesLostLittle
 }
 
 TEST(ImageTransfer, CompletesWithAnySizeAndManyLosses) {
-  std::mt19937 random(seed);
+  std::mt19937 random(image_seed);
   for (unsigned round = 0; round < 40; ++round) {
-    SCOPED_TRACE(testing::Message() << "round " << round << ", seed " << seed);
+    SCOPED_TRACE(testing::Message() << "round " << round << ", seed " << image_seed);
     const auto image = random_image(1 + random() % 6'000);
     Transfer transfer(image, 1 + random() % 5, 0.03 * (round % 12), round);
     transfer.send({.session = 9, .attempts = 100});

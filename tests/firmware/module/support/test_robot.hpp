@@ -166,4 +166,7 @@ class TestModule : public TestRobot {
   Microseconds next_sync_ = 0;
 };
 
+/// Its node id, for short.
+inline constexpr std::uint8_t node = TestModule::node_id;
+
 }  // namespace proleg::test

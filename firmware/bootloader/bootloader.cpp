@@ -62,16 +62,19 @@ void Bootloader::start_network(Microseconds now, std::uint8_t node) {
 }
 
 void Bootloader::receive(Microseconds now, const CanFrame& frame) {
+  now_ = now;
   std::optional<CanFrame> answer;
   if (frame.identifier == broadcast::host_identifier && !is_downloading_ && downloaded_ == 0) {
     answer = receiver_.receive(now, frame);
-    leaves_ = leaves_ || receiver_.take_leave_request();
+    if (receiver_.take_leave_request()) {
+      leave(now);
+    }
   } else if (node_ != 0 && frame.identifier == canopen::identifier::sdo_request + node_) {
     answer = sdo_.receive(now, frame);
   } else if (frame.identifier == canopen::identifier::lss_request) {
     receive_lss(now, frame);
   } else if (frame.identifier == canopen::identifier::nmt) {
-    receive_network_command(frame);
+    receive_network_command(now, frame);
   } else {
     return;
   }
@@ -90,12 +93,19 @@ void Bootloader::receive_lss(Microseconds now, const CanFrame& frame) {
   }
 }
 
-void Bootloader::receive_network_command(const CanFrame& frame) {
+void Bootloader::receive_network_command(Microseconds now, const CanFrame& frame) {
   const auto request = canopen::decode_nmt(frame);
-  if (node_ != 0 && request && (request->node == 0 || request->node == node_)) {
-    leaves_ = leaves_ || request->command == canopen::NmtCommand::reset_node ||
-              request->command == canopen::NmtCommand::reset_communication;
+  const bool is_for_this_node = node_ != 0 && request && (request->node == 0 || request->node == node_);
+  if (is_for_this_node && (request->command == canopen::NmtCommand::reset_node ||
+                           request->command == canopen::NmtCommand::reset_communication)) {
+    leave(now);
   }
+}
+
+void Bootloader::leave(Microseconds now) {
+  constexpr Microseconds sending_time_us = 100'000;
+  leave_at_ = leaves_ ? leave_at_ : now + sending_time_us;
+  leaves_ = true;
 }
 
 void Bootloader::transmitted(Microseconds now, const CanFrame& /*frame*/) {
@@ -133,13 +143,19 @@ void Bootloader::poll(Microseconds now) {
   }
   if (now >= idle_at_) {
     idle_at_ = now + idle_timeout_us;
-    leaves_ = slots_.image_in(FlashSlot::a).has_value() || slots_.image_in(FlashSlot::b).has_value();
+    if (slots_.image_in(FlashSlot::a) || slots_.image_in(FlashSlot::b)) {
+      leave(now);
+    }
+  }
+  if (now >= leave_at_) {
+    leave_at_ = never;
+    queue_.clear();  // nobody acknowledges
   }
 }
 
 Microseconds Bootloader::next_deadline() const {
   const bool installs = receiver_.has_install_request() || downloaded_ != 0;
-  return installs && queue_.size() == 0 ? 0 : std::min({sdo_.next_deadline(), heartbeat_at_, idle_at_});
+  return installs && queue_.size() == 0 ? 0 : std::min({sdo_.next_deadline(), heartbeat_at_, idle_at_, leave_at_});
 }
 
 /// Everything that can be known before the flash is erased.
@@ -205,7 +221,7 @@ AbortCode Bootloader::write(const Entry& entry, std::uint32_t value) {
     if (downloaded_ != 0) {
       return AbortCode::refused_by_state;
     }
-    leaves_ = true;
+    leave(now_);
   }
   return AbortCode::none;
 }

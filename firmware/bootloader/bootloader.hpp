@@ -42,7 +42,7 @@ class Bootloader final : private canopen::ObjectAccess {
   void poll(Microseconds now);
   [[nodiscard]] Microseconds next_deadline() const;
 
-  /// The chip is to be reset, so that the program starts. Not before all answers are sent.
+  /// The chip is to be reset, so that the program starts. Before, answers are sent, if the bus takes them.
   [[nodiscard]] bool wants_restart() const { return leaves_ && queue_.size() == 0; }
 
  private:
@@ -57,10 +57,11 @@ class Bootloader final : private canopen::ObjectAccess {
   void cancel_write(const canopen::Entry& entry) override;
 
   void receive_lss(Microseconds now, const CanFrame& frame);
-  void receive_network_command(const CanFrame& frame);
+  void receive_network_command(Microseconds now, const CanFrame& frame);
   void start_network(Microseconds now, std::uint8_t node);
   void install(std::span<const std::uint8_t> image);
   [[nodiscard]] image::Error check(std::span<const std::uint8_t> image) const;
+  void leave(Microseconds now);
   void send(const CanFrame& frame) { static_cast<void>(queue_.push(frame)); }
 
   const image::Place place_;
@@ -72,6 +73,7 @@ class Bootloader final : private canopen::ObjectAccess {
   canopen::SdoServer sdo_;
   canopen::LssSlave lss_;
 
+  Microseconds now_ = 0;   ///< of the present event
   std::uint8_t node_ = 0;  ///< 0: none
   Microseconds heartbeat_at_ = never;
   Microseconds idle_at_ = never;
@@ -79,6 +81,7 @@ class Bootloader final : private canopen::ObjectAccess {
   bool is_downloading_ = false;   ///< by SDO, into the buffer
   std::uint32_t downloaded_ = 0;  ///< bytes of an image from SDO that waits to be installed
   bool leaves_ = false;
+  Microseconds leave_at_ = never;  ///< at the latest
 };
 
 }  // namespace proleg::bootloader

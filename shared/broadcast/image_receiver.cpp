@@ -76,10 +76,11 @@ std::optional<CanFrame> ImageReceiver::receive_request(Microseconds now, const C
   return std::nullopt;
 }
 
-/// A repeated request does not end the session. Another host sees in the answer that the module is not its own.
+/// A repeated request does not begin the session again. Another host sees in the answer that the module is not its own.
 void ImageReceiver::select(Microseconds now, std::uint8_t session) {
-  const bool is_free = status_.state == ReceiverState::idle || now - last_request_ >= session_timeout_us;
-  if (is_free && status_.session != session) {
+  const bool is_free = status_.state == ReceiverState::idle || now - last_request_ >= session_timeout_us ||
+                       (status_.state >= ReceiverState::installed && status_.session != session);
+  if (is_free) {
     status_ = {ReceiverState::selected, 0, session};
     last_request_ = now;
     has_block_ = false;

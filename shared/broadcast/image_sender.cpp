@@ -56,6 +56,7 @@ void ImageSender::enter(Microseconds now, Step step) {
 /// Hands frames to the controller while it takes them.
 void ImageSender::pump(Microseconds now) {
   if (is_unsent_) {
+    --attempt_;
     ask(now);
     return;
   }
@@ -68,6 +69,7 @@ void ImageSender::pump(Microseconds now) {
       return;
     }
     if (!port_.send(*frame)) {
+      deadline_ = now + options_.send_timeout_us;
       return;  // transmitted() goes on
     }
     if (announced_ < repetitions) {
@@ -176,9 +178,7 @@ void ImageSender::ask(Microseconds now) {
                            : step_ == Step::report ? report_frame(serial)
                                                    : status_frame(serial);
   is_unsent_ = !port_.send(request);
-  if (!is_unsent_) {
-    ++attempt_;
-  }
+  ++attempt_;
   constexpr Microseconds least_us = 2'000;
   asked_at_ = attempt_ == 1 ? now : asked_at_;
   deadline_ = now + (longest_answer_ == 0 ? options_.answer_timeout_us : least_us + 4 * longest_answer_);
@@ -215,6 +215,13 @@ void ImageSender::finish_round(Microseconds now) {
         end(State::done);
       }
   }
+}
+
+void ImageSender::lose_all() {
+  for (Target& target : targets_) {
+    target.is_lost = true;
+  }
+  end(State::done);
 }
 
 void ImageSender::end(State state) {
@@ -285,7 +292,9 @@ void ImageSender::poll(Microseconds now) {
   if (now < deadline_) {
     return;
   }
-  if (step_ == Step::status && target_ == targets_.size()) {
+  if (step_ == Step::begin || step_ == Step::send || step_ == Step::install) {
+    lose_all();  // the bus takes no frames
+  } else if (step_ == Step::status && target_ == targets_.size()) {
     enter(now, Step::status);
   } else if (attempt_ < options_.attempts || (step_ == Step::status && now < install_ends_)) {
     ask(now);  // a module that writes its flash cannot answer

@@ -23,6 +23,7 @@ struct SenderOptions {
   /// Of an answer, until others have come; then four times the longest one.
   Microseconds answer_timeout_us = 50'000;
   unsigned attempts = 12;                        ///< of a request until it is answered
+  Microseconds send_timeout_us = 1'000'000;      ///< in which the bus takes a frame
   Microseconds install_timeout_us = 15'000'000;  ///< from the request to the end of all installations
   Microseconds status_period_us = 20'000;        ///< between two questions while modules install
 };
@@ -72,6 +73,7 @@ class ImageSender {
   void plan_all_symbols();
   void plan_repairs();
   void ask(Microseconds now);
+  void lose_all();
   void next_target(Microseconds now);
   void finish_round(Microseconds now);
   void end(State state);

@@ -349,6 +349,15 @@ TEST_F(BootloaderTest, StartsAProgramThatIsThereAfterTenSecondsWithoutAHost) {
   EXPECT_FALSE(without.bootloader->wants_restart()) << "there is nothing to start";
 }
 
+// Nobody acknowledges its heartbeats then.
+TEST_F(BootloaderTest, StartsItsProgramAlsoAloneOnTheBus) {
+  Node& node = add(4);
+  node.module.install_proven(first);
+  controller.switch_off();
+  run_for(Bootloader::idle_timeout_us + 200'000);
+  EXPECT_TRUE(node.bootloader->wants_restart());
+}
+
 TEST_F(BootloaderTest, RandomFramesWriteNoFlash) {
   Node& node = add(9);
   node.module.install_proven(first);

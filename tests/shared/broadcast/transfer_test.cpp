@@ -186,6 +186,49 @@ TEST(ImageTransfer, EndsWhenNobodyIsThere) {
   EXPECT_TRUE(transfer.targets[0].is_lost && transfer.targets[1].is_lost);
 }
 
+TEST(ImageTransfer, EndsWhenTheBusTakesNoFrames) {
+  const auto image = random_image(20'000);
+  for (const unsigned symbols : {0U, 500U}) {
+    Transfer transfer(image, 3);
+    transfer.bus.set_frame_listener([&transfer, symbols](const sim::Transmission& /*frame*/) {
+      if (transfer.sender->symbols_sent() >= symbols) {
+        transfer.bus.set_error_rule([](const CanFrame& /*sent*/, std::uint64_t /*number*/) { return true; });
+      }
+    });
+    transfer.send();
+    EXPECT_EQ(transfer.sender->state(), ImageSender::State::done);
+    EXPECT_TRUE(std::ranges::all_of(transfer.targets, &Target::is_lost));
+  }
+}
+
+/// What a module answers to `select`.
+StatusAnswer select(ImageReceiver& receiver, Microseconds now, std::uint8_t session) {
+  return decode_status(receiver.receive(now, select_frame(session, 7)).value(), Code::select, 7).value();
+}
+
+TEST(ImageReception, BelongsToOneHostUntilItIsOverOrThatHostIsSilent) {
+  std::vector<std::uint8_t> buffer(1'000);
+  ImageReceiver receiver(buffer, 7);
+  constexpr Microseconds begin = 1'000'000;
+  EXPECT_EQ(select(receiver, begin, 5).session, 5);
+  EXPECT_EQ(receiver.receive(begin, begin_frame(5, 7)), std::nullopt);
+  EXPECT_EQ(select(receiver, begin + 10, 6).session, 5);
+  EXPECT_EQ(select(receiver, begin + 20, 5).state, ReceiverState::receiving) << "a repeated request";
+  constexpr Microseconds silent = begin + ImageReceiver::session_timeout_us;
+  EXPECT_EQ(select(receiver, silent - 1, 6).session, 5);
+  EXPECT_EQ(select(receiver, silent, 6).session, 6);
+  EXPECT_EQ(receiver.state(), ReceiverState::selected);
+  // Another one may begin when this one has ended.
+  for (const CanFrame& frame : {begin_frame(6, 7), block_frame(6, 0, BlockKind::symbols), symbol_frame(0, {})}) {
+    EXPECT_EQ(receiver.receive(silent, frame), std::nullopt);
+  }
+  EXPECT_EQ(receiver.state(), ReceiverState::complete);
+  EXPECT_EQ(select(receiver, silent + 10, 8).session, 6);
+  receiver.set_state(ReceiverState::refused, 3);
+  EXPECT_EQ(select(receiver, silent + 20, 6).state, ReceiverState::refused);
+  EXPECT_EQ(select(receiver, silent + 30, 8).state, ReceiverState::selected);
+}
+
 TEST(ImageTransfer, IsNotDisturbedByAnotherHost) {
   const auto image = random_image(20'000);
   Transfer transfer(image, 2);

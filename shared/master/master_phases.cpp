@@ -137,7 +137,11 @@ void Master::enter(Phase phase) {
       timeout_us = stop_timeout_us;
       break;
   }
-  sdo_clients_.begin(served, timeout_us, is_running() ? pause_us : phase == Phase::ramp_in ? ramp_in_pause_us : 0);
+  const bool leaves_room_for_ticks = is_running() || (mission_ == Mission::stop && options_.ramps_down);
+  sdo_clients_.begin(served, timeout_us,
+                     leaves_room_for_ticks     ? pause_us
+                     : phase == Phase::ramp_in ? ramp_in_pause_us
+                                               : 0);
   if (mission_ != Mission::bring_up) {
     return;
   }

@@ -284,8 +284,13 @@ class World::Implementation {
       const Eigen::Vector3d axis = robot_pose.orientation * joint.axis;
       dJointSetHingeAnchor(hinge, anchor.x(), anchor.y(), anchor.z());
       dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
-      dJointSetHingeParam(hinge, dParamLoStop, joint.lower_limit);
-      dJointSetHingeParam(hinge, dParamHiStop, joint.upper_limit);
+      // With a limp joint that stands exactly at its stop the solver breaks down: distance and force are both 0.
+      constexpr double start_distance = 1e-7;  // rad
+      const bool can_turn = joint.lower_limit < joint.upper_limit;
+      dJointSetHingeParam(hinge, dParamLoStop,
+                          joint.lower_limit - (can_turn && joint.lower_limit == 0 ? start_distance : 0));
+      dJointSetHingeParam(hinge, dParamHiStop,
+                          joint.upper_limit + (can_turn && joint.upper_limit == 0 ? start_distance : 0));
       joints_.push_back(hinge);
       motors_[i].attach(hinge, bodies_[i], joint, robot.links[i]);
     }

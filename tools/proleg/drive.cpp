@@ -14,7 +14,7 @@
 
 #include "host/robot/answer_times.hpp"
 #include "host/robot/change_times.hpp"
-#include "host/robot/power_watch.hpp"
+#include "host/robot/gait_watch.hpp"
 #include "host/robot/robot_drive.hpp"
 #include "host/robot/sdo_queue.hpp"
 #include "host/robot/session_token.hpp"
@@ -60,17 +60,17 @@ class Drive {
         input_(run.scenario),
         changes_(run.scenario, std::move(input_.changes)),
         drive_(bus_, input_.setup, master_options(), changes_.span()),
-        power_watch_(bus_, {input_.setup.nodes.begin(), input_.setup.nodes.end()}),
+        gait_watch_(bus_, {input_.setup.nodes.begin(), input_.setup.nodes.end()}),
         check_(run.scenario),
         end_tick_(run.ticks) {
     bus_.attach(answer_times_);  // before the master: it answers an answer with the next request
     bus_.attach(change_times_);
     bus_.attach(drive_);
-    bus_.attach(power_watch_);
+    bus_.attach(gait_watch_);
   }
   ~Drive() {
     bus_.detach(drive_);
-    bus_.detach(power_watch_);
+    bus_.detach(gait_watch_);
     bus_.detach(answer_times_);
     bus_.detach(change_times_);
   }
@@ -87,7 +87,7 @@ class Drive {
              !bus_.state().is_connected;
     });
     if (state() == canopen::MasterState::running) {
-      power_watch_.start(bus_.now());
+      gait_watch_.start(bus_.now());
       return;
     }
     const std::string reason = interrupted() ? "interrupted" : why_not();
@@ -109,6 +109,9 @@ class Drive {
         throw std::runtime_error(why_not());
       }
     }
+    if (!interrupted() && !wants_stop_) {
+      look_at_the_joints();
+    }
   }
 
   /// Ramps down and takes the power from the servos. Whether all modules have confirmed it.
@@ -116,7 +119,7 @@ class Drive {
     // The master gives up by itself: silent modules cost it a second for every eight of them.
     constexpr Microseconds at_most = 20'000'000;
     are_all_off_ = true;
-    power_watch_.stop();
+    gait_watch_.stop();
     // What the modules send while they stop is not part of the gait.
     end_tick_ = std::min(end_tick_, drive_.master().tick().value_or(0));
     drive_.master().stop(bus_.now());
@@ -140,7 +143,7 @@ class Drive {
   [[nodiscard]] DriveResult result() const {
     return {check_.ticks(),
             drive_.master().restarts(),
-            changes_.dropped(),
+            changes_.dropped() + changes_.unfinished(),
             bus_.statistics(),
             answer_times_.microseconds(),
             change_times_.acknowledged_us(),
@@ -166,7 +169,17 @@ class Drive {
   }
   [[nodiscard]] canopen::MasterState state() const { return drive_.master().state(); }
   [[nodiscard]] bool has_ended() const {
-    return state() == canopen::MasterState::failed || !bus_.state().is_connected || power_watch_.loss();
+    return state() == canopen::MasterState::failed || !bus_.state().is_connected || gait_watch_.loss();
+  }
+  /// At the end of a run: a joint that has just lost its gait must not pass as one that has followed it.
+  void look_at_the_joints() {
+    constexpr Microseconds at_most = 1'000'000;
+    gait_watch_.look_at_all();
+    bus_.run_until(bus_.now() + at_most, [this] { return gait_watch_.has_looked() || has_ended() || interrupted(); });
+    report_events();
+    if (has_ended()) {
+      throw std::runtime_error(why_not());
+    }
   }
   [[nodiscard]] std::string name_of(std::uint8_t node) const { return sim::name_of_node(run_.scenario, node); }
 
@@ -176,7 +189,7 @@ class Drive {
     if (!bus_.state().is_connected) {
       return bus_.diagnosis();
     }
-    if (const auto& loss = power_watch_.loss(); loss && state() != canopen::MasterState::failed) {
+    if (const auto& loss = gait_watch_.loss(); loss && state() != canopen::MasterState::failed) {
       return text_of(*loss);
     }
     if (problem.code == ProblemCode::none) {
@@ -190,9 +203,13 @@ class Drive {
     return text;
   }
 
-  [[nodiscard]] std::string text_of(const host::PowerWatch::Loss& loss) const {
-    const std::string text =
-        name_of(loss.node) + " does not follow the gait any more: " + std::string(host::drive_text(loss.statusword));
+  [[nodiscard]] std::string text_of(const host::GaitWatch::Loss& loss) const {
+    using Reason = host::GaitWatch::Reason;
+    const std::string what = loss.reason == Reason::drive ? std::string(host::drive_text(loss.statusword))
+                             : loss.reason == Reason::mode
+                                 ? "its mode is " + std::to_string(loss.mode) + ", expected -1 (gait)"
+                                 : "its module is " + std::string(host::state_text(loss.state));
+    const std::string text = name_of(loss.node) + " does not follow the gait any more: " + what;
     return text + (loss.emergency == canopen::EmergencyCode::none
                        ? "; another program may have done that"
                        : "; the module has reported: " + std::string(canopen::describe(loss.emergency)));
@@ -207,7 +224,7 @@ class Drive {
       }
       are_all_off_ = are_all_off_ && event->kind != canopen::EventKind::not_stopped;
       if (event->kind == canopen::EventKind::rejoined || event->kind == canopen::EventKind::rejoin_failed) {
-        power_watch_.return_to_gait(event->node);
+        gait_watch_.return_to_gait(event->node);
       }
       if (event->kind == canopen::EventKind::restarted) {
         check_.end_comparison(name_of(event->node) + " has restarted");
@@ -271,7 +288,7 @@ class Drive {
   /// Throws InputError.
   void add_change(const std::string& word) {
     const std::uint32_t tick = drive_.master().tick().value_or(0);
-    if (!changes_.add(word, tick)) {
+    if (!changes_.add(word, tick, run_.ticks)) {
       return;
     }
     const std::span<canopen::Change> changes = changes_.span();
@@ -322,7 +339,7 @@ class Drive {
   host::RobotDrive drive_;
   host::AnswerTimes answer_times_;
   host::ChangeTimes change_times_;
-  host::PowerWatch power_watch_;
+  host::GaitWatch gait_watch_;
   GaitCheck check_;
   InputLines input_lines_;
   bool wants_stop_ = false;

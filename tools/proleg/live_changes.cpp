@@ -19,7 +19,7 @@ LiveChanges::LiveChanges(const sim::Scenario& scenario, std::vector<canopen::Cha
   }
 }
 
-bool LiveChanges::add(const std::string& word, std::uint32_t now) {
+bool LiveChanges::add(const std::string& word, std::uint32_t now, std::uint32_t end) {
   const bool has_tick = word.find('@') != std::string::npos;
   sim::Scenario scratch = scenario_;
   scratch.changes.clear();
@@ -31,6 +31,10 @@ bool LiveChanges::add(const std::string& word, std::uint32_t now) {
   const sim::Change& change = scratch.changes.front();
   if (has_tick && change.tick <= now) {
     throw InputError(word, 0, "tick " + std::to_string(change.tick), "a later one than " + std::to_string(now));
+  }
+  if (has_tick && change.tick >= end) {
+    throw InputError(word, 0, "tick " + std::to_string(change.tick),
+                     "a tick of this run, which ends at tick " + std::to_string(end));
   }
   std::vector<canopen::ChangedValue> values;
   for (const sim::Setting& setting : change.settings) {
@@ -44,8 +48,16 @@ bool LiveChanges::add(const std::string& word, std::uint32_t now) {
     planned_.insert(std::ranges::upper_bound(planned_, added.tick, {}, &canopen::Change::tick), added);
     return release(now);
   }
+  without_tick_.push_back(changes_.size());
   changes_.push_back(added);
   return true;
+}
+
+void LiveChanges::remove_last() {
+  changes_.pop_back();
+  if (!without_tick_.empty() && without_tick_.back() == changes_.size()) {
+    without_tick_.pop_back();
+  }
 }
 
 bool LiveChanges::release(std::uint32_t now) {
@@ -82,6 +94,11 @@ std::vector<sim::Change> LiveChanges::take_decided(std::uint32_t tick) {
 
 std::uint64_t LiveChanges::dropped() const {
   return too_late_ + static_cast<std::uint64_t>(std::ranges::count_if(changes_, &canopen::Change::dropped));
+}
+
+std::uint64_t LiveChanges::unfinished() const {
+  return static_cast<std::uint64_t>(std::ranges::count_if(
+      without_tick_, [this](std::size_t position) { return position >= taken_ && !changes_[position].dropped; }));
 }
 
 }  // namespace proleg::tools

@@ -23,19 +23,22 @@ class LiveChanges {
   LiveChanges(const LiveChanges&) = delete;
   LiveChanges& operator=(const LiveChanges&) = delete;
 
-  /// A word as for --set; without a tick the change takes effect as soon as all modules have it. now: present tick.
-  /// Throws InputError. True: the master must get the new span() now.
-  bool add(const std::string& word, std::uint32_t now);
+  /// A word as for --set; without a tick the change takes effect as soon as all modules have it. now: present tick;
+  /// end: the first one that is not part of the run. Throws InputError. True: the master must get the new span() now.
+  bool add(const std::string& word, std::uint32_t now, std::uint32_t end);
   /// Puts the next planned change behind span(), if it is time. True: the master must get the new span() now.
   bool release(std::uint32_t now);
   /// The master has refused the last one of span().
-  void remove_last() { changes_.pop_back(); }
+  void remove_last();
   /// What the master has, or must get.
   [[nodiscard]] std::span<canopen::Change> span() { return changes_; }
 
   /// The changes for this tick and earlier ones that have not been taken and that the master did not drop.
   [[nodiscard]] std::vector<sim::Change> take_decided(std::uint32_t tick);
+  /// Changes that the master has dropped, or never got in time.
   [[nodiscard]] std::uint64_t dropped() const;
+  /// Changes without a tick that were added and have not been taken, nor dropped: the run has ended before.
+  [[nodiscard]] std::uint64_t unfinished() const;
 
  private:
   const sim::Scenario& scenario_;
@@ -43,6 +46,7 @@ class LiveChanges {
   std::vector<canopen::Change> planned_;  ///< by ascending tick; the master does not have them yet
   std::vector<canopen::Change> changes_;
   std::vector<std::vector<canopen::ChangedValue>> values_;  ///< of the changes that were added
+  std::vector<std::size_t> without_tick_;                   ///< positions in changes_ of those that were added
   std::size_t taken_ = 0;
   std::uint64_t too_late_ = 0;  ///< planned changes that the master never got
 };

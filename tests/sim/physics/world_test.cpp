@@ -177,6 +177,24 @@ TEST(World, AJointStopsAtItsLimits) {
   EXPECT_NEAR(world.joint_angle(0), -0.2, 0.02);
 }
 
+// A robot without power, whose joints stand at 0, where a stop is.
+TEST(World, LimpJointsThatStartAtAStopLieOnTheGround) {
+  for (const auto& [lower, upper] : {std::pair(0.0, 1.5), std::pair(-1.5, 0.0), std::pair(0.0, 0.0)}) {
+    for (const std::size_t limited : {0U, 1U, 2U}) {
+      RobotModel robot = chain(4);
+      robot.joints[limited].lower_limit = lower;
+      robot.joints[limited].upper_limit = upper;
+      World world(robot, flat_ground(0.5, 0.02), step_s, Stepper::direct);
+      for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
+        world.set_joint_torque(joint, 0);
+      }
+      run(world, 1.0);
+      EXPECT_NEAR(world.center_of_mass().z(), 0.02, 0.002) << "joint " << limited << ", " << lower << " to " << upper;
+      EXPECT_EQ(world.solver_messages(), 0U);
+    }
+  }
+}
+
 TEST(World, ASensorIsPressedWhereTheLinkTouches) {
   World world(chain(3), flat_ground(0.5, 0.02), step_s, Stepper::direct);
   run(world, 0.2);

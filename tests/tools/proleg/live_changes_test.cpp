@@ -11,6 +11,7 @@ namespace proleg::tools {
 namespace {
 
 constexpr std::uint32_t soon = canopen::Change::soon;
+constexpr std::uint32_t run_end = 10'000;
 
 /// The changes of a robot with a tick of 10 ms: 3 s are 300 ticks.
 class LiveChangesTest : public ::testing::Test {
@@ -47,7 +48,7 @@ TEST_F(LiveChangesTest, OneWithoutATickDoesNotWaitForAPlannedOne) {
   const sim::Scenario scenario = planned({"frequency=0.7@6000"});
   const sim::MasterInput input(scenario);
   LiveChanges changes(scenario, input.changes);
-  EXPECT_TRUE(changes.add("amplitude=30", 500));
+  EXPECT_TRUE(changes.add("amplitude=30", 500, run_end));
   EXPECT_EQ(ticks(changes), Ticks({soon}));
   changes.span()[0].tick = 523;  // as the master decides
   const auto decided = changes.take_decided(600);
@@ -59,26 +60,26 @@ TEST_F(LiveChangesTest, ATypedChangeWithATickFindsItsPlace) {
   const sim::Scenario scenario = planned({"frequency=0.7@6000"});
   const sim::MasterInput input(scenario);
   LiveChanges changes(scenario, input.changes);
-  EXPECT_FALSE(changes.add("amplitude=30@3000", 500));
-  EXPECT_TRUE(changes.add("amplitude=35@600", 500));
+  EXPECT_FALSE(changes.add("amplitude=30@3000", 500, run_end));
+  EXPECT_TRUE(changes.add("amplitude=35@600", 500, run_end));
   EXPECT_TRUE(changes.release(2'700));
   EXPECT_TRUE(changes.release(5'700));
   EXPECT_EQ(ticks(changes), Ticks({600, 3'000, 6'000}));
-  EXPECT_THROW(static_cast<void>(changes.add("amplitude=30@5000", 5'000)), InputError);
+  EXPECT_THROW(static_cast<void>(changes.add("amplitude=30@5000", 5'000, run_end)), InputError);
 }
 
 TEST_F(LiveChangesTest, ATickHasOneChange) {
   const sim::Scenario scenario = planned({"frequency=0.7@6000"});
   const sim::MasterInput input(scenario);
   LiveChanges changes(scenario, input.changes);
-  EXPECT_THROW(static_cast<void>(changes.add("amplitude=30@6000", 500)), InputError);
+  EXPECT_THROW(static_cast<void>(changes.add("amplitude=30@6000", 500, run_end)), InputError);
 }
 
 TEST_F(LiveChangesTest, APlannedChangeWaitsUntilTheTickOfTheOneBeforeItIsDecided) {
   const sim::Scenario scenario = planned({"frequency=0.7@6000"});
   const sim::MasterInput input(scenario);
   LiveChanges changes(scenario, input.changes);
-  EXPECT_TRUE(changes.add("amplitude=30", 5'690));
+  EXPECT_TRUE(changes.add("amplitude=30", 5'690, run_end));
   EXPECT_FALSE(changes.release(5'700));
   changes.span()[0].tick = 5'999;
   EXPECT_TRUE(changes.release(5'800));
@@ -89,11 +90,36 @@ TEST_F(LiveChangesTest, APlannedChangeWhoseTickHasPassedMeanwhileCountsAsDropped
   const sim::Scenario scenario = planned({"frequency=0.7@6000", "frequency=0.8@6100"});
   const sim::MasterInput input(scenario);
   LiveChanges changes(scenario, input.changes);
-  EXPECT_TRUE(changes.add("amplitude=30", 5'690));
+  EXPECT_TRUE(changes.add("amplitude=30", 5'690, run_end));
   changes.span()[0].tick = 6'000;
   EXPECT_TRUE(changes.release(5'990));
   EXPECT_EQ(ticks(changes), Ticks({6'000, 6'100}));
   EXPECT_EQ(changes.dropped(), 1U);
+}
+
+TEST_F(LiveChangesTest, OneWithoutATickThatTheEndOfTheRunOvertakesIsUnfinished) {
+  const sim::Scenario scenario = planned({"frequency=0.7@6000"});
+  const sim::MasterInput input(scenario);
+  LiveChanges changes(scenario, input.changes);
+  EXPECT_TRUE(changes.add("amplitude=30", 500, run_end));
+  EXPECT_TRUE(changes.add("amplitude=40", 510, run_end));
+  EXPECT_TRUE(changes.add("amplitude=50", 520, run_end));
+  EXPECT_EQ(changes.unfinished(), 3U);
+  changes.span()[0].tick = 523;
+  changes.span()[1].tick = 540;
+  EXPECT_EQ(changes.take_decided(530).size(), 1U);
+  EXPECT_EQ(changes.unfinished(), 2U);
+  changes.span()[1].dropped = true;
+  EXPECT_EQ(changes.unfinished(), 1U) << "the master has reported the other one";
+  changes.remove_last();
+  EXPECT_EQ(changes.unfinished(), 0U) << "the planned change does not count: the user has ended the run";
+}
+
+TEST_F(LiveChangesTest, ATickBehindTheEndOfTheRunIsRefused) {
+  const sim::Scenario scenario = planned({});
+  LiveChanges changes(scenario, {});
+  EXPECT_FALSE(changes.add("amplitude=30@9999", 500, run_end));
+  EXPECT_THROW(static_cast<void>(changes.add("amplitude=30@10000", 500, run_end)), InputError);
 }
 
 }  // namespace

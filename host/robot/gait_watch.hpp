@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "host/robot/bus_user.hpp"
+#include "host/robot/sdo_queue.hpp"
+#include "shared/canopen/messages.hpp"
+
+namespace proleg::host {
+
+/// Whether the joints of a robot that moves still follow its gait. A joint does not if its drive has a fault, has no
+/// power or ramps to the safe pose, if its mode is another one, or if its module is not Operational. A fault is in the
+/// state frames of the module, and the network state in its heartbeats. For the rest, statusword and mode are read, one
+/// module after the other, all of them within 0.8 s (60 modules: 2.4 s), with 20 ms between two requests at least: TICK
+/// has its gaps. A module that reports an error comes first.
+class GaitWatch final : public BusUser {
+ public:
+  enum class Reason : std::uint8_t {
+    drive,    ///< the drive is not in Operation enabled
+    mode,     ///< the mode is not the gait's
+    network,  ///< the module is not Operational
+  };
+  /// What was found.
+  struct Loss {
+    std::uint8_t node;
+    Reason reason;
+    std::uint16_t statusword = 0;                                     ///< 0x6041; of `drive`
+    std::int8_t mode = 0;                                             ///< 0x6061; of `mode`
+    canopen::NmtState state = canopen::NmtState::operational;         ///< of `network`
+    canopen::EmergencyCode emergency = canopen::EmergencyCode::none;  ///< the last error that the module has reported
+  };
+
+  /// port: must outlive this. nodes: of the robot, kernel order.
+  GaitWatch(CanPort& port, std::vector<std::uint8_t> nodes);
+  GaitWatch(const GaitWatch&) = delete;
+  GaitWatch& operator=(const GaitWatch&) = delete;
+
+  /// From now on the joints should follow. Before, and after stop(), it sends nothing.
+  void start(Microseconds now);
+  void stop() { next_reading_ = never; }
+  /// Reads the statuswords of all modules, as fast as they answer.
+  void look_at_all();
+  /// Whether the readings that look_at_all() has begun have ended.
+  [[nodiscard]] bool has_looked() const { return readings_.is_idle(); }
+  /// A module that has restarted is left alone until the master has set it up again, or has failed to do so.
+  void return_to_gait(std::uint8_t node);
+
+  /// The first joint that does not follow.
+  [[nodiscard]] const std::optional<Loss>& loss() const { return loss_; }
+
+  void receive(Microseconds now, const CanFrame& frame) override;
+  void transmitted(Microseconds now, const CanFrame& frame) override { readings_.transmitted(now, frame); }
+  void poll(Microseconds now) override;
+  [[nodiscard]] Microseconds next_deadline() const override;
+
+ private:
+  struct Module {
+    std::uint8_t node;
+    bool is_away = false;     ///< it has booted
+    bool is_suspect = false;  ///< it has reported an error since its last reading
+    canopen::EmergencyCode emergency = canopen::EmergencyCode::none;
+  };
+  [[nodiscard]] Module* module_of(std::uint8_t node);
+  void on_emergency(const canopen::Emergency& emergency);
+  void on_heartbeat(const canopen::Heartbeat& heartbeat);
+  void read_next();
+  void read_statusword(Module& module);
+  void read_mode(const Module& module);
+  void lose(const Module& module, Loss loss);
+
+  std::vector<Module> modules_;
+  SdoQueue readings_;
+  Microseconds period_us_;
+  Microseconds next_reading_ = never;
+  std::size_t next_ = 0;  ///< the statusword of each module, then the mode of each
+  std::optional<Loss> loss_;
+};
+
+}  // namespace proleg::host

@@ -77,7 +77,7 @@ void require_no_host(BusAccess& bus) {
   bus.connection().run_until(bus.connection().now() + two_heartbeats, [&ear] { return ear.has_host; });
   bus.connection().detach(ear);
   if (ear.has_host) {
-    throw std::runtime_error("another host drives the robot; nothing was sent");
+    throw std::runtime_error("another host drives the robot; nothing was sent. End that program first");
   }
 }
 

@@ -419,7 +419,7 @@ int drive(const DriveOptions& options) {
   }
   const GaitCheck& check = robot.check();
   const DriveResult result = robot.result();
-  const double seconds = result.ticks * (run.scenario.kernel.tick_period_us * 1e-6);
+  const double seconds = static_cast<double>(std::uint64_t{result.ticks} * run.scenario.kernel.tick_period_us) / 1e6;
   if (recorder) {
     recorder->finish({{"simulated_s", exact_text(seconds)},
                       {"differences", std::to_string(check.differences())},
@@ -436,7 +436,8 @@ int drive(const DriveOptions& options) {
                              kept_in_recording(options));
   }
   if (result.dropped_changes > 0) {
-    std::cerr << "proleg drive: " << result.dropped_changes << " changes did not take effect\n";
+    std::cerr << "proleg drive: " << result.dropped_changes << (result.dropped_changes == 1 ? " change" : " changes")
+              << " did not take effect\n";
     return exit_failed;
   }
   return check.differences() == 0 && check.different_setpoints().empty() ? exit_success : exit_failed;

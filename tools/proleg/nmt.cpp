@@ -1,6 +1,8 @@
 // proleg nmt: starts, stops and resets modules.
 
+#include <algorithm>
 #include <array>
+#include <bitset>
 #include <iostream>
 #include <optional>
 #include <stdexcept>
@@ -10,11 +12,13 @@
 
 #include "host/robot/object_word.hpp"
 #include "host/robot/state_text.hpp"
+#include "shared/canopen/declared_objects.hpp"
 #include "shared/canopen/messages.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/bus_access.hpp"
 #include "tools/proleg/interrupt.hpp"
+#include "tools/proleg/object_access.hpp"
 
 namespace {
 
@@ -46,6 +50,23 @@ canopen::NmtCommand parse_command(const std::string& word) {
   throw InputError("COMMAND", 0, in_quotes(word), "one of " + listed(known));
 }
 
+[[nodiscard]] bool is_reset(canopen::NmtCommand command) {
+  return command == canopen::NmtCommand::reset_node || command == canopen::NmtCommand::reset_communication;
+}
+
+/// The nodes, of these, that answer an SDO. A Stopped one does not.
+std::bitset<128> answering(BusAccess& bus, const std::vector<std::uint8_t>& nodes) {
+  std::bitset<128> found;
+  host::SdoQueue queue(bus.connection(), patient_transfers());
+  for (const std::uint8_t node : nodes) {
+    queue.read(node, canopen::object::device_type.address, [&found, node](const host::SdoResult& result) {
+      found[node] = result.abort_code != canopen::AbortCode::timeout;
+    });
+  }
+  finish(bus, queue);
+  return found;
+}
+
 /// Counts what was sent, and notes who boots.
 class Requests final : public host::BusUser {
  public:
@@ -53,10 +74,13 @@ class Requests final : public host::BusUser {
     const auto heartbeat = canopen::decode_heartbeat(frame);
     if (heartbeat && heartbeat->state == canopen::NmtState::boot_up) {
       std::cout << "node " << unsigned{heartbeat->node} << " boots\n";
+      booted.set(heartbeat->node);
     }
   }
   void transmitted(Microseconds /*now*/, const CanFrame& /*frame*/) override { ++transmitted_; }
   [[nodiscard]] std::size_t count() const { return transmitted_; }
+
+  std::bitset<128> booted;
 
  private:
   std::size_t transmitted_ = 0;
@@ -69,6 +93,10 @@ int nmt(const NmtOptions& options) {
   BusAccess bus(options);
   catch_interrupts();
   require_no_host(bus);
+  std::bitset<128> found;
+  if (listed_nodes && command == canopen::NmtCommand::stop) {
+    found = answering(bus, *listed_nodes);  // afterwards it answers no more
+  }
   Requests requests;
   bus.connection().attach(requests);
   const std::size_t before = requests.count();
@@ -79,9 +107,32 @@ int nmt(const NmtOptions& options) {
     }
     return sent == nodes.size() && requests.count() - before >= sent;
   });
-  constexpr Microseconds boot_time = 100'000;
-  bus.connection().run_for(boot_time);
+  constexpr Microseconds boot_time = 400'000;
+  const auto all_have_booted = [&] {
+    return listed_nodes && std::ranges::all_of(nodes, [&](std::uint8_t node) { return requests.booted[node]; });
+  };
+  if (is_reset(command)) {
+    bus.connection().run_until(bus.connection().now() + boot_time, all_have_booted);
+    found = requests.booted;
+  }
   bus.connection().detach(requests);
+  if (!listed_nodes) {
+    return exit_success;
+  }
+  if (!is_reset(command) && command != canopen::NmtCommand::stop) {
+    found = answering(bus, *listed_nodes);
+  }
+  std::vector<std::string> missing;
+  for (const std::uint8_t node : nodes) {
+    if (!found[node]) {
+      missing.push_back(std::to_string(node));
+    }
+  }
+  if (!missing.empty()) {
+    throw std::runtime_error((missing.size() == 1 ? "no sign of node " : "no sign of the nodes ") + listed(missing) +
+                             (command == canopen::NmtCommand::stop ? ", before it was told to stop; " : "; ") +
+                             bus.connection().diagnosis());
+  }
   return exit_success;
 }
 

@@ -1,6 +1,7 @@
 // proleg params: the settings of modules in a text file.
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -28,9 +29,13 @@ struct ParamsOptions : BusOptions {
   std::string file;
   std::string nodes = "all";
   bool store = false;
+  bool any_module = false;
 };
 
 std::string read_file(const std::string& name) {
+  if (std::filesystem::is_directory(name)) {
+    throw InputError(name, 0, "a folder", "a file of 'proleg params save'");
+  }
   std::ifstream stream(name, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(stream), {}};
   if (!stream && !stream.eof()) {
@@ -130,33 +135,64 @@ struct Difference {
   std::string found;
 };
 
-/// The values of the file that the modules do not have. Throws std::runtime_error if a module cannot take the file.
-std::vector<Difference> compare(const std::vector<host::ModuleParameters>& file, Modules& modules) {
+struct Comparison {
   std::vector<Difference> differences;
+  std::vector<std::string> other_modules;  ///< a line for each node with another serial number than in the file
+  /// Nodes whose module does not have the gait of the file now, so that it has no such parameters.
+  std::vector<std::string> without_gait;
+};
+
+/// The values of the file that the modules do not have. Throws std::runtime_error if a module cannot take the file.
+Comparison compare(const std::vector<host::ModuleParameters>& file, Modules& modules) {
+  Comparison comparison;
   for (const host::ModuleParameters& wanted : file) {
     const host::ModuleParameters found = modules.read(wanted.node);
+    const std::string node = std::to_string(wanted.node);
+    bool has_gait = true;
     if (found.core_fingerprint != wanted.core_fingerprint) {
       throw std::runtime_error(
           "node " + std::to_string(wanted.node) + ": found core " + hexadecimal(found.core_fingerprint, 8) +
           ", expected " + hexadecimal(wanted.core_fingerprint, 8) + " as in the file: the file is of another firmware");
     }
+    if (found.serial != wanted.serial) {
+      comparison.other_modules.push_back("node " + node + ": found the serial number " + hexadecimal(found.serial, 8) +
+                                         ", the file has " + hexadecimal(wanted.serial, 8));
+    }
     for (const host::ParameterValue& value : wanted.values) {
-      const auto same = std::ranges::find_if(
-          found.values, [&](const host::ParameterValue& one) { return one.object.address == value.object.address; });
-      if (same == found.values.end() || same->bytes != value.bytes) {
-        differences.push_back(
-            {&wanted, value, same == found.values.end() ? "nothing" : host::value_text(same->object, same->bytes)});
+      const auto same = std::ranges::find(found.values, value.object.address,
+                                          [](const host::ParameterValue& one) { return one.object.address; });
+      if (same == found.values.end()) {
+        has_gait = false;  // only parameters of algorithms are not there always
+      } else if (same->bytes != value.bytes) {
+        comparison.differences.push_back({&wanted, value, host::value_text(same->object, same->bytes)});
       }
     }
+    if (!has_gait) {
+      comparison.without_gait.push_back(node);
+    }
   }
-  return differences;
+  return comparison;
+}
+
+void print_without_gait(const Comparison& comparison) {
+  if (!comparison.without_gait.empty()) {
+    std::cout << "not compared: the parameters of the gait, which node"
+              << (comparison.without_gait.size() == 1 ? " " : "s ") << listed(comparison.without_gait)
+              << (comparison.without_gait.size() == 1 ? " does" : " do")
+              << " not have now; 'proleg drive' writes those of its scenario\n";
+  }
 }
 
 int load(const ParamsOptions& options, const std::vector<host::ModuleParameters>& file, BusAccess& bus) {
   require_no_host(bus);
   Modules modules(bus);
-  const std::vector<Difference> differences = compare(file, modules);
-  for (const Difference& difference : differences) {
+  const Comparison comparison = compare(file, modules);
+  if (!comparison.other_modules.empty() && !options.any_module) {
+    throw std::runtime_error(comparison.other_modules.front() +
+                             ": the file is of another module, whose potentiometer and limits it has; nothing was "
+                             "written (--any-module writes them all the same)");
+  }
+  for (const Difference& difference : comparison.differences) {
     modules.write(difference.wanted->node, difference.value);
   }
   modules.wait();
@@ -166,7 +202,8 @@ int load(const ParamsOptions& options, const std::vector<host::ModuleParameters>
     }
     modules.wait();
   }
-  std::cout << "changed " << differences.size() << " values of " << file.size() << " modules"
+  print_without_gait(comparison);
+  std::cout << "changed " << comparison.differences.size() << " values of " << file.size() << " modules"
             << (options.store ? ", and stored them" : "; they are lost at the next reset, unless --store is given")
             << '\n';
   return exit_success;
@@ -174,15 +211,20 @@ int load(const ParamsOptions& options, const std::vector<host::ModuleParameters>
 
 int diff(const std::vector<host::ModuleParameters>& file, BusAccess& bus) {
   Modules modules(bus);
-  const std::vector<Difference> differences = compare(file, modules);
-  for (const Difference& difference : differences) {
+  const Comparison comparison = compare(file, modules);
+  for (const std::string& line : comparison.other_modules) {
+    std::cout << line << '\n';
+  }
+  for (const Difference& difference : comparison.differences) {
     const canopen::Object& object = difference.value.object;
     std::cout << "node " << unsigned{difference.wanted->node} << "  " << host::address_text(object.address) << "  "
               << canopen::entry_name(object.address).view() << ": found " << difference.found << ", the file has "
               << host::value_text(object, difference.value.bytes) << '\n';
   }
-  std::cout << differences.size() << " differences\n";
-  return differences.empty() ? exit_success : exit_failed;
+  print_without_gait(comparison);
+  const std::size_t count = comparison.differences.size() + comparison.other_modules.size();
+  std::cout << count << " differences\n";
+  return count == 0 ? exit_success : exit_failed;
 }
 
 int run(const ParamsOptions& options) {
@@ -215,6 +257,8 @@ int main(int argc, char** argv) {
   command_line.add_option("FILE", options.file, "the text file").required();
   command_line.add_option("--nodes", options.nodes, "with save: 3, 1,3 or 2-5, or all").shows_default();
   command_line.add_flag("--store", options.store, "with load: the modules keep the settings in their flash");
+  command_line.add_flag("--any-module", options.any_module,
+                        "with load: also into modules with other serial numbers than in the file");
   add_bus_option(command_line, options);
   return command_line.run(argc, argv, [&] { return run(options); });
 }

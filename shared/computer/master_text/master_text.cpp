@@ -31,6 +31,10 @@ std::string problem_text(const canopen::Problem& problem, const NodeName& name) 
     case ProblemCode::change_refused:
       text += ": object " + in_text(problem.address) + ", " + std::string(canopen::describe(problem.abort_code));
       break;
+    case ProblemCode::bus_too_small:
+      text += ": found up to " + std::to_string((problem.found + 9) / 10) + " % of it, expected at most " +
+              std::to_string(problem.expected / 10) + " %: a longer tick helps";
+      break;
     case ProblemCode::no_answer:
       text += ": object " + in_text(problem.address);
       break;

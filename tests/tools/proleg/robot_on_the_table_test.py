@@ -376,6 +376,47 @@ class RobotOnTheTable(unittest.TestCase):
             file.write_text("nonsense")
             self.assertEqual(proleg("params", "load", file, "--bus", bus.tcp).returncode, 2)
 
+    def test_params_of_a_gait_wait_for_a_gait_and_those_of_a_module_for_that_module(self):
+        with Bus() as bus, tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "settings.txt"
+            drive = start_drive(bus.tcp, "--seconds", "1")
+            drive.communicate(timeout=LONGEST)
+            self.assertEqual(proleg("params", "save", file, "--bus", bus.tcp).returncode, 0)
+            self.assertIn("0x3040:1", file.read_text())
+            proleg("nmt", "reset-node", "all", "--bus", bus.tcp)
+            load = proleg("params", "load", file, "--bus", bus.tcp)
+            self.assertEqual(load.returncode, 0, load.stderr)
+            self.assertIn("parameters of the gait, which nodes 1, 2, 3, 4, 5 do not have now", load.stdout)
+            file.write_text(re.sub(r"(module\t2\t)\S+", r"\g<1>0x00000001", file.read_text()))
+            other = proleg("params", "load", file, "--bus", bus.tcp)
+            self.assertEqual(other.returncode, 1)
+            self.assertIn("node 2: found the serial number 0x", other.stderr)
+            self.assertIn("nothing was written", other.stderr)
+            self.assertEqual(proleg("params", "load", file, "--any-module", "--bus", bus.tcp).returncode, 0)
+            self.assertIn("node 2: found the serial number", proleg("params", "diff", file, "--bus", bus.tcp).stdout)
+
+    def test_nmt_reports_a_node_that_is_not_there(self):
+        with Bus() as bus:
+            for command in ("start", "stop", "pre-operational", "reset-node", "reset-communication"):
+                there = proleg("nmt", command, "2", "--bus", bus.tcp)
+                self.assertEqual(there.returncode, 0, there.stderr)
+                missing = proleg("nmt", command, "3,9", "--bus", bus.tcp)
+                self.assertEqual(missing.returncode, 1, command)
+                self.assertIn("no sign of node 9", missing.stderr)
+                self.assertEqual(len(missing.stderr.splitlines()), 1)
+
+    def test_drive_ends_when_another_program_takes_a_joint(self):
+        for take in (("nmt", "stop", "2"), ("set", "2", "0x6060", "8")):
+            with Bus() as bus:
+                drive = start_drive(bus.pty, "--seconds", str(LONGEST))
+                wait_for_drives(bus.tcp, "operation enabled")
+                host, port = bus.tcp.removeprefix("tcp:").split(":")
+                with socket.create_connection((host, int(port)), timeout=LONGEST) as line:
+                    line.sendall(b"C\rS8\rO\r" + {"nmt": b"t00020202\r", "set": b"t60282F60600008000000\r"}[take[0]])
+                    out, err = drive.communicate(timeout=LONGEST)
+                self.assertEqual(drive.returncode, 1, (out, err))
+                self.assertIn("node 2 (J4) does not follow the gait any more", err)
+
     def test_monitor_shows_the_moving_robot(self):
         with Bus() as bus:
             self.assertIn("no host drives the robot",

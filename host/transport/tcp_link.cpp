@@ -60,12 +60,25 @@ class TcpLink final : public Link {
   };
 
   void resolve() {
+    int error = add_addresses(host_);
+    if (error != 0 && host_ == "localhost") {
+      // A computer need not have a file that says so; the name always means this computer (RFC 6761, section 6.3).
+      error = add_addresses("127.0.0.1");
+      static_cast<void>(add_addresses("::1"));
+    }
+    if (error != 0) {
+      throw TransportError(std::string("no address of the host is known: ") + gai_strerror(error));
+    }
+  }
+
+  /// Returns the error of getaddrinfo(), 0 without one.
+  int add_addresses(const std::string& host) {
     addrinfo hints{};
     hints.ai_socktype = SOCK_STREAM;
     addrinfo* results = nullptr;
-    const int error = getaddrinfo(host_.c_str(), std::to_string(port_).c_str(), &hints, &results);
+    const int error = getaddrinfo(host.c_str(), std::to_string(port_).c_str(), &hints, &results);
     if (error != 0) {
-      throw TransportError(std::string("no address of the host is known: ") + gai_strerror(error));
+      return error;
     }
     for (const addrinfo* result = results; result != nullptr; result = result->ai_next) {
       Address address{{}, result->ai_addrlen};
@@ -73,6 +86,7 @@ class TcpLink final : public Link {
       addresses_.push_back(address);
     }
     freeaddrinfo(results);
+    return 0;
   }
 
   /// A peer that has lost its power closes nothing. It is noticed after 5 + 3 * 2 s.

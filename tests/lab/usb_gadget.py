@@ -40,6 +40,7 @@ class Adapter:
 
     def __init__(self, vendor, product, serial):
         self.folder = GADGETS / "adapter"
+        self.is_pulled_out = False
         self.parts = ["", "strings/0x409", f"functions/{self.function}", "configs/c.1"]
         for part in self.parts:
             (self.folder / part).mkdir(parents=True, exist_ok=True)
@@ -64,6 +65,7 @@ class Adapter:
         return self
 
     def __exit__(self, *_):
+        self.is_pulled_out = True
         (self.folder / "UDC").write_text("\n")
         wait_for(lambda: not self.device(), f"end of {self.devices}")
         (self.folder / "configs/c.1" / self.function).unlink()
@@ -115,7 +117,8 @@ class CanAdapter(Adapter):
 
     def answer(self):
         try:
-            while True:
+            # A read that begins after the kernel has disabled the function holds a lock for which pulling it out waits.
+            while not self.is_pulled_out:
                 kind, request, _, _, length, event = self.EVENT.unpack(os.read(self.control, self.EVENT.size))
                 if event == self.SETUP and kind & 0x80:
                     os.write(self.control, self.ANSWERS.get(request, b"")[:length])

@@ -149,7 +149,7 @@ void Bootloader::poll(Microseconds now) {
   }
   if (now >= leave_at_) {
     leave_at_ = never;
-    queue_.clear();  // nobody acknowledges
+    queue_.clear();  // no node acknowledges them
   }
 }
 

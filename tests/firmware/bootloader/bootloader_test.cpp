@@ -349,7 +349,7 @@ TEST_F(BootloaderTest, StartsAProgramThatIsThereAfterTenSecondsWithoutAHost) {
   EXPECT_FALSE(without.bootloader->wants_restart()) << "there is nothing to start";
 }
 
-// Nobody acknowledges its heartbeats then.
+// No node acknowledges its heartbeats then.
 TEST_F(BootloaderTest, StartsItsProgramAlsoAloneOnTheBus) {
   Node& node = add(4);
   node.module.install_proven(first);

@@ -176,7 +176,7 @@ TEST(ImageTransfer, LeavesAModuleBehindThatVanishes) {
   }
 }
 
-TEST(ImageTransfer, EndsWhenNobodyIsThere) {
+TEST(ImageTransfer, EndsWithoutAModule) {
   const auto image = random_image(1'000);
   Transfer transfer(image, 2);
   transfer.modules[0]->is_silent = true;

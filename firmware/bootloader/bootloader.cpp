@@ -134,11 +134,10 @@ void Bootloader::poll(Microseconds now) {
   // The answers first: while the flash is written nothing is sent.
   if (queue_.size() == 0) {
     if (receiver_.has_install_request()) {
-      install(receiver_.image());
+      install_broadcast();
     } else if (downloaded_ != 0) {
-      const std::uint32_t size = downloaded_;
+      static_cast<void>(write_image(ports_.buffer.first(downloaded_)));  // close_write() has checked it
       downloaded_ = 0;
-      install(ports_.buffer.first(size));
     }
   }
   if (now >= idle_at_) {
@@ -168,18 +167,24 @@ image::Error Bootloader::check(std::span<const std::uint8_t> image) const {
   return place_error != image::Error::none ? place_error : image::check_body(header, image.subspan(image::header_size));
 }
 
-void Bootloader::install(std::span<const std::uint8_t> image) {
-  const image::Error error = check(image);
+void Bootloader::install_broadcast() {
+  const image::Error error = check(receiver_.image());
   if (error != image::Error::none) {
     status_ = status_of(error);
     receiver_.set_state(ReceiverState::refused, static_cast<std::uint8_t>(error));
     return;
   }
+  const InstallResult result = write_image(receiver_.image());
+  receiver_.set_state(status_ == 0 ? ReceiverState::installed : ReceiverState::failed,
+                      static_cast<std::uint8_t>(result));
+}
+
+/// An image that check() has found right.
+InstallResult Bootloader::write_image(std::span<const std::uint8_t> image) {
   const InstallResult result = slots_.install(image::decode(image).header, image.subspan(image::header_size));
   const bool is_installed = result == InstallResult::ok || result == InstallResult::already_there;
   status_ = is_installed ? 0 : object::status_write_error;
-  receiver_.set_state(is_installed ? ReceiverState::installed : ReceiverState::failed,
-                      static_cast<std::uint8_t>(result));
+  return result;
 }
 
 AbortCode Bootloader::find(Address address, Entry& entry) {

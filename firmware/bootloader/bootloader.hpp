@@ -4,8 +4,6 @@
 // checks it, and installs it. Like the module's program it is a state machine: events come in, frames go out; it never
 // waits, except in the flash. The servo has no pulses.
 
-#include <array>
-
 #include "firmware/bootloader/slots.hpp"
 #include "shared/broadcast/image_receiver.hpp"
 #include "shared/can/transmit_queue.hpp"
@@ -59,7 +57,8 @@ class Bootloader final : private canopen::ObjectAccess {
   void receive_lss(Microseconds now, const CanFrame& frame);
   void receive_network_command(Microseconds now, const CanFrame& frame);
   void start_network(Microseconds now, std::uint8_t node);
-  void install(std::span<const std::uint8_t> image);
+  void install_broadcast();
+  [[nodiscard]] InstallResult write_image(std::span<const std::uint8_t> image);
   [[nodiscard]] image::Error check(std::span<const std::uint8_t> image) const;
   void leave(Microseconds now);
   void send(const CanFrame& frame) { static_cast<void>(queue_.push(frame)); }

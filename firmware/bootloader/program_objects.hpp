@@ -8,7 +8,6 @@
 
 namespace proleg::bootloader::object {
 
-using canopen::AbortCode;
 using canopen::DataType;
 using canopen::Object;
 

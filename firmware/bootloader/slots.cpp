@@ -1,5 +1,7 @@
 #include "firmware/bootloader/slots.hpp"
 
+#include <algorithm>
+
 #include "shared/fixed/crc32.hpp"
 #include "shared/fixed/little_endian.hpp"
 
@@ -14,15 +16,6 @@ std::array<std::uint8_t, 4> bytes_of(std::uint32_t word) {
   std::array<std::uint8_t, 4> bytes{};
   write_little_endian(bytes, 0, bytes.size(), word);
   return bytes;
-}
-
-bool equal(Bytes a, Bytes b) {
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i] != b[i]) {
-      return false;
-    }
-  }
-  return true;
 }
 
 }  // namespace
@@ -91,8 +84,9 @@ bool Slots::write(FlashSlot slot, const image::Header& header, Bytes body, bool 
   const image::HeaderBytes header_bytes = image::encode(header);
   return flash_.erase(slot) && flash_.program(slot, image::header_size, body) &&
          (!is_proven || flash_.program(slot, words_at(), bytes_of(confirmed_word))) &&
-         flash_.program(slot, 0, header_bytes) && equal(header_bytes, flash_.contents(slot)) &&
-         equal(body, body_in(slot, header)) && is_confirmed(slot) == is_proven;
+         flash_.program(slot, 0, header_bytes) &&
+         std::ranges::equal(header_bytes, flash_.contents(slot).first(header_bytes.size())) &&
+         std::ranges::equal(body, body_in(slot, header)) && is_confirmed(slot) == is_proven;
 }
 
 Bytes Slots::body_in(FlashSlot slot, const image::Header& header) const {

@@ -11,14 +11,6 @@ void add(Symbol& sum, const Symbol& symbol) {
   }
 }
 
-/// Adds symbol `number` of a block.
-void add(Symbol& sum, std::span<const std::uint8_t> bytes, unsigned number) {
-  const std::size_t at = number * symbol_size;
-  for (std::size_t i = 0; i < symbol_size && at + i < bytes.size(); ++i) {
-    sum[i] ^= bytes[at + i];
-  }
-}
-
 /// block_symbols if there is none.
 unsigned lowest(const SymbolSet& set) {
   unsigned number = 0;
@@ -29,6 +21,22 @@ unsigned lowest(const SymbolSet& set) {
 }
 
 }  // namespace
+
+Symbol symbol_of(std::span<const std::uint8_t> bytes, unsigned number) {
+  const std::size_t at = number * symbol_size;
+  Symbol symbol{};
+  for (std::size_t i = 0; i < symbol_size && at + i < bytes.size(); ++i) {
+    symbol[i] = bytes[at + i];
+  }
+  return symbol;
+}
+
+void put_symbol(std::span<std::uint8_t> bytes, unsigned number, const Symbol& symbol) {
+  const std::size_t at = number * symbol_size;
+  for (std::size_t i = 0; i < symbol_size && at + i < bytes.size(); ++i) {
+    bytes[at + i] = symbol[i];
+  }
+}
 
 SymbolSet repair_set(unsigned block, unsigned repair, unsigned symbols) {
   constexpr unsigned word_bits = 32;
@@ -49,7 +57,7 @@ Symbol repair_symbol(std::span<const std::uint8_t> bytes, unsigned block, unsign
   Symbol sum{};
   for (unsigned number = 0; number < symbols; ++number) {
     if (set[number]) {
-      add(sum, bytes, number);
+      add(sum, symbol_of(bytes, number));
     }
   }
   return sum;
@@ -75,7 +83,7 @@ bool BlockDecoder::add(unsigned repair, const Symbol& symbol) {
   for (unsigned number = 0; number < symbols; ++number) {
     if (equation.unknown[number] && (*received_)[number]) {
       equation.unknown[number] = false;
-      broadcast::add(equation.sum, bytes_, number);
+      broadcast::add(equation.sum, symbol_of(bytes_, number));
     }
   }
   const auto remove_pivot = [](Equation& from, const Equation& other) {
@@ -105,10 +113,7 @@ bool BlockDecoder::add(unsigned repair, const Symbol& symbol) {
 void BlockDecoder::solve() {
   for (unsigned i = 0; i < equations_; ++i) {
     const unsigned number = equation_[i].pivot;
-    const std::size_t at = number * symbol_size;
-    for (std::size_t byte = 0; byte < symbol_size && at + byte < bytes_.size(); ++byte) {
-      bytes_[at + byte] = equation_[i].sum[byte];
-    }
+    put_symbol(bytes_, number, equation_[i].sum);
     (*received_)[number] = true;
   }
   missing_ = 0;

@@ -22,6 +22,11 @@ inline constexpr unsigned block_symbols = 256;
 using Symbol = std::array<std::uint8_t, symbol_size>;
 using SymbolSet = std::bitset<block_symbols>;
 
+/// Symbol `number` of a block, which has it; zeros follow if the last one is not full.
+[[nodiscard]] Symbol symbol_of(std::span<const std::uint8_t> bytes, unsigned number);
+/// Puts it into the block.
+void put_symbol(std::span<std::uint8_t> bytes, unsigned number, const Symbol& symbol);
+
 /// Which symbols of a block with this many a repair symbol contains. block: its number; repair: 0 to 255, different
 /// for all repair symbols of a block. A set without symbols is possible.
 [[nodiscard]] SymbolSet repair_set(unsigned block, unsigned repair, unsigned symbols);

@@ -35,9 +35,7 @@ void ImageReceiver::receive_symbol(const CanFrame& frame) {
       count_received(missing);
     }
   } else if (number < symbols_of(bytes.size()) && !received[number]) {
-    const std::size_t at = number * symbol_size;
-    std::copy_n(symbol.begin(), std::min(symbol_size, bytes.size() - at),
-                bytes.begin() + static_cast<std::ptrdiff_t>(at));
+    put_symbol(bytes, number, symbol);
     received[number] = true;
     count_received(1);
   }
@@ -68,7 +66,7 @@ std::optional<CanFrame> ImageReceiver::receive_request(Microseconds now, const C
   } else if (has(Code::install, 2)) {
     installs_ = installs_ || status_.state == ReceiverState::complete;
   } else if (has(Code::leave, 2)) {
-    leaves_ = status_.state != ReceiverState::installing;
+    leaves_ = true;
   } else {
     return std::nullopt;
   }

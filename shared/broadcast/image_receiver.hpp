@@ -31,7 +31,7 @@ class ImageReceiver {
 
   /// The host has asked to install the image.
   [[nodiscard]] bool has_install_request() const { return installs_; }
-  /// What came of it: `installing`, `installed`, `refused` or `failed`, with an error that the host gets. That ends the
+  /// What came of it: `installed`, `refused` or `failed`, with an error that the host gets. That ends the
   /// request.
   void set_state(ReceiverState state, std::uint8_t error = 0);
   /// The host has asked to start the program; once.

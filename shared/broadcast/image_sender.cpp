@@ -34,7 +34,7 @@ void ImageSender::enter(Microseconds now, Step step) {
   symbol_ = 0;
   switch (step) {
     case Step::send:
-      static_cast<void>(next_block());
+      next_block();
       pump(now);
       return;
     case Step::begin:
@@ -91,7 +91,7 @@ std::optional<CanFrame> ImageSender::next_broadcast() {
   }
   if (block_ < blocks_of(image_.size()) && symbol_ == plans_[block_].end) {
     ++block_;
-    static_cast<void>(next_block());
+    next_block();
   }
   if (block_ == blocks_of(image_.size())) {
     return std::nullopt;
@@ -104,24 +104,16 @@ std::optional<CanFrame> ImageSender::next_broadcast() {
   if (plan.kind == BlockKind::repairs) {
     return symbol_frame(symbol_, repair_symbol(bytes, block_, symbol_));
   }
-  Symbol symbol{};
-  const std::size_t at = symbol_ * symbol_size;
-  std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), std::min(symbol_size, bytes.size() - at),
-              symbol.begin());
-  return symbol_frame(symbol_, symbol);
+  return symbol_frame(symbol_, symbol_of(bytes, symbol_));
 }
 
-/// Begins with the first block from the present one on that has something to send. False: there is none.
-bool ImageSender::next_block() {
+/// Begins with the first block from the present one on that has something to send, if there is one.
+void ImageSender::next_block() {
   while (block_ < blocks_of(image_.size()) && plans_[block_].first == plans_[block_].end) {
     ++block_;
   }
   announced_ = 0;
-  if (block_ == blocks_of(image_.size())) {
-    return false;
-  }
-  symbol_ = plans_[block_].first;
-  return true;
+  symbol_ = block_ < blocks_of(image_.size()) ? plans_[block_].first : 0;
 }
 
 void ImageSender::plan_all_symbols() {

@@ -69,7 +69,7 @@ class ImageSender {
   void enter(Microseconds now, Step step);
   void pump(Microseconds now);
   [[nodiscard]] std::optional<CanFrame> next_broadcast();
-  [[nodiscard]] bool next_block();
+  void next_block();
   void plan_all_symbols();
   void plan_repairs();
   void ask(Microseconds now);

@@ -48,7 +48,6 @@ enum class ReceiverState : std::uint8_t {
   selected,   ///< waits for `begin`
   receiving,  ///< symbols are missing
   complete,   ///< has all symbols
-  installing,
   installed,
   refused,  ///< the image; the flash is as it was
   failed,   ///< the flash has failed

@@ -160,11 +160,7 @@ class Session {
     receive(broadcast::begin_frame(session, static_cast<std::uint32_t>(bytes.size())));
     receive(broadcast::block_frame(session, 0, broadcast::BlockKind::symbols));
     for (unsigned number = 0; number < broadcast::symbols_of(bytes.size()); ++number) {
-      broadcast::Symbol symbol{};
-      const std::size_t at = number * broadcast::symbol_size;
-      std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), std::min(symbol.size(), bytes.size() - at),
-                  symbol.begin());
-      receive(broadcast::symbol_frame(number, symbol));
+      receive(broadcast::symbol_frame(number, broadcast::symbol_of(bytes, number)));
     }
     receive(broadcast::report_frame(serial));
     receive(broadcast::install_frame(session));

@@ -29,6 +29,9 @@ BusTime NativeLine::next_event() const {
 }
 
 void NativeLine::advance_to(BusTime now) {
+  if (!is_connected_) {
+    return;
+  }
   while (const auto event = receiver_.take(now, bit)) {
     if (event->kind == SerialReceiver::Kind::character) {
       take_character(event->character);

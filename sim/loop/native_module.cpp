@@ -152,14 +152,19 @@ void NativeModule::advance_to(BusTime now, BusTime /*quiet_until*/) {
 }
 
 void NativeModule::finish_event(BusTime now) {
-  static_cast<void>(line_.advance_to(now));
+  line_.advance_to(now);
   while (module_.serve_line(crystal_.at(now))) {
   }
   update_deadline();
 }
 
 void NativeModule::update_deadline() {
-  next_event_ = std::min(crystal_.when(module_.next_deadline()), line_.next_event());
+  // Most frames leave the deadline as it was, and the crystal's division is slow.
+  if (const Microseconds deadline = module_.next_deadline(); deadline != deadline_) {
+    deadline_ = deadline;
+    deadline_time_ = crystal_.when(deadline);
+  }
+  next_event_ = std::min(deadline_time_, line_.next_event());
 }
 
 void NativeModule::received(BusTime time, const CanFrame& frame) {

@@ -141,6 +141,8 @@ class NativeModule final : public JointModule,
   PulseWatch pulse_watch_;
   CommandWatch command_watch_;
   std::uint32_t supply_mv_ = nominal_supply_mv;
+  Microseconds deadline_ = never;  ///< the program's, by its crystal
+  BusTime deadline_time_ = never_on_bus;
   BusTime next_event_ = never_on_bus;
 };
 

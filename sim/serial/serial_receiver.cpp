@@ -57,12 +57,18 @@ SerialReceiver::Time SerialReceiver::idle_time(Time bit) const {
 }
 
 SerialReceiver::Time SerialReceiver::next_event(Time bit) const {
+  if (!is_busy()) {
+    return never;  // as on most lines at most times
+  }
   const Time start = next_start();
   const Time end = start == never ? never : start + half_bits_to_stop * bit / 2;
   return std::min(end, idle_time(bit));
 }
 
 std::optional<SerialReceiver::Event> SerialReceiver::take(Time now, Time bit) {
+  if (!is_busy()) {
+    return std::nullopt;
+  }
   if (const Time idle = idle_time(bit); idle <= now) {
     idle_from_ = never;
     forget_until(idle);

@@ -33,12 +33,12 @@ namespace sdo = canopen::sdo;
 using canopen::Address;
 using canopen::NmtCommand;
 
-constexpr BusTime us = 1'000;
-constexpr BusTime ms = 1'000 * us;
-
 /// A service tool, the host with its master, and modules that come from the factory.
 class CanopenSession : public testing::Test, BusListener {
  protected:
+  static constexpr BusTime us = 1'000;
+  static constexpr BusTime ms = 1'000 * us;
+
   CanopenSession() : tool_(bus_.attach(*this)), scenario_(shipped("travelling_wave/coupled")) {
     // The joint at the head has a second broadcasting slot, and so a second state frame.
     scenario_.kernel.slots[1] = {find_algorithm(std::string_view("PatternGenerator_sinusoidal")), JointMask::first(1)};

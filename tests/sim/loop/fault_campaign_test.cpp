@@ -19,8 +19,6 @@
 namespace proleg::sim {
 namespace {
 
-constexpr double duration_s = 5.0;
-
 constexpr std::array scenarios{"travelling_wave/uniform", "travelling_wave/coupled", "obstacle/reflex"};
 
 /// Most with the servo period of common servos, some with the shipped one of 1 ms. Coarse steps of the physics: what
@@ -40,7 +38,8 @@ TEST(FaultCampaign, KeepsMotionBoundedWhateverFails) {
   FaultStatistics statistics;
   for (std::uint32_t seed = first; seed < first + runs; ++seed) {
     const Scenario scenario = scenario_of(seed);
-    const auto ticks = static_cast<std::uint32_t>(duration_s * 1e6 / scenario.kernel.tick_period_us);
+    constexpr double run_us = 5e6;
+    const auto ticks = static_cast<std::uint32_t>(run_us / scenario.kernel.tick_period_us);
     RandomFaults settings;
     settings.seed = seed;
     const FaultSchedule schedule = random_faults(settings, scenario);

@@ -19,7 +19,7 @@
 namespace proleg::sim {
 namespace {
 
-struct Outcome {
+struct LoopRun {
   std::uint64_t differences = 0;
   std::string setpoints;
   std::string servo_commands;
@@ -30,8 +30,8 @@ struct Outcome {
   BusStatistics bus;
 };
 
-Outcome run(const Scenario& scenario, std::uint32_t ticks, HardwareOptions options = {}) {
-  Outcome result;
+LoopRun run_loop(const Scenario& scenario, std::uint32_t ticks, HardwareOptions options = {}) {
+  LoopRun result;
   options.notice = [&result](const std::string& notice) { result.notices.push_back(notice); };
   HardwareLoop loop(scenario, std::move(options));
   while (loop.tick() < ticks) {
@@ -51,9 +51,9 @@ Outcome run(const Scenario& scenario, std::uint32_t ticks, HardwareOptions optio
   return result;
 }
 
-Outcome simulated(const Scenario& scenario, std::uint32_t ticks, const Losses* losses = nullptr) {
+LoopRun simulated(const Scenario& scenario, std::uint32_t ticks, const Losses* losses = nullptr) {
   Simulation simulation(scenario, losses);
-  Outcome result;
+  LoopRun result;
   while (simulation.tick() < ticks) {
     simulation.advance();
     result.lost_frames += simulation.chain().lost().size();
@@ -64,7 +64,7 @@ Outcome simulated(const Scenario& scenario, std::uint32_t ticks, const Losses* l
   return result;
 }
 
-void expect_identical(const Outcome& modules, const Outcome& simulation) {
+void expect_identical(const LoopRun& modules, const LoopRun& simulation) {
   EXPECT_EQ(modules.differences, 0U);
   EXPECT_EQ(modules.setpoints, simulation.setpoints);
   EXPECT_EQ(modules.servo_commands, simulation.servo_commands);
@@ -76,7 +76,7 @@ class EveryScenario : public testing::TestWithParam<const char*> {};
 
 TEST_P(EveryScenario, CrawlsBitForBitLikeTheSimulation) {
   const Scenario scenario = shipped(GetParam());
-  expect_identical(run(scenario, 1500), simulated(scenario, 1500));
+  expect_identical(run_loop(scenario, 1500), simulated(scenario, 1500));
 }
 
 TEST_P(EveryScenario, DoesSoWhenFivePercentOfTheStateFramesAreLost) {
@@ -84,7 +84,7 @@ TEST_P(EveryScenario, DoesSoWhenFivePercentOfTheStateFramesAreLost) {
   const Losses losses(RandomLosses{7, 214748365, 0, 900});
   HardwareOptions options;
   options.losses = &losses;
-  const Outcome modules = run(scenario, 1200, options);
+  const LoopRun modules = run_loop(scenario, 1200, options);
   expect_identical(modules, simulated(scenario, 1200, &losses));
   EXPECT_GT(modules.lost_frames, 700U);
 }
@@ -99,15 +99,15 @@ TEST(HardwareLoop, ChangesInFlightTakeEffectAtTheirTicksInEveryModule) {
                               "phase_difference=70@150", "offset:J5=5@300"}) {
     apply_setting(scenario, setting);
   }
-  const Outcome modules = run(scenario, 400);
+  const LoopRun modules = run_loop(scenario, 400);
   expect_identical(modules, simulated(scenario, 400));
   EXPECT_TRUE(modules.notices.empty()) << modules.notices.front();
 }
 
 TEST(HardwareLoop, TwoRunsAreTheSame) {
   const Scenario scenario = shipped("travelling_wave/coupled");
-  const Outcome first = run(scenario, 200);
-  const Outcome second = run(scenario, 200);
+  const LoopRun first = run_loop(scenario, 200);
+  const LoopRun second = run_loop(scenario, 200);
   EXPECT_EQ(first.setpoints, second.setpoints);
   EXPECT_EQ(first.displacement, second.displacement);
   EXPECT_EQ(first.bus.frames, second.bus.frames);
@@ -119,7 +119,7 @@ TEST(HardwareLoop, CrystalsMayBeOffByMoreThanRealOnes) {
   for (const std::uint32_t error_ppm : {0U, 100U, 500U}) {
     HardwareOptions options;
     options.crystal_error_ppm = error_ppm;
-    expect_identical(run(scenario, 500, options), simulated(scenario, 500));
+    expect_identical(run_loop(scenario, 500, options), simulated(scenario, 500));
   }
 }
 
@@ -128,7 +128,7 @@ TEST(HardwareLoop, WorksWithEveryServoPeriod) {
   for (const std::uint32_t period_us : {700U, 981U, 1'000U, 1'999U, 3'000U, 3'333U, 9'999U, 20'000U, 33'333U}) {
     Scenario scenario = shipped("travelling_wave/coupled");
     scenario.robot.servo.period_us = period_us;
-    expect_identical(run(scenario, 300), simulated(scenario, 300));
+    expect_identical(run_loop(scenario, 300), simulated(scenario, 300));
   }
 }
 
@@ -136,36 +136,36 @@ TEST(HardwareLoop, WorksWithOtherTickPeriods) {
   for (const std::uint32_t tick_us : {5'000U, 20'000U}) {
     Scenario scenario = shipped("travelling_wave/coupled");
     scenario.kernel.tick_period_us = tick_us;
-    expect_identical(run(scenario, 300), simulated(scenario, 300));
+    expect_identical(run_loop(scenario, 300), simulated(scenario, 300));
   }
 }
 
 TEST(HardwareLoop, ANodeIdImpliesNoJoint) {
   Scenario scenario = shipped("travelling_wave/coupled");
-  const Outcome expected = simulated(scenario, 300);
+  const LoopRun expected = simulated(scenario, 300);
   const std::uint8_t nodes[] = {126, 3, 77, 1, 42};
   for (std::size_t joint = 0; joint < 5; ++joint) {
     scenario.modules[joint].node = nodes[joint];
   }
-  expect_identical(run(scenario, 300), expected);
+  expect_identical(run_loop(scenario, 300), expected);
 }
 
 // Load of one state frame a module and SYNC at 10 ms from the least to the most stuffing (docs/protocol.md), and TICK.
 TEST(HardwareLoop, FiveModulesTakeSevenPercentOfTheBus) {
-  const Outcome modules = run(shipped("travelling_wave/coupled"), 1000);
+  const LoopRun modules = run_loop(shipped("travelling_wave/coupled"), 1000);
   EXPECT_GT(modules.bus.load(), 0.061);
   EXPECT_LT(modules.bus.load(), 0.076);
 }
 
 TEST(HardwareLoop, TwentyModulesTakeLessThanThirtyPercentOfTheBus) {
   const Scenario scenario = shipped("long_chain/twenty");
-  const Outcome modules = run(scenario, 100);
+  const LoopRun modules = run_loop(scenario, 100);
   EXPECT_EQ(modules.differences, 0U);
   EXPECT_LT(modules.bus.load(), 0.30);
 }
 
 TEST(HardwareLoop, SixtyModulesRun) {
-  const Outcome modules = run(shipped("long_chain/sixty"), 20);
+  const LoopRun modules = run_loop(shipped("long_chain/sixty"), 20);
   EXPECT_EQ(modules.differences, 0U);
   EXPECT_LT(modules.bus.load(), 0.85);
 }
@@ -183,7 +183,7 @@ TEST_P(RestartedModule, RejoinsAndNothingDiffersFromTheGaitInMemoryWithTheSameGa
   for (const unsigned joint : {1U, 4U}) {
     HardwareOptions options;
     options.restarts = {{200, joint}, {500, joint}};
-    const Outcome modules = run(scenario, 800, options);
+    const LoopRun modules = run_loop(scenario, 800, options);
     EXPECT_EQ(modules.differences, 0U) << "joint " << joint;
     ASSERT_TRUE(modules.joined.contains(joint));
     EXPECT_LT(modules.joined.at(joint), 540U) << "back within 0.4 s";
@@ -245,7 +245,7 @@ TEST(HardwareLoop, RestartsAtAwkwardTicksDoNotDisturbOtherModules) {
     scenario.kernel.tick_period_us = tick_us;
     HardwareOptions options;
     options.restarts = restarts;
-    const Outcome modules = run(scenario, restarts.back().tick + 100, options);
+    const LoopRun modules = run_loop(scenario, restarts.back().tick + 100, options);
     EXPECT_EQ(modules.differences, 0U) << name << " " << tick_us << " us";
     for (const Restart& restart : restarts) {
       EXPECT_TRUE(modules.joined.contains(restart.joint)) << name;
@@ -265,9 +265,9 @@ class HiddenFault : public testing::TestWithParam<const char*> {
     return frame.identifier == canopen::identifier::state_frame + node && frame.data[7] == label;
   }
 
-  void expect_other_hash(const Outcome& faulty) const {
+  void expect_other_hash(const LoopRun& faulty) const {
     EXPECT_GT(faulty.differences, 0U);
-    EXPECT_NE(faulty.setpoints, run(scenario, ticks).setpoints);
+    EXPECT_NE(faulty.setpoints, run_loop(scenario, ticks).setpoints);
   }
 
   static constexpr std::uint32_t ticks = 300;
@@ -283,7 +283,7 @@ TEST_P(HiddenFault, AStateFrameDroppedOnItsWayToOneJointShows) {
       deliver(frame);
     }
   };
-  expect_other_hash(run(scenario, ticks, options));
+  expect_other_hash(run_loop(scenario, ticks, options));
 }
 
 TEST_P(HiddenFault, AStateFrameThatComesATickLateShows) {
@@ -300,7 +300,7 @@ TEST_P(HiddenFault, AStateFrameThatComesATickLateShows) {
       late.reset();
     }
   };
-  expect_other_hash(run(scenario, ticks, options));
+  expect_other_hash(run_loop(scenario, ticks, options));
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, HiddenFault, testing::Values("travelling_wave/coupled"));
@@ -317,11 +317,11 @@ TEST(HardwareLoop, ContactsOfMixedAgesShow) {
       before[joint] = sensors;
       return joint == young_joint ? sensors : older;
     };
-    return run(scenario, 1500, options);
+    return run_loop(scenario, 1500, options);
   };
-  const Outcome undisturbed = run(scenario, 1500);
-  const Outcome all_older = with_older_contacts(max_joints);
-  const Outcome mixed = with_older_contacts(0);
+  const LoopRun undisturbed = run_loop(scenario, 1500);
+  const LoopRun all_older = with_older_contacts(max_joints);
+  const LoopRun mixed = with_older_contacts(0);
   EXPECT_GT(mixed.differences, 0U);
   EXPECT_NE(mixed.setpoints, undisturbed.setpoints);
   EXPECT_NE(mixed.setpoints, all_older.setpoints);
@@ -347,7 +347,7 @@ class Intruder : public testing::Test {
         answers.push_back(transmission.frame);
       }
     };
-    expect_identical(run(scenario, 200, options), simulated(scenario, 200));
+    expect_identical(run_loop(scenario, 200, options), simulated(scenario, 200));
     return answers;
   }
 
@@ -418,13 +418,13 @@ TEST_F(Intruder, AnUnknownLabelChangesNothing) {
     }
     deliver(received);
   };
-  const Outcome modules = run(scenario, 200, options);
+  const LoopRun modules = run_loop(scenario, 200, options);
   EXPECT_EQ(modules.differences, 0U);
   ASSERT_EQ(modules.notices.size(), 1U);
   EXPECT_NE(modules.notices[0].find("0xFF05"), std::string::npos) << modules.notices[0];
 }
 
-std::ptrdiff_t reports(const Outcome& outcome, const char* text) {
+std::ptrdiff_t reports(const LoopRun& outcome, const char* text) {
   return std::ranges::count_if(outcome.notices,
                                [&](const std::string& notice) { return notice.find(text) != std::string::npos; });
 }
@@ -432,7 +432,7 @@ std::ptrdiff_t reports(const Outcome& outcome, const char* text) {
 TEST_F(Intruder, ASyncSoonerThanHalfAPeriodIsReportedAndChangesNothing) {
   HardwareOptions options;
   options.injected = {{100, frame(0x080, {0x50})}, {120, frame(0x080, {0x51})}, {121, frame(0x080, {123})}};
-  const Outcome modules = run(scenario, 200, options);
+  const LoopRun modules = run_loop(scenario, 200, options);
   EXPECT_EQ(modules.differences, 0U);
   EXPECT_EQ(reports(modules, "0xFF06"), 5) << "once from each module";
   EXPECT_EQ(modules.notices.size(), 5U);
@@ -446,7 +446,7 @@ TEST_F(Intruder, AModuleThatReceivesASyncOfNoTickStopsItsServoAndComputesAgain) 
     const bool is_forged = joint == 1 && received.identifier == 0x080 && received.data[0] == 101;
     deliver(is_forged ? frame(0x080, {0x50}) : received);
   };
-  const Outcome modules = run(scenario, 200, options);
+  const LoopRun modules = run_loop(scenario, 200, options);
   EXPECT_GT(modules.differences, 0U);
   EXPECT_EQ(reports(modules, "0x8700"), 1) << "SYNC lost";
   EXPECT_EQ(reports(modules, "0xFF04"), 1) << "joined again";
@@ -477,7 +477,7 @@ TEST(RefusedRobot, AModuleWithAWrongCoreIsNamed) {
 TEST(RefusedRobot, AModuleWithAWrongSerialNumberIsNamed) {
   Scenario scenario = shipped("travelling_wave/uniform");
   scenario.modules[2].serial = 0x1234ABCD;
-  EXPECT_EQ(run(scenario, 10).differences, 0U) << "the simulated module has the serial number of the file";
+  EXPECT_EQ(run_loop(scenario, 10).differences, 0U) << "the simulated module has the serial number of the file";
   HardwareOptions options;
   options.change_identity = [](unsigned joint, firmware::ModuleIdentity& identity) {
     identity.unique_id[0] ^= joint == 2 ? 1U : 0U;
@@ -517,7 +517,7 @@ TEST(HardwareLoop, AppliesARampWithAChangeInEveryTick) {
   for (int i = 0; i < 60; ++i) {  // a ramp of a step in every tick
     apply_setting(scenario, "amplitude=" + std::to_string(20 + i * 0.25) + "@" + std::to_string(100 + i));
   }
-  expect_identical(run(scenario, 200), simulated(scenario, 200));
+  expect_identical(run_loop(scenario, 200), simulated(scenario, 200));
 }
 
 }  // namespace

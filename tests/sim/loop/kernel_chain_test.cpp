@@ -15,7 +15,7 @@ namespace {
 
 KernelChain make_chain(const Scenario& scenario) { return {scenario.kernel, scenario.joint_limits, scenario.settings}; }
 
-const std::vector<std::uint8_t> no_contacts(5);
+const std::vector<std::uint8_t> no_joint_contacts(5);
 
 double phase_degrees(const KernelChain& chain, unsigned joint) {
   return chain.kernel(joint).internal_value(0, joint, 0) * (180.0 / 2147483648.0);
@@ -36,7 +36,7 @@ TEST(KernelChain, LosesExactlyTheFramesThatTheLossesName) {
   const Losses losses({{3, 0, 0, 1}, {5, 4, 0, 3}, {5, 4, 0, 2}});
   chain.set_losses(&losses);
   for (std::uint32_t tick = 0; tick < 10; ++tick) {
-    chain.advance(no_contacts);
+    chain.advance(no_joint_contacts);
     const std::size_t expected = tick == 3 ? 1 : (tick == 5 ? 2 : 0);
     EXPECT_EQ(chain.lost().size(), expected) << "tick " << tick;
   }
@@ -53,8 +53,8 @@ TEST(KernelChain, LossesDoNotChangeThePlainSine) {
   const Losses losses(RandomLosses{5, 1U << 30U, 0, 999});
   chain.set_losses(&losses);
   for (int tick = 0; tick < 2000; ++tick) {
-    chain.advance(no_contacts);
-    undisturbed.advance(no_contacts);
+    chain.advance(no_joint_contacts);
+    undisturbed.advance(no_joint_contacts);
     ASSERT_TRUE(std::ranges::equal(chain.setpoints(), undisturbed.setpoints())) << "tick " << tick;
   }
 }
@@ -64,7 +64,7 @@ TEST(KernelChain, CountsTheTicksInWhichLimitsCutASetPoint) {
   scenario.joint_limits[2] = {-(1 << 28), (1 << 30) / 9 * 2};  // -22.5 to 20 degrees
   KernelChain chain = make_chain(scenario);
   for (int tick = 0; tick < 1000; ++tick) {
-    chain.advance(no_contacts);
+    chain.advance(no_joint_contacts);
   }
   // A sine of 40 degrees is above 20 for a third of its period, and below -22.5 for acos(0.5625) / pi of it.
   const double expected = 1.0 / 3.0 + std::acos(0.5625) / std::numbers::pi;
@@ -99,8 +99,8 @@ Recovery recovery(std::uint64_t seed, double rate, std::uint32_t first) {
   chain.set_losses(&losses);
   Recovery result;
   for (std::uint32_t tick = 0; tick < end + 500; ++tick) {
-    chain.advance(no_contacts);
-    undisturbed.advance(no_contacts);
+    chain.advance(no_joint_contacts);
+    undisturbed.advance(no_joint_contacts);
     result.lost += chain.lost().size();
     if (tick >= end + 100) {
       result.phase = std::max(result.phase, max_phase_error(chain, undisturbed));
@@ -133,14 +133,14 @@ TEST(KernelChain, TheOthersReceiveOneMoreFrameOfAStoppedJointAndThenMissIt) {
   const Scenario scenario = shipped("travelling_wave/coupled");
   KernelChain chain = make_chain(scenario);
   for (int tick = 0; tick < 10; ++tick) {
-    chain.advance(no_contacts);
+    chain.advance(no_joint_contacts);
   }
   const std::int32_t last = chain.setpoints()[2];
   chain.stop(2);
   EXPECT_FALSE(chain.is_running(2));
-  chain.advance(no_contacts);
+  chain.advance(no_joint_contacts);
   EXPECT_EQ(chain.kernel(1).missed_frames(), 0U) << "the frame of the tick in which it stops was sent before";
-  chain.advance(no_contacts);
+  chain.advance(no_joint_contacts);
   EXPECT_EQ(chain.kernel(1).missed_frames(), 1U);
   EXPECT_EQ(chain.setpoints()[2], last) << "its set-point does not change";
   EXPECT_EQ(chain.lost().size(), 0U) << "this is no loss on the bus";
@@ -164,8 +164,8 @@ TEST(KernelChain, AJointThatJoinsHasTheParametersOfTheChangesMeanwhile) {
       chain.apply(scenario.changes[next]);
       undisturbed.apply(scenario.changes[next++]);
     }
-    chain.advance(no_contacts);
-    undisturbed.advance(no_contacts);
+    chain.advance(no_joint_contacts);
+    undisturbed.advance(no_joint_contacts);
     if (tick < 10 || tick >= 20) {
       ASSERT_TRUE(std::ranges::equal(chain.setpoints(), undisturbed.setpoints())) << "tick " << tick;
     }

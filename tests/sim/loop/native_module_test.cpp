@@ -10,9 +10,6 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::uint8_t node = 5;
-constexpr BusTime ms = 1'000'000;
-
 /// Receives frames, and so acknowledges them.
 struct Host final : BusListener {
   explicit Host(Bus& bus) : controller(bus.attach(*this)) {}
@@ -27,14 +24,16 @@ struct Host final : BusListener {
   Controller& controller;
 };
 
-firmware::ModuleIdentity identity() {
-  firmware::ModuleIdentity made;
-  made.node = node;
-  return made;
-}
-
 class NativeModules : public testing::Test {
  protected:
+  static constexpr std::uint8_t node = 5;
+  static constexpr BusTime ms = 1'000'000;
+
+  static firmware::ModuleIdentity identity() {
+    firmware::ModuleIdentity made;
+    made.node = node;
+    return made;
+  }
   void run_until(BusTime end) {
     for (BusTime next = 0; next <= end;) {
       bus.advance_to(next);

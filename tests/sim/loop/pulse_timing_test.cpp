@@ -59,7 +59,7 @@ void append(const Plant& plant, std::vector<double>& numbers) {
   }
 }
 
-WorldState with_modules(const Scenario& scenario, std::uint32_t ticks, HardwareOptions options = {}) {
+WorldState world_with_modules(const Scenario& scenario, std::uint32_t ticks, HardwareOptions options = {}) {
   HardwareLoop loop(scenario, std::move(options));
   WorldState state;
   while (loop.tick() < ticks) {
@@ -70,7 +70,7 @@ WorldState with_modules(const Scenario& scenario, std::uint32_t ticks, HardwareO
   return state;
 }
 
-WorldState simulated(const Scenario& scenario, std::uint32_t ticks) {
+WorldState simulated_world(const Scenario& scenario, std::uint32_t ticks) {
   Simulation simulation(scenario);
   WorldState state;
   while (simulation.tick() < ticks) {
@@ -101,11 +101,11 @@ TEST(PulseTiming, TheWorldWithModulesIsThatOfTheSimulationForEveryStepOfThePhysi
     const std::uint32_t servo_us = std::uniform_int_distribution(200U, 12'000U)(random);
     const char* const name = pick(std::array{"travelling_wave/coupled", "obstacle/reflex"});
     const Scenario scenario = timed(name, tick_us, steps, servo_us);
-    const WorldState modules = with_modules(scenario, 60);
+    const WorldState modules = world_with_modules(scenario, 60);
     const std::string what = std::string(name) + ", tick " + std::to_string(tick_us) + " us, " + std::to_string(steps) +
                              " steps, servo period " + std::to_string(servo_us) + " us";
     EXPECT_EQ(modules.differences, 0U) << what;
-    EXPECT_EQ(modules.numbers, simulated(scenario, 60).numbers) << what;
+    EXPECT_EQ(modules.numbers, simulated_world(scenario, 60).numbers) << what;
   }
 }
 
@@ -114,11 +114,11 @@ TEST(PulseTiming, AWorldThatDiffersIsReportedAsADifference) {
   unsigned different = 0;
   for (const std::uint32_t servo_us : {400U, 981U, 1'000U}) {
     const Scenario scenario = timed("travelling_wave/uniform", 10'000, 100, servo_us);
-    const std::vector<double> expected = simulated(scenario, 100).numbers;
+    const std::vector<double> expected = simulated_world(scenario, 100).numbers;
     for (const std::uint32_t error_ppm : {1'000U, 20'000U, 80'000U}) {
       HardwareOptions options;
       options.crystal_error_ppm = error_ppm;
-      const WorldState modules = with_modules(scenario, 100, options);
+      const WorldState modules = world_with_modules(scenario, 100, options);
       const bool differs = modules.numbers != expected;
       EXPECT_TRUE(!differs || modules.differences > 0) << servo_us << " us, " << error_ppm << " ppm";
       different += differs ? 1U : 0U;

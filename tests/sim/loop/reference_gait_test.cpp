@@ -11,14 +11,14 @@
 namespace proleg::sim {
 namespace {
 
-constexpr unsigned joint = 2;
-constexpr ReferenceGait::ModuleTick computed{true, true, false};
-constexpr ReferenceGait::ModuleTick silent{false, false, false};
-constexpr ReferenceGait::ModuleTick failed_after_sending{false, true, false};
-constexpr ReferenceGait::ModuleTick restarted{false, false, true};
-
 class Reference : public testing::Test {
  protected:
+  static constexpr unsigned joint = 2;
+  static constexpr ReferenceGait::ModuleTick computed{true, true, false};
+  static constexpr ReferenceGait::ModuleTick silent{false, false, false};
+  static constexpr ReferenceGait::ModuleTick failed_after_sending{false, true, false};
+  static constexpr ReferenceGait::ModuleTick restarted{false, false, true};
+
   /// A tick in which the module of one joint did this and all others computed.
   void advance(const ReferenceGait::ModuleTick& module) {
     report.restart_events.clear();

@@ -15,7 +15,6 @@
 namespace proleg::sim {
 namespace {
 
-constexpr unsigned joints = 5;
 constexpr unsigned reflex_slot = 1;
 
 void remove_terrace(Scenario& scenario) {
@@ -33,13 +32,13 @@ void vary(Scenario& scenario, double friction_factor, double farther_m) {
   scenario.environment.robot_pose.position.y() -= farther_m;
 }
 
-struct Outcome {
+struct ReflexRun {
   double displacement;  // m
   double acting;        // share of the ticks in which the reflex moves a joint
   std::string setpoints;
 };
 
-Outcome run(const Scenario& scenario, double seconds) {
+ReflexRun run_counting_reflexes(const Scenario& scenario, double seconds) {
   Simulation simulation(scenario);
   unsigned acting = 0;
   while (simulation.time_s() < seconds - 1e-9) {
@@ -53,8 +52,8 @@ Outcome run(const Scenario& scenario, double seconds) {
 }
 
 TEST(Reflex, CarriesTheRobotOverTheTerraceWhereThePlainGaitStaysAtTheFirstStep) {
-  const Outcome reflex = run(shipped("obstacle/reflex"), 30);
-  const Outcome plain = run(shipped("obstacle/plain"), 30);
+  const ReflexRun reflex = run_counting_reflexes(shipped("obstacle/reflex"), 30);
+  const ReflexRun plain = run_counting_reflexes(shipped("obstacle/plain"), 30);
   // The head starts 0.18 m before the first step, which is 0.4 m before the second. The bounds leave room for other
   // compilers and libraries, whose last digits lead to another path: frictions from 0.45 to 0.55 give 1.93 to 2.17 m.
   EXPECT_LT(plain.displacement, 0.3);
@@ -70,8 +69,10 @@ TEST(Reflex, HelpsWithOtherFrictionAndFromOtherDistancesToo) {
       Scenario plain = shipped("obstacle/plain");
       vary(reflex, friction_factor, farther_m);
       vary(plain, friction_factor, farther_m);
-      EXPECT_LT(run(plain, 20).displacement, 0.35) << "friction x " << friction_factor << ", " << farther_m << " m";
-      EXPECT_GT(run(reflex, 20).displacement, 0.5) << "friction x " << friction_factor << ", " << farther_m << " m";
+      EXPECT_LT(run_counting_reflexes(plain, 20).displacement, 0.35)
+          << "friction x " << friction_factor << ", " << farther_m << " m";
+      EXPECT_GT(run_counting_reflexes(reflex, 20).displacement, 0.5)
+          << "friction x " << friction_factor << ", " << farther_m << " m";
     }
   }
 }
@@ -81,8 +82,8 @@ TEST(Reflex, LeavesTheGaitOnFlatGroundAsItIsToTheLastBit) {
   Scenario plain = shipped("obstacle/plain");
   remove_terrace(reflex);
   remove_terrace(plain);
-  const Outcome with_reflex = run(reflex, 30);
-  const Outcome without = run(plain, 30);
+  const ReflexRun with_reflex = run_counting_reflexes(reflex, 30);
+  const ReflexRun without = run_counting_reflexes(plain, 30);
   EXPECT_EQ(with_reflex.acting, 0.0);
   EXPECT_EQ(with_reflex.setpoints, without.setpoints);
   EXPECT_EQ(with_reflex.displacement, without.displacement);
@@ -90,6 +91,7 @@ TEST(Reflex, LeavesTheGaitOnFlatGroundAsItIsToTheLastBit) {
 
 TEST(Reflex, LetsEveryJointSeeTheContactsOfAllLinksAndRaiseThemTogether) {
   const Scenario scenario = shipped("obstacle/reflex");
+  constexpr unsigned joints = 5;
   Simulation simulation(scenario);
   std::array<bool, joints + 1> touched{};
   std::vector<std::uint8_t> contacts_before(joints + 1);

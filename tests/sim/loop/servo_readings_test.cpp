@@ -16,7 +16,7 @@
 namespace proleg::sim {
 namespace {
 
-constexpr ServoCurrent servo;
+constexpr ServoCurrent default_current;
 
 double in_radians(std::int32_t angle) { return angle * (std::numbers::pi / 2.0 / quarter_turn); }
 
@@ -31,8 +31,8 @@ TEST(ServoReadings, AreTheActualAnglesAndCurrentsBetweenIdleAndStall) {
       const firmware::ServoReadings readings = simulation.plant().servo_readings(joint);
       ASSERT_TRUE(readings.angle);
       EXPECT_NEAR(in_radians(*readings.angle), simulation.plant().joint_angles()[joint], 2e-9);
-      EXPECT_GE(readings.current_ma, servo.idle_ma);
-      EXPECT_LE(readings.current_ma, servo.stall_ma);
+      EXPECT_GE(readings.current_ma, default_current.idle_ma);
+      EXPECT_LE(readings.current_ma, default_current.stall_ma);
       EXPECT_EQ(readings.temperature_c, 25);
       sum_ma += readings.current_ma;
       ++count;
@@ -48,13 +48,13 @@ TEST(ServoReadings, OfAServoThatIsHeldOrLimp) {
     joint.max_torque = 1e-6;  // cannot lift the robot
   }
   Plant plant(scenario);
-  EXPECT_EQ(plant.servo_readings(2).current_ma, servo.idle_ma) << "nothing has happened yet";
+  EXPECT_EQ(plant.servo_readings(2).current_ma, default_current.idle_ma) << "nothing has happened yet";
   plant.set_command(2, 30'000);
   plant.step();
-  EXPECT_NEAR(plant.servo_readings(2).current_ma, servo.stall_ma, 1.0);
+  EXPECT_NEAR(plant.servo_readings(2).current_ma, default_current.stall_ma, 1.0);
   plant.release(2);
   plant.step();
-  EXPECT_EQ(plant.servo_readings(2).current_ma, servo.idle_ma);
+  EXPECT_EQ(plant.servo_readings(2).current_ma, default_current.idle_ma);
 }
 
 TEST(ServoReadings, AreMonitoredByEveryModuleEveryTenthTick) {
@@ -83,8 +83,8 @@ TEST(ServoReadings, AreMonitoredByEveryModuleEveryTenthTick) {
   for (std::size_t i = 0; i < messages.size(); ++i) {
     // A step of the physics may lie on either side of the SYNC.
     EXPECT_NEAR(messages[i].angle * (std::numbers::pi / 2.0 / (1 << 14)), angles[i], 0.05) << i;
-    EXPECT_GE(messages[i].current_ma, servo.idle_ma);
-    EXPECT_LE(messages[i].current_ma, servo.stall_ma);
+    EXPECT_GE(messages[i].current_ma, default_current.idle_ma);
+    EXPECT_LE(messages[i].current_ma, default_current.stall_ma);
     EXPECT_EQ(messages[i].temperature_c, 25);
     EXPECT_EQ(messages[i].faults, 0);
   }

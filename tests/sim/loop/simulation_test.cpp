@@ -20,15 +20,15 @@
 namespace proleg::sim {
 namespace {
 
-struct Outcome {
+struct SimulationRun {
   double displacement;
   std::string setpoints;
   std::string servo_commands;
 
-  friend bool operator==(const Outcome&, const Outcome&) = default;
+  friend bool operator==(const SimulationRun&, const SimulationRun&) = default;
 };
 
-Outcome run(const Scenario& scenario, double seconds) {
+SimulationRun simulate(const Scenario& scenario, double seconds) {
   Simulation simulation(scenario);
   while (simulation.time_s() < seconds - 1e-9) {
     simulation.advance();
@@ -39,8 +39,8 @@ Outcome run(const Scenario& scenario, double seconds) {
 // A regression test of the calibration, no independent evidence: friction and servo gain of the shipped robot were
 // fitted to the displacement that the thesis reports.
 TEST(Simulation, TheCalibratedTravellingWaveKeepsTheDisplacementOfTheThesis) {
-  const double uniform = run(shipped("travelling_wave/uniform"), 30).displacement;
-  const double tail_fixed = run(shipped("travelling_wave/tail_fixed"), 30).displacement;
+  const double uniform = simulate(shipped("travelling_wave/uniform"), 30).displacement;
+  const double tail_fixed = simulate(shipped("travelling_wave/tail_fixed"), 30).displacement;
   // Thesis, section 6.1: 1.65 m, and 1.95 m with the tail joint at rest. The bounds are wider than the solver's noise:
   // a change of friction by 0.01 changes the displacement by 0.18 m.
   EXPECT_NEAR(uniform, 1.65, 0.15);
@@ -50,7 +50,7 @@ TEST(Simulation, TheCalibratedTravellingWaveKeepsTheDisplacementOfTheThesis) {
 
 std::string failure_of(const Scenario& scenario) {
   try {
-    run(scenario, 30);
+    simulate(scenario, 30);
   } catch (const PhysicsError& error) {
     return error.what();
   }
@@ -109,7 +109,7 @@ TEST(Simulation, TheShippedScenariosGiveTheSameHashesOnEveryMachine) {
                                       "0a66479902ba7b7970549ad9926ecf85e6f8e2b8d157ec029ab0767bbd1db0bc"},
                                Golden{"coupled", "a8c98c69b4366a733030f6a1f2d00a4e0a4cfb13f47df28da20e8d483f11857f",
                                       "42bfbbb21a4d1ca887515c3783a2cb88dfc28852c2e60afc0fabf1d4654198e3"}}) {
-    const Outcome outcome = run(shipped(std::string("travelling_wave/") + golden.scenario), 30);
+    const SimulationRun outcome = simulate(shipped(std::string("travelling_wave/") + golden.scenario), 30);
     EXPECT_EQ(outcome.setpoints, golden.setpoints) << golden.scenario;
     EXPECT_EQ(outcome.servo_commands, golden.servo_commands) << golden.scenario;
   }
@@ -130,17 +130,17 @@ TEST(Simulation, TailFixedKeepsTheTailJointStraight) {
 TEST(Simulation, RepeatsToTheLastBitOnEveryThread) {
   for (const char* name : {"uniform", "coupled"}) {
     const Scenario scenario = shipped(std::string("travelling_wave/") + name);
-    const Outcome expected = run(scenario, 3);
-    EXPECT_EQ(run(scenario, 3), expected) << name;
-    std::array<Outcome, 4> outcomes;
+    const SimulationRun expected = simulate(scenario, 3);
+    EXPECT_EQ(simulate(scenario, 3), expected) << name;
+    std::array<SimulationRun, 4> outcomes;
     std::vector<std::thread> threads;
-    for (Outcome& outcome : outcomes) {
-      threads.emplace_back([&] { outcome = run(scenario, 3); });
+    for (SimulationRun& outcome : outcomes) {
+      threads.emplace_back([&] { outcome = simulate(scenario, 3); });
     }
     for (std::thread& thread : threads) {
       thread.join();
     }
-    for (const Outcome& outcome : outcomes) {
+    for (const SimulationRun& outcome : outcomes) {
       EXPECT_EQ(outcome, expected) << name;
     }
   }

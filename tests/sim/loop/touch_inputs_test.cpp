@@ -8,10 +8,11 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::size_t joints = 3;
+/// Contacts by link of a robot of three joints.
+using Links = std::array<std::uint8_t, 4>;
 
 TEST(JointContacts, AreThoseOfTheLinkBehindAndForTheHeadOfLinkZeroToo) {
-  const std::array<std::uint8_t, joints + 1> links{1, 2, 3, 1};
+  const Links links{1, 2, 3, 1};
   EXPECT_EQ(joint_contacts(links, 0), 0b0110);
   EXPECT_EQ(joint_contacts(links, 1), 0b0011);
   EXPECT_EQ(joint_contacts(links, 2), 0b0001);
@@ -19,12 +20,12 @@ TEST(JointContacts, AreThoseOfTheLinkBehindAndForTheHeadOfLinkZeroToo) {
 
 TEST(JointContacts, WrittenToTheirLinksGiveTheSameLinks) {
   for (unsigned pattern = 0; pattern < 256; ++pattern) {
-    std::array<std::uint8_t, joints + 1> links{};
+    Links links{};
     for (std::size_t link = 0; link < links.size(); ++link) {
       links[link] = static_cast<std::uint8_t>((pattern >> (2 * link)) & 3U);
     }
-    std::array<std::uint8_t, joints + 1> written{0xFF, 0xFF, 0xFF, 0xFF};
-    for (std::size_t joint = 0; joint < joints; ++joint) {
+    Links written{0xFF, 0xFF, 0xFF, 0xFF};
+    for (std::size_t joint = 0; joint < links.size() - 1; ++joint) {
       constexpr unsigned other_flags = 0xF0;
       write_link_contacts(written, joint, joint_contacts(links, joint) | other_flags);
     }
@@ -33,9 +34,9 @@ TEST(JointContacts, WrittenToTheirLinksGiveTheSameLinks) {
 }
 
 TEST(TouchInputs, AcceptAContactAtItsSecondSampleAndDropItAtAReset) {
-  TouchInputs inputs(joints);
-  const std::array<std::uint8_t, joints + 1> links{2, 1, 0, 0};
-  std::array<std::uint8_t, joints + 1> written{};
+  TouchInputs inputs(3);
+  const Links links{2, 1, 0, 0};
+  Links written{};
   EXPECT_EQ(inputs.sample(links, 0), 0);
   EXPECT_EQ(inputs.sample(links, 0), 0b1001);
   inputs.write_links(written);

@@ -17,7 +17,7 @@ using test::FlashMemory;
 using test::PowerCut;
 using test::Sector;
 
-constexpr std::uint32_t seed = 20;
+constexpr std::uint32_t noise_seed = 20;
 
 std::optional<BoardRecord> newest_of(const FlashMemory& flash) { return newest(flash.sectors[0], flash.sectors[1]); }
 
@@ -157,7 +157,7 @@ TEST(BoardRecordTest, AValueOutOfItsRangeLeavesTheNodeId) {
 
 /// With a right checksum, so that more than the checksum is tested.
 TEST(BoardRecordTest, ARecordOfAnyBytesGivesOnlyWhatIsInRange) {
-  std::mt19937 noise(seed);
+  std::mt19937 noise(noise_seed);
   unsigned found = 0;
   for (int round = 0; round < 100'000; ++round) {
     std::array<std::uint8_t, BoardRecord::size> bytes{};
@@ -174,7 +174,7 @@ TEST(BoardRecordTest, ARecordOfAnyBytesGivesOnlyWhatIsInRange) {
     }
     if (const std::optional<BoardRecord> record = newest(bytes, {})) {
       ++found;
-      ASSERT_TRUE(record->valid()) << "seed " << seed << ", round " << round;
+      ASSERT_TRUE(record->valid()) << "seed " << noise_seed << ", round " << round;
       ASSERT_EQ(record->node, bytes[5]);
     }
   }
@@ -182,7 +182,7 @@ TEST(BoardRecordTest, ARecordOfAnyBytesGivesOnlyWhatIsInRange) {
 }
 
 TEST(BoardRecordTest, RandomBytesHoldNone) {
-  std::mt19937 noise(seed);
+  std::mt19937 noise(noise_seed);
   for (int round = 0; round < 1000; ++round) {
     FlashMemory flash;
     for (Sector& sector : flash.sectors) {
@@ -216,7 +216,7 @@ TEST(BoardRecordTest, ACutOfThePowerAtAnyInstantLeavesTheNewestOrTheOneBefore) {
   for (int cut = 0; cut < whole.operations; ++cut) {
     FlashMemory flash;
     flash.cut_at = cut;
-    flash.noise.seed(seed + static_cast<unsigned>(cut));
+    flash.noise.seed(noise_seed + static_cast<unsigned>(cut));
     bool was_cut = false;
     for (unsigned i = 1; i <= appends; ++i) {
       const std::optional<BoardRecord> before = newest_of(flash);

@@ -11,10 +11,11 @@ using canopen::EmergencyCode;
 using canopen::PowerState;
 using test::node;
 constexpr Microseconds ms = 1'000;
-constexpr Microseconds second = 1'000'000;
 
 class BusOff : public testing::Test {
  protected:
+  static constexpr Microseconds second = 1'000'000;
+
   BusOff() { robot.set_up_and_start(); }
 
   /// The controller goes bus-off, at the time that is returned.

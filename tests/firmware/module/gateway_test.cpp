@@ -19,7 +19,7 @@
 namespace proleg {
 namespace {
 
-constexpr std::uint8_t node = 4;
+constexpr std::uint8_t gateway_node = 4;
 
 struct Surroundings final : CanPort, firmware::ServoPort, firmware::ContactPort, firmware::LinePort {
   bool send(const CanFrame& frame) override {
@@ -67,7 +67,7 @@ class GatewayTest : public testing::Test {
  protected:
   GatewayTest() {
     firmware::BoardRecord board;
-    board.node = node;
+    board.node = gateway_node;
     board.is_gateway = true;
     EXPECT_EQ(firmware::append(flash, board), firmware::AppendResult::ok);
     module.power_on(now);
@@ -116,7 +116,7 @@ class GatewayTest : public testing::Test {
   Surroundings outside;
   test::Meters meters;
   test::FlashMemory flash;
-  firmware::Module module{{node, 1, {1, 2, 3}}, {outside, outside, outside, meters, flash, &outside}};
+  firmware::Module module{{gateway_node, 1, {1, 2, 3}}, {outside, outside, outside, meters, flash, &outside}};
 };
 
 TEST_F(GatewayTest, TakesTheLineAtItsStartAndOpensTheFiltersWithTheChannel) {
@@ -129,7 +129,7 @@ TEST_F(GatewayTest, TakesTheLineAtItsStartAndOpensTheFiltersWithTheChannel) {
 }
 
 TEST_F(GatewayTest, AModuleWithoutALineIsNone) {
-  firmware::Module other{{node, 1, {1, 2, 3}}, {outside, outside, outside, meters, flash}};
+  firmware::Module other{{gateway_node, 1, {1, 2, 3}}, {outside, outside, outside, meters, flash}};
   other.power_on(now);
   EXPECT_FALSE(other.gateway().is_active());
 }
@@ -252,7 +252,7 @@ TEST_F(GatewayTest, ALineThatWasDamagedIsRejected) {
 
 TEST_F(GatewayTest, AResetOfTheNodeKeepsTheChannelAndPowerOnClosesIt) {
   write("O\r");
-  receive({0x000, 2, {0x81, node}});
+  receive({0x000, 2, {0x81, gateway_node}});
   EXPECT_EQ(ask("O\r"), "\a") << "it is open";
   module.power_on(now);
   EXPECT_EQ(ask("t7F00\r"), "\a");

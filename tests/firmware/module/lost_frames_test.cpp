@@ -8,7 +8,6 @@ namespace {
 using canopen::Emergency;
 using canopen::EmergencyCode;
 using test::node;
-constexpr Microseconds second = 1'000'000;
 
 class LostFrames : public testing::Test {
  protected:
@@ -31,6 +30,7 @@ TEST_F(LostFrames, AreReportedWithTheirNumberAndCanBeRead) {
 TEST_F(LostFrames, AreReportedOnceASecondAtMost) {
   lose(1);
   lose(2);
+  constexpr Microseconds second = 1'000'000;
   robot.bus.run_for(second);
   lose(300);
   ASSERT_EQ(robot.emergencies().size(), 2U);

@@ -14,21 +14,21 @@ CanFrame lss(const std::array<std::uint8_t, 8>& data) { return {0x7E5, 8, data};
 const CanFrame select_all = lss({0x04, 1});
 const CanFrame release_all = lss({0x04, 0});
 const CanFrame store = lss({0x17});
-CanFrame configure(std::uint8_t node) { return lss({0x11, node}); }
+CanFrame configure(std::uint8_t node_id) { return lss({0x11, node_id}); }
 
-firmware::ModuleIdentity identity_of(std::uint8_t node) {
+firmware::ModuleIdentity identity_of(std::uint8_t node_id) {
   firmware::ModuleIdentity identity;
-  identity.node = node;
+  identity.node = node_id;
   identity.unique_id = {1, 2, 3};
   return identity;
 }
 
 class LssModule : public testing::Test {
  protected:
-  /// node: of the board record; 0: there is none.
-  void power_on(std::uint8_t node) {
-    it = &bus.add(identity_of(node));
-    if (node == 0) {
+  /// node_id: of the board record; 0: there is none.
+  void power_on(std::uint8_t node_id) {
+    it = &bus.add(identity_of(node_id));
+    if (node_id == 0) {
       it->flash = {};
     }
     it->power_on(bus.now());

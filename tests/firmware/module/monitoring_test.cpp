@@ -91,8 +91,7 @@ TEST(Monitored, ObjectsHaveTheSameValues) {
     Measuring module(measured);
     module.it->meters.readings = {350, -test::degrees(44.9), -7};
     static_cast<void>(module.first_frame());
-    constexpr std::uint8_t node = Measuring::node;
-    const auto value = [&](const canopen::Object& entry) { return module.bus.value(node, entry); };
+    const auto value = [&](const canopen::Object& entry) { return module.bus.value(Measuring::node, entry); };
     EXPECT_EQ(value(object::capabilities), measured ? 1U : 0U);
     EXPECT_EQ(value(object::actual_position),
               measured ? static_cast<std::uint32_t>(-test::degrees(44.9)) : 0x80000000U);

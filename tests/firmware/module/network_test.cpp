@@ -12,7 +12,7 @@ using canopen::EmergencyCode;
 using canopen::NmtCommand;
 using canopen::NmtState;
 using test::node;
-constexpr std::uint16_t heartbeat = canopen::identifier::heartbeat + node;
+constexpr std::uint16_t heartbeat_identifier = canopen::identifier::heartbeat + node;
 
 firmware::ModuleIdentity identity(std::uint8_t node_id, std::uint32_t id) {
   firmware::ModuleIdentity made;
@@ -25,7 +25,7 @@ TEST(Network, SendsNothingAndReceivesNothingBeforePowerOn) {
   test::TestModule robot;
   EXPECT_EQ(robot.module().next_deadline(), never);
   robot.command(NmtCommand::reset_node);
-  robot.bus.deliver({heartbeat, 1, {0}});
+  robot.bus.deliver({heartbeat_identifier, 1, {0}});
   robot.tick(0);
   robot.sync(0);
   robot.bus.run_for(1'000'000);
@@ -38,7 +38,7 @@ TEST(Network, BootUpComesOnceAndThenTheModuleIsPreOperational) {
   test::TestModule robot;
   robot.boot();
   ASSERT_EQ(robot.bus.log.size(), 1U);
-  EXPECT_EQ(robot.bus.log[0].frame, (CanFrame{heartbeat, 1, {0}}));
+  EXPECT_EQ(robot.bus.log[0].frame, (CanFrame{heartbeat_identifier, 1, {0}}));
   EXPECT_EQ(robot.module().state(), NmtState::pre_operational);
   robot.bus.run_for(10'000'000);
   EXPECT_EQ(robot.bus.log.size(), 1U);
@@ -77,19 +77,19 @@ TEST(Network, HeartbeatComesEveryPeriodWithTheState) {
   const std::size_t from = robot.bus.log.size();
   const Microseconds start = robot.bus.now();
   robot.bus.run_for(1'000'000);
-  const auto beats = robot.bus.sent(heartbeat, from);
+  const auto beats = robot.bus.sent(heartbeat_identifier, from);
   ASSERT_EQ(beats.size(), 10U);
   for (std::size_t i = 0; i < beats.size(); ++i) {
-    EXPECT_EQ(beats[i].frame, (CanFrame{heartbeat, 1, {0x05}}));
+    EXPECT_EQ(beats[i].frame, (CanFrame{heartbeat_identifier, 1, {0x05}}));
     EXPECT_EQ(beats[i].time - beats[0].time, i * 100'000);
   }
   EXPECT_LE(beats[0].time - start, 100'000U);
   robot.command(NmtCommand::stop);
   robot.bus.run_for(100'000);
-  EXPECT_EQ(robot.bus.sent(heartbeat).back().frame, (CanFrame{heartbeat, 1, {0x04}}));
+  EXPECT_EQ(robot.bus.sent(heartbeat_identifier).back().frame, (CanFrame{heartbeat_identifier, 1, {0x04}}));
   robot.command(NmtCommand::enter_pre_operational);
   robot.bus.run_for(100'000);
-  EXPECT_EQ(robot.bus.sent(heartbeat).back().frame, (CanFrame{heartbeat, 1, {0x7F}}));
+  EXPECT_EQ(robot.bus.sent(heartbeat_identifier).back().frame, (CanFrame{heartbeat_identifier, 1, {0x7F}}));
 }
 
 TEST(Network, AHeartbeatThatIsSentTooLateDoesNotCatchUp) {
@@ -163,7 +163,7 @@ TEST_P(Reset, RestoresTheDefaultsAndBootsAgain) {
   EXPECT_FALSE(robot.it().is_pulsing());
   const Microseconds reset_at = robot.bus.now();
   robot.bus.run_for(20'000);
-  const auto boot_up = robot.bus.sent(heartbeat, from);
+  const auto boot_up = robot.bus.sent(heartbeat_identifier, from);
   ASSERT_EQ(boot_up.size(), 1U);
   EXPECT_GT(boot_up[0].time, reset_at + 1'000);
   EXPECT_EQ(robot.module().state(), NmtState::pre_operational);

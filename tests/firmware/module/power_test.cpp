@@ -14,10 +14,11 @@ using canopen::EmergencyCode;
 using canopen::NmtCommand;
 using canopen::PowerState;
 using test::node;
-constexpr std::uint32_t servo_us = 3'000;
 
 class Power : public testing::Test {
  protected:
+  static constexpr std::uint32_t servo_us = 3'000;
+
   Power() { robot.set_up_and_start(); }
 
   void controlword(std::uint16_t value) {

@@ -14,7 +14,6 @@ using canopen::EmergencyCode;
 using canopen::NmtCommand;
 using canopen::PowerState;
 using test::node;
-constexpr std::uint32_t servo_us = 3'000;
 constexpr unsigned speed = 90;
 constexpr std::uint16_t reached = 1U << 10U;  // CiA 402, statusword
 
@@ -23,6 +22,8 @@ constexpr std::int32_t width_of(int degrees) { return servo_center + servo_quart
 
 class RampIn : public testing::Test {
  protected:
+  static constexpr std::uint32_t servo_us = 3'000;
+
   RampIn() {
     // The joint with the offset -10 degrees and no amplitude: so is its state 0.
     set("amplitude", 0);

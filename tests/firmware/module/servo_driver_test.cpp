@@ -7,25 +7,17 @@
 #include <optional>
 #include <vector>
 
+#include "servo_recorder.hpp"
+
 namespace proleg::firmware {
 namespace {
 
-constexpr std::int32_t quarter = 1 << 30;
-constexpr std::int32_t line = quarter / 8;
-constexpr std::int32_t line_end = 18'000 + 12'000 / 8;
-
-struct Servo final : ServoPort {
-  void pulse(std::int32_t width, std::uint32_t period_us) override {
-    pulses.push_back(width);
-    period = period_us;
-  }
-  void off() override { pulses.push_back(std::nullopt); }
-  std::vector<std::optional<std::int32_t>> pulses;
-  std::uint32_t period = 0;
-};
-
 class Driver : public testing::Test {
  protected:
+  static constexpr std::int32_t quarter = 1 << 30;
+  static constexpr std::int32_t line = quarter / 8;
+  static constexpr std::int32_t line_end = 18'000 + 12'000 / 8;
+
   /// A line takes 11.25 degrees in 10 ms.
   Driver() {
     driver.guard().set_command_speed(max_command_speed);
@@ -38,9 +30,9 @@ class Driver : public testing::Test {
     return 18'000 + static_cast<std::int32_t>((std::uint64_t{12'000 / 8} * fraction + 32'768) / 65'536);
   }
 
-  Servo servo;
+  test::ServoRecorder servo;
   ServoDriver driver{servo};
-  std::vector<std::optional<std::int32_t>>& pulses = servo.pulses;
+  std::vector<std::optional<std::int32_t>>& pulses = servo.widths;
 };
 
 TEST_F(Driver, TakesEveryIntervalInTime) {
@@ -61,11 +53,11 @@ TEST_F(Driver, SaysHowOftenAPulseIsToBeRepeated) {
   driver.configure({3'000, 10'000});
   driver.follow();
   driver.start_tick(0, 0, quarter, quarter);
-  EXPECT_EQ(servo.period, 3'000U);
-  servo.period = 0;
+  EXPECT_EQ(servo.period_us, 3'000U);
+  servo.period_us = 0;
   driver.quick_stop(0);
   driver.poll(driver.next_deadline());
-  EXPECT_EQ(servo.period, 3'000U) << "on the way to the safe pose, too, which is held";
+  EXPECT_EQ(servo.period_us, 3'000U) << "on the way to the safe pose, too, which is held";
 }
 
 TEST_F(Driver, CalledTooLateTakesTheLatestIntervalOnly) {

@@ -5,28 +5,22 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <optional>
 #include <vector>
 
+#include "servo_recorder.hpp"
 #include "shared/fixed/random.hpp"
 
 namespace proleg::firmware {
 namespace {
 
-constexpr std::int32_t quarter = 1 << 30;
-constexpr std::uint32_t period_us = 3'000;
-
-struct Servo final : ServoPort {
-  void pulse(std::int32_t width, std::uint32_t /*period_us*/) override { widths.push_back(width); }
-  void off() override { widths.push_back(std::nullopt); }
-  std::vector<std::optional<std::int32_t>> widths;
-};
-
 class Guard : public testing::Test {
  protected:
+  static constexpr std::int32_t quarter = 1 << 30;
+  static constexpr std::uint32_t period_us = 3'000;
+
   Guard() { guard.set_period(period_us); }
 
-  Servo servo;
+  test::ServoRecorder servo;
   ServoGuard guard{servo};
 };
 

@@ -9,21 +9,21 @@ namespace {
 
 using firmware::TickRecord;
 
-constexpr unsigned joints = 6;
+constexpr unsigned gait_joints = 6;
 
 /// Up to four algorithms on groups of joints; at most two of a joint broadcast.
 KernelConfiguration random_gait(std::mt19937& random) {
   KernelConfiguration configuration;
-  configuration.joint_count = joints;
+  configuration.joint_count = gait_joints;
   configuration.seed = random();
   for (Slot& slot : configuration.slots) {
     const ActuationModule& algorithm = algorithm_at(random() % algorithm_count());
-    const JointMask group(random() % (1U << joints));
+    const JointMask group(random() % (1U << gait_joints));
     if (random() % 4 == 0 || group.bits() == 0) {
       continue;
     }
     slot = {&algorithm, group};
-    KernelOf<joints> kernel;
+    KernelOf<gait_joints> kernel;
     if (kernel.configure(configuration, 0) != Status::ok) {
       slot = {};
     }
@@ -69,16 +69,16 @@ TEST(TickRecords, AreTheKernelsForAnyGait) {
   std::size_t max_values = 0;
   for (int run = 0; run < 40; ++run) {
     test::TestRobot robot(random_gait(random));
-    for (unsigned joint = 0; joint < joints; ++joint) {
+    for (unsigned joint = 0; joint < gait_joints; ++joint) {
       EXPECT_EQ(robot.module(joint).last_tick().tick, TickRecord::none);
     }
     robot.drive();
     for (int i = 0; i < 30; ++i) {
-      for (unsigned joint = 0; joint < joints; ++joint) {
+      for (unsigned joint = 0; joint < gait_joints; ++joint) {
         robot.at(joint).sensors = static_cast<std::uint8_t>(random());
       }
       robot.run_syncs(1);
-      for (unsigned joint = 0; joint < joints; ++joint) {
+      for (unsigned joint = 0; joint < gait_joints; ++joint) {
         const TickRecord& record = robot.module(joint).last_tick();
         ASSERT_NO_FATAL_FAILURE(expect_the_kernel(record, robot.kernel(joint), joint));
         ASSERT_EQ(record.tick + 1, robot.kernel(joint).tick());

@@ -15,7 +15,7 @@ namespace {
 
 using Bytes = std::array<std::uint8_t, 8>;
 
-constexpr LssAddress address{0x50524F4C, 0x00000001, 0x00010000, 0x89ABCDEF};
+constexpr LssAddress slave_address{0x50524F4C, 0x00000001, 0x00010000, 0x89ABCDEF};
 
 struct Storage final : LssStorage {
   [[nodiscard]] Result store_node(std::uint8_t node) override {
@@ -30,7 +30,7 @@ class LssSlaveTest : public testing::Test {
  protected:
   /// The answer's data; nothing: there was none.
   std::optional<Bytes> ask(const Bytes& data) {
-    const std::optional<CanFrame> answer = slave.serve({0x7E5, 8, data}, address, node, storage);
+    const std::optional<CanFrame> answer = slave.serve({0x7E5, 8, data}, slave_address, node, storage);
     if (!answer) {
       return std::nullopt;
     }
@@ -186,7 +186,7 @@ TEST_F(LssSlaveTest, FastscanFindsTheAddressBitByBit) {
       EXPECT_TRUE(!answer || *answer == Bytes{0x4F});
       number |= answer ? 0U : std::uint32_t{1} << bit;
     }
-    EXPECT_EQ(number, address.at(sub));
+    EXPECT_EQ(number, slave_address.at(sub));
     EXPECT_FALSE(is_selected());
     EXPECT_EQ(scan(0, static_cast<std::uint8_t>((sub + 1) % 4)), Bytes{0x4F});
   }
@@ -212,9 +212,9 @@ TEST_F(LssSlaveTest, FastscanIsForWaitingSlavesWithoutANodeId) {
 
 TEST_F(LssSlaveTest, FramesThatAreNotOfTheMasterAreIgnored) {
   select();
-  EXPECT_FALSE(slave.serve({0x7E4, 8, {0x5E}}, address, node, storage));
-  EXPECT_FALSE(slave.serve({0x7E5, 7, {0x5E}}, address, node, storage));
-  EXPECT_FALSE(slave.serve({0x7E5, 0, {}}, address, node, storage));
+  EXPECT_FALSE(slave.serve({0x7E4, 8, {0x5E}}, slave_address, node, storage));
+  EXPECT_FALSE(slave.serve({0x7E5, 7, {0x5E}}, slave_address, node, storage));
+  EXPECT_FALSE(slave.serve({0x7E5, 0, {}}, slave_address, node, storage));
 }
 
 TEST_F(LssSlaveTest, ServesTheExamplesOfTheProtocol) {
@@ -225,7 +225,7 @@ TEST_F(LssSlaveTest, ServesTheExamplesOfTheProtocol) {
   const auto serve = [this](const Example& example) {
     EXPECT_TRUE(test::is_documented(example.request)) << example.request;
     EXPECT_TRUE(example.answer.empty() || test::is_documented(example.answer)) << example.answer;
-    const std::optional<CanFrame> answer = slave.serve(test::frame(example.request), address, node, storage);
+    const std::optional<CanFrame> answer = slave.serve(test::frame(example.request), slave_address, node, storage);
     EXPECT_EQ(answer ? test::text(*answer) : "", example.answer);
   };
   serve({"7E5 [8] 51 00 00 00 00 80 00 00", "7E4 [8] 4F 00 00 00 00 00 00 00"});
@@ -248,7 +248,7 @@ TEST_F(LssSlaveTest, AnyBytesLeaveItInAStateThatTheStandardHas) {
     }
     if (i % 2 == 0) {  // a service, often with the slave's own number
       data[0] = static_cast<std::uint8_t>(random() % 0x60);
-      const std::uint32_t number = address.at(random() % 4);
+      const std::uint32_t number = slave_address.at(random() % 4);
       for (unsigned byte = 0; byte < 4; ++byte) {
         data.at(1 + byte) = static_cast<std::uint8_t>(number >> (8 * byte));
       }

@@ -13,7 +13,7 @@
 namespace proleg::canopen {
 namespace {
 
-std::string text(Address address) {
+std::string address_text(Address address) {
   char buffer[16];
   std::snprintf(buffer, sizeof buffer, "%04X:%u", unsigned{address.index}, unsigned{address.sub});
   return buffer;
@@ -89,10 +89,10 @@ TEST(ObjectDictionary, HasTheStandardsObjects) {
   };
   for (const Case& c : cases) {
     const std::optional<Object> object = find_object(c.address);
-    ASSERT_TRUE(object.has_value()) << text(c.address);
-    EXPECT_EQ(object->type, c.type) << text(c.address);
-    EXPECT_EQ(object->access, c.access) << text(c.address);
-    EXPECT_EQ(find_index(c.address.index)->code, c.code) << text(c.address);
+    ASSERT_TRUE(object.has_value()) << address_text(c.address);
+    EXPECT_EQ(object->type, c.type) << address_text(c.address);
+    EXPECT_EQ(object->access, c.access) << address_text(c.address);
+    EXPECT_EQ(find_index(c.address.index)->code, c.code) << address_text(c.address);
   }
 }
 
@@ -117,7 +117,7 @@ TEST(ObjectDictionary, IsEnumeratedInAscendingOrderWithoutGapsInSubIndices) {
   std::map<std::uint16_t, unsigned> subs;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const Address address = objects[i].address;
-    EXPECT_EQ(address.sub, subs[address.index]++) << text(address);
+    EXPECT_EQ(address.sub, subs[address.index]++) << address_text(address);
     if (i > 0) {
       const Address before = objects[i - 1].address;
       EXPECT_LT(before.index << 8U | before.sub, address.index << 8U | address.sub);
@@ -126,7 +126,7 @@ TEST(ObjectDictionary, IsEnumeratedInAscendingOrderWithoutGapsInSubIndices) {
   for (const auto& [index, count] : subs) {
     const std::optional<IndexInfo> info = find_index(index);
     ASSERT_TRUE(info);
-    EXPECT_EQ(info->max_sub + 1U, count) << text({index, 0});
+    EXPECT_EQ(info->max_sub + 1U, count) << address_text({index, 0});
     if (info->code == ObjectCode::variable) {
       EXPECT_EQ(count, 1U);
     } else {
@@ -147,7 +147,7 @@ TEST(ObjectDictionary, IsEnumeratedInAscendingOrderWithoutGapsInSubIndices) {
 TEST(ObjectDictionary, HoldsWhatIsEnumeratedAndNothingElse) {
   std::set<std::string> enumerated;
   for (const Object& object : all_objects()) {
-    enumerated.insert(text(object.address));
+    enumerated.insert(address_text(object.address));
   }
   for (unsigned index = 0; index <= 0xFFFF; ++index) {
     bool any = false;
@@ -157,7 +157,7 @@ TEST(ObjectDictionary, HoldsWhatIsEnumeratedAndNothingElse) {
       any = any || object.has_value();
       if (object) {
         ASSERT_EQ(object->address, address);
-        ASSERT_EQ(enumerated.erase(text(address)), 1U) << text(address);
+        ASSERT_EQ(enumerated.erase(address_text(address)), 1U) << address_text(address);
       }
     }
     ASSERT_EQ(index_exists(static_cast<std::uint16_t>(index)), any) << index;
@@ -167,11 +167,11 @@ TEST(ObjectDictionary, HoldsWhatIsEnumeratedAndNothingElse) {
 
 TEST(ObjectDictionary, DefaultsAreAllowedValues) {
   for (const Object& object : all_objects()) {
-    EXPECT_EQ(check_range(object, object.default_value), AbortCode::none) << text(object.address);
-    EXPECT_EQ(extend(object.type, object.default_value), object.default_value) << text(object.address);
-    EXPECT_FALSE(is_less(object.type, object.minimum, min_value(object.type))) << text(object.address);
-    EXPECT_FALSE(is_less(object.type, max_value(object.type), object.maximum)) << text(object.address);
-    EXPECT_FALSE(is_less(object.type, object.maximum, object.minimum)) << text(object.address);
+    EXPECT_EQ(check_range(object, object.default_value), AbortCode::none) << address_text(object.address);
+    EXPECT_EQ(extend(object.type, object.default_value), object.default_value) << address_text(object.address);
+    EXPECT_FALSE(is_less(object.type, object.minimum, min_value(object.type))) << address_text(object.address);
+    EXPECT_FALSE(is_less(object.type, max_value(object.type), object.maximum)) << address_text(object.address);
+    EXPECT_FALSE(is_less(object.type, object.maximum, object.minimum)) << address_text(object.address);
   }
 }
 
@@ -206,7 +206,8 @@ TEST(ObjectDictionary, RangesAreThoseOfTheSpecification) {
     const Object object = *find_object(c.address);
     const auto expect = [&](const List& values, AbortCode code) {
       for (const std::int64_t value : values) {
-        EXPECT_EQ(check_range(object, static_cast<std::uint32_t>(value)), code) << text(c.address) << " = " << value;
+        EXPECT_EQ(check_range(object, static_cast<std::uint32_t>(value)), code)
+            << address_text(c.address) << " = " << value;
       }
     };
     expect(c.allowed, AbortCode::none);
@@ -223,8 +224,8 @@ TEST(ObjectDictionary, EveryPdoIsMappedToObjectsOfItsLength) {
       const std::uint32_t entry = find_object({mapping, sub})->default_value;
       const Address mapped{static_cast<std::uint16_t>(entry >> 16U), static_cast<std::uint8_t>(entry >> 8U)};
       const std::optional<Object> object = find_object(mapped);
-      EXPECT_TRUE(object.has_value()) << text(mapped);
-      EXPECT_EQ(entry & 0xFFU, object ? 8U * size_of(object->type) : 0U) << text(mapped);
+      EXPECT_TRUE(object.has_value()) << address_text(mapped);
+      EXPECT_EQ(entry & 0xFFU, object ? 8U * size_of(object->type) : 0U) << address_text(mapped);
       bits += entry & 0xFFU;
     }
     return bits;

@@ -11,24 +11,24 @@ namespace {
 using enum PowerState;
 
 /// A row of the standard's command coding: the relevant bits and their values.
-struct Command {
+struct DriveCommand {
   const char* name;
   unsigned mask;
   unsigned value;
 };
 // CiA 402, "Command coding". Bit 7 of a fault reset is looked at apart: its edge counts.
-constexpr Command shutdown{"shutdown", 0x87, 0x06};
-constexpr Command switch_on{"switch on", 0x8F, 0x07};
-constexpr Command enable_operation{"enable operation", 0x8F, 0x0F};
-constexpr Command disable_voltage{"disable voltage", 0x82, 0x00};
-constexpr Command quick_stop{"quick stop", 0x86, 0x02};
-constexpr Command disable_operation{"disable operation", 0x8F, 0x07};
+constexpr DriveCommand shutdown{"shutdown", 0x87, 0x06};
+constexpr DriveCommand switch_on{"switch on", 0x8F, 0x07};
+constexpr DriveCommand enable_operation{"enable operation", 0x8F, 0x0F};
+constexpr DriveCommand disable_voltage{"disable voltage", 0x82, 0x00};
+constexpr DriveCommand quick_stop{"quick stop", 0x86, 0x02};
+constexpr DriveCommand disable_operation{"disable operation", 0x8F, 0x07};
 
 /// A row of the standard's table of transitions.
 struct Transition {
   int number;
   PowerState from;
-  Command command;
+  DriveCommand command;
   PowerState to;
 };
 constexpr Transition transitions[] = {

@@ -16,15 +16,15 @@ namespace {
 
 using test::in_degrees;
 using test::in_radians;
-
-constexpr unsigned joints = 5;
+using test::robot_joints;
 
 class CoupledOscillator : public testing::Test {
  protected:
   void SetUp() override { configure(10'000, 1); }
 
   void configure(std::uint32_t tick_us, std::uint64_t seed) {
-    ASSERT_EQ(kernel.configure(test::one_slot(test::algorithm(test::coupled), joints, tick_us, seed), 0), Status::ok);
+    ASSERT_EQ(kernel.configure(test::one_slot(test::algorithm(test::coupled), robot_joints, tick_us, seed), 0),
+              Status::ok);
   }
 
   [[nodiscard]] std::int32_t value(unsigned joint, std::string_view name) const {
@@ -34,7 +34,7 @@ class CoupledOscillator : public testing::Test {
   /// The model with default parameters in the kernel's present state.
   [[nodiscard]] test::OscillatorModel model() const {
     test::OscillatorModel result;
-    for (unsigned joint = 0; joint < joints; ++joint) {
+    for (unsigned joint = 0; joint < robot_joints; ++joint) {
       result.theta.push_back(in_radians(value(joint, "current_phase")));
       result.r.push_back({in_degrees(value(joint, "current_amplitude")), 0});
       result.x.push_back({in_degrees(value(joint, "current_offset")), 0});
@@ -45,7 +45,7 @@ class CoupledOscillator : public testing::Test {
   /// Largest deviation of a phase difference between neighbours from `wanted`, in degrees.
   [[nodiscard]] double lag_error(double wanted) const {
     double largest = 0;
-    for (unsigned joint = 0; joint + 1 < joints; ++joint) {
+    for (unsigned joint = 0; joint + 1 < robot_joints; ++joint) {
       const std::uint32_t error = static_cast<std::uint32_t>(value(joint + 1, "current_phase")) -
                                   static_cast<std::uint32_t>(value(joint, "current_phase")) -
                                   static_cast<std::uint32_t>(test::phase(wanted));
@@ -54,7 +54,7 @@ class CoupledOscillator : public testing::Test {
     return largest;
   }
 
-  KernelOf<joints> kernel;
+  KernelOf<robot_joints> kernel;
 };
 
 TEST_F(CoupledOscillator, SettlesOnTheClosedForm) {
@@ -66,7 +66,7 @@ TEST_F(CoupledOscillator, SettlesOnTheClosedForm) {
   EXPECT_LE(lag_error(70), 0.02);
   const double start = in_degrees(value(0, "current_phase"));
   for (int tick = 0; tick < 1000; ++tick) {
-    for (unsigned joint = 0; joint < joints; ++joint) {
+    for (unsigned joint = 0; joint < robot_joints; ++joint) {
       const double argument = start + 360 * tick * 0.01 + joint * 70.0;
       ASSERT_NEAR(in_degrees(kernel.setpoint(joint)), 10 + 35 * std::cos(argument * std::numbers::pi / 180), 0.02)
           << "tick " << tick << ", joint " << joint;
@@ -81,9 +81,9 @@ TEST_F(CoupledOscillator, RunsAtItsFrequencyAtEveryStableCoupling) {
     test::set_all(kernel, 0, "coupling", test::per_second(coupling));
     kernel.reset();
     test::run(kernel, 1000);
-    for (unsigned joint = 0; joint < joints; ++joint) {
+    for (unsigned joint = 0; joint < robot_joints; ++joint) {
       EXPECT_NEAR(value(joint, "measured_frequency") / 16777216.0, 1.0, 1e-5) << "coupling " << coupling;
-      EXPECT_NEAR(in_degrees(value(joint, "measured_phase_difference")), joint + 1 < joints ? 55 : 0, 0.02)
+      EXPECT_NEAR(in_degrees(value(joint, "measured_phase_difference")), joint + 1 < robot_joints ? 55 : 0, 0.02)
           << "coupling " << coupling;
     }
   }
@@ -96,7 +96,7 @@ TEST_F(CoupledOscillator, FollowsItsEquationsInDoublePrecisionFromANoisyStart) {
     double largest_phase_error = 0;
     double largest_output_error = 0;
     for (int tick = 0; tick <= 1000; ++tick) {
-      for (unsigned joint = 0; joint < joints; ++joint) {
+      for (unsigned joint = 0; joint < robot_joints; ++joint) {
         const double error = in_radians(value(joint, "current_phase")) - reference.theta[joint];
         largest_phase_error = std::max(largest_phase_error,
                                        std::abs(std::remainder(error, 2 * std::numbers::pi)) * 180 / std::numbers::pi);
@@ -133,7 +133,7 @@ TEST_F(CoupledOscillator, SettlesInTheTimesOfItsSlowestMode) {
       if (lag_error(30) > 0.02 * 180 / std::numbers::pi) {
         ticks = tick;
       }
-      for (unsigned joint = 0; joint + 1 < joints; ++joint) {
+      for (unsigned joint = 0; joint + 1 < robot_joints; ++joint) {
         const double lag = reference.theta[joint + 1] - reference.theta[joint];
         if (std::abs(lag - reference.phase_difference) > 0.02) {
           reference_ticks = tick;
@@ -157,18 +157,19 @@ TEST_F(CoupledOscillator, StaysStableAtTheStrongestCouplingWhateverTheTick) {
 }
 
 TEST_F(CoupledOscillator, StartsTheSameFromTheSameSeedAndDifferentlyFromAnother) {
-  std::array<std::int32_t, joints> first{};
-  for (unsigned joint = 0; joint < joints; ++joint) {
+  std::array<std::int32_t, robot_joints> first{};
+  for (unsigned joint = 0; joint < robot_joints; ++joint) {
     first[joint] = value(joint, "current_phase");
   }
-  EXPECT_EQ(std::set<std::int32_t>(first.begin(), first.end()).size(), joints) << "every joint has noise of its own";
+  EXPECT_EQ(std::set<std::int32_t>(first.begin(), first.end()).size(), robot_joints)
+      << "every joint has noise of its own";
   test::run(kernel, 10);
   kernel.reset();
-  for (unsigned joint = 0; joint < joints; ++joint) {
+  for (unsigned joint = 0; joint < robot_joints; ++joint) {
     EXPECT_EQ(value(joint, "current_phase"), first[joint]);
   }
   configure(10'000, 2);
-  for (unsigned joint = 0; joint < joints; ++joint) {
+  for (unsigned joint = 0; joint < robot_joints; ++joint) {
     EXPECT_NE(value(joint, "current_phase"), first[joint]);
   }
 }
@@ -184,7 +185,7 @@ TEST_F(CoupledOscillator, StartsFromNoiseOfTheDeclaredDeviation) {
         configure(10'000, seed);
         test::set_all(kernel, 0, "noise", test::ratio(level));
         kernel.reset();
-        for (unsigned joint = 0; joint < joints; ++joint) {
+        for (unsigned joint = 0; joint < robot_joints; ++joint) {
           const double sample = in_degrees(kernel.internal_value(0, joint, static_cast<unsigned>(i)));
           sum += sample;
           squares += sample * sample;
@@ -206,7 +207,7 @@ TEST_F(CoupledOscillator, WrapsNoiseOfThePhaseBeyondHalfATurn) {
     configure(10'000, seed);
     test::set_all(kernel, 0, "noise", test::ratio(4));
     kernel.reset();
-    for (unsigned joint = 0; joint < joints; ++joint) {
+    for (unsigned joint = 0; joint < robot_joints; ++joint) {
       at_half_a_turn += std::abs(in_degrees(value(joint, "current_phase"))) > 179.99 ? 1 : 0;
     }
   }
@@ -214,7 +215,7 @@ TEST_F(CoupledOscillator, WrapsNoiseOfThePhaseBeyondHalfATurn) {
 }
 
 TEST_F(CoupledOscillator, CouplesAcrossJointsThatTheGroupLeavesOut) {
-  KernelConfiguration configuration = test::one_slot(test::algorithm(test::coupled), joints);
+  KernelConfiguration configuration = test::one_slot(test::algorithm(test::coupled), robot_joints);
   configuration.slots[0].group = JointMask(0b11001);
   ASSERT_EQ(kernel.configure(configuration, 0), Status::ok);
   test::run(kernel, 1500);

@@ -14,16 +14,15 @@ namespace {
 
 using test::in_degrees;
 using test::ModuleChain;
-
-constexpr unsigned joints = 5;
+using test::robot_joints;
 
 KernelConfiguration configuration_of(std::string_view algorithm) {
-  return test::one_slot(test::algorithm(algorithm), joints);
+  return test::one_slot(test::algorithm(algorithm), robot_joints);
 }
 
 double lag_error(ModuleChain& chain) {
   double largest = 0;
-  for (unsigned joint = 0; joint + 1 < joints; ++joint) {
+  for (unsigned joint = 0; joint + 1 < robot_joints; ++joint) {
     const std::uint32_t error =
         static_cast<std::uint32_t>(test::value(chain[joint + 1], 0, joint + 1, "current_phase")) -
         static_cast<std::uint32_t>(test::value(chain[joint], 0, joint, "current_phase")) -
@@ -132,7 +131,7 @@ TEST(LostFrame, ChangesTheCoupledGaitWhileItSettles) {
     losing.exchange([&](unsigned sender, unsigned receiver) { return tick == 20 && sender == 1 && receiver == 2; });
     losing.advance();
     complete.tick();
-    for (unsigned joint = 0; joint < joints; ++joint) {
+    for (unsigned joint = 0; joint < robot_joints; ++joint) {
       differs = differs || losing[joint].setpoint(joint) != complete[joint].setpoint(joint);
     }
   }
@@ -142,7 +141,7 @@ TEST(LostFrame, ChangesTheCoupledGaitWhileItSettles) {
 // A harmonic's phase runs at a multiple of the frequency, and so it is extrapolated.
 TEST(LostFrame, IsExtrapolatedExactlyForAHarmonic) {
   ModuleChain chain(configuration_of(test::extended));
-  for (unsigned joint = 0; joint < joints; ++joint) {
+  for (unsigned joint = 0; joint < robot_joints; ++joint) {
     test::set(chain[joint], 0, joint, "harmonic", 3);
   }
   chain.reset();

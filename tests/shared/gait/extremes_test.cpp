@@ -11,10 +11,10 @@
 namespace proleg {
 namespace {
 
-constexpr unsigned joints = 3;
-
 class EveryAlgorithm : public testing::TestWithParam<std::size_t> {
  protected:
+  static constexpr unsigned joints = 3;
+
   [[nodiscard]] static const ActuationModule& algorithm() { return algorithm_at(GetParam()); }
 };
 

@@ -13,8 +13,8 @@
 namespace proleg {
 namespace {
 
-constexpr unsigned joints = 5;
-constexpr unsigned links = joints + 1;
+using test::robot_joints;
+using test::robot_links;
 
 constexpr InternalValue internal_values[] = {{"seen", Unit::count, 0, "two bits a link, head first"}};
 constexpr Declaration about{120, "ContactProbe", "test", {}, internal_values, {}};
@@ -30,15 +30,15 @@ class ContactProbe final : public SensingModule {
  private:
   void advance_sensing(const Contacts& contacts, const Surroundings& /*surroundings*/, const Tuning& /*tuning*/,
                        const std::int32_t* /*state*/, std::int32_t* next) const override {
-    EXPECT_EQ(contacts.link_count(), links);
+    EXPECT_EQ(contacts.link_count(), robot_links);
     next[0] = 0;
-    for (unsigned link = 0; link < links; ++link) {
+    for (unsigned link = 0; link < robot_links; ++link) {
       const bool rear = contacts.pressed(link, TouchSensor::rear);
       const bool front = contacts.pressed(link, TouchSensor::front);
       EXPECT_EQ(contacts.pressed(link), rear || front);
       next[0] |= (rear ? 1 : 0) << (2 * link) | (front ? 2 : 0) << (2 * link);
     }
-    EXPECT_FALSE(contacts.pressed(links, TouchSensor::rear));
+    EXPECT_FALSE(contacts.pressed(robot_links, TouchSensor::rear));
   }
 };
 
@@ -53,22 +53,22 @@ std::uint8_t reported(std::uint32_t bitmap, unsigned joint) {
 
 // protocol.md: state k + 1 comes from contacts c[k - 1], for everyone, the own contacts included.
 TEST(SensingModule, SeesTheContactsOfAllLinksOneTickOldItsOwnIncluded) {
-  const KernelConfiguration configuration = test::one_slot(probe, joints);
-  KernelOf<joints> whole;
+  const KernelConfiguration configuration = test::one_slot(probe, robot_joints);
+  KernelOf<robot_joints> whole;
   ASSERT_EQ(whole.configure(configuration, 0), Status::ok);
   test::ModuleChain chain(configuration);
   std::mt19937 random(12);
   std::uint32_t previous = 0;
   for (int tick = 0; tick < 200; ++tick) {
-    const std::uint32_t contacts = random() % (1U << (2 * links));
+    const std::uint32_t contacts = random() % (1U << (2 * robot_links));
     chain.exchange();
-    for (unsigned joint = 0; joint < joints; ++joint) {
+    for (unsigned joint = 0; joint < robot_joints; ++joint) {
       whole.set_contacts(joint, reported(contacts, joint));
       chain[joint].set_contacts(joint, reported(contacts, joint));
     }
     whole.advance();
     chain.advance();
-    for (unsigned joint = 0; joint < joints; ++joint) {
+    for (unsigned joint = 0; joint < robot_joints; ++joint) {
       ASSERT_EQ(static_cast<std::uint32_t>(whole.internal_value(0, joint, 0)), previous) << "tick " << tick;
       ASSERT_EQ(static_cast<std::uint32_t>(chain[joint].internal_value(0, joint, 0)), previous) << "tick " << tick;
     }
@@ -77,7 +77,7 @@ TEST(SensingModule, SeesTheContactsOfAllLinksOneTickOldItsOwnIncluded) {
 }
 
 TEST(SensingModule, KeepsTheLastContactsOfAJointWhoseFrameIsLost) {
-  test::ModuleChain chain(test::one_slot(probe, joints));
+  test::ModuleChain chain(test::one_slot(probe, robot_joints));
   chain[3].set_contacts(3, StateFrame::contact_rear_link_front);
   chain.tick();
   chain[3].set_contacts(3, 0);
@@ -90,8 +90,8 @@ TEST(SensingModule, KeepsTheLastContactsOfAJointWhoseFrameIsLost) {
 }
 
 TEST(SensingModule, SeesNoContactOfAJointItNeverHeard) {
-  test::ModuleChain chain(test::one_slot(probe, joints));
-  for (unsigned joint = 0; joint < joints; ++joint) {
+  test::ModuleChain chain(test::one_slot(probe, robot_joints));
+  for (unsigned joint = 0; joint < robot_joints; ++joint) {
     chain[joint].set_contacts(joint, 3);
   }
   for (int tick = 0; tick < 3; ++tick) {
@@ -102,8 +102,8 @@ TEST(SensingModule, SeesNoContactOfAJointItNeverHeard) {
 }
 
 TEST(SensingModule, SeesNoContactFromBeforeAReset) {
-  KernelOf<joints> kernel;
-  ASSERT_EQ(kernel.configure(test::one_slot(probe, joints), 0), Status::ok);
+  KernelOf<robot_joints> kernel;
+  ASSERT_EQ(kernel.configure(test::one_slot(probe, robot_joints), 0), Status::ok);
   kernel.set_contacts(1, 3);
   test::run(kernel, 2);
   EXPECT_EQ(kernel.internal_value(0, 0, 0), 3 << 4);
@@ -113,8 +113,8 @@ TEST(SensingModule, SeesNoContactFromBeforeAReset) {
 }
 
 TEST(SensingModule, IgnoresBitsThatAreNoContacts) {
-  KernelOf<joints> kernel;
-  ASSERT_EQ(kernel.configure(test::one_slot(probe, joints), 0), Status::ok);
+  KernelOf<robot_joints> kernel;
+  ASSERT_EQ(kernel.configure(test::one_slot(probe, robot_joints), 0), Status::ok);
   kernel.set_contacts(1, 0xF1);
   kernel.advance();
   EXPECT_EQ(kernel.frame(1, 0).flags(), StateFrame::valid | StateFrame::contact_rear_link_rear);

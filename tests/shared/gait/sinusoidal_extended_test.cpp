@@ -11,25 +11,24 @@ namespace proleg {
 namespace {
 
 using test::in_degrees;
-
-constexpr unsigned joints = 5;
+using test::robot_joints;
 
 class SinusoidalExtended : public testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_EQ(kernel.configure(test::one_slot(test::algorithm(test::extended), joints), 0), Status::ok);
+    ASSERT_EQ(kernel.configure(test::one_slot(test::algorithm(test::extended), robot_joints), 0), Status::ok);
   }
 
   [[nodiscard]] std::int32_t value(unsigned joint, std::string_view name) const {
     return test::value(kernel, 0, joint, name);
   }
 
-  KernelOf<joints> kernel;
+  KernelOf<robot_joints> kernel;
 };
 
 TEST_F(SinusoidalExtended, EqualsThePlainSinusoidalToTheLastBitOnceItHasSettled) {
-  KernelOf<joints> plain;
-  ASSERT_EQ(plain.configure(test::one_slot(test::algorithm(test::sinusoidal), joints), 0), Status::ok);
+  KernelOf<robot_joints> plain;
+  ASSERT_EQ(plain.configure(test::one_slot(test::algorithm(test::sinusoidal), robot_joints), 0), Status::ok);
   for (Kernel* each : {static_cast<Kernel*>(&kernel), static_cast<Kernel*>(&plain)}) {
     test::set_all(*each, 0, "amplitude", test::degrees(33.3));
     test::set_all(*each, 0, "frequency", test::hertz(0.77));
@@ -40,7 +39,7 @@ TEST_F(SinusoidalExtended, EqualsThePlainSinusoidalToTheLastBitOnceItHasSettled)
     test::run(*each, 400);
   }
   for (int tick = 400; tick < 1000; ++tick) {
-    for (unsigned joint = 0; joint < joints; ++joint) {
+    for (unsigned joint = 0; joint < robot_joints; ++joint) {
       ASSERT_EQ(kernel.setpoint(joint), plain.setpoint(joint)) << "tick " << tick;
       ASSERT_EQ(value(joint, "current_phase"), test::value(plain, 0, joint, "current_phase")) << "tick " << tick;
     }
@@ -50,7 +49,7 @@ TEST_F(SinusoidalExtended, EqualsThePlainSinusoidalToTheLastBitOnceItHasSettled)
 }
 
 TEST_F(SinusoidalExtended, StartsFromRest) {
-  for (unsigned joint = 0; joint < joints; ++joint) {
+  for (unsigned joint = 0; joint < robot_joints; ++joint) {
     EXPECT_EQ(kernel.setpoint(joint), 0);
   }
 }
@@ -99,8 +98,8 @@ TEST_F(SinusoidalExtended, NeverOvershootsItsAmplitude) {
 
 /// Largest change of a set-point over a tick around a change of frequency from 0.5 to 1.5 Hz after 5.13 s.
 double largest_step_around_a_frequency_change(std::string_view algorithm) {
-  KernelOf<joints> kernel;
-  EXPECT_EQ(kernel.configure(test::one_slot(test::algorithm(algorithm), joints), 0), Status::ok);
+  KernelOf<robot_joints> kernel;
+  EXPECT_EQ(kernel.configure(test::one_slot(test::algorithm(algorithm), robot_joints), 0), Status::ok);
   test::set_all(kernel, 0, "frequency", test::hertz(0.5));
   kernel.reset();
   test::run(kernel, 500);
@@ -108,7 +107,7 @@ double largest_step_around_a_frequency_change(std::string_view algorithm) {
   double largest = 0;
   for (int tick = 500; tick < 600; ++tick) {
     kernel.advance();
-    for (unsigned joint = 0; joint < joints; ++joint) {
+    for (unsigned joint = 0; joint < robot_joints; ++joint) {
       largest =
           std::max(largest, std::abs(in_degrees(kernel.setpoint(joint)) - in_degrees(kernel.previous_setpoint(joint))));
     }
@@ -149,13 +148,13 @@ TEST_F(SinusoidalExtended, ShiftsItsPhaseByHalfATurnUpwards) {
 }
 
 TEST_F(SinusoidalExtended, OscillatesAtAWholeMultipleOfTheFrequency) {
-  for (unsigned joint = 0; joint < joints; ++joint) {
+  for (unsigned joint = 0; joint < robot_joints; ++joint) {
     test::set(kernel, 0, joint, "harmonic", static_cast<std::int32_t>(joint) + 1);
   }
   kernel.reset();
   test::run(kernel, 400);
   for (int tick = 400; tick < 600; ++tick) {
-    for (unsigned joint = 0; joint < joints; ++joint) {
+    for (unsigned joint = 0; joint < robot_joints; ++joint) {
       const double angle = 40 * std::sin(2 * std::numbers::pi * ((joint + 1) * 1.0 * tick * 0.01 + joint * 55.0 / 360));
       ASSERT_NEAR(in_degrees(kernel.setpoint(joint)), angle, 1e-3) << "tick " << tick << ", joint " << joint;
       ASSERT_NEAR(value(joint, "measured_frequency") / 16777216.0, joint + 1.0, 1e-5);
@@ -165,16 +164,16 @@ TEST_F(SinusoidalExtended, OscillatesAtAWholeMultipleOfTheFrequency) {
 }
 
 TEST_F(SinusoidalExtended, StartsWithoutNoiseUnlessAskedForIt) {
-  for (unsigned joint = 0; joint < joints; ++joint) {
+  for (unsigned joint = 0; joint < robot_joints; ++joint) {
     EXPECT_EQ(value(joint, "current_amplitude"), 0);
   }
   test::set_all(kernel, 0, "noise", test::ratio(1));
   kernel.reset();
   int noisy = 0;
-  for (unsigned joint = 0; joint < joints; ++joint) {
+  for (unsigned joint = 0; joint < robot_joints; ++joint) {
     noisy += value(joint, "current_amplitude") != 0 && value(joint, "current_offset") != 0 ? 1 : 0;
   }
-  EXPECT_EQ(noisy, static_cast<int>(joints));
+  EXPECT_EQ(noisy, static_cast<int>(robot_joints));
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 namespace proleg {
 namespace {
 
-constexpr unsigned joints = 5;
-constexpr unsigned links = joints + 1;
+using test::robot_joints;
+using test::robot_links;
 
 /// Two bits a link, head first: rear sensor, front sensor.
 template <std::size_t JointCount>
@@ -27,7 +27,7 @@ void touch(KernelOf<JointCount>& kernel, std::uint64_t sensors) {
 /// One bit a link, head first, to the sensors' bits; either sensor in turn, so that each counts.
 std::uint64_t by_alternating_sensors(unsigned touched) {
   std::uint64_t sensors = 0;
-  for (unsigned link = 0; link < links; ++link) {
+  for (unsigned link = 0; link < robot_links; ++link) {
     sensors |= std::uint64_t{(touched >> link) & 1U} << (2 * link + link % 2);
   }
   return sensors;
@@ -35,8 +35,8 @@ std::uint64_t by_alternating_sensors(unsigned touched) {
 
 /// The declared condition by its words: a pair of touched links at most `reach` places apart.
 bool is_uneven(unsigned touched, unsigned reach) {
-  for (unsigned a = 0; a < links; ++a) {
-    for (unsigned b = a + 1; b < links; ++b) {
+  for (unsigned a = 0; a < robot_links; ++a) {
+    for (unsigned b = a + 1; b < robot_links; ++b) {
       if (((touched >> a) & (touched >> b) & 1U) != 0 && b - a <= reach) {
         return true;
       }
@@ -46,7 +46,7 @@ bool is_uneven(unsigned touched, unsigned reach) {
 }
 
 void configure(Kernel& kernel, std::uint32_t tick_us = 10'000) {
-  ASSERT_EQ(kernel.configure(test::one_slot(test::algorithm(test::reflex), joints, tick_us), 0), Status::ok);
+  ASSERT_EQ(kernel.configure(test::one_slot(test::algorithm(test::reflex), robot_joints, tick_us), 0), Status::ok);
 }
 
 double offset(const Kernel& kernel, unsigned joint = 2) {
@@ -60,14 +60,14 @@ constexpr unsigned flat = 0b100001;    // head and tail
 constexpr unsigned uneven = 0b000101;  // head, and the second link behind it
 
 TEST(UnevenGroundReflex, ActsOnExactlyThosePatternsOfTouchedLinksInWhichTwoAreWithinReach) {
-  for (unsigned reach = 0; reach <= links; ++reach) {
-    for (unsigned touched = 0; touched < 1U << links; ++touched) {
-      KernelOf<joints> kernel;
+  for (unsigned reach = 0; reach <= robot_links; ++reach) {
+    for (unsigned touched = 0; touched < 1U << robot_links; ++touched) {
+      KernelOf<robot_joints> kernel;
       configure(kernel);
       test::set_all(kernel, 0, "reach", static_cast<std::int32_t>(reach));
       touch(kernel, by_alternating_sensors(touched));
       test::run(kernel, until_it_acts);
-      for (unsigned joint = 0; joint < joints; ++joint) {
+      for (unsigned joint = 0; joint < robot_joints; ++joint) {
         ASSERT_EQ(kernel.setpoint(joint) > 0, is_uneven(touched, reach)) << "reach " << reach << " links " << touched;
       }
     }
@@ -75,12 +75,12 @@ TEST(UnevenGroundReflex, ActsOnExactlyThosePatternsOfTouchedLinksInWhichTwoAreWi
 }
 
 TEST(UnevenGroundReflex, TakesALinkAsTouchedByEitherOfItsSensors) {
-  for (unsigned sensors = 0; sensors < 1U << (2 * links); ++sensors) {
+  for (unsigned sensors = 0; sensors < 1U << (2 * robot_links); ++sensors) {
     unsigned touched = 0;
-    for (unsigned link = 0; link < links; ++link) {
+    for (unsigned link = 0; link < robot_links; ++link) {
       touched |= ((sensors >> (2 * link)) & 3U) != 0 ? 1U << link : 0U;
     }
-    KernelOf<joints> kernel;
+    KernelOf<robot_joints> kernel;
     configure(kernel);
     touch(kernel, sensors);
     test::run(kernel, until_it_acts);
@@ -112,7 +112,7 @@ TEST(UnevenGroundReflex, HeedsEveryLinkOfTheLongestRobot) {
 TEST(UnevenGroundReflex, WaitsUntilTheSignHasLastedForTheTicksOfConfirm) {
   for (int confirm = 1; confirm <= 6; ++confirm) {
     for (unsigned lasts = 1; lasts <= 8; ++lasts) {
-      KernelOf<joints> kernel;
+      KernelOf<robot_joints> kernel;
       configure(kernel);
       test::set_all(kernel, 0, "confirm", confirm);
       kernel.reset();
@@ -161,7 +161,7 @@ TEST(UnevenGroundReflex, FollowsItsDescriptionInDoublePrecision) {
                 .dt = tick_us * 1e-6,
                 .confirm = static_cast<int>(1 + random() % 4),
                 .hold = static_cast<int>(random() % 200)};
-    KernelOf<joints> kernel;
+    KernelOf<robot_joints> kernel;
     configure(kernel, tick_us);
     test::set_all(kernel, 0, "raise", test::degrees(model.raise));
     test::set_all(kernel, 0, "rise_rate", test::degrees(model.rise_rate));
@@ -174,7 +174,7 @@ TEST(UnevenGroundReflex, FollowsItsDescriptionInDoublePrecision) {
     for (int tick = 0; tick < 2000; ++tick) {
       // Long rests, and sequences that change at almost every tick.
       if (random() % (tick % 400 < 100 ? 2 : 150) == 0) {
-        touched = random() % 2 == 0 ? static_cast<unsigned>(random() % (1U << links)) : flat;
+        touched = random() % 2 == 0 ? static_cast<unsigned>(random() % (1U << robot_links)) : flat;
       }
       touch(kernel, by_alternating_sensors(touched));
       kernel.advance();
@@ -190,14 +190,14 @@ TEST(UnevenGroundReflex, WithoutRaiseOrReachItsAngleIsAlwaysZero) {
   constexpr unsigned seed = 5;
   std::mt19937 random(seed);
   for (const char* constant : {"raise", "reach"}) {
-    KernelOf<joints> kernel;
+    KernelOf<robot_joints> kernel;
     configure(kernel);
     test::set_all(kernel, 0, constant, 0);
     kernel.reset();
     for (int tick = 0; tick < 3000; ++tick) {
-      touch(kernel, random() % (1U << (2 * links)));
+      touch(kernel, random() % (1U << (2 * robot_links)));
       kernel.advance();
-      for (unsigned joint = 0; joint < joints; ++joint) {
+      for (unsigned joint = 0; joint < robot_joints; ++joint) {
         ASSERT_EQ(kernel.setpoint(joint), 0) << constant << ", seed " << seed << " tick " << tick;
       }
     }
@@ -206,12 +206,12 @@ TEST(UnevenGroundReflex, WithoutRaiseOrReachItsAngleIsAlwaysZero) {
 
 TEST(UnevenGroundReflex, StopsAtItsAngleAndStaysThereWhileTheSensorsAreFrozen) {
   for (const double raise : {-90.0, -10.0, 10.0, 90.0}) {
-    KernelOf<joints> kernel;
+    KernelOf<robot_joints> kernel;
     configure(kernel, 100'000);
     test::set_all(kernel, 0, "raise", test::degrees(raise));
     test::set_all(kernel, 0, "rise_rate", quarter_turn);
     kernel.reset();
-    touch(kernel, (1U << (2 * links)) - 1);
+    touch(kernel, (1U << (2 * robot_links)) - 1);
     std::int32_t before = 0;
     for (int tick = 0; tick < 10'000; ++tick) {
       kernel.advance();
@@ -226,7 +226,7 @@ TEST(UnevenGroundReflex, StopsAtItsAngleAndStaysThereWhileTheSensorsAreFrozen) {
 
 TEST(UnevenGroundReflex, ReturnsToExactlyZeroOnceTheSensorsAreReleased) {
   for (const unsigned released : {0U, flat}) {
-    KernelOf<joints> kernel;
+    KernelOf<robot_joints> kernel;
     configure(kernel);
     touch(kernel, by_alternating_sensors(uneven));
     test::run(kernel, 300);
@@ -238,7 +238,7 @@ TEST(UnevenGroundReflex, ReturnsToExactlyZeroOnceTheSensorsAreReleased) {
     EXPECT_NEAR(offset(kernel), 0, 1e-4) << "10 degrees at 20 degrees in a second";
     test::run(kernel, 1);
     for (int tick = 0; tick < 1000; ++tick) {
-      for (unsigned joint = 0; joint < joints; ++joint) {
+      for (unsigned joint = 0; joint < robot_joints; ++joint) {
         ASSERT_EQ(kernel.setpoint(joint), 0);
       }
       kernel.advance();
@@ -247,21 +247,21 @@ TEST(UnevenGroundReflex, ReturnsToExactlyZeroOnceTheSensorsAreReleased) {
 }
 
 TEST(UnevenGroundReflex, RaisesEachJointToItsOwnAngle) {
-  KernelOf<joints> kernel;
+  KernelOf<robot_joints> kernel;
   configure(kernel);
-  for (unsigned joint = 0; joint < joints; ++joint) {
+  for (unsigned joint = 0; joint < robot_joints; ++joint) {
     test::set(kernel, 0, joint, "raise", test::degrees(5.0 * joint - 10));
   }
   kernel.reset();
   touch(kernel, by_alternating_sensors(uneven));
   test::run(kernel, 100);
-  for (unsigned joint = 0; joint < joints; ++joint) {
+  for (unsigned joint = 0; joint < robot_joints; ++joint) {
     EXPECT_EQ(kernel.setpoint(joint), test::degrees(5.0 * joint - 10));
   }
 }
 
 TEST(UnevenGroundReflex, FollowsConstantsThatChangeInFlight) {
-  KernelOf<joints> kernel;
+  KernelOf<robot_joints> kernel;
   configure(kernel);
   touch(kernel, by_alternating_sensors(uneven));
   test::run(kernel, 100);
@@ -285,7 +285,7 @@ TEST(UnevenGroundReflex, RecoversFromCountersThatCannotBe) {
     for (const std::int32_t extreme :
          {std::numeric_limits<std::int32_t>::min(), -1, counter.most + 1, std::numeric_limits<std::int32_t>::max()}) {
       for (const unsigned touched : {flat, uneven}) {
-        KernelOf<joints> kernel;
+        KernelOf<robot_joints> kernel;
         configure(kernel);
         touch(kernel, by_alternating_sensors(touched));
         test::run(kernel, 5);
@@ -301,11 +301,11 @@ TEST(UnevenGroundReflex, RecoversFromCountersThatCannotBe) {
 }
 
 TEST(UnevenGroundReflex, LeavesTheGaitOfAnotherSlotAsItIsWhileTheGroundIsFlat) {
-  KernelConfiguration configuration = test::one_slot(test::algorithm(test::sinusoidal), joints);
-  KernelOf<joints> plain;
+  KernelConfiguration configuration = test::one_slot(test::algorithm(test::sinusoidal), robot_joints);
+  KernelOf<robot_joints> plain;
   ASSERT_EQ(plain.configure(configuration, 0), Status::ok);
-  configuration.slots[1] = {&test::algorithm(test::reflex), JointMask::first(joints)};
-  KernelOf<joints> kernel;
+  configuration.slots[1] = {&test::algorithm(test::reflex), JointMask::first(robot_joints)};
+  KernelOf<robot_joints> kernel;
   ASSERT_EQ(kernel.configure(configuration, 0), Status::ok);
   for (unsigned tick = 0; tick < 500; ++tick) {
     if (tick == 300) {
@@ -314,7 +314,7 @@ TEST(UnevenGroundReflex, LeavesTheGaitOfAnotherSlotAsItIsWhileTheGroundIsFlat) {
     plain.advance();
     kernel.advance();
     const double raised = std::clamp((static_cast<int>(tick) - 301) * 0.6, 0.0, 10.0);
-    for (unsigned joint = 0; joint < joints; ++joint) {
+    for (unsigned joint = 0; joint < robot_joints; ++joint) {
       ASSERT_NEAR(test::in_degrees(kernel.setpoint(joint) - plain.setpoint(joint)), raised, tick < 302 ? 0.0 : 1e-5)
           << "tick " << tick;
       ASSERT_EQ(kernel.channel_count(joint), 1U) << "it has nothing to say to its neighbours";

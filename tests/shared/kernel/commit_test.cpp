@@ -7,10 +7,10 @@
 namespace proleg {
 namespace {
 
-constexpr unsigned joints = 3;
-
 class Commit : public testing::Test {
  protected:
+  static constexpr unsigned joints = 3;
+
   void SetUp() override {
     ASSERT_EQ(kernel.configure(test::one_slot(test::algorithm(test::sinusoidal), joints), 0), Status::ok);
     ASSERT_EQ(reference.configure(kernel.configuration(), 0), Status::ok);
@@ -173,6 +173,7 @@ TEST_F(Staging, GivesTheStagedValues) {
 }
 
 TEST(StagingRoom, IsLimitedForEachJointAndARefusalKeepsWhatIsThere) {
+  constexpr unsigned joints = 3;
   KernelOf<joints> kernel;
   ASSERT_EQ(kernel.configure(test::one_slot(test::algorithm(test::coupled), joints), 0), Status::ok);
   const Declaration& about = kernel.configuration().slots[0].algorithm->declaration();

@@ -9,11 +9,10 @@
 namespace proleg {
 namespace {
 
-constexpr unsigned joints = 5;
-
 /// Runs a chain and, beside it, the same chain of which one module restarts at `lost` and joins at `joined`.
 class Join : public testing::TestWithParam<unsigned> {
  protected:
+  static constexpr unsigned joints = 5;
   static constexpr std::uint32_t lost = 300;
   static constexpr std::uint32_t joined = 340;
 

@@ -14,8 +14,6 @@
 namespace proleg {
 namespace {
 
-constexpr unsigned joint = 2;
-
 /// "183 [8] 8E E3 ...", as candump writes a frame.
 std::string as_text(const char* identifier, const StateFrame& frame) {
   std::string text = std::string(identifier) + " [8]";
@@ -39,6 +37,7 @@ bool documentation_has_line(const std::string& text) {
 }
 
 TEST(ProtocolExample, StateFramesOfTick300AreThoseOfTheDocumentation) {
+  constexpr unsigned joint = 2;
   KernelOf<1> kernel;
   KernelConfiguration configuration;
   configuration.joint_count = 5;

@@ -8,10 +8,10 @@
 namespace proleg {
 namespace {
 
-constexpr unsigned joints = 4;
-
 class Slots : public testing::Test {
  protected:
+  static constexpr unsigned joints = 4;
+
   /// Slots of direct angles on the given groups.
   void direct_access_on(std::initializer_list<std::uint64_t> groups) {
     KernelConfiguration configuration;

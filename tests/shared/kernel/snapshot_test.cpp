@@ -13,18 +13,18 @@
 namespace proleg {
 namespace {
 
-constexpr unsigned joints = 5;
-
-KernelConfiguration two_slots() {
-  KernelConfiguration configuration = test::one_slot(test::algorithm(test::coupled), joints, 10'000, 77);
-  configuration.slots[2] = {&test::algorithm(test::extended), JointMask(0b01101)};
-  return configuration;
-}
-
 std::vector<std::uint8_t> saved(const Kernel& kernel) { return KernelSnapshot::save(kernel); }
 
 class Snapshot : public testing::Test {
  protected:
+  static constexpr unsigned joints = 5;
+
+  static KernelConfiguration two_slots() {
+    KernelConfiguration configuration = test::one_slot(test::algorithm(test::coupled), joints, 10'000, 77);
+    configuration.slots[2] = {&test::algorithm(test::extended), JointMask(0b01101)};
+    return configuration;
+  }
+
   void SetUp() override {
     ASSERT_EQ(kernel.configure(two_slots(), 0), Status::ok);
     test::set_all(kernel, 0, "amplitude", test::degrees(31.25));

@@ -23,12 +23,13 @@ namespace {
 
 using sim::BusTime;
 
-constexpr BusTime us = 1'000;
 constexpr std::uint32_t vendor = 0x50524F4C;
 constexpr std::uint32_t revision = 0x00010000;
 
 class LssMasterTest : public testing::Test, sim::BusListener {
  protected:
+  static constexpr BusTime us = 1'000;
+
   LssMasterTest() : controller_(bus.attach(*this)) {}
 
   SlaveNode& add(const LssAddress& address) {

@@ -14,13 +14,14 @@ namespace proleg::canopen {
 namespace {
 
 using sim::BusTime;
-using State = LssRenumbering::State;
-
-constexpr BusTime us = 1'000;
-constexpr LssAddress address_of(std::uint32_t serial) { return {0x50524F4C, 1, 0x00010000, serial}; }
 
 class LssRenumberingTest : public testing::Test, sim::BusListener {
  protected:
+  using State = LssRenumbering::State;
+  static constexpr BusTime us = 1'000;
+
+  static constexpr LssAddress address_of(std::uint32_t serial) { return {0x50524F4C, 1, 0x00010000, serial}; }
+
   LssRenumberingTest() : controller_(bus.attach(*this)) {}
 
   SlaveNode& add(std::uint32_t serial, std::uint8_t node) {

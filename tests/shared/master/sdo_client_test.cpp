@@ -8,15 +8,14 @@ namespace proleg::canopen {
 namespace {
 
 using test::frame;
-using State = SdoClient::State;
 
 constexpr Address period{0x1006, 0};
 
 TEST(SdoClient, SendsTheRequestsOfTheStandard) {
   SdoClient client;
-  EXPECT_EQ(client.state(), State::idle);
+  EXPECT_EQ(client.state(), SdoClient::State::idle);
   EXPECT_EQ(client.read(0, 3, {0x6041, 0}), frame("603 [8] 40 41 60 00 00 00 00 00"));
-  EXPECT_EQ(client.state(), State::waiting);
+  EXPECT_EQ(client.state(), SdoClient::State::waiting);
   EXPECT_EQ(client.write(0, 3, {0x2001, 1}, 1, 5), frame("603 [8] 2F 01 20 01 05 00 00 00"));
   EXPECT_EQ(client.write(0, 3, {0x6060, 0}, 1, 0xFFFFFFFF), frame("603 [8] 2F 60 60 00 FF 00 00 00"));
   EXPECT_EQ(client.write(0, 3, {0x1017, 0}, 2, 100), frame("603 [8] 2B 17 10 00 64 00 00 00"));
@@ -43,14 +42,14 @@ TEST(SdoClient, ReadsEveryEntryAndWritesEveryOneThatCanBeWritten) {
     const std::uint32_t value = random() % 2 == 0 ? object.minimum : object.maximum;
     ASSERT_TRUE(exchange(client.write(0, node, object.address, size, value)));
     if (object.access == Access::read_write) {
-      ASSERT_EQ(client.state(), State::done) << object.name;
+      ASSERT_EQ(client.state(), SdoClient::State::done) << object.name;
     } else {
-      ASSERT_EQ(client.state(), State::aborted) << object.name;
+      ASSERT_EQ(client.state(), SdoClient::State::aborted) << object.name;
       ASSERT_EQ(client.abort_code(),
                 object.access == Access::by_pdo ? AbortCode::unsupported_access : AbortCode::read_only);
     }
     ASSERT_TRUE(exchange(client.read(0, node, object.address)));
-    ASSERT_EQ(client.state(), State::done) << object.name;
+    ASSERT_EQ(client.state(), SdoClient::State::done) << object.name;
     ASSERT_EQ(client.size(), size) << object.name;
     const std::uint32_t known =
         fixed_value(object, node).value_or(object.access == Access::read_write ? value : object.default_value);
@@ -63,7 +62,7 @@ TEST(SdoClient, ReportsAnAbortWithItsCode) {
   SdoClient client;
   static_cast<void>(client.read(0, 3, period));
   EXPECT_TRUE(client.receive(frame("583 [8] 80 06 10 00 22 00 00 08")));
-  EXPECT_EQ(client.state(), State::aborted);
+  EXPECT_EQ(client.state(), SdoClient::State::aborted);
   EXPECT_EQ(client.abort_code(), AbortCode::refused_by_state);
 }
 
@@ -73,13 +72,13 @@ TEST(SdoClient, GivesUpWhenItsTimeIsOver) {
   static_cast<void>(client.write(1'000, 3, period, 4, 10'000, 250));
   EXPECT_EQ(client.next_deadline(), 1'250U);
   client.poll(1'249);
-  EXPECT_EQ(client.state(), State::waiting);
+  EXPECT_EQ(client.state(), SdoClient::State::waiting);
   client.poll(1'250);
-  EXPECT_EQ(client.state(), State::aborted);
+  EXPECT_EQ(client.state(), SdoClient::State::aborted);
   EXPECT_EQ(client.abort_code(), AbortCode::timeout);
   EXPECT_EQ(client.next_deadline(), never);
   EXPECT_FALSE(client.receive(frame("583 [8] 60 06 10 00 00 00 00 00"))) << "too late";
-  EXPECT_EQ(client.state(), State::aborted);
+  EXPECT_EQ(client.state(), SdoClient::State::aborted);
 }
 
 TEST(SdoClient, PassesOverWhatIsNotTheAnswer) {
@@ -96,7 +95,7 @@ TEST(SdoClient, PassesOverWhatIsNotTheAnswer) {
            "583 [8] 00 06 10 00 00 00 00 00",  // a segment
        }) {
     EXPECT_FALSE(client.receive(frame(foreign))) << foreign;
-    EXPECT_EQ(client.state(), State::waiting) << foreign;
+    EXPECT_EQ(client.state(), SdoClient::State::waiting) << foreign;
   }
   EXPECT_TRUE(client.receive(frame("583 [8] 43 06 10 00 10 27 00 00")));
   EXPECT_EQ(client.value(), 10'000U);
@@ -106,7 +105,7 @@ TEST(SdoClient, PassesOverWhatIsNotTheAnswer) {
   static_cast<void>(client.write(0, 3, period, 4, 10'000));
   EXPECT_FALSE(client.receive(frame("583 [8] 43 06 10 00 10 27 00 00"))) << "of a read that was given up";
   EXPECT_TRUE(client.receive(frame("583 [8] 60 06 10 00 00 00 00 00")));
-  EXPECT_EQ(client.state(), State::done);
+  EXPECT_EQ(client.state(), SdoClient::State::done);
 }
 
 TEST(SdoClient, TakesValuesOfUnspecifiedSizeAndNoSegmentedTransfer) {
@@ -120,7 +119,7 @@ TEST(SdoClient, TakesValuesOfUnspecifiedSizeAndNoSegmentedTransfer) {
   EXPECT_EQ(client.value(), 0x00020304U) << "three bytes";
   static_cast<void>(client.read(0, 3, {0x1008, 0}));
   EXPECT_TRUE(client.receive(frame("583 [8] 41 08 10 00 20 00 00 00")));
-  EXPECT_EQ(client.state(), State::aborted);
+  EXPECT_EQ(client.state(), SdoClient::State::aborted);
   EXPECT_EQ(client.abort_code(), AbortCode::unknown_command);
 }
 
@@ -138,9 +137,9 @@ TEST(SdoClient, EndsATransferByItsAnswerOnlyAmongOtherFrames) {
         noise.data[2] = 0x10;
         noise.data[3] = 0x00;
       }
-      const State before = client.state();
+      const SdoClient::State before = client.state();
       const bool ended = client.receive(noise);
-      ASSERT_EQ(ended, before == State::waiting && client.state() != State::waiting);
+      ASSERT_EQ(ended, before == SdoClient::State::waiting && client.state() != SdoClient::State::waiting);
       if (ended) {
         ASSERT_EQ(noise.identifier, 0x583);
         ASSERT_EQ(noise.data[1] | noise.data[2] << 8 | noise.data[3] << 16, 0x001006);
@@ -160,14 +159,14 @@ TEST(SdoClient, WaitsForAModuleThatErasesFlash) {
     SdoClient client;
     (void)client.write(0, 3, address, 4, signature_save);
     client.poll(1'010'000);
-    EXPECT_EQ(client.state(), State::waiting);
+    EXPECT_EQ(client.state(), SdoClient::State::waiting);
     EXPECT_TRUE(client.receive(frame(answer)));
-    EXPECT_EQ(client.state(), State::done);
+    EXPECT_EQ(client.state(), SdoClient::State::done);
     (void)client.write(0, 3, address, 4, signature_save, 100'000);
     client.poll(1'010'000);
-    EXPECT_EQ(client.state(), State::waiting) << "a short time for other objects is not enough for these";
+    EXPECT_EQ(client.state(), SdoClient::State::waiting) << "a short time for other objects is not enough for these";
     client.poll(1'500'000);
-    EXPECT_EQ(client.state(), State::aborted) << "it does not wait for ever";
+    EXPECT_EQ(client.state(), SdoClient::State::aborted) << "it does not wait for ever";
     EXPECT_EQ(client.abort_code(), AbortCode::timeout);
     (void)client.read(0, 3, address);
     EXPECT_EQ(client.next_deadline(), 500'000U) << "it is quick to read";

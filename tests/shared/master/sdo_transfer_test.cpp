@@ -20,14 +20,13 @@ using test::frame;
 using test::random_bytes;
 using test::text;
 using Link = test::SdoLink;
-using State = SdoTransfer::State;
 
 TEST(SdoTransfer, EverySizeArrivesInBothDirections) {
   Link link;
   for (std::size_t size = 0; size < 2'000; size += size < 60 || (size > 880 && size < 900) ? 1 : 37) {
     const Bytes bytes = random_bytes(size, static_cast<std::uint32_t>(size));
     link.download(bytes);
-    ASSERT_EQ(link.client.state(), State::done) << size;
+    ASSERT_EQ(link.client.state(), SdoTransfer::State::done) << size;
     ASSERT_EQ(link.client.size(), size);
     ASSERT_EQ(link.value(), bytes) << size;
     ASSERT_EQ(link.upload(size), bytes) << "into a buffer that fits, " << size;
@@ -72,7 +71,7 @@ TEST(SdoTransfer, AServerWithoutBlockTransfersGetsSegments) {
   };
   const Bytes bytes = random_bytes(300);
   link.download(bytes);
-  EXPECT_EQ(link.client.state(), State::done);
+  EXPECT_EQ(link.client.state(), SdoTransfer::State::done);
   EXPECT_EQ(link.value(), bytes);
   EXPECT_EQ(link.upload(300), bytes);
   EXPECT_EQ(link.client.attempts(), 1U);
@@ -93,7 +92,7 @@ TEST(SdoTransfer, AnySingleLostFrameIsMadeUpFor) {
           link.value() = bytes;
           ASSERT_EQ(link.upload(size), bytes) << "frame " << lost;
         }
-        ASSERT_EQ(link.client.state(), State::done) << size << " bytes, frame " << lost;
+        ASSERT_EQ(link.client.state(), SdoTransfer::State::done) << size << " bytes, frame " << lost;
         ASSERT_EQ(link.value(), bytes) << "frame " << lost;
         ASSERT_LE(link.client.attempts(), 2U);
         frames = std::max(frames, std::min<std::size_t>(link.sends.size(), 300));
@@ -118,7 +117,7 @@ TEST(SdoTransfer, LostFramesOfABlockDoNotBeginItAgain) {
         } else {
           link.upload(2'000);
         }
-        ASSERT_EQ(link.client.state(), State::done) << run << " from " << lost;
+        ASSERT_EQ(link.client.state(), SdoTransfer::State::done) << run << " from " << lost;
         ASSERT_EQ(link.client.attempts(), 1U) << run << " from " << lost;
         ASSERT_EQ(link.value(), bytes);
       }
@@ -138,7 +137,7 @@ TEST(SdoTransfer, AnyFramesMayBeLost) {
     link.loses = [&](const CanFrame& /*sent*/, std::size_t /*position*/) { return random() % 100 < percent; };
     const Bytes bytes = random_bytes(random() % 3'000, static_cast<std::uint32_t>(run));
     link.download(bytes, patient);
-    ASSERT_EQ(link.client.state(), State::done) << "run " << run << ", " << percent << " %";
+    ASSERT_EQ(link.client.state(), SdoTransfer::State::done) << "run " << run << ", " << percent << " %";
     ASSERT_EQ(link.value(), bytes) << "run " << run << ", " << percent << " %";
     ASSERT_EQ(link.upload(3'000, patient), bytes) << "run " << run << ", " << percent << " %";
     ASSERT_FALSE(link.device.is_open);
@@ -161,7 +160,7 @@ TEST(SdoTransfer, AHundredThousandBytesTakeTwoSecondsAndArriveInSpiteOfLosses) {
         link.value() = bytes;
         EXPECT_EQ(link.upload(bytes.size()), bytes);
       }
-      EXPECT_EQ(link.client.state(), State::done);
+      EXPECT_EQ(link.client.state(), SdoTransfer::State::done);
       EXPECT_EQ(link.value(), bytes);
       if (percent == 0) {
         EXPECT_LE(link.seconds(), 1.84);
@@ -180,7 +179,7 @@ TEST(SdoTransfer, AServerThatDoesNotAnswerEndsItAfterAllAttempts) {
   options.attempts = 3;
   options.timeout_us = 100'000;
   link.download(random_bytes(100), options);
-  EXPECT_EQ(link.client.state(), State::aborted);
+  EXPECT_EQ(link.client.state(), SdoTransfer::State::aborted);
   EXPECT_EQ(link.client.abort_code(), AbortCode::timeout);
   EXPECT_EQ(link.client.attempts(), 3U);
   EXPECT_NEAR(link.seconds(), 0.3, 0.01);
@@ -208,7 +207,7 @@ TEST(SdoTransfer, ARefusalOfTheServerIsFinal) {
   link.device.refusal = AbortCode::refused_by_state;
   for (const std::size_t size : {std::size_t{4}, std::size_t{20}, std::size_t{100}}) {
     link.download(random_bytes(size));
-    EXPECT_EQ(link.client.state(), State::aborted);
+    EXPECT_EQ(link.client.state(), SdoTransfer::State::aborted);
     EXPECT_EQ(link.client.abort_code(), AbortCode::refused_by_state);
     EXPECT_EQ(link.client.attempts(), 1U);
     EXPECT_EQ(link.upload(size), Bytes{});
@@ -252,7 +251,7 @@ TEST(SdoTransfer, TheProgramCanEndIt) {
       return false;
     };
     link.download(random_bytes(1'000));
-    EXPECT_EQ(link.client.state(), State::aborted);
+    EXPECT_EQ(link.client.state(), SdoTransfer::State::aborted);
     EXPECT_EQ(link.client.abort_code(), AbortCode::refused_by_application);
     EXPECT_EQ(link.value(), Bytes{});
     EXPECT_FALSE(link.device.is_open);
@@ -318,7 +317,7 @@ TEST(SdoTransfer, OnlyFramesOfItsServerMatter) {
   client.receive(0, frame("583 [8] 80 08 10 00 02 00 01 06"));
   client.receive(0, frame("583 [7] A4 50 1F 01 7F 00 00"));
   EXPECT_FALSE(client.next_frame(0));
-  EXPECT_EQ(client.state(), State::running);
+  EXPECT_EQ(client.state(), SdoTransfer::State::running);
   client.receive(0, frame("583 [8] A4 50 1F 01 7F 00 00 00"));
   EXPECT_TRUE(client.next_frame(0));
 }

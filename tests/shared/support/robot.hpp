@@ -39,6 +39,10 @@ inline constexpr std::string_view extended = "PatternGenerator_sinusoidal_extend
 inline constexpr std::string_view coupled = "PatternGenerator_coupled_oscillator";
 inline constexpr std::string_view reflex = "SensingModule_uneven_ground_reflex";
 
+/// Joints and links of the robot that most tests of gaits use.
+inline constexpr unsigned robot_joints = 5;
+inline constexpr unsigned robot_links = robot_joints + 1;
+
 /// A robot whose first slot drives all joints.
 inline KernelConfiguration one_slot(const ActuationModule& module, unsigned joints, std::uint32_t tick_us = 10'000,
                                     std::uint64_t seed = 1) {

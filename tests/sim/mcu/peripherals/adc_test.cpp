@@ -9,34 +9,34 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::uint32_t sr = 0x00;
-constexpr std::uint32_t cr1 = 0x04;
-constexpr std::uint32_t cr2 = 0x08;
-constexpr std::uint32_t smpr1 = 0x0C;
-constexpr std::uint32_t smpr2 = 0x10;
-constexpr std::uint32_t sqr1 = 0x2C;
-constexpr std::uint32_t sqr3 = 0x34;
-constexpr std::uint32_t jsqr = 0x38;
-constexpr std::uint32_t jdr1 = 0x3C;
-constexpr std::uint32_t dr = 0x4C;
-constexpr std::uint32_t ccr = 0x304;
-
-constexpr std::uint32_t eoc = 1U << 1U;
-constexpr std::uint32_t jeoc = 1U << 2U;
-constexpr std::uint32_t jstrt = 1U << 3U;
-constexpr std::uint32_t strt = 1U << 4U;
-constexpr std::uint32_t ovr = 1U << 5U;
-constexpr std::uint32_t adon = 1;
-constexpr std::uint32_t eocs = 1U << 10U;
-constexpr std::uint32_t swstart = 1U << 30U;
-constexpr std::uint32_t jswstart = 1U << 22U;
-constexpr std::uint32_t scan = 1U << 8U;
-
-constexpr LocalTime adc_clock = 48;  ///< 84 MHz / 4 = 21 MHz
-constexpr LocalTime fastest = (3 + 12) * adc_clock;
-
 class AdcTest : public testing::Test {
  protected:
+  static constexpr std::uint32_t sr = 0x00;
+  static constexpr std::uint32_t cr1 = 0x04;
+  static constexpr std::uint32_t cr2 = 0x08;
+  static constexpr std::uint32_t smpr1 = 0x0C;
+  static constexpr std::uint32_t smpr2 = 0x10;
+  static constexpr std::uint32_t sqr1 = 0x2C;
+  static constexpr std::uint32_t sqr3 = 0x34;
+  static constexpr std::uint32_t jsqr = 0x38;
+  static constexpr std::uint32_t jdr1 = 0x3C;
+  static constexpr std::uint32_t dr = 0x4C;
+  static constexpr std::uint32_t ccr = 0x304;
+
+  static constexpr std::uint32_t eoc = 1U << 1U;
+  static constexpr std::uint32_t jeoc = 1U << 2U;
+  static constexpr std::uint32_t jstrt = 1U << 3U;
+  static constexpr std::uint32_t strt = 1U << 4U;
+  static constexpr std::uint32_t ovr = 1U << 5U;
+  static constexpr std::uint32_t adon = 1;
+  static constexpr std::uint32_t eocs = 1U << 10U;
+  static constexpr std::uint32_t swstart = 1U << 30U;
+  static constexpr std::uint32_t jswstart = 1U << 22U;
+  static constexpr std::uint32_t scan = 1U << 8U;
+
+  static constexpr LocalTime adc_clock = 48;  ///< 84 MHz / 4 = 21 MHz
+  static constexpr LocalTime fastest = (3 + 12) * adc_clock;
+
   AdcTest() {
     chip.settings = test::full_speed;
     for (unsigned channel = 0; channel < 16; ++channel) {

@@ -10,7 +10,7 @@ namespace {
 
 using BxCanTest = BxCanRig;
 
-constexpr BusTime bit = 1'000;
+constexpr BusTime bit_time = 1'000;
 constexpr std::uint32_t rqcp = 1;
 constexpr std::uint32_t txok = 2;
 constexpr std::uint32_t alst = 4;
@@ -18,7 +18,7 @@ constexpr std::uint32_t terr = 8;
 constexpr std::uint32_t abrq = 0x80;
 
 BusTime duration(std::uint16_t identifier, std::uint8_t length = 0) {
-  return frame_bits({identifier, length, {}}) * bit;
+  return frame_bits({identifier, length, {}}) * bit_time;
 }
 
 // Modes
@@ -49,9 +49,9 @@ TEST_F(BxCanTest, InitialisationIsEnteredAndLeftWithAHandshake) {
   write(can1::btr, can1::megabit);
   const BusTime asked = bus.now();
   write(can1::mcr, 0);
-  run_until(asked + 11 * bit - 125);
+  run_until(asked + 11 * bit_time - 125);
   EXPECT_EQ(read(can1::msr) & 3U, can1::inak) << "until 11 recessive bits have been seen";
-  run_until(asked + 11 * bit);
+  run_until(asked + 11 * bit_time);
   EXPECT_EQ(read(can1::msr) & 3U, 0U);
 }
 
@@ -94,7 +94,7 @@ TEST_F(BxCanTest, InitialisationWaitsForTheFrameOnTheWire) {
   start();
   const BusTime begin = bus.now();
   partner_sends(0x123, 8);
-  run_until(begin + 20 * bit);
+  run_until(begin + 20 * bit_time);
   EXPECT_EQ(read(can1::msr) & 0x300U, 0x200U) << "RXM";
   write(can1::mcr, can1::inrq);
   const BusTime end = bus.next_event();
@@ -111,12 +111,12 @@ TEST_F(BxCanTest, OnABusyBusNormalModeBeginsAfterTheFrameAndItsIntermission) {
   write(can1::btr, can1::megabit);
   TestPartner third(bus);  // acknowledges
   partner_sends(0x123, 8);
-  run_for(20 * bit);
+  run_for(20 * bit_time);
   write(can1::mcr, 0);
   const BusTime end = bus.next_event();
-  run_until(end + 3 * bit - 125);
+  run_until(end + 3 * bit_time - 125);
   EXPECT_EQ(read(can1::msr) & can1::inak, can1::inak);
-  run_until(end + 3 * bit);
+  run_until(end + 3 * bit_time);
   EXPECT_EQ(read(can1::msr) & can1::inak, 0U);
 }
 
@@ -215,7 +215,7 @@ TEST_F(BxCanTest, AFrameGoesOutAsTheMailboxHasIt) {
   run_for(1'000'000);
   const CanFrame frame{0x5A5, 7, {0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77}};
   ASSERT_EQ(partner.received_frames.size(), 1U);
-  EXPECT_EQ(partner.received_frames[0], std::make_pair(begin + frame_bits(frame) * bit, frame));
+  EXPECT_EQ(partner.received_frames[0], std::make_pair(begin + frame_bits(frame) * bit_time, frame));
   EXPECT_TRUE(is_empty(1));
   EXPECT_EQ(outcome(1), rqcp | txok);
   EXPECT_EQ(read(can1::ti0r + 0x10), 0x5A5U << 21U);
@@ -284,11 +284,11 @@ TEST_F(BxCanTest, APendingMailboxIsAbortedAtOnceOneOnTheWireOnlyIfItFails) {
   start();
   request(0, 0x100);
   request(1, 0x200);
-  run_for(10 * bit);
+  run_for(10 * bit_time);
   EXPECT_EQ(read(can1::msr) & 0x300U, 0x100U) << "TXM";
   write(can1::tsr, (abrq << 8U) | abrq);
   EXPECT_EQ(outcome(0), abrq);
-  run_for(bit);
+  run_for(bit_time);
   EXPECT_TRUE(is_empty(1));
   EXPECT_EQ(outcome(1), rqcp);
   EXPECT_FALSE(is_empty(0));
@@ -299,7 +299,7 @@ TEST_F(BxCanTest, APendingMailboxIsAbortedAtOnceOneOnTheWireOnlyIfItFails) {
 
   bus.set_error_rule([](const CanFrame&, std::uint64_t) { return true; });
   request(2, 0x300);
-  run_for(10 * bit);
+  run_for(10 * bit_time);
   write(can1::tsr, abrq << 16U);
   run_for(1'000'000);
   EXPECT_TRUE(is_empty(2));
@@ -334,7 +334,7 @@ TEST_F(BxCanTest, WithRetransmissionAnErrorShowsAndTheFrameFollows) {
   start();
   bus.set_error_rule([](const CanFrame&, std::uint64_t transmission) { return transmission == 1; });
   request(0, 0x100);
-  run_for(duration(0x100) + 6 * bit);
+  run_for(duration(0x100) + 6 * bit_time);
   EXPECT_EQ(outcome(0), terr);
   EXPECT_FALSE(is_empty(0));
   EXPECT_EQ(read(can1::esr), (8U << 16U) | (4U << 4U)) << "TEC 8, LEC bit recessive";
@@ -498,7 +498,7 @@ TEST_F(BxCanTest, ErrorInterruptsComeForWhatIsEnabled) {
     while ((read(can1::msr) & can1::erri) == 0) {
       ASSERT_LE(bus.statistics().errors, 32U);
       EXPECT_FALSE(chip.lines[BxCan::sce_interrupt]);
-      run_for(bit);
+      run_for(bit_time);
     }
     EXPECT_EQ(bus.statistics().errors, it.errors);
     EXPECT_TRUE(chip.lines[BxCan::sce_interrupt]);
@@ -561,9 +561,9 @@ TEST_F(BxCanTest, BusOffIsLeftByWayOfInitialisation) {
   ASSERT_EQ(read(can1::msr) & can1::inak, can1::inak);
   EXPECT_EQ(read(can1::esr) & 4U, 4U);
   write(can1::mcr, 0);
-  run_for(11 * bit);
+  run_for(11 * bit_time);
   EXPECT_EQ(read(can1::msr) & can1::inak, 0U);
-  run_for(128 * 11 * bit - 125);
+  run_for(128 * 11 * bit_time - 125);
   EXPECT_EQ(read(can1::esr) & 4U, 4U);
   EXPECT_TRUE(partner.received_frames.empty());
   run_for(125);
@@ -578,12 +578,12 @@ TEST_F(BxCanTest, WithAbomBusOffIsLeftByItself) {
   bus.set_error_rule([&](const CanFrame&, std::uint64_t) { return left > 0 && left-- > 0; });
   request(0, 0x100);
   while ((read(can1::esr) & 4U) == 0) {
-    run_for(bit);
+    run_for(bit_time);
   }
   const BusTime bus_off = bus.now();
-  run_until(bus_off + 128 * 11 * bit - 125);
+  run_until(bus_off + 128 * 11 * bit_time - 125);
   EXPECT_EQ(read(can1::esr) & 4U, 4U);
-  run_until(bus_off + 128 * 11 * bit);
+  run_until(bus_off + 128 * 11 * bit_time);
   EXPECT_EQ(read(can1::esr) & 7U, 0U);
   run_for(1'000'000);
   EXPECT_EQ(partner.received_frames.size(), 1U);
@@ -634,12 +634,12 @@ TEST_F(BxCanTest, TheSelfTestDoesWithoutTheBus) {
   request(1, 0x200, 8, 0x0403'0201, 0x0807'0605);
   request(0, 0x100);
   partner_sends(0x300);
-  const BusTime first = frame_bits({0x200, 8, {1, 2, 3, 4, 5, 6, 7, 8}}) * bit;
+  const BusTime first = frame_bits({0x200, 8, {1, 2, 3, 4, 5, 6, 7, 8}}) * bit_time;
   run_until(begin + first - 125);
   EXPECT_EQ(outcome(1), 0U);
   run_until(begin + first);
   EXPECT_EQ(outcome(1), rqcp | txok);
-  run_until(begin + first + 3 * bit + duration(0x100));
+  run_until(begin + first + 3 * bit_time + duration(0x100));
   EXPECT_EQ(outcome(0), rqcp | txok);
   run_for(1'000'000);
   EXPECT_EQ(read(can1::rf0r), 2U);

@@ -18,7 +18,7 @@ constexpr std::uint32_t s0cr = 0x10;
 constexpr std::uint32_t s0ndtr = 0x14;
 constexpr std::uint32_t s0par = 0x18;
 constexpr std::uint32_t s0m0ar = 0x1C;
-constexpr std::uint32_t enabled = 0x2D01;  ///< EN, CIRC, MINC, 16 bits on both sides
+constexpr std::uint32_t enabled_circular = 0x2D01;  ///< EN, CIRC, MINC, 16 bits on both sides
 constexpr std::uint32_t adc1_dr = 0x4001'204C;
 constexpr std::uint32_t buffer = 0x2000'1000;
 
@@ -58,7 +58,7 @@ class DmaTest : public testing::Test {
     dma.write(s0par, adc1_dr);
     dma.write(s0m0ar, buffer);
     dma.write(s0ndtr, count);
-    dma.write(s0cr, enabled);
+    dma.write(s0cr, enabled_circular);
   }
 
   test::BenchChip chip;
@@ -100,14 +100,15 @@ TEST_F(DmaTest, RejectsWhatItDoesNotModelByName) {
   EXPECT_EQ(test::rejection([&] { dma.write(s0ndtr, 5); }),
             "DMA2_S0NDTR = 0x5 at offset 0x14: the stream is enabled (RM0090, 10.5)");
   dma.write(s0cr, 0);
-  EXPECT_EQ(test::rejection([&] { dma.write(s0cr, enabled | 1U << 25U); }),
+  EXPECT_EQ(test::rejection([&] { dma.write(s0cr, enabled_circular | 1U << 25U); }),
             "DMA2_S0CR = 0x2002D01 at offset 0x10: channel 1 of stream 0 is not modelled");
-  EXPECT_NE(test::rejection([&] { dma.write(s0cr, enabled | 1U << 6U); }), "") << "to the peripheral";
-  EXPECT_NE(test::rejection([&] { dma.write(s0cr, enabled & ~(1U << 11U)); }), "") << "bytes from the peripheral";
+  EXPECT_NE(test::rejection([&] { dma.write(s0cr, enabled_circular | 1U << 6U); }), "") << "to the peripheral";
+  EXPECT_NE(test::rejection([&] { dma.write(s0cr, enabled_circular & ~(1U << 11U)); }), "")
+      << "bytes from the peripheral";
   EXPECT_NE(test::rejection([&] { dma.write(0x28, 1); }), "") << "stream 1";
   EXPECT_NE(test::rejection([&] { dma.write(0x24, 4); }), "") << "FIFO";
   dma.write(s0m0ar, 0x2002'0000);
-  EXPECT_NE(test::rejection([&] { dma.write(s0cr, enabled); }), "") << "beyond the RAM";
+  EXPECT_NE(test::rejection([&] { dma.write(s0cr, enabled_circular); }), "") << "beyond the RAM";
 }
 
 // RM0090, 10.5.1 to 10.5.4 and table 61: the flags of stream 6 are bits 16 to 21 of HISR, its interrupt is position 17.
@@ -232,7 +233,7 @@ class Sampling {
     dma.write(s0par, adc1_dr);
     dma.write(s0m0ar, buffer);
     dma.write(s0ndtr, ring_size);
-    dma.write(s0cr, enabled);
+    dma.write(s0cr, enabled_circular);
     adc.write(0x304, 1U << 16U);  // PCLK2 / 4
     adc.write(0x34, channel);
     adc.write(0x38, 3U << 15U);  // injected: channel 3
@@ -368,7 +369,7 @@ TEST(SamplesOfASleepingCpu, LeaveTheSameAsThoseOfOneThatIsAwake) {
         break;
       case 3:
         sampling.dma.write(lifcr, 0x30);
-        sampling.dma.write(s0cr, enabled);
+        sampling.dma.write(s0cr, enabled_circular);
         break;
       case 4:
         sampling.adc.write(0x00, 0xC);  // clears EOC, STRT and OVR

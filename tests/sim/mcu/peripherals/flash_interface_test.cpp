@@ -9,30 +9,6 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::uint32_t acr = 0x00;
-constexpr std::uint32_t keyr = 0x04;
-constexpr std::uint32_t optkeyr = 0x08;
-constexpr std::uint32_t sr = 0x0C;
-constexpr std::uint32_t cr = 0x10;
-constexpr std::uint32_t optcr = 0x14;
-
-constexpr std::uint32_t eop = 1U << 0U;
-constexpr std::uint32_t operr = 1U << 1U;
-constexpr std::uint32_t wrperr = 1U << 4U;
-constexpr std::uint32_t pgaerr = 1U << 5U;
-constexpr std::uint32_t pgperr = 1U << 6U;
-constexpr std::uint32_t pgserr = 1U << 7U;
-constexpr std::uint32_t bsy = 1U << 16U;
-constexpr std::uint32_t pg = 1U << 0U;
-constexpr std::uint32_t ser = 1U << 1U;
-constexpr std::uint32_t mer = 1U << 2U;
-constexpr std::uint32_t x32 = 2U << 8U;
-constexpr std::uint32_t strt = 1U << 16U;
-constexpr std::uint32_t eopie = 1U << 24U;
-constexpr std::uint32_t errie = 1U << 25U;
-constexpr std::uint32_t lock = 1U << 31U;
-constexpr LocalTime ms = 1000 * local_time_per_us;
-
 class Cells final : public FlashMemory {
  public:
   void read(std::uint32_t address, std::span<std::uint8_t> bytes) override {
@@ -54,6 +30,30 @@ class Cells final : public FlashMemory {
 
 class FlashTest : public testing::Test {
  protected:
+  static constexpr std::uint32_t acr = 0x00;
+  static constexpr std::uint32_t keyr = 0x04;
+  static constexpr std::uint32_t optkeyr = 0x08;
+  static constexpr std::uint32_t sr = 0x0C;
+  static constexpr std::uint32_t cr = 0x10;
+  static constexpr std::uint32_t optcr = 0x14;
+
+  static constexpr std::uint32_t eop = 1U << 0U;
+  static constexpr std::uint32_t operr = 1U << 1U;
+  static constexpr std::uint32_t wrperr = 1U << 4U;
+  static constexpr std::uint32_t pgaerr = 1U << 5U;
+  static constexpr std::uint32_t pgperr = 1U << 6U;
+  static constexpr std::uint32_t pgserr = 1U << 7U;
+  static constexpr std::uint32_t bsy = 1U << 16U;
+  static constexpr std::uint32_t pg = 1U << 0U;
+  static constexpr std::uint32_t ser = 1U << 1U;
+  static constexpr std::uint32_t mer = 1U << 2U;
+  static constexpr std::uint32_t x32 = 2U << 8U;
+  static constexpr std::uint32_t strt = 1U << 16U;
+  static constexpr std::uint32_t eopie = 1U << 24U;
+  static constexpr std::uint32_t errie = 1U << 25U;
+  static constexpr std::uint32_t lock = 1U << 31U;
+  static constexpr LocalTime ms = 1000 * local_time_per_us;
+
   void unlock() {
     flash.write(keyr, 0x4567'0123);
     flash.write(keyr, 0xCDEF'89AB);

@@ -8,15 +8,15 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::uint32_t kr = 0x00;
-constexpr std::uint32_t pr = 0x04;
-constexpr std::uint32_t rlr = 0x08;
-constexpr std::uint32_t sr = 0x0C;
-constexpr LocalTime lsi = 31'500;  ///< local time in a cycle of 32 kHz
-constexpr LocalTime ms = 1000 * local_time_per_us;
-
 class IwdgTest : public testing::Test {
  protected:
+  static constexpr std::uint32_t kr = 0x00;
+  static constexpr std::uint32_t pr = 0x04;
+  static constexpr std::uint32_t rlr = 0x08;
+  static constexpr std::uint32_t sr = 0x0C;
+  static constexpr LocalTime lsi = 31'500;  ///< local time in a cycle of 32 kHz
+  static constexpr LocalTime ms = 1000 * local_time_per_us;
+
   /// Started, with these settings in effect, and reloaded now.
   void start(std::uint32_t prescaler, std::uint32_t reload) {
     dog.write(kr, 0xCCCC);

@@ -11,20 +11,6 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::uint32_t cr = 0x00;
-constexpr std::uint32_t pllcfgr = 0x04;
-constexpr std::uint32_t cfgr = 0x08;
-constexpr std::uint32_t ahb1enr = 0x30;
-constexpr std::uint32_t apb1rstr = 0x20;
-constexpr std::uint32_t apb1enr = 0x40;
-constexpr std::uint32_t csr = 0x74;
-constexpr std::uint32_t hsion = 0x81;
-constexpr std::uint32_t hseon = 1U << 16U;
-constexpr std::uint32_t hserdy = 1U << 17U;
-constexpr std::uint32_t pllon = 1U << 24U;
-constexpr std::uint32_t pllrdy = 1U << 25U;
-constexpr LocalTime us = local_time_per_us;
-
 class NoCells final : public FlashMemory {
  public:
   void read(std::uint32_t /*address*/, std::span<std::uint8_t> /*bytes*/) override {}
@@ -42,6 +28,20 @@ struct Pll {
 
 class RccTest : public testing::Test {
  protected:
+  static constexpr std::uint32_t cr = 0x00;
+  static constexpr std::uint32_t pllcfgr = 0x04;
+  static constexpr std::uint32_t cfgr = 0x08;
+  static constexpr std::uint32_t ahb1enr = 0x30;
+  static constexpr std::uint32_t apb1rstr = 0x20;
+  static constexpr std::uint32_t apb1enr = 0x40;
+  static constexpr std::uint32_t csr = 0x74;
+  static constexpr std::uint32_t hsion = 0x81;
+  static constexpr std::uint32_t hseon = 1U << 16U;
+  static constexpr std::uint32_t hserdy = 1U << 17U;
+  static constexpr std::uint32_t pllon = 1U << 24U;
+  static constexpr std::uint32_t pllrdy = 1U << 25U;
+  static constexpr LocalTime us = local_time_per_us;
+
   RccTest() {
     chip.clock_source = &rcc.clocks();
     for (Peripheral* peripheral : std::initializer_list<Peripheral*>{&timer, &port, &usart, &power}) {

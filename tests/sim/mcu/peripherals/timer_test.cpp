@@ -8,17 +8,6 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::uint32_t cr1 = 0x00;
-constexpr std::uint32_t dier = 0x0C;
-constexpr std::uint32_t sr = 0x10;
-constexpr std::uint32_t egr = 0x14;
-constexpr std::uint32_t ccmr1 = 0x18;
-constexpr std::uint32_t ccer = 0x20;
-constexpr std::uint32_t cnt = 0x24;
-constexpr std::uint32_t psc = 0x28;
-constexpr std::uint32_t arr = 0x2C;
-constexpr std::uint32_t ccr1 = 0x34;
-
 constexpr std::uint32_t cen = 1U << 0U;
 constexpr std::uint32_t udis = 1U << 1U;
 constexpr std::uint32_t urs = 1U << 2U;
@@ -119,6 +108,17 @@ struct ClockModel {
 
 class TimerTest : public testing::Test {
  protected:
+  static constexpr std::uint32_t cr1 = 0x00;
+  static constexpr std::uint32_t dier = 0x0C;
+  static constexpr std::uint32_t sr = 0x10;
+  static constexpr std::uint32_t egr = 0x14;
+  static constexpr std::uint32_t ccmr1 = 0x18;
+  static constexpr std::uint32_t ccer = 0x20;
+  static constexpr std::uint32_t cnt = 0x24;
+  static constexpr std::uint32_t psc = 0x28;
+  static constexpr std::uint32_t arr = 0x2C;
+  static constexpr std::uint32_t ccr1 = 0x34;
+
   TimerTest() { chip.settings = test::full_speed; }
 
   test::BenchChip chip;

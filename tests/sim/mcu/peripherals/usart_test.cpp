@@ -5,21 +5,21 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::uint32_t sr = 0x00;
-constexpr std::uint32_t dr = 0x04;
-constexpr std::uint32_t brr = 0x08;
-constexpr std::uint32_t cr1 = 0x0C;
-constexpr std::uint32_t cr2 = 0x10;
-constexpr std::uint32_t cr3 = 0x14;
-
-constexpr std::uint32_t ore = 1U << 3U;
-constexpr std::uint32_t rxne = 1U << 5U;
-constexpr std::uint32_t tc = 1U << 6U;
-constexpr std::uint32_t txe = 1U << 7U;
-constexpr std::uint32_t on = 0x200C;  ///< UE, TE, RE
-
 class UsartTest : public testing::Test {
  protected:
+  static constexpr std::uint32_t sr = 0x00;
+  static constexpr std::uint32_t dr = 0x04;
+  static constexpr std::uint32_t brr = 0x08;
+  static constexpr std::uint32_t cr1 = 0x0C;
+  static constexpr std::uint32_t cr2 = 0x10;
+  static constexpr std::uint32_t cr3 = 0x14;
+
+  static constexpr std::uint32_t ore = 1U << 3U;
+  static constexpr std::uint32_t rxne = 1U << 5U;
+  static constexpr std::uint32_t tc = 1U << 6U;
+  static constexpr std::uint32_t txe = 1U << 7U;
+  static constexpr std::uint32_t on = 0x200C;  ///< UE, TE, RE
+
   UsartTest() { chip.settings = test::full_speed; }
 
   /// A character of the same baud rate, from now to the end of its stop bit.

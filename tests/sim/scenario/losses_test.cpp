@@ -15,7 +15,7 @@
 namespace proleg::sim {
 namespace {
 
-RobotModel caterpillar() {
+RobotModel caterpillar_robot() {
   DiskFiles files;
   return read_scenario(std::filesystem::path(source_path("/sim/scenarios/travelling_wave/uniform.simulation.xml")),
                        files)
@@ -40,7 +40,7 @@ class LossFile : public testing::Test {
     }
   }
 
-  RobotModel robot_ = caterpillar();
+  RobotModel robot_ = caterpillar_robot();
   std::filesystem::path path_ =
       std::filesystem::path(testing::TempDir()) / ("proleg-losses-" + std::to_string(::getpid()) + ".txt");
 };
@@ -79,7 +79,7 @@ TEST_F(LossFile, AMissingFileIsRefused) {
 }
 
 TEST(RandomLosses, HaveTheirRate) {
-  const RobotModel robot = caterpillar();
+  const RobotModel robot = caterpillar_robot();
   for (const auto& [argument, rate] : {std::pair{"7:5%", 0.05}, std::pair{"11:0.25", 0.25}, std::pair{"3:1", 1.0}}) {
     const Losses losses = read_losses(argument, robot);
     std::uint64_t lost = 0;
@@ -97,14 +97,14 @@ TEST(RandomLosses, HaveTheirRate) {
 }
 
 TEST(RandomLosses, NeverContainAJointsOwnFrame) {
-  const Losses losses = read_losses("3:100%", caterpillar());
+  const Losses losses = read_losses("3:100%", caterpillar_robot());
   for (unsigned sender = 0; sender < max_joints; ++sender) {
     EXPECT_FALSE(losses.receivers_without(9, sender, 0).contains(sender));
   }
 }
 
 TEST(RandomLosses, DifferWithSeedTickSenderAndChannelAndRepeat) {
-  const RobotModel robot = caterpillar();
+  const RobotModel robot = caterpillar_robot();
   const auto pattern = [&](const char* argument, std::uint32_t tick, unsigned sender, unsigned channel) {
     return read_losses(argument, robot).receivers_without(tick, sender, channel).bits();
   };
@@ -117,7 +117,7 @@ TEST(RandomLosses, DifferWithSeedTickSenderAndChannelAndRepeat) {
 }
 
 TEST(RandomLosses, StayWithinTheirTicks) {
-  const Losses losses = read_losses("1:100%@10-20", caterpillar());
+  const Losses losses = read_losses("1:100%@10-20", caterpillar_robot());
   EXPECT_FALSE(losses.lost({9, 0, 0, 1}));
   EXPECT_TRUE(losses.lost({10, 0, 0, 1}));
   EXPECT_TRUE(losses.lost({20, 0, 0, 1}));
@@ -125,7 +125,7 @@ TEST(RandomLosses, StayWithinTheirTicks) {
 }
 
 TEST(RandomLosses, RefuseWhatIsNoRateOrRange) {
-  const RobotModel robot = caterpillar();
+  const RobotModel robot = caterpillar_robot();
   for (const char* argument : {"7:", "7:x", "7:1.5", "7:-1%", "7:101%", "7:5%@", "7:5%@9", "7:5%@9-3", "7:5%@-3",
                                "99999999999999999999:5%", "7:nan"}) {
     EXPECT_THROW((void)read_losses(argument, robot), InputError) << argument;

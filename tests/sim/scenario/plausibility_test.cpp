@@ -15,7 +15,7 @@ namespace {
 const std::filesystem::path scenarios = source_path("/sim/scenarios");
 
 /// The shipped robot of five pitch joints.
-MemoryFiles caterpillar() {
+MemoryFiles caterpillar_files() {
   MemoryFiles files;
   const std::filesystem::path folder = scenarios / "travelling_wave";
   for (const char* name : {"caterpillar.robot.xml", "uniform.actuation.xml", "flat.environment.xml",
@@ -26,7 +26,7 @@ MemoryFiles caterpillar() {
   return files;
 }
 
-const char* const robot = "caterpillar.robot.xml";
+const char* const robot_file = "caterpillar.robot.xml";
 
 /// The only warning; it must begin and end like this.
 void expect_warning(MemoryFiles& files, const std::string& start, const std::string& end) {
@@ -52,54 +52,55 @@ TEST(Plausibility, NoShippedScenarioAndNoFileOfTheThesisCausesAWarning) {
 }
 
 TEST(Plausibility, AMissingOffsetfromPutsAJointFarFromItsLinks) {
-  MemoryFiles files = caterpillar();
-  files.replace(robot, "      <offsetfrom>3Seg</offsetfrom>\n", "");
+  MemoryFiles files = caterpillar_files();
+  files.replace(robot_file, "      <offsetfrom>3Seg</offsetfrom>\n", "");
   expect_warning(files,
                  "caterpillar.robot.xml:40: joint 'J3' is 144 mm outside of its body '3Seg', which is 72 mm long",
                  "; usually <offsetfrom> is missing or names a wrong body, or the <translation> of the body is wrong");
 }
 
 TEST(Plausibility, AWrongOffsetfromDoesTheSame) {
-  MemoryFiles files = caterpillar();
-  files.replace(robot, "<offsetfrom>Head</offsetfrom>", "<offsetfrom>2Seg</offsetfrom>");
+  MemoryFiles files = caterpillar_files();
+  files.replace(robot_file, "<offsetfrom>Head</offsetfrom>", "<offsetfrom>2Seg</offsetfrom>");
   EXPECT_FALSE(files.scenario().warnings.empty());
 }
 
 TEST(Plausibility, ALinkFarFromItsJointIsNamed) {
-  MemoryFiles files = caterpillar();
-  files.replace(robot, "<translation>0 0.288 0</translation>", "<translation>1 0.288 0</translation>");
+  MemoryFiles files = caterpillar_files();
+  files.replace(robot_file, "<translation>0 0.288 0</translation>", "<translation>1 0.288 0</translation>");
   expect_warning(files, "caterpillar.robot.xml:58: joint 'J5' is 974 mm outside of its body '4Seg'", "is wrong");
 }
 
 TEST(Plausibility, OneJointWithItsBodiesInTheOppositeOrderIsNamed) {
-  MemoryFiles files = caterpillar();
-  files.replace(robot, "<body>2Seg</body>\n      <body>3Seg</body>", "<body>3Seg</body>\n      <body>2Seg</body>");
+  MemoryFiles files = caterpillar_files();
+  files.replace(robot_file, "<body>2Seg</body>\n      <body>3Seg</body>", "<body>3Seg</body>\n      <body>2Seg</body>");
   expect_warning(files, "caterpillar.robot.xml:40: joint 'J3' lists its two bodies in the opposite order",
                  "usually every joint lists the body towards the tail first");
 }
 
 TEST(Plausibility, AnOppositeOrderWithAnOppositeAxisIsMeant) {
-  MemoryFiles files = caterpillar();
-  files.replace(robot, "<body>2Seg</body>\n      <body>3Seg</body>\n      <offsetfrom>3Seg</offsetfrom>\n      <axis>1",
+  MemoryFiles files = caterpillar_files();
+  files.replace(robot_file,
+                "<body>2Seg</body>\n      <body>3Seg</body>\n      <offsetfrom>3Seg</offsetfrom>\n      <axis>1",
                 "<body>3Seg</body>\n      <body>2Seg</body>\n      <offsetfrom>3Seg</offsetfrom>\n      <axis>-1");
   EXPECT_EQ(files.scenario().warnings, std::vector<std::string>{});
 }
 
 TEST(Plausibility, AChainThatFoldsBackIsNamed) {
-  MemoryFiles files = caterpillar();
+  MemoryFiles files = caterpillar_files();
   const std::string turn = " 0</translation><rotationaxis>0 0 1 180</rotationaxis>";
-  files.replace(robot, "0.072 0</translation>", "0.072" + turn)
-      .replace(robot, "0.144 0</translation>", "0" + turn)
-      .replace(robot, "0.216 0</translation>", "-0.072" + turn)
-      .replace(robot, "0.288 0</translation>", "-0.144" + turn);
+  files.replace(robot_file, "0.072 0</translation>", "0.072" + turn)
+      .replace(robot_file, "0.144 0</translation>", "0" + turn)
+      .replace(robot_file, "0.216 0</translation>", "-0.072" + turn)
+      .replace(robot_file, "0.288 0</translation>", "-0.144" + turn);
   const std::vector<std::string> warnings = files.scenario().warnings;
   EXPECT_NE(testing::PrintToString(warnings).find("the chain folds back at joint 'J2'"), std::string::npos)
       << testing::PrintToString(warnings);
 }
 
 TEST(Plausibility, TwoLinksAtTheSamePlaceAreNamed) {
-  MemoryFiles files = caterpillar();
-  files.replace(robot, "<translation>0 0.072 0</translation>", "");
+  MemoryFiles files = caterpillar_files();
+  files.replace(robot_file, "<translation>0 0.072 0</translation>", "");
   const std::vector<std::string> warnings = files.scenario().warnings;
   EXPECT_NE(testing::PrintToString(warnings).find(
                 "body '1Seg' is at the same place as '2Seg'; usually the <translation> of one of them is missing"),
@@ -123,7 +124,7 @@ TEST(Plausibility, AnInertiaInOtherUnitsIsNamed) {
 }
 
 TEST(Plausibility, AMassInGramsIsNamed) {
-  MemoryFiles files = caterpillar();
+  MemoryFiles files = caterpillar_files();
   files.replace("modules/head.kinbody.xml", "<total>0.05</total>", "<total>50</total>");
   expect_warning(files, "modules/head.kinbody.xml:5: body 'Head' has 50 kg, which is 513",
                  "usually <total> is not in kilograms, or a length is not in metres");
@@ -144,7 +145,7 @@ void use_millimetres(MemoryFiles& files, const std::string& file, const std::str
 
 TEST(Plausibility, ExtentsInMillimetresAreNamedAndNoPlaceIsBlamed) {
   for (const std::string tag : {"<Mass", "<Geom"}) {
-    MemoryFiles files = caterpillar();
+    MemoryFiles files = caterpillar_files();
     use_millimetres(files, "modules/segment.kinbody.xml", tag);
     const std::vector<std::string> warnings = files.scenario().warnings;
     EXPECT_EQ(warnings.size(), 4U) << "one for each segment: " << testing::PrintToString(warnings);
@@ -158,7 +159,7 @@ TEST(Plausibility, ExtentsInMillimetresAreNamedAndNoPlaceIsBlamed) {
 }
 
 TEST(Plausibility, AllExtentsInMillimetresMakeAWrongDensityAndNoPlaceIsBlamed) {
-  MemoryFiles files = caterpillar();
+  MemoryFiles files = caterpillar_files();
   use_millimetres(files, "modules/segment.kinbody.xml", "<Mass");
   use_millimetres(files, "modules/segment.kinbody.xml", "<Geom");
   const std::vector<std::string> warnings = files.scenario().warnings;
@@ -173,7 +174,7 @@ TEST(Plausibility, GravityThatDoesNotHoldTheRobotOnTheGroundIsNamed) {
                                        {"0 -9.81 0", "gravity points to the side;"},
                                        {"9.81 0 -1", "gravity points to the side;"},
                                        {"0 0 0", "gravity is 0, so that nothing holds"}}) {
-    MemoryFiles files = caterpillar();
+    MemoryFiles files = caterpillar_files();
     files.replace("flat.environment.xml", "0 0 -9.81", gravity);
     expect_warning(files, std::string("flat.environment.xml:7: ") + where, "usually it is 0 0 -9.81");
   }
@@ -181,27 +182,27 @@ TEST(Plausibility, GravityThatDoesNotHoldTheRobotOnTheGroundIsNamed) {
 
 TEST(Plausibility, GravityOfASlopeOrOfAnotherPlanetIsMeant) {
   for (const char* gravity : {"0 -4.9 -8.5", "0 0 -1.62"}) {
-    MemoryFiles files = caterpillar();
+    MemoryFiles files = caterpillar_files();
     files.replace("flat.environment.xml", "0 0 -9.81", gravity);
     EXPECT_EQ(files.scenario().warnings, std::vector<std::string>{}) << gravity;
   }
 }
 
 TEST(Plausibility, AModuleThatDrivesNoJointIsNamed) {
-  MemoryFiles files = caterpillar();
+  MemoryFiles files = caterpillar_files();
   files.replace("uniform.actuation.xml", "11111", "00000");
   expect_warning(files, "uniform.actuation.xml:", ": <actuationModule> has no effect: it drives no joint");
 }
 
 TEST(Plausibility, AnActuationForAnotherRobotIsNamed) {
-  MemoryFiles files = caterpillar();
+  MemoryFiles files = caterpillar_files();
   files.replace("uniform.actuation.xml", "caterpillar.robot.xml", "snake.robot.xml");
   expect_warning(files, "uniform.actuation.xml:",
                  ": the actuation was made for robot 'snake.robot.xml', not for 'caterpillar.robot.xml'");
 }
 
 TEST(Plausibility, AStartInsideAWallIsNamedWithItsDepth) {
-  MemoryFiles files = caterpillar();
+  MemoryFiles files = caterpillar_files();
   // The head ends at y = 310 mm.
   files.replace("flat.environment.xml", "</Environment>",
                 "<KinBody name=\"wall\"><Body type=\"static\"><translation>0 1.292 0</translation><Geom type=\"box\">"
@@ -213,7 +214,7 @@ TEST(Plausibility, AStartInsideAWallIsNamedWithItsDepth) {
 }
 
 TEST(Plausibility, ARobotBesideATurnedBoxIsNotInIt) {
-  MemoryFiles files = caterpillar();
+  MemoryFiles files = caterpillar_files();
   // A corner of the box points at the robot; the bounds of the box along the axes of the world contain the robot.
   files.replace("flat.environment.xml", "</Environment>",
                 "<KinBody name=\"box\"><Body type=\"static\"><translation>2 2 0</translation><rotationaxis>0 0 1 45"

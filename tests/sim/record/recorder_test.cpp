@@ -19,7 +19,7 @@
 namespace proleg::sim {
 namespace {
 
-constexpr std::uint32_t ticks = 60;
+constexpr std::uint32_t recorded_ticks = 60;
 
 /// All rows of a query, as the sqlite3 shell would show them.
 std::vector<std::string> rows(const std::filesystem::path& path, const std::string& sql, int columns) {
@@ -53,16 +53,16 @@ void expect_left_alone(const std::filesystem::path& path, const std::string& con
 TEST(Recorder, KeepsEverySampleBitForBit) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
-  record_small(folder / "run.sqlite", scenario, ticks);
+  record_small(folder / "run.sqlite", scenario, recorded_ticks);
 
   const Recording recording(folder / "run.sqlite");
   EXPECT_EQ(recording.first_tick(), 0U);
-  EXPECT_EQ(recording.last_tick(), ticks - 1);
+  EXPECT_EQ(recording.last_tick(), recorded_ticks - 1);
   std::vector<RecordedTick> recorded;
-  recording.read_ticks(0, ticks - 1, [&](const RecordedTick& tick) { recorded.push_back(tick); });
-  ASSERT_EQ(recorded.size(), ticks);
+  recording.read_ticks(0, recorded_ticks - 1, [&](const RecordedTick& tick) { recorded.push_back(tick); });
+  ASSERT_EQ(recorded.size(), recorded_ticks);
 
-  run_small(scenario, ticks, [&](const TickSample& sample, const Change* /*change*/) {
+  run_small(scenario, recorded_ticks, [&](const TickSample& sample, const Change* /*change*/) {
     const RecordedTick& tick = recorded[sample.tick];
     ASSERT_EQ(tick.tick, sample.tick);
     for (unsigned joint = 0; joint < 3; ++joint) {
@@ -89,16 +89,16 @@ TEST(Recorder, KeepsEverySampleBitForBit) {
 
 TEST(Recorder, KeepsEveryServoPulseWithItsTime) {
   const TemporaryFolder folder;
-  record_small(folder / "run.sqlite", small_scenario(), ticks);
+  record_small(folder / "run.sqlite", small_scenario(), recorded_ticks);
   std::vector<ServoPulse> recorded;
   const Recording recording(folder / "run.sqlite");
   ServoPulseReader reader(recording);
   while (const auto pulse = reader.next()) {
     recorded.push_back(*pulse);
   }
-  ASSERT_EQ(recorded.size(), ticks * 2 * 3);
+  ASSERT_EQ(recorded.size(), recorded_ticks * 2 * 3);
   std::size_t i = 0;
-  for (std::uint32_t tick = 0; tick < ticks; ++tick) {
+  for (std::uint32_t tick = 0; tick < recorded_ticks; ++tick) {
     for (const ServoPulse& expected : made_up_pulses(tick, 3)) {
       EXPECT_EQ(recorded[i].time_us, expected.time_us);
       EXPECT_EQ(recorded[i].joint, expected.joint);
@@ -133,7 +133,7 @@ TEST(Recorder, KeepsTimesOfADay) {
 TEST(Recorder, KeepsScenarioAndProgram) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
-  record_small(folder / "run.sqlite", scenario, ticks);
+  record_small(folder / "run.sqlite", scenario, recorded_ticks);
 
   const Recording recording(folder / "run.sqlite");
   EXPECT_TRUE(recording.finished());
@@ -164,7 +164,7 @@ TEST(Recorder, KeepsScenarioAndProgram) {
 TEST(Recorder, KeepsEveryParameterWithItsChangesInFlight) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();
-  record_small(folder / "run.sqlite", scenario, ticks);
+  record_small(folder / "run.sqlite", scenario, recorded_ticks);
   const std::vector<RecordedSetting> parameters = Recording(folder / "run.sqlite").parameters();
 
   const std::span<const Parameter> declared = scenario.kernel.slots[0].algorithm->declaration().parameters;
@@ -188,7 +188,7 @@ TEST(Recorder, KeepsEveryParameterWithItsChangesInFlight) {
 
 TEST(Recorder, KeepsDistortions) {
   const TemporaryFolder folder;
-  record_small(folder / "run.sqlite", small_scenario(), ticks);
+  record_small(folder / "run.sqlite", small_scenario(), recorded_ticks);
   const std::vector<RecordedSetting> distortions = Recording(folder / "run.sqlite").distortions();
   ASSERT_EQ(distortions.size(), 1U);
   EXPECT_EQ(distortions[0].tick, 7U);
@@ -200,7 +200,7 @@ TEST(Recorder, KeepsDistortions) {
 TEST(Recorder, WritesTablesThatAPersonCanQuery) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder / "run.sqlite";
-  record_small(path, small_scenario(), ticks);
+  record_small(path, small_scenario(), recorded_ticks);
   EXPECT_EQ(rows(path, "SELECT raw, value_text, unit FROM parameter WHERE joint = 1 AND name = 'amplitude'", 3),
             (std::vector<std::string>{"146744716|12.3|deg"}));
   EXPECT_EQ(rows(path, "SELECT value_text, unit FROM distortion", 2), (std::vector<std::string>{"90|deg"}));
@@ -226,7 +226,7 @@ TEST(Recorder, WritesTablesThatAPersonCanQuery) {
 
 TEST(Recorder, LeavesOneFile) {
   const TemporaryFolder folder;
-  record_small(folder / "run.sqlite", small_scenario(), ticks);
+  record_small(folder / "run.sqlite", small_scenario(), recorded_ticks);
   EXPECT_EQ(folder.names(), (std::vector<std::string>{"run.sqlite"}));
 }
 
@@ -245,15 +245,15 @@ TEST(Recorder, CommitsAnUnfinishedRunWhenItIsDestroyed) {
 
 TEST(Recorder, RecordsTheSameRunTwiceTheSame) {
   const TemporaryFolder folder;
-  record_small(folder / "a.sqlite", small_scenario(), ticks);
-  record_small(folder / "b.sqlite", small_scenario(), ticks);
+  record_small(folder / "a.sqlite", small_scenario(), recorded_ticks);
+  record_small(folder / "b.sqlite", small_scenario(), recorded_ticks);
   const std::string sql = "SELECT tick, joint, setpoint_raw, servo_command, hex(angle_rad) FROM sample";
   EXPECT_EQ(rows(folder / "a.sqlite", sql, 5), rows(folder / "b.sqlite", sql, 5));
 }
 
 TEST(Recorder, ReplacesAnEarlierRecording) {
   const TemporaryFolder folder;
-  record_small(folder / "run.sqlite", small_scenario(), ticks);
+  record_small(folder / "run.sqlite", small_scenario(), recorded_ticks);
   record_small(folder / "run.sqlite", small_scenario(), 10);
   EXPECT_EQ(Recording(folder / "run.sqlite").last_tick(), 9U);
 }
@@ -262,16 +262,16 @@ TEST(Recorder, ChangesNoOtherFileWhenItReplacesARecording) {
   const TemporaryFolder folder;
   const std::vector<std::string> names{"run", "run-new", "run.part", "run2"};
   for (const std::string& name : names) {
-    record_small(folder / name, small_scenario(), ticks);
+    record_small(folder / name, small_scenario(), recorded_ticks);
   }
   record_small(folder / "run", small_scenario(), 10);
   EXPECT_EQ(folder.names(), names);
-  EXPECT_EQ(Recording(folder / "run-new").last_tick(), ticks - 1);
+  EXPECT_EQ(Recording(folder / "run-new").last_tick(), recorded_ticks - 1);
 }
 
 TEST(Recorder, ReplacesADamagedRecording) {
   const TemporaryFolder folder;
-  record_small(folder / "run.sqlite", small_scenario(), ticks);
+  record_small(folder / "run.sqlite", small_scenario(), recorded_ticks);
   std::filesystem::resize_file(folder / "run.sqlite", 10'000);
   record_small(folder / "run.sqlite", small_scenario(), 10);
   EXPECT_EQ(Recording(folder / "run.sqlite").last_tick(), 9U);

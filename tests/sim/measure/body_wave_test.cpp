@@ -8,10 +8,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "test_units.hpp"
+
 namespace proleg::sim {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180.0;
 
 TEST(BodyWave, ItsNumberIsCountedByJointsOrByLinks) {
   EXPECT_NEAR(wave_count(55 * degree, 5), 0.7639, 5e-5);

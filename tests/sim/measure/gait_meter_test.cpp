@@ -11,13 +11,10 @@
 #include <vector>
 
 #include "test_robot.hpp"
+#include "test_units.hpp"
 
 namespace proleg::sim {
 namespace {
-
-constexpr double tick_s = 0.01;
-constexpr double step_s = 0.001;
-constexpr double degree = std::numbers::pi / 180.0;
 
 /// Feeds a meter with a robot that slides without turning, its links at the positions of its model.
 class Motion {

@@ -11,11 +11,11 @@
 #include "sim/measure/gait_meter.hpp"
 #include "sim/physics/world.hpp"
 #include "test_robot.hpp"
+#include "test_units.hpp"
 
 namespace proleg::sim {
 namespace {
 
-constexpr double step_s = 0.001;
 constexpr double gravity = 9.81;
 
 /// A heavy foot on the ground that a light arm stands out from, towards the head and in the air.

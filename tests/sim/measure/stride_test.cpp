@@ -7,12 +7,12 @@
 #include <random>
 #include <vector>
 
+#include "test_units.hpp"
+
 namespace proleg::sim {
 namespace {
 
-constexpr double tick_s = 0.01;
-constexpr double turn = 2.0 * std::numbers::pi;
-constexpr double degree = std::numbers::pi / 180.0;
+constexpr double full_turn = 2.0 * std::numbers::pi;
 
 struct Signals {
   std::vector<double> samples;
@@ -33,7 +33,7 @@ Signals oscillating(const std::vector<Oscillation>& oscillations, double frequen
   Signals signals{{}, oscillations.size()};
   for (int tick = 0; tick < std::lround(seconds / tick_s); ++tick) {
     for (const Oscillation& o : oscillations) {
-      signals.samples.push_back(o.mean + o.amplitude * std::sin(turn * frequency * tick * tick_s + o.phase));
+      signals.samples.push_back(o.mean + o.amplitude * std::sin(full_turn * frequency * tick * tick_s + o.phase));
     }
   }
   return signals;
@@ -69,7 +69,7 @@ TEST(Stride, IsFoundDespiteNoiseHarmonicsAndAnOffset) {
   std::normal_distribution<double> noise(0.0, 0.03);
   for (std::size_t tick = 0; tick < signals.samples.size(); ++tick) {
     const double t = static_cast<double>(tick) * tick_s;
-    signals.samples[tick] += noise(random) + 0.2 * std::sin(turn * 3 * 1.3 * t);
+    signals.samples[tick] += noise(random) + 0.2 * std::sin(full_turn * 3 * 1.3 * t);
   }
   const auto stride = find_stride(signals.table(), tick_s);
   ASSERT_TRUE(stride);
@@ -80,7 +80,7 @@ TEST(Stride, OfAGaitThatChangesItsPaceHasTheMeanFrequency) {
   Signals signals{{}, 3};
   double phase = 0.0;
   for (int tick = 0; tick < 3000; ++tick) {
-    phase += turn * tick_s * (tick < 1000 ? 0.8 : 0.8 + 3e-4 * (tick - 1000));
+    phase += full_turn * tick_s * (tick < 1000 ? 0.8 : 0.8 + 3e-4 * (tick - 1000));
     signals.samples.insert(signals.samples.end(),
                            {0.6 * std::sin(phase), 0.5 * std::sin(phase - 1.0), 0.4 * std::sin(phase - 2.0)});
   }
@@ -88,14 +88,14 @@ TEST(Stride, OfAGaitThatChangesItsPaceHasTheMeanFrequency) {
   ASSERT_TRUE(stride);
   const double strides = static_cast<double>(stride->bounds.size() - 1);
   EXPECT_NEAR(stride->frequency, strides / ((stride->bounds.back() - stride->bounds.front()) * tick_s), 1e-12);
-  EXPECT_NEAR(strides, phase / turn - 2, 1.0);
+  EXPECT_NEAR(strides, phase / full_turn - 2, 1.0);
 }
 
 TEST(Stride, TheFirstOneIsLeftOut) {
   Signals signals = oscillating({{0.0, 0.6, 0.0}}, 1.0, 10);
   for (std::size_t tick = 0; tick < 100; ++tick) {
     signals.samples[tick] =
-        0.6 * std::sin(turn * 2.0 * static_cast<double>(tick) * tick_s);  // starts at twice the pace
+        0.6 * std::sin(full_turn * 2.0 * static_cast<double>(tick) * tick_s);  // starts at twice the pace
   }
   const auto stride = find_stride(signals.table(), tick_s);
   ASSERT_TRUE(stride);

@@ -142,7 +142,7 @@ void Bootloader::poll(Microseconds now) {
   }
   if (now >= idle_at_) {
     idle_at_ = now + idle_timeout_us;
-    if (slots_.image_in(FlashSlot::a) || slots_.image_in(FlashSlot::b)) {
+    if (!slots_.image_in(FlashSlot::a).empty() || !slots_.image_in(FlashSlot::b).empty()) {
       leave(now);
     }
   }
@@ -157,18 +157,8 @@ Microseconds Bootloader::next_deadline() const {
   return installs && queue_.size() == 0 ? 0 : std::min({sdo_.next_deadline(), heartbeat_at_, idle_at_, leave_at_});
 }
 
-/// Everything that can be known before the flash is erased.
-image::Error Bootloader::check(std::span<const std::uint8_t> image) const {
-  const auto [header, error] = image::decode(image);
-  if (error != image::Error::none) {
-    return error;
-  }
-  const image::Error place_error = image::check_place(header, place_);
-  return place_error != image::Error::none ? place_error : image::check_body(header, image.subspan(image::header_size));
-}
-
 void Bootloader::install_broadcast() {
-  const image::Error error = check(receiver_.image());
+  const image::Error error = image::check_image(receiver_.image(), place_);  // before the flash is erased
   if (error != image::Error::none) {
     status_ = status_of(error);
     receiver_.set_state(ReceiverState::refused, static_cast<std::uint8_t>(error));
@@ -179,9 +169,9 @@ void Bootloader::install_broadcast() {
                       static_cast<std::uint8_t>(result));
 }
 
-/// An image that check() has found right.
+/// An image that was checked.
 InstallResult Bootloader::write_image(std::span<const std::uint8_t> image) {
-  const InstallResult result = slots_.install(image::decode(image).header, image.subspan(image::header_size));
+  const InstallResult result = slots_.install(image);
   const bool is_installed = result == InstallResult::ok || result == InstallResult::already_there;
   status_ = is_installed ? 0 : object::status_write_error;
   return result;
@@ -210,8 +200,8 @@ AbortCode Bootloader::read(const Entry& entry, std::uint32_t& value) {
   } else if (entry.address == canopen::object::serial.address) {
     value = address_.back();
   } else if (entry.address == object::program_identification.address) {
-    const auto header = slots_.image_in(FlashSlot::a);
-    value = header ? crc32(image::encode(*header)) : 0;
+    const auto image = slots_.image_in(FlashSlot::a);
+    value = image.empty() ? 0 : crc32(image.first(image::header_size));
   } else if (entry.address == object::flash_status.address) {
     value = status_ | (downloaded_ != 0 ? object::status_in_progress : 0);
   }
@@ -253,7 +243,7 @@ AbortCode Bootloader::write_part(const Entry& /*entry*/, std::uint32_t offset, s
 }
 
 AbortCode Bootloader::close_write(const Entry& /*entry*/, std::uint32_t size) {
-  const image::Error error = check(ports_.buffer.first(size));
+  const image::Error error = image::check_image(ports_.buffer.first(size), place_);
   status_ = status_of(error);
   if (error != image::Error::none) {
     return AbortCode::general_incompatibility;

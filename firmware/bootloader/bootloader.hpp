@@ -59,7 +59,6 @@ class Bootloader final : private canopen::ObjectAccess {
   void start_network(Microseconds now, std::uint8_t node);
   void install_broadcast();
   [[nodiscard]] InstallResult write_image(std::span<const std::uint8_t> image);
-  [[nodiscard]] image::Error check(std::span<const std::uint8_t> image) const;
   void leave(Microseconds now);
   void send(const CanFrame& frame) { static_cast<void>(queue_.push(frame)); }
 

@@ -18,41 +18,47 @@ std::array<std::uint8_t, 4> bytes_of(std::uint32_t word) {
   return bytes;
 }
 
+/// Headers have the hash of what follows.
+bool is_same(Bytes one, Bytes other) {
+  return one.size() == other.size() &&
+         (one.empty() || std::ranges::equal(one.first(image::header_size), other.first(image::header_size)));
+}
+
 }  // namespace
 
 StartResult Slots::prepare_start() {
   for (bool is_restored = false;; is_restored = true) {
-    const std::optional<image::Header> current = image_in(FlashSlot::a);
-    if (current && is_confirmed(FlashSlot::a)) {
+    const Bytes current = image_in(FlashSlot::a);
+    if (!current.empty() && is_confirmed(FlashSlot::a)) {
       return StartResult::run;
     }
-    if (const unsigned used = attempts(); current && used < max_attempts) {
+    if (const unsigned used = attempts(); !current.empty() && used < max_attempts) {
       return flash_.program(FlashSlot::a, words_at() + 4 * (1 + used), bytes_of(0)) ? StartResult::run_on_trial
                                                                                     : StartResult::flash_failed;
     }
-    const std::optional<image::Header> backup = image_in(FlashSlot::b);
-    if (!backup || backup == current) {
+    const Bytes backup = image_in(FlashSlot::b);
+    if (backup.empty() || is_same(backup, current)) {
       return StartResult::nothing;  // the copy of an image that has failed would fail, too
     }
-    if (is_restored || !write(FlashSlot::a, *backup, body_in(FlashSlot::b, *backup), is_confirmed(FlashSlot::b))) {
+    if (is_restored || !write(FlashSlot::a, backup, is_confirmed(FlashSlot::b))) {
       return StartResult::flash_failed;
     }
   }
 }
 
-InstallResult Slots::install(const image::Header& header, Bytes body) {
-  const std::optional<image::Header> current = image_in(FlashSlot::a);
-  if (current == header && (is_confirmed(FlashSlot::a) || attempts() == 0)) {
+InstallResult Slots::install(Bytes image) {
+  const Bytes current = image_in(FlashSlot::a);
+  if (is_same(current, image) && (is_confirmed(FlashSlot::a) || attempts() == 0)) {
     return InstallResult::already_there;  // else its trial begins anew
   }
-  const std::optional<image::Header> backup = image_in(FlashSlot::b);
-  const bool is_current_better = is_confirmed(FlashSlot::a) || !backup;
-  const bool is_copied = backup == current && is_confirmed(FlashSlot::b) == is_confirmed(FlashSlot::a);
-  if (current && is_current_better && !is_copied &&
-      !write(FlashSlot::b, *current, body_in(FlashSlot::a, *current), is_confirmed(FlashSlot::a))) {
+  const Bytes backup = image_in(FlashSlot::b);
+  const bool is_current_better = is_confirmed(FlashSlot::a) || backup.empty();
+  const bool is_copied = is_same(backup, current) && is_confirmed(FlashSlot::b) == is_confirmed(FlashSlot::a);
+  if (!current.empty() && is_current_better && !is_copied &&
+      !write(FlashSlot::b, current, is_confirmed(FlashSlot::a))) {
     return InstallResult::backup_failed;
   }
-  return write(FlashSlot::a, header, body, false) ? InstallResult::ok : InstallResult::flash_failed;
+  return write(FlashSlot::a, image, false) ? InstallResult::ok : InstallResult::flash_failed;
 }
 
 bool Slots::confirm() {
@@ -60,13 +66,15 @@ bool Slots::confirm() {
          (flash_.program(FlashSlot::a, words_at(), bytes_of(confirmed_word)) && is_confirmed(FlashSlot::a));
 }
 
-std::optional<image::Header> Slots::image_in(FlashSlot slot) const {
-  const auto [header, error] = image::decode(flash_.contents(slot));
-  if (error != image::Error::none || image::check_place(header, place_) != image::Error::none ||
-      crc32(body_in(slot, header)) != header.crc) {
-    return std::nullopt;
+Bytes Slots::image_in(FlashSlot slot) const {
+  const Bytes contents = flash_.contents(slot);
+  image::Summary header;
+  if (image::decode(contents, header) != image::Error::none ||
+      image::check_place(header, place_) != image::Error::none ||
+      crc32(contents.subspan(image::header_size, header.length)) != header.crc) {
+    return {};
   }
-  return header;
+  return contents.first(image::header_size + header.length);
 }
 
 bool Slots::is_confirmed(FlashSlot slot) const { return word_at(slot, words_at()) == confirmed_word; }
@@ -80,17 +88,11 @@ unsigned Slots::attempts() const {
 }
 
 /// The header last: before it is complete, the slot holds nothing.
-bool Slots::write(FlashSlot slot, const image::Header& header, Bytes body, bool is_proven) {
-  const image::HeaderBytes header_bytes = image::encode(header);
-  return flash_.erase(slot) && flash_.program(slot, image::header_size, body) &&
+bool Slots::write(FlashSlot slot, Bytes image, bool is_proven) {
+  return flash_.erase(slot) && flash_.program(slot, image::header_size, image.subspan(image::header_size)) &&
          (!is_proven || flash_.program(slot, words_at(), bytes_of(confirmed_word))) &&
-         flash_.program(slot, 0, header_bytes) &&
-         std::ranges::equal(header_bytes, flash_.contents(slot).first(header_bytes.size())) &&
-         std::ranges::equal(body, body_in(slot, header)) && is_confirmed(slot) == is_proven;
-}
-
-Bytes Slots::body_in(FlashSlot slot, const image::Header& header) const {
-  return flash_.contents(slot).subspan(image::header_size, header.length);
+         flash_.program(slot, 0, image.first(image::header_size)) &&
+         std::ranges::equal(image, flash_.contents(slot).first(image.size())) && is_confirmed(slot) == is_proven;
 }
 
 std::uint32_t Slots::word_at(FlashSlot slot, std::uint32_t offset) const {

@@ -21,7 +21,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 
 #include "shared/image/image_header.hpp"
@@ -70,21 +69,19 @@ class Slots {
 
   /// Decides what runs, and restores A if that is needed.
   [[nodiscard]] StartResult prepare_start();
-  /// Writes an image into A. header and body: checked by the caller against each other and against the place.
-  [[nodiscard]] InstallResult install(const image::Header& header, std::span<const std::uint8_t> body);
+  /// Writes an image into A, which the caller has checked (image::check_image()).
+  [[nodiscard]] InstallResult install(std::span<const std::uint8_t> image);
   /// The image in A has started well. Whether the flash holds that now. Does nothing if it is known already.
   [[nodiscard]] bool confirm();
 
-  /// Of the complete image in a slot; nothing without one.
-  [[nodiscard]] std::optional<image::Header> image_in(FlashSlot slot) const;
+  /// The complete image in a slot; empty without one.
+  [[nodiscard]] std::span<const std::uint8_t> image_in(FlashSlot slot) const;
   [[nodiscard]] bool is_confirmed(FlashSlot slot) const;
   /// Starts on trial of the image in A.
   [[nodiscard]] unsigned attempts() const;
 
  private:
-  [[nodiscard]] bool write(FlashSlot slot, const image::Header& header, std::span<const std::uint8_t> body,
-                           bool is_proven);
-  [[nodiscard]] std::span<const std::uint8_t> body_in(FlashSlot slot, const image::Header& header) const;
+  [[nodiscard]] bool write(FlashSlot slot, std::span<const std::uint8_t> image, bool is_proven);
   [[nodiscard]] std::uint32_t word_at(FlashSlot slot, std::uint32_t offset) const;
   [[nodiscard]] std::uint32_t words_at() const;
 

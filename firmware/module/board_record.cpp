@@ -1,5 +1,7 @@
 #include "firmware/module/board_record.hpp"
 
+#include <algorithm>
+
 #include "shared/fixed/crc32.hpp"
 #include "shared/fixed/little_endian.hpp"
 
@@ -23,6 +25,7 @@ constexpr std::size_t crc_at = 28;
 constexpr std::uint8_t erased = 0xFF;
 
 using Bytes = std::span<const std::uint8_t>;
+using RecordBytes = std::array<std::uint8_t, BoardRecord::size>;
 
 std::uint16_t half_word(Bytes bytes, std::size_t at) {
   return static_cast<std::uint16_t>(read_little_endian(bytes, at, 2));
@@ -45,20 +48,21 @@ BoardRecord decode_all(Bytes bytes) {
   return record;
 }
 
-std::optional<BoardRecord> decode(Bytes bytes) {
-  const std::uint8_t version = bytes[version_at];
-  const std::uint8_t node = bytes[node_at];
-  if (version < first_schema || node > BoardRecord::max_node ||
-      read_little_endian(bytes, crc_at, 4) != crc32(bytes.first(crc_at))) {
-    return std::nullopt;
-  }
-  if (version <= schema_version) {
+/// The part that is the same in every schema.
+bool is_right(Bytes bytes) {
+  return bytes[version_at] >= first_schema && bytes[node_at] <= BoardRecord::max_node &&
+         read_little_endian(bytes, crc_at, 4) == crc32(bytes.first(crc_at));
+}
+
+/// Of a record that is right.
+BoardRecord decode(Bytes bytes) {
+  if (bytes[version_at] <= schema_version) {
     if (const BoardRecord record = decode_all(bytes); record.valid()) {
       return record;
     }
   }
   BoardRecord fixed_part;
-  fixed_part.node = node;
+  fixed_part.node = bytes[node_at];
   return fixed_part;
 }
 
@@ -72,7 +76,7 @@ bool is_erased(Bytes bytes) {
 }
 
 struct NewestRecord {
-  std::optional<BoardRecord> record;
+  Bytes bytes;  ///< empty: there is none
   std::uint32_t sequence = 0;
   unsigned sector = 0;
 };
@@ -83,11 +87,8 @@ NewestRecord find_newest(const std::array<Bytes, 2>& sectors) {
     for (Bytes rest = sectors[sector]; rest.size() >= BoardRecord::size; rest = rest.subspan(BoardRecord::size)) {
       const Bytes bytes = rest.first(BoardRecord::size);
       const std::uint32_t sequence = read_little_endian(bytes, 0, 4);
-      if (sequence <= found.sequence || is_erased(bytes)) {
-        continue;
-      }
-      if (const std::optional<BoardRecord> record = decode(bytes)) {
-        found = {record, sequence, sector};
+      if (sequence > found.sequence && !is_erased(bytes) && is_right(bytes)) {
+        found = {bytes, sequence, sector};
       }
     }
   }
@@ -112,41 +113,13 @@ bool equal(Bytes a, Bytes b) {
   return true;
 }
 
-}  // namespace
-
-bool BoardRecord::valid() const {
-  return node <= max_node && feedback_at_minus_90 <= max_reading && feedback_at_plus_90 <= max_reading &&
-         (!has_feedback || feedback_at_minus_90 != feedback_at_plus_90) && lowest_angle >= -max_angle &&
-         lowest_angle <= 0 && highest_angle >= 0 && highest_angle <= max_angle && current_limit_ma <= max_current_ma;
-}
-
-std::array<std::uint8_t, BoardRecord::size> encode(const BoardRecord& record, std::uint32_t sequence) {
-  std::array<std::uint8_t, BoardRecord::size> bytes{};
+/// Enters what the records of a log have in common.
+void complete(RecordBytes& bytes, std::uint32_t sequence) {
   write_little_endian(bytes, 0, 4, sequence);
-  bytes[version_at] = schema_version;
-  bytes[node_at] = record.node;
-  bytes[flags_at] =
-      static_cast<std::uint8_t>((record.has_feedback ? flag_feedback : 0U) | (record.is_gateway ? flag_gateway : 0U));
-  write_little_endian(bytes, minus_90_at, 2, record.feedback_at_minus_90);
-  write_little_endian(bytes, plus_90_at, 2, record.feedback_at_plus_90);
-  write_little_endian(bytes, lowest_angle_at, 4, static_cast<std::uint32_t>(record.lowest_angle));
-  write_little_endian(bytes, highest_angle_at, 4, static_cast<std::uint32_t>(record.highest_angle));
-  write_little_endian(bytes, current_limit_at, 2, record.current_limit_ma);
-  write_little_endian(bytes, current_limit_time_at, 2, record.current_limit_time_ms);
   write_little_endian(bytes, crc_at, 4, crc32(Bytes(bytes).first(crc_at)));
-  return bytes;
 }
 
-std::optional<BoardRecord> newest(Bytes sector_1, Bytes sector_2) { return find_newest({sector_1, sector_2}).record; }
-
-AppendResult append(FlashPort& flash, const BoardRecord& record) {
-  if (!record.valid()) {
-    return AppendResult::invalid_record;
-  }
-  const NewestRecord before = find_newest({flash.contents(0), flash.contents(1)});
-  if (before.record == record) {
-    return AppendResult::ok;
-  }
+AppendResult write(FlashPort& flash, const NewestRecord& before, const RecordBytes& bytes) {
   unsigned sector = before.sector;
   std::size_t offset = free_offset(flash.contents(sector));
   if (offset + BoardRecord::size > flash.contents(sector).size()) {
@@ -157,12 +130,73 @@ AppendResult append(FlashPort& flash, const BoardRecord& record) {
       return AppendResult::erase_failed;
     }
   }
-  const std::array<std::uint8_t, BoardRecord::size> bytes = encode(record, before.sequence + 1U);
   if (!flash.program(sector, static_cast<std::uint32_t>(offset), bytes) ||
       !equal(bytes, flash.contents(sector).subspan(offset, BoardRecord::size))) {
     return AppendResult::program_failed;
   }
   return AppendResult::ok;
+}
+
+}  // namespace
+
+bool BoardRecord::valid() const {
+  return node <= max_node && feedback_at_minus_90 <= max_reading && feedback_at_plus_90 <= max_reading &&
+         (!has_feedback || feedback_at_minus_90 != feedback_at_plus_90) && lowest_angle >= -max_angle &&
+         lowest_angle <= 0 && highest_angle >= 0 && highest_angle <= max_angle && current_limit_ma <= max_current_ma;
+}
+
+std::array<std::uint8_t, BoardRecord::size> encode(const BoardRecord& record, std::uint32_t sequence) {
+  RecordBytes bytes{};
+  bytes[version_at] = schema_version;
+  bytes[node_at] = record.node;
+  bytes[flags_at] =
+      static_cast<std::uint8_t>((record.has_feedback ? flag_feedback : 0U) | (record.is_gateway ? flag_gateway : 0U));
+  write_little_endian(bytes, minus_90_at, 2, record.feedback_at_minus_90);
+  write_little_endian(bytes, plus_90_at, 2, record.feedback_at_plus_90);
+  write_little_endian(bytes, lowest_angle_at, 4, static_cast<std::uint32_t>(record.lowest_angle));
+  write_little_endian(bytes, highest_angle_at, 4, static_cast<std::uint32_t>(record.highest_angle));
+  write_little_endian(bytes, current_limit_at, 2, record.current_limit_ma);
+  write_little_endian(bytes, current_limit_time_at, 2, record.current_limit_time_ms);
+  complete(bytes, sequence);
+  return bytes;
+}
+
+std::optional<BoardRecord> newest(Bytes sector_1, Bytes sector_2) {
+  const Bytes bytes = find_newest({sector_1, sector_2}).bytes;
+  return bytes.empty() ? std::nullopt : std::optional(decode(bytes));
+}
+
+std::uint8_t newest_node(Bytes sector_1, Bytes sector_2) {
+  const Bytes bytes = find_newest({sector_1, sector_2}).bytes;
+  return bytes.empty() ? std::uint8_t{0} : bytes[node_at];
+}
+
+AppendResult append(FlashPort& flash, const BoardRecord& record) {
+  if (!record.valid()) {
+    return AppendResult::invalid_record;
+  }
+  const NewestRecord before = find_newest({flash.contents(0), flash.contents(1)});
+  if (!before.bytes.empty() && decode(before.bytes) == record) {
+    return AppendResult::ok;
+  }
+  return write(flash, before, encode(record, before.sequence + 1U));
+}
+
+AppendResult append_node(FlashPort& flash, std::uint8_t node) {
+  if (node > BoardRecord::max_node) {
+    return AppendResult::invalid_record;
+  }
+  const NewestRecord before = find_newest({flash.contents(0), flash.contents(1)});
+  RecordBytes bytes = encode(BoardRecord{}, 0);
+  if (!before.bytes.empty()) {
+    if (before.bytes[node_at] == node) {
+      return AppendResult::ok;
+    }
+    std::ranges::copy(before.bytes, bytes.begin());
+  }
+  bytes[node_at] = node;
+  complete(bytes, before.sequence + 1U);
+  return write(flash, before, bytes);
 }
 
 }  // namespace proleg::firmware

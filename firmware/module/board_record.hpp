@@ -86,6 +86,9 @@ struct BoardRecord {
 [[nodiscard]] std::optional<BoardRecord> newest(std::span<const std::uint8_t> sector_1,
                                                 std::span<const std::uint8_t> sector_2);
 
+/// The node id of that record; 0: none.
+[[nodiscard]] std::uint8_t newest_node(std::span<const std::uint8_t> sector_1, std::span<const std::uint8_t> sector_2);
+
 enum class AppendResult : std::uint8_t {
   ok,              ///< also if it is the newest already: nothing was written then
   invalid_record,  ///< not BoardRecord::valid(); nothing was written
@@ -96,5 +99,7 @@ enum class AppendResult : std::uint8_t {
 /// Appends a record to the log in sectors 0 and 1 of the port. If the power fails meanwhile, at any instant, the newest
 /// record is the one before or this one.
 [[nodiscard]] AppendResult append(FlashPort& flash, const BoardRecord& record);
+/// The same with a copy of the newest record that has this node id and, in any schema, everything else as it was.
+[[nodiscard]] AppendResult append_node(FlashPort& flash, std::uint8_t node);
 
 }  // namespace proleg::firmware

@@ -6,6 +6,7 @@
 #include "firmware/stm32f405/hardware.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
 #include "firmware/stm32f405/registers/rcc.hpp"
+#include "firmware/stm32f405/reset.hpp"
 
 extern "C" {
 
@@ -104,14 +105,6 @@ void record_fault(FaultRecord::Reason reason) {
   record.reason = reason;
   record.frame[6] = std::bit_cast<std::uint32_t>(__builtin_return_address(0));
   store(record);
-}
-
-void reset_chip() {
-  asm volatile("dsb" : : : "memory");
-  scb::aircr.write(scb::aircr_sysresetreq);
-  for (;;) {
-    asm volatile("wfi");  // the reset takes a few cycles
-  }
 }
 
 }  // namespace proleg::stm32f405

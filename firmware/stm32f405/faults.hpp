@@ -50,6 +50,4 @@ struct FaultRecord {
 /// Writes a record with the caller's address as pc. The caller must reset the chip.
 [[gnu::noinline]] void record_fault(FaultRecord::Reason reason);
 
-[[noreturn]] void reset_chip();
-
 }  // namespace proleg::stm32f405

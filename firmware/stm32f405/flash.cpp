@@ -1,85 +1,27 @@
 #include "firmware/stm32f405/flash.hpp"
 
-#include <cstring>
-
 #include "firmware/stm32f405/flash_layout.hpp"
-#include "firmware/stm32f405/registers/flash.hpp"
-#include "firmware/stm32f405/registers/timer.hpp"
-#include "firmware/stm32f405/watchdog.hpp"
+#include "firmware/stm32f405/flash_operations.hpp"
 #include "shared/canopen/declared_objects.hpp"
 
 namespace proleg::stm32f405 {
 namespace {
 
-using namespace flash_interface;
+constexpr unsigned first_sector = 1;
 
-constexpr std::uint32_t first_sector = 1;
-
-// At least twice the maximum of the data sheet.
+/// Twice the maximum of the data sheet.
 constexpr std::uint32_t erase_timeout_us = 1'000'000;
-constexpr std::uint32_t program_timeout_us = 1'000;
 // A client of the module still waits when a flash that does not end is reported.
 static_assert(erase_timeout_us + firmware::BoardRecord::size / 4 * program_timeout_us < canopen::storing_time_us);
 
-/// Starts an operation and waits for its end or the timeout. Programs `word` at `address`, or erases if that is 0.
-/// Returns the status register. It may call no function and read only registers and the stack: all else is in flash.
-[[gnu::section(".ram_code"), gnu::noinline, gnu::noclone]] std::uint32_t operate(std::uint32_t control,
-                                                                                 std::uintptr_t address,
-                                                                                 std::uint32_t word,
-                                                                                 std::uint32_t timeout_us) {
-  std::uint32_t primask = 0;
-  asm volatile("mrs %0, primask\n\tcpsid i" : "=r"(primask) : : "memory");
-  const std::uint32_t start = tim5.cnt().read();
-  cr.write(control);
-  if (address != 0) {
-    Register(address).write(word);
-  } else {
-    cr.write(control | cr_strt);
-  }
-  asm volatile("dsb" : : : "memory");  // BSY is set from here on
-  std::uint32_t status = sr.read();
-  while ((status & sr_bsy) != 0 && tim5.cnt().read() - start < timeout_us) {
-    feed_watchdog();
-    status = sr.read();
-  }
-  cr.write(cr_lock);
-  asm volatile("msr primask, %0" : : "r"(primask) : "memory");
-  return status;
-}
-
-bool run(std::uint32_t control, std::uintptr_t address, std::uint32_t word, std::uint32_t timeout_us) {
-  if (!wait_until_clear(sr, sr_bsy, 1)) {
-    return false;  // an operation that exceeded its timeout is still running
-  }
-  if (cr.has(cr_lock)) {  // keys that are not expected lock it until the next reset
-    keyr.write(keyr_key1);
-    keyr.write(keyr_key2);
-  }
-  sr.write(sr_errors | sr_eop);
-  return (operate(control, address, word, timeout_us) & (sr_bsy | sr_errors)) == 0;
-}
-
-/// The data cache may hold what was there before the erase (RM0090, section 3.5.2). Programming keeps it up to date.
-void clear_data_cache() {
-  acr.clear(acr_dcen);
-  acr.set(acr_dcrst);
-  acr.clear(acr_dcrst);
-  acr.set(acr_dcen);
-}
-
-constexpr std::uintptr_t address_of(unsigned sector) {
+constexpr std::uint32_t address_of(unsigned sector) {
   return flash_layout::board_records + sector * BoardRecordFlash::sector_size;
 }
 
 }  // namespace
 
 bool BoardRecordFlash::erase(unsigned sector) {
-  if (sector >= sector_count) {
-    return false;
-  }
-  const bool done = run(cr_ser | (first_sector + sector) << cr_snb_position | cr_psize_32, 0, 0, erase_timeout_us);
-  clear_data_cache();
-  return done;
+  return sector < sector_count && erase_sector(first_sector + sector, erase_timeout_us);
 }
 
 bool BoardRecordFlash::program(unsigned sector, std::uint32_t offset, std::span<const std::uint8_t> bytes) {
@@ -87,18 +29,11 @@ bool BoardRecordFlash::program(unsigned sector, std::uint32_t offset, std::span<
       bytes.size() % 4 != 0) {
     return false;
   }
-  for (std::size_t i = 0; i < bytes.size(); i += 4) {
-    std::uint32_t word = 0;
-    std::memcpy(&word, &bytes[i], sizeof(word));
-    if (!run(cr_pg | cr_psize_32, address_of(sector) + offset + i, word, program_timeout_us)) {
-      return false;
-    }
-  }
-  return true;
+  return program_words(address_of(sector) + offset, bytes);
 }
 
 std::span<const std::uint8_t> BoardRecordFlash::contents(unsigned sector) const {
-  return {reinterpret_cast<const std::uint8_t*>(address_of(sector)), sector_size};
+  return {reinterpret_cast<const std::uint8_t*>(static_cast<std::uintptr_t>(address_of(sector))), sector_size};
 }
 
 }  // namespace proleg::stm32f405

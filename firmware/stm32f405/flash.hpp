@@ -6,12 +6,8 @@ namespace proleg::stm32f405 {
 
 /// Sectors 1 and 2 of the flash, 16 KiB each at 0x08004000 and 0x08008000: sectors 0 and 1 of the port (RM0090, section
 /// 3.3, table 5).
-///
-/// The flash is one bank: while a sector is erased (up to half a second; data sheet, table 41) or a word programmed (up
-/// to 0.1 ms), every read of flash stalls the CPU. So the wait runs from RAM and feeds the watchdog. Interrupts are
-/// disabled meanwhile, because their vectors and handlers are in flash. The controller keeps three of the frames that
-/// come, others are lost. The timer repeats the servo's last pulse. To be used only while the servo
-/// has no power.
+/// An operation takes up to half a second (flash_operations.hpp); the timer repeats the servo's last pulse meanwhile.
+/// To be used only while the servo has no power.
 class BoardRecordFlash final : public firmware::FlashPort {
  public:
   static constexpr std::uint32_t sector_count = 2;

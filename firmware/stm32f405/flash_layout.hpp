@@ -12,4 +12,17 @@ inline constexpr std::uint32_t board_records = 0x0800'4000;
 inline constexpr std::uint32_t slot_a = 0x0802'0000;
 inline constexpr std::uint32_t slot_size = 384 * 1024;
 
+/// A part of the flash that is erased as a whole.
+struct Sector {
+  unsigned number = 0;
+  std::uint32_t address = 0;
+  std::uint32_t size = 0;
+};
+
+/// The slots of the bootloader (firmware/bootloader/slots.hpp). An image is much smaller than one of these sectors.
+inline constexpr Sector image_sector_a{5, slot_a, 128 * 1024};
+inline constexpr Sector image_sector_b{8, 0x0808'0000, 128 * 1024};
+/// Of an image, with its header.
+inline constexpr std::uint32_t max_image_size = 64 * 1024;
+
 }  // namespace proleg::stm32f405::flash_layout

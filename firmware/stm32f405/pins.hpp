@@ -16,6 +16,7 @@ struct Pin {
 namespace board {
 
 inline constexpr std::uint16_t id = 1;
+inline constexpr std::uint8_t revision = 1;  ///< of the hardware: which images it can run
 
 // Clocks, in Hz. RM0090, section 7.2; the limits are those of the data sheet.
 inline constexpr std::uint32_t crystal = 8'000'000;

@@ -4,6 +4,7 @@
 
 #include "shared/canopen/messages.hpp"
 #include "shared/canopen/sdo_frame.hpp"
+#include "shared/canopen/sdo_profile.hpp"
 
 namespace proleg::canopen {
 
@@ -29,7 +30,7 @@ std::optional<CanFrame> SdoServer::receive(Microseconds now, const CanFrame& fra
     case sdo::request_upload:
       return initiate_upload(frame);
     case sdo::request_upload_segment:
-      return upload_segment(frame);
+      return sdo_has_long_uploads ? upload_segment(frame) : unexpected(frame);
     case sdo::block_download:
       return (command & sdo::block_end) != 0 ? end_block_download(frame) : initiate_block_download(frame);
     case sdo::answer_block_download:
@@ -39,7 +40,11 @@ std::optional<CanFrame> SdoServer::receive(Microseconds now, const CanFrame& fra
     default:
       return unexpected(frame);
   }
-  switch (command & sdo::block_command) {
+  return sdo_has_long_uploads ? receive_block_upload(frame) : unexpected(frame);
+}
+
+std::optional<CanFrame> SdoServer::receive_block_upload(const CanFrame& frame) {
+  switch (frame.data[0] & sdo::block_command) {
     case sdo::block_start:
       return start_block_upload(frame);
     case sdo::block_acknowledge:
@@ -123,6 +128,9 @@ CanFrame SdoServer::answer_upload() {
     answer.data[0] = sdo::with_size(sdo::answer_upload, size_);
     const AbortCode code = read_part(0, std::span(answer.data).subspan(4, size_));
     return code == AbortCode::none ? answer : abort(code);
+  }
+  if (!sdo_has_long_uploads) {
+    return abort(AbortCode::unsupported_access);
   }
   state_ = State::upload;
   answer.data[0] |= sdo::size_indicated;
@@ -428,7 +436,7 @@ AbortCode SdoServer::begin_read() {
     return AbortCode::write_only;
   }
   if (is_long(entry_.type)) {
-    return device_.open_read(entry_, size_);
+    return sdo_has_long_uploads ? device_.open_read(entry_, size_) : AbortCode::unsupported_access;
   }
   std::uint32_t value = 0;
   AbortCode code = AbortCode::none;
@@ -443,7 +451,7 @@ AbortCode SdoServer::begin_read() {
 }
 
 AbortCode SdoServer::read_part(std::uint32_t offset, std::span<std::uint8_t> part) {
-  if (is_long(entry_.type)) {
+  if (sdo_has_long_uploads && is_long(entry_.type)) {
     return part.empty() ? AbortCode::none : device_.read_part(entry_, offset, part);
   }
   std::copy_n(number_.begin() + offset, part.size(), part.begin());

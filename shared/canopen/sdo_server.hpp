@@ -10,6 +10,7 @@
 #include "shared/can/can_port.hpp"
 #include "shared/canopen/block_transfer.hpp"
 #include "shared/canopen/objects.hpp"
+#include "shared/canopen/sdo_profile.hpp"
 
 namespace proleg::canopen {
 
@@ -69,7 +70,9 @@ class SdoServer {
   [[nodiscard, gnu::cold, gnu::noinline]] std::optional<CanFrame> receive(Microseconds now, const CanFrame& frame);
 
   /// Whether next_segment() has a frame: the server sends a sub-block as fast as the bus takes it.
-  [[nodiscard]] bool has_segment() const { return state_ == State::block_upload && sender_.can_send(); }
+  [[nodiscard]] bool has_segment() const {
+    return sdo_has_long_uploads && state_ == State::block_upload && sender_.can_send();
+  }
   /// The next segment of a block upload, or an abort. Only if has_segment().
   [[nodiscard, gnu::cold, gnu::noinline]] CanFrame next_segment(Microseconds now);
 
@@ -103,6 +106,7 @@ class SdoServer {
   CanFrame initiate_block_download(const CanFrame& frame);
   std::optional<CanFrame> download_block_segment(const CanFrame& frame);
   CanFrame end_block_download(const CanFrame& frame);
+  std::optional<CanFrame> receive_block_upload(const CanFrame& frame);
   CanFrame initiate_block_upload(const CanFrame& frame);
   std::optional<CanFrame> start_block_upload(const CanFrame& frame);
   std::optional<CanFrame> acknowledge_block_upload(const CanFrame& frame);

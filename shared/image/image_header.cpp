@@ -1,5 +1,7 @@
 #include "shared/image/image_header.hpp"
 
+#include <algorithm>
+
 #include "shared/fixed/crc32.hpp"
 #include "shared/fixed/little_endian.hpp"
 
@@ -62,12 +64,19 @@ bool is_zero(Bytes bytes) {
   return any == 0;
 }
 
-bool has_possible_values(const Header& header, Bytes bytes) {
+bool has_possible_values(const Summary& header, Bytes bytes) {
   constexpr std::size_t reserved_at = flags_at + 1;
   return header.lowest_revision <= header.highest_revision && header.length != 0 && header.length % 4 == 0 &&
          header.address % header_size == 0 && bytes[flags_at] <= flag_changed_sources &&
          is_zero(bytes.subspan(reserved_at, address_at - reserved_at)) &&
          is_zero(bytes.subspan(signature_end, header_crc_at - signature_end));
+}
+
+Error check_body(const Summary& header, Bytes hash, Bytes body) {
+  if (body.size() != header.length) {
+    return Error::wrong_length;
+  }
+  return crc32(body) == header.crc && std::ranges::equal(sha256(body), hash) ? Error::none : Error::damaged_body;
 }
 
 }  // namespace
@@ -128,44 +137,47 @@ HeaderBytes encode(const Header& header) {
   return bytes;
 }
 
-HeaderResult decode(Bytes bytes) {
-  HeaderResult result;
-  const auto failed = [&result](Error error) {
-    result.error = error;
-    return result;
-  };
+Error decode(Bytes bytes, Summary& summary) {
   if (bytes.size() < header_size) {
-    return failed(Error::too_short);
+    return Error::too_short;
   }
   if (read_little_endian(bytes, magic_at, 4) != magic) {
-    return failed(Error::not_an_image);
+    return Error::not_an_image;
   }
   if (half_word(bytes, format_at) != format || half_word(bytes, size_at) != header_size) {
-    return failed(Error::unknown_format);
+    return Error::unknown_format;
   }
   if (read_little_endian(bytes, header_crc_at, 4) != crc32(bytes.first(header_crc_at))) {
-    return failed(Error::damaged_header);
+    return Error::damaged_header;
   }
-  Header& header = result.header;
-  header.board_id = half_word(bytes, board_at);
-  header.lowest_revision = bytes[lowest_revision_at];
-  header.highest_revision = bytes[highest_revision_at];
-  header.version = {half_word(bytes, major_at), half_word(bytes, minor_at), half_word(bytes, patch_at)};
-  header.protocol = half_word(bytes, protocol_at);
-  header.core_fingerprint = read_little_endian(bytes, fingerprint_at, 4);
-  header.settings_schema = bytes[schema_at];
-  header.has_changed_sources = (bytes[flags_at] & flag_changed_sources) != 0;
-  header.address = read_little_endian(bytes, address_at, 4);
-  header.length = read_little_endian(bytes, length_at, 4);
-  header.crc = read_little_endian(bytes, body_crc_at, 4);
-  read_bytes(bytes, commit_at, header.commit);
-  header.key_id = read_little_endian(bytes, key_at, 4);
-  read_bytes(bytes, hash_at, header.hash);
-  read_bytes(bytes, signature_at, header.signature);
-  return has_possible_values(header, bytes) ? result : failed(Error::impossible_value);
+  summary.board_id = half_word(bytes, board_at);
+  summary.lowest_revision = bytes[lowest_revision_at];
+  summary.highest_revision = bytes[highest_revision_at];
+  summary.address = read_little_endian(bytes, address_at, 4);
+  summary.length = read_little_endian(bytes, length_at, 4);
+  summary.crc = read_little_endian(bytes, body_crc_at, 4);
+  return has_possible_values(summary, bytes) ? Error::none : Error::impossible_value;
 }
 
-Error check_place(const Header& header, const Place& place) {
+HeaderResult decode(Bytes bytes) {
+  HeaderResult result;
+  Header& header = result.header;
+  result.error = decode(bytes, header);
+  if (result.error == Error::none) {
+    header.version = {half_word(bytes, major_at), half_word(bytes, minor_at), half_word(bytes, patch_at)};
+    header.protocol = half_word(bytes, protocol_at);
+    header.core_fingerprint = read_little_endian(bytes, fingerprint_at, 4);
+    header.settings_schema = bytes[schema_at];
+    header.has_changed_sources = (bytes[flags_at] & flag_changed_sources) != 0;
+    read_bytes(bytes, commit_at, header.commit);
+    header.key_id = read_little_endian(bytes, key_at, 4);
+    read_bytes(bytes, hash_at, header.hash);
+    read_bytes(bytes, signature_at, header.signature);
+  }
+  return result;
+}
+
+Error check_place(const Summary& header, const Place& place) {
   if (header.board_id != place.board_id) {
     return Error::other_board;
   }
@@ -178,11 +190,17 @@ Error check_place(const Header& header, const Place& place) {
   return header.length > place.room ? Error::too_large : Error::none;
 }
 
-Error check_body(const Header& header, Bytes body) {
-  if (body.size() != header.length) {
-    return Error::wrong_length;
+Error check_body(const Header& header, Bytes body) { return check_body(header, header.hash, body); }
+
+Error check_image(Bytes image, const Place& place) {
+  Summary summary;
+  Error error = decode(image, summary);
+  if (error == Error::none) {
+    error = check_place(summary, place);
   }
-  return crc32(body) == header.crc && sha256(body) == header.hash ? Error::none : Error::damaged_body;
+  return error == Error::none
+             ? check_body(summary, image.subspan(hash_at, std::tuple_size_v<Sha256::Hash>), image.subspan(header_size))
+             : error;
 }
 
 void describe_body(Header& header, Bytes body) {

@@ -45,18 +45,24 @@ struct Version {
   friend constexpr auto operator<=>(const Version&, const Version&) = default;
 };
 
-struct Header {
+/// What decides whether an image runs. A bootloader has no room to read more.
+struct Summary {
   std::uint16_t board_id = 0;
   std::uint8_t lowest_revision = 0;
   std::uint8_t highest_revision = 0;  ///< at least the lowest
+  std::uint32_t address = 0;          ///< of the body
+  std::uint32_t length = 0;           ///< bytes of the body: a multiple of 4, not 0
+  std::uint32_t crc = 0;              ///< CRC-32 of the body
+
+  friend bool operator==(const Summary&, const Summary&) = default;
+};
+
+struct Header : Summary {
   Version version;
   std::uint16_t protocol = 0;
   std::uint32_t core_fingerprint = 0;
   std::uint8_t settings_schema = 0;
   bool has_changed_sources = false;
-  std::uint32_t address = 0;  ///< of the body
-  std::uint32_t length = 0;   ///< bytes of the body: a multiple of 4, not 0
-  std::uint32_t crc = 0;      ///< CRC-32 of the body
   std::array<std::uint8_t, 20> commit{};
   std::uint32_t key_id = 0;
   Sha256::Hash hash{};  ///< SHA-256 of the body
@@ -101,9 +107,14 @@ struct HeaderResult {
 
 /// The header at the beginning of some bytes. The body is not looked at.
 [[nodiscard]] HeaderResult decode(std::span<const std::uint8_t> bytes);
+/// The same for the summary, which is of use if the error is `none`.
+[[nodiscard]] Error decode(std::span<const std::uint8_t> bytes, Summary& summary);
 
 /// Whether an image with this header can run there: `other_board` to `too_large`, or `none`.
-[[nodiscard]] Error check_place(const Header& header, const Place& place);
+[[nodiscard]] Error check_place(const Summary& header, const Place& place);
+
+/// All of this for a whole image: header, place and body.
+[[nodiscard]] Error check_image(std::span<const std::uint8_t> image, const Place& place);
 
 /// Whether a body is the one that the header describes: `wrong_length`, `damaged_body`, or `none`.
 [[nodiscard]] Error check_body(const Header& header, std::span<const std::uint8_t> body);

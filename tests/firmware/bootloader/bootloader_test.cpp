@@ -25,13 +25,6 @@ using sim::BusTime;
 constexpr BusTime us = 1'000;
 constexpr std::uint32_t seed = 5;
 
-std::vector<std::uint8_t> bytes_of(const Image& image) {
-  const image::HeaderBytes header = image::encode(image.header);
-  std::vector<std::uint8_t> bytes(header.begin(), header.end());
-  bytes.insert(bytes.end(), image.body.begin(), image.body.end());
-  return bytes;
-}
-
 /// A module in its bootloader.
 class Node final : sim::BusListener, canopen::LssStorage {
  public:
@@ -202,7 +195,7 @@ TEST_F(BootloaderTest, FiveModulesInstallAnImageAndRunItOnTrial) {
   for (std::uint8_t node = 1; node <= 5; ++node) {
     add(node);
   }
-  flash(bytes_of(second));
+  flash(second.bytes());
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     EXPECT_EQ(targets[i].status.state, ReceiverState::installed);
     EXPECT_EQ(nodes[i]->module.slots.prepare_start(), StartResult::run_on_trial);
@@ -218,7 +211,7 @@ TEST_F(BootloaderTest, FiveModulesInstallAnImageAndRunItOnTrial) {
 
 TEST_F(BootloaderTest, ModulesWithoutANodeIdTakePart) {
   Node& node = add(0);
-  flash(bytes_of(first));
+  flash(first.bytes());
   EXPECT_EQ(targets[0].status.state, ReceiverState::installed);
   EXPECT_EQ(number_in(node.module.slots, FlashSlot::a), 1U);
 }
@@ -231,19 +224,19 @@ TEST_F(BootloaderTest, AnImageThatIsNotRightIsRefusedForItsReasonBeforeAnythingI
   Image revision = second;
   revision.header.lowest_revision = revision.header.highest_revision = 3;
   Image large = make_image(4, 1028);
-  std::vector<std::uint8_t> damaged = bytes_of(second);
+  std::vector<std::uint8_t> damaged = second.bytes();
   damaged[600] ^= 1U;
-  std::vector<std::uint8_t> damaged_header = bytes_of(second);
+  std::vector<std::uint8_t> damaged_header = second.bytes();
   damaged_header[20] ^= 1U;
-  std::vector<std::uint8_t> cut = bytes_of(second);
+  std::vector<std::uint8_t> cut = second.bytes();
   cut.resize(cut.size() - 4);
   const std::vector<std::uint8_t> text(700, 'x');
   const struct {
     std::vector<std::uint8_t> bytes;
     image::Error error;
-  } cases[]{{bytes_of(foreign), image::Error::other_board},
-            {bytes_of(elsewhere), image::Error::other_address},
-            {bytes_of(revision), image::Error::other_revision},
+  } cases[]{{foreign.bytes(), image::Error::other_board},
+            {elsewhere.bytes(), image::Error::other_address},
+            {revision.bytes(), image::Error::other_revision},
             {damaged, image::Error::damaged_body},
             {damaged_header, image::Error::damaged_header},
             {cut, image::Error::wrong_length},
@@ -274,7 +267,7 @@ TEST_F(BootloaderTest, AToolOfOthersDownloadsAnImageBySdo) {
   EXPECT_EQ(download({0x1F51, 1}, stop), canopen::AbortCode::none);
   EXPECT_EQ(download({0x1F51, 1}, clear), canopen::AbortCode::none);
   EXPECT_EQ(node.module.start(), 1U) << "the old program stays until the new one is complete";
-  EXPECT_EQ(download({0x1F50, 1}, bytes_of(second)), canopen::AbortCode::none);
+  EXPECT_EQ(download({0x1F50, 1}, second.bytes()), canopen::AbortCode::none);
   run_for(10'000);
   EXPECT_EQ(upload(object::flash_status), 0U);
   EXPECT_EQ(upload(object::program_identification), crc32(image::encode(second.header)));
@@ -288,7 +281,7 @@ TEST_F(BootloaderTest, AWrongDownloadIsAbortedAndTheStatusSaysWhy) {
   Node& node = add(tool_node);
   node.module.install_proven(first);
   const int operations = node.module.flash.operations;
-  std::vector<std::uint8_t> damaged = bytes_of(second);
+  std::vector<std::uint8_t> damaged = second.bytes();
   damaged[600] ^= 1U;
   EXPECT_EQ(download({0x1F50, 1}, damaged), canopen::AbortCode::general_incompatibility);
   EXPECT_EQ(upload(object::flash_status) & 0xFFU, object::status_wrong_data);
@@ -299,7 +292,7 @@ TEST_F(BootloaderTest, AWrongDownloadIsAbortedAndTheStatusSaysWhy) {
   EXPECT_EQ(download({0x1F51, 2}, std::vector<std::uint8_t>(1)), canopen::AbortCode::no_such_sub_index);
   EXPECT_EQ(download({0x1F51, 1}, std::vector<std::uint8_t>{4}), canopen::AbortCode::above_maximum);
   EXPECT_EQ(node.module.flash.operations, operations);
-  EXPECT_EQ(download({0x1F50, 1}, bytes_of(second)), canopen::AbortCode::none);
+  EXPECT_EQ(download({0x1F50, 1}, second.bytes()), canopen::AbortCode::none);
 }
 
 TEST_F(BootloaderTest, ShowsItselfOnTheNetworkAndLeavesByNmt) {

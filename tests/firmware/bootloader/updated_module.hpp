@@ -15,6 +15,13 @@ inline constexpr std::size_t slot_size = image::header_size + 1024 + Slots::word
 struct Image {
   image::Header header;
   std::vector<std::uint8_t> body;
+
+  [[nodiscard]] std::vector<std::uint8_t> bytes() const {
+    const image::HeaderBytes header_bytes = image::encode(header);
+    std::vector<std::uint8_t> all(header_bytes.begin(), header_bytes.end());
+    all.insert(all.end(), body.begin(), body.end());
+    return all;
+  }
 };
 
 inline Image make_image(std::uint16_t number, std::size_t size = 64) {
@@ -33,8 +40,8 @@ inline Image make_image(std::uint16_t number, std::size_t size = 64) {
 
 /// The number of the image in a slot; 0: none.
 inline unsigned number_in(const Slots& slots, FlashSlot slot) {
-  const auto header = slots.image_in(slot);
-  return header ? header->version.major : 0;
+  const auto image = slots.image_in(slot);
+  return image.empty() ? 0 : image::decode(image).header.version.major;
 }
 
 /// Flash and slots of a module that is updated.
@@ -45,7 +52,7 @@ class UpdatedModule {
   UpdatedModule(const UpdatedModule&) = delete;
   UpdatedModule& operator=(const UpdatedModule&) = delete;
 
-  InstallResult install(const Image& image) { return slots.install(image.header, image.body); }
+  InstallResult install(const Image& image) { return slots.install(image.bytes()); }
 
   /// Power on, without a cut. The number of the image that runs; 0: none.
   unsigned start() {

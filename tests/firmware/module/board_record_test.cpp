@@ -131,6 +131,36 @@ TEST(BoardRecordTest, OfARecordOfANewerSchemaOnlyTheFixedPartIsRead) {
   EXPECT_EQ(newest_of(flash), record_of(8));
 }
 
+TEST(BoardRecordTest, AnotherNodeIdLeavesTheRestOfTheNewestRecordInAnySchema) {
+  FlashMemory flash;
+  ASSERT_EQ(append(flash, record_of(6)), AppendResult::ok);
+  ASSERT_EQ(append_node(flash, 12), AppendResult::ok);
+  BoardRecord expected = record_of(6);
+  expected.node = 12;
+  EXPECT_EQ(newest_of(flash), expected);
+  EXPECT_EQ(newest_node(flash.sectors[0], flash.sectors[1]), 12U);
+
+  const auto newer = bytes_of({7, 0, 0, 0, 3, 5}, 0xA5, 0x1B2B9407);
+  std::copy(newer.begin(), newer.end(), flash.sectors[0].begin() + 2 * BoardRecord::size);
+  ASSERT_EQ(append_node(flash, 9), AppendResult::ok);
+  const auto appended = bytes_of({8, 0, 0, 0, 3, 9}, 0xA5, 0x12686D09);
+  EXPECT_TRUE(
+      std::ranges::equal(appended, std::span(flash.sectors[0]).subspan(3 * BoardRecord::size, BoardRecord::size)));
+}
+
+TEST(BoardRecordTest, TheFirstNodeIdMakesARecordOfDefaultValuesAndTheSameAgainWritesNothing) {
+  FlashMemory flash;
+  EXPECT_EQ(newest_node(flash.sectors[0], flash.sectors[1]), 0U);
+  ASSERT_EQ(append_node(flash, 4), AppendResult::ok);
+  BoardRecord expected;
+  expected.node = 4;
+  EXPECT_EQ(newest_of(flash), expected);
+  const auto sectors = flash.sectors;
+  EXPECT_EQ(append_node(flash, 4), AppendResult::ok);
+  EXPECT_EQ(append_node(flash, BoardRecord::max_node + 1), AppendResult::invalid_record);
+  EXPECT_EQ(flash.sectors, sectors);
+}
+
 TEST(BoardRecordTest, WhatANewerProgramAddsToVersion2IsIgnored) {
   BoardRecord record = record_of(9);
   auto bytes = encode(record, 1);

@@ -96,9 +96,7 @@ class Settings final : public canopen::LssStorage {
 class Session {
  public:
   Session() {
-    const std::vector<std::uint8_t> bytes = image_bytes(1);
-    const auto header = image::decode(bytes).header;
-    require(slots_.install(header, std::span(bytes).subspan(image::header_size)) == InstallResult::ok, "installed");
+    require(slots_.install(image_bytes(1)) == InstallResult::ok, "installed");
     require(slots_.prepare_start() == StartResult::run_on_trial && slots_.confirm(), "confirmed");
     bootloader_.power_on(0, node);
   }
@@ -110,7 +108,7 @@ class Session {
     bus_.is_full = false;
     const StartResult result = slots_.prepare_start();
     require(result == StartResult::run || result == StartResult::run_on_trial, "an image runs");
-    require(slots_.image_in(FlashSlot::a).has_value(), "it is complete, and for this board");
+    require(!slots_.image_in(FlashSlot::a).empty(), "it is complete, and for this board");
   }
 
  private:
@@ -139,10 +137,8 @@ class Session {
     const unsigned erases = memory_.erases;
     bootloader_.poll(now_);
     if (memory_.erases != erases) {
-      const auto header = slots_.image_in(FlashSlot::a);
-      require(header.has_value(), "what was written is right for the board");
-      const auto body = memory_.contents(FlashSlot::a).subspan(image::header_size, header->length);
-      require(image::check_body(*header, body) == image::Error::none, "and complete");
+      require(image::check_image(slots_.image_in(FlashSlot::a), place) == image::Error::none,
+              "what was written is complete, and right for the board");
     }
     require(bootloader_.next_deadline() > now_ || bus_.is_full || bootloader_.next_deadline() == 0,
             "a deadline that is polled is over");

@@ -1,0 +1,132 @@
+#include "firmware/stm32f405/bootloader/bus.hpp"
+
+#include <optional>
+
+#include "firmware/bootloader/bootloader.hpp"
+#include "firmware/module/board_record.hpp"
+#include "firmware/module/module_identity.hpp"
+#include "firmware/stm32f405/bootloader/program_start.hpp"
+#include "firmware/stm32f405/bootloader/slot_memory.hpp"
+#include "firmware/stm32f405/can.hpp"
+#include "firmware/stm32f405/factory_data.hpp"
+#include "firmware/stm32f405/flash.hpp"
+#include "firmware/stm32f405/handlers.hpp"
+#include "firmware/stm32f405/microsecond_clock.hpp"
+#include "firmware/stm32f405/registers/core.hpp"
+#include "firmware/stm32f405/reset.hpp"
+#include "firmware/stm32f405/watchdog.hpp"
+
+extern "C" {
+
+/// RAM for an image, from the linker script.
+extern std::uint8_t image_buffer_start[];
+extern std::uint8_t image_buffer_end[];
+
+}  // extern "C"
+
+namespace proleg::stm32f405 {
+namespace {
+
+/// Keeps the node id that LSS gives.
+class Settings final : public canopen::LssStorage {
+ public:
+  [[nodiscard]] Result store_node(std::uint8_t node) override {
+    return {firmware::append_node(flash_, node) == firmware::AppendResult::ok ? canopen::lss::ok
+                                                                              : canopen::lss::storage_failed};
+  }
+  /// 0: none.
+  [[nodiscard]] std::uint8_t node() const { return firmware::newest_node(flash_.contents(0), flash_.contents(1)); }
+
+ private:
+  BoardRecordFlash flash_;
+};
+
+// Static, so that the interrupts find it, and the stack stays small.
+constinit std::optional<Can> the_can;  // in .bss, which needs no flash
+constinit MicrosecondClock the_clock;
+constinit SlotMemory the_slot_memory;
+constinit Settings the_settings;
+constinit std::optional<bootloader::Bootloader> the_bootloader;
+
+/// A controller that was bus-off comes back after this time.
+constexpr Microseconds bus_off_pause_us = 100'000;
+
+/// The answer to bus-off, which no interrupt ends.
+class BusRecovery {
+ public:
+  void follow(Microseconds now) {
+    const bool is_off = the_can->is_bus_off();
+    if (is_off && !was_off_) {
+      the_bootloader->bus_was_lost();
+      recover_at_ = now + bus_off_pause_us;
+    }
+    if (is_off && now >= recover_at_) {
+      the_can->recover();
+      recover_at_ = never;
+    }
+    was_off_ = is_off;
+  }
+
+ private:
+  bool was_off_ = false;
+  Microseconds recover_at_ = never;
+};
+
+void take_events() {
+  while (const Can::Event* const event = the_can->next_event()) {
+    const Microseconds time = the_clock.at(event->stamp);
+    if (event->kind == Can::EventKind::received) {
+      the_bootloader->receive(time, event->frame);
+    } else {
+      the_bootloader->transmitted(time, event->frame);
+    }
+    the_can->drop_event();
+  }
+}
+
+}  // namespace
+
+void serve_bus() {
+  the_can.emplace();
+  if (!the_can->start()) {
+    reset_chip();
+  }
+  firmware::ModuleIdentity identity;
+  identity.unique_id = factory::unique_id();
+  the_bootloader.emplace(
+      image_place(), serial_number(identity),
+      bootloader::Ports{*the_can, the_slot_memory, the_settings, {image_buffer_start, image_buffer_end}});
+  constexpr std::array broadcast{broadcast::host_identifier};
+  the_can->listen(broadcast);
+  the_bootloader->power_on(the_clock.now(), the_settings.node());
+  for (const Interrupt interrupt : {Interrupt::can1_tx, Interrupt::can1_rx0, Interrupt::can1_sce}) {
+    nvic::enable(interrupt);
+  }
+  BusRecovery recovery;
+  for (;;) {
+    feed_watchdog();
+    take_events();
+    const Microseconds now = the_clock.now();
+    recovery.follow(now);
+    if (now >= the_bootloader->next_deadline()) {
+      the_bootloader->poll(now);
+    }
+    if (the_bootloader->wants_restart()) {
+      reset_chip();
+    }
+  }
+}
+
+}  // namespace proleg::stm32f405
+
+using namespace proleg::stm32f405;
+
+extern "C" {
+
+void can1_tx_handler() { the_can->on_transmit_interrupt(MicrosecondClock::stamp()); }
+
+void can1_rx0_handler() { the_can->on_receive_interrupt(MicrosecondClock::stamp()); }
+
+void can1_sce_handler() { the_can->on_status_interrupt(); }
+
+}  // extern "C"

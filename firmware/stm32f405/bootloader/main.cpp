@@ -1,0 +1,92 @@
+// The bootloader, in flash sector 0, where the chip starts. It starts the module's program, or stays on the bus to
+// receive another one (docs/flashing.md).
+//
+// A confirmed image is started at once: after its checksum, with the chip as it is after a reset. Everything else, a
+// start on trial, the return to the backup, needs clocks and flash operations; it ends with a reset of the chip, after
+// which the program is started in the same way.
+
+#include "firmware/stm32f405/bootloader/bus.hpp"
+#include "firmware/stm32f405/bootloader/handover.hpp"
+#include "firmware/stm32f405/bootloader/program_start.hpp"
+#include "firmware/stm32f405/bootloader/slot_memory.hpp"
+#include "firmware/stm32f405/clock.hpp"
+#include "firmware/stm32f405/gpio.hpp"
+#include "firmware/stm32f405/handlers.hpp"
+#include "firmware/stm32f405/microsecond_clock.hpp"
+#include "firmware/stm32f405/pins.hpp"
+#include "firmware/stm32f405/reset.hpp"
+#include "firmware/stm32f405/reset_cause.hpp"
+#include "firmware/stm32f405/watchdog.hpp"
+
+namespace proleg::stm32f405 {
+namespace {
+
+using bootloader::FlashSlot;
+using bootloader::Slots;
+using bootloader::StartResult;
+
+/// Two resets by the pin within half a second: a person wants the bootloader. The wait is a loop, so that no peripheral
+/// is changed before the program starts.
+bool is_second_press(Handover left) {
+  if (reset_cause_of(rcc::csr.read()) != firmware::ResetCause::pin) {
+    return false;
+  }
+  if (left == Handover::pin_seen) {
+    return true;
+  }
+  leave_handover(Handover::pin_seen);
+  constexpr unsigned milliseconds = 500;
+  constexpr std::uint32_t cycles_of_a_round = 4;  // three or four
+  for (unsigned millisecond = 0; millisecond < milliseconds; ++millisecond) {
+    feed_watchdog();
+    for (std::uint32_t round = board::internal_oscillator / 1'000 / cycles_of_a_round; round != 0; --round) {
+      asm volatile("" : "+r"(round));
+    }
+  }
+  leave_handover(Handover::none);
+  return false;
+}
+
+/// What may run, runs after a reset of the chip. Returns if there is nothing.
+void prepare_program(Slots& slots) {
+  switch (slots.prepare_start()) {
+    case StartResult::run:
+    case StartResult::run_on_trial:
+      leave_handover(Handover::start);
+      reset_chip();
+    case StartResult::nothing:
+    case StartResult::flash_failed:
+      break;
+  }
+}
+
+}  // namespace
+}  // namespace proleg::stm32f405
+
+using namespace proleg::stm32f405;
+
+extern "C" {
+
+void run_program() {
+  static_cast<void>(start_watchdog());  // if that fails it has 512 ms instead of 200, which is enough
+  const Handover left = take_handover();
+  const bool stays = left == Handover::stay || (left != Handover::start && is_second_press(left));
+  SlotMemory memory;
+  Slots slots(memory, image_place());
+  if (!stays && (left == Handover::start || slots.is_confirmed(FlashSlot::a)) &&
+      !slots.image_in(FlashSlot::a).empty()) {
+    start_program();
+  }
+  start_pins();
+  const bool has_clocks = start_clocks() == ClockResult::ok;
+  MicrosecondClock().start();
+  if (!stays) {
+    prepare_program(slots);
+  }
+  if (!has_clocks) {
+    reset_chip();  // there is no CAN without the crystal, which may start next time
+  }
+  serve_bus();
+}
+
+}  // extern "C"

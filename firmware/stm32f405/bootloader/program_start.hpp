@@ -1,0 +1,13 @@
+#pragma once
+
+#include "firmware/bootloader/slots.hpp"
+
+namespace proleg::stm32f405 {
+
+/// On the reference board.
+[[nodiscard]] image::Place image_place();
+
+/// Starts the program in slot A. The chip must be as after a reset, but for the watchdog.
+[[noreturn]] void start_program();
+
+}  // namespace proleg::stm32f405

@@ -1,0 +1,32 @@
+// The vector table of the bootloader, with which the chip starts.
+
+#include "firmware/stm32f405/reset.hpp"
+#include "firmware/stm32f405/vector_table.hpp"
+
+namespace proleg::stm32f405 {
+namespace {
+
+using Table = VectorTable<static_cast<unsigned>(Interrupt::can1_sce) + 1>;
+
+constexpr Table make_vectors() {
+  Table table;
+  table.set(Interrupt::can1_tx, can1_tx_handler);
+  table.set(Interrupt::can1_rx0, can1_rx0_handler);
+  table.set(Interrupt::can1_sce, can1_sce_handler);
+  return table;
+}
+
+[[gnu::section(".vectors"), gnu::used]] constinit const Table vectors = make_vectors();
+
+}  // namespace
+}  // namespace proleg::stm32f405
+
+extern "C" {
+
+/// The next start begins anew. There is no one to whom a record of the fault would be shown.
+void fault_handler() { proleg::stm32f405::reset_chip(); }
+
+/// The compiler's tables have it in place of a virtual function that is not overridden.
+[[noreturn]] void __cxa_pure_virtual() { proleg::stm32f405::reset_chip(); }
+
+}  // extern "C"

@@ -9,7 +9,6 @@ namespace proleg::firmware {
 namespace {
 
 constexpr std::uint8_t first_schema = 1;
-constexpr std::uint8_t schema_version = 2;
 constexpr unsigned flag_feedback = 1U << 0U;
 constexpr unsigned flag_gateway = 1U << 1U;
 constexpr std::size_t version_at = 4;
@@ -56,7 +55,7 @@ bool is_right(Bytes bytes) {
 
 /// Of a record that is right.
 BoardRecord decode(Bytes bytes) {
-  if (bytes[version_at] <= schema_version) {
+  if (bytes[version_at] <= BoardRecord::schema) {
     if (const BoardRecord record = decode_all(bytes); record.valid()) {
       return record;
     }
@@ -147,7 +146,7 @@ bool BoardRecord::valid() const {
 
 std::array<std::uint8_t, BoardRecord::size> encode(const BoardRecord& record, std::uint32_t sequence) {
   RecordBytes bytes{};
-  bytes[version_at] = schema_version;
+  bytes[version_at] = BoardRecord::schema;
   bytes[node_at] = record.node;
   bytes[flags_at] =
       static_cast<std::uint8_t>((record.has_feedback ? flag_feedback : 0U) | (record.is_gateway ? flag_gateway : 0U));

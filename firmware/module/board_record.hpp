@@ -52,7 +52,8 @@ class FlashPort {
 };
 
 struct BoardRecord {
-  static constexpr std::size_t size = 32;  ///< bytes in flash
+  static constexpr std::size_t size = 32;    ///< bytes in flash
+  static constexpr std::uint8_t schema = 2;  ///< the version that is written
   static constexpr std::uint8_t max_node = canopen::max_node_id;
   static constexpr std::uint16_t max_reading = 4095;  ///< of the 12-bit ADC
   static constexpr std::int32_t max_angle = quarter_turn;

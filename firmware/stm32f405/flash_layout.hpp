@@ -4,13 +4,16 @@
 
 #include <cstdint>
 
+#include "shared/image/image_header.hpp"
+
 namespace proleg::stm32f405::flash_layout {
 
 /// Sectors 1 and 2, 16 KiB each: the log of board records (firmware/module/board_record.hpp).
 inline constexpr std::uint32_t board_records = 0x0800'4000;
-/// Sectors 5 to 7: the image, with its vector table first.
+/// Sectors 5 to 7: the image. Its header comes first, then the body, with the vector table first.
 inline constexpr std::uint32_t slot_a = 0x0802'0000;
 inline constexpr std::uint32_t slot_size = 384 * 1024;
+inline constexpr std::uint32_t image_body = slot_a + image::header_size;
 
 /// A part of the flash that is erased as a whole.
 struct Sector {

@@ -1,5 +1,5 @@
-// Flash sector 0, where the chip starts: jumps to the image in slot A. A bootloader that receives and verifies images
-// will replace it; images are linked for that layout already.
+// Flash sector 0, where the chip starts: jumps to the image in slot A. For boards without the bootloader, which
+// receives and verifies images (bootloader/).
 
 #include <cstdint>
 
@@ -9,6 +9,7 @@
 namespace proleg::stm32f405 {
 namespace {
 
+using flash_layout::image_body;
 using flash_layout::slot_a;
 using flash_layout::slot_size;
 constexpr std::uint32_t ram = 0x2000'0000;
@@ -35,10 +36,10 @@ extern "C" {
 
 [[gnu::section(".stub.text"), noreturn]] void stub_reset() {
   using namespace proleg::stm32f405;
-  const std::uint32_t stack = Register(slot_a).read();
-  const std::uint32_t entry = Register(slot_a + 4).read();
+  const std::uint32_t stack = Register(image_body).read();
+  const std::uint32_t entry = Register(image_body + 4).read();
   if (is_plausible(stack, entry)) {
-    scb::vtor.write(slot_a);
+    scb::vtor.write(image_body);
     asm volatile("dsb\n\tmsr msp, %0\n\tbx %1" : : "r"(stack), "r"(entry));
     __builtin_unreachable();
   }

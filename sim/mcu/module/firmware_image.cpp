@@ -18,7 +18,7 @@ FirmwareImage::FirmwareImage(const std::filesystem::path& file) : file_(file), f
     throw ElfError(file.string() + ": found no symbol " + record_symbol +
                    ", expected the firmware of a joint module for this chip (firmware/stm32f405)");
   }
-  flash_.require_vector_table(stm32f405::flash_layout::slot_a);  // behind the start stub
+  flash_.require_vector_table(stm32f405::flash_layout::image_body);  // behind the start stub
   tick_record_ = flash_.require_word(symbol->address);
 }
 

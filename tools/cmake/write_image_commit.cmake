@@ -1,0 +1,26 @@
+# Writes a header with the git commit of the sources of an image, if that has changed: the last commit of the folders
+# that an image is built from, and whether they differ from it. Without git: 20 zeros.
+#   cmake -D SOURCE_DIR=... -D OUTPUT=... -P write_image_commit.cmake
+
+set(folders shared firmware tools/cmake tools/toolchains CMakeLists.txt CMakePresets.json)
+execute_process(COMMAND git -C ${SOURCE_DIR} log -1 --format=%H -- ${folders}
+  OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE status)
+execute_process(COMMAND git -C ${SOURCE_DIR} status --porcelain -- ${folders}
+  OUTPUT_VARIABLE changes OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+if(NOT status EQUAL 0 OR NOT commit MATCHES "^[0-9a-f]+$")
+  string(REPEAT "0" 40 commit)
+  set(changes "")
+endif()
+string(REGEX REPLACE "(..)" "0x\\1, " bytes ${commit})
+set(has_changes false)
+if(changes)
+  set(has_changes true)
+endif()
+set(text "#define PROLEG_IMAGE_COMMIT {${bytes}}\n#define PROLEG_IMAGE_HAS_CHANGES ${has_changes}\n")
+set(before "")
+if(EXISTS ${OUTPUT})
+  file(READ ${OUTPUT} before)
+endif()
+if(NOT text STREQUAL before)
+  file(WRITE ${OUTPUT} "${text}")
+endif()

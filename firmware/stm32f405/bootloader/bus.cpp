@@ -1,5 +1,6 @@
 #include "firmware/stm32f405/bootloader/bus.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include "firmware/bootloader/bootloader.hpp"
@@ -51,6 +52,10 @@ constinit std::optional<bootloader::Bootloader> the_bootloader;
 /// A controller that was bus-off comes back after this time.
 constexpr Microseconds bus_off_pause_us = 100'000;
 
+constexpr Microseconds recovery_poll_us = 1'000;
+/// A quarter of the watchdog's time: with its fastest clock it expires after almost three of these.
+constexpr Microseconds max_pause_us = 50'000;
+
 /// The answer to bus-off, which no interrupt ends.
 class BusRecovery {
  public:
@@ -65,6 +70,10 @@ class BusRecovery {
       recover_at_ = never;
     }
     was_off_ = is_off;
+  }
+  /// Its end raises no interrupt.
+  [[nodiscard]] Microseconds next_deadline() const {
+    return the_can->recovering() ? the_clock.now() + recovery_poll_us : recover_at_;
   }
 
  private:
@@ -84,6 +93,16 @@ void take_events() {
   }
 }
 
+/// Until an event of the bus or the deadline. With interrupts masked, so that none comes between the look at the events
+/// and the sleep: a masked one wakes the CPU, too (PM0214, section 2.5.1).
+void sleep_until(Microseconds deadline) {
+  asm volatile("cpsid i" : : : "memory");
+  if (the_can->next_event() == nullptr && MicrosecondClock::wake_at(deadline)) {
+    asm volatile("dsb\n\twfi");
+  }
+  asm volatile("cpsie i" : : : "memory");
+}
+
 }  // namespace
 
 void serve_bus() {
@@ -99,7 +118,7 @@ void serve_bus() {
   constexpr std::array broadcast{broadcast::host_identifier};
   the_can->listen(broadcast);
   the_bootloader->power_on(the_clock.now(), the_settings.node());
-  for (const Interrupt interrupt : {Interrupt::can1_tx, Interrupt::can1_rx0, Interrupt::can1_sce}) {
+  for (const Interrupt interrupt : {Interrupt::can1_tx, Interrupt::can1_rx0, Interrupt::can1_sce, Interrupt::timer_5}) {
     nvic::enable(interrupt);
   }
   BusRecovery recovery;
@@ -114,6 +133,7 @@ void serve_bus() {
     if (the_bootloader->wants_restart()) {
       reset_chip();
     }
+    sleep_until(std::min({the_bootloader->next_deadline(), recovery.next_deadline(), now + max_pause_us}));
   }
 }
 
@@ -128,5 +148,7 @@ void can1_tx_handler() { the_can->on_transmit_interrupt(MicrosecondClock::stamp(
 void can1_rx0_handler() { the_can->on_receive_interrupt(MicrosecondClock::stamp()); }
 
 void can1_sce_handler() { the_can->on_status_interrupt(); }
+
+void tim5_handler() { MicrosecondClock::on_interrupt(); }
 
 }  // extern "C"

@@ -6,13 +6,14 @@
 namespace proleg::stm32f405 {
 namespace {
 
-using Table = VectorTable<static_cast<unsigned>(Interrupt::can1_sce) + 1>;
+using Table = VectorTable<static_cast<unsigned>(Interrupt::timer_5) + 1>;
 
 constexpr Table make_vectors() {
   Table table;
   table.set(Interrupt::can1_tx, can1_tx_handler);
   table.set(Interrupt::can1_rx0, can1_rx0_handler);
   table.set(Interrupt::can1_sce, can1_sce_handler);
+  table.set(Interrupt::timer_5, tim5_handler);
   return table;
 }
 

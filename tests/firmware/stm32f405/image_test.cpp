@@ -8,7 +8,11 @@
 #include <iterator>
 #include <map>
 
+#include "firmware/module/board_record.hpp"
 #include "firmware/module/tick_record.hpp"
+#include "shared/canopen/declared_objects.hpp"
+#include "shared/image/image_header.hpp"
+#include "shared/kernel/fingerprint.hpp"
 #include "sim/mcu/cpu/elf_image.hpp"
 #include "tests/cortex_m/code_audit.hpp"
 
@@ -22,6 +26,7 @@ constexpr std::uint32_t sector_0 = 0x0800'0000;
 constexpr std::uint32_t sector_0_size = 16 * 1024;
 constexpr std::uint32_t slot_a = 0x0802'0000;
 constexpr std::uint32_t slot_a_size = 384 * 1024;
+constexpr std::uint32_t image_body = slot_a + image::header_size;
 constexpr std::uint32_t ram = 0x2000'0000;
 constexpr std::uint32_t ram_size = 128 * 1024;
 
@@ -109,9 +114,10 @@ TEST_P(ImageTest, LiesInSectorZeroAndSlotAOnly) {
   }
 }
 
-TEST_P(ImageTest, StartsWithAVectorTableWhoseEveryEntryIsAFunctionOfTheImage) {
+TEST_P(ImageTest, HasAVectorTableBehindItsHeaderWhoseEveryEntryIsAFunctionOfTheImage) {
   constexpr std::size_t vectors = 16 + 82;  // RM0090, table 61
-  const std::vector<std::uint8_t> bytes = flash(slot_a, slot_a_size);
+  std::vector<std::uint8_t> bytes = flash(slot_a, slot_a_size);
+  bytes.erase(bytes.begin(), bytes.begin() + image::header_size);
   const std::uint32_t stack = word_at(bytes, 0);
   EXPECT_EQ(stack, image_.symbol("stack_top").address);
   EXPECT_GT(stack, ram);
@@ -150,10 +156,15 @@ TEST_P(ImageTest, TheStartStubIsWhereTheChipStarts) {
   EXPECT_LT(word_at(bytes, 4), sector_0 + bytes.size());
 }
 
-TEST_P(ImageTest, TheBinaryIsSlotAAndNothingElse) {
-  std::ifstream in(built(GetParam() + ".bin"), std::ios::binary);
-  const std::vector<std::uint8_t> binary{std::istreambuf_iterator<char>(in), {}};
-  EXPECT_TRUE(binary == flash(slot_a, slot_a_size));
+TEST_P(ImageTest, TheImageFileIsSlotAAndNothingElseWithARightHeader) {
+  std::ifstream in(built(GetParam() + ".pimg"), std::ios::binary);
+  const std::vector<std::uint8_t> file{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_TRUE(file == flash(slot_a, slot_a_size));
+  EXPECT_EQ(image::check_image(file, {1, 1, image_body, max_image_size - image::header_size}), image::Error::none);
+  const image::Header header = image::decode(file).header;
+  EXPECT_EQ(header.core_fingerprint, core_fingerprint);
+  EXPECT_EQ(header.protocol, canopen::protocol_version);
+  EXPECT_EQ(header.settings_schema, firmware::BoardRecord::schema);
 }
 
 /// While flash is erased the CPU cannot read it.
@@ -184,6 +195,22 @@ TEST_P(ImageTest, TheStackEndsWhereTheRamDoesSoThatAnOverflowIsAFault) {
 
 INSTANTIATE_TEST_SUITE_P(Images, ImageTest, testing::Values("proleg_stm32f405", "driver_tests"),
                          [](const auto& name) { return name.param; });
+
+// What follows from the bootloader's place beside the module's program.
+TEST(BootloaderImageTest, LiesInSectorZeroAndUsesTheRamThatIsNotTheProgramsOrTheImagesBuffer) {
+  const ElfImage image(built("proleg_boot_stm32f405.elf"));
+  for (const ElfImage::Segment& segment : image.segments()) {
+    EXPECT_GE(segment.load_address, sector_0);
+    EXPECT_LE(segment.load_address + segment.bytes.size(), sector_0 + sector_0_size);
+  }
+  const std::uint32_t buffer = image.symbol("image_buffer_start").address;
+  const std::uint32_t buffer_end = image.symbol("image_buffer_end").address;
+  EXPECT_GE(buffer, ram + max_ram_size) << "the record of a fault that the program has left";
+  EXPECT_GE(buffer_end - buffer, max_image_size);
+  EXPECT_GE(image.symbol("stack_bottom").address, buffer_end);
+  EXPECT_LE(image.symbol("ram_end").address, 0x2001'FF00U) << "the words that it shares with the program";
+  EXPECT_EQ(cortex_m::coprocessor_instructions(image, image.code()), std::vector<std::string>());
+}
 
 TEST(ModuleImageTest, ItsTickRecordIsFoundByName) {
   const ElfImage image(built("proleg_stm32f405.elf"));

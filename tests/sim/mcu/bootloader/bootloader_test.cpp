@@ -1,0 +1,307 @@
+// The bootloader and the image of a module in a virtual chip: from a chip without a program to one that runs, and what
+// it does about a program that does not start.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <random>
+
+#include "firmware/bootloader/slots.hpp"
+#include "firmware/module/module_identity.hpp"
+#include "host/flash/image_file.hpp"
+#include "shared/broadcast/image_sender.hpp"
+#include "shared/fixed/little_endian.hpp"
+#include "tests/sim/mcu/chip/chip_rig.hpp"
+#include "tests/support/from_environment.hpp"
+
+namespace proleg::sim {
+namespace {
+
+using broadcast::ImageSender;
+using broadcast::ReceiverState;
+
+constexpr BusTime s = 1'000 * ms;
+constexpr std::uint32_t slot_a = 0x0802'0000;  // docs/board.md
+constexpr std::uint32_t slot_b = 0x0808'0000;
+constexpr std::uint32_t slot_size = 128 * 1024;
+
+/// A controller of its own, beside the one that the rig has for frames made by hand.
+class FlashingHost final : BusListener {
+ public:
+  FlashingHost(ChipRig& rig, std::span<const std::uint8_t> image, std::uint32_t serial)
+      : rig_(rig), controller_(rig.bus.attach(*this)), image_(image) {
+    target_[0].serial = serial;
+  }
+  FlashingHost(const FlashingHost&) = delete;
+  FlashingHost& operator=(const FlashingHost&) = delete;
+
+  /// The state of the module at the end.
+  ReceiverState flash() {
+    transfer();
+    wait_for(ImageSender::State::done);
+    return target_[0].status.state;
+  }
+  /// Until the module begins to install.
+  void transfer() {
+    sender_.start(now());
+    wait_for(ImageSender::State::complete);
+    sender_.install(now());
+  }
+
+ private:
+  static constexpr std::uint8_t session = 1;
+
+  [[nodiscard]] Microseconds now() const { return rig_.bus.now() / us; }
+  void wait_for(ImageSender::State state) {
+    EXPECT_TRUE(rig_.run_until_true(
+        [&] {
+          if (sender_.next_deadline() <= now()) {
+            sender_.poll(now());
+          }
+          return sender_.state() == state;
+        },
+        30 * s));
+  }
+  void received(BusTime time, const CanFrame& frame) override { sender_.receive(time / us, frame); }
+  void transmitted(BusTime time, const CanFrame& /*frame*/) override { sender_.transmitted(time / us); }
+
+  ChipRig& rig_;
+  Controller& controller_;
+  std::span<const std::uint8_t> image_;
+  std::array<broadcast::Target, 1> target_{};
+  ImageSender sender_{controller_, image_, target_, {.session = session}};
+};
+
+/// The image of a module, as the build makes it.
+const std::vector<std::uint8_t>& program() {
+  static const std::vector<std::uint8_t> bytes =
+      host::read_image(std::filesystem::path(PROLEG_STM32F405_BIN) / "proleg_stm32f405.pimg").bytes;
+  return bytes;
+}
+
+/// An image of the program that another version of it would be; `change` changes its body.
+template <typename Change>
+std::vector<std::uint8_t> other_program(Change change) {
+  image::Header header = image::decode(program()).header;
+  std::vector<std::uint8_t> body(program().begin() + image::header_size, program().end());
+  change(header, body);
+  image::describe_body(header, body);
+  const image::HeaderBytes header_bytes = image::encode(header);
+  body.insert(body.begin(), header_bytes.begin(), header_bytes.end());
+  return body;
+}
+std::vector<std::uint8_t> newer_program() {
+  return other_program([](image::Header& header, std::vector<std::uint8_t>& /*body*/) { ++header.version.minor; });
+}
+/// Its first instruction is replaced.
+std::vector<std::uint8_t> program_that_starts_with(std::uint16_t instruction) {
+  return other_program([instruction](const image::Header& header, std::vector<std::uint8_t>& body) {
+    const std::uint32_t entry = (read_little_endian(body, 4, 4) & ~1U) - header.address;
+    write_little_endian(body, entry, 2, instruction);
+  });
+}
+
+class ChipBootloader : public testing::Test {
+ protected:
+  static constexpr std::uint16_t heartbeat = 0x700 + ChipRig::node;
+  const std::uint32_t serial = firmware::serial_number({.unique_id = RigSettings().chip.unique_id});
+
+  ChipBootloader() { make_chip(); }
+
+  void make_chip(std::optional<firmware::BoardRecord> record = firmware::BoardRecord{ChipRig::node, false, 0, 0}) {
+    RigSettings settings;
+    settings.image = "proleg_boot_stm32f405";
+    settings.record = std::move(record);
+    settings.chip.brown_out_level = 0;
+    settings.max_lead = 200 * us;
+    rig = std::make_unique<ChipRig>(settings);
+    hosts_.clear();
+  }
+  [[nodiscard]] bool sends_boot_up(BusTime timeout = 100 * ms) {
+    const BusTime start = rig->bus.now();
+    return rig->run_until_true(
+        [&] {
+          return std::ranges::any_of(rig->frames(heartbeat, start),
+                                     [](const LoggedFrame& logged) { return logged.frame.data[0] == 0; });
+        },
+        timeout);
+  }
+  void start_bootloader() {
+    rig->power_on();
+    ASSERT_TRUE(sends_boot_up());
+    ASSERT_FALSE(is_program());
+  }
+  /// Both send a boot-up. Only the program has a device profile (CiA 402).
+  [[nodiscard]] bool is_program() {
+    rig->run_for(20 * ms);
+    return (rig->read(0x1000, 0) & 0xFFFFU) == 402;
+  }
+  [[nodiscard]] bool starts_program(BusTime timeout = 500 * ms) { return sends_boot_up(timeout) && is_program(); }
+
+  /// As a programmer does it.
+  void write_slot(std::uint32_t address, std::span<const std::uint8_t> image, bool is_confirmed) {
+    rig->chip.write(address, image);
+    if (is_confirmed) {
+      std::array<std::uint8_t, 4> confirmed{};
+      write_little_endian(confirmed, 0, 4, bootloader::Slots::confirmed_word);
+      rig->chip.write(address + slot_size - bootloader::Slots::words_size, confirmed);
+    }
+  }
+  [[nodiscard]] bool holds(std::uint32_t slot, const std::vector<std::uint8_t>& image) const {
+    return rig->memory(slot, image.size()) == image;
+  }
+  /// It stays on the bus as long as the chip.
+  FlashingHost& host_with(std::span<const std::uint8_t> image) {
+    hosts_.push_back(std::make_unique<FlashingHost>(*rig, image, serial));
+    return *hosts_.back();
+  }
+  ReceiverState flash(std::span<const std::uint8_t> image) { return host_with(image).flash(); }
+  /// From a program that runs, which leaves the words of firmware/stm32f405/bootloader/handover.hpp.
+  void enter_bootloader() {
+    rig->power_on();
+    ASSERT_TRUE(starts_program());
+    constexpr std::uint32_t stay = 0xB007'0001;
+    std::array<std::uint8_t, 8> words{};
+    write_little_endian(words, 0, 4, stay);
+    write_little_endian(words, 4, 4, ~stay);
+    rig->chip.write(0x2001'FF00, words);
+    rig->chip.set_supply(2'500);  // a brown-out reset, in which RAM keeps its contents
+    rig->run_for(ms);
+    rig->chip.set_supply(3'300);
+    ASSERT_TRUE(sends_boot_up());
+    ASSERT_FALSE(is_program());
+  }
+  void leave_bootloader() { rig->host.send({broadcast::host_identifier, 2, {7, 1}}); }
+
+  std::unique_ptr<ChipRig> rig;
+
+ private:
+  std::vector<std::unique_ptr<FlashingHost>> hosts_;
+};
+
+TEST_F(ChipBootloader, AChipWithoutAProgramTakesPartInTheBusWithTheNodeIdOfItsSettings) {
+  start_bootloader();
+  EXPECT_EQ(rig->read(0x1000, 0), 0U) << "no device profile";
+  EXPECT_EQ(rig->read(0x1018, 4), serial);
+  EXPECT_EQ(rig->read(0x1F56, 1), 0U) << "no program";
+}
+
+TEST_F(ChipBootloader, AConfirmedProgramStartsAtOnceWithTheSameSerialNumber) {
+  write_slot(slot_a, program(), true);
+  rig->power_on();
+  ASSERT_TRUE(starts_program());
+  const BusTime start = rig->frames(heartbeat)[0].time;
+  std::cout << "from power on to the boot-up of a confirmed program: " << start / us << " us\n";
+  EXPECT_LT(start, 200 * ms);
+  EXPECT_EQ(rig->read(0x1018, 4), serial);
+  EXPECT_NE(rig->board.console.find("started by power on"), std::string::npos) << rig->board.console;
+}
+
+TEST_F(ChipBootloader, AnImageThatComesByBroadcastIsInstalledAndRuns) {
+  start_bootloader();
+  const BusTime start = rig->bus.now();
+  EXPECT_EQ(flash(program()), ReceiverState::installed);
+  std::cout << program().size() << " bytes to an empty chip: " << (rig->bus.now() - start) / ms << " ms\n";
+  EXPECT_TRUE(holds(slot_a, program()));
+  leave_bootloader();
+  EXPECT_TRUE(starts_program());
+}
+
+TEST_F(ChipBootloader, TheImageBeforeIsTheBackupUntilTheNewOneIsConfirmed) {
+  const std::vector<std::uint8_t> newer = newer_program();
+  write_slot(slot_a, program(), true);
+  enter_bootloader();
+  EXPECT_EQ(flash(newer), ReceiverState::installed);
+  EXPECT_TRUE(holds(slot_b, program()));
+  for (unsigned start = 0; start < bootloader::Slots::max_attempts; ++start) {
+    rig->power_on();
+    ASSERT_TRUE(starts_program()) << start;
+    EXPECT_TRUE(holds(slot_a, newer));
+  }
+  rig->power_on();
+  ASSERT_TRUE(starts_program(3 * s)) << "after the backup was copied";
+  EXPECT_TRUE(holds(slot_a, program()));
+  rig->power_on();
+  ASSERT_TRUE(starts_program()) << "it is confirmed, as it was before";
+}
+
+TEST_F(ChipBootloader, AProgramThatHangsOrFaultsGivesWayToTheOneBeforeByItself) {
+  for (const std::uint16_t instruction : {branch_to_itself, undefined_instruction}) {
+    make_chip();
+    write_slot(slot_a, program(), true);
+    enter_bootloader();
+    const std::vector<std::uint8_t> broken = program_that_starts_with(instruction);
+    ASSERT_EQ(flash(broken), ReceiverState::installed);
+    const BusTime start = rig->bus.now();
+    leave_bootloader();
+    EXPECT_TRUE(starts_program(10 * s)) << std::hex << instruction;
+    std::cout << "until the program before runs again: " << (rig->bus.now() - start) / ms << " ms\n";
+    EXPECT_TRUE(holds(slot_a, program()));
+  }
+}
+
+TEST_F(ChipBootloader, AnImageForAnotherBoardIsRefusedAndNothingIsErased) {
+  write_slot(slot_a, program(), true);
+  enter_bootloader();
+  const std::vector<std::uint8_t> foreign =
+      other_program([](image::Header& header, std::vector<std::uint8_t>& /*body*/) { header.board_id = 2; });
+  EXPECT_EQ(flash(foreign), ReceiverState::refused);
+  EXPECT_TRUE(holds(slot_a, program()));
+  leave_bootloader();
+  EXPECT_TRUE(starts_program());
+}
+
+TEST_F(ChipBootloader, WithoutAHostItStartsTheProgramAfterTenSeconds) {
+  write_slot(slot_a, program(), true);
+  enter_bootloader();
+  const BusTime start = rig->bus.now();
+  EXPECT_TRUE(starts_program(11 * s));
+  EXPECT_GT(rig->bus.now() - start, 9 * s);
+}
+
+TEST_F(ChipBootloader, AFreshChipKeepsTheNodeIdThatLssGivesIt) {
+  make_chip(std::nullopt);
+  rig->power_on();
+  EXPECT_FALSE(sends_boot_up()) << "it has no node id";
+  const auto lss = [this](std::uint8_t service, std::uint8_t first = 0) {
+    rig->host.send({0x7E5, 8, {service, first}});
+    rig->run_for(10 * ms);
+  };
+  lss(0x04, 1);  // CiA 305: configuration state for all
+  lss(0x11, ChipRig::node);
+  lss(0x17);
+  lss(0x04, 0);
+  write_slot(slot_a, program(), true);
+  rig->power_on();
+  EXPECT_TRUE(starts_program()) << "it has the node id from the flash";
+}
+
+// The flash model leaves behind what a cut operation of the chip may leave (docs/virtual-chip.md).
+TEST_F(ChipBootloader, ACutOfThePowerAtAnyInstantOfAnUpdateLeavesAProgramThatRuns) {
+  constexpr unsigned seed = 7;
+  const std::uint32_t cuts = from_environment("PROLEG_CUTS", 4);
+  std::mt19937 random(seed);
+  const std::vector<std::uint8_t> newer = newer_program();
+  std::array<unsigned, 2> runs{};
+  for (unsigned cut = 0; cut < cuts; ++cut) {
+    make_chip();
+    write_slot(slot_a, program(), true);
+    enter_bootloader();
+    host_with(newer).transfer();
+    const BusTime instant = random() % 4'000 * ms;  // the installation takes about three seconds
+    rig->run_for(instant);
+    rig->power_on();
+    ASSERT_TRUE(starts_program(5 * s)) << "seed " << seed << ", cut " << cut << ", after " << instant / ms << " ms";
+    const bool is_old = holds(slot_a, program());
+    EXPECT_TRUE(is_old || holds(slot_a, newer)) << "cut " << cut;
+    ++runs.at(is_old ? 0 : 1);
+  }
+  std::cout << cuts << " cuts of the power (seed " << seed << "): the old program runs " << runs[0]
+            << " times, the new one " << runs[1] << " times\n";
+}
+
+}  // namespace
+}  // namespace proleg::sim

@@ -14,6 +14,8 @@
 namespace proleg::stm32f405 {
 namespace {
 
+constexpr std::uint32_t watchdog_ms = 200;
+
 constinit firmware::TickRecord the_last_tick;
 constinit ModuleTask the_module_task;
 
@@ -152,7 +154,7 @@ extern "C" {
   gnu::used]] extern constinit const proleg::firmware::TickRecord* const proleg_tick_record = &the_last_tick;
 
 void run_program() {
-  static_cast<void>(start_watchdog());  // if that fails it has 512 ms instead of 200, which is enough
+  static_cast<void>(start_watchdog(watchdog_ms));  // if that fails it has 512 ms, which is enough
   const Start start = find_start();
   start_pins();
   start_clocks_or_give_up(start);

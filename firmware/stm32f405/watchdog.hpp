@@ -4,10 +4,10 @@
 
 namespace proleg::stm32f405 {
 
-/// Starts the independent watchdog, which resets the chip when it was not fed for 200 ms. Its clock is LSI: nominally
-/// 32 kHz, actually 17 to 47 kHz, so 136 to 376 ms (data sheet, table 36). It cannot be stopped. False: it runs, but
-/// with its initial 512 ms.
-[[nodiscard]] bool start_watchdog();
+/// Starts the independent watchdog, which resets the chip when it was not fed for this time, 1 to 2,000 ms; or changes
+/// its time. Its clock is LSI: nominally 32 kHz, actually 17 to 47 kHz, so 200 ms are 136 to 376 (data sheet, table
+/// 36). It cannot be stopped. False: it runs, but with the time that it had, initially 512 ms.
+[[nodiscard]] bool start_watchdog(std::uint32_t milliseconds);
 
 [[gnu::always_inline]] inline void feed_watchdog() { iwdg::kr.write(iwdg::kr_feed); }
 

@@ -97,7 +97,7 @@ void take_events() {
 /// and the sleep: a masked one wakes the CPU, too (PM0214, section 2.5.1).
 void sleep_until(Microseconds deadline) {
   asm volatile("cpsid i" : : : "memory");
-  if (the_can->next_event() == nullptr && MicrosecondClock::wake_at(deadline)) {
+  if (the_can->next_event() == nullptr && deadline > the_clock.now() && MicrosecondClock::wake_at(deadline)) {
     asm volatile("dsb\n\twfi");
   }
   asm volatile("cpsie i" : : : "memory");

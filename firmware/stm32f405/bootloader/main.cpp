@@ -21,6 +21,9 @@
 namespace proleg::stm32f405 {
 namespace {
 
+/// SHA-256 and checksums of an image take a tenth of a second between two feeds. The program sets its own time.
+constexpr std::uint32_t watchdog_ms = 1'000;
+
 using bootloader::FlashSlot;
 using bootloader::Slots;
 using bootloader::StartResult;
@@ -38,7 +41,6 @@ bool is_second_press(Handover left) {
   constexpr unsigned milliseconds = 500;
   constexpr std::uint32_t cycles_of_a_round = 4;  // three or four
   for (unsigned millisecond = 0; millisecond < milliseconds; ++millisecond) {
-    feed_watchdog();
     for (std::uint32_t round = board::internal_oscillator / 1'000 / cycles_of_a_round; round != 0; --round) {
       asm volatile("" : "+r"(round));
     }
@@ -68,15 +70,17 @@ using namespace proleg::stm32f405;
 extern "C" {
 
 void run_program() {
-  static_cast<void>(start_watchdog());  // if that fails it has 512 ms instead of 200, which is enough
   const Handover left = take_handover();
   const bool stays = left == Handover::stay || (left != Handover::start && is_second_press(left));
   SlotMemory memory;
   Slots slots(memory, image_place());
   if (!stays && (left == Handover::start || slots.is_confirmed(FlashSlot::a)) &&
       !slots.image_in(FlashSlot::a).empty()) {
+    // Not before: the checksum of the image takes long at the clock after a reset.
+    static_cast<void>(start_watchdog(watchdog_ms));
     start_program();
   }
+  static_cast<void>(start_watchdog(watchdog_ms));  // if that fails it has 512 ms, which is enough
   start_pins();
   const bool has_clocks = start_clocks() == ClockResult::ok;
   MicrosecondClock().start();

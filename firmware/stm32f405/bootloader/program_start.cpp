@@ -3,7 +3,6 @@
 #include "firmware/stm32f405/flash_layout.hpp"
 #include "firmware/stm32f405/pins.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
-#include "firmware/stm32f405/watchdog.hpp"
 
 namespace proleg::stm32f405 {
 namespace {
@@ -19,7 +18,6 @@ image::Place image_place() {
 }
 
 void start_program() {
-  feed_watchdog();
   const std::uint32_t stack = Register(image_body).read();
   const std::uint32_t entry = Register(image_body + 4).read();
   scb::vtor.write(image_body);

@@ -76,7 +76,7 @@ void append_next(unsigned node) {
 extern "C" {
 
 void run_program() {
-  static_cast<void>(start_watchdog());
+  static_cast<void>(start_watchdog(200));
   driver_test_result.phase = Phase::started;
   start_pins();
   if (start_clocks() != ClockResult::ok) {

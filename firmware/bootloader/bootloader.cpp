@@ -142,7 +142,7 @@ void Bootloader::poll(Microseconds now) {
   }
   if (now >= idle_at_) {
     idle_at_ = now + idle_timeout_us;
-    if (!slots_.image_in(FlashSlot::a).empty() || !slots_.image_in(FlashSlot::b).empty()) {
+    if (slots_.may_start()) {
       leave(now);
     }
   }

@@ -46,6 +46,15 @@ StartResult Slots::prepare_start() {
   }
 }
 
+bool Slots::may_start() const {
+  const Bytes current = image_in(FlashSlot::a);
+  if (!current.empty() && (is_confirmed(FlashSlot::a) || attempts() < max_attempts)) {
+    return true;
+  }
+  const Bytes backup = image_in(FlashSlot::b);
+  return !backup.empty() && !is_same(backup, current);
+}
+
 InstallResult Slots::install(Bytes image) {
   const Bytes current = image_in(FlashSlot::a);
   if (is_same(current, image) && (is_confirmed(FlashSlot::a) || attempts() == 0)) {
@@ -87,9 +96,15 @@ unsigned Slots::attempts() const {
   return used;
 }
 
+/// An erase that is cut off can leave bits that read as before for a while. So first the slot gets a header that is
+/// none.
+bool Slots::clear(FlashSlot slot) {
+  return (image_in(slot).empty() || flash_.program(slot, 0, bytes_of(0))) && flash_.erase(slot);
+}
+
 /// The header last: before it is complete, the slot holds nothing.
 bool Slots::write(FlashSlot slot, Bytes image, bool is_proven) {
-  return flash_.erase(slot) && flash_.program(slot, image::header_size, image.subspan(image::header_size)) &&
+  return clear(slot) && flash_.program(slot, image::header_size, image.subspan(image::header_size)) &&
          (!is_proven || flash_.program(slot, words_at(), bytes_of(confirmed_word))) &&
          flash_.program(slot, 0, image.first(image::header_size)) &&
          std::ranges::equal(image, flash_.contents(slot).first(image.size())) && is_confirmed(slot) == is_proven;

@@ -69,6 +69,8 @@ class Slots {
 
   /// Decides what runs, and restores A if that is needed.
   [[nodiscard]] StartResult prepare_start();
+  /// Whether prepare_start() would find something that may run.
+  [[nodiscard]] bool may_start() const;
   /// Writes an image into A, which the caller has checked (image::check_image()).
   [[nodiscard]] InstallResult install(std::span<const std::uint8_t> image);
   /// The image in A has started well. Whether the flash holds that now. Does nothing if it is known already.
@@ -82,6 +84,7 @@ class Slots {
 
  private:
   [[nodiscard]] bool write(FlashSlot slot, std::span<const std::uint8_t> image, bool is_proven);
+  [[nodiscard]] bool clear(FlashSlot slot);
   [[nodiscard]] std::uint32_t word_at(FlashSlot slot, std::uint32_t offset) const;
   [[nodiscard]] std::uint32_t words_at() const;
 

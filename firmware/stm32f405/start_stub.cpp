@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "firmware/stm32f405/flash_layout.hpp"
-#include "firmware/stm32f405/registers/core.hpp"
+#include "firmware/stm32f405/jump.hpp"
 
 namespace proleg::stm32f405 {
 namespace {
@@ -39,9 +39,7 @@ extern "C" {
   const std::uint32_t stack = Register(image_body).read();
   const std::uint32_t entry = Register(image_body + 4).read();
   if (is_plausible(stack, entry)) {
-    scb::vtor.write(image_body);
-    asm volatile("dsb\n\tmsr msp, %0\n\tbx %1" : : "r"(stack), "r"(entry));
-    __builtin_unreachable();
+    jump_to(image_body);
   }
   stub_stop();
 }

@@ -8,8 +8,9 @@ struct Words {
   std::uint32_t complement;
 };
 
-/// The linker scripts keep it free of everything else: 256 bytes at 0x2001FF00.
-[[gnu::section(".handover")]] Words words;
+/// The linker scripts keep it free of everything else: 256 bytes at 0x2001FF00. Volatile: who reads it is the next
+/// start.
+[[gnu::section(".handover")]] volatile Words words;
 
 }  // namespace
 
@@ -29,8 +30,9 @@ Handover take_handover() {
 }
 
 void leave_handover(Handover handover) {
-  words.value = static_cast<std::uint32_t>(handover);
-  words.complement = ~words.value;
+  const auto value = static_cast<std::uint32_t>(handover);
+  words.value = value;
+  words.complement = ~value;
 }
 
 }  // namespace proleg::stm32f405

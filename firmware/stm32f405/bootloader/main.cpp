@@ -28,8 +28,16 @@ using bootloader::FlashSlot;
 using bootloader::Slots;
 using bootloader::StartResult;
 
-/// Two resets by the pin within half a second: a person wants the bootloader. The wait is a loop, so that no peripheral
-/// is changed before the program starts.
+/// A loop, so that no peripheral is changed before the program starts.
+void wait(std::uint32_t milliseconds) {
+  constexpr std::uint32_t cycles_of_a_round = 4;  // three or four
+  for (std::uint32_t round = milliseconds * (board::internal_oscillator / 1'000 / cycles_of_a_round); round != 0;
+       --round) {
+    asm volatile("" : "+r"(round));
+  }
+}
+
+/// Two resets by the pin within half a second: a person wants the bootloader.
 bool is_second_press(Handover left) {
   if (reset_cause_of(rcc::csr.read()) != firmware::ResetCause::pin) {
     return false;
@@ -37,14 +45,11 @@ bool is_second_press(Handover left) {
   if (left == Handover::pin_seen) {
     return true;
   }
+  constexpr std::uint32_t bounce_ms = 50;
+  constexpr std::uint32_t press_ms = 500;
+  wait(bounce_ms);
   leave_handover(Handover::pin_seen);
-  constexpr unsigned milliseconds = 500;
-  constexpr std::uint32_t cycles_of_a_round = 4;  // three or four
-  for (unsigned millisecond = 0; millisecond < milliseconds; ++millisecond) {
-    for (std::uint32_t round = board::internal_oscillator / 1'000 / cycles_of_a_round; round != 0; --round) {
-      asm volatile("" : "+r"(round));
-    }
-  }
+  wait(press_ms);
   leave_handover(Handover::none);
   return false;
 }
@@ -82,13 +87,16 @@ void run_program() {
   }
   static_cast<void>(start_watchdog(watchdog_ms));  // if that fails it has 512 ms, which is enough
   start_pins();
-  const bool has_clocks = start_clocks() == ClockResult::ok;
+  if (start_clocks() != ClockResult::ok) {
+    // There is no CAN without the crystal, and no program would start. The watchdog resets the chip: the crystal may
+    // start then.
+    for (;;) {
+      asm volatile("wfi");
+    }
+  }
   MicrosecondClock().start();
   if (!stays) {
     prepare_program(slots);
-  }
-  if (!has_clocks) {
-    reset_chip();  // there is no CAN without the crystal, which may start next time
   }
   serve_bus();
 }

@@ -1,8 +1,9 @@
 #include "firmware/stm32f405/bootloader/program_start.hpp"
 
 #include "firmware/stm32f405/flash_layout.hpp"
+#include "firmware/stm32f405/jump.hpp"
 #include "firmware/stm32f405/pins.hpp"
-#include "firmware/stm32f405/registers/core.hpp"
+#include "firmware/stm32f405/registers/flash.hpp"
 
 namespace proleg::stm32f405 {
 namespace {
@@ -18,11 +19,10 @@ image::Place image_place() {
 }
 
 void start_program() {
-  const std::uint32_t stack = Register(image_body).read();
-  const std::uint32_t entry = Register(image_body + 4).read();
-  scb::vtor.write(image_body);
-  asm volatile("dsb\n\tmsr msp, %0\n\tbx %1" : : "r"(stack), "r"(entry));
-  __builtin_unreachable();
+  // What the caches hold of an earlier program does not count (RM0090, section 3.5.2). They are off after a reset.
+  flash_interface::acr.set(flash_interface::acr_icrst | flash_interface::acr_dcrst);
+  flash_interface::acr.clear(flash_interface::acr_icrst | flash_interface::acr_dcrst);
+  jump_to(image_body);
 }
 
 }  // namespace proleg::stm32f405

@@ -13,6 +13,7 @@ inline constexpr std::uint32_t acr_latency_mask = 7U;
 inline constexpr std::uint32_t acr_prften = 1U << 8U;
 inline constexpr std::uint32_t acr_icen = 1U << 9U;
 inline constexpr std::uint32_t acr_dcen = 1U << 10U;
+inline constexpr std::uint32_t acr_icrst = 1U << 11U;  ///< only while ICEN = 0
 inline constexpr std::uint32_t acr_dcrst = 1U << 12U;  ///< only while DCEN = 0
 
 inline constexpr Register keyr{base + 0x04};

@@ -104,6 +104,14 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     }
   }
 
+  void pull_reset_pin() {
+    if (on_ && !is_held_) {
+      hold();
+      release_cause_ = ResetCause::pin;
+      release();
+    }
+  }
+
   [[nodiscard]] BusTime next_event() const {
     if (!next_event_) {
       next_event_ = never_on_bus;
@@ -625,6 +633,7 @@ void Stm32f405::set_serial_watch(SerialWatch watch) {
   });
 }
 void Stm32f405::set_supply(std::uint32_t mv) { implementation_->set_supply(mv); }
+void Stm32f405::pull_reset_pin() { implementation_->pull_reset_pin(); }
 std::optional<LocalTime> Stm32f405::pulse_time(unsigned channel) const {
   return implementation_->pins_.pulse_time(channel);
 }

@@ -76,6 +76,9 @@ class Stm32f405 {
   /// the chip is held in reset; below the latter it loses its memory. The analogue supply stays.
   void set_supply(std::uint32_t mv);
 
+  /// The reset pin is pulled low for a moment.
+  void pull_reset_pin();
+
   /// A character begins at the input of USART2, now or a few instructions ago, with the sender's bit time in ns. The
   /// one before must be over. Lost while the chip or its receiver is off.
   void begin_serial_input(BusTime start, const SerialCharacter& character, BusTime bit);

@@ -26,6 +26,8 @@ class SlotMemory final : public SlotFlash {
   int operations = 0;   ///< words programmed and slots erased
   int cut_at = -1;      ///< the operation that does not end
   int refused_at = -1;  ///< the operation that reports an error
+  /// An erase that is cut off leaves all bits as they were. (They are weak now, and may read otherwise later.)
+  bool erases_leave_all = false;
   std::mt19937 noise{1};
 
   bool erase(FlashSlot slot) override {
@@ -37,6 +39,9 @@ class SlotMemory final : public SlotFlash {
     if (!cut) {
       std::ranges::fill(bytes, std::uint8_t{0xFF});
       return true;
+    }
+    if (erases_leave_all) {
+      throw PowerCut();
     }
     const unsigned stage = noise() % 3;
     for (std::uint8_t& byte : bytes) {

@@ -74,6 +74,37 @@ TEST(SlotsTest, TheBackupIsTheLastImageThatHasProvenItself) {
   EXPECT_EQ(number_in(module.slots, FlashSlot::b), 3U);
 }
 
+TEST(SlotsTest, ASlotWhoseEraseWasCutHoldsNothingEvenIfItReadsAsBefore) {
+  UpdatedModule module;
+  module.install_proven(first);
+  module.install_proven(second);
+  module.flash.erases_leave_all = true;
+  // Slot A holds what slot B has not: first B is cleared and erased, then A.
+  for (const auto& [slot, other] : {std::pair(FlashSlot::b, FlashSlot::a), std::pair(FlashSlot::a, FlashSlot::b)}) {
+    UpdatedModule cut(module.flash);
+    for (int operation = module.flash.operations; number_in(cut.slots, slot) != 0; ++operation) {
+      cut.flash = module.flash;
+      cut.flash.cut_at = operation;
+      EXPECT_THROW(static_cast<void>(cut.install(third)), PowerCut);
+    }
+    EXPECT_NE(number_in(cut.slots, other), 0U);
+    EXPECT_NE(cut.start(), 0U);
+  }
+}
+
+TEST(SlotsTest, MayStartSaysWhetherSomethingWouldRun) {
+  UpdatedModule module;
+  EXPECT_FALSE(module.slots.may_start()) << "nothing there";
+  ASSERT_EQ(module.install(first), InstallResult::ok);
+  for (unsigned attempt = 1; attempt <= Slots::max_attempts; ++attempt) {
+    EXPECT_TRUE(module.slots.may_start());
+    EXPECT_EQ(module.start(), 1U);
+  }
+  EXPECT_FALSE(module.slots.may_start()) << "it has failed";
+  module.install_proven(second);
+  EXPECT_TRUE(module.slots.may_start());
+}
+
 TEST(SlotsTest, AnImageForAnotherBoardDoesNotRunEvenIfAProbeWroteIt) {
   UpdatedModule module;
   Image foreign = first;

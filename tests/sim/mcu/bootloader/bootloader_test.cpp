@@ -229,7 +229,8 @@ TEST_F(ChipBootloader, TheImageBeforeIsTheBackupUntilTheNewOneIsConfirmed) {
 }
 
 TEST_F(ChipBootloader, AProgramThatHangsOrFaultsGivesWayToTheOneBeforeByItself) {
-  for (const std::uint16_t instruction : {branch_to_itself, undefined_instruction}) {
+  constexpr std::uint16_t wait_for_interrupt = 0xBF30;  // there is none: it is simulated faster than an endless loop
+  for (const std::uint16_t instruction : {wait_for_interrupt, undefined_instruction}) {
     make_chip();
     write_slot(slot_a, program(), true);
     enter_bootloader();
@@ -252,6 +253,52 @@ TEST_F(ChipBootloader, AnImageForAnotherBoardIsRefusedAndNothingIsErased) {
   EXPECT_TRUE(holds(slot_a, program()));
   leave_bootloader();
   EXPECT_TRUE(starts_program());
+}
+
+TEST_F(ChipBootloader, TwoResetsByThePinWithinHalfASecondAreAWayIn) {
+  write_slot(slot_a, program(), true);
+  rig->power_on();
+  ASSERT_TRUE(starts_program());
+  rig->chip.pull_reset_pin();
+  rig->run_for(5 * ms);
+  rig->chip.pull_reset_pin();  // it bounces
+  rig->run_for(250 * ms);
+  rig->chip.pull_reset_pin();
+  ASSERT_TRUE(sends_boot_up());
+  EXPECT_FALSE(is_program());
+}
+
+TEST_F(ChipBootloader, OneResetByThePinStartsTheProgramHoweverItBouncesAndWheneverTheNextOneComes) {
+  write_slot(slot_a, program(), true);
+  rig->power_on();
+  ASSERT_TRUE(starts_program());
+  for (unsigned press = 0; press < 2; ++press) {
+    rig->chip.pull_reset_pin();
+    rig->run_for(10 * ms);
+    rig->chip.pull_reset_pin();
+    ASSERT_TRUE(starts_program(s)) << press;
+    EXPECT_NE(rig->board.console.find("started by reset pin"), std::string::npos) << rig->board.console;
+  }
+}
+
+TEST_F(ChipBootloader, WithoutACrystalNoStartOnTrialIsUsedUp) {
+  write_slot(slot_a, program(), false);
+  rig->chip.set_crystal(false);
+  rig->power_on();
+  rig->run_for(8 * s);
+  EXPECT_EQ(rig->word(slot_a + slot_size - 12), 0xFFFF'FFFFU) << "the first start on trial";
+  rig->chip.set_crystal(true);
+  EXPECT_TRUE(starts_program(3 * s));
+}
+
+TEST_F(ChipBootloader, WithoutAProgramThatMayRunItStaysOnTheBus) {
+  write_slot(slot_a, program(), false);
+  for (unsigned start = 0; start < bootloader::Slots::max_attempts; ++start) {
+    rig->power_on();
+    ASSERT_TRUE(starts_program()) << start;
+  }
+  start_bootloader();
+  EXPECT_FALSE(sends_boot_up(25 * s)) << "it starts again and again";
 }
 
 TEST_F(ChipBootloader, WithoutAHostItStartsTheProgramAfterTenSeconds) {

@@ -112,7 +112,7 @@ void check_image_body(const std::string& file, const image::Header& header, Byte
            hexadecimal(header.crc, 8) + ", as the header says" + damaged);
   }
   refuse(file, "a body with another SHA-256 than the header says, although the CRC-32 is right",
-         "an image that nobody has changed");
+         "an image as it was made");
 }
 
 ImageFile read_image(const std::string& file) {

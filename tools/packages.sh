@@ -20,6 +20,7 @@ test_packages=(
   can-utils tshark  # independent readers of bus logs
   python3-can python3-serial  # an independent program that uses slcan adapters
   gdb-multiarch     # a debugger for the virtual module
+  openocd dfu-util stm32flash libusb-1.0-0-dev  # flash an empty chip: the tests run them on one that is a program
   strace            # shows what a test reads
   qemu-system-arm   # another model of the CPU, to compare with
   libbenchmark-dev libmujoco-dev                       # benchmarks

@@ -8,6 +8,7 @@
 namespace proleg::bootloader {
 
 using broadcast::ReceiverState;
+namespace module_flag = broadcast::module_flag;
 using canopen::AbortCode;
 using canopen::Address;
 using canopen::Entry;
@@ -40,13 +41,29 @@ Bootloader::Bootloader(const image::Place& place, std::uint32_t serial, const Po
       ports_(ports),
       slots_(ports.flash, place),
       queue_(ports.can),
-      receiver_(ports.buffer, serial),
+      receiver_(ports.buffer, serial, *this),
       sdo_(0, *this) {}
 
-void Bootloader::power_on(Microseconds now, std::uint8_t node) {
+void Bootloader::power_on(Microseconds now, std::uint8_t node, const Handover& left) {
   lss_.power_on(node);
   idle_at_ = now + idle_timeout_us;
+  flags_ = module_flag::has_bootloader | (starts_badly(left) ? module_flag::starts_badly : 0U);
+  look_at_slot();
+  if (left.action == HandoverAction::install) {
+    const ImageInRam image = ImageInRam::of(left.argument);
+    receiver_.resume(image.session, image.size);
+    ends_line_ = image.ends_line;
+  }
   start_network(now, node);
+}
+
+/// Computes a checksum of the slot, which takes long.
+void Bootloader::look_at_slot() {
+  const bool is_complete = !slots_.image_in(FlashSlot::a).empty();
+  unsigned flags = flags_ & ~unsigned{module_flag::has_image | module_flag::is_confirmed};
+  flags |= is_complete ? module_flag::has_image : 0U;
+  flags |= is_complete && slots_.is_confirmed(FlashSlot::a) ? module_flag::is_confirmed : 0U;
+  flags_ = static_cast<std::uint8_t>(flags);
 }
 
 void Bootloader::start_network(Microseconds now, std::uint8_t node) {
@@ -64,6 +81,7 @@ void Bootloader::start_network(Microseconds now, std::uint8_t node) {
 void Bootloader::receive(Microseconds now, const CanFrame& frame) {
   now_ = now;
   std::optional<CanFrame> answer;
+  bool is_for_this_module = false;
   if (frame.identifier == broadcast::host_identifier && !is_downloading_ && downloaded_ == 0) {
     answer = receiver_.receive(now, frame);
     if (receiver_.take_leave_request()) {
@@ -71,16 +89,18 @@ void Bootloader::receive(Microseconds now, const CanFrame& frame) {
     }
   } else if (node_ != 0 && frame.identifier == canopen::identifier::sdo_request + node_) {
     answer = sdo_.receive(now, frame);
+    is_for_this_module = true;
   } else if (frame.identifier == canopen::identifier::lss_request) {
     receive_lss(now, frame);
+    is_for_this_module = lss_.state() != canopen::lss::State::waiting;
   } else if (frame.identifier == canopen::identifier::nmt) {
     receive_network_command(now, frame);
-  } else {
-    return;
   }
-  idle_at_ = now + idle_timeout_us;
   if (answer) {
     send(*answer);
+  }
+  if (answer || is_for_this_module || receiver_.state() == ReceiverState::receiving) {
+    idle_at_ = now + idle_timeout_us;
   }
 }
 
@@ -131,14 +151,14 @@ void Bootloader::poll(Microseconds now) {
     static_cast<void>(
         queue_.push_newest(canopen::encode(canopen::Heartbeat{node_, canopen::NmtState::pre_operational})));
   }
-  // The answers first: while the flash is written nothing is sent.
-  if (queue_.size() == 0) {
-    if (receiver_.has_install_request()) {
-      install_broadcast();
-    } else if (downloaded_ != 0) {
-      static_cast<void>(write_image(ports_.buffer.first(downloaded_)));  // close_write() has checked it
-      downloaded_ = 0;
+  if (receiver_.has_install_request()) {
+    install_broadcast();
+    if (ends_line_) {
+      leave(now);
     }
+  } else if (downloaded_ != 0 && queue_.size() == 0) {  // the answer first: while the flash is written nothing is sent
+    static_cast<void>(write_image(ports_.buffer.first(downloaded_)));  // close_write() has checked it
+    downloaded_ = 0;
   }
   if (now >= idle_at_) {
     idle_at_ = now + idle_timeout_us;
@@ -153,8 +173,8 @@ void Bootloader::poll(Microseconds now) {
 }
 
 Microseconds Bootloader::next_deadline() const {
-  const bool installs = receiver_.has_install_request() || downloaded_ != 0;
-  return installs && queue_.size() == 0 ? 0 : std::min({sdo_.next_deadline(), heartbeat_at_, idle_at_, leave_at_});
+  const bool installs = receiver_.has_install_request() || (downloaded_ != 0 && queue_.size() == 0);
+  return installs ? 0 : std::min({sdo_.next_deadline(), heartbeat_at_, idle_at_, leave_at_});
 }
 
 void Bootloader::install_broadcast() {
@@ -172,6 +192,7 @@ void Bootloader::install_broadcast() {
 /// An image that was checked.
 InstallResult Bootloader::write_image(std::span<const std::uint8_t> image) {
   const InstallResult result = slots_.install(image);
+  look_at_slot();
   const bool is_installed = result == InstallResult::ok || result == InstallResult::already_there;
   status_ = is_installed ? 0 : object::status_write_error;
   return result;
@@ -200,8 +221,7 @@ AbortCode Bootloader::read(const Entry& entry, std::uint32_t& value) {
   } else if (entry.address == canopen::object::serial.address) {
     value = address_.back();
   } else if (entry.address == object::program_identification.address) {
-    const auto image = slots_.image_in(FlashSlot::a);
-    value = image.empty() ? 0 : crc32(image.first(image::header_size));
+    value = image_header().empty() ? 0 : crc32(image_header());
   } else if (entry.address == object::flash_status.address) {
     value = status_ | (downloaded_ != 0 ? object::status_in_progress : 0);
   }
@@ -223,8 +243,7 @@ AbortCode Bootloader::write(const Entry& entry, std::uint32_t value) {
 
 AbortCode Bootloader::open_write(const Entry& /*entry*/, std::optional<std::uint32_t> size) {
   // Broadcast and SDO share the buffer.
-  const bool is_receiving = receiver_.state() > ReceiverState::idle && receiver_.state() < ReceiverState::installed;
-  if (is_receiving || downloaded_ != 0) {
+  if (receiver_.is_in_use(now_) || downloaded_ != 0) {
     return AbortCode::refused_by_state;
   }
   if (size.value_or(0) > ports_.buffer.size()) {

@@ -4,7 +4,7 @@
 // checks it, and installs it. Like the module's program it is a state machine: events come in, frames go out; it never
 // waits, except in the flash. The servo has no pulses.
 
-#include "firmware/bootloader/slots.hpp"
+#include "firmware/bootloader/handover.hpp"
 #include "shared/broadcast/image_receiver.hpp"
 #include "shared/can/transmit_queue.hpp"
 #include "shared/canopen/lss_slave.hpp"
@@ -20,7 +20,7 @@ struct Ports {
   std::span<std::uint8_t> buffer;  ///< RAM for an image
 };
 
-class Bootloader final : private canopen::ObjectAccess {
+class Bootloader final : private canopen::ObjectAccess, private broadcast::ReceiverOwner {
  public:
   /// Without a host's request for so long, the bootloader starts a program that may run.
   static constexpr Microseconds idle_timeout_us = 10'000'000;
@@ -29,8 +29,9 @@ class Bootloader final : private canopen::ObjectAccess {
   /// serial: as object 0x1018:4 of the module.
   Bootloader(const image::Place& place, std::uint32_t serial, const Ports& ports);
 
-  /// node: as stored, 0: none. Sends boot-up if there is one.
-  void power_on(Microseconds now, std::uint8_t node);
+  /// node: as stored, 0: none. Sends boot-up if there is one. left: by the start before; an image that waits in the
+  /// buffer is installed.
+  void power_on(Microseconds now, std::uint8_t node, const Handover& left);
   void receive(Microseconds now, const CanFrame& frame);
   /// The controller has sent a frame.
   void transmitted(Microseconds now, const CanFrame& frame);
@@ -54,11 +55,20 @@ class Bootloader final : private canopen::ObjectAccess {
   canopen::AbortCode close_write(const canopen::Entry& entry, std::uint32_t size) override;
   void cancel_write(const canopen::Entry& entry) override;
 
+  // ReceiverOwner.
+  [[nodiscard]] broadcast::ModuleCondition condition() const override { return {flags_, node_}; }
+  [[nodiscard]] std::span<const std::uint8_t> image_header() const override {
+    return (flags_ & broadcast::module_flag::has_image) != 0
+               ? ports_.flash.contents(FlashSlot::a).first(image::header_size)
+               : std::span<const std::uint8_t>();
+  }
+
   void receive_lss(Microseconds now, const CanFrame& frame);
   void receive_network_command(Microseconds now, const CanFrame& frame);
   void start_network(Microseconds now, std::uint8_t node);
   void install_broadcast();
   [[nodiscard]] InstallResult write_image(std::span<const std::uint8_t> image);
+  void look_at_slot();
   void leave(Microseconds now);
   void send(const CanFrame& frame) { static_cast<void>(queue_.push(frame)); }
 
@@ -75,9 +85,11 @@ class Bootloader final : private canopen::ObjectAccess {
   std::uint8_t node_ = 0;  ///< 0: none
   Microseconds heartbeat_at_ = never;
   Microseconds idle_at_ = never;
+  std::uint8_t flags_ = 0;        ///< broadcast::module_flag
   std::uint32_t status_ = 0;      ///< object 0x1F57:1
   bool is_downloading_ = false;   ///< by SDO, into the buffer
   std::uint32_t downloaded_ = 0;  ///< bytes of an image from SDO that waits to be installed
+  bool ends_line_ = false;        ///< ImageInRam
   bool leaves_ = false;
   Microseconds leave_at_ = never;  ///< at the latest
 };

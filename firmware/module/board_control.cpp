@@ -11,18 +11,6 @@ static_assert(BoardRecord{}.current_limit_ma == object::current_limit.default_va
 static_assert(BoardRecord{}.current_limit_time_ms == object::current_limit_time.default_value);
 static_assert(BoardRecord::max_current_ma == object::current_limit.maximum);
 
-/// Writing the flash stops the program for up to half a second: not while the servo has power, or soon may have.
-bool may_write_flash(const Parts& parts) {
-  switch (parts.drive.power().state()) {
-    case PowerState::switched_on:
-    case PowerState::operation_enabled:
-    case PowerState::quick_stop_active:
-      return false;
-    default:
-      return !parts.network.operational();
-  }
-}
-
 AbortCode save(Parts& parts, const BoardRecord& record) {
   switch (parts.board.save(record)) {
     case AppendResult::ok:
@@ -50,9 +38,7 @@ class NodeStorage final : public canopen::LssStorage {
     if (!may_write_flash(parts_)) {
       return {canopen::lss::specific_error, canopen::lss::refused_by_state};
     }
-    BoardRecord record = parts_.board.stored();
-    record.node = node;
-    return {save(parts_, record) == AbortCode::none ? canopen::lss::ok : canopen::lss::storage_failed};
+    return {parts_.board.save_node(node) == AppendResult::ok ? canopen::lss::ok : canopen::lss::storage_failed};
   }
 
  private:
@@ -60,6 +46,17 @@ class NodeStorage final : public canopen::LssStorage {
 };
 
 }  // namespace
+
+bool may_write_flash(const Parts& parts) {
+  switch (parts.drive.power().state()) {
+    case PowerState::switched_on:
+    case PowerState::operation_enabled:
+    case PowerState::quick_stop_active:
+      return false;
+    default:
+      return !parts.network.operational();
+  }
+}
 
 AbortCode save_parameters(Parts& parts, std::uint32_t signature) {
   if (const AbortCode code = check_signature(parts, signature, canopen::signature_save); code != AbortCode::none) {

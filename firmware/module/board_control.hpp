@@ -6,6 +6,9 @@
 
 namespace proleg::firmware {
 
+/// Writing the flash stops the program for up to half a second: not while the servo has power, or soon may have.
+[[nodiscard]] bool may_write_flash(const Parts& parts);
+
 /// Object 0x1010: what is in force is kept. The node id stays as LSS has stored it.
 [[nodiscard]] canopen::AbortCode save_parameters(Parts& parts, std::uint32_t signature);
 /// Object 0x1011: all but the node id has its default value from the next reset on.

@@ -103,15 +103,6 @@ std::size_t free_offset(Bytes sector) {
   return offset;
 }
 
-bool equal(Bytes a, Bytes b) {
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i] != b[i]) {
-      return false;
-    }
-  }
-  return true;
-}
-
 /// Enters what the records of a log have in common.
 void complete(RecordBytes& bytes, std::uint32_t sequence) {
   write_little_endian(bytes, 0, 4, sequence);
@@ -130,7 +121,7 @@ AppendResult write(FlashPort& flash, const NewestRecord& before, const RecordByt
     }
   }
   if (!flash.program(sector, static_cast<std::uint32_t>(offset), bytes) ||
-      !equal(bytes, flash.contents(sector).subspan(offset, BoardRecord::size))) {
+      !std::ranges::equal(bytes, flash.contents(sector).subspan(offset, BoardRecord::size))) {
     return AppendResult::program_failed;
   }
   return AppendResult::ok;
@@ -170,12 +161,19 @@ std::uint8_t newest_node(Bytes sector_1, Bytes sector_2) {
   return bytes.empty() ? std::uint8_t{0} : bytes[node_at];
 }
 
+bool has_newer_schema(Bytes sector_1, Bytes sector_2) {
+  const Bytes bytes = find_newest({sector_1, sector_2}).bytes;
+  return !bytes.empty() && bytes[version_at] > BoardRecord::schema;
+}
+
 AppendResult append(FlashPort& flash, const BoardRecord& record) {
   if (!record.valid()) {
     return AppendResult::invalid_record;
   }
   const NewestRecord before = find_newest({flash.contents(0), flash.contents(1)});
-  if (!before.bytes.empty() && decode(before.bytes) == record) {
+  // What this program reads of a newer schema is not what the record holds.
+  const bool is_known = !before.bytes.empty() && before.bytes[version_at] <= BoardRecord::schema;
+  if (is_known && decode(before.bytes) == record) {
     return AppendResult::ok;
   }
   return write(flash, before, encode(record, before.sequence + 1U));

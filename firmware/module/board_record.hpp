@@ -90,8 +90,11 @@ struct BoardRecord {
 /// The node id of that record; 0: none.
 [[nodiscard]] std::uint8_t newest_node(std::span<const std::uint8_t> sector_1, std::span<const std::uint8_t> sector_2);
 
+/// Whether that record has a schema version that this program does not know.
+[[nodiscard]] bool has_newer_schema(std::span<const std::uint8_t> sector_1, std::span<const std::uint8_t> sector_2);
+
 enum class AppendResult : std::uint8_t {
-  ok,              ///< also if it is the newest already: nothing was written then
+  ok,              ///< also if it is the newest already, in a schema that is known: nothing was written then
   invalid_record,  ///< not BoardRecord::valid(); nothing was written
   erase_failed,    ///< the record before is still the newest
   program_failed,  ///< the record before is still the newest, or the flash does not hold what was written

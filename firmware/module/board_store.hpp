@@ -15,6 +15,11 @@ class BoardStore {
   void reset() { in_force = stored_; }
   /// Appends a record to the flash, which stops the program for up to half a second.
   [[nodiscard]] AppendResult save(const BoardRecord& record);
+  /// The same for the node id, and the rest as the flash has it, in any schema.
+  [[nodiscard]] AppendResult save_node(std::uint8_t node);
+
+  /// has_newer_schema() of the flash. save() ends it.
+  [[nodiscard]] bool has_newer() const { return has_newer_; }
 
   /// As in flash. They come into force at the next reset.
   [[nodiscard]] const BoardRecord& stored() const { return stored_; }
@@ -25,6 +30,7 @@ class BoardStore {
  private:
   FlashPort& flash_;
   BoardRecord stored_;
+  bool has_newer_ = false;
 };
 
 }  // namespace proleg::firmware

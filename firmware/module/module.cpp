@@ -43,10 +43,12 @@ void Module::power_on(Microseconds now) {
   parts_.reset(now);
   objects_.reset();
   parts_.emergencies.power_on();
+  parts_.update.power_on(now);
   finish_event(now);
 }
 
 void Module::receive(Microseconds now, const CanFrame& frame) {
+  parts_.update.received();
   handle(now, frame);
   parts_.gateway.pass(now, frame);
 }
@@ -54,6 +56,10 @@ void Module::receive(Microseconds now, const CanFrame& frame) {
 /// A frame that the module must receive, of another node or of its own.
 void Module::handle(Microseconds now, const CanFrame& frame) {
   if (receive_state(frame)) {
+    return;
+  }
+  if (frame.identifier == broadcast::host_identifier) {
+    receive_update(now, frame);
     return;
   }
   if (frame.identifier == identifier::lss_request) {
@@ -118,6 +124,17 @@ void Module::dispatch(Microseconds now, const CanFrame& frame) {
   }
 }
 
+/// Thousands of frames a second, which change nothing else.
+void Module::receive_update(Microseconds now, const CanFrame& frame) {
+  const bool may_restart = may_write_flash(parts_) && !parts_.is_supply_low;
+  const ProgramUpdate::Conditions conditions{parts_.identity.node, may_restart, parts_.gateway.is_active(),
+                                             parts_.board.has_newer()};
+  if (const std::optional<CanFrame> answer = parts_.update.receive(now, frame, conditions)) {
+    parts_.outbox.send(*answer);
+  }
+  find_deadlines();
+}
+
 void Module::receive_lss(Microseconds now, const CanFrame& frame) {
   if (state() == NmtState::boot_up && !parts_.network.waits_for_node()) {
     return;
@@ -155,8 +172,10 @@ void Module::receive_network_command(Microseconds now, const CanFrame& frame) {
 
 void Module::transmitted(Microseconds now, const CanFrame& frame) {
   parts_.outbox.sent();
+  parts_.update.transmitted();
   objects_.send_segments(now);
   if (parts_.gateway.confirm(now, frame)) {
+    parts_.update.received();
     handle(now, frame);
     find_deadlines();
     return;
@@ -186,6 +205,7 @@ bool Module::serve_line(Microseconds now) {
 void Module::bus_off(Microseconds now) {
   if (!is_bus_off()) {
     objects_.reset();
+    parts_.update.bus_was_lost();
     leave_bus(parts_, now);
     finish_event(now);
   }
@@ -200,6 +220,7 @@ void Module::bus_back(Microseconds now) {
 
 void Module::frames_lost(Microseconds now, std::uint32_t count) {
   parts_.gateway.frames_lost();
+  parts_.update.bus_was_lost();
   if (parts_.losses.add(now, count) && parts_.network.has_sent_boot_up()) {
     parts_.emergencies.report(canopen::EmergencyCode::frames_lost, count);
   }
@@ -234,6 +255,7 @@ void Module::poll_parts(Microseconds now) {
   poll_host(parts_, now);
   poll_sync(parts_, now);
   parts_.producer.poll(now);
+  parts_.update.poll(now, may_write_flash(parts_) && !parts_.is_supply_low);
   objects_.poll(now);
   finish_event(now);
 }
@@ -255,7 +277,7 @@ void Module::find_deadlines() {
                                         std::min(parts_.sync.next_deadline(), parts_.monitor.next_deadline()));
   const Microseconds services = std::min(std::min(parts_.network.next_deadline(), parts_.producer.next_deadline()),
                                          std::min(objects_.next_deadline(), parts_.lease.next_deadline()));
-  deadline_of_parts_ = std::min(watches, services);
+  deadline_of_parts_ = std::min(std::min(watches, services), parts_.update.next_deadline());
   next_deadline_ = std::min(deadline_of_parts_, parts_.drive.next_deadline());
 }
 

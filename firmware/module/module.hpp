@@ -70,6 +70,7 @@ class Module {
   void handle(Microseconds now, const CanFrame& frame);
   [[nodiscard]] bool receive_state(const CanFrame& frame);
   void dispatch(Microseconds now, const CanFrame& frame);
+  void receive_update(Microseconds now, const CanFrame& frame);
   void receive_lss(Microseconds now, const CanFrame& frame);
   void receive_network_command(Microseconds now, const CanFrame& frame);
   void poll_parts(Microseconds now);

@@ -29,4 +29,10 @@ struct ModuleIdentity {
 /// The serial number of object 0x1018, which has 32 bits: CRC-32 of the unique id, little-endian.
 [[nodiscard]] std::uint32_t serial_number(const ModuleIdentity& identity);
 
+/// From the start of the module to its boot-up, 1,000 to 16,000: of two modules with one node id that are switched on
+/// together, one receives the other's message.
+[[nodiscard]] inline std::uint32_t boot_up_delay_us(const ModuleIdentity& identity) {
+  return 1'000U * (1U + serial_number(identity) % 16U);
+}
+
 }  // namespace proleg::firmware

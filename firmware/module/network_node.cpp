@@ -11,7 +11,7 @@ void NetworkNode::start(Microseconds now) {
   has_sent_boot_up_ = false;
   collision_ = 0;
   waits_for_node_ = identity_.node == 0;
-  boot_up_at_ = waits_for_node_ ? never : now + 1'000U * (1U + serial_number(identity_) % 16U);
+  boot_up_at_ = waits_for_node_ ? never : now + boot_up_delay_us(identity_);
   heartbeat_period_ms_ = canopen::object::heartbeat_period.default_value;
   heartbeat_at_ = never;
 }

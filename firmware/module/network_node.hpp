@@ -11,8 +11,7 @@ class NetworkNode {
  public:
   NetworkNode(const ModuleIdentity& identity, Outbox& outbox) : identity_(identity), outbox_(outbox) {}
 
-  /// Without a node id nothing follows. Else boot-up follows after 1 to 16 ms, which depend on the unique id: of two
-  /// modules with one node id that are switched on together, one receives the other's message.
+  /// Without a node id nothing follows. Else boot-up follows after boot_up_delay_us().
   void start(Microseconds now);
   /// Since start() without a node id: the module waits for LSS to give it one.
   [[nodiscard]] bool waits_for_node() const { return waits_for_node_; }

@@ -11,7 +11,8 @@ Parts::Parts(const ModuleIdentity& module_identity, const Ports& ports)
       gateway(identity, ports),
       drive(ports.servo),
       monitor(ports.sensors),
-      contacts(ports.contacts) {}
+      contacts(ports.contacts),
+      update(identity, ports) {}
 
 void Parts::load() {
   board.load();

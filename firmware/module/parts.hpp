@@ -7,6 +7,7 @@
 #include "firmware/module/host_watch.hpp"
 #include "firmware/module/lease.hpp"
 #include "firmware/module/loss_counter.hpp"
+#include "firmware/module/program_update.hpp"
 #include "firmware/module/servo_monitor.hpp"
 #include "firmware/module/state_receiver.hpp"
 #include "firmware/module/sync_producer.hpp"
@@ -71,6 +72,7 @@ struct Parts {
   LossCounter losses;          ///< a reset of the node does not change it
   bool is_supply_low = false;  ///< a reset of the node does not change it
   ContactPort& contacts;
+  ProgramUpdate update;  ///< a reset of the node does not change it
 };
 
 }  // namespace proleg::firmware

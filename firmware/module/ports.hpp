@@ -75,13 +75,39 @@ class LinePort {
   ~LinePort() = default;
 };
 
+/// The program's own place in flash, and the bootloader that starts it (docs/flashing.md).
+class ProgramPort {
+ public:
+  /// RAM for an image that is to replace the program.
+  [[nodiscard]] virtual std::span<std::uint8_t> buffer() = 0;
+  /// The header of the program's image (shared/image/image_header.hpp).
+  [[nodiscard]] virtual std::span<const std::uint8_t> header() const = 0;
+  /// Whether a bootloader has started the program.
+  [[nodiscard]] virtual bool has_bootloader() const = 0;
+  /// Whether the program was found good before; else it runs on trial.
+  [[nodiscard]] virtual bool is_confirmed() const = 0;
+  /// The program is good: from now on it starts without a trial. It writes a word of flash, 16 us.
+  virtual void confirm() = 0;
+  /// The program has started well this time.
+  virtual void note_good_start() = 0;
+  /// Restarts into the bootloader, which installs the first bytes of the buffer. session: of the host that has sent
+  /// them (shared/broadcast). ends_line: the host is on the module's serial line, and cannot reach the bootloader.
+  virtual void install(std::size_t size, std::uint8_t session, bool ends_line) = 0;
+  /// Restarts into the bootloader, which stays on the bus.
+  virtual void enter_bootloader() = 0;
+
+ protected:
+  ~ProgramPort() = default;
+};
+
 struct Ports {
   CanPort& can;
   ServoPort& servo;
   ContactPort& contacts;
   SensorPort& sensors;
   FlashPort& flash;
-  LinePort* line = nullptr;  ///< null: the module cannot be a gateway
+  LinePort* line = nullptr;        ///< null: the module cannot be a gateway
+  ProgramPort* program = nullptr;  ///< null: the module takes no images
 };
 
 }  // namespace proleg::firmware

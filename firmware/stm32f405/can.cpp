@@ -5,6 +5,7 @@
 #include "firmware/stm32f405/pins.hpp"
 #include "firmware/stm32f405/registers/can.hpp"
 #include "firmware/stm32f405/registers/rcc.hpp"
+#include "shared/broadcast/transfer_frame.hpp"
 #include "shared/canopen/messages.hpp"
 
 namespace proleg::stm32f405 {
@@ -33,13 +34,13 @@ constexpr std::uint32_t of_mailbox(std::uint32_t bits_of_mailbox_0, unsigned mai
 // module: in a chain of 20 coupled joints two of the 19 state frames that the others send in a tick.
 constexpr unsigned node_bank = 0;        ///< masks: the module's own identifiers, all heartbeats
 constexpr unsigned common_bank = 1;      ///< messages for all nodes
-constexpr unsigned lss_bank = 2;         ///< the identifier of the LSS master
+constexpr unsigned service_bank = 2;     ///< the identifiers of the LSS master, and of a host that sends an image
 constexpr unsigned first_list_bank = 3;  ///< lists: state frames that the joint depends on, four a bank
 constexpr unsigned all_states_bank = can1::filter_banks - 1;  ///< masks: all state frames, if the lists are too short
 constexpr unsigned every_frame_bank = all_states_bank - 1;    ///< masks: every data frame, for the host of a gateway
 constexpr unsigned list_banks = every_frame_bank - first_list_bank;
 constexpr std::size_t list_entries = 4;
-constexpr std::uint32_t banks_of_every_robot = 1U << node_bank | 1U << common_bank | 1U << lss_bank;
+constexpr std::uint32_t banks_of_every_robot = 1U << node_bank | 1U << common_bank | 1U << service_bank;
 
 constexpr std::uint32_t filter_of(std::uint32_t identifier) { return identifier << can1::filter_stid_position; }
 /// Identifier and mask: passes if the bits of `mask` are equal.
@@ -75,9 +76,9 @@ void accept_common_frames() {
   const can1::FilterBank common(common_bank);
   common.first.write(pair_of(identifier::nmt, identifier::sync));
   common.second.write(pair_of(identifier::commit, identifier::tick));
-  const can1::FilterBank lss(lss_bank);
-  lss.first.write(pair_of(identifier::lss_request, identifier::lss_request));
-  lss.second.write(pair_of(identifier::lss_request, identifier::lss_request));
+  const can1::FilterBank services(service_bank);
+  services.first.write(pair_of(identifier::lss_request, broadcast::host_identifier));
+  services.second.write(pair_of(identifier::lss_request, broadcast::host_identifier));
   const can1::FilterBank all_states(all_states_bank);
   all_states.first.write(masked(identifier::state_frame, function_bits));
   all_states.second.write(masked(identifier::second_state, function_bits));
@@ -189,6 +190,8 @@ void Can::receive_all(bool all) {
   can1::fa1r.change(1U << every_frame_bank, every_frame_bank_);
 }
 
+#ifndef PROLEG_CAN_WITHOUT_ERROR_COUNTS
+
 CanStatus Can::status() {
   const std::uint32_t value = can1::esr.read();
   CanStatus status;
@@ -217,6 +220,8 @@ CanErrors Can::take_errors() {
   }
   return errors;
 }
+
+#endif
 
 void Can::recover() {
   // Also while an earlier request is in progress: the controller may have gone bus-off again since.

@@ -39,9 +39,11 @@ class Can final : public CanPort {
   void set_node(std::uint8_t node) override;
   void listen(std::span<const std::uint16_t> identifiers) override;
   void receive_all(bool all) override;
+#ifndef PROLEG_CAN_WITHOUT_ERROR_COUNTS  // the bootloader has no room for what it does not ask for
   [[nodiscard]] CanStatus status() override;
   /// Of the errors since the last call, the last one.
   [[nodiscard]] CanErrors take_errors() override;
+#endif
   void recover() override;
 
   /// The oldest event; null: there is none. It stays until drop_event().

@@ -1,11 +1,29 @@
 #include "firmware/stm32f405/hardware.hpp"
 
+#include <cstddef>
+#include <memory>
+
 #include "firmware/stm32f405/handlers.hpp"
 #include "firmware/stm32f405/registers/core.hpp"
 
 namespace proleg::stm32f405 {
 
-constinit Hardware hardware;
+namespace {
+
+/// Without an initial value, so that the zeros of which it mainly consists need no flash.
+union HardwareStorage {
+  constexpr HardwareStorage() : nothing() {}
+  std::byte nothing;
+  Hardware hardware;
+};
+
+constinit HardwareStorage storage;
+
+}  // namespace
+
+constinit Hardware& hardware = storage.hardware;
+
+void make_hardware() { std::construct_at(&storage.hardware); }
 
 void request_pend_sv() { scb::icsr.write(scb::icsr_pendsvset); }
 

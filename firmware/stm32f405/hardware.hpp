@@ -6,6 +6,7 @@
 #include "firmware/stm32f405/flash.hpp"
 #include "firmware/stm32f405/gateway_line.hpp"
 #include "firmware/stm32f405/microsecond_clock.hpp"
+#include "firmware/stm32f405/program_place.hpp"
 #include "firmware/stm32f405/sensors.hpp"
 #include "firmware/stm32f405/servo.hpp"
 #include "firmware/stm32f405/supply.hpp"
@@ -23,9 +24,14 @@ struct Hardware {
   Console console;
   GatewayLine line{console};
   BoardRecordFlash board_records;
+  ProgramPlace program;
 };
 
-extern Hardware hardware;
+/// Nothing may use it before make_hardware().
+extern Hardware& hardware;
+
+/// To be called once, first of all.
+void make_hardware();
 
 /// Sets the priorities of all interrupts and enables them. pend_sv_handler() may run from now on.
 void enable_interrupts();

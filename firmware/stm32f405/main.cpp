@@ -124,6 +124,7 @@ void start_clocks_or_give_up(const Start& start) {
     if (start.fault) {
       print(*start.fault);
     }
+    hardware.program.note_good_start();  // the crystal is to blame: the bootloader shall not give the program up
     give_up(result == ClockResult::no_crystal ? FaultRecord::Reason::no_crystal : FaultRecord::Reason::no_pll);
   }
 }
@@ -154,6 +155,7 @@ extern "C" {
   gnu::used]] extern constinit const proleg::firmware::TickRecord* const proleg_tick_record = &the_last_tick;
 
 void run_program() {
+  make_hardware();
   static_cast<void>(start_watchdog(watchdog_ms));  // if that fails it has 512 ms, which is enough
   const Start start = find_start();
   start_pins();

@@ -21,7 +21,7 @@ static_assert(std::is_trivially_destructible_v<firmware::Module>,
 void ModuleTask::start(const firmware::ModuleIdentity& identity, firmware::TickRecord& last_tick) {
   last_tick_ = &last_tick;
   module_.emplace(identity, firmware::Ports{hardware.can, hardware.servo, hardware.contacts, hardware.sensors,
-                                            hardware.board_records, &hardware.line});
+                                            hardware.board_records, &hardware.line, &hardware.program});
   last_time_ = hardware.clock.now();
   module_->power_on(last_time_);
 }
@@ -60,14 +60,21 @@ Microseconds ModuleTask::in_order(Microseconds time) {
   return last_time_;
 }
 
+/// Some at a time: while frames come as fast as the program takes them, the deadlines and the watchdog have their turn.
 void ModuleTask::take_events() {
-  while (const Can::Event* const event = hardware.can.next_event()) {
+  constexpr unsigned events_in_a_row = 16;
+  for (unsigned i = 0; i < events_in_a_row; ++i) {
+    const Can::Event* const event = hardware.can.next_event();
+    if (event == nullptr) {
+      return;
+    }
     const Microseconds time = in_order(hardware.clock.at(event->stamp));
     if (module_) {
       handle(*event, time);
     }
     hardware.can.drop_event();
   }
+  request_pend_sv();
 }
 
 /// States, not events: what happened twice, or was not seen, ends in the present state.

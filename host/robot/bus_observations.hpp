@@ -34,6 +34,7 @@ struct ObservedNode {
 struct SilentModule {
   std::uint32_t serial = 0;             ///< 0x1018:4
   std::optional<std::uint8_t> node_id;  ///< nothing: it has none
+  std::uint32_t product = 0;            ///< 0x1018:2
 
   friend bool operator==(const SilentModule&, const SilentModule&) = default;
 };

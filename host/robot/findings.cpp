@@ -111,8 +111,8 @@ class Diagnosis {
     add("duplicate_node_id",
         "Several modules have the same node id: " + nodes_text(nodes) + ". They have stopped" +
             (serials.empty() ? std::string(".") : " (serial numbers " + serials + ")."),
-        "Unplug all of them but one and give that one its place with 'proleg assign'. Then do the same with the next "
-        "one.",
+        "Run 'proleg recover': one keeps the node id, the others get free ones. Then 'proleg assign' gives each its "
+        "place.",
         nodes);
   }
 

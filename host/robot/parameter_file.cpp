@@ -181,4 +181,12 @@ std::vector<canopen::Object> setting_objects(const std::vector<std::uint8_t>& al
   return objects;
 }
 
+std::vector<canopen::Object> kept_objects() {
+  std::vector<canopen::Object> objects = setting_objects({});
+  std::erase_if(objects, [](const canopen::Object& one) {
+    return one.address.index == canopen::object::command_speed.address.index;
+  });
+  return objects;
+}
+
 }  // namespace proleg::host

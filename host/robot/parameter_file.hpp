@@ -47,4 +47,7 @@ struct ModuleParameters {
 /// and the parameters of its algorithms. algorithms: ids by slot, 0: none.
 [[nodiscard]] std::vector<canopen::Object> setting_objects(const std::vector<std::uint8_t>& algorithms);
 
+/// Those of them that the module keeps in flash.
+[[nodiscard]] std::vector<canopen::Object> kept_objects();
+
 }  // namespace proleg::host

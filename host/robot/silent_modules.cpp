@@ -13,6 +13,8 @@ using lss::Service;
 
 constexpr std::uint32_t highest = std::numeric_limits<std::uint32_t>::max();
 constexpr unsigned first_attempts = 2;  // a frame may be lost; in a half of a range that has answered, one is enough
+constexpr unsigned further_attempts =
+    16;  // of both halves together, if neither answers, and of the module that is found
 
 /// Of the services that follow each other: the first, the second, ...
 constexpr Service numbered(Service first, unsigned position) {
@@ -35,19 +37,22 @@ void SilentModules::start(Microseconds now, std::uint32_t vendor, std::vector<st
     bool reaches_end = false;
     for (const std::uint32_t serial : known) {
       if (serial > low) {
-        ranges_.push_back({product, low, serial - 1, first_attempts});
+        ranges_.push_back({product, low, serial - 1, first_attempts, false});
       }
       reaches_end = serial == highest;
       low = serial + (reaches_end ? 0U : 1U);
     }
     if (!reaches_end) {
-      ranges_.push_back({product, low, highest, first_attempts});
+      ranges_.push_back({product, low, highest, first_attempts, false});
     }
   }
   proceed(now);
 }
 
 void SilentModules::proceed(Microseconds now) {
+  while (!ranges_.empty() && ranges_.front().is_split) {
+    end_split();
+  }
   if (ranges_.empty() || found_.size() >= options_.max_modules || now >= end_) {
     step_ = Step::done;
     return;
@@ -125,16 +130,22 @@ void SilentModules::conclude(Microseconds now) {
         ask(now, Step::inquire, {lss::make(canopen::identifier::lss_request, Service::inquire_node_id)});
         return;
       }
-      found_.pop_back();  // switched off meanwhile
       break;
     case Step::inquire:
       if (is_answered_) {
+        selections_ = 0;
         found_.back().node_id = answer_ == lss::no_node_id ? std::nullopt : std::optional<std::uint8_t>(answer_);
-      } else {
-        found_.pop_back();
       }
       break;
     default:
+      if (selections_ != 0 && selections_ < further_attempts) {
+        select(now);
+        return;
+      }
+      if (selections_ != 0) {
+        selections_ = 0;
+        found_.pop_back();  // switched off meanwhile
+      }
       proceed(now);
       return;
   }
@@ -155,19 +166,43 @@ void SilentModules::conclude_range(Microseconds now) {
     proceed(now);
     return;
   }
+  if (const auto parent = std::ranges::find(ranges_, true, &Range::is_split); parent != ranges_.end()) {
+    parent->attempts = 0;  // its halves need not be asked again
+  }
   if (asked.low < asked.high) {
-    const std::uint32_t middle = asked.low + (asked.high - asked.low) / 2;
-    ranges_.push_front({asked.product, middle + 1, asked.high, 1});
-    ranges_.push_front({asked.product, asked.low, middle, 1});
+    split({asked.product, asked.low, asked.high, further_attempts, true});
     proceed(now);
     return;
   }
-  found_.push_back({asked.low, std::nullopt});
+  found_.push_back({asked.low, std::nullopt, asked.product});
+  select(now);
+}
+
+/// The range itself stays behind its halves, until one of them has answered.
+void SilentModules::split(Range range) {
+  const std::uint32_t middle = range.low + (range.high - range.low) / 2;
+  ranges_.push_front(range);
+  ranges_.push_front({range.product, middle + 1, range.high, 1, false});
+  ranges_.push_front({range.product, range.low, middle, 1, false});
+}
+
+/// Both halves were asked.
+void SilentModules::end_split() {
+  Range range = ranges_.front();
+  ranges_.pop_front();
+  if (range.attempts > 1) {
+    --range.attempts;
+    split(range);
+  }
+}
+
+void SilentModules::select(Microseconds now) {
+  ++selections_;
   // The revision of all modules of this vendor is that of the dictionary.
   ask(now, Step::select,
-      {request(Service::select_vendor, 0, vendor_), request(Service::select_vendor, 1, asked.product),
+      {request(Service::select_vendor, 0, vendor_), request(Service::select_vendor, 1, found_.back().product),
        request(Service::select_vendor, 2, canopen::object::revision.default_value),
-       request(Service::select_vendor, 3, asked.low)});
+       request(Service::select_vendor, 3, found_.back().serial)});
 }
 
 }  // namespace proleg::host

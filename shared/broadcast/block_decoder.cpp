@@ -1,5 +1,7 @@
 #include "shared/broadcast/block_decoder.hpp"
 
+#include <cstring>
+
 #include "shared/fixed/random.hpp"
 
 namespace proleg::broadcast {
@@ -13,12 +15,55 @@ void add(Symbol& sum, const Symbol& symbol) {
 
 /// block_symbols if there is none.
 unsigned lowest(const SymbolSet& set) {
-  unsigned number = 0;
-  while (number < block_symbols && !set[number]) {
-    ++number;
+  for (unsigned i = 0; i < set.words.size(); ++i) {
+    if (set.words[i] != 0) {
+      return i * SymbolSet::word_bits + static_cast<unsigned>(std::countr_zero(set.words[i]));
+    }
   }
-  return number;
+  return block_symbols;
 }
+
+/// Calls it with each number in a set, in ascending order.
+template <typename Call>
+void for_each(const SymbolSet& set, Call call) {
+  for (unsigned i = 0; i < set.words.size(); ++i) {
+    for (std::uint32_t rest = set.words[i]; rest != 0; rest &= rest - 1U) {
+      call(i * SymbolSet::word_bits + static_cast<unsigned>(std::countr_zero(rest)));
+    }
+  }
+}
+
+/// The exclusive or of symbols of a block. Four bytes at a time, the fourth one twice.
+class SymbolSum {
+ public:
+  void add(std::span<const std::uint8_t> bytes, unsigned number) {
+    const std::size_t at = number * symbol_size;
+    if (at + symbol_size > bytes.size()) {
+      broadcast::add(last_, symbol_of(bytes, number));  // it is not full
+      return;
+    }
+    std::uint32_t first = 0;
+    std::uint32_t second = 0;
+    std::memcpy(&first, &bytes[at], sizeof(first));
+    std::memcpy(&second, &bytes[at + overlap], sizeof(second));
+    first_ ^= first;
+    second_ ^= second;
+  }
+  [[nodiscard]] Symbol value() const {
+    Symbol sum{};
+    std::memcpy(sum.data(), &first_, sizeof(first_));
+    std::memcpy(sum.data() + overlap, &second_, sizeof(second_));
+    broadcast::add(sum, last_);
+    return sum;
+  }
+
+ private:
+  static constexpr std::size_t overlap = symbol_size - sizeof(std::uint32_t);
+
+  std::uint32_t first_ = 0;
+  std::uint32_t second_ = 0;
+  Symbol last_{};
+};
 
 }  // namespace
 
@@ -39,35 +84,27 @@ void put_symbol(std::span<std::uint8_t> bytes, unsigned number, const Symbol& sy
 }
 
 SymbolSet repair_set(unsigned block, unsigned repair, unsigned symbols) {
-  constexpr unsigned word_bits = 32;
   Pcg32 random(repair, block);
   SymbolSet set;
-  for (unsigned word = 0; word < symbols; word += word_bits) {
-    const std::uint32_t bits = random.next();
-    for (unsigned bit = 0; bit < word_bits && word + bit < symbols; ++bit) {
-      set[word + bit] = (bits >> bit & 1U) != 0;
-    }
+  for (unsigned i = 0; i * SymbolSet::word_bits < symbols; ++i) {
+    const unsigned rest = symbols - i * SymbolSet::word_bits;
+    const std::uint32_t mask = rest < SymbolSet::word_bits ? (1U << rest) - 1U : ~std::uint32_t{0};
+    set.words[i] = random.next() & mask;
   }
   return set;
 }
 
 Symbol repair_symbol(std::span<const std::uint8_t> bytes, unsigned block, unsigned repair) {
-  const unsigned symbols = symbols_of(bytes.size());
-  const SymbolSet set = repair_set(block, repair, symbols);
-  Symbol sum{};
-  for (unsigned number = 0; number < symbols; ++number) {
-    if (set[number]) {
-      add(sum, symbol_of(bytes, number));
-    }
-  }
-  return sum;
+  SymbolSum sum;
+  for_each(repair_set(block, repair, symbols_of(bytes.size())), [&](unsigned number) { sum.add(bytes, number); });
+  return sum.value();
 }
 
 void BlockDecoder::start(std::span<std::uint8_t> bytes, SymbolSet& received, unsigned block) {
   bytes_ = bytes;
   received_ = &received;
   block_ = block;
-  missing_ = symbols_of(bytes.size()) - static_cast<unsigned>(received.count());
+  missing_ = symbols_of(bytes.size()) - received.count();
   equations_ = 0;
 }
 
@@ -78,17 +115,20 @@ bool BlockDecoder::add(unsigned repair, const Symbol& symbol) {
   if (missing_ > max_missing) {
     return false;
   }
-  const unsigned symbols = symbols_of(bytes_.size());
-  Equation equation{repair_set(block_, repair, symbols), symbol, block_symbols};
-  for (unsigned number = 0; number < symbols; ++number) {
-    if (equation.unknown[number] && (*received_)[number]) {
-      equation.unknown[number] = false;
-      broadcast::add(equation.sum, symbol_of(bytes_, number));
-    }
+  Equation equation{repair_set(block_, repair, symbols_of(bytes_.size())), symbol, block_symbols};
+  SymbolSet known = equation.unknown;
+  for (unsigned i = 0; i < known.words.size(); ++i) {
+    known.words[i] &= received_->words[i];
+    equation.unknown.words[i] ^= known.words[i];
   }
+  SymbolSum sum;
+  for_each(known, [&](unsigned number) { sum.add(bytes_, number); });
+  broadcast::add(equation.sum, sum.value());
   const auto remove_pivot = [](Equation& from, const Equation& other) {
-    if (from.unknown[other.pivot]) {
-      from.unknown ^= other.unknown;
+    if (from.unknown.contains(other.pivot)) {
+      for (unsigned i = 0; i < from.unknown.words.size(); ++i) {
+        from.unknown.words[i] ^= other.unknown.words[i];
+      }
       broadcast::add(from.sum, other.sum);
     }
   };
@@ -114,7 +154,7 @@ void BlockDecoder::solve() {
   for (unsigned i = 0; i < equations_; ++i) {
     const unsigned number = equation_[i].pivot;
     put_symbol(bytes_, number, equation_[i].sum);
-    (*received_)[number] = true;
+    received_->insert(number);
   }
   missing_ = 0;
 }

@@ -9,7 +9,7 @@
 // RFC 3453, section 2.3.)
 
 #include <array>
-#include <bitset>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -20,7 +20,27 @@ inline constexpr std::size_t symbol_size = 7;
 inline constexpr unsigned block_symbols = 256;
 
 using Symbol = std::array<std::uint8_t, symbol_size>;
-using SymbolSet = std::bitset<block_symbols>;
+
+/// Numbers of symbols of a block. Its words are visible, because a decoder that looks at bits one by one is slower than
+/// the bus.
+struct SymbolSet {
+  static constexpr unsigned word_bits = 32;
+  using Words = std::array<std::uint32_t, block_symbols / word_bits>;
+
+  [[nodiscard]] bool contains(unsigned number) const {
+    return (words[number / word_bits] >> number % word_bits & 1U) != 0;
+  }
+  void insert(unsigned number) { words[number / word_bits] |= 1U << number % word_bits; }
+  [[nodiscard]] unsigned count() const {
+    unsigned sum = 0;
+    for (const std::uint32_t word : words) {
+      sum += static_cast<unsigned>(std::popcount(word));
+    }
+    return sum;
+  }
+
+  Words words{};
+};
 
 /// Symbol `number` of a block, which has it; zeros follow if the last one is not full.
 [[nodiscard]] Symbol symbol_of(std::span<const std::uint8_t> bytes, unsigned number);

@@ -34,9 +34,9 @@ void ImageReceiver::receive_symbol(const CanFrame& frame) {
     if (decoder_.add(number, symbol)) {
       count_received(missing);
     }
-  } else if (number < symbols_of(bytes.size()) && !received[number]) {
+  } else if (number < symbols_of(bytes.size()) && !received.contains(number)) {
     put_symbol(bytes, number, symbol);
-    received[number] = true;
+    received.insert(number);
     count_received(1);
   }
 }
@@ -48,10 +48,17 @@ std::optional<CanFrame> ImageReceiver::receive_request(Microseconds now, const C
   const auto word = [&frame](std::size_t at, std::size_t size) { return read_little_endian(frame.data, at, size); };
   if (has(Code::select, 6) && word(2, 4) == serial_) {
     select(now, frame.data[1]);
-    return answer_frame(Code::select, serial_, status_);
+    return answer(Code::select);
   }
   if (has(Code::status, 5) && word(1, 4) == serial_) {
-    return answer_frame(Code::status, serial_, status_);
+    return answer(Code::status);
+  }
+  if (has(Code::header, 6) && word(2, 4) == serial_) {
+    return answer_frame(serial_, header_word(frame.data[1]));
+  }
+  if (has(Code::enter, 5) && word(1, 4) == serial_) {
+    enters_ = true;
+    return answer(Code::enter);
   }
   if (has(Code::report, 5) && word(1, 4) == serial_) {
     return answer_frame(serial_, report());
@@ -74,19 +81,35 @@ std::optional<CanFrame> ImageReceiver::receive_request(Microseconds now, const C
   return std::nullopt;
 }
 
+CanFrame ImageReceiver::answer(Code code) {
+  status_.condition = owner_.condition();
+  return answer_frame(code, serial_, status_);
+}
+
+HeaderWord ImageReceiver::header_word(std::uint8_t number) const {
+  constexpr std::size_t size = 4;
+  const std::span<const std::uint8_t> header = owner_.image_header();
+  const std::size_t begin = number * size;
+  return {number, begin + size <= header.size() ? read_little_endian(header, begin, size) : 0};
+}
+
 /// A repeated request does not begin the session again. Another host sees in the answer that the module is not its own.
 void ImageReceiver::select(Microseconds now, std::uint8_t session) {
-  const bool is_free = status_.state == ReceiverState::idle || now - last_request_ >= session_timeout_us ||
-                       (status_.state >= ReceiverState::installed && status_.session != session);
-  if (is_free) {
-    status_ = {ReceiverState::selected, 0, session};
+  const bool is_repetition = status_.state >= ReceiverState::installed && status_.session == session &&
+                             now - last_request_ < session_timeout_us;
+  if (!is_in_use(now) && !is_repetition) {
+    status_ = {ReceiverState::selected, 0, session, {}};
     last_request_ = now;
     has_block_ = false;
   }
 }
 
 void ImageReceiver::begin(std::uint32_t size) {
-  if (status_.state != ReceiverState::selected || size == 0 || size > buffer_.size() || blocks_of(size) > max_blocks) {
+  if (status_.state != ReceiverState::selected) {
+    return;
+  }
+  if (size == 0 || size > buffer_.size() || blocks_of(size) > max_blocks) {
+    set_state(ReceiverState::refused, refused_size);
     return;
   }
   image_ = buffer_.first(size);
@@ -115,13 +138,13 @@ void ImageReceiver::enter_block(unsigned block, std::uint8_t kind) {
 
 unsigned ImageReceiver::missing_in(unsigned block) const {
   const unsigned symbols = symbols_of(block_of(image_, block).size());
-  return symbols - static_cast<unsigned>(received_[block].count());
+  return symbols - received_[block].count();
 }
 
 ReportAnswer ImageReceiver::report() const {
   ReportAnswer answer;
-  if (status_.state < ReceiverState::receiving) {
-    answer.blocks = no_image;
+  if (status_.state != ReceiverState::receiving) {
+    answer.blocks = status_.state < ReceiverState::receiving ? no_image : std::uint8_t{0};
     return answer;
   }
   std::size_t listed = 0;
@@ -154,6 +177,25 @@ bool ImageReceiver::take_leave_request() {
   const bool leaves = leaves_;
   leaves_ = false;
   return leaves;
+}
+
+bool ImageReceiver::take_enter_request() {
+  const bool enters = enters_;
+  enters_ = false;
+  return enters;
+}
+
+void ImageReceiver::reset() {
+  status_ = {};
+  installs_ = false;
+  leaves_ = false;
+  enters_ = false;
+}
+
+void ImageReceiver::resume(std::uint8_t session, std::uint32_t size) {
+  status_ = {ReceiverState::complete, 0, session, {}};
+  image_ = buffer_.first(size < buffer_.size() ? size : buffer_.size());
+  installs_ = true;
 }
 
 void ImageReceiver::set_state(ReceiverState state, std::uint8_t error) {

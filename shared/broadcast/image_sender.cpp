@@ -28,6 +28,7 @@ void ImageSender::install(Microseconds now) {
 void ImageSender::enter(Microseconds now, Step step) {
   step_ = step;
   deadline_ = never;
+  is_unsent_ = false;
   target_ = 0;
   block_ = 0;
   announced_ = 0;
@@ -173,7 +174,9 @@ void ImageSender::ask(Microseconds now) {
   ++attempt_;
   constexpr Microseconds least_us = 2'000;
   asked_at_ = attempt_ == 1 ? now : asked_at_;
-  deadline_ = now + (longest_answer_ == 0 ? options_.answer_timeout_us : least_us + 4 * longest_answer_);
+  const Microseconds timeout = longest_answer_ == 0 ? options_.answer_timeout_us : least_us + 4 * longest_answer_;
+  constexpr unsigned most_doublings = 10;
+  deadline_ = now + std::min(timeout << std::min(attempt_ - 1, most_doublings), options_.longest_timeout_us);
 }
 
 void ImageSender::finish_round(Microseconds now) {
@@ -190,22 +193,32 @@ void ImageSender::finish_round(Microseconds now) {
       enter(now, Step::begin);
       return;
     case Step::report:
-      if (std::ranges::all_of(missing_, [](std::uint8_t missing) { return missing == 0; })) {
+      if (++rounds_ == max_rounds) {
+        lose_incomplete();
+      }
+      if (std::ranges::all_of(targets_, &Target::is_lost)) {
+        end(State::done);
+      } else if (rounds_ == max_rounds ||
+                 std::ranges::all_of(missing_, [](std::uint8_t missing) { return missing == 0; })) {
         end(State::complete);
       } else {
         plan_repairs();
-        enter(now, begins_again_ ? Step::begin : Step::send);
+        // A module that has restarted belongs to no session any more.
+        enter(now, begins_again_ ? Step::select : Step::send);
       }
       return;
     default:
-      if (installs_again_) {
-        installs_again_ = false;
-        enter(now, Step::install);
-      } else if (std::ranges::any_of(targets_, is_waiting) && now < install_ends_) {
+      if (std::ranges::any_of(targets_, is_waiting) && now < install_ends_) {
         deadline_ = now + options_.status_period_us;  // then the next round begins
       } else {
         end(State::done);
       }
+  }
+}
+
+void ImageSender::lose_incomplete() {
+  for (Target& target : targets_) {
+    target.is_lost = target.is_lost || target.status.state < ReceiverState::complete;
   }
 }
 
@@ -219,6 +232,7 @@ void ImageSender::lose_all() {
 void ImageSender::end(State state) {
   step_ = Step::idle;
   deadline_ = never;
+  is_unsent_ = false;
   state_ = state;
 }
 
@@ -287,7 +301,8 @@ void ImageSender::poll(Microseconds now) {
   if (step_ == Step::begin || step_ == Step::send || step_ == Step::install) {
     lose_all();  // the bus takes no frames
   } else if (step_ == Step::status && target_ == targets_.size()) {
-    enter(now, Step::status);
+    enter(now, installs_again_ ? Step::install : Step::status);
+    installs_again_ = false;
   } else if (attempt_ < options_.attempts || (step_ == Step::status && now < install_ends_)) {
     ask(now);  // a module that writes its flash cannot answer
   } else {

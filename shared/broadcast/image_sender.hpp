@@ -20,8 +20,10 @@ struct Target {
 
 struct SenderOptions {
   std::uint8_t session = 1;  ///< 1 to 255, random
-  /// Of an answer, until others have come; then four times the longest one.
+  /// Of an answer, until others have come; then four times the longest one. It doubles with each attempt: in the
+  /// transport's queue frames may be waiting.
   Microseconds answer_timeout_us = 50'000;
+  Microseconds longest_timeout_us = 150'000;
   unsigned attempts = 12;                        ///< of a request until it is answered
   Microseconds send_timeout_us = 1'000'000;      ///< in which the bus takes a frame
   Microseconds install_timeout_us = 15'000'000;  ///< from the request to the end of all installations
@@ -63,6 +65,8 @@ class ImageSender {
  private:
   /// A request that may be lost, and has no answer, is sent so often: a block whose beginning is lost is lost.
   static constexpr unsigned repetitions = 4;
+  /// Rounds of symbols, after which a module that still misses some is left behind.
+  static constexpr unsigned max_rounds = 24;
 
   enum class Step : std::uint8_t { idle, select, begin, send, report, install, status };
 
@@ -73,6 +77,7 @@ class ImageSender {
   void plan_all_symbols();
   void plan_repairs();
   void ask(Microseconds now);
+  void lose_incomplete();
   void lose_all();
   void next_target(Microseconds now);
   void finish_round(Microseconds now);
@@ -96,7 +101,8 @@ class ImageSender {
   std::size_t target_ = 0;
   unsigned attempt_ = 0;
   bool is_unsent_ = false;       ///< the request waits for a mailbox
-  bool begins_again_ = false;    ///< a module has not received `begin`
+  bool begins_again_ = false;    ///< a module has not received `begin`, or has restarted
+  unsigned rounds_ = 0;          ///< of symbols
   bool installs_again_ = false;  ///< a module has not received `install`
   Microseconds asked_at_ = 0;
   Microseconds longest_answer_ = 0;  ///< that was waited for

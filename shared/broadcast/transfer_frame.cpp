@@ -16,6 +16,18 @@ CanFrame answer(Code code, std::uint32_t serial) {
   return frame;
 }
 
+CanFrame request_to(std::uint32_t serial, Code code) {
+  CanFrame frame = request(code, 5);
+  write_little_endian(frame.data, 1, 4, serial);
+  return frame;
+}
+
+CanFrame request_to(std::uint32_t serial, Code code, std::uint8_t first) {
+  CanFrame frame = request(code, 6, first);
+  write_little_endian(frame.data, 2, 4, serial);
+  return frame;
+}
+
 bool is_answer(const CanFrame& frame, Code code, std::uint32_t serial) {
   return frame.identifier == module_identifier && frame.length == CanFrame::max_length &&
          frame.data[0] == static_cast<std::uint8_t>(code) &&
@@ -32,11 +44,7 @@ CanFrame symbol_frame(unsigned number, const Symbol& symbol) {
   return frame;
 }
 
-CanFrame select_frame(std::uint8_t session, std::uint32_t serial) {
-  CanFrame frame = request(Code::select, 6, session);
-  write_little_endian(frame.data, 2, 4, serial);
-  return frame;
-}
+CanFrame select_frame(std::uint8_t session, std::uint32_t serial) { return request_to(serial, Code::select, session); }
 
 CanFrame begin_frame(std::uint8_t session, std::uint32_t size) {
   CanFrame frame = request(Code::begin, 5, session);
@@ -51,27 +59,25 @@ CanFrame block_frame(std::uint8_t session, unsigned block, BlockKind kind) {
   return frame;
 }
 
-CanFrame report_frame(std::uint32_t serial) {
-  CanFrame frame = request(Code::report, 5);
-  write_little_endian(frame.data, 1, 4, serial);
-  return frame;
-}
+CanFrame report_frame(std::uint32_t serial) { return request_to(serial, Code::report); }
 
 CanFrame install_frame(std::uint8_t session) { return request(Code::install, 2, session); }
 
-CanFrame status_frame(std::uint32_t serial) {
-  CanFrame frame = request(Code::status, 5);
-  write_little_endian(frame.data, 1, 4, serial);
-  return frame;
-}
+CanFrame status_frame(std::uint32_t serial) { return request_to(serial, Code::status); }
 
 CanFrame leave_frame(std::uint8_t session) { return request(Code::leave, 2, session); }
+
+CanFrame header_frame(std::uint32_t serial, std::uint8_t word) { return request_to(serial, Code::header, word); }
+
+CanFrame enter_frame(std::uint32_t serial) { return request_to(serial, Code::enter); }
 
 CanFrame answer_frame(Code code, std::uint32_t serial, const StatusAnswer& status) {
   CanFrame frame = answer(code, serial);
   frame.data[detail_at] = static_cast<std::uint8_t>(status.state);
   frame.data[detail_at + 1] = status.error;
   frame.data[detail_at + 2] = status.session;
+  frame.data[detail_at + 3] = status.condition.flags;
+  frame.data[detail_at + 4] = status.condition.node;
   return frame;
 }
 
@@ -85,12 +91,21 @@ CanFrame answer_frame(std::uint32_t serial, const ReportAnswer& report) {
   return frame;
 }
 
+CanFrame answer_frame(std::uint32_t serial, const HeaderWord& word) {
+  CanFrame frame = answer(Code::header, serial);
+  frame.data[detail_at] = word.number;
+  write_little_endian(frame.data, detail_at + 1, 4, word.value);
+  return frame;
+}
+
 std::optional<StatusAnswer> decode_status(const CanFrame& frame, Code code, std::uint32_t serial) {
   if (!is_answer(frame, code, serial) || frame.data[detail_at] > static_cast<std::uint8_t>(ReceiverState::failed)) {
     return std::nullopt;
   }
-  return StatusAnswer{static_cast<ReceiverState>(frame.data[detail_at]), frame.data[detail_at + 1],
-                      frame.data[detail_at + 2]};
+  return StatusAnswer{static_cast<ReceiverState>(frame.data[detail_at]),
+                      frame.data[detail_at + 1],
+                      frame.data[detail_at + 2],
+                      {frame.data[detail_at + 3], frame.data[detail_at + 4]}};
 }
 
 std::optional<ReportAnswer> decode_report(const CanFrame& frame, std::uint32_t serial) {
@@ -102,6 +117,13 @@ std::optional<ReportAnswer> decode_report(const CanFrame& frame, std::uint32_t s
     report.some[i] = frame.data[detail_at + 2 + i];
   }
   return report;
+}
+
+std::optional<HeaderWord> decode_header_word(const CanFrame& frame, std::uint32_t serial) {
+  if (!is_answer(frame, Code::header, serial)) {
+    return std::nullopt;
+  }
+  return HeaderWord{frame.data[detail_at], read_little_endian(frame.data, detail_at + 1, 4)};
 }
 
 }  // namespace proleg::broadcast

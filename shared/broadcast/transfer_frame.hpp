@@ -1,8 +1,8 @@
 #pragma once
 
-// The frames with which an image goes to the bootloaders of many modules at once. The host sends with one identifier: a
-// frame of 8 bytes is a symbol, a shorter one a request. A module answers only if the request names its serial number,
-// so that two never send with the same identifier at once.
+// The frames with which an image goes to many modules at once. Programs and bootloaders of modules take part alike. The
+// host sends with one identifier: a frame of 8 bytes is a symbol, a shorter one a request. A module answers only if the
+// request names its serial number, so that two never send with the same identifier at once.
 //
 //   symbol    8 bytes   u8 number of the symbol (of the repair symbol) in the present block, 7 bytes
 //   select    6 bytes   1, u8 session (1 to 255), u32 serial number: the module takes part          answer: status
@@ -12,10 +12,13 @@
 //   install   2 bytes   5, u8 session
 //   status    5 bytes   6, u32 serial number                                                        answer: status
 //   leave     2 bytes   7, u8 session: start the program
+//   header    6 bytes   8, u8 word, u32 serial number                                              answer: header
+//   enter     5 bytes   9, u32 serial number: restart, and stay in the bootloader                  answer: status
 //
 // Answers have 8 bytes and begin with the code of the request and the low 16 bits of the serial number:
 //
-//   status    u8 state, u8 error, u8 session, u16 0
+//   status    u8 state, u8 error, u8 session, u8 flags (module_flag), u8 node id, 0: none
+//   header    u8 word, u32 this word of the header of the image in slot A; 0 without an image
 //   report    u8 blocks that miss symbols (255: the module waits for `begin`), u8 the most that one of them misses of
 //             those that repair symbols can complete, 3 x u8 some of these blocks, first those that repair symbols
 //             cannot complete, with bit 7; 255: there are no more
@@ -38,7 +41,7 @@ inline constexpr std::uint8_t no_image = 0xFF;  ///< as the number of blocks in 
 inline constexpr std::uint8_t no_block = 0xFF;
 inline constexpr std::uint8_t needs_symbols = 0x80;  ///< with the number of a block in a report
 
-enum class Code : std::uint8_t { select = 1, begin, block, report, install, status, leave };
+enum class Code : std::uint8_t { select = 1, begin, block, report, install, status, leave, header, enter };
 
 enum class BlockKind : std::uint8_t { symbols, repairs };
 
@@ -53,10 +56,44 @@ enum class ReceiverState : std::uint8_t {
   failed,   ///< the flash has failed
 };
 
+/// What a module says of itself in a status.
+namespace module_flag {
+inline constexpr std::uint8_t runs_program = 1U << 0U;  ///< its program answers; else its bootloader
+inline constexpr std::uint8_t has_image = 1U << 1U;     ///< slot A holds a complete image
+inline constexpr std::uint8_t is_confirmed = 1U << 2U;  ///< that image has started well once
+/// The servo has power, or the module is Operational: it does not restart.
+inline constexpr std::uint8_t is_busy = 1U << 3U;
+/// The settings have a later schema: the program uses only their node id.
+inline constexpr std::uint8_t has_newer_settings = 1U << 4U;
+/// A host may be connected to its serial line, which ends when the module installs an image.
+inline constexpr std::uint8_t is_gateway = 1U << 5U;
+/// The program has stopped just after its start, again and again: the bootloader stays.
+inline constexpr std::uint8_t starts_badly = 1U << 6U;
+/// Without it nothing can be installed over the bus.
+inline constexpr std::uint8_t has_bootloader = 1U << 7U;
+}  // namespace module_flag
+
+struct ModuleCondition {
+  std::uint8_t flags = 0;  ///< module_flag
+  std::uint8_t node = 0;   ///< 0: none
+
+  friend bool operator==(const ModuleCondition&, const ModuleCondition&) = default;
+};
+
+// Errors of `refused`; smaller numbers are those of image::Error.
+inline constexpr std::uint8_t refused_busy = 0x80;  ///< module_flag::is_busy
+inline constexpr std::uint8_t refused_size = 0x81;  ///< the module has no room for so many bytes
+
 struct StatusAnswer {
   ReceiverState state = ReceiverState::idle;
   std::uint8_t error = 0;  ///< of `refused` and `failed`: the installer's
   std::uint8_t session = 0;
+  ModuleCondition condition{};
+};
+
+struct HeaderWord {
+  std::uint8_t number = 0;
+  std::uint32_t value = 0;
 };
 
 struct ReportAnswer {
@@ -86,12 +123,16 @@ template <typename Byte>
 [[nodiscard]] CanFrame install_frame(std::uint8_t session);
 [[nodiscard]] CanFrame status_frame(std::uint32_t serial);
 [[nodiscard]] CanFrame leave_frame(std::uint8_t session);
+[[nodiscard]] CanFrame header_frame(std::uint32_t serial, std::uint8_t word);
+[[nodiscard]] CanFrame enter_frame(std::uint32_t serial);
 
 [[nodiscard]] CanFrame answer_frame(Code code, std::uint32_t serial, const StatusAnswer& status);
 [[nodiscard]] CanFrame answer_frame(std::uint32_t serial, const ReportAnswer& report);
+[[nodiscard]] CanFrame answer_frame(std::uint32_t serial, const HeaderWord& word);
 
 /// The answer of this module to a request with this code; nothing if it is another frame.
 [[nodiscard]] std::optional<StatusAnswer> decode_status(const CanFrame& frame, Code code, std::uint32_t serial);
 [[nodiscard]] std::optional<ReportAnswer> decode_report(const CanFrame& frame, std::uint32_t serial);
+[[nodiscard]] std::optional<HeaderWord> decode_header_word(const CanFrame& frame, std::uint32_t serial);
 
 }  // namespace proleg::broadcast

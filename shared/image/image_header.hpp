@@ -42,7 +42,13 @@ struct Version {
   std::uint16_t minor = 0;
   std::uint16_t patch = 0;
 
-  friend constexpr auto operator<=>(const Version&, const Version&) = default;
+  friend constexpr bool operator==(const Version&, const Version&) = default;
+  /// Whether it is the older one.
+  friend constexpr bool operator<(const Version& one, const Version& other) {
+    return one.major != other.major   ? one.major < other.major
+           : one.minor != other.minor ? one.minor < other.minor
+                                      : one.patch < other.patch;
+  }
 };
 
 /// What decides whether an image runs. A bootloader has no room to read more.

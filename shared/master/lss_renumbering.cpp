@@ -48,9 +48,14 @@ void LssRenumbering::send(Microseconds now, Step step) {
                       LssExchange::of(Service::store_configuration), options_.store_timeout_us);
       break;
     case Step::reset:
-      exchange_.begin(now, encode(NmtRequest{NmtCommand::reset_node, 0}), {}, options_.boot_timeout_us);
+      exchange_.begin(now, encode(NmtRequest{NmtCommand::reset_node, node_to_reset()}), {}, options_.boot_timeout_us);
       break;
   }
+}
+
+/// At another try the module may have its new node id already, and its boot-up message was lost.
+std::uint8_t LssRenumbering::node_to_reset() const {
+  return options_.reset_node != 0 && tries_ % 2 == 0 ? modules_[position_].node : options_.reset_node;
 }
 
 /// Sends the next number of the address; the module answers the last one.
@@ -183,7 +188,7 @@ std::size_t LssRenumbering::first_missing() const {
   for (std::size_t i = 0; i < modules_.size(); ++i) {
     const bool has_another = std::ranges::any_of(
         modules_.subspan(i + 1), [&](const RenumberedModule& later) { return later.address == modules_[i].address; });
-    if (!modules_[i].has_booted && !has_another) {
+    if (modules_[i].is_awaited && !modules_[i].has_booted && !has_another) {
       return i;
     }
   }

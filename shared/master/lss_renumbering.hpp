@@ -1,8 +1,8 @@
 #pragma once
 
 // Gives modules that have a node id another one (CiA 305): selects each by its LSS address, lets it store the node id,
-// and resets all modules, which then boot with their new node ids. The order is the caller's: a module may be listed
-// again, and then has the last node id.
+// and resets all modules, or those that have had one node id in common. They boot with their new node ids. The order is
+// the caller's: a module may be listed again, and then has the last node id.
 
 #include <span>
 
@@ -15,6 +15,7 @@ namespace proleg::canopen {
 struct RenumberedModule {
   LssAddress address{};
   std::uint8_t node = 0;    ///< its new node id, 1 to 126
+  bool is_awaited = true;   ///< after the reset; else its program may not start, and it need not boot
   bool has_stored = false;  ///< result: it has the new node id in its flash
   bool has_booted = false;  ///< result: a module has booted with this node id
 };
@@ -26,6 +27,7 @@ struct LssRenumberingOptions {
   Microseconds settle_us = 2'000;    ///< after an answer, before the next request
   Microseconds store_timeout_us = storing_time_us;
   Microseconds boot_timeout_us = 400'000;  ///< after the reset
+  std::uint8_t reset_node = 0;             ///< the node id, in use until then, that is reset; 0: all
   Microseconds send_timeout_us = 1'000'000;
 };
 
@@ -65,6 +67,7 @@ class LssRenumbering {
   enum class Step : std::uint8_t { release, probe, select, configure, store, release_all, reset };
 
   void send(Microseconds now, Step step);
+  [[nodiscard]] std::uint8_t node_to_reset() const;
   void select(Microseconds now);
   void conclude(Microseconds now);
   void next_module(Microseconds now);

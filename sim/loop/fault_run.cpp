@@ -19,10 +19,12 @@ void take_worse(MotionWatch::Worst& worst, const MotionWatch::Worst& other) {
 }  // namespace
 
 FaultRunResult run_with_faults(const Scenario& scenario, const FaultSchedule& schedule, std::uint32_t ticks,
-                               const std::function<std::unique_ptr<JointModule>(const ModuleParts&)>& make_module) {
+                               const std::function<std::unique_ptr<JointModule>(const ModuleParts&)>& make_module,
+                               std::uint32_t start_time_us) {
   HardwareOptions options;
   options.faults = schedule;
   options.make_module = make_module;
+  options.start_time_us = start_time_us;
   HardwareLoop loop(scenario, std::move(options));
   FaultRunResult result;
   try {

@@ -24,10 +24,12 @@ struct FaultRunResult {
 };
 
 /// Runs a scenario with faults for that many ticks. make_module: as HardwareOptions has it; null: native modules.
-/// A run that the physics ends is a violation, too. Throws InputError and HardwareError as HardwareLoop's constructor.
+/// start_time_us: the same. A run that the physics ends is a violation, too. Throws InputError and HardwareError as
+/// HardwareLoop's constructor.
 [[nodiscard]] FaultRunResult run_with_faults(
     const Scenario& scenario, const FaultSchedule& schedule, std::uint32_t ticks,
-    const std::function<std::unique_ptr<JointModule>(const ModuleParts&)>& make_module = nullptr);
+    const std::function<std::unique_ptr<JointModule>(const ModuleParts&)>& make_module = nullptr,
+    std::uint32_t start_time_us = 0);
 
 /// Whether native modules can play all faults, with the same result as chips. On a bus that destroys more than a tenth
 /// of the frames, the microseconds that a program needs decide which nodes are in bus-off, and when.

@@ -64,6 +64,8 @@ struct HardwareOptions {
   Bus::FrameListener on_frame;
   /// Called for what modules report by EMCY and for restarts, one line each.
   std::function<void(const std::string&)> notice;
+  /// From power on of a native module to the start of its program: 0, or what the bootloader of a chip needs.
+  std::uint32_t start_time_us = 0;
   /// Crystals are off by up to this, each by an amount that follows from the scenario's seed.
   std::uint32_t crystal_error_ppm = 100;
   /// For tests: changes the identities of the modules, and frames on their way into the program of a joint's module.

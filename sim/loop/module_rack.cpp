@@ -73,6 +73,7 @@ ModuleRack::ModuleRack(Bus& bus, const Plant& plant, const Scenario& scenario, c
 std::unique_ptr<JointModule> ModuleRack::make_native(const ModuleParts& parts) const {
   auto module = std::make_unique<NativeModule>(parts.bus, parts.identity, parts.crystal, parts.sensors,
                                                parts.take_readings, parts.is_gateway);
+  module->set_start_time(options_.start_time_us);
   if (options_.tamper) {
     module->set_tamper([&options = options_, joint = parts.joint](const CanFrame& frame, const auto& deliver) {
       options.tamper(joint, frame, deliver);

@@ -4,6 +4,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "shared/fixed/crc32.hpp"
+#include "shared/fixed/little_endian.hpp"
+
 namespace proleg::sim {
 namespace {
 
@@ -89,7 +92,8 @@ NativeModule::NativeModule(Bus& bus, const firmware::ModuleIdentity& identity, C
       sensors_(std::move(sensors)),
       meters_(std::move(readings)),
       controller_(bus.attach(*this)),
-      module_(identity, {port_, *this, *this, meters_, flash_, &line_}) {
+      program_(port_, flash_, identity),
+      module_(identity, {port_, *this, *this, meters_, flash_, &line_, &program_}) {
   if (identity.node == 0) {
     return;  // factory-fresh
   }
@@ -105,6 +109,20 @@ NativeModule::NativeModule(Bus& bus, const firmware::ModuleIdentity& identity, C
   controller_.switch_off();
 }
 
+void NativeModule::write_settings(std::uint8_t schema) {
+  constexpr std::uint32_t sequence = 1;
+  constexpr std::size_t schema_at = 4;
+  constexpr std::size_t crc_at = firmware::BoardRecord::size - 4;
+  firmware::BoardRecord record;
+  record.node = firmware::newest_node(flash_.contents(0), flash_.contents(1));
+  std::array<std::uint8_t, firmware::BoardRecord::size> bytes = firmware::encode(record, sequence);
+  bytes.at(schema_at) = schema;
+  write_little_endian(bytes, crc_at, 4, crc32(std::span(bytes).first(crc_at)));
+  static_cast<void>(flash_.erase(0));
+  static_cast<void>(flash_.erase(1));
+  static_cast<void>(flash_.program(0, 0, bytes));
+}
+
 bool NativeModule::has_power() const { return supply_mv_ >= reset_threshold_mv; }
 bool NativeModule::is_supply_low() const { return supply_mv_ < detector_threshold_mv; }
 
@@ -113,13 +131,68 @@ void NativeModule::power_on(BusTime now) {
   pulse_.reset();
   line_.reset();
   next_event_ = never_on_bus;
+  deaf_until_ = 0;
+  after_pause_ = AfterPause::goes_on;
+  program_.lose_ram();
   if (has_power()) {
+    program_.reset();
+    const Microseconds time = start_time_us_ + program_.take_flash_time();
+    if (time == 0) {
+      start(now);
+    } else {
+      pause(now, time, AfterPause::starts);
+    }
+  }
+}
+
+/// Program or bootloader, whichever the reset has chosen.
+void NativeModule::start(BusTime now) {
+  if (program_.bootloader() != nullptr) {
+    controller_.switch_on();
+    program_.start_bootloader(crystal_.at(now));
+  } else if (const ProgramHealth health = program_.health(); health != ProgramHealth::good) {
+    constexpr Microseconds watchdog_us = 1'000'000;
+    constexpr Microseconds fault_us = 1'000;
+    pause(now, health == ProgramHealth::hangs ? watchdog_us : fault_us, AfterPause::resets);
+    return;
+  } else {
     controller_.switch_on();
     module_.power_on(crystal_.at(now));
     if (is_supply_low()) {
       module_.supply_low(crystal_.at(now));
     }
-    update_deadline();
+  }
+  update_deadline();
+}
+
+/// A reset by software or by the watchdog: RAM keeps its contents.
+void NativeModule::reset(BusTime now) {
+  controller_.switch_off();
+  pulse_.reset();
+  line_.reset();
+  program_.reset();
+  pause(now, NativeProgram::start_time_us + program_.take_flash_time(), AfterPause::starts);
+}
+
+void NativeModule::pause(BusTime now, Microseconds time, AfterPause after) {
+  constexpr BusTime ns_per_us = 1'000;
+  after_pause_ = after;
+  deaf_until_ = now + time * ns_per_us;
+  next_event_ = deaf_until_;
+}
+
+void NativeModule::end_pause(BusTime now) {
+  deaf_until_ = 0;
+  switch (std::exchange(after_pause_, AfterPause::goes_on)) {
+    case AfterPause::goes_on:
+      finish_event(now);
+      break;
+    case AfterPause::starts:
+      start(now);
+      break;
+    case AfterPause::resets:
+      reset(now);
+      break;
   }
 }
 
@@ -129,7 +202,7 @@ void NativeModule::set_supply(BusTime now, std::uint32_t mv) {
   supply_mv_ = mv;
   if (has_power() != had_power) {
     power_on(now);
-  } else if (has_power() && is_supply_low() != was_low) {
+  } else if (has_power() && is_supply_low() != was_low && runs_program()) {
     is_supply_low() ? module_.supply_low(crystal_.at(now)) : module_.supply_good(crystal_.at(now));
     update_deadline();
   }
@@ -147,20 +220,40 @@ void NativeModule::pulse(std::int32_t width, std::uint32_t /*period_us*/) {
 }
 
 void NativeModule::advance_to(BusTime now, BusTime /*quiet_until*/) {
-  module_.poll(crystal_.at(now));
+  if (deaf_until_ != 0) {
+    if (now >= deaf_until_) {
+      end_pause(now);
+    }
+    return;
+  }
+  if (bootloader::Bootloader* const bootloader = program_.bootloader()) {
+    bootloader->poll(crystal_.at(now));
+  } else {
+    module_.poll(crystal_.at(now));
+  }
   finish_event(now);
 }
 
 void NativeModule::finish_event(BusTime now) {
   line_.advance_to(now);
-  while (module_.serve_line(crystal_.at(now))) {
+  if (runs_program()) {
+    while (module_.serve_line(crystal_.at(now))) {
+    }
   }
-  update_deadline();
+  if (program_.take_reset_request()) {
+    reset(now);
+  } else if (const Microseconds flash_time = program_.take_flash_time(); program_.bootloader() && flash_time != 0) {
+    pause(now, flash_time, AfterPause::goes_on);
+  } else {
+    update_deadline();
+  }
 }
 
 void NativeModule::update_deadline() {
   // Most frames leave the deadline as it was, and the crystal's division is slow.
-  if (const Microseconds deadline = module_.next_deadline(); deadline != deadline_) {
+  const bootloader::Bootloader* const bootloader = program_.bootloader();
+  if (const Microseconds deadline = bootloader ? bootloader->next_deadline() : module_.next_deadline();
+      deadline != deadline_) {
     deadline_ = deadline;
     deadline_time_ = crystal_.when(deadline);
   }
@@ -168,7 +261,12 @@ void NativeModule::update_deadline() {
 }
 
 void NativeModule::received(BusTime time, const CanFrame& frame) {
-  if (tamper_) {
+  if (deaf_until_ != 0) {
+    return;
+  }
+  if (bootloader::Bootloader* const bootloader = program_.bootloader()) {
+    bootloader->receive(crystal_.at(time), frame);
+  } else if (tamper_) {
     tamper_(frame, [&](const CanFrame& given) { module_.receive(crystal_.at(time), given); });
   } else {
     module_.receive(crystal_.at(time), frame);
@@ -177,13 +275,25 @@ void NativeModule::received(BusTime time, const CanFrame& frame) {
 }
 
 void NativeModule::transmitted(BusTime time, const CanFrame& frame) {
-  module_.transmitted(crystal_.at(time), frame);
-  finish_event(time);
+  if (bootloader::Bootloader* const bootloader = program_.bootloader()) {
+    bootloader->transmitted(crystal_.at(time), frame);
+  } else if (runs_program()) {
+    module_.transmitted(crystal_.at(time), frame);
+  }
+  if (deaf_until_ == 0) {
+    finish_event(time);
+  }
 }
 
 void NativeModule::error_seen(BusTime /*time*/, bool /*was_sending*/) { port_.note_error(); }
 
 void NativeModule::error_state_changed(BusTime time) {
+  if (!runs_program()) {
+    if (bootloader::Bootloader* const bootloader = program_.bootloader()) {
+      bootloader->bus_was_lost();
+    }
+    return;
+  }
   // The controller handles the other states itself; the module ignores bus_back() if it was not in bus-off.
   if (controller_.error_state() == ErrorState::bus_off) {
     module_.bus_off(crystal_.at(time));

@@ -12,6 +12,7 @@
 #include "sim/loop/crystal.hpp"
 #include "sim/loop/joint_module.hpp"
 #include "sim/loop/native_line.hpp"
+#include "sim/loop/native_program.hpp"
 
 namespace proleg::sim {
 
@@ -47,19 +48,32 @@ class NativeModule final : public JointModule,
     meters_.converts = converts;
   }
   void begin_serial_input(BusTime now, const SerialCharacter& character, BusTime bit) override {
-    line_.begin_input(now, character, bit);
-    update_deadline();
+    if (runs_program()) {  // else nobody reads the line
+      line_.begin_input(now, character, bit);
+      update_deadline();
+    }
   }
   void set_serial_watch(SerialWatch watch) override { line_.watch(std::move(watch)); }
   [[nodiscard]] canopen::PowerState power() const override { return module_.power(); }
   void set_pulse_watch(PulseWatch watch) override { pulse_watch_ = std::move(watch); }
   void set_command_watch(CommandWatch watch) override { command_watch_ = std::move(watch); }
-  [[nodiscard]] firmware::TickRecord last_tick() const override { return module_.last_tick(); }
+  [[nodiscard]] firmware::TickRecord last_tick() const override {
+    return after_pause_ == AfterPause::starts ? firmware::TickRecord{} : module_.last_tick();
+  }
   [[nodiscard]] std::optional<std::int32_t> pulse() const override { return pulse_; }
   [[nodiscard]] std::size_t controller() const override { return controller_.index(); }
 
   /// The node id in use; 0: none.
   [[nodiscard]] std::uint8_t node() const { return module_.node(); }
+
+  /// Its slots and its bootloader. The module is to be off when they are changed.
+  [[nodiscard]] NativeProgram& program() { return program_; }
+  /// Default values and its node id, as a program writes them whose settings have this schema. The module is to be off,
+  /// or about to start.
+  void write_settings(std::uint8_t schema);
+
+  /// From power on to the start of the program; 0 without this call.
+  void set_start_time(Microseconds time) { start_time_us_ = time; }
 
   void set_tamper(Tamper tamper) { tamper_ = std::move(tamper); }
 
@@ -123,6 +137,14 @@ class NativeModule final : public JointModule,
   void pulse(std::int32_t width, std::uint32_t period_us) override;
   void off() override { pulse_.reset(); }
   [[nodiscard]] std::uint8_t read() override { return sensors_(); }
+  /// What follows when the chip has written its flash, has computed a checksum, or has hung long enough.
+  enum class AfterPause : std::uint8_t { goes_on, starts, resets };
+
+  void start(BusTime now);
+  void reset(BusTime now);
+  void pause(BusTime now, Microseconds time, AfterPause after);
+  void end_pause(BusTime now);
+  [[nodiscard]] bool runs_program() { return deaf_until_ == 0 && program_.bootloader() == nullptr; }
   /// After each event.
   void finish_event(BusTime now);
   void update_deadline();
@@ -136,13 +158,17 @@ class NativeModule final : public JointModule,
   Controller& controller_;
   Port port_{controller_};
   NativeLine line_{bus_};
+  NativeProgram program_;
   firmware::Module module_;
   std::optional<std::int32_t> pulse_;
   PulseWatch pulse_watch_;
   CommandWatch command_watch_;
   std::uint32_t supply_mv_ = nominal_supply_mv;
+  Microseconds start_time_us_ = 0;
   Microseconds deadline_ = never;  ///< the program's, by its crystal
   BusTime deadline_time_ = never_on_bus;
+  BusTime deaf_until_ = 0;  ///< 0: there is no pause
+  AfterPause after_pause_ = AfterPause::goes_on;
   BusTime next_event_ = never_on_bus;
 };
 

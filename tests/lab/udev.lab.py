@@ -64,6 +64,10 @@ def check_serial_lines():
         expect(names(), ["serial-066DFF-if00"], "names of an ST-Link")
         expect(group_of(usb_file("0483", "374b")), "plugdev", "group of an ST-Link")
 
+    with SerialAdapter("0483", "df11", "2062344E"):
+        expect(names(), [], "names of an STM32 in its ROM bootloader")
+        expect(group_of(usb_file("0483", "df11")), "plugdev", "group of an STM32 in its ROM bootloader")
+
     with SerialAdapter("1234", "5678", "1"):
         expect(names(), [], "names of a device that is no adapter")
 

@@ -17,7 +17,9 @@
 #include "tools/proleg/assign_bus.hpp"
 #include "tools/proleg/assign_dialogue.hpp"
 #include "tools/proleg/bus_access.hpp"
+#include "tools/proleg/host_presence.hpp"
 #include "tools/proleg/joint_words.hpp"
+#include "tools/proleg/node_numbering.hpp"
 #include "tools/proleg/scenario_run.hpp"
 
 namespace {
@@ -101,7 +103,7 @@ class Assignment {
         throw std::runtime_error("ended by the user");
       }
       has_renumbered_ = true;
-      renumber(bus_, *steps);
+      renumber(bus_, *steps, "proleg assign");
       verify();
     }
     print_result(!steps->empty());

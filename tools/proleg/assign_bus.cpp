@@ -8,63 +8,15 @@
 #include <stdexcept>
 #include <string>
 
-#include "host/robot/machine_user.hpp"
 #include "shared/computer/master_text/master_text.hpp"
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::tools {
 namespace {
 
-using canopen::LssMaster;
-using canopen::LssRenumbering;
-
-constexpr unsigned attempts = 4;
 constexpr Microseconds second = 1'000'000;
-constexpr Microseconds releasing_time = 20'000;
-
-/// Whether the machine is done; false: it has failed.
-template <typename Machine>
-bool run(BusAccess& bus, Machine& machine, const std::string& what) {
-  constexpr Microseconds longest = 300 * second;  // the machines end by themselves; this bounds one with a fault
-  host::MachineUser<Machine> user(machine);
-  bus.connection().attach(user);
-  machine.start(bus.connection().now());
-  try {
-    bus.wait_for(what, longest, [&] { return machine.state() != Machine::State::working; });
-  } catch (...) {
-    bus.connection().detach(user);
-    // No module stays selected: the next master would configure it with its own.
-    static_cast<void>(bus.connection().send(canopen::lss_release_request()));
-    bus.connection().run_for(releasing_time);
-    throw;
-  }
-  bus.connection().detach(user);
-  return machine.state() == Machine::State::done;
-}
-
-std::string problem_of(const std::string& module, canopen::LssProblem problem, std::uint8_t detail) {
-  std::string text = module + ": " + std::string(describe(problem));
-  if (problem == canopen::LssProblem::store_refused || problem == canopen::LssProblem::node_refused) {
-    text += " (error " + std::to_string(detail) + ")";
-  }
-  return text;
-}
-
-std::string serial_text(const canopen::LssAddress& address) {
-  return "the module with the serial number " + hexadecimal(address.back(), 8);
-}
 
 }  // namespace
-
-void HostPresence::poll(Microseconds now) {
-  constexpr Microseconds period_us = canopen::Master::heartbeat_period_us;
-  constexpr Microseconds until_next_try_us = 1'000;
-  if (is_active_ && now >= next_) {
-    const bool is_sent =
-        bus_.send(canopen::encode(canopen::Heartbeat{canopen::host_node, canopen::NmtState::operational}));
-    next_ = now + (is_sent ? period_us : until_next_try_us);
-  }
-}
 
 void reset_all(BusAccess& bus) {
   /// Who boots. Two modules with one node id boot, report it once, and stop.
@@ -92,40 +44,9 @@ void reset_all(BusAccess& bus) {
   bus.connection().run_for(boot_time);
   bus.connection().detach(watch);
   if (watch.duplicate != 0) {
-    throw std::runtime_error(
-        "two modules have the node id " + std::to_string(watch.duplicate) +
-        ", and have stopped; unplug one of them, run proleg assign, then plug it in and run proleg "
-        "assign again");
-  }
-}
-
-unsigned number_fresh_modules(BusAccess& bus, std::span<const std::uint8_t> nodes,
-                              std::span<const std::uint32_t> serials) {
-  unsigned numbered = 0;
-  for (unsigned attempt = 1;; ++attempt) {
-    host::BusScan all(bus.connection());
-    scan(bus, all);
-    if (attempt == 1 && !all.has_fresh_modules()) {
-      return 0;
-    }
-    std::vector<std::uint8_t> taken;
-    for (const host::ScannedNode& node : all.nodes()) {
-      taken.push_back(node.node);
-    }
-    std::vector<canopen::LssModule> entries = host::free_node_ids(nodes, serials, taken);
-    canopen::LssMasterOptions options;
-    options.attempts = attempts;
-    options.first_answer_timeout_us = host::patient_timeout_us;
-    LssMaster master(bus.connection(), entries, options);
-    const bool is_done = run(bus, master, "modules without a node id");
-    numbered += master.assigned();
-    if (is_done) {
-      return numbered;
-    }
-    // A lost frame may have ended it: what was done shows in the next scan.
-    if (attempt == attempts) {
-      throw std::runtime_error(problem_of(serial_text(master.found()), master.problem(), master.problem_detail()));
-    }
+    throw std::runtime_error("two modules have the node id " + std::to_string(watch.duplicate) +
+                             ", and have stopped; run 'proleg recover', which gives one of them another node id, then "
+                             "proleg assign again");
   }
 }
 
@@ -149,18 +70,6 @@ FoundModules find_modules(BusAccess& bus) {
     throw std::runtime_error("found no joint module on the bus; " + bus.connection().diagnosis());
   }
   return found;
-}
-
-void renumber(BusAccess& bus, std::span<const canopen::RenumberedModule> changes) {
-  std::vector<canopen::RenumberedModule> modules(changes.begin(), changes.end());
-  LssRenumbering renumbering(bus.connection(), modules);
-  if (!run(bus, renumbering, "the modules to store their node ids")) {
-    const auto stored = std::ranges::count(modules, true, &canopen::RenumberedModule::has_stored);
-    throw std::runtime_error(problem_of(serial_text(modules[renumbering.problem_module()].address),
-                                        renumbering.problem(), renumbering.problem_detail()) +
-                             "; " + std::to_string(stored) + " of " + std::to_string(modules.size()) +
-                             " modules have stored their new node ids. Run proleg assign again");
-  }
 }
 
 MovingJoint::MovingJoint(BusAccess& bus, std::uint8_t node, const host::JointMotionOptions& options)

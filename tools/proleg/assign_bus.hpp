@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -14,35 +13,9 @@
 
 namespace proleg::tools {
 
-/// Shows other hosts, while it exists and is active, that a host works on this robot: then they change nothing.
-class HostPresence final : public host::BusUser {
- public:
-  explicit HostPresence(host::BusConnection& bus) : bus_(bus) { bus_.attach(*this); }
-  ~HostPresence() { bus_.detach(*this); }
-  HostPresence(const HostPresence&) = delete;
-  HostPresence& operator=(const HostPresence&) = delete;
-
-  /// A master sends heartbeats itself.
-  void set_active(bool is_active) { is_active_ = is_active; }
-
-  void receive(Microseconds /*now*/, const CanFrame& /*frame*/) override {}
-  void poll(Microseconds now) override;
-  [[nodiscard]] Microseconds next_deadline() const override { return is_active_ ? next_ : never; }
-
- private:
-  host::BusConnection& bus_;
-  bool is_active_ = true;
-  Microseconds next_ = 0;
-};
-
 /// Resets all modules, and waits until they have booted. Refuses a bus with two modules of one node id: they stop, and
 /// answer nothing afterwards.
 void reset_all(BusAccess& bus);
-
-/// Gives every module without a node id one that is free: those of the robot first. nodes, serials: as for
-/// host::free_node_ids(). Returns how many there were.
-unsigned number_fresh_modules(BusAccess& bus, std::span<const std::uint8_t> nodes,
-                              std::span<const std::uint32_t> serials);
 
 /// Who is on the bus.
 struct FoundModules {
@@ -50,9 +23,6 @@ struct FoundModules {
   std::vector<std::uint8_t> others;         ///< node ids of nodes that are no joint modules, or do not answer
 };
 [[nodiscard]] FoundModules find_modules(BusAccess& bus);
-
-/// The modules store their new node ids and boot with them.
-void renumber(BusAccess& bus, std::span<const canopen::RenumberedModule> changes);
 
 /// A joint that moves to and fro while this exists.
 class MovingJoint {

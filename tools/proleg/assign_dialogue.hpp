@@ -13,6 +13,7 @@
 #include "sim/robot/robot_model.hpp"
 #include "tools/proleg/assign_bus.hpp"
 #include "tools/proleg/bus_access.hpp"
+#include "tools/proleg/host_presence.hpp"
 #include "tools/proleg/input_lines.hpp"
 
 namespace proleg::tools {

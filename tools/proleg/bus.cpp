@@ -19,6 +19,7 @@
 #include "shared/fixed/random.hpp"
 #include "sim/bus/candump_log.hpp"
 #include "sim/live/live_robot.hpp"
+#include "tools/proleg/broken_modules.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/gateway_line.hpp"
 #include "tools/proleg/hil_modules.hpp"
@@ -41,6 +42,7 @@ struct ServerOptions : ModuleOptions {
   std::optional<std::string> gateway;
   std::optional<std::string> fresh;
   std::optional<std::string> shuffle;
+  std::vector<std::string> broken;
   std::optional<std::string> can_log;
   bool verbose = false;
 };
@@ -65,8 +67,9 @@ CanStatus status_of(const sim::Controller& controller) {
   return status;
 }
 
-/// Node ids that the modules have at the start: those of the robot's file, or shuffled, or none.
-std::vector<std::uint8_t> start_nodes(const ServerOptions& options, const sim::Scenario& scenario) {
+/// Node ids that the modules have at the start: those of the robot's file, or shuffled, or of each other, or none.
+std::vector<std::uint8_t> start_nodes(const ServerOptions& options, const sim::Scenario& scenario,
+                                      const BrokenModules& broken) {
   std::vector<std::uint8_t> nodes;
   for (const sim::ModulePlace& module : scenario.modules) {
     nodes.push_back(module.node);
@@ -81,6 +84,7 @@ std::vector<std::uint8_t> start_nodes(const ServerOptions& options, const sim::S
       std::swap(nodes[i - 1], nodes[random.below(static_cast<std::uint32_t>(i))]);
     }
   }
+  broken.share_node_ids(nodes);
   if (options.fresh) {
     const auto fresh = host::parse_nodes(*options.fresh, "--fresh");
     for (const std::uint8_t node : fresh.value_or(std::vector<std::uint8_t>{})) {
@@ -111,16 +115,27 @@ std::optional<GatewayPlace> gateway_place(const ServerOptions& options, const si
   return place;
 }
 
+void require_native(const BrokenModules& broken, const HilModules& modules, const sim::Scenario& scenario) {
+  for (unsigned joint = 0; joint < scenario.modules.size(); ++joint) {
+    if (broken.makes(joint) && modules.is_virtual(joint)) {
+      throw InputError(
+          "--broken", 0,
+          "node " + std::to_string(scenario.modules[joint].node) + ", which --modules makes a virtual chip",
+          "a native module");
+    }
+  }
+}
+
 /// The robot and the programs that reach it.
 class Server final : private host::BusServerListener {
  public:
-  Server(const ServerOptions& options, const ScenarioRun& run, HilModules& modules)
-      : nodes_(start_nodes(options, run.scenario)),
+  Server(const ServerOptions& options, const ScenarioRun& run, HilModules& modules, const BrokenModules& broken)
+      : nodes_(start_nodes(options, run.scenario, broken)),
         gateway_place_(gateway_place(options, run.scenario, nodes_)),
         robot_model_(run.scenario.robot),
         is_verbose_(options.verbose),
         log_(options.can_log ? std::make_unique<sim::CandumpLog>(*options.can_log) : nullptr),
-        robot_(run.scenario, live_options(modules)) {
+        robot_(run.scenario, live_options(modules, broken)) {
     open(options);
   }
 
@@ -148,9 +163,12 @@ class Server final : private host::BusServerListener {
   /// In such pieces the simulation gives the clients a turn if it is late.
   static constexpr sim::BusTime longest_piece_ns = 1'000'000;
 
-  sim::LiveRobotOptions live_options(HilModules& modules) {
+  sim::LiveRobotOptions live_options(HilModules& modules, const BrokenModules& broken) {
     sim::LiveRobotOptions options;
-    options.make_module = [&modules](const sim::ModuleParts& parts) { return modules.make(parts); };
+    options.make_module = [&modules, &broken](const sim::ModuleParts& parts) {
+      std::unique_ptr<sim::JointModule> module = broken.make(parts);
+      return module ? std::move(module) : modules.make(parts);
+    };
     options.change_identity = [this](unsigned joint, firmware::ModuleIdentity& identity) {
       identity.node = nodes_[joint];
     };
@@ -260,14 +278,17 @@ int serve(const ServerOptions& options) {
   }
   const ScenarioRun run = prepare_run(options.scenario);
   print_warnings("proleg bus", run.scenario);
+  const BrokenModules broken(options.broken, run.scenario);
   HilModules modules(options, run.scenario);
+  require_native(broken, modules, run.scenario);
   if (options.can_log) {
     const std::vector<PlannedOutput> outputs{
         {"--can-log", *options.can_log, "CAN log", starts_with(std::string(1, sim::candump_log_start))}};
     check_outputs(outputs);
   }
+  modules.flash("proleg bus");
   catch_interrupts();
-  Server server(options, run, modules);
+  Server server(options, run, modules, broken);
   const double seconds = options.scenario.seconds ? run.scenario.duration_s : 0.0;
   server.serve(static_cast<sim::BusTime>(seconds * 1e9));
   modules.finish();
@@ -308,6 +329,10 @@ int main(int argc, char** argv) {
       .add_option("--shuffle", options.shuffle,
                   "the modules have each other's node ids, in an order that this seed decides")
       .value_name("SEED");
+  command_line
+      .add_option("--broken", options.broken,
+                  "this module needs 'proleg recover': " + BrokenModules::syntax() + ". May be repeated.")
+      .value_name("NODE=KIND");
   command_line.add_option("--seconds", options.scenario.seconds, "end after this time");
   command_line.add_option("--seed", options.scenario.overrides.seed,
                           "seed of the crystals and unique ids, instead of that of the scenario");

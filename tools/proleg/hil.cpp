@@ -148,7 +148,7 @@ void open_files(const HilOptions& options, const ScenarioRun& run, HilModules& m
 }
 
 /// The exit status of a run that came to its end; prints why it failed.
-int judge(const HilResult& result) {
+int judge(const HilResult& result, std::uint32_t tick_period_us) {
   if (result.differences > 0) {
     std::cerr << "proleg hil: " << result.first_difference << '\n';
     return exit_failed;
@@ -164,7 +164,9 @@ int judge(const HilResult& result) {
               << list_dropped_changes(result) << '\n';
     return exit_failed;
   }
-  constexpr std::uint32_t max_ticks_to_join = 100;
+  // The start takes as long whatever the tick is, the set-up some frames in each tick.
+  constexpr std::uint32_t second_us = 1'000'000;
+  const std::uint32_t max_ticks_to_join = std::max<std::uint32_t>(100, second_us / tick_period_us);
   for (const RestartReport& restart : result.restarts) {
     if (!restart.joined_tick) {
       const std::uint32_t ticks = result.ticks - restart.tick;
@@ -192,11 +194,14 @@ int hil(const HilOptions& options) {
   HilModules modules(options, run.scenario);
   FaultPlan plan = read_fault_plan(options, run, modules.any_virtual());
   if (plan.runs) {
+    modules.flash("proleg hil");
     catch_interrupts();
     return run_fault_campaign(options, run, modules, plan);
   }
   hardware.faults = plan.schedule;
   check_files(options, modules);
+  modules.flash("proleg hil");
+  hardware.start_time_us = modules.start_time_us();
   HilFiles files;
   if (options.can_log) {
     hardware.on_frame = [&files](const sim::Transmission& transmission) {
@@ -239,7 +244,7 @@ int hil(const HilOptions& options) {
   print_warning_on_servos("proleg hil", result.measures, run.scenario.robot);
   print_warning_on_clipping("proleg hil", run.scenario, result.clipped_ticks, result.ticks);
   modules.finish();
-  return judge(result);
+  return judge(result, run.scenario.kernel.tick_period_us);
 }
 
 }  // namespace

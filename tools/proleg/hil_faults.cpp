@@ -81,11 +81,13 @@ struct Campaign {
 void run_one(const ScenarioRun& run, HilModules& modules, std::uint64_t seed, Campaign& campaign) {
   const sim::FaultSchedule schedule = random_schedule(run, seed, modules.any_virtual());
   const sim::FaultRunResult result = sim::run_with_faults(
-      run.scenario, schedule, run.ticks, [&](const sim::ModuleParts& parts) { return modules.make(parts); });
+      run.scenario, schedule, run.ticks, [&](const sim::ModuleParts& parts) { return modules.make(parts); },
+      modules.start_time_us());
   campaign.statistics.add(schedule, result);
   std::vector<std::string> found = result.violations;
   if (modules.any_virtual() && sim::can_play_natively(schedule)) {
-    const sim::FaultRunResult native = sim::run_with_faults(run.scenario, schedule, run.ticks);
+    const sim::FaultRunResult native =
+        sim::run_with_faults(run.scenario, schedule, run.ticks, nullptr, modules.start_time_us());
     ++campaign.compared;
     if (native.setpoint_hash == result.setpoint_hash && native.servo_hash == result.servo_hash) {
       ++campaign.identical;

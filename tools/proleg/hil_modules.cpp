@@ -2,10 +2,16 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iomanip>
 #include <iostream>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/loop/module_making.hpp"
+#include "sim/loop/native_program.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/debugger.hpp"
 #include "tools/proleg/scenario_run.hpp"
@@ -22,6 +28,16 @@ fs::path default_image() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   return program.parent_path().parent_path().parent_path() / "stm32f405" / "bin" / "proleg_stm32f405.elf";
+}
+
+fs::path bootloader_beside(const fs::path& image) {
+  fs::path file = image.parent_path() / "proleg_boot_stm32f405.elf";
+  if (!fs::exists(file)) {
+    throw BadInput(file.string() +
+                   ": found no bootloader, expected it beside the image; 'cmake --preset stm32f405 && cmake --build "
+                   "--preset stm32f405' builds both");
+  }
+  return file;
 }
 
 sim::FirmwareImage read_image(const std::optional<std::string>& name) {
@@ -185,12 +201,48 @@ void HilModules::open_traces() {
   }
 }
 
+void HilModules::flash(const std::string& program) {
+  if (!image_) {
+    return;
+  }
+  const auto count = std::ranges::count(virtual_joints_, true);
+  const auto first = std::ranges::find(virtual_joints_, true) - virtual_joints_.begin();
+  try {
+    flashed_ = sim::flash_chip(*image_, bootloader_beside(image_->file()),
+                               sim::make_identity(scenario_, static_cast<std::size_t>(first)).unique_id);
+  } catch (const sim::ElfError& error) {
+    throw BadInput(error.what());
+  }
+  for (const std::string& problem : flashed_->problems) {
+    std::cerr << program << ": while the chip was flashed: " << problem << '\n';
+  }
+  if (flashed_->start_time) {
+    std::ostringstream line;
+    line << program << ": flashed a chip through its bootloader, " << flashed_->image_size << " bytes in " << std::fixed
+         << std::setprecision(1) << static_cast<double>(flashed_->flash_time) * 1e-9 << " s of its time; " << count
+         << (count == 1 ? " module starts" : " modules start") << " with its flash\n";
+    flash_report_ = line.str();
+  } else if (debugger_ == nullptr) {
+    throw std::runtime_error(image_->file().string() +
+                             ": flashed, found a program that did not confirm itself, expected that it runs for half a "
+                             "second; --gdb runs it nevertheless");
+  }
+}
+
+std::uint32_t HilModules::start_time_us() const {
+  constexpr sim::BusTime ns_per_us = 1'000;
+  return flashed_ && flashed_->start_time ? static_cast<std::uint32_t>(*flashed_->start_time / ns_per_us)
+                                          : static_cast<std::uint32_t>(sim::NativeProgram::start_time_us);
+}
+
 std::unique_ptr<sim::JointModule> HilModules::make(const sim::ModuleParts& parts) {
   const unsigned joint = parts.joint;
   if (!is_virtual(joint)) {
     return nullptr;
   }
+  std::cerr << std::exchange(flash_report_, {});
   sim::VirtualModuleOptions options;
+  options.flash = &flashed_.value().flash;
   if (consoles_[joint]) {
     options.console = [node = parts.identity.node](const std::string& line) {
       std::cerr << "node " << unsigned{node} << ": " << line << '\n';

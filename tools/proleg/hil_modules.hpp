@@ -10,7 +10,7 @@
 
 #include "shared/computer/output/output_check.hpp"
 #include "sim/loop/hardware_loop.hpp"
-#include "sim/mcu/module/virtual_module.hpp"
+#include "sim/mcu/module/flashed_chip.hpp"
 #include "tools/proleg/command_line.hpp"
 
 namespace proleg::tools {
@@ -39,8 +39,15 @@ class HilModules {
   [[nodiscard]] std::vector<PlannedOutput> planned_traces() const;
   /// Opens them. Throws BadInput.
   void open_traces();
+  /// Flashes the virtual modules, if there are any; before make(). One chip is flashed through its bootloader, and all
+  /// modules get what its flash holds then. The first make() prints a line with the name of this program. Throws
+  /// BadInput if the bootloader is missing or refuses the image, and std::runtime_error if the program does not run.
+  void flash(const std::string& program);
+  /// For HardwareOptions::start_time_us: what a chip needs, so that native modules start as virtual ones do.
+  [[nodiscard]] std::uint32_t start_time_us() const;
   /// For HardwareOptions::make_module; this object must outlive the loop.
   [[nodiscard]] std::unique_ptr<sim::JointModule> make(const sim::ModuleParts& parts);
+  [[nodiscard]] bool is_virtual(unsigned joint) const { return virtual_joints_[joint]; }
   [[nodiscard]] bool any_virtual() const { return image_.has_value(); }
   /// "native", "mcu" or "native and mcu (1, 3)".
   [[nodiscard]] std::string kind() const;
@@ -58,7 +65,6 @@ class HilModules {
  private:
   struct InstructionTrace;
 
-  [[nodiscard]] bool is_virtual(unsigned joint) const { return virtual_joints_[joint]; }
   [[nodiscard]] unsigned joint_of(const std::string& option, const std::string& word) const;
   [[nodiscard]] unsigned virtual_joint_of(const std::string& option, const std::string& word) const;
   void parse_modules(const std::string& word);
@@ -69,6 +75,8 @@ class HilModules {
   std::vector<bool> consoles_;
   std::vector<std::unique_ptr<InstructionTrace>> traces_;  ///< by joint; null for none
   std::optional<sim::FirmwareImage> image_;
+  std::optional<sim::FlashedChip> flashed_;
+  std::string flash_report_;                  ///< not printed yet
   std::vector<sim::VirtualModule*> modules_;  ///< by joint; null for a native one
   std::unique_ptr<Debugger> debugger_;
 };

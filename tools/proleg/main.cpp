@@ -46,6 +46,8 @@ constexpr std::array subcommands{
     Subcommand{"monitor", "show what the modules on a bus do"},
     Subcommand{"params", "keep the settings of modules in a text file"},
     Subcommand{"nmt", "start, stop and reset modules"},
+    Subcommand{"flash", "bring an image to the modules of a robot"},
+    Subcommand{"recover", "bring back modules that do not start, or do not answer"},
     Subcommand{"image", "show and make the images that are flashed into modules"},
     Subcommand{"objects", "list the objects of a module that can be read and set over the bus"},
 };

@@ -81,8 +81,13 @@ class BusRecovery {
   Microseconds recover_at_ = never;
 };
 
+/// Some at a time, so that the watchdog is fed.
 void take_events() {
-  while (const Can::Event* const event = the_can->next_event()) {
+  for (unsigned left = 16; left != 0; --left) {
+    const Can::Event* const event = the_can->next_event();
+    if (event == nullptr) {
+      return;
+    }
     const Microseconds time = the_clock.at(event->stamp);
     if (event->kind == Can::EventKind::received) {
       the_bootloader->receive(time, event->frame);
@@ -105,7 +110,7 @@ void sleep_until(Microseconds deadline) {
 
 }  // namespace
 
-void serve_bus() {
+void serve_bus(const bootloader::Handover& left) {
   the_can.emplace();
   if (!the_can->start()) {
     reset_chip();
@@ -117,7 +122,7 @@ void serve_bus() {
       bootloader::Ports{*the_can, the_slot_memory, the_settings, {image_buffer_start, image_buffer_end}});
   constexpr std::array broadcast{broadcast::host_identifier};
   the_can->listen(broadcast);
-  the_bootloader->power_on(the_clock.now(), the_settings.node());
+  the_bootloader->power_on(the_clock.now(), the_settings.node(), left);
   for (const Interrupt interrupt : {Interrupt::can1_tx, Interrupt::can1_rx0, Interrupt::can1_sce, Interrupt::timer_5}) {
     nvic::enable(interrupt);
   }

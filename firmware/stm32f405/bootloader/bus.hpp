@@ -1,8 +1,10 @@
 #pragma once
 
+#include "firmware/bootloader/handover.hpp"
+
 namespace proleg::stm32f405 {
 
-/// Serves the bus until the chip is to be reset. The clocks run, and TIM5. Does not return.
-[[noreturn]] void serve_bus();
+/// Serves the bus until the chip is to be reset. The clocks run, and TIM5. left: by the start before.
+[[noreturn]] void serve_bus(const bootloader::Handover& left);
 
 }  // namespace proleg::stm32f405

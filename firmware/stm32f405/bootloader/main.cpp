@@ -6,12 +6,12 @@
 // which the program is started in the same way.
 
 #include "firmware/stm32f405/bootloader/bus.hpp"
-#include "firmware/stm32f405/bootloader/handover.hpp"
 #include "firmware/stm32f405/bootloader/program_start.hpp"
 #include "firmware/stm32f405/bootloader/slot_memory.hpp"
 #include "firmware/stm32f405/clock.hpp"
 #include "firmware/stm32f405/gpio.hpp"
 #include "firmware/stm32f405/handlers.hpp"
+#include "firmware/stm32f405/handover.hpp"
 #include "firmware/stm32f405/microsecond_clock.hpp"
 #include "firmware/stm32f405/pins.hpp"
 #include "firmware/stm32f405/reset.hpp"
@@ -24,7 +24,9 @@ namespace {
 /// SHA-256 and checksums of an image take a tenth of a second between two feeds. The program sets its own time.
 constexpr std::uint32_t watchdog_ms = 1'000;
 
-using bootloader::FlashSlot;
+using bootloader::Handover;
+using bootloader::HandoverAction;
+using bootloader::NextStep;
 using bootloader::Slots;
 using bootloader::StartResult;
 
@@ -38,19 +40,16 @@ void wait(std::uint32_t milliseconds) {
 }
 
 /// Two resets by the pin within half a second: a person wants the bootloader.
-bool is_second_press(Handover left) {
-  if (reset_cause_of(rcc::csr.read()) != firmware::ResetCause::pin) {
-    return false;
-  }
-  if (left == Handover::pin_seen) {
+bool is_second_press(const Handover& left) {
+  if (left.action == HandoverAction::pin_seen) {
     return true;
   }
   constexpr std::uint32_t bounce_ms = 50;
   constexpr std::uint32_t press_ms = 500;
   wait(bounce_ms);
-  leave_handover(Handover::pin_seen);
+  leave_handover({HandoverAction::pin_seen, 0});
   wait(press_ms);
-  leave_handover(Handover::none);
+  leave_handover({});
   return false;
 }
 
@@ -59,7 +58,7 @@ void prepare_program(Slots& slots) {
   switch (slots.prepare_start()) {
     case StartResult::run:
     case StartResult::run_on_trial:
-      leave_handover(Handover::start);
+      leave_handover({HandoverAction::start, 0});
       reset_chip();
     case StartResult::nothing:
     case StartResult::flash_failed:
@@ -71,16 +70,20 @@ void prepare_program(Slots& slots) {
 }  // namespace proleg::stm32f405
 
 using namespace proleg::stm32f405;
+using proleg::firmware::ResetCause;
 
 extern "C" {
 
 void run_program() {
-  const Handover left = take_handover();
-  const bool stays = left == Handover::stay || (left != Handover::start && is_second_press(left));
+  Handover left = take_handover();
+  if (reset_cause_of(rcc::csr.read()) == ResetCause::pin) {
+    left = {is_second_press(left) ? HandoverAction::stay : HandoverAction::none, 0};
+  }
   SlotMemory memory;
   Slots slots(memory, image_place());
-  if (!stays && (left == Handover::start || slots.is_confirmed(FlashSlot::a)) &&
-      !slots.image_in(FlashSlot::a).empty()) {
+  const NextStep step = next_step(slots, left);
+  if (step == NextStep::start_program) {
+    leave_handover(started_after(left));
     // Not before: the checksum of the image takes long at the clock after a reset.
     static_cast<void>(start_watchdog(watchdog_ms));
     start_program();
@@ -95,10 +98,10 @@ void run_program() {
     }
   }
   MicrosecondClock().start();
-  if (!stays) {
+  if (step == NextStep::prepare) {
     prepare_program(slots);
   }
-  serve_bus();
+  serve_bus(left);
 }
 
 }  // extern "C"

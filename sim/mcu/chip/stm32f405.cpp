@@ -78,7 +78,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     stands_still_ = false;
     is_held_ = false;
     release_cause_ = ResetCause::brown_out;
-    cpu_.lose_memory(settings_.seed + ++starts_);
+    cpu_.lose_memory(settings_.seed + ++memory_losses_);
     oscillator_.start(now);
     anchor_time_ = 0;
     anchor_instructions_ = cpu_.instructions();
@@ -198,6 +198,8 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     invalidate_next_events();
     static_cast<void>(follow_core_clock(time));
   }
+
+  [[nodiscard]] std::uint64_t starts() const { return starts_; }
 
   [[nodiscard]] std::optional<ChipEvent> take_event() {
     if (events_.empty()) {
@@ -361,6 +363,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   }
 
   void start(ResetCause cause) {
+    ++starts_;
     reset_peripherals();
     rcc_.note_start(cause);
     cpu_.reset();
@@ -381,7 +384,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
     is_held_ = false;
     const ResetCause cause = std::exchange(release_cause_, ResetCause::brown_out);
     if (cause == ResetCause::power_on) {
-      cpu_.lose_memory(settings_.seed + ++starts_);
+      cpu_.lose_memory(settings_.seed + ++memory_losses_);
     }
     start(cause);
     new_event(ChipEvent::Kind::reset).cause = cause;
@@ -586,6 +589,7 @@ class Stm32f405::Implementation final : public CpuSurroundings, public ChipServi
   LocalTime run_end_ = 0;  ///< while instructions are executed
   std::optional<ResetCause> reset_cause_;
   std::uint64_t cuts_ = 0;
+  std::uint64_t memory_losses_ = 0;
   std::uint64_t starts_ = 0;
   std::uint32_t faults_since_reset_ = 0;
   bool on_ = false;
@@ -645,6 +649,8 @@ void Stm32f405::set_pin_watch(char port, unsigned number, PinWatch watch) {
 void Stm32f405::set_compare_watch(CompareWatch watch) { implementation_->compare_watch_ = std::move(watch); }
 std::size_t Stm32f405::controller() const { return implementation_->can_.controller(); }
 std::uint64_t Stm32f405::instructions() const { return implementation_->cpu_.instructions(); }
+void Stm32f405::set_flash_watch(FlashWatch watch) { implementation_->flash_.set_watch(std::move(watch)); }
+std::uint64_t Stm32f405::starts() const { return implementation_->starts(); }
 void Stm32f405::set_transmit_watch(TransmitWatch watch) { implementation_->transmit_watch_ = std::move(watch); }
 void Stm32f405::set_debug_hook(DebugHook hook) { implementation_->debug_hook_ = std::move(hook); }
 Cpu& Stm32f405::cpu() { return implementation_->cpu_; }

@@ -103,10 +103,17 @@ class Stm32f405 {
   [[nodiscard]] std::size_t controller() const;
   /// Executed since the chip was made.
   [[nodiscard]] std::uint64_t instructions() const;
+  /// How often the CPU has started since then: after power on, and after each reset.
+  [[nodiscard]] std::uint64_t starts() const;
 
   /// Called when the program asks for a frame to be sent, with the instructions executed by then.
   using TransmitWatch = std::function<void(std::uint16_t identifier, std::uint64_t instructions)>;
   void set_transmit_watch(TransmitWatch watch);
+
+  /// Called when the program has begun an operation of the flash: an erase of the sector at the address, or else a
+  /// word.
+  using FlashWatch = std::function<void(std::uint32_t address, bool erase)>;
+  void set_flash_watch(FlashWatch watch);
 
   enum class DebugEvent : std::uint8_t {
     about_to_run,

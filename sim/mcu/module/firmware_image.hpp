@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include "sim/mcu/cpu/flash_image.hpp"
 
@@ -16,6 +17,9 @@ class FirmwareImage {
 
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   [[nodiscard]] const FlashImage& flash() const { return flash_; }
+  /// What is flashed over the bus, with its header (shared/image/image_header.hpp): the bytes of the file with the name
+  /// .pimg that the build makes of this one.
+  [[nodiscard]] std::vector<std::uint8_t> image() const;
   /// Where the module keeps what it computed at its last tick (firmware/module/tick_record.hpp).
   [[nodiscard]] std::uint32_t tick_record() const { return tick_record_; }
 

@@ -17,6 +17,9 @@ namespace {
 
 namespace board = stm32f405::board;
 
+namespace flash_layout = stm32f405::flash_layout;
+
+constexpr unsigned program_counter = 15;
 constexpr unsigned servo_channel = 1;  ///< of TIM2
 constexpr std::uint32_t microvolts_per_ma = 1'000;
 constexpr std::uint32_t max_uv = board::vdda_millivolt * 1'000;
@@ -84,13 +87,17 @@ VirtualModule::VirtualModule(const ModuleParts& parts, const FirmwareImage& imag
       readings_(parts.readings),
       state_frame_(static_cast<std::uint16_t>(canopen::identifier::state_frame + parts.identity.node)),
       chip_(parts.bus, *this, chip_settings(parts)) {
-  for (const ElfImage::Segment& segment : image.flash().elf().segments()) {
+  const auto& parts_of_flash = options_.flash != nullptr ? options_.flash->parts : image.flash().elf().segments();
+  for (const ElfImage::Segment& segment : parts_of_flash) {
     chip_.write(segment.load_address, segment.bytes);
   }
   if (parts.identity.node != 0) {
-    chip_.write(stm32f405::flash_layout::board_records, firmware::encode(board_record(parts), 1));
+    chip_.write(flash_layout::board_records, firmware::encode(board_record(parts), 1));
   }
   chip_.set_transmit_watch([this](std::uint16_t identifier, std::uint64_t instructions) {
+    if (chip_.cpu().core_register(program_counter) >= flash_layout::slot_a) {
+      start_of_program_ = chip_.starts();
+    }
     if (identifier == state_frame_) {
       state_frame_instructions_ = instructions;
     }
@@ -107,6 +114,9 @@ void VirtualModule::power_on(BusTime now) {
 void VirtualModule::advance_to(BusTime now, BusTime quiet_until) { chip_.advance_to(now, quiet_until); }
 
 firmware::TickRecord VirtualModule::last_tick() const {
+  if (start_of_program_ != chip_.starts()) {
+    return {};  // the program has not filled its RAM yet, or the bootloader runs
+  }
   std::array<std::uint8_t, sizeof(firmware::TickRecord)> bytes{};
   chip_.read(image_.tick_record(), bytes);
   firmware::TickRecord record;
@@ -229,11 +239,25 @@ std::string VirtualModule::describe(const ChipEvent& event) {
       break;
   }
   text += event.text + registers_in_words(event.registers);
-  const auto read = [this](std::uint32_t address, std::span<std::uint8_t> bytes) { chip_.read(address, bytes); };
-  for (const std::string& line : trace_back(image_.file(), event.registers, read)) {
+  for (const std::string& line : trace(event)) {
     text += "\n    " + line;
   }
   return text;
+}
+
+std::vector<std::string> VirtualModule::trace(const ChipEvent& event) const {
+  const auto read = [this](std::uint32_t address, std::span<std::uint8_t> bytes) { chip_.read(address, bytes); };
+  const std::uint32_t pc = event.registers[program_counter];
+  if (options_.flash != nullptr && pc >= Cpu::flash_start && pc < flash_layout::slot_a) {
+    return trace_back(options_.flash->bootloader, event.registers, read);
+  }
+  image::HeaderBytes header{};
+  chip_.read(flash_layout::slot_a, header);
+  const std::vector<std::uint8_t> image = image_.image();
+  if (!std::equal(header.begin(), header.end(), image.begin())) {
+    return {"no back trace: the image in the chip is not that of " + image_.file().string()};
+  }
+  return trace_back(image_.file(), event.registers, read);
 }
 
 // What the board has at the pins.

@@ -2,11 +2,13 @@
 
 // A joint module that runs the flashed image in a virtual chip.
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "sim/loop/hardware_loop.hpp"
 #include "sim/mcu/chip/stm32f405.hpp"
@@ -22,11 +24,19 @@ struct TickCost {
   std::uint64_t whole;           ///< instructions from SYNC to the next SYNC
 };
 
+/// What is in the flash of a chip, beside its settings.
+struct FlashContents {
+  std::filesystem::path bootloader;  ///< its ELF file, for back traces
+  std::vector<ElfImage::Segment> parts;
+};
+
 struct VirtualModuleOptions {
+  /// Null: all that the ELF file of the image has; its start stub starts it. Else it must outlive the module.
+  const FlashContents* flash = nullptr;
   /// Called with each line that the program prints on its console (USART2).
-  std::function<void(const std::string&)> console;
+  std::function<void(const std::string&)> console{};
   /// Called at the end of each tick.
-  std::function<void(const TickCost&)> on_tick;
+  std::function<void(const TickCost&)> on_tick{};
 };
 
 class VirtualModule final : public JointModule, private BoardSignals {
@@ -69,6 +79,7 @@ class VirtualModule final : public JointModule, private BoardSignals {
   [[nodiscard]] std::int32_t chip_temperature() override;
   void serial_output(unsigned usart, std::uint8_t byte) override;
   [[nodiscard]] std::string describe(const ChipEvent& event);
+  [[nodiscard]] std::vector<std::string> trace(const ChipEvent& event) const;
 
   const FirmwareImage& image_;
   VirtualModuleOptions options_;
@@ -76,7 +87,8 @@ class VirtualModule final : public JointModule, private BoardSignals {
   std::function<firmware::ServoReadings()> readings_;
   std::uint16_t state_frame_;  ///< its identifier
   Stm32f405 chip_;
-  std::string line_;  ///< of the console, so far
+  std::uint64_t start_of_program_ = 0;  ///< Stm32f405::starts() when the program has last sent a frame
+  std::string line_;                    ///< of the console, so far
   std::optional<std::uint32_t> tick_;
   std::uint64_t sync_instructions_ = 0;
   std::uint64_t state_frame_instructions_ = 0;

@@ -202,9 +202,8 @@ bool FlashInterface::program(std::uint32_t address, unsigned size, std::uint32_t
     fail(flags);
     return true;
   }
-  const LocalTime begin = std::max(chip().now(), busy_until());
-  operations_.push_back(
-      {.address = address, .size = size, .erase = false, .value = value, .end = begin + program_time});
+  const LocalTime start = std::max(chip().now(), busy_until());
+  begin({.address = address, .size = size, .erase = false, .value = value, .end = start + program_time});
   chip().reschedule();
   return true;
 }
@@ -334,11 +333,18 @@ void FlashInterface::start_erase(std::uint32_t value) {
     fail(sr_wrperr);
     return;
   }
-  operations_.push_back({.address = address,
-                         .size = size,
-                         .erase = true,
-                         .value = 0,
-                         .end = chip().now() + erase_time(size, parallelism)});
+  begin({.address = address,
+         .size = size,
+         .erase = true,
+         .value = 0,
+         .end = chip().now() + erase_time(size, parallelism)});
+}
+
+void FlashInterface::begin(const Operation& operation) {
+  operations_.push_back(operation);
+  if (watch_) {
+    watch_(operation.address, operation.erase);
+  }
 }
 
 void FlashInterface::write_optcr(std::uint32_t value) {

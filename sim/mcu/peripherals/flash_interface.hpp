@@ -6,7 +6,9 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <span>
+#include <utility>
 
 #include "sim/mcu/peripherals/register_block.hpp"
 
@@ -77,6 +79,10 @@ class FlashInterface final : public RegisterBlock {
   /// Until then a read, a fetch or another store of flash stalls the bus (single bank). Not busy if not in the future.
   [[nodiscard]] LocalTime busy_until() const;
 
+  /// Called when the program has begun an operation, with its address; erase: of the sector there.
+  using Watch = std::function<void(std::uint32_t address, bool erase)>;
+  void set_watch(Watch watch) { watch_ = std::move(watch); }
+
   /// Power fails, or a reset comes (RM0090, 3.6.3: contents are not guaranteed): the operation under way stays half
   /// done. Erase: some bits of every word are 1 already. Program: some of the bits that must become 0 are 0. The same
   /// seed leaves the same bits. Changes nothing if no operation is under way.
@@ -95,6 +101,7 @@ class FlashInterface final : public RegisterBlock {
     LocalTime end;
   };
 
+  void begin(const Operation& operation);
   void settle();
   void finish(const Operation& operation);
   void fail(std::uint32_t flags);
@@ -115,6 +122,7 @@ class FlashInterface final : public RegisterBlock {
   Lock lock_ = Lock::locked;
   Lock option_lock_ = Lock::locked;
   std::deque<Operation> operations_;  ///< one after the other
+  Watch watch_;
 };
 
 }  // namespace proleg::sim

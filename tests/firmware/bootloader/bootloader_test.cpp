@@ -35,15 +35,17 @@ class Node final : sim::BusListener, canopen::LssStorage {
   }
 
   /// As a reset of the chip does.
-  void restart(Microseconds now) {
-    bootloader = std::make_unique<Bootloader>(place, serial, Ports{controller_, module.flash, *this, buffer_});
-    bootloader->power_on(now, stored_node);
+  void restart(Microseconds now, const Handover& left = {}) {
+    bootloader = std::make_unique<Bootloader>(place, serial, Ports{controller_, module.flash, *this, buffer});
+    bootloader->power_on(now, stored_node, left);
   }
 
   const std::uint32_t serial;
   UpdatedModule module;
   std::unique_ptr<Bootloader> bootloader;
   std::uint8_t stored_node = 0;
+  /// RAM, which keeps its contents over a restart.
+  std::vector<std::uint8_t> buffer = std::vector<std::uint8_t>(image::header_size + place.room);
 
  private:
   void received(BusTime time, const CanFrame& frame) override { bootloader->receive(time / us, frame); }
@@ -54,7 +56,6 @@ class Node final : sim::BusListener, canopen::LssStorage {
   }
 
   sim::Controller& controller_;
-  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(image::header_size + place.room);
 };
 
 class BootloaderTest : public testing::Test, protected sim::BusListener {
@@ -143,6 +144,31 @@ class BootloaderTest : public testing::Test, protected sim::BusListener {
     client.upload(tool_node, object.address, bytes);
     EXPECT_EQ(transfer(client), canopen::AbortCode::none);
     return read_little_endian(bytes, 0, 4);
+  }
+
+  /// The last answer to a request.
+  template <typename Decode>
+  auto ask(const CanFrame& request, Decode decode) {
+    heard.clear();
+    EXPECT_TRUE(controller.send(request));
+    run_for(100'000);
+    decltype(decode(CanFrame{})) answer;
+    for (const CanFrame& frame : heard) {
+      answer = decode(frame) ? decode(frame) : answer;
+    }
+    EXPECT_TRUE(answer.has_value());
+    return answer.value();
+  }
+  broadcast::StatusAnswer ask_status(const Node& node) {
+    return ask(broadcast::status_frame(node.serial), [&](const CanFrame& frame) {
+      return broadcast::decode_status(frame, broadcast::Code::status, node.serial);
+    });
+  }
+  std::uint32_t ask_header_word(const Node& node, std::uint8_t word) {
+    const auto answer = ask(broadcast::header_frame(node.serial, word),
+                            [&](const CanFrame& frame) { return broadcast::decode_header_word(frame, node.serial); });
+    EXPECT_EQ(answer.number, word);
+    return answer.value;
   }
 
   static constexpr std::uint8_t tool_node = 9;
@@ -258,6 +284,7 @@ TEST_F(BootloaderTest, AnImageThatIsNotRightIsRefusedForItsReasonBeforeAnythingI
 TEST_F(BootloaderTest, AToolOfOthersDownloadsAnImageBySdo) {
   Node& node = add(tool_node);
   node.module.install_proven(first);
+  node.restart(now());
   EXPECT_EQ(upload(canopen::object::vendor), canopen::placeholder_vendor);
   EXPECT_EQ(upload(object::device_type), 0U);
   EXPECT_EQ(upload(object::program_identification), crc32(image::encode(first.header)));
@@ -310,6 +337,66 @@ TEST_F(BootloaderTest, ShowsItselfOnTheNetworkAndLeavesByNmt) {
   EXPECT_TRUE(controller.send(canopen::encode(canopen::NmtRequest{canopen::NmtCommand::reset_node, 4})));
   run_for(1'000);
   EXPECT_TRUE(node.bootloader->wants_restart());
+}
+
+TEST_F(BootloaderTest, InstallsAnImageThatTheProgramHasReceived) {
+  Node& node = add(3);
+  node.module.install_proven(first);
+  const std::vector<std::uint8_t> bytes = second.bytes();
+  std::ranges::copy(bytes, node.buffer.begin());
+  const ImageInRam image{static_cast<std::uint32_t>(bytes.size()), 77, false};
+  node.restart(now(), {HandoverAction::install, image.argument()});
+  const broadcast::StatusAnswer status = ask_status(node);
+  EXPECT_EQ(status.state, ReceiverState::installed);
+  EXPECT_EQ(status.session, 77);
+  EXPECT_EQ(number_in(node.module.slots, FlashSlot::a), 2U);
+  EXPECT_FALSE(node.bootloader->wants_restart()) << "the host asks for it";
+  EXPECT_TRUE(controller.send(broadcast::leave_frame(77)));
+  run_for(1'000);
+  EXPECT_TRUE(node.bootloader->wants_restart());
+}
+
+TEST_F(BootloaderTest, ComesBackByItselfIfTheHostIsOnTheModulesOwnLine) {
+  Node& node = add(3);
+  node.module.install_proven(first);
+  const std::vector<std::uint8_t> bytes = second.bytes();
+  for (const std::size_t damaged : {std::size_t{0}, std::size_t{600}}) {
+    std::ranges::copy(bytes, node.buffer.begin());
+    node.buffer[damaged] ^= damaged == 0 ? 0U : 1U;
+    const ImageInRam image{static_cast<std::uint32_t>(bytes.size()), 77, true};
+    node.restart(now(), {HandoverAction::install, image.argument()});
+    run_for(200'000);
+    EXPECT_TRUE(node.bootloader->wants_restart());
+    EXPECT_EQ(node.module.start(), 2U);
+  }
+}
+
+TEST_F(BootloaderTest, RefusesWhatARamWithOtherContentsHolds) {
+  Node& node = add(3);
+  node.module.install_proven(first);
+  for (const std::uint32_t size : {0U, 100U, 1'000U, 0x7F'FFFFU}) {
+    const ImageInRam image{size, 77, false};
+    node.restart(now(), {HandoverAction::install, image.argument()});
+    EXPECT_EQ(ask_status(node).state, ReceiverState::refused) << size;
+    EXPECT_EQ(node.module.start(), 1U);
+  }
+}
+
+TEST_F(BootloaderTest, SaysWhichImageItHasAndThatItsProgramStartsBadly) {
+  namespace flag = broadcast::module_flag;
+  Node& node = add(9);
+  EXPECT_EQ(ask_status(node).condition, (broadcast::ModuleCondition{flag::has_bootloader, 9}));
+  EXPECT_EQ(ask_header_word(node, 0), 0U);
+  node.module.install_proven(first);
+  node.restart(now(), {HandoverAction::started, max_bad_starts});
+  EXPECT_EQ(ask_status(node).condition.flags,
+            flag::has_bootloader | flag::has_image | flag::is_confirmed | flag::starts_badly);
+  const image::HeaderBytes header = image::encode(first.header);
+  for (std::uint8_t word = 0; word < image::header_size / 4; ++word) {
+    EXPECT_EQ(ask_header_word(node, word), read_little_endian(header, 4 * word, 4)) << unsigned{word};
+  }
+  EXPECT_EQ(ask_header_word(node, 128), 0U);
+  EXPECT_EQ(ask_header_word(node, 255), 0U);
 }
 
 TEST_F(BootloaderTest, GetsANodeIdByLss) {

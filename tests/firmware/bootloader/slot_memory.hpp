@@ -43,7 +43,7 @@ class SlotMemory final : public SlotFlash {
     if (erases_leave_all) {
       throw PowerCut();
     }
-    const unsigned stage = noise() % 3;
+    const auto stage = static_cast<unsigned>(noise() % 3);
     for (std::uint8_t& byte : bytes) {
       const auto random = static_cast<std::uint8_t>(noise());
       byte = stage == 0 ? byte & random : stage == 1 ? random : byte | random;

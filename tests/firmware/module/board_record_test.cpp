@@ -131,6 +131,17 @@ TEST(BoardRecordTest, OfARecordOfANewerSchemaOnlyTheFixedPartIsRead) {
   EXPECT_EQ(newest_of(flash), record_of(8));
 }
 
+TEST(BoardRecordTest, WhatIsReadOfANewerSchemaIsWrittenInTheOwnOne) {
+  FlashMemory flash;
+  const auto newer = bytes_of({7, 0, 0, 0, 3, 5}, 0xA5, 0x1B2B9407);
+  std::copy(newer.begin(), newer.end(), flash.sectors[0].begin());
+  const BoardRecord read = newest_of(flash).value();
+  EXPECT_TRUE(has_newer_schema(flash.sectors[0], flash.sectors[1]));
+  ASSERT_EQ(append(flash, read), AppendResult::ok);
+  EXPECT_FALSE(has_newer_schema(flash.sectors[0], flash.sectors[1]));
+  EXPECT_EQ(newest_of(flash), read);
+}
+
 TEST(BoardRecordTest, AnotherNodeIdLeavesTheRestOfTheNewestRecordInAnySchema) {
   FlashMemory flash;
   ASSERT_EQ(append(flash, record_of(6)), AppendResult::ok);

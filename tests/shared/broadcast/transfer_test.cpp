@@ -22,10 +22,10 @@ constexpr std::uint32_t image_seed = 3;
 constexpr std::size_t image_size = 65'536;
 
 /// A bootloader without a flash.
-class ReceivingModule final : sim::BusListener {
+class ReceivingModule final : sim::BusListener, ReceiverOwner {
  public:
   ReceivingModule(sim::Bus& bus, std::uint32_t serial)
-      : controller(bus.attach(*this)), buffer(image_size), receiver(buffer, serial) {}
+      : controller(bus.attach(*this)), buffer(image_size), receiver(buffer, serial, *this) {}
 
   sim::Controller& controller;
   std::vector<std::uint8_t> buffer;
@@ -44,6 +44,8 @@ class ReceivingModule final : sim::BusListener {
     }
   }
   void transmitted(BusTime /*time*/, const CanFrame& /*frame*/) override {}
+  [[nodiscard]] ModuleCondition condition() const override { return {module_flag::has_bootloader, 5}; }
+  [[nodiscard]] std::span<const std::uint8_t> image_header() const override { return {}; }
 };
 
 /// A host and some modules on a bus of their own.
@@ -146,7 +148,7 @@ TEST(ImageTransfer, CompletesWithAnySizeAndManyLosses) {
   for (unsigned round = 0; round < 40; ++round) {
     SCOPED_TRACE(testing::Message() << "round " << round << ", seed " << image_seed);
     const auto image = random_image(1 + random() % 6'000);
-    Transfer transfer(image, 1 + random() % 5, 0.03 * (round % 12), round);
+    Transfer transfer(image, 1 + static_cast<unsigned>(random() % 5), 0.03 * (round % 12), round);
     transfer.send({.session = 9, .attempts = 100});
     ASSERT_EQ(transfer.sender->state(), ImageSender::State::complete);
     ASSERT_TRUE(transfer.have_all(image));
@@ -206,9 +208,19 @@ StatusAnswer select(ImageReceiver& receiver, Microseconds now, std::uint8_t sess
   return decode_status(receiver.receive(now, select_frame(session, 7)).value(), Code::select, 7).value();
 }
 
+class Owner final : public ReceiverOwner {
+ public:
+  [[nodiscard]] ModuleCondition condition() const override { return now; }
+  [[nodiscard]] std::span<const std::uint8_t> image_header() const override { return bytes; }
+
+  ModuleCondition now{};
+  std::vector<std::uint8_t> bytes;
+};
+
 TEST(ImageReception, BelongsToOneHostUntilItIsOverOrThatHostIsSilent) {
   std::vector<std::uint8_t> buffer(1'000);
-  ImageReceiver receiver(buffer, 7);
+  const Owner owner;
+  ImageReceiver receiver(buffer, 7, owner);
   constexpr Microseconds begin = 1'000'000;
   EXPECT_EQ(select(receiver, begin, 5).session, 5);
   EXPECT_EQ(receiver.receive(begin, begin_frame(5, 7)), std::nullopt);
@@ -227,6 +239,26 @@ TEST(ImageReception, BelongsToOneHostUntilItIsOverOrThatHostIsSilent) {
   receiver.set_state(ReceiverState::refused, 3);
   EXPECT_EQ(select(receiver, silent + 20, 6).state, ReceiverState::refused);
   EXPECT_EQ(select(receiver, silent + 30, 8).state, ReceiverState::selected);
+}
+
+TEST(ImageReception, AnswersWhoRunsWithWhichHeaderOnlyToAHostThatNamesTheModule) {
+  Owner owner;
+  ImageReceiver receiver({}, 7, owner);
+  owner.now = {module_flag::runs_program | module_flag::is_confirmed, 12};
+  EXPECT_EQ(decode_status(receiver.receive(0, status_frame(7)).value(), Code::status, 7).value().condition, owner.now);
+  EXPECT_FALSE(receiver.receive(0, status_frame(8)));
+  EXPECT_EQ(decode_header_word(receiver.receive(0, header_frame(7, 1)).value(), 7).value().value, 0U) << "no image";
+  owner.bytes = {1, 2, 3, 4, 5, 6, 7, 8};
+  const auto word = decode_header_word(receiver.receive(0, header_frame(7, 1)).value(), 7).value();
+  EXPECT_EQ(word.number, 1);
+  EXPECT_EQ(word.value, 0x0807'0605U);
+  EXPECT_EQ(decode_header_word(receiver.receive(0, header_frame(7, 2)).value(), 7).value().value, 0U) << "behind it";
+  EXPECT_FALSE(receiver.receive(0, header_frame(8, 1)));
+  EXPECT_FALSE(receiver.receive(0, enter_frame(8)));
+  EXPECT_FALSE(receiver.take_enter_request());
+  EXPECT_TRUE(receiver.receive(0, enter_frame(7)));
+  EXPECT_TRUE(receiver.take_enter_request());
+  EXPECT_FALSE(receiver.take_enter_request()) << "once";
 }
 
 TEST(ImageTransfer, IsNotDisturbedByAnotherHost) {

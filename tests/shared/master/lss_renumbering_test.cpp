@@ -32,7 +32,7 @@ class LssRenumberingTest : public testing::Test, sim::BusListener {
   /// Until it has ended. It must, within a minute.
   void run() {
     constexpr BusTime longest = 60'000'000 * us;
-    renumbering = std::make_unique<LssRenumbering>(controller_, modules);
+    renumbering = std::make_unique<LssRenumbering>(controller_, modules, options);
     const BusTime begin = bus.now();
     renumbering->start(begin / us);
     while (renumbering->state() == State::working) {
@@ -54,10 +54,18 @@ class LssRenumberingTest : public testing::Test, sim::BusListener {
   sim::Bus bus;
   std::vector<std::unique_ptr<SlaveNode>> slaves;
   std::vector<RenumberedModule> modules;
+  LssRenumberingOptions options;
+  unsigned lost_boot_ups = 0;  ///< that the master does not receive from now on
   std::unique_ptr<LssRenumbering> renumbering;
 
  private:
-  void received(BusTime time, const CanFrame& frame) override { renumbering->receive(time / us, frame); }
+  void received(BusTime time, const CanFrame& frame) override {
+    if (decode_heartbeat(frame) && lost_boot_ups > 0) {
+      --lost_boot_ups;
+      return;
+    }
+    renumbering->receive(time / us, frame);
+  }
   void transmitted(BusTime time, const CanFrame& frame) override { renumbering->transmitted(time / us, frame); }
 
   sim::Controller& controller_;
@@ -87,6 +95,39 @@ TEST_F(LssRenumberingTest, AModuleThatIsListedTwiceHasTheLastNodeId) {
   EXPECT_EQ(first.node, 2);
   EXPECT_EQ(second.node, 1);
   EXPECT_EQ(first.stored, (std::vector<std::uint8_t>{9, 2}));
+}
+
+TEST_F(LssRenumberingTest, OfModulesWithOneNodeIdEachGetsItsOwnAndNoOtherModuleRestarts) {
+  const SlaveNode& first = add(100, 2);
+  const SlaveNode& second = add(200, 2);
+  const SlaveNode& other = add(300, 3);
+  modules = {{address_of(100), 2}, {address_of(200), 5}};
+  options.reset_node = 2;
+  run();
+  EXPECT_EQ(renumbering->state(), State::done);
+  EXPECT_EQ(first.node, 2);
+  EXPECT_EQ(second.node, 5);
+  EXPECT_EQ(first.resets, 1U);
+  EXPECT_EQ(other.resets, 0U);
+}
+
+TEST_F(LssRenumberingTest, ALostBootUpOfAModuleWithItsNewNodeIdIsMadeUpFor) {
+  add(100, 2);
+  add(200, 2);
+  modules = {{address_of(100), 2}, {address_of(200), 5}};
+  options.reset_node = 2;
+  lost_boot_ups = 2;
+  run();
+  EXPECT_EQ(renumbering->state(), State::done);
+}
+
+TEST_F(LssRenumberingTest, AModuleThatIsNotAwaitedNeedNotBoot) {
+  SlaveNode& module = add(100, 1);
+  module.boots = false;
+  modules = {{address_of(100), 2, false}};
+  run();
+  EXPECT_EQ(renumbering->state(), State::done);
+  EXPECT_EQ(module.stored, std::vector<std::uint8_t>{2});
 }
 
 TEST_F(LssRenumberingTest, WithoutModulesItIsDoneAndSendsNothing) {

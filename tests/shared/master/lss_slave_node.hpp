@@ -32,6 +32,7 @@ class SlaveNode final : public sim::BusListener, LssStorage {
   std::uint8_t refuses_service = 0;  ///< answers it with error 1
   lss::Service ignores{};            ///< does not answer it
   unsigned answered = 0;
+  unsigned resets = 0;
 
  private:
   void received(sim::BusTime /*time*/, const CanFrame& frame) override {
@@ -43,7 +44,9 @@ class SlaveNode final : public sim::BusListener, LssStorage {
       EXPECT_TRUE(controller_.send(*answer));
     }
     const bool is_released = node == 0 && slave_.state() == lss::State::waiting;
-    const bool is_reset = frame == encode(NmtRequest{NmtCommand::reset_node, 0});
+    const bool is_reset = frame == encode(NmtRequest{NmtCommand::reset_node, 0}) ||
+                          (node != 0 && frame == encode(NmtRequest{NmtCommand::reset_node, node}));
+    resets += is_reset ? 1U : 0U;
     if ((is_released || is_reset) && slave_.pending_node() != 0 && boots) {
       node = slave_.pending_node();
       EXPECT_TRUE(controller_.send(encode(Heartbeat{node, NmtState::boot_up})));

@@ -87,6 +87,19 @@ TEST_F(NativeModules, SendTheirBootUpMessageAfterALongFaultOfTheBus) {
   EXPECT_EQ(canopen::decode_heartbeat(host.frames[0].frame), (canopen::Heartbeat{node, canopen::NmtState::boot_up}));
 }
 
+TEST_F(NativeModules, StartWhenTheirBootloaderHasCheckedTheImage) {
+  constexpr BusTime start_time = 74 * ms;
+  module.set_start_time(start_time / 1'000);
+  for (const BusTime power_on : {BusTime{0}, 500 * ms}) {
+    run_until(power_on);
+    host.frames.clear();
+    module.power_on(power_on);
+    run_until(power_on + start_time + 17 * ms);
+    ASSERT_EQ(host.frames.size(), 1U) << "boot-up, 1 to 16 ms after the start";
+    EXPECT_GT(host.frames[0].time, power_on + start_time + ms);
+  }
+}
+
 TEST_F(NativeModules, MeasureNothingWithoutASource) {
   module.power_on(0);
   run_until(100 * ms);

@@ -240,6 +240,36 @@ TEST_F(VirtualModules, GiveTheSameHashesAsSimulate) {
   }
 }
 
+TEST_F(VirtualModules, AreFlashedThroughTheirBootloaderFirst) {
+  const Finished finished = proleg({"hil", scenario("uniform"), "--modules", "1,3=mcu", "--seconds", "0.1", "--json"});
+  EXPECT_EQ(finished.status, 0);
+  EXPECT_NE(finished.err.find("proleg hil: flashed a chip through its bootloader, "), std::string::npos)
+      << finished.err;
+  EXPECT_NE(finished.err.find(" of its time; 2 modules start with its flash\n"), std::string::npos) << finished.err;
+}
+
+TEST_F(VirtualModules, AnImageWithoutABootloaderBesideItIsRefused) {
+  const fs::path image = file("module.elf");
+  fs::copy_file(source_path("/build/stm32f405/bin/proleg_stm32f405.elf"), image);
+  const std::vector<std::string> words{"hil", scenario("uniform"), "--modules", "mcu", "--image", image.string()};
+  expect_refused(words, {file("proleg_boot_stm32f405.elf").string(), "found no bootloader", "beside the image"});
+  fs::copy_file(image, file("proleg_boot_stm32f405.elf"));
+  expect_refused(words, {"found a program with bytes at 0x0802", "expected the bootloader"});
+}
+
+TEST_F(VirtualModules, ThatAreResetJoinAgainAtTheSameTickAsNativeOnes) {
+  const std::vector<std::string> words{"hil", scenario("coupled"), "--seconds", "1.5", "--reset", "3@100"};
+  std::vector<Json> results;
+  for (const char* modules : {"native", "mcu"}) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), {"--modules", modules});
+    results.push_back(succeed(all));
+  }
+  EXPECT_EQ(results[0]["restarts"][0]["joined_tick"], results[1]["restarts"][0]["joined_tick"]);
+  EXPECT_EQ(results[0]["setpoint_hash"], results[1]["setpoint_hash"]);
+  EXPECT_EQ(results[0]["servo_hash"], results[1]["servo_hash"]);
+}
+
 TEST_F(VirtualModules, TwoRunsPrintAndRecordTheSame) {
   std::vector<Json> results;
   for (const char* name : {"a", "b"}) {

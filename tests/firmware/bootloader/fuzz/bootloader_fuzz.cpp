@@ -98,7 +98,7 @@ class Session {
   Session() {
     require(slots_.install(image_bytes(1)) == InstallResult::ok, "installed");
     require(slots_.prepare_start() == StartResult::run_on_trial && slots_.confirm(), "confirmed");
-    bootloader_.power_on(0, node);
+    bootloader_.power_on(0, node, {});
   }
 
   void play(FuzzInput& input) {

@@ -9,6 +9,8 @@
 #include <span>
 
 #include "firmware/module/module.hpp"
+#include "shared/broadcast/transfer_frame.hpp"
+#include "shared/fixed/little_endian.hpp"
 #include "shared/gait/registry.hpp"
 #include "shared/master/setup_list.hpp"
 #include "tests/support/fuzz_input.hpp"
@@ -68,10 +70,33 @@ class Flash final : public firmware::FlashPort {
   std::array<std::array<std::uint8_t, 128>, 2> sectors_{erased_, erased_};
 };
 
+/// Two modules share the buffer, which does not matter: its contents are the host's.
+class Program final : public firmware::ProgramPort {
+ public:
+  std::span<std::uint8_t> buffer() override { return buffer_; }
+  [[nodiscard]] std::span<const std::uint8_t> header() const override { return header_; }
+  [[nodiscard]] bool has_bootloader() const override { return true; }
+  [[nodiscard]] bool is_confirmed() const override { return is_confirmed_; }
+  void confirm() override { is_confirmed_ = true; }
+  void note_good_start() override {}
+  void install(std::size_t size, std::uint8_t session, bool /*ends_line*/) override {
+    require(size > 0 && size <= buffer_.size() && session != 0, "an image of a session is installed");
+    ++restarts;
+  }
+  void enter_bootloader() override { ++restarts; }
+
+  unsigned restarts = 0;
+
+ private:
+  std::array<std::uint8_t, 64> buffer_{};
+  std::array<std::uint8_t, 512> header_{};
+  bool is_confirmed_ = false;
+};
+
 class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
  public:
   explicit World(const Setup& setup)
-      : setup_(setup), module({0, 1, {7, 8, 9}}, {*this, *this, *this, meters_, flash_}) {
+      : setup_(setup), module({0, 1, {7, 8, 9}}, {*this, *this, *this, meters_, flash_, nullptr, &program_}) {
     firmware::BoardRecord board;
     board.node = setup.node(Setup::joint);
     require(firmware::append(flash_, board) == firmware::AppendResult::ok, "the flash keeps a record");
@@ -101,11 +126,12 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
     const unsigned node = module.node();  // LSS may have changed it
     const unsigned base = frame.identifier - node;
     const bool own = base == 0x080 || base == 0x180 || base == 0x280 || base == 0x380 || base == 0x580 || base == 0x700;
-    require(frame.identifier == canopen::identifier::lss_answer || node != 0,
-            "a module without a node id sends answers of LSS only");
-    require(own || frame.identifier == canopen::identifier::sync || frame.identifier == canopen::identifier::tick ||
-                frame.identifier == canopen::identifier::lss_answer,
-            "a module sends on its own identifiers, SYNC, TICK and LSS");
+    const bool is_answer =
+        frame.identifier == canopen::identifier::lss_answer || frame.identifier == broadcast::module_identifier;
+    require(is_answer || node != 0, "a module without a node id sends answers of LSS and updates only");
+    require(own || is_answer || frame.identifier == canopen::identifier::sync ||
+                frame.identifier == canopen::identifier::tick,
+            "a module sends on its own identifiers, SYNC, TICK, LSS and updates");
     require(!off_, "nothing is handed to a controller that is bus-off");
     const bool is_twice = std::any_of(mailboxes_.begin(), mailboxes_.end(),
                                       [&](const CanFrame& other) { return other.identifier == frame.identifier; });
@@ -209,6 +235,7 @@ class World final : CanPort, firmware::ServoPort, firmware::ContactPort {
   std::deque<CanFrame> mailboxes_;
   Meters meters_;
   Flash flash_;
+  Program program_;
   bool closed_ = false;
   bool off_ = false;    ///< the bus
   bool asked_ = false;  ///< to come back
@@ -305,13 +332,28 @@ void World::handle(std::uint8_t event, FuzzInput& input) {
       break;
     }
     case 16: {
-      const auto identifier = static_cast<std::uint16_t>(input.half() % 0x800U);
+      const std::uint16_t half = input.half();
+      const bool is_update = half >= 0x8000U;
+      const auto identifier = is_update ? broadcast::host_identifier : static_cast<std::uint16_t>(half % 0x800U);
       const auto length = static_cast<std::uint8_t>(input.byte() % 9U);
       CanFrame frame{identifier, length, input.take<8>()};
+      if (is_update && length < CanFrame::max_length) {
+        frame.data[0] %= 12U;  // a code, and one session or the serial number
+        frame.data[1] = (half & 1U) == 0 ? 1 : frame.data[1];
+        if (length == 5 || length == 6) {
+          write_little_endian(frame.data, length - 4U, 4, firmware::serial_number({0, 1, {7, 8, 9}}));
+        }
+        if (frame.data[0] == static_cast<std::uint8_t>(broadcast::Code::begin)) {
+          frame = broadcast::begin_frame(frame.data[1], frame.data[2] % 100U);
+        }
+      }
+      const bool may_restart = module.power() != PowerState::operation_enabled && !pulsing_;
+      const unsigned restarts = program_.restarts;
       for (std::size_t i = length; i < 8; ++i) {
         frame.data[i] = 0;
       }
       receive(frame);
+      require(may_restart || program_.restarts == restarts, "a program ends only while its servo has no power");
       break;
     }
     case 17:

@@ -36,15 +36,27 @@ struct NoLine final : proleg::firmware::LinePort {
   void send_line(std::size_t /*count*/) override {}
 };
 
+struct NoProgram final : proleg::firmware::ProgramPort {
+  std::span<std::uint8_t> buffer() override { return {}; }
+  [[nodiscard]] std::span<const std::uint8_t> header() const override { return {}; }
+  [[nodiscard]] bool has_bootloader() const override { return true; }
+  [[nodiscard]] bool is_confirmed() const override { return true; }
+  void confirm() override {}
+  void note_good_start() override {}
+  void install(std::size_t /*size*/, std::uint8_t /*session*/, bool /*ends_line*/) override {}
+  void enter_bootloader() override {}
+};
+
 NoPorts ports;
 NoSensors sensors;
 NoFlash flash;
 NoLine line;
+NoProgram program;
 
 }  // namespace
 
 /// Its size is read from the symbol table.
-Module the_module({1, 1, {1, 2, 3}, proleg::core_fingerprint}, {ports, ports, ports, sensors, flash, &line});
+Module the_module({1, 1, {1, 2, 3}, proleg::core_fingerprint}, {ports, ports, ports, sensors, flash, &line, &program});
 
 extern "C" {
 

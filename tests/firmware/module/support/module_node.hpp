@@ -3,8 +3,10 @@
 // A module with its surroundings: a controller of three mailboxes, a servo whose pulses are recorded, touch sensors.
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "firmware/module/module.hpp"
@@ -30,13 +32,42 @@ struct Pulse {
   friend bool operator==(const Pulse&, const Pulse&) = default;
 };
 
+/// The place of the program in flash, and what was asked of the bootloader.
+struct ProgramPlace final : firmware::ProgramPort {
+  std::span<std::uint8_t> buffer() override { return ram; }
+  [[nodiscard]] std::span<const std::uint8_t> header() const override { return header_bytes; }
+  [[nodiscard]] bool has_bootloader() const override { return is_bootloader_there; }
+  [[nodiscard]] bool is_confirmed() const override { return confirmations > 0; }
+  void confirm() override { ++confirmations; }
+  void note_good_start() override { ++good_starts; }
+  void install(std::size_t size, std::uint8_t session, bool ends_line) override {
+    installed = {size, session, ends_line};
+  }
+  void enter_bootloader() override { ++entries; }
+
+  struct Installed {
+    std::size_t size;
+    std::uint8_t session;
+    bool ends_line;
+
+    friend bool operator==(const Installed&, const Installed&) = default;
+  };
+  std::array<std::uint8_t, 2'000> ram{};
+  std::array<std::uint8_t, 512> header_bytes{};
+  bool is_bootloader_there = true;
+  unsigned confirmations = 0;
+  unsigned good_starts = 0;
+  unsigned entries = 0;
+  std::optional<Installed> installed;
+};
+
 class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
  public:
   static constexpr std::size_t mailboxes = 3;
 
   /// clock_offset: what the module's clock shows when that of the bus shows 0.
   explicit ModuleNode(const firmware::ModuleIdentity& identity, Microseconds clock_offset = 0)
-      : clock_offset_(clock_offset), module(identity, {*this, *this, *this, meters, flash}) {
+      : clock_offset_(clock_offset), module(identity, {*this, *this, *this, meters, flash, nullptr, &program}) {
     // The board was made for this module.
     firmware::BoardRecord board;
     board.node = identity.node;
@@ -84,6 +115,7 @@ class ModuleNode final : CanPort, firmware::ServoPort, firmware::ContactPort {
   std::uint32_t pulse_period_us = 0;  ///< of the last pulse
   Meters meters;
   FlashMemory flash;
+  ProgramPlace program;
   /// Touch sensors as they are now.
   std::uint8_t sensors = 0;
   /// Times at which they were read.

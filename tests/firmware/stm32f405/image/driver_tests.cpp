@@ -76,6 +76,7 @@ void append_next(unsigned node) {
 extern "C" {
 
 void run_program() {
+  make_hardware();
   static_cast<void>(start_watchdog(200));
   driver_test_result.phase = Phase::started;
   start_pins();

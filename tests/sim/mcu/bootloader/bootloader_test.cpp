@@ -41,6 +41,16 @@ class FlashingHost final : BusListener {
   /// The state of the module at the end.
   ReceiverState flash() {
     transfer();
+    return finish();
+  }
+  /// To be called again and again.
+  [[nodiscard]] bool is_installed() {
+    if (sender_.next_deadline() <= now()) {
+      sender_.poll(now());
+    }
+    return target_[0].status.state == ReceiverState::installed;
+  }
+  ReceiverState finish() {
     wait_for(ImageSender::State::done);
     return target_[0].status.state;
   }
@@ -159,20 +169,36 @@ class ChipBootloader : public testing::Test {
     return *hosts_.back();
   }
   ReceiverState flash(std::span<const std::uint8_t> image) { return host_with(image).flash(); }
-  /// From a program that runs, which leaves the words of firmware/stm32f405/bootloader/handover.hpp.
-  void enter_bootloader() {
+  void start_program() {
     rig->power_on();
     ASSERT_TRUE(starts_program());
-    constexpr std::uint32_t stay = 0xB007'0001;
-    std::array<std::uint8_t, 8> words{};
-    write_little_endian(words, 0, 4, stay);
-    write_little_endian(words, 4, 4, ~stay);
-    rig->chip.write(0x2001'FF00, words);
-    rig->chip.set_supply(2'500);  // a brown-out reset, in which RAM keeps its contents
-    rig->run_for(ms);
-    rig->chip.set_supply(3'300);
+  }
+  /// From a program that runs.
+  void enter_bootloader() {
+    start_program();
+    rig->host.send(broadcast::enter_frame(serial));
     ASSERT_TRUE(sends_boot_up());
     ASSERT_FALSE(is_program());
+  }
+  /// What program or bootloader say of themselves.
+  [[nodiscard]] std::uint8_t flags() {
+    const BusTime start = rig->bus.now();
+    rig->host.send(broadcast::status_frame(serial));
+    rig->run_for(20 * ms);
+    for (const LoggedFrame& logged : rig->frames(broadcast::module_identifier, start)) {
+      if (const auto status = broadcast::decode_status(logged.frame, broadcast::Code::status, serial)) {
+        return status->condition.flags;
+      }
+    }
+    ADD_FAILURE() << "no answer";
+    return 0;
+  }
+  /// Of all frames a tenth, to any node.
+  void lose_frames(unsigned seed) {
+    auto random = std::make_shared<std::mt19937>(seed);
+    rig->bus.set_loss_rule([random](const CanFrame& frame, std::size_t /*receiver*/) {
+      return frame.identifier != heartbeat && (*random)() % 10 == 0;
+    });
   }
   void leave_bootloader() { rig->host.send({broadcast::host_identifier, 2, {7, 1}}); }
 
@@ -326,28 +352,186 @@ TEST_F(ChipBootloader, AFreshChipKeepsTheNodeIdThatLssGivesIt) {
   EXPECT_TRUE(starts_program()) << "it has the node id from the flash";
 }
 
-// The flash model leaves behind what a cut operation of the chip may leave (docs/virtual-chip.md).
-TEST_F(ChipBootloader, ACutOfThePowerAtAnyInstantOfAnUpdateLeavesAProgramThatRuns) {
-  constexpr unsigned seed = 7;
-  const std::uint32_t cuts = from_environment("PROLEG_CUTS", 4);
-  std::mt19937 random(seed);
+TEST_F(ChipBootloader, TheProgramTakesAnImageWhileItRunsAndRestartsToInstallIt) {
+  write_slot(slot_a, program(), true);
+  start_program();
   const std::vector<std::uint8_t> newer = newer_program();
-  std::array<unsigned, 2> runs{};
-  for (unsigned cut = 0; cut < cuts; ++cut) {
+  FlashingHost& host = host_with(newer);
+  const BusTime start = rig->bus.now();
+  host.transfer();
+  EXPECT_TRUE(holds(slot_a, program()));
+  EXPECT_EQ(host.finish(), ReceiverState::installed);
+  std::cout << newer.size() << " bytes to a program that runs, with a backup of it: " << (rig->bus.now() - start) / ms
+            << " ms\n";
+  EXPECT_TRUE(holds(slot_a, newer));
+  EXPECT_TRUE(holds(slot_b, program()));
+  leave_bootloader();
+  EXPECT_TRUE(starts_program());
+}
+
+TEST_F(ChipBootloader, AnImageThatHasRunHalfASecondAndCanSendIsConfirmed) {
+  namespace flag = broadcast::module_flag;
+  write_slot(slot_a, program(), false);
+  start_program();
+  EXPECT_EQ(flags(), flag::runs_program | flag::has_image | flag::has_bootloader);
+  rig->run_for(600 * ms);
+  EXPECT_EQ(flags(), flag::runs_program | flag::has_image | flag::has_bootloader | flag::is_confirmed);
+  for (unsigned start = 0; start <= bootloader::Slots::max_attempts; ++start) {
+    start_program();
+  }
+}
+
+TEST_F(ChipBootloader, AnImageThatNobodyHearsIsNotConfirmed) {
+  write_slot(slot_a, program(), false);
+  rig->host.switch_off();
+  rig->power_on();
+  rig->run_for(2 * s);
+  EXPECT_EQ(rig->word(slot_a + slot_size - 16), 0xFFFF'FFFFU);
+}
+
+TEST_F(ChipBootloader, AConfirmedProgramThatStopsAgainAndAgainGivesTheBusToTheBootloader) {
+  namespace flag = broadcast::module_flag;
+  for (const std::uint16_t instruction : {std::uint16_t{0xBF30}, undefined_instruction}) {
+    make_chip();
+    write_slot(slot_a, program_that_starts_with(instruction), true);
+    rig->power_on();
+    const BusTime start = rig->bus.now();
+    ASSERT_TRUE(sends_boot_up(15 * s));
+    std::cout << "a confirmed program that does not start: the bootloader serves the bus after "
+              << (rig->bus.now() - start) / ms << " ms\n";
+    EXPECT_EQ(flags(), flag::has_image | flag::has_bootloader | flag::is_confirmed | flag::starts_badly);
+    EXPECT_EQ(flash(program()), ReceiverState::installed);
+    leave_bootloader();
+    EXPECT_TRUE(starts_program());
+  }
+}
+
+TEST_F(ChipBootloader, AModuleWhoseServoHasPowerInstallsNothing) {
+  write_slot(slot_a, program(), true);
+  start_program();
+  rig->start_booted_robot(20'000);
+  rig->enable_servo(0);
+  EXPECT_NE(flags() & broadcast::module_flag::is_busy, 0);
+  EXPECT_EQ(flash(newer_program()), ReceiverState::refused);
+  rig->host.send(broadcast::enter_frame(serial));
+  EXPECT_FALSE(sends_boot_up()) << "neither does it go into the bootloader";
+  EXPECT_TRUE(holds(slot_a, program()));
+}
+
+TEST_F(ChipBootloader, ATenthOfTheFramesMayBeLost) {
+  write_slot(slot_a, program(), true);
+  start_program();
+  lose_frames(5);
+  const BusTime start = rig->bus.now();
+  EXPECT_EQ(flash(newer_program()), ReceiverState::installed);
+  std::cout << "with a tenth of the frames lost: " << (rig->bus.now() - start) / ms << " ms\n";
+  rig->bus.set_loss_rule({});  // these requests are sent once
+  leave_bootloader();
+  EXPECT_TRUE(starts_program());
+  EXPECT_TRUE(holds(slot_a, newer_program()));
+}
+
+/// A cut of the power in an update, which the flash model leaves behind as a chip may (docs/virtual-chip.md), and the
+/// start after it.
+class ChipPowerCut : public ChipBootloader {
+ protected:
+  struct FlashOperation {
+    std::uint32_t address;
+    bool is_erase;
+  };
+
+  /// From the request to install on: until operation `last` of the flash has begun, or the update is done.
+  std::vector<FlashOperation> update_until(std::size_t last, bool loses_frames) {
+    constexpr BusTime less_than_a_word = 10 * us;
     make_chip();
     write_slot(slot_a, program(), true);
-    enter_bootloader();
-    host_with(newer).transfer();
-    const BusTime instant = random() % 4'000 * ms;  // the installation takes about three seconds
-    rig->run_for(instant);
-    rig->power_on();
-    ASSERT_TRUE(starts_program(5 * s)) << "seed " << seed << ", cut " << cut << ", after " << instant / ms << " ms";
-    const bool is_old = holds(slot_a, program());
-    EXPECT_TRUE(is_old || holds(slot_a, newer)) << "cut " << cut;
-    ++runs.at(is_old ? 0 : 1);
+    start_program();
+    if (loses_frames) {
+      lose_frames(static_cast<unsigned>(last));
+    }
+    std::vector<FlashOperation> operations;
+    rig->chip.set_flash_watch([&operations](std::uint32_t address, bool is_erase) {
+      operations.push_back({address, is_erase});
+    });
+    FlashingHost& host = host_with(newer_);
+    host.transfer();
+    rig->set_max_lead(less_than_a_word);
+    bool has_left = false;
+    BusTime next_question = 0;
+    EXPECT_TRUE(rig->run_until_true(
+        [&] {
+          has_left = has_left || host.is_installed();
+          if (has_left && !is_leaving_) {
+            is_leaving_ = true;
+            leave_bootloader();
+          }
+          if (is_leaving_ && rig->bus.now() >= next_question) {
+            rig->host.send(broadcast::status_frame(serial));  // a program that hears nobody is not confirmed
+            next_question = rig->bus.now() + 200 * ms;
+          }
+          return operations.size() > last || holds_confirmed();
+        },
+        20 * s));
+    is_leaving_ = false;
+    rig->chip.set_flash_watch({});
+    return operations;
   }
-  std::cout << cuts << " cuts of the power (seed " << seed << "): the old program runs " << runs[0]
-            << " times, the new one " << runs[1] << " times\n";
+  [[nodiscard]] bool holds_confirmed() const {
+    return is_leaving_ &&
+           rig->word(slot_a + slot_size - bootloader::Slots::words_size) == bootloader::Slots::confirmed_word;
+  }
+  /// Cuts the power somewhere in the operation that has begun. 0: the old program runs afterwards, 1: the new one.
+  std::size_t cut_and_start(bool is_erase, std::mt19937& random) {
+    rig->run_for(is_erase ? random() % 1'000 * ms : random() % 12 * us);
+    rig->set_max_lead(200 * us);
+    rig->bus.set_loss_rule({});  // the questions that follow are sent once
+    rig->power_on();
+    EXPECT_TRUE(starts_program(5 * s));
+    const bool is_old = holds(slot_a, program());
+    EXPECT_TRUE(is_old || holds(slot_a, newer_));
+    EXPECT_EQ(rig->read(0x1018, 4), serial);
+    return is_old ? 0 : 1;
+  }
+
+  const std::vector<std::uint8_t> newer_ = newer_program();
+
+ private:
+  bool is_leaving_ = false;
+};
+
+TEST_F(ChipPowerCut, AtEveryKindOfOperationLeavesAProgramThatRunsWithTheSettings) {
+  constexpr unsigned seed = 7;
+  const std::uint32_t others = from_environment("PROLEG_CUTS", 0);
+  const bool is_long = others != 0;
+  std::mt19937 random(seed);
+  const std::vector<FlashOperation> all = update_until(~std::size_t{0}, false);
+  std::vector<std::size_t> chosen;
+  unsigned erases = 0;
+  unsigned words = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::uint32_t offset = (all[i].address - slot_a) % slot_size;
+    const bool is_of_header = offset < image::header_size;
+    const bool is_state = offset >= slot_size - bootloader::Slots::words_size;
+    if (all[i].is_erase || (is_long && (is_state || is_of_header))) {
+      chosen.push_back(i);
+      ++(all[i].is_erase ? erases : words);
+    }
+  }
+  for (unsigned i = 0; i < others; ++i) {
+    chosen.push_back(random() % all.size());
+  }
+  EXPECT_EQ(erases, 2U) << "of both slots";
+  std::array<unsigned, 2> runs{};
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", operation " + std::to_string(chosen[i]));
+    const auto reached = update_until(chosen[i], i % 2 == 1);
+    ASSERT_GT(reached.size(), chosen[i]);
+    ++runs.at(cut_and_start(reached[chosen[i]].is_erase, random));
+  }
+  std::cout << all.size() << " operations of the flash in an update; power cut in " << erases << " erases, " << words
+            << " words of headers and states, " << others << " others, half of them with a tenth of the frames lost "
+            << "(seed " << seed << "): the old program runs " << runs[0] << " times, the new one " << runs[1]
+            << " times\n";
 }
 
 }  // namespace

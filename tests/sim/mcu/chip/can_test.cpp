@@ -76,7 +76,7 @@ TEST(ChipCan, SixtyFourRequestsBackToBackAreAllAnsweredInTheirOrder) {
 TEST(ChipCan, FramesThatDoNotMatterCostNoInstruction) {
   std::vector<CanFrame> foreign;
   for (const unsigned identifier : {0x001U, 0x081U, 0x084U, 0x100U, 0x182U, 0x184U, 0x204U, 0x284U, 0x304U, 0x384U,
-                                    0x404U, 0x584U, 0x604U, 0x682U, 0x690U, 0x6FFU, 0x784U, 0x7E4U}) {
+                                    0x404U, 0x584U, 0x604U, 0x682U, 0x691U, 0x6FFU, 0x784U, 0x7E4U}) {
     foreign.push_back({static_cast<std::uint16_t>(identifier), 8, {1, 2, 3, 4, 5, 6, 7, 8}});
   }
   EXPECT_EQ(instructions(foreign, 300 * us), instructions({}, 0));
@@ -84,7 +84,7 @@ TEST(ChipCan, FramesThatDoNotMatterCostNoInstruction) {
 
 TEST(ChipCan, EachFrameThatMattersIsProcessed) {
   const std::uint64_t idle = instructions({}, 0);
-  for (const unsigned identifier : {0x000U, 0x080U, 0x203U, 0x603U, 0x680U, 0x681U, 0x704U, 0x77FU, 0x7E5U}) {
+  for (const unsigned identifier : {0x000U, 0x080U, 0x203U, 0x603U, 0x680U, 0x681U, 0x690U, 0x704U, 0x77FU, 0x7E5U}) {
     EXPECT_GT(instructions({{static_cast<std::uint16_t>(identifier), 0, {}}}, 300 * us), idle + 100)
         << std::hex << identifier;
   }

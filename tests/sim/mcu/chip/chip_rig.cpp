@@ -142,6 +142,10 @@ void ChipRig::write(std::uint16_t index, std::uint8_t sub, unsigned size, std::u
 
 void ChipRig::start_robot(std::uint32_t servo_period_us) {
   boot();
+  start_booted_robot(servo_period_us);
+}
+
+void ChipRig::start_booted_robot(std::uint32_t servo_period_us) {
   constexpr std::uint32_t sine = 2;
   write(0x2005, 3, 4, servo_period_us);
   write(0x6080, 0, 4, 10'000);  // tests let the servo jump

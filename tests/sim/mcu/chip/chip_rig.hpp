@@ -66,6 +66,8 @@ class HostEnd final : public BusListener {
  public:
   explicit HostEnd(Bus& bus);
   void send(const CanFrame& frame);
+  /// Then no node acknowledges what the chip sends.
+  void switch_off() { controller_.switch_off(); }
   [[nodiscard]] std::size_t index() const { return controller_.index(); }
   [[nodiscard]] bool is_done() const { return on_way_ == 0; }
   BusTime last_error = 0;
@@ -100,6 +102,7 @@ class ChipRig {
   explicit ChipRig(const RigSettings& settings = {});
 
   void power_on() { chip.power_on(bus.now()); }
+  void set_max_lead(BusTime lead) { max_lead_ = lead; }
   void run_until(BusTime time);
   void run_for(BusTime time) { run_until(bus.now() + time); }
   /// Whether it became true within `timeout`.
@@ -113,6 +116,7 @@ class ChipRig {
   /// From boot to the first SYNC: a robot of this joint alone, with a sine in slot 1, whose module sends the SYNCs
   /// (every 10 ms).
   void start_robot(std::uint32_t servo_period_us);
+  void start_booted_robot(std::uint32_t servo_period_us);
   /// Power for the servo, at a direct position (90 degrees = 2^30).
   void enable_servo(std::int32_t target);
 

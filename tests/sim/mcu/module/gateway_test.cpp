@@ -66,10 +66,19 @@ TEST(VirtualGateway, AConversationHasTheSameCharactersAsWithANativeModule) {
   const std::string expected = hold_conversation(native);
   EXPECT_EQ(hold_conversation(flashed), expected);
   EXPECT_EQ(flashed.gateway().take_problem(), std::nullopt);
-  ASSERT_EQ(native.log.size(), flashed.log.size());
-  for (std::size_t i = 0; i < native.log.size(); ++i) {
-    EXPECT_EQ(line_of(native.log[i].frame), line_of(flashed.log[i].frame)) << i;
-  }
+  // Both modules boot at once: microseconds decide which boot-up is the first.
+  const auto lines_of = [](const GatewayBench& bench) {
+    std::vector<std::string> lines;
+    lines.reserve(bench.log.size());
+    for (const auto& logged : bench.log) {
+      lines.push_back(line_of(logged.frame));
+    }
+    std::sort(lines.begin(), lines.begin() + 2);
+    return lines;
+  };
+  ASSERT_GE(native.log.size(), 2U);
+  ASSERT_GE(flashed.log.size(), 2U);
+  EXPECT_EQ(lines_of(native), lines_of(flashed));
   std::cout << expected.size() << " characters, " << native.log.size() << " frames\n";
 }
 

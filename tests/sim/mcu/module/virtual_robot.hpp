@@ -26,16 +26,25 @@ class VirtualRobot {
  public:
   using Choice = std::function<bool(unsigned joint)>;
 
-  /// is_virtual: which joints have a virtual chip; the others are native.
-  explicit VirtualRobot(
-      Scenario scenario, HardwareOptions options = {}, Choice is_virtual = [](unsigned) { return true; })
+  static bool all(unsigned /*joint*/) { return true; }
+
+  /// is_virtual: which joints have a virtual chip; the others are native. flash: as VirtualModuleOptions.
+  explicit VirtualRobot(Scenario scenario, HardwareOptions options = {}, Choice is_virtual = all,
+                        const FlashContents* flash = nullptr)
       : scenario_(std::move(scenario)), modules_(scenario_.robot.joints.size()) {
     options.notice = [this](const std::string& text) { notices.push_back(text); };
-    options.make_module = [this, is_virtual](const ModuleParts& parts) -> std::unique_ptr<JointModule> {
+    options.on_frame = [this, on_frame = options.on_frame](const Transmission& transmission) {
+      now_ = transmission.end;
+      if (on_frame) {
+        on_frame(transmission);
+      }
+    };
+    options.make_module = [this, is_virtual, flash](const ModuleParts& parts) -> std::unique_ptr<JointModule> {
       if (!is_virtual(parts.joint)) {
         return nullptr;
       }
       VirtualModuleOptions module_options;
+      module_options.flash = flash;
       module_options.console = [this, joint = parts.joint](const std::string& line) {
         console.emplace_back(joint, line);
       };
@@ -59,6 +68,8 @@ class VirtualRobot {
   [[nodiscard]] HardwareLoop& loop() { return *loop_; }
   [[nodiscard]] VirtualModule& module(unsigned joint) { return *modules_[joint]; }
   [[nodiscard]] const Scenario& scenario() const { return scenario_; }
+  /// The end of the last frame.
+  [[nodiscard]] BusTime now() const { return now_; }
 
   /// Whether a notice contains this.
   [[nodiscard]] bool was_noticed(const std::string& words) const {
@@ -74,6 +85,7 @@ class VirtualRobot {
  private:
   Scenario scenario_;
   std::vector<VirtualModule*> modules_;
+  BusTime now_ = 0;
   std::unique_ptr<HardwareLoop> loop_;
 };
 

@@ -1,0 +1,68 @@
+#pragma once
+
+// What one start of a module leaves for the next one, in RAM that keeps its contents over a reset: the program for the
+// bootloader, the bootloader for the program and for itself.
+
+#include <cstdint>
+
+#include "firmware/bootloader/slots.hpp"
+
+namespace proleg::bootloader {
+
+enum class HandoverAction : std::uint32_t {
+  none = 0,
+  stay = 0xB007'0001,      ///< the bootloader stays on the bus, though there is a program that may run
+  start = 0xB007'0002,     ///< the bootloader starts the program in slot A; a start on trial has been counted
+  pin_seen = 0xB007'0003,  ///< the reset pin was used a moment ago
+  started = 0xB007'0004,   ///< the program was started, so often in a row, and has not said that it has started well
+  runs = 0xB007'0005,      ///< the program has started well
+  install = 0xB007'0006,   ///< an image waits in RAM; its size and the session of the host: ImageInRam
+};
+
+struct Handover {
+  HandoverAction action = HandoverAction::none;
+  std::uint32_t argument = 0;
+};
+
+/// The argument of HandoverAction::install.
+struct ImageInRam {
+  std::uint32_t size = 0;    ///< less than 2^23 bytes
+  std::uint8_t session = 0;  ///< of the host that has sent it
+  bool ends_line = false;    ///< the host is on the module's serial line: the module comes back without its request
+
+  [[nodiscard]] constexpr std::uint32_t argument() const {
+    return size | std::uint32_t{session} << session_position | (ends_line ? line_bit : 0);
+  }
+  [[nodiscard]] static constexpr ImageInRam of(std::uint32_t argument) {
+    return {argument & (line_bit - 1), static_cast<std::uint8_t>(argument >> session_position),
+            (argument & line_bit) != 0};
+  }
+
+ private:
+  static constexpr unsigned session_position = 24;
+  static constexpr std::uint32_t line_bit = 1U << 23U;
+};
+
+/// So many starts of a program that has not said that it runs well, and it is given up: the bootloader stays.
+inline constexpr std::uint32_t max_bad_starts = 5;
+
+/// What the bootloader does after a reset of the chip.
+enum class NextStep : std::uint8_t {
+  start_program,  ///< the program in slot A, with the chip as after a reset; Handover `started` is to be left
+  prepare,        ///< Slots::prepare_start() decides what runs; it starts after a reset, with Handover `start`
+  serve_bus,
+};
+
+[[nodiscard]] NextStep next_step(const Slots& slots, const Handover& left);
+
+/// What is left for the next start when the program is started.
+[[nodiscard]] constexpr Handover started_after(const Handover& left) {
+  return {HandoverAction::started, 1 + (left.action == HandoverAction::started ? left.argument : 0)};
+}
+
+/// Whether the program was given up.
+[[nodiscard]] constexpr bool starts_badly(const Handover& left) {
+  return left.action == HandoverAction::started && left.argument >= max_bad_starts;
+}
+
+}  // namespace proleg::bootloader

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "firmware/module/ports.hpp"
+
+namespace proleg::stm32f405 {
+
+/// The program in slot A of the flash, and the bootloader in sector 0 if it has started the program. With the start
+/// stub in its place (docs/board.md) no image can be installed over the bus.
+class ProgramPlace final : public firmware::ProgramPort {
+ public:
+  [[nodiscard]] std::span<std::uint8_t> buffer() override;
+  [[nodiscard]] std::span<const std::uint8_t> header() const override;
+  [[nodiscard]] bool has_bootloader() const override;
+  [[nodiscard]] bool is_confirmed() const override;
+  void confirm() override;
+  void note_good_start() override;
+  void install(std::size_t size, std::uint8_t session, bool ends_line) override;
+  void enter_bootloader() override;
+};
+
+}  // namespace proleg::stm32f405

@@ -1,0 +1,210 @@
+#include "host/flash/bare_commands.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "shared/computer/text/text.hpp"
+
+namespace proleg::host {
+namespace {
+
+using Words = std::vector<std::string>;
+
+std::string address_word(const FlashPart& part) { return hexadecimal(part.address, 8); }
+
+/// ADDRESS:SIZE, as dfu-util and stm32flash take it.
+std::string range_word(std::uint32_t address, std::uint32_t size) {
+  return hexadecimal(address, 8) + ':' + std::to_string(size);
+}
+
+std::vector<BareStep> openocd_steps() {
+  return {{"write all",
+           {"openocd", "-f", "interface/stlink.cfg", "-f", "target/stm32f4x.cfg", "-f", bare_file::script},
+           "",
+           "",
+           false}};
+}
+
+/// For both protocols of the ROM bootloader.
+class RomSteps {
+ public:
+  explicit RomSteps(const BarePlan& plan) : plan_(plan) {}
+
+  std::vector<BareStep> make() {
+    read("read sector 0", plan_.bootloader, plan_.bootloader_size, bare_file::present, "");
+    if (plan_.settings_size > 0) {
+      write("the board record", plan_.settings, plan_.settings_size, bare_file::settings);
+    }
+    write("the image", plan_.image, plan_.image_size, bare_file::image);
+    const std::size_t first = steps_.size();
+    write("the bootloader", plan_.bootloader, plan_.bootloader_size, bare_file::bootloader);
+    std::for_each(steps_.begin() + static_cast<std::ptrdiff_t>(first), steps_.end(),
+                  [](BareStep& step) { step.is_for_other_bootloader = true; });
+    return std::move(steps_);
+  }
+
+ private:
+  /// stm32flash begins with the byte by which the ROM bootloader measures the baud rate. From the second command on
+  /// that would be taken for a command.
+  [[nodiscard]] Words stm32flash(const Words& options, const std::string& range) const {
+    Words words{"stm32flash", "-b", "115200"};
+    if (!steps_.empty()) {
+      words.emplace_back("-c");
+    }
+    words.insert(words.end(), options.begin(), options.end());
+    words.insert(words.end(), {"-S", range, plan_.port});
+    return words;
+  }
+
+  [[nodiscard]] static Words dfu_util(const std::string& place, const char* direction, const std::string& file) {
+    return {"dfu-util", "-d", ",0483:df11", "-a", "0", "-s", place, direction, file};
+  }
+
+  void read(const std::string& what, const FlashPart& part, std::uint32_t size, const std::string& result,
+            const std::string& expected) {
+    const std::string range = range_word(part.address, size);
+    steps_.push_back({what,
+                      plan_.probe == BareProbe::dfu ? dfu_util(range, "-U", result) : stm32flash({"-r", result}, range),
+                      result, expected, false});
+  }
+
+  /// Neither an exit status nor an answer of the ROM bootloader says that a sector was not protected: so it is read
+  /// back.
+  void write(const std::string& what, const FlashPart& part, std::uint32_t size, const std::string& file) {
+    // With its size: without it stm32flash erases all up to the end of the flash. -f: the file is binary, whatever its
+    // bytes are.
+    steps_.push_back({"write " + what,
+                      plan_.probe == BareProbe::dfu
+                          ? dfu_util(address_word(part), "-D", file)
+                          : stm32flash({"-f", "-w", file}, range_word(part.address, part.size)),
+                      "", "", false});
+    read("read " + what + " back", part, size, "read_" + file, file);
+  }
+
+  const BarePlan& plan_;
+  std::vector<BareStep> steps_;
+};
+
+// Addresses of RM0090: DBGMCU_IDCODE (section 38.6.1), FLASH_OPTCR (3.9.10).
+constexpr std::string_view script_start = R"(gdb_port disabled
+tcl_port disabled
+telnet_port disabled
+
+proc refuse {text} {
+  echo "refused: $text"
+  shutdown error
+}
+
+# FLASH_OPTCR, with read protection level 0 (bits 15:8 are 0xAA). Any other level locks the chip, 0xCC does it forever.
+# The commands that write option bytes write the level that they read. So it is checked before each of them.
+proc option_bytes {} {
+  set word [mrw 0x40023C14]
+  set level [expr {($word >> 8) & 0xFF}]
+  if {$level != 0xAA} {
+    refuse [format "found the read protection 0x%02X, expected 0xAA, which is none" $level]
+  }
+  return $word
+}
+
+proc bytes_of {name} {
+  set file [open $name rb]
+  set bytes [read $file]
+  close $file
+  return $bytes
+}
+
+init
+reset halt
+set chip [expr {[mrw 0xE0042000] & 0xFFF}]
+if {$chip != 0x413} {
+  refuse [format "found a chip with the device id 0x%03X, expected 0x413, an STM32F405" $chip]
+}
+option_bytes
+
+)";
+
+constexpr std::string_view script_opens_sector_0 = R"(  # Bit 16, nWRP of sector 0, is 0: it is protected.
+  if {!([option_bytes] & 0x10000)} {
+    flash protect 0 0 0 off
+    reset halt
+  }
+)";
+
+constexpr std::string_view script_end = R"(
+# Bits 3:2, BOR_LEV, become 0: brown-out level 3. The other user options stay.
+if {[option_bytes] & 0x0C} {
+  stm32f2x options_write 0 [expr {[option_bytes] & 0xF0}]
+}
+if {[option_bytes] & 0x10000} {
+  flash protect 0 0 0 on
+}
+reset halt
+set word [option_bytes]
+if {$word & 0x1000C} {
+  refuse [format "found the option bytes 0x%08X, expected bits 16, 3 and 2 to be 0: the chip did not take them" $word]
+}
+reset run
+shutdown
+)";
+
+void write_sectors(std::ostream& out, const char* indent, const char* file, const FlashPart& part) {
+  const std::string address = address_word(part);
+  out << indent << "flash erase_address " << address << ' ' << part.size << '\n';
+  // Without its option `erase`, which programs the rest of the sector with 0xFF.
+  out << indent << "flash write_image " << file << ' ' << address << " bin\n";
+  out << indent << "verify_image " << file << ' ' << address << " bin\n";
+}
+
+}  // namespace
+
+std::uint32_t settings_file_size(const BarePlan& plan, std::uint32_t record_size) {
+  return plan.probe == BareProbe::dfu ? plan.settings.size : record_size;
+}
+
+std::vector<BareStep> bare_steps(const BarePlan& plan) {
+  return plan.probe == BareProbe::stlink ? openocd_steps() : RomSteps(plan).make();
+}
+
+std::string bare_script(const BarePlan& plan) {
+  std::ostringstream script;
+  script << script_start;
+  if (plan.settings_size > 0) {
+    write_sectors(script, "", bare_file::settings, plan.settings);
+  }
+  write_sectors(script, "", bare_file::image, plan.image);
+  script << "\ndump_image " << bare_file::present << ' ' << address_word(plan.bootloader) << ' ' << plan.bootloader_size
+         << "\nif {[bytes_of " << bare_file::present << "] ne [bytes_of " << bare_file::bootloader << "]} {\n"
+         << script_opens_sector_0;
+  write_sectors(script, "  ", bare_file::bootloader, plan.bootloader);
+  script << "}\n" << script_end;
+  return script.str();
+}
+
+std::string shell_text(const Words& command) {
+  const auto is_plain = [](char character) {
+    return (character >= 'a' && character <= 'z') || (character >= 'A' && character <= 'Z') ||
+           (character >= '0' && character <= '9') ||
+           std::string_view("_-+./:,=@%").find(character) != std::string::npos;
+  };
+  std::string text;
+  for (const std::string& word : command) {
+    text += text.empty() ? "" : " ";
+    if (!word.empty() && std::ranges::all_of(word, is_plain)) {
+      text += word;
+      continue;
+    }
+    text += '\'';
+    for (const char character : word) {
+      if (character == '\'') {
+        text += "'\\'";  // ends the quotes, and is one; the next character begins them again
+      }
+      text += character;
+    }
+    text += '\'';
+  }
+  return text;
+}
+
+}  // namespace proleg::host

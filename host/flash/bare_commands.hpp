@@ -1,0 +1,78 @@
+#pragma once
+
+// What puts a bootloader and a first image on an empty STM32F405: the command lines of openocd (ST-LINK, SWD), of
+// dfu-util (the chip's ROM bootloader over USB, AN3156) and of stm32flash (the same over a UART, AN3155). Only text, no
+// input or output.
+//
+// The order is: board record, image, bootloader, option bytes. The chip starts from sector 0, so that is written when
+// all that it starts is there, and it is protected when it is right. Each step writes the same bytes again at a second
+// try: after an interruption at any point the whole can be repeated. Only the sectors that are written are erased: a
+// chip that had a bootloader before keeps its settings and slot B.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace proleg::host {
+
+/// How the computer reaches the chip.
+enum class BareProbe : std::uint8_t {
+  stlink,  ///< openocd
+  dfu,     ///< dfu-util; BOOT0 is high
+  uart,    ///< stm32flash; BOOT0 is high
+};
+
+/// A part of the flash that is erased as a whole.
+struct FlashPart {
+  std::uint32_t address = 0;
+  std::uint32_t size = 0;  ///< bytes
+};
+
+/// Names of files in the folder in which the commands run.
+namespace bare_file {
+inline constexpr const char* bootloader = "bootloader.bin";
+inline constexpr const char* image = "image.pimg";
+inline constexpr const char* settings = "settings.bin";  ///< settings_file_size() bytes, 0xFF behind the record
+inline constexpr const char* present = "present.bin";    ///< what the chip has where the bootloader goes
+inline constexpr const char* script = "bare.tcl";
+}  // namespace bare_file
+
+struct BarePlan {
+  BareProbe probe = BareProbe::stlink;
+  std::string port;                   ///< the serial line; only for `uart`
+  FlashPart bootloader;               ///< sector 0
+  FlashPart settings;                 ///< the sectors of board records
+  FlashPart image;                    ///< the sector of slot A that the bootloader uses
+  std::uint32_t bootloader_size = 0;  ///< bytes of the file; a multiple of 4
+  std::uint32_t image_size = 0;       ///< bytes of the file, header included; a multiple of 4
+  std::uint32_t settings_size = 0;    ///< bytes of the file with the board record; 0: none is written
+};
+
+struct BareStep {
+  std::string what;                      ///< for a person: "write the image"
+  std::vector<std::string> command;      ///< the program and its arguments; no shell takes part
+  std::string result;                    ///< a file that the command writes; empty: none
+  std::string expected;                  ///< a file that the result must equal; empty: the result decides (see below)
+  bool is_for_other_bootloader = false;  ///< only if `present` differs from `bootloader`
+};
+
+/// Bytes of the file with a board record of record_size bytes. dfu-util erases the sectors that it writes to, and all
+/// that have records must be erased: what stays in one of them could be newer. The others erase all by a command.
+[[nodiscard]] std::uint32_t settings_file_size(const BarePlan& plan, std::uint32_t record_size);
+
+/// The steps in their order. With openocd there is one, which runs bare_script().
+[[nodiscard]] std::vector<BareStep> bare_steps(const BarePlan& plan);
+
+/// The script for openocd, in Tcl. It writes option bytes, too: brown-out level 3 and the write protection of sector 0,
+/// each only if the chip does not have it.
+[[nodiscard]] std::string bare_script(const BarePlan& plan);
+
+/// Whether the steps set the option bytes. The ROM bootloader takes them, too, but as 16 bytes with the read protection
+/// among them, and RM0090 and the programs that write them do not agree on their order. A wrong byte locks the chip,
+/// with 0xCC forever, so dfu-util and stm32flash do not write them.
+[[nodiscard]] constexpr bool sets_option_bytes(BareProbe probe) { return probe == BareProbe::stlink; }
+
+/// A command as a person would type it into a shell.
+[[nodiscard]] std::string shell_text(const std::vector<std::string>& command);
+
+}  // namespace proleg::host

@@ -1,0 +1,257 @@
+#include "host/flash/robot_update.hpp"
+
+#include <algorithm>
+
+namespace proleg::host {
+namespace {
+
+namespace flag = broadcast::module_flag;
+using broadcast::ImageSender;
+using broadcast::ReceiverState;
+
+broadcast::SenderOptions sender_options(const UpdateOptions& options) {
+  broadcast::SenderOptions sender;
+  sender.session = options.session;
+  sender.install_timeout_us = options.install_timeout_us;
+  return sender;
+}
+
+}  // namespace
+
+std::string describe(UpdateOutcome outcome, std::uint8_t detail) {
+  switch (outcome) {
+    case UpdateOutcome::pending:
+      return "not done yet";
+    case UpdateOutcome::runs:
+      return "runs the image";
+    case UpdateOutcome::vanished:
+      return "answers no more";
+    case UpdateOutcome::belongs_to_other:
+      return "another host flashes it";
+    case UpdateOutcome::refused:
+      return "has refused the image: " +
+             (detail == broadcast::refused_busy   ? "its servo has power, or it is Operational"
+              : detail == broadcast::refused_size ? "it has no room for so many bytes"
+                                                  : std::string(image::describe(static_cast<image::Error>(detail))));
+    case UpdateOutcome::flash_failed:
+      return "its flash has failed; at its next start it restores the program before";
+    case UpdateOutcome::old_program_runs:
+      return "runs the program before: the new one was not installed, or did not start well";
+    case UpdateOutcome::not_confirmed:
+      return "runs the image on trial, and was not confirmed in time";
+    case UpdateOutcome::starts_badly:
+      return "its bootloader answers, the program does not start";
+  }
+  return "unknown";
+}
+
+RobotUpdate::RobotUpdate(CanPort& port, std::span<const std::uint8_t> image, const std::vector<std::uint32_t>& serials,
+                         const UpdateOptions& options)
+    : port_(port),
+      image_(image),
+      header_(image::decode(image).header),
+      options_(options),
+      modules_([&serials] {
+        std::vector<UpdatedModule> modules(serials.size());
+        for (std::size_t i = 0; i < serials.size(); ++i) {
+          modules[i].serial = serials[i];
+        }
+        return modules;
+      }()),
+      targets_([&serials] {
+        std::vector<broadcast::Target> targets;
+        targets.reserve(serials.size());
+        for (const std::uint32_t serial : serials) {
+          targets.push_back({serial, {}, false});
+        }
+        return targets;
+      }()),
+      sender_(*this, image, targets_, sender_options(options)) {}
+
+void RobotUpdate::start(Microseconds now) {
+  now_ = now;
+  started_at_ = now;
+  sender_.start(now);
+  follow_sender(now);
+}
+
+double RobotUpdate::progress() const {
+  const double all = static_cast<double>(broadcast::blocks_of(image_.size())) * broadcast::block_symbols;
+  return step_ == Step::transfer ? std::min(1.0, sender_.symbols_sent() / std::max(all, 1.0)) : 1.0;
+}
+
+bool RobotUpdate::send(const CanFrame& frame) {
+  if (unconfirmed_ >= max_unconfirmed || !port_.send(frame)) {
+    return false;
+  }
+  ++unconfirmed_;
+  confirmation_ends_ = now_ + longest_confirmation_us;
+  return true;
+}
+
+void RobotUpdate::transmitted(Microseconds now, const CanFrame& frame) {
+  now_ = now;
+  if (query_) {
+    query_->transmitted(now, frame);
+  }
+  if (frame.identifier != broadcast::host_identifier || step_ > Step::installation) {
+    return;
+  }
+  unconfirmed_ -= unconfirmed_ == 0 ? 0U : 1U;
+  confirmation_ends_ = unconfirmed_ == 0 ? never : now + longest_confirmation_us;
+  sender_.transmitted(now);
+  follow_sender(now);
+}
+
+void RobotUpdate::receive(Microseconds now, const CanFrame& frame) {
+  now_ = now;
+  if (query_) {
+    query_->receive(now, frame);
+    take_answers(now);
+  } else if (step_ <= Step::installation) {
+    sender_.receive(now, frame);
+    follow_sender(now);
+  }
+}
+
+void RobotUpdate::poll(Microseconds now) {
+  now_ = now;
+  if (step_ <= Step::installation) {
+    if (now >= confirmation_ends_) {
+      unconfirmed_ = 0;
+      confirmation_ends_ = never;
+      sender_.transmitted(now);
+    }
+    sender_.poll(now);
+    follow_sender(now);
+  } else if (query_) {
+    query_->poll(now);
+    take_answers(now);
+  } else if (now >= look_at_) {
+    look(now);
+  }
+}
+
+Microseconds RobotUpdate::next_deadline() const {
+  switch (step_) {
+    case Step::done:
+      return never;
+    case Step::restart:
+      return query_ ? query_->next_deadline() : look_at_;
+    default:
+      return std::min(sender_.next_deadline(), confirmation_ends_);
+  }
+}
+
+void RobotUpdate::follow_sender(Microseconds now) {
+  if (step_ == Step::transfer && sender_.state() == ImageSender::State::complete) {
+    enter(now, Step::installation);
+    sender_.install(now);
+  }
+  if (sender_.state() == ImageSender::State::done) {
+    if (step_ == Step::transfer) {
+      enter(now, Step::installation);
+    }
+    take_results();
+    enter(now, Step::restart);
+  }
+}
+
+void RobotUpdate::take_results() {
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    const broadcast::StatusAnswer& status = targets_[i].status;
+    UpdatedModule& module = modules_[i];
+    module.detail = status.error;
+    if (status.session != 0 && status.session != options_.session) {
+      module.outcome = UpdateOutcome::belongs_to_other;
+    } else if (status.state == ReceiverState::refused) {
+      module.outcome = UpdateOutcome::refused;
+    } else if (status.state == ReceiverState::failed) {
+      module.outcome = UpdateOutcome::flash_failed;
+    }
+    // What answers no more may be restarting: that is seen below.
+  }
+}
+
+void RobotUpdate::enter(Microseconds now, Step step) {
+  constexpr Microseconds restart_time_us = 100'000;
+  ended_at_.at(static_cast<std::size_t>(step_)) = now - started_at_;
+  step_ = step;
+  if (step == Step::restart) {
+    send_leave(now);
+    look_at_ = now + restart_time_us;
+    restart_ends_ = now + options_.restart_timeout_us;
+    if (!any_pending()) {
+      enter(now, Step::done);
+    }
+  }
+}
+
+/// It has no answer, so that it may be lost.
+void RobotUpdate::send_leave(Microseconds /*now*/) {
+  for (unsigned i = 0; i < leave_repetitions; ++i) {
+    static_cast<void>(port_.send(broadcast::leave_frame(options_.session)));
+  }
+}
+
+bool RobotUpdate::any_pending() const {
+  return std::ranges::any_of(modules_,
+                             [](const UpdatedModule& module) { return module.outcome == UpdateOutcome::pending; });
+}
+
+void RobotUpdate::look(Microseconds now) {
+  std::vector<std::uint32_t> serials;
+  for (const UpdatedModule& module : modules_) {
+    if (module.outcome == UpdateOutcome::pending) {
+      serials.push_back(module.serial);
+    }
+  }
+  query_ = std::make_unique<ModuleQuery>(port_, ModuleQueryOptions{.attempts = 3});
+  query_->start(now, serials);
+}
+
+void RobotUpdate::take_answers(Microseconds now) {
+  if (!query_->is_done()) {
+    return;
+  }
+  const bool is_last = now >= restart_ends_;
+  bool is_still_in_bootloader = false;
+  for (const ModuleProgram& program : query_->modules()) {
+    for (UpdatedModule& module : modules_) {
+      if (module.serial == program.serial && module.outcome == UpdateOutcome::pending) {
+        take_answer(module, program, is_last);
+      }
+    }
+    is_still_in_bootloader = is_still_in_bootloader || (program.has_answered && !program.is(flag::runs_program));
+  }
+  query_.reset();
+  if (!any_pending()) {
+    enter(now, Step::done);
+    return;
+  }
+  constexpr Microseconds pause_us = 50'000;
+  look_at_ = now + pause_us;
+  if (is_still_in_bootloader) {
+    send_leave(now);
+  }
+}
+
+void RobotUpdate::take_answer(UpdatedModule& module, const ModuleProgram& program, bool is_last) {
+  if (program.has_answered) {
+    module.program = program;
+  }
+  const bool is_new = program.image && *program.image == header_;
+  const bool runs = program.has_answered && program.is(flag::runs_program);
+  if (runs && is_new && program.is(flag::is_confirmed)) {
+    module.outcome = UpdateOutcome::runs;
+  } else if (runs && program.image && !is_new && !options_.through_its_line) {
+    module.outcome = UpdateOutcome::old_program_runs;
+  } else if (is_last) {
+    module.outcome = !program.has_answered ? UpdateOutcome::vanished
+                     : !runs               ? UpdateOutcome::starts_badly
+                     : is_new              ? UpdateOutcome::not_confirmed
+                                           : UpdateOutcome::old_program_runs;
+  }
+}
+
+}  // namespace proleg::host

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace proleg::tools {
+
+class CommandLine;
+
+/// Options of `proleg flash --bare`. Flashing over the bus has an image, nodes and a dry run, too: flash.cpp declares
+/// the first three.
+struct BareOptions {
+  std::string image;                ///< a file
+  std::optional<std::string> node;  ///< of the board record that is written; without it none is
+  bool dry_run = false;             ///< only shows the commands
+  // add_bare_options() declares these.
+  std::optional<std::string> probe;
+  std::optional<std::string> port;
+  std::optional<std::string> bootloader;
+};
+
+/// Declares the options that only --bare has.
+void add_bare_options(CommandLine& command_line, BareOptions& options);
+
+/// proleg flash --bare: puts the bootloader and the first image on an empty chip, by a probe. Returns the exit
+/// status. Throws InputError, and std::runtime_error if the chip is not flashed.
+int run_flash_bare(const BareOptions& options);
+
+}  // namespace proleg::tools

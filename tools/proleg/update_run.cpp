@@ -1,0 +1,87 @@
+#include "tools/proleg/update_run.hpp"
+
+#include <stdexcept>
+
+#include "tools/proleg/flash_modules.hpp"
+#include "tools/proleg/flash_progress.hpp"
+#include "tools/proleg/interrupt.hpp"
+
+namespace proleg::tools {
+namespace {
+
+using host::RobotUpdate;
+
+std::string state_of(const RobotUpdate& update, const host::UpdatedModule& module) {
+  if (module.outcome != host::UpdateOutcome::pending) {
+    return describe(module.outcome, module.detail);
+  }
+  switch (update.step()) {
+    case RobotUpdate::Step::transfer:
+      return "receives the image";
+    case RobotUpdate::Step::installation:
+      return "installs it";
+    default:
+      return "restarts";
+  }
+}
+
+void follow(host::BusConnection& bus, const RobotUpdate& update, std::span<const host::FlashCandidate> modules,
+            const std::string& hint) {
+  FlashProgress progress;
+  constexpr Microseconds longest = 300'000'000;  // it ends by itself; this bounds one with a fault
+  constexpr Microseconds drawing_period = 50'000;
+  const Microseconds end = bus.now() + longest;
+  while (!update.is_done()) {
+    // The line of a gateway ends for a while: a lost connection is no reason to stop.
+    bus.run_until(bus.now() + drawing_period, [&update] { return update.is_done() || interrupted(); });
+    if (interrupted()) {
+      throw std::runtime_error("interrupted; a module that was installing goes on by itself, and starts its program" +
+                               hint);
+    }
+    if (bus.now() > end) {
+      throw std::runtime_error("no end after 5 minutes");
+    }
+    if (progress.is_due()) {
+      std::vector<FlashProgress::Bar> bars;
+      for (std::size_t i = 0; i < modules.size(); ++i) {
+        bars.push_back({name_of(modules[i]), update.progress(), state_of(update, update.modules()[i])});
+      }
+      progress.draw(bars);
+    }
+  }
+}
+
+}  // namespace
+
+std::uint8_t new_session(BusAccess& bus) {
+  constexpr Microseconds sessions = 0xFF;
+  return static_cast<std::uint8_t>(1 + bus.connection().now() % sessions);
+}
+
+UpdateRun run_update(BusAccess& bus, std::span<const std::uint8_t> image, std::span<const host::FlashCandidate> modules,
+                     bool through_its_line, const std::string& hint) {
+  std::vector<std::uint32_t> serials;
+  for (const host::FlashCandidate& module : modules) {
+    serials.push_back(module.program.serial);
+  }
+  host::UpdateOptions options;
+  options.session = new_session(bus);
+  options.through_its_line = through_its_line;
+  host::BusConnection& connection = bus.connection();
+  RobotUpdate update(connection, image, serials, options);
+  connection.attach(update);
+  update.start(connection.now());
+  try {
+    follow(connection, update, modules, hint);
+  } catch (...) {
+    connection.detach(update);
+    throw;
+  }
+  connection.detach(update);
+  const auto seconds = [&update](RobotUpdate::Step step) { return static_cast<double>(update.ended_at(step)) / 1e6; };
+  const double transfer = seconds(RobotUpdate::Step::transfer);
+  const double installation = seconds(RobotUpdate::Step::installation);
+  return {update.modules(), {transfer, installation - transfer, seconds(RobotUpdate::Step::restart) - installation}};
+}
+
+}  // namespace proleg::tools

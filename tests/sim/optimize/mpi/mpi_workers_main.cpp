@@ -136,9 +136,28 @@ void repeats_the_task_of_a_killed_worker() {
   expect(messages.size() == 4 && from_others == 3, "four messages, one of each rank");
 }
 
+/// Lets a stopped process run again at the end, also after a failed expectation: it must answer stop, too.
+class ContinuedAtTheEnd {
+ public:
+  explicit ContinuedAtTheEnd(std::filesystem::path pid_file) : pid_file_(std::move(pid_file)) {}
+  ~ContinuedAtTheEnd() {
+    pid_t stopped = 0;
+    if (std::ifstream(pid_file_) >> stopped) {
+      kill(stopped, SIGCONT);
+    }
+    std::error_code ignored;
+    std::filesystem::remove(pid_file_, ignored);
+  }
+  ContinuedAtTheEnd(const ContinuedAtTheEnd&) = delete;
+  ContinuedAtTheEnd& operator=(const ContinuedAtTheEnd&) = delete;
+
+ private:
+  std::filesystem::path pid_file_;
+};
+
 void continues_without_a_rank_that_stopped() {
   const Experiment experiment = noisy_experiment();
-  const TaskLimit limit{std::chrono::milliseconds(100), 0.0};
+  const TaskLimit limit{std::chrono::milliseconds(1000), 0.0};
   // Known to all ranks: mpirun is the parent of each.
   const std::filesystem::path pid_file =
       std::filesystem::temp_directory_path() / ("proleg-mpi-" + std::to_string(getppid()));
@@ -158,33 +177,34 @@ void continues_without_a_rank_that_stopped() {
     return;
   }
   MpiWorkers workers(experiment, build, slow, limit);
-  std::vector<std::string> messages;
+  const ContinuedAtTheEnd continued(pid_file);
+  bool lost_rank_2 = false;
+  std::uint32_t lost = 0;
   std::set<std::uint64_t> open;
   const auto receive = [&] {
     if (const auto done = workers.wait(std::chrono::milliseconds(20))) {
       expect(open.erase(done->ticket) == 1, "one result of each task");
     }
+    // A busy computer may have reason for other messages, of a worker that was too slow.
+    for (const std::string& message : workers.messages()) {
+      lost += message.find("has not answered") != std::string::npos ? 1U : 0U;
+      lost_rank_2 = lost_rank_2 || message.find("rank 2 has not answered") == 0;
+    }
   };
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-  for (std::uint64_t ticket = 0; messages.empty();) {
-    expect(std::chrono::steady_clock::now() < end, "a message within 30 s");
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(100);
+  for (std::uint64_t ticket = 0; !lost_rank_2;) {
+    expect(std::chrono::steady_clock::now() < end, "a message within 100 s");
     for (; workers.idle() > 0; ++ticket) {
       workers.start(ticket, {0, ticket, 0, {1, 1, 1}, {}});
       open.insert(ticket);
     }
     receive();
-    messages = workers.messages();
   }
-  expect(messages.size() == 1 && messages[0].find("rank 2 has not answered") == 0, messages[0]);
-  expect(workers.count() == 3, "three workers");
   while (!open.empty()) {
-    expect(std::chrono::steady_clock::now() < end, "all results within 30 s");
+    expect(std::chrono::steady_clock::now() < end, "all results within 100 s");
     receive();
   }
-  pid_t stopped = 0;
-  std::ifstream(pid_file) >> stopped;
-  std::filesystem::remove(pid_file);
-  kill(stopped, SIGCONT);  // it must answer stop, too
+  expect(workers.count() == 4 - lost, "the workers that were not lost");
 }
 
 void rejects_another_experiment() {

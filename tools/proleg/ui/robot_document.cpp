@@ -128,7 +128,7 @@ json internal_value_json(const sim::Scenario& scenario, unsigned slot, const Int
 
 }  // namespace
 
-std::string robot_document(const sim::Scenario& scenario, std::string_view kind) {
+json robot_document(const sim::Scenario& scenario, std::string_view kind) {
   json terrain = json::array();
   for (const sim::StaticObject& object : scenario.environment.objects) {
     terrain.push_back(
@@ -141,17 +141,16 @@ std::string robot_document(const sim::Scenario& scenario, std::string_view kind)
                      {"help", scenario.kernel.slots[slot].algorithm->declaration().help},
                      {"joints", joints_of(scenario.kernel.slots[slot].group)}});
   }
-  const json document{{"name", scenario.robot.name},
-                      {"file", std::filesystem::path(scenario.path).filename().string()},
-                      {"kind", kind},
-                      {"joints", joints_json(scenario)},
-                      {"links", links_json(scenario.robot)},
-                      {"terrain", std::move(terrain)},
-                      {"slots", std::move(slots)}};
-  return document.dump(-1, ' ', false, json::error_handler_t::replace);
+  return {{"name", scenario.robot.name},
+          {"file", std::filesystem::path(scenario.path).filename().string()},
+          {"kind", kind},
+          {"joints", joints_json(scenario)},
+          {"links", links_json(scenario.robot)},
+          {"terrain", std::move(terrain)},
+          {"slots", std::move(slots)}};
 }
 
-std::string parameters_document(const sim::Scenario& scenario, const ParameterTable& table) {
+json parameters_document(const sim::Scenario& scenario, const ParameterTable& table) {
   json document = json::array();
   for (const unsigned slot : sim::used_slots(scenario)) {
     const Declaration& declaration = scenario.kernel.slots[slot].algorithm->declaration();
@@ -162,7 +161,7 @@ std::string parameters_document(const sim::Scenario& scenario, const ParameterTa
       document.push_back(internal_value_json(scenario, slot, value));
     }
   }
-  return document.dump();
+  return document;
 }
 
 }  // namespace proleg::tools

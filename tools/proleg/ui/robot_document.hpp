@@ -2,8 +2,7 @@
 
 // Documents of the page (docs/page-interface.md) that describe a robot and its parameters.
 
-#include <cstdint>
-#include <string>
+#include <nlohmann/json_fwd.hpp>
 #include <string_view>
 
 #include "sim/scenario/scenario.hpp"
@@ -11,10 +10,10 @@
 
 namespace proleg::tools {
 
-/// The document `robot`, as JSON. kind: "simulation", "bus" or "recording".
-[[nodiscard]] std::string robot_document(const sim::Scenario& scenario, std::string_view kind);
+/// The document `robot`. kind: "simulation", "bus" or "recording".
+[[nodiscard]] nlohmann::json robot_document(const sim::Scenario& scenario, std::string_view kind);
 
-/// The document `parameters`, as JSON.
-[[nodiscard]] std::string parameters_document(const sim::Scenario& scenario, const ParameterTable& table);
+/// The document `parameters`.
+[[nodiscard]] nlohmann::json parameters_document(const sim::Scenario& scenario, const ParameterTable& table);
 
 }  // namespace proleg::tools

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,13 +18,13 @@ class SessionOutput {
  public:
   virtual ~SessionOutput() = default;
 
-  /// A document has a new value, which is JSON.
-  virtual void publish(const std::string& document, std::string value) = 0;
+  /// A document has a new value.
+  virtual void publish(const std::string& document, const nlohmann::json& value) = 0;
   virtual void set_signals(const std::vector<Signal>& signals, std::uint32_t tick_us) = 0;
   /// The values of all signals at a tick. Ticks of a run ascend.
   virtual void add_row(std::uint16_t run, std::uint32_t tick, std::span<const std::int32_t> row) = 0;
-  /// A request was carried out. value: JSON.
-  virtual void done(std::uint64_t request, std::string value) = 0;
+  /// A request was carried out.
+  virtual void done(std::uint64_t request, const nlohmann::json& value) = 0;
   /// A request had no effect.
   virtual void refused(std::uint64_t request, const std::string& why) = 0;
   /// Joints that have confirmed a stop, of all joints, and the time since the request.

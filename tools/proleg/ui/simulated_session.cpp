@@ -56,6 +56,12 @@ json text_or_null(const std::string& text) { return text.empty() ? json() : json
 
 }  // namespace
 
+struct SimulatedSession::Operation {
+  std::uint64_t request;
+  std::string name;
+  json arguments;
+};
+
 SimulatedSession::SimulatedSession(const sim::Scenario& scenario, const sim::Losses* losses,
                                    SimulatedSessionOptions options, SessionOutput& output)
     : file_(scenario),
@@ -81,7 +87,7 @@ SimulatedSession::~SimulatedSession() {
   thread_.join();
 }
 
-void SimulatedSession::operate(std::uint64_t request, const std::string& name, const std::string& arguments) {
+void SimulatedSession::operate(std::uint64_t request, const std::string& name, const json& arguments) {
   const std::lock_guard lock(mutex_);
   operations_.push_back({request, name, arguments});
   has_requests_ = true;
@@ -180,7 +186,7 @@ void SimulatedSession::take_operations() {
   }
 }
 
-std::string SimulatedSession::carry_out(const Operation& operation) {
+json SimulatedSession::carry_out(const Operation& operation) {
   static const std::map<std::string_view, Handler> handlers{
       {"run", &SimulatedSession::go_on},         {"pause", &SimulatedSession::pause},
       {"step", &SimulatedSession::step},         {"restart", &SimulatedSession::restart},
@@ -196,7 +202,7 @@ std::string SimulatedSession::carry_out(const Operation& operation) {
     }
     throw InputError("operation", 0, in_quotes(shortened(operation.name)), "one of " + listed(names));
   }
-  return (this->*handler->second)(json::parse(operation.arguments)).dump();
+  return (this->*handler->second)(operation.arguments);
 }
 
 void SimulatedSession::require_sound() const {
@@ -388,7 +394,7 @@ void SimulatedSession::publish_session(Clock::time_point now) {
                       {"set", std::string(1, live_.set_name())},
                       {"failure", text_or_null(failure_)},
                       {"measures", measures_json(live_)}};
-  output_.publish("session", document.dump(-1, ' ', false, json::error_handler_t::replace));
+  output_.publish("session", document);
   is_session_new_ = false;
   publish_at_ = now + publish_period;
 }

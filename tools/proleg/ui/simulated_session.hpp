@@ -41,8 +41,8 @@ class SimulatedSession {
   SimulatedSession(const SimulatedSession&) = delete;
   SimulatedSession& operator=(const SimulatedSession&) = delete;
 
-  /// An operation of docs/page-interface.md; arguments: JSON. From any thread; the answer goes to the output.
-  void operate(std::uint64_t request, const std::string& name, const std::string& arguments);
+  /// An operation of docs/page-interface.md. arguments: an object. From any thread; the answer goes to the output.
+  void operate(std::uint64_t request, const std::string& name, const nlohmann::json& arguments);
   /// The simulation stands still after the tick that is computed now. From any thread.
   void stop(std::uint64_t request, const std::string& by);
   /// Operations that anybody may use.
@@ -52,11 +52,7 @@ class SimulatedSession {
   using Clock = std::chrono::steady_clock;
   enum class State : std::uint8_t { paused, running, stopped, failed };
 
-  struct Operation {
-    std::uint64_t request;
-    std::string name;
-    std::string arguments;
-  };
+  struct Operation;
   struct Stop {
     std::uint64_t request;
     std::string by;
@@ -69,8 +65,8 @@ class SimulatedSession {
   void wait();
   void take_stops();
   void take_operations();
-  /// Returns the value of the answer, JSON.
-  [[nodiscard]] std::string carry_out(const Operation& operation);
+  /// Returns the value of the answer.
+  [[nodiscard]] nlohmann::json carry_out(const Operation& operation);
   void tick();
   void begin_recording(const std::string& file);
   [[nodiscard]] bool wants_stop();

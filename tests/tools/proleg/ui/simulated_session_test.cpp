@@ -41,8 +41,8 @@ class Viewers final : public SessionOutput {
   }
 
  public:
-  void publish(const std::string& document, std::string value) override {
-    change([&] { documents_[document] = std::move(value); });
+  void publish(const std::string& document, const json& value) override {
+    change([&] { documents_[document] = value; });
   }
   void set_signals(const std::vector<Signal>& signals, std::uint32_t /*tick_us*/) override {
     for (const Signal& signal : signals) {
@@ -57,8 +57,8 @@ class Viewers final : public SessionOutput {
       ++rows_;
     });
   }
-  void done(std::uint64_t request, std::string value) override {
-    change([&] { answers_[request] = {true, std::move(value)}; });
+  void done(std::uint64_t request, const json& value) override {
+    change([&] { answers_[request] = {true, value.dump()}; });
   }
   void refused(std::uint64_t request, const std::string& why) override {
     change([&] { answers_[request] = {false, why}; });
@@ -76,13 +76,13 @@ class Viewers final : public SessionOutput {
   /// The document `session`, when it is as it is waited for.
   json session(const std::function<bool(const json&)>& is_so) {
     json document;
-    return when([&] { return is_so(document = json::parse(documents_["session"])); }, [&] { return document; });
+    return when([&] { return is_so(document = documents_["session"]); }, [&] { return document; });
   }
   json state(const std::string& name) {
     return session([&](const json& document) { return document["state"] == name; });
   }
   json document(const std::string& name) {
-    return when([] { return true; }, [&] { return json::parse(documents_[name]); });
+    return when([] { return true; }, [&] { return documents_[name]; });
   }
   void wait_for_tick(std::uint32_t tick) {
     when([&] { return rows_ > 0 && last_tick_ >= tick; }, [] { return 0; });
@@ -97,7 +97,7 @@ class Viewers final : public SessionOutput {
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::map<std::string, std::string> documents_;
+  std::map<std::string, json> documents_;
   std::map<std::uint64_t, Answer> answers_;
   std::string notices_;
   std::size_t row_size_ = 0;
@@ -116,7 +116,7 @@ class SimulatedSessionTest : public ::testing::Test {
         viewers_);
   }
   Viewers::Answer ask(const std::string& name, const json& arguments = json::object()) {
-    session_->operate(++request_, name, arguments.dump());
+    session_->operate(++request_, name, arguments);
     return viewers_.answer(request_);
   }
   Viewers::Answer stop() {
@@ -163,7 +163,7 @@ TEST_F(SimulatedSessionTest, StopHoldsFromEveryState) {
 TEST_F(SimulatedSessionTest, WhatWasAskedForBeforeAStopHasNoEffectAfterIt) {
   open(true);
   for (int round = 0; round < 50; ++round) {
-    session_->operate(++request_, "run", "{}");
+    session_->operate(++request_, "run", json::object());
     const std::uint64_t run = request_;
     stop();
     viewers_.answer(run);

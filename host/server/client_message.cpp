@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int max_depth = 16;
+constexpr int max_levels = 16;
 constexpr std::size_t max_name_characters = 60;
 constexpr std::size_t max_signals = 64;
 constexpr std::uint64_t max_number = (std::uint64_t{1} << 53U) - 1;
@@ -122,8 +122,9 @@ Subscribe subscribe(const json& message) {
 
 json parse(std::string_view text) {
   try {
-    return json::parse(text, [](int depth, json::parse_event_t, const json&) {
-      if (depth > max_depth) {
+    return json::parse(text, [](int levels_around, json::parse_event_t event, const json&) {
+      const bool begins = event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
+      if (begins && levels_around >= max_levels) {
         reject("more than 16 levels", "at most 16");
       }
       return true;

@@ -4,6 +4,7 @@
 #include <array>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 #include <utility>
 
 #include "shared/computer/errors/file_error.hpp"
@@ -52,7 +53,8 @@ std::string bytes_of(const fs::path& path) {
 }  // namespace
 
 PageFiles::PageFiles(const fs::path& folder) {
-  if (!fs::is_regular_file(folder / "index.html")) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(folder / "index.html", ignored)) {
     throw InputError(folder.string(), 0, "no file index.html", "the folder of the page");
   }
   std::uintmax_t total = 0;

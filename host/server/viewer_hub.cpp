@@ -140,8 +140,8 @@ void ViewerHub::handle(ServerTime now, Viewer& viewer, const Beat& beat) {
 void ViewerHub::handle(ServerTime /*now*/, Viewer& viewer, const Subscribe& subscribe) {
   Subscription subscription{viewer.next_subscription_number(), generation_, {}};
   viewer.set_subscription(std::nullopt, state_.history);
-  if (subscribe.hash && *subscribe.hash != layout_.hash()) {
-    return;  // the document with another layout is on its way
+  if (generation_ == 0 || (subscribe.hash && *subscribe.hash != layout_.hash())) {
+    return;  // the document with the layout is on its way
   }
   for (const std::string& name : subscribe.signals) {
     const SignalColumns* const columns = layout_.find(name);

@@ -298,6 +298,7 @@ void WebServer::Service::ViewerConnection::open(Request request) {
   timeouts.keep_alive_pings = true;
   socket_.set_option(timeouts);
   socket_.read_message_max(max_message_bytes);
+  socket_.auto_fragment(false);  // a message is in memory anyway: one frame
   socket_.async_accept(request_, [self = shared_from_this()](const error_code& error) {
     if (error) {
       return;

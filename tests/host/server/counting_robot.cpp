@@ -1,11 +1,10 @@
-// host_counting_robot FOLDER: a web server whose robot is a counter, for the tests in this folder. It prints
-// one line, "PORT TOKEN", and ends when its standard input does. The robot counts ticks in a thread of its own, 1 ms
-// each
-// ("rate" changes that), and has five joints.
+// host_counting_robot FOLDER: a web server whose robot is a counter, for the tests in this folder. It prints one line,
+// "PORT TOKEN", and ends when its standard input does. The robot has five joints and counts ticks in a thread of its
+// own, 1 ms each ("rate" changes that).
 //
 //   free operations: "value" (the number that "add" changes), "rss" (resident memory of the process in KiB), "wait"
-//   (answered by "finish"), "large" (a document of so many bytes, so many times)
-//   others: "add" {"by": n}, "finish", "rate" {"ticks_per_second": n}, "restart", "joints" {"count": n}
+//   (answered by "finish"), "finish", "large" (a document of so many bytes, so many times)
+//   others: "add" {"by": n}, "run", "rate" {"ticks_per_second": n}, "restart", "joints" {"count": n}
 
 #include <algorithm>
 #include <atomic>
@@ -43,10 +42,7 @@ class CountingRobot final : public RobotSession {
  public:
   void operate(const OperationRequest& request) override { put({request, {}, false}); }
   void stop(const StopRequest& request) override { put({{}, request, true}); }
-  void holder_changed(bool has_holder, bool is_away) override {
-    const std::lock_guard lock(mutex_);
-    holder_ = {{"has_holder", has_holder}, {"away", is_away}};
-  }
+  void holder_changed(bool /*has_holder*/, bool /*is_away*/) override {}  // a counter goes on alone
 
   void run(WebServer& server) {
     set_joints(server, 5);
@@ -98,12 +94,7 @@ class CountingRobot final : public RobotSession {
   }
 
   void publish(WebServer& server) {
-    json holder;
-    {
-      const std::lock_guard lock(mutex_);
-      holder = holder_;
-    }
-    server.publish("session", {{"state", is_running_ ? "running" : "stopped"}, {"count", count_}, {"holder", holder}});
+    server.publish("session", {{"state", is_running_ ? "running" : "stopped"}, {"count", count_}});
   }
 
   void perform(WebServer& server, const Task& task) {
@@ -160,7 +151,6 @@ class CountingRobot final : public RobotSession {
   std::mutex mutex_;
   std::condition_variable condition_;
   std::deque<Task> tasks_;
-  json holder_ = {{"has_holder", false}, {"away", false}};
   std::atomic<bool> has_ended_ = false;
 
   int count_ = 0;
@@ -182,7 +172,7 @@ int main(int argc, char** argv) {
   boost::asio::io_context context;
   CountingRobot robot;
   const AccessToken token = AccessToken::make();
-  ServerOptions options{token, PageFiles(argv[1]), "counting robot 1", {"value", "rss", "wait", "large"}};
+  ServerOptions options{token, PageFiles(argv[1]), "counting robot 1", {"value", "rss", "wait", "finish", "large"}};
   WebServer server(context, std::move(options), robot);
   std::cout << server.port() << ' ' << token.text() << std::endl;
 

@@ -125,8 +125,14 @@ class Viewer:
         self.data += part
 
     def take(self, size):
-        while len(self.data) < size:
+        parts = [self.data]
+        missing = size - len(self.data)
+        while missing > 0:
+            self.data = b""
             self.fill()
+            parts.append(self.data)
+            missing -= len(self.data)
+        self.data = b"".join(parts)
         part, self.data = self.data[:size], self.data[size:]
         return part
 
@@ -149,14 +155,12 @@ class Viewer:
         if opcode == CLOSE:
             code = struct.unpack(">H", payload[:2])[0] if payload else None
             raise Closed(code, payload[2:].decode())
-        return opcode, payload, bool(first & 0x80)
+        assert first & 0x80, "a message is one frame"
+        return opcode, payload
 
     def next(self):
         """The next message, which is also sorted into documents, results, and so on."""
-        opcode, payload, final = self.next_frame()
-        while not final:
-            _, part, final = self.next_frame()
-            payload += part
+        opcode, payload = self.next_frame()
         if opcode == PING:
             self.send_bytes(frame(PONG, payload))
             return self.next()

@@ -1,0 +1,137 @@
+#include "host/server/request_policy.hpp"
+
+#include <gtest/gtest.h>
+
+namespace proleg::host {
+namespace {
+
+constexpr std::uint16_t port = 8123;
+
+class RequestPolicy : public testing::Test {
+ protected:
+  RequestFields get(std::string_view target) const { return {"GET", target, {"localhost:8123"}, {}, {}, false}; }
+  RequestFields post() const { return {"POST", "/stop", {"localhost:8123"}, {}, {bearer}, false}; }
+  RequestAction action(const RequestFields& request) const { return decide_request(request, port, token).action; }
+  /// Status of a refusal; 0 if there is none.
+  unsigned refusal(const RequestFields& request) const { return decide_request(request, port, token).status; }
+
+  const AccessToken token = AccessToken::make();
+  const std::string bearer = "Bearer " + token.text();
+};
+
+TEST_F(RequestPolicy, FilesNeedNoToken) {
+  EXPECT_EQ(action(get("/")), RequestAction::serve_file);
+  EXPECT_EQ(action(get("/app.js?1")), RequestAction::serve_file);
+  RequestFields head = get("/");
+  head.method = "HEAD";
+  EXPECT_EQ(action(head), RequestAction::serve_file);
+}
+
+TEST_F(RequestPolicy, AHostIsOneOfThreeNamesWithThePort) {
+  RequestFields request = get("/");
+  for (const std::string_view host : {"127.0.0.1:8123", "localhost:8123", "[::1]:8123"}) {
+    request.hosts = {host};
+    EXPECT_EQ(action(request), RequestAction::serve_file) << host;
+  }
+  for (const std::string_view host :
+       {"", "localhost", "localhost:812", "localhost:81230", "localhost:08123", "LOCALHOST:8123", "localhost.:8123",
+        "127.0.0.1.evil.example:8123", "evil.example:8123", "localhost:8123 ", "::1:8123", "127.1:8123"}) {
+    request.hosts = {host};
+    EXPECT_EQ(refusal(request), 421U) << host;
+  }
+  request.hosts = {};
+  EXPECT_EQ(refusal(request), 421U);
+  request.hosts = {"localhost:8123", "localhost:8123"};
+  EXPECT_EQ(refusal(request), 421U);
+}
+
+TEST_F(RequestPolicy, AnOriginIsThatOfTheHost) {
+  for (RequestFields request : {get("/"), post()}) {
+    request.origins = {"http://localhost:8123"};
+    EXPECT_EQ(refusal(request), 0U);
+    for (const std::string_view origin :
+         {"http://127.0.0.1:8123", "https://localhost:8123", "null", "", "http://localhost:8123.evil.example",
+          "http://localhost:8123/", "http://localhost", "HTTP://localhost:8123"}) {
+      request.origins = {origin};
+      EXPECT_EQ(refusal(request), 403U) << origin;
+    }
+    request.origins = {"http://localhost:8123", "http://evil.example"};
+    EXPECT_EQ(refusal(request), 403U);
+  }
+}
+
+TEST_F(RequestPolicy, OnlyStopIsPosted) {
+  EXPECT_EQ(action(post()), RequestAction::stop);
+  RequestFields request = post();
+  request.target = "/";
+  EXPECT_EQ(refusal(request), 405U);
+  EXPECT_EQ(refusal(get("/stop")), 405U);
+  request = get("/");
+  request.method = "OPTIONS";
+  EXPECT_EQ(refusal(request), 405U);
+}
+
+TEST_F(RequestPolicy, StopNeedsTheTokenOnce) {
+  RequestFields request = post();
+  for (const std::string& value :
+       {std::string(), std::string("Bearer"), "Bearer " + token.text() + " ", "bearer " + token.text(), token.text()}) {
+    request.authorizations = {value};
+    EXPECT_EQ(refusal(request), 401U) << value;
+  }
+  request.authorizations = {};
+  EXPECT_EQ(refusal(request), 401U);
+  request.authorizations = {bearer, bearer};
+  EXPECT_EQ(refusal(request), 401U);
+}
+
+TEST_F(RequestPolicy, TheSocketIsForUpgrades) {
+  RequestFields request = get("/socket");
+  EXPECT_EQ(refusal(request), 426U);
+  request.is_upgrade = true;
+  EXPECT_EQ(action(request), RequestAction::open_socket);
+  request.method = "HEAD";
+  EXPECT_EQ(refusal(request), 426U);
+}
+
+TEST_F(RequestPolicy, AForeignHostLearnsNothingElse) {
+  RequestFields request = get("/stop");
+  request.hosts = {"evil.example"};
+  request.method = "PUT";
+  request.origins = {"http://evil.example"};
+  EXPECT_EQ(refusal(request), 421U);
+}
+
+TEST(PathOf, IsTheTargetWithoutTheQuery) {
+  EXPECT_EQ(path_of("/a/b?c?d"), "/a/b");
+  EXPECT_EQ(path_of("?"), "");
+  EXPECT_EQ(path_of("/"), "/");
+}
+
+TEST(ResponseHeader, HasTheFieldsThatKeepOtherPagesOut) {
+  EXPECT_EQ(response_header(200, "text/css", 7, "localhost:8123", true),
+            "HTTP/1.1 200 OK\r\n"
+            "Content-Type: text/css\r\n"
+            "Content-Length: 7\r\n"
+            "Connection: keep-alive\r\n"
+            "Content-Security-Policy: default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; "
+            "img-src 'self' data: blob:; connect-src 'self' ws://localhost:8123; base-uri 'none'; form-action 'none'; "
+            "frame-ancestors 'none'\r\n"
+            "X-Content-Type-Options: nosniff\r\n"
+            "Cross-Origin-Resource-Policy: same-origin\r\n"
+            "Referrer-Policy: no-referrer\r\n"
+            "Cache-Control: no-store\r\n\r\n");
+}
+
+TEST(ResponseHeader, NamesWhatIsExpected) {
+  const auto has = [](unsigned status, std::string_view field) {
+    return response_header(status, "text/plain", 0, "", false).find(field) != std::string::npos;
+  };
+  EXPECT_TRUE(has(401, "\r\nWWW-Authenticate: Bearer\r\n"));
+  EXPECT_TRUE(has(405, "\r\nAllow: GET, HEAD, POST\r\n"));
+  EXPECT_TRUE(has(426, "\r\nUpgrade: websocket\r\n"));
+  EXPECT_TRUE(has(404, "\r\nConnection: close\r\n"));
+  EXPECT_TRUE(has(421, "HTTP/1.1 421 Misdirected Request\r\n"));
+}
+
+}  // namespace
+}  // namespace proleg::host

@@ -9,6 +9,15 @@ import { axisWidth, chartTheme } from './chart_theme.js';
 const height = 170; // CSS pixels
 const framePeriod = 30; // milliseconds
 
+// Some room above and below; a constant value is in the middle. Null without values.
+function padded(low: number | null, high: number | null): [number, number] {
+  if (low === null || high === null) {
+    return [-1, 1];
+  }
+  const room = high > low ? (high - low) * 0.06 : Math.max(Math.abs(low) * 0.1, 0.5);
+  return [low - room, high + room];
+}
+
 export class LinePlot {
   private readonly plot: uPlot;
   private readonly cursor = document.createElement('div');
@@ -45,10 +54,10 @@ export class LinePlot {
       padding: [8, 0, 0, 0],
       legend: { show: false },
       cursor: { x: false, y: false, points: { show: false }, drag: { x: true, y: false, setScale: false } },
-      scales: { x: { time: false, auto: false }, y: { auto: true } },
+      scales: { x: { time: false, auto: false }, y: { auto: true, range: (_, low, high) => padded(low, high) } },
       axes: [
-        { ...axis, values: (_, ticks) => ticks.map((value) => `${Number(value.toFixed(3))} s`) },
-        { ...axis, size: axisWidth },
+        { ...axis, size: 32, values: (_, ticks) => ticks.map((value) => `${Number(value.toFixed(3))} s`) },
+        { ...axis, size: axisWidth, space: 24 },
       ],
       series: [{}, ...this.lines.map((_, i) => ({ stroke: theme.lines[i] ?? theme.text, width: 1.5, points: { show: false } }))],
       hooks: { setSelect: [(plot) => this.zoomToSelection(plot)] },

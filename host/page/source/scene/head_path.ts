@@ -12,7 +12,8 @@ export class HeadPath {
   constructor(private readonly spacing: number) {
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute('position', this.positions);
-    this.line = new THREE.Line(geometry, new THREE.LineBasicMaterial());
+    // Seen through the robot, which mostly lies on its own path.
+    this.line = new THREE.Line(geometry, new THREE.LineBasicMaterial({ depthTest: false, transparent: true }));
     this.line.frustumCulled = false;
     this.clear();
   }

@@ -122,7 +122,7 @@ export class RobotModel {
     this.length = Math.max(0.1, this.chainLength(robot));
     const thickness = this.typicalThickness();
     this.joints = new InstanceSet(new THREE.CylinderGeometry(1, 1, 2, 20), this.jointInstances(robot, thickness), material);
-    this.contacts = new InstanceSet(new THREE.SphereGeometry(1, 12, 8), this.contactInstances(robot, thickness), marks);
+    this.contacts = new InstanceSet(new THREE.BoxGeometry(2, 2, 2), this.contactInstances(robot, thickness), marks);
     this.contacts.mesh.castShadow = false;
     this.floorHeight = floorHeight(robot);
     for (const set of [...this.links, ...this.terrain, this.joints, this.contacts]) {
@@ -222,7 +222,7 @@ export class RobotModel {
       return {
         link: j,
         pose: { position: rotate(inverse, offset), orientation: multiply(inverse, fromYTo(joint.axis)) },
-        scale: [thickness * 0.45, thickness * 1.02, thickness * 0.45],
+        scale: [thickness * 0.45, 1.04 * Math.max(thickness, halfExtent(robot.links[j] as Body, joint.axis)), thickness * 0.45],
       };
     });
   }
@@ -234,34 +234,41 @@ export class RobotModel {
     const last = centres.at(-1) as Vector;
     const length = Math.hypot(first[0] - last[0], first[1] - last[1], first[2] - last[2]) || 1;
     const forward = [0, 1, 2].map((axis) => ((first[axis] as number) - (last[axis] as number)) / length);
-    const size = thickness * 0.22;
+    const forwardVector: Vector = [forward[0] as number, forward[1] as number, forward[2] as number];
+    const acrossVector: Vector = [-forwardVector[1], forwardVector[0], 0];
+    const size = thickness * 0.26;
     return robot.links.flatMap((body, link) => {
       const inverse = invertRotation(poseFromArray(body.pose));
-      const reach = thickness * 0.75;
+      const reach = halfExtent(body, forwardVector) * 0.65;
+      const depth = halfExtent(body, [0, 0, 1]) * 0.8;
+      const across = rotate(inverse, acrossVector);
+      // Right through the link, so that the marks are seen from both sides.
+      const width = halfExtent(body, acrossVector) * 1.05;
+      const along = (axis: 0 | 1 | 2) => size + Math.abs(across[axis]) * (width - size);
       return [-1, 1].map((side): Instance => {
-        const offset: Vector = [
-          (forward[0] as number) * reach * side,
-          (forward[1] as number) * reach * side,
-          (forward[2] as number) * reach * side - thickness * 0.2,
-        ];
+        const offset = forwardVector.map((value, axis) => value * reach * side - (axis === 2 ? depth : 0));
         const centre = this.centres[link] as Vector;
-        // At the sides, where the camera sees them.
-        const moved = rotate(inverse, offset);
+        const moved = rotate(inverse, offset as unknown as Vector);
         return {
           link,
           pose: { position: [centre[0] + moved[0], centre[1] + moved[1], centre[2] + moved[2]], orientation: [1, 0, 0, 0] },
-          scale: acrossScale(inverse, forward, size, thickness),
+          scale: [along(0), along(1), along(2)],
         };
       });
     });
   }
 }
 
-// A mark that goes right through the link: it is seen from both sides.
-function acrossScale(inverse: readonly [number, number, number, number], forward: number[], size: number, thickness: number): Vector {
-  const across = rotate(inverse, [-(forward[1] as number), forward[0] as number, 0]);
-  const along = (axis: 0 | 1 | 2) => size + Math.abs(across[axis]) * (thickness * 1.06 - size);
-  return [along(0), along(1), along(2)];
+// How far the link reaches from its middle along a unit vector of the robot's frame at angles 0, in metres.
+function halfExtent(body: Body, direction: Vector): number {
+  const reaches = body.shapes.map((shape) => {
+    const { orientation } = compose(poseFromArray(body.pose), poseFromArray(shape.pose));
+    const local = rotate([orientation[0], -orientation[1], -orientation[2], -orientation[3]], direction);
+    const scale = scaleOf(shape);
+    const reach = local.map((value, axis) => Math.abs(value) * (scale[axis] as number));
+    return shape.kind === 'box' ? reach.reduce((sum, value) => sum + value, 0) : Math.hypot(...reach);
+  });
+  return Math.max(0.001, ...reaches);
 }
 
 function invertRotation(pose: Pose): readonly [number, number, number, number] {

@@ -105,7 +105,7 @@ export class RobotScene {
     const length = this.model?.length ?? 1;
     this.orbit.azimuth = -0.5;
     this.orbit.elevation = 0.42;
-    this.orbit.distance = 0.35 + length * 1.7;
+    this.orbit.distance = 0.2 + length * 1.5;
     this.setFollowing(true);
   }
 
@@ -154,7 +154,7 @@ export class RobotScene {
     this.camera.position.set(...this.orbit.position);
     this.camera.lookAt(x, y, z);
     const reach = (this.model?.length ?? 1) * 0.9 + 0.2;
-    this.sun.position.set(x - reach, y + reach * 0.7, z + 2.5 * reach);
+    this.sun.position.set(x + reach, y + reach * 0.8, z + 2.2 * reach);
     this.sun.target.position.set(x, y, z);
     // The grid goes with the view in whole cells, so it looks endless and still shows that the robot moves.
     this.grid?.position.set(

@@ -42,6 +42,14 @@ export function addActions(app: PageApp): void {
       run: () => void tell('restart', {}),
     },
     {
+      id: 'restart_as_file',
+      title: 'Restart with the parameters of the file',
+      group: 'Robot',
+      keys: [],
+      isEnabled: isHolder,
+      run: () => void tell('restart', { parameters: 'file' }),
+    },
+    {
       id: 'take_control',
       title: 'Take control, or give it up',
       group: 'Robot',

@@ -28,7 +28,8 @@ function Dialog({ title, children }: { title: string; children: ComponentChildre
   const dialog = useRef<HTMLDivElement>(null);
   useEffect(() => {
     const before = document.activeElement;
-    dialog.current?.querySelector<HTMLElement>('input, pre, button')?.focus();
+    const find = (tag: string) => dialog.current?.querySelector<HTMLElement>(tag);
+    (find('input') ?? find('button'))?.focus();
     return () => {
       if (before instanceof HTMLElement) before.focus();
     };

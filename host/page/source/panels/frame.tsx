@@ -1,6 +1,6 @@
 // The frame of the page: top bar, bands, notices, dialogs; the page below it comes later.
+import { signal, type Signal } from '@preact/signals';
 import type { ComponentType } from 'preact';
-import { useEffect, useState } from 'preact/hooks';
 import type { PageApp } from '../page_app.js';
 import { openDialog } from '../dialogs.js';
 import { Bands } from './bands.js';
@@ -9,25 +9,25 @@ import { TopBar } from './top_bar.js';
 
 type Part = ComponentType<{ app: PageApp }>;
 
-// A component that is loaded after the first paint; null until then, a text if it cannot be loaded.
-function useLater(load: () => Promise<Part>): Part | string | null {
-  const [part, setPart] = useState<Part | string | null>(null);
-  useEffect(() => {
-    load().then(
-      (loaded) => setPart(() => loaded),
-      (error: Error) => setPart(`This part of the page could not be loaded: ${error.message}. Reload the page.`),
-    );
-  }, []);
+// A component that is loaded after the first paint; null until then, a text if it cannot be loaded. It is loaded once.
+type Later = Signal<Part | string | null>;
+
+function loadLater(loading: Promise<Part>): Later {
+  const part: Later = signal(null);
+  loading.then(
+    (loaded) => (part.value = loaded),
+    (error: Error) => (part.value = `This part of the page could not be loaded: ${error.message}. Reload the page.`),
+  );
   return part;
 }
 
-function Later({ app, load, wait }: { app: PageApp; load: () => Promise<Part>; wait: string }) {
-  const Content = useLater(load);
+const livePage = loadLater(import('./live_page.js').then((module) => module.LivePage));
+const dialogs = loadLater(import('./dialog_views.js').then((module) => module.DialogView));
+
+function LaterView({ app, part, wait }: { app: PageApp; part: Later; wait: string }) {
+  const Content = part.value;
   return Content === null || typeof Content === 'string' ? <p class="wait">{Content ?? wait}</p> : <Content app={app} />;
 }
-
-const loadLivePage = () => import('./live_page.js').then((module) => module.LivePage);
-const loadDialogs = () => import('./dialog_views.js').then((module) => module.DialogView);
 
 export function Frame({ app }: { app: PageApp }) {
   return (
@@ -35,10 +35,10 @@ export function Frame({ app }: { app: PageApp }) {
       <TopBar app={app} />
       <Bands app={app} />
       <main id="page">
-        <Later app={app} load={loadLivePage} wait="Loading …" />
+        <LaterView app={app} part={livePage} wait="Loading …" />
       </main>
       <NoticeList state={app.state} />
-      {openDialog.value !== 'none' && <Later app={app} load={loadDialogs} wait="" />}
+      {openDialog.value !== 'none' && <LaterView app={app} part={dialogs} wait="" />}
     </>
   );
 }

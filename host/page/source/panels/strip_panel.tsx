@@ -10,6 +10,10 @@ import { signalTitle, valueName } from './value_names.js';
 
 const framePeriod = 30; // milliseconds: about 30 images a second
 const smallestLabel = 12; // CSS pixels between two names of joints
+// CSS pixels: of the strip, and of a joint in it where there are many.
+const smallestHeight = 120;
+const largestHeight = 260;
+const jointHeight = 4;
 
 // One canvas for the image with a pixel for each value; the browser enlarges it.
 class StripImage {
@@ -107,7 +111,7 @@ class StripDrawing {
       const isCovered = hovered !== null && !isHovered && Math.abs(row - hovered) < every;
       if (isHovered || (row % every === 0 && !isCovered)) {
         context.fillStyle = isHovered ? theme.highlight : theme.text;
-        context.fillText(nameOf(row), axisWidth - 6, (row + 0.5) * rowHeight, axisWidth - 8);
+        context.fillText(nameOf(row), axisWidth - 6, Math.max(6, Math.min(height - 6, (row + 0.5) * rowHeight)), axisWidth - 8);
       }
     }
   }
@@ -164,6 +168,8 @@ export function StripPanel({ app }: { app: PageApp }) {
   }, []);
   const theme = chartTheme(isDark.value);
   const signals = (app.state.telemetry.value?.signals ?? []).filter((signal) => signal.of !== 'robot');
+  const rows = signals.find((signal) => signal.name === app.selection.strip.value)?.count ?? 0;
+  const height = Math.max(smallestHeight, Math.min(largestHeight, rows * jointHeight));
   const point = (event: MouseEvent) => {
     const { tick, row } = pointAt(app, canvas.current as HTMLCanvasElement, event);
     app.selection.hoveredJoint.value = row;
@@ -204,8 +210,9 @@ export function StripPanel({ app }: { app: PageApp }) {
       <canvas
         ref={canvas}
         class="strip"
+        style={{ height: `${height}px` }}
         role="img"
-        aria-label="Heat map: a row for each joint, time from left to right"
+        aria-label="Space-time strip: a row for each joint, time from left to right"
         data-testid="strip"
         onPointerMove={point}
         onPointerLeave={leave}

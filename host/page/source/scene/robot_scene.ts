@@ -105,7 +105,7 @@ export class RobotScene {
     const length = this.model?.length ?? 1;
     this.orbit.azimuth = -0.5;
     this.orbit.elevation = 0.42;
-    this.orbit.distance = 0.2 + length * 1.5;
+    this.orbit.distance = 0.25 + length * 1.15;
     this.setFollowing(true);
   }
 

@@ -16,9 +16,10 @@ export class TimeView {
   readonly cursor = signal<number | null>(null);
   readonly isLive = computed(() => this.detached.value === null);
 
-  // The range to draw, if `newest` is the newest tick.
+  // The range to draw, if `newest` is the newest tick. Until a run fills the window, the window stands still at tick 0.
   range(newest: number): TickRange {
-    return this.detached.value ?? { from: newest - this.window.value, to: newest };
+    const to = Math.max(newest, this.window.value);
+    return this.detached.value ?? { from: to - this.window.value, to };
   }
 
   // The tick whose values are shown beside the plots and in the 3D view.

@@ -10,6 +10,13 @@ describe('the view of time', () => {
     assert.equal(view.shownTick(2000), 2000);
   });
 
+  it('begins at tick 0 until the run fills the window', () => {
+    const view = new TimeView();
+    view.window.value = 500;
+    assert.deepEqual(view.range(120), { from: 0, to: 500 });
+    assert.equal(view.shownTick(120), 120);
+  });
+
   it('stands still when detached, while ticks go on to come in', () => {
     const view = new TimeView();
     view.detach({ from: 100, to: 300 });

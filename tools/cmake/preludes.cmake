@@ -17,7 +17,7 @@ function(proleg_prelude name)
 endfunction()
 
 # Rooms in whose tests little is computed: under the sanitizers they are not optimised, which halves their compile time.
-set(PROLEG_UNOPTIMISED_ROOMS "^(tools|host/(robot|robot_control|transport)|sim/optimize/(evaluation|experiment|mpi|report|sweep))(/|$)")
+set(PROLEG_UNOPTIMISED_ROOMS "^(tools|host/(robot|robot_control|server|transport)|sim/optimize/(evaluation|experiment|mpi|report|sweep))(/|$)")
 
 if(PROLEG_PRELUDES AND NOT CMAKE_CROSSCOMPILING)
   find_package(Eigen3 REQUIRED NO_MODULE)

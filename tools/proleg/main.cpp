@@ -27,6 +27,7 @@ constexpr std::array subcommands{
     Subcommand{"algorithms", "list the algorithms that move a robot, and their parameters"},
     Subcommand{"new", "write the files of a new robot"},
     Subcommand{"simulate", "run a scenario in the physics simulation"},
+    Subcommand{"ui", "show and drive a robot in the browser"},
     Subcommand{"sweep", "run a scenario with all combinations of some values"},
     Subcommand{"hil", "run a scenario with the program of the modules on a simulated bus"},
     Subcommand{"faults", "list what can be made to fail in a run of hil, or write a schedule of it"},

@@ -38,6 +38,10 @@ std::uint32_t checked_tick_count(const sim::Scenario& scenario) {
 void add_start_options(CommandLine& command_line, ScenarioOptions& options) {
   command_line.add_option("FILE", options.file, "scenario, a *.simulation.xml file").required();
   command_line.add_option("--seconds", options.seconds, "simulated time; by default the duration in the scenario");
+  add_override_options(command_line, options);
+}
+
+void add_override_options(CommandLine& command_line, ScenarioOptions& options) {
   command_line.add_option("--set", options.settings,
                           "NAME=VALUE[@TICK]: change a parameter at the start, at a tick, or at a time (@5s). NAME is "
                           "[MODULE.]PARAMETER[:JOINT], where "
@@ -88,6 +92,10 @@ void refuse_folder(const std::filesystem::path& path, const std::string& suffix)
 ScenarioRun prepare_run(const ScenarioOptions& options) {
   refuse_folder(options.file, ".simulation.xml");
   sim::DiskFiles files;
+  return prepare_run(options, files);
+}
+
+ScenarioRun prepare_run(const ScenarioOptions& options, sim::FileSource& files) {
   ScenarioRun run{sim::read_scenario(options.file, files, sim::read_overrides(options.overrides)), {}, 0};
   for (const std::string& setting : options.settings) {
     sim::apply_setting(run.scenario, setting);

@@ -14,6 +14,7 @@
 #include "sim/record/recorder.hpp"
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/overrides.hpp"
+#include "sim/scenario/reader.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/interrupt.hpp"
@@ -32,7 +33,9 @@ struct ScenarioOptions {
   bool json = false;
 };
 
-/// The scenario's file, and what replaces its values at the start of a run.
+/// What replaces values of the scenario at the start of a run.
+void add_override_options(CommandLine& command_line, ScenarioOptions& options);
+/// The scenario's file, the length of the run, and the same.
 void add_start_options(CommandLine& command_line, ScenarioOptions& options);
 /// All of the options.
 void add_scenario_options(CommandLine& command_line, ScenarioOptions& options);
@@ -50,6 +53,8 @@ void refuse_folder(const std::filesystem::path& path, const std::string& suffix)
 
 /// Throws InputError.
 [[nodiscard]] ScenarioRun prepare_run(const ScenarioOptions& options);
+/// The same with files that need not be on disk.
+[[nodiscard]] ScenarioRun prepare_run(const ScenarioOptions& options, sim::FileSource& files);
 
 /// The joint whose module has this node id. Throws InputError if there is none. option, found: the user's words, for
 /// the message.

@@ -4,8 +4,6 @@
 #include <cstdio>
 #include <iostream>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "shared/computer/text/text.hpp"
 #include "sim/loop/simulation.hpp"
@@ -16,6 +14,7 @@
 #include "tools/proleg/run_measures.hpp"
 #include "tools/proleg/run_progress.hpp"
 #include "tools/proleg/scenario_run.hpp"
+#include "tools/proleg/simulation_results.hpp"
 
 namespace {
 
@@ -134,16 +133,7 @@ int simulate(const ScenarioOptions& options) {
     return exit_failed;
   }
   if (recorder) {
-    std::vector<std::pair<std::string, std::string>> summary{
-        {"displacement_m", exact_text(result.displacement_m)},
-        {"simulated_s", exact_text(result.simulated_s)},
-        {"contacts_mean", exact_text(result.contacts_mean)},
-        {"solver_messages", std::to_string(result.solver_messages)},
-        {"lost_frames", std::to_string(result.lost_frames)},
-        {"setpoint_hash", result.setpoint_hash},
-        {"servo_hash", result.servo_hash}};
-    append_results(result.measures, setup.scenario.robot, summary);
-    recorder->finish(summary);
+    recorder->finish(results_of(simulation, setup.scenario, result.lost_frames));
   }
   if (options.json) {
     print_json(options, setup, result);

@@ -421,7 +421,7 @@ class RobotOnTheTable(unittest.TestCase):
         with Bus() as bus:
             self.assertIn("no host drives the robot",
                           proleg("monitor", "--bus", bus.pty, "--seconds", "1").stdout.splitlines()[-1])
-            drive = start_drive(bus.tcp, "--seconds", "12")
+            drive = start_drive(bus.tcp, "--seconds", "300")  # longer than the rest takes on a busy computer
             wait_for_drives(bus.pty, "operation enabled")
             lines = proleg("monitor", "--bus", bus.pty, "--seconds", "3", "--json").stdout.splitlines()
             last = json.loads(lines[-2])
@@ -440,6 +440,7 @@ class RobotOnTheTable(unittest.TestCase):
             info = proleg("info", "3", "--bus", bus.pty).stdout
             self.assertIn("(PatternGenerator_sinusoidal)", info)
             self.assertIn("amplitude: slot 1 = 40 deg", info)
+            drive.send_signal(signal.SIGINT)
             drive.communicate(timeout=LONGEST)
             self.assertEqual(drive.returncode, 0)
 

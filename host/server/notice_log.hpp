@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <string>
+
+#include "host/server/document_store.hpp"
+
+namespace proleg::host {
+
+enum class NoticeLevel { info, warning, error };
+
+/// The message for a viewer.
+[[nodiscard]] std::string notice_message(NoticeLevel level, const std::string& text);
+
+/// The last notices, for viewers that are there and those that come later.
+class NoticeLog {
+ public:
+  static constexpr std::size_t max_notices = 200;
+
+  void add(NoticeLevel level, const std::string& text);
+  /// The first notice from this number on, which becomes that of the one behind it. Null: there is none yet.
+  [[nodiscard]] SharedText next(std::uint64_t& number) const;
+
+ private:
+  std::uint64_t first_ = 0;  ///< number of the oldest notice
+  std::deque<SharedText> notices_;
+};
+
+}  // namespace proleg::host

@@ -1,0 +1,103 @@
+#include "host/server/request_policy.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace proleg::host {
+namespace {
+
+constexpr std::string_view bearer = "Bearer ";
+
+constexpr std::array<std::pair<unsigned, std::string_view>, 11> statuses{{{200, "OK"},
+                                                                          {400, "Bad Request"},
+                                                                          {401, "Unauthorized"},
+                                                                          {403, "Forbidden"},
+                                                                          {404, "Not Found"},
+                                                                          {405, "Method Not Allowed"},
+                                                                          {413, "Payload Too Large"},
+                                                                          {421, "Misdirected Request"},
+                                                                          {426, "Upgrade Required"},
+                                                                          {431, "Request Header Fields Too Large"},
+                                                                          {503, "Service Unavailable"}}};
+
+/// A foreign name that resolves to this computer (DNS rebinding) is another Host.
+bool is_own_host(std::string_view host, std::uint16_t port) {
+  const std::array<std::string_view, 3> names{"127.0.0.1", "localhost", "[::1]"};
+  const std::string end = ":" + std::to_string(port);
+  return std::any_of(names.begin(), names.end(), [&](std::string_view name) {
+    return host.size() == name.size() + end.size() && host.starts_with(name) && host.ends_with(end);
+  });
+}
+
+RequestDecision refuse(unsigned status) { return {RequestAction::refuse, status}; }
+
+}  // namespace
+
+std::string_view path_of(std::string_view target) { return target.substr(0, target.find('?')); }
+
+RequestDecision decide_request(const RequestFields& request, std::uint16_t port, const AccessToken& token) {
+  if (request.hosts.size() != 1 || !is_own_host(request.hosts.front(), port)) {
+    return refuse(421);
+  }
+  const bool is_post = request.method == "POST";
+  if (!is_post && request.method != "GET" && request.method != "HEAD") {
+    return refuse(405);
+  }
+  if (request.origins.size() > 1 ||
+      (!request.origins.empty() && request.origins.front() != "http://" + std::string(request.hosts.front()))) {
+    return refuse(403);
+  }
+  const std::string_view path = path_of(request.target);
+  if (is_post != (path == "/stop")) {
+    return refuse(405);
+  }
+  if (is_post) {
+    const bool has_token = request.authorizations.size() == 1 && request.authorizations.front().starts_with(bearer) &&
+                           token.matches(request.authorizations.front().substr(bearer.size()));
+    return has_token ? RequestDecision{RequestAction::stop, 0} : refuse(401);
+  }
+  if (path == "/socket") {
+    return request.is_upgrade && request.method == "GET" ? RequestDecision{RequestAction::open_socket, 0} : refuse(426);
+  }
+  return {RequestAction::serve_file, 0};
+}
+
+std::string_view status_words(unsigned status) {
+  const auto* const found =
+      std::find_if(statuses.begin(), statuses.end(), [status](const auto& entry) { return entry.first == status; });
+  return found == statuses.end() ? std::string_view{} : found->second;
+}
+
+std::string response_header(unsigned status, std::string_view content_type, std::size_t length, std::string_view host,
+                            bool is_kept_alive) {
+  std::string text = "HTTP/1.1 " + std::to_string(status) + " ";
+  text += status_words(status);
+  text += "\r\nContent-Type: ";
+  text += content_type;
+  text += "\r\nContent-Length: " + std::to_string(length);
+  text += is_kept_alive ? "\r\nConnection: keep-alive" : "\r\nConnection: close";
+  if (status == 401) {
+    text += "\r\nWWW-Authenticate: Bearer";
+  } else if (status == 405) {
+    text += "\r\nAllow: GET, HEAD, POST";
+  } else if (status == 426) {
+    text += "\r\nUpgrade: websocket";
+  }
+  text +=
+      "\r\nContent-Security-Policy: default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; "
+      "img-src 'self' data: blob:; connect-src 'self'";
+  if (!host.empty()) {
+    text += " ws://";
+    text += host;
+  }
+  text +=
+      "; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+      "\r\nX-Content-Type-Options: nosniff"
+      "\r\nCross-Origin-Resource-Policy: same-origin"
+      "\r\nReferrer-Policy: no-referrer"
+      "\r\nCache-Control: no-store\r\n\r\n";
+  return text;
+}
+
+}  // namespace proleg::host

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "host/server/access_token.hpp"
+
+namespace proleg::host {
+
+/// What decides about an HTTP request.
+struct RequestFields {
+  std::string_view method;
+  std::string_view target;
+  std::vector<std::string_view> hosts;           ///< every field Host
+  std::vector<std::string_view> origins;         ///< every field Origin
+  std::vector<std::string_view> authorizations;  ///< every field Authorization
+  bool is_upgrade = false;                       ///< asks for a WebSocket
+};
+
+/// The path of a request's target: without what follows a question mark.
+[[nodiscard]] std::string_view path_of(std::string_view target);
+
+enum class RequestAction { refuse, serve_file, open_socket, stop };
+
+struct RequestDecision {
+  RequestAction action = RequestAction::refuse;
+  unsigned status = 0;  ///< HTTP status of a refusal
+};
+
+/// Decides what a server at this port does with a request (docs/page-interface.md, "Addresses"). Whether a file exists
+/// is not decided here.
+[[nodiscard]] RequestDecision decide_request(const RequestFields& request, std::uint16_t port,
+                                             const AccessToken& token);
+
+/// The start of a response, with the empty line. `host` is the request's Host if the server accepted it, else empty.
+/// An error has no body but the words of its status.
+[[nodiscard]] std::string response_header(unsigned status, std::string_view content_type, std::size_t length,
+                                          std::string_view host, bool is_kept_alive);
+
+/// "Not Found"; empty for a status that the server does not send.
+[[nodiscard]] std::string_view status_words(unsigned status);
+
+}  // namespace proleg::host

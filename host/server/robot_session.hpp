@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "host/server/server_types.hpp"
+
+namespace proleg::host {
+
+/// Number of a request to the session, from 1; not used twice by a server.
+using RequestId = std::uint64_t;
+
+struct OperationRequest {
+  RequestId request = 0;
+  std::string name;
+  nlohmann::json arguments;  ///< an object, at most 16 levels deep
+  ClientId client = 0;
+  std::string client_name;
+};
+
+struct StopRequest {
+  RequestId request = 0;
+  std::string by;  ///< name of the viewer, or "POST /stop"
+};
+
+/// What a server serves: something that runs in another thread. The server calls these functions in its own thread, so
+/// they pass the request on and return at once.
+class RobotSession {
+ public:
+  virtual ~RobotSession() = default;
+
+  /// An operation of a viewer that may use it. Its name may be unknown. The session answers it once, with
+  /// WebServer::answer().
+  virtual void operate(const OperationRequest& request) = 0;
+  /// Stops the robot, whatever else is pending. Answered with WebServer::stopped(). A viewer may send many of these.
+  virtual void stop(const StopRequest& request) = 0;
+  /// Somebody drives now, nobody does, or the holder of control is away or back.
+  virtual void holder_changed(bool has_holder, bool is_away) = 0;
+};
+
+}  // namespace proleg::host

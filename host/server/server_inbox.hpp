@@ -1,0 +1,56 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/server/notice_log.hpp"
+#include "host/server/signal_layout.hpp"
+#include "host/server/viewer_hub.hpp"
+
+namespace proleg::host {
+
+/// What the session has said since the server looked. The session may be faster than the server: of each document there
+/// is only the newest text, and of the notices the last ones. All functions may be called from any thread.
+class ServerInbox {
+ public:
+  struct Layout {
+    SignalLayout layout;
+    std::uint32_t tick_us = 0;
+    std::uint64_t generation = 0;
+  };
+  struct Notice {
+    NoticeLevel level = NoticeLevel::info;
+    std::string text;
+  };
+  struct Contents {
+    std::vector<std::pair<std::string, std::string>> documents;  ///< name and JSON
+    std::optional<Layout> layout;
+    std::vector<OperationAnswer> answers;
+    std::vector<StopAnswer> stops;
+    std::deque<Notice> notices;
+  };
+
+  void put_document(const std::string& name, std::string value);
+  void put_layout(Layout layout);
+  void put_answer(OperationAnswer answer);
+  void put_stopped(const StopAnswer& answer);
+  void put_notice(NoticeLevel level, const std::string& text);
+
+  /// True for the first call since take_contents(): the server must be woken.
+  [[nodiscard]] bool claim_wake() { return !is_woken_.exchange(true); }
+  [[nodiscard]] Contents take_contents();
+
+ private:
+  std::atomic<bool> is_woken_ = false;
+  std::mutex mutex_;
+  Contents contents_;
+};
+
+}  // namespace proleg::host

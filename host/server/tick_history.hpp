@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/server/signal_layout.hpp"
+
+namespace proleg::host {
+
+/// Which values of a row a viewer gets.
+struct Subscription {
+  std::uint32_t number = 0;
+  std::uint64_t generation = 0;  ///< of the history whose rows `columns` describes
+  std::vector<SignalColumns> columns;
+};
+
+/// How far a viewer has read.
+struct HistoryCursor {
+  std::uint64_t next = 0;  ///< rows before this one, counted from the first, are read
+  struct Row {
+    std::uint16_t run = 0;
+    std::uint32_t tick = 0;
+  };
+  std::optional<Row> last;  ///< the last row that was read
+  bool has_gap = false;     ///< rows are missing that no message has reported
+};
+
+inline constexpr std::size_t telemetry_header_bytes = 16;
+inline constexpr std::size_t max_telemetry_rows = 64;
+
+/// The newest rows of all signals, in bounded memory. All functions may be called from any thread.
+class TickHistory {
+ public:
+  explicit TickHistory(std::size_t max_bytes) : max_bytes_(max_bytes) {}
+
+  /// Forgets all rows; from now on a row has this many values. Returns the new generation.
+  std::uint64_t reset(std::size_t row_size);
+  /// Throws std::invalid_argument if the row has another number of values.
+  void add(std::uint16_t run, std::uint32_t tick, std::span<const std::int32_t> row);
+
+  /// Number of rows that were ever added.
+  [[nodiscard]] std::uint64_t end() const;
+  /// Rows that the memory holds at most.
+  [[nodiscard]] std::size_t capacity() const;
+
+  /// A binary message (docs/page-interface.md, "Telemetry") with rows of one run from the cursor on, which it moves.
+  /// Only ticks that are multiples of `stride` (at least 1) are in it. Nothing if there is no such row, or if the
+  /// subscription is for another generation.
+  [[nodiscard]] std::optional<std::string> encode_rows(const Subscription& subscription, std::uint32_t stride,
+                                                       HistoryCursor& cursor) const;
+
+ private:
+  using Row = HistoryCursor::Row;
+
+  [[nodiscard]] std::size_t position(std::uint64_t number) const {
+    return static_cast<std::size_t>(number % rows_.size());
+  }
+
+  const std::size_t max_bytes_;
+  mutable std::mutex mutex_;
+  std::uint64_t generation_ = 0;
+  std::size_t row_size_ = 0;
+  std::uint64_t end_ = 0;
+  std::uint64_t begin_ = 0;
+  std::vector<Row> rows_;             ///< a ring: row number n is at n modulo its size
+  std::vector<std::int32_t> values_;  ///< row_size_ for each row of the ring
+};
+
+}  // namespace proleg::host

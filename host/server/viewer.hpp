@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "host/server/document_store.hpp"
+#include "host/server/notice_log.hpp"
+#include "host/server/server_types.hpp"
+#include "host/server/tick_history.hpp"
+#include "host/server/tick_rate.hpp"
+
+namespace proleg::host {
+
+/// What all viewers get.
+struct SharedState {
+  DocumentStore documents;
+  NoticeLog notices;
+  TickHistory& history;
+  TickRate rate;
+};
+
+struct OutgoingMessage {
+  bool is_binary = false;
+  SharedText bytes;
+};
+
+/// A WebSocket's close frame.
+struct CloseReason {
+  std::uint16_t code = 1008;
+  std::string text;  ///< at most 123 bytes
+};
+
+/// What the server has to send to one viewer. The memory that it uses is bounded: of what a viewer does not read, it
+/// keeps only the newest, and it ends the connection of one that asks without reading the answers.
+class Viewer {
+ public:
+  static constexpr ServerTime hello_timeout{2'000};
+  /// Time from one telemetry message to the next, so that fast ticks come together.
+  static constexpr ServerTime telemetry_interval{8};
+  static constexpr std::size_t max_pending_operations = 64;
+  static constexpr std::size_t max_replies = 256;
+
+  Viewer(ClientId client, ServerTime opened) : client_(client), hello_deadline_(opened + hello_timeout) {}
+
+  [[nodiscard]] ClientId client() const { return client_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// Has said hello with the right token, and is not being closed.
+  [[nodiscard]] bool is_welcome() const { return is_welcome_ && !closing_; }
+  /// The connection has to end, with this reason. Messages are not sent any more, and those received are ignored.
+  [[nodiscard]] const std::optional<CloseReason>& closing() const { return closing_; }
+  /// The first reason counts.
+  void close(std::uint16_t code, const std::string& reason);
+
+  void welcome(const std::string& name, bool is_only_stop, const std::string& program);
+  /// Counts an operation as pending until finish(). False: it was refused, or the connection ends.
+  [[nodiscard]] bool begin_operation(std::uint64_t id);
+  void finish_operation(std::uint64_t id, bool is_ok, const nlohmann::json& value, const std::string& error);
+  /// A message `stopped`. One that was not sent yet is replaced.
+  void queue_stopped(std::string message);
+  void queue_notice(NoticeLevel level, const std::string& text);
+  /// Nothing: no telemetry until the next subscription.
+  void set_subscription(std::optional<Subscription> subscription, const TickHistory& history);
+  [[nodiscard]] std::uint32_t next_subscription_number() { return ++subscriptions_; }
+
+  /// The next message, if there is one now. Call it when the message before is on its way.
+  [[nodiscard]] std::optional<OutgoingMessage> next_message(ServerTime now, const SharedState& state);
+
+  /// Ends the connection of a viewer that said nothing.
+  void advance(ServerTime now);
+  /// When advance() or next_message() has something to do, if nothing happens before.
+  [[nodiscard]] ServerTime deadline(ServerTime now, const SharedState& state) const;
+
+ private:
+  struct Reply {
+    SharedText message;
+    std::optional<std::uint64_t> finished;  ///< the operation that is not pending any more when this is sent
+  };
+
+  void queue_reply(std::string message, std::optional<std::uint64_t> finished = std::nullopt);
+  void queue_result(std::uint64_t id, const nlohmann::json& result, bool is_finished);
+  [[nodiscard]] std::optional<OutgoingMessage> next_telemetry(ServerTime now, const SharedState& state);
+  [[nodiscard]] bool has_unread_rows(const SharedState& state) const;
+
+  const ClientId client_;
+  const ServerTime hello_deadline_;
+  std::string name_;
+  bool is_welcome_ = false;
+  bool is_only_stop_ = false;
+  std::optional<CloseReason> closing_;
+
+  std::optional<std::uint64_t> last_operation_;
+  std::set<std::uint64_t> pending_;
+  std::deque<Reply> replies_;
+  SharedText stopped_;
+  bool has_sent_welcome_ = false;
+
+  KnownRevisions known_documents_;
+  std::uint64_t next_notice_ = 0;
+
+  std::uint32_t subscriptions_ = 0;
+  std::optional<Subscription> subscription_;
+  HistoryCursor cursor_;
+  ServerTime next_telemetry_{};
+  bool was_telemetry_ = false;
+};
+
+}  // namespace proleg::host

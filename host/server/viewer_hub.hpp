@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "host/server/access_token.hpp"
+#include "host/server/client_message.hpp"
+#include "host/server/control_lease.hpp"
+#include "host/server/robot_session.hpp"
+#include "host/server/signal_layout.hpp"
+#include "host/server/viewer.hpp"
+
+namespace proleg::host {
+
+/// What a session answers to an operation.
+struct OperationAnswer {
+  RequestId request = 0;
+  bool is_ok = false;
+  nlohmann::json value;
+  std::string error;
+};
+
+/// What a session answers to STOP.
+struct StopAnswer {
+  RequestId request = 0;
+  unsigned confirmed = 0;  ///< modules that confirmed
+  unsigned of = 0;         ///< all modules
+  double ms = 0;           ///< from the request to the last confirmation
+};
+
+/// The viewers of a session, and which of them drives: all that the server does above its sockets. It belongs to one
+/// thread, and gets the time as an argument.
+class ViewerHub {
+ public:
+  struct Options {
+    std::string program;                    ///< name and version, for the welcome
+    std::set<std::string> free_operations;  ///< operations that need no control
+  };
+
+  ViewerHub(Options options, const AccessToken& token, RobotSession& session, TickHistory& history);
+
+  // The sockets.
+  [[nodiscard]] ClientId add_viewer(ServerTime now);
+  void receive(ServerTime now, ClientId client, std::string_view text);
+  void close(ClientId client, std::uint16_t code, const std::string& reason);
+  void remove_viewer(ServerTime now, ClientId client);
+  [[nodiscard]] std::optional<OutgoingMessage> next_message(ServerTime now, ClientId client);
+  /// See Viewer::closing().
+  [[nodiscard]] std::optional<CloseReason> closing(ClientId client) const;
+  /// STOP that did not come from a viewer. The caller has checked the token.
+  void stop(const std::string& by);
+
+  // The session.
+  void publish(const std::string& name, std::string_view value) { state_.documents.publish(name, value); }
+  /// The rows of this generation of the history have this layout.
+  void set_layout(SignalLayout layout, std::uint32_t tick_us, std::uint64_t generation);
+  void answer(const OperationAnswer& answer);
+  void stopped(const StopAnswer& answer);
+  void notice(NoticeLevel level, const std::string& text) { state_.notices.add(level, text); }
+
+  void advance(ServerTime now);
+  /// When advance() or next_message() has something to do, if nothing happens before.
+  [[nodiscard]] ServerTime deadline(ServerTime now) const;
+
+ private:
+  struct PendingOperation {
+    ClientId client = 0;
+    std::uint64_t id = 0;
+  };
+
+  void handle(ServerTime now, Viewer& viewer, const Hello& hello);
+  void handle(ServerTime now, Viewer& viewer, const Operation& operation);
+  void handle(ServerTime now, Viewer& viewer, const Stop& stop);
+  void handle(ServerTime now, Viewer& viewer, const Beat& beat);
+  void handle(ServerTime now, Viewer& viewer, const Subscribe& subscribe);
+  void control(ServerTime now, Viewer& viewer, const Operation& operation);
+  /// After each call of the lease: results, the document, what the session must know.
+  void report_lease(ServerTime now);
+  [[nodiscard]] Viewer* find(ClientId client);
+
+  const Options options_;
+  const AccessToken& token_;
+  RobotSession& session_;
+  SharedState state_;
+  ControlLease lease_;
+  std::uint64_t published_lease_ = 0;
+  bool had_holder_ = false;
+  bool was_away_ = false;
+
+  SignalLayout layout_;
+  std::uint64_t generation_ = 0;
+
+  ClientId last_client_ = 0;
+  std::map<ClientId, Viewer> viewers_;
+  RequestId last_request_ = 0;
+  std::map<RequestId, PendingOperation> operations_;
+  std::map<RequestId, ClientId> stops_;
+};
+
+}  // namespace proleg::host

@@ -1,0 +1,225 @@
+#include "tools/proleg/ui/live_simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shipped.hpp"
+#include "sim/record/recording.hpp"
+#include "sim/scenario/reader.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace proleg::tools {
+namespace {
+
+using StartValues = LiveSimulation::StartValues;
+
+const sim::Scenario& uniform() {
+  static const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  return scenario;
+}
+
+void advance(LiveSimulation& live, unsigned ticks) {
+  for (unsigned tick = 0; tick < ticks; ++tick) {
+    live.advance();
+  }
+}
+
+/// What `proleg simulate` gives for the words of --set after this number of ticks.
+struct Hashes {
+  std::string setpoints;
+  std::string servos;
+  double displacement;
+  bool operator==(const Hashes&) const = default;
+};
+
+Hashes hashes_of(const sim::Simulation& simulation) {
+  return {simulation.setpoint_hash().hex(), simulation.servo_hash().hex(), simulation.plant().displacement()};
+}
+
+Hashes simulated(const sim::Scenario& file, const std::vector<std::string>& words, std::uint32_t ticks) {
+  sim::Scenario scenario = file;
+  for (const std::string& word : words) {
+    sim::apply_setting(scenario, word);
+  }
+  sim::Simulation simulation(scenario);
+  while (simulation.tick() < ticks) {
+    simulation.advance();
+  }
+  return hashes_of(simulation);
+}
+
+ParameterPlace place(const LiveSimulation& live, const std::string& name) { return live.places_of(name).front(); }
+
+TEST(LiveSimulation, WithoutChangesItIsTheScenario) {
+  LiveSimulation live(uniform(), nullptr);
+  advance(live, 200);
+  EXPECT_EQ(hashes_of(live.simulation()), simulated(uniform(), {}, 200));
+  EXPECT_TRUE(live.repeating_words().empty());
+}
+
+TEST(LiveSimulation, AChangeTakesEffectAtTheComingTickAndIsConfirmedThen) {
+  LiveSimulation live(uniform(), nullptr);
+  advance(live, 50);
+  EXPECT_EQ(live.set({"amplitude:J2=30"}, std::nullopt), 50U);
+  const ParameterPlace changed = place(live, "amplitude:J2");
+  const ParameterTable::Values before = live.parameters().at(changed);
+  EXPECT_EQ(before.confirmed, before.file);
+  EXPECT_NE(before.wanted, before.file);
+  live.advance();
+  const ParameterTable::Values after = live.parameters().at(changed);
+  EXPECT_EQ(after.confirmed, after.wanted);
+  EXPECT_EQ(after.tick, 50U);
+  EXPECT_EQ(after.file, before.file);
+  EXPECT_EQ(hashes_of(live.simulation()), simulated(uniform(), {"amplitude:J2=30@50"}, 51));
+}
+
+TEST(LiveSimulation, ARunOfRandomChangesRepeatsFromItsWords) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    LiveSimulation live(uniform(), nullptr);
+    const char* joints[] = {"", ":J1", ":J3", ":J5"};
+    const auto advance_some = [&] { advance(live, random() % 20); };
+    const auto change_something = [&] {
+      switch (random() % 6) {
+        case 0:
+          live.set({"amplitude" + std::string(joints[random() % 4]) + "=" + std::to_string(random() % 60)},
+                   std::nullopt);
+          break;
+        case 1:
+          live.set(
+              {"frequency=0." + std::to_string(random() % 9), "phase_difference=" + std::to_string(random() % 180)}, 7);
+          break;
+        case 2:
+          live.undo();
+          break;
+        case 3:
+          live.redo();
+          break;
+        case 4:
+          live.swap_sets();
+          break;
+        default:
+          live.set({"current_phase:J2=" + std::to_string(random() % 90)}, std::nullopt);
+      }
+    };
+    for (int step = 0; step < 40; ++step) {
+      change_something();
+      advance_some();
+    }
+    EXPECT_EQ(hashes_of(live.simulation()), simulated(uniform(), live.repeating_words(), live.simulation().tick()));
+
+    live.restart(StartValues::wanted);
+    advance_some();
+    change_something();
+    advance(live, 30);
+    EXPECT_EQ(hashes_of(live.simulation()), simulated(uniform(), live.repeating_words(), live.simulation().tick()));
+  }
+}
+
+TEST(LiveSimulation, UndoTakesAGestureBackAsAWhole) {
+  LiveSimulation live(uniform(), nullptr);
+  const ParameterPlace amplitude = place(live, "amplitude:J1");
+  const std::int32_t file = live.parameters().at(amplitude).file;
+  live.set({"amplitude=10"}, 1);
+  advance(live, 3);
+  live.set({"amplitude=20"}, 1);
+  live.set({"amplitude=25"}, 1);
+  live.set({"frequency=0.7"}, 2);
+  EXPECT_TRUE(live.undo());
+  EXPECT_EQ(live.history().to_undo()->name, "amplitude");
+  EXPECT_TRUE(live.undo());
+  EXPECT_EQ(live.parameters().at(amplitude).wanted, file);
+  EXPECT_FALSE(live.undo());
+  EXPECT_TRUE(live.redo());
+  EXPECT_EQ(live.parameters().at(amplitude).wanted, raw(Unit::degree, 25));
+  live.set({"amplitude=5"}, 3);
+  EXPECT_TRUE(live.redo() == false) << "a new change ends what can be redone";
+}
+
+TEST(LiveSimulation, AWordThatCannotBeTakenChangesNothing) {
+  LiveSimulation live(uniform(), nullptr);
+  const std::uint64_t revision = live.revision();
+  for (const std::vector<std::string>& words : {std::vector<std::string>{},
+                                                {"amplitude"},
+                                                {"amplitude=1000"},
+                                                {"amplitude=10@5"},
+                                                {"nothing=1"},
+                                                {"amplitude:J9=10"},
+                                                {"amplitude=10", "frequency=-1e9"},
+                                                {"amplitude=nan"}}) {
+    EXPECT_THROW(live.set(words, std::nullopt), InputError);
+  }
+  EXPECT_EQ(live.revision(), revision);
+  advance(live, 20);
+  EXPECT_EQ(hashes_of(live.simulation()), simulated(uniform(), {}, 20));
+}
+
+TEST(LiveSimulation, AChangeForOneTickNeverHasMoreValuesThanAModuleKeeps) {
+  LiveSimulation live(uniform(), nullptr);
+  std::vector<std::uint32_t> ticks;
+  for (int value = 0; value < 30; ++value) {
+    ticks.push_back(live.set({"amplitude=" + std::to_string(value), "frequency=0.5", "phase_difference=60",
+                              "offset=" + std::to_string(value)},
+                             std::nullopt));
+  }
+  for (const sim::Change& change : live.scenario().changes) {
+    for (unsigned joint = 0; joint < 5; ++joint) {
+      EXPECT_LE(std::ranges::count(change.settings, joint, &sim::Setting::joint),
+                static_cast<std::ptrdiff_t>(max_staged_values));
+    }
+  }
+  EXPECT_TRUE(std::ranges::is_sorted(ticks));
+}
+
+TEST(LiveSimulation, ARecordingHasTheWholeRunWheneverItBegan) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "run.proleg";
+  LiveSimulation live(uniform(), nullptr);
+  advance(live, 80);
+  live.set({"amplitude=30"}, std::nullopt);
+  advance(live, 70);
+  const Hashes before = hashes_of(live.simulation());
+  ASSERT_TRUE(live.record(file, "simulate", "test", [] { return true; }));
+  EXPECT_EQ(hashes_of(live.simulation()), before);
+  live.set({"frequency=0.4"}, std::nullopt);
+  advance(live, 50);
+  const Hashes end = hashes_of(live.simulation());
+  live.end_recording();
+  const sim::Recording recording(file);
+  EXPECT_TRUE(recording.finished());
+  EXPECT_EQ(recording.first_tick(), 0U);
+  EXPECT_EQ(recording.last_tick(), 199U);
+  EXPECT_EQ(end, simulated(uniform(), {"amplitude=30@80", "frequency=0.4@150"}, 200));
+  EXPECT_NE(std::ranges::find(recording.results(), std::pair<std::string, std::string>{"setpoint_hash", end.setpoints}),
+            recording.results().end());
+}
+
+TEST(LiveSimulation, RestartBeginsWithWhatIsWantedOrWithTheFile) {
+  LiveSimulation live(uniform(), nullptr);
+  live.set({"amplitude=30"}, std::nullopt);
+  advance(live, 10);
+  live.restart(StartValues::wanted);
+  EXPECT_EQ(live.repeating_words(), std::vector<std::string>({"1.amplitude=30"}));
+  advance(live, 100);
+  EXPECT_EQ(hashes_of(live.simulation()), simulated(uniform(), {"amplitude=30"}, 100));
+  live.restart(StartValues::file);
+  advance(live, 100);
+  EXPECT_EQ(hashes_of(live.simulation()), simulated(uniform(), {}, 100));
+}
+
+TEST(LiveSimulation, ResetWantsTheFilesValueAgain) {
+  LiveSimulation live(uniform(), nullptr);
+  live.set({"amplitude=30", "frequency=0.4"}, std::nullopt);
+  advance(live, 10);
+  live.reset(live.places_of("amplitude"));
+  const ParameterTable::Values amplitude = live.parameters().at(place(live, "amplitude:J3"));
+  EXPECT_EQ(amplitude.wanted, amplitude.file);
+  const ParameterTable::Values frequency = live.parameters().at(place(live, "frequency:J3"));
+  EXPECT_NE(frequency.wanted, frequency.file);
+}
+
+}  // namespace
+}  // namespace proleg::tools

@@ -1,0 +1,102 @@
+#include "tools/proleg/ui/telemetry_row.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "shipped.hpp"
+#include "sim/loop/simulation.hpp"
+
+namespace proleg::tools {
+namespace {
+
+/// The values of a signal in a row, in its unit.
+std::vector<double> values(const std::vector<Signal>& signals, const std::vector<std::int32_t>& row,
+                           const std::string& name) {
+  std::size_t begin = 0;
+  for (const Signal& signal : signals) {
+    if (signal.name == name) {
+      std::vector<double> found;
+      for (std::size_t i = 0; i < signal.places.size(); ++i) {
+        found.push_back(row.at(begin + i) * signal.scale);
+      }
+      return found;
+    }
+    begin += signal.places.size();
+  }
+  throw std::runtime_error("no signal " + name);
+}
+
+TEST(TelemetryRow, HasTheValuesOfTheRecordingInTheUnitsOfTheSignals) {
+  for (const char* name : {"travelling_wave/uniform", "travelling_wave/coupled"}) {
+    SCOPED_TRACE(name);
+    const sim::Scenario scenario = sim::shipped(name);
+    sim::Simulation simulation(scenario);
+    for (int tick = 0; tick < 77; ++tick) {
+      simulation.advance();
+    }
+    const std::vector<Signal> signals = signals_of(scenario);
+    std::vector<std::int32_t> row;
+    fill_row(simulation.sample(), scenario, row);
+    std::size_t size = 0;
+    for (const Signal& signal : signals) {
+      size += signal.places.size();
+    }
+    ASSERT_EQ(row.size(), size);
+    const sim::Plant& plant = simulation.plant();
+    for (unsigned joint = 0; joint < 5; ++joint) {
+      constexpr double degrees = 180.0 / std::numbers::pi;
+      EXPECT_NEAR(values(signals, row, "angle")[joint], plant.joint_angles()[joint] * degrees, 1e-7);
+      EXPECT_NEAR(values(signals, row, "setpoint")[joint], simulation.setpoints()[joint] * 45.0 / (1 << 29), 1e-12);
+      EXPECT_NEAR(values(signals, row, "current")[joint], plant.servo_currents()[joint], 0.5);
+      EXPECT_NEAR(values(signals, row, "torque")[joint], plant.motor_torques()[joint] * 1e3, 0.5);
+      EXPECT_NEAR(values(signals, row, "pulse")[joint], plant.servo_commands()[joint] / 12.0, 1e-9);
+    }
+    for (unsigned link = 0; link < 6; ++link) {
+      EXPECT_EQ(values(signals, row, "contact")[link], simulation.latched_contacts()[link]);
+      EXPECT_NEAR(values(signals, row, "force")[link], plant.contact_forces()[link] * 1e3, 0.5);
+    }
+    const std::vector<double> head = values(signals, row, "head");
+    const sim::Pose& pose = plant.link_poses()[0];
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(head[static_cast<std::size_t>(axis)] * 1e-6, pose.position[axis], 5e-7);
+    }
+    EXPECT_NEAR(head[3] / (1 << 30), pose.orientation.w(), 1e-9);
+    EXPECT_NEAR(head[6] / (1 << 30), pose.orientation.z(), 1e-9);
+    const Declaration& declaration = scenario.kernel.slots[0].algorithm->declaration();
+    for (unsigned value = 0; value < declaration.internal_values.size(); ++value) {
+      const std::string signal = "1/" + std::string(declaration.internal_values[value].name);
+      const std::vector<double> shown = values(signals, row, signal);
+      const auto found = std::ranges::find(signals, signal, &Signal::name);
+      for (std::size_t i = 0; i < found->places.size(); ++i) {
+        const std::int32_t raw = simulation.chain().kernel(found->places[i]).internal_value(0, found->places[i], value);
+        EXPECT_DOUBLE_EQ(shown[i], raw * found->scale);
+      }
+    }
+  }
+}
+
+/// The page computes the poses of all links from the head's and the joint angles; this is its formula.
+TEST(TelemetryRow, PosesOfAllLinksFollowFromTheHeadAndTheAngles) {
+  const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  sim::Simulation simulation(scenario);
+  for (int tick = 0; tick < 150; ++tick) {
+    simulation.advance();
+  }
+  const auto affine = [](const sim::Pose& pose) { return Eigen::Translation3d(pose.position) * pose.orientation; };
+  Eigen::Isometry3d carried =
+      affine(simulation.plant().link_poses()[0]) * Eigen::Isometry3d(affine(scenario.robot.links[0].pose)).inverse();
+  for (std::size_t joint = 0; joint < scenario.robot.joints.size(); ++joint) {
+    const sim::Joint& its = scenario.robot.joints[joint];
+    carried = carried * Eigen::Translation3d(its.anchor) *
+              Eigen::AngleAxisd(-simulation.plant().joint_angles()[joint], its.axis) *
+              Eigen::Translation3d(-its.anchor);
+    const Eigen::Isometry3d link = carried * affine(scenario.robot.links[joint + 1].pose);
+    const sim::Pose& expected = simulation.plant().link_poses()[joint + 1];
+    EXPECT_LT((link.translation() - expected.position).norm(), 0.002) << "link " << joint + 1;
+    EXPECT_LT(Eigen::Quaterniond(link.rotation()).angularDistance(expected.orientation), 0.02) << "link " << joint + 1;
+  }
+}
+
+}  // namespace
+}  // namespace proleg::tools

@@ -1,0 +1,73 @@
+#include "tools/proleg/ui/browser.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <string_view>
+#include <system_error>
+
+#include "host/server/access_token.hpp"
+
+namespace proleg::tools {
+namespace {
+
+std::filesystem::path private_folder() {
+  const char* folder = std::getenv("XDG_RUNTIME_DIR");
+  std::error_code error;
+  if (folder != nullptr && std::filesystem::is_directory(folder, error)) {
+    return folder;
+  }
+  return std::filesystem::temp_directory_path();
+}
+
+bool has_desktop() {
+  for (const char* name : {"DISPLAY", "WAYLAND_DISPLAY"}) {
+    const char* value = std::getenv(name);
+    if (value != nullptr && !std::string_view(value).empty()) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+PageAddress::PageAddress(std::uint16_t port, const std::string& token)
+    : url_("http://127.0.0.1:" + std::to_string(port) + "/#" + token) {
+  const std::string name = "proleg-ui-" + std::to_string(port);
+  file_ = private_folder() / (name + ".url");
+  link_ = private_folder() / (name + ".html");
+  host::write_private_file(file_, url_ + '\n');
+  host::write_private_file(link_,
+                           "<!DOCTYPE html><meta charset=\"utf-8\"><title>Proleg</title><meta http-equiv=\"refresh\" "
+                           "content=\"0; url=" +
+                               url_ + "\"><a href=\"" + url_ + "\">Proleg</a>\n");
+}
+
+PageAddress::~PageAddress() {
+  std::error_code ignored;
+  std::filesystem::remove(file_, ignored);
+  std::filesystem::remove(link_, ignored);
+}
+
+bool PageAddress::open() const {
+  if (!has_desktop()) {
+    return false;
+  }
+  std::string program = "xdg-open";
+  std::string link = link_.string();
+  char* arguments[] = {program.data(), link.data(), nullptr};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_RDWR, 0);
+  }
+  pid_t process = 0;
+  const int error = posix_spawnp(&process, program.c_str(), &actions, nullptr, arguments, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  return error == 0;
+}
+
+}  // namespace proleg::tools

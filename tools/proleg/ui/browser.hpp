@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace proleg::tools {
+
+/// Files that say where a page is, with its token: only their owner may read them, and they go with this object. They
+/// are in $XDG_RUNTIME_DIR, or else in the folder for temporary files.
+class PageAddress {
+ public:
+  /// Throws FileError.
+  PageAddress(std::uint16_t port, const std::string& token);
+  ~PageAddress();
+  PageAddress(const PageAddress&) = delete;
+  PageAddress& operator=(const PageAddress&) = delete;
+
+  /// http://127.0.0.1:PORT/#TOKEN
+  [[nodiscard]] const std::string& url() const { return url_; }
+  /// Has the address as its only line, for other programs.
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+
+  /// Opens the page in the browser of the desktop. The command line, which other users of the computer see, has the
+  /// name of a file that leads to the page, not the token. False: there is no desktop, or no program that opens pages.
+  [[nodiscard]] bool open() const;
+
+ private:
+  std::string url_;
+  std::filesystem::path file_;
+  std::filesystem::path link_;  ///< an HTML file that leads to the page
+};
+
+}  // namespace proleg::tools

@@ -1,0 +1,105 @@
+#pragma once
+
+// A simulation that a person changes while it runs. Every change takes effect at a tick, so the run can be repeated:
+// command_line() is the command that does.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/loop/simulation.hpp"
+#include "sim/record/recorder.hpp"
+#include "sim/scenario/losses.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "tools/proleg/ui/change_history.hpp"
+#include "tools/proleg/ui/parameter_table.hpp"
+
+namespace proleg::tools {
+
+class LiveSimulation {
+ public:
+  /// What the parameters are at tick 0 of a new run.
+  enum class StartValues : std::uint8_t { wanted, file };
+
+  /// file: the scenario as the user gave it; must outlive this, as losses. Throws as Simulation does.
+  LiveSimulation(const sim::Scenario& file, const sim::Losses* losses);
+  LiveSimulation(const LiveSimulation&) = delete;
+  LiveSimulation& operator=(const LiveSimulation&) = delete;
+
+  /// Words as for --set, without a tick; all of them take effect at one tick, which is returned: the coming one, or a
+  /// later one if a module would have to keep too many values. Throws InputError, and then changes nothing. gesture:
+  /// changes with the same number are one entry of the history.
+  std::uint32_t set(const std::vector<std::string>& words, std::optional<std::uint64_t> gesture);
+  /// False if there is nothing to undo.
+  bool undo();
+  bool redo();
+  /// Exchanges what is wanted with the other of two sets of values, which begins with those of the file.
+  void swap_sets();
+  [[nodiscard]] char set_name() const { return is_set_b_ ? 'B' : 'A'; }
+  /// The parameters at these places are wanted as the file has them.
+  void reset(const std::vector<ParameterPlace>& places);
+  /// The place that a name like those of set() means, of each joint that it means. Throws InputError.
+  [[nodiscard]] std::vector<ParameterPlace> places_of(const std::string& name) const;
+
+  /// A new run, from tick 0.
+  void restart(StartValues values);
+  /// One tick. Throws PhysicsError; then only restart() is possible.
+  void advance();
+
+  /// Records the run from tick 0 on, whenever it is called: the ticks up to now are computed again, and are the same
+  /// bits. Ends the recording before. goes_on: asked after each tick that is computed again; false: the recording is
+  /// given up, and record() returns false. Throws FileError if the file cannot be written.
+  bool record(const std::filesystem::path& path, const std::string& program, const std::string& build_id,
+              const std::function<bool()>& goes_on);
+  /// Without a recording it does nothing. restart() ends a recording, too. Throws FileError.
+  void end_recording();
+  [[nodiscard]] bool is_recording() const { return recorder_ != nullptr; }
+
+  [[nodiscard]] const sim::Simulation& simulation() const { return *simulation_; }
+  /// As Simulation::sample().
+  [[nodiscard]] sim::TickSample sample() { return simulation_->sample(); }
+  [[nodiscard]] const sim::Scenario& scenario() const { return scenario_; }
+  [[nodiscard]] const ParameterTable& parameters() const { return parameters_; }
+  [[nodiscard]] const ChangeHistory& history() const { return history_; }
+  /// Counts what changes parameters(), history() or set_name().
+  [[nodiscard]] std::uint64_t revision() const { return revision_; }
+
+  /// The words for `proleg simulate FILE` that repeat the run up to now, without the options that `file` was read with.
+  [[nodiscard]] std::vector<std::string> repeating_words() const;
+
+ private:
+  struct LiveSetting {
+    std::uint32_t tick;
+    sim::Setting setting;
+  };
+
+  static const sim::Change* advance(sim::Simulation& simulation, sim::Recorder* recorder);
+  void begin();
+  /// Whether a change for this tick or a later one sets the parameter.
+  [[nodiscard]] bool was_asked_for(const ParameterPlace& place, std::uint32_t from_tick) const;
+  [[nodiscard]] bool fits(std::uint32_t tick, const std::vector<sim::Setting>& settings) const;
+  void schedule(std::uint32_t tick, const sim::Setting& setting);
+  /// Each of them as soon as possible.
+  void schedule_each(const std::vector<sim::Setting>& settings);
+  void add_words(std::vector<LiveSetting> settings, bool with_tick, std::vector<std::string>& words) const;
+
+  const sim::Scenario& file_;
+  const sim::Losses* losses_;
+  sim::Scenario scenario_;  ///< of the present run, with all changes
+  sim::Scenario scratch_;   ///< to read words with
+  std::unique_ptr<sim::Simulation> simulation_;
+  std::unique_ptr<sim::Recorder> recorder_;
+  std::uint64_t lost_frames_ = 0;  ///< in the present run
+  ParameterTable parameters_;
+  ChangeHistory history_;
+  std::vector<std::int32_t> other_set_;  ///< in the order of places()
+  bool is_set_b_ = false;
+  std::vector<LiveSetting> live_;  ///< of the present run, by ascending tick
+  std::uint64_t revision_ = 1;
+};
+
+}  // namespace proleg::tools

@@ -1,0 +1,51 @@
+#include "tools/proleg/ui/parameter_table.hpp"
+
+#include "sim/scenario/names.hpp"
+#include "sim/scenario/settings.hpp"
+
+namespace proleg::tools {
+
+ParameterTable::ParameterTable(const sim::Scenario& scenario)
+    : joints_(scenario.kernel.joint_count), values_(max_slots * max_parameters * joints_) {
+  for (const unsigned slot : sim::used_slots(scenario)) {
+    const Slot& used = scenario.kernel.slots[slot];
+    const std::size_t parameters = used.algorithm->declaration().parameters.size();
+    for (unsigned index = 0; index < parameters; ++index) {
+      for (unsigned joint = 0; joint < joints_; ++joint) {
+        if (!used.group.contains(joint)) {
+          continue;
+        }
+        const ParameterPlace place{static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(joint),
+                                   static_cast<std::uint8_t>(index)};
+        places_.push_back(place);
+        const std::int32_t value = sim::start_value(scenario, slot, joint, index);
+        values_[position(place)] = {value, value, value, 0};
+      }
+    }
+  }
+}
+
+void ParameterTable::confirm(const ParameterPlace& place, std::int32_t value, std::uint32_t tick) {
+  Values& values = values_[position(place)];
+  values.confirmed = value;
+  values.tick = tick;
+}
+
+void ParameterTable::begin_run() {
+  for (Values& values : values_) {
+    values.confirmed = values.wanted;
+    values.tick = 0;
+  }
+}
+
+void ParameterTable::want_file_values() {
+  for (Values& values : values_) {
+    values.wanted = values.file;
+  }
+}
+
+std::size_t ParameterTable::position(const ParameterPlace& place) const {
+  return (std::size_t{place.slot} * max_parameters + place.index) * joints_ + place.joint;
+}
+
+}  // namespace proleg::tools

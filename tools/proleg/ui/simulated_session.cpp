@@ -1,0 +1,410 @@
+#include "tools/proleg/ui/simulated_session.hpp"
+
+#include <cmath>
+#include <exception>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/measure/measure.hpp"
+#include "sim/physics/physics_error.hpp"
+#include "tools/proleg/ui/robot_document.hpp"
+
+namespace proleg::tools {
+namespace {
+
+using nlohmann::json;
+
+constexpr double slowest_factor = 0.1;
+constexpr double fastest_factor = 100.0;
+constexpr std::uint32_t most_steps = 1'000;
+
+/// The member of an object, or nothing. Throws InputError if it has another type.
+template <typename Value>
+std::optional<Value> member(const json& arguments, const char* name, const char* expected) {
+  const auto found = arguments.find(name);
+  if (found == arguments.end() || found->is_null()) {
+    return std::nullopt;
+  }
+  try {
+    return found->get<Value>();
+  } catch (const json::exception&) {
+    throw InputError(name, 0, shortened(found->dump()), expected);
+  }
+}
+
+json measures_json(const LiveSimulation& live) {
+  json values = json::object();
+  if (live.simulation().tick() > 0) {
+    const sim::MeasureValues measured = live.simulation().measures();
+    for (const sim::MeasureDeclaration& measure : sim::measures()) {
+      if (const double value = measured[measure.measure]; std::isfinite(value)) {
+        values[std::string(measure.name)] = value;
+      }
+    }
+  }
+  return values;
+}
+
+std::string entry_name(const ChangeHistory::Entry* entry) { return entry == nullptr ? std::string() : entry->name; }
+
+json text_or_null(const std::string& text) { return text.empty() ? json() : json(text); }
+
+}  // namespace
+
+struct SimulatedSession::Operation {
+  std::uint64_t request;
+  std::string name;
+  json arguments;
+};
+
+SimulatedSession::SimulatedSession(const sim::Scenario& scenario, const sim::Losses* losses,
+                                   SimulatedSessionOptions options, SessionOutput& output)
+    : file_(scenario),
+      options_(std::move(options)),
+      output_(output),
+      live_(scenario, losses),
+      pace_(scenario.kernel.tick_period_us),
+      state_(options_.starts_paused ? State::paused : State::running) {
+  output_.publish("robot", robot_document(scenario, "simulation"));
+  output_.set_signals(signals_of(scenario), scenario.kernel.tick_period_us);
+  publish_changes();
+  publish_session(Clock::now());
+  thread_ = std::thread([this] { run(); });
+}
+
+SimulatedSession::~SimulatedSession() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+    has_requests_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+void SimulatedSession::operate(std::uint64_t request, const std::string& name, const json& arguments) {
+  const std::lock_guard lock(mutex_);
+  operations_.push_back({request, name, arguments});
+  has_requests_ = true;
+  wake_.notify_one();
+}
+
+void SimulatedSession::stop(std::uint64_t request, const std::string& by) {
+  const std::lock_guard lock(mutex_);
+  stops_.push_back({request, by, Clock::now()});
+  has_requests_ = true;
+  wake_.notify_one();
+}
+
+void SimulatedSession::run() {
+  pace_.begin(Clock::now());
+  while (true) {
+    wait();
+    {
+      const std::lock_guard lock(mutex_);
+      if (ends_) {
+        break;
+      }
+    }
+    take_stops();
+    take_operations();
+    const Clock::time_point now = Clock::now();
+    if (may_tick() && (steps_left_ > 0 || now >= pace_.due())) {
+      tick();
+    }
+    publish_changes();
+    if (is_session_new_ || (may_tick() && now >= publish_at_)) {
+      publish_session(now);
+    }
+  }
+  try {
+    live_.end_recording();
+  } catch (const std::exception& error) {
+    output_.notice(NoticeLevel::error, error.what());
+  }
+}
+
+/// Until there is something to do.
+void SimulatedSession::wait() {
+  if (has_requests_ || is_session_new_ || steps_left_ > 0 || (may_tick() && Clock::now() >= pace_.due())) {
+    return;
+  }
+  std::unique_lock lock(mutex_);
+  const auto is_asked = [this] { return has_requests_.load(); };
+  if (may_tick()) {
+    wake_.wait_until(lock, pace_.due(), is_asked);
+  } else {
+    wake_.wait(lock, is_asked);
+  }
+}
+
+/// What was asked for before a STOP has no effect after it.
+void SimulatedSession::take_stops() {
+  std::deque<Stop> stops;
+  std::deque<Operation> outdated;
+  {
+    const std::lock_guard lock(mutex_);
+    stops.swap(stops_);
+    if (!stops.empty()) {
+      outdated.swap(operations_);
+    }
+  }
+  for (const Stop& stop : stops) {
+    steps_left_ = 0;
+    if (state_ != State::failed) {
+      stopped_by_ = stop.by;
+      set_state(State::stopped);
+    }
+    const auto joints = static_cast<unsigned>(file_.robot.joints.size());
+    output_.stopped(stop.request, joints, joints,
+                    std::chrono::duration<double, std::milli>(Clock::now() - stop.since).count());
+    output_.notice(NoticeLevel::warning, "stopped by " + stop.by);
+  }
+  for (const Operation& operation : outdated) {
+    output_.refused(operation.request, "STOP came first");
+  }
+}
+
+void SimulatedSession::take_operations() {
+  std::deque<Operation> operations;
+  {
+    const std::lock_guard lock(mutex_);
+    operations.swap(operations_);
+    has_requests_ = ends_ || !stops_.empty();
+  }
+  for (const Operation& operation : operations) {
+    try {
+      output_.done(operation.request, carry_out(operation));
+    } catch (const std::exception& error) {
+      output_.refused(operation.request, one_line(error.what()));
+    }
+  }
+}
+
+json SimulatedSession::carry_out(const Operation& operation) {
+  static const std::map<std::string_view, Handler> handlers{
+      {"run", &SimulatedSession::go_on},         {"pause", &SimulatedSession::pause},
+      {"step", &SimulatedSession::step},         {"restart", &SimulatedSession::restart},
+      {"factor", &SimulatedSession::set_factor}, {"set", &SimulatedSession::set},
+      {"undo", &SimulatedSession::undo},         {"redo", &SimulatedSession::redo},
+      {"swap", &SimulatedSession::swap},         {"reset", &SimulatedSession::reset},
+      {"record", &SimulatedSession::record},     {"command_line", &SimulatedSession::tell_command_line}};
+  const auto handler = handlers.find(operation.name);
+  if (handler == handlers.end()) {
+    std::vector<std::string> names;
+    for (const auto& [name, function] : handlers) {
+      names.emplace_back(name);
+    }
+    throw InputError("operation", 0, in_quotes(shortened(operation.name)), "one of " + listed(names));
+  }
+  return (this->*handler->second)(operation.arguments);
+}
+
+void SimulatedSession::require_sound() const {
+  if (state_ == State::failed) {
+    throw std::runtime_error("the simulation has failed; restart it");
+  }
+}
+
+json SimulatedSession::go_on(const json& /*arguments*/) {
+  require_sound();
+  pace_.begin(Clock::now());
+  set_state(State::running);
+  return json::object();
+}
+
+json SimulatedSession::pause(const json& /*arguments*/) {
+  require_sound();
+  steps_left_ = 0;
+  set_state(State::paused);
+  return json::object();
+}
+
+json SimulatedSession::step(const json& arguments) {
+  require_sound();
+  const auto ticks = member<std::uint32_t>(arguments, "ticks", "a number of ticks").value_or(1);
+  if (ticks < 1 || ticks > most_steps) {
+    throw InputError("ticks", 0, std::to_string(ticks), "1 to " + std::to_string(most_steps));
+  }
+  set_state(State::paused);
+  steps_left_ = ticks;
+  return json::object();
+}
+
+json SimulatedSession::restart(const json& arguments) {
+  const auto values = member<std::string>(arguments, "parameters", "\"wanted\" or \"file\"").value_or("wanted");
+  if (values != "wanted" && values != "file") {
+    throw InputError("parameters", 0, in_quotes(shortened(values)), "\"wanted\" or \"file\"");
+  }
+  live_.restart(values == "file" ? LiveSimulation::StartValues::file : LiveSimulation::StartValues::wanted);
+  recording_.clear();
+  failure_.clear();
+  steps_left_ = 0;
+  ++run_;
+  pace_.begin(Clock::now());
+  set_state(state_ == State::running ? State::running : State::paused);
+  return json::object();
+}
+
+json SimulatedSession::set_factor(const json& arguments) {
+  const auto factor = member<double>(arguments, "value", "a number");
+  if (!factor || !(*factor == 0.0 || (*factor >= slowest_factor && *factor <= fastest_factor))) {
+    throw InputError("factor", 0, factor ? exact_text(*factor) : "no value", "0.1 to 100, or 0: as fast as it goes");
+  }
+  pace_.set_factor(*factor, Clock::now());
+  is_session_new_ = true;
+  return json::object();
+}
+
+json SimulatedSession::set(const json& arguments) {
+  const auto words = member<std::vector<std::string>>(arguments, "words", "texts such as \"amplitude:J2=30\"");
+  const auto gesture = member<std::uint64_t>(arguments, "gesture", "a whole number");
+  return {{"tick", live_.set(words.value_or(std::vector<std::string>{}), gesture)}};
+}
+
+json SimulatedSession::undo(const json& /*arguments*/) {
+  if (!live_.undo()) {
+    throw std::runtime_error("there is nothing to undo");
+  }
+  return json::object();
+}
+
+json SimulatedSession::redo(const json& /*arguments*/) {
+  if (!live_.redo()) {
+    throw std::runtime_error("there is nothing to redo");
+  }
+  return json::object();
+}
+
+json SimulatedSession::swap(const json& /*arguments*/) {
+  live_.swap_sets();
+  return json::object();
+}
+
+json SimulatedSession::reset(const json& arguments) {
+  const auto names = member<std::vector<std::string>>(arguments, "names", "names such as \"1.amplitude:J2\"");
+  if (!names) {
+    live_.reset(live_.parameters().places());
+    return json::object();
+  }
+  std::vector<ParameterPlace> places;
+  for (const std::string& name : *names) {
+    const std::vector<ParameterPlace> of_name = live_.places_of(name);
+    places.insert(places.end(), of_name.begin(), of_name.end());
+  }
+  live_.reset(places);
+  return json::object();
+}
+
+json SimulatedSession::record(const json& arguments) {
+  const auto file = member<std::string>(arguments, "file", "a file name");
+  is_session_new_ = true;
+  if (!file) {
+    live_.end_recording();
+    recording_.clear();
+    return json::object();
+  }
+  require_sound();
+  begin_recording(*file);
+  return {{"file", recording_}};
+}
+
+json SimulatedSession::tell_command_line(const json& /*arguments*/) {
+  std::string text = options_.command;
+  for (const std::string& word : live_.repeating_words()) {
+    text += " --set " + word;
+  }
+  return {{"text", text + " --seconds " + exact_text(live_.simulation().time_s())}};
+}
+
+void SimulatedSession::tick() {
+  try {
+    live_.advance();
+    fill_row(live_.sample(), live_.scenario(), row_);
+  } catch (const std::exception& error) {
+    failure_ = one_line(error.what());
+    steps_left_ = 0;
+    set_state(State::failed);
+    output_.notice(NoticeLevel::error, failure_);
+    return;
+  }
+  output_.add_row(run_, live_.simulation().tick() - 1, row_);
+  pace_.tick_done(Clock::now());
+  if (steps_left_ > 0 && --steps_left_ == 0) {
+    is_session_new_ = true;
+  }
+}
+
+void SimulatedSession::begin_recording(const std::string& file) {
+  const std::filesystem::path name(file);
+  if (name.empty() || name.filename() != name || name.extension() != ".proleg") {
+    throw InputError("file", 0, in_quotes(shortened(file)), "a name without a folder that ends in .proleg");
+  }
+  const std::filesystem::path path = options_.recordings / name;
+  if (std::filesystem::exists(path)) {
+    throw InputError(path.string(), 0, "a file that exists", "a new name");
+  }
+  if (!live_.record(path, "simulate", options_.build_id, [this] { return !wants_stop(); })) {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+    throw std::runtime_error("the recording was given up: STOP");
+  }
+  pace_.begin(Clock::now());
+  recording_ = path.string();
+}
+
+bool SimulatedSession::wants_stop() {
+  const std::lock_guard lock(mutex_);
+  return ends_ || !stops_.empty();
+}
+
+void SimulatedSession::set_state(State state) {
+  state_ = state;
+  if (state != State::stopped) {
+    stopped_by_.clear();
+  }
+  is_session_new_ = true;
+}
+
+void SimulatedSession::publish_session(Clock::time_point now) {
+  constexpr const char* names[] = {"paused", "running", "stopped", "failed"};
+  const sim::Simulation& simulation = live_.simulation();
+  bool is_changed = false;
+  for (const ParameterPlace& place : live_.parameters().places()) {
+    const ParameterTable::Values& values = live_.parameters().at(place);
+    is_changed = is_changed || values.wanted != values.file;
+  }
+  const double measured = pace_.measure(now);
+  const json document{{"state", names[static_cast<std::size_t>(state_)]},
+                      {"factor", pace_.factor()},
+                      {"measured_factor", state_ == State::running ? json(measured) : json()},
+                      {"run", run_},
+                      {"tick", simulation.tick()},
+                      {"time_s", simulation.time_s()},
+                      {"stopped_by", text_or_null(stopped_by_)},
+                      {"recording", text_or_null(recording_)},
+                      {"changed", is_changed},
+                      {"undo", text_or_null(entry_name(live_.history().to_undo()))},
+                      {"redo", text_or_null(entry_name(live_.history().to_redo()))},
+                      {"set", std::string(1, live_.set_name())},
+                      {"failure", text_or_null(failure_)},
+                      {"measures", measures_json(live_)}};
+  output_.publish("session", document);
+  is_session_new_ = false;
+  publish_at_ = now + publish_period;
+}
+
+void SimulatedSession::publish_changes() {
+  if (live_.revision() != published_revision_) {
+    published_revision_ = live_.revision();
+    output_.publish("parameters", parameters_document(live_.scenario(), live_.parameters()));
+    is_session_new_ = true;
+  }
+}
+
+}  // namespace proleg::tools

@@ -1,0 +1,121 @@
+#pragma once
+
+// A simulated robot that viewers watch and change. It runs in a thread of its own.
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "sim/scenario/losses.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "tools/proleg/ui/live_simulation.hpp"
+#include "tools/proleg/ui/run_pace.hpp"
+#include "tools/proleg/ui/session_output.hpp"
+
+namespace proleg::tools {
+
+struct SimulatedSessionOptions {
+  std::filesystem::path recordings;  ///< the folder of all recordings
+  std::string command;               ///< that simulates the same scenario: "proleg simulate FILE ..."
+  std::string build_id;
+  bool starts_paused = false;
+};
+
+class SimulatedSession {
+ public:
+  /// scenario, losses, output: must outlive the session. Throws as Simulation does.
+  SimulatedSession(const sim::Scenario& scenario, const sim::Losses* losses, SimulatedSessionOptions options,
+                   SessionOutput& output);
+  /// Ends the thread, and a recording.
+  ~SimulatedSession();
+  SimulatedSession(const SimulatedSession&) = delete;
+  SimulatedSession& operator=(const SimulatedSession&) = delete;
+
+  /// An operation of docs/page-interface.md. arguments: an object. From any thread; the answer goes to the output.
+  void operate(std::uint64_t request, const std::string& name, const nlohmann::json& arguments);
+  /// The simulation stands still after the tick that is computed now. From any thread.
+  void stop(std::uint64_t request, const std::string& by);
+  /// Operations that anybody may use.
+  [[nodiscard]] static std::vector<std::string> free_operations() { return {"command_line"}; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  enum class State : std::uint8_t { paused, running, stopped, failed };
+
+  struct Operation;
+  struct Stop {
+    std::uint64_t request;
+    std::string by;
+    Clock::time_point since;
+  };
+
+  static constexpr std::chrono::milliseconds publish_period{500};
+
+  void run();
+  void wait();
+  void take_stops();
+  void take_operations();
+  /// Returns the value of the answer.
+  [[nodiscard]] nlohmann::json carry_out(const Operation& operation);
+  void tick();
+  void begin_recording(const std::string& file);
+  [[nodiscard]] bool wants_stop();
+  [[nodiscard]] bool may_tick() const { return state_ == State::running || steps_left_ > 0; }
+  void set_state(State state);
+  void publish_session(Clock::time_point now);
+  void publish_changes();
+  void require_sound() const;
+
+  // The operations: take their arguments and return the value of the answer, or throw.
+  using Handler = nlohmann::json (SimulatedSession::*)(const nlohmann::json&);
+  nlohmann::json go_on(const nlohmann::json& arguments);
+  nlohmann::json pause(const nlohmann::json& arguments);
+  nlohmann::json step(const nlohmann::json& arguments);
+  nlohmann::json restart(const nlohmann::json& arguments);
+  nlohmann::json set_factor(const nlohmann::json& arguments);
+  nlohmann::json set(const nlohmann::json& arguments);
+  nlohmann::json undo(const nlohmann::json& arguments);
+  nlohmann::json redo(const nlohmann::json& arguments);
+  nlohmann::json swap(const nlohmann::json& arguments);
+  nlohmann::json reset(const nlohmann::json& arguments);
+  nlohmann::json record(const nlohmann::json& arguments);
+  nlohmann::json tell_command_line(const nlohmann::json& arguments);
+
+  const sim::Scenario& file_;
+  SimulatedSessionOptions options_;
+  SessionOutput& output_;
+
+  // Of the thread.
+  LiveSimulation live_;
+  RunPace pace_;
+  State state_ = State::running;
+  std::uint32_t steps_left_ = 0;
+  std::uint16_t run_ = 1;
+  std::string stopped_by_;
+  std::string failure_;
+  std::string recording_;
+  std::vector<std::int32_t> row_;
+  std::uint64_t published_revision_ = 0;
+  bool is_session_new_ = true;
+  Clock::time_point publish_at_{};
+
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<Operation> operations_;
+  std::deque<Stop> stops_;
+  std::atomic<bool> has_requests_ = false;
+  bool ends_ = false;
+  std::thread thread_;  ///< the last to begin
+};
+
+}  // namespace proleg::tools

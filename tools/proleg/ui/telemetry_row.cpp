@@ -1,0 +1,106 @@
+#include "tools/proleg/ui/telemetry_row.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "shared/fixed/unit.hpp"
+#include "sim/record/internal_values.hpp"
+#include "sim/scenario/names.hpp"
+#include "sim/scenario/settings.hpp"
+
+namespace proleg::tools {
+namespace {
+
+std::vector<unsigned> first_numbers(std::size_t count) {
+  std::vector<unsigned> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0U);
+  return numbers;
+}
+
+/// The nearest raw value; beyond the range of int32 the last one that is a value.
+std::int32_t rounded(double value) {
+  if (!std::isfinite(value)) {
+    return no_value;
+  }
+  constexpr double greatest = std::numeric_limits<std::int32_t>::max();
+  return static_cast<std::int32_t>(std::lround(std::clamp(value, -greatest, greatest)));
+}
+
+double step_of(Unit unit) {
+  const UnitScale scale = scale_of(unit);
+  return static_cast<double>(scale.denominator) / static_cast<double>(scale.numerator);
+}
+
+constexpr double unit_quaternion = 1 << 30;
+constexpr double raw_per_radian = (1 << 30) / (std::numbers::pi / 2);
+
+}  // namespace
+
+std::vector<Signal> signals_of(const sim::Scenario& scenario) {
+  using Of = Signal::Of;
+  const std::vector<unsigned> joints = first_numbers(scenario.robot.joints.size());
+  const std::vector<unsigned> links = first_numbers(scenario.robot.links.size());
+  std::vector<Signal> signals{{"setpoint", "deg", step_of(Unit::degree), joints, Of::joint},
+                              {"angle", "deg", step_of(Unit::degree), joints, Of::joint},
+                              {"pulse", "us", 1.0 / 12.0, joints, Of::joint},
+                              {"current", "mA", 1.0, joints, Of::joint},
+                              {"torque", "mNm", 1.0, joints, Of::joint},
+                              {"contact", "", 1.0, links, Of::link},
+                              {"force", "mN", 1.0, links, Of::link},
+                              {"head", "", 1.0, first_numbers(7), Of::robot}};
+  for (const unsigned slot : sim::used_slots(scenario)) {
+    const Declaration& declaration = scenario.kernel.slots[slot].algorithm->declaration();
+    std::vector<unsigned> group;
+    for (const unsigned joint : scenario.kernel.slots[slot].group) {
+      group.push_back(joint);
+    }
+    for (const InternalValue& value : declaration.internal_values) {
+      signals.push_back({std::to_string(slot + 1) + '/' + std::string(value.name), sim::shown_unit(value.unit),
+                         step_of(value.unit), group, Of::joint});
+    }
+  }
+  return signals;
+}
+
+void fill_row(const sim::TickSample& sample, const sim::Scenario& scenario, std::vector<std::int32_t>& row) {
+  row.assign(sample.setpoints.begin(), sample.setpoints.end());
+  for (const double angle : sample.joint_angles) {
+    row.push_back(rounded(angle * raw_per_radian));
+  }
+  row.insert(row.end(), sample.servo_commands.begin(), sample.servo_commands.end());
+  for (const double current : sample.servo_currents) {
+    row.push_back(rounded(current));
+  }
+  for (const double torque : sample.motor_torques) {
+    row.push_back(rounded(torque * 1e3));
+  }
+  row.insert(row.end(), sample.latched_contacts.begin(), sample.latched_contacts.end());
+  for (const double force : sample.contact_forces) {
+    row.push_back(rounded(force * 1e3));
+  }
+  const sim::Pose& head = sample.link_poses.front();
+  for (const double metres : {head.position.x(), head.position.y(), head.position.z()}) {
+    row.push_back(rounded(metres * 1e6));
+  }
+  const Eigen::Quaterniond& turn = head.orientation;
+  for (const double part : {turn.w(), turn.x(), turn.y(), turn.z()}) {
+    row.push_back(rounded(part * unit_quaternion));
+  }
+  // A recording has all values of one joint behind each other, a signal one value of all joints.
+  std::size_t begin = 0;
+  for (const unsigned slot : sim::used_slots(scenario)) {
+    const Slot& used = scenario.kernel.slots[slot];
+    const std::size_t values = used.algorithm->declaration().internal_values.size();
+    const std::size_t joints = used.group.size();
+    for (std::size_t value = 0; value < values; ++value) {
+      for (std::size_t joint = 0; joint < joints; ++joint) {
+        row.push_back(sample.internal_values[begin + joint * values + value]);
+      }
+    }
+    begin += values * joints;
+  }
+}
+
+}  // namespace proleg::tools

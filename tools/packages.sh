@@ -1,4 +1,4 @@
-# Names of the Debian packages, and a function that installs the missing ones. tools/demo and tools/check read this file.
+# Names of the Debian packages, and a function that installs the missing ones. tools/demo, tools/check and tools/page read this file.
 
 # Programs for this computer.
 host_packages=(
@@ -36,6 +36,10 @@ lab_packages=(
   udev                            # reads the shipped rules in a check
   python3
 )
+
+# The web page: tools/page. Only where there is no other node and npm.
+page_packages=(nodejs npm)
+browser_packages=(chromium)  # its tests
 
 # install_packages NAME...: installs the packages that are missing, and prints their names.
 install_packages() {

@@ -1,0 +1,110 @@
+// Bundles the page, or its tests.
+//   node bundle.mjs page FOLDER     index.html, app.js with its chunks, the workers, style.css
+//   node bundle.mjs tests FOLDER    each *_test.ts of tests/host/page as one program for `node --test`
+import { build } from 'esbuild';
+import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import { dirname, join, relative } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { gzipSync } from 'node:zlib';
+
+const room = dirname(fileURLToPath(import.meta.url));
+const tests = join(room, '../../tests/host/page');
+
+// Sizes in bytes of gzip. The first chunk is what the page needs for the top bar, STOP and the connection.
+const largestFirstChunk = 40 * 1024;
+const largestPage = 220 * 1024;
+
+const common = { bundle: true, target: 'es2022', legalComments: 'none', logLevel: 'warning', absWorkingDir: room };
+
+async function bundlePage(folder) {
+  rmSync(folder, { recursive: true, force: true });
+  mkdirSync(folder, { recursive: true });
+  const page = { ...common, minify: true, outdir: folder, jsx: 'automatic', jsxImportSource: 'preact' };
+  const result = await build({
+    ...page,
+    entryPoints: { app: 'source/app.tsx', style: 'source/style/style.css' },
+    format: 'esm',
+    splitting: true,
+    chunkNames: 'chunk-[name]-[hash]',
+    metafile: true,
+  });
+  // Workers are programs of their own: they share no chunk with the page.
+  await build({
+    ...page,
+    entryPoints: { connection_worker: 'source/wire/connection_worker.ts', scene_worker: 'source/scene/scene_worker.ts' },
+    format: 'iife',
+  });
+  cpSync(join(room, 'source/index.html'), join(folder, 'index.html'));
+  return checkSizes(folder, firstFiles(result.metafile));
+}
+
+// Names of the files that the first paint, the connection and STOP need.
+function firstFiles(metafile) {
+  const pending = Object.keys(metafile.outputs).filter((file) => file.endsWith('/app.js'));
+  const found = new Set();
+  while (pending.length > 0) {
+    const file = pending.pop();
+    if (found.has(file)) continue;
+    found.add(file);
+    for (const imported of metafile.outputs[file].imports) {
+      if (imported.kind === 'import-statement') pending.push(imported.path);
+    }
+  }
+  return new Set([...found].map((file) => file.split('/').at(-1)).concat('index.html', 'style.css', 'connection_worker.js'));
+}
+
+function checkSizes(folder, first) {
+  let raw = 0;
+  let compressed = 0;
+  let compressedFirst = 0;
+  for (const name of readdirSync(folder).sort()) {
+    const bytes = readFileSync(join(folder, name));
+    const size = gzipSync(bytes, { level: 9 }).length;
+    raw += bytes.length;
+    compressed += size;
+    compressedFirst += first.has(name) ? size : 0;
+    print(name + (first.has(name) ? ' (first)' : ''), bytes.length, size);
+  }
+  print('first chunk', NaN, compressedFirst);
+  print('all', raw, compressed);
+  let fits = true;
+  for (const [what, size, largest] of [
+    ['the first chunk', compressedFirst, largestFirstChunk],
+    ['the page', compressed, largestPage],
+  ]) {
+    if (size > largest) {
+      console.error(`tools/page: found ${size} compressed bytes in ${what}, expected at most ${largest}`);
+      fits = false;
+    }
+  }
+  return fits;
+}
+
+function print(name, raw, compressed) {
+  const kilobytes = (size) => (Number.isNaN(size) ? '' : `${(size / 1024).toFixed(1)} kB`).padStart(11);
+  console.log(`${name.padEnd(36)}${kilobytes(raw)}${kilobytes(compressed)} compressed`);
+}
+
+async function bundleTests(folder) {
+  const files = readdirSync(tests, { recursive: true, withFileTypes: true })
+    .filter((entry) => entry.isFile() && entry.name.endsWith('_test.ts'))
+    .map((entry) => relative(tests, join(entry.path, entry.name)));
+  rmSync(folder, { recursive: true, force: true });
+  await build({
+    ...common,
+    entryPoints: files.map((file) => join(tests, file)),
+    outbase: tests,
+    outdir: folder,
+    outExtension: { '.js': '.cjs' },
+    platform: 'node',
+    format: 'cjs',
+    external: ['playwright-core', 'axe-core'],
+    nodePaths: [join(room, 'node_modules')],
+    sourcemap: 'inline',
+  });
+  return files.length > 0;
+}
+
+const [what, folder] = process.argv.slice(2);
+const succeeded = await (what === 'tests' ? bundleTests(folder) : bundlePage(folder));
+process.exit(succeeded ? 0 : 1);

@@ -1,0 +1,30 @@
+// Start of the page: what must be there at once. The rest comes as a chunk of its own (panels/live_page.tsx).
+import '@preact/signals';
+import { render } from 'preact';
+import { listenToKeys } from './keyboard.js';
+import { addActions } from './page_actions.js';
+import { PageApp } from './page_app.js';
+import { Frame } from './panels/frame.js';
+import { viewerName } from './state/viewer_name.js';
+import { takeToken } from './wire/access_token.js';
+import './theme.js';
+
+const root = document.getElementById('app') as HTMLElement;
+const token = takeToken(location, history, sessionStorage);
+
+if (token === null) {
+  render(
+    <main class="lone-text">
+      <h1>This address has no token</h1>
+      <p>
+        Open the address that <code>proleg ui</code> prints. It ends with <code>#</code> and the token.
+      </p>
+    </main>,
+    root,
+  );
+} else {
+  const app = new PageApp(token, viewerName(navigator.userAgent));
+  addActions(app);
+  listenToKeys(app.actions, () => app.stop.press());
+  render(<Frame app={app} />, root);
+}

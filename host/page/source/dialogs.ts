@@ -1,0 +1,10 @@
+// Which dialog is open.
+import { signal } from '@preact/signals-core';
+
+export type Dialog = 'none' | 'keys' | 'palette' | 'command_line';
+
+export const openDialog = signal<Dialog>('none');
+
+export function toggleDialog(dialog: Dialog): void {
+  openDialog.value = openDialog.value === dialog ? 'none' : dialog;
+}

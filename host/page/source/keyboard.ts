@@ -1,0 +1,50 @@
+// Keys of the whole page. STOP comes first, whatever has the focus.
+import type { ActionList } from './state/actions.js';
+
+const textInputs = new Set(['text', 'number', 'search']);
+
+function isTextField(target: EventTarget | null): boolean {
+  return (
+    target instanceof HTMLTextAreaElement ||
+    (target instanceof HTMLInputElement && textInputs.has(target.type)) ||
+    (target instanceof HTMLElement && target.isContentEditable)
+  );
+}
+
+// Elements that use the arrow keys themselves.
+function usesArrows(target: EventTarget | null): boolean {
+  return target instanceof Element && target.closest('input, select, [role="slider"], [data-arrows]') !== null;
+}
+
+export function listenToKeys(actions: ActionList, stop: () => void): void {
+  window.addEventListener(
+    'keydown',
+    (event) => {
+      const isText = isTextField(event.target);
+      if (event.key === 'Escape' || (event.key === ' ' && !isText)) {
+        // A key that is held down is one press.
+        if (!event.repeat) stop();
+        event.preventDefault();
+        event.stopPropagation();
+        return;
+      }
+      if (event.key.startsWith('Arrow') && usesArrows(event.target)) {
+        return;
+      }
+      const action = actions.forKey(event, isText);
+      if (action !== undefined) {
+        event.preventDefault();
+        action.run();
+      }
+    },
+    { capture: true },
+  );
+  // Buttons act on the release of Space; here Space is STOP.
+  window.addEventListener(
+    'keyup',
+    (event) => {
+      if (event.key === ' ' && !isTextField(event.target)) event.preventDefault();
+    },
+    { capture: true },
+  );
+}

@@ -1,0 +1,148 @@
+// The actions of the page, with their keys.
+import { nextTheme } from './theme.js';
+import { toggleDialog } from './dialogs.js';
+import type { PageApp } from './page_app.js';
+
+export function addActions(app: PageApp): void {
+  const { state, time, operations } = app;
+  const isHolder = () => state.isHolder.value;
+  const isRunning = () => state.session.value?.state === 'running';
+  const tell: typeof operations.tell = (name, parameters) => operations.tell(name, parameters);
+
+  app.actions.add(
+    {
+      id: 'stop',
+      title: 'STOP the robot (Space too, outside text fields)',
+      group: 'Robot',
+      keys: ['Escape'],
+      run: () => app.stop.press(),
+    },
+    {
+      id: 'run_or_pause',
+      title: 'Run, or pause',
+      group: 'Robot',
+      keys: ['K'],
+      isEnabled: isHolder,
+      run: () => void tell(isRunning() ? 'pause' : 'run', {}),
+    },
+    {
+      id: 'step',
+      title: 'Step: one tick, then pause',
+      group: 'Robot',
+      keys: ['.'],
+      isEnabled: isHolder,
+      run: () => void tell('step', { ticks: 1 }),
+    },
+    {
+      id: 'restart',
+      title: 'Restart at tick 0',
+      group: 'Robot',
+      keys: ['Shift+R'],
+      isEnabled: isHolder,
+      run: () => void tell('restart', {}),
+    },
+    {
+      id: 'restart_as_file',
+      title: 'Restart with the parameters of the file',
+      group: 'Robot',
+      keys: [],
+      isEnabled: isHolder,
+      run: () => void tell('restart', { parameters: 'file' }),
+    },
+    {
+      id: 'take_control',
+      title: 'Take control, or give it up',
+      group: 'Robot',
+      keys: ['C'],
+      isEnabled: () => state.isConnected.value,
+      run: () => void tell(isHolder() ? 'control.release' : 'control.take', {}),
+    },
+    {
+      id: 'freeze',
+      title: 'Freeze the view, or return to live',
+      group: 'View',
+      keys: ['P'],
+      run: () => (time.isLive.value ? time.freeze(app.newestTick) : time.goLive()),
+    },
+    { id: 'live', title: 'Return to live', group: 'View', keys: ['L'], run: () => time.goLive() },
+    {
+      id: 'tick_back',
+      title: 'Time cursor: one tick back',
+      group: 'View',
+      keys: ['ArrowLeft'],
+      run: () => time.moveCursor(-1, app.newestTick),
+    },
+    {
+      id: 'tick_on',
+      title: 'Time cursor: one tick on',
+      group: 'View',
+      keys: ['ArrowRight'],
+      run: () => time.moveCursor(1, app.newestTick),
+    },
+    {
+      id: 'second_back',
+      title: 'Time cursor: one second back',
+      group: 'View',
+      keys: ['Shift+ArrowLeft'],
+      run: () => time.moveCursor(-app.tickRate, app.newestTick),
+    },
+    {
+      id: 'second_on',
+      title: 'Time cursor: one second on',
+      group: 'View',
+      keys: ['Shift+ArrowRight'],
+      run: () => time.moveCursor(app.tickRate, app.newestTick),
+    },
+    {
+      id: 'undo',
+      title: 'Undo the last change of parameters',
+      group: 'Parameters',
+      keys: ['Ctrl+Z'],
+      isGlobal: true,
+      isEnabled: isHolder,
+      run: () => void tell('undo', {}),
+    },
+    {
+      id: 'redo',
+      title: 'Redo',
+      group: 'Parameters',
+      keys: ['Ctrl+Y', 'Ctrl+Shift+Z'],
+      isGlobal: true,
+      isEnabled: isHolder,
+      run: () => void tell('redo', {}),
+    },
+    {
+      id: 'swap',
+      title: 'Swap the sets A and B',
+      group: 'Parameters',
+      keys: ['B'],
+      isEnabled: isHolder,
+      run: () => void tell('swap', {}),
+    },
+    {
+      id: 'reset',
+      title: 'All parameters back to the file',
+      group: 'Parameters',
+      keys: [],
+      isEnabled: isHolder,
+      run: () => void tell('reset', {}),
+    },
+    {
+      id: 'command_line',
+      title: 'Command that gives the same run',
+      group: 'Parameters',
+      keys: ['X'],
+      run: () => toggleDialog('command_line'),
+    },
+    {
+      id: 'palette',
+      title: 'Find an action',
+      group: 'Page',
+      keys: ['Ctrl+K'],
+      isGlobal: true,
+      run: () => toggleDialog('palette'),
+    },
+    { id: 'keys', title: 'Show the keys', group: 'Page', keys: ['?'], run: () => toggleDialog('keys') },
+    { id: 'theme', title: 'Light, dark, or as the system', group: 'Page', keys: ['T'], run: nextTheme },
+  );
+}

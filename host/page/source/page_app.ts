@@ -1,0 +1,130 @@
+// The parts of the page, put together: state, connection, STOP, data.
+import { effect } from '@preact/signals-core';
+import { TelemetryHistory } from './data/telemetry_history.js';
+import { ActionList } from './state/actions.js';
+import { OperationQueue } from './state/operations.js';
+import { PageState } from './state/page_state.js';
+import { SetQueue } from './state/set_queue.js';
+import { SignalSelection } from './state/signal_selection.js';
+import { StopControl } from './state/stop_report.js';
+import { TimeView } from './state/time_view.js';
+import type { FromConnectionWorker, ToConnectionWorker } from './wire/connection_worker.js';
+import { decodeTelemetry } from './wire/telemetry_message.js';
+import { StopChannel } from './wire/stop_channel.js';
+import { Subscriptions } from './wire/subscription.js';
+
+export class PageApp {
+  readonly state = new PageState();
+  readonly history = new TelemetryHistory();
+  readonly time = new TimeView();
+  readonly selection = new SignalSelection();
+  readonly actions = new ActionList();
+  readonly operations: OperationQueue;
+  readonly sets: SetQueue;
+  readonly stop: StopControl;
+  private readonly worker = new Worker('connection_worker.js');
+  private subscriptions = new Subscriptions();
+  // Gestures of two viewers must not have one number, or undo would take them as one.
+  private lastGesture = Math.floor(Math.random() * 2 ** 20) * 1024;
+
+  constructor(token: string, name: string) {
+    this.operations = new OperationQueue(this.state, (request) => this.post({ kind: 'operation', request }));
+    this.sets = new SetQueue({
+      send: (words, gesture) => this.operations.ask('set', { words, gesture }),
+      refused: (reason) => this.state.addNotice('warning', reason),
+    });
+    const url = `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/socket`;
+    const channel = openStopChannel(url, token, name);
+    this.stop = new StopControl(channel);
+    this.worker.onmessage = (event: MessageEvent<FromConnectionWorker>) => this.receive(event.data);
+    this.post({ kind: 'open', url, token, name });
+    effect(() => this.subscribe());
+  }
+
+  newGesture(): number {
+    this.lastGesture += 1;
+    return this.lastGesture;
+  }
+
+  // Ticks in a second.
+  get tickRate(): number {
+    return 1e6 / (this.state.telemetry.value?.tick_us ?? 10000);
+  }
+
+  // The newest tick that is known; 0 before the first.
+  get newestTick(): number {
+    return this.history.end === 0 ? (this.state.session.peek()?.tick ?? 0) : this.history.lastTick();
+  }
+
+  private post(message: ToConnectionWorker): void {
+    this.worker.postMessage(message);
+  }
+
+  private subscribe(): void {
+    if (!this.state.isConnected.value) {
+      this.subscriptions = new Subscriptions();
+      return;
+    }
+    const signals = this.state.telemetry.value?.signals;
+    if (signals !== undefined) {
+      const names = this.subscriptions.select(this.selection.needed(signals));
+      if (names !== null) {
+        this.post({ kind: 'subscribe', signals: names });
+      }
+    }
+  }
+
+  private receive(message: FromConnectionWorker): void {
+    switch (message.kind) {
+      case 'alive?':
+        return this.post({ kind: 'alive' });
+      case 'status':
+        return this.state.receiveStatus(message.status);
+      case 'message':
+        return this.state.receive(message.message);
+      case 'result':
+        return this.operations.receive(message.key, message.result);
+      case 'latency':
+        this.state.latency.value = message.ms;
+        return;
+      case 'telemetry':
+        return this.receiveTelemetry(message.buffer);
+    }
+  }
+
+  private receiveTelemetry(buffer: ArrayBuffer): void {
+    const telemetry = decodeTelemetry(buffer);
+    const layout = this.subscriptions.layoutOf(telemetry.subscription);
+    if (layout === null) {
+      return;
+    }
+    if (telemetry.run !== this.history.run) {
+      this.time.goLive();
+    }
+    this.history.append(telemetry, layout);
+  }
+}
+
+function openStopChannel(url: string, token: string, name: string): StopChannel {
+  const channel = new StopChannel(token, `STOP of ${name}`.slice(0, 60), {
+    openSocket: (events) => {
+      const socket = new WebSocket(url);
+      socket.onopen = () => events.opened();
+      socket.onclose = (event) => events.closed(event.code, event.reason);
+      socket.onmessage = (event) => {
+        if (typeof event.data === 'string') events.text(event.data);
+      };
+      return socket;
+    },
+    post: async () => {
+      const response = await fetch('/stop', { method: 'POST', headers: { Authorization: `Bearer ${token}` }, keepalive: true });
+      if (!response.ok) {
+        throw new Error(`the program answered ${response.status}`);
+      }
+    },
+    now: () => performance.now(),
+    after: (ms, action) => void setTimeout(action, ms),
+  });
+  channel.open();
+  return channel;
+}

@@ -1,0 +1,81 @@
+// Bands below the top bar: what the user must know or decide now.
+import { useEffect, useState } from 'preact/hooks';
+import type { PageApp } from '../page_app.js';
+import type { ConnectionStatus } from '../wire/connection.js';
+
+function describeConnection(status: ConnectionStatus): string | null {
+  switch (status.state) {
+    case 'open':
+      return null;
+    case 'connecting':
+      return 'Connecting to the program …';
+    case 'lost':
+      return `No connection to the program; the robot may go on. What you see is old. Connecting again (attempt ${status.attempts}) …`;
+    case 'ended':
+      return 'The program has ended. What you see is old. Start it again with “proleg ui”, and open the address that it prints.';
+    case 'refused':
+      return `The program does not accept this page (${status.reason || 'without a reason'}). Open the address that “proleg ui” prints.`;
+  }
+}
+
+// Seconds that are left, counted down here: the document has them only once.
+function Countdown({ ms }: { ms: number }) {
+  const [end] = useState(() => performance.now() + ms);
+  const [left, setLeft] = useState(ms);
+  useEffect(() => {
+    const timer = setInterval(() => setLeft(Math.max(0, end - performance.now())), 250);
+    return () => clearInterval(timer);
+  }, [end]);
+  return <>{Math.ceil(left / 1000)} s</>;
+}
+
+function RequestBand({ app }: { app: PageApp }) {
+  const request = app.state.control.value?.request ?? null;
+  if (request === null) {
+    return null;
+  }
+  if (request.client === app.state.client.value) {
+    return (
+      <div class="band info" role="status">
+        You asked for control. It is yours in <Countdown key={request.client} ms={request.ms} />, unless the other viewer refuses.
+      </div>
+    );
+  }
+  if (!app.state.isHolder.value) {
+    return null;
+  }
+  const answer = (grant: boolean) => void app.operations.tell('control.answer', { grant });
+  return (
+    <div class="band question" role="alert">
+      <span>
+        <strong>{request.name}</strong> asks for control. It passes in <Countdown key={request.client} ms={request.ms} />.
+      </span>
+      <button type="button" class="primary" onClick={() => answer(true)}>
+        Give control
+      </button>
+      <button type="button" onClick={() => answer(false)}>
+        Keep control
+      </button>
+    </div>
+  );
+}
+
+export function Bands({ app }: { app: PageApp }) {
+  const connection = describeConnection(app.state.connection.value);
+  const session = app.state.session.value;
+  return (
+    <div class="bands">
+      {connection !== null && (
+        <div class={`band ${app.state.connection.value.state === 'connecting' ? 'info' : 'lost'}`} role="alert" data-testid="connection-band">
+          {connection}
+        </div>
+      )}
+      {session?.failure && (
+        <div class="band lost" role="alert">
+          {session.failure}
+        </div>
+      )}
+      <RequestBand app={app} />
+    </div>
+  );
+}

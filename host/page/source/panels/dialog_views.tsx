@@ -1,0 +1,183 @@
+// The dialogs: keys, palette, command line. They are not modal: STOP must stay within reach, by mouse too. Esc is STOP in
+// them as everywhere; they close with their key, their button, or a click beside them.
+import type { ComponentChildren } from 'preact';
+import { useEffect, useRef, useState } from 'preact/hooks';
+import type { PageApp } from '../page_app.js';
+import type { Action } from '../state/actions.js';
+import { openDialog } from '../dialogs.js';
+import { closeIcon, copyIcon } from './icons.js';
+
+const keyNames: Record<string, string> = {
+  Escape: 'Esc',
+  ArrowLeft: '←',
+  ArrowRight: '→',
+};
+
+export function keyText(key: string): string {
+  return key
+    .split('+')
+    .map((part) => keyNames[part] ?? part)
+    .join(' + ');
+}
+
+function close(): void {
+  openDialog.value = 'none';
+}
+
+function Dialog({ title, children }: { title: string; children: ComponentChildren }) {
+  const dialog = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    const before = document.activeElement;
+    const find = (tag: string) => dialog.current?.querySelector<HTMLElement>(tag);
+    (find('input') ?? find('button'))?.focus();
+    return () => {
+      if (before instanceof HTMLElement) before.focus();
+    };
+  }, []);
+  return (
+    <>
+    <div class="backdrop" onClick={close} />
+    <div ref={dialog} class="dialog" role="dialog" aria-label={title}>
+      <div class="dialog-head">
+        <h2>{title}</h2>
+        <button type="button" class="icon-button" aria-label="Close" onClick={close}>
+          {closeIcon}
+        </button>
+      </div>
+      {children}
+    </div>
+    </>
+  );
+}
+
+function Keys({ app }: { app: PageApp }) {
+  const groups = ['Robot', 'View', 'Parameters', 'Page'] as const;
+  return (
+    <Dialog title="Keys">
+      <div class="key-groups">
+        {groups.map((group) => (
+          <section key={group}>
+            <h3>{group}</h3>
+            <dl>
+              {app.actions.all
+                .filter((action) => action.group === group && action.keys.length > 0)
+                .map((action) => (
+                  <div key={action.id}>
+                    <dt>
+                      <kbd>{keyText(action.keys[0] as string)}</kbd>
+                    </dt>
+                    <dd>{action.title}</dd>
+                  </div>
+                ))}
+            </dl>
+          </section>
+        ))}
+      </div>
+      <p class="hint">Buttons: Enter. Esc and Space stop the robot, in this window too. STOP does not replace a power switch.</p>
+    </Dialog>
+  );
+}
+
+function Palette({ app }: { app: PageApp }) {
+  const [text, setText] = useState('');
+  const [chosen, setChosen] = useState(0);
+  const found = app.actions.matching(text);
+  const current = Math.min(chosen, found.length - 1);
+  const start = (action: Action | undefined) => {
+    if (action !== undefined && action.isEnabled?.() !== false) {
+      openDialog.value = 'none';
+      action.run();
+    }
+  };
+  const move = (event: KeyboardEvent) => {
+    if (event.key === 'ArrowDown' || event.key === 'ArrowUp') {
+      const step = event.key === 'ArrowDown' ? 1 : found.length - 1;
+      setChosen((current + step) % Math.max(1, found.length));
+      event.preventDefault();
+    } else if (event.key === 'Enter') {
+      start(found[current]);
+      event.preventDefault();
+    }
+  };
+  return (
+    <Dialog title="Find an action">
+      <input
+        type="search"
+        class="wide"
+        role="combobox"
+        aria-expanded="true"
+        aria-controls="palette-list"
+        aria-activedescendant={found[current] === undefined ? undefined : `action-${found[current].id}`}
+        aria-label="Name of the action"
+        placeholder="Type a word, e.g. restart"
+        value={text}
+        onInput={(event) => {
+          setText(event.currentTarget.value);
+          setChosen(0);
+        }}
+        onKeyDown={move}
+      />
+      <ul id="palette-list" role="listbox" aria-label="Actions" class="palette">
+        {found.map((action, i) => (
+          <li
+            key={action.id}
+            id={`action-${action.id}`}
+            role="option"
+            aria-selected={i === current}
+            aria-disabled={action.isEnabled?.() === false}
+            onClick={() => start(action)}
+          >
+            <span>{action.title}</span>
+            {action.isEnabled?.() === false && <span class="hint">needs control</span>}
+            {action.keys[0] !== undefined && <kbd>{keyText(action.keys[0])}</kbd>}
+          </li>
+        ))}
+      </ul>
+      {found.length === 0 && <p class="hint">No action has these words.</p>}
+    </Dialog>
+  );
+}
+
+// The result of `command_line` is the text, or an object that has it.
+function textOf(value: unknown): string {
+  if (typeof value === 'string') {
+    return value;
+  }
+  const command = (value as { command?: unknown } | null)?.command;
+  return typeof command === 'string' ? command : '';
+}
+
+function CommandLine({ app }: { app: PageApp }) {
+  const [command, setCommand] = useState<string | null>(null);
+  const [isCopied, setCopied] = useState(false);
+  useEffect(() => {
+    app.operations.tell('command_line', {}).then((value) => setCommand(textOf(value)));
+  }, []);
+  const copy = async () => {
+    await navigator.clipboard.writeText(command ?? '');
+    setCopied(true);
+  };
+  return (
+    <Dialog title="Command that gives the same run">
+      <pre class="command" tabIndex={0} data-testid="command">
+        {command ?? 'Asking the program …'}
+      </pre>
+      <button type="button" class="primary" disabled={!command} onClick={() => void copy()}>
+        {copyIcon} {isCopied ? 'Copied' : 'Copy'}
+      </button>
+    </Dialog>
+  );
+}
+
+export function DialogView({ app }: { app: PageApp }) {
+  switch (openDialog.value) {
+    case 'keys':
+      return <Keys app={app} />;
+    case 'palette':
+      return <Palette app={app} />;
+    case 'command_line':
+      return <CommandLine app={app} />;
+    case 'none':
+      return null;
+  }
+}

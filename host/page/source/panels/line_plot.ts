@@ -1,0 +1,114 @@
+// A uPlot chart of lines, redrawn from the history when something changed.
+import uPlot from 'uplot';
+import { lineData } from '../data/line_data.js';
+import { onFrame } from '../frame_clock.js';
+import type { PageApp } from '../page_app.js';
+import type { Line } from '../state/signal_selection.js';
+import { axisWidth, chartTheme } from './chart_theme.js';
+
+const height = 170; // CSS pixels
+const framePeriod = 30; // milliseconds
+
+// Some room above and below; a constant value is in the middle. Null without values.
+function padded(low: number | null, high: number | null): [number, number] {
+  if (low === null || high === null) {
+    return [-1, 1];
+  }
+  const room = high > low ? (high - low) * 0.06 : Math.max(Math.abs(low) * 0.1, 0.5);
+  return [low - room, high + room];
+}
+
+export class LinePlot {
+  private readonly plot: uPlot;
+  private readonly cursor = document.createElement('div');
+  private readonly stops: (() => void)[] = [];
+  private lastKey = '';
+  private lastTime = 0;
+
+  constructor(
+    private readonly app: PageApp,
+    holder: HTMLElement,
+    private readonly lines: readonly Line[],
+    isDark: boolean,
+  ) {
+    this.plot = new uPlot(this.options(Math.max(100, holder.clientWidth), isDark), [[], ...lines.map(() => [])], holder);
+    this.cursor.className = 'plot-cursor';
+    this.plot.over.append(this.cursor);
+    const observer = new ResizeObserver(() => this.plot.setSize({ width: Math.max(100, holder.clientWidth), height }));
+    observer.observe(holder);
+    this.stops.push(() => observer.disconnect(), onFrame((now) => this.draw(now)));
+    this.listen();
+  }
+
+  dispose(): void {
+    this.stops.forEach((stop) => stop());
+    this.plot.destroy();
+  }
+
+  private options(width: number, isDark: boolean): uPlot.Options {
+    const theme = chartTheme(isDark);
+    const axis = { stroke: theme.text, grid: { stroke: theme.grid, width: 1 }, ticks: { stroke: theme.grid, width: 1 } };
+    return {
+      width,
+      height,
+      padding: [8, 0, 0, 0],
+      legend: { show: false },
+      cursor: { x: false, y: false, points: { show: false }, drag: { x: true, y: false, setScale: false } },
+      scales: { x: { time: false, auto: false }, y: { auto: true, range: (_, low, high) => padded(low, high) } },
+      axes: [
+        { ...axis, size: 32, values: (_, ticks) => ticks.map((value) => `${Number(value.toFixed(3))} s`) },
+        { ...axis, size: axisWidth, space: 24 },
+      ],
+      series: [{}, ...this.lines.map((_, i) => ({ stroke: theme.lines[i] ?? theme.text, width: 1.5, points: { show: false } }))],
+      hooks: { setSelect: [(plot) => this.zoomToSelection(plot)] },
+    };
+  }
+
+  private zoomToSelection(plot: uPlot): void {
+    const { left, width } = plot.select;
+    if (width > 3) {
+      const rate = this.app.tickRate;
+      this.app.time.detach({ from: plot.posToVal(left, 'x') * rate, to: plot.posToVal(left + width, 'x') * rate });
+      plot.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+    }
+  }
+
+  private listen(): void {
+    const { over } = this.plot;
+    const tickAt = (event: MouseEvent) => this.plot.posToVal(event.clientX - over.getBoundingClientRect().left, 'x') * this.app.tickRate;
+    const move = (event: MouseEvent) => (this.app.time.cursor.value = Math.max(0, Math.round(tickAt(event))));
+    const leave = () => {
+      if (this.app.time.isLive.peek()) this.app.time.cursor.value = null;
+    };
+    const wheel = (event: WheelEvent) => {
+      event.preventDefault();
+      this.app.time.zoom(Math.exp(event.deltaY * 0.002), tickAt(event), this.app.newestTick);
+    };
+    over.addEventListener('mousemove', move);
+    over.addEventListener('mouseleave', leave);
+    over.addEventListener('wheel', wheel, { passive: false });
+  }
+
+  private draw(now: number): void {
+    const { history, time } = this.app;
+    const range = time.range(this.app.newestTick);
+    const cursor = time.cursor.peek();
+    const key = [history.run, history.end, range.from, range.to, cursor, this.plot.width].join();
+    if (key === this.lastKey || now - this.lastTime < framePeriod) {
+      return;
+    }
+    this.lastKey = key;
+    this.lastTime = now;
+    const rate = this.app.tickRate;
+    const data = lineData(history, this.lines, range.from, range.to, this.plot.over.clientWidth);
+    this.plot.batch(() => {
+      this.plot.setData([data.times.map((tick) => tick / rate), ...data.values], false);
+      this.plot.setScale('x', { min: range.from / rate, max: range.to / rate });
+    });
+    const isVisible = cursor !== null && cursor >= range.from && cursor <= range.to;
+    this.cursor.hidden = !isVisible;
+    if (isVisible) {
+      this.cursor.style.transform = `translateX(${this.plot.valToPos(cursor / rate, 'x')}px)`;
+    }
+  }
+}

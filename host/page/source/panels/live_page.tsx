@@ -1,0 +1,27 @@
+// The page Live: the robot as it moves now.
+import type { PageApp } from '../page_app.js';
+import { JointTable } from './joint_table.js';
+import { ParameterPanel } from './parameter_panel.js';
+import { PlotPanel } from './plot_panel.js';
+import { RunControls } from './run_controls.js';
+import { ScenePanel } from './scene_panel.js';
+import { StripPanel } from './strip_panel.js';
+import { TimeControls } from './time_controls.js';
+
+export function LivePage({ app }: { app: PageApp }) {
+  return (
+    <div class="live">
+      <RunControls app={app} />
+      <div class="live-main">
+        <ScenePanel app={app} />
+        <TimeControls app={app} />
+        <StripPanel app={app} />
+        <PlotPanel app={app} />
+      </div>
+      <div class="live-side">
+        <ParameterPanel app={app} />
+        <JointTable app={app} />
+      </div>
+    </div>
+  );
+}

@@ -1,0 +1,43 @@
+// The last notices, for some seconds each; errors stay until they are closed.
+import { signal } from '@preact/signals';
+import { useEffect } from 'preact/hooks';
+import type { Notice, PageState } from '../state/page_state.js';
+import { closeIcon } from './icons.js';
+
+const shownFor = 8000; // milliseconds
+const mostShown = 4;
+
+const closed = signal<ReadonlySet<number>>(new Set());
+
+function close(number: number): void {
+  closed.value = new Set([...closed.value, number]);
+}
+
+function NoticeView({ notice }: { notice: Notice }) {
+  useEffect(() => {
+    if (notice.level === 'error') {
+      return undefined;
+    }
+    const timer = setTimeout(() => close(notice.number), shownFor);
+    return () => clearTimeout(timer);
+  }, [notice.number]);
+  return (
+    <li class={`notice ${notice.level}`}>
+      <span>{notice.text}</span>
+      <button type="button" class="icon-button" aria-label="Close this notice" onClick={() => close(notice.number)}>
+        {closeIcon}
+      </button>
+    </li>
+  );
+}
+
+export function NoticeList({ state }: { state: PageState }) {
+  const shown = state.notices.value.filter((notice) => !closed.value.has(notice.number)).slice(-mostShown);
+  return (
+    <ul class="notices" aria-live="polite" aria-label="Notices">
+      {shown.map((notice) => (
+        <NoticeView key={notice.number} notice={notice} />
+      ))}
+    </ul>
+  );
+}

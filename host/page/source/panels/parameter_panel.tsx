@@ -1,0 +1,92 @@
+// The parameters of all slots, and the internal values that a change may overwrite.
+import { useSignal } from '@preact/signals';
+import { openDialog } from '../dialogs.js';
+import type { PageApp } from '../page_app.js';
+import { summarise } from '../state/parameter_values.js';
+import type { Parameter } from '../wire/messages.js';
+import { DistortionForm } from './distortion_form.js';
+import { redoIcon, swapIcon, undoIcon } from './icons.js';
+import { ParameterRow } from './parameter_row.js';
+
+function Toolbar({ app, changed, filter }: { app: PageApp; changed: number; filter: { value: boolean } }) {
+  const session = app.state.session.value;
+  const isHolder = app.state.isHolder.value;
+  const tell = app.operations;
+  return (
+    <div class="toolbar" role="toolbar" aria-label="Changes of parameters">
+      <button
+        type="button"
+        disabled={!isHolder || !session?.undo}
+        onClick={() => void tell.tell('undo', {})}
+        title={session?.undo ? `Undo the change of ${session.undo} (Ctrl + Z)` : 'Nothing to undo'}
+      >
+        {undoIcon} Undo
+      </button>
+      <button
+        type="button"
+        disabled={!isHolder || !session?.redo}
+        onClick={() => void tell.tell('redo', {})}
+        title={session?.redo ? `Redo the change of ${session.redo} (Ctrl + Y)` : 'Nothing to redo'}
+      >
+        {redoIcon} Redo
+      </button>
+      <button
+        type="button"
+        disabled={!isHolder}
+        onClick={() => void tell.tell('swap', {})}
+        title="Two sets of parameters to compare: change to the other one (B)"
+      >
+        {swapIcon} Set {session?.set ?? 'A'}
+      </button>
+      <button
+        type="button"
+        disabled={!isHolder || changed === 0}
+        onClick={() => void tell.tell('reset', {})}
+        title="All parameters back to the file"
+      >
+        Reset all
+      </button>
+      <button
+        type="button"
+        aria-pressed={filter.value}
+        onClick={() => (filter.value = !filter.value)}
+        title="Show only what differs from the file"
+      >
+        Changed ({changed})
+      </button>
+      <button type="button" onClick={() => (openDialog.value = 'command_line')} title="The command that gives the same run (X)">
+        Command line
+      </button>
+    </div>
+  );
+}
+
+export function ParameterPanel({ app }: { app: PageApp }) {
+  const onlyChanged = useSignal(false);
+  const all = app.state.parameters.value;
+  const robot = app.state.robot.value;
+  const ordinary = all.filter((parameter) => !parameter.internal);
+  const changed = ordinary.filter((parameter) => summarise(parameter).isChanged);
+  const shown = onlyChanged.value ? changed : ordinary;
+  const slots = [...new Set(ordinary.map((parameter) => parameter.slot))];
+  const ofSlot = (slot: number): Parameter[] => shown.filter((parameter) => parameter.slot === slot);
+  const internal = all.filter((parameter) => parameter.internal);
+  return (
+    <section class="panel parameter-panel" aria-label="Parameters">
+      <h2>Parameters</h2>
+      <Toolbar app={app} changed={changed.length} filter={onlyChanged} />
+      {slots.map((slot) => (
+        <div key={slot} class="slot">
+          <h3>
+            {slot}. {robot?.slots.find((candidate) => candidate.number === slot)?.algorithm ?? ''}
+          </h3>
+          {ofSlot(slot).map((parameter) => (
+            <ParameterRow key={parameter.name} app={app} parameter={parameter} />
+          ))}
+        </div>
+      ))}
+      {onlyChanged.value && changed.length === 0 && <p class="hint">All parameters are as in the file.</p>}
+      {internal.length > 0 && <DistortionForm app={app} values={internal} />}
+    </section>
+  );
+}

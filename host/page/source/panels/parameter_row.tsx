@@ -1,0 +1,122 @@
+// One parameter: a slider and a number for all joints, and a cell for each joint.
+import { useSignal } from '@preact/signals';
+import type { PageApp } from '../page_app.js';
+import { formatRaw, parseValue, setWord, sliderStep, summarise } from '../state/parameter_values.js';
+import type { Parameter } from '../wire/messages.js';
+import { JointCells } from './joint_cells.js';
+
+// Whether the modules run with what was asked for.
+function Confirmation({ parameter }: { parameter: Parameter }) {
+  const { confirmed, tick } = summarise(parameter);
+  const count = parameter.wanted.length;
+  const isConfirmed = confirmed === count;
+  return (
+    <span
+      class={`confirmation ${isConfirmed ? 'done' : 'pending'}`}
+      data-testid={`confirmed-${parameter.slot}.${parameter.name}`}
+      title={
+        isConfirmed
+          ? `All joints work with the wanted values, from tick ${tick} on.`
+          : `${confirmed} of ${count} joints work with the wanted values.`
+      }
+    >
+      {isConfirmed ? (tick > 0 ? `✓ tick ${tick}` : '✓') : `… ${confirmed} of ${count}`}
+    </span>
+  );
+}
+
+export function ParameterRow({ app, parameter }: { app: PageApp; parameter: Parameter }) {
+  const isHolder = app.state.isHolder.value;
+  const { isUniform, isChanged } = summarise(parameter);
+  const gesture = useSignal(0);
+  // What the slider shows while it is dragged, in the unit.
+  const dragged = useSignal<number | null>(null);
+  const problem = useSignal<string | null>(null);
+  const helpIsOpen = useSignal(false);
+  const id = `parameter-${parameter.slot}-${parameter.name}`;
+  const title = parameter.name.replace(/_/g, ' ');
+
+  const set = (value: number) => app.sets.set([setWord(parameter, null, value)], gesture.value);
+  const reset = () => void app.operations.tell('reset', { slot: parameter.slot, name: parameter.name });
+  const mean = parameter.wanted.reduce((sum, raw) => sum + raw, 0) / Math.max(1, parameter.wanted.length);
+  const first = parameter.wanted[0] ?? 0;
+  const unit = parameter.unit === '' ? '' : ` ${parameter.unit}`;
+  const fileText = [...new Set(parameter.file)].map((raw) => formatRaw(raw, parameter)).join(', ');
+
+  const type = (input: HTMLInputElement) => {
+    const value = parseValue(input.value, parameter);
+    if (typeof value === 'string') {
+      problem.value = value;
+      return;
+    }
+    problem.value = null;
+    gesture.value = app.newGesture();
+    set(value);
+  };
+
+  return (
+    <div class={`parameter ${isChanged ? 'changed' : ''}`} data-parameter={`${parameter.slot}.${parameter.name}`}>
+      <div class="parameter-head">
+        <button
+          type="button"
+          class="parameter-name"
+          aria-expanded={helpIsOpen.value}
+          onClick={() => (helpIsOpen.value = !helpIsOpen.value)}
+          title={parameter.help}
+        >
+          {title}
+        </button>
+        {isChanged && <span class="file-value">file: {fileText.length > 24 ? 'several' : fileText}</span>}
+        <span class="space" />
+        <Confirmation parameter={parameter} />
+      </div>
+      {helpIsOpen.value && (
+        <p class="help">
+          {parameter.help} From {formatRaw(parameter.minimum, parameter)} to {formatRaw(parameter.maximum, parameter)}
+          {unit}; the default is {formatRaw(parameter.default, parameter)}. Double click: back to the file’s value.
+        </p>
+      )}
+      <div class="parameter-body">
+        <input
+          type="range"
+          aria-label={`${title}, all joints`}
+          min={parameter.minimum * parameter.scale}
+          max={parameter.maximum * parameter.scale}
+          step={sliderStep(parameter)}
+          value={dragged.value ?? mean * parameter.scale}
+          aria-valuetext={`${formatRaw(Math.round(mean), parameter)}${unit}`}
+          disabled={!isHolder}
+          onPointerDown={() => (gesture.value = app.newGesture())}
+          onKeyDown={(event) => {
+            if (!event.repeat) gesture.value = app.newGesture();
+          }}
+          onInput={(event) => {
+            dragged.value = Number(event.currentTarget.value);
+            set(dragged.value);
+          }}
+          onChange={() => (dragged.value = null)}
+          onDblClick={reset}
+          title="All joints. Double click: back to the file’s value"
+        />
+        <input
+          type="text"
+          inputMode="decimal"
+          aria-label={`${title}, all joints, in ${parameter.unit || 'numbers'}`}
+          aria-invalid={problem.value !== null}
+          value={isUniform ? formatRaw(first, parameter) : ''}
+          placeholder={isUniform ? '' : 'several'}
+          disabled={!isHolder}
+          onChange={(event) => type(event.currentTarget)}
+          onDblClick={reset}
+        />
+        <span class="unit">{parameter.unit}</span>
+        <JointCells app={app} parameter={parameter} />
+      </div>
+      {problem.value !== null && (
+        <p class="problem" role="alert" id={`${id}-problem`}>
+          {problem.value}
+        </p>
+      )}
+    </div>
+  );
+}

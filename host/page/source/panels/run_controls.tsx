@@ -1,0 +1,158 @@
+// Run, pause, step, restart, how fast; the present tick and time.
+import { useSignal } from '@preact/signals';
+import { useEffect, useRef } from 'preact/hooks';
+import { onFrame } from '../frame_clock.js';
+import type { PageApp } from '../page_app.js';
+import { pauseIcon, restartIcon, runIcon, stepIcon } from './icons.js';
+
+// The slider is logarithmic: -1 is 0.1, 0 is real time, 2 is 100.
+function factorOf(position: number): number {
+  return Number((10 ** position).toPrecision(2));
+}
+
+function Factor({ app }: { app: PageApp }) {
+  const factor = app.state.session.value?.factor ?? 1;
+  const isHolder = app.state.isHolder.value;
+  // While it is dragged, the slider is where the pointer is, not where the program is.
+  const dragged = useSignal<number | null>(null);
+  const set = (value: number) => void app.operations.tell('factor', { value });
+  const position = dragged.value ?? (factor === 0 ? 2 : Math.log10(factor));
+  const shown = dragged.value !== null ? factorOf(dragged.value) : factor;
+  return (
+    <div class="factor">
+      <label for="factor">Speed</label>
+      <input
+        id="factor"
+        type="range"
+        min="-1"
+        max="2"
+        step="0.05"
+        value={position}
+        disabled={!isHolder || factor === 0}
+        aria-valuetext={shown === 0 ? 'as fast as it goes' : `${shown} times real time`}
+        onInput={(event) => {
+          dragged.value = Number(event.currentTarget.value);
+          set(factorOf(dragged.value));
+        }}
+        onChange={() => (dragged.value = null)}
+        onDblClick={() => {
+          dragged.value = null;
+          set(1);
+        }}
+        title="Simulated seconds in a second. Double click: real time."
+      />
+      <output for="factor">{shown === 0 ? 'max' : `× ${shown}`}</output>
+      <button
+        type="button"
+        aria-pressed={factor === 0}
+        disabled={!isHolder}
+        onClick={() => set(factor === 0 ? 1 : 0)}
+        title="As fast as this computer can"
+      >
+        Fastest
+      </button>
+    </div>
+  );
+}
+
+function TickCounter({ app }: { app: PageApp }) {
+  const tick = useRef<HTMLElement>(null);
+  const time = useRef<HTMLElement>(null);
+  useEffect(
+    () =>
+      onFrame(() => {
+        const newest = app.newestTick;
+        const text = String(newest);
+        if (tick.current !== null && time.current !== null && tick.current.textContent !== text) {
+          tick.current.textContent = text;
+          time.current.textContent = `${(newest / app.tickRate).toFixed(2)} s`;
+        }
+      }),
+    [],
+  );
+  return (
+    <dl class="figures">
+      <div>
+        <dt>tick</dt>
+        <dd ref={tick} data-testid="tick">
+          0
+        </dd>
+      </div>
+      <div>
+        <dt>time</dt>
+        <dd ref={time} data-testid="time">
+          0.00 s
+        </dd>
+      </div>
+    </dl>
+  );
+}
+
+function Measures({ app }: { app: PageApp }) {
+  const speed = app.state.session.value?.measures?.['speed'];
+  return typeof speed !== 'number' ? null : (
+    <dl class="figures">
+      <div title="Of the centre of mass, over the run">
+        <dt>gait</dt>
+        <dd>{(speed * 1000).toFixed(1)} mm/s</dd>
+      </div>
+    </dl>
+  );
+}
+
+export function RunControls({ app }: { app: PageApp }) {
+  const { state, operations } = app;
+  const isHolder = state.isHolder.value;
+  const runState = state.session.value?.state ?? 'paused';
+  const isRunning = runState === 'running';
+  const ticks = useSignal(1);
+  return (
+    <section class="run-controls" aria-label="Run">
+      <button
+        type="button"
+        class="primary run"
+        disabled={!isHolder || runState === 'failed'}
+        onClick={() => void operations.tell(isRunning ? 'pause' : 'run', {})}
+        title="Run, or pause (K)"
+      >
+        {isRunning ? pauseIcon : runIcon} {isRunning ? 'Pause' : 'Run'}
+      </button>
+      <span class="joined">
+        <button
+          type="button"
+          disabled={!isHolder || runState === 'failed'}
+          onClick={() => void operations.tell('step', { ticks: ticks.value })}
+          title="Some ticks, then pause (.)"
+        >
+          {stepIcon} Step
+        </button>
+        <input
+          type="number"
+          min="1"
+          max="1000"
+          aria-label="Ticks of a step"
+          title="Ticks of a step: 1 to 1000"
+          value={ticks}
+          disabled={!isHolder}
+          onChange={(event) => {
+            ticks.value = Math.max(1, Math.min(1000, Math.round(Number(event.currentTarget.value)) || 1));
+            event.currentTarget.value = String(ticks.value);
+          }}
+        />
+      </span>
+      <button
+        type="button"
+        disabled={!isHolder}
+        onClick={() => void operations.tell('restart', {})}
+        title="Back to tick 0, with the parameters as they are now (Shift + R)"
+      >
+        {restartIcon} Restart
+      </button>
+      <Factor app={app} />
+      <TickCounter app={app} />
+      <Measures app={app} />
+      {state.isConnected.value && !isHolder && <span class="hint">You look on. Take control to change anything.</span>}
+      {isHolder && runState === 'stopped' && <span class="hint">Stopped. Run goes on from here.</span>}
+    </section>
+  );
+}

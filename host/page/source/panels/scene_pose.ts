@@ -1,0 +1,31 @@
+// The pose of the robot at a tick, from the telemetry.
+import type { TelemetryHistory } from '../data/telemetry_history.js';
+import type { ScenePose } from '../scene/scene_messages.js';
+import { noValue } from '../wire/messages.js';
+
+const quaternionUnit = 2 ** 30;
+const micrometre = 1e-6;
+const degree = Math.PI / 180;
+
+// Null if the row has no pose of the head.
+export function poseAt(history: TelemetryHistory, tick: number, isLive: boolean): ScenePose | null {
+  const row = Math.min(history.end - 1, history.rowAtTick(tick));
+  const head = new Float64Array(7);
+  for (let i = 0; i < 7; i += 1) {
+    const raw = history.valueAt('head', i, row);
+    if (raw === noValue) {
+      return null;
+    }
+    head[i] = i < 3 ? raw * micrometre : raw / quaternionUnit;
+  }
+  const angle = history.rings.get('angle');
+  const angles = Float32Array.from({ length: angle?.count ?? 0 }, (_, i) => {
+    const raw = history.valueAt('angle', i, row);
+    return raw === noValue ? 0 : raw * (angle?.scale ?? 0) * degree;
+  });
+  const contacts = Int32Array.from({ length: history.rings.get('contact')?.count ?? 0 }, (_, i) => {
+    const raw = history.valueAt('contact', i, row);
+    return raw === noValue ? 0 : raw;
+  });
+  return { angles, head, contacts, run: history.run, isLive };
+}

@@ -1,0 +1,169 @@
+// The bar that is always there: which robot, its state, who has control, STOP.
+import type { PageApp } from '../page_app.js';
+import type { PageState } from '../state/page_state.js';
+import { describeStop } from '../state/stop_report.js';
+import { nextTheme, themeChoice } from '../theme.js';
+import { toggleDialog } from '../dialogs.js';
+import { findIcon, themeIcon } from './icons.js';
+
+const badges = {
+  simulation: { text: 'SIMULATION', title: 'A simulated robot: nothing on the table moves.' },
+  bus: { text: 'ROBOT', title: 'A real robot: it moves.' },
+  recording: { text: 'RECORDING', title: 'What a robot did.' },
+} as const;
+
+const states = {
+  running: 'running',
+  paused: 'paused',
+  stopped: 'STOPPED',
+  failed: 'FAILED',
+} as const;
+
+function RobotName({ state }: { state: PageState }) {
+  const robot = state.robot.value;
+  const session = state.session.value;
+  const badge = robot === null ? null : badges[robot.kind];
+  return (
+    <div class="robot-name">
+      {badge !== null && (
+        <strong class={`badge ${robot?.kind}`} title={badge.title}>
+          {badge.text}
+        </strong>
+      )}
+      <span class="name" title={robot?.file}>
+        {robot?.name ?? 'no robot yet'}
+      </span>
+      {session !== null && (
+        <span
+          class={`state ${session.state}`}
+          data-testid="state"
+          title={session.stopped_by ? `stopped by ${session.stopped_by}` : undefined}
+        >
+          {states[session.state]}
+        </span>
+      )}
+    </div>
+  );
+}
+
+function Figures({ state }: { state: PageState }) {
+  const measured = state.session.value?.measured_factor;
+  const isRunning = state.session.value?.state === 'running';
+  const latency = state.latency.value;
+  return (
+    <dl class="figures">
+      <div title="Simulated seconds in a second, measured">
+        <dt>speed</dt>
+        <dd>{isRunning && typeof measured === 'number' ? `× ${measured.toFixed(measured < 10 ? 2 : 1)}` : '–'}</dd>
+      </div>
+      <div title="From this page to the robot and back">
+        <dt>latency</dt>
+        <dd data-testid="latency">{latency === null ? '–' : `${latency < 10 ? latency.toFixed(1) : Math.round(latency)} ms`}</dd>
+      </div>
+    </dl>
+  );
+}
+
+function Control({ app }: { app: PageApp }) {
+  const { state } = app;
+  if (!state.isConnected.value) {
+    return <div class="control">not connected</div>;
+  }
+  const control = state.control.value;
+  const other = state.otherHolder.value;
+  const isAsking = control?.request?.client === state.client.value;
+  const take = () => void app.operations.tell('control.take', {});
+  const release = () => void app.operations.tell('control.release', {});
+  if (state.isHolder.value) {
+    return (
+      <div class="control has" data-testid="control">
+        <span>You have control</span>
+        <button type="button" onClick={release} title="Others can take control then (C)">
+          Release
+        </button>
+      </div>
+    );
+  }
+  const who = other === null ? 'Nobody has control' : `${other} has control${control?.away === true ? ', but is away' : ''}`;
+  const isFree = other === null || control?.away === true;
+  return (
+    <div class="control" data-testid="control">
+      <span>{isAsking ? `Asked ${other ?? 'the holder'} …` : who}</span>
+      <button
+        type="button"
+        class="primary"
+        disabled={isAsking}
+        onClick={take}
+        title="Only one viewer changes the robot at a time. Taking control moves nothing. (C)"
+      >
+        {isFree ? 'Take control' : 'Ask for control'}
+      </button>
+    </div>
+  );
+}
+
+function Stop({ app }: { app: PageApp }) {
+  const report = app.stop.report.value;
+  return (
+    <div class="stop-area">
+      <span class={`stop-report ${report.state}`} role="status" data-testid="stop-report">
+        {describeStop(report)}
+      </span>
+      <div class="stop-place">
+        <button
+          type="button"
+          class="stop"
+          aria-describedby="stop-note"
+          aria-keyshortcuts="Escape Space"
+          title="Stops the robot at once: Esc, or Space outside text fields. This does not replace a power switch."
+          onPointerDown={(event) => {
+            // At the press, not at the release; the click that follows has no second effect.
+            if (event.button === 0) app.stop.press();
+          }}
+          onClick={(event) => {
+            // detail 0: from the keyboard or from a program that reads the screen.
+            if (event.detail === 0) app.stop.press();
+          }}
+        >
+          STOP <kbd>Esc</kbd>
+        </button>
+        <span id="stop-note" class="stop-note" title="This does not replace a power switch.">
+          does not replace a power switch
+        </span>
+      </div>
+    </div>
+  );
+}
+
+export function TopBar({ app }: { app: PageApp }) {
+  return (
+    <header class="top-bar">
+      <nav aria-label="Pages">
+        <button type="button" aria-current="page">
+          Live
+        </button>
+      </nav>
+      <RobotName state={app.state} />
+      <Figures state={app.state} />
+      <Control app={app} />
+      <div class="tools">
+        <button type="button" class="icon-button" aria-label="Find an action" title="Find an action (Ctrl+K)" onClick={() => toggleDialog('palette')}>
+          {findIcon}
+        </button>
+        <button type="button" class="icon-button" aria-label="Show the keys" title="Show the keys (?)" onClick={() => toggleDialog('keys')}>
+          ?
+        </button>
+        <button
+          type="button"
+          class="icon-button"
+          aria-label={`Colours: ${themeChoice.value}`}
+          title={`Colours: ${themeChoice.value} (T)`}
+          onClick={nextTheme}
+        >
+          {themeIcon}
+        </button>
+      </div>
+      <Stop app={app} />
+    </header>
+  );
+}

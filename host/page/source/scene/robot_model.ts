@@ -1,0 +1,307 @@
+// The robot and its terrain as meshes, one instanced mesh for each kind of shape.
+import * as THREE from 'three';
+import { ForwardKinematics } from '../geometry/forward_kinematics.js';
+import { compose, fromAxisAngle, multiply, poseFromArray, rotate, type Pose, type Vector } from '../geometry/quaternion.js';
+import type { Body, RobotDocument, Shape } from '../wire/messages.js';
+import { colours } from './scene_colours.js';
+
+// A shape of a body, or a mark on it.
+interface Instance {
+  link: number; // -1: does not move
+  pose: Pose; // in the link's frame
+  scale: Vector;
+}
+
+const unitGeometry: Record<Shape['kind'], () => THREE.BufferGeometry> = {
+  box: () => new THREE.BoxGeometry(2, 2, 2),
+  sphere: () => new THREE.SphereGeometry(1, 24, 16),
+  cylinder: () => new THREE.CylinderGeometry(1, 1, 2, 24),
+};
+
+function scaleOf(shape: Shape): Vector {
+  const [a, b, c] = shape.size;
+  switch (shape.kind) {
+    case 'box':
+      return [a, b, c];
+    case 'sphere':
+      return [a, a, a];
+    case 'cylinder':
+      return [a, b, a];
+  }
+}
+
+class InstanceSet {
+  readonly mesh: THREE.InstancedMesh;
+  private readonly matrix = new THREE.Matrix4();
+  private readonly quaternion = new THREE.Quaternion();
+  private readonly position = new THREE.Vector3();
+  private readonly scale = new THREE.Vector3();
+
+  constructor(
+    geometry: THREE.BufferGeometry,
+    readonly instances: readonly Instance[],
+    material: THREE.Material,
+  ) {
+    this.mesh = new THREE.InstancedMesh(geometry, material, instances.length);
+    this.mesh.frustumCulled = false;
+    this.mesh.castShadow = true;
+    this.mesh.receiveShadow = true;
+  }
+
+  place(links: readonly Pose[]): void {
+    this.instances.forEach((instance, i) => {
+      const link = links[instance.link];
+      const pose = link === undefined ? instance.pose : compose(link, instance.pose);
+      const [w, x, y, z] = pose.orientation;
+      this.matrix.compose(
+        this.position.set(...pose.position),
+        this.quaternion.set(x, y, z, w),
+        this.scale.set(...instance.scale),
+      );
+      this.mesh.setMatrixAt(i, this.matrix);
+    });
+    this.mesh.instanceMatrix.needsUpdate = true;
+  }
+
+  paint(colourOf: (instance: Instance, index: number) => THREE.Color): void {
+    this.instances.forEach((instance, i) => this.mesh.setColorAt(i, colourOf(instance, i)));
+    if (this.mesh.instanceColor !== null) {
+      this.mesh.instanceColor.needsUpdate = true;
+    }
+  }
+}
+
+function instancesOf(bodies: readonly Body[], kind: Shape['kind'], areLinks: boolean): Instance[] {
+  return bodies.flatMap((body, link) =>
+    body.shapes
+      .filter((shape) => shape.kind === kind)
+      .map((shape) => {
+        const local = poseFromArray(shape.pose);
+        const pose = areLinks ? local : compose(poseFromArray(body.pose), local);
+        return { link: areLinks ? link : -1, pose, scale: scaleOf(shape) };
+      }),
+  );
+}
+
+const kinds = ['box', 'sphere', 'cylinder'] as const;
+
+export class RobotModel {
+  readonly group = new THREE.Group();
+  readonly length: number; // metres, from the first joint to the last, at least 0.1
+  readonly floorHeight: number;
+  // Centre of the links, and where the head is, after the last `move`.
+  centre: Vector = [0, 0, 0];
+  head: Vector = [0, 0, 0];
+  private readonly kinematics: ForwardKinematics;
+  private readonly links: InstanceSet[];
+  private readonly terrain: InstanceSet[];
+  private readonly joints: InstanceSet;
+  private readonly contacts: InstanceSet;
+  private readonly centres: Vector[]; // of the links, in their frames
+  private contactBits: ArrayLike<number> = [];
+  private highlighted: number | null = null;
+  private isDark: boolean;
+
+  constructor(robot: RobotDocument, isDark: boolean) {
+    this.isDark = isDark;
+    this.kinematics = new ForwardKinematics(robot);
+    const material = new THREE.MeshLambertMaterial();
+    const marks = new THREE.MeshBasicMaterial();
+    const make = (bodies: readonly Body[], areLinks: boolean) =>
+      kinds
+        .map((kind) => ({ kind, instances: instancesOf(bodies, kind, areLinks) }))
+        .filter(({ instances }) => instances.length > 0)
+        .map(({ kind, instances }) => new InstanceSet(unitGeometry[kind](), instances, material));
+    this.links = make(robot.links, true);
+    this.terrain = make(robot.terrain, false);
+    this.terrain.forEach((set) => {
+      set.place([]);
+      set.mesh.castShadow = false;
+    });
+    this.centres = robot.links.map(centreOf);
+    this.length = Math.max(0.1, this.chainLength(robot));
+    const thickness = this.typicalThickness();
+    this.joints = new InstanceSet(new THREE.CylinderGeometry(1, 1, 2, 20), this.jointInstances(robot, thickness), material);
+    this.contacts = new InstanceSet(new THREE.BoxGeometry(2, 2, 2), this.contactInstances(robot, thickness), marks);
+    this.contacts.mesh.castShadow = false;
+    this.floorHeight = floorHeight(robot);
+    for (const set of [...this.links, ...this.terrain, this.joints, this.contacts]) {
+      this.group.add(set.mesh);
+    }
+    this.paint();
+  }
+
+  move(head: Pose, angles: ArrayLike<number>, contactBits: ArrayLike<number>): void {
+    const poses = this.kinematics.linkPoses(head, angles);
+    for (const set of [...this.links, this.joints, this.contacts]) {
+      set.place(poses);
+    }
+    const centres = poses.map((pose, i) => compose(pose, { position: this.centres[i] as Vector, orientation: [1, 0, 0, 0] }));
+    const mean = (axis: 0 | 1 | 2) => centres.reduce((sum, { position }) => sum + position[axis], 0) / centres.length;
+    this.centre = [mean(0), mean(1), mean(2)];
+    this.head = (centres[0] as Pose).position;
+    this.contactBits = contactBits;
+    this.paintContacts();
+  }
+
+  highlight(joint: number | null): void {
+    this.highlighted = joint;
+    this.paint();
+  }
+
+  setTheme(isDark: boolean): void {
+    this.isDark = isDark;
+    this.paint();
+  }
+
+  // The joint that is pointed at, or whose link is; the last link has none behind it and gives the joint before it.
+  jointAt(caster: THREE.Raycaster): number | null {
+    const meshes = [...this.links, this.joints].map((set) => set.mesh);
+    meshes.forEach((mesh) => mesh.computeBoundingSphere());
+    const hit = caster.intersectObjects(meshes, false)[0];
+    const set = [...this.links, this.joints].find((candidate) => candidate.mesh === hit?.object);
+    const instance = set?.instances[hit?.instanceId ?? -1];
+    return instance === undefined ? null : Math.min(instance.link, this.joints.instances.length - 1);
+  }
+
+  dispose(): void {
+    for (const set of [...this.links, ...this.terrain, this.joints, this.contacts]) {
+      set.mesh.geometry.dispose();
+      set.mesh.dispose();
+    }
+  }
+
+  private paint(): void {
+    const colour = colours(this.isDark);
+    const isLit = (instance: Instance) => instance.link === this.highlighted;
+    this.links.forEach((set) =>
+      set.paint((instance) => (isLit(instance) ? colour.highlight : instance.link === 0 ? colour.head : colour.link)),
+    );
+    this.joints.paint((instance) => (isLit(instance) ? colour.highlight : colour.joint));
+    this.terrain.forEach((set) => set.paint((_, i) => (i === 0 ? colour.floor : colour.obstacle)));
+    this.paintContacts();
+  }
+
+  private paintContacts(): void {
+    const colour = colours(this.isDark);
+    // Two marks for each link: the rear one first, as the bits.
+    this.contacts.paint((instance, i) =>
+      (((this.contactBits[instance.link] ?? 0) >> (i % 2)) & 1) === 1 ? colour.contact : colour.noContact,
+    );
+  }
+
+  private chainLength(robot: RobotDocument): number {
+    const inRobot = this.restCentres(robot);
+    const first = inRobot[0] as Vector;
+    const last = inRobot.at(-1) as Vector;
+    return Math.hypot(first[0] - last[0], first[1] - last[1], first[2] - last[2]);
+  }
+
+  private restCentres(robot: RobotDocument): Vector[] {
+    return robot.links.map(
+      (link, i) => compose(poseFromArray(link.pose), { position: this.centres[i] as Vector, orientation: [1, 0, 0, 0] }).position,
+    );
+  }
+
+  // Half of the smallest side of a typical link.
+  private typicalThickness(): number {
+    const sizes = this.links.flatMap((set) => set.instances.map((instance) => Math.min(...instance.scale))).sort((a, b) => a - b);
+    return sizes[Math.floor(sizes.length / 2)] ?? 0.02;
+  }
+
+  // A cylinder along the axis, fixed to the link before the joint.
+  private jointInstances(robot: RobotDocument, thickness: number): Instance[] {
+    return robot.joints.map((joint, j) => {
+      const link = poseFromArray((robot.links[j] as Body).pose);
+      const inverse = invertRotation(link);
+      const offset: Vector = [
+        joint.anchor[0] - link.position[0],
+        joint.anchor[1] - link.position[1],
+        joint.anchor[2] - link.position[2],
+      ];
+      return {
+        link: j,
+        pose: { position: rotate(inverse, offset), orientation: multiply(inverse, fromYTo(joint.axis)) },
+        scale: [thickness * 0.45, 1.04 * Math.max(thickness, halfExtent(robot.links[j] as Body, joint.axis)), thickness * 0.45],
+      };
+    });
+  }
+
+  // Rear and front touch sensors: below the link, towards its ends. Front is where the head is.
+  private contactInstances(robot: RobotDocument, thickness: number): Instance[] {
+    const centres = this.restCentres(robot);
+    const first = centres[0] as Vector;
+    const last = centres.at(-1) as Vector;
+    const length = Math.hypot(first[0] - last[0], first[1] - last[1], first[2] - last[2]) || 1;
+    const forward = [0, 1, 2].map((axis) => ((first[axis] as number) - (last[axis] as number)) / length);
+    const forwardVector: Vector = [forward[0] as number, forward[1] as number, forward[2] as number];
+    const acrossVector: Vector = [-forwardVector[1], forwardVector[0], 0];
+    const size = thickness * 0.26;
+    return robot.links.flatMap((body, link) => {
+      const inverse = invertRotation(poseFromArray(body.pose));
+      const reach = halfExtent(body, forwardVector) * 0.65;
+      const depth = halfExtent(body, [0, 0, 1]) * 0.8;
+      const across = rotate(inverse, acrossVector);
+      // Right through the link, so that the marks are seen from both sides.
+      const width = halfExtent(body, acrossVector) * 1.05;
+      const along = (axis: 0 | 1 | 2) => size + Math.abs(across[axis]) * (width - size);
+      return [-1, 1].map((side): Instance => {
+        const offset = forwardVector.map((value, axis) => value * reach * side - (axis === 2 ? depth : 0));
+        const centre = this.centres[link] as Vector;
+        const moved = rotate(inverse, offset as unknown as Vector);
+        return {
+          link,
+          pose: { position: [centre[0] + moved[0], centre[1] + moved[1], centre[2] + moved[2]], orientation: [1, 0, 0, 0] },
+          scale: [along(0), along(1), along(2)],
+        };
+      });
+    });
+  }
+}
+
+// How far the link reaches from its middle along a unit vector of the robot's frame at angles 0, in metres.
+function halfExtent(body: Body, direction: Vector): number {
+  const reaches = body.shapes.map((shape) => {
+    const { orientation } = compose(poseFromArray(body.pose), poseFromArray(shape.pose));
+    const local = rotate([orientation[0], -orientation[1], -orientation[2], -orientation[3]], direction);
+    const scale = scaleOf(shape);
+    const reach = local.map((value, axis) => Math.abs(value) * (scale[axis] as number));
+    return shape.kind === 'box' ? reach.reduce((sum, value) => sum + value, 0) : Math.hypot(...reach);
+  });
+  return Math.max(0.001, ...reaches);
+}
+
+function invertRotation(pose: Pose): readonly [number, number, number, number] {
+  const [w, x, y, z] = pose.orientation;
+  return [w, -x, -y, -z];
+}
+
+// Turns the y axis into `axis`.
+function fromYTo(axis: Vector): readonly [number, number, number, number] {
+  const length = Math.hypot(...axis) || 1;
+  const cosine = axis[1] / length;
+  const turn: Vector = [axis[2], 0, -axis[0]];
+  return Math.hypot(...turn) < 1e-9 ? [1, 0, 0, 0] : fromAxisAngle(turn, Math.acos(Math.max(-1, Math.min(1, cosine))));
+}
+
+function centreOf(body: Body): Vector {
+  const positions = body.shapes.map((shape) => shape.pose);
+  const mean = (axis: number) => positions.reduce((sum, pose) => sum + (pose[axis] as number), 0) / Math.max(1, positions.length);
+  return [mean(0), mean(1), mean(2)];
+}
+
+// Where the grid lies: the top of the widest box, else 0.
+function floorHeight(robot: RobotDocument): number {
+  let widest = 0;
+  let height = 0;
+  for (const body of robot.terrain) {
+    for (const shape of body.shapes) {
+      const width = shape.size[0] * shape.size[1];
+      if (shape.kind === 'box' && width > widest) {
+        widest = width;
+        height = compose(poseFromArray(body.pose), poseFromArray(shape.pose)).position[2] + shape.size[2];
+      }
+    }
+  }
+  return height;
+}

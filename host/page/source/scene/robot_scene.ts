@@ -1,0 +1,182 @@
+// The 3D view: camera, light, ground, robot. It renders only when something changed.
+import * as THREE from 'three';
+import { OrbitCamera } from '../geometry/orbit_camera.js';
+import { poseFromArray } from '../geometry/quaternion.js';
+import type { RobotDocument } from '../wire/messages.js';
+import { HeadPath } from './head_path.js';
+import { RobotModel } from './robot_model.js';
+import { colours } from './scene_colours.js';
+import type { ScenePose } from './scene_messages.js';
+
+const fieldOfView = 40; // degrees, vertical
+const gridCells = 60;
+const longRobot = 1.5; // metres: from here on the cells of the grid are larger
+
+export class RobotScene {
+  isFollowing = true;
+  private readonly renderer: THREE.WebGLRenderer;
+  private readonly scene = new THREE.Scene();
+  private readonly camera = new THREE.PerspectiveCamera(fieldOfView, 1, 0.01, 200);
+  private readonly orbit = new OrbitCamera();
+  private readonly sun = new THREE.DirectionalLight(0xffffff, 2.2);
+  private readonly sky = new THREE.HemisphereLight(0xffffff, 0x8090a0, 1.3);
+  private readonly axes = new THREE.AxesHelper(0.1);
+  private grid: THREE.GridHelper | null = null;
+  private path: HeadPath | null = null;
+  private model: RobotModel | null = null;
+  private run = -1;
+  private height = 1;
+  private gridCell = 0.1; // metres
+  private readonly fog = new THREE.Fog(0, 1, 2);
+  private isDirty = true;
+
+  // Throws an Error without WebGL.
+  constructor(
+    canvas: OffscreenCanvas,
+    private isDark: boolean,
+  ) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = THREE.PCFShadowMap;
+    this.camera.up.set(0, 0, 1);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(1024, 1024);
+    this.sun.shadow.bias = -0.0008;
+    this.scene.add(this.sun, this.sun.target, this.sky, this.axes);
+    this.scene.fog = this.fog;
+    this.setTheme(isDark);
+  }
+
+  setSize(width: number, height: number, ratio: number): void {
+    this.height = height;
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / Math.max(1, height);
+    this.camera.updateProjectionMatrix();
+    this.isDirty = true;
+  }
+
+  setTheme(isDark: boolean): void {
+    this.isDark = isDark;
+    const colour = colours(isDark);
+    this.scene.background = colour.background;
+    this.fog.color = colour.background;
+    this.model?.setTheme(isDark);
+    this.path?.setColour(colour.path);
+    this.makeGrid();
+    this.isDirty = true;
+  }
+
+  setRobot(robot: RobotDocument): void {
+    if (this.model !== null) {
+      this.scene.remove(this.model.group);
+      this.model.dispose();
+    }
+    if (this.path !== null) {
+      this.scene.remove(this.path.line);
+    }
+    this.model = new RobotModel(robot, this.isDark);
+    this.path = new HeadPath(this.model.length / 200);
+    this.path.setColour(colours(this.isDark).path);
+    this.scene.add(this.model.group, this.path.line);
+    const reach = this.model.length * 0.9 + 0.2;
+    Object.assign(this.sun.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.1, far: 8 * reach });
+    this.sun.shadow.camera.updateProjectionMatrix();
+    this.makeGrid();
+    this.resetView();
+  }
+
+  setPose(pose: ScenePose): void {
+    if (this.model === null || this.path === null) {
+      return;
+    }
+    this.model.move(poseFromArray([...pose.head]), pose.angles, pose.contacts);
+    if (pose.run !== this.run) {
+      this.run = pose.run;
+      this.path.clear();
+    }
+    if (pose.isLive) {
+      this.path.add(this.model.head);
+    }
+    this.isDirty = true;
+  }
+
+  resetView(): void {
+    const length = this.model?.length ?? 1;
+    this.orbit.azimuth = -0.5;
+    this.orbit.elevation = 0.42;
+    this.orbit.distance = 0.25 + length * 1.15;
+    this.setFollowing(true);
+  }
+
+  setFollowing(isOn: boolean): void {
+    this.isFollowing = isOn;
+    this.isDirty = true;
+  }
+
+  turn(right: number, down: number): void {
+    this.orbit.turn(right, down);
+    this.isDirty = true;
+  }
+
+  // Stops following: else the robot would pull the view back.
+  pan(right: number, down: number): void {
+    this.isFollowing = false;
+    this.orbit.pan(right, down, this.height, (fieldOfView * Math.PI) / 180);
+    this.isDirty = true;
+  }
+
+  zoom(factor: number): void {
+    this.orbit.zoom(factor);
+    this.isDirty = true;
+  }
+
+  highlight(joint: number | null): void {
+    this.model?.highlight(joint);
+    this.isDirty = true;
+  }
+
+  jointAt(x: number, y: number): number | null {
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(new THREE.Vector2(x, y), this.camera);
+    return this.model?.jointAt(caster) ?? null;
+  }
+
+  render(): void {
+    if (!this.isDirty) {
+      return;
+    }
+    this.isDirty = false;
+    if (this.isFollowing && this.model !== null) {
+      this.orbit.target = this.model.centre;
+    }
+    const [x, y, z] = this.orbit.target;
+    this.camera.position.set(...this.orbit.position);
+    this.camera.lookAt(x, y, z);
+    const reach = (this.model?.length ?? 1) * 0.9 + 0.2;
+    this.sun.position.set(x + reach, y + reach * 0.8, z + 2.2 * reach);
+    this.sun.target.position.set(x, y, z);
+    // The grid goes with the view in whole cells, so it looks endless and still shows that the robot moves.
+    this.grid?.position.set(
+      Math.round(x / this.gridCell) * this.gridCell,
+      Math.round(y / this.gridCell) * this.gridCell,
+      (this.model?.floorHeight ?? 0) + 0.0005,
+    );
+    // The edge of the grid fades before it ends.
+    this.fog.near = this.orbit.distance * 1.3;
+    this.fog.far = this.orbit.distance + this.gridCell * gridCells * 0.45;
+    this.renderer.render(this.scene, this.camera);
+  }
+
+  private makeGrid(): void {
+    if (this.grid !== null) {
+      this.scene.remove(this.grid);
+      this.grid.dispose();
+    }
+    const colour = colours(this.isDark).grid;
+    this.gridCell = (this.model?.length ?? 0) > longRobot ? 0.5 : 0.1;
+    this.grid = new THREE.GridHelper(this.gridCell * gridCells, gridCells, colour, colour);
+    this.grid.rotation.x = Math.PI / 2;
+    this.scene.add(this.grid);
+  }
+}

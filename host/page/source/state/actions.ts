@@ -1,0 +1,70 @@
+// Everything that a key, the palette or a button can start, in one list.
+
+export interface Action {
+  id: string;
+  title: string;
+  group: 'Robot' | 'View' | 'Parameters' | 'Page';
+  keys: readonly string[]; // as KeyboardEvent.key, with 'Ctrl+' and 'Shift+' in front; the first one is shown
+  isEnabled?: () => boolean;
+  // In text fields too: only for what must always work.
+  isGlobal?: boolean;
+  run(): void;
+}
+
+export interface KeyPress {
+  key: string;
+  ctrlKey: boolean;
+  metaKey: boolean;
+  shiftKey: boolean;
+  altKey: boolean;
+}
+
+// Letters without regard to case: with Caps Lock, `k` is `K`.
+function nameOf(press: KeyPress): string {
+  const key = press.key === ' ' ? 'Space' : press.key.length === 1 ? press.key.toUpperCase() : press.key;
+  const isSymbol = press.key.length === 1 && press.key.toUpperCase() === press.key.toLowerCase();
+  // `?` and the like need Shift on some keyboards only.
+  const shift = press.shiftKey && !isSymbol ? 'Shift+' : '';
+  return `${press.ctrlKey || press.metaKey ? 'Ctrl+' : ''}${shift}${key}`;
+}
+
+export class ActionList {
+  private readonly list: Action[] = [];
+
+  get all(): readonly Action[] {
+    return this.list;
+  }
+
+  add(...actions: Action[]): void {
+    for (const action of actions) {
+      for (const key of action.keys) {
+        const other = this.list.find((known) => known.keys.includes(key));
+        if (other !== undefined) {
+          throw new Error(`key ${key}: found in ${other.id} and ${action.id}, expected one action`);
+        }
+      }
+      this.list.push(action);
+    }
+  }
+
+  find(id: string): Action | undefined {
+    return this.list.find((action) => action.id === id);
+  }
+
+  // The enabled action of a key; `isText`: the focus is in a text field.
+  forKey(press: KeyPress, isText: boolean): Action | undefined {
+    if (press.altKey) {
+      return undefined;
+    }
+    const name = nameOf(press);
+    return this.list.find(
+      (action) => action.keys.includes(name) && (!isText || action.isGlobal === true) && action.isEnabled?.() !== false,
+    );
+  }
+
+  // Those whose title has all words of the text.
+  matching(text: string): Action[] {
+    const words = text.toLowerCase().split(/\s+/).filter(Boolean);
+    return this.list.filter((action) => words.every((word) => `${action.group} ${action.title}`.toLowerCase().includes(word)));
+  }
+}

@@ -1,0 +1,85 @@
+// What the page knows of the robot and its program: the documents as last received, the connection, the notices.
+import { computed, signal } from '@preact/signals-core';
+import type { ConnectionStatus } from '../wire/connection.js';
+import type {
+  ControlDocument,
+  NoticeMessage,
+  Parameter,
+  RobotDocument,
+  ServerMessage,
+  SessionDocument,
+  TelemetryDocument,
+} from '../wire/messages.js';
+
+export interface Notice {
+  number: number; // ascending
+  level: NoticeMessage['level'];
+  text: string;
+}
+
+const keptNotices = 200;
+
+export class PageState {
+  readonly connection = signal<ConnectionStatus>({ state: 'connecting' });
+  readonly latency = signal<number | null>(null); // milliseconds, to the session and back
+  readonly robot = signal<RobotDocument | null>(null);
+  readonly parameters = signal<readonly Parameter[]>([]);
+  readonly session = signal<SessionDocument | null>(null);
+  readonly control = signal<ControlDocument | null>(null);
+  readonly telemetry = signal<TelemetryDocument | null>(null);
+  readonly notices = signal<readonly Notice[]>([]);
+
+  readonly client = computed(() => {
+    const connection = this.connection.value;
+    return connection.state === 'open' ? connection.client : null;
+  });
+  readonly isConnected = computed(() => this.client.value !== null);
+  // Whether this viewer drives.
+  readonly isHolder = computed(
+    () => this.client.value !== null && this.control.value?.holder?.client === this.client.value,
+  );
+  // The name of another viewer who drives, else null.
+  readonly otherHolder = computed(() => (this.isHolder.value ? null : (this.control.value?.holder?.name ?? null)));
+
+  private lastNotice = 0;
+
+  receive(message: ServerMessage): void {
+    if (message.type === 'notice') {
+      this.addNotice(message.level, message.text);
+    } else if (message.type === 'document') {
+      switch (message.name) {
+        case 'robot':
+          this.robot.value = message.value;
+          break;
+        case 'parameters':
+          this.parameters.value = message.value;
+          break;
+        case 'session':
+          this.session.value = message.value;
+          break;
+        case 'control':
+          this.control.value = message.value;
+          break;
+        case 'telemetry':
+          this.telemetry.value = message.value;
+          break;
+      }
+    }
+  }
+
+  receiveStatus(status: ConnectionStatus): void {
+    this.connection.value = status;
+    if (status.state === 'open') {
+      // The server sends its notices after each welcome.
+      this.notices.value = [];
+    } else {
+      this.latency.value = null;
+      this.control.value = null;
+    }
+  }
+
+  addNotice(level: Notice['level'], text: string): void {
+    this.lastNotice += 1;
+    this.notices.value = [...this.notices.value, { number: this.lastNotice, level, text }].slice(-keptNotices);
+  }
+}

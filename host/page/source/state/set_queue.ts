@@ -1,0 +1,50 @@
+// Changes of parameters on their way. While one `set` waits for its answer, later values of the same words replace each
+// other: a slider never builds up a queue, and its last value always arrives.
+
+export interface SetPorts {
+  // Rejects if the set was refused.
+  send(words: string[], gesture: number): Promise<unknown>;
+  refused(reason: string): void;
+}
+
+// A word without its value: what it sets.
+function target(word: string): string {
+  return word.slice(0, word.indexOf('='));
+}
+
+export class SetQueue {
+  private isSending = false;
+  private next: { words: Map<string, string>; gesture: number }[] = [];
+
+  constructor(private readonly ports: SetPorts) {}
+
+  // `gesture`: changes of one drag have one number, and are one entry for undo.
+  set(words: readonly string[], gesture: number): void {
+    let last = this.next.at(-1);
+    if (last === undefined || last.gesture !== gesture) {
+      last = { words: new Map(), gesture };
+      this.next.push(last);
+    }
+    for (const word of words) {
+      // Deleted first: a word for all joints after one for a single joint must stay behind it.
+      last.words.delete(target(word));
+      last.words.set(target(word), word);
+    }
+    void this.sendNext();
+  }
+
+  private async sendNext(): Promise<void> {
+    if (this.isSending) {
+      return;
+    }
+    for (let change = this.next.shift(); change !== undefined; change = this.next.shift()) {
+      this.isSending = true;
+      try {
+        await this.ports.send([...change.words.values()], change.gesture);
+      } catch (error) {
+        this.ports.refused((error as Error).message);
+      }
+      this.isSending = false;
+    }
+  }
+}

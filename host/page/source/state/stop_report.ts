@@ -1,0 +1,48 @@
+// What the page says after STOP.
+import { signal } from '@preact/signals-core';
+import type { StopChannel, StopOutcome } from '../wire/stop_channel.js';
+
+export type StopReport =
+  | { state: 'none' }
+  | { state: 'sent' }
+  | { state: 'stopped'; outcome: StopOutcome }
+  | { state: 'unconfirmed'; reason: string };
+
+export class StopControl {
+  readonly report = signal<StopReport>({ state: 'none' });
+  private presses = 0;
+
+  constructor(private readonly channel: StopChannel) {}
+
+  press(): void {
+    const press = ++this.presses;
+    const show = (report: StopReport) => {
+      if (press === this.presses) this.report.value = report;
+    };
+    show({ state: 'sent' });
+    this.channel.press().then(
+      (outcome) => show({ state: 'stopped', outcome }),
+      (error: Error) => show({ state: 'unconfirmed', reason: error.message }),
+    );
+  }
+
+  clear(): void {
+    this.report.value = { state: 'none' };
+  }
+}
+
+export function describeStop(report: StopReport): string {
+  switch (report.state) {
+    case 'none':
+      return '';
+    case 'sent':
+      return 'STOP sent …';
+    case 'unconfirmed':
+      return `STOP is not confirmed: ${report.reason}. Use the power switch.`;
+    case 'stopped': {
+      const { ms, confirmed, of } = report.outcome;
+      const numbers = confirmed === null ? '' : `, ${confirmed} of ${of} confirmed`;
+      return `stopped in ${Math.max(1, Math.round(ms))} ms${numbers}`;
+    }
+  }
+}

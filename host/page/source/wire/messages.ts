@@ -1,0 +1,171 @@
+// The messages of docs/page-interface.md, as types.
+
+export const protocol = 1;
+
+// Value of a signal that has none at a tick.
+export const noValue = -2147483648;
+
+export interface Signal {
+  name: string;
+  unit: string;
+  scale: number; // value in `unit` = raw * scale
+  count: number; // values in a tick
+  of: 'joint' | 'link' | 'robot';
+}
+
+export interface TelemetryDocument {
+  hash: number;
+  tick_us: number;
+  signals: Signal[];
+}
+
+// x, y, z in metres, then a unit quaternion w, x, y, z.
+export type PoseArray = [number, number, number, number, number, number, number];
+
+export interface Shape {
+  kind: 'box' | 'sphere' | 'cylinder';
+  pose: PoseArray;
+  size: [number, number, number]; // half sides; radius; radius and half height, along y
+}
+
+export interface Body {
+  name: string;
+  pose: PoseArray;
+  shapes: Shape[];
+}
+
+export interface Joint {
+  name: string;
+  node: number;
+  lower: number; // degrees
+  upper: number;
+  anchor: [number, number, number]; // metres, in the robot's frame at angles 0
+  axis: [number, number, number];
+}
+
+export interface Slot {
+  number: number;
+  algorithm: string;
+  joints: number[];
+}
+
+// Joints and links count from the head; joint j connects link j with link j + 1.
+export interface RobotDocument {
+  name: string;
+  file: string;
+  kind: 'simulation' | 'bus' | 'recording';
+  joints: Joint[];
+  links: Body[];
+  terrain: Body[];
+  slots: Slot[];
+}
+
+// A parameter or an internal value of a slot. The arrays have one entry for each joint of `joints`.
+export interface Parameter {
+  slot: number;
+  name: string;
+  unit: string;
+  scale: number;
+  minimum: number; // raw, as the values below
+  maximum: number;
+  default: number;
+  help: string;
+  internal: boolean;
+  joints: number[];
+  file: number[];
+  wanted: number[];
+  confirmed: number[];
+  tick: number[]; // from which the confirmed value holds
+}
+
+export interface SessionDocument {
+  state: 'paused' | 'running' | 'stopped' | 'failed';
+  factor: number; // 0: as fast as it goes
+  measured_factor: number | null;
+  run: number;
+  tick: number;
+  time_s: number;
+  stopped_by?: string | null;
+  recording: string | null;
+  changed: boolean;
+  undo: string | null;
+  redo: string | null;
+  set: 'A' | 'B';
+  failure: string | null;
+  measures?: Record<string, number>;
+}
+
+export interface ControlDocument {
+  epoch: number;
+  holder: { client: number; name: string } | null;
+  away: boolean;
+  request: { client: number; name: string; ms: number } | null;
+}
+
+export interface Documents {
+  robot: RobotDocument;
+  parameters: Parameter[];
+  session: SessionDocument;
+  control: ControlDocument;
+  telemetry: TelemetryDocument;
+}
+
+export type DocumentMessage = {
+  [Name in keyof Documents]: { type: 'document'; name: Name; revision: number; value: Documents[Name] };
+}[keyof Documents];
+
+export interface ResultMessage {
+  type: 'result';
+  id: number;
+  ok: boolean;
+  value?: unknown;
+  error?: string;
+}
+
+export interface NoticeMessage {
+  type: 'notice';
+  level: 'info' | 'warning' | 'error';
+  text: string;
+}
+
+export interface WelcomeMessage {
+  type: 'welcome';
+  protocol: number;
+  client: number;
+  program: string;
+}
+
+export interface StoppedMessage {
+  type: 'stopped';
+  confirmed: number;
+  of: number;
+  ms: number;
+}
+
+export type ServerMessage = WelcomeMessage | DocumentMessage | ResultMessage | NoticeMessage | StoppedMessage;
+
+// Names and arguments of the operations that the page uses.
+export interface Operations {
+  'control.take': Record<string, never>;
+  'control.answer': { grant: boolean };
+  'control.release': Record<string, never>;
+  run: Record<string, never>;
+  pause: Record<string, never>;
+  step: { ticks: number };
+  restart: { parameters?: 'file' };
+  factor: { value: number };
+  set: { words: string[]; gesture: number };
+  undo: Record<string, never>;
+  redo: Record<string, never>;
+  swap: Record<string, never>;
+  reset: { slot?: number; name?: string; joints?: number[] };
+  command_line: Record<string, never>;
+  ping: Record<string, never>;
+}
+
+export type ClientMessage =
+  | { type: 'hello'; protocol: number; token: string; name: string }
+  | { type: 'operation'; id: number; epoch: number; name: keyof Operations; arguments: object }
+  | { type: 'subscribe'; signals: string[] }
+  | { type: 'beat'; age_ms: number }
+  | { type: 'stop' };

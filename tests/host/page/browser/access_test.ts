@@ -1,0 +1,160 @@
+// Who cannot use a mouse, has a narrow window, or works in the dark; and a long robot.
+import assert from 'node:assert/strict';
+import axe from 'axe-core';
+import { after, before, describe, it } from 'node:test';
+import type { Browser, BrowserContextOptions } from 'playwright-core';
+import { launchBrowser } from './support/browser.js';
+import { countPixels, isBlue, pixelsOf } from './support/pixels.js';
+import { sixty, UiProgram } from './support/ui_program.js';
+import { Viewer } from './support/viewer.js';
+
+const wide = { width: 1400, height: 900 };
+const narrow = { width: 600, height: 900 };
+
+// Problems that axe-core takes as serious or critical.
+async function seriousProblems(viewer: Viewer): Promise<string[]> {
+  await viewer.page.evaluate(axe.source);
+  const violations = await viewer.page.evaluate(async () => {
+    const run = (window as unknown as { axe: typeof axe }).axe.run;
+    return (await run()).violations;
+  });
+  return violations
+    .filter(({ impact }) => impact === 'serious' || impact === 'critical')
+    .map(({ id, nodes }) => `${id}: ${nodes.map((node) => `${node.target.join(' ')} ${node.failureSummary}`).join('; ')}`);
+}
+
+describe('the page', () => {
+  let browser: Browser;
+  let program: UiProgram;
+
+  before(async () => {
+    browser = await launchBrowser();
+    program = await UiProgram.start();
+  });
+
+  after(async () => {
+    await program.end();
+    await browser.close();
+  });
+
+  const looks: [string, BrowserContextOptions][] = [
+    ['wide_light', { viewport: wide, colorScheme: 'light' }],
+    ['wide_dark', { viewport: wide, colorScheme: 'dark' }],
+    ['narrow_light', { viewport: narrow, colorScheme: 'light', hasTouch: true }],
+    ['narrow_dark', { viewport: narrow, colorScheme: 'dark', hasTouch: true }],
+  ];
+
+  for (const [name, options] of looks) {
+    it(`has no serious problem for axe-core, looking on and in control (${name})`, async () => {
+      const viewer = await Viewer.open(browser, program.address, options);
+      assert.deepEqual(await seriousProblems(viewer), []);
+      await viewer.takeControl();
+      if (name === 'wide_light') {
+        await viewer.run();
+      }
+      await viewer.waitForTick(200);
+      assert.deepEqual(await seriousProblems(viewer), []);
+      await viewer.screenshot(name);
+      await viewer.close();
+    });
+
+    it(`shows STOP within the window, and nothing beyond its sides (${name})`, async () => {
+      const viewer = await Viewer.open(browser, program.address, options);
+      const width = options.viewport?.width ?? 0;
+      const box = await viewer.button(/^STOP/).boundingBox();
+      assert.ok(box !== null && box.x >= 0 && box.x + box.width <= width && box.y >= 0, `found ${JSON.stringify(box)}`);
+      assert.equal(await viewer.page.evaluate(() => document.documentElement.scrollWidth), width);
+      await viewer.page.mouse.wheel(0, 1500);
+      const scrolled = await viewer.button(/^STOP/).boundingBox();
+      assert.deepEqual(scrolled, box, 'at the same place after scrolling');
+      await viewer.close();
+    });
+  }
+
+  it('has dialogs without serious problems, and STOP stays within reach', async () => {
+    const viewer = await Viewer.open(browser, program.address);
+    for (const [key, title] of [['?', 'Keys'], ['Control+k', 'Find an action'], ['x', 'Command that gives the same run']] as const) {
+      await viewer.page.keyboard.press(key);
+      const dialog = viewer.page.getByRole('dialog', { name: title });
+      await dialog.waitFor();
+      assert.deepEqual(await seriousProblems(viewer), []);
+      await viewer.screenshot(`dialog_${title.split(' ')[0]?.toLowerCase()}`);
+      await viewer.button(/^STOP/).click({ trial: true });
+      await dialog.getByRole('button', { name: 'Close', exact: true }).click();
+      await dialog.waitFor({ state: 'detached' });
+    }
+    await viewer.close();
+  });
+
+  it('is dark or light as the system says, until the user chooses', async () => {
+    const viewer = await Viewer.open(browser, program.address, { colorScheme: 'dark' });
+    const background = () => viewer.page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    const dark = await background();
+    await viewer.page.emulateMedia({ colorScheme: 'light' });
+    await viewer.page.waitForFunction(() => document.documentElement.dataset['theme'] === 'light');
+    const light = await background();
+    assert.notEqual(dark, light);
+    await viewer.page.keyboard.press('t');
+    await viewer.page.keyboard.press('t');
+    await viewer.page.waitForFunction(() => document.documentElement.dataset['theme'] === 'dark');
+    assert.equal(await background(), dark);
+    await viewer.close();
+  });
+
+  it('can be used with the keyboard alone', async () => {
+    const viewer = await Viewer.open(browser, program.address);
+    const { keyboard } = viewer.page;
+    await keyboard.press('c');
+    await viewer.button('Release').waitFor();
+    await viewer.waitForState('running');
+    await keyboard.press('k');
+    await viewer.waitForState('paused');
+    const tick = await viewer.tick();
+    await keyboard.press('.');
+    await viewer.waitForTick(tick + 1);
+    await keyboard.press('Control+k');
+    await viewer.page.getByRole('combobox', { name: 'Name of the action' }).waitFor();
+    await keyboard.type('restart');
+    await keyboard.press('Enter');
+    await viewer.page.waitForFunction((before) => Number(document.querySelector('[data-testid=tick]')?.textContent) < before, tick);
+    // Tab reaches a slider, whose focus can be seen; the arrows change it.
+    for (let i = 0; i < 60; i += 1) {
+      await keyboard.press('Tab');
+      const label = await viewer.page.evaluate(() => document.activeElement?.getAttribute('aria-label'));
+      if (label === 'amplitude, all joints') break;
+    }
+    const outline = await viewer.page.evaluate(() => getComputedStyle(document.activeElement as Element).outlineStyle);
+    assert.equal(outline, 'solid');
+    const [before] = await viewer.valuesOf('1.amplitude');
+    await keyboard.press('ArrowRight');
+    await viewer.page.waitForFunction(
+      (old) => !document.querySelector('[data-parameter="1.amplitude"] [data-cell]')?.getAttribute('title')?.includes(`wanted ${old},`),
+      before?.wanted,
+    );
+    await keyboard.press('Control+z');
+    await keyboard.press('Escape');
+    await viewer.waitForState('STOPPED');
+    await viewer.close();
+  });
+});
+
+describe('a robot with 60 joints', () => {
+  it('is shown in 3D, strip, table and cells', async () => {
+    const browser = await launchBrowser();
+    const program = await UiProgram.start(sixty);
+    const viewer = await Viewer.open(browser, program.address);
+    await viewer.takeControl();
+    await viewer.run();
+    await viewer.waitForTick(100);
+    const angles = await viewer.angles();
+    assert.equal(angles.length, 60);
+    await viewer.waitForTick((await viewer.tick()) + 30);
+    assert.notDeepEqual(await viewer.angles(), angles);
+    assert.equal(await viewer.page.locator('.parameter').first().locator('[data-cell]').count(), 60);
+    assert.ok(countPixels(await pixelsOf(viewer.page, viewer.page.locator('.scene')), isBlue) > 200);
+    await viewer.screenshot('sixty_joints');
+    await viewer.close();
+    await program.end();
+    await browser.close();
+  });
+});

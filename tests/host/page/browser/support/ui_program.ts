@@ -1,0 +1,57 @@
+// Starts `proleg ui` on a scenario, as a user does, and reads the address that it prints.
+import { spawn, type ChildProcess } from 'node:child_process';
+
+const program = process.env['PROLEG_PROGRAM'] ?? 'build/host/bin/proleg';
+const startTimeout = 20000; // milliseconds
+
+export const uniform = 'sim/scenarios/travelling_wave/uniform.simulation.xml';
+export const sixty = 'sim/scenarios/long_chain/sixty.simulation.xml';
+
+export class UiProgram {
+  private constructor(
+    readonly address: string,
+    private readonly child: ChildProcess,
+  ) {}
+
+  static start(file: string = uniform): Promise<UiProgram> {
+    const child = spawn(program, ['ui', file, '--no-browser', '--port', '0'], { stdio: ['ignore', 'pipe', 'pipe'] });
+    return new Promise((resolve, reject) => {
+      let output = '';
+      const timer = setTimeout(() => fail('no address in time'), startTimeout);
+      const fail = (what: string) => {
+        clearTimeout(timer);
+        child.kill('SIGKILL');
+        reject(new Error(`${program} ui: found ${what}, expected an address; it printed: ${output}`));
+      };
+      const read = (chunk: Buffer) => {
+        output += chunk.toString();
+        const address = /https?:\/\/\S+\/#\S+/.exec(output)?.[0];
+        if (address !== undefined) {
+          clearTimeout(timer);
+          resolve(new UiProgram(address, child));
+        }
+      };
+      child.stdout.on('data', read);
+      child.stderr.on('data', read);
+      child.on('error', (error) => fail(error.message));
+      child.on('exit', (code) => fail(`exit status ${code}`));
+    });
+  }
+
+  // As Ctrl+C does.
+  async end(): Promise<void> {
+    if (this.child.exitCode !== null || this.child.signalCode !== null) {
+      return;
+    }
+    const ended = new Promise((resolve) => this.child.once('exit', resolve));
+    this.child.kill('SIGINT');
+    await ended;
+  }
+
+  // As a crash does.
+  async kill(): Promise<void> {
+    const ended = new Promise((resolve) => this.child.once('exit', resolve));
+    this.child.kill('SIGKILL');
+    await ended;
+  }
+}

@@ -1,0 +1,118 @@
+// A viewer of the page in a browser context of its own, with the words of a user: take control, run, read the table.
+import assert from 'node:assert/strict';
+import type { Browser, BrowserContext, BrowserContextOptions, Page } from 'playwright-core';
+
+const screenshots = 'build/page_test';
+
+export class Viewer {
+  // What the browser reported as an error or a warning, scripts that failed too.
+  readonly reports: string[] = [];
+
+  private constructor(
+    readonly page: Page,
+    private readonly context: BrowserContext,
+  ) {}
+
+  static async open(browser: Browser, address: string, options: BrowserContextOptions = {}): Promise<Viewer> {
+    const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, ...options });
+    const viewer = new Viewer(await context.newPage(), context);
+    viewer.page.on('console', (message) => {
+      if (['error', 'warning'].includes(message.type())) viewer.reports.push(message.text());
+    });
+    viewer.page.on('pageerror', (error) => viewer.reports.push(error.message));
+    await viewer.page.goto(address);
+    await viewer.page.getByTestId('scene').waitFor();
+    await viewer.page.getByTestId('joints').locator('tbody tr').first().waitFor();
+    return viewer;
+  }
+
+  // `expected`: patterns of reports that a test provokes.
+  async close(expected: readonly RegExp[] = []): Promise<void> {
+    await this.context.close();
+    // SwiftShader is slow at reading pixels, and says so.
+    const known = [...expected, /GPU stall due to ReadPixels/];
+    assert.deepEqual(this.reports.filter((report) => !known.some((pattern) => pattern.test(report))), []);
+  }
+
+  async screenshot(name: string): Promise<void> {
+    await this.page.screenshot({ path: `${screenshots}/${name}.png` });
+  }
+
+  button(name: string | RegExp) {
+    return typeof name === 'string'
+      ? this.page.getByRole('button', { name, exact: true })
+      : this.page.getByRole('button', { name });
+  }
+
+  async takeControl(): Promise<void> {
+    await this.button(/^(Take|Ask for) control$/).click();
+    await this.button('Release').waitFor();
+  }
+
+  async run(): Promise<void> {
+    await this.button('Run').click();
+    await this.waitForState('running');
+  }
+
+  async waitForState(state: string): Promise<void> {
+    await this.page.getByTestId('state').getByText(state, { exact: true }).waitFor();
+  }
+
+  async tick(): Promise<number> {
+    return Number(await this.page.getByTestId('tick').textContent());
+  }
+
+  async waitForTick(tick: number): Promise<void> {
+    await this.page.waitForFunction((least) => Number(document.querySelector('[data-testid=tick]')?.textContent) >= least, tick);
+  }
+
+  // Degrees, from the table of joints.
+  async angles(): Promise<number[]> {
+    const texts = await this.page.locator('[data-testid=joints] td[data-value=angle]').allTextContents();
+    return texts.map(Number);
+  }
+
+  // Metres.
+  async head(): Promise<[number, number, number]> {
+    const text = (await this.page.getByTestId('head').textContent()) ?? '';
+    const numbers = [...text.matchAll(/-?\d+\.\d+/g)].map(Number);
+    assert.equal(numbers.length, 3, `found the position '${text}', expected three numbers`);
+    return numbers as [number, number, number];
+  }
+
+  async stopReport(): Promise<string> {
+    const report = this.page.getByTestId('stop-report');
+    await report.filter({ hasText: /stopped|not confirmed/ }).waitFor();
+    return (await report.textContent()) ?? '';
+  }
+
+  parameter(name: string) {
+    return this.page.locator(`[data-parameter="${name}"]`);
+  }
+
+  async waitForConfirmation(name: string): Promise<void> {
+    await this.page.getByTestId(`confirmed-${name}`).filter({ hasText: '✓' }).waitFor();
+  }
+
+  // Raw values of a document's parameter cannot be seen; this is what the page shows as wanted and confirmed.
+  async valuesOf(name: string): Promise<{ wanted: string; confirmed: string; file: string }[]> {
+    const titles = await this.parameter(name)
+      .locator('[data-cell]')
+      .evaluateAll((cells) => cells.map((cell) => cell.getAttribute('title') ?? ''));
+    return titles.map((title) => {
+      const match = /wanted (\S+), confirmed (\S+), file (\S+)/.exec(title);
+      assert.ok(match, `found the title '${title}', expected three values`);
+      return { wanted: match[1] as string, confirmed: match[2] as string, file: match[3] as string };
+    });
+  }
+
+  // The main thread does nothing else for this long.
+  async block(ms: number): Promise<void> {
+    await this.page.evaluate((duration) => {
+      setTimeout(() => {
+        const end = performance.now() + duration;
+        while (performance.now() < end);
+      }, 0);
+    }, ms);
+  }
+}

@@ -1,4 +1,4 @@
-# Names of the Debian packages, and a function that installs the missing ones. tools/demo, tools/check and tools/page read this file.
+# Names of the Debian packages, and a function that installs the missing ones. tools/demo, tools/check and tools/page read it.
 
 # Programs for this computer.
 host_packages=(

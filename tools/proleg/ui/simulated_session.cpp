@@ -1,5 +1,6 @@
 #include "tools/proleg/ui/simulated_session.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <map>
@@ -193,7 +194,8 @@ json SimulatedSession::carry_out(const Operation& operation) {
       {"factor", &SimulatedSession::set_factor}, {"set", &SimulatedSession::set},
       {"undo", &SimulatedSession::undo},         {"redo", &SimulatedSession::redo},
       {"swap", &SimulatedSession::swap},         {"reset", &SimulatedSession::reset},
-      {"record", &SimulatedSession::record},     {"command_line", &SimulatedSession::tell_command_line}};
+      {"record", &SimulatedSession::record},     {"command_line", &SimulatedSession::tell_command_line},
+      {"ping", &SimulatedSession::ping}};
   const auto handler = handlers.find(operation.name);
   if (handler == handlers.end()) {
     std::vector<std::string> names;
@@ -287,15 +289,18 @@ json SimulatedSession::swap(const json& /*arguments*/) {
 }
 
 json SimulatedSession::reset(const json& arguments) {
-  const auto names = member<std::vector<std::string>>(arguments, "names", "names such as \"1.amplitude:J2\"");
-  if (!names) {
+  const auto name = member<std::string>(arguments, "name", "the name of a parameter");
+  if (!name) {
     live_.reset(live_.parameters().places());
     return json::object();
   }
-  std::vector<ParameterPlace> places;
-  for (const std::string& name : *names) {
-    const std::vector<ParameterPlace> of_name = live_.places_of(name);
-    places.insert(places.end(), of_name.begin(), of_name.end());
+  const auto slot = member<unsigned>(arguments, "slot", "the number of a module");
+  const auto joints = member<std::vector<unsigned>>(arguments, "joints", "a list of joints");
+  std::vector<ParameterPlace> places = live_.places_of((slot ? std::to_string(*slot) + '.' : std::string()) + *name);
+  if (joints) {
+    std::erase_if(places, [&](const ParameterPlace& place) {
+      return std::ranges::find(*joints, unsigned{place.joint}) == joints->end();
+    });
   }
   live_.reset(places);
   return json::object();
@@ -314,12 +319,14 @@ json SimulatedSession::record(const json& arguments) {
   return {{"file", recording_}};
 }
 
+json SimulatedSession::ping(const json& /*arguments*/) { return json::object(); }
+
 json SimulatedSession::tell_command_line(const json& /*arguments*/) {
   std::string text = options_.command;
   for (const std::string& word : live_.repeating_words()) {
     text += " --set " + word;
   }
-  return {{"text", text + " --seconds " + exact_text(live_.simulation().time_s())}};
+  return {{"command", text + " --seconds " + exact_text(live_.simulation().time_s())}};
 }
 
 void SimulatedSession::tick() {

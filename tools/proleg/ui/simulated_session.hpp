@@ -46,7 +46,7 @@ class SimulatedSession {
   /// The simulation stands still after the tick that is computed now. From any thread.
   void stop(std::uint64_t request, const std::string& by);
   /// Operations that anybody may use.
-  [[nodiscard]] static std::vector<std::string> free_operations() { return {"command_line"}; }
+  [[nodiscard]] static std::vector<std::string> free_operations() { return {"command_line", "ping"}; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -89,6 +89,7 @@ class SimulatedSession {
   nlohmann::json swap(const nlohmann::json& arguments);
   nlohmann::json reset(const nlohmann::json& arguments);
   nlohmann::json record(const nlohmann::json& arguments);
+  nlohmann::json ping(const nlohmann::json& arguments);
   nlohmann::json tell_command_line(const nlohmann::json& arguments);
 
   const sim::Scenario& file_;

@@ -17,6 +17,9 @@
 
 namespace proleg::host {
 
+class SocketServer;
+struct SessionLink;
+
 struct ServerOptions {
   AccessToken token;
   PageFiles page;
@@ -63,9 +66,11 @@ class WebServer {
   void stop();
 
  private:
-  class Service;
+  /// The server's thread looks into the inbox and the history.
+  void wake();
 
-  std::shared_ptr<Service> service_;
+  std::shared_ptr<SessionLink> link_;
+  std::unique_ptr<SocketServer> sockets_;
 };
 
 }  // namespace proleg::host

@@ -31,6 +31,7 @@ export class PageApp {
     this.operations = new OperationQueue(this.state, (request) => this.post({ kind: 'operation', request }));
     this.sets = new SetQueue({
       send: (words, gesture) => this.operations.ask('set', { words, gesture }),
+      reset: (names) => this.operations.ask('reset', { names }),
       refused: (reason) => this.state.addNotice('warning', reason),
     });
     const url = `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/socket`;
@@ -65,11 +66,11 @@ export class PageApp {
       this.subscriptions = new Subscriptions();
       return;
     }
-    const signals = this.state.telemetry.value?.signals;
-    if (signals !== undefined) {
-      const names = this.subscriptions.select(this.selection.needed(signals));
+    const telemetry = this.state.telemetry.value;
+    if (telemetry !== null) {
+      const names = this.subscriptions.select(telemetry, this.selection.needed(telemetry.signals));
       if (names !== null) {
-        this.post({ kind: 'subscribe', signals: names });
+        this.post({ kind: 'subscribe', signals: names, hash: telemetry.hash });
       }
     }
   }

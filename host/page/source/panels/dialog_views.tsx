@@ -138,13 +138,10 @@ function Palette({ app }: { app: PageApp }) {
   );
 }
 
-// The result of `command_line` is the text, or an object that has it.
+// `value`: the result of `command_line`; null if it was refused.
 function textOf(value: unknown): string {
-  if (typeof value === 'string') {
-    return value;
-  }
-  const command = (value as { command?: unknown } | null)?.command;
-  return typeof command === 'string' ? command : '';
+  const text = (value as { text?: unknown } | null)?.text;
+  return typeof text === 'string' ? text : 'The program gave no command.';
 }
 
 function CommandLine({ app }: { app: PageApp }) {

@@ -1,19 +1,19 @@
 // Distortion: overwrites an internal value of an algorithm once, to see how the gait recovers.
 import { useSignal } from '@preact/signals';
 import type { PageApp } from '../page_app.js';
-import { formatRaw, parseValue, setWord } from '../state/parameter_values.js';
-import type { Parameter } from '../wire/messages.js';
+import { parseNumber, setWord } from '../state/parameter_values.js';
+import type { InternalValue } from '../wire/messages.js';
 
-export function DistortionForm({ app, values }: { app: PageApp; values: readonly Parameter[] }) {
+export function DistortionForm({ app, values }: { app: PageApp; values: readonly InternalValue[] }) {
   const chosen = useSignal(0);
   const joint = useSignal('');
   const text = useSignal('0');
   const problem = useSignal<string | null>(null);
-  const value = values[Math.min(chosen.value, values.length - 1)] as Parameter;
+  const value = values[Math.min(chosen.value, values.length - 1)] as InternalValue;
   const robot = app.state.robot.value;
   const isHolder = app.state.isHolder.value;
   const apply = () => {
-    const parsed = parseValue(text.value, value);
+    const parsed = parseNumber(text.value);
     problem.value = typeof parsed === 'string' ? parsed : null;
     if (typeof parsed === 'number') {
       app.sets.set([setWord(value, joint.value === '' ? null : joint.value, parsed)], app.newGesture());
@@ -23,8 +23,7 @@ export function DistortionForm({ app, values }: { app: PageApp; values: readonly
     <details class="distortion">
       <summary>Distort an internal value</summary>
       <p class="hint">
-        Overwrites the value once; the algorithm goes on from there. From {formatRaw(value.minimum, value)} to{' '}
-        {formatRaw(value.maximum, value)} {value.unit}. {value.help}
+        Overwrites the value once; the algorithm goes on from there. {value.name.replace(/_/g, ' ')}: {value.help}.
       </p>
       <div class="distortion-fields">
         <select aria-label="Internal value" value={String(chosen.value)} onChange={(event) => (chosen.value = Number(event.currentTarget.value))}>

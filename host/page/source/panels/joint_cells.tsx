@@ -3,7 +3,7 @@
 //   arrows: left and right choose, up and down change     digits, Enter: type a value     double click: back to the file
 import { useSignal } from '@preact/signals';
 import type { PageApp } from '../page_app.js';
-import { formatRaw, parseValue, setWord, sliderStep } from '../state/parameter_values.js';
+import { formatRaw, parseValue, placeName, setWord, sliderStep } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
 
 // Bars are as high as the cell at the limits of the slider; zero is where it is between them.
@@ -110,7 +110,7 @@ export function JointCells({ app, parameter }: { app: PageApp; parameter: Parame
               title={`${nameOf(i)}: wanted ${text}, confirmed ${formatRaw(confirmed, parameter)}, file ${formatRaw(parameter.file[i] ?? 0, parameter)} ${parameter.unit}`}
               onFocus={() => (current.value = i)}
               onPointerEnter={() => (app.selection.hoveredJoint.value = joint)}
-              onDblClick={() => void app.operations.tell('reset', { slot: parameter.slot, name: parameter.name, joints: [joint] })}
+              onDblClick={() => app.sets.reset([placeName(parameter, nameOf(i))])}
             >
               <i class="bar" style={{ bottom: `${100 * Math.min(bar, zero)}%`, height: `${Math.max(4, 100 * Math.abs(bar - zero))}%` }} />
               <i class="file-mark" style={{ bottom: `${100 * share(parameter.file[i] ?? 0, parameter)}%` }} />

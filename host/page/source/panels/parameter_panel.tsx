@@ -63,14 +63,13 @@ function Toolbar({ app, changed, filter }: { app: PageApp; changed: number; filt
 
 export function ParameterPanel({ app }: { app: PageApp }) {
   const onlyChanged = useSignal(false);
-  const all = app.state.parameters.value;
   const robot = app.state.robot.value;
-  const ordinary = all.filter((parameter) => !parameter.internal);
-  const changed = ordinary.filter((parameter) => summarise(parameter).isChanged);
-  const shown = onlyChanged.value ? changed : ordinary;
-  const slots = [...new Set(ordinary.map((parameter) => parameter.slot))];
+  const all = app.state.parameters.value;
+  const changed = all.filter((parameter) => summarise(parameter).isChanged);
+  const shown = onlyChanged.value ? changed : all;
+  const slots = [...new Set(all.map((parameter) => parameter.slot))];
   const ofSlot = (slot: number): Parameter[] => shown.filter((parameter) => parameter.slot === slot);
-  const internal = all.filter((parameter) => parameter.internal);
+  const internal = app.state.internalValues.value;
   return (
     <section class="panel parameter-panel" aria-label="Parameters">
       <h2>Parameters</h2>

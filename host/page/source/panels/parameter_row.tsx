@@ -1,7 +1,7 @@
 // One parameter: a slider and a number for all joints, and a cell for each joint.
 import { useSignal } from '@preact/signals';
 import type { PageApp } from '../page_app.js';
-import { formatRaw, parseValue, setWord, sliderStep, summarise } from '../state/parameter_values.js';
+import { formatRaw, parseValue, placeName, setWord, sliderStep, summarise } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
 import { JointCells } from './joint_cells.js';
 
@@ -37,7 +37,7 @@ export function ParameterRow({ app, parameter }: { app: PageApp; parameter: Para
   const title = parameter.name.replace(/_/g, ' ');
 
   const set = (value: number) => app.sets.set([setWord(parameter, null, value)], gesture.value);
-  const reset = () => void app.operations.tell('reset', { slot: parameter.slot, name: parameter.name });
+  const reset = () => app.sets.reset([placeName(parameter, null)]);
   const mean = parameter.wanted.reduce((sum, raw) => sum + raw, 0) / Math.max(1, parameter.wanted.length);
   const first = parameter.wanted[0] ?? 0;
   const unit = parameter.unit === '' ? '' : ` ${parameter.unit}`;

@@ -3,6 +3,7 @@ import { computed, signal } from '@preact/signals-core';
 import type { ConnectionStatus } from '../wire/connection.js';
 import type {
   ControlDocument,
+  InternalValue,
   NoticeMessage,
   Parameter,
   RobotDocument,
@@ -24,6 +25,7 @@ export class PageState {
   readonly latency = signal<number | null>(null); // milliseconds, to the session and back
   readonly robot = signal<RobotDocument | null>(null);
   readonly parameters = signal<readonly Parameter[]>([]);
+  readonly internalValues = signal<readonly InternalValue[]>([]);
   readonly session = signal<SessionDocument | null>(null);
   readonly control = signal<ControlDocument | null>(null);
   readonly telemetry = signal<TelemetryDocument | null>(null);
@@ -52,7 +54,8 @@ export class PageState {
           this.robot.value = message.value;
           break;
         case 'parameters':
-          this.parameters.value = message.value;
+          this.parameters.value = message.value.filter((value): value is Parameter => !value.internal);
+          this.internalValues.value = message.value.filter((value): value is InternalValue => value.internal);
           break;
         case 'session':
           this.session.value = message.value;

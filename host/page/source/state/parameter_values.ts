@@ -40,12 +40,18 @@ export function formatMeasured(value: number): string {
   return value.toFixed(size >= 1000 ? 0 : size >= 100 ? 1 : size >= 10 ? 2 : 3);
 }
 
-// A number in the parameter's unit, or a text that says what is wrong.
-export function parseValue(text: string, parameter: ParameterRange & Pick<Parameter, 'unit'>): number | string {
+// A number, or a text that says what is wrong.
+export function parseNumber(text: string): number | string {
   const trimmed = text.trim().replace(',', '.');
   const value = Number(trimmed);
-  if (trimmed === '' || !Number.isFinite(value)) {
-    return `found '${text}', expected a number`;
+  return trimmed === '' || !Number.isFinite(value) ? `found '${text}', expected a number` : value;
+}
+
+// A number in the parameter's unit, or a text that says what is wrong. An angle that wraps has no limits.
+export function parseValue(text: string, parameter: ParameterRange & Pick<Parameter, 'unit' | 'wraps'>): number | string {
+  const value = parseNumber(text);
+  if (typeof value === 'string' || parameter.wraps) {
+    return value;
   }
   const low = parameter.minimum * parameter.scale;
   const high = parameter.maximum * parameter.scale;
@@ -53,15 +59,18 @@ export function parseValue(text: string, parameter: ParameterRange & Pick<Parame
   const slack = Math.abs(parameter.scale) / 2;
   if (value < low - slack || value > high + slack) {
     const range = `${formatRaw(parameter.minimum, parameter)} to ${formatRaw(parameter.maximum, parameter)}`;
-    return `found ${trimmed}, expected ${range} ${parameter.unit}`.trimEnd();
+    return `found ${text.trim()}, expected ${range} ${parameter.unit}`.trimEnd();
   }
   return value;
 }
 
-// The word for all joints of the slot, or for one: `1.amplitude=30`, `1.amplitude:J2=30`.
+// All joints of the slot, or one: `1.amplitude`, `1.amplitude:J2`.
+export function placeName(parameter: Pick<Parameter, 'slot' | 'name'>, joint: string | null): string {
+  return `${parameter.slot}.${parameter.name}${joint === null ? '' : `:${joint}`}`;
+}
+
 export function setWord(parameter: Pick<Parameter, 'slot' | 'name'>, joint: string | null, value: number): string {
-  const place = joint === null ? '' : `:${joint}`;
-  return `${parameter.slot}.${parameter.name}${place}=${plainDecimal(value)}`;
+  return `${placeName(parameter, joint)}=${plainDecimal(value)}`;
 }
 
 // `--set` takes decimal text without an exponent.

@@ -2,8 +2,9 @@
 // other: a slider never builds up a queue, and its last value always arrives.
 
 export interface SetPorts {
-  // Rejects if the set was refused.
+  // Both reject if they were refused.
   send(words: string[], gesture: number): Promise<unknown>;
+  reset(names: string[]): Promise<unknown>;
   refused(reason: string): void;
 }
 
@@ -12,16 +13,25 @@ function target(word: string): string {
   return word.slice(0, word.indexOf('='));
 }
 
+interface Change {
+  words: Map<string, string>;
+  gesture: number;
+}
+
+interface Reset {
+  names: string[];
+}
+
 export class SetQueue {
   private isSending = false;
-  private next: { words: Map<string, string>; gesture: number }[] = [];
+  private next: (Change | Reset)[] = [];
 
   constructor(private readonly ports: SetPorts) {}
 
   // `gesture`: changes of one drag have one number, and are one entry for undo.
   set(words: readonly string[], gesture: number): void {
     let last = this.next.at(-1);
-    if (last === undefined || last.gesture !== gesture) {
+    if (last === undefined || !('words' in last) || last.gesture !== gesture) {
       last = { words: new Map(), gesture };
       this.next.push(last);
     }
@@ -33,6 +43,12 @@ export class SetQueue {
     void this.sendNext();
   }
 
+  // Back to the values of the file, after what has been set before: a double click on a slider sets it twice first.
+  reset(names: readonly string[]): void {
+    this.next.push({ names: [...names] });
+    void this.sendNext();
+  }
+
   private async sendNext(): Promise<void> {
     if (this.isSending) {
       return;
@@ -40,7 +56,9 @@ export class SetQueue {
     for (let change = this.next.shift(); change !== undefined; change = this.next.shift()) {
       this.isSending = true;
       try {
-        await this.ports.send([...change.words.values()], change.gesture);
+        await ('words' in change
+          ? this.ports.send([...change.words.values()], change.gesture)
+          : this.ports.reset(change.names));
       } catch (error) {
         this.ports.refused((error as Error).message);
       }

@@ -108,9 +108,10 @@ export class Connection {
     return true;
   }
 
-  subscribe(signals: string[]): void {
+  // `hash`: of the document `telemetry` that the signals come from.
+  subscribe(signals: string[], hash: number): void {
     if (this.client !== null) {
-      this.send({ type: 'subscribe', signals });
+      this.send({ type: 'subscribe', signals, hash });
     }
   }
 

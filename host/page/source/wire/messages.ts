@@ -60,18 +60,24 @@ export interface RobotDocument {
   slots: Slot[];
 }
 
-// A parameter or an internal value of a slot. The arrays have one entry for each joint of `joints`.
-export interface Parameter {
+// An internal value of a slot, which a change may overwrite.
+export interface InternalValue {
   slot: number;
   name: string;
   unit: string;
   scale: number;
+  help: string;
+  internal: true;
+  joints: number[];
+  wraps: boolean; // an angle: each number stands for one of -180 to 180 degrees
+}
+
+// A parameter of a slot. The arrays have one entry for each joint of `joints`.
+export interface Parameter extends Omit<InternalValue, 'internal'> {
+  internal: false;
   minimum: number; // raw, as the values below
   maximum: number;
   default: number;
-  help: string;
-  internal: boolean;
-  joints: number[];
   file: number[];
   wanted: number[];
   confirmed: number[];
@@ -104,7 +110,7 @@ export interface ControlDocument {
 
 export interface Documents {
   robot: RobotDocument;
-  parameters: Parameter[];
+  parameters: (Parameter | InternalValue)[];
   session: SessionDocument;
   control: ControlDocument;
   telemetry: TelemetryDocument;
@@ -158,14 +164,14 @@ export interface Operations {
   undo: Record<string, never>;
   redo: Record<string, never>;
   swap: Record<string, never>;
-  reset: { slot?: number; name?: string; joints?: number[] };
+  reset: { names?: string[] }; // as in `set`, without a value
   command_line: Record<string, never>;
   ping: Record<string, never>;
 }
 
 export type ClientMessage =
-  | { type: 'hello'; protocol: number; token: string; name: string }
+  | { type: 'hello'; protocol: number; token: string; name: string; only?: 'stop' }
   | { type: 'operation'; id: number; epoch: number; name: keyof Operations; arguments: object }
-  | { type: 'subscribe'; signals: string[] }
+  | { type: 'subscribe'; signals: string[]; hash: number }
   | { type: 'beat'; age_ms: number }
   | { type: 'stop' };

@@ -1,5 +1,5 @@
 // STOP: a socket that is only for it, and POST /stop as second way. Either alone suffices.
-import { protocol, type ServerMessage } from './messages.js';
+import { protocol, type ClientMessage, type ServerMessage } from './messages.js';
 import type { Socket, SocketEvents } from './connection.js';
 
 export interface StopPorts {
@@ -41,7 +41,8 @@ export class StopChannel {
     const socket = this.ports.openSocket({
       opened: () => {
         this.isOpen = true;
-        socket.send(JSON.stringify({ type: 'hello', protocol, token: this.token, name: this.name }));
+        const hello: ClientMessage = { type: 'hello', protocol, token: this.token, name: this.name, only: 'stop' };
+        socket.send(JSON.stringify(hello));
       },
       text: (text) => this.receive(text),
       binary: () => {},

@@ -1,5 +1,5 @@
 // What a viewer has subscribed to, and where each signal is in a row of the answer.
-import type { Signal } from './messages.js';
+import type { Signal, TelemetryDocument } from './messages.js';
 
 export interface SubscribedSignal {
   signal: Signal;
@@ -25,16 +25,19 @@ export function rowLayout(signals: readonly Signal[]): RowLayout {
 // earlier subscription, so its layout is kept until a message of a later one comes.
 export class Subscriptions {
   private last = 0;
+  private document: TelemetryDocument | null = null;
   private readonly layouts = new Map<number, RowLayout>();
 
-  // The names for the message `subscribe`, or null if the selection is as before.
-  select(signals: readonly Signal[]): string[] | null {
+  // The names for the message `subscribe`, or null if the selection is as before. Each revision of the document ends the
+  // subscription, so after it there is always a new one.
+  select(document: TelemetryDocument, signals: readonly Signal[]): string[] | null {
     const names = signals.map((signal) => signal.name);
     const current = this.layouts.get(this.last)?.signals.map((placed) => placed.signal);
-    const isSame = (signal: Signal, i: number) => signal.name === current?.[i]?.name && signal.count === current[i]?.count;
-    if (current?.length === signals.length && signals.every(isSame)) {
+    const isSame = (signal: Signal, i: number) => signal.name === current?.[i]?.name;
+    if (document === this.document && current?.length === signals.length && signals.every(isSame)) {
       return null;
     }
+    this.document = document;
     this.last += 1;
     this.layouts.set(this.last, rowLayout(signals));
     return names;

@@ -183,9 +183,9 @@ async function settledTick(viewer: Viewer): Promise<number> {
   }
 }
 
-// Waits until each joint's wanted and confirmed values fulfil the condition.
+// Waits until each joint's wanted and confirmed values fulfil the condition; at most 500 looks.
 async function confirmedValues(viewer: Viewer, name: string, matches: (value: string, joint: number) => boolean) {
-  for (;;) {
+  for (let look = 0; look < 500; look += 1) {
     const values = await viewer.valuesOf(name);
     if (values.every(({ wanted, confirmed }, joint) => wanted === confirmed && matches(confirmed, joint))) {
       await viewer.waitForConfirmation(name);
@@ -193,4 +193,5 @@ async function confirmedValues(viewer: Viewer, name: string, matches: (value: st
     }
     await viewer.page.waitForTimeout(20);
   }
+  throw new Error(`${name}: found ${JSON.stringify(await viewer.valuesOf(name))}, expected other values that are confirmed`);
 }

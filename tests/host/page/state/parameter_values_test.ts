@@ -23,6 +23,7 @@ const amplitude: Parameter = {
   default: 0,
   help: '',
   internal: false,
+  wraps: false,
   joints: [0, 1, 2],
   file: [1, 1, 1],
   wanted: [1, 1, 1],
@@ -71,6 +72,10 @@ describe('a typed value', () => {
     assert.equal(parseValue('much', amplitude), "found 'much', expected a number");
     assert.equal(parseValue('', amplitude), "found '', expected a number");
     assert.equal(parseValue('91', amplitude), 'found 91, expected 0 to 90 degree');
+  });
+
+  it('has no limits if it is an angle that wraps', () => {
+    assert.equal(parseValue('-270', { ...amplitude, wraps: true }), -270);
   });
 
   it('may be a limit', () => {

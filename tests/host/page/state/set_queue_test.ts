@@ -5,15 +5,20 @@ import { SetQueue } from '../../../../host/page/source/state/set_queue.js';
 function setUp() {
   const sent: { words: string[]; gesture: number; finish(): void; refuse(reason: string): void }[] = [];
   const refusals: string[] = [];
+  const resets: { names: string[]; after: number }[] = [];
   const queue = new SetQueue({
     send: (words, gesture) =>
       new Promise((resolve, reject) => {
         sent.push({ words, gesture, finish: () => resolve(null), refuse: (reason) => reject(new Error(reason)) });
       }),
+    reset: (names) => {
+      resets.push({ names, after: sent.length });
+      return Promise.resolve();
+    },
     refused: (reason) => refusals.push(reason),
   });
   const settle = () => new Promise((resolve) => setImmediate(resolve));
-  return { queue, sent, refusals, settle };
+  return { queue, sent, refusals, resets, settle };
 }
 
 describe('the queue of changes', () => {
@@ -54,6 +59,20 @@ describe('the queue of changes', () => {
     sent[1]?.finish();
     await settle();
     assert.deepEqual(sent.map(({ gesture }) => gesture), [1, 2, 3]);
+  });
+
+  it('resets after what was set before, and sets after that what is set later', async () => {
+    const { queue, sent, resets, settle } = setUp();
+    queue.set(['1.amplitude=1'], 1);
+    queue.set(['1.amplitude=2'], 1);
+    queue.reset(['1.amplitude']);
+    queue.set(['1.amplitude=3'], 1);
+    sent[0]?.finish();
+    await settle();
+    sent[1]?.finish();
+    await settle();
+    assert.deepEqual(resets, [{ names: ['1.amplitude'], after: 2 }]);
+    assert.deepEqual(sent.map(({ words }) => words), [['1.amplitude=1'], ['1.amplitude=2'], ['1.amplitude=3']]);
   });
 
   it('goes on after a refusal, which it reports', async () => {

@@ -45,6 +45,7 @@ describe('STOP', () => {
     first.events.opened();
     void channel.press();
     assert.deepEqual(first.sent.map((message) => message['type']), ['hello', 'stop']);
+    assert.equal(first.sent[0]?.['only'], 'stop');
   });
 
   it('goes by POST at once if the socket is not open', async () => {

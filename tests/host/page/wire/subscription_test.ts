@@ -6,6 +6,7 @@ import { makeSignal } from '../support/telemetry.js';
 const angle = makeSignal('angle', 5);
 const head = makeSignal('head', 7);
 const contact = makeSignal('contact', 6);
+const revision = () => ({ hash: 1, tick_us: 10000, signals: [angle, head, contact] });
 
 describe('a row of a subscription', () => {
   it('has the signals in the order of the subscription', () => {
@@ -21,29 +22,32 @@ describe('a row of a subscription', () => {
 describe('subscriptions', () => {
   it('are numbered from 1', () => {
     const subscriptions = new Subscriptions();
-    assert.deepEqual(subscriptions.select([angle]), ['angle']);
+    const document = revision();
+    assert.deepEqual(subscriptions.select(document, [angle]), ['angle']);
     assert.equal(subscriptions.layoutOf(1)?.width, 5);
     assert.equal(subscriptions.layoutOf(2), null);
   });
 
   it('are not repeated if nothing changed', () => {
     const subscriptions = new Subscriptions();
-    subscriptions.select([angle, head]);
-    assert.equal(subscriptions.select([angle, head]), null);
-    assert.deepEqual(subscriptions.select([head, angle]), ['head', 'angle']);
+    const document = revision();
+    subscriptions.select(document, [angle, head]);
+    assert.equal(subscriptions.select(document, [angle, head]), null);
+    assert.deepEqual(subscriptions.select(document, [head, angle]), ['head', 'angle']);
   });
 
-  it('are made anew if a signal has another number of values', () => {
+  it('are made anew after each revision of the document, which ends them', () => {
     const subscriptions = new Subscriptions();
-    subscriptions.select([angle]);
-    assert.deepEqual(subscriptions.select([makeSignal('angle', 60)]), ['angle']);
+    subscriptions.select(revision(), [angle]);
+    assert.deepEqual(subscriptions.select(revision(), [makeSignal('angle', 60)]), ['angle']);
     assert.equal(subscriptions.layoutOf(2)?.width, 60);
   });
 
   it('explain messages that were on their way when the selection changed', () => {
     const subscriptions = new Subscriptions();
-    subscriptions.select([angle]);
-    subscriptions.select([angle, head]);
+    const document = revision();
+    subscriptions.select(document, [angle]);
+    subscriptions.select(document, [angle, head]);
     assert.equal(subscriptions.layoutOf(1)?.width, 5);
     assert.equal(subscriptions.layoutOf(2)?.width, 12);
     assert.equal(subscriptions.layoutOf(1), null, 'no message of an earlier subscription can follow');

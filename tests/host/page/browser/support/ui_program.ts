@@ -1,4 +1,4 @@
-// Starts `proleg ui` on a scenario, as a user does, and reads the address that it prints.
+// Starts `proleg ui` on a scenario, paused at tick 0, and reads the address that it prints.
 import { spawn, type ChildProcess } from 'node:child_process';
 
 const program = process.env['PROLEG_PROGRAM'] ?? 'build/host/bin/proleg';
@@ -14,7 +14,8 @@ export class UiProgram {
   ) {}
 
   static start(file: string = uniform): Promise<UiProgram> {
-    const child = spawn(program, ['ui', file, '--no-browser', '--port', '0'], { stdio: ['ignore', 'pipe', 'pipe'] });
+    const options = ['--no-browser', '--port', '0', '--paused', '--page', 'build/page'];
+    const child = spawn(program, ['ui', file, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });
     return new Promise((resolve, reject) => {
       let output = '';
       const timer = setTimeout(() => fail('no address in time'), startTimeout);

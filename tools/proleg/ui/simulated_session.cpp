@@ -1,6 +1,5 @@
 #include "tools/proleg/ui/simulated_session.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <map>
@@ -289,18 +288,15 @@ json SimulatedSession::swap(const json& /*arguments*/) {
 }
 
 json SimulatedSession::reset(const json& arguments) {
-  const auto name = member<std::string>(arguments, "name", "the name of a parameter");
-  if (!name) {
+  const auto names = member<std::vector<std::string>>(arguments, "names", "names such as \"1.amplitude:J2\"");
+  if (!names) {
     live_.reset(live_.parameters().places());
     return json::object();
   }
-  const auto slot = member<unsigned>(arguments, "slot", "the number of a module");
-  const auto joints = member<std::vector<unsigned>>(arguments, "joints", "a list of joints");
-  std::vector<ParameterPlace> places = live_.places_of((slot ? std::to_string(*slot) + '.' : std::string()) + *name);
-  if (joints) {
-    std::erase_if(places, [&](const ParameterPlace& place) {
-      return std::ranges::find(*joints, unsigned{place.joint}) == joints->end();
-    });
+  std::vector<ParameterPlace> places;
+  for (const std::string& name : *names) {
+    const std::vector<ParameterPlace> of_name = live_.places_of(name);
+    places.insert(places.end(), of_name.begin(), of_name.end());
   }
   live_.reset(places);
   return json::object();
@@ -326,7 +322,7 @@ json SimulatedSession::tell_command_line(const json& /*arguments*/) {
   for (const std::string& word : live_.repeating_words()) {
     text += " --set " + word;
   }
-  return {{"command", text + " --seconds " + exact_text(live_.simulation().time_s())}};
+  return {{"text", text + " --seconds " + exact_text(live_.simulation().time_s())}};
 }
 
 void SimulatedSession::tick() {

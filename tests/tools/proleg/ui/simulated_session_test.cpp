@@ -183,7 +183,7 @@ TEST_F(SimulatedSessionTest, ARunOfOperationsIsTheRunOfItsCommandLine) {
   EXPECT_TRUE(ask("record", {{"file", "run.proleg"}}).is_done);
   ask("step", {{"ticks", 100}});
   viewers_.session([](const json& session) { return session["tick"] == 200; });
-  EXPECT_EQ(json::parse(ask("command_line").text)["command"],
+  EXPECT_EQ(json::parse(ask("command_line").text)["text"],
             "proleg simulate uniform.simulation.xml --set 1.amplitude:J2=30@100 --seconds 2");
   EXPECT_TRUE(ask("record", {{"file", nullptr}}).is_done);
   const sim::Recording recording(folder_ / "run.proleg");
@@ -205,9 +205,9 @@ TEST_F(SimulatedSessionTest, RefusesInOneLineWhatItCannotDo) {
       {"set", json::object()},
       {"set", {{"words", "amplitude=30"}}},
       {"set", {{"words", {"amplitude=30\nrun"}}}},
-      {"reset", {{"name", "nothing"}}},
-      {"reset", {{"name", "amplitude"}, {"slot", 9}}},
-      {"reset", {{"name", "amplitude"}, {"joints", "all"}}},
+      {"reset", {{"names", {"nothing"}}}},
+      {"reset", {{"names", {"9.amplitude"}}}},
+      {"reset", {{"names", "amplitude"}}},
       {"restart", {{"parameters", "mine"}}},
       {"undo", json::object()},
       {"redo", json::object()},

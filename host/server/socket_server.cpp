@@ -152,7 +152,10 @@ class SocketServer::Service::ViewerConnection final : public Connection,
 
  private:
   void read();
+  /// Reading goes on until the viewer ends the connection, or for a second.
   void close(const CloseReason& reason);
+  /// By hand: async_close beside an async_read that fails may leave a handler behind that never runs (Beast 1.74).
+  void send_close_frame();
   void leave();
 
   const std::shared_ptr<Service> service_;
@@ -163,6 +166,7 @@ class SocketServer::Service::ViewerConnection final : public Connection,
   std::optional<ClientId> client_;
   SharedText outgoing_;  ///< what is on its way; null: nothing
   bool is_closing_ = false;
+  CloseReason close_reason_;
 };
 
 void SocketServer::Service::HttpConnection::read() {
@@ -288,7 +292,7 @@ void SocketServer::Service::ViewerConnection::open(Request request) {
 
 void SocketServer::Service::ViewerConnection::read() {
   socket_.async_read(buffer_, [self = shared_from_this()](const error_code& error, std::size_t) {
-    if (error) {
+    if (error || !self->client_) {
       self->leave();
       return;
     }
@@ -324,7 +328,9 @@ void SocketServer::Service::ViewerConnection::pump() {
   socket_.binary(message->is_binary);
   socket_.async_write(asio::buffer(*outgoing_), [self = shared_from_this()](const error_code& error, std::size_t) {
     self->outgoing_ = nullptr;
-    if (!error) {
+    if (!error && self->is_closing_) {
+      self->send_close_frame();
+    } else if (!error) {
       self->service_->serve();
     }
   });
@@ -338,22 +344,34 @@ void SocketServer::Service::ViewerConnection::close(const CloseReason& reason) {
     end_by_force();
     return;
   }
+  close_reason_ = reason;
   // A viewer that does not read keeps the close frame from being sent.
   close_timer_.expires_after(close_timeout);
   close_timer_.async_wait([self = shared_from_this()](const error_code& error) {
     if (!error) {
-      self->end_by_force();
+      self->leave();
     }
   });
-  socket_.async_close(websocket::close_reason(websocket::close_code{reason.code}, beast::string_view(reason.text)),
-                      [self = shared_from_this()](const error_code&) {
-                        self->close_timer_.cancel();
-                        self->end_by_force();
-                      });
+  if (!outgoing_) {
+    send_close_frame();
+  }
+}
+
+void SocketServer::Service::ViewerConnection::send_close_frame() {
+  const auto high = static_cast<char>(close_reason_.code >> 8U);
+  const auto low = static_cast<char>(close_reason_.code & 0xFFU);
+  const std::string frame =
+      std::string{'\x88', static_cast<char>(close_reason_.text.size() + 2), high, low} + close_reason_.text;
+  tcp::socket& socket = beast::get_lowest_layer(socket_).socket();
+  error_code ignored;
+  socket.non_blocking(true, ignored);
+  socket.write_some(asio::buffer(frame), ignored);
+  socket.shutdown(tcp::socket::shutdown_send, ignored);
 }
 
 void SocketServer::Service::ViewerConnection::leave() {
   is_closing_ = true;
+  close_timer_.cancel();
   end_by_force();
   if (client_) {
     service_->link_->hub.remove_viewer(server_now(), *std::exchange(client_, std::nullopt));

@@ -111,6 +111,7 @@ def test_a_long_message_ends_the_connection(server):
 
 
 def test_junk_behind_the_upgrade_ends_the_connection(server):
+    """And leaves nothing behind: the server ends at the end of this test."""
     generator = random.Random(SEED)
     for _ in range(50):
         closed_after(server, bytes(generator.randrange(256) for _ in range(2000)), greet=False)

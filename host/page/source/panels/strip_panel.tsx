@@ -56,7 +56,8 @@ class StripDrawing {
     const range = time.range(newest);
     const hovered = selection.hoveredJoint.peek();
     const name = selection.strip.peek();
-    const key = [history.run, history.end, range.from, range.to, time.cursor.peek(), hovered, name, isDark.peek(), box.width, box.height].join();
+    const marks = [time.cursor.peek(), hovered, name, isDark.peek()];
+    const key = [history.run, history.end, range.from, range.to, ...marks, box.width, box.height].join();
     if (key === this.lastKey || now - this.lastTime < framePeriod || box.width < axisWidth + 10) {
       return;
     }

@@ -9,7 +9,7 @@ import { axisWidth, chartTheme } from './chart_theme.js';
 import { signalTitle, valueName } from './value_names.js';
 
 const framePeriod = 30; // milliseconds: about 30 images a second
-const smallestLabel = 12; // CSS pixels between two names of joints
+const smallestLabel = 14; // CSS pixels between two names of joints
 // CSS pixels: of the strip, and of a joint in it where there are many.
 const smallestHeight = 120;
 const largestHeight = 260;

@@ -24,6 +24,7 @@ export class PageApp {
   readonly stop: StopControl;
   private readonly worker = new Worker('connection_worker.js');
   private subscriptions = new Subscriptions();
+  private sessionRun: number | null = null; // as the document said last
   // Gestures of two viewers must not have one number, or undo would take them as one.
   private lastGesture = Math.floor(Math.random() * 2 ** 20) * 1024;
 
@@ -40,6 +41,7 @@ export class PageApp {
     this.worker.onmessage = (event: MessageEvent<FromConnectionWorker>) => this.receive(event.data);
     this.post({ kind: 'open', url, token, name });
     effect(() => this.subscribe());
+    effect(() => this.noteRun(this.state.session.value?.run));
   }
 
   newGesture(): number {
@@ -73,6 +75,15 @@ export class PageApp {
         this.post({ kind: 'subscribe', signals: names, hash: telemetry.hash });
       }
     }
+  }
+
+  // A restart while the robot is paused: its first tick may be long in coming.
+  private noteRun(run: number | undefined): void {
+    if (run !== undefined && this.sessionRun !== null && run !== this.sessionRun && run !== this.history.run) {
+      this.history.clear();
+      this.time.goLive();
+    }
+    this.sessionRun = run ?? null;
   }
 
   private receive(message: FromConnectionWorker): void {

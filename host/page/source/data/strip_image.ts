@@ -11,7 +11,10 @@ export function divergingScale(low: number, middle: number, high: number, steps 
   return Uint32Array.from({ length: steps }, (_, i) => {
     const at = (2 * i) / (steps - 1) - 1;
     const end = at < 0 ? low : high;
-    const mix = (shift: number) => Math.round(channel(middle, shift) + (channel(end, shift) - channel(middle, shift)) * Math.abs(at));
+    const mix = (shift: number) => {
+      const start = channel(middle, shift);
+      return Math.round(start + (channel(end, shift) - start) * Math.abs(at));
+    };
     return ((255 << 24) | (mix(0) << 16) | (mix(8) << 8) | mix(16)) >>> 0;
   });
 }

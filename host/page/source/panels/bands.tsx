@@ -62,11 +62,12 @@ function RequestBand({ app }: { app: PageApp }) {
 
 export function Bands({ app }: { app: PageApp }) {
   const connection = describeConnection(app.state.connection.value);
+  const isConnecting = app.state.connection.value.state === 'connecting';
   const session = app.state.session.value;
   return (
     <div class="bands">
       {connection !== null && (
-        <div class={`band ${app.state.connection.value.state === 'connecting' ? 'info' : 'lost'}`} role="alert" data-testid="connection-band">
+        <div class={`band ${isConnecting ? 'info' : 'lost'}`} role="alert" data-testid="connection-band">
           {connection}
         </div>
       )}

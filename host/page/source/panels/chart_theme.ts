@@ -41,3 +41,6 @@ export function chartTheme(isDark: boolean): ChartTheme {
 
 // Of the axis at the left of strip and plots, in CSS pixels: one width, so that their times are one above the other.
 export const axisWidth = 64;
+
+// At the right of the plots, for half of the last time; the style gives the strip the same.
+export const axisOverhang = 12;

@@ -26,7 +26,11 @@ export function DistortionForm({ app, values }: { app: PageApp; values: readonly
         Overwrites the value once; the algorithm goes on from there. {value.name.replace(/_/g, ' ')}: {value.help}.
       </p>
       <div class="distortion-fields">
-        <select aria-label="Internal value" value={String(chosen.value)} onChange={(event) => (chosen.value = Number(event.currentTarget.value))}>
+        <select
+          aria-label="Internal value"
+          value={String(chosen.value)}
+          onChange={(event) => (chosen.value = Number(event.currentTarget.value))}
+        >
           {values.map((candidate, i) => (
             <option key={`${candidate.slot}.${candidate.name}`} value={String(i)}>
               {candidate.slot}. {candidate.name.replace(/_/g, ' ')}

@@ -93,7 +93,9 @@ export function JointCells({ app, parameter }: { app: PageApp; parameter: Parame
           const bar = share(wanted, parameter);
           const text = formatRaw(wanted, parameter);
           const isChanged = wanted !== parameter.file[i];
-          const classes = ['cell', isChanged ? 'changed' : '', wanted === confirmed ? '' : 'pending', app.selection.hoveredJoint.value === joint ? 'hovered' : ''];
+          const isHovered = app.selection.hoveredJoint.value === joint;
+          const classes = ['cell', isChanged && 'changed', wanted !== confirmed && 'pending', isHovered && 'hovered'];
+          const fileText = formatRaw(parameter.file[i] ?? 0, parameter);
           return (
             <div
               key={joint}
@@ -107,12 +109,15 @@ export function JointCells({ app, parameter }: { app: PageApp; parameter: Parame
               aria-valuemax={parameter.maximum * parameter.scale}
               aria-valuenow={Number(text)}
               aria-valuetext={`${text} ${parameter.unit}`}
-              title={`${nameOf(i)}: wanted ${text}, confirmed ${formatRaw(confirmed, parameter)}, file ${formatRaw(parameter.file[i] ?? 0, parameter)} ${parameter.unit}`}
+              title={`${nameOf(i)}: wanted ${text}, confirmed ${formatRaw(confirmed, parameter)}, file ${fileText} ${parameter.unit}`}
               onFocus={() => (current.value = i)}
               onPointerEnter={() => (app.selection.hoveredJoint.value = joint)}
               onDblClick={() => app.sets.reset([placeName(parameter, nameOf(i))])}
             >
-              <i class="bar" style={{ bottom: `${100 * Math.min(bar, zero)}%`, height: `${Math.max(4, 100 * Math.abs(bar - zero))}%` }} />
+              <i
+                class="bar"
+                style={{ bottom: `${100 * Math.min(bar, zero)}%`, height: `${Math.max(4, 100 * Math.abs(bar - zero))}%` }}
+              />
               <i class="file-mark" style={{ bottom: `${100 * share(parameter.file[i] ?? 0, parameter)}%` }} />
             </div>
           );

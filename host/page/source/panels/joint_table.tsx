@@ -58,7 +58,7 @@ export function JointTable({ app }: { app: PageApp }) {
       const { history, time } = app;
       const tick = time.shownTick(app.newestTick);
       const key = `${history.run}/${history.end}/${tick}`;
-      if (history.end === 0 || key === lastKey || now - last < framePeriod) {
+      if (key === lastKey || now - last < framePeriod) {
         return;
       }
       last = now;

@@ -42,7 +42,12 @@ function LineChip({ app, group, line, colour }: { app: PageApp; group: LineGroup
     >
       <i class="swatch" style={{ background: colour }} />
       {title} <span class="value" ref={value} /> {signal?.unit}
-      <button type="button" class="icon-button" aria-label={`Remove ${title}`} onClick={() => app.selection.toggle(group.number, line)}>
+      <button
+        type="button"
+        class="icon-button"
+        aria-label={`Remove ${title}`}
+        onClick={() => app.selection.toggle(group.number, line)}
+      >
         {closeIcon}
       </button>
     </li>
@@ -83,7 +88,9 @@ function LineChoice({ app, group }: { app: PageApp; group: LineGroup }) {
           </button>
         ))}
       </div>
-      <span class="hint">{isFull ? `${mostLines} lines are the most; remove one first.` : `${group.lines.length} of ${mostLines} lines`}</span>
+      <span class="hint">
+        {isFull ? `${mostLines} lines are the most; remove one first.` : `${group.lines.length} of ${mostLines} lines`}
+      </span>
     </div>
   );
 }

@@ -4,7 +4,7 @@ import { lineData } from '../data/line_data.js';
 import { onFrame } from '../frame_clock.js';
 import type { PageApp } from '../page_app.js';
 import type { Line } from '../state/signal_selection.js';
-import { axisWidth, chartTheme } from './chart_theme.js';
+import { axisOverhang, axisWidth, chartTheme } from './chart_theme.js';
 
 const height = 170; // CSS pixels
 const framePeriod = 30; // milliseconds
@@ -51,7 +51,7 @@ export class LinePlot {
     return {
       width,
       height,
-      padding: [8, 0, 0, 0],
+      padding: [8, axisOverhang, 0, 0],
       legend: { show: false },
       cursor: { x: false, y: false, points: { show: false }, drag: { x: true, y: false, setScale: false } },
       scales: { x: { time: false, auto: false }, y: { auto: true, range: (_, low, high) => padded(low, high) } },

@@ -124,8 +124,9 @@ function followPose(app: PageApp, send: (message: ToScene) => void, readout: { c
     robot = app.state.robot.peek();
     if (readout.current !== null && now - lastReadout > readoutPeriod) {
       lastReadout = now;
-      const [x, y, z] = pose.head as unknown as [number, number, number];
-      readout.current.textContent = `head  x ${x.toFixed(3)}  y ${y.toFixed(3)}  z ${z.toFixed(3)} m`;
+      // Without the sign of -0.000.
+      const [x, y, z] = [...pose.head.subarray(0, 3)].map((metres) => (Math.round(metres * 1000) / 1000 + 0).toFixed(3));
+      readout.current.textContent = `head  x ${x}  y ${y}  z ${z} m`;
     }
     send({ kind: 'pose', pose });
   });

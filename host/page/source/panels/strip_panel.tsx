@@ -9,7 +9,7 @@ import { axisWidth, chartTheme } from './chart_theme.js';
 import { signalTitle, valueName } from './value_names.js';
 
 const framePeriod = 30; // milliseconds: about 30 images a second
-const smallestLabel = 12; // CSS pixels between two names of joints
+const smallestLabel = 14; // CSS pixels between two names of joints
 // CSS pixels: of the strip, and of a joint in it where there are many.
 const smallestHeight = 120;
 const largestHeight = 260;
@@ -56,7 +56,8 @@ class StripDrawing {
     const range = time.range(newest);
     const hovered = selection.hoveredJoint.peek();
     const name = selection.strip.peek();
-    const key = [history.run, history.end, range.from, range.to, time.cursor.peek(), hovered, name, isDark.peek(), box.width, box.height].join();
+    const marks = [time.cursor.peek(), hovered, name, isDark.peek()];
+    const key = [history.run, history.end, range.from, range.to, ...marks, box.width, box.height].join();
     if (key === this.lastKey || now - this.lastTime < framePeriod || box.width < axisWidth + 10) {
       return;
     }

@@ -9,17 +9,18 @@ export function TimeControls({ app }: { app: PageApp }) {
   const seconds = time.window.value / rate;
   const isLive = time.isLive.value;
   const cursor = time.cursor.value;
+  const isConnected = app.state.isConnected.value;
   return (
     <div class="time-controls" role="group" aria-label="Time">
       <button
         type="button"
-        class={isLive ? 'live-mark is-live' : 'live-mark primary'}
+        class={!isLive ? 'live-mark primary' : isConnected ? 'live-mark is-live' : 'live-mark'}
         aria-pressed={isLive}
         onClick={() => (isLive ? time.freeze(app.newestTick) : time.goLive())}
         title={isLive ? 'Freeze the view (P); the robot goes on' : 'Back to live (L)'}
         data-testid="live"
       >
-        {isLive ? '● live' : 'Return to live (L)'}
+        {!isLive ? 'Return to live (L)' : isConnected ? '● live' : '○ no new data'}
       </button>
       {!isLive && (
         <span class="frozen" data-testid="frozen">

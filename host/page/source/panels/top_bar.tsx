@@ -22,6 +22,7 @@ const states = {
 function RobotName({ state }: { state: PageState }) {
   const robot = state.robot.value;
   const session = state.session.value;
+  const isConnected = state.isConnected.value;
   const badge = robot === null ? null : badges[robot.kind];
   return (
     <div class="robot-name">
@@ -35,11 +36,11 @@ function RobotName({ state }: { state: PageState }) {
       </span>
       {session !== null && (
         <span
-          class={`state ${session.state}`}
+          class={`state ${isConnected ? session.state : ''}`}
           data-testid="state"
           title={session.stopped_by ? `stopped by ${session.stopped_by}` : undefined}
         >
-          {states[session.state]}
+          {isConnected ? states[session.state] : 'state unknown'}
         </span>
       )}
     </div>
@@ -48,7 +49,7 @@ function RobotName({ state }: { state: PageState }) {
 
 function Figures({ state }: { state: PageState }) {
   const measured = state.session.value?.measured_factor;
-  const isRunning = state.session.value?.state === 'running';
+  const isRunning = state.isConnected.value && state.session.value?.state === 'running';
   const latency = state.latency.value;
   return (
     <dl class="figures">
@@ -147,10 +148,22 @@ export function TopBar({ app }: { app: PageApp }) {
       <Figures state={app.state} />
       <Control app={app} />
       <div class="tools">
-        <button type="button" class="icon-button" aria-label="Find an action" title="Find an action (Ctrl+K)" onClick={() => toggleDialog('palette')}>
+        <button
+          type="button"
+          class="icon-button"
+          aria-label="Find an action"
+          title="Find an action (Ctrl+K)"
+          onClick={() => toggleDialog('palette')}
+        >
           {findIcon}
         </button>
-        <button type="button" class="icon-button" aria-label="Show the keys" title="Show the keys (?)" onClick={() => toggleDialog('keys')}>
+        <button
+          type="button"
+          class="icon-button"
+          aria-label="Show the keys"
+          title="Show the keys (?)"
+          onClick={() => toggleDialog('keys')}
+        >
           ?
         </button>
         <button

@@ -102,7 +102,10 @@ export class RobotModel {
   private highlighted: number | null = null;
   private isDark: boolean;
 
-  constructor(robot: RobotDocument, isDark: boolean) {
+  constructor(
+    private readonly robot: RobotDocument,
+    isDark: boolean,
+  ) {
     this.isDark = isDark;
     this.kinematics = new ForwardKinematics(robot);
     const material = new THREE.MeshLambertMaterial();
@@ -128,6 +131,7 @@ export class RobotModel {
     for (const set of [...this.links, ...this.terrain, this.joints, this.contacts]) {
       this.group.add(set.mesh);
     }
+    this.rest();
     this.paint();
   }
 
@@ -142,6 +146,15 @@ export class RobotModel {
     this.head = (centres[0] as Pose).position;
     this.contactBits = contactBits;
     this.paintContacts();
+  }
+
+  // Where the robot is until its first tick: straight, on the floor.
+  rest(): void {
+    const head = poseFromArray((this.robot.links[0] as Body).pose);
+    const [x, y, z] = head.position;
+    const centres = this.restCentres(this.robot);
+    const lowest = Math.min(...this.robot.links.map((link, i) => (centres[i] as Vector)[2] - halfExtent(link, [0, 0, 1])));
+    this.move({ ...head, position: [x, y, z + this.floorHeight - lowest] }, [], []);
   }
 
   highlight(joint: number | null): void {

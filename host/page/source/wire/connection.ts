@@ -66,6 +66,7 @@ export class Connection {
   private socket: Socket | null = null;
   private attempt = 0; // counts sockets, so that a late event of an earlier one has no effect
   private failures = 0;
+  private hasEnded = false; // the program said so, and has not come back
   private client: number | null = null;
   private isHolder = false;
   private lastId = 0;
@@ -139,6 +140,7 @@ export class Connection {
     if (message.type === 'welcome') {
       this.client = message.client;
       this.failures = 0;
+      this.hasEnded = false;
       this.events.status({ state: 'open', client: message.client, program: message.program });
       this.repeatBeat(this.attempt);
       this.repeatPing(this.attempt);
@@ -220,7 +222,9 @@ export class Connection {
       return;
     }
     this.failures += 1;
-    this.events.status(code === goingAway ? { state: 'ended' } : { state: 'lost', attempts: this.failures });
+    // Attempts that fail after that say nothing new.
+    this.hasEnded ||= code === goingAway;
+    this.events.status(this.hasEnded ? { state: 'ended' } : { state: 'lost', attempts: this.failures });
     this.ports.after(Math.min(longestDelay, shortestDelay * 2 ** (this.failures - 1)), () => this.open());
   }
 }

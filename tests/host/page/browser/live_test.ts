@@ -132,6 +132,7 @@ describe('a live simulation', () => {
     await viewer.page.getByTestId('scene').focus();
     await viewer.page.keyboard.press('p');
     await viewer.page.getByTestId('frozen').waitFor();
+    await viewer.waitForTick((await viewer.tick()) + 30);
     const angles = await viewer.angles();
     await viewer.waitForTick((await viewer.tick()) + 60);
     assert.deepEqual(await viewer.angles(), angles);

@@ -93,6 +93,7 @@ describe('viewers', () => {
     await first.waitForTick(50);
     await program.end();
     await first.page.getByTestId('connection-band').filter({ hasText: 'The program has ended' }).waitFor();
+    await first.waitForState('state unknown');
     assert.equal((await first.angles()).length, 5, 'what was seen stays');
     await first.screenshot('ended');
     await first.close([/WebSocket connection .* failed/]);

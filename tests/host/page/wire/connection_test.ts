@@ -119,6 +119,12 @@ describe('a connection', () => {
     assert.deepEqual(statuses.at(-1), { state: 'ended' });
     clock.advance(1000);
     assert.equal(sockets.length, 2, 'it may start again');
+    last().events.closed(1006, '');
+    assert.deepEqual(statuses.at(-1), { state: 'ended' }, 'still');
+    clock.advance(1000);
+    greet();
+    last().events.closed(1006, '');
+    assert.deepEqual(statuses.at(-1), { state: 'lost', attempts: 1 });
   });
 
   it('does not try again with a token that was refused', () => {

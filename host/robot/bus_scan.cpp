@@ -37,7 +37,11 @@ void BusScan::start(Microseconds now) {
 
 void BusScan::probe(std::uint8_t node) {
   seen_.at(node).info.node = node;
-  probes_.read(node, object::device_type.address, [this, node](const SdoResult& result) {
+  ask(probes_, node);
+}
+
+void BusScan::ask(SdoQueue& queue, std::uint8_t node) {
+  queue.read(node, object::device_type.address, [this, node](const SdoResult& result) {
     Seen& seen = seen_.at(node);
     if (!result.is_good()) {
       return;
@@ -128,6 +132,11 @@ void BusScan::receive(Microseconds now, const CanFrame& frame) {
     seen.info.node = emergency->node;
     seen.is_duplicate = seen.is_duplicate || emergency->code == canopen::EmergencyCode::identifier_collision;
   }
+  const std::uint8_t node = identifier::node_of(frame.identifier);
+  if (identifier::base_of(frame.identifier) == identifier::sdo_answer && node >= canopen::min_node_id &&
+      node <= canopen::max_node_id) {
+    seen_.at(node).is_heard = true;  // also by an answer that comes too late
+  }
   probes_.receive(now, frame);
   inquiries_.receive(now, frame);
   finish(now);
@@ -158,6 +167,19 @@ void BusScan::finish(Microseconds now) {
   }
   if (!has_listened_ || !probes_.is_idle() || !inquiries_.is_idle()) {
     return;
+  }
+  // A node that is there but has not answered may only be slow, or the computer is.
+  if (!has_asked_again_) {
+    has_asked_again_ = true;
+    for (std::uint8_t node = canopen::min_node_id; node <= canopen::max_node_id; ++node) {
+      if (seen_.at(node).is_heard && !seen_.at(node).info.has_answered) {
+        ask(inquiries_, node);
+      }
+    }
+    inquiries_.poll(now);
+    if (!inquiries_.is_idle()) {
+      return;
+    }
   }
   // Texts travel in segments, which the requests of a host that drives the robot would break.
   if (!reads_texts_ && !has_host_) {

@@ -41,7 +41,7 @@ struct BusScanOptions {
   Microseconds listening_us = 250'000;      ///< heartbeats have a period of 100 ms; the scan takes at least this long
   Microseconds answer_timeout_us = 60'000;  ///< of each request
   unsigned attempts = 2;                    ///< of the first request to each node id
-  unsigned further_attempts = 8;            ///< of requests to a node that has answered
+  unsigned further_attempts = 8;            ///< of requests to a node that has answered, or was heard
 };
 
 class BusScan final : public BusUser {
@@ -79,6 +79,7 @@ class BusScan final : public BusUser {
   };
 
   void probe(std::uint8_t node);
+  void ask(SdoQueue& queue, std::uint8_t node);
   void inquire(std::uint8_t node);
   void inquire_texts(std::uint8_t node);
   void read_number(std::uint8_t node, canopen::Address address, const std::function<void(std::uint32_t)>& take);
@@ -95,6 +96,7 @@ class BusScan final : public BusUser {
   bool asks_lss_ = false;  ///< the request waits for the port
   bool has_host_ = false;
   bool has_fresh_ = false;
+  bool has_asked_again_ = false;
   bool reads_texts_ = false;
   unsigned syncs_ = 0;
   std::uint64_t frames_ = 0;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <deque>
+
 #include "live_bus.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "shipped.hpp"
@@ -65,6 +67,64 @@ TEST(BusScan, FindsAllOfThemAlthoughATenthOfTheFramesIsLost) {
       EXPECT_EQ(node.name, "Proleg joint module");
       EXPECT_EQ(node.core_fingerprint, core_fingerprint);
     }
+  }
+}
+
+/// Hands the first answers of a node out late, as a busy computer does.
+class LateAtFirst final : public host::BusUser {
+ public:
+  static constexpr Microseconds delay_us = 300'000;
+
+  LateAtFirst(host::BusUser& user, std::uint32_t identifier, unsigned answers)
+      : user_(user), identifier_(identifier), answers_(answers) {}
+  void receive(Microseconds now, const CanFrame& frame) override {
+    if (frame.identifier == identifier_ && answers_ > 0) {
+      --answers_;
+      late_.push_back({now + delay_us, frame});
+    } else {
+      user_.receive(now, frame);
+    }
+  }
+  void transmitted(Microseconds now, const CanFrame& frame) override { user_.transmitted(now, frame); }
+  void poll(Microseconds now) override {
+    while (!late_.empty() && late_.front().time <= now) {
+      const CanFrame frame = late_.front().frame;
+      late_.pop_front();
+      user_.receive(now, frame);
+    }
+    user_.poll(now);
+  }
+  [[nodiscard]] Microseconds next_deadline() const override {
+    return late_.empty() ? user_.next_deadline() : std::min(user_.next_deadline(), late_.front().time);
+  }
+
+ private:
+  struct Late {
+    Microseconds time;
+    CanFrame frame;
+  };
+
+  host::BusUser& user_;
+  std::uint32_t identifier_;
+  unsigned answers_;
+  std::deque<Late> late_;
+};
+
+TEST(BusScan, AsksANodeAgainWhoseAnswersCameTooLate) {
+  const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  LiveBus bus(scenario);
+  bus.run_for(100'000);
+  BusScan scan(bus);
+  LateAtFirst late(scan, 0x583, 2);
+  bus.attach(late);
+  scan.start(bus.now());
+  ASSERT_TRUE(bus.run_until(bus.now() + 5 * second, [&scan] { return scan.is_done(); }));
+  bus.detach(late);
+  const std::vector<ScannedNode> nodes = scan.nodes();
+  ASSERT_EQ(nodes.size(), 5U);
+  for (const ScannedNode& node : nodes) {
+    EXPECT_TRUE(node.is_module) << "node " << unsigned{node.node};
+    EXPECT_EQ(node.name, "Proleg joint module");
   }
 }
 

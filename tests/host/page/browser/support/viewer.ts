@@ -72,6 +72,15 @@ export class Viewer {
     return texts.map(Number);
   }
 
+  async waitForOtherAngles(angles: number[]): Promise<void> {
+    const selector = '[data-testid=joints] td[data-value=angle]';
+    await this.page.waitForFunction(
+      ([cells, before]) =>
+        [...document.querySelectorAll(cells)].map((cell) => Number(cell.textContent)).join() !== before,
+      [selector, angles.join()] as const,
+    );
+  }
+
   // Metres.
   async head(): Promise<[number, number, number]> {
     const text = (await this.page.getByTestId('head').textContent()) ?? '';

@@ -1,7 +1,14 @@
 // The actions of the page, with their keys.
+import { recordingName } from './state/recording_name.js';
 import { nextTheme } from './theme.js';
 import { toggleDialog } from './dialogs.js';
 import type { PageApp } from './page_app.js';
+
+export function recordOrEnd({ state, operations }: PageApp): void {
+  const isRecording = (state.session.value?.recording ?? null) !== null;
+  const file = isRecording ? null : recordingName(state.robot.value?.file ?? 'run', new Date());
+  void operations.tell('record', { file });
+}
 
 export function addActions(app: PageApp): void {
   const { state, time, operations } = app;
@@ -48,6 +55,14 @@ export function addActions(app: PageApp): void {
       keys: [],
       isEnabled: isHolder,
       run: () => void tell('restart', { parameters: 'file' }),
+    },
+    {
+      id: 'record',
+      title: 'Record the run from tick 0 on, or end the recording',
+      group: 'Robot',
+      keys: ['R'],
+      isEnabled: isHolder,
+      run: () => recordOrEnd(app),
     },
     {
       id: 'take_control',

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -98,8 +100,10 @@ TEST_F(DamagedRecording, IsReadInAllWaysIfItIsWhole) {
   EXPECT_EQ(read_in_all_ways(path_), "");
 }
 
-// In a row of the start and in one of the middle.
+// In a row of the start and in one of the middle. PROLEG_ALL_DAMAGES: all of them, else a quarter.
 TEST_F(DamagedRecording, WithAnyIntegerReplacedIsReadOrRefused) {
+  const bool tries_all = std::getenv("PROLEG_ALL_DAMAGES") != nullptr;
+  std::mt19937 random(20);
   int tried = 0;
   int refused = 0;
   for (const std::string& table : texts("SELECT name FROM sqlite_schema WHERE type = 'table' ORDER BY 1")) {
@@ -111,6 +115,9 @@ TEST_F(DamagedRecording, WithAnyIntegerReplacedIsReadOrRefused) {
       for (const std::string value : {"-1", "-2147483649", "64", "1000000", "2147483647", "2147483648", "4294967296",
                                       "9223372036854775807", "%c + 1", "%c - 1", "-%c"}) {
         for (const std::string& row : {std::string("0"), rows + " / 2"}) {
+          if (!tries_all && random() % 4 != 0) {
+            continue;
+          }
           std::string sql = "UPDATE OR REPLACE %t SET %c = " + value;
           sql += " WHERE (%k) = (SELECT %k FROM %t LIMIT 1 OFFSET " + row + ")";
           for (const auto& [mark, text] : {std::pair("%t", table), std::pair("%c", column), std::pair("%k", key)}) {
@@ -128,7 +135,7 @@ TEST_F(DamagedRecording, WithAnyIntegerReplacedIsReadOrRefused) {
       }
     }
   }
-  EXPECT_GT(tried, 800);
+  EXPECT_GT(tried, tries_all ? 800 : 200);
   EXPECT_GT(refused, tried / 2);
 }
 

@@ -123,9 +123,9 @@ void SimulatedSession::run() {
     }
   }
   try {
-    live_.end_recording();
+    end_recording();
   } catch (const std::exception& error) {
-    output_.notice(NoticeLevel::error, error.what());
+    output_.notice(NoticeLevel::error, one_line(error.what()));
   }
 }
 
@@ -242,8 +242,8 @@ json SimulatedSession::restart(const json& arguments) {
   if (values != "wanted" && values != "file") {
     throw InputError("parameters", 0, in_quotes(shortened(values)), "\"wanted\" or \"file\"");
   }
+  end_recording();
   live_.restart(values == "file" ? LiveSimulation::StartValues::file : LiveSimulation::StartValues::wanted);
-  recording_.clear();
   failure_.clear();
   steps_left_ = 0;
   ++run_;
@@ -306,8 +306,7 @@ json SimulatedSession::record(const json& arguments) {
   const auto file = member<std::string>(arguments, "file", "a file name");
   is_session_new_ = true;
   if (!file) {
-    live_.end_recording();
-    recording_.clear();
+    end_recording();
     return json::object();
   }
   require_sound();
@@ -359,6 +358,15 @@ void SimulatedSession::begin_recording(const std::string& file) {
   }
   pace_.begin(Clock::now());
   recording_ = path.string();
+}
+
+void SimulatedSession::end_recording() {
+  if (!live_.is_recording()) {
+    return;
+  }
+  const std::string path = std::exchange(recording_, {});
+  live_.end_recording();
+  output_.notice(NoticeLevel::info, "recorded " + exact_text(live_.simulation().time_s()) + " s in " + path);
 }
 
 bool SimulatedSession::wants_stop() {

@@ -69,6 +69,7 @@ class SimulatedSession {
   [[nodiscard]] nlohmann::json carry_out(const Operation& operation);
   void tick();
   void begin_recording(const std::string& file);
+  void end_recording();
   [[nodiscard]] bool wants_stop();
   [[nodiscard]] bool may_tick() const { return state_ == State::running || steps_left_ > 0; }
   void set_state(State state);

@@ -13,6 +13,7 @@ export const runIcon = icon(<path d="M4 2.5v11l9-5.5z" fill="currentColor" strok
 export const pauseIcon = icon(<path d="M4 2.5h3v11H4zM9 2.5h3v11H9z" fill="currentColor" stroke="none" />);
 export const stepIcon = icon(<path d="M3 2.5v11l7-5.5zM11 2.5h2v11h-2z" fill="currentColor" stroke="none" />);
 export const restartIcon = icon(<path d="M3 3v4h4M3.5 7A5 5 0 1 1 3 9.5" />);
+export const recordIcon = icon(<circle cx="8" cy="8" r="5" fill="currentColor" stroke="none" />);
 export const undoIcon = icon(<path d="M6 3 3 6l3 3M3 6h6a4 4 0 0 1 0 8H6" />);
 export const redoIcon = icon(<path d="m10 3 3 3-3 3M13 6H7a4 4 0 0 0 0 8h3" />);
 export const swapIcon = icon(<path d="M3 5h9l-3-3M13 11H4l3 3" />);

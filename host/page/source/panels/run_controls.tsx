@@ -3,7 +3,8 @@ import { useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
 import type { PageApp } from '../page_app.js';
-import { pauseIcon, restartIcon, runIcon, stepIcon } from './icons.js';
+import { recordOrEnd } from '../page_actions.js';
+import { pauseIcon, recordIcon, restartIcon, runIcon, stepIcon } from './icons.js';
 
 // The slider is logarithmic: -1 is 0.1, 0 is real time, 2 is 100.
 function factorOf(position: number): number {
@@ -105,6 +106,7 @@ export function RunControls({ app }: { app: PageApp }) {
   const isHolder = state.isHolder.value;
   const runState = state.session.value?.state ?? 'paused';
   const isRunning = runState === 'running';
+  const recording = state.session.value?.recording ?? null;
   const ticks = useSignal(1);
   return (
     <section class="run-controls" aria-label="Run">
@@ -147,6 +149,15 @@ export function RunControls({ app }: { app: PageApp }) {
         title="Back to tick 0, with the parameters as they are now (Shift + R)"
       >
         {restartIcon} Restart
+      </button>
+      <button
+        type="button"
+        disabled={!isHolder || runState === 'failed'}
+        aria-pressed={recording !== null}
+        onClick={() => recordOrEnd(app)}
+        title={recording === null ? 'Records the whole run, from tick 0 on (R)' : `Ends the recording ${recording} (R)`}
+      >
+        {recordIcon} {recording === null ? 'Record' : 'Recording'}
       </button>
       <Factor app={app} />
       <TickCounter app={app} />

@@ -165,6 +165,7 @@ export interface Operations {
   redo: Record<string, never>;
   swap: Record<string, never>;
   reset: { names?: string[] }; // as in `set`, without a value
+  record: { file: string | null };
   command_line: Record<string, never>;
   ping: Record<string, never>;
 }

@@ -1,7 +1,7 @@
 // Starts `proleg ui` on a scenario, paused at tick 0, and reads the address that it prints.
 import { spawn, type ChildProcess } from 'node:child_process';
 
-const program = process.env['PROLEG_PROGRAM'] ?? 'build/host/bin/proleg';
+export const program = process.env['PROLEG_PROGRAM'] ?? 'build/host/bin/proleg';
 const startTimeout = 20000; // milliseconds
 
 export const uniform = 'sim/scenarios/travelling_wave/uniform.simulation.xml';
@@ -13,8 +13,8 @@ export class UiProgram {
     private readonly child: ChildProcess,
   ) {}
 
-  static start(file: string = uniform): Promise<UiProgram> {
-    const options = ['--no-browser', '--port', '0', '--paused', '--page', 'build/page'];
+  static start(file: string = uniform, more: string[] = []): Promise<UiProgram> {
+    const options = ['--no-browser', '--port', '0', '--paused', '--page', 'build/page', ...more];
     const child = spawn(program, ['ui', file, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });
     return new Promise((resolve, reject) => {
       let output = '';

@@ -1,0 +1,73 @@
+// A session of clicks is a run like any other: its recording replays without a difference, and the command that the
+// page shows gives the same hashes.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { dirname, join, resolve } from 'node:path';
+import { describe, it } from 'node:test';
+import { launchBrowser } from './support/browser.js';
+import { program, UiProgram, uniform } from './support/ui_program.js';
+import { Viewer } from './support/viewer.js';
+
+const environment = { ...process.env, PATH: `${resolve(dirname(program))}:${process.env['PATH']}` };
+
+function resultOf(command: string): Record<string, unknown> {
+  return JSON.parse(execFileSync('sh', ['-c', `${command} --json`], { env: environment, encoding: 'utf8' }));
+}
+
+async function clickAround(viewer: Viewer): Promise<string> {
+  await viewer.takeControl();
+  await viewer.run();
+  const amplitude = viewer.parameter('1.amplitude').getByRole('slider').first();
+  await amplitude.focus();
+  for (let press = 0; press < 5; press += 1) {
+    await viewer.page.keyboard.press('ArrowLeft');
+  }
+  await viewer.waitForConfirmation('1.amplitude');
+  // Not from the start: the recording has what was before, too.
+  await viewer.button('Record').click();
+  await viewer.button('Recording').waitFor();
+  await viewer.parameter('1.phase_difference').locator('[data-cell="2"]').focus();
+  await viewer.page.keyboard.press('ArrowUp');
+  await viewer.waitForConfirmation('1.phase_difference');
+  await viewer.page.keyboard.press('Control+z');
+  await viewer.page.keyboard.press('b');
+  await viewer.waitForTick((await viewer.tick()) + 100);
+  await viewer.button('Pause').click();
+  await viewer.waitForState('paused');
+  await viewer.page.keyboard.press('x');
+  const shown = viewer.page.getByTestId('command').filter({ hasText: 'proleg simulate' });
+  const command = (await shown.textContent()) ?? '';
+  await viewer.page.keyboard.press('x');
+  await viewer.button('Recording').click();
+  await viewer.button('Record').waitFor();
+  return command;
+}
+
+describe('a session of clicks', () => {
+  it('is recorded, replays without a difference, and is repeated by the command of the page', async () => {
+    const folder = mkdtempSync(join(tmpdir(), 'proleg-page-'));
+    const browser = await launchBrowser();
+    const robot = await UiProgram.start(uniform, ['--recordings', folder]);
+    try {
+      const viewer = await Viewer.open(browser, robot.address);
+      const command = await clickAround(viewer);
+      await viewer.close();
+      const files = readdirSync(folder).filter((name) => name.endsWith('.proleg'));
+      assert.equal(files.length, 1, files.join());
+      assert.match(files[0] as string, /^uniform-\d{8}-\d{6}\.proleg$/);
+      const replayed = resultOf(`proleg replay ${join(folder, files[0] as string)}`);
+      assert.equal(replayed['differences'], 0);
+      assert.equal(replayed['verified'], true);
+      const repeated = resultOf(command);
+      assert.match(command, /--set 1\.amplitude=\S+@\d+/);
+      assert.equal(repeated['setpoint_hash'], replayed['recorded_setpoint_hash']);
+      assert.equal(repeated['servo_hash'], replayed['recorded_servo_hash']);
+    } finally {
+      await robot.end();
+      await browser.close();
+      rmSync(folder, { recursive: true });
+    }
+  });
+});

@@ -198,6 +198,7 @@ json SimulatedSession::carry_out(const Operation& operation) {
   const auto handler = handlers.find(operation.name);
   if (handler == handlers.end()) {
     std::vector<std::string> names;
+    names.reserve(handlers.size());
     for (const auto& [name, function] : handlers) {
       names.emplace_back(name);
     }

@@ -151,20 +151,24 @@ void LiveSimulation::restart(StartValues values) {
   begin();
 }
 
-const sim::Change* LiveSimulation::advance(sim::Simulation& simulation, sim::Recorder* recorder) {
-  const sim::Change* change = simulation.advance();
-  if (recorder != nullptr) {
-    if (change != nullptr) {
-      recorder->record_change(*change);
-    }
-    recorder->record_tick(simulation.sample());
+void LiveSimulation::record_tick(sim::Recorder& recorder, sim::Simulation& simulation, const sim::Change* change) {
+  if (change != nullptr) {
+    recorder.record_change(*change);
   }
-  return change;
+  recorder.record_tick(simulation.sample());
 }
 
 void LiveSimulation::advance() {
   const std::uint32_t tick = simulation_->tick();
-  const sim::Change* change = advance(*simulation_, recorder_.get());
+  const sim::Change* change = simulation_->advance();
+  if (recorder_ != nullptr) {
+    try {
+      record_tick(*recorder_, *simulation_, change);
+    } catch (const FileError& error) {
+      recording_failure_ = error.what();
+      recorder_.reset();
+    }
+  }
   lost_frames_ += simulation_->chain().lost().size();
   if (change == nullptr) {
     return;
@@ -207,7 +211,7 @@ bool LiveSimulation::record(const std::filesystem::path& path, const std::string
     if (!goes_on()) {
       return false;
     }
-    advance(*again, recorder.get());
+    record_tick(*recorder, *again, again->advance());
   }
   simulation_ = std::move(again);
   recorder_ = std::move(recorder);

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/loop/simulation.hpp"
@@ -58,6 +59,10 @@ class LiveSimulation {
   /// Without a recording it does nothing. restart() ends a recording, too. Throws FileError.
   void end_recording();
   [[nodiscard]] bool is_recording() const { return recorder_ != nullptr; }
+  /// Why the recording has ended by itself, once; the simulation goes on. For example, the disk is full.
+  [[nodiscard]] std::optional<std::string> take_recording_failure() {
+    return std::exchange(recording_failure_, std::nullopt);
+  }
 
   [[nodiscard]] const sim::Simulation& simulation() const { return *simulation_; }
   /// As Simulation::sample().
@@ -77,7 +82,8 @@ class LiveSimulation {
     sim::Setting setting;
   };
 
-  static const sim::Change* advance(sim::Simulation& simulation, sim::Recorder* recorder);
+  /// The last tick of the simulation, and its change.
+  static void record_tick(sim::Recorder& recorder, sim::Simulation& simulation, const sim::Change* change);
   void begin();
   /// Whether a change for this tick or a later one sets the parameter.
   [[nodiscard]] bool was_asked_for(const ParameterPlace& place, std::uint32_t from_tick) const;
@@ -93,6 +99,7 @@ class LiveSimulation {
   sim::Scenario scratch_;   ///< to read words with
   std::unique_ptr<sim::Simulation> simulation_;
   std::unique_ptr<sim::Recorder> recorder_;
+  std::optional<std::string> recording_failure_;
   std::uint64_t lost_frames_ = 0;  ///< in the present run
   ParameterTable parameters_;
   ChangeHistory history_;

@@ -336,6 +336,11 @@ void SimulatedSession::tick() {
     output_.notice(NoticeLevel::error, failure_);
     return;
   }
+  if (const std::optional<std::string> failure = live_.take_recording_failure()) {
+    output_.notice(NoticeLevel::error, "the recording has ended: " + one_line(*failure));
+    recording_.clear();
+    is_session_new_ = true;
+  }
   output_.add_row(run_, live_.simulation().tick() - 1, row_);
   pace_.tick_done(Clock::now());
   if (steps_left_ > 0 && --steps_left_ == 0) {

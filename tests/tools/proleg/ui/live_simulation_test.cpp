@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
 #include <random>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -195,6 +199,23 @@ TEST(LiveSimulation, ARecordingHasTheWholeRunWheneverItBegan) {
   EXPECT_EQ(end, simulated(uniform(), {"amplitude=30@80", "frequency=0.4@150"}, 200));
   EXPECT_NE(std::ranges::find(recording.results(), std::pair<std::string, std::string>{"setpoint_hash", end.setpoints}),
             recording.results().end());
+}
+
+/// In a process whose files cannot grow. Exit status 0: the simulation goes on, and the failure was told.
+[[noreturn]] void record_on_a_full_disk(const std::filesystem::path& path) {
+  std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit limit{300'000, 300'000};
+  setrlimit(RLIMIT_FSIZE, &limit);
+  LiveSimulation live(uniform(), nullptr);
+  live.record(path, "simulate", "test", [] { return true; });
+  advance(live, 1'500);
+  const bool has_failed = live.take_recording_failure().has_value();
+  _exit(has_failed && !live.is_recording() && live.simulation().tick() == 1'500 ? 0 : 1);
+}
+
+TEST(LiveSimulation, GoesOnWhenTheDiskIsFullAndItsRecordingEnds) {
+  const TemporaryFolder folder;
+  EXPECT_EXIT(record_on_a_full_disk(folder / "run.proleg"), testing::ExitedWithCode(0), "");
 }
 
 TEST(LiveSimulation, RestartBeginsWithWhatIsWantedOrWithTheFile) {

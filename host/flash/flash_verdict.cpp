@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "host/flash/image_file.hpp"
 #include "shared/computer/text/text.hpp"
 
 namespace proleg::host {
@@ -79,6 +80,10 @@ FlashVerdict judge(const image::Header& image, const FlashCandidate& module, con
   if (module.board_id != image.board_id && !permissions.other_board) {
     return refuse("is board " + std::to_string(module.board_id) + ", the image is for " + board_text(image) +
                   "; --force-board sends it anyway");
+  }
+  if (image.length > slot_room) {
+    return refuse("has room for " + std::to_string(slot_room) + " bytes, the image has " +
+                  std::to_string(image.length));
   }
   const bool is_same = program.image && is_same_image(*program.image, image);
   if (is_same && program.is(flag::is_confirmed) && program.is(flag::runs_program)) {

@@ -35,6 +35,8 @@ std::string describe(UpdateOutcome outcome, std::uint8_t detail) {
                                                   : std::string(image::describe(static_cast<image::Error>(detail))));
     case UpdateOutcome::flash_failed:
       return "its flash has failed; at its next start it restores the program before";
+    case UpdateOutcome::not_transferred:
+      return "runs the program before: it did not get the whole image; the same command again completes it";
     case UpdateOutcome::old_program_runs:
       return "runs the program before: the new one was not installed, or did not start well";
     case UpdateOutcome::not_confirmed:
@@ -162,6 +164,7 @@ void RobotUpdate::take_results() {
     const broadcast::StatusAnswer& status = targets_[i].status;
     UpdatedModule& module = modules_[i];
     module.detail = status.error;
+    module.has_image = status.session == options_.session && status.state >= ReceiverState::complete;
     if (status.session != 0 && status.session != options_.session) {
       module.outcome = UpdateOutcome::belongs_to_other;
     } else if (status.state == ReceiverState::refused) {
@@ -245,12 +248,13 @@ void RobotUpdate::take_answer(UpdatedModule& module, const ModuleProgram& progra
   if (runs && is_new && program.is(flag::is_confirmed)) {
     module.outcome = UpdateOutcome::runs;
   } else if (runs && program.image && !is_new && !options_.through_its_line) {
-    module.outcome = UpdateOutcome::old_program_runs;
+    module.outcome = module.has_image ? UpdateOutcome::old_program_runs : UpdateOutcome::not_transferred;
   } else if (is_last) {
     module.outcome = !program.has_answered ? UpdateOutcome::vanished
                      : !runs               ? UpdateOutcome::starts_badly
                      : is_new              ? UpdateOutcome::not_confirmed
-                                           : UpdateOutcome::old_program_runs;
+                     : module.has_image    ? UpdateOutcome::old_program_runs
+                                           : UpdateOutcome::not_transferred;
   }
 }
 

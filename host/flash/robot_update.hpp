@@ -23,6 +23,7 @@ enum class UpdateOutcome : std::uint8_t {
   belongs_to_other,  ///< another host flashes it
   refused,           ///< the image: detail is an image::Error, or broadcast::refused_busy
   flash_failed,      ///< the flash does not do what it should
+  not_transferred,   ///< runs the program before, without having received the whole image
   old_program_runs,  ///< the new one was not installed, or has failed its trial
   not_confirmed,     ///< it runs on trial, and was not confirmed in time
   starts_badly,      ///< the bootloader has given it up
@@ -35,7 +36,8 @@ struct UpdatedModule {
   std::uint32_t serial = 0;
   UpdateOutcome outcome = UpdateOutcome::pending;
   std::uint8_t detail = 0;
-  ModuleProgram program;  ///< what it said last
+  bool has_image = false;  ///< it has reported that it received all of it
+  ModuleProgram program;   ///< what it said last
 };
 
 struct UpdateOptions {

@@ -16,6 +16,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/hash/sha256.hpp"
 #include "shared/computer/output/output.hpp"
+#include "shared/computer/output/output_check.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/bus_access.hpp"
 #include "tools/proleg/flash_bare.hpp"
@@ -60,9 +61,12 @@ struct Module {
   [[nodiscard]] bool is_good() const {
     return verdict.action == FlashAction::nothing || (result && result->outcome == UpdateOutcome::runs);
   }
-  /// What it said last.
-  [[nodiscard]] const host::ModuleProgram& program() const {
-    return result && result->program.has_answered ? result->program : found.program;
+  /// What it said last; nothing: it was flashed and answers no more.
+  [[nodiscard]] const host::ModuleProgram* program() const {
+    if (result && result->outcome == UpdateOutcome::vanished) {
+      return nullptr;
+    }
+    return result && result->program.has_answered ? &result->program : &found.program;
   }
 };
 
@@ -252,9 +256,11 @@ void Flashing::check_settings() {
 void Flashing::print_result() const {
   std::printf("%-22s %-18s %-10s %s\n", "module", "version", "SHA-256", "state");
   for (const Module& module : modules_) {
-    const host::ModuleProgram& program = module.program();
-    const std::string version = program.image ? host::version_text(*program.image) : "none";
-    const std::string hash = program.image ? digits_of_hash(*program.image) : "-";
+    const host::ModuleProgram* const program = module.program();
+    const std::string version = program == nullptr ? "not known"
+                                : program->image   ? host::version_text(*program->image)
+                                                   : "none";
+    const std::string hash = program != nullptr && program->image ? digits_of_hash(*program->image) : "-";
     const std::string state = module.verdict.action == FlashAction::refuse ? "refused: " + module.verdict.text
                               : module.result ? describe(module.result->outcome, module.result->detail)
                               : module.verdict.action == FlashAction::nothing
@@ -269,16 +275,16 @@ void Flashing::print_result() const {
   }
 }
 
-Json program_json(const host::ModuleProgram& program) {
-  if (!program.image) {
+Json program_json(const host::ModuleProgram* program) {
+  if (program == nullptr || !program->image) {
     return {};
   }
-  const image::Header& header = *program.image;
+  const image::Header& header = *program->image;
   return {{"version", host::number_text(header.version)},
           {"commit", host::commit_text(header)},
           {"sha256", hexadecimal_digits(header.hash)},
-          {"confirmed", program.is(flag::is_confirmed)},
-          {"running", program.is(flag::runs_program)}};
+          {"confirmed", program->is(flag::is_confirmed)},
+          {"running", program->is(flag::runs_program)}};
 }
 
 void Flashing::print_json() const {
@@ -298,7 +304,7 @@ void Flashing::print_json() const {
     modules.append({{"node", unsigned{module.found.node}},
                     {"serial", module.found.program.serial},
                     {"board", unsigned{module.found.board_id}},
-                    {"before", program_json(module.found.program)},
+                    {"before", program_json(&module.found.program)},
                     {"action", action},
                     {"reason", module.verdict.text},
                     {"outcome", module.result ? Json(describe(module.result->outcome, module.result->detail)) : Json()},
@@ -347,12 +353,20 @@ int Flashing::run() {
   if (options_.dry_run) {
     return exit_success;
   }
-  const auto bad = std::ranges::count_if(
-      modules_, [](const Module& module) { return !module.is_good() || !module.changed_settings.empty(); });
+  const auto bad = std::ranges::count_if(modules_, [](const Module& module) { return !module.is_good(); });
+  const auto changed =
+      std::ranges::count_if(modules_, [](const Module& module) { return !module.changed_settings.empty(); });
+  const auto report = [](const std::string& text) { std::cerr << "proleg flash: " << text << '\n'; };
   if (bad != 0) {
-    std::cerr << "proleg flash: " << bad << " of " << modules_.size() << " modules do not run the image as before\n";
+    report(std::to_string(bad) + " of " + std::to_string(modules_.size()) + " modules do not run the image");
   }
-  return bad == 0 ? exit_success : exit_failed;
+  if (changed != 0) {
+    report(std::to_string(changed) + " of " + std::to_string(modules_.size()) + " modules have other settings now");
+  }
+  for (const std::uint8_t node : silent_) {
+    report("node " + std::to_string(node) + " was heard, but answers nothing: 'proleg recover' looks what it has");
+  }
+  return bad == 0 && changed == 0 && silent_.empty() ? exit_success : exit_failed;
 }
 
 /// With a probe, on a chip without a bootloader.
@@ -393,6 +407,11 @@ int run(const FlashOptions& options) {
     static_cast<void>(host::parse_nodes(*options.nodes, "--node"));
   }
   const host::ImageFile image = host::read_image(options.image);
+  if (options.settings) {
+    const std::vector<PlannedOutput> outputs{
+        {"--settings", *options.settings, "file of parameters", starts_with("# Proleg parameters"), true}};
+    check_outputs(outputs);
+  }
   BusAccess bus(options);
   catch_interrupts();
   require_no_host(bus);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "host/robot/object_word.hpp"
 #include "host/robot/silent_modules.hpp"
@@ -27,7 +28,12 @@ void sort(std::vector<FlashCandidate>& modules) {
 
 }  // namespace
 
-std::vector<FlashCandidate> find_silent_modules(BusAccess& bus, std::span<const FlashCandidate> known) {
+namespace {
+
+constexpr Microseconds longest_search = 60 * second;
+
+/// Begins to search for modules that are not among the known ones.
+void start(BusAccess& bus, host::SilentModules& search, std::span<const FlashCandidate> known) {
   constexpr std::uint32_t reference_board = 1;
   std::vector<std::uint32_t> products{reference_board};
   std::vector<std::uint32_t> serials;
@@ -37,15 +43,19 @@ std::vector<FlashCandidate> find_silent_modules(BusAccess& bus, std::span<const 
       products.push_back(module.board_id);
     }
   }
-  constexpr Microseconds longest = 60 * second;
-  host::SilentModulesOptions options;
-  options.answer_timeout_us = host::BusScanOptions().answer_timeout_us;  // a module behind a radio is found by both
-  options.max_modules = canopen::max_node_id;
-  options.longest_us = longest;
-  host::SilentModules search(bus.connection(), options);
   bus.connection().attach(search);
   search.start(bus.connection().now(), canopen::object::vendor.default_value, std::move(products), std::move(serials));
-  bus.wait_for("modules without a node id", longest + second, [&search] { return search.is_done(); });
+}
+
+host::SilentModulesOptions search_options() {
+  host::SilentModulesOptions options;
+  options.max_modules = canopen::max_node_id;
+  options.longest_us = longest_search;
+  return options;
+}
+
+std::vector<FlashCandidate> finish(BusAccess& bus, host::SilentModules& search) {
+  bus.wait_for("modules without a node id", longest_search + second, [&search] { return search.is_done(); });
   bus.connection().detach(search);
   std::vector<FlashCandidate> modules;
   for (const host::SilentModule& module : search.found()) {
@@ -55,6 +65,16 @@ std::vector<FlashCandidate> find_silent_modules(BusAccess& bus, std::span<const 
                        false});
   }
   return modules;
+}
+
+}  // namespace
+
+std::vector<FlashCandidate> find_silent_modules(BusAccess& bus, std::span<const FlashCandidate> known) {
+  host::SilentModulesOptions options = search_options();
+  options.answer_timeout_us = host::BusScanOptions().answer_timeout_us;  // a module behind a radio is found by both
+  host::SilentModules search(bus.connection(), options);
+  start(bus, search, known);
+  return finish(bus, search);
 }
 
 FoundModules look_for_modules(BusAccess& bus, SilentSearch search) {
@@ -97,8 +117,30 @@ void ask_programs(BusAccess& bus, std::span<FlashCandidate> modules) {
   }
 }
 
+namespace {
+
+/// Whether a module is missing that was asked for, or has been heard.
+bool is_any_missing(const FoundModules& found, const std::optional<std::vector<std::uint8_t>>& nodes) {
+  if (!nodes) {
+    return found.modules.empty() || !found.silent.empty();
+  }
+  return std::ranges::any_of(*nodes, [&found](std::uint8_t node) {
+    return std::ranges::find(found.modules, node, &FlashCandidate::node) == found.modules.end();
+  });
+}
+
+}  // namespace
+
 FoundModules find_modules(BusAccess& bus, const std::optional<std::vector<std::uint8_t>>& nodes) {
+  // A bootloader that installs answers nothing for that long.
+  constexpr Microseconds longest_silence = 4 * second;
+  constexpr Microseconds pause = second / 5;
+  const Microseconds end = bus.connection().now() + longest_silence;
   FoundModules found = look_for_modules(bus, SilentSearch::after_signs);
+  while (is_any_missing(found, nodes) && bus.connection().now() < end) {
+    bus.connection().run_for(pause);
+    found = look_for_modules(bus, SilentSearch::always);
+  }
   if (nodes) {
     for (const std::uint8_t node : *nodes) {
       if (std::ranges::find(found.modules, node, &FlashCandidate::node) == found.modules.end()) {
@@ -115,7 +157,22 @@ FoundModules find_modules(BusAccess& bus, const std::optional<std::vector<std::u
   if (found.modules.empty()) {
     throw std::runtime_error("found no joint module on the bus; " + bus.connection().diagnosis());
   }
+  if (nodes) {
+    ask_programs(bus, found.modules);
+    return found;
+  }
+  // A module that is Stopped gives no sign of itself. The search uses other identifiers than the questions for the
+  // programs, and takes hardly any time beside them.
+  constexpr Microseconds wired_answer = 15'000;
+  host::SilentModulesOptions options = search_options();
+  options.answer_timeout_us = wired_answer;
+  host::SilentModules search(bus.connection(), options);
+  start(bus, search, found.modules);
   ask_programs(bus, found.modules);
+  std::vector<FlashCandidate> stopped = finish(bus, search);
+  ask_programs(bus, stopped);
+  found.modules.insert(found.modules.end(), stopped.begin(), stopped.end());
+  sort(found.modules);
   return found;
 }
 

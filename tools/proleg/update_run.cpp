@@ -26,16 +26,26 @@ std::string state_of(const RobotUpdate& update, const host::UpdatedModule& modul
 }
 
 void follow(host::BusConnection& bus, const RobotUpdate& update, std::span<const host::FlashCandidate> modules,
-            const std::string& hint) {
+            bool through_its_line, const std::string& hint) {
   FlashProgress progress;
   constexpr Microseconds longest = 300'000'000;  // it ends by itself; this bounds one with a fault
   constexpr Microseconds drawing_period = 50'000;
+  // A connection may come back: the line of a gateway ends for a while, and a plug may be loose.
+  const Microseconds longest_loss = through_its_line ? longest : 8'000'000;
   const Microseconds end = bus.now() + longest;
+  Microseconds connected_at = bus.now();
   while (!update.is_done()) {
-    // The line of a gateway ends for a while: a lost connection is no reason to stop.
     bus.run_until(bus.now() + drawing_period, [&update] { return update.is_done() || interrupted(); });
     if (interrupted()) {
       throw std::runtime_error("interrupted; a module that was installing goes on by itself, and starts its program" +
+                               hint);
+    }
+    if (bus.state().is_connected) {
+      connected_at = bus.now();
+    } else if (bus.now() - connected_at > longest_loss) {
+      throw std::runtime_error(bus.diagnosis() +
+                               "; modules that have the whole image install it by themselves, and the same command "
+                               "again completes what is missing" +
                                hint);
     }
     if (bus.now() > end) {
@@ -72,7 +82,7 @@ UpdateRun run_update(BusAccess& bus, std::span<const std::uint8_t> image, std::s
   connection.attach(update);
   update.start(connection.now());
   try {
-    follow(connection, update, modules, hint);
+    follow(connection, update, modules, through_its_line, hint);
   } catch (...) {
     connection.detach(update);
     throw;

@@ -146,6 +146,22 @@ TEST(RobotUpdate, AModuleThatRestartsAgainAndAgainIsLeftBehind) {
   }
 }
 
+TEST(RobotUpdate, AnInterruptedTransferIsNotTheFaultOfTheProgram) {
+  FlashedRobot robot;
+  RobotUpdate update(robot.bus, new_image, robot.serials, {});
+  robot.bus.attach(update);
+  update.start(robot.bus.now());
+  robot.bus.run_for(500'000);
+  robot.bus.lose(1.0, 1);
+  robot.bus.run_for(12 * second);
+  robot.bus.lose(0.0, 1);
+  EXPECT_TRUE(robot.bus.run_until(robot.bus.now() + 120 * second, [&] { return update.is_done(); }));
+  robot.bus.detach(update);
+  for (const UpdatedModule& module : update.modules()) {
+    EXPECT_EQ(module.outcome, UpdateOutcome::not_transferred) << describe(module.outcome, module.detail);
+  }
+}
+
 TEST(RobotUpdate, AModuleThatRefusesTheImageSaysWhyAndRunsOn) {
   FlashedRobot robot;
   const auto update = robot.update(2, sim::make_native_image(7, {0, 2, 0}, 1'000));

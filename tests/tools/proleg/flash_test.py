@@ -156,6 +156,32 @@ class Flash(unittest.TestCase):
                 self.assertLess(time.monotonic(), deadline, errors)
             self.assert_all_run(self.flash(bus.tcp, "0.1.0"), "0.1.0")
 
+    def test_a_module_that_is_stopped_is_flashed_too(self):
+        with Bus() as bus:
+            table.proleg("nmt", "stop", "2", "--bus", bus.tcp)
+            self.assert_all_run(self.flash(bus.tcp, "0.2.0"), "0.2.0")
+            for node in ALL:
+                table.proleg("nmt", "stop", str(node), "--bus", bus.tcp)
+            self.assert_all_run(self.flash(bus.tcp, "0.3.0"), "0.3.0")
+
+    def test_the_same_command_right_after_an_interrupted_one_completes_it(self):
+        with Bus() as bus:
+            for delay in (0.7, 1.3, 2.0):
+                process = self.start(bus.tcp, "0.2.0", "--allow-downgrade")
+                time.sleep(delay)
+                process.send_signal(signal.SIGTERM)
+                process.communicate(timeout=LONGEST)
+                self.assert_all_run(self.flash(bus.tcp, "0.2.0", "--allow-downgrade"), "0.2.0")
+                self.assert_all_run(self.flash(bus.tcp, "0.1.0", "--allow-downgrade"), "0.1.0")
+
+    def test_settings_replace_no_file_of_another_kind(self):
+        image = self.make_image("0.2.0")
+        before = Path(image).read_bytes()
+        with Bus() as bus:
+            self.flash(bus.tcp, image, "--settings", image, status=2)
+            self.assertIn("no file of parameters", self.errors)
+        self.assertEqual(Path(image).read_bytes(), before)
+
     def test_two_hosts_at_once(self):
         with Bus() as bus:
             first = self.start(bus.tcp, "0.2.0")

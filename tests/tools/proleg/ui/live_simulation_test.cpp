@@ -85,7 +85,7 @@ TEST(LiveSimulation, ARunOfRandomChangesRepeatsFromItsWords) {
     std::mt19937 random(seed);
     LiveSimulation live(uniform(), nullptr);
     const char* joints[] = {"", ":J1", ":J3", ":J5"};
-    const auto advance_some = [&] { advance(live, random() % 20); };
+    const auto advance_some = [&] { advance(live, static_cast<unsigned>(random() % 20)); };
     const auto change_something = [&] {
       switch (random() % 6) {
         case 0:

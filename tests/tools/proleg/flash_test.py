@@ -166,13 +166,12 @@ class Flash(unittest.TestCase):
 
     def test_the_same_command_right_after_an_interrupted_one_completes_it(self):
         with Bus() as bus:
-            for delay in (0.7, 1.3, 2.0):
-                process = self.start(bus.tcp, "0.2.0", "--allow-downgrade")
+            for version, delay in (("0.2.0", 0.7), ("0.3.0", 1.3), ("0.1.0", 2.0)):
+                process = self.start(bus.tcp, version, "--allow-downgrade")
                 time.sleep(delay)
                 process.send_signal(signal.SIGTERM)
                 process.communicate(timeout=LONGEST)
-                self.assert_all_run(self.flash(bus.tcp, "0.2.0", "--allow-downgrade"), "0.2.0")
-                self.assert_all_run(self.flash(bus.tcp, "0.1.0", "--allow-downgrade"), "0.1.0")
+                self.assert_all_run(self.flash(bus.tcp, version, "--allow-downgrade"), version)
 
     def test_settings_replace_no_file_of_another_kind(self):
         image = self.make_image("0.2.0")

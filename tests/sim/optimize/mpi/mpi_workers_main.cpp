@@ -192,7 +192,8 @@ void continues_without_a_rank_that_stopped() {
     }
   };
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(100);
-  for (std::uint64_t ticket = 0; !lost_rank_2;) {
+  std::uint64_t ticket = 0;
+  while (!lost_rank_2) {
     expect(std::chrono::steady_clock::now() < end, "a message within 100 s");
     for (; workers.idle() > 0; ++ticket) {
       workers.start(ticket, {0, ticket, 0, {1, 1, 1}, {}});

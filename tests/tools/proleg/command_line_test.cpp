@@ -35,7 +35,7 @@ TEST_F(CommandLine, VersionNamesTheBuild) {
 }
 
 TEST_F(CommandLine, RefusesUnknownWords) {
-  expect_refused({}, {"expected one of algorithms, new, simulate, sweep, hil, faults, replay, export, plot, optimise, "
+  expect_refused({}, {"expected one of algorithms, new, simulate, ui, sweep, hil, faults, replay, export, plot, optimise, "
                       "experiment, bus, drive, scan, assign, doctor, info, get, set, monitor, params, nmt, flash, "
                       "recover, image, objects"});
   expect_refused({"simulat"}, {"'simulat'", "expected one of algorithms, new, simulate"});

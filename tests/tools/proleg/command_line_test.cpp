@@ -35,9 +35,10 @@ TEST_F(CommandLine, VersionNamesTheBuild) {
 }
 
 TEST_F(CommandLine, RefusesUnknownWords) {
-  expect_refused({}, {"expected one of algorithms, new, simulate, ui, sweep, hil, faults, replay, export, plot, optimise, "
-                      "experiment, bus, drive, scan, assign, doctor, info, get, set, monitor, params, nmt, flash, "
-                      "recover, image, objects"});
+  expect_refused({},
+                 {"expected one of algorithms, new, simulate, ui, sweep, hil, faults, replay, export, plot, optimise, "
+                  "experiment, bus, drive, scan, assign, doctor, info, get, set, monitor, params, nmt, flash, "
+                  "recover, image, objects"});
   expect_refused({"simulat"}, {"'simulat'", "expected one of algorithms, new, simulate"});
   expect_refused({"../../bin/sh"}, {"expected one of"});
   expect_refused({"simulate\n\x1b[31m"}, {"'simulate  [31m'", "expected one of"});

@@ -7,6 +7,7 @@
 
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"
+#include "tools/proleg/ui/telemetry_row.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -77,12 +78,6 @@ json joints_of(JointMask group) {
     joints.push_back(joint);
   }
   return joints;
-}
-
-/// What the number of a raw value is worth in its unit.
-double value_of_step(Unit unit) {
-  const UnitScale scale = scale_of(unit);
-  return static_cast<double>(scale.denominator) / static_cast<double>(scale.numerator);
 }
 
 json parameter_json(const sim::Scenario& scenario, const ParameterTable& table, unsigned slot, unsigned index) {

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "shared/fixed/unit.hpp"
 #include "sim/record/internal_values.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"
@@ -28,22 +27,22 @@ std::int32_t rounded(double value) {
   return static_cast<std::int32_t>(std::lround(std::clamp(value, -greatest, greatest)));
 }
 
-double step_of(Unit unit) {
-  const UnitScale scale = scale_of(unit);
-  return static_cast<double>(scale.denominator) / static_cast<double>(scale.numerator);
-}
-
 constexpr double unit_quaternion = 1 << 30;
 constexpr double raw_per_radian = (1 << 30) / (std::numbers::pi / 2);
 
 }  // namespace
 
+double value_of_step(Unit unit) {
+  const UnitScale scale = scale_of(unit);
+  return static_cast<double>(scale.denominator) / static_cast<double>(scale.numerator);
+}
+
 std::vector<Signal> signals_of(const sim::Scenario& scenario) {
   using Of = Signal::Of;
   const std::vector<unsigned> joints = first_numbers(scenario.robot.joints.size());
   const std::vector<unsigned> links = first_numbers(scenario.robot.links.size());
-  std::vector<Signal> signals{{"setpoint", "deg", step_of(Unit::degree), joints, Of::joint},
-                              {"angle", "deg", step_of(Unit::degree), joints, Of::joint},
+  std::vector<Signal> signals{{"setpoint", "deg", value_of_step(Unit::degree), joints, Of::joint},
+                              {"angle", "deg", value_of_step(Unit::degree), joints, Of::joint},
                               {"pulse", "us", 1.0 / 12.0, joints, Of::joint},
                               {"current", "mA", 1.0, joints, Of::joint},
                               {"torque", "mNm", 1.0, joints, Of::joint},
@@ -58,7 +57,7 @@ std::vector<Signal> signals_of(const sim::Scenario& scenario) {
     }
     for (const InternalValue& value : declaration.internal_values) {
       signals.push_back({std::to_string(slot + 1) + '/' + std::string(value.name), sim::shown_unit(value.unit),
-                         step_of(value.unit), group, Of::joint});
+                         value_of_step(value.unit), group, Of::joint});
     }
   }
   return signals;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "shared/fixed/unit.hpp"
 #include "sim/record/recorder.hpp"
 #include "sim/scenario/scenario.hpp"
 
@@ -14,6 +15,9 @@ namespace proleg::tools {
 
 /// In a row for values that do not exist.
 inline constexpr std::int32_t no_value = std::numeric_limits<std::int32_t>::min();
+
+/// What one step of a raw value is worth in its unit.
+[[nodiscard]] double value_of_step(Unit unit);
 
 struct Signal {
   enum class Of : std::uint8_t { joint, link, robot };

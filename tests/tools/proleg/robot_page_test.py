@@ -242,6 +242,39 @@ def test_a_robot_without_a_driver_stops(page, _):
     assert other.session()["stopped_by"] == "nobody drives"
 
 
+def test_a_bus_that_is_lost_ends_the_run_and_not_the_page(page, _):
+    driver = Driver(page)
+    driver.drive()
+    driver.must("run")
+    driver.until_state("running")
+    for status in Path("/proc").glob("[0-9]*/status"):
+        try:
+            if f"\nPPid:\t{page.process.pid}\n" in status.read_text():
+                os.kill(int(status.parent.name), signal.SIGKILL)
+        except (FileNotFoundError, ProcessLookupError):
+            continue
+    driver.until(lambda: driver.session()["failure"])
+    driver.until_state("off")
+    driver.until(lambda: not driver.bus()["connected"])
+    assert driver.bus()["problem"]
+    assert any("stop by themselves" in notice for notice in driver.notices), driver.notices
+    assert not driver.ask("pose", angles=[0] * JOINTS)["ok"]
+
+
+def test_what_is_not_possible_is_refused_and_the_gait_goes_on(page, _):
+    driver = Driver(page)
+    driver.drive()
+    driver.must("run")
+    driver.until_state("running")
+    assert not driver.ask("power", on=True)["ok"]
+    assert not driver.ask("scan")["ok"]
+    assert not driver.ask("step")["ok"]
+    assert not driver.ask("set", words=["amplitude=3000"])["ok"]
+    tick = driver.session()["tick"]
+    driver.until(lambda: driver.session()["tick"] > tick + 100)
+    assert driver.session()["state"] == "running"
+
+
 def test_the_end_of_the_program_takes_the_power(page, _):
     driver = Driver(page)
     driver.drive()

@@ -3,20 +3,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "tools/proleg/ui/telemetry_layout.hpp"
+
 namespace proleg::tools {
 namespace {
-
-host::SignalOf of(Signal::Of of) {
-  switch (of) {
-    case Signal::Of::joint:
-      return host::SignalOf::joint;
-    case Signal::Of::link:
-      return host::SignalOf::link;
-    case Signal::Of::robot:
-      break;
-  }
-  return host::SignalOf::robot;
-}
 
 host::NoticeLevel level_of(NoticeLevel level) {
   switch (level) {
@@ -45,12 +35,7 @@ void ServedPage::stop(const host::StopRequest& request) { session_.stop(request.
 void ServedPage::publish(const std::string& document, const nlohmann::json& value) { server_.publish(document, value); }
 
 void ServedPage::set_signals(const std::vector<Signal>& signals, std::uint32_t tick_us) {
-  std::vector<host::Signal> shown;
-  shown.reserve(signals.size());
-  for (const Signal& signal : signals) {
-    shown.push_back({signal.name, signal.unit, signal.scale, signal.places.size(), of(signal.of)});
-  }
-  server_.set_signals(host::SignalLayout(std::move(shown)), tick_us);
+  server_.set_signals(layout_of(signals), tick_us);
 }
 
 void ServedPage::add_row(std::uint16_t run, std::uint32_t tick, std::span<const std::int32_t> row) {

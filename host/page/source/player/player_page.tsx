@@ -26,7 +26,7 @@ function Header({ app }: { app: PlayerApp }) {
         <h1 class="name" title={recording.file}>
           {recording.file}
         </h1>
-        <span class="unit" data-testid="about">
+        <span class="about unit" data-testid="about">
           {`${robot?.name}, ${algorithms}, ${Number(seconds.toFixed(2))} s`}
         </span>
       </div>

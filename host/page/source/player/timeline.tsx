@@ -53,7 +53,7 @@ export function Timeline({ app }: { app: PlayerApp }) {
           <div class="part" style={{ left: percent(part.from), right: `calc(100% - ${percent(part.to)})` }} />
         )}
         {app.recording.marks.map((mark, i) => (
-          <i key={i} class={`time-mark ${mark.kind}`} style={{ left: percent(mark.tick) }} />
+          <i key={i} class={`time-mark ${mark.kind}`} style={{ left: percent(mark.tick) }} title={mark.text} />
         ))}
         <div ref={thumb} class="thumb" />
       </div>

@@ -9,7 +9,6 @@
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/ui/recording_document.hpp"
 #include "tools/proleg/ui/robot_document.hpp"
-#include "tools/proleg/ui/telemetry_layout.hpp"
 #include "tools/proleg/ui/telemetry_row.hpp"
 
 namespace proleg::tools {
@@ -33,11 +32,11 @@ std::string element_text(const json& document) {
   return text;
 }
 
-json documents_of(const sim::Recording& recording, const sim::Scenario& scenario, const std::vector<Signal>& signals) {
+json documents_of(const sim::Recording& recording, const sim::Scenario& scenario, const host::SignalLayout& layout) {
   return {{"block_rows", ColumnBlock::max_rows},
           {"robot", robot_document(scenario, "recording")},
           {"parameters", recorded_parameters_document(recording, scenario)},
-          {"telemetry", layout_of(signals).document(recording.tick_period_us())},
+          {"telemetry", layout.document(recording.tick_period_us())},
           {"recording", recording_document(recording)}};
 }
 
@@ -61,12 +60,12 @@ std::string_view PlayerPage::after_recording() const {
 void write_html(const sim::Recording& recording, const sim::Scenario& scenario, const PlayerPage& player,
                 const std::function<void(std::string_view)>& write,
                 const std::function<void(std::uint32_t tick)>& after_tick) {
-  const std::vector<Signal> signals = signals_of(scenario);
+  const host::SignalLayout layout(signals_of(scenario));
   write(player.before_recording());
   write("<script type=\"application/json\" id=\"documents\">");
-  write(element_text(documents_of(recording, scenario, signals)));
+  write(element_text(documents_of(recording, scenario, layout)));
   write("</script>\n");
-  ColumnBlock block(layout_of(signals).row_size());
+  ColumnBlock block(layout.row_size());
   const auto write_block = [&] {
     write("<script type=\"text/plain\" class=\"ticks\">");
     write(block.take());

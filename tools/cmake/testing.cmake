@@ -109,3 +109,48 @@ function(proleg_test path)
       ENVIRONMENT GTEST_TOTAL_SHARDS=${test_SHARDS} GTEST_SHARD_INDEX=${shard})
   endforeach()
 endfunction()
+
+# proleg_fuzz_corpus(<name>)
+#   Sets `corpus` to a folder of this name without files, for the seeds of a fuzz target.
+macro(proleg_fuzz_corpus name)
+  set(corpus ${CMAKE_CURRENT_BINARY_DIR}/${name})
+  file(REMOVE_RECURSE ${corpus})
+endmacro()
+
+# proleg_fuzz_test(<path> SOURCE file ROOMS rooms... RUNS n MAX_LENGTH bytes [LIBRARIES targets...] [DICTIONARY file]
+#                  [CORPUS folder] [LONG_RUNS n])
+#   A libFuzzer program, PATH_fuzz with underscores, and the test PATH.fuzz: a fixed number of inputs from a fixed seed. A
+#   longer search, for example for host/flash:
+#     build/asan/bin/host_flash_fuzz -max_len=600 -max_total_time=3600 FOLDER_FOR_NEW_INPUTS build/asan/tests/host/flash/fuzz/corpus
+#   ROOMS      guide the fuzzer: they get counters of the code that an input reaches
+#   CORPUS     seeds, made before this call
+#   LONG_RUNS  a second, slow test with other inputs
+function(proleg_fuzz_test path)
+  cmake_parse_arguments(PARSE_ARGV 1 fuzz "" "SOURCE;RUNS;MAX_LENGTH;DICTIONARY;CORPUS;LONG_RUNS" "ROOMS;LIBRARIES")
+  string(REPLACE "/" "_" name ${path})
+  add_executable(${name}_fuzz ${fuzz_SOURCE})
+  target_compile_options(${name}_fuzz PRIVATE -fsanitize=fuzzer)
+  target_link_options(${name}_fuzz PRIVATE -fsanitize=fuzzer)
+  target_link_libraries(${name}_fuzz PRIVATE ${fuzz_LIBRARIES} proleg::tests_support)
+  foreach(room IN LISTS fuzz_ROOMS)
+    string(REPLACE "/" "_" target ${room})
+    # -fsanitize=fuzzer-no-link adds the same counters, but rejects the precompiled headers.
+    target_compile_options(${target} PRIVATE -fsanitize-coverage=inline-8bit-counters,indirect-calls,trace-cmp,pc-table)
+    target_link_libraries(${name}_fuzz PRIVATE proleg::${target})
+  endforeach()
+  set(command $<TARGET_FILE:${name}_fuzz> -max_len=${fuzz_MAX_LENGTH} -timeout=60
+      -artifact_prefix=${CMAKE_CURRENT_BINARY_DIR}/)
+  if(fuzz_DICTIONARY)
+    list(APPEND command -dict=${CMAKE_CURRENT_SOURCE_DIR}/${fuzz_DICTIONARY})
+  endif()
+  if(fuzz_CORPUS)
+    file(GLOB seeds ${fuzz_CORPUS}/*)
+    list(JOIN seeds "," seed_inputs)
+    list(APPEND command -seed_inputs=${seed_inputs})
+  endif()
+  proleg_add_test(${path}.fuzz COMMAND ${command} -runs=${fuzz_RUNS} -seed=1 DATA ${fuzz_CORPUS})
+  if(fuzz_LONG_RUNS)
+    proleg_add_test(${path}.fuzz_long COMMAND ${command} -runs=${fuzz_LONG_RUNS} -seed=2 DATA ${fuzz_CORPUS}
+      LABELS slow TIMEOUT 3600)
+  endif()
+endfunction()

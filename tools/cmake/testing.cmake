@@ -33,13 +33,17 @@ set(PROLEG_TEST_DATA ${CMAKE_SOURCE_DIR}/sim/scenarios ${CMAKE_SOURCE_DIR}/tests
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
 # proleg_add_test(<name> COMMAND program [argument...] [PROGRAMS files...] [DATA paths...] [LABELS ...] [TIMEOUT seconds]
-#                 [COST core-seconds] [ENVIRONMENT NAME=VALUE...] [PROCESSORS n])
+#                 [COST core-seconds] [ENVIRONMENT NAME=VALUE...] [HALF_CORES n])
 #   A ctest test whose result tools/check uses again while its inputs are the same (tools/run_test).
 #   PROGRAMS   what the program starts: files, or $<TARGET_FILE:...>; a change in them runs the test again
 #   DATA       what it reads, beside PROLEG_TEST_DATA: files, or folders with all that is below them
 #   COST       roughly, where it is many seconds: long tests start first
+#   HALF_CORES what it keeps busy: 2 by default, 1 for a test that mostly waits, for example for a robot that moves in real
+#              time. ctest starts as many as fit (tools/check). A test that needs more comes late, since smaller ones fit
+#              first.
+set(PROLEG_HALF_CORES 2)
 function(proleg_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;PROCESSORS" "COMMAND;PROGRAMS;DATA;LABELS;ENVIRONMENT")
+  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;HALF_CORES" "COMMAND;PROGRAMS;DATA;LABELS;ENVIRONMENT")
   set(inputs)
   foreach(program IN LISTS test_PROGRAMS)
     list(APPEND inputs --program ${program})
@@ -59,7 +63,11 @@ function(proleg_add_test name)
     list(APPEND test_ENVIRONMENT
          "LSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/leak_suppressions.txt:print_suppressions=0")
   endif()
-  foreach(property IN ITEMS COST PROCESSORS LABELS ENVIRONMENT)
+  if(NOT test_HALF_CORES)
+    set(test_HALF_CORES ${PROLEG_HALF_CORES})
+  endif()
+  set_tests_properties(${name} PROPERTIES PROCESSORS ${test_HALF_CORES})
+  foreach(property IN ITEMS COST LABELS ENVIRONMENT)
     if(test_${property})
       set_tests_properties(${name} PROPERTIES ${property} "${test_${property}}")
     endif()
@@ -73,7 +81,7 @@ endfunction()
 #   ROBOTS   a GoogleTest filter of cases that simulate whole robots. Under the sanitizers they take ten times as long:
 #            there they are slow tests. They run as built for users in every suite, also without PROLEG_UNIT_TESTS.
 function(proleg_test path)
-  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;SHARDS;ROBOTS" "SOURCES;DEPENDS;LIBRARIES;PROGRAMS;DATA;LABELS")
+  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;SHARDS;ROBOTS;HALF_CORES" "SOURCES;DEPENDS;LIBRARIES;PROGRAMS;DATA;LABELS")
   string(REPLACE "/" "_" name ${path})
   add_executable(${name}_test ${test_SOURCES})
   foreach(dependency IN LISTS test_DEPENDS)
@@ -86,7 +94,7 @@ function(proleg_test path)
     target_precompile_headers(${name}_test REUSE_FROM tests_prelude)
   endif()
   set(options PROGRAMS ${test_PROGRAMS} DATA ${test_DATA} LABELS ${test_LABELS} TIMEOUT ${test_TIMEOUT}
-      COST ${test_COST})
+      COST ${test_COST} HALF_CORES ${test_HALF_CORES})
   set(command $<TARGET_FILE:${name}_test> --gtest_brief=1)
   if(test_ROBOTS AND PROLEG_SANITIZE)
     proleg_add_test(${path}.robots COMMAND ${command} --gtest_filter=${test_ROBOTS} PROGRAMS ${test_PROGRAMS} DATA ${test_DATA}

@@ -1,7 +1,8 @@
 // Bundles the page, or its tests.
-//   node bundle.mjs page FOLDER     index.html, app.js with its chunks, the workers, style.css
-//   node bundle.mjs player FOLDER   player.html, into which proleg export --html writes a recording
-//   node bundle.mjs tests FOLDER    each *_test.ts of tests/host/page as one program for `node --test`
+//   node bundle.mjs page FOLDER      index.html, app.js with its chunks, the workers, style.css; FOLDER_sizes.json
+//   node bundle.mjs player FOLDER    player.html, into which proleg export --html writes a recording
+//   node bundle.mjs tests FOLDER     each *_test.ts of tests/host/page as one program for `node --test`
+//   node bundle.mjs figures FOLDER   the program of tools/page_figures
 import { build } from 'esbuild';
 import { createHash } from 'node:crypto';
 import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -72,6 +73,7 @@ function checkSizes(folder, first) {
   }
   print('first chunk', NaN, compressedFirst);
   print('all', raw, compressed);
+  writeFileSync(`${folder}_sizes.json`, `${JSON.stringify({ first: compressedFirst, all: compressed })}\n`);
   let fits = true;
   for (const [what, size, largest] of [
     ['the first chunk', compressedFirst, largestFirstChunk],
@@ -94,6 +96,17 @@ async function bundleTests(folder) {
   const files = readdirSync(tests, { recursive: true, withFileTypes: true })
     .filter((entry) => entry.isFile() && entry.name.endsWith('_test.ts'))
     .map((entry) => relative(tests, join(entry.path, entry.name)));
+  await bundlePrograms(files, folder);
+  return files.length > 0;
+}
+
+async function bundleFigures(folder) {
+  await bundlePrograms(['figures/page_figures.ts'], folder);
+  return true;
+}
+
+// Programs for Node.
+async function bundlePrograms(files, folder) {
   rmSync(folder, { recursive: true, force: true });
   await build({
     ...common,
@@ -107,7 +120,6 @@ async function bundleTests(folder) {
     nodePaths: [join(room, 'node_modules')],
     sourcemap: 'inline',
   });
-  return files.length > 0;
 }
 
 async function bundlePlayer(folder) {
@@ -148,6 +160,6 @@ async function bundlePlayer(folder) {
 }
 
 const [what, folder] = process.argv.slice(2);
-const bundles = { page: bundlePage, player: bundlePlayer, tests: bundleTests };
+const bundles = { page: bundlePage, player: bundlePlayer, tests: bundleTests, figures: bundleFigures };
 const succeeded = await bundles[what](folder);
 process.exit(succeeded ? 0 : 1);

@@ -33,13 +33,17 @@ set(PROLEG_TEST_DATA ${CMAKE_SOURCE_DIR}/sim/scenarios ${CMAKE_SOURCE_DIR}/tests
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
 # proleg_add_test(<name> COMMAND program [argument...] [PROGRAMS files...] [DATA paths...] [LABELS ...] [TIMEOUT seconds]
-#                 [COST core-seconds] [ENVIRONMENT NAME=VALUE...] [PROCESSORS n])
+#                 [COST core-seconds] [ENVIRONMENT NAME=VALUE...] [HALF_CORES n])
 #   A ctest test whose result tools/check uses again while its inputs are the same (tools/run_test).
 #   PROGRAMS   what the program starts: files, or $<TARGET_FILE:...>; a change in them runs the test again
 #   DATA       what it reads, beside PROLEG_TEST_DATA: files, or folders with all that is below them
 #   COST       roughly, where it is many seconds: long tests start first
+#   HALF_CORES what it keeps busy: 2 by default, 1 for a test that mostly waits, for example for a robot that moves in real
+#              time. ctest starts as many as fit (tools/check). A test that needs more comes late, since smaller ones fit
+#              first.
+set(PROLEG_HALF_CORES 2)
 function(proleg_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;PROCESSORS" "COMMAND;PROGRAMS;DATA;LABELS;ENVIRONMENT")
+  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;HALF_CORES" "COMMAND;PROGRAMS;DATA;LABELS;ENVIRONMENT")
   set(inputs)
   foreach(program IN LISTS test_PROGRAMS)
     list(APPEND inputs --program ${program})
@@ -59,7 +63,11 @@ function(proleg_add_test name)
     list(APPEND test_ENVIRONMENT
          "LSAN_OPTIONS=suppressions=${CMAKE_SOURCE_DIR}/tests/leak_suppressions.txt:print_suppressions=0")
   endif()
-  foreach(property IN ITEMS COST PROCESSORS LABELS ENVIRONMENT)
+  if(NOT test_HALF_CORES)
+    set(test_HALF_CORES ${PROLEG_HALF_CORES})
+  endif()
+  set_tests_properties(${name} PROPERTIES PROCESSORS ${test_HALF_CORES})
+  foreach(property IN ITEMS COST LABELS ENVIRONMENT)
     if(test_${property})
       set_tests_properties(${name} PROPERTIES ${property} "${test_${property}}")
     endif()
@@ -73,7 +81,7 @@ endfunction()
 #   ROBOTS   a GoogleTest filter of cases that simulate whole robots. Under the sanitizers they take ten times as long:
 #            there they are slow tests. They run as built for users in every suite, also without PROLEG_UNIT_TESTS.
 function(proleg_test path)
-  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;SHARDS;ROBOTS" "SOURCES;DEPENDS;LIBRARIES;PROGRAMS;DATA;LABELS")
+  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;SHARDS;ROBOTS;HALF_CORES" "SOURCES;DEPENDS;LIBRARIES;PROGRAMS;DATA;LABELS")
   string(REPLACE "/" "_" name ${path})
   add_executable(${name}_test ${test_SOURCES})
   foreach(dependency IN LISTS test_DEPENDS)
@@ -86,7 +94,7 @@ function(proleg_test path)
     target_precompile_headers(${name}_test REUSE_FROM tests_prelude)
   endif()
   set(options PROGRAMS ${test_PROGRAMS} DATA ${test_DATA} LABELS ${test_LABELS} TIMEOUT ${test_TIMEOUT}
-      COST ${test_COST})
+      COST ${test_COST} HALF_CORES ${test_HALF_CORES})
   set(command $<TARGET_FILE:${name}_test> --gtest_brief=1)
   if(test_ROBOTS AND PROLEG_SANITIZE)
     proleg_add_test(${path}.robots COMMAND ${command} --gtest_filter=${test_ROBOTS} PROGRAMS ${test_PROGRAMS} DATA ${test_DATA}
@@ -108,4 +116,49 @@ function(proleg_test path)
     proleg_add_test(${path}.${number}of${test_SHARDS} COMMAND ${command} ${options}
       ENVIRONMENT GTEST_TOTAL_SHARDS=${test_SHARDS} GTEST_SHARD_INDEX=${shard})
   endforeach()
+endfunction()
+
+# proleg_fuzz_corpus(<name>)
+#   Sets `corpus` to a folder of this name without files, for the seeds of a fuzz target.
+macro(proleg_fuzz_corpus name)
+  set(corpus ${CMAKE_CURRENT_BINARY_DIR}/${name})
+  file(REMOVE_RECURSE ${corpus})
+endmacro()
+
+# proleg_fuzz_test(<path> SOURCE file ROOMS rooms... RUNS n MAX_LENGTH bytes [LIBRARIES targets...] [DICTIONARY file]
+#                  [CORPUS folder] [LONG_RUNS n])
+#   A libFuzzer program, PATH_fuzz with underscores, and the test PATH.fuzz: a fixed number of inputs from a fixed seed. A
+#   longer search, for example for host/flash:
+#     build/asan/bin/host_flash_fuzz -max_len=600 -max_total_time=3600 FOLDER_FOR_NEW_INPUTS build/asan/tests/host/flash/fuzz/corpus
+#   ROOMS      guide the fuzzer: they get counters of the code that an input reaches
+#   CORPUS     seeds, made before this call
+#   LONG_RUNS  a second, slow test with other inputs
+function(proleg_fuzz_test path)
+  cmake_parse_arguments(PARSE_ARGV 1 fuzz "" "SOURCE;RUNS;MAX_LENGTH;DICTIONARY;CORPUS;LONG_RUNS" "ROOMS;LIBRARIES")
+  string(REPLACE "/" "_" name ${path})
+  add_executable(${name}_fuzz ${fuzz_SOURCE})
+  target_compile_options(${name}_fuzz PRIVATE -fsanitize=fuzzer)
+  target_link_options(${name}_fuzz PRIVATE -fsanitize=fuzzer)
+  target_link_libraries(${name}_fuzz PRIVATE ${fuzz_LIBRARIES} proleg::tests_support)
+  foreach(room IN LISTS fuzz_ROOMS)
+    string(REPLACE "/" "_" target ${room})
+    # -fsanitize=fuzzer-no-link adds the same counters, but rejects the precompiled headers.
+    target_compile_options(${target} PRIVATE -fsanitize-coverage=inline-8bit-counters,indirect-calls,trace-cmp,pc-table)
+    target_link_libraries(${name}_fuzz PRIVATE proleg::${target})
+  endforeach()
+  set(command $<TARGET_FILE:${name}_fuzz> -max_len=${fuzz_MAX_LENGTH} -timeout=60
+      -artifact_prefix=${CMAKE_CURRENT_BINARY_DIR}/)
+  if(fuzz_DICTIONARY)
+    list(APPEND command -dict=${CMAKE_CURRENT_SOURCE_DIR}/${fuzz_DICTIONARY})
+  endif()
+  if(fuzz_CORPUS)
+    file(GLOB seeds ${fuzz_CORPUS}/*)
+    list(JOIN seeds "," seed_inputs)
+    list(APPEND command -seed_inputs=${seed_inputs})
+  endif()
+  proleg_add_test(${path}.fuzz COMMAND ${command} -runs=${fuzz_RUNS} -seed=1 DATA ${fuzz_CORPUS})
+  if(fuzz_LONG_RUNS)
+    proleg_add_test(${path}.fuzz_long COMMAND ${command} -runs=${fuzz_LONG_RUNS} -seed=2 DATA ${fuzz_CORPUS}
+      LABELS slow TIMEOUT 3600)
+  endif()
 endfunction()

@@ -3,13 +3,26 @@
 type Drawer = (time: number) => void;
 
 const drawers = new Set<Drawer>();
+const limitedPeriod = 1000 / 30; // milliseconds
+const tolerance = 8; // half a frame of most displays
+let isLimited = false;
+let due = 0;
 
 function frame(time: number): void {
   if (drawers.size === 0) {
     return;
   }
-  drawers.forEach((draw) => draw(time));
   requestAnimationFrame(frame);
+  if (isLimited && time < due - tolerance) {
+    return;
+  }
+  due = Math.max(due, time - limitedPeriod) + limitedPeriod;
+  drawers.forEach((draw) => draw(time));
+}
+
+// At most 30 frames a second: for a computer that draws slowly, so that it has time for the controls.
+export function limitFrameRate(isOn: boolean): void {
+  isLimited = isOn;
 }
 
 // Calls `draw` at each frame until the returned function is called.

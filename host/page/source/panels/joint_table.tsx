@@ -4,7 +4,8 @@ import { onFrame } from '../frame_clock.js';
 import type { RobotView } from '../robot_view.js';
 import { noValue, type Joint } from '../wire/messages.js';
 
-const framePeriod = 100; // milliseconds: faster cannot be read
+const period = 100; // milliseconds: faster cannot be read
+const rowsOfAFrame = 12; // more at once would hold up the controls
 
 const columns = [
   { title: 'set-point', unit: '°', signal: 'setpoint', decimals: 1 },
@@ -31,6 +32,14 @@ function texts(app: RobotView, joint: number, row: number): string[] {
   return [...numbers, bits === noValue ? '' : `${(bits & 1) !== 0 ? '●' : '○'} ${(bits & 2) !== 0 ? '●' : '○'}`];
 }
 
+// Past Preact: 60 rows of text ten times a second.
+function write(element: HTMLTableRowElement, values: string[]): void {
+  values.forEach((text, i) => {
+    const cell = element.cells[i + 1];
+    if (cell !== undefined && cell.textContent !== text) cell.textContent = text;
+  });
+}
+
 function JointRow({ app, joint, index }: { app: RobotView; joint: Joint; index: number }) {
   const isHovered = app.selection.hoveredJoint.value === index;
   return (
@@ -54,23 +63,25 @@ export function JointTable({ app }: { app: RobotView }) {
   useEffect(() => {
     let last = 0;
     let lastKey = '';
+    let row = 0; // of the history, which the table is being filled with
+    let next = Infinity; // joint
     return onFrame((now) => {
       const { history, time } = app;
       const tick = time.shownTick(app.newestTick);
       const key = `${history.run}/${history.end}/${tick}`;
-      if (key === lastKey || now - last < framePeriod) {
-        return;
+      const elements = body.current?.rows ?? [];
+      if (next >= elements.length) {
+        if (key === lastKey || now - last < period) {
+          return;
+        }
+        last = now;
+        lastKey = key;
+        row = Math.min(history.end - 1, history.rowAtTick(tick));
+        next = 0;
       }
-      last = now;
-      lastKey = key;
-      const row = Math.min(history.end - 1, history.rowAtTick(tick));
-      // Written past Preact: 60 rows of text ten times a second.
-      body.current?.querySelectorAll<HTMLTableRowElement>('tr').forEach((element, joint) => {
-        texts(app, joint, row).forEach((text, i) => {
-          const cell = element.cells[i + 1];
-          if (cell !== undefined && cell.textContent !== text) cell.textContent = text;
-        });
-      });
+      for (const end = Math.min(elements.length, next + rowsOfAFrame); next < end; next += 1) {
+        write(elements[next] as HTMLTableRowElement, texts(app, next, row));
+      }
     });
   }, []);
   const robot = app.state.robot.value;

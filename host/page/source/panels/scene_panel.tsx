@@ -1,20 +1,20 @@
 // The 3D view: a canvas that a worker draws on, and what pointer and keys do to it.
 import { effect, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
-import { onFrame } from '../frame_clock.js';
+import { limitFrameRate, onFrame } from '../frame_clock.js';
 import type { RobotView } from '../robot_view.js';
 import type { FromScene, ToScene } from '../scene/scene_messages.js';
 import { isDark } from '../theme.js';
 import { listenToPointer } from './scene_pointer.js';
 import { poseAt } from './scene_pose.js';
 
-const highestRatio = 1.5; // device pixels for each CSS pixel; more costs frames and shows little
 const readoutPeriod = 100; // milliseconds
 
 export function ScenePanel({ app }: { app: RobotView }) {
   const holder = useRef<HTMLDivElement>(null);
   const readout = useRef<HTMLSpanElement>(null);
   const isFollowing = useSignal(true);
+  const level = useSignal(0);
   const failure = useSignal<string | null>(null);
   const post = useRef<(message: ToScene) => void>(() => {});
 
@@ -44,12 +44,16 @@ export function ScenePanel({ app }: { app: RobotView }) {
       const message = event.data;
       if (message.kind === 'pointed') app.selection.hoveredJoint.value = message.joint;
       if (message.kind === 'following') isFollowing.value = message.isOn;
+      if (message.kind === 'detail') {
+        level.value = message.level;
+        limitFrameRate(message.level > 0);
+      }
       if (message.kind === 'failed') failure.value = message.reason;
     };
     send({ kind: 'start', canvas: offscreen, isDark: isDark.peek() }, [offscreen]);
     const observer = new ResizeObserver(([entry]) => {
       const { width, height } = (entry as ResizeObserverEntry).contentRect;
-      send({ kind: 'size', width, height, ratio: Math.min(highestRatio, window.devicePixelRatio) });
+      send({ kind: 'size', width, height, ratio: window.devicePixelRatio });
     });
     observer.observe(parent);
     const stops = [
@@ -93,7 +97,7 @@ export function ScenePanel({ app }: { app: RobotView }) {
 
   return (
     <section class="panel scene-panel" aria-label="Robot in 3D">
-      <div class="scene" ref={holder} />
+      <div class="scene" ref={holder} data-detail={level.value} />
       <div class="scene-tools">
         <button
           type="button"
@@ -111,6 +115,11 @@ export function ScenePanel({ app }: { app: RobotView }) {
       <span class="legend-marks" aria-hidden="true">
         <i class="mark head" /> head <i class="mark contact" /> ground contact <i class="mark path" /> path
       </span>
+      {level.value > 0 && (
+        <span class="detail-note" title="This computer draws slowly, so the view has less detail: the controls come first.">
+          less detail
+        </span>
+      )}
       {failure.value !== null && <p class="scene-failure">No 3D view: {failure.value}</p>}
     </section>
   );

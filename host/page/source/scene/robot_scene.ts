@@ -4,6 +4,7 @@ import { OrbitCamera } from '../geometry/orbit_camera.js';
 import { poseFromArray } from '../geometry/quaternion.js';
 import type { RobotDocument } from '../wire/messages.js';
 import { HeadPath } from './head_path.js';
+import type { Detail } from './drawing_budget.js';
 import { RobotModel } from './robot_model.js';
 import { colours } from './scene_colours.js';
 import type { ScenePose } from './scene_messages.js';
@@ -26,7 +27,9 @@ export class RobotScene {
   private model: RobotModel | null = null;
   private run = -1;
   private hasWholePath = false;
+  private width = 1;
   private height = 1;
+  private ratio = 1; // device pixels for each CSS pixel, of the display
   private gridCell = 0.1; // metres
   private readonly fog = new THREE.Fog(0, 1, 2);
   private isDirty = true;
@@ -35,12 +38,15 @@ export class RobotScene {
   constructor(
     canvas: OffscreenCanvas,
     private isDark: boolean,
+    isSoftware: boolean,
+    private detail: Detail,
   ) {
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
+    // Smooth edges cost a processor as much as all the rest.
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !isSoftware });
     this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = THREE.PCFShadowMap;
+    this.renderer.shadowMap.type = isSoftware ? THREE.BasicShadowMap : THREE.PCFShadowMap;
     this.camera.up.set(0, 0, 1);
-    this.sun.castShadow = true;
+    this.sun.castShadow = detail.hasShadows;
     this.sun.shadow.mapSize.set(1024, 1024);
     this.sun.shadow.bias = -0.0008;
     this.scene.add(this.sun, this.sun.target, this.sky, this.axes);
@@ -49,11 +55,21 @@ export class RobotScene {
   }
 
   setSize(width: number, height: number, ratio: number): void {
-    this.height = height;
-    this.renderer.setPixelRatio(ratio);
-    this.renderer.setSize(width, height, false);
+    Object.assign(this, { width, height, ratio });
     this.camera.aspect = width / Math.max(1, height);
     this.camera.updateProjectionMatrix();
+    this.resize();
+  }
+
+  setDetail(detail: Detail): void {
+    this.detail = detail;
+    this.sun.castShadow = detail.hasShadows;
+    this.resize();
+  }
+
+  private resize(): void {
+    this.renderer.setPixelRatio(Math.min(this.ratio, this.detail.ratio));
+    this.renderer.setSize(this.width, this.height, false);
     this.isDirty = true;
   }
 
@@ -150,9 +166,10 @@ export class RobotScene {
     return this.model?.jointAt(caster) ?? null;
   }
 
-  render(): void {
+  // False if nothing has changed.
+  render(): boolean {
     if (!this.isDirty) {
-      return;
+      return false;
     }
     this.isDirty = false;
     if (this.isFollowing && this.model !== null) {
@@ -174,6 +191,7 @@ export class RobotScene {
     this.fog.near = this.orbit.distance * 1.3;
     this.fog.far = this.orbit.distance + this.gridCell * gridCells * 0.45;
     this.renderer.render(this.scene, this.camera);
+    return true;
   }
 
   private growPath(path: HeadPath, pose: ScenePose): void {

@@ -11,7 +11,7 @@ export interface ScenePose {
 
 export type ToScene =
   | { kind: 'start'; canvas: OffscreenCanvas; isDark: boolean }
-  | { kind: 'size'; width: number; height: number; ratio: number } // CSS pixels
+  | { kind: 'size'; width: number; height: number; ratio: number } // CSS pixels; device pixels for each of them
   | { kind: 'robot'; robot: RobotDocument }
   | { kind: 'pose'; pose: ScenePose }
   | { kind: 'path'; heads: Float64Array } // the whole path: of each point as `head` of a pose
@@ -27,4 +27,5 @@ export type ToScene =
 export type FromScene =
   | { kind: 'pointed'; joint: number | null }
   | { kind: 'following'; isOn: boolean }
+  | { kind: 'detail'; level: number } // 0: all of it
   | { kind: 'failed'; reason: string };

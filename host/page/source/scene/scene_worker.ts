@@ -1,4 +1,5 @@
 // The worker that draws the 3D view, so that drawing never holds up a slider or STOP.
+import { DrawingBudget } from './drawing_budget.js';
 import { RobotScene } from './robot_scene.js';
 import type { FromScene, ToScene } from './scene_messages.js';
 
@@ -6,15 +7,32 @@ const post = (message: FromScene) => self.postMessage(message);
 
 let scene: RobotScene | null = null;
 
+// Whether WebGL has no graphics processor behind it.
+function isDrawnInSoftware(): boolean {
+  const context = new OffscreenCanvas(1, 1).getContext('webgl2');
+  const extension = context?.getExtension('WEBGL_debug_renderer_info');
+  const name = extension ? String(context?.getParameter(extension.UNMASKED_RENDERER_WEBGL)) : '';
+  context?.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software/i.test(name);
+}
+
 function start(canvas: OffscreenCanvas, isDark: boolean): void {
+  const isSoftware = isDrawnInSoftware();
+  const budget = new DrawingBudget(isSoftware ? 1 : 0);
+  let view: RobotScene;
   try {
-    scene = new RobotScene(canvas, isDark);
+    view = new RobotScene(canvas, isDark, isSoftware, budget.detail);
   } catch (error) {
     post({ kind: 'failed', reason: (error as Error).message });
     return;
   }
-  const draw = () => {
-    scene?.render();
+  scene = view;
+  post({ kind: 'detail', level: budget.level });
+  const draw = (now: number) => {
+    if (budget.note(now, view.render())) {
+      view.setDetail(budget.detail);
+      post({ kind: 'detail', level: budget.level });
+    }
     requestAnimationFrame(draw);
   };
   requestAnimationFrame(draw);

@@ -52,6 +52,7 @@ describe('viewers', () => {
     await first.screenshot('request');
     await first.button('Give control').click();
     await second.button('Release').waitFor();
+    await first.button('Release').waitFor({ state: 'detached' });
     assert.equal(await first.button('Pause').isDisabled(), true);
     await first.waitForState('running');
     await second.button('Pause').click();

@@ -43,6 +43,30 @@ describe('the state of the page', () => {
     assert.equal(state.telemetry.value?.tick_us, 10000);
   });
 
+  it('keeps the objects of parameters that are as before, so that only the others are drawn', () => {
+    const state = connected();
+    const parameter = (name: string, wanted: number) =>
+      ({
+        slot: 1, name, unit: '', scale: 1, help: '', internal: false, wraps: false, joints: [0],
+        minimum: 0, maximum: 9, default: 0, file: [0], wanted: [wanted], confirmed: [0], tick: [0],
+      }) as const;
+    const receive = (amplitude: number, frequency: number) =>
+      state.receive(
+        structuredClone({
+          type: 'document',
+          name: 'parameters',
+          revision: 1,
+          value: [parameter('amplitude', amplitude), parameter('frequency', frequency)],
+        } as unknown as Parameters<PageState['receive']>[0]),
+      );
+    receive(1, 2);
+    const before = state.parameters.value;
+    receive(1, 3);
+    assert.equal(state.parameters.value[0], before[0]);
+    assert.notEqual(state.parameters.value[1], before[1]);
+    assert.deepEqual(state.parameters.value[1]?.wanted, [3]);
+  });
+
   it('numbers notices, and keeps the last 200', () => {
     const state = connected();
     for (let i = 0; i < 250; i += 1) {

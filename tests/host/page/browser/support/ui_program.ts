@@ -39,6 +39,10 @@ export class UiProgram {
     });
   }
 
+  get pid(): number {
+    return this.child.pid as number;
+  }
+
   // As Ctrl+C does.
   async end(): Promise<void> {
     if (this.child.exitCode !== null || this.child.signalCode !== null) {

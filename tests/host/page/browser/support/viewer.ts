@@ -13,8 +13,15 @@ export class Viewer {
     private readonly context: BrowserContext,
   ) {}
 
-  static async open(browser: Browser, address: string, options: BrowserContextOptions = {}): Promise<Viewer> {
+  // `before`: runs in the page before its scripts.
+  static async open(
+    browser: Browser,
+    address: string,
+    options: BrowserContextOptions = {},
+    before: () => void = () => {},
+  ): Promise<Viewer> {
     const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, ...options });
+    await context.addInitScript(before);
     const viewer = new Viewer(await context.newPage(), context);
     viewer.page.on('console', (message) => {
       if (['error', 'warning'].includes(message.type())) viewer.reports.push(message.text());

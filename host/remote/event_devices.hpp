@@ -2,8 +2,6 @@
 
 // The gamepads, joysticks and Wiimotes of this computer, through the kernel's event devices.
 
-#include <poll.h>
-
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -11,12 +9,13 @@
 #include <vector>
 
 #include "host/remote/device_listener.hpp"
+#include "host/remote/device_source.hpp"
 #include "host/remote/event_device.hpp"
 #include "host/transport/descriptor.hpp"
 
 namespace proleg::host {
 
-class EventDevices {
+class EventDevices final : public DeviceSource {
  public:
   struct Folders {
     std::filesystem::path devices = "/dev/input";
@@ -26,12 +25,10 @@ class EventDevices {
   /// listener: must outlive this. The first read() finds the devices. Throws std::system_error without inotify.
   EventDevices(DeviceListener& listener, Folders folders);
 
-  /// Adds what to wait for before read() is called again.
-  void add_descriptors(std::vector<pollfd>& descriptors) const;
-  /// False: the folder of devices does not exist yet, and read() has to look for it from time to time.
-  [[nodiscard]] bool is_watching() const { return watch_ >= 0; }
-  /// Devices that were plugged in or out, and what has moved. Does not wait.
-  void read();
+  void add_descriptors(std::vector<pollfd>& descriptors) const override;
+  /// False: the folder of devices does not exist yet.
+  [[nodiscard]] bool is_watching() const override { return watch_ >= 0; }
+  void read() override;
 
  private:
   struct Plugged {

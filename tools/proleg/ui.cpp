@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/remote/binding_file.hpp"
 #include "host/server/session_requests.hpp"
 #include "host/server/web_server.hpp"
 #include "shared/computer/errors/input_error.hpp"
@@ -20,6 +21,8 @@
 #include "tools/proleg/robot_files.hpp"
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/ui/browser.hpp"
+#include "tools/proleg/ui/remote_session.hpp"
+#include "tools/proleg/ui/robot_document.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
 
 namespace {
@@ -125,6 +128,23 @@ void require_folder(const std::string& folder) {
   }
 }
 
+/// The bindings of gamepads that were saved for the scenario. Throws InputError if the robot has no such parameters.
+host::BindingStore bindings_beside(const UiOptions& options, bool has_file, const sim::Scenario& scenario) {
+  if (!has_file) {
+    return {};
+  }
+  const std::filesystem::path path = host::binding_file_of(options.scenario.file);
+  host::BindingStore store(path);
+  ParameterWords words;
+  words.set_robot(robot_document(scenario, "simulation"));
+  words.set_parameters(parameters_document(scenario, ParameterTable(scenario)));
+  std::size_t number = 0;
+  for (const host::Binding& binding : store.read_bindings()) {
+    check_binding(binding, words, path.string() + ": binding " + std::to_string(++number));
+  }
+  return store;
+}
+
 int serve(UiOptions& options) {
   const bool has_file = !options.scenario.file.empty();
   const std::uint16_t port = parse_port(options.port);
@@ -133,16 +153,19 @@ int serve(UiOptions& options) {
   print_warnings("proleg ui", run.scenario);
   const host::AccessToken token = host::AccessToken::make();
   host::ServerOptions server{token, host::PageFiles(page_folder(options)), std::string("proleg ") + build_id, {}, port};
-  for (const std::string& operation : SimulatedSession::free_operations()) {
-    server.free_operations.insert(operation);
+  for (const std::vector<std::string>& operations :
+       {SimulatedSession::free_operations(), RemoteSession::free_operations()}) {
+    server.free_operations.insert(operations.begin(), operations.end());
   }
   catch_interrupts();
   boost::asio::io_context context{1};
   host::SessionRequests requests;
-  host::WebServer page(context, std::move(server), requests);
+  RemoteSession remote(requests, bindings_beside(options, has_file, run.scenario), RemoteSession::kernel_devices);
+  host::WebServer page(context, std::move(server), remote);
+  const RemoteThread remote_thread(remote, page);
   const SimulatedSession session(run.scenario, &run.losses,
                                  {options.recordings, simulate_command(options, has_file), build_id, options.paused},
-                                 requests, page);
+                                 requests, remote);
   const PageAddress address(page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
             << std::flush;

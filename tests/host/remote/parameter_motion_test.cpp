@@ -2,25 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
+#include "obedient_robot.hpp"
 
 namespace proleg::host {
 namespace {
-
-/// Parameters that nobody else changes.
-class Robot final : public RemoteTarget {
- public:
-  void set(const std::vector<std::string>& /*words*/, std::uint64_t /*gesture*/) override {}
-  void command(RobotCommand /*command*/) override {}
-  void stop(const std::string& /*by*/) override {}
-  [[nodiscard]] std::optional<double> present(const std::string& parameter) const override {
-    const auto found = values.find(parameter);
-    return found == values.end() ? std::nullopt : std::optional(found->second);
-  }
-  [[nodiscard]] bool is_running() const override { return false; }
-
-  std::map<std::string, double> values{{"amplitude", 30}};
-};
 
 ParameterBinding binding(double lower, double upper, double step) {
   return {{"amplitude"}, lower, upper, step, 0, 1, true};
@@ -70,6 +55,7 @@ TEST(LinearMethod, IsFinerInTheMiddleWithACurve) {
 
 class Motion : public testing::Test {
  protected:
+  Motion() { robot.values["amplitude"] = 30; }
   /// The value after a movement; nothing: no change.
   std::optional<double> move(double position, bool begins = false) {
     const auto values = motion.move(position, begins, robot);
@@ -80,7 +66,7 @@ class Motion : public testing::Test {
     return values[0].value;
   }
 
-  Robot robot;
+  ObedientRobot robot;
   ParameterMotion motion{binding(0, 100, 1), ElementKind::axis};
 };
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
+#include "obedient_robot.hpp"
 
 #include "host/remote/binding_file.hpp"
 
@@ -11,36 +11,12 @@ namespace {
 
 constexpr RemoteTime tick{20};
 
-/// A robot that does what it is told, and writes it down.
-class Robot final : public RemoteTarget {
- public:
-  void set(const std::vector<std::string>& words, std::uint64_t gesture) override {
-    sets.push_back(words);
-    gestures.push_back(gesture);
-  }
-  void command(RobotCommand command) override {
-    constexpr const char* names[] = {"run", "pause", "step", "restart"};
-    log += std::string(names[static_cast<std::size_t>(command)]) + ' ';
-  }
-  void stop(const std::string& by) override { log += "stop(" + by + ") "; }
-  [[nodiscard]] std::optional<double> present(const std::string& parameter) const override {
-    const auto found = values.find(parameter);
-    return found == values.end() ? std::nullopt : std::optional(found->second);
-  }
-  [[nodiscard]] bool is_running() const override { return runs; }
-
-  std::string log;
-  std::vector<std::vector<std::string>> sets;
-  std::vector<std::uint64_t> gestures;
-  std::map<std::string, double> values{{"amplitude", 50}, {"frequency", 1}};
-  bool runs = false;
-};
-
 class Remote : public testing::Test {
  protected:
   enum : std::size_t { x, y, south, east };
 
   Remote() {
+    robot.values = {{"amplitude", 50}, {"frequency", 1}};
     remote.set_bindings(bindings(R"(
       {"device": "Pad", "element": "ABS_X", "parameters": ["amplitude"], "lower": 0, "upper": 100, "step": 1},
       {"device": "Pad", "element": "ABS_Y", "parameters": ["frequency"], "lower": 0, "upper": 2, "step": 0.1},
@@ -67,7 +43,7 @@ class Remote : public testing::Test {
   void move(std::size_t element, double position, DeviceId device = 1) { remote.moved({device, element}, position); }
 
   RemoteTime now{1000};
-  Robot robot;
+  ObedientRobot robot;
   RemoteControl remote{robot};
 };
 

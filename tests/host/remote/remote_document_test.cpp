@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "obedient_robot.hpp"
+
 #include "host/remote/binding_file.hpp"
 
 namespace proleg::host {
@@ -9,17 +11,8 @@ namespace {
 
 using nlohmann::json;
 
-class Robot final : public RemoteTarget {
- public:
-  void set(const std::vector<std::string>& /*words*/, std::uint64_t /*gesture*/) override {}
-  void command(RobotCommand /*command*/) override {}
-  void stop(const std::string& /*by*/) override {}
-  [[nodiscard]] std::optional<double> present(const std::string& /*parameter*/) const override { return 50; }
-  [[nodiscard]] bool is_running() const override { return false; }
-};
-
 TEST(RemoteDocument, ListsDevicesBindingsAndProblems) {
-  Robot robot;
+  ObedientRobot robot;
   RemoteControl remote(robot);
   const json binding = json::parse(R"({"device": "Pad", "element": "ABS_X", "parameters": ["amplitude"],
     "method": "linear", "lower": 0, "upper": 100, "step": 1, "dead_zone": 0, "curve": 1, "take_up": true})");
@@ -42,7 +35,7 @@ TEST(RemoteDocument, ListsDevicesBindingsAndProblems) {
 }
 
 TEST(RemoteDocument, HasNoValueOfABindingWithoutItsDevice) {
-  Robot robot;
+  ObedientRobot robot;
   RemoteControl remote(robot);
   remote.set_bindings({{"Pad", "ABS_X", ParameterBinding{{"amplitude"}, 0, 100, 1, 0, 1, true}}});
   EXPECT_EQ(remote_values_document(remote), json::parse(R"({"devices": [], "bindings": [null]})"));

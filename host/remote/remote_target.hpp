@@ -26,7 +26,7 @@ class RemoteTarget {
   virtual void stop(const std::string& by) = 0;
   /// The value that is wanted for a parameter; of its first joint, if the name means several. Nothing without a robot.
   [[nodiscard]] virtual std::optional<double> present(const std::string& parameter) const = 0;
-  /// As the robot has said last.
+  /// Or is about to, as the robot has said last.
   [[nodiscard]] virtual bool is_running() const = 0;
 };
 

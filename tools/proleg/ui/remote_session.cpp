@@ -179,7 +179,8 @@ void RemoteSession::receive(const std::string& document, const json& value) {
   } else if (document == "parameters") {
     words_.set_parameters(value);
   } else {
-    is_running_ = value.value("state", "") == "running";
+    const std::string state = value.value("state", "");
+    is_running_ = state == "running" || state == "starting";
   }
 }
 

@@ -50,7 +50,7 @@ class Ui:
         self.epoch = self.viewer.take_control()
 
     def end(self):
-        self.process.send_signal(signal.SIGINT)
+        self.process.send_signal(signal.SIGTERM)
         expect(self.process.wait(30), 0, "exit status of proleg ui")
 
     def do(self, name, **arguments):

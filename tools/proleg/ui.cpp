@@ -13,14 +13,17 @@
 #include "host/remote/binding_file.hpp"
 #include "host/server/session_requests.hpp"
 #include "host/server/web_server.hpp"
+#include "host/transport/bus_address.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/build_id.hpp"
+#include "tools/proleg/bus_access.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/interrupt.hpp"
 #include "tools/proleg/robot_files.hpp"
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/ui/browser.hpp"
+#include "tools/proleg/ui/bus_session.hpp"
 #include "tools/proleg/ui/remote_session.hpp"
 #include "tools/proleg/ui/robot_document.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
@@ -32,6 +35,7 @@ using namespace proleg::tools;
 
 struct UiOptions {
   ScenarioOptions scenario;
+  BusOptions bus;
   std::string port = "0";
   std::string recordings = ".";
   std::optional<std::string> page;
@@ -145,6 +149,19 @@ host::BindingStore bindings_beside(const UiOptions& options, bool has_file, cons
   return store;
 }
 
+void refuse_what_only_a_simulation_has(const UiOptions& options) {
+  const sim::OverrideWords& overrides = options.scenario.overrides;
+  const std::pair<const char*, bool> given[] = {{"--paused", options.paused},
+                                                {"--friction", overrides.friction.has_value()},
+                                                {"--at", overrides.at.has_value()},
+                                                {"--heading", overrides.heading.has_value()}};
+  for (const auto& [option, is_given] : given) {
+    if (is_given) {
+      throw InputError(option, 0, "an option for simulated worlds", "none of them: the robot is where it is");
+    }
+  }
+}
+
 int serve(UiOptions& options) {
   const bool has_file = !options.scenario.file.empty();
   const std::uint16_t port = parse_port(options.port);
@@ -154,8 +171,14 @@ int serve(UiOptions& options) {
   const host::AccessToken token = host::AccessToken::make();
   host::ServerOptions server{token, host::PageFiles(page_folder(options)), std::string("proleg ") + build_id, {}, port};
   for (const std::vector<std::string>& operations :
-       {SimulatedSession::free_operations(), RemoteSession::free_operations()}) {
+       {options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations(),
+        RemoteSession::free_operations()}) {
     server.free_operations.insert(operations.begin(), operations.end());
+  }
+  std::optional<BusAccess> bus;
+  if (options.bus.bus) {
+    refuse_what_only_a_simulation_has(options);
+    bus.emplace(options.bus);
   }
   catch_interrupts();
   boost::asio::io_context context{1};
@@ -163,9 +186,17 @@ int serve(UiOptions& options) {
   RemoteSession remote(requests, bindings_beside(options, has_file, run.scenario), RemoteSession::kernel_devices);
   host::WebServer page(context, std::move(server), remote);
   const RemoteThread remote_thread(remote, page);
-  const SimulatedSession session(run.scenario, &run.losses,
-                                 {options.recordings, simulate_command(options, has_file), build_id, options.paused},
-                                 requests, remote);
+  std::optional<SimulatedSession> simulated;
+  std::optional<BusSession> driven;
+  if (bus) {
+    driven.emplace(run.scenario, *bus, options.bus.address(), BusSessionOptions{options.recordings, build_id}, requests,
+                   remote);
+  } else {
+    simulated.emplace(
+        run.scenario, &run.losses,
+        SimulatedSessionOptions{options.recordings, simulate_command(options, has_file), build_id, options.paused},
+        requests, remote);
+  }
   const PageAddress address(page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
             << std::flush;
@@ -194,6 +225,10 @@ int main(int argc, char** argv) {
   UiOptions options;
   command_line.add_option("FILE", options.scenario.file, "scenario, a *.simulation.xml file");
   add_override_options(command_line, options.scenario);
+  command_line
+      .add_option("--bus", options.bus.bus,
+                  "show and drive the robot on this bus instead of a simulated one: " + host::bus_address_syntax())
+      .value_name("BUS");
   command_line.add_option("--port", options.port, "TCP port on 127.0.0.1; 0: any free one").shows_default();
   command_line.add_option("--recordings", options.recordings, "folder for recordings")
       .value_name("FOLDER")

@@ -56,10 +56,13 @@ void RemoteSession::run() {
   } catch (const std::system_error& error) {
     remote_.problems_changed({"gamepads cannot be read: " + one_line(error.what())});
   }
-  while (!ends_) {
+  while (true) {
     remote_.advance(now());
     // Who has lost control is told before what a hand does now.
     tasks_.run();
+    if (ends_) {
+      return;
+    }
     if (devices_) {
       devices_->read();
     }

@@ -63,6 +63,7 @@ describe('the panel of remote controls', () => {
     await viewer.button('Saved').waitFor();
     const bindings = JSON.parse(readFileSync(file, 'utf8')).bindings as { upper?: number }[];
     assert.equal(bindings[0]?.upper, 45);
+    await viewer.screenshot('remote');
   });
 
   it('shows the value of the program again after a refusal, and why', async () => {
@@ -77,6 +78,5 @@ describe('the panel of remote controls', () => {
     await field('Upper of ABS_X').waitFor({ state: 'detached' });
     await viewer.button('Remove the binding of BTN_EAST').click();
     await field('What BTN_EAST does').waitFor({ state: 'detached' });
-    await viewer.screenshot('remote');
   });
 });

@@ -7,6 +7,7 @@ host_packages=(
   libunicorn-dev libdw-dev
   libpagmo-dev libga-dev  # the optimiser
   libboost-dev  # Boost.Asio: serial lines, sockets
+  libevdev-dev  # gamepads
   sqlite3  # not for the build: shows the contents of recordings
 )
 

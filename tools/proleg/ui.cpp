@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/remote/binding_file.hpp"
 #include "host/server/session_requests.hpp"
 #include "host/server/web_server.hpp"
 #include "host/transport/bus_address.hpp"
@@ -24,6 +25,8 @@
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/ui/browser.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
+#include "tools/proleg/ui/remote_session.hpp"
+#include "tools/proleg/ui/robot_document.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
 
 namespace {
@@ -116,6 +119,23 @@ void require_folder(const std::string& folder) {
   }
 }
 
+/// The bindings of gamepads that were saved for the scenario. Throws InputError if the robot has no such parameters.
+host::BindingStore bindings_beside(const UiOptions& options, bool has_file, const sim::Scenario& scenario) {
+  if (!has_file) {
+    return {};
+  }
+  const std::filesystem::path path = host::binding_file_of(options.scenario.file);
+  host::BindingStore store(path);
+  ParameterWords words;
+  words.set_robot(robot_document(scenario, "simulation"));
+  words.set_parameters(parameters_document(scenario, ParameterTable(scenario)));
+  std::size_t number = 0;
+  for (const host::Binding& binding : store.read_bindings()) {
+    check_binding(binding, words, path.string() + ": binding " + std::to_string(++number));
+  }
+  return store;
+}
+
 void refuse_what_only_a_simulation_has(const UiOptions& options) {
   const sim::OverrideWords& overrides = options.scenario.overrides;
   const std::pair<const char*, bool> given[] = {{"--paused", options.paused},
@@ -139,9 +159,10 @@ int serve(UiOptions& options) {
       options.page ? std::filesystem::path(*options.page) : built_page("page", "index.html");
   const host::AccessToken token = host::AccessToken::make();
   host::ServerOptions server{token, host::PageFiles(page_folder), std::string("proleg ") + build_id, {}, port};
-  for (const std::string& operation :
-       options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations()) {
-    server.free_operations.insert(operation);
+  for (const std::vector<std::string>& operations :
+       {options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations(),
+        RemoteSession::free_operations()}) {
+    server.free_operations.insert(operations.begin(), operations.end());
   }
   std::optional<BusAccess> bus;
   if (options.bus.bus) {
@@ -151,17 +172,19 @@ int serve(UiOptions& options) {
   catch_interrupts();
   boost::asio::io_context context{1};
   host::SessionRequests requests;
-  host::WebServer page(context, std::move(server), requests);
+  RemoteSession remote(requests, bindings_beside(options, has_file, run.scenario), RemoteSession::kernel_devices);
+  host::WebServer page(context, std::move(server), remote);
+  const RemoteThread remote_thread(remote, page);
   std::optional<SimulatedSession> simulated;
   std::optional<BusSession> driven;
   if (bus) {
     driven.emplace(run.scenario, *bus, options.bus.address(), BusSessionOptions{options.recordings, build_id}, requests,
-                   page);
+                   remote);
   } else {
     simulated.emplace(
         run.scenario, &run.losses,
         SimulatedSessionOptions{options.recordings, simulate_command(options, has_file), build_id, options.paused},
-        requests, page);
+        requests, remote);
   }
   const PageAddress address(page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"

@@ -3,6 +3,7 @@ import type { PageApp } from '../page_app.js';
 import { JointTable } from './joint_table.js';
 import { ParameterPanel } from './parameter_panel.js';
 import { PlotPanel } from './plot_panel.js';
+import { RemoteSection } from './remote_section.js';
 import { RunControls } from './run_controls.js';
 import { ScenePanel } from './scene_panel.js';
 import { StripPanel } from './strip_panel.js';
@@ -21,6 +22,7 @@ export function LivePage({ app }: { app: PageApp }) {
       <div class="live-side">
         <ParameterPanel app={app} />
         <JointTable app={app} />
+        <RemoteSection app={app} />
       </div>
     </div>
   );

@@ -6,6 +6,8 @@ import type {
   InternalValue,
   NoticeMessage,
   Parameter,
+  RemoteDocument,
+  RemoteValues,
   RobotDocument,
   ServerMessage,
   SessionDocument,
@@ -37,6 +39,8 @@ export class PageState {
   readonly session = signal<SessionDocument | null>(null);
   readonly control = signal<ControlDocument | null>(null);
   readonly telemetry = signal<TelemetryDocument | null>(null);
+  readonly remote = signal<RemoteDocument | null>(null);
+  readonly remoteValues = signal<RemoteValues | null>(null);
   readonly notices = signal<readonly Notice[]>([]);
 
   readonly client = computed(() => {
@@ -79,6 +83,12 @@ export class PageState {
           break;
         case 'telemetry':
           this.telemetry.value = message.value;
+          break;
+        case 'remote':
+          this.remote.value = message.value;
+          break;
+        case 'remote_values':
+          this.remoteValues.value = message.value;
           break;
       }
     }

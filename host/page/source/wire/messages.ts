@@ -129,12 +129,49 @@ export interface ControlDocument {
   request: { client: number; name: string; ms: number } | null;
 }
 
+export interface RemoteElement {
+  name: string; // the kernel's: ABS_X, BTN_SOUTH
+  kind: 'axis' | 'button';
+}
+
+// With `action`, or with `parameters` and all that follows.
+export interface RemoteBinding {
+  device: string;
+  element: string;
+  action?: string;
+  parameters?: string[];
+  method?: 'linear';
+  lower?: number;
+  upper?: number;
+  step?: number;
+  dead_zone?: number;
+  curve?: number;
+  take_up?: boolean;
+}
+
+export interface RemoteDocument {
+  devices: { id: number; name: string; elements: RemoteElement[] }[];
+  bindings: RemoteBinding[];
+  problems: string[];
+  learning: boolean;
+  active: boolean; // somebody drives
+  file: string | null;
+  saved: boolean;
+}
+
+export interface RemoteValues {
+  devices: { id: number; positions: number[] }[];
+  bindings: ({ value: number; taken: boolean[] } | null)[];
+}
+
 export interface Documents {
   robot: RobotDocument;
   parameters: (Parameter | InternalValue)[];
   session: SessionDocument;
   control: ControlDocument;
   telemetry: TelemetryDocument;
+  remote: RemoteDocument;
+  remote_values: RemoteValues;
 }
 
 export type DocumentMessage = {
@@ -189,6 +226,11 @@ export interface Operations {
   record: { file: string | null };
   command_line: Record<string, never>;
   ping: Record<string, never>;
+  'remote.bind': { binding: RemoteBinding; place?: number };
+  'remote.unbind': { place: number };
+  'remote.learn': { end?: boolean };
+  'remote.save': Record<string, never>;
+  'remote.watch': Record<string, never>;
 }
 
 export type ClientMessage =

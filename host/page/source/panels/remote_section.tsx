@@ -1,0 +1,34 @@
+// Remote control: closed, one line; its panel is loaded when it is opened.
+import { signal } from '@preact/signals';
+import type { PageApp } from '../page_app.js';
+import { describeRemote } from '../state/remote_bindings.js';
+import { LaterView, loadLater, type Later } from './later.js';
+
+const panel = signal<Later | null>(null);
+const isOpen = signal(false);
+
+export function RemoteSection({ app }: { app: PageApp }) {
+  const remote = app.state.remote.value;
+  const problems = remote?.problems.length ?? 0;
+  return (
+    <details
+      class="panel remote-panel"
+      open={isOpen.value}
+      onToggle={(event) => {
+        isOpen.value = event.currentTarget.open;
+        if (isOpen.value) {
+          panel.value ??= loadLater(import('./remote_panel.js').then((module) => module.RemotePanel));
+        }
+      }}
+    >
+      <summary>
+        <h2>Remote control</h2>
+        <span class="hint" data-testid="remote-status">
+          {describeRemote(remote)}
+        </span>
+        {problems > 0 && <span class="problem">{problems === 1 ? '1 problem' : `${problems} problems`}</span>}
+      </summary>
+      {isOpen.value && panel.value !== null && <LaterView app={app} part={panel.value} wait="Loading …" />}
+    </details>
+  );
+}

@@ -1,0 +1,131 @@
+#include "host/remote/event_devices.hpp"
+
+#include <sys/inotify.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "host/remote/input_capabilities.hpp"
+#include "shared/computer/text/text.hpp"
+
+namespace proleg::host {
+
+EventDevices::EventDevices(DeviceListener& listener, Folders folders)
+    : listener_(listener), folders_(std::move(folders)), inotify_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {
+  if (!inotify_.is_open()) {
+    throw std::system_error(errno, std::generic_category(), "inotify");
+  }
+}
+
+void EventDevices::add_descriptors(std::vector<pollfd>& descriptors) const {
+  descriptors.push_back({inotify_.number(), POLLIN, 0});
+  for (const auto& [name, plugged] : devices_) {
+    descriptors.push_back({plugged.device.descriptor(), POLLIN, 0});
+  }
+}
+
+void EventDevices::read() {
+  bool is_changed = take_changes();
+  if (!is_watching()) {
+    watch();
+    is_changed = is_changed || is_watching();
+  }
+  // A device that has gone may have given its name to another one already.
+  is_changed = read_devices() || is_changed;
+  if (is_changed) {
+    find_devices();
+  }
+}
+
+void EventDevices::watch() {
+  // IN_ATTRIB: udev grants the rights after the device has appeared.
+  watch_ = inotify_add_watch(inotify_.number(), folders_.devices.c_str(),
+                             IN_CREATE | IN_MOVED_TO | IN_DELETE | IN_ATTRIB | IN_ONLYDIR);
+}
+
+bool EventDevices::take_changes() {
+  alignas(inotify_event) std::array<char, 4096> buffer{};
+  bool is_changed = false;
+  while (true) {
+    const ssize_t size = ::read(inotify_.number(), buffer.data(), buffer.size());
+    if (size <= 0) {
+      return is_changed;
+    }
+    is_changed = true;
+    for (const char* place = buffer.data(); place < buffer.data() + size;) {
+      const auto* const event = reinterpret_cast<const inotify_event*>(place);
+      if ((event->mask & IN_IGNORED) != 0) {
+        watch_ = -1;  // the folder has gone with the last device
+      }
+      place += sizeof(inotify_event) + event->len;
+    }
+  }
+}
+
+bool EventDevices::read_devices() {
+  bool has_gone = false;
+  for (auto entry = devices_.begin(); entry != devices_.end();) {
+    Plugged& plugged = entry->second;
+    const auto moved = [&](std::size_t element, double position) { listener_.moved({plugged.id, element}, position); };
+    if (plugged.device.read(moved)) {
+      ++entry;
+      continue;
+    }
+    listener_.unplugged(plugged.id);
+    entry = devices_.erase(entry);
+    has_gone = true;
+  }
+  return has_gone;
+}
+
+void EventDevices::find_devices() {
+  std::vector<std::string> problems;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folders_.devices, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with("event") && !devices_.contains(name)) {
+      std::string problem = try_device(entry->path());
+      if (!problem.empty()) {
+        problems.push_back(std::move(problem));
+      }
+    }
+  }
+  if (problems != problems_) {
+    problems_ = std::move(problems);
+    listener_.problems_changed(problems_);
+  }
+}
+
+std::string EventDevices::try_device(const std::filesystem::path& path) {
+  const std::string file = path.filename().string();
+  const InputCapabilities capabilities = read_capabilities(folders_.classes / file / "device");
+  if (!is_remote_control(capabilities)) {
+    return {};
+  }
+  try {
+    EventDevice device(path);
+    const DeviceId id = ++last_id_;
+    const InputDevice shown{id, one_line(capabilities.name), device.elements(), device.positions()};
+    devices_.emplace(file, Plugged{id, std::move(device)});
+    listener_.plugged(shown);
+    return {};
+  } catch (const std::system_error& error) {
+    const int number = error.code().value();
+    if (number == ENOENT || number == ENODEV) {
+      return {};  // it was pulled out in this moment
+    }
+    const std::string device = path.string() + " (" + shortened(one_line(capabilities.name)) + ")";
+    if (number == EACCES || number == EPERM) {
+      return device +
+             ": found no right to read it, expected one: `sudo usermod -aG input $USER` and a new login, or "
+             "host/udev/70-proleg.rules";
+    }
+    return device + ": " + system_text(number);
+  }
+}
+
+}  // namespace proleg::host

@@ -51,13 +51,16 @@ class NewRobot final : public sim::FileSource {
   std::vector<NewFile> files_ = robot_files("ppppp");
 };
 
+/// The scenario as its files have it: the session applies the settings.
 ScenarioRun prepare(ScenarioOptions& options) {
-  if (!options.file.empty()) {
-    return prepare_run(options);
+  NewRobot new_robot;
+  const bool has_file = !options.file.empty();
+  if (!has_file) {
+    options.file = new_robot.name();
   }
-  NewRobot files;
-  options.file = files.name();
-  return prepare_run(options, files);
+  ScenarioOptions as_file = options;
+  as_file.settings.clear();
+  return has_file ? prepare_run(as_file) : prepare_run(as_file, new_robot);
 }
 
 /// In quotes for a shell, if it needs them.
@@ -137,7 +140,8 @@ int serve(UiOptions& options) {
   catch_interrupts();
   boost::asio::io_context context{1};
   ServedPage page(context, std::move(server), run.scenario, &run.losses,
-                  {options.recordings, simulate_command(options, has_file), build_id, options.paused});
+                  {options.recordings, simulate_command(options, has_file), options.scenario.settings, has_file,
+                   build_id, options.paused});
   const PageAddress address(page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
             << std::flush;

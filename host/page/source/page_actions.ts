@@ -150,6 +150,13 @@ export function addActions(app: PageApp): void {
       run: () => toggleDialog('command_line'),
     },
     {
+      id: 'apply_to_file',
+      title: 'Apply to file: write the values of parameters',
+      group: 'Parameters',
+      keys: ['W'],
+      run: () => toggleDialog('file_diff'),
+    },
+    {
       id: 'palette',
       title: 'Find an action',
       group: 'Page',

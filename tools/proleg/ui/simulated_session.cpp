@@ -12,6 +12,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/measure/measure.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "tools/proleg/ui/actuation_file.hpp"
 #include "tools/proleg/ui/robot_document.hpp"
 
 namespace proleg::tools {
@@ -67,7 +68,7 @@ SimulatedSession::SimulatedSession(const sim::Scenario& scenario, const sim::Los
     : file_(scenario),
       options_(std::move(options)),
       output_(output),
-      live_(scenario, losses),
+      live_(scenario, options_.settings, losses),
       pace_(scenario.kernel.tick_period_us),
       state_(options_.starts_paused ? State::paused : State::running) {
   output_.publish("robot", robot_document(scenario, "simulation"));
@@ -187,14 +188,21 @@ void SimulatedSession::take_operations() {
 }
 
 json SimulatedSession::carry_out(const Operation& operation) {
-  static const std::map<std::string_view, Handler> handlers{
-      {"run", &SimulatedSession::go_on},         {"pause", &SimulatedSession::pause},
-      {"step", &SimulatedSession::step},         {"restart", &SimulatedSession::restart},
-      {"factor", &SimulatedSession::set_factor}, {"set", &SimulatedSession::set},
-      {"undo", &SimulatedSession::undo},         {"redo", &SimulatedSession::redo},
-      {"swap", &SimulatedSession::swap},         {"reset", &SimulatedSession::reset},
-      {"record", &SimulatedSession::record},     {"command_line", &SimulatedSession::tell_command_line},
-      {"ping", &SimulatedSession::ping}};
+  static const std::map<std::string_view, Handler> handlers{{"run", &SimulatedSession::go_on},
+                                                            {"pause", &SimulatedSession::pause},
+                                                            {"step", &SimulatedSession::step},
+                                                            {"restart", &SimulatedSession::restart},
+                                                            {"factor", &SimulatedSession::set_factor},
+                                                            {"set", &SimulatedSession::set},
+                                                            {"undo", &SimulatedSession::undo},
+                                                            {"redo", &SimulatedSession::redo},
+                                                            {"swap", &SimulatedSession::swap},
+                                                            {"reset", &SimulatedSession::reset},
+                                                            {"record", &SimulatedSession::record},
+                                                            {"command_line", &SimulatedSession::tell_command_line},
+                                                            {"file.diff", &SimulatedSession::tell_file_diff},
+                                                            {"file.apply", &SimulatedSession::apply_to_file},
+                                                            {"ping", &SimulatedSession::ping}};
   const auto handler = handlers.find(operation.name);
   if (handler == handlers.end()) {
     std::vector<std::string> names;
@@ -210,6 +218,12 @@ json SimulatedSession::carry_out(const Operation& operation) {
 void SimulatedSession::require_sound() const {
   if (state_ == State::failed) {
     throw std::runtime_error("the simulation has failed; restart it");
+  }
+}
+
+void SimulatedSession::require_file() const {
+  if (!options_.has_file) {
+    throw std::runtime_error("this robot has no file; `proleg new robot --joints 5` writes one like it");
   }
 }
 
@@ -313,6 +327,20 @@ json SimulatedSession::record(const json& arguments) {
   require_sound();
   begin_recording(*file);
   return {{"file", recording_}};
+}
+
+json SimulatedSession::tell_file_diff(const json& /*arguments*/) {
+  require_file();
+  return file_diff_json(live_.file(), live_.file_edits());
+}
+
+json SimulatedSession::apply_to_file(const json& arguments) {
+  require_file();
+  const std::vector<sim::ActuationEdit> edits = chosen_edits(live_.file(), live_.file_edits(), arguments);
+  live_.apply_to_file(edits);
+  output_.notice(NoticeLevel::info,
+                 "wrote " + std::to_string(edits.size()) + " changes into " + one_line(live_.file().actuation_file));
+  return {{"written", edits.size()}};
 }
 
 json SimulatedSession::ping(const json& /*arguments*/) { return json::object(); }

@@ -151,6 +151,22 @@ export interface StoppedMessage {
 export type ServerMessage = WelcomeMessage | DocumentMessage | ResultMessage | NoticeMessage | StoppedMessage;
 
 // Names and arguments of the operations that the page uses.
+// The value of `file.diff`.
+export interface FileDiff {
+  diff: string;
+  entries: FileDiffEntry[];
+}
+
+export interface FileDiffEntry {
+  file: string;
+  line: number; // that changes, or after which the new line comes
+  old: string | null; // null: the line is new
+  new: string;
+  slot: number;
+  name: string;
+  joints: number[];
+}
+
 export interface Operations {
   'control.take': Record<string, never>;
   'control.answer': { grant: boolean };
@@ -167,6 +183,8 @@ export interface Operations {
   reset: { names?: string[] }; // as in `set`, without a value
   record: { file: string | null };
   command_line: Record<string, never>;
+  'file.diff': Record<string, never>;
+  'file.apply': { diff: string; entries: number[] };
   ping: Record<string, never>;
 }
 

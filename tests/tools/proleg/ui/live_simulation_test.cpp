@@ -11,7 +11,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shipped.hpp"
 #include "sim/record/recording.hpp"
-#include "sim/scenario/reader.hpp"
+#include "simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace proleg::tools {
@@ -30,41 +30,17 @@ void advance(LiveSimulation& live, unsigned ticks) {
   }
 }
 
-/// What `proleg simulate` gives for the words of --set after this number of ticks.
-struct Hashes {
-  std::string setpoints;
-  std::string servos;
-  double displacement;
-  bool operator==(const Hashes&) const = default;
-};
-
-Hashes hashes_of(const sim::Simulation& simulation) {
-  return {simulation.setpoint_hash().hex(), simulation.servo_hash().hex(), simulation.plant().displacement()};
-}
-
-Hashes simulated(const sim::Scenario& file, const std::vector<std::string>& words, std::uint32_t ticks) {
-  sim::Scenario scenario = file;
-  for (const std::string& word : words) {
-    sim::apply_setting(scenario, word);
-  }
-  sim::Simulation simulation(scenario);
-  while (simulation.tick() < ticks) {
-    simulation.advance();
-  }
-  return hashes_of(simulation);
-}
-
 ParameterPlace place(const LiveSimulation& live, const std::string& name) { return live.places_of(name).front(); }
 
 TEST(LiveSimulation, WithoutChangesItIsTheScenario) {
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   advance(live, 200);
   EXPECT_EQ(hashes_of(live.simulation()), simulated(uniform(), {}, 200));
   EXPECT_TRUE(live.repeating_words().empty());
 }
 
 TEST(LiveSimulation, AChangeTakesEffectAtTheComingTickAndIsConfirmedThen) {
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   advance(live, 50);
   EXPECT_EQ(live.set({"amplitude:J2=30"}, std::nullopt), 50U);
   const ParameterPlace changed = place(live, "amplitude:J2");
@@ -83,7 +59,7 @@ TEST(LiveSimulation, ARunOfRandomChangesRepeatsFromItsWords) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
-    LiveSimulation live(uniform(), nullptr);
+    LiveSimulation live(uniform(), {}, nullptr);
     const char* joints[] = {"", ":J1", ":J3", ":J5"};
     const auto advance_some = [&] { advance(live, static_cast<unsigned>(random() % 20)); };
     const auto change_something = [&] {
@@ -124,7 +100,7 @@ TEST(LiveSimulation, ARunOfRandomChangesRepeatsFromItsWords) {
 }
 
 TEST(LiveSimulation, UndoTakesAGestureBackAsAWhole) {
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   const ParameterPlace amplitude = place(live, "amplitude:J1");
   const std::int32_t file = live.parameters().at(amplitude).file;
   live.set({"amplitude=10"}, 1);
@@ -144,7 +120,7 @@ TEST(LiveSimulation, UndoTakesAGestureBackAsAWhole) {
 }
 
 TEST(LiveSimulation, AWordThatCannotBeTakenChangesNothing) {
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   const std::uint64_t revision = live.revision();
   for (const std::vector<std::string>& words : {std::vector<std::string>{},
                                                 {"amplitude"},
@@ -162,7 +138,7 @@ TEST(LiveSimulation, AWordThatCannotBeTakenChangesNothing) {
 }
 
 TEST(LiveSimulation, AChangeForOneTickNeverHasMoreValuesThanAModuleKeeps) {
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   std::vector<std::uint32_t> ticks;
   for (int value = 0; value < 30; ++value) {
     ticks.push_back(live.set({"amplitude=" + std::to_string(value), "frequency=0.5", "phase_difference=60",
@@ -181,7 +157,7 @@ TEST(LiveSimulation, AChangeForOneTickNeverHasMoreValuesThanAModuleKeeps) {
 TEST(LiveSimulation, ARecordingHasTheWholeRunWheneverItBegan) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "run.proleg";
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   advance(live, 80);
   live.set({"amplitude=30"}, std::nullopt);
   advance(live, 70);
@@ -206,7 +182,7 @@ TEST(LiveSimulation, ARecordingHasTheWholeRunWheneverItBegan) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{300'000, 300'000};
   setrlimit(RLIMIT_FSIZE, &limit);
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   live.record(path, "simulate", "test", [] { return true; });
   advance(live, 1'500);
   const bool has_failed = live.take_recording_failure().has_value();
@@ -219,7 +195,7 @@ TEST(LiveSimulation, GoesOnWhenTheDiskIsFullAndItsRecordingEnds) {
 }
 
 TEST(LiveSimulation, RestartBeginsWithWhatIsWantedOrWithTheFile) {
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   live.set({"amplitude=30"}, std::nullopt);
   advance(live, 10);
   live.restart(StartValues::wanted);
@@ -232,7 +208,7 @@ TEST(LiveSimulation, RestartBeginsWithWhatIsWantedOrWithTheFile) {
 }
 
 TEST(LiveSimulation, ResetWantsTheFilesValueAgain) {
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   live.set({"amplitude=30", "frequency=0.4"}, std::nullopt);
   advance(live, 10);
   live.reset(live.places_of("amplitude"));

@@ -110,10 +110,10 @@ class Viewers final : public SessionOutput {
 class SimulatedSessionTest : public ::testing::Test {
  protected:
   void open(bool starts_paused) {
-    session_.emplace(
-        scenario_, nullptr,
-        SimulatedSessionOptions{folder_ / "", "proleg simulate uniform.simulation.xml", "test", starts_paused},
-        viewers_);
+    session_.emplace(scenario_, nullptr,
+                     SimulatedSessionOptions{
+                         folder_ / "", "proleg simulate uniform.simulation.xml", {}, false, "test", starts_paused},
+                     viewers_);
   }
   Viewers::Answer ask(const std::string& name, const json& arguments = json::object()) {
     session_->operate(++request_, name, arguments);
@@ -235,6 +235,16 @@ TEST_F(SimulatedSessionTest, ARestartIsAnotherRun) {
   const json after = viewers_.session([](const json& session) { return session["tick"] == 0; });
   EXPECT_NE(before["run"], after["run"]);
   EXPECT_EQ(after["state"], "paused");
+}
+
+TEST_F(SimulatedSessionTest, ARobotWithoutFilesRefusesToWriteThem) {
+  open(true);
+  EXPECT_TRUE(ask("set", {{"words", {"amplitude=30"}}}).is_done);
+  for (const char* operation : {"file.diff", "file.apply"}) {
+    const Viewers::Answer answer = ask(operation);
+    EXPECT_FALSE(answer.is_done);
+    EXPECT_EQ(answer.text, "this robot has no file; `proleg new robot --joints 5` writes one like it");
+  }
 }
 
 }  // namespace

@@ -6,10 +6,9 @@
 #include <string>
 
 #include "host/server/document_store.hpp"
+#include "host/server/notice_level.hpp"
 
 namespace proleg::host {
-
-enum class NoticeLevel { info, warning, error };
 
 /// The message for a viewer.
 [[nodiscard]] std::string notice_message(NoticeLevel level, const std::string& text);

@@ -10,10 +10,9 @@
 #include <string>
 
 #include "host/server/access_token.hpp"
-#include "host/server/notice_log.hpp"
 #include "host/server/page_files.hpp"
 #include "host/server/robot_session.hpp"
-#include "host/server/signal_layout.hpp"
+#include "host/server/session_output.hpp"
 
 namespace proleg::host {
 
@@ -31,7 +30,7 @@ struct ServerOptions {
 
 /// Serves the page of one session on 127.0.0.1 (docs/page-interface.md), in the thread that runs the io_context. The
 /// session is in another one.
-class WebServer {
+class WebServer final : public SessionOutput {
  public:
   /// Listens at once. Throws std::runtime_error with one line, e.g. if the port is in use.
   WebServer(boost::asio::io_context& context, ServerOptions options, RobotSession& session);
@@ -42,24 +41,13 @@ class WebServer {
 
   [[nodiscard]] std::uint16_t port() const;
 
-  // From any thread; none of them waits for a viewer.
-
-  /// A new revision of a document. `control` and `telemetry` are the server's own.
-  void publish(const std::string& name, const nlohmann::json& value);
-  /// From now on rows have this layout; the rows before are forgotten. tick_us: duration of a tick in microseconds.
-  /// The thread that calls add_row() calls this.
-  void set_signals(const SignalLayout& layout, std::uint32_t tick_us);
-  /// The values of all signals of a tick. Ticks of a run follow one another; a run has another number than the one
-  /// before it. Throws std::invalid_argument if the row does not have the layout's size.
-  void add_row(std::uint16_t run, std::uint32_t tick, std::span<const std::int32_t> row);
-  /// The operation had its effect. `value`: what the viewer gets.
-  void answer(RequestId request, const nlohmann::json& value);
-  /// The operation was refused, with one line.
-  void refuse(RequestId request, const std::string& error);
-  /// STOP has had its effect in `confirmed` of `of` modules, `ms` after the request.
-  void stopped(RequestId request, unsigned confirmed, unsigned of, double ms);
-  /// One line for all viewers.
-  void notice(NoticeLevel level, const std::string& text);
+  void publish(const std::string& document, const nlohmann::json& value) override;
+  void set_signals(const SignalLayout& layout, std::uint32_t tick_us) override;
+  void add_row(std::uint16_t run, std::uint32_t tick, std::span<const std::int32_t> row) override;
+  void answer(RequestId request, const nlohmann::json& value) override;
+  void refuse(RequestId request, const std::string& error) override;
+  void stopped(RequestId request, unsigned confirmed, unsigned of, double ms) override;
+  void notice(NoticeLevel level, const std::string& text) override;
 
   /// Ends all connections (close code 1001, then after 1 s by force) and takes no more. Then the server leaves no work
   /// in the io_context.

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "host/server/session_requests.hpp"
+#include "host/server/web_server.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/build_id.hpp"
@@ -18,7 +20,7 @@
 #include "tools/proleg/robot_files.hpp"
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/ui/browser.hpp"
-#include "tools/proleg/ui/served_page.hpp"
+#include "tools/proleg/ui/simulated_session.hpp"
 
 namespace {
 
@@ -139,9 +141,12 @@ int serve(UiOptions& options) {
   }
   catch_interrupts();
   boost::asio::io_context context{1};
-  ServedPage page(context, std::move(server), run.scenario, &run.losses,
-                  {options.recordings, simulate_command(options, has_file), options.scenario.settings, has_file,
-                   build_id, options.paused});
+  host::SessionRequests requests;
+  host::WebServer page(context, std::move(server), requests);
+  const SimulatedSession session(run.scenario, &run.losses,
+                                 {options.recordings, simulate_command(options, has_file), options.scenario.settings,
+                                  has_file, build_id, options.paused},
+                                 requests, page);
   const PageAddress address(page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
             << std::flush;

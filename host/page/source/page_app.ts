@@ -7,6 +7,7 @@ import { PageState } from './state/page_state.js';
 import { SetQueue } from './state/set_queue.js';
 import { SignalSelection } from './state/signal_selection.js';
 import { StopControl } from './state/stop_report.js';
+import { TimeMarks } from './state/time_marks.js';
 import { TimeView } from './state/time_view.js';
 import type { FromConnectionWorker, ToConnectionWorker } from './wire/connection_worker.js';
 import { decodeTelemetry } from './wire/telemetry_message.js';
@@ -17,6 +18,7 @@ export class PageApp {
   readonly state = new PageState();
   readonly history = new TelemetryHistory();
   readonly time = new TimeView();
+  readonly marks = new TimeMarks(this.time);
   readonly selection = new SignalSelection();
   readonly actions = new ActionList();
   readonly operations: OperationQueue;
@@ -82,6 +84,7 @@ export class PageApp {
     if (run !== undefined && this.sessionRun !== null && run !== this.sessionRun && run !== this.history.run) {
       this.history.clear();
       this.time.goLive();
+      this.marks.clear();
     }
     this.sessionRun = run ?? null;
   }
@@ -112,6 +115,7 @@ export class PageApp {
     }
     if (telemetry.run !== this.history.run) {
       this.time.goLive();
+      this.marks.clear();
     }
     this.history.append(telemetry, layout);
   }

@@ -9,6 +9,7 @@
 #include "shared/computer/output/output_check.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/reader.hpp"
+#include "tools/proleg/ui/operation_arguments.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -44,24 +45,19 @@ json file_diff_json(const sim::Scenario& file, std::span<const sim::ActuationEdi
 
 std::vector<sim::ActuationEdit> chosen_edits(const sim::Scenario& file, std::span<const sim::ActuationEdit> edits,
                                              const json& arguments) {
-  std::string diff;
-  std::vector<std::size_t> numbers;
-  try {
-    diff = arguments.at("diff").get<std::string>();
-    numbers = arguments.at("entries").get<std::vector<std::size_t>>();
-  } catch (const json::exception&) {
-    throw InputError("file.apply", 0, shortened(arguments.dump()), R"({"diff": "...", "entries": [0, ...]})");
-  }
-  if (diff != file_diff_json(file, edits)["diff"]) {
+  const auto diff = argument<std::string>(arguments, "diff", "the name of a list of differences");
+  const auto numbers = argument<std::vector<std::int64_t>>(arguments, "entries", "positions in the list");
+  if (diff != file_diff_json(file, edits)["diff"].get<std::string>()) {
     throw InputError("file.apply", 0, "an older list of differences", "the present one; ask for file.diff again");
   }
   std::vector<bool> is_chosen(edits.size());
-  for (const std::size_t number : numbers) {
-    if (number >= edits.size() || is_chosen[number]) {
+  for (const std::int64_t number : numbers.value_or(std::vector<std::int64_t>{})) {
+    const auto position = static_cast<std::size_t>(number);
+    if (number < 0 || position >= edits.size() || is_chosen[position]) {
       throw InputError("entries", 0, std::to_string(number),
-                       "numbers below " + std::to_string(edits.size()) + ", each once");
+                       "numbers from 0 on, below " + std::to_string(edits.size()) + ", each once");
     }
-    is_chosen[number] = true;
+    is_chosen[position] = true;
   }
   std::vector<sim::ActuationEdit> chosen;
   for (std::size_t i = 0; i < edits.size(); ++i) {

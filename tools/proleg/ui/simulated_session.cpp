@@ -13,7 +13,9 @@
 #include "sim/measure/measure.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "tools/proleg/ui/actuation_file.hpp"
+#include "tools/proleg/ui/operation_arguments.hpp"
 #include "tools/proleg/ui/robot_document.hpp"
+#include "tools/proleg/ui/telemetry_row.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -23,20 +25,6 @@ using nlohmann::json;
 constexpr double slowest_factor = 0.1;
 constexpr double fastest_factor = 100.0;
 constexpr std::uint32_t most_steps = 1'000;
-
-/// The member of an object, or nothing. Throws InputError if it has another type.
-template <typename Value>
-std::optional<Value> member(const json& arguments, const char* name, const char* expected) {
-  const auto found = arguments.find(name);
-  if (found == arguments.end() || found->is_null()) {
-    return std::nullopt;
-  }
-  try {
-    return found->get<Value>();
-  } catch (const json::exception&) {
-    throw InputError(name, 0, shortened(found->dump()), expected);
-  }
-}
 
 json measures_json(const LiveSimulation& live) {
   json values = json::object();
@@ -57,61 +45,37 @@ json text_or_null(const std::string& text) { return text.empty() ? json() : json
 
 }  // namespace
 
-struct SimulatedSession::Operation {
-  std::uint64_t request;
-  std::string name;
-  json arguments;
-};
-
 SimulatedSession::SimulatedSession(const sim::Scenario& scenario, const sim::Losses* losses,
-                                   SimulatedSessionOptions options, SessionOutput& output)
+                                   SimulatedSessionOptions options, host::SessionRequests& requests,
+                                   host::SessionOutput& output)
     : file_(scenario),
       options_(std::move(options)),
+      requests_(requests),
       output_(output),
       live_(scenario, options_.settings, losses),
       pace_(scenario.kernel.tick_period_us),
       state_(options_.starts_paused ? State::paused : State::running) {
   output_.publish("robot", robot_document(scenario, "simulation"));
-  output_.set_signals(signals_of(scenario), scenario.kernel.tick_period_us);
+  output_.set_signals(host::SignalLayout(signals_of(scenario)), scenario.kernel.tick_period_us);
   publish_changes();
   publish_session(Clock::now());
   thread_ = std::thread([this] { run(); });
 }
 
 SimulatedSession::~SimulatedSession() {
-  {
-    const std::lock_guard lock(mutex_);
-    ends_ = true;
-    has_requests_ = true;
-  }
-  wake_.notify_one();
+  requests_.end();
   thread_.join();
-}
-
-void SimulatedSession::operate(std::uint64_t request, const std::string& name, const json& arguments) {
-  const std::lock_guard lock(mutex_);
-  operations_.push_back({request, name, arguments});
-  has_requests_ = true;
-  wake_.notify_one();
-}
-
-void SimulatedSession::stop(std::uint64_t request, const std::string& by) {
-  const std::lock_guard lock(mutex_);
-  stops_.push_back({request, by, Clock::now()});
-  has_requests_ = true;
-  wake_.notify_one();
 }
 
 void SimulatedSession::run() {
   pace_.begin(Clock::now());
   while (true) {
     wait();
-    {
-      const std::lock_guard lock(mutex_);
-      if (ends_) {
-        break;
-      }
+    if (requests_.ends()) {
+      break;
     }
+    // A simulation goes on without a driver.
+    static_cast<void>(requests_.take_holder());
     take_stops();
     take_operations();
     const Clock::time_point now = Clock::now();
@@ -126,36 +90,26 @@ void SimulatedSession::run() {
   try {
     end_recording();
   } catch (const std::exception& error) {
-    output_.notice(NoticeLevel::error, one_line(error.what()));
+    output_.notice(host::NoticeLevel::error, one_line(error.what()));
   }
 }
 
 /// Until there is something to do.
 void SimulatedSession::wait() {
-  if (has_requests_ || is_session_new_ || steps_left_ > 0 || (may_tick() && Clock::now() >= pace_.due())) {
+  if (is_session_new_ || steps_left_ > 0 || (may_tick() && Clock::now() >= pace_.due())) {
     return;
   }
-  std::unique_lock lock(mutex_);
-  const auto is_asked = [this] { return has_requests_.load(); };
   if (may_tick()) {
-    wake_.wait_until(lock, pace_.due(), is_asked);
+    requests_.wait_until(pace_.due());
   } else {
-    wake_.wait(lock, is_asked);
+    requests_.wait();
   }
 }
 
-/// What was asked for before a STOP has no effect after it.
 void SimulatedSession::take_stops() {
-  std::deque<Stop> stops;
-  std::deque<Operation> outdated;
-  {
-    const std::lock_guard lock(mutex_);
-    stops.swap(stops_);
-    if (!stops.empty()) {
-      outdated.swap(operations_);
-    }
-  }
-  for (const Stop& stop : stops) {
+  std::deque<host::OperationRequest> outdated;
+  const std::vector<host::SessionRequests::Stop> stops = requests_.take_stops(outdated);
+  for (const host::SessionRequests::Stop& stop : stops) {
     steps_left_ = 0;
     if (state_ != State::failed) {
       stopped_by_ = stop.by;
@@ -164,30 +118,24 @@ void SimulatedSession::take_stops() {
     const auto joints = static_cast<unsigned>(file_.robot.joints.size());
     output_.stopped(stop.request, joints, joints,
                     std::chrono::duration<double, std::milli>(Clock::now() - stop.since).count());
-    output_.notice(NoticeLevel::warning, "stopped by " + stop.by);
+    output_.notice(host::NoticeLevel::warning, "stopped by " + stop.by);
   }
-  for (const Operation& operation : outdated) {
-    output_.refused(operation.request, "STOP came first");
+  for (const host::OperationRequest& operation : outdated) {
+    output_.refuse(operation.request, "STOP came first");
   }
 }
 
 void SimulatedSession::take_operations() {
-  std::deque<Operation> operations;
-  {
-    const std::lock_guard lock(mutex_);
-    operations.swap(operations_);
-    has_requests_ = ends_ || !stops_.empty();
-  }
-  for (const Operation& operation : operations) {
+  while (const std::optional<host::OperationRequest> operation = requests_.take_operation()) {
     try {
-      output_.done(operation.request, carry_out(operation));
+      output_.answer(operation->request, carry_out(*operation));
     } catch (const std::exception& error) {
-      output_.refused(operation.request, one_line(error.what()));
+      output_.refuse(operation->request, one_line(error.what()));
     }
   }
 }
 
-json SimulatedSession::carry_out(const Operation& operation) {
+json SimulatedSession::carry_out(const host::OperationRequest& operation) {
   static const std::map<std::string_view, Handler> handlers{{"run", &SimulatedSession::go_on},
                                                             {"pause", &SimulatedSession::pause},
                                                             {"step", &SimulatedSession::step},
@@ -243,7 +191,7 @@ json SimulatedSession::pause(const json& /*arguments*/) {
 
 json SimulatedSession::step(const json& arguments) {
   require_sound();
-  const auto ticks = member<std::uint32_t>(arguments, "ticks", "a number of ticks").value_or(1);
+  const auto ticks = argument<std::uint32_t>(arguments, "ticks", "a number of ticks").value_or(1);
   if (ticks < 1 || ticks > most_steps) {
     throw InputError("ticks", 0, std::to_string(ticks), "1 to " + std::to_string(most_steps));
   }
@@ -253,7 +201,7 @@ json SimulatedSession::step(const json& arguments) {
 }
 
 json SimulatedSession::restart(const json& arguments) {
-  const auto values = member<std::string>(arguments, "parameters", "\"wanted\" or \"file\"").value_or("wanted");
+  const auto values = argument<std::string>(arguments, "parameters", "\"wanted\" or \"file\"").value_or("wanted");
   if (values != "wanted" && values != "file") {
     throw InputError("parameters", 0, in_quotes(shortened(values)), "\"wanted\" or \"file\"");
   }
@@ -268,7 +216,7 @@ json SimulatedSession::restart(const json& arguments) {
 }
 
 json SimulatedSession::set_factor(const json& arguments) {
-  const auto factor = member<double>(arguments, "value", "a number");
+  const auto factor = argument<double>(arguments, "value", "a number");
   if (!factor || !(*factor == 0.0 || (*factor >= slowest_factor && *factor <= fastest_factor))) {
     throw InputError("factor", 0, factor ? exact_text(*factor) : "no value", "0.1 to 100, or 0: as fast as it goes");
   }
@@ -278,8 +226,8 @@ json SimulatedSession::set_factor(const json& arguments) {
 }
 
 json SimulatedSession::set(const json& arguments) {
-  const auto words = member<std::vector<std::string>>(arguments, "words", "texts such as \"amplitude:J2=30\"");
-  const auto gesture = member<std::uint64_t>(arguments, "gesture", "a whole number");
+  const auto words = argument<std::vector<std::string>>(arguments, "words", "texts such as \"amplitude:J2=30\"");
+  const auto gesture = argument<std::uint64_t>(arguments, "gesture", "a whole number");
   return {{"tick", live_.set(words.value_or(std::vector<std::string>{}), gesture)}};
 }
 
@@ -303,7 +251,7 @@ json SimulatedSession::swap(const json& /*arguments*/) {
 }
 
 json SimulatedSession::reset(const json& arguments) {
-  const auto names = member<std::vector<std::string>>(arguments, "names", "names such as \"1.amplitude:J2\"");
+  const auto names = argument<std::vector<std::string>>(arguments, "names", "names such as \"1.amplitude:J2\"");
   if (!names) {
     live_.reset(live_.parameters().places());
     return json::object();
@@ -318,7 +266,7 @@ json SimulatedSession::reset(const json& arguments) {
 }
 
 json SimulatedSession::record(const json& arguments) {
-  const auto file = member<std::string>(arguments, "file", "a file name");
+  const auto file = argument<std::string>(arguments, "file", "a file name");
   is_session_new_ = true;
   if (!file) {
     end_recording();
@@ -338,7 +286,7 @@ json SimulatedSession::apply_to_file(const json& arguments) {
   require_file();
   const std::vector<sim::ActuationEdit> edits = chosen_edits(live_.file(), live_.file_edits(), arguments);
   live_.apply_to_file(edits);
-  output_.notice(NoticeLevel::info,
+  output_.notice(host::NoticeLevel::info,
                  "wrote " + std::to_string(edits.size()) + " changes into " + one_line(live_.file().actuation_file));
   return {{"written", edits.size()}};
 }
@@ -361,11 +309,11 @@ void SimulatedSession::tick() {
     failure_ = one_line(error.what());
     steps_left_ = 0;
     set_state(State::failed);
-    output_.notice(NoticeLevel::error, failure_);
+    output_.notice(host::NoticeLevel::error, failure_);
     return;
   }
   if (const std::optional<std::string> failure = live_.take_recording_failure()) {
-    output_.notice(NoticeLevel::error, "the recording has ended: " + one_line(*failure));
+    output_.notice(host::NoticeLevel::error, "the recording has ended: " + one_line(*failure));
     recording_.clear();
     is_session_new_ = true;
   }
@@ -385,7 +333,7 @@ void SimulatedSession::begin_recording(const std::string& file) {
   if (std::filesystem::exists(path)) {
     throw InputError(path.string(), 0, "a file that exists", "a new name");
   }
-  if (!live_.record(path, "simulate", options_.build_id, [this] { return !wants_stop(); })) {
+  if (!live_.record(path, "simulate", options_.build_id, [this] { return !requests_.interrupts(); })) {
     std::error_code ignored;
     std::filesystem::remove(path, ignored);
     throw std::runtime_error("the recording was given up: STOP");
@@ -400,12 +348,7 @@ void SimulatedSession::end_recording() {
   }
   const std::string path = std::exchange(recording_, {});
   live_.end_recording();
-  output_.notice(NoticeLevel::info, "recorded " + exact_text(live_.simulation().time_s()) + " s in " + path);
-}
-
-bool SimulatedSession::wants_stop() {
-  const std::lock_guard lock(mutex_);
-  return ends_ || !stops_.empty();
+  output_.notice(host::NoticeLevel::info, "recorded " + exact_text(live_.simulation().time_s()) + " s in " + path);
 }
 
 void SimulatedSession::set_state(State state) {

@@ -2,25 +2,21 @@
 
 // A simulated robot that viewers watch and change. It runs in a thread of its own.
 
-#include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
-#include <functional>
-#include <mutex>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "host/server/session_output.hpp"
+#include "host/server/session_requests.hpp"
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/ui/live_simulation.hpp"
 #include "tools/proleg/ui/run_pace.hpp"
-#include "tools/proleg/ui/session_output.hpp"
 
 namespace proleg::tools {
 
@@ -35,31 +31,21 @@ struct SimulatedSessionOptions {
 
 class SimulatedSession {
  public:
-  /// scenario: as its files have it. scenario, losses, output: must outlive the session. Throws as LiveSimulation does.
+  /// Does what `requests` has, and tells it `output`. scenario: as its files have it. scenario, losses, requests,
+  /// output: must outlive the session. Throws as LiveSimulation does.
   SimulatedSession(const sim::Scenario& scenario, const sim::Losses* losses, SimulatedSessionOptions options,
-                   SessionOutput& output);
+                   host::SessionRequests& requests, host::SessionOutput& output);
   /// Ends the thread, and a recording.
   ~SimulatedSession();
   SimulatedSession(const SimulatedSession&) = delete;
   SimulatedSession& operator=(const SimulatedSession&) = delete;
 
-  /// An operation of docs/page-interface.md. arguments: an object. From any thread; the answer goes to the output.
-  void operate(std::uint64_t request, const std::string& name, const nlohmann::json& arguments);
-  /// The simulation stands still after the tick that is computed now. From any thread.
-  void stop(std::uint64_t request, const std::string& by);
   /// Operations that anybody may use.
   [[nodiscard]] static std::vector<std::string> free_operations() { return {"command_line", "file.diff", "ping"}; }
 
  private:
   using Clock = std::chrono::steady_clock;
   enum class State : std::uint8_t { paused, running, stopped, failed };
-
-  struct Operation;
-  struct Stop {
-    std::uint64_t request;
-    std::string by;
-    Clock::time_point since;
-  };
 
   static constexpr std::chrono::milliseconds publish_period{500};
 
@@ -68,11 +54,10 @@ class SimulatedSession {
   void take_stops();
   void take_operations();
   /// Returns the value of the answer.
-  [[nodiscard]] nlohmann::json carry_out(const Operation& operation);
+  [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation);
   void tick();
   void begin_recording(const std::string& file);
   void end_recording();
-  [[nodiscard]] bool wants_stop();
   [[nodiscard]] bool may_tick() const { return state_ == State::running || steps_left_ > 0; }
   void set_state(State state);
   void publish_session(Clock::time_point now);
@@ -100,7 +85,8 @@ class SimulatedSession {
 
   const sim::Scenario& file_;
   SimulatedSessionOptions options_;
-  SessionOutput& output_;
+  host::SessionRequests& requests_;
+  host::SessionOutput& output_;
 
   // Of the thread.
   LiveSimulation live_;
@@ -116,12 +102,6 @@ class SimulatedSession {
   bool is_session_new_ = true;
   Clock::time_point publish_at_{};
 
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  std::deque<Operation> operations_;
-  std::deque<Stop> stops_;
-  std::atomic<bool> has_requests_ = false;
-  bool ends_ = false;
   std::thread thread_;  ///< the last to begin
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "sim/record/internal_values.hpp"
 #include "sim/scenario/names.hpp"
@@ -12,16 +11,10 @@
 namespace proleg::tools {
 namespace {
 
-std::vector<unsigned> first_numbers(std::size_t count) {
-  std::vector<unsigned> numbers(count);
-  std::iota(numbers.begin(), numbers.end(), 0U);
-  return numbers;
-}
-
 /// The nearest raw value; beyond the range of int32 the last one that is a value.
 std::int32_t rounded(double value) {
   if (!std::isfinite(value)) {
-    return no_value;
+    return host::no_value;
   }
   constexpr double greatest = std::numeric_limits<std::int32_t>::max();
   return static_cast<std::int32_t>(std::lround(std::clamp(value, -greatest, greatest)));
@@ -37,27 +30,23 @@ double value_of_step(Unit unit) {
   return static_cast<double>(scale.denominator) / static_cast<double>(scale.numerator);
 }
 
-std::vector<Signal> signals_of(const sim::Scenario& scenario) {
-  using Of = Signal::Of;
-  const std::vector<unsigned> joints = first_numbers(scenario.robot.joints.size());
-  const std::vector<unsigned> links = first_numbers(scenario.robot.links.size());
-  std::vector<Signal> signals{{"setpoint", "deg", value_of_step(Unit::degree), joints, Of::joint},
-                              {"angle", "deg", value_of_step(Unit::degree), joints, Of::joint},
-                              {"pulse", "us", 1.0 / 12.0, joints, Of::joint},
-                              {"current", "mA", 1.0, joints, Of::joint},
-                              {"torque", "mNm", 1.0, joints, Of::joint},
-                              {"contact", "", 1.0, links, Of::link},
-                              {"force", "mN", 1.0, links, Of::link},
-                              {"head", "", 1.0, first_numbers(7), Of::robot}};
+std::vector<host::Signal> signals_of(const sim::Scenario& scenario) {
+  using Of = host::SignalOf;
+  const std::size_t joints = scenario.robot.joints.size();
+  const std::size_t links = scenario.robot.links.size();
+  std::vector<host::Signal> signals{{"setpoint", "deg", value_of_step(Unit::degree), joints, Of::joint},
+                                    {"angle", "deg", value_of_step(Unit::degree), joints, Of::joint},
+                                    {"pulse", "us", 1.0 / 12.0, joints, Of::joint},
+                                    {"current", "mA", 1.0, joints, Of::joint},
+                                    {"torque", "mNm", 1.0, joints, Of::joint},
+                                    {"contact", "", 1.0, links, Of::link},
+                                    {"force", "mN", 1.0, links, Of::link},
+                                    {"head", "", 1.0, 7, Of::robot}};
   for (const unsigned slot : sim::used_slots(scenario)) {
-    const Declaration& declaration = scenario.kernel.slots[slot].algorithm->declaration();
-    std::vector<unsigned> group;
-    for (const unsigned joint : scenario.kernel.slots[slot].group) {
-      group.push_back(joint);
-    }
-    for (const InternalValue& value : declaration.internal_values) {
+    const Slot& used = scenario.kernel.slots[slot];
+    for (const InternalValue& value : used.algorithm->declaration().internal_values) {
       signals.push_back({std::to_string(slot + 1) + '/' + std::string(value.name), sim::shown_unit(value.unit),
-                         value_of_step(value.unit), group, Of::joint});
+                         value_of_step(value.unit), used.group.size(), Of::joint});
     }
   }
   return signals;

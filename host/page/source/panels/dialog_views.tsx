@@ -8,6 +8,7 @@ import { copyIcon } from './icons.js';
 import { LaterView, loadLater } from './later_view.js';
 
 const fileDiff = loadLater(() => import('./file_diff_dialog.js').then((module) => module.FileDiffDialog));
+const valueTable = loadLater(() => import('./value_table_dialog.js').then((module) => module.ValueTableDialog));
 
 const keyNames: Record<string, string> = {
   Escape: 'Esc',
@@ -148,6 +149,8 @@ export function DialogView({ app }: { app: PageApp }) {
       return <CommandLine app={app} />;
     case 'file_diff':
       return <LaterView app={app} part={fileDiff()} wait="" />;
+    case 'value_table':
+      return <LaterView app={app} part={valueTable()} wait="" />;
     case 'none':
       return null;
   }

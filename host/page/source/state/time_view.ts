@@ -49,12 +49,16 @@ export class TimeView {
     this.detach({ from: around - (around - from) * factor, to: around + (to - around) * factor });
   }
 
-  // Moves the cursor, and the window with it if it would leave the window.
   moveCursor(ticks: number, newest: number): void {
+    this.showTick(this.shownTick(newest) + ticks, newest);
+  }
+
+  // Puts the cursor there in the frozen view, and moves the window if it does not have the tick.
+  showTick(wanted: number, newest: number): void {
     if (this.isLive.value) {
       this.freeze(newest);
     }
-    const tick = Math.max(0, Math.min(newest, this.shownTick(newest) + ticks));
+    const tick = Math.max(0, Math.min(newest, wanted));
     this.cursor.value = tick;
     const { from, to } = this.range(newest);
     const shift = tick < from ? tick - from : tick > to ? tick - to : 0;

@@ -17,7 +17,7 @@ namespace {
 using nlohmann::json;
 
 /// What the session has told its viewers.
-class Viewers final : public SessionOutput {
+class Viewers final : public host::SessionOutput {
  public:
   struct Answer {
     bool is_done;
@@ -44,10 +44,8 @@ class Viewers final : public SessionOutput {
   void publish(const std::string& document, const json& value) override {
     change([&] { documents_[document] = value; });
   }
-  void set_signals(const std::vector<Signal>& signals, std::uint32_t /*tick_us*/) override {
-    for (const Signal& signal : signals) {
-      row_size_ += signal.places.size();
-    }
+  void set_signals(const host::SignalLayout& layout, std::uint32_t /*tick_us*/) override {
+    row_size_ = layout.row_size();
   }
   void add_row(std::uint16_t run, std::uint32_t tick, std::span<const std::int32_t> row) override {
     change([&] {
@@ -57,16 +55,16 @@ class Viewers final : public SessionOutput {
       ++rows_;
     });
   }
-  void done(std::uint64_t request, const json& value) override {
+  void answer(std::uint64_t request, const json& value) override {
     change([&] { answers_[request] = {true, value.dump()}; });
   }
-  void refused(std::uint64_t request, const std::string& why) override {
+  void refuse(std::uint64_t request, const std::string& why) override {
     change([&] { answers_[request] = {false, why}; });
   }
   void stopped(std::uint64_t request, unsigned confirmed, unsigned joints, double /*milliseconds*/) override {
     change([&] { answers_[request] = {true, std::to_string(confirmed) + " of " + std::to_string(joints)}; });
   }
-  void notice(NoticeLevel /*level*/, const std::string& text) override {
+  void notice(host::NoticeLevel /*level*/, const std::string& text) override {
     change([&] { notices_ += text + '\n'; });
   }
 
@@ -110,17 +108,19 @@ class Viewers final : public SessionOutput {
 class SimulatedSessionTest : public ::testing::Test {
  protected:
   void open(bool starts_paused) {
+    session_.reset();
+    requests_.emplace();
     session_.emplace(scenario_, nullptr,
                      SimulatedSessionOptions{
                          folder_ / "", "proleg simulate uniform.simulation.xml", {}, false, "test", starts_paused},
-                     viewers_);
+                     *requests_, viewers_);
   }
   Viewers::Answer ask(const std::string& name, const json& arguments = json::object()) {
-    session_->operate(++request_, name, arguments);
+    requests_->operate({++request_, name, arguments, 1, "a test"});
     return viewers_.answer(request_);
   }
   Viewers::Answer stop() {
-    session_->stop(++request_, "a test");
+    requests_->stop({++request_, "a test"});
     return viewers_.answer(request_);
   }
 
@@ -128,6 +128,7 @@ class SimulatedSessionTest : public ::testing::Test {
   TemporaryFolder folder_;
   Viewers viewers_;
   std::uint64_t request_ = 0;
+  std::optional<host::SessionRequests> requests_;
   std::optional<SimulatedSession> session_;
 };
 
@@ -163,7 +164,7 @@ TEST_F(SimulatedSessionTest, StopHoldsFromEveryState) {
 TEST_F(SimulatedSessionTest, WhatWasAskedForBeforeAStopHasNoEffectAfterIt) {
   open(true);
   for (int round = 0; round < 50; ++round) {
-    session_->operate(++request_, "run", json::object());
+    requests_->operate({++request_, "run", json::object(), 1, "a test"});
     const std::uint64_t run = request_;
     stop();
     viewers_.answer(run);

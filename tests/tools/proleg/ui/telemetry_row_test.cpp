@@ -11,18 +11,18 @@ namespace proleg::tools {
 namespace {
 
 /// The values of a signal in a row, in its unit.
-std::vector<double> values(const std::vector<Signal>& signals, const std::vector<std::int32_t>& row,
+std::vector<double> values(const std::vector<host::Signal>& signals, const std::vector<std::int32_t>& row,
                            const std::string& name) {
   std::size_t begin = 0;
-  for (const Signal& signal : signals) {
+  for (const host::Signal& signal : signals) {
     if (signal.name == name) {
       std::vector<double> found;
-      for (std::size_t i = 0; i < signal.places.size(); ++i) {
+      for (std::size_t i = 0; i < signal.count; ++i) {
         found.push_back(row.at(begin + i) * signal.scale);
       }
       return found;
     }
-    begin += signal.places.size();
+    begin += signal.count;
   }
   throw std::runtime_error("no signal " + name);
 }
@@ -35,12 +35,12 @@ TEST(TelemetryRow, HasTheValuesOfTheRecordingInTheUnitsOfTheSignals) {
     for (int tick = 0; tick < 77; ++tick) {
       simulation.advance();
     }
-    const std::vector<Signal> signals = signals_of(scenario);
+    const std::vector<host::Signal> signals = signals_of(scenario);
     std::vector<std::int32_t> row;
     fill_row(simulation.sample(), scenario, row);
     std::size_t size = 0;
-    for (const Signal& signal : signals) {
-      size += signal.places.size();
+    for (const host::Signal& signal : signals) {
+      size += signal.count;
     }
     ASSERT_EQ(row.size(), size);
     const sim::Plant& plant = simulation.plant();
@@ -67,9 +67,14 @@ TEST(TelemetryRow, HasTheValuesOfTheRecordingInTheUnitsOfTheSignals) {
     for (unsigned value = 0; value < declaration.internal_values.size(); ++value) {
       const std::string signal = "1/" + std::string(declaration.internal_values[value].name);
       const std::vector<double> shown = values(signals, row, signal);
-      const auto found = std::ranges::find(signals, signal, &Signal::name);
-      for (std::size_t i = 0; i < found->places.size(); ++i) {
-        const std::int32_t raw = simulation.chain().kernel(found->places[i]).internal_value(0, found->places[i], value);
+      const auto found = std::ranges::find(signals, signal, &host::Signal::name);
+      std::vector<unsigned> group;
+      for (const unsigned joint : scenario.kernel.slots[0].group) {
+        group.push_back(joint);
+      }
+      ASSERT_EQ(found->count, group.size());
+      for (std::size_t i = 0; i < group.size(); ++i) {
+        const std::int32_t raw = simulation.chain().kernel(group[i]).internal_value(0, group[i], value);
         EXPECT_DOUBLE_EQ(shown[i], raw * found->scale);
       }
     }

@@ -34,6 +34,7 @@ export function drawTimeMarks(context: CanvasRenderingContext2D, marks: TimeMark
     for (const end of [from, to]) if (end !== null && isVisible(end)) drawLine(end);
   }
   context.font = '600 11px system-ui, sans-serif';
+  context.textAlign = 'left';
   context.textBaseline = 'top';
   for (const { tick, name } of marks.markers.peek()) {
     if (isVisible(tick)) {

@@ -248,7 +248,9 @@ Scenario with_actuation_text(const Scenario& scenario, const std::string& text) 
   for (const SourceFile& source : scenario.sources) {
     files.add(source.path, source.path == scenario.actuation_file ? text : source.text);
   }
-  return read_scenario(scenario.path, files, scenario.overrides);
+  Scenario again = read_scenario(scenario.path, files, scenario.overrides);
+  again.moves = scenario.moves;  // of the command line, as the overrides
+  return again;
 }
 
 }  // namespace proleg::sim

@@ -14,6 +14,7 @@
 #include "host/server/web_server.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/scenario/robot_move.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/interrupt.hpp"
@@ -62,7 +63,12 @@ ScenarioRun prepare(ScenarioOptions& options) {
   }
   ScenarioOptions as_file = options;
   as_file.settings.clear();
-  return has_file ? prepare_run(as_file) : prepare_run(as_file, new_robot);
+  as_file.moves.clear();
+  ScenarioRun run = has_file ? prepare_run(as_file) : prepare_run(as_file, new_robot);
+  for (const std::string& move : options.moves) {
+    sim::add_move(run.scenario, move);  // also after the duration in the file: the run has no end
+  }
+  return run;
 }
 
 /// In quotes for a shell, if it needs them.
@@ -95,6 +101,9 @@ std::string simulate_command(const UiOptions& options, bool has_file) {
   }
   for (const std::string& word : scenario.settings) {
     command += " --set " + shell_word(word);
+  }
+  for (const std::string& word : scenario.moves) {
+    command += " --move " + shell_word(word);
   }
   return command;
 }
@@ -175,6 +184,7 @@ int main(int argc, char** argv) {
   UiOptions options;
   command_line.add_option("FILE", options.scenario.file, "scenario, a *.simulation.xml file");
   add_override_options(command_line, options.scenario);
+  add_move_option(command_line, options.scenario);
   command_line.add_option("--port", options.port, "TCP port on 127.0.0.1; 0: any free one").shows_default();
   command_line.add_option("--recordings", options.recordings, "folder for recordings")
       .value_name("FOLDER")

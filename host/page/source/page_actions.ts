@@ -46,6 +46,14 @@ export function addActions(app: PageApp): void {
       run: () => void tell('step', { ticks: 1 }),
     },
     {
+      id: 'move_robot',
+      title: 'Move the robot by hand, while paused, or end that',
+      group: 'Robot',
+      keys: ['G'],
+      isEnabled: () => app.mover.isPossible.value,
+      run: () => (app.mover.isOn.value = !app.mover.isOn.value),
+    },
+    {
       id: 'restart',
       title: 'Restart at tick 0',
       group: 'Robot',

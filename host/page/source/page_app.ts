@@ -2,6 +2,7 @@
 import { effect } from '@preact/signals-core';
 import { TelemetryHistory } from './data/telemetry_history.js';
 import { ActionList } from './state/actions.js';
+import { MoveTool } from './state/move_tool.js';
 import { OperationQueue } from './state/operations.js';
 import { PageState } from './state/page_state.js';
 import { SetQueue } from './state/set_queue.js';
@@ -23,6 +24,7 @@ export class PageApp {
   readonly actions = new ActionList();
   readonly operations: OperationQueue;
   readonly sets: SetQueue;
+  readonly mover: MoveTool;
   readonly stop: StopControl;
   private readonly worker = new Worker('connection_worker.js');
   private subscriptions = new Subscriptions();
@@ -37,6 +39,7 @@ export class PageApp {
       reset: (names) => this.operations.ask('reset', { names }),
       refused: (reason) => this.state.addNotice('warning', reason),
     });
+    this.mover = new MoveTool(this.state, (place) => this.operations.tell('move', { ...place }));
     const url = `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/socket`;
     const channel = openStopChannel(url, token, name);
     this.stop = new StopControl(channel);

@@ -6,7 +6,9 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
+#include "sim/loop/robot_placement.hpp"
 #include "sim/scenario/reader.hpp"
+#include "sim/scenario/robot_move.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/simulation_results.hpp"
 #include "tools/proleg/ui/actuation_file.hpp"
@@ -164,6 +166,18 @@ void LiveSimulation::apply_to_file(std::span<const sim::ActuationEdit> edits) {
   ++revision_;
 }
 
+void LiveSimulation::move(const std::string& place) {
+  scratch_.moves.clear();
+  sim::add_move(scratch_, place + '@' + std::to_string(simulation_->tick()));
+  const sim::RobotMove& move = scratch_.moves.front();
+  simulation_->apply_moves();  // those of the command line come before
+  static_cast<void>(sim::placement(move, simulation_->plant().link_poses(), scenario_));
+  scenario_.moves.insert(std::ranges::upper_bound(scenario_.moves, move.tick, {}, &sim::RobotMove::tick), move);
+  live_moves_.push_back(move);
+  simulation_->apply_moves();
+  ++revision_;
+}
+
 void LiveSimulation::restart(StartValues values) {
   end_recording();
   if (values == StartValues::file) {
@@ -173,8 +187,10 @@ void LiveSimulation::restart(StartValues values) {
     sim::set_start_value(scenario_, setting_of(place, parameters_.at(place).wanted));
   }
   scenario_.changes = given_.changes;
+  scenario_.moves = given_.moves;
   scenario_.sources = file_.sources;
   live_.clear();
+  live_moves_.clear();
   lost_frames_ = 0;
   parameters_.begin_run();
   ++revision_;
@@ -232,6 +248,16 @@ std::vector<std::string> LiveSimulation::repeating_words() const {
   return words;
 }
 
+std::vector<std::string> LiveSimulation::repeating_moves() const {
+  std::vector<std::string> words;
+  for (const sim::RobotMove& move : live_moves_) {
+    if (move.tick < simulation_->tick()) {
+      words.push_back(sim::move_text(move));
+    }
+  }
+  return words;
+}
+
 bool LiveSimulation::record(const std::filesystem::path& path, const std::string& program, const std::string& build_id,
                             const std::function<bool()>& goes_on) {
   end_recording();
@@ -243,6 +269,7 @@ bool LiveSimulation::record(const std::filesystem::path& path, const std::string
     }
     record_tick(*recorder, *again, again->advance());
   }
+  again->apply_moves();
   simulation_ = std::move(again);
   recorder_ = std::move(recorder);
   ++revision_;

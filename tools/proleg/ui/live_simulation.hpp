@@ -54,6 +54,10 @@ class LiveSimulation {
   /// Writes some of file_edits() into the actuation file. Throws as write_actuation() does.
   void apply_to_file(std::span<const sim::ActuationEdit> edits);
 
+  /// Puts the robot elsewhere at the present tick. place: X,Y,Z,DEGREES as for --move. Throws InputError, and then
+  /// moves nothing.
+  void move(const std::string& place);
+
   /// A new run, from tick 0.
   void restart(StartValues values);
   /// One tick. Throws PhysicsError; then only restart() is possible.
@@ -85,6 +89,8 @@ class LiveSimulation {
   /// The words for `proleg simulate FILE` that repeat the run up to now, after the settings that the runs begin with
   /// and without the options that `file` was read with.
   [[nodiscard]] std::vector<std::string> repeating_words() const;
+  /// The same for the words of --move.
+  [[nodiscard]] std::vector<std::string> repeating_moves() const;
 
  private:
   struct LiveSetting {
@@ -117,7 +123,8 @@ class LiveSimulation {
   ChangeHistory history_;
   std::vector<std::int32_t> other_set_;  ///< in the order of places()
   bool is_set_b_ = false;
-  std::vector<LiveSetting> live_;  ///< of the present run, by ascending tick
+  std::vector<LiveSetting> live_;           ///< of the present run, by ascending tick
+  std::vector<sim::RobotMove> live_moves_;  ///< of the present run, by ascending tick
   std::uint64_t revision_ = 1;
 };
 

@@ -146,6 +146,7 @@ json SimulatedSession::carry_out(const host::OperationRequest& operation) {
                                                             {"redo", &SimulatedSession::redo},
                                                             {"swap", &SimulatedSession::swap},
                                                             {"reset", &SimulatedSession::reset},
+                                                            {"move", &SimulatedSession::move},
                                                             {"record", &SimulatedSession::record},
                                                             {"command_line", &SimulatedSession::tell_command_line},
                                                             {"file.diff", &SimulatedSession::tell_file_diff},
@@ -265,6 +266,24 @@ json SimulatedSession::reset(const json& arguments) {
   return json::object();
 }
 
+json SimulatedSession::move(const json& arguments) {
+  require_sound();
+  if (state_ != State::paused || steps_left_ > 0) {
+    throw InputError("move", 0, "a simulation that is not paused", "a paused one");
+  }
+  const auto position = argument<std::vector<double>>(arguments, "position", "three numbers");
+  if (!position || position->size() != 3) {
+    throw InputError("position", 0, position ? std::to_string(position->size()) + " numbers" : "none", "three numbers");
+  }
+  std::string place;
+  for (const double coordinate : *position) {
+    place += exact_text(coordinate) + ',';
+  }
+  live_.move(place + exact_text(argument<double>(arguments, "turn", "degrees").value_or(0.0)));
+  is_session_new_ = true;
+  return {{"tick", live_.simulation().tick()}};
+}
+
 json SimulatedSession::record(const json& arguments) {
   const auto file = argument<std::string>(arguments, "file", "a file name");
   is_session_new_ = true;
@@ -297,6 +316,9 @@ json SimulatedSession::tell_command_line(const json& /*arguments*/) {
   std::string text = options_.command;
   for (const std::string& word : live_.repeating_words()) {
     text += " --set " + word;
+  }
+  for (const std::string& word : live_.repeating_moves()) {
+    text += " --move " + word;
   }
   return {{"text", text + " --seconds " + exact_text(live_.simulation().time_s())}};
 }
@@ -375,6 +397,8 @@ void SimulatedSession::publish_session(Clock::time_point now) {
                       {"tick", simulation.tick()},
                       {"time_s", simulation.time_s()},
                       {"stopped_by", text_or_null(stopped_by_)},
+                      {"head", pose_json(simulation.plant().link_poses().front())},
+                      {"moved", simulation.was_moved()},
                       {"recording", text_or_null(recording_)},
                       {"changed", is_changed},
                       {"undo", text_or_null(entry_name(live_.history().to_undo()))},

@@ -77,6 +77,7 @@ class SimulatedSession {
   nlohmann::json redo(const nlohmann::json& arguments);
   nlohmann::json swap(const nlohmann::json& arguments);
   nlohmann::json reset(const nlohmann::json& arguments);
+  nlohmann::json move(const nlohmann::json& arguments);
   nlohmann::json record(const nlohmann::json& arguments);
   nlohmann::json tell_file_diff(const nlohmann::json& arguments);
   nlohmann::json apply_to_file(const nlohmann::json& arguments);

@@ -3,10 +3,12 @@ import { effect, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
 import type { PageApp } from '../page_app.js';
+import type { Vector } from '../geometry/quaternion.js';
 import type { FromScene, ToScene } from '../scene/scene_messages.js';
 import { isDark } from '../theme.js';
-import { listenToPointer } from './scene_pointer.js';
-import { poseAt } from './scene_pose.js';
+import { MoveForm } from './move_form.js';
+import { listenToPointer, type RobotMover } from './scene_pointer.js';
+import { shownPose } from './scene_pose.js';
 
 const highestRatio = 1.5; // device pixels for each CSS pixel; more costs frames and shows little
 const readoutPeriod = 100; // milliseconds
@@ -34,8 +36,28 @@ export function ScenePanel({ app }: { app: PageApp }) {
     worker.onmessage = (event: MessageEvent<FromScene>) => {
       const message = event.data;
       if (message.kind === 'pointed') app.selection.hoveredJoint.value = message.joint;
+      if (message.kind === 'grabbed') app.mover.begin();
+      if (message.kind === 'dragged') {
+        offset = message.offset;
+        app.mover.drag(offset, turn);
+      }
       if (message.kind === 'following') isFollowing.value = message.isOn;
       if (message.kind === 'failed') failure.value = message.reason;
+    };
+    let offset: Vector = [0, 0, 0];
+    let turn = 0;
+    const mover: RobotMover = {
+      isActive: () => app.mover.isActive.peek(),
+      turn: (degrees) => {
+        turn = degrees;
+        app.mover.drag(offset, turn);
+      },
+      drop: () => {
+        offset = [0, 0, 0];
+        turn = 0;
+        void app.mover.drop();
+      },
+      step: (way, degrees) => void app.mover.step(way, degrees),
     };
     const offscreen = canvas.transferControlToOffscreen();
     send({ kind: 'start', canvas: offscreen, isDark: isDark.peek() }, [offscreen]);
@@ -45,7 +67,7 @@ export function ScenePanel({ app }: { app: PageApp }) {
     });
     observer.observe(parent);
     const stops = [
-      listenToPointer(canvas, send, () => (app.selection.hoveredJoint.value = null)),
+      listenToPointer(canvas, send, () => (app.selection.hoveredJoint.value = null), mover),
       effect(() => send({ kind: 'theme', isDark: isDark.value })),
       effect(() => {
         const robot = app.state.robot.value;
@@ -85,6 +107,15 @@ export function ScenePanel({ app }: { app: PageApp }) {
       <div class="scene-tools">
         <button
           type="button"
+          aria-pressed={app.mover.isActive.value}
+          disabled={!app.mover.isPossible.value}
+          onClick={() => (app.mover.isOn.value = !app.mover.isOn.value)}
+          title="Drag the paused robot to another place (G)"
+        >
+          Move
+        </button>
+        <button
+          type="button"
           aria-pressed={isFollowing.value}
           onClick={() => post.current({ kind: 'follow', isOn: !isFollowing.value })}
           title="The view goes with the robot (F)"
@@ -95,6 +126,7 @@ export function ScenePanel({ app }: { app: PageApp }) {
           Reset view
         </button>
       </div>
+      {app.mover.isActive.value && <MoveForm app={app} />}
       <span class="readout" ref={readout} data-testid="head" title="Position of the head" />
       <span class="legend-marks" aria-hidden="true">
         <i class="mark head" /> head <i class="mark contact" /> ground contact <i class="mark path" /> path
@@ -109,19 +141,24 @@ function followPose(app: PageApp, send: (message: ToScene) => void, readout: { c
   let lastKey = '';
   let lastReadout = 0;
   let robot: unknown = null;
+  let session: unknown = null;
+  let preview: unknown = null;
   return onFrame((now) => {
     const { history, time } = app;
     const tick = time.shownTick(app.newestTick);
     const key = `${history.run}/${history.end}/${tick}`;
-    if (history.end === 0 || (key === lastKey && robot === app.state.robot.peek())) {
+    const isSame = robot === app.state.robot.peek() && session === app.state.session.peek() && preview === app.mover.preview.peek();
+    if (key === lastKey && isSame) {
       return;
     }
-    const pose = poseAt(history, tick, time.isLive.peek() && time.cursor.peek() === null);
+    const pose = shownPose(app, tick);
     if (pose === null || app.state.robot.peek() === null) {
       return;
     }
     lastKey = key;
     robot = app.state.robot.peek();
+    session = app.state.session.peek();
+    preview = app.mover.preview.peek();
     if (readout.current !== null && now - lastReadout > readoutPeriod) {
       lastReadout = now;
       // Without the sign of -0.000.

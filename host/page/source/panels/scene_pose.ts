@@ -1,4 +1,7 @@
-// The pose of the robot at a tick, from the telemetry.
+// The pose of the robot at a tick, from the telemetry; or where a hand has put it since the last tick.
+import { poseFromArray } from '../geometry/quaternion.js';
+import type { PageApp } from '../page_app.js';
+import { placedHead } from '../state/move_tool.js';
 import type { TelemetryHistory } from '../data/telemetry_history.js';
 import type { ScenePose } from '../scene/scene_messages.js';
 import { noValue } from '../wire/messages.js';
@@ -7,8 +10,25 @@ const quaternionUnit = 2 ** 30;
 const micrometre = 1e-6;
 const degree = Math.PI / 180;
 
+// What the 3D view shows. Null if nothing is known.
+export function shownPose(app: PageApp, tick: number): ScenePose | null {
+  const { history, time, state, mover } = app;
+  const isLive = time.isLive.peek() && time.cursor.peek() === null;
+  const session = state.session.peek();
+  const isPresent = isLive && session?.head !== undefined && (history.end === 0 || history.lastTick() < session.tick);
+  const known = history.end === 0 ? null : poseAt(history, tick, isLive);
+  if (session === null || !isPresent || (known !== null && !session.moved && mover.preview.peek() === null)) {
+    return known;
+  }
+  const present = poseFromArray(session.head);
+  const place = mover.preview.peek();
+  const { position, orientation } = place === null ? present : placedHead(present, place);
+  const straight = { angles: new Float32Array(), contacts: new Int32Array() };
+  return { ...(known ?? straight), head: Float64Array.of(...position, ...orientation), run: history.run, isLive: false };
+}
+
 // Null if the row has no pose of the head.
-export function poseAt(history: TelemetryHistory, tick: number, isLive: boolean): ScenePose | null {
+function poseAt(history: TelemetryHistory, tick: number, isLive: boolean): ScenePose | null {
   const row = Math.min(history.end - 1, history.rowAtTick(tick));
   const head = new Float64Array(7);
   for (let i = 0; i < 7; i += 1) {

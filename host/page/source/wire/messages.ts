@@ -98,6 +98,8 @@ export interface SessionDocument {
   redo: string | null;
   set: 'A' | 'B';
   failure: string | null;
+  head: [number, number, number, number, number, number, number]; // now: x, y, z, then the quaternion w, x, y, z
+  moved: boolean; // by hand, since the last tick
   measures?: Record<string, number>;
 }
 
@@ -181,6 +183,7 @@ export interface Operations {
   redo: Record<string, never>;
   swap: Record<string, never>;
   reset: { names?: string[] }; // as in `set`, without a value
+  move: { position: readonly [number, number, number]; turn: number };
   record: { file: string | null };
   command_line: Record<string, never>;
   'file.diff': Record<string, never>;

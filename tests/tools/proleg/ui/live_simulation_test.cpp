@@ -1,7 +1,7 @@
 #include "tools/proleg/ui/live_simulation.hpp"
 
 #include <gtest/gtest.h>
-
+#include <sqlite3.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -9,6 +9,8 @@
 #include <random>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/sqlite/sqlite.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shipped.hpp"
 #include "sim/record/recording.hpp"
 #include "simulated_run.hpp"
@@ -216,6 +218,71 @@ TEST(LiveSimulation, ResetWantsTheFilesValueAgain) {
   EXPECT_EQ(amplitude.wanted, amplitude.file);
   const ParameterTable::Values frequency = live.parameters().at(place(live, "frequency:J3"));
   EXPECT_NE(frequency.wanted, frequency.file);
+}
+
+/// A place near the start, on the ground or above it.
+std::string random_place(std::mt19937& random) {
+  std::uniform_real_distribution<double> metres(-0.5, 0.5);
+  std::uniform_real_distribution<double> degrees(-180.0, 180.0);
+  return exact_text(metres(random)) + ',' + exact_text(metres(random)) + ',' + exact_text(0.1 * metres(random)) + ',' +
+         exact_text(degrees(random));
+}
+
+TEST(LiveSimulation, ARunWithMovesRepeatsFromItsWordsAndInARecordingFromMidRunOn) {
+  const TemporaryFolder folder;
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    sim::Scenario file = uniform();
+    sim::add_move(file, "0.2,0.3,0.1,20@30");  // of the command line
+    LiveSimulation live(file, {}, nullptr);
+    unsigned moves = 1;
+    for (int step = 0; step < 8; ++step) {
+      advance(live, static_cast<unsigned>(random() % 20));
+      if (random() % 2 == 0) {
+        live.set({"amplitude=" + std::to_string(random() % 50)}, std::nullopt);
+      }
+      for (unsigned again = 0; again < random() % 3; ++again) {
+        live.move(random_place(random));
+        ++moves;
+      }
+    }
+    ASSERT_TRUE(live.record(folder / std::to_string(seed), "simulate", "test", [] { return true; }));
+    advance(live, 40);
+    const std::uint32_t ticks = live.simulation().tick();
+    EXPECT_EQ(hashes_of(live.simulation()), simulated(file, live.repeating_words(), ticks, live.repeating_moves()));
+    live.end_recording();
+    Database recording(folder / std::to_string(seed), SQLITE_OPEN_READONLY);
+    Statement count(recording, "SELECT count(*) FROM move");
+    ASSERT_TRUE(count.step());
+    EXPECT_EQ(count.integer(0), moves);
+  }
+}
+
+TEST(LiveSimulation, AMoveIsSeenAtOnceAndARestartForgetsIt) {
+  LiveSimulation live(uniform(), {}, nullptr);
+  advance(live, 20);
+  live.move("1,2,0.1,0");
+  EXPECT_TRUE(live.simulation().was_moved());
+  EXPECT_NEAR(live.simulation().plant().link_poses().front().position.x(), 1.0, 1e-9);
+  EXPECT_TRUE(live.repeating_moves().empty()) << "the run up to now does not have it yet";
+  live.advance();
+  EXPECT_FALSE(live.simulation().was_moved());
+  EXPECT_EQ(live.repeating_moves(), (std::vector<std::string>{"1,2,0.1,0@20"}));
+  live.restart(StartValues::wanted);
+  advance(live, 30);
+  EXPECT_EQ(hashes_of(live.simulation()), simulated(uniform(), {}, 30));
+}
+
+TEST(LiveSimulation, AMoveThatIsRefusedChangesNothing) {
+  LiveSimulation live(uniform(), {}, nullptr);
+  advance(live, 20);
+  for (const char* place : {"1e3,0,0,0", "0,0,99,0", "nan,0,0,0", "0,0,0", "0,0,0,0@5", ""}) {
+    EXPECT_THROW(live.move(place), InputError) << place;
+  }
+  advance(live, 20);
+  EXPECT_TRUE(live.repeating_moves().empty());
+  EXPECT_EQ(hashes_of(live.simulation()), simulated(uniform(), {}, 40));
 }
 
 }  // namespace

@@ -6,10 +6,11 @@
 
 #include "sim/loop/simulation.hpp"
 #include "sim/scenario/reader.hpp"
+#include "sim/scenario/robot_move.hpp"
 
 namespace proleg::tools {
 
-/// What `proleg simulate` gives for the words of --set after this number of ticks.
+/// What `proleg simulate` gives for the words of --set and --move after this number of ticks.
 struct Hashes {
   std::string setpoints;
   std::string servos;
@@ -21,10 +22,14 @@ inline Hashes hashes_of(const sim::Simulation& simulation) {
   return {simulation.setpoint_hash().hex(), simulation.servo_hash().hex(), simulation.plant().displacement()};
 }
 
-inline Hashes simulated(const sim::Scenario& file, const std::vector<std::string>& words, std::uint32_t ticks) {
+inline Hashes simulated(const sim::Scenario& file, const std::vector<std::string>& words, std::uint32_t ticks,
+                        const std::vector<std::string>& moves = {}) {
   sim::Scenario scenario = file;
   for (const std::string& word : words) {
     sim::apply_setting(scenario, word);
+  }
+  for (const std::string& move : moves) {
+    sim::add_move(scenario, move);
   }
   sim::Simulation simulation(scenario);
   while (simulation.tick() < ticks) {

@@ -12,15 +12,18 @@
 
 #include "host/server/session_requests.hpp"
 #include "host/server/web_server.hpp"
+#include "host/transport/bus_address.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/robot_move.hpp"
 #include "tools/proleg/build_id.hpp"
+#include "tools/proleg/bus_access.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/interrupt.hpp"
 #include "tools/proleg/robot_files.hpp"
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/ui/browser.hpp"
+#include "tools/proleg/ui/bus_session.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
 
 namespace {
@@ -30,6 +33,7 @@ using namespace proleg::tools;
 
 struct UiOptions {
   ScenarioOptions scenario;
+  BusOptions bus;
   std::string port = "0";
   std::string recordings = ".";
   std::optional<std::string> page;
@@ -54,15 +58,17 @@ class NewRobot final : public sim::FileSource {
   std::vector<NewFile> files_ = robot_files("ppppp");
 };
 
-/// The scenario as its files have it: the session applies the settings.
-ScenarioRun prepare(ScenarioOptions& options) {
+/// The scenario; for a simulation as its files have it, because the session applies the settings.
+ScenarioRun prepare(ScenarioOptions& options, bool is_simulated) {
   NewRobot new_robot;
   const bool has_file = !options.file.empty();
   if (!has_file) {
     options.file = new_robot.name();
   }
   ScenarioOptions as_file = options;
-  as_file.settings.clear();
+  if (is_simulated) {
+    as_file.settings.clear();
+  }
   as_file.moves.clear();
   ScenarioRun run = has_file ? prepare_run(as_file) : prepare_run(as_file, new_robot);
   for (const std::string& move : options.moves) {
@@ -137,25 +143,52 @@ void require_folder(const std::string& folder) {
   }
 }
 
+void refuse_what_only_a_simulation_has(const UiOptions& options) {
+  const sim::OverrideWords& overrides = options.scenario.overrides;
+  const std::pair<const char*, bool> given[] = {{"--paused", options.paused},
+                                                {"--move", !options.scenario.moves.empty()},
+                                                {"--friction", overrides.friction.has_value()},
+                                                {"--at", overrides.at.has_value()},
+                                                {"--heading", overrides.heading.has_value()}};
+  for (const auto& [option, is_given] : given) {
+    if (is_given) {
+      throw InputError(option, 0, "an option for simulated worlds", "none of them: the robot is where it is");
+    }
+  }
+}
+
 int serve(UiOptions& options) {
   const bool has_file = !options.scenario.file.empty();
   const std::uint16_t port = parse_port(options.port);
   require_folder(options.recordings);
-  const ScenarioRun run = prepare(options.scenario);
+  const ScenarioRun run = prepare(options.scenario, !options.bus.bus);
   print_warnings("proleg ui", run.scenario);
   const host::AccessToken token = host::AccessToken::make();
   host::ServerOptions server{token, host::PageFiles(page_folder(options)), std::string("proleg ") + build_id, {}, port};
-  for (const std::string& operation : SimulatedSession::free_operations()) {
+  for (const std::string& operation :
+       options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations()) {
     server.free_operations.insert(operation);
+  }
+  std::optional<BusAccess> bus;
+  if (options.bus.bus) {
+    refuse_what_only_a_simulation_has(options);
+    bus.emplace(options.bus);
   }
   catch_interrupts();
   boost::asio::io_context context{1};
   host::SessionRequests requests;
   host::WebServer page(context, std::move(server), requests);
-  const SimulatedSession session(run.scenario, &run.losses,
-                                 {options.recordings, simulate_command(options, has_file), options.scenario.settings,
-                                  has_file, build_id, options.paused},
-                                 requests, page);
+  std::optional<SimulatedSession> simulated;
+  std::optional<BusSession> driven;
+  if (bus) {
+    driven.emplace(run.scenario, *bus, options.bus.address(), BusSessionOptions{options.recordings, build_id}, requests,
+                   page);
+  } else {
+    simulated.emplace(run.scenario, &run.losses,
+                      SimulatedSessionOptions{options.recordings, simulate_command(options, has_file),
+                                              options.scenario.settings, has_file, build_id, options.paused},
+                      requests, page);
+  }
   const PageAddress address(page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
             << std::flush;
@@ -185,6 +218,10 @@ int main(int argc, char** argv) {
   command_line.add_option("FILE", options.scenario.file, "scenario, a *.simulation.xml file");
   add_override_options(command_line, options.scenario);
   add_move_option(command_line, options.scenario);
+  command_line
+      .add_option("--bus", options.bus.bus,
+                  "show and drive the robot on this bus instead of a simulated one: " + host::bus_address_syntax())
+      .value_name("BUS");
   command_line.add_option("--port", options.port, "TCP port on 127.0.0.1; 0: any free one").shows_default();
   command_line.add_option("--recordings", options.recordings, "folder for recordings")
       .value_name("FOLDER")

@@ -15,12 +15,13 @@ export function shownPose(app: PageApp, tick: number): ScenePose | null {
   const { history, time, state, mover } = app;
   const isLive = time.isLive.peek() && time.cursor.peek() === null;
   const session = state.session.peek();
-  const isPresent = isLive && session?.head !== undefined && (history.end === 0 || history.lastTick() < session.tick);
+  const head = session?.head;
+  const isPresent = isLive && session !== null && (history.end === 0 || history.lastTick() < session.tick);
   const known = history.end === 0 ? null : poseAt(history, tick, isLive);
-  if (session === null || !isPresent || (known !== null && !session.moved && mover.preview.peek() === null)) {
+  if (head === undefined || !isPresent || (known !== null && session.moved !== true && mover.preview.peek() === null)) {
     return known;
   }
-  const present = poseFromArray(session.head);
+  const present = poseFromArray(head);
   const place = mover.preview.peek();
   const { position, orientation } = place === null ? present : placedHead(present, place);
   const straight = { angles: new Float32Array(), contacts: new Int32Array() };

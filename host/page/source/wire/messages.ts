@@ -98,8 +98,8 @@ export interface SessionDocument {
   redo: string | null;
   set: 'A' | 'B';
   failure: string | null;
-  head: [number, number, number, number, number, number, number]; // now: x, y, z, then the quaternion w, x, y, z
-  moved: boolean; // by hand, since the last tick
+  head?: [number, number, number, number, number, number, number]; // now: x, y, z, then the quaternion w, x, y, z
+  moved?: boolean; // by hand, since the last tick
   measures?: Record<string, number>;
 }
 

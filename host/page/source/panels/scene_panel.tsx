@@ -143,11 +143,19 @@ function followPose(app: PageApp, send: (message: ToScene) => void, readout: { c
   let robot: unknown = null;
   let session: unknown = null;
   let preview: unknown = null;
+  let unwritten: Float64Array | null = null; // the head's pose that the readout does not show yet
   return onFrame((now) => {
     const { history, time } = app;
     const tick = time.shownTick(app.newestTick);
     const key = `${history.run}/${history.end}/${tick}`;
     const isSame = robot === app.state.robot.peek() && session === app.state.session.peek() && preview === app.mover.preview.peek();
+    if (unwritten !== null && readout.current !== null && now - lastReadout > readoutPeriod) {
+      lastReadout = now;
+      // Without the sign of -0.000.
+      const [x, y, z] = [...unwritten.subarray(0, 3)].map((metres) => (Math.round(metres * 1000) / 1000 + 0).toFixed(3));
+      readout.current.textContent = `head  x ${x}  y ${y}  z ${z} m`;
+      unwritten = null;
+    }
     if (key === lastKey && isSame) {
       return;
     }
@@ -159,12 +167,7 @@ function followPose(app: PageApp, send: (message: ToScene) => void, readout: { c
     robot = app.state.robot.peek();
     session = app.state.session.peek();
     preview = app.mover.preview.peek();
-    if (readout.current !== null && now - lastReadout > readoutPeriod) {
-      lastReadout = now;
-      // Without the sign of -0.000.
-      const [x, y, z] = [...pose.head.subarray(0, 3)].map((metres) => (Math.round(metres * 1000) / 1000 + 0).toFixed(3));
-      readout.current.textContent = `head  x ${x}  y ${y}  z ${z} m`;
-    }
+    unwritten = pose.head;
     send({ kind: 'pose', pose });
   });
 }

@@ -109,6 +109,7 @@ describe('moving the robot', () => {
     assert.equal(words.filter((word) => word === '--move').length, 2);
     const simulated = execFileSync(proleg, [...words, '--json'], { encoding: 'utf8' });
     const { simulated_s } = JSON.parse(simulated) as { simulated_s: number };
-    assert.ok(Math.abs(simulated_s - (await viewer.tick()) / 100) < 1e-9);
+    await viewer.waitForTick(Math.round(simulated_s * 100));
+    assert.equal(await viewer.tick(), Math.round(simulated_s * 100));
   });
 });

@@ -105,6 +105,14 @@ void Plant::free(std::size_t joint) {
   update_torque(joint);
 }
 
+void Plant::move_robot(const Pose& motion) {
+  world_.move_robot(motion);
+  unmoved_ = unmoved_.value_or(Pose{}) * motion.inverse();
+  center_before_ = world_.center_of_mass();
+  disturb();
+  read_world();
+}
+
 void Plant::disturb() {
   disturbed_at_ = steps_;
   is_at_rest_ = false;
@@ -197,7 +205,15 @@ void Plant::finish_tick() {
   const Eigen::Vector3d center = world_.center_of_mass();
   require_crawling(center);
   center_before_ = center;
-  meter_.add_tick({center, link_poses_, joint_angles_, joint_targets_, link_contacts_});
+  if (unmoved_) {
+    unmoved_link_poses_.clear();
+    for (const Pose& pose : link_poses_) {
+      unmoved_link_poses_.push_back(*unmoved_ * pose);
+    }
+    meter_.add_tick({*unmoved_ * center, unmoved_link_poses_, joint_angles_, joint_targets_, link_contacts_});
+  } else {
+    meter_.add_tick({center, link_poses_, joint_angles_, joint_targets_, link_contacts_});
+  }
   add_contact_noise();
 }
 
@@ -255,7 +271,10 @@ firmware::ServoReadings Plant::servo_readings(std::size_t joint) const {
   return {static_cast<std::uint16_t>(std::lround(current_ma)), joint_angle_in_steps(servo.angle), chip_temperature_c};
 }
 
-double Plant::displacement() const { return (world_.center_of_mass() - start_).head<2>().norm(); }
+double Plant::displacement() const {
+  const Eigen::Vector3d center = world_.center_of_mass();
+  return ((unmoved_ ? *unmoved_ * center : center) - start_).head<2>().norm();
+}
 
 double Plant::mean_contacts() const {
   return steps_ == 0 ? 0.0 : static_cast<double>(contact_sum_) / static_cast<double>(steps_);

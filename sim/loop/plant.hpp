@@ -35,6 +35,10 @@ class Plant {
   void jam(std::size_t joint, std::uint32_t current_ma);
   void free(std::size_t joint);
 
+  /// Between two ticks: moves the robot as World::move_robot does. The values below are those at its new place. The
+  /// measures count only what the robot crawls: for them the world moves with the robot.
+  void move_robot(const Pose& motion);
+
   [[nodiscard]] std::uint32_t steps_per_tick() const { return steps_per_tick_; }
   /// Microseconds from the tick to the start of one of its steps, rounded down; pulses start at whole microseconds, so
   /// the fraction does not matter.
@@ -70,7 +74,7 @@ class Plant {
   };
   [[nodiscard]] DrawnCurrent drawn_current(std::size_t joint) const { return {servos_[joint].drawn, steps_}; }
 
-  /// Horizontal distance, in m, of the centre of mass from its start (thesis, equation 3.7).
+  /// Horizontal distance, in m, of the centre of mass from its start (thesis, equation 3.7), without moves by hand.
   [[nodiscard]] double displacement() const;
   /// The measures of the run so far (sim/measure/gait_meter.hpp).
   [[nodiscard]] const GaitMeter& meter() const { return meter_; }
@@ -108,6 +112,8 @@ class Plant {
   std::uint64_t disturbed_at_ = 0;  ///< step at which something moved, or a servo got another pulse
   Eigen::Vector3d start_;
   Eigen::Vector3d center_before_;
+  std::optional<Pose> unmoved_;           ///< from the world to where the robot would be without moves by hand
+  std::vector<Pose> unmoved_link_poses_;  ///< of links, only with moves
   GaitMeter meter_;
   std::uint64_t latency_steps_;
   std::deque<DelayedPulse> delayed_pulses_;

@@ -1,5 +1,8 @@
 #include "sim/loop/simulation.hpp"
 
+#include <utility>
+
+#include "sim/loop/robot_placement.hpp"
 #include "sim/record/internal_values.hpp"
 
 namespace proleg::sim {
@@ -18,7 +21,15 @@ Simulation::Simulation(const Scenario& scenario, const Losses* losses)
 
 double Simulation::time_s() const { return tick() * (scenario_.kernel.tick_period_us * 1e-6); }
 
+void Simulation::apply_moves() {
+  for (; next_move_ < scenario_.moves.size() && scenario_.moves[next_move_].tick == tick(); ++next_move_) {
+    plant_.move_robot(placement(scenario_.moves[next_move_], plant_.link_poses(), scenario_));
+  }
+}
+
 const Change* Simulation::advance() {
+  apply_moves();
+  last_first_move_ = std::exchange(first_move_, next_move_);
   const Change* change = apply_changes();
   for (unsigned joint = 0; joint < chain_.joint_count(); ++joint) {
     touch_.sample(plant_.link_contacts(), joint);
@@ -61,7 +72,8 @@ TickSample Simulation::sample() {
           plant_.motor_torques(),
           plant_.servo_currents(),
           plant_.contact_forces(),
-          chain_.lost()};
+          chain_.lost(),
+          std::span(scenario_.moves).subspan(last_first_move_, first_move_ - last_first_move_)};
 }
 
 }  // namespace proleg::sim

@@ -26,8 +26,15 @@ class Simulation {
   explicit Simulation(const Scenario& scenario, const Losses* losses = nullptr);
   explicit Simulation(const Scenario&& scenario, const Losses* losses = nullptr) = delete;
 
+  /// The moves of the present tick take effect now. Otherwise advance() begins with them. Throws InputError for a move
+  /// to a place where the robot cannot be put; then only the moves before it have taken effect.
+  void apply_moves();
+  /// Whether moves of the present tick have taken effect.
+  [[nodiscard]] bool was_moved() const { return next_move_ > first_move_; }
+
   /// One tick: SYNC k, then the world until SYNC k + 1. Returns the change that took effect at k, if any.
-  /// Throws PhysicsError if the engine fails, the robot moves faster than 100 m/s or fell off its environment.
+  /// Throws as apply_moves(), and PhysicsError if the engine fails, the robot moves faster than 100 m/s or fell off its
+  /// environment.
   const Change* advance();
 
   [[nodiscard]] std::uint32_t tick() const { return chain_.tick(); }
@@ -66,6 +73,9 @@ class Simulation {
   ServoPulses pulse_source_;
   PulsePlayer pulse_player_;
   std::size_t next_change_ = 0;
+  std::size_t next_move_ = 0;
+  std::size_t first_move_ = 0;       ///< of the present tick
+  std::size_t last_first_move_ = 0;  ///< of the tick before
   std::vector<std::uint8_t> latched_contacts_;
   std::vector<std::int32_t> internal_values_;
   std::vector<ServoPulse> servo_pulses_;

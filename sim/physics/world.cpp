@@ -99,6 +99,23 @@ class World::Implementation {
     require_finite_positions();
   }
 
+  void move_robot(const Pose& motion) {
+    for (const dBodyID body : bodies_) {
+      const dReal* position = dBodyGetPosition(body);
+      const dReal* orientation = dBodyGetQuaternion(body);
+      const Pose moved = motion * Pose{{position[0], position[1], position[2]},
+                                       {orientation[0], orientation[1], orientation[2], orientation[3]}};
+      dQuaternion turned;
+      to_quaternion(moved.orientation, turned);
+      dBodySetPosition(body, moved.position.x(), moved.position.y(), moved.position.z());
+      dBodySetQuaternion(body, turned);
+      dBodySetLinearVel(body, 0.0, 0.0, 0.0);
+      dBodySetAngularVel(body, 0.0, 0.0, 0.0);
+    }
+    touch_sensors_.release_all();
+    std::ranges::fill(contact_forces_, 0.0);
+  }
+
   [[nodiscard]] double joint_angle(std::size_t joint) const { return dJointGetHingeAngle(joints_[joint]); }
 
   [[nodiscard]] double motor_torque(std::size_t joint) const { return motors_[joint].torque(); }
@@ -366,6 +383,7 @@ World::~World() = default;
 
 void World::set_joint_speed(std::size_t joint, double speed) { implementation_->set_joint_speed(joint, speed); }
 void World::set_joint_torque(std::size_t joint, double torque) { implementation_->set_joint_torque(joint, torque); }
+void World::move_robot(const Pose& motion) { implementation_->move_robot(motion); }
 void World::step() { implementation_->step(); }
 bool World::is_slower_than(double speed, double rotation) const {
   return implementation_->is_slower_than(speed, rotation);

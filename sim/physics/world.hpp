@@ -36,6 +36,10 @@ class World {
   /// The torque, in Nm, that the motor of a joint has from now on; at first that of its model. 0: the joint is limp.
   void set_joint_torque(std::size_t joint, double torque);
 
+  /// Moves the robot as a rigid body, and brings it to rest: the pose of each link becomes motion * pose. As before the
+  /// first step no sensor is pressed.
+  void move_robot(const Pose& motion);
+
   /// Advances the world by one step. Throws PhysicsError if the solver broke down or a position of a link is no longer
   /// a finite number; after that the world can only be read and destroyed.
   void step();

@@ -115,6 +115,10 @@ class Recorder::Storage {
       insert_loss_.run(loss.tick, std::uint32_t{loss.sender}, std::uint32_t{loss.channel},
                        std::uint32_t{loss.receiver});
     }
+    for (const RobotMove& move : sample.moves) {
+      const Eigen::Vector3d& position = move.position;
+      insert_move_.run(move.tick, position.x(), position.y(), position.z(), move.turn_deg);
+    }
     for (const ServoPulse& pulse : sample.servo_pulses) {
       insert_pulse_.run(pulse.time_us, pulse.joint, pulse.command);
     }
@@ -214,6 +218,7 @@ class Recorder::Storage {
   Statement insert_pulse_{database_, "INSERT INTO servo VALUES(?1, ?2, ?3)"};
   Statement insert_pose_{database_, "INSERT INTO pose VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)"};
   Statement insert_contact_{database_, "INSERT INTO contact VALUES(?1, ?2, ?3, ?4, ?5)"};
+  Statement insert_move_{database_, "INSERT INTO move(tick, x_m, y_m, z_m, turn_deg) VALUES(?1, ?2, ?3, ?4, ?5)"};
   Statement insert_loss_{database_, "INSERT INTO loss VALUES(?1, ?2, ?3, ?4)"};
   Statement insert_restart_{database_, "INSERT INTO restart VALUES(?1, ?2, ?3)"};
   Statement insert_event_{database_, "INSERT INTO module_event(time_us, joint, text) VALUES(?1, ?2, ?3)"};

@@ -190,6 +190,18 @@ CREATE TABLE module_event(
   text TEXT NOT NULL
 ) STRICT;
 
+CREATE TABLE move(
+  -- The robot was put elsewhere by hand before SYNC tick: as a rigid body, turned to the left by turn_deg about the
+  -- vertical through the head's frame, which came to x_m, y_m, z_m (higher if it would have been in the ground), and at
+  -- rest. A recording of an older program of this format has no such table: nothing was moved.
+  position INTEGER PRIMARY KEY,
+  tick INTEGER NOT NULL,
+  x_m REAL NOT NULL,
+  y_m REAL NOT NULL,
+  z_m REAL NOT NULL,
+  turn_deg REAL NOT NULL
+) STRICT;
+
 CREATE TABLE servo(
   -- Every pulse for a servo, in twelfths of a microsecond, and when its interval starts: microseconds after SYNC 0.
   time_us INTEGER NOT NULL,

@@ -25,6 +25,10 @@ struct Pose {
     return {position + orientation * inner.position, orientation * inner.orientation};
   }
   [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& point) const { return position + orientation * point; }
+  [[nodiscard]] Pose inverse() const {
+    const Eigen::Quaterniond back = orientation.conjugate();
+    return {-(back * position), back};
+  }
 };
 
 enum class Shape : std::uint8_t {

@@ -47,24 +47,18 @@ JointMask read_group(const XmlElement& module, const RobotModel& robot) {
   return group;
 }
 
-/// A <parameter>: a value for one joint of the slot, or for all of them (-1).
-struct ParameterEntry {
-  int index = 0;
-  int joint = -1;
-  std::int32_t value = 0;
-};
-
 ParameterEntry read_parameter(const XmlElement& element, const Scenario& scenario, const Slot& slot) {
   element.allow({"name", "value", "unit", "joint"}, {});
   const Declaration& declaration = slot.algorithm->declaration();
   ParameterEntry entry;
   const std::string name = element.required_attribute("name");
-  entry.index = find_parameter(declaration, name);
-  if (entry.index < 0) {
+  const int index = find_parameter(declaration, name);
+  if (index < 0) {
     element.refuse("unknown parameter " + in_quotes(name) + " of " + std::string(declaration.name),
                    "one of " + listed(parameter_names(declaration)));
   }
-  const Parameter& parameter = declaration.parameters[static_cast<std::size_t>(entry.index)];
+  entry.index = static_cast<unsigned>(index);
+  const Parameter& parameter = declaration.parameters[entry.index];
   const std::string symbol = scale_of(parameter.unit).symbol;
   if (const auto unit = element.attribute("unit"); unit && *unit != symbol) {
     element.refuse("unit " + in_quotes(*unit) + " for parameter " + in_quotes(name), "unit '" + symbol + "'");
@@ -84,18 +78,7 @@ ParameterEntry read_parameter(const XmlElement& element, const Scenario& scenari
 
 void read_parameters(const XmlElement& module, unsigned slot_number, Scenario& scenario) {
   const Slot& slot = scenario.kernel.slots[slot_number];
-  std::vector<ParameterEntry> entries;
-  std::set<std::pair<int, int>> seen;
-  for (const XmlElement& child : module.children()) {
-    if (!child.is("parameter")) {
-      continue;
-    }
-    entries.push_back(read_parameter(child, scenario, slot));
-    if (!seen.insert({entries.back().index, entries.back().joint}).second) {
-      child.refuse("parameter " + in_quotes(child.required_attribute("name")) + " twice for the same joints",
-                   "it once");
-    }
-  }
+  std::vector<ParameterEntry> entries = read_parameter_entries(module, scenario, slot_number);
   // Values for all joints first, in any order of the file.
   std::stable_partition(entries.begin(), entries.end(), [](const ParameterEntry& entry) { return entry.joint < 0; });
   for (const ParameterEntry& entry : entries) {
@@ -138,11 +121,9 @@ void read_actuation(const XmlDocument& document, Scenario& scenario, const std::
     }
   }
 
-  unsigned slot_number = 0;
-  for (const XmlElement& module : root.children()) {
-    if (!module.is("actuationModule")) {
-      continue;
-    }
+  const std::vector<XmlElement> modules = actuation_modules(document);
+  for (unsigned slot_number = 0; slot_number < modules.size(); ++slot_number) {
+    const XmlElement& module = modules[slot_number];
     if (slot_number == max_slots) {
       module.refuse("a fifth " + module.label(), "at most " + std::to_string(max_slots));
     }
@@ -155,11 +136,36 @@ void read_actuation(const XmlDocument& document, Scenario& scenario, const std::
       remark_no_effect(scenario.warnings, module, "it drives no joint");
     }
     read_parameters(module, slot_number, scenario);
-    ++slot_number;
   }
-  if (slot_number == 0) {
+  if (modules.empty()) {
     root.refuse("no <actuationModule> in " + root.label(), "1 to " + std::to_string(max_slots));
   }
+}
+
+std::vector<XmlElement> actuation_modules(const XmlDocument& document) {
+  std::vector<XmlElement> modules;
+  for (const XmlElement& child : document.root("actuation").children()) {
+    if (child.is("actuationModule")) {
+      modules.push_back(child);
+    }
+  }
+  return modules;
+}
+
+std::vector<ParameterEntry> read_parameter_entries(const XmlElement& module, const Scenario& scenario, unsigned slot) {
+  std::vector<ParameterEntry> entries;
+  std::set<std::pair<unsigned, int>> seen;
+  for (const XmlElement& child : module.children()) {
+    if (!child.is("parameter")) {
+      continue;
+    }
+    entries.push_back(read_parameter(child, scenario, scenario.kernel.slots[slot]));
+    if (!seen.insert({entries.back().index, entries.back().joint}).second) {
+      child.refuse("parameter " + in_quotes(child.required_attribute("name")) + " twice for the same joints",
+                   "it once");
+    }
+  }
+  return entries;
 }
 
 }  // namespace proleg::sim

@@ -11,15 +11,8 @@
 namespace proleg::sim {
 namespace {
 
-constexpr Range headings{-360.0, 360.0, "degrees"};
-
-[[nodiscard]] std::optional<double> parse_in(std::string_view word, const Range& range) {
-  const std::optional<double> value = parse_number(word);
-  return value && *value >= range.min && *value <= range.max ? value : std::nullopt;
-}
-
 double read_in(const char* option, const std::string& word, const Range& range) {
-  const std::optional<double> value = parse_in(word, range);
+  const std::optional<double> value = parse_number_in(word, range);
   if (!value) {
     throw InputError(option, 0, in_quotes(word),
                      number_text(range.min) + " to " + number_text(range.max) +
@@ -33,7 +26,7 @@ void read_position(const std::string& word, Overrides& overrides) {
   std::vector<double> numbers;
   for (std::string_view rest = word;;) {
     const std::size_t comma = rest.find(',');
-    const std::optional<double> number = parse_in(rest.substr(0, comma), coordinates);
+    const std::optional<double> number = parse_number_in(rest.substr(0, comma), coordinates);
     if (!number) {
       break;
     }
@@ -69,7 +62,7 @@ Overrides read_overrides(const OverrideWords& words) {
     read_position(*words.at, overrides);
   }
   if (words.heading) {
-    overrides.heading_deg = read_in("--heading", *words.heading, headings);
+    overrides.heading_deg = read_in("--heading", *words.heading, turns);
   }
   return overrides;
 }

@@ -221,23 +221,13 @@ class RobotCheck {
   std::vector<std::string> warnings_;
 };
 
-Pose inverse(const Pose& pose) {
-  const Eigen::Quaterniond back = pose.orientation.conjugate();
-  return {-(back * pose.position), back};
-}
-
 /// The shortest way out of each other along the three axes of `left`; negative if they are apart along one of them.
 /// Poses are those of the bodies in the world.
 double depth_along_axes(const Geometry& left, const Pose& left_body, const Geometry& right, const Pose& right_body) {
-  const Pose to_left = inverse(left_body * left.pose);
+  const Pose to_left = (left_body * left.pose).inverse();
   const Bounds here = bounds_of(left, to_left * left_body);
   const Bounds there = bounds_of(right, to_left * right_body);
   return (here.highest - there.lowest).cwiseMin(there.highest - here.lowest).minCoeff();
-}
-
-double depth(const Geometry& left, const Pose& left_body, const Geometry& right, const Pose& right_body) {
-  return std::min(depth_along_axes(left, left_body, right, right_body),
-                  depth_along_axes(right, right_body, left, left_body));
 }
 
 }  // namespace
@@ -255,6 +245,11 @@ std::vector<std::string> check_gravity(const Eigen::Vector3d& gravity, const Ori
   return {warning(origin, "gravity " + where + "; usually it is 0 0 -9.81")};
 }
 
+double overlap_depth(const Geometry& left, const Pose& left_body, const Geometry& right, const Pose& right_body) {
+  return std::min(depth_along_axes(left, left_body, right, right_body),
+                  depth_along_axes(right, right_body, left, left_body));
+}
+
 std::vector<std::string> check_start(const std::vector<Link>& links, const EnvironmentModel& environment,
                                      const std::string& environment_file) {
   constexpr double max_depth = 0.003;  // m; a robot that lies on the ground may be a little in it
@@ -266,7 +261,7 @@ std::vector<std::string> check_start(const std::vector<Link>& links, const Envir
     for (const StaticObject& object : environment.objects) {
       for (const Geometry& solid : object.geometries) {
         for (const Geometry& geometry : link.geometries) {
-          if (const double in = depth(geometry, link_pose, solid, object.pose); in > deepest) {
+          if (const double in = overlap_depth(geometry, link_pose, solid, object.pose); in > deepest) {
             deepest = in;
             obstacle = &object;
           }

@@ -18,6 +18,12 @@ namespace proleg::sim {
 /// A warning on gravity (m/s^2) that does not hold a robot on the ground. origin: where it is given.
 [[nodiscard]] std::vector<std::string> check_gravity(const Eigen::Vector3d& gravity, const Origin& origin);
 
+/// How far two solids are in each other, in m: the shortest way out along an axis of one of them. Not above 0 if they
+/// are apart along one. Spheres and cylinders count as the boxes around them. Poses are those of the bodies in the
+/// world.
+[[nodiscard]] double overlap_depth(const Geometry& left, const Pose& left_body, const Geometry& right,
+                                   const Pose& right_body);
+
 /// Warnings on links that start inside an object. environment_file: the file that gives the start pose.
 [[nodiscard]] std::vector<std::string> check_start(const std::vector<Link>& links, const EnvironmentModel& environment,
                                                    const std::string& environment_file);

@@ -47,6 +47,7 @@ Scenario read_scenario(const std::filesystem::path& path, FileSource& files, con
   scenario.kernel.joint_count = static_cast<std::uint8_t>(scenario.robot.joints.size());
 
   const auto actuation_file = open("actuation");
+  scenario.actuation_file = actuation_file->name();
   read_actuation(*actuation_file, scenario, robot_file->name());
 
   const auto environment_file = open("environment");

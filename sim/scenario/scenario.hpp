@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "shared/kernel/kernel.hpp"
 #include "sim/environment/environment_model.hpp"
 #include "sim/robot/module_place.hpp"
@@ -51,6 +53,13 @@ struct JointLimits {
   std::int32_t upper = 1 << 30;
 };
 
+/// The robot is put elsewhere, as a hand does it: at a tick, as a rigid body, and at rest.
+struct RobotMove {
+  std::uint32_t tick = 0;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, of the head's frame, after the move
+  double turn_deg = 0.0;                               ///< about the vertical through the head's frame, to the left
+};
+
 struct Scenario {
   std::string path;
   RobotModel robot;
@@ -62,6 +71,7 @@ struct Scenario {
   std::optional<RobotControlEntry> robot_control;  ///< plug-in of a robot without modules; no effect in a simulation
   std::vector<Setting> settings;                   ///< start values that differ from the defaults
   std::vector<Change> changes;                     ///< in flight, by ascending tick
+  std::vector<RobotMove> moves;                    ///< by ascending tick; those of a tick in their order
 
   double duration_s = 30.0;
   double step_s = 0.001;  ///< of the physics; a tick is a whole number of steps
@@ -71,6 +81,7 @@ struct Scenario {
   Overrides overrides;  ///< what replaced values of the files; it has been applied
 
   std::vector<SourceFile> sources;    ///< every file, the top-level file first
+  std::string actuation_file;         ///< path of the source that has the start values
   std::vector<std::string> remarks;   ///< for the user: the joint map, tags without effect
   std::vector<std::string> warnings;  ///< for the user: what is valid and probably not meant
 };

@@ -10,6 +10,7 @@
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/settings.hpp"
+#include "sim/scenario/tick_word.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -158,27 +159,6 @@ class Resolver {
   const SettingWord* word_;
 };
 
-/// A tick, or seconds with an `s`: the tick that begins then, or next.
-std::uint32_t parse_tick(const SettingWord& word, std::uint32_t tick_period_us) {
-  if (!word.tick) {
-    return 0;
-  }
-  if (word.tick->ends_with('s')) {
-    const std::optional<double> seconds = parse_number(std::string_view(*word.tick).substr(0, word.tick->size() - 1));
-    constexpr double longest = 1e7;
-    if (!seconds || *seconds < 0 || *seconds > longest) {
-      word.refuse("time " + in_quotes(*word.tick), "seconds from 0 to 10000000, such as 5s");
-    }
-    constexpr double tolerance = 1e-6;  // 0.07 s are seven ticks of 10 ms
-    return static_cast<std::uint32_t>(std::ceil(*seconds * 1e6 / tick_period_us - tolerance));
-  }
-  const std::optional<std::uint32_t> tick = parse_whole<std::uint32_t>(*word.tick);
-  if (!tick) {
-    word.refuse("tick " + in_quotes(*word.tick), "a whole number from 0 to 4294967295, or seconds such as 5s");
-  }
-  return *tick;
-}
-
 std::int32_t parse_internal_value(const InternalValue& internal, const SettingWord& word) {
   const DecimalResult result = parse_decimal(word.number, internal.unit);
   if (result.error != DecimalError::none) {
@@ -203,7 +183,7 @@ SettingTarget target_of(const Scenario& scenario, const SettingWord& word) {
     }
   }
   target.in_flight = meaning.internal || word.tick.has_value();
-  target.tick = parse_tick(word, scenario.kernel.tick_period_us);
+  target.tick = word.tick ? read_tick(word.word, *word.tick, scenario.kernel.tick_period_us) : 0;
   target.unit =
       meaning.internal ? declaration.internal_values[meaning.index].unit : declaration.parameters[meaning.index].unit;
   return target;

@@ -80,7 +80,7 @@ std::unique_ptr<XmlDocument> SourceSet::open(const XmlElement& mention, const st
   }
   if (text == nullptr) {
     mention.refuse("no such file " + in_quotes(reference),
-                   std::string(readable_file) + ", relative to the folder of this file or of the top-level file");
+                   readable_file + std::string(", relative to the folder of this file or of the top-level file"));
   }
 
   int depth = 0;

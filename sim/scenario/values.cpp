@@ -74,6 +74,11 @@ std::size_t checked_choice(const XmlElement& element, const LocatedText& located
 
 }  // namespace
 
+std::optional<double> parse_number_in(std::string_view word, const Range& range) {
+  const std::optional<double> value = parse_number(word);
+  return value && *value >= range.min && *value <= range.max ? value : std::nullopt;
+}
+
 double read_number(const XmlElement& element, const Range& range, std::initializer_list<std::string_view> attributes) {
   return checked_number(element, element.text(attributes), range);
 }

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,11 @@ inline constexpr Range lengths{1e-6, 1e4, "m"};
 inline constexpr Range masses{1e-6, 1e4, "kg"};
 inline constexpr Range densities{1e-9, 1e9, "kg/m^3"};
 inline constexpr Range frictions{0.0, 1e3, ""};
+
+inline constexpr Range turns{-360.0, 360.0, "degrees"};
+
+/// The whole word as a number in the range, or nothing.
+[[nodiscard]] std::optional<double> parse_number_in(std::string_view word, const Range& range);
 
 /// One number; the element may have only these attributes besides.
 [[nodiscard]] double read_number(const XmlElement& element, const Range& range,

@@ -7,6 +7,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/scenario/tag_scanner.hpp"
 #include "sim/scenario/unpaired_tag.hpp"
 
 namespace proleg::sim {
@@ -24,10 +25,6 @@ std::string listed_tags(std::span<const std::string_view> tags) {
     items.push_back("<" + std::string(tag) + ">");
   }
   return tags.empty() ? "no tags" : listed(items);
-}
-
-int line_at(std::string_view text, std::size_t position) {
-  return 1 + static_cast<int>(std::ranges::count(text.substr(0, position), '\n'));
 }
 
 /// Position of a character reference to the character 0, which XML does not allow and which would end the text early.

@@ -14,6 +14,7 @@
 #include "shared/fixed/decimal.hpp"
 #include "sim/record/recording_file.hpp"
 #include "sim/scenario/reader.hpp"
+#include "sim/scenario/robot_move.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
@@ -23,12 +24,20 @@ namespace {
 
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-/// The length of the run. Throws InputError if a change takes effect after it.
+/// The length of the run. Throws InputError if a change or a move takes effect after it.
 std::uint32_t checked_tick_count(const sim::Scenario& scenario) {
   const std::uint32_t ticks = sim::tick_count(scenario);
-  if (!scenario.changes.empty() && scenario.changes.back().tick >= ticks) {
-    throw InputError("--set", 0, "tick " + std::to_string(scenario.changes.back().tick),
-                     "a tick before the end of the run, below " + std::to_string(ticks));
+  const auto require_before_end = [ticks](const char* option, std::uint32_t tick) {
+    if (tick >= ticks) {
+      throw InputError(option, 0, "tick " + std::to_string(tick),
+                       "a tick before the end of the run, below " + std::to_string(ticks));
+    }
+  };
+  if (!scenario.changes.empty()) {
+    require_before_end("--set", scenario.changes.back().tick);
+  }
+  if (!scenario.moves.empty()) {
+    require_before_end("--move", scenario.moves.back().tick);
   }
   return ticks;
 }
@@ -56,6 +65,15 @@ void add_override_options(CommandLine& command_line, ScenarioOptions& options) {
   command_line.add_option("--heading", options.overrides.heading,
                           "degrees by which the start pose is turned about the vertical, to the left. The measures are "
                           "relative to this heading.");
+}
+
+void add_move_option(CommandLine& command_line, ScenarioOptions& options) {
+  command_line.add_option(
+      "--move", options.moves,
+      "X,Y,Z,DEGREES@TICK: put the robot elsewhere, as a hand does it: at a tick or a time (@5s) the "
+      "head's frame comes to X,Y,Z (metres), the robot is turned about the vertical to the left, "
+      "and rests. A robot inside the ground is lifted onto it. The measures leave the move out. "
+      "May be repeated.");
 }
 
 void add_scenario_options(CommandLine& command_line, ScenarioOptions& options) {
@@ -106,6 +124,9 @@ ScenarioRun prepare_run(const ScenarioOptions& options, sim::FileSource& files) 
       throw InputError("--seconds", 0, in_quotes(*options.seconds), "0.01 to 86400 seconds");
     }
     run.scenario.duration_s = *seconds;
+  }
+  for (const std::string& move : options.moves) {
+    sim::add_move(run.scenario, move);
   }
   run.ticks = checked_tick_count(run.scenario);
   if (options.losses) {

@@ -29,12 +29,15 @@ struct ScenarioOptions {
   std::optional<std::string> losses;
   sim::OverrideWords overrides;
   std::vector<std::string> settings;
+  std::vector<std::string> moves;
   bool verbose = false;
   bool json = false;
 };
 
 /// What replaces values of the scenario at the start of a run.
 void add_override_options(CommandLine& command_line, ScenarioOptions& options);
+/// --move, for programs that simulate the gait in memory.
+void add_move_option(CommandLine& command_line, ScenarioOptions& options);
 /// The scenario's file, the length of the run, and the same.
 void add_start_options(CommandLine& command_line, ScenarioOptions& options);
 /// All of the options.

@@ -151,5 +151,6 @@ int main(int argc, char** argv) {
   CommandLine command_line("proleg simulate", "Runs a scenario in the physics simulation and prints the results.");
   ScenarioOptions options;
   add_scenario_options(command_line, options);
+  add_move_option(command_line, options);
   return command_line.run(argc, argv, [&] { return simulate(options); });
 }

@@ -16,6 +16,7 @@
 #include "host/transport/bus_address.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/scenario/robot_move.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/built_page.hpp"
 #include "tools/proleg/bus_access.hpp"
@@ -61,13 +62,23 @@ class NewRobot final : public sim::FileSource {
   std::vector<NewFile> files_ = robot_files("ppppp");
 };
 
-ScenarioRun prepare(ScenarioOptions& options) {
-  if (!options.file.empty()) {
-    return prepare_run(options);
+/// The scenario; for a simulation as its files have it, because the session applies the settings.
+ScenarioRun prepare(ScenarioOptions& options, bool is_simulated) {
+  NewRobot new_robot;
+  const bool has_file = !options.file.empty();
+  if (!has_file) {
+    options.file = new_robot.name();
   }
-  NewRobot files;
-  options.file = files.name();
-  return prepare_run(options, files);
+  ScenarioOptions as_file = options;
+  if (is_simulated) {
+    as_file.settings.clear();
+  }
+  as_file.moves.clear();
+  ScenarioRun run = has_file ? prepare_run(as_file) : prepare_run(as_file, new_robot);
+  for (const std::string& move : options.moves) {
+    sim::add_move(run.scenario, move);  // also after the duration in the file: the run has no end
+  }
+  return run;
 }
 
 /// In quotes for a shell, if it needs them.
@@ -100,6 +111,9 @@ std::string simulate_command(const UiOptions& options, bool has_file) {
   }
   for (const std::string& word : scenario.settings) {
     command += " --set " + shell_word(word);
+  }
+  for (const std::string& word : scenario.moves) {
+    command += " --move " + shell_word(word);
   }
   return command;
 }
@@ -139,6 +153,7 @@ host::BindingStore bindings_beside(const UiOptions& options, bool has_file, cons
 void refuse_what_only_a_simulation_has(const UiOptions& options) {
   const sim::OverrideWords& overrides = options.scenario.overrides;
   const std::pair<const char*, bool> given[] = {{"--paused", options.paused},
+                                                {"--move", !options.scenario.moves.empty()},
                                                 {"--friction", overrides.friction.has_value()},
                                                 {"--at", overrides.at.has_value()},
                                                 {"--heading", overrides.heading.has_value()}};
@@ -153,7 +168,7 @@ int serve(UiOptions& options) {
   const bool has_file = !options.scenario.file.empty();
   const std::uint16_t port = parse_port(options.port);
   require_folder(options.recordings);
-  const ScenarioRun run = prepare(options.scenario);
+  const ScenarioRun run = prepare(options.scenario, !options.bus.bus);
   print_warnings("proleg ui", run.scenario);
   const std::filesystem::path page_folder =
       options.page ? std::filesystem::path(*options.page) : built_page("page", "index.html");
@@ -181,10 +196,10 @@ int serve(UiOptions& options) {
     driven.emplace(run.scenario, *bus, options.bus.address(), BusSessionOptions{options.recordings, build_id}, requests,
                    remote);
   } else {
-    simulated.emplace(
-        run.scenario, &run.losses,
-        SimulatedSessionOptions{options.recordings, simulate_command(options, has_file), build_id, options.paused},
-        requests, remote);
+    simulated.emplace(run.scenario, &run.losses,
+                      SimulatedSessionOptions{options.recordings, simulate_command(options, has_file),
+                                              options.scenario.settings, has_file, build_id, options.paused},
+                      requests, remote);
   }
   const PageAddress address(page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
@@ -214,6 +229,7 @@ int main(int argc, char** argv) {
   UiOptions options;
   command_line.add_option("FILE", options.scenario.file, "scenario, a *.simulation.xml file");
   add_override_options(command_line, options.scenario);
+  add_move_option(command_line, options.scenario);
   command_line
       .add_option("--bus", options.bus.bus,
                   "show and drive the robot on this bus instead of a simulated one: " + host::bus_address_syntax())

@@ -1,7 +1,7 @@
 // Which dialog is open.
 import { signal } from '@preact/signals-core';
 
-export type Dialog = 'none' | 'keys' | 'palette' | 'command_line';
+export type Dialog = 'none' | 'keys' | 'palette' | 'command_line' | 'file_diff' | 'value_table';
 
 export const openDialog = signal<Dialog>('none');
 

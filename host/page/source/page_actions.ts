@@ -11,10 +11,15 @@ export function recordOrEnd({ state, operations }: PageApp): void {
 }
 
 export function addActions(app: PageApp): void {
-  const { state, time, operations } = app;
+  const { state, time, marks, operations } = app;
   const isHolder = () => state.isHolder.value;
   const isRunning = () => state.session.value?.state === 'running';
   const tell: typeof operations.tell = (name, parameters) => operations.tell(name, parameters);
+
+  const moveCursor = (ticks: number) => {
+    marks.pause();
+    time.moveCursor(ticks, app.newestTick);
+  };
 
   app.actions.add(
     {
@@ -39,6 +44,14 @@ export function addActions(app: PageApp): void {
       keys: ['.'],
       isEnabled: isHolder,
       run: () => void tell('step', { ticks: 1 }),
+    },
+    {
+      id: 'move_robot',
+      title: 'Move the robot by hand, while paused, or end that',
+      group: 'Robot',
+      keys: ['G'],
+      isEnabled: () => app.mover.isPossible.value,
+      run: () => (app.mover.isOn.value = !app.mover.isOn.value),
     },
     {
       id: 'restart',
@@ -85,29 +98,53 @@ export function addActions(app: PageApp): void {
       title: 'Time cursor: one tick back',
       group: 'View',
       keys: ['ArrowLeft'],
-      run: () => time.moveCursor(-1, app.newestTick),
+      run: () => moveCursor(-1),
     },
     {
       id: 'tick_on',
       title: 'Time cursor: one tick on',
       group: 'View',
       keys: ['ArrowRight'],
-      run: () => time.moveCursor(1, app.newestTick),
+      run: () => moveCursor(1),
     },
     {
       id: 'second_back',
       title: 'Time cursor: one second back',
       group: 'View',
       keys: ['Shift+ArrowLeft'],
-      run: () => time.moveCursor(-app.tickRate, app.newestTick),
+      run: () => moveCursor(-app.tickRate),
     },
     {
       id: 'second_on',
       title: 'Time cursor: one second on',
       group: 'View',
       keys: ['Shift+ArrowRight'],
-      run: () => time.moveCursor(app.tickRate, app.newestTick),
+      run: () => moveCursor(app.tickRate),
     },
+    { id: 'mark', title: 'Set a marker at the time cursor', group: 'View', keys: ['M'], run: () => marks.mark(app.newestTick) },
+    {
+      id: 'loop_start',
+      title: 'Loop: begin at the time cursor',
+      group: 'View',
+      keys: ['['],
+      run: () => marks.setLoopStart(app.newestTick),
+    },
+    {
+      id: 'loop_end',
+      title: 'Loop: end at the time cursor',
+      group: 'View',
+      keys: [']'],
+      run: () => marks.setLoopEnd(app.newestTick),
+    },
+    {
+      id: 'loop_play',
+      title: 'Loop: play, or pause',
+      group: 'View',
+      keys: ['O'],
+      isEnabled: () => marks.range.value !== null,
+      run: () => marks.playOrPause(app.newestTick),
+    },
+    { id: 'loop_remove', title: 'Loop: remove', group: 'View', keys: [], run: () => marks.removeLoop() },
     {
       id: 'undo',
       title: 'Undo the last change of parameters',
@@ -148,6 +185,20 @@ export function addActions(app: PageApp): void {
       group: 'Parameters',
       keys: ['X'],
       run: () => toggleDialog('command_line'),
+    },
+    {
+      id: 'value_table',
+      title: 'Table of all values: copy and paste as in a spreadsheet',
+      group: 'Parameters',
+      keys: ['V'],
+      run: () => toggleDialog('value_table'),
+    },
+    {
+      id: 'apply_to_file',
+      title: 'Apply to file: write the values of parameters',
+      group: 'Parameters',
+      keys: ['W'],
+      run: () => toggleDialog('file_diff'),
     },
     {
       id: 'palette',

@@ -3,11 +3,13 @@ import { effect, signal } from '@preact/signals-core';
 import { TelemetryHistory } from './data/telemetry_history.js';
 import type { RobotView } from './robot_view.js';
 import { ActionList } from './state/actions.js';
+import { MoveTool } from './state/move_tool.js';
 import { OperationQueue } from './state/operations.js';
 import { PageState } from './state/page_state.js';
 import { SetQueue } from './state/set_queue.js';
 import { SignalSelection } from './state/signal_selection.js';
 import { StopControl } from './state/stop_report.js';
+import { TimeMarks } from './state/time_marks.js';
 import { TimeView } from './state/time_view.js';
 import type { FromConnectionWorker, ToConnectionWorker } from './wire/connection_worker.js';
 import { decodeTelemetry } from './wire/telemetry_message.js';
@@ -18,11 +20,13 @@ export class PageApp implements RobotView {
   readonly state = new PageState();
   readonly history = new TelemetryHistory();
   readonly time = new TimeView();
+  readonly marks = new TimeMarks(this.time);
   readonly selection = new SignalSelection();
   readonly actions = new ActionList();
   readonly wholePath = signal(null);
   readonly operations: OperationQueue;
   readonly sets: SetQueue;
+  readonly mover: MoveTool;
   readonly stop: StopControl;
   private readonly worker = new Worker('connection_worker.js');
   private subscriptions = new Subscriptions();
@@ -37,6 +41,7 @@ export class PageApp implements RobotView {
       reset: (names) => this.operations.ask('reset', { names }),
       refused: (reason) => this.state.addNotice('warning', reason),
     });
+    this.mover = new MoveTool(this.state, (place) => this.operations.tell('move', { ...place }));
     const url = `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/socket`;
     const channel = openStopChannel(url, token, name);
     this.stop = new StopControl(channel);
@@ -88,6 +93,7 @@ export class PageApp implements RobotView {
     if (run !== undefined && this.sessionRun !== null && run !== this.sessionRun && run !== this.history.run) {
       this.history.clear();
       this.time.goLive();
+      this.marks.clear();
     }
     this.sessionRun = run ?? null;
   }
@@ -118,6 +124,7 @@ export class PageApp implements RobotView {
     }
     if (telemetry.run !== this.history.run) {
       this.time.goLive();
+      this.marks.clear();
     }
     this.history.append(telemetry, layout);
   }

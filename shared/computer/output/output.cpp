@@ -1,6 +1,7 @@
 #include "shared/computer/output/output.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -53,6 +54,11 @@ void Output::open_new_file() {
   if (!is_unnamed_ && (errno == EOPNOTSUPP || errno == EISDIR || errno == EINVAL)) {
     temporary_ = temporary_name(folder);
     descriptor_ = open(temporary_.c_str(), O_WRONLY | O_CLOEXEC | O_CREAT | O_EXCL, 0666);
+  }
+  constexpr mode_t permissions = 0777;
+  struct stat before {};
+  if (descriptor_ >= 0 && stat(path_.c_str(), &before) == 0) {
+    fchmod(descriptor_, before.st_mode & permissions);  // fails on file systems without permissions
   }
 }
 

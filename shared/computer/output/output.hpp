@@ -15,9 +15,10 @@ namespace proleg {
 [[nodiscard]] std::filesystem::path temporary_name(const std::filesystem::path& folder);
 
 /// The file into which a tool writes its result. The file appears under its name only when it is complete: the data
-/// goes into a file without a name, which ends with the process, however that ends; finish() gives it the name. (A file
-/// system that has no such files gets a temporary one, which a signal can leave behind. An existing target that is not
-/// an ordinary file, such as a pipe or a device, is written directly.)
+/// goes into a file without a name, which ends with the process, however that ends; finish() gives it the name. It gets
+/// the permissions of the file that it replaces. (A file system that has no such files gets a temporary one, which a
+/// signal can leave behind. An existing target that is not an ordinary file, such as a pipe or a device, is written
+/// directly.)
 class Output {
  public:
   /// Throws FileError if the file cannot be created.

@@ -35,6 +35,15 @@ TEST(Output, LeavesNothingIfItIsNotFinished) {
   EXPECT_EQ(file_contents(folder / "table.tsv"), "earlier");
 }
 
+TEST(Output, KeepsThePermissionsOfTheFileThatItReplaces) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "table.tsv") << "earlier";
+  const auto secret = std::filesystem::perms::owner_read | std::filesystem::perms::owner_write;
+  std::filesystem::permissions(folder / "table.tsv", secret);
+  write_file(folder / "table.tsv", "later");
+  EXPECT_EQ(std::filesystem::status(folder / "table.tsv").permissions(), secret);
+}
+
 TEST(Output, LeavesNothingIfTheProcessIsKilled) {
   const TemporaryFolder folder;
   const pid_t child = fork();

@@ -22,7 +22,7 @@
 namespace proleg::sim {
 namespace {
 
-/// A recording that has rows in every table: changes, a distortion, losses, a restart, faults.
+/// A recording that has rows in every table: changes, a distortion, losses, a restart, faults, a move.
 void record_eventful_run(const std::filesystem::path& path) {
   Scenario scenario = shipped("travelling_wave/coupled");
   apply_setting(scenario, "amplitude=20@3");
@@ -46,7 +46,12 @@ void record_eventful_run(const std::filesystem::path& path) {
     for (const RestartEvent& event : loop.restart_events()) {
       recorder.record_restart(loop.tick() - 1, event.joint, event.joined);
     }
-    recorder.record_tick(loop.sample());
+    TickSample sample = loop.sample();
+    const RobotMove moves[] = {{sample.tick, {0.1, 0.2, 0.05}, 30.0}};
+    if (sample.tick == 10) {
+      sample.moves = moves;
+    }
+    recorder.record_tick(sample);
   }
   recorder.finish({{"setpoint_hash", loop.setpoint_hash().hex()}, {"servo_hash", loop.servo_hash().hex()}});
 }

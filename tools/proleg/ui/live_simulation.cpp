@@ -6,9 +6,12 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
+#include "sim/loop/robot_placement.hpp"
 #include "sim/scenario/reader.hpp"
+#include "sim/scenario/robot_move.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/simulation_results.hpp"
+#include "tools/proleg/ui/actuation_file.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -21,14 +24,27 @@ sim::Scenario without_sources(sim::Scenario scenario) {
 
 ParameterPlace place_of(const sim::Setting& setting) { return {setting.slot, setting.joint, setting.index}; }
 
+sim::Scenario with_settings(sim::Scenario scenario, const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    sim::apply_setting(scenario, word);
+  }
+  return scenario;
+}
+
 sim::Setting setting_of(const ParameterPlace& place, std::int32_t value) {
   return {place.slot, place.joint, place.index, false, value};
 }
 
 }  // namespace
 
-LiveSimulation::LiveSimulation(const sim::Scenario& file, const sim::Losses* losses)
-    : file_(file), losses_(losses), scenario_(file), scratch_(without_sources(file)), parameters_(file) {
+LiveSimulation::LiveSimulation(sim::Scenario file, std::vector<std::string> settings, const sim::Losses* losses)
+    : file_(std::move(file)),
+      settings_(std::move(settings)),
+      given_(with_settings(file_, settings_)),
+      losses_(losses),
+      scenario_(given_),
+      scratch_(without_sources(file_)),
+      parameters_(file_, given_) {
   for (const ParameterPlace& place : parameters_.places()) {
     other_set_.push_back(parameters_.at(place).file);
   }
@@ -135,6 +151,33 @@ std::vector<ParameterPlace> LiveSimulation::places_of(const std::string& name) c
   return places;
 }
 
+std::vector<sim::ActuationEdit> LiveSimulation::file_edits() const {
+  sim::Scenario wanted = without_sources(file_);
+  for (const ParameterPlace& place : parameters_.places()) {
+    sim::set_start_value(wanted, setting_of(place, parameters_.at(place).wanted));
+  }
+  return sim::actuation_edits(file_, wanted);
+}
+
+void LiveSimulation::apply_to_file(std::span<const sim::ActuationEdit> edits) {
+  file_ = write_actuation(file_, edits);
+  given_ = with_settings(file_, settings_);
+  parameters_.set_file(file_);
+  ++revision_;
+}
+
+void LiveSimulation::move(const std::string& place) {
+  scratch_.moves.clear();
+  sim::add_move(scratch_, place + '@' + std::to_string(simulation_->tick()));
+  const sim::RobotMove& move = scratch_.moves.front();
+  simulation_->apply_moves();  // those of the command line come before
+  static_cast<void>(sim::placement(move, simulation_->plant().link_poses(), scenario_));
+  scenario_.moves.insert(std::ranges::upper_bound(scenario_.moves, move.tick, {}, &sim::RobotMove::tick), move);
+  live_moves_.push_back(move);
+  simulation_->apply_moves();
+  ++revision_;
+}
+
 void LiveSimulation::restart(StartValues values) {
   end_recording();
   if (values == StartValues::file) {
@@ -143,8 +186,11 @@ void LiveSimulation::restart(StartValues values) {
   for (const ParameterPlace& place : parameters_.places()) {
     sim::set_start_value(scenario_, setting_of(place, parameters_.at(place).wanted));
   }
-  scenario_.changes = file_.changes;
+  scenario_.changes = given_.changes;
+  scenario_.moves = given_.moves;
+  scenario_.sources = file_.sources;
   live_.clear();
+  live_moves_.clear();
   lost_frames_ = 0;
   parameters_.begin_run();
   ++revision_;
@@ -191,7 +237,7 @@ std::vector<std::string> LiveSimulation::repeating_words() const {
   std::vector<LiveSetting> start;
   for (const ParameterPlace& place : parameters_.places()) {
     const std::int32_t value = sim::start_value(scenario_, place.slot, place.joint, place.index);
-    if (value != parameters_.at(place).file) {
+    if (value != sim::start_value(given_, place.slot, place.joint, place.index)) {
       start.push_back({0, setting_of(place, value)});
     }
   }
@@ -199,6 +245,16 @@ std::vector<std::string> LiveSimulation::repeating_words() const {
   std::vector<LiveSetting> past = live_;
   std::erase_if(past, [this](const LiveSetting& live) { return live.tick >= simulation_->tick(); });
   add_words(std::move(past), true, words);
+  return words;
+}
+
+std::vector<std::string> LiveSimulation::repeating_moves() const {
+  std::vector<std::string> words;
+  for (const sim::RobotMove& move : live_moves_) {
+    if (move.tick < simulation_->tick()) {
+      words.push_back(sim::move_text(move));
+    }
+  }
   return words;
 }
 
@@ -213,6 +269,7 @@ bool LiveSimulation::record(const std::filesystem::path& path, const std::string
     }
     record_tick(*recorder, *again, again->advance());
   }
+  again->apply_moves();
   simulation_ = std::move(again);
   recorder_ = std::move(recorder);
   ++revision_;

@@ -8,12 +8,14 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "sim/loop/simulation.hpp"
 #include "sim/record/recorder.hpp"
+#include "sim/scenario/actuation_edit.hpp"
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/ui/change_history.hpp"
@@ -26,8 +28,9 @@ class LiveSimulation {
   /// What the parameters are at tick 0 of a new run.
   enum class StartValues : std::uint8_t { wanted, file };
 
-  /// file: the scenario as the user gave it; must outlive this, as losses. Throws as Simulation does.
-  LiveSimulation(const sim::Scenario& file, const sim::Losses* losses);
+  /// file: the scenario as its files have it. settings: words of --set that the runs begin with. losses: must outlive
+  /// this. Throws as Simulation does, and InputError for a setting.
+  LiveSimulation(sim::Scenario file, std::vector<std::string> settings, const sim::Losses* losses);
   LiveSimulation(const LiveSimulation&) = delete;
   LiveSimulation& operator=(const LiveSimulation&) = delete;
 
@@ -45,6 +48,15 @@ class LiveSimulation {
   void reset(const std::vector<ParameterPlace>& places);
   /// The place that a name like those of set() means, of each joint that it means. Throws InputError.
   [[nodiscard]] std::vector<ParameterPlace> places_of(const std::string& name) const;
+
+  /// What the actuation file lacks of the wanted parameters.
+  [[nodiscard]] std::vector<sim::ActuationEdit> file_edits() const;
+  /// Writes some of file_edits() into the actuation file. Throws as write_actuation() does.
+  void apply_to_file(std::span<const sim::ActuationEdit> edits);
+
+  /// Puts the robot elsewhere at the present tick. place: X,Y,Z,DEGREES as for --move. Throws InputError, and then
+  /// moves nothing.
+  void move(const std::string& place);
 
   /// A new run, from tick 0.
   void restart(StartValues values);
@@ -68,13 +80,17 @@ class LiveSimulation {
   /// As Simulation::sample().
   [[nodiscard]] sim::TickSample sample() { return simulation_->sample(); }
   [[nodiscard]] const sim::Scenario& scenario() const { return scenario_; }
+  [[nodiscard]] const sim::Scenario& file() const { return file_; }
   [[nodiscard]] const ParameterTable& parameters() const { return parameters_; }
   [[nodiscard]] const ChangeHistory& history() const { return history_; }
   /// Counts what changes parameters(), history() or set_name().
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
 
-  /// The words for `proleg simulate FILE` that repeat the run up to now, without the options that `file` was read with.
+  /// The words for `proleg simulate FILE` that repeat the run up to now, after the settings that the runs begin with
+  /// and without the options that `file` was read with.
   [[nodiscard]] std::vector<std::string> repeating_words() const;
+  /// The same for the words of --move.
+  [[nodiscard]] std::vector<std::string> repeating_moves() const;
 
  private:
   struct LiveSetting {
@@ -93,7 +109,9 @@ class LiveSimulation {
   void schedule_each(const std::vector<sim::Setting>& settings);
   void add_words(std::vector<LiveSetting> settings, bool with_tick, std::vector<std::string>& words) const;
 
-  const sim::Scenario& file_;
+  sim::Scenario file_;
+  std::vector<std::string> settings_;
+  sim::Scenario given_;  ///< file_ with settings_
   const sim::Losses* losses_;
   sim::Scenario scenario_;  ///< of the present run, with all changes
   sim::Scenario scratch_;   ///< to read words with
@@ -105,7 +123,8 @@ class LiveSimulation {
   ChangeHistory history_;
   std::vector<std::int32_t> other_set_;  ///< in the order of places()
   bool is_set_b_ = false;
-  std::vector<LiveSetting> live_;  ///< of the present run, by ascending tick
+  std::vector<LiveSetting> live_;           ///< of the present run, by ascending tick
+  std::vector<sim::RobotMove> live_moves_;  ///< of the present run, by ascending tick
   std::uint64_t revision_ = 1;
 };
 

@@ -9,7 +9,7 @@
 
 namespace proleg::tools {
 
-ParameterEdits::ParameterEdits(const sim::Scenario& file) : file_(file), scratch_(file), parameters_(file) {
+ParameterEdits::ParameterEdits(const sim::Scenario& file) : file_(file), scratch_(file), parameters_(file, file) {
   scratch_.sources.clear();  // they are not needed, and cost time to copy
 }
 

@@ -5,10 +5,10 @@
 
 namespace proleg::tools {
 
-ParameterTable::ParameterTable(const sim::Scenario& scenario)
-    : joints_(scenario.kernel.joint_count), values_(max_slots * max_parameters * joints_) {
-  for (const unsigned slot : sim::used_slots(scenario)) {
-    const Slot& used = scenario.kernel.slots[slot];
+ParameterTable::ParameterTable(const sim::Scenario& file, const sim::Scenario& start)
+    : joints_(file.kernel.joint_count), values_(max_slots * max_parameters * joints_) {
+  for (const unsigned slot : sim::used_slots(file)) {
+    const Slot& used = file.kernel.slots[slot];
     const std::size_t parameters = used.algorithm->declaration().parameters.size();
     for (unsigned index = 0; index < parameters; ++index) {
       for (unsigned joint = 0; joint < joints_; ++joint) {
@@ -18,11 +18,12 @@ ParameterTable::ParameterTable(const sim::Scenario& scenario)
         const ParameterPlace place{static_cast<std::uint8_t>(slot), static_cast<std::uint8_t>(joint),
                                    static_cast<std::uint8_t>(index)};
         places_.push_back(place);
-        const std::int32_t value = sim::start_value(scenario, slot, joint, index);
-        values_[position(place)] = {value, value, value, 0};
+        const std::int32_t value = sim::start_value(start, slot, joint, index);
+        values_[position(place)] = {0, value, value, 0};
       }
     }
   }
+  set_file(file);
 }
 
 void ParameterTable::confirm(const ParameterPlace& place, std::int32_t value, std::uint32_t tick) {
@@ -41,6 +42,12 @@ void ParameterTable::begin_run() {
 void ParameterTable::want_file_values() {
   for (Values& values : values_) {
     values.wanted = values.file;
+  }
+}
+
+void ParameterTable::set_file(const sim::Scenario& file) {
+  for (const ParameterPlace& place : places_) {
+    values_[position(place)].file = sim::start_value(file, place.slot, place.joint, place.index);
   }
 }
 

@@ -29,8 +29,8 @@ class ParameterTable {
     std::uint32_t tick = 0;  ///< from which the confirmed value holds
   };
 
-  /// All three are the start values of the scenario.
-  explicit ParameterTable(const sim::Scenario& scenario);
+  /// file: as the files have it. start: the same with other start values: those of a new run.
+  ParameterTable(const sim::Scenario& file, const sim::Scenario& start);
 
   [[nodiscard]] const Values& at(const ParameterPlace& place) const { return values_[position(place)]; }
   void want(const ParameterPlace& place, std::int32_t value) { values_[position(place)].wanted = value; }
@@ -39,6 +39,8 @@ class ParameterTable {
   void begin_run();
   /// What is wanted is again what the file says.
   void want_file_values();
+  /// The files have changed.
+  void set_file(const sim::Scenario& file);
 
   /// Every parameter of every joint, in the order of slot, parameter, joint.
   [[nodiscard]] const std::vector<ParameterPlace>& places() const { return places_; }

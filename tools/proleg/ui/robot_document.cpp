@@ -16,11 +16,6 @@ using nlohmann::json;
 
 json vector_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
-json pose_json(const sim::Pose& pose) {
-  const Eigen::Quaterniond& turn = pose.orientation;
-  return {pose.position.x(), pose.position.y(), pose.position.z(), turn.w(), turn.x(), turn.y(), turn.z()};
-}
-
 json shapes_json(std::span<const sim::Geometry> geometries) {
   json shapes = json::array();
   for (const sim::Geometry& geometry : geometries) {
@@ -122,6 +117,11 @@ json internal_value_json(const sim::Scenario& scenario, unsigned slot, const Int
 }
 
 }  // namespace
+
+json pose_json(const sim::Pose& pose) {
+  const Eigen::Quaterniond& turn = pose.orientation;
+  return {pose.position.x(), pose.position.y(), pose.position.z(), turn.w(), turn.x(), turn.y(), turn.z()};
+}
 
 json robot_document(const sim::Scenario& scenario, std::string_view kind) {
   json terrain = json::array();

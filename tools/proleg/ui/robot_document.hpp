@@ -10,6 +10,9 @@
 
 namespace proleg::tools {
 
+/// [x, y, z, qw, qx, qy, qz]
+[[nodiscard]] nlohmann::json pose_json(const sim::Pose& pose);
+
 /// The document `robot`. kind: "simulation", "bus" or "recording".
 [[nodiscard]] nlohmann::json robot_document(const sim::Scenario& scenario, std::string_view kind);
 

@@ -12,6 +12,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/measure/measure.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "tools/proleg/ui/actuation_file.hpp"
 #include "tools/proleg/ui/operation_arguments.hpp"
 #include "tools/proleg/ui/recording_place.hpp"
 #include "tools/proleg/ui/robot_document.hpp"
@@ -52,7 +53,7 @@ SimulatedSession::SimulatedSession(const sim::Scenario& scenario, const sim::Los
       options_(std::move(options)),
       requests_(requests),
       output_(output),
-      live_(scenario, losses),
+      live_(scenario, options_.settings, losses),
       pace_(scenario.kernel.tick_period_us),
       state_(options_.starts_paused ? State::paused : State::running) {
   output_.publish("robot", robot_document(scenario, "simulation"));
@@ -136,14 +137,22 @@ void SimulatedSession::take_operations() {
 }
 
 json SimulatedSession::carry_out(const host::OperationRequest& operation) {
-  static const std::map<std::string_view, Handler> handlers{
-      {"run", &SimulatedSession::go_on},         {"pause", &SimulatedSession::pause},
-      {"step", &SimulatedSession::step},         {"restart", &SimulatedSession::restart},
-      {"factor", &SimulatedSession::set_factor}, {"set", &SimulatedSession::set},
-      {"undo", &SimulatedSession::undo},         {"redo", &SimulatedSession::redo},
-      {"swap", &SimulatedSession::swap},         {"reset", &SimulatedSession::reset},
-      {"record", &SimulatedSession::record},     {"command_line", &SimulatedSession::tell_command_line},
-      {"ping", &SimulatedSession::ping}};
+  static const std::map<std::string_view, Handler> handlers{{"run", &SimulatedSession::go_on},
+                                                            {"pause", &SimulatedSession::pause},
+                                                            {"step", &SimulatedSession::step},
+                                                            {"restart", &SimulatedSession::restart},
+                                                            {"factor", &SimulatedSession::set_factor},
+                                                            {"set", &SimulatedSession::set},
+                                                            {"undo", &SimulatedSession::undo},
+                                                            {"redo", &SimulatedSession::redo},
+                                                            {"swap", &SimulatedSession::swap},
+                                                            {"reset", &SimulatedSession::reset},
+                                                            {"move", &SimulatedSession::move},
+                                                            {"record", &SimulatedSession::record},
+                                                            {"command_line", &SimulatedSession::tell_command_line},
+                                                            {"file.diff", &SimulatedSession::tell_file_diff},
+                                                            {"file.apply", &SimulatedSession::apply_to_file},
+                                                            {"ping", &SimulatedSession::ping}};
   const auto handler = handlers.find(operation.name);
   if (handler == handlers.end()) {
     std::vector<std::string> names;
@@ -159,6 +168,12 @@ json SimulatedSession::carry_out(const host::OperationRequest& operation) {
 void SimulatedSession::require_sound() const {
   if (state_ == State::failed) {
     throw std::runtime_error("the simulation has failed; restart it");
+  }
+}
+
+void SimulatedSession::require_file() const {
+  if (!options_.has_file) {
+    throw std::runtime_error("this robot has no file; `proleg new robot --joints 5` writes one like it");
   }
 }
 
@@ -252,6 +267,24 @@ json SimulatedSession::reset(const json& arguments) {
   return json::object();
 }
 
+json SimulatedSession::move(const json& arguments) {
+  require_sound();
+  if (state_ != State::paused || steps_left_ > 0) {
+    throw InputError("move", 0, "a simulation that is not paused", "a paused one");
+  }
+  const auto position = argument<std::vector<double>>(arguments, "position", "three numbers");
+  if (!position || position->size() != 3) {
+    throw InputError("position", 0, position ? std::to_string(position->size()) + " numbers" : "none", "three numbers");
+  }
+  std::string place;
+  for (const double coordinate : *position) {
+    place += exact_text(coordinate) + ',';
+  }
+  live_.move(place + exact_text(argument<double>(arguments, "turn", "degrees").value_or(0.0)));
+  is_session_new_ = true;
+  return {{"tick", live_.simulation().tick()}};
+}
+
 json SimulatedSession::record(const json& arguments) {
   const auto file = argument<std::string>(arguments, "file", "a file name");
   is_session_new_ = true;
@@ -264,12 +297,29 @@ json SimulatedSession::record(const json& arguments) {
   return {{"file", recording_}};
 }
 
+json SimulatedSession::tell_file_diff(const json& /*arguments*/) {
+  require_file();
+  return file_diff_json(live_.file(), live_.file_edits());
+}
+
+json SimulatedSession::apply_to_file(const json& arguments) {
+  require_file();
+  const std::vector<sim::ActuationEdit> edits = chosen_edits(live_.file(), live_.file_edits(), arguments);
+  live_.apply_to_file(edits);
+  output_.notice(host::NoticeLevel::info,
+                 "wrote " + std::to_string(edits.size()) + " changes into " + one_line(live_.file().actuation_file));
+  return {{"written", edits.size()}};
+}
+
 json SimulatedSession::ping(const json& /*arguments*/) { return json::object(); }
 
 json SimulatedSession::tell_command_line(const json& /*arguments*/) {
   std::string text = options_.command;
   for (const std::string& word : live_.repeating_words()) {
     text += " --set " + word;
+  }
+  for (const std::string& word : live_.repeating_moves()) {
+    text += " --move " + word;
   }
   return {{"text", text + " --seconds " + exact_text(live_.simulation().time_s())}};
 }
@@ -341,6 +391,8 @@ void SimulatedSession::publish_session(Clock::time_point now) {
                       {"tick", simulation.tick()},
                       {"time_s", simulation.time_s()},
                       {"stopped_by", text_or_null(stopped_by_)},
+                      {"head", pose_json(simulation.plant().link_poses().front())},
+                      {"moved", simulation.was_moved()},
                       {"recording", text_or_null(recording_)},
                       {"changed", is_changed},
                       {"undo", text_or_null(entry_name(live_.history().to_undo()))},

@@ -21,16 +21,18 @@
 namespace proleg::tools {
 
 struct SimulatedSessionOptions {
-  std::filesystem::path recordings;  ///< the folder of all recordings
-  std::string command;               ///< that simulates the same scenario: "proleg simulate FILE ..."
+  std::filesystem::path recordings;   ///< the folder of all recordings
+  std::string command;                ///< that simulates the same scenario: "proleg simulate FILE ..."
+  std::vector<std::string> settings;  ///< words of --set that the runs begin with; the command has them too
+  bool has_file = true;               ///< the files of the scenario are on disk
   std::string build_id;
   bool starts_paused = false;
 };
 
 class SimulatedSession {
  public:
-  /// Does what `requests` has, and tells it `output`. scenario, losses, requests, output: must outlive the session.
-  /// Throws as Simulation does.
+  /// Does what `requests` has, and tells it `output`. scenario: as its files have it. scenario, losses, requests,
+  /// output: must outlive the session. Throws as LiveSimulation does.
   SimulatedSession(const sim::Scenario& scenario, const sim::Losses* losses, SimulatedSessionOptions options,
                    host::SessionRequests& requests, host::SessionOutput& output);
   /// Ends the thread, and a recording.
@@ -39,7 +41,7 @@ class SimulatedSession {
   SimulatedSession& operator=(const SimulatedSession&) = delete;
 
   /// Operations that anybody may use.
-  [[nodiscard]] static std::vector<std::string> free_operations() { return {"command_line", "ping"}; }
+  [[nodiscard]] static std::vector<std::string> free_operations() { return {"command_line", "file.diff", "ping"}; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -61,6 +63,7 @@ class SimulatedSession {
   void publish_session(Clock::time_point now);
   void publish_changes();
   void require_sound() const;
+  void require_file() const;
 
   // The operations: take their arguments and return the value of the answer, or throw.
   using Handler = nlohmann::json (SimulatedSession::*)(const nlohmann::json&);
@@ -74,7 +77,10 @@ class SimulatedSession {
   nlohmann::json redo(const nlohmann::json& arguments);
   nlohmann::json swap(const nlohmann::json& arguments);
   nlohmann::json reset(const nlohmann::json& arguments);
+  nlohmann::json move(const nlohmann::json& arguments);
   nlohmann::json record(const nlohmann::json& arguments);
+  nlohmann::json tell_file_diff(const nlohmann::json& arguments);
+  nlohmann::json apply_to_file(const nlohmann::json& arguments);
   nlohmann::json ping(const nlohmann::json& arguments);
   nlohmann::json tell_command_line(const nlohmann::json& arguments);
 

@@ -1,11 +1,14 @@
-// The dialogs: keys, palette, command line. They are not modal: STOP must stay within reach, by mouse too. Esc is STOP in
-// them as everywhere; they close with their key, their button, or a click beside them.
-import type { ComponentChildren } from 'preact';
-import { useEffect, useRef, useState } from 'preact/hooks';
+// The dialogs: keys, palette, command line, and those that are loaded when they are opened.
+import { useEffect, useState } from 'preact/hooks';
 import type { PageApp } from '../page_app.js';
 import type { Action, ActionList } from '../state/actions.js';
 import { openDialog } from '../dialogs.js';
-import { closeIcon, copyIcon } from './icons.js';
+import { Dialog } from './dialog.js';
+import { copyIcon } from './icons.js';
+import { LaterView, loadLater } from './later_view.js';
+
+const fileDiff = loadLater(() => import('./file_diff_dialog.js').then((module) => module.FileDiffDialog));
+const valueTable = loadLater(() => import('./value_table_dialog.js').then((module) => module.ValueTableDialog));
 
 const keyNames: Record<string, string> = {
   Escape: 'Esc',
@@ -18,36 +21,6 @@ export function keyText(key: string): string {
     .split('+')
     .map((part) => keyNames[part] ?? part)
     .join(' + ');
-}
-
-function close(): void {
-  openDialog.value = 'none';
-}
-
-export function Dialog({ title, children }: { title: string; children: ComponentChildren }) {
-  const dialog = useRef<HTMLDivElement>(null);
-  useEffect(() => {
-    const before = document.activeElement;
-    const find = (tag: string) => dialog.current?.querySelector<HTMLElement>(tag);
-    (find('input') ?? find('button'))?.focus();
-    return () => {
-      if (before instanceof HTMLElement) before.focus();
-    };
-  }, []);
-  return (
-    <>
-    <div class="backdrop" onClick={close} />
-    <div ref={dialog} class="dialog" role="dialog" aria-label={title}>
-      <div class="dialog-head">
-        <h2>{title}</h2>
-        <button type="button" class="icon-button" aria-label="Close" onClick={close}>
-          {closeIcon}
-        </button>
-      </div>
-      {children}
-    </div>
-    </>
-  );
 }
 
 export function Keys({ actions, hint }: { actions: ActionList; hint: string }) {
@@ -177,6 +150,10 @@ export function DialogView({ app }: { app: PageApp }) {
       return <Palette actions={app.actions} />;
     case 'command_line':
       return <CommandLine app={app} />;
+    case 'file_diff':
+      return <LaterView app={app} part={fileDiff()} wait="" />;
+    case 'value_table':
+      return <LaterView app={app} part={valueTable()} wait="" />;
     case 'none':
       return null;
   }

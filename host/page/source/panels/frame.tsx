@@ -2,12 +2,14 @@
 import type { PageApp } from '../page_app.js';
 import { openDialog } from '../dialogs.js';
 import { Bands } from './bands.js';
-import { LaterView, loadLater } from './later.js';
+import { LaterView, loadLater } from './later_view.js';
 import { NoticeList } from './notice_list.js';
 import { TopBar } from './top_bar.js';
 
-const livePage = loadLater(import('./live_page.js').then((module) => module.LivePage));
-const dialogs = loadLater(import('./dialog_views.js').then((module) => module.DialogView));
+const livePage = loadLater(() => import('./live_page.js').then((module) => module.LivePage));
+const dialogs = loadLater(() => import('./dialog_views.js').then((module) => module.DialogView));
+livePage();
+dialogs();
 
 export function Frame({ app }: { app: PageApp }) {
   return (
@@ -15,10 +17,10 @@ export function Frame({ app }: { app: PageApp }) {
       <TopBar app={app} />
       <Bands app={app} />
       <main id="page">
-        <LaterView app={app} part={livePage} wait="Loading …" />
+        <LaterView app={app} part={livePage()} wait="Loading …" />
       </main>
       <NoticeList state={app.state} />
-      {openDialog.value !== 'none' && <LaterView app={app} part={dialogs} wait="" />}
+      {openDialog.value !== 'none' && <LaterView app={app} part={dialogs()} wait="" />}
     </>
   );
 }

@@ -5,6 +5,7 @@ import { onFrame } from '../frame_clock.js';
 import type { RobotView } from '../robot_view.js';
 import type { Line } from '../state/signal_selection.js';
 import { axisOverhang, axisWidth, chartTheme } from './chart_theme.js';
+import { drawTimeMarks, timeMarksKey } from './time_mark_drawing.js';
 
 const height = 170; // CSS pixels
 const framePeriod = 30; // milliseconds
@@ -61,8 +62,19 @@ export class LinePlot {
         { ...axis, size: axisWidth, space: 24 },
       ],
       series: [{}, ...this.lines.map((_, i) => ({ stroke: theme.lines[i] ?? theme.text, width: 1.5, points: { show: false } }))],
-      hooks: { setSelect: [(plot) => this.zoomToSelection(plot)] },
+      hooks: { setSelect: [(plot) => this.zoomToSelection(plot)], draw: [(plot) => this.drawMarks(plot)] },
     };
+  }
+
+  private drawMarks({ ctx, bbox }: uPlot): void {
+    const { marks, time } = this.app;
+    const ratio = window.devicePixelRatio;
+    ctx.save();
+    ctx.translate(0, bbox.top);
+    ctx.scale(ratio, ratio);
+    const box = { left: bbox.left / ratio, width: bbox.width / ratio, height: bbox.height / ratio };
+    drawTimeMarks(ctx, marks, box, time.range(this.app.newestTick));
+    ctx.restore();
   }
 
   private zoomToSelection(plot: uPlot): void {
@@ -99,7 +111,7 @@ export class LinePlot {
     const { history, time } = this.app;
     const range = time.range(this.app.newestTick);
     const cursor = time.cursor.peek();
-    const key = [history.run, history.end, range.from, range.to, cursor, this.plot.width].join();
+    const key = [history.run, history.end, range.from, range.to, cursor, this.plot.width, timeMarksKey(this.app.marks)].join();
     if (key === this.lastKey || now - this.lastTime < framePeriod) {
       return;
     }

@@ -54,6 +54,21 @@ function Toolbar({ app, changed, filter }: { app: PageApp; changed: number; filt
       >
         Changed ({changed})
       </button>
+      <button
+        type="button"
+        onClick={() => (openDialog.value = 'value_table')}
+        title="All values as a table, to copy from and paste into (V)"
+      >
+        Table…
+      </button>
+      <button
+        type="button"
+        disabled={changed === 0}
+        onClick={() => (openDialog.value = 'file_diff')}
+        title="Write the values into the file of the robot (W)"
+      >
+        Apply to file…
+      </button>
       <button type="button" onClick={() => (openDialog.value = 'command_line')} title="The command that gives the same run (X)">
         Command line
       </button>

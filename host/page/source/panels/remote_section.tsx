@@ -2,9 +2,9 @@
 import { signal } from '@preact/signals';
 import type { PageApp } from '../page_app.js';
 import { describeRemote } from '../state/remote_bindings.js';
-import { LaterView, loadLater, type Later } from './later.js';
+import { LaterView, loadLater } from './later_view.js';
 
-const panel = signal<Later | null>(null);
+const panel = loadLater(() => import('./remote_panel.js').then((module) => module.RemotePanel));
 const isOpen = signal(false);
 
 export function RemoteSection({ app }: { app: PageApp }) {
@@ -16,9 +16,6 @@ export function RemoteSection({ app }: { app: PageApp }) {
       open={isOpen.value}
       onToggle={(event) => {
         isOpen.value = event.currentTarget.open;
-        if (isOpen.value) {
-          panel.value ??= loadLater(import('./remote_panel.js').then((module) => module.RemotePanel));
-        }
       }}
     >
       <summary>
@@ -28,7 +25,7 @@ export function RemoteSection({ app }: { app: PageApp }) {
         </span>
         {problems > 0 && <span class="problem">{problems === 1 ? '1 problem' : `${problems} problems`}</span>}
       </summary>
-      {isOpen.value && panel.value !== null && <LaterView app={app} part={panel.value} wait="Loading …" />}
+      {isOpen.value && <LaterView app={app} part={panel()} wait="Loading …" />}
     </details>
   );
 }

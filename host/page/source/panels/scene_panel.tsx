@@ -2,11 +2,14 @@
 import { effect, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { limitFrameRate, onFrame } from '../frame_clock.js';
+import type { Vector } from '../geometry/quaternion.js';
 import type { RobotView } from '../robot_view.js';
 import type { FromScene, ToScene } from '../scene/scene_messages.js';
+import type { MoveTool } from '../state/move_tool.js';
 import { isDark } from '../theme.js';
-import { listenToPointer } from './scene_pointer.js';
-import { poseAt } from './scene_pose.js';
+import { MoveForm } from './move_form.js';
+import { listenToPointer, type RobotMover } from './scene_pointer.js';
+import { shownPose } from './scene_pose.js';
 
 const readoutPeriod = 100; // milliseconds
 
@@ -43,12 +46,32 @@ export function ScenePanel({ app }: { app: RobotView }) {
     worker.onmessage = (event: MessageEvent<FromScene>) => {
       const message = event.data;
       if (message.kind === 'pointed') app.selection.hoveredJoint.value = message.joint;
+      if (message.kind === 'grabbed') app.mover?.begin();
+      if (message.kind === 'dragged') {
+        offset = message.offset;
+        app.mover?.drag(offset, turn);
+      }
       if (message.kind === 'following') isFollowing.value = message.isOn;
       if (message.kind === 'detail') {
         level.value = message.level;
         limitFrameRate(message.level > 0);
       }
       if (message.kind === 'failed') failure.value = message.reason;
+    };
+    let offset: Vector = [0, 0, 0];
+    let turn = 0;
+    const mover: RobotMover = {
+      isActive: () => app.mover?.isActive.peek() ?? false,
+      turn: (degrees) => {
+        turn = degrees;
+        app.mover?.drag(offset, turn);
+      },
+      drop: () => {
+        offset = [0, 0, 0];
+        turn = 0;
+        void app.mover?.drop();
+      },
+      step: (way, degrees) => void app.mover?.step(way, degrees),
     };
     send({ kind: 'start', canvas: offscreen, isDark: isDark.peek() }, [offscreen]);
     const observer = new ResizeObserver(([entry]) => {
@@ -57,7 +80,7 @@ export function ScenePanel({ app }: { app: RobotView }) {
     });
     observer.observe(parent);
     const stops = [
-      listenToPointer(canvas, send, () => (app.selection.hoveredJoint.value = null)),
+      listenToPointer(canvas, send, () => (app.selection.hoveredJoint.value = null), mover),
       effect(() => send({ kind: 'theme', isDark: isDark.value })),
       effect(() => {
         const robot = app.state.robot.value;
@@ -99,6 +122,7 @@ export function ScenePanel({ app }: { app: RobotView }) {
     <section class="panel scene-panel" aria-label="Robot in 3D">
       <div class="scene" ref={holder} data-detail={level.value} />
       <div class="scene-tools">
+        {app.mover !== null && <MoveButton mover={app.mover} />}
         <button
           type="button"
           aria-pressed={isFollowing.value}
@@ -111,6 +135,7 @@ export function ScenePanel({ app }: { app: RobotView }) {
           Reset view
         </button>
       </div>
+      {app.mover?.isActive.value === true && <MoveForm mover={app.mover} />}
       <span class="readout" ref={readout} data-testid="head" title="Position of the head" />
       <span class="legend-marks" aria-hidden="true">
         <i class="mark head" /> head <i class="mark contact" /> ground contact <i class="mark path" /> path
@@ -125,6 +150,20 @@ export function ScenePanel({ app }: { app: RobotView }) {
   );
 }
 
+function MoveButton({ mover }: { mover: MoveTool }) {
+  return (
+    <button
+      type="button"
+      aria-pressed={mover.isActive.value}
+      disabled={!mover.isPossible.value}
+      onClick={() => (mover.isOn.value = !mover.isOn.value)}
+      title="Drag the paused robot to another place (G)"
+    >
+      Move
+    </button>
+  );
+}
+
 // Without the sign of -0.000.
 function positionText(head: Float64Array): string {
   const [x, y, z] = [...head.subarray(0, 3)].map((metres) => (Math.round(metres * 1000) / 1000 + 0).toFixed(3));
@@ -135,21 +174,27 @@ function positionText(head: Float64Array): string {
 function followPose(app: RobotView, send: (message: ToScene) => void, readout: { current: HTMLSpanElement | null }): () => void {
   let lastKey = '';
   let robot: unknown = null;
+  let session: unknown = null;
+  let preview: unknown = null;
   let head: Float64Array | null = null; // not written yet
   let lastReadout = 0;
   const sendChangedPose = () => {
     const { history, time } = app;
     const tick = time.shownTick(app.newestTick);
     const key = `${history.run}/${history.end}/${tick}`;
-    if (history.end === 0 || (key === lastKey && robot === app.state.robot.peek())) {
+    const { mover } = app;
+    const isSame = robot === app.state.robot.peek() && session === mover?.session.peek() && preview === mover?.preview.peek();
+    if (key === lastKey && isSame) {
       return;
     }
-    const pose = poseAt(history, tick, time.isLive.peek() && time.cursor.peek() === null);
+    const pose = shownPose(app, tick);
     if (pose === null || app.state.robot.peek() === null) {
       return;
     }
     lastKey = key;
     robot = app.state.robot.peek();
+    session = app.mover?.session.peek();
+    preview = app.mover?.preview.peek();
     head = pose.head;
     send({ kind: 'pose', pose });
   };

@@ -1,5 +1,6 @@
 // Mouse, touch and keys of the 3D view.
 //   drag, one finger: turn      right or Shift and drag, two fingers: pan      wheel, pinch: zoom
+import type { Vector } from '../geometry/quaternion.js';
 import type { ToScene } from '../scene/scene_messages.js';
 
 interface Point {
@@ -8,9 +9,27 @@ interface Point {
 }
 
 const keyStep = 24; // pixels
+const moveStep = 0.01; // metres
+const turnStep = 5; // degrees
+const degreesPerPixel = 0.5;
 const wheelFactor = 0.0012; // for each pixel
 
-export function listenToPointer(canvas: HTMLCanvasElement, send: (message: ToScene) => void, leave: () => void): () => void {
+// Moves the robot with the same pointer and keys instead, while it is active.
+//   drag: in the plane of the ground     Shift and drag: height     Ctrl and drag: turn     arrows, Page Up, Page Down: steps
+export interface RobotMover {
+  isActive(): boolean;
+  turn(degrees: number): void; // since the drag began
+  drop(): void;
+  step(offset: Vector, turn: number): void;
+}
+
+export function listenToPointer(
+  canvas: HTMLCanvasElement,
+  send: (message: ToScene) => void,
+  leave: () => void,
+  mover: RobotMover,
+): () => void {
+  let moverStart: Point | null = null; // where a drag of the robot began
   const pointers = new Map<number, Point>();
   let isPanning = false;
   const abort = new AbortController();
@@ -22,6 +41,10 @@ export function listenToPointer(canvas: HTMLCanvasElement, send: (message: ToSce
       canvas.setPointerCapture(event.pointerId);
       pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
       isPanning = event.button !== 0 || event.shiftKey;
+      if (mover.isActive() && event.button === 0 && pointers.size === 1) {
+        moverStart = { x: event.clientX, y: event.clientY };
+        send({ ...pointedAt(canvas, event), kind: 'grab' });
+      }
     },
     options,
   );
@@ -36,7 +59,10 @@ export function listenToPointer(canvas: HTMLCanvasElement, send: (message: ToSce
       const now = { x: event.clientX, y: event.clientY };
       const right = now.x - before.x;
       const down = now.y - before.y;
-      if (pointers.size === 2) {
+      if (moverStart !== null && pointers.size === 1) {
+        if (event.ctrlKey) mover.turn((moverStart.x - now.x) * degreesPerPixel);
+        else send({ ...pointedAt(canvas, event), kind: 'drag', right, down, isHeight: event.shiftKey });
+      } else if (pointers.size === 2) {
         const other = [...pointers].find(([id]) => id !== event.pointerId)?.[1] as Point;
         send({ kind: 'zoom', factor: distance(before, other) / Math.max(1, distance(now, other)) });
         send({ kind: 'pan', right: right / 2, down: down / 2 });
@@ -47,7 +73,14 @@ export function listenToPointer(canvas: HTMLCanvasElement, send: (message: ToSce
     },
     options,
   );
-  const release = (event: PointerEvent) => void pointers.delete(event.pointerId);
+  const release = (event: PointerEvent) => {
+    pointers.delete(event.pointerId);
+    if (moverStart !== null) {
+      moverStart = null;
+      send({ kind: 'drop' });
+      mover.drop();
+    }
+  };
   canvas.addEventListener('pointerup', release, options);
   canvas.addEventListener('pointercancel', release, options);
   canvas.addEventListener('pointerleave', leave, options);
@@ -60,8 +93,25 @@ export function listenToPointer(canvas: HTMLCanvasElement, send: (message: ToSce
     },
     { ...options, passive: false },
   );
-  canvas.addEventListener('keydown', (event) => turnByKey(event, send), options);
+  canvas.addEventListener('keydown', (event) => (mover.isActive() ? moveByKey(event, mover) : turnByKey(event, send)), options);
   return () => abort.abort();
+}
+
+function moveByKey(event: KeyboardEvent, mover: RobotMover): void {
+  const height: Record<string, Vector> = { ArrowUp: [0, 0, moveStep], ArrowDown: [0, 0, -moveStep] };
+  const ground: Record<string, Vector> = {
+    ArrowLeft: [-moveStep, 0, 0],
+    ArrowRight: [moveStep, 0, 0],
+    ArrowUp: [0, moveStep, 0],
+    ArrowDown: [0, -moveStep, 0],
+  };
+  const turns: Record<string, number> = { PageUp: turnStep, PageDown: -turnStep };
+  const offset = (event.shiftKey ? height : ground)[event.key];
+  const turn = turns[event.key];
+  if (offset !== undefined || turn !== undefined) {
+    mover.step(offset ?? [0, 0, 0], turn ?? 0);
+    event.preventDefault();
+  }
 }
 
 function turnByKey(event: KeyboardEvent, send: (message: ToScene) => void): void {
@@ -80,7 +130,7 @@ function turnByKey(event: KeyboardEvent, send: (message: ToScene) => void): void
   }
 }
 
-function pointedAt(canvas: HTMLCanvasElement, event: PointerEvent): ToScene {
+function pointedAt(canvas: HTMLCanvasElement, event: PointerEvent): { kind: 'point'; x: number; y: number } {
   const box = canvas.getBoundingClientRect();
   return {
     kind: 'point',

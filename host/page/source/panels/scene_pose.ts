@@ -1,4 +1,7 @@
-// The pose of the robot at a tick, from the telemetry.
+// The pose of the robot at a tick, from the telemetry; or where a hand has put it since the last tick.
+import { poseFromArray } from '../geometry/quaternion.js';
+import type { RobotView } from '../robot_view.js';
+import { placedHead } from '../state/move_tool.js';
 import type { TelemetryHistory } from '../data/telemetry_history.js';
 import type { ScenePose } from '../scene/scene_messages.js';
 import { noValue } from '../wire/messages.js';
@@ -7,6 +10,24 @@ const headValues = 7;
 const quaternionUnit = 2 ** 30;
 const micrometre = 1e-6;
 const degree = Math.PI / 180;
+
+// What the 3D view shows. Null if nothing is known.
+export function shownPose(app: RobotView, tick: number): ScenePose | null {
+  const { history, time, mover } = app;
+  const isLive = time.isLive.peek() && time.cursor.peek() === null;
+  const session = mover?.session.peek() ?? null;
+  const head = session?.head;
+  const isPresent = isLive && session !== null && (history.end === 0 || history.lastTick() < session.tick);
+  const known = history.end === 0 ? null : poseAt(history, tick, isLive);
+  const place = mover?.preview.peek() ?? null;
+  if (head === undefined || !isPresent || (known !== null && session?.moved !== true && place === null)) {
+    return known;
+  }
+  const present = poseFromArray(head);
+  const { position, orientation } = place === null ? present : placedHead(present, place);
+  const straight = { angles: new Float32Array(), contacts: new Int32Array() };
+  return { ...(known ?? straight), head: Float64Array.of(...position, ...orientation), run: history.run, isLive: false };
+}
 
 // x, y, z in metres, then the quaternion; null if the row has none.
 function headAt(history: TelemetryHistory, row: number): Float64Array | null {

@@ -6,6 +6,7 @@ import type { RobotView } from '../robot_view.js';
 import { formatMeasured, roundStep } from '../state/parameter_values.js';
 import { isDark } from '../theme.js';
 import { axisWidth, chartTheme } from './chart_theme.js';
+import { drawTimeMarks, timeMarksKey } from './time_mark_drawing.js';
 import { signalTitle, valueName } from './value_names.js';
 
 const framePeriod = 30; // milliseconds: about 30 images a second
@@ -56,7 +57,7 @@ class StripDrawing {
     const range = time.range(newest);
     const hovered = selection.hoveredJoint.peek();
     const name = selection.strip.peek();
-    const marks = [time.cursor.peek(), hovered, name, isDark.peek()];
+    const marks = [time.cursor.peek(), hovered, name, isDark.peek(), timeMarksKey(app.marks)];
     const key = [history.run, history.end, range.from, range.to, ...marks, box.width, box.height].join();
     if (key === this.lastKey || now - this.lastTime < framePeriod || box.width < axisWidth + 10) {
       return;
@@ -88,6 +89,7 @@ class StripDrawing {
     this.image.draw(context, axisWidth, box.width - axisWidth, box.height);
     this.drawLabels(context, box.height, rows, hovered, (index) => valueName(app.state.robot.peek(), signal, index));
     this.drawMarks(context, box, rows, hovered, time.cursor.peek(), range);
+    drawTimeMarks(context, app.marks, { left: axisWidth, width: box.width - axisWidth, height: box.height }, range);
     if (this.legend.current !== null) {
       this.legend.current.textContent = `±${formatMeasured(limit).replace(/\.?0+$/, '')} ${signal?.unit ?? ''}`;
     }

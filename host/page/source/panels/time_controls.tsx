@@ -1,7 +1,70 @@
-// The time window of strip and plots, and the way back to live.
+// The time window of strip and plots, the way back to live, markers and loop.
+import { useEffect } from 'preact/hooks';
+import { onFrame } from '../frame_clock.js';
 import type { PageApp } from '../page_app.js';
+import { closeIcon } from './icons.js';
 
 const windows = [2, 5, 10, 30, 60, 120]; // seconds
+
+const longestPause = 250; // milliseconds between two frames; more is a hidden tab, not time that the loop plays
+
+function LoopControls({ app }: { app: PageApp }) {
+  const { marks } = app;
+  const { from, to } = marks.loop.value;
+  const text = (tick: number | null, key: string) => (tick === null ? key : `${(tick / app.tickRate).toFixed(2)} s`);
+  useEffect(() => {
+    let last: number | null = null;
+    return onFrame((now) => {
+      const passed = last === null ? 0 : Math.min(longestPause, now - last);
+      last = now;
+      marks.play((passed / 1000) * app.tickRate, app.newestTick);
+    });
+  }, []);
+  if (from === null && to === null) {
+    return null;
+  }
+  return (
+    <span class="loop" role="group" aria-label="Loop" data-testid="loop">
+      loop {text(from, '[')} to {text(to, ']')}
+      {marks.range.value !== null && (
+        <button type="button" onClick={() => marks.playOrPause(app.newestTick)} title="Play or pause the loop (O)">
+          {marks.isPlaying.value ? 'Pause loop' : 'Play loop'}
+        </button>
+      )}
+      <button type="button" class="icon-button" aria-label="Remove the loop" onClick={() => marks.removeLoop()}>
+        {closeIcon}
+      </button>
+    </span>
+  );
+}
+
+function MarkerList({ app }: { app: PageApp }) {
+  const { marks } = app;
+  if (marks.markers.value.length === 0) {
+    return null;
+  }
+  return (
+    <ul class="markers" aria-label="Markers" data-testid="markers">
+      {marks.markers.value.map(({ number, tick, name }) => (
+        <li key={number}>
+          <input
+            type="text"
+            size={Math.max(3, name.length)}
+            aria-label="Name of the marker"
+            value={name}
+            onChange={(event) => marks.rename(number, event.currentTarget.value)}
+          />
+          <button type="button" title="Show this time" onClick={() => marks.jumpTo(number, app.newestTick)}>
+            {(tick / app.tickRate).toFixed(2)} s
+          </button>
+          <button type="button" class="icon-button" aria-label={`Remove the marker ${name}`} onClick={() => marks.remove(number)}>
+            {closeIcon}
+          </button>
+        </li>
+      ))}
+    </ul>
+  );
+}
 
 export function TimeControls({ app }: { app: PageApp }) {
   const { time } = app;
@@ -27,6 +90,7 @@ export function TimeControls({ app }: { app: PageApp }) {
           Frozen view; the robot goes on.
         </span>
       )}
+      <LoopControls app={app} />
       {cursor !== null && <span class="cursor-time">cursor at {(cursor / rate).toFixed(2)} s</span>}
       <span class="space" />
       <label for="window">Window</label>
@@ -44,6 +108,7 @@ export function TimeControls({ app }: { app: PageApp }) {
           </option>
         ))}
       </select>
+      <MarkerList app={app} />
     </div>
   );
 }

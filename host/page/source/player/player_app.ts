@@ -14,6 +14,8 @@ export class PlayerApp implements RobotView {
   readonly recording: RecordingDocument;
   readonly history: TelemetryHistory;
   readonly time: Playback;
+  readonly marks = null;
+  readonly mover = null;
   readonly selection = new SignalSelection();
   readonly actions = new ActionList();
   readonly wholePath = signal<Float64Array | null>(null);

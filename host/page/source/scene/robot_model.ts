@@ -174,12 +174,21 @@ export class RobotModel {
 
   // The joint that is pointed at, or whose link is; the last link has none behind it and gives the joint before it.
   jointAt(caster: THREE.Raycaster): number | null {
-    const meshes = [...this.links, this.joints].map((set) => set.mesh);
-    meshes.forEach((mesh) => mesh.computeBoundingSphere());
-    const hit = caster.intersectObjects(meshes, false)[0];
+    const hit = this.hitOf(caster);
     const set = [...this.links, this.joints].find((candidate) => candidate.mesh === hit?.object);
     const instance = set?.instances[hit?.instanceId ?? -1];
     return instance === undefined ? null : Math.min(instance.link, this.joints.instances.length - 1);
+  }
+
+  // The point of the robot that is pointed at.
+  pointAt(caster: THREE.Raycaster): THREE.Vector3 | null {
+    return this.hitOf(caster)?.point ?? null;
+  }
+
+  private hitOf(caster: THREE.Raycaster): THREE.Intersection | undefined {
+    const meshes = [...this.links, this.joints].map((set) => set.mesh);
+    meshes.forEach((mesh) => mesh.computeBoundingSphere());
+    return caster.intersectObjects(meshes, false)[0];
   }
 
   dispose(): void {

@@ -1,7 +1,7 @@
 // The 3D view: camera, light, ground, robot. It renders only when something changed.
 import * as THREE from 'three';
 import { OrbitCamera } from '../geometry/orbit_camera.js';
-import { poseFromArray } from '../geometry/quaternion.js';
+import { poseFromArray, type Vector } from '../geometry/quaternion.js';
 import type { RobotDocument } from '../wire/messages.js';
 import { HeadPath } from './head_path.js';
 import type { Detail } from './drawing_budget.js';
@@ -11,6 +11,7 @@ import type { ScenePose } from './scene_messages.js';
 
 const fieldOfView = 40; // degrees, vertical
 const gridCells = 60;
+const farthestDrag = 5; // metres
 const longRobot = 1.5; // metres: from here on the cells of the grid are larger
 
 export class RobotScene {
@@ -33,6 +34,8 @@ export class RobotScene {
   private gridCell = 0.1; // metres
   private readonly fog = new THREE.Fog(0, 1, 2);
   private isDirty = true;
+  private grabbed: THREE.Vector3 | null = null; // the point on the robot, where it was
+  private lastOffset: Vector = [0, 0, 0];
 
   // Throws an Error without WebGL.
   constructor(
@@ -161,9 +164,43 @@ export class RobotScene {
   }
 
   jointAt(x: number, y: number): number | null {
+    return this.model?.jointAt(this.casterAt(x, y)) ?? null;
+  }
+
+  // Whether there is a link.
+  grab(x: number, y: number): boolean {
+    this.grabbed = this.model?.pointAt(this.casterAt(x, y)) ?? null;
+    return this.grabbed !== null;
+  }
+
+  // The way from where it was grabbed to the pointer: in the plane of the ground, or up and down. Null if nothing is grabbed.
+  drag(x: number, y: number, isHeight: boolean): Vector | null {
+    const from = this.grabbed;
+    if (from === null) {
+      return null;
+    }
+    const [cameraX, cameraY] = this.orbit.position;
+    const normal = isHeight ? new THREE.Vector3(cameraX - from.x, cameraY - from.y, 0).normalize() : new THREE.Vector3(0, 0, 1);
+    const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal, from);
+    const to = this.casterAt(x, y).ray.intersectPlane(plane, new THREE.Vector3());
+    // Towards the horizon the way grows without end.
+    if (to === null || to.distanceTo(from) > farthestDrag) {
+      return this.lastOffset;
+    }
+    this.lastOffset = isHeight ? [0, 0, to.z - from.z] : [to.x - from.x, to.y - from.y, 0];
+    return this.lastOffset;
+  }
+
+  drop(): void {
+    this.grabbed = null;
+    this.lastOffset = [0, 0, 0];
+    this.isDirty = true;
+  }
+
+  private casterAt(x: number, y: number): THREE.Raycaster {
     const caster = new THREE.Raycaster();
     caster.setFromCamera(new THREE.Vector2(x, y), this.camera);
-    return this.model?.jointAt(caster) ?? null;
+    return caster;
   }
 
   // False if nothing has changed.
@@ -172,7 +209,7 @@ export class RobotScene {
       return false;
     }
     this.isDirty = false;
-    if (this.isFollowing && this.model !== null) {
+    if (this.isFollowing && this.model !== null && this.grabbed === null) {
       this.orbit.target = this.model.centre;
     }
     const [x, y, z] = this.orbit.target;

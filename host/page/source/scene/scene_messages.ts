@@ -1,4 +1,5 @@
 // What the page and the worker of the 3D view say to each other.
+import type { Vector } from '../geometry/quaternion.js';
 import type { RobotDocument } from '../wire/messages.js';
 
 export interface ScenePose {
@@ -22,9 +23,14 @@ export type ToScene =
   | { kind: 'zoom'; factor: number }
   | { kind: 'follow'; isOn: boolean }
   | { kind: 'reset_view' }
+  | { kind: 'grab'; x: number; y: number } // as in `point`: the link there, if there is one
+  | { kind: 'drag'; x: number; y: number; right: number; down: number; isHeight: boolean } // turns the view if nothing is grabbed
+  | { kind: 'drop' }
   | { kind: 'point'; x: number; y: number }; // -1 to 1, y up
 
 export type FromScene =
+  | { kind: 'grabbed' }
+  | { kind: 'dragged'; offset: Vector } // metres, since it was grabbed
   | { kind: 'pointed'; joint: number | null }
   | { kind: 'following'; isOn: boolean }
   | { kind: 'detail'; level: number } // 0: all of it

@@ -62,6 +62,15 @@ function apply(view: RobotScene, message: Exclude<ToScene, { kind: 'start' }>): 
       return view.setFollowing(message.isOn);
     case 'reset_view':
       return view.resetView();
+    case 'grab':
+      if (view.grab(message.x, message.y)) post({ kind: 'grabbed' });
+      return;
+    case 'drag': {
+      const offset = view.drag(message.x, message.y, message.isHeight);
+      return offset === null ? view.turn(message.right, message.down) : post({ kind: 'dragged', offset });
+    }
+    case 'drop':
+      return view.drop();
     case 'point':
       return post({ kind: 'pointed', joint: view.jointAt(message.x, message.y) });
   }

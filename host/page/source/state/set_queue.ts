@@ -8,6 +8,9 @@ export interface SetPorts {
   refused(reason: string): void;
 }
 
+// A message of the connection is at most 64 KiB.
+const mostWords = 400;
+
 // A word without its value: what it sets.
 function target(word: string): string {
   return word.slice(0, word.indexOf('='));
@@ -56,9 +59,14 @@ export class SetQueue {
     for (let change = this.next.shift(); change !== undefined; change = this.next.shift()) {
       this.isSending = true;
       try {
-        await ('words' in change
-          ? this.ports.send([...change.words.values()], change.gesture)
-          : this.ports.reset(change.names));
+        if ('words' in change) {
+          const words = [...change.words.values()];
+          for (let i = 0; i < words.length; i += mostWords) {
+            await this.ports.send(words.slice(i, i + mostWords), change.gesture);
+          }
+        } else {
+          await this.ports.reset(change.names);
+        }
       } catch (error) {
         this.ports.refused((error as Error).message);
       }

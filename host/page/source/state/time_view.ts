@@ -91,12 +91,16 @@ export class TimeView implements ShownTime {
     }
   }
 
-  // Moves the cursor, and the window with it if it would leave the window.
   moveCursor(ticks: number, newest: number): void {
+    this.showTick(this.shownTick(newest) + ticks, newest);
+  }
+
+  // Puts the cursor there in the frozen view, and moves the window if it does not have the tick.
+  showTick(wanted: number, newest: number): void {
     if (this.isLive.value) {
       this.freeze(newest);
     }
-    const tick = Math.max(0, Math.min(newest, this.shownTick(newest) + ticks));
+    const tick = Math.max(0, Math.min(newest, wanted));
     this.cursor.value = tick;
     this.detached.value = shiftedTo(tick, this.range(newest));
   }

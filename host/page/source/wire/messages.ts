@@ -119,6 +119,8 @@ export interface SessionDocument {
   redo: string | null;
   set: 'A' | 'B';
   failure: string | null;
+  head?: [number, number, number, number, number, number, number]; // now: x, y, z, then the quaternion w, x, y, z
+  moved?: boolean; // by hand, since the last tick
   measures?: Record<string, number>;
 }
 
@@ -209,6 +211,22 @@ export interface StoppedMessage {
 export type ServerMessage = WelcomeMessage | DocumentMessage | ResultMessage | NoticeMessage | StoppedMessage;
 
 // Names and arguments of the operations that the page uses.
+// The value of `file.diff`.
+export interface FileDiff {
+  diff: string;
+  entries: FileDiffEntry[];
+}
+
+export interface FileDiffEntry {
+  file: string;
+  line: number; // that changes, or after which the new line comes
+  old: string | null; // null: the line is new
+  new: string;
+  slot: number;
+  name: string;
+  joints: number[];
+}
+
 export interface Operations {
   'control.take': Record<string, never>;
   'control.answer': { grant: boolean };
@@ -223,8 +241,11 @@ export interface Operations {
   redo: Record<string, never>;
   swap: Record<string, never>;
   reset: { names?: string[] }; // as in `set`, without a value
+  move: { position: readonly [number, number, number]; turn: number };
   record: { file: string | null };
   command_line: Record<string, never>;
+  'file.diff': Record<string, never>;
+  'file.apply': { diff: string; entries: number[] };
   ping: Record<string, never>;
   'remote.bind': { binding: RemoteBinding; place?: number };
   'remote.unbind': { place: number };

@@ -84,4 +84,16 @@ describe('the queue of changes', () => {
     assert.deepEqual(refusals, ['control is with Firefox on desk-3']);
     assert.deepEqual(sent[1]?.words, ['1.amplitude=2']);
   });
+
+  it('sends many words in several messages, as one change for undo', async () => {
+    const { queue, sent, settle } = setUp();
+    const words = Array.from({ length: 1000 }, (_, i) => `1.amplitude:J${i}=1`);
+    queue.set(words, 5);
+    for (let message = 0; message < 3; message += 1) {
+      sent[message]?.finish();
+      await settle();
+    }
+    assert.deepEqual(sent.flatMap((message) => message.words), words);
+    assert.deepEqual(sent.map(({ gesture }) => gesture), [5, 5, 5]);
+  });
 });

@@ -1,7 +1,7 @@
 #include "tools/proleg/ui/live_simulation.hpp"
 
 #include <gtest/gtest.h>
-
+#include <sqlite3.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -9,9 +9,11 @@
 #include <random>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/sqlite/sqlite.hpp"
+#include "shared/computer/text/text.hpp"
 #include "shipped.hpp"
 #include "sim/record/recording.hpp"
-#include "sim/scenario/reader.hpp"
+#include "simulated_run.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace proleg::tools {
@@ -30,41 +32,17 @@ void advance(LiveSimulation& live, unsigned ticks) {
   }
 }
 
-/// What `proleg simulate` gives for the words of --set after this number of ticks.
-struct Hashes {
-  std::string setpoints;
-  std::string servos;
-  double displacement;
-  bool operator==(const Hashes&) const = default;
-};
-
-Hashes hashes_of(const sim::Simulation& simulation) {
-  return {simulation.setpoint_hash().hex(), simulation.servo_hash().hex(), simulation.plant().displacement()};
-}
-
-Hashes simulated(const sim::Scenario& file, const std::vector<std::string>& words, std::uint32_t ticks) {
-  sim::Scenario scenario = file;
-  for (const std::string& word : words) {
-    sim::apply_setting(scenario, word);
-  }
-  sim::Simulation simulation(scenario);
-  while (simulation.tick() < ticks) {
-    simulation.advance();
-  }
-  return hashes_of(simulation);
-}
-
 ParameterPlace place(const LiveSimulation& live, const std::string& name) { return live.places_of(name).front(); }
 
 TEST(LiveSimulation, WithoutChangesItIsTheScenario) {
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   advance(live, 200);
   EXPECT_EQ(hashes_of(live.simulation()), simulated(uniform(), {}, 200));
   EXPECT_TRUE(live.repeating_words().empty());
 }
 
 TEST(LiveSimulation, AChangeTakesEffectAtTheComingTickAndIsConfirmedThen) {
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   advance(live, 50);
   EXPECT_EQ(live.set({"amplitude:J2=30"}, std::nullopt), 50U);
   const ParameterPlace changed = place(live, "amplitude:J2");
@@ -83,7 +61,7 @@ TEST(LiveSimulation, ARunOfRandomChangesRepeatsFromItsWords) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
-    LiveSimulation live(uniform(), nullptr);
+    LiveSimulation live(uniform(), {}, nullptr);
     const char* joints[] = {"", ":J1", ":J3", ":J5"};
     const auto advance_some = [&] { advance(live, static_cast<unsigned>(random() % 20)); };
     const auto change_something = [&] {
@@ -124,7 +102,7 @@ TEST(LiveSimulation, ARunOfRandomChangesRepeatsFromItsWords) {
 }
 
 TEST(LiveSimulation, UndoTakesAGestureBackAsAWhole) {
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   const ParameterPlace amplitude = place(live, "amplitude:J1");
   const std::int32_t file = live.parameters().at(amplitude).file;
   live.set({"amplitude=10"}, 1);
@@ -144,7 +122,7 @@ TEST(LiveSimulation, UndoTakesAGestureBackAsAWhole) {
 }
 
 TEST(LiveSimulation, AWordThatCannotBeTakenChangesNothing) {
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   const std::uint64_t revision = live.revision();
   for (const std::vector<std::string>& words : {std::vector<std::string>{},
                                                 {"amplitude"},
@@ -162,7 +140,7 @@ TEST(LiveSimulation, AWordThatCannotBeTakenChangesNothing) {
 }
 
 TEST(LiveSimulation, AChangeForOneTickNeverHasMoreValuesThanAModuleKeeps) {
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   std::vector<std::uint32_t> ticks;
   for (int value = 0; value < 30; ++value) {
     ticks.push_back(live.set({"amplitude=" + std::to_string(value), "frequency=0.5", "phase_difference=60",
@@ -181,7 +159,7 @@ TEST(LiveSimulation, AChangeForOneTickNeverHasMoreValuesThanAModuleKeeps) {
 TEST(LiveSimulation, ARecordingHasTheWholeRunWheneverItBegan) {
   const TemporaryFolder folder;
   const std::filesystem::path file = folder / "run.proleg";
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   advance(live, 80);
   live.set({"amplitude=30"}, std::nullopt);
   advance(live, 70);
@@ -206,7 +184,7 @@ TEST(LiveSimulation, ARecordingHasTheWholeRunWheneverItBegan) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit{300'000, 300'000};
   setrlimit(RLIMIT_FSIZE, &limit);
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   live.record(path, "simulate", "test", [] { return true; });
   advance(live, 1'500);
   const bool has_failed = live.take_recording_failure().has_value();
@@ -219,7 +197,7 @@ TEST(LiveSimulation, GoesOnWhenTheDiskIsFullAndItsRecordingEnds) {
 }
 
 TEST(LiveSimulation, RestartBeginsWithWhatIsWantedOrWithTheFile) {
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   live.set({"amplitude=30"}, std::nullopt);
   advance(live, 10);
   live.restart(StartValues::wanted);
@@ -232,7 +210,7 @@ TEST(LiveSimulation, RestartBeginsWithWhatIsWantedOrWithTheFile) {
 }
 
 TEST(LiveSimulation, ResetWantsTheFilesValueAgain) {
-  LiveSimulation live(uniform(), nullptr);
+  LiveSimulation live(uniform(), {}, nullptr);
   live.set({"amplitude=30", "frequency=0.4"}, std::nullopt);
   advance(live, 10);
   live.reset(live.places_of("amplitude"));
@@ -240,6 +218,71 @@ TEST(LiveSimulation, ResetWantsTheFilesValueAgain) {
   EXPECT_EQ(amplitude.wanted, amplitude.file);
   const ParameterTable::Values frequency = live.parameters().at(place(live, "frequency:J3"));
   EXPECT_NE(frequency.wanted, frequency.file);
+}
+
+/// A place near the start, on the ground or above it.
+std::string random_place(std::mt19937& random) {
+  std::uniform_real_distribution<double> metres(-0.5, 0.5);
+  std::uniform_real_distribution<double> degrees(-180.0, 180.0);
+  return exact_text(metres(random)) + ',' + exact_text(metres(random)) + ',' + exact_text(0.1 * metres(random)) + ',' +
+         exact_text(degrees(random));
+}
+
+TEST(LiveSimulation, ARunWithMovesRepeatsFromItsWordsAndInARecordingFromMidRunOn) {
+  const TemporaryFolder folder;
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    sim::Scenario file = uniform();
+    sim::add_move(file, "0.2,0.3,0.1,20@30");  // of the command line
+    LiveSimulation live(file, {}, nullptr);
+    unsigned moves = 1;
+    for (int step = 0; step < 8; ++step) {
+      advance(live, static_cast<unsigned>(random() % 20));
+      if (random() % 2 == 0) {
+        live.set({"amplitude=" + std::to_string(random() % 50)}, std::nullopt);
+      }
+      for (unsigned again = 0; again < random() % 3; ++again) {
+        live.move(random_place(random));
+        ++moves;
+      }
+    }
+    ASSERT_TRUE(live.record(folder / std::to_string(seed), "simulate", "test", [] { return true; }));
+    advance(live, 40);
+    const std::uint32_t ticks = live.simulation().tick();
+    EXPECT_EQ(hashes_of(live.simulation()), simulated(file, live.repeating_words(), ticks, live.repeating_moves()));
+    live.end_recording();
+    Database recording(folder / std::to_string(seed), SQLITE_OPEN_READONLY);
+    Statement count(recording, "SELECT count(*) FROM move");
+    ASSERT_TRUE(count.step());
+    EXPECT_EQ(count.integer(0), moves);
+  }
+}
+
+TEST(LiveSimulation, AMoveIsSeenAtOnceAndARestartForgetsIt) {
+  LiveSimulation live(uniform(), {}, nullptr);
+  advance(live, 20);
+  live.move("1,2,0.1,0");
+  EXPECT_TRUE(live.simulation().was_moved());
+  EXPECT_NEAR(live.simulation().plant().link_poses().front().position.x(), 1.0, 1e-9);
+  EXPECT_TRUE(live.repeating_moves().empty()) << "the run up to now does not have it yet";
+  live.advance();
+  EXPECT_FALSE(live.simulation().was_moved());
+  EXPECT_EQ(live.repeating_moves(), (std::vector<std::string>{"1,2,0.1,0@20"}));
+  live.restart(StartValues::wanted);
+  advance(live, 30);
+  EXPECT_EQ(hashes_of(live.simulation()), simulated(uniform(), {}, 30));
+}
+
+TEST(LiveSimulation, AMoveThatIsRefusedChangesNothing) {
+  LiveSimulation live(uniform(), {}, nullptr);
+  advance(live, 20);
+  for (const char* place : {"1e3,0,0,0", "0,0,99,0", "nan,0,0,0", "0,0,0", "0,0,0,0@5", ""}) {
+    EXPECT_THROW(live.move(place), InputError) << place;
+  }
+  advance(live, 20);
+  EXPECT_TRUE(live.repeating_moves().empty());
+  EXPECT_EQ(hashes_of(live.simulation()), simulated(uniform(), {}, 40));
 }
 
 }  // namespace

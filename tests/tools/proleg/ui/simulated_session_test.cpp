@@ -110,10 +110,10 @@ class SimulatedSessionTest : public ::testing::Test {
   void open(bool starts_paused) {
     session_.reset();
     requests_.emplace();
-    session_.emplace(
-        scenario_, nullptr,
-        SimulatedSessionOptions{folder_ / "", "proleg simulate uniform.simulation.xml", "test", starts_paused},
-        *requests_, viewers_);
+    session_.emplace(scenario_, nullptr,
+                     SimulatedSessionOptions{
+                         folder_ / "", "proleg simulate uniform.simulation.xml", {}, false, "test", starts_paused},
+                     *requests_, viewers_);
   }
   Viewers::Answer ask(const std::string& name, const json& arguments = json::object()) {
     requests_->operate({++request_, name, arguments, 1, "a test"});
@@ -236,6 +236,40 @@ TEST_F(SimulatedSessionTest, ARestartIsAnotherRun) {
   const json after = viewers_.session([](const json& session) { return session["tick"] == 0; });
   EXPECT_NE(before["run"], after["run"]);
   EXPECT_EQ(after["state"], "paused");
+}
+
+TEST_F(SimulatedSessionTest, ARobotWithoutFilesRefusesToWriteThem) {
+  open(true);
+  EXPECT_TRUE(ask("set", {{"words", {"amplitude=30"}}}).is_done);
+  for (const char* operation : {"file.diff", "file.apply"}) {
+    const Viewers::Answer answer = ask(operation);
+    EXPECT_FALSE(answer.is_done);
+    EXPECT_EQ(answer.text, "this robot has no file; `proleg new robot --joints 5` writes one like it");
+  }
+}
+
+TEST_F(SimulatedSessionTest, MovesAPausedRobotAndRepeatsItInTheCommand) {
+  open(true);
+  EXPECT_TRUE(ask("step", {{"ticks", 5}}).is_done);
+  viewers_.session([](const json& session) { return session["tick"] == 5; });
+  EXPECT_EQ(ask("move", {{"position", {0.5, 0.25, 0.125}}, {"turn", 30}}).text, R"({"tick":5})");
+  const json session = viewers_.session([](const json& document) { return document["moved"] == true; });
+  EXPECT_NEAR(session["head"][0].get<double>(), 0.5, 1e-9);
+  EXPECT_NEAR(session["head"][2].get<double>(), 0.125, 1e-9);
+  EXPECT_TRUE(ask("step", {{"ticks", 5}}).is_done);
+  viewers_.session([](const json& document) { return document["tick"] == 10 && document["moved"] == false; });
+  EXPECT_EQ(json::parse(ask("command_line").text)["text"],
+            "proleg simulate uniform.simulation.xml --move 0.5,0.25,0.125,30@5 --seconds 0.1");
+}
+
+TEST_F(SimulatedSessionTest, RefusesToMoveARobotThatRunsOrToABadPlace) {
+  open(true);
+  for (const json& position : {json({1, 2}), json("here"), json(), json({1e300, 0, 0}), json({5000, 0, 0})}) {
+    EXPECT_FALSE(ask("move", {{"position", position}}).is_done) << position;
+  }
+  EXPECT_TRUE(ask("run").is_done);
+  EXPECT_EQ(ask("move", {{"position", {0, 0, 0.1}}}).text,
+            "move: found a simulation that is not paused, expected a paused one");
 }
 
 }  // namespace

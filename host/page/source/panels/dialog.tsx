@@ -1,0 +1,36 @@
+// The frame of a dialog. Dialogs are not modal: STOP must stay within reach, by mouse too. Esc is STOP in them as everywhere;
+// they close with their key, their button, or a click beside them.
+import type { ComponentChildren } from 'preact';
+import { useEffect, useRef } from 'preact/hooks';
+import { openDialog } from '../dialogs.js';
+import { closeIcon } from './icons.js';
+
+export function close(): void {
+  openDialog.value = 'none';
+}
+
+export function Dialog({ title, isWide, children }: { title: string; isWide?: boolean; children: ComponentChildren }) {
+  const dialog = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    const before = document.activeElement;
+    const find = (tag: string) => dialog.current?.querySelector<HTMLElement>(tag);
+    (find('input') ?? find('button'))?.focus();
+    return () => {
+      if (before instanceof HTMLElement) before.focus();
+    };
+  }, []);
+  return (
+    <>
+    <div class="backdrop" onClick={close} />
+    <div ref={dialog} class={isWide === true ? 'dialog wide-dialog' : 'dialog'} role="dialog" aria-label={title}>
+      <div class="dialog-head">
+        <h2>{title}</h2>
+        <button type="button" class="icon-button" aria-label="Close" onClick={close}>
+          {closeIcon}
+        </button>
+      </div>
+      {children}
+    </div>
+    </>
+  );
+}

@@ -1,0 +1,80 @@
+// Moves a paused robot to another place: by a drag in the 3D view, by keys, or by typed numbers.
+import { computed, signal } from '@preact/signals-core';
+import { compose, fromAxisAngle, type Pose, type Vector } from '../geometry/quaternion.js';
+import type { PageState } from './page_state.js';
+
+// Where the head's frame goes, in metres, and by how many degrees the robot turns to the left about the vertical there.
+export interface RobotPlace {
+  position: Vector;
+  turn: number;
+}
+
+const smallestMove = 1e-4; // metres and degrees: a press without a drag
+
+export class MoveTool {
+  readonly isOn = signal(false);
+  readonly isPossible = computed(() => this.state.isHolder.value && this.state.session.value?.state === 'paused');
+  readonly isActive = computed(() => this.isOn.value && this.isPossible.value);
+  // While the robot is dragged; the program has not been asked yet.
+  readonly preview = signal<RobotPlace | null>(null);
+  private start: Vector | null = null; // of the head, when the drag began
+
+  constructor(
+    private readonly state: PageState,
+    private readonly ask: (place: RobotPlace) => Promise<unknown>,
+  ) {}
+
+  get session(): PageState['session'] {
+    return this.state.session;
+  }
+
+  // The head now; null before the first document.
+  get head(): Vector | null {
+    const head = this.state.session.value?.head;
+    return head === undefined ? null : [head[0], head[1], head[2]];
+  }
+
+  begin(): void {
+    this.start = this.head;
+  }
+
+  drag(offset: Vector, turn: number): void {
+    if (this.start !== null && this.isActive.peek()) {
+      const [x, y, z] = this.start;
+      this.preview.value = { position: [x + offset[0], y + offset[1], z + offset[2]], turn };
+    }
+  }
+
+  async drop(): Promise<void> {
+    const place = this.preview.peek();
+    const start = this.start;
+    this.start = null;
+    if (place !== null && start !== null) {
+      const way = Math.hypot(...place.position.map((value, axis) => value - (start[axis] as number)));
+      if (way > smallestMove || Math.abs(place.turn) > smallestMove) {
+        await this.moveTo(place);
+      }
+      this.preview.value = null;
+    }
+  }
+
+  // By so much, as a key does.
+  async step(offset: Vector, turn: number): Promise<void> {
+    this.begin();
+    this.drag(offset, turn);
+    await this.drop();
+  }
+
+  async moveTo(place: RobotPlace): Promise<void> {
+    if (this.isActive.peek()) {
+      await this.ask(place);
+    }
+  }
+}
+
+// The head's pose at a place.
+export function placedHead(head: Pose, place: RobotPlace): Pose {
+  const turn = fromAxisAngle([0, 0, 1], (place.turn * Math.PI) / 180);
+  const turned = compose({ position: [0, 0, 0], orientation: turn }, { position: [0, 0, 0], orientation: head.orientation });
+  return { position: place.position, orientation: turned.orientation };
+}

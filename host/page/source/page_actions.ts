@@ -2,6 +2,7 @@
 import { recordingName } from './state/recording_name.js';
 import { nextTheme } from './theme.js';
 import { toggleDialog } from './dialogs.js';
+import type { PageState } from './state/page_state.js';
 import type { PageApp } from './page_app.js';
 
 export function recordOrEnd({ state, operations }: PageApp): void {
@@ -10,9 +11,15 @@ export function recordOrEnd({ state, operations }: PageApp): void {
   void operations.tell('record', { file });
 }
 
+// Of a robot on a bus.
+function runObstacle(state: PageState): string | null {
+  return state.obstacleTo(state.busSession.value?.state === 'running' ? 'hold' : 'run');
+}
+
 export function addActions(app: PageApp): void {
   const { state, time, operations } = app;
   const isHolder = () => state.isHolder.value;
+  const isSimulation = () => state.robot.value?.kind !== 'bus';
   const isRunning = () => state.session.value?.state === 'running';
   const tell: typeof operations.tell = (name, parameters) => operations.tell(name, parameters);
 
@@ -26,10 +33,11 @@ export function addActions(app: PageApp): void {
     },
     {
       id: 'run_or_pause',
-      title: 'Run, or pause',
+      title: 'Run, or pause: hold',
       group: 'Robot',
       keys: ['K'],
-      isEnabled: isHolder,
+      isEnabled: () => (isSimulation() ? isHolder() : runObstacle(state) === null),
+      obstacle: () => (isSimulation() ? null : runObstacle(state)),
       run: () => void tell(isRunning() ? 'pause' : 'run', {}),
     },
     {
@@ -38,6 +46,7 @@ export function addActions(app: PageApp): void {
       group: 'Robot',
       keys: ['.'],
       isEnabled: isHolder,
+      isShown: isSimulation,
       run: () => void tell('step', { ticks: 1 }),
     },
     {
@@ -46,6 +55,7 @@ export function addActions(app: PageApp): void {
       group: 'Robot',
       keys: ['Shift+R'],
       isEnabled: isHolder,
+      isShown: isSimulation,
       run: () => void tell('restart', {}),
     },
     {
@@ -54,6 +64,7 @@ export function addActions(app: PageApp): void {
       group: 'Robot',
       keys: [],
       isEnabled: isHolder,
+      isShown: isSimulation,
       run: () => void tell('restart', { parameters: 'file' }),
     },
     {
@@ -61,7 +72,8 @@ export function addActions(app: PageApp): void {
       title: 'Record the run from tick 0 on, or end the recording',
       group: 'Robot',
       keys: ['R'],
-      isEnabled: isHolder,
+      isEnabled: () => (isSimulation() ? isHolder() : state.obstacleTo('record') === null),
+      obstacle: () => (isSimulation() ? null : state.obstacleTo('record')),
       run: () => recordOrEnd(app),
     },
     {
@@ -132,6 +144,7 @@ export function addActions(app: PageApp): void {
       group: 'Parameters',
       keys: ['B'],
       isEnabled: isHolder,
+      isShown: isSimulation,
       run: () => void tell('swap', {}),
     },
     {
@@ -147,6 +160,7 @@ export function addActions(app: PageApp): void {
       title: 'Command that gives the same run',
       group: 'Parameters',
       keys: ['X'],
+      isShown: isSimulation,
       run: () => toggleDialog('command_line'),
     },
     {

@@ -4,6 +4,7 @@ import { TelemetryHistory } from './data/telemetry_history.js';
 import { ActionList } from './state/actions.js';
 import { OperationQueue } from './state/operations.js';
 import { PageState } from './state/page_state.js';
+import { PoseQueue } from './state/pose_queue.js';
 import { SetQueue } from './state/set_queue.js';
 import { SignalSelection } from './state/signal_selection.js';
 import { StopControl } from './state/stop_report.js';
@@ -13,6 +14,8 @@ import { decodeTelemetry } from './wire/telemetry_message.js';
 import { StopChannel } from './wire/stop_channel.js';
 import { Subscriptions } from './wire/subscription.js';
 
+const freshnessPeriod = 500; // milliseconds
+
 export class PageApp {
   readonly state = new PageState();
   readonly history = new TelemetryHistory();
@@ -21,6 +24,7 @@ export class PageApp {
   readonly actions = new ActionList();
   readonly operations: OperationQueue;
   readonly sets: SetQueue;
+  readonly poses: PoseQueue;
   readonly stop: StopControl;
   private readonly worker = new Worker('connection_worker.js');
   private subscriptions = new Subscriptions();
@@ -35,6 +39,11 @@ export class PageApp {
       reset: (names) => this.operations.ask('reset', { names }),
       refused: (reason) => this.state.addNotice('warning', reason),
     });
+    this.poses = new PoseQueue({
+      send: (angles, speed) => this.operations.ask('pose', { angles, speed }),
+      refused: (reason) => this.state.addNotice('warning', reason),
+      after: (ms, action) => void setTimeout(action, ms),
+    });
     const url = `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/socket`;
     const channel = openStopChannel(url, token, name);
     this.stop = new StopControl(channel);
@@ -42,6 +51,10 @@ export class PageApp {
     this.post({ kind: 'open', url, token, name });
     effect(() => this.subscribe());
     effect(() => this.noteRun(this.state.session.value?.run));
+    effect(() => {
+      if (this.state.obstacleTo('pose') !== null) this.poses.forget();
+    });
+    setInterval(() => this.state.freshness.check(performance.now()), freshnessPeriod);
   }
 
   newGesture(): number {
@@ -114,6 +127,10 @@ export class PageApp {
       this.time.goLive();
     }
     this.history.append(telemetry, layout);
+    // Without the bus the rows go on, and say nothing of the robot.
+    if (this.state.bus.peek()?.connected !== false) {
+      this.state.freshness.note(performance.now());
+    }
   }
 }
 

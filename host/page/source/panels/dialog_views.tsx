@@ -128,7 +128,7 @@ function Palette({ app }: { app: PageApp }) {
             onClick={() => start(action)}
           >
             <span>{action.title}</span>
-            {action.isEnabled?.() === false && <span class="hint">needs control</span>}
+            {action.isEnabled?.() === false && <span class="hint">{action.obstacle?.() ?? 'needs control'}</span>}
             {action.keys[0] !== undefined && <kbd>{keyText(action.keys[0])}</kbd>}
           </li>
         ))}

@@ -3,6 +3,7 @@ import { signal, type Signal } from '@preact/signals';
 import type { ComponentType } from 'preact';
 import type { PageApp } from '../page_app.js';
 import { openDialog } from '../dialogs.js';
+import type { RobotDocument } from '../wire/messages.js';
 import { Bands } from './bands.js';
 import { NoticeList } from './notice_list.js';
 import { TopBar } from './top_bar.js';
@@ -29,13 +30,25 @@ function LaterView({ app, part, wait }: { app: PageApp; part: Later; wait: strin
   return Content === null || typeof Content === 'string' ? <p class="wait">{Content ?? wait}</p> : <Content app={app} />;
 }
 
+// A robot on a bus has panels of its own.
+let robotPage: Later | null = null;
+
+function pageOf(kind: RobotDocument['kind']): Later {
+  return kind === 'bus' ? (robotPage ??= loadLater(import('./bus/robot_page.js').then((module) => module.RobotPage))) : livePage;
+}
+
 export function Frame({ app }: { app: PageApp }) {
+  const robot = app.state.robot.value;
   return (
     <>
       <TopBar app={app} />
       <Bands app={app} />
       <main id="page">
-        <LaterView app={app} part={livePage} wait="Loading …" />
+        {robot === null ? (
+          <p class="wait">Waiting for the robot …</p>
+        ) : (
+          <LaterView app={app} part={pageOf(robot.kind)} wait="Loading …" />
+        )}
       </main>
       <NoticeList state={app.state} />
       {openDialog.value !== 'none' && <LaterView app={app} part={dialogs} wait="" />}

@@ -4,8 +4,10 @@ import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
 import type { PageApp } from '../page_app.js';
 import type { FromScene, ToScene } from '../scene/scene_messages.js';
+import { ghostIsOn, toggleGhost } from '../robot_actions.js';
 import { isDark } from '../theme.js';
 import { listenToPointer } from './scene_pointer.js';
+import { ScenePull } from './scene_pull.js';
 import { poseAt } from './scene_pose.js';
 
 const highestRatio = 1.5; // device pixels for each CSS pixel; more costs frames and shows little
@@ -31,9 +33,12 @@ export function ScenePanel({ app }: { app: PageApp }) {
     const worker = new Worker('scene_worker.js');
     const send = (message: ToScene, transfer: Transferable[] = []) => worker.postMessage(message, transfer);
     post.current = send;
+    const pull = new ScenePull(app, send);
     worker.onmessage = (event: MessageEvent<FromScene>) => {
       const message = event.data;
       if (message.kind === 'pointed') app.selection.hoveredJoint.value = message.joint;
+      if (message.kind === 'grabbed') pull.grabbed(message.joint);
+      if (message.kind === 'dragged') pull.dragged(message.angle);
       if (message.kind === 'following') isFollowing.value = message.isOn;
       if (message.kind === 'failed') failure.value = message.reason;
     };
@@ -45,7 +50,8 @@ export function ScenePanel({ app }: { app: PageApp }) {
     });
     observer.observe(parent);
     const stops = [
-      listenToPointer(canvas, send, () => (app.selection.hoveredJoint.value = null)),
+      listenToPointer(canvas, send, () => (app.selection.hoveredJoint.value = null), pull),
+      effect(() => void canvas.classList.toggle('can-pull', pull.isPossible)),
       effect(() => send({ kind: 'theme', isDark: isDark.value })),
       effect(() => {
         const robot = app.state.robot.value;
@@ -91,6 +97,16 @@ export function ScenePanel({ app }: { app: PageApp }) {
         >
           Follow
         </button>
+        {app.state.busSession.value !== null && (
+          <button
+            type="button"
+            aria-pressed={ghostIsOn.value}
+            onClick={toggleGhost}
+            title="Also shows the simulation that runs beside the robot, translucent (G)"
+          >
+            Ghost
+          </button>
+        )}
         <button type="button" onClick={() => post.current({ kind: 'reset_view' })} title="Back to the first view (H)">
           Reset view
         </button>
@@ -98,6 +114,12 @@ export function ScenePanel({ app }: { app: PageApp }) {
       <span class="readout" ref={readout} data-testid="head" title="Position of the head" />
       <span class="legend-marks" aria-hidden="true">
         <i class="mark head" /> head <i class="mark contact" /> ground contact <i class="mark path" /> path
+        {app.state.busSession.value !== null && ghostIsOn.value && (
+          <>
+            {' '}
+            <i class="mark ghost" /> simulation
+          </>
+        )}
       </span>
       {failure.value !== null && <p class="scene-failure">No 3D view: {failure.value}</p>}
     </section>
@@ -109,25 +131,36 @@ function followPose(app: PageApp, send: (message: ToScene) => void, readout: { c
   let lastKey = '';
   let lastReadout = 0;
   let robot: unknown = null;
+  let withGhost = false;
   return onFrame((now) => {
     const { history, time } = app;
     const tick = time.shownTick(app.newestTick);
     const key = `${history.run}/${history.end}/${tick}`;
-    if (history.end === 0 || (key === lastKey && robot === app.state.robot.peek())) {
+    if (history.end === 0 || (key === lastKey && robot === app.state.robot.peek() && withGhost === ghostIsOn.peek())) {
       return;
     }
-    const pose = poseAt(history, tick, time.isLive.peek() && time.cursor.peek() === null);
+    const pose = poseAt(history, tick, time.isLive.peek() && time.cursor.peek() === null, ghostIsOn.peek());
     if (pose === null || app.state.robot.peek() === null) {
       return;
     }
     lastKey = key;
     robot = app.state.robot.peek();
+    withGhost = ghostIsOn.peek();
     if (readout.current !== null && now - lastReadout > readoutPeriod) {
       lastReadout = now;
-      // Without the sign of -0.000.
-      const [x, y, z] = [...pose.head.subarray(0, 3)].map((metres) => (Math.round(metres * 1000) / 1000 + 0).toFixed(3));
-      readout.current.textContent = `head  x ${x}  y ${y}  z ${z} m`;
+      // No bus says where a robot is: what is shown there is where its simulation is.
+      const isOnBus = app.state.busSession.peek() !== null;
+      readout.current.textContent = headText(isOnBus ? 'simulated head' : 'head', pose.head);
     }
     send({ kind: 'pose', pose });
   });
+}
+
+function headText(name: string, head: Float64Array | null): string {
+  if (head === null) {
+    return '';
+  }
+  // Without the sign of -0.000.
+  const [x, y, z] = [...head.subarray(0, 3)].map((metres) => (Math.round(metres * 1000) / 1000 + 0).toFixed(3));
+  return `${name}  x ${x}  y ${y}  z ${z} m`;
 }

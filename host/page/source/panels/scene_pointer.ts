@@ -1,6 +1,8 @@
 // Mouse, touch and keys of the 3D view.
-//   drag, one finger: turn      right or Shift and drag, two fingers: pan      wheel, pinch: zoom
+//   drag, one finger: turn the view, or a joint of a robot that is held
+//   right or Shift and drag, two fingers: pan      wheel, pinch: zoom
 import type { ToScene } from '../scene/scene_messages.js';
+import type { ScenePull } from './scene_pull.js';
 
 interface Point {
   x: number;
@@ -10,7 +12,12 @@ interface Point {
 const keyStep = 24; // pixels
 const wheelFactor = 0.0012; // for each pixel
 
-export function listenToPointer(canvas: HTMLCanvasElement, send: (message: ToScene) => void, leave: () => void): () => void {
+export function listenToPointer(
+  canvas: HTMLCanvasElement,
+  send: (message: ToScene) => void,
+  leave: () => void,
+  pull: ScenePull,
+): () => void {
   const pointers = new Map<number, Point>();
   let isPanning = false;
   const abort = new AbortController();
@@ -22,6 +29,12 @@ export function listenToPointer(canvas: HTMLCanvasElement, send: (message: ToSce
       canvas.setPointerCapture(event.pointerId);
       pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
       isPanning = event.button !== 0 || event.shiftKey;
+      const { x, y } = positionIn(canvas, event);
+      if (isPanning || pointers.size > 1) {
+        pull.release();
+      } else {
+        pull.press(x, y);
+      }
     },
     options,
   );
@@ -30,7 +43,7 @@ export function listenToPointer(canvas: HTMLCanvasElement, send: (message: ToSce
     (event) => {
       const before = pointers.get(event.pointerId);
       if (before === undefined) {
-        send(pointedAt(canvas, event));
+        send({ kind: 'point', ...positionIn(canvas, event) });
         return;
       }
       const now = { x: event.clientX, y: event.clientY };
@@ -41,13 +54,17 @@ export function listenToPointer(canvas: HTMLCanvasElement, send: (message: ToSce
         send({ kind: 'zoom', factor: distance(before, other) / Math.max(1, distance(now, other)) });
         send({ kind: 'pan', right: right / 2, down: down / 2 });
       } else {
-        send({ kind: isPanning ? 'pan' : 'turn', right, down });
+        const { x, y } = positionIn(canvas, event);
+        if (!pull.move(x, y)) send({ kind: isPanning ? 'pan' : 'turn', right, down });
       }
       pointers.set(event.pointerId, now);
     },
     options,
   );
-  const release = (event: PointerEvent) => void pointers.delete(event.pointerId);
+  const release = (event: PointerEvent) => {
+    pointers.delete(event.pointerId);
+    pull.release();
+  };
   canvas.addEventListener('pointerup', release, options);
   canvas.addEventListener('pointercancel', release, options);
   canvas.addEventListener('pointerleave', leave, options);
@@ -80,13 +97,10 @@ function turnByKey(event: KeyboardEvent, send: (message: ToScene) => void): void
   }
 }
 
-function pointedAt(canvas: HTMLCanvasElement, event: PointerEvent): ToScene {
+// -1 to 1, y up.
+function positionIn(canvas: HTMLCanvasElement, event: PointerEvent): Point {
   const box = canvas.getBoundingClientRect();
-  return {
-    kind: 'point',
-    x: ((event.clientX - box.left) / box.width) * 2 - 1,
-    y: 1 - ((event.clientY - box.top) / box.height) * 2,
-  };
+  return { x: ((event.clientX - box.left) / box.width) * 2 - 1, y: 1 - ((event.clientY - box.top) / box.height) * 2 };
 }
 
 function distance(a: Point, b: Point): number {

@@ -3,7 +3,8 @@ import type { RobotDocument } from '../wire/messages.js';
 
 export interface ScenePose {
   angles: Float32Array; // radians
-  head: Float64Array; // x, y, z in metres, then the quaternion w, x, y, z
+  head: Float64Array | null; // x, y, z in metres, then the quaternion w, x, y, z; null: nobody knows where it is
+  ghost: Float32Array | null; // angles of the simulation beside the robot, radians
   contacts: Int32Array; // of each link: bit 0 rear, bit 1 front
   run: number;
   isLive: boolean; // only then the path grows
@@ -21,9 +22,13 @@ export type ToScene =
   | { kind: 'zoom'; factor: number }
   | { kind: 'follow'; isOn: boolean }
   | { kind: 'reset_view' }
+  | { kind: 'grab'; x: number; y: number } // as below: a link, to turn its joint
+  | { kind: 'drag'; x: number; y: number }
   | { kind: 'point'; x: number; y: number }; // -1 to 1, y up
 
 export type FromScene =
   | { kind: 'pointed'; joint: number | null }
+  | { kind: 'grabbed'; joint: number | null } // null: nothing that can be turned from here
+  | { kind: 'dragged'; angle: number } // radians since the grab
   | { kind: 'following'; isOn: boolean }
   | { kind: 'failed'; reason: string };

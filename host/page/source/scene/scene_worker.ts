@@ -42,6 +42,10 @@ function apply(view: RobotScene, message: Exclude<ToScene, { kind: 'start' }>): 
       return view.setFollowing(message.isOn);
     case 'reset_view':
       return view.resetView();
+    case 'grab':
+      return post({ kind: 'grabbed', joint: view.grab(message.x, message.y) });
+    case 'drag':
+      return post({ kind: 'dragged', angle: view.drag(message.x, message.y) });
     case 'point':
       return post({ kind: 'pointed', joint: view.jointAt(message.x, message.y) });
   }

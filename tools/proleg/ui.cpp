@@ -12,14 +12,17 @@
 
 #include "host/server/session_requests.hpp"
 #include "host/server/web_server.hpp"
+#include "host/transport/bus_address.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/build_id.hpp"
+#include "tools/proleg/bus_access.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/interrupt.hpp"
 #include "tools/proleg/robot_files.hpp"
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/ui/browser.hpp"
+#include "tools/proleg/ui/bus_session.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
 
 namespace {
@@ -29,6 +32,7 @@ using namespace proleg::tools;
 
 struct UiOptions {
   ScenarioOptions scenario;
+  BusOptions bus;
   std::string port = "0";
   std::string recordings = ".";
   std::optional<std::string> page;
@@ -125,6 +129,19 @@ void require_folder(const std::string& folder) {
   }
 }
 
+void refuse_what_only_a_simulation_has(const UiOptions& options) {
+  const sim::OverrideWords& overrides = options.scenario.overrides;
+  const std::pair<const char*, bool> given[] = {{"--paused", options.paused},
+                                                {"--friction", overrides.friction.has_value()},
+                                                {"--at", overrides.at.has_value()},
+                                                {"--heading", overrides.heading.has_value()}};
+  for (const auto& [option, is_given] : given) {
+    if (is_given) {
+      throw InputError(option, 0, "an option for simulated worlds", "none of them: the robot is where it is");
+    }
+  }
+}
+
 int serve(UiOptions& options) {
   const bool has_file = !options.scenario.file.empty();
   const std::uint16_t port = parse_port(options.port);
@@ -133,16 +150,30 @@ int serve(UiOptions& options) {
   print_warnings("proleg ui", run.scenario);
   const host::AccessToken token = host::AccessToken::make();
   host::ServerOptions server{token, host::PageFiles(page_folder(options)), std::string("proleg ") + build_id, {}, port};
-  for (const std::string& operation : SimulatedSession::free_operations()) {
+  for (const std::string& operation :
+       options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations()) {
     server.free_operations.insert(operation);
+  }
+  std::optional<BusAccess> bus;
+  if (options.bus.bus) {
+    refuse_what_only_a_simulation_has(options);
+    bus.emplace(options.bus);
   }
   catch_interrupts();
   boost::asio::io_context context{1};
   host::SessionRequests requests;
   host::WebServer page(context, std::move(server), requests);
-  const SimulatedSession session(run.scenario, &run.losses,
-                                 {options.recordings, simulate_command(options, has_file), build_id, options.paused},
-                                 requests, page);
+  std::optional<SimulatedSession> simulated;
+  std::optional<BusSession> driven;
+  if (bus) {
+    driven.emplace(run.scenario, *bus, options.bus.address(), BusSessionOptions{options.recordings, build_id}, requests,
+                   page);
+  } else {
+    simulated.emplace(
+        run.scenario, &run.losses,
+        SimulatedSessionOptions{options.recordings, simulate_command(options, has_file), build_id, options.paused},
+        requests, page);
+  }
   const PageAddress address(page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
             << std::flush;
@@ -171,6 +202,10 @@ int main(int argc, char** argv) {
   UiOptions options;
   command_line.add_option("FILE", options.scenario.file, "scenario, a *.simulation.xml file");
   add_override_options(command_line, options.scenario);
+  command_line
+      .add_option("--bus", options.bus.bus,
+                  "show and drive the robot on this bus instead of a simulated one: " + host::bus_address_syntax())
+      .value_name("BUS");
   command_line.add_option("--port", options.port, "TCP port on 127.0.0.1; 0: any free one").shows_default();
   command_line.add_option("--recordings", options.recordings, "folder for recordings")
       .value_name("FOLDER")

@@ -58,7 +58,8 @@ const angleOnBus: JointColumn = {
   help: 'Measured by the servo. A joint that is not measured is drawn at its set-point.',
   read: (app, joint, row) => {
     const angle = valueOf(app, 'angle', joint, row);
-    return angle === null ? { text: 'not measured', tone: 'missing' } : { text: numberText(angle, 1) };
+    const isAtSetpoint = angle === null && valueOf(app, 'setpoint', joint, row) !== null;
+    return isAtSetpoint ? { text: 'not measured', tone: 'missing' } : { text: numberText(angle, 1) };
   },
 };
 

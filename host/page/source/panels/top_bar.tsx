@@ -36,8 +36,8 @@ function RobotName({ state }: { state: PageState }) {
   return (
     <div class="robot-name">
       {badge !== null && (
-        <strong class={`badge ${robot?.kind}`} title={badge.title}>
-          {badge.text} {robot?.kind === 'bus' && <span class="address">{state.bus.value?.address}</span>}
+        <strong class={`badge ${robot?.kind}`} title={`${badge.title} ${state.bus.value?.address ?? ''}`}>
+          {badge.text} {state.bus.value?.address}
         </strong>
       )}
       <span class="name" title={robot?.file}>

@@ -117,7 +117,7 @@ export interface GaitComparison {
 export interface BusSession extends CommonSession {
   kind: 'bus';
   state: 'off' | 'starting' | 'held' | 'running' | 'stopping';
-  gait: GaitComparison;
+  gait: GaitComparison | null; // null: no run yet
   started_with: 'power' | 'run' | null;
 }
 

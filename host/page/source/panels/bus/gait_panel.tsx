@@ -3,10 +3,7 @@ import type { PageApp } from '../../page_app.js';
 import { describeGait } from '../../state/gait_text.js';
 
 export function GaitPanel({ app }: { app: PageApp }) {
-  const gait = app.state.busSession.value?.gait;
-  if (gait === undefined) {
-    return null;
-  }
+  const gait = app.state.busSession.value?.gait ?? null;
   const { text, tone } = describeGait(gait);
   return (
     <section class="panel gait-panel" aria-label="Comparison with the gait">
@@ -16,8 +13,8 @@ export function GaitPanel({ app }: { app: PageApp }) {
       <p class={`verdict ${tone}`} data-testid="gait">
         {text}
       </p>
-      {gait.first_difference !== null && <p>First difference: {gait.first_difference}</p>}
-      {gait.end !== null && <p class="hint">Nothing is compared any more: {gait.end}</p>}
+      {gait?.first_difference && <p>First difference: {gait.first_difference}</p>}
+      {gait?.end && <p class="hint">Nothing is compared any more: {gait.end}</p>}
     </section>
   );
 }

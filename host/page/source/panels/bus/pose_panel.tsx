@@ -127,7 +127,7 @@ export function PosePanel({ app }: { app: PageApp }) {
       <p class="hint" data-testid="pose-hint">
         {obstacle ?? 'Drag a slider, type a number, or drag a link in the 3D view.'}
       </p>
-      <div class="pose-rows">
+      <div class="pose-rows" tabIndex={0} role="group" aria-label="Positions of joints">
         {joints.map((joint, index) => (
           <PoseRow key={joint.name} app={app} joint={joint} index={index} isPossible={obstacle === null} />
         ))}

@@ -38,7 +38,8 @@ describe('the queue of positions', () => {
       clock.advance(1);
       await settle();
     }
-    assert.ok(sent.length >= 45 && sent.length <= 50, `found ${sent.length} messages in a second`);
+    assert.ok(sent.length > 45, `found ${sent.length} messages in a second`);
+    assert.deepEqual(sent.filter(({ time }, i) => time - (sent[i - 1]?.time ?? -20) < 20), []);
     sent.at(-1)?.finish();
     await settle();
     clock.advance(20);

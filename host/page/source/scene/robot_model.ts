@@ -85,6 +85,16 @@ function instancesOf(bodies: readonly Body[], kind: Shape['kind'], areLinks: boo
 
 const kinds = ['box', 'sphere', 'cylinder'] as const;
 
+// Behind the robot where both are at the same place: the robot keeps its colours there.
+const ghostLook = {
+  transparent: true,
+  opacity: 0.38,
+  depthWrite: false,
+  polygonOffset: true,
+  polygonOffsetFactor: 2,
+  polygonOffsetUnits: 2,
+};
+
 // A link that a ray hits, and the joint that a pull at it turns.
 export interface Hit {
   joint: number;
@@ -118,7 +128,7 @@ export class RobotModel {
   ) {
     this.isDark = isDark;
     this.kinematics = new ForwardKinematics(robot);
-    const material = new THREE.MeshLambertMaterial(isGhost ? { transparent: true, opacity: 0.38, depthWrite: false } : {});
+    const material = new THREE.MeshLambertMaterial(isGhost ? ghostLook : {});
     const marks = new THREE.MeshBasicMaterial();
     const make = (bodies: readonly Body[], areLinks: boolean) =>
       kinds

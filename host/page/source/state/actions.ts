@@ -6,6 +6,10 @@ export interface Action {
   group: 'Robot' | 'Recording' | 'View' | 'Parameters' | 'Page';
   keys: readonly string[]; // as KeyboardEvent.key, with 'Ctrl+' and 'Shift+' in front; the first one is shown
   isEnabled?: () => boolean;
+  // Why it is not enabled, if not for want of control.
+  obstacle?: () => string | null;
+  // False: not for this kind of robot, so it is not listed and its key does nothing.
+  isShown?: () => boolean;
   // In text fields too: only for what must always work.
   isGlobal?: boolean;
   run(): void;
@@ -32,7 +36,7 @@ export class ActionList {
   private readonly list: Action[] = [];
 
   get all(): readonly Action[] {
-    return this.list;
+    return this.list.filter((action) => action.isShown?.() !== false);
   }
 
   add(...actions: Action[]): void {
@@ -57,7 +61,7 @@ export class ActionList {
       return undefined;
     }
     const name = nameOf(press);
-    return this.list.find(
+    return this.all.find(
       (action) => action.keys.includes(name) && (!isText || action.isGlobal === true) && action.isEnabled?.() !== false,
     );
   }
@@ -65,6 +69,6 @@ export class ActionList {
   // Those whose title has all words of the text.
   matching(text: string): Action[] {
     const words = text.toLowerCase().split(/\s+/).filter(Boolean);
-    return this.list.filter((action) => words.every((word) => `${action.group} ${action.title}`.toLowerCase().includes(word)));
+    return this.all.filter((action) => words.every((word) => `${action.group} ${action.title}`.toLowerCase().includes(word)));
   }
 }

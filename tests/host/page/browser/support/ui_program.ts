@@ -1,4 +1,4 @@
-// Starts `proleg ui` on a scenario, paused at tick 0, and reads the address that it prints.
+// Starts `proleg ui` on a scenario and reads the address that it prints.
 import { spawn, type ChildProcess } from 'node:child_process';
 
 export const program = process.env['PROLEG_PROGRAM'] ?? 'build/host/bin/proleg';
@@ -13,8 +13,18 @@ export class UiProgram {
     private readonly child: ChildProcess,
   ) {}
 
+  // A simulation, paused at tick 0.
   static start(file: string = uniform, more: string[] = []): Promise<UiProgram> {
-    const options = ['--no-browser', '--port', '0', '--paused', '--page', 'build/page', ...more];
+    return UiProgram.launch(file, ['--paused', ...more]);
+  }
+
+  // A robot on a simulated bus.
+  static startOnBus(file: string = uniform, more: string[] = []): Promise<UiProgram> {
+    return UiProgram.launch(file, ['--bus', `sim:${file}`, ...more]);
+  }
+
+  private static launch(file: string, more: string[]): Promise<UiProgram> {
+    const options = ['--no-browser', '--port', '0', '--page', 'build/page', ...more];
     const child = spawn(program, ['ui', file, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });
     return new Promise((resolve, reject) => {
       let output = '';

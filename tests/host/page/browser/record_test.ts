@@ -1,20 +1,14 @@
 // A session of clicks is a run like any other: its recording replays without a difference, and the command that the
 // page shows gives the same hashes.
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { dirname, join, resolve } from 'node:path';
+import { join } from 'node:path';
 import { describe, it } from 'node:test';
 import { launchBrowser } from './support/browser.js';
-import { program, UiProgram, uniform } from './support/ui_program.js';
+import { resultOf, shownCommand } from './support/command_line.js';
+import { UiProgram, uniform } from './support/ui_program.js';
 import { Viewer } from './support/viewer.js';
-
-const environment = { ...process.env, PATH: `${resolve(dirname(program))}:${process.env['PATH']}` };
-
-function resultOf(command: string): Record<string, unknown> {
-  return JSON.parse(execFileSync('sh', ['-c', `${command} --json`], { env: environment, encoding: 'utf8' }));
-}
 
 async function clickAround(viewer: Viewer): Promise<string> {
   await viewer.takeControl();
@@ -36,10 +30,7 @@ async function clickAround(viewer: Viewer): Promise<string> {
   await viewer.waitForTick((await viewer.tick()) + 100);
   await viewer.button('Pause').click();
   await viewer.waitForState('paused');
-  await viewer.page.keyboard.press('x');
-  const shown = viewer.page.getByTestId('command').filter({ hasText: 'proleg simulate' });
-  const command = (await shown.textContent()) ?? '';
-  await viewer.page.keyboard.press('x');
+  const command = await shownCommand(viewer);
   await viewer.button('Recording').click();
   await viewer.button('Record').waitFor();
   return command;

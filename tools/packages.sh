@@ -3,7 +3,7 @@
 # Programs for this computer.
 host_packages=(
   g++ cmake ninja-build pkg-config ccache git ca-certificates
-  libode-dev libeigen3-dev libtinyxml2-dev libsqlite3-dev libsodium-dev libcli11-dev nlohmann-json3-dev
+  libode-dev libeigen3-dev libtinyxml2-dev libsqlite3-dev libsodium-dev zlib1g-dev libcli11-dev nlohmann-json3-dev
   libunicorn-dev libdw-dev
   libpagmo-dev libga-dev  # the optimiser
   libboost-dev  # Boost.Asio: serial lines, sockets

@@ -1,8 +1,10 @@
 // Bundles the page, or its tests.
 //   node bundle.mjs page FOLDER     index.html, app.js with its chunks, the workers, style.css
+//   node bundle.mjs player FOLDER   player.html, into which proleg export --html writes a recording
 //   node bundle.mjs tests FOLDER    each *_test.ts of tests/host/page as one program for `node --test`
 import { build } from 'esbuild';
-import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import { createHash } from 'node:crypto';
+import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
@@ -13,6 +15,9 @@ const tests = join(room, '../../tests/host/page');
 // Sizes in bytes of gzip. The first chunk is what the page needs for the top bar, STOP and the connection.
 const largestFirstChunk = 40 * 1024;
 const largestPage = 220 * 1024;
+
+// Bytes of the player as it is in every exported recording.
+const largestPlayer = 800 * 1024;
 
 const common = { bundle: true, target: 'es2022', legalComments: 'none', logLevel: 'warning', absWorkingDir: room };
 
@@ -105,6 +110,43 @@ async function bundleTests(folder) {
   return files.length > 0;
 }
 
+async function bundlePlayer(folder) {
+  const entry = async (file, format) => {
+    const options = { ...common, minify: true, jsx: 'automatic', jsxImportSource: 'preact', write: false };
+    const result = await build({ ...options, entryPoints: [join(room, 'source', file)], ...(format ? { format } : {}) });
+    return result.outputFiles[0].text.trim();
+  };
+  const style = await entry('style/player.css');
+  const worker = await entry('scene/scene_worker.ts', 'iife');
+  const player = await entry('player/player.tsx', 'iife');
+  const icon = /<link rel="icon"[^>]*>/.exec(readFileSync(join(room, 'source/index.html'), 'utf8'))[0];
+  // Only these texts run, whatever a recording contains, and nothing is loaded.
+  const sum = (text) => `'sha256-${createHash('sha256').update(text).digest('base64')}'`;
+  const policy =
+    `default-src 'none'; script-src ${sum(player)}; style-src ${sum(style)}; worker-src blob:; img-src data:; ` +
+    `base-uri 'none'; form-action 'none'`;
+  const parts = { policy, icon, style, 'scene worker': worker, player };
+  for (const [name, text] of Object.entries(parts)) {
+    // Else the browser would not read the element to its end, or beyond it.
+    if (/<\/(script|style)|<!--/i.test(text)) {
+      console.error(`tools/page: found the end of an element in the ${name}, expected a text without one`);
+      return false;
+    }
+  }
+  const template = readFileSync(join(room, 'source/player/player.html'), 'utf8');
+  const page = template.replace(/<!-- (policy|icon|style|scene worker|player) -->/g, (_, name) => parts[name]);
+  rmSync(folder, { recursive: true, force: true });
+  mkdirSync(folder, { recursive: true });
+  writeFileSync(join(folder, 'player.html'), page);
+  print('player.html', page.length, gzipSync(page, { level: 9 }).length);
+  if (page.length > largestPlayer) {
+    console.error(`tools/page: found ${page.length} bytes in the player, expected at most ${largestPlayer}`);
+    return false;
+  }
+  return true;
+}
+
 const [what, folder] = process.argv.slice(2);
-const succeeded = await (what === 'tests' ? bundleTests(folder) : bundlePage(folder));
+const bundles = { page: bundlePage, player: bundlePlayer, tests: bundleTests };
+const succeeded = await bundles[what](folder);
 process.exit(succeeded ? 0 : 1);

@@ -1,67 +1,155 @@
-// proleg export: a recording as a table for other programs.
+// proleg export: a recording as a table for other programs, or as a page that plays it.
 
 #include <array>
+#include <cstdint>
+#include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/output/output_check.hpp"
 #include "sim/record/recording.hpp"
 #include "sim/record/tsv.hpp"
 #include "tools/proleg/beside_recording.hpp"
+#include "tools/proleg/built_page.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/html_file.hpp"
+#include "tools/proleg/json_output.hpp"
+#include "tools/proleg/run_progress.hpp"
+#include "tools/proleg/ui/recording_document.hpp"
+
+namespace {
 
 using namespace proleg;
+using namespace proleg::tools;
+
+using Write = std::function<void(std::string_view)>;
+
+struct Options {
+  std::string recording;
+  std::string out;
+  bool tsv = true;  // without --html
+  bool html = false;
+  bool json = false;
+};
+
+/// What is exported, and how.
+struct Export {
+  std::filesystem::path file;
+  PlannedOutput output;
+  std::function<void(const Write&)> write_with;
+};
+
+Export table_of(const sim::Recording& recording, const std::filesystem::path& file) {
+  return {file, {"--out", file, "table", starts_with("tick\t")}, [&recording](const Write& write) {
+            sim::write_tsv(recording, write);
+          }};
+}
+
+/// Reads all that can be wrong before anything is written.
+Export page_of(const sim::Recording& recording, const std::filesystem::path& file) {
+  const auto player = std::make_shared<const PlayerPage>(built_page("player", "player.html") / "player.html");
+  const auto scenario = std::make_shared<const sim::Scenario>(scenario_of(recording));
+  return {file,
+          {"--out", file, "page of a recording", starts_with(PlayerPage::first_text)},
+          [&recording, player, scenario](const Write& write) {
+            RunProgress progress("proleg export", recording.time_s(recording.last_tick()));
+            write_html(recording, *scenario, *player, write,
+                       [&](std::uint32_t tick) { progress.show(recording.time_s(tick)); });
+          }};
+}
+
+std::string shown_size(std::uint64_t bytes) {
+  constexpr double megabyte = 1e6;
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2f MB", static_cast<double>(bytes) / megabyte);
+  return text.data();
+}
+
+void print_result(const Options& options, const sim::Recording& recording, const std::string& file,
+                  std::uint64_t bytes) {
+  const std::uint32_t ticks = recording.last_tick() - recording.first_tick() + 1;
+  const double seconds = ticks * 1e-6 * recording.tick_period_us();
+  std::string text;
+  if (options.json) {
+    text = Json{{"file", file}, {"bytes", bytes}, {"ticks", ticks}, {"seconds", seconds}}.text() + "\n";
+  } else {
+    text = file + "\n";
+    if (options.html) {
+      std::array<char, 64> figures{};
+      std::snprintf(figures.data(), figures.size(), ", %u ticks, %g s\n", ticks, seconds);
+      text += shown_size(bytes) + figures.data();
+    }
+  }
+  Output standard_output;
+  standard_output.write(text);
+  standard_output.finish();
+}
+
+int export_recording(const CommandLine& command_line, const Options& options) {
+  const bool to_standard_output = options.out == "-";
+  if (to_standard_output && options.json) {
+    throw BadInput("--json: found --out -, expected a file: both go to standard output");
+  }
+  const sim::Recording recording(options.recording);
+  const std::filesystem::path file = options.out.empty()
+                                         ? beside_recording(options.recording, options.html ? ".html" : ".tsv")
+                                         : std::filesystem::path(options.out);
+  const Export planned = options.html ? page_of(recording, file) : table_of(recording, file);
+  if (!to_standard_output) {
+    const std::array outputs{planned.output};
+    check_outputs(outputs);
+  }
+  if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
+    print_warning(command_line.name(), remark);
+  }
+  try {
+    std::optional<Output> output;
+    if (to_standard_output) {
+      output.emplace();
+    } else {
+      output.emplace(file);
+    }
+    std::uint64_t bytes = 0;
+    planned.write_with([&](std::string_view text) {
+      output->write(text);
+      bytes += text.size();
+    });
+    output->finish();
+    if (!to_standard_output) {
+      print_result(options, recording, file.string(), bytes);
+    }
+  } catch (const ReaderGone&) {
+    return exit_failed;  // `head` does this; no message
+  }
+  return exit_success;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
-  tools::CommandLine command_line(
+  CommandLine command_line(
       "proleg export",
-      "Writes a recording of 'proleg simulate --record' as a table: a header line, then a line for each tick. Prints\n"
-      "the name of the table.\n"
+      "Writes a recording of 'proleg simulate --record' as a table: a header line, then a line for each tick; or as a\n"
+      "page that plays it in a browser, without a server. Prints the name of the file.\n"
       "Columns: tick; time_s; for each joint setpoint_deg, servo_us, angle_deg, torque_Nm and current_mA (means over "
       "the\n"
       "tick) and its internal values; for each link x_m, y_m, z_m, its orientation qw, qx, qy, qz, contact_rear,\n"
       "contact_front, contact_N. Joint and link names follow the dot (setpoint_deg.J1).");
-  std::string recording_path;
-  std::string out;
-  bool tsv = true;  // the only format
-  command_line.add_option("RUN", recording_path, "the recording").required().value_name("");
-  command_line.add_flag("--tsv", tsv, "write tab-separated values, as without this option");
+  Options options;
+  command_line.add_option("RUN", options.recording, "the recording").required().value_name("");
+  command_line.add_flag("--tsv", options.tsv, "write tab-separated values, as without this option");
   command_line
-      .add_option("--out", out,
-                  "the table; by default run.tsv for run.proleg, run.1.tsv for run.1; - for standard output")
+      .add_flag("--html", options.html, "write a page that plays the recording in 3D, one file; prints its size too")
+      .excludes("--tsv");
+  command_line
+      .add_option("--out", options.out,
+                  "the file; by default run.tsv or run.html for run.proleg, run.1.tsv for run.1; - for standard output")
       .value_name("FILE");
-
-  return command_line.run(argc, argv, [&] {
-    const sim::Recording recording(recording_path);
-    const std::filesystem::path table =
-        out.empty() ? tools::beside_recording(recording_path, ".tsv") : std::filesystem::path(out);
-    const bool to_standard_output = out == "-";
-    if (!to_standard_output) {
-      const std::array outputs{PlannedOutput{"--out", table, "table", starts_with("tick\t")}};
-      check_outputs(outputs);
-    }
-    if (const std::string remark = sim::remark_on_unfinished_run(recording); !remark.empty()) {
-      tools::print_warning(command_line.name(), remark);
-    }
-    try {
-      std::optional<Output> output;
-      if (to_standard_output) {
-        output.emplace();
-      } else {
-        output.emplace(table);
-      }
-      sim::write_tsv(recording, [&](std::string_view text) { output->write(text); });
-      output->finish();
-      if (!to_standard_output) {
-        Output name;
-        name.write(table.string() + "\n");
-        name.finish();
-      }
-    } catch (const ReaderGone&) {
-      return tools::exit_failed;  // `head` does this; no message
-    }
-    return tools::exit_success;
-  });
+  command_line.add_flag("--json", options.json, "print one JSON object");
+  return command_line.run(argc, argv, [&] { return export_recording(command_line, options); });
 }

@@ -15,6 +15,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/build_id.hpp"
+#include "tools/proleg/built_page.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/interrupt.hpp"
 #include "tools/proleg/robot_files.hpp"
@@ -96,20 +97,6 @@ std::string simulate_command(const UiOptions& options, bool has_file) {
   return command;
 }
 
-/// The page as tools/page builds it, beside the build of this program.
-std::filesystem::path page_folder(const UiOptions& options) {
-  if (options.page) {
-    return *options.page;
-  }
-  std::error_code error;
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::filesystem::path folder = (self.parent_path() / "../../page").lexically_normal();
-  if (!std::filesystem::exists(folder / "index.html", error)) {
-    throw BadInput("found no page in " + folder.string() + ", expected one that tools/page has built");
-  }
-  return folder;
-}
-
 std::uint16_t parse_port(const std::string& word) {
   const std::optional<std::uint16_t> port = parse_whole<std::uint16_t>(word);
   if (!port) {
@@ -131,8 +118,10 @@ int serve(UiOptions& options) {
   require_folder(options.recordings);
   const ScenarioRun run = prepare(options.scenario);
   print_warnings("proleg ui", run.scenario);
+  const std::filesystem::path page_folder =
+      options.page ? std::filesystem::path(*options.page) : built_page("page", "index.html");
   const host::AccessToken token = host::AccessToken::make();
-  host::ServerOptions server{token, host::PageFiles(page_folder(options)), std::string("proleg ") + build_id, {}, port};
+  host::ServerOptions server{token, host::PageFiles(page_folder), std::string("proleg ") + build_id, {}, port};
   for (const std::string& operation : SimulatedSession::free_operations()) {
     server.free_operations.insert(operation);
   }

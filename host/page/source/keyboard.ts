@@ -1,4 +1,4 @@
-// Keys of the whole page. STOP comes first, whatever has the focus.
+// Keys of the whole page. STOP comes first, whatever has the focus; a page without a robot to stop has none.
 import type { ActionList } from './state/actions.js';
 
 const textInputs = new Set(['text', 'number', 'search']);
@@ -16,12 +16,12 @@ function usesArrows(target: EventTarget | null): boolean {
   return target instanceof Element && target.closest('input, select, [role="slider"], [data-arrows]') !== null;
 }
 
-export function listenToKeys(actions: ActionList, stop: () => void): void {
+export function listenToKeys(actions: ActionList, stop: (() => void) | null): void {
   window.addEventListener(
     'keydown',
     (event) => {
       const isText = isTextField(event.target);
-      if (event.key === 'Escape' || (event.key === ' ' && !isText)) {
+      if (stop !== null && (event.key === 'Escape' || (event.key === ' ' && !isText))) {
         // A key that is held down is one press.
         if (!event.repeat) stop();
         event.preventDefault();
@@ -39,7 +39,7 @@ export function listenToKeys(actions: ActionList, stop: () => void): void {
     },
     { capture: true },
   );
-  // Buttons act on the release of Space; here Space is STOP.
+  // Buttons act on the release of Space; here Space is an action of the page.
   window.addEventListener(
     'keyup',
     (event) => {

@@ -1,6 +1,7 @@
 // The parts of the page, put together: state, connection, STOP, data.
-import { effect } from '@preact/signals-core';
+import { effect, signal } from '@preact/signals-core';
 import { TelemetryHistory } from './data/telemetry_history.js';
+import type { RobotView } from './robot_view.js';
 import { ActionList } from './state/actions.js';
 import { OperationQueue } from './state/operations.js';
 import { PageState } from './state/page_state.js';
@@ -13,12 +14,13 @@ import { decodeTelemetry } from './wire/telemetry_message.js';
 import { StopChannel } from './wire/stop_channel.js';
 import { Subscriptions } from './wire/subscription.js';
 
-export class PageApp {
+export class PageApp implements RobotView {
   readonly state = new PageState();
   readonly history = new TelemetryHistory();
   readonly time = new TimeView();
   readonly selection = new SignalSelection();
   readonly actions = new ActionList();
+  readonly wholePath = signal(null);
   readonly operations: OperationQueue;
   readonly sets: SetQueue;
   readonly stop: StopControl;
@@ -42,6 +44,10 @@ export class PageApp {
     this.post({ kind: 'open', url, token, name });
     effect(() => this.subscribe());
     effect(() => this.noteRun(this.state.session.value?.run));
+  }
+
+  startSceneWorker(): Worker {
+    return new Worker('scene_worker.js');
   }
 
   newGesture(): number {

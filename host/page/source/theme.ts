@@ -10,8 +10,17 @@ const query = window.matchMedia('(prefers-color-scheme: dark)');
 const systemIsDark = signal(query.matches);
 query.addEventListener('change', () => (systemIsDark.value = query.matches));
 
+// A page from a file may have no storage.
+function storage(): Storage | null {
+  try {
+    return window.localStorage;
+  } catch {
+    return null;
+  }
+}
+
 function storedChoice(): ThemeChoice {
-  const stored = localStorage.getItem(key);
+  const stored = storage()?.getItem(key);
   return order.find((choice) => choice === stored) ?? 'system';
 }
 
@@ -27,6 +36,6 @@ effect(() => {
 
 export function nextTheme(): void {
   const next = order[(order.indexOf(themeChoice.value) + 1) % order.length] as ThemeChoice;
-  localStorage.setItem(key, next);
+  storage()?.setItem(key, next);
   themeChoice.value = next;
 }

@@ -91,4 +91,20 @@ void fill_row(const sim::TickSample& sample, const sim::Scenario& scenario, std:
   }
 }
 
+void fill_row(const sim::RecordedTick& tick, const sim::Scenario& scenario, std::vector<std::int32_t>& row) {
+  fill_row({.tick = tick.tick,
+            .latched_contacts = tick.latched_contacts,
+            .setpoints = tick.setpoints,
+            .internal_values = tick.internal_values,
+            .servo_pulses = {},
+            .servo_commands = tick.servo_commands,
+            .link_poses = tick.link_poses,
+            .joint_angles = tick.joint_angles,
+            .motor_torques = tick.motor_torques,
+            .servo_currents = tick.servo_currents,
+            .contact_forces = tick.contact_forces,
+            .lost = {}},
+           scenario, row);
+}
+
 }  // namespace proleg::tools

@@ -8,6 +8,7 @@
 #include "host/server/signal_layout.hpp"
 #include "shared/fixed/unit.hpp"
 #include "sim/record/recorder.hpp"
+#include "sim/record/recording.hpp"
 #include "sim/scenario/scenario.hpp"
 
 namespace proleg::tools {
@@ -20,5 +21,8 @@ namespace proleg::tools {
 
 /// The values of a tick, in the order of signals_of(). The row is overwritten.
 void fill_row(const sim::TickSample& sample, const sim::Scenario& scenario, std::vector<std::int32_t>& row);
+
+/// The same of a recording. scenario: scenario_of() the recording.
+void fill_row(const sim::RecordedTick& tick, const sim::Scenario& scenario, std::vector<std::int32_t>& row);
 
 }  // namespace proleg::tools

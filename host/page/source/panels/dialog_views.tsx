@@ -3,7 +3,7 @@
 import type { ComponentChildren } from 'preact';
 import { useEffect, useRef, useState } from 'preact/hooks';
 import type { PageApp } from '../page_app.js';
-import type { Action } from '../state/actions.js';
+import type { Action, ActionList } from '../state/actions.js';
 import { openDialog } from '../dialogs.js';
 import { closeIcon, copyIcon } from './icons.js';
 
@@ -24,7 +24,7 @@ function close(): void {
   openDialog.value = 'none';
 }
 
-function Dialog({ title, children }: { title: string; children: ComponentChildren }) {
+export function Dialog({ title, children }: { title: string; children: ComponentChildren }) {
   const dialog = useRef<HTMLDivElement>(null);
   useEffect(() => {
     const before = document.activeElement;
@@ -50,8 +50,9 @@ function Dialog({ title, children }: { title: string; children: ComponentChildre
   );
 }
 
-function Keys({ app }: { app: PageApp }) {
-  const groups = ['Robot', 'View', 'Parameters', 'Page'] as const;
+export function Keys({ actions, hint }: { actions: ActionList; hint: string }) {
+  const withKeys = actions.all.filter((action) => action.keys.length > 0);
+  const groups = [...new Set(withKeys.map((action) => action.group))];
   return (
     <Dialog title="Keys">
       <div class="key-groups">
@@ -59,8 +60,8 @@ function Keys({ app }: { app: PageApp }) {
           <section key={group}>
             <h3>{group}</h3>
             <dl>
-              {app.actions.all
-                .filter((action) => action.group === group && action.keys.length > 0)
+              {withKeys
+                .filter((action) => action.group === group)
                 .map((action) => (
                   <div key={action.id}>
                     <dt>
@@ -73,15 +74,15 @@ function Keys({ app }: { app: PageApp }) {
           </section>
         ))}
       </div>
-      <p class="hint">Buttons: Enter. Esc and Space stop the robot, in this window too. STOP does not replace a power switch.</p>
+      <p class="hint">{hint}</p>
     </Dialog>
   );
 }
 
-function Palette({ app }: { app: PageApp }) {
+export function Palette({ actions }: { actions: ActionList }) {
   const [text, setText] = useState('');
   const [chosen, setChosen] = useState(0);
-  const found = app.actions.matching(text);
+  const found = actions.matching(text);
   const current = Math.min(chosen, found.length - 1);
   const start = (action: Action | undefined) => {
     if (action !== undefined && action.isEnabled?.() !== false) {
@@ -166,12 +167,14 @@ function CommandLine({ app }: { app: PageApp }) {
   );
 }
 
+const stopHint = 'Buttons: Enter. Esc and Space stop the robot, in this window too. STOP does not replace a power switch.';
+
 export function DialogView({ app }: { app: PageApp }) {
   switch (openDialog.value) {
     case 'keys':
-      return <Keys app={app} />;
+      return <Keys actions={app.actions} hint={stopHint} />;
     case 'palette':
-      return <Palette app={app} />;
+      return <Palette actions={app.actions} />;
     case 'command_line':
       return <CommandLine app={app} />;
     case 'none':

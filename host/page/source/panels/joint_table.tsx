@@ -1,7 +1,7 @@
 // A row for each joint with what it does at the time cursor.
 import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
-import type { PageApp } from '../page_app.js';
+import type { RobotView } from '../robot_view.js';
 import { noValue, type Joint } from '../wire/messages.js';
 
 const framePeriod = 100; // milliseconds: faster cannot be read
@@ -14,12 +14,12 @@ const columns = [
   { title: 'torque', unit: 'mNm', signal: 'torque', decimals: 0 },
 ] as const;
 
-function valueOf(app: PageApp, signal: string, joint: number, row: number): number | null {
+function valueOf(app: RobotView, signal: string, joint: number, row: number): number | null {
   const raw = app.history.valueAt(signal, joint, row);
   return raw === noValue ? null : raw * (app.history.rings.get(signal)?.scale ?? 1);
 }
 
-function texts(app: PageApp, joint: number, row: number): string[] {
+function texts(app: RobotView, joint: number, row: number): string[] {
   const setpoint = valueOf(app, 'setpoint', joint, row);
   const angle = valueOf(app, 'angle', joint, row);
   const numbers = columns.map(({ signal, decimals }) => {
@@ -31,7 +31,7 @@ function texts(app: PageApp, joint: number, row: number): string[] {
   return [...numbers, bits === noValue ? '' : `${(bits & 1) !== 0 ? '●' : '○'} ${(bits & 2) !== 0 ? '●' : '○'}`];
 }
 
-function JointRow({ app, joint, index }: { app: PageApp; joint: Joint; index: number }) {
+function JointRow({ app, joint, index }: { app: RobotView; joint: Joint; index: number }) {
   const isHovered = app.selection.hoveredJoint.value === index;
   return (
     <tr
@@ -49,7 +49,7 @@ function JointRow({ app, joint, index }: { app: PageApp; joint: Joint; index: nu
   );
 }
 
-export function JointTable({ app }: { app: PageApp }) {
+export function JointTable({ app }: { app: RobotView }) {
   const body = useRef<HTMLTableSectionElement>(null);
   useEffect(() => {
     let last = 0;

@@ -2,7 +2,7 @@
 import { useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
-import type { PageApp } from '../page_app.js';
+import type { RobotView } from '../robot_view.js';
 import { formatMeasured } from '../state/parameter_values.js';
 import { mostLines, type Line, type LineGroup } from '../state/signal_selection.js';
 import { isDark } from '../theme.js';
@@ -14,14 +14,14 @@ import { signalTitle, valueName } from './value_names.js';
 
 const readoutPeriod = 100; // milliseconds
 
-function valueText(app: PageApp, line: Line): string {
+function valueText(app: RobotView, line: Line): string {
   const { history, time } = app;
   const row = Math.min(history.end - 1, history.rowAtTick(time.shownTick(app.newestTick)));
   const raw = history.valueAt(line.signal, line.index, row);
   return raw === noValue ? '–' : formatMeasured(raw * (history.rings.get(line.signal)?.scale ?? 1));
 }
 
-function LineChip({ app, group, line, colour }: { app: PageApp; group: LineGroup; line: Line; colour: string }) {
+function LineChip({ app, group, line, colour }: { app: RobotView; group: LineGroup; line: Line; colour: string }) {
   const value = useRef<HTMLSpanElement>(null);
   useEffect(() => {
     let last = 0;
@@ -54,7 +54,7 @@ function LineChip({ app, group, line, colour }: { app: PageApp; group: LineGroup
   );
 }
 
-function LineChoice({ app, group }: { app: PageApp; group: LineGroup }) {
+function LineChoice({ app, group }: { app: RobotView; group: LineGroup }) {
   const signals = app.state.telemetry.value?.signals ?? [];
   const chosen = useSignal('angle');
   const signal = signals.find((candidate) => candidate.name === chosen.value) ?? signals[0];
@@ -95,7 +95,7 @@ function LineChoice({ app, group }: { app: PageApp; group: LineGroup }) {
   );
 }
 
-export function LineGroupView({ app, group }: { app: PageApp; group: LineGroup }) {
+export function LineGroupView({ app, group }: { app: RobotView; group: LineGroup }) {
   const holder = useRef<HTMLDivElement>(null);
   const isChoosing = useSignal(group.lines.length === 0);
   const colours = chartTheme(isDark.value).lines;

@@ -2,12 +2,13 @@
 import uPlot from 'uplot';
 import { lineData } from '../data/line_data.js';
 import { onFrame } from '../frame_clock.js';
-import type { PageApp } from '../page_app.js';
+import type { RobotView } from '../robot_view.js';
 import type { Line } from '../state/signal_selection.js';
 import { axisOverhang, axisWidth, chartTheme } from './chart_theme.js';
 
 const height = 170; // CSS pixels
 const framePeriod = 30; // milliseconds
+const mostClickPixels = 3; // a drag goes farther
 
 // Some room above and below; a constant value is in the middle. Null without values.
 function padded(low: number | null, high: number | null): [number, number] {
@@ -26,7 +27,7 @@ export class LinePlot {
   private lastTime = 0;
 
   constructor(
-    private readonly app: PageApp,
+    private readonly app: RobotView,
     holder: HTMLElement,
     private readonly lines: readonly Line[],
     isDark: boolean,
@@ -76,16 +77,21 @@ export class LinePlot {
   private listen(): void {
     const { over } = this.plot;
     const tickAt = (event: MouseEvent) => this.plot.posToVal(event.clientX - over.getBoundingClientRect().left, 'x') * this.app.tickRate;
-    const move = (event: MouseEvent) => (this.app.time.cursor.value = Math.max(0, Math.round(tickAt(event))));
-    const leave = () => {
-      if (this.app.time.isLive.peek()) this.app.time.cursor.value = null;
+    const { time } = this.app;
+    let pressedAt = 0;
+    const press = (event: MouseEvent) => (pressedAt = event.clientX);
+    // Not at the end of a drag, which zooms.
+    const click = (event: MouseEvent) => {
+      if (Math.abs(event.clientX - pressedAt) <= mostClickPixels) time.pick(tickAt(event));
     };
     const wheel = (event: WheelEvent) => {
       event.preventDefault();
-      this.app.time.zoom(Math.exp(event.deltaY * 0.002), tickAt(event), this.app.newestTick);
+      time.zoom(Math.exp(event.deltaY * 0.002), tickAt(event), this.app.newestTick);
     };
-    over.addEventListener('mousemove', move);
-    over.addEventListener('mouseleave', leave);
+    over.addEventListener('mousemove', (event) => time.hover(tickAt(event)));
+    over.addEventListener('mouseleave', () => time.leave());
+    over.addEventListener('mousedown', press);
+    over.addEventListener('click', click);
     over.addEventListener('wheel', wheel, { passive: false });
   }
 

@@ -1,9 +1,9 @@
 // Groups of lines over time.
-import type { PageApp } from '../page_app.js';
+import type { RobotView } from '../robot_view.js';
 import { addIcon } from './icons.js';
 import { LineGroupView } from './line_group.js';
 
-export function PlotPanel({ app }: { app: PageApp }) {
+export function PlotPanel({ app }: { app: RobotView }) {
   return (
     <section class="panel plot-panel" aria-label="Plots">
       {app.selection.groups.value.map((group) => (

@@ -2,7 +2,7 @@
 import { effect, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
-import type { PageApp } from '../page_app.js';
+import type { RobotView } from '../robot_view.js';
 import type { FromScene, ToScene } from '../scene/scene_messages.js';
 import { isDark } from '../theme.js';
 import { listenToPointer } from './scene_pointer.js';
@@ -11,7 +11,7 @@ import { poseAt } from './scene_pose.js';
 const highestRatio = 1.5; // device pixels for each CSS pixel; more costs frames and shows little
 const readoutPeriod = 100; // milliseconds
 
-export function ScenePanel({ app }: { app: PageApp }) {
+export function ScenePanel({ app }: { app: RobotView }) {
   const holder = useRef<HTMLDivElement>(null);
   const readout = useRef<HTMLSpanElement>(null);
   const isFollowing = useSignal(true);
@@ -28,7 +28,16 @@ export function ScenePanel({ app }: { app: PageApp }) {
     canvas.setAttribute('data-testid', 'scene');
     canvas.setAttribute('aria-label', 'The robot in 3D. Arrow keys turn the view, plus and minus zoom.');
     parent.append(canvas);
-    const worker = new Worker('scene_worker.js');
+    let worker: Worker;
+    let offscreen: OffscreenCanvas;
+    try {
+      worker = app.startSceneWorker();
+      offscreen = canvas.transferControlToOffscreen();
+    } catch (error) {
+      failure.value = (error as Error).message;
+      return () => canvas.remove();
+    }
+    worker.onerror = (event) => (failure.value = event.message || 'the browser starts no worker');
     const send = (message: ToScene, transfer: Transferable[] = []) => worker.postMessage(message, transfer);
     post.current = send;
     worker.onmessage = (event: MessageEvent<FromScene>) => {
@@ -37,7 +46,6 @@ export function ScenePanel({ app }: { app: PageApp }) {
       if (message.kind === 'following') isFollowing.value = message.isOn;
       if (message.kind === 'failed') failure.value = message.reason;
     };
-    const offscreen = canvas.transferControlToOffscreen();
     send({ kind: 'start', canvas: offscreen, isDark: isDark.peek() }, [offscreen]);
     const observer = new ResizeObserver(([entry]) => {
       const { width, height } = (entry as ResizeObserverEntry).contentRect;
@@ -50,6 +58,10 @@ export function ScenePanel({ app }: { app: PageApp }) {
       effect(() => {
         const robot = app.state.robot.value;
         if (robot !== null) send({ kind: 'robot', robot });
+      }),
+      effect(() => {
+        const heads = app.wholePath.value;
+        if (heads !== null) send({ kind: 'path', heads });
       }),
       effect(() => send({ kind: 'highlight', joint: app.selection.hoveredJoint.value })),
       followPose(app, send, readout),
@@ -105,7 +117,7 @@ export function ScenePanel({ app }: { app: PageApp }) {
 }
 
 // Sends the pose at the time cursor whenever it changed, and writes where the head is.
-function followPose(app: PageApp, send: (message: ToScene) => void, readout: { current: HTMLSpanElement | null }): () => void {
+function followPose(app: RobotView, send: (message: ToScene) => void, readout: { current: HTMLSpanElement | null }): () => void {
   let lastKey = '';
   let lastReadout = 0;
   let robot: unknown = null;

@@ -2,7 +2,7 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { fillStrip, largestMagnitude } from '../data/strip_image.js';
 import { onFrame } from '../frame_clock.js';
-import type { PageApp } from '../page_app.js';
+import type { RobotView } from '../robot_view.js';
 import { formatMeasured, roundStep } from '../state/parameter_values.js';
 import { isDark } from '../theme.js';
 import { axisWidth, chartTheme } from './chart_theme.js';
@@ -43,7 +43,7 @@ class StripDrawing {
   private lastTime = 0;
 
   constructor(
-    private readonly app: PageApp,
+    private readonly app: RobotView,
     private readonly canvas: HTMLCanvasElement,
     private readonly legend: { current: HTMLElement | null },
   ) {}
@@ -141,7 +141,7 @@ class StripDrawing {
   }
 }
 
-function pointAt(app: PageApp, canvas: HTMLCanvasElement, event: MouseEvent): { tick: number; row: number } {
+function pointAt(app: RobotView, canvas: HTMLCanvasElement, event: MouseEvent): { tick: number; row: number } {
   const box = canvas.getBoundingClientRect();
   const { from, to } = app.time.range(app.newestTick);
   const share = (event.clientX - box.left - axisWidth) / Math.max(1, box.width - axisWidth);
@@ -151,7 +151,7 @@ function pointAt(app: PageApp, canvas: HTMLCanvasElement, event: MouseEvent): { 
   return { tick: from + Math.max(0, Math.min(1, share)) * (to - from), row: Math.max(0, Math.min(rows - 1, row)) };
 }
 
-export function StripPanel({ app }: { app: PageApp }) {
+export function StripPanel({ app }: { app: RobotView }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const legend = useRef<HTMLSpanElement>(null);
   useEffect(() => {
@@ -174,11 +174,16 @@ export function StripPanel({ app }: { app: PageApp }) {
   const point = (event: MouseEvent) => {
     const { tick, row } = pointAt(app, canvas.current as HTMLCanvasElement, event);
     app.selection.hoveredJoint.value = row;
-    app.time.cursor.value = Math.round(tick);
+    // A pressed button draws the cursor along.
+    if (event.buttons === 1) {
+      app.time.pick(tick);
+    } else {
+      app.time.hover(tick);
+    }
   };
   const leave = () => {
     app.selection.hoveredJoint.value = null;
-    if (app.time.isLive.value) app.time.cursor.value = null;
+    app.time.leave();
   };
   return (
     <section class="panel strip-panel" aria-label="Strip: all joints over time">
@@ -215,6 +220,10 @@ export function StripPanel({ app }: { app: PageApp }) {
         role="img"
         aria-label="Space-time strip: a row for each joint, time from left to right"
         data-testid="strip"
+        onPointerDown={(event) => {
+          event.currentTarget.setPointerCapture(event.pointerId);
+          point(event);
+        }}
         onPointerMove={point}
         onPointerLeave={leave}
       />

@@ -143,9 +143,14 @@ export class RobotModel {
     const centres = poses.map((pose, i) => compose(pose, { position: this.centres[i] as Vector, orientation: [1, 0, 0, 0] }));
     const mean = (axis: 0 | 1 | 2) => centres.reduce((sum, { position }) => sum + position[axis], 0) / centres.length;
     this.centre = [mean(0), mean(1), mean(2)];
-    this.head = (centres[0] as Pose).position;
+    this.head = this.headCentre(poses[0] as Pose);
     this.contactBits = contactBits;
     this.paintContacts();
+  }
+
+  // Where the middle of the head link is when its frame is there.
+  headCentre(head: Pose): Vector {
+    return compose(head, { position: this.centres[0] as Vector, orientation: [1, 0, 0, 0] }).position;
   }
 
   // Where the robot is until its first tick: straight, on the floor.

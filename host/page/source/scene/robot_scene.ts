@@ -101,6 +101,14 @@ export class RobotScene {
     this.isDirty = true;
   }
 
+  setPath(heads: Float64Array): void {
+    this.path?.clear();
+    for (let at = 0; this.model !== null && at + 7 <= heads.length; at += 7) {
+      this.path?.add(this.model.headCentre(poseFromArray([...heads.subarray(at, at + 7)])));
+    }
+    this.isDirty = true;
+  }
+
   resetView(): void {
     const length = this.model?.length ?? 1;
     this.orbit.azimuth = -0.5;

@@ -14,6 +14,7 @@ export type ToScene =
   | { kind: 'size'; width: number; height: number; ratio: number } // CSS pixels
   | { kind: 'robot'; robot: RobotDocument }
   | { kind: 'pose'; pose: ScenePose }
+  | { kind: 'path'; heads: Float64Array } // the whole path: of each point as `head` of a pose
   | { kind: 'theme'; isDark: boolean }
   | { kind: 'highlight'; joint: number | null }
   | { kind: 'turn'; right: number; down: number } // pixels

@@ -28,6 +28,8 @@ function apply(view: RobotScene, message: Exclude<ToScene, { kind: 'start' }>): 
       return view.setRobot(message.robot);
     case 'pose':
       return view.setPose(message.pose);
+    case 'path':
+      return view.setPath(message.heads);
     case 'theme':
       return view.setTheme(message.isDark);
     case 'highlight':

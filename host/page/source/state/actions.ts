@@ -3,7 +3,7 @@
 export interface Action {
   id: string;
   title: string;
-  group: 'Robot' | 'View' | 'Parameters' | 'Page';
+  group: 'Robot' | 'Recording' | 'View' | 'Parameters' | 'Page';
   keys: readonly string[]; // as KeyboardEvent.key, with 'Ctrl+' and 'Shift+' in front; the first one is shown
   isEnabled?: () => boolean;
   // In text fields too: only for what must always work.

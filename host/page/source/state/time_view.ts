@@ -1,15 +1,46 @@
 // The time that plots, strip and 3D view show. Live, the window ends at the newest tick; detached, it stands still while data
 // goes on to come in. All times are in ticks.
-import { computed, signal } from '@preact/signals-core';
+import { computed, signal, type ReadonlySignal } from '@preact/signals-core';
 
 export interface TickRange {
   from: number;
   to: number;
 }
 
+// What strip, plots and 3D view need of a time, live or of a recording.
+export interface ShownTime {
+  readonly isLive: ReadonlySignal<boolean>;
+  readonly cursor: ReadonlySignal<number | null>;
+  range(newest: number): TickRange;
+  shownTick(newest: number): number;
+  detach(range: TickRange): void;
+  zoom(factor: number, around: number, newest: number): void;
+  // The pointer is over this tick, was pressed there, has left.
+  hover(tick: number): void;
+  pick(tick: number): void;
+  leave(): void;
+}
+
 const fewestTicks = 10;
 
-export class TimeView {
+// The range, or a longer one about its middle.
+export function longEnough({ from, to }: TickRange): TickRange {
+  const length = Math.max(fewestTicks, to - from);
+  const middle = (from + to) / 2;
+  return { from: middle - length / 2, to: middle + length / 2 };
+}
+
+export function zoomed({ from, to }: TickRange, factor: number, around: number): TickRange {
+  return { from: around - (around - from) * factor, to: around + (to - around) * factor };
+}
+
+// The range, moved just so far that it has the tick.
+export function shiftedTo(tick: number, { from, to }: TickRange): TickRange {
+  const shift = tick < from ? tick - from : tick > to ? tick - to : 0;
+  return { from: from + shift, to: to + shift };
+}
+
+export class TimeView implements ShownTime {
   readonly window = signal(1000); // length when live
   readonly detached = signal<TickRange | null>(null);
   // What the pointer or the arrow keys point at; null: the newest tick, or the end of the window when detached.
@@ -28,9 +59,7 @@ export class TimeView {
   }
 
   detach(range: TickRange): void {
-    const length = Math.max(fewestTicks, range.to - range.from);
-    const middle = (range.from + range.to) / 2;
-    this.detached.value = { from: middle - length / 2, to: middle + length / 2 };
+    this.detached.value = longEnough(range);
   }
 
   freeze(newest: number): void {
@@ -45,8 +74,21 @@ export class TimeView {
 
   // More than 1 shows more. `around` stays where it is on the screen.
   zoom(factor: number, around: number, newest: number): void {
-    const { from, to } = this.range(newest);
-    this.detach({ from: around - (around - from) * factor, to: around + (to - around) * factor });
+    this.detach(zoomed(this.range(newest), factor, around));
+  }
+
+  hover(tick: number): void {
+    this.cursor.value = Math.max(0, Math.round(tick));
+  }
+
+  pick(tick: number): void {
+    this.hover(tick);
+  }
+
+  leave(): void {
+    if (this.isLive.peek()) {
+      this.cursor.value = null;
+    }
   }
 
   // Moves the cursor, and the window with it if it would leave the window.
@@ -56,10 +98,6 @@ export class TimeView {
     }
     const tick = Math.max(0, Math.min(newest, this.shownTick(newest) + ticks));
     this.cursor.value = tick;
-    const { from, to } = this.range(newest);
-    const shift = tick < from ? tick - from : tick > to ? tick - to : 0;
-    if (shift !== 0) {
-      this.detached.value = { from: from + shift, to: to + shift };
-    }
+    this.detached.value = shiftedTo(tick, this.range(newest));
   }
 }

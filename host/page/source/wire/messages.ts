@@ -60,6 +60,27 @@ export interface RobotDocument {
   slots: Slot[];
 }
 
+// What `proleg` has recorded.
+export interface RecordingDocument {
+  file: string;
+  program: string;
+  build_id: string;
+  core_fingerprint: string;
+  seed: string;
+  finished: boolean;
+  first_tick: number;
+  last_tick: number;
+  has_path: boolean; // false: where the robot is was not measured
+  results: { name: string; value: string }[];
+  marks: Mark[]; // by ascending tick
+}
+
+export interface Mark {
+  kind: 'change' | 'fault' | 'restart';
+  tick: number;
+  text: string;
+}
+
 // An internal value of a slot, which a change may overwrite.
 export interface InternalValue {
   slot: number;

@@ -1,0 +1,28 @@
+// What changed or failed in the run: a click goes there.
+import type { PlayerApp } from './player_app.js';
+
+const kinds = { change: 'change', fault: 'fault', restart: 'module' } as const;
+
+export function MarkList({ app }: { app: PlayerApp }) {
+  const { marks } = app.recording;
+  if (marks.length === 0) {
+    return null;
+  }
+  return (
+    <section class="panel mark-panel" aria-label="Changes">
+      <h2>Changes</h2>
+      <ul class="mark-list" data-testid="marks">
+        {marks.map((mark, i) => (
+          <li key={i}>
+            <button type="button" onClick={() => app.time.pick(mark.tick)} title={`To tick ${mark.tick}`}>
+              <i class={`time-mark ${mark.kind}`} />
+              <span class="value">{(mark.tick / app.tickRate).toFixed(2)} s</span>
+              <span class="unit">{kinds[mark.kind]}</span>
+              <span class="text">{mark.text}</span>
+            </button>
+          </li>
+        ))}
+      </ul>
+    </section>
+  );
+}

@@ -1,0 +1,50 @@
+// The actions of the player, with their keys.
+import { openDialog, toggleDialog } from '../dialogs.js';
+import { nextTheme } from '../theme.js';
+import type { PlayerApp } from './player_app.js';
+
+export function addPlayerActions({ actions, time, tickRate }: PlayerApp): void {
+  const step = (id: string, title: string, key: string, ticks: number) => ({
+    id,
+    title,
+    group: 'Recording' as const,
+    keys: [key],
+    run: () => time.step(ticks),
+  });
+  actions.add(
+    { id: 'play', title: 'Play, or pause', group: 'Recording', keys: ['Space', 'K'], run: () => time.toggle() },
+    step('tick_back', 'One tick back', 'ArrowLeft', -1),
+    step('tick_on', 'One tick on', 'ArrowRight', 1),
+    step('second_back', 'One second back', 'Shift+ArrowLeft', -tickRate),
+    step('second_on', 'One second on', 'Shift+ArrowRight', tickRate),
+    { id: 'start', title: 'To the start', group: 'Recording', keys: ['Home'], run: () => time.seek(time.first) },
+    { id: 'end', title: 'To the end', group: 'Recording', keys: ['End'], run: () => time.seek(time.last) },
+    { id: 'slower', title: 'Slower', group: 'Recording', keys: ['-'], run: () => time.slower() },
+    { id: 'faster', title: 'Faster', group: 'Recording', keys: ['+'], run: () => time.faster() },
+    {
+      id: 'whole_run',
+      title: 'Strip and plots: the whole run',
+      group: 'View',
+      keys: ['W'],
+      run: () => void (time.part.value = null),
+    },
+    {
+      id: 'palette',
+      title: 'Find an action',
+      group: 'Page',
+      keys: ['Ctrl+K'],
+      isGlobal: true,
+      run: () => toggleDialog('palette'),
+    },
+    { id: 'keys', title: 'Show the keys', group: 'Page', keys: ['?'], run: () => toggleDialog('keys') },
+    {
+      id: 'close',
+      title: 'Close this window',
+      group: 'Page',
+      keys: ['Escape'],
+      isGlobal: true,
+      run: () => void (openDialog.value = 'none'),
+    },
+    { id: 'theme', title: 'Light, dark, or as the system', group: 'Page', keys: ['T'], run: nextTheme },
+  );
+}

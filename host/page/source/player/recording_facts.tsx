@@ -1,0 +1,53 @@
+// What the recording says of itself: where it comes from, its parameters at the start, its figures.
+import { formatRaw } from '../state/parameter_values.js';
+import type { Parameter } from '../wire/messages.js';
+import type { PlayerApp } from './player_app.js';
+
+// One value, or those of all joints from the head.
+function valuesText(parameter: Parameter): string {
+  const texts = parameter.file.map((raw) => formatRaw(raw, parameter));
+  return new Set(texts).size === 1 ? (texts[0] as string) : texts.join('  ');
+}
+
+function Row({ name, children }: { name: string; children: string }) {
+  return (
+    <tr>
+      <th scope="row">{name}</th>
+      <td>{children}</td>
+    </tr>
+  );
+}
+
+export function RecordingFacts({ app }: { app: PlayerApp }) {
+  const { recording } = app;
+  const robot = app.state.robot.value;
+  const parameters = app.parameters.filter((value): value is Parameter => !value.internal);
+  return (
+    <section class="panel facts-panel" aria-label="Recording">
+      <h2>Parameters at the start</h2>
+      <table data-testid="parameters">
+        <tbody>
+          {parameters.map((parameter) => (
+            <Row key={`${parameter.slot}.${parameter.name}`} name={`${parameter.slot}.${parameter.name}`}>
+              {`${valuesText(parameter)} ${parameter.unit}`}
+            </Row>
+          ))}
+        </tbody>
+      </table>
+      <h2>Recording</h2>
+      <table data-testid="facts">
+        <tbody>
+          <Row name="scenario">{robot?.file ?? ''}</Row>
+          <Row name="program">{`${recording.program}, ${recording.build_id}`}</Row>
+          <Row name="core">{recording.core_fingerprint}</Row>
+          <Row name="seed">{recording.seed}</Row>
+          {recording.results.map(({ name, value }) => (
+            <Row key={name} name={name}>
+              {value}
+            </Row>
+          ))}
+        </tbody>
+      </table>
+    </section>
+  );
+}

@@ -1,0 +1,21 @@
+// What the panels that only show a robot need: of a live robot (page_app.ts), or of a recording (player/player_app.ts).
+import type { ReadonlySignal } from '@preact/signals-core';
+import type { TelemetryHistory } from './data/telemetry_history.js';
+import type { ActionList } from './state/actions.js';
+import type { PageState } from './state/page_state.js';
+import type { SignalSelection } from './state/signal_selection.js';
+import type { ShownTime } from './state/time_view.js';
+
+export interface RobotView {
+  readonly state: Pick<PageState, 'robot' | 'telemetry'>;
+  readonly history: TelemetryHistory;
+  readonly time: ShownTime;
+  readonly selection: SignalSelection;
+  readonly actions: ActionList;
+  readonly tickRate: number; // ticks in a second
+  readonly newestTick: number;
+  // Where the head was in each row, as in `head` of the telemetry but in metres; null: the path grows with the robot.
+  readonly wholePath: ReadonlySignal<Float64Array | null>;
+  // The worker of the 3D view. Throws an Error if the browser starts none.
+  startSceneWorker(): Worker;
+}

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace proleg::tools {
+
+/// A folder with a page, beside the build of this program: tools/page makes it. Throws BadInput if it lacks the file.
+[[nodiscard]] std::filesystem::path built_page(const std::string& folder, const std::string& file);
+
+}  // namespace proleg::tools

@@ -149,6 +149,14 @@ export function addActions(app: PageApp): void {
       keys: ['X'],
       run: () => toggleDialog('command_line'),
     },
+    { id: 'live_page', title: 'Page Live', group: 'Page', keys: ['1'], run: () => void (app.shownPage.value = 'live') },
+    {
+      id: 'recordings_page',
+      title: 'Page Recordings',
+      group: 'Page',
+      keys: ['2'],
+      run: () => void (app.shownPage.value = 'recordings'),
+    },
     {
       id: 'palette',
       title: 'Find an action',

@@ -22,6 +22,8 @@ function loadLater(loading: Promise<Part>): Later {
 }
 
 const livePage = loadLater(import('./live_page.js').then((module) => module.LivePage));
+const loadRecordings = () => loadLater(import('../recordings/recordings_page.js').then((module) => module.RecordingsPage));
+let recordingsPage: Later | null = null; // loaded when it is first shown
 const dialogs = loadLater(import('./dialog_views.js').then((module) => module.DialogView));
 
 function LaterView({ app, part, wait }: { app: PageApp; part: Later; wait: string }) {
@@ -29,13 +31,28 @@ function LaterView({ app, part, wait }: { app: PageApp; part: Later; wait: strin
   return Content === null || typeof Content === 'string' ? <p class="wait">{Content ?? wait}</p> : <Content app={app} />;
 }
 
+// A page stays when another one is shown.
 export function Frame({ app }: { app: PageApp }) {
+  const page = app.shownPage.value;
+  const isAlone = app.state.recordings.value?.alone === true;
+  if (page === 'recordings') {
+    recordingsPage ??= loadRecordings();
+  }
   return (
     <>
       <TopBar app={app} />
       <Bands app={app} />
       <main id="page">
-        <LaterView app={app} part={livePage} wait="Loading …" />
+        {!isAlone && (
+          <div hidden={page !== 'live'}>
+            <LaterView app={app} part={livePage} wait="Loading …" />
+          </div>
+        )}
+        {recordingsPage !== null && (
+          <div hidden={page !== 'recordings'}>
+            <LaterView app={app} part={recordingsPage} wait="Loading …" />
+          </div>
+        )}
       </main>
       <NoticeList state={app.state} />
       {openDialog.value !== 'none' && <LaterView app={app} part={dialogs} wait="" />}

@@ -122,7 +122,7 @@ function followPose(app: RobotView, send: (message: ToScene) => void, readout: {
   let lastReadout = 0;
   let robot: unknown = null;
   return onFrame((now) => {
-    const { history, time } = app;
+    const { rowsAtCursor: history, time } = app;
     const tick = time.shownTick(app.newestTick);
     const key = `${history.run}/${history.end}/${tick}`;
     if (history.end === 0 || (key === lastKey && robot === app.state.robot.peek())) {

@@ -1,9 +1,9 @@
 // The time line: the whole recording, the time cursor, the part that strip and plots show, and marks.
 import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
-import type { PlayerApp } from './player_app.js';
+import type { PlayedRecording } from './player_app.js';
 
-export function Timeline({ app }: { app: PlayerApp }) {
+export function Timeline({ app }: { app: PlayedRecording }) {
   const track = useRef<HTMLDivElement>(null);
   const thumb = useRef<HTMLDivElement>(null);
   const { time } = app;

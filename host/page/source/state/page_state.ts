@@ -6,6 +6,7 @@ import type {
   InternalValue,
   NoticeMessage,
   Parameter,
+  RecordingsDocument,
   RobotDocument,
   ServerMessage,
   SessionDocument,
@@ -29,6 +30,7 @@ export class PageState {
   readonly session = signal<SessionDocument | null>(null);
   readonly control = signal<ControlDocument | null>(null);
   readonly telemetry = signal<TelemetryDocument | null>(null);
+  readonly recordings = signal<RecordingsDocument | null>(null);
   readonly notices = signal<readonly Notice[]>([]);
 
   readonly client = computed(() => {
@@ -65,6 +67,9 @@ export class PageState {
           break;
         case 'telemetry':
           this.telemetry.value = message.value;
+          break;
+        case 'recordings':
+          this.recordings.value = message.value;
           break;
       }
     }

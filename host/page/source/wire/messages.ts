@@ -75,6 +75,34 @@ export interface RecordingDocument {
   marks: Mark[]; // by ascending tick
 }
 
+// The same behind a server, which reads the file while it shows it.
+export interface ServedRecordingDocument extends RecordingDocument {
+  indexed: number; // ticks from the first on whose smallest and largest values are known
+  damage: string | null; // why not all can be
+}
+
+// Where the recordings of this program are.
+export interface RecordingsDocument {
+  folder: string;
+  open: string | null; // to show at once
+  alone: boolean; // there is no robot
+}
+
+// A file of `recording.list`. What was not read yet, or cannot be read, is missing.
+export interface RecordedFile {
+  name: string;
+  bytes: number;
+  time_ms: number; // of the last change, since 1970
+  described: boolean;
+  program?: string;
+  scenario?: string;
+  algorithms?: string[];
+  joints?: number;
+  seconds?: number;
+  finished?: boolean;
+  problem?: string | null;
+}
+
 export interface Mark {
   kind: 'change' | 'fault' | 'restart';
   tick: number;
@@ -135,6 +163,7 @@ export interface Documents {
   session: SessionDocument;
   control: ControlDocument;
   telemetry: TelemetryDocument;
+  recordings: RecordingsDocument;
 }
 
 export type DocumentMessage = {
@@ -188,6 +217,9 @@ export interface Operations {
   reset: { names?: string[] }; // as in `set`, without a value
   record: { file: string | null };
   command_line: Record<string, never>;
+  'recording.list': Record<string, never>;
+  'recording.open': { file: string };
+  'recording.rows': { file: string; signals: readonly string[]; from: number; to: number; points: number };
   ping: Record<string, never>;
 }
 

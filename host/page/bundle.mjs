@@ -138,9 +138,10 @@ async function bundlePlayer(folder) {
   rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
   writeFileSync(join(folder, 'player.html'), page);
-  print('player.html', page.length, gzipSync(page, { level: 9 }).length);
-  if (page.length > largestPlayer) {
-    console.error(`tools/page: found ${page.length} bytes in the player, expected at most ${largestPlayer}`);
+  const size = Buffer.byteLength(page);
+  print('player.html', size, gzipSync(page, { level: 9 }).length);
+  if (size > largestPlayer) {
+    console.error(`tools/page: found ${size} bytes in the player, expected at most ${largestPlayer}`);
     return false;
   }
   return true;

@@ -14,10 +14,7 @@ const longestFrame = 250; // milliseconds: a tab that was hidden goes on where i
 // The worker is text in this page: a page from a file may not read another file.
 function startSceneWorker(): Worker {
   const program = document.getElementById('scene-worker')?.textContent ?? '';
-  const address = URL.createObjectURL(new Blob([program], { type: 'text/javascript' }));
-  const worker = new Worker(address);
-  URL.revokeObjectURL(address);
-  return worker;
+  return new Worker(URL.createObjectURL(new Blob([program], { type: 'text/javascript' })));
 }
 
 function playOnFrames(app: PlayerApp): void {
@@ -34,6 +31,7 @@ async function start(root: HTMLElement): Promise<void> {
   addPlayerActions(app);
   listenToKeys(app.actions, null);
   root.textContent = '';
+  root.className = '';
   render(<PlayerPage app={app} />, root);
   playOnFrames(app);
   await app.load();

@@ -26,8 +26,8 @@ function Header({ app }: { app: PlayerApp }) {
         <h1 class="name" title={recording.file}>
           {recording.file}
         </h1>
-        <span class="unit" data-testid="about">
-          {`${robot?.name}, ${algorithms}, ${Number(seconds.toFixed(2))} s`}
+        <span class="about unit" title={algorithms} data-testid="about">
+          {`${Number(seconds.toFixed(2))} s, ${robot?.name}, ${algorithms}`}
         </span>
       </div>
       <div class="tools">

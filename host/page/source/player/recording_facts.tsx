@@ -9,11 +9,16 @@ function valuesText(parameter: Parameter): string {
   return new Set(texts).size === 1 ? (texts[0] as string) : texts.join('  ');
 }
 
+// Six digits of a long number; hashes and words as they are.
+function shortText(text: string): string {
+  return /^-?\d+\.\d{5,}(e-?\d+)?$/.test(text) ? String(Number(Number(text).toPrecision(6))) : text;
+}
+
 function Row({ name, children }: { name: string; children: string }) {
   return (
     <tr>
       <th scope="row">{name}</th>
-      <td>{children}</td>
+      <td title={children}>{shortText(children)}</td>
     </tr>
   );
 }

@@ -44,13 +44,16 @@ export function Timeline({ app }: { app: PlayedRecording }) {
         onPointerMove={(event) => {
           if (event.buttons === 1) seek(event);
         }}
-        onKeyDown={(event) => app.actions.forKey(event, false)?.run()}
+        onKeyDown={(event) => {
+          // The arrow keys, which the page leaves to sliders (keyboard.ts); it has acted on the others.
+          if (!event.defaultPrevented) app.actions.forKey(event, false)?.run();
+        }}
       >
         {part !== null && (
           <div class="part" style={{ left: percent(part.from), right: `calc(100% - ${percent(part.to)})` }} />
         )}
         {app.recording.marks.map((mark, i) => (
-          <i key={i} class={`time-mark ${mark.kind}`} style={{ left: percent(mark.tick) }} />
+          <i key={i} class={`time-mark ${mark.kind}`} style={{ left: percent(mark.tick) }} title={mark.text} />
         ))}
         <div ref={thumb} class="thumb" />
       </div>

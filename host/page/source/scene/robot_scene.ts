@@ -25,6 +25,7 @@ export class RobotScene {
   private path: HeadPath | null = null;
   private model: RobotModel | null = null;
   private run = -1;
+  private hasWholePath = false;
   private height = 1;
   private gridCell = 0.1; // metres
   private readonly fog = new THREE.Fog(0, 1, 2);
@@ -75,6 +76,7 @@ export class RobotScene {
     if (this.path !== null) {
       this.scene.remove(this.path.line);
     }
+    this.hasWholePath = false;
     this.model = new RobotModel(robot, this.isDark);
     this.path = new HeadPath(this.model.length / 200);
     this.path.setColour(colours(this.isDark).path);
@@ -91,17 +93,15 @@ export class RobotScene {
       return;
     }
     this.model.move(poseFromArray([...pose.head]), pose.angles, pose.contacts);
-    if (pose.run !== this.run) {
-      this.run = pose.run;
-      this.path.clear();
-    }
-    if (pose.isLive) {
-      this.path.add(this.model.head);
+    if (!this.hasWholePath) {
+      this.growPath(this.path, pose);
     }
     this.isDirty = true;
   }
 
+  // The path of a recording, which does not grow.
   setPath(heads: Float64Array): void {
+    this.hasWholePath = true;
     this.path?.clear();
     for (let at = 0; this.model !== null && at + 7 <= heads.length; at += 7) {
       this.path?.add(this.model.headCentre(poseFromArray([...heads.subarray(at, at + 7)])));
@@ -174,6 +174,16 @@ export class RobotScene {
     this.fog.near = this.orbit.distance * 1.3;
     this.fog.far = this.orbit.distance + this.gridCell * gridCells * 0.45;
     this.renderer.render(this.scene, this.camera);
+  }
+
+  private growPath(path: HeadPath, pose: ScenePose): void {
+    if (pose.run !== this.run) {
+      this.run = pose.run;
+      path.clear();
+    }
+    if (pose.isLive && this.model !== null) {
+      path.add(this.model.head);
+    }
   }
 
   private makeGrid(): void {

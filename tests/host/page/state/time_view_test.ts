@@ -47,6 +47,18 @@ describe('the view of time', () => {
     assert.equal(to - from, 10);
   });
 
+  it('shows the time under the pointer until the pointer leaves, or for good if it is frozen', () => {
+    const view = new TimeView();
+    view.hover(700.4);
+    assert.equal(view.shownTick(1000), 700);
+    view.leave();
+    assert.equal(view.shownTick(1000), 1000);
+    view.freeze(1000);
+    view.pick(800);
+    view.leave();
+    assert.equal(view.shownTick(2000), 800);
+  });
+
   it('freezes when the cursor moves, and takes the window along', () => {
     const view = new TimeView();
     view.window.value = 100;

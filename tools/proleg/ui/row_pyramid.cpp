@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 
 #include "host/server/signal_layout.hpp"
@@ -57,13 +59,26 @@ void read_at(int file, std::span<std::int32_t> values, std::uint64_t position) {
   }
 }
 
-}  // namespace
-
-RowPyramid::RowPyramid(std::size_t width) : width_(width), file_(std::tmpfile()) {
-  if (file_ == nullptr) {
+/// A file without a name. Not in /tmp, which is memory on many systems.
+std::FILE* open_temporary_file() {
+  const char* const folder = std::getenv("TMPDIR");
+  std::string name = std::string(folder == nullptr ? "/var/tmp" : folder) + "/proleg-XXXXXX";
+  const int descriptor = ::mkstemp(name.data());
+  if (descriptor < 0) {
     throw_errno();
   }
+  ::unlink(name.c_str());
+  std::FILE* const file = ::fdopen(descriptor, "w+");
+  if (file == nullptr) {
+    ::close(descriptor);
+    throw_errno();
+  }
+  return file;
 }
+
+}  // namespace
+
+RowPyramid::RowPyramid(std::size_t width) : width_(width), file_(open_temporary_file()) {}
 
 void RowPyramid::merge(std::vector<std::int32_t>& block, std::span<const std::int32_t> row) const {
   for (std::size_t i = 0; i < width_; ++i) {

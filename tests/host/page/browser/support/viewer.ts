@@ -13,7 +13,22 @@ export class Viewer {
     private readonly context: BrowserContext,
   ) {}
 
+  // A robot, or a recording.
   static async open(browser: Browser, address: string, options: BrowserContextOptions = {}): Promise<Viewer> {
+    const viewer = await Viewer.goTo(browser, address, options);
+    await viewer.page.getByTestId('scene').waitFor();
+    await viewer.page.getByTestId('joints').locator('tbody tr').first().waitFor();
+    return viewer;
+  }
+
+  // A folder with recordings.
+  static async openList(browser: Browser, address: string): Promise<Viewer> {
+    const viewer = await Viewer.goTo(browser, address, {});
+    await viewer.page.getByTestId('recordings').waitFor();
+    return viewer;
+  }
+
+  private static async goTo(browser: Browser, address: string, options: BrowserContextOptions): Promise<Viewer> {
     const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, ...options });
     const viewer = new Viewer(await context.newPage(), context);
     viewer.page.on('console', (message) => {
@@ -21,8 +36,6 @@ export class Viewer {
     });
     viewer.page.on('pageerror', (error) => viewer.reports.push(error.message));
     await viewer.page.goto(address);
-    await viewer.page.getByTestId('scene').waitFor();
-    await viewer.page.getByTestId('joints').locator('tbody tr').first().waitFor();
     return viewer;
   }
 

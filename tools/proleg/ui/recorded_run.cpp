@@ -22,7 +22,7 @@ using nlohmann::json;
 constexpr std::uint32_t slice_ticks = 128;
 
 // First row, minima and maxima of a block.
-constexpr std::size_t rows_of_block = 3;
+constexpr std::size_t block_parts = 3;
 
 std::unique_ptr<sim::Recording> open(const std::filesystem::path& path) {
   return std::make_unique<sim::Recording>(path);
@@ -134,7 +134,7 @@ std::vector<std::uint8_t> RecordedRun::rows(const Request& request) {
   const std::vector<std::size_t> columns = columns_of(request.signals);
   return with_recording([&](const sim::Recording& recording) {
     const std::uint64_t row_bytes = columns.size() * sizeof(std::int32_t);
-    const std::uint64_t points = std::min<std::uint64_t>(request.points, max_bytes / (rows_of_block * row_bytes));
+    const std::uint64_t points = std::min<std::uint64_t>(request.points, max_bytes / (block_parts * row_bytes));
     const std::uint32_t from = std::max(request.from, first_tick_);
     const std::uint32_t to = std::min(request.to, last_tick_);
     if (from > to) {

@@ -109,15 +109,14 @@ void RowPyramid::add(std::span<const std::int32_t> row) {
   ++rows_;
 }
 
-std::vector<std::int32_t> RowPyramid::blocks(std::uint32_t rows_of_block, std::uint64_t first,
-                                             std::uint64_t count) const {
-  const auto found = std::ranges::find(block_rows, rows_of_block);
-  const std::uint64_t known = (rows_ + rows_of_block - 1) / rows_of_block;
+std::vector<std::int32_t> RowPyramid::blocks(std::uint32_t stride, std::uint64_t first, std::uint64_t count) const {
+  const auto found = std::ranges::find(block_rows, stride);
+  const std::uint64_t known = (rows_ + stride - 1) / stride;
   if (found == block_rows.end() || first > known || count > known - first) {
     throw std::invalid_argument("found other blocks, expected blocks that the pyramid has");
   }
   const auto level = static_cast<std::size_t>(found - block_rows.begin());
-  const std::uint64_t complete = rows_ / rows_of_block;
+  const std::uint64_t complete = rows_ / stride;
   std::vector<std::int32_t> values(count * block_size());
   for (std::uint64_t block = first; block < first + count;) {
     const std::span<std::int32_t> target = std::span(values).subspan((block - first) * block_size());
@@ -126,7 +125,7 @@ std::vector<std::int32_t> RowPyramid::blocks(std::uint32_t rows_of_block, std::u
       break;
     }
     // Up to the end of the group they are together in the file.
-    const std::uint64_t in_group = group_rows / rows_of_block;
+    const std::uint64_t in_group = group_rows / stride;
     const std::uint64_t together = std::min({in_group - block % in_group, complete - block, first + count - block});
     read_at(::fileno(file_.get()), target.first(together * block_size()), place(level, block) * block_size());
     block += together;

@@ -26,11 +26,10 @@ class RowPyramid {
   void add(std::span<const std::int32_t> row);
   [[nodiscard]] std::uint64_t rows() const { return rows_; }
 
-  /// Blocks from number `first` on, one behind the other: each its first row, then the minima, then the maxima; a value
-  /// that no row of the block has is host::no_value. The last block may have fewer rows than the others. Throws
-  /// std::invalid_argument if there are no such blocks, and std::system_error.
-  [[nodiscard]] std::vector<std::int32_t> blocks(std::uint32_t rows_of_block, std::uint64_t first,
-                                                 std::uint64_t count) const;
+  /// Blocks of `stride` rows, from number `first` on, one behind the other: each its first row, then the minima, then
+  /// the maxima; a value that no row of the block has is host::no_value. The last block may have fewer rows than the
+  /// others. Throws std::invalid_argument if there are no such blocks, and std::system_error.
+  [[nodiscard]] std::vector<std::int32_t> blocks(std::uint32_t stride, std::uint64_t first, std::uint64_t count) const;
 
  private:
   struct CloseFile {

@@ -14,6 +14,7 @@ interface Loaded {
   names: string;
   from: number;
   to: number; // the last tick that is there
+  askedTo: number;
   stride: number; // that was asked for
   at: number; // milliseconds
 }
@@ -56,12 +57,14 @@ export class RangeRows {
       return false;
     }
     const isFine = loaded.stride <= strideFor((to - from) * (1 + 2 * margin));
-    return isFine && loaded.from <= from && (loaded.to >= to || this.now() - loaded.at < retryPeriod);
+    const isComing = loaded.askedTo >= to && this.now() - loaded.at < retryPeriod;
+    return isFine && loaded.from <= from && (loaded.to >= to || isComing);
   }
 
   private async load(signals: readonly Signal[], from: number, to: number): Promise<void> {
     this.isAsking = true;
-    const loaded: Loaded = { names: namesOf(signals), from, to: from - 1, stride: strideFor(to - from + 1), at: this.now() };
+    const stride = strideFor(to - from + 1);
+    const loaded: Loaded = { names: namesOf(signals), from, to: from - 1, askedTo: to, stride, at: this.now() };
     try {
       const rows = await this.ask(signals, from, to);
       loaded.to = Math.min(to, rows.tick + rows.rows * rows.stride - 1);

@@ -84,7 +84,8 @@ describe('recordings', () => {
       await expectRow(0);
       for (let seek = 0; seek < 12; seek += 1) {
         await recordings.press(random.next());
-        await page.waitForFunction(() => document.querySelector('[data-testid=tick]')?.textContent !== '');
+        // Until the next frame it shows the tick before.
+        await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
         await expectRow(await recordings.tick());
       }
       // The keys: Home, End, a tick, a second.
@@ -197,7 +198,7 @@ describe('recordings', () => {
       await page.keyboard.press('2');
       await page.getByTestId('opened').waitFor();
       await page.keyboard.press('Space');
-      assert.match(await viewer.stopReport(), /5 of 5/);
+      assert.match(await viewer.stopReport(), /^stopped in /);
       await viewer.waitForState('STOPPED');
       await viewer.close();
     } finally {

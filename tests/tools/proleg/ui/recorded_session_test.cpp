@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// What the session has told its viewers.
-class Viewers final : public host::SessionOutput {
+class RecordingViewers final : public host::SessionOutput {
  public:
   struct Answer {
     bool is_done = false;
@@ -84,13 +84,13 @@ class RecordedSessionTest : public ::testing::Test {
   void begin(std::optional<std::string> file = std::nullopt) {
     session_.emplace(RecordedSessionOptions{folder_.path(), std::move(file), true}, requests_, viewers_);
   }
-  Viewers::Answer ask(const std::string& name, const json& arguments = json::object()) {
+  RecordingViewers::Answer ask(const std::string& name, const json& arguments = json::object()) {
     router_.operate({++request_, name, arguments, 1, "a test"});
     return viewers_.wait_for(request_);
   }
 
   TemporaryFolder folder_;
-  Viewers viewers_;
+  RecordingViewers viewers_;
   host::SessionRequests requests_;
   SessionRouter router_{requests_, nullptr};
   std::uint64_t request_ = 0;
@@ -110,10 +110,10 @@ TEST_F(RecordedSessionTest, SaysWhereTheRecordingsAre) {
 TEST_F(RecordedSessionTest, OpensAndAnswersWithBytes) {
   record("run.proleg", 20);
   begin();
-  const Viewers::Answer open = ask("recording.open", {{"file", "run.proleg"}});
+  const RecordingViewers::Answer open = ask("recording.open", {{"file", "run.proleg"}});
   ASSERT_TRUE(open.is_done) << open.error;
   EXPECT_EQ(open.value["recording"]["last_tick"], 19);
-  const Viewers::Answer rows =
+  const RecordingViewers::Answer rows =
       ask("recording.rows", {{"file", "run.proleg"}, {"signals", {"head", "angle"}}, {"from", 5}, {"to", 9}});
   ASSERT_TRUE(rows.is_done) << rows.error;
   ASSERT_TRUE(rows.value.is_binary());
@@ -138,7 +138,7 @@ TEST_F(RecordedSessionTest, OutlivesFilesAndRequestsThatAreWrong) {
       {"recording.rows", {{"file", "run.proleg"}, {"signals", {"angle"}}, {"to", 4294967296}}},
       {"recording.rows", {{"file", "run.proleg"}, {"signals", {"angle"}}, {"points", 1000000}}}};
   for (const auto& [name, arguments] : operations) {
-    const Viewers::Answer answer = ask(name, arguments);
+    const RecordingViewers::Answer answer = ask(name, arguments);
     EXPECT_FALSE(answer.is_done) << name << arguments;
     EXPECT_NE(answer.error.find("expected"), std::string::npos) << answer.error;
     EXPECT_EQ(answer.error.find('\n'), std::string::npos) << answer.error;
@@ -154,7 +154,7 @@ TEST_F(RecordedSessionTest, KeepsFewRecordingsOpenAndShowsAll) {
   begin();
   for (int round = 0; round < 2; ++round) {
     for (std::size_t file = 0; file < files; ++file) {
-      const Viewers::Answer answer = ask("recording.open", {{"file", std::to_string(file) + ".proleg"}});
+      const RecordingViewers::Answer answer = ask("recording.open", {{"file", std::to_string(file) + ".proleg"}});
       ASSERT_TRUE(answer.is_done) << answer.error;
       EXPECT_EQ(answer.value["recording"]["last_tick"], 4 + file);
     }

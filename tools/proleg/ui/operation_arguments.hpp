@@ -31,7 +31,9 @@ inline std::optional<std::uint32_t> whole_argument(const nlohmann::json& argumen
   if (found == arguments.end() || found->is_null()) {
     return std::nullopt;
   }
-  if (!found->is_number_unsigned() || found->get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max()) {
+  const bool is_natural =
+      found->is_number_unsigned() || (found->is_number_integer() && found->get<std::int64_t>() >= 0);
+  if (!is_natural || found->get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max()) {
     throw InputError(name, 0, shortened(found->dump()), expected);
   }
   return found->get<std::uint32_t>();

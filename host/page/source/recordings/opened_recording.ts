@@ -21,6 +21,7 @@ export class OpenedRecording implements PlayedRecording {
   // Why something cannot be shown.
   readonly failure = signal<string | null>(null);
   readonly actions: ActionList;
+  readonly ask: AskRows;
   private readonly document;
   private readonly parameterDocument: Documents['parameters'];
   private readonly range: RangeRows;
@@ -45,11 +46,11 @@ export class OpenedRecording implements PlayedRecording {
     if (!recording.finished) {
       this.time.seek(recording.last_tick);
     }
-    const ask: AskRows = (signals, from, to) => client.rows(signals, from, to);
+    this.ask = (signals, from, to) => client.rows(signals, from, to);
     const failed = (reason: string) => (this.failure.value = reason);
-    this.range = new RangeRows(ask, this.now, failed);
-    this.path = new RangeRows(ask, this.now, failed);
-    this.cursor = new CursorRows(ask, failed);
+    this.range = new RangeRows(this.ask, this.now, failed);
+    this.path = new RangeRows(this.ask, this.now, failed);
+    this.cursor = new CursorRows(this.ask, failed);
     const isOfPage = (action: Action) => action.group === 'Page' || action.id === 'stop' || action.id === 'take_control';
     this.actions = new ActionList(pageActions, isOfPage);
     addPlaybackActions(this, ['K']);

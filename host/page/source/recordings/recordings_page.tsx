@@ -8,6 +8,8 @@ import { MarkList } from '../player/mark_list.js';
 import { PlaybackControls } from '../player/playback_controls.js';
 import { RecordingFacts } from '../player/recording_facts.js';
 import type { OpenedRecording } from './opened_recording.js';
+import { ExportTools } from './export_tools.js';
+import { XyPanel } from './xy_panel.js';
 import { RecordingList } from './recording_list.js';
 import { RecordingsApp } from './recordings_app.js';
 
@@ -52,6 +54,8 @@ function OpenedView({ app, opened }: { app: RecordingsApp; opened: OpenedRecordi
           {opened.client.file}
         </h1>
         <span class="unit">{opened.state.robot.value?.name}</span>
+        <span class="space" />
+        <ExportTools opened={opened} />
       </div>
       <Bands opened={opened} />
       <div class="live recorded">
@@ -60,6 +64,7 @@ function OpenedView({ app, opened }: { app: RecordingsApp; opened: OpenedRecordi
           <ScenePanel app={opened} />
           <StripPanel app={opened} />
           <PlotPanel app={opened} />
+          <XyPanel app={opened} />
         </div>
         <div class="live-side">
           <JointTable app={opened} />

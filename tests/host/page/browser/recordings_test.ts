@@ -1,7 +1,7 @@
 // Recordings in the page: what it shows is what `proleg export` writes; a growing file is followed; a damaged file is one line.
 import assert from 'node:assert/strict';
 import { execFileSync, spawn } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
@@ -118,6 +118,66 @@ describe('recordings', () => {
       await recordings.viewer.button('Play').waitFor();
       await page.waitForFunction((last) => document.querySelector('[data-testid=tick]')?.textContent === last, String(seconds * 100 - 1));
       await recordings.viewer.close();
+    } finally {
+      await served.end();
+    }
+  });
+
+  it('saves what is shown as a table and as pictures', async () => {
+    const table = exported(join(folder, 'run.proleg'));
+    const served = await UiProgram.serve([join(folder, 'run.proleg')]);
+    try {
+      const viewer = await Viewer.open(browser, served.address);
+      const { page } = viewer;
+      await page.locator('#strip-signal').selectOption('setpoint');
+      // The part about 30 s.
+      await new Recordings(viewer).press(0.25);
+      const strip = await page.getByTestId('strip').boundingBox();
+      assert.ok(strip);
+      await page.mouse.move(strip.x + strip.width * 0.3, strip.y + 20);
+      await page.mouse.wheel(0, -1200);
+      await page.getByRole('button', { name: 'Whole run' }).waitFor();
+      const saved = async (button: string) => {
+        const download = page.waitForEvent('download');
+        await viewer.button(button).click();
+        const file = await download;
+        return { name: file.suggestedFilename(), bytes: readFileSync(await file.path()) };
+      };
+      const tsv = await saved('Table (TSV)');
+      assert.equal(tsv.name, 'run.tsv');
+      const [header = '', ...lines] = tsv.bytes.toString().trimEnd().split('\n');
+      const names = header.split('\t');
+      assert.deepEqual(names.slice(0, 2), ['tick', 'time_s']);
+      assert.equal(names.filter((name) => name.startsWith('setpoint_deg.')).length, 5);
+      assert.ok(lines.length > 100 && lines.length < 11000, `${lines.length} lines`);
+      const first = Number(lines[0]?.split('\t')[0]);
+      lines.forEach((line, i) => {
+        line.split('\t').forEach((text, column) => {
+          const name = names[column] as string;
+          const expected = Number(table.get(name)?.[first + i]);
+          // An angle is a double in the file and has 2^-30 of 90 degrees here.
+          const error = Math.abs(Number(text) - expected);
+          assert.ok(error <= 1e-7, `${name} in tick ${first + i}: found ${text}, expected ${expected}`);
+        });
+      });
+      for (const panel of ['3D view', 'strip', 'plots', 'x over y']) {
+        const png = await saved(panel);
+        assert.match(png.name, /^run-.*\.png$/);
+        assert.deepEqual([...png.bytes.subarray(0, 4)], [0x89, 0x50, 0x4e, 0x47]);
+        const colours = await page.evaluate(async (image) => {
+          const bytes = Uint8Array.from(atob(image), (character) => character.charCodeAt(0));
+          const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+          const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+          const context = canvas.getContext('2d') as OffscreenCanvasRenderingContext2D;
+          context.drawImage(bitmap, 0, 0);
+          return new Set(new Uint32Array(context.getImageData(0, 30, bitmap.width, bitmap.height - 30).data.buffer)).size;
+        }, png.bytes.toString('base64'));
+        assert.ok(colours > 10, `${png.name} has ${colours} colours`);
+        writeFileSync(`build/page_test/${png.name}`, png.bytes);
+      }
+      await page.getByTestId('xy').scrollIntoViewIfNeeded();
+      await viewer.screenshot('recording_export');
+      await viewer.close();
     } finally {
       await served.end();
     }

@@ -156,7 +156,7 @@ TEST_F(RecordedRunTest, FollowsAFileThatGrows) {
   EXPECT_EQ(run->documents()["recording"]["indexed"], ticks);
   const Answer all(run->rows({{"setpoint"}, 0, ticks, 1}));
   EXPECT_EQ(all.last_tick, ticks - 1);
-  EXPECT_EQ(all.stride, 4096U);
+  EXPECT_GE(all.stride, ticks);
   EXPECT_EQ(all.rows, 1U);
 }
 

@@ -66,6 +66,11 @@ void BusMonitor::read_values(Microseconds now) {
     readings_.read(node.node, canopen::object::position_demand.address, [&node](const SdoResult& result) {
       node.setpoint = result.is_good() ? std::optional(static_cast<std::int32_t>(result.number())) : std::nullopt;
     });
+    readings_.read(node.node, canopen::object::actual_position.address, [&node](const SdoResult& result) {
+      const auto position = static_cast<std::int32_t>(result.number());
+      const bool is_measured = result.is_good() && position != canopen::position_not_measured;
+      node.position = is_measured ? std::optional(position) : std::nullopt;
+    });
     readings_.read(node.node, canopen::object::statusword.address, [&node](const SdoResult& result) {
       node.statusword = result.is_good() ? std::optional(static_cast<std::uint16_t>(result.number())) : std::nullopt;
     });
@@ -76,7 +81,7 @@ void BusMonitor::poll(Microseconds now) {
   if (now >= next_reading_) {
     next_reading_ = now + reading_period_us;
     traffic_from_ = traffic_from_ == 0 ? now : traffic_from_;
-    if (readings_.is_idle()) {
+    if (reads_ && readings_.is_idle()) {
       read_values(now);
     }
   }

@@ -20,6 +20,7 @@ struct MonitoredNode {
   std::optional<std::int32_t> setpoint;     ///< 0x6062: 90 degrees = 2^30; nothing: not a joint module, or no answer
   std::optional<std::uint16_t> statusword;  ///< 0x6041
   std::optional<canopen::Monitoring> measured;       ///< angle, current, temperature, error register
+  std::optional<std::int32_t> position;              ///< 0x6064: 90 degrees = 2^30; nothing: not measured
   std::optional<std::uint8_t> contacts;              ///< bits 0 to 3 as in the state frame
   std::optional<canopen::Emergency> last_emergency;  ///< the last one that was not the end of an error
   Microseconds last_heard = 0;
@@ -33,6 +34,9 @@ class BusMonitor final : public BusUser {
   explicit BusMonitor(CanPort& port);
   BusMonitor(const BusMonitor&) = delete;
   BusMonitor& operator=(const BusMonitor&) = delete;
+
+  /// Whether it reads values from the modules; true at first. Without them it only listens.
+  void set_reads(bool reads) { reads_ = reads; }
 
   [[nodiscard]] std::vector<MonitoredNode> nodes() const;
   /// Whether a host has sent a heartbeat in the last half second.
@@ -57,6 +61,7 @@ class BusMonitor final : public BusUser {
 
   SdoQueue readings_;
   std::array<MonitoredNode, canopen::host_node> nodes_{};
+  bool reads_ = true;
   Microseconds host_heard_ = 0;
   Microseconds next_reading_ = 0;
   Microseconds traffic_from_ = 0;

@@ -46,6 +46,11 @@ GaitWatch::Module* GaitWatch::module_of(std::uint8_t node) {
   return found == modules_.end() ? nullptr : &*found;
 }
 
+std::optional<std::uint16_t> GaitWatch::statusword(std::uint8_t node) const {
+  const auto found = std::ranges::find(modules_, node, &Module::node);
+  return found == modules_.end() ? std::nullopt : found->statusword;
+}
+
 void GaitWatch::receive(Microseconds now, const CanFrame& frame) {
   namespace identifier = canopen::identifier;
   readings_.receive(now, frame);
@@ -117,6 +122,9 @@ void GaitWatch::read_statusword(Module& module) {
   module.is_suspect = false;
   readings_.read(module.node, canopen::object::statusword.address, [this, node = module.node](const SdoResult& result) {
     const auto statusword = static_cast<std::uint16_t>(result.number());
+    if (result.is_good()) {
+      module_of(node)->statusword = statusword;
+    }
     if (result.is_good() && (statusword & canopen::drive_state_bits) != canopen::drive_operation_enabled) {
       lose(*module_of(node), {.node = node, .reason = Reason::drive, .statusword = statusword});
     }
@@ -127,7 +135,7 @@ void GaitWatch::read_mode(const Module& module) {
   readings_.read(module.node, canopen::object::mode_display.address,
                  [this, node = module.node](const SdoResult& result) {
                    const auto mode = static_cast<std::int8_t>(result.number());
-                   if (result.is_good() && mode != canopen::mode_gait) {
+                   if (result.is_good() && expected_mode_ && mode != *expected_mode_) {
                      lose(*module_of(node), {.node = node, .reason = Reason::mode, .mode = mode});
                    }
                  });

@@ -7,6 +7,7 @@
 
 #include "host/robot/bus_user.hpp"
 #include "host/robot/sdo_queue.hpp"
+#include "shared/canopen/declared_objects.hpp"
 #include "shared/canopen/messages.hpp"
 
 namespace proleg::host {
@@ -20,7 +21,7 @@ class GaitWatch final : public BusUser {
  public:
   enum class Reason : std::uint8_t {
     drive,    ///< the drive is not in Operation enabled
-    mode,     ///< the mode is not the gait's
+    mode,     ///< the mode is another one than expected
     network,  ///< the module is not Operational
   };
   /// What was found.
@@ -47,9 +48,14 @@ class GaitWatch final : public BusUser {
   [[nodiscard]] bool has_looked() const { return readings_.is_idle(); }
   /// A module that has restarted is left alone until the master has set it up again, or has failed to do so.
   void return_to_gait(std::uint8_t node);
+  /// Which mode (0x6061) the joints have from now on, at first the gait's; nothing: it is being switched, and any mode
+  /// is right.
+  void expect_mode(std::optional<std::int8_t> mode) { expected_mode_ = mode; }
 
   /// The first joint that does not follow.
   [[nodiscard]] const std::optional<Loss>& loss() const { return loss_; }
+  /// The last statusword that was read; nothing: none yet, or the node is not of the robot.
+  [[nodiscard]] std::optional<std::uint16_t> statusword(std::uint8_t node) const;
 
   void receive(Microseconds now, const CanFrame& frame) override;
   void transmitted(Microseconds now, const CanFrame& frame) override { readings_.transmitted(now, frame); }
@@ -62,6 +68,7 @@ class GaitWatch final : public BusUser {
     bool is_away = false;     ///< it has booted
     bool is_suspect = false;  ///< it has reported an error since its last reading
     canopen::EmergencyCode emergency = canopen::EmergencyCode::none;
+    std::optional<std::uint16_t> statusword = {};
   };
   [[nodiscard]] Module* module_of(std::uint8_t node);
   void on_emergency(const canopen::Emergency& emergency);
@@ -75,6 +82,7 @@ class GaitWatch final : public BusUser {
   SdoQueue readings_;
   Microseconds period_us_;
   Microseconds next_reading_ = never;
+  std::optional<std::int8_t> expected_mode_ = canopen::mode_gait;
   std::size_t next_ = 0;  ///< the statusword of each module, then the mode of each
   std::optional<Loss> loss_;
 };

@@ -11,13 +11,14 @@
 //                                            quiet, (keep_lease,) set_up,           the set-up; take_lease: one after
 //                                            then for each change that fits:        the other; produce_sync: only the
 //                                            stage, commit; nmt_start,              SYNC producer
-//                                            (set_ramp_in,) enable, (ramp_in,)
-//                                            produce_sync
+//                                            (set_ramp_in,) (hold,) enable,
+//                                            (ramp_in,) produce_sync
 //   change    running, and modules have      stage, commit                          all without lost_ and restarted_
 //             room for the next change
 //   rejoin    running, restarted_ not empty  (keep_lease,) set_up, then for each    the members that restarted_ had
 //                                            committed change that waits for its
-//                                            tick: stage, commit; enable, nmt_start
+//                                            tick: stage, commit; (hold,) enable,
+//                                            nmt_start
 //   stop      stop()                         (ramp, ramping,) disable, sync_off     booted_; sync_off: only the SYNC
 //                                                                                   producer. While they are ramping,
 //                                                                                   their checksums are read
@@ -63,6 +64,9 @@ struct MasterOptions {
   /// Before SYNC 0 the joints go at this speed from their measured angles to the start of the gait (0x200E), degrees a
   /// second, 1 to max_command_speed; 0: they do not. The master waits for all of them that measure their angles.
   std::uint16_t ramp_in_speed = 0;
+  /// The joints do not follow the gait: they stay at the angles that they measure (mode direct position, 0x6060), until
+  /// the host gives other ones or switches the mode. See Master::set_holds().
+  bool holds = false;
   /// Of this host's session, random; the master takes the lease of the robot with it (0x2002) before it resets the
   /// modules, and again when it sets them up. 0: without a lease.
   std::uint32_t session_token = 0;
@@ -154,6 +158,8 @@ class Master final : private SdoWork {
   /// master has only listened, or if the robot is another host's. A module that does not confirm that its servo has no
   /// power is reported as an event.
   void stop(Microseconds now);
+  /// The host has switched the mode of the joints: a module that restarts gets the same one (MasterOptions::holds).
+  void set_holds(bool holds) { options_.holds = holds; }
 
   void receive(Microseconds now, const CanFrame& frame);
   /// The controller has sent a frame of the master.
@@ -178,6 +184,9 @@ class Master final : private SdoWork {
   [[nodiscard]] const Identity& identity(unsigned joint) const { return identities_[joint]; }
   /// With options.reads_checksums, from stop() on. joint: below the joint count.
   [[nodiscard]] const SetpointChecksum& checksum(unsigned joint) const { return checksums_[joint]; }
+  /// With options.holds, while running: the angle that the joint had when it got power (90 degrees = 2^30);
+  /// position_not_measured: its module does not know it. joint: below the joint count.
+  [[nodiscard]] std::int32_t held_angle(unsigned joint) const { return static_cast<std::int32_t>(measured_[joint]); }
   /// Joints whose modules have booted.
   [[nodiscard]] JointMask booted() const { return booted_; }
 
@@ -196,6 +205,7 @@ class Master final : private SdoWork {
     commit,
     nmt_start,
     set_ramp_in,
+    hold,
     enable,
     ramp_in,
     produce_sync,
@@ -225,6 +235,7 @@ class Master final : private SdoWork {
   void begin_lease();
   void take_next_lease();
   [[nodiscard]] std::optional<SdoStep> ramp_in_step(unsigned joint, std::size_t position) const;
+  [[nodiscard]] std::optional<SdoStep> hold_step(unsigned joint, std::size_t position) const;
   void on_checksum(unsigned joint, std::size_t position, std::uint32_t value);
   [[nodiscard]] bool joint_failed(const Problem& problem);
 
@@ -244,6 +255,7 @@ class Master final : private SdoWork {
   void next_phase();
   void enter(Phase phase);
   void begin_mission();
+  [[nodiscard]] Phase first_with_power() const { return options_.holds ? Phase::hold : Phase::enable; }
   void begin_rejoin(JointMask joints);
   void stage_for_rejoin();
   void begin_commit();
@@ -325,6 +337,7 @@ class Master final : private SdoWork {
   std::array<Microseconds, max_joints> heartbeat_received_at_{};
   std::array<Identity, max_joints> identities_{};
   std::array<SetpointChecksum, max_joints> checksums_{};
+  std::array<std::uint32_t, max_joints> measured_{};  ///< angles of joints that hold, as 0x6064 has them
 };
 
 }  // namespace proleg::canopen

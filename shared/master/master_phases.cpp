@@ -110,6 +110,7 @@ void Master::enter(Phase phase) {
     case Phase::keep_lease:
     case Phase::set_up:
     case Phase::stage:
+    case Phase::hold:
       served = joints_;
       break;
     case Phase::set_ramp_in:
@@ -206,10 +207,13 @@ void Master::next_phase() {
       if (mission_ == Mission::rejoin) {
         finish_rejoin();
       } else {
-        enter(options_.ramp_in_speed != 0 ? Phase::set_ramp_in : Phase::enable);
+        enter(options_.ramp_in_speed != 0 ? Phase::set_ramp_in : first_with_power());
       }
       break;
     case Phase::set_ramp_in:
+      enter(first_with_power());
+      break;
+    case Phase::hold:
       enter(Phase::enable);
       break;
     case Phase::ramp_in:
@@ -445,7 +449,7 @@ void Master::stage_for_rejoin() {
   if (joints_.empty()) {
     finish_rejoin();
   } else if (change_ == plan_.next()) {
-    enter(Phase::enable);  // the servo needs power from the first tick that its module computes
+    enter(first_with_power());  // the servo needs power from the first tick that its module computes
   } else {
     enter(Phase::stage);
   }

@@ -1,5 +1,6 @@
 #include "shared/canopen/objects.hpp"
 #include "shared/canopen/power_state.hpp"
+#include "shared/master/controlwords.hpp"
 #include "shared/master/master.hpp"
 
 // The SDO transfers of each phase, and how the master handles their results.
@@ -12,11 +13,10 @@ constexpr const Object* identity_entries[] = {&object::vendor, &object::product,
                                               &object::core_fingerprint};
 constexpr std::size_t identity_count = 5;
 
-/// CiA 402: Shutdown, Switch on, Enable operation.
-constexpr std::uint16_t enabling_controlwords[] = {0x0006, 0x0007, 0x000F};
+/// One after the other.
+constexpr std::uint16_t enabling_controlwords[] = {shutdown_controlword, switch_on_controlword,
+                                                   enable_operation_controlword};
 constexpr std::size_t enabling_count = 3;
-/// CiA 402: Quick stop.
-constexpr std::uint16_t quick_stop_controlword = 0x0002;
 
 }  // namespace
 
@@ -53,6 +53,8 @@ std::optional<SdoStep> Master::step(unsigned joint, std::size_t position) {
     case Phase::set_ramp_in:
     case Phase::ramp_in:
       return ramp_in_step(joint, position);
+    case Phase::hold:
+      return hold_step(joint, position);
     case Phase::ramping:
       return checksum_step(position);
     case Phase::disable:
@@ -102,6 +104,24 @@ std::optional<SdoStep> Master::ramp_in_step(unsigned joint, std::size_t position
   }
 }
 
+/// The mode comes first: with it the module forgets the target that it had.
+std::optional<SdoStep> Master::hold_step(unsigned joint, std::size_t position) const {
+  const auto write = [](const Object& object, std::uint32_t value) {
+    return SdoStep{true, object.address, size_of(object.type), value};
+  };
+  const bool is_measured = measured_[joint] != static_cast<std::uint32_t>(position_not_measured);
+  switch (position) {
+    case 0:
+      return write(object::mode, static_cast<std::uint8_t>(mode_direct_position));
+    case 1:
+      return SdoStep{false, object::actual_position.address};
+    case 2:
+      return is_measured ? std::optional(write(object::target_position, measured_[joint])) : std::nullopt;
+    default:
+      return std::nullopt;
+  }
+}
+
 /// The request to take the pair comes before both reads, also if one of them is repeated: they belong together.
 std::optional<SdoStep> Master::checksum_step(std::size_t position) const {
   const Object& ticks = object::setpoint_ticks;
@@ -133,6 +153,10 @@ bool Master::on_value(unsigned joint, std::size_t position, std::uint32_t value)
   }
   if (phase_ == Phase::ramping) {
     on_checksum(joint, position, value);
+    return true;
+  }
+  if (phase_ == Phase::hold) {
+    measured_[joint] = value;
     return true;
   }
   Identity& identity = identities_[joint];

@@ -43,6 +43,8 @@ class GaitCheck {
   /// modules do not measure is 0.
   [[nodiscard]] sim::TickSample sample(const host::RobotDrive& drive);
 
+  /// Of the gait, after the last tick: 90 degrees = 2^30.
+  [[nodiscard]] std::span<const std::int32_t> setpoints() const { return chain_.setpoints(); }
   /// Of the run, without those while the robot stopped.
   [[nodiscard]] std::uint32_t ticks() const { return ticks_; }
   [[nodiscard]] std::uint64_t compared() const { return compared_; }

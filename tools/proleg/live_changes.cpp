@@ -7,6 +7,18 @@
 #include "sim/scenario/reader.hpp"
 
 namespace proleg::tools {
+namespace {
+
+std::vector<canopen::ChangedValue> values_of(const std::vector<sim::Setting>& settings) {
+  std::vector<canopen::ChangedValue> values;
+  values.reserve(settings.size());
+  for (const sim::Setting& setting : settings) {
+    values.push_back({setting.slot, setting.joint, setting.index, setting.internal, setting.value});
+  }
+  return values;
+}
+
+}  // namespace
 
 LiveChanges::LiveChanges(const sim::Scenario& scenario, std::vector<canopen::Change> planned)
     : scenario_(scenario), lead_ticks_(lead_us / scenario.kernel.tick_period_us), planned_(std::move(planned)) {
@@ -36,21 +48,21 @@ bool LiveChanges::add(const std::string& word, std::uint32_t now, std::uint32_t 
     throw InputError(word, 0, "tick " + std::to_string(change.tick),
                      "a tick of this run, which ends at tick " + std::to_string(end));
   }
-  std::vector<canopen::ChangedValue> values;
-  for (const sim::Setting& setting : change.settings) {
-    values.push_back({setting.slot, setting.joint, setting.index, setting.internal, setting.value});
+  if (!has_tick) {
+    add(change.settings);
+    return true;
   }
-  if (has_tick && std::ranges::find(planned_, change.tick, &canopen::Change::tick) != planned_.end()) {
+  if (std::ranges::find(planned_, change.tick, &canopen::Change::tick) != planned_.end()) {
     throw InputError(word, 0, "tick " + std::to_string(change.tick) + ", which has a change already", "another tick");
   }
-  const canopen::Change added{has_tick ? change.tick : canopen::Change::soon, values_.emplace_back(std::move(values))};
-  if (has_tick) {
-    planned_.insert(std::ranges::upper_bound(planned_, added.tick, {}, &canopen::Change::tick), added);
-    return release(now);
-  }
+  const canopen::Change added{change.tick, values_.emplace_back(values_of(change.settings))};
+  planned_.insert(std::ranges::upper_bound(planned_, added.tick, {}, &canopen::Change::tick), added);
+  return release(now);
+}
+
+void LiveChanges::add(const std::vector<sim::Setting>& settings) {
   without_tick_.push_back(changes_.size());
-  changes_.push_back(added);
-  return true;
+  changes_.push_back({canopen::Change::soon, values_.emplace_back(values_of(settings))});
 }
 
 void LiveChanges::remove_last() {

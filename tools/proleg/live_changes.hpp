@@ -26,6 +26,8 @@ class LiveChanges {
   /// A word as for --set; without a tick the change takes effect as soon as all modules have it. now: present tick;
   /// end: the first one that is not part of the run. Throws InputError. True: the master must get the new span() now.
   bool add(const std::string& word, std::uint32_t now, std::uint32_t end);
+  /// Values that take effect together, as soon as all modules have them. The master must get the new span() now.
+  void add(const std::vector<sim::Setting>& settings);
   /// Puts the next planned change behind span(), if it is time. True: the master must get the new span() now.
   bool release(std::uint32_t now);
   /// The master has refused the last one of span().

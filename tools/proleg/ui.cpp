@@ -12,16 +12,19 @@
 
 #include "host/server/session_requests.hpp"
 #include "host/server/web_server.hpp"
+#include "host/transport/bus_address.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/record/recording_file.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/built_page.hpp"
+#include "tools/proleg/bus_access.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/interrupt.hpp"
 #include "tools/proleg/robot_files.hpp"
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/ui/browser.hpp"
+#include "tools/proleg/ui/bus_session.hpp"
 #include "tools/proleg/ui/recorded_session.hpp"
 #include "tools/proleg/ui/session_router.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
@@ -35,6 +38,7 @@ constexpr const char* recording_extension = ".proleg";
 
 struct UiOptions {
   ScenarioOptions scenario;
+  BusOptions bus;
   std::string port = "0";
   std::string recordings = ".";
   std::optional<std::string> page;
@@ -138,9 +142,22 @@ RecordedSessionOptions recordings_of(const UiOptions& options) {
 void refuse_robot_options(const UiOptions& options) {
   const ScenarioOptions& scenario = options.scenario;
   const sim::OverrideWords& overrides = scenario.overrides;
-  if (options.paused || !scenario.settings.empty() || overrides.seed || overrides.friction || overrides.at ||
-      overrides.heading) {
-    throw BadInput("found an option of a simulation with " + scenario.file + ", expected a scenario");
+  if (options.paused || options.bus.bus || !scenario.settings.empty() || overrides.seed || overrides.friction ||
+      overrides.at || overrides.heading) {
+    throw BadInput("found an option of a robot with " + scenario.file + ", expected a scenario");
+  }
+}
+
+void refuse_what_only_a_simulation_has(const UiOptions& options) {
+  const sim::OverrideWords& overrides = options.scenario.overrides;
+  const std::pair<const char*, bool> given[] = {{"--paused", options.paused},
+                                                {"--friction", overrides.friction.has_value()},
+                                                {"--at", overrides.at.has_value()},
+                                                {"--heading", overrides.heading.has_value()}};
+  for (const auto& [option, is_given] : given) {
+    if (is_given) {
+      throw InputError(option, 0, "an option for simulated worlds", "none of them: the robot is where it is");
+    }
   }
 }
 
@@ -159,8 +176,14 @@ int serve(UiOptions& options) {
       options.page ? std::filesystem::path(*options.page) : built_page("page", "index.html");
   const host::AccessToken token = host::AccessToken::make();
   host::ServerOptions server{token, host::PageFiles(page_folder), std::string("proleg ") + build_id, {}, port};
-  for (const auto& operations : {SimulatedSession::free_operations(), RecordedSession::free_operations()}) {
+  for (const auto& operations : {options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations(),
+                                 RecordedSession::free_operations()}) {
     server.free_operations.insert(operations.begin(), operations.end());
+  }
+  std::optional<BusAccess> bus;
+  if (options.bus.bus) {
+    refuse_what_only_a_simulation_has(options);
+    bus.emplace(options.bus);
   }
   catch_interrupts();
   boost::asio::io_context context{1};
@@ -169,9 +192,13 @@ int serve(UiOptions& options) {
   SessionRouter router(recording_requests, run ? &requests : nullptr);
   host::WebServer page(context, std::move(server), router);
   const RecordedSession recorded(recordings, recording_requests, page);
-  std::optional<SimulatedSession> session;
-  if (run) {
-    session.emplace(
+  std::optional<SimulatedSession> simulated;
+  std::optional<BusSession> driven;
+  if (bus) {
+    driven.emplace(run->scenario, *bus, options.bus.address(), BusSessionOptions{options.recordings, build_id},
+                   requests, page);
+  } else if (run) {
+    simulated.emplace(
         run->scenario, &run->losses,
         SimulatedSessionOptions{options.recordings, simulate_command(options, has_file), build_id, options.paused},
         requests, page);
@@ -207,6 +234,10 @@ int main(int argc, char** argv) {
   command_line.add_option("FILE", options.scenario.file,
                           "scenario, a *.simulation.xml file; or a recording, or a folder with recordings");
   add_override_options(command_line, options.scenario);
+  command_line
+      .add_option("--bus", options.bus.bus,
+                  "show and drive the robot on this bus instead of a simulated one: " + host::bus_address_syntax())
+      .value_name("BUS");
   command_line.add_option("--port", options.port, "TCP port on 127.0.0.1; 0: any free one").shows_default();
   command_line.add_option("--recordings", options.recordings, "folder for recordings")
       .value_name("FOLDER")

@@ -59,6 +59,30 @@ TEST_F(GaitWatchTest, FindsAModeThatAnotherProgramHasSetWithinASecond) {
   EXPECT_EQ(watch.loss()->mode, 8);
 }
 
+TEST_F(GaitWatchTest, KnowsWhichModeIsExpected) {
+  host::SdoQueue other(bus);
+  bus.attach(other);
+  const auto set_mode = [&](std::int8_t mode) {
+    watch.expect_mode(std::nullopt);
+    for (std::uint8_t node = 1; node <= 5; ++node) {
+      other.write(node, canopen::object::mode.address, canopen::DataType::integer8, static_cast<std::uint8_t>(mode),
+                  {});
+    }
+    ASSERT_TRUE(bus.run_until(bus.now() + second, [&] { return other.is_idle(); }));
+    watch.expect_mode(mode);
+  };
+  set_mode(canopen::mode_direct_position);
+  EXPECT_FALSE(finds_loss_within(3 * second));
+  EXPECT_TRUE(watch.statusword(5));
+  EXPECT_FALSE(watch.statusword(6));
+  set_mode(canopen::mode_gait);
+  EXPECT_FALSE(finds_loss_within(3 * second));
+  watch.expect_mode(canopen::mode_direct_position);
+  EXPECT_TRUE(finds_loss_within(second));
+  EXPECT_EQ(watch.loss()->reason, host::GaitWatch::Reason::mode);
+  bus.detach(other);
+}
+
 TEST_F(GaitWatchTest, FindsAModuleThatIsStoppedWithinASecond) {
   ASSERT_TRUE(bus.send(canopen::encode(canopen::NmtRequest{canopen::NmtCommand::stop, 3})));
   EXPECT_TRUE(finds_loss_within(second));

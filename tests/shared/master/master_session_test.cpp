@@ -15,6 +15,9 @@ constexpr std::uint32_t foreign_token = 0x11223344;
 constexpr Address lease{0x2002, 0};
 constexpr Address ramp_in_speed{0x200E, 0};
 constexpr Address setpoint_ticks{0x200D, 1};
+constexpr Address controlword{0x6040, 0};
+constexpr Address mode{0x6060, 0};
+constexpr Address target_position{0x607A, 0};
 constexpr Address setpoint_crc{0x200D, 2};
 constexpr std::uint16_t nmt = 0x000;
 
@@ -177,6 +180,47 @@ TEST(MasterRampIn, IsOffUnlessItIsAskedFor) {
   ASSERT_TRUE(robot.run_until_running());
   EXPECT_TRUE(
       std::ranges::none_of(robot.module(0).writes, [](const auto& write) { return write.first == ramp_in_speed; }));
+}
+
+TEST(MasterHold, JointsGetPowerWhereTheyAre) {
+  ScriptedRobot robot(3);
+  robot.options.ramp_in_speed = 90;
+  robot.options.holds = true;
+  for (unsigned joint = 0; joint < 3; ++joint) {
+    robot.module(joint).measured = joint == 1 ? position_not_measured : static_cast<std::int32_t>(1'000'000 * joint);
+  }
+  robot.start();
+  ASSERT_TRUE(robot.run_until_running());
+  for (unsigned joint = 0; joint < 3; ++joint) {
+    std::vector<Address> order;
+    for (const auto& [address, value] : robot.module(joint).writes) {
+      if (address == mode || address == target_position || (address == controlword && order.back() != controlword)) {
+        order.push_back(address);
+      }
+    }
+    const std::vector<Address> expected =
+        joint == 1 ? std::vector{mode, controlword} : std::vector{mode, target_position, controlword};
+    EXPECT_EQ(order, expected) << "joint " << joint;
+    EXPECT_EQ(robot.module(joint).value(mode), 8U);
+    EXPECT_EQ(robot.module(joint).value(target_position), joint == 1 ? 0U : 1'000'000U * joint);
+  }
+}
+
+TEST(MasterHold, AModuleThatRestartsGetsTheModeThatTheOthersHave) {
+  for (const bool holds : {true, false}) {
+    ScriptedRobot robot(3);
+    robot.start();
+    ASSERT_TRUE(robot.run_until_running());
+    ASSERT_TRUE(robot.run_to_tick(20));
+    robot.master().set_holds(holds);
+    robot.module(1).measured = 77;
+    robot.module(1).power_on(robot.now());
+    ASSERT_TRUE(robot.run_until([&] { return robot.count(EventKind::rejoined) == 1; }, 2'000'000));
+    EXPECT_EQ(robot.module(1).power(), PowerState::operation_enabled);
+    EXPECT_EQ(robot.module(1).value(target_position), holds ? 77U : 0U);
+    EXPECT_EQ(std::ranges::any_of(robot.module(1).writes, [](const auto& write) { return write.first == mode; }),
+              holds);
+  }
 }
 
 /// Runs a robot with checksums, and stops it.

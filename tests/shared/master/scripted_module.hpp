@@ -122,6 +122,7 @@ class ScriptedModule final : public sim::BusListener {
   std::size_t max_pending = 32;      ///< transactions
   std::uint32_t lease = 0;           ///< whose the module is, 0x2002; a reset ends it
   bool measures_angle = true;
+  std::int32_t measured = 0;    ///< 0x6064
   Microseconds ramp_in_us = 0;  ///< from the power to the start of the gait
   /// Answers instead of the module, unless `none`.
   std::function<canopen::AbortCode(canopen::Address, bool writes, std::uint32_t value)> refusal;
@@ -231,6 +232,8 @@ class ScriptedModule final : public sim::BusListener {
       case 0x2007:
       case 0x2008:
       case 0x200D:
+      case 0x6064:
+      case 0x607A:
       case 0x6080:
         return 4;
       case 0x1017:
@@ -241,6 +244,7 @@ class ScriptedModule final : public sim::BusListener {
         return 2;
       case 0x1019:
       case 0x2006:
+      case 0x6060:
         return 1;
       case 0x2000:
         return address.sub == 1 ? 2 : 4;
@@ -358,6 +362,9 @@ class ScriptedModule final : public sim::BusListener {
     }
     if (address == canopen::Address{0x2002, 0}) {
       return lease;
+    }
+    if (address == canopen::Address{0x6064, 0}) {
+      return static_cast<std::uint32_t>(measured);
     }
     if (address == canopen::Address{0x6041, 0}) {
       return statusword();

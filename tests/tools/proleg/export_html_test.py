@@ -140,7 +140,7 @@ class ExportHtml(unittest.TestCase):
     def page(self, recording, *more):
         file = recording.with_suffix(".html")
         finished = self.export(recording, *more)
-        self.assertEqual((finished.returncode, finished.stderr), (0, ""))
+        self.assertEqual(finished.returncode, 0, finished.stderr)
         return Page(file)
 
     def refused(self, recording, words, *more):
@@ -158,7 +158,7 @@ class ExportHtml(unittest.TestCase):
         copy = self.folder / name
         shutil.copy(self.recording, copy)
         with sqlite3.connect(copy) as database:
-            database.execute(sql)
+            database.executescript(sql)
         database.close()
         return copy
 
@@ -202,6 +202,15 @@ class ExportHtml(unittest.TestCase):
         self.assertEqual((robot["kind"], [body["name"] for body in robot["terrain"]]), ("recording", ["floor"]))
         amplitude = next(value for value in page.documents["parameters"] if value["name"] == "amplitude")
         self.assertEqual([round(raw * amplitude["scale"], 6) for raw in amplitude["file"]], [40.0] * 5)
+
+    def test_faults_and_restarts_are_marks(self):
+        copy = self.changed_copy("faults.proleg", """
+            INSERT INTO fault VALUES (0, 1500000, NULL, 3, 'J2 loses frames');
+            INSERT INTO restart VALUES (50, 4, 'stopped'), (70, 4, 'joined');""")
+        marks = [(mark["tick"], mark["kind"], mark["text"]) for mark in self.page(copy).recording["marks"]]
+        self.assertEqual(marks, [(50, "restart", "J1 stopped"), (70, "restart", "J1 joined"),
+                                 (100, "change", "amplitude = 30"), (150, "fault", "J2 loses frames"),
+                                 (4100, "change", "current_phase J2 = 90")])
 
     def test_names_cannot_leave_their_element(self):
         folder = self.folder / "hostile"
@@ -257,6 +266,7 @@ class ExportHtml(unittest.TestCase):
         self.refused(notes, [str(notes)])
         self.refused(self.folder / "missing.proleg", ["no file"])
         self.refused(self.changed_copy("bare.proleg", "DELETE FROM source"), ["scenario"])
+        self.refused(self.changed_copy("slot.proleg", "UPDATE slot SET algorithm = 'Other'"), ["scenario"])
         renamed = "UPDATE internal_value_name SET name = 'other' WHERE value_index = 1"
         self.refused(self.changed_copy("renamed.proleg", renamed), ["scenario"])
         self.refused(self.recording, ["--json"], "--json", "--out", "-")

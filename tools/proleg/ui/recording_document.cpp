@@ -50,6 +50,13 @@ json marks_json(const sim::Recording& recording) {
   return document;
 }
 
+bool has_slots_of(const sim::Recording& recording, const sim::Scenario& scenario) {
+  return std::ranges::all_of(recording.slots(), [&](const sim::RecordedSlot& recorded) {
+    const ActuationModule* const algorithm = scenario.kernel.slots[recorded.slot].algorithm;
+    return algorithm != nullptr && algorithm->declaration().name == recorded.algorithm;
+  });
+}
+
 bool has_internal_values_of(const sim::Recording& recording, const sim::Scenario& scenario) {
   const std::vector<sim::RecordedInternalValue>& recorded = recording.internal_values();
   std::size_t next = 0;
@@ -105,7 +112,7 @@ json recorded_parameters_document(const sim::Recording& recording, const sim::Sc
 
 sim::Scenario scenario_of(const sim::Recording& recording) {
   std::optional<sim::Scenario> scenario = sim::recorded_scenario(recording);
-  if (!scenario || !has_internal_values_of(recording, *scenario)) {
+  if (!scenario || !has_slots_of(recording, *scenario) || !has_internal_values_of(recording, *scenario)) {
     throw InputError(recording.path().string(), 0, "a scenario that this program cannot read",
                      "a recording of this version of Proleg");
   }

@@ -14,8 +14,8 @@ namespace proleg::tools {
 [[nodiscard]] nlohmann::json recorded_parameters_document(const sim::Recording& recording,
                                                           const sim::Scenario& scenario);
 
-/// The scenario of a recording. Throws InputError if the recording's files cannot be read, or if the algorithms of this
-/// program have other internal values than those that were recorded.
+/// The scenario of a recording. Throws InputError if the recording's files cannot be read, or if its slots have other
+/// algorithms, or these other internal values, than those that were recorded.
 [[nodiscard]] sim::Scenario scenario_of(const sim::Recording& recording);
 
 }  // namespace proleg::tools

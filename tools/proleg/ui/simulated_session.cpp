@@ -13,6 +13,7 @@
 #include "sim/measure/measure.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "tools/proleg/ui/operation_arguments.hpp"
+#include "tools/proleg/ui/recording_place.hpp"
 #include "tools/proleg/ui/robot_document.hpp"
 #include "tools/proleg/ui/telemetry_row.hpp"
 
@@ -297,14 +298,7 @@ void SimulatedSession::tick() {
 }
 
 void SimulatedSession::begin_recording(const std::string& file) {
-  const std::filesystem::path name(file);
-  if (name.empty() || name.filename() != name || name.extension() != ".proleg") {
-    throw InputError("file", 0, in_quotes(shortened(file)), "a name without a folder that ends in .proleg");
-  }
-  const std::filesystem::path path = options_.recordings / name;
-  if (std::filesystem::exists(path)) {
-    throw InputError(path.string(), 0, "a file that exists", "a new name");
-  }
+  const std::filesystem::path path = new_recording(options_.recordings, file);
   if (!live_.record(path, "simulate", options_.build_id, [this] { return !requests_.interrupts(); })) {
     std::error_code ignored;
     std::filesystem::remove(path, ignored);

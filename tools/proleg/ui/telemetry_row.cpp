@@ -30,6 +30,8 @@ double value_of_step(Unit unit) {
   return static_cast<double>(scale.denominator) / static_cast<double>(scale.numerator);
 }
 
+std::int32_t raw_angle(double angle) { return rounded(angle * raw_per_radian); }
+
 std::vector<host::Signal> signals_of(const sim::Scenario& scenario) {
   using Of = host::SignalOf;
   const std::size_t joints = scenario.robot.joints.size();
@@ -55,7 +57,7 @@ std::vector<host::Signal> signals_of(const sim::Scenario& scenario) {
 void fill_row(const sim::TickSample& sample, const sim::Scenario& scenario, std::vector<std::int32_t>& row) {
   row.assign(sample.setpoints.begin(), sample.setpoints.end());
   for (const double angle : sample.joint_angles) {
-    row.push_back(rounded(angle * raw_per_radian));
+    row.push_back(raw_angle(angle));
   }
   row.insert(row.end(), sample.servo_commands.begin(), sample.servo_commands.end());
   for (const double current : sample.servo_currents) {

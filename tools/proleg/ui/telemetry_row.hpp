@@ -16,6 +16,9 @@ namespace proleg::tools {
 /// What one step of a raw value is worth in its unit.
 [[nodiscard]] double value_of_step(Unit unit);
 
+/// An angle in rad as a raw value of the unit degree; no_value if it is not finite.
+[[nodiscard]] std::int32_t raw_angle(double angle);
+
 /// The signals of a robot. Their values follow each other in a row, in this order.
 [[nodiscard]] std::vector<host::Signal> signals_of(const sim::Scenario& scenario);
 

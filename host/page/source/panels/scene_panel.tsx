@@ -116,12 +116,19 @@ export function ScenePanel({ app }: { app: RobotView }) {
   );
 }
 
+// Without the sign of -0.000.
+function positionText(head: Float64Array): string {
+  const [x, y, z] = [...head.subarray(0, 3)].map((metres) => (Math.round(metres * 1000) / 1000 + 0).toFixed(3));
+  return `head  x ${x}  y ${y}  z ${z} m`;
+}
+
 // Sends the pose at the time cursor whenever it changed, and writes where the head is.
 function followPose(app: RobotView, send: (message: ToScene) => void, readout: { current: HTMLSpanElement | null }): () => void {
   let lastKey = '';
-  let lastReadout = 0;
   let robot: unknown = null;
-  return onFrame((now) => {
+  let head: Float64Array | null = null; // not written yet
+  let lastReadout = 0;
+  const sendChangedPose = () => {
     const { rowsAtCursor: history, time } = app;
     const tick = time.shownTick(app.newestTick);
     const key = `${history.run}/${history.end}/${tick}`;
@@ -134,12 +141,15 @@ function followPose(app: RobotView, send: (message: ToScene) => void, readout: {
     }
     lastKey = key;
     robot = app.state.robot.peek();
-    if (readout.current !== null && now - lastReadout > readoutPeriod) {
-      lastReadout = now;
-      // Without the sign of -0.000.
-      const [x, y, z] = [...pose.head.subarray(0, 3)].map((metres) => (Math.round(metres * 1000) / 1000 + 0).toFixed(3));
-      readout.current.textContent = `head  x ${x}  y ${y}  z ${z} m`;
-    }
+    head = pose.head;
     send({ kind: 'pose', pose });
+  };
+  return onFrame((now) => {
+    sendChangedPose();
+    if (head !== null && readout.current !== null && now - lastReadout > readoutPeriod) {
+      readout.current.textContent = positionText(head);
+      lastReadout = now;
+      head = null;
+    }
   });
 }

@@ -108,7 +108,7 @@ export function PlayerPage({ app }: { app: PlayerApp }) {
       <Header app={app} />
       <Bands app={app} />
       <main id="page">
-        <div class="live">
+        <div class={app.recording.has_path ? 'live' : 'live no-path'}>
           <PlaybackControls app={app} />
           <div class="live-main">
             <ScenePanel app={app} />

@@ -58,7 +58,7 @@ function OpenedView({ app, opened }: { app: RecordingsApp; opened: OpenedRecordi
         <ExportTools opened={opened} />
       </div>
       <Bands opened={opened} />
-      <div class="live recorded">
+      <div class={opened.recording.has_path ? 'live recorded' : 'live recorded no-path'}>
         <PlaybackControls app={opened} />
         <div class="live-main">
           <ScenePanel app={opened} />

@@ -1,0 +1,267 @@
+"""`proleg ui FILE --bus`: a robot on a bus behind the page, without a browser. The robot is a simulated one, reached as a
+real one would be.
+
+Usage: robot_page_test.py SOURCE PROGRAMS [TEST]"""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+SOURCE, PROGRAMS = Path(sys.argv[1]), Path(sys.argv[2])
+sys.path.insert(0, str(SOURCE / "tests/host/server"))
+from web_client import WAIT_S, Closed, Viewer, request  # noqa: E402
+
+UNIFORM = SOURCE / "sim/scenarios/travelling_wave/uniform.simulation.xml"
+JOINTS = 5
+NONE = -(1 << 31)
+LIMIT_S = 60  # for what moves, with other tests beside it
+
+
+class Driver(Viewer):
+    """A viewer that gives signs of life while it has control."""
+
+    def __init__(self, page, name="desk"):
+        super().__init__(page.port, page.token, name)
+        self.lock = threading.Lock()
+        self.is_alive = True
+        self.epoch = 0
+        self.pulse = threading.Thread(target=self.beat, daemon=True)
+        self.pulse.start()
+
+    def send_bytes(self, data):
+        with getattr(self, "lock", threading.Lock()):
+            super().send_bytes(data)
+
+    def beat(self):
+        while self.is_alive:
+            try:
+                self.send({"type": "beat", "age_ms": 1})
+            except OSError:
+                return
+            time.sleep(0.2)
+
+    def until(self, condition, limit_s=LIMIT_S):
+        end = time.monotonic() + limit_s
+        while not condition():
+            assert time.monotonic() < end, f"the condition does not hold after {limit_s} s: {self.session()} {self.notices}"
+            self.next()
+
+    def ask(self, name, **arguments):
+        return self.do(name, self.epoch, **arguments)
+
+    def must(self, name, **arguments):
+        result = self.ask(name, **arguments)
+        assert result["ok"], result
+        return result["value"]
+
+    def drive(self):
+        self.epoch = self.take_control()
+
+    def session(self):
+        return self.documents.get("session", {}).get("value", {})
+
+    def bus(self):
+        return self.documents["bus"]["value"]
+
+    def until_state(self, state):
+        self.until(lambda: self.session().get("state") == state)
+
+    def watch(self, *signals):
+        self.until(lambda: "telemetry" in self.documents)
+        self.send({"type": "subscribe", "signals": list(signals)})
+
+    def angles(self):
+        """The newest measured angles, in degrees. Only `angle` is watched."""
+        self.rows.clear()
+        self.until(lambda: self.rows)
+        return [None if raw == NONE else raw * 90 / (1 << 30) for raw in self.rows[-1]["values"][-1][:JOINTS]]
+
+    def stop_robot(self):
+        count = len(self.stops)
+        self.send({"type": "stop"})
+        self.until(lambda: len(self.stops) > count)
+        return self.stops[-1]
+
+
+class Page:
+    def __init__(self, folder, *options, bus=None):
+        page = Path(folder, "page")
+        page.mkdir(exist_ok=True)
+        Path(page, "index.html").write_text("<!doctype html><title>page</title>")
+        self.process = subprocess.Popen(
+            [PROGRAMS / "proleg", "ui", UNIFORM, "--bus", bus or f"sim:{UNIFORM}", "--page", page, "--no-browser",
+             "--recordings", folder, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        address = re.search(r"http://127\.0\.0\.1:(\d+)/#(\S+)", self.process.stdout.readline())
+        assert address, self.process.communicate()
+        self.port, self.token = int(address[1]), address[2]
+
+    def end(self):
+        self.process.send_signal(signal.SIGINT)
+        output, errors = self.process.communicate(timeout=LIMIT_S)
+        assert self.process.returncode == 0, (output, errors)
+        return errors
+
+    def kill(self):
+        self.process.kill()
+        self.process.communicate()
+
+
+def test_power_lets_no_joint_move(page, _):
+    driver = Driver(page)
+    driver.until(lambda: len(driver.documents.get("bus", {}).get("value", {}).get("modules", [])) == JOINTS)
+    assert [module["joint"] for module in driver.bus()["modules"]] == list(range(JOINTS))
+    assert driver.session()["state"] == "off"
+    driver.watch("angle")
+    driver.drive()
+    driver.until(lambda: None not in driver.angles())
+    before = driver.angles()
+    driver.must("power", on=True)
+    driver.until_state("held")
+    for _ in range(20):
+        for angle, was in zip(driver.angles(), before):
+            assert angle is None or abs(angle - was) < 1.0, (driver.angles(), before)
+    driver.must("power", on=False)
+    driver.until_state("off")
+    assert driver.session()["failure"] is None, driver.session()
+
+
+def test_joints_go_to_positions_at_limited_speed_and_within_their_limits(page, _):
+    driver = Driver(page)
+    driver.watch("setpoint")
+    driver.drive()
+    refused = driver.ask("pose", angles=[0] * JOINTS)
+    assert refused["error"] == "the servos have no power", refused
+    driver.must("power", on=True)
+    driver.until_state("held")
+    driver.rows.clear()
+    driver.must("pose", angles=[30, None, -20, None, 90], speed=45)
+    reached = lambda: driver.rows and abs(driver.rows[-1]["values"][-1][0] * 90 / (1 << 30) - 30) < 0.01
+    driver.until(reached)
+    driver.until(lambda: abs(driver.rows[-1]["values"][-1][2] * 90 / (1 << 30) + 20) < 0.01)
+    values = [row for message in driver.rows for row in message["values"]]
+    steps = [abs(after[0] - before[0]) * 90 / (1 << 30) for before, after in zip(values, values[1:])]
+    assert max(steps) < 45 * 0.01 + 0.001, f"at 45 degrees a second a joint moves 0.45 degrees a tick, found {max(steps)}"
+    # The module has taken it: its measured angle follows.
+    driver.watch("angle")
+    driver.until(lambda: driver.angles()[0] is not None and abs(driver.angles()[0] - 30) < 6)
+    for bad in ({"angles": [0] * 4}, {"angles": [91] + [0] * 4}, {"angles": ["x"] + [0] * 4}, {"angles": 3}, {},
+                {"angles": [0] * 5, "speed": 0.5}, {"angles": [0] * 5, "speed": 1e9}):
+        assert not driver.ask("pose", **bad)["ok"], bad
+    assert driver.session()["state"] == "held"
+
+
+def test_the_gait_runs_and_is_that_of_the_simulation(page, folder):
+    driver = Driver(page)
+    driver.drive()
+    recording = driver.must("record", file="run.proleg")["file"]
+    driver.must("run")
+    driver.until_state("running")
+    driver.must("set", words=["amplitude:J2=25"], gesture=1)
+    driver.must("set", words=["amplitude:J2=30"], gesture=1)
+
+    def confirmed():
+        table = next(row for row in driver.documents["parameters"]["value"] if row["name"] == "amplitude")
+        at = [joint["name"] for joint in driver.documents["robot"]["value"]["joints"]].index("J2")
+        return table["confirmed"][at] == table["wanted"][at] != table["file"][at] and table["tick"][at] > 0
+    driver.until(confirmed)
+    assert not driver.ask("record", file="late.proleg")["ok"]
+    driver.until(lambda: driver.session()["tick"] > 600)
+    assert driver.session()["recording"] == recording
+    assert driver.stop_robot()["confirmed"] == JOINTS
+    driver.until_state("off")
+    gait = driver.session()["gait"]
+    assert gait["differences"] == 0 and gait["compared"] > 2000, gait
+    assert driver.session()["stopped_by"] == "desk"
+    replay = subprocess.run([PROGRAMS / "proleg", "replay", recording], capture_output=True, text=True, timeout=LIMIT_S)
+    assert replay.returncode == 0, replay.stdout + replay.stderr
+    driver.must("undo")
+    driver.until(lambda: driver.session()["undo"] is None)
+
+
+def test_the_gait_pauses_where_it_is_and_goes_on(page, _):
+    driver = Driver(page)
+    driver.drive()
+    driver.must("run")
+    driver.until(lambda: driver.session().get("tick", 0) > 150)
+    driver.watch("setpoint")
+    driver.until(lambda: driver.rows)
+    driver.must("pause")
+    driver.until_state("held")
+    driver.rows.clear()
+    driver.until(lambda: len(driver.rows) > 5)
+    held = {tuple(row[:JOINTS]) for message in driver.rows[3:] for row in message["values"]}
+    assert len(held) == 1, held
+    driver.rows.clear()
+    driver.must("run")
+    driver.until(lambda: len(driver.rows) > 200)
+    values = [row for message in driver.rows for row in message["values"]]
+    steps = [abs(after[joint] - before[joint]) * 90 / (1 << 30) for before, after in zip(values, values[1:])
+             for joint in range(JOINTS)]
+    assert 0.5 < max(steps) < 6, f"at most 180 degrees a second and the rest of the way, found {max(steps)} in a tick"
+    assert driver.session()["state"] == "running" and driver.session()["failure"] is None, driver.session()
+    assert driver.session()["gait"]["differences"] == 0
+
+
+def test_stop_works_from_every_state(page, _):
+    driver = Driver(page)
+    driver.drive()
+    driver.until(lambda: len(driver.documents.get("bus", {}).get("value", {}).get("modules", [])) == JOINTS)
+    assert driver.stop_robot()["confirmed"] == JOINTS, "without power, too"
+    for begin, state in (("power", "starting"), ("power", "held"), ("run", "running")):
+        driver.must(begin, **({"on": True} if begin == "power" else {}))
+        driver.until_state(state)
+        stopped = driver.stop_robot()
+        assert stopped["of"] == JOINTS
+        assert state == "starting" or stopped["confirmed"] == JOINTS, (state, stopped)
+        driver.until_state("off")
+    body = request(page.port, "POST", "/stop", [f"Authorization: Bearer {page.token}"])[2]
+    assert b'"stopped"' in body, body
+
+
+def test_a_robot_without_a_driver_stops(page, _):
+    driver, other = Driver(page), Driver(page, "wall")
+    driver.drive()
+    driver.must("run")
+    other.until_state("running")
+    driver.is_alive = False
+    driver.sock.close()
+    other.until_state("off")
+    assert other.session()["stopped_by"] == "nobody drives"
+    # A page that hangs, with an open connection:
+    other.drive()
+    other.must("power", on=True)
+    other.until_state("held")
+    other.is_alive = False
+    other.until_state("off")
+    assert other.session()["stopped_by"] == "nobody drives"
+
+
+def test_the_end_of_the_program_takes_the_power(page, _):
+    driver = Driver(page)
+    driver.drive()
+    driver.must("run")
+    driver.until_state("running")
+
+
+def main():
+    tests = {name: test for name, test in globals().items() if name.startswith("test_")}
+    for name, test in tests.items():
+        if len(sys.argv) > 3 and sys.argv[3] not in name:
+            continue
+        print(name, flush=True)
+        with tempfile.TemporaryDirectory() as folder:
+            page = Page(folder)
+            try:
+                test(page, folder)
+                page.end()
+            finally:
+                page.kill()
+
+
+main()

@@ -1,0 +1,566 @@
+#include "tools/proleg/ui/bus_session.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "shared/canopen/declared_objects.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "shared/master/controlwords.hpp"
+#include "tools/proleg/ui/bus_document.hpp"
+#include "tools/proleg/ui/operation_arguments.hpp"
+#include "tools/proleg/ui/recording_place.hpp"
+#include "tools/proleg/ui/robot_document.hpp"
+#include "tools/proleg/ui/robot_row.hpp"
+
+namespace proleg::tools {
+namespace {
+
+using nlohmann::json;
+using RobotState = DrivenRobot::State;
+
+constexpr double slowest_pose = 1.0;
+constexpr double fastest_pose = 180.0;
+constexpr double usual_pose_speed = 60.0;
+
+json text_or_null(const std::string& text) { return text.empty() ? json() : json(text); }
+
+std::string entry_name(const ChangeHistory::Entry* entry) { return entry == nullptr ? std::string() : entry->name; }
+
+json gait_json(const GaitCheck& check) {
+  return {{"compared", check.compared()},
+          {"differences", check.differences()},
+          {"missing", check.missing()},
+          {"first_difference", check.first_difference() ? json(*check.first_difference()) : json()},
+          {"end", check.end_of_comparison() ? json(*check.end_of_comparison()) : json()}};
+}
+
+}  // namespace
+
+BusSession::BusSession(const sim::Scenario& file, BusAccess& bus, std::string address, BusSessionOptions options,
+                       host::SessionRequests& requests, host::SessionOutput& output)
+    : file_(file),
+      address_(std::move(address)),
+      options_(std::move(options)),
+      requests_(requests),
+      output_(output),
+      bus_(bus.connection()),
+      monitor_(bus_),
+      stops_of_others_(bus_),
+      edits_(file),
+      started_(file),
+      rows_(file),
+      stop_confirmed_(file.robot.joints.size()) {
+  output_.publish("robot", robot_document(file, "bus"));
+  output_.set_signals(rows_.layout(), file.kernel.tick_period_us);
+  thread_ = std::thread([this] { run(); });
+}
+
+BusSession::~BusSession() {
+  requests_.end();
+  thread_.join();
+}
+
+void BusSession::run() {
+  bus_.attach(monitor_);
+  bus_.attach(stops_of_others_);
+  begin_scan();
+  traffic_from_ = Clock::now();
+  while (!requests_.ends()) {
+    serve();
+  }
+  close();
+  end_scan();
+  bus_.detach(stops_of_others_);
+  bus_.detach(monitor_);
+}
+
+void BusSession::serve() {
+  constexpr Microseconds look_period_us = 5'000;
+  bus_.run_until(bus_.now() + look_period_us, [this] { return requests_.are_there(); });
+  take_stops();
+  look_at_holder();
+  take_operations();
+  poll_robot();
+  answer_stops();
+  if (scan_ && scan_->is_done()) {
+    end_scan();
+  }
+  add_idle_rows();
+  publish_all(Clock::now());
+}
+
+/// The robot comes to rest before the program ends.
+void BusSession::close() {
+  if (robot_) {
+    stop_robot("the end of the program");
+  }
+  const Clock::time_point begin = Clock::now();
+  while (robot_ && Clock::now() < begin + std::chrono::microseconds(GaitRun::stop_time_us)) {
+    bus_.run_for(5'000);
+    poll_robot();
+  }
+}
+
+void BusSession::begin_scan() {
+  scan_.emplace(bus_);
+  bus_.attach(*scan_);
+  scan_->start(bus_.now());
+}
+
+void BusSession::end_scan() {
+  if (scan_) {
+    bus_.detach(*scan_);
+    scan_.reset();
+  }
+}
+
+/// What was asked for before a STOP has no effect after it.
+void BusSession::take_stops() {
+  std::deque<host::OperationRequest> outdated;
+  for (const host::SessionRequests::Stop& stop : requests_.take_stops(outdated)) {
+    stops_.push_back({stop.request, stop.since});
+    stopped_by_ = stop.by;
+    is_session_new_ = true;
+    output_.notice(host::NoticeLevel::warning, "stopped by " + stop.by);
+    std::ranges::fill(stop_confirmed_, false);
+    const auto confirmed = [this](unsigned joint) {
+      stop_confirmed_[joint] = true;
+      last_confirmation_ = Clock::now();
+    };
+    if (robot_) {
+      robot_->quick_stop(confirmed);
+      continue;
+    }
+    // Another program may move the robot.
+    for (unsigned joint = 0; joint < stop_confirmed_.size(); ++joint) {
+      stops_of_others_.write(file_.modules[joint].node, canopen::object::controlword.address,
+                             canopen::object::controlword.type, canopen::quick_stop_controlword,
+                             [joint, confirmed](const host::SdoResult& result) {
+                               if (result.is_good()) {
+                                 confirmed(joint);
+                               }
+                             });
+    }
+  }
+  for (const host::OperationRequest& operation : outdated) {
+    output_.refuse(operation.request, "STOP came first");
+  }
+}
+
+void BusSession::answer_stops() {
+  const auto confirmed = static_cast<unsigned>(std::ranges::count(stop_confirmed_, std::optional(true)));
+  const Clock::time_point now = Clock::now();
+  while (!stops_.empty() &&
+         (confirmed == stop_confirmed_.size() || now > stops_.front().since + longest_confirmation)) {
+    const Clock::time_point end = confirmed > 0 && last_confirmation_ ? *last_confirmation_ : now;
+    output_.stopped(stops_.front().request, confirmed, static_cast<unsigned>(stop_confirmed_.size()),
+                    std::max(0.0, std::chrono::duration<double, std::milli>(end - stops_.front().since).count()));
+    stops_.pop_front();
+  }
+}
+
+/// A robot with power needs somebody who drives it.
+void BusSession::look_at_holder() {
+  const host::SessionRequests::Holder holder = requests_.take_holder();
+  const Clock::time_point now = Clock::now();
+  if (holder.is_there) {
+    absent_since_.reset();
+  } else if (!absent_since_) {
+    absent_since_ = now;
+  }
+  const bool is_absent = holder.is_away || (absent_since_ && now > *absent_since_ + longest_absence);
+  if (is_absent && robot_ && robot_->state() != RobotState::stopping && robot_->state() != RobotState::stopped) {
+    stop_robot("nobody drives");
+    output_.notice(host::NoticeLevel::warning, "the robot stops: nobody drives it");
+  }
+}
+
+void BusSession::take_operations() {
+  while (const std::optional<host::OperationRequest> operation = requests_.take_operation()) {
+    try {
+      output_.answer(operation->request, carry_out(*operation));
+    } catch (const std::exception& error) {
+      output_.refuse(operation->request, one_line(error.what()));
+    }
+  }
+}
+
+json BusSession::carry_out(const host::OperationRequest& operation) {
+  static const std::map<std::string_view, Handler> handlers{
+      {"power", &BusSession::power}, {"run", &BusSession::go_on},   {"pause", &BusSession::pause},
+      {"pose", &BusSession::pose},   {"set", &BusSession::set},     {"undo", &BusSession::undo},
+      {"redo", &BusSession::redo},   {"reset", &BusSession::reset}, {"record", &BusSession::record},
+      {"scan", &BusSession::scan},   {"ping", &BusSession::ping}};
+  const auto handler = handlers.find(operation.name);
+  if (handler == handlers.end()) {
+    throw InputError("operation", 0, in_quotes(shortened(operation.name)),
+                     "an operation of a robot on a bus: docs/page-interface.md");
+  }
+  return (this->*handler->second)(operation.arguments);
+}
+
+DrivenRobot& BusSession::powered() {
+  if (!robot_) {
+    throw std::runtime_error("the servos have no power");
+  }
+  if (robot_->state() == RobotState::stopping || robot_->state() == RobotState::stopped) {
+    throw std::runtime_error("the robot is stopping");
+  }
+  if (robot_->state() == RobotState::starting) {
+    throw std::runtime_error("the robot is starting");
+  }
+  return *robot_;
+}
+
+json BusSession::power(const json& arguments) {
+  const auto on = argument<bool>(arguments, "on", "true or false");
+  if (!on) {
+    throw InputError("on", 0, "no value", "true or false");
+  }
+  if (*on) {
+    start_robot(true);
+  } else if (robot_) {
+    stop_robot({});
+  }
+  return json::object();
+}
+
+json BusSession::go_on(const json& /*arguments*/) {
+  if (!robot_) {
+    start_robot(false);
+  } else if (powered().state() == RobotState::held) {
+    robot_->follow_gait();
+  }
+  is_session_new_ = true;
+  return json::object();
+}
+
+json BusSession::pause(const json& /*arguments*/) {
+  if (powered().state() != RobotState::held) {
+    robot_->hold();
+  }
+  is_session_new_ = true;
+  return json::object();
+}
+
+json BusSession::pose(const json& arguments) {
+  if (powered().state() != RobotState::held) {
+    throw std::runtime_error("the joints follow the gait; hold them first");
+  }
+  const auto angles = argument<std::vector<json>>(arguments, "angles", "degrees of each joint, or null");
+  const double speed = argument<double>(arguments, "speed", "degrees a second").value_or(usual_pose_speed);
+  const std::size_t joints = file_.robot.joints.size();
+  if (!angles || angles->size() != joints) {
+    throw InputError("angles", 0, angles ? std::to_string(angles->size()) + " values" : "no value",
+                     std::to_string(joints) + " values");
+  }
+  if (!(speed >= slowest_pose && speed <= fastest_pose)) {
+    throw InputError("speed", 0, exact_text(speed), "1 to 180 degrees a second");
+  }
+  std::vector<DrivenRobot::Goal> goals;
+  for (unsigned joint = 0; joint < joints; ++joint) {
+    const json& angle = (*angles)[joint];
+    if (angle.is_null()) {
+      continue;
+    }
+    if (!angle.is_number() || !(angle.get<double>() >= -90.0 && angle.get<double>() <= 90.0)) {
+      throw InputError("angles", 0, shortened(angle.dump()), "-90 to 90 degrees, or null");
+    }
+    goals.push_back({joint, static_cast<std::int32_t>(angle.get<double>() / 90.0 * (1 << 30))});
+  }
+  robot_->go_to(goals, speed);
+  return json::object();
+}
+
+json BusSession::set(const json& arguments) {
+  const auto words = argument<std::vector<std::string>>(arguments, "words", "texts such as \"amplitude:J2=30\"");
+  const auto gesture = argument<std::uint64_t>(arguments, "gesture", "a whole number");
+  const std::vector<sim::Setting> internal_values = edits_.set(words.value_or(std::vector<std::string>{}), gesture);
+  are_parameters_new_ = true;
+  if (!internal_values.empty()) {
+    static_cast<void>(powered());
+    internal_values_.insert(internal_values_.end(), internal_values.begin(), internal_values.end());
+  }
+  return {{"tick", nullptr}};
+}
+
+json BusSession::undo(const json& /*arguments*/) {
+  if (!edits_.undo()) {
+    throw std::runtime_error("there is nothing to undo");
+  }
+  are_parameters_new_ = true;
+  return json::object();
+}
+
+json BusSession::redo(const json& /*arguments*/) {
+  if (!edits_.redo()) {
+    throw std::runtime_error("there is nothing to redo");
+  }
+  are_parameters_new_ = true;
+  return json::object();
+}
+
+json BusSession::reset(const json& arguments) {
+  edits_.reset(argument<std::vector<std::string>>(arguments, "names", "names such as \"1.amplitude:J2\""));
+  are_parameters_new_ = true;
+  return json::object();
+}
+
+json BusSession::record(const json& arguments) {
+  const auto file = argument<std::string>(arguments, "file", "a file name");
+  if (robot_ && file) {
+    throw std::runtime_error("a recording of a robot has the whole run: switch the power off first");
+  }
+  planned_recording_ = file ? new_recording(options_.recordings, *file).string() : std::string();
+  is_session_new_ = true;
+  return file ? json{{"file", planned_recording_}} : json::object();
+}
+
+json BusSession::scan(const json& /*arguments*/) {
+  if (robot_) {
+    throw std::runtime_error("the robot has power; its modules are known");
+  }
+  if (!scan_) {
+    begin_scan();
+  }
+  return json::object();
+}
+
+json BusSession::ping(const json& /*arguments*/) { return json::object(); }
+
+void BusSession::start_robot(bool holds) {
+  if (robot_) {
+    throw std::runtime_error(robot_->state() == RobotState::stopping ? "the robot is stopping"
+                                                                     : "the robot has power already");
+  }
+  if (absent_since_) {
+    throw std::runtime_error("nobody drives");
+  }
+  started_ = edits_.scenario_as_wanted();
+  std::unique_ptr<sim::Recorder> recorder;
+  if (!holds && !planned_recording_.empty()) {
+    recorder = std::make_unique<sim::Recorder>(planned_recording_, started_, "drive", options_.build_id);
+    recording_ = std::exchange(planned_recording_, {});
+  }
+  end_scan();
+  monitor_.set_reads(false);  // the master needs the bus, and reads what it needs
+  given_.clear();
+  for (const ParameterPlace& place : edits_.parameters().places()) {
+    given_.push_back(edits_.parameters().at(place).wanted);
+  }
+  edits_.parameters().begin_run();
+  are_parameters_new_ = true;
+  internal_values_.clear();
+  dropped_changes_ = 0;
+  failure_.clear();
+  stopped_by_.clear();
+  started_with_ = holds ? "power" : "run";
+  std::ranges::fill(stop_confirmed_, std::nullopt);
+  robot_.emplace(
+      started_, bus_, holds, std::move(recorder),
+      DrivenRobot::Listener{
+          [this](const sim::TickSample& sample, std::span<const double> angles, const std::vector<bool>& measured) {
+            output_.add_row(rows_.run_of(sample.tick), sample.tick, rows_.fill(sample, angles, measured));
+          },
+          [this](const sim::Change& change) { on_change(change); },
+          [this](const std::string& line, bool is_error) {
+            output_.notice(is_error ? host::NoticeLevel::error : host::NoticeLevel::warning, line);
+          }});
+  is_session_new_ = true;
+}
+
+/// by: empty: as somebody wished who drives.
+void BusSession::stop_robot(const std::string& by) {
+  if (!by.empty()) {
+    stopped_by_ = by;
+  }
+  robot_->stop();
+  is_session_new_ = true;
+}
+
+void BusSession::poll_robot() {
+  if (!robot_) {
+    return;
+  }
+  const RobotState before = robot_->state();
+  robot_->poll();
+  if (robot_->state() != before) {
+    is_session_new_ = true;
+  }
+  if (robot_->failure() && failure_.empty()) {
+    failure_ = *robot_->failure();
+    output_.notice(host::NoticeLevel::error, failure_);
+  }
+  if (!recording_.empty() && !robot_->is_recording()) {
+    output_.notice(host::NoticeLevel::info, "the recording is in " + std::exchange(recording_, {}));
+    is_session_new_ = true;
+  }
+  give_changes();
+  gait_ = gait_json(robot_->gait().check());
+  if (robot_->state() == RobotState::stopped) {
+    if (!robot_->are_all_off()) {
+      output_.notice(host::NoticeLevel::error,
+                     "not all modules have confirmed that their servos have no power: switch the robot off");
+    }
+    robot_.reset();
+    monitor_.set_reads(true);
+  }
+}
+
+/// To the modules, when they have those before.
+void BusSession::give_changes() {
+  if (!robot_->has_room_for_changes()) {
+    return;
+  }
+  const ParameterTable& table = edits_.parameters();
+  const std::vector<ParameterPlace>& places = table.places();
+  if (robot_->dropped_changes() > dropped_changes_) {
+    dropped_changes_ = robot_->dropped_changes();
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (given_[i] != table.at(places[i]).confirmed) {
+        given_[i] = table.at(places[i]).confirmed;
+        edits_.parameters().want(places[i], given_[i]);
+      }
+    }
+    are_parameters_new_ = true;
+    output_.notice(host::NoticeLevel::error, "a change had no effect: not all modules have got it in time");
+  }
+  std::vector<sim::Setting> settings;
+  const auto has_room = [&](unsigned joint) {
+    return std::ranges::count(settings, joint, &sim::Setting::joint) < static_cast<std::ptrdiff_t>(max_staged_values);
+  };
+  std::erase_if(internal_values_, [&](const sim::Setting& setting) {
+    const bool fits = has_room(setting.joint);
+    if (fits) {
+      settings.push_back(setting);
+    }
+    return fits;
+  });
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::int32_t wanted = table.at(places[i]).wanted;
+    if (wanted != given_[i] && has_room(places[i].joint)) {
+      settings.push_back({places[i].slot, places[i].joint, places[i].index, false, wanted});
+      given_[i] = wanted;
+    }
+  }
+  if (!settings.empty()) {
+    robot_->change(settings);
+  }
+}
+
+void BusSession::on_change(const sim::Change& change) {
+  ParameterTable& table = edits_.parameters();
+  const std::vector<ParameterPlace>& places = table.places();
+  for (const sim::Setting& setting : change.settings) {
+    const ParameterPlace place{setting.slot, setting.joint, setting.index};
+    if (setting.internal) {
+      continue;
+    }
+    table.confirm(place, setting.value, change.tick);
+    const auto at = static_cast<std::size_t>(std::ranges::find(places, place) - places.begin());
+    if (table.at(place).wanted == given_[at]) {
+      table.want(place, setting.value);  // a change of the file
+      given_[at] = setting.value;
+    }
+  }
+  are_parameters_new_ = true;
+}
+
+/// Without power there are no ticks, but viewers see what is measured.
+void BusSession::add_idle_rows() {
+  if (robot_ && robot_->state() != RobotState::starting && robot_->state() != RobotState::stopping) {
+    return;
+  }
+  std::vector<std::optional<std::int32_t>> angles(file_.robot.joints.size());
+  for (const host::MonitoredNode& node : monitor_.nodes()) {
+    const auto module = std::ranges::find(file_.modules, node.node, &sim::ModulePlace::node);
+    if (module != file_.modules.end()) {
+      angles[static_cast<std::size_t>(module - file_.modules.begin())] = node.position;
+    }
+  }
+  for (const RobotRows::Idle& row : rows_.idle(Clock::now(), angles)) {
+    output_.add_row(row.run, row.tick, row.values);
+  }
+}
+
+std::string BusSession::state_name() const {
+  if (!robot_) {
+    return "off";
+  }
+  switch (robot_->state()) {
+    case RobotState::starting:
+      return "starting";
+    case RobotState::held:
+      return "held";
+    case RobotState::joining:
+    case RobotState::running:
+      return "running";
+    case RobotState::stopping:
+    case RobotState::stopped:
+      break;
+  }
+  return "stopping";
+}
+
+void BusSession::publish_all(Clock::time_point now) {
+  if (are_parameters_new_) {
+    output_.publish("parameters", parameters_document(file_, edits_.parameters()));
+    is_session_new_ = true;
+    are_parameters_new_ = false;
+  }
+  const bool is_due = now >= publish_at_;
+  if (is_due) {
+    publish_bus(now);
+    publish_at_ = now + publish_period;
+  }
+  if (is_session_new_ || is_due) {
+    publish_session();
+    is_session_new_ = false;
+  }
+}
+
+void BusSession::publish_session() {
+  const std::uint32_t tick = robot_ ? robot_->gait().check().ticks() : 0;
+  const std::string& recording = recording_.empty() ? planned_recording_ : recording_;
+  output_.publish("session", {{"kind", "bus"},
+                              {"state", state_name()},
+                              {"run", rows_.run()},
+                              {"tick", tick},
+                              {"time_s", static_cast<double>(std::uint64_t{tick} * file_.kernel.tick_period_us) / 1e6},
+                              {"stopped_by", text_or_null(stopped_by_)},
+                              {"started_with", robot_ ? text_or_null(started_with_) : json()},
+                              {"recording", text_or_null(recording)},
+                              {"changed", edits_.differs_from_file()},
+                              {"undo", text_or_null(entry_name(edits_.history().to_undo()))},
+                              {"redo", text_or_null(entry_name(edits_.history().to_redo()))},
+                              {"failure", text_or_null(failure_)},
+                              {"gait", gait_}});
+}
+
+void BusSession::publish_bus(Clock::time_point now) {
+  BusView view;
+  view.address = address_;
+  view.is_connected = bus_.state().is_connected;
+  view.problem = view.is_connected ? bus_.state().reason : bus_.diagnosis();
+  view.now = bus_.now();
+  view.traffic = monitor_.take_traffic(view.now);
+  view.seconds = std::chrono::duration<double>(now - std::exchange(traffic_from_, now)).count();
+  view.has_other_host = monitor_.has_host(view.now);
+  view.nodes = monitor_.nodes();
+  view.stop_confirmed = stop_confirmed_;
+  if (robot_) {
+    view.watch = &robot_->gait().gait_watch();
+    if (const auto median_us = robot_->gait().answers_us().median()) {
+      view.latency_ms = static_cast<double>(*median_us) * 1e-3;
+    }
+  }
+  output_.publish("bus", bus_document(file_, view));
+}
+
+}  // namespace proleg::tools

@@ -1,0 +1,136 @@
+#pragma once
+
+// A robot on a bus that viewers watch, power, move and change. It runs in a thread of its own.
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "host/robot/bus_monitor.hpp"
+#include "host/robot/bus_scan.hpp"
+#include "host/server/session_output.hpp"
+#include "host/server/session_requests.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "tools/proleg/bus_access.hpp"
+#include "tools/proleg/ui/driven_robot.hpp"
+#include "tools/proleg/ui/parameter_edits.hpp"
+#include "tools/proleg/ui/robot_row.hpp"
+
+namespace proleg::tools {
+
+struct BusSessionOptions {
+  std::filesystem::path recordings;  ///< the folder of all recordings
+  std::string build_id;
+};
+
+class BusSession {
+ public:
+  /// Does what `requests` has, and tells it `output`. file, bus, requests, output: must outlive the session. Another
+  /// thread must not use the bus.
+  BusSession(const sim::Scenario& file, BusAccess& bus, std::string address, BusSessionOptions options,
+             host::SessionRequests& requests, host::SessionOutput& output);
+  /// The joints ramp to the safe pose and lose their power first.
+  ~BusSession();
+  BusSession(const BusSession&) = delete;
+  BusSession& operator=(const BusSession&) = delete;
+
+  /// Operations that anybody may use.
+  [[nodiscard]] static std::vector<std::string> free_operations() { return {"ping", "scan"}; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  /// A STOP that waits for the modules to confirm it.
+  struct PendingStop {
+    host::RequestId request;
+    Clock::time_point since;
+  };
+
+  static constexpr std::chrono::milliseconds publish_period{500};
+  /// Nobody drives for so long: the robot stops.
+  static constexpr std::chrono::milliseconds longest_absence{1'000};
+  /// A STOP is answered after this time, with the modules that have confirmed it by then.
+  static constexpr std::chrono::milliseconds longest_confirmation{500};
+
+  void run();
+  void serve();
+  void take_stops();
+  void answer_stops();
+  void take_operations();
+  void look_at_holder();
+  void poll_robot();
+  void give_changes();
+  void add_idle_rows();
+  void end_scan();
+  void close();
+  [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation);
+
+  // The operations: take their arguments and return the value of the answer, or throw.
+  using Handler = nlohmann::json (BusSession::*)(const nlohmann::json&);
+  nlohmann::json power(const nlohmann::json& arguments);
+  nlohmann::json go_on(const nlohmann::json& arguments);
+  nlohmann::json pause(const nlohmann::json& arguments);
+  nlohmann::json pose(const nlohmann::json& arguments);
+  nlohmann::json set(const nlohmann::json& arguments);
+  nlohmann::json undo(const nlohmann::json& arguments);
+  nlohmann::json redo(const nlohmann::json& arguments);
+  nlohmann::json reset(const nlohmann::json& arguments);
+  nlohmann::json record(const nlohmann::json& arguments);
+  nlohmann::json scan(const nlohmann::json& arguments);
+  nlohmann::json ping(const nlohmann::json& arguments);
+
+  void start_robot(bool holds);
+  void begin_scan();
+  void stop_robot(const std::string& by);
+  /// Throws unless servos have power, or are about to.
+  [[nodiscard]] DrivenRobot& powered();
+  void on_change(const sim::Change& change);
+  void publish_all(Clock::time_point now);
+  void publish_session();
+  void publish_bus(Clock::time_point now);
+  [[nodiscard]] std::string state_name() const;
+
+  const sim::Scenario& file_;
+  std::string address_;
+  BusSessionOptions options_;
+  host::SessionRequests& requests_;
+  host::SessionOutput& output_;
+  host::BusConnection& bus_;
+
+  // Of the thread.
+  host::BusMonitor monitor_;
+  host::SdoQueue stops_of_others_;  ///< quick stops while this program drives nothing
+  std::optional<host::BusScan> scan_;
+  ParameterEdits edits_;
+  /// Of each place of the table: what the modules have been given last.
+  std::vector<std::int32_t> given_;
+  std::vector<sim::Setting> internal_values_;  ///< wait for a change
+  sim::Scenario started_;                      ///< what the robot was started with
+  std::optional<DrivenRobot> robot_;
+  std::uint64_t dropped_changes_ = 0;
+  std::string started_with_;
+  std::string stopped_by_;
+  std::string failure_;
+  nlohmann::json gait_;  ///< of the last run
+  std::string planned_recording_;
+  std::string recording_;
+  RobotRows rows_;
+  std::deque<PendingStop> stops_;
+  std::vector<std::optional<bool>> stop_confirmed_;
+  std::optional<Clock::time_point> last_confirmation_;
+  std::optional<Clock::time_point> absent_since_ = Clock::time_point{};
+  bool are_parameters_new_ = true;
+  bool is_session_new_ = true;
+  Clock::time_point publish_at_{};
+  Clock::time_point traffic_from_{};
+
+  std::thread thread_;  ///< the last to begin
+};
+
+}  // namespace proleg::tools

@@ -31,7 +31,7 @@ std::unique_ptr<sim::Recording> open(const std::filesystem::path& path) {
 /// The answer as bytes, little-endian as the processors that this program runs on.
 class Rows {
  public:
-  Rows(std::uint32_t tick, std::uint32_t stride, std::uint32_t last_tick) : words_{tick, stride, 0, last_tick} {}
+  Rows(std::uint32_t tick, std::uint32_t stride, std::uint32_t newest_tick) : words_{tick, stride, 0, newest_tick} {}
 
   void add(std::span<const std::int32_t> row, const std::vector<std::size_t>& columns) {
     for (const std::size_t column : columns) {

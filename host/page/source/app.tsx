@@ -25,6 +25,6 @@ if (token === null) {
 } else {
   const app = new PageApp(token, viewerName(navigator.userAgent));
   addActions(app);
-  listenToKeys(app.actions, () => app.stop.press());
+  listenToKeys({ forKey: (press, isText) => app.shownActions.forKey(press, isText) }, () => app.stop.press());
   render(<Frame app={app} />, root);
 }

@@ -186,6 +186,14 @@ export function addActions(app: PageApp): void {
       keys: ['X'],
       run: () => toggleDialog('command_line'),
     },
+    { id: 'live_page', title: 'Page Live', group: 'Page', keys: ['1'], run: () => void (app.shownPage.value = 'live') },
+    {
+      id: 'recordings_page',
+      title: 'Page Recordings',
+      group: 'Page',
+      keys: ['2'],
+      run: () => void (app.shownPage.value = 'recordings'),
+    },
     {
       id: 'value_table',
       title: 'Table of all values: copy and paste as in a spreadsheet',

@@ -16,6 +16,8 @@ import { decodeTelemetry } from './wire/telemetry_message.js';
 import { StopChannel } from './wire/stop_channel.js';
 import { Subscriptions } from './wire/subscription.js';
 
+export type PageName = 'live' | 'recordings';
+
 export class PageApp implements RobotView {
   readonly state = new PageState();
   readonly history = new TelemetryHistory();
@@ -24,6 +26,9 @@ export class PageApp implements RobotView {
   readonly selection = new SignalSelection();
   readonly actions = new ActionList();
   readonly wholePath = signal(null);
+  // The page that is shown, and the actions of the recording on the page Recordings.
+  readonly shownPage = signal<PageName>('live');
+  readonly recordingActions = signal<ActionList | null>(null);
   readonly operations: OperationQueue;
   readonly sets: SetQueue;
   readonly mover: MoveTool;
@@ -49,15 +54,32 @@ export class PageApp implements RobotView {
     this.post({ kind: 'open', url, token, name });
     effect(() => this.subscribe());
     effect(() => this.noteRun(this.state.session.value?.run));
+    effect(() => {
+      if (this.state.recordings.value?.alone === true) this.shownPage.value = 'recordings';
+    });
   }
 
   startSceneWorker(): Worker {
     return new Worker('scene_worker.js');
   }
 
+  // Those that keys and the palette find: of the page that is shown.
+  get shownActions(): ActionList {
+    return this.shownPage.value === 'recordings' ? (this.recordingActions.value ?? this.actions) : this.actions;
+  }
+
   newGesture(): number {
     this.lastGesture += 1;
     return this.lastGesture;
+  }
+
+  // A live robot has every row in one history.
+  get sampledRows(): TelemetryHistory {
+    return this.history;
+  }
+
+  get rowsAtCursor(): TelemetryHistory {
+    return this.history;
   }
 
   // Ticks in a second.

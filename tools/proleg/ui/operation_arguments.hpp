@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -20,6 +22,21 @@ std::optional<Value> argument(const nlohmann::json& arguments, const char* name,
   } catch (const nlohmann::json::exception&) {
     throw InputError(name, 0, shortened(found->dump()), expected);
   }
+}
+
+/// A whole number from 0 to 2^32 - 1. Nothing is converted or cut: -1 and 2.5 are errors, too.
+inline std::optional<std::uint32_t> whole_argument(const nlohmann::json& arguments, const char* name,
+                                                   const char* expected) {
+  const auto found = arguments.find(name);
+  if (found == arguments.end() || found->is_null()) {
+    return std::nullopt;
+  }
+  const bool is_natural =
+      found->is_number_unsigned() || (found->is_number_integer() && found->get<std::int64_t>() >= 0);
+  if (!is_natural || found->get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max()) {
+    throw InputError(name, 0, shortened(found->dump()), expected);
+  }
+  return found->get<std::uint32_t>();
 }
 
 }  // namespace proleg::tools

@@ -8,16 +8,32 @@ import { TopBar } from './top_bar.js';
 
 const livePage = loadLater(() => import('./live_page.js').then((module) => module.LivePage));
 const dialogs = loadLater(() => import('./dialog_views.js').then((module) => module.DialogView));
+const recordingsPage = loadLater(() => import('../recordings/recordings_page.js').then((module) => module.RecordingsPage));
 livePage();
 dialogs();
+let wereRecordingsShown = false; // their page is loaded when it is first shown
 
+
+// A page stays when another one is shown.
 export function Frame({ app }: { app: PageApp }) {
+  const page = app.shownPage.value;
+  const isAlone = app.state.recordings.value?.alone === true;
+  if (page === 'recordings') wereRecordingsShown = true;
   return (
     <>
       <TopBar app={app} />
       <Bands app={app} />
       <main id="page">
-        <LaterView app={app} part={livePage()} wait="Loading …" />
+        {!isAlone && (
+          <div hidden={page !== 'live'}>
+            <LaterView app={app} part={livePage()} wait="Loading …" />
+          </div>
+        )}
+        {wereRecordingsShown && (
+          <div hidden={page !== 'recordings'}>
+            <LaterView app={app} part={recordingsPage()} wait="Loading …" />
+          </div>
+        )}
       </main>
       <NoticeList state={app.state} />
       {openDialog.value !== 'none' && <LaterView app={app} part={dialogs()} wait="" />}

@@ -16,8 +16,8 @@ const columns = [
 ] as const;
 
 function valueOf(app: RobotView, signal: string, joint: number, row: number): number | null {
-  const raw = app.history.valueAt(signal, joint, row);
-  return raw === noValue ? null : raw * (app.history.rings.get(signal)?.scale ?? 1);
+  const raw = app.rowsAtCursor.valueAt(signal, joint, row);
+  return raw === noValue ? null : raw * (app.rowsAtCursor.rings.get(signal)?.scale ?? 1);
 }
 
 function texts(app: RobotView, joint: number, row: number): string[] {
@@ -28,7 +28,7 @@ function texts(app: RobotView, joint: number, row: number): string[] {
     return value === null ? '–' : value.toFixed(decimals).replace(/^-(0(\.0*)?)$/, '$1');
   });
   // Contacts belong to links; the row shows those of the link in front of the joint.
-  const bits = app.history.valueAt('contact', joint, row);
+  const bits = app.rowsAtCursor.valueAt('contact', joint, row);
   return [...numbers, bits === noValue ? '' : `${(bits & 1) !== 0 ? '●' : '○'} ${(bits & 2) !== 0 ? '●' : '○'}`];
 }
 
@@ -66,7 +66,7 @@ export function JointTable({ app }: { app: RobotView }) {
     let row = 0; // of the history, which the table is being filled with
     let next = Infinity; // joint
     return onFrame((now) => {
-      const { history, time } = app;
+      const { rowsAtCursor: history, time } = app;
       const tick = time.shownTick(app.newestTick);
       const key = `${history.run}/${history.end}/${tick}`;
       const elements = body.current?.rows ?? [];

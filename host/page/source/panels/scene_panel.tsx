@@ -179,7 +179,7 @@ function followPose(app: RobotView, send: (message: ToScene) => void, readout: {
   let head: Float64Array | null = null; // not written yet
   let lastReadout = 0;
   const sendChangedPose = () => {
-    const { history, time } = app;
+    const { rowsAtCursor: history, time } = app;
     const tick = time.shownTick(app.newestTick);
     const key = `${history.run}/${history.end}/${tick}`;
     const { mover } = app;

@@ -31,8 +31,14 @@ function nameOf(press: KeyPress): string {
 export class ActionList {
   private readonly list: Action[] = [];
 
+  // `parent`: actions that this list has, too, if they fulfil the condition. Of one key, the action of this list counts.
+  constructor(
+    private readonly parent: ActionList | null = null,
+    private readonly isShared: (action: Action) => boolean = () => true,
+  ) {}
+
   get all(): readonly Action[] {
-    return this.list;
+    return [...this.list, ...(this.parent?.all.filter(this.isShared) ?? [])];
   }
 
   add(...actions: Action[]): void {
@@ -57,7 +63,7 @@ export class ActionList {
       return undefined;
     }
     const name = nameOf(press);
-    return this.list.find(
+    return this.all.find(
       (action) => action.keys.includes(name) && (!isText || action.isGlobal === true) && action.isEnabled?.() !== false,
     );
   }
@@ -65,6 +71,6 @@ export class ActionList {
   // Those whose title has all words of the text.
   matching(text: string): Action[] {
     const words = text.toLowerCase().split(/\s+/).filter(Boolean);
-    return this.list.filter((action) => words.every((word) => `${action.group} ${action.title}`.toLowerCase().includes(word)));
+    return this.all.filter((action) => words.every((word) => `${action.group} ${action.title}`.toLowerCase().includes(word)));
   }
 }

@@ -8,6 +8,7 @@ import type {
   Parameter,
   RemoteDocument,
   RemoteValues,
+  RecordingsDocument,
   RobotDocument,
   ServerMessage,
   SessionDocument,
@@ -41,6 +42,7 @@ export class PageState {
   readonly telemetry = signal<TelemetryDocument | null>(null);
   readonly remote = signal<RemoteDocument | null>(null);
   readonly remoteValues = signal<RemoteValues | null>(null);
+  readonly recordings = signal<RecordingsDocument | null>(null);
   readonly notices = signal<readonly Notice[]>([]);
 
   readonly client = computed(() => {
@@ -89,6 +91,9 @@ export class PageState {
           break;
         case 'remote_values':
           this.remoteValues.value = message.value;
+          break;
+        case 'recordings':
+          this.recordings.value = message.value;
           break;
       }
     }

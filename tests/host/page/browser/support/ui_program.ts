@@ -1,4 +1,4 @@
-// Starts `proleg ui` on a scenario, paused at tick 0, and reads the address that it prints.
+// Starts `proleg ui`, and reads the address that it prints.
 import { spawn, type ChildProcess } from 'node:child_process';
 
 export const program = process.env['PROLEG_PROGRAM'] ?? 'build/host/bin/proleg';
@@ -13,9 +13,14 @@ export class UiProgram {
     private readonly child: ChildProcess,
   ) {}
 
+  // A scenario, paused at tick 0.
   static start(file: string = uniform, more: string[] = []): Promise<UiProgram> {
-    const options = ['--no-browser', '--port', '0', '--paused', '--page', 'build/page', ...more];
-    const child = spawn(program, ['ui', file, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });
+    return UiProgram.serve([file, '--paused', ...more]);
+  }
+
+  static serve(words: string[]): Promise<UiProgram> {
+    const options = ['--no-browser', '--port', '0', '--page', 'build/page'];
+    const child = spawn(program, ['ui', ...words, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });
     return new Promise((resolve, reject) => {
       let output = '';
       const timer = setTimeout(() => fail('no address in time'), startTimeout);

@@ -16,6 +16,8 @@ const lookPeriod = 1000; // milliseconds between two looks at a file that grows
 export class OpenedRecording implements PlayedRecording {
   readonly state;
   readonly time: Playback;
+  readonly marks = null;
+  readonly mover = null;
   readonly selection = new SignalSelection();
   readonly wholePath = signal<Float64Array | null>(null);
   // Why something cannot be shown.

@@ -147,7 +147,7 @@ host::BindingStore bindings_beside(const UiOptions& options, bool has_file, cons
   host::BindingStore store(path);
   ParameterWords words;
   words.set_robot(robot_document(scenario, "simulation"));
-  words.set_parameters(parameters_document(scenario, ParameterTable(scenario)));
+  words.set_parameters(parameters_document(scenario, ParameterTable(scenario, scenario)));
   std::size_t number = 0;
   for (const host::Binding& binding : store.read_bindings()) {
     check_binding(binding, words, path.string() + ": binding " + std::to_string(++number));

@@ -23,6 +23,7 @@
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/ui/browser.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
+#include "tools/proleg/ui/lan_access.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
 
 namespace {
@@ -33,6 +34,7 @@ using namespace proleg::tools;
 struct UiOptions {
   ScenarioOptions scenario;
   BusOptions bus;
+  LanOptions lan;
   std::string port = "0";
   std::string recordings = ".";
   std::optional<std::string> page;
@@ -146,10 +148,12 @@ int serve(UiOptions& options) {
   const bool has_file = !options.scenario.file.empty();
   const std::uint16_t port = parse_port(options.port);
   require_folder(options.recordings);
+  std::shared_ptr<const host::ServerCertificate> certificate = open_certificate(options.lan, "proleg ui");
   const ScenarioRun run = prepare(options.scenario);
   print_warnings("proleg ui", run.scenario);
   const host::AccessToken token = host::AccessToken::make();
   host::ServerOptions server{token, host::PageFiles(page_folder(options)), std::string("proleg ") + build_id, {}, port};
+  server.certificate = std::move(certificate);
   for (const std::string& operation :
        options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations()) {
     server.free_operations.insert(operation);
@@ -174,7 +178,7 @@ int serve(UiOptions& options) {
         SimulatedSessionOptions{options.recordings, simulate_command(options, has_file), build_id, options.paused},
         requests, page);
   }
-  const PageAddress address(page.port(), token.text());
+  const PageAddress address(page.origin(), page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
             << std::flush;
   if (!options.no_browser && !address.open()) {
@@ -206,7 +210,8 @@ int main(int argc, char** argv) {
       .add_option("--bus", options.bus.bus,
                   "show and drive the robot on this bus instead of a simulated one: " + host::bus_address_syntax())
       .value_name("BUS");
-  command_line.add_option("--port", options.port, "TCP port on 127.0.0.1; 0: any free one").shows_default();
+  command_line.add_option("--port", options.port, "TCP port; 0: any free one").shows_default();
+  add_lan_options(command_line, options.lan);
   command_line.add_option("--recordings", options.recordings, "folder for recordings")
       .value_name("FOLDER")
       .shows_default();

@@ -97,6 +97,9 @@ void GaitRun::report_events(bool is_verbose, const std::function<void(const std:
     if (event->kind == canopen::EventKind::rejoined || event->kind == canopen::EventKind::rejoin_failed) {
       watch_.return_to_gait(event->node);
     }
+    if (event->kind == canopen::EventKind::rejoined) {
+      rejoined_.push_back(event->node);
+    }
     if (event->kind == canopen::EventKind::restarted) {
       check_.end_comparison(name_of(event->node) + " has restarted");
     }

@@ -7,6 +7,8 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "host/robot/answer_times.hpp"
 #include "host/robot/bus_connection.hpp"
@@ -45,6 +47,9 @@ class GaitRun {
 
   /// What the modules have reported since the last call, in lines. is_verbose: also the end of an error.
   void report_events(bool is_verbose, const std::function<void(const std::string& line)>& report);
+
+  /// Nodes whose modules have restarted and take part again, since the last call.
+  [[nodiscard]] std::vector<std::uint8_t> take_rejoined() { return std::exchange(rejoined_, {}); }
 
   struct Observer {
     /// The last tick of check(), and the change that took effect at it, or null. Not called while the robot stops.
@@ -102,6 +107,7 @@ class GaitRun {
   host::ChangeTimes change_times_;
   host::GaitWatch watch_;
   GaitCheck check_;
+  std::vector<std::uint8_t> rejoined_;
   bool is_following_ = true;  ///< no observer has failed
   bool are_all_off_ = true;   ///< since stop()
   std::uint32_t end_tick_;

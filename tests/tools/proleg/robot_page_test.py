@@ -6,6 +6,7 @@ Usage: robot_page_test.py SOURCE PROGRAMS [TEST]"""
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -15,7 +16,7 @@ from pathlib import Path
 
 SOURCE, PROGRAMS = Path(sys.argv[1]), Path(sys.argv[2])
 sys.path.insert(0, str(SOURCE / "tests/host/server"))
-from web_client import WAIT_S, Closed, Viewer, request  # noqa: E402
+from web_client import WAIT_S, Viewer, request  # noqa: E402
 
 UNIFORM = SOURCE / "sim/scenarios/travelling_wave/uniform.simulation.xml"
 JOINTS = 5
@@ -110,6 +111,30 @@ class Page:
     def kill(self):
         self.process.kill()
         self.process.communicate()
+
+
+class TcpBus:
+    """A simulated robot that several programs reach."""
+
+    def __init__(self):
+        self.process = subprocess.Popen([PROGRAMS / "proleg", "bus", UNIFORM, "--tcp", "0"], stdout=subprocess.PIPE,
+                                        stderr=subprocess.DEVNULL, text=True)
+        self.address = re.search(r"--bus (tcp:\S+)", self.process.stdout.readline())[1]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.process.send_signal(signal.SIGINT)
+        self.process.communicate(timeout=LIMIT_S)
+
+
+def reset_module(bus, node):
+    """As its reset by NMT: `proleg nmt` does not do that to a robot that is driven."""
+    host, port = bus.address.removeprefix("tcp:").split(":")
+    with socket.create_connection((host, int(port)), timeout=WAIT_S) as line:
+        line.sendall(b"C\rS8\rO\r" + f"t000281{node:02X}\r".encode())
+        line.recv(100)
 
 
 def test_power_lets_no_joint_move(page, _):
@@ -240,6 +265,92 @@ def test_a_robot_without_a_driver_stops(page, _):
     other.is_alive = False
     other.until_state("off")
     assert other.session()["stopped_by"] == "nobody drives"
+
+
+def test_a_bus_that_is_lost_ends_the_run_and_not_the_page(page, _):
+    driver = Driver(page)
+    driver.drive()
+    driver.must("run")
+    driver.until_state("running")
+    for status in Path("/proc").glob("[0-9]*/status"):
+        try:
+            if f"\nPPid:\t{page.process.pid}\n" in status.read_text():
+                os.kill(int(status.parent.name), signal.SIGKILL)
+        except (FileNotFoundError, ProcessLookupError):
+            continue
+    driver.until(lambda: driver.session()["failure"])
+    driver.until_state("off")
+    driver.until(lambda: not driver.bus()["connected"])
+    assert driver.bus()["problem"]
+    assert any("stop by themselves" in notice for notice in driver.notices), driver.notices
+    assert not driver.ask("pose", angles=[0] * JOINTS)["ok"]
+
+
+def test_a_module_that_restarts_holds_where_its_joint_is(_, folder):
+    with TcpBus() as bus:
+        page = Page(folder, bus=bus.address)
+        try:
+            driver = Driver(page)
+            driver.drive()
+            driver.must("power", on=True)
+            driver.until_state("held")
+            driver.must("pose", angles=[None, 40, None, None, None], speed=180)
+            driver.watch("setpoint")
+            at_40 = lambda: driver.rows and abs(driver.rows[-1]["values"][-1][1] * 90 / (1 << 30) - 40) < 0.01
+            driver.until(at_40)
+            reset_module(bus, 2)
+            driver.until(lambda: any("node 2" in notice and "again" in notice for notice in driver.notices))
+            driver.rows.clear()
+            driver.until(lambda: len(driver.rows) > 3)
+            assert driver.session()["state"] == "held", driver.session()
+            driver.watch("setpoint", "angle")
+            driver.rows.clear()
+            driver.until(lambda: len(driver.rows) > 30)
+            row = driver.rows[-1]["values"][-1]
+            setpoint, angle = row[1] * 90 / (1 << 30), row[JOINTS + 1] * 90 / (1 << 30)
+            assert abs(setpoint - angle) < 6, (setpoint, angle)
+            driver.must("power", on=False)
+            driver.until_state("off")
+            assert driver.session()["failure"] is None
+        finally:
+            page.end()
+
+
+def test_a_robot_that_another_host_drives_is_left_alone_but_can_be_stopped(_, folder):
+    with TcpBus() as bus:
+        page = Page(folder, bus=bus.address)
+        other = subprocess.Popen([PROGRAMS / "proleg", "drive", UNIFORM, "--bus", bus.address, "--seconds", "60"],
+                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        try:
+            driver = Driver(page)
+            driver.drive()
+            driver.until(lambda: driver.documents.get("bus", {}).get("value", {}).get("other_host"))
+            driver.until(lambda: driver.bus()["syncs"] > 50)
+            driver.must("run")
+            driver.until(lambda: driver.session()["failure"])
+            driver.until_state("off")
+            assert "host" in driver.session()["failure"], driver.session()
+            assert other.poll() is None, other.communicate()
+            assert driver.stop_robot()["confirmed"] == JOINTS
+            _, errors = other.communicate(timeout=LIMIT_S)
+            assert other.returncode == 1 and "does not follow the gait any more" in errors, errors
+        finally:
+            other.kill()
+            page.end()
+
+
+def test_what_is_not_possible_is_refused_and_the_gait_goes_on(page, _):
+    driver = Driver(page)
+    driver.drive()
+    driver.must("run")
+    driver.until_state("running")
+    assert not driver.ask("power", on=True)["ok"]
+    assert not driver.ask("scan")["ok"]
+    assert not driver.ask("step")["ok"]
+    assert not driver.ask("set", words=["amplitude=3000"])["ok"]
+    tick = driver.session()["tick"]
+    driver.until(lambda: driver.session()["tick"] > tick + 100)
+    assert driver.session()["state"] == "running"
 
 
 def test_the_end_of_the_program_takes_the_power(page, _):

@@ -406,7 +406,8 @@ void BusSession::poll_robot() {
   if (robot_->state() == RobotState::stopped) {
     if (!robot_->are_all_off()) {
       output_.notice(host::NoticeLevel::error,
-                     "not all modules have confirmed that their servos have no power: switch the robot off");
+                     "not all modules have confirmed that their servos have no power: switch the robot off; modules "
+                     "without a host stop by themselves within 1.5 s");
     }
     robot_.reset();
     monitor_.set_reads(true);

@@ -51,6 +51,12 @@ void DrivenRobot::poll() {
     on_started();
   }
   gait_.report_events(false, [this](const std::string& line) { listener_.report(line, false); });
+  for (const std::uint8_t node_id : gait_.take_rejoined()) {
+    const auto module = std::ranges::find(scenario_.modules, node_id, &sim::ModulePlace::node);
+    if (module != scenario_.modules.end()) {
+      place_where_it_holds(static_cast<unsigned>(module - scenario_.modules.begin()));
+    }
+  }
   if (const auto ghost_failure = ghost_.take_failure()) {
     listener_.report(*ghost_failure, false);
   }
@@ -90,12 +96,17 @@ void DrivenRobot::on_started() {
   }
   is_in_gait_mode_ = false;
   for (unsigned joint = 0; joint < commands_.size(); ++joint) {
-    const std::int32_t angle = gait_.drive().master().held_angle(joint);
-    targets_.place(joint, angle == canopen::position_not_measured ? 0 : angle);
+    place_where_it_holds(joint);
   }
   gait_.gait_watch().expect_mode(canopen::mode_direct_position);
   gait_.watch();
   state_ = State::held;
+}
+
+/// The joint has got power in order to hold.
+void DrivenRobot::place_where_it_holds(unsigned joint) {
+  const std::int32_t angle = gait_.drive().master().held_angle(joint);
+  targets_.place(joint, angle == canopen::position_not_measured ? 0 : angle);
 }
 
 void DrivenRobot::on_tick(const sim::Change* change) {

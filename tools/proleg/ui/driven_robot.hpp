@@ -89,6 +89,7 @@ class DrivenRobot {
   [[nodiscard]] std::uint8_t node(unsigned joint) const { return scenario_.modules[joint].node; }
   [[nodiscard]] bool has_power() const { return state_ != State::stopping && state_ != State::stopped; }
   void on_started();
+  void place_where_it_holds(unsigned joint);
   void on_tick(const sim::Change* change);
   void move_targets();
   void set_mode(std::int8_t mode);

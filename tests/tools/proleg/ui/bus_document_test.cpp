@@ -1,0 +1,78 @@
+#include "tools/proleg/ui/bus_document.hpp"
+
+#include <gtest/gtest.h>
+
+#include "shared/canopen/messages.hpp"
+#include "shipped.hpp"
+
+namespace proleg::tools {
+namespace {
+
+using nlohmann::json;
+
+class BusDocumentTest : public ::testing::Test {
+ protected:
+  BusDocumentTest() {
+    view.address = "can0";
+    view.is_connected = true;
+    view.now = 10'000'000;
+    view.seconds = 0.5;
+    view.traffic = {50, 400, 0.1};
+    node.node = 4;
+    node.state = canopen::NmtState::operational;
+    node.last_heard = view.now;
+  }
+  json module() {
+    view.nodes = {node};
+    return bus_document(scenario, view)["modules"][0];
+  }
+
+  sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  BusView view;
+  host::MonitoredNode node;
+};
+
+TEST_F(BusDocumentTest, NamesTheJointOfAModuleAndNoneForAForeignNode) {
+  EXPECT_EQ(module()["joint"], 3);
+  node.node = 99;
+  EXPECT_TRUE(module()["joint"].is_null());
+}
+
+TEST_F(BusDocumentTest, WhatIsNotKnownIsNull) {
+  node.state = std::nullopt;
+  for (const char* name : {"state", "drive", "angle", "current", "temperature", "fault", "advice", "stop_confirmed"}) {
+    EXPECT_TRUE(module()[name].is_null()) << name;
+  }
+  node.measured = canopen::Monitoring{4, canopen::Monitoring::not_measured, 350, 31, 0};
+  EXPECT_TRUE(module()["angle"].is_null());
+  EXPECT_EQ(module()["current"], 350);
+  EXPECT_EQ(module()["temperature"], 31);
+  EXPECT_TRUE(module()["fault"].is_null());
+}
+
+TEST_F(BusDocumentTest, AFaultSaysWhatToDo) {
+  node.measured = canopen::Monitoring{4, 0, 2500, 31, 3};
+  node.last_emergency = canopen::Emergency{4, canopen::EmergencyCode::over_current, 3, 0};
+  EXPECT_EQ(module()["fault"], canopen::describe(canopen::EmergencyCode::over_current));
+  EXPECT_NE(module()["advice"].get<std::string>().find("blocked"), std::string::npos);
+  node.measured->faults = 0;
+  EXPECT_TRUE(module()["fault"].is_null()) << "the error is over";
+}
+
+TEST_F(BusDocumentTest, CountsSyncsOfASecondAndTellsSilence) {
+  view.nodes = {node};
+  EXPECT_EQ(bus_document(scenario, view)["syncs"], 100);
+  EXPECT_EQ(module()["silent"], false);
+  node.last_heard = view.now - 2'000'000;
+  EXPECT_EQ(module()["silent"], true);
+}
+
+TEST_F(BusDocumentTest, TellsWhichModulesHaveConfirmedAStop) {
+  view.stop_confirmed = {true, true, true, false, true};
+  EXPECT_EQ(module()["stop_confirmed"], false);
+  node.node = 5;
+  EXPECT_EQ(module()["stop_confirmed"], true);
+}
+
+}  // namespace
+}  // namespace proleg::tools

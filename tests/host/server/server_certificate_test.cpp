@@ -23,10 +23,12 @@ class ServerCertificateTest : public testing::Test {
 
   fs::path make(const std::string& name, const std::string& options) const {
     const fs::path file = folder / name;
-    const std::string command = "openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -keyout '" +
-                                file.string() + "' -out '" + file.string() + "' " + options + " 2>/dev/null";
-    EXPECT_EQ(std::system(command.c_str()), 0) << command;
+    run("openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -keyout '" + file.string() + "' -out '" +
+        file.string() + "' " + options);
     return file;
+  }
+  static void run(const std::string& command) {
+    EXPECT_EQ(std::system((command + " 2>/dev/null").c_str()), 0) << command;
   }
   /// What is wrong with the files; empty: nothing.
   static std::string error(const fs::path& certificate, const fs::path& key) {
@@ -72,9 +74,11 @@ TEST_F(ServerCertificateTest, AKeyThatOthersCanReadIsAWarning) {
 }
 
 TEST_F(ServerCertificateTest, AnOldCertificateIsAWarning) {
-  const fs::path file = make("a.pem", "-nodes -subj /CN=robot -days -1");
-  EXPECT_EQ(ServerCertificate(file, file).warnings(),
-            std::vector<std::string>{file.string() + ": the certificate has expired"});
+  const fs::path file = make("a.pem", "-nodes -subj /CN=robot");
+  const fs::path old = folder / "old.pem";
+  run("openssl x509 -in '" + file.string() + "' -signkey '" + file.string() + "' -days -1 -out '" + old.string() + "'");
+  EXPECT_EQ(ServerCertificate(old, file).warnings(),
+            std::vector<std::string>{old.string() + ": the certificate has expired"});
 }
 
 TEST_F(ServerCertificateTest, FilesThatDoNotFitAreRefused) {

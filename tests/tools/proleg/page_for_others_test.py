@@ -11,7 +11,7 @@ import unittest
 import urllib.request
 from pathlib import Path
 
-PROLEG_UI = sys.argv.pop(1)
+PROLEG_UI = Path(sys.argv.pop(1)).resolve()
 WAIT_S = 60  # a limit for a test that fails, not a requirement
 
 

@@ -20,10 +20,11 @@ class PageForOthers(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
-        (self.folder / "index.html").write_text("<!doctype html><title>page</title>")
+        (self.folder / "page").mkdir()
+        (self.folder / "page/index.html").write_text("<!doctype html><title>page</title>")
 
     def start(self, *options):
-        process = subprocess.Popen([PROLEG_UI, "--no-browser", "--page", ".", *options], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+        process = subprocess.Popen([PROLEG_UI, "--no-browser", "--page", "page", *options], cwd=self.folder, text=True, stdout=subprocess.PIPE,
                                    stderr=subprocess.PIPE, env={**os.environ, "XDG_RUNTIME_DIR": str(self.folder)})
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)

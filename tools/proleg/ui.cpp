@@ -27,6 +27,7 @@
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/ui/browser.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
+#include "tools/proleg/ui/lan_access.hpp"
 #include "tools/proleg/ui/recorded_session.hpp"
 #include "tools/proleg/ui/remote_session.hpp"
 #include "tools/proleg/ui/robot_document.hpp"
@@ -43,6 +44,7 @@ constexpr const char* recording_extension = ".proleg";
 struct UiOptions {
   ScenarioOptions scenario;
   BusOptions bus;
+  LanOptions lan;
   std::string port = "0";
   std::string recordings = ".";
   std::optional<std::string> page;
@@ -200,6 +202,7 @@ int serve(UiOptions& options) {
   const bool has_file = !options.scenario.file.empty();
   const std::uint16_t port = parse_port(options.port);
   const RecordedSessionOptions recordings = recordings_of(options);
+  std::shared_ptr<const host::ServerCertificate> certificate = open_certificate(options.lan, "proleg ui");
   std::optional<ScenarioRun> run;
   if (recordings.is_alone) {
     refuse_robot_options(options);
@@ -211,6 +214,7 @@ int serve(UiOptions& options) {
       options.page ? std::filesystem::path(*options.page) : built_page("page", "index.html");
   const host::AccessToken token = host::AccessToken::make();
   host::ServerOptions server{token, host::PageFiles(page_folder), std::string("proleg ") + build_id, {}, port};
+  server.certificate = std::move(certificate);
   for (const std::vector<std::string>& operations :
        {options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations(),
         RecordedSession::free_operations(), RemoteSession::free_operations()}) {
@@ -247,7 +251,7 @@ int serve(UiOptions& options) {
                                               options.scenario.settings, has_file, build_id, options.paused},
                       requests, *remote);
   }
-  const PageAddress address(page.port(), token.text());
+  const PageAddress address(page.origin(), page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
             << std::flush;
   if (!options.no_browser && !address.open()) {
@@ -283,7 +287,8 @@ int main(int argc, char** argv) {
       .add_option("--bus", options.bus.bus,
                   "show and drive the robot on this bus instead of a simulated one: " + host::bus_address_syntax())
       .value_name("BUS");
-  command_line.add_option("--port", options.port, "TCP port on 127.0.0.1; 0: any free one").shows_default();
+  command_line.add_option("--port", options.port, "TCP port; 0: any free one").shows_default();
+  add_lan_options(command_line, options.lan);
   command_line.add_option("--recordings", options.recordings, "folder for recordings")
       .value_name("FOLDER")
       .shows_default();

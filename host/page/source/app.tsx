@@ -3,6 +3,7 @@ import '@preact/signals';
 import { render } from 'preact';
 import { listenToKeys } from './keyboard.js';
 import { addActions } from './page_actions.js';
+import { addRobotActions } from './robot_actions.js';
 import { PageApp } from './page_app.js';
 import { Frame } from './panels/frame.js';
 import { viewerName } from './state/viewer_name.js';
@@ -25,6 +26,7 @@ if (token === null) {
 } else {
   const app = new PageApp(token, viewerName(navigator.userAgent));
   addActions(app);
+  addRobotActions(app);
   listenToKeys({ forKey: (press, isText) => app.shownActions.forKey(press, isText) }, () => app.stop.press());
   render(<Frame app={app} />, root);
 }

@@ -2,6 +2,7 @@
 import { recordingName } from './state/recording_name.js';
 import { nextTheme } from './theme.js';
 import { toggleDialog } from './dialogs.js';
+import type { PageState } from './state/page_state.js';
 import type { PageApp } from './page_app.js';
 
 export function recordOrEnd({ state, operations }: PageApp): void {
@@ -10,9 +11,15 @@ export function recordOrEnd({ state, operations }: PageApp): void {
   void operations.tell('record', { file });
 }
 
+// Of a robot on a bus.
+function runObstacle(state: PageState): string | null {
+  return state.obstacleTo(state.busSession.value?.state === 'running' ? 'hold' : 'run');
+}
+
 export function addActions(app: PageApp): void {
   const { state, time, marks, operations } = app;
   const isHolder = () => state.isHolder.value;
+  const isSimulation = () => state.robot.value?.kind !== 'bus';
   const isRunning = () => state.session.value?.state === 'running';
   const tell: typeof operations.tell = (name, parameters) => operations.tell(name, parameters);
 
@@ -31,10 +38,11 @@ export function addActions(app: PageApp): void {
     },
     {
       id: 'run_or_pause',
-      title: 'Run, or pause',
+      title: 'Run, or pause: hold',
       group: 'Robot',
       keys: ['K'],
-      isEnabled: isHolder,
+      isEnabled: () => (isSimulation() ? isHolder() : runObstacle(state) === null),
+      obstacle: () => (isSimulation() ? null : runObstacle(state)),
       run: () => void tell(isRunning() ? 'pause' : 'run', {}),
     },
     {
@@ -43,6 +51,7 @@ export function addActions(app: PageApp): void {
       group: 'Robot',
       keys: ['.'],
       isEnabled: isHolder,
+      isShown: isSimulation,
       run: () => void tell('step', { ticks: 1 }),
     },
     {
@@ -51,6 +60,7 @@ export function addActions(app: PageApp): void {
       group: 'Robot',
       keys: ['G'],
       isEnabled: () => app.mover.isPossible.value,
+      isShown: isSimulation,
       run: () => (app.mover.isOn.value = !app.mover.isOn.value),
     },
     {
@@ -59,6 +69,7 @@ export function addActions(app: PageApp): void {
       group: 'Robot',
       keys: ['Shift+R'],
       isEnabled: isHolder,
+      isShown: isSimulation,
       run: () => void tell('restart', {}),
     },
     {
@@ -67,6 +78,7 @@ export function addActions(app: PageApp): void {
       group: 'Robot',
       keys: [],
       isEnabled: isHolder,
+      isShown: isSimulation,
       run: () => void tell('restart', { parameters: 'file' }),
     },
     {
@@ -74,7 +86,8 @@ export function addActions(app: PageApp): void {
       title: 'Record the run from tick 0 on, or end the recording',
       group: 'Robot',
       keys: ['R'],
-      isEnabled: isHolder,
+      isEnabled: () => (isSimulation() ? isHolder() : state.obstacleTo('record') === null),
+      obstacle: () => (isSimulation() ? null : state.obstacleTo('record')),
       run: () => recordOrEnd(app),
     },
     {
@@ -140,7 +153,7 @@ export function addActions(app: PageApp): void {
       id: 'loop_play',
       title: 'Loop: play, or pause',
       group: 'View',
-      keys: ['O'],
+      keys: ['Shift+P'],
       isEnabled: () => marks.range.value !== null,
       run: () => marks.playOrPause(app.newestTick),
     },
@@ -169,6 +182,7 @@ export function addActions(app: PageApp): void {
       group: 'Parameters',
       keys: ['B'],
       isEnabled: isHolder,
+      isShown: isSimulation,
       run: () => void tell('swap', {}),
     },
     {
@@ -184,6 +198,7 @@ export function addActions(app: PageApp): void {
       title: 'Command that gives the same run',
       group: 'Parameters',
       keys: ['X'],
+      isShown: isSimulation,
       run: () => toggleDialog('command_line'),
     },
     { id: 'live_page', title: 'Page Live', group: 'Page', keys: ['1'], run: () => void (app.shownPage.value = 'live') },
@@ -206,6 +221,7 @@ export function addActions(app: PageApp): void {
       title: 'Apply to file: write the values of parameters',
       group: 'Parameters',
       keys: ['W'],
+      isShown: isSimulation,
       run: () => toggleDialog('file_diff'),
     },
     {

@@ -6,6 +6,7 @@ import { ActionList } from './state/actions.js';
 import { MoveTool } from './state/move_tool.js';
 import { OperationQueue } from './state/operations.js';
 import { PageState } from './state/page_state.js';
+import { PoseQueue } from './state/pose_queue.js';
 import { SetQueue } from './state/set_queue.js';
 import { SignalSelection } from './state/signal_selection.js';
 import { StopControl } from './state/stop_report.js';
@@ -17,6 +18,8 @@ import { StopChannel } from './wire/stop_channel.js';
 import { Subscriptions } from './wire/subscription.js';
 
 export type PageName = 'live' | 'recordings';
+
+const freshnessPeriod = 500; // milliseconds
 
 export class PageApp implements RobotView {
   readonly state = new PageState();
@@ -32,6 +35,7 @@ export class PageApp implements RobotView {
   readonly operations: OperationQueue;
   readonly sets: SetQueue;
   readonly mover: MoveTool;
+  readonly poses: PoseQueue;
   readonly stop: StopControl;
   private readonly worker = new Worker('connection_worker.js');
   private subscriptions = new Subscriptions();
@@ -47,6 +51,12 @@ export class PageApp implements RobotView {
       refused: (reason) => this.state.addNotice('warning', reason),
     });
     this.mover = new MoveTool(this.state, (place) => this.operations.tell('move', { ...place }));
+    this.poses = new PoseQueue({
+      isPossible: () => this.state.obstacleTo('pose') === null,
+      send: (angles, speed) => this.operations.ask('pose', { angles, speed }),
+      refused: (reason) => this.state.addNotice('warning', reason),
+      after: (ms, action) => void setTimeout(action, ms),
+    });
     const url = `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/socket`;
     const channel = openStopChannel(url, token, name);
     this.stop = new StopControl(channel);
@@ -57,6 +67,10 @@ export class PageApp implements RobotView {
     effect(() => {
       if (this.state.recordings.value?.alone === true) this.shownPage.value = 'recordings';
     });
+    effect(() => {
+      if (!this.poses.isPossible) this.poses.forget();
+    });
+    setInterval(() => this.state.freshness.check(performance.now()), freshnessPeriod);
   }
 
   startSceneWorker(): Worker {
@@ -149,6 +163,10 @@ export class PageApp implements RobotView {
       this.marks.clear();
     }
     this.history.append(telemetry, layout);
+    // Without the bus the rows go on, and say nothing of the robot.
+    if (this.state.bus.peek()?.connected !== false) {
+      this.state.freshness.note(performance.now());
+    }
   }
 }
 

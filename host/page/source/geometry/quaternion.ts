@@ -9,6 +9,18 @@ export interface Pose {
   orientation: Quaternion;
 }
 
+export function dot(a: Vector, b: Vector): number {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+export function cross(a: Vector, b: Vector): Vector {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+export function subtract(a: Vector, b: Vector): Vector {
+  return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+}
+
 export const identityPose: Pose = { position: [0, 0, 0], orientation: [1, 0, 0, 0] };
 
 export function poseFromArray(values: readonly number[]): Pose {

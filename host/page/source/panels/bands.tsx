@@ -2,6 +2,7 @@
 import { useEffect, useState } from 'preact/hooks';
 import type { PageApp } from '../page_app.js';
 import type { ConnectionStatus } from '../wire/connection.js';
+import { BusBands } from './bus_bands.js';
 
 function describeConnection(status: ConnectionStatus): string | null {
   switch (status.state) {
@@ -71,6 +72,7 @@ export function Bands({ app }: { app: PageApp }) {
           {connection}
         </div>
       )}
+      <BusBands app={app} />
       {session?.failure && (
         <div class="band lost" role="alert">
           {session.failure}

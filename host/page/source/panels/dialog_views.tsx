@@ -102,7 +102,7 @@ export function Palette({ actions }: { actions: ActionList }) {
             onClick={() => start(action)}
           >
             <span>{action.title}</span>
-            {action.isEnabled?.() === false && <span class="hint">needs control</span>}
+            {action.isEnabled?.() === false && <span class="hint">{action.obstacle?.() ?? 'needs control'}</span>}
             {action.keys[0] !== undefined && <kbd>{keyText(action.keys[0])}</kbd>}
           </li>
         ))}

@@ -11,6 +11,7 @@ function icon(children: ComponentChildren) {
 
 export const runIcon = icon(<path d="M4 2.5v11l9-5.5z" fill="currentColor" stroke="none" />);
 export const pauseIcon = icon(<path d="M4 2.5h3v11H4zM9 2.5h3v11H9z" fill="currentColor" stroke="none" />);
+export const powerIcon = icon(<path d="M8 2v6M4.6 4.2a5 5 0 1 0 6.8 0" />);
 export const stepIcon = icon(<path d="M3 2.5v11l7-5.5zM11 2.5h2v11h-2z" fill="currentColor" stroke="none" />);
 export const restartIcon = icon(<path d="M3 3v4h4M3.5 7A5 5 0 1 1 3 9.5" />);
 export const recordIcon = icon(<circle cx="8" cy="8" r="5" fill="currentColor" stroke="none" />);

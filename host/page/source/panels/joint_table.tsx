@@ -2,46 +2,83 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
 import type { RobotView } from '../robot_view.js';
-import { noValue, type Joint } from '../wire/messages.js';
+import type { Joint } from '../wire/messages.js';
+import { contactText, numberText, valueOf } from './joint_values.js';
+import { ModuleCell } from './module_state.js';
 
 const period = 100; // milliseconds: faster cannot be read
 const rowsOfAFrame = 12; // more at once would hold up the controls
 
-const columns = [
-  { title: 'set-point', unit: '°', signal: 'setpoint', decimals: 1 },
-  { title: 'angle', unit: '°', signal: 'angle', decimals: 1 },
-  { title: 'lag', unit: '°', signal: '', decimals: 1 },
-  { title: 'current', unit: 'mA', signal: 'current', decimals: 0 },
-  { title: 'torque', unit: 'mNm', signal: 'torque', decimals: 0 },
-] as const;
-
-function valueOf(app: RobotView, signal: string, joint: number, row: number): number | null {
-  const raw = app.rowsAtCursor.valueAt(signal, joint, row);
-  return raw === noValue ? null : raw * (app.rowsAtCursor.rings.get(signal)?.scale ?? 1);
+// What a cell shows at a row of the history. `tone`: a class for its colour.
+interface CellText {
+  text: string;
+  tone?: string;
 }
 
-function texts(app: RobotView, joint: number, row: number): string[] {
-  const setpoint = valueOf(app, 'setpoint', joint, row);
-  const angle = valueOf(app, 'angle', joint, row);
-  const numbers = columns.map(({ signal, decimals }) => {
-    const value = signal !== '' ? valueOf(app, signal, joint, row) : setpoint === null || angle === null ? null : setpoint - angle;
-    return value === null ? '–' : value.toFixed(decimals).replace(/^-(0(\.0*)?)$/, '$1');
-  });
-  // Contacts belong to links; the row shows those of the link in front of the joint.
-  const bits = app.rowsAtCursor.valueAt('contact', joint, row);
-  return [...numbers, bits === noValue ? '' : `${(bits & 1) !== 0 ? '●' : '○'} ${(bits & 2) !== 0 ? '●' : '○'}`];
+export interface JointColumn {
+  title: string;
+  unit: string;
+  help?: string;
+  read(app: RobotView, joint: number, row: number): CellText;
 }
+
+const measured = (title: string, unit: string, signal: string, decimals: number): JointColumn => ({
+  title,
+  unit,
+  read: (app, joint, row) => ({ text: numberText(valueOf(app, signal, joint, row), decimals) }),
+});
+
+const setpoint = measured('set-point', '°', 'setpoint', 1);
+const lag: JointColumn = {
+  title: 'lag',
+  unit: '°',
+  read: (app, joint, row) => {
+    const [wanted, angle] = [valueOf(app, 'setpoint', joint, row), valueOf(app, 'angle', joint, row)];
+    return { text: numberText(wanted === null || angle === null ? null : wanted - angle, 1) };
+  },
+};
+const contacts: JointColumn = {
+  title: 'contacts',
+  unit: '',
+  help: 'Ground contacts of the link in front of the joint: rear, front',
+  read: (app, joint, row) => ({ text: contactText(app, joint, row), tone: 'contacts' }),
+};
+
+const simulated = [
+  setpoint,
+  measured('angle', '°', 'angle', 1),
+  lag,
+  measured('current', 'mA', 'current', 0),
+  measured('torque', 'mNm', 'torque', 0),
+  contacts,
+];
+
+const angleOnBus: JointColumn = {
+  title: 'angle',
+  unit: '°',
+  help: 'Measured by the servo. A joint that is not measured is drawn at its set-point.',
+  read: (app, joint, row) => {
+    const angle = valueOf(app, 'angle', joint, row);
+    const isAtSetpoint = angle === null && valueOf(app, 'setpoint', joint, row) !== null;
+    return isAtSetpoint ? { text: 'not measured', tone: 'missing' } : { text: numberText(angle, 1) };
+  },
+};
+
+const onBus = [setpoint, angleOnBus, lag, measured('current', 'mA', 'current', 0), contacts];
 
 // Past Preact: 60 rows of text ten times a second.
-function write(element: HTMLTableRowElement, values: string[]): void {
-  values.forEach((text, i) => {
+function write(element: HTMLTableRowElement, values: readonly CellText[]): void {
+  values.forEach(({ text, tone = '' }, i) => {
     const cell = element.cells[i + 1];
-    if (cell !== undefined && cell.textContent !== text) cell.textContent = text;
+    if (cell === undefined) return;
+    if (cell.textContent !== text) cell.textContent = text;
+    if (cell.className !== tone) cell.className = tone;
   });
 }
 
-function JointRow({ app, joint, index }: { app: RobotView; joint: Joint; index: number }) {
+function JointRow({ app, joint, index, columns }: { app: RobotView; joint: Joint; index: number; columns: readonly JointColumn[] }) {
   const isHovered = app.selection.hoveredJoint.value === index;
+  const isOnBus = app.state.busSession.value !== null;
   return (
     <tr
       class={isHovered ? 'hovered' : ''}
@@ -53,12 +90,14 @@ function JointRow({ app, joint, index }: { app: RobotView; joint: Joint; index: 
       {columns.map((column) => (
         <td key={column.title} data-value={column.title} />
       ))}
-      <td data-value="contacts" />
+      {isOnBus && <ModuleCell app={app} joint={index} />}
     </tr>
   );
 }
 
 export function JointTable({ app }: { app: RobotView }) {
+  const isOnBus = app.state.busSession.value !== null;
+  const columns = isOnBus ? onBus : simulated;
   const body = useRef<HTMLTableSectionElement>(null);
   useEffect(() => {
     let last = 0;
@@ -80,10 +119,11 @@ export function JointTable({ app }: { app: RobotView }) {
         next = 0;
       }
       for (const end = Math.min(elements.length, next + rowsOfAFrame); next < end; next += 1) {
-        write(elements[next] as HTMLTableRowElement, texts(app, next, row));
+        const values = columns.map((column) => column.read(app, next, row));
+        write(elements[next] as HTMLTableRowElement, values);
       }
     });
-  }, []);
+  }, [columns]);
   const robot = app.state.robot.value;
   return (
     <section class="panel joint-panel" aria-label="Joints">
@@ -94,18 +134,16 @@ export function JointTable({ app }: { app: RobotView }) {
             <tr>
               <th scope="col">joint</th>
               {columns.map((column) => (
-                <th scope="col" key={column.title}>
+                <th scope="col" key={column.title} title={column.help}>
                   {column.title} <span class="unit">{column.unit}</span>
                 </th>
               ))}
-              <th scope="col" title="Ground contacts of the link in front of the joint: rear, front">
-                contacts
-              </th>
+              {isOnBus && <th scope="col">module</th>}
             </tr>
           </thead>
           <tbody ref={body}>
             {robot?.joints.map((joint, index) => (
-              <JointRow key={joint.name} app={app} joint={joint} index={index} />
+              <JointRow key={joint.name} app={app} joint={joint} index={index} columns={columns} />
             ))}
           </tbody>
         </table>

@@ -10,6 +10,7 @@ import { ParameterRow } from './parameter_row.js';
 
 function Toolbar({ app, changed, filter }: { app: PageApp; changed: number; filter: { value: boolean } }) {
   const session = app.state.session.value;
+  const simulation = app.state.simulation.value;
   const isHolder = app.state.isHolder.value;
   const tell = app.operations;
   return (
@@ -30,14 +31,16 @@ function Toolbar({ app, changed, filter }: { app: PageApp; changed: number; filt
       >
         {redoIcon} Redo
       </button>
-      <button
-        type="button"
-        disabled={!isHolder}
-        onClick={() => void tell.tell('swap', {})}
-        title="Two sets of parameters to compare: change to the other one (B)"
-      >
-        {swapIcon} Set {session?.set ?? 'A'}
-      </button>
+      {simulation !== null && (
+        <button
+          type="button"
+          disabled={!isHolder}
+          onClick={() => void tell.tell('swap', {})}
+          title="Two sets of parameters to compare: change to the other one (B)"
+        >
+          {swapIcon} Set {simulation.set}
+        </button>
+      )}
       <button
         type="button"
         disabled={!isHolder || changed === 0}
@@ -61,17 +64,21 @@ function Toolbar({ app, changed, filter }: { app: PageApp; changed: number; filt
       >
         Table…
       </button>
-      <button
-        type="button"
-        disabled={changed === 0}
-        onClick={() => (openDialog.value = 'file_diff')}
-        title="Write the values into the file of the robot (W)"
-      >
-        Apply to file…
-      </button>
-      <button type="button" onClick={() => (openDialog.value = 'command_line')} title="The command that gives the same run (X)">
-        Command line
-      </button>
+      {simulation !== null && (
+        <>
+          <button
+            type="button"
+            disabled={changed === 0}
+            onClick={() => (openDialog.value = 'file_diff')}
+            title="Write the values into the file of the robot (W)"
+          >
+            Apply to file…
+          </button>
+          <button type="button" onClick={() => (openDialog.value = 'command_line')} title="The command that gives the same run (X)">
+            Command line
+          </button>
+        </>
+      )}
     </div>
   );
 }

@@ -1,10 +1,9 @@
 // Run, pause, step, restart, how fast; the present tick and time.
 import { useSignal } from '@preact/signals';
-import { useEffect, useRef } from 'preact/hooks';
-import { onFrame } from '../frame_clock.js';
 import type { PageApp } from '../page_app.js';
 import { recordOrEnd } from '../page_actions.js';
 import { pauseIcon, recordIcon, restartIcon, runIcon, stepIcon } from './icons.js';
+import { TickCounter } from './tick_counter.js';
 
 // The slider is logarithmic: -1 is 0.1, 0 is real time, 2 is 100.
 function factorOf(position: number): number {
@@ -12,7 +11,7 @@ function factorOf(position: number): number {
 }
 
 function Factor({ app }: { app: PageApp }) {
-  const factor = app.state.session.value?.factor ?? 1;
+  const factor = app.state.simulation.value?.factor ?? 1;
   const isHolder = app.state.isHolder.value;
   // While it is dragged, the slider is where the pointer is, not where the program is.
   const dragged = useSignal<number | null>(null);
@@ -56,41 +55,8 @@ function Factor({ app }: { app: PageApp }) {
   );
 }
 
-function TickCounter({ app }: { app: PageApp }) {
-  const tick = useRef<HTMLElement>(null);
-  const time = useRef<HTMLElement>(null);
-  useEffect(
-    () =>
-      onFrame(() => {
-        const newest = app.newestTick;
-        const text = String(newest);
-        if (tick.current !== null && time.current !== null && tick.current.textContent !== text) {
-          tick.current.textContent = text;
-          time.current.textContent = `${(newest / app.tickRate).toFixed(2)} s`;
-        }
-      }),
-    [],
-  );
-  return (
-    <dl class="figures">
-      <div>
-        <dt>tick</dt>
-        <dd ref={tick} data-testid="tick">
-          0
-        </dd>
-      </div>
-      <div>
-        <dt>time</dt>
-        <dd ref={time} data-testid="time">
-          0.00 s
-        </dd>
-      </div>
-    </dl>
-  );
-}
-
 function Measures({ app }: { app: PageApp }) {
-  const speed = app.state.session.value?.measures?.['speed'];
+  const speed = app.state.simulation.value?.measures?.['speed'];
   return typeof speed !== 'number' ? null : (
     <dl class="figures">
       <div title="Of the centre of mass, over the run">
@@ -104,7 +70,7 @@ function Measures({ app }: { app: PageApp }) {
 export function RunControls({ app }: { app: PageApp }) {
   const { state, operations } = app;
   const isHolder = state.isHolder.value;
-  const runState = state.session.value?.state ?? 'paused';
+  const runState = state.simulation.value?.state ?? 'paused';
   const isRunning = runState === 'running';
   const recording = state.session.value?.recording ?? null;
   const ticks = useSignal(1);

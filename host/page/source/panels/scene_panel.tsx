@@ -4,11 +4,13 @@ import { useEffect, useRef } from 'preact/hooks';
 import { limitFrameRate, onFrame } from '../frame_clock.js';
 import type { Vector } from '../geometry/quaternion.js';
 import type { RobotView } from '../robot_view.js';
-import type { FromScene, ToScene } from '../scene/scene_messages.js';
+import type { FromScene, ScenePose, ToScene } from '../scene/scene_messages.js';
+import { ghostIsOn, toggleGhost } from '../robot_actions.js';
 import type { MoveTool } from '../state/move_tool.js';
 import { isDark } from '../theme.js';
 import { MoveForm } from './move_form.js';
 import { listenToPointer, type RobotMover } from './scene_pointer.js';
+import { ScenePull } from './scene_pull.js';
 import { shownPose } from './scene_pose.js';
 
 const readoutPeriod = 100; // milliseconds
@@ -19,6 +21,7 @@ export function ScenePanel({ app }: { app: RobotView }) {
   const isFollowing = useSignal(true);
   const level = useSignal(0);
   const failure = useSignal<string | null>(null);
+  const isOnBus = app.state.busSession.value !== null;
   const post = useRef<(message: ToScene) => void>(() => {});
 
   useEffect(() => {
@@ -43,14 +46,17 @@ export function ScenePanel({ app }: { app: RobotView }) {
     worker.onerror = (event) => (failure.value = event.message || 'the browser starts no worker');
     const send = (message: ToScene, transfer: Transferable[] = []) => worker.postMessage(message, transfer);
     post.current = send;
+    const pull = new ScenePull(app, send);
     worker.onmessage = (event: MessageEvent<FromScene>) => {
       const message = event.data;
       if (message.kind === 'pointed') app.selection.hoveredJoint.value = message.joint;
-      if (message.kind === 'grabbed') app.mover?.begin();
-      if (message.kind === 'dragged') {
+      if (message.kind === 'grabbed_robot') app.mover?.begin();
+      if (message.kind === 'dragged_robot') {
         offset = message.offset;
         app.mover?.drag(offset, turn);
       }
+      if (message.kind === 'grabbed_joint') pull.grabbed(message.joint);
+      if (message.kind === 'dragged_joint') pull.dragged(message.angle);
       if (message.kind === 'following') isFollowing.value = message.isOn;
       if (message.kind === 'detail') {
         level.value = message.level;
@@ -80,7 +86,8 @@ export function ScenePanel({ app }: { app: RobotView }) {
     });
     observer.observe(parent);
     const stops = [
-      listenToPointer(canvas, send, () => (app.selection.hoveredJoint.value = null), mover),
+      listenToPointer(canvas, send, () => (app.selection.hoveredJoint.value = null), mover, pull),
+      effect(() => void canvas.classList.toggle('can-pull', pull.isPossible)),
       effect(() => send({ kind: 'theme', isDark: isDark.value })),
       effect(() => {
         const robot = app.state.robot.value;
@@ -122,7 +129,7 @@ export function ScenePanel({ app }: { app: RobotView }) {
     <section class="panel scene-panel" aria-label="Robot in 3D">
       <div class="scene" ref={holder} data-detail={level.value} />
       <div class="scene-tools">
-        {app.mover !== null && <MoveButton mover={app.mover} />}
+        {app.mover !== null && !isOnBus && <MoveButton mover={app.mover} />}
         <button
           type="button"
           aria-pressed={isFollowing.value}
@@ -131,6 +138,16 @@ export function ScenePanel({ app }: { app: RobotView }) {
         >
           Follow
         </button>
+        {isOnBus && (
+          <button
+            type="button"
+            aria-pressed={ghostIsOn.value}
+            onClick={toggleGhost}
+            title="Also shows the simulation that runs beside the robot, translucent (Shift + G)"
+          >
+            Ghost
+          </button>
+        )}
         <button type="button" onClick={() => post.current({ kind: 'reset_view' })} title="Back to the first view (H)">
           Reset view
         </button>
@@ -139,6 +156,12 @@ export function ScenePanel({ app }: { app: RobotView }) {
       <span class="readout" ref={readout} data-testid="head" title="Position of the head" />
       <span class="legend-marks" aria-hidden="true">
         <i class="mark head" /> head <i class="mark contact" /> ground contact <i class="mark path" /> path
+        {isOnBus && ghostIsOn.value && (
+          <>
+            {' '}
+            <i class="mark ghost" /> simulation
+          </>
+        )}
       </span>
       {level.value > 0 && (
         <span class="detail-note" title="This computer draws slowly, so the view has less detail: the controls come first.">
@@ -165,9 +188,9 @@ function MoveButton({ mover }: { mover: MoveTool }) {
 }
 
 // Without the sign of -0.000.
-function positionText(head: Float64Array): string {
+function positionText(name: string, head: Float64Array): string {
   const [x, y, z] = [...head.subarray(0, 3)].map((metres) => (Math.round(metres * 1000) / 1000 + 0).toFixed(3));
-  return `head  x ${x}  y ${y}  z ${z} m`;
+  return `${name}  x ${x}  y ${y}  z ${z} m`;
 }
 
 // Sends the pose at the time cursor whenever it changed, and writes where the head is.
@@ -176,34 +199,41 @@ function followPose(app: RobotView, send: (message: ToScene) => void, readout: {
   let robot: unknown = null;
   let session: unknown = null;
   let preview: unknown = null;
-  let head: Float64Array | null = null; // not written yet
+  let withGhost = false;
+  let unwritten: ScenePose | null = null; // whose head is not written yet
   let lastReadout = 0;
   const sendChangedPose = () => {
-    const { rowsAtCursor: history, time } = app;
+    const { rowsAtCursor: history, time, mover } = app;
     const tick = time.shownTick(app.newestTick);
     const key = `${history.run}/${history.end}/${tick}`;
-    const { mover } = app;
-    const isSame = robot === app.state.robot.peek() && session === mover?.session.peek() && preview === mover?.preview.peek();
+    const isSame =
+      robot === app.state.robot.peek() &&
+      session === mover?.session.peek() &&
+      preview === mover?.preview.peek() &&
+      withGhost === ghostIsOn.peek();
     if (key === lastKey && isSame) {
       return;
     }
-    const pose = shownPose(app, tick);
+    const pose = shownPose(app, tick, ghostIsOn.peek());
     if (pose === null || app.state.robot.peek() === null) {
       return;
     }
     lastKey = key;
     robot = app.state.robot.peek();
-    session = app.mover?.session.peek();
-    preview = app.mover?.preview.peek();
-    head = pose.head;
+    session = mover?.session.peek();
+    preview = mover?.preview.peek();
+    withGhost = ghostIsOn.peek();
+    unwritten = pose;
     send({ kind: 'pose', pose });
   };
   return onFrame((now) => {
     sendChangedPose();
-    if (head !== null && readout.current !== null && now - lastReadout > readoutPeriod) {
-      readout.current.textContent = positionText(head);
+    if (unwritten !== null && readout.current !== null && now - lastReadout > readoutPeriod) {
+      // No bus says where a robot is: what is shown there is where its simulation is.
+      const name = app.state.busSession.peek() === null ? 'head' : 'simulated head';
+      readout.current.textContent = unwritten.head === null ? '' : positionText(name, unwritten.head);
       lastReadout = now;
-      head = null;
+      unwritten = null;
     }
   });
 }

@@ -1,7 +1,9 @@
 // Mouse, touch and keys of the 3D view.
-//   drag, one finger: turn      right or Shift and drag, two fingers: pan      wheel, pinch: zoom
+//   drag, one finger: turn the view, or a joint of a robot that is held
+//   right or Shift and drag, two fingers: pan      wheel, pinch: zoom
 import type { Vector } from '../geometry/quaternion.js';
 import type { ToScene } from '../scene/scene_messages.js';
+import type { ScenePull } from './scene_pull.js';
 
 interface Point {
   x: number;
@@ -28,6 +30,7 @@ export function listenToPointer(
   send: (message: ToScene) => void,
   leave: () => void,
   mover: RobotMover,
+  pull: ScenePull,
 ): () => void {
   let moverStart: Point | null = null; // where a drag of the robot began
   const pointers = new Map<number, Point>();
@@ -41,9 +44,14 @@ export function listenToPointer(
       canvas.setPointerCapture(event.pointerId);
       pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
       isPanning = event.button !== 0 || event.shiftKey;
+      const { x, y } = positionIn(canvas, event);
       if (mover.isActive() && event.button === 0 && pointers.size === 1) {
         moverStart = { x: event.clientX, y: event.clientY };
-        send({ ...pointedAt(canvas, event), kind: 'grab' });
+        send({ kind: 'grab_robot', x, y });
+      } else if (isPanning || pointers.size > 1) {
+        pull.release();
+      } else {
+        pull.press(x, y);
       }
     },
     options,
@@ -53,7 +61,7 @@ export function listenToPointer(
     (event) => {
       const before = pointers.get(event.pointerId);
       if (before === undefined) {
-        send(pointedAt(canvas, event));
+        send({ kind: 'point', ...positionIn(canvas, event) });
         return;
       }
       const now = { x: event.clientX, y: event.clientY };
@@ -61,13 +69,14 @@ export function listenToPointer(
       const down = now.y - before.y;
       if (moverStart !== null && pointers.size === 1) {
         if (event.ctrlKey) mover.turn((moverStart.x - now.x) * degreesPerPixel);
-        else send({ ...pointedAt(canvas, event), kind: 'drag', right, down, isHeight: event.shiftKey });
+        else send({ kind: 'drag_robot', ...positionIn(canvas, event), right, down, isHeight: event.shiftKey });
       } else if (pointers.size === 2) {
         const other = [...pointers].find(([id]) => id !== event.pointerId)?.[1] as Point;
         send({ kind: 'zoom', factor: distance(before, other) / Math.max(1, distance(now, other)) });
         send({ kind: 'pan', right: right / 2, down: down / 2 });
       } else {
-        send({ kind: isPanning ? 'pan' : 'turn', right, down });
+        const { x, y } = positionIn(canvas, event);
+        if (!pull.move(x, y)) send({ kind: isPanning ? 'pan' : 'turn', right, down });
       }
       pointers.set(event.pointerId, now);
     },
@@ -75,9 +84,10 @@ export function listenToPointer(
   );
   const release = (event: PointerEvent) => {
     pointers.delete(event.pointerId);
+    pull.release();
     if (moverStart !== null) {
       moverStart = null;
-      send({ kind: 'drop' });
+      send({ kind: 'drop_robot' });
       mover.drop();
     }
   };
@@ -130,13 +140,10 @@ function turnByKey(event: KeyboardEvent, send: (message: ToScene) => void): void
   }
 }
 
-function pointedAt(canvas: HTMLCanvasElement, event: PointerEvent): { kind: 'point'; x: number; y: number } {
+// -1 to 1, y up.
+function positionIn(canvas: HTMLCanvasElement, event: PointerEvent): Point {
   const box = canvas.getBoundingClientRect();
-  return {
-    kind: 'point',
-    x: ((event.clientX - box.left) / box.width) * 2 - 1,
-    y: 1 - ((event.clientY - box.top) / box.height) * 2,
-  };
+  return { x: ((event.clientX - box.left) / box.width) * 2 - 1, y: 1 - ((event.clientY - box.top) / box.height) * 2 };
 }
 
 function distance(a: Point, b: Point): number {

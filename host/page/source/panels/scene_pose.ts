@@ -11,22 +11,44 @@ const quaternionUnit = 2 ** 30;
 const micrometre = 1e-6;
 const degree = Math.PI / 180;
 
-// What the 3D view shows. Null if nothing is known.
-export function shownPose(app: RobotView, tick: number): ScenePose | null {
+// What the 3D view shows; `withGhost`: with the simulation beside a robot on a bus, if there is one. Null if nothing is known.
+export function shownPose(app: RobotView, tick: number, withGhost: boolean): ScenePose | null {
   const { history, time, mover } = app;
   const isLive = time.isLive.peek() && time.cursor.peek() === null;
   const session = mover?.session.peek() ?? null;
   const head = session?.head;
   const isPresent = isLive && session !== null && (history.end === 0 || history.lastTick() < session.tick);
-  const known = history.end === 0 ? null : poseAt(history, tick, isLive);
+  const known = history.end === 0 ? null : poseAt(history, tick, isLive, withGhost);
   const place = mover?.preview.peek() ?? null;
   if (head === undefined || !isPresent || (known !== null && session?.moved !== true && place === null)) {
     return known;
   }
   const present = poseFromArray(head);
   const { position, orientation } = place === null ? present : placedHead(present, place);
-  const straight = { angles: new Float32Array(), contacts: new Int32Array() };
+  const straight = { angles: new Float32Array(), ghost: null, contacts: new Int32Array() };
   return { ...(known ?? straight), head: Float64Array.of(...position, ...orientation), run: history.run, isLive: false };
+}
+
+// Null if the row is not there.
+function poseAt(history: TelemetryHistory, tick: number, isLive: boolean, withGhost: boolean): ScenePose | null {
+  const row = Math.min(history.end - 1, history.rowAtTick(tick));
+  if (row < history.first) {
+    return null;
+  }
+  const contacts = Int32Array.from({ length: history.rings.get('contact')?.count ?? 0 }, (_, i) => {
+    const raw = history.valueAt('contact', i, row);
+    return raw === noValue ? 0 : raw;
+  });
+  const ghost = withGhost && history.valueAt('simulated_angle', 0, row) !== noValue;
+  return {
+    // Joints that do not measure their angle are drawn at their set-points.
+    angles: anglesAt(history, ['angle', 'setpoint'], row),
+    head: headAt(history, row),
+    ghost: ghost ? anglesAt(history, ['simulated_angle'], row) : null,
+    contacts,
+    run: history.run,
+    isLive,
+  };
 }
 
 // x, y, z in metres, then the quaternion; null if the row has none.
@@ -51,21 +73,10 @@ export function wholePathOf(history: TelemetryHistory): Float64Array {
   return Float64Array.from(path);
 }
 
-// Null if the row has no pose of the head.
-export function poseAt(history: TelemetryHistory, tick: number, isLive: boolean): ScenePose | null {
-  const row = Math.min(history.end - 1, history.rowAtTick(tick));
-  const head = headAt(history, row);
-  if (head === null) {
-    return null;
-  }
-  const angle = history.rings.get('angle');
-  const angles = Float32Array.from({ length: angle?.count ?? 0 }, (_, i) => {
-    const raw = history.valueAt('angle', i, row);
-    return raw === noValue ? 0 : raw * (angle?.scale ?? 0) * degree;
+// Radians; of the first signal that has a value for the joint, else 0.
+function anglesAt(history: TelemetryHistory, signals: readonly string[], row: number): Float32Array {
+  return Float32Array.from({ length: history.rings.get(signals[0] as string)?.count ?? 0 }, (_, joint) => {
+    const signal = signals.find((name) => history.valueAt(name, joint, row) !== noValue);
+    return signal === undefined ? 0 : history.valueAt(signal, joint, row) * (history.rings.get(signal)?.scale ?? 0) * degree;
   });
-  const contacts = Int32Array.from({ length: history.rings.get('contact')?.count ?? 0 }, (_, i) => {
-    const raw = history.valueAt('contact', i, row);
-    return raw === noValue ? 0 : raw;
-  });
-  return { angles, head, contacts, run: history.run, isLive };
 }

@@ -27,7 +27,7 @@ function LoopControls({ app }: { app: PageApp }) {
     <span class="loop" role="group" aria-label="Loop" data-testid="loop">
       loop {text(from, '[')} to {text(to, ']')}
       {marks.range.value !== null && (
-        <button type="button" onClick={() => marks.playOrPause(app.newestTick)} title="Play or pause the loop (O)">
+        <button type="button" onClick={() => marks.playOrPause(app.newestTick)} title="Play or pause the loop (Shift + P)">
           {marks.isPlaying.value ? 'Pause loop' : 'Play loop'}
         </button>
       )}

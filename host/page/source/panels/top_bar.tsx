@@ -1,7 +1,8 @@
 // The bar that is always there: which robot, its state, who has control, STOP.
 import type { PageApp, PageName } from '../page_app.js';
 import type { PageState } from '../state/page_state.js';
-import { describeStop } from '../state/stop_report.js';
+import { describeStop, isConfirmed } from '../state/stop_report.js';
+import type { SessionDocument } from '../wire/messages.js';
 import { nextTheme, themeChoice } from '../theme.js';
 import { toggleDialog } from '../dialogs.js';
 import { findIcon, themeIcon } from './icons.js';
@@ -12,12 +13,20 @@ const badges = {
   recording: { text: 'RECORDING', title: 'What a robot did.' },
 } as const;
 
-const states = {
+const states: Record<SessionDocument['state'], string> = {
   running: 'running',
   paused: 'paused',
   stopped: 'STOPPED',
   failed: 'FAILED',
-} as const;
+  off: 'power off',
+  starting: 'starting',
+  held: 'holding',
+  stopping: 'stopping',
+};
+
+function stateText(session: SessionDocument): string {
+  return session.kind === 'bus' && session.state === 'running' ? 'gait' : states[session.state];
+}
 
 function RobotName({ state }: { state: PageState }) {
   const robot = state.robot.value;
@@ -28,8 +37,8 @@ function RobotName({ state }: { state: PageState }) {
   return (
     <div class="robot-name">
       {badge !== null && (
-        <strong class={`badge ${robot?.kind ?? 'recording'}`} title={badge.title}>
-          {badge.text}
+        <strong class={`badge ${robot?.kind ?? 'recording'}`} title={`${badge.title} ${state.bus.value?.address ?? ''}`}>
+          {badge.text} {state.bus.value?.address}
         </strong>
       )}
       <span class="name" title={robot?.file}>
@@ -41,23 +50,41 @@ function RobotName({ state }: { state: PageState }) {
           data-testid="state"
           title={session.stopped_by ? `stopped by ${session.stopped_by}` : undefined}
         >
-          {isConnected ? states[session.state] : 'state unknown'}
+          {isConnected ? stateText(session) : 'state unknown'}
         </span>
       )}
     </div>
   );
 }
 
+// How fast the simulation goes, or how full the bus is.
+function Rate({ state }: { state: PageState }) {
+  const bus = state.bus.value;
+  const simulation = state.simulation.value;
+  const isConnected = state.isConnected.value;
+  if (state.busSession.value !== null) {
+    return (
+      <div title="Share of the time in which frames are on the bus">
+        <dt>bus load</dt>
+        <dd data-testid="load">{isConnected && bus?.connected === true ? `${(100 * bus.load).toFixed(1)} %` : '–'}</dd>
+      </div>
+    );
+  }
+  const measured = simulation?.measured_factor;
+  const isRunning = isConnected && simulation?.state === 'running';
+  return (
+    <div title="Simulated seconds in a second, measured">
+      <dt>speed</dt>
+      <dd>{isRunning && typeof measured === 'number' ? `× ${measured.toFixed(measured < 10 ? 2 : 1)}` : '–'}</dd>
+    </div>
+  );
+}
+
 function Figures({ state }: { state: PageState }) {
-  const measured = state.session.value?.measured_factor;
-  const isRunning = state.isConnected.value && state.session.value?.state === 'running';
   const latency = state.latency.value;
   return (
     <dl class="figures">
-      <div title="Simulated seconds in a second, measured">
-        <dt>speed</dt>
-        <dd>{isRunning && typeof measured === 'number' ? `× ${measured.toFixed(measured < 10 ? 2 : 1)}` : '–'}</dd>
-      </div>
+      <Rate state={state} />
       <div title="From this page to the robot and back">
         <dt>latency</dt>
         <dd data-testid="latency">{latency === null ? '–' : `${latency < 10 ? latency.toFixed(1) : Math.round(latency)} ms`}</dd>
@@ -108,7 +135,7 @@ function Stop({ app }: { app: PageApp }) {
   const report = app.stop.report.value;
   return (
     <div class="stop-area">
-      <span class={`stop-report ${report.state}`} role="status" data-testid="stop-report">
+      <span class={`stop-report ${report.state === 'stopped' && !isConfirmed(report) ? 'unconfirmed' : report.state}`} role="status" data-testid="stop-report">
         {describeStop(report)}
       </span>
       <div class="stop-place">

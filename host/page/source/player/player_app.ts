@@ -23,6 +23,7 @@ export class PlayerApp implements PlayedRecording {
   readonly time: Playback;
   readonly marks = null;
   readonly mover = null;
+  readonly poses = null;
   readonly selection = new SignalSelection();
   readonly actions = new ActionList();
   readonly wholePath = signal<Float64Array | null>(null);
@@ -35,7 +36,12 @@ export class PlayerApp implements PlayedRecording {
     readonly startSceneWorker: () => Worker,
   ) {
     const { robot, telemetry, recording } = source.documents;
-    this.state = { robot: signal<RobotDocument | null>(robot), telemetry: signal<TelemetryDocument | null>(telemetry) };
+    this.state = {
+      robot: signal<RobotDocument | null>(robot),
+      telemetry: signal<TelemetryDocument | null>(telemetry),
+      bus: signal(null),
+      busSession: signal(null),
+    };
     this.recording = recording;
     this.history = historyFor(recording.last_tick - recording.first_tick + 1);
     this.time = new Playback(recording.first_tick, recording.last_tick, this.tickRate);

@@ -18,6 +18,7 @@ export class OpenedRecording implements PlayedRecording {
   readonly time: Playback;
   readonly marks = null;
   readonly mover = null;
+  readonly poses = null;
   readonly selection = new SignalSelection();
   readonly wholePath = signal<Float64Array | null>(null);
   // Why something cannot be shown.
@@ -41,7 +42,12 @@ export class OpenedRecording implements PlayedRecording {
     private readonly now: () => number = () => performance.now(),
   ) {
     const { robot, telemetry, recording, parameters } = documents;
-    this.state = { robot: signal<RobotDocument | null>(robot), telemetry: signal<TelemetryDocument | null>(telemetry) };
+    this.state = {
+      robot: signal<RobotDocument | null>(robot),
+      telemetry: signal<TelemetryDocument | null>(telemetry),
+      bus: signal(null),
+      busSession: signal(null),
+    };
     this.document = signal<ServedRecordingDocument>(recording);
     this.parameterDocument = parameters;
     this.time = new Playback(recording.first_tick, recording.last_tick, this.tickRate);

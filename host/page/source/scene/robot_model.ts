@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 import { ForwardKinematics } from '../geometry/forward_kinematics.js';
 import { compose, fromAxisAngle, multiply, poseFromArray, rotate, type Pose, type Vector } from '../geometry/quaternion.js';
-import type { Body, RobotDocument, Shape } from '../wire/messages.js';
+import type { Body, Joint, RobotDocument, Shape } from '../wire/messages.js';
 import { colours } from './scene_colours.js';
 
 // A shape of a body, or a mark on it.
@@ -85,6 +85,23 @@ function instancesOf(bodies: readonly Body[], kind: Shape['kind'], areLinks: boo
 
 const kinds = ['box', 'sphere', 'cylinder'] as const;
 
+// Behind the robot where both are at the same place: the robot keeps its colours there.
+const ghostLook = {
+  transparent: true,
+  opacity: 0.38,
+  depthWrite: false,
+  polygonOffset: true,
+  polygonOffsetFactor: 2,
+  polygonOffsetUnits: 2,
+};
+
+// A link that a ray hits, and the joint that a pull at it turns.
+export interface Hit {
+  joint: number;
+  sense: 1 | -1; // of the joint's angle, as the link turns about the axis
+  point: Vector;
+}
+
 export class RobotModel {
   readonly group = new THREE.Group();
   readonly length: number; // metres, from the first joint to the last, at least 0.1
@@ -100,15 +117,18 @@ export class RobotModel {
   private readonly centres: Vector[]; // of the links, in their frames
   private contactBits: ArrayLike<number> = [];
   private highlighted: number | null = null;
+  private displacements: Pose[] = [];
   private isDark: boolean;
 
+  // A ghost is translucent, and has neither terrain nor marks of contacts.
   constructor(
     private readonly robot: RobotDocument,
     isDark: boolean,
+    private readonly isGhost = false,
   ) {
     this.isDark = isDark;
     this.kinematics = new ForwardKinematics(robot);
-    const material = new THREE.MeshLambertMaterial();
+    const material = new THREE.MeshLambertMaterial(isGhost ? ghostLook : {});
     const marks = new THREE.MeshBasicMaterial();
     const make = (bodies: readonly Body[], areLinks: boolean) =>
       kinds
@@ -116,7 +136,7 @@ export class RobotModel {
         .filter(({ instances }) => instances.length > 0)
         .map(({ kind, instances }) => new InstanceSet(unitGeometry[kind](), instances, material));
     this.links = make(robot.links, true);
-    this.terrain = make(robot.terrain, false);
+    this.terrain = isGhost ? [] : make(robot.terrain, false);
     this.terrain.forEach((set) => {
       set.place([]);
       set.mesh.castShadow = false;
@@ -125,10 +145,12 @@ export class RobotModel {
     this.length = Math.max(0.1, this.chainLength(robot));
     const thickness = this.typicalThickness();
     this.joints = new InstanceSet(new THREE.CylinderGeometry(1, 1, 2, 20), this.jointInstances(robot, thickness), material);
-    this.contacts = new InstanceSet(new THREE.BoxGeometry(2, 2, 2), this.contactInstances(robot, thickness), marks);
+    this.contacts = new InstanceSet(new THREE.BoxGeometry(2, 2, 2), isGhost ? [] : this.contactInstances(robot, thickness), marks);
     this.contacts.mesh.castShadow = false;
     this.floorHeight = floorHeight(robot);
     for (const set of [...this.links, ...this.terrain, this.joints, this.contacts]) {
+      set.mesh.castShadow &&= !isGhost;
+      set.mesh.receiveShadow = !isGhost;
       this.group.add(set.mesh);
     }
     this.rest();
@@ -136,6 +158,7 @@ export class RobotModel {
   }
 
   move(head: Pose, angles: ArrayLike<number>, contactBits: ArrayLike<number>): void {
+    this.displacements = this.kinematics.displacements(head, angles);
     const poses = this.kinematics.linkPoses(head, angles);
     for (const set of [...this.links, this.joints, this.contacts]) {
       set.place(poses);
@@ -153,13 +176,13 @@ export class RobotModel {
     return compose(head, { position: this.centres[0] as Vector, orientation: [1, 0, 0, 0] }).position;
   }
 
-  // Where the robot is until its first tick: straight, on the floor.
-  rest(): void {
+  // Where the robot is until its first tick, and if nobody knows where it is: its head as if all of it lay straight on the floor.
+  rest(angles: ArrayLike<number> = [], contactBits: ArrayLike<number> = []): void {
     const head = poseFromArray((this.robot.links[0] as Body).pose);
     const [x, y, z] = head.position;
     const centres = this.restCentres(this.robot);
     const lowest = Math.min(...this.robot.links.map((link, i) => (centres[i] as Vector)[2] - halfExtent(link, [0, 0, 1])));
-    this.move({ ...head, position: [x, y, z + this.floorHeight - lowest] }, [], []);
+    this.move({ ...head, position: [x, y, z + this.floorHeight - lowest] }, angles, contactBits);
   }
 
   highlight(joint: number | null): void {
@@ -172,23 +195,30 @@ export class RobotModel {
     this.paint();
   }
 
-  // The joint that is pointed at, or whose link is; the last link has none behind it and gives the joint before it.
-  jointAt(caster: THREE.Raycaster): number | null {
-    const hit = this.hitOf(caster);
-    const set = [...this.links, this.joints].find((candidate) => candidate.mesh === hit?.object);
-    const instance = set?.instances[hit?.instanceId ?? -1];
-    return instance === undefined ? null : Math.min(instance.link, this.joints.instances.length - 1);
+  // What is pointed at: a link, which turns about the joint behind it; the last link has none and turns about that before it.
+  hit(caster: THREE.Raycaster): Hit | null {
+    const sets = [...this.links, this.joints];
+    sets.forEach(({ mesh }) => mesh.computeBoundingSphere());
+    const found = caster.intersectObjects(sets.map(({ mesh }) => mesh), false)[0];
+    const instance = sets.find(({ mesh }) => mesh === found?.object)?.instances[found?.instanceId ?? -1];
+    if (found === undefined || instance === undefined) {
+      return null;
+    }
+    const last = this.joints.instances.length - 1;
+    const { x, y, z } = found.point;
+    return { joint: Math.min(instance.link, last), sense: instance.link > last ? -1 : 1, point: [x, y, z] };
   }
 
-  // The point of the robot that is pointed at.
-  pointAt(caster: THREE.Raycaster): THREE.Vector3 | null {
-    return this.hitOf(caster)?.point ?? null;
-  }
-
-  private hitOf(caster: THREE.Raycaster): THREE.Intersection | undefined {
-    const meshes = [...this.links, this.joints].map((set) => set.mesh);
-    meshes.forEach((mesh) => mesh.computeBoundingSphere());
-    return caster.intersectObjects(meshes, false)[0];
+  // Where a joint's axis is now; `axis` has length 1.
+  axisOf(index: number): { anchor: Vector; axis: Vector } {
+    const joint = this.robot.joints[index] as Joint;
+    const displacement = this.displacements[index] as Pose;
+    const length = Math.hypot(...joint.axis) || 1;
+    const axis: Vector = [joint.axis[0] / length, joint.axis[1] / length, joint.axis[2] / length];
+    return {
+      anchor: compose(displacement, { position: joint.anchor, orientation: [1, 0, 0, 0] }).position,
+      axis: rotate(displacement.orientation, axis),
+    };
   }
 
   dispose(): void {
@@ -200,6 +230,10 @@ export class RobotModel {
 
   private paint(): void {
     const colour = colours(this.isDark);
+    if (this.isGhost) {
+      [...this.links, this.joints].forEach((set) => set.paint(() => colour.ghost));
+      return;
+    }
     const isLit = (instance: Instance) => instance.link === this.highlighted;
     this.links.forEach((set) =>
       set.paint((instance) => (isLit(instance) ? colour.highlight : instance.link === 0 ? colour.head : colour.link)),

@@ -1,5 +1,6 @@
 // The 3D view: camera, light, ground, robot. It renders only when something changed.
 import * as THREE from 'three';
+import { JointDrag, type Ray } from '../geometry/joint_drag.js';
 import { OrbitCamera } from '../geometry/orbit_camera.js';
 import { poseFromArray, type Vector } from '../geometry/quaternion.js';
 import type { RobotDocument } from '../wire/messages.js';
@@ -14,6 +15,11 @@ const gridCells = 60;
 const farthestDrag = 5; // metres
 const longRobot = 1.5; // metres: from here on the cells of the grid are larger
 
+function rayOf({ ray }: THREE.Raycaster): Ray {
+  const { origin, direction } = ray;
+  return { origin: [origin.x, origin.y, origin.z], direction: [direction.x, direction.y, direction.z] };
+}
+
 export class RobotScene {
   isFollowing = true;
   private readonly renderer: THREE.WebGLRenderer;
@@ -26,6 +32,8 @@ export class RobotScene {
   private grid: THREE.GridHelper | null = null;
   private path: HeadPath | null = null;
   private model: RobotModel | null = null;
+  private ghost: RobotModel | null = null;
+  private pulled: { drag: JointDrag; sense: number } | null = null;
   private run = -1;
   private hasWholePath = false;
   private width = 1;
@@ -82,24 +90,29 @@ export class RobotScene {
     this.scene.background = colour.background;
     this.fog.color = colour.background;
     this.model?.setTheme(isDark);
+    this.ghost?.setTheme(isDark);
     this.path?.setColour(colour.path);
     this.makeGrid();
     this.isDirty = true;
   }
 
   setRobot(robot: RobotDocument): void {
-    if (this.model !== null) {
-      this.scene.remove(this.model.group);
-      this.model.dispose();
+    for (const old of [this.model, this.ghost]) {
+      if (old !== null) {
+        this.scene.remove(old.group);
+        old.dispose();
+      }
     }
     if (this.path !== null) {
       this.scene.remove(this.path.line);
     }
     this.hasWholePath = false;
     this.model = new RobotModel(robot, this.isDark);
+    this.ghost = new RobotModel(robot, this.isDark, true);
+    this.ghost.group.visible = false;
     this.path = new HeadPath(this.model.length / 200);
     this.path.setColour(colours(this.isDark).path);
-    this.scene.add(this.model.group, this.path.line);
+    this.scene.add(this.model.group, this.ghost.group, this.path.line);
     const reach = this.model.length * 0.9 + 0.2;
     Object.assign(this.sun.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.1, far: 8 * reach });
     this.sun.shadow.camera.updateProjectionMatrix();
@@ -111,7 +124,11 @@ export class RobotScene {
     if (this.model === null || this.path === null) {
       return;
     }
-    this.model.move(poseFromArray([...pose.head]), pose.angles, pose.contacts);
+    this.place(this.model, pose, pose.angles, pose.contacts);
+    if (this.ghost !== null) {
+      this.ghost.group.visible = pose.ghost !== null;
+      if (pose.ghost !== null) this.place(this.ghost, pose, pose.ghost, []);
+    }
     if (!this.hasWholePath) {
       this.growPath(this.path, pose);
     }
@@ -126,6 +143,14 @@ export class RobotScene {
       this.path?.add(this.model.headCentre(poseFromArray([...heads.subarray(at, at + 7)])));
     }
     this.isDirty = true;
+  }
+
+  private place(model: RobotModel, { head }: ScenePose, angles: ArrayLike<number>, contacts: ArrayLike<number>): void {
+    if (head === null) {
+      model.rest(angles, contacts);
+    } else {
+      model.move(poseFromArray([...head]), angles, contacts);
+    }
   }
 
   resetView(): void {
@@ -163,18 +188,42 @@ export class RobotScene {
     this.isDirty = true;
   }
 
+  // x and y as in the messages: -1 to 1.
   jointAt(x: number, y: number): number | null {
-    return this.model?.jointAt(this.casterAt(x, y)) ?? null;
+    return this.model?.hit(this.casterAt(x, y))?.joint ?? null;
+  }
+
+  // Begins to turn the joint of the link there. Null if there is none that can be turned from this view.
+  grabJoint(x: number, y: number): number | null {
+    this.pulled = null;
+    const caster = this.casterAt(x, y);
+    const hit = this.model?.hit(caster) ?? null;
+    if (this.model === null || hit === null) {
+      return null;
+    }
+    const { anchor, axis } = this.model.axisOf(hit.joint);
+    const drag = JointDrag.begin(rayOf(caster), hit.point, anchor, axis);
+    if (drag === null) {
+      return null;
+    }
+    this.pulled = { drag, sense: hit.sense };
+    return hit.joint;
+  }
+
+  // Radians of the joint since the grab.
+  dragJoint(x: number, y: number): number {
+    return this.pulled === null ? 0 : this.pulled.sense * this.pulled.drag.angleOf(rayOf(this.casterAt(x, y)));
   }
 
   // Whether there is a link.
-  grab(x: number, y: number): boolean {
-    this.grabbed = this.model?.pointAt(this.casterAt(x, y)) ?? null;
+  grabRobot(x: number, y: number): boolean {
+    const hit = this.model?.hit(this.casterAt(x, y)) ?? null;
+    this.grabbed = hit === null ? null : new THREE.Vector3(...hit.point);
     return this.grabbed !== null;
   }
 
   // The way from where it was grabbed to the pointer: in the plane of the ground, or up and down. Null if nothing is grabbed.
-  drag(x: number, y: number, isHeight: boolean): Vector | null {
+  dragRobot(x: number, y: number, isHeight: boolean): Vector | null {
     const from = this.grabbed;
     if (from === null) {
       return null;
@@ -191,7 +240,7 @@ export class RobotScene {
     return this.lastOffset;
   }
 
-  drop(): void {
+  dropRobot(): void {
     this.grabbed = null;
     this.lastOffset = [0, 0, 0];
     this.isDirty = true;

@@ -8,6 +8,7 @@ export interface SceneColours {
   grid: Color;
   link: Color;
   head: Color;
+  ghost: Color;
   joint: Color;
   highlight: Color;
   contact: Color;
@@ -25,6 +26,7 @@ const light = make({
   grid: 0xa9b2be,
   link: 0x6f8fb5,
   head: 0x2f6fbf,
+  ghost: 0x0f9d7a,
   joint: 0x3d4653,
   highlight: 0xe69f00,
   contact: 0xff4d1a,
@@ -39,6 +41,7 @@ const dark = make({
   grid: 0x4a5461,
   link: 0x7f9fc6,
   head: 0x4d9bff,
+  ghost: 0x5fe0bd,
   joint: 0xb8c2cf,
   highlight: 0xffb833,
   contact: 0xff6a33,

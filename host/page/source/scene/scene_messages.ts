@@ -4,7 +4,8 @@ import type { RobotDocument } from '../wire/messages.js';
 
 export interface ScenePose {
   angles: Float32Array; // radians
-  head: Float64Array; // x, y, z in metres, then the quaternion w, x, y, z
+  head: Float64Array | null; // x, y, z in metres, then the quaternion w, x, y, z; null: nobody knows where it is
+  ghost: Float32Array | null; // angles of the simulation beside the robot, radians
   contacts: Int32Array; // of each link: bit 0 rear, bit 1 front
   run: number;
   isLive: boolean; // only then the path grows
@@ -23,15 +24,19 @@ export type ToScene =
   | { kind: 'zoom'; factor: number }
   | { kind: 'follow'; isOn: boolean }
   | { kind: 'reset_view' }
-  | { kind: 'grab'; x: number; y: number } // as in `point`: the link there, if there is one
-  | { kind: 'drag'; x: number; y: number; right: number; down: number; isHeight: boolean } // turns the view if nothing is grabbed
-  | { kind: 'drop' }
+  | { kind: 'grab_robot'; x: number; y: number } // as in `point`: the link there, if there is one
+  | { kind: 'drag_robot'; x: number; y: number; right: number; down: number; isHeight: boolean } // turns the view if nothing is grabbed
+  | { kind: 'drop_robot' }
+  | { kind: 'grab_joint'; x: number; y: number } // as in `point`: a link, to turn its joint
+  | { kind: 'drag_joint'; x: number; y: number }
   | { kind: 'point'; x: number; y: number }; // -1 to 1, y up
 
 export type FromScene =
-  | { kind: 'grabbed' }
-  | { kind: 'dragged'; offset: Vector } // metres, since it was grabbed
+  | { kind: 'grabbed_robot' }
+  | { kind: 'dragged_robot'; offset: Vector } // metres, since it was grabbed
   | { kind: 'pointed'; joint: number | null }
+  | { kind: 'grabbed_joint'; joint: number | null } // null: nothing that can be turned from here
+  | { kind: 'dragged_joint'; angle: number } // radians since the grab
   | { kind: 'following'; isOn: boolean }
   | { kind: 'detail'; level: number } // 0: all of it
   | { kind: 'failed'; reason: string };

@@ -62,15 +62,19 @@ function apply(view: RobotScene, message: Exclude<ToScene, { kind: 'start' }>): 
       return view.setFollowing(message.isOn);
     case 'reset_view':
       return view.resetView();
-    case 'grab':
-      if (view.grab(message.x, message.y)) post({ kind: 'grabbed' });
+    case 'grab_robot':
+      if (view.grabRobot(message.x, message.y)) post({ kind: 'grabbed_robot' });
       return;
-    case 'drag': {
-      const offset = view.drag(message.x, message.y, message.isHeight);
-      return offset === null ? view.turn(message.right, message.down) : post({ kind: 'dragged', offset });
+    case 'drag_robot': {
+      const offset = view.dragRobot(message.x, message.y, message.isHeight);
+      return offset === null ? view.turn(message.right, message.down) : post({ kind: 'dragged_robot', offset });
     }
-    case 'drop':
-      return view.drop();
+    case 'drop_robot':
+      return view.dropRobot();
+    case 'grab_joint':
+      return post({ kind: 'grabbed_joint', joint: view.grabJoint(message.x, message.y) });
+    case 'drag_joint':
+      return post({ kind: 'dragged_joint', angle: view.dragJoint(message.x, message.y) });
     case 'point':
       return post({ kind: 'pointed', joint: view.jointAt(message.x, message.y) });
   }

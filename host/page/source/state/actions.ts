@@ -6,6 +6,10 @@ export interface Action {
   group: 'Robot' | 'Recording' | 'View' | 'Parameters' | 'Page';
   keys: readonly string[]; // as KeyboardEvent.key, with 'Ctrl+' and 'Shift+' in front; the first one is shown
   isEnabled?: () => boolean;
+  // Why it is not enabled, if not for want of control.
+  obstacle?: () => string | null;
+  // False: not for this kind of robot, so it is not listed and its key does nothing.
+  isShown?: () => boolean;
   // In text fields too: only for what must always work.
   isGlobal?: boolean;
   run(): void;
@@ -38,7 +42,8 @@ export class ActionList {
   ) {}
 
   get all(): readonly Action[] {
-    return [...this.list, ...(this.parent?.all.filter(this.isShared) ?? [])];
+    const own = this.list.filter((action) => action.isShown?.() !== false);
+    return [...own, ...(this.parent?.all.filter(this.isShared) ?? [])];
   }
 
   add(...actions: Action[]): void {

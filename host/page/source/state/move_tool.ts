@@ -13,7 +13,7 @@ const smallestMove = 1e-4; // metres and degrees: a press without a drag
 
 export class MoveTool {
   readonly isOn = signal(false);
-  readonly isPossible = computed(() => this.state.isHolder.value && this.state.session.value?.state === 'paused');
+  readonly isPossible = computed(() => this.state.isHolder.value && this.state.simulation.value?.state === 'paused');
   readonly isActive = computed(() => this.isOn.value && this.isPossible.value);
   // While the robot is dragged; the program has not been asked yet.
   readonly preview = signal<RobotPlace | null>(null);
@@ -24,13 +24,13 @@ export class MoveTool {
     private readonly ask: (place: RobotPlace) => Promise<unknown>,
   ) {}
 
-  get session(): PageState['session'] {
-    return this.state.session;
+  get session(): PageState['simulation'] {
+    return this.state.simulation;
   }
 
   // The head now; null before the first document.
   get head(): Vector | null {
-    const head = this.state.session.value?.head;
+    const head = this.state.simulation.value?.head;
     return head === undefined ? null : [head[0], head[1], head[2]];
   }
 

@@ -1,7 +1,9 @@
 // What the page knows of the robot and its program: the documents as last received, the connection, the notices.
 import { computed, signal } from '@preact/signals-core';
 import type { ConnectionStatus } from '../wire/connection.js';
+import { Freshness } from './freshness.js';
 import type {
+  BusDocument,
   ControlDocument,
   InternalValue,
   NoticeMessage,
@@ -14,6 +16,7 @@ import type {
   SessionDocument,
   TelemetryDocument,
 } from '../wire/messages.js';
+import { obstacleTo, type RobotCommand } from './robot_commands.js';
 
 export interface Notice {
   number: number; // ascending
@@ -38,11 +41,13 @@ export class PageState {
   readonly parameters = signal<readonly Parameter[]>([]);
   readonly internalValues = signal<readonly InternalValue[]>([]);
   readonly session = signal<SessionDocument | null>(null);
+  readonly bus = signal<BusDocument | null>(null);
   readonly control = signal<ControlDocument | null>(null);
   readonly telemetry = signal<TelemetryDocument | null>(null);
   readonly remote = signal<RemoteDocument | null>(null);
   readonly remoteValues = signal<RemoteValues | null>(null);
   readonly recordings = signal<RecordingsDocument | null>(null);
+  readonly freshness = new Freshness();
   readonly notices = signal<readonly Notice[]>([]);
 
   readonly client = computed(() => {
@@ -50,6 +55,15 @@ export class PageState {
     return connection.state === 'open' ? connection.client : null;
   });
   readonly isConnected = computed(() => this.client.value !== null);
+  // The session of a simulated robot, or of one on a bus; the other one is null.
+  readonly simulation = computed(() => {
+    const session = this.session.value;
+    return session === null || session.kind === 'bus' ? null : session;
+  });
+  readonly busSession = computed(() => {
+    const session = this.session.value;
+    return session?.kind === 'bus' ? session : null;
+  });
   // Whether this viewer drives.
   readonly isHolder = computed(
     () => this.client.value !== null && this.control.value?.holder?.client === this.client.value,
@@ -58,6 +72,16 @@ export class PageState {
   readonly otherHolder = computed(() => (this.isHolder.value ? null : (this.control.value?.holder?.name ?? null)));
 
   private lastNotice = 0;
+
+  // Why a robot on a bus cannot do this now; null: it can.
+  obstacleTo(command: RobotCommand): string | null {
+    return obstacleTo(command, {
+      isConnected: this.isConnected.value,
+      isHolder: this.isHolder.value,
+      session: this.busSession.value,
+      bus: this.bus.value,
+    });
+  }
 
   receive(message: ServerMessage): void {
     if (message.type === 'notice') {
@@ -79,6 +103,9 @@ export class PageState {
           break;
         case 'session':
           this.session.value = message.value;
+          break;
+        case 'bus':
+          this.bus.value = message.value;
           break;
         case 'control':
           this.control.value = message.value;

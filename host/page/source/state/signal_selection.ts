@@ -15,7 +15,7 @@ export interface LineGroup {
 export const mostLines = 8;
 
 // The 3D view and the table of joints need these.
-const baseSignals = ['angle', 'setpoint', 'head', 'contact', 'current', 'torque'];
+const baseSignals = ['angle', 'setpoint', 'head', 'contact', 'current', 'torque', 'simulated_angle'];
 
 export class SignalSelection {
   readonly strip = signal('angle');
@@ -24,6 +24,13 @@ export class SignalSelection {
   readonly more = signal<readonly string[]>([]);
   readonly hoveredJoint = signal<number | null>(null);
   private lastGroup = 1;
+
+  // The first plot has these signals of the first joint, until the user has chosen.
+  begin(signals: readonly string[]): void {
+    if (this.groups.value.length === 1 && this.groups.value[0]?.lines.length === 1) {
+      this.groups.value = [{ number: 1, lines: signals.map((name) => ({ signal: name, index: 0 })) }];
+    }
+  }
 
   addGroup(): void {
     this.lastGroup += 1;

@@ -19,9 +19,10 @@ export class StopControl {
     const show = (report: StopReport) => {
       if (press === this.presses) this.report.value = report;
     };
+    const showOutcome = (outcome: StopOutcome) => show({ state: 'stopped', outcome });
     show({ state: 'sent' });
-    this.channel.press().then(
-      (outcome) => show({ state: 'stopped', outcome }),
+    this.channel.press(showOutcome).then(
+      showOutcome,
       (error: Error) => show({ state: 'unconfirmed', reason: error.message }),
     );
   }
@@ -29,6 +30,11 @@ export class StopControl {
   clear(): void {
     this.report.value = { state: 'none' };
   }
+}
+
+// Whether nobody needs to look for the power switch.
+export function isConfirmed(report: StopReport): boolean {
+  return report.state === 'stopped' && (report.outcome.confirmed === null || report.outcome.confirmed === report.outcome.of);
 }
 
 export function describeStop(report: StopReport): string {
@@ -42,7 +48,8 @@ export function describeStop(report: StopReport): string {
     case 'stopped': {
       const { ms, confirmed, of } = report.outcome;
       const numbers = confirmed === null ? '' : `, ${confirmed} of ${of} confirmed`;
-      return `stopped in ${Math.max(1, Math.round(ms))} ms${numbers}`;
+      const advice = isConfirmed(report) ? '' : '. Use the power switch.';
+      return `stopped in ${Math.max(1, Math.round(ms))} ms${numbers}${advice}`;
     }
   }
 }

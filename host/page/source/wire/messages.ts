@@ -133,10 +133,7 @@ export interface Parameter extends Omit<InternalValue, 'internal'> {
   tick: number[]; // from which the confirmed value holds
 }
 
-export interface SessionDocument {
-  state: 'paused' | 'running' | 'stopped' | 'failed';
-  factor: number; // 0: as fast as it goes
-  measured_factor: number | null;
+interface CommonSession {
   run: number;
   tick: number;
   time_s: number;
@@ -145,11 +142,61 @@ export interface SessionDocument {
   changed: boolean;
   undo: string | null;
   redo: string | null;
-  set: 'A' | 'B';
   failure: string | null;
+}
+
+export interface SimulationSession extends CommonSession {
+  kind?: 'simulation';
+  state: 'paused' | 'running' | 'stopped' | 'failed';
+  factor: number; // 0: as fast as it goes
+  measured_factor: number | null;
+  set: 'A' | 'B';
   head?: [number, number, number, number, number, number, number]; // now: x, y, z, then the quaternion w, x, y, z
   moved?: boolean; // by hand, since the last tick
   measures?: Record<string, number>;
+}
+
+// State frames of the modules against the gait of this computer, in the present or last run.
+export interface GaitComparison {
+  compared: number;
+  differences: number;
+  missing: number;
+  first_difference: string | null;
+  end: string | null; // why nothing is compared any more
+}
+
+export interface BusSession extends CommonSession {
+  kind: 'bus';
+  state: 'off' | 'starting' | 'held' | 'running' | 'stopping';
+  gait: GaitComparison | null; // null: no run yet
+  started_with: 'power' | 'run' | null;
+}
+
+export type SessionDocument = SimulationSession | BusSession;
+
+export interface BusModule {
+  node: number;
+  joint: number | null; // null: not of this robot
+  state: string | null; // of NMT
+  drive: string | null;
+  angle: number | null; // degrees
+  current: number | null; // mA
+  temperature: number | null; // degrees Celsius
+  fault: string | null;
+  advice: string | null; // what to do
+  silent: boolean;
+  stop_confirmed: boolean | null; // of the last STOP
+}
+
+export interface BusDocument {
+  address: string;
+  connected: boolean;
+  problem: string | null;
+  load: number; // 0 to 1
+  syncs: number; // of the last second
+  other_host: boolean;
+  latency_ms: number | null;
+  modules: BusModule[];
 }
 
 export interface ControlDocument {
@@ -198,6 +245,7 @@ export interface Documents {
   robot: RobotDocument;
   parameters: (Parameter | InternalValue)[];
   session: SessionDocument;
+  bus: BusDocument;
   control: ControlDocument;
   telemetry: TelemetryDocument;
   remote: RemoteDocument;
@@ -278,6 +326,9 @@ export interface Operations {
   'recording.list': Record<string, never>;
   'recording.open': { file: string };
   'recording.rows': { file: string; signals: readonly string[]; from: number; to: number; points: number };
+  power: { on: boolean };
+  pose: { angles: (number | null)[]; speed: number };
+  scan: Record<string, never>;
   ping: Record<string, never>;
   'remote.bind': { binding: RemoteBinding; place?: number };
   'remote.unbind': { place: number };

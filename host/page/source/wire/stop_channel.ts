@@ -23,7 +23,8 @@ interface Press {
   time: number;
   resolve(outcome: StopOutcome): void;
   reject(error: Error): void;
-  isDone: boolean;
+  complete(outcome: StopOutcome): void;
+  isDone: boolean; // the promise is settled; numbers may still come
 }
 
 export class StopChannel {
@@ -48,6 +49,7 @@ export class StopChannel {
       binary: () => {},
       closed: () => {
         this.isOpen = false;
+        this.presses = this.presses.filter((press) => !press.isDone);
         this.ports.after(reopenDelay, () => this.open());
       },
     });
@@ -55,9 +57,11 @@ export class StopChannel {
   }
 
   // Rejects if neither way had an answer. Each press sends anew: a second press must never be less than the first.
-  press(): Promise<StopOutcome> {
+  // `complete` is called if the numbers come over the socket after the answer to the POST: a module that does not confirm
+  // takes longer than the patience.
+  press(complete: (outcome: StopOutcome) => void = () => {}): Promise<StopOutcome> {
     return new Promise((resolve, reject) => {
-      const press: Press = { time: this.ports.now(), resolve, reject, isDone: false };
+      const press: Press = { time: this.ports.now(), resolve, reject, complete, isDone: false };
       this.presses.push(press);
       if (!this.isOpen) {
         this.post(press);
@@ -72,11 +76,16 @@ export class StopChannel {
 
   private post(press: Press): void {
     this.ports.post().then(
-      () => this.finish([press], null, null),
+      () => {
+        if (press.isDone) return;
+        press.isDone = true;
+        press.resolve({ ms: this.ports.now() - press.time, confirmed: null, of: null });
+        if (!this.isOpen) this.forget(press);
+      },
       (error: Error) => {
         if (!press.isDone) {
           press.isDone = true;
-          this.presses = this.presses.filter((other) => other !== press);
+          this.forget(press);
           press.reject(error);
         }
       },
@@ -86,17 +95,21 @@ export class StopChannel {
   private receive(text: string): void {
     const message = JSON.parse(text) as ServerMessage;
     if (message.type === 'stopped') {
-      this.finish(this.presses, message.confirmed, message.of);
+      const presses = this.presses;
+      this.presses = [];
+      for (const press of presses) {
+        const outcome = { ms: this.ports.now() - press.time, confirmed: message.confirmed, of: message.of };
+        if (press.isDone) {
+          press.complete(outcome);
+        } else {
+          press.isDone = true;
+          press.resolve(outcome);
+        }
+      }
     }
   }
 
-  private finish(presses: Press[], confirmed: number | null, of: number | null): void {
-    for (const press of presses) {
-      if (!press.isDone) {
-        press.isDone = true;
-        press.resolve({ ms: this.ports.now() - press.time, confirmed, of });
-      }
-    }
-    this.presses = this.presses.filter((press) => !press.isDone);
+  private forget(press: Press): void {
+    this.presses = this.presses.filter((other) => other !== press);
   }
 }

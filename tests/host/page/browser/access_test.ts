@@ -1,8 +1,8 @@
 // Who cannot use a mouse, has a narrow window, or works in the dark; and a long robot.
 import assert from 'node:assert/strict';
-import axe from 'axe-core';
 import { after, before, describe, it } from 'node:test';
 import type { Browser, BrowserContextOptions } from 'playwright-core';
+import { seriousProblems } from './support/accessibility.js';
 import { launchBrowser } from './support/browser.js';
 import { countPixels, isBlue, pixelsOf } from './support/pixels.js';
 import { sixty, UiProgram } from './support/ui_program.js';
@@ -10,18 +10,6 @@ import { Viewer } from './support/viewer.js';
 
 const wide = { width: 1400, height: 900 };
 const narrow = { width: 600, height: 900 };
-
-// Problems that axe-core takes as serious or critical.
-async function seriousProblems(viewer: Viewer): Promise<string[]> {
-  await viewer.page.evaluate(axe.source);
-  const violations = await viewer.page.evaluate(async () => {
-    const run = (window as unknown as { axe: typeof axe }).axe.run;
-    return (await run()).violations;
-  });
-  return violations
-    .filter(({ impact }) => impact === 'serious' || impact === 'critical')
-    .map(({ id, nodes }) => `${id}: ${nodes.map((node) => `${node.target.join(' ')} ${node.failureSummary}`).join('; ')}`);
-}
 
 describe('the page', () => {
   let browser: Browser;

@@ -67,7 +67,7 @@ describe('markers and loop', () => {
     for (const time of seen) assert.ok(time >= from && time <= to, `${time} s is in the loop`);
     await viewer.screenshot('loop');
     await viewer.button('Run').focus();
-    await press('o');
+    await press('Shift+P');
     await viewer.button('Play loop').waitFor();
     const still = await cursor();
     await viewer.page.waitForTimeout(300);

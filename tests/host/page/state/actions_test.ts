@@ -70,6 +70,13 @@ describe('actions', () => {
     assert.equal(list.forKey(press('l', { altKey: true }), false), undefined);
   });
 
+  it('of another kind of robot are neither listed nor started', () => {
+    const list = listOf(action('step', ['.'], { isShown: () => false }), action('live', ['L']));
+    assert.equal(list.forKey(press('.'), false), undefined);
+    assert.deepEqual(list.all.map(({ id }) => id), ['live']);
+    assert.deepEqual(list.matching('').map(({ id }) => id), ['live']);
+  });
+
   it('never share a key', () => {
     assert.throws(() => listOf(action('a', ['K']), action('b', ['K'])), /key K: found in a and b/);
   });

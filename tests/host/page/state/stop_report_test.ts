@@ -1,11 +1,17 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { describeStop } from '../../../../host/page/source/state/stop_report.js';
+import { describeStop, isConfirmed } from '../../../../host/page/source/state/stop_report.js';
 
 describe('the report of STOP', () => {
   it('says how long it took and how many confirmed', () => {
     const outcome = { ms: 12.3, confirmed: 5, of: 5 };
     assert.equal(describeStop({ state: 'stopped', outcome }), 'stopped in 12 ms, 5 of 5 confirmed');
+  });
+
+  it('sends to the power switch if a module has not confirmed', () => {
+    const report = { state: 'stopped', outcome: { ms: 500, confirmed: 4, of: 5 } } as const;
+    assert.equal(isConfirmed(report), false);
+    assert.equal(describeStop(report), 'stopped in 500 ms, 4 of 5 confirmed. Use the power switch.');
   });
 
   it('has no numbers of modules after a POST', () => {

@@ -66,6 +66,18 @@ describe('STOP', () => {
     assert.equal((await outcome).ms, 150);
   });
 
+  it('reports the numbers that come after the answer to the POST', async () => {
+    const { clock, channel, first } = setUp(() => Promise.resolve());
+    first.events.opened();
+    const later: unknown[] = [];
+    const outcome = channel.press((numbers) => later.push(numbers));
+    clock.advance(150);
+    assert.equal((await outcome).confirmed, null);
+    clock.advance(350);
+    first.answer({ type: 'stopped', confirmed: 4, of: 5, ms: 500 });
+    assert.deepEqual(later, [{ ms: 500, confirmed: 4, of: 5 }]);
+  });
+
   it('is reported as not confirmed if both ways fail', async () => {
     const { channel } = setUp(() => Promise.reject(new Error('no answer')));
     await assert.rejects(channel.press(), /no answer/);

@@ -13,9 +13,14 @@ export class UiProgram {
     private readonly child: ChildProcess,
   ) {}
 
-  // A scenario, paused at tick 0.
+  // A simulation, paused at tick 0.
   static start(file: string = uniform, more: string[] = []): Promise<UiProgram> {
     return UiProgram.serve([file, '--paused', ...more]);
+  }
+
+  // A robot on a simulated bus.
+  static startOnBus(file: string = uniform, more: string[] = []): Promise<UiProgram> {
+    return UiProgram.serve([file, '--bus', `sim:${file}`, ...more]);
   }
 
   static serve(words: string[]): Promise<UiProgram> {

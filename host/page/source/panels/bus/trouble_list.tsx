@@ -1,0 +1,19 @@
+// What is wrong with modules, and what to do.
+import type { PageApp } from '../../page_app.js';
+import { troublesOf } from '../../state/module_text.js';
+
+export function TroubleList({ app }: { app: PageApp }) {
+  const troubles = troublesOf(app.state.bus.value, app.state.robot.value);
+  return troubles.length === 0 ? null : (
+    <section class="panel trouble-panel" aria-label="Faults" data-testid="troubles">
+      <h2>What to do</h2>
+      <ul>
+        {troubles.map(({ node, text, advice }) => (
+          <li key={node}>
+            <strong>{text}</strong> {advice}
+          </li>
+        ))}
+      </ul>
+    </section>
+  );
+}

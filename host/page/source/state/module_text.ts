@@ -1,0 +1,44 @@
+// A module on the bus in words.
+import type { BusDocument, BusModule, RobotDocument } from '../wire/messages.js';
+
+export interface ModuleState {
+  text: string;
+  tone: 'good' | 'quiet' | 'bad';
+}
+
+// `states` of NMT and of the drive (CiA 402) as the module reports them; trouble first.
+export function moduleState(module: BusModule): ModuleState {
+  if (module.silent) {
+    return { text: 'silent', tone: 'bad' };
+  }
+  if (module.fault !== null) {
+    return { text: module.fault, tone: 'bad' };
+  }
+  if (module.stop_confirmed === false) {
+    return { text: 'STOP not confirmed', tone: 'bad' };
+  }
+  const text = module.drive ?? module.state ?? 'not known';
+  return { text, tone: module.drive === 'operation enabled' ? 'good' : 'quiet' };
+}
+
+export function moduleName(module: BusModule, robot: Pick<RobotDocument, 'joints'> | null): string {
+  return module.joint === null ? `node ${module.node}` : (robot?.joints[module.joint]?.name ?? `node ${module.node}`);
+}
+
+export interface Trouble {
+  node: number;
+  text: string;
+  advice: string;
+}
+
+// What is wrong with modules, and what to do.
+export function troublesOf(bus: BusDocument | null, robot: Pick<RobotDocument, 'joints'> | null): Trouble[] {
+  return (bus?.modules ?? []).flatMap((module) => {
+    const { text, tone } = moduleState(module);
+    if (tone !== 'bad') {
+      return [];
+    }
+    const advice = module.advice ?? (module.silent ? 'Look at its power and its cable.' : '');
+    return [{ node: module.node, text: `${moduleName(module, robot)}: ${text}`, advice }];
+  });
+}

@@ -1,0 +1,71 @@
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+import { moduleState, troublesOf } from '../../../../host/page/source/state/module_text.js';
+import { describeGait } from '../../../../host/page/source/state/gait_text.js';
+import type { BusDocument, BusModule } from '../../../../host/page/source/wire/messages.js';
+
+const healthy: BusModule = {
+  node: 3,
+  joint: 2,
+  state: 'Operational',
+  drive: 'operation enabled',
+  angle: 1,
+  current: 300,
+  temperature: 30,
+  fault: null,
+  advice: null,
+  silent: false,
+  stop_confirmed: true,
+};
+
+const busOf = (...modules: BusModule[]): BusDocument => ({
+  address: 'can0',
+  connected: true,
+  problem: null,
+  load: 0.1,
+  syncs: 100,
+  other_host: false,
+  latency_ms: 2,
+  modules,
+});
+
+describe('a module in words', () => {
+  it('is what its drive reports', () => {
+    assert.deepEqual(moduleState(healthy), { text: 'operation enabled', tone: 'good' });
+    assert.deepEqual(moduleState({ ...healthy, drive: null }), { text: 'Operational', tone: 'quiet' });
+  });
+
+  it('is its trouble first: silence, a fault, a STOP that it has not confirmed', () => {
+    const troubled = { ...healthy, silent: true, fault: 'over-current', stop_confirmed: false };
+    assert.deepEqual(moduleState(troubled), { text: 'silent', tone: 'bad' });
+    assert.deepEqual(moduleState({ ...troubled, silent: false }), { text: 'over-current', tone: 'bad' });
+    assert.deepEqual(moduleState({ ...healthy, stop_confirmed: false }), { text: 'STOP not confirmed', tone: 'bad' });
+  });
+
+  it('is listed with what to do, by the name of its joint or by its node', () => {
+    const robot = { joints: ['J1', 'J2', 'J3'].map((name) => ({ name })) } as Parameters<typeof troublesOf>[1];
+    const faulty = { ...healthy, fault: 'over-current', advice: 'Free the joint.' };
+    const foreign = { ...healthy, node: 17, joint: null, silent: true };
+    const troubles = troublesOf(busOf(healthy, faulty, foreign), robot);
+    assert.deepEqual(troubles.map(({ text }) => text), ['J3: over-current', 'node 17: silent']);
+    assert.equal(troubles[0]?.advice, 'Free the joint.');
+    assert.match(troubles[1]?.advice ?? '', /power.*cable/);
+  });
+});
+
+describe('the comparison with the gait in words', () => {
+  const gait = { compared: 5000, differences: 0, missing: 2, first_difference: null, end: null };
+
+  it('counts, and is good without a difference', () => {
+    assert.deepEqual(describeGait(gait), { text: '5,000 compared, 0 differences, 2 missing', tone: 'good' });
+  });
+
+  it('is bad with a difference, or if nothing came', () => {
+    assert.equal(describeGait({ ...gait, differences: 1 }).tone, 'bad');
+    assert.equal(describeGait({ ...gait, compared: 0 }).tone, 'bad');
+  });
+
+  it('says that there was no run', () => {
+    assert.equal(describeGait(null).tone, 'quiet');
+  });
+});

@@ -178,8 +178,8 @@ RecordedSessionOptions recordings_of(const UiOptions& options) {
 void refuse_robot_options(const UiOptions& options) {
   const ScenarioOptions& scenario = options.scenario;
   const sim::OverrideWords& overrides = scenario.overrides;
-  if (options.paused || options.bus.bus || !scenario.settings.empty() || overrides.seed || overrides.friction ||
-      overrides.at || overrides.heading) {
+  if (options.paused || options.bus.bus || !scenario.settings.empty() || !scenario.moves.empty() || overrides.seed ||
+      overrides.friction || overrides.at || overrides.heading) {
     throw BadInput("found an option of a robot with " + scenario.file + ", expected a scenario");
   }
 }

@@ -73,7 +73,7 @@ class RecordedRunTest : public ::testing::Test {
   TemporaryFolder folder_;
   fs::path path_ = folder_ / "run.proleg";
   sim::Scenario scenario_ = sim::shipped("travelling_wave/uniform");
-  LiveSimulation live_{scenario_, nullptr};
+  LiveSimulation live_{scenario_, {}, nullptr};
 };
 
 TEST_F(RecordedRunTest, GivesTheRowsOfTheFileAndItsExtremes) {

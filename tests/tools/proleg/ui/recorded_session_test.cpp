@@ -74,7 +74,7 @@ class RecordedSessionTest : public ::testing::Test {
  protected:
   void record(const std::string& name, unsigned ticks) {
     const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
-    LiveSimulation live(scenario, nullptr);
+    LiveSimulation live(scenario, {}, nullptr);
     ASSERT_TRUE(live.record(folder_ / name, "simulate", "test", [] { return true; }));
     for (unsigned tick = 0; tick < ticks; ++tick) {
       live.advance();

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 void record(const fs::path& path, unsigned ticks) {
   const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
-  LiveSimulation live(scenario, nullptr);
+  LiveSimulation live(scenario, {}, nullptr);
   ASSERT_TRUE(live.record(path, "simulate", "test", [] { return true; }));
   for (unsigned tick = 0; tick < ticks; ++tick) {
     live.advance();

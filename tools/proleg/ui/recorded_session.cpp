@@ -9,7 +9,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "tools/proleg/ui/operation_arguments.hpp"
+#include "tools/proleg/ui/operation.hpp"
 
 namespace proleg::tools {
 
@@ -78,15 +78,7 @@ json RecordedSession::carry_out(const host::OperationRequest& operation) {
                                                             {"recording.open", &RecordedSession::open},
                                                             {"recording.rows", &RecordedSession::rows},
                                                             {"ping", &RecordedSession::ping}};
-  const auto handler = handlers.find(operation.name);
-  if (handler == handlers.end()) {
-    std::vector<std::string> names;
-    for (const auto& [name, function] : handlers) {
-      names.emplace_back(name);
-    }
-    throw InputError("operation", 0, in_quotes(shortened(operation.name)), "one of " + listed(names));
-  }
-  return (this->*handler->second)(operation.arguments);
+  return (this->*handler_of(handlers, operation.name))(operation.arguments);
 }
 
 RecordedSession::OpenRun& RecordedSession::run_of(const json& arguments) {

@@ -2,8 +2,12 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
@@ -37,6 +41,21 @@ inline std::optional<std::uint32_t> whole_argument(const nlohmann::json& argumen
     throw InputError(name, 0, shortened(found->dump()), expected);
   }
   return found->get<std::uint32_t>();
+}
+
+/// What carries an operation out. Throws InputError, which names all operations, if there is no such one.
+template <typename Handler>
+const Handler& handler_of(const std::map<std::string_view, Handler>& handlers, const std::string& operation) {
+  const auto handler = handlers.find(operation);
+  if (handler != handlers.end()) {
+    return handler->second;
+  }
+  std::vector<std::string> names;
+  names.reserve(handlers.size());
+  for (const auto& [name, function] : handlers) {
+    names.emplace_back(name);
+  }
+  throw InputError("operation", 0, in_quotes(shortened(operation)), "one of " + listed(names));
 }
 
 }  // namespace proleg::tools

@@ -8,6 +8,7 @@ host_packages=(
   libpagmo-dev libga-dev  # the optimiser
   libboost-dev  # Boost.Asio: serial lines, sockets
   libevdev-dev  # gamepads
+  libssl-dev    # TLS of the page
   sqlite3  # not for the build: shows the contents of recordings
 )
 
@@ -22,6 +23,7 @@ test_packages=(
   python3-can python3-serial  # an independent program that uses slcan adapters
   gdb-multiarch     # a debugger for the virtual module
   openocd dfu-util stm32flash libusb-1.0-0-dev  # flash an empty chip: the tests run them on one that is a program
+  openssl           # certificates
   strace            # shows what a test reads
   qemu-system-arm   # another model of the CPU, to compare with
   libbenchmark-dev libmujoco-dev                       # benchmarks

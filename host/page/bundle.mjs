@@ -34,9 +34,11 @@ async function bundlePage(folder) {
     chunkNames: 'chunk-[name]-[hash]',
     metafile: true,
   });
-  // Workers are programs of their own: they share no chunk with the page.
+  // Workers are programs of their own: they share no chunk with the page. The warnings of three.js are for people who write
+  // scenes; its errors stay.
   await build({
     ...page,
+    pure: ['console.warn'],
     entryPoints: { connection_worker: 'source/wire/connection_worker.ts', scene_worker: 'source/scene/scene_worker.ts' },
     format: 'iife',
   });

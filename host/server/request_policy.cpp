@@ -8,6 +8,8 @@ namespace proleg::host {
 namespace {
 
 constexpr std::string_view bearer = "Bearer ";
+constexpr std::array<std::string_view, 3> local_names{"127.0.0.1", "localhost", "[::1]"};
+constexpr std::uint16_t https_port = 443;
 
 constexpr std::array<std::pair<unsigned, std::string_view>, 11> statuses{{{200, "OK"},
                                                                           {400, "Bad Request"},
@@ -21,13 +23,20 @@ constexpr std::array<std::pair<unsigned, std::string_view>, 11> statuses{{{200, 
                                                                           {431, "Request Header Fields Too Large"},
                                                                           {503, "Service Unavailable"}}};
 
+/// Browsers leave out the port that they take anyway.
+std::string host_of(const ServerAddress& address, std::string_view name) {
+  return std::string(name) + (address.has_tls && address.port == https_port ? "" : ":" + std::to_string(address.port));
+}
+
+std::string origin_of(const ServerAddress& address, std::string_view host) {
+  return (address.has_tls ? "https://" : "http://") + std::string(host);
+}
+
 /// A foreign name that resolves to this computer (DNS rebinding) is another Host.
-bool is_own_host(std::string_view host, std::uint16_t port) {
-  const std::array<std::string_view, 3> names{"127.0.0.1", "localhost", "[::1]"};
-  const std::string end = ":" + std::to_string(port);
-  return std::any_of(names.begin(), names.end(), [&](std::string_view name) {
-    return host.size() == name.size() + end.size() && host.starts_with(name) && host.ends_with(end);
-  });
+bool is_own_host(std::string_view host, const ServerAddress& address) {
+  const auto is_host = [&](std::string_view name) { return host == host_of(address, name); };
+  return std::any_of(local_names.begin(), local_names.end(), is_host) ||
+         std::any_of(address.names.begin(), address.names.end(), is_host);
 }
 
 RequestDecision refuse(unsigned status) { return {RequestAction::refuse, status}; }
@@ -36,8 +45,16 @@ RequestDecision refuse(unsigned status) { return {RequestAction::refuse, status}
 
 std::string_view path_of(std::string_view target) { return target.substr(0, target.find('?')); }
 
-RequestDecision decide_request(const RequestFields& request, std::uint16_t port, const AccessToken& token) {
-  if (request.hosts.size() != 1 || !is_own_host(request.hosts.front(), port)) {
+std::string first_origin(const ServerAddress& address) {
+  return origin_of(address, host_of(address, address.names.empty() ? local_names.front() : address.names.front()));
+}
+
+std::string socket_origin(const ServerAddress& address, std::string_view host) {
+  return (address.has_tls ? "wss://" : "ws://") + std::string(host);
+}
+
+RequestDecision decide_request(const RequestFields& request, const ServerAddress& address, const AccessToken& token) {
+  if (request.hosts.size() != 1 || !is_own_host(request.hosts.front(), address)) {
     return refuse(421);
   }
   const bool is_post = request.method == "POST";
@@ -45,7 +62,7 @@ RequestDecision decide_request(const RequestFields& request, std::uint16_t port,
     return refuse(405);
   }
   if (request.origins.size() > 1 ||
-      (!request.origins.empty() && request.origins.front() != "http://" + std::string(request.hosts.front()))) {
+      (!request.origins.empty() && request.origins.front() != origin_of(address, request.hosts.front()))) {
     return refuse(403);
   }
   const std::string_view path = path_of(request.target);
@@ -69,8 +86,8 @@ std::string_view status_words(unsigned status) {
   return found == statuses.end() ? std::string_view{} : found->second;
 }
 
-std::string response_header(unsigned status, std::string_view content_type, std::size_t length, std::string_view host,
-                            bool is_kept_alive) {
+std::string response_header(unsigned status, std::string_view content_type, std::size_t length,
+                            std::string_view socket_origin, bool is_kept_alive) {
   std::string text = "HTTP/1.1 " + std::to_string(status) + " ";
   text += status_words(status);
   text += "\r\nContent-Type: ";
@@ -87,9 +104,9 @@ std::string response_header(unsigned status, std::string_view content_type, std:
   text +=
       "\r\nContent-Security-Policy: default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; "
       "img-src 'self' data: blob:; connect-src 'self'";
-  if (!host.empty()) {
-    text += " ws://";
-    text += host;
+  if (!socket_origin.empty()) {
+    text += " ";
+    text += socket_origin;
   }
   text +=
       "; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"

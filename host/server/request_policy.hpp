@@ -10,6 +10,19 @@
 
 namespace proleg::host {
 
+/// Where clients reach a server.
+struct ServerAddress {
+  std::uint16_t port = 0;
+  bool has_tls = false;
+  std::vector<std::string> names;  ///< beside those of this computer; as in a URL
+};
+
+/// "https://robot.local:8123": of the first name, or of 127.0.0.1 if there is none.
+[[nodiscard]] std::string first_origin(const ServerAddress& address);
+
+/// "wss://robot.local:8123", where `host` is an accepted Host.
+[[nodiscard]] std::string socket_origin(const ServerAddress& address, std::string_view host);
+
 /// What decides about an HTTP request.
 struct RequestFields {
   std::string_view method;
@@ -30,15 +43,16 @@ struct RequestDecision {
   unsigned status = 0;  ///< HTTP status of a refusal
 };
 
-/// Decides what a server at this port does with a request (docs/page-interface.md, "Addresses"). Whether a file exists
-/// is not decided here.
-[[nodiscard]] RequestDecision decide_request(const RequestFields& request, std::uint16_t port,
+/// Decides what the server at this address does with a request (docs/page-interface.md, "Addresses"). Whether a file
+/// exists is not decided here.
+[[nodiscard]] RequestDecision decide_request(const RequestFields& request, const ServerAddress& address,
                                              const AccessToken& token);
 
-/// The start of a response, with the empty line. `host` is the request's Host if the server accepted it, else empty.
+/// The start of a response, with the empty line. The page may connect to `socket_origin`, which is empty if the server
+/// did not accept the request's Host.
 /// An error has no body but the words of its status.
 [[nodiscard]] std::string response_header(unsigned status, std::string_view content_type, std::size_t length,
-                                          std::string_view host, bool is_kept_alive);
+                                          std::string_view socket_origin, bool is_kept_alive);
 
 /// "Not Found"; empty for a status that the server does not send.
 [[nodiscard]] std::string_view status_words(unsigned status);

@@ -22,7 +22,7 @@ class SessionOutput {
   /// The values of all signals of a tick. Ticks of a run follow one another; a run has another number than the one
   /// before it. Throws std::invalid_argument if the row does not have the layout's size.
   virtual void add_row(std::uint16_t run, std::uint32_t tick, std::span<const std::int32_t> row) = 0;
-  /// The operation had its effect. `value`: what the viewer gets.
+  /// The operation had its effect. `value`: what the viewer gets. Bytes (json::binary) are sent as a binary message.
   virtual void answer(RequestId request, const nlohmann::json& value) = 0;
   /// The operation was refused, with one line.
   virtual void refuse(RequestId request, const std::string& error) = 0;

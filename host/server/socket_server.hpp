@@ -1,32 +1,63 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <cstdint>
+#include <deque>
 #include <memory>
+#include <vector>
 
+#include "host/server/connection.hpp"
+#include "host/server/request_policy.hpp"
+#include "host/server/server_certificate.hpp"
+#include "host/server/server_types.hpp"
 #include "host/server/session_link.hpp"
 
 namespace proleg::host {
 
-/// The sockets of a web server: HTTP and WebSocket on 127.0.0.1. It runs in the io_context, and so does the hub.
-class SocketServer {
+ServerTime server_now();
+
+/// Takes connections, and wakes them when there is something to send. Connections share it.
+class SocketServer : public std::enable_shared_from_this<SocketServer> {
  public:
-  /// Listens at once. port 0: any free one. Throws std::runtime_error with one line.
-  SocketServer(boost::asio::io_context& context, std::uint16_t port, std::shared_ptr<SessionLink> link);
+  SocketServer(boost::asio::io_context& context, std::uint16_t port,
+               std::shared_ptr<const ServerCertificate> certificate, std::shared_ptr<SessionLink> link);
 
-  [[nodiscard]] std::uint16_t port() const;
-
-  // From any thread.
-
-  /// Has the link deliver what the session has said, and sends it.
+  void accept();
+  /// From any thread.
   void post_delivery();
-  /// Ends all connections and takes no more. The handlers that are left keep the link.
   void post_stop();
 
- private:
-  class Service;
+  [[nodiscard]] const ServerAddress& address() const { return address_; }
+  [[nodiscard]] boost::asio::io_context& context() { return context_; }
+  [[nodiscard]] SessionLink& link() { return *link_; }
 
-  std::shared_ptr<Service> service_;
+  /// The connection ends with this service.
+  void add(const std::shared_ptr<Connection>& connection) { connections_.push_back(connection); }
+  /// After each event: sends what can be sent, and waits for the next deadline.
+  void serve();
+
+ private:
+  using Connections = std::deque<std::weak_ptr<Connection>>;
+
+  void listen(std::uint16_t port);
+  void accepted(boost::asio::ip::tcp::socket socket);
+  void stop();
+  /// Those that have not ended; forgets the others.
+  [[nodiscard]] static std::vector<std::shared_ptr<Connection>> living(Connections& connections);
+
+  boost::asio::io_context& context_;
+  const std::shared_ptr<const ServerCertificate> certificate_;
+  const std::shared_ptr<SessionLink> link_;
+  boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::steady_timer timer_;
+  boost::asio::steady_timer accept_timer_;
+  ServerTime timer_deadline_ = no_deadline;
+  ServerAddress address_;
+  bool has_ended_ = false;
+  Connections connections_;
+  Connections stop_connections_;  ///< reserved for POST /stop, the oldest first
 };
 
 }  // namespace proleg::host

@@ -11,6 +11,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t max_reason_bytes = 123;  // RFC 6455, 5.5
+constexpr std::size_t bytes_result_header = 16;
 
 std::string dumped(const json& value) { return value.dump(-1, ' ', false, json::error_handler_t::replace); }
 
@@ -35,6 +36,20 @@ json result_of(std::uint64_t id, bool is_ok, const json& value, const std::strin
     result["error"] = error;
   }
   return result;
+}
+
+/// An answer in bytes: 0, where telemetry has the number of a subscription, then the viewer's id, then the bytes.
+std::string bytes_result(std::uint64_t id, const json::binary_t& bytes) {
+  std::string message;
+  message.reserve(bytes_result_header + bytes.size());
+  for (unsigned byte = 0; byte < 8; ++byte) {
+    message.push_back('\0');
+  }
+  for (unsigned byte = 0; byte < 8; ++byte) {
+    message.push_back(static_cast<char>(id >> (8 * byte) & 0xFFU));
+  }
+  message.append(bytes.begin(), bytes.end());
+  return message;
 }
 
 }  // namespace
@@ -68,19 +83,33 @@ bool Viewer::begin_operation(std::uint64_t id) {
 }
 
 void Viewer::finish_operation(std::uint64_t id, bool is_ok, const json& value, const std::string& error) {
-  queue_reply(dumped(result_of(id, is_ok, value, error)), id);
+  if (!is_ok || !value.is_binary()) {
+    queue_reply({std::make_shared<const std::string>(dumped(result_of(id, is_ok, value, error))), id});
+    return;
+  }
+  const json::binary_t& bytes = value.get_binary();
+  if (waiting_bytes_ > 0 && waiting_bytes_ + bytes.size() > max_waiting_bytes) {
+    finish_operation(id, false, nullptr, "too many answers in bytes wait to be sent");
+    return;
+  }
+  waiting_bytes_ += bytes.size();
+  queue_reply({std::make_shared<const std::string>(bytes_result(id, bytes)), id, bytes.size(), true});
 }
 
 void Viewer::queue_stopped(std::string message) { stopped_ = std::make_shared<const std::string>(std::move(message)); }
 
 void Viewer::queue_notice(NoticeLevel level, const std::string& text) { queue_reply(notice_message(level, text)); }
 
-void Viewer::queue_reply(std::string message, std::optional<std::uint64_t> finished) {
+void Viewer::queue_reply(std::string message) {
+  queue_reply(Reply{std::make_shared<const std::string>(std::move(message))});
+}
+
+void Viewer::queue_reply(Reply reply) {
   if (replies_.size() >= max_replies) {
     close(1008, "found " + std::to_string(max_replies) + " replies that were not read, expected a viewer that reads");
     return;
   }
-  replies_.push_back({std::make_shared<const std::string>(std::move(message)), finished});
+  replies_.push_back(std::move(reply));
 }
 
 void Viewer::set_subscription(std::optional<Subscription> subscription, const TickHistory& history) {
@@ -103,7 +132,8 @@ std::optional<OutgoingMessage> Viewer::next_message(ServerTime now, const Shared
     if (reply.finished) {
       pending_.erase(*reply.finished);
     }
-    return OutgoingMessage{false, reply.message};
+    waiting_bytes_ -= reply.bytes;
+    return OutgoingMessage{reply.is_binary, reply.message};
   }
   if (is_only_stop_) {
     return std::nullopt;

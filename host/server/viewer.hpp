@@ -44,6 +44,8 @@ class Viewer {
   static constexpr ServerTime telemetry_interval{8};
   static constexpr std::size_t max_pending_operations = 64;
   static constexpr std::size_t max_replies = 256;
+  /// Of answers in bytes that wait to be sent; one may be larger.
+  static constexpr std::size_t max_waiting_bytes = std::size_t{8} << 20U;
 
   Viewer(ClientId client, ServerTime opened) : client_(client), hello_deadline_(opened + hello_timeout) {}
 
@@ -59,6 +61,7 @@ class Viewer {
   void welcome(const std::string& name, bool is_only_stop, const std::string& program);
   /// Counts an operation as pending until finish(). False: it was refused, or the connection ends.
   [[nodiscard]] bool begin_operation(std::uint64_t id);
+  /// A value that is bytes becomes a binary message, any other one a message `result`.
   void finish_operation(std::uint64_t id, bool is_ok, const nlohmann::json& value, const std::string& error);
   /// A message `stopped`. One that was not sent yet is replaced.
   void queue_stopped(std::string message);
@@ -78,11 +81,14 @@ class Viewer {
  private:
   struct Reply {
     SharedText message;
-    std::optional<std::uint64_t> finished;  ///< the operation that is not pending any more when this is sent
+    std::optional<std::uint64_t> finished =
+        std::nullopt;       ///< the operation that is not pending any more when this is sent
+    std::size_t bytes = 0;  ///< of an answer in bytes
+    bool is_binary = false;
   };
 
-  void queue_reply(std::string message, std::optional<std::uint64_t> finished = std::nullopt);
-  void queue_result(std::uint64_t id, const nlohmann::json& result, bool is_finished);
+  void queue_reply(std::string message);
+  void queue_reply(Reply reply);
   [[nodiscard]] std::optional<OutgoingMessage> next_telemetry(ServerTime now, const SharedState& state);
   [[nodiscard]] bool has_unread_rows(const SharedState& state) const;
 
@@ -96,6 +102,7 @@ class Viewer {
   std::optional<std::uint64_t> last_operation_;
   std::set<std::uint64_t> pending_;
   std::deque<Reply> replies_;
+  std::size_t waiting_bytes_ = 0;
   SharedText stopped_;
   bool has_sent_welcome_ = false;
 

@@ -11,11 +11,15 @@ WebServer::WebServer(boost::asio::io_context& context, ServerOptions options, Ro
     : link_(std::make_shared<SessionLink>(
           std::move(options.token), std::move(options.page), options.history_bytes,
           ViewerHub::Options{std::move(options.program), std::move(options.free_operations)}, session)),
-      sockets_(std::make_unique<SocketServer>(context, options.port, link_)) {}
+      sockets_(std::make_shared<SocketServer>(context, options.port, std::move(options.certificate), link_)) {
+  sockets_->accept();
+}
 
 WebServer::~WebServer() { stop(); }
 
-std::uint16_t WebServer::port() const { return sockets_->port(); }
+std::uint16_t WebServer::port() const { return sockets_->address().port; }
+
+std::string WebServer::origin() const { return first_origin(sockets_->address()); }
 
 void WebServer::stop() { sockets_->post_stop(); }
 

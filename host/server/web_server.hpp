@@ -16,19 +16,21 @@
 
 namespace proleg::host {
 
+class ServerCertificate;
 class SocketServer;
 struct SessionLink;
 
 struct ServerOptions {
   AccessToken token;
   PageFiles page;
-  std::string program;                    ///< name and version, for the welcome
-  std::set<std::string> free_operations;  ///< operations that anybody may use; all others need control
-  std::uint16_t port = 0;                 ///< 0: any free one
-  std::size_t history_bytes = 4U << 20U;  ///< memory for rows that a viewer has not read
+  std::string program;                                     ///< name and version, for the welcome
+  std::set<std::string> free_operations;                   ///< operations that anybody may use; all others need control
+  std::uint16_t port = 0;                                  ///< 0: any free one
+  std::shared_ptr<const ServerCertificate> certificate{};  ///< all interfaces, TLS only; null: 127.0.0.1, plain
+  std::size_t history_bytes = 4U << 20U;                   ///< memory for rows that a viewer has not read
 };
 
-/// Serves the page of one session on 127.0.0.1 (docs/page-interface.md), in the thread that runs the io_context. The
+/// Serves the page of one session (docs/page-interface.md), in the thread that runs the io_context. The
 /// session is in another one.
 class WebServer final : public SessionOutput {
  public:
@@ -40,6 +42,8 @@ class WebServer final : public SessionOutput {
   WebServer& operator=(const WebServer&) = delete;
 
   [[nodiscard]] std::uint16_t port() const;
+  /// Where the page is: "http://127.0.0.1:8123", or with the first name of the certificate and https.
+  [[nodiscard]] std::string origin() const;
 
   void publish(const std::string& document, const nlohmann::json& value) override;
   void set_signals(const SignalLayout& layout, std::uint32_t tick_us) override;
@@ -58,7 +62,7 @@ class WebServer final : public SessionOutput {
   void wake();
 
   std::shared_ptr<SessionLink> link_;
-  std::unique_ptr<SocketServer> sockets_;
+  std::shared_ptr<SocketServer> sockets_;
 };
 
 }  // namespace proleg::host

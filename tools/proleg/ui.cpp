@@ -1,4 +1,4 @@
-// proleg ui: a page in the browser that shows and drives a simulated robot.
+// proleg ui: a page in the browser that shows and drives a simulated robot, and shows recordings.
 
 #include <boost/asio/io_context.hpp>
 #include <chrono>
@@ -16,6 +16,7 @@
 #include "host/transport/bus_address.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/record/recording_file.hpp"
 #include "sim/scenario/robot_move.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/built_page.hpp"
@@ -26,8 +27,11 @@
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/ui/browser.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
+#include "tools/proleg/ui/lan_access.hpp"
+#include "tools/proleg/ui/recorded_session.hpp"
 #include "tools/proleg/ui/remote_session.hpp"
 #include "tools/proleg/ui/robot_document.hpp"
+#include "tools/proleg/ui/session_router.hpp"
 #include "tools/proleg/ui/simulated_session.hpp"
 
 namespace {
@@ -35,9 +39,12 @@ namespace {
 using namespace proleg;
 using namespace proleg::tools;
 
+constexpr const char* recording_extension = ".proleg";
+
 struct UiOptions {
   ScenarioOptions scenario;
   BusOptions bus;
+  LanOptions lan;
   std::string port = "0";
   std::string recordings = ".";
   std::optional<std::string> page;
@@ -142,12 +149,39 @@ host::BindingStore bindings_beside(const UiOptions& options, bool has_file, cons
   host::BindingStore store(path);
   ParameterWords words;
   words.set_robot(robot_document(scenario, "simulation"));
-  words.set_parameters(parameters_document(scenario, ParameterTable(scenario)));
+  words.set_parameters(parameters_document(scenario, ParameterTable(scenario, scenario)));
   std::size_t number = 0;
   for (const host::Binding& binding : store.read_bindings()) {
     check_binding(binding, words, path.string() + ": binding " + std::to_string(++number));
   }
   return store;
+}
+
+/// What the page shows besides the robot that FILE describes; FILE may also be a recording or a folder.
+RecordedSessionOptions recordings_of(const UiOptions& options) {
+  const std::filesystem::path file(options.scenario.file);
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {
+    return {file, std::nullopt, true};
+  }
+  if (sim::is_recording(file)) {
+    if (file.extension() != recording_extension) {
+      throw InputError(file.string(), 0, "a recording with another name", "a name that ends in .proleg");
+    }
+    return {file.has_parent_path() ? file.parent_path() : ".", file.filename().string(), true};
+  }
+  require_folder(options.recordings);
+  return {options.recordings, std::nullopt, false};
+}
+
+/// Options of a robot have no effect without one.
+void refuse_robot_options(const UiOptions& options) {
+  const ScenarioOptions& scenario = options.scenario;
+  const sim::OverrideWords& overrides = scenario.overrides;
+  if (options.paused || options.bus.bus || !scenario.settings.empty() || !scenario.moves.empty() || overrides.seed ||
+      overrides.friction || overrides.at || overrides.heading) {
+    throw BadInput("found an option of a robot with " + scenario.file + ", expected a scenario");
+  }
 }
 
 void refuse_what_only_a_simulation_has(const UiOptions& options) {
@@ -167,16 +201,23 @@ void refuse_what_only_a_simulation_has(const UiOptions& options) {
 int serve(UiOptions& options) {
   const bool has_file = !options.scenario.file.empty();
   const std::uint16_t port = parse_port(options.port);
-  require_folder(options.recordings);
-  const ScenarioRun run = prepare(options.scenario, !options.bus.bus);
-  print_warnings("proleg ui", run.scenario);
+  const RecordedSessionOptions recordings = recordings_of(options);
+  std::shared_ptr<const host::ServerCertificate> certificate = open_certificate(options.lan, "proleg ui");
+  std::optional<ScenarioRun> run;
+  if (recordings.is_alone) {
+    refuse_robot_options(options);
+  } else {
+    run = prepare(options.scenario, !options.bus.bus);
+    print_warnings("proleg ui", run->scenario);
+  }
   const std::filesystem::path page_folder =
       options.page ? std::filesystem::path(*options.page) : built_page("page", "index.html");
   const host::AccessToken token = host::AccessToken::make();
   host::ServerOptions server{token, host::PageFiles(page_folder), std::string("proleg ") + build_id, {}, port};
+  server.certificate = std::move(certificate);
   for (const std::vector<std::string>& operations :
        {options.bus.bus ? BusSession::free_operations() : SimulatedSession::free_operations(),
-        RemoteSession::free_operations()}) {
+        RecordedSession::free_operations(), RemoteSession::free_operations()}) {
     server.free_operations.insert(operations.begin(), operations.end());
   }
   std::optional<BusAccess> bus;
@@ -186,22 +227,31 @@ int serve(UiOptions& options) {
   }
   catch_interrupts();
   boost::asio::io_context context{1};
+  host::SessionRequests recording_requests;
   host::SessionRequests requests;
-  RemoteSession remote(requests, bindings_beside(options, has_file, run.scenario), RemoteSession::kernel_devices);
-  host::WebServer page(context, std::move(server), remote);
-  const RemoteThread remote_thread(remote, page);
+  std::optional<RemoteSession> remote;
+  if (run) {
+    remote.emplace(requests, bindings_beside(options, has_file, run->scenario), RemoteSession::kernel_devices);
+  }
+  SessionRouter router(recording_requests, remote ? &*remote : nullptr);
+  host::WebServer page(context, std::move(server), router);
+  const RecordedSession recorded(recordings, recording_requests, page);
+  std::optional<RemoteThread> remote_thread;
+  if (remote) {
+    remote_thread.emplace(*remote, page);
+  }
   std::optional<SimulatedSession> simulated;
   std::optional<BusSession> driven;
   if (bus) {
-    driven.emplace(run.scenario, *bus, options.bus.address(), BusSessionOptions{options.recordings, build_id}, requests,
-                   remote);
-  } else {
-    simulated.emplace(run.scenario, &run.losses,
+    driven.emplace(run->scenario, *bus, options.bus.address(), BusSessionOptions{options.recordings, build_id},
+                   requests, *remote);
+  } else if (run) {
+    simulated.emplace(run->scenario, &run->losses,
                       SimulatedSessionOptions{options.recordings, simulate_command(options, has_file),
                                               options.scenario.settings, has_file, build_id, options.paused},
-                      requests, remote);
+                      requests, *remote);
   }
-  const PageAddress address(page.port(), token.text());
+  const PageAddress address(page.origin(), page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"
             << std::flush;
   if (!options.no_browser && !address.open()) {
@@ -225,16 +275,20 @@ int main(int argc, char** argv) {
   CommandLine command_line(
       "proleg ui",
       "Serves a page on this computer that shows a simulated robot, drives it and changes its parameters while it "
-      "moves, and opens it in the browser. Without FILE: a caterpillar with five joints. Ends with Ctrl-C.");
+      "moves, and opens it in the browser. With a recording or a folder it shows recordings, also those that still "
+      "grow. "
+      "Without FILE: a caterpillar with five joints. Ends with Ctrl-C.");
   UiOptions options;
-  command_line.add_option("FILE", options.scenario.file, "scenario, a *.simulation.xml file");
+  command_line.add_option("FILE", options.scenario.file,
+                          "scenario, a *.simulation.xml file; or a recording, or a folder with recordings");
   add_override_options(command_line, options.scenario);
   add_move_option(command_line, options.scenario);
   command_line
       .add_option("--bus", options.bus.bus,
                   "show and drive the robot on this bus instead of a simulated one: " + host::bus_address_syntax())
       .value_name("BUS");
-  command_line.add_option("--port", options.port, "TCP port on 127.0.0.1; 0: any free one").shows_default();
+  command_line.add_option("--port", options.port, "TCP port; 0: any free one").shows_default();
+  add_lan_options(command_line, options.lan);
   command_line.add_option("--recordings", options.recordings, "folder for recordings")
       .value_name("FOLDER")
       .shows_default();

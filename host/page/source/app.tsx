@@ -27,6 +27,6 @@ if (token === null) {
   const app = new PageApp(token, viewerName(navigator.userAgent));
   addActions(app);
   addRobotActions(app);
-  listenToKeys(app.actions, () => app.stop.press());
+  listenToKeys({ forKey: (press, isText) => app.shownActions.forKey(press, isText) }, () => app.stop.press());
   render(<Frame app={app} />, root);
 }

@@ -16,7 +16,7 @@ function usesArrows(target: EventTarget | null): boolean {
   return target instanceof Element && target.closest('input, select, [role="slider"], [data-arrows]') !== null;
 }
 
-export function listenToKeys(actions: ActionList, stop: (() => void) | null): void {
+export function listenToKeys(actions: Pick<ActionList, 'forKey'>, stop: (() => void) | null): void {
   window.addEventListener(
     'keydown',
     (event) => {

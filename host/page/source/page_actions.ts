@@ -201,6 +201,14 @@ export function addActions(app: PageApp): void {
       isShown: isSimulation,
       run: () => toggleDialog('command_line'),
     },
+    { id: 'live_page', title: 'Page Live', group: 'Page', keys: ['1'], run: () => void (app.shownPage.value = 'live') },
+    {
+      id: 'recordings_page',
+      title: 'Page Recordings',
+      group: 'Page',
+      keys: ['2'],
+      run: () => void (app.shownPage.value = 'recordings'),
+    },
     {
       id: 'value_table',
       title: 'Table of all values: copy and paste as in a spreadsheet',

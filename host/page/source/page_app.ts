@@ -17,6 +17,8 @@ import { decodeTelemetry } from './wire/telemetry_message.js';
 import { StopChannel } from './wire/stop_channel.js';
 import { Subscriptions } from './wire/subscription.js';
 
+export type PageName = 'live' | 'recordings';
+
 const freshnessPeriod = 500; // milliseconds
 
 export class PageApp implements RobotView {
@@ -27,6 +29,9 @@ export class PageApp implements RobotView {
   readonly selection = new SignalSelection();
   readonly actions = new ActionList();
   readonly wholePath = signal(null);
+  // The page that is shown, and the actions of the recording on the page Recordings.
+  readonly shownPage = signal<PageName>('live');
+  readonly recordingActions = signal<ActionList | null>(null);
   readonly operations: OperationQueue;
   readonly sets: SetQueue;
   readonly mover: MoveTool;
@@ -60,6 +65,9 @@ export class PageApp implements RobotView {
     effect(() => this.subscribe());
     effect(() => this.noteRun(this.state.session.value?.run));
     effect(() => {
+      if (this.state.recordings.value?.alone === true) this.shownPage.value = 'recordings';
+    });
+    effect(() => {
       if (!this.poses.isPossible) this.poses.forget();
     });
     setInterval(() => this.state.freshness.check(performance.now()), freshnessPeriod);
@@ -69,9 +77,23 @@ export class PageApp implements RobotView {
     return new Worker('scene_worker.js');
   }
 
+  // Those that keys and the palette find: of the page that is shown.
+  get shownActions(): ActionList {
+    return this.shownPage.value === 'recordings' ? (this.recordingActions.value ?? this.actions) : this.actions;
+  }
+
   newGesture(): number {
     this.lastGesture += 1;
     return this.lastGesture;
+  }
+
+  // A live robot has every row in one history.
+  get sampledRows(): TelemetryHistory {
+    return this.history;
+  }
+
+  get rowsAtCursor(): TelemetryHistory {
+    return this.history;
   }
 
   // Ticks in a second.

@@ -11,7 +11,9 @@ import type { ShownTime } from './state/time_view.js';
 
 export interface RobotView {
   readonly state: Pick<PageState, 'robot' | 'telemetry' | 'bus' | 'busSession'>;
-  readonly history: TelemetryHistory;
+  readonly history: TelemetryHistory; // for lines: of a long time, the smallest and largest values
+  readonly sampledRows: TelemetryHistory; // the same time, each row with the values of one tick
+  readonly rowsAtCursor: TelemetryHistory; // every tick about the time cursor
   readonly time: ShownTime;
   readonly selection: SignalSelection;
   readonly actions: ActionList;

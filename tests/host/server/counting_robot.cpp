@@ -1,6 +1,6 @@
-// host_counting_robot FOLDER: a web server whose robot is a counter, for the tests in this folder. It prints one line,
-// "PORT TOKEN", and ends when its standard input does. The robot has five joints and counts ticks in a thread of its
-// own, 1 ms each ("rate" changes that).
+// host_counting_robot FOLDER [CERTIFICATE]: a web server whose robot is a counter, for the tests in this folder. It
+// prints one line, "PORT TOKEN ORIGIN", and ends when its standard input does. The robot has five joints and counts
+// ticks in a thread of its own, 1 ms each ("rate" changes that).
 //
 //   free operations: "value" (the number that "add" changes), "rss" (resident memory of the process in KiB), "wait"
 //   (answered by "finish"), "finish", "large" (a document of so many bytes, so many times)
@@ -21,6 +21,7 @@
 #include <thread>
 #include <vector>
 
+#include "host/server/server_certificate.hpp"
 #include "host/server/web_server.hpp"
 
 namespace {
@@ -165,16 +166,19 @@ class CountingRobot final : public RobotSession {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "found " << argc - 1 << " words, expected the folder of the page\n";
+  if (argc != 2 && argc != 3) {
+    std::cerr << "found " << argc - 1 << " words, expected the folder of the page, and perhaps a certificate\n";
     return 2;
   }
   boost::asio::io_context context;
   CountingRobot robot;
   const AccessToken token = AccessToken::make();
   ServerOptions options{token, PageFiles(argv[1]), "counting robot 1", {"value", "rss", "wait", "finish", "large"}};
+  if (argc == 3) {
+    options.certificate = std::make_shared<ServerCertificate>(argv[2], argv[2]);
+  }
   WebServer server(context, std::move(options), robot);
-  std::cout << server.port() << ' ' << token.text() << std::endl;
+  std::cout << server.port() << ' ' << token.text() << ' ' << server.origin() << std::endl;
 
   std::thread serving([&context] { context.run(); });
   std::thread counting([&robot, &server] { robot.run(server); });

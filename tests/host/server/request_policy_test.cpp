@@ -5,15 +5,19 @@
 namespace proleg::host {
 namespace {
 
-constexpr std::uint16_t port = 8123;
+const ServerAddress local{8123, false, {}};
+const ServerAddress lan{8123, true, {"robot.local", "[2001:db8::7]"}};
 
 class RequestPolicy : public testing::Test {
  protected:
   RequestFields get(std::string_view target) const { return {"GET", target, {"localhost:8123"}, {}, {}, false}; }
   RequestFields post() const { return {"POST", "/stop", {"localhost:8123"}, {}, {bearer}, false}; }
-  RequestAction action(const RequestFields& request) const { return decide_request(request, port, token).action; }
+  RequestAction action(const RequestFields& request) const { return decide_request(request, local, token).action; }
   /// Status of a refusal; 0 if there is none.
-  unsigned refusal(const RequestFields& request) const { return decide_request(request, port, token).status; }
+  unsigned refusal(const RequestFields& request) const { return refusal(request, local); }
+  unsigned refusal(const RequestFields& request, const ServerAddress& address) const {
+    return decide_request(request, address, token).status;
+  }
 
   const AccessToken token = AccessToken::make();
   const std::string bearer = "Bearer " + token.text();
@@ -58,6 +62,43 @@ TEST_F(RequestPolicy, AnOriginIsThatOfTheHost) {
     request.origins = {"http://localhost:8123", "http://evil.example"};
     EXPECT_EQ(refusal(request), 403U);
   }
+}
+
+TEST_F(RequestPolicy, OtherComputersUseANameOfTheCertificateAndHttps) {
+  RequestFields request = get("/");
+  for (const std::string host : {"robot.local:8123", "[2001:db8::7]:8123", "localhost:8123", "127.0.0.1:8123"}) {
+    const std::string origin = "https://" + host;
+    const std::string plain_origin = "http://" + host;
+    request.hosts = {host};
+    request.origins = {origin};
+    EXPECT_EQ(refusal(request, lan), 0U) << host;
+    request.origins = {plain_origin};
+    EXPECT_EQ(refusal(request, lan), 403U) << host;
+  }
+  request.origins = {};
+  for (const std::string_view host :
+       {"robot.local", "robot.local:8124", "robot:8123", "xrobot.local:8123", "evil.example:8123"}) {
+    request.hosts = {host};
+    EXPECT_EQ(refusal(request, lan), 421U) << host;
+  }
+  request.hosts = {"robot.local:8123"};
+  EXPECT_EQ(refusal(request), 421U) << "without a certificate";
+}
+
+TEST_F(RequestPolicy, BrowsersLeaveOutThePortOfHttps) {
+  const ServerAddress https{443, true, {"robot.local"}};
+  RequestFields request = get("/");
+  request.hosts = {"robot.local"};
+  request.origins = {"https://robot.local"};
+  EXPECT_EQ(refusal(request, https), 0U);
+  EXPECT_EQ(first_origin(https), "https://robot.local");
+}
+
+TEST(ServerAddress, TheFirstNameIsInTheAddressOfThePage) {
+  EXPECT_EQ(first_origin(local), "http://127.0.0.1:8123");
+  EXPECT_EQ(first_origin(lan), "https://robot.local:8123");
+  EXPECT_EQ(socket_origin(local, "localhost:8123"), "ws://localhost:8123");
+  EXPECT_EQ(socket_origin(lan, "robot.local:8123"), "wss://robot.local:8123");
 }
 
 TEST_F(RequestPolicy, OnlyStopIsPosted) {
@@ -108,7 +149,7 @@ TEST(PathOf, IsTheTargetWithoutTheQuery) {
 }
 
 TEST(ResponseHeader, HasTheFieldsThatKeepOtherPagesOut) {
-  EXPECT_EQ(response_header(200, "text/css", 7, "localhost:8123", true),
+  EXPECT_EQ(response_header(200, "text/css", 7, "ws://localhost:8123", true),
             "HTTP/1.1 200 OK\r\n"
             "Content-Type: text/css\r\n"
             "Content-Length: 7\r\n"

@@ -230,6 +230,46 @@ TEST_F(Hub, RefusesTheSixtyFifthPendingOperation) {
   EXPECT_EQ(session.operations.size(), 65U);
 }
 
+TEST_F(Hub, SendsAnAnswerInBytesAsABinaryMessage) {
+  const ClientId client = join("desk");
+  received(client);
+  constexpr std::uint64_t id = 0x0102030405ULL;
+  operate(client, id, "look");
+  hub.answer({session.operations[0].request, true, json::binary({7, 8, 0, 9}), {}});
+  const auto message = hub.next_message(now, client);
+  ASSERT_TRUE(message);
+  EXPECT_TRUE(message->is_binary);
+  EXPECT_EQ(*message->bytes, std::string("\0\0\0\0\0\0\0\0\5\4\3\2\1\0\0\0\7\10\0\11", 20));
+  EXPECT_FALSE(hub.next_message(now, client));
+}
+
+TEST_F(Hub, KeepsFewAnswersInBytesForAViewerThatDoesNotRead) {
+  const ClientId client = join("desk");
+  received(client);
+  const std::vector<std::uint8_t> bytes(3U << 20U);
+  const auto ask = [&](std::uint64_t id) {
+    operate(client, id, "look");
+    hub.answer({session.operations.back().request, true, json::binary(bytes), {}});
+  };
+  for (std::uint64_t id = 0; id < 20; ++id) {
+    ask(id);
+  }
+  std::size_t sent = 0;
+  std::size_t refused = 0;
+  while (const auto message = hub.next_message(now, client)) {
+    sent += message->is_binary ? message->bytes->size() : 0;
+    refused += message->is_binary ? 0 : 1;
+    EXPECT_TRUE(message->is_binary ||
+                json::parse(*message->bytes)["error"] == "too many answers in bytes wait to be sent");
+  }
+  EXPECT_LE(sent, (8U << 20U) + 64);
+  EXPECT_GT(sent, 0U);
+  EXPECT_EQ(refused, 18U);
+  ask(20);
+  const auto message = hub.next_message(now, client);
+  EXPECT_TRUE(message && message->is_binary) << "after it has read, it gets the next one";
+}
+
 TEST_F(Hub, EndsTheConnectionOfAViewerThatAsksAndDoesNotRead) {
   const ClientId client = join("desk");
   for (std::uint64_t id = 0; id < 400; ++id) {

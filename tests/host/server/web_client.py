@@ -6,11 +6,13 @@ import json
 import os
 import select
 import socket
+import ssl
 import struct
 import time
 
 TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10
 WAIT_S = 20  # a limit for a test that fails, not a requirement
+TLS = None  # an ssl.SSLContext: connections are encrypted
 GUID = b"258EAFA5-E914-47DA-95CA-C5AB0DC85B11"
 
 
@@ -23,8 +25,29 @@ class Closed(Exception):
         self.reason = reason
 
 
-def connect(port):
-    return socket.create_connection(("127.0.0.1", port), timeout=WAIT_S)
+class EncryptedSocket(ssl.SSLSocket):
+    """Reports the end of a connection as a plain socket does."""
+
+    def sendall(self, data, flags=0):
+        try:
+            super().sendall(data, flags)
+        except ssl.SSLError as error:
+            raise ConnectionResetError from error
+
+    def recv(self, size=1024, flags=0):
+        try:
+            return super().recv(size, flags)
+        except ssl.SSLError as error:
+            raise ConnectionResetError from error
+
+
+def connect(port, receive_buffer=None):
+    sock = socket.socket()
+    if receive_buffer:
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
+    sock.settimeout(WAIT_S)
+    sock.connect(("127.0.0.1", port))
+    return TLS.wrap_socket(sock, server_hostname="localhost") if TLS else sock
 
 
 def read_all(sock):
@@ -82,11 +105,7 @@ def frame(opcode, payload, masked=True, final=True):
 
 class Viewer:
     def __init__(self, port, token=None, name="viewer", fields=(), only=None, receive_buffer=None):
-        self.sock = socket.socket()
-        if receive_buffer:
-            self.sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
-        self.sock.settimeout(WAIT_S)
-        self.sock.connect(("127.0.0.1", port))
+        self.sock = connect(port, receive_buffer)
         self.data = b""
         self.documents = {}
         self.results = {}

@@ -9,7 +9,7 @@
 #include "shared/computer/output/output_check.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/reader.hpp"
-#include "tools/proleg/ui/operation_arguments.hpp"
+#include "tools/proleg/ui/operation.hpp"
 
 namespace proleg::tools {
 namespace {

@@ -34,8 +34,8 @@ bool has_desktop() {
 
 }  // namespace
 
-PageAddress::PageAddress(std::uint16_t port, const std::string& token)
-    : url_("http://127.0.0.1:" + std::to_string(port) + "/#" + token) {
+PageAddress::PageAddress(const std::string& origin, std::uint16_t port, const std::string& token)
+    : url_(origin + "/#" + token) {
   const std::string name = "proleg-ui-" + std::to_string(port);
   file_ = private_folder() / (name + ".url");
   link_ = private_folder() / (name + ".html");

@@ -10,13 +10,13 @@ namespace proleg::tools {
 /// are in $XDG_RUNTIME_DIR, or else in the folder for temporary files.
 class PageAddress {
  public:
-  /// Throws FileError.
-  PageAddress(std::uint16_t port, const std::string& token);
+  /// origin: of the server at this port, e.g. "http://127.0.0.1:8123". Throws FileError.
+  PageAddress(const std::string& origin, std::uint16_t port, const std::string& token);
   ~PageAddress();
   PageAddress(const PageAddress&) = delete;
   PageAddress& operator=(const PageAddress&) = delete;
 
-  /// http://127.0.0.1:PORT/#TOKEN
+  /// ORIGIN/#TOKEN
   [[nodiscard]] const std::string& url() const { return url_; }
   /// Has the address as its only line, for other programs.
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }

@@ -13,7 +13,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/master/controlwords.hpp"
 #include "tools/proleg/ui/bus_document.hpp"
-#include "tools/proleg/ui/operation_arguments.hpp"
+#include "tools/proleg/ui/operation.hpp"
 #include "tools/proleg/ui/recording_place.hpp"
 #include "tools/proleg/ui/robot_document.hpp"
 #include "tools/proleg/ui/robot_row.hpp"
@@ -197,12 +197,7 @@ json BusSession::carry_out(const host::OperationRequest& operation) {
       {"pose", &BusSession::pose},   {"set", &BusSession::set},     {"undo", &BusSession::undo},
       {"redo", &BusSession::redo},   {"reset", &BusSession::reset}, {"record", &BusSession::record},
       {"scan", &BusSession::scan},   {"ping", &BusSession::ping}};
-  const auto handler = handlers.find(operation.name);
-  if (handler == handlers.end()) {
-    throw InputError("operation", 0, in_quotes(shortened(operation.name)),
-                     "an operation of a robot on a bus: docs/page-interface.md");
-  }
-  return (this->*handler->second)(operation.arguments);
+  return (this->*handler_of(handlers, operation.name))(operation.arguments);
 }
 
 DrivenRobot& BusSession::powered() {

@@ -93,7 +93,7 @@ json recording_document(const sim::Recording& recording) {
 }
 
 json recorded_parameters_document(const sim::Recording& recording, const sim::Scenario& scenario) {
-  ParameterTable table(scenario);
+  ParameterTable table(scenario, scenario);
   for (const sim::RecordedSetting& setting : recording.parameters()) {
     if (setting.commit) {
       continue;

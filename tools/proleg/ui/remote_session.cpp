@@ -14,7 +14,7 @@
 #include "host/remote/remote_document.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "tools/proleg/ui/operation_arguments.hpp"
+#include "tools/proleg/ui/operation.hpp"
 
 namespace proleg::tools {
 namespace {

@@ -13,7 +13,7 @@
 #include "sim/measure/measure.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "tools/proleg/ui/actuation_file.hpp"
-#include "tools/proleg/ui/operation_arguments.hpp"
+#include "tools/proleg/ui/operation.hpp"
 #include "tools/proleg/ui/recording_place.hpp"
 #include "tools/proleg/ui/robot_document.hpp"
 #include "tools/proleg/ui/telemetry_row.hpp"
@@ -153,16 +153,7 @@ json SimulatedSession::carry_out(const host::OperationRequest& operation) {
                                                             {"file.diff", &SimulatedSession::tell_file_diff},
                                                             {"file.apply", &SimulatedSession::apply_to_file},
                                                             {"ping", &SimulatedSession::ping}};
-  const auto handler = handlers.find(operation.name);
-  if (handler == handlers.end()) {
-    std::vector<std::string> names;
-    names.reserve(handlers.size());
-    for (const auto& [name, function] : handlers) {
-      names.emplace_back(name);
-    }
-    throw InputError("operation", 0, in_quotes(shortened(operation.name)), "one of " + listed(names));
-  }
-  return (this->*handler->second)(operation.arguments);
+  return (this->*handler_of(handlers, operation.name))(operation.arguments);
 }
 
 void SimulatedSession::require_sound() const {

@@ -145,9 +145,9 @@ const stopHint = 'Buttons: Enter. Esc and Space stop the robot, in this window t
 export function DialogView({ app }: { app: PageApp }) {
   switch (openDialog.value) {
     case 'keys':
-      return <Keys actions={app.actions} hint={stopHint} />;
+      return <Keys actions={app.shownActions} hint={stopHint} />;
     case 'palette':
-      return <Palette actions={app.actions} />;
+      return <Palette actions={app.shownActions} />;
     case 'command_line':
       return <CommandLine app={app} />;
     case 'file_diff':

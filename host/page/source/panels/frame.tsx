@@ -10,20 +10,35 @@ const livePage = loadLater(() => import('./live_page.js').then((module) => modul
 // A robot on a bus has panels of its own.
 const robotPage = loadLater(() => import('./bus/robot_page.js').then((module) => module.RobotPage));
 const dialogs = loadLater(() => import('./dialog_views.js').then((module) => module.DialogView));
+const recordingsPage = loadLater(() => import('../recordings/recordings_page.js').then((module) => module.RecordingsPage));
 livePage();
 dialogs();
+let wereRecordingsShown = false; // their page is loaded when it is first shown
 
+// A page stays when another one is shown.
 export function Frame({ app }: { app: PageApp }) {
+  const page = app.shownPage.value;
+  const isAlone = app.state.recordings.value?.alone === true;
+  if (page === 'recordings') wereRecordingsShown = true;
   const robot = app.state.robot.value;
   return (
     <>
       <TopBar app={app} />
       <Bands app={app} />
       <main id="page">
-        {robot === null ? (
-          <p class="wait">Waiting for the robot …</p>
-        ) : (
-          <LaterView app={app} part={robot.kind === 'bus' ? robotPage() : livePage()} wait="Loading …" />
+        {!isAlone && (
+          <div hidden={page !== 'live'}>
+            {robot === null ? (
+              <p class="wait">Waiting for the robot …</p>
+            ) : (
+              <LaterView app={app} part={robot.kind === 'bus' ? robotPage() : livePage()} wait="Loading …" />
+            )}
+          </div>
+        )}
+        {wereRecordingsShown && (
+          <div hidden={page !== 'recordings'}>
+            <LaterView app={app} part={recordingsPage()} wait="Loading …" />
+          </div>
         )}
       </main>
       <NoticeList state={app.state} />

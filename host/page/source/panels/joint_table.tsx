@@ -105,7 +105,7 @@ export function JointTable({ app }: { app: RobotView }) {
     let row = 0; // of the history, which the table is being filled with
     let next = Infinity; // joint
     return onFrame((now) => {
-      const { history, time } = app;
+      const { rowsAtCursor: history, time } = app;
       const tick = time.shownTick(app.newestTick);
       const key = `${history.run}/${history.end}/${tick}`;
       const elements = body.current?.rows ?? [];

@@ -4,8 +4,8 @@ import { noValue } from '../wire/messages.js';
 
 // In the signal's unit; null if there is none.
 export function valueOf(app: RobotView, signal: string, joint: number, row: number): number | null {
-  const raw = app.history.valueAt(signal, joint, row);
-  return raw === noValue ? null : raw * (app.history.rings.get(signal)?.scale ?? 1);
+  const raw = app.rowsAtCursor.valueAt(signal, joint, row);
+  return raw === noValue ? null : raw * (app.rowsAtCursor.rings.get(signal)?.scale ?? 1);
 }
 
 export function numberText(value: number | null, decimals: number): string {
@@ -15,7 +15,7 @@ export function numberText(value: number | null, decimals: number): string {
 
 // Contacts belong to links; a joint has those of the link in front of it: rear, front.
 export function contactText(app: RobotView, joint: number, row: number): string {
-  const bits = app.history.valueAt('contact', joint, row);
+  const bits = app.rowsAtCursor.valueAt('contact', joint, row);
   return bits === noValue ? '' : `${(bits & 1) !== 0 ? '●' : '○'} ${(bits & 2) !== 0 ? '●' : '○'}`;
 }
 

@@ -15,10 +15,10 @@ import { signalTitle, valueName } from './value_names.js';
 const readoutPeriod = 100; // milliseconds
 
 function valueText(app: RobotView, line: Line): string {
-  const { history, time } = app;
-  const row = Math.min(history.end - 1, history.rowAtTick(time.shownTick(app.newestTick)));
-  const raw = history.valueAt(line.signal, line.index, row);
-  return raw === noValue ? '–' : formatMeasured(raw * (history.rings.get(line.signal)?.scale ?? 1));
+  const { rowsAtCursor, time } = app;
+  const row = Math.min(rowsAtCursor.end - 1, rowsAtCursor.rowAtTick(time.shownTick(app.newestTick)));
+  const raw = rowsAtCursor.valueAt(line.signal, line.index, row);
+  return raw === noValue ? '–' : formatMeasured(raw * (rowsAtCursor.rings.get(line.signal)?.scale ?? 1));
 }
 
 function LineChip({ app, group, line, colour }: { app: RobotView; group: LineGroup; line: Line; colour: string }) {

@@ -203,7 +203,7 @@ function followPose(app: RobotView, send: (message: ToScene) => void, readout: {
   let unwritten: ScenePose | null = null; // whose head is not written yet
   let lastReadout = 0;
   const sendChangedPose = () => {
-    const { history, time, mover } = app;
+    const { rowsAtCursor: history, time, mover } = app;
     const tick = time.shownTick(app.newestTick);
     const key = `${history.run}/${history.end}/${tick}`;
     const isSame =

@@ -51,7 +51,7 @@ class StripDrawing {
 
   draw(now: number): void {
     const { app, canvas } = this;
-    const { history, selection, time } = app;
+    const { sampledRows: history, selection, time } = app;
     const box = canvas.getBoundingClientRect();
     const newest = app.newestTick;
     const range = time.range(newest);

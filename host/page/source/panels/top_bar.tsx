@@ -1,5 +1,5 @@
 // The bar that is always there: which robot, its state, who has control, STOP.
-import type { PageApp } from '../page_app.js';
+import type { PageApp, PageName } from '../page_app.js';
 import type { PageState } from '../state/page_state.js';
 import { describeStop, isConfirmed } from '../state/stop_report.js';
 import type { SessionDocument } from '../wire/messages.js';
@@ -32,16 +32,17 @@ function RobotName({ state }: { state: PageState }) {
   const robot = state.robot.value;
   const session = state.session.value;
   const isConnected = state.isConnected.value;
-  const badge = robot === null ? null : badges[robot.kind];
+  const isAlone = state.recordings.value?.alone === true;
+  const badge = robot !== null ? badges[robot.kind] : isAlone ? badges.recording : null;
   return (
     <div class="robot-name">
       {badge !== null && (
-        <strong class={`badge ${robot?.kind}`} title={`${badge.title} ${state.bus.value?.address ?? ''}`}>
+        <strong class={`badge ${robot?.kind ?? 'recording'}`} title={`${badge.title} ${state.bus.value?.address ?? ''}`}>
           {badge.text} {state.bus.value?.address}
         </strong>
       )}
       <span class="name" title={robot?.file}>
-        {robot?.name ?? 'no robot yet'}
+        {robot?.name ?? (isAlone ? state.recordings.value?.folder : 'no robot yet')}
       </span>
       {session !== null && (
         <span
@@ -163,17 +164,31 @@ function Stop({ app }: { app: PageApp }) {
   );
 }
 
+function PageButton({ app, page, title, number }: { app: PageApp; page: PageName; title: string; number: number }) {
+  return (
+    <button
+      type="button"
+      aria-current={app.shownPage.value === page ? 'page' : undefined}
+      onClick={() => (app.shownPage.value = page)}
+      title={`${title} (${number})`}
+    >
+      {title}
+    </button>
+  );
+}
+
 export function TopBar({ app }: { app: PageApp }) {
+  // Only recordings: nothing to drive and nothing to stop.
+  const isAlone = app.state.recordings.value?.alone === true;
   return (
     <header class="top-bar">
       <nav aria-label="Pages">
-        <button type="button" aria-current="page">
-          Live
-        </button>
+        {!isAlone && <PageButton app={app} page="live" title="Live" number={1} />}
+        <PageButton app={app} page="recordings" title="Recordings" number={2} />
       </nav>
       <RobotName state={app.state} />
       <Figures state={app.state} />
-      <Control app={app} />
+      {!isAlone && <Control app={app} />}
       <div class="tools">
         <button
           type="button"
@@ -203,7 +218,7 @@ export function TopBar({ app }: { app: PageApp }) {
           {themeIcon}
         </button>
       </div>
-      <Stop app={app} />
+      {!isAlone && <Stop app={app} />}
     </header>
   );
 }

@@ -1,9 +1,9 @@
 // What changed or failed in the run: a click goes there.
-import type { PlayerApp } from './player_app.js';
+import type { PlayedRecording } from './player_app.js';
 
 const kinds = { change: 'change', fault: 'fault', restart: 'module' } as const;
 
-export function MarkList({ app }: { app: PlayerApp }) {
+export function MarkList({ app }: { app: PlayedRecording }) {
   const { marks } = app.recording;
   if (marks.length === 0) {
     return null;

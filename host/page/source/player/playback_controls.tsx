@@ -3,10 +3,10 @@ import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
 import { pauseIcon, runIcon } from '../panels/icons.js';
 import { speeds } from '../state/playback.js';
-import type { PlayerApp } from './player_app.js';
+import type { PlayedRecording } from './player_app.js';
 import { Timeline } from './timeline.js';
 
-function Position({ app }: { app: PlayerApp }) {
+function Position({ app }: { app: PlayedRecording }) {
   const tick = useRef<HTMLElement>(null);
   const time = useRef<HTMLElement>(null);
   useEffect(
@@ -34,7 +34,7 @@ function Position({ app }: { app: PlayerApp }) {
   );
 }
 
-export function PlaybackControls({ app }: { app: PlayerApp }) {
+export function PlaybackControls({ app }: { app: PlayedRecording }) {
   const { time } = app;
   const isPlaying = time.isPlaying.value;
   return (

@@ -1,9 +1,10 @@
 // The actions of the player, with their keys.
 import { openDialog, toggleDialog } from '../dialogs.js';
 import { nextTheme } from '../theme.js';
-import type { PlayerApp } from './player_app.js';
+import type { PlayedRecording, PlayerApp } from './player_app.js';
 
-export function addPlayerActions({ actions, time, tickRate }: PlayerApp): void {
+// Those of a time line, wherever it is. `playKeys`: Space plays only where there is no robot to stop.
+export function addPlaybackActions({ actions, time, tickRate }: PlayedRecording, playKeys: readonly string[]): void {
   const step = (id: string, title: string, key: string, ticks: number) => ({
     id,
     title,
@@ -12,7 +13,7 @@ export function addPlayerActions({ actions, time, tickRate }: PlayerApp): void {
     run: () => time.step(ticks),
   });
   actions.add(
-    { id: 'play', title: 'Play, or pause', group: 'Recording', keys: ['Space', 'K'], run: () => time.toggle() },
+    { id: 'play', title: 'Play, or pause', group: 'Recording', keys: playKeys, run: () => time.toggle() },
     step('tick_back', 'One tick back', 'ArrowLeft', -1),
     step('tick_on', 'One tick on', 'ArrowRight', 1),
     step('second_back', 'One second back', 'Shift+ArrowLeft', -tickRate),
@@ -28,6 +29,12 @@ export function addPlayerActions({ actions, time, tickRate }: PlayerApp): void {
       keys: ['W'],
       run: () => void (time.part.value = null),
     },
+  );
+}
+
+export function addPlayerActions(app: PlayerApp): void {
+  addPlaybackActions(app, ['Space', 'K']);
+  app.actions.add(
     {
       id: 'palette',
       title: 'Find an action',

@@ -1,6 +1,6 @@
 // The parts of the player, put together.
 import { signal } from '@preact/signals-core';
-import { historyFor, loadTicks, type RecordingSource } from '../data/recording_source.js';
+import { historyFor, loadTicks, type RecordingDocuments, type RecordingSource } from '../data/recording_source.js';
 import type { TelemetryHistory } from '../data/telemetry_history.js';
 import { wholePathOf } from '../panels/scene_pose.js';
 import type { RobotView } from '../robot_view.js';
@@ -9,7 +9,14 @@ import { Playback } from '../state/playback.js';
 import { SignalSelection } from '../state/signal_selection.js';
 import type { RecordingDocument, RobotDocument, TelemetryDocument } from '../wire/messages.js';
 
-export class PlayerApp implements RobotView {
+// A recording that is played, wherever its rows come from.
+export interface PlayedRecording extends RobotView {
+  readonly recording: RecordingDocument;
+  readonly parameters: RecordingDocuments['parameters'];
+  readonly time: Playback;
+}
+
+export class PlayerApp implements PlayedRecording {
   readonly state;
   readonly recording: RecordingDocument;
   readonly history: TelemetryHistory;
@@ -38,6 +45,14 @@ export class PlayerApp implements RobotView {
     this.recording = recording;
     this.history = historyFor(recording.last_tick - recording.first_tick + 1);
     this.time = new Playback(recording.first_tick, recording.last_tick, this.tickRate);
+  }
+
+  get sampledRows(): TelemetryHistory {
+    return this.history;
+  }
+
+  get rowsAtCursor(): TelemetryHistory {
+    return this.history;
   }
 
   get parameters() {

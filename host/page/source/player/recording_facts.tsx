@@ -1,7 +1,7 @@
 // What the recording says of itself: where it comes from, its parameters at the start, its figures.
 import { formatRaw } from '../state/parameter_values.js';
 import type { Parameter } from '../wire/messages.js';
-import type { PlayerApp } from './player_app.js';
+import type { PlayedRecording } from './player_app.js';
 
 // One value, or those of all joints from the head.
 function valuesText(parameter: Parameter): string {
@@ -23,7 +23,7 @@ function Row({ name, children }: { name: string; children: string }) {
   );
 }
 
-export function RecordingFacts({ app }: { app: PlayerApp }) {
+export function RecordingFacts({ app }: { app: PlayedRecording }) {
   const { recording } = app;
   const robot = app.state.robot.value;
   const parameters = app.parameters.filter((value): value is Parameter => !value.internal);

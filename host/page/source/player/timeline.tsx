@@ -1,20 +1,22 @@
 // The time line: the whole recording, the time cursor, the part that strip and plots show, and marks.
 import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
-import type { PlayerApp } from './player_app.js';
+import type { PlayedRecording } from './player_app.js';
 
-export function Timeline({ app }: { app: PlayerApp }) {
+export function Timeline({ app }: { app: PlayedRecording }) {
   const track = useRef<HTMLDivElement>(null);
   const thumb = useRef<HTMLDivElement>(null);
   const { time } = app;
-  const length = Math.max(1, time.last - time.first);
-  const percent = (tick: number) => `${Math.max(0, Math.min(100, ((tick - time.first) / length) * 100))}%`;
+  // A recording may grow.
+  const length = () => Math.max(1, time.last - time.first);
+  const percent = (tick: number) => `${Math.max(0, Math.min(100, ((tick - time.first) / length()) * 100))}%`;
   useEffect(() => {
-    let last = -1;
+    let last = '';
     return onFrame(() => {
       const tick = time.cursor.peek();
-      if (tick !== last && track.current !== null && thumb.current !== null) {
-        last = tick;
+      const key = `${tick}/${time.last}`;
+      if (key !== last && track.current !== null && thumb.current !== null) {
+        last = key;
         thumb.current.style.left = percent(tick);
         track.current.setAttribute('aria-valuenow', String(tick));
         track.current.setAttribute('aria-valuetext', `${(tick / app.tickRate).toFixed(2)} seconds`);
@@ -23,7 +25,7 @@ export function Timeline({ app }: { app: PlayerApp }) {
   }, []);
   const seek = (event: PointerEvent) => {
     const box = (track.current as HTMLDivElement).getBoundingClientRect();
-    time.pick(time.first + ((event.clientX - box.left) / Math.max(1, box.width)) * length);
+    time.pick(time.first + ((event.clientX - box.left) / Math.max(1, box.width)) * length());
   };
   const part = time.part.value;
   return (

@@ -35,8 +35,15 @@ function nameOf(press: KeyPress): string {
 export class ActionList {
   private readonly list: Action[] = [];
 
+  // `parent`: actions that this list has, too, if they fulfil the condition. Of one key, the action of this list counts.
+  constructor(
+    private readonly parent: ActionList | null = null,
+    private readonly isShared: (action: Action) => boolean = () => true,
+  ) {}
+
   get all(): readonly Action[] {
-    return this.list.filter((action) => action.isShown?.() !== false);
+    const own = this.list.filter((action) => action.isShown?.() !== false);
+    return [...own, ...(this.parent?.all.filter(this.isShared) ?? [])];
   }
 
   add(...actions: Action[]): void {

@@ -10,6 +10,7 @@ import type {
   Parameter,
   RemoteDocument,
   RemoteValues,
+  RecordingsDocument,
   RobotDocument,
   ServerMessage,
   SessionDocument,
@@ -45,6 +46,7 @@ export class PageState {
   readonly telemetry = signal<TelemetryDocument | null>(null);
   readonly remote = signal<RemoteDocument | null>(null);
   readonly remoteValues = signal<RemoteValues | null>(null);
+  readonly recordings = signal<RecordingsDocument | null>(null);
   readonly freshness = new Freshness();
   readonly notices = signal<readonly Notice[]>([]);
 
@@ -116,6 +118,9 @@ export class PageState {
           break;
         case 'remote_values':
           this.remoteValues.value = message.value;
+          break;
+        case 'recordings':
+          this.recordings.value = message.value;
           break;
       }
     }

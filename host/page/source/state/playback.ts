@@ -13,13 +13,25 @@ export class Playback implements ShownTime {
   readonly part = signal<TickRange | null>(null);
   readonly cursor = computed(() => Math.floor(this.position.value));
   private readonly position;
+  private readonly end;
 
   constructor(
     readonly first: number,
-    readonly last: number,
+    last: number,
     private readonly tickRate: number,
   ) {
     this.position = signal(first);
+    this.end = signal(last);
+  }
+
+  get last(): number {
+    return this.end.value;
+  }
+
+  // The recording has grown. `follows`: the time cursor goes with its end.
+  extend(last: number, follows: boolean): void {
+    this.end.value = Math.max(last, this.end.peek());
+    if (follows) this.seek(this.last);
   }
 
   // Plays from the start again at the end.

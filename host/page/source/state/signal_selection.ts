@@ -20,6 +20,8 @@ const baseSignals = ['angle', 'setpoint', 'head', 'contact', 'current', 'torque'
 export class SignalSelection {
   readonly strip = signal('angle');
   readonly groups = signal<readonly LineGroup[]>([{ number: 1, lines: [{ signal: 'angle', index: 0 }] }]);
+  // Of panels beside strip and lines.
+  readonly more = signal<readonly string[]>([]);
   readonly hoveredJoint = signal<number | null>(null);
   private lastGroup = 1;
 
@@ -55,7 +57,7 @@ export class SignalSelection {
 
   // The signals to subscribe to, of those that the robot has.
   needed(signals: readonly Signal[]): Signal[] {
-    const names = new Set([...baseSignals, this.strip.value]);
+    const names = new Set([...baseSignals, this.strip.value, ...this.more.value]);
     for (const group of this.groups.value) {
       group.lines.forEach((line) => names.add(line.signal));
     }

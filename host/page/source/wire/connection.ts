@@ -8,6 +8,7 @@ import {
   type ResultMessage,
   type ServerMessage,
 } from './messages.js';
+import { answeredBy } from './bytes_result.js';
 
 export interface Socket {
   send(text: string): void;
@@ -92,7 +93,7 @@ export class Connection {
     this.socket = this.ports.openSocket({
       opened: () => ifCurrent(() => this.greet()),
       text: (text) => ifCurrent(() => this.receive(text)),
-      binary: (buffer) => ifCurrent(() => this.receiveTelemetry(buffer)),
+      binary: (buffer) => ifCurrent(() => this.receiveBinary(buffer)),
       closed: (code, reason) => ifCurrent(() => this.lose(code, reason)),
     });
   }
@@ -129,9 +130,14 @@ export class Connection {
     this.send({ type: 'hello', protocol, token: this.token, name: this.name });
   }
 
-  private receiveTelemetry(buffer: ArrayBuffer): void {
+  private receiveBinary(buffer: ArrayBuffer): void {
     this.lastMessage = this.ports.now();
-    this.events.telemetry(buffer);
+    const id = answeredBy(buffer);
+    if (id === null) {
+      this.events.telemetry(buffer);
+    } else {
+      this.receiveResult({ type: 'result', id, ok: true, value: buffer });
+    }
   }
 
   private receive(text: string): void {

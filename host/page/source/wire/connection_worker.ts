@@ -56,7 +56,7 @@ self.onmessage = (event: MessageEvent<ToConnectionWorker>) => {
       status: (status) => post({ kind: 'status', status }),
       message: (received) => post({ kind: 'message', message: received }),
       telemetry: (buffer) => post({ kind: 'telemetry', buffer }, [buffer]),
-      result: (key, result) => post({ kind: 'result', key, result }),
+      result: (key, result) => post({ kind: 'result', key, result }, result.value instanceof ArrayBuffer ? [result.value] : []),
       latency: (ms) => post({ kind: 'latency', ms }),
     });
     connection.open();

@@ -75,6 +75,34 @@ export interface RecordingDocument {
   marks: Mark[]; // by ascending tick
 }
 
+// The same behind a server, which reads the file while it shows it.
+export interface ServedRecordingDocument extends RecordingDocument {
+  indexed: number; // ticks from the first on whose smallest and largest values are known
+  damage: string | null; // why not all can be
+}
+
+// Where the recordings of this program are.
+export interface RecordingsDocument {
+  folder: string;
+  open: string | null; // to show at once
+  alone: boolean; // there is no robot
+}
+
+// A file of `recording.list`. What was not read yet, or cannot be read, is missing.
+export interface RecordedFile {
+  name: string;
+  bytes: number;
+  time_ms: number; // of the last change, since 1970
+  described: boolean;
+  program?: string;
+  scenario?: string;
+  algorithms?: string[];
+  joints?: number;
+  seconds?: number;
+  finished?: boolean;
+  problem?: string | null;
+}
+
 export interface Mark {
   kind: 'change' | 'fault' | 'restart';
   tick: number;
@@ -222,6 +250,7 @@ export interface Documents {
   telemetry: TelemetryDocument;
   remote: RemoteDocument;
   remote_values: RemoteValues;
+  recordings: RecordingsDocument;
 }
 
 export type DocumentMessage = {
@@ -294,6 +323,9 @@ export interface Operations {
   command_line: Record<string, never>;
   'file.diff': Record<string, never>;
   'file.apply': { diff: string; entries: number[] };
+  'recording.list': Record<string, never>;
+  'recording.open': { file: string };
+  'recording.rows': { file: string; signals: readonly string[]; from: number; to: number; points: number };
   power: { on: boolean };
   pose: { angles: (number | null)[]; speed: number };
   scan: Record<string, never>;

@@ -46,6 +46,18 @@ describe('actions', () => {
     assert.equal(list.forKey(press('?'), false)?.id, 'keys');
   });
 
+  it('of a page come before those that it shares with the whole', () => {
+    const whole = listOf(action('run', ['K']), action('record', ['R']), action('keys', ['?'], { group: 'Page' }));
+    const page = new ActionList(whole, (shared) => shared.group === 'Page');
+    page.add(action('play', ['K']));
+    assert.equal(page.forKey(press('k'), false)?.id, 'play');
+    assert.equal(page.forKey(press('?'), false)?.id, 'keys');
+    assert.equal(page.forKey(press('r'), false), undefined);
+    assert.deepEqual(page.all.map(({ id }) => id), ['play', 'keys']);
+    assert.deepEqual(page.matching('').map(({ id }) => id), ['play', 'keys']);
+    assert.equal(whole.forKey(press('k'), false)?.id, 'run');
+  });
+
   it('leave text fields alone, except those that must work everywhere', () => {
     const list = listOf(action('run', ['K']), action('palette', ['Ctrl+K'], { isGlobal: true }));
     assert.equal(list.forKey(press('k'), true), undefined);

@@ -207,6 +207,7 @@ export class ScriptedRobot {
       bus: this.bus,
       control: this.control,
       telemetry: { hash: 1, tick_us: 10000, signals },
+      recordings: { folder: 'runs', open: null, alone: false },
       remote: { devices: [], bindings: [], problems: [], learning: false, active: false, file: null, saved: true },
     };
     for (const [name, value] of Object.entries(documents)) {

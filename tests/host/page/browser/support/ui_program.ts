@@ -1,4 +1,4 @@
-// Starts `proleg ui` on a scenario and reads the address that it prints.
+// Starts `proleg ui`, and reads the address that it prints.
 import { spawn, type ChildProcess } from 'node:child_process';
 
 export const program = process.env['PROLEG_PROGRAM'] ?? 'build/host/bin/proleg';
@@ -15,17 +15,17 @@ export class UiProgram {
 
   // A simulation, paused at tick 0.
   static start(file: string = uniform, more: string[] = []): Promise<UiProgram> {
-    return UiProgram.launch(file, ['--paused', ...more]);
+    return UiProgram.serve([file, '--paused', ...more]);
   }
 
   // A robot on a simulated bus.
   static startOnBus(file: string = uniform, more: string[] = []): Promise<UiProgram> {
-    return UiProgram.launch(file, ['--bus', `sim:${file}`, ...more]);
+    return UiProgram.serve([file, '--bus', `sim:${file}`, ...more]);
   }
 
-  private static launch(file: string, more: string[]): Promise<UiProgram> {
-    const options = ['--no-browser', '--port', '0', '--page', 'build/page', ...more];
-    const child = spawn(program, ['ui', file, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });
+  static serve(words: string[]): Promise<UiProgram> {
+    const options = ['--no-browser', '--port', '0', '--page', 'build/page'];
+    const child = spawn(program, ['ui', ...words, ...options], { stdio: ['ignore', 'pipe', 'pipe'] });
     return new Promise((resolve, reject) => {
       let output = '';
       const timer = setTimeout(() => fail('no address in time'), startTimeout);

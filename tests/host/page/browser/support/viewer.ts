@@ -13,12 +13,31 @@ export class Viewer {
     private readonly context: BrowserContext,
   ) {}
 
-  // `before`: runs in the page before its scripts.
+  // A robot, or a recording. `before`: runs in the page before its scripts.
   static async open(
     browser: Browser,
     address: string,
     options: BrowserContextOptions = {},
     before: () => void = () => {},
+  ): Promise<Viewer> {
+    const viewer = await Viewer.goTo(browser, address, options, before);
+    await viewer.page.getByTestId('scene').waitFor();
+    await viewer.page.getByTestId('joints').locator('tbody tr').first().waitFor();
+    return viewer;
+  }
+
+  // A folder with recordings.
+  static async openList(browser: Browser, address: string): Promise<Viewer> {
+    const viewer = await Viewer.goTo(browser, address, {}, () => {});
+    await viewer.page.getByTestId('recordings').waitFor();
+    return viewer;
+  }
+
+  private static async goTo(
+    browser: Browser,
+    address: string,
+    options: BrowserContextOptions,
+    before: () => void,
   ): Promise<Viewer> {
     const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, ...options });
     await context.addInitScript(before);
@@ -28,8 +47,6 @@ export class Viewer {
     });
     viewer.page.on('pageerror', (error) => viewer.reports.push(error.message));
     await viewer.page.goto(address);
-    await viewer.page.getByTestId('scene').waitFor();
-    await viewer.page.getByTestId('joints').locator('tbody tr').first().waitFor();
     return viewer;
   }
 

@@ -1,0 +1,61 @@
+// Every tick about the time cursor: for the 3D view, the table of joints and the values beside the lines. While the recording
+// plays, the next ticks come before they are shown.
+import { pyramidBlock } from '../data/min_max_pyramid.js';
+import { TelemetryHistory } from '../data/telemetry_history.js';
+import type { Signal } from '../wire/messages.js';
+import { rowLayout } from '../wire/subscription.js';
+import type { AskRows } from './range_rows.js';
+
+const piece = 512; // ticks
+const ahead = 384; // ticks before the end of what is there
+
+export class CursorRows {
+  readonly history = new TelemetryHistory(pyramidBlock);
+  private names = '';
+  private isAsking = false;
+  private failedAt: number | null = null; // the tick that cannot be read
+
+  constructor(
+    private readonly ask: AskRows,
+    private readonly failed: (reason: string) => void,
+  ) {}
+
+  has(tick: number): boolean {
+    const { history } = this;
+    return history.end > 0 && tick >= history.tickOf(history.first) && tick <= history.lastTick();
+  }
+
+  // Call it at each frame: it asks only for what is missing.
+  want(tick: number, signals: readonly Signal[], first: number, last: number, isPlaying: boolean): void {
+    const names = signals.map((signal) => signal.name).join();
+    if (this.isAsking || signals.length === 0 || this.failedAt === tick) {
+      return;
+    }
+    if (names !== this.names || !this.has(tick)) {
+      const from = Math.max(first, Math.floor(tick / piece) * piece);
+      void this.load(signals, names, tick, from, Math.min(last, from + piece - 1), true);
+    } else if (isPlaying && this.history.lastTick() < Math.min(last, tick + ahead)) {
+      const from = this.history.lastTick() + 1;
+      void this.load(signals, names, tick, from, Math.min(last, from + piece - 1), false);
+    }
+  }
+
+  private async load(signals: readonly Signal[], names: string, tick: number, from: number, to: number, isNew: boolean): Promise<void> {
+    this.isAsking = true;
+    try {
+      const rows = await this.ask(signals, from, to);
+      if (isNew) {
+        this.history.clear();
+        this.history.run += 1;
+        this.names = names;
+      }
+      const { run } = this.history;
+      this.history.append({ ...rows, subscription: 0, run, hasGap: false }, rowLayout(signals));
+      this.failedAt = this.has(tick) ? null : tick;
+    } catch (error) {
+      this.failedAt = tick;
+      this.failed((error as Error).message);
+    }
+    this.isAsking = false;
+  }
+}

@@ -1,0 +1,196 @@
+// Boost.Beast and TLS take half a minute to compile: this source and viewer_connection.cpp are compiled by themselves.
+
+#include "host/server/http_connection.hpp"
+
+#include <array>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "host/server/client_stream.hpp"
+#include "host/server/request_policy.hpp"
+#include "host/server/socket_server.hpp"
+#include "host/server/viewer_connection.hpp"
+
+namespace proleg::host {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using boost::system::error_code;
+using Request = http::request<http::string_body>;
+
+constexpr std::uint32_t max_header_bytes = 8U << 10U;
+constexpr std::uint64_t max_body_bytes = 4U << 10U;
+constexpr std::chrono::seconds request_timeout{5};
+constexpr std::chrono::seconds response_timeout{30};
+constexpr std::chrono::seconds close_timeout{1};
+
+std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
+
+std::vector<std::string_view> fields(const Request& request, http::field name) {
+  std::vector<std::string_view> values;
+  const auto range = request.equal_range(name);
+  for (auto field = range.first; field != range.second; ++field) {
+    values.push_back(view(field->value()));
+  }
+  return values;
+}
+
+/// Requests, one after the other.
+class HttpConnection final : public Connection, public std::enable_shared_from_this<HttpConnection> {
+ public:
+  HttpConnection(std::shared_ptr<SocketServer> server, ClientStream stream, ConnectionUse use)
+      : server_(std::move(server)), stream_(std::move(stream)), use_(use) {}
+
+  void open();
+  void end() override { end_by_force(); }
+  void end_by_force() override { stream_.tcp().close(); }
+
+ private:
+  void read();
+  void handle_request(const error_code& error);
+  /// `body` must live as long as the server.
+  void respond(unsigned status, std::string_view content_type, std::string_view body, bool is_kept_alive);
+  /// An error: its words are the body.
+  void respond_error(unsigned status, bool is_kept_alive);
+  /// Lets the other end read the response: an early end of a connection with unread bytes would discard it.
+  void drain();
+  void upgrade(Request request);
+
+  const std::shared_ptr<SocketServer> server_;
+  ClientStream stream_;
+  const ConnectionUse use_;
+  beast::flat_buffer buffer_{max_header_bytes + max_body_bytes};
+  std::optional<http::request_parser<http::string_body>> parser_;
+  std::string socket_origin_;  ///< for the present request, once its Host was accepted
+  bool is_head_ = false;
+  std::string header_;
+};
+
+void HttpConnection::open() {
+  stream_.tcp().expires_after(request_timeout);
+  stream_.async_handshake([self = shared_from_this()](const error_code& error) {
+    if (!error) {
+      self->read();
+    }
+  });
+}
+
+void HttpConnection::read() {
+  parser_.emplace();
+  parser_->header_limit(max_header_bytes);
+  parser_->body_limit(max_body_bytes);
+  socket_origin_.clear();
+  is_head_ = false;
+  stream_.tcp().expires_after(request_timeout);
+  http::async_read(stream_, buffer_, *parser_,
+                   [self = shared_from_this()](const error_code& error, std::size_t) { self->handle_request(error); });
+}
+
+void HttpConnection::handle_request(const error_code& error) {
+  if (error == http::error::header_limit || error == http::error::buffer_overflow) {
+    respond_error(431, false);
+  } else if (error == http::error::body_limit) {
+    respond_error(413, false);
+  } else if (error && error != http::error::end_of_stream && error != http::error::partial_message &&
+             error.category() == make_error_code(http::error::bad_version).category()) {
+    respond_error(400, false);
+  }
+  if (error) {
+    return;
+  }
+  Request request = parser_->release();
+  RequestFields asked;
+  asked.method = view(request.method_string());
+  asked.target = view(request.target());
+  asked.hosts = fields(request, http::field::host);
+  asked.origins = fields(request, http::field::origin);
+  asked.authorizations = fields(request, http::field::authorization);
+  asked.is_upgrade = beast::websocket::is_upgrade(request);
+  const RequestDecision decision = decide_request(asked, server_->address(), server_->link().token);
+  is_head_ = request.method() == http::verb::head;
+  socket_origin_ = decision.status == 421 ? "" : socket_origin(server_->address(), asked.hosts.front());
+  const bool is_only_stop = use_ == ConnectionUse::only_stop;
+  const bool is_kept_alive = request.keep_alive() && !is_only_stop;
+  if (is_only_stop && decision.action != RequestAction::stop && decision.action != RequestAction::refuse) {
+    respond_error(503, false);
+    return;
+  }
+  switch (decision.action) {
+    case RequestAction::refuse:
+      respond_error(decision.status, is_kept_alive);
+      return;
+    case RequestAction::stop:
+      server_->link().hub.stop("POST /stop");
+      respond(200, "application/json", R"({"stopped": true})", is_kept_alive);
+      return;
+    case RequestAction::open_socket:
+      // Before the answer a client sends nothing that it could not send after it.
+      if (buffer_.size() > 0) {
+        respond_error(400, false);
+      } else {
+        upgrade(std::move(request));
+      }
+      return;
+    case RequestAction::serve_file:
+      break;
+  }
+  const PageFile* const file = server_->link().page.find(path_of(asked.target));
+  if (file == nullptr) {
+    respond_error(404, is_kept_alive);
+  } else {
+    respond(200, file->content_type, file->bytes, is_kept_alive);
+  }
+}
+
+void HttpConnection::respond_error(unsigned status, bool is_kept_alive) {
+  respond(status, "text/plain; charset=utf-8", status_words(status), is_kept_alive);
+}
+
+void HttpConnection::respond(unsigned status, std::string_view content_type, std::string_view body,
+                             bool is_kept_alive) {
+  header_ = response_header(status, content_type, body.size(), socket_origin_, is_kept_alive);
+  const std::array<asio::const_buffer, 2> buffers{
+      asio::buffer(header_), is_head_ ? asio::const_buffer() : asio::const_buffer(body.data(), body.size())};
+  stream_.tcp().expires_after(response_timeout);
+  asio::async_write(stream_, buffers, [self = shared_from_this(), is_kept_alive](const error_code& error, std::size_t) {
+    if (!error && is_kept_alive) {
+      self->read();
+    } else if (!error) {
+      self->stream_.tcp().expires_after(close_timeout);
+      self->stream_.async_shutdown([self] { self->drain(); });
+    }
+  });
+}
+
+void HttpConnection::drain() {
+  buffer_.clear();
+  stream_.tcp().async_read_some(buffer_.prepare(max_body_bytes),
+                                [self = shared_from_this()](const error_code& error, std::size_t) {
+                                  if (!error) {
+                                    self->drain();
+                                  }
+                                });
+}
+
+void HttpConnection::upgrade(Request request) {
+  server_->add(open_viewer_connection(server_, std::move(stream_), std::move(request)));
+}
+
+}  // namespace
+
+std::shared_ptr<Connection> open_http_connection(std::shared_ptr<SocketServer> server, asio::ip::tcp::socket socket,
+                                                 asio::ssl::context* tls, ConnectionUse use) {
+  auto connection = std::make_shared<HttpConnection>(std::move(server), ClientStream(std::move(socket), tls), use);
+  connection->open();
+  return connection;
+}
+
+}  // namespace proleg::host

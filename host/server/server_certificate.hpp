@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace boost::asio::ssl {
+class context;
+}
+
+namespace proleg::host {
+
+/// The certificate with which a server proves its names, and the key of it.
+class ServerCertificate {
+ public:
+  /// Reads PEM files; both may be the same. Throws InputError.
+  ServerCertificate(const std::filesystem::path& certificate, const std::filesystem::path& key);
+  ~ServerCertificate();
+  ServerCertificate(const ServerCertificate&) = delete;
+  ServerCertificate& operator=(const ServerCertificate&) = delete;
+
+  /// The alternative names of the certificate, or else its common name, as URLs have them: in small letters, IPv6 in
+  /// brackets. At least one. Names with a wildcard are left out.
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  /// One line each, about what works and is not good.
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+  /// Server's side of TLS 1.2 and newer. Streams refer to it.
+  [[nodiscard]] boost::asio::ssl::context& tls() const { return *tls_; }
+
+ private:
+  std::unique_ptr<boost::asio::ssl::context> tls_;
+  std::vector<std::string> names_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace proleg::host

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <memory>
+
+#include "host/server/client_stream.hpp"
+#include "host/server/connection.hpp"
+
+namespace proleg::host {
+
+class SocketServer;
+
+/// The WebSocket of a viewer, which `request` asks for. The stream has no bytes behind it.
+[[nodiscard]] std::shared_ptr<Connection> open_viewer_connection(
+    std::shared_ptr<SocketServer> server, ClientStream stream,
+    boost::beast::http::request<boost::beast::http::string_body> request);
+
+}  // namespace proleg::host

@@ -1,0 +1,77 @@
+"""page_for_others_test.py PROLEG_UI: `proleg ui --lan`, as a person uses it from the refusal on."""
+
+import os
+import re
+import signal
+import ssl
+import subprocess
+import sys
+import tempfile
+import unittest
+import urllib.request
+from pathlib import Path
+
+PROLEG_UI = Path(sys.argv.pop(1)).resolve()
+WAIT_S = 60  # a limit for a test that fails, not a requirement
+
+
+class PageForOthers(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        (self.folder / "page").mkdir()
+        (self.folder / "page/index.html").write_text("<!doctype html><title>page</title>")
+
+    def start(self, *options):
+        process = subprocess.Popen([PROLEG_UI, "--no-browser", "--page", "page", *options], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, env={**os.environ, "XDG_RUNTIME_DIR": str(self.folder)})
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def refused(self, *options):
+        process = self.start(*options)
+        output, errors = process.communicate(timeout=WAIT_S)
+        self.assertEqual((process.returncode, output, errors.count("\n")), (2, "", 1), errors)
+        return errors
+
+    def make_certificate(self):
+        """With the command that the refusal prints."""
+        command = re.search("openssl req .*", self.refused("--lan"))[0]
+        subprocess.run(command.replace("$(hostname)", "localhost"), shell=True, cwd=self.folder, check=True, capture_output=True)
+
+    def test_the_refusal_prints_a_command_that_makes_a_certificate(self):
+        self.make_certificate()
+        process = self.start("--lan", "--certificate", "page.pem")
+        url = re.fullmatch("page: (https://localhost:[0-9]+)/#(.+)\n", process.stdout.readline())
+        context = ssl.create_default_context(cafile=self.folder / "page.pem")
+        with urllib.request.urlopen(url[1] + "/", context=context, timeout=WAIT_S) as page:
+            self.assertIn(b"<title>page</title>", page.read())
+            self.assertIn(url[1].replace("https", "wss"), page.headers["Content-Security-Policy"])
+        stop = urllib.request.Request(url[1] + "/stop", b"", {"Authorization": f"Bearer {url[2]}"})
+        with urllib.request.urlopen(stop, context=context, timeout=WAIT_S) as answer:
+            self.assertEqual(answer.read(), b'{"stopped": true}')
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=WAIT_S)
+        self.assertEqual((process.returncode, errors), (0, ""))
+
+    def test_a_key_that_others_can_read_is_a_warning(self):
+        self.make_certificate()
+        (self.folder / "page.pem").rename(self.folder / "key.pem")
+        (self.folder / "key.pem").chmod(0o644)
+        (self.folder / "certificate.pem").write_text((self.folder / "key.pem").read_text())
+        process = self.start("--lan", "--certificate", "certificate.pem", "--key", "key.pem")
+        self.assertIn("page: https://", process.stdout.readline())
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=WAIT_S)
+        self.assertEqual((process.returncode, errors),
+                         (0, "proleg ui: warning: key.pem: others can read the key: 'chmod 600' prevents it\n"))
+
+    def test_options_that_do_not_fit_are_refused(self):
+        self.assertIn("--certificate: found no --lan, expected --lan beside it", self.refused("--certificate", "page.pem"))
+        self.assertIn("--key: found no --lan, expected --lan beside it", self.refused("--key", "page.pem"))
+        self.assertIn("none.pem: found No such file or directory, expected a certificate", self.refused("--lan", "--certificate", "none.pem"))
+
+
+unittest.main()

@@ -1,0 +1,123 @@
+#include "tools/proleg/ui/recorded_session.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "tools/proleg/ui/operation.hpp"
+
+namespace proleg::tools {
+
+using nlohmann::json;
+
+RecordedSession::RecordedSession(RecordedSessionOptions options, host::SessionRequests& requests,
+                                 host::SessionOutput& output)
+    : requests_(requests), output_(output), folder_(options.folder) {
+  output_.publish("recordings", {{"folder", std::filesystem::canonical(options.folder).filename().string()},
+                                 {"open", options.file ? json(*options.file) : json()},
+                                 {"alone", options.is_alone}});
+  thread_ = std::thread([this] { run(); });
+}
+
+RecordedSession::~RecordedSession() {
+  requests_.end();
+  thread_.join();
+}
+
+void RecordedSession::run() {
+  while (!requests_.ends()) {
+    static_cast<void>(requests_.take_holder());
+    take_stops();
+    if (const std::optional<host::OperationRequest> operation = requests_.take_operation()) {
+      try {
+        output_.answer(operation->request, carry_out(*operation));
+      } catch (const std::exception& error) {
+        output_.refuse(operation->request, one_line(error.what()));
+      }
+    } else if (!work()) {
+      requests_.wait();
+    }
+  }
+}
+
+bool RecordedSession::work() {
+  for (OpenRun& open : runs_) {
+    if (!open.may_have_more) {
+      continue;
+    }
+    try {
+      open.may_have_more = open.run->index_some();
+    } catch (const std::exception& error) {
+      open.run->end_index(one_line(error.what()));
+      open.may_have_more = false;
+    }
+    return true;
+  }
+  return folder_.describe_some();
+}
+
+/// Without a robot there is nothing to stop.
+void RecordedSession::take_stops() {
+  std::deque<host::OperationRequest> outdated;
+  for (const host::SessionRequests::Stop& stop : requests_.take_stops(outdated)) {
+    const std::chrono::duration<double, std::milli> time = host::SessionRequests::Clock::now() - stop.since;
+    output_.stopped(stop.request, 0, 0, time.count());
+  }
+  for (const host::OperationRequest& operation : outdated) {
+    output_.refuse(operation.request, "STOP came first");
+  }
+}
+
+json RecordedSession::carry_out(const host::OperationRequest& operation) {
+  static const std::map<std::string_view, Handler> handlers{{"recording.list", &RecordedSession::list},
+                                                            {"recording.open", &RecordedSession::open},
+                                                            {"recording.rows", &RecordedSession::rows},
+                                                            {"ping", &RecordedSession::ping}};
+  return (this->*handler_of(handlers, operation.name))(operation.arguments);
+}
+
+RecordedSession::OpenRun& RecordedSession::run_of(const json& arguments) {
+  const auto name = argument<std::string>(arguments, "file", "the name of a recording");
+  const std::filesystem::path path = folder_.find(name.value_or(""));
+  const auto found = std::ranges::find(runs_, path, &OpenRun::path);
+  if (found != runs_.end() && found->run->is_current()) {
+    runs_.splice(runs_.begin(), runs_, found);
+    return runs_.front();
+  }
+  if (found != runs_.end()) {
+    runs_.erase(found);
+  }
+  runs_.push_front({path, std::make_unique<RecordedRun>(path)});
+  if (runs_.size() > max_open_runs) {
+    runs_.pop_back();
+  }
+  return runs_.front();
+}
+
+json RecordedSession::list(const json& /*arguments*/) { return {{"files", folder_.list()}}; }
+
+json RecordedSession::open(const json& arguments) {
+  OpenRun& open = run_of(arguments);
+  open.may_have_more = true;
+  return open.run->documents();
+}
+
+json RecordedSession::rows(const json& arguments) {
+  constexpr const char* tick = "a tick, 0 to 2^32 - 1";
+  RecordedRun::Request request;
+  request.signals =
+      argument<std::vector<std::string>>(arguments, "signals", "names of signals").value_or(request.signals);
+  request.from = whole_argument(arguments, "from", tick).value_or(0);
+  request.to = whole_argument(arguments, "to", tick).value_or(0);
+  request.points = whole_argument(arguments, "points", "a whole number").value_or(request.points);
+  return json::binary(run_of(arguments).run->rows(request));
+}
+
+json RecordedSession::ping(const json& /*arguments*/) { return json::object(); }
+
+}  // namespace proleg::tools

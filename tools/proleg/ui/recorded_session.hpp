@@ -1,0 +1,76 @@
+#pragma once
+
+// The recordings that viewers look at: lists a folder, opens files, answers with rows. It runs in a thread of its own,
+// beside a robot or alone.
+
+#include <cstdint>
+#include <filesystem>
+#include <list>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "host/server/session_output.hpp"
+#include "host/server/session_requests.hpp"
+#include "tools/proleg/ui/recorded_run.hpp"
+#include "tools/proleg/ui/recording_folder.hpp"
+
+namespace proleg::tools {
+
+struct RecordedSessionOptions {
+  std::filesystem::path folder;
+  std::optional<std::string> file;  ///< in the folder: viewers open it at once
+  bool is_alone = false;            ///< there is no robot
+};
+
+class RecordedSession {
+ public:
+  static constexpr std::size_t max_open_runs = 4;
+  /// Names of the operations of this session begin so.
+  static constexpr std::string_view prefix = "recording.";
+
+  /// Does what `requests` has, and tells it `output`, which both must outlive the session. Throws InputError if there
+  /// is no such folder.
+  RecordedSession(RecordedSessionOptions options, host::SessionRequests& requests, host::SessionOutput& output);
+  ~RecordedSession();
+  RecordedSession(const RecordedSession&) = delete;
+  RecordedSession& operator=(const RecordedSession&) = delete;
+
+  /// Operations that anybody may use.
+  [[nodiscard]] static std::vector<std::string> free_operations() {
+    return {"recording.list", "recording.open", "recording.rows", "ping"};
+  }
+
+ private:
+  struct OpenRun {
+    std::filesystem::path path;
+    std::unique_ptr<RecordedRun> run;
+    bool may_have_more = true;  ///< ticks for the pyramid
+  };
+
+  void run();
+  /// What nobody waits for; false: there is nothing to do.
+  [[nodiscard]] bool work();
+  void take_stops();
+  [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation);
+  /// Opens it, if it is not open. Of more than max_open_runs the one that was used least recently is closed.
+  [[nodiscard]] OpenRun& run_of(const nlohmann::json& arguments);
+
+  using Handler = nlohmann::json (RecordedSession::*)(const nlohmann::json&);
+  nlohmann::json list(const nlohmann::json& arguments);
+  nlohmann::json open(const nlohmann::json& arguments);
+  nlohmann::json rows(const nlohmann::json& arguments);
+  nlohmann::json ping(const nlohmann::json& arguments);
+
+  host::SessionRequests& requests_;
+  host::SessionOutput& output_;
+  RecordingFolder folder_;
+  std::list<OpenRun> runs_;  ///< the last used first
+  std::thread thread_;       ///< the last to begin
+};
+
+}  // namespace proleg::tools

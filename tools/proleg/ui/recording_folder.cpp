@@ -1,0 +1,153 @@
+#include "tools/proleg/ui/recording_folder.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <system_error>
+#include <vector>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "sim/record/recording.hpp"
+#include "sim/record/recording_file.hpp"
+
+namespace proleg::tools {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t max_visited = 20'000;
+constexpr int max_depth = 4;
+
+/// What has to be read from the file.
+json describe(const fs::path& path) {
+  try {
+    const sim::Recording recording(path);
+    std::vector<std::string> algorithms;
+    for (const sim::RecordedSlot& slot : recording.slots()) {
+      if (std::ranges::find(algorithms, slot.algorithm) == algorithms.end()) {
+        algorithms.push_back(slot.algorithm);
+      }
+    }
+    return {{"program", recording.run_value("program")},
+            {"scenario", fs::path(recording.run_value("scenario")).filename().string()},
+            {"algorithms", algorithms},
+            {"joints", recording.joints().size()},
+            {"seconds", recording.time_s(recording.last_tick()) - recording.sync_time_s(recording.first_tick())},
+            {"finished", recording.finished()},
+            {"problem", nullptr}};
+  } catch (const std::exception& error) {
+    return {{"problem", one_line(error.what())}};
+  }
+}
+
+}  // namespace
+
+RecordingFolder::RecordingFolder(const fs::path& folder) {
+  std::error_code error;
+  folder_ = fs::canonical(folder, error);
+  if (error || !fs::is_directory(folder_, error)) {
+    throw InputError(folder.string(), 0, error ? error.message() : "no folder", "a folder with recordings");
+  }
+}
+
+/// Of a growing recording the newest part is in a file beside it.
+RecordingFolder::Version RecordingFolder::version_of(const fs::path& path) {
+  Version version;
+  std::vector<std::string> suffixes = sim::recording_companions();
+  suffixes.emplace_back();
+  for (const std::string& suffix : suffixes) {
+    struct stat status {};
+    if (::stat((path.string() + suffix).c_str(), &status) == 0) {
+      version.size += static_cast<std::uint64_t>(status.st_size);
+      constexpr std::int64_t second = 1'000'000'000;
+      version.time_ns = std::max(version.time_ns, status.st_mtim.tv_sec * second + status.st_mtim.tv_nsec);
+    }
+  }
+  return version;
+}
+
+bool RecordingFolder::is_inside(const fs::path& path) const {
+  const auto [end, other] = std::mismatch(folder_.begin(), folder_.end(), path.begin(), path.end());
+  return end == folder_.end() && other != path.end();
+}
+
+json RecordingFolder::list() {
+  std::map<std::string, Entry> found;
+  std::error_code error;
+  std::size_t visited = 0;
+  // Links to folders are not followed.
+  fs::recursive_directory_iterator entry(folder_, fs::directory_options::skip_permission_denied, error);
+  for (; !error && entry != fs::recursive_directory_iterator() && visited < max_visited; entry.increment(error)) {
+    ++visited;
+    if (entry.depth() >= max_depth) {
+      entry.disable_recursion_pending();
+    }
+    std::error_code ignored;
+    const fs::path& path = entry->path();
+    if (path.extension() != ".proleg" || !fs::is_regular_file(fs::status(path, ignored)) ||
+        !is_inside(fs::canonical(path, ignored)) || ignored) {
+      continue;
+    }
+    const std::string name = path.lexically_relative(folder_).string();
+    Entry& known = found[name];
+    known.version = version_of(path);
+    if (const auto before = entries_.find(name); before != entries_.end()) {
+      known.description = before->second.description;
+      known.is_described = before->second.is_described && before->second.version == known.version;
+    }
+  }
+  std::vector<std::pair<std::int64_t, std::string>> newest;
+  newest.reserve(found.size());
+  for (const auto& [name, known] : found) {
+    newest.emplace_back(-known.version.time_ns, name);
+  }
+  std::ranges::sort(newest);
+  for (; newest.size() > max_files; newest.pop_back()) {
+    found.erase(newest.back().second);
+  }
+  entries_ = std::move(found);
+  json files = json::array();
+  for (const auto& [time, name] : newest) {
+    const Entry& known = entries_.at(name);
+    json file = known.description.is_null() ? json::object() : known.description;
+    file["name"] = name;
+    file["bytes"] = known.version.size;
+    file["time_ms"] = known.version.time_ns / 1'000'000;
+    file["described"] = !known.description.is_null();
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
+bool RecordingFolder::describe_some() {
+  const auto next = std::ranges::find_if(entries_, [](const auto& entry) { return !entry.second.is_described; });
+  if (next == entries_.end()) {
+    return false;
+  }
+  next->second.description = describe(folder_ / next->first);
+  next->second.is_described = true;
+  return true;
+}
+
+fs::path RecordingFolder::find(const std::string& name) const {
+  const std::string expected = "the name of a recording in " + folder_.filename().string();
+  const fs::path path(name);
+  const bool has_dots = std::ranges::find(path, fs::path("..")) != path.end();
+  if (name.empty() || name.find('\0') != std::string::npos || path.is_absolute() || has_dots ||
+      path.extension() != ".proleg") {
+    throw InputError("file", 0, in_quotes(one_line(shortened(name))), expected);
+  }
+  std::error_code error;
+  const fs::path real = fs::canonical(folder_ / path, error);
+  if (error) {
+    throw InputError("file", 0, in_quotes(one_line(shortened(name))) + ": " + error.message(), expected);
+  }
+  if (!is_inside(real)) {
+    throw InputError("file", 0, in_quotes(one_line(shortened(name))) + ", which leads out of the folder", expected);
+  }
+  return real;
+}
+
+}  // namespace proleg::tools

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace proleg::tools {
+
+/// The recordings in a folder and the folders in it. Nothing outside can be reached, also not by symbolic links.
+class RecordingFolder {
+ public:
+  /// The newest of more files are listed.
+  static constexpr std::size_t max_files = 1000;
+
+  /// Throws InputError if it is no folder.
+  explicit RecordingFolder(const std::filesystem::path& folder);
+
+  /// An array with an object for each file (docs/page-interface.md, Recordings), the newest first. What has to be read
+  /// from the files is null until describe_some() has read it.
+  [[nodiscard]] nlohmann::json list();
+  /// Reads one file of the last list(); false if all are read.
+  bool describe_some();
+
+  /// The file that a name of the list means. Throws InputError for anything else.
+  [[nodiscard]] std::filesystem::path find(const std::string& name) const;
+
+ private:
+  /// A file as it was when it was described.
+  struct Version {
+    std::uint64_t size = 0;
+    std::int64_t time_ns = 0;
+    bool operator==(const Version&) const = default;
+  };
+  struct Entry {
+    Version version;
+    bool is_described = false;
+    nlohmann::json description;
+  };
+
+  [[nodiscard]] static Version version_of(const std::filesystem::path& path);
+  [[nodiscard]] bool is_inside(const std::filesystem::path& path) const;
+
+  std::filesystem::path folder_;  ///< without symbolic links
+  std::map<std::string, Entry> entries_;
+};
+
+}  // namespace proleg::tools

@@ -16,6 +16,11 @@ function usesArrows(target: EventTarget | null): boolean {
   return target instanceof Element && target.closest('input, select, [role="slider"], [data-arrows]') !== null;
 }
 
+// Elements in which a number can be typed at once.
+function takesNumber(target: EventTarget | null): boolean {
+  return target instanceof Element && target.closest('[data-takes-number]') !== null;
+}
+
 export function listenToKeys(actions: Pick<ActionList, 'forKey'>, stop: (() => void) | null): void {
   window.addEventListener(
     'keydown',
@@ -29,6 +34,9 @@ export function listenToKeys(actions: Pick<ActionList, 'forKey'>, stop: (() => v
         return;
       }
       if (event.key.startsWith('Arrow') && usesArrows(event.target)) {
+        return;
+      }
+      if (/^[0-9.,+-]$/.test(event.key) && takesNumber(event.target)) {
         return;
       }
       const action = actions.forKey(event, isText);

@@ -103,6 +103,7 @@ export function JointCells({ app, parameter }: { app: PageApp; parameter: Parame
               role="slider"
               tabIndex={i === current.value ? 0 : -1}
               data-cell={i}
+              data-takes-number
               aria-label={nameOf(i)}
               aria-disabled={!isHolder}
               aria-valuemin={parameter.minimum * parameter.scale}

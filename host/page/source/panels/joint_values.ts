@@ -19,7 +19,7 @@ export function contactText(app: RobotView, joint: number, row: number): string 
   return bits === noValue ? '' : `${(bits & 1) !== 0 ? '●' : '○'} ${(bits & 2) !== 0 ? '●' : '○'}`;
 }
 
-// Degrees: where a held joint is told to be, else where it is; null if nobody knows.
+// Degrees: where a held joint is told to be, else where it is; null if it is not known.
 export function positionOf(app: RobotView, joint: number): number | null {
   const newest = app.history.end - 1;
   return (

@@ -176,7 +176,7 @@ export class RobotModel {
     return compose(head, { position: this.centres[0] as Vector, orientation: [1, 0, 0, 0] }).position;
   }
 
-  // Where the robot is until its first tick, and if nobody knows where it is: its head as if all of it lay straight on the floor.
+  // Where the robot is until its first tick, and if it is not known where it is: its head as if all of it lay straight on the floor.
   rest(angles: ArrayLike<number> = [], contactBits: ArrayLike<number> = []): void {
     const head = poseFromArray((this.robot.links[0] as Body).pose);
     const [x, y, z] = head.position;

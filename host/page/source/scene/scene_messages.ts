@@ -4,7 +4,7 @@ import type { RobotDocument } from '../wire/messages.js';
 
 export interface ScenePose {
   angles: Float32Array; // radians
-  head: Float64Array | null; // x, y, z in metres, then the quaternion w, x, y, z; null: nobody knows where it is
+  head: Float64Array | null; // x, y, z in metres, then the quaternion w, x, y, z; null: not known
   ghost: Float32Array | null; // angles of the simulation beside the robot, radians
   contacts: Int32Array; // of each link: bit 0 rear, bit 1 front
   run: number;

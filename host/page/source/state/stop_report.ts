@@ -32,7 +32,7 @@ export class StopControl {
   }
 }
 
-// Whether nobody needs to look for the power switch.
+// Whether the stop is confirmed, so that the power switch is not needed.
 export function isConfirmed(report: StopReport): boolean {
   return report.state === 'stopped' && (report.outcome.confirmed === null || report.outcome.confirmed === report.outcome.of);
 }

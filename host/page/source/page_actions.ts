@@ -1,9 +1,9 @@
 // The actions of the page, with their keys.
 import { recordingName } from './state/recording_name.js';
-import { nextTheme } from './theme.js';
 import { toggleDialog } from './dialogs.js';
 import type { PageState } from './state/page_state.js';
 import type { PageApp } from './page_app.js';
+import { sharedActions } from './shared_actions.js';
 
 export function recordOrEnd({ state, operations }: PageApp): void {
   const isRecording = (state.session.value?.recording ?? null) !== null;
@@ -224,15 +224,6 @@ export function addActions(app: PageApp): void {
       isShown: isSimulation,
       run: () => toggleDialog('file_diff'),
     },
-    {
-      id: 'palette',
-      title: 'Find an action',
-      group: 'Page',
-      keys: ['Ctrl+K'],
-      isGlobal: true,
-      run: () => toggleDialog('palette'),
-    },
-    { id: 'keys', title: 'Show the keys', group: 'Page', keys: ['?'], run: () => toggleDialog('keys') },
-    { id: 'theme', title: 'Light, dark, or as the system', group: 'Page', keys: ['T'], run: nextTheme },
+    ...sharedActions,
   );
 }

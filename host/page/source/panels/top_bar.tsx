@@ -3,9 +3,7 @@ import type { PageApp, PageName } from '../page_app.js';
 import type { PageState } from '../state/page_state.js';
 import { describeStop, isConfirmed } from '../state/stop_report.js';
 import type { SessionDocument } from '../wire/messages.js';
-import { nextTheme, themeChoice } from '../theme.js';
-import { toggleDialog } from '../dialogs.js';
-import { findIcon, themeIcon } from './icons.js';
+import { PageTools } from './page_tools.js';
 
 const badges = {
   simulation: { text: 'SIMULATION', title: 'A simulated robot: nothing on the table moves.' },
@@ -189,35 +187,7 @@ export function TopBar({ app }: { app: PageApp }) {
       <RobotName state={app.state} />
       <Figures state={app.state} />
       {!isAlone && <Control app={app} />}
-      <div class="tools">
-        <button
-          type="button"
-          class="icon-button"
-          aria-label="Find an action"
-          title="Find an action (Ctrl+K)"
-          onClick={() => toggleDialog('palette')}
-        >
-          {findIcon}
-        </button>
-        <button
-          type="button"
-          class="icon-button"
-          aria-label="Show the keys"
-          title="Show the keys (?)"
-          onClick={() => toggleDialog('keys')}
-        >
-          ?
-        </button>
-        <button
-          type="button"
-          class="icon-button"
-          aria-label={`Colours: ${themeChoice.value}`}
-          title={`Colours: ${themeChoice.value} (T)`}
-          onClick={nextTheme}
-        >
-          {themeIcon}
-        </button>
-      </div>
+      <PageTools />
       {!isAlone && <Stop app={app} />}
     </header>
   );

@@ -1,6 +1,6 @@
 // The actions of the player, with their keys.
-import { openDialog, toggleDialog } from '../dialogs.js';
-import { nextTheme } from '../theme.js';
+import { openDialog } from '../dialogs.js';
+import { sharedActions } from '../shared_actions.js';
 import type { PlayedRecording, PlayerApp } from './player_app.js';
 
 // Those of a time line, wherever it is. `playKeys`: Space plays only where there is no robot to stop.
@@ -35,15 +35,7 @@ export function addPlaybackActions({ actions, time, tickRate }: PlayedRecording,
 export function addPlayerActions(app: PlayerApp): void {
   addPlaybackActions(app, ['Space', 'K']);
   app.actions.add(
-    {
-      id: 'palette',
-      title: 'Find an action',
-      group: 'Page',
-      keys: ['Ctrl+K'],
-      isGlobal: true,
-      run: () => toggleDialog('palette'),
-    },
-    { id: 'keys', title: 'Show the keys', group: 'Page', keys: ['?'], run: () => toggleDialog('keys') },
+    ...sharedActions,
     {
       id: 'close',
       title: 'Close this window',
@@ -52,6 +44,5 @@ export function addPlayerActions(app: PlayerApp): void {
       isGlobal: true,
       run: () => void (openDialog.value = 'none'),
     },
-    { id: 'theme', title: 'Light, dark, or as the system', group: 'Page', keys: ['T'], run: nextTheme },
   );
 }

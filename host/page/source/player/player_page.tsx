@@ -1,12 +1,11 @@
 // The page of a recording: the panels of the live page, with a time line instead of controls of a robot.
-import { openDialog, toggleDialog } from '../dialogs.js';
+import { openDialog } from '../dialogs.js';
 import { Keys, Palette } from '../panels/dialog_views.js';
-import { findIcon, themeIcon } from '../panels/icons.js';
 import { JointTable } from '../panels/joint_table.js';
+import { PageTools } from '../panels/page_tools.js';
 import { PlotPanel } from '../panels/plot_panel.js';
 import { ScenePanel } from '../panels/scene_panel.js';
 import { StripPanel } from '../panels/strip_panel.js';
-import { nextTheme, themeChoice } from '../theme.js';
 import { MarkList } from './mark_list.js';
 import { PlaybackControls } from './playback_controls.js';
 import type { PlayerApp } from './player_app.js';
@@ -30,35 +29,7 @@ function Header({ app }: { app: PlayerApp }) {
           {`${Number(seconds.toFixed(2))} s, ${robot?.name}, ${algorithms}`}
         </span>
       </div>
-      <div class="tools">
-        <button
-          type="button"
-          class="icon-button"
-          aria-label="Find an action"
-          title="Find an action (Ctrl+K)"
-          onClick={() => toggleDialog('palette')}
-        >
-          {findIcon}
-        </button>
-        <button
-          type="button"
-          class="icon-button"
-          aria-label="Show the keys"
-          title="Show the keys (?)"
-          onClick={() => toggleDialog('keys')}
-        >
-          ?
-        </button>
-        <button
-          type="button"
-          class="icon-button"
-          aria-label={`Colours: ${themeChoice.value}`}
-          title={`Colours: ${themeChoice.value} (T)`}
-          onClick={nextTheme}
-        >
-          {themeIcon}
-        </button>
-      </div>
+      <PageTools />
     </header>
   );
 }

@@ -1,0 +1,38 @@
+// The buttons at the end of every bar: find an action, show the keys, change the colours.
+import { toggleDialog } from '../dialogs.js';
+import { nextTheme, themeChoice } from '../theme.js';
+import { findIcon, themeIcon } from './icons.js';
+
+export function PageTools() {
+  return (
+    <div class="tools">
+      <button
+        type="button"
+        class="icon-button"
+        aria-label="Find an action"
+        title="Find an action (Ctrl+K)"
+        onClick={() => toggleDialog('palette')}
+      >
+        {findIcon}
+      </button>
+      <button
+        type="button"
+        class="icon-button"
+        aria-label="Show the keys"
+        title="Show the keys (?)"
+        onClick={() => toggleDialog('keys')}
+      >
+        ?
+      </button>
+      <button
+        type="button"
+        class="icon-button"
+        aria-label={`Colours: ${themeChoice.value}`}
+        title={`Colours: ${themeChoice.value} (T)`}
+        onClick={nextTheme}
+      >
+        {themeIcon}
+      </button>
+    </div>
+  );
+}

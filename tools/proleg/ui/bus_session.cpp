@@ -52,7 +52,8 @@ BusSession::BusSession(const sim::Scenario& file, BusAccess& bus, std::string ad
       bus_(bus.connection()),
       monitor_(bus_),
       stops_of_others_(bus_),
-      edits_(file),
+      edits_(file, file),
+      delivery_(edits_),
       started_(file),
       rows_(file),
       stop_confirmed_(file.robot.joints.size()) {
@@ -276,11 +277,12 @@ json BusSession::pose(const json& arguments) {
 json BusSession::set(const json& arguments) {
   const auto words = argument<std::vector<std::string>>(arguments, "words", "texts such as \"amplitude:J2=30\"");
   const auto gesture = argument<std::uint64_t>(arguments, "gesture", "a whole number");
-  const std::vector<sim::Setting> internal_values = edits_.set(words.value_or(std::vector<std::string>{}), gesture);
+  std::vector<sim::Setting> internal_values = edits_.set(words.value_or(std::vector<std::string>{}), gesture);
   are_parameters_new_ = true;
+  std::erase_if(internal_values, [](const sim::Setting& setting) { return !setting.internal; });
   if (!internal_values.empty()) {
     static_cast<void>(powered());
-    internal_values_.insert(internal_values_.end(), internal_values.begin(), internal_values.end());
+    delivery_.add(internal_values);
   }
   return {{"tick", nullptr}};
 }
@@ -302,7 +304,7 @@ json BusSession::redo(const json& /*arguments*/) {
 }
 
 json BusSession::reset(const json& arguments) {
-  edits_.reset(argument<std::vector<std::string>>(arguments, "names", "names such as \"1.amplitude:J2\""));
+  edits_.reset(edits_.places_of(parameter_names(arguments)));
   are_parameters_new_ = true;
   return json::object();
 }
@@ -345,13 +347,8 @@ void BusSession::start_robot(bool holds) {
   }
   end_scan();
   monitor_.set_reads(false);  // the master needs the bus, and reads what it needs
-  given_.clear();
-  for (const ParameterPlace& place : edits_.parameters().places()) {
-    given_.push_back(edits_.parameters().at(place).wanted);
-  }
-  edits_.parameters().begin_run();
+  delivery_.begin_run();
   are_parameters_new_ = true;
-  internal_values_.clear();
   dropped_changes_ = 0;
   failure_.clear();
   stopped_by_.clear();
@@ -363,7 +360,10 @@ void BusSession::start_robot(bool holds) {
           [this](const sim::TickSample& sample, std::span<const double> angles, const std::vector<bool>& measured) {
             output_.add_row(rows_.run_of(sample.tick), sample.tick, rows_.fill(sample, angles, measured));
           },
-          [this](const sim::Change& change) { on_change(change); },
+          [this](const sim::Change& change) {
+            delivery_.confirm(change);
+            are_parameters_new_ = true;
+          },
           [this](const std::string& line, bool is_error) {
             output_.notice(is_error ? host::NoticeLevel::error : host::NoticeLevel::warning, line);
           }});
@@ -414,58 +414,15 @@ void BusSession::give_changes() {
   if (!robot_->has_room_for_changes()) {
     return;
   }
-  const ParameterTable& table = edits_.parameters();
-  const std::vector<ParameterPlace>& places = table.places();
   if (robot_->dropped_changes() > dropped_changes_) {
     dropped_changes_ = robot_->dropped_changes();
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      if (given_[i] != table.at(places[i]).confirmed) {
-        given_[i] = table.at(places[i]).confirmed;
-        edits_.parameters().want(places[i], given_[i]);
-      }
-    }
+    delivery_.give_up();
     are_parameters_new_ = true;
     output_.notice(host::NoticeLevel::error, "a change had no effect: not all modules have got it in time");
   }
-  std::vector<sim::Setting> settings;
-  const auto has_room = [&](unsigned joint) {
-    return std::ranges::count(settings, joint, &sim::Setting::joint) < static_cast<std::ptrdiff_t>(max_staged_values);
-  };
-  std::erase_if(internal_values_, [&](const sim::Setting& setting) {
-    const bool fits = has_room(setting.joint);
-    if (fits) {
-      settings.push_back(setting);
-    }
-    return fits;
-  });
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const std::int32_t wanted = table.at(places[i]).wanted;
-    if (wanted != given_[i] && has_room(places[i].joint)) {
-      settings.push_back({places[i].slot, places[i].joint, places[i].index, false, wanted});
-      given_[i] = wanted;
-    }
-  }
-  if (!settings.empty()) {
+  if (const std::vector<sim::Setting> settings = delivery_.next(); !settings.empty()) {
     robot_->change(settings);
   }
-}
-
-void BusSession::on_change(const sim::Change& change) {
-  ParameterTable& table = edits_.parameters();
-  const std::vector<ParameterPlace>& places = table.places();
-  for (const sim::Setting& setting : change.settings) {
-    const ParameterPlace place{setting.slot, setting.joint, setting.index};
-    if (setting.internal) {
-      continue;
-    }
-    table.confirm(place, setting.value, change.tick);
-    const auto at = static_cast<std::size_t>(std::ranges::find(places, place) - places.begin());
-    if (table.at(place).wanted == given_[at]) {
-      table.want(place, setting.value);  // a change of the file
-      given_[at] = setting.value;
-    }
-  }
-  are_parameters_new_ = true;
 }
 
 /// Without power there are no ticks, but viewers see what is measured.

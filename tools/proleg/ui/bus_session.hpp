@@ -18,6 +18,7 @@
 #include "host/server/session_requests.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/bus_access.hpp"
+#include "tools/proleg/ui/change_delivery.hpp"
 #include "tools/proleg/ui/driven_robot.hpp"
 #include "tools/proleg/ui/parameter_edits.hpp"
 #include "tools/proleg/ui/robot_row.hpp"
@@ -90,7 +91,6 @@ class BusSession {
   void stop_robot(const std::string& by);
   /// Throws unless servos have power, or are about to.
   [[nodiscard]] DrivenRobot& powered();
-  void on_change(const sim::Change& change);
   void publish_all(Clock::time_point now);
   void publish_session();
   void publish_bus(Clock::time_point now);
@@ -108,10 +108,8 @@ class BusSession {
   host::SdoQueue stops_of_others_;  ///< quick stops while this program drives nothing
   std::optional<host::BusScan> scan_;
   ParameterEdits edits_;
-  /// Of each place of the table: what the modules have been given last.
-  std::vector<std::int32_t> given_;
-  std::vector<sim::Setting> internal_values_;  ///< wait for a change
-  sim::Scenario started_;                      ///< what the robot was started with
+  ChangeDelivery delivery_;
+  sim::Scenario started_;  ///< what the robot was started with
   std::optional<DrivenRobot> robot_;
   std::uint64_t dropped_changes_ = 0;
   std::string started_with_;

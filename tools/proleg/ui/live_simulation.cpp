@@ -22,17 +22,11 @@ sim::Scenario without_sources(sim::Scenario scenario) {
   return scenario;
 }
 
-ParameterPlace place_of(const sim::Setting& setting) { return {setting.slot, setting.joint, setting.index}; }
-
 sim::Scenario with_settings(sim::Scenario scenario, const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     sim::apply_setting(scenario, word);
   }
   return scenario;
-}
-
-sim::Setting setting_of(const ParameterPlace& place, std::int32_t value) {
-  return {place.slot, place.joint, place.index, false, value};
 }
 
 }  // namespace
@@ -44,75 +38,46 @@ LiveSimulation::LiveSimulation(sim::Scenario file, std::vector<std::string> sett
       losses_(losses),
       scenario_(given_),
       scratch_(without_sources(file_)),
-      parameters_(file_, given_) {
-  for (const ParameterPlace& place : parameters_.places()) {
-    other_set_.push_back(parameters_.at(place).file);
+      edits_(file_, given_) {
+  for (const ParameterPlace& place : parameters().places()) {
+    other_set_.push_back(parameters().at(place).file);
   }
   begin();
 }
 
 std::uint32_t LiveSimulation::set(const std::vector<std::string>& words, std::optional<std::uint64_t> gesture) {
-  if (words.empty()) {
-    throw InputError("set", 0, "no word", "NAME=VALUE");
-  }
-  scratch_.changes.clear();
-  for (const std::string& word : words) {
-    if (word.find('@') != std::string::npos) {
-      throw InputError(shortened(word), 0, "a tick", "NAME=VALUE, which takes effect at once");
-    }
-    sim::apply_setting(scratch_, word + "@1");
-  }
-  const std::vector<sim::Setting> settings = scratch_.changes.front().settings;
+  const std::vector<sim::Setting> settings = edits_.set(words, gesture);
   std::uint32_t tick = std::max(simulation_->tick(), live_.empty() ? 0 : live_.back().tick);
   while (!fits(tick, settings)) {
     ++tick;
   }
-  ChangeHistory::Entry entry{words.front().substr(0, words.front().find('=')), {}, gesture};
   for (const sim::Setting& setting : settings) {
-    if (!setting.internal) {
-      entry.steps.push_back({place_of(setting), parameters_.at(place_of(setting)).wanted, setting.value});
-    }
     schedule(tick, setting);
-  }
-  if (!entry.steps.empty()) {
-    history_.add(std::move(entry));
   }
   return tick;
 }
 
 bool LiveSimulation::undo() {
-  const ChangeHistory::Entry* entry = history_.to_undo();
-  if (entry == nullptr) {
-    return false;
+  const std::optional<std::vector<sim::Setting>> settings = edits_.undo();
+  if (settings) {
+    schedule_each(*settings);
   }
-  std::vector<sim::Setting> settings;
-  for (const ChangeHistory::Step& step : entry->steps) {
-    settings.push_back(setting_of(step.place, step.before));
-  }
-  history_.undone();
-  schedule_each(settings);
-  return true;
+  return settings.has_value();
 }
 
 bool LiveSimulation::redo() {
-  const ChangeHistory::Entry* entry = history_.to_redo();
-  if (entry == nullptr) {
-    return false;
+  const std::optional<std::vector<sim::Setting>> settings = edits_.redo();
+  if (settings) {
+    schedule_each(*settings);
   }
-  std::vector<sim::Setting> settings;
-  for (const ChangeHistory::Step& step : entry->steps) {
-    settings.push_back(setting_of(step.place, step.after));
-  }
-  history_.redone();
-  schedule_each(settings);
-  return true;
+  return settings.has_value();
 }
 
 void LiveSimulation::swap_sets() {
   std::vector<sim::Setting> settings;
-  const std::vector<ParameterPlace>& places = parameters_.places();
+  const std::vector<ParameterPlace>& places = parameters().places();
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const std::int32_t wanted = parameters_.at(places[i]).wanted;
+    const std::int32_t wanted = parameters().at(places[i]).wanted;
     const std::int32_t other = std::exchange(other_set_[i], wanted);
     if (other != wanted) {
       settings.push_back(setting_of(places[i], other));
@@ -123,46 +88,20 @@ void LiveSimulation::swap_sets() {
 }
 
 void LiveSimulation::reset(const std::vector<ParameterPlace>& places) {
-  std::vector<sim::Setting> settings;
-  ChangeHistory::Entry entry{"reset", {}, std::nullopt};
-  for (const ParameterPlace& place : places) {
-    const ParameterTable::Values& values = parameters_.at(place);
-    if (values.wanted != values.file) {
-      settings.push_back(setting_of(place, values.file));
-      entry.steps.push_back({place, values.wanted, values.file});
-    }
-  }
+  const std::vector<sim::Setting> settings = edits_.reset(places);
   if (!settings.empty()) {
-    history_.add(std::move(entry));
     schedule_each(settings);
   }
 }
 
-std::vector<ParameterPlace> LiveSimulation::places_of(const std::string& name) const {
-  const sim::SettingTarget target = sim::find_target(file_, name + "=0");
-  if (target.internal) {
-    throw InputError(shortened(name), 0, "an internal value", "a parameter");
-  }
-  std::vector<ParameterPlace> places;
-  for (const unsigned joint : target.joints) {
-    places.push_back({static_cast<std::uint8_t>(target.slot), static_cast<std::uint8_t>(joint),
-                      static_cast<std::uint8_t>(target.index)});
-  }
-  return places;
-}
-
 std::vector<sim::ActuationEdit> LiveSimulation::file_edits() const {
-  sim::Scenario wanted = without_sources(file_);
-  for (const ParameterPlace& place : parameters_.places()) {
-    sim::set_start_value(wanted, setting_of(place, parameters_.at(place).wanted));
-  }
-  return sim::actuation_edits(file_, wanted);
+  return sim::actuation_edits(file_, edits_.scenario_as_wanted());
 }
 
 void LiveSimulation::apply_to_file(std::span<const sim::ActuationEdit> edits) {
   file_ = write_actuation(file_, edits);
   given_ = with_settings(file_, settings_);
-  parameters_.set_file(file_);
+  edits_.parameters().set_file(file_);
   ++revision_;
 }
 
@@ -181,10 +120,10 @@ void LiveSimulation::move(const std::string& place) {
 void LiveSimulation::restart(StartValues values) {
   end_recording();
   if (values == StartValues::file) {
-    parameters_.want_file_values();
+    edits_.parameters().want_file_values();
   }
-  for (const ParameterPlace& place : parameters_.places()) {
-    sim::set_start_value(scenario_, setting_of(place, parameters_.at(place).wanted));
+  for (const ParameterPlace& place : parameters().places()) {
+    sim::set_start_value(scenario_, setting_of(place, parameters().at(place).wanted));
   }
   scenario_.changes = given_.changes;
   scenario_.moves = given_.moves;
@@ -192,7 +131,7 @@ void LiveSimulation::restart(StartValues values) {
   live_.clear();
   live_moves_.clear();
   lost_frames_ = 0;
-  parameters_.begin_run();
+  edits_.parameters().begin_run();
   ++revision_;
   begin();
 }
@@ -224,9 +163,9 @@ void LiveSimulation::advance() {
       continue;
     }
     const ParameterPlace place = place_of(setting);
-    parameters_.confirm(place, setting.value, tick);
+    edits_.parameters().confirm(place, setting.value, tick);
     if (!was_asked_for(place, tick)) {
-      parameters_.want(place, setting.value);  // a change of the file
+      edits_.parameters().want(place, setting.value);  // a change of the file
     }
   }
   ++revision_;
@@ -235,7 +174,7 @@ void LiveSimulation::advance() {
 std::vector<std::string> LiveSimulation::repeating_words() const {
   std::vector<std::string> words;
   std::vector<LiveSetting> start;
-  for (const ParameterPlace& place : parameters_.places()) {
+  for (const ParameterPlace& place : parameters().places()) {
     const std::int32_t value = sim::start_value(scenario_, place.slot, place.joint, place.index);
     if (value != sim::start_value(given_, place.slot, place.joint, place.index)) {
       start.push_back({0, setting_of(place, value)});
@@ -333,7 +272,7 @@ void LiveSimulation::schedule(std::uint32_t tick, const sim::Setting& setting) {
               live_.end());
   live_.push_back({tick, setting});
   if (!setting.internal) {
-    parameters_.want(place_of(setting), setting.value);
+    edits_.parameters().want(place_of(setting), setting.value);
   }
   ++revision_;
 }

@@ -18,8 +18,7 @@
 #include "sim/scenario/actuation_edit.hpp"
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/scenario.hpp"
-#include "tools/proleg/ui/change_history.hpp"
-#include "tools/proleg/ui/parameter_table.hpp"
+#include "tools/proleg/ui/parameter_edits.hpp"
 
 namespace proleg::tools {
 
@@ -46,8 +45,10 @@ class LiveSimulation {
   [[nodiscard]] char set_name() const { return is_set_b_ ? 'B' : 'A'; }
   /// The parameters at these places are wanted as the file has them.
   void reset(const std::vector<ParameterPlace>& places);
-  /// The place that a name like those of set() means, of each joint that it means. Throws InputError.
-  [[nodiscard]] std::vector<ParameterPlace> places_of(const std::string& name) const;
+  /// As ParameterEdits::places_of().
+  [[nodiscard]] std::vector<ParameterPlace> places_of(const std::optional<std::vector<std::string>>& names) const {
+    return edits_.places_of(names);
+  }
 
   /// What the actuation file lacks of the wanted parameters.
   [[nodiscard]] std::vector<sim::ActuationEdit> file_edits() const;
@@ -81,8 +82,9 @@ class LiveSimulation {
   [[nodiscard]] sim::TickSample sample() { return simulation_->sample(); }
   [[nodiscard]] const sim::Scenario& scenario() const { return scenario_; }
   [[nodiscard]] const sim::Scenario& file() const { return file_; }
-  [[nodiscard]] const ParameterTable& parameters() const { return parameters_; }
-  [[nodiscard]] const ChangeHistory& history() const { return history_; }
+  [[nodiscard]] const ParameterTable& parameters() const { return edits_.parameters(); }
+  [[nodiscard]] const ChangeHistory& history() const { return edits_.history(); }
+  [[nodiscard]] bool differs_from_file() const { return edits_.differs_from_file(); }
   /// Counts what changes parameters(), history() or set_name().
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
 
@@ -114,13 +116,12 @@ class LiveSimulation {
   sim::Scenario given_;  ///< file_ with settings_
   const sim::Losses* losses_;
   sim::Scenario scenario_;  ///< of the present run, with all changes
-  sim::Scenario scratch_;   ///< to read words with
+  sim::Scenario scratch_;   ///< to read moves with
   std::unique_ptr<sim::Simulation> simulation_;
   std::unique_ptr<sim::Recorder> recorder_;
   std::optional<std::string> recording_failure_;
   std::uint64_t lost_frames_ = 0;  ///< in the present run
-  ParameterTable parameters_;
-  ChangeHistory history_;
+  ParameterEdits edits_;
   std::vector<std::int32_t> other_set_;  ///< in the order of places()
   bool is_set_b_ = false;
   std::vector<LiveSetting> live_;           ///< of the present run, by ascending tick

@@ -43,6 +43,11 @@ inline std::optional<std::uint32_t> whole_argument(const nlohmann::json& argumen
   return found->get<std::uint32_t>();
 }
 
+/// The names of the operation `reset`; nothing: all parameters. Throws InputError.
+inline std::optional<std::vector<std::string>> parameter_names(const nlohmann::json& arguments) {
+  return argument<std::vector<std::string>>(arguments, "names", "names such as \"1.amplitude:J2\"");
+}
+
 /// What carries an operation out. Throws InputError, which names all operations, if there is no such one.
 template <typename Handler>
 const Handler& handler_of(const std::map<std::string_view, Handler>& handlers, const std::string& operation) {

@@ -1,6 +1,7 @@
 #include "tools/proleg/ui/parameter_edits.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
@@ -9,7 +10,8 @@
 
 namespace proleg::tools {
 
-ParameterEdits::ParameterEdits(const sim::Scenario& file) : file_(file), scratch_(file), parameters_(file, file) {
+ParameterEdits::ParameterEdits(const sim::Scenario& file, const sim::Scenario& start)
+    : file_(file), scratch_(file), parameters_(file, start) {
   scratch_.sources.clear();  // they are not needed, and cost time to copy
 }
 
@@ -25,50 +27,70 @@ std::vector<sim::Setting> ParameterEdits::set(const std::vector<std::string>& wo
     }
     sim::apply_setting(scratch_, word + "@1");
   }
-  std::vector<sim::Setting> internal_values;
   ChangeHistory::Entry entry{words.front().substr(0, words.front().find('=')), {}, gesture};
   for (const sim::Setting& setting : scratch_.changes.front().settings) {
-    if (setting.internal) {
-      internal_values.push_back(setting);
-      continue;
+    if (!setting.internal) {
+      const ParameterPlace place = place_of(setting);
+      entry.steps.push_back({place, parameters_.at(place).wanted, setting.value});
+      parameters_.want(place, setting.value);
     }
-    const ParameterPlace place{setting.slot, setting.joint, setting.index};
-    entry.steps.push_back({place, parameters_.at(place).wanted, setting.value});
-    parameters_.want(place, setting.value);
   }
   if (!entry.steps.empty()) {
     history_.add(std::move(entry));
   }
-  return internal_values;
+  return scratch_.changes.front().settings;
 }
 
-bool ParameterEdits::undo() {
+std::optional<std::vector<sim::Setting>> ParameterEdits::undo() {
   const ChangeHistory::Entry* entry = history_.to_undo();
   if (entry == nullptr) {
-    return false;
-  }
-  for (const ChangeHistory::Step& step : entry->steps) {
-    parameters_.want(step.place, step.before);
+    return std::nullopt;
   }
   history_.undone();
-  return true;
+  return want(*entry, &ChangeHistory::Step::before);
 }
 
-bool ParameterEdits::redo() {
+std::optional<std::vector<sim::Setting>> ParameterEdits::redo() {
   const ChangeHistory::Entry* entry = history_.to_redo();
   if (entry == nullptr) {
-    return false;
-  }
-  for (const ChangeHistory::Step& step : entry->steps) {
-    parameters_.want(step.place, step.after);
+    return std::nullopt;
   }
   history_.redone();
-  return true;
+  return want(*entry, &ChangeHistory::Step::after);
 }
 
-void ParameterEdits::reset(const std::optional<std::vector<std::string>>& names) {
-  std::vector<ParameterPlace> places = names ? std::vector<ParameterPlace>() : parameters_.places();
-  for (const std::string& name : names.value_or(std::vector<std::string>())) {
+std::vector<sim::Setting> ParameterEdits::reset(const std::vector<ParameterPlace>& places) {
+  ChangeHistory::Entry entry{"reset", {}, std::nullopt};
+  for (const ParameterPlace& place : places) {
+    const ParameterTable::Values& values = parameters_.at(place);
+    if (values.wanted != values.file) {
+      entry.steps.push_back({place, values.wanted, values.file});
+    }
+  }
+  std::vector<sim::Setting> settings = want(entry, &ChangeHistory::Step::after);
+  if (!settings.empty()) {
+    history_.add(std::move(entry));
+  }
+  return settings;
+}
+
+std::vector<sim::Setting> ParameterEdits::want(const ChangeHistory::Entry& entry,
+                                               std::int32_t ChangeHistory::Step::*value) {
+  std::vector<sim::Setting> settings;
+  settings.reserve(entry.steps.size());
+  for (const ChangeHistory::Step& step : entry.steps) {
+    parameters_.want(step.place, step.*value);
+    settings.push_back(setting_of(step.place, step.*value));
+  }
+  return settings;
+}
+
+std::vector<ParameterPlace> ParameterEdits::places_of(const std::optional<std::vector<std::string>>& names) const {
+  if (!names) {
+    return parameters_.places();
+  }
+  std::vector<ParameterPlace> places;
+  for (const std::string& name : *names) {
     const sim::SettingTarget target = sim::find_target(file_, name + "=0");
     if (target.internal) {
       throw InputError(shortened(name), 0, "an internal value", "a parameter");
@@ -78,17 +100,7 @@ void ParameterEdits::reset(const std::optional<std::vector<std::string>>& names)
                         static_cast<std::uint8_t>(target.index)});
     }
   }
-  ChangeHistory::Entry entry{"reset", {}, std::nullopt};
-  for (const ParameterPlace& place : places) {
-    const ParameterTable::Values& values = parameters_.at(place);
-    if (values.wanted != values.file) {
-      entry.steps.push_back({place, values.wanted, values.file});
-      parameters_.want(place, values.file);
-    }
-  }
-  if (!entry.steps.empty()) {
-    history_.add(std::move(entry));
-  }
+  return places;
 }
 
 bool ParameterEdits::differs_from_file() const {
@@ -100,7 +112,7 @@ bool ParameterEdits::differs_from_file() const {
 sim::Scenario ParameterEdits::scenario_as_wanted() const {
   sim::Scenario scenario = file_;
   for (const ParameterPlace& place : parameters_.places()) {
-    sim::set_start_value(scenario, {place.slot, place.joint, place.index, false, parameters_.at(place).wanted});
+    sim::set_start_value(scenario, setting_of(place, parameters_.at(place).wanted));
   }
   return scenario;
 }

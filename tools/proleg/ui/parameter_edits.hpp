@@ -15,18 +15,23 @@ namespace proleg::tools {
 
 class ParameterEdits {
  public:
-  /// file: as the user gave it; must outlive this.
-  explicit ParameterEdits(const sim::Scenario& file);
+  /// file: as the files have it; must outlive this. start: the same with the start values of the first run.
+  ParameterEdits(const sim::Scenario& file, const sim::Scenario& start);
 
-  /// Words as for --set, without a tick. Returns the internal values among them, which are wanted once. Throws
-  /// InputError, and then changes nothing. gesture: as in ChangeHistory.
+  // Each of these wants other values and returns them.
+
+  /// Words as for --set, without a tick. Internal values are among the result; they are not wanted longer than once.
+  /// Throws InputError, and then changes nothing. gesture: as in ChangeHistory.
   std::vector<sim::Setting> set(const std::vector<std::string>& words, std::optional<std::uint64_t> gesture);
-  /// False if there is nothing to undo.
-  bool undo();
-  bool redo();
-  /// The parameters with these names, as for --set without a value, or all of them, are wanted as the file has them.
-  /// Throws InputError.
-  void reset(const std::optional<std::vector<std::string>>& names);
+  /// Nothing if there is nothing to undo.
+  std::optional<std::vector<sim::Setting>> undo();
+  std::optional<std::vector<sim::Setting>> redo();
+  /// As the file has them.
+  std::vector<sim::Setting> reset(const std::vector<ParameterPlace>& places);
+
+  /// The places that names like those of set() mean, of each joint that they mean; without names all. Throws
+  /// InputError.
+  [[nodiscard]] std::vector<ParameterPlace> places_of(const std::optional<std::vector<std::string>>& names) const;
 
   [[nodiscard]] ParameterTable& parameters() { return parameters_; }
   [[nodiscard]] const ParameterTable& parameters() const { return parameters_; }
@@ -37,6 +42,9 @@ class ParameterEdits {
   [[nodiscard]] sim::Scenario scenario_as_wanted() const;
 
  private:
+  /// Wants the values of an entry before or after it.
+  std::vector<sim::Setting> want(const ChangeHistory::Entry& entry, std::int32_t ChangeHistory::Step::*value);
+
   const sim::Scenario& file_;
   sim::Scenario scratch_;  ///< to read words with
   ParameterTable parameters_;

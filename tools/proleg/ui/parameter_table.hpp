@@ -18,6 +18,14 @@ struct ParameterPlace {
   }
 };
 
+/// Of a setting that is no internal value.
+[[nodiscard]] inline ParameterPlace place_of(const sim::Setting& setting) {
+  return {setting.slot, setting.joint, setting.index};
+}
+[[nodiscard]] inline sim::Setting setting_of(const ParameterPlace& place, std::int32_t value) {
+  return {place.slot, place.joint, place.index, false, value};
+}
+
 /// The parameters of a robot that moves. Three values of each are told apart: of the file, as last asked for, and as
 /// the joint's kernel uses it. Raw values (shared/fixed/unit.hpp).
 class ParameterTable {

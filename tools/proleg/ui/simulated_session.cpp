@@ -244,17 +244,7 @@ json SimulatedSession::swap(const json& /*arguments*/) {
 }
 
 json SimulatedSession::reset(const json& arguments) {
-  const auto names = argument<std::vector<std::string>>(arguments, "names", "names such as \"1.amplitude:J2\"");
-  if (!names) {
-    live_.reset(live_.parameters().places());
-    return json::object();
-  }
-  std::vector<ParameterPlace> places;
-  for (const std::string& name : *names) {
-    const std::vector<ParameterPlace> of_name = live_.places_of(name);
-    places.insert(places.end(), of_name.begin(), of_name.end());
-  }
-  live_.reset(places);
+  live_.reset(live_.places_of(parameter_names(arguments)));
   return json::object();
 }
 
@@ -369,11 +359,6 @@ void SimulatedSession::set_state(State state) {
 void SimulatedSession::publish_session(Clock::time_point now) {
   constexpr const char* names[] = {"paused", "running", "stopped", "failed"};
   const sim::Simulation& simulation = live_.simulation();
-  bool is_changed = false;
-  for (const ParameterPlace& place : live_.parameters().places()) {
-    const ParameterTable::Values& values = live_.parameters().at(place);
-    is_changed = is_changed || values.wanted != values.file;
-  }
   const double measured = pace_.measure(now);
   const json document{{"state", names[static_cast<std::size_t>(state_)]},
                       {"factor", pace_.factor()},
@@ -385,7 +370,7 @@ void SimulatedSession::publish_session(Clock::time_point now) {
                       {"head", pose_json(simulation.plant().link_poses().front())},
                       {"moved", simulation.was_moved()},
                       {"recording", text_or_null(recording_)},
-                      {"changed", is_changed},
+                      {"changed", live_.differs_from_file()},
                       {"undo", text_or_null(entry_name(live_.history().to_undo()))},
                       {"redo", text_or_null(entry_name(live_.history().to_redo()))},
                       {"set", std::string(1, live_.set_name())},

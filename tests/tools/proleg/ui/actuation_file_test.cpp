@@ -63,7 +63,7 @@ TEST_F(ActuationFile, WrittenAndReadAgainHasTheWantedValues) {
 TEST_F(ActuationFile, SettingsOfTheCommandLineAreNotOfTheFile) {
   const std::vector<std::string> settings{"amplitude=30", "frequency=0.5@20"};
   LiveSimulation live(read(), settings, nullptr);
-  const ParameterPlace tail = live.places_of("amplitude:J1").front();
+  const ParameterPlace tail = live.places_of(std::vector<std::string>{"amplitude:J1"}).front();
   EXPECT_NE(live.parameters().at(tail).wanted, live.parameters().at(tail).file);
   EXPECT_EQ(live.file_edits().size(), 2U);  // the tags for all joints and for J1
   live.set({"amplitude:J2=12"}, std::nullopt);

@@ -32,7 +32,9 @@ void advance(LiveSimulation& live, unsigned ticks) {
   }
 }
 
-ParameterPlace place(const LiveSimulation& live, const std::string& name) { return live.places_of(name).front(); }
+ParameterPlace place(const LiveSimulation& live, const std::string& name) {
+  return live.places_of(std::vector<std::string>{name}).front();
+}
 
 TEST(LiveSimulation, WithoutChangesItIsTheScenario) {
   LiveSimulation live(uniform(), {}, nullptr);
@@ -213,7 +215,7 @@ TEST(LiveSimulation, ResetWantsTheFilesValueAgain) {
   LiveSimulation live(uniform(), {}, nullptr);
   live.set({"amplitude=30", "frequency=0.4"}, std::nullopt);
   advance(live, 10);
-  live.reset(live.places_of("amplitude"));
+  live.reset(live.places_of(std::vector<std::string>{"amplitude"}));
   const ParameterTable::Values amplitude = live.parameters().at(place(live, "amplitude:J3"));
   EXPECT_EQ(amplitude.wanted, amplitude.file);
   const ParameterTable::Values frequency = live.parameters().at(place(live, "frequency:J3"));

@@ -21,7 +21,7 @@ class ParameterEditsTest : public ::testing::Test {
   }
 
   sim::Scenario file = sim::shipped("travelling_wave/uniform");
-  ParameterEdits edits{file};
+  ParameterEdits edits{file, file};
   const std::vector<std::int32_t> of_file = wanted();
 };
 
@@ -61,14 +61,14 @@ TEST_F(ParameterEditsTest, ABadWordChangesNothing) {
 TEST_F(ParameterEditsTest, AreResetByNameOrAltogether) {
   edits.set({"amplitude=30"}, {});
   edits.set({"offset=3"}, {});
-  edits.reset(std::vector<std::string>{"1.amplitude:J2"});
-  EXPECT_THROW(edits.reset(std::vector<std::string>{"amplitudo"}), InputError);
+  edits.reset(edits.places_of(std::vector<std::string>{"1.amplitude:J2"}));
+  EXPECT_THROW(edits.reset(edits.places_of(std::vector<std::string>{"amplitudo"})), InputError);
   const auto differing =
       static_cast<std::size_t>(std::ranges::count_if(edits.parameters().places(), [this](const ParameterPlace& place) {
         return edits.parameters().at(place).wanted != edits.parameters().at(place).file;
       }));
   EXPECT_EQ(differing, 4U + 5U);
-  edits.reset({});
+  edits.reset(edits.places_of({}));
   EXPECT_EQ(wanted(), of_file);
   EXPECT_TRUE(edits.undo());
   EXPECT_TRUE(edits.differs_from_file());

@@ -282,7 +282,7 @@ def test_a_bus_that_is_lost_ends_the_run_and_not_the_page(page, _):
     driver.until_state("off")
     driver.until(lambda: not driver.bus()["connected"])
     assert driver.bus()["problem"]
-    assert any("stop by themselves" in notice for notice in driver.notices), driver.notices
+    driver.until(lambda: any("stop by themselves" in notice for notice in driver.notices))
     assert not driver.ask("pose", angles=[0] * JOINTS)["ok"]
 
 

@@ -12,12 +12,18 @@ function frame(time: number): void {
   if (drawers.size === 0) {
     return;
   }
-  requestAnimationFrame(frame);
   if (isLimited && time < due - tolerance) {
+    requestAnimationFrame(frame);
     return;
   }
   due = Math.max(due, time - limitedPeriod) + limitedPeriod;
   drawers.forEach((draw) => draw(time));
+  if (isLimited) {
+    // A frame that is asked for costs the browser a look at the whole page, also if nothing draws in it.
+    setTimeout(() => requestAnimationFrame(frame), limitedPeriod / 2);
+  } else {
+    requestAnimationFrame(frame);
+  }
 }
 
 // At most 30 frames a second: for a computer that draws slowly, so that it has time for the controls.

@@ -6,8 +6,8 @@ import type { Joint } from '../wire/messages.js';
 import { contactText, numberText, valueOf } from './joint_values.js';
 import { ModuleCell } from './module_state.js';
 
-const period = 100; // milliseconds: faster cannot be read
-const rowsOfAFrame = 12; // more at once would hold up the controls
+const period = 150; // milliseconds: faster cannot be read
+const rowsOfAFrame = 30; // more at once would hold up the controls
 
 // What a cell shows at a row of the history. `tone`: a class for its colour.
 interface CellText {

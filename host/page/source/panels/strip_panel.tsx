@@ -42,17 +42,25 @@ class StripDrawing {
   private readonly image = new StripImage();
   private lastKey = '';
   private lastTime = 0;
+  // In CSS pixels. To ask the canvas in each frame would make the browser lay the page out twice in it.
+  private box = { width: 0, height: 0 };
+  private readonly observer = new ResizeObserver(([entry]) => (this.box = (entry as ResizeObserverEntry).contentRect));
 
   constructor(
     private readonly app: RobotView,
     private readonly canvas: HTMLCanvasElement,
     private readonly legend: { current: HTMLElement | null },
-  ) {}
+  ) {
+    this.observer.observe(canvas);
+  }
+
+  end(): void {
+    this.observer.disconnect();
+  }
 
   draw(now: number): void {
-    const { app, canvas } = this;
+    const { app, canvas, box } = this;
     const { sampledRows: history, selection, time } = app;
-    const box = canvas.getBoundingClientRect();
     const newest = app.newestTick;
     const range = time.range(newest);
     const hovered = selection.hoveredJoint.peek();
@@ -121,7 +129,7 @@ class StripDrawing {
 
   private drawMarks(
     context: CanvasRenderingContext2D,
-    box: DOMRect,
+    box: { width: number; height: number },
     rows: number,
     hovered: number | null,
     cursor: number | null,
@@ -158,7 +166,11 @@ export function StripPanel({ app }: { app: RobotView }) {
   const legend = useRef<HTMLSpanElement>(null);
   useEffect(() => {
     const drawing = new StripDrawing(app, canvas.current as HTMLCanvasElement, legend);
-    return onFrame((now) => drawing.draw(now));
+    const stop = onFrame((now) => drawing.draw(now));
+    return () => {
+      stop();
+      drawing.end();
+    };
   }, []);
   useEffect(() => {
     const element = canvas.current as HTMLCanvasElement;

@@ -17,7 +17,9 @@ export const details: readonly Detail[] = [
 // In milliseconds.
 const window = 1000; // over which frames are counted
 const pause = 1000; // without a frame: the page was hidden
-const slowFrame = 34; // mean: drawing is too expensive
+export const slowFrame = 34; // mean: drawing is too expensive
+// Mean, where the processor draws: it needs time for the robot and the controls as well.
+export const slowFrameInSoftware = 24;
 const quickFrame = 20; // mean: more detail may be possible
 const shortestPatience = 10000; // of quick frames before an attempt at more detail
 const longestPatience = 600000;
@@ -32,7 +34,10 @@ export class DrawingBudget {
   private patience = shortestPatience;
   private isAttempt = false; // the present level is an attempt at more detail
 
-  constructor(public level: number) {}
+  constructor(
+    public level: number,
+    private readonly slowFrame: number,
+  ) {}
 
   get detail(): Detail {
     return details[this.level] as Detail;
@@ -66,11 +71,11 @@ export class DrawingBudget {
 
   private judge(mean: number, time: number): boolean {
     const before = this.level;
-    if (mean > slowFrame) {
+    if (mean > this.slowFrame) {
       if (this.isAttempt) this.patience = Math.min(longestPatience, 2 * this.patience);
       this.isAttempt = false;
       this.quickFor = 0;
-      this.level = Math.min(details.length - 1, this.level + (mean > 2 * slowFrame ? 2 : 1));
+      this.level = Math.min(details.length - 1, this.level + (mean > 2 * this.slowFrame ? 2 : 1));
     } else if (mean > quickFrame) {
       this.quickFor = 0;
     } else {

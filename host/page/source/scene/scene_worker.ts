@@ -1,5 +1,5 @@
 // The worker that draws the 3D view, so that drawing never holds up a slider or STOP.
-import { DrawingBudget } from './drawing_budget.js';
+import { DrawingBudget, slowFrame, slowFrameInSoftware } from './drawing_budget.js';
 import { RobotScene } from './robot_scene.js';
 import type { FromScene, ToScene } from './scene_messages.js';
 
@@ -18,7 +18,7 @@ function isDrawnInSoftware(): boolean {
 
 function start(canvas: OffscreenCanvas, isDark: boolean): void {
   const isSoftware = isDrawnInSoftware();
-  const budget = new DrawingBudget(isSoftware ? 1 : 0);
+  const budget = isSoftware ? new DrawingBudget(1, slowFrameInSoftware) : new DrawingBudget(0, slowFrame);
   let view: RobotScene;
   try {
     view = new RobotScene(canvas, isDark, isSoftware, budget.detail);

@@ -10,6 +10,9 @@ export interface Probe {
   frame_bytes: number; // of the last message with one row
   // Milliseconds from a key on a slider to the arrival of the first row with another set-point.
   changes: number[];
+  // When a key was pressed on a slider, and Esc: milliseconds since 1970.
+  slider_keys: number[];
+  stop_keys: number[];
   quiet_rows: number; // with the same set-points as the row before
   watches_setpoints: boolean;
   // Milliseconds from Esc to the answer that all joints have stopped.
@@ -34,6 +37,8 @@ export function installProbe(): void {
     bytes: 0,
     frame_bytes: 0,
     changes: [],
+    slider_keys: [],
+    stop_keys: [],
     quiet_rows: 0,
     watches_setpoints: false,
     stops: [],
@@ -49,8 +54,15 @@ export function installProbe(): void {
   addEventListener(
     'keydown',
     (event) => {
-      if (event.key === 'Escape') stopTime = event.timeStamp;
-      if (event.target instanceof HTMLInputElement && event.target.type === 'range') keyTime = event.timeStamp;
+      const time = performance.timeOrigin + event.timeStamp;
+      if (event.key === 'Escape') {
+        stopTime = event.timeStamp;
+        probe.stop_keys.push(time);
+      }
+      if (event.target instanceof HTMLInputElement && event.target.type === 'range') {
+        keyTime = event.timeStamp;
+        probe.slider_keys.push(time);
+      }
     },
     true,
   );

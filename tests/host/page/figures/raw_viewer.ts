@@ -18,6 +18,7 @@ export class RawViewer {
   bytes = 0; // of telemetry messages
   texts: any[] = [];
   onTelemetry: (header: TelemetryHeader) => void = () => {};
+  onText: (message: any) => void = () => {};
 
   private constructor(
     private readonly socket: Socket,
@@ -122,6 +123,7 @@ export class RawViewer {
   }
 
   private receiveText(message: any): void {
+    this.onText(message);
     // Results are asked for once; documents replace earlier ones.
     this.texts = this.texts.filter((known) => known.type !== message.type || known.name !== message.name || known.id !== message.id);
     this.texts.push(message);

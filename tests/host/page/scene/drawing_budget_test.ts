@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { details, DrawingBudget } from '../../../../host/page/source/scene/drawing_budget.js';
+import { details, DrawingBudget, slowFrame, slowFrameInSoftware } from '../../../../host/page/source/scene/drawing_budget.js';
 
 // A computer that needs `cost(level)` milliseconds for a frame, on a display of 60 Hz.
 class Computer {
@@ -32,19 +32,25 @@ describe('the detail of the 3D view', () => {
   });
 
   it('stays where every frame is in time', () => {
-    const computer = new Computer(new DrawingBudget(0), () => 10);
+    const computer = new Computer(new DrawingBudget(0, slowFrame), () => 10);
     computer.draw(60);
     assert.equal(computer.changes, 0);
   });
 
   it('becomes less until there are 30 frames a second, and no less', () => {
-    const computer = new Computer(new DrawingBudget(0), (level) => [60, 45, 30, 20, 10][level] as number);
+    const computer = new Computer(new DrawingBudget(0, slowFrame), (level) => [60, 45, 30, 20, 10][level] as number);
     computer.draw(10);
     assert.equal(computer.budget.level, 2);
   });
 
+  it('becomes less until the processor has time, where it draws by itself', () => {
+    const computer = new Computer(new DrawingBudget(0, slowFrameInSoftware), (level) => [60, 45, 30, 20, 10][level] as number);
+    computer.draw(10);
+    assert.equal(computer.budget.level, 3);
+  });
+
   it('becomes as little as there is within three seconds on a very slow computer', () => {
-    const computer = new Computer(new DrawingBudget(0), () => 200);
+    const computer = new Computer(new DrawingBudget(0, slowFrame), () => 200);
     computer.draw(3.5);
     assert.equal(computer.budget.level, lowest);
     computer.draw(60);
@@ -53,7 +59,7 @@ describe('the detail of the 3D view', () => {
 
   it('comes back when the computer has time again', () => {
     let isBusy = true;
-    const computer = new Computer(new DrawingBudget(0), () => (isBusy ? 100 : 5));
+    const computer = new Computer(new DrawingBudget(0, slowFrame), () => (isBusy ? 100 : 5));
     computer.draw(10);
     assert.equal(computer.budget.level, lowest);
     isBusy = false;
@@ -62,7 +68,7 @@ describe('the detail of the 3D view', () => {
   });
 
   it('is tried again less and less often where more of it fails', () => {
-    const computer = new Computer(new DrawingBudget(1), (level) => (level === 0 ? 50 : 5));
+    const computer = new Computer(new DrawingBudget(1, slowFrame), (level) => (level === 0 ? 50 : 5));
     computer.draw(100);
     const early = computer.changes;
     assert.ok(early >= 4, 'more detail is tried');
@@ -73,7 +79,7 @@ describe('the detail of the 3D view', () => {
   });
 
   it('does not change because the page was hidden', () => {
-    const computer = new Computer(new DrawingBudget(0), () => 10);
+    const computer = new Computer(new DrawingBudget(0, slowFrame), () => 10);
     computer.draw(5);
     computer.now += 3600000;
     computer.draw(5);
@@ -81,7 +87,7 @@ describe('the detail of the 3D view', () => {
   });
 
   it('says nothing of a computer that has nothing to draw', () => {
-    const computer = new Computer(new DrawingBudget(2), () => 10);
+    const computer = new Computer(new DrawingBudget(2, slowFrame), () => 10);
     computer.draw(60, () => false);
     assert.equal(computer.changes, 0);
   });

@@ -28,7 +28,7 @@ class ParameterMotion {
   /// The element is here, without having been moved: it has no effect.
   void place(double position);
   /// The element has been moved. Returns what it now wants: nothing unless the stepped value is another one. begins: it
-  /// rested before; whoever has changed a parameter meanwhile has taken it from the element.
+  /// rested before; a parameter that has another value than the element gave it does not follow the element any more.
   [[nodiscard]] std::vector<Value> move(double position, bool begins, const RemoteTarget& target);
   /// The element has to take all parameters up again.
   void let_go();

@@ -239,12 +239,7 @@ void RemoteSession::carry_out(const host::OperationRequest& request) {
                                                             {"remote.save", &RemoteSession::save},
                                                             {"remote.watch", &RemoteSession::watch}};
   try {
-    const auto handler = handlers.find(request.name);
-    if (handler == handlers.end()) {
-      throw InputError("operation", 0, in_quotes(request.name),
-                       "remote.bind, remote.unbind, remote.learn, remote.save or remote.watch");
-    }
-    (this->*handler->second)(request);
+    (this->*handler_of(handlers, request.name))(request);
   } catch (const std::exception& error) {
     viewers_->refuse(request.request, one_line(error.what()));
   }

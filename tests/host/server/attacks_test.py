@@ -183,7 +183,7 @@ def test_a_viewer_that_does_not_read_costs_little_memory(server):
         fast.until(lambda: "telemetry" in fast.documents)
         epoch = fast.take_control()
         fast.do("rate", epoch, ticks_per_second=4000)
-        slow = [server.viewer(f"slow {i}", receive_buffer=4096) for i in range(8)]
+        slow = [server.viewer(f"slow {i}", receive_buffer=65536) for i in range(8)]
         for viewer in slow:
             viewer.send({"type": "subscribe", "signals": ["angle", "contact", "count"]})
         fast.send({"type": "subscribe", "signals": ["count"]})

@@ -3,7 +3,7 @@ import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
 import type { RobotView } from '../robot_view.js';
 import type { Joint } from '../wire/messages.js';
-import { comparedValueOf, contactText, numberText, valueOf } from './joint_values.js';
+import { areComing, comparedValueOf, contactText, numberText, valueOf } from './joint_values.js';
 import { ModuleCell } from './module_state.js';
 
 const period = 100; // milliseconds: faster cannot be read
@@ -134,7 +134,7 @@ export function JointTable({ app }: { app: RobotView }) {
       const key = [history.run, history.end, tick, other?.run, other?.end].join('/');
       const elements = body.current?.rows ?? [];
       if (next >= elements.length) {
-        if (key === lastKey || now - last < period) {
+        if (key === lastKey || now - last < period || areComing(app, tick)) {
           return;
         }
         last = now;
@@ -145,6 +145,9 @@ export function JointTable({ app }: { app: RobotView }) {
       for (const end = Math.min(elements.length, next + rowsOfAFrame); next < end; next += 1) {
         const values = columns.map((column) => column.read(app, next, row));
         write(elements[next] as HTMLTableRowElement, values);
+      }
+      if (next >= elements.length && body.current !== null) {
+        body.current.dataset['tick'] = String(history.tickOf(row));
       }
     });
   }, [columns]);

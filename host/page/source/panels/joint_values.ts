@@ -4,6 +4,11 @@ import { noValue } from '../wire/messages.js';
 
 type Rows = Pick<RobotView, 'rowsAtCursor'>;
 
+// Whether the values at a tick of a recording are still to come. Nothing is drawn of other ticks meanwhile.
+export function areComing({ history, rowsAtCursor }: Pick<RobotView, 'history' | 'rowsAtCursor'>, tick: number): boolean {
+  return rowsAtCursor !== history && !rowsAtCursor.has(tick);
+}
+
 // In the signal's unit; null if there is none.
 export function valueOf(app: Rows, signal: string, joint: number, row: number): number | null {
   const raw = app.rowsAtCursor.valueAt(signal, joint, row);

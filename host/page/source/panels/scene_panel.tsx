@@ -11,6 +11,7 @@ import { isDark } from '../theme.js';
 import { MoveForm } from './move_form.js';
 import { listenToPointer, type RobotMover } from './scene_pointer.js';
 import { ScenePull } from './scene_pull.js';
+import { areComing } from './joint_values.js';
 import { poseAt, shownPose } from './scene_pose.js';
 
 const readoutPeriod = 100; // milliseconds
@@ -222,7 +223,7 @@ function followPose(app: RobotView, send: (message: ToScene) => void, readout: {
       session === mover?.session.peek() &&
       preview === mover?.preview.peek() &&
       withGhost === ghostIsOn.peek();
-    if (key === lastKey && isSame) {
+    if ((key === lastKey && isSame) || areComing(app, tick)) {
       return;
     }
     const pose = shownPose(app, tick, ghostIsOn.peek());

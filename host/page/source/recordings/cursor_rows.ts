@@ -21,8 +21,7 @@ export class CursorRows {
   ) {}
 
   has(tick: number): boolean {
-    const { history } = this;
-    return history.end > 0 && tick >= history.tickOf(history.first) && tick <= history.lastTick();
+    return this.history.has(tick);
   }
 
   // Call it at each frame: it asks only for what is missing.

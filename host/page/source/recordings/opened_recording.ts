@@ -1,5 +1,5 @@
 // A recording that is shown, alone or with a second one: what the panels show of it, and its time. A growing one is followed.
-import { signal } from '@preact/signals-core';
+import { effect, signal, untracked } from '@preact/signals-core';
 import { addPlaybackActions } from '../player/player_actions.js';
 import type { PlayedRecording } from '../player/player_app.js';
 import { ActionList, type Action } from '../state/actions.js';
@@ -47,6 +47,11 @@ export class OpenedRecording implements PlayedRecording {
     const isOfPage = (action: Action) => action.group === 'Page' || action.id === 'stop' || action.id === 'take_control';
     this.actions = new ActionList(pageActions, isOfPage);
     addPlaybackActions(this, ['K']);
+    // Not only at the next frame: it may be 30 ms later.
+    effect(() => {
+      this.time.cursor.value;
+      this.read();
+    });
   }
 
   get client(): RecordingClient {
@@ -96,8 +101,15 @@ export class OpenedRecording implements PlayedRecording {
     if (this.newestTick > time.last) {
       time.extend(this.newestTick, time.cursor.peek() >= time.last);
     }
-    const names = new Set(this.selection.needed(this.reader.telemetry.signals).map((signal) => signal.name));
-    this.reader.advance(time, names);
-    this.compared.peek()?.advance(time, names);
+    this.read();
+  }
+
+  // What is missing at the time cursor.
+  private read(): void {
+    untracked(() => {
+      const names = new Set(this.selection.needed(this.reader.telemetry.signals).map((signal) => signal.name));
+      this.reader.advance(this.time, names);
+      this.compared.peek()?.advance(this.time, names);
+    });
   }
 }

@@ -23,6 +23,7 @@ export function ScenePanel({ app }: { app: RobotView }) {
   const level = useSignal(0);
   const failure = useSignal<string | null>(null);
   const isOnBus = app.state.busSession.value !== null;
+  const isCompared = (app.compared?.value ?? null) !== null;
   const post = useRef<(message: ToScene) => void>(() => {});
 
   useEffect(() => {
@@ -165,10 +166,10 @@ export function ScenePanel({ app }: { app: RobotView }) {
       <span class="readout" ref={readout} data-testid="head" title="Position of the head" />
       <span class="legend-marks" aria-hidden="true">
         <i class="mark head" /> head <i class="mark contact" /> ground contact <i class="mark path" /> path
-        {isOnBus && ghostIsOn.value && (
+        {((isOnBus && ghostIsOn.value) || isCompared) && (
           <>
             {' '}
-            <i class="mark ghost" /> simulation
+            <i class="mark ghost" /> {isCompared ? 'second recording' : 'simulation'}
           </>
         )}
       </span>

@@ -67,7 +67,7 @@ export function isDecided({ first_tick, last_tick, compared, difference, damage 
 export function comparisonText(comparison: RunComparison): string {
   const { first_tick, last_tick, compared, difference } = comparison;
   const ticks = last_tick - first_tick + 1;
-  const both = `both have the ticks ${first_tick} to ${last_tick}`;
+  const both = `ticks ${first_tick} to ${last_tick} are in both`;
   if (difference !== null) {
     return `${both}; the set-points differ from tick ${difference.tick} on (${difference.joint})`;
   }

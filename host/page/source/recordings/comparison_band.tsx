@@ -13,19 +13,15 @@ export function ComparisonBand({ opened }: { opened: OpenedRecording }) {
   return (
     <div class={`band ${failure === null ? 'info' : 'lost'} comparison`} role="status" data-testid="comparison">
       <span>
-        <strong>{compared.name}</strong>{' '}
-        <span class="unit">
-          (dashed, <i class="mark ghost" /> translucent)
-        </span>
-        : {failure ?? `${comparisonText(comparison)}; ${wayText(comparison)}`}
+        <strong>{compared.name}</strong> (dashed, <i class="mark ghost" /> translucent): {failure ?? `${comparisonText(comparison)}; ${wayText(comparison)}`}
       </span>
       {difference !== null && (
         <button type="button" onClick={() => opened.time.pick(difference.tick)} title="The time cursor goes to the first difference">
           To tick {difference.tick}
         </button>
       )}
-      <button type="button" onClick={() => (opened.compared.value = null)}>
-        End the comparison
+      <button type="button" onClick={() => (opened.compared.value = null)} title="Ends the comparison (D)">
+        End
       </button>
     </div>
   );

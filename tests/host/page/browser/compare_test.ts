@@ -87,7 +87,7 @@ describe('two recordings', () => {
     await page.locator('.line-chips .value').filter({ hasText: '|' }).first().waitFor();
     const withGhost = countPixels(await pixelsOf(page, page.getByTestId('scene')), isGhost);
     await viewer.screenshot('compared');
-    await viewer.button('End the comparison').click();
+    await viewer.button('End').click();
     await page.locator('[data-testid=joints] td[data-value=lag]').first().waitFor();
     await page.waitForTimeout(300);
     const withoutGhost = countPixels(await pixelsOf(page, page.getByTestId('scene')), isGhost);
@@ -106,7 +106,7 @@ describe('two recordings', () => {
     await page.keyboard.press('d');
     await viewer.button('short.proleg').focus();
     await page.keyboard.press('Enter');
-    await band.getByText('both have the ticks 0 to 299; the same set-points in all 300 ticks').waitFor();
+    await band.getByText('ticks 0 to 299 are in both; the same set-points in all 300 ticks').waitFor();
     // Behind its end there is nothing of it.
     await page.keyboard.press('End');
     await page.locator('[data-testid=joints] tbody[data-tick="999"] td[data-value="Δ angle"]').filter({ hasText: '–' }).first().waitFor();

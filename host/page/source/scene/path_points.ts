@@ -53,6 +53,7 @@ export class PathPoints {
 
   private dropEverySecond(): void {
     const kept = this.count / 2;
+    this.isCut ||= this.begins[this.count - 1] === true; // which goes
     this.count = 0;
     this.segmentEnds = 0;
     for (let i = 0; i < kept; i += 1) {

@@ -124,8 +124,8 @@ json RecordedSession::rows(const json& arguments) {
 json RecordedSession::compare(const json& arguments) {
   RecordedRun& run = *run_of(arguments).run;
   RecordedRun& other = *run_of(arguments, "with").run;
-  const auto found = std::ranges::find_if(
-      comparisons_, [&](const OpenComparison& open) { return open.comparison.is_of(run, other); });
+  const auto found =
+      std::ranges::find_if(comparisons_, [&](const OpenComparison& open) { return open.comparison.is_of(run, other); });
   if (found != comparisons_.end()) {
     comparisons_.splice(comparisons_.begin(), comparisons_, found);
   } else {

@@ -49,8 +49,8 @@ json marks_json(const sim::Recording& recording) {
     marks.push_back({move.tick, "move", "moved by hand"});
   }
   for (const sim::RecordedLosses& lost : recording.losses_in_parts(max_loss_marks)) {
-    marks.push_back({lost.tick, "loss", std::to_string(lost.frames) + (lost.frames == 1 ? " frame" : " frames") +
-                                            " lost from here on"});
+    marks.push_back({lost.tick, "loss",
+                     std::to_string(lost.frames) + (lost.frames == 1 ? " frame" : " frames") + " lost from here on"});
   }
   std::ranges::stable_sort(marks, {}, &Mark::tick);
   json document = json::array();

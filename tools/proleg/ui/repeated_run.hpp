@@ -19,9 +19,9 @@ namespace proleg::tools {
 
 /// What was done to a run.
 struct RunInputs {
-  std::vector<sim::Setting> start;     ///< values of parameters at tick 0
-  std::vector<sim::Change> changes;    ///< by ascending tick
-  std::vector<sim::RobotMove> moves;   ///< by ascending tick
+  std::vector<sim::Setting> start;    ///< values of parameters at tick 0
+  std::vector<sim::Change> changes;   ///< by ascending tick
+  std::vector<sim::RobotMove> moves;  ///< by ascending tick
 };
 
 class RepeatedRun {

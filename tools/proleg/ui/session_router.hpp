@@ -4,8 +4,8 @@
 
 namespace proleg::tools {
 
-/// Two sessions behind one page: a robot, and recordings. Operations go by their names; STOP and the holder of control go
-/// to the robot.
+/// Two sessions behind one page: a robot, and recordings. Operations go by their names; STOP and the holder of control
+/// go to the robot.
 class SessionRouter final : public host::RobotSession {
  public:
   /// Both must outlive the router.

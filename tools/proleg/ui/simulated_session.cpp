@@ -359,12 +359,11 @@ json SimulatedSession::tell_command_line(const json& /*arguments*/) {
 }
 
 void SimulatedSession::tick() {
+  std::optional<sim::TickSample> sample;
   try {
     live_->advance();
-    fill_row(live_->sample(), live_->scenario(), row_);
-    if (is_repeating_) {
-      check_repetition();
-    }
+    sample = live_->sample();
+    fill_row(*sample, live_->scenario(), row_);
   } catch (const std::exception& error) {
     failure_ = one_line(error.what());
     stop_steps();
@@ -377,7 +376,7 @@ void SimulatedSession::tick() {
     recording_.clear();
     is_session_new_ = true;
   }
-  if (!live_->sample().moves.empty()) {
+  if (!sample->moves.empty()) {
     publish_session(Clock::now());  // before the row that it explains
   }
   output_.add_row(run_, live_->simulation().tick() - 1, row_);
@@ -385,13 +384,24 @@ void SimulatedSession::tick() {
   if (steps_left_ > 0 && --steps_left_ == 0) {
     is_session_new_ = true;
   }
+  if (is_repeating_) {
+    check_repetition(*sample);
+  }
 }
 
-void SimulatedSession::check_repetition() {
-  const sim::TickSample sample = live_->sample();
-  repeated_->check(sample);
+void SimulatedSession::check_repetition(const sim::TickSample& sample) {
+  try {
+    repeated_->check(sample);
+  } catch (const std::exception& error) {
+    // The file is damaged. The simulation is sound, and stays where it has come to.
+    stop_steps();
+    is_session_new_ = true;
+    output_.notice(host::NoticeLevel::error, one_line(error.what()));
+    return;
+  }
   if (sample.tick == repeated_->last_tick()) {
     is_repeating_ = false;
+    is_session_new_ = true;
     output_.notice(repeated_->has_differences() ? host::NoticeLevel::warning : host::NoticeLevel::info,
                    repeated_->verdict());
   }

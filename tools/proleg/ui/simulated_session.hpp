@@ -1,7 +1,7 @@
 #pragma once
 
-// A simulated robot that viewers watch and change: that of a scenario, or the continued run of a recording. It runs in a
-// thread of its own.
+// A simulated robot that viewers watch and change: that of a scenario, or the continued run of a recording. It runs in
+// a thread of its own.
 
 #include <chrono>
 #include <cstdint>
@@ -60,12 +60,10 @@ class SimulatedSession {
   /// What all viewers must know of another simulation.
   void publish_robot();
   /// Compares the last tick with that of the recording that is continued.
-  void check_repetition();
+  void check_repetition(const sim::TickSample& sample);
   void begin_recording(const std::string& file);
   void end_recording();
-  [[nodiscard]] bool may_tick() const {
-    return live_ != nullptr && (state_ == State::running || steps_left_ > 0);
-  }
+  [[nodiscard]] bool may_tick() const { return live_ != nullptr && (state_ == State::running || steps_left_ > 0); }
   void stop_steps();
   void set_state(State state);
   void publish_session(Clock::time_point now);

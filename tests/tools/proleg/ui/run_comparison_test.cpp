@@ -93,8 +93,7 @@ TEST_F(RunComparisonTest, RefusesRunsThatHaveNoCommonTicks) {
             "long.proleg: found 20 joints, expected 5, as in a.proleg");
   const fs::path slow = record("slow.proleg", 10);
   change(slow, "UPDATE run SET value = '20000' WHERE key = 'tick_us'");
-  EXPECT_EQ(refusal(one, slow),
-            "slow.proleg: found 20000 microseconds in a tick, expected 10000, as in a.proleg");
+  EXPECT_EQ(refusal(one, slow), "slow.proleg: found 20000 microseconds in a tick, expected 10000, as in a.proleg");
   const fs::path late = record("late.proleg", 30);
   change(late, "DELETE FROM sample WHERE tick < 20");
   EXPECT_EQ(refusal(one, late), "late.proleg: found ticks 20 to 29, expected some of the ticks 0 to 9 of a.proleg");
@@ -115,8 +114,7 @@ TEST_F(RunComparisonTest, ADamagedFileThrowsAndIsNotReadAgain) {
   RecordedRun run(one);
   RecordedRun second(other);
   RunComparison comparison(run, second);
-  EXPECT_THROW(
-      while (comparison.compare_some()) {}, InputError);
+  EXPECT_THROW(while (comparison.compare_some()){}, InputError);
   comparison.end("a gap");
   EXPECT_FALSE(comparison.compare_some());
   EXPECT_EQ(comparison.document()["damage"], "a gap");

@@ -118,10 +118,10 @@ class SimulatedSessionTest : public ::testing::Test {
   void open(std::unique_ptr<LiveSimulation> live, bool starts_paused) {
     session_.reset();
     requests_.emplace();
-    session_.emplace(std::move(live),
-                     SimulatedSessionOptions{folder_ / "", "proleg simulate uniform.simulation.xml", false, "test",
-                                             starts_paused},
-                     *requests_, viewers_);
+    session_.emplace(
+        std::move(live),
+        SimulatedSessionOptions{folder_ / "", "proleg simulate uniform.simulation.xml", false, "test", starts_paused},
+        *requests_, viewers_);
   }
   /// A run with changes of all kinds.
   void record_run(const std::string& name, std::uint32_t ticks) {
@@ -293,6 +293,7 @@ TEST_F(SimulatedSessionTest, MovesAPausedRobotAndRepeatsItInTheCommand) {
   EXPECT_NEAR(session["head"][2].get<double>(), 0.125, 1e-9);
   EXPECT_TRUE(ask("step", {{"ticks", 5}}).is_done);
   viewers_.session([](const json& document) { return document["tick"] == 10 && document["moved"] == false; });
+  EXPECT_EQ(viewers_.document("session")["last_move"], 5);
   EXPECT_EQ(json::parse(ask("command_line").text)["text"],
             "proleg simulate uniform.simulation.xml --move 0.5,0.25,0.125,30@5 --seconds 0.1");
 }
@@ -380,6 +381,18 @@ TEST_F(SimulatedSessionTest, SaysFromWhichTickOnARecordingIsNotItsOwn) {
   EXPECT_NE(viewers_.notices().find("from tick 30 on"), std::string::npos) << viewers_.notices();
 }
 
+TEST_F(SimulatedSessionTest, StaysWhereARecordingIsDamaged) {
+  record_run("run.proleg", 600);
+  Database(folder_ / "run.proleg", SQLITE_OPEN_READWRITE).execute("DELETE FROM pose WHERE tick = 400");
+  open(nullptr, true);
+  EXPECT_TRUE(ask("continue", {{"file", "run.proleg"}, {"tick", 500}}).is_done);
+  const json session = viewers_.session(
+      [](const json& document) { return document["state"] == "paused" && document["repeats"].is_null(); });
+  EXPECT_LE(session["tick"], 401);
+  EXPECT_NE(viewers_.notices().find("run.proleg: found "), std::string::npos) << viewers_.notices();
+  EXPECT_TRUE(ask("run").is_done);
+}
+
 TEST_F(SimulatedSessionTest, RefusesToContinueWhatIsNoSimulation) {
   record_run("run.proleg", 100);
   record_run("robot.proleg", 100);
@@ -388,7 +401,8 @@ TEST_F(SimulatedSessionTest, RefusesToContinueWhatIsNoSimulation) {
   open(true);
   const std::pair<json, const char*> refusals[] = {
       {{{"file", "robot.proleg"}, {"tick", 5}},
-       "robot.proleg: found a recording of 'drive', whose robot had modules, expected a recording of a simulation: only "
+       "robot.proleg: found a recording of 'drive', whose robot had modules, expected a recording of a simulation: "
+       "only "
        "that can be computed again"},
       {{{"file", "run.proleg"}, {"tick", 100}}, "run.proleg: found tick 100, expected 0 to 99"},
       {{{"file", "run.proleg"}}, "tick: found none, expected a tick of the recording"},

@@ -17,7 +17,7 @@ interface CellText {
 
 export interface JointColumn {
   title: string;
-  heading?: string; // shorter than the title
+  heading?: string; // shorter than title and unit
   unit: string;
   help?: string;
   read(app: RobotView, joint: number, row: number): CellText;
@@ -62,8 +62,8 @@ const difference = (title: string, unit: string, signal: string, decimals: numbe
   help: `${title} of the second recording less that of the first`,
   read: (app, joint, row) => {
     const [own, other] = [valueOf(app, signal, joint, row), comparedValueOf(app, signal, joint, app.rowsAtCursor.tickOf(row))];
-    const more = own === null || other === null ? null : other - own;
-    return { text: numberText(more, decimals), tone: more === null || more === 0 ? '' : 'differs' };
+    const text = numberText(own === null || other === null ? null : other - own, decimals);
+    return { text, tone: Math.abs(Number(text)) > 0 ? 'differs' : '' };
   },
 });
 
@@ -162,7 +162,7 @@ export function JointTable({ app }: { app: RobotView }) {
               <th scope="col">joint</th>
               {columns.map((column) => (
                 <th scope="col" key={column.title} title={column.help}>
-                  {column.heading ?? column.title} <span class="unit">{column.unit}</span>
+                  {column.heading ?? column.title} {column.heading === undefined && <span class="unit">{column.unit}</span>}
                 </th>
               ))}
               {isOnBus && <th scope="col">module</th>}

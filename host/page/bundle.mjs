@@ -9,6 +9,7 @@ import { cpSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } f
 import { dirname, join, relative } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
+import { unusedShaders } from './unused_shaders.mjs';
 
 const room = dirname(fileURLToPath(import.meta.url));
 const tests = join(room, '../../tests/host/page');
@@ -20,7 +21,7 @@ const largestPage = 220 * 1024;
 // Bytes of the player as it is in every exported recording.
 const largestPlayer = 800 * 1024;
 
-const common = { bundle: true, target: 'es2022', legalComments: 'none', logLevel: 'warning', absWorkingDir: room };
+const common = { bundle: true, target: 'es2022', legalComments: 'none', logLevel: 'warning', absWorkingDir: room, plugins: [unusedShaders] };
 
 async function bundlePage(folder) {
   rmSync(folder, { recursive: true, force: true });

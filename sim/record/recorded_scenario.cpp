@@ -5,13 +5,13 @@
 
 namespace proleg::sim {
 
-std::optional<Scenario> recorded_scenario(const Recording& recording) {
+std::optional<Scenario> recorded_scenario(const Recording& recording, const Overrides& overrides) {
   SourceTexts files;
   for (const auto& [path, text] : recording.sources()) {
     files.add(path, text);
   }
   try {
-    Scenario scenario = read_scenario(recording.run_value("scenario"), files);
+    Scenario scenario = read_scenario(recording.run_value("scenario"), files, overrides);
     const bool fits = scenario.robot.links.size() == recording.links().size() &&
                       scenario.robot.joints.size() == recording.joints().size();
     return fits ? std::optional(std::move(scenario)) : std::nullopt;

@@ -203,6 +203,36 @@ std::vector<RecordedRestart> Recording::restarts() const {
   });
 }
 
+std::vector<RobotMove> Recording::moves() const {
+  return reading(path_, [&] {
+    std::vector<RobotMove> moves;
+    // A recording of an older program of this format has no such table (schema.hpp).
+    if (!Statement(tables_->database, "SELECT 1 FROM sqlite_schema WHERE name = 'move'").step()) {
+      return moves;
+    }
+    Statement row(tables_->database, "SELECT tick, x_m, y_m, z_m, turn_deg FROM move ORDER BY tick, position");
+    while (row.step()) {
+      moves.push_back({natural(row, 0), {finite(row, 1), finite(row, 2), finite(row, 3)}, finite(row, 4)});
+    }
+    return moves;
+  });
+}
+
+std::vector<RecordedLosses> Recording::losses_in_parts(std::uint32_t parts) const {
+  return reading(path_, [&] {
+    std::vector<RecordedLosses> losses;
+    Statement row(tables_->database,
+                  "SELECT min(tick), count(*) FROM (SELECT tick FROM loss ORDER BY tick LIMIT 1000000) "
+                  "GROUP BY (tick - ?1) / ?2 ORDER BY 1");
+    const std::uint64_t ticks = std::uint64_t{last_tick_} - first_tick_ + 1;
+    row.bind_all(first_tick_, static_cast<std::int64_t>((ticks + parts - 1) / parts));
+    while (row.step()) {
+      losses.push_back({natural(row, 0), static_cast<std::uint64_t>(row.integer(1))});
+    }
+    return losses;
+  });
+}
+
 std::vector<RecordedFault> Recording::faults() const {
   return reading(path_, [&] {
     std::vector<RecordedFault> faults;

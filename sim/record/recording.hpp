@@ -16,6 +16,7 @@
 #include "sim/robot/robot_model.hpp"
 #include "sim/robot/servo_pulse.hpp"
 #include "sim/scenario/losses.hpp"
+#include "sim/scenario/scenario.hpp"
 
 namespace proleg {
 class Statement;
@@ -61,6 +62,12 @@ struct RecordedRestart {
   std::uint32_t tick = 0;
   std::uint32_t joint = 0;
   bool joined = false;  ///< computes again from this tick on; otherwise: computes nothing from this tick on
+};
+
+/// Frames that were lost in a part of the run.
+struct RecordedLosses {
+  std::uint32_t tick = 0;    ///< of the first one
+  std::uint64_t frames = 0;  ///< a frame counts once for each joint that did not receive it
 };
 
 /// What was computed at SYNC `tick` and holds at SYNC tick + 1, and the contacts from which it was computed. Joints and
@@ -111,6 +118,11 @@ class Recording {
   [[nodiscard]] std::vector<RecordedSetting> parameters() const;
   [[nodiscard]] std::vector<RecordedSetting> distortions() const;
   [[nodiscard]] std::vector<RecordedRestart> restarts() const;
+  /// By ascending tick; those of a tick in their order.
+  [[nodiscard]] std::vector<RobotMove> moves() const;
+  /// The losses, summed over up to so many parts of the run of equal length; parts without losses are left out. Reads
+  /// at most the first million losses.
+  [[nodiscard]] std::vector<RecordedLosses> losses_in_parts(std::uint32_t parts) const;
   /// By ascending start. Empty for a run without faults.
   [[nodiscard]] std::vector<RecordedFault> faults() const;
   /// The first tick in which something fails; nothing: none does. The gait can be recomputed up to it.

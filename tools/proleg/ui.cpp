@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -25,6 +26,7 @@
 #include "tools/proleg/interrupt.hpp"
 #include "tools/proleg/robot_files.hpp"
 #include "tools/proleg/scenario_run.hpp"
+#include "tools/proleg/simulate_command.hpp"
 #include "tools/proleg/ui/browser.hpp"
 #include "tools/proleg/ui/bus_session.hpp"
 #include "tools/proleg/ui/lan_access.hpp"
@@ -88,41 +90,12 @@ ScenarioRun prepare(ScenarioOptions& options, bool is_simulated) {
   return run;
 }
 
-/// In quotes for a shell, if it needs them.
-std::string shell_word(const std::string& word) {
-  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=,@%+";
-  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) {
-    return word;
-  }
-  std::string quoted = "'";
-  for (const char character : word) {
-    quoted += character == '\'' ? std::string("'\\''") : std::string(1, character);
-  }
-  return quoted + "'";
-}
-
 /// The command that simulates the same scenario.
-std::string simulate_command(const UiOptions& options, bool has_file) {
+std::string command_of(const UiOptions& options, bool has_file) {
   const ScenarioOptions& scenario = options.scenario;
-  std::string command = has_file ? "proleg simulate " + shell_word(scenario.file)
-                                 : "proleg new robot --joints 5 && proleg simulate robot/" + scenario.file;
-  const std::pair<const char*, const std::optional<std::string>&> overrides[] = {
-      {"--seed", scenario.overrides.seed},
-      {"--friction", scenario.overrides.friction},
-      {"--at", scenario.overrides.at},
-      {"--heading", scenario.overrides.heading}};
-  for (const auto& [option, value] : overrides) {
-    if (value) {
-      command += std::string(" ") + option + ' ' + shell_word(*value);
-    }
-  }
-  for (const std::string& word : scenario.settings) {
-    command += " --set " + shell_word(word);
-  }
-  for (const std::string& word : scenario.moves) {
-    command += " --move " + shell_word(word);
-  }
-  return command;
+  const std::string file = has_file ? scenario.file : "robot/" + scenario.file;
+  return (has_file ? "" : "proleg new robot --joints 5 && ") +
+         simulate_command(file, scenario.overrides, scenario.settings, scenario.moves);
 }
 
 std::uint16_t parse_port(const std::string& word) {
@@ -229,27 +202,26 @@ int serve(UiOptions& options) {
   boost::asio::io_context context{1};
   host::SessionRequests recording_requests;
   host::SessionRequests requests;
-  std::optional<RemoteSession> remote;
-  if (run) {
-    remote.emplace(requests, bindings_beside(options, has_file, run->scenario), RemoteSession::kernel_devices);
-  }
-  SessionRouter router(recording_requests, remote ? &*remote : nullptr);
+  RemoteSession remote(requests, run ? bindings_beside(options, has_file, run->scenario) : host::BindingStore(),
+                       RemoteSession::kernel_devices);
+  SessionRouter router(recording_requests, remote);
   host::WebServer page(context, std::move(server), router);
   const RecordedSession recorded(recordings, recording_requests, page);
-  std::optional<RemoteThread> remote_thread;
-  if (remote) {
-    remote_thread.emplace(*remote, page);
-  }
+  const RemoteThread remote_thread(remote, page);
   std::optional<SimulatedSession> simulated;
   std::optional<BusSession> driven;
   if (bus) {
     driven.emplace(run->scenario, *bus, options.bus.address(), BusSessionOptions{options.recordings, build_id},
-                   requests, *remote);
-  } else if (run) {
-    simulated.emplace(run->scenario, &run->losses,
-                      SimulatedSessionOptions{options.recordings, simulate_command(options, has_file),
-                                              options.scenario.settings, has_file, build_id, options.paused},
-                      requests, *remote);
+                   requests, remote);
+  } else {
+    std::unique_ptr<LiveSimulation> live;
+    if (run) {
+      live = std::make_unique<LiveSimulation>(run->scenario, options.scenario.settings, &run->losses);
+    }
+    simulated.emplace(std::move(live),
+                      SimulatedSessionOptions{recordings.folder, run ? command_of(options, has_file) : std::string(),
+                                              has_file, build_id, options.paused},
+                      requests, remote);
   }
   const PageAddress address(page.origin(), page.port(), token.text());
   std::cout << "page: " << address.url() << "\nThe address is a secret: who has it can drive the robot. Ctrl-C ends.\n"

@@ -31,6 +31,11 @@ export function limitFrameRate(isOn: boolean): void {
   isLimited = isOn;
 }
 
+// Draws at the next frame, whatever the limit: the user waits for something that has come.
+export function drawSoon(): void {
+  due = 0;
+}
+
 // Calls `draw` at each frame until the returned function is called.
 export function onFrame(draw: Drawer): () => void {
   drawers.add(draw);

@@ -65,7 +65,7 @@ export class PageApp implements RobotView {
     effect(() => this.subscribe());
     effect(() => this.noteRun(this.state.session.value?.run));
     effect(() => {
-      if (this.state.recordings.value?.alone === true) this.shownPage.value = 'recordings';
+      if (this.state.isAlone.value) this.shownPage.value = 'recordings';
     });
     effect(() => {
       if (!this.poses.isPossible) this.poses.forget();

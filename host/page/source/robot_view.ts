@@ -8,6 +8,18 @@ import type { PoseQueue } from './state/pose_queue.js';
 import type { SignalSelection } from './state/signal_selection.js';
 import type { TimeMarks } from './state/time_marks.js';
 import type { ShownTime } from './state/time_view.js';
+import type { RobotDocument } from './wire/messages.js';
+
+// A second recording that is shown beside the first.
+export interface ComparedView {
+  readonly reader: {
+    readonly robot: RobotDocument;
+    readonly history: TelemetryHistory;
+    readonly rowsAtCursor: TelemetryHistory;
+    readonly wholePath: ReadonlySignal<Float64Array | null>;
+    has(tick: number): boolean;
+  };
+}
 
 export interface RobotView {
   readonly state: Pick<PageState, 'robot' | 'telemetry' | 'bus' | 'busSession'>;
@@ -22,8 +34,10 @@ export interface RobotView {
   readonly poses: PoseQueue | null; // turns the joints of a robot on a bus; null: nothing does
   readonly tickRate: number; // ticks in a second
   readonly newestTick: number;
-  // Where the head was in each row, as in `head` of the telemetry but in metres; null: the path grows with the robot.
+  // Where the head was in each row, as in `head` of the telemetry but in metres; not numbers where the path is cut. Null: the
+  // path grows with the robot.
   readonly wholePath: ReadonlySignal<Float64Array | null>;
+  readonly compared?: ReadonlySignal<ComparedView | null>;
   // The worker of the 3D view. Throws an Error if the browser starts none.
   startSceneWorker(): Worker;
 }

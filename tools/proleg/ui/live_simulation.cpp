@@ -117,11 +117,43 @@ void LiveSimulation::move(const std::string& place) {
   ++revision_;
 }
 
+std::optional<std::uint32_t> LiveSimulation::last_move() const {
+  const std::uint32_t tick = simulation_->tick();
+  std::optional<std::uint32_t> last;
+  for (const sim::RobotMove& move : scenario_.moves) {
+    if (move.tick < tick || (move.tick == tick && simulation_->was_moved())) {
+      last = move.tick;
+    }
+  }
+  return last;
+}
+
 void LiveSimulation::restart(StartValues values) {
   end_recording();
   if (values == StartValues::file) {
     edits_.parameters().want_file_values();
   }
+  clear_run();
+  begin();
+}
+
+void LiveSimulation::repeat(const RunInputs& inputs) {
+  end_recording();
+  for (const sim::Setting& setting : inputs.start) {
+    edits_.parameters().want(place_of(setting), setting.value);
+  }
+  clear_run();
+  for (const sim::Change& change : inputs.changes) {
+    for (const sim::Setting& setting : change.settings) {
+      schedule(change.tick, setting);
+    }
+  }
+  scenario_.moves.insert(scenario_.moves.end(), inputs.moves.begin(), inputs.moves.end());
+  live_moves_ = inputs.moves;
+  begin();
+}
+
+void LiveSimulation::clear_run() {
   for (const ParameterPlace& place : parameters().places()) {
     sim::set_start_value(scenario_, setting_of(place, parameters().at(place).wanted));
   }
@@ -133,7 +165,6 @@ void LiveSimulation::restart(StartValues values) {
   lost_frames_ = 0;
   edits_.parameters().begin_run();
   ++revision_;
-  begin();
 }
 
 void LiveSimulation::record_tick(sim::Recorder& recorder, sim::Simulation& simulation, const sim::Change* change) {

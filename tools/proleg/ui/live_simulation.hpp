@@ -19,6 +19,7 @@
 #include "sim/scenario/losses.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/ui/parameter_edits.hpp"
+#include "tools/proleg/ui/repeated_run.hpp"
 
 namespace proleg::tools {
 
@@ -59,6 +60,11 @@ class LiveSimulation {
   /// moves nothing.
   void move(const std::string& place);
 
+  /// The tick at which the robot was put elsewhere last, in the run up to now.
+  [[nodiscard]] std::optional<std::uint32_t> last_move() const;
+
+  /// A new run, from tick 0, to which the same will be done as to an earlier one.
+  void repeat(const RunInputs& inputs);
   /// A new run, from tick 0.
   void restart(StartValues values);
   /// One tick. Throws PhysicsError; then only restart() is possible.
@@ -102,6 +108,8 @@ class LiveSimulation {
 
   /// The last tick of the simulation, and its change.
   static void record_tick(sim::Recorder& recorder, sim::Simulation& simulation, const sim::Change* change);
+  /// Without what was done to the run before.
+  void clear_run();
   void begin();
   /// Whether a change for this tick or a later one sets the parameter.
   [[nodiscard]] bool was_asked_for(const ParameterPlace& place, std::uint32_t from_tick) const;

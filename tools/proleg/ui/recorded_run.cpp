@@ -76,6 +76,7 @@ std::optional<RecordedRun::Identity> RecordedRun::identity_of(const std::filesys
 bool RecordedRun::is_current() const { return identity_of(path_) == identity_; }
 
 void RecordedRun::note(const sim::Recording& recording) {
+  tick_period_us_ = recording.tick_period_us();
   first_tick_ = recording.first_tick();
   last_tick_ = recording.last_tick();
 }
@@ -91,6 +92,36 @@ auto RecordedRun::with_recording(const Use& use) {
     finished_ = std::move(recording);
   }
   return use(*finished_);
+}
+
+void RecordedRun::read_ticks(std::uint32_t first, std::uint32_t last,
+                             const std::function<void(const sim::RecordedTick&)>& use) {
+  with_recording([&](const sim::Recording& recording) { recording.read_ticks(first, last, use); });
+}
+
+std::optional<double> RecordedRun::head_way(std::uint32_t from, std::uint32_t to) {
+  return with_recording([&](const sim::Recording& recording) -> std::optional<double> {
+    const std::vector<sim::RobotMove> moves = recording.moves();
+    // A move of a tick comes before it.
+    const bool was_moved =
+        std::ranges::any_of(moves, [&](const sim::RobotMove& move) { return move.tick > from && move.tick <= to; });
+    if (was_moved || !has_path(recording)) {
+      return std::nullopt;
+    }
+    Eigen::Vector3d start;
+    Eigen::Vector3d end;
+    recording.read_ticks(from, from, [&](const sim::RecordedTick& tick) { start = tick.link_poses[0].position; });
+    recording.read_ticks(to, to, [&](const sim::RecordedTick& tick) { end = tick.link_poses[0].position; });
+    return (end - start).head<2>().norm();
+  });
+}
+
+std::vector<std::string> RecordedRun::joint_names() const {
+  std::vector<std::string> names;
+  for (const sim::Joint& joint : scenario_.robot.joints) {
+    names.push_back(joint.name);
+  }
+  return names;
 }
 
 json RecordedRun::documents() {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -47,6 +48,20 @@ class RecordedRun {
   /// The pyramid cannot go on: the file is damaged.
   void end_index(const std::string& why) { damage_ = why; }
 
+  /// Calls `use` for these ticks, in order. Throws as Recording does.
+  void read_ticks(std::uint32_t first, std::uint32_t last, const std::function<void(const sim::RecordedTick&)>& use);
+  /// Metres on the ground from where the head was after one tick to where it was after another. Nothing if that is not
+  /// the robot's own way: its place was not measured, or a hand moved it. Throws as Recording does.
+  [[nodiscard]] std::optional<double> head_way(std::uint32_t from, std::uint32_t to);
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// From the head.
+  [[nodiscard]] std::vector<std::string> joint_names() const;
+  [[nodiscard]] std::uint32_t tick_period_us() const { return tick_period_us_; }
+  /// As far as the file had grown when it was last read.
+  [[nodiscard]] std::uint32_t first_tick() const { return first_tick_; }
+  [[nodiscard]] std::uint32_t last_tick() const { return last_tick_; }
+
   /// False if the file was replaced by another one since it was opened.
   [[nodiscard]] bool is_current() const;
 
@@ -72,6 +87,7 @@ class RecordedRun {
   sim::Scenario scenario_;
   host::SignalLayout layout_;
   RowPyramid pyramid_;
+  std::uint32_t tick_period_us_ = 0;
   std::uint32_t first_tick_ = 0;
   std::uint32_t last_tick_ = 0;
   std::optional<std::string> damage_;

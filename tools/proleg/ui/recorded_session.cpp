@@ -1,8 +1,8 @@
 #include "tools/proleg/ui/recorded_session.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <exception>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -31,8 +31,6 @@ RecordedSession::~RecordedSession() {
 
 void RecordedSession::run() {
   while (!requests_.ends()) {
-    static_cast<void>(requests_.take_holder());
-    take_stops();
     if (const std::optional<host::OperationRequest> operation = requests_.take_operation()) {
       try {
         output_.answer(operation->request, carry_out(*operation));
@@ -58,31 +56,31 @@ bool RecordedSession::work() {
     }
     return true;
   }
+  for (OpenComparison& open : comparisons_) {
+    if (!open.may_have_more) {
+      continue;
+    }
+    try {
+      open.may_have_more = open.comparison.compare_some();
+    } catch (const std::exception& error) {
+      open.comparison.end(one_line(error.what()));
+      open.may_have_more = false;
+    }
+    return true;
+  }
   return folder_.describe_some();
-}
-
-/// Without a robot there is nothing to stop.
-void RecordedSession::take_stops() {
-  std::deque<host::OperationRequest> outdated;
-  for (const host::SessionRequests::Stop& stop : requests_.take_stops(outdated)) {
-    const std::chrono::duration<double, std::milli> time = host::SessionRequests::Clock::now() - stop.since;
-    output_.stopped(stop.request, 0, 0, time.count());
-  }
-  for (const host::OperationRequest& operation : outdated) {
-    output_.refuse(operation.request, "STOP came first");
-  }
 }
 
 json RecordedSession::carry_out(const host::OperationRequest& operation) {
   static const std::map<std::string_view, Handler> handlers{{"recording.list", &RecordedSession::list},
                                                             {"recording.open", &RecordedSession::open},
                                                             {"recording.rows", &RecordedSession::rows},
-                                                            {"ping", &RecordedSession::ping}};
+                                                            {"recording.compare", &RecordedSession::compare}};
   return (this->*handler_of(handlers, operation.name))(operation.arguments);
 }
 
-RecordedSession::OpenRun& RecordedSession::run_of(const json& arguments) {
-  const auto name = argument<std::string>(arguments, "file", "the name of a recording");
+RecordedSession::OpenRun& RecordedSession::run_of(const json& arguments, const char* argument_name) {
+  const auto name = argument<std::string>(arguments, argument_name, "the name of a recording");
   const std::filesystem::path path = folder_.find(name.value_or(""));
   const auto found = std::ranges::find(runs_, path, &OpenRun::path);
   if (found != runs_.end() && found->run->is_current()) {
@@ -90,13 +88,18 @@ RecordedSession::OpenRun& RecordedSession::run_of(const json& arguments) {
     return runs_.front();
   }
   if (found != runs_.end()) {
-    runs_.erase(found);
+    close(found);
   }
   runs_.push_front({path, std::make_unique<RecordedRun>(path)});
   if (runs_.size() > max_open_runs) {
-    runs_.pop_back();
+    close(std::prev(runs_.end()));
   }
   return runs_.front();
+}
+
+void RecordedSession::close(std::list<OpenRun>::iterator run) {
+  std::erase_if(comparisons_, [&](const OpenComparison& open) { return open.comparison.is_of(*run->run); });
+  runs_.erase(run);
 }
 
 json RecordedSession::list(const json& /*arguments*/) { return {{"files", folder_.list()}}; }
@@ -118,6 +121,21 @@ json RecordedSession::rows(const json& arguments) {
   return json::binary(run_of(arguments).run->rows(request));
 }
 
-json RecordedSession::ping(const json& /*arguments*/) { return json::object(); }
+json RecordedSession::compare(const json& arguments) {
+  RecordedRun& run = *run_of(arguments).run;
+  RecordedRun& other = *run_of(arguments, "with").run;
+  const auto found =
+      std::ranges::find_if(comparisons_, [&](const OpenComparison& open) { return open.comparison.is_of(run, other); });
+  if (found != comparisons_.end()) {
+    comparisons_.splice(comparisons_.begin(), comparisons_, found);
+  } else {
+    comparisons_.push_front({RunComparison(run, other)});
+    if (comparisons_.size() > max_comparisons) {
+      comparisons_.pop_back();
+    }
+  }
+  comparisons_.front().may_have_more = true;
+  return comparisons_.front().comparison.document();
+}
 
 }  // namespace proleg::tools

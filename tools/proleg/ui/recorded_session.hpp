@@ -1,7 +1,7 @@
 #pragma once
 
 // The recordings that viewers look at: lists a folder, opens files, answers with rows. It runs in a thread of its own,
-// beside a robot or alone.
+// beside a robot.
 
 #include <cstdint>
 #include <filesystem>
@@ -18,18 +18,20 @@
 #include "host/server/session_requests.hpp"
 #include "tools/proleg/ui/recorded_run.hpp"
 #include "tools/proleg/ui/recording_folder.hpp"
+#include "tools/proleg/ui/run_comparison.hpp"
 
 namespace proleg::tools {
 
 struct RecordedSessionOptions {
   std::filesystem::path folder;
   std::optional<std::string> file;  ///< in the folder: viewers open it at once
-  bool is_alone = false;            ///< there is no robot
+  bool is_alone = false;            ///< there is no robot until a recording is continued
 };
 
 class RecordedSession {
  public:
-  static constexpr std::size_t max_open_runs = 4;
+  static constexpr std::size_t max_open_runs = 6;
+  static constexpr std::size_t max_comparisons = 2;
   /// Names of the operations of this session begin so.
   static constexpr std::string_view prefix = "recording.";
 
@@ -42,7 +44,7 @@ class RecordedSession {
 
   /// Operations that anybody may use.
   [[nodiscard]] static std::vector<std::string> free_operations() {
-    return {"recording.list", "recording.open", "recording.rows", "ping"};
+    return {"recording.list", "recording.open", "recording.rows", "recording.compare"};
   }
 
  private:
@@ -52,25 +54,32 @@ class RecordedSession {
     bool may_have_more = true;  ///< ticks for the pyramid
   };
 
+  struct OpenComparison {
+    RunComparison comparison;
+    bool may_have_more = true;  ///< ticks to compare
+  };
+
   void run();
   /// What nobody waits for; false: there is nothing to do.
   [[nodiscard]] bool work();
-  void take_stops();
   [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation);
-  /// Opens it, if it is not open. Of more than max_open_runs the one that was used least recently is closed.
-  [[nodiscard]] OpenRun& run_of(const nlohmann::json& arguments);
+  /// Opens the recording that the argument names, if it is not open. Of more than max_open_runs the one that was used
+  /// least recently is closed.
+  [[nodiscard]] OpenRun& run_of(const nlohmann::json& arguments, const char* name = "file");
+  void close(std::list<OpenRun>::iterator run);
 
   using Handler = nlohmann::json (RecordedSession::*)(const nlohmann::json&);
   nlohmann::json list(const nlohmann::json& arguments);
   nlohmann::json open(const nlohmann::json& arguments);
   nlohmann::json rows(const nlohmann::json& arguments);
-  nlohmann::json ping(const nlohmann::json& arguments);
+  nlohmann::json compare(const nlohmann::json& arguments);
 
   host::SessionRequests& requests_;
   host::SessionOutput& output_;
   RecordingFolder folder_;
-  std::list<OpenRun> runs_;  ///< the last used first
-  std::thread thread_;       ///< the last to begin
+  std::list<OpenRun> runs_;                ///< the last used first
+  std::list<OpenComparison> comparisons_;  ///< of open runs, the last used first
+  std::thread thread_;                     ///< the last to begin
 };
 
 }  // namespace proleg::tools

@@ -22,6 +22,9 @@ namespace {
 
 using nlohmann::json;
 
+// More than the time line has room for would be one bar.
+constexpr std::uint32_t max_loss_marks = 200;
+
 /// What happened at a tick, for the time line.
 struct Mark {
   std::uint64_t tick;
@@ -41,6 +44,13 @@ json marks_json(const sim::Recording& recording) {
   for (const sim::RecordedRestart& restart : recording.restarts()) {
     const std::string& joint = recording.joints()[restart.joint].name;
     marks.push_back({restart.tick, "restart", joint + (restart.joined ? " joined" : " stopped")});
+  }
+  for (const sim::RobotMove& move : recording.moves()) {
+    marks.push_back({move.tick, "move", "moved by hand"});
+  }
+  for (const sim::RecordedLosses& lost : recording.losses_in_parts(max_loss_marks)) {
+    marks.push_back({lost.tick, "loss",
+                     std::to_string(lost.frames) + (lost.frames == 1 ? " frame" : " frames") + " lost from here on"});
   }
   std::ranges::stable_sort(marks, {}, &Mark::tick);
   json document = json::array();
@@ -77,20 +87,20 @@ json recording_document(const sim::Recording& recording) {
   for (const auto& [name, value] : recording.results()) {
     results.push_back({{"name", name}, {"value", value}});
   }
-  const std::string program = recording.run_value("program");
   return {{"file", recording.path().filename().string()},
-          {"program", program},
+          {"program", recording.run_value("program")},
           {"build_id", recording.run_value("build_id")},
           {"core_fingerprint", recording.run_value("core_fingerprint")},
           {"seed", recording.run_value("seed")},
           {"finished", recording.finished()},
           {"first_tick", recording.first_tick()},
           {"last_tick", recording.last_tick()},
-          // The modules of a real robot do not measure where it is. `proleg drive` records its place at the start.
-          {"has_path", program != "drive"},
+          {"has_path", has_path(recording)},
           {"results", std::move(results)},
           {"marks", marks_json(recording)}};
 }
+
+bool has_path(const sim::Recording& recording) { return recording.run_value("program") != "drive"; }
 
 json recorded_parameters_document(const sim::Recording& recording, const sim::Scenario& scenario) {
   ParameterTable table(scenario, scenario);
@@ -110,8 +120,8 @@ json recorded_parameters_document(const sim::Recording& recording, const sim::Sc
   return parameters_document(scenario, table);
 }
 
-sim::Scenario scenario_of(const sim::Recording& recording) {
-  std::optional<sim::Scenario> scenario = sim::recorded_scenario(recording);
+sim::Scenario scenario_of(const sim::Recording& recording, const sim::Overrides& overrides) {
+  std::optional<sim::Scenario> scenario = sim::recorded_scenario(recording, overrides);
   if (!scenario || !has_slots_of(recording, *scenario) || !has_internal_values_of(recording, *scenario)) {
     throw InputError(recording.path().string(), 0, "a scenario that this program cannot read",
                      "a recording of this version of Proleg");

@@ -5,16 +5,11 @@
 namespace proleg::tools {
 
 void SessionRouter::operate(const host::OperationRequest& request) {
-  const bool is_of_recordings = robot_ == nullptr || request.name.starts_with(RecordedSession::prefix);
-  (is_of_recordings ? recordings_ : *robot_).operate(request);
+  (request.name.starts_with(RecordedSession::prefix) ? recordings_ : robot_).operate(request);
 }
 
-void SessionRouter::stop(const host::StopRequest& request) {
-  (robot_ == nullptr ? recordings_ : *robot_).stop(request);
-}
+void SessionRouter::stop(const host::StopRequest& request) { robot_.stop(request); }
 
-void SessionRouter::holder_changed(bool has_holder, bool is_away) {
-  (robot_ == nullptr ? recordings_ : *robot_).holder_changed(has_holder, is_away);
-}
+void SessionRouter::holder_changed(bool has_holder, bool is_away) { robot_.holder_changed(has_holder, is_away); }
 
 }  // namespace proleg::tools

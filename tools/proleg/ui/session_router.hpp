@@ -4,12 +4,12 @@
 
 namespace proleg::tools {
 
-/// Two sessions behind one page: recordings, and a robot if there is one. Operations go by their names; STOP and the
-/// holder of control go to the robot.
+/// Two sessions behind one page: a robot, and recordings. Operations go by their names; STOP and the holder of control
+/// go to the robot.
 class SessionRouter final : public host::RobotSession {
  public:
-  /// robot: null if there is none. Both must outlive the router.
-  SessionRouter(host::RobotSession& recordings, host::RobotSession* robot) : recordings_(recordings), robot_(robot) {}
+  /// Both must outlive the router.
+  SessionRouter(host::RobotSession& recordings, host::RobotSession& robot) : recordings_(recordings), robot_(robot) {}
 
   void operate(const host::OperationRequest& request) override;
   void stop(const host::StopRequest& request) override;
@@ -17,7 +17,7 @@ class SessionRouter final : public host::RobotSession {
 
  private:
   host::RobotSession& recordings_;
-  host::RobotSession* robot_;
+  host::RobotSession& robot_;
 };
 
 }  // namespace proleg::tools

@@ -26,6 +26,7 @@ using nlohmann::json;
 constexpr double slowest_factor = 0.1;
 constexpr double fastest_factor = 100.0;
 constexpr std::uint32_t most_steps = 1'000;
+constexpr std::uint32_t default_tick_period_us = 10'000;  // until there is a simulation
 
 json measures_json(const LiveSimulation& live) {
   json values = json::object();
@@ -46,21 +47,28 @@ json text_or_null(const std::string& text) { return text.empty() ? json() : json
 
 }  // namespace
 
-SimulatedSession::SimulatedSession(const sim::Scenario& scenario, const sim::Losses* losses,
-                                   SimulatedSessionOptions options, host::SessionRequests& requests,
-                                   host::SessionOutput& output)
-    : file_(scenario),
-      options_(std::move(options)),
+SimulatedSession::SimulatedSession(std::unique_ptr<LiveSimulation> live, SimulatedSessionOptions options,
+                                   host::SessionRequests& requests, host::SessionOutput& output)
+    : options_(std::move(options)),
+      folder_(options_.recordings),
       requests_(requests),
       output_(output),
-      live_(scenario, options_.settings, losses),
-      pace_(scenario.kernel.tick_period_us),
+      live_(std::move(live)),
+      pace_(live_ == nullptr ? default_tick_period_us : live_->scenario().kernel.tick_period_us),
       state_(options_.starts_paused ? State::paused : State::running) {
+  if (live_ != nullptr) {
+    publish_robot();
+  }
+  thread_ = std::thread([this] { run(); });
+}
+
+void SimulatedSession::publish_robot() {
+  const sim::Scenario& scenario = live_->scenario();
   output_.publish("robot", robot_document(scenario, "simulation"));
   output_.set_signals(host::SignalLayout(signals_of(scenario)), scenario.kernel.tick_period_us);
+  published_revision_ = 0;
   publish_changes();
   publish_session(Clock::now());
-  thread_ = std::thread([this] { run(); });
 }
 
 SimulatedSession::~SimulatedSession() {
@@ -83,6 +91,9 @@ void SimulatedSession::run() {
     if (may_tick() && (steps_left_ > 0 || now >= pace_.due())) {
       tick();
     }
+    if (live_ == nullptr) {
+      continue;
+    }
     publish_changes();
     if (is_session_new_ || (may_tick() && now >= publish_at_)) {
       publish_session(now);
@@ -97,7 +108,8 @@ void SimulatedSession::run() {
 
 /// Until there is something to do.
 void SimulatedSession::wait() {
-  if (is_session_new_ || steps_left_ > 0 || (may_tick() && Clock::now() >= pace_.due())) {
+  const bool has_news = live_ != nullptr && is_session_new_;
+  if (has_news || steps_left_ > 0 || (may_tick() && Clock::now() >= pace_.due())) {
     return;
   }
   if (may_tick()) {
@@ -111,12 +123,12 @@ void SimulatedSession::take_stops() {
   std::deque<host::OperationRequest> outdated;
   const std::vector<host::SessionRequests::Stop> stops = requests_.take_stops(outdated);
   for (const host::SessionRequests::Stop& stop : stops) {
-    steps_left_ = 0;
+    stop_steps();
     if (state_ != State::failed) {
       stopped_by_ = stop.by;
       set_state(State::stopped);
     }
-    const auto joints = static_cast<unsigned>(file_.robot.joints.size());
+    const auto joints = live_ == nullptr ? 0U : static_cast<unsigned>(live_->scenario().robot.joints.size());
     output_.stopped(stop.request, joints, joints,
                     std::chrono::duration<double, std::milli>(Clock::now() - stop.since).count());
     output_.notice(host::NoticeLevel::warning, "stopped by " + stop.by);
@@ -149,11 +161,23 @@ json SimulatedSession::carry_out(const host::OperationRequest& operation) {
                                                             {"reset", &SimulatedSession::reset},
                                                             {"move", &SimulatedSession::move},
                                                             {"record", &SimulatedSession::record},
+                                                            {"continue", &SimulatedSession::continue_recording},
                                                             {"command_line", &SimulatedSession::tell_command_line},
                                                             {"file.diff", &SimulatedSession::tell_file_diff},
                                                             {"file.apply", &SimulatedSession::apply_to_file},
                                                             {"ping", &SimulatedSession::ping}};
-  return (this->*handler_of(handlers, operation.name))(operation.arguments);
+  const Handler handler = handler_of(handlers, operation.name);
+  require_possible(operation.name);
+  return (this->*handler)(operation.arguments);
+}
+
+void SimulatedSession::require_possible(const std::string& operation) const {
+  if (live_ == nullptr && operation != "continue" && operation != "ping") {
+    throw std::runtime_error("there is no simulation; continue one from a recording");
+  }
+  if (is_repeating_ && operation != "pause" && operation != "ping") {
+    throw std::runtime_error("the run of " + repeated_->name() + " is computed again; wait, or pause it");
+  }
 }
 
 void SimulatedSession::require_sound() const {
@@ -166,6 +190,9 @@ void SimulatedSession::require_file() const {
   if (!options_.has_file) {
     throw std::runtime_error("this robot has no file; `proleg new robot --joints 5` writes one like it");
   }
+  if (repeated_ != nullptr) {
+    throw std::runtime_error("this robot is that of the recording " + repeated_->name() + ", which stays as it is");
+  }
 }
 
 json SimulatedSession::go_on(const json& /*arguments*/) {
@@ -177,7 +204,7 @@ json SimulatedSession::go_on(const json& /*arguments*/) {
 
 json SimulatedSession::pause(const json& /*arguments*/) {
   require_sound();
-  steps_left_ = 0;
+  stop_steps();
   set_state(State::paused);
   return json::object();
 }
@@ -199,7 +226,7 @@ json SimulatedSession::restart(const json& arguments) {
     throw InputError("parameters", 0, in_quotes(shortened(values)), "\"wanted\" or \"file\"");
   }
   end_recording();
-  live_.restart(values == "file" ? LiveSimulation::StartValues::file : LiveSimulation::StartValues::wanted);
+  live_->restart(values == "file" ? LiveSimulation::StartValues::file : LiveSimulation::StartValues::wanted);
   failure_.clear();
   steps_left_ = 0;
   ++run_;
@@ -221,30 +248,30 @@ json SimulatedSession::set_factor(const json& arguments) {
 json SimulatedSession::set(const json& arguments) {
   const auto words = argument<std::vector<std::string>>(arguments, "words", "texts such as \"amplitude:J2=30\"");
   const auto gesture = argument<std::uint64_t>(arguments, "gesture", "a whole number");
-  return {{"tick", live_.set(words.value_or(std::vector<std::string>{}), gesture)}};
+  return {{"tick", live_->set(words.value_or(std::vector<std::string>{}), gesture)}};
 }
 
 json SimulatedSession::undo(const json& /*arguments*/) {
-  if (!live_.undo()) {
+  if (!live_->undo()) {
     throw std::runtime_error("there is nothing to undo");
   }
   return json::object();
 }
 
 json SimulatedSession::redo(const json& /*arguments*/) {
-  if (!live_.redo()) {
+  if (!live_->redo()) {
     throw std::runtime_error("there is nothing to redo");
   }
   return json::object();
 }
 
 json SimulatedSession::swap(const json& /*arguments*/) {
-  live_.swap_sets();
+  live_->swap_sets();
   return json::object();
 }
 
 json SimulatedSession::reset(const json& arguments) {
-  live_.reset(live_.places_of(parameter_names(arguments)));
+  live_->reset(live_->places_of(parameter_names(arguments)));
   return json::object();
 }
 
@@ -261,9 +288,9 @@ json SimulatedSession::move(const json& arguments) {
   for (const double coordinate : *position) {
     place += exact_text(coordinate) + ',';
   }
-  live_.move(place + exact_text(argument<double>(arguments, "turn", "degrees").value_or(0.0)));
+  live_->move(place + exact_text(argument<double>(arguments, "turn", "degrees").value_or(0.0)));
   is_session_new_ = true;
-  return {{"tick", live_.simulation().tick()}};
+  return {{"tick", live_->simulation().tick()}};
 }
 
 json SimulatedSession::record(const json& arguments) {
@@ -278,59 +305,111 @@ json SimulatedSession::record(const json& arguments) {
   return {{"file", recording_}};
 }
 
+json SimulatedSession::continue_recording(const json& arguments) {
+  const auto file = argument<std::string>(arguments, "file", "the name of a recording");
+  const auto tick = whole_argument(arguments, "tick", "a tick of the recording");
+  if (!tick) {
+    throw InputError("tick", 0, "none", "a tick of the recording");
+  }
+  auto repeated = std::make_unique<RepeatedRun>(folder_.find(file.value_or("")), *tick);
+  end_recording();
+  auto live = std::make_unique<LiveSimulation>(repeated->scenario(), std::vector<std::string>{}, &repeated->losses());
+  live->repeat(repeated->inputs());
+  live_ = std::move(live);
+  repeated_ = std::move(repeated);
+  options_.command = repeated_->command();
+  failure_.clear();
+  ++run_;
+  pace_ = RunPace(live_->scenario().kernel.tick_period_us);
+  set_state(State::paused);
+  steps_left_ = *tick + 1;
+  is_repeating_ = true;
+  publish_robot();
+  return {{"tick", *tick}};
+}
+
 json SimulatedSession::tell_file_diff(const json& /*arguments*/) {
   require_file();
-  return file_diff_json(live_.file(), live_.file_edits());
+  return file_diff_json(live_->file(), live_->file_edits());
 }
 
 json SimulatedSession::apply_to_file(const json& arguments) {
   require_file();
-  const std::vector<sim::ActuationEdit> edits = chosen_edits(live_.file(), live_.file_edits(), arguments);
-  live_.apply_to_file(edits);
+  const std::vector<sim::ActuationEdit> edits = chosen_edits(live_->file(), live_->file_edits(), arguments);
+  live_->apply_to_file(edits);
   output_.notice(host::NoticeLevel::info,
-                 "wrote " + std::to_string(edits.size()) + " changes into " + one_line(live_.file().actuation_file));
+                 "wrote " + std::to_string(edits.size()) + " changes into " + one_line(live_->file().actuation_file));
   return {{"written", edits.size()}};
 }
 
 json SimulatedSession::ping(const json& /*arguments*/) { return json::object(); }
 
 json SimulatedSession::tell_command_line(const json& /*arguments*/) {
+  if (repeated_ != nullptr && repeated_->losses().any()) {
+    throw std::runtime_error("the frames that were lost in " + repeated_->name() + " are in no option of a command");
+  }
   std::string text = options_.command;
-  for (const std::string& word : live_.repeating_words()) {
+  for (const std::string& word : live_->repeating_words()) {
     text += " --set " + word;
   }
-  for (const std::string& word : live_.repeating_moves()) {
+  for (const std::string& word : live_->repeating_moves()) {
     text += " --move " + word;
   }
-  return {{"text", text + " --seconds " + exact_text(live_.simulation().time_s())}};
+  return {{"text", text + " --seconds " + exact_text(live_->simulation().time_s())}};
 }
 
 void SimulatedSession::tick() {
+  std::optional<sim::TickSample> sample;
   try {
-    live_.advance();
-    fill_row(live_.sample(), live_.scenario(), row_);
+    live_->advance();
+    sample = live_->sample();
+    fill_row(*sample, live_->scenario(), row_);
   } catch (const std::exception& error) {
     failure_ = one_line(error.what());
-    steps_left_ = 0;
+    stop_steps();
     set_state(State::failed);
     output_.notice(host::NoticeLevel::error, failure_);
     return;
   }
-  if (const std::optional<std::string> failure = live_.take_recording_failure()) {
+  if (const std::optional<std::string> failure = live_->take_recording_failure()) {
     output_.notice(host::NoticeLevel::error, "the recording has ended: " + one_line(*failure));
     recording_.clear();
     is_session_new_ = true;
   }
-  output_.add_row(run_, live_.simulation().tick() - 1, row_);
+  if (!sample->moves.empty()) {
+    publish_session(Clock::now());  // before the row that it explains
+  }
+  output_.add_row(run_, live_->simulation().tick() - 1, row_);
   pace_.tick_done(Clock::now());
   if (steps_left_ > 0 && --steps_left_ == 0) {
     is_session_new_ = true;
+  }
+  if (is_repeating_) {
+    check_repetition(*sample);
+  }
+}
+
+void SimulatedSession::check_repetition(const sim::TickSample& sample) {
+  try {
+    repeated_->check(sample);
+  } catch (const std::exception& error) {
+    // The file is damaged. The simulation is sound, and stays where it has come to.
+    stop_steps();
+    is_session_new_ = true;
+    output_.notice(host::NoticeLevel::error, one_line(error.what()));
+    return;
+  }
+  if (sample.tick == repeated_->last_tick()) {
+    is_repeating_ = false;
+    is_session_new_ = true;
+    output_.notice(repeated_->has_differences() ? host::NoticeLevel::warning : host::NoticeLevel::info,
+                   repeated_->verdict());
   }
 }
 
 void SimulatedSession::begin_recording(const std::string& file) {
   const std::filesystem::path path = new_recording(options_.recordings, file);
-  if (!live_.record(path, "simulate", options_.build_id, [this] { return !requests_.interrupts(); })) {
+  if (!live_->record(path, "simulate", options_.build_id, [this] { return !requests_.interrupts(); })) {
     std::error_code ignored;
     std::filesystem::remove(path, ignored);
     throw std::runtime_error("the recording was given up: STOP");
@@ -340,12 +419,17 @@ void SimulatedSession::begin_recording(const std::string& file) {
 }
 
 void SimulatedSession::end_recording() {
-  if (!live_.is_recording()) {
+  if (live_ == nullptr || !live_->is_recording()) {
     return;
   }
   const std::string path = std::exchange(recording_, {});
-  live_.end_recording();
-  output_.notice(host::NoticeLevel::info, "recorded " + exact_text(live_.simulation().time_s()) + " s in " + path);
+  live_->end_recording();
+  output_.notice(host::NoticeLevel::info, "recorded " + exact_text(live_->simulation().time_s()) + " s in " + path);
+}
+
+void SimulatedSession::stop_steps() {
+  steps_left_ = 0;
+  is_repeating_ = false;
 }
 
 void SimulatedSession::set_state(State state) {
@@ -358,8 +442,13 @@ void SimulatedSession::set_state(State state) {
 
 void SimulatedSession::publish_session(Clock::time_point now) {
   constexpr const char* names[] = {"paused", "running", "stopped", "failed"};
-  const sim::Simulation& simulation = live_.simulation();
+  const sim::Simulation& simulation = live_->simulation();
   const double measured = pace_.measure(now);
+  const std::optional<std::uint32_t> last_move = live_->last_move();
+  json repeats;
+  if (is_repeating_) {
+    repeats = {{"file", repeated_->name()}, {"tick", repeated_->last_tick()}};
+  }
   const json document{{"state", names[static_cast<std::size_t>(state_)]},
                       {"factor", pace_.factor()},
                       {"measured_factor", state_ == State::running ? json(measured) : json()},
@@ -369,22 +458,24 @@ void SimulatedSession::publish_session(Clock::time_point now) {
                       {"stopped_by", text_or_null(stopped_by_)},
                       {"head", pose_json(simulation.plant().link_poses().front())},
                       {"moved", simulation.was_moved()},
+                      {"last_move", last_move ? json(*last_move) : json()},
+                      {"repeats", repeats},
                       {"recording", text_or_null(recording_)},
-                      {"changed", live_.differs_from_file()},
-                      {"undo", text_or_null(entry_name(live_.history().to_undo()))},
-                      {"redo", text_or_null(entry_name(live_.history().to_redo()))},
-                      {"set", std::string(1, live_.set_name())},
+                      {"changed", live_->differs_from_file()},
+                      {"undo", text_or_null(entry_name(live_->history().to_undo()))},
+                      {"redo", text_or_null(entry_name(live_->history().to_redo()))},
+                      {"set", std::string(1, live_->set_name())},
                       {"failure", text_or_null(failure_)},
-                      {"measures", measures_json(live_)}};
+                      {"measures", measures_json(*live_)}};
   output_.publish("session", document);
   is_session_new_ = false;
   publish_at_ = now + publish_period;
 }
 
 void SimulatedSession::publish_changes() {
-  if (live_.revision() != published_revision_) {
-    published_revision_ = live_.revision();
-    output_.publish("parameters", parameters_document(live_.scenario(), live_.parameters()));
+  if (live_->revision() != published_revision_) {
+    published_revision_ = live_->revision();
+    output_.publish("parameters", parameters_document(live_->scenario(), live_->parameters()));
     is_session_new_ = true;
   }
 }

@@ -1,10 +1,12 @@
 #pragma once
 
-// A simulated robot that viewers watch and change. It runs in a thread of its own.
+// A simulated robot that viewers watch and change: that of a scenario, or the continued run of a recording. It runs in
+// a thread of its own.
 
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -13,27 +15,26 @@
 
 #include "host/server/session_output.hpp"
 #include "host/server/session_requests.hpp"
-#include "sim/scenario/losses.hpp"
-#include "sim/scenario/scenario.hpp"
 #include "tools/proleg/ui/live_simulation.hpp"
+#include "tools/proleg/ui/recording_folder.hpp"
+#include "tools/proleg/ui/repeated_run.hpp"
 #include "tools/proleg/ui/run_pace.hpp"
 
 namespace proleg::tools {
 
 struct SimulatedSessionOptions {
-  std::filesystem::path recordings;   ///< the folder of all recordings
-  std::string command;                ///< that simulates the same scenario: "proleg simulate FILE ..."
-  std::vector<std::string> settings;  ///< words of --set that the runs begin with; the command has them too
-  bool has_file = true;               ///< the files of the scenario are on disk
+  std::filesystem::path recordings;  ///< the folder of all recordings
+  std::string command;               ///< that simulates the same scenario: "proleg simulate FILE ..."
+  bool has_file = true;              ///< the files of the scenario are on disk
   std::string build_id;
   bool starts_paused = false;
 };
 
 class SimulatedSession {
  public:
-  /// Does what `requests` has, and tells it `output`. scenario: as its files have it. scenario, losses, requests,
-  /// output: must outlive the session. Throws as LiveSimulation does.
-  SimulatedSession(const sim::Scenario& scenario, const sim::Losses* losses, SimulatedSessionOptions options,
+  /// Does what `requests` has, and tells it `output`; both must outlive the session. live: null if there is no
+  /// simulation until a recording is continued. Throws InputError if there is no folder of recordings.
+  SimulatedSession(std::unique_ptr<LiveSimulation> live, SimulatedSessionOptions options,
                    host::SessionRequests& requests, host::SessionOutput& output);
   /// Ends the thread, and a recording.
   ~SimulatedSession();
@@ -56,12 +57,19 @@ class SimulatedSession {
   /// Returns the value of the answer.
   [[nodiscard]] nlohmann::json carry_out(const host::OperationRequest& operation);
   void tick();
+  /// What all viewers must know of another simulation.
+  void publish_robot();
+  /// Compares the last tick with that of the recording that is continued.
+  void check_repetition(const sim::TickSample& sample);
   void begin_recording(const std::string& file);
   void end_recording();
-  [[nodiscard]] bool may_tick() const { return state_ == State::running || steps_left_ > 0; }
+  [[nodiscard]] bool may_tick() const { return live_ != nullptr && (state_ == State::running || steps_left_ > 0); }
+  void stop_steps();
   void set_state(State state);
   void publish_session(Clock::time_point now);
   void publish_changes();
+  /// Refuses what has no meaning now.
+  void require_possible(const std::string& operation) const;
   void require_sound() const;
   void require_file() const;
 
@@ -79,18 +87,21 @@ class SimulatedSession {
   nlohmann::json reset(const nlohmann::json& arguments);
   nlohmann::json move(const nlohmann::json& arguments);
   nlohmann::json record(const nlohmann::json& arguments);
+  nlohmann::json continue_recording(const nlohmann::json& arguments);
   nlohmann::json tell_file_diff(const nlohmann::json& arguments);
   nlohmann::json apply_to_file(const nlohmann::json& arguments);
   nlohmann::json ping(const nlohmann::json& arguments);
   nlohmann::json tell_command_line(const nlohmann::json& arguments);
 
-  const sim::Scenario& file_;
   SimulatedSessionOptions options_;
+  RecordingFolder folder_;
   host::SessionRequests& requests_;
   host::SessionOutput& output_;
 
   // Of the thread.
-  LiveSimulation live_;
+  std::unique_ptr<RepeatedRun> repeated_;  ///< the recording that is continued; it has the losses of the simulation
+  bool is_repeating_ = false;              ///< its ticks are computed again
+  std::unique_ptr<LiveSimulation> live_;
   RunPace pace_;
   State state_ = State::running;
   std::uint32_t steps_left_ = 0;

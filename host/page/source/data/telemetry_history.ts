@@ -66,6 +66,10 @@ export class TelemetryHistory {
     return this.tickOf(this.end - 1);
   }
 
+  has(tick: number): boolean {
+    return this.end > 0 && tick >= this.tickOf(this.first) && tick <= this.lastTick();
+  }
+
   // Raw; noValue if the row or the signal is not there.
   valueAt(signal: string, index: number, row: number): number {
     const ring = this.rings.get(signal);

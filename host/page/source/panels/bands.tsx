@@ -65,6 +65,7 @@ export function Bands({ app }: { app: PageApp }) {
   const connection = describeConnection(app.state.connection.value);
   const isConnecting = app.state.connection.value.state === 'connecting';
   const session = app.state.session.value;
+  const repeats = app.state.simulation.value?.repeats;
   return (
     <div class="bands">
       {connection !== null && (
@@ -76,6 +77,16 @@ export function Bands({ app }: { app: PageApp }) {
       {session?.failure && (
         <div class="band lost" role="alert">
           {session.failure}
+        </div>
+      )}
+      {repeats && (
+        <div class="band info" role="status" data-testid="repeats">
+          <span>
+            Computing {repeats.file} again: tick {session?.tick} of {repeats.tick}.
+          </span>
+          <button type="button" disabled={!app.state.isHolder.value} onClick={() => void app.operations.tell('pause', {})}>
+            Stay where it is
+          </button>
         </div>
       )}
       <RequestBand app={app} />

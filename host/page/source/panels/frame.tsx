@@ -18,7 +18,7 @@ let wereRecordingsShown = false; // their page is loaded when it is first shown
 // A page stays when another one is shown.
 export function Frame({ app }: { app: PageApp }) {
   const page = app.shownPage.value;
-  const isAlone = app.state.recordings.value?.alone === true;
+  const isAlone = app.state.isAlone.value;
   if (page === 'recordings') wereRecordingsShown = true;
   const robot = app.state.robot.value;
   return (

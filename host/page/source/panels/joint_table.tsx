@@ -3,7 +3,7 @@ import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
 import type { RobotView } from '../robot_view.js';
 import type { Joint } from '../wire/messages.js';
-import { contactText, numberText, valueOf } from './joint_values.js';
+import { areComing, comparedValueOf, contactText, numberText, valueOf } from './joint_values.js';
 import { ModuleCell } from './module_state.js';
 
 const period = 150; // milliseconds: faster cannot be read
@@ -17,6 +17,7 @@ interface CellText {
 
 export interface JointColumn {
   title: string;
+  heading?: string; // shorter than title and unit
   unit: string;
   help?: string;
   read(app: RobotView, joint: number, row: number): CellText;
@@ -52,6 +53,28 @@ const simulated = [
   measured('torque', 'mNm', 'torque', 0),
   contacts,
 ];
+
+// What a second recording has more.
+const difference = (title: string, unit: string, signal: string, decimals: number): JointColumn => ({
+  title: `Δ ${title}`,
+  heading: 'Δ',
+  unit,
+  help: `${title} of the second recording less that of the first`,
+  read: (app, joint, row) => {
+    const [own, other] = [valueOf(app, signal, joint, row), comparedValueOf(app, signal, joint, app.rowsAtCursor.tickOf(row))];
+    const text = numberText(own === null || other === null ? null : other - own, decimals);
+    return { text, tone: Math.abs(Number(text)) > 0 ? 'differs' : '' };
+  },
+});
+
+const compared = (
+  [
+    ['set-point', '°', 'setpoint', 1],
+    ['angle', '°', 'angle', 1],
+    ['current', 'mA', 'current', 0],
+    ['torque', 'mNm', 'torque', 0],
+  ] as const
+).flatMap(([title, unit, signal, decimals]) => [measured(title, unit, signal, decimals), difference(title, unit, signal, decimals)]);
 
 const angleOnBus: JointColumn = {
   title: 'angle',
@@ -97,7 +120,7 @@ function JointRow({ app, joint, index, columns }: { app: RobotView; joint: Joint
 
 export function JointTable({ app }: { app: RobotView }) {
   const isOnBus = app.state.busSession.value !== null;
-  const columns = isOnBus ? onBus : simulated;
+  const columns = isOnBus ? onBus : (app.compared?.value ?? null) !== null ? compared : simulated;
   const body = useRef<HTMLTableSectionElement>(null);
   useEffect(() => {
     let last = 0;
@@ -107,10 +130,11 @@ export function JointTable({ app }: { app: RobotView }) {
     return onFrame((now) => {
       const { rowsAtCursor: history, time } = app;
       const tick = time.shownTick(app.newestTick);
-      const key = `${history.run}/${history.end}/${tick}`;
+      const other = app.compared?.peek()?.reader.rowsAtCursor;
+      const key = [history.run, history.end, tick, other?.run, other?.end].join('/');
       const elements = body.current?.rows ?? [];
       if (next >= elements.length) {
-        if (key === lastKey || now - last < period) {
+        if (key === lastKey || now - last < period || areComing(app, tick)) {
           return;
         }
         last = now;
@@ -121,6 +145,9 @@ export function JointTable({ app }: { app: RobotView }) {
       for (const end = Math.min(elements.length, next + rowsOfAFrame); next < end; next += 1) {
         const values = columns.map((column) => column.read(app, next, row));
         write(elements[next] as HTMLTableRowElement, values);
+      }
+      if (next >= elements.length && body.current !== null) {
+        body.current.dataset['tick'] = String(history.tickOf(row));
       }
     });
   }, [columns]);
@@ -135,7 +162,7 @@ export function JointTable({ app }: { app: RobotView }) {
               <th scope="col">joint</th>
               {columns.map((column) => (
                 <th scope="col" key={column.title} title={column.help}>
-                  {column.title} <span class="unit">{column.unit}</span>
+                  {column.heading ?? column.title} {column.heading === undefined && <span class="unit">{column.unit}</span>}
                 </th>
               ))}
               {isOnBus && <th scope="col">module</th>}

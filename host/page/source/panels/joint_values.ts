@@ -2,10 +2,23 @@
 import type { RobotView } from '../robot_view.js';
 import { noValue } from '../wire/messages.js';
 
+type Rows = Pick<RobotView, 'rowsAtCursor'>;
+
+// Whether the values at a tick of a recording are still to come. Nothing is drawn of other ticks meanwhile.
+export function areComing({ history, rowsAtCursor }: Pick<RobotView, 'history' | 'rowsAtCursor'>, tick: number): boolean {
+  return rowsAtCursor !== history && !rowsAtCursor.has(tick);
+}
+
 // In the signal's unit; null if there is none.
-export function valueOf(app: RobotView, signal: string, joint: number, row: number): number | null {
+export function valueOf(app: Rows, signal: string, joint: number, row: number): number | null {
   const raw = app.rowsAtCursor.valueAt(signal, joint, row);
   return raw === noValue ? null : raw * (app.rowsAtCursor.rings.get(signal)?.scale ?? 1);
+}
+
+// Of the second recording at the tick; null without one, too.
+export function comparedValueOf({ compared }: Pick<RobotView, 'compared'>, signal: string, joint: number, tick: number): number | null {
+  const reader = compared?.peek()?.reader;
+  return reader?.has(tick) === true ? valueOf(reader, signal, joint, reader.rowsAtCursor.rowAtTick(tick)) : null;
 }
 
 export function numberText(value: number | null, decimals: number): string {

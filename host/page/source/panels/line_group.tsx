@@ -6,19 +6,21 @@ import type { RobotView } from '../robot_view.js';
 import { formatMeasured } from '../state/parameter_values.js';
 import { mostLines, type Line, type LineGroup } from '../state/signal_selection.js';
 import { isDark } from '../theme.js';
-import { noValue } from '../wire/messages.js';
 import { chartTheme } from './chart_theme.js';
 import { addIcon, closeIcon } from './icons.js';
+import { comparedValueOf, valueOf } from './joint_values.js';
 import { LinePlot } from './line_plot.js';
 import { signalTitle, valueName } from './value_names.js';
 
 const readoutPeriod = 100; // milliseconds
 
-function valueText(app: RobotView, line: Line): string {
+// With a second recording: both values.
+function valueText(app: RobotView, { signal, index }: Line): string {
   const { rowsAtCursor, time } = app;
-  const row = Math.min(rowsAtCursor.end - 1, rowsAtCursor.rowAtTick(time.shownTick(app.newestTick)));
-  const raw = rowsAtCursor.valueAt(line.signal, line.index, row);
-  return raw === noValue ? '–' : formatMeasured(raw * (rowsAtCursor.rings.get(line.signal)?.scale ?? 1));
+  const tick = time.shownTick(app.newestTick);
+  const text = (value: number | null) => (value === null ? '–' : formatMeasured(value));
+  const own = text(valueOf(app, signal, index, Math.min(rowsAtCursor.end - 1, rowsAtCursor.rowAtTick(tick))));
+  return (app.compared?.peek() ?? null) === null ? own : `${own} | ${text(comparedValueOf(app, signal, index, tick))}`;
 }
 
 function LineChip({ app, group, line, colour }: { app: RobotView; group: LineGroup; line: Line; colour: string }) {
@@ -102,7 +104,7 @@ export function LineGroupView({ app, group }: { app: RobotView; group: LineGroup
   useEffect(() => {
     const plot = new LinePlot(app, holder.current as HTMLDivElement, group.lines, isDark.value);
     return () => plot.dispose();
-  }, [group.lines, isDark.value]);
+  }, [group.lines, isDark.value, app.compared?.value]);
   return (
     <div class="line-group">
       <div class="panel-head">

@@ -2,6 +2,7 @@
 import uPlot from 'uplot';
 import { lineData } from '../data/line_data.js';
 import { onFrame } from '../frame_clock.js';
+import type { TelemetryHistory } from '../data/telemetry_history.js';
 import type { RobotView } from '../robot_view.js';
 import type { Line } from '../state/signal_selection.js';
 import { axisOverhang, axisWidth, chartTheme } from './chart_theme.js';
@@ -22,6 +23,7 @@ function padded(low: number | null, high: number | null): [number, number] {
 
 export class LinePlot {
   private readonly plot: uPlot;
+  private readonly compared; // a second recording, whose lines are dashed
   private readonly cursor = document.createElement('div');
   private readonly stops: (() => void)[] = [];
   private lastKey = '';
@@ -33,7 +35,9 @@ export class LinePlot {
     private readonly lines: readonly Line[],
     isDark: boolean,
   ) {
-    this.plot = new uPlot(this.options(Math.max(100, holder.clientWidth), isDark), [[], ...lines.map(() => [])], holder);
+    this.compared = app.compared?.peek()?.reader ?? null;
+    const options = this.options(Math.max(100, holder.clientWidth), isDark);
+    this.plot = new uPlot(options, options.series.map(() => []) as unknown as uPlot.AlignedData, holder);
     this.cursor.className = 'plot-cursor';
     this.plot.over.append(this.cursor);
     const observer = new ResizeObserver(() => this.plot.setSize({ width: Math.max(100, holder.clientWidth), height }));
@@ -49,6 +53,8 @@ export class LinePlot {
 
   private options(width: number, isDark: boolean): uPlot.Options {
     const theme = chartTheme(isDark);
+    const series = this.lines.map((_, i) => ({ stroke: theme.lines[i] ?? theme.text, width: 1.5, points: { show: false } }));
+    const dashed = this.compared === null ? [] : series.map((line) => ({ ...line, dash: [5, 4], alpha: 0.8 }));
     const axis = { stroke: theme.text, grid: { stroke: theme.grid, width: 1 }, ticks: { stroke: theme.grid, width: 1 } };
     return {
       width,
@@ -61,7 +67,7 @@ export class LinePlot {
         { ...axis, size: 32, values: (_, ticks) => ticks.map((value) => `${Number(value.toFixed(3))} s`) },
         { ...axis, size: axisWidth, space: 24 },
       ],
-      series: [{}, ...this.lines.map((_, i) => ({ stroke: theme.lines[i] ?? theme.text, width: 1.5, points: { show: false } }))],
+      series: [{}, ...series, ...dashed],
       hooks: { setSelect: [(plot) => this.zoomToSelection(plot)], draw: [(plot) => this.drawMarks(plot)] },
     };
   }
@@ -111,16 +117,21 @@ export class LinePlot {
     const { history, time } = this.app;
     const range = time.range(this.app.newestTick);
     const cursor = time.cursor.peek();
-    const key = [history.run, history.end, range.from, range.to, cursor, this.plot.width, timeMarksKey(this.app.marks)].join();
+    const other = this.compared?.history;
+    const key = [history.run, history.end, other?.run, other?.end, range.from, range.to, cursor, this.plot.width, timeMarksKey(this.app.marks)].join();
     if (key === this.lastKey || now - this.lastTime < framePeriod) {
       return;
     }
     this.lastKey = key;
     this.lastTime = now;
     const rate = this.app.tickRate;
-    const data = lineData(history, this.lines, range.from, range.to, this.plot.over.clientWidth);
+    const dataOf = (rows: TelemetryHistory): uPlot.AlignedData => {
+      const data = lineData(rows, this.lines, range.from, range.to, this.plot.over.clientWidth);
+      return [data.times.map((tick) => tick / rate), ...data.values];
+    };
+    const data = other === undefined ? dataOf(history) : uPlot.join([dataOf(history), dataOf(other)]);
     this.plot.batch(() => {
-      this.plot.setData([data.times.map((tick) => tick / rate), ...data.values], false);
+      this.plot.setData(data, false);
       this.plot.setScale('x', { min: range.from / rate, max: range.to / rate });
     });
     const isVisible = cursor !== null && cursor >= range.from && cursor <= range.to;

@@ -11,7 +11,8 @@ import { isDark } from '../theme.js';
 import { MoveForm } from './move_form.js';
 import { listenToPointer, type RobotMover } from './scene_pointer.js';
 import { ScenePull } from './scene_pull.js';
-import { shownPose } from './scene_pose.js';
+import { areComing } from './joint_values.js';
+import { poseAt, shownPose } from './scene_pose.js';
 
 const readoutPeriod = 100; // milliseconds
 
@@ -22,6 +23,7 @@ export function ScenePanel({ app }: { app: RobotView }) {
   const level = useSignal(0);
   const failure = useSignal<string | null>(null);
   const isOnBus = app.state.busSession.value !== null;
+  const isCompared = (app.compared?.value ?? null) !== null;
   const post = useRef<(message: ToScene) => void>(() => {});
 
   useEffect(() => {
@@ -95,7 +97,15 @@ export function ScenePanel({ app }: { app: RobotView }) {
       }),
       effect(() => {
         const heads = app.wholePath.value;
-        if (heads !== null) send({ kind: 'path', heads });
+        if (heads !== null) send({ kind: 'path', heads, isOfGhost: false });
+      }),
+      effect(() => {
+        const ghost = app.compared?.value?.reader.robot ?? app.state.robot.value;
+        if (ghost !== null) send({ kind: 'ghost', robot: ghost });
+      }),
+      effect(() => {
+        const heads = app.compared?.value?.reader.wholePath.value ?? null;
+        if (heads !== null) send({ kind: 'path', heads, isOfGhost: true });
       }),
       effect(() => send({ kind: 'highlight', joint: app.selection.hoveredJoint.value })),
       followPose(app, send, readout),
@@ -156,10 +166,10 @@ export function ScenePanel({ app }: { app: RobotView }) {
       <span class="readout" ref={readout} data-testid="head" title="Position of the head" />
       <span class="legend-marks" aria-hidden="true">
         <i class="mark head" /> head <i class="mark contact" /> ground contact <i class="mark path" /> path
-        {isOnBus && ghostIsOn.value && (
+        {((isOnBus && ghostIsOn.value) || isCompared) && (
           <>
             {' '}
-            <i class="mark ghost" /> simulation
+            <i class="mark ghost" /> {isCompared ? 'second recording' : 'simulation'}
           </>
         )}
       </span>
@@ -200,25 +210,33 @@ function followPose(app: RobotView, send: (message: ToScene) => void, readout: {
   let session: unknown = null;
   let preview: unknown = null;
   let withGhost = false;
+  let compared: unknown = null;
   let unwritten: ScenePose | null = null; // whose head is not written yet
   let lastReadout = 0;
   const sendChangedPose = () => {
     const { rowsAtCursor: history, time, mover } = app;
     const tick = time.shownTick(app.newestTick);
-    const key = `${history.run}/${history.end}/${tick}`;
+    const other = app.compared?.peek()?.reader;
+    const key = [history.run, history.end, tick, other?.rowsAtCursor.run, other?.rowsAtCursor.end].join('/');
     const isSame =
+      compared === other &&
       robot === app.state.robot.peek() &&
       session === mover?.session.peek() &&
       preview === mover?.preview.peek() &&
       withGhost === ghostIsOn.peek();
-    if (key === lastKey && isSame) {
+    if ((key === lastKey && isSame) || areComing(app, tick)) {
       return;
     }
     const pose = shownPose(app, tick, ghostIsOn.peek());
     if (pose === null || app.state.robot.peek() === null) {
       return;
     }
+    if (other?.has(tick) === true) {
+      const { angles, head } = poseAt(other.rowsAtCursor, tick, false, false) ?? { angles: null, head: null };
+      Object.assign(pose, { ghost: angles, ghostHead: head });
+    }
     lastKey = key;
+    compared = other;
     robot = app.state.robot.peek();
     session = mover?.session.peek();
     preview = mover?.preview.peek();

@@ -4,7 +4,7 @@ import type { RobotView } from '../robot_view.js';
 import { placedHead } from '../state/move_tool.js';
 import type { TelemetryHistory } from '../data/telemetry_history.js';
 import type { ScenePose } from '../scene/scene_messages.js';
-import { noValue } from '../wire/messages.js';
+import { noValue, type Mark } from '../wire/messages.js';
 
 const headValues = 7;
 const quaternionUnit = 2 ** 30;
@@ -13,24 +13,26 @@ const degree = Math.PI / 180;
 
 // What the 3D view shows; `withGhost`: with the simulation beside a robot on a bus, if there is one. Null if nothing is known.
 export function shownPose(app: RobotView, tick: number, withGhost: boolean): ScenePose | null {
-  const { history, time, mover } = app;
+  const { rowsAtCursor: history, time, mover } = app;
   const isLive = time.isLive.peek() && time.cursor.peek() === null;
   const session = mover?.session.peek() ?? null;
   const head = session?.head;
   const isPresent = isLive && session !== null && (history.end === 0 || history.lastTick() < session.tick);
   const known = history.end === 0 ? null : poseAt(history, tick, isLive, withGhost);
+  const lastMove = session?.last_move ?? null;
+  if (known !== null && lastMove !== null && tick >= lastMove) known.lastMove = lastMove;
   const place = mover?.preview.peek() ?? null;
   if (head === undefined || !isPresent || (known !== null && session?.moved !== true && place === null)) {
     return known;
   }
   const present = poseFromArray(head);
   const { position, orientation } = place === null ? present : placedHead(present, place);
-  const straight = { angles: new Float32Array(), ghost: null, contacts: new Int32Array() };
+  const straight = { angles: new Float32Array(), ghost: null, contacts: new Int32Array(), lastMove };
   return { ...(known ?? straight), head: Float64Array.of(...position, ...orientation), run: history.run, isLive: false };
 }
 
 // Null if the row is not there.
-function poseAt(history: TelemetryHistory, tick: number, isLive: boolean, withGhost: boolean): ScenePose | null {
+export function poseAt(history: TelemetryHistory, tick: number, isLive: boolean, withGhost: boolean): ScenePose | null {
   const row = Math.min(history.end - 1, history.rowAtTick(tick));
   if (row < history.first) {
     return null;
@@ -48,6 +50,7 @@ function poseAt(history: TelemetryHistory, tick: number, isLive: boolean, withGh
     contacts,
     run: history.run,
     isLive,
+    lastMove: null,
   };
 }
 
@@ -64,11 +67,18 @@ function headAt(history: TelemetryHistory, row: number): Float64Array | null {
   return head;
 }
 
-// The heads of all rows one behind the other.
-export function wholePathOf(history: TelemetryHistory): Float64Array {
+const cut: readonly number[] = new Array<number>(headValues).fill(NaN);
+
+// The heads of all rows one behind the other. Where a hand moved the robot between two rows there is a cut: no numbers.
+export function wholePathOf(history: TelemetryHistory, marks: readonly Mark[]): Float64Array {
+  const moves = marks.filter(({ kind }) => kind === 'move').map(({ tick }) => tick);
   const path: number[] = [];
+  let last = -Infinity;
   for (let row = history.first; row < history.end; row += 1) {
+    const tick = history.tickOf(row);
+    if (moves.some((move) => move > last && move <= tick)) path.push(...cut);
     path.push(...(headAt(history, row) ?? []));
+    last = tick;
   }
   return Float64Array.from(path);
 }

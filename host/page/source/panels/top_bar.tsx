@@ -30,7 +30,7 @@ function RobotName({ state }: { state: PageState }) {
   const robot = state.robot.value;
   const session = state.session.value;
   const isConnected = state.isConnected.value;
-  const isAlone = state.recordings.value?.alone === true;
+  const isAlone = state.isAlone.value;
   const badge = robot !== null ? badges[robot.kind] : isAlone ? badges.recording : null;
   return (
     <div class="robot-name">
@@ -176,8 +176,8 @@ function PageButton({ app, page, title, number }: { app: PageApp; page: PageName
 }
 
 export function TopBar({ app }: { app: PageApp }) {
-  // Only recordings: nothing to drive and nothing to stop.
-  const isAlone = app.state.recordings.value?.alone === true;
+  // Only recordings: nothing to stop, until one of them is continued.
+  const isAlone = app.state.isAlone.value;
   return (
     <header class="top-bar">
       <nav aria-label="Pages">
@@ -186,7 +186,7 @@ export function TopBar({ app }: { app: PageApp }) {
       </nav>
       <RobotName state={app.state} />
       <Figures state={app.state} />
-      {!isAlone && <Control app={app} />}
+      <Control app={app} />
       <PageTools />
       {!isAlone && <Stop app={app} />}
     </header>

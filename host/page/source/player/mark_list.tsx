@@ -1,10 +1,11 @@
 // What changed or failed in the run: a click goes there.
 import type { PlayedRecording } from './player_app.js';
 
-const kinds = { change: 'change', fault: 'fault', restart: 'module' } as const;
+const kinds = { change: 'change', fault: 'fault', restart: 'module', move: 'move', loss: 'loss' } as const;
 
 export function MarkList({ app }: { app: PlayedRecording }) {
-  const { marks } = app.recording;
+  // Where frames were lost stands only on the time line: in some recordings that is everywhere.
+  const marks = app.recording.marks.filter(({ kind }) => kind !== 'loss');
   if (marks.length === 0) {
     return null;
   }

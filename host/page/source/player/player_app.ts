@@ -74,7 +74,7 @@ export class PlayerApp implements PlayedRecording {
         this.loaded.value = (tick + 1 - first_tick) / (last_tick + 1 - first_tick);
       });
       if (this.recording.has_path) {
-        this.wholePath.value = wholePathOf(this.history);
+        this.wholePath.value = wholePathOf(this.history, this.recording.marks);
       }
     } catch (error) {
       this.failure.value = `The file is damaged or not complete. ${(error as Error).message}`;

@@ -2,11 +2,13 @@
 // plays, the next ticks come before they are shown.
 import { pyramidBlock } from '../data/min_max_pyramid.js';
 import { TelemetryHistory } from '../data/telemetry_history.js';
+import { drawSoon } from '../frame_clock.js';
 import type { Signal } from '../wire/messages.js';
 import { rowLayout } from '../wire/subscription.js';
 import type { AskRows } from './range_rows.js';
 
-const piece = 512; // ticks
+const jump = 128; // ticks that are read about a tick elsewhere: as few as come soon
+const piece = 512; // ticks that are read while it plays
 const ahead = 384; // ticks before the end of what is there
 
 export class CursorRows {
@@ -21,8 +23,7 @@ export class CursorRows {
   ) {}
 
   has(tick: number): boolean {
-    const { history } = this;
-    return history.end > 0 && tick >= history.tickOf(history.first) && tick <= history.lastTick();
+    return this.history.has(tick);
   }
 
   // Call it at each frame: it asks only for what is missing.
@@ -32,8 +33,8 @@ export class CursorRows {
       return;
     }
     if (names !== this.names || !this.has(tick)) {
-      const from = Math.max(first, Math.floor(tick / piece) * piece);
-      void this.load(signals, names, tick, from, Math.min(last, from + piece - 1), true);
+      const start = Math.floor(tick / jump) * jump;
+      void this.load(signals, names, tick, Math.max(first, start), Math.min(last, start + jump - 1), true);
     } else if (isPlaying && this.history.lastTick() < Math.min(last, tick + ahead)) {
       const from = this.history.lastTick() + 1;
       void this.load(signals, names, tick, from, Math.min(last, from + piece - 1), false);
@@ -52,6 +53,7 @@ export class CursorRows {
       const { run } = this.history;
       this.history.append({ ...rows, subscription: 0, run, hasGap: false }, rowLayout(signals));
       this.failedAt = this.has(tick) ? null : tick;
+      drawSoon();
     } catch (error) {
       this.failedAt = tick;
       this.failed((error as Error).message);

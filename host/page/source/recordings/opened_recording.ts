@@ -1,17 +1,15 @@
-// A recording that is shown: its documents, its rows, its time. A growing one is followed.
-import { signal } from '@preact/signals-core';
-import { wholePathOf } from '../panels/scene_pose.js';
+// A recording that is shown, alone or with a second one: what the panels show of it, and its time. A growing one is followed.
+import { effect, signal, untracked } from '@preact/signals-core';
 import { addPlaybackActions } from '../player/player_actions.js';
 import type { PlayedRecording } from '../player/player_app.js';
 import { ActionList, type Action } from '../state/actions.js';
 import { Playback } from '../state/playback.js';
 import { SignalSelection } from '../state/signal_selection.js';
-import type { Documents, RobotDocument, ServedRecordingDocument, Signal, TelemetryDocument } from '../wire/messages.js';
-import { CursorRows } from './cursor_rows.js';
-import { RangeRows, type AskRows } from './range_rows.js';
+import type { Documents, RobotDocument, ServedRecordingDocument, TelemetryDocument } from '../wire/messages.js';
+import type { ComparedRecording } from './compared_recording.js';
+import type { AskRows } from './range_rows.js';
 import type { OpenDocuments, RecordingClient } from './recording_client.js';
-
-const lookPeriod = 1000; // milliseconds between two looks at a file that grows
+import { RecordingReader } from './recording_reader.js';
 
 export class OpenedRecording implements PlayedRecording {
   readonly state;
@@ -20,122 +18,98 @@ export class OpenedRecording implements PlayedRecording {
   readonly mover = null;
   readonly poses = null;
   readonly selection = new SignalSelection();
-  readonly wholePath = signal<Float64Array | null>(null);
-  // Why something cannot be shown.
-  readonly failure = signal<string | null>(null);
+  readonly compared = signal<ComparedRecording | null>(null);
+  readonly parameters: Documents['parameters'];
   readonly actions: ActionList;
-  readonly ask: AskRows;
-  private readonly document;
-  private readonly parameterDocument: Documents['parameters'];
-  private readonly range: RangeRows;
-  private readonly cursor: CursorRows;
-  private readonly path: RangeRows;
-  private lookedAt = 0;
-  private isLooking = false;
+  private readonly reader: RecordingReader;
 
   constructor(
-    readonly client: RecordingClient,
+    client: RecordingClient,
     documents: OpenDocuments,
     readonly startSceneWorker: () => Worker,
     // Actions of the page that hold here, too.
     pageActions: ActionList,
-    private readonly now: () => number = () => performance.now(),
+    now: () => number = () => performance.now(),
   ) {
     const { robot, telemetry, recording, parameters } = documents;
+    this.reader = new RecordingReader(client, documents, now);
     this.state = {
       robot: signal<RobotDocument | null>(robot),
       telemetry: signal<TelemetryDocument | null>(telemetry),
       bus: signal(null),
       busSession: signal(null),
     };
-    this.document = signal<ServedRecordingDocument>(recording);
-    this.parameterDocument = parameters;
+    this.parameters = parameters;
     this.time = new Playback(recording.first_tick, recording.last_tick, this.tickRate);
     if (!recording.finished) {
       this.time.seek(recording.last_tick);
     }
-    this.ask = (signals, from, to) => client.rows(signals, from, to);
-    const failed = (reason: string) => (this.failure.value = reason);
-    this.range = new RangeRows(this.ask, this.now, failed);
-    this.path = new RangeRows(this.ask, this.now, failed);
-    this.cursor = new CursorRows(this.ask, failed);
     const isOfPage = (action: Action) => action.group === 'Page' || action.id === 'stop' || action.id === 'take_control';
     this.actions = new ActionList(pageActions, isOfPage);
     addPlaybackActions(this, ['K']);
+    // Not only at the next frame: it may be 30 ms later.
+    effect(() => {
+      this.time.cursor.value;
+      this.read();
+    });
+  }
+
+  get client(): RecordingClient {
+    return this.reader.client;
+  }
+
+  get failure() {
+    return this.reader.failure;
+  }
+
+  get ask(): AskRows {
+    return this.reader.ask;
   }
 
   get recording(): ServedRecordingDocument {
-    return this.document.value;
+    return this.reader.document.value;
   }
 
-  get parameters(): Documents['parameters'] {
-    return this.parameterDocument;
+  get wholePath() {
+    return this.reader.wholePath;
   }
 
   get history() {
-    return this.range.lines;
+    return this.reader.history;
   }
 
   get sampledRows() {
-    return this.range.samples;
+    return this.reader.sampledRows;
   }
 
   get rowsAtCursor() {
-    return this.cursor.history;
+    return this.reader.rowsAtCursor;
   }
 
   get tickRate(): number {
-    return 1e6 / (this.state.telemetry.peek()?.tick_us || 10000);
+    return 1e6 / (this.reader.telemetry.tick_us || 10000);
   }
 
   get newestTick(): number {
-    return this.document.peek().last_tick;
-  }
-
-  // The signals that the panels show.
-  neededSignals(): Signal[] {
-    return this.selection.needed(this.state.telemetry.peek()?.signals ?? []);
+    return this.reader.document.peek().last_tick;
   }
 
   // At each frame while it is shown.
   advance(milliseconds: number): void {
     const { time } = this;
-    const { first_tick, last_tick, finished, indexed, damage, has_path } = this.document.peek();
     time.advance(milliseconds);
-    const signals = this.neededSignals();
-    this.cursor.want(time.cursor.peek(), signals, first_tick, last_tick, time.isPlaying.peek());
-    this.range.want(time.range(), signals, first_tick, last_tick);
-    if (has_path) {
-      this.showPath(first_tick, last_tick);
+    if (this.newestTick > time.last) {
+      time.extend(this.newestTick, time.cursor.peek() >= time.last);
     }
-    const isIndexed = indexed > last_tick - first_tick || damage !== null;
-    if ((!finished || !isIndexed) && !this.isLooking && this.now() - this.lookedAt > lookPeriod) {
-      void this.look();
-    }
+    this.read();
   }
 
-  private showPath(first: number, last: number): void {
-    const { run } = this.path.samples;
-    this.path.want({ from: first, to: last }, this.neededSignals().filter((signal) => signal.name === 'head'), first, last);
-    if (this.path.samples.end > 0 && run !== this.shownPath) {
-      this.shownPath = run;
-      this.wholePath.value = wholePathOf(this.path.samples);
-    }
-  }
-  private shownPath = -1;
-
-  private async look(): Promise<void> {
-    this.isLooking = true;
-    try {
-      const { recording } = await this.client.open();
-      const isAtEnd = this.time.cursor.peek() >= this.newestTick;
-      const follows = !this.document.peek().finished && isAtEnd;
-      this.document.value = recording;
-      this.time.extend(recording.last_tick, follows);
-    } catch (error) {
-      this.failure.value = (error as Error).message;
-    }
-    this.lookedAt = this.now();
-    this.isLooking = false;
+  // What is missing at the time cursor.
+  private read(): void {
+    untracked(() => {
+      const names = new Set(this.selection.needed(this.reader.telemetry.signals).map((signal) => signal.name));
+      this.reader.advance(this.time, names);
+      this.compared.peek()?.advance(this.time, names);
+    });
   }
 }

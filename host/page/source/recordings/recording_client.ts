@@ -1,6 +1,6 @@
 // A recording behind the server.
 import type { OperationQueue } from '../state/operations.js';
-import type { Documents, RecordedFile, ServedRecordingDocument, Signal } from '../wire/messages.js';
+import type { Documents, RecordedFile, RunComparison, ServedRecordingDocument, Signal } from '../wire/messages.js';
 import { decodeRecordedRows, type RecordedRows } from '../wire/recorded_rows.js';
 import { rowLayout } from '../wire/subscription.js';
 
@@ -25,6 +25,11 @@ export class RecordingClient {
 
   async open(): Promise<OpenDocuments> {
     return (await this.operations.ask('recording.open', { file: this.file })) as OpenDocuments;
+  }
+
+  // How far the comparison with another recording is. Rejects if the two cannot be compared.
+  async compare(other: RecordingClient): Promise<RunComparison> {
+    return (await this.operations.ask('recording.compare', { file: this.file, with: other.file })) as RunComparison;
   }
 
   // Ticks `from` up to, including, `to`: every tick, or blocks if they are more than mostPoints. May end before `to`.

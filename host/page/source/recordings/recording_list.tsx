@@ -23,10 +23,16 @@ function durationText(seconds: number): string {
 
 function FileRow({ app, file }: { app: RecordingsApp; file: RecordedFile }) {
   const time = new Date(file.time_ms);
+  const first = app.comparing.value;
+  const isBusy = app.opening.value !== null;
   return (
     <tr>
       <th scope="row">
-        <button type="button" onClick={() => void app.open(file.name)} disabled={app.opening.value !== null}>
+        <button
+          type="button"
+          onClick={() => void (first === null ? app.open(file.name) : app.compareWith(file.name))}
+          disabled={isBusy || file.name === first}
+        >
           {file.name}
         </button>
       </th>
@@ -46,6 +52,13 @@ function FileRow({ app, file }: { app: RecordingsApp; file: RecordedFile }) {
       <td class="number">{sizeText(file.bytes)}</td>
       <td class="number" title={time.toISOString()}>
         {time.toLocaleString()}
+      </td>
+      <td>
+        {first === null && !file.problem && (
+          <button type="button" class="compare" disabled={isBusy} onClick={() => app.chooseSecond(file.name)} aria-label={`Compare ${file.name} with another recording`}>
+            Compare …
+          </button>
+        )}
       </td>
     </tr>
   );
@@ -75,6 +88,14 @@ export function RecordingList({ app }: { app: RecordingsApp }) {
           {app.problem.value}
         </p>
       )}
+      {app.comparing.value !== null && (
+        <p class="hint" role="status" data-testid="comparing">
+          Choose the recording to compare with <strong>{app.comparing.value}</strong>.{' '}
+          <button type="button" onClick={() => app.chooseSecond(null)}>
+            Cancel
+          </button>
+        </p>
+      )}
       {files === null && <p class="hint">Reading the folder …</p>}
       {files?.length === 0 && <p class="hint">No recordings yet. “Record” on the page Live makes one, and so does “proleg simulate --record”.</p>}
       {matching.length > 0 && (
@@ -87,6 +108,7 @@ export function RecordingList({ app }: { app: RecordingsApp }) {
                     {title}
                   </th>
                 ))}
+                <td />
               </tr>
             </thead>
             <tbody>

@@ -3,6 +3,7 @@ import { effect, signal } from '@preact/signals-core';
 import { onFrame } from '../frame_clock.js';
 import type { PageApp } from '../page_app.js';
 import type { RecordedFile } from '../wire/messages.js';
+import { ComparedRecording } from './compared_recording.js';
 import { OpenedRecording } from './opened_recording.js';
 import { listRecordings, RecordingClient } from './recording_client.js';
 
@@ -15,6 +16,8 @@ export class RecordingsApp {
   // The file that is being opened; why the list or a file cannot be shown.
   readonly opening = signal<string | null>(null);
   readonly problem = signal<string | null>(null);
+  // The recording for which a second one is chosen from the list.
+  readonly comparing = signal<string | null>(null);
   private listedAt = -Infinity;
   private isListing = false;
   private last = performance.now();
@@ -28,28 +31,87 @@ export class RecordingsApp {
   }
 
   async open(file: string): Promise<void> {
-    this.opening.value = file;
-    this.problem.value = null;
-    try {
+    await this.attempt(file, async () => {
       const client = new RecordingClient(this.page.operations, file);
       const opened = new OpenedRecording(client, await client.open(), () => this.page.startSceneWorker(), this.page.actions);
-      opened.actions.add({
-        id: 'close_recording',
-        title: 'Back to the list',
-        group: 'Recording',
-        keys: ['Backspace'],
-        run: () => this.close(),
-      });
+      opened.actions.add(
+        {
+          id: 'close_recording',
+          title: 'Back to the list',
+          group: 'Recording',
+          keys: ['Backspace'],
+          run: () => this.close(),
+        },
+        {
+          id: 'compare',
+          title: 'Compare with another recording, or end that',
+          group: 'Recording',
+          keys: ['D'],
+          run: () => (opened.compared.peek() === null ? this.chooseSecond(file) : (opened.compared.value = null)),
+        },
+        {
+          id: 'continue',
+          title: 'Continue the simulation from the time cursor',
+          group: 'Recording',
+          keys: [],
+          isEnabled: () => this.obstacleToContinue(opened) === null,
+          obstacle: () => this.obstacleToContinue(opened),
+          run: () => void this.continueFrom(opened),
+        },
+      );
       if (this.opening.peek() === file) this.show(opened);
-    } catch (error) {
-      this.problem.value = (error as Error).message;
+    });
+  }
+
+  // From the list: the next file that is chosen is compared with this one.
+  chooseSecond(file: string | null): void {
+    this.comparing.value = file;
+    this.problem.value = null;
+    this.listedAt = -Infinity;
+  }
+
+  // Shows the second recording beside the first.
+  async compareWith(second: string): Promise<void> {
+    const first = this.comparing.peek();
+    if (first !== null && this.opened.peek()?.client.file !== first) {
+      await this.open(first);
     }
-    this.opening.value = null;
+    const opened = this.opened.peek();
+    if (opened === null || this.problem.peek() !== null) return;
+    await this.attempt(second, async () => {
+      opened.compared.value = await ComparedRecording.open(opened.client, new RecordingClient(this.page.operations, second));
+      this.comparing.value = null;
+    });
+  }
+
+  // Why the simulation cannot go on from the time cursor; null: it can.
+  obstacleToContinue({ recording }: OpenedRecording): string | null {
+    const { robot, isConnected, isHolder } = this.page.state;
+    if (recording.program !== 'simulate') return 'Only a simulation can be computed again, not a robot that had modules.';
+    if (robot.value?.kind === 'bus') return 'This program drives a robot on a bus.';
+    return !isConnected.value ? 'No connection to the program.' : isHolder.value ? null : 'Take control first (C).';
+  }
+
+  async continueFrom({ client, time }: OpenedRecording): Promise<void> {
+    const answer = await this.page.operations.tell('continue', { file: client.file, tick: time.cursor.peek() });
+    if (answer !== null) this.page.shownPage.value = 'live';
   }
 
   close(): void {
     this.show(null);
     this.listedAt = -Infinity;
+  }
+
+  // Opens a file; if that fails, its line is the problem.
+  private async attempt(file: string, action: () => Promise<void>): Promise<void> {
+    this.opening.value = file;
+    this.problem.value = null;
+    try {
+      await action();
+    } catch (error) {
+      this.problem.value = (error as Error).message;
+    }
+    this.opening.value = null;
   }
 
   private show(opened: OpenedRecording | null): void {
@@ -63,7 +125,7 @@ export class RecordingsApp {
     if (this.page.shownPage.peek() !== 'recordings' || !this.page.state.isConnected.peek()) {
       return;
     }
-    if (this.opened.peek() !== null) {
+    if (this.opened.peek() !== null && this.comparing.peek() === null) {
       this.opened.peek()?.advance(milliseconds);
     } else if (!this.isListing && now - this.listedAt > listPeriod) {
       this.listedAt = now;

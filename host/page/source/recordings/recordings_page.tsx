@@ -9,18 +9,20 @@ import { PlaybackControls } from '../player/playback_controls.js';
 import { RecordingFacts } from '../player/recording_facts.js';
 import type { OpenedRecording } from './opened_recording.js';
 import { ExportTools } from './export_tools.js';
+import { ComparisonBand } from './comparison_band.js';
 import { XyPanel } from './xy_panel.js';
 import { RecordingList } from './recording_list.js';
 import { RecordingsApp } from './recordings_app.js';
 
 let recordings: RecordingsApp | null = null; // one for the page; it stays when another page is shown
 
-function Bands({ opened }: { opened: OpenedRecording }) {
+function RecordingBands({ opened }: { opened: OpenedRecording }) {
   const { recording } = opened;
   const ticks = recording.last_tick - recording.first_tick + 1;
   const problem = opened.failure.value ?? recording.damage;
   return (
     <div class="bands">
+      <ComparisonBand opened={opened} />
       {problem !== null && (
         <div class="band lost" role="alert">
           {problem}
@@ -54,10 +56,28 @@ function OpenedView({ app, opened }: { app: RecordingsApp; opened: OpenedRecordi
           {opened.client.file}
         </h1>
         <span class="unit">{opened.state.robot.value?.name}</span>
+        <button
+          type="button"
+          onClick={() => app.chooseSecond(opened.client.file)}
+          title="Shows a second recording beside this one: its lines are dashed, its robot is translucent (D)"
+        >
+          Compare with …
+        </button>
+        <button
+          type="button"
+          disabled={app.obstacleToContinue(opened) !== null}
+          onClick={() => void app.continueFrom(opened)}
+          title={
+            app.obstacleToContinue(opened) ??
+            'Computes the same run again up to the time cursor, bit for bit. It stands there, and you drive on. The simulation that is live now ends.'
+          }
+        >
+          Continue from here
+        </button>
         <span class="space" />
         <ExportTools opened={opened} />
       </div>
-      <Bands opened={opened} />
+      <RecordingBands opened={opened} />
       <div class={opened.recording.has_path ? 'live recorded' : 'live recorded no-path'}>
         <PlaybackControls app={opened} />
         <div class="live-main">
@@ -80,7 +100,7 @@ export function RecordingsPage({ app: page }: { app: PageApp }) {
   recordings ??= new RecordingsApp(page);
   const app = recordings;
   const opened = app.opened.value;
-  if (opened !== null) {
+  if (opened !== null && app.comparing.value === null) {
     return <OpenedView key={opened.client.file} app={app} opened={opened} />;
   }
   return app.opening.value !== null ? <p class="wait">Opening {app.opening.value} …</p> : <RecordingList app={app} />;

@@ -33,8 +33,10 @@ export class RobotScene {
   private path: HeadPath | null = null;
   private model: RobotModel | null = null;
   private ghost: RobotModel | null = null;
+  private ghostPath: HeadPath | null = null;
   private pulled: { drag: JointDrag; sense: number } | null = null;
   private run = -1;
+  private lastMove: number | null = null;
   private hasWholePath = false;
   private width = 1;
   private height = 1;
@@ -92,27 +94,19 @@ export class RobotScene {
     this.model?.setTheme(isDark);
     this.ghost?.setTheme(isDark);
     this.path?.setColour(colour.path);
+    this.ghostPath?.setColour(colour.ghost);
     this.makeGrid();
     this.isDirty = true;
   }
 
   setRobot(robot: RobotDocument): void {
-    for (const old of [this.model, this.ghost]) {
-      if (old !== null) {
-        this.scene.remove(old.group);
-        old.dispose();
-      }
-    }
-    if (this.path !== null) {
-      this.scene.remove(this.path.line);
-    }
+    this.remove(this.model, this.path);
     this.hasWholePath = false;
     this.model = new RobotModel(robot, this.isDark);
-    this.ghost = new RobotModel(robot, this.isDark, true);
-    this.ghost.group.visible = false;
     this.path = new HeadPath(this.model.length / 200);
     this.path.setColour(colours(this.isDark).path);
-    this.scene.add(this.model.group, this.ghost.group, this.path.line);
+    this.scene.add(this.model.group, this.path.line);
+    this.setGhost(robot);
     const reach = this.model.length * 0.9 + 0.2;
     Object.assign(this.sun.shadow.camera, { left: -reach, right: reach, top: reach, bottom: -reach, near: 0.1, far: 8 * reach });
     this.sun.shadow.camera.updateProjectionMatrix();
@@ -120,14 +114,35 @@ export class RobotScene {
     this.resetView();
   }
 
+  // It is not seen until a pose has it.
+  setGhost(robot: RobotDocument): void {
+    this.remove(this.ghost, this.ghostPath);
+    this.ghost = new RobotModel(robot, this.isDark, true);
+    this.ghost.group.visible = false;
+    this.ghostPath = new HeadPath(this.ghost.length / 200);
+    this.ghostPath.setColour(colours(this.isDark).ghost);
+    this.scene.add(this.ghost.group, this.ghostPath.line);
+    this.isDirty = true;
+  }
+
+  private remove(model: RobotModel | null, path: HeadPath | null): void {
+    if (model !== null) {
+      this.scene.remove(model.group);
+      model.dispose();
+    }
+    if (path !== null) {
+      this.scene.remove(path.line);
+    }
+  }
+
   setPose(pose: ScenePose): void {
     if (this.model === null || this.path === null) {
       return;
     }
-    this.place(this.model, pose, pose.angles, pose.contacts);
+    this.place(this.model, pose.head, pose.angles, pose.contacts);
     if (this.ghost !== null) {
       this.ghost.group.visible = pose.ghost !== null;
-      if (pose.ghost !== null) this.place(this.ghost, pose, pose.ghost, []);
+      if (pose.ghost !== null) this.place(this.ghost, pose.ghostHead ?? pose.head, pose.ghost, []);
     }
     if (!this.hasWholePath) {
       this.growPath(this.path, pose);
@@ -136,16 +151,21 @@ export class RobotScene {
   }
 
   // The path of a recording, which does not grow.
-  setPath(heads: Float64Array): void {
-    this.hasWholePath = true;
-    this.path?.clear();
-    for (let at = 0; this.model !== null && at + 7 <= heads.length; at += 7) {
-      this.path?.add(this.model.headCentre(poseFromArray([...heads.subarray(at, at + 7)])));
+  setPath(heads: Float64Array, isOfGhost: boolean): void {
+    const [model, path] = isOfGhost ? [this.ghost, this.ghostPath] : [this.model, this.path];
+    this.hasWholePath ||= !isOfGhost;
+    path?.clear();
+    for (let at = 0; model !== null && at + 7 <= heads.length; at += 7) {
+      if (Number.isNaN(heads[at])) {
+        path?.cut();
+      } else {
+        path?.add(model.headCentre(poseFromArray([...heads.subarray(at, at + 7)])));
+      }
     }
     this.isDirty = true;
   }
 
-  private place(model: RobotModel, { head }: ScenePose, angles: ArrayLike<number>, contacts: ArrayLike<number>): void {
+  private place(model: RobotModel, head: Float64Array | null, angles: ArrayLike<number>, contacts: ArrayLike<number>): void {
     if (head === null) {
       model.rest(angles, contacts);
     } else {
@@ -284,6 +304,10 @@ export class RobotScene {
     if (pose.run !== this.run) {
       this.run = pose.run;
       path.clear();
+    }
+    if (pose.lastMove !== null && pose.lastMove !== this.lastMove) {
+      this.lastMove = pose.lastMove;
+      path.cut();
     }
     if (pose.isLive && this.model !== null) {
       path.add(this.model.head);

@@ -5,18 +5,21 @@ import type { RobotDocument } from '../wire/messages.js';
 export interface ScenePose {
   angles: Float32Array; // radians
   head: Float64Array | null; // x, y, z in metres, then the quaternion w, x, y, z; null: not known
-  ghost: Float32Array | null; // angles of the simulation beside the robot, radians
+  ghost: Float32Array | null; // angles of the simulation beside the robot, or of a second recording, radians
+  ghostHead?: Float64Array | null; // of a second recording; not there: the ghost has the same head
   contacts: Int32Array; // of each link: bit 0 rear, bit 1 front
   run: number;
   isLive: boolean; // only then the path grows
+  lastMove: number | null; // tick of the last move by hand before: another one cuts the path
 }
 
 export type ToScene =
   | { kind: 'start'; canvas: OffscreenCanvas; isDark: boolean }
   | { kind: 'size'; width: number; height: number; ratio: number } // CSS pixels; device pixels for each of them
   | { kind: 'robot'; robot: RobotDocument }
+  | { kind: 'ghost'; robot: RobotDocument } // the ghost is this robot, with a path of its own
   | { kind: 'pose'; pose: ScenePose }
-  | { kind: 'path'; heads: Float64Array } // the whole path: of each point as `head` of a pose
+  | { kind: 'path'; heads: Float64Array; isOfGhost: boolean } // the whole path: of each point as `head` of a pose; NaN: a cut
   | { kind: 'theme'; isDark: boolean }
   | { kind: 'highlight'; joint: number | null }
   | { kind: 'turn'; right: number; down: number } // pixels

@@ -44,10 +44,12 @@ function apply(view: RobotScene, message: Exclude<ToScene, { kind: 'start' }>): 
       return view.setSize(message.width, message.height, message.ratio);
     case 'robot':
       return view.setRobot(message.robot);
+    case 'ghost':
+      return view.setGhost(message.robot);
     case 'pose':
       return view.setPose(message.pose);
     case 'path':
-      return view.setPath(message.heads);
+      return view.setPath(message.heads, message.isOfGhost);
     case 'theme':
       return view.setTheme(message.isDark);
     case 'highlight':

@@ -64,6 +64,8 @@ export class PageState {
     const session = this.session.value;
     return session?.kind === 'bus' ? session : null;
   });
+  // There are only recordings, and no robot until one of them is continued.
+  readonly isAlone = computed(() => this.recordings.value?.alone === true && this.robot.value === null);
   // Whether this viewer drives.
   readonly isHolder = computed(
     () => this.client.value !== null && this.control.value?.holder?.client === this.client.value,

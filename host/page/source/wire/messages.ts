@@ -88,6 +88,16 @@ export interface RecordingsDocument {
   alone: boolean; // there is no robot
 }
 
+// The value of `recording.compare`: the set-points of two recordings in the ticks that both have.
+export interface RunComparison {
+  first_tick: number;
+  last_tick: number;
+  compared: number; // ticks, until now
+  difference: { tick: number; joint: string } | null; // the first one
+  damage: string | null; // why it cannot go on
+  head_m: [number | null, number | null]; // how far each head moved
+}
+
 // A file of `recording.list`. What was not read yet, or cannot be read, is missing.
 export interface RecordedFile {
   name: string;
@@ -104,7 +114,7 @@ export interface RecordedFile {
 }
 
 export interface Mark {
-  kind: 'change' | 'fault' | 'restart';
+  kind: 'change' | 'fault' | 'restart' | 'move' | 'loss';
   tick: number;
   text: string;
 }
@@ -153,6 +163,8 @@ export interface SimulationSession extends CommonSession {
   set: 'A' | 'B';
   head?: [number, number, number, number, number, number, number]; // now: x, y, z, then the quaternion w, x, y, z
   moved?: boolean; // by hand, since the last tick
+  last_move?: number | null; // tick of the last move by hand
+  repeats?: { file: string; tick: number } | null; // the recording that is computed again, up to this tick
   measures?: Record<string, number>;
 }
 
@@ -326,6 +338,8 @@ export interface Operations {
   'recording.list': Record<string, never>;
   'recording.open': { file: string };
   'recording.rows': { file: string; signals: readonly string[]; from: number; to: number; points: number };
+  'recording.compare': { file: string; with: string };
+  continue: { file: string; tick: number };
   power: { on: boolean };
   pose: { angles: (number | null)[]; speed: number };
   scan: Record<string, never>;

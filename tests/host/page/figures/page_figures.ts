@@ -6,6 +6,7 @@ import { besideSimulation, stalledViewer } from './daemon.js';
 import { drawing } from './drawing.js';
 import { describeMachine, machineText } from './machine.js';
 import { summarise, summaryText, type Summary } from './report.js';
+import { seek } from './seek.js';
 import { soak } from './soak.js';
 import { sizes, start } from './start.js';
 import { bytes, intake } from './telemetry.js';
@@ -20,6 +21,7 @@ const measurements: Record<string, Measurement> = {
   stalled: stalledViewer,
   start,
   sizes,
+  seek,
   daemon: besideSimulation,
   soak,
 };

@@ -204,6 +204,31 @@ TEST_F(RecordedRunTest, ShowsTheRobotAndTheChangesThatTheFileHas) {
   EXPECT_EQ(documents["recording"]["marks"][0]["kind"], "change");
 }
 
+TEST_F(RecordedRunTest, MarksMovesByHandAndLostFrames) {
+  advance(4);
+  live_.move("1,0.5,0.1,30");
+  advance(400);
+  live_.end_recording();
+  {
+    // As a run with lost frames has them.
+    Database database(path_, SQLITE_OPEN_READWRITE);
+    database.execute("INSERT INTO loss VALUES(100, 0, 0, 1), (100, 0, 0, 2), (101, 3, 0, 1), (300, 0, 0, 1)");
+  }
+  const nlohmann::json marks = RecordedRun(path_).documents()["recording"]["marks"];
+  ASSERT_EQ(marks.size(), 3U) << marks;
+  EXPECT_EQ(marks[0], nlohmann::json({{"kind", "move"}, {"tick", 4}, {"text", "moved by hand"}}));
+  // 404 ticks in at most 200 parts: 3 ticks each.
+  EXPECT_EQ(marks[1], nlohmann::json({{"kind", "loss"}, {"tick", 100}, {"text", "3 frames lost from here on"}}));
+  EXPECT_EQ(marks[2], nlohmann::json({{"kind", "loss"}, {"tick", 300}, {"text", "1 frame lost from here on"}}));
+}
+
+TEST_F(RecordedRunTest, ARecordingOfAnOlderProgramHasNoMoves) {
+  advance(5);
+  live_.end_recording();
+  Database(path_, SQLITE_OPEN_READWRITE).execute("DROP TABLE move");
+  EXPECT_TRUE(RecordedRun(path_).documents()["recording"]["marks"].empty());
+}
+
 TEST_F(RecordedRunTest, SaysInOneLineWhatIsWrongWithAFile) {
   advance(300);
   live_.end_recording();

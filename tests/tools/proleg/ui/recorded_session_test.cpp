@@ -85,14 +85,13 @@ class RecordedSessionTest : public ::testing::Test {
     session_.emplace(RecordedSessionOptions{folder_.path(), std::move(file), true}, requests_, viewers_);
   }
   RecordingViewers::Answer ask(const std::string& name, const json& arguments = json::object()) {
-    router_.operate({++request_, name, arguments, 1, "a test"});
+    requests_.operate({++request_, name, arguments, 1, "a test"});
     return viewers_.wait_for(request_);
   }
 
   TemporaryFolder folder_;
   RecordingViewers viewers_;
   host::SessionRequests requests_;
-  SessionRouter router_{requests_, nullptr};
   std::uint64_t request_ = 0;
   std::optional<RecordedSession> session_;
 };
@@ -136,7 +135,9 @@ TEST_F(RecordedSessionTest, OutlivesFilesAndRequestsThatAreWrong) {
       {"recording.rows", {{"file", "run.proleg"}, {"signals", {"angle"}}, {"from", -1}}},
       {"recording.rows", {{"file", "run.proleg"}, {"signals", {"angle"}}, {"from", 1.5}}},
       {"recording.rows", {{"file", "run.proleg"}, {"signals", {"angle"}}, {"to", 4294967296}}},
-      {"recording.rows", {{"file", "run.proleg"}, {"signals", {"angle"}}, {"points", 1000000}}}};
+      {"recording.rows", {{"file", "run.proleg"}, {"signals", {"angle"}}, {"points", 1000000}}},
+      {"recording.compare", {{"file", "run.proleg"}}},
+      {"recording.compare", {{"file", "run.proleg"}, {"with", "broken.proleg"}}}};
   for (const auto& [name, arguments] : operations) {
     const RecordingViewers::Answer answer = ask(name, arguments);
     EXPECT_FALSE(answer.is_done) << name << arguments;
@@ -170,16 +171,39 @@ TEST_F(RecordedSessionTest, ShowsTheNewFileAfterOneWasReplaced) {
   EXPECT_EQ(ask("recording.open", {{"file", "run.proleg"}}).value["recording"]["last_tick"], 29);
 }
 
-TEST_F(RecordedSessionTest, HasNothingToStop) {
+TEST_F(RecordedSessionTest, ComparesTwoRecordingsWhileNobodyAsksForMore) {
+  record("a.proleg", 400);
+  record("b.proleg", 300);
   begin();
-  router_.stop({++request_, "a test"});
-  EXPECT_EQ(viewers_.wait_for(request_).value, "0 of 0");
+  const json pair{{"file", "a.proleg"}, {"with", "b.proleg"}};
+  json document;
+  for (int asked = 0; asked < 10'000 && document["compared"] != 300; ++asked) {
+    const RecordingViewers::Answer answer = ask("recording.compare", pair);
+    ASSERT_TRUE(answer.is_done) << answer.error;
+    document = answer.value;
+  }
+  EXPECT_EQ(document["compared"], 300);
+  EXPECT_TRUE(document["difference"].is_null());
+}
+
+TEST_F(RecordedSessionTest, ForgetsAComparisonWithAFileThatItCloses) {
+  for (std::size_t file = 0; file < RecordedSession::max_open_runs + 3; ++file) {
+    record(std::to_string(file) + ".proleg", 5);
+  }
+  begin();
+  for (int round = 0; round < 2; ++round) {
+    for (std::size_t file = 1; file < RecordedSession::max_open_runs + 3; ++file) {
+      const RecordingViewers::Answer answer =
+          ask("recording.compare", {{"file", "0.proleg"}, {"with", std::to_string(file) + ".proleg"}});
+      ASSERT_TRUE(answer.is_done) << answer.error;
+    }
+  }
 }
 
 TEST(SessionRouter, RobotAndRecordingsGetTheirOwn) {
   host::SessionRequests recordings;
   host::SessionRequests robot;
-  SessionRouter router(recordings, &robot);
+  SessionRouter router(recordings, robot);
   router.operate({1, "recording.list", json::object(), 1, "a test"});
   router.operate({2, "set", json::object(), 1, "a test"});
   router.holder_changed(true, false);

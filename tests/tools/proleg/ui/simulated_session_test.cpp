@@ -7,6 +7,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "shared/computer/sqlite/sqlite.hpp"
 #include "shipped.hpp"
 #include "sim/record/recording.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -85,6 +86,9 @@ class Viewers final : public host::SessionOutput {
   void wait_for_tick(std::uint32_t tick) {
     when([&] { return rows_ > 0 && last_tick_ >= tick; }, [] { return 0; });
   }
+  std::string notices() {
+    return when([] { return true; }, [&] { return notices_; });
+  }
   std::uint64_t rows() {
     return when([] { return true; }, [&] { return rows_; });
   }
@@ -108,12 +112,43 @@ class Viewers final : public host::SessionOutput {
 class SimulatedSessionTest : public ::testing::Test {
  protected:
   void open(bool starts_paused) {
+    open(std::make_unique<LiveSimulation>(scenario_, std::vector<std::string>{}, nullptr), starts_paused);
+  }
+  /// live: null: there is no simulation.
+  void open(std::unique_ptr<LiveSimulation> live, bool starts_paused) {
     session_.reset();
     requests_.emplace();
-    session_.emplace(scenario_, nullptr,
-                     SimulatedSessionOptions{
-                         folder_ / "", "proleg simulate uniform.simulation.xml", {}, false, "test", starts_paused},
-                     *requests_, viewers_);
+    session_.emplace(
+        std::move(live),
+        SimulatedSessionOptions{folder_ / "", "proleg simulate uniform.simulation.xml", false, "test", starts_paused},
+        *requests_, viewers_);
+  }
+  /// A run with changes of all kinds.
+  void record_run(const std::string& name, std::uint32_t ticks) {
+    open(true);
+    ask("factor", {{"value", 0}});
+    EXPECT_TRUE(ask("set", {{"words", {"amplitude:J3=25"}}}).is_done);  // a change at tick 0
+    EXPECT_TRUE(ask("record", {{"file", name}}).is_done);
+    step_to(50);
+    EXPECT_TRUE(ask("set", {{"words", {"amplitude:J2=30", "current_phase:J1=90"}}}).is_done);
+    step_to(80);
+    EXPECT_TRUE(ask("move", {{"position", {0.5, 0.25, 0.125}}, {"turn", 30}}).is_done);
+    step_to(ticks);
+    EXPECT_TRUE(ask("record", {{"file", nullptr}}).is_done);
+  }
+  void step_to(std::uint32_t tick) {
+    const json session = viewers_.session([](const json& document) { return document.contains("tick"); });
+    ask("step", {{"ticks", tick - session["tick"].get<std::uint32_t>()}});
+    viewers_.session([&](const json& document) { return document["tick"] == tick; });
+  }
+  /// When it stands at the tick of the recording.
+  void wait_for_continued(std::uint32_t tick) {
+    viewers_.session([&](const json& document) {
+      return document["tick"] == tick + 1 && document["repeats"].is_null() && document["state"] == "paused";
+    });
+  }
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> results(const std::string& name) const {
+    return sim::Recording(folder_ / name).results();
   }
   Viewers::Answer ask(const std::string& name, const json& arguments = json::object()) {
     requests_->operate({++request_, name, arguments, 1, "a test"});
@@ -258,6 +293,7 @@ TEST_F(SimulatedSessionTest, MovesAPausedRobotAndRepeatsItInTheCommand) {
   EXPECT_NEAR(session["head"][2].get<double>(), 0.125, 1e-9);
   EXPECT_TRUE(ask("step", {{"ticks", 5}}).is_done);
   viewers_.session([](const json& document) { return document["tick"] == 10 && document["moved"] == false; });
+  EXPECT_EQ(viewers_.document("session")["last_move"], 5);
   EXPECT_EQ(json::parse(ask("command_line").text)["text"],
             "proleg simulate uniform.simulation.xml --move 0.5,0.25,0.125,30@5 --seconds 0.1");
 }
@@ -270,6 +306,128 @@ TEST_F(SimulatedSessionTest, RefusesToMoveARobotThatRunsOrToABadPlace) {
   EXPECT_TRUE(ask("run").is_done);
   EXPECT_EQ(ask("move", {{"position", {0, 0, 0.1}}}).text,
             "move: found a simulation that is not paused, expected a paused one");
+}
+
+TEST_F(SimulatedSessionTest, ContinuesARecordingBitForBit) {
+  record_run("run.proleg", 300);
+  for (const std::uint32_t tick : {0U, 79U, 80U, 120U, 299U}) {
+    SCOPED_TRACE(tick);
+    open(nullptr, false);
+    const Viewers::Answer answer = ask("continue", {{"file", "run.proleg"}, {"tick", tick}});
+    ASSERT_TRUE(answer.is_done) << answer.text;
+    wait_for_continued(tick);
+    EXPECT_EQ(viewers_.document("robot")["joints"].size(), 5U);
+    EXPECT_NE(viewers_.notices().find("bit for bit"), std::string::npos) << viewers_.notices();
+    if (tick < 80) {
+      // What was done later is left out.
+      continue;
+    }
+    const std::string again = "again" + std::to_string(tick) + ".proleg";
+    EXPECT_TRUE(ask("record", {{"file", again}}).is_done);
+    if (tick < 299) {
+      step_to(300);
+    }
+    EXPECT_TRUE(ask("record", {{"file", nullptr}}).is_done);
+    EXPECT_EQ(results(again), results("run.proleg"));
+  }
+}
+
+TEST_F(SimulatedSessionTest, AContinuedRunIsDrivenAsAnyOther) {
+  record_run("run.proleg", 100);
+  open(true);  // beside a simulation, which it replaces
+  const json before = viewers_.session([](const json& document) { return document["tick"] == 0; });
+  EXPECT_TRUE(ask("continue", {{"file", "run.proleg"}, {"tick", 60}}).is_done);
+  wait_for_continued(60);
+  EXPECT_NE(viewers_.document("session")["run"], before["run"]);
+  EXPECT_EQ(ask("set", {{"words", {"amplitude=10"}}}).text, R"({"tick":61})");
+  step_to(70);
+  // The file has amplitudes of its own; J3 and J2 have the recorded changes, then all the new one.
+  const std::string command = json::parse(ask("command_line").text)["text"];
+  EXPECT_NE(command.find("uniform.simulation.xml --set 1.amplitude:J3=25@0 "), std::string::npos) << command;
+  EXPECT_NE(command.find("--set 1.amplitude:J2=30@50"), std::string::npos) << command;
+  EXPECT_NE(command.find("--set 1.amplitude=10@61"), std::string::npos) << command;
+  EXPECT_EQ(command.find("--move"), std::string::npos) << command;
+  EXPECT_FALSE(ask("file.diff").is_done);
+  EXPECT_TRUE(ask("restart").is_done);
+  viewers_.session([](const json& document) { return document["tick"] == 0; });
+}
+
+TEST_F(SimulatedSessionTest, ContinuesWithTheFramesThatWereLost) {
+  const sim::Losses losses(sim::RandomLosses{7, 1U << 29U, 10, 200});
+  const sim::Scenario coupled = sim::shipped("travelling_wave/coupled");
+  LiveSimulation live(coupled, {}, &losses);
+  ASSERT_TRUE(live.record(folder_ / "lossy.proleg", "simulate", "test", [] { return true; }));
+  while (live.simulation().tick() < 250) {
+    live.advance();
+  }
+  live.end_recording();
+  open(nullptr, true);
+  EXPECT_TRUE(ask("continue", {{"file", "lossy.proleg"}, {"tick", 100}}).is_done);
+  wait_for_continued(100);
+  EXPECT_TRUE(ask("record", {{"file", "again.proleg"}}).is_done);
+  step_to(250);
+  EXPECT_TRUE(ask("record", {{"file", nullptr}}).is_done);
+  EXPECT_EQ(results("again.proleg"), results("lossy.proleg"));
+  EXPECT_FALSE(ask("command_line").is_done);  // it would give another run
+}
+
+TEST_F(SimulatedSessionTest, SaysFromWhichTickOnARecordingIsNotItsOwn) {
+  record_run("run.proleg", 100);
+  Database(folder_ / "run.proleg", SQLITE_OPEN_READWRITE)
+      .execute("UPDATE sample SET setpoint_raw = setpoint_raw + 1 WHERE tick = 30 AND joint = 2");
+  open(nullptr, true);
+  EXPECT_TRUE(ask("continue", {{"file", "run.proleg"}, {"tick", 60}}).is_done);
+  wait_for_continued(60);
+  EXPECT_NE(viewers_.notices().find("from tick 30 on"), std::string::npos) << viewers_.notices();
+}
+
+TEST_F(SimulatedSessionTest, StaysWhereARecordingIsDamaged) {
+  record_run("run.proleg", 600);
+  Database(folder_ / "run.proleg", SQLITE_OPEN_READWRITE).execute("DELETE FROM pose WHERE tick = 400");
+  open(nullptr, true);
+  EXPECT_TRUE(ask("continue", {{"file", "run.proleg"}, {"tick", 500}}).is_done);
+  const json session = viewers_.session(
+      [](const json& document) { return document["state"] == "paused" && document["repeats"].is_null(); });
+  EXPECT_LE(session["tick"], 401);
+  EXPECT_NE(viewers_.notices().find("run.proleg: found "), std::string::npos) << viewers_.notices();
+  EXPECT_TRUE(ask("run").is_done);
+}
+
+TEST_F(SimulatedSessionTest, RefusesToContinueWhatIsNoSimulation) {
+  record_run("run.proleg", 100);
+  record_run("robot.proleg", 100);
+  Database(folder_ / "robot.proleg", SQLITE_OPEN_READWRITE)
+      .execute("UPDATE run SET value = 'drive' WHERE key = 'program'");
+  open(true);
+  const std::pair<json, const char*> refusals[] = {
+      {{{"file", "robot.proleg"}, {"tick", 5}},
+       "robot.proleg: found a recording of 'drive', whose robot had modules, expected a recording of a simulation: "
+       "only "
+       "that can be computed again"},
+      {{{"file", "run.proleg"}, {"tick", 100}}, "run.proleg: found tick 100, expected 0 to 99"},
+      {{{"file", "run.proleg"}}, "tick: found none, expected a tick of the recording"},
+      {{{"file", "run.proleg"}, {"tick", -1}}, "tick: found -1, expected a tick of the recording"}};
+  for (const auto& [arguments, text] : refusals) {
+    EXPECT_EQ(ask("continue", arguments).text, text);
+  }
+  EXPECT_FALSE(ask("continue", {{"file", "../run.proleg"}, {"tick", 5}}).is_done);
+  step_to(5);  // the simulation is still there
+}
+
+TEST_F(SimulatedSessionTest, NothingDisturbsTheTicksThatAreComputedAgainButAStop) {
+  record_run("run.proleg", 1000);
+  open(nullptr, true);
+  EXPECT_EQ(stop().text, "0 of 0");
+  EXPECT_EQ(ask("run").text, "there is no simulation; continue one from a recording");
+  EXPECT_TRUE(ask("ping").is_done);
+  requests_->operate({++request_, "continue", {{"file", "run.proleg"}, {"tick", 999}}, 1, "a test"});
+  EXPECT_EQ(ask("set", {{"words", {"amplitude=10"}}}).text,
+            "the run of run.proleg is computed again; wait, or pause it");
+  EXPECT_EQ(stop().text, "5 of 5");
+  const json stopped = viewers_.state("stopped");
+  EXPECT_LT(stopped["tick"], 1000);
+  EXPECT_TRUE(stopped["repeats"].is_null());
+  EXPECT_TRUE(ask("run").is_done);
 }
 
 }  // namespace

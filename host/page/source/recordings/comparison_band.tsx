@@ -1,0 +1,28 @@
+// What two recordings have in common, in one line; and the way back to one.
+import type { OpenedRecording } from './opened_recording.js';
+import { comparisonText, wayText } from './compared_recording.js';
+
+export function ComparisonBand({ opened }: { opened: OpenedRecording }) {
+  const compared = opened.compared.value;
+  if (compared === null) {
+    return null;
+  }
+  const { failure } = compared;
+  const comparison = compared.comparison.value;
+  const { difference } = comparison;
+  return (
+    <div class={`band ${failure === null ? 'info' : 'lost'} comparison`} role="status" data-testid="comparison">
+      <span>
+        <strong>{compared.name}</strong> (dashed, <i class="mark ghost" /> translucent): {failure ?? `${comparisonText(comparison)}; ${wayText(comparison)}`}
+      </span>
+      {difference !== null && (
+        <button type="button" onClick={() => opened.time.pick(difference.tick)} title="The time cursor goes to the first difference">
+          To tick {difference.tick}
+        </button>
+      )}
+      <button type="button" onClick={() => (opened.compared.value = null)} title="Ends the comparison (D)">
+        End
+      </button>
+    </div>
+  );
+}

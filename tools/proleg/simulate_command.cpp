@@ -1,0 +1,45 @@
+#include "tools/proleg/simulate_command.hpp"
+
+#include <optional>
+#include <utility>
+
+namespace proleg::tools {
+namespace {
+
+/// In quotes for a shell, if it needs them.
+std::string shell_word(const std::string& word) {
+  constexpr const char* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=,@%+";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) {
+    return word;
+  }
+  std::string quoted = "'";
+  for (const char character : word) {
+    quoted += character == '\'' ? std::string("'\\''") : std::string(1, character);
+  }
+  return quoted + "'";
+}
+
+}  // namespace
+
+std::string simulate_command(const std::string& file, const sim::OverrideWords& overrides,
+                             const std::vector<std::string>& settings, const std::vector<std::string>& moves) {
+  std::string command = "proleg simulate " + shell_word(file);
+  const std::pair<const char*, const std::optional<std::string>&> words[] = {{"--seed", overrides.seed},
+                                                                             {"--friction", overrides.friction},
+                                                                             {"--at", overrides.at},
+                                                                             {"--heading", overrides.heading}};
+  for (const auto& [option, value] : words) {
+    if (value) {
+      command += std::string(" ") + option + ' ' + shell_word(*value);
+    }
+  }
+  for (const std::string& word : settings) {
+    command += " --set " + shell_word(word);
+  }
+  for (const std::string& word : moves) {
+    command += " --move " + shell_word(word);
+  }
+  return command;
+}
+
+}  // namespace proleg::tools

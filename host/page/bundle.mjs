@@ -20,7 +20,21 @@ const largestPage = 220 * 1024;
 // Bytes of the player as it is in every exported recording.
 const largestPlayer = 800 * 1024;
 
-const common = { bundle: true, target: 'es2022', legalComments: 'none', logLevel: 'warning', absWorkingDir: room };
+// The shaders of three.js are texts, which the bundler leaves as they are: without their indents the page is smaller.
+const shaderIndents = {
+  name: 'shader indents',
+  setup: ({ onLoad }) =>
+    onLoad({ filter: /three\.module\.js$/ }, ({ path }) => ({ contents: readFileSync(path, 'utf8').replace(/\\n(\\t)+/g, '\\n') })),
+};
+
+const common = {
+  bundle: true,
+  target: 'es2022',
+  legalComments: 'none',
+  logLevel: 'warning',
+  absWorkingDir: room,
+  plugins: [shaderIndents],
+};
 
 async function bundlePage(folder) {
   rmSync(folder, { recursive: true, force: true });

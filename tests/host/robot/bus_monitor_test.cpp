@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "host/robot/sdo_queue.hpp"
 #include "live_bus.hpp"
 #include "shared/canopen/declared_objects.hpp"
 #include "shipped.hpp"
@@ -18,10 +19,11 @@ using host::MonitoredNode;
 class RequestCount final : public host::BusUser {
  public:
   explicit RequestCount(canopen::Address address) : address_(address) {}
+  void receive(Microseconds /*now*/, const CanFrame& /*frame*/) override {}
   void requested(Microseconds /*now*/, const CanFrame& frame) override {
     const bool is_request = canopen::identifier::base_of(frame.identifier) == canopen::identifier::sdo_request;
     const auto index = static_cast<std::uint16_t>(frame.data.at(1) | frame.data.at(2) << 8U);
-    count_ += is_request && index == address_.index && frame.data.at(3) == address_.subindex ? 1 : 0;
+    count_ += is_request && index == address_.index && frame.data.at(3) == address_.sub ? 1 : 0;
   }
   [[nodiscard]] unsigned count() const { return count_; }
 
@@ -79,14 +81,16 @@ TEST_F(BusMonitorTest, ReadsTheLimitAgainAfterTheRestartOfAModule) {
   monitor.read_limits_again();
   bus.run_for(3 * second);
   expect_limits(700, 2'000);
-  bus.send(canopen::encode(canopen::NmtCommand{1, canopen::NmtRequest::reset_node}));
+  bus.send(canopen::encode(canopen::NmtRequest{canopen::NmtCommand::reset_node, 1}));
   bus.run_for(3 * second);
   expect_limits(2'000, 2'000);
 }
 
 TEST_F(BusMonitorTest, FindsTheLimitsAlthoughFramesAreLost) {
+  bus.run_for(300'000);  // the modules have said that they are there
+  ASSERT_EQ(requests.count(), 0U);
   bus.lose(0.3, 1);
-  bus.run_for(30 * second);
+  bus.run_for(10 * second);
   expect_limits(2'000, 2'000);
 }
 

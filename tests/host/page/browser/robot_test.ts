@@ -178,5 +178,9 @@ describe('a robot on a bus', () => {
     await ui.viewer.waitForState('holding');
     await keyboard.press('Shift+O');
     await ui.viewer.waitForState('power off');
+    await keyboard.press('o');
+    await ui.viewer.waitForState('holding');
+    await keyboard.press('Space');
+    await assertStopped();
   });
 });

@@ -21,6 +21,7 @@ describe('STOP', () => {
     const tick = await ui.viewer.tick();
     await ui.viewer.run();
     await ui.viewer.waitForTick(tick + 20);
+    await ui.viewer.pause();
   });
 
   it('works by Esc, in a text field too', async () => {
@@ -45,6 +46,7 @@ describe('STOP', () => {
     await ui.viewer.waitForState('running');
     await ui.viewer.button(/^STOP/).click();
     await assertStopped();
+    await ui.viewer.button('Close').click();
   });
 
   it('works while the robot is paused', async () => {

@@ -40,8 +40,8 @@ TEST_F(BusDocumentTest, NamesTheJointOfAModuleAndNoneForAForeignNode) {
 
 TEST_F(BusDocumentTest, WhatIsNotKnownIsNull) {
   node.state = std::nullopt;
-  for (const char* name : {"state", "drive", "angle", "current", "current_limit", "temperature", "fault", "advice",
-                           "stop_confirmed"}) {
+  for (const char* name :
+       {"state", "drive", "angle", "current", "current_limit", "temperature", "fault", "advice", "stop_confirmed"}) {
     EXPECT_TRUE(module()[name].is_null()) << name;
   }
   node.measured = canopen::Monitoring{4, canopen::Monitoring::not_measured, 350, 31, 0};

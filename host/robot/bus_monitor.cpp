@@ -34,6 +34,10 @@ void BusMonitor::receive(Microseconds now, const CanFrame& frame) {
   MonitoredNode& node = nodes_.at(number);
   if (const auto heartbeat = canopen::decode_heartbeat(frame)) {
     node.state = heartbeat->state;
+    if (node.state == canopen::NmtState::boot_up) {
+      node.current_limit.reset();
+      has_limit_.reset(number);
+    }
   } else if (const auto emergency = canopen::decode_emergency(frame)) {
     if (emergency->code != canopen::EmergencyCode::none) {
       node.last_emergency = emergency;
@@ -74,7 +78,17 @@ void BusMonitor::read_values(Microseconds now) {
     readings_.read(node.node, canopen::object::statusword.address, [&node](const SdoResult& result) {
       node.statusword = result.is_good() ? std::optional(static_cast<std::uint16_t>(result.number())) : std::nullopt;
     });
+    if (!has_limit_.test(node.node)) {
+      read_limit(node);
+    }
   }
+}
+
+void BusMonitor::read_limit(MonitoredNode& node) {
+  readings_.read(node.node, canopen::object::current_limit.address, [this, &node](const SdoResult& result) {
+    has_limit_.set(node.node, result.abort_code != canopen::AbortCode::timeout);
+    node.current_limit = result.is_good() ? std::optional(static_cast<std::uint16_t>(result.number())) : std::nullopt;
+  });
 }
 
 void BusMonitor::poll(Microseconds now) {

@@ -3,6 +3,7 @@
 // What happens on the bus of a robot, for a person who watches: listens, and reads the set-points of the modules.
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -23,6 +24,7 @@ struct MonitoredNode {
   std::optional<std::int32_t> position;              ///< 0x6064: 90 degrees = 2^30; nothing: not measured
   std::optional<std::uint8_t> contacts;              ///< bits 0 to 3 as in the state frame
   std::optional<canopen::Emergency> last_emergency;  ///< the last one that was not the end of an error
+  std::optional<std::uint16_t> current_limit;        ///< 0x200A:1, mA; 0: off; nothing: not known
   Microseconds last_heard = 0;
 };
 
@@ -37,6 +39,8 @@ class BusMonitor final : public BusUser {
 
   /// Whether it reads values from the modules; true at first. Without them it only listens.
   void set_reads(bool reads) { reads_ = reads; }
+  /// Limits are read once from each module, and again after its restart. After this call, all of them again.
+  void read_limits_again() { has_limit_.reset(); }
 
   [[nodiscard]] std::vector<MonitoredNode> nodes() const;
   /// Whether a host has sent a heartbeat in the last half second.
@@ -58,9 +62,11 @@ class BusMonitor final : public BusUser {
  private:
   void count(const CanFrame& frame);
   void read_values(Microseconds now);
+  void read_limit(MonitoredNode& node);
 
   SdoQueue readings_;
   std::array<MonitoredNode, canopen::host_node> nodes_{};
+  std::bitset<canopen::host_node> has_limit_;  ///< by node: it has answered, also that it has none
   bool reads_ = true;
   Microseconds host_heard_ = 0;
   Microseconds next_reading_ = 0;

@@ -47,6 +47,7 @@ json module_json(const sim::Scenario& scenario, const BusView& view, const host:
       {"drive", statusword ? json(host::drive_text(*statusword)) : json()},
       {"angle", or_null(angle_of(node))},
       {"current", node.measured ? json(node.measured->current_ma) : json()},
+      {"current_limit", or_null(node.current_limit)},
       {"temperature", node.measured ? json(node.measured->temperature_c) : json()},
       {"fault", nullptr},
       {"advice", nullptr},

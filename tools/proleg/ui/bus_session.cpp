@@ -326,6 +326,7 @@ json BusSession::scan(const json& /*arguments*/) {
   if (!scan_) {
     begin_scan();
   }
+  monitor_.read_limits_again();
   return json::object();
 }
 

@@ -2,6 +2,7 @@
 import { useEffect, useRef } from 'preact/hooks';
 import { onFrame } from '../frame_clock.js';
 import type { RobotView } from '../robot_view.js';
+import { currentLimitOf, currentState } from '../state/module_text.js';
 import type { Joint } from '../wire/messages.js';
 import { areComing, comparedValueOf, contactText, numberText, valueOf } from './joint_values.js';
 import { ModuleCell } from './module_state.js';
@@ -87,7 +88,14 @@ const angleOnBus: JointColumn = {
   },
 };
 
-const onBus = [setpoint, angleOnBus, lag, measured('current', 'mA', 'current', 0), contacts];
+const currentOnBus: JointColumn = {
+  title: 'current',
+  unit: 'mA',
+  help: 'Measured by the module, against its limit. Too much for too long is a fault: the joint goes limp.',
+  read: (app, joint, row) => currentState(valueOf(app, 'current', joint, row), currentLimitOf(app.state.bus.peek(), joint)),
+};
+
+const onBus = [setpoint, angleOnBus, lag, currentOnBus, contacts];
 
 // Past Preact: 60 rows of text ten times a second.
 function write(element: HTMLTableRowElement, values: readonly CellText[]): void {

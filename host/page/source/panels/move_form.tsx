@@ -5,29 +5,48 @@ import { formatNumber, parseNumber } from '../state/parameter_values.js';
 
 const decimals = 4; // of metres
 
+type Field = 'x' | 'y' | 'z' | 'turn';
+
 export function MoveForm({ mover }: { mover: MoveTool }) {
   const problem = useSignal<string | null>(null);
+  // What is typed stays until the robot is there: the program says several times a second where the head is.
+  const typed = useSignal<Partial<Record<Field, string>>>({});
   const head = mover.head ?? [0, 0, 0];
-  const submit = (event: SubmitEvent) => {
+  const shown: Record<Field, string> = {
+    x: formatNumber(head[0], decimals),
+    y: formatNumber(head[1], decimals),
+    z: formatNumber(head[2], decimals),
+    turn: '0',
+    ...typed.value,
+  };
+  const input = (name: Field, size: number, title?: string) => (
+    <input
+      type="text"
+      inputMode="decimal"
+      name={name}
+      size={size}
+      title={title}
+      value={shown[name]}
+      onInput={(event) => (typed.value = { ...typed.peek(), [name]: event.currentTarget.value })}
+    />
+  );
+  const submit = async (event: SubmitEvent) => {
     event.preventDefault();
-    const fields = new FormData(event.currentTarget as HTMLFormElement);
-    const typed = ['x', 'y', 'z', 'turn'].map((name) => parseNumber(String(fields.get(name) ?? '')));
-    problem.value = typed.find((value) => typeof value === 'string') ?? null;
+    const place = (['x', 'y', 'z', 'turn'] as const).map((name) => parseNumber(shown[name]));
+    problem.value = place.find((value) => typeof value === 'string') ?? null;
     if (problem.value === null) {
-      const [x, y, z, turn] = typed as [number, number, number, number];
-      void mover.moveTo({ position: [x, y, z], turn });
+      const [x, y, z, turn] = place as [number, number, number, number];
+      if (await mover.moveTo({ position: [x, y, z], turn })) typed.value = {};
     }
   };
   return (
-    <form class="move-form" onSubmit={submit} aria-label="Place of the head">
-      {['x', 'y', 'z'].map((axis, i) => (
+    <form class="move-form" onSubmit={(event) => void submit(event)} aria-label="Place of the head">
+      {(['x', 'y', 'z'] as const).map((axis) => (
         <label key={axis}>
-          {axis} <input type="text" inputMode="decimal" name={axis} size={7} value={formatNumber(head[i] ?? 0, decimals)} /> m
+          {axis} {input(axis, 7)} m
         </label>
       ))}
-      <label>
-        turn <input type="text" inputMode="decimal" name="turn" size={4} value="0" title="To the left, about the vertical" />°
-      </label>
+      <label>turn {input('turn', 4, 'To the left, about the vertical')}°</label>
       <button type="submit">Put there</button>
       <p class="hint">Drag the robot; with Shift its height, with Ctrl its heading. Arrow keys, Page Up and Down do the same.</p>
       {problem.value !== null && (

@@ -135,47 +135,49 @@ export function RemoteBindingTable({ app, remote }: { app: PageApp; remote: Remo
   const isHolder = app.state.isHolder.value;
   const { operations } = app;
   return (
-    <table class="bindings" data-testid="bindings">
-      <thead>
-        <tr>
-          <th scope="col">Element</th>
-          <th scope="col">Does</th>
-          <th scope="col">How</th>
-          <th scope="col" aria-label="Remove" />
-        </tr>
-      </thead>
-      <tbody>
-        {remote.bindings.map((binding, place) => {
-          const change: Change = (changed) => operations.tell('remote.bind', { place, binding: changed });
-          return (
-            <tr key={place}>
-              <th scope="row" title={binding.device}>
-                {binding.element}
-                <span class="unit">{binding.device}</span>
-              </th>
-              <td>
-                <Target app={app} binding={binding} change={change} isEnabled={isHolder} />
-              </td>
-              <td>
-                {binding.action === undefined && (
-                  <ParameterFields app={app} binding={binding} place={place} change={change} isEnabled={isHolder} />
-                )}
-              </td>
-              <td>
-                <button
-                  type="button"
-                  class="icon-button"
-                  aria-label={`Remove the binding of ${binding.element}`}
-                  disabled={!isHolder}
-                  onClick={() => void operations.tell('remote.unbind', { place })}
-                >
-                  {closeIcon}
-                </button>
-              </td>
-            </tr>
-          );
-        })}
-      </tbody>
-    </table>
+    <div class="table-frame" tabIndex={0} role="group" aria-label="Table of bindings">
+      <table class="bindings" data-testid="bindings">
+        <thead>
+          <tr>
+            <th scope="col">Element</th>
+            <th scope="col">Does</th>
+            <th scope="col">How</th>
+            <th scope="col" aria-label="Remove" />
+          </tr>
+        </thead>
+        <tbody>
+          {remote.bindings.map((binding, place) => {
+            const change: Change = (changed) => operations.tell('remote.bind', { place, binding: changed });
+            return (
+              <tr key={place}>
+                <th scope="row" title={binding.device}>
+                  {binding.element}
+                  <span class="unit">{binding.device}</span>
+                </th>
+                <td>
+                  <Target app={app} binding={binding} change={change} isEnabled={isHolder} />
+                </td>
+                <td>
+                  {binding.action === undefined && (
+                    <ParameterFields app={app} binding={binding} place={place} change={change} isEnabled={isHolder} />
+                  )}
+                </td>
+                <td>
+                  <button
+                    type="button"
+                    class="icon-button"
+                    aria-label={`Remove the binding of ${binding.element}`}
+                    disabled={!isHolder}
+                    onClick={() => void operations.tell('remote.unbind', { place })}
+                  >
+                    {closeIcon}
+                  </button>
+                </td>
+              </tr>
+            );
+          })}
+        </tbody>
+      </table>
+    </div>
   );
 }

@@ -2,7 +2,6 @@
 import { effect, useSignal } from '@preact/signals';
 import { useEffect, useRef } from 'preact/hooks';
 import { limitFrameRate, onFrame } from '../frame_clock.js';
-import type { Vector } from '../geometry/quaternion.js';
 import type { RobotView } from '../robot_view.js';
 import type { FromScene, ScenePose, ToScene } from '../scene/scene_messages.js';
 import { ghostIsOn, toggleGhost } from '../robot_actions.js';
@@ -53,10 +52,8 @@ export function ScenePanel({ app }: { app: RobotView }) {
       const message = event.data;
       if (message.kind === 'pointed') app.selection.hoveredJoint.value = message.joint;
       if (message.kind === 'grabbed_robot') app.mover?.begin();
-      if (message.kind === 'dragged_robot') {
-        offset = message.offset;
-        app.mover?.drag(offset, turn);
-      }
+      if (message.kind === 'dragged_robot') app.mover?.drag(message.offset, message.turn);
+      if (message.kind === 'dropped_robot') void app.mover?.drop();
       if (message.kind === 'grabbed_joint') pull.grabbed(message.joint);
       if (message.kind === 'dragged_joint') pull.dragged(message.angle);
       if (message.kind === 'following') isFollowing.value = message.isOn;
@@ -66,19 +63,8 @@ export function ScenePanel({ app }: { app: RobotView }) {
       }
       if (message.kind === 'failed') failure.value = message.reason;
     };
-    let offset: Vector = [0, 0, 0];
-    let turn = 0;
     const mover: RobotMover = {
       isActive: () => app.mover?.isActive.peek() ?? false,
-      turn: (degrees) => {
-        turn = degrees;
-        app.mover?.drag(offset, turn);
-      },
-      drop: () => {
-        offset = [0, 0, 0];
-        turn = 0;
-        void app.mover?.drop();
-      },
       step: (way, degrees) => void app.mover?.step(way, degrees),
     };
     send({ kind: 'start', canvas: offscreen, isDark: isDark.peek() }, [offscreen]);

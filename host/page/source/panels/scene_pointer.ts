@@ -20,8 +20,6 @@ const wheelFactor = 0.0012; // for each pixel
 //   drag: in the plane of the ground     Shift and drag: height     Ctrl and drag: turn     arrows, Page Up, Page Down: steps
 export interface RobotMover {
   isActive(): boolean;
-  turn(degrees: number): void; // since the drag began
-  drop(): void;
   step(offset: Vector, turn: number): void;
 }
 
@@ -33,6 +31,7 @@ export function listenToPointer(
   pull: ScenePull,
 ): () => void {
   let moverStart: Point | null = null; // where a drag of the robot began
+  let turn = 0; // degrees since then
   const pointers = new Map<number, Point>();
   let isPanning = false;
   const abort = new AbortController();
@@ -47,6 +46,7 @@ export function listenToPointer(
       const { x, y } = positionIn(canvas, event);
       if (mover.isActive() && event.button === 0 && pointers.size === 1) {
         moverStart = { x: event.clientX, y: event.clientY };
+        turn = 0;
         send({ kind: 'grab_robot', x, y });
       } else if (isPanning || pointers.size > 1) {
         pull.release();
@@ -68,8 +68,9 @@ export function listenToPointer(
       const right = now.x - before.x;
       const down = now.y - before.y;
       if (moverStart !== null && pointers.size === 1) {
-        if (event.ctrlKey) mover.turn((moverStart.x - now.x) * degreesPerPixel);
-        else send({ kind: 'drag_robot', ...positionIn(canvas, event), right, down, isHeight: event.shiftKey });
+        if (event.ctrlKey) turn = (moverStart.x - now.x) * degreesPerPixel;
+        const way = event.ctrlKey ? 'none' : event.shiftKey ? 'height' : 'ground';
+        send({ kind: 'drag_robot', ...positionIn(canvas, event), right, down, way, turn });
       } else if (pointers.size === 2) {
         const other = [...pointers].find(([id]) => id !== event.pointerId)?.[1] as Point;
         send({ kind: 'zoom', factor: distance(before, other) / Math.max(1, distance(now, other)) });
@@ -88,7 +89,6 @@ export function listenToPointer(
     if (moverStart !== null) {
       moverStart = null;
       send({ kind: 'drop_robot' });
-      mover.drop();
     }
   };
   canvas.addEventListener('pointerup', release, options);

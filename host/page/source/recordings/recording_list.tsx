@@ -1,5 +1,6 @@
 // The recordings in the folder of the program, the newest first.
 import { useSignal } from '@preact/signals';
+import { TableHead } from '../panels/table_head.js';
 import type { RecordedFile } from '../wire/messages.js';
 import type { RecordingsApp } from './recordings_app.js';
 
@@ -101,16 +102,9 @@ export function RecordingList({ app }: { app: RecordingsApp }) {
       {matching.length > 0 && (
         <div class="table-frame" tabIndex={0} role="group" aria-label="Table of recordings">
           <table data-testid="recordings">
-            <thead>
-              <tr>
-                {['file', 'scenario', 'algorithm', 'length', 'state', 'program', 'size', 'changed'].map((title) => (
-                  <th scope="col" key={title}>
-                    {title}
-                  </th>
-                ))}
-                <td />
-              </tr>
-            </thead>
+            <TableHead titles={['file', 'scenario', 'algorithm', 'length', 'state', 'program', 'size', 'changed']}>
+              <td />
+            </TableHead>
             <tbody>
               {matching.slice(0, mostRows).map((file) => (
                 <FileRow key={file.name} app={app} file={file} />

@@ -8,7 +8,7 @@ import { HeadPath } from './head_path.js';
 import type { Detail } from './drawing_budget.js';
 import { RobotModel } from './robot_model.js';
 import { colours } from './scene_colours.js';
-import type { ScenePose } from './scene_messages.js';
+import type { DragWay, ScenePose } from './scene_messages.js';
 
 const fieldOfView = 40; // degrees, vertical
 const gridCells = 60;
@@ -242,12 +242,16 @@ export class RobotScene {
     return this.grabbed !== null;
   }
 
-  // The way from where it was grabbed to the pointer: in the plane of the ground, or up and down. Null if nothing is grabbed.
-  dragRobot(x: number, y: number, isHeight: boolean): Vector | null {
+  // How far it is from where it was grabbed: at the pointer in the plane of the ground, or up and down. Null if nothing is grabbed.
+  dragRobot(x: number, y: number, way: DragWay): Vector | null {
     const from = this.grabbed;
     if (from === null) {
       return null;
     }
+    if (way === 'none') {
+      return this.lastOffset;
+    }
+    const isHeight = way === 'height';
     const [cameraX, cameraY] = this.orbit.position;
     const normal = isHeight ? new THREE.Vector3(cameraX - from.x, cameraY - from.y, 0).normalize() : new THREE.Vector3(0, 0, 1);
     const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal, from);

@@ -13,6 +13,9 @@ export interface ScenePose {
   lastMove: number | null; // tick of the last move by hand before: another one cuts the path
 }
 
+// How the pointer moves the robot: over the ground, up and down, or not from its place, because it turns it.
+export type DragWay = 'ground' | 'height' | 'none';
+
 export type ToScene =
   | { kind: 'start'; canvas: OffscreenCanvas; isDark: boolean }
   | { kind: 'size'; width: number; height: number; ratio: number } // CSS pixels; device pixels for each of them
@@ -28,7 +31,7 @@ export type ToScene =
   | { kind: 'follow'; isOn: boolean }
   | { kind: 'reset_view' }
   | { kind: 'grab_robot'; x: number; y: number } // as in `point`: the link there, if there is one
-  | { kind: 'drag_robot'; x: number; y: number; right: number; down: number; isHeight: boolean } // turns the view if nothing is grabbed
+  | { kind: 'drag_robot'; x: number; y: number; right: number; down: number; way: DragWay; turn: number } // turns the view if nothing is grabbed
   | { kind: 'drop_robot' }
   | { kind: 'grab_joint'; x: number; y: number } // as in `point`: a link, to turn its joint
   | { kind: 'drag_joint'; x: number; y: number }
@@ -36,7 +39,8 @@ export type ToScene =
 
 export type FromScene =
   | { kind: 'grabbed_robot' }
-  | { kind: 'dragged_robot'; offset: Vector } // metres, since it was grabbed
+  | { kind: 'dragged_robot'; offset: Vector; turn: number } // metres, degrees, since it was grabbed
+  | { kind: 'dropped_robot' } // after all of its drag
   | { kind: 'pointed'; joint: number | null }
   | { kind: 'grabbed_joint'; joint: number | null } // null: nothing that can be turned from here
   | { kind: 'dragged_joint'; angle: number } // radians since the grab

@@ -68,11 +68,13 @@ function apply(view: RobotScene, message: Exclude<ToScene, { kind: 'start' }>): 
       if (view.grabRobot(message.x, message.y)) post({ kind: 'grabbed_robot' });
       return;
     case 'drag_robot': {
-      const offset = view.dragRobot(message.x, message.y, message.isHeight);
-      return offset === null ? view.turn(message.right, message.down) : post({ kind: 'dragged_robot', offset });
+      const { x, y, right, down, way, turn } = message;
+      const offset = view.dragRobot(x, y, way);
+      return offset === null ? view.turn(right, down) : post({ kind: 'dragged_robot', offset, turn });
     }
     case 'drop_robot':
-      return view.dropRobot();
+      view.dropRobot();
+      return post({ kind: 'dropped_robot' });
     case 'grab_joint':
       return post({ kind: 'grabbed_joint', joint: view.grabJoint(message.x, message.y) });
     case 'drag_joint':

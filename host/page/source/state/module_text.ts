@@ -21,6 +21,21 @@ export function moduleState(module: BusModule): ModuleState {
   return { text, tone: module.drive === 'operation enabled' ? 'good' : 'quiet' };
 }
 
+const nearLimit = 0.8; // of the limit
+
+// A servo's current in mA. A mark is a word, too: not everybody sees colours. The limit: 0: off; null: not known.
+export function currentState(current: number | null, limit: number | null): { text: string; tone: '' | 'near-limit' | 'above-limit' } {
+  const text = current === null ? '–' : current.toFixed(0);
+  if (current === null || limit === null || limit === 0 || current < nearLimit * limit) {
+    return { text, tone: '' };
+  }
+  return current > limit ? { text: `${text} above limit`, tone: 'above-limit' } : { text: `${text} near limit`, tone: 'near-limit' };
+}
+
+export function currentLimitOf(bus: BusDocument | null, joint: number): number | null {
+  return bus?.modules.find((module) => module.joint === joint)?.current_limit ?? null;
+}
+
 export function moduleName(module: BusModule, robot: Pick<RobotDocument, 'joints'> | null): string {
   return module.joint === null ? `node ${module.node}` : (robot?.joints[module.joint]?.name ?? `node ${module.node}`);
 }

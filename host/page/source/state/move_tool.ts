@@ -1,12 +1,20 @@
 // Moves a paused robot to another place: by a drag in the 3D view, by keys, or by typed numbers.
 import { computed, signal } from '@preact/signals-core';
 import { compose, fromAxisAngle, type Pose, type Vector } from '../geometry/quaternion.js';
+import type { SessionDocument } from '../wire/messages.js';
 import type { PageState } from './page_state.js';
 
 // Where the head's frame goes, in metres, and by how many degrees the robot turns to the left about the vertical there.
 export interface RobotPlace {
   position: Vector;
   turn: number;
+}
+
+// A place that the program was asked for. `session`: the document when it said yes, which has the head where it was before.
+interface AskedPlace {
+  position: Vector;
+  session: SessionDocument | null;
+  isPending: boolean;
 }
 
 const smallestMove = 1e-4; // metres and degrees: a press without a drag
@@ -18,7 +26,9 @@ export class MoveTool {
   // While the robot is dragged; the program has not been asked yet.
   readonly preview = signal<RobotPlace | null>(null);
   private start: Vector | null = null; // of the head, when the drag began
+  private asked: AskedPlace | null = null; // the last one
 
+  // `ask`: null: refused.
   constructor(
     private readonly state: PageState,
     private readonly ask: (place: RobotPlace) => Promise<unknown>,
@@ -34,8 +44,11 @@ export class MoveTool {
     return head === undefined ? null : [head[0], head[1], head[2]];
   }
 
+  // From where the robot is as soon as the program has done what it was asked for: keys come faster than documents.
   begin(): void {
-    this.start = this.head;
+    const { asked } = this;
+    const isOnTheWay = asked !== null && (asked.isPending || asked.session === this.state.session.peek());
+    this.start = isOnTheWay ? asked.position : this.head;
   }
 
   drag(offset: Vector, turn: number): void {
@@ -54,7 +67,7 @@ export class MoveTool {
       if (way > smallestMove || Math.abs(place.turn) > smallestMove) {
         await this.moveTo(place);
       }
-      this.preview.value = null;
+      if (this.preview.peek() === place) this.preview.value = null;
     }
   }
 
@@ -65,10 +78,17 @@ export class MoveTool {
     await this.drop();
   }
 
-  async moveTo(place: RobotPlace): Promise<void> {
-    if (this.isActive.peek()) {
-      await this.ask(place);
+  // False: it is not possible, or refused.
+  async moveTo(place: RobotPlace): Promise<boolean> {
+    if (!this.isActive.peek()) {
+      return false;
     }
+    const asked: AskedPlace = { position: place.position, session: null, isPending: true };
+    this.asked = asked;
+    const answer = await this.ask(place);
+    Object.assign(asked, { isPending: false, session: this.state.session.peek() });
+    if (answer === null && this.asked === asked) this.asked = null;
+    return answer !== null;
   }
 }
 

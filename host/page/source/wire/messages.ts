@@ -193,6 +193,7 @@ export interface BusModule {
   drive: string | null;
   angle: number | null; // degrees
   current: number | null; // mA
+  current_limit: number | null; // mA; 0: off
   temperature: number | null; // degrees Celsius
   fault: string | null;
   advice: string | null; // what to do

@@ -1,66 +1,49 @@
 // Who cannot use a mouse, has a narrow window, or works in the dark; and a long robot.
 import assert from 'node:assert/strict';
-import { after, before, describe, it } from 'node:test';
-import type { Browser, BrowserContextOptions } from 'playwright-core';
+import { describe, it } from 'node:test';
 import { seriousProblems } from './support/accessibility.js';
-import { launchBrowser } from './support/browser.js';
+import { assertNothingIsCut } from './support/layout.js';
 import { countPixels, isBlue, pixelsOf } from './support/pixels.js';
+import { useUi } from './support/ui_fixture.js';
 import { sixty, UiProgram } from './support/ui_program.js';
-import { Viewer } from './support/viewer.js';
+import type { Look } from './support/viewer.js';
 
-const wide = { width: 1400, height: 900 };
-const narrow = { width: 600, height: 900 };
+const looks: readonly Look[] = [
+  { name: 'wide_light', width: 1400, colours: 'light' },
+  { name: 'wide_dark', width: 1400, colours: 'dark' },
+  { name: 'narrow_light', width: 600, colours: 'light' },
+  { name: 'narrow_dark', width: 600, colours: 'dark' },
+];
 
 describe('the page', () => {
-  let browser: Browser;
-  let program: UiProgram;
+  const ui = useUi(() => UiProgram.start());
 
-  before(async () => {
-    browser = await launchBrowser();
-    program = await UiProgram.start();
-  });
-
-  after(async () => {
-    await program.end();
-    await browser.close();
-  });
-
-  const looks: [string, BrowserContextOptions][] = [
-    ['wide_light', { viewport: wide, colorScheme: 'light' }],
-    ['wide_dark', { viewport: wide, colorScheme: 'dark' }],
-    ['narrow_light', { viewport: narrow, colorScheme: 'light', hasTouch: true }],
-    ['narrow_dark', { viewport: narrow, colorScheme: 'dark', hasTouch: true }],
-  ];
-
-  for (const [name, options] of looks) {
-    it(`has no serious problem for axe-core, looking on and in control (${name})`, async () => {
-      const viewer = await Viewer.open(browser, program.address, options);
+  for (const look of looks) {
+    it(`has no serious problem for axe-core, looking on and in control, and STOP in the window (${look.name})`, async () => {
+      const { viewer } = ui;
+      await viewer.lookAs(look);
       assert.deepEqual(await seriousProblems(viewer), []);
       await viewer.takeControl();
-      if (name === 'wide_light') {
+      if (look === looks[0]) {
         await viewer.run();
+        await viewer.waitForTick(200);
       }
-      await viewer.waitForTick(200);
       assert.deepEqual(await seriousProblems(viewer), []);
-      await viewer.screenshot(name);
-      await viewer.close();
-    });
-
-    it(`shows STOP within the window, and nothing beyond its sides (${name})`, async () => {
-      const viewer = await Viewer.open(browser, program.address, options);
-      const width = options.viewport?.width ?? 0;
+      const { width } = look;
       const box = await viewer.button(/^STOP/).boundingBox();
       assert.ok(box !== null && box.x >= 0 && box.x + box.width <= width && box.y >= 0, `found ${JSON.stringify(box)}`);
-      assert.equal(await viewer.page.evaluate(() => document.documentElement.scrollWidth), width);
+      await assertNothingIsCut(viewer);
+      await viewer.screenshot(look.name);
       await viewer.page.mouse.wheel(0, 1500);
-      const scrolled = await viewer.button(/^STOP/).boundingBox();
-      assert.deepEqual(scrolled, box, 'at the same place after scrolling');
-      await viewer.close();
+      assert.deepEqual(await viewer.button(/^STOP/).boundingBox(), box, 'at the same place after scrolling');
+      await viewer.page.mouse.wheel(0, -1500);
+      await viewer.button('Release').click();
+      await viewer.button('Take control').waitFor();
     });
   }
 
   it('has dialogs without serious problems, and STOP stays within reach', async () => {
-    const viewer = await Viewer.open(browser, program.address);
+    const { viewer } = ui;
     for (const [key, title] of [['?', 'Keys'], ['Control+k', 'Find an action'], ['x', 'Command that gives the same run']] as const) {
       await viewer.page.keyboard.press(key);
       const dialog = viewer.page.getByRole('dialog', { name: title });
@@ -71,11 +54,10 @@ describe('the page', () => {
       await dialog.getByRole('button', { name: 'Close', exact: true }).click();
       await dialog.waitFor({ state: 'detached' });
     }
-    await viewer.close();
   });
 
   it('is dark or light as the system says, until the user chooses', async () => {
-    const viewer = await Viewer.open(browser, program.address, { colorScheme: 'dark' });
+    const viewer = await ui.look({ colorScheme: 'dark' });
     const background = () => viewer.page.evaluate(() => getComputedStyle(document.body).backgroundColor);
     const dark = await background();
     await viewer.page.emulateMedia({ colorScheme: 'light' });
@@ -86,11 +68,10 @@ describe('the page', () => {
     await viewer.page.keyboard.press('t');
     await viewer.page.waitForFunction(() => document.documentElement.dataset['theme'] === 'dark');
     assert.equal(await background(), dark);
-    await viewer.close();
   });
 
   it('can be used with the keyboard alone', async () => {
-    const viewer = await Viewer.open(browser, program.address);
+    const { viewer } = ui;
     const { keyboard } = viewer.page;
     await keyboard.press('c');
     await viewer.button('Release').waitFor();
@@ -122,16 +103,14 @@ describe('the page', () => {
     await keyboard.press('Control+z');
     await keyboard.press('Escape');
     await viewer.waitForState('STOPPED');
-    await viewer.close();
   });
 });
 
 describe('a robot with 60 joints', () => {
+  const ui = useUi(() => UiProgram.start(sixty), { takesControl: true });
+
   it('is shown in 3D, strip, table and cells', async () => {
-    const browser = await launchBrowser();
-    const program = await UiProgram.start(sixty);
-    const viewer = await Viewer.open(browser, program.address);
-    await viewer.takeControl();
+    const { viewer } = ui;
     await viewer.run();
     await viewer.waitForTick(100);
     const angles = await viewer.angles();
@@ -141,8 +120,5 @@ describe('a robot with 60 joints', () => {
     assert.equal(await viewer.page.locator('.parameter').first().locator('[data-cell]').count(), 60);
     assert.ok(countPixels(await pixelsOf(viewer.page, viewer.page.locator('.scene')), isBlue) > 200);
     await viewer.screenshot('sixty_joints');
-    await viewer.close();
-    await program.end();
-    await browser.close();
   });
 });

@@ -1,177 +1,160 @@
 // A simulated robot, live: it moves, and does what the page says.
 import assert from 'node:assert/strict';
-import { after, before, describe, it } from 'node:test';
-import type { Browser } from 'playwright-core';
-import { launchBrowser } from './support/browser.js';
+import { describe, it } from 'node:test';
 import { countDifferences, countPixels, isBlue, pixelsOf } from './support/pixels.js';
+import { useUi } from './support/ui_fixture.js';
 import { UiProgram } from './support/ui_program.js';
-import { Viewer } from './support/viewer.js';
+import type { Viewer } from './support/viewer.js';
 
 describe('a live simulation', () => {
-  let browser: Browser;
-  let program: UiProgram;
-  let viewer: Viewer;
-
-  before(async () => {
-    browser = await launchBrowser();
-    program = await UiProgram.start();
-    viewer = await Viewer.open(browser, program.address);
-  });
-
-  after(async () => {
-    await viewer.close();
-    await program.end();
-    await browser.close();
-  });
+  const ui = useUi(() => UiProgram.start());
 
   it('is labelled as a simulation, and its address no longer has the token', async () => {
-    await viewer.page.getByText('SIMULATION', { exact: true }).waitFor();
-    assert.equal(new URL(viewer.page.url()).hash, '');
+    await ui.viewer.page.getByText('SIMULATION', { exact: true }).waitFor();
+    assert.equal(new URL(ui.viewer.page.url()).hash, '');
   });
 
   it('is only looked on at first: nothing can be changed without control', async () => {
-    assert.equal(await viewer.button('Run').isDisabled(), true);
-    assert.equal(await viewer.parameter('1.amplitude').getByRole('slider').first().isDisabled(), true);
-    assert.equal(await viewer.button(/^STOP/).isEnabled(), true);
+    assert.equal(await ui.viewer.button('Run').isDisabled(), true);
+    assert.equal(await ui.viewer.parameter('1.amplitude').getByRole('slider').first().isDisabled(), true);
+    assert.equal(await ui.viewer.button(/^STOP/).isEnabled(), true);
   });
 
   it('runs: the joints move, the head advances, and the picture changes', async () => {
-    await viewer.takeControl();
-    await viewer.run();
-    await viewer.waitForTick(100);
-    const scene = viewer.page.locator('.scene');
-    const angles = await viewer.angles();
-    const start = await viewer.head();
-    const picture = await pixelsOf(viewer.page, scene);
-    await viewer.waitForTick((await viewer.tick()) + 140);
-    const later = await pixelsOf(viewer.page, scene);
+    await ui.viewer.takeControl();
+    await ui.viewer.run();
+    await ui.viewer.waitForTick(100);
+    const scene = ui.viewer.page.locator('.scene');
+    const angles = await ui.viewer.angles();
+    const start = await ui.viewer.head();
+    const picture = await pixelsOf(ui.viewer.page, scene);
+    await ui.viewer.waitForTick((await ui.viewer.tick()) + 140);
+    const later = await pixelsOf(ui.viewer.page, scene);
     assert.ok(countPixels(picture, isBlue) > 500, 'the robot is in the picture');
     assert.ok(countDifferences(picture, later) > 500, 'the picture changes');
     assert.equal(angles.length, 5);
-    await viewer.waitForOtherAngles(angles);
-    assert.notDeepEqual(await viewer.head(), start);
-    await viewer.screenshot('live');
+    await ui.viewer.waitForOtherAngles(angles);
+    assert.notDeepEqual(await ui.viewer.head(), start);
+    await ui.viewer.screenshot('live');
   });
 
   it('has strip and plot filled with colour', async () => {
-    const strip = await pixelsOf(viewer.page, viewer.page.getByTestId('strip'));
+    const strip = await pixelsOf(ui.viewer.page, ui.viewer.page.getByTestId('strip'));
     const isOrange = (red: number, green: number, blue: number) => red > 180 && green > 60 && green < 190 && blue < 120;
     assert.ok(countPixels(strip, isOrange) > 200);
     assert.ok(countPixels(strip, isBlue) > 200);
-    const plot = await pixelsOf(viewer.page, viewer.page.getByTestId('plot'));
+    const plot = await pixelsOf(ui.viewer.page, ui.viewer.page.getByTestId('plot'));
     assert.ok(countPixels(plot, isBlue) > 100);
   });
 
   it('pauses, steps by as many ticks as asked for, and restarts', async () => {
-    await viewer.button('Pause').click();
-    await viewer.waitForState('paused');
-    const tick = await settledTick(viewer);
-    await viewer.page.getByLabel('Ticks of a step').fill('25');
-    await viewer.button('Step').click();
-    await viewer.waitForTick(tick + 25);
-    assert.equal(await settledTick(viewer), tick + 25);
-    await viewer.button('Restart').click();
-    await viewer.page.waitForFunction(() => Number(document.querySelector('[data-testid=tick]')?.textContent) < 5);
+    await ui.viewer.pause();
+    const tick = await settledTick(ui.viewer);
+    await ui.viewer.page.getByLabel('Ticks of a step').fill('25');
+    await ui.viewer.button('Step').click();
+    await ui.viewer.waitForTick(tick + 25);
+    assert.equal(await settledTick(ui.viewer), tick + 25);
+    await ui.viewer.button('Restart').click();
+    await ui.viewer.page.waitForFunction(() => Number(document.querySelector('[data-testid=tick]')?.textContent) < 5);
   });
 
   it('confirms the value of a slider', async () => {
-    const slider = viewer.parameter('1.amplitude').getByRole('slider').first();
+    const slider = ui.viewer.parameter('1.amplitude').getByRole('slider').first();
     await slider.focus();
-    await viewer.page.keyboard.press('ArrowLeft');
-    await viewer.run();
-    const values = await confirmedValues(viewer, '1.amplitude', (value) => value !== '40');
+    await ui.viewer.page.keyboard.press('ArrowLeft');
+    await ui.viewer.run();
+    const values = await confirmedValues(ui.viewer, '1.amplitude', (value) => value !== '40');
     assert.ok(values.every(({ wanted, confirmed, file }) => wanted === confirmed && file === '40' && wanted !== '40'));
   });
 
   it('confirms a typed value, and rejects one that is out of range', async () => {
-    const field = viewer.parameter('1.amplitude').getByRole('textbox');
+    const field = ui.viewer.parameter('1.amplitude').getByRole('textbox');
     await field.fill('33.5');
     await field.press('Enter');
-    await confirmedValues(viewer, '1.amplitude', (value) => value === '33.5');
+    await confirmedValues(ui.viewer, '1.amplitude', (value) => value === '33.5');
     await field.fill('1000');
     await field.press('Enter');
-    await viewer.parameter('1.amplitude').getByRole('alert').filter({ hasText: 'found 1000, expected' }).waitFor();
+    await ui.viewer.parameter('1.amplitude').getByRole('alert').filter({ hasText: 'found 1000, expected' }).waitFor();
     await field.fill('33.5');
     await field.press('Enter');
   });
 
   it('changes one joint alone, from the keyboard', async () => {
-    const cell = viewer.parameter('1.amplitude').locator('[data-cell="1"]');
+    const cell = ui.viewer.parameter('1.amplitude').locator('[data-cell="1"]');
     await cell.focus();
-    await viewer.page.keyboard.type('20');
-    await viewer.page.keyboard.press('Enter');
-    const values = await confirmedValues(viewer, '1.amplitude', (value, i) => value === (i === 1 ? '20' : '33.5'));
+    await ui.viewer.page.keyboard.type('20');
+    await ui.viewer.page.keyboard.press('Enter');
+    const values = await confirmedValues(ui.viewer, '1.amplitude', (value, i) => value === (i === 1 ? '20' : '33.5'));
     assert.equal(values.length, 5);
-    assert.equal(await viewer.parameter('1.amplitude').getByRole('textbox').getAttribute('placeholder'), 'several');
+    assert.equal(await ui.viewer.parameter('1.amplitude').getByRole('textbox').getAttribute('placeholder'), 'several');
   });
 
   it('undoes and redoes one change at a time', async () => {
-    await viewer.page.keyboard.press('Control+z');
-    await confirmedValues(viewer, '1.amplitude', (value) => value === '33.5');
-    await viewer.page.keyboard.press('Control+y');
-    await confirmedValues(viewer, '1.amplitude', (value, i) => value === (i === 1 ? '20' : '33.5'));
+    await ui.viewer.page.keyboard.press('Control+z');
+    await confirmedValues(ui.viewer, '1.amplitude', (value) => value === '33.5');
+    await ui.viewer.page.keyboard.press('Control+y');
+    await confirmedValues(ui.viewer, '1.amplitude', (value, i) => value === (i === 1 ? '20' : '33.5'));
   });
 
   it('shows the command that gives the same run', async () => {
-    await viewer.button('Command line').click();
-    const command = viewer.page.getByTestId('command');
+    await ui.viewer.button('Command line').click();
+    const command = ui.viewer.page.getByTestId('command');
     await command.filter({ hasText: 'proleg simulate' }).waitFor();
     const text = (await command.textContent()) ?? '';
     assert.match(text, /uniform\.simulation\.xml/);
     assert.match(text, /amplitude(:J\d)?=33\.5/);
-    await viewer.screenshot('command_line');
-    await viewer.button('Close').click();
+    await ui.viewer.screenshot('command_line');
+    await ui.viewer.button('Close').click();
   });
 
   it('goes back to the values of the file', async () => {
-    await viewer.parameter('1.amplitude').getByRole('slider').first().dblclick();
-    await confirmedValues(viewer, '1.amplitude', (value) => value === '40');
+    await ui.viewer.parameter('1.amplitude').getByRole('slider').first().dblclick();
+    await confirmedValues(ui.viewer, '1.amplitude', (value) => value === '40');
   });
 
   it('freezes the view while the robot goes on, and returns to live', async () => {
-    await viewer.page.getByTestId('scene').focus();
-    await viewer.page.keyboard.press('p');
-    await viewer.page.getByTestId('frozen').waitFor();
-    await viewer.waitForTick((await viewer.tick()) + 30);
-    const angles = await viewer.angles();
-    const first = await viewer.tick();
+    await ui.viewer.page.getByTestId('scene').focus();
+    await ui.viewer.page.keyboard.press('p');
+    await ui.viewer.page.getByTestId('frozen').waitFor();
+    await ui.viewer.waitForTick((await ui.viewer.tick()) + 30);
+    const angles = await ui.viewer.angles();
+    const first = await ui.viewer.tick();
     // At several times, none of them a whole stride later.
     for (const ticks of [60, 110, 170]) {
-      await viewer.waitForTick(first + ticks);
-      assert.deepEqual(await viewer.angles(), angles);
+      await ui.viewer.waitForTick(first + ticks);
+      assert.deepEqual(await ui.viewer.angles(), angles);
     }
-    await viewer.page.keyboard.press('l');
-    await viewer.page.getByTestId('frozen').waitFor({ state: 'detached' });
-    await viewer.waitForOtherAngles(angles);
+    await ui.viewer.page.keyboard.press('l');
+    await ui.viewer.page.getByTestId('frozen').waitFor({ state: 'detached' });
+    await ui.viewer.waitForOtherAngles(angles);
   });
 
   it('lights a joint everywhere when it is hovered in the table', async () => {
-    const row = viewer.page.locator('[data-testid=joints] tr[data-joint="2"]');
+    const row = ui.viewer.page.locator('[data-testid=joints] tr[data-joint="2"]');
     await row.hover();
-    await viewer.parameter('1.amplitude').locator('[data-cell="2"].hovered').waitFor();
-    await viewer.page.mouse.move(5, 5);
+    await ui.viewer.parameter('1.amplitude').locator('[data-cell="2"].hovered').waitFor();
+    await ui.viewer.page.mouse.move(5, 5);
   });
 
   it('adds a plot with the lines that are chosen', async () => {
-    await viewer.button('Add a plot').click();
-    const group = viewer.page.locator('.line-group').nth(1);
+    await ui.viewer.button('Add a plot').click();
+    const group = ui.viewer.page.locator('.line-group').nth(1);
     await group.getByLabel('Signal').selectOption('torque');
     await group.getByRole('group', { name: 'Lines of torque' }).getByRole('button').nth(0).click();
     await group.getByRole('group', { name: 'Lines of torque' }).getByRole('button').nth(3).click();
     assert.equal(await group.locator('.line-chips li').count(), 2);
     await group.locator('.line-chips .value').first().filter({ hasText: /\d/ }).waitFor();
-    await viewer.screenshot('two_plots');
+    await ui.viewer.screenshot('two_plots');
     await group.getByRole('button', { name: 'Remove this plot' }).click();
-    assert.equal(await viewer.page.locator('.line-group').count(), 1);
+    assert.equal(await ui.viewer.page.locator('.line-group').count(), 1);
   });
 
   it('goes as fast as the computer can', async () => {
-    await viewer.button('Fastest').click();
-    const tick = await viewer.tick();
-    await viewer.waitForTick(tick + 500);
-    await viewer.button('Fastest').click();
-    await viewer.button('Pause').click();
-    await viewer.waitForState('paused');
+    await ui.viewer.button('Fastest').click();
+    const tick = await ui.viewer.tick();
+    await ui.viewer.waitForTick(tick + 500);
+    await ui.viewer.button('Fastest').click();
+    await ui.viewer.pause();
   });
 });
 

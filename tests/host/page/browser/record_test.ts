@@ -4,11 +4,11 @@ import assert from 'node:assert/strict';
 import { mkdtempSync, readdirSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
-import { describe, it } from 'node:test';
-import { launchBrowser } from './support/browser.js';
+import { after, describe, it } from 'node:test';
 import { resultOf, shownCommand } from './support/command_line.js';
+import { useUi } from './support/ui_fixture.js';
 import { UiProgram, uniform } from './support/ui_program.js';
-import { Viewer } from './support/viewer.js';
+import type { Viewer } from './support/viewer.js';
 
 async function clickAround(viewer: Viewer): Promise<string> {
   await viewer.takeControl();
@@ -28,8 +28,7 @@ async function clickAround(viewer: Viewer): Promise<string> {
   await viewer.page.keyboard.press('Control+z');
   await viewer.page.keyboard.press('b');
   await viewer.waitForTick((await viewer.tick()) + 100);
-  await viewer.button('Pause').click();
-  await viewer.waitForState('paused');
+  await viewer.pause();
   const command = await shownCommand(viewer);
   await viewer.button('Recording').click();
   await viewer.button('Record').waitFor();
@@ -37,28 +36,22 @@ async function clickAround(viewer: Viewer): Promise<string> {
 }
 
 describe('a session of clicks', () => {
+  const folder = mkdtempSync(join(tmpdir(), 'proleg-page-'));
+  const ui = useUi(() => UiProgram.start(uniform, ['--recordings', folder]));
+
+  after(() => rmSync(folder, { recursive: true }));
+
   it('is recorded, replays without a difference, and is repeated by the command of the page', async () => {
-    const folder = mkdtempSync(join(tmpdir(), 'proleg-page-'));
-    const browser = await launchBrowser();
-    const robot = await UiProgram.start(uniform, ['--recordings', folder]);
-    try {
-      const viewer = await Viewer.open(browser, robot.address);
-      const command = await clickAround(viewer);
-      await viewer.close();
-      const files = readdirSync(folder).filter((name) => name.endsWith('.proleg'));
-      assert.equal(files.length, 1, files.join());
-      assert.match(files[0] as string, /^uniform-\d{8}-\d{6}\.proleg$/);
-      const replayed = resultOf(`proleg replay ${join(folder, files[0] as string)}`);
-      assert.equal(replayed['differences'], 0);
-      assert.equal(replayed['verified'], true);
-      const repeated = resultOf(command);
-      assert.match(command, /--set 1\.amplitude=\S+@\d+/);
-      assert.equal(repeated['setpoint_hash'], replayed['recorded_setpoint_hash']);
-      assert.equal(repeated['servo_hash'], replayed['recorded_servo_hash']);
-    } finally {
-      await robot.end();
-      await browser.close();
-      rmSync(folder, { recursive: true });
-    }
+    const command = await clickAround(ui.viewer);
+    const files = readdirSync(folder).filter((name) => name.endsWith('.proleg'));
+    assert.equal(files.length, 1, files.join());
+    assert.match(files[0] as string, /^uniform-\d{8}-\d{6}\.proleg$/);
+    const replayed = resultOf(`proleg replay ${join(folder, files[0] as string)}`);
+    assert.equal(replayed['differences'], 0);
+    assert.equal(replayed['verified'], true);
+    const repeated = resultOf(command);
+    assert.match(command, /--set 1\.amplitude=\S+@\d+/);
+    assert.equal(repeated['setpoint_hash'], replayed['recorded_setpoint_hash']);
+    assert.equal(repeated['servo_hash'], replayed['recorded_servo_hash']);
   });
 });

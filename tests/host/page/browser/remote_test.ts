@@ -3,11 +3,9 @@ import assert from 'node:assert/strict';
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
-import { after, before, describe, it } from 'node:test';
-import type { Browser } from 'playwright-core';
-import { launchBrowser } from './support/browser.js';
+import { after, describe, it } from 'node:test';
+import { useUi } from './support/ui_fixture.js';
 import { UiProgram, uniform } from './support/ui_program.js';
-import { Viewer } from './support/viewer.js';
 
 const saved = {
   version: 1,
@@ -20,63 +18,52 @@ const saved = {
 describe('the panel of remote controls', () => {
   const folder = mkdtempSync(join(tmpdir(), 'proleg-remote-'));
   const file = join(folder, 'uniform.remote.json');
-  let browser: Browser;
-  let program: UiProgram;
-  let viewer: Viewer;
-
-  before(async () => {
+  const ui = useUi(() => {
     cpSync(dirname(uniform), folder, { recursive: true });
     writeFileSync(file, JSON.stringify(saved));
-    browser = await launchBrowser();
-    program = await UiProgram.start(join(folder, 'uniform.simulation.xml'));
-    viewer = await Viewer.open(browser, program.address);
+    return UiProgram.start(join(folder, 'uniform.simulation.xml'));
   });
 
-  after(async () => {
-    await viewer.close();
-    await program.end();
-    await browser.close();
-    rmSync(folder, { recursive: true });
-  });
+  after(() => rmSync(folder, { recursive: true }));
 
-  const field = (name: string) => viewer.page.getByLabel(name, { exact: true });
+  const field = (name: string) => ui.viewer.page.getByLabel(name, { exact: true });
 
   it('is opened with the keyboard and shows the bindings of the file', async () => {
-    const summary = viewer.page.locator('.remote-panel summary');
+    const summary = ui.viewer.page.locator('.remote-panel summary');
     await summary.focus();
-    await viewer.page.keyboard.press('Enter');
-    await viewer.page.getByTestId('bindings').waitFor();
+    await ui.viewer.page.keyboard.press('Enter');
+    await ui.viewer.page.getByTestId('bindings').waitFor();
     assert.equal(await field('Upper of ABS_X').inputValue(), '50');
     assert.equal(await field('What BTN_EAST does').inputValue(), 'stop');
   });
 
   it('changes nothing without control', async () => {
     assert.equal(await field('Upper of ABS_X').isDisabled(), true);
-    assert.equal(await viewer.button('Saved').isDisabled(), true);
+    assert.equal(await ui.viewer.button('Saved').isDisabled(), true);
   });
 
   it('changes a binding and saves it beside the scenario', async () => {
-    await viewer.takeControl();
+    await ui.viewer.takeControl();
     await field('Upper of ABS_X').fill('45');
     await field('Upper of ABS_X').press('Enter');
-    await viewer.button('Save').click();
-    await viewer.button('Saved').waitFor();
+    await ui.viewer.button('Save').click();
+    await ui.viewer.button('Saved').waitFor();
     const bindings = JSON.parse(readFileSync(file, 'utf8')).bindings as { upper?: number }[];
     assert.equal(bindings[0]?.upper, 45);
-    await viewer.screenshot('remote');
+    await ui.viewer.screenshot('remote');
   });
 
   it('shows the value of the program again after a refusal, and why', async () => {
     await field('Upper of ABS_X').fill('500');
     await field('Upper of ABS_X').press('Enter');
-    await viewer.page.getByText('found limit 500, expected 0 to 90').waitFor();
+    await ui.viewer.page.getByText('found limit 500, expected 0 to 90').waitFor();
     assert.equal(await field('Upper of ABS_X').inputValue(), '45');
   });
 
   it('makes an action of a parameter, and removes a binding', async () => {
     await field('What ABS_X does').selectOption('hold_to_run');
     await field('Upper of ABS_X').waitFor({ state: 'detached' });
-    await viewer.button('Remove the binding of BTN_EAST').click();
+    await ui.viewer.button('Remove the binding of BTN_EAST').click();
     await field('What BTN_EAST does').waitFor({ state: 'detached' });
   });
 });

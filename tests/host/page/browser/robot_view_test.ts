@@ -1,81 +1,69 @@
 // What the page shows of a robot on a bus, and what it sends: against a script, which can break what a simulated bus cannot.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
-import type { Browser } from 'playwright-core';
-import { launchBrowser } from './support/browser.js';
+import { beforeEach, describe, it } from 'node:test';
 import { seriousProblems } from './support/accessibility.js';
+import { assertNothingIsCut } from './support/layout.js';
 import { countPixels, pixelsOf } from './support/pixels.js';
 import { moduleOf, ScriptedRobot } from './support/scripted_robot.js';
-import { Viewer } from './support/viewer.js';
+import { useUi } from './support/ui_fixture.js';
+import type { Look } from './support/viewer.js';
 
 const isGhost = (red: number, green: number, blue: number) => green > red + 20 && green > blue;
 
+const looks: readonly Look[] = [
+  { name: 'narrow_light', width: 360, colours: 'light' },
+  { name: 'narrow_dark', width: 360, colours: 'dark' },
+  { name: 'wide_dark', width: 1400, colours: 'dark' },
+];
+
 describe('the page of a robot on a bus', () => {
-  let browser: Browser;
-  let robot: ScriptedRobot;
-  let viewer: Viewer;
+  const ui = useUi(() => ScriptedRobot.start());
 
-  before(async () => {
-    browser = await launchBrowser();
-  });
+  beforeEach(() => ui.program.reset());
 
-  after(async () => {
-    await browser.close();
-  });
-
-  beforeEach(async () => {
-    robot = await ScriptedRobot.start();
-    viewer = await Viewer.open(browser, robot.address);
-  });
-
-  afterEach(async () => {
-    await viewer.close();
-    await robot.end();
-  });
-
-  const slider = (joint: number) => viewer.page.locator(`[data-pose="${joint}"]`).getByRole('slider');
+  const slider = (joint: number) => ui.viewer.page.locator(`[data-pose="${joint}"]`).getByRole('slider');
   const cell = (joint: number, column: string) =>
-    viewer.page.locator(`[data-testid=joints] tr[data-joint="${joint}"] td[data-value="${column}"]`);
+    ui.viewer.page.locator(`[data-testid=joints] tr[data-joint="${joint}"] td[data-value="${column}"]`);
 
   // Waits until the robot was sent to the angles that fulfil the condition.
   async function waitForPose(matches: (angles: (number | null)[]) => boolean): Promise<void> {
-    for (let look = 0; look < 300 && !robot.poses.some(({ angles }) => matches(angles)); look += 1) {
-      await viewer.page.waitForTimeout(20);
+    for (let look = 0; look < 300 && !ui.program.poses.some(({ angles }) => matches(angles)); look += 1) {
+      await ui.viewer.page.waitForTimeout(20);
     }
-    assert.ok(robot.poses.some(({ angles }) => matches(angles)), `found ${JSON.stringify(robot.poses.at(-1))}`);
+    assert.ok(ui.program.poses.some(({ angles }) => matches(angles)), `found ${JSON.stringify(ui.program.poses.at(-1))}`);
   }
 
   it('names the bus beside the badge, and shows its load', async () => {
-    await viewer.page.getByText('ROBOT can0', { exact: true }).waitFor();
-    await viewer.page.getByTestId('load').getByText('11.8 %').waitFor();
-    await viewer.waitForState('holding');
+    await ui.viewer.page.getByText('ROBOT can0', { exact: true }).waitFor();
+    await ui.viewer.page.getByTestId('load').getByText('11.8 %').waitFor();
+    await ui.viewer.waitForState('holding');
   });
 
   it('disables what needs control, and says so', async () => {
-    assert.equal(await viewer.button('Run gait').isDisabled(), true);
-    assert.match((await viewer.button('Run gait').getAttribute('title')) ?? '', /Take control first/);
+    assert.equal(await ui.viewer.button('Run gait').isDisabled(), true);
+    assert.match((await ui.viewer.button('Run gait').getAttribute('title')) ?? '', /Take control first/);
     assert.equal(await slider(0).isDisabled(), true);
   });
 
   it('disables what the state does not allow, and says why', async () => {
-    await viewer.takeControl();
-    assert.match((await viewer.button('Power on').getAttribute('title')) ?? '', /Power off first/);
-    await viewer.button('Run gait').click();
-    await viewer.waitForState('gait');
-    await viewer.page.getByTestId('pose-hint').getByText('Hold first.').waitFor();
+    await ui.viewer.takeControl();
+    assert.match((await ui.viewer.button('Power on').getAttribute('title')) ?? '', /Power off first/);
+    await ui.viewer.button('Run gait').click();
+    await ui.viewer.waitForState('gait');
+    await ui.viewer.page.getByTestId('pose-hint').getByText('Hold first.').waitFor();
     assert.equal(await slider(0).isDisabled(), true);
   });
 
   it('sends a joint to the angle of its slider, and the others nowhere', async () => {
-    await viewer.takeControl();
+    await ui.viewer.takeControl();
     await slider(1).fill('30');
     await waitForPose((angles) => JSON.stringify(angles) === '[null,30,null,null,null]');
     await cell(1, 'set-point').getByText('30.0').waitFor();
-    await viewer.screenshot('robot_held');
+    await ui.viewer.screenshot('robot_held');
   });
 
   it('sends at most 50 messages a second while a slider is dragged, and the last angle', async () => {
-    await viewer.takeControl();
+    await ui.viewer.takeControl();
     await slider(0).evaluate((element: HTMLInputElement) => {
       for (let angle = 0; angle <= 60; angle += 0.5) {
         element.value = String(angle);
@@ -83,149 +71,145 @@ describe('the page of a robot on a bus', () => {
       }
     });
     await waitForPose((angles) => angles[0] === 60);
-    assert.ok(robot.poses.length <= 3, `found ${robot.poses.length} messages for one burst`);
+    assert.ok(ui.program.poses.length <= 3, `found ${ui.program.poses.length} messages for one burst`);
   });
 
   it('takes a typed angle, and rejects one beyond the limits of the joint', async () => {
-    await viewer.takeControl();
-    const field = viewer.page.getByLabel('Position of J3 in degrees');
+    await ui.viewer.takeControl();
+    const field = ui.viewer.page.getByLabel('Position of J3 in degrees');
     await field.fill('120');
     await field.press('Enter');
-    await viewer.page.getByText('J3: found 120, expected -90 to 90 degrees').waitFor();
-    assert.equal(robot.poses.length, 0);
+    await ui.viewer.page.getByText('J3: found 120, expected -90 to 90 degrees').waitFor();
+    assert.equal(ui.program.poses.length, 0);
     await field.fill('-45.5');
     await field.press('Enter');
     await waitForPose((angles) => angles[2] === -45.5);
   });
 
   it('sends all joints to 0', async () => {
-    await viewer.takeControl();
-    await viewer.page.getByLabel('Speed').fill('20');
-    await viewer.button('All to 0').click();
+    await ui.viewer.takeControl();
+    await ui.viewer.page.getByLabel('Speed').fill('20');
+    await ui.viewer.button('All to 0').click();
     await waitForPose((angles) => angles.every((angle) => angle === 0));
-    assert.equal(robot.poses.at(-1)?.speed, 20);
+    assert.equal(ui.program.poses.at(-1)?.speed, 20);
   });
 
   it('turns the joint whose link is dragged in the 3D view', async () => {
-    await viewer.takeControl();
-    const box = (await viewer.page.locator('.scene').boundingBox()) as { x: number; y: number; width: number; height: number };
-    const { mouse } = viewer.page;
+    await ui.viewer.takeControl();
+    const box = (await ui.viewer.page.locator('.scene').boundingBox()) as { x: number; y: number; width: number; height: number };
+    const { mouse } = ui.viewer.page;
     // Finds the robot: a joint is lit where the pointer is on it.
-    const lit = viewer.page.locator('[data-pose].hovered');
+    const lit = ui.viewer.page.locator('[data-pose].hovered');
     const y = box.y + box.height / 2;
     let x = box.x + box.width * 0.3;
     for (; (await lit.count()) === 0 && x < box.x + box.width * 0.7; x += 12) {
       await mouse.move(x, y);
-      await viewer.page.waitForTimeout(60);
+      await ui.viewer.page.waitForTimeout(60);
     }
     await mouse.down();
     await mouse.move(x, y - 15);
-    await viewer.page.waitForTimeout(100);
+    await ui.viewer.page.waitForTimeout(100);
     await mouse.move(x, y - 40, { steps: 5 });
     await waitForPose((angles) => angles.some((angle) => angle !== null && Math.abs(angle) > 3));
-    assert.equal(robot.poses.at(-1)?.angles.filter((angle) => angle !== null).length, 1);
-    await viewer.screenshot('robot_pulled');
+    assert.equal(ui.program.poses.at(-1)?.angles.filter((angle) => angle !== null).length, 1);
+    await ui.viewer.screenshot('robot_pulled');
     await mouse.up();
   });
 
   it('shows the simulation as a ghost, until it is switched off', async () => {
-    const ghostPixels = async () => countPixels(await pixelsOf(viewer.page, viewer.page.locator('.scene')), isGhost);
+    const ghostPixels = async () => countPixels(await pixelsOf(ui.viewer.page, ui.viewer.page.locator('.scene')), isGhost);
     // At most 100 looks: the view may need a while for its first picture.
     const waitForGhost = async (isThere: boolean) => {
       let count = await ghostPixels();
       for (let look = 0; look < 100 && count > 500 !== isThere; look += 1) {
-        await viewer.page.waitForTimeout(100);
+        await ui.viewer.page.waitForTimeout(100);
         count = await ghostPixels();
       }
       assert.equal(count > 500, isThere, `found ${count} pixels of the ghost`);
     };
     await waitForGhost(true);
-    await viewer.page.keyboard.press('Shift+G');
+    await ui.viewer.page.keyboard.press('Shift+G');
     await waitForGhost(false);
   });
 
   it('says which joints do not measure their angle', async () => {
-    robot.unmeasured = 2;
+    ui.program.unmeasured = 2;
     await cell(2, 'angle').getByText('not measured').waitFor();
     await cell(1, 'angle').getByText('-2.0').waitFor();
   });
 
   it('shows faults with what to do, silent nodes, and those of no joint', async () => {
-    Object.assign(robot.bus.modules[1] as object, { fault: 'over-current', advice: 'Free the joint, then clear the fault with “proleg bus”.' });
-    Object.assign(robot.bus.modules[3] as object, { silent: true });
-    robot.bus.modules.push(moduleOf(17, null));
-    robot.bus.other_host = true;
-    robot.publish();
-    await viewer.page.getByTestId('troubles').getByText('Free the joint').waitFor();
-    await viewer.page.getByTestId('troubles').getByText('J4: silent').waitFor();
+    Object.assign(ui.program.bus.modules[1] as object, { fault: 'over-current', advice: 'Free the joint, then clear the fault with “proleg bus”.' });
+    Object.assign(ui.program.bus.modules[3] as object, { silent: true });
+    ui.program.bus.modules.push(moduleOf(17, null));
+    ui.program.bus.other_host = true;
+    ui.program.publish();
+    await ui.viewer.page.getByTestId('troubles').getByText('Free the joint').waitFor();
+    await ui.viewer.page.getByTestId('troubles').getByText('J4: silent').waitFor();
     await cell(1, 'module').getByText('over-current').waitFor();
-    await viewer.page.locator('tr[data-node="17"]').getByText('not of this robot').waitFor();
-    await viewer.page.getByText('Another host drives modules on can0').waitFor();
-    assert.deepEqual(await seriousProblems(viewer), []);
-    await viewer.screenshot('robot_faults');
+    await ui.viewer.page.locator('tr[data-node="17"]').getByText('not of this robot').waitFor();
+    await ui.viewer.page.getByText('Another host drives modules on can0').waitFor();
+    assert.deepEqual(await seriousProblems(ui.viewer), []);
+    await ui.viewer.screenshot('robot_faults');
   });
 
   it('compares with the gait, and shows the first difference', async () => {
-    const verdict = viewer.page.getByTestId('gait');
+    const verdict = ui.viewer.page.getByTestId('gait');
     await verdict.getByText('5,000 compared, 0 differences, 2 missing').waitFor();
     assert.match((await verdict.getAttribute('class')) ?? '', /good/);
-    Object.assign(robot.session.gait as object, { differences: 1, first_difference: 'J2, tick 812: found 1, expected 2' });
-    robot.publish();
-    await viewer.page.getByText('J2, tick 812').waitFor();
+    Object.assign(ui.program.session.gait as object, { differences: 1, first_difference: 'J2, tick 812: found 1, expected 2' });
+    ui.program.publish();
+    await ui.viewer.page.getByText('J2, tick 812').waitFor();
     assert.match((await verdict.getAttribute('class')) ?? '', /bad/);
   });
 
   it('is red about modules that have not confirmed STOP', async () => {
-    Object.assign(robot.bus.modules[2] as object, { stop_confirmed: false });
-    robot.stopAnswer = { confirmed: 4, of: 5 };
-    await viewer.page.keyboard.press('Escape');
-    assert.match(await viewer.stopReport(), /4 of 5 confirmed\. Use the power switch/);
-    await viewer.page.getByTestId('unconfirmed-band').getByText('not confirmed by J3').waitFor();
+    Object.assign(ui.program.bus.modules[2] as object, { stop_confirmed: false });
+    ui.program.stopAnswer = { confirmed: 4, of: 5 };
+    await ui.viewer.page.keyboard.press('Escape');
+    assert.match(await ui.viewer.stopReport(), /4 of 5 confirmed\. Use the power switch/);
+    await ui.viewer.page.getByTestId('unconfirmed-band').getByText('not confirmed by J3').waitFor();
     assert.match((await cell(2, 'module').getAttribute('class')) ?? '', /bad/);
-    await viewer.screenshot('robot_unconfirmed');
+    await ui.viewer.screenshot('robot_unconfirmed');
   });
 
   it('says that the bus is lost, and greys what it showed of it', async () => {
-    Object.assign(robot.bus, { connected: false, problem: 'can0 is down: ip link set can0 up.' });
-    robot.publish();
-    await viewer.page.getByTestId('bus-band').getByText('can0 is down').waitFor();
-    await viewer.page.getByTestId('age-band').getByText(/Last heard \d+ s ago/).waitFor();
-    await viewer.page.locator('.live.old').waitFor();
-    await viewer.screenshot('robot_lost_bus');
+    Object.assign(ui.program.bus, { connected: false, problem: 'can0 is down: ip link set can0 up.' });
+    ui.program.publish();
+    await ui.viewer.page.getByTestId('bus-band').getByText('can0 is down').waitFor();
+    await ui.viewer.page.getByTestId('age-band').getByText(/Last heard \d+ s ago/).waitFor();
+    await ui.viewer.page.locator('.live.old').waitFor();
+    await ui.viewer.screenshot('robot_lost_bus');
   });
 
   it('greys what is older than 2 s while the program is silent, and comes back', async () => {
-    await viewer.waitForTick(20);
-    assert.equal(await viewer.page.locator('.live.old').count(), 0);
-    robot.isSilent = true;
-    await viewer.page.locator('.live.old').waitFor();
-    await viewer.page.getByTestId('age-band').waitFor();
-    robot.isSilent = false;
-    await viewer.page.locator('.live.old').waitFor({ state: 'detached' });
+    await ui.viewer.waitForTick(20);
+    assert.equal(await ui.viewer.page.locator('.live.old').count(), 0);
+    ui.program.isSilent = true;
+    await ui.viewer.page.locator('.live.old').waitFor();
+    await ui.viewer.page.getByTestId('age-band').waitFor();
+    ui.program.isSilent = false;
+    await ui.viewer.page.locator('.live.old').waitFor({ state: 'detached' });
   });
 
   it('has no actions of a simulation in its palette', async () => {
-    await viewer.page.keyboard.press('Control+k');
-    const list = viewer.page.getByRole('listbox', { name: 'Actions' });
+    await ui.viewer.page.keyboard.press('Control+k');
+    const list = ui.viewer.page.getByRole('listbox', { name: 'Actions' });
     await list.getByText('Power on: joints hold').waitFor();
     assert.equal(await list.getByText('Restart').count(), 0);
     assert.equal(await list.getByText('Swap the sets').count(), 0);
-    await viewer.button('Close').click();
+    await ui.viewer.button('Close').click();
   });
 
-  for (const [name, options] of [
-    ['narrow_light', { viewport: { width: 390, height: 800 }, colorScheme: 'light', hasTouch: true }],
-    ['narrow_dark', { viewport: { width: 390, height: 800 }, colorScheme: 'dark', hasTouch: true }],
-    ['wide_dark', { viewport: { width: 1400, height: 900 }, colorScheme: 'dark' }],
-  ] as const) {
-    it(`fits the window, without a serious problem for axe-core (${name})`, async () => {
-      const other = await Viewer.open(browser, robot.address, options);
-      await other.takeControl();
-      await other.waitForTick(20);
-      assert.equal(await other.page.evaluate(() => document.documentElement.scrollWidth), options.viewport.width);
-      assert.deepEqual(await seriousProblems(other), []);
-      await other.screenshot(`robot_${name}`);
-      await other.close();
+  for (const look of looks) {
+    it(`fits the window, without a serious problem for axe-core (${look.name})`, async () => {
+      const { viewer } = ui;
+      await viewer.lookAs(look);
+      await viewer.takeControl();
+      await viewer.waitForTick(20);
+      await assertNothingIsCut(viewer);
+      assert.deepEqual(await seriousProblems(viewer), []);
+      await viewer.screenshot(`robot_${look.name}`);
     });
   }
 });

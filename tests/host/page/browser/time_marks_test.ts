@@ -1,41 +1,26 @@
 // Markers and loop in the time view, from the keyboard.
 import assert from 'node:assert/strict';
-import { after, before, describe, it } from 'node:test';
-import type { Browser } from 'playwright-core';
-import { launchBrowser } from './support/browser.js';
+import { before, describe, it } from 'node:test';
+import { useUi } from './support/ui_fixture.js';
 import { UiProgram } from './support/ui_program.js';
-import { Viewer } from './support/viewer.js';
 
 describe('markers and loop', () => {
-  let browser: Browser;
-  let program: UiProgram;
-  let viewer: Viewer;
+  const ui = useUi(() => UiProgram.start(), { takesControl: true });
 
   before(async () => {
-    browser = await launchBrowser();
-    program = await UiProgram.start();
-    viewer = await Viewer.open(browser, program.address);
-    await viewer.takeControl();
-    await viewer.run();
-    await viewer.waitForTick(300);
-    await viewer.button('Pause').click();
-    await viewer.waitForState('paused');
-    await viewer.button('Run').focus();
-  });
-
-  after(async () => {
-    await viewer.close();
-    await program.end();
-    await browser.close();
+    await ui.viewer.run();
+    await ui.viewer.waitForTick(300);
+    await ui.viewer.pause();
+    await ui.viewer.button('Run').focus();
   });
 
   const press = async (...keys: string[]) => {
-    for (const key of keys) await viewer.page.keyboard.press(key);
+    for (const key of keys) await ui.viewer.page.keyboard.press(key);
   };
-  const cursor = async () => Number(/cursor at (\S+) s/.exec((await viewer.page.locator('.cursor-time').textContent()) ?? '')?.[1]);
+  const cursor = async () => Number(/cursor at (\S+) s/.exec((await ui.viewer.page.locator('.cursor-time').textContent()) ?? '')?.[1]);
 
   it('are set at the cursor, named, jumped to and removed', async () => {
-    const markers = viewer.page.getByTestId('markers');
+    const markers = ui.viewer.page.getByTestId('markers');
     await press('Shift+ArrowLeft', 'm', 'Shift+ArrowLeft', 'm');
     const first = await cursor();
     assert.equal(await markers.getByRole('listitem').count(), 2);
@@ -46,40 +31,40 @@ describe('markers and loop', () => {
     await press('l');
     await markers.getByTitle('Show this time').first().click();
     assert.equal(await cursor(), first);
-    await viewer.screenshot('markers');
+    await ui.viewer.screenshot('markers');
     await markers.getByLabel('Remove the marker stumbles').click();
     assert.equal(await markers.getByRole('listitem').count(), 1);
   });
 
   it('plays round between the ends of the loop, and pauses', async () => {
-    await viewer.button('Run').focus();
+    await ui.viewer.button('Run').focus();
     await press('[');
     const from = await cursor();
     for (let tick = 0; tick < 20; tick += 1) await press('ArrowRight');
     const to = await cursor();
     assert.ok(Math.abs(to - from - 0.2) < 0.001, `the loop from ${from} s to ${to} s is 0.2 s long`);
     await press(']');
-    await viewer.button('Pause loop').waitFor();
+    await ui.viewer.button('Pause loop').waitFor();
     const seen = new Set<number>();
-    await viewer.page.waitForFunction(() => document.querySelector('.cursor-time') !== null);
+    await ui.viewer.page.waitForFunction(() => document.querySelector('.cursor-time') !== null);
     for (let look = 0; look < 400 && seen.size < 5; look += 1) seen.add(await cursor());
     assert.ok(seen.size >= 5, 'the cursor moves');
     for (const time of seen) assert.ok(time >= from && time <= to, `${time} s is in the loop`);
-    await viewer.screenshot('loop');
-    await viewer.button('Run').focus();
+    await ui.viewer.screenshot('loop');
+    await ui.viewer.button('Run').focus();
     await press('Shift+P');
-    await viewer.button('Play loop').waitFor();
+    await ui.viewer.button('Play loop').waitFor();
     const still = await cursor();
-    await viewer.page.waitForTimeout(300);
+    await ui.viewer.page.waitForTimeout(300);
     assert.equal(await cursor(), still);
   });
 
   it('has its keys in the list of keys', async () => {
     await press('?');
-    const keys = viewer.page.getByRole('dialog', { name: 'Keys' });
+    const keys = ui.viewer.page.getByRole('dialog', { name: 'Keys' });
     for (const title of ['Set a marker at the time cursor', 'Loop: begin at the time cursor', 'Loop: end at the time cursor']) {
       await keys.getByText(title).waitFor();
     }
-    await viewer.button('Close').click();
+    await ui.viewer.button('Close').click();
   });
 });

@@ -1,113 +1,100 @@
 // Parameters: written into the file, and the table of all values.
 import assert from 'node:assert/strict';
 import { appendFileSync, cpSync, readFileSync, rmSync } from 'node:fs';
-import { after, before, describe, it } from 'node:test';
-import type { Browser, Locator } from 'playwright-core';
-import { launchBrowser } from './support/browser.js';
+import { describe, it } from 'node:test';
+import type { Locator } from 'playwright-core';
+import { useUi } from './support/ui_fixture.js';
 import { UiProgram } from './support/ui_program.js';
-import { Viewer } from './support/viewer.js';
 
 const folder = 'build/page_test/tuned';
 const file = `${folder}/uniform.actuation.xml`;
 
 describe('parameters of a robot with files', () => {
-  let browser: Browser;
-  let program: UiProgram;
-  let viewer: Viewer;
-
-  before(async () => {
+  const copyAndStart = () => {
     rmSync(folder, { recursive: true, force: true });
     cpSync('sim/scenarios/travelling_wave', folder, { recursive: true });
-    browser = await launchBrowser();
-    program = await UiProgram.start(`${folder}/uniform.simulation.xml`);
-    viewer = await Viewer.open(browser, program.address);
-    await viewer.takeControl();
-  });
-
-  after(async () => {
-    await viewer.close();
-    await program.end();
-    await browser.close();
-  });
+    return UiProgram.start(`${folder}/uniform.simulation.xml`);
+  };
+  const ui = useUi(copyAndStart, { takesControl: true });
 
   const type = async (parameter: string, value: string) => {
-    const field = viewer.parameter(parameter).getByRole('textbox').first();
+    const field = ui.viewer.parameter(parameter).getByRole('textbox').first();
     await field.fill(value);
     await field.press('Enter');
   };
   const press = (...keys: string[]) =>
-    keys.reduce((before, key) => before.then(() => viewer.page.keyboard.press(key)), Promise.resolve());
+    keys.reduce((before, key) => before.then(() => ui.viewer.page.keyboard.press(key)), Promise.resolve());
 
   it('are written into the file where they are chosen, from the keyboard alone', async () => {
     const text = readFileSync(file, 'utf8');
     await type('1.frequency', '0.5');
-    await viewer.parameter('1.amplitude').locator('[data-cell="3"]').focus();
-    await viewer.page.keyboard.type('20');
+    await ui.viewer.parameter('1.amplitude').locator('[data-cell="3"]').focus();
+    await ui.viewer.page.keyboard.type('20');
     await press('Enter', 'w');
-    const diff = viewer.page.getByTestId('diff');
+    const diff = ui.viewer.page.getByTestId('diff');
     const rows = diff.getByRole('listitem');
     await rows.nth(1).waitFor();
     assert.equal(await rows.count(), 2);
     assert.match((await rows.first().textContent()) ?? '', /amplitude of J2new, after line 8/);
-    await viewer.screenshot('apply_to_file');
+    await ui.viewer.screenshot('apply_to_file');
     // Close, All, None, the first line, the second one.
     await press('Tab', 'Tab', 'Tab', 'Tab', 'Enter');
-    await viewer.button('Write 1 change').waitFor();
+    await ui.viewer.button('Write 1 change').waitFor();
     await press('Tab', 'Enter');
     await diff.waitFor({ state: 'detached' });
     const added = '    <parameter name="amplitude" value="20" unit="deg" joint="J2"/>\n';
     const common = '    <parameter name="amplitude" value="40" unit="deg"/>\n';
     assert.equal(readFileSync(file, 'utf8'), text.replace(common, common + added));
-    const values = await viewer.valuesOf('1.amplitude');
+    const values = await ui.viewer.valuesOf('1.amplitude');
     assert.deepEqual(values.map((value) => value.file), ['40', '40', '40', '20', '40']);
-    assert.deepEqual((await viewer.valuesOf('1.frequency')).map((value) => value.file), ['1', '1', '1', '1', '1']);
+    assert.deepEqual((await ui.viewer.valuesOf('1.frequency')).map((value) => value.file), ['1', '1', '1', '1', '1']);
   });
 
   it('are not written over what another program has written', async () => {
     appendFileSync(file, '<!-- another hand -->\n');
     const text = readFileSync(file, 'utf8');
-    await viewer.button('Apply to file…').click();
-    await viewer.button('Write 1 change').click();
-    await viewer.page.getByRole('alert').filter({ hasText: 'found a file that has changed' }).waitFor();
+    await ui.viewer.button('Apply to file…').click();
+    await ui.viewer.button('Write 1 change').click();
+    await ui.viewer.page.getByRole('alert').filter({ hasText: 'found a file that has changed' }).waitFor();
     assert.equal(readFileSync(file, 'utf8'), text);
-    await viewer.button('Close').click();
+    await ui.viewer.button('Close').click();
   });
 
   it('are copied from the table, and pasted into it as one change', async () => {
-    await viewer.parameter('1.frequency').getByRole('textbox').first().press('Tab');
-    await viewer.page.getByTestId('scene').focus();
+    await ui.viewer.parameter('1.frequency').getByRole('textbox').first().press('Tab');
+    await ui.viewer.page.getByTestId('scene').focus();
     await press('v');
-    const table = viewer.page.getByTestId('value-table');
+    const table = ui.viewer.page.getByTestId('value-table');
     await table.waitFor();
     const cell = (row: number, column: number) => table.locator(`[data-at="${row},${column}"]`);
     await cell(0, 1).focus();
     await pasteInto(cell(0, 1), '11\t12,5\r\n0.5\t0.25\r\n');
-    await viewer.page.waitForFunction(() => document.querySelector<HTMLInputElement>('[data-at="0,2"]')?.value === '12.5');
+    await ui.viewer.page.waitForFunction(() => document.querySelector<HTMLInputElement>('[data-at="0,2"]')?.value === '12.5');
     assert.deepEqual(await textsOf(0), ['40', '11', '12.5', '20', '40']);
     await cell(0, 1).focus();
     await press('Shift+ArrowRight', 'Shift+ArrowRight', 'Shift+ArrowDown');
-    await viewer.screenshot('value_table');
+    await ui.viewer.screenshot('value_table');
     assert.equal(await copyFrom(cell(0, 1)), '11\t12.5\t20\n0.5\t0.25\t0.5');
     await press('Control+z');
-    await viewer.page.waitForFunction(() => document.querySelector<HTMLInputElement>('[data-at="0,2"]')?.value === '40');
+    await ui.viewer.page.waitForFunction(() => document.querySelector<HTMLInputElement>('[data-at="0,2"]')?.value === '40');
     assert.deepEqual(await textsOf(0), ['40', '40', '40', '20', '40']);
   });
 
   it('stay as they are if a cell of what is pasted is bad, and the cell is marked', async () => {
-    const cell = viewer.page.locator('[data-at="0,1"]');
+    const cell = ui.viewer.page.locator('[data-at="0,1"]');
     await pasteInto(cell, '5\t6\tmuch');
-    await viewer.page.getByRole('alert').filter({ hasText: "J2: found 'much', expected a number" }).waitFor();
-    assert.equal(await viewer.page.locator('[data-at="0,3"]').getAttribute('aria-invalid'), 'true');
-    await viewer.screenshot('value_table_problem');
+    await ui.viewer.page.getByRole('alert').filter({ hasText: "J2: found 'much', expected a number" }).waitFor();
+    assert.equal(await ui.viewer.page.locator('[data-at="0,3"]').getAttribute('aria-invalid'), 'true');
+    await ui.viewer.screenshot('value_table_problem');
     assert.deepEqual(await textsOf(0), ['40', '40', '40', '20', '40']);
     await cell.fill('7,5');
     await press('Enter');
-    await viewer.page.waitForFunction(() => document.querySelector<HTMLInputElement>('[data-at="0,1"]')?.value === '7.5');
-    await viewer.button('Close').click();
+    await ui.viewer.page.waitForFunction(() => document.querySelector<HTMLInputElement>('[data-at="0,1"]')?.value === '7.5');
+    await ui.viewer.button('Close').click();
   });
 
   const textsOf = (row: number) =>
-    viewer.page.locator(`[data-at^="${row},"]`).evaluateAll((cells) => cells.map((cell) => (cell as HTMLInputElement).value));
+    ui.viewer.page.locator(`[data-at^="${row},"]`).evaluateAll((cells) => cells.map((cell) => (cell as HTMLInputElement).value));
   const pasteInto = (cell: Locator, text: string) =>
     cell.evaluate((element, pasted) => {
       const clipboardData = new DataTransfer();

@@ -1,40 +1,21 @@
 // Two viewers of one robot; a reload; a program that ends.
 import assert from 'node:assert/strict';
-import { after, afterEach, before, beforeEach, describe, it } from 'node:test';
-import type { Browser } from 'playwright-core';
-import { launchBrowser } from './support/browser.js';
+import { beforeEach, describe, it } from 'node:test';
+import { useUi } from './support/ui_fixture.js';
 import { UiProgram } from './support/ui_program.js';
-import { Viewer } from './support/viewer.js';
+import { lostConnection, type Viewer } from './support/viewer.js';
 
 describe('viewers', () => {
-  let browser: Browser;
-  let program: UiProgram;
+  const ui = useUi(() => UiProgram.start());
   let first: Viewer;
   let second: Viewer;
 
-  before(async () => {
-    browser = await launchBrowser();
-  });
-
-  after(async () => {
-    await browser.close();
-  });
-
   beforeEach(async () => {
-    program = await UiProgram.start();
-    first = await Viewer.open(browser, program.address);
-    second = await Viewer.open(browser, program.address);
+    first = ui.viewer;
+    second = await ui.look();
     await first.takeControl();
+    if (await first.button('Pause').isVisible()) await first.pause();
   });
-
-  afterEach(async () => {
-    await program.end();
-  });
-
-  async function closeBoth(): Promise<void> {
-    await first.close();
-    await second.close();
-  }
 
   it('see who has control, and what the holder does', async () => {
     await second.page.getByTestId('control').filter({ hasText: 'has control' }).waitFor();
@@ -42,7 +23,6 @@ describe('viewers', () => {
     await second.waitForState('running');
     await second.waitForTick(50);
     assert.equal(await second.button('Pause').isDisabled(), true);
-    await closeBoth();
   });
 
   it('hand over: one asks, the other gives', async () => {
@@ -57,7 +37,6 @@ describe('viewers', () => {
     await first.waitForState('running');
     await second.button('Pause').click();
     await first.waitForState('paused');
-    await closeBoth();
   });
 
   it('may keep control, and who asked reads so', async () => {
@@ -66,13 +45,11 @@ describe('viewers', () => {
     await second.page.getByRole('list', { name: 'Notices' }).getByRole('listitem').first().waitFor();
     await first.button('Release').waitFor();
     assert.equal(await second.button('Ask for control').isEnabled(), true);
-    await closeBoth();
   });
 
   it('may take control at once after it was released', async () => {
     await first.button('Release').click();
     await second.takeControl();
-    await closeBoth();
   });
 
   it('look on after a reload, while the robot runs on', async () => {
@@ -84,42 +61,38 @@ describe('viewers', () => {
     await first.waitForTick(tick + 20);
     assert.equal(await first.button('Pause').isDisabled(), true);
     await first.takeControl();
-    await first.button('Pause').click();
-    await first.waitForState('paused');
-    await closeBoth();
+    await first.pause();
   });
 
-  it('read that the program has ended', async () => {
-    await first.run();
-    await first.waitForTick(50);
-    await program.end();
-    await first.page.getByTestId('connection-band').filter({ hasText: 'The program has ended' }).waitFor();
-    await first.waitForState('state unknown');
-    assert.equal((await first.angles()).length, 5, 'what was seen stays');
-    await first.screenshot('ended');
-    await first.close([/WebSocket connection .* failed/]);
-    await second.close([/WebSocket connection .* failed/]);
-  });
-
-  it('read that the connection is lost when the program is killed', async () => {
-    await program.kill();
-    await first.page.getByTestId('connection-band').filter({ hasText: 'No connection to the program' }).waitFor();
-    await first.close([/WebSocket connection .* failed/]);
-    await second.close([/WebSocket connection .* failed/]);
+  it('without the right token read what to do', async () => {
+    const page = await ui.browser.newPage();
+    const address = ui.program.address.replace(/#.*/, '');
+    await page.goto(address);
+    await page.getByText('This address has no token').waitFor();
+    await page.goto(`${address}#wrong`);
+    await page.reload();
+    await page.getByTestId('connection-band').filter({ hasText: 'does not accept this page' }).waitFor();
+    await page.close();
   });
 });
 
-describe('a viewer without the right token', () => {
-  it('reads what to do', async () => {
-    const browser = await launchBrowser();
-    const program = await UiProgram.start();
-    const page = await browser.newPage();
-    await page.goto(program.address.replace(/#.*/, ''));
-    await page.getByText('This address has no token').waitFor();
-    await page.goto(program.address.replace(/#.*/, '#wrong'));
-    await page.reload();
-    await page.getByTestId('connection-band').filter({ hasText: 'does not accept this page' }).waitFor();
-    await program.end();
-    await browser.close();
+describe('viewers of a program that ends', () => {
+  const ui = useUi(() => UiProgram.start(), { isPerTest: true, takesControl: true });
+
+  it('read that the program has ended', async () => {
+    ui.viewer.expected.push(lostConnection);
+    await ui.viewer.run();
+    await ui.viewer.waitForTick(50);
+    await ui.program.end();
+    await ui.viewer.page.getByTestId('connection-band').filter({ hasText: 'The program has ended' }).waitFor();
+    await ui.viewer.waitForState('state unknown');
+    assert.equal((await ui.viewer.angles()).length, 5, 'what was seen stays');
+    await ui.viewer.screenshot('ended');
+  });
+
+  it('read that the connection is lost when the program is killed', async () => {
+    ui.viewer.expected.push(lostConnection);
+    await ui.program.kill();
+    await ui.viewer.page.getByTestId('connection-band').filter({ hasText: 'No connection to the program' }).waitFor();
   });
 });

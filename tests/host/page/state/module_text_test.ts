@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
-import { moduleState, troublesOf } from '../../../../host/page/source/state/module_text.js';
+import { currentLimitOf, currentState, moduleState, troublesOf } from '../../../../host/page/source/state/module_text.js';
 import { describeGait } from '../../../../host/page/source/state/gait_text.js';
 import type { BusDocument, BusModule } from '../../../../host/page/source/wire/messages.js';
 
@@ -11,6 +11,7 @@ const healthy: BusModule = {
   drive: 'operation enabled',
   angle: 1,
   current: 300,
+  current_limit: 2000,
   temperature: 30,
   fault: null,
   advice: null,
@@ -50,6 +51,27 @@ describe('a module in words', () => {
     assert.deepEqual(troubles.map(({ text }) => text), ['J3: over-current', 'node 17: silent']);
     assert.equal(troubles[0]?.advice, 'Free the joint.');
     assert.match(troubles[1]?.advice ?? '', /power.*cable/);
+  });
+});
+
+describe('the current of a servo', () => {
+  it('is marked by a word and a tone near its limit, and above it', () => {
+    assert.deepEqual(currentState(1599, 2000), { text: '1599', tone: '' });
+    assert.deepEqual(currentState(1600, 2000), { text: '1600 near limit', tone: 'near-limit' });
+    assert.deepEqual(currentState(2000, 2000), { text: '2000 near limit', tone: 'near-limit' });
+    assert.deepEqual(currentState(2001, 2000), { text: '2001 above limit', tone: 'above-limit' });
+  });
+
+  it('is a number alone without a limit, or while none is known', () => {
+    assert.deepEqual(currentState(9000, 0), { text: '9000', tone: '' });
+    assert.deepEqual(currentState(9000, null), { text: '9000', tone: '' });
+    assert.deepEqual(currentState(null, 2000), { text: '–', tone: '' });
+  });
+
+  it('has the limit of the module of its joint', () => {
+    assert.equal(currentLimitOf(busOf({ ...healthy, joint: 1, current_limit: 500 }, healthy), 2), 2000);
+    assert.equal(currentLimitOf(busOf(healthy), 0), null);
+    assert.equal(currentLimitOf(null, 2), null);
   });
 });
 

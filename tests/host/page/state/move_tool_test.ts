@@ -8,18 +8,19 @@ import type { SessionDocument } from '../../../../host/page/source/wire/messages
 function setUp() {
   const state = new PageState();
   const asked: RobotPlace[] = [];
+  let isRefused = false;
   const tool = new MoveTool(state, (place) => {
     asked.push(place);
-    return Promise.resolve(null);
+    return Promise.resolve(isRefused ? null : { tick: 7 });
   });
   state.receiveStatus({ state: 'open', client: 3, program: 'proleg' });
   state.control.value = { epoch: 1, holder: { client: 3, name: 'me' }, away: false, request: null };
-  const setState = (name: SessionDocument['state']) => {
-    state.session.value = { state: name, head: [1, 2, 0.5, 1, 0, 0, 0] } as unknown as SessionDocument;
+  const setState = (name: SessionDocument['state'], x = 1) => {
+    state.session.value = { state: name, head: [x, 2, 0.5, 1, 0, 0, 0] } as unknown as SessionDocument;
   };
   setState('paused');
   tool.isOn.value = true;
-  return { state, asked, tool, setState };
+  return { state, asked, tool, setState, refuse: () => (isRefused = true) };
 }
 
 describe('moving the robot', () => {
@@ -41,6 +42,28 @@ describe('moving the robot', () => {
     tool.drag([0, 0, 0], 0);
     await tool.drop();
     assert.deepEqual(asked, []);
+  });
+
+  it('adds up steps that come faster than the documents of the program', async () => {
+    const { tool, asked, setState } = setUp();
+    const first = tool.step([0.5, 0, 0], 0);
+    const second = tool.step([0.5, 0, 0], 5);
+    await Promise.all([first, second]);
+    await tool.step([0.5, 0, 0], 0);
+    assert.deepEqual(asked.map(({ position, turn }) => [position[0], turn]), [[1.5, 0], [2, 5], [2.5, 0]]);
+    assert.equal(tool.preview.value, null);
+    // The document says where the robot is: it may have been lifted.
+    setState('paused', 2.25);
+    await tool.step([0.5, 0, 0], 0);
+    assert.equal(asked.at(-1)?.position[0], 2.75);
+  });
+
+  it('begins where the robot is after a refusal', async () => {
+    const { tool, asked, refuse } = setUp();
+    refuse();
+    await tool.step([0.5, 0, 0], 0);
+    await tool.step([0, 0.5, 0], 0);
+    assert.deepEqual(asked.at(-1)?.position, [1, 2.5, 0.5]);
   });
 
   it('is only for a paused robot, and for who has control', async () => {

@@ -40,7 +40,8 @@ TEST_F(BusDocumentTest, NamesTheJointOfAModuleAndNoneForAForeignNode) {
 
 TEST_F(BusDocumentTest, WhatIsNotKnownIsNull) {
   node.state = std::nullopt;
-  for (const char* name : {"state", "drive", "angle", "current", "temperature", "fault", "advice", "stop_confirmed"}) {
+  for (const char* name :
+       {"state", "drive", "angle", "current", "current_limit", "temperature", "fault", "advice", "stop_confirmed"}) {
     EXPECT_TRUE(module()[name].is_null()) << name;
   }
   node.measured = canopen::Monitoring{4, canopen::Monitoring::not_measured, 350, 31, 0};
@@ -48,6 +49,13 @@ TEST_F(BusDocumentTest, WhatIsNotKnownIsNull) {
   EXPECT_EQ(module()["current"], 350);
   EXPECT_EQ(module()["temperature"], 31);
   EXPECT_TRUE(module()["fault"].is_null());
+}
+
+TEST_F(BusDocumentTest, ALimitOfTheCurrentThatIsOffIsNotAnUnknownOne) {
+  node.current_limit = 2000;
+  EXPECT_EQ(module()["current_limit"], 2000);
+  node.current_limit = 0;
+  EXPECT_EQ(module()["current_limit"], 0);
 }
 
 TEST_F(BusDocumentTest, AFaultSaysWhatToDo) {

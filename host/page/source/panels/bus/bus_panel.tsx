@@ -1,7 +1,8 @@
 // The bus: how full it is, and all modules on it, also those that are not of this robot.
 import type { PageApp } from '../../page_app.js';
-import { moduleState } from '../../state/module_text.js';
+import { currentState, moduleState } from '../../state/module_text.js';
 import type { BusDocument, BusModule } from '../../wire/messages.js';
+import { TableHead } from '../table_head.js';
 import { CommandButton } from './command_button.js';
 
 function Facts({ bus }: { bus: BusDocument }) {
@@ -24,6 +25,8 @@ function Facts({ bus }: { bus: BusDocument }) {
 
 const measured = (value: number | null, decimals: number) => (value === null ? '–' : value.toFixed(decimals));
 
+const limitText = (limit: number | null) => (limit === 0 ? 'off' : measured(limit, 0));
+
 function stopText(confirmed: boolean | null): string {
   return confirmed === null ? '–' : confirmed ? 'confirmed' : 'NOT CONFIRMED';
 }
@@ -31,6 +34,7 @@ function stopText(confirmed: boolean | null): string {
 function ModuleRow({ app, module }: { app: PageApp; module: BusModule }) {
   const { joint } = module;
   const { text, tone } = moduleState(module);
+  const current = currentState(module.current, module.current_limit);
   const isLit = joint !== null && app.selection.hoveredJoint.value === joint;
   return (
     <tr
@@ -44,7 +48,10 @@ function ModuleRow({ app, module }: { app: PageApp; module: BusModule }) {
       <td>{module.state ?? '–'}</td>
       <td class={`module ${tone}`}>{text}</td>
       <td>{measured(module.angle, 1)}</td>
-      <td>{measured(module.current, 0)}</td>
+      <td class={current.tone} data-value="current">
+        {current.text}
+      </td>
+      <td data-value="limit">{limitText(module.current_limit)}</td>
       <td>{measured(module.temperature, 0)}</td>
       <td class={module.stop_confirmed === false ? 'module bad' : ''}>{stopText(module.stop_confirmed)}</td>
     </tr>
@@ -70,15 +77,7 @@ export function BusPanel({ app }: { app: PageApp }) {
       </div>
       <div class="table-frame" tabIndex={0} role="group" aria-label="Table of modules">
         <table>
-          <thead>
-            <tr>
-              {['node', 'joint', 'NMT', 'drive', 'angle °', 'current mA', '°C', 'last STOP'].map((title) => (
-                <th scope="col" key={title}>
-                  {title}
-                </th>
-              ))}
-            </tr>
-          </thead>
+          <TableHead titles={['node', 'joint', 'NMT', 'drive', 'angle °', 'current mA', 'limit mA', '°C', 'last STOP']} />
           <tbody>
             {bus?.modules.map((module) => (
               <ModuleRow key={module.node} app={app} module={module} />

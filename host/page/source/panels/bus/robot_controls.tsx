@@ -4,6 +4,7 @@ import { recordOrEnd } from '../../page_actions.js';
 import { pauseIcon, powerIcon, recordIcon, runIcon } from '../icons.js';
 import { TickCounter } from '../tick_counter.js';
 import { CommandButton } from './command_button.js';
+import { TroubleList } from './trouble_list.js';
 
 // What the robot does, and what the user can do next.
 const hints = {
@@ -78,6 +79,7 @@ export function RobotControls({ app }: { app: PageApp }) {
           ? 'You look on. Take control to drive the robot.'
           : `${hints[session.state]}${isOff && session.stopped_by ? ` Stopped by: ${stoppedBy}.` : ''}`}
       </span>
+      <TroubleList app={app} />
     </section>
   );
 }

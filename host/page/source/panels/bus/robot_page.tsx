@@ -12,7 +12,6 @@ import { BusPanel } from './bus_panel.js';
 import { GaitPanel } from './gait_panel.js';
 import { PosePanel } from './pose_panel.js';
 import { RobotControls } from './robot_controls.js';
-import { TroubleList } from './trouble_list.js';
 
 export function RobotPage({ app }: { app: PageApp }) {
   // Measured against set-point, before the user chooses lines.
@@ -28,7 +27,6 @@ export function RobotPage({ app }: { app: PageApp }) {
         <BusPanel app={app} />
       </div>
       <div class="live-side">
-        <TroubleList app={app} />
         <PosePanel app={app} />
         <JointTable app={app} />
         <GaitPanel app={app} />

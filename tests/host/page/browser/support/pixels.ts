@@ -36,6 +36,26 @@ export function countPixels({ data }: Pixels, matches: (red: number, green: numb
   return count;
 }
 
+// Pixels that fulfil the condition, and all others up to three pixels beside and above them.
+export function pixelsInside(
+  { width, height, data }: Pixels,
+  matches: (red: number, green: number, blue: number) => boolean,
+): { x: number; y: number }[] {
+  const margin = 3;
+  const fulfils = (x: number, y: number) => {
+    const at = 4 * (y * width + x);
+    return matches(data[at] as number, data[at + 1] as number, data[at + 2] as number);
+  };
+  const offsets = Array.from({ length: 2 * margin + 1 }, (_, i) => i - margin);
+  const inside: { x: number; y: number }[] = [];
+  for (let y = margin; y < height - margin; y += 1) {
+    for (let x = margin; x < width - margin; x += 1) {
+      if (offsets.every((down) => offsets.every((right) => fulfils(x + right, y + down)))) inside.push({ x, y });
+    }
+  }
+  return inside;
+}
+
 export function countDifferences(a: Pixels, b: Pixels, least = 24): number {
   let count = 0;
   for (let i = 0; i < a.data.length; i += 4) {

@@ -58,6 +58,35 @@ const signals: Signal[] = [
   { name: 'head', unit: '', scale: 1, count: 7, of: 'robot' },
 ];
 
+const confirmedByAll = { confirmed: joints, of: joints };
+
+const initialBus = (): BusDocument => ({
+  address: 'can0',
+  connected: true,
+  problem: null,
+  load: 0.118,
+  syncs: 100,
+  other_host: false,
+  latency_ms: 2.1,
+  modules: Array.from({ length: joints }, (_, j) => moduleOf(j + 1, j)),
+});
+
+const initialSession = (): BusSession => ({
+  kind: 'bus',
+  state: 'held',
+  run: 1,
+  tick: 0,
+  time_s: 0,
+  stopped_by: null,
+  recording: null,
+  changed: false,
+  undo: null,
+  redo: null,
+  failure: null,
+  gait: { compared: 5000, differences: 0, missing: 2, first_difference: null, end: null },
+  started_with: 'power',
+});
+
 interface Viewer {
   peer: WebSocketPeer;
   client: number;
@@ -67,36 +96,13 @@ interface Viewer {
 
 export class ScriptedRobot {
   // What the script may change; `publish` sends it.
-  readonly bus: BusDocument = {
-    address: 'can0',
-    connected: true,
-    problem: null,
-    load: 0.118,
-    syncs: 100,
-    other_host: false,
-    latency_ms: 2.1,
-    modules: Array.from({ length: joints }, (_, j) => moduleOf(j + 1, j)),
-  };
-  readonly session: BusSession = {
-    kind: 'bus',
-    state: 'held',
-    run: 1,
-    tick: 0,
-    time_s: 0,
-    stopped_by: null,
-    recording: null,
-    changed: false,
-    undo: null,
-    redo: null,
-    failure: null,
-    gait: { compared: 5000, differences: 0, missing: 2, first_difference: null, end: null },
-    started_with: 'power',
-  };
+  readonly bus = initialBus();
+  readonly session = initialSession();
   isSilent = false; // sends nothing at all
   unmeasured: number | null = null; // a joint that does not measure its angle
   // Arguments of `pose`, and when they came, in milliseconds.
   readonly poses: { time: number; angles: (number | null)[]; speed: number }[] = [];
-  stopAnswer = { confirmed: joints, of: joints };
+  stopAnswer = confirmedByAll;
   readonly setpoints = new Array<number>(joints).fill(0); // degrees
   private readonly control: ControlDocument = { epoch: 0, holder: null, away: false, request: null };
   private readonly peers: WebSocketPeer[] = []; // also those that are only for STOP
@@ -134,6 +140,17 @@ export class ScriptedRobot {
 
   get address(): string {
     return `http://127.0.0.1:${(this.server.address() as AddressInfo).port}/#token`;
+  }
+
+  // As at the start. Nobody has control.
+  reset(): void {
+    Object.assign(this.bus, initialBus());
+    Object.assign(this.session, initialSession(), { run: this.session.run + 1 });
+    Object.assign(this, { isSilent: false, unmeasured: null, stopAnswer: confirmedByAll });
+    this.control.holder = null;
+    this.poses.length = 0;
+    this.setpoints.fill(0);
+    this.publish();
   }
 
   publish(): void {
@@ -256,6 +273,7 @@ export function moduleOf(node: number, joint: number | null): BusModule {
     drive: 'operation enabled',
     angle: 12.5,
     current: 320,
+    current_limit: 2000,
     temperature: 31,
     fault: null,
     advice: null,

@@ -3,10 +3,19 @@ import assert from 'node:assert/strict';
 import type { Browser, BrowserContext, BrowserContextOptions, Page } from 'playwright-core';
 
 const screenshots = 'build/page_test';
+export const lostConnection = /WebSocket connection .* failed/;
+
+export interface Look {
+  name: string;
+  width: number; // pixels
+  colours: 'light' | 'dark';
+}
 
 export class Viewer {
   // What the browser reported as an error or a warning, scripts that failed too.
   readonly reports: string[] = [];
+  // Patterns of reports that a test provokes. SwiftShader is slow at reading pixels, and says so.
+  readonly expected: RegExp[] = [/GPU stall due to ReadPixels/];
 
   private constructor(
     readonly page: Page,
@@ -50,12 +59,16 @@ export class Viewer {
     return viewer;
   }
 
-  // `expected`: patterns of reports that a test provokes.
-  async close(expected: readonly RegExp[] = []): Promise<void> {
+  async close(): Promise<void> {
     await this.context.close();
-    // SwiftShader is slow at reading pixels, and says so.
-    const known = [...expected, /GPU stall due to ReadPixels/];
-    assert.deepEqual(this.reports.filter((report) => !known.some((pattern) => pattern.test(report))), []);
+    assert.deepEqual(this.reports.filter((report) => !this.expected.some((pattern) => pattern.test(report))), []);
+  }
+
+  // The window and the colours that the system asks for.
+  async lookAs({ width, colours }: Look): Promise<void> {
+    await this.page.setViewportSize({ width, height: 900 });
+    await this.page.emulateMedia({ colorScheme: colours });
+    await this.page.waitForFunction((theme) => document.documentElement.dataset['theme'] === theme, colours);
   }
 
   async screenshot(name: string): Promise<void> {
@@ -68,14 +81,23 @@ export class Viewer {
       : this.page.getByRole('button', { name });
   }
 
+  // Unless this viewer has it.
   async takeControl(): Promise<void> {
-    await this.button(/^(Take|Ask for) control$/).click();
-    await this.button('Release').waitFor();
+    const take = this.button(/^(Take|Ask for) control$/);
+    const release = this.button('Release');
+    await take.or(release).waitFor();
+    if (await take.isVisible()) await take.click();
+    await release.waitFor();
   }
 
   async run(): Promise<void> {
     await this.button('Run').click();
     await this.waitForState('running');
+  }
+
+  async pause(): Promise<void> {
+    await this.button('Pause').click();
+    await this.waitForState('paused');
   }
 
   async waitForState(state: string): Promise<void> {

@@ -1,0 +1,105 @@
+// What a person who watches the bus sees of the modules, and what it costs the bus.
+
+#include "host/robot/bus_monitor.hpp"
+
+#include <gtest/gtest.h>
+
+#include "host/robot/sdo_queue.hpp"
+#include "live_bus.hpp"
+#include "shared/canopen/declared_objects.hpp"
+#include "shipped.hpp"
+
+namespace proleg::test {
+namespace {
+
+using host::BusMonitor;
+using host::MonitoredNode;
+
+/// Counts the requests of a host for an object.
+class RequestCount final : public host::BusUser {
+ public:
+  explicit RequestCount(canopen::Address address) : address_(address) {}
+  void receive(Microseconds /*now*/, const CanFrame& /*frame*/) override {}
+  void requested(Microseconds /*now*/, const CanFrame& frame) override {
+    const bool is_request = canopen::identifier::base_of(frame.identifier) == canopen::identifier::sdo_request;
+    const auto index = static_cast<std::uint16_t>(frame.data.at(1) | frame.data.at(2) << 8U);
+    count_ += is_request && index == address_.index && frame.data.at(3) == address_.sub ? 1 : 0;
+  }
+  [[nodiscard]] unsigned count() const { return count_; }
+
+ private:
+  canopen::Address address_;
+  unsigned count_ = 0;
+};
+
+class BusMonitorTest : public ::testing::Test {
+ protected:
+  BusMonitorTest() {
+    bus.attach(monitor);
+    bus.attach(requests);
+  }
+  void write_limit(std::uint8_t node, std::uint16_t limit_ma) {
+    host::SdoQueue queue(bus);
+    bus.attach(queue);
+    queue.write(node, canopen::object::current_limit.address, canopen::object::current_limit.type, limit_ma, {});
+    EXPECT_TRUE(bus.run_until(bus.now() + second, [&queue] { return queue.is_idle(); }));
+    bus.detach(queue);
+  }
+  void expect_limits(std::uint16_t first, std::uint16_t others) {
+    const std::vector<MonitoredNode> nodes = monitor.nodes();
+    ASSERT_EQ(nodes.size(), 5U);
+    for (const MonitoredNode& node : nodes) {
+      EXPECT_EQ(node.current_limit, node.node == 1 ? first : others) << "node " << int{node.node};
+    }
+  }
+
+  sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  LiveBus bus{scenario};
+  BusMonitor monitor{bus};
+  RequestCount requests{canopen::object::current_limit.address};
+};
+
+TEST_F(BusMonitorTest, ReadsTheLimitOfTheCurrentOnceFromEachModule) {
+  bus.run_for(10 * second);
+  expect_limits(2'000, 2'000);
+  EXPECT_EQ(requests.count(), 5U);
+}
+
+TEST_F(BusMonitorTest, ReadsTheLimitsAgainWhenAsked) {
+  bus.run_for(3 * second);
+  write_limit(1, 700);
+  bus.run_for(3 * second);
+  expect_limits(2'000, 2'000);
+  monitor.read_limits_again();
+  bus.run_for(3 * second);
+  expect_limits(700, 2'000);
+}
+
+TEST_F(BusMonitorTest, ReadsTheLimitAgainAfterTheRestartOfAModule) {
+  bus.run_for(3 * second);
+  write_limit(1, 700);
+  monitor.read_limits_again();
+  bus.run_for(3 * second);
+  expect_limits(700, 2'000);
+  bus.send(canopen::encode(canopen::NmtRequest{canopen::NmtCommand::reset_node, 1}));
+  bus.run_for(3 * second);
+  expect_limits(2'000, 2'000);
+}
+
+TEST_F(BusMonitorTest, FindsTheLimitsAlthoughFramesAreLost) {
+  bus.run_for(300'000);  // the modules have said that they are there
+  ASSERT_EQ(requests.count(), 0U);
+  bus.lose(0.3, 1);
+  bus.run_for(10 * second);
+  expect_limits(2'000, 2'000);
+}
+
+TEST_F(BusMonitorTest, ReadsNothingWhileTheBusBelongsToTheMaster) {
+  monitor.set_reads(false);
+  bus.run_for(3 * second);
+  EXPECT_EQ(requests.count(), 0U);
+  EXPECT_EQ(bus.sent_frames(), 0U);
+}
+
+}  // namespace
+}  // namespace proleg::test

@@ -143,6 +143,10 @@ RecordedSessionOptions recordings_of(const UiOptions& options) {
     }
     return {file.has_parent_path() ? file.parent_path() : ".", file.filename().string(), true};
   }
+  if (file.extension() == recording_extension) {
+    throw InputError(file.string(), 0, std::filesystem::exists(file, error) ? "no recording" : "no file",
+                     "a recording, as the option --record makes it");
+  }
   require_folder(options.recordings);
   return {options.recordings, std::nullopt, false};
 }

@@ -1,4 +1,4 @@
-"""page_for_others_test.py PROLEG_UI: `proleg ui --lan`, as a person uses it from the refusal on."""
+"""page_command_test.py PROLEG_UI: the command `proleg ui` without a browser: what it refuses, and `--lan` from the refusal on."""
 
 import os
 import re
@@ -15,7 +15,7 @@ PROLEG_UI = Path(sys.argv.pop(1)).resolve()
 WAIT_S = 60  # a limit for a test that fails, not a requirement
 
 
-class PageForOthers(unittest.TestCase):
+class PageTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -36,6 +36,8 @@ class PageForOthers(unittest.TestCase):
         self.assertEqual((process.returncode, output, errors.count("\n")), (2, "", 1), errors)
         return errors
 
+
+class PageForOthers(PageTest):
     def make_certificate(self):
         """With the command that the refusal prints."""
         command = re.search("openssl req .*", self.refused("--lan"))[0]
@@ -72,6 +74,34 @@ class PageForOthers(unittest.TestCase):
         self.assertIn("--certificate: found no --lan, expected --lan beside it", self.refused("--certificate", "page.pem"))
         self.assertIn("--key: found no --lan, expected --lan beside it", self.refused("--key", "page.pem"))
         self.assertIn("none.pem: found No such file or directory, expected a certificate", self.refused("--lan", "--certificate", "none.pem"))
+
+
+class BadInput(PageTest):
+    """One line each, status 2, before anything listens."""
+
+    def refused_for(self, *options):
+        return self.refused(*options).removeprefix("proleg ui: ").removesuffix("\n")
+
+    def test_files(self):
+        (self.folder / "text.proleg").write_text("garbage")
+        (self.folder / "empty.proleg").touch()
+        (self.folder / "bytes.simulation.xml").write_bytes(b"\x00\xff" * 100)
+        (self.folder / "text.simulation.xml").write_text("garbage")
+        expected = "expected a recording, as the option --record makes it"
+        self.assertEqual(self.refused_for("text.proleg"), "text.proleg: found no recording, " + expected)
+        self.assertEqual(self.refused_for("empty.proleg"), "empty.proleg: found no recording, " + expected)
+        self.assertEqual(self.refused_for("none.proleg"), "none.proleg: found no file, " + expected)
+        self.assertRegex(self.refused_for("none.simulation.xml"), "^none.simulation.xml: found no file that can be read")
+        self.assertRegex(self.refused_for("bytes.simulation.xml"), "^bytes.simulation.xml:1: found a byte 0")
+        self.assertRegex(self.refused_for("text.simulation.xml"), "^text.simulation.xml:1: found malformed XML")
+        self.assertRegex(self.refused_for("--recordings", "none"), "^--recordings: found 'none', expected a folder")
+
+    def test_options(self):
+        self.assertRegex(self.refused_for("--port", "70000"), "^--port: found '70000', expected 0 to 65535")
+        self.assertRegex(self.refused_for("--set", "amplitude=999"), "found '999' for parameter 'amplitude', expected a number from 0 to 90 deg")
+        self.assertRegex(self.refused_for("--bus", "elsewhere:1"), "expected a bus: a CAN interface such as can0")
+        self.assertRegex(self.refused_for("--bus", "sim:none.xml"), "^--bus: found 'sim:none.xml', expected sim:FILE")
+        self.assertRegex(self.refused_for(".", "--paused"), "^found an option of a robot with .")
 
 
 unittest.main()

@@ -141,7 +141,8 @@ def test_power_lets_no_joint_move(page, _):
     driver = Driver(page)
     driver.until(lambda: len(driver.documents.get("bus", {}).get("value", {}).get("modules", [])) == JOINTS)
     assert [module["joint"] for module in driver.bus()["modules"]] == list(range(JOINTS))
-    assert driver.session()["state"] == "off"
+    driver.until_state("off")
+    driver.until(lambda: [module["current_limit"] for module in driver.bus()["modules"]] == [2000] * JOINTS)
     driver.watch("angle")
     driver.drive()
     driver.until(lambda: None not in driver.angles())
@@ -312,6 +313,21 @@ def test_a_module_that_restarts_holds_where_its_joint_is(_, folder):
             driver.must("power", on=False)
             driver.until_state("off")
             assert driver.session()["failure"] is None
+        finally:
+            page.end()
+
+
+def test_a_limit_of_the_current_is_read_again_when_asked(_, folder):
+    with TcpBus() as bus:
+        page = Page(folder, bus=bus.address)
+        try:
+            driver = Driver(page)
+            limits = lambda: [module["current_limit"] for module in driver.bus()["modules"]]
+            driver.until(lambda: "bus" in driver.documents and limits() == [2000] * JOINTS)
+            subprocess.run([PROGRAMS / "proleg", "set", "3", "0x200A:1", "750", "--bus", bus.address], check=True,
+                           capture_output=True, timeout=LIMIT_S)
+            driver.must("scan")
+            driver.until(lambda: limits() == [2000, 2000, 750, 2000, 2000])
         finally:
             page.end()
 

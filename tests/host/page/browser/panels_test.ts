@@ -124,7 +124,7 @@ describe('the page of a robot on a bus', () => {
     Object.assign(third as object, { silent: true, stop_confirmed: false });
     Object.assign(fourth as object, { current: 1800 });
     ui.program.bus.modules.push(moduleOf(17, null));
-    Object.assign(ui.program.bus, { other_host: true, problem: 'The adapter reports errors on the bus.' });
+    Object.assign(ui.program.bus, { address: 'sim:scenarios/travelling_wave/uniform.simulation.xml', other_host: true, problem: 'The adapter reports errors on the bus.' });
     Object.assign(ui.program.session, { state: 'off', stopped_by: 'desk', failure: 'a module has not confirmed its new mode' });
     ui.program.publish();
     await ui.viewer.page.getByTestId('troubles').waitFor();

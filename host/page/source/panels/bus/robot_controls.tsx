@@ -8,7 +8,7 @@ import { TroubleList } from './trouble_list.js';
 
 // What the robot does, and what the user can do next.
 const hints = {
-  off: 'The servos have no power.',
+  off: 'The servos have no power. Power on to move joints, or run the gait.',
   starting: 'The modules are set up and get power. Joints that measure their angle stay, or go slowly to the start.',
   held: 'The joints hold. Move them below, or run the gait.',
   running: 'The joints follow the gait.',
@@ -22,6 +22,7 @@ export function RobotControls({ app }: { app: PageApp }) {
     return null;
   }
   const isOff = session.state === 'off';
+  const obstacle = isOff ? state.obstacleTo('power_on') : null;
   const { recording, stopped_by: stoppedBy } = session;
   return (
     <section class="run-controls" aria-label="Robot">
@@ -77,7 +78,7 @@ export function RobotControls({ app }: { app: PageApp }) {
       <span class="hint" data-testid="robot-hint">
         {state.isConnected.value && !state.isHolder.value
           ? 'You look on. Take control to drive the robot.'
-          : `${hints[session.state]}${isOff && session.stopped_by ? ` Stopped by: ${stoppedBy}.` : ''}`}
+          : `${obstacle ?? hints[session.state]}${isOff && session.stopped_by ? ` Stopped by: ${stoppedBy}.` : ''}`}
       </span>
       <TroubleList app={app} />
     </section>

@@ -142,12 +142,11 @@ export class ScriptedRobot {
     return `http://127.0.0.1:${(this.server.address() as AddressInfo).port}/#token`;
   }
 
-  // As at the start. Nobody has control.
+  // As at the start, but who has control keeps it.
   reset(): void {
     Object.assign(this.bus, initialBus());
     Object.assign(this.session, initialSession(), { run: this.session.run + 1 });
     Object.assign(this, { isSilent: false, unmeasured: null, stopAnswer: confirmedByAll });
-    this.control.holder = null;
     this.poses.length = 0;
     this.setpoints.fill(0);
     this.publish();

@@ -1,5 +1,5 @@
 // The parts of the page, put together: state, connection, STOP, data.
-import { effect, signal } from '@preact/signals-core';
+import { computed, effect, signal } from '@preact/signals-core';
 import { TelemetryHistory } from './data/telemetry_history.js';
 import type { RobotView } from './robot_view.js';
 import { ActionList } from './state/actions.js';
@@ -69,6 +69,11 @@ export class PageApp implements RobotView {
     });
     effect(() => {
       if (!this.poses.isPossible) this.poses.forget();
+    });
+    // A robot that moves again is not stopped.
+    const moves = computed(() => /^(running|starting)$/.test(this.state.session.value?.state ?? ''));
+    effect(() => {
+      if (moves.value) this.stop.clear();
     });
     setInterval(() => this.state.freshness.check(performance.now()), freshnessPeriod);
   }

@@ -23,7 +23,7 @@ class RequestCount final : public host::BusUser {
   void requested(Microseconds /*now*/, const CanFrame& frame) override {
     const bool is_request = canopen::identifier::base_of(frame.identifier) == canopen::identifier::sdo_request;
     const auto index = static_cast<std::uint16_t>(frame.data.at(1) | frame.data.at(2) << 8U);
-    count_ += is_request && index == address_.index && frame.data.at(3) == address_.sub ? 1 : 0;
+    count_ += is_request && index == address_.index && frame.data.at(3) == address_.sub ? 1U : 0U;
   }
   [[nodiscard]] unsigned count() const { return count_; }
 

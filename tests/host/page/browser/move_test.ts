@@ -32,6 +32,16 @@ describe('moving the robot', () => {
     }
     assert.ok(distance(head, place) <= 0.002, `found the head at ${head.join()}, expected ${place.join()}`);
   };
+  // Waits until the program has the head at another place than this, and returns where.
+  const headOtherThan = async (before: Place) => {
+    let head = await headOfProgram();
+    for (let look = 0; look < 500 && distance(head, before) < 0.02; look += 1) {
+      await ui.viewer.page.waitForTimeout(20);
+      head = await headOfProgram();
+    }
+    assert.ok(distance(head, before) >= 0.02, `the program has the head at ${head.join()}`);
+    return head;
+  };
   // Waits until the 3D view shows the head at another place than this, and returns where.
   const shownHeadOtherThan = async (before: Place) => {
     await ui.viewer.page.waitForFunction(
@@ -76,9 +86,7 @@ describe('moving the robot', () => {
     await shownHeadOtherThan(before);
     await ui.viewer.screenshot('move');
     await mouse.up();
-    for (let look = 0; look < 500 && distance(await headOfProgram(), before) < 0.02; look += 1) await ui.viewer.page.waitForTimeout(20);
-    const after = await headOfProgram();
-    assert.ok(distance(after, before) > 0.02, `the program has the head at ${after.join()}`);
+    const after = await headOtherThan(before);
     assert.ok(Math.abs(after[2] - before[2]) < 0.002, `the height ${before[2]} m is now ${after[2]} m`);
     assert.ok(countDifferences(picture, await pixelsOf(ui.viewer.page, ui.viewer.page.getByTestId('scene'))) > 200);
   });
@@ -91,14 +99,12 @@ describe('moving the robot', () => {
         const options = { bubbles: true, pointerId: 1, button: 0, isPrimary: true, clientX, clientY: fromY };
         scene.dispatchEvent(new PointerEvent(type, options));
       };
-      scene.setPointerCapture = () => {};
+      scene.setPointerCapture = () => {}; // the pointer of a script cannot be captured
       fire('pointerdown', fromX);
       fire('pointermove', fromX - 60);
       fire('pointerup', fromX - 60);
     }, [x, y] as const);
-    await shownHeadOtherThan(before);
-    for (let look = 0; look < 500 && distance(await headOfProgram(), before) < 0.02; look += 1) await ui.viewer.page.waitForTimeout(20);
-    assert.ok(distance(await headOfProgram(), before) > 0.02);
+    await headOtherThan(before);
   });
 
   it('goes by keys, each of which counts', async () => {

@@ -11,7 +11,7 @@ describe('a robot on a bus', () => {
   beforeEach(() => ui.viewer.takeControl());
 
   afterEach(async () => {
-    await ui.viewer.page.keyboard.press('Escape');
+    if (!(await ui.viewer.page.getByText('power off', { exact: true }).isVisible())) await ui.viewer.page.keyboard.press('Escape');
     await ui.viewer.waitForState('power off');
   });
 
@@ -50,6 +50,18 @@ describe('a robot on a bus', () => {
     }
   });
 
+  it('runs the gait, whose state frames are those of this computer, holds, and runs on', async () => {
+    await runGait();
+    const angles = await ui.viewer.angles();
+    await ui.viewer.waitForOtherAngles(angles);
+    await ui.viewer.page.getByTestId('gait').getByText(/^[1-9][\d,]* compared, 0 differences/).waitFor();
+    await ui.viewer.waitForTick(300);
+    await ui.viewer.screenshot('robot_gait');
+    await ui.viewer.button('Hold').click();
+    await ui.viewer.waitForState('holding');
+    await runGait();
+  });
+
   it('holds with power, goes where a slider says, and back to 0', async () => {
     await powerOn();
     await ui.viewer.page.getByRole('slider', { name: 'Position of J2', exact: true }).fill('30');
@@ -67,18 +79,6 @@ describe('a robot on a bus', () => {
     }
     await ui.viewer.button('Power off').click();
     await ui.viewer.waitForState('power off');
-  });
-
-  it('runs the gait, whose state frames are those of this computer, holds, and runs on', async () => {
-    await runGait();
-    const angles = await ui.viewer.angles();
-    await ui.viewer.waitForOtherAngles(angles);
-    await ui.viewer.page.getByTestId('gait').getByText(/^[1-9][\d,]* compared, 0 differences/).waitFor();
-    await ui.viewer.waitForTick(300);
-    await ui.viewer.screenshot('robot_gait');
-    await ui.viewer.button('Hold').click();
-    await ui.viewer.waitForState('holding');
-    await runGait();
   });
 
   it('confirms a parameter that changes while the gait runs', async () => {

@@ -21,6 +21,7 @@ describe('STOP', () => {
     const tick = await ui.viewer.tick();
     await ui.viewer.run();
     await ui.viewer.waitForTick(tick + 20);
+    assert.equal(await ui.viewer.page.getByTestId('stop-report').textContent(), '', 'the report is of the past');
     await ui.viewer.pause();
   });
 

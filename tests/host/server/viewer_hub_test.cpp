@@ -324,6 +324,28 @@ TEST_F(Hub, SendsFastTicksTogether) {
   EXPECT_EQ(binaries[0].rows, 4U);
 }
 
+TEST_F(Hub, SendsTheLastTickOfAFastRunThatHasPaused) {
+  set_signals(5);
+  const ClientId client = join("desk");
+  send(client, {{"type", "subscribe"}, {"signals", {"angle"}}});
+  std::uint32_t tick = 0;
+  for (; tick < 4001; tick += 30) {
+    add_rows(tick, 30);
+    now += 8ms;
+    hub.advance(now);
+    received(client);
+  }
+  ASSERT_GT(binaries.back().stride, 1U);
+  for (auto deadline = hub.deadline(now); deadline != no_deadline; deadline = hub.deadline(now)) {
+    ASSERT_LE(deadline, now + 8ms);
+    now = deadline;
+    hub.advance(now);
+    received(client);
+  }
+  const auto& last = binaries.back();
+  EXPECT_EQ(last.tick + (last.rows - 1U) * last.stride, tick - 1U);
+}
+
 TEST_F(Hub, DoesNotDelayDocumentsForTelemetryNorTheReverse) {
   set_signals(5);
   const ClientId client = join("desk");

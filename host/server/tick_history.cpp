@@ -49,6 +49,11 @@ std::uint64_t TickHistory::end() const {
   return end_;
 }
 
+std::uint64_t TickHistory::newest() const {
+  const std::lock_guard lock(mutex_);
+  return begin_ < end_ ? end_ - 1 : end_;
+}
+
 std::size_t TickHistory::capacity() const {
   const std::lock_guard lock(mutex_);
   return rows_.size();

@@ -45,6 +45,8 @@ class TickHistory {
 
   /// Number of rows that were ever added.
   [[nodiscard]] std::uint64_t end() const;
+  /// Number of the newest row that is there; end() if there is none.
+  [[nodiscard]] std::uint64_t newest() const;
   /// Rows that the memory holds at most.
   [[nodiscard]] std::size_t capacity() const;
 

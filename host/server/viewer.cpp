@@ -112,10 +112,10 @@ void Viewer::queue_reply(Reply reply) {
   replies_.push_back(std::move(reply));
 }
 
-void Viewer::set_subscription(std::optional<Subscription> subscription, const TickHistory& history) {
+void Viewer::set_subscription(std::optional<Subscription> subscription, const TickHistory& history, bool with_newest) {
   subscription_ = std::move(subscription);
   cursor_ = {};
-  cursor_.next = history.end();
+  cursor_.next = with_newest ? history.newest() : history.end();
 }
 
 std::optional<OutgoingMessage> Viewer::next_message(ServerTime now, const SharedState& state) {

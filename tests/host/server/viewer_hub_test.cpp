@@ -305,6 +305,26 @@ TEST_F(Hub, SendsTelemetryToWhoAsksForIt) {
   EXPECT_EQ(binaries[0].rows, 3U);
 }
 
+TEST_F(Hub, SendsTheNewestRowToWhoHasNone) {
+  set_signals(5);
+  const ClientId client = join("desk");
+  send(client, {{"type", "subscribe"}, {"signals", {"angle"}}, {"newest", true}});
+  received(client);
+  EXPECT_TRUE(binaries.empty()) << "there is none";
+  add_rows(0, 10);
+  received(client);
+  ASSERT_EQ(binaries.size(), 1U);
+  EXPECT_EQ(binaries[0].flags, 0U);
+  // Another one comes when the robot stands still.
+  const ClientId late = join("sofa");
+  now += 8ms;
+  send(late, {{"type", "subscribe"}, {"signals", {"angle"}}, {"newest", true}});
+  received(late);
+  ASSERT_EQ(binaries.size(), 1U);
+  EXPECT_EQ(binaries[0].tick, 9U);
+  EXPECT_EQ(binaries[0].rows, 1U);
+}
+
 TEST_F(Hub, SendsFastTicksTogether) {
   set_signals(5);
   const ClientId client = join("desk");

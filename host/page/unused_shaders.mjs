@@ -1,4 +1,4 @@
-// Leaves out of three.js the shaders of materials that the 3D view does not have: a third of its text.
+// Leaves out of three.js the shaders of materials that the 3D view does not have: 10 kB of the compressed page.
 import { readFileSync } from 'node:fs';
 
 // What robot_scene.ts and robot_model.ts draw with: Lambert, basic and line materials, and shadows of a sun.

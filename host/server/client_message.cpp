@@ -117,6 +117,13 @@ Subscribe subscribe(const json& message) {
   if (hash != message.end()) {
     result.hash = number_in(*hash, "hash");
   }
+  const auto newest = message.find("newest");
+  if (newest != message.end()) {
+    if (!newest->is_boolean()) {
+      reject(found_text(*newest), "true or false as 'newest'");
+    }
+    result.newest = newest->get<bool>();
+  }
   return result;
 }
 

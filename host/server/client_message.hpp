@@ -38,6 +38,7 @@ struct Beat {
 struct Subscribe {
   std::vector<std::string> signals;   ///< at most 64, all different
   std::optional<std::uint64_t> hash;  ///< of the document `telemetry` that the viewer knows
+  bool newest = false;                ///< the newest row that is there comes, too
 };
 
 using ClientMessage = std::variant<Hello, Operation, Stop, Beat, Subscribe>;

@@ -49,6 +49,11 @@ std::uint64_t TickHistory::end() const {
   return end_;
 }
 
+std::uint64_t TickHistory::newest() const {
+  const std::lock_guard lock(mutex_);
+  return begin_ < end_ ? end_ - 1 : end_;
+}
+
 std::size_t TickHistory::capacity() const {
   const std::lock_guard lock(mutex_);
   return rows_.size();
@@ -65,16 +70,17 @@ std::optional<std::string> TickHistory::encode_rows(const Subscription& subscrip
   std::string bytes;
   Row first;
   std::uint16_t count = 0;
-  for (; cursor.next < end_ && count < max_telemetry_rows; ++cursor.next) {
-    const std::size_t at = position(cursor.next);
+  HistoryCursor read = cursor;
+  for (; read.next < end_ && count < max_telemetry_rows; ++read.next) {
+    const std::size_t at = position(read.next);
     const Row row = rows_[at];
-    const bool follows = !cursor.last || cursor.last->run != row.run || cursor.last->tick + 1 == row.tick;
+    const bool follows = !read.last || read.last->run != row.run || read.last->tick + 1 == row.tick;
     const bool is_other_run = count > 0 && row.run != first.run;
     if (count > 0 && (is_other_run || !follows)) {
       break;  // the next message begins with it
     }
-    cursor.has_gap = cursor.has_gap || !follows;
-    cursor.last = row;
+    read.has_gap = read.has_gap || !follows;
+    read.last = row;
     if (row.tick % stride != 0) {
       continue;
     }
@@ -91,6 +97,9 @@ std::optional<std::string> TickHistory::encode_rows(const Subscription& subscrip
       bytes.append(values + columns.offset * sizeof(std::int32_t), columns.count * sizeof(std::int32_t));
     }
     ++count;
+    // Rows behind it that the stride leaves out stay unread: one of them may be the last for a long time.
+    cursor = read;
+    ++cursor.next;
   }
   if (count == 0) {
     return std::nullopt;

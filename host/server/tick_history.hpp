@@ -45,12 +45,14 @@ class TickHistory {
 
   /// Number of rows that were ever added.
   [[nodiscard]] std::uint64_t end() const;
+  /// Number of the newest row that is there; end() if there is none.
+  [[nodiscard]] std::uint64_t newest() const;
   /// Rows that the memory holds at most.
   [[nodiscard]] std::size_t capacity() const;
 
-  /// A binary message (docs/page-interface.md, "Telemetry") with rows of one run from the cursor on, which it moves.
-  /// Only ticks that are multiples of `stride` (at least 1) are in it. Nothing if there is no such row, or if the
-  /// subscription is for another generation.
+  /// A binary message (docs/page-interface.md, "Telemetry") with rows of one run from the cursor on, which it moves
+  /// behind the last of them. Only ticks that are multiples of `stride` (at least 1) are in it. Nothing if there is no
+  /// such row, or if the subscription is for another generation.
   [[nodiscard]] std::optional<std::string> encode_rows(const Subscription& subscription, std::uint32_t stride,
                                                        HistoryCursor& cursor) const;
 

@@ -112,10 +112,10 @@ void Viewer::queue_reply(Reply reply) {
   replies_.push_back(std::move(reply));
 }
 
-void Viewer::set_subscription(std::optional<Subscription> subscription, const TickHistory& history) {
+void Viewer::set_subscription(std::optional<Subscription> subscription, const TickHistory& history, bool with_newest) {
   subscription_ = std::move(subscription);
   cursor_ = {};
-  cursor_.next = history.end();
+  cursor_.next = with_newest ? history.newest() : history.end();
 }
 
 std::optional<OutgoingMessage> Viewer::next_message(ServerTime now, const SharedState& state) {
@@ -161,10 +161,12 @@ std::optional<OutgoingMessage> Viewer::next_telemetry(ServerTime now, const Shar
   }
   const std::uint32_t stride = state.rate.stride(state.history.end() - cursor_.next);
   std::optional<std::string> bytes = state.history.encode_rows(*subscription_, stride, cursor_);
+  if (bytes || stride > 1) {
+    next_telemetry_ = now + telemetry_interval;  // without a row, too: the stride may be smaller then
+  }
   if (!bytes) {
     return std::nullopt;
   }
-  next_telemetry_ = now + telemetry_interval;
   return OutgoingMessage{true, std::make_shared<const std::string>(std::move(*bytes))};
 }
 

@@ -67,7 +67,7 @@ class Viewer {
   void queue_stopped(std::string message);
   void queue_notice(NoticeLevel level, const std::string& text);
   /// Nothing: no telemetry until the next subscription.
-  void set_subscription(std::optional<Subscription> subscription, const TickHistory& history);
+  void set_subscription(std::optional<Subscription> subscription, const TickHistory& history, bool with_newest = false);
   [[nodiscard]] std::uint32_t next_subscription_number() { return ++subscriptions_; }
 
   /// The next message, if there is one now. Call it when the message before is on its way.

@@ -153,7 +153,7 @@ void ViewerHub::handle(ServerTime /*now*/, Viewer& viewer, const Subscribe& subs
     subscription.columns.push_back(*columns);
   }
   if (!subscription.columns.empty()) {
-    viewer.set_subscription(std::move(subscription), state_.history);
+    viewer.set_subscription(std::move(subscription), state_.history, subscribe.newest);
   }
 }
 

@@ -124,7 +124,8 @@ export class PageApp implements RobotView {
     if (telemetry !== null) {
       const names = this.subscriptions.select(telemetry, this.selection.needed(telemetry.signals));
       if (names !== null) {
-        this.post({ kind: 'subscribe', signals: names, hash: telemetry.hash });
+        // A robot that stands still sends no further row.
+        this.post({ kind: 'subscribe', signals: names, hash: telemetry.hash, newest: this.history.end === 0 });
       }
     }
   }

@@ -37,6 +37,8 @@ TEST(ClientMessage, IsReadAsTheTextOfTheInterfaceShows) {
   const auto subscribe = parsed<Subscribe>(R"({"type": "subscribe", "signals": ["angle", "head"], "hash": 7})");
   EXPECT_EQ(subscribe.signals, (std::vector<std::string>{"angle", "head"}));
   EXPECT_EQ(subscribe.hash, 7U);
+  EXPECT_FALSE(subscribe.newest);
+  EXPECT_TRUE(parsed<Subscribe>(R"({"type": "subscribe", "signals": [], "newest": true})").newest);
 }
 
 TEST(ClientMessage, HasDefaultsForWhatManyOperationsDoNotNeed) {

@@ -87,6 +87,16 @@ TEST_F(History, WithAStrideHasTicksThatAreMultiplesOfIt) {
   EXPECT_EQ(last->flags, 0U) << "ticks that the stride leaves out are not missing";
 }
 
+TEST_F(History, KeepsTheRowsBehindTheLastMultipleForASmallerStride) {
+  add(1, 0, 7);
+  EXPECT_EQ(next(4)->values, (std::vector<std::int32_t>{0, no_value, 4, no_value}));
+  EXPECT_FALSE(next(4));
+  const auto rest = next(1);
+  EXPECT_EQ(rest->tick, 5U);
+  EXPECT_EQ(rest->rows, 2U);
+  EXPECT_EQ(rest->flags, 0U);
+}
+
 TEST_F(History, BeginsAnotherMessageWithAnotherRun) {
   add(1, 50, 2);
   add(2, 0, 3);

@@ -305,6 +305,26 @@ TEST_F(Hub, SendsTelemetryToWhoAsksForIt) {
   EXPECT_EQ(binaries[0].rows, 3U);
 }
 
+TEST_F(Hub, SendsTheNewestRowToWhoHasNone) {
+  set_signals(5);
+  const ClientId client = join("desk");
+  send(client, {{"type", "subscribe"}, {"signals", {"angle"}}, {"newest", true}});
+  received(client);
+  EXPECT_TRUE(binaries.empty()) << "there is none";
+  add_rows(0, 10);
+  received(client);
+  ASSERT_EQ(binaries.size(), 1U);
+  EXPECT_EQ(binaries[0].flags, 0U);
+  // Another one comes when the robot stands still.
+  const ClientId late = join("sofa");
+  now += 8ms;
+  send(late, {{"type", "subscribe"}, {"signals", {"angle"}}, {"newest", true}});
+  received(late);
+  ASSERT_EQ(binaries.size(), 1U);
+  EXPECT_EQ(binaries[0].tick, 9U);
+  EXPECT_EQ(binaries[0].rows, 1U);
+}
+
 TEST_F(Hub, SendsFastTicksTogether) {
   set_signals(5);
   const ClientId client = join("desk");
@@ -322,6 +342,28 @@ TEST_F(Hub, SendsFastTicksTogether) {
   received(client);
   ASSERT_EQ(binaries.size(), 1U);
   EXPECT_EQ(binaries[0].rows, 4U);
+}
+
+TEST_F(Hub, SendsTheLastTickOfAFastRunThatHasPaused) {
+  set_signals(5);
+  const ClientId client = join("desk");
+  send(client, {{"type", "subscribe"}, {"signals", {"angle"}}});
+  std::uint32_t tick = 0;
+  for (; tick < 4001; tick += 30) {
+    add_rows(tick, 30);
+    now += 8ms;
+    hub.advance(now);
+    received(client);
+  }
+  ASSERT_GT(binaries.back().stride, 1U);
+  for (auto deadline = hub.deadline(now); deadline != no_deadline; deadline = hub.deadline(now)) {
+    ASSERT_LE(deadline, now + 8ms);
+    now = deadline;
+    hub.advance(now);
+    received(client);
+  }
+  const auto& last = binaries.back();
+  EXPECT_EQ(last.tick + (last.rows - 1U) * last.stride, tick - 1U);
 }
 
 TEST_F(Hub, DoesNotDelayDocumentsForTelemetryNorTheReverse) {

@@ -65,10 +65,10 @@ SimulatedSession::SimulatedSession(std::unique_ptr<LiveSimulation> live, Simulat
 void SimulatedSession::publish_robot() {
   const sim::Scenario& scenario = live_->scenario();
   output_.publish("robot", robot_document(scenario, "simulation"));
+  publish_session(Clock::now());  // with the number of the run, before its signals
   output_.set_signals(host::SignalLayout(signals_of(scenario)), scenario.kernel.tick_period_us);
   published_revision_ = 0;
   publish_changes();
-  publish_session(Clock::now());
 }
 
 SimulatedSession::~SimulatedSession() {

@@ -110,10 +110,10 @@ export class Connection {
     return true;
   }
 
-  // `hash`: of the document `telemetry` that the signals come from.
-  subscribe(signals: string[], hash: number): void {
+  // `hash`: of the document `telemetry` that the signals come from. `newest`: the row that is there comes, too.
+  subscribe(signals: string[], hash: number, newest: boolean): void {
     if (this.client !== null) {
-      this.send({ type: 'subscribe', signals, hash });
+      this.send({ type: 'subscribe', signals, hash, newest });
     }
   }
 

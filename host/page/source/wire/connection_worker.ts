@@ -11,7 +11,7 @@ import {
 export type ToConnectionWorker =
   | { kind: 'open'; url: string; token: string; name: string }
   | { kind: 'operation'; request: OperationRequest }
-  | { kind: 'subscribe'; signals: string[]; hash: number }
+  | { kind: 'subscribe'; signals: string[]; hash: number; newest: boolean }
   | { kind: 'alive' };
 
 export type FromConnectionWorker =
@@ -67,7 +67,7 @@ self.onmessage = (event: MessageEvent<ToConnectionWorker>) => {
       post({ kind: 'result', key: message.request.key, result });
     }
   } else if (message.kind === 'subscribe') {
-    connection?.subscribe(message.signals, message.hash);
+    connection?.subscribe(message.signals, message.hash, message.newest);
   } else {
     connection?.noteSignOfLife();
   }

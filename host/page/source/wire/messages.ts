@@ -355,6 +355,6 @@ export interface Operations {
 export type ClientMessage =
   | { type: 'hello'; protocol: number; token: string; name: string; only?: 'stop' }
   | { type: 'operation'; id: number; epoch: number; name: keyof Operations; arguments: object }
-  | { type: 'subscribe'; signals: string[]; hash: number }
+  | { type: 'subscribe'; signals: string[]; hash: number; newest: boolean }
   | { type: 'beat'; age_ms: number }
   | { type: 'stop' };

@@ -7,22 +7,30 @@ const limitedPeriod = 1000 / 30; // milliseconds
 const tolerance = 8; // half a frame of most displays
 let isLimited = false;
 let due = 0;
+let isAsked = false; // a frame, of the browser
+let timer: ReturnType<typeof setTimeout> | undefined;
+
+function ask(): void {
+  if (!isAsked && drawers.size > 0) {
+    isAsked = true;
+    requestAnimationFrame(frame);
+  }
+}
 
 function frame(time: number): void {
-  if (drawers.size === 0) {
-    return;
-  }
+  isAsked = false;
   if (isLimited && time < due - tolerance) {
-    requestAnimationFrame(frame);
+    ask();
     return;
   }
   due = Math.max(due, time - limitedPeriod) + limitedPeriod;
   drawers.forEach((draw) => draw(time));
   if (isLimited) {
     // A frame that is asked for costs the browser a look at the whole page, also if nothing draws in it.
-    setTimeout(() => requestAnimationFrame(frame), limitedPeriod / 2);
+    clearTimeout(timer);
+    timer = setTimeout(ask, limitedPeriod / 2);
   } else {
-    requestAnimationFrame(frame);
+    ask();
   }
 }
 
@@ -34,13 +42,12 @@ export function limitFrameRate(isOn: boolean): void {
 // Draws at the next frame, whatever the limit: the user waits for something that has come.
 export function drawSoon(): void {
   due = 0;
+  ask();
 }
 
 // Calls `draw` at each frame until the returned function is called.
 export function onFrame(draw: Drawer): () => void {
   drawers.add(draw);
-  if (drawers.size === 1) {
-    requestAnimationFrame(frame);
-  }
+  ask();
   return () => void drawers.delete(draw);
 }

@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <stdexcept>
 
+#include "host/robot/host_presence.hpp"
 #include "host/robot/object_word.hpp"
 #include "host/transport/open_transport.hpp"
-#include "shared/canopen/object.hpp"
 #include "tools/proleg/bus_search.hpp"
 #include "tools/proleg/interrupt.hpp"
 
@@ -63,25 +63,14 @@ void BusAccess::wait_for(const std::string& what, Microseconds at_most, const st
 }
 
 void require_no_host(BusAccess& bus) {
-  class Ear final : public host::BusUser {
-   public:
-    void receive(Microseconds /*now*/, const CanFrame& frame) override {
-      const auto heartbeat = canopen::decode_heartbeat(frame);
-      has_host = has_host || (heartbeat && heartbeat->node == canopen::host_node);
-    }
-    bool has_host = false;
-  };
-  constexpr Microseconds two_heartbeats = 250'000;
-  // Of a host that has just ended, a last heartbeat may be on its way.
-  constexpr unsigned max_listenings = 4;
-  Ear ear;
-  bus.connection().attach(ear);
-  for (unsigned i = 0; i == 0 || (ear.has_host && i < max_listenings); ++i) {
-    ear.has_host = false;
-    bus.connection().run_for(two_heartbeats);
+  host::BusConnection& connection = bus.connection();
+  host::HostPresence host(connection.now());
+  connection.attach(host);
+  while (!host.is_there() && connection.now() < host.silent_at()) {
+    connection.run_until(host.silent_at(), [&host] { return host.is_there(); });
   }
-  bus.connection().detach(ear);
-  if (ear.has_host) {
+  connection.detach(host);
+  if (host.is_there()) {
     throw std::runtime_error("another host drives the robot; nothing was sent. End that program first");
   }
 }

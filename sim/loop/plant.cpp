@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "shared/kernel/servo_command.hpp"
+#include "sim/ode/ode_world.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/robot/servo.hpp"
 #include "sim/robot/servo_current.hpp"
@@ -35,9 +36,9 @@ std::int32_t joint_angle_in_steps(double radians) {
 
 Plant::Plant(const Scenario& scenario)
     : scenario_(scenario),
-      world_(scenario.robot, scenario.environment, scenario.step_s, choose_stepper(scenario)),
+      world_(make_ode_world(scenario.robot, scenario.environment, scenario.step_s, choose_stepper(scenario))),
       steps_per_tick_(static_cast<std::uint32_t>(std::lround(scenario.kernel.tick_period_us * 1e-6 / scenario.step_s))),
-      start_(world_.center_of_mass()),
+      start_(world_->center_of_mass()),
       center_before_(start_),
       meter_(scenario.robot, scenario.environment, start_, scenario.step_s, scenario.kernel.tick_period_us * 1e-6),
       latency_steps_(
@@ -54,7 +55,7 @@ Plant::Plant(const Scenario& scenario)
       joint_targets_(scenario.robot.joints.size()),
       link_contacts_(scenario.robot.links.size()) {
   for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
-    servos_[joint].angle = servos_[joint].angle_before = world_.joint_angle(joint);
+    servos_[joint].angle = servos_[joint].angle_before = world_->joint_angle(joint);
   }
   read_world();
 }
@@ -106,9 +107,9 @@ void Plant::free(std::size_t joint) {
 }
 
 void Plant::move_robot(const Pose& motion) {
-  world_.move_robot(motion);
+  world_->move_robot(motion);
   unmoved_ = unmoved_.value_or(Pose{}) * motion.inverse();
-  center_before_ = world_.center_of_mass();
+  center_before_ = world_->center_of_mass();
   disturb();
   read_world();
 }
@@ -125,11 +126,11 @@ void Plant::step_world() {
   if (is_at_rest_) {
     return;
   }
-  world_.step();
+  world_->step();
   if (!may_rest_) {
     return;
   }
-  if (!world_.is_slower_than(slowest, slowest_rotation)) {
+  if (!world_->is_slower_than(slowest, slowest_rotation)) {
     disturb();
   }
   is_at_rest_ = static_cast<double>(steps_ - disturbed_at_) * scenario_.step_s >= still_after_s;
@@ -140,7 +141,7 @@ void Plant::update_torque(std::size_t joint) {
   constexpr double jam_strength = 20.0;  // times the servo's own torque: nothing in the robot turns the joint
   const Servo& servo = servos_[joint];
   const double own = scenario_.robot.joints[joint].max_torque;
-  world_.set_joint_torque(joint, servo.jam_ma ? jam_strength * own : (servo.limp ? 0.0 : own));
+  world_->set_joint_torque(joint, servo.jam_ma ? jam_strength * own : (servo.limp ? 0.0 : own));
 }
 
 void Plant::act_on_delayed_pulses() {
@@ -167,13 +168,13 @@ void Plant::step() {
     servo.commanded_speed =
         servo_speed(scenario_.robot.servo, scenario_.robot.joints[joint], servo.command, servo.angle);
     servo.angle_before = servo.angle;
-    world_.set_joint_speed(joint, servo.jam_ma ? 0.0 : servo.commanded_speed);
+    world_->set_joint_speed(joint, servo.jam_ma ? 0.0 : servo.commanded_speed);
   }
   step_world();
   for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
     Servo& servo = servos_[joint];
-    servo.angle = world_.joint_angle(joint);
-    const double torque = world_.motor_torque(joint);
+    servo.angle = world_->joint_angle(joint);
+    const double torque = world_->motor_torque(joint);
     servo.torque_sum += torque;
     double current =
         meter_.add_joint_step(joint, {torque, servo.commanded_speed, servo.angle_before, servo.angle, servo.limp});
@@ -184,11 +185,11 @@ void Plant::step() {
     servo.drawn += current;
   }
   for (std::size_t link = 0; link < contact_force_sums_.size(); ++link) {
-    contact_force_sums_[link] += world_.contact_force(link);
+    contact_force_sums_[link] += world_->contact_force(link);
   }
-  const ContactSliding sliding = world_.contact_sliding();
+  const ContactSliding sliding = world_->contact_sliding();
   meter_.add_contacts(sliding.normal_force, sliding.force_times_speed);
-  contact_sum_ += world_.contact_count();
+  contact_sum_ += world_->contact_count();
   ++steps_;
 }
 
@@ -202,7 +203,7 @@ void Plant::finish_tick() {
   for (std::size_t link = 0; link < contact_force_sums_.size(); ++link) {
     contact_forces_[link] = std::exchange(contact_force_sums_[link], 0.0) / steps_per_tick_;
   }
-  const Eigen::Vector3d center = world_.center_of_mass();
+  const Eigen::Vector3d center = world_->center_of_mass();
   require_crawling(center);
   center_before_ = center;
   if (unmoved_) {
@@ -229,7 +230,7 @@ void Plant::require_crawling(const Eigen::Vector3d& center) const {
   if ((center - center_before_).norm() > max_speed * tick_s) {
     throw PhysicsError("the simulation became unstable at " + now() + ": the robot moves faster than 100 m/s");
   }
-  if (center.z() < world_.lowest_ground().value_or(start_.z()) - max_fall) {
+  if (center.z() < world_->lowest_ground().value_or(start_.z()) - max_fall) {
     throw PhysicsError("the robot fell off its environment: at " + now() +
                        " it is a metre below everything it could stand on");
   }
@@ -241,8 +242,8 @@ void Plant::read_world() {
     joint_targets_[joint] = servo_target(servos_[joint].command);
   }
   for (std::size_t link = 0; link < link_poses_.size(); ++link) {
-    link_poses_[link] = world_.link_pose(link);
-    link_contacts_[link] = world_.link_contacts(link);
+    link_poses_[link] = world_->link_pose(link);
+    link_contacts_[link] = world_->link_contacts(link);
   }
 }
 
@@ -272,7 +273,7 @@ firmware::ServoReadings Plant::servo_readings(std::size_t joint) const {
 }
 
 double Plant::displacement() const {
-  const Eigen::Vector3d center = world_.center_of_mass();
+  const Eigen::Vector3d center = world_->center_of_mass();
   return ((unmoved_ ? *unmoved_ * center : center) - start_).head<2>().norm();
 }
 

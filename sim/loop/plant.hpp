@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -80,7 +81,7 @@ class Plant {
   [[nodiscard]] const GaitMeter& meter() const { return meter_; }
   /// Contact points in a physics step, on average.
   [[nodiscard]] double mean_contacts() const;
-  [[nodiscard]] const World& world() const { return world_; }
+  [[nodiscard]] const World& world() const { return *world_; }
 
  private:
   /// A pulse that a servo has taken and does not act on yet.
@@ -102,7 +103,7 @@ class Plant {
   void require_crawling(const Eigen::Vector3d& center) const;
 
   const Scenario& scenario_;
-  World world_;
+  std::unique_ptr<World> world_;
   std::uint32_t steps_per_tick_;
   std::uint32_t finished_ticks_ = 0;
   std::uint64_t contact_sum_ = 0;

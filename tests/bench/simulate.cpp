@@ -21,7 +21,7 @@
 
 #include "sim/loop/hardware_loop.hpp"
 #include "sim/loop/simulation.hpp"
-#include "sim/physics/engine.hpp"
+#include "sim/ode/engine.hpp"
 #include "sim/scenario/reader.hpp"
 
 namespace {

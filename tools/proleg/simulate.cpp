@@ -123,7 +123,7 @@ int simulate(const ScenarioOptions& options) {
   }
   const Result& result = *finished;
   if (options.verbose) {
-    for (const std::string& text : sim::World::solver_message_texts()) {
+    for (const std::string& text : simulation.plant().world().solver_message_texts()) {
       std::cerr << "message of the physics engine: " << one_line(text) << '\n';
     }
   }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "sim/measure/gait_meter.hpp"
-#include "sim/physics/world.hpp"
+#include "sim/ode/ode_world.hpp"
 #include "test_robot.hpp"
 #include "test_units.hpp"
 
@@ -42,14 +42,17 @@ EnvironmentModel rough_ground(double start_height) {
 
 /// A world with a meter that gets the motion of its joints.
 class MeteredWorld {
+  std::unique_ptr<World> made_;
+
  public:
   MeteredWorld(const RobotModel& robot, const EnvironmentModel& environment, Stepper stepper = Stepper::direct)
-      : world(robot, environment, step_s, stepper),
+      : made_(make_ode_world(robot, environment, step_s, stepper)),
+        world(*made_),
         joints_(robot.joints.size()),
         start_(world.center_of_mass()),
         meter_(robot, environment, start_, step_s, step_s) {}
 
-  World world;
+  World& world;
 
   void step() {
     std::vector<double> before(joints_);
@@ -94,13 +97,13 @@ class MotorTorque : public testing::TestWithParam<Stepper> {};
 
 TEST_P(MotorTorque, HoldsAnArmAgainstItsWeight) {
   const RobotModel robot = arm_robot();
-  World world(robot, rough_ground(0.02), step_s, GetParam());
-  EXPECT_EQ(world.motor_torque(0), 0.0) << "before the first step";
+  const std::unique_ptr<World> world = make_ode_world(robot, rough_ground(0.02), step_s, GetParam());
+  EXPECT_EQ(world->motor_torque(0), 0.0) << "before the first step";
   for (int i = 0; i < 500; ++i) {
-    world.step();
+    world->step();
   }
   // The arm's centre of mass is 50 mm before the joint; a positive angle raises it.
-  EXPECT_NEAR(world.motor_torque(0), 0.1 * gravity * 0.05, 1e-3 * 0.049);
+  EXPECT_NEAR(world->motor_torque(0), 0.1 * gravity * 0.05, 1e-3 * 0.049);
 }
 
 TEST_P(MotorTorque, IsAboutTheAxisInEitherDirection) {
@@ -115,27 +118,27 @@ TEST_P(MotorTorque, IsAboutTheAxisInEitherDirection) {
   arm.pose = {arm.pose.position + shift, turned};
   EnvironmentModel environment = rough_ground(0.02);
   environment.robot_pose.orientation = Eigen::Quaterniond(Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ()));
-  World world(robot, environment, step_s, GetParam());
+  const std::unique_ptr<World> world = make_ode_world(robot, environment, step_s, GetParam());
   for (int i = 0; i < 500; ++i) {
-    world.step();
+    world->step();
   }
-  EXPECT_NEAR(world.motor_torque(0), -0.1 * gravity * 0.05, 1e-3 * 0.049);
+  EXPECT_NEAR(world->motor_torque(0), -0.1 * gravity * 0.05, 1e-3 * 0.049);
 }
 
 TEST_P(MotorTorque, IsTheMaximumUnderOverloadAndZeroWhenLimp) {
-  World world(arm_robot(), rough_ground(0.02), step_s, GetParam());
+  const std::unique_ptr<World> world = make_ode_world(arm_robot(), rough_ground(0.02), step_s, GetParam());
   for (int i = 0; i < 200; ++i) {
-    world.step();
+    world->step();
   }
-  world.set_joint_torque(0, 0.03);  // 0.049 Nm are needed
+  world->set_joint_torque(0, 0.03);  // 0.049 Nm are needed
   for (int i = 0; i < 20; ++i) {
-    world.step();
-    EXPECT_NEAR(world.motor_torque(0), 0.03, 1e-12) << i;
+    world->step();
+    EXPECT_NEAR(world->motor_torque(0), 0.03, 1e-12) << i;
   }
-  world.set_joint_torque(0, 0.0);
+  world->set_joint_torque(0, 0.0);
   for (int i = 0; i < 20; ++i) {
-    world.step();
-    EXPECT_EQ(world.motor_torque(0), 0.0) << i;
+    world->step();
+    EXPECT_EQ(world->motor_torque(0), 0.0) << i;
   }
 }
 

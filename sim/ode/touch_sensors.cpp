@@ -1,4 +1,4 @@
-#include "sim/physics/touch_sensors.hpp"
+#include "sim/ode/touch_sensors.hpp"
 
 #include <Eigen/Geometry>
 

@@ -1,4 +1,4 @@
-#include "sim/physics/contact_friction.hpp"
+#include "sim/ode/contact_friction.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sim/physics/contact_friction.hpp"
+#include "sim/ode/contact_friction.hpp"
 
 #include <gtest/gtest.h>
 #include <ode/ode.h>
@@ -11,8 +11,8 @@
 #include <Eigen/Geometry>
 
 #include "box_link.hpp"
-#include "sim/physics/engine.hpp"
-#include "sim/physics/world.hpp"
+#include "sim/ode/engine.hpp"
+#include "sim/ode/ode_world.hpp"
 
 // Oracle: Coulomb's law for a point mass, friction = coefficient * normal force, against the velocity.
 
@@ -62,10 +62,10 @@ class Loads : public testing::TestWithParam<std::tuple<double, Stepper>> {
 TEST_P(Loads, AboveTheFrictionAccelerateTheRobotByTheDifference) {
   constexpr double load = 4.0;
   for (const double friction : {0.0, 0.1, 0.3, 0.39}) {
-    World world(plate(), ground(friction, load, heading_), step_s, stepper_);
-    const Eigen::Vector2d start = position_after(world, 0.2);
-    const Eigen::Vector2d middle = position_after(world, 0.4);
-    const Eigen::Vector2d acceleration = (position_after(world, 0.4) - 2.0 * middle + start) / (0.4 * 0.4);
+    const std::unique_ptr<World> world = make_ode_world(plate(), ground(friction, load, heading_), step_s, stepper_);
+    const Eigen::Vector2d start = position_after(*world, 0.2);
+    const Eigen::Vector2d middle = position_after(*world, 0.4);
+    const Eigen::Vector2d acceleration = (position_after(*world, 0.4) - 2.0 * middle + start) / (0.4 * 0.4);
     const double expected = load - friction * gravity;
     EXPECT_NEAR(acceleration.dot(direction_), expected, 0.02) << "friction " << friction;
     EXPECT_LT((acceleration - acceleration.dot(direction_) * direction_).norm(), 0.02) << "friction " << friction;
@@ -75,9 +75,10 @@ TEST_P(Loads, AboveTheFrictionAccelerateTheRobotByTheDifference) {
 TEST_P(Loads, BelowTheFrictionDoNotMoveTheRobot) {
   for (const double share : {0.5, 0.95}) {
     constexpr double friction = 0.4;
-    World world(plate(), ground(friction, share * friction * gravity, heading_), step_s, stepper_);
-    const Eigen::Vector2d start = position_after(world, 0.2);
-    EXPECT_LT((position_after(world, 1.0) - start).norm(), 1e-3) << share << " of the friction";
+    const std::unique_ptr<World> world =
+        make_ode_world(plate(), ground(friction, share * friction * gravity, heading_), step_s, stepper_);
+    const Eigen::Vector2d start = position_after(*world, 0.2);
+    EXPECT_LT((position_after(*world, 1.0) - start).norm(), 1e-3) << share << " of the friction";
   }
 }
 

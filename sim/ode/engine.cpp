@@ -1,4 +1,4 @@
-#include "sim/physics/engine.hpp"
+#include "sim/ode/engine.hpp"
 
 #include <ode/ode.h>
 

@@ -1,4 +1,4 @@
-#include "sim/physics/world.hpp"
+#include "sim/ode/ode_world.hpp"
 
 #include <ode/ode.h>
 
@@ -9,12 +9,12 @@
 #include <optional>
 #include <vector>
 
-#include "sim/physics/contact_friction.hpp"
-#include "sim/physics/engine.hpp"
-#include "sim/physics/hinge_motor.hpp"
+#include "sim/ode/contact_friction.hpp"
+#include "sim/ode/engine.hpp"
+#include "sim/ode/hinge_motor.hpp"
+#include "sim/ode/step_memory.hpp"
+#include "sim/ode/touch_sensors.hpp"
 #include "sim/physics/physics_error.hpp"
-#include "sim/physics/step_memory.hpp"
-#include "sim/physics/touch_sensors.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -45,11 +45,9 @@ struct GeometryData {
   std::optional<double> friction;
 };
 
-}  // namespace
-
-class World::Implementation {
+class OdeWorld final : public World {
  public:
-  Implementation(const RobotModel& robot, const EnvironmentModel& environment, double step_s, Stepper stepper)
+  OdeWorld(const RobotModel& robot, const EnvironmentModel& environment, double step_s, Stepper stepper)
       : step_s_(step_s),
         stepper_(stepper),
         self_collision_(environment.self_collision),
@@ -82,10 +80,10 @@ class World::Implementation {
     add_joints(robot, environment.robot_pose);
   }
 
-  void set_joint_speed(std::size_t joint, double speed) { motors_[joint].set_speed(speed); }
-  void set_joint_torque(std::size_t joint, double torque) { motors_[joint].set_max_torque(torque); }
+  void set_joint_speed(std::size_t joint, double speed) override { motors_[joint].set_speed(speed); }
+  void set_joint_torque(std::size_t joint, double torque) override { motors_[joint].set_max_torque(torque); }
 
-  void step() {
+  void step() override {
     if (world_ == nullptr) {
       throw PhysicsError("the simulation failed at an earlier step");
     }
@@ -99,7 +97,7 @@ class World::Implementation {
     require_finite_positions();
   }
 
-  void move_robot(const Pose& motion) {
+  void move_robot(const Pose& motion) override {
     for (const dBodyID body : bodies_) {
       const dReal* position = dBodyGetPosition(body);
       const dReal* orientation = dBodyGetQuaternion(body);
@@ -116,11 +114,11 @@ class World::Implementation {
     std::ranges::fill(contact_forces_, 0.0);
   }
 
-  [[nodiscard]] double joint_angle(std::size_t joint) const { return dJointGetHingeAngle(joints_[joint]); }
+  [[nodiscard]] double joint_angle(std::size_t joint) const override { return dJointGetHingeAngle(joints_[joint]); }
 
-  [[nodiscard]] double motor_torque(std::size_t joint) const { return motors_[joint].torque(); }
+  [[nodiscard]] double motor_torque(std::size_t joint) const override { return motors_[joint].torque(); }
 
-  [[nodiscard]] Pose link_pose(std::size_t link) const {
+  [[nodiscard]] Pose link_pose(std::size_t link) const override {
     const dReal* position = dBodyGetPosition(bodies_[link]);
     const dReal* orientation = dBodyGetQuaternion(bodies_[link]);
     const Pose body{{position[0], position[1], position[2]},
@@ -128,7 +126,7 @@ class World::Implementation {
     return body * Pose{-mass_centers_[link], Eigen::Quaterniond::Identity()};
   }
 
-  [[nodiscard]] bool is_slower_than(double speed, double rotation) const {
+  [[nodiscard]] bool is_slower_than(double speed, double rotation) const override {
     const auto is_below = [](const dReal* vector, double limit) {
       return vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2] < limit * limit;
     };
@@ -137,7 +135,7 @@ class World::Implementation {
     });
   }
 
-  [[nodiscard]] Eigen::Vector3d center_of_mass() const {
+  [[nodiscard]] Eigen::Vector3d center_of_mass() const override {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     double mass = 0.0;
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
@@ -148,12 +146,13 @@ class World::Implementation {
     return sum / mass;
   }
 
-  [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const { return touch_sensors_.pressed(link); }
-  [[nodiscard]] std::size_t contact_count() const { return contact_count_; }
-  [[nodiscard]] double contact_force(std::size_t link) const { return contact_forces_[link]; }
-  [[nodiscard]] ContactSliding contact_sliding() const { return contact_friction_.sliding(); }
-  [[nodiscard]] std::optional<double> lowest_ground() const { return lowest_ground_; }
-  [[nodiscard]] std::size_t solver_messages() const { return engine_messages() - messages_before_; }
+  [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const override { return touch_sensors_.pressed(link); }
+  [[nodiscard]] std::size_t contact_count() const override { return contact_count_; }
+  [[nodiscard]] double contact_force(std::size_t link) const override { return contact_forces_[link]; }
+  [[nodiscard]] ContactSliding contact_sliding() const override { return contact_friction_.sliding(); }
+  [[nodiscard]] std::optional<double> lowest_ground() const override { return lowest_ground_; }
+  [[nodiscard]] std::size_t solver_messages() const override { return engine_messages() - messages_before_; }
+  [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return engine_message_texts(); }
 
  private:
   void advance() {
@@ -161,9 +160,9 @@ class World::Implementation {
     contact_friction_.begin_step();
     contact_count_ = 0;
     dSpaceCollide2(reinterpret_cast<dGeomID>(robot_space_.get()), reinterpret_cast<dGeomID>(environment_space_.get()),
-                   this, &Implementation::on_near);
+                   this, &OdeWorld::on_near);
     if (self_collision_) {
-      dSpaceCollide(robot_space_.get(), this, &Implementation::on_near);
+      dSpaceCollide(robot_space_.get(), this, &OdeWorld::on_near);
     }
     for (HingeMotor& motor : motors_) {
       motor.note_axis();
@@ -313,7 +312,7 @@ class World::Implementation {
     }
   }
 
-  static void on_near(void* self, dGeomID a, dGeomID b) { static_cast<Implementation*>(self)->collide(a, b); }
+  static void on_near(void* self, dGeomID a, dGeomID b) { static_cast<OdeWorld*>(self)->collide(a, b); }
 
   void collide(dGeomID a, dGeomID b) {
     const auto& data_a = *static_cast<const GeometryData*>(dGeomGetData(a));
@@ -377,27 +376,11 @@ class World::Implementation {
   double unspecified_friction_;
 };
 
-World::World(const RobotModel& robot, const EnvironmentModel& environment, double step_s, Stepper stepper)
-    : implementation_(std::make_unique<Implementation>(robot, environment, step_s, stepper)) {}
-World::~World() = default;
+}  // namespace
 
-void World::set_joint_speed(std::size_t joint, double speed) { implementation_->set_joint_speed(joint, speed); }
-void World::set_joint_torque(std::size_t joint, double torque) { implementation_->set_joint_torque(joint, torque); }
-void World::move_robot(const Pose& motion) { implementation_->move_robot(motion); }
-void World::step() { implementation_->step(); }
-bool World::is_slower_than(double speed, double rotation) const {
-  return implementation_->is_slower_than(speed, rotation);
+std::unique_ptr<World> make_ode_world(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
+                                      Stepper stepper) {
+  return std::make_unique<OdeWorld>(robot, environment, step_s, stepper);
 }
-double World::joint_angle(std::size_t joint) const { return implementation_->joint_angle(joint); }
-double World::motor_torque(std::size_t joint) const { return implementation_->motor_torque(joint); }
-Pose World::link_pose(std::size_t link) const { return implementation_->link_pose(link); }
-Eigen::Vector3d World::center_of_mass() const { return implementation_->center_of_mass(); }
-std::uint8_t World::link_contacts(std::size_t link) const { return implementation_->link_contacts(link); }
-double World::contact_force(std::size_t link) const { return implementation_->contact_force(link); }
-std::size_t World::contact_count() const { return implementation_->contact_count(); }
-ContactSliding World::contact_sliding() const { return implementation_->contact_sliding(); }
-std::optional<double> World::lowest_ground() const { return implementation_->lowest_ground(); }
-std::size_t World::solver_messages() const { return implementation_->solver_messages(); }
-std::span<const std::string> World::solver_message_texts() { return engine_message_texts(); }
 
 }  // namespace proleg::sim

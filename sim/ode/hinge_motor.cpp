@@ -1,4 +1,4 @@
-#include "sim/physics/hinge_motor.hpp"
+#include "sim/ode/hinge_motor.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "sim/physics/step_memory.hpp"
+#include "sim/ode/step_memory.hpp"
 
 #include <cstdlib>
 

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "sim/environment/environment_model.hpp"
+#include "sim/physics/world.hpp"
+#include "sim/robot/robot_model.hpp"
+
+namespace proleg::sim {
+
+/// How contact and joint forces are solved.
+enum class Stepper : std::uint8_t {
+  direct,     ///< dWorldStep: exact, repeatable on every thread; the faster one up to about 8 links
+  iterative,  ///< dWorldQuickStep, 20 iterations: the faster one above. Draws from one random generator for the whole
+              ///< process, so each run that must be repeatable needs its own process.
+};
+
+/// A world in the Open Dynamics Engine. step_s: length of a step, above 0. The models must be valid (sim/scenario
+/// checks them).
+[[nodiscard]] std::unique_ptr<World> make_ode_world(const RobotModel& robot, const EnvironmentModel& environment,
+                                                    double step_s, Stepper stepper);
+
+}  // namespace proleg::sim

@@ -10,6 +10,8 @@
 #include "shared/kernel/servo_command.hpp"
 #include "sim/ode/ode_world.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "sim/reduced/reduced_world.hpp"
+#include <cstdlib>
 #include "sim/robot/servo.hpp"
 #include "sim/robot/servo_current.hpp"
 #include "sim/scenario/random_streams.hpp"
@@ -36,7 +38,7 @@ std::int32_t joint_angle_in_steps(double radians) {
 
 Plant::Plant(const Scenario& scenario)
     : scenario_(scenario),
-      world_(make_ode_world(scenario.robot, scenario.environment, scenario.step_s, choose_stepper(scenario))),
+      world_(std::getenv("PROLEG_REDUCED") ? reduced::make_reduced_world(scenario.robot, scenario.environment, scenario.step_s, scenario.path) : make_ode_world(scenario.robot, scenario.environment, scenario.step_s, choose_stepper(scenario))),
       steps_per_tick_(static_cast<std::uint32_t>(std::lround(scenario.kernel.tick_period_us * 1e-6 / scenario.step_s))),
       start_(world_->center_of_mass()),
       center_before_(start_),

@@ -15,6 +15,7 @@
 #include "sim/ode/step_memory.hpp"
 #include "sim/ode/touch_sensors.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "sim/robot/friction.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -327,7 +328,7 @@ class OdeWorld final : public World {
     const int count = dCollide(a, b, max_contacts, &contacts[0].geom, sizeof(dContact));
     for (int i = 0; i < count; ++i) {
       dContact& contact = contacts[static_cast<std::size_t>(i)];
-      contact_friction_.set_surface(contact, friction(data_a, data_b), a, b);
+      contact_friction_.set_surface(contact, friction_of(data_a.friction, data_b.friction, unspecified_friction_), a, b);
       const dJointID joint = dJointCreateContact(world_.get(), contact_group_.get(), &contact);
       dJointAttach(joint, dGeomGetBody(a), dGeomGetBody(b));
       contact_friction_.observe(joint);
@@ -335,13 +336,6 @@ class OdeWorld final : public World {
       note_touch(data_b.link, data_a.link, contact);
     }
     contact_count_ += static_cast<std::size_t>(count);
-  }
-
-  [[nodiscard]] double friction(const GeometryData& a, const GeometryData& b) const {
-    if (a.friction && b.friction) {
-      return std::sqrt(*a.friction * *b.friction);
-    }
-    return a.friction.value_or(b.friction.value_or(unspecified_friction_));
   }
 
   void note_touch(int link, int other, const dContact& contact) {

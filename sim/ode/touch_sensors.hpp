@@ -10,13 +10,17 @@
 #include <Eigen/Core>
 
 #include "sim/robot/robot_model.hpp"
+#include "sim/robot/touch_sensor_frame.hpp"
 
 namespace proleg::sim {
 
 /// The two touch sensors under each link, as World::link_contacts() describes them.
 class TouchSensors {
  public:
-  void add_link(const RobotModel& robot, std::size_t link);
+  void add_link(const RobotModel& robot, std::size_t link) {
+    frames_.push_back(touch_sensor_frame(robot, link));
+    pressed_.push_back(0);
+  }
 
   /// Before each step: no sensor is pressed.
   void release_all() { pressed_.assign(frames_.size(), 0); }
@@ -26,14 +30,7 @@ class TouchSensors {
   [[nodiscard]] std::uint8_t pressed(std::size_t link) const { return pressed_[link]; }
 
  private:
-  /// How the sensors lie in a link: unit vectors in its frame.
-  struct SensorFrame {
-    Eigen::Vector3d forward;   ///< along the link, to the head; zero if the robot has no other link
-    Eigen::Vector3d down;      ///< out of the underside
-    Eigen::Vector3d sideways;  ///< perpendicular to both
-  };
-
-  std::vector<SensorFrame> frames_;  ///< by link
+  std::vector<TouchSensorFrame> frames_;  ///< by link
   std::vector<std::uint8_t> pressed_;
 };
 
@@ -50,7 +47,7 @@ inline void TouchSensors::press(std::size_t link, dBodyID body, const dContactGe
     normal += row_of_rotation * contact.normal[row];
   }
   constexpr double max_sine = 0.707;  // of 45 degrees of roll; beyond, the link lies on its flank
-  const SensorFrame& frame = frames_[link];
+  const TouchSensorFrame& frame = frames_[link];
   if (point.dot(frame.down) > 0.0 && std::abs(normal.dot(frame.sideways)) < max_sine) {
     pressed_[link] = static_cast<std::uint8_t>(pressed_[link] | (point.dot(frame.forward) < 0.0 ? 1U : 2U));
   }

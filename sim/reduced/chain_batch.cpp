@@ -1,0 +1,292 @@
+#include "sim/reduced/chain_batch.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <new>
+
+#include "sim/reduced/chain_memory.hpp"
+#include "sim/reduced/chain_scratch.hpp"
+
+namespace proleg::sim::reduced {
+namespace {
+
+constexpr std::size_t alignment = 64;  // bytes, of the widest vector
+
+struct Free {
+  void operator()(double* block) const { ::operator delete[](block, std::align_val_t{alignment}); }
+};
+using Numbers = std::unique_ptr<double[], Free>;
+
+Numbers zeros(std::size_t count) {
+  Numbers numbers(static_cast<double*>(::operator new[](count * sizeof(double), std::align_val_t{alignment})));
+  std::fill_n(numbers.get(), count, 0.0);
+  return numbers;
+}
+
+/// The widest kernel whose lanes the chains fill at least by half; for one chain the narrowest.
+const ChainKernel& choose_kernel(std::size_t chains) {
+  const std::vector<const ChainKernel*> kernels = supported_kernels();
+  const ChainKernel* chosen = kernels.front();
+  for (const ChainKernel* kernel : kernels) {
+    if (static_cast<std::size_t>(kernel->width) <= 2 * chains - 2) {
+      chosen = kernel;
+    }
+  }
+  return *chosen;
+}
+
+ChainCounts counts_of(const PlanarChain& chain) {
+  // Two convex outlines touch in at most two points; more than three such pairs for a shape are no crawling robot.
+  return {chain.links.size(), chain.joints.size(), chain.shapes.size(), chain.terrain.size(),
+          6 * chain.shapes.size() + 4};
+}
+
+}  // namespace
+
+std::vector<const ChainKernel*> supported_kernels() {
+  std::vector<const ChainKernel*> kernels{&base_kernel};
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx2") != 0) {
+    kernels.push_back(&avx2_kernel);
+  }
+  if (__builtin_cpu_supports("avx512f") != 0) {
+    kernels.push_back(&avx512_kernel);
+  }
+#endif
+  return kernels;
+}
+
+unsigned long g_weak, g_side, g_steps;
+class ChainBatch::Implementation {
+ public:
+  Implementation(std::span<const PlanarChain> chains, const ChainKernel& kernel)
+      : kernel_(kernel),
+        width_(static_cast<std::size_t>(kernel.width)),
+        size_(chains.size()),
+        form_of_(chains.front()),
+        form_{counts_of(form_of_), form_of_.links.data(),   form_of_.joints.data(), form_of_.shapes.data(),
+              form_of_.terrain.data(), form_of_.self_collision, form_of_.step_s},
+        block_size_(width_ * (ChainMemory<double>::size(form_.counts) + ChainScratch<double>::size(form_.counts))),
+        numbers_(zeros(block_size_ * (blocks() + 1))) {
+    for (std::size_t lane = 0; lane < blocks() * width_; ++lane) {
+      set_constants(lane, chains[std::min(lane, size_ - 1)]);
+    }
+    for (std::size_t block = 0; block < blocks(); ++block) {
+      kernel_.place(form_, at(block));
+    }
+    for (std::size_t lane = 0; lane < blocks() * width_; ++lane) {
+      // Now the positions of the links from the centre of mass are known.
+      const Point& first = chains[std::min(lane, size_ - 1)].first_link;
+      const ChainMemory<double> memory = memory_of(lane);
+      of(lane, memory.center, 0) = first.x - of(lane, memory.link_position, 0);
+      of(lane, memory.center, 1) = first.z - of(lane, memory.link_position, 1);
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] const ChainKernel& kernel() const { return kernel_; }
+  [[nodiscard]] const ChainCounts& counts() const { return form_.counts; }
+
+  void step() {
+    weak_.clear();
+    for (std::size_t block = 0; block < blocks(); ++block) {
+      const unsigned lanes = kernel_.step_strong(form_, at(block));
+      for (std::size_t lane = 0; lane < width_ && (lanes >> lane) != 0; ++lane) {
+        if ((lanes >> lane & 1U) != 0 && block * width_ + lane < size_) {
+          weak_.push_back(block * width_ + lane);
+        }
+      }
+    }
+    extern unsigned long g_weak, g_side, g_steps; g_weak += weak_.size(); g_side += (weak_.size() + width_ - 1) / width_; g_steps += size_;
+    for (std::size_t first = 0; first < weak_.size(); first += width_) {
+      step_weak(std::span(weak_).subspan(first, std::min(width_, weak_.size() - first)));
+    }
+    forget_places();
+  }
+
+  void forget_places() { places_are_current_ = false; }
+  /// The links' positions of the present state, not of that before the last step.
+  void place() {
+    if (!places_are_current_) {
+      for (std::size_t block = 0; block < blocks(); ++block) {
+        kernel_.place(form_, at(block));
+      }
+      places_are_current_ = true;
+    }
+  }
+
+  [[nodiscard]] ChainMemory<double> memory_of(std::size_t lane) const {
+    return {at(lane / width_), form_.counts, width_};
+  }
+  [[nodiscard]] double& of(std::size_t lane, double* array, std::size_t i) const {
+    return array[i * width_ + lane % width_];
+  }
+
+ private:
+  [[nodiscard]] std::size_t blocks() const { return (size_ + width_ - 1) / width_; }
+  [[nodiscard]] double* at(std::size_t block) const { return numbers_.get() + block * block_size_; }
+
+  /// chains: at most as many as a block has lanes. The lanes that are left do what the first one does.
+  void step_weak(std::span<const std::size_t> chains) {
+    for (std::size_t lane = 0; lane < width_; ++lane) {
+      copy(chains[lane < chains.size() ? lane : 0], blocks() * width_ + lane);
+    }
+    kernel_.step_weak(form_, at(blocks()));
+    for (std::size_t lane = 0; lane < chains.size(); ++lane) {
+      copy(blocks() * width_ + lane, chains[lane]);
+    }
+  }
+
+  void copy(std::size_t from, std::size_t to) {
+    const ChainMemory<double> source = memory_of(from);
+    const ChainMemory<double> target = memory_of(to);
+    const auto copy_numbers = [&](const double* begin, double* out, std::size_t count) {
+      begin += from % width_;
+      out += to % width_;
+      for (std::size_t i = 0; i < count * width_; i += width_) {
+        out[i] = begin[i];
+      }
+    };
+    const auto before_contacts = static_cast<std::size_t>(source.contact_key - source.mass) / width_;
+    copy_numbers(source.mass, target.mass, before_contacts);
+    const auto contacts = static_cast<std::size_t>(of(from, source.contact_count, 0));
+    copy_numbers(source.contact_key, target.contact_key, contacts);
+    copy_numbers(source.normal_impulse, target.normal_impulse, contacts);
+    copy_numbers(source.friction_impulse, target.friction_impulse, contacts);
+  }
+
+  void set_constants(std::size_t lane, const PlanarChain& chain) {
+    const ChainMemory<double> memory = memory_of(lane);
+    double mass = 0.0;
+    for (std::size_t i = 0; i < chain.masses.size(); ++i) {
+      of(lane, memory.mass, i) = chain.masses[i];
+      of(lane, memory.inertia, i) = chain.inertias[i];
+      mass += chain.masses[i];
+    }
+    of(lane, memory.inverse_mass, 0) = 1.0 / mass;
+    of(lane, memory.gravity, 0) = chain.gravity.x;
+    of(lane, memory.gravity, 1) = chain.gravity.z;
+    for (std::size_t i = 0; i < chain.terrain_friction.size(); ++i) {
+      of(lane, memory.terrain_friction, i) = chain.terrain_friction[i];
+    }
+    for (std::size_t i = 0; i < chain.self_friction.size(); ++i) {
+      of(lane, memory.self_friction, i) = chain.self_friction[i];
+    }
+  }
+
+  const ChainKernel& kernel_;
+  std::size_t width_;
+  std::size_t size_;
+  PlanarChain form_of_;  ///< owns what form_ points to
+  ChainForm form_;
+  std::size_t block_size_;  ///< in numbers
+  Numbers numbers_;                 ///< the blocks, and one for the chains with weak motors
+  std::vector<std::size_t> weak_;  ///< chains, in a step
+  bool places_are_current_ = true;
+};
+
+ChainBatch::ChainBatch(std::span<const PlanarChain> chains, const ChainKernel* kernel)
+    : implementation_(
+          std::make_unique<Implementation>(chains, kernel != nullptr ? *kernel : choose_kernel(chains.size()))) {}
+ChainBatch::~ChainBatch() = default;
+
+std::size_t ChainBatch::size() const { return implementation_->size(); }
+const ChainKernel& ChainBatch::kernel() const { return implementation_->kernel(); }
+void ChainBatch::step() { implementation_->step(); }
+
+void ChainBatch::set_wanted_speed(std::size_t chain, std::size_t joint, double speed) {
+  implementation_->of(chain, implementation_->memory_of(chain).wanted_speed, joint) = speed;
+}
+
+void ChainBatch::set_max_torque(std::size_t chain, std::size_t joint, double torque) {
+  implementation_->of(chain, implementation_->memory_of(chain).max_torque, joint) = torque;
+}
+
+double ChainBatch::joint_angle(std::size_t chain, std::size_t joint) const {
+  return implementation_->of(chain, implementation_->memory_of(chain).joint_angle, joint);
+}
+
+double ChainBatch::motor_torque(std::size_t chain, std::size_t joint) const {
+  return implementation_->of(chain, implementation_->memory_of(chain).motor_torque, joint);
+}
+
+Point ChainBatch::center(std::size_t chain) const {
+  const ChainMemory<double> memory = implementation_->memory_of(chain);
+  return {implementation_->of(chain, memory.center, 0), implementation_->of(chain, memory.center, 1)};
+}
+
+ChainBatch::LinkPlace ChainBatch::link_place(std::size_t chain, std::size_t link) const {
+  implementation_->place();
+  const ChainMemory<double> memory = implementation_->memory_of(chain);
+  const auto of = [&](double* array, std::size_t i) { return implementation_->of(chain, array, i); };
+  double angle = of(memory.angle, 0);
+  for (std::size_t joint = 0; joint < link; ++joint) {
+    angle += of(memory.joint_angle, joint);
+  }
+  return {{of(memory.center, 0) + of(memory.link_position, 2 * link),
+           of(memory.center, 1) + of(memory.link_position, 2 * link + 1)},
+          angle};
+}
+
+ChainBatch::LinkMotion ChainBatch::link_motion(std::size_t chain, std::size_t link) const {
+  const ChainMemory<double> memory = implementation_->memory_of(chain);
+  const auto of = [&](double* array, std::size_t i) { return implementation_->of(chain, array, i); };
+  return {{of(memory.center_speed, 0) + of(memory.link_speed, 2 * link),
+           of(memory.center_speed, 1) + of(memory.link_speed, 2 * link + 1)},
+          of(memory.rotation, link)};
+}
+
+std::uint8_t ChainBatch::pressed(std::size_t chain, std::size_t link) const {
+  return static_cast<std::uint8_t>(implementation_->of(chain, implementation_->memory_of(chain).pressed, link));
+}
+
+double ChainBatch::contact_force(std::size_t chain, std::size_t link) const {
+  return implementation_->of(chain, implementation_->memory_of(chain).contact_force, link);
+}
+
+std::size_t ChainBatch::contact_count(std::size_t chain) const {
+  return static_cast<std::size_t>(implementation_->of(chain, implementation_->memory_of(chain).contact_count, 0));
+}
+
+ContactSliding ChainBatch::sliding(std::size_t chain) const {
+  const ChainMemory<double> memory = implementation_->memory_of(chain);
+  return {implementation_->of(chain, memory.sliding, 0), implementation_->of(chain, memory.sliding, 1)};
+}
+
+bool ChainBatch::failed(std::size_t chain) const {
+  return implementation_->of(chain, implementation_->memory_of(chain).failed, 0) != 0.0;
+}
+
+std::vector<double> ChainBatch::state(std::size_t chain) const {
+  const ChainMemory<double> memory = implementation_->memory_of(chain);
+  const ChainCounts& counts = implementation_->counts();
+  std::vector<double> state;
+  const auto add = [&](double* array, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      state.push_back(implementation_->of(chain, array, i));
+    }
+  };
+  add(memory.center, 2);
+  add(memory.center_speed, 2);
+  add(memory.angle, 1);
+  add(memory.joint_angle, counts.joints);
+  add(memory.link_speed, 2 * counts.links);
+  add(memory.rotation, counts.links);
+  return state;
+}
+
+void ChainBatch::place_like(std::size_t chain, const ChainBatch& other, std::size_t other_chain, const Point& center) {
+  const ChainMemory<double> memory = implementation_->memory_of(chain);
+  const ChainMemory<double> from = other.implementation_->memory_of(other_chain);
+  implementation_->of(chain, memory.angle, 0) = other.implementation_->of(other_chain, from.angle, 0);
+  for (std::size_t joint = 0; joint < implementation_->counts().joints; ++joint) {
+    implementation_->of(chain, memory.joint_angle, joint) = other.joint_angle(other_chain, joint);
+    implementation_->of(chain, memory.max_torque, joint) =
+        other.implementation_->of(other_chain, from.max_torque, joint);
+  }
+  implementation_->of(chain, memory.center, 0) = center.x;
+  implementation_->of(chain, memory.center, 1) = center.z;
+  implementation_->forget_places();
+}
+
+}  // namespace proleg::sim::reduced

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sim/physics/contact_sliding.hpp"
+#include "sim/reduced/chain_kernel.hpp"
+#include "sim/reduced/planar_chain.hpp"
+
+namespace proleg::sim::reduced {
+
+/// The kernels that this processor can run, narrowest first.
+[[nodiscard]] std::vector<const ChainKernel*> supported_kernels();
+
+/// Chains of one form that make their steps together. What a chain does depends neither on the others nor on the kernel.
+/// Angles, speeds and torques of joints are those of the plane (ShapeForm, JointForm).
+class ChainBatch {
+ public:
+  /// chains: at least one; all have the form of the first. kernel: nothing: the widest one that this processor has and the
+  /// chains fill.
+  explicit ChainBatch(std::span<const PlanarChain> chains, const ChainKernel* kernel = nullptr);
+  ~ChainBatch();
+  ChainBatch(const ChainBatch&) = delete;
+  ChainBatch& operator=(const ChainBatch&) = delete;
+
+  [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] const ChainKernel& kernel() const;
+
+  /// All chains. One that breaks down affects no other.
+  void step();
+
+  // Of a chain.
+  void set_wanted_speed(std::size_t chain, std::size_t joint, double speed);  ///< rad/s
+  void set_max_torque(std::size_t chain, std::size_t joint, double torque);   ///< Nm
+  [[nodiscard]] double joint_angle(std::size_t chain, std::size_t joint) const;   ///< rad
+  [[nodiscard]] double motor_torque(std::size_t chain, std::size_t joint) const;  ///< Nm, in the last step
+  [[nodiscard]] Point center(std::size_t chain) const;                            ///< of mass
+  /// A link's centre of mass, and the angle by which the link has turned since all angles were 0.
+  struct LinkPlace {
+    Point position;
+    double angle;  ///< rad
+  };
+  [[nodiscard]] LinkPlace link_place(std::size_t chain, std::size_t link) const;
+  /// Of its centre of mass, m/s; and its rotation, rad/s.
+  struct LinkMotion {
+    Point velocity;
+    double rotation;
+  };
+  [[nodiscard]] LinkMotion link_motion(std::size_t chain, std::size_t link) const;
+  [[nodiscard]] std::uint8_t pressed(std::size_t chain, std::size_t link) const;  ///< bit 0 rear, bit 1 front sensor
+  [[nodiscard]] double contact_force(std::size_t chain, std::size_t link) const;  ///< N
+  [[nodiscard]] std::size_t contact_count(std::size_t chain) const;
+  [[nodiscard]] ContactSliding sliding(std::size_t chain) const;
+  [[nodiscard]] bool failed(std::size_t chain) const;
+  /// All numbers on which the next steps depend, but contacts.
+  [[nodiscard]] std::vector<double> state(std::size_t chain) const;
+
+  /// Puts a chain at rest where another one is: its joints have the same angles; its centre of mass is given.
+  void place_like(std::size_t chain, const ChainBatch& other, std::size_t other_chain, const Point& center);
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace proleg::sim::reduced

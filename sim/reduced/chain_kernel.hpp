@@ -1,0 +1,27 @@
+#pragma once
+
+#include "sim/reduced/chain_form.hpp"
+
+namespace proleg::sim::reduced {
+
+/// Steps the chains of a block, one in each lane, with the instructions of one kind of processor. All kernels give the
+/// same bits. The block has a ChainMemory and behind it a ChainScratch, aligned to 64 bytes.
+struct ChainKernel {
+  const char* instructions;  ///< e.g. "AVX2"
+  int width;                 ///< chains in a block
+  /// ChainStep::step_strong().
+  unsigned (*step_strong)(const ChainForm& form, double* block);
+  /// ChainStep::step_weak().
+  void (*step_weak)(const ChainForm& form, double* block);
+  /// Only computes where the links are.
+  void (*place)(const ChainForm& form, double* block);
+};
+
+/// For every processor.
+extern const ChainKernel base_kernel;
+#ifdef __x86_64__
+extern const ChainKernel avx2_kernel;
+extern const ChainKernel avx512_kernel;
+#endif
+
+}  // namespace proleg::sim::reduced

@@ -1,0 +1,590 @@
+#pragma once
+
+// A step of chains, one in each lane of a vector.
+//
+// This header and those that it includes are compiled once for each instruction set. Everything in them has internal
+// linkage: a function that the linker took from another of these texts would run instructions that a processor does not
+// have. For the same reason they call nothing from the standard library.
+//
+// Method. The state is kept as velocities of the links. In a step their momenta are projected onto the motions that the
+// joints allow in the present pose, as an engine in maximal coordinates does; so results are near those of sim/ode.
+// - A motor reaches the speed that its servo wants if its torque suffices. While all do, joint speeds are given, and three
+//   unknowns remain: the velocity of the centre of mass and the rotation of the first link. Contacts are solved against
+//   these.
+// - From the result follows the torque of each motor. Where one is too large, the step is solved again with the speed of
+//   that joint unknown and its torque bounded, until no further motor is too weak. Few chains need this in a step;
+//   ChainBatch collects them, so that the others do not wait.
+// - Featherstone, Rigid Body Dynamics Algorithms (2008), section 9.5, has the inertia in such coordinates.
+
+#include <cstddef>
+
+#include "sim/reduced/chain_memory.hpp"
+#include "sim/reduced/chain_scratch.hpp"
+#include "sim/reduced/contact_rows.hpp"
+#include "sim/reduced/contact_search.hpp"
+#include "sim/reduced/lanes.hpp"
+#include "sim/reduced/sine.hpp"
+
+namespace proleg::sim::reduced {
+namespace {  // of each instruction set its own
+
+template <int width>
+class ChainStep {
+ public:
+  using Number = typename Lanes<width>::Number;
+  using Mask = typename Lanes<width>::Mask;
+  using Vector = Plane<Number>;
+
+  ChainStep(const ChainForm& form, const ChainMemory<Number>& memory, const ChainScratch<Number>& scratch)
+      : form_(form), m_(memory), s_(scratch), links_(form.counts.links), joints_(form.counts.joints) {}
+
+  /// Makes the step of the chains whose motors are all strong enough. Returns the lanes of the others: bit k for lane k.
+  /// They have not changed, but is_free is set for their weak joints.
+  unsigned step_strong() {
+    prepare();
+    Mask open = Lanes<width>::none();
+    for (std::size_t j = 0; j < joints_; ++j) {
+      open |= m_.is_free[j] > 0.0;
+    }
+    unknowns_ = 1;
+    solve();
+    find_torques();
+    open |= free_weak_joints(~open);
+    finish(~open);
+    return bits_of(open);
+  }
+
+  /// Makes the step of chains that step_strong() left.
+  void step_weak() {
+    prepare();
+    Mask open = Lanes<width>::all();
+    for (std::size_t round = 0; any(open); ++round) {
+      const bool is_last = round > joints_;  // each round frees a joint
+      number_free_joints();
+      solve();
+      find_torques();
+      const Mask changed = is_last ? Lanes<width>::none() : free_weak_joints(open);
+      finish(open & ~changed);
+      open &= changed;
+    }
+  }
+
+  /// Without a step: places the links, so that positions can be read.
+  void place() { place_links(); }
+
+ private:
+  static Vector vector(const Number* array, std::size_t i) { return {array[2 * i], array[2 * i + 1]}; }
+  static void put(Number* array, std::size_t i, const Vector& value) {
+    array[2 * i] = value.x;
+    array[2 * i + 1] = value.z;
+  }
+  static void put_where(Mask mask, Number& place, Number value) { place = select(mask, value, place); }
+
+  [[nodiscard]] Vector turned_with(std::size_t link, const Point& point) const {
+    return {s_.cosine[link] * point.x - s_.sine[link] * point.z, s_.sine[link] * point.x + s_.cosine[link] * point.z};
+  }
+
+  static unsigned bits_of(Mask mask) {
+    unsigned bits = 0;
+    for (int lane = 0; lane < width; ++lane) {
+      bits |= mask[lane] != 0 ? 1U << static_cast<unsigned>(lane) : 0U;
+    }
+    return bits;
+  }
+
+  void prepare() {
+    place_links();
+    bound_speeds();
+    ContactSearch<width> search(form_, m_, s_);
+    contacts_ = search.run();
+    contact_count_ = search.counts();
+    prepare_contacts();
+    const Vector gravity{m_.gravity[0], m_.gravity[1]};
+    free_speed_ = Vector{m_.center_speed[0], m_.center_speed[1]} + gravity * Lanes<width>::number(form_.step_s);
+  }
+
+  void finish(Mask done) {
+    keep(done);
+    sum_contact_forces(done);
+    note_failures(done);
+  }
+
+  void place_links() {
+    Number angle = m_.angle[0];
+    Vector joint{};
+    Vector sum{};
+    for (std::size_t i = 0; i < links_; ++i) {
+      if (i > 0) {
+        angle += m_.joint_angle[i - 1];
+      }
+      const SineCosine<Number> turn = sine_cosine<width>(angle);
+      s_.sine[i] = turn.sine;
+      s_.cosine[i] = turn.cosine;
+      Vector position{};
+      if (i > 0) {
+        position = joint - turned_with(i, form_.links[i].front);
+      }
+      if (i < joints_) {
+        joint = position + turned_with(i, form_.links[i].rear);
+        put(s_.joint_position, i, joint);
+      }
+      put(m_.link_position, i, position);
+      sum = sum + position * m_.mass[i];
+    }
+    const Vector mean = sum * m_.inverse_mass[0];
+    for (std::size_t i = 0; i < links_; ++i) {
+      put(m_.link_position, i, vector(m_.link_position, i) - mean);
+    }
+    for (std::size_t j = 0; j < joints_; ++j) {
+      put(s_.joint_position, j, vector(s_.joint_position, j) - mean);
+    }
+  }
+
+  void bound_speeds() {
+    const double steps_per_s = 1.0 / form_.step_s;
+    for (std::size_t j = 0; j < joints_; ++j) {
+      s_.lowest_speed[j] = (form_.joints[j].lower - m_.joint_angle[j]) * steps_per_s;
+      s_.highest_speed[j] = (form_.joints[j].upper - m_.joint_angle[j]) * steps_per_s;
+      s_.speed[j] = bounded(m_.wanted_speed[j], s_.lowest_speed[j], s_.highest_speed[j]);
+      // A limp joint is free from the start.
+      put_where(m_.max_torque[j] == 0.0, m_.is_free[j], Lanes<width>::number(1.0));
+    }
+  }
+
+  /// Depths to speeds. Where two links touch, the joints between them are free: what they do moves the centre not at all.
+  void prepare_contacts() {
+    constexpr double error_reduction = 0.2;  // share of a depth that a step corrects, as in sim/ode
+    const double factor = error_reduction / form_.step_s;
+    for (std::size_t k = 0; k < contacts_; ++k) {
+      const Mask is_there = contact_count_ > static_cast<double>(k);
+      s_.depth_speed[k] = select(is_there, s_.depth_speed[k] * factor, Number{});
+      s_.old_normal[k] = select(is_there, s_.old_normal[k], Number{});
+      s_.old_friction[k] = select(is_there, s_.old_friction[k], Number{});
+      s_.other_link[k] = select(is_there, s_.other_link[k], Lanes<width>::number(-1.0));
+      const Mask is_between_links = s_.other_link[k] >= 0.0;
+      if (any(is_between_links)) {
+        for (std::size_t j = 0; j < joints_; ++j) {
+          const auto joint = static_cast<double>(j);
+          const Mask is_between = is_between_links & (s_.link[k] <= joint) & (s_.other_link[k] > joint);
+          put_where(is_between, m_.is_free[j], Lanes<width>::number(1.0));
+        }
+      }
+    }
+  }
+
+  void solve() {
+    find_drift();
+    find_free_motion();
+    ContactRows<width> rows(form_, s_, contacts_, unknowns_, m_.inverse_mass[0]);
+    set_rows();
+    rows.prepare(contact_count_);
+    base_speed_ = free_speed_;
+    rows.solve(base_speed_, s_.free_max_impulse, s_.free_wanted, s_.free_lowest, s_.free_highest);
+    for (std::size_t k = 0; k < contacts_; ++k) {
+      s_.sliding_speed[k] = magnitude(rows.speed_of(2 * k + 1, base_speed_));
+    }
+    for (std::size_t i = 0; i + 1 < unknowns_; ++i) {
+      for (std::size_t j = 0; j < joints_; ++j) {
+        put_where(is_free_joint(i, j), s_.speed[j], s_.unknown[i + 1]);
+      }
+    }
+    // All speeds are known now.
+    find_drift_of_speeds();
+    for (std::size_t i = 0; i < links_; ++i) {
+      put(s_.new_link_speed, i, vector(s_.drift, i) + turned(vector(m_.link_position, i)) * s_.unknown[0]);
+      s_.new_rotation[i] = s_.spin[i] + s_.unknown[0];
+    }
+  }
+
+  /// Whether joint j is number i of the free joints of a lane.
+  Mask is_free_joint(std::size_t i, std::size_t j) const { return s_.free_joint[i] == static_cast<double>(j); }
+
+  void number_free_joints() {
+    Number count{};
+    for (std::size_t j = 0; j < joints_; ++j) {
+      s_.free_joint[j] = Lanes<width>::number(-1.0);
+      const Mask is_free = m_.is_free[j] > 0.0;
+      if (!any(is_free)) {
+        continue;
+      }
+      for (std::size_t i = 0; i <= j; ++i) {
+        put_where(is_free & (count == static_cast<double>(i)), s_.free_joint[i],
+                  Lanes<width>::number(static_cast<double>(j)));
+      }
+      count = select(is_free, count + 1.0, count);
+    }
+    unknowns_ = 1;
+    for (int lane = 0; lane < width; ++lane) {
+      const auto own = static_cast<std::size_t>(count[lane]) + 1;
+      unknowns_ = own > unknowns_ ? own : unknowns_;
+    }
+    free_count_ = count;
+  }
+
+  /// Velocities of the links against the centre for the speeds of the joints, while the first link does not turn.
+  void find_drift_of_speeds() {
+    Vector velocity{};
+    Number spin{};
+    Vector sum{};
+    for (std::size_t i = 0; i < links_; ++i) {
+      if (i > 0) {
+        const Vector joint = vector(s_.joint_position, i - 1);
+        velocity = velocity + turned(joint - vector(m_.link_position, i - 1)) * spin;
+        spin += s_.speed[i - 1];
+        velocity = velocity - turned(joint - vector(m_.link_position, i)) * spin;
+      }
+      put(s_.drift, i, velocity);
+      s_.spin[i] = spin;
+      sum = sum + velocity * m_.mass[i];
+    }
+    const Vector mean = sum * m_.inverse_mass[0];
+    for (std::size_t i = 0; i < links_; ++i) {
+      put(s_.drift, i, vector(s_.drift, i) - mean);
+    }
+  }
+
+  void find_drift() {
+    if (unknowns_ > 1) {
+      for (std::size_t j = 0; j < joints_; ++j) {
+        put_where(m_.is_free[j] > 0.0, s_.speed[j], Number{});
+      }
+    }
+    find_drift_of_speeds();
+  }
+
+  /// The unknowns without contacts and motors of free joints, and the inverse of their inertia.
+  void find_free_motion() {
+    Number inertia{};
+    Number momentum{};
+    Vector linear{};
+    Vector moment{};
+    Number mass{};
+    for (std::size_t i = links_; i-- > 0;) {
+      const Vector position = vector(m_.link_position, i);
+      const Vector change = (vector(m_.link_speed, i) - vector(s_.drift, i)) * m_.mass[i];
+      inertia += m_.inertia[i] + m_.mass[i] * dot(position, position);
+      momentum += m_.inertia[i] * (m_.rotation[i] - s_.spin[i]) + cross(position, change);
+      if (i > 0 && unknowns_ > 1) {
+        linear = linear + change;
+        moment = moment + position * m_.mass[i];
+        mass += m_.mass[i];
+        put(s_.momentum_behind, i - 1, linear);
+        put(s_.moment_behind, i - 1, moment);
+        s_.mass_behind[i - 1] = mass;
+        s_.inertia_behind[i - 1] = inertia;
+        s_.angular_behind[i - 1] = momentum;
+      }
+    }
+    if (unknowns_ == 1) {
+      s_.inverse_matrix[0] = 1.0 / inertia;
+      s_.unknown[0] = momentum * s_.inverse_matrix[0];
+      return;
+    }
+    gather_free_joints();
+    set_matrix(inertia);
+    s_.unknown[0] = momentum;
+    for (std::size_t i = 1; i < unknowns_; ++i) {
+      s_.unknown[i] = s_.free_momentum[i - 1];
+    }
+    invert_matrix();
+    start_motors();
+  }
+
+  /// What free joint i needs of its joint, by lane.
+  void gather_free_joints() {
+    for (std::size_t i = 0; i + 1 < unknowns_; ++i) {
+      Vector position{};
+      Vector moment{};
+      Number mass{};
+      Number inertia = Lanes<width>::number(1.0);
+      Number momentum{};
+      Number most{};
+      Number wanted{};
+      Number lowest{};
+      Number highest{};
+      Number start{};
+      for (std::size_t j = 0; j < joints_; ++j) {
+        const Mask is_this = is_free_joint(i, j);
+        if (!any(is_this)) {
+          continue;
+        }
+        const Vector joint = vector(s_.joint_position, j);
+        position = select(is_this, joint, position);
+        moment = select(is_this, vector(s_.moment_behind, j), moment);
+        put_where(is_this, mass, s_.mass_behind[j]);
+        put_where(is_this, inertia, s_.inertia_behind[j]);
+        put_where(is_this, momentum, s_.angular_behind[j] - cross(joint, vector(s_.momentum_behind, j)));
+        put_where(is_this, most, m_.max_torque[j] * form_.step_s);
+        put_where(is_this, wanted, m_.wanted_speed[j]);
+        put_where(is_this, lowest, s_.lowest_speed[j]);
+        put_where(is_this, highest, s_.highest_speed[j]);
+        put_where(is_this, start, m_.motor_torque[j] * form_.step_s);
+      }
+      put(s_.free_position, i, position);
+      put(s_.free_moment, i, moment);
+      s_.free_mass[i] = mass;
+      s_.free_inertia[i] = inertia;
+      s_.free_momentum[i] = momentum;
+      s_.free_max_impulse[i] = most;
+      s_.free_wanted[i] = wanted;
+      s_.free_lowest[i] = lowest;
+      s_.free_highest[i] = highest;
+      s_.motor_impulse[i] = bounded(start, -most, most);
+    }
+  }
+
+  /// kg m: mass times distance from the joint, of the links behind free joint i.
+  [[nodiscard]] Vector free_lever(std::size_t i) const {
+    return vector(s_.free_moment, i) - vector(s_.free_position, i) * s_.free_mass[i];
+  }
+
+  void set_matrix(Number inertia) {
+    const std::size_t stride = joints_ + 1;
+    s_.matrix[0] = inertia;
+    for (std::size_t a = 0; a + 1 < unknowns_; ++a) {
+      const Mask is_there = free_count_ > static_cast<double>(a);
+      const Vector joint = vector(s_.free_position, a);
+      const Number with_base = s_.free_inertia[a] - dot(vector(s_.free_moment, a), joint);
+      s_.matrix[(a + 1) * stride] = select(is_there, with_base, Number{});
+      // Free joints are in the order of the chain: the links behind b are also behind a.
+      for (std::size_t b = a; b + 1 < unknowns_; ++b) {
+        const Vector other = vector(s_.free_position, b);
+        const Number value = s_.free_inertia[b] - dot(vector(s_.free_moment, b), joint + other) +
+                             s_.free_mass[b] * dot(joint, other) -
+                             dot(free_lever(a), free_lever(b)) * m_.inverse_mass[0];
+        const Mask both = free_count_ > static_cast<double>(b);
+        s_.matrix[(b + 1) * stride + a + 1] = select(both, value, Lanes<width>::number(a == b ? 1.0 : 0.0));
+      }
+    }
+  }
+
+  /// From the lower half of the matrix: L D L^T in its place, then the inverse; then the unknowns from their momenta.
+  void invert_matrix() {
+    const std::size_t stride = joints_ + 1;
+    const std::size_t n = unknowns_;
+    Number* matrix = s_.matrix;
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t k = 0; k < j; ++k) {
+        matrix[j * stride + j] -= matrix[j * stride + k] * matrix[j * stride + k] * matrix[k * stride + k];
+      }
+      const Number inverse = 1.0 / matrix[j * stride + j];
+      for (std::size_t i = j + 1; i < n; ++i) {
+        Number value = matrix[i * stride + j];
+        for (std::size_t k = 0; k < j; ++k) {
+          value -= matrix[i * stride + k] * matrix[j * stride + k] * matrix[k * stride + k];
+        }
+        matrix[i * stride + j] = value * inverse;
+      }
+    }
+    for (std::size_t column = 0; column < n; ++column) {
+      Number* x = s_.inverse_matrix + column * stride;  // symmetric: a row is a column
+      for (std::size_t i = 0; i < n; ++i) {
+        x[i] = Lanes<width>::number(i == column ? 1.0 : 0.0);
+        for (std::size_t k = column; k < i; ++k) {
+          x[i] -= matrix[i * stride + k] * x[k];
+        }
+      }
+      for (std::size_t i = 0; i < n; ++i) {
+        x[i] = x[i] / matrix[i * stride + i];
+      }
+      for (std::size_t i = n; i-- > 0;) {
+        for (std::size_t k = i + 1; k < n; ++k) {
+          x[i] -= matrix[k * stride + i] * x[k];
+        }
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      s_.matrix[i] = s_.unknown[i];  // the momenta; the first row of the factors is not needed any more
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      Number sum{};
+      for (std::size_t k = 0; k < n; ++k) {
+        sum += s_.inverse_matrix[i * stride + k] * s_.matrix[k];
+      }
+      s_.unknown[i] = sum;
+    }
+  }
+
+  /// The motors of free joints begin with the torque of the step before.
+  void start_motors() {
+    const std::size_t stride = joints_ + 1;
+    for (std::size_t motor = 0; motor + 1 < unknowns_; ++motor) {
+      const Mask is_there = free_count_ > static_cast<double>(motor);
+      s_.motor_inverse[motor] =
+          select(is_there, 1.0 / s_.inverse_matrix[(motor + 1) * stride + motor + 1], Number{});
+      for (std::size_t i = 0; i < unknowns_; ++i) {
+        s_.unknown[i] += s_.inverse_matrix[i * stride + motor + 1] * s_.motor_impulse[motor];
+      }
+    }
+  }
+
+  void set_rows() {
+    const std::size_t stride = joints_ + 1;
+    for (std::size_t k = 0; k < contacts_; ++k) {
+      const Mask is_terrain = s_.other_link[k] < 0.0;
+      const Vector arm = vector(s_.arm, k);
+      const Vector normal = vector(s_.normal, k);
+      const Vector along{normal.z, -normal.x};
+      const Vector given = velocity_at(k, arm);
+      const Number ground = select(is_terrain, Lanes<width>::number(1.0), Number{});
+      for (std::size_t row = 2 * k; row < 2 * k + 2; ++row) {
+        const Vector& direction = row == 2 * k ? normal : along;
+        put(s_.direction, row, direction * ground);
+        s_.bias[row] = dot(direction, given);
+        s_.jacobian[row * stride] = cross(arm, direction) * ground;
+      }
+      for (std::size_t i = 0; i + 1 < unknowns_; ++i) {
+        const Mask is_there = free_count_ > static_cast<double>(i);
+        const Vector lever = turned(arm - vector(s_.free_position, i));
+        Vector velocity = select(s_.link[k] > s_.free_joint[i], lever, Vector{});
+        velocity = select(s_.other_link[k] > s_.free_joint[i], velocity - lever, velocity);
+        velocity = select(is_terrain, velocity - turned(free_lever(i)) * m_.inverse_mass[0], velocity);
+        velocity = select(is_there, velocity, Vector{});
+        s_.jacobian[2 * k * stride + i + 1] = dot(normal, velocity);
+        s_.jacobian[(2 * k + 1) * stride + i + 1] = dot(along, velocity);
+      }
+    }
+  }
+
+  /// Of the point of a contact, for the given joint speeds: against the centre, or against the other link.
+  Vector velocity_at(std::size_t contact, const Vector& arm) const {
+    Vector velocity{};
+    for (std::size_t i = 0; i < links_; ++i) {
+      const auto link = static_cast<double>(i);
+      const Mask is_link = s_.link[contact] == link;
+      const Mask is_other = s_.other_link[contact] == link;
+      if (any(is_link | is_other)) {
+        const Vector own = vector(s_.drift, i) + turned(arm - vector(m_.link_position, i)) * s_.spin[i];
+        velocity = select(is_link, velocity + own, velocity);
+        velocity = select(is_other, velocity - own, velocity);
+      }
+    }
+    return velocity;
+  }
+
+  /// The torques that the new velocities take.
+  void find_torques() {
+    const Vector push = base_speed_ - free_speed_;
+    Vector linear{};
+    Number angular{};
+    for (std::size_t i = links_; i-- > 1;) {
+      const Vector position = vector(m_.link_position, i);
+      const Vector change = (vector(s_.new_link_speed, i) - vector(m_.link_speed, i) + push) * m_.mass[i];
+      linear = linear + change;
+      angular += m_.inertia[i] * (s_.new_rotation[i] - m_.rotation[i]) + cross(position, change);
+      for (std::size_t k = 0; k < contacts_; ++k) {
+        const auto link = static_cast<double>(i);
+        const Mask is_link = s_.link[k] == link;
+        const Mask is_other = s_.other_link[k] == link;
+        if (!any(is_link | is_other)) {
+          continue;
+        }
+        const Vector normal = vector(s_.normal, k);
+        const Vector impulse =
+            normal * s_.normal_value[k] + Vector{normal.z, -normal.x} * s_.friction_value[k];
+        const Vector own = select(is_link, impulse, select(is_other, Vector{} - impulse, Vector{}));
+        const Vector felt = select(contact_count_ > static_cast<double>(k), own, Vector{});
+        linear = linear - felt;
+        angular -= cross(vector(s_.arm, k), felt);
+      }
+      s_.torque_impulse[i - 1] = angular - cross(vector(s_.joint_position, i - 1), linear);
+    }
+  }
+
+  /// Frees the joints whose motors are too weak. Returns the lanes with such a joint.
+  Mask free_weak_joints(Mask open) {
+    Mask changed = Lanes<width>::none();
+    for (std::size_t j = 0; j < joints_; ++j) {
+      const Number most = m_.max_torque[j] * (form_.step_s * (1.0 + 1e-9));
+      const Number impulse = s_.torque_impulse[j];
+      // At a stop the stop gives what the motor lacks.
+      const Mask at_lower = m_.wanted_speed[j] < s_.lowest_speed[j];
+      const Mask at_upper = m_.wanted_speed[j] > s_.highest_speed[j];
+      const Mask is_weak = ((impulse > most) & ~at_lower) | ((impulse < -most) & ~at_upper);
+      const Mask is_new = open & is_weak & (m_.is_free[j] == 0.0);
+      put_where(is_new, m_.is_free[j], Lanes<width>::number(1.0));
+      changed |= is_new;
+    }
+    return changed;
+  }
+
+  /// The result of lanes that are solved becomes their state.
+  void keep(Mask done) {
+    const double h = form_.step_s;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const Number speed = axis == 0 ? base_speed_.x : base_speed_.z;
+      put_where(done, m_.center_speed[axis], speed);
+      put_where(done, m_.center[axis], m_.center[axis] + speed * h);
+    }
+    put_where(done, m_.angle[0], m_.angle[0] + s_.unknown[0] * h);
+    for (std::size_t j = 0; j < joints_; ++j) {
+      put_where(done, m_.joint_angle[j], m_.joint_angle[j] + s_.speed[j] * h);
+      put_where(done, m_.is_free[j], Number{});
+      const Number most = m_.max_torque[j];
+      put_where(done, m_.motor_torque[j], bounded(s_.torque_impulse[j] * (1.0 / h), -most, most));
+    }
+    for (std::size_t i = 0; i < links_; ++i) {
+      put_where(done, m_.link_speed[2 * i], s_.new_link_speed[2 * i]);
+      put_where(done, m_.link_speed[2 * i + 1], s_.new_link_speed[2 * i + 1]);
+      put_where(done, m_.rotation[i], s_.new_rotation[i]);
+    }
+    keep_contacts(done);
+  }
+
+  void keep_contacts(Mask done) {
+    const double steps_per_s = 1.0 / form_.step_s;
+    put_where(done, m_.contact_count[0], contact_count_);
+    put_where(done, m_.sliding[0], Number{});
+    put_where(done, m_.sliding[1], Number{});
+    for (std::size_t k = 0; k < contacts_; ++k) {
+      put_where(done, m_.contact_key[k], s_.key[k]);
+      put_where(done, m_.normal_impulse[k], s_.normal_value[k]);
+      put_where(done, m_.friction_impulse[k], s_.friction_value[k]);
+      const Mask is_terrain = done & (s_.other_link[k] < 0.0) & (contact_count_ > static_cast<double>(k));
+      const Number force = select(is_terrain, s_.normal_value[k] * steps_per_s, Number{});
+      m_.sliding[0] += force;
+      m_.sliding[1] += force * s_.sliding_speed[k];
+    }
+  }
+
+  void sum_contact_forces(Mask done) {
+    for (std::size_t i = 0; i < links_; ++i) {
+      put_where(done, m_.contact_force[i], Number{});
+    }
+    const double steps_per_s = 1.0 / form_.step_s;
+    for (int lane = 0; lane < width; ++lane) {
+      const auto count = done[lane] != 0 ? static_cast<std::size_t>(contact_count_[lane]) : 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        const double force = m_.normal_impulse[k][lane] * steps_per_s;
+        m_.contact_force[static_cast<std::size_t>(s_.link[k][lane])][lane] += force;
+        if (s_.other_link[k][lane] >= 0.0) {
+          m_.contact_force[static_cast<std::size_t>(s_.other_link[k][lane])][lane] += force;
+        }
+      }
+    }
+  }
+
+  /// A number that is not finite makes the difference of the sum from itself not 0.
+  void note_failures(Mask done) {
+    Number sum = m_.center[0] + m_.center[1] + m_.angle[0];
+    for (std::size_t j = 0; j < joints_; ++j) {
+      sum += m_.joint_angle[j];
+    }
+    put_where(done & ~(sum - sum == 0.0), m_.failed[0], Lanes<width>::number(1.0));
+  }
+
+  const ChainForm& form_;
+  const ChainMemory<Number>& m_;
+  const ChainScratch<Number>& s_;
+  std::size_t links_;
+  std::size_t joints_;
+  std::size_t contacts_ = 0;  ///< most of a lane
+  Number contact_count_{};
+  std::size_t unknowns_ = 1;  ///< most of a lane
+  Number free_count_{};
+  Vector free_speed_;  ///< of the centre, without contacts
+  Vector base_speed_;  ///< of the centre, after the step
+};
+
+}  // namespace
+}  // namespace proleg::sim::reduced

@@ -1,0 +1,202 @@
+#pragma once
+
+#include <cstddef>
+
+#include "sim/reduced/chain_memory.hpp"
+#include "sim/reduced/chain_scratch.hpp"
+#include "sim/reduced/lanes.hpp"
+#include "sim/reduced/outline_contact.hpp"
+
+namespace proleg::sim::reduced {
+namespace {  // of each instruction set its own (chain_step.hpp)
+
+/// Finds the contacts of the links with the terrain and with each other. A lane has only its own contacts, one after the
+/// other, so that a step costs what the busiest lane needs and not what all need together.
+template <int width>
+class ContactSearch {
+ public:
+  using Number = typename Lanes<width>::Number;
+  using Mask = typename Lanes<width>::Mask;
+
+  ContactSearch(const ChainForm& form, const ChainMemory<Number>& memory, const ChainScratch<Number>& scratch)
+      : form_(form), m_(memory), s_(scratch) {}
+
+  /// The links must have been placed. Returns the most contacts of a lane.
+  std::size_t run() {
+    for (std::size_t link = 0; link < form_.counts.links; ++link) {
+      m_.pressed[link] = Number{};
+    }
+    for (int lane = 0; lane < width; ++lane) {
+      found_[lane] = 0;
+      old_[lane] = 0;
+    }
+    for (std::size_t shape = 0; shape < form_.counts.shapes; ++shape) {
+      search_terrain(shape);
+    }
+    if (form_.self_collision) {
+      for (std::size_t shape = 0; shape < form_.counts.shapes; ++shape) {
+        search_links(shape);
+      }
+    }
+    std::size_t most = 0;
+    for (int lane = 0; lane < width; ++lane) {
+      most = found_[lane] > most ? found_[lane] : most;
+    }
+    return most;
+  }
+
+  /// Of each lane.
+  [[nodiscard]] Number counts() const {
+    Number counts{};
+    for (int lane = 0; lane < width; ++lane) {
+      counts[lane] = static_cast<double>(found_[lane]);
+    }
+    return counts;
+  }
+
+ private:
+  [[nodiscard]] Plane<Number> position_of(std::size_t link) const {
+    return {m_.link_position[2 * link], m_.link_position[2 * link + 1]};
+  }
+  [[nodiscard]] Plane<Number> turned_with(std::size_t link, const Point& point) const {
+    return {s_.cosine[link] * point.x - s_.sine[link] * point.z, s_.sine[link] * point.x + s_.cosine[link] * point.z};
+  }
+  /// Of a shape, from the centre.
+  [[nodiscard]] Outline<width> outline_of(const ShapeForm& shape) const {
+    Outline<width> outline;
+    for (int k = 0; k < 4; ++k) {
+      outline.corners[k] = position_of(shape.link) + turned_with(shape.link, shape.outline.corners[k]);
+      outline.normals[k] = turned_with(shape.link, shape.outline.normals[k]);
+    }
+    return outline;
+  }
+
+  void search_terrain(std::size_t number) {
+    const ShapeForm& shape = form_.shapes[number];
+    const Plane<Number> center{m_.center[0], m_.center[1]};
+    const Plane<Number> position = position_of(shape.link) + center;
+    Outline<width> outline;
+    bool has_outline = false;
+    for (std::size_t solid = 0; solid < form_.counts.solids; ++solid) {
+      if (!any(is_near(position, shape.radius, form_.terrain[solid]))) {
+        continue;
+      }
+      if (!has_outline) {
+        outline = outline_of(shape);
+        has_outline = true;
+      }
+      Outline<width> ground = in_all_lanes<width>(form_.terrain[solid]);
+      for (Plane<Number>& corner : ground.corners) {
+        corner = corner - center;
+      }
+      Touch<width> touch;
+      if (find_touch<width>(outline, ground, touch)) {
+        const std::size_t pair = number * form_.counts.solids + solid;
+        add(touch, pair, m_.terrain_friction[pair], shape.link, -1);
+      }
+    }
+  }
+
+  void search_links(std::size_t number) {
+    const ShapeForm& shape = form_.shapes[number];
+    for (std::size_t other_number = number + 1; other_number < form_.counts.shapes; ++other_number) {
+      const ShapeForm& other = form_.shapes[other_number];
+      if (other.link <= shape.link + 1) {
+        continue;  // neighbouring links overlap at their joint by construction
+      }
+      const Plane<Number> apart = position_of(other.link) - position_of(shape.link);
+      const double reach = shape.radius + other.radius;
+      if (!any(dot(apart, apart) < Lanes<width>::number(reach * reach))) {
+        continue;
+      }
+      Touch<width> touch;
+      if (find_touch<width>(outline_of(shape), outline_of(other), touch)) {
+        const std::size_t pair = number * form_.counts.shapes + other_number;
+        add(touch, form_.counts.shapes * form_.counts.solids + pair, m_.self_friction[pair], shape.link,
+            static_cast<int>(other.link));
+      }
+    }
+  }
+
+  /// Whether a circle may reach a solid: whether a side of the solid is farther away than its radius.
+  static Mask is_near(const Plane<Number>& center, double radius, const Rectangle& solid) {
+    Mask near = Lanes<width>::all();
+    for (int k = 0; k < 4; ++k) {
+      const Point& normal = solid.normals[k];
+      const double offset = normal.x * solid.corners[k].x + normal.z * solid.corners[k].z + radius;
+      near &= center.x * normal.x + center.z * normal.z < Lanes<width>::number(offset);
+    }
+    return near;
+  }
+
+  /// other: -1: the terrain.
+  void add(const Touch<width>& touch, std::size_t pair, Number friction, std::size_t link, int other) {
+    const Plane<Number> middle = position_of(link);
+    const Plane<Number> forward = turned_with(link, form_.links[link].forward);
+    const Plane<Number> down = turned_with(link, form_.links[link].down);
+    for (int point = 0; point < 2; ++point) {
+      const Mask touches = touch.depths[point] > 0.0;
+      if (!any(touches)) {
+        continue;
+      }
+      const Plane<Number> from_middle = touch.points[point] - middle;
+      const Number ahead = dot(from_middle, forward);
+      const Number below = dot(from_middle, down);
+      const Number key = touch.corners[point] + static_cast<double>(pair) * 8.0;
+      for (int lane = 0; lane < width; ++lane) {
+        if (touches[lane] == 0) {
+          continue;
+        }
+        if (found_[lane] == form_.counts.contacts) {
+          m_.failed[0][lane] = 1.0;
+          continue;
+        }
+        const std::size_t contact = found_[lane]++;
+        s_.link[contact][lane] = static_cast<double>(link);
+        s_.other_link[contact][lane] = other;
+        s_.arm[2 * contact][lane] = touch.points[point].x[lane];
+        s_.arm[2 * contact + 1][lane] = touch.points[point].z[lane];
+        s_.normal[2 * contact][lane] = touch.normal.x[lane];
+        s_.normal[2 * contact + 1][lane] = touch.normal.z[lane];
+        s_.depth_speed[contact][lane] = touch.depths[point][lane];
+        s_.friction[contact][lane] = friction[lane];
+        s_.key[contact][lane] = key[lane];
+        take_old_impulses(lane, contact, static_cast<double>(pair) * 8.0, key[lane]);
+        if (other < 0 && below[lane] > 0.0) {
+          press(link, lane, ahead[lane] < 0.0 ? 1 : 2);
+        }
+      }
+    }
+  }
+
+  void press(std::size_t link, int lane, int sensor) {
+    m_.pressed[link][lane] = static_cast<double>(static_cast<int>(m_.pressed[link][lane]) | sensor);
+  }
+
+  /// Both steps have their contacts in the same order of pairs.
+  void take_old_impulses(int lane, std::size_t contact, double first_key_of_pair, double key) {
+    const auto count = static_cast<std::size_t>(m_.contact_count[0][lane]);
+    std::size_t& old = old_[lane];
+    while (old < count && m_.contact_key[old][lane] < first_key_of_pair) {
+      ++old;
+    }
+    s_.old_normal[contact][lane] = 0.0;
+    s_.old_friction[contact][lane] = 0.0;
+    for (std::size_t candidate = old; candidate < count && m_.contact_key[candidate][lane] < first_key_of_pair + 8.0;
+         ++candidate) {
+      if (m_.contact_key[candidate][lane] == key) {
+        s_.old_normal[contact][lane] = m_.normal_impulse[candidate][lane];
+        s_.old_friction[contact][lane] = m_.friction_impulse[candidate][lane];
+      }
+    }
+  }
+
+  const ChainForm& form_;
+  const ChainMemory<Number>& m_;
+  const ChainScratch<Number>& s_;
+  std::size_t found_[static_cast<unsigned>(width)];
+  std::size_t old_[static_cast<unsigned>(width)];  ///< number of the first contact of the last step that may come again
+};
+
+}  // namespace
+}  // namespace proleg::sim::reduced

@@ -1,0 +1,8 @@
+#include "sim/reduced/chain_kernel.hpp"
+#include "sim/reduced/kernel_functions.hpp"
+
+namespace proleg::sim::reduced {
+
+const ChainKernel avx2_kernel{"AVX2", 4, step_strong<4>, step_weak<4>, place<4>};
+
+}  // namespace proleg::sim::reduced

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,15 @@ struct StaticObject {
   std::vector<Geometry> geometries;
 };
 
+/// What computes the motion (docs/physics.md).
+enum class PhysicsEngine : std::uint8_t {
+  ode,      ///< the Open Dynamics Engine: any robot, any environment
+  reduced,  ///< chains in a plane; the same bits on every machine
+};
+
 /// The world a robot crawls in.
 struct EnvironmentModel {
+  PhysicsEngine engine = PhysicsEngine::ode;
   Eigen::Vector3d gravity{0.0, 0.0, -9.81};  ///< m/s^2
   bool self_collision = false;               ///< whether links that are not neighbours collide
   /// Coulomb coefficient between two geometries of which neither has one.

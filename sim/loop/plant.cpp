@@ -11,7 +11,7 @@
 #include "sim/ode/ode_world.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/reduced/reduced_world.hpp"
-#include <cstdlib>
+
 #include "sim/robot/servo.hpp"
 #include "sim/robot/servo_current.hpp"
 #include "sim/scenario/random_streams.hpp"
@@ -27,6 +27,13 @@ Stepper choose_stepper(const Scenario& scenario) {
   return scenario.solver == Solver::direct ? Stepper::direct : Stepper::iterative;
 }
 
+std::unique_ptr<World> make_world(const Scenario& scenario) {
+  if (scenario.environment.engine == PhysicsEngine::reduced) {
+    return reduced::make_reduced_world(scenario.robot, scenario.environment, scenario.step_s, scenario.path);
+  }
+  return make_ode_world(scenario.robot, scenario.environment, scenario.step_s, choose_stepper(scenario));
+}
+
 /// 90 degrees = 2^30, saturated.
 std::int32_t joint_angle_in_steps(double radians) {
   constexpr double max_steps = std::numeric_limits<std::int32_t>::max();
@@ -38,7 +45,7 @@ std::int32_t joint_angle_in_steps(double radians) {
 
 Plant::Plant(const Scenario& scenario)
     : scenario_(scenario),
-      world_(std::getenv("PROLEG_REDUCED") ? reduced::make_reduced_world(scenario.robot, scenario.environment, scenario.step_s, scenario.path) : make_ode_world(scenario.robot, scenario.environment, scenario.step_s, choose_stepper(scenario))),
+      world_(make_world(scenario)),
       steps_per_tick_(static_cast<std::uint32_t>(std::lround(scenario.kernel.tick_period_us * 1e-6 / scenario.step_s))),
       start_(world_->center_of_mass()),
       center_before_(start_),

@@ -1,5 +1,6 @@
 #include "sim/loop/simulation.hpp"
 
+#include <bit>
 #include <utility>
 
 #include "sim/loop/robot_placement.hpp"
@@ -45,7 +46,17 @@ const Change* Simulation::advance() {
     servo_hash_.append(pulse.command);
   }
   pulse_player_.advance(present, servo_pulses_);
+  hash_world();
   return change;
+}
+
+void Simulation::hash_world() {
+  for (const double number : plant_.world().state()) {
+    has_world_hash_ = true;
+    const auto bits = std::bit_cast<std::uint64_t>(number);
+    world_hash_.append(static_cast<std::int32_t>(bits));
+    world_hash_.append(static_cast<std::int32_t>(bits >> 32U));
+  }
 }
 
 const Change* Simulation::apply_changes() {

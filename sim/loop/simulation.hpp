@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "shared/computer/hash/value_hash.hpp"
@@ -62,9 +64,14 @@ class Simulation {
   /// Hashes of all set-points and of all pulses, in the order of time, then of joints.
   [[nodiscard]] const ValueHash& setpoint_hash() const { return setpoint_hash_; }
   [[nodiscard]] const ValueHash& servo_hash() const { return servo_hash_; }
+  /// Hash of the states of the world after all ticks; nothing if its engine does not give the same on every machine.
+  [[nodiscard]] std::optional<std::string> world_hash() const {
+    return has_world_hash_ ? std::optional(world_hash_.hex()) : std::nullopt;
+  }
 
  private:
   const Change* apply_changes();
+  void hash_world();
 
   const Scenario& scenario_;
   KernelChain chain_;
@@ -81,6 +88,8 @@ class Simulation {
   std::vector<ServoPulse> servo_pulses_;
   ValueHash setpoint_hash_;
   ValueHash servo_hash_;
+  ValueHash world_hash_;
+  bool has_world_hash_ = false;
 };
 
 }  // namespace proleg::sim

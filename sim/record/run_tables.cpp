@@ -26,17 +26,11 @@ std::string_view solver_name(Solver solver) {
 /// What the command line gave instead of the files; the words repeat the run.
 template <typename Put>
 void write_overrides(const Overrides& overrides, const Put& put) {
-  if (overrides.seed) {
-    put("override_seed", std::to_string(*overrides.seed));
-  }
-  if (overrides.friction) {
-    put("override_friction", exact_text(*overrides.friction));
-  }
-  if (const auto position = position_text(overrides)) {
-    put("override_at", *position);
-  }
-  if (overrides.heading_deg) {
-    put("override_heading", exact_text(*overrides.heading_deg));
+  const OverrideWords words = words_of(overrides);
+  for (const OverrideDeclaration& declaration : override_declarations()) {
+    if (const std::optional<std::string>& word = words.*declaration.word) {
+      put("override_" + std::string(declaration.name), *word);
+    }
   }
 }
 
@@ -53,6 +47,7 @@ void write_run(Database& database, const Scenario& scenario, const std::string& 
   put("seed", std::to_string(scenario.kernel.seed));
   put("tick_us", std::to_string(scenario.kernel.tick_period_us));
   put("step_s", exact_text(scenario.step_s));
+  put("engine", name_of(scenario.environment.engine));
   put("solver", solver_name(scenario.solver));
   put("planned_duration_s", exact_text(scenario.duration_s));
   put("servo_period_us", std::to_string(scenario.robot.servo.period_us));

@@ -64,7 +64,7 @@ class ChainBatch::Implementation {
         width_(static_cast<std::size_t>(kernel.width)),
         size_(chains.size()),
         form_of_(chains.front()),
-        form_{counts_of(form_of_), form_of_.links.data(),   form_of_.joints.data(), form_of_.shapes.data(),
+        form_{counts_of(form_of_),     form_of_.links.data(),   form_of_.joints.data(), form_of_.shapes.data(),
               form_of_.terrain.data(), form_of_.self_collision, form_of_.step_s},
         block_size_(width_ * (ChainMemory<double>::size(form_.counts) + ChainScratch<double>::size(form_.counts))),
         numbers_(zeros(block_size_ * (blocks() + 1))) {
@@ -97,7 +97,10 @@ class ChainBatch::Implementation {
         }
       }
     }
-    extern unsigned long g_weak, g_side, g_steps; g_weak += weak_.size(); g_side += (weak_.size() + width_ - 1) / width_; g_steps += size_;
+    extern unsigned long g_weak, g_side, g_steps;
+    g_weak += weak_.size();
+    g_side += (weak_.size() + width_ - 1) / width_;
+    g_steps += size_;
     for (std::size_t first = 0; first < weak_.size(); first += width_) {
       step_weak(std::span(weak_).subspan(first, std::min(width_, weak_.size() - first)));
     }
@@ -179,8 +182,8 @@ class ChainBatch::Implementation {
   std::size_t size_;
   PlanarChain form_of_;  ///< owns what form_ points to
   ChainForm form_;
-  std::size_t block_size_;  ///< in numbers
-  Numbers numbers_;                 ///< the blocks, and one for the chains with weak motors
+  std::size_t block_size_;         ///< in numbers
+  Numbers numbers_;                ///< the blocks, and one for the chains with weak motors
   std::vector<std::size_t> weak_;  ///< chains, in a step
   bool places_are_current_ = true;
 };

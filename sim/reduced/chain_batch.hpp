@@ -15,12 +15,12 @@ namespace proleg::sim::reduced {
 /// The kernels that this processor can run, narrowest first.
 [[nodiscard]] std::vector<const ChainKernel*> supported_kernels();
 
-/// Chains of one form that make their steps together. What a chain does depends neither on the others nor on the kernel.
-/// Angles, speeds and torques of joints are those of the plane (ShapeForm, JointForm).
+/// Chains of one form that make their steps together. What a chain does depends neither on the others nor on the
+/// kernel. Angles, speeds and torques of joints are those of the plane (ShapeForm, JointForm).
 class ChainBatch {
  public:
-  /// chains: at least one; all have the form of the first. kernel: nothing: the widest one that this processor has and the
-  /// chains fill.
+  /// chains: at least one; all have the form of the first. kernel: nothing: the widest one that this processor has and
+  /// the chains fill.
   explicit ChainBatch(std::span<const PlanarChain> chains, const ChainKernel* kernel = nullptr);
   ~ChainBatch();
   ChainBatch(const ChainBatch&) = delete;
@@ -33,8 +33,8 @@ class ChainBatch {
   void step();
 
   // Of a chain.
-  void set_wanted_speed(std::size_t chain, std::size_t joint, double speed);  ///< rad/s
-  void set_max_torque(std::size_t chain, std::size_t joint, double torque);   ///< Nm
+  void set_wanted_speed(std::size_t chain, std::size_t joint, double speed);      ///< rad/s
+  void set_max_torque(std::size_t chain, std::size_t joint, double torque);       ///< Nm
   [[nodiscard]] double joint_angle(std::size_t chain, std::size_t joint) const;   ///< rad
   [[nodiscard]] double motor_torque(std::size_t chain, std::size_t joint) const;  ///< Nm, in the last step
   [[nodiscard]] Point center(std::size_t chain) const;                            ///< of mass

@@ -23,10 +23,10 @@ struct Rectangle {
 
 /// Points are from the link's centre of mass. The link lies in the plane as it does when all angles are 0.
 struct LinkForm {
-  Point front;          ///< the joint before it; of no meaning in the first link
-  Point rear;           ///< the joint behind it; of no meaning in the last link
-  Point forward;        ///< unit vector towards the front half, for the touch sensors; zero if there is one link
-  Point down;           ///< unit vector out of the underside
+  Point front;    ///< the joint before it; of no meaning in the first link
+  Point rear;     ///< the joint behind it; of no meaning in the last link
+  Point forward;  ///< unit vector towards the front half, for the touch sensors; zero if there is one link
+  Point down;     ///< unit vector out of the underside
   bool operator==(const LinkForm&) const = default;
 };
 

@@ -23,15 +23,16 @@ struct ChainMemory {
   Number* max_torque;    ///< Nm, by joint
   Number* is_free;       ///< 1 or 0, by joint: in the step that is made, its motor is too weak to keep the wanted speed
   // State.
-  Number* center;          ///< x and z, m, of mass of the chain
-  Number* center_speed;    ///< x and z, m/s
-  Number* angle;           ///< rad, of the first link
-  Number* joint_angle;     ///< rad
-  Number* link_speed;      ///< x and z by link: of its centre of mass, less that of the chain, m/s
-  Number* rotation;        ///< rad/s, by link
+  Number* center;        ///< x and z, m, of mass of the chain
+  Number* center_speed;  ///< x and z, m/s
+  Number* angle;         ///< rad, of the first link
+  Number* joint_angle;   ///< rad
+  Number* link_speed;    ///< x and z by link: of its centre of mass, less that of the chain, m/s
+  Number* rotation;      ///< rad/s, by link
   // Results of the last step.
-  Number* motor_torque;   ///< Nm, by joint
-  Number* link_position;  ///< x and z by link: of its centre of mass, from that of the chain, m, at the start of the step
+  Number* motor_torque;  ///< Nm, by joint
+  Number*
+      link_position;  ///< x and z by link: of its centre of mass, from that of the chain, m, at the start of the step
   Number* contact_force;  ///< N, by link
   Number* pressed;        ///< touch sensors by link: bit 0 rear, bit 1 front
   Number* sliding;        ///< normal forces with the terrain, N, and their sum of force times speed, N m/s

@@ -8,10 +8,12 @@
 //
 // Method. The state is kept as velocities of the links. In a step their momenta are projected onto the motions that the
 // joints allow in the present pose, as an engine in maximal coordinates does; so results are near those of sim/ode.
-// - A motor reaches the speed that its servo wants if its torque suffices. While all do, joint speeds are given, and three
+// - A motor reaches the speed that its servo wants if its torque suffices. While all do, joint speeds are given, and
+// three
 //   unknowns remain: the velocity of the centre of mass and the rotation of the first link. Contacts are solved against
 //   these.
-// - From the result follows the torque of each motor. Where one is too large, the step is solved again with the speed of
+// - From the result follows the torque of each motor. Where one is too large, the step is solved again with the speed
+// of
 //   that joint unknown and its torque bounded, until no further motor is too weak. Few chains need this in a step;
 //   ChainBatch collects them, so that the others do not wait.
 // - Featherstone, Rigid Body Dynamics Algorithms (2008), section 9.5, has the inertia in such coordinates.
@@ -38,8 +40,8 @@ class ChainStep {
   ChainStep(const ChainForm& form, const ChainMemory<Number>& memory, const ChainScratch<Number>& scratch)
       : form_(form), m_(memory), s_(scratch), links_(form.counts.links), joints_(form.counts.joints) {}
 
-  /// Makes the step of the chains whose motors are all strong enough. Returns the lanes of the others: bit k for lane k.
-  /// They have not changed, but is_free is set for their weak joints.
+  /// Makes the step of the chains whose motors are all strong enough. Returns the lanes of the others: bit k for lane
+  /// k. They have not changed, but is_free is set for their weak joints.
   unsigned step_strong() {
     prepare();
     Mask open = Lanes<width>::none();
@@ -151,7 +153,8 @@ class ChainStep {
     }
   }
 
-  /// Depths to speeds. Where two links touch, the joints between them are free: what they do moves the centre not at all.
+  /// Depths to speeds. Where two links touch, the joints between them are free: what they do moves the centre not at
+  /// all.
   void prepare_contacts() {
     constexpr double error_reduction = 0.2;  // share of a depth that a step corrects, as in sim/ode
     const double factor = error_reduction / form_.step_s;
@@ -175,13 +178,11 @@ class ChainStep {
   void solve() {
     find_drift();
     find_free_motion();
-    ContactRows<width> rows(form_, s_, contacts_, unknowns_, m_.inverse_mass[0]);
     set_rows();
-    rows.prepare(contact_count_);
-    base_speed_ = free_speed_;
-    rows.solve(base_speed_, s_.free_max_impulse, s_.free_wanted, s_.free_lowest, s_.free_highest);
-    for (std::size_t k = 0; k < contacts_; ++k) {
-      s_.sliding_speed[k] = magnitude(rows.speed_of(2 * k + 1, base_speed_));
+    if (unknowns_ == 1) {
+      solve_rows<false>();
+    } else {
+      solve_rows<true>();
     }
     for (std::size_t i = 0; i + 1 < unknowns_; ++i) {
       for (std::size_t j = 0; j < joints_; ++j) {
@@ -191,8 +192,19 @@ class ChainStep {
     // All speeds are known now.
     find_drift_of_speeds();
     for (std::size_t i = 0; i < links_; ++i) {
-      put(s_.new_link_speed, i, vector(s_.drift, i) + turned(vector(m_.link_position, i)) * s_.unknown[0]);
-      s_.new_rotation[i] = s_.spin[i] + s_.unknown[0];
+      put(s_.new_link_speed, i, vector(s_.drift, i) + turned(vector(m_.link_position, i)) * base_.rotation);
+      s_.new_rotation[i] = s_.spin[i] + base_.rotation;
+    }
+  }
+
+  template <bool has_free_joints>
+  void solve_rows() {
+    ContactRows<width, has_free_joints> rows(form_, s_, contacts_, unknowns_, m_.inverse_mass[0]);
+    rows.prepare(contact_count_);
+    base_ = {free_speed_, s_.unknown[0]};
+    rows.solve(base_);
+    for (std::size_t k = 0; k < contacts_; ++k) {
+      s_.sliding_speed[k] = magnitude(rows.speed_of(2 * k + 1, base_));
     }
   }
 
@@ -410,8 +422,7 @@ class ChainStep {
     const std::size_t stride = joints_ + 1;
     for (std::size_t motor = 0; motor + 1 < unknowns_; ++motor) {
       const Mask is_there = free_count_ > static_cast<double>(motor);
-      s_.motor_inverse[motor] =
-          select(is_there, 1.0 / s_.inverse_matrix[(motor + 1) * stride + motor + 1], Number{});
+      s_.motor_inverse[motor] = select(is_there, 1.0 / s_.inverse_matrix[(motor + 1) * stride + motor + 1], Number{});
       for (std::size_t i = 0; i < unknowns_; ++i) {
         s_.unknown[i] += s_.inverse_matrix[i * stride + motor + 1] * s_.motor_impulse[motor];
       }
@@ -464,7 +475,7 @@ class ChainStep {
 
   /// The torques that the new velocities take.
   void find_torques() {
-    const Vector push = base_speed_ - free_speed_;
+    const Vector push = base_.center - free_speed_;
     Vector linear{};
     Number angular{};
     for (std::size_t i = links_; i-- > 1;) {
@@ -480,8 +491,7 @@ class ChainStep {
           continue;
         }
         const Vector normal = vector(s_.normal, k);
-        const Vector impulse =
-            normal * s_.normal_value[k] + Vector{normal.z, -normal.x} * s_.friction_value[k];
+        const Vector impulse = normal * s_.normal_value[k] + Vector{normal.z, -normal.x} * s_.friction_value[k];
         const Vector own = select(is_link, impulse, select(is_other, Vector{} - impulse, Vector{}));
         const Vector felt = select(contact_count_ > static_cast<double>(k), own, Vector{});
         linear = linear - felt;
@@ -512,11 +522,11 @@ class ChainStep {
   void keep(Mask done) {
     const double h = form_.step_s;
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      const Number speed = axis == 0 ? base_speed_.x : base_speed_.z;
+      const Number speed = axis == 0 ? base_.center.x : base_.center.z;
       put_where(done, m_.center_speed[axis], speed);
       put_where(done, m_.center[axis], m_.center[axis] + speed * h);
     }
-    put_where(done, m_.angle[0], m_.angle[0] + s_.unknown[0] * h);
+    put_where(done, m_.angle[0], m_.angle[0] + base_.rotation * h);
     for (std::size_t j = 0; j < joints_; ++j) {
       put_where(done, m_.joint_angle[j], m_.joint_angle[j] + s_.speed[j] * h);
       put_where(done, m_.is_free[j], Number{});
@@ -582,8 +592,8 @@ class ChainStep {
   Number contact_count_{};
   std::size_t unknowns_ = 1;  ///< most of a lane
   Number free_count_{};
-  Vector free_speed_;  ///< of the centre, without contacts
-  Vector base_speed_;  ///< of the centre, after the step
+  Vector free_speed_;       ///< of the centre, without contacts
+  BaseMotion<width> base_;  ///< after the step
 };
 
 }  // namespace

@@ -2,18 +2,29 @@
 
 #include <cstddef>
 
+#include "sim/reduced/chain_form.hpp"
 #include "sim/reduced/chain_scratch.hpp"
 #include "sim/reduced/lanes.hpp"
 
 namespace proleg::sim::reduced {
 namespace {  // of each instruction set its own (chain_step.hpp)
 
-/// Solves for the impulses of contacts and of weak motors, one row after the other, again and again (projected
-/// Gauss-Seidel). First come normal impulses; they bound the friction. Then come both, again as long.
+/// The unknowns that every chain has.
 template <int width>
+struct BaseMotion {
+  using Number = typename Lanes<width>::Number;
+  Plane<Number> center;  ///< velocity of the centre of mass, m/s
+  Number rotation;       ///< of the first link, rad/s
+};
+
+/// Solves for the impulses of contacts and of motors of free joints, one row after the other, again and again
+/// (projected Gauss-Seidel). First come normal impulses; they bound the friction. Then come both. The impulses of the
+/// last step are the start. has_free_joints: whether any lane has free joints.
+template <int width, bool has_free_joints>
 class ContactRows {
  public:
   using Number = typename Lanes<width>::Number;
+  using Motion = BaseMotion<width>;
 
   /// contacts: most contacts of a lane; unknowns: 1, and the most free joints of a lane.
   ContactRows(const ChainForm& form, const ChainScratch<Number>& scratch, std::size_t contacts, std::size_t unknowns,
@@ -31,9 +42,9 @@ class ContactRows {
       Number* response = s_.response + row * stride_;
       const Plane<Number> direction = direction_of(row);
       Number mobility = dot(direction, direction) * inverse_mass_;
-      for (std::size_t i = 0; i < unknowns_; ++i) {
+      for (std::size_t i = 0; i < unknowns(); ++i) {
         Number sum = s_.inverse_matrix[i * stride_] * jacobian[0];
-        for (std::size_t k = 1; k < unknowns_; ++k) {
+        for (std::size_t k = 1; k < unknowns(); ++k) {
           sum += s_.inverse_matrix[i * stride_ + k] * jacobian[k];
         }
         response[i] = sum;
@@ -44,92 +55,105 @@ class ContactRows {
     }
   }
 
-  /// center_speed: in and out. motors: free joints, the first unknowns - 1.
-  void solve(Plane<Number>& center_speed, const Number* max_torque_impulse, const Number* wanted, const Number* lowest,
-             const Number* highest) {
+  /// base: in and out, as the unknowns of free joints in the scratch memory.
+  void solve(Motion& base) {
     constexpr int normal_sweeps = 8;
     constexpr int sweeps = 10;
+    Motion motion = base;
     for (std::size_t k = 0; k < contacts_; ++k) {
       s_.normal_value[k] = s_.old_normal[k];
-      s_.friction_value[k] = Number{};
-      apply(2 * k, s_.normal_value[k], center_speed);
+      apply(2 * k, s_.normal_value[k], motion);
     }
     for (int sweep = 0; sweep < normal_sweeps; ++sweep) {
-      turn_motors(max_torque_impulse, wanted, lowest, highest);
+      turn_motors(motion);
       for (std::size_t k = 0; k < contacts_; ++k) {
-        push(k, center_speed);
+        push(k, motion);
       }
     }
     for (std::size_t k = 0; k < contacts_; ++k) {
       s_.most_friction[k] = s_.normal_value[k] * s_.friction[k];
       s_.friction_value[k] = bounded(s_.old_friction[k], -s_.most_friction[k], s_.most_friction[k]);
-      apply(2 * k + 1, s_.friction_value[k], center_speed);
+      apply(2 * k + 1, s_.friction_value[k], motion);
     }
     for (int sweep = 0; sweep < sweeps; ++sweep) {
-      turn_motors(max_torque_impulse, wanted, lowest, highest);
+      turn_motors(motion);
       for (std::size_t k = 0; k < contacts_; ++k) {
-        push(k, center_speed);
-        rub(k, center_speed);
+        push(k, motion);
+        rub(k, motion);
       }
     }
+    base = motion;
   }
 
   /// m/s: speed in the direction of a row.
-  [[nodiscard]] Number speed_of(std::size_t row, const Plane<Number>& center_speed) const {
+  [[nodiscard]] Number speed_of(std::size_t row, const Motion& motion) const {
     const Number* jacobian = s_.jacobian + row * stride_;
-    Number speed = s_.bias[row] + dot(direction_of(row), center_speed);
-    for (std::size_t i = 0; i < unknowns_; ++i) {
+    Number speed = (s_.bias[row] + jacobian[0] * motion.rotation) + dot(direction_of(row), motion.center);
+    for (std::size_t i = 1; i < unknowns(); ++i) {
       speed += jacobian[i] * s_.unknown[i];
     }
     return speed;
   }
 
  private:
+  [[nodiscard]] std::size_t unknowns() const {
+    if constexpr (has_free_joints) {
+      return unknowns_;
+    } else {
+      return 1;
+    }
+  }
+
   [[nodiscard]] Plane<Number> direction_of(std::size_t row) const {
     return {s_.direction[2 * row], s_.direction[2 * row + 1]};
   }
 
-  void apply(std::size_t row, Number impulse, Plane<Number>& center_speed) {
-    center_speed = center_speed + direction_of(row) * (impulse * inverse_mass_);
+  void apply(std::size_t row, Number impulse, Motion& motion) {
     const Number* response = s_.response + row * stride_;
-    for (std::size_t i = 0; i < unknowns_; ++i) {
+    motion.center = motion.center + direction_of(row) * (impulse * inverse_mass_);
+    motion.rotation += response[0] * impulse;
+    for (std::size_t i = 1; i < unknowns(); ++i) {
       s_.unknown[i] += response[i] * impulse;
     }
   }
 
-  void push(std::size_t contact, Plane<Number>& center_speed) {
+  void push(std::size_t contact, Motion& motion) {
     const std::size_t row = 2 * contact;
     const Number before = s_.normal_value[contact];
-    const Number missing = s_.depth_speed[contact] - speed_of(row, center_speed);
-    s_.normal_value[contact] = larger(before + missing * s_.inverse[row], Number{});
-    apply(row, s_.normal_value[contact] - before, center_speed);
+    const Number missing = s_.depth_speed[contact] - speed_of(row, motion);
+    const Number value = larger(before + missing * s_.inverse[row], Number{});
+    s_.normal_value[contact] = value;
+    apply(row, value - before, motion);
   }
 
-  void rub(std::size_t contact, Plane<Number>& center_speed) {
+  void rub(std::size_t contact, Motion& motion) {
     const std::size_t row = 2 * contact + 1;
     const Number before = s_.friction_value[contact];
     const Number most = s_.most_friction[contact];
-    s_.friction_value[contact] = bounded(before - speed_of(row, center_speed) * s_.inverse[row], -most, most);
-    apply(row, s_.friction_value[contact] - before, center_speed);
+    const Number value = bounded(before - speed_of(row, motion) * s_.inverse[row], -most, most);
+    s_.friction_value[contact] = value;
+    apply(row, value - before, motion);
   }
 
   /// A motor tries to reach the wanted speed with the torque that it has; a stop keeps the speed within its bounds with
   /// any torque.
-  void turn_motors(const Number* max_torque_impulse, const Number* wanted, const Number* lowest,
-                   const Number* highest) {
-    for (std::size_t motor = 0; motor + 1 < unknowns_; ++motor) {
-      const std::size_t unknown = motor + 1;
-      const Number before = s_.motor_impulse[motor];
-      const Number speed = s_.unknown[unknown];
-      const Number inverse = s_.motor_inverse[motor];
-      const Number most = max_torque_impulse[motor];
-      const Number own = bounded(before + (wanted[motor] - speed) * inverse, -most, most);
-      const Number from_lower = before + (lowest[motor] - speed) * inverse;
-      const Number from_upper = before + (highest[motor] - speed) * inverse;
-      s_.motor_impulse[motor] = bounded(own, from_lower, from_upper);
-      const Number change = s_.motor_impulse[motor] - before;
-      for (std::size_t i = 0; i < unknowns_; ++i) {
-        s_.unknown[i] += s_.inverse_matrix[i * stride_ + unknown] * change;
+  void turn_motors(Motion& motion) {
+    if constexpr (has_free_joints) {
+      for (std::size_t motor = 0; motor + 1 < unknowns_; ++motor) {
+        const std::size_t unknown = motor + 1;
+        const Number before = s_.motor_impulse[motor];
+        const Number speed = s_.unknown[unknown];
+        const Number inverse = s_.motor_inverse[motor];
+        const Number most = s_.free_max_impulse[motor];
+        const Number own = bounded(before + (s_.free_wanted[motor] - speed) * inverse, -most, most);
+        const Number from_lower = before + (s_.free_lowest[motor] - speed) * inverse;
+        const Number from_upper = before + (s_.free_highest[motor] - speed) * inverse;
+        s_.motor_impulse[motor] = bounded(own, from_lower, from_upper);
+        const Number change = s_.motor_impulse[motor] - before;
+        motion.rotation += s_.inverse_matrix[unknown] * change;
+        for (std::size_t i = 1; i < unknowns_; ++i) {
+          s_.unknown[i] += s_.inverse_matrix[i * stride_ + unknown] * change;
+        }
       }
     }
   }

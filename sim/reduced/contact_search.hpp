@@ -10,8 +10,8 @@
 namespace proleg::sim::reduced {
 namespace {  // of each instruction set its own (chain_step.hpp)
 
-/// Finds the contacts of the links with the terrain and with each other. A lane has only its own contacts, one after the
-/// other, so that a step costs what the busiest lane needs and not what all need together.
+/// Finds the contacts of the links with the terrain and with each other. A lane has only its own contacts, one after
+/// the other, so that a step costs what the busiest lane needs and not what all need together.
 template <int width>
 class ContactSearch {
  public:

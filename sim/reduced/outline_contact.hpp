@@ -29,10 +29,10 @@ inline Outline<width> in_all_lanes(const Rectangle& rectangle) {
 template <int width>
 struct Touch {
   using Number = typename Lanes<width>::Number;
-  Plane<Number> normal;    ///< unit vector out of the second outline, into the first
+  Plane<Number> normal;  ///< unit vector out of the second outline, into the first
   Plane<Number> points[2];
-  Number depths[2];        ///< m; a point touches where its depth is above 0
-  Number corners[2];       ///< which corner a point comes from, 0 to 3; 4 more if it is one of the second outline
+  Number depths[2];   ///< m; a point touches where its depth is above 0
+  Number corners[2];  ///< which corner a point comes from, 0 to 3; 4 more if it is one of the second outline
 };
 
 /// The side of an outline that is least deep in another one.
@@ -45,10 +45,10 @@ struct Side {
   Plane<Number> end;
 };
 
+/// Whether the other outline is behind all sides in some lane; then also the least deep one.
 template <int width>
-inline Side<width> least_deep_side(const Outline<width>& outline, const Outline<width>& other) {
+inline bool find_least_deep_side(const Outline<width>& outline, const Outline<width>& other, Side<width>& best) {
   using Number = typename Lanes<width>::Number;
-  Side<width> best;
   for (int k = 0; k < 4; ++k) {
     const Plane<Number>& normal = outline.normals[k];
     Number nearest = dot(normal, other.corners[0]);
@@ -59,15 +59,18 @@ inline Side<width> least_deep_side(const Outline<width>& outline, const Outline<
     const Plane<Number>& end = outline.corners[(k + 1) % 4];
     if (k == 0) {
       best = {distance, normal, outline.corners[0], end};
-      continue;
+    } else {
+      const auto is_better = distance > best.distance;
+      best.distance = select(is_better, distance, best.distance);
+      best.normal = select(is_better, normal, best.normal);
+      best.start = select(is_better, outline.corners[k], best.start);
+      best.end = select(is_better, end, best.end);
     }
-    const auto is_better = distance > best.distance;
-    best.distance = select(is_better, distance, best.distance);
-    best.normal = select(is_better, normal, best.normal);
-    best.start = select(is_better, outline.corners[k], best.start);
-    best.end = select(is_better, end, best.end);
+    if (!any(best.distance < 0.0)) {
+      return false;
+    }
   }
-  return best;
+  return true;
 }
 
 /// Puts up to two points of `other` that are behind a side of the outline into `touch`.
@@ -110,16 +113,12 @@ inline void find_points(const Side<width>& side, const Outline<width>& other, To
 template <int width>
 inline bool find_touch(const Outline<width>& first, const Outline<width>& second, Touch<width>& touch) {
   using Number = typename Lanes<width>::Number;
-  const Side<width> of_second = least_deep_side<width>(second, first);
-  auto touching = of_second.distance < 0.0;
-  if (!any(touching)) {
+  Side<width> of_first;
+  Side<width> of_second;
+  if (!find_least_deep_side<width>(second, first, of_second) || !find_least_deep_side<width>(first, second, of_first)) {
     return false;
   }
-  const Side<width> of_first = least_deep_side<width>(first, second);
-  touching &= of_first.distance < 0.0;
-  if (!any(touching)) {
-    return false;
-  }
+  const auto touching = (of_first.distance < 0.0) & (of_second.distance < 0.0);
   // A side of the second outline wins if both are nearly as deep, so the choice does not change with the last bit.
   const auto is_of_first = of_first.distance > of_second.distance * 0.95 + 1e-5;
   find_points<width>(of_second, first, touch);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -57,8 +58,9 @@ class Maker {
 
  private:
   [[noreturn]] void refuse(const std::string& found) const {
-    throw InputError(file_, 0, found, "what the reduced engine has: chains of boxes with parallel, horizontal axes on "
-                                      "boxes (or --engine ode)");
+    throw InputError(file_, 0, found,
+                     "what the reduced engine has: chains of boxes with parallel, horizontal axes on "
+                     "boxes (or --engine ode)");
   }
 
   [[nodiscard]] Pose start_of(const Link& link) const { return environment_.robot_pose * link.pose; }
@@ -73,8 +75,8 @@ class Maker {
       refuse(robot_.joints.empty() ? "a robot without joints that stands on its side"
                                    : "joint '" + robot_.joints.front().name + "', whose axis is not horizontal");
     }
-    // The angle of a joint is that of the link in front of it about the axis. So that of the link behind turns about the
-    // opposite of the axis, which turns x towards z if x is axis x up.
+    // The angle of a joint is that of the link in front of it about the axis. So that of the link behind turns about
+    // the opposite of the axis, which turns x towards z if x is axis x up.
     plane.across = rounded(Eigen::Vector3d(axis.x(), axis.y(), 0.0).normalized());
     plane.x = Eigen::Vector3d(plane.across.y(), -plane.across.x(), 0.0);
     const Link& head = robot_.links.front();
@@ -218,16 +220,25 @@ class Maker {
     }
     if (!outline) {
       refuse("object '" + object.name + "' with " +
-             (geometry.shape == Shape::box ? "a box that is oblique to the plane in which the robot moves"
+             (geometry.shape == Shape::box      ? "a box that is oblique to the plane in which the robot moves"
               : geometry.shape == Shape::sphere ? "a sphere"
                                                 : "a cylinder"));
     }
-    chain_.terrain.push_back(*outline);
+    chain_.terrain.push_back(from_uppermost_side(*outline));
     solid_geometries_.push_back(&geometry);
   }
 
-  /// Of an upright box that is turned about the vertical, and under the whole robot: what is under the whole width of the
-  /// robot. So its ends are upright in the plane.
+  /// The same rectangle. Links are most often above a solid, so that its first side settles that they do not touch.
+  static Rectangle from_uppermost_side(Rectangle rectangle) {
+    const auto* const uppermost = std::ranges::max_element(rectangle.normals, {}, &Point::z);
+    const auto turn = uppermost - std::begin(rectangle.normals);
+    std::rotate(std::begin(rectangle.normals), std::begin(rectangle.normals) + turn, std::end(rectangle.normals));
+    std::rotate(std::begin(rectangle.corners), std::begin(rectangle.corners) + turn, std::end(rectangle.corners));
+    return rectangle;
+  }
+
+  /// Of an upright box that is turned about the vertical, and under the whole robot: what is under the whole width of
+  /// the robot. So its ends are upright in the plane.
   [[nodiscard]] std::optional<Rectangle> section_of_turned_floor(const Geometry& geometry, const Pose& pose) const {
     if (geometry.shape != Shape::box) {
       return std::nullopt;

@@ -45,9 +45,9 @@ struct PlanarChain {
   Point first_link;                      ///< its centre of mass at the start
 
   // Back to the world.
-  std::vector<double> joint_signs;                  ///< 1, or -1 where the axis of a joint points the other way
+  std::vector<double> joint_signs;                     ///< 1, or -1 where the axis of a joint points the other way
   std::vector<Eigen::Quaterniond> start_orientations;  ///< of the links, in the world
-  std::vector<Eigen::Vector3d> mass_centers;        ///< in the frames of the links
+  std::vector<Eigen::Vector3d> mass_centers;           ///< in the frames of the links
 
   /// Whether chains may share a batch.
   [[nodiscard]] bool has_form_of(const PlanarChain& other) const;

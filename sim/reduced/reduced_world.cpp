@@ -35,8 +35,9 @@ class ReducedWorld final : public World {
   void step() override {
     batch_->step();
     if (batch_->failed(0)) {
-      throw PhysicsError("the simulation became unstable: the position of a link is no longer a finite number, or it has "
-                         "more contacts than the engine keeps");
+      throw PhysicsError(
+          "the simulation became unstable: the position of a link is no longer a finite number, or it has "
+          "more contacts than the engine keeps");
     }
   }
 

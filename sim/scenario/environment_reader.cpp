@@ -25,11 +25,20 @@ constexpr std::array<std::string_view, 5> viewer_tags{"bkgndcolor", "camtrans", 
                                                       "camfocal"};
 
 void read_physics(const XmlElement& element, EnvironmentModel& environment, std::vector<std::string>& warnings) {
-  element.allow({"type"}, {"odeproperties"});
-  if (const std::string type = element.required_attribute("type"); lower_case(type) != "ode") {
-    element.refuse("type " + in_quotes(type) + " in " + element.label(), "'ode'");
+  element.allow({"type"}, {"odeproperties", "reducedproperties"});
+  const std::string type = element.required_attribute("type");
+  if (lower_case(type) == "reduced") {
+    environment.engine = PhysicsEngine::reduced;
+  } else if (lower_case(type) != "ode") {
+    element.refuse("type " + in_quotes(type) + " in " + element.label(), "'ode' or 'reduced'");
   }
-  const auto properties = element.child("odeproperties");
+  // Both engines have the same properties, so a change of the type alone is enough.
+  const auto of_ode = element.child("odeproperties");
+  const auto of_reduced = element.child("reducedproperties");
+  if (of_ode && of_reduced) {
+    of_reduced->refuse(of_reduced->label() + " beside " + of_ode->label(), "one of them");
+  }
+  const auto& properties = of_ode ? of_ode : of_reduced;
   if (!properties) {
     return;
   }

@@ -45,10 +45,69 @@ void read_position(const std::string& word, Overrides& overrides) {
                    "X,Y or X,Y,Z, each " + number_text(coordinates.min) + " to " + number_text(coordinates.max) + " m");
 }
 
+PhysicsEngine read_engine(const std::string& word) {
+  for (const PhysicsEngine engine : {PhysicsEngine::ode, PhysicsEngine::reduced}) {
+    if (word == name_of(engine)) {
+      return engine;
+    }
+  }
+  throw InputError("--engine", 0, in_quotes(word), "'ode' or 'reduced'");
+}
+
+/// "X,Y" or "X,Y,Z" as read_position reads it; nothing without `at`.
+std::optional<std::string> position_text(const Overrides& overrides) {
+  if (!overrides.at) {
+    return std::nullopt;
+  }
+  std::string text = exact_text(overrides.at->x()) + ',' + exact_text(overrides.at->y());
+  return overrides.height ? text + ',' + exact_text(*overrides.height) : text;
+}
+
+constexpr OverrideDeclaration declarations[] = {
+    {"engine", &OverrideWords::engine, true,
+     "'ode' or 'reduced': what computes the motion, instead of the engine of the environment. The reduced engine has "
+     "chains in a plane; it is faster and gives the same bits on every machine."},
+    {"seed", &OverrideWords::seed, false, "seed of the run instead of that of the scenario"},
+    {"friction", &OverrideWords::friction, true,
+     "coefficient of friction of every object of the environment, also of those that state none; the links of the "
+     "robot "
+     "keep theirs"},
+    {"at", &OverrideWords::at, true,
+     "X,Y or X,Y,Z in metres: start position instead of that of the environment; without Z, the height of the "
+     "environment. A robot inside the ground is lifted onto it."},
+    {"heading", &OverrideWords::heading, true,
+     "degrees by which the start pose is turned about the vertical, to the left. The measures are relative to this "
+     "heading."}};
+
 }  // namespace
+
+std::span<const OverrideDeclaration> override_declarations() { return declarations; }
+
+std::string_view name_of(PhysicsEngine engine) { return engine == PhysicsEngine::ode ? "ode" : "reduced"; }
+
+OverrideWords words_of(const Overrides& overrides) {
+  OverrideWords words;
+  if (overrides.engine) {
+    words.engine = std::string(name_of(*overrides.engine));
+  }
+  if (overrides.seed) {
+    words.seed = std::to_string(*overrides.seed);
+  }
+  if (overrides.friction) {
+    words.friction = exact_text(*overrides.friction);
+  }
+  words.at = position_text(overrides);
+  if (overrides.heading_deg) {
+    words.heading = exact_text(*overrides.heading_deg);
+  }
+  return words;
+}
 
 Overrides read_overrides(const OverrideWords& words) {
   Overrides overrides;
+  if (words.engine) {
+    overrides.engine = read_engine(*words.engine);
+  }
   if (words.seed) {
     overrides.seed = parse_whole<std::uint64_t>(*words.seed);
     if (!overrides.seed) {
@@ -76,6 +135,7 @@ void set_friction(EnvironmentModel& environment, double friction) {
 }
 
 void apply_overrides(const Overrides& overrides, EnvironmentModel& environment) {
+  environment.engine = overrides.engine.value_or(environment.engine);
   if (overrides.friction) {
     set_friction(environment, *overrides.friction);
   }
@@ -88,14 +148,6 @@ void apply_overrides(const Overrides& overrides, EnvironmentModel& environment) 
     const double angle = *overrides.heading_deg * (std::numbers::pi / 180.0);
     pose.orientation = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * pose.orientation;
   }
-}
-
-std::optional<std::string> position_text(const Overrides& overrides) {
-  if (!overrides.at) {
-    return std::nullopt;
-  }
-  std::string text = exact_text(overrides.at->x()) + ',' + exact_text(overrides.at->y());
-  return overrides.height ? text + ',' + exact_text(*overrides.height) : text;
 }
 
 }  // namespace proleg::sim

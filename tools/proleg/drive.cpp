@@ -197,18 +197,6 @@ class Drive {
   bool wants_stop_ = false;
 };
 
-void refuse_what_only_a_simulation_has(const DriveOptions& options) {
-  const std::pair<const char*, bool> given[] = {{"--losses", options.losses.has_value()},
-                                                {"--friction", options.overrides.friction.has_value()},
-                                                {"--at", options.overrides.at.has_value()},
-                                                {"--heading", options.overrides.heading.has_value()}};
-  for (const auto& [option, is_given] : given) {
-    if (is_given) {
-      throw InputError(option, 0, "an option for simulated worlds", "none of them: the robot is where it is");
-    }
-  }
-}
-
 /// The scenario of --bus sim:FILE, for --fast. Throws InputError for another bus.
 sim::Scenario simulated_robot(const BusOptions& bus) {
   const host::BusAddress address = host::parse_bus_address(bus.address());
@@ -226,7 +214,7 @@ int drive(const DriveOptions& options) {
   if (options.verbose) {
     print_setup(run.scenario);
   }
-  refuse_what_only_a_simulation_has(options);
+  refuse_world_options(options, {{"--losses", options.losses.has_value()}});
   if (run.scenario.robot_control && !options.bus.bus) {
     if (options.fast || options.mirror) {
       throw InputError(options.fast ? "--fast" : "--mirror", 0, "a robot without modules", "--bus BUS");

@@ -55,16 +55,23 @@ void add_override_options(CommandLine& command_line, ScenarioOptions& options) {
                           "NAME=VALUE[@TICK]: change a parameter at the start, at a tick, or at a time (@5s). NAME is "
                           "[MODULE.]PARAMETER[:JOINT], where "
                           "PARAMETER may also be an internal value. May be repeated.");
-  command_line.add_option("--seed", options.overrides.seed, "seed of the run instead of that of the scenario");
-  command_line.add_option("--friction", options.overrides.friction,
-                          "coefficient of friction of every object of the environment, also of those that state none; "
-                          "the links of the robot keep theirs");
-  command_line.add_option("--at", options.overrides.at,
-                          "X,Y or X,Y,Z in metres: start position instead of that of the environment; without Z, the "
-                          "height of the environment. A robot inside the ground is lifted onto it.");
-  command_line.add_option("--heading", options.overrides.heading,
-                          "degrees by which the start pose is turned about the vertical, to the left. The measures are "
-                          "relative to this heading.");
+  for (const sim::OverrideDeclaration& declaration : sim::override_declarations()) {
+    command_line.add_option("--" + std::string(declaration.name), options.overrides.*declaration.word,
+                            std::string(declaration.help));
+  }
+}
+
+void refuse_world_options(const ScenarioOptions& options, std::initializer_list<std::pair<const char*, bool>> others) {
+  std::vector<std::pair<std::string, bool>> given(others.begin(), others.end());
+  for (const sim::OverrideDeclaration& declaration : sim::override_declarations()) {
+    given.emplace_back("--" + std::string(declaration.name),
+                       declaration.of_simulated_world && (options.overrides.*declaration.word).has_value());
+  }
+  for (const auto& [option, is_given] : given) {
+    if (is_given) {
+      throw InputError(option, 0, "an option for simulated worlds", "none of them: the robot is where it is");
+    }
+  }
 }
 
 void add_move_option(CommandLine& command_line, ScenarioOptions& options) {
@@ -214,9 +221,11 @@ std::vector<PlannedOutput> planned_recording(const ScenarioOptions& options) {
 }
 
 Json overrides_object(const sim::Overrides& overrides) {
-  return {{"seed", overrides.seed},
+  const sim::OverrideWords words = sim::words_of(overrides);
+  return {{"engine", words.engine},
+          {"seed", overrides.seed},
           {"friction", overrides.friction},
-          {"at", sim::position_text(overrides)},
+          {"at", words.at},
           {"heading_deg", overrides.heading_deg}};
 }
 

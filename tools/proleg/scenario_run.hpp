@@ -36,6 +36,9 @@ struct ScenarioOptions {
 
 /// What replaces values of the scenario at the start of a run.
 void add_override_options(CommandLine& command_line, ScenarioOptions& options);
+/// Throws InputError for an option of simulated worlds: overrides of them, and the others that are given.
+void refuse_world_options(const ScenarioOptions& options,
+                          std::initializer_list<std::pair<const char*, bool>> others = {});
 /// --move, for programs that simulate the gait in memory.
 void add_move_option(CommandLine& command_line, ScenarioOptions& options);
 /// The scenario's file, the length of the run, and the same.

@@ -31,6 +31,7 @@ struct Result {
   std::uint64_t receptions;
   std::string setpoint_hash;
   std::string servo_hash;
+  std::optional<std::string> world_hash;
   RunMeasures measures;
 
   [[nodiscard]] double real_time_factor() const { return simulated_s / wall_s; }
@@ -63,6 +64,7 @@ Result run(const ScenarioRun& setup, sim::Simulation& simulation, sim::Recorder*
           receptions,
           simulation.setpoint_hash().hex(),
           simulation.servo_hash().hex(),
+          simulation.world_hash(),
           measures_of(simulation.plant().meter())};
 }
 
@@ -74,6 +76,7 @@ void print_json(const ScenarioOptions& options, const ScenarioRun& setup, const 
                     {"simulated_s", result.simulated_s},
                     {"setpoint_hash", result.setpoint_hash},
                     {"servo_hash", result.servo_hash},
+                    {"world_hash", result.world_hash},
                     {"real_time_factor", result.real_time_factor()},
                     {"contacts_mean", result.contacts_mean},
                     {"solver_messages", result.solver_messages},
@@ -99,6 +102,9 @@ void print_table(const ScenarioOptions& options, const Result& result) {
   }
   std::printf("set-point hash    %s\n", result.setpoint_hash.c_str());
   std::printf("servo hash        %s\n", result.servo_hash.c_str());
+  if (result.world_hash) {
+    std::printf("world hash        %s\n", result.world_hash->c_str());
+  }
   if (options.record) {
     std::printf("recording         %s\n", options.record->c_str());
   }

@@ -1,7 +1,6 @@
 #include "tools/proleg/simulate_command.hpp"
 
 #include <optional>
-#include <utility>
 
 namespace proleg::tools {
 namespace {
@@ -24,13 +23,9 @@ std::string shell_word(const std::string& word) {
 std::string simulate_command(const std::string& file, const sim::OverrideWords& overrides,
                              const std::vector<std::string>& settings, const std::vector<std::string>& moves) {
   std::string command = "proleg simulate " + shell_word(file);
-  const std::pair<const char*, const std::optional<std::string>&> words[] = {{"--seed", overrides.seed},
-                                                                             {"--friction", overrides.friction},
-                                                                             {"--at", overrides.at},
-                                                                             {"--heading", overrides.heading}};
-  for (const auto& [option, value] : words) {
-    if (value) {
-      command += std::string(" ") + option + ' ' + shell_word(*value);
+  for (const sim::OverrideDeclaration& declaration : sim::override_declarations()) {
+    if (const std::optional<std::string>& word = overrides.*declaration.word) {
+      command += " --" + std::string(declaration.name) + ' ' + shell_word(*word);
     }
   }
   for (const std::string& word : settings) {

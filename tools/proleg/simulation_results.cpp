@@ -16,6 +16,9 @@ std::vector<std::pair<std::string, std::string>> results_of(const sim::Simulatio
       {"lost_frames", std::to_string(lost_frames)},
       {"setpoint_hash", simulation.setpoint_hash().hex()},
       {"servo_hash", simulation.servo_hash().hex()}};
+  if (const std::optional<std::string> hash = simulation.world_hash()) {
+    results.emplace_back("world_hash", *hash);
+  }
   append_results(measures_of(plant.meter()), scenario.robot, results);
   return results;
 }

@@ -155,23 +155,10 @@ RecordedSessionOptions recordings_of(const UiOptions& options) {
 void refuse_robot_options(const UiOptions& options) {
   const ScenarioOptions& scenario = options.scenario;
   const sim::OverrideWords& overrides = scenario.overrides;
-  if (options.paused || options.bus.bus || !scenario.settings.empty() || !scenario.moves.empty() || overrides.seed ||
-      overrides.friction || overrides.at || overrides.heading) {
+  const bool has_override = std::ranges::any_of(
+      sim::override_declarations(), [&](const auto& declaration) { return (overrides.*declaration.word).has_value(); });
+  if (options.paused || options.bus.bus || !scenario.settings.empty() || !scenario.moves.empty() || has_override) {
     throw BadInput("found an option of a robot with " + scenario.file + ", expected a scenario");
-  }
-}
-
-void refuse_what_only_a_simulation_has(const UiOptions& options) {
-  const sim::OverrideWords& overrides = options.scenario.overrides;
-  const std::pair<const char*, bool> given[] = {{"--paused", options.paused},
-                                                {"--move", !options.scenario.moves.empty()},
-                                                {"--friction", overrides.friction.has_value()},
-                                                {"--at", overrides.at.has_value()},
-                                                {"--heading", overrides.heading.has_value()}};
-  for (const auto& [option, is_given] : given) {
-    if (is_given) {
-      throw InputError(option, 0, "an option for simulated worlds", "none of them: the robot is where it is");
-    }
   }
 }
 
@@ -199,7 +186,7 @@ int serve(UiOptions& options) {
   }
   std::optional<BusAccess> bus;
   if (options.bus.bus) {
-    refuse_what_only_a_simulation_has(options);
+    refuse_world_options(options.scenario, {{"--paused", options.paused}, {"--move", !options.scenario.moves.empty()}});
     bus.emplace(options.bus);
   }
   catch_interrupts();

@@ -25,6 +25,7 @@ class CanonicalText {
     text_ += ';';
   }
   void add(sim::Solver solver) { add(static_cast<int>(solver)); }
+  void add(sim::PhysicsEngine engine) { add(static_cast<int>(engine)); }
   template <typename... Items>
   void add_all(const Items&... items) {
     (add(items), ...);
@@ -46,8 +47,9 @@ void add_scenario(CanonicalText& text, const sim::Scenario& scenario) {
   for (const sim::SourceFile& source : scenario.sources) {
     text.add(std::string_view(source.text));
   }
-  text.add_all(scenario.duration_s, scenario.step_s, scenario.solver, scenario.contact_noise,
-               scenario.kernel.tick_period_us, scenario.kernel.seed, scenario.settings.size(), scenario.changes.size());
+  text.add_all(scenario.duration_s, scenario.step_s, scenario.environment.engine, scenario.solver,
+               scenario.contact_noise, scenario.kernel.tick_period_us, scenario.kernel.seed, scenario.settings.size(),
+               scenario.changes.size());
   for (const sim::Setting& setting : scenario.settings) {
     add_setting(text, setting);
   }

@@ -13,23 +13,16 @@ std::string comment_on(const Sweep& sweep) { return "# " + one_line(command_of(s
 }  // namespace
 
 std::string fixed_options(const Sweep& sweep) {
-  const sim::Overrides& overrides = sweep.scenario.overrides;
   std::string text;
   for (const std::string& setting : sweep.settings) {
     text += "--set " + setting + " ";
   }
   text += "--seconds " + exact_text(sweep.scenario.duration_s);
-  if (overrides.seed) {
-    text += " --seed " + std::to_string(*overrides.seed);
-  }
-  if (overrides.friction) {
-    text += " --friction " + exact_text(*overrides.friction);
-  }
-  if (const auto position = sim::position_text(overrides)) {
-    text += " --at " + *position;
-  }
-  if (overrides.heading_deg) {
-    text += " --heading " + exact_text(*overrides.heading_deg);
+  const sim::OverrideWords words = sim::words_of(sweep.scenario.overrides);
+  for (const sim::OverrideDeclaration& declaration : sim::override_declarations()) {
+    if (const std::optional<std::string>& word = words.*declaration.word) {
+      text += " --" + std::string(declaration.name) + " " + *word;
+    }
   }
   return text;
 }

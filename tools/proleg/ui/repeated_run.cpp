@@ -16,11 +16,13 @@ constexpr std::uint32_t piece_ticks = 256;  // that are read from the file at on
 constexpr std::size_t max_losses = 10'000'000;
 
 sim::OverrideWords recorded_overrides(const sim::Recording& recording) {
-  const auto word = [&](const char* key) {
-    const std::string value = recording.run_value(key);
-    return value.empty() ? std::nullopt : std::optional(value);
-  };
-  return {word("override_seed"), word("override_friction"), word("override_at"), word("override_heading")};
+  sim::OverrideWords words;
+  for (const sim::OverrideDeclaration& declaration : sim::override_declarations()) {
+    if (const std::string word = recording.run_value("override_" + std::string(declaration.name)); !word.empty()) {
+      words.*declaration.word = word;
+    }
+  }
+  return words;
 }
 
 }  // namespace

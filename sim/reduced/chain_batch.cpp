@@ -56,7 +56,6 @@ std::vector<const ChainKernel*> supported_kernels() {
   return kernels;
 }
 
-unsigned long g_weak, g_side, g_steps;
 class ChainBatch::Implementation {
  public:
   Implementation(std::span<const PlanarChain> chains, const ChainKernel& kernel)
@@ -97,7 +96,6 @@ class ChainBatch::Implementation {
         }
       }
     }
-    extern unsigned long g_weak, g_side, g_steps;
     g_weak += weak_.size();
     g_side += (weak_.size() + width_ - 1) / width_;
     g_steps += size_;

@@ -96,9 +96,6 @@ class ChainBatch::Implementation {
         }
       }
     }
-    g_weak += weak_.size();
-    g_side += (weak_.size() + width_ - 1) / width_;
-    g_steps += size_;
     for (std::size_t first = 0; first < weak_.size(); first += width_) {
       step_weak(std::span(weak_).subspan(first, std::min(width_, weak_.size() - first)));
     }

@@ -43,9 +43,9 @@ std::int32_t joint_angle_in_steps(double radians) {
 
 }  // namespace
 
-Plant::Plant(const Scenario& scenario)
+Plant::Plant(const Scenario& scenario, std::unique_ptr<World> world)
     : scenario_(scenario),
-      world_(make_world(scenario)),
+      world_(world ? std::move(world) : make_world(scenario)),
       steps_per_tick_(static_cast<std::uint32_t>(std::lround(scenario.kernel.tick_period_us * 1e-6 / scenario.step_s))),
       start_(world_->center_of_mass()),
       center_before_(start_),
@@ -168,7 +168,7 @@ std::uint32_t Plant::step_start_us(std::uint32_t step) const {
   return static_cast<std::uint32_t>(std::uint64_t{step} * scenario_.kernel.tick_period_us / steps_per_tick_);
 }
 
-void Plant::step() {
+void Plant::begin_step() {
   if (latency_steps_ > 0) {
     act_on_delayed_pulses();
   }
@@ -179,6 +179,9 @@ void Plant::step() {
     servo.angle_before = servo.angle;
     world_->set_joint_speed(joint, servo.jam_ma ? 0.0 : servo.commanded_speed);
   }
+}
+
+void Plant::finish_step() {
   step_world();
   for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
     Servo& servo = servos_[joint];

@@ -144,7 +144,11 @@ class Plant {
   std::vector<double> servo_currents_;
   std::vector<double> contact_force_sums_;  ///< N, over the steps of this tick
   std::vector<double> contact_forces_;
-  std::vector<double> joint_targets_;        ///< rad, of the servos in the last step
+  std::vector<double> joint_targets_;  ///< rad, of the servos in the last step
+  // Of the joints, in a step: what they are to do, and what they did.
+  std::vector<double> speeds_;               ///< rad/s
+  std::vector<double> angles_;               ///< rad
+  std::vector<double> torques_;              ///< Nm
   std::vector<std::uint8_t> link_contacts_;  ///< with noise
 };
 

@@ -53,12 +53,14 @@ const Change* Simulation::begin_tick() {
   touch_.write_links(latched_contacts_);
   const std::uint32_t present = tick();
   chain_.advance(touch_.contacts());
-  setpoint_hash_.append(chain_.setpoints());
 
   servo_pulses_.clear();
   pulse_source_.append(chain_, servo_pulses_);
-  for (const ServoPulse& pulse : servo_pulses_) {
-    servo_hash_.append(pulse.command);
+  if (has_hashes_) {
+    setpoint_hash_.append(chain_.setpoints());
+    for (const ServoPulse& pulse : servo_pulses_) {
+      servo_hash_.append(pulse.command);
+    }
   }
   pulse_player_.begin_tick(present, servo_pulses_);
   return change;
@@ -66,7 +68,9 @@ const Change* Simulation::begin_tick() {
 
 void Simulation::end_tick() {
   pulse_player_.end_tick();
-  hash_world();
+  if (has_hashes_) {
+    hash_world();
+  }
 }
 
 void Simulation::hash_world() {

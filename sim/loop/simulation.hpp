@@ -31,6 +31,9 @@ class Simulation {
   /// With a world that was made for the scenario.
   Simulation(const Scenario& scenario, std::unique_ptr<World> world);
 
+  /// The hashes below stay those of no values. For evaluations, which need none: they take a tenth of the time.
+  void leave_out_hashes() { has_hashes_ = false; }
+
   /// The moves of the present tick take effect now. Otherwise advance() begins with them. Throws InputError for a move
   /// to a place where the robot cannot be put; then only the moves before it have taken effect.
   void apply_moves();
@@ -96,6 +99,7 @@ class Simulation {
   std::vector<std::uint8_t> latched_contacts_;
   std::vector<std::int32_t> internal_values_;
   std::vector<ServoPulse> servo_pulses_;
+  bool has_hashes_ = true;
   ValueHash setpoint_hash_;
   ValueHash servo_hash_;
   ValueHash world_hash_;

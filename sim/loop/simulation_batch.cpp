@@ -22,6 +22,7 @@ SimulationBatch::SimulationBatch(std::span<const Scenario* const> scenarios) : w
   std::vector<std::unique_ptr<World>> worlds = worlds_.take_worlds();
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     members_.push_back({std::make_unique<Simulation>(*scenarios[i], std::move(worlds[i]))});
+    members_.back().simulation->leave_out_hashes();
   }
 }
 

@@ -12,7 +12,8 @@
 
 namespace proleg::sim {
 
-/// Simulations in the reduced engine that make their steps together. Each gives the same bits as alone.
+/// Simulations in the reduced engine that make their steps together. Each gives the same bits as alone; none has
+/// hashes.
 class SimulationBatch {
  public:
   /// scenarios: at least one, for the reduced engine, with the same tick and step, without moves. They must outlive

@@ -66,7 +66,10 @@ class ContactSearch {
     Outline<width> outline;
     for (int k = 0; k < 4; ++k) {
       outline.corners[k] = position_of(shape.link) + turned_with(shape.link, shape.outline.corners[k]);
+    }
+    for (int k = 0; k < 2; ++k) {
       outline.normals[k] = turned_with(shape.link, shape.outline.normals[k]);
+      outline.normals[k + 2] = Plane<Number>{} - outline.normals[k];
     }
     return outline;
   }

@@ -29,6 +29,13 @@ class ReducedWorld final : public World {
   void set_joint_speed(std::size_t joint, double speed) override {
     batch_->set_wanted_speed(lane_, joint, chain_.joint_signs[joint] * speed);
   }
+  void set_joint_speeds(std::span<const double> speeds) override {
+    batch_->set_wanted_speeds(lane_, chain_.joint_signs, speeds);
+  }
+  void read_joints(std::span<double> angles, std::span<double> torques) const override {
+    batch_->read_joints(lane_, chain_.joint_signs, angles, torques);
+  }
+  void add_contact_forces(std::span<double> sums) const override { batch_->add_contact_forces(lane_, sums); }
   void set_joint_torque(std::size_t joint, double torque) override { batch_->set_max_torque(lane_, joint, torque); }
 
   void move_robot(const Pose& motion) override {

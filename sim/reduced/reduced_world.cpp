@@ -1,6 +1,7 @@
 #include "sim/reduced/reduced_world.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <span>
 
@@ -96,9 +97,9 @@ class ReducedWorld final : public World {
   void find_lowest_ground() {
     lowest_ground_.reset();
     for (const Rectangle& solid : chain_.terrain) {
-      for (const Point& corner : solid.corners) {
-        lowest_ground_ = std::min(lowest_ground_.value_or(corner.z), corner.z);
-      }
+      const double lowest =
+          solid.center.z - std::abs(solid.along.z) * solid.half_length - std::abs(solid.along.x) * solid.half_height;
+      lowest_ground_ = std::min(lowest_ground_.value_or(lowest), lowest);
     }
   }
 

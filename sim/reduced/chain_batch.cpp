@@ -6,6 +6,7 @@
 
 #include "sim/reduced/chain_memory.hpp"
 #include "sim/reduced/chain_scratch.hpp"
+#include "sim/reduced/sine.hpp"
 
 namespace proleg::sim::reduced {
 namespace {
@@ -255,9 +256,11 @@ ChainBatch::LinkPlace ChainBatch::link_place(std::size_t chain, std::size_t link
   for (std::size_t joint = 0; joint < link; ++joint) {
     angle += of(memory.joint_angle, joint);
   }
+  const auto half = sine_cosine<2>(Lanes<2>::number(angle * 0.5));
   return {{of(memory.center, 0) + of(memory.link_position, 2 * link),
            of(memory.center, 1) + of(memory.link_position, 2 * link + 1)},
-          angle};
+          half.sine[0],
+          half.cosine[0]};
 }
 
 ChainBatch::LinkMotion ChainBatch::link_motion(std::size_t chain, std::size_t link) const {

@@ -45,10 +45,11 @@ class ChainBatch {
   void add_contact_forces(std::size_t chain, std::span<double> sums) const;  ///< N
 
   [[nodiscard]] Point center(std::size_t chain) const;  ///< of mass
-  /// A link's centre of mass, and the angle by which the link has turned since all angles were 0.
+  /// A link's centre of mass, and the rotation of the link since all angles were 0.
   struct LinkPlace {
     Point position;
-    double angle;  ///< rad
+    double half_sine;  ///< of half the angle
+    double half_cosine;
   };
   [[nodiscard]] LinkPlace link_place(std::size_t chain, std::size_t link) const;
   /// Of its centre of mass, m/s; and its rotation, rad/s.

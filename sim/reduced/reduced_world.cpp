@@ -69,8 +69,9 @@ class ReducedWorld final : public World {
   }
   [[nodiscard]] Pose link_pose(std::size_t link) const override {
     const ChainBatch::LinkPlace place = batch_->link_place(lane_, link);
+    const Eigen::Vector3d turn = -place.half_sine * chain_.plane.across;
     const Eigen::Quaterniond orientation =
-        Eigen::AngleAxisd(-place.angle, chain_.plane.across) * chain_.start_orientations[link];
+        Eigen::Quaterniond(place.half_cosine, turn.x(), turn.y(), turn.z()) * chain_.start_orientations[link];
     return {chain_.plane.lift(place.position) - orientation * chain_.mass_centers[link], orientation};
   }
   [[nodiscard]] bool is_slower_than(double speed, double rotation) const override {

@@ -14,7 +14,9 @@ def symbols(nm, file):
     """Those that the linker sees, by the object file that defines them."""
     member = file
     found = {}
-    listing = subprocess.run([nm, "--extern-only", "--defined-only", "--demangle", file], capture_output=True, text=True, check=True)
+    listing = subprocess.run([nm, "--extern-only", "--defined-only", "--demangle", file], capture_output=True, text=True, check=False)
+    if listing.returncode != 0:
+        sys.exit(listing.stderr)
     for line in listing.stdout.splitlines():
         if line.endswith(".o:"):
             member = line[:-1]

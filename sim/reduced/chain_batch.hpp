@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <ranges>
+#include <span>
 #include <vector>
 
 #include "sim/physics/contact_sliding.hpp"

@@ -8,29 +8,19 @@ namespace {
 
 constexpr double half_length = 0.036;  // m, between the joints of a link
 
-/// along: unit vector of the first side.
-Rectangle rectangle(const Point& middle, const Point& along, double half_x, double half_z) {
-  const Point up{-along.z, along.x};
-  const auto corner = [&](double x, double z) {
-    return Point{middle.x + along.x * x + up.x * z, middle.z + along.z * x + up.z * z};
-  };
-  return {{corner(-half_x, -half_z), corner(half_x, -half_z), corner(half_x, half_z), corner(-half_x, half_z)},
-          {{-up.x, -up.z}, along, up, {-along.x, -along.z}}};
-}
-
 /// What all chains have in common.
 ChainModel make_form() {
   ChainModel form;
   for (std::size_t link = 0; link < link_count; ++link) {
     form.links.push_back({{half_length, 0.0}, {-half_length, 0.0}, {1.0, 0.0}, {0.0, -1.0}});
-    form.shapes.push_back({link, rectangle({0.0, 0.0}, {1.0, 0.0}, 0.03, 0.026), 0.04});
+    form.shapes.push_back({link, Rectangle{{0.0, 0.0}, {1.0, 0.0}, 0.03, 0.026}, 0.04});
   }
   // The last link also has a foot that is turned by a right-angled triangle of sides 7, 24, 25.
-  form.shapes.push_back({link_count - 1, rectangle({-0.02, -0.03}, {0.96, -0.28}, 0.02, 0.005), 0.06});
+  form.shapes.push_back({link_count - 1, Rectangle{{-0.02, -0.03}, {0.96, -0.28}, 0.02, 0.005}, 0.06});
   form.joints.assign(joint_count, {-1.5, 1.5});
-  form.terrain = {rectangle({0.0, -0.5}, {1.0, 0.0}, 50.0, 0.5),     // the floor
-                  rectangle({0.5, 0.0}, {1.0, 0.0}, 0.2, 0.02),      // a step
-                  rectangle({-0.7, -0.1}, {0.96, 0.28}, 0.3, 0.2)};  // a hill
+  form.terrain = {Rectangle{{0.0, -0.5}, {1.0, 0.0}, 50.0, 0.5},     // the floor
+                  Rectangle{{0.5, 0.0}, {1.0, 0.0}, 0.2, 0.02},      // a step
+                  Rectangle{{-0.7, -0.1}, {0.96, 0.28}, 0.3, 0.2}};  // a hill
   form.self_collision = true;
   form.step_s = 0.001;
   return form;

@@ -47,12 +47,18 @@ struct Outcome {
   unsigned long on_itself = 0;    ///< times that a chain touched itself
   unsigned long weak_motors = 0;  ///< times that a motor gave all that it can, and more than nothing
   unsigned long failures = 0;     ///< chains that broke down, or did not what the same chain did elsewhere in the batch
-  Hash state;                     ///< of the chains' hashes of all their states
+  Hash state;                     ///< of the chains' hashes of all their states and poses
 };
 
 void add_state(const ChainBatch& batch, std::size_t place, Hash& hash) {
   for (const double value : batch.state(place)) {
     hash.add(std::bit_cast<std::uint64_t>(value));
+  }
+  for (std::size_t link = 0; link < link_count; ++link) {
+    const ChainBatch::LinkPlace at = batch.link_place(place, link);
+    for (const double value : {at.position.x, at.position.z, at.half_sine, at.half_cosine}) {
+      hash.add(std::bit_cast<std::uint64_t>(value));
+    }
   }
 }
 

@@ -123,7 +123,7 @@ std::unique_ptr<World> make_reduced_world(const RobotModel& robot, const Environ
   return std::move(ReducedWorlds(std::span(&input, 1)).take_worlds().front());
 }
 
-ReducedWorlds::ReducedWorlds(std::span<const WorldInput> inputs) : worlds_(inputs.size()) {
+ReducedWorlds::ReducedWorlds(std::span<const WorldInput> inputs, const ChainKernel* kernel) : worlds_(inputs.size()) {
   std::vector<PlanarChain> chains;
   for (const WorldInput& input : inputs) {
     chains.push_back(make_planar_chain(*input.robot, *input.environment, input.step_s, input.file));
@@ -140,7 +140,7 @@ ReducedWorlds::ReducedWorlds(std::span<const WorldInput> inputs) : worlds_(input
         numbers.push_back(i);
       }
     }
-    const auto batch = std::make_shared<ChainBatch>(alike);
+    const auto batch = std::make_shared<ChainBatch>(alike, kernel);
     for (std::size_t lane = 0; lane < numbers.size(); ++lane) {
       worlds_[numbers[lane]] =
           std::make_unique<ReducedWorld>(inputs[numbers[lane]], std::move(alike[lane]), batch, lane);

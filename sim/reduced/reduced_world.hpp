@@ -30,8 +30,8 @@ struct WorldInput {
 /// Worlds that make their steps together, as fast as the processor's vectors allow. Each gives the same bits as alone.
 class ReducedWorlds {
  public:
-  /// inputs: at least one. Throws InputError as make_reduced_world.
-  explicit ReducedWorlds(std::span<const WorldInput> inputs);
+  /// inputs: at least one. kernel: as ChainBatch has it. Throws InputError as make_reduced_world.
+  explicit ReducedWorlds(std::span<const WorldInput> inputs, const ChainKernel* kernel = nullptr);
 
   /// Gives the worlds away, in the order of the inputs. Then they are used between the steps; World::step of each of
   /// them makes no step but throws PhysicsError if the world broke down. They cannot be moved.

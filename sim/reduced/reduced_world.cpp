@@ -6,6 +6,7 @@
 #include <span>
 
 #include "sim/physics/physics_error.hpp"
+#include "sim/reduced/planar_chain.hpp"
 
 namespace proleg::sim::reduced {
 namespace {

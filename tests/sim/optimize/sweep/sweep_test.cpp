@@ -68,6 +68,24 @@ TEST(Sweep, ACombinationSetsParameterSeedAndFriction) {
   }
 }
 
+sim::Scenario read_with(const sim::OverrideWords& words) {
+  auto files = sim::small_scenario();
+  return sim::read_scenario("top.xml", files, sim::read_overrides(words));
+}
+
+TEST(Sweep, ACombinationStartsWhereTheOptionsPutTheRobot) {
+  const Sweep sweep = sweep_over({"y=-0.5:0.5:0.25", "heading=0:90:45", "x=2"});
+  sim::OverrideWords words;
+  words.at = "2,-0.25";
+  words.heading = "90";
+  const sim::Pose expected = read_with(words).environment.robot_pose;
+  const sim::Pose start = sweep.scenario_of({1, 2, 0}).environment.robot_pose;
+  EXPECT_EQ(start.position, expected.position);
+  EXPECT_EQ(start.orientation.coeffs(), expected.orientation.coeffs());
+  EXPECT_EQ(sweep.quantities[0].unit, "m");
+  EXPECT_EQ(sweep.quantities[1].unit, "deg");
+}
+
 TEST(Sweep, RefusesWordsThatAreNoRange) {
   for (const char* word : {"amplitude", "=1:2", "amplitude=", "amplitude=1:2:3:4", "amplitude=1:x", "amplitude=1e3",
                            "amplitude=1:2:", "amplitude=1234567890123456"}) {
@@ -118,22 +136,26 @@ TEST(Sweep, RefusesAnOverrideOfWhatItSweeps) {
   sim::Scenario scenario = sim::small_scenario().scenario();
   scenario.overrides.seed = 7;
   scenario.overrides.friction = 0.25;
+  scenario.overrides.at.emplace(1.0, 2.0);
+  scenario.overrides.heading_deg = 30.0;
   const auto refusal_of = [&](const std::string& word) {
     const std::vector<std::string> words{word};
     return message_of<InputError>([&] { static_cast<void>(read_sweep(scenario, words)); });
   };
   EXPECT_EQ(refusal_of("seed=1:2"), "--over seed=1:2: found --seed 7 as well, expected one of the two");
   EXPECT_EQ(refusal_of("friction=0:1"), "--over friction=0:1: found --friction 0.25 as well, expected one of the two");
+  EXPECT_EQ(refusal_of("y=0:1"), "--over y=0:1: found --at 1,2 as well, expected one of the two");
+  EXPECT_EQ(refusal_of("heading=0:1"), "--over heading=0:1: found --heading 30 as well, expected one of the two");
   EXPECT_EQ(refusal_of("amplitude=1:2"), "");
 }
 
 TEST(Sweep, StatesTheCommandThatRepeatsIt) {
   Sweep sweep = sweep_over({"amplitude=10:20:5", "friction=0.1:0.2:0.1"}, {"frequency=2", "phase_difference=3@5"});
   EXPECT_EQ(fixed_options(sweep), "--set frequency=2 --set phase_difference=3@5 --seconds 2");
-  sweep.scenario.overrides = {7, 0.25, Eigen::Vector2d(1.0, -2.5), 0.5, -30.0};
+  sweep.scenario.overrides = {sim::PhysicsEngine::reduced, 7, 0.25, Eigen::Vector2d(1.0, -2.5), 0.5, -30.0};
   EXPECT_EQ(command_of(sweep),
             "proleg sweep top.xml --over amplitude=10:20:5 --over friction=0.1:0.2:0.1 --set frequency=2 --set "
-            "phase_difference=3@5 --seconds 2 --seed 7 --friction 0.25 --at 1,-2.5,0.5 --heading -30");
+            "phase_difference=3@5 --seconds 2 --engine reduced --seed 7 --friction 0.25 --at 1,-2.5,0.5 --heading -30");
 }
 
 /// Answers in the opposite order of the tasks, two at a time.

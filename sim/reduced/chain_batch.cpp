@@ -286,7 +286,8 @@ std::size_t ChainBatch::contact_count(std::size_t chain) const {
 
 ContactSliding ChainBatch::sliding(std::size_t chain) const {
   const ChainMemory<double> memory = implementation_->memory_of(chain);
-  return {implementation_->of(chain, memory.sliding, 0), implementation_->of(chain, memory.sliding, 1)};
+  return {implementation_->of(chain, memory.sliding, 0), implementation_->of(chain, memory.sliding, 1),
+          implementation_->of(chain, memory.sliding, 2)};
 }
 
 bool ChainBatch::failed(std::size_t chain) const {

@@ -546,6 +546,7 @@ class ChainStep {
     put_where(done, m_.contact_count[0], contact_count_);
     put_where(done, m_.sliding[0], Number{});
     put_where(done, m_.sliding[1], Number{});
+    put_where(done, m_.sliding[2], Number{});
     for (std::size_t k = 0; k < contacts_; ++k) {
       put_where(done, m_.contact_key[k], s_.key[k]);
       put_where(done, m_.normal_impulse[k], s_.normal_value[k]);
@@ -554,6 +555,8 @@ class ChainStep {
       const Number force = select(is_terrain, s_.normal_value[k] * steps_per_s, Number{});
       m_.sliding[0] += force;
       m_.sliding[1] += force * s_.sliding_speed[k];
+      const Number friction = select(is_terrain, s_.friction_value[k] * steps_per_s, Number{});
+      m_.sliding[2] += magnitude(friction) * s_.sliding_speed[k];
     }
   }
 

@@ -90,6 +90,18 @@ class ReducedWorld final : public World {
   [[nodiscard]] double contact_force(std::size_t link) const override { return batch_->contact_force(lane_, link); }
   [[nodiscard]] std::size_t contact_count() const override { return batch_->contact_count(lane_); }
   [[nodiscard]] ContactSliding contact_sliding() const override { return batch_->sliding(lane_); }
+  [[nodiscard]] double energy() const override {
+    double energy = 0.0;
+    for (std::size_t link = 0; link < chain_.masses.size(); ++link) {
+      const ChainBatch::LinkMotion motion = batch_->link_motion(lane_, link);
+      const Point position = batch_->link_place(lane_, link).position;
+      const double squared_speed = motion.velocity.x * motion.velocity.x + motion.velocity.z * motion.velocity.z;
+      const double fall = chain_.gravity.x * position.x + chain_.gravity.z * position.z;
+      energy += chain_.masses[link] * (0.5 * squared_speed - fall) +
+                0.5 * chain_.inertias[link] * motion.rotation * motion.rotation;
+    }
+    return energy;
+  }
   [[nodiscard]] std::optional<double> lowest_ground() const override { return lowest_ground_; }
   [[nodiscard]] std::size_t solver_messages() const override { return 0; }
   [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return {}; }

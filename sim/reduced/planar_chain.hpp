@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,7 @@ struct PlanarChain {
   std::vector<double> self_friction;     ///< by shape, then by shape
   Point gravity;                         ///< m/s^2
   Point first_link;                      ///< its centre of mass at the start
+  std::optional<double> lowest_ground;   ///< m: the lowest point of the environment, also beside the robot's way
 
   // Back to the world.
   std::vector<double> joint_signs;                     ///< 1, or -1 where the axis of a joint points the other way

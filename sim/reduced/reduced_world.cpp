@@ -1,8 +1,8 @@
 #include "sim/reduced/reduced_world.hpp"
 
-#include <algorithm>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "sim/physics/physics_error.hpp"
 
@@ -12,8 +12,12 @@ namespace {
 class ReducedWorld final : public World {
  public:
   ReducedWorld(const RobotModel& robot, const EnvironmentModel& environment, double step_s, std::string file)
-      : robot_(robot), environment_(environment), step_s_(step_s), file_(std::move(file)) {
-    make_batch();
+      : robot_(robot),
+        environment_(environment),
+        step_s_(step_s),
+        file_(std::move(file)),
+        chain_(make_planar_chain(robot_, environment_, step_s_, file_)),
+        batch_(std::make_unique<ChainBatch>(std::span(&chain_, 1))) {
     for (std::size_t joint = 0; joint < robot_.joints.size(); ++joint) {
       set_joint_torque(joint, robot_.joints[joint].max_torque);
     }
@@ -25,11 +29,16 @@ class ReducedWorld final : public World {
   void set_joint_torque(std::size_t joint, double torque) override { batch_->set_max_torque(0, joint, torque); }
 
   void move_robot(const Pose& motion) override {
+    // A place that the engine refuses leaves all as it is.
     const Eigen::Vector3d center = motion * center_of_mass();
-    environment_.robot_pose = motion * environment_.robot_pose;
-    const std::unique_ptr<ChainBatch> before = std::move(batch_);
-    make_batch();
-    batch_->place_like(0, *before, 0, chain_.plane.project(center));
+    EnvironmentModel environment = environment_;
+    environment.robot_pose = motion * environment_.robot_pose;
+    PlanarChain chain = make_planar_chain(robot_, environment, step_s_, file_);
+    auto batch = std::make_unique<ChainBatch>(std::span(&chain, 1));
+    batch->place_like(0, *batch_, 0, chain.plane.project(center));
+    environment_ = std::move(environment);
+    chain_ = std::move(chain);
+    batch_ = std::move(batch);
   }
 
   void step() override {
@@ -68,30 +77,18 @@ class ReducedWorld final : public World {
   [[nodiscard]] double contact_force(std::size_t link) const override { return batch_->contact_force(0, link); }
   [[nodiscard]] std::size_t contact_count() const override { return batch_->contact_count(0); }
   [[nodiscard]] ContactSliding contact_sliding() const override { return batch_->sliding(0); }
-  [[nodiscard]] std::optional<double> lowest_ground() const override { return lowest_ground_; }
+  [[nodiscard]] std::optional<double> lowest_ground() const override { return chain_.lowest_ground; }
   [[nodiscard]] std::size_t solver_messages() const override { return 0; }
   [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return {}; }
   [[nodiscard]] std::vector<double> state() const override { return batch_->state(0); }
 
  private:
-  void make_batch() {
-    chain_ = make_planar_chain(robot_, environment_, step_s_, file_);
-    batch_ = std::make_unique<ChainBatch>(std::span(&chain_, 1));
-    lowest_ground_.reset();
-    for (const Rectangle& solid : chain_.terrain) {
-      for (const Point& corner : solid.corners) {
-        lowest_ground_ = std::min(lowest_ground_.value_or(corner.z), corner.z);
-      }
-    }
-  }
-
   RobotModel robot_;
   EnvironmentModel environment_;  ///< with the robot's pose after the moves so far
   double step_s_;
   std::string file_;
   PlanarChain chain_;
   std::unique_ptr<ChainBatch> batch_;
-  std::optional<double> lowest_ground_;
 };
 
 }  // namespace

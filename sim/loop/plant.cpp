@@ -43,9 +43,9 @@ std::int32_t joint_angle_in_steps(double radians) {
 
 }  // namespace
 
-Plant::Plant(const Scenario& scenario)
+Plant::Plant(const Scenario& scenario, std::unique_ptr<World> world)
     : scenario_(scenario),
-      world_(make_world(scenario)),
+      world_(world ? std::move(world) : make_world(scenario)),
       steps_per_tick_(static_cast<std::uint32_t>(std::lround(scenario.kernel.tick_period_us * 1e-6 / scenario.step_s))),
       start_(world_->center_of_mass()),
       center_before_(start_),
@@ -62,6 +62,9 @@ Plant::Plant(const Scenario& scenario)
       contact_force_sums_(scenario.robot.links.size()),
       contact_forces_(scenario.robot.links.size()),
       joint_targets_(scenario.robot.joints.size()),
+      speeds_(scenario.robot.joints.size()),
+      angles_(scenario.robot.joints.size()),
+      torques_(scenario.robot.joints.size()),
       link_contacts_(scenario.robot.links.size()) {
   for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
     servos_[joint].angle = servos_[joint].angle_before = world_->joint_angle(joint);
@@ -168,7 +171,7 @@ std::uint32_t Plant::step_start_us(std::uint32_t step) const {
   return static_cast<std::uint32_t>(std::uint64_t{step} * scenario_.kernel.tick_period_us / steps_per_tick_);
 }
 
-void Plant::step() {
+void Plant::begin_step() {
   if (latency_steps_ > 0) {
     act_on_delayed_pulses();
   }
@@ -177,13 +180,18 @@ void Plant::step() {
     servo.commanded_speed =
         servo_speed(scenario_.robot.servo, scenario_.robot.joints[joint], servo.command, servo.angle);
     servo.angle_before = servo.angle;
-    world_->set_joint_speed(joint, servo.jam_ma ? 0.0 : servo.commanded_speed);
+    speeds_[joint] = servo.jam_ma ? 0.0 : servo.commanded_speed;
   }
+  world_->set_joint_speeds(speeds_);
+}
+
+void Plant::finish_step() {
   step_world();
+  world_->read_joints(angles_, torques_);
   for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
     Servo& servo = servos_[joint];
-    servo.angle = world_->joint_angle(joint);
-    const double torque = world_->motor_torque(joint);
+    servo.angle = angles_[joint];
+    const double torque = torques_[joint];
     servo.torque_sum += torque;
     double current =
         meter_.add_joint_step(joint, {torque, servo.commanded_speed, servo.angle_before, servo.angle, servo.limp});
@@ -193,9 +201,7 @@ void Plant::step() {
     servo.current_sum += current;
     servo.drawn += current;
   }
-  for (std::size_t link = 0; link < contact_force_sums_.size(); ++link) {
-    contact_force_sums_[link] += world_->contact_force(link);
-  }
+  world_->add_contact_forces(contact_force_sums_);
   const ContactSliding sliding = world_->contact_sliding();
   meter_.add_contacts(sliding.normal_force, sliding.force_times_speed);
   contact_sum_ += world_->contact_count();

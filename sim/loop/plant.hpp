@@ -18,8 +18,8 @@ namespace proleg::sim {
 /// The servos and the world that the joints' programs move, in steps of the physics. A tick is a whole number of steps.
 class Plant {
  public:
-  /// scenario: must outlive the plant.
-  explicit Plant(const Scenario& scenario);
+  /// scenario: must outlive the plant. world: nothing: a new one of the scenario.
+  explicit Plant(const Scenario& scenario, std::unique_ptr<World> world = nullptr);
 
   /// A servo takes a pulse, in twelfths of a microsecond. It acts on the pulse after its latency, in whole steps.
   void set_command(std::size_t joint, std::int32_t command);
@@ -45,7 +45,13 @@ class Plant {
   /// the fraction does not matter.
   [[nodiscard]] std::uint32_t step_start_us(std::uint32_t step) const;
   /// Throws PhysicsError if the engine fails.
-  void step();
+  void step() {
+    begin_step();
+    finish_step();
+  }
+  /// The two halves of step(). Worlds that make their steps together make them between the halves.
+  void begin_step();
+  void finish_step();
   /// Must be called after the last step of a tick: updates the values below and the measures. A pulse that a servo
   /// takes after the last step counts for the next tick. Throws PhysicsError if the robot moves faster than 100 m/s or
   /// fell off its environment.
@@ -138,7 +144,11 @@ class Plant {
   std::vector<double> servo_currents_;
   std::vector<double> contact_force_sums_;  ///< N, over the steps of this tick
   std::vector<double> contact_forces_;
-  std::vector<double> joint_targets_;        ///< rad, of the servos in the last step
+  std::vector<double> joint_targets_;  ///< rad, of the servos in the last step
+  // Of the joints, in a step: what they are to do, and what they did.
+  std::vector<double> speeds_;               ///< rad/s
+  std::vector<double> angles_;               ///< rad
+  std::vector<double> torques_;              ///< Nm
   std::vector<std::uint8_t> link_contacts_;  ///< with noise
 };
 

@@ -20,22 +20,36 @@ class PulsePlayer {
   /// The world from SYNC k, k = tick, until SYNC k + 1. pulses: of the servo intervals that start in the tick, in the
   /// order of time, then of joints. Throws PhysicsError as Plant does.
   void advance(std::uint32_t tick, std::span<const ServoPulse> pulses) {
-    const std::uint64_t start_us = std::uint64_t{tick} * schedule_.tick_period_us();
-    taken_ = 0;
+    begin_tick(tick, pulses);
     for (std::uint32_t step = 0; step < plant_.steps_per_tick(); ++step) {
-      take(pulses, start_us + plant_.step_start_us(step));
-      plant_.step();
+      begin_step(step);
+      plant_.finish_step();
     }
+    end_tick();
+  }
+
+  // The parts of advance(), for worlds that make their steps together (Plant::begin_step). pulses: must stay until
+  // end_tick().
+  void begin_tick(std::uint32_t tick, std::span<const ServoPulse> pulses) {
+    start_us_ = std::uint64_t{tick} * schedule_.tick_period_us();
+    pulses_ = pulses;
+    taken_ = 0;
+  }
+  void begin_step(std::uint32_t step) {
+    take(start_us_ + plant_.step_start_us(step));
+    plant_.begin_step();
+  }
+  void end_tick() {
     // Pulses on which the servos act after the last step count for the next tick.
     plant_.finish_tick();
-    take(pulses, start_us + schedule_.tick_period_us());
+    take(start_us_ + schedule_.tick_period_us());
   }
 
  private:
   /// The servos take the pulses on which they act by then.
-  void take(std::span<const ServoPulse> pulses, std::uint64_t until_us) {
-    for (; taken_ < pulses.size(); ++taken_) {
-      const ServoPulse& pulse = pulses[taken_];
+  void take(std::uint64_t until_us) {
+    for (; taken_ < pulses_.size(); ++taken_) {
+      const ServoPulse& pulse = pulses_[taken_];
       if (acting_time_us(pulse.time_us, schedule_.servo_period_us(), schedule_.tick_period_us()) > until_us) {
         return;
       }
@@ -45,6 +59,8 @@ class PulsePlayer {
 
   Plant& plant_;
   ServoSchedule schedule_;
+  std::uint64_t start_us_ = 0;  ///< of the tick
+  std::span<const ServoPulse> pulses_;
   std::size_t taken_ = 0;
 };
 

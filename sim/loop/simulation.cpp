@@ -8,10 +8,15 @@
 
 namespace proleg::sim {
 
-Simulation::Simulation(const Scenario& scenario, const Losses* losses)
+Simulation::Simulation(const Scenario& scenario, const Losses* losses) : Simulation(scenario, losses, nullptr) {}
+
+Simulation::Simulation(const Scenario& scenario, std::unique_ptr<World> world)
+    : Simulation(scenario, nullptr, std::move(world)) {}
+
+Simulation::Simulation(const Scenario& scenario, const Losses* losses, std::unique_ptr<World> world)
     : scenario_(scenario),
       chain_(scenario.kernel, scenario.joint_limits, scenario.settings),
-      plant_(scenario),
+      plant_(scenario, std::move(world)),
       touch_(scenario.robot.joints.size()),
       pulse_source_({scenario.robot.servo.period_us, scenario.kernel.tick_period_us}, scenario.joint_limits,
                     scenario.robot.servo.command_speed),
@@ -29,6 +34,16 @@ void Simulation::apply_moves() {
 }
 
 const Change* Simulation::advance() {
+  const Change* const change = begin_tick();
+  for (std::uint32_t step = 0; step < plant_.steps_per_tick(); ++step) {
+    begin_step(step);
+    finish_step();
+  }
+  end_tick();
+  return change;
+}
+
+const Change* Simulation::begin_tick() {
   apply_moves();
   last_first_move_ = std::exchange(first_move_, next_move_);
   const Change* change = apply_changes();
@@ -38,16 +53,24 @@ const Change* Simulation::advance() {
   touch_.write_links(latched_contacts_);
   const std::uint32_t present = tick();
   chain_.advance(touch_.contacts());
-  setpoint_hash_.append(chain_.setpoints());
 
   servo_pulses_.clear();
   pulse_source_.append(chain_, servo_pulses_);
-  for (const ServoPulse& pulse : servo_pulses_) {
-    servo_hash_.append(pulse.command);
+  if (has_hashes_) {
+    setpoint_hash_.append(chain_.setpoints());
+    for (const ServoPulse& pulse : servo_pulses_) {
+      servo_hash_.append(pulse.command);
+    }
   }
-  pulse_player_.advance(present, servo_pulses_);
-  hash_world();
+  pulse_player_.begin_tick(present, servo_pulses_);
   return change;
+}
+
+void Simulation::end_tick() {
+  pulse_player_.end_tick();
+  if (has_hashes_) {
+    hash_world();
+  }
 }
 
 void Simulation::hash_world() {

@@ -24,6 +24,12 @@ class World {
 
   /// The speed, in rad/s, that the motor of a joint tries to reach with the torque it has.
   virtual void set_joint_speed(std::size_t joint, double speed) = 0;
+  /// Of all joints.
+  virtual void set_joint_speeds(std::span<const double> speeds) {
+    for (std::size_t joint = 0; joint < speeds.size(); ++joint) {
+      set_joint_speed(joint, speeds[joint]);
+    }
+  }
   /// The torque, in Nm, that the motor of a joint has from now on; at first that of its model. 0: the joint is limp.
   virtual void set_joint_torque(std::size_t joint, double torque) = 0;
 
@@ -41,6 +47,13 @@ class World {
   /// energy per radian that the joint turns. At a stop of the joint it is the sum of stop and motor, limited to what
   /// the motor has. 0 before the first step.
   [[nodiscard]] virtual double motor_torque(std::size_t joint) const = 0;
+  /// Both of all joints.
+  virtual void read_joints(std::span<double> angles, std::span<double> torques) const {
+    for (std::size_t joint = 0; joint < angles.size(); ++joint) {
+      angles[joint] = joint_angle(joint);
+      torques[joint] = motor_torque(joint);
+    }
+  }
   /// Pose of the frame of a link in the world.
   [[nodiscard]] virtual Pose link_pose(std::size_t link) const = 0;
   /// Whether no link is faster than the two given speeds: of its centre of mass in m/s, of its rotation in rad/s.
@@ -56,6 +69,12 @@ class World {
   /// Sum of the normal forces, in N, of the link's contact points with the environment and with other links, in the
   /// last step; 0 before the first.
   [[nodiscard]] virtual double contact_force(std::size_t link) const = 0;
+  /// Adds those of all links.
+  virtual void add_contact_forces(std::span<double> sums) const {
+    for (std::size_t link = 0; link < sums.size(); ++link) {
+      sums[link] += contact_force(link);
+    }
+  }
   /// Number of contact points at the start of the last step.
   [[nodiscard]] virtual std::size_t contact_count() const = 0;
   /// In the last step; zeros before the first.

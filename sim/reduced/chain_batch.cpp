@@ -6,6 +6,7 @@
 
 #include "sim/reduced/chain_memory.hpp"
 #include "sim/reduced/chain_scratch.hpp"
+#include "sim/reduced/sine.hpp"
 
 namespace proleg::sim::reduced {
 namespace {
@@ -66,7 +67,8 @@ class ChainBatch::Implementation {
         form_{counts_of(form_of_),     form_of_.links.data(),   form_of_.joints.data(), form_of_.shapes.data(),
               form_of_.terrain.data(), form_of_.self_collision, form_of_.step_s},
         block_size_(width_ * (ChainMemory<double>::size(form_.counts) + ChainScratch<double>::size(form_.counts))),
-        numbers_(zeros(block_size_ * (blocks() + 1))) {
+        numbers_(zeros(block_size_ * (blocks() + 1))),
+        memory_of_first_(numbers_.get(), form_.counts, width_) {
     for (std::size_t lane = 0; lane < blocks() * width_; ++lane) {
       set_constants(lane, chains[std::min(lane, size_ - 1)]);
     }
@@ -113,6 +115,11 @@ class ChainBatch::Implementation {
     }
   }
 
+  /// The first number of an array of a chain; the next ones follow at distances of stride().
+  [[nodiscard]] double* first_of(std::size_t chain, double* ChainMemory<double>::*array) const {
+    return at(chain / width_) + (memory_of_first_.*array - numbers_.get()) + chain % width_;
+  }
+  [[nodiscard]] std::size_t stride() const { return width_; }
   [[nodiscard]] ChainMemory<double> memory_of(std::size_t lane) const {
     return {at(lane / width_), form_.counts, width_};
   }
@@ -177,8 +184,9 @@ class ChainBatch::Implementation {
   std::size_t size_;
   PlanarChain form_of_;  ///< owns what form_ points to
   ChainForm form_;
-  std::size_t block_size_;         ///< in numbers
-  Numbers numbers_;                ///< the blocks, and one for the chains with weak motors
+  std::size_t block_size_;  ///< in numbers
+  Numbers numbers_;         ///< the blocks, and one for the chains with weak motors
+  ChainMemory<double> memory_of_first_;
   std::vector<std::size_t> weak_;  ///< chains, in a step
   bool places_are_current_ = true;
 };
@@ -208,6 +216,33 @@ double ChainBatch::motor_torque(std::size_t chain, std::size_t joint) const {
   return implementation_->of(chain, implementation_->memory_of(chain).motor_torque, joint);
 }
 
+void ChainBatch::set_wanted_speeds(std::size_t chain, std::span<const double> signs, std::span<const double> speeds) {
+  double* const wanted = implementation_->first_of(chain, &ChainMemory<double>::wanted_speed);
+  const std::size_t stride = implementation_->stride();
+  for (std::size_t joint = 0; joint < speeds.size(); ++joint) {
+    wanted[joint * stride] = signs[joint] * speeds[joint];
+  }
+}
+
+void ChainBatch::read_joints(std::size_t chain, std::span<const double> signs, std::span<double> angles,
+                             std::span<double> torques) const {
+  const double* const angle = implementation_->first_of(chain, &ChainMemory<double>::joint_angle);
+  const double* const torque = implementation_->first_of(chain, &ChainMemory<double>::motor_torque);
+  const std::size_t stride = implementation_->stride();
+  for (std::size_t joint = 0; joint < angles.size(); ++joint) {
+    angles[joint] = signs[joint] * angle[joint * stride];
+    torques[joint] = signs[joint] * torque[joint * stride];
+  }
+}
+
+void ChainBatch::add_contact_forces(std::size_t chain, std::span<double> sums) const {
+  const double* const force = implementation_->first_of(chain, &ChainMemory<double>::contact_force);
+  const std::size_t stride = implementation_->stride();
+  for (std::size_t link = 0; link < sums.size(); ++link) {
+    sums[link] += force[link * stride];
+  }
+}
+
 Point ChainBatch::center(std::size_t chain) const {
   const ChainMemory<double> memory = implementation_->memory_of(chain);
   return {implementation_->of(chain, memory.center, 0), implementation_->of(chain, memory.center, 1)};
@@ -221,9 +256,11 @@ ChainBatch::LinkPlace ChainBatch::link_place(std::size_t chain, std::size_t link
   for (std::size_t joint = 0; joint < link; ++joint) {
     angle += of(memory.joint_angle, joint);
   }
+  const auto half = sine_cosine<2>(Lanes<2>::number(angle * 0.5));
   return {{of(memory.center, 0) + of(memory.link_position, 2 * link),
            of(memory.center, 1) + of(memory.link_position, 2 * link + 1)},
-          angle};
+          half.sine[0],
+          half.cosine[0]};
 }
 
 ChainBatch::LinkMotion ChainBatch::link_motion(std::size_t chain, std::size_t link) const {

@@ -37,11 +37,19 @@ class ChainBatch {
   void set_max_torque(std::size_t chain, std::size_t joint, double torque);       ///< Nm
   [[nodiscard]] double joint_angle(std::size_t chain, std::size_t joint) const;   ///< rad
   [[nodiscard]] double motor_torque(std::size_t chain, std::size_t joint) const;  ///< Nm, in the last step
-  [[nodiscard]] Point center(std::size_t chain) const;                            ///< of mass
-  /// A link's centre of mass, and the angle by which the link has turned since all angles were 0.
+  // The same for all joints or links of a chain. signs: 1 or -1 by joint; speeds, angles and torques are multiplied by
+  // it.
+  void set_wanted_speeds(std::size_t chain, std::span<const double> signs, std::span<const double> speeds);
+  void read_joints(std::size_t chain, std::span<const double> signs, std::span<double> angles,
+                   std::span<double> torques) const;
+  void add_contact_forces(std::size_t chain, std::span<double> sums) const;  ///< N
+
+  [[nodiscard]] Point center(std::size_t chain) const;  ///< of mass
+  /// A link's centre of mass, and the rotation of the link since all angles were 0.
   struct LinkPlace {
     Point position;
-    double angle;  ///< rad
+    double half_sine;  ///< of half the angle
+    double half_cosine;
   };
   [[nodiscard]] LinkPlace link_place(std::size_t chain, std::size_t link) const;
   /// Of its centre of mass, m/s; and its rotation, rad/s.

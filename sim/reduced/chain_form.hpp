@@ -13,11 +13,12 @@ struct Point {
   bool operator==(const Point&) const = default;
 };
 
-/// A rectangle: its corners in the order in which x turns towards z, and the outward unit normal of each side. Side k
-/// runs from corner k to corner k + 1.
+/// A rectangle.
 struct Rectangle {
-  Point corners[4];
-  Point normals[4];
+  Point center;
+  Point along;               ///< unit vector along its sides of `length`
+  double half_length = 0.0;  ///< m
+  double half_height = 0.0;  ///< m, of the other sides
   bool operator==(const Rectangle&) const = default;
 };
 

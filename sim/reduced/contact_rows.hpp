@@ -57,8 +57,8 @@ class ContactRows {
 
   /// base: in and out, as the unknowns of free joints in the scratch memory.
   void solve(Motion& base) {
-    constexpr int normal_sweeps = 8;
-    constexpr int sweeps = 10;
+    constexpr int normal_sweeps = 4;
+    constexpr int sweeps = 6;
     Motion motion = base;
     for (std::size_t k = 0; k < contacts_; ++k) {
       s_.normal_value[k] = s_.old_normal[k];

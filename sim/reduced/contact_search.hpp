@@ -63,32 +63,21 @@ class ContactSearch {
   }
   /// Of a shape, from the centre.
   [[nodiscard]] Outline<width> outline_of(const ShapeForm& shape) const {
-    Outline<width> outline;
-    for (int k = 0; k < 4; ++k) {
-      outline.corners[k] = position_of(shape.link) + turned_with(shape.link, shape.outline.corners[k]);
-      outline.normals[k] = turned_with(shape.link, shape.outline.normals[k]);
-    }
-    return outline;
+    return {position_of(shape.link) + turned_with(shape.link, shape.outline.center),
+            turned_with(shape.link, shape.outline.along), Lanes<width>::number(shape.outline.half_length),
+            Lanes<width>::number(shape.outline.half_height)};
   }
 
   void search_terrain(std::size_t number) {
     const ShapeForm& shape = form_.shapes[number];
     const Plane<Number> center{m_.center[0], m_.center[1]};
-    const Plane<Number> position = position_of(shape.link) + center;
-    Outline<width> outline;
-    bool has_outline = false;
+    const Outline<width> outline = outline_of(shape);
     for (std::size_t solid = 0; solid < form_.counts.solids; ++solid) {
-      if (!any(is_near(position, shape.radius, form_.terrain[solid]))) {
-        continue;
-      }
-      if (!has_outline) {
-        outline = outline_of(shape);
-        has_outline = true;
-      }
-      Outline<width> ground = in_all_lanes<width>(form_.terrain[solid]);
-      for (Plane<Number>& corner : ground.corners) {
-        corner = corner - center;
-      }
+      const Rectangle& rectangle = form_.terrain[solid];
+      const Outline<width> ground{Plane<Number>{rectangle.center.x - center.x, rectangle.center.z - center.z},
+                                  {Lanes<width>::number(rectangle.along.x), Lanes<width>::number(rectangle.along.z)},
+                                  Lanes<width>::number(rectangle.half_length),
+                                  Lanes<width>::number(rectangle.half_height)};
       Touch<width> touch;
       if (find_touch<width>(outline, ground, touch)) {
         const std::size_t pair = number * form_.counts.solids + solid;
@@ -116,17 +105,6 @@ class ContactSearch {
             static_cast<int>(other.link));
       }
     }
-  }
-
-  /// Whether a circle may reach a solid: whether a side of the solid is farther away than its radius.
-  static Mask is_near(const Plane<Number>& center, double radius, const Rectangle& solid) {
-    Mask near = Lanes<width>::all();
-    for (int k = 0; k < 4; ++k) {
-      const Point& normal = solid.normals[k];
-      const double offset = normal.x * solid.corners[k].x + normal.z * solid.corners[k].z + radius;
-      near &= center.x * normal.x + center.z * normal.z < Lanes<width>::number(offset);
-    }
-    return near;
   }
 
   /// other: -1: the terrain.

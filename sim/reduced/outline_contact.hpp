@@ -6,23 +6,16 @@
 namespace proleg::sim::reduced {
 namespace {  // of each instruction set its own (chain_step.hpp)
 
-/// A Rectangle in each lane.
+/// A Rectangle in each lane, in its place. Its sides are numbered as they follow each other when x turns towards z,
+/// from the one below: 0 below, 1 ahead, 2 above, 3 behind (with `along` ahead). Corner k is at the start of side k.
 template <int width>
 struct Outline {
   using Number = typename Lanes<width>::Number;
-  Plane<Number> corners[4];
-  Plane<Number> normals[4];
+  Plane<Number> center;
+  Plane<Number> along;  ///< unit vector
+  Number half_length;   ///< m, along it
+  Number half_height;   ///< m, across it
 };
-
-template <int width>
-inline Outline<width> in_all_lanes(const Rectangle& rectangle) {
-  Outline<width> outline;
-  for (int k = 0; k < 4; ++k) {
-    outline.corners[k] = {Lanes<width>::number(rectangle.corners[k].x), Lanes<width>::number(rectangle.corners[k].z)};
-    outline.normals[k] = {Lanes<width>::number(rectangle.normals[k].x), Lanes<width>::number(rectangle.normals[k].z)};
-  }
-  return outline;
-}
 
 /// How two outlines touch: where the side of one of them is least deep in the other one, and up to two points of the
 /// other one that are behind this side.
@@ -41,35 +34,42 @@ struct Side {
   using Number = typename Lanes<width>::Number;
   Number distance;       ///< of the other outline's nearest corner from the side, m; negative: behind it
   Plane<Number> normal;  ///< outward
-  Plane<Number> start;
-  Plane<Number> end;
+  Plane<Number> middle;
+  Number half;  ///< m: half its length
 };
+
+/// Half the extent of an outline in a direction, m.
+template <int width>
+inline typename Lanes<width>::Number half_extent(const Outline<width>& outline,
+                                                 const Plane<typename Lanes<width>::Number>& direction) {
+  return magnitude(dot(outline.along, direction)) * outline.half_length +
+         magnitude(cross(outline.along, direction)) * outline.half_height;
+}
 
 /// Whether the other outline is behind all sides in some lane; then also the least deep one.
 template <int width>
 inline bool find_least_deep_side(const Outline<width>& outline, const Outline<width>& other, Side<width>& best) {
   using Number = typename Lanes<width>::Number;
-  for (int k = 0; k < 4; ++k) {
-    const Plane<Number>& normal = outline.normals[k];
-    Number nearest = dot(normal, other.corners[0]);
-    for (int corner = 1; corner < 4; ++corner) {
-      nearest = smaller(nearest, dot(normal, other.corners[corner]));
-    }
-    const Number distance = nearest - dot(normal, outline.corners[k]);
-    const Plane<Number>& end = outline.corners[(k + 1) % 4];
-    if (k == 0) {
-      best = {distance, normal, outline.corners[0], end};
-    } else {
-      const auto is_better = distance > best.distance;
-      best.distance = select(is_better, distance, best.distance);
-      best.normal = select(is_better, normal, best.normal);
-      best.start = select(is_better, outline.corners[k], best.start);
-      best.end = select(is_better, end, best.end);
-    }
-    if (!any(best.distance < 0.0)) {
-      return false;
-    }
+  const Plane<Number> apart = other.center - outline.center;
+  const Plane<Number> up = turned(outline.along);
+  // Of two opposite sides, the one on the side of the other outline is less deep.
+  const Number height = dot(apart, up);
+  const Number above = magnitude(height) - outline.half_height - half_extent<width>(other, up);
+  if (!any(above < 0.0)) {
+    return false;
   }
+  const Number length = dot(apart, outline.along);
+  const Number ahead = magnitude(length) - outline.half_length - half_extent<width>(other, outline.along);
+  if (!any((above < 0.0) & (ahead < 0.0))) {
+    return false;
+  }
+  const auto is_ahead = ahead > above;
+  const auto is_back = select(is_ahead, length, height) < 0.0;
+  best.distance = select(is_ahead, ahead, above);
+  best.normal = select(is_ahead, outline.along, up);
+  best.normal = select(is_back, Plane<Number>{} - best.normal, best.normal);
+  best.middle = outline.center + best.normal * select(is_ahead, outline.half_length, outline.half_height);
+  best.half = select(is_ahead, outline.half_height, outline.half_length);
   return true;
 }
 
@@ -77,35 +77,36 @@ inline bool find_least_deep_side(const Outline<width>& outline, const Outline<wi
 template <int width>
 inline void find_points(const Side<width>& side, const Outline<width>& other, Touch<width>& touch) {
   using Number = typename Lanes<width>::Number;
+  const auto number = [](double value) { return Lanes<width>::number(value); };
   // The side of the other outline that faces this side.
-  Number facing = dot(side.normal, other.normals[0]);
-  Plane<Number> first = other.corners[0];
-  Plane<Number> second = other.corners[1];
-  Number corner = Lanes<width>::number(0.0);
-  for (int k = 1; k < 4; ++k) {
-    const Number candidate = dot(side.normal, other.normals[k]);
-    const auto is_better = candidate < facing;
-    facing = select(is_better, candidate, facing);
-    first = select(is_better, other.corners[k], first);
-    second = select(is_better, other.corners[(k + 1) % 4], second);
-    corner = select(is_better, Lanes<width>::number(k), corner);
-  }
-  const Number next = corner + 1.0;
+  const Plane<Number> up = turned(other.along);
+  const Number with_along = dot(side.normal, other.along);
+  const Number with_up = dot(side.normal, up);
+  const auto is_end = magnitude(with_along) > magnitude(with_up);
+  const auto is_back = select(is_end, with_along, with_up) > 0.0;
+  Plane<Number> normal = select(is_end, other.along, up);
+  normal = select(is_back, Plane<Number>{} - normal, normal);
+  const Number distance = select(is_end, other.half_length, other.half_height);
+  const Number half = select(is_end, other.half_height, other.half_length);
+  const Plane<Number> middle = other.center + normal * distance;
+  const Plane<Number> facing_along = turned(normal);
+  const Plane<Number> first = middle - facing_along * half;
+  const Plane<Number> second = middle + facing_along * half;
+  const Number corner =
+      select(is_end, select(is_back, number(3.0), number(1.0)), select(is_back, number(0.0), number(2.0)));
   touch.corners[0] = corner;
-  touch.corners[1] = select(next > 3.0, Lanes<width>::number(0.0), next);
+  touch.corners[1] = select(corner == 3.0, number(0.0), corner + 1.0);
   // It is cut where this side ends. Along this side the first point is the farther one.
   const Plane<Number> along = turned(side.normal);
-  const Number from = dot(along, first);
-  const Number to = dot(along, second);
-  const Number length = larger(from - to, Lanes<width>::number(1e-12));
-  const Number none = Lanes<width>::number(0.0);
-  const Number whole = Lanes<width>::number(1.0);
-  const Number cut_first = bounded((from - dot(along, side.end)) / length, none, whole);
-  const Number cut_second = bounded((dot(along, side.start) - to) / length, none, whole);
+  const Number from = dot(along, first - side.middle);
+  const Number to = dot(along, second - side.middle);
+  const Number inverse = 1.0 / larger(from - to, number(1e-12));
+  const Number cut_first = bounded((from - side.half) * inverse, number(0.0), number(1.0));
+  const Number cut_second = bounded((-side.half - to) * inverse, number(0.0), number(1.0));
   touch.points[0] = first + (second - first) * cut_first;
   touch.points[1] = second + (first - second) * cut_second;
   for (int point = 0; point < 2; ++point) {
-    touch.depths[point] = dot(side.normal, side.start - touch.points[point]);
+    touch.depths[point] = dot(side.normal, side.middle - touch.points[point]);
   }
 }
 
@@ -119,14 +120,17 @@ inline bool find_touch(const Outline<width>& first, const Outline<width>& second
     return false;
   }
   const auto touching = (of_first.distance < 0.0) & (of_second.distance < 0.0);
+  if (!any(touching)) {
+    return false;
+  }
   // A side of the second outline wins if both are nearly as deep, so the choice does not change with the last bit.
   const auto is_of_first = of_first.distance > of_second.distance * 0.95 + 1e-5;
   find_points<width>(of_second, first, touch);
   touch.normal = of_second.normal;
-  if (any(is_of_first)) {
+  if (any(is_of_first & touching)) {
     Touch<width> other;
     find_points<width>(of_first, second, other);
-    touch.normal = select(is_of_first, Plane<Number>{-of_first.normal.x, -of_first.normal.z}, touch.normal);
+    touch.normal = select(is_of_first, Plane<Number>{} - of_first.normal, touch.normal);
     for (int point = 0; point < 2; ++point) {
       touch.points[point] = select(is_of_first, other.points[point], touch.points[point]);
       touch.depths[point] = select(is_of_first, other.depths[point], touch.depths[point]);

@@ -138,9 +138,9 @@ class Maker {
                  : name + (geometry.shape == Shape::sphere ? " with a sphere" : " with a cylinder"));
     }
     ShapeForm form{link, *outline, 0.0};
-    for (const Point& corner : outline->corners) {
-      form.radius = std::max(form.radius, std::sqrt(corner.x * corner.x + corner.z * corner.z) * (1.0 + 1e-9));
-    }
+    form.radius = rounded(std::hypot(outline->center.x, outline->center.z) +
+                          std::hypot(outline->half_length, outline->half_height)) +
+                  tolerance;
     chain_.shapes.push_back(form);
     half_width_ = std::max(half_width_, half_extent(geometry, pose, chain_.plane.across));
     shape_geometries_.push_back(&geometry);
@@ -178,17 +178,9 @@ class Maker {
     return std::nullopt;
   }
 
-  /// direction: unit vector along the first side.
-  static Rectangle rectangle(const Point& middle, const Point& direction, double half_length, double half_height) {
-    const Point along = rounded(direction);
-    const Point up{-along.z, along.x};
-    const auto corner = [&](double x, double z) {
-      return rounded(Point{middle.x + along.x * x + up.x * z, middle.z + along.z * x + up.z * z});
-    };
-    const double x = half_length;
-    const double z = half_height;
-    return {{corner(-x, -z), corner(x, -z), corner(x, z), corner(-x, z)},
-            {{-up.x, -up.z}, along, up, {-along.x, -along.z}}};
+  /// along: unit vector.
+  static Rectangle rectangle(const Point& center, const Point& along, double half_length, double half_height) {
+    return {rounded(center), rounded(along), rounded(half_length), rounded(half_height)};
   }
 
   void add_joint(const Joint& joint) {
@@ -226,17 +218,8 @@ class Maker {
               : geometry.shape == Shape::sphere ? "a sphere"
                                                 : "a cylinder"));
     }
-    chain_.terrain.push_back(from_uppermost_side(*outline));
+    chain_.terrain.push_back(*outline);
     solid_geometries_.push_back(&geometry);
-  }
-
-  /// The same rectangle. Links are most often above a solid, so that its first side settles that they do not touch.
-  static Rectangle from_uppermost_side(Rectangle rectangle) {
-    const auto* const uppermost = std::ranges::max_element(rectangle.normals, {}, &Point::z);
-    const auto turn = uppermost - std::begin(rectangle.normals);
-    std::rotate(std::begin(rectangle.normals), std::begin(rectangle.normals) + turn, std::end(rectangle.normals));
-    std::rotate(std::begin(rectangle.corners), std::begin(rectangle.corners) + turn, std::end(rectangle.corners));
-    return rectangle;
   }
 
   /// Of an upright box that is turned about the vertical, and under the whole robot: what is under the whole width of

@@ -11,39 +11,51 @@ namespace {
 
 class ReducedWorld final : public World {
  public:
-  ReducedWorld(const RobotModel& robot, const EnvironmentModel& environment, double step_s, std::string file)
-      : robot_(robot),
-        environment_(environment),
-        step_s_(step_s),
-        file_(std::move(file)),
-        chain_(make_planar_chain(robot_, environment_, step_s_, file_)),
-        batch_(std::make_unique<ChainBatch>(std::span(&chain_, 1))) {
+  /// batch: of which `chain` is number `lane`.
+  ReducedWorld(const WorldInput& input, PlanarChain chain, std::shared_ptr<ChainBatch> batch, std::size_t lane)
+      : robot_(*input.robot),
+        environment_(*input.environment),
+        step_s_(input.step_s),
+        file_(input.file),
+        chain_(std::move(chain)),
+        batch_(std::move(batch)),
+        lane_(lane) {
     for (std::size_t joint = 0; joint < robot_.joints.size(); ++joint) {
       set_joint_torque(joint, robot_.joints[joint].max_torque);
     }
   }
 
   void set_joint_speed(std::size_t joint, double speed) override {
-    batch_->set_wanted_speed(0, joint, chain_.joint_signs[joint] * speed);
+    batch_->set_wanted_speed(lane_, joint, chain_.joint_signs[joint] * speed);
   }
-  void set_joint_torque(std::size_t joint, double torque) override { batch_->set_max_torque(0, joint, torque); }
+  void set_joint_speeds(std::span<const double> speeds) override {
+    batch_->set_wanted_speeds(lane_, chain_.joint_signs, speeds);
+  }
+  void read_joints(std::span<double> angles, std::span<double> torques) const override {
+    batch_->read_joints(lane_, chain_.joint_signs, angles, torques);
+  }
+  void add_contact_forces(std::span<double> sums) const override { batch_->add_contact_forces(lane_, sums); }
+  void set_joint_torque(std::size_t joint, double torque) override { batch_->set_max_torque(lane_, joint, torque); }
 
   void move_robot(const Pose& motion) override {
-    // A place that the engine refuses leaves all as it is.
     const Eigen::Vector3d center = motion * center_of_mass();
+    // A place that the engine refuses leaves all as it is.
     EnvironmentModel environment = environment_;
     environment.robot_pose = motion * environment_.robot_pose;
     PlanarChain chain = make_planar_chain(robot_, environment, step_s_, file_);
-    auto batch = std::make_unique<ChainBatch>(std::span(&chain, 1));
-    batch->place_like(0, *batch_, 0, chain.plane.project(center));
+    auto moved = std::make_shared<ChainBatch>(std::span(&chain, 1));
+    moved->place_like(0, *batch_, lane_, chain.plane.project(center));
     environment_ = std::move(environment);
     chain_ = std::move(chain);
-    batch_ = std::move(batch);
+    batch_ = std::move(moved);
+    lane_ = 0;
   }
 
   void step() override {
-    batch_->step();
-    if (batch_->failed(0)) {
+    if (batch_->size() == 1) {
+      batch_->step();
+    }
+    if (batch_->failed(lane_)) {
       throw PhysicsError(
           "the simulation became unstable: the position of a link is no longer a finite number, or it has "
           "more contacts than the engine keeps");
@@ -51,20 +63,21 @@ class ReducedWorld final : public World {
   }
 
   [[nodiscard]] double joint_angle(std::size_t joint) const override {
-    return chain_.joint_signs[joint] * batch_->joint_angle(0, joint);
+    return chain_.joint_signs[joint] * batch_->joint_angle(lane_, joint);
   }
   [[nodiscard]] double motor_torque(std::size_t joint) const override {
-    return chain_.joint_signs[joint] * batch_->motor_torque(0, joint);
+    return chain_.joint_signs[joint] * batch_->motor_torque(lane_, joint);
   }
   [[nodiscard]] Pose link_pose(std::size_t link) const override {
-    const ChainBatch::LinkPlace place = batch_->link_place(0, link);
+    const ChainBatch::LinkPlace place = batch_->link_place(lane_, link);
+    const Eigen::Vector3d turn = -place.half_sine * chain_.plane.across;
     const Eigen::Quaterniond orientation =
-        Eigen::AngleAxisd(-place.angle, chain_.plane.across) * chain_.start_orientations[link];
+        Eigen::Quaterniond(place.half_cosine, turn.x(), turn.y(), turn.z()) * chain_.start_orientations[link];
     return {chain_.plane.lift(place.position) - orientation * chain_.mass_centers[link], orientation};
   }
   [[nodiscard]] bool is_slower_than(double speed, double rotation) const override {
     for (std::size_t link = 0; link < robot_.links.size(); ++link) {
-      const ChainBatch::LinkMotion motion = batch_->link_motion(0, link);
+      const ChainBatch::LinkMotion motion = batch_->link_motion(lane_, link);
       if (motion.velocity.x * motion.velocity.x + motion.velocity.z * motion.velocity.z >= speed * speed ||
           motion.rotation * motion.rotation >= rotation * rotation) {
         return false;
@@ -72,15 +85,15 @@ class ReducedWorld final : public World {
     }
     return true;
   }
-  [[nodiscard]] Eigen::Vector3d center_of_mass() const override { return chain_.plane.lift(batch_->center(0)); }
-  [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const override { return batch_->pressed(0, link); }
-  [[nodiscard]] double contact_force(std::size_t link) const override { return batch_->contact_force(0, link); }
-  [[nodiscard]] std::size_t contact_count() const override { return batch_->contact_count(0); }
-  [[nodiscard]] ContactSliding contact_sliding() const override { return batch_->sliding(0); }
+  [[nodiscard]] Eigen::Vector3d center_of_mass() const override { return chain_.plane.lift(batch_->center(lane_)); }
+  [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const override { return batch_->pressed(lane_, link); }
+  [[nodiscard]] double contact_force(std::size_t link) const override { return batch_->contact_force(lane_, link); }
+  [[nodiscard]] std::size_t contact_count() const override { return batch_->contact_count(lane_); }
+  [[nodiscard]] ContactSliding contact_sliding() const override { return batch_->sliding(lane_); }
   [[nodiscard]] std::optional<double> lowest_ground() const override { return chain_.lowest_ground; }
   [[nodiscard]] std::size_t solver_messages() const override { return 0; }
   [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return {}; }
-  [[nodiscard]] std::vector<double> state() const override { return batch_->state(0); }
+  [[nodiscard]] std::vector<double> state() const override { return batch_->state(lane_); }
 
  private:
   RobotModel robot_;
@@ -88,14 +101,50 @@ class ReducedWorld final : public World {
   double step_s_;
   std::string file_;
   PlanarChain chain_;
-  std::unique_ptr<ChainBatch> batch_;
+  std::shared_ptr<ChainBatch> batch_;
+  std::size_t lane_;
 };
 
 }  // namespace
 
 std::unique_ptr<World> make_reduced_world(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
                                           const std::string& file) {
-  return std::make_unique<ReducedWorld>(robot, environment, step_s, file);
+  const WorldInput input{&robot, &environment, step_s, file};
+  return std::move(ReducedWorlds(std::span(&input, 1)).take_worlds().front());
+}
+
+ReducedWorlds::ReducedWorlds(std::span<const WorldInput> inputs, const ChainKernel* kernel) : worlds_(inputs.size()) {
+  std::vector<PlanarChain> chains;
+  for (const WorldInput& input : inputs) {
+    chains.push_back(make_planar_chain(*input.robot, *input.environment, input.step_s, input.file));
+  }
+  for (std::size_t first = 0; first < chains.size(); ++first) {
+    if (worlds_[first]) {
+      continue;
+    }
+    std::vector<PlanarChain> alike;
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = first; i < chains.size(); ++i) {
+      if (!worlds_[i] && chains[i].has_form_of(chains[first])) {
+        alike.push_back(chains[i]);
+        numbers.push_back(i);
+      }
+    }
+    const auto batch = std::make_shared<ChainBatch>(alike, kernel);
+    for (std::size_t lane = 0; lane < numbers.size(); ++lane) {
+      worlds_[numbers[lane]] =
+          std::make_unique<ReducedWorld>(inputs[numbers[lane]], std::move(alike[lane]), batch, lane);
+    }
+    batches_.push_back(batch);
+  }
+}
+
+void ReducedWorlds::step() {
+  for (const std::shared_ptr<ChainBatch>& batch : batches_) {
+    if (batch->size() > 1) {
+      batch->step();  // a world that is alone makes its own step
+    }
+  }
 }
 
 }  // namespace proleg::sim::reduced

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/environment/environment_model.hpp"
@@ -16,5 +18,30 @@ namespace proleg::sim::reduced {
 /// engine does not have what robot or environment needs.
 [[nodiscard]] std::unique_ptr<World> make_reduced_world(const RobotModel& robot, const EnvironmentModel& environment,
                                                         double step_s, const std::string& file);
+
+/// What a world is made from.
+struct WorldInput {
+  const RobotModel* robot;
+  const EnvironmentModel* environment;
+  double step_s;
+  std::string file;  ///< that messages name
+};
+
+/// Worlds that make their steps together, as fast as the processor's vectors allow. Each gives the same bits as alone.
+class ReducedWorlds {
+ public:
+  /// inputs: at least one. kernel: as ChainBatch has it. Throws InputError as make_reduced_world.
+  explicit ReducedWorlds(std::span<const WorldInput> inputs, const ChainKernel* kernel = nullptr);
+
+  /// Gives the worlds away, in the order of the inputs. Then they are used between the steps; World::step of each of
+  /// them makes no step but throws PhysicsError if the world broke down. They cannot be moved.
+  [[nodiscard]] std::vector<std::unique_ptr<World>> take_worlds() { return std::move(worlds_); }
+  /// All worlds. Those that broke down have no effect on the others.
+  void step();
+
+ private:
+  std::vector<std::shared_ptr<ChainBatch>> batches_;  ///< one for each form of chain
+  std::vector<std::unique_ptr<World>> worlds_;
+};
 
 }  // namespace proleg::sim::reduced

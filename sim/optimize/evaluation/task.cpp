@@ -59,6 +59,7 @@ void simulate(const Experiment& experiment, const sim::Scenario& scenario, std::
   const std::uint32_t ticks = sim::tick_count(scenario);
   const std::optional<std::uint32_t> check_tick = racing_tick(experiment, hopeless_below, ticks);
   sim::Simulation simulation(scenario);
+  simulation.leave_out_hashes();
   try {
     while (simulation.tick() < ticks && !result.given_up) {
       simulation.advance();

@@ -237,7 +237,8 @@ TEST_F(ChainBatchTest, AChainIsPlacedAtRestLikeAnother) {
   for (std::size_t link = 0; link < links; ++link) {
     const ChainBatch::LinkPlace expected = moved.link_place(1, link);
     const ChainBatch::LinkPlace place = placed.link_place(1, link);
-    EXPECT_EQ(place.angle, expected.angle);
+    EXPECT_EQ(place.half_sine, expected.half_sine);
+    EXPECT_EQ(place.half_cosine, expected.half_cosine);
     EXPECT_NEAR(place.position.x - 3.0, expected.position.x - center.x, 1e-12);
     EXPECT_NEAR(place.position.z - 4.0, expected.position.z - center.z, 1e-12);
     const ChainBatch::LinkMotion motion = placed.link_motion(1, link);

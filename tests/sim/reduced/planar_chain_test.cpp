@@ -133,16 +133,12 @@ TEST(PlanarChain, ATurnedFloorEndsWhereItIsNoLongerUnderTheWholeRobot) {
   c.environment.robot_pose.orientation = turn(30, Eigen::Vector3d::UnitZ());
   const PlanarChain chain = planar(c.robot, c.environment);
   ASSERT_EQ(chain.terrain.size(), 1U);
-  double from = 0.0;
-  double to = 0.0;
-  for (const Point& corner : chain.terrain[0].corners) {
-    from = std::min(from, corner.x);
-    to = std::max(to, corner.x);
-    EXPECT_TRUE(corner.z == 0.0 || corner.z == -1.0) << corner.z;
-  }
-  const double expected = (2.0 - 0.02 * 0.5) / std::cos(std::numbers::pi / 6);
-  EXPECT_NEAR(to, expected, 1e-8);
-  EXPECT_NEAR(from, -expected, 1e-8);
+  const Rectangle& floor = chain.terrain[0];
+  EXPECT_EQ(floor.along, (Point{1.0, 0.0}));
+  EXPECT_EQ(floor.center.z, -0.5);
+  EXPECT_EQ(floor.half_height, 0.5);
+  EXPECT_NEAR(floor.center.x, 0.0, 1e-8);
+  EXPECT_NEAR(floor.half_length, (2.0 - 0.02 * 0.5) / std::cos(std::numbers::pi / 6), 1e-8);
 }
 
 bool is_on_the_grid(double value, int bits) {
@@ -165,15 +161,16 @@ TEST(PlanarChain, NumbersAreWholeMultiplesOfPowersOfTwo) {
       expect_point(point);
     }
   }
+  const auto expect_rectangle = [&](const Rectangle& rectangle) {
+    expect_point(rectangle.center);
+    expect_point(rectangle.along);
+    expect_point({rectangle.half_length, rectangle.half_height});
+  };
   for (const ShapeForm& shape : chain.shapes) {
-    for (const Point& corner : shape.outline.corners) {
-      expect_point(corner);
-    }
+    expect_rectangle(shape.outline);
   }
   for (const Rectangle& solid : chain.terrain) {
-    for (const Point& corner : solid.corners) {
-      expect_point(corner);
-    }
+    expect_rectangle(solid);
   }
   expect_point(chain.gravity);
   expect_point(chain.first_link);

@@ -577,13 +577,13 @@ class ChainStep {
     }
   }
 
-  /// A number that is not finite makes the difference of the sum from itself not 0.
+  /// A number that is not finite makes the product of the sum with 0 not 0.
   void note_failures(Mask done) {
     Number sum = m_.center[0] + m_.center[1] + m_.angle[0];
     for (std::size_t j = 0; j < joints_; ++j) {
       sum += m_.joint_angle[j];
     }
-    put_where(done & ~(sum - sum == 0.0), m_.failed[0], Lanes<width>::number(1.0));
+    put_where(done & ~(sum * 0.0 == 0.0), m_.failed[0], Lanes<width>::number(1.0));
   }
 
   const ChainForm& form_;

@@ -288,11 +288,6 @@ class Maker {
 
 }  // namespace
 
-bool PlanarChain::has_form_of(const PlanarChain& other) const {
-  return links == other.links && joints == other.joints && shapes == other.shapes && terrain == other.terrain &&
-         self_collision == other.self_collision && step_s == other.step_s;
-}
-
 PlanarChain make_planar_chain(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
                               const std::string& file) {
   return Maker(robot, environment, step_s, file).make();

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "sim/physics/physics_error.hpp"
+#include "sim/reduced/planar_chain.hpp"
 
 namespace proleg::sim::reduced {
 namespace {

@@ -14,6 +14,9 @@
 
 namespace proleg::sim::reduced {
 
+/// Changes when the engine gives other bits for the same world.
+inline constexpr int engine_version = 1;
+
 /// A world in the reduced engine. file: that messages name. step_s: length of a step, above 0. Throws InputError if the
 /// engine does not have what robot or environment needs.
 [[nodiscard]] std::unique_ptr<World> make_reduced_world(const RobotModel& robot, const EnvironmentModel& environment,

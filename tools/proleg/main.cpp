@@ -32,6 +32,7 @@ constexpr std::array subcommands{
     Subcommand{"hil", "run a scenario with the program of the modules on a simulated bus"},
     Subcommand{"faults", "list what can be made to fail in a run of hil, or write a schedule of it"},
     Subcommand{"replay", "recompute the gait of a recording and compare it bit for bit"},
+    Subcommand{"receipt", "state a run in one line that another machine can verify"},
     Subcommand{"export", "write a recording as a tab-separated table"},
     Subcommand{"plot", "draw joint angles, contacts and path of a recording"},
     Subcommand{"optimise", "search for the parameters of a gait"},

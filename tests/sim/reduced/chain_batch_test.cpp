@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "sim/reduced/chain_kernel.hpp"
+#include "sim/reduced/planar_chain.hpp"
 #include "tests/sim/physics/small_world.hpp"
 #include "tests/support/from_environment.hpp"
 

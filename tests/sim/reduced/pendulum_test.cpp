@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "sim/reduced/chain_batch.hpp"
+#include "sim/reduced/planar_chain.hpp"
 #include "tests/sim/physics/small_world.hpp"
 
 namespace proleg::sim::reduced {

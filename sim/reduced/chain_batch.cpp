@@ -318,6 +318,8 @@ void ChainBatch::place_like(std::size_t chain, const ChainBatch& other, std::siz
   implementation_->of(chain, memory.angle, 0) = other.implementation_->of(other_chain, from.angle, 0);
   for (std::size_t joint = 0; joint < implementation_->counts().joints; ++joint) {
     implementation_->of(chain, memory.joint_angle, joint) = other.joint_angle(other_chain, joint);
+    implementation_->of(chain, memory.wanted_speed, joint) =
+        other.implementation_->of(other_chain, from.wanted_speed, joint);
     implementation_->of(chain, memory.max_torque, joint) =
         other.implementation_->of(other_chain, from.max_torque, joint);
   }

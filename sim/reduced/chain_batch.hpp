@@ -69,7 +69,8 @@ class ChainBatch {
   /// All numbers on which the next steps depend, but contacts.
   [[nodiscard]] std::vector<double> state(std::size_t chain) const;
 
-  /// Puts a chain at rest where another one is: its joints have the same angles; its centre of mass is given.
+  /// Puts a chain at rest where another one is: its joints have the same angles and their motors the
+  /// same wanted speeds and torques; its centre of mass is given.
   void place_like(std::size_t chain, const ChainBatch& other, std::size_t other_chain, const Point& center);
 
  private:

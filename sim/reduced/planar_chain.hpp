@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,7 @@ struct PlanarChain : ChainModel {
   std::vector<double> joint_signs;                     ///< 1, or -1 where the axis of a joint points the other way
   std::vector<Eigen::Quaterniond> start_orientations;  ///< of the links, in the world
   std::vector<Eigen::Vector3d> mass_centers;           ///< in the frames of the links
+  std::optional<double> lowest_ground;                 ///< m: of the whole environment, also beside the robot's way
 };
 
 /// Throws InputError if the engine does not have what the robot or the environment needs. file: that the message names.

@@ -1,9 +1,8 @@
 #include "sim/reduced/reduced_world.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "sim/physics/physics_error.hpp"
 #include "sim/reduced/planar_chain.hpp"
@@ -25,7 +24,6 @@ class ReducedWorld final : public World {
     for (std::size_t joint = 0; joint < robot_.joints.size(); ++joint) {
       set_joint_torque(joint, robot_.joints[joint].max_torque);
     }
-    find_lowest_ground();
   }
 
   void set_joint_speed(std::size_t joint, double speed) override {
@@ -42,13 +40,16 @@ class ReducedWorld final : public World {
 
   void move_robot(const Pose& motion) override {
     const Eigen::Vector3d center = motion * center_of_mass();
-    environment_.robot_pose = motion * environment_.robot_pose;
-    chain_ = make_planar_chain(robot_, environment_, step_s_, file_);
-    auto moved = std::make_shared<ChainBatch>(std::span(&chain_, 1));
-    moved->place_like(0, *batch_, lane_, chain_.plane.project(center));
+    // A place that the engine refuses leaves all as it is.
+    EnvironmentModel environment = environment_;
+    environment.robot_pose = motion * environment_.robot_pose;
+    PlanarChain chain = make_planar_chain(robot_, environment, step_s_, file_);
+    auto moved = std::make_shared<ChainBatch>(std::span(&chain, 1));
+    moved->place_like(0, *batch_, lane_, chain.plane.project(center));
+    environment_ = std::move(environment);
+    chain_ = std::move(chain);
     batch_ = std::move(moved);
     lane_ = 0;
-    find_lowest_ground();
   }
 
   void step() override {
@@ -102,21 +103,12 @@ class ReducedWorld final : public World {
     }
     return energy;
   }
-  [[nodiscard]] std::optional<double> lowest_ground() const override { return lowest_ground_; }
+  [[nodiscard]] std::optional<double> lowest_ground() const override { return chain_.lowest_ground; }
   [[nodiscard]] std::size_t solver_messages() const override { return 0; }
   [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return {}; }
   [[nodiscard]] std::vector<double> state() const override { return batch_->state(lane_); }
 
  private:
-  void find_lowest_ground() {
-    lowest_ground_.reset();
-    for (const Rectangle& solid : chain_.terrain) {
-      const double lowest =
-          solid.center.z - std::abs(solid.along.z) * solid.half_length - std::abs(solid.along.x) * solid.half_height;
-      lowest_ground_ = std::min(lowest_ground_.value_or(lowest), lowest);
-    }
-  }
-
   RobotModel robot_;
   EnvironmentModel environment_;  ///< with the robot's pose after the moves so far
   double step_s_;
@@ -124,7 +116,6 @@ class ReducedWorld final : public World {
   PlanarChain chain_;
   std::shared_ptr<ChainBatch> batch_;
   std::size_t lane_;
-  std::optional<double> lowest_ground_;
 };
 
 }  // namespace

@@ -43,14 +43,24 @@ void SimulationBatch::for_all(const Do& act) {
 }
 
 void SimulationBatch::advance() {
-  for_all([](Simulation& simulation) { simulation.begin_tick(); });
+  for_all([](Simulation& simulation) {
+    simulation.begin_tick();
+    simulation.begin_step(0);
+  });
   const std::uint32_t steps = members_.front().simulation->plant().steps_per_tick();
   for (std::uint32_t step = 0; step < steps; ++step) {
-    for_all([step](Simulation& simulation) { simulation.begin_step(step); });
     worlds_.step();
-    for_all([](Simulation& simulation) { simulation.finish_step(); });
+    const bool is_last = step + 1 == steps;
+    // A simulation ends its step and begins the next one while its numbers are in the cache.
+    for_all([&](Simulation& simulation) {
+      simulation.finish_step();
+      if (is_last) {
+        simulation.end_tick();
+      } else {
+        simulation.begin_step(step + 1);
+      }
+    });
   }
-  for_all([](Simulation& simulation) { simulation.end_tick(); });
 }
 
 }  // namespace proleg::sim

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <numeric>
+#include <span>
 
 #include "memory_files.hpp"
 #include "shared/computer/errors/input_error.hpp"
@@ -130,18 +130,20 @@ TEST(Sweep, RefusesAnOverrideOfWhatItSweeps) {
 TEST(Sweep, StatesTheCommandThatRepeatsIt) {
   Sweep sweep = sweep_over({"amplitude=10:20:5", "friction=0.1:0.2:0.1"}, {"frequency=2", "phase_difference=3@5"});
   EXPECT_EQ(fixed_options(sweep), "--set frequency=2 --set phase_difference=3@5 --seconds 2");
-  sweep.scenario.overrides = {7, 0.25, Eigen::Vector2d(1.0, -2.5), 0.5, -30.0};
+  sweep.scenario.overrides = {sim::PhysicsEngine::reduced, 7, 0.25, Eigen::Vector2d(1.0, -2.5), 0.5, -30.0};
   EXPECT_EQ(command_of(sweep),
             "proleg sweep top.xml --over amplitude=10:20:5 --over friction=0.1:0.2:0.1 --set frequency=2 --set "
-            "phase_difference=3@5 --seconds 2 --seed 7 --friction 0.25 --at 1,-2.5,0.5 --heading -30");
+            "phase_difference=3@5 --seconds 2 --engine reduced --seed 7 --friction 0.25 --at 1,-2.5,0.5 --heading -30");
 }
 
 /// Answers in the opposite order of the tasks, two at a time.
 class BackwardWorkers final : public Workers {
  public:
   [[nodiscard]] std::uint32_t count() const override { return 2; }
-  [[nodiscard]] std::uint32_t idle() const override { return 2 - static_cast<std::uint32_t>(tasks_.size()); }
-  void start(std::uint64_t ticket, const Task& task) override { tasks_.emplace_back(ticket, task); }
+  [[nodiscard]] std::uint32_t idle() const override {
+    return 2 - std::min(2U, static_cast<std::uint32_t>(tasks_.size()));
+  }
+  void start(std::span<const TicketedTask> batch) override { tasks_.insert(tasks_.end(), batch.begin(), batch.end()); }
   [[nodiscard]] std::optional<Done> wait(std::chrono::milliseconds /*timeout*/) override {
     const auto [ticket, task] = tasks_.back();
     tasks_.pop_back();
@@ -152,7 +154,7 @@ class BackwardWorkers final : public Workers {
   [[nodiscard]] std::vector<std::string> messages() override { return {}; }
 
  private:
-  std::deque<std::pair<std::uint64_t, Task>> tasks_;
+  std::vector<TicketedTask> tasks_;
 };
 
 TEST(Sweep, ResultsAreInTheOrderOfTheCombinations) {
@@ -177,12 +179,33 @@ TEST(Sweep, AnInterruptionLeavesWhatIsDone) {
   EXPECT_TRUE(std::ranges::is_sorted(runs, {}, &SweepRun::number));
 }
 
+TrialResult run_combination(const Sweep& sweep, const Candidate& combination) {
+  const Task task{0, 0, 0, combination, {}};
+  return run_combinations(sweep, {&task, 1}).front();
+}
+
 TEST(Sweep, ACombinationIsSimulatedUpToItsEnd) {
   const TrialResult result = run_combination(sweep_over({"amplitude=20"}), {0});
   EXPECT_EQ(result.failure, "");
   EXPECT_DOUBLE_EQ(result.simulated_s, 2.0);
   EXPECT_TRUE(std::isfinite(result.measures[sim::Measure::distance]));
   EXPECT_EQ(result.limited_joints, 0U);
+}
+
+TEST(Sweep, GivesABatchTheResultsOfSingleRuns) {
+  Sweep sweep = sweep_over({"amplitude=10:40:10", "seed=1:2"});
+  sweep.scenario.environment.engine = sim::PhysicsEngine::reduced;
+  std::vector<Task> tasks;
+  for (std::uint64_t i = 0; i < sweep.size(); ++i) {
+    tasks.push_back({0, i, 0, sweep.combination(i), {}});
+  }
+  const std::vector<TrialResult> together = run_combinations(sweep, tasks);
+  ASSERT_EQ(together.size(), 8U);
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    EXPECT_EQ(together[i].measures[sim::Measure::distance],
+              run_combination(sweep, tasks[i].candidate).measures[sim::Measure::distance]);
+  }
+  EXPECT_NE(together[0].measures[sim::Measure::distance], together[2].measures[sim::Measure::distance]);
 }
 
 TEST(Sweep, CountsTheJointsWhoseServosCannotFollow) {

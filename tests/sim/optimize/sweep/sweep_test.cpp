@@ -11,6 +11,8 @@
 
 #include "memory_files.hpp"
 #include "shared/computer/errors/input_error.hpp"
+#include "sim/scenario/reader.hpp"
+#include "tests/support/files.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace proleg::optimize {
@@ -193,8 +195,13 @@ TEST(Sweep, ACombinationIsSimulatedUpToItsEnd) {
 }
 
 TEST(Sweep, GivesABatchTheResultsOfSingleRuns) {
-  Sweep sweep = sweep_over({"amplitude=10:40:10", "seed=1:2"});
-  sweep.scenario.environment.engine = sim::PhysicsEngine::reduced;
+  sim::DiskFiles files;
+  sim::Scenario scenario = sim::read_scenario(
+      std::filesystem::path(source_path("/sim/scenarios/travelling_wave/uniform.simulation.xml")), files);
+  scenario.duration_s = 0.5;
+  scenario.environment.engine = sim::PhysicsEngine::reduced;
+  const Sweep sweep =
+      read_sweep(std::move(scenario), std::vector<std::string>{"amplitude=10:40:10", "friction=0.2:0.3:0.1"});
   std::vector<Task> tasks;
   for (std::uint64_t i = 0; i < sweep.size(); ++i) {
     tasks.push_back({0, i, 0, sweep.combination(i), {}});

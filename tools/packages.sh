@@ -26,6 +26,7 @@ test_packages=(
   openssl           # certificates
   strace            # shows what a test reads
   qemu-system-arm   # another model of the CPU, to compare with
+  g++-aarch64-linux-gnu qemu-user  # another processor, which must compute the same
   libbenchmark-dev libmujoco-dev                       # benchmarks
   libopenmpi-dev libboost-mpi-dev openmpi-bin          # the optimiser on a cluster
 )

@@ -284,6 +284,7 @@ class HardwareLoop::Implementation {
     }
     report_.setpoint_hash.append(values_.setpoints());
     plant_ticks_.end(now);
+    report_.world_hash.append(plant_.world());
   }
 
   void follow_reference() {
@@ -378,6 +379,7 @@ void HardwareLoop::finish_watch() { implementation_->finish_watch(); }
 std::optional<std::uint32_t> HardwareLoop::first_fault_tick() const { return implementation_->first_fault_tick(); }
 const ValueHash& HardwareLoop::setpoint_hash() const { return implementation_->report().setpoint_hash; }
 const ValueHash& HardwareLoop::servo_hash() const { return implementation_->report().servo_hash; }
+std::optional<std::string> HardwareLoop::world_hash() const { return implementation_->report().world_hash.hex(); }
 std::uint64_t HardwareLoop::differences() const { return implementation_->report().differences; }
 std::uint64_t HardwareLoop::differences(unsigned joint) const {
   return implementation_->report().differences_of[joint];

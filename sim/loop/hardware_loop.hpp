@@ -82,6 +82,8 @@ class HardwareLoop {
 
   [[nodiscard]] const ValueHash& setpoint_hash() const;
   [[nodiscard]] const ValueHash& servo_hash() const;
+  /// Of the world after all ticks; nothing if its engine does not give the same on every machine.
+  [[nodiscard]] std::optional<std::string> world_hash() const;
   /// Set-points and servo commands that differ from the gait in memory, so far, and the first of them.
   [[nodiscard]] std::uint64_t differences() const;
   /// The same for one joint.

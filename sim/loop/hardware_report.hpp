@@ -9,6 +9,7 @@
 #include "shared/computer/hash/value_hash.hpp"
 #include "shared/kernel/kernel.hpp"
 #include "sim/loop/difference.hpp"
+#include "sim/loop/world_hash.hpp"
 
 namespace proleg::sim {
 
@@ -36,6 +37,7 @@ struct ModuleProblem {
 struct HardwareReport {
   ValueHash setpoint_hash;
   ValueHash servo_hash;
+  WorldHash world_hash;
   std::uint64_t differences = 0;                           ///< against the reference gait
   std::array<std::uint64_t, max_joints> differences_of{};  ///< by joint
   std::optional<Difference> first_difference;

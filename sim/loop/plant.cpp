@@ -48,6 +48,7 @@ Plant::Plant(const Scenario& scenario, std::unique_ptr<World> world)
       world_(world ? std::move(world) : make_world(scenario)),
       steps_per_tick_(static_cast<std::uint32_t>(std::lround(scenario.kernel.tick_period_us * 1e-6 / scenario.step_s))),
       start_(world_->center_of_mass()),
+      start_energy_(world_->energy()),
       center_before_(start_),
       meter_(scenario.robot, scenario.environment, start_, scenario.step_s, scenario.kernel.tick_period_us * 1e-6),
       latency_steps_(
@@ -203,7 +204,7 @@ void Plant::finish_step() {
   }
   world_->add_contact_forces(contact_force_sums_);
   const ContactSliding sliding = world_->contact_sliding();
-  meter_.add_contacts(sliding.normal_force, sliding.force_times_speed);
+  meter_.add_contacts(sliding.normal_force, sliding.force_times_speed, sliding.friction_power);
   contact_sum_ += world_->contact_count();
   ++steps_;
 }
@@ -290,6 +291,12 @@ firmware::ServoReadings Plant::servo_readings(std::size_t joint) const {
 double Plant::displacement() const {
   const Eigen::Vector3d center = world_->center_of_mass();
   return ((unmoved_ ? *unmoved_ * center : center) - start_).head<2>().norm();
+}
+
+Plant::EnergyBalance Plant::energy_balance() const {
+  EnergyBalance balance{meter_.motor_work(), meter_.friction_work(), world_->energy() - start_energy_, 0.0};
+  balance.unexplained = balance.stored - balance.motors + balance.friction;
+  return balance;
 }
 
 double Plant::mean_contacts() const {

@@ -85,6 +85,16 @@ class Plant {
   [[nodiscard]] double displacement() const;
   /// The measures of the run so far (sim/measure/gait_meter.hpp).
   [[nodiscard]] const GaitMeter& meter() const { return meter_; }
+  /// Where the energy went since the start, in J. Only without moves by hand.
+  struct EnergyBalance {
+    double motors;    ///< that they gave
+    double friction;  ///< that it took
+    double stored;    ///< now in motion and height, more than at the start
+    /// stored - motors + friction: what contacts and joints gave beside. It is negative where links strike the ground,
+    /// and positive where the engine pushes links apart that are in each other.
+    double unexplained;
+  };
+  [[nodiscard]] EnergyBalance energy_balance() const;
   /// Contact points in a physics step, on average.
   [[nodiscard]] double mean_contacts() const;
   [[nodiscard]] const World& world() const { return *world_; }
@@ -118,6 +128,7 @@ class Plant {
   bool is_at_rest_ = false;
   std::uint64_t disturbed_at_ = 0;  ///< step at which something moved, or a servo got another pulse
   Eigen::Vector3d start_;
+  double start_energy_;  ///< J
   Eigen::Vector3d center_before_;
   std::optional<Pose> unmoved_;           ///< from the world to where the robot would be without moves by hand
   std::vector<Pose> unmoved_link_poses_;  ///< of links, only with moves

@@ -1,6 +1,5 @@
 #include "sim/loop/simulation.hpp"
 
-#include <bit>
 #include <utility>
 
 #include "sim/loop/robot_placement.hpp"
@@ -69,16 +68,7 @@ const Change* Simulation::begin_tick() {
 void Simulation::end_tick() {
   pulse_player_.end_tick();
   if (has_hashes_) {
-    hash_world();
-  }
-}
-
-void Simulation::hash_world() {
-  for (const double number : plant_.world().state()) {
-    has_world_hash_ = true;
-    const auto bits = std::bit_cast<std::uint64_t>(number);
-    world_hash_.append(static_cast<std::int32_t>(bits));
-    world_hash_.append(static_cast<std::int32_t>(bits >> 32U));
+    world_hash_.append(plant_.world());
   }
 }
 

@@ -13,6 +13,7 @@
 #include "sim/loop/pulse_player.hpp"
 #include "sim/loop/servo_pulses.hpp"
 #include "sim/loop/touch_inputs.hpp"
+#include "sim/loop/world_hash.hpp"
 #include "sim/measure/gait_meter.hpp"
 #include "sim/measure/measure.hpp"
 #include "sim/record/recorder.hpp"
@@ -77,13 +78,10 @@ class Simulation {
   [[nodiscard]] const ValueHash& setpoint_hash() const { return setpoint_hash_; }
   [[nodiscard]] const ValueHash& servo_hash() const { return servo_hash_; }
   /// Hash of the states of the world after all ticks; nothing if its engine does not give the same on every machine.
-  [[nodiscard]] std::optional<std::string> world_hash() const {
-    return has_world_hash_ ? std::optional(world_hash_.hex()) : std::nullopt;
-  }
+  [[nodiscard]] std::optional<std::string> world_hash() const { return world_hash_.hex(); }
 
  private:
   const Change* apply_changes();
-  void hash_world();
   Simulation(const Scenario& scenario, const Losses* losses, std::unique_ptr<World> world);
 
   const Scenario& scenario_;
@@ -102,8 +100,7 @@ class Simulation {
   bool has_hashes_ = true;
   ValueHash setpoint_hash_;
   ValueHash servo_hash_;
-  ValueHash world_hash_;
-  bool has_world_hash_ = false;
+  WorldHash world_hash_;
 };
 
 }  // namespace proleg::sim

@@ -23,7 +23,8 @@ std::size_t batch_size(const Scenario& scenario) {
   return scenario.environment.engine == PhysicsEngine::reduced && scenario.moves.empty() ? enough : 1;
 }
 
-SimulationBatch::SimulationBatch(std::span<const Scenario* const> scenarios) : worlds_(inputs_of(scenarios)) {
+SimulationBatch::SimulationBatch(std::span<const Scenario* const> scenarios, const reduced::ChainKernel* kernel)
+    : worlds_(inputs_of(scenarios), kernel) {
   std::vector<std::unique_ptr<World>> worlds = worlds_.take_worlds();
   for (std::size_t i = 0; i < scenarios.size(); ++i) {
     members_.push_back({std::make_unique<Simulation>(*scenarios[i], std::move(worlds[i]))});

@@ -21,8 +21,8 @@ namespace proleg::sim {
 class SimulationBatch {
  public:
   /// scenarios: at least one, for the reduced engine, with the same tick and step, without moves. They must outlive
-  /// this.
-  explicit SimulationBatch(std::span<const Scenario* const> scenarios);
+  /// this. kernel: nothing: the fastest one. Throws InputError if the engine does not have what one of them needs.
+  explicit SimulationBatch(std::span<const Scenario* const> scenarios, const reduced::ChainKernel* kernel = nullptr);
 
   [[nodiscard]] std::size_t size() const { return members_.size(); }
   [[nodiscard]] const Simulation& simulation(std::size_t i) const { return *members_[i].simulation; }

@@ -14,6 +14,10 @@ constexpr double min_distance = 1e-3;  // m; below, costs of transport are noise
 /// A direction whose horizontal part is shorter counts as vertical.
 constexpr double vertical = 1e-6;
 
+/// An angle in degrees, or a rate, without the last bits of the system's arctangent: they depend on its version and on
+/// the processor, and a measure is the same on every machine.
+double without_last_bits(double degrees) { return std::round(std::ldexp(degrees, 24)) * 0x1p-24; }
+
 }  // namespace
 
 GaitMeter::GaitMeter(const RobotModel& robot, const EnvironmentModel& environment, const Eigen::Vector3d& start,
@@ -180,11 +184,11 @@ MeasureValues GaitMeter::values(double heading_deg) const {
   values[Measure::speed] = speed_along(heading_deg);
   values[Measure::sideways_speed] = speed_along(90.0);
   constexpr double degrees = 180.0 / std::numbers::pi;
-  values[Measure::yaw_rate] = turn_ * degrees / time_s;
+  values[Measure::yaw_rate] = without_last_bits(turn_ * degrees / time_s);
   values[Measure::mechanical_energy] = mechanical;
   values[Measure::electrical_energy] = electrical;
   if (distance >= min_distance) {
-    values[Measure::heading] = std::atan2(speed_along(90.0), speed_along(0.0)) * degrees;
+    values[Measure::heading] = without_last_bits(std::atan2(speed_along(90.0), speed_along(0.0)) * degrees);
     if (normal_force_sum_ > 0.0) {
       values[Measure::slip] = sliding_sum_ / normal_force_sum_ * time_s / distance;
     }

@@ -45,7 +45,9 @@ class GaitMeter {
     }
     const double speed = (step.angle - step.angle_before) * steps_per_s_;
     // Torque times the mean of the speeds before and after a step is exactly the energy that the step adds.
-    mechanical_power_sum_ += 0.5 * std::max(step.motor_torque * (speed + state.speed), 0.0);
+    const double power = 0.5 * step.motor_torque * (speed + state.speed);
+    motor_power_sum_ += power;
+    mechanical_power_sum_ += std::max(power, 0.0);
     state.speed = speed;
     // Speeds are relative to max_speed, which avoids a division in every step.
     const double current_ma = step.limp ? servo_.idle_ma
@@ -55,8 +57,9 @@ class GaitMeter {
     return current_ma;
   }
   /// Must be called after every step. normal_force: N, sum over the contact points with the environment;
-  /// force_times_speed: N m/s, sum of normal force times sliding speed.
-  void add_contacts(double normal_force, double force_times_speed) {
+  /// force_times_speed: N m/s, sum of normal force times sliding speed; friction_power: W.
+  void add_contacts(double normal_force, double force_times_speed, double friction_power) {
+    friction_power_sum_ += friction_power;
     normal_force_sum_ += normal_force;
     sliding_sum_ += force_times_speed;
   }
@@ -77,6 +80,10 @@ class GaitMeter {
   /// For each link from the head: share of the ticks in which at least one of its sensors was pressed, over a whole
   /// number of strides, or over all ticks if there is no stride. Not a number before the first tick.
   [[nodiscard]] std::vector<double> link_duty_factors() const;
+  /// J, so far: what the motors gave the robot less what they took from it.
+  [[nodiscard]] double motor_work() const { return motor_power_sum_ * step_s_; }
+  /// J, so far: what friction took.
+  [[nodiscard]] double friction_work() const { return friction_power_sum_ * step_s_; }
   /// By joint.
   [[nodiscard]] std::span<const ServoTracking> tracking() const { return tracking_; }
   /// The strides from which measures of strides are computed.
@@ -123,7 +130,9 @@ class GaitMeter {
   bool has_settled_ = false;
   double normal_force_sum_ = 0.0;      ///< N, over all steps
   double sliding_sum_ = 0.0;           ///< N m/s, over all steps
-  double mechanical_power_sum_ = 0.0;  ///< W, over all steps
+  double mechanical_power_sum_ = 0.0;  ///< W, over all steps: what motors give, without what they take
+  double motor_power_sum_ = 0.0;       ///< W, over all steps
+  double friction_power_sum_ = 0.0;    ///< W, over all steps
   double current_sum_ma_ = 0.0;        ///< over all steps
 
   std::uint64_t ticks_ = 0;

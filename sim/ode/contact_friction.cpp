@@ -75,11 +75,12 @@ void ContactFriction::set_surface(dContact& contact, double coefficient, dGeomID
   next_.pair = pair_of(a, b);
   next_.position = position;
   next_.normal = normal;
+  next_.velocity = sliding_velocity(a, b, position, normal);
   if (coefficient <= 0.0) {
     return;
   }
   const Pair* const last = before(a, b);
-  const Eigen::Vector3d velocity = sliding_velocity(a, b, position, normal);
+  const Eigen::Vector3d& velocity = next_.velocity;
   const double speed = velocity.norm();
   if (speed > min_sliding_speed) {
     set_first_axis(contact, velocity);
@@ -102,6 +103,7 @@ void ContactFriction::observe(dJointID joint) {
   point.pair = next_.pair;
   point.position = next_.position;
   point.normal = next_.normal;
+  point.velocity = next_.velocity;
   dJointSetFeedback(joint, &point.feedback);
 }
 
@@ -117,9 +119,12 @@ void ContactFriction::end_step() {
     pair.friction += tangential(force, point.normal);
     const bool with_environment = dGeomGetBody(pair.a) == nullptr || dGeomGetBody(pair.b) == nullptr;
     if (with_environment) {
+      const Eigen::Vector3d velocity = sliding_velocity(pair.a, pair.b, point.position, point.normal);
       sliding_.normal_force += normal_force;
-      sliding_.force_times_speed +=
-          normal_force * sliding_velocity(pair.a, pair.b, point.position, point.normal).norm();
+      sliding_.force_times_speed += normal_force * velocity.norm();
+      // A force times the mean of the speeds before and after a step is the energy that the step takes. Friction takes;
+      // the sign of the engine's force depends on the order of the bodies.
+      sliding_.friction_power += std::abs(force.dot(0.5 * (velocity + point.velocity)));
     }
   }
   pairs_before_.swap(pairs_);

@@ -60,6 +60,7 @@ class ContactFriction {
     std::size_t pair;  ///< in pairs_
     Eigen::Vector3d position;
     Eigen::Vector3d normal;
+    Eigen::Vector3d velocity;  ///< m/s, sliding, before the step
     dJointFeedback feedback;
   };
 

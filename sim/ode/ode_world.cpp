@@ -151,6 +151,32 @@ class OdeWorld final : public World {
   [[nodiscard]] std::size_t contact_count() const override { return contact_count_; }
   [[nodiscard]] double contact_force(std::size_t link) const override { return contact_forces_[link]; }
   [[nodiscard]] ContactSliding contact_sliding() const override { return contact_friction_.sliding(); }
+  [[nodiscard]] double energy() const override {
+    std::array<dReal, 4> gravity{};
+    dWorldGetGravity(world_.get(), gravity.data());
+    double energy = 0.0;
+    for (const dBodyID body : bodies_) {
+      dMass mass;
+      dBodyGetMass(body, &mass);
+      const dReal* rotation = dBodyGetRotation(body);
+      const dReal* turning = dBodyGetAngularVel(body);
+      Eigen::Vector3d local = Eigen::Vector3d::Zero();  // the rotation in the frame of the body
+      for (int row = 0; row < 3; ++row) {
+        local += Eigen::Vector3d(rotation[4 * row], rotation[4 * row + 1], rotation[4 * row + 2]) * turning[row];
+      }
+      Eigen::Matrix3d inertia;
+      for (int row = 0; row < 3; ++row) {
+        inertia.row(row) << mass.I[4 * row], mass.I[4 * row + 1], mass.I[4 * row + 2];
+      }
+      const dReal* velocity = dBodyGetLinearVel(body);
+      const dReal* position = dBodyGetPosition(body);
+      energy += 0.5 * local.dot(inertia * local);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        energy += mass.mass * (0.5 * velocity[axis] * velocity[axis] - gravity.at(axis) * position[axis]);
+      }
+    }
+    return energy;
+  }
   [[nodiscard]] std::optional<double> lowest_ground() const override { return lowest_ground_; }
   [[nodiscard]] std::size_t solver_messages() const override { return engine_messages() - messages_before_; }
   [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return engine_message_texts(); }
@@ -328,7 +354,8 @@ class OdeWorld final : public World {
     const int count = dCollide(a, b, max_contacts, &contacts[0].geom, sizeof(dContact));
     for (int i = 0; i < count; ++i) {
       dContact& contact = contacts[static_cast<std::size_t>(i)];
-      contact_friction_.set_surface(contact, friction_of(data_a.friction, data_b.friction, unspecified_friction_), a, b);
+      contact_friction_.set_surface(contact, friction_of(data_a.friction, data_b.friction, unspecified_friction_), a,
+                                    b);
       const dJointID joint = dJointCreateContact(world_.get(), contact_group_.get(), &contact);
       dJointAttach(joint, dGeomGetBody(a), dGeomGetBody(b));
       contact_friction_.observe(joint);

@@ -6,6 +6,7 @@ namespace proleg::sim {
 struct ContactSliding {
   double normal_force = 0.0;       ///< N, sum over the points
   double force_times_speed = 0.0;  ///< N m/s, sum over the points of normal force times sliding speed
+  double friction_power = 0.0;     ///< W, that friction takes from the robot
 };
 
 }  // namespace proleg::sim

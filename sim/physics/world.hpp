@@ -79,6 +79,8 @@ class World {
   [[nodiscard]] virtual std::size_t contact_count() const = 0;
   /// In the last step; zeros before the first.
   [[nodiscard]] virtual ContactSliding contact_sliding() const = 0;
+  /// J: kinetic energy, and potential energy against the origin of the world.
+  [[nodiscard]] virtual double energy() const = 0;
   /// Height of the lowest point of the environment; nothing if there is no environment.
   [[nodiscard]] virtual std::optional<double> lowest_ground() const = 0;
   /// Number of messages from the solver since the world was made, such as "LCP internal error".

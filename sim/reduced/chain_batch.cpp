@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <new>
+#include <span>
 
 #include "sim/reduced/chain_memory.hpp"
 #include "sim/reduced/chain_scratch.hpp"
+#include "sim/reduced/sine.hpp"
 
 namespace proleg::sim::reduced {
 namespace {
@@ -35,7 +37,7 @@ const ChainKernel& choose_kernel(std::size_t chains) {
   return *chosen;
 }
 
-ChainCounts counts_of(const PlanarChain& chain) {
+ChainCounts counts_of(const ChainModel& chain) {
   // Two convex outlines touch in at most two points; more than three such pairs for a shape are no crawling robot.
   return {chain.links.size(), chain.joints.size(), chain.shapes.size(), chain.terrain.size(),
           6 * chain.shapes.size() + 4};
@@ -58,25 +60,25 @@ std::vector<const ChainKernel*> supported_kernels() {
 
 class ChainBatch::Implementation {
  public:
-  Implementation(std::span<const PlanarChain> chains, const ChainKernel& kernel)
+  Implementation(const Models& chains, const ChainKernel& kernel)
       : kernel_(kernel),
         width_(static_cast<std::size_t>(kernel.width)),
         size_(chains.size()),
-        form_of_(chains.front()),
+        form_of_(*chains.front()),
         form_{counts_of(form_of_),     form_of_.links.data(),   form_of_.joints.data(), form_of_.shapes.data(),
               form_of_.terrain.data(), form_of_.self_collision, form_of_.step_s},
         block_size_(width_ * (ChainMemory<double>::size(form_.counts) + ChainScratch<double>::size(form_.counts))),
         numbers_(zeros(block_size_ * (blocks() + 1))),
         memory_of_first_(numbers_.get(), form_.counts, width_) {
     for (std::size_t lane = 0; lane < blocks() * width_; ++lane) {
-      set_constants(lane, chains[std::min(lane, size_ - 1)]);
+      set_constants(lane, *chains[std::min(lane, size_ - 1)]);
     }
     for (std::size_t block = 0; block < blocks(); ++block) {
       kernel_.place(form_, at(block));
     }
     for (std::size_t lane = 0; lane < blocks() * width_; ++lane) {
       // Now the positions of the links from the centre of mass are known.
-      const Point& first = chains[std::min(lane, size_ - 1)].first_link;
+      const Point& first = chains[std::min(lane, size_ - 1)]->first_link;
       const ChainMemory<double> memory = memory_of(lane);
       of(lane, memory.center, 0) = first.x - of(lane, memory.link_position, 0);
       of(lane, memory.center, 1) = first.z - of(lane, memory.link_position, 1);
@@ -159,7 +161,7 @@ class ChainBatch::Implementation {
     copy_numbers(source.friction_impulse, target.friction_impulse, contacts);
   }
 
-  void set_constants(std::size_t lane, const PlanarChain& chain) {
+  void set_constants(std::size_t lane, const ChainModel& chain) {
     const ChainMemory<double> memory = memory_of(lane);
     double mass = 0.0;
     for (std::size_t i = 0; i < chain.masses.size(); ++i) {
@@ -181,7 +183,7 @@ class ChainBatch::Implementation {
   const ChainKernel& kernel_;
   std::size_t width_;
   std::size_t size_;
-  PlanarChain form_of_;  ///< owns what form_ points to
+  ChainModel form_of_;  ///< owns what form_ points to
   ChainForm form_;
   std::size_t block_size_;  ///< in numbers
   Numbers numbers_;         ///< the blocks, and one for the chains with weak motors
@@ -190,7 +192,7 @@ class ChainBatch::Implementation {
   bool places_are_current_ = true;
 };
 
-ChainBatch::ChainBatch(std::span<const PlanarChain> chains, const ChainKernel* kernel)
+ChainBatch::ChainBatch(const Models& chains, const ChainKernel* kernel)
     : implementation_(
           std::make_unique<Implementation>(chains, kernel != nullptr ? *kernel : choose_kernel(chains.size()))) {}
 ChainBatch::~ChainBatch() = default;
@@ -255,9 +257,11 @@ ChainBatch::LinkPlace ChainBatch::link_place(std::size_t chain, std::size_t link
   for (std::size_t joint = 0; joint < link; ++joint) {
     angle += of(memory.joint_angle, joint);
   }
+  const auto half = sine_cosine<2>(Lanes<2>::number(angle * 0.5));
   return {{of(memory.center, 0) + of(memory.link_position, 2 * link),
            of(memory.center, 1) + of(memory.link_position, 2 * link + 1)},
-          angle};
+          half.sine[0],
+          half.cosine[0]};
 }
 
 ChainBatch::LinkMotion ChainBatch::link_motion(std::size_t chain, std::size_t link) const {
@@ -282,7 +286,8 @@ std::size_t ChainBatch::contact_count(std::size_t chain) const {
 
 ContactSliding ChainBatch::sliding(std::size_t chain) const {
   const ChainMemory<double> memory = implementation_->memory_of(chain);
-  return {implementation_->of(chain, memory.sliding, 0), implementation_->of(chain, memory.sliding, 1)};
+  return {implementation_->of(chain, memory.sliding, 0), implementation_->of(chain, memory.sliding, 1),
+          implementation_->of(chain, memory.sliding, 2)};
 }
 
 bool ChainBatch::failed(std::size_t chain) const {
@@ -313,6 +318,8 @@ void ChainBatch::place_like(std::size_t chain, const ChainBatch& other, std::siz
   implementation_->of(chain, memory.angle, 0) = other.implementation_->of(other_chain, from.angle, 0);
   for (std::size_t joint = 0; joint < implementation_->counts().joints; ++joint) {
     implementation_->of(chain, memory.joint_angle, joint) = other.joint_angle(other_chain, joint);
+    implementation_->of(chain, memory.wanted_speed, joint) =
+        other.implementation_->of(other_chain, from.wanted_speed, joint);
     implementation_->of(chain, memory.max_torque, joint) =
         other.implementation_->of(other_chain, from.max_torque, joint);
   }

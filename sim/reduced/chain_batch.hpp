@@ -3,12 +3,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <ranges>
 #include <span>
 #include <vector>
 
 #include "sim/physics/contact_sliding.hpp"
 #include "sim/reduced/chain_kernel.hpp"
-#include "sim/reduced/planar_chain.hpp"
+#include "sim/reduced/chain_model.hpp"
 
 namespace proleg::sim::reduced {
 
@@ -19,9 +20,11 @@ namespace proleg::sim::reduced {
 /// kernel. Angles, speeds and torques of joints are those of the plane (ShapeForm, JointForm).
 class ChainBatch {
  public:
-  /// chains: at least one; all have the form of the first. kernel: nothing: the widest one that this processor has and
-  /// the chains fill.
-  explicit ChainBatch(std::span<const PlanarChain> chains, const ChainKernel* kernel = nullptr);
+  /// chains: ChainModels or what is derived from it, at least one; all have the form of the first. kernel: nothing: the
+  /// widest one that this processor has and the chains fill.
+  template <std::ranges::input_range Chains>
+  explicit ChainBatch(const Chains& chains, const ChainKernel* kernel = nullptr)
+      : ChainBatch(pointers_to(chains), kernel) {}
   ~ChainBatch();
   ChainBatch(const ChainBatch&) = delete;
   ChainBatch& operator=(const ChainBatch&) = delete;
@@ -45,10 +48,11 @@ class ChainBatch {
   void add_contact_forces(std::size_t chain, std::span<double> sums) const;  ///< N
 
   [[nodiscard]] Point center(std::size_t chain) const;  ///< of mass
-  /// A link's centre of mass, and the angle by which the link has turned since all angles were 0.
+  /// A link's centre of mass, and the rotation of the link since all angles were 0.
   struct LinkPlace {
     Point position;
-    double angle;  ///< rad
+    double half_sine;  ///< of half the angle
+    double half_cosine;
   };
   [[nodiscard]] LinkPlace link_place(std::size_t chain, std::size_t link) const;
   /// Of its centre of mass, m/s; and its rotation, rad/s.
@@ -65,11 +69,25 @@ class ChainBatch {
   /// All numbers on which the next steps depend, but contacts.
   [[nodiscard]] std::vector<double> state(std::size_t chain) const;
 
-  /// Puts a chain at rest where another one is: its joints have the same angles; its centre of mass is given.
+  /// Puts a chain at rest where another one is: its joints have the same angles and their motors the
+  /// same wanted speeds and torques; its centre of mass is given.
   void place_like(std::size_t chain, const ChainBatch& other, std::size_t other_chain, const Point& center);
 
  private:
+  using Models = std::vector<const ChainModel*>;
   class Implementation;
+
+  ChainBatch(const Models& chains, const ChainKernel* kernel);
+
+  template <typename Chains>
+  static Models pointers_to(const Chains& chains) {
+    Models pointers;
+    for (const ChainModel& chain : chains) {
+      pointers.push_back(&chain);
+    }
+    return pointers;
+  }
+
   std::unique_ptr<Implementation> implementation_;
 };
 

@@ -35,7 +35,7 @@ struct ChainMemory {
       link_position;  ///< x and z by link: of its centre of mass, from that of the chain, m, at the start of the step
   Number* contact_force;  ///< N, by link
   Number* pressed;        ///< touch sensors by link: bit 0 rear, bit 1 front
-  Number* sliding;        ///< normal forces with the terrain, N, and their sum of force times speed, N m/s
+  Number* sliding;        ///< with the terrain: normal forces, N; forces times speed, N m/s; power of friction, W
   Number* failed;         ///< not 0: the solver broke down
   // Contacts of the last step, also part of the state.
   Number* contact_count;
@@ -81,7 +81,7 @@ struct ChainMemory {
     add(link_position, 2 * counts.links);
     add(contact_force, counts.links);
     add(pressed, counts.links);
-    add(sliding, 2);
+    add(sliding, 3);
     add(failed, 1);
     add(contact_count, 1);
     add(contact_key, counts.contacts);

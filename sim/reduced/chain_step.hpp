@@ -157,10 +157,12 @@ class ChainStep {
   /// all.
   void prepare_contacts() {
     constexpr double error_reduction = 0.2;  // share of a depth that a step corrects, as in sim/ode
+    // m, of a contact at rest. If it were 0, such contacts would end, the link fall and touch anew, again and again.
+    constexpr double rest_depth = 1e-6;
     const double factor = error_reduction / form_.step_s;
     for (std::size_t k = 0; k < contacts_; ++k) {
       const Mask is_there = contact_count_ > static_cast<double>(k);
-      s_.depth_speed[k] = select(is_there, s_.depth_speed[k] * factor, Number{});
+      s_.depth_speed[k] = select(is_there, (s_.depth_speed[k] - rest_depth) * factor, Number{});
       s_.old_normal[k] = select(is_there, s_.old_normal[k], Number{});
       s_.old_friction[k] = select(is_there, s_.old_friction[k], Number{});
       s_.other_link[k] = select(is_there, s_.other_link[k], Lanes<width>::number(-1.0));
@@ -546,14 +548,18 @@ class ChainStep {
     put_where(done, m_.contact_count[0], contact_count_);
     put_where(done, m_.sliding[0], Number{});
     put_where(done, m_.sliding[1], Number{});
+    put_where(done, m_.sliding[2], Number{});
     for (std::size_t k = 0; k < contacts_; ++k) {
       put_where(done, m_.contact_key[k], s_.key[k]);
       put_where(done, m_.normal_impulse[k], s_.normal_value[k]);
       put_where(done, m_.friction_impulse[k], s_.friction_value[k]);
       const Mask is_terrain = done & (s_.other_link[k] < 0.0) & (contact_count_ > static_cast<double>(k));
-      const Number force = select(is_terrain, s_.normal_value[k] * steps_per_s, Number{});
-      m_.sliding[0] += force;
-      m_.sliding[1] += force * s_.sliding_speed[k];
+      // A lane that an earlier round has solved may have numbers here that are not finite.
+      const Number force = s_.normal_value[k] * steps_per_s;
+      const Number friction = magnitude(s_.friction_value[k]) * steps_per_s;
+      m_.sliding[0] += select(is_terrain, force, Number{});
+      m_.sliding[1] += select(is_terrain, force * s_.sliding_speed[k], Number{});
+      m_.sliding[2] += select(is_terrain, friction * s_.sliding_speed[k], Number{});
     }
   }
 
@@ -574,13 +580,13 @@ class ChainStep {
     }
   }
 
-  /// A number that is not finite makes the difference of the sum from itself not 0.
+  /// A number that is not finite makes the product of the sum with 0 not 0.
   void note_failures(Mask done) {
     Number sum = m_.center[0] + m_.center[1] + m_.angle[0];
     for (std::size_t j = 0; j < joints_; ++j) {
       sum += m_.joint_angle[j];
     }
-    put_where(done & ~(sum - sum == 0.0), m_.failed[0], Lanes<width>::number(1.0));
+    put_where(done & ~(sum * 0.0 == 0.0), m_.failed[0], Lanes<width>::number(1.0));
   }
 
   const ChainForm& form_;

@@ -51,7 +51,8 @@ class ContactRows {
         mobility += jacobian[i] * sum;
       }
       // A row of a contact that a lane does not have gives no impulse.
-      s_.inverse[row] = select(contact_count > static_cast<double>(row / 2), 1.0 / mobility, Number{});
+      const std::size_t contact = row / 2;
+      s_.inverse[row] = select(contact_count > static_cast<double>(contact), 1.0 / mobility, Number{});
     }
   }
 

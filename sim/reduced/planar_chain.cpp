@@ -142,20 +142,20 @@ class Maker {
                           std::hypot(outline->half_length, outline->half_height)) +
                   tolerance;
     chain_.shapes.push_back(form);
-    half_width_ = std::max(half_width_, half_extent_across(geometry, pose));
+    half_width_ = std::max(half_width_, half_extent(geometry, pose, chain_.plane.across));
     shape_geometries_.push_back(&geometry);
   }
 
-  /// m: from the middle of a geometry to its end along `across`, at least.
-  [[nodiscard]] double half_extent_across(const Geometry& geometry, const Pose& pose) const {
-    const Eigen::Vector3d across = pose.orientation.conjugate() * chain_.plane.across;
+  /// m: from the middle of a geometry to its end in a direction.
+  static double half_extent(const Geometry& geometry, const Pose& pose, const Eigen::Vector3d& direction) {
+    const Eigen::Vector3d own = pose.orientation.conjugate() * direction;
     switch (geometry.shape) {
       case Shape::box:
-        return across.cwiseAbs().dot(geometry.extents);
+        return own.cwiseAbs().dot(geometry.extents);
       case Shape::sphere:
         return geometry.extents.x();
       case Shape::cylinder:
-        return geometry.extents.y() + geometry.extents.x();
+        return geometry.extents.x() * std::hypot(own.x(), own.z()) + geometry.extents.y() * std::abs(own.y());
     }
     return 0.0;
   }
@@ -199,7 +199,9 @@ class Maker {
   void add_solid(const StaticObject& object, const Geometry& geometry) {
     const Pose pose = object.pose * geometry.pose;
     const double distance = std::abs(pose.position.dot(chain_.plane.across) - chain_.plane.offset);
-    const double reach = half_extent_across(geometry, pose);
+    const double reach = half_extent(geometry, pose, chain_.plane.across);
+    const double lowest = pose.position.z() - half_extent(geometry, pose, Eigen::Vector3d::UnitZ());
+    chain_.lowest_ground = std::min(chain_.lowest_ground.value_or(lowest), lowest);
     if (distance >= reach + half_width_) {
       return;  // beside the robot's way
     }
@@ -285,11 +287,6 @@ class Maker {
 };
 
 }  // namespace
-
-bool PlanarChain::has_form_of(const PlanarChain& other) const {
-  return links == other.links && joints == other.joints && shapes == other.shapes && terrain == other.terrain &&
-         self_collision == other.self_collision && step_s == other.step_s;
-}
 
 PlanarChain make_planar_chain(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
                               const std::string& file) {

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/environment/environment_model.hpp"
-#include "sim/reduced/chain_form.hpp"
+#include "sim/reduced/chain_model.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim::reduced {
@@ -25,32 +26,13 @@ struct MotionPlane {
 /// A robot and its environment as the reduced engine sees them: a chain in a vertical plane. All numbers are whole
 /// multiples of powers of two that are larger than rounding errors, so they are the same on every machine: lengths and
 /// coefficients of 2^-30, moments of inertia of 2^-50.
-struct PlanarChain {
-  MotionPlane plane;
-
-  // Equal in all chains of a batch.
-  std::vector<LinkForm> links;
-  std::vector<JointForm> joints;
-  std::vector<ShapeForm> shapes;
-  std::vector<Rectangle> terrain;
-  bool self_collision = false;
-  double step_s = 0.0;
-
-  // Of this chain.
-  std::vector<double> masses;            ///< kg, by link
-  std::vector<double> inertias;          ///< kg m^2, by link, about its centre of mass
-  std::vector<double> terrain_friction;  ///< by shape, then by solid
-  std::vector<double> self_friction;     ///< by shape, then by shape
-  Point gravity;                         ///< m/s^2
-  Point first_link;                      ///< its centre of mass at the start
-
+struct PlanarChain : ChainModel {
   // Back to the world.
+  MotionPlane plane;
   std::vector<double> joint_signs;                     ///< 1, or -1 where the axis of a joint points the other way
   std::vector<Eigen::Quaterniond> start_orientations;  ///< of the links, in the world
   std::vector<Eigen::Vector3d> mass_centers;           ///< in the frames of the links
-
-  /// Whether chains may share a batch.
-  [[nodiscard]] bool has_form_of(const PlanarChain& other) const;
+  std::optional<double> lowest_ground;                 ///< m: of the whole environment, also beside the robot's way
 };
 
 /// Throws InputError if the engine does not have what the robot or the environment needs. file: that the message names.

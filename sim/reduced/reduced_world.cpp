@@ -1,11 +1,11 @@
 #include "sim/reduced/reduced_world.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "sim/physics/physics_error.hpp"
+#include "sim/reduced/planar_chain.hpp"
 
 namespace proleg::sim::reduced {
 namespace {
@@ -24,7 +24,6 @@ class ReducedWorld final : public World {
     for (std::size_t joint = 0; joint < robot_.joints.size(); ++joint) {
       set_joint_torque(joint, robot_.joints[joint].max_torque);
     }
-    find_lowest_ground();
   }
 
   void set_joint_speed(std::size_t joint, double speed) override {
@@ -41,13 +40,16 @@ class ReducedWorld final : public World {
 
   void move_robot(const Pose& motion) override {
     const Eigen::Vector3d center = motion * center_of_mass();
-    environment_.robot_pose = motion * environment_.robot_pose;
-    chain_ = make_planar_chain(robot_, environment_, step_s_, file_);
-    auto moved = std::make_shared<ChainBatch>(std::span(&chain_, 1));
-    moved->place_like(0, *batch_, lane_, chain_.plane.project(center));
+    // A place that the engine refuses leaves all as it is.
+    EnvironmentModel environment = environment_;
+    environment.robot_pose = motion * environment_.robot_pose;
+    PlanarChain chain = make_planar_chain(robot_, environment, step_s_, file_);
+    auto moved = std::make_shared<ChainBatch>(std::span(&chain, 1));
+    moved->place_like(0, *batch_, lane_, chain.plane.project(center));
+    environment_ = std::move(environment);
+    chain_ = std::move(chain);
     batch_ = std::move(moved);
     lane_ = 0;
-    find_lowest_ground();
   }
 
   void step() override {
@@ -69,8 +71,9 @@ class ReducedWorld final : public World {
   }
   [[nodiscard]] Pose link_pose(std::size_t link) const override {
     const ChainBatch::LinkPlace place = batch_->link_place(lane_, link);
+    const Eigen::Vector3d turn = -place.half_sine * chain_.plane.across;
     const Eigen::Quaterniond orientation =
-        Eigen::AngleAxisd(-place.angle, chain_.plane.across) * chain_.start_orientations[link];
+        Eigen::Quaterniond(place.half_cosine, turn.x(), turn.y(), turn.z()) * chain_.start_orientations[link];
     return {chain_.plane.lift(place.position) - orientation * chain_.mass_centers[link], orientation};
   }
   [[nodiscard]] bool is_slower_than(double speed, double rotation) const override {
@@ -88,21 +91,24 @@ class ReducedWorld final : public World {
   [[nodiscard]] double contact_force(std::size_t link) const override { return batch_->contact_force(lane_, link); }
   [[nodiscard]] std::size_t contact_count() const override { return batch_->contact_count(lane_); }
   [[nodiscard]] ContactSliding contact_sliding() const override { return batch_->sliding(lane_); }
-  [[nodiscard]] std::optional<double> lowest_ground() const override { return lowest_ground_; }
+  [[nodiscard]] double energy() const override {
+    double energy = 0.0;
+    for (std::size_t link = 0; link < chain_.masses.size(); ++link) {
+      const ChainBatch::LinkMotion motion = batch_->link_motion(lane_, link);
+      const Point position = batch_->link_place(lane_, link).position;
+      const double squared_speed = motion.velocity.x * motion.velocity.x + motion.velocity.z * motion.velocity.z;
+      const double fall = chain_.gravity.x * position.x + chain_.gravity.z * position.z;
+      energy += chain_.masses[link] * (0.5 * squared_speed - fall) +
+                0.5 * chain_.inertias[link] * motion.rotation * motion.rotation;
+    }
+    return energy;
+  }
+  [[nodiscard]] std::optional<double> lowest_ground() const override { return chain_.lowest_ground; }
   [[nodiscard]] std::size_t solver_messages() const override { return 0; }
   [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return {}; }
   [[nodiscard]] std::vector<double> state() const override { return batch_->state(lane_); }
 
  private:
-  void find_lowest_ground() {
-    lowest_ground_.reset();
-    for (const Rectangle& solid : chain_.terrain) {
-      const double lowest =
-          solid.center.z - std::abs(solid.along.z) * solid.half_length - std::abs(solid.along.x) * solid.half_height;
-      lowest_ground_ = std::min(lowest_ground_.value_or(lowest), lowest);
-    }
-  }
-
   RobotModel robot_;
   EnvironmentModel environment_;  ///< with the robot's pose after the moves so far
   double step_s_;
@@ -110,7 +116,6 @@ class ReducedWorld final : public World {
   PlanarChain chain_;
   std::shared_ptr<ChainBatch> batch_;
   std::size_t lane_;
-  std::optional<double> lowest_ground_;
 };
 
 }  // namespace
@@ -121,7 +126,7 @@ std::unique_ptr<World> make_reduced_world(const RobotModel& robot, const Environ
   return std::move(ReducedWorlds(std::span(&input, 1)).take_worlds().front());
 }
 
-ReducedWorlds::ReducedWorlds(std::span<const WorldInput> inputs) : worlds_(inputs.size()) {
+ReducedWorlds::ReducedWorlds(std::span<const WorldInput> inputs, const ChainKernel* kernel) : worlds_(inputs.size()) {
   std::vector<PlanarChain> chains;
   for (const WorldInput& input : inputs) {
     chains.push_back(make_planar_chain(*input.robot, *input.environment, input.step_s, input.file));
@@ -138,7 +143,7 @@ ReducedWorlds::ReducedWorlds(std::span<const WorldInput> inputs) : worlds_(input
         numbers.push_back(i);
       }
     }
-    const auto batch = std::make_shared<ChainBatch>(alike);
+    const auto batch = std::make_shared<ChainBatch>(alike, kernel);
     for (std::size_t lane = 0; lane < numbers.size(); ++lane) {
       worlds_[numbers[lane]] =
           std::make_unique<ReducedWorld>(inputs[numbers[lane]], std::move(alike[lane]), batch, lane);

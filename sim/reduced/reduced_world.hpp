@@ -14,6 +14,9 @@
 
 namespace proleg::sim::reduced {
 
+/// Changes when the engine gives other bits for the same world.
+inline constexpr int engine_version = 1;
+
 /// A world in the reduced engine. file: that messages name. step_s: length of a step, above 0. Throws InputError if the
 /// engine does not have what robot or environment needs.
 [[nodiscard]] std::unique_ptr<World> make_reduced_world(const RobotModel& robot, const EnvironmentModel& environment,
@@ -30,8 +33,8 @@ struct WorldInput {
 /// Worlds that make their steps together, as fast as the processor's vectors allow. Each gives the same bits as alone.
 class ReducedWorlds {
  public:
-  /// inputs: at least one. Throws InputError as make_reduced_world.
-  explicit ReducedWorlds(std::span<const WorldInput> inputs);
+  /// inputs: at least one. kernel: as ChainBatch has it. Throws InputError as make_reduced_world.
+  explicit ReducedWorlds(std::span<const WorldInput> inputs, const ChainKernel* kernel = nullptr);
 
   /// Gives the worlds away, in the order of the inputs. Then they are used between the steps; World::step of each of
   /// them makes no step but throws PhysicsError if the world broke down. They cannot be moved.

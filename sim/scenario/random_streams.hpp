@@ -14,6 +14,7 @@ inline constexpr std::uint64_t friction = 4'000'000;  ///< this and the followin
 inline constexpr std::uint64_t mass = 5'000'000;
 inline constexpr std::uint64_t servo_gain = 6'000'000;
 inline constexpr std::uint64_t latency = 7'000'000;
+inline constexpr std::uint64_t start = 7'500'000;          ///< offsets of the start position
 inline constexpr std::uint64_t faults = 8'000'000;         ///< with the seed of a fault schedule
 inline constexpr std::uint64_t fault_effects = 9'000'000;  ///< which frames a fault destroys, and the like
 }  // namespace random_stream

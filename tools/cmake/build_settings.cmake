@@ -22,6 +22,8 @@ add_compile_options(
   -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wundef
   $<$<COMPILE_LANGUAGE:CXX>:-Wredundant-decls>
   $<$<COMPILE_LANGUAGE:CXX>:-Wzero-as-null-pointer-constant>
+  # A multiplication and an addition are never one operation: results are the same on processors that have it.
+  -ffp-contract=off
   # Binaries contain no paths of the build computer.
   -ffile-prefix-map=${CMAKE_SOURCE_DIR}/=)
 

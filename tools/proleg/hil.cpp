@@ -108,6 +108,7 @@ HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::Hardw
   result.setup_frames = loop.setup_frames();
   result.setpoint_hash = loop.setpoint_hash().hex();
   result.servo_hash = loop.servo_hash().hex();
+  result.world_hash = loop.world_hash();
   result.measures = measures_of(loop.plant().meter());
   loop.finish_watch();
   const sim::MotionWatch& watch = loop.motion_watch();

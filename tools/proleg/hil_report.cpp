@@ -56,6 +56,7 @@ Json hil_json(const HilOptions& options, const ScenarioRun& run, const HilModule
           {"simulated_s", result.simulated_s},
           {"setpoint_hash", result.setpoint_hash},
           {"servo_hash", result.servo_hash},
+          {"world_hash", result.world_hash},
           {"differences", result.differences},
           {"first_difference", result.first_difference},
           {"dropped_changes", dropped_changes},
@@ -121,6 +122,9 @@ void print_hil_table(const HilOptions& options, const ScenarioRun& run, const Hi
   }
   std::printf("set-point hash    %s\n", result.setpoint_hash.c_str());
   std::printf("servo hash        %s\n", result.servo_hash.c_str());
+  if (result.world_hash) {
+    std::printf("world hash        %s\n", result.world_hash->c_str());
+  }
   std::printf(
       "differences       %llu against the gait in memory%s\n", count(result.differences),
       result.first_fault_tick
@@ -150,6 +154,9 @@ std::vector<std::pair<std::string, std::string>> hil_summary(const ScenarioRun& 
       {"bus_load", exact_text(result.bus_load)},
       {"setpoint_hash", result.setpoint_hash},
       {"servo_hash", result.servo_hash}};
+  if (result.world_hash) {
+    summary.emplace_back("world_hash", *result.world_hash);
+  }
   append_results(result.measures, run.scenario.robot, summary);
   return summary;
 }

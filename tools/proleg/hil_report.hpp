@@ -40,6 +40,7 @@ struct HilResult {
   double bus_load = 0.0;
   std::string setpoint_hash;
   std::string servo_hash;
+  std::optional<std::string> world_hash;
   std::vector<std::uint32_t> clipped_ticks;    ///< by joint
   std::vector<std::uint32_t> dropped_changes;  ///< their ticks
   std::vector<RestartReport> restarts;

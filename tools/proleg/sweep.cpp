@@ -317,9 +317,9 @@ int main(int argc, char** argv) {
   add_start_options(command_line, options.scenario);
   command_line
       .add_option("--over", options.over,
-                  "NAME=FIRST:LAST:STEP (step 1 if it is omitted): the values of a parameter, named as in --set, of "
-                  "the seed (NAME is seed) or of the friction as in --friction (NAME is friction). Several --over give "
-                  "all combinations, at most 100000.")
+                  "NAME=FIRST:LAST:STEP (step 1 if it is omitted): the values of a parameter, named as in --set, or "
+                  "of seed, friction or heading as in the options, or of x or y of the start position. Several --over "
+                  "give all combinations, at most 100000.")
       .required();
   command_line.add_option("--measure", options.measure, "measure of summary and picture (docs/gait-measures.md)")
       .value_name("NAME")

@@ -19,9 +19,9 @@ namespace proleg::optimize {
 inline constexpr std::uint64_t max_sweep_runs = 100'000;
 
 struct SweptQuantity {
-  enum class Kind : std::uint8_t { parameter, seed, friction };
+  enum class Kind : std::uint8_t { parameter, seed, friction, x, y, heading };
   Kind kind = Kind::parameter;
-  std::string name;                 ///< of a parameter as in `--set`; "seed"; "friction"
+  std::string name;                 ///< of a parameter as in `--set`; or of the kind: "x" of the start position
   std::vector<std::string> values;  ///< decimal numbers, ascending, at least one
   std::string unit;                 ///< "" if dimensionless
   std::string word;                 ///< as the user wrote it

@@ -10,6 +10,7 @@
 #include "sim/optimize/sweep/sweep.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/reader.hpp"
+#include "sim/scenario/source_texts.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -111,6 +112,18 @@ std::vector<std::string> values_of(const std::string& word, std::string_view ran
   return values;
 }
 
+/// What is swept and no parameter.
+struct NamedKind {
+  std::string_view name;
+  SweptQuantity::Kind kind;
+  std::string_view unit;
+};
+constexpr NamedKind named_kinds[] = {{"seed", SweptQuantity::Kind::seed, ""},
+                                     {"friction", SweptQuantity::Kind::friction, ""},
+                                     {"x", SweptQuantity::Kind::x, "m"},
+                                     {"y", SweptQuantity::Kind::y, "m"},
+                                     {"heading", SweptQuantity::Kind::heading, "deg"}};
+
 SweptQuantity read_quantity(const std::string& word) {
   const std::size_t equals = word.find('=');
   if (equals == std::string::npos || equals == 0) {
@@ -119,9 +132,12 @@ SweptQuantity read_quantity(const std::string& word) {
   SweptQuantity quantity;
   quantity.word = word;
   quantity.name = word.substr(0, equals);
-  quantity.kind = quantity.name == "seed"       ? SweptQuantity::Kind::seed
-                  : quantity.name == "friction" ? SweptQuantity::Kind::friction
-                                                : SweptQuantity::Kind::parameter;
+  for (const NamedKind& named : named_kinds) {
+    if (named.name == quantity.name) {
+      quantity.kind = named.kind;
+      quantity.unit = named.unit;
+    }
+  }
   quantity.values = values_of(word, std::string_view(word).substr(equals + 1));
   return quantity;
 }
@@ -155,6 +171,12 @@ void refuse_second_value(const Sweep& sweep, const SweptQuantity& quantity) {
   if (quantity.kind == SweptQuantity::Kind::friction && overrides.friction) {
     refuse_option("--friction " + exact_text(*overrides.friction));
   }
+  if ((quantity.kind == SweptQuantity::Kind::x || quantity.kind == SweptQuantity::Kind::y) && overrides.at) {
+    refuse_option("--at " + *sim::words_of(overrides).at);
+  }
+  if (quantity.kind == SweptQuantity::Kind::heading && overrides.heading_deg) {
+    refuse_option("--heading " + exact_text(*overrides.heading_deg));
+  }
   if (quantity.kind != SweptQuantity::Kind::parameter) {
     return;
   }
@@ -171,6 +193,26 @@ void refuse_second_value(const Sweep& sweep, const SweptQuantity& quantity) {
   }
 }
 
+/// The start pose of the scenario with other overrides: that of its files, lifted onto the ground there.
+sim::Pose start_pose(const sim::Scenario& scenario, const sim::Overrides& overrides) {
+  sim::SourceTexts files;
+  for (const sim::SourceFile& source : scenario.sources) {
+    files.add(source.path, source.text);
+  }
+  return sim::read_scenario(scenario.path, files, overrides).environment.robot_pose;
+}
+
+/// Changes x or y of the start position.
+void set_start(sim::Scenario& scenario, Eigen::Index axis, const std::string& value) {
+  sim::OverrideWords words;
+  words.at = value + ",0";  // checks the range
+  const double coordinate = sim::read_overrides(words).at->x();
+  sim::Overrides& overrides = scenario.overrides;
+  overrides.at = overrides.at.value_or(scenario.environment.robot_pose.position.head<2>());
+  (*overrides.at)[axis] = coordinate;
+  scenario.environment.robot_pose = start_pose(scenario, overrides);
+}
+
 /// Throws InputError for a value that the scenario rejects.
 void apply(const SweptQuantity& quantity, const std::string& value, sim::Scenario& scenario) {
   sim::OverrideWords words;
@@ -185,6 +227,17 @@ void apply(const SweptQuantity& quantity, const std::string& value, sim::Scenari
     case SweptQuantity::Kind::friction:
       words.friction = value;
       sim::set_friction(scenario.environment, *sim::read_overrides(words).friction);
+      return;
+    case SweptQuantity::Kind::x:
+      set_start(scenario, 0, value);
+      return;
+    case SweptQuantity::Kind::y:
+      set_start(scenario, 1, value);
+      return;
+    case SweptQuantity::Kind::heading:
+      words.heading = value;
+      scenario.overrides.heading_deg = sim::read_overrides(words).heading_deg;
+      scenario.environment.robot_pose = start_pose(scenario, scenario.overrides);
       return;
   }
 }

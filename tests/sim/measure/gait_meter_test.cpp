@@ -190,7 +190,7 @@ TEST(GaitMeter, SlipIsThePathThatTheLoadSlidesOverTheDistance) {
     motion.path = [speed](double t) { return Eigen::Vector3d(0, speed * t, 0); };
     GaitMeter meter = motion.after(2.0);
     for (long step = 0; step < std::lround(2.0 / step_s); ++step) {
-      meter.add_contacts(normal_force, normal_force * sliding_speed);
+      meter.add_contacts(normal_force, normal_force * sliding_speed, 0.0);
     }
     return meter.values()[Measure::slip];
   };
@@ -207,7 +207,7 @@ TEST(GaitMeter, SlipCountsOnlyTheLoadThatSlides) {
   motion.path = [](double t) { return Eigen::Vector3d(0, 0.1 * t, 0); };
   GaitMeter meter = motion.after(2.0);
   for (long step = 0; step < std::lround(2.0 / step_s); ++step) {
-    meter.add_contacts(4.0, 1.0 * 0.1);  // a quarter of the load is dragged
+    meter.add_contacts(4.0, 1.0 * 0.1, 0.0);  // a quarter of the load is dragged
   }
   EXPECT_NEAR(meter.values()[Measure::slip], 0.25, 1e-9);
 }

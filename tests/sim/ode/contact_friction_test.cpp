@@ -10,9 +10,9 @@
 
 #include <Eigen/Geometry>
 
-#include "box_link.hpp"
 #include "sim/ode/engine.hpp"
 #include "sim/ode/ode_world.hpp"
+#include "tests/sim/physics/box_link.hpp"
 
 // Oracle: Coulomb's law for a point mass, friction = coefficient * normal force, against the velocity.
 

@@ -9,55 +9,11 @@
 #include <thread>
 #include <vector>
 
-#include "box_link.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "tests/sim/physics/small_world.hpp"
 
 namespace proleg::sim {
 namespace {
-
-constexpr double step_s = 0.001;
-constexpr double gravity = 9.81;
-
-/// Links of 100 mm along y, the head foremost, hinges between them about x.
-RobotModel chain(std::size_t links) {
-  RobotModel robot;
-  for (std::size_t i = 0; i < links; ++i) {
-    robot.links.push_back(box_link(-0.1 * static_cast<double>(i), {0.02, 0.04, 0.02}, 0.1));
-  }
-  for (std::size_t i = 0; i + 1 < links; ++i) {
-    Joint joint;
-    joint.anchor = {0, -0.05 - 0.1 * static_cast<double>(i), 0};
-    joint.lower_limit = -1.0;
-    joint.upper_limit = 1.0;
-    joint.max_torque = 2.0;
-    joint.max_speed = 4.5;
-    robot.joints.push_back(joint);
-  }
-  return robot;
-}
-
-StaticObject floor_with_friction(double friction) {
-  StaticObject floor;
-  floor.pose.position = {0, 0, -0.5};
-  Geometry geometry;
-  geometry.extents = {50, 50, 0.5};
-  geometry.friction = friction;
-  floor.geometries.push_back(geometry);
-  return floor;
-}
-
-EnvironmentModel flat_ground(double friction, double start_height) {
-  EnvironmentModel environment;
-  environment.objects.push_back(floor_with_friction(friction));
-  environment.robot_pose.position = {0, 0, start_height};
-  return environment;
-}
-
-void run(World& world, double seconds) {
-  for (long i = 0; i < std::lround(seconds / step_s); ++i) {
-    world.step();
-  }
-}
 
 TEST(World, StartsWithTheLinksWhereTheModelPutsThem) {
   RobotModel robot = chain(3);

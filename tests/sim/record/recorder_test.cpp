@@ -50,6 +50,19 @@ void expect_left_alone(const std::filesystem::path& path, const std::string& con
   EXPECT_EQ(file_contents(path), contents);
 }
 
+TEST(Recorder, NamesTheEngineAndTheOptionThatChoseIt) {
+  const TemporaryFolder folder;
+  Scenario scenario = small_scenario();
+  const auto engines = [&](const std::string& file) {
+    record_small(folder / file, scenario, 1);
+    return rows(folder / file, "SELECT key, value FROM run WHERE key LIKE '%engine' ORDER BY key", 2);
+  };
+  EXPECT_EQ(engines("ode.sqlite"), (std::vector<std::string>{"engine|ode"}));
+  scenario.environment.engine = PhysicsEngine::reduced;
+  scenario.overrides.engine = PhysicsEngine::reduced;
+  EXPECT_EQ(engines("reduced.sqlite"), (std::vector<std::string>{"engine|reduced", "override_engine|reduced"}));
+}
+
 TEST(Recorder, KeepsEverySampleBitForBit) {
   const TemporaryFolder folder;
   const Scenario scenario = small_scenario();

@@ -40,6 +40,20 @@ TEST(Environment, ARobotAboveTheGroundIsNotMoved) {
   EXPECT_EQ(scenario.remarks.size(), 1U) << "only the joint map";
 }
 
+TEST(Environment, TheReducedEngineHasThePropertiesOfOde) {
+  for (const char* properties : {"odeproperties", "reducedproperties"}) {
+    MemoryFiles files = small_scenario();
+    files.replace("environment.xml", "type=\"ode\"", "type=\"Reduced\"")
+        .replace("environment.xml", "<odeproperties>", "<" + std::string(properties) + ">")
+        .replace("environment.xml", "</odeproperties>", "</" + std::string(properties) + ">")
+        .replace("environment.xml", "0 0 -9.81", "0 0 -1.62");
+    const Scenario scenario = files.scenario();
+    EXPECT_EQ(scenario.environment.engine, PhysicsEngine::reduced);
+    EXPECT_EQ(scenario.environment.gravity, Eigen::Vector3d(0, 0, -1.62)) << properties;
+    EXPECT_TRUE(scenario.environment.self_collision) << properties;
+  }
+}
+
 /// Start height of a robot whose only low part is the head's geometry, on a floor with its top at 0.
 double height_with_head(const std::string& geometry) {
   MemoryFiles files = small_scenario();

@@ -71,6 +71,28 @@ TEST(Overrides, TheHeadingTurnsTheStartPoseToTheLeft) {
   EXPECT_TRUE((turned.orientation * Eigen::Vector3d::UnitX()).isApprox(-Eigen::Vector3d::UnitZ(), 1e-12));
 }
 
+TEST(Overrides, TheEngineReplacesThatOfTheEnvironment) {
+  EXPECT_EQ(scenario_with({}).environment.engine, PhysicsEngine::ode);
+  EXPECT_EQ(scenario_with(only(&OverrideWords::engine, "reduced")).environment.engine, PhysicsEngine::reduced);
+  MemoryFiles files = small_scenario();
+  files.replace("environment.xml", "type=\"ode\"", "type=\"reduced\"");
+  EXPECT_EQ(scenario_with({}, files).environment.engine, PhysicsEngine::reduced);
+  EXPECT_EQ(scenario_with(only(&OverrideWords::engine, "ode"), files).environment.engine, PhysicsEngine::ode);
+}
+
+TEST(Overrides, TheirWordsGiveTheSameOverrides) {
+  OverrideWords words;
+  words.engine = "reduced";
+  words.seed = "18446744073709551615";
+  words.friction = "0.75";
+  words.at = "1,-2.5,0.7";
+  words.heading = "-90";
+  for (const OverrideDeclaration& declaration : override_declarations()) {
+    EXPECT_EQ(words_of(read_overrides(words)).*declaration.word, words.*declaration.word) << declaration.name;
+    EXPECT_EQ(words_of({}).*declaration.word, std::nullopt) << declaration.name;
+  }
+}
+
 TEST(Overrides, RefuseBadWords) {
   const auto expect_refused = [](std::optional<std::string> OverrideWords::*word, const std::string& option,
                                  std::initializer_list<const char*> values, const std::string& expected) {
@@ -79,6 +101,7 @@ TEST(Overrides, RefuseBadWords) {
       EXPECT_EQ(message, option + ": found '" + value + "', expected " + expected);
     }
   };
+  expect_refused(&OverrideWords::engine, "--engine", {"", "ODE", "bullet", "reduced "}, "'ode' or 'reduced'");
   expect_refused(&OverrideWords::seed, "--seed", {"", "-1", "1.5", "one", "18446744073709551616"},
                  "a whole number from 0 to 18446744073709551615");
   expect_refused(&OverrideWords::friction, "--friction", {"", "-0.1", "1001", "nan", "inf", "ice"}, "0 to 1000");

@@ -15,13 +15,13 @@ TEST_F(CommandLine, HelpListsTheSubcommands) {
   for (const char* word : {"--help", "-h", "help"}) {
     const Finished finished = proleg({word});
     EXPECT_EQ(finished.status, 0);
-    for (const char* name : {"algorithms", "new", "simulate", "sweep", "hil", "faults", "replay", "export", "plot",
-                             "optimise", "experiment", "objects"}) {
+    for (const char* name : {"algorithms", "new", "simulate", "sweep", "hil", "faults", "replay", "receipt", "export",
+                             "plot", "optimise", "confirm", "experiment", "objects"}) {
       EXPECT_NE(finished.out.find(name), std::string::npos);
     }
   }
-  for (const char* name : {"algorithms", "new", "simulate", "sweep", "hil", "faults", "replay", "export", "plot",
-                           "optimise", "experiment", "objects"}) {
+  for (const char* name : {"algorithms", "new", "simulate", "sweep", "hil", "faults", "replay", "receipt", "export",
+                           "plot", "optimise", "confirm", "experiment", "objects"}) {
     const Finished finished = proleg({name, "--help"});
     EXPECT_EQ(finished.status, 0);
     EXPECT_NE(finished.out.find(std::string("Usage: proleg ") + name), std::string::npos) << finished.out;
@@ -35,10 +35,11 @@ TEST_F(CommandLine, VersionNamesTheBuild) {
 }
 
 TEST_F(CommandLine, RefusesUnknownWords) {
-  expect_refused({},
-                 {"expected one of algorithms, new, simulate, ui, sweep, hil, faults, replay, export, plot, optimise, "
-                  "experiment, bus, drive, scan, assign, doctor, info, get, set, monitor, params, nmt, flash, "
-                  "recover, image, objects"});
+  expect_refused(
+      {},
+      {"expected one of algorithms, new, simulate, ui, sweep, hil, faults, replay, receipt, export, plot, optimise, "
+       "confirm, experiment, bus, drive, scan, assign, doctor, info, get, set, monitor, params, nmt, flash, "
+       "recover, image, objects"});
   expect_refused({"simulat"}, {"'simulat'", "expected one of algorithms, new, simulate"});
   expect_refused({"../../bin/sh"}, {"expected one of"});
   expect_refused({"simulate\n\x1b[31m"}, {"'simulate  [31m'", "expected one of"});

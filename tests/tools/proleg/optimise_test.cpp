@@ -208,7 +208,7 @@ TEST_F(Optimise, RefusesAScenarioThatTheEngineDoesNotHave) {
   std::string robot = read_file(folder / "caterpillar.robot.xml");
   robot.replace(robot.find("<axis>1 0 0<"), 12, "<axis>0 0 1<");
   std::ofstream(folder / "caterpillar.robot.xml") << robot;
-  const std::vector<std::string> refusal{"not horizontal", "reduced engine", "--engine ode"};
+  const std::vector<std::string> refusal{"axis is not parallel", "reduced engine", "--engine ode"};
   expect_refused(
       {"optimise", (folder / "cma_es.optimise.xml").string(), "--engine", "reduced", "--out", file("out").string()},
       refusal);

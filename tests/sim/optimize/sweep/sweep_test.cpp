@@ -70,6 +70,24 @@ TEST(Sweep, ACombinationSetsParameterSeedAndFriction) {
   }
 }
 
+sim::Scenario read_with(const sim::OverrideWords& words) {
+  auto files = sim::small_scenario();
+  return sim::read_scenario("top.xml", files, sim::read_overrides(words));
+}
+
+TEST(Sweep, ACombinationStartsWhereTheOptionsPutTheRobot) {
+  const Sweep sweep = sweep_over({"y=-0.5:0.5:0.25", "heading=0:90:45", "x=2"});
+  sim::OverrideWords words;
+  words.at = "2,-0.25";
+  words.heading = "90";
+  const sim::Pose expected = read_with(words).environment.robot_pose;
+  const sim::Pose start = sweep.scenario_of({1, 2, 0}).environment.robot_pose;
+  EXPECT_EQ(start.position, expected.position);
+  EXPECT_EQ(start.orientation.coeffs(), expected.orientation.coeffs());
+  EXPECT_EQ(sweep.quantities[0].unit, "m");
+  EXPECT_EQ(sweep.quantities[1].unit, "deg");
+}
+
 TEST(Sweep, RefusesWordsThatAreNoRange) {
   for (const char* word : {"amplitude", "=1:2", "amplitude=", "amplitude=1:2:3:4", "amplitude=1:x", "amplitude=1e3",
                            "amplitude=1:2:", "amplitude=1234567890123456"}) {
@@ -120,12 +138,16 @@ TEST(Sweep, RefusesAnOverrideOfWhatItSweeps) {
   sim::Scenario scenario = sim::small_scenario().scenario();
   scenario.overrides.seed = 7;
   scenario.overrides.friction = 0.25;
+  scenario.overrides.at.emplace(1.0, 2.0);
+  scenario.overrides.heading_deg = 30.0;
   const auto refusal_of = [&](const std::string& word) {
     const std::vector<std::string> words{word};
     return message_of<InputError>([&] { static_cast<void>(read_sweep(scenario, words)); });
   };
   EXPECT_EQ(refusal_of("seed=1:2"), "--over seed=1:2: found --seed 7 as well, expected one of the two");
   EXPECT_EQ(refusal_of("friction=0:1"), "--over friction=0:1: found --friction 0.25 as well, expected one of the two");
+  EXPECT_EQ(refusal_of("y=0:1"), "--over y=0:1: found --at 1,2 as well, expected one of the two");
+  EXPECT_EQ(refusal_of("heading=0:1"), "--over heading=0:1: found --heading 30 as well, expected one of the two");
   EXPECT_EQ(refusal_of("amplitude=1:2"), "");
 }
 

@@ -1,0 +1,191 @@
+#include "sim/optimize/confirm/gait_confirmation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/fixed/random.hpp"
+#include "sim/loop/simulation_batch.hpp"
+#include "sim/optimize/confirm/doubts.hpp"
+#include "sim/optimize/evaluation/fitness_source.hpp"
+#include "sim/physics/physics_error.hpp"
+#include "sim/scenario/random_streams.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+using sim::PhysicsEngine;
+
+constexpr std::size_t batch_size = 16;
+
+using Progress = std::function<void(double share)>;
+
+std::uint32_t first_ticks(const sim::Scenario& scenario) {
+  const std::uint32_t ticks = sim::tick_count(scenario);
+  const auto second = static_cast<std::uint32_t>(1'000'000 / scenario.kernel.tick_period_us);
+  return std::max(std::min(second, ticks / 10), 1U);
+}
+
+ConfirmedRun run(const sim::Scenario& scenario, std::string name, const Progress& progress) {
+  ConfirmedRun result{std::move(name), scenario.environment.engine, scenario.step_s};
+  const std::uint32_t ticks = sim::tick_count(scenario);
+  result.first_share = static_cast<double>(first_ticks(scenario)) / ticks;
+  try {
+    sim::Simulation simulation(scenario);
+    simulation.leave_out_hashes();
+    double unexplained = 0.0;
+    while (simulation.tick() < ticks) {
+      simulation.advance();
+      result.energy = simulation.plant().energy_balance();
+      result.energy_gains +=
+          std::max(result.energy.unexplained - std::exchange(unexplained, result.energy.unexplained), 0.0);
+      if (simulation.tick() == first_ticks(scenario)) {
+        result.first_second = simulation.plant().displacement();
+      }
+      progress(static_cast<double>(simulation.tick()) / ticks);
+    }
+    result.distance = simulation.plant().displacement();
+  } catch (const sim::PhysicsError& error) {
+    result.failure = error.what();
+  } catch (const InputError& error) {
+    result.is_refused = true;
+    result.failure = error.what();
+  }
+  return result;
+}
+
+/// Half the step, or 1 ms if that is finer; a tick is a whole number of both.
+sim::Scenario with_finer_step(sim::Scenario scenario) {
+  constexpr double fine_s = 0.001;
+  const double tick_s = scenario.kernel.tick_period_us * 1e-6;
+  const double half = scenario.step_s / 2.0;
+  scenario.step_s = half > fine_s ? tick_s / std::ceil(tick_s / fine_s) : half;
+  return scenario;
+}
+
+sim::Scenario with_engine(sim::Scenario scenario, PhysicsEngine engine) {
+  scenario.environment.engine = engine;
+  return scenario;
+}
+
+PhysicsEngine other(PhysicsEngine engine) {
+  return engine == PhysicsEngine::ode ? PhysicsEngine::reduced : PhysicsEngine::ode;
+}
+
+sim::Scenario perturbed(sim::Scenario scenario, std::uint64_t seed) {
+  perturb(scenario, confirmation_spread(), seed);
+  Pcg32 random(seed, sim::random_stream::start);
+  for (Eigen::Index axis = 0; axis < 2; ++axis) {
+    const double draw = std::ldexp(static_cast<double>(random.next()), -31) - 1.0;  // -1 to 1
+    scenario.environment.robot_pose.position[axis] += draw * confirmation_start_m;
+  }
+  return scenario;
+}
+
+class OtherWorlds {
+ public:
+  OtherWorlds(const sim::Scenario& scenario, const ConfirmationOptions& options, GaitConfirmation& result,
+              const Progress& progress)
+      : result_(result), progress_(progress) {
+    for (std::uint32_t world = 0; world < options.worlds; ++world) {
+      scenarios_.push_back(
+          perturbed(with_engine(scenario, result.perturbed_engine), trial_seed(options.seed, 0, 0, world)));
+    }
+  }
+
+  void run_all() {
+    for (std::size_t first = 0; first < scenarios_.size(); first += size_of_batch()) {
+      const std::size_t count = std::min(size_of_batch(), scenarios_.size() - first);
+      if (count == 1) {
+        run_alone(first);
+      } else {
+        run_together(first, count);
+      }
+    }
+    std::ranges::sort(result_.perturbed);
+  }
+
+ private:
+  [[nodiscard]] std::size_t size_of_batch() const {
+    return result_.perturbed_engine == PhysicsEngine::reduced ? batch_size : 1;
+  }
+
+  void keep(double distance, bool has_failed) {
+    if (has_failed || !std::isfinite(distance)) {
+      ++result_.failed_worlds;
+    } else {
+      result_.perturbed.push_back(distance);
+    }
+  }
+
+  void show(std::size_t first, std::size_t count, double share) const {
+    progress_((static_cast<double>(first) + share * static_cast<double>(count)) /
+              static_cast<double>(scenarios_.size()));
+  }
+
+  void run_alone(std::size_t number) {
+    const ConfirmedRun result = run(scenarios_[number], "", [&](double share) { show(number, 1, share); });
+    keep(result.distance, !result.failure.empty());
+  }
+
+  void run_together(std::size_t first, std::size_t count) {
+    std::vector<const sim::Scenario*> members;
+    for (std::size_t i = first; i < first + count; ++i) {
+      members.push_back(&scenarios_[i]);
+    }
+    sim::SimulationBatch batch(members);
+    const std::uint32_t ticks = sim::tick_count(scenarios_.front());
+    for (std::uint32_t tick = 1; tick <= ticks; ++tick) {
+      batch.advance();
+      show(first, count, static_cast<double>(tick) / ticks);
+    }
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      keep(batch.simulation(i).plant().displacement(), !batch.failure(i).empty());
+    }
+  }
+
+  std::vector<sim::Scenario> scenarios_;
+  GaitConfirmation& result_;
+  const Progress& progress_;
+};
+
+}  // namespace
+
+Spread confirmation_spread() { return {0.2, 0.1, 0.2, 10.0, 0.0}; }
+
+bool GaitConfirmation::is_real() const { return std::ranges::all_of(findings, &ConfirmationFinding::is_good); }
+
+GaitConfirmation confirm_gait(const sim::Scenario& scenario, const ConfirmationOptions& options,
+                              const std::function<bool(double share)>& progress) {
+  // Shares of the time: the four runs that are shown, then the worlds.
+  constexpr double share_of_run = 0.1;
+  double done = 0.0;
+  double part = share_of_run;
+  const Progress show = [&](double share) {
+    if (progress && progress(done + part * share)) {
+      throw SearchEnded{};
+    }
+  };
+  GaitConfirmation result;
+  const auto add = [&](const sim::Scenario& changed, std::string name) {
+    result.runs.push_back(run(changed, std::move(name), show));
+    done += share_of_run;
+  };
+  add(scenario, "as it is");
+  add(with_finer_step(scenario), "a finer step");
+  const sim::Scenario elsewhere = with_engine(scenario, other(scenario.environment.engine));
+  add(elsewhere, "the other engine");
+  add(with_finer_step(elsewhere), "the other engine, a finer step");
+  // The reduced engine is twenty times as fast; what it does not have runs in ODE.
+  const bool has_reduced = std::ranges::any_of(
+      result.runs, [](const ConfirmedRun& its) { return its.engine == PhysicsEngine::reduced && its.failure.empty(); });
+  result.perturbed_engine = has_reduced ? PhysicsEngine::reduced : PhysicsEngine::ode;
+  part = 1.0 - done;
+  OtherWorlds(scenario, options, result, show).run_all();
+  result.findings = find_doubts(result);
+  return result;
+}
+
+}  // namespace proleg::optimize

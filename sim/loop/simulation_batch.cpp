@@ -18,6 +18,11 @@ std::vector<reduced::WorldInput> inputs_of(std::span<const Scenario* const> scen
 
 }  // namespace
 
+std::size_t batch_size(const Scenario& scenario) {
+  constexpr std::size_t enough = 64;
+  return scenario.environment.engine == PhysicsEngine::reduced && scenario.moves.empty() ? enough : 1;
+}
+
 SimulationBatch::SimulationBatch(std::span<const Scenario* const> scenarios, const reduced::ChainKernel* kernel)
     : worlds_(inputs_of(scenarios), kernel) {
   std::vector<std::unique_ptr<World>> worlds = worlds_.take_worlds();

@@ -12,6 +12,10 @@
 
 namespace proleg::sim {
 
+/// How many simulations of such scenarios are worth making together: more than 1 if the engine steps many worlds at
+/// once and no move puts the robot elsewhere.
+[[nodiscard]] std::size_t batch_size(const Scenario& scenario);
+
 /// Simulations in the reduced engine that make their steps together. Each gives the same bits as alone; none has
 /// hashes.
 class SimulationBatch {

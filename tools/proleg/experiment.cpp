@@ -15,6 +15,7 @@
 #include "sim/optimize/method/pagmo_algorithms.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/thesis_experiment.hpp"
+#include "sim/scenario/overrides.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/json_output.hpp"
@@ -256,7 +257,8 @@ int experiment(const Options& options) {
     results.push_back(std::move(result));
   }
   write_file(folder / "figure_7_1.svg", optimize::draw_method_comparison(all_runs, uniform_m));
-  const std::string summary = optimize::experiment_summary(all_runs, uniform_m);
+  const std::string engine(sim::name_of(chosen.front().second.scenario.environment.engine));
+  const std::string summary = optimize::experiment_summary(all_runs, uniform_m) + "\nengine: " + engine + "\n";
   write_file(folder / "summary.txt", summary);
 
   if (!options.json) {
@@ -279,11 +281,8 @@ int experiment(const Options& options) {
     }
     list.append(entry);
   }
-  Json object{{"experiment", options.name},
-              {"uniform_m", uniform_m},
-              {"methods", list},
-              {"out", folder.string()},
-              {"build_id", build_id}};
+  Json object{{"experiment", options.name}, {"engine", engine},    {"uniform_m", uniform_m}, {"methods", list},
+              {"out", folder.string()},     {"build_id", build_id}};
   if (deluge != curves.end() && genetic != curves.end()) {
     object.add("great_deluge_above_genetic_after", optimize::overtaking(deluge->second, genetic->second));
   }
@@ -306,6 +305,7 @@ int main(int argc, char** argv) {
       "--method", options.methods,
       "great-deluge, genetic, cma-es, or another algorithm of pagmo; may be repeated; default: the first three. "
       "Methods that the folder already has are shown, too.");
+  add_engine_option(command_line, options);
   command_line.add_option("--evaluations", options.evaluations,
                           "maximum number of evaluations in one search; default: that of the files");
   command_line.add_option("--workers", options.workers,

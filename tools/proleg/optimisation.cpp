@@ -2,11 +2,13 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/method/search.hpp"
+#include "sim/scenario/overrides.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/run_progress.hpp"
@@ -27,7 +29,19 @@ double own_cpu_s() {
 
 }  // namespace
 
+void add_engine_option(CommandLine& command_line, ExperimentOptions& options) {
+  const auto declarations = sim::override_declarations();
+  const auto engine = std::ranges::find(declarations, &sim::OverrideWords::engine, &sim::OverrideDeclaration::word);
+  command_line.add_option("--engine", options.engine, std::string(engine->help));
+}
+
 void apply_options(const ExperimentOptions& options, optimize::Experiment& experiment) {
+  if (options.engine) {
+    sim::OverrideWords words;
+    words.engine = options.engine;
+    experiment.scenario.overrides = sim::read_overrides(words);
+    sim::apply_overrides(experiment.scenario.overrides, experiment.scenario.environment);
+  }
   if (options.evaluations) {
     const std::optional<std::uint64_t> count = parse_whole<std::uint64_t>(*options.evaluations);
     if (!count || *count == 0 || *count > 1'000'000'000) {
@@ -43,6 +57,7 @@ void apply_options(const ExperimentOptions& options, optimize::Experiment& exper
     experiment.seed = *seed;
   }
   optimize::check_method(experiment);
+  optimize::require_engine(experiment);
 }
 
 std::filesystem::path store_path(const std::filesystem::path& folder) { return folder / "store.sqlite"; }

@@ -15,17 +15,21 @@
 #include "sim/optimize/evaluation/store.hpp"
 #include "sim/optimize/evaluation/workers.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
+#include "tools/proleg/command_line.hpp"
 #include "tools/proleg/json_output.hpp"
 
 namespace proleg::tools {
 
-/// Options that replace values of the experiment's file: --evaluations, --seed.
+/// Options that replace values of the experiment's files: --engine, --evaluations, --seed.
 struct ExperimentOptions {
+  std::optional<std::string> engine;
   std::optional<std::string> evaluations;
   std::optional<std::string> seed;
 };
 
-/// Applies the options to an experiment. Throws InputError, also if the method rejects the experiment.
+void add_engine_option(CommandLine& command_line, ExperimentOptions& options);
+
+/// Applies the options to an experiment. Throws InputError, also if the method or the engine rejects the experiment.
 void apply_options(const ExperimentOptions& options, optimize::Experiment& experiment);
 
 /// Path of the store in the folder of an experiment.

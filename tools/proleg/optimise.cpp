@@ -12,6 +12,7 @@
 #include "sim/loop/simulation.hpp"
 #include "sim/optimize/method/search.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "sim/scenario/overrides.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
@@ -40,8 +41,10 @@ std::filesystem::path folder_of(const OptimiseOptions& options, const Experiment
 void print_json(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
                 const std::filesystem::path& folder, std::uint32_t workers) {
   const optimize::SearchProgress& progress = outcome.progress;
-  Json object{
-      {"experiment", experiment.path}, {"method", optimize::method_name(experiment.method)}, {"seed", experiment.seed}};
+  Json object{{"experiment", experiment.path},
+              {"method", optimize::method_name(experiment.method)},
+              {"engine", std::string(sim::name_of(experiment.scenario.environment.engine))},
+              {"seed", experiment.seed}};
   add_result(experiment, result, object);
   object.add("evaluations", progress.evaluations);
   object.add("simulated", progress.simulated);
@@ -66,6 +69,7 @@ void print_text(const Experiment& experiment, const SearchOutcome& outcome, cons
                 const std::vector<std::filesystem::path>& files, std::uint32_t workers) {
   print_result(experiment, outcome, result);
   const optimize::SearchProgress& progress = outcome.progress;
+  std::printf("%-24s %s\n", "engine", std::string(sim::name_of(experiment.scenario.environment.engine)).c_str());
   std::printf("%-24s %.1f s, %.0f simulated s/s; %u workers, %.1f %% busy; optimiser and store %.2f %%\n", "time",
               outcome.wall_s, progress.simulated_s / outcome.wall_s, workers,
               100.0 * progress.workers_s / (outcome.wall_s * workers), 100.0 * overhead(outcome));
@@ -100,6 +104,7 @@ std::string command_to_continue(const OptimiseOptions& options, const std::files
     }
   };
   add("--simulation", options.simulation);
+  add("--engine", options.engine);
   add("--evaluations", options.evaluations);
   add("--seed", options.seed);
   add("--resume", folder.string());
@@ -247,6 +252,7 @@ int optimise_command(int argc, char** argv, const WorkersMaker& make_workers) {
 void add_optimise_options(CommandLine& command_line, OptimiseOptions& options) {
   command_line.add_option("FILE", options.file, "experiment: a *.optimise.xml file; may be omitted with --resume");
   command_line.add_option("--simulation", options.simulation, "scenario to optimise; default: the one that FILE names");
+  add_engine_option(command_line, options);
   command_line.add_option("--evaluations", options.evaluations, "maximum number of evaluations; default: that of FILE");
   command_line.add_option("--workers", options.workers,
                           "number of simulations at the same time; default: number of processors");

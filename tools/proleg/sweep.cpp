@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <span>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -13,9 +14,11 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/loop/simulation.hpp"
 #include "sim/optimize/evaluation/local_workers.hpp"
 #include "sim/optimize/experiment/trials.hpp"
 #include "sim/optimize/sweep/sweep.hpp"
+#include "sim/scenario/overrides.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/json_output.hpp"
@@ -128,10 +131,11 @@ void count_runs(SweepResult& result) {
 SweepResult run(const Sweep& sweep, std::uint32_t worker_count) {
   optimize::Experiment experiment;  // the workers take their time limit from it
   experiment.scenario.duration_s = sweep.scenario.duration_s;
-  optimize::LocalWorkers workers(experiment, worker_count,
-                                 [&sweep](const optimize::Experiment& /*experiment*/, const optimize::Task& task) {
-                                   return optimize::run_combination(sweep, task.candidate);
-                                 });
+  optimize::LocalWorkers workers(
+      experiment, worker_count,
+      [&sweep](const optimize::Experiment& /*experiment*/, std::span<const optimize::Task> tasks) {
+        return optimize::run_combinations(sweep, tasks);
+      });
   CountProgress progress("runs", sweep.size());
   const auto show = [&](std::uint64_t done) {
     for (const std::string& message : workers.messages()) {
@@ -203,9 +207,9 @@ void print_table(const Sweep& sweep, sim::Measure measure, const SweepResult& re
   if (result.groups.size() > max_lines) {
     std::printf("  ... and %zu more lines in summary.tsv\n", result.groups.size() - max_lines);
   }
-  std::printf("%-10s %zu of %llu, %llu of them failed; %u workers, %.1f s\n", "runs", result.runs.size(),
+  std::printf("%-10s %zu of %llu, %llu of them failed; engine %s, %u workers, %.1f s\n", "runs", result.runs.size(),
               static_cast<unsigned long long>(sweep.size()), static_cast<unsigned long long>(result.failed),
-              result.workers, result.wall_s);
+              std::string(sim::name_of(sweep.scenario.environment.engine)).c_str(), result.workers, result.wall_s);
   if (result.failed > 0) {
     std::printf("%-10s the first at %s\n", "failed", first_failure(sweep, result).c_str());
   }
@@ -230,6 +234,7 @@ void print_json(const SweepOptions& options, const Sweep& sweep, const std::file
                    {"values", group.values.size()}});
   }
   const Json object{{"scenario", options.scenario.file},
+                    {"engine", std::string(sim::name_of(sweep.scenario.environment.engine))},
                     {"measure", options.measure},
                     {"combinations", sweep.size()},
                     {"runs", result.runs.size()},
@@ -276,6 +281,7 @@ int sweep(const SweepOptions& options) {
   const Sweep sweep = optimize::read_sweep(std::move(setup.scenario), options.over, options.scenario.settings);
   const std::uint32_t worker_count = parse_workers(options.workers);
   const std::filesystem::path folder = result_folder(options);
+  static_cast<void>(sim::Simulation(sweep.scenario));  // an engine that does not have the world refuses it now
   catch_interrupts();
   create_folder(folder);
   print_warnings("proleg sweep", sweep.scenario);

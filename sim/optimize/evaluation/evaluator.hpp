@@ -39,7 +39,7 @@ class Evaluator final : public FitnessSource {
   Evaluator& operator=(const Evaluator&) = delete;
 
   void expect(std::span<const Candidate> next) override;
-  [[nodiscard]] std::size_t lookahead() const override;  ///< twice the number of workers
+  [[nodiscard]] std::size_t lookahead() const override;  ///< twice the number of workers; in batches, eight times
   std::vector<double> fitness(const Candidate& candidate) override;
   void set_needed_score(std::optional<double> score) override;
 

@@ -22,6 +22,11 @@ std::string name_of(const Task& task) {
   return "evaluation " + std::to_string(task.number) + " of run " + std::to_string(task.run);
 }
 
+std::string name_of(std::span<const TicketedTask> batch) {
+  const std::string first = name_of(batch.front().task);
+  return batch.size() == 1 ? first : "a batch of " + std::to_string(batch.size()) + " tasks from " + first + " on";
+}
+
 std::string joined(std::initializer_list<std::string> parts) {
   std::string text;
   for (const std::string& part : parts) {
@@ -34,7 +39,7 @@ std::string joined(std::initializer_list<std::string> parts) {
 
 class LocalWorkers::Implementation {
  public:
-  Implementation(const Experiment& experiment, std::uint32_t count, RunTask run, TaskLimit limit)
+  Implementation(const Experiment& experiment, std::uint32_t count, RunTasks run, TaskLimit limit)
       : experiment_(experiment),
         run_(std::move(run)),
         limit_(limit.fixed + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(
@@ -59,31 +64,34 @@ class LocalWorkers::Implementation {
     return static_cast<std::uint32_t>(std::ranges::count_if(workers_, is_idle));
   }
 
-  void start(std::uint64_t ticket, const Task& task) {
+  void start(std::span<const TicketedTask> batch) {
     const auto worker = std::ranges::find_if(workers_, is_idle);
     if (worker == workers_.end()) {
       throw std::logic_error("start() without an idle worker");
     }
-    assign(*worker, {ticket, task, 0});
+    assign(*worker, {{batch.begin(), batch.end()}, 0});
   }
 
   std::optional<Done> wait(std::chrono::milliseconds timeout) {
     const Clock::time_point end = Clock::now() + timeout;
     while (true) {
+      if (!finished_.empty()) {
+        Done done = std::move(finished_.front());
+        finished_.pop_front();
+        return done;
+      }
       const std::optional<int> ready = poll_workers(std::min(timeout, max_poll_time));
       if (!ready) {
         return std::nullopt;  // a signal: the caller may want to stop
       }
       for (std::uint32_t i = 0; *ready > 0 && i < workers_.size(); ++i) {
         if (workers_[i].readable) {
-          if (std::optional<Done> done = receive(i)) {
-            return done;
-          }
+          receive(i);
         }
       }
       replace_hung();
       const Clock::time_point now = Clock::now();
-      if (now >= end) {
+      if (now >= end && finished_.empty()) {
         return std::nullopt;
       }
       timeout = std::chrono::ceil<std::chrono::milliseconds>(end - now);
@@ -94,14 +102,13 @@ class LocalWorkers::Implementation {
 
  private:
   struct Assignment {
-    std::uint64_t ticket;
-    Task task;
+    std::vector<TicketedTask> batch;
     unsigned deaths;  ///< of workers that had it
   };
   struct Worker {
     std::unique_ptr<WorkerProcess> process;  ///< null: not replaced
     std::optional<Assignment> assignment;
-    Clock::duration busy{};    ///< with the task, while somebody waited
+    Clock::duration busy{};    ///< with its tasks, while somebody waited
     unsigned idle_deaths = 0;  ///< since its last result
     bool readable = false;
   };
@@ -126,7 +133,11 @@ class LocalWorkers::Implementation {
   }
 
   static void assign(Worker& worker, Assignment assignment) {
-    worker.process->send(assignment.task);
+    std::vector<Task> tasks;
+    for (const TicketedTask& each : assignment.batch) {
+      tasks.push_back(each.task);
+    }
+    worker.process->send(tasks);
     worker.assignment = std::move(assignment);
     worker.busy = {};
   }
@@ -153,31 +164,38 @@ class LocalWorkers::Implementation {
     return ready;
   }
 
-  std::optional<Done> receive(std::uint32_t number) {
+  void receive(std::uint32_t number) {
     Worker& worker = workers_[number];
     worker.readable = false;
-    const WorkerProcess::Reply reply = worker.process->receive();
+    WorkerProcess::Reply reply = worker.process->receive();
     if (const auto* failed = std::get_if<WorkerProcess::Failed>(&reply)) {
       replace(number, "failed (" + failed->what + ")");
-      return std::nullopt;
+      return;
     }
     if (std::holds_alternative<WorkerProcess::Gone>(reply) || !worker.assignment) {
       replace(number, {});
-      return std::nullopt;
+      return;
     }
-    const std::uint64_t ticket = worker.assignment->ticket;
+    auto& results = std::get<std::vector<TrialResult>>(reply);
+    if (results.size() != worker.assignment->batch.size()) {
+      replace(number, "failed (it sent a wrong number of results)");
+      return;
+    }
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      finished_.push_back({worker.assignment->batch[i].ticket, std::move(results[i]), number});
+    }
     worker.assignment.reset();
     worker.idle_deaths = 0;
-    if (!orphaned_.empty()) {
-      assign(worker, std::move(orphaned_.front()));
-      orphaned_.pop_front();
-    }
-    return Done{ticket, std::get<TrialResult>(reply), number};
+    assign_orphaned();
+  }
+
+  [[nodiscard]] Clock::duration time_limit(const Assignment& assignment) const {
+    return limit_ * static_cast<int>(assignment.batch.size());
   }
 
   void replace_hung() {
     for (std::uint32_t i = 0; i < workers_.size(); ++i) {
-      if (workers_[i].assignment && workers_[i].busy > limit_) {
+      if (workers_[i].assignment && workers_[i].busy > time_limit(*workers_[i].assignment)) {
         const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(workers_[i].busy).count();
         replace(i, "did not answer for " + std::to_string(seconds) + " s");
       }
@@ -193,49 +211,64 @@ class LocalWorkers::Implementation {
     what = joined({"worker ", std::to_string(number), " (process ", process, ") ", what.empty() ? end : what});
     std::optional<Assignment> assignment = std::exchange(worker.assignment, std::nullopt);
     if (assignment && ++assignment->deaths >= max_deaths) {
-      throw std::runtime_error(joined({name_of(assignment->task), " ended ", std::to_string(max_deaths),
+      throw std::runtime_error(joined({name_of(assignment->batch), " ended ", std::to_string(max_deaths),
                                        " workers, so it cannot be simulated: ", what}));
     }
-    what += assignment ? " in " + name_of(assignment->task) : " without a task";
+    what += assignment ? " in " + name_of(assignment->batch) : " without a task";
+    const std::string repeated = !assignment                     ? ""
+                                 : assignment->batch.size() == 1 ? "evaluation repeated"
+                                                                 : "its tasks repeated one by one";
     std::string reason = "it ended " + std::to_string(max_deaths) + " times";
     if (assignment || ++worker.idle_deaths < max_deaths) {
       reason = fork_worker(worker);
     }
     if (!reason.empty()) {
-      messages_.push_back(joined({what, "; not started again: ", reason, assignment ? "; evaluation repeated" : ""}));
+      messages_.push_back(joined({what, "; not started again: ", reason, assignment ? "; " : "", repeated}));
       require_worker(reason);
     } else {
-      messages_.push_back(what + "; started again" + (assignment ? ", evaluation repeated" : ""));
+      messages_.push_back(joined({what, "; started again", assignment ? ", " : "", repeated}));
     }
     if (assignment) {
-      repeat(std::move(*assignment), worker);
+      repeat(std::move(*assignment));
     }
   }
 
-  void repeat(Assignment assignment, Worker& replacement) {
-    const auto worker = replacement.process != nullptr ? workers_.begin() + (&replacement - workers_.data())
-                                                       : std::ranges::find_if(workers_, is_idle);
-    if (worker != workers_.end()) {
-      assign(*worker, std::move(assignment));
-    } else {
+  /// Which task of a batch ended the worker is not known. Alone, each has its own number of deaths.
+  void repeat(Assignment assignment) {
+    if (assignment.batch.size() == 1) {
       orphaned_.push_back(std::move(assignment));
+    } else {
+      for (TicketedTask& each : assignment.batch) {
+        orphaned_.push_back({{std::move(each)}, 0});
+      }
+    }
+    assign_orphaned();
+  }
+
+  void assign_orphaned() {
+    for (Worker& worker : workers_) {
+      if (!orphaned_.empty() && is_idle(worker)) {
+        assign(worker, std::move(orphaned_.front()));
+        orphaned_.pop_front();
+      }
     }
   }
 
   const Experiment& experiment_;
-  RunTask run_;
+  RunTasks run_;
   Clock::duration limit_;
   std::vector<Worker> workers_;
-  std::deque<Assignment> orphaned_;  ///< tasks whose worker died and was not replaced, until another is idle
+  std::deque<Assignment> orphaned_;  ///< tasks whose worker died, until one is idle
+  std::deque<Done> finished_;        ///< results that nobody has received
   std::vector<std::string> messages_;
 };
 
-LocalWorkers::LocalWorkers(const Experiment& experiment, std::uint32_t count, RunTask run, TaskLimit limit)
+LocalWorkers::LocalWorkers(const Experiment& experiment, std::uint32_t count, RunTasks run, TaskLimit limit)
     : implementation_(std::make_unique<Implementation>(experiment, count, std::move(run), limit)) {}
 LocalWorkers::~LocalWorkers() = default;
 std::uint32_t LocalWorkers::count() const { return implementation_->count(); }
 std::uint32_t LocalWorkers::idle() const { return implementation_->idle(); }
-void LocalWorkers::start(std::uint64_t ticket, const Task& task) { implementation_->start(ticket, task); }
+void LocalWorkers::start(std::span<const TicketedTask> batch) { implementation_->start(batch); }
 std::optional<Workers::Done> LocalWorkers::wait(std::chrono::milliseconds timeout) {
   return implementation_->wait(timeout);
 }

@@ -9,8 +9,8 @@
 
 namespace proleg::optimize {
 
-/// How long a task may take before its worker counts as hung. Only time within wait() counts: a program that was
-/// stopped (Ctrl-Z) and continued keeps its workers.
+/// How long a task may take before its worker counts as hung; a batch, as long as its tasks one after the other. Only
+/// time within wait() counts: a program that was stopped (Ctrl-Z) and continued keeps its workers.
 struct TaskLimit {
   std::chrono::milliseconds fixed{60'000};
   double per_simulated_second = 50.0;  ///< s; a simulation runs about a hundred times faster than this robot crawls
@@ -21,9 +21,9 @@ struct TaskLimit {
 class LocalWorkers final : public Workers {
  public:
   /// count: at least 1. experiment: must outlive this. The process must have one thread here and in wait(), which may
-  /// replace a worker. Throws std::runtime_error if the system cannot start any process. run: what a worker does with a
-  /// task.
-  LocalWorkers(const Experiment& experiment, std::uint32_t count, RunTask run = run_trial, TaskLimit limit = {});
+  /// replace a worker. Throws std::runtime_error if the system cannot start any process. run: what a worker does with
+  /// its tasks.
+  LocalWorkers(const Experiment& experiment, std::uint32_t count, RunTasks run = run_trials, TaskLimit limit = {});
   ~LocalWorkers() override;  ///< ends the processes, also in the middle of a task
   LocalWorkers(const LocalWorkers&) = delete;
   LocalWorkers& operator=(const LocalWorkers&) = delete;
@@ -31,7 +31,7 @@ class LocalWorkers final : public Workers {
   /// Workers that are left; fewer than `count` if the system could not start more.
   [[nodiscard]] std::uint32_t count() const override;
   [[nodiscard]] std::uint32_t idle() const override;
-  void start(std::uint64_t ticket, const Task& task) override;
+  void start(std::span<const TicketedTask> batch) override;
   [[nodiscard]] std::optional<Done> wait(std::chrono::milliseconds timeout) override;
   [[nodiscard]] std::vector<std::string> messages() override;
 

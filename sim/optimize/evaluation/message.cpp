@@ -72,6 +72,14 @@ class Reader {
     }
   }
 
+  /// A number of items that fits the rest of the bytes, so that a wrong one allocates no memory.
+  std::size_t read_count(std::size_t item_size) {
+    std::uint64_t count = 0;
+    read(count);
+    ok_ = ok_ && count <= rest_.size() / item_size;
+    return ok_ ? count : 0;
+  }
+
   [[nodiscard]] bool ok() const { return ok_; }
   [[nodiscard]] bool finished() const { return ok_ && rest_.empty(); }
 
@@ -84,13 +92,6 @@ class Reader {
     const std::span<const std::byte> bytes = rest_.first(count);
     rest_ = rest_.subspan(count);
     return bytes;
-  }
-  /// A number of items that fits the rest of the bytes, so that a wrong one allocates no memory.
-  std::size_t read_count(std::size_t item_size) {
-    std::uint64_t count = 0;
-    read(count);
-    ok_ = ok_ && count <= rest_.size() / item_size;
-    return ok_ ? count : 0;
   }
 
   std::span<const std::byte> rest_;
@@ -119,44 +120,59 @@ void each_result_field(ResultType& result, const Visit& field) {
   field(result.limited_joints);
 }
 
-}  // namespace
-
-Bytes to_bytes(const Task& task) {
-  Writer writer;
+void write_item(Writer& writer, const Task& task) {
   each_field(task, [&](const auto& value) { writer.write(value); });
   writer.write(task.hopeless_below.has_value());
   writer.write(task.hopeless_below.value_or(0.0));
-  return writer.release();
 }
 
-std::optional<Task> task_from(std::span<const std::byte> bytes) {
-  Reader reader(bytes);
-  Task task;
+void read_item(Reader& reader, Task& task) {
   each_field(task, [&](auto& value) { reader.read(value); });
   bool has_limit = false;
   double hopeless_below = 0.0;
   reader.read(has_limit);
   reader.read(hopeless_below);
-  if (!reader.finished()) {
-    return std::nullopt;
-  }
   if (has_limit) {
     task.hopeless_below = hopeless_below;
   }
-  return task;
 }
 
-Bytes to_bytes(const TrialResult& result) {
-  Writer writer;
+void write_item(Writer& writer, const TrialResult& result) {
   each_result_field(result, [&](const auto& value) { writer.write(value); });
+}
+
+void read_item(Reader& reader, TrialResult& result) {
+  each_result_field(result, [&](auto& value) { reader.read(value); });
+}
+
+template <typename Item>
+Bytes bytes_of(std::span<const Item> items) {
+  Writer writer;
+  writer.write(items.size());
+  for (const Item& item : items) {
+    write_item(writer, item);
+  }
   return writer.release();
 }
 
-std::optional<TrialResult> result_from(std::span<const std::byte> bytes) {
+template <typename Item>
+std::optional<std::vector<Item>> items_from(std::span<const std::byte> bytes) {
   Reader reader(bytes);
-  TrialResult result;
-  each_result_field(result, [&](auto& value) { reader.read(value); });
-  return reader.finished() ? std::optional(std::move(result)) : std::nullopt;
+  std::vector<Item> items;
+  for (std::size_t left = reader.read_count(1); left > 0 && reader.ok(); --left) {
+    read_item(reader, items.emplace_back());
+  }
+  return reader.finished() ? std::optional(std::move(items)) : std::nullopt;
+}
+
+}  // namespace
+
+Bytes to_bytes(std::span<const Task> tasks) { return bytes_of(tasks); }
+Bytes to_bytes(std::span<const TrialResult> results) { return bytes_of(results); }
+
+std::optional<std::vector<Task>> tasks_from(std::span<const std::byte> bytes) { return items_from<Task>(bytes); }
+std::optional<std::vector<TrialResult>> results_from(std::span<const std::byte> bytes) {
+  return items_from<TrialResult>(bytes);
 }
 
 }  // namespace proleg::optimize

@@ -14,12 +14,12 @@ namespace proleg::optimize {
 
 using Bytes = std::vector<std::byte>;
 
-[[nodiscard]] Bytes to_bytes(const Task& task);
-[[nodiscard]] Bytes to_bytes(const TrialResult& result);
+[[nodiscard]] Bytes to_bytes(std::span<const Task> tasks);
+[[nodiscard]] Bytes to_bytes(std::span<const TrialResult> results);
 
-/// Nothing if the bytes are not exactly a task.
-[[nodiscard]] std::optional<Task> task_from(std::span<const std::byte> bytes);
-/// Nothing if the bytes are not exactly a result.
-[[nodiscard]] std::optional<TrialResult> result_from(std::span<const std::byte> bytes);
+/// Nothing if the bytes are not exactly tasks.
+[[nodiscard]] std::optional<std::vector<Task>> tasks_from(std::span<const std::byte> bytes);
+/// Nothing if the bytes are not exactly results.
+[[nodiscard]] std::optional<std::vector<TrialResult>> results_from(std::span<const std::byte> bytes);
 
 }  // namespace proleg::optimize

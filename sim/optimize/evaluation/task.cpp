@@ -1,12 +1,12 @@
 #include "sim/optimize/evaluation/task.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "sim/loop/simulation.hpp"
-#include "sim/physics/physics_error.hpp"
+#include "sim/optimize/evaluation/scenario_runs.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -53,37 +53,24 @@ void race(const Experiment& experiment, double hopeless_below, const sim::Simula
   }
 }
 
-/// hopeless_below: for racing; nothing: the run goes to its end.
-void simulate(const Experiment& experiment, const sim::Scenario& scenario, std::optional<double> hopeless_below,
-              TrialResult& result) {
-  const std::uint32_t ticks = sim::tick_count(scenario);
-  const std::optional<std::uint32_t> check_tick = racing_tick(experiment, hopeless_below, ticks);
-  sim::Simulation simulation(scenario);
-  simulation.leave_out_hashes();
-  try {
-    while (simulation.tick() < ticks && !result.given_up) {
-      simulation.advance();
-      if (simulation.tick() == check_tick) {
-        race(experiment, *hopeless_below, simulation, static_cast<double>(*check_tick) / ticks, result);
-      }
+/// hopeless_below: of each scenario, for racing; nothing: the run goes to its end.
+std::vector<TrialResult> simulate(const Experiment& experiment, std::span<const sim::Scenario> scenarios,
+                                  std::span<const std::optional<double>> hopeless_below) {
+  const std::uint32_t ticks = sim::tick_count(experiment.scenario);
+  RunWatch watch;
+  watch.after_tick = [&](std::size_t i, const sim::Simulation& simulation, TrialResult& result) {
+    if (const auto check_tick = racing_tick(experiment, hopeless_below[i], ticks); simulation.tick() == check_tick) {
+      race(experiment, *hopeless_below[i], simulation, static_cast<double>(*check_tick) / ticks, result);
     }
-    if (!result.given_up) {
-      result.measures = simulation.measures(experiment.heading_deg);
-    }
-  } catch (const sim::PhysicsError& error) {
-    result.failure = error.what();
+  };
+  watch.at_end = [&](std::size_t /*i*/, const sim::Simulation& simulation, TrialResult& result) {
+    result.measures = simulation.measures(experiment.heading_deg);
+  };
+  std::vector<TrialResult> results = run_scenarios(scenarios, watch);
+  for (TrialResult& result : results) {
+    normalise(result.measures);
   }
-  result.simulated_s = simulation.time_s();
-}
-
-TrialResult timed_run(const Experiment& experiment, const sim::Scenario& scenario,
-                      std::optional<double> hopeless_below) {
-  const auto start = std::chrono::steady_clock::now();
-  TrialResult result;
-  simulate(experiment, scenario, hopeless_below, result);
-  normalise(result.measures);
-  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  return results;
 }
 
 }  // namespace
@@ -99,8 +86,25 @@ bool differs_between_evaluations(const Experiment& experiment) {
          depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread);
 }
 
+std::vector<TrialResult> run_trials(const Experiment& experiment, std::span<const Task> tasks) {
+  std::vector<sim::Scenario> scenarios;
+  std::vector<std::optional<double>> hopeless_below;
+  for (const Task& task : tasks) {
+    scenarios.push_back(scenario_of(experiment, task));
+    hopeless_below.push_back(task.hopeless_below);
+  }
+  return simulate(experiment, scenarios, hopeless_below);
+}
+
 TrialResult run_trial(const Experiment& experiment, const Task& task) {
-  return timed_run(experiment, scenario_of(experiment, task), task.hopeless_below);
+  return std::move(run_trials(experiment, {&task, 1}).front());
+}
+
+void require_engine(const Experiment& experiment) {
+  Task task;
+  task.candidate = experiment.space.nearest(experiment.scenario);
+  const sim::Scenario scenario = scenario_of(experiment, task);
+  static_cast<void>(sim::Simulation(scenario));
 }
 
 sim::Scenario own_world(const Experiment& experiment, const Evaluation& evaluation) {
@@ -113,7 +117,9 @@ sim::Scenario own_world(const Experiment& experiment, const Evaluation& evaluati
 }
 
 TrialResult run_own_world(const Experiment& experiment, const Evaluation& evaluation) {
-  return timed_run(experiment, own_world(experiment, evaluation), std::nullopt);
+  const sim::Scenario scenario = own_world(experiment, evaluation);
+  const std::optional<double> no_limit;
+  return std::move(simulate(experiment, {&scenario, 1}, {&no_limit, 1}).front());
 }
 
 }  // namespace proleg::optimize

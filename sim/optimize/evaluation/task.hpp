@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "sim/measure/measure.hpp"
 #include "sim/optimize/experiment/experiment.hpp"
@@ -33,15 +35,21 @@ struct Task {
 struct TrialResult {
   sim::MeasureValues measures;
   double simulated_s = 0.0;
-  double wall_s = 0.0;               ///< what the worker needed; processor time would not include waiting
+  double wall_s = 0.0;               ///< what the worker needed, its share of a batch; processor time would not
+                                     ///< include waiting
   bool given_up = false;             ///< racing stopped it; distance and speed are extrapolated
   std::string failure;               ///< why the simulation failed (PhysicsError); empty if it did not
   std::uint32_t limited_joints = 0;  ///< whose servos cannot follow the gait; only sweeps count them
 };
 
-/// Simulates a task. The result, except wall_s, depends only on experiment and task. Throws only if the system fails
-/// (out of memory).
+/// Simulates tasks, together if the engine can. Each result, except wall_s, depends only on experiment and task. Throws
+/// only if the system fails (out of memory).
+[[nodiscard]] std::vector<TrialResult> run_trials(const Experiment& experiment, std::span<const Task> tasks);
+/// Simulates one task.
 [[nodiscard]] TrialResult run_trial(const Experiment& experiment, const Task& task);
+
+/// Throws InputError if the engine cannot simulate the experiment's trials.
+void require_engine(const Experiment& experiment);
 
 /// A rated candidate: the outcome of all its trials.
 struct Evaluation {

@@ -1,5 +1,6 @@
 #include "sim/optimize/evaluation/task_pipeline.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <utility>
 
@@ -88,13 +89,17 @@ void TaskPipeline::run(std::chrono::milliseconds timeout) {
 }
 
 void TaskPipeline::give_tasks() {
+  const std::size_t share = share_of_worker(experiment_.scenario, queue_.size(), workers_);
   while (!queue_.empty() && workers_.idle() > 0) {
-    const std::uint64_t ticket = new_ticket();
-    Task task = std::move(queue_.front());
-    queue_.pop_front();
-    workers_.start(ticket, task);
-    keys_at_workers_.insert(key(task));
-    at_workers_.emplace(ticket, std::move(task));
+    std::vector<TicketedTask> batch;
+    for (; batch.size() < share && !queue_.empty(); queue_.pop_front()) {
+      batch.push_back({new_ticket(), std::move(queue_.front())});
+    }
+    workers_.start(batch);
+    for (TicketedTask& each : batch) {
+      keys_at_workers_.insert(key(each.task));
+      at_workers_.emplace(each.ticket, std::move(each.task));
+    }
   }
 }
 

@@ -21,6 +21,10 @@ namespace {
 constexpr std::byte is_result{0};
 constexpr std::byte is_failure{1};
 
+/// Bytes. The largest batch of candidates with the most dimensions takes a quarter of a million; the system's default
+/// is less.
+constexpr int max_message = 400'000;
+
 /// The next message; empty if the other end is closed. The sockets keep messages separate (SOCK_SEQPACKET), and no
 /// message is empty.
 Bytes receive_message(int socket) {
@@ -47,9 +51,9 @@ bool send_message(int socket, const Bytes& message) {
   return sent == static_cast<ssize_t>(message.size());
 }
 
-Bytes reply_to(const Task& task, const Experiment& experiment, const RunTask& run) {
+Bytes reply_to(std::span<const Task> tasks, const Experiment& experiment, const RunTasks& run) {
   try {
-    Bytes reply = to_bytes(run(experiment, task));
+    Bytes reply = to_bytes(run(experiment, tasks));
     reply.insert(reply.begin(), is_result);
     return reply;
   } catch (const std::exception& error) {
@@ -85,10 +89,10 @@ void leave_parent(int socket, pid_t parent) {
   }
 }
 
-[[noreturn]] void work(int socket, const Experiment& experiment, const RunTask& run) {
+[[noreturn]] void work(int socket, const Experiment& experiment, const RunTasks& run) {
   for (Bytes message = receive_message(socket); !message.empty(); message = receive_message(socket)) {
-    const std::optional<Task> task = task_from(message);
-    if (!task || !send_message(socket, reply_to(*task, experiment, run))) {
+    const std::optional<std::vector<Task>> tasks = tasks_from(message);
+    if (!tasks || !send_message(socket, reply_to(*tasks, experiment, run))) {
       break;
     }
   }
@@ -98,10 +102,13 @@ void leave_parent(int socket, pid_t parent) {
 
 }  // namespace
 
-WorkerProcess::WorkerProcess(const Experiment& experiment, const RunTask& run) {
+WorkerProcess::WorkerProcess(const Experiment& experiment, const RunTasks& run) {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     throw std::system_error(errno, std::generic_category());
+  }
+  for (const int end : ends) {
+    setsockopt(end, SOL_SOCKET, SO_SNDBUF, &max_message, sizeof max_message);
   }
   const pid_t parent = getpid();
   process_ = fork();
@@ -120,7 +127,7 @@ WorkerProcess::WorkerProcess(const Experiment& experiment, const RunTask& run) {
 
 WorkerProcess::~WorkerProcess() { end(); }
 
-void WorkerProcess::send(const Task& task) const { send_message(socket_, to_bytes(task)); }
+void WorkerProcess::send(std::span<const Task> tasks) const { send_message(socket_, to_bytes(tasks)); }
 
 WorkerProcess::Reply WorkerProcess::receive() const {
   const Bytes reply = receive_message(socket_);
@@ -129,8 +136,8 @@ WorkerProcess::Reply WorkerProcess::receive() const {
   }
   const std::span<const std::byte> content = std::span(reply).subspan(1);
   if (reply.front() == is_result) {
-    if (std::optional<TrialResult> result = result_from(content)) {
-      return std::move(*result);
+    if (std::optional<std::vector<TrialResult>> results = results_from(content)) {
+      return std::move(*results);
     }
     return Failed{"sent an invalid result"};
   }

@@ -4,24 +4,26 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "sim/optimize/evaluation/task.hpp"
 
 namespace proleg::optimize {
 
-/// What a worker does with a task: run_trial, or another function of the task.
-using RunTask = std::function<TrialResult(const Experiment&, const Task&)>;
+/// What a worker does with its tasks: run_trials, or another function that gives each task its result.
+using RunTasks = std::function<std::vector<TrialResult>(const Experiment&, std::span<const Task>)>;
 
-/// A child of this process that simulates one task after the other. It ends with this object, and with this process in
-/// any case. It ignores the signals that ask a program to end (SIGINT, SIGTERM, SIGHUP): a terminal and a batch system
-/// send them to both, and the parent decides.
+/// A child of this process that simulates one batch of tasks after the other. It ends with this object, and with this
+/// process in any case. It ignores the signals that ask a program to end (SIGINT, SIGTERM, SIGHUP): a terminal and a
+/// batch system send them to both, and the parent decides.
 class WorkerProcess {
  public:
   /// Forks. The process must have one thread: the child would have no others, and their locks would stay locked. Throws
   /// std::system_error if the system cannot start a process.
-  WorkerProcess(const Experiment& experiment, const RunTask& run);
+  WorkerProcess(const Experiment& experiment, const RunTasks& run);
   ~WorkerProcess();
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
@@ -30,16 +32,16 @@ class WorkerProcess {
   /// Becomes readable when there is a reply or the process has ended.
   [[nodiscard]] int socket() const { return socket_; }
 
-  /// If the process has ended, the task is lost and receive() returns Gone.
-  void send(const Task& task) const;
+  /// If the process has ended, the tasks are lost and receive() returns Gone.
+  void send(std::span<const Task> tasks) const;
 
-  /// The task threw an exception.
+  /// A task threw an exception.
   struct Failed {
     std::string what;
   };
   struct Gone {};
-  using Reply = std::variant<Gone, Failed, TrialResult>;
-  /// The reply to the task that was sent last; waits for it if it is not there yet.
+  using Reply = std::variant<Gone, Failed, std::vector<TrialResult>>;
+  /// The reply to the tasks that were sent last; waits for it if it is not there yet.
   [[nodiscard]] Reply receive() const;
 
   /// Kills the process if it still runs. Returns how it ended: "was killed by signal 9", "ended with exit status 1".

@@ -1,16 +1,26 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "sim/loop/simulation_batch.hpp"
 #include "sim/optimize/evaluation/task.hpp"
 
 namespace proleg::optimize {
 
-/// Workers simulate tasks in other processes. Each has at most one task at a time.
+/// A task with a number that identifies it in the result of Workers::wait().
+struct TicketedTask {
+  std::uint64_t ticket;
+  Task task;
+};
+
+/// Workers simulate tasks in other processes. Each has at most one batch of tasks at a time.
 class Workers {
  public:
   struct Done {
@@ -21,15 +31,24 @@ class Workers {
 
   virtual ~Workers() = default;
   [[nodiscard]] virtual std::uint32_t count() const = 0;
-  /// Workers without a task.
+  /// Workers without tasks.
   [[nodiscard]] virtual std::uint32_t idle() const = 0;
-  /// Gives an idle worker a task. ticket: identifies the task in the result of wait().
-  virtual void start(std::uint64_t ticket, const Task& task) = 0;
-  /// The next result, or nothing after the timeout. A worker that dies or hangs is replaced and its task repeated;
-  /// messages() reports it. Throws std::runtime_error if three workers died in a task, or no worker is left.
+  /// Gives an idle worker tasks, at least one, which it simulates together (sim::batch_size).
+  virtual void start(std::span<const TicketedTask> batch) = 0;
+  /// The next result, or nothing after the timeout. A worker that dies or hangs is replaced and its tasks are repeated,
+  /// each alone; messages() reports it. Throws std::runtime_error if three workers died in a task that they had alone,
+  /// or no worker is left.
   [[nodiscard]] virtual std::optional<Done> wait(std::chrono::milliseconds timeout) = 0;
   /// Messages for the user since the last call, one line each.
   [[nodiscard]] virtual std::vector<std::string> messages() = 0;
 };
+
+/// How many of the waiting tasks a worker gets at once: they are divided evenly, in batches that are worth simulating
+/// together. At least 1.
+[[nodiscard]] inline std::size_t share_of_worker(const sim::Scenario& scenario, std::size_t waiting,
+                                                 const Workers& workers) {
+  const std::size_t count = std::max(workers.count(), 1U);
+  return std::clamp<std::size_t>((waiting + count - 1) / count, 1, sim::batch_size(scenario));
+}
 
 }  // namespace proleg::optimize

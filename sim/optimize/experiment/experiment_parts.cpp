@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "shared/fixed/decimal.hpp"
+#include "sim/scenario/overrides.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -154,6 +155,7 @@ std::vector<ExperimentPart> parts_of(const Experiment& experiment) {
                                .text()},
           {"baseline", SettingsText().add("has_baseline", experiment.has_baseline).text()},
           {"reuse", SettingsText().add("reuse", experiment.reuse).text()},
+          {"engine", std::string(sim::name_of(experiment.scenario.environment.engine))},
           {"duration", SettingsText().add("seconds", experiment.scenario.duration_s).text()}};
 }
 

@@ -19,11 +19,11 @@ inline constexpr std::chrono::milliseconds poll_interval{1};
 /// Kinds of messages between ranks; MPI's tags.
 enum class MpiTag : int {
   // From rank 0.
-  task = 1,
+  tasks = 1,
   stop,
   // To rank 0.
-  result,
-  failure,  ///< text: why the task cannot be done
+  results,
+  failure,  ///< text: why a task cannot be done
   message,  ///< text: a message for the user
   stopped,  ///< the answer to stop
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <deque>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -15,8 +16,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// A rank has its own limit for each try of a task (LocalWorkers) and reports when it gives up. A rank that is silent
-/// for this number of limits is lost.
+/// A rank has its own limit for each try of its tasks (LocalWorkers) and reports when it gives up. A rank that is
+/// silent for this number of limits is lost.
 constexpr int limits_until_lost = 4;
 /// Time in which all ranks must answer stop.
 constexpr std::chrono::seconds goodbye_timeout{5};
@@ -36,7 +37,7 @@ std::optional<MpiRank> mpi_rank() {
 
 class MpiWorkers::Implementation {
  public:
-  Implementation(const Experiment& experiment, const std::string& build_id, RunTask run, TaskLimit limit)
+  Implementation(const Experiment& experiment, const std::string& build_id, RunTasks run, TaskLimit limit)
       : local_(experiment, 1, std::move(run), limit),
         ranks_(static_cast<std::size_t>(channel_.size())),
         max_silence_(limits_until_lost *
@@ -69,16 +70,20 @@ class MpiWorkers::Implementation {
     return static_cast<std::uint32_t>(without_task - std::min(without_task, orphaned_.size()));
   }
 
-  void start(std::uint64_t ticket, const Task& task) {
+  void start(std::span<const TicketedTask> batch) {
     // The other ranks first: a message over MPI takes longer than one over a socket.
     const auto rank = std::ranges::find_if(ranks_, &Rank::is_idle);
     if (rank == ranks_.end()) {
-      local_.start(ticket, task);
+      local_.start(batch);
       return;
     }
-    rank->assignment = Assignment{ticket, task};
+    rank->batch.assign(batch.begin(), batch.end());
     rank->silence = milliseconds(0);
-    channel_.send(static_cast<int>(rank - ranks_.begin()), MpiTag::task, to_bytes(task));
+    std::vector<Task> tasks;
+    for (const TicketedTask& each : batch) {
+      tasks.push_back(each.task);
+    }
+    channel_.send(static_cast<int>(rank - ranks_.begin()), MpiTag::tasks, to_bytes(tasks));
   }
 
   std::optional<Done> wait(milliseconds timeout) {
@@ -102,9 +107,12 @@ class MpiWorkers::Implementation {
     const Clock::time_point end = Clock::now() + timeout;
     while (true) {
       while (std::optional<MpiMessage> message = channel_.receive()) {
-        if (std::optional<Done> done = handle(*message)) {
-          return done;
-        }
+        handle(*message);
+      }
+      if (!finished_.empty()) {
+        Done done = std::move(finished_.front());
+        finished_.pop_front();
+        return done;
       }
       if (std::optional<Done> done = local_.wait(std::min(timeout, poll_interval))) {
         done->worker = 0;
@@ -116,59 +124,59 @@ class MpiWorkers::Implementation {
     }
   }
 
-  struct Assignment {
-    std::uint64_t ticket;
-    Task task;
-  };
+  using Batch = std::vector<TicketedTask>;
   struct Rank {
-    std::optional<Assignment> assignment;
-    Clock::duration silence{};  ///< with its task, within wait()
+    Batch batch;                ///< the tasks that it has; may be empty
+    Clock::duration silence{};  ///< with its tasks, within wait()
     bool lost = false;          ///< it receives no more tasks
-    [[nodiscard]] bool is_idle() const { return !lost && !assignment; }
+    [[nodiscard]] bool is_idle() const { return !lost && batch.empty(); }
   };
 
   /// Counts only time within wait().
   void count_silence(Clock::duration waited) {
     for (std::size_t rank = 0; rank < ranks_.size(); ++rank) {
       Rank& its = ranks_[rank];
-      if (its.lost || !its.assignment || (its.silence += waited) < max_silence_) {
+      if (its.lost || its.batch.empty() ||
+          (its.silence += waited) < max_silence_ * static_cast<int>(its.batch.size())) {
         continue;
       }
       its.lost = true;
       messages_.push_back("rank " + std::to_string(rank) + " has not answered within the time limit, in evaluation " +
-                          std::to_string(its.assignment->task.number) + "; the search continues without it");
-      orphaned_.push_back(std::move(*std::exchange(its.assignment, std::nullopt)));
+                          std::to_string(its.batch.front().task.number) + "; the search continues without it");
+      orphaned_.push_back(std::exchange(its.batch, {}));
     }
   }
 
   /// Gives the tasks of lost ranks to the others.
   void restart_orphaned() {
     while (!orphaned_.empty() && (local_.idle() > 0 || std::ranges::any_of(ranks_, &Rank::is_idle))) {
-      const Assignment assignment = std::move(orphaned_.back());
+      const Batch batch = std::move(orphaned_.back());
       orphaned_.pop_back();
-      start(assignment.ticket, assignment.task);
+      start(batch);
     }
   }
 
-  std::optional<Done> handle(const MpiMessage& message) {
+  void handle(const MpiMessage& message) {
     Rank& rank = ranks_[static_cast<std::size_t>(message.rank)];
     if (rank.lost) {
-      return std::nullopt;  // too late
+      return;  // too late
     }
     const std::string place = "rank " + std::to_string(message.rank) + ": ";
     if (message.tag == MpiTag::message) {
       messages_.push_back(place + message.text());
-      return std::nullopt;
+      return;
     }
     if (message.tag == MpiTag::failure) {
       throw std::runtime_error(place + message.text());
     }
-    std::optional<TrialResult> result = result_from(message.content);
-    if (message.tag != MpiTag::result || !result || !rank.assignment) {
-      throw std::runtime_error(place + "sent a message that is not the result of its task");
+    std::optional<std::vector<TrialResult>> results = results_from(message.content);
+    if (message.tag != MpiTag::results || !results || results->empty() || results->size() != rank.batch.size()) {
+      throw std::runtime_error(place + "sent a message that is not the results of its tasks");
     }
-    return Done{std::exchange(rank.assignment, std::nullopt)->ticket, std::move(*result),
-                static_cast<std::uint32_t>(message.rank)};
+    for (std::size_t i = 0; i < results->size(); ++i) {
+      finished_.push_back({rank.batch[i].ticket, std::move((*results)[i]), static_cast<std::uint32_t>(message.rank)});
+    }
+    rank.batch.clear();
   }
 
   void end_ranks() const {
@@ -191,17 +199,18 @@ class MpiWorkers::Implementation {
   LocalWorkers local_;  // forks before MPI is initialised
   MpiChannel channel_;
   std::vector<Rank> ranks_;
-  std::vector<Assignment> orphaned_;  ///< of lost ranks
+  std::vector<Batch> orphaned_;  ///< of lost ranks
+  std::deque<Done> finished_;    ///< results of other ranks that nobody has received
   Clock::duration max_silence_;
   std::vector<std::string> messages_;
 };
 
-MpiWorkers::MpiWorkers(const Experiment& experiment, const std::string& build_id, RunTask run, TaskLimit limit)
+MpiWorkers::MpiWorkers(const Experiment& experiment, const std::string& build_id, RunTasks run, TaskLimit limit)
     : implementation_(std::make_unique<Implementation>(experiment, build_id, std::move(run), limit)) {}
 MpiWorkers::~MpiWorkers() = default;
 std::uint32_t MpiWorkers::count() const { return implementation_->count(); }
 std::uint32_t MpiWorkers::idle() const { return implementation_->idle(); }
-void MpiWorkers::start(std::uint64_t ticket, const Task& task) { implementation_->start(ticket, task); }
+void MpiWorkers::start(std::span<const TicketedTask> batch) { implementation_->start(batch); }
 std::optional<Workers::Done> MpiWorkers::wait(milliseconds timeout) { return implementation_->wait(timeout); }
 std::vector<std::string> MpiWorkers::messages() { return implementation_->messages(); }
 

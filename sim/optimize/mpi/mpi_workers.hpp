@@ -29,7 +29,8 @@ class MpiWorkers final : public Workers {
  public:
   /// The process must have one thread. experiment: must outlive this. Throws std::runtime_error if another rank has
   /// another experiment or build; all ranks end then. run, limit: as for LocalWorkers.
-  MpiWorkers(const Experiment& experiment, const std::string& build_id, RunTask run = run_trial, TaskLimit limit = {});
+  MpiWorkers(const Experiment& experiment, const std::string& build_id, RunTasks run = run_trials,
+             TaskLimit limit = {});
   /// Ends the other ranks, even in the middle of a task. If one does not answer within seconds, calls MPI_Abort, which
   /// ends this process, too.
   ~MpiWorkers() override;
@@ -38,7 +39,7 @@ class MpiWorkers final : public Workers {
 
   [[nodiscard]] std::uint32_t count() const override;
   [[nodiscard]] std::uint32_t idle() const override;
-  void start(std::uint64_t ticket, const Task& task) override;
+  void start(std::span<const TicketedTask> batch) override;
   [[nodiscard]] std::optional<Done> wait(std::chrono::milliseconds timeout) override;
   [[nodiscard]] std::vector<std::string> messages() override;
 
@@ -50,7 +51,7 @@ class MpiWorkers final : public Workers {
 /// The work of ranks above 0: simulates the tasks of rank 0 until it sends stop. Ignores the signals that ask a program
 /// to end: rank 0 handles them. Returns whether all ranks had the same experiment and build; if not, rank 0 reports it.
 /// Arguments as for MpiWorkers.
-[[nodiscard]] bool serve_mpi(const Experiment& experiment, const std::string& build_id, RunTask run = run_trial,
+[[nodiscard]] bool serve_mpi(const Experiment& experiment, const std::string& build_id, RunTasks run = run_trials,
                              TaskLimit limit = {});
 
 }  // namespace proleg::optimize

@@ -11,23 +11,34 @@ namespace proleg::optimize {
 namespace {
 
 void serve(const MpiChannel& channel, LocalWorkers& worker) {
+  std::vector<TrialResult> results;  // of the tasks that the worker has, in their order
+  std::size_t missing = 0;
   while (true) {
     if (const std::optional<MpiMessage> message = channel.receive()) {
       if (message->tag == MpiTag::stop) {
         return;
       }
-      const std::optional<Task> task = task_from(message->content);
-      if (message->tag != MpiTag::task || !task) {
-        throw std::runtime_error("received a message that is not a task");
+      const std::optional<std::vector<Task>> tasks = tasks_from(message->content);
+      if (message->tag != MpiTag::tasks || !tasks || tasks->empty() || missing > 0) {
+        throw std::runtime_error("received a message that is not its next tasks");
       }
-      worker.start(0, *task);
+      std::vector<TicketedTask> batch;
+      for (const Task& task : *tasks) {
+        batch.push_back({batch.size(), task});
+      }
+      worker.start(batch);
+      missing = batch.size();
+      results.resize(missing);
     }
-    const std::optional<Workers::Done> done = worker.wait(poll_interval);
+    std::optional<Workers::Done> done = worker.wait(poll_interval);
     for (const std::string& text : worker.messages()) {
       channel.send(0, MpiTag::message, text);
     }
     if (done) {
-      channel.send(0, MpiTag::result, to_bytes(done->result));
+      results[done->ticket] = std::move(done->result);
+      if (--missing == 0) {
+        channel.send(0, MpiTag::results, to_bytes(results));
+      }
     }
   }
 }
@@ -44,7 +55,7 @@ void wait_for_stop(const MpiChannel& channel) {
 
 }  // namespace
 
-bool serve_mpi(const Experiment& experiment, const std::string& build_id, RunTask run, TaskLimit limit) {
+bool serve_mpi(const Experiment& experiment, const std::string& build_id, RunTasks run, TaskLimit limit) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     std::signal(signal, SIG_IGN);
   }

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <string_view>
 
 #include "shared/computer/text/text.hpp"
+#include "sim/scenario/overrides.hpp"
 #include "sim/scenario/xml_document.hpp"
 
 namespace proleg::optimize {
@@ -90,12 +92,37 @@ fs::path common_folder(const std::set<fs::path>& files) {
   return common;
 }
 
-/// The text of a file, with references that are valid while the files keep their relative paths.
-std::string text_with_relative_references(const Sources& sources, const fs::path& path) {
+/// Names the engine in an environment file. Returns whether that changed it.
+bool set_engine(tinyxml2::XMLElement& environment, std::string_view engine) {
+  tinyxml2::XMLElement* physics = environment.FirstChildElement();
+  while (physics != nullptr && lower_case(physics->Name()) != "physicsengine") {
+    physics = physics->NextSiblingElement();
+  }
+  if (physics == nullptr) {
+    physics = environment.GetDocument()->NewElement("physicsengine");
+    environment.InsertFirstChild(physics);
+  }
+  std::string name = "type";
+  for (const auto* attribute = physics->FirstAttribute(); attribute != nullptr; attribute = attribute->Next()) {
+    if (lower_case(attribute->Name()) == name) {
+      name = attribute->Name();
+      if (lower_case(attribute->Value()) == engine) {
+        return false;
+      }
+      break;
+    }
+  }
+  physics->SetAttribute(name.c_str(), std::string(engine).c_str());
+  return true;
+}
+
+/// The text of a file, with references that are valid while the files keep their relative paths. engine: for the
+/// environment file, one that replaces the file's; empty: none.
+std::string text_to_write(const Sources& sources, const fs::path& path, std::string_view engine) {
   const std::string& text = sources.text(path);
   tinyxml2::XMLDocument document;
   document.Parse(text.data(), text.size());
-  bool changed = false;
+  bool changed = !engine.empty() && set_engine(*document.RootElement(), engine);
   for_each_include(document.RootElement(), [&](tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute& attribute) {
     const std::string reference = reference_of(attribute);
     const fs::path target = sources.find(path, reference);
@@ -127,7 +154,9 @@ ScenarioFiles collect_scenario_files(const sim::Scenario& scenario, const fs::pa
   const auto place_of = [&](const fs::path& file) { return root / file.lexically_relative(folder); };
   ScenarioFiles result{place_of(robot), place_of(environment), {}};
   for (const fs::path& file : files) {
-    result.copies.push_back({place_of(file), text_with_relative_references(sources, file)});
+    const bool has_engine = file == environment && scenario.overrides.engine;
+    result.copies.push_back(
+        {place_of(file), text_to_write(sources, file, has_engine ? sim::name_of(*scenario.overrides.engine) : "")});
   }
   return result;
 }

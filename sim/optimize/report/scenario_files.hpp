@@ -24,7 +24,7 @@ struct ScenarioFiles {
 
 /// Below `root` the files have the same paths as below their deepest common folder, so equal names in different folders
 /// do not collide. Texts are copied byte by byte. Only a path that would become invalid is replaced (an absolute one,
-/// or one that is relative to the folder of the top-level file). scenario: read from files.
+/// or one that is relative to the folder of the top-level file) and an overridden engine. scenario: read from files.
 [[nodiscard]] ScenarioFiles collect_scenario_files(const sim::Scenario& scenario, const std::filesystem::path& root);
 
 }  // namespace proleg::optimize

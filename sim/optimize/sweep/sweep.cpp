@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "sim/loop/simulation.hpp"
-#include "sim/physics/physics_error.hpp"
+#include "sim/optimize/evaluation/scenario_runs.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -28,25 +28,18 @@ Candidate without_seed(const Sweep& sweep, Candidate combination) {
 
 }  // namespace
 
-TrialResult run_combination(const Sweep& sweep, const Candidate& combination) {
-  const auto start = std::chrono::steady_clock::now();
-  TrialResult result;
-  const sim::Scenario scenario = sweep.scenario_of(combination);
-  const std::uint32_t ticks = sim::tick_count(scenario);
-  sim::Simulation simulation(scenario);
-  try {
-    while (simulation.tick() < ticks) {
-      simulation.advance();
-    }
+std::vector<TrialResult> run_combinations(const Sweep& sweep, std::span<const Task> tasks) {
+  std::vector<sim::Scenario> scenarios;
+  for (const Task& task : tasks) {
+    scenarios.push_back(sweep.scenario_of(task.candidate));
+  }
+  RunWatch watch;
+  watch.at_end = [](std::size_t /*i*/, const sim::Simulation& simulation, TrialResult& result) {
     result.measures = simulation.measures();
     result.limited_joints = static_cast<std::uint32_t>(
         std::ranges::count_if(simulation.plant().meter().tracking(), &sim::ServoTracking::cannot_follow));
-  } catch (const sim::PhysicsError& error) {
-    result.failure = error.what();
-  }
-  result.simulated_s = simulation.time_s();
-  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  };
+  return run_scenarios(scenarios, watch);
 }
 
 std::vector<SweepRun> run_sweep(const Sweep& sweep, Workers& workers, const std::function<bool()>& stop,
@@ -56,11 +49,13 @@ std::vector<SweepRun> run_sweep(const Sweep& sweep, Workers& workers, const std:
   const std::uint64_t size = sweep.size();
   std::uint64_t started = 0;
   while (runs.size() < size && !stop()) {
-    for (; started < size && workers.idle() > 0; ++started) {
-      Task task;
-      task.number = started;
-      task.candidate = sweep.combination(started);
-      workers.start(started, task);
+    const std::size_t share = share_of_worker(sweep.scenario, size - started, workers);
+    while (started < size && workers.idle() > 0) {
+      std::vector<TicketedTask> batch;
+      for (; batch.size() < share && started < size; ++started) {
+        batch.push_back({started, {0, started, 0, sweep.combination(started), {}}});
+      }
+      workers.start(batch);
     }
     if (std::optional<Workers::Done> done = workers.wait(patience)) {
       runs.push_back({done->ticket, std::move(done->result)});

@@ -50,15 +50,15 @@ struct Sweep {
 /// The command that repeats the sweep.
 [[nodiscard]] std::string command_of(const Sweep& sweep);
 
-/// Simulates a combination.
-[[nodiscard]] TrialResult run_combination(const Sweep& sweep, const Candidate& combination);
+/// Simulates the combinations of tasks, together if the engine can.
+[[nodiscard]] std::vector<TrialResult> run_combinations(const Sweep& sweep, std::span<const Task> tasks);
 
 struct SweepRun {
   std::uint64_t number = 0;  ///< of the combination
   TrialResult result;
 };
 
-/// Gives all combinations to the workers, whose function must be run_combination. Returns the results in the order of
+/// Gives all combinations to the workers, whose function must be run_combinations. Returns the results in the order of
 /// the combinations; those that are there if `stop` becomes true. observe: called after each result with their number.
 [[nodiscard]] std::vector<SweepRun> run_sweep(const Sweep& sweep, Workers& workers, const std::function<bool()>& stop,
                                               const std::function<void(std::uint64_t)>& observe);

@@ -26,22 +26,28 @@ TEST_F(Optimise, PrintsTheBestAndWritesStoreTablesFiguresAndTheBestScenario) {
 }
 
 TEST_F(Optimise, TheBestScenarioRunsAndHasTheScoreOfTheSearch) {
-  const Json search = json_of(proleg(words("cma_es", "out", {"--evaluations", "30"})));
-  const Json run = json_of(proleg({"simulate", file("out/best.simulation.xml").string(), "--json"}));
-  EXPECT_EQ(search["best_score"], run["displacement_m"]) << "to the last bit";
-  EXPECT_EQ(search["best_measures"], run["measures"]);
+  for (const std::string engine : {"ode", "reduced"}) {
+    const Json search = json_of(proleg(words("cma_es", engine, {"--evaluations", "30", "--engine", engine})));
+    EXPECT_EQ(search["engine"], engine);
+    const Json run = json_of(proleg({"simulate", file(engine + "/best.simulation.xml").string(), "--json"}));
+    EXPECT_EQ(search["best_score"], run["displacement_m"]) << "to the last bit, with " << engine;
+    EXPECT_EQ(search["best_measures"], run["measures"]);
+  }
 }
 
 TEST_F(Optimise, OneWorkerTwoAndThreeGiveTheSameToTheLastBit) {
-  for (const char* experiment : {"great_deluge", "genetic", "cma_es"}) {
-    std::map<std::string, int> outcomes;
-    for (const char* workers : {"1", "2", "3"}) {
-      const std::string folder = std::string(experiment) + workers;
-      static_cast<void>(json_of(proleg(words(experiment, folder, {"--evaluations", "70", "--workers", workers}))));
-      ++outcomes[evaluations(folder)];
+  for (const char* engine : {"ode", "reduced"}) {
+    for (const char* experiment : {"great_deluge", "genetic", "cma_es"}) {
+      std::map<std::string, int> outcomes;
+      for (const char* workers : {"1", "2", "3"}) {
+        const std::string folder = std::string(experiment) + engine + workers;
+        static_cast<void>(json_of(
+            proleg(words(experiment, folder, {"--evaluations", "70", "--workers", workers, "--engine", engine}))));
+        ++outcomes[evaluations(folder)];
+      }
+      EXPECT_EQ(outcomes.size(), 1U) << experiment << engine;
+      EXPECT_EQ(std::ranges::count(outcomes.begin()->first, '\n'), 70) << experiment << engine;
     }
-    EXPECT_EQ(outcomes.size(), 1U) << experiment;
-    EXPECT_EQ(std::ranges::count(outcomes.begin()->first, '\n'), 70) << experiment;
   }
 }
 
@@ -190,9 +196,29 @@ TEST_F(Optimise, RefusesBadInputAndStartsNothing) {
   refuse({"--evaluations", "0"}, {"--evaluations", "'0'"});
   refuse({"--evaluations", "-3"}, {"--evaluations", "'-3'"});
   refuse({"--seed", "1.5"}, {"--seed", "'1.5'"});
+  refuse({"--engine", "mujoco"}, {"--engine", "'mujoco'", "'ode' or 'reduced'"});
   expect_refused({"optimise", "/nowhere/x.optimise.xml"}, {"/nowhere/x.optimise.xml"});
   expect_refused({"optimise", scenario("uniform")}, {"uniform.simulation.xml", "greatDeluge"});
   expect_refused(words("great_deluge", "", {"--resume", file("nothing").string()}), {"nothing", "store.sqlite"});
+}
+
+TEST_F(Optimise, RefusesAScenarioThatTheEngineDoesNotHave) {
+  const fs::path folder = file("yaw");
+  fs::copy(source_path("/sim/scenarios/travelling_wave"), folder, fs::copy_options::recursive);
+  std::string robot = read_file(folder / "caterpillar.robot.xml");
+  robot.replace(robot.find("<axis>1 0 0<"), 12, "<axis>0 0 1<");
+  std::ofstream(folder / "caterpillar.robot.xml") << robot;
+  const std::vector<std::string> refusal{"axis is not parallel", "reduced engine", "--engine ode"};
+  expect_refused(
+      {"optimise", (folder / "cma_es.optimise.xml").string(), "--engine", "reduced", "--out", file("out").string()},
+      refusal);
+  expect_refused({"sweep", (folder / "uniform.simulation.xml").string(), "--over", "amplitude=10:20:10", "--engine",
+                  "reduced", "--out", file("out").string()},
+                 refusal);
+  expect_refused({"experiment", "travelling_wave", "--scenarios", folder.string(), "--engine", "reduced", "--out",
+                  file("out").string()},
+                 refusal);
+  EXPECT_FALSE(fs::exists(file("out")));
 }
 
 TEST_F(Optimise, RejectsAStoreThatExistsOrIsOfAnotherExperiment) {
@@ -202,6 +228,8 @@ TEST_F(Optimise, RejectsAStoreThatExistsOrIsOfAnotherExperiment) {
                  {"store.sqlite: exists already", "--resume " + file("out").string(), "--out"});
   expect_refused(words("genetic", "", {"--resume", file("out").string()}), {"store.sqlite", "another experiment"});
   expect_refused(words("great_deluge", "", {"--resume", file("out").string(), "--seed", "9"}), {"another experiment"});
+  expect_refused(words("great_deluge", "", {"--resume", file("out").string(), "--engine", "reduced"}),
+                 {"another experiment", "engine"});
   expect_refused(words("great_deluge", "elsewhere", {"--resume", file("out").string()}), {"--out", "--resume"});
   EXPECT_EQ(evaluations("out"), before);
 }
@@ -219,10 +247,13 @@ TEST_F(Optimise, UnderMpirunGivesTheSame) {
   if (!fs::exists(fs::path(PROLEG_PROGRAM).parent_path() / "proleg-optimise-mpi")) {
     GTEST_SKIP() << "built without Open MPI";
   }
-  static_cast<void>(json_of(proleg(words("great_deluge", "local", {"--evaluations", "40"}))));
-  const Json object = json_of(finish(start(under_mpirun(words("great_deluge", "cluster", {"--evaluations", "40"})))));
-  EXPECT_EQ(object["workers"], 4);
-  EXPECT_EQ(evaluations("local"), evaluations("cluster"));
+  for (const std::string engine : {"ode", "reduced"}) {
+    const std::vector<std::string> rest{"--evaluations", "40", "--engine", engine};
+    static_cast<void>(json_of(proleg(words("great_deluge", "local_" + engine, rest))));
+    const Json object = json_of(finish(start(under_mpirun(words("great_deluge", "cluster_" + engine, rest)))));
+    EXPECT_EQ(object["workers"], 4);
+    EXPECT_EQ(evaluations("local_" + engine), evaluations("cluster_" + engine));
+  }
 }
 
 TEST_F(Optimise, UnderMpirunReportsAnErrorOnce) {

@@ -94,13 +94,15 @@ std::vector<std::string> evaluate(const Experiment& experiment, Workers& workers
 }
 
 TEST(Evaluator, GivesTheSameForAllPredictionsAndNumbersOfWorkers) {
-  std::vector<Experiment> experiments{small_experiment(), noisy_experiment(1), noisy_experiment(3), small_experiment(),
-                                      small_experiment(), small_experiment(),  noisy_experiment(3)};
+  std::vector<Experiment> experiments{small_experiment(),  noisy_experiment(1), noisy_experiment(3),
+                                      small_experiment(),  small_experiment(),  small_experiment(),
+                                      noisy_experiment(3), noisy_experiment(2)};
   experiments[2].trials.aggregate = Aggregate::worst;
   experiments[3].racing.after = 0.5;
   experiments[4].reuse = false;
   experiments[5].trials.count = 2;
   experiments[6].trials.random_numbers = RandomNumbers::common;
+  experiments[7].scenario.environment.engine = sim::PhysicsEngine::reduced;  // batches
   std::random_device device;
   const std::uint32_t seed = device();
   std::printf("seed %u\n", seed);
@@ -126,6 +128,42 @@ TEST(Evaluator, GivesTheSameWithOneTwoAndThreeProcesses) {
     LocalWorkers workers(experiment, count);
     EXPECT_EQ(evaluate(experiment, workers, {experiment, count}, 8), plain.evaluations()) << count << " workers";
   }
+}
+
+TEST(Evaluator, GivesTheSameInBatchesAndAlone) {
+  for (Experiment experiment : {noisy_experiment(2, 0.1), small_experiment(0.1)}) {
+    experiment.scenario.environment.engine = sim::PhysicsEngine::reduced;
+    experiment.racing.after = 0.5;
+    PlainSource plain(experiment, run_trial);
+    MadeUpSearch{experiment, 0, 30}.run(plain, 20);
+    for (const std::uint32_t count : {1U, 2U, 3U}) {
+      LocalWorkers workers(experiment, count);
+      EXPECT_EQ(evaluate(experiment, workers, {experiment, count, 30}, 20), plain.evaluations()) << count << " workers";
+    }
+  }
+}
+
+TEST(Evaluator, DividesWhatIsExpectedEvenlyInBatches) {
+  const auto sizes = [](sim::PhysicsEngine engine, std::uint32_t workers_count, std::size_t candidates) {
+    Experiment experiment = noisy_experiment();
+    experiment.scenario.environment.engine = engine;
+    MadeUpWorkers workers(experiment, workers_count, 1);
+    Evaluator evaluator(experiment, 0, workers, nullptr, {}, {});
+    const std::vector<Candidate> next(candidates, Candidate{1, 1, 1});
+    evaluator.expect(next);
+    for (const Candidate& candidate : next) {
+      evaluator.fitness(candidate);
+    }
+    EXPECT_EQ(workers.started().size(), candidates);
+    return workers.batch_sizes();
+  };
+  using Sizes = std::vector<std::size_t>;
+  const auto reduced = sim::PhysicsEngine::reduced;
+  EXPECT_EQ(sizes(reduced, 2, 20), (Sizes{10, 10}));
+  EXPECT_EQ(sizes(reduced, 3, 20), (Sizes{7, 7, 6}));
+  EXPECT_EQ(sizes(reduced, 5, 3), (Sizes{1, 1, 1}));
+  EXPECT_EQ(sizes(reduced, 1, 100), (Sizes{64, 36}));
+  EXPECT_EQ(sizes(sim::PhysicsEngine::ode, 2, 5), (Sizes{1, 1, 1, 1, 1}));
 }
 
 TEST(Evaluator, DoesNotSimulateACandidateAgainIfItMeetsTheSameWorlds) {
@@ -321,7 +359,7 @@ TEST(Evaluator, NeverStartsMoreThanTheBudget) {
 
 TEST(Evaluator, StopsWhileItWaitsAndBefore) {
   const Experiment experiment = small_experiment();
-  LocalWorkers workers(experiment, 1, [](const Experiment&, const Task&) -> TrialResult {
+  LocalWorkers workers(experiment, 1, [](const Experiment&, std::span<const Task>) -> std::vector<TrialResult> {
     while (true) {
       pause();
     }

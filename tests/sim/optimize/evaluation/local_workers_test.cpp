@@ -9,6 +9,7 @@
 #include <csignal>
 #include <fstream>
 #include <map>
+#include <set>
 
 #include "small_experiment.hpp"
 
@@ -35,13 +36,13 @@ Workers::Done next(Workers& workers) {
 class LocalWorkersTest : public testing::Test {
  protected:
   /// Calls `misfortune` first at the first call for evaluation 17; then made_up_trial.
-  [[nodiscard]] RunTask once(const std::function<void()>& misfortune) const {
-    return [this, misfortune](const Experiment& experiment, const Task& task) {
+  [[nodiscard]] RunTasks once(const std::function<void()>& misfortune) const {
+    return one_by_one([this, misfortune](const Experiment& experiment, const Task& task) {
       if (task.number == 17 && count_call(folder_ / "calls") == 1) {
         misfortune();
       }
       return made_up_trial(experiment, task);
-    };
+    });
   }
 
   TemporaryFolder folder_;
@@ -60,7 +61,7 @@ TEST_F(LocalWorkersTest, GiveTheResultsThatRunTrialGives) {
   std::map<std::uint64_t, TrialResult> results;
   for (std::size_t given = 0; results.size() < tasks.size();) {
     while (given < tasks.size() && workers.idle() > 0) {
-      workers.start(given, tasks[given]);
+      start(workers, given, tasks[given]);
       ++given;
     }
     Workers::Done done = next(workers);
@@ -75,6 +76,125 @@ TEST_F(LocalWorkersTest, GiveTheResultsThatRunTrialGives) {
   EXPECT_TRUE(workers.messages().empty());
 }
 
+/// Tasks of evaluations 15 to 19, with tickets that are ten times as high.
+std::vector<TicketedTask> five_tasks() {
+  std::vector<TicketedTask> batch;
+  for (std::uint32_t number = 15; number < 20; ++number) {
+    batch.push_back({10 * number, {0, number, 0, {number % 6, 1, 2}, {}}});
+  }
+  return batch;
+}
+
+/// Expects a result of each of the five tasks.
+void expect_five_results(const Experiment& experiment, Workers& workers) {
+  std::map<std::uint64_t, std::string> results;
+  for (int i = 0; i < 5; ++i) {
+    const Workers::Done done = next(workers);
+    EXPECT_TRUE(results.emplace(done.ticket, exact(done.result)).second) << done.ticket;
+  }
+  for (const TicketedTask& each : five_tasks()) {
+    EXPECT_EQ(results[each.ticket], exact(made_up_trial(experiment, each.task))) << each.ticket;
+  }
+  EXPECT_EQ(workers.idle(), workers.count());
+}
+
+TEST_F(LocalWorkersTest, GiveAResultForEachTaskOfABatch) {
+  LocalWorkers workers(experiment_, 2, one_by_one(made_up_trial));
+  workers.start(five_tasks());
+  EXPECT_EQ(workers.idle(), 1U);
+  expect_five_results(experiment_, workers);
+  EXPECT_TRUE(workers.messages().empty());
+}
+
+TEST_F(LocalWorkersTest, TakeTheLargestBatch) {
+  LocalWorkers workers(experiment_, 1, one_by_one([](const Experiment&, const Task& task) {
+                         TrialResult result;
+                         result.simulated_s = task.candidate.back();
+                         return result;
+                       }));
+  std::vector<TicketedTask> batch;
+  for (std::uint32_t i = 0; i < 64; ++i) {
+    batch.push_back({i, {0, i, 0, Candidate(1000, i), {}}});  // no space has more dimensions
+  }
+  workers.start(batch);
+  for (std::uint32_t i = 0; i < 64; ++i) {
+    EXPECT_EQ(next(workers).result.simulated_s, i);
+  }
+  EXPECT_TRUE(workers.messages().empty());
+}
+
+TEST_F(LocalWorkersTest, RepeatTheTasksOfABatchOneByOneAfterADeath) {
+  for (const std::function<void()>& misfortune :
+       {std::function<void()>([] { raise(SIGKILL); }), {[] { throw std::bad_alloc(); }}}) {
+    for (const std::uint32_t count : {1U, 2U}) {
+      std::filesystem::remove(folder_ / "calls");
+      LocalWorkers workers(experiment_, count, once(misfortune));
+      workers.start(five_tasks());
+      expect_five_results(experiment_, workers);
+      const std::vector<std::string> messages = workers.messages();
+      ASSERT_EQ(messages.size(), 1U);
+      EXPECT_NE(messages[0].find("in a batch of 5 tasks from evaluation 15 of run 0 on; started again, its tasks "
+                                 "repeated one by one"),
+                std::string::npos)
+          << messages[0];
+    }
+  }
+}
+
+TEST_F(LocalWorkersTest, NameTheTaskOfABatchThatEndsThreeWorkersAlone) {
+  LocalWorkers workers(experiment_, 2, one_by_one([](const Experiment& experiment, const Task& task) {
+                         if (task.number == 17) {
+                           raise(SIGKILL);
+                         }
+                         return made_up_trial(experiment, task);
+                       }));
+  workers.start(five_tasks());
+  std::set<std::uint64_t> survivors;
+  try {
+    while (true) {
+      survivors.insert(next(workers).ticket);
+    }
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(std::string(error.what()).find("evaluation 17 of run 0 ended 3 workers"), 0U) << error.what();
+  }
+  EXPECT_TRUE(survivors.contains(150) && survivors.contains(160) && !survivors.contains(170));
+}
+
+TEST_F(LocalWorkersTest, HaveTheTimeOfAllTheirTasks) {
+  // Each task takes less than its limit, together they take more than one.
+  LocalWorkers workers(experiment_, 1, one_by_one([](const Experiment& experiment, const Task& task) {
+                         usleep(300'000);
+                         return made_up_trial(experiment, task);
+                       }),
+                       {milliseconds(1000), 0.0});
+  workers.start(five_tasks());
+  expect_five_results(experiment_, workers);
+  EXPECT_TRUE(workers.messages().empty());
+}
+
+TEST_F(LocalWorkersTest, GiveABatchUpThatHangs) {
+  LocalWorkers workers(experiment_, 1, once([] {
+                         while (true) {
+                           pause();
+                         }
+                       }),
+                       {milliseconds(100), 0.0});
+  workers.start(five_tasks());
+  expect_five_results(experiment_, workers);
+  const std::vector<std::string> messages = workers.messages();
+  ASSERT_EQ(messages.size(), 1U);
+  EXPECT_NE(messages[0].find("did not answer"), std::string::npos) << messages[0];
+}
+
+TEST_F(LocalWorkersTest, ReplaceOneThatGivesTooFewResults) {
+  LocalWorkers workers(experiment_, 1, [](const Experiment& experiment, std::span<const Task> tasks) {
+    return std::vector<TrialResult>{made_up_trial(experiment, tasks.front())};
+  });
+  workers.start(five_tasks());
+  expect_five_results(experiment_, workers);
+  EXPECT_NE(workers.messages().at(0).find("wrong number of results"), std::string::npos);
+}
+
 TEST_F(LocalWorkersTest, WithoutATaskHaveNoResult) {
   LocalWorkers workers(experiment_, 1);
   EXPECT_FALSE(workers.wait(milliseconds(0)));
@@ -82,7 +202,7 @@ TEST_F(LocalWorkersTest, WithoutATaskHaveNoResult) {
 
 TEST_F(LocalWorkersTest, RepeatTheTaskOfAWorkerThatIsKilled) {
   LocalWorkers workers(experiment_, 1, once([] { raise(SIGKILL); }));
-  workers.start(5, task_);
+  start(workers, 5, task_);
   const Workers::Done done = next(workers);
   EXPECT_EQ(done.ticket, 5U);
   EXPECT_EQ(exact(done.result), exact(made_up_trial(experiment_, task_)));
@@ -103,7 +223,7 @@ TEST_F(LocalWorkersTest, RepeatTheTaskOfAWorkerThatEndsOrThrows) {
         {[] { throw std::bad_alloc(); }, "failed (std::bad_alloc)"}}) {
     std::filesystem::remove(folder_ / "calls");
     LocalWorkers workers(experiment_, 1, once(misfortune));
-    workers.start(1, task_);
+    start(workers, 1, task_);
     EXPECT_EQ(exact(next(workers).result), exact(made_up_trial(experiment_, task_)));
     const std::vector<std::string> messages = workers.messages();
     ASSERT_EQ(messages.size(), 1U);
@@ -117,8 +237,8 @@ TEST_F(LocalWorkersTest, ReplaceOneThatDiesWithoutATask) {
     result.simulated_s = getpid();
     return result;
   };
-  LocalWorkers workers(experiment_, 1, report_process);
-  workers.start(1, task_);
+  LocalWorkers workers(experiment_, 1, one_by_one(report_process));
+  start(workers, 1, task_);
   const auto process = static_cast<pid_t>(next(workers).result.simulated_s);
   ASSERT_NE(process, getpid());
   kill(process, SIGKILL);
@@ -128,7 +248,7 @@ TEST_F(LocalWorkersTest, ReplaceOneThatDiesWithoutATask) {
     messages = workers.messages();
   }
   EXPECT_NE(messages[0].find("was killed by signal 9 without a task; started again"), std::string::npos);
-  workers.start(2, task_);
+  start(workers, 2, task_);
   EXPECT_NE(static_cast<pid_t>(next(workers).result.simulated_s), process);
 }
 
@@ -142,9 +262,9 @@ TEST_F(LocalWorkersTest, EndTheSearchIfThreeWorkersDieInATask) {
   };
   // The sanitizers would report the signal at length.
   std::signal(SIGSEGV, SIG_DFL);
-  LocalWorkers workers(experiment_, 2, deadly);
-  workers.start(1, task_);
-  workers.start(2, {0, 18, 0, {0, 0, 0}, {}});
+  LocalWorkers workers(experiment_, 2, one_by_one(deadly));
+  start(workers, 1, task_);
+  start(workers, 2, {0, 18, 0, {0, 0, 0}, {}});
   try {
     while (true) {
       if (const std::optional<Workers::Done> done = workers.wait(milliseconds(1000))) {
@@ -164,7 +284,7 @@ TEST_F(LocalWorkersTest, ReplaceOneThatHangs) {
                          }
                        }),
                        {milliseconds(200), 0.0});
-  workers.start(1, task_);
+  start(workers, 1, task_);
   EXPECT_EQ(exact(next(workers).result), exact(made_up_trial(experiment_, task_)));
   const std::vector<std::string> messages = workers.messages();
   ASSERT_EQ(messages.size(), 1U);
@@ -178,8 +298,8 @@ TEST_F(LocalWorkersTest, IgnoreTheSignalsThatAreForTheirParent) {
     raise(SIGHUP);
     return made_up_trial(experiment, task);
   };
-  LocalWorkers workers(experiment_, 1, asked_to_end);
-  workers.start(1, task_);
+  LocalWorkers workers(experiment_, 1, one_by_one(asked_to_end));
+  start(workers, 1, task_);
   next(workers);
   EXPECT_TRUE(workers.messages().empty());
 }
@@ -193,9 +313,9 @@ TEST_F(LocalWorkersTest, HoldNoDescriptorOfTheirParent) {
     return result;
   };
   std::ifstream open_file("/dev/zero");
-  LocalWorkers workers(experiment_, 3, count_descriptors);
+  LocalWorkers workers(experiment_, 3, one_by_one(count_descriptors));
   for (std::uint64_t i = 0; i < 3; ++i) {
-    workers.start(i, task_);
+    start(workers, i, task_);
   }
   for (int i = 0; i < 3; ++i) {
     // Standard input, output and error, the socket, and that of the listing.
@@ -205,12 +325,12 @@ TEST_F(LocalWorkersTest, HoldNoDescriptorOfTheirParent) {
 
 TEST_F(LocalWorkersTest, WaitReturnsWhenASignalComes) {
   std::signal(SIGALRM, [](int) {});
-  LocalWorkers workers(experiment_, 1, [](const Experiment&, const Task&) -> TrialResult {
+  LocalWorkers workers(experiment_, 1, [](const Experiment&, std::span<const Task>) -> std::vector<TrialResult> {
     while (true) {
       pause();
     }
   });
-  workers.start(1, task_);
+  start(workers, 1, task_);
   ualarm(20'000, 20'000);
   EXPECT_FALSE(workers.wait(milliseconds(100'000)));  // or the test takes longer than it may
   ualarm(0, 0);
@@ -224,13 +344,13 @@ TEST_F(LocalWorkersTest, EndWithTheirParentEvenIfItIsKilled) {
   ASSERT_EQ(pipe(ends), 0);
   const pid_t parent = fork();
   if (parent == 0) {
-    LocalWorkers workers(experiment_, 2, [this](const Experiment&, const Task&) -> TrialResult {
+    LocalWorkers workers(experiment_, 2, [this](const Experiment&, std::span<const Task>) -> std::vector<TrialResult> {
       count_call(folder_ / "calls");
       while (true) {
         pause();
       }
     });
-    workers.start(1, task_);
+    start(workers, 1, task_);
     while (!std::filesystem::exists(folder_ / "calls")) {
       static_cast<void>(workers.wait(milliseconds(1)));
     }
@@ -273,26 +393,26 @@ class ScarceSystem : public LocalWorkersTest {
 
 TEST_F(ScarceSystem, GivesFewerWorkers) {
   leave_descriptors(3);
-  LocalWorkers workers(experiment_, 5, made_up_trial);
+  LocalWorkers workers(experiment_, 5, one_by_one(made_up_trial));
   setrlimit(RLIMIT_NOFILE, &before_);
   EXPECT_EQ(workers.count(), 2U);
   const std::vector<std::string> messages = workers.messages();
   ASSERT_EQ(messages.size(), 1U);
   EXPECT_NE(messages[0].find("2 of 5 workers"), std::string::npos) << messages[0];
-  workers.start(1, task_);
+  start(workers, 1, task_);
   EXPECT_EQ(next(workers).ticket, 1U);
 }
 
 TEST_F(ScarceSystem, WithoutAnyWorkerIsAnError) {
   leave_descriptors(1);
-  EXPECT_THROW(LocalWorkers(experiment_, 5, made_up_trial), std::runtime_error);
+  EXPECT_THROW(LocalWorkers(experiment_, 5, one_by_one(made_up_trial)), std::runtime_error);
 }
 
 TEST_F(ScarceSystem, ThatCannotReplaceAWorkerGivesItsTaskToAnother) {
   LocalWorkers workers(experiment_, 2, once([] { raise(SIGKILL); }));
   leave_descriptors(0);
-  workers.start(1, task_);
-  workers.start(2, {0, 18, 0, {0, 0, 0}, {}});
+  start(workers, 1, task_);
+  start(workers, 2, {0, 18, 0, {0, 0, 0}, {}});
   // The dead worker's descriptor is free again, but two are needed for a new one.
   std::map<std::uint64_t, TrialResult> results;
   while (results.size() < 2) {

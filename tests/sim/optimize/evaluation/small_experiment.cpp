@@ -1,8 +1,10 @@
 #include "small_experiment.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstdlib>
 #include <stdexcept>
+#include <utility>
 
 #include "shared/fixed/decimal.hpp"
 #include "shared/gait/actuation_module.hpp"
@@ -97,22 +99,48 @@ TrialResult made_up_trial(const Experiment& experiment, const Task& task) {
   return result;
 }
 
-void MadeUpWorkers::start(std::uint64_t ticket, const Task& task) {
-  if (idle() == 0) {
-    throw std::logic_error("no worker is idle");
+RunTasks one_by_one(RunTask run) {
+  return [run = std::move(run)](const Experiment& experiment, std::span<const Task> tasks) {
+    std::vector<TrialResult> results;
+    for (const Task& task : tasks) {
+      results.push_back(run(experiment, task));
+    }
+    return results;
+  };
+}
+
+void start(Workers& workers, std::uint64_t ticket, const Task& task) {
+  const TicketedTask one{ticket, task};
+  workers.start({&one, 1});
+}
+
+void MadeUpWorkers::start(std::span<const TicketedTask> batch) {
+  if (idle() == 0 || batch.empty()) {
+    throw std::logic_error(batch.empty() ? "no task" : "no worker is idle");
   }
-  started_.push_back(task);
-  busy_.push_back({ticket, task});
+  for (const TicketedTask& each : batch) {
+    started_.push_back(each.task);
+  }
+  batch_sizes_.push_back(batch.size());
+  busy_.emplace_back(batch.begin(), batch.end());
 }
 
 std::optional<Workers::Done> MadeUpWorkers::wait(std::chrono::milliseconds /*timeout*/) {
-  if (busy_.empty() || random_() % 3 == 0) {
+  if ((busy_.empty() && finished_.empty()) || random_() % 3 == 0) {
     return std::nullopt;
   }
-  const auto chosen = static_cast<std::ptrdiff_t>(random_() % busy_.size());
-  const Busy busy = busy_[static_cast<std::size_t>(chosen)];
-  busy_.erase(busy_.begin() + chosen);
-  return Done{busy.ticket, run_(experiment_, busy.task), static_cast<std::uint32_t>(chosen)};
+  if (finished_.empty()) {
+    const auto chosen = static_cast<std::ptrdiff_t>(random_() % busy_.size());
+    std::vector<TicketedTask> batch = std::move(busy_[static_cast<std::size_t>(chosen)]);
+    busy_.erase(busy_.begin() + chosen);
+    std::ranges::shuffle(batch, random_);
+    for (const TicketedTask& each : batch) {
+      finished_.push_back({each.ticket, run_(experiment_, each.task), static_cast<std::uint32_t>(chosen)});
+    }
+  }
+  Done done = std::move(finished_.front());
+  finished_.pop_front();
+  return done;
 }
 
 std::string exact(const TrialResult& result) {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <deque>
 #include <filesystem>
+#include <functional>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +35,13 @@ namespace proleg::optimize {
 /// if the experiment's outcome depends on the seed. Racing gives up what is below its limit.
 [[nodiscard]] TrialResult made_up_trial(const Experiment& experiment, const Task& task);
 
+using RunTask = std::function<TrialResult(const Experiment&, const Task&)>;
+/// A worker's function that gives the tasks of a batch to this one.
+[[nodiscard]] RunTasks one_by_one(RunTask run);
+
+/// Gives a worker one task.
+void start(Workers& workers, std::uint64_t ticket, const Task& task);
+
 /// Workers without processes, which finish in any order and sometimes let wait() return without a result.
 class MadeUpWorkers final : public Workers {
  public:
@@ -40,24 +50,24 @@ class MadeUpWorkers final : public Workers {
 
   [[nodiscard]] std::uint32_t count() const override { return count_; }
   [[nodiscard]] std::uint32_t idle() const override { return count_ - static_cast<std::uint32_t>(busy_.size()); }
-  void start(std::uint64_t ticket, const Task& task) override;
+  void start(std::span<const TicketedTask> batch) override;
   [[nodiscard]] std::optional<Done> wait(std::chrono::milliseconds timeout) override;
   [[nodiscard]] std::vector<std::string> messages() override { return {}; }
 
   /// All tasks that were started.
   [[nodiscard]] const std::vector<Task>& started() const { return started_; }
+  /// The sizes of all batches.
+  [[nodiscard]] const std::vector<std::size_t>& batch_sizes() const { return batch_sizes_; }
 
  private:
   const Experiment& experiment_;
   std::uint32_t count_;
   std::mt19937 random_;
   RunTask run_;
-  struct Busy {
-    std::uint64_t ticket;
-    Task task;
-  };
-  std::vector<Busy> busy_;
+  std::vector<std::vector<TicketedTask>> busy_;
+  std::deque<Done> finished_;
   std::vector<Task> started_;
+  std::vector<std::size_t> batch_sizes_;
 };
 
 /// Bit patterns of the numbers, with texts and flags. Without wall_s, which does not repeat.

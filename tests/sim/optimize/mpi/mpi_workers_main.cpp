@@ -53,8 +53,35 @@ void search_and_compare(const Experiment& experiment, Workers& workers) {
   }
 }
 
-void equals_local_workers() {
-  const Experiment experiment = noisy_experiment(1, 0.1);
+/// A batch for each worker.
+void compare_batches(const Experiment& experiment, Workers& workers) {
+  std::mt19937 random(3);
+  std::vector<Task> tasks;
+  for (std::uint64_t worker = 0; worker < 4; ++worker) {
+    std::vector<TicketedTask> batch;
+    for (std::uint64_t i = 0; i < 3 + worker; ++i) {
+      tasks.push_back({0, tasks.size(), 0, random_candidate(experiment, random), {}});
+      batch.push_back({100 + tasks.back().number, tasks.back()});
+    }
+    workers.start(batch);
+  }
+  expect(workers.idle() == 0, "no idle worker");
+  std::set<std::uint64_t> tickets;
+  while (tickets.size() < tasks.size()) {
+    if (const auto done = workers.wait(std::chrono::milliseconds(100))) {
+      expect(tickets.insert(done->ticket).second, "one result of each task");
+      expect(exact(done->result) == exact(run_trial(experiment, tasks.at(done->ticket - 100))),
+             "the result of task " + std::to_string(done->ticket - 100));
+    }
+  }
+  expect(workers.idle() == 4, "4 idle workers");
+}
+
+void equals_local_workers(bool in_batches) {
+  Experiment experiment = noisy_experiment(1, 0.1);
+  if (in_batches) {
+    experiment.scenario.environment.engine = proleg::sim::PhysicsEngine::reduced;
+  }
   if (!is_rank_0()) {
     expect(serve_mpi(experiment, build), "that all have the same experiment");
     return;
@@ -64,11 +91,10 @@ void equals_local_workers() {
   expect(workers.idle() == 4, "4 idle workers");
   search_and_compare(experiment, workers);
   // Each of them gets tasks and has its own number.
-  while (workers.idle() < 4) {
-    static_cast<void>(workers.wait(std::chrono::milliseconds(100)));
+  while (workers.wait(std::chrono::milliseconds(100)) || workers.idle() < 4) {
   }
   for (std::uint64_t ticket = 0; ticket < 4; ++ticket) {
-    workers.start(ticket, {0, ticket, 0, {1, 1, 1}, {}});
+    start(workers, ticket, {0, ticket, 0, {1, 1, 1}, {}});
   }
   expect(workers.idle() == 0, "no idle worker");
   std::set<std::uint32_t> numbers;
@@ -78,6 +104,9 @@ void equals_local_workers() {
       expect(exact(done->result) == exact(run_trial(experiment, {0, done->ticket, 0, {1, 1, 1}, {}})),
              "the result of ticket " + std::to_string(done->ticket));
     }
+  }
+  if (in_batches) {
+    compare_batches(experiment, workers);
   }
   expect(workers.messages().empty(), "no messages");
 }
@@ -90,12 +119,12 @@ void ends_in_the_middle_of_tasks() {
     }
   };
   if (!is_rank_0()) {
-    static_cast<void>(serve_mpi(experiment, build, hang));
+    static_cast<void>(serve_mpi(experiment, build, one_by_one(hang)));
     return;
   }
-  MpiWorkers workers(experiment, build, hang);
+  MpiWorkers workers(experiment, build, one_by_one(hang));
   for (std::uint64_t ticket = 0; ticket < 4; ++ticket) {
-    workers.start(ticket, {});
+    start(workers, ticket, {});
   }
   expect(!workers.wait(std::chrono::milliseconds(50)), "no result");
 }
@@ -113,12 +142,12 @@ void repeats_the_task_of_a_killed_worker() {
     return made_up_trial(its, task);
   };
   if (!is_rank_0()) {
-    static_cast<void>(serve_mpi(experiment, build, first_dies));
+    static_cast<void>(serve_mpi(experiment, build, one_by_one(first_dies)));
     return;
   }
-  MpiWorkers workers(experiment, build, first_dies);
+  MpiWorkers workers(experiment, build, one_by_one(first_dies));
   for (std::uint64_t ticket = 0; ticket < 4; ++ticket) {
-    workers.start(ticket, {0, ticket, 0, {1, 1, 1}, {}});
+    start(workers, ticket, {0, ticket, 0, {1, 1, 1}, {}});
   }
   for (int results = 0; results < 4;) {
     if (const auto done = workers.wait(std::chrono::milliseconds(100))) {
@@ -173,10 +202,10 @@ void continues_without_a_rank_that_stopped() {
     return made_up_trial(its, task);
   };
   if (!is_rank_0()) {
-    static_cast<void>(serve_mpi(experiment, build, slow, limit));
+    static_cast<void>(serve_mpi(experiment, build, one_by_one(slow), limit));
     return;
   }
-  MpiWorkers workers(experiment, build, slow, limit);
+  MpiWorkers workers(experiment, build, one_by_one(slow), limit);
   const ContinuedAtTheEnd continued(pid_file);
   bool lost_rank_2 = false;
   std::uint32_t lost = 0;
@@ -196,7 +225,7 @@ void continues_without_a_rank_that_stopped() {
   while (!lost_rank_2) {
     expect(std::chrono::steady_clock::now() < end, "a message within 100 s");
     for (; workers.idle() > 0; ++ticket) {
-      workers.start(ticket, {0, ticket, 0, {1, 1, 1}, {}});
+      start(workers, ticket, {0, ticket, 0, {1, 1, 1}, {}});
       open.insert(ticket);
     }
     receive();
@@ -235,11 +264,11 @@ void reports_a_task_that_cannot_be_done() {
     return made_up_trial(its, task);
   };
   if (!is_rank_0()) {
-    static_cast<void>(serve_mpi(experiment, build, deadly));
+    static_cast<void>(serve_mpi(experiment, build, one_by_one(deadly)));
     return;
   }
-  MpiWorkers workers(experiment, build, deadly);
-  workers.start(0, {0, 17, 0, {}, {}});  // ranks above 0 get tasks first
+  MpiWorkers workers(experiment, build, one_by_one(deadly));
+  start(workers, 0, {0, 17, 0, {}, {}});  // ranks above 0 get tasks first
   try {
     while (!workers.wait(std::chrono::milliseconds(100))) {
     }
@@ -256,7 +285,9 @@ int main(int argc, char** argv) {
   const std::string subject = argc == 2 ? argv[1] : "";
   try {
     if (subject == "EqualsLocalWorkers") {
-      equals_local_workers();
+      equals_local_workers(false);
+    } else if (subject == "EqualsLocalWorkersInBatches") {
+      equals_local_workers(true);
     } else if (subject == "EndsInTheMiddleOfTasks") {
       ends_in_the_middle_of_tasks();
     } else if (subject == "RepeatsTheTaskOfAKilledWorker") {

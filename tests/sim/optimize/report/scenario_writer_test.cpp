@@ -318,6 +318,19 @@ TEST(WriteScenario, WithNoiseHasTheSeedOfTheFirstTrial) {
   }
 }
 
+TEST(WriteScenario, HasTheEngineOfTheSearch) {
+  sim::MemoryFiles files = sim::small_scenario();
+  for (const sim::PhysicsEngine engine : {sim::PhysicsEngine::reduced, sim::PhysicsEngine::ode}) {
+    Experiment experiment = experiment_of(files.scenario());
+    experiment.scenario.overrides.engine = engine;
+    sim::apply_overrides(experiment.scenario.overrides, experiment.scenario.environment);
+    const TemporaryFolder folder;
+    const sim::Scenario scenario = read_back(write_scenario(experiment, of({}), folder.path(), "best"));
+    EXPECT_EQ(scenario.environment.engine, engine);
+    EXPECT_EQ(scenario.environment.gravity, experiment.scenario.environment.gravity);
+  }
+}
+
 TEST(WriteScenario, StatesTheOriginalWorldWhereTrialsVaryIt) {
   Experiment experiment = experiment_of(shipped("travelling_wave/uniform.simulation.xml"));
   experiment.trials.spread.friction = 0.5;

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <numeric>
+#include <span>
 
 #include "memory_files.hpp"
 #include "shared/computer/errors/input_error.hpp"
+#include "sim/scenario/reader.hpp"
+#include "tests/support/files.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace proleg::optimize {
@@ -162,8 +164,10 @@ TEST(Sweep, StatesTheCommandThatRepeatsIt) {
 class BackwardWorkers final : public Workers {
  public:
   [[nodiscard]] std::uint32_t count() const override { return 2; }
-  [[nodiscard]] std::uint32_t idle() const override { return 2 - static_cast<std::uint32_t>(tasks_.size()); }
-  void start(std::uint64_t ticket, const Task& task) override { tasks_.emplace_back(ticket, task); }
+  [[nodiscard]] std::uint32_t idle() const override {
+    return 2 - std::min(2U, static_cast<std::uint32_t>(tasks_.size()));
+  }
+  void start(std::span<const TicketedTask> batch) override { tasks_.insert(tasks_.end(), batch.begin(), batch.end()); }
   [[nodiscard]] std::optional<Done> wait(std::chrono::milliseconds /*timeout*/) override {
     const auto [ticket, task] = tasks_.back();
     tasks_.pop_back();
@@ -174,7 +178,7 @@ class BackwardWorkers final : public Workers {
   [[nodiscard]] std::vector<std::string> messages() override { return {}; }
 
  private:
-  std::deque<std::pair<std::uint64_t, Task>> tasks_;
+  std::vector<TicketedTask> tasks_;
 };
 
 TEST(Sweep, ResultsAreInTheOrderOfTheCombinations) {
@@ -199,12 +203,38 @@ TEST(Sweep, AnInterruptionLeavesWhatIsDone) {
   EXPECT_TRUE(std::ranges::is_sorted(runs, {}, &SweepRun::number));
 }
 
+TrialResult run_combination(const Sweep& sweep, const Candidate& combination) {
+  const Task task{0, 0, 0, combination, {}};
+  return run_combinations(sweep, {&task, 1}).front();
+}
+
 TEST(Sweep, ACombinationIsSimulatedUpToItsEnd) {
   const TrialResult result = run_combination(sweep_over({"amplitude=20"}), {0});
   EXPECT_EQ(result.failure, "");
   EXPECT_DOUBLE_EQ(result.simulated_s, 2.0);
   EXPECT_TRUE(std::isfinite(result.measures[sim::Measure::distance]));
   EXPECT_EQ(result.limited_joints, 0U);
+}
+
+TEST(Sweep, GivesABatchTheResultsOfSingleRuns) {
+  sim::DiskFiles files;
+  sim::Scenario scenario = sim::read_scenario(
+      std::filesystem::path(source_path("/sim/scenarios/travelling_wave/uniform.simulation.xml")), files);
+  scenario.duration_s = 0.5;
+  scenario.environment.engine = sim::PhysicsEngine::reduced;
+  const Sweep sweep =
+      read_sweep(std::move(scenario), std::vector<std::string>{"amplitude=10:40:10", "friction=0.2:0.3:0.1"});
+  std::vector<Task> tasks;
+  for (std::uint64_t i = 0; i < sweep.size(); ++i) {
+    tasks.push_back({0, i, 0, sweep.combination(i), {}});
+  }
+  const std::vector<TrialResult> together = run_combinations(sweep, tasks);
+  ASSERT_EQ(together.size(), 8U);
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    EXPECT_EQ(together[i].measures[sim::Measure::distance],
+              run_combination(sweep, tasks[i].candidate).measures[sim::Measure::distance]);
+  }
+  EXPECT_NE(together[0].measures[sim::Measure::distance], together[2].measures[sim::Measure::distance]);
 }
 
 TEST(Sweep, CountsTheJointsWhoseServosCannotFollow) {

@@ -1,0 +1,129 @@
+#include "sim/optimize/evaluation/scenario_runs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "sim/loop/simulation_batch.hpp"
+#include "small_experiment.hpp"
+
+namespace proleg::optimize {
+namespace {
+
+Experiment reduced(Experiment experiment) {
+  experiment.scenario.environment.engine = sim::PhysicsEngine::reduced;
+  return experiment;
+}
+
+std::vector<Task> random_tasks(const Experiment& experiment, std::uint32_t count) {
+  std::mt19937 random(5);
+  std::vector<Task> tasks;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    tasks.push_back({1, i / 2, i % 2, random_candidate(experiment, random), {}});
+  }
+  return tasks;
+}
+
+std::vector<std::string> exact(const std::vector<TrialResult>& results) {
+  std::vector<std::string> texts;
+  for (const TrialResult& result : results) {
+    texts.push_back(exact(result));
+  }
+  return texts;
+}
+
+std::vector<TrialResult> alone(const Experiment& experiment, const std::vector<Task>& tasks) {
+  std::vector<TrialResult> results;
+  for (const Task& task : tasks) {
+    results.push_back(run_trial(experiment, task));
+  }
+  return results;
+}
+
+TEST(Batch, IsMadeOfWorldsOfTheReducedEngineWithoutMoves) {
+  Experiment experiment = small_experiment();
+  EXPECT_EQ(sim::batch_size(experiment.scenario), 1U);
+  experiment = reduced(experiment);
+  EXPECT_EQ(sim::batch_size(experiment.scenario), 64U);
+  experiment.scenario.moves.emplace_back();
+  EXPECT_EQ(sim::batch_size(experiment.scenario), 1U);
+}
+
+TEST(Batch, GivesEveryTrialTheBitsThatItHasAlone) {
+  for (Experiment experiment : {noisy_experiment(2, 0.5), small_experiment(0.5)}) {
+    experiment.trials.spread.mass = 0.1;
+    for (const Experiment& its : {reduced(experiment), experiment}) {
+      const std::vector<Task> tasks = random_tasks(its, 11);
+      EXPECT_EQ(exact(run_trials(its, tasks)), exact(alone(its, tasks)));
+    }
+  }
+}
+
+TEST(Batch, GivesUpTheTrialsThatAreGivenUpAlone) {
+  Experiment experiment = reduced(small_experiment(0.5));
+  experiment.racing.after = 0.5;
+  std::vector<Task> tasks = random_tasks(experiment, 12);
+  std::vector<double> distances;
+  for (const TrialResult& result : run_trials(experiment, tasks)) {
+    distances.push_back(result.measures[sim::Measure::distance]);
+  }
+  std::ranges::sort(distances);
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (i % 4 != 3) {
+      tasks[i].hopeless_below = distances[distances.size() / 2];
+    }
+  }
+  const std::vector<TrialResult> results = run_trials(experiment, tasks);
+  EXPECT_EQ(exact(results), exact(alone(experiment, tasks)));
+  const auto given_up = std::ranges::count_if(results, &TrialResult::given_up);
+  EXPECT_GT(given_up, 0);
+  EXPECT_LT(given_up, 9);
+}
+
+TEST(Batch, HasTheFailureOfOneTrialInItsResultOnly) {
+  const Experiment experiment = reduced(small_experiment());
+  std::vector<sim::Scenario> scenarios(5, experiment.scenario);
+  scenarios[2].environment.gravity = {0.0, 0.0, -1e6};
+  scenarios[2].environment.robot_pose.position.z() += 1000.0;
+  scenarios[3].kernel.seed = 9;
+  RunWatch watch;
+  watch.at_end = [](std::size_t /*i*/, const sim::Simulation& simulation, TrialResult& result) {
+    result.measures = simulation.measures();
+  };
+  const std::vector<TrialResult> results = run_scenarios(scenarios, watch);
+  for (std::size_t i = 0; i < scenarios.size(); ++i) {
+    EXPECT_EQ(exact(results[i]), exact(run_scenarios({&scenarios[i], 1}, watch).front())) << i;
+    EXPECT_EQ(results[i].failure.empty(), i != 2) << results[i].failure;
+  }
+  EXPECT_LT(results[2].simulated_s, 0.3);
+}
+
+TEST(Batch, TakesScenariosThatDoNotFitTogetherOneAfterTheOther) {
+  const Experiment experiment = reduced(small_experiment());
+  std::vector<sim::Scenario> scenarios(6, experiment.scenario);
+  scenarios[1].environment.engine = sim::PhysicsEngine::ode;
+  scenarios[3].step_s /= 2.0;
+  scenarios[5].duration_s = 0.1;
+  RunWatch watch;
+  watch.at_end = [](std::size_t /*i*/, const sim::Simulation& simulation, TrialResult& result) {
+    result.measures = simulation.measures();
+  };
+  const std::vector<TrialResult> results = run_scenarios(scenarios, watch);
+  for (std::size_t i = 0; i < scenarios.size(); ++i) {
+    EXPECT_EQ(exact(results[i]), exact(run_scenarios({&scenarios[i], 1}, watch).front())) << i;
+    EXPECT_GT(results[i].wall_s, 0.0);
+  }
+  EXPECT_EQ(results[5].simulated_s, 0.1);
+}
+
+TEST(RequireEngine, RefusesARobotThatTheEngineDoesNotHave) {
+  Experiment experiment = small_experiment();
+  EXPECT_NO_THROW(require_engine(reduced(experiment)));
+  experiment.scenario.robot.joints[1].axis = {0.0, 0.0, 1.0};
+  EXPECT_NO_THROW(require_engine(experiment));
+  EXPECT_THROW(require_engine(reduced(experiment)), InputError);
+}
+
+}  // namespace
+}  // namespace proleg::optimize

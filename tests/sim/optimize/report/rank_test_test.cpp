@@ -93,8 +93,8 @@ TEST(RankSumTest, IsTheShareOfAllChoicesThatAreAsFar) {
 }
 
 TEST(RankSumTest, RejectsByChanceAsOftenAsItsLevelSays) {
-  // 30 against 30 is exact, 60 against 60 approximate.
-  for (const std::size_t size : {30U, 60U}) {
+  // 15 against 15 is exact, 60 against 60 approximate.
+  for (const std::size_t size : {15U, 60U}) {
     std::mt19937 random(11);
     int rejected = 0;
     constexpr int rounds = 400;

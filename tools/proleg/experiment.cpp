@@ -14,7 +14,6 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/optimize/evaluation/local_workers.hpp"
 #include "sim/optimize/method/pagmo_algorithms.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/thesis_experiment.hpp"
@@ -23,6 +22,7 @@
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/json_output.hpp"
 #include "tools/proleg/optimisation.hpp"
+#include "tools/proleg/repetitions.hpp"
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/search_result.hpp"
 #include "tools/proleg/worker_count.hpp"
@@ -148,70 +148,6 @@ bool is_complete(const optimize::Experiment& experiment, std::uint32_t repetitio
   }
 }
 
-struct MethodResult {
-  optimize::MethodRuns runs;
-  std::vector<std::string> endings;
-  std::optional<optimize::Evaluation> best;
-  double wall_s = 0.0;
-  double simulated_s = 0.0;
-};
-
-/// The best of a repetition, rated again if the experiment is judged. Nothing if the user interrupts.
-std::optional<optimize::Evaluation> winner_of(const optimize::Experiment& experiment, optimize::Workers& workers,
-                                              optimize::Store& store, SearchOutcome& outcome) {
-  if (!optimize::is_judged(experiment)) {
-    return outcome.progress.best;
-  }
-  const std::vector<optimize::Confirmation> confirmations = confirm_best(experiment, workers, store, outcome);
-  if (confirmations.empty()) {
-    return std::nullopt;
-  }
-  optimize::Evaluation winner = confirmations.front().evaluation;
-  winner.scores.front() = confirmations.front().mean;
-  return winner;
-}
-
-/// Runs the repetitions; what the store has is not simulated again. Fewer if the user interrupts.
-MethodResult run_method(const std::string& name, const optimize::Experiment& experiment, std::uint32_t repetitions,
-                        std::uint32_t worker_count, const fs::path& folder) {
-  optimize::LocalWorkers workers(experiment, worker_count);
-  const bool exists = fs::exists(store_path(folder));
-  const std::unique_ptr<optimize::Store> store =
-      open_store(folder, experiment, exists ? optimize::Store::Opening::resume : optimize::Store::Opening::fresh);
-  MethodResult result{{name, experiment.space, {}}, {}, {}};
-  for (std::uint32_t run = 0; run < repetitions && !interrupted(); ++run) {
-    SearchOutcome outcome = run_search(experiment, run, workers, *store,
-                                       name + " " + std::to_string(run + 1) + "/" + std::to_string(repetitions));
-    if (outcome.ending.empty()) {
-      break;
-    }
-    if (!outcome.progress.best) {
-      throw std::runtime_error(name + ": none of " + std::to_string(outcome.evaluations.size()) +
-                               " evaluations has a score; the first failure: " + outcome.progress.first_failure);
-    }
-    const std::string ending = outcome.ending;
-    const std::optional<optimize::Evaluation> best = winner_of(experiment, workers, *store, outcome);
-    if (!best) {
-      break;
-    }
-    if (!result.best || experiment.objectives.front().better(best->scores.front(), result.best->scores.front())) {
-      result.best = best;
-    }
-    result.wall_s += outcome.wall_s + outcome.confirmation_wall_s;
-    result.simulated_s += outcome.progress.simulated_s;
-    std::cerr << name << " " << run + 1 << " of " << repetitions << ": " << outcome.evaluations.size()
-              << " evaluations, best " << best->scores.front() << " " << experiment.objectives.front().unit() << ", "
-              << ending << "; " << outcome.progress.simulated << " simulated in "
-              << static_cast<long>(outcome.wall_s + outcome.confirmation_wall_s) << " s\n";
-    result.endings.push_back(ending);
-    if (optimize::is_judged(experiment)) {
-      result.runs.judged.push_back(*best);
-    }
-    result.runs.runs.push_back(std::move(outcome.evaluations));
-  }
-  return result;
-}
-
 /// The mean of the best so far after 100, 200, 400, ... evaluations.
 Json course(const optimize::BestCurves& curves) {
   Json means = Json::empty_object();
@@ -239,8 +175,7 @@ Json to_json(const MethodResult& result, const optimize::SearchSpace& space, dou
           {"gain_over_uniform", result.best->scores.front() / uniform_m - 1.0},
           {"mean_best", sum / static_cast<double>(result.runs.runs.size())},
           {"runs", runs},
-          {"wall_s", result.wall_s},
-          {"simulated_s_per_s", result.wall_s > 0.0 ? result.simulated_s / result.wall_s : 0.0}};
+          {"wall_s", result.wall_s}};
 }
 
 int experiment(const Options& options) {
@@ -284,7 +219,7 @@ int experiment(const Options& options) {
   std::vector<MethodResult> results;
   std::vector<optimize::MethodRuns> all_runs;
   for (const auto& [method, experiment] : chosen) {
-    MethodResult result = run_method(method->name, experiment, *repetitions, worker_count, folder / method->name);
+    MethodResult result = run_repetitions(method->name, experiment, *repetitions, worker_count, folder / method->name);
     if (result.runs.runs.size() < *repetitions) {
       std::cerr << "proleg experiment: interrupted; the same command continues in " << folder.string() << '\n';
       return exit_failed;

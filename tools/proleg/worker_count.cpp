@@ -9,7 +9,6 @@
 namespace proleg::tools {
 
 std::uint32_t parse_workers(const std::optional<std::string>& word) {
-  constexpr std::uint32_t max_workers = 1024;
   if (!word) {
     return std::clamp(std::thread::hardware_concurrency(), 1U, max_workers);
   }

@@ -31,7 +31,7 @@ class Store::Implementation {
  public:
   Implementation(const std::filesystem::path& path, const Experiment& experiment, const std::string& result_key,
                  Opening opening)
-      : path_(path), experiment_(experiment), columns_(experiment) {
+      : path_(path), experiment_(experiment), result_key_(result_key), columns_(experiment) {
     guard([&] {
       lock_.emplace(opening == Opening::fresh ? create_store(path_, experiment_, columns_, result_key)
                                               : claim_store(path_));
@@ -42,10 +42,7 @@ class Store::Implementation {
       // As for recordings: readers never block the writer, and a killed process leaves whole transactions.
       database_->execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; BEGIN IMMEDIATE; ROLLBACK");
       statements_ = std::make_unique<Statements>(*database_, columns_);
-      Statement last(*database_, "SELECT run, max(number) FROM trial GROUP BY run");
-      while (last.step()) {
-        last_numbers_[static_cast<std::uint32_t>(last.integer(0))] = static_cast<std::uint64_t>(last.integer(1));
-      }
+      read_last_numbers();
     });
   }
 
@@ -94,6 +91,23 @@ class Store::Implementation {
     guard([&] { Statement(*database_, "REPLACE INTO run VALUES(?1, ?2)").run(run, std::string_view(ending)); });
   }
 
+  void add(const std::filesystem::path& other) {
+    guard([&] {
+      const StoreLock lock = claim_store(other);
+      {
+        Database its(other, SQLITE_OPEN_READWRITE);
+        require_same_experiment(other, its, experiment_, result_key_);
+      }
+      const std::string path = other.string();
+      Statement(*database_, "ATTACH DATABASE ?1 AS other").run(std::string_view(path));
+      database_->execute(
+          "BEGIN; REPLACE INTO trial SELECT * FROM other.trial; REPLACE INTO evaluation SELECT * FROM "
+          "other.evaluation; "
+          "REPLACE INTO run SELECT * FROM other.run; COMMIT; DETACH DATABASE other");
+      read_last_numbers();
+    });
+  }
+
   std::uint64_t evaluation_count(std::uint32_t run) {
     return guard([&] {
       Statement statement(*database_, "SELECT coalesce(max(number) + 1, 0) FROM evaluation WHERE run = ?1");
@@ -133,6 +147,13 @@ class Store::Implementation {
     Statement save_evaluation;
   };
 
+  void read_last_numbers() {
+    Statement last(*database_, "SELECT run, max(number) FROM trial GROUP BY run");
+    while (last.step()) {
+      last_numbers_[static_cast<std::uint32_t>(last.integer(0))] = static_cast<std::uint64_t>(last.integer(1));
+    }
+  }
+
   /// Runs an action on the file and turns its errors into StoreError.
   template <typename Action>
   std::invoke_result_t<Action> guard(const Action& action) {
@@ -149,6 +170,7 @@ class Store::Implementation {
 
   std::filesystem::path path_;
   const Experiment& experiment_;
+  std::string result_key_;
   StoreColumns columns_;
   /// Outlives the database: closing any descriptor of a file releases all locks of the process on it.
   std::optional<StoreLock> lock_;
@@ -182,6 +204,7 @@ void Store::save(const Task& task, std::uint64_t seed, const TrialResult& result
 void Store::save(const Evaluation& evaluation) { implementation_->save(evaluation); }
 void Store::start_run(std::uint32_t run) { implementation_->start_run(run); }
 void Store::finish_run(std::uint32_t run, const std::string& reason) { implementation_->finish_run(run, reason); }
+void Store::add(const std::filesystem::path& other) { implementation_->add(other); }
 std::uint64_t Store::evaluation_count(std::uint32_t run) { return implementation_->evaluation_count(run); }
 std::vector<Evaluation> Store::evaluations(std::uint32_t run) { return implementation_->evaluations(run); }
 std::optional<std::string> Store::ending(std::uint32_t run) { return implementation_->ending(run); }

@@ -61,6 +61,10 @@ class Store {
   /// Saves why a run ended ("converged", "no credit left", ...).
   void finish_run(std::uint32_t run, const std::string& reason);
 
+  /// Adds all that another store of the same experiment and result key has; its rows replace those of the same run and
+  /// number. Throws StoreError, also if another program writes to that store.
+  void add(const std::filesystem::path& other);
+
   /// Number of the last evaluation of a run that was saved, plus 1.
   [[nodiscard]] std::uint64_t evaluation_count(std::uint32_t run);
   /// All saved evaluations of a run, by number.

@@ -322,13 +322,47 @@ TEST_F(Optimise, UnderMpirunReportsAnErrorOnce) {
   }
 }
 
-TEST_F(Optimise, AnExperimentWritesTheThesissTablesAndFiguresAndContinues) {
-  // The shipped experiment with its trials cut to a fifth of a second.
-  const fs::path folder = file("scenarios");
+/// The shipped experiment with its trials cut to a fifth of a second.
+fs::path copy_short_experiment(const fs::path& folder) {
   fs::copy(source_path("/sim/scenarios/travelling_wave"), folder, fs::copy_options::recursive);
   std::string scenario = read_file(folder / "uniform.simulation.xml");
   scenario.replace(scenario.find("<duration>30<"), 13, "<duration>0.2<");
   std::ofstream(folder / "uniform.simulation.xml") << scenario;
+  return folder;
+}
+
+TEST_F(Optimise, RepetitionsSideBySideGiveTheSameAlsoIfTheyAreInterrupted) {
+  const fs::path folder = copy_short_experiment(file("scenarios"));
+  const auto words = [&](const std::string& out, const std::string& workers, const std::string& evaluations) {
+    return std::vector<std::string>{
+        "experiment", "travelling_wave",  "--repetitions", "9",         "--evaluations", evaluations,   "--method",
+        "cma-es",     "--engine",         "reduced",       "--workers", workers,         "--scenarios", folder.string(),
+        "--out",      file(out).string(), "--json"};
+  };
+  const auto found = [&](const std::string& out) {
+    return select(
+        out + "/cma-es",
+        "SELECT run, number, candidate, reused, printf('%.17g', distance) FROM evaluation ORDER BY run, number");
+  };
+  const Json one = json_of(proleg(words("one", "1", "60")));
+  const Json two = json_of(proleg(words("two", "2", "60")));
+  EXPECT_EQ(one["methods"][0]["runs"], two["methods"][0]["runs"]);
+  EXPECT_EQ(one["methods"][0]["runs"].size(), 9U);
+  EXPECT_EQ(found("one"), found("two"));
+  EXPECT_FALSE(fs::exists(file("two/cma-es/part0"))) << "what each process found is in one store";
+
+  for (const int signal : {SIGINT, SIGKILL}) {
+    const pid_t experiment = start_proleg(words("parts", "2", endless));
+    wait_for("parts/cma-es/part0", 100);
+    kill(experiment, signal);
+    EXPECT_NE(finish(experiment).status, 0);
+  }
+  const Json continued = json_of(proleg(words("parts", "2", "60")));
+  EXPECT_EQ(one["methods"][0]["runs"], continued["methods"][0]["runs"]);
+}
+
+TEST_F(Optimise, AnExperimentWritesTheThesissTablesAndFiguresAndContinues) {
+  const fs::path folder = copy_short_experiment(file("scenarios"));
   const auto run = [&](const char* repetitions) {
     return json_of(proleg({"experiment", "travelling_wave", "--repetitions", repetitions, "--evaluations", "40",
                            "--scenarios", folder.string(), "--out", file("out").string(), "--json"}));

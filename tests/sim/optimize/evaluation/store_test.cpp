@@ -54,6 +54,49 @@ class StoreTest : public testing::Test {
   std::mt19937 random_{3};
 };
 
+TEST_F(StoreTest, TakesWhatAnotherStoreOfTheSameExperimentHas) {
+  const std::filesystem::path other_path = folder_ / "other.sqlite";
+  const Task ours{0, 3, 0, {1, 1, 1}, {}};
+  const Task theirs{1, 5, 0, {2, 2, 2}, {}};
+  const Task both{2, 0, 0, {3, 3, 3}, {}};
+  const TrialResult of_theirs = any_result(random_);
+  const TrialResult of_both = any_result(random_);
+  {
+    Store other(other_path, experiment_, "build", Store::Opening::fresh);
+    other.save(theirs, 1, of_theirs, 0);
+    other.save(both, 1, of_both, 0);
+    other.finish_run(1, "converged");
+  }
+  const std::unique_ptr<Store> store = fresh();
+  store->save(ours, 1, any_result(random_), 0);
+  store->save(both, 1, any_result(random_), 0);
+  store->add(other_path);
+  EXPECT_TRUE(store->find(ours));
+  ASSERT_TRUE(store->find(theirs));
+  EXPECT_EQ(exact(*store->find(theirs)), exact(of_theirs));
+  EXPECT_EQ(exact(*store->find(both)), exact(of_both)) << "its rows replace ours";
+  EXPECT_EQ(store->ending(1), "converged");
+  store->add(other_path);
+  EXPECT_EQ(ask("SELECT count(*) FROM trial"), "3") << "once more changes nothing";
+}
+
+TEST_F(StoreTest, TakesNothingFromAStoreThatIsOpenOrOfAnotherExperiment) {
+  const std::filesystem::path other_path = folder_ / "other.sqlite";
+  const std::unique_ptr<Store> store = fresh();
+  {
+    const Store other(other_path, experiment_, "build", Store::Opening::fresh);
+    EXPECT_THROW(store->add(other_path), StoreError);
+  }
+  std::filesystem::remove(other_path);
+  Experiment another = small_experiment();
+  another.seed = 99;
+  { const Store other(other_path, another, "build", Store::Opening::fresh); }
+  EXPECT_THROW(store->add(other_path), StoreError);
+  EXPECT_THROW(store->add(folder_ / "none.sqlite"), StoreError);
+  store->save(Task{0, 0, 0, {1, 1, 1}, {}}, 1, any_result(random_), 0);
+  EXPECT_EQ(ask("SELECT count(*) FROM trial"), "1") << "it still works";
+}
+
 TEST_F(StoreTest, GivesTrialsBackToTheLastBit) {
   std::vector<std::pair<Task, TrialResult>> saved;
   {

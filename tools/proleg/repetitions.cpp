@@ -1,0 +1,156 @@
+#include "tools/proleg/repetitions.hpp"
+
+#include <chrono>
+#include <iostream>
+#include <stdexcept>
+#include <utility>
+
+#include "sim/optimize/evaluation/local_workers.hpp"
+#include "tools/proleg/interrupt.hpp"
+#include "tools/proleg/optimisation.hpp"
+#include "tools/proleg/side_by_side.hpp"
+#include "tools/proleg/worker_count.hpp"
+
+namespace proleg::tools {
+namespace {
+
+namespace fs = std::filesystem;
+
+using optimize::Evaluation;
+using optimize::Experiment;
+using optimize::Store;
+
+/// A search that has ended, with its best, which is rated again if the experiment is judged.
+struct Repetition {
+  SearchOutcome outcome;
+  Evaluation winner;
+};
+
+class Repetitions {
+ public:
+  Repetitions(std::string name, const Experiment& experiment, std::uint32_t count, fs::path folder)
+      : name_(std::move(name)), experiment_(experiment), count_(count), folder_(std::move(folder)) {}
+
+  /// Those of which the store has nothing. Takes what processes of an earlier program left. (What was interrupted is
+  /// continued from the store, by all workers.)
+  [[nodiscard]] std::vector<std::uint32_t> missing() const {
+    const std::unique_ptr<Store> store = open();
+    add_parts(*store);
+    std::vector<std::uint32_t> runs;
+    for (std::uint32_t run = 0; run < count_; ++run) {
+      if (store->evaluation_count(run) == 0) {
+        runs.push_back(run);
+      }
+    }
+    return runs;
+  }
+
+  /// Each process has its own store, which then becomes part of that of the experiment.
+  void search_side_by_side(std::uint32_t processes, std::span<const std::uint32_t> runs) const {
+    work_side_by_side(processes, runs, [&](std::uint32_t process, const NextNumber& next) {
+      optimize::LocalWorkers worker(experiment_, 1);
+      const std::unique_ptr<Store> store = open_store(part(process), experiment_, Store::Opening::fresh);
+      while (const std::optional<std::uint32_t> run = next()) {
+        static_cast<void>(search(*run, worker, *store, std::cout));
+      }
+    });
+  }
+
+  [[nodiscard]] MethodResult collect(std::uint32_t worker_count) const {
+    optimize::LocalWorkers workers(experiment_, worker_count);
+    const std::unique_ptr<Store> store = open();
+    add_parts(*store);
+    MethodResult result{{name_, experiment_.space, {}}, {}, {}};
+    for (std::uint32_t run = 0; run < count_ && !interrupted(); ++run) {
+      std::optional<Repetition> repetition = search(run, workers, *store, std::cerr);
+      if (!repetition) {
+        break;
+      }
+      if (!result.best ||
+          experiment_.objectives.front().better(repetition->winner.scores.front(), result.best->scores.front())) {
+        result.best = repetition->winner;
+      }
+      result.endings.push_back(repetition->outcome.ending);
+      if (optimize::is_judged(experiment_)) {
+        result.runs.judged.push_back(repetition->winner);
+      }
+      result.runs.runs.push_back(std::move(repetition->outcome.evaluations));
+    }
+    return result;
+  }
+
+ private:
+  [[nodiscard]] std::unique_ptr<Store> open() const {
+    const bool exists = fs::exists(store_path(folder_));
+    return open_store(folder_, experiment_, exists ? Store::Opening::resume : Store::Opening::fresh);
+  }
+
+  [[nodiscard]] fs::path part(std::uint32_t process) const { return folder_ / ("part" + std::to_string(process)); }
+
+  void add_parts(Store& store) const {
+    for (std::uint32_t process = 0; process < max_workers; ++process) {
+      if (fs::exists(store_path(part(process)))) {
+        try {
+          store.add(store_path(part(process)));
+        } catch (const optimize::StoreError& refused) {
+          throw BadInput(refused.what());
+        }
+      }
+      fs::remove_all(part(process));
+    }
+  }
+
+  /// Nothing if the user interrupts. Prints a line if anything was simulated.
+  [[nodiscard]] std::optional<Repetition> search(std::uint32_t run, optimize::Workers& workers, Store& store,
+                                                 std::ostream& out) const {
+    const std::string label = name_ + " " + std::to_string(run + 1) + "/" + std::to_string(count_);
+    Repetition result{run_search(experiment_, run, workers, store, label), {}};
+    SearchOutcome& outcome = result.outcome;
+    if (outcome.ending.empty()) {
+      return std::nullopt;
+    }
+    if (!outcome.progress.best) {
+      throw std::runtime_error(name_ + ": none of " + std::to_string(outcome.evaluations.size()) +
+                               " evaluations has a score; the first failure: " + outcome.progress.first_failure);
+    }
+    result.winner = *outcome.progress.best;
+    if (optimize::is_judged(experiment_)) {
+      const std::vector<optimize::Confirmation> confirmations = confirm_best(experiment_, workers, store, outcome);
+      if (confirmations.empty()) {
+        return std::nullopt;
+      }
+      result.winner = confirmations.front().evaluation;
+      result.winner.scores.front() = confirmations.front().mean;
+    }
+    if (outcome.progress.simulated > 0) {
+      out << name_ << " " << run + 1 << " of " << count_ << ": " << outcome.evaluations.size() << " evaluations, best "
+          << result.winner.scores.front() << " " << experiment_.objectives.front().unit() << ", " << outcome.ending
+          << "; " << outcome.progress.simulated << " simulated in "
+          << static_cast<long>(outcome.wall_s + outcome.confirmation_wall_s) << " s" << std::endl;
+    }
+    return result;
+  }
+
+  std::string name_;
+  const Experiment& experiment_;
+  std::uint32_t count_;
+  fs::path folder_;
+};
+
+}  // namespace
+
+MethodResult run_repetitions(const std::string& name, const Experiment& experiment, std::uint32_t repetitions,
+                             std::uint32_t workers, const fs::path& folder) {
+  const auto start = std::chrono::steady_clock::now();
+  const Repetitions all(name, experiment, repetitions, folder);
+  const std::vector<std::uint32_t> missing = all.missing();
+  // With fewer repetitions than this, processors would have nothing to do while the last ones run.
+  if (workers > 1 && missing.size() >= 2 * std::size_t{workers}) {
+    all.search_side_by_side(workers, missing);
+  }
+  MethodResult result = all.collect(workers);
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+}  // namespace proleg::tools

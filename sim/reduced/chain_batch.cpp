@@ -25,18 +25,6 @@ Numbers zeros(std::size_t count) {
   return numbers;
 }
 
-/// The widest kernel whose lanes the chains fill at least by half; for one chain the narrowest.
-const ChainKernel& choose_kernel(std::size_t chains) {
-  const std::vector<const ChainKernel*> kernels = supported_kernels();
-  const ChainKernel* chosen = kernels.front();
-  for (const ChainKernel* kernel : kernels) {
-    if (static_cast<std::size_t>(kernel->width) <= 2 * chains - 2) {
-      chosen = kernel;
-    }
-  }
-  return *chosen;
-}
-
 ChainCounts counts_of(const ChainModel& chain) {
   // Two convex outlines touch in at most two points; more than three such pairs for a shape are no crawling robot.
   return {chain.links.size(), chain.joints.size(), chain.shapes.size(), chain.terrain.size(),
@@ -56,6 +44,17 @@ std::vector<const ChainKernel*> supported_kernels() {
   }
 #endif
   return kernels;
+}
+
+const ChainKernel& choose_kernel(std::size_t chains) {
+  const std::vector<const ChainKernel*> kernels = supported_kernels();
+  const ChainKernel* chosen = kernels.front();
+  for (const ChainKernel* kernel : kernels) {
+    if (static_cast<std::size_t>(kernel->width) <= 2 * chains - 2) {
+      chosen = kernel;
+    }
+  }
+  return *chosen;
 }
 
 class ChainBatch::Implementation {

@@ -12,15 +12,15 @@
 namespace proleg::sim::reduced {
 namespace {
 
-constexpr double tolerance = 1e-6;
+constexpr double rounding_error = 1e-6;
 
 Point3 to_point(const Eigen::Vector3d& vector) {
   return {rounded(vector.x()), rounded(vector.y()), rounded(vector.z())};
 }
 
-class Maker {
+class SpatialMaker {
  public:
-  Maker(const RobotModel& robot, const EnvironmentModel& environment, double step_s, const std::string& file)
+  SpatialMaker(const RobotModel& robot, const EnvironmentModel& environment, double step_s, const std::string& file)
       : robot_(robot), environment_(environment), file_(file) {
     chain_.step_s = step_s;
     chain_.self_collision = environment.self_collision;
@@ -71,7 +71,7 @@ class Maker {
     const Pose pose = object.pose * geometry.pose;
     Eigen::Index upright = 0;
     const Eigen::Vector3d up = pose.orientation.conjugate() * Eigen::Vector3d::UnitZ();
-    if (up.cwiseAbs().maxCoeff(&upright) < 1.0 - tolerance) {
+    if (up.cwiseAbs().maxCoeff(&upright) < 1.0 - rounding_error) {
       refuse(name + ", which is not level");
     }
     const Eigen::Index a = (upright + 1) % 3;
@@ -134,7 +134,7 @@ class Maker {
         box.corners[number].sensor = rounded(corner.dot(sensors.forward)) < 0.0 ? 1 : 2;
       }
     }
-    box.radius = rounded(center.norm() + geometry.extents.norm()) + tolerance;
+    box.radius = rounded(center.norm() + geometry.extents.norm()) + rounding_error;
     chain_.boxes.push_back(box);
     const std::optional<double> of_floor = floor_ != nullptr ? floor_->friction : std::nullopt;
     chain_.friction.push_back(rounded(friction_of(geometry.friction, of_floor, environment_.unspecified_friction)));
@@ -153,13 +153,13 @@ bool needs_space(const RobotModel& robot, const EnvironmentModel& environment) {
   return std::ranges::any_of(robot.joints, [&](const Joint& joint) {
     const Eigen::Vector3d across = joint.axis.cross(robot.joints.front().axis);
     const Eigen::Vector3d axis = environment.robot_pose.orientation * joint.axis;
-    return across.norm() > tolerance || std::abs(axis.z()) > tolerance;
+    return across.norm() > rounding_error || std::abs(axis.z()) > rounding_error;
   });
 }
 
 SpatialChain make_spatial_chain(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
                                 const std::string& file) {
-  return Maker(robot, environment, step_s, file).make();
+  return SpatialMaker(robot, environment, step_s, file).make();
 }
 
 }  // namespace proleg::sim::reduced

@@ -8,8 +8,8 @@
 namespace proleg::sim::reduced {
 namespace {
 
-Eigen::Vector3d to_vector(const Point3& point) { return {point.x, point.y, point.z}; }
-Point3 to_point(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+Eigen::Vector3d vector_of(const Point3& point) { return {point.x, point.y, point.z}; }
+Point3 point_of(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
 class SpatialWorld final : public World {
  public:
@@ -34,7 +34,7 @@ class SpatialWorld final : public World {
   void move_robot(const Pose& motion) override {
     const SpatialBatch::Orientation now = batch_->orientation(lane_);
     const Eigen::Quaterniond moved = motion.orientation * Eigen::Quaterniond(now.w, now.x, now.y, now.z);
-    batch_->move(lane_, to_point(motion * center_of_mass()), {moved.w(), moved.x(), moved.y(), moved.z()});
+    batch_->move(lane_, point_of(motion * center_of_mass()), {moved.w(), moved.x(), moved.y(), moved.z()});
   }
 
   void step() override {
@@ -56,21 +56,21 @@ class SpatialWorld final : public World {
   [[nodiscard]] Pose link_pose(std::size_t link) const override {
     const SpatialBatch::LinkPlace place = batch_->link_place(lane_, link);
     Eigen::Matrix3d axes;
-    axes << to_vector(place.axes[0]), to_vector(place.axes[1]), to_vector(place.axes[2]);
+    axes << vector_of(place.axes[0]), vector_of(place.axes[1]), vector_of(place.axes[2]);
     const Eigen::Quaterniond orientation = (Eigen::Quaterniond(axes) * chain_.link_orientations[link]).normalized();
-    return {to_vector(place.position) - orientation * chain_.mass_centers[link], orientation};
+    return {vector_of(place.position) - orientation * chain_.mass_centers[link], orientation};
   }
   [[nodiscard]] bool is_slower_than(double speed, double rotation) const override {
     for (std::size_t link = 0; link < chain_.links.size(); ++link) {
       const SpatialBatch::LinkMotion motion = batch_->link_motion(lane_, link);
-      if (to_vector(motion.velocity).squaredNorm() >= speed * speed ||
-          to_vector(motion.rotation).squaredNorm() >= rotation * rotation) {
+      if (vector_of(motion.velocity).squaredNorm() >= speed * speed ||
+          vector_of(motion.rotation).squaredNorm() >= rotation * rotation) {
         return false;
       }
     }
     return true;
   }
-  [[nodiscard]] Eigen::Vector3d center_of_mass() const override { return to_vector(batch_->center(lane_)); }
+  [[nodiscard]] Eigen::Vector3d center_of_mass() const override { return vector_of(batch_->center(lane_)); }
   [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const override { return batch_->pressed(lane_, link); }
   [[nodiscard]] double contact_force(std::size_t link) const override { return batch_->contact_force(lane_, link); }
   [[nodiscard]] std::size_t contact_count() const override { return batch_->contact_count(lane_); }
@@ -79,10 +79,10 @@ class SpatialWorld final : public World {
     double energy = 0.0;
     for (std::size_t link = 0; link < chain_.masses.size(); ++link) {
       const SpatialBatch::LinkMotion motion = batch_->link_motion(lane_, link);
-      const Eigen::Vector3d position = to_vector(batch_->link_place(lane_, link).position);
+      const Eigen::Vector3d position = vector_of(batch_->link_place(lane_, link).position);
       energy += chain_.masses[link] *
-                    (0.5 * to_vector(motion.velocity).squaredNorm() - to_vector(chain_.gravity).dot(position)) +
-                0.5 * to_vector(motion.rotation).dot(to_vector(motion.angular_momentum));
+                    (0.5 * vector_of(motion.velocity).squaredNorm() - vector_of(chain_.gravity).dot(position)) +
+                0.5 * vector_of(motion.rotation).dot(vector_of(motion.angular_momentum));
     }
     return energy;
   }

@@ -38,6 +38,7 @@ struct SpatialScratch {
   Number* arm;          ///< three, from the centre
   Number* lever;        ///< three, from the middle of the link
   Number* given;        ///< three, m/s: velocity against the centre while the first link does not turn
+  Number* link_spin;    ///< three, rad/s: spin of the link
   Number* depth_speed;  ///< m/s: at which the contact must part
   Number* friction;     ///< Coulomb coefficient
   Number* old_impulse;  ///< three, Ns: of the step before, 0 for a new contact
@@ -103,6 +104,7 @@ struct SpatialScratch {
     add(arm, 3 * contacts);
     add(lever, 3 * contacts);
     add(given, 3 * contacts);
+    add(link_spin, 3 * contacts);
     add(depth_speed, contacts);
     add(friction, contacts);
     add(old_impulse, 3 * contacts);

@@ -404,18 +404,14 @@ class SpatialStep {
 
   void find_given_speeds() {
     for (std::size_t k = 0; k < contacts_; ++k) {
-      Vector drift;
-      Vector spin;
       for (int lane = 0; lane < width; ++lane) {
         const std::size_t link = 3 * static_cast<std::size_t>(s_.link[k][lane]);
-        drift.x[lane] = s_.drift[link][lane];
-        drift.y[lane] = s_.drift[link + 1][lane];
-        drift.z[lane] = s_.drift[link + 2][lane];
-        spin.x[lane] = s_.spin[link][lane];
-        spin.y[lane] = s_.spin[link + 1][lane];
-        spin.z[lane] = s_.spin[link + 2][lane];
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          s_.given[3 * k + axis][lane] = s_.drift[link + axis][lane];
+          s_.link_spin[3 * k + axis][lane] = s_.spin[link + axis][lane];
+        }
       }
-      put(s_.given, k, drift + cross(spin, space_at(s_.lever, k)));
+      put(s_.given, k, space_at(s_.given, k) + cross(space_at(s_.link_spin, k), space_at(s_.lever, k)));
     }
   }
 

@@ -15,7 +15,8 @@ class SpatialBatch::Implementation {
   Implementation(const Models& chains, const ChainKernel& kernel)
       : kernel_(kernel),
         form_of_(*chains.front()),
-        form_{{form_of_.links.size(), form_of_.joints.size(), form_of_.boxes.size()},
+        form_{{form_of_.links.size(), form_of_.joints.size(), form_of_.boxes.size(),
+               corners_of_box * form_of_.boxes.size()},
               form_of_.links.data(),
               form_of_.joints.data(),
               form_of_.boxes.data(),

@@ -63,7 +63,7 @@ struct SpatialCounts {
   std::size_t links = 0;
   std::size_t joints = 0;
   std::size_t boxes = 0;
-  [[nodiscard]] std::size_t contacts() const { return corners_of_box * boxes; }  ///< at most at once
+  std::size_t contacts = 0;  ///< at most at once
 };
 
 /// What all chains of a batch have in common.

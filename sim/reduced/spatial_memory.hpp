@@ -85,8 +85,8 @@ struct SpatialMemory {
     add(overlap, 1);
     add(failed, 1);
     add(contact_count, 1);
-    add(contact_corner, counts.contacts());
-    add(impulse, 3 * counts.contacts());
+    add(contact_corner, counts.contacts);
+    add(impulse, 3 * counts.contacts);
   }
 };
 

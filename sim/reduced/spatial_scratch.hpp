@@ -80,7 +80,7 @@ struct SpatialScratch {
   template <typename Add>
   void lay_out(const SpatialCounts& counts, Add&& add) {
     const std::size_t unknowns = counts.joints + 3;
-    const std::size_t contacts = counts.contacts();
+    const std::size_t contacts = counts.contacts;
     add(joint_position, 3 * counts.joints);
     add(axis, 3 * counts.joints);
     add(turned_inertia, 6 * counts.links);

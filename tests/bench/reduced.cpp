@@ -1,5 +1,6 @@
 // Evaluations per second and core of both physics engines, with kernels, sensors and measures, and how well their
-// results agree. All figures are of one run and by processor time, so other programs do not affect the ratios.
+// results agree: for the shipped robot of pitch joints, and for one whose joints alternate between pitch and yaw. All
+// figures are of one run and by processor time, so other programs do not affect the ratios.
 //
 //   bench_reduced [CANDIDATES]   compared with ODE; by default 200
 
@@ -139,13 +140,18 @@ double gain_of_two_cores(std::span<const sim::Scenario> candidates) {
   return 2.0 * one / (wall_time() - start - one);
 }
 
-void run(std::size_t count) {
-  sim::DiskFiles files;
-  const sim::Scenario scenario =
-      sim::read_scenario(source_path("/sim/scenarios/travelling_wave/uniform.simulation.xml"), files);
+/// Every second joint turns about z.
+sim::Scenario with_yaw_joints(sim::Scenario scenario) {
+  for (std::size_t joint = 1; joint < scenario.robot.joints.size(); joint += 2) {
+    scenario.robot.joints[joint].axis = Eigen::Vector3d::UnitZ();
+  }
+  return scenario;
+}
+
+void compare(const sim::Scenario& scenario, const char* robot, std::size_t count) {
   const std::vector<sim::Scenario> candidates = bench::candidates(scenario, count, seed);
   const std::vector<sim::Scenario> reduced = with_engine(candidates, sim::PhysicsEngine::reduced);
-  std::printf("evaluations of %.0f s in a second of one core\n", scenario.duration_s);
+  std::printf("%s: evaluations of %.0f s in a second of one core\n", robot, scenario.duration_s);
   const Evaluations ode = alone(with_engine(candidates, sim::PhysicsEngine::ode));
   std::printf("  %-34s %6.2f\n", "ODE", ode.per_second);
   const auto print = [&](const std::string& name, const Evaluations& result) {
@@ -160,6 +166,14 @@ void run(std::size_t count) {
   }
   std::printf("two cores against one: %.2f\n", gain_of_two_cores(some));
   print_agreement(ode.distances, last.distances);
+}
+
+void run(std::size_t count) {
+  sim::DiskFiles files;
+  const sim::Scenario scenario =
+      sim::read_scenario(source_path("/sim/scenarios/travelling_wave/uniform.simulation.xml"), files);
+  compare(scenario, "pitch joints", count);
+  compare(with_yaw_joints(scenario), "pitch and yaw joints", count);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "sim/reduced/lanes.hpp"
 
 namespace proleg::sim::reduced {
@@ -68,6 +70,23 @@ struct Tensor {
     return {xx * v.x + xy * v.y + xz * v.z, xy * v.x + yy * v.y + yz * v.z, xz * v.x + yz * v.y + zz * v.z};
   }
 };
+
+/// Number i of an array of tensors.
+template <typename Number>
+inline Tensor<Number> tensor_at(const Number* array, std::size_t i) {
+  const Number* t = array + 6 * i;
+  return {t[0], t[1], t[2], t[3], t[4], t[5]};
+}
+template <typename Number>
+inline void put(Number* array, std::size_t i, const Tensor<Number>& t) {
+  Number* place = array + 6 * i;
+  place[0] = t.xx;
+  place[1] = t.yy;
+  place[2] = t.zz;
+  place[3] = t.xy;
+  place[4] = t.xz;
+  place[5] = t.yz;
+}
 
 /// The inertia of a mass at a point about the origin.
 template <typename Number>

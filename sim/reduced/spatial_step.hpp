@@ -9,6 +9,7 @@
 
 #include "sim/reduced/box_overlap.hpp"
 #include "sim/reduced/floor_contact.hpp"
+#include "sim/reduced/free_joints.hpp"
 #include "sim/reduced/lanes.hpp"
 #include "sim/reduced/sine.hpp"
 #include "sim/reduced/space.hpp"
@@ -28,7 +29,12 @@ class SpatialStep {
   using Inertia = Tensor<Number>;
 
   SpatialStep(const SpatialForm& form, const SpatialMemory<Number>& memory, const SpatialScratch<Number>& scratch)
-      : form_(form), m_(memory), s_(scratch), links_(form.counts.links), joints_(form.counts.joints) {}
+      : form_(form),
+        m_(memory),
+        s_(scratch),
+        links_(form.counts.links),
+        joints_(form.counts.joints),
+        free_(form, memory, scratch) {}
 
   /// As ChainStep::step_strong().
   unsigned step_strong() {
@@ -54,7 +60,7 @@ class SpatialStep {
     Mask open = Lanes<width>::all();
     for (std::size_t round = 0; any(open); ++round) {
       const bool is_last = round > joints_;  // each round frees a joint
-      list_free_joints();
+      free_.list();
       solve<true>();
       find_torques();
       const Mask changed = is_last ? Lanes<width>::none() : free_weak_joints(open);
@@ -73,20 +79,6 @@ class SpatialStep {
   }
   static Vector vector(const Point3& p) {
     return {Lanes<width>::number(p.x), Lanes<width>::number(p.y), Lanes<width>::number(p.z)};
-  }
-  static Inertia tensor(const Number* array, std::size_t i) {
-    const Number* t = array + 6 * i;
-    return {t[0], t[1], t[2], t[3], t[4], t[5]};
-  }
-  static void put(Number* array, std::size_t i, const Vector& value) { reduced::put(array, i, value); }
-  static void put(Number* array, std::size_t i, const Inertia& t) {
-    Number* place = array + 6 * i;
-    place[0] = t.xx;
-    place[1] = t.yy;
-    place[2] = t.zz;
-    place[3] = t.xy;
-    place[4] = t.xz;
-    place[5] = t.yz;
   }
   [[nodiscard]] Vector position(std::size_t link) const { return space_at(m_.link_position, link); }
   [[nodiscard]] Vector joint(std::size_t j) const { return space_at(s_.joint_position, j); }
@@ -169,7 +161,7 @@ class SpatialStep {
     for (std::size_t i = links_; i-- > 0;) {
       const Number* axes = m_.link_turn + 9 * i;
       const Turn<Number> turn{space_at(axes, 0), space_at(axes, 1), space_at(axes, 2)};
-      const Inertia own = turned_inertia(turn, tensor(m_.inertia, i));
+      const Inertia own = turned_inertia(turn, tensor_at(m_.inertia, i));
       put(s_.turned_inertia, i, own);
       inertia_ = inertia_ + own + point_inertia(m_.mass[i], position(i));
       if (i > 0) {
@@ -207,20 +199,15 @@ class SpatialStep {
 
   template <bool has_free_joints>
   void solve() {
-    if constexpr (!has_free_joints) {
-      free_count_ = 0;
-    }
-    for (std::size_t i = 0; i < free_count_; ++i) {
-      put_where(m_.is_free[free_joints_[i]] > 0.0, s_.speed[free_joints_[i]], Number{});
+    if constexpr (has_free_joints) {
+      free_.stop();
     }
     find_drift();
     const Vector momentum = sum_momenta<has_free_joints>();
     Inertia inverse{};
     motion_.center = free_speed_;
     if constexpr (has_free_joints) {
-      set_matrix(momentum);
-      invert_matrix();
-      start_motors();
+      free_.start(inertia_, momentum);
       motion_.rotation = space_at(s_.unknown, 0);
     } else {
       inverse = inverse_of(inertia_);
@@ -228,9 +215,9 @@ class SpatialStep {
     }
     find_given_speeds();
     if constexpr (has_free_joints) {
-      set_jacobians();
+      free_.set_jacobians(contacts_);
     }
-    SpatialRows<width, has_free_joints> rows(form_, m_, s_, contacts_, free_joints_, free_count_);
+    SpatialRows<width, has_free_joints> rows(form_, m_, s_, contacts_, free_.numbers(), free_.count());
     rows.prepare(contact_count_, inverse);
     rows.solve(motion_);
     for (std::size_t k = 0; k < contacts_; ++k) {
@@ -238,14 +225,12 @@ class SpatialStep {
       s_.given[3 * k + 1] = rows.speed_along(k, 1, motion_);
     }
     if constexpr (has_free_joints) {
-      for (std::size_t i = 0; i < free_count_; ++i) {
-        put_where(m_.is_free[free_joints_[i]] > 0.0, s_.speed[free_joints_[i]], s_.unknown[3 + i]);
-      }
+      free_.take_speeds();
       find_drift();  // all speeds are known now
     }
     for (std::size_t i = 0; i < links_; ++i) {
       put(s_.new_link_speed, i, space_at(s_.drift, i) + cross(motion_.rotation, position(i)));
-      put(s_.new_momentum, i, tensor(s_.turned_inertia, i) * (space_at(s_.spin, i) + motion_.rotation));
+      put(s_.new_momentum, i, tensor_at(s_.turned_inertia, i) * (space_at(s_.spin, i) + motion_.rotation));
     }
   }
 
@@ -280,7 +265,7 @@ class SpatialStep {
     Number mass{};
     for (std::size_t i = links_; i-- > 0;) {
       const Vector change = (space_at(m_.link_speed, i) - space_at(s_.drift, i)) * m_.mass[i];
-      angular = angular + (space_at(m_.spin_momentum, i) - tensor(s_.turned_inertia, i) * space_at(s_.spin, i)) +
+      angular = angular + (space_at(m_.spin_momentum, i) - tensor_at(s_.turned_inertia, i) * space_at(s_.spin, i)) +
                 cross(position(i), change);
       if (has_free_joints && i > 0) {
         linear = linear + change;
@@ -295,113 +280,6 @@ class SpatialStep {
     return angular;
   }
 
-  void list_free_joints() {
-    free_count_ = 0;
-    for (std::size_t j = 0; j < joints_; ++j) {
-      if (any(m_.is_free[j] > 0.0)) {
-        free_joints_[free_count_++] = j;
-      }
-    }
-  }
-
-  /// Of the unknowns; the lower half. The unknowns are their momenta then.
-  void set_matrix(const Vector& momentum) {
-    const std::size_t stride = joints_ + 3;
-    Number* matrix = s_.matrix;
-    matrix[0] = inertia_.xx;
-    matrix[stride] = inertia_.xy;
-    matrix[stride + 1] = inertia_.yy;
-    matrix[2 * stride] = inertia_.xz;
-    matrix[2 * stride + 1] = inertia_.yz;
-    matrix[2 * stride + 2] = inertia_.zz;
-    put(s_.unknown, 0, momentum);
-    for (std::size_t i = 0; i < free_count_; ++i) {
-      const std::size_t j = free_joints_[i];
-      const Mask is_free = m_.is_free[j] > 0.0;
-      // Momenta of the links behind while the joint turns at 1 rad/s.
-      const Vector axis = select(is_free, space_at(s_.axis, j), Vector{});
-      const Vector moment = space_at(s_.moment_behind, j);
-      const Vector linear = cross(axis, moment - joint(j) * s_.mass_behind[j]);
-      const Vector angular = tensor(s_.inertia_behind, j) * axis - cross(moment, cross(axis, joint(j)));
-      const Vector mean = linear * m_.inverse_mass[0];
-      put(s_.free_axis, i, axis);
-      put(s_.free_mean, i, mean);
-      Number* row = matrix + (3 + i) * stride;
-      put(row, 0, angular);
-      // Free joints are in the order of the chain: the links behind joint j are also behind the joints before it.
-      for (std::size_t k = 0; k <= i; ++k) {
-        const Vector about_joint = angular - cross(joint(free_joints_[k]), linear);
-        row[3 + k] = dot(space_at(s_.free_axis, k), about_joint) - dot(space_at(s_.free_mean, k), linear);
-      }
-      put_where(~is_free, row[3 + i], Lanes<width>::number(1.0));
-      s_.unknown[3 + i] = dot(axis, space_at(s_.angular_behind, j) - cross(joint(j), space_at(s_.momentum_behind, j)));
-    }
-  }
-
-  /// From the lower half of the matrix: L D L^T in its place, then the inverse; then the unknowns from their momenta.
-  void invert_matrix() {
-    const std::size_t stride = joints_ + 3;
-    const std::size_t n = 3 + free_count_;
-    Number* matrix = s_.matrix;
-    for (std::size_t j = 0; j < n; ++j) {
-      for (std::size_t k = 0; k < j; ++k) {
-        matrix[j * stride + j] -= matrix[j * stride + k] * matrix[j * stride + k] * matrix[k * stride + k];
-      }
-      const Number inverse = 1.0 / matrix[j * stride + j];
-      for (std::size_t i = j + 1; i < n; ++i) {
-        Number value = matrix[i * stride + j];
-        for (std::size_t k = 0; k < j; ++k) {
-          value -= matrix[i * stride + k] * matrix[j * stride + k] * matrix[k * stride + k];
-        }
-        matrix[i * stride + j] = value * inverse;
-      }
-    }
-    for (std::size_t column = 0; column < n; ++column) {
-      Number* x = s_.inverse_matrix + column * stride;  // symmetric: a row is a column
-      for (std::size_t i = 0; i < n; ++i) {
-        x[i] = Lanes<width>::number(i == column ? 1.0 : 0.0);
-        for (std::size_t k = column; k < i; ++k) {
-          x[i] -= matrix[i * stride + k] * x[k];
-        }
-      }
-      for (std::size_t i = 0; i < n; ++i) {
-        x[i] = x[i] / matrix[i * stride + i];
-      }
-      for (std::size_t i = n; i-- > 0;) {
-        for (std::size_t k = i + 1; k < n; ++k) {
-          x[i] -= matrix[k * stride + i] * x[k];
-        }
-      }
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      matrix[i] = s_.unknown[i];  // the momenta; the first row of the factors is not needed any more
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      Number sum{};
-      for (std::size_t k = 0; k < n; ++k) {
-        sum += s_.inverse_matrix[i * stride + k] * matrix[k];
-      }
-      s_.unknown[i] = sum;
-    }
-  }
-
-  /// The motors of free joints begin with the torque of the step before.
-  void start_motors() {
-    const std::size_t stride = joints_ + 3;
-    for (std::size_t i = 0; i < free_count_; ++i) {
-      const std::size_t j = free_joints_[i];
-      const Mask is_free = m_.is_free[j] > 0.0;
-      const Number* column = s_.inverse_matrix + (3 + i) * stride;
-      const Number most = select(is_free, m_.max_torque[j] * form_.step_s, Number{});
-      s_.free_max_impulse[i] = most;
-      s_.motor_inverse[i] = select(is_free, 1.0 / column[3 + i], Number{});
-      s_.motor_impulse[i] = bounded(m_.motor_torque[j] * form_.step_s, -most, most);
-      for (std::size_t k = 0; k < 3 + free_count_; ++k) {
-        s_.unknown[k] += column[k] * s_.motor_impulse[i];
-      }
-    }
-  }
-
   void find_given_speeds() {
     for (std::size_t k = 0; k < contacts_; ++k) {
       for (int lane = 0; lane < width; ++lane) {
@@ -412,20 +290,6 @@ class SpatialStep {
         }
       }
       put(s_.given, k, space_at(s_.given, k) + cross(space_at(s_.link_spin, k), space_at(s_.lever, k)));
-    }
-  }
-
-  void set_jacobians() {
-    for (std::size_t k = 0; k < contacts_; ++k) {
-      for (std::size_t i = 0; i < free_count_; ++i) {
-        const std::size_t j = free_joints_[i];
-        const Mask is_behind = s_.link[k] > static_cast<double>(j);
-        const Vector turning = cross(space_at(s_.free_axis, i), space_at(s_.arm, k) - joint(j));
-        const Vector velocity = select(is_behind, turning, Vector{}) - space_at(s_.free_mean, i);
-        s_.jacobian[3 * k * joints_ + i] = velocity.x;
-        s_.jacobian[(3 * k + 1) * joints_ + i] = velocity.y;
-        s_.jacobian[(3 * k + 2) * joints_ + i] = velocity.z;
-      }
     }
   }
 
@@ -554,8 +418,7 @@ class SpatialStep {
   std::size_t joints_;
   std::size_t contacts_ = 0;  ///< most of a lane
   Number contact_count_{};
-  std::size_t free_count_ = 0;
-  std::size_t free_joints_[max_spatial_joints];
+  FreeJoints<width> free_;
   Inertia inertia_;              ///< of the chain, about its centre of mass
   Vector free_speed_;            ///< of the centre, without contacts
   SpatialMotion<width> motion_;  ///< after the step

@@ -63,7 +63,7 @@ class SpatialMaker {
   void add_floor(const StaticObject& object, const Geometry& geometry) {
     const std::string name = "object '" + object.name + "'";
     if (floor_ != nullptr) {
-      refuse(name + ", a second one");
+      refuse("a second object, '" + object.name + "'");
     }
     if (geometry.shape != Shape::box) {
       refuse(name + (geometry.shape == Shape::sphere ? " with a sphere" : " with a cylinder"));

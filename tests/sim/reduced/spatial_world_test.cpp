@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <string>
@@ -341,7 +342,7 @@ TEST(SpatialWorld, RefusesByNameWhatItDoesNotHave) {
   EnvironmentModel environment = ground;
   environment.objects.push_back(floor_with_friction(0.5));
   environment.objects.back().name = "step";
-  EXPECT_NE(message(snake(3), environment).find("object 'step'"), std::string::npos);
+  EXPECT_NE(message(snake(3), environment).find("a second object, 'step'"), std::string::npos);
   environment = ground;
   environment.objects[0].name = "ramp";
   environment.objects[0].pose.orientation = turn(0.1, Eigen::Vector3d::UnitX());
@@ -354,6 +355,53 @@ TEST(SpatialWorld, RefusesByNameWhatItDoesNotHave) {
   robot.links[1].name = "Seg";
   robot.links[1].geometries[0].shape = Shape::cylinder;
   EXPECT_NE(message(robot, ground).find("link 'Seg' with a cylinder"), std::string::npos);
+}
+
+TEST(SpatialWorld, OneThatBreaksDownFailsInOneLineAndTouchesNoOther) {
+  const RobotModel robot = snake(4);
+  const EnvironmentModel ground = flat_ground(0.4, 0.02);
+  EnvironmentModel broken = ground;
+  broken.gravity.y() = std::numeric_limits<double>::infinity();
+  const std::vector<WorldInput> inputs{
+      {&robot, &ground, step_s, "test"}, {&robot, &broken, step_s, "test"}, {&robot, &ground, step_s, "test"}};
+  ReducedWorlds together(inputs);
+  const std::vector<std::unique_ptr<World>> worlds = together.take_worlds();
+  const std::unique_ptr<World> alone = make_reduced_world(robot, ground, step_s, "test");
+  for (int step = 0; step < 100; ++step) {
+    together.step();
+    alone->step();
+    EXPECT_THROW(worlds[1]->step(), PhysicsError) << step;
+  }
+  for (const std::size_t i : {0U, 2U}) {
+    EXPECT_NO_THROW(worlds[i]->step());
+    EXPECT_EQ(worlds[i]->state(), alone->state()) << i;
+  }
+}
+
+TEST(SpatialWorld, MakesItsStepsTogetherWithChainsInAPlane) {
+  const RobotModel robots[] = {chain(3), snake(4), chain(3), snake(4)};
+  const EnvironmentModel environment = flat_ground(0.4, 0.02);
+  std::vector<WorldInput> inputs;
+  for (const RobotModel& robot : robots) {
+    inputs.push_back({&robot, &environment, step_s, "test"});
+  }
+  ReducedWorlds together(inputs);
+  const std::vector<std::unique_ptr<World>> worlds = together.take_worlds();
+  std::vector<std::unique_ptr<World>> alone;
+  for (const RobotModel& robot : robots) {
+    alone.push_back(make_reduced_world(robot, environment, step_s, "test"));
+  }
+  for (int step = 0; step < 300; ++step) {
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+      drive(*worlds[i], inputs[i].robot->joints.size(), step * step_s, 0.5, static_cast<double>(i));
+      drive(*alone[i], inputs[i].robot->joints.size(), step * step_s, 0.5, static_cast<double>(i));
+      alone[i]->step();
+    }
+    together.step();
+  }
+  for (std::size_t i = 0; i < worlds.size(); ++i) {
+    EXPECT_EQ(worlds[i]->state(), alone[i]->state()) << i;
+  }
 }
 
 /// The bits of the states of worlds that are driven differently.

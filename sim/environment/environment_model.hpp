@@ -20,7 +20,7 @@ struct StaticObject {
 /// What computes the motion (docs/physics.md).
 enum class PhysicsEngine : std::uint8_t {
   ode,      ///< the Open Dynamics Engine: any robot, any environment
-  reduced,  ///< chains in a plane; the same bits on every machine
+  reduced,  ///< chains of boxes; the same bits on every machine
 };
 
 /// The world a robot crawls in.

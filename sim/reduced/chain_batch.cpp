@@ -1,41 +1,15 @@
 #include "sim/reduced/chain_batch.hpp"
 
 #include <algorithm>
-#include <cstdlib>
-#include <new>
 #include <span>
 
 #include "sim/reduced/chain_memory.hpp"
 #include "sim/reduced/chain_scratch.hpp"
+#include "sim/reduced/lane_blocks.hpp"
 #include "sim/reduced/sine.hpp"
 
 namespace proleg::sim::reduced {
 namespace {
-
-constexpr std::size_t alignment = 64;  // bytes, of the widest vector
-
-struct Free {
-  void operator()(double* block) const { ::operator delete[](block, std::align_val_t{alignment}); }
-};
-using Numbers = std::unique_ptr<double[], Free>;
-
-Numbers zeros(std::size_t count) {
-  Numbers numbers(static_cast<double*>(::operator new[](count * sizeof(double), std::align_val_t{alignment})));
-  std::fill_n(numbers.get(), count, 0.0);
-  return numbers;
-}
-
-/// The widest kernel whose lanes the chains fill at least by half; for one chain the narrowest.
-const ChainKernel& choose_kernel(std::size_t chains) {
-  const std::vector<const ChainKernel*> kernels = supported_kernels();
-  const ChainKernel* chosen = kernels.front();
-  for (const ChainKernel* kernel : kernels) {
-    if (static_cast<std::size_t>(kernel->width) <= 2 * chains - 2) {
-      chosen = kernel;
-    }
-  }
-  return *chosen;
-}
 
 ChainCounts counts_of(const ChainModel& chain) {
   // Two convex outlines touch in at most two points; more than three such pairs for a shape are no crawling robot.
@@ -58,50 +32,48 @@ std::vector<const ChainKernel*> supported_kernels() {
   return kernels;
 }
 
+const ChainKernel& choose_kernel(std::size_t chains) {
+  const std::vector<const ChainKernel*> kernels = supported_kernels();
+  const ChainKernel* chosen = kernels.front();
+  for (const ChainKernel* kernel : kernels) {
+    if (static_cast<std::size_t>(kernel->width) <= 2 * chains - 2) {
+      chosen = kernel;
+    }
+  }
+  return *chosen;
+}
+
 class ChainBatch::Implementation {
  public:
   Implementation(const Models& chains, const ChainKernel& kernel)
       : kernel_(kernel),
-        width_(static_cast<std::size_t>(kernel.width)),
-        size_(chains.size()),
         form_of_(*chains.front()),
         form_{counts_of(form_of_),     form_of_.links.data(),   form_of_.joints.data(), form_of_.shapes.data(),
               form_of_.terrain.data(), form_of_.self_collision, form_of_.step_s},
-        block_size_(width_ * (ChainMemory<double>::size(form_.counts) + ChainScratch<double>::size(form_.counts))),
-        numbers_(zeros(block_size_ * (blocks() + 1))),
-        memory_of_first_(numbers_.get(), form_.counts, width_) {
-    for (std::size_t lane = 0; lane < blocks() * width_; ++lane) {
-      set_constants(lane, *chains[std::min(lane, size_ - 1)]);
+        blocks_(chains.size(), static_cast<std::size_t>(kernel.width),
+                ChainMemory<double>::size(form_.counts) + ChainScratch<double>::size(form_.counts)),
+        memory_of_first_(blocks_.block(0), form_.counts, blocks_.width()) {
+    for (std::size_t lane = 0; lane < blocks_.lanes(); ++lane) {
+      set_constants(lane, *chains[std::min(lane, chains.size() - 1)]);
     }
-    for (std::size_t block = 0; block < blocks(); ++block) {
-      kernel_.place(form_, at(block));
-    }
-    for (std::size_t lane = 0; lane < blocks() * width_; ++lane) {
+    place();
+    for (std::size_t lane = 0; lane < blocks_.lanes(); ++lane) {
       // Now the positions of the links from the centre of mass are known.
-      const Point& first = chains[std::min(lane, size_ - 1)]->first_link;
+      const Point& first = chains[std::min(lane, chains.size() - 1)]->first_link;
       const ChainMemory<double> memory = memory_of(lane);
       of(lane, memory.center, 0) = first.x - of(lane, memory.link_position, 0);
       of(lane, memory.center, 1) = first.z - of(lane, memory.link_position, 1);
     }
   }
 
-  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] std::size_t size() const { return blocks_.size(); }
   [[nodiscard]] const ChainKernel& kernel() const { return kernel_; }
   [[nodiscard]] const ChainCounts& counts() const { return form_.counts; }
 
   void step() {
-    weak_.clear();
-    for (std::size_t block = 0; block < blocks(); ++block) {
-      const unsigned lanes = kernel_.step_strong(form_, at(block));
-      for (std::size_t lane = 0; lane < width_ && (lanes >> lane) != 0; ++lane) {
-        if ((lanes >> lane & 1U) != 0 && block * width_ + lane < size_) {
-          weak_.push_back(block * width_ + lane);
-        }
-      }
-    }
-    for (std::size_t first = 0; first < weak_.size(); first += width_) {
-      step_weak(std::span(weak_).subspan(first, std::min(width_, weak_.size() - first)));
-    }
+    blocks_.step([&](double* block) { return kernel_.step_strong(form_, block); },
+                 [&](double* block) { kernel_.step_weak(form_, block); },
+                 [&](std::size_t from, std::size_t to) { copy(from, to); });
     forget_places();
   }
 
@@ -109,8 +81,8 @@ class ChainBatch::Implementation {
   /// The links' positions of the present state, not of that before the last step.
   void place() {
     if (!places_are_current_) {
-      for (std::size_t block = 0; block < blocks(); ++block) {
-        kernel_.place(form_, at(block));
+      for (std::size_t block = 0; block < blocks_.blocks(); ++block) {
+        kernel_.place(form_, blocks_.block(block));
       }
       places_are_current_ = true;
     }
@@ -118,42 +90,29 @@ class ChainBatch::Implementation {
 
   /// The first number of an array of a chain; the next ones follow at distances of stride().
   [[nodiscard]] double* first_of(std::size_t chain, double* ChainMemory<double>::*array) const {
-    return at(chain / width_) + (memory_of_first_.*array - numbers_.get()) + chain % width_;
+    return blocks_.block_of(chain) + (memory_of_first_.*array - blocks_.block(0)) + chain % blocks_.width();
   }
-  [[nodiscard]] std::size_t stride() const { return width_; }
+  [[nodiscard]] std::size_t stride() const { return blocks_.width(); }
   [[nodiscard]] ChainMemory<double> memory_of(std::size_t lane) const {
-    return {at(lane / width_), form_.counts, width_};
+    return {blocks_.block_of(lane), form_.counts, blocks_.width()};
   }
   [[nodiscard]] double& of(std::size_t lane, double* array, std::size_t i) const {
-    return array[i * width_ + lane % width_];
+    return array[i * blocks_.width() + lane % blocks_.width()];
   }
 
  private:
-  [[nodiscard]] std::size_t blocks() const { return (size_ + width_ - 1) / width_; }
-  [[nodiscard]] double* at(std::size_t block) const { return numbers_.get() + block * block_size_; }
-
-  /// chains: at most as many as a block has lanes. The lanes that are left do what the first one does.
-  void step_weak(std::span<const std::size_t> chains) {
-    for (std::size_t lane = 0; lane < width_; ++lane) {
-      copy(chains[lane < chains.size() ? lane : 0], blocks() * width_ + lane);
-    }
-    kernel_.step_weak(form_, at(blocks()));
-    for (std::size_t lane = 0; lane < chains.size(); ++lane) {
-      copy(blocks() * width_ + lane, chains[lane]);
-    }
-  }
-
   void copy(std::size_t from, std::size_t to) {
+    const std::size_t width = blocks_.width();
     const ChainMemory<double> source = memory_of(from);
     const ChainMemory<double> target = memory_of(to);
     const auto copy_numbers = [&](const double* begin, double* out, std::size_t count) {
-      begin += from % width_;
-      out += to % width_;
-      for (std::size_t i = 0; i < count * width_; i += width_) {
+      begin += from % width;
+      out += to % width;
+      for (std::size_t i = 0; i < count * width; i += width) {
         out[i] = begin[i];
       }
     };
-    const auto before_contacts = static_cast<std::size_t>(source.contact_key - source.mass) / width_;
+    const auto before_contacts = static_cast<std::size_t>(source.contact_key - source.mass) / width;
     copy_numbers(source.mass, target.mass, before_contacts);
     const auto contacts = static_cast<std::size_t>(of(from, source.contact_count, 0));
     copy_numbers(source.contact_key, target.contact_key, contacts);
@@ -181,15 +140,11 @@ class ChainBatch::Implementation {
   }
 
   const ChainKernel& kernel_;
-  std::size_t width_;
-  std::size_t size_;
   ChainModel form_of_;  ///< owns what form_ points to
   ChainForm form_;
-  std::size_t block_size_;  ///< in numbers
-  Numbers numbers_;         ///< the blocks, and one for the chains with weak motors
+  LaneBlocks blocks_;
   ChainMemory<double> memory_of_first_;
-  std::vector<std::size_t> weak_;  ///< chains, in a step
-  bool places_are_current_ = true;
+  bool places_are_current_ = false;
 };
 
 ChainBatch::ChainBatch(const Models& chains, const ChainKernel* kernel)

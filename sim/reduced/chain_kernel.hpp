@@ -1,6 +1,7 @@
 #pragma once
 
 #include "sim/reduced/chain_form.hpp"
+#include "sim/reduced/spatial_form.hpp"
 
 namespace proleg::sim::reduced {
 
@@ -15,6 +16,10 @@ struct ChainKernel {
   void (*step_weak)(const ChainForm& form, double* block);
   /// Only computes where the links are.
   void (*place)(const ChainForm& form, double* block);
+  // The same for chains with joints of any axis. The block has a SpatialMemory and behind it a SpatialScratch.
+  unsigned (*step_strong_in_space)(const SpatialForm& form, double* block);
+  void (*step_weak_in_space)(const SpatialForm& form, double* block);
+  void (*place_in_space)(const SpatialForm& form, double* block);
 };
 
 /// For every processor.

@@ -26,6 +26,7 @@
 #include "sim/reduced/contact_search.hpp"
 #include "sim/reduced/lanes.hpp"
 #include "sim/reduced/sine.hpp"
+#include "sim/reduced/symmetric_inverse.hpp"
 
 namespace proleg::sim::reduced {
 namespace {  // of each instruction set its own
@@ -372,51 +373,14 @@ class ChainStep {
     }
   }
 
-  /// From the lower half of the matrix: L D L^T in its place, then the inverse; then the unknowns from their momenta.
+  /// And the unknowns from their momenta.
   void invert_matrix() {
     const std::size_t stride = joints_ + 1;
-    const std::size_t n = unknowns_;
-    Number* matrix = s_.matrix;
-    for (std::size_t j = 0; j < n; ++j) {
-      for (std::size_t k = 0; k < j; ++k) {
-        matrix[j * stride + j] -= matrix[j * stride + k] * matrix[j * stride + k] * matrix[k * stride + k];
-      }
-      const Number inverse = 1.0 / matrix[j * stride + j];
-      for (std::size_t i = j + 1; i < n; ++i) {
-        Number value = matrix[i * stride + j];
-        for (std::size_t k = 0; k < j; ++k) {
-          value -= matrix[i * stride + k] * matrix[j * stride + k] * matrix[k * stride + k];
-        }
-        matrix[i * stride + j] = value * inverse;
-      }
-    }
-    for (std::size_t column = 0; column < n; ++column) {
-      Number* x = s_.inverse_matrix + column * stride;  // symmetric: a row is a column
-      for (std::size_t i = 0; i < n; ++i) {
-        x[i] = Lanes<width>::number(i == column ? 1.0 : 0.0);
-        for (std::size_t k = column; k < i; ++k) {
-          x[i] -= matrix[i * stride + k] * x[k];
-        }
-      }
-      for (std::size_t i = 0; i < n; ++i) {
-        x[i] = x[i] / matrix[i * stride + i];
-      }
-      for (std::size_t i = n; i-- > 0;) {
-        for (std::size_t k = i + 1; k < n; ++k) {
-          x[i] -= matrix[k * stride + i] * x[k];
-        }
-      }
-    }
-    for (std::size_t i = 0; i < n; ++i) {
+    invert_symmetric(s_.matrix, s_.inverse_matrix, unknowns_, stride);
+    for (std::size_t i = 0; i < unknowns_; ++i) {
       s_.matrix[i] = s_.unknown[i];  // the momenta; the first row of the factors is not needed any more
     }
-    for (std::size_t i = 0; i < n; ++i) {
-      Number sum{};
-      for (std::size_t k = 0; k < n; ++k) {
-        sum += s_.inverse_matrix[i * stride + k] * s_.matrix[k];
-      }
-      s_.unknown[i] = sum;
-    }
+    multiply(s_.inverse_matrix, s_.matrix, s_.unknown, unknowns_, stride);
   }
 
   /// The motors of free joints begin with the torque of the step before.

@@ -3,6 +3,8 @@
 
 namespace proleg::sim::reduced {
 
-const ChainKernel avx512_kernel{"AVX-512", 8, step_strong<8>, step_weak<8>, place<8>};
+const ChainKernel avx512_kernel{
+    "AVX-512",        8, step_strong<8>, step_weak<8>, place<8>, step_strong_in_space<8>, step_weak_in_space<8>,
+    place_in_space<8>};
 
 }  // namespace proleg::sim::reduced

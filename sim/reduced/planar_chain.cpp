@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
+#include "sim/reduced/rounding.hpp"
 #include "sim/robot/friction.hpp"
 #include "sim/robot/touch_sensor_frame.hpp"
 
@@ -15,13 +16,6 @@ namespace proleg::sim::reduced {
 namespace {
 
 constexpr double tolerance = 1e-6;  // m, and rad
-
-double rounded(double value, int bits) { return std::ldexp(std::round(std::ldexp(value, bits)), -bits); }
-double rounded(double value) { return rounded(value, 30); }
-Point rounded(const Point& point) { return {rounded(point.x), rounded(point.z)}; }
-Eigen::Vector3d rounded(const Eigen::Vector3d& vector) {
-  return vector.unaryExpr([](double value) { return rounded(value); });
-}
 
 bool is_horizontal(const Eigen::Vector3d& axis) { return std::abs(axis.z()) < tolerance; }
 bool are_parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a.cross(b).norm() < tolerance; }

@@ -6,6 +6,8 @@
 
 #include "sim/physics/physics_error.hpp"
 #include "sim/reduced/planar_chain.hpp"
+#include "sim/reduced/spatial_chain.hpp"
+#include "sim/reduced/spatial_world.hpp"
 
 namespace proleg::sim::reduced {
 namespace {
@@ -118,6 +120,33 @@ class ReducedWorld final : public World {
   std::size_t lane_;
 };
 
+/// A batch for all chains of one form. use(i, batch, lane): chain i is in this lane; it is not needed any more.
+template <typename Batch, typename Chain, typename Use>
+std::vector<std::shared_ptr<Batch>> make_batches(const std::vector<Chain>& chains, const ChainKernel* kernel,
+                                                 Use&& use) {
+  std::vector<std::shared_ptr<Batch>> batches;
+  std::vector<bool> is_done(chains.size());
+  for (std::size_t first = 0; first < chains.size(); ++first) {
+    if (is_done[first]) {
+      continue;
+    }
+    std::vector<Chain> alike;
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = first; i < chains.size(); ++i) {
+      if (!is_done[i] && chains[i].has_form_of(chains[first])) {
+        alike.push_back(chains[i]);
+        numbers.push_back(i);
+        is_done[i] = true;
+      }
+    }
+    batches.push_back(std::make_shared<Batch>(alike, kernel));
+    for (std::size_t lane = 0; lane < numbers.size(); ++lane) {
+      use(numbers[lane], batches.back(), lane);
+    }
+  }
+  return batches;
+}
+
 }  // namespace
 
 std::unique_ptr<World> make_reduced_world(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
@@ -128,36 +157,40 @@ std::unique_ptr<World> make_reduced_world(const RobotModel& robot, const Environ
 
 ReducedWorlds::ReducedWorlds(std::span<const WorldInput> inputs, const ChainKernel* kernel) : worlds_(inputs.size()) {
   std::vector<PlanarChain> chains;
-  for (const WorldInput& input : inputs) {
-    chains.push_back(make_planar_chain(*input.robot, *input.environment, input.step_s, input.file));
+  std::vector<std::size_t> numbers;  // of their inputs
+  std::vector<SpatialChain> spatial_chains;
+  std::vector<std::size_t> spatial_numbers;
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    const WorldInput& input = inputs[i];
+    if (needs_space(*input.robot, *input.environment)) {
+      spatial_chains.push_back(make_spatial_chain(*input.robot, *input.environment, input.step_s, input.file));
+      spatial_numbers.push_back(i);
+    } else {
+      chains.push_back(make_planar_chain(*input.robot, *input.environment, input.step_s, input.file));
+      numbers.push_back(i);
+    }
   }
-  for (std::size_t first = 0; first < chains.size(); ++first) {
-    if (worlds_[first]) {
-      continue;
-    }
-    std::vector<PlanarChain> alike;
-    std::vector<std::size_t> numbers;
-    for (std::size_t i = first; i < chains.size(); ++i) {
-      if (!worlds_[i] && chains[i].has_form_of(chains[first])) {
-        alike.push_back(chains[i]);
-        numbers.push_back(i);
-      }
-    }
-    const auto batch = std::make_shared<ChainBatch>(alike, kernel);
-    for (std::size_t lane = 0; lane < numbers.size(); ++lane) {
-      worlds_[numbers[lane]] =
-          std::make_unique<ReducedWorld>(inputs[numbers[lane]], std::move(alike[lane]), batch, lane);
-    }
-    batches_.push_back(batch);
-  }
+  batches_ = make_batches<ChainBatch>(
+      chains, kernel, [&](std::size_t i, const std::shared_ptr<ChainBatch>& batch, std::size_t lane) {
+        worlds_[numbers[i]] = std::make_unique<ReducedWorld>(inputs[numbers[i]], std::move(chains[i]), batch, lane);
+      });
+  spatial_batches_ = make_batches<SpatialBatch>(
+      spatial_chains, kernel, [&](std::size_t i, const std::shared_ptr<SpatialBatch>& batch, std::size_t lane) {
+        worlds_[spatial_numbers[i]] =
+            make_spatial_world(*inputs[spatial_numbers[i]].robot, std::move(spatial_chains[i]), batch, lane);
+      });
 }
 
 void ReducedWorlds::step() {
-  for (const std::shared_ptr<ChainBatch>& batch : batches_) {
-    if (batch->size() > 1) {
-      batch->step();  // a world that is alone makes its own step
+  const auto step_all = [](const auto& batches) {
+    for (const auto& batch : batches) {
+      if (batch->size() > 1) {
+        batch->step();  // a world that is alone makes its own step
+      }
     }
-  }
+  };
+  step_all(batches_);
+  step_all(spatial_batches_);
 }
 
 }  // namespace proleg::sim::reduced

@@ -10,6 +10,7 @@
 #include "sim/environment/environment_model.hpp"
 #include "sim/physics/world.hpp"
 #include "sim/reduced/chain_batch.hpp"
+#include "sim/reduced/spatial_batch.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim::reduced {
@@ -43,7 +44,9 @@ class ReducedWorlds {
   void step();
 
  private:
-  std::vector<std::shared_ptr<ChainBatch>> batches_;  ///< one for each form of chain
+  // One for each form of chain.
+  std::vector<std::shared_ptr<ChainBatch>> batches_;
+  std::vector<std::shared_ptr<SpatialBatch>> spatial_batches_;
   std::vector<std::unique_ptr<World>> worlds_;
 };
 

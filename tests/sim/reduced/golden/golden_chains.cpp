@@ -1,7 +1,9 @@
 #include "tests/sim/reduced/golden/golden_chains.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <iterator>
 
 namespace proleg::sim::reduced::golden {
 namespace {
@@ -21,6 +23,35 @@ ChainModel make_form() {
   form.terrain = {Rectangle{{0.0, -0.5}, {1.0, 0.0}, 50.0, 0.5},     // the floor
                   Rectangle{{0.5, 0.0}, {1.0, 0.0}, 0.2, 0.02},      // a step
                   Rectangle{{-0.7, -0.1}, {0.96, 0.28}, 0.3, 0.2}};  // a hill
+  form.self_collision = true;
+  form.step_s = 0.001;
+  return form;
+}
+
+/// What all snakes have in common.
+SpatialModel make_snake_form() {
+  SpatialModel form;
+  for (std::size_t link = 0; link < link_count; ++link) {
+    form.links.push_back({{0.0, half_length, 0.0}, {0.0, -half_length, 0.0}, {1.0, 0.0, 0.0}});
+    BoxForm box;
+    box.link = link;
+    box.sides[0] = {0.026, 0.0, 0.0};
+    box.sides[1] = {0.0, 0.03, 0.0};
+    box.sides[2] = {0.0, 0.0, 0.026};
+    box.radius = 0.05;
+    for (unsigned number = 0; number < corners_of_box; ++number) {
+      const auto sign = [&](unsigned bit) { return (number & bit) != 0 ? 1.0 : -1.0; };
+      const int sensor = sign(4) > 0.0 ? 0 : (sign(2) < 0.0 ? 1 : 2);
+      box.corners[number] = {{0.026 * sign(1), 0.03 * sign(2), 0.026 * sign(4)}, sensor};
+    }
+    form.boxes.push_back(box);
+  }
+  for (std::size_t joint = 0; joint < joint_count; ++joint) {
+    // Right-angled triangles of sides 7, 24, 25.
+    const Point3 axis = joint % 2 == 0 ? Point3{0.96, 0.0, 0.28} : Point3{-0.28, 0.0, 0.96};
+    form.joints.push_back({axis, {-1.5, 1.5}});
+  }
+  form.floor = {{0.0, 0.0, 0.0}, {0.96, 0.28, 0.0}, 2.0, 0.5, 0.05};
   form.self_collision = true;
   form.step_s = 0.001;
   return form;
@@ -66,6 +97,30 @@ std::vector<ChainModel> make_chains() {
                         height + 0.015625 * static_cast<double>(number % 4)};
   }
   return chains;
+}
+
+std::vector<SpatialModel> make_snakes() {
+  constexpr std::array frictions{0.0, 0.05, 0.1, 0.3, 0.5, 1.0, 2.0};
+  std::vector<SpatialModel> snakes(chain_count, make_snake_form());
+  for (std::size_t number = 0; number < chain_count; ++number) {
+    SpatialModel& snake = snakes[number];
+    for (std::size_t link = 0; link < link_count; ++link) {
+      const double mass = 0.05 + 0.00625 * static_cast<double>((number * 5 + link * 3) % 17);
+      snake.masses.push_back(mass);
+      for (const double part : {0.0006, 0.0004, 0.0005, 0.0, 0.0001, 0.0}) {
+        snake.inertias.push_back(mass * part);
+      }
+      snake.friction.push_back(frictions[(number + link) % frictions.size()]);
+    }
+    snake.gravity = {0.125 * static_cast<double>(number % 3), 0.0, -9.81};
+    snake.first_link = {0.0, 0.125 * static_cast<double>(number % 4), 0.03125 * static_cast<double>(number % 5 + 1)};
+    // Half of them lie at an angle.
+    if (number % 2 == 1) {
+      constexpr double turned[] = {0.96, 0.0, 0.0, 0.28};
+      std::copy(std::begin(turned), std::end(turned), snake.orientation);
+    }
+  }
+  return snakes;
 }
 
 double max_torque(std::size_t chain, std::size_t joint) {

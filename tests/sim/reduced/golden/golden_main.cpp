@@ -1,5 +1,6 @@
-// reduced_golden STEPS [SIZE]...: steps the golden chains with each kernel that the processor has, in batches of these
-// sizes or of several, and prints a line for each: kernel, size of the batches, and the fields of golden.tsv.
+// reduced_golden STEPS [SIZE]...: steps the golden chains, those in a plane and those in space, with each kernel that
+// the processor has, in batches of these sizes or of several, and prints a line for each: kernel, size of the batches,
+// and the fields of golden.tsv.
 //
 // reduced_golden --write-golden FILE: writes golden.tsv. For a change of the engine that is meant to change results;
 // the change of the file then belongs to the same commit.
@@ -11,10 +12,12 @@
 #include <cstdlib>
 #include <iterator>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "sim/reduced/chain_batch.hpp"
+#include "sim/reduced/spatial_batch.hpp"
 #include "tests/sim/reduced/golden/golden_chains.hpp"
 
 namespace {
@@ -62,14 +65,34 @@ void add_state(const ChainBatch& batch, std::size_t place, Hash& hash) {
   }
 }
 
-void count(const ChainBatch& batch, std::size_t place, std::size_t chain, Outcome& outcome) {
+void add_state(const SpatialBatch& batch, std::size_t place, Hash& hash) {
+  for (const double value : batch.state(place)) {
+    hash.add(std::bit_cast<std::uint64_t>(value));
+  }
+  for (std::size_t link = 0; link < link_count; ++link) {
+    const SpatialBatch::LinkPlace at = batch.link_place(place, link);
+    for (const Point3& point : {at.position, at.axes[0], at.axes[1], at.axes[2]}) {
+      for (const double value : {point.x, point.y, point.z}) {
+        hash.add(std::bit_cast<std::uint64_t>(value));
+      }
+    }
+  }
+}
+
+bool touches_itself(const ChainBatch& batch, std::size_t place) {
   double force = 0.0;
   for (std::size_t link = 0; link < link_count; ++link) {
     force += batch.contact_force(place, link);
   }
-  const double on_terrain = batch.sliding(place).normal_force;
-  outcome.on_terrain += on_terrain > 0.0 ? 1U : 0U;
-  outcome.on_itself += force > on_terrain * 1.001 ? 1U : 0U;
+  return force > batch.sliding(place).normal_force * 1.001;
+}
+
+bool touches_itself(const SpatialBatch& batch, std::size_t place) { return batch.touching_links(place).has_value(); }
+
+template <typename Batch>
+void count(const Batch& batch, std::size_t place, std::size_t chain, Outcome& outcome) {
+  outcome.on_terrain += batch.sliding(place).normal_force > 0.0 ? 1U : 0U;
+  outcome.on_itself += touches_itself(batch, place) ? 1U : 0U;
   for (std::size_t joint = 0; joint < joint_count; ++joint) {
     const double most = max_torque(chain, joint);
     const double torque = batch.motor_torque(place, joint);
@@ -78,7 +101,8 @@ void count(const ChainBatch& batch, std::size_t place, std::size_t chain, Outcom
 }
 
 /// chains: which are in the batch, and their hashes, by place.
-void run_batch(ChainBatch& batch, std::span<const std::size_t> chains, std::span<Hash> hashes, std::size_t steps,
+template <typename Batch>
+void run_batch(Batch& batch, std::span<const std::size_t> chains, std::span<Hash> hashes, std::size_t steps,
                Outcome& outcome) {
   const auto for_each_motor = [&](const auto& action) {
     for (std::size_t place = 0; place < chains.size(); ++place) {
@@ -109,10 +133,10 @@ void run_batch(ChainBatch& batch, std::span<const std::size_t> chains, std::span
 }
 
 /// A batch that has more places than there are chains has some of them twice or more often.
-Outcome run(const ChainKernel& kernel, std::size_t batch_size, std::size_t steps) {
-  const std::vector<ChainModel> models = make_chains();
+template <typename Batch, typename Model>
+Outcome run(const std::vector<Model>& models, const ChainKernel& kernel, std::size_t batch_size, std::size_t steps) {
   std::vector<std::size_t> chains(std::max(batch_size, chain_count));
-  std::vector<ChainModel> models_of_places;
+  std::vector<Model> models_of_places;
   for (std::size_t place = 0; place < chains.size(); ++place) {
     chains[place] = place % chain_count;
     models_of_places.push_back(models[chains[place]]);
@@ -121,7 +145,7 @@ Outcome run(const ChainKernel& kernel, std::size_t batch_size, std::size_t steps
   std::vector<Hash> hashes(chains.size());
   for (std::size_t first = 0; first < chains.size(); first += batch_size) {
     const std::size_t size = std::min(batch_size, chains.size() - first);
-    ChainBatch batch(std::span<const ChainModel>(models_of_places).subspan(first, size), &kernel);
+    Batch batch(std::span<const Model>(models_of_places).subspan(first, size), &kernel);
     run_batch(batch, std::span<const std::size_t>(chains).subspan(first, size),
               std::span<Hash>(hashes).subspan(first, size), steps, outcome);
     for (std::size_t place = 0; place < size; ++place) {
@@ -138,10 +162,16 @@ Outcome run(const ChainKernel& kernel, std::size_t batch_size, std::size_t steps
   return outcome;
 }
 
-void print(std::FILE* file, std::size_t steps, const Outcome& outcome) {
-  std::fprintf(file, "%lu\t%lu\t%lu\t%lu\t%lu\t%016llx\n", static_cast<unsigned long>(steps), outcome.failures,
-               outcome.on_terrain, outcome.on_itself, outcome.weak_motors,
-               static_cast<unsigned long long>(outcome.state.value()));
+/// Two lines, each with these words in front.
+void print(std::FILE* file, const std::string& start, const ChainKernel& kernel, std::size_t batch_size,
+           std::size_t steps) {
+  const auto print_line = [&](const char* name, const Outcome& outcome) {
+    std::fprintf(file, "%s%s\t%lu\t%lu\t%lu\t%lu\t%lu\t%016llx\n", start.c_str(), name,
+                 static_cast<unsigned long>(steps), outcome.failures, outcome.on_terrain, outcome.on_itself,
+                 outcome.weak_motors, static_cast<unsigned long long>(outcome.state.value()));
+  };
+  print_line("plane", run<ChainBatch>(make_chains(), kernel, batch_size, steps));
+  print_line("space", run<SpatialBatch>(make_snakes(), kernel, batch_size, steps));
 }
 
 int write_golden(const char* name) {
@@ -150,9 +180,9 @@ int write_golden(const char* name) {
     std::fprintf(stderr, "reduced_golden: %s: cannot write\n", name);
     return 1;
   }
-  std::fputs("steps\tfailures\ton_terrain\ton_itself\tweak_motors\tstate_fnv1a\n", file);
+  std::fputs("chains\tsteps\tfailures\ton_terrain\ton_itself\tweak_motors\tstate_fnv1a\n", file);
   for (const std::size_t steps : golden_steps) {
-    print(file, steps, run(base_kernel, chain_count, steps));
+    print(file, "", base_kernel, chain_count, steps);
   }
   if (std::fclose(file) != 0) {
     std::fprintf(stderr, "reduced_golden: %s: cannot write\n", name);
@@ -182,8 +212,7 @@ int main(int argument_count, char** arguments) {
   }
   for (const ChainKernel* kernel : supported_kernels()) {
     for (const std::size_t size : numbers) {
-      std::printf("%s\t%lu\t", kernel->instructions, static_cast<unsigned long>(size));
-      print(stdout, steps, run(*kernel, size, steps));
+      print(stdout, std::string(kernel->instructions) + "\t" + std::to_string(size) + "\t", *kernel, size, steps);
     }
   }
   return 0;

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <span>
+#include <vector>
+
+#include "sim/reduced/chain_kernel.hpp"
+
+namespace proleg::sim::reduced {
+
+/// The memory of the chains of a batch: blocks of as many chains as a vector has lanes, and one more block in which the
+/// chains with weak motors are stepped. Number i of a chain is the double at i * width() + its lane of its block.
+class LaneBlocks {
+ public:
+  /// numbers: of a chain, with scratch memory. All are 0 at first.
+  LaneBlocks(std::size_t chains, std::size_t width, std::size_t numbers)
+      : size_(chains), width_(width), block_size_(numbers * width), numbers_(allocate(block_size_ * (blocks() + 1))) {}
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] std::size_t width() const { return width_; }
+  [[nodiscard]] std::size_t blocks() const { return (size_ + width_ - 1) / width_; }
+  /// The lanes of the last block that have no chain are filled up with copies of a chain.
+  [[nodiscard]] std::size_t lanes() const { return blocks() * width_; }
+  [[nodiscard]] double* block(std::size_t number) const { return numbers_.get() + number * block_size_; }
+  /// lane: from 0, over all blocks.
+  [[nodiscard]] double* block_of(std::size_t lane) const { return block(lane / width_); }
+
+  /// strong(block): steps the chains of a block; the bits of those that have weak motors. weak(block): steps these.
+  /// copy(from, to): copies the numbers of a lane to another one.
+  template <typename Strong, typename Weak, typename Copy>
+  void step(Strong&& strong, Weak&& weak, Copy&& copy) {
+    weak_.clear();
+    for (std::size_t number = 0; number < blocks(); ++number) {
+      const unsigned bits = strong(block(number));
+      for (std::size_t lane = 0; lane < width_ && (bits >> lane) != 0; ++lane) {
+        if ((bits >> lane & 1U) != 0 && number * width_ + lane < size_) {
+          weak_.push_back(number * width_ + lane);
+        }
+      }
+    }
+    for (std::size_t first = 0; first < weak_.size(); first += width_) {
+      const std::span chains = std::span(weak_).subspan(first, std::min(width_, weak_.size() - first));
+      // The lanes that are left do what the first one does.
+      for (std::size_t lane = 0; lane < width_; ++lane) {
+        copy(chains[lane < chains.size() ? lane : 0], lanes() + lane);
+      }
+      weak(block(blocks()));
+      for (std::size_t lane = 0; lane < chains.size(); ++lane) {
+        copy(lanes() + lane, chains[lane]);
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t alignment = 64;  // bytes, of the widest vector
+  struct Free {
+    void operator()(double* numbers) const { ::operator delete[](numbers, std::align_val_t{alignment}); }
+  };
+  using Numbers = std::unique_ptr<double[], Free>;
+
+  static Numbers allocate(std::size_t count) {
+    Numbers numbers(static_cast<double*>(::operator new[](count * sizeof(double), std::align_val_t{alignment})));
+    std::fill_n(numbers.get(), count, 0.0);
+    return numbers;
+  }
+
+  std::size_t size_;
+  std::size_t width_;
+  std::size_t block_size_;  ///< in numbers
+  Numbers numbers_;
+  std::vector<std::size_t> weak_;  ///< chains, in a step
+};
+
+}  // namespace proleg::sim::reduced

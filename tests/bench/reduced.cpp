@@ -4,28 +4,23 @@
 //   bench_reduced [CANDIDATES]   compared with ODE; by default 200
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <exception>
-#include <numeric>
 #include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/loop/simulation_batch.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tests/bench/candidates.hpp"
+#include "tests/bench/engine_agreement.hpp"
 #include "tests/support/files.hpp"
 
 namespace {
 
 using namespace proleg;
-
-constexpr std::uint64_t seed = 1;
-constexpr std::size_t batch_size = 64;
 
 /// Of this thread, s.
 double processor_time() {
@@ -39,88 +34,22 @@ struct Evaluations {
   double per_second = 0.0;
 };
 
-Evaluations alone(std::span<const sim::Scenario> candidates) {
-  Evaluations result;
+template <typename Run>
+Evaluations timed(const Run& run) {
   const double start = processor_time();
-  for (const sim::Scenario& candidate : candidates) {
-    sim::Simulation simulation(candidate);
-    simulation.leave_out_hashes();
-    while (simulation.tick() < sim::tick_count(candidate)) {
-      simulation.advance();
-    }
-    result.distances.push_back(simulation.measures()[sim::Measure::distance]);
-  }
-  result.per_second = static_cast<double>(candidates.size()) / (processor_time() - start);
+  Evaluations result{run()};
+  result.per_second = static_cast<double>(result.distances.size()) / (processor_time() - start);
   return result;
-}
-
-Evaluations together(std::span<const sim::Scenario> candidates, const sim::reduced::ChainKernel* kernel) {
-  Evaluations result;
-  const double start = processor_time();
-  for (std::size_t first = 0; first < candidates.size(); first += batch_size) {
-    std::vector<const sim::Scenario*> scenarios;
-    for (std::size_t i = first; i < std::min(first + batch_size, candidates.size()); ++i) {
-      scenarios.push_back(&candidates[i]);
-    }
-    sim::SimulationBatch batch(scenarios, kernel);
-    for (std::uint32_t tick = 0; tick < sim::tick_count(*scenarios.front()); ++tick) {
-      batch.advance();
-    }
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      result.distances.push_back(batch.simulation(i).measures()[sim::Measure::distance]);
-    }
-  }
-  result.per_second = static_cast<double>(candidates.size()) / (processor_time() - start);
-  return result;
-}
-
-std::vector<sim::Scenario> with_engine(std::vector<sim::Scenario> candidates, sim::PhysicsEngine engine) {
-  for (sim::Scenario& candidate : candidates) {
-    candidate.environment.engine = engine;
-  }
-  return candidates;
-}
-
-std::vector<double> ranks_of(const std::vector<double>& values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, {}, [&](std::size_t i) { return values[i]; });
-  std::vector<double> ranks(values.size());
-  for (std::size_t rank = 0; rank < order.size(); ++rank) {
-    ranks[order[rank]] = static_cast<double>(rank);
-  }
-  return ranks;
-}
-
-/// Spearman's, for values that differ.
-double rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  const std::vector<double> ranks_a = ranks_of(a);
-  const std::vector<double> ranks_b = ranks_of(b);
-  double squares = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    squares += (ranks_a[i] - ranks_b[i]) * (ranks_a[i] - ranks_b[i]);
-  }
-  const auto n = static_cast<double>(a.size());
-  return 1.0 - 6.0 * squares / (n * (n * n - 1.0));
-}
-
-double quantile(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
 void print_agreement(const std::vector<double>& ode, const std::vector<double>& reduced) {
-  std::vector<double> differences;
-  std::vector<double> relative;
-  for (std::size_t i = 0; i < ode.size(); ++i) {
-    differences.push_back(std::abs(ode[i] - reduced[i]) * 1000.0);
-    relative.push_back(std::abs(ode[i] - reduced[i]) / ode[i] * 100.0);
-  }
+  const bench::EngineAgreement agreement = bench::agreement_of(ode, reduced);
+  const auto difference_mm = [&](double share) { return 1000.0 * bench::quantile(agreement.differences, share); };
   std::printf(
       "distances of %zu candidates (seed %llu): rank correlation %.4f; difference: median %.1f mm or %.2f %%, "
       "90 %% within %.1f mm, worst %.0f mm\n",
-      ode.size(), static_cast<unsigned long long>(seed), rank_correlation(ode, reduced), quantile(differences, 0.5),
-      quantile(relative, 0.5), quantile(differences, 0.9), quantile(differences, 1.0));
+      ode.size(), static_cast<unsigned long long>(bench::candidate_seed), agreement.rank_correlation,
+      difference_mm(0.5), 100.0 * bench::quantile(agreement.relative, 0.5), difference_mm(0.9), difference_mm(1.0));
 }
 
 /// Rate of two threads with a batch each against one, by wall-clock time.
@@ -131,10 +60,10 @@ double gain_of_two_cores(std::span<const sim::Scenario> candidates) {
     return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
   };
   const double start = wall_time();
-  static_cast<void>(together(candidates, nullptr));
+  static_cast<void>(bench::distances_together(candidates));
   const double one = wall_time() - start;
-  std::thread other([&] { static_cast<void>(together(candidates, nullptr)); });
-  static_cast<void>(together(candidates, nullptr));
+  std::thread other([&] { static_cast<void>(bench::distances_together(candidates)); });
+  static_cast<void>(bench::distances_together(candidates));
   other.join();
   return 2.0 * one / (wall_time() - start - one);
 }
@@ -143,20 +72,21 @@ void run(std::size_t count) {
   sim::DiskFiles files;
   const sim::Scenario scenario =
       sim::read_scenario(source_path("/sim/scenarios/travelling_wave/uniform.simulation.xml"), files);
-  const std::vector<sim::Scenario> candidates = bench::candidates(scenario, count, seed);
-  const std::vector<sim::Scenario> reduced = with_engine(candidates, sim::PhysicsEngine::reduced);
+  const std::vector<sim::Scenario> candidates = bench::candidates(scenario, count, bench::candidate_seed);
+  const std::vector<sim::Scenario> reduced = bench::with_engine(candidates, sim::PhysicsEngine::reduced);
   std::printf("evaluations of %.0f s in a second of one core\n", scenario.duration_s);
-  const Evaluations ode = alone(with_engine(candidates, sim::PhysicsEngine::ode));
+  const std::vector<sim::Scenario> in_ode = bench::with_engine(candidates, sim::PhysicsEngine::ode);
+  const Evaluations ode = timed([&] { return bench::distances_alone(in_ode); });
   std::printf("  %-34s %6.2f\n", "ODE", ode.per_second);
   const auto print = [&](const std::string& name, const Evaluations& result) {
     std::printf("  %-34s %6.1f  %5.1f x ODE\n", name.c_str(), result.per_second, result.per_second / ode.per_second);
   };
-  const std::span<const sim::Scenario> some = std::span(reduced).first(std::min(count, batch_size));
-  print("reduced, one at a time", alone(some));
+  const std::span<const sim::Scenario> some = std::span(reduced).first(std::min(count, bench::batch_size));
+  print("reduced, one at a time", timed([&] { return bench::distances_alone(some); }));
   Evaluations last;
   for (const sim::reduced::ChainKernel* kernel : sim::reduced::supported_kernels()) {
-    last = together(reduced, kernel);
-    print("reduced, batches of " + std::to_string(batch_size) + ", " + kernel->instructions, last);
+    last = timed([&] { return bench::distances_together(reduced, kernel); });
+    print("reduced, batches of " + std::to_string(bench::batch_size) + ", " + kernel->instructions, last);
   }
   std::printf("two cores against one: %.2f\n", gain_of_two_cores(some));
   print_agreement(ode.distances, last.distances);

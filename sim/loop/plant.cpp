@@ -139,7 +139,11 @@ void Plant::step_world() {
   if (is_at_rest_) {
     return;
   }
-  world_->step();
+  try {
+    world_->step();
+  } catch (const PhysicsError& error) {
+    throw PhysicsError(present_tick() + error.what());
+  }
   if (!may_rest_) {
     return;
   }
@@ -210,7 +214,6 @@ void Plant::finish_step() {
 }
 
 void Plant::finish_tick() {
-  ++finished_ticks_;
   read_world();
   for (std::size_t joint = 0; joint < servos_.size(); ++joint) {
     motor_torques_[joint] = std::exchange(servos_[joint].torque_sum, 0.0) / steps_per_tick_;
@@ -221,6 +224,7 @@ void Plant::finish_tick() {
   }
   const Eigen::Vector3d center = world_->center_of_mass();
   require_crawling(center);
+  ++finished_ticks_;
   center_before_ = center;
   if (unmoved_) {
     unmoved_link_poses_.clear();
@@ -234,21 +238,22 @@ void Plant::finish_tick() {
   add_contact_noise();
 }
 
+std::string Plant::present_tick() const {
+  std::ostringstream text;
+  text << "tick " << finished_ticks_ << " (" << finished_ticks_ * (scenario_.kernel.tick_period_us * 1e-6) << " s): ";
+  return text.str();
+}
+
 void Plant::require_crawling(const Eigen::Vector3d& center) const {
   constexpr double max_speed = 100.0;  // m/s; a robot that crawls is far slower, one whose solver failed is not
   constexpr double max_fall = 1.0;     // m
   const double tick_s = scenario_.kernel.tick_period_us * 1e-6;
-  const auto now = [&] {
-    std::ostringstream text;
-    text << finished_ticks_ * tick_s << " s";
-    return text.str();
-  };
   if ((center - center_before_).norm() > max_speed * tick_s) {
-    throw PhysicsError("the simulation became unstable at " + now() + ": the robot moves faster than 100 m/s");
+    throw PhysicsError(present_tick() + "the simulation became unstable: the robot moves faster than 100 m/s");
   }
   if (center.z() < world_->lowest_ground().value_or(start_.z()) - max_fall) {
-    throw PhysicsError("the robot fell off its environment: at " + now() +
-                       " it is a metre below everything it could stand on");
+    throw PhysicsError(present_tick() +
+                       "the robot fell off its environment: it is a metre below everything it could stand on");
   }
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "firmware/module/ports.hpp"
@@ -116,6 +117,8 @@ class Plant {
   void disturb();
   void read_world();
   void add_contact_noise();
+  /// As the beginning of an error: number, from 0, and start of the tick.
+  [[nodiscard]] std::string present_tick() const;
   void require_crawling(const Eigen::Vector3d& center) const;
 
   const Scenario& scenario_;

@@ -87,7 +87,7 @@ class World {
   [[nodiscard]] virtual std::size_t solver_messages() const = 0;
   /// The first of these messages that differ, at most ten.
   [[nodiscard]] virtual std::span<const std::string> solver_message_texts() const = 0;
-  /// The numbers on which the next steps depend, if the engine gives the same ones on every machine; otherwise nothing.
+  /// The numbers on which the next poses depend, if the engine gives the same ones on every machine; otherwise nothing.
   [[nodiscard]] virtual std::vector<double> state() const { return {}; }
 };
 

@@ -108,7 +108,14 @@ class ReducedWorld final : public World {
   [[nodiscard]] std::optional<double> lowest_ground() const override { return chain_.lowest_ground; }
   [[nodiscard]] std::size_t solver_messages() const override { return 0; }
   [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return {}; }
-  [[nodiscard]] std::vector<double> state() const override { return batch_->state(lane_); }
+  [[nodiscard]] std::vector<double> state() const override {
+    std::vector<double> state = batch_->state(lane_);
+    const MotionPlane& plane = chain_.plane;
+    for (const double number : {plane.across.x(), plane.across.y(), plane.offset}) {
+      state.push_back(number + 0.0);  // rounding errors may give -0.0
+    }
+    return state;
+  }
 
  private:
   RobotModel robot_;

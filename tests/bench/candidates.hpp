@@ -11,6 +11,9 @@
 
 namespace proleg::bench {
 
+/// Of the candidates with which both physics engines are compared.
+inline constexpr std::uint64_t candidate_seed = 1;
+
 /// Scenarios with random parameters of the sine generator, as a search meets them: 10 to 70 degrees, 0.3 to 2.2 Hz, 15
 /// to 140 degrees from joint to joint. The same for the same seed.
 [[nodiscard]] inline std::vector<sim::Scenario> candidates(const sim::Scenario& scenario, std::size_t count,

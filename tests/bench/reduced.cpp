@@ -1,32 +1,35 @@
-// Evaluations per second and core of both physics engines, with kernels, sensors and measures, and how well their
+// Evaluations per second and core of the physics engines, with kernels, sensors and measures, and how well their
 // results agree: for the shipped robot of pitch joints, and for one whose joints alternate between pitch and yaw. All
-// figures are of one run and by processor time, so other programs do not affect the ratios.
+// figures are of one run and by processor time, so other programs do not affect the ratios. MuJoCo has a row for each
+// of two integrators, if it is built in.
 //
 //   bench_reduced [CANDIDATES]   compared with ODE; by default 200
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <exception>
-#include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "shared/computer/text/text.hpp"
-#include "sim/loop/simulation_batch.hpp"
+#include "sim/mujoco/mujoco_world.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tests/bench/candidates.hpp"
+#include "tests/bench/engine_agreement.hpp"
 #include "tests/support/files.hpp"
 
 namespace {
 
 using namespace proleg;
 
-constexpr std::uint64_t seed = 1;
-constexpr std::size_t batch_size = 64;
+sim::Scenario read_gait(const std::string& name) {
+  sim::DiskFiles files;
+  return sim::read_scenario(source_path("/sim/scenarios/travelling_wave/") + name + ".simulation.xml", files);
+}
 
 /// Of this thread, s.
 double processor_time() {
@@ -40,91 +43,31 @@ struct Evaluations {
   double per_second = 0.0;
 };
 
-Evaluations alone(std::span<const sim::Scenario> candidates) {
-  Evaluations result;
+template <typename Run>
+Evaluations timed(const Run& run) {
   const double start = processor_time();
-  for (const sim::Scenario& candidate : candidates) {
-    sim::Simulation simulation(candidate);
-    simulation.leave_out_hashes();
-    while (simulation.tick() < sim::tick_count(candidate)) {
-      simulation.advance();
-    }
-    result.distances.push_back(simulation.measures()[sim::Measure::distance]);
-  }
-  result.per_second = static_cast<double>(candidates.size()) / (processor_time() - start);
+  Evaluations result{run()};
+  result.per_second = static_cast<double>(result.distances.size()) / (processor_time() - start);
   return result;
 }
 
-Evaluations together(std::span<const sim::Scenario> candidates, const sim::reduced::ChainKernel* kernel) {
-  Evaluations result;
-  const double start = processor_time();
-  for (std::size_t first = 0; first < candidates.size(); first += batch_size) {
-    std::vector<const sim::Scenario*> scenarios;
-    for (std::size_t i = first; i < std::min(first + batch_size, candidates.size()); ++i) {
-      scenarios.push_back(&candidates[i]);
-    }
-    sim::SimulationBatch batch(scenarios, kernel);
-    for (std::uint32_t tick = 0; tick < sim::tick_count(*scenarios.front()); ++tick) {
-      batch.advance();
-    }
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      result.distances.push_back(batch.simulation(i).measures()[sim::Measure::distance]);
-    }
-  }
-  result.per_second = static_cast<double>(candidates.size()) / (processor_time() - start);
-  return result;
+bench::MakeWorld in_mujoco(sim::mujoco::Integrator integrator) {
+  return [integrator](const sim::Scenario& scenario) {
+    return sim::mujoco::make_mujoco_world(scenario.robot, scenario.environment, scenario.step_s, scenario.path,
+                                          integrator);
+  };
 }
 
-std::vector<sim::Scenario> with_engine(std::vector<sim::Scenario> candidates, sim::PhysicsEngine engine) {
-  for (sim::Scenario& candidate : candidates) {
-    candidate.environment.engine = engine;
-  }
-  return candidates;
-}
-
-std::vector<double> ranks_of(const std::vector<double>& values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, {}, [&](std::size_t i) { return values[i]; });
-  std::vector<double> ranks(values.size());
-  for (std::size_t rank = 0; rank < order.size(); ++rank) {
-    ranks[order[rank]] = static_cast<double>(rank);
-  }
-  return ranks;
-}
-
-/// Spearman's, for values that differ.
-double rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  const std::vector<double> ranks_a = ranks_of(a);
-  const std::vector<double> ranks_b = ranks_of(b);
-  double squares = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    squares += (ranks_a[i] - ranks_b[i]) * (ranks_a[i] - ranks_b[i]);
-  }
-  const auto n = static_cast<double>(a.size());
-  return 1.0 - 6.0 * squares / (n * (n * n - 1.0));
-}
-
-double quantile(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
-/// others: as many distances as the first of ode, or all of them.
+/// others: as many distances as the first of ODE's, or all of them.
 void print_agreement(const char* name, std::span<const double> all_of_ode, const std::vector<double>& others) {
   const std::vector<double> ode(all_of_ode.begin(), all_of_ode.begin() + static_cast<std::ptrdiff_t>(others.size()));
-  std::vector<double> differences;
-  std::vector<double> relative;
-  for (std::size_t i = 0; i < ode.size(); ++i) {
-    differences.push_back(std::abs(ode[i] - others[i]) * 1000.0);
-    relative.push_back(std::abs(ode[i] - others[i]) / ode[i] * 100.0);
-  }
+  const bench::EngineAgreement agreement = bench::agreement_of(ode, others);
+  const auto difference_mm = [&](double share) { return 1000.0 * bench::quantile(agreement.differences, share); };
   std::printf(
       "%s against ODE, distances of %zu candidates (seed %llu): rank correlation %.4f; difference: median %.1f mm or "
-      "%.2f %%, "
-      "90 %% within %.1f mm, worst %.0f mm\n",
-      name, ode.size(), static_cast<unsigned long long>(seed), rank_correlation(ode, others),
-      quantile(differences, 0.5), quantile(relative, 0.5), quantile(differences, 0.9), quantile(differences, 1.0));
+      "%.2f %%, 90 %% within %.1f mm, worst %.0f mm\n",
+      name, ode.size(), static_cast<unsigned long long>(bench::candidate_seed), agreement.rank_correlation,
+      difference_mm(0.5), 100.0 * bench::quantile(agreement.relative, 0.5), difference_mm(0.9), difference_mm(1.0));
 }
 
 /// Rate of two threads with a batch each against one, by wall-clock time.
@@ -135,10 +78,10 @@ double gain_of_two_cores(std::span<const sim::Scenario> candidates) {
     return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
   };
   const double start = wall_time();
-  static_cast<void>(together(candidates, nullptr));
+  static_cast<void>(bench::distances_together(candidates));
   const double one = wall_time() - start;
-  std::thread other([&] { static_cast<void>(together(candidates, nullptr)); });
-  static_cast<void>(together(candidates, nullptr));
+  std::thread other([&] { static_cast<void>(bench::distances_together(candidates)); });
+  static_cast<void>(bench::distances_together(candidates));
   other.join();
   return 2.0 * one / (wall_time() - start - one);
 }
@@ -152,38 +95,61 @@ sim::Scenario with_yaw_joints(sim::Scenario scenario) {
 }
 
 void compare(const sim::Scenario& scenario, const char* robot, std::size_t count) {
-  const std::vector<sim::Scenario> candidates = bench::candidates(scenario, count, seed);
-  const std::vector<sim::Scenario> reduced = with_engine(candidates, sim::PhysicsEngine::reduced);
+  const std::vector<sim::Scenario> candidates = bench::candidates(scenario, count, bench::candidate_seed);
+  const std::vector<sim::Scenario> reduced = bench::with_engine(candidates, sim::PhysicsEngine::reduced);
+  const std::vector<sim::Scenario> in_ode = bench::with_engine(candidates, sim::PhysicsEngine::ode);
   std::printf("%s: evaluations of %.0f s in a second of one core\n", robot, scenario.duration_s);
-  const Evaluations ode = alone(with_engine(candidates, sim::PhysicsEngine::ode));
+  const Evaluations ode = timed([&] { return bench::distances_alone(in_ode); });
   std::printf("  %-34s %6.2f\n", "ODE", ode.per_second);
   const auto print = [&](const std::string& name, const Evaluations& result) {
-    std::printf("  %-34s %6.1f  %5.1f x ODE\n", name.c_str(), result.per_second, result.per_second / ode.per_second);
+    std::printf("  %-34s %6.1f  %5.2f x ODE\n", name.c_str(), result.per_second, result.per_second / ode.per_second);
   };
-  const std::span<const sim::Scenario> some = std::span(reduced).first(std::min(count, batch_size));
-  print("reduced, one at a time", alone(some));
+  const std::span<const sim::Scenario> some = std::span(reduced).first(std::min(count, bench::batch_size));
+  print("reduced, one at a time", timed([&] { return bench::distances_alone(some); }));
   Evaluations last;
   for (const sim::reduced::ChainKernel* kernel : sim::reduced::supported_kernels()) {
-    last = together(reduced, kernel);
-    print("reduced, batches of " + std::to_string(batch_size) + ", " + kernel->instructions, last);
+    last = timed([&] { return bench::distances_together(reduced, kernel); });
+    print("reduced, batches of " + std::to_string(bench::batch_size) + ", " + kernel->instructions, last);
+  }
+  std::optional<Evaluations> mujoco;
+  if (sim::mujoco::is_built_in()) {
+    const auto run = [&](sim::mujoco::Integrator integrator) {
+      return timed([&] { return bench::distances_alone(some, in_mujoco(integrator)); });
+    };
+    mujoco = run(sim::mujoco::Integrator::implicit);
+    print("MuJoCo, implicit integrator", *mujoco);
+    print("MuJoCo, Euler", run(sim::mujoco::Integrator::euler));
+  } else {
+    std::puts("  MuJoCo is not built in (libmujoco-dev)");
   }
   std::printf("two cores against one: %.2f\n", gain_of_two_cores(some));
   print_agreement("reduced engine", ode.distances, last.distances);
+  if (mujoco) {
+    print_agreement("MuJoCo", ode.distances, mujoco->distances);
+  }
   // How far the result depends on the step, which is no fault of an engine.
-  std::vector<sim::Scenario> finer = with_engine(candidates, sim::PhysicsEngine::ode);
-  finer.resize(some.size());
+  std::vector<sim::Scenario> finer(in_ode.begin(), in_ode.begin() + static_cast<std::ptrdiff_t>(some.size()));
   for (sim::Scenario& candidate : finer) {
     candidate.step_s /= 2.0;
   }
-  print_agreement("ODE with half the step", ode.distances, alone(finer).distances);
+  print_agreement("ODE with half the step", ode.distances, bench::distances_alone(finer));
 }
 
-void run(std::size_t count) {
-  sim::DiskFiles files;
-  const sim::Scenario scenario =
-      sim::read_scenario(source_path("/sim/scenarios/travelling_wave/uniform.simulation.xml"), files);
-  compare(scenario, "pitch joints", count);
-  compare(with_yaw_joints(scenario), "pitch and yaw joints", count);
+/// The shipped gaits: does a resting tail help in each engine?
+void print_shipped_gaits() {
+  std::puts("distance in m    uniform  tail at rest  gain");
+  const auto print = [](const std::string& name, sim::PhysicsEngine engine, const bench::MakeWorld& make_world) {
+    const std::vector<sim::Scenario> gaits =
+        bench::with_engine({read_gait("uniform"), read_gait("tail_fixed")}, engine);
+    const std::vector<double> distances = bench::distances_alone(gaits, make_world);
+    std::printf("  %-16s %6.3f  %12.3f  %.3f\n", name.c_str(), distances[0], distances[1], distances[1] / distances[0]);
+  };
+  print("ODE", sim::PhysicsEngine::ode, nullptr);
+  print("reduced", sim::PhysicsEngine::reduced, nullptr);
+  if (sim::mujoco::is_built_in()) {
+    print("MuJoCo, implicit", sim::PhysicsEngine::mujoco, in_mujoco(sim::mujoco::Integrator::implicit));
+    print("MuJoCo, Euler", sim::PhysicsEngine::mujoco, in_mujoco(sim::mujoco::Integrator::euler));
+  }
 }
 
 }  // namespace
@@ -195,7 +161,10 @@ int main(int argc, char** argv) {
       std::fprintf(stderr, "bench_reduced: expected a number of candidates, at least 3\n");
       return 2;
     }
-    run(*count);
+    const sim::Scenario scenario = read_gait("uniform");
+    compare(scenario, "pitch joints", *count);
+    compare(with_yaw_joints(scenario), "pitch and yaw joints", *count);
+    print_shipped_gaits();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_reduced: %s\n", error.what());
     return 2;

@@ -7,6 +7,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/loop/simulation.hpp"
 #include "sim/optimize/confirm/gait_confirmation.hpp"
 #include "sim/optimize/evaluation/fitness_source.hpp"
 #include "tools/proleg/command_line.hpp"
@@ -57,6 +58,7 @@ int confirm(const ConfirmOptions& options) {
   if (!worlds || *worlds < 1 || *worlds > 10'000) {
     throw InputError("--worlds", 0, in_quotes(options.worlds), "1 to 10000");
   }
+  static_cast<void>(sim::Simulation(setup.scenario));  // an engine that does not have the world refuses it now
   print_warnings("proleg confirm", setup.scenario);
   catch_interrupts();
   RunProgress progress("confirming", 1.0);

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -481,6 +482,19 @@ TEST(ReducedWorld, RepeatsToTheLastBit) {
     return states;
   };
   EXPECT_EQ(trace(), trace());
+}
+
+TEST(ReducedWorld, TheSameMotionElsewhereHasAnotherState) {
+  std::set<std::vector<double>> states;
+  for (const double heading : {0.0, std::numbers::pi / 2, std::numbers::pi}) {
+    for (const double sideways : {0.0, 0.25}) {
+      EnvironmentModel environment = weightless();
+      const Eigen::Quaterniond turned = turn(heading, Eigen::Vector3d::UnitZ());
+      environment.robot_pose = {turned * Eigen::Vector3d(sideways, 0.0, 0.0), turned};
+      states.insert(reduced_world(chain(3), environment)->state());
+    }
+  }
+  EXPECT_EQ(states.size(), 6U);
 }
 
 }  // namespace

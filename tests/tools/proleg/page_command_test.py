@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import signal
 import ssl
 import subprocess
@@ -102,6 +103,15 @@ class BadInput(PageTest):
         self.assertRegex(self.refused_for("--bus", "elsewhere:1"), "expected a bus: a CAN interface such as can0")
         self.assertRegex(self.refused_for("--bus", "sim:none.xml"), "^--bus: found 'sim:none.xml', expected sim:FILE")
         self.assertRegex(self.refused_for(".", "--paused"), "^found an option of a robot with .")
+        self.assertEqual(self.refused_for("--engine", "bullet"), "--engine: found 'bullet', expected 'ode' or 'reduced'")
+
+    def test_a_robot_that_the_engine_does_not_have(self):
+        wave = self.folder / "wave"
+        shutil.copytree(Path(__file__).resolve().parents[3] / "sim/scenarios/travelling_wave", wave)
+        robot = wave / "caterpillar.robot.xml"
+        robot.write_text(robot.read_text().replace("<axis>1 0 0<", "<axis>0 0 1<", 1))
+        self.assertRegex(self.refused_for("wave/uniform.simulation.xml", "--engine", "reduced"),
+                         "found joint 'J1', whose axis is not parallel to that of joint 'J5', expected what the reduced engine has: .*--engine ode")
 
 
 unittest.main()

@@ -142,7 +142,7 @@ TEST_F(SweepOnASlope, RunsThatFailAreCountedAndAreGaps) {
   const Finished finished = sweep("friction=0:20:10");
   EXPECT_EQ(finished.status, 0) << finished.err;
   EXPECT_NE(finished.out.find("3 of 3, 1 of them failed"), std::string::npos) << finished.out;
-  EXPECT_NE(finished.out.find("the first at friction 0: the robot"), std::string::npos) << finished.out;
+  EXPECT_NE(finished.out.find("the first at friction 0: tick "), std::string::npos) << finished.out;
   EXPECT_NE(read_file(file("out/sweep.svg")).find("class=\"gaps\""), std::string::npos);
 }
 
@@ -151,8 +151,7 @@ TEST_F(SweepOnASlope, IfAllRunsFailOneLineNamesTheFirstFailure) {
     const Finished finished = sweep("friction=0:0.2:0.1", rest);
     EXPECT_EQ(finished.status, 1);
     EXPECT_EQ(finished.out, "");
-    EXPECT_NE(finished.err.find("\nproleg sweep: all 3 runs failed; the first at friction 0: the robot"),
-              std::string::npos)
+    EXPECT_NE(finished.err.find("\nproleg sweep: all 3 runs failed; the first at friction 0: tick "), std::string::npos)
         << finished.err;
     EXPECT_EQ(std::ranges::count(finished.err, '\n'), 2) << "besides it the warning on gravity: " << finished.err;
     EXPECT_TRUE(fs::exists(file("out/sweep.tsv"))) << "the failures can be looked at";

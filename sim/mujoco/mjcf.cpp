@@ -28,7 +28,8 @@ class Writer {
           << "<compiler angle='radian' inertiafromgeom='false'/>\n"
           << "<option solver='Newton' cone='elliptic' collision='predefined' integrator='"
           << (integrator == Integrator::implicit ? "implicit" : "Euler") << "' timestep='" << step_s << "'"
-          << vector("gravity", environment.gravity) << "/>\n";
+          << vector("gravity", environment.gravity) << "><flag energy='enable'/></option>\n";
+    write_sizes(robot);
     text_ << "<default>\n"
           << "<joint limited='true' solimpfriction='" << hard_motor << "' solimplimit='" << hard_contact
           << "' solreflimit='" << reference(step_s) << "'/>\n"
@@ -100,6 +101,19 @@ class Writer {
     }
     text_ << place(pose) << "/>\n";
     written_.push_back({owner, geometry.friction});
+  }
+
+  /// Of the memory for contacts and constraints. A world that needs more ends with a PhysicsError.
+  void write_sizes(const RobotModel& robot) {
+    constexpr std::size_t points = 8;  // of two boxes
+    std::size_t contacts = 100;
+    for (const Link& link : robot.links) {
+      contacts += points * link.geometries.size();
+    }
+    constexpr std::size_t rows_of_contact = 3;
+    constexpr std::size_t rows_of_joint = 2;  // motor and stop
+    text_ << "<size nconmax='" << contacts << "' njmax='"
+          << rows_of_contact * contacts + rows_of_joint * robot.joints.size() << "'/>\n";
   }
 
   void write_links(const RobotModel& robot, const Pose& robot_pose) {

@@ -115,11 +115,7 @@ class MujocoWorld final : public World {
   [[nodiscard]] double contact_force(std::size_t link) const override { return contact_forces_[link]; }
   [[nodiscard]] std::size_t contact_count() const override { return contacts_.size(); }
   [[nodiscard]] ContactSliding contact_sliding() const override { return sliding_; }
-  [[nodiscard]] double energy() const override {
-    mj_energyPos(model_.get(), data_.get());
-    mj_energyVel(model_.get(), data_.get());
-    return data_->energy[0] + data_->energy[1];
-  }
+  [[nodiscard]] double energy() const override { return data_->energy[0] + data_->energy[1]; }
   [[nodiscard]] std::optional<double> lowest_ground() const override { return lowest_ground_; }
   [[nodiscard]] std::size_t solver_messages() const override { return 0; }
   [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return {}; }

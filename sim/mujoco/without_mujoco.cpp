@@ -10,7 +10,7 @@ bool is_built_in() { return false; }
 std::unique_ptr<World> make_mujoco_world(const RobotModel& /*robot*/, const EnvironmentModel& /*environment*/,
                                          double /*step_s*/, const std::string& file, Integrator /*integrator*/) {
   throw InputError(file, 0, "the engine MuJoCo, which is not built in",
-                   "a program that was built where libmujoco-dev 2.2.2 is installed (or --engine ode)");
+                   "one of the other engines, or a program that was built where libmujoco-dev 2.2.2 is installed");
 }
 
 }  // namespace proleg::sim::mujoco

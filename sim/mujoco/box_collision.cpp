@@ -24,7 +24,7 @@ mjtNum reach(const mjModel* model, const mjData* data, int box, const mjtNum* di
 
 /// Along the normal of a contact two boxes overlap by at least the depth of the contact.
 int collide(const mjModel* model, const mjData* data, mjContact* contacts, int a, int b, mjtNum margin) {
-  constexpr mjtNum tolerance = 1e-3;  // m; for boxes that nearly touch MuJoCo reports half their distance
+  constexpr mjtNum tolerance = 1e-3;  // m
   const int count = collide_boxes(model, data, contacts, a, b, margin);
   const mjContact* const end = std::remove_if(contacts, contacts + count, [&](const mjContact& contact) {
     const mjtNum* const normal = contact.frame;

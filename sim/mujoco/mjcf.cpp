@@ -1,5 +1,6 @@
 #include "sim/mujoco/mjcf.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -28,13 +29,12 @@ class Writer {
           << "<compiler angle='radian' inertiafromgeom='false'/>\n"
           << "<option solver='Newton' cone='elliptic' collision='predefined' integrator='"
           << (integrator == Integrator::implicit ? "implicit" : "Euler") << "' timestep='" << step_s << "'"
-          << vector("gravity", environment.gravity) << "><flag energy='enable'/></option>\n";
+          << vector("gravity", environment.gravity) << "><flag energy='enable' multiccd='enable'/></option>\n";
     write_sizes(robot);
     text_ << "<default>\n"
           << "<joint limited='true' solimpfriction='" << hard_motor << "' solimplimit='" << hard_contact
           << "' solreflimit='" << reference(step_s) << "'/>\n"
-          << "<pair condim='3' margin='" << touch_distance << "' gap='" << touch_distance << "' solimp='"
-          << hard_contact << "' solref='" << reference(step_s) << "'/>\n"
+          << "<pair condim='3' solimp='" << hard_contact << "' solref='" << reference(step_s) << "'/>\n"
           << "</default>\n"
           << "<worldbody>\n";
     for (const StaticObject& object : environment.objects) {
@@ -143,8 +143,10 @@ class Writer {
     const Pose to_link = link.pose.inverse();
     // MuJoCo turns the child against its parent; our angle is that of the link towards the head, here the parent.
     const Eigen::Vector3d axis = to_link.orientation * -joint.axis;
+    constexpr double min_range = 1e-6;  // rad; MuJoCo refuses joints that cannot turn
     text_ << "<joint type='hinge'" << vector("pos", to_link * joint.anchor) << vector("axis", axis) << " range='"
-          << joint.lower_limit << ' ' << joint.upper_limit << "' frictionloss='" << joint.max_torque << "'/>\n";
+          << joint.lower_limit << ' ' << std::max(joint.upper_limit, joint.lower_limit + min_range)
+          << "' frictionloss='" << joint.max_torque << "'/>\n";
   }
 
   void write_pairs(const EnvironmentModel& environment) {

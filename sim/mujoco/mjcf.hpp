@@ -8,11 +8,6 @@
 
 namespace proleg::sim::mujoco {
 
-/// How far apart geometries may be, in m, that count as touching. A body that slides leaves its ground by micrometres
-/// in about every second step, because MuJoCo's model of friction adds the friction coefficient times the slip to the
-/// motion along the normal. No force acts at this distance.
-inline constexpr double touch_distance = 1e-4;
-
 /// A robot and its environment as MJCF, MuJoCo's XML, with what MuJoCo has that comes closest to sim/ode:
 /// - a pair of geometries for everything that may touch, with the friction of friction_of(); neighbouring links have
 ///   none;

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "shared/computer/errors/input_error.hpp"
 #include "sim/mujoco/mjcf.hpp"
 #include "sim/mujoco/mujoco_model.hpp"
 #include "sim/physics/physics_error.hpp"
@@ -88,6 +86,7 @@ class MujocoWorld final : public World {
       prepare_step();
     }
     aim_motors();
+    keep_sliding_contacts_closed();
     mj_step2(model_.get(), data_.get());
     note_torques();
     note_contacts();
@@ -148,6 +147,19 @@ class MujocoWorld final : public World {
     for (int row = data_->ne; row < data_->ne + data_->nf; ++row) {
       const double wanted = speeds_[static_cast<std::size_t>(data_->efc_id[row] - free_joint_speeds)];
       data_->efc_aref[row] = (wanted - data_->efc_vel[row]) / model_->opt.timestep;
+    }
+  }
+
+  /// In MuJoCo's model of friction, which is convex, a contact that slides also opens, with the friction coefficient
+  /// times its slip: the body hops, and its sensors are released. Here the reference takes that back with the slip
+  /// before the step. What remains is Coulomb's law.
+  void keep_sliding_contacts_closed() {
+    for (int i = 0; i < data_->ncon; ++i) {
+      const int row = data_->contact[i].efc_address;
+      if (row >= 0) {
+        const double slip = std::hypot(data_->efc_vel[row + 1], data_->efc_vel[row + 2]);
+        data_->efc_aref[row] -= data_->contact[i].friction[0] * slip / model_->opt.timestep;
+      }
     }
   }
 
@@ -251,22 +263,12 @@ class MujocoWorld final : public World {
   bool has_failed_ = false;
 };
 
-void require_joints_that_turn(const RobotModel& robot, const std::string& file) {
-  for (const Joint& joint : robot.joints) {
-    if (joint.lower_limit >= joint.upper_limit) {
-      throw InputError(file, 0, "joint '" + joint.name + "', which cannot turn",
-                       "what MuJoCo has: joints whose limits differ (or --engine ode)");
-    }
-  }
-}
-
 }  // namespace
 
 bool is_built_in() { return true; }
 
 std::unique_ptr<World> make_mujoco_world(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
                                          const std::string& file, Integrator integrator) {
-  require_joints_that_turn(robot, file);
   return std::make_unique<MujocoWorld>(robot, environment, step_s, file, integrator);
 }
 

@@ -196,7 +196,7 @@ TEST_F(Optimise, RefusesBadInputAndStartsNothing) {
   refuse({"--evaluations", "0"}, {"--evaluations", "'0'"});
   refuse({"--evaluations", "-3"}, {"--evaluations", "'-3'"});
   refuse({"--seed", "1.5"}, {"--seed", "'1.5'"});
-  refuse({"--engine", "mujoco"}, {"--engine", "'mujoco'", "'ode' or 'reduced'"});
+  refuse({"--engine", "bullet"}, {"--engine", "'bullet'", "'ode', 'reduced' or 'mujoco'"});
   expect_refused({"optimise", "/nowhere/x.optimise.xml"}, {"/nowhere/x.optimise.xml"});
   expect_refused({"optimise", scenario("uniform")}, {"uniform.simulation.xml", "greatDeluge"});
   expect_refused(words("great_deluge", "", {"--resume", file("nothing").string()}), {"nothing", "store.sqlite"});

@@ -1,5 +1,6 @@
-// Evaluations per second and core of both physics engines, with kernels, sensors and measures, and how well their
-// results agree. All figures are of one run and by processor time, so other programs do not affect the ratios.
+// Evaluations per second and core of the physics engines, with kernels, sensors and measures, and how well their
+// results agree. All figures are of one run and by processor time, so other programs do not affect the ratios. MuJoCo
+// has a row for each of two integrators, if it is built in.
 //
 //   bench_reduced [CANDIDATES]   compared with ODE; by default 200
 
@@ -8,7 +9,10 @@
 #include <cstdio>
 #include <ctime>
 #include <exception>
+#include <functional>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
@@ -16,6 +20,7 @@
 
 #include "shared/computer/text/text.hpp"
 #include "sim/loop/simulation_batch.hpp"
+#include "sim/mujoco/mujoco_world.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tests/bench/candidates.hpp"
 #include "tests/support/files.hpp"
@@ -26,6 +31,11 @@ using namespace proleg;
 
 constexpr std::uint64_t seed = 1;
 constexpr std::size_t batch_size = 64;
+
+sim::Scenario read_gait(const std::string& name) {
+  sim::DiskFiles files;
+  return sim::read_scenario(source_path("/sim/scenarios/travelling_wave/") + name + ".simulation.xml", files);
+}
 
 /// Of this thread, s.
 double processor_time() {
@@ -39,11 +49,14 @@ struct Evaluations {
   double per_second = 0.0;
 };
 
-Evaluations alone(std::span<const sim::Scenario> candidates) {
+using MakeWorld = std::function<std::unique_ptr<sim::World>(const sim::Scenario&)>;
+
+/// make_world: null for the world of the scenario.
+Evaluations alone(std::span<const sim::Scenario> candidates, const MakeWorld& make_world = nullptr) {
   Evaluations result;
   const double start = processor_time();
   for (const sim::Scenario& candidate : candidates) {
-    sim::Simulation simulation(candidate);
+    sim::Simulation simulation(candidate, make_world ? make_world(candidate) : nullptr);
     simulation.leave_out_hashes();
     while (simulation.tick() < sim::tick_count(candidate)) {
       simulation.advance();
@@ -109,18 +122,27 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
-void print_agreement(const std::vector<double>& ode, const std::vector<double>& reduced) {
+MakeWorld in_mujoco(sim::mujoco::Integrator integrator) {
+  return [integrator](const sim::Scenario& scenario) {
+    return sim::mujoco::make_mujoco_world(scenario.robot, scenario.environment, scenario.step_s, scenario.path,
+                                          integrator);
+  };
+}
+
+/// other: of the first of the candidates.
+void print_agreement(const char* engine, const std::vector<double>& all_of_ode, const std::vector<double>& other) {
+  const std::vector<double> ode(all_of_ode.begin(), all_of_ode.begin() + static_cast<std::ptrdiff_t>(other.size()));
   std::vector<double> differences;
   std::vector<double> relative;
   for (std::size_t i = 0; i < ode.size(); ++i) {
-    differences.push_back(std::abs(ode[i] - reduced[i]) * 1000.0);
-    relative.push_back(std::abs(ode[i] - reduced[i]) / ode[i] * 100.0);
+    differences.push_back(std::abs(ode[i] - other[i]) * 1000.0);
+    relative.push_back(std::abs(ode[i] - other[i]) / ode[i] * 100.0);
   }
   std::printf(
-      "distances of %zu candidates (seed %llu): rank correlation %.4f; difference: median %.1f mm or %.2f %%, "
+      "%s, distances of %zu candidates (seed %llu): rank correlation %.4f; difference: median %.1f mm or %.2f %%, "
       "90 %% within %.1f mm, worst %.0f mm\n",
-      ode.size(), static_cast<unsigned long long>(seed), rank_correlation(ode, reduced), quantile(differences, 0.5),
-      quantile(relative, 0.5), quantile(differences, 0.9), quantile(differences, 1.0));
+      engine, ode.size(), static_cast<unsigned long long>(seed), rank_correlation(ode, other),
+      quantile(differences, 0.5), quantile(relative, 0.5), quantile(differences, 0.9), quantile(differences, 1.0));
 }
 
 /// Rate of two threads with a batch each against one, by wall-clock time.
@@ -140,16 +162,14 @@ double gain_of_two_cores(std::span<const sim::Scenario> candidates) {
 }
 
 void run(std::size_t count) {
-  sim::DiskFiles files;
-  const sim::Scenario scenario =
-      sim::read_scenario(source_path("/sim/scenarios/travelling_wave/uniform.simulation.xml"), files);
+  const sim::Scenario scenario = read_gait("uniform");
   const std::vector<sim::Scenario> candidates = bench::candidates(scenario, count, seed);
   const std::vector<sim::Scenario> reduced = with_engine(candidates, sim::PhysicsEngine::reduced);
   std::printf("evaluations of %.0f s in a second of one core\n", scenario.duration_s);
   const Evaluations ode = alone(with_engine(candidates, sim::PhysicsEngine::ode));
   std::printf("  %-34s %6.2f\n", "ODE", ode.per_second);
   const auto print = [&](const std::string& name, const Evaluations& result) {
-    std::printf("  %-34s %6.1f  %5.1f x ODE\n", name.c_str(), result.per_second, result.per_second / ode.per_second);
+    std::printf("  %-34s %6.1f  %5.2f x ODE\n", name.c_str(), result.per_second, result.per_second / ode.per_second);
   };
   const std::span<const sim::Scenario> some = std::span(reduced).first(std::min(count, batch_size));
   print("reduced, one at a time", alone(some));
@@ -158,8 +178,35 @@ void run(std::size_t count) {
     last = together(reduced, kernel);
     print("reduced, batches of " + std::to_string(batch_size) + ", " + kernel->instructions, last);
   }
+  std::optional<Evaluations> mujoco;
+  if (sim::mujoco::is_built_in()) {
+    mujoco = alone(some, in_mujoco(sim::mujoco::Integrator::implicit));
+    print("MuJoCo, implicit integrator", *mujoco);
+    print("MuJoCo, Euler", alone(some, in_mujoco(sim::mujoco::Integrator::euler)));
+  } else {
+    std::puts("  MuJoCo is not built in (libmujoco-dev)");
+  }
   std::printf("two cores against one: %.2f\n", gain_of_two_cores(some));
-  print_agreement(ode.distances, last.distances);
+  print_agreement("reduced", ode.distances, last.distances);
+  if (mujoco) {
+    print_agreement("MuJoCo", ode.distances, mujoco->distances);
+  }
+}
+
+/// The shipped gaits: does a resting tail help in each engine?
+void print_shipped_gaits() {
+  std::puts("distance in m    uniform  tail at rest  gain");
+  const auto print = [](const std::string& name, sim::PhysicsEngine engine, const MakeWorld& make_world) {
+    std::vector<sim::Scenario> gaits{read_gait("uniform"), read_gait("tail_fixed")};
+    const std::vector<double> distances = alone(with_engine(std::move(gaits), engine), make_world).distances;
+    std::printf("  %-16s %6.3f  %12.3f  %.3f\n", name.c_str(), distances[0], distances[1], distances[1] / distances[0]);
+  };
+  print("ODE", sim::PhysicsEngine::ode, nullptr);
+  print("reduced", sim::PhysicsEngine::reduced, nullptr);
+  if (sim::mujoco::is_built_in()) {
+    print("MuJoCo, implicit", sim::PhysicsEngine::mujoco, in_mujoco(sim::mujoco::Integrator::implicit));
+    print("MuJoCo, Euler", sim::PhysicsEngine::mujoco, in_mujoco(sim::mujoco::Integrator::euler));
+  }
 }
 
 }  // namespace
@@ -172,6 +219,7 @@ int main(int argc, char** argv) {
       return 2;
     }
     run(*count);
+    print_shipped_gaits();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_reduced: %s\n", error.what());
     return 2;

@@ -43,7 +43,7 @@ std::string changes(const image::Header& before, const image::Header& after) {
 
 }  // namespace
 
-std::string number_text(const image::Version& version) {
+std::string version_number_text(const image::Version& version) {
   return std::to_string(version.major) + "." + std::to_string(version.minor) + "." + std::to_string(version.patch);
 }
 
@@ -62,7 +62,7 @@ std::string commit_text(const image::Header& image) {
 }
 
 std::string version_text(const image::Header& image) {
-  return number_text(image.version) + " (" + commit_text(image) + ")";
+  return version_number_text(image.version) + " (" + commit_text(image) + ")";
 }
 
 bool is_same_image(const image::Header& one, const image::Header& other) { return one == other; }
@@ -100,7 +100,7 @@ FlashVerdict judge(const image::Header& image, const FlashCandidate& module, con
   if (is_older && !permissions.older_version) {
     return refuse("runs " + version_text(before) + ", the image is " +
                   (image.version < before.version
-                       ? "older, " + number_text(image.version)
+                       ? "older, " + version_number_text(image.version)
                        : "for older settings, schema " + std::to_string(image.settings_schema)) +
                   "; --allow-downgrade sends it anyway");
   }

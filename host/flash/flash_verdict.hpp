@@ -37,7 +37,7 @@ struct FlashVerdict {
                                  const FlashPermissions& permissions);
 
 /// "0.1.0".
-[[nodiscard]] std::string number_text(const image::Version& version);
+[[nodiscard]] std::string version_number_text(const image::Version& version);
 /// "0.1.0 (5267b59d)", with a "+" behind the commit of changed sources.
 [[nodiscard]] std::string version_text(const image::Header& image);
 /// "5267b59d", or "unknown".

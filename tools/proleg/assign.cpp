@@ -137,7 +137,7 @@ class Assignment {
   }
 
   void find() {
-    FoundModules found = find_modules(bus_);
+    ModulesToNumber found = find_modules_to_number(bus_);
     modules_ = std::move(found.modules);
     others_ = std::move(found.others);
     for (unsigned joint = 0; joint < nodes_.size(); ++joint) {
@@ -221,7 +221,7 @@ class Assignment {
 
   /// Throws std::runtime_error if a joint does not have its module now.
   void verify() {
-    const std::vector<host::PlacedModule> found = find_modules(bus_).modules;
+    const std::vector<host::PlacedModule> found = find_modules_to_number(bus_).modules;
     for (host::PlacedModule& module : modules_) {
       const auto now = std::ranges::find(found, module.address, &host::PlacedModule::address);
       if (now == found.end()) {

@@ -50,10 +50,10 @@ void reset_all(BusAccess& bus) {
   }
 }
 
-FoundModules find_modules(BusAccess& bus) {
+ModulesToNumber find_modules_to_number(BusAccess& bus) {
   host::BusScan all(bus.connection());
   scan(bus, all);
-  FoundModules found;
+  ModulesToNumber found;
   for (const host::ScannedNode& node : all.nodes()) {
     if (!node.is_module) {
       found.others.push_back(node.node);

@@ -18,11 +18,11 @@ namespace proleg::tools {
 void reset_all(BusAccess& bus);
 
 /// Who is on the bus.
-struct FoundModules {
+struct ModulesToNumber {
   std::vector<host::PlacedModule> modules;  ///< by node id, at least one; their joints are not known
   std::vector<std::uint8_t> others;         ///< node ids of nodes that are no joint modules, or do not answer
 };
-[[nodiscard]] FoundModules find_modules(BusAccess& bus);
+[[nodiscard]] ModulesToNumber find_modules_to_number(BusAccess& bus);
 
 /// A joint that moves to and fro while this exists.
 class MovingJoint {

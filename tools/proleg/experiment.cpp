@@ -1,6 +1,9 @@
 // proleg experiment: repeats an experiment of the thesis and writes its tables and figures beside the published ones.
 
 #include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -113,10 +116,20 @@ optimize::Experiment read(const Options& options, const fs::path& folder, const 
 }
 
 /// The distance of the scenario without changes: all amplitudes are equal.
-double uniform_distance(const optimize::Experiment& experiment) {
+struct UniformDistance {
+  double searched_m;  ///< in the engine of the searches
+  double judged_m;    ///< in the judging engine
+};
+
+UniformDistance uniform_distance(const optimize::Experiment& experiment) {
   optimize::Task task;
   task.candidate = experiment.space.nearest(experiment.scenario);
-  return optimize::run_trial(experiment, task).measures[sim::Measure::distance];
+  const double searched = optimize::run_trial(experiment, task).measures[sim::Measure::distance];
+  if (!optimize::is_judged(experiment)) {
+    return {searched, searched};
+  }
+  task.trial = experiment.trials.count;
+  return {searched, optimize::run_trial(experiment, task).measures[sim::Measure::distance]};
 }
 
 /// Whether the store in a folder has all repetitions of this experiment. Its method is then part of the comparison,
@@ -143,6 +156,21 @@ struct MethodResult {
   double simulated_s = 0.0;
 };
 
+/// The best of a repetition, rated again if the experiment is judged. Nothing if the user interrupts.
+std::optional<optimize::Evaluation> winner_of(const optimize::Experiment& experiment, optimize::Workers& workers,
+                                              optimize::Store& store, SearchOutcome& outcome) {
+  if (!optimize::is_judged(experiment)) {
+    return outcome.progress.best;
+  }
+  const std::vector<optimize::Confirmation> confirmations = confirm_best(experiment, workers, store, outcome);
+  if (confirmations.empty()) {
+    return std::nullopt;
+  }
+  optimize::Evaluation winner = confirmations.front().evaluation;
+  winner.scores.front() = confirmations.front().mean;
+  return winner;
+}
+
 /// Runs the repetitions; what the store has is not simulated again. Fewer if the user interrupts.
 MethodResult run_method(const std::string& name, const optimize::Experiment& experiment, std::uint32_t repetitions,
                         std::uint32_t worker_count, const fs::path& folder) {
@@ -157,21 +185,28 @@ MethodResult run_method(const std::string& name, const optimize::Experiment& exp
     if (outcome.ending.empty()) {
       break;
     }
-    const std::optional<optimize::Evaluation>& best = outcome.progress.best;
-    if (!best) {
+    if (!outcome.progress.best) {
       throw std::runtime_error(name + ": none of " + std::to_string(outcome.evaluations.size()) +
                                " evaluations has a score; the first failure: " + outcome.progress.first_failure);
+    }
+    const std::string ending = outcome.ending;
+    const std::optional<optimize::Evaluation> best = winner_of(experiment, workers, *store, outcome);
+    if (!best) {
+      break;
     }
     if (!result.best || experiment.objectives.front().better(best->scores.front(), result.best->scores.front())) {
       result.best = best;
     }
-    result.wall_s += outcome.wall_s;
+    result.wall_s += outcome.wall_s + outcome.confirmation_wall_s;
     result.simulated_s += outcome.progress.simulated_s;
     std::cerr << name << " " << run + 1 << " of " << repetitions << ": " << outcome.evaluations.size()
               << " evaluations, best " << best->scores.front() << " " << experiment.objectives.front().unit() << ", "
-              << outcome.ending << "; " << outcome.progress.simulated << " simulated in "
-              << static_cast<long>(outcome.wall_s) << " s\n";
-    result.endings.push_back(outcome.ending);
+              << ending << "; " << outcome.progress.simulated << " simulated in "
+              << static_cast<long>(outcome.wall_s + outcome.confirmation_wall_s) << " s\n";
+    result.endings.push_back(ending);
+    if (optimize::is_judged(experiment)) {
+      result.runs.judged.push_back(*best);
+    }
     result.runs.runs.push_back(std::move(outcome.evaluations));
   }
   return result;
@@ -190,9 +225,13 @@ Json to_json(const MethodResult& result, const optimize::SearchSpace& space, dou
   Json runs = Json::empty_array();
   double sum = 0.0;
   for (std::size_t run = 0; run < result.runs.runs.size(); ++run) {
-    const double best = optimize::best_so_far(result.runs.runs[run]).back();
+    const double searched = optimize::best_so_far(result.runs.runs[run]).back();
+    const double best = result.runs.judged.empty() ? searched : result.runs.judged[run].scores.front();
     sum += best;
-    runs.append({{"evaluations", result.runs.runs[run].size()}, {"best", best}, {"ended", result.endings[run]}});
+    runs.append({{"evaluations", result.runs.runs[run].size()},
+                 {"best", best},
+                 {"best_in_search", searched},
+                 {"ended", result.endings[run]}});
   }
   return {{"method", result.runs.method},
           {"best_score", result.best->scores.front()},
@@ -240,7 +279,8 @@ int experiment(const Options& options) {
   }
 
   catch_interrupts();
-  const double uniform_m = uniform_distance(chosen.front().second);
+  const auto started = std::chrono::steady_clock::now();
+  const UniformDistance uniform = uniform_distance(chosen.front().second);
   std::vector<MethodResult> results;
   std::vector<optimize::MethodRuns> all_runs;
   for (const auto& [method, experiment] : chosen) {
@@ -250,15 +290,23 @@ int experiment(const Options& options) {
       return exit_failed;
     }
     write_file(folder / method->table, optimize::experiment_table(result.runs));
-    write_file(folder / method->runs_figure, optimize::draw_every_run(result.runs, uniform_m));
-    write_file(folder / method->spread_figure, optimize::draw_run_spread(result.runs, uniform_m));
+    write_file(folder / method->runs_figure, optimize::draw_every_run(result.runs, uniform.searched_m));
+    write_file(folder / method->spread_figure, optimize::draw_run_spread(result.runs, uniform.searched_m));
     optimize::write_scenario(experiment, *result.best, folder / method->name, "best");
     all_runs.push_back(result.runs);
     results.push_back(std::move(result));
   }
-  write_file(folder / "figure_7_1.svg", optimize::draw_method_comparison(all_runs, uniform_m));
+  write_file(folder / "figure_7_1.svg", optimize::draw_method_comparison(all_runs, uniform.searched_m));
   const std::string engine(sim::name_of(chosen.front().second.scenario.environment.engine));
-  const std::string summary = optimize::experiment_summary(all_runs, uniform_m) + "\nengine: " + engine + "\n";
+  const std::string judge =
+      optimize::is_judged(chosen.front().second)
+          ? "; the best ten of each run were rated again in " + std::string(sim::name_of(optimize::judging_engine))
+          : "";
+  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  std::array<char, 64> time{};
+  std::snprintf(time.data(), time.size(), "time: %.1f min with %u workers\n", wall_s / 60.0, worker_count);
+  const std::string summary =
+      optimize::experiment_summary(all_runs, uniform.judged_m) + "\nengine: " + engine + judge + "\n" + time.data();
   write_file(folder / "summary.txt", summary);
 
   if (!options.json) {
@@ -273,7 +321,7 @@ int experiment(const Options& options) {
   const auto genetic = curves.find("genetic");
   Json list = Json::empty_array();
   for (std::size_t i = 0; i < results.size(); ++i) {
-    Json entry = to_json(results[i], chosen[i].second.space, uniform_m);
+    Json entry = to_json(results[i], chosen[i].second.space, uniform.judged_m);
     entry.add("mean_best_after", course(curves[results[i].runs.method]));
     if (deluge != curves.end()) {
       entry.add("reaches_mean_of_great_deluge_after",
@@ -281,8 +329,16 @@ int experiment(const Options& options) {
     }
     list.append(entry);
   }
-  Json object{{"experiment", options.name}, {"engine", engine},    {"uniform_m", uniform_m}, {"methods", list},
-              {"out", folder.string()},     {"build_id", build_id}};
+  Json differences = Json::empty_array();
+  for (const optimize::MethodDifference& difference : optimize::method_differences(all_runs)) {
+    differences.append({{"one", difference.one},
+                        {"other", difference.other},
+                        {"share_above", difference.share_above},
+                        {"p_value", difference.p_value}});
+  }
+  Json object{
+      {"experiment", options.name}, {"engine", engine}, {"uniform_m", uniform.judged_m}, {"methods", list},
+      {"differences", differences}, {"wall_s", wall_s}, {"out", folder.string()},        {"build_id", build_id}};
   if (deluge != curves.end() && genetic != curves.end()) {
     object.add("great_deluge_above_genetic_after", optimize::overtaking(deluge->second, genetic->second));
   }

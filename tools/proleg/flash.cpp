@@ -280,7 +280,7 @@ Json program_json(const host::ModuleProgram* program) {
     return {};
   }
   const image::Header& header = *program->image;
-  return {{"version", host::number_text(header.version)},
+  return {{"version", host::version_number_text(header.version)},
           {"commit", host::commit_text(header)},
           {"sha256", hexadecimal_digits(header.hash)},
           {"confirmed", program->is(flag::is_confirmed)},
@@ -314,7 +314,7 @@ void Flashing::print_json() const {
   }
   std::cout << Json{{"bus", bus_.connection().description()},
                     {"image", options_.image},
-                    {"version", host::number_text(image_.header.version)},
+                    {"version", host::version_number_text(image_.header.version)},
                     {"sha256", hexadecimal_digits(image_.header.hash)},
                     {"dry_run", options_.dry_run},
                     {"modules", modules},

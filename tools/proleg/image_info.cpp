@@ -20,7 +20,7 @@ namespace {
 
 using image::Header;
 
-struct InfoOptions {
+struct ImageInfoOptions {
   std::vector<std::string> files;
   bool json = false;
 };
@@ -121,7 +121,7 @@ Json json_of(const std::string& file, const Examined& examined) {
   return object;
 }
 
-int info(const InfoOptions& options, const std::string& program) {
+int info(const ImageInfoOptions& options, const std::string& program) {
   int status = exit_success;
   bool is_first = true;
   Json list = Json::empty_array();
@@ -153,7 +153,7 @@ int run_image_info(int argc, char** argv) {
                            "Shows what the headers of images say, and whether the images are intact: header and body "
                            "have the checksums and the length that the header gives.\nExit status 2 if a file is no "
                            "intact image.");
-  InfoOptions options;
+  ImageInfoOptions options;
   command_line.add_option("FILE", options.files, "images, *.pimg").takes_several().required().value_name("");
   command_line.add_flag("--json", options.json, "print one JSON object, with an element of \"images\" for each file");
   return command_line.run(argc, argv, [&] { return info(options, command_line.name()); });

@@ -20,7 +20,7 @@ std::filesystem::path picture_of(const std::string& recording) {
 }
 
 /// "uniform" for uniform.simulation.xml.
-std::string name_of(const std::string& scenario_file) {
+std::string title_of(const std::string& scenario_file) {
   const std::string name = std::filesystem::path(scenario_file).filename().string();
   return name.substr(0, name.find('.'));
 }
@@ -29,7 +29,7 @@ std::string name_of(const std::string& scenario_file) {
 
 MirroredRun::MirroredRun(const ScenarioOptions& options, const std::string& recording, const sim::Scenario& scenario)
     : recording_(recording),
-      title_(name_of(options.file)),
+      title_(title_of(options.file)),
       scenario_(scenario),
       mirror_(scenario),
       recorder_(open_recorder(with_recording(options, recording), scenario, "drive mirror")) {}

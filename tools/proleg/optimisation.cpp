@@ -42,6 +42,18 @@ void apply_options(const ExperimentOptions& options, optimize::Experiment& exper
     experiment.scenario.overrides = sim::read_overrides(words);
     sim::apply_overrides(experiment.scenario.overrides, experiment.scenario.environment);
   }
+  if (options.trials) {
+    const std::optional<std::uint32_t> count = parse_whole<std::uint32_t>(*options.trials);
+    if (!count || *count == 0 || *count > optimize::max_trials) {
+      throw InputError("--trials", 0, in_quotes(*options.trials),
+                       "a whole number from 1 to " + std::to_string(optimize::max_trials));
+    }
+    optimize::Trials& trials = experiment.trials;
+    trials.count = *count;
+    if (*count > 1 && !optimize::depends_on_seed(experiment.scenario, experiment.space, trials.spread)) {
+      trials.spread = optimize::usual_spread();
+    }
+  }
   if (options.evaluations) {
     const std::optional<std::uint64_t> count = parse_whole<std::uint64_t>(*options.evaluations);
     if (!count || *count == 0 || *count > 1'000'000'000) {
@@ -124,7 +136,10 @@ std::vector<optimize::Confirmation> confirm_best(const optimize::Experiment& exp
   }
   try {
     const std::vector<optimize::Evaluation> finalists = optimize::choose_finalists(experiment, outcome.evaluations);
-    CountProgress progress("fresh runs of the best candidates", finalists.size() * experiment.confirmation.runs);
+    CountProgress progress(
+        "fresh runs of the best candidates" +
+            (optimize::is_judged(experiment) ? " in " + std::string(sim::name_of(optimize::judging_engine)) : ""),
+        finalists.size() * optimize::fresh_runs(experiment).runs);
     const auto start = std::chrono::steady_clock::now();
     std::vector<optimize::Confirmation> confirmations =
         optimize::confirm(experiment, finalists, workers, &store, [&](std::size_t done, std::size_t /*all*/) {

@@ -20,9 +20,10 @@
 
 namespace proleg::tools {
 
-/// Options that replace values of the experiment's files: --engine, --evaluations, --seed.
+/// Options that replace values of the experiment's files: --engine, --trials, --evaluations, --seed.
 struct ExperimentOptions {
   std::optional<std::string> engine;
+  std::optional<std::string> trials;
   std::optional<std::string> evaluations;
   std::optional<std::string> seed;
 };
@@ -54,8 +55,8 @@ struct SearchOutcome {
 [[nodiscard]] SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t run,
                                        optimize::Workers& workers, optimize::Store& store, const std::string& label);
 
-/// Rates the best candidates of a search again, if it has ended and its result depends on random numbers; otherwise
-/// returns nothing. Best first. If the user interrupts, the result is empty, and the search counts as interrupted.
+/// Rates the best candidates of a search again, if it has ended and needs_confirmation(); otherwise returns nothing.
+/// Best first. If the user interrupts, the result is empty, and the search counts as interrupted.
 [[nodiscard]] std::vector<optimize::Confirmation> confirm_best(const optimize::Experiment& experiment,
                                                                optimize::Workers& workers, optimize::Store& store,
                                                                SearchOutcome& outcome);

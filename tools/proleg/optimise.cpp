@@ -41,10 +41,13 @@ std::filesystem::path folder_of(const OptimiseOptions& options, const Experiment
 void print_json(const Experiment& experiment, const SearchOutcome& outcome, const SearchResult& result,
                 const std::filesystem::path& folder, std::uint32_t workers) {
   const optimize::SearchProgress& progress = outcome.progress;
-  Json object{{"experiment", experiment.path},
-              {"method", optimize::method_name(experiment.method)},
-              {"engine", std::string(sim::name_of(experiment.scenario.environment.engine))},
-              {"seed", experiment.seed}};
+  Json object{
+      {"experiment", experiment.path},
+      {"method", optimize::method_name(experiment.method)},
+      {"engine", std::string(sim::name_of(experiment.scenario.environment.engine))},
+      {"judge", optimize::is_judged(experiment) ? Json(std::string(sim::name_of(optimize::judging_engine))) : Json()},
+      {"trials", experiment.trials.count},
+      {"seed", experiment.seed}};
   add_result(experiment, result, object);
   object.add("evaluations", progress.evaluations);
   object.add("simulated", progress.simulated);
@@ -105,6 +108,7 @@ std::string command_to_continue(const OptimiseOptions& options, const std::files
   };
   add("--simulation", options.simulation);
   add("--engine", options.engine);
+  add("--trials", options.trials);
   add("--evaluations", options.evaluations);
   add("--seed", options.seed);
   add("--resume", folder.string());
@@ -253,6 +257,10 @@ void add_optimise_options(CommandLine& command_line, OptimiseOptions& options) {
   command_line.add_option("FILE", options.file, "experiment: a *.optimise.xml file; may be omitted with --resume");
   command_line.add_option("--simulation", options.simulation, "scenario to optimise; default: the one that FILE names");
   add_engine_option(command_line, options);
+  command_line.add_option(
+      "--trials", options.trials,
+      "number of worlds in which each candidate is simulated; they differ as <trials> of FILE says, "
+      "or else in friction, mass, servo gain and latency");
   command_line.add_option("--evaluations", options.evaluations, "maximum number of evaluations; default: that of FILE");
   command_line.add_option("--workers", options.workers,
                           "number of simulations at the same time; default: number of processors");

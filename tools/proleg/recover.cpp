@@ -144,7 +144,7 @@ Json module_json(const RecoveredModule& module) {
           {"board", unsigned{module.now.board_id}},
           {"node_before", unsigned{module.before.node}},
           {"node", unsigned{module.now.node}},
-          {"version", image ? Json(host::number_text(image->version)) : Json()},
+          {"version", image ? Json(host::version_number_text(image->version)) : Json()},
           {"running", module.now.program.is(flag::runs_program)},
           {"present", module.is_present},
           {"well", module.is_well()},

@@ -24,16 +24,25 @@ bool depends_on_seed(const Experiment& experiment) {
   return optimize::depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread);
 }
 
-/// Scores of the scenario that is written for an evaluation.
-std::vector<double> own_scores(const Experiment& experiment, const Evaluation& evaluation) {
-  const bool was_simulated = experiment.trials.count == 1 && !experiment.trials.spread.any();
-  const sim::MeasureValues measures =
-      was_simulated ? evaluation.measures : optimize::run_own_world(experiment, evaluation).measures;
+/// Measures of the scenario that is written for an evaluation.
+sim::MeasureValues own_measures(const Experiment& experiment, const Evaluation& evaluation) {
+  const bool was_simulated =
+      experiment.trials.count == 1 && !experiment.trials.spread.any() && !optimize::is_judged(experiment);
+  return was_simulated ? evaluation.measures : optimize::run_own_world(experiment, evaluation).measures;
+}
+
+std::vector<double> scores_of(const Experiment& experiment, const sim::MeasureValues& measures) {
   std::vector<double> scores;
   for (const optimize::Objective& objective : experiment.objectives) {
     scores.push_back(objective.score(measures));
   }
   return scores;
+}
+
+/// Whether the best scenario's own run decided: a judged search without random numbers has one fresh run of each
+/// finalist, in the world of the scenario.
+bool own_run_decided(const Experiment& experiment, const SearchResult& result) {
+  return optimize::is_judged(experiment) && !depends_on_seed(experiment) && !result.confirmations.empty();
 }
 
 /// What decides between the best and the baseline: the means of their fresh runs, or their scores in the search.
@@ -75,6 +84,17 @@ std::optional<bool> beats_baseline(const Experiment& experiment, const SearchRes
          experiment.objectives.front().better(scores->best, scores->baseline);
 }
 
+/// What follows a score: the engine that it is from, if the search has two.
+std::string engine_text(const Experiment& experiment, sim::PhysicsEngine engine) {
+  return optimize::is_judged(experiment) ? " (" + std::string(sim::name_of(engine)) + ")" : "";
+}
+
+std::string search_engine_text(const Experiment& experiment) {
+  return engine_text(experiment, experiment.scenario.environment.engine);
+}
+
+std::string judge_text(const Experiment& experiment) { return engine_text(experiment, optimize::judging_engine); }
+
 std::string number_text(double value, std::string_view unit) {
   std::array<char, 48> text{};
   std::snprintf(text.data(), text.size(), "%.6g", value);
@@ -86,7 +106,7 @@ std::string confirmation_text(const Experiment& experiment, const Confirmation& 
   std::array<char, 96> runs{};
   std::snprintf(runs.data(), runs.size(), "standard deviation %.2g, worst %.6g, %zu fresh runs",
                 confirmation.standard_deviation, confirmation.worst, confirmation.scores.size());
-  return "mean " + number_text(confirmation.mean, unit) + ", " + runs.data();
+  return "mean " + number_text(confirmation.mean, unit) + ", " + runs.data() + judge_text(experiment);
 }
 
 void print_line(const std::string& name, const std::string& text) {
@@ -102,7 +122,11 @@ void print_baseline(const Experiment& experiment, const SearchResult& result) {
     print_line("baseline", "has no score: " + optimize::why_without_score(experiment, baseline));
     return;
   }
-  std::string text = number_text(baseline.scores.front(), experiment.objectives.front().unit());
+  const std::string_view unit = experiment.objectives.front().unit();
+  const Confirmation* const confirmation = result.confirmation_of(baseline);
+  const bool is_decided = own_run_decided(experiment, result) && confirmation != nullptr;
+  const std::string searched = number_text(baseline.scores.front(), unit) + search_engine_text(experiment);
+  std::string text = is_decided ? number_text(confirmation->mean, unit) + judge_text(experiment) : searched;
   if (const std::optional<double> gain = gain_percent(experiment, result)) {
     std::array<char, 32> percent{};
     std::snprintf(percent.data(), percent.size(), ", gain %.1f %%", *gain);
@@ -113,7 +137,9 @@ void print_baseline(const Experiment& experiment, const SearchResult& result) {
     print_line("no gain", result.moved.empty() ? "no candidate was better than the scenario's own"
                                                : "no candidate was better than the baseline");
   }
-  if (const Confirmation* const confirmation = result.confirmation_of(baseline)) {
+  if (is_decided) {
+    print_line("  in the search", searched);
+  } else if (confirmation != nullptr) {
     print_line("  in fresh runs", confirmation_text(experiment, *confirmation));
   }
   for (const optimize::MovedValue& value : result.moved) {
@@ -130,16 +156,27 @@ std::string value_text(const Experiment& experiment, const optimize::Candidate& 
 
 void print_best(const Experiment& experiment, const SearchResult& result) {
   const Evaluation& best = result.best;
+  const bool is_decided = own_run_decided(experiment, result);
   for (std::size_t i = 0; i < experiment.objectives.size(); ++i) {
     const optimize::Objective& objective = experiment.objectives[i];
-    print_line("best " + objective.name, number_text(best.scores[i], objective.unit()));
+    const std::string searched = number_text(best.scores[i], objective.unit()) + search_engine_text(experiment);
+    print_line("best " + objective.name,
+               is_decided ? number_text(result.own_scores[i], objective.unit()) + judge_text(experiment) : searched);
+    if (is_decided) {
+      print_line("  in the search", searched);
+    }
   }
-  if (const Confirmation* const confirmation = result.confirmation_of(best)) {
+  const Confirmation* const confirmation = result.confirmation_of(best);
+  if (confirmation != nullptr && !is_decided) {
     print_line("  in fresh runs", confirmation_text(experiment, *confirmation));
   }
   if (depends_on_seed(experiment)) {
-    print_line("  in its own world",
-               number_text(result.own_scores.front(), experiment.objectives.front().unit()) + ", the best scenario");
+    print_line("  in its own world", number_text(result.own_scores.front(), experiment.objectives.front().unit()) +
+                                         ", the best scenario" + judge_text(experiment));
+  }
+  if (optimize::is_judged(experiment) && confirmation == nullptr) {
+    print_line("not judged",
+               "interrupted before the best candidates ran in " + std::string(sim::name_of(optimize::judging_engine)));
   }
   for (std::size_t i = 0; i < experiment.space.dimensions.size(); ++i) {
     const optimize::Dimension& dimension = experiment.space.dimensions[i];
@@ -181,7 +218,12 @@ Json baseline_object(const Experiment& experiment, const SearchResult& result) {
   for (const optimize::MovedValue& value : result.moved) {
     moved.append({{"dimension", value.name}, {"scenario", value.own}, {"baseline", value.nearest}});
   }
-  Json object{{"score", has_score ? Json(baseline.scores.front()) : Json()},
+  const Confirmation* const confirmation = result.confirmation_of(baseline);
+  const bool is_decided = own_run_decided(experiment, result) && confirmation != nullptr;
+  Json object{{"score", is_decided  ? Json(confirmation->mean)
+                        : has_score ? Json(baseline.scores.front())
+                                    : Json()},
+              {"search_score", has_score ? Json(baseline.scores.front()) : Json()},
               {"scores", scores_object(experiment, baseline.scores)},
               {"values", values_object(experiment.space, baseline.candidate)},
               {"moved", moved}};
@@ -205,7 +247,8 @@ SearchResult result_of(const Experiment& experiment, const SearchOutcome& outcom
   SearchResult result;
   result.confirmations = std::move(confirmations);
   result.best = result.confirmations.empty() ? *outcome.progress.best : result.confirmations.front().evaluation;
-  result.own_scores = own_scores(experiment, result.best);
+  result.own_measures = own_measures(experiment, result.best);
+  result.own_scores = scores_of(experiment, result.own_measures);
   if (const Evaluation* const baseline = optimize::baseline_of(experiment, outcome.evaluations)) {
     result.baseline = *baseline;
     result.moved = optimize::values_outside_space(experiment);
@@ -276,11 +319,14 @@ void print_result(const Experiment& experiment, const SearchOutcome& outcome, co
 
 void add_result(const Experiment& experiment, const SearchResult& result, Json& object) {
   const Evaluation& best = result.best;
-  object.add("best_score", best.scores.front());
-  object.add("best_scores", scores_object(experiment, best.scores));
+  const bool is_decided = own_run_decided(experiment, result);
+  const std::vector<double>& scores = is_decided ? result.own_scores : best.scores;
+  object.add("best_score", scores.front());
+  object.add("best_scores", scores_object(experiment, scores));
+  object.add("best_search_scores", scores_object(experiment, best.scores));
   object.add("best_values", values_object(experiment.space, best.candidate));
   object.add("best_number", best.number);
-  object.add("best_measures", measures_object(best.measures));
+  object.add("best_measures", measures_object(is_decided ? result.own_measures : best.measures));
   object.add("best_scenario_score", result.own_scores.front());
   object.add("best_scenario_scores", scores_object(experiment, result.own_scores));
   object.add("baseline", baseline_object(experiment, result));

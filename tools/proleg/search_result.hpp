@@ -17,7 +17,9 @@ namespace proleg::tools {
 
 struct SearchResult {
   optimize::Evaluation best;  ///< the best in fresh runs, if there were any; otherwise the best of the search
-  /// Scores of the best scenario, which is written without the variations of trials: `proleg simulate` repeats them.
+  /// Measures and scores of the best scenario, which is written without the variations of trials, for the judging
+  /// engine: `proleg simulate` repeats them.
+  sim::MeasureValues own_measures;
   std::vector<double> own_scores;
   std::optional<optimize::Evaluation> baseline;
   std::vector<optimize::MovedValue> moved;  ///< values of the scenario that the baseline does not have

@@ -83,7 +83,7 @@ std::vector<PhysicsEngine> engines_beside(PhysicsEngine engine) {
 }
 
 sim::Scenario perturbed(sim::Scenario scenario, std::uint64_t seed) {
-  perturb(scenario, confirmation_spread(), seed);
+  perturb(scenario, usual_spread(), seed);
   Pcg32 random(seed, sim::random_stream::start);
   for (Eigen::Index axis = 0; axis < 2; ++axis) {
     const double draw = std::ldexp(static_cast<double>(random.next()), -31) - 1.0;  // -1 to 1
@@ -160,8 +160,6 @@ class OtherWorlds {
 };
 
 }  // namespace
-
-Spread confirmation_spread() { return {0.2, 0.1, 0.2, 10.0, 0.0}; }
 
 bool GaitConfirmation::is_real() const { return std::ranges::all_of(findings, &ConfirmationFinding::is_good); }
 

@@ -40,7 +40,7 @@ struct ConfirmationFinding {
 struct GaitConfirmation {
   std::vector<ConfirmedRun> runs;  ///< the first one: as it is
   sim::PhysicsEngine perturbed_engine = sim::PhysicsEngine::ode;
-  std::vector<double> perturbed;    ///< m, distances in worlds that differ, ascending
+  std::vector<double> perturbed;    ///< m, distances in worlds that differ (usual_spread()), ascending
   std::uint32_t failed_worlds = 0;  ///< of them, without a distance
   std::vector<ConfirmationFinding> findings;
 
@@ -52,9 +52,7 @@ struct ConfirmationOptions {
   std::uint64_t seed = 1;
 };
 
-/// How the worlds differ: friction and servo gain by a fifth, masses by a tenth, up to 10 ms of latency; and the start
-/// by 5 mm.
-[[nodiscard]] Spread confirmation_spread();
+/// How much the start of the worlds differs, beside their usual_spread().
 inline constexpr double confirmation_start_m = 0.005;
 
 /// progress: called often with the share that is done; when it returns true, this throws SearchEnded.

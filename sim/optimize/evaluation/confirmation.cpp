@@ -39,9 +39,20 @@ Confirmation summary_of(const Experiment& experiment, const Evaluation& finalist
 
 }  // namespace
 
+ConfirmationSettings fresh_runs(const Experiment& experiment) {
+  constexpr std::uint32_t judged_candidates = 10;
+  ConfirmationSettings settings = experiment.confirmation;
+  if (is_judged(experiment)) {
+    const bool is_noisy = depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread);
+    settings.candidates = std::max(settings.candidates, judged_candidates);
+    settings.runs = is_noisy ? std::max(settings.runs, 1U) : 1;
+  }
+  return settings;
+}
+
 bool needs_confirmation(const Experiment& experiment) {
-  return experiment.confirmation.runs > 0 &&
-         depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread);
+  return is_judged(experiment) || (experiment.confirmation.runs > 0 &&
+                                   depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread));
 }
 
 std::vector<Evaluation> choose_finalists(const Experiment& experiment, std::span<const Evaluation> evaluations) {
@@ -54,10 +65,11 @@ std::vector<Evaluation> choose_finalists(const Experiment& experiment, std::span
   std::ranges::stable_sort(order, [&](const Evaluation* left, const Evaluation* right) {
     return experiment.objectives.front().better(left->scores.front(), right->scores.front());
   });
+  const std::size_t wanted = fresh_runs(experiment).candidates;
   std::vector<Evaluation> finalists;
   std::set<Candidate> chosen;
   for (const Evaluation* evaluation : order) {
-    if (finalists.size() < experiment.confirmation.candidates && chosen.insert(evaluation->candidate).second) {
+    if (finalists.size() < wanted && chosen.insert(evaluation->candidate).second) {
       finalists.push_back(*evaluation);
     }
   }
@@ -70,9 +82,10 @@ std::vector<Evaluation> choose_finalists(const Experiment& experiment, std::span
 
 std::vector<Confirmation> confirm(const Experiment& experiment, std::span<const Evaluation> finalists, Workers& workers,
                                   Store* store, const std::function<bool(std::size_t done, std::size_t all)>& stop) {
+  const std::uint32_t runs = fresh_runs(experiment).runs;
   std::vector<Task> tasks;
   for (const Evaluation& finalist : finalists) {
-    for (std::uint32_t run = 0; run < experiment.confirmation.runs; ++run) {
+    for (std::uint32_t run = 0; run < runs; ++run) {
       tasks.push_back(fresh_run(experiment, finalist, run));
     }
   }
@@ -91,7 +104,7 @@ std::vector<Confirmation> confirm(const Experiment& experiment, std::span<const 
   std::vector<Confirmation> confirmations;
   for (const Evaluation& finalist : finalists) {
     std::vector<double> scores;
-    for (std::uint32_t run = 0; run < experiment.confirmation.runs; ++run) {
+    for (std::uint32_t run = 0; run < runs; ++run) {
       const TrialResult result = pipeline.claim_result(fresh_run(experiment, finalist, run)).result;
       scores.push_back(experiment.objectives.front().score(result.measures));
     }

@@ -144,7 +144,7 @@ std::string store_schema(const Experiment& experiment, const StoreColumns& colum
   sql += R"sql(
 CREATE TABLE trial(
   -- Every simulation, also some that were made ahead and not used. trial: from 0; numbers that no evaluation uses are
-  -- of fresh runs, which confirm the best. candidate: for each dimension the position of its
+  -- of fresh runs, which confirm the best; of a judged search they are in the judging engine, ODE. candidate: for each dimension the position of its
   -- value in the set of values, from 0. hopeless_below: the score that it had to be heading for. given_up: 1 if it was
   -- not; then distance is what it was heading for. failure: why it broke down, or ''.
   run INTEGER NOT NULL,

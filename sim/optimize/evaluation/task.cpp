@@ -11,12 +11,21 @@
 namespace proleg::optimize {
 namespace {
 
+/// As if the option --engine had chosen it.
+void set_engine(sim::Scenario& scenario, sim::PhysicsEngine engine) {
+  scenario.overrides.engine = engine;
+  scenario.environment.engine = engine;
+}
+
 sim::Scenario scenario_of(const Experiment& experiment, const Task& task) {
   sim::Scenario scenario = experiment.scenario;
   experiment.space.apply(task.candidate, scenario);
   const Spread& spread = experiment.trials.spread;
   if (depends_on_seed(experiment.scenario, experiment.space, spread)) {
     perturb(scenario, spread, seed_of(experiment, task));
+  }
+  if (is_fresh_run(experiment, task)) {
+    set_engine(scenario, judging_engine);
   }
   return scenario;
 }
@@ -75,9 +84,12 @@ std::vector<TrialResult> simulate(const Experiment& experiment, std::span<const 
 
 }  // namespace
 
+bool is_judged(const Experiment& experiment) { return experiment.scenario.environment.engine != judging_engine; }
+
+bool is_fresh_run(const Experiment& experiment, const Task& task) { return task.trial >= experiment.trials.count; }
+
 std::uint64_t seed_of(const Experiment& experiment, const Task& task) {
-  const bool is_common = experiment.trials.random_numbers == RandomNumbers::common ||
-                         task.trial >= experiment.trials.count;  // a fresh run of a finalist
+  const bool is_common = experiment.trials.random_numbers == RandomNumbers::common || is_fresh_run(experiment, task);
   return trial_seed(experiment.seed, task.run, is_common ? 0 : task.number, task.trial);
 }
 
@@ -112,6 +124,9 @@ sim::Scenario own_world(const Experiment& experiment, const Evaluation& evaluati
   experiment.space.apply(evaluation.candidate, scenario);
   if (depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread)) {
     scenario.kernel.seed = seed_of(experiment, {evaluation.run, evaluation.number, 0, evaluation.candidate, {}});
+  }
+  if (is_judged(experiment)) {
+    set_engine(scenario, judging_engine);
   }
   return scenario;
 }

@@ -11,17 +11,27 @@
 
 namespace proleg::optimize {
 
+/// The engine that has the last word on candidates. A faster one may search; what it finds best is rated again in this
+/// one, the reference, before anything is called best.
+inline constexpr sim::PhysicsEngine judging_engine = sim::PhysicsEngine::ode;
+
+/// Whether the search has another engine.
+[[nodiscard]] bool is_judged(const Experiment& experiment);
+
 /// One simulation to be made: a trial of a candidate.
 struct Task {
   std::uint32_t run = 0;     ///< repetition of the experiment, from 0
   std::uint64_t number = 0;  ///< of the evaluation in its run, from 0: the individual
-  std::uint32_t trial = 0;   ///< from 0; from the experiment's number of trials on: fresh runs of a finalist
+  /// From 0. From the experiment's number of trials on: fresh runs of a finalist, in the judging engine.
+  std::uint32_t trial = 0;
   Candidate candidate;
   /// Racing: the trial is given up if its score, extrapolated, is below this.
   std::optional<double> hopeless_below;
 
   bool operator==(const Task&) const = default;
 };
+
+[[nodiscard]] bool is_fresh_run(const Experiment& experiment, const Task& task);
 
 /// Seed of a trial's noise and variations. With common random numbers it is the same for all candidates of a
 /// repetition.
@@ -67,8 +77,9 @@ struct Evaluation {
 };
 
 /// The scenario that a search writes for a candidate: the experiment's, with the candidate's values and without the
-/// variations of trials. If a run depends on the seed, it has the seed of the evaluation's first trial. Therefore, with
-/// one trial that varies nothing, its run is that trial.
+/// variations of trials. Its engine is the judging one. If a run depends on the seed, it has the seed of the
+/// evaluation's first trial. Therefore, with one trial that varies nothing, its run is that trial, or its fresh run if
+/// the search is judged.
 [[nodiscard]] sim::Scenario own_world(const Experiment& experiment, const Evaluation& evaluation);
 
 /// Simulates the own_world() of an evaluation.

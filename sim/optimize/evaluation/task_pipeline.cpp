@@ -89,7 +89,13 @@ void TaskPipeline::run(std::chrono::milliseconds timeout) {
 }
 
 void TaskPipeline::give_tasks() {
-  const std::size_t share = share_of_worker(experiment_.scenario, queue_.size(), workers_);
+  if (queue_.empty()) {
+    return;
+  }
+  // The judging engine has no batches.
+  const std::size_t share = is_judged(experiment_) && is_fresh_run(experiment_, queue_.front())
+                                ? 1
+                                : share_of_worker(experiment_.scenario, queue_.size(), workers_);
   while (!queue_.empty() && workers_.idle() > 0) {
     std::vector<TicketedTask> batch;
     for (; batch.size() < share && !queue_.empty(); queue_.pop_front()) {

@@ -23,7 +23,6 @@ constexpr Range latencies{0.0, 100.0, "ms"};
 constexpr Range shares{0.0, 1.0, ""};
 constexpr Range part_runs{0.0, 0.99, ""};
 constexpr std::uint64_t max_evaluations = 1'000'000'000;
-constexpr std::uint64_t max_trials = 1000;
 
 sim::Scenario read_named_scenario(const XmlElement& section, const std::filesystem::path& path, sim::FileSource& files,
                                   const std::optional<std::filesystem::path>& simulation) {

@@ -17,6 +17,8 @@ struct MethodRuns {
   std::string method;                         ///< as method_name() says
   SearchSpace space;                          ///< of its candidates
   std::vector<std::vector<Evaluation>> runs;  ///< the evaluations of each repetition, in order
+  /// Of judged searches: the best of each repetition, with the score that the judging engine gave it. Otherwise empty.
+  std::vector<Evaluation> judged{};
 };
 
 /// Best score so far after each evaluation of a run.

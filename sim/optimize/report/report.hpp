@@ -38,7 +38,8 @@ namespace proleg::optimize {
                                      std::size_t count);
 
 /// Tab-separated, with a header line: the candidates that were rated again, best first. Columns: rank, evaluation, each
-/// dimension, score (in the search), mean, standard_deviation, worst, and the fresh runs from 1.
+/// dimension, score (in the search), mean, standard_deviation, worst, and the fresh runs from 1. If the search is
+/// judged, the heads of score and mean name their engines.
 [[nodiscard]] std::string confirmation_table(const Experiment& experiment, std::span<const Confirmation> confirmations);
 
 /// Writes the own_world() of an evaluation, complete for `proleg simulate`: the top-level file

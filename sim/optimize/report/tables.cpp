@@ -8,6 +8,7 @@
 #include "sim/optimize/evaluation/rating.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
+#include "sim/scenario/overrides.hpp"
 #include "sim/scenario/settings.hpp"
 
 namespace proleg::optimize {
@@ -108,9 +109,15 @@ std::string confirmation_table(const Experiment& experiment, std::span<const Con
   header.add("rank");
   header.add("evaluation");
   add_dimensions(experiment, header);
-  for (const std::string_view name : {"score", "mean", "standard_deviation", "worst"}) {
-    header.add(name);
-  }
+  // Two engines: of the search, and of the fresh runs.
+  const bool has_two = is_judged(experiment);
+  const auto in_engine = [&](sim::PhysicsEngine engine) {
+    return has_two ? " (" + std::string(sim::name_of(engine)) + ")" : "";
+  };
+  header.add("score" + in_engine(experiment.scenario.environment.engine));
+  header.add("mean" + in_engine(judging_engine));
+  header.add("standard_deviation");
+  header.add("worst");
   for (std::size_t run = 0; !confirmations.empty() && run < confirmations.front().scores.size(); ++run) {
     header.add(run + 1);
   }

@@ -1,9 +1,12 @@
 #include "sim/optimize/report/thesis_experiment.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 
+#include "sim/optimize/report/rank_test.hpp"
 #include "sim/optimize/report/scores.hpp"
 #include "sim/optimize/report/thesis_tables.hpp"
 #include "sim/record/svg.hpp"
@@ -15,14 +18,27 @@ using sim::plain_number;
 
 constexpr int distance_decimals = 3;
 
-/// The best evaluation of each repetition that has any, best first.
-std::vector<const Evaluation*> best_of_runs(const MethodRuns& method) {
+/// The best evaluation of each repetition that has any, by the scores of the search, best first.
+std::vector<const Evaluation*> best_of_searches(const MethodRuns& method) {
   std::vector<const Evaluation*> best;
   for (const std::vector<Evaluation>& run : method.runs) {
     const auto winner = std::ranges::max_element(run, {}, [](const Evaluation& e) { return e.scores.front(); });
     if (winner != run.end()) {
       best.push_back(&*winner);
     }
+  }
+  std::ranges::stable_sort(best, std::ranges::greater{}, [](const Evaluation* e) { return e->scores.front(); });
+  return best;
+}
+
+/// The same by the scores of the judging engine, if there are any.
+std::vector<const Evaluation*> best_of_runs(const MethodRuns& method) {
+  if (method.judged.empty()) {
+    return best_of_searches(method);
+  }
+  std::vector<const Evaluation*> best;
+  for (const Evaluation& winner : method.judged) {
+    best.push_back(&winner);
   }
   std::ranges::stable_sort(best, std::ranges::greater{}, [](const Evaluation* e) { return e->scores.front(); });
   return best;
@@ -106,6 +122,20 @@ Row method_row(const MethodRuns& method, double uniform_m) {
           order.empty() ? "-" : method.space.value_text(best.front()->candidate, order.back()) + " deg"};
 }
 
+/// What the search said of its best, beside what the judging engine said.
+Row search_row(const MethodRuns& method) {
+  const std::vector<const Evaluation*> best = best_of_searches(method);
+  const Statistics statistics = statistics_of(best);
+  return {"  in the search",
+          "",
+          "",
+          number_or_dash(statistics.mean, distance_decimals),
+          number_or_dash(statistics.deviation, distance_decimals),
+          best.empty() ? "-" : fixed_text(best.front()->scores.front(), distance_decimals),
+          "",
+          ""};
+}
+
 Row thesis_row(const ThesisResult& result) {
   return {"  the thesis",
           std::to_string(result.runs),
@@ -115,6 +145,18 @@ Row thesis_row(const ThesisResult& result) {
           fixed_text(result.displacements_m.front(), distance_decimals),
           gain_text(result.displacements_m.front(), thesis_uniform_distance_m),
           plain_number(result.amplitudes_deg.back().front(), 2) + " deg"};
+}
+
+std::string difference_text(const MethodDifference& difference) {
+  constexpr double significance = 0.05;
+  const bool is_first = difference.share_above >= 0.5;
+  const double share = is_first ? difference.share_above : 1.0 - difference.share_above;
+  std::array<char, 16> p_value{};
+  std::snprintf(p_value.data(), p_value.size(), "%.2g", difference.p_value);
+  return (is_first ? difference.one : difference.other) + " goes farther than " +
+         (is_first ? difference.other : difference.one) + " in " + fixed_text(100.0 * share, 0) +
+         " % of the pairs of runs, p = " + p_value.data() + ": " +
+         (difference.p_value < significance ? "they differ" : "no difference is shown") + "\n";
 }
 
 const MethodRuns* find_method(std::span<const MethodRuns> methods, std::string_view name) {
@@ -205,6 +247,9 @@ std::string experiment_summary(std::span<const MethodRuns> methods, double unifo
   text += row_text({"method", "runs", "evaluations", "mean (m)", "sd (m)", "best (m)", "gain", "tail joint"});
   for (const MethodRuns& method : methods) {
     text += row_text(method_row(method, uniform_m));
+    if (!method.judged.empty()) {
+      text += row_text(search_row(method));
+    }
     if (const ThesisResult* thesis = find_thesis_result(method.method)) {
       text += row_text(thesis_row(*thesis));
     }
@@ -212,6 +257,13 @@ std::string experiment_summary(std::span<const MethodRuns> methods, double unifo
   text +=
       "\nmean and sd (standard deviation) are over the best of each run; gain and tail joint are those of the best "
       "run\n";
+  if (const std::vector<MethodDifference> differences = method_differences(methods); !differences.empty()) {
+    text += "\ndifferences (rank-sum test of the best of each run, corrected after Holm):\n";
+    for (const MethodDifference& difference : differences) {
+      text += difference_text(difference);
+    }
+    text += "\n";
+  }
 
   const MethodRuns* const deluge = find_method(methods, "great-deluge");
   const BestCurves deluge_curves = deluge != nullptr ? best_curves(*deluge) : BestCurves();
@@ -230,6 +282,34 @@ std::string experiment_summary(std::span<const MethodRuns> methods, double unifo
     }
   }
   return text;
+}
+
+std::vector<MethodDifference> method_differences(std::span<const MethodRuns> methods) {
+  std::vector<std::vector<double>> distances;
+  std::vector<const MethodRuns*> with_runs;
+  for (const MethodRuns& method : methods) {
+    std::vector<double> of_method;
+    for (const Evaluation* evaluation : best_of_runs(method)) {
+      of_method.push_back(evaluation->scores.front());
+    }
+    if (!of_method.empty()) {
+      distances.push_back(std::move(of_method));
+      with_runs.push_back(&method);
+    }
+  }
+  std::vector<MethodDifference> differences;
+  std::vector<double> p_values;
+  for (std::size_t i = 0; i < with_runs.size(); ++i) {
+    for (std::size_t j = i + 1; j < with_runs.size(); ++j) {
+      differences.push_back({with_runs[i]->method, with_runs[j]->method, share_above(distances[i], distances[j]), 1.0});
+      p_values.push_back(rank_sum_test(distances[i], distances[j]));
+    }
+  }
+  const std::vector<double> corrected = correct_for_several(p_values);
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    differences[i].p_value = corrected[i];
+  }
+  return differences;
 }
 
 }  // namespace proleg::optimize

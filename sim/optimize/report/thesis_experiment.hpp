@@ -2,9 +2,11 @@
 
 // Experiment 6.1 of the thesis, the amplitudes of a travelling wave: tables 6.2 and 6.4, figures 6.3 to 6.6 and 7.1,
 // made from our runs, with the thesis's numbers beside them. The score is the distance in metres, and more is better.
+// Tables have the judged distances, if there are any; the figures show the courses of the searches.
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "sim/optimize/report/best_curves.hpp"
 
@@ -22,8 +24,19 @@ namespace proleg::optimize {
 [[nodiscard]] std::string draw_method_comparison(std::span<const MethodRuns> methods, double uniform_m);
 
 /// A summary for people, a few dozen lines of at most 120 characters: each method's repetitions, evaluations, best,
-/// mean and gain over the uniform amplitudes; whether great deluge overtakes the genetic algorithm; after how many
-/// evaluations other methods reach great deluge's mean.
+/// mean and gain over the uniform amplitudes; whether the methods differ; whether great deluge overtakes the genetic
+/// algorithm; after how many evaluations other methods reach great deluge's mean.
 [[nodiscard]] std::string experiment_summary(std::span<const MethodRuns> methods, double uniform_m);
+
+/// Of two methods: whether the best distances of their repetitions differ.
+struct MethodDifference {
+  std::string one;
+  std::string other;
+  double share_above = 0.0;  ///< of the pairs of repetitions, those in which `one` goes farther
+  double p_value = 1.0;      ///< of the rank-sum test, corrected for the number of pairs of methods
+};
+
+/// All pairs of methods that have runs, in their order.
+[[nodiscard]] std::vector<MethodDifference> method_differences(std::span<const MethodRuns> methods);
 
 }  // namespace proleg::optimize

@@ -35,6 +35,56 @@ TEST_F(Optimise, TheBestScenarioRunsAndHasTheScoreOfTheSearch) {
   }
 }
 
+TEST_F(Optimise, TheReducedEngineSearchesAndOdeJudgesTheBestTen) {
+  const Json search = json_of(proleg(words("cma_es", "out", {"--evaluations", "60", "--engine", "reduced"})));
+  EXPECT_EQ(search["judge"], "ode");
+  const std::vector<Json> judged = search["confirmations"].elements();
+  ASSERT_GE(judged.size(), 10U);
+  EXPECT_LE(judged.size(), 11U) << "with the baseline";
+  double best = 0.0;
+  for (const Json& finalist : judged) {
+    EXPECT_EQ(finalist["runs"], 1);
+    best = std::max(best, finalist["mean"].number());
+  }
+  EXPECT_EQ(search["best_score"], best);
+  EXPECT_EQ(search["best_number"], judged[0]["number"].number());
+  EXPECT_EQ(search["best_search_scores"]["distance"], judged[0]["score"].number());
+  EXPECT_NE(search["best_search_scores"]["distance"], best);
+
+  const auto simulate = [&](const std::vector<std::string>& rest) {
+    std::vector<std::string> command{"simulate", file("out/best.simulation.xml").string(), "--json"};
+    command.insert(command.end(), rest.begin(), rest.end());
+    return json_of(proleg(command));
+  };
+  EXPECT_EQ(simulate({})["displacement_m"], best) << "the best scenario has the judge's engine";
+  EXPECT_EQ(simulate({"--engine", "reduced"})["displacement_m"], search["best_search_scores"]["distance"].number());
+  EXPECT_NE(read_file(file("out/confirmation.tsv")).find("\tscore (reduced)\tmean (ode)\t"), std::string::npos);
+
+  const Finished text = proleg({"optimise", shipped("cma_es"), "--simulation", file("short.simulation.xml").string(),
+                                "--evaluations", "60", "--engine", "reduced", "--out", file("text").string()});
+  EXPECT_NE(text.out.find("m (ode)\n  in the search"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("m (reduced)\n"), std::string::npos) << text.out;
+}
+
+TEST_F(Optimise, TrialsSimulateEachCandidateInSoManyWorlds) {
+  const std::vector<std::string> rest{"--evaluations", "8", "--engine", "reduced", "--trials", "20"};
+  const Json search = json_of(proleg(words("cma_es", "out", rest)));
+  EXPECT_EQ(search["trials"], 20);
+  EXPECT_EQ(search["simulated"], 8);
+  EXPECT_EQ(select("out", "SELECT count(*), count(DISTINCT seed) FROM trial WHERE trial < 20"), "160|20|\n")
+      << "all candidates meet the same worlds";
+  EXPECT_EQ(
+      select("out", "SELECT count(DISTINCT printf('%.17g', distance)) FROM trial WHERE number = 0 AND trial < 20"),
+      "20|\n")
+      << "the worlds differ, though the file has no variations";
+  const Json resumed = json_of(proleg(
+      words("cma_es", "",
+            {"--evaluations", "10", "--engine", "reduced", "--trials", "20", "--resume", file("out").string()})));
+  EXPECT_EQ(resumed["restored"], 8);
+  expect_refused(words("cma_es", "", {"--engine", "reduced", "--resume", file("out").string()}),
+                 {"another experiment", "trials"});
+}
+
 TEST_F(Optimise, OneWorkerTwoAndThreeGiveTheSameToTheLastBit) {
   for (const char* engine : {"ode", "reduced"}) {
     for (const char* experiment : {"great_deluge", "genetic", "cma_es"}) {
@@ -196,6 +246,9 @@ TEST_F(Optimise, RefusesBadInputAndStartsNothing) {
   refuse({"--evaluations", "0"}, {"--evaluations", "'0'"});
   refuse({"--evaluations", "-3"}, {"--evaluations", "'-3'"});
   refuse({"--seed", "1.5"}, {"--seed", "'1.5'"});
+  refuse({"--trials", "0"}, {"--trials", "'0'", "1 to 1000"});
+  refuse({"--trials", "1001"}, {"--trials", "'1001'"});
+  refuse({"--trials", "many"}, {"--trials", "'many'"});
   refuse({"--engine", "bullet"}, {"--engine", "'bullet'", "'ode', 'reduced' or 'mujoco'"});
   expect_refused({"optimise", "/nowhere/x.optimise.xml"}, {"/nowhere/x.optimise.xml"});
   expect_refused({"optimise", scenario("uniform")}, {"uniform.simulation.xml", "greatDeluge"});

@@ -49,6 +49,26 @@ TEST(NeedsConfirmation, OnlyAResultThatDependsOnRandomNumbers) {
   EXPECT_FALSE(needs_confirmation(noisy));
 }
 
+Experiment judged_experiment() {
+  Experiment experiment = small_experiment();
+  experiment.scenario.environment.engine = sim::PhysicsEngine::reduced;
+  return experiment;
+}
+
+TEST(NeedsConfirmation, AResultOfAnEngineThatIsNotTheJudgingOne) {
+  Experiment experiment = judged_experiment();
+  EXPECT_TRUE(needs_confirmation(experiment));
+  EXPECT_EQ(fresh_runs(experiment).candidates, 10U);
+  EXPECT_EQ(fresh_runs(experiment).runs, 1U) << "ten equal runs say no more";
+  experiment.confirmation = {12, 0};
+  EXPECT_EQ(fresh_runs(experiment).candidates, 12U);
+  EXPECT_EQ(fresh_runs(experiment).runs, 1U);
+  experiment.trials.spread.friction = 0.1;
+  EXPECT_EQ(fresh_runs(experiment).runs, 1U) << "at least one";
+  experiment.confirmation.runs = 7;
+  EXPECT_EQ(fresh_runs(experiment).runs, 7U);
+}
+
 TEST(Finalists, AreTheBestDifferentCandidatesAndTheBaseline) {
   Experiment experiment = noisy_experiment();
   experiment.confirmation.candidates = 3;
@@ -84,6 +104,23 @@ TEST(Confirm, RatesInFreshWorldsThatAreTheSameForAllFinalists) {
       EXPECT_FALSE(seeds[5].contains(seed_of(experiment, {0, 5, trial, {1, 2, 3}, {}}))) << "a world of the search";
     }
   }
+}
+
+TEST(Confirm, RatesInTheJudgingEngineWhateverTheSearchHad) {
+  const Experiment judged = judged_experiment();
+  const Experiment reference = small_experiment();
+  const std::vector<Evaluation> finalists{evaluation_of(5, {1, 2, 3}, 1.0), evaluation_of(9, {3, 2, 1}, 0.9)};
+  MadeUpWorkers workers(judged, 2, 1, run_trial);
+  const std::vector<Confirmation> confirmations = confirm(judged, finalists, workers, nullptr, {});
+  ASSERT_EQ(confirmations.size(), 2U);
+  for (const Confirmation& confirmation : confirmations) {
+    const Task in_ode{0, 0, 0, confirmation.evaluation.candidate, {}};
+    EXPECT_EQ(confirmation.mean, run_trial(reference, in_ode).measures[sim::Measure::distance]);
+    EXPECT_NE(confirmation.mean, run_trial(judged, in_ode).measures[sim::Measure::distance]) << "of the search";
+    EXPECT_EQ(confirmation.mean, run_own_world(judged, confirmation.evaluation).measures[sim::Measure::distance]);
+  }
+  EXPECT_GE(confirmations[0].mean, confirmations[1].mean);
+  EXPECT_EQ(workers.batch_sizes(), (std::vector<std::size_t>{1, 1})) << "the judging engine has no batches";
 }
 
 TEST(Confirm, TheBestMeanOfTheFreshRunsWins) {

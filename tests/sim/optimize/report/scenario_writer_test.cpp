@@ -318,7 +318,7 @@ TEST(WriteScenario, WithNoiseHasTheSeedOfTheFirstTrial) {
   }
 }
 
-TEST(WriteScenario, HasTheEngineOfTheSearch) {
+TEST(WriteScenario, HasTheJudgingEngineWhateverTheSearchHad) {
   sim::MemoryFiles files = sim::small_scenario();
   for (const sim::PhysicsEngine engine : {sim::PhysicsEngine::reduced, sim::PhysicsEngine::ode}) {
     Experiment experiment = experiment_of(files.scenario());
@@ -326,7 +326,7 @@ TEST(WriteScenario, HasTheEngineOfTheSearch) {
     sim::apply_overrides(experiment.scenario.overrides, experiment.scenario.environment);
     const TemporaryFolder folder;
     const sim::Scenario scenario = read_back(write_scenario(experiment, of({}), folder.path(), "best"));
-    EXPECT_EQ(scenario.environment.engine, engine);
+    EXPECT_EQ(scenario.environment.engine, judging_engine);
     EXPECT_EQ(scenario.environment.gravity, experiment.scenario.environment.gravity);
   }
 }

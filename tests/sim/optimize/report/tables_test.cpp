@@ -169,6 +169,15 @@ TEST(ConfirmationTable, HasEveryFreshRun) {
   EXPECT_EQ(rows[1].at("2"), "1");
 }
 
+TEST(ConfirmationTable, NamesTheTwoEnginesOfAJudgedSearch) {
+  Experiment experiment = distance_experiment();
+  experiment.scenario.environment.engine = sim::PhysicsEngine::reduced;
+  const std::vector<Confirmation> confirmations{{evaluation_of(7, 2.0), {1.5}, 1.5, 0.0, 1.5}};
+  const auto rows = parsed(confirmation_table(experiment, confirmations));
+  EXPECT_EQ(rows[0].at("score (reduced)"), "2");
+  EXPECT_EQ(rows[0].at("mean (ode)"), "1.5");
+}
+
 TEST(Tables, HaveAHeaderWithoutEvaluations) {
   EXPECT_TRUE(evaluations_table(distance_experiment(), {}).starts_with("run\tevaluation\tamplitude:J5 (deg)\t"));
   EXPECT_TRUE(best_table(distance_experiment(), {}, 10).starts_with("rank\trun\tevaluation\t"));

@@ -80,6 +80,36 @@ TEST(ExperimentSummary, SaysWhatCameOut) {
   }
 }
 
+TEST(ExperimentSummary, HasTheJudgedDistancesAndThoseOfTheSearch) {
+  MethodRuns method = method_of("cmaes", {{1.0, 2.0}, {1.0, 1.8}});
+  method.judged = {evaluation_of(1, 1.7), evaluation_of(0, 1.74)};
+  const std::string text = experiment_summary(std::vector{method}, 1.6);
+  for (const char* part : {"1.720", "1.740", "+8.7 %",  // judged: mean, best, 1.74 / 1.6
+                           "in the search", "1.900", "2.000"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  }
+  EXPECT_EQ(cells_of(experiment_table(method))[6][2], "1.740");
+}
+
+TEST(ExperimentSummary, SaysWhetherTheMethodsDiffer) {
+  const std::vector<std::vector<double>> low{{1.0}, {1.1}, {1.2}, {1.3}, {1.4}};
+  const std::vector<std::vector<double>> high{{2.0}, {2.1}, {2.2}, {2.3}, {2.4}};
+  const std::vector<std::vector<double>> mixed{{1.05}, {2.15}, {1.25}, {2.35}, {1.45}};
+  const std::vector<MethodRuns> methods{method_of("genetic", low), method_of("cmaes", high), method_of("de", mixed),
+                                        method_of("none", {{}})};
+  const std::vector<MethodDifference> differences = method_differences(methods);
+  ASSERT_EQ(differences.size(), 3U);
+  EXPECT_EQ(differences[0].one, "genetic");
+  EXPECT_EQ(differences[0].other, "cmaes");
+  EXPECT_EQ(differences[0].share_above, 0.0);
+  EXPECT_NEAR(differences[0].p_value, 3 * 2.0 / 252.0, 1e-12) << "two of 252 choices, corrected for three pairs";
+  const std::string text = experiment_summary(methods, 1.6);
+  for (const char* part : {"cmaes goes farther than genetic in 100 % of the pairs of runs, p = 0.024: they differ",
+                           "de goes farther than genetic in 76 %", "no difference is shown"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  }
+}
+
 TEST(ExperimentFigures, ShowEveryRunAndTheThesissNumbers) {
   const std::vector<MethodRuns> methods{method_of("great-deluge", {{0.1, 0.2, 1.0, 2.0}, {0.1, 0.2, 1.0, 1.9, 1.8}}),
                                         method_of("genetic", {{1.0, 1.5, 1.8}}), method_of("cmaes", {{1.0, 1.96}})};

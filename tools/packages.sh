@@ -27,7 +27,8 @@ test_packages=(
   strace            # shows what a test reads
   qemu-system-arm   # another model of the CPU, to compare with
   g++-aarch64-linux-gnu qemu-user  # another processor, which must compute the same
-  libbenchmark-dev libmujoco-dev                       # benchmarks
+  libmujoco-dev     # the engine MuJoCo
+  libbenchmark-dev  # benchmarks
   libopenmpi-dev libboost-mpi-dev openmpi-bin          # the optimiser on a cluster
 )
 

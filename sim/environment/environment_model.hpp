@@ -1,11 +1,11 @@
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "sim/environment/physics_engine.hpp"
 #include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim {
@@ -15,12 +15,6 @@ struct StaticObject {
   std::string name;
   Pose pose;  ///< in the world
   std::vector<Geometry> geometries;
-};
-
-/// What computes the motion (docs/physics.md).
-enum class PhysicsEngine : std::uint8_t {
-  ode,      ///< the Open Dynamics Engine: any robot, any environment
-  reduced,  ///< chains of boxes; the same bits on every machine
 };
 
 /// The world a robot crawls in.

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "shared/kernel/servo_command.hpp"
+#include "sim/mujoco/mujoco_world.hpp"
 #include "sim/ode/ode_world.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/reduced/reduced_world.hpp"
-
 #include "sim/robot/servo.hpp"
 #include "sim/robot/servo_current.hpp"
 #include "sim/scenario/random_streams.hpp"
@@ -28,8 +28,13 @@ Stepper choose_stepper(const Scenario& scenario) {
 }
 
 std::unique_ptr<World> make_world(const Scenario& scenario) {
-  if (scenario.environment.engine == PhysicsEngine::reduced) {
-    return reduced::make_reduced_world(scenario.robot, scenario.environment, scenario.step_s, scenario.path);
+  switch (scenario.environment.engine) {
+    case PhysicsEngine::ode:
+      break;
+    case PhysicsEngine::reduced:
+      return reduced::make_reduced_world(scenario.robot, scenario.environment, scenario.step_s, scenario.path);
+    case PhysicsEngine::mujoco:
+      return mujoco::make_mujoco_world(scenario.robot, scenario.environment, scenario.step_s, scenario.path);
   }
   return make_ode_world(scenario.robot, scenario.environment, scenario.step_s, choose_stepper(scenario));
 }

@@ -2,7 +2,6 @@
 
 #include <ode/ode.h>
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -46,11 +45,7 @@ inline void TouchSensors::press(std::size_t link, dBodyID body, const dContactGe
     point += row_of_rotation * (contact.pos[row] - middle[row]);
     normal += row_of_rotation * contact.normal[row];
   }
-  constexpr double max_sine = 0.707;  // of 45 degrees of roll; beyond, the link lies on its flank
-  const TouchSensorFrame& frame = frames_[link];
-  if (point.dot(frame.down) > 0.0 && std::abs(normal.dot(frame.sideways)) < max_sine) {
-    pressed_[link] = static_cast<std::uint8_t>(pressed_[link] | (point.dot(frame.forward) < 0.0 ? 1U : 2U));
-  }
+  pressed_[link] = static_cast<std::uint8_t>(pressed_[link] | frames_[link].pressed_by(point, normal));
 }
 
 }  // namespace proleg::sim

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include <Eigen/Geometry>
 
@@ -14,6 +15,16 @@ struct TouchSensorFrame {
   Eigen::Vector3d forward;   ///< along the link, to the head; zero if the robot has no other link
   Eigen::Vector3d down;      ///< out of the underside
   Eigen::Vector3d sideways;  ///< perpendicular to both
+
+  /// Which sensor a contact with the environment presses, as World::link_contacts() describes them: 1 rear, 2 front, 0
+  /// none. All in the frame of the link: the point from its centre of mass, the normal with either sign.
+  [[nodiscard]] std::uint8_t pressed_by(const Eigen::Vector3d& point, const Eigen::Vector3d& normal) const {
+    constexpr double max_sine = 0.707;  // of 45 degrees of roll; beyond, the link lies on its flank
+    if (point.dot(down) > 0.0 && std::abs(normal.dot(sideways)) < max_sine) {
+      return point.dot(forward) < 0.0 ? 1U : 2U;
+    }
+    return 0U;
+  }
 };
 
 /// The underside faces down (-z) in the robot's file at angles 0, or towards -y if the link is upright there.

@@ -25,20 +25,27 @@ constexpr std::array<std::string_view, 5> viewer_tags{"bkgndcolor", "camtrans", 
                                                       "camfocal"};
 
 void read_physics(const XmlElement& element, EnvironmentModel& environment, std::vector<std::string>& warnings) {
-  element.allow({"type"}, {"odeproperties", "reducedproperties"});
+  constexpr std::array<std::string_view, 1> attributes{"type"};
+  std::vector<std::string> tags;
+  for (const PhysicsEngineName& engine : physics_engines) {
+    tags.push_back(std::string(engine.word) + "properties");
+  }
+  element.allow(attributes, std::vector<std::string_view>(tags.begin(), tags.end()));
   const std::string type = element.required_attribute("type");
-  if (lower_case(type) == "reduced") {
-    environment.engine = PhysicsEngine::reduced;
-  } else if (lower_case(type) != "ode") {
-    element.refuse("type " + in_quotes(type) + " in " + element.label(), "'ode' or 'reduced'");
+  const std::optional<PhysicsEngine> engine = engine_named(lower_case(type));
+  if (!engine) {
+    element.refuse("type " + in_quotes(type) + " in " + element.label(), engine_words());
   }
-  // Both engines have the same properties, so a change of the type alone is enough.
-  const auto of_ode = element.child("odeproperties");
-  const auto of_reduced = element.child("reducedproperties");
-  if (of_ode && of_reduced) {
-    of_reduced->refuse(of_reduced->label() + " beside " + of_ode->label(), "one of them");
+  environment.engine = *engine;
+  // All engines have the same properties, so a change of the type alone is enough.
+  std::optional<XmlElement> properties;
+  for (const std::string& tag : tags) {
+    const auto found = element.child(tag);
+    if (found && properties) {
+      found->refuse(found->label() + " beside " + properties->label(), "one of them");
+    }
+    properties = found ? found : properties;
   }
-  const auto& properties = of_ode ? of_ode : of_reduced;
   if (!properties) {
     return;
   }

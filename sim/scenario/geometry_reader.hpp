@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "sim/robot/bounds.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/scenario/xml_document.hpp"
 
@@ -24,14 +25,5 @@ struct SolidProperties {
 
 /// Inertia about the centre of a box with these half sides and mass 1.
 [[nodiscard]] Eigen::Matrix3d box_inertia(const Eigen::Vector3d& half_sides);
-
-/// The smallest axis-aligned box around a shape.
-struct Bounds {
-  Eigen::Vector3d lowest;
-  Eigen::Vector3d highest;
-};
-
-/// Bounds of a geometry; `frame` is the pose of its body.
-[[nodiscard]] Bounds bounds_of(const Geometry& geometry, const Pose& frame);
 
 }  // namespace proleg::sim

@@ -46,12 +46,11 @@ void read_position(const std::string& word, Overrides& overrides) {
 }
 
 PhysicsEngine read_engine(const std::string& word) {
-  for (const PhysicsEngine engine : {PhysicsEngine::ode, PhysicsEngine::reduced}) {
-    if (word == name_of(engine)) {
-      return engine;
-    }
+  const std::optional<PhysicsEngine> engine = engine_named(word);
+  if (!engine) {
+    throw InputError("--engine", 0, in_quotes(word), engine_words());
   }
-  throw InputError("--engine", 0, in_quotes(word), "'ode' or 'reduced'");
+  return *engine;
 }
 
 /// "X,Y" or "X,Y,Z" as read_position reads it; nothing without `at`.
@@ -63,27 +62,29 @@ std::optional<std::string> position_text(const Overrides& overrides) {
   return overrides.height ? text + ',' + exact_text(*overrides.height) : text;
 }
 
-constexpr OverrideDeclaration declarations[] = {
-    {"engine", &OverrideWords::engine, true,
-     "'ode' or 'reduced': what computes the motion, instead of the engine of the environment. The reduced engine has "
-     "chains in a plane; it is faster and gives the same bits on every machine."},
-    {"seed", &OverrideWords::seed, false, "seed of the run instead of that of the scenario"},
-    {"friction", &OverrideWords::friction, true,
-     "coefficient of friction of every object of the environment, also of those that state none; the links of the "
-     "robot "
-     "keep theirs"},
-    {"at", &OverrideWords::at, true,
-     "X,Y or X,Y,Z in metres: start position instead of that of the environment; without Z, the height of the "
-     "environment. A robot inside the ground is lifted onto it."},
-    {"heading", &OverrideWords::heading, true,
-     "degrees by which the start pose is turned about the vertical, to the left. The measures are relative to this "
-     "heading."}};
-
 }  // namespace
 
-std::span<const OverrideDeclaration> override_declarations() { return declarations; }
-
-std::string_view name_of(PhysicsEngine engine) { return engine == PhysicsEngine::ode ? "ode" : "reduced"; }
+std::span<const OverrideDeclaration> override_declarations() {
+  static const std::string engine_help =
+      engine_words() +
+      ": what computes the motion, instead of the engine of the environment. The reduced engine has chains in a plane; "
+      "it "
+      "is faster and gives the same bits on every machine. MuJoCo is another opinion, if the program is built with it.";
+  static const OverrideDeclaration declarations[] = {
+      {"engine", &OverrideWords::engine, true, engine_help},
+      {"seed", &OverrideWords::seed, false, "seed of the run instead of that of the scenario"},
+      {"friction", &OverrideWords::friction, true,
+       "coefficient of friction of every object of the environment, also of those that state none; the links of the "
+       "robot keep "
+       "theirs"},
+      {"at", &OverrideWords::at, true,
+       "X,Y or X,Y,Z in metres: start position instead of that of the environment; without Z, the height of the "
+       "environment. A robot inside the ground is lifted onto it."},
+      {"heading", &OverrideWords::heading, true,
+       "degrees by which the start pose is turned about the vertical, to the left. The measures are relative to this "
+       "heading."}};
+  return declarations;
+}
 
 OverrideWords words_of(const Overrides& overrides) {
   OverrideWords words;

@@ -49,9 +49,6 @@ struct Overrides {
 /// The words that give the same overrides.
 [[nodiscard]] OverrideWords words_of(const Overrides& overrides);
 
-/// "ode" or "reduced", as --engine has them.
-[[nodiscard]] std::string_view name_of(PhysicsEngine engine);
-
 /// Gives every geometry of the environment this coefficient.
 void set_friction(EnvironmentModel& environment, double friction);
 

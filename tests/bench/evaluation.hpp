@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "sim/loop/simulation.hpp"
 #include "tests/bench/workload.hpp"
 
@@ -11,7 +9,6 @@ namespace proleg::bench {
 struct Evaluation {
   double displacement = 0.0;   ///< m
   double mean_contacts = 0.0;  ///< contact points in a step
-  std::string servo_hash;      ///< of all pulses that the servos took
 };
 
 /// Runs a new simulation to its end, as an optimiser does for one candidate.
@@ -20,7 +17,7 @@ struct Evaluation {
   while (simulation.tick() < workload.ticks()) {
     simulation.advance();
   }
-  return {simulation.plant().displacement(), simulation.plant().mean_contacts(), simulation.servo_hash().hex()};
+  return {simulation.plant().displacement(), simulation.plant().mean_contacts()};
 }
 
 }  // namespace proleg::bench

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -70,8 +71,15 @@ sim::Scenario with_engine(sim::Scenario scenario, PhysicsEngine engine) {
   return scenario;
 }
 
-PhysicsEngine other(PhysicsEngine engine) {
-  return engine == PhysicsEngine::ode ? PhysicsEngine::reduced : PhysicsEngine::ode;
+/// The first one is the one that knows most robots.
+std::vector<PhysicsEngine> engines_beside(PhysicsEngine engine) {
+  std::vector<PhysicsEngine> others;
+  for (const sim::PhysicsEngineName& name : sim::physics_engines) {
+    if (name.engine != engine) {
+      others.push_back(name.engine);
+    }
+  }
+  return others;
 }
 
 sim::Scenario perturbed(sim::Scenario scenario, std::uint64_t seed) {
@@ -157,7 +165,7 @@ bool GaitConfirmation::is_real() const { return std::ranges::all_of(findings, &C
 
 GaitConfirmation confirm_gait(const sim::Scenario& scenario, const ConfirmationOptions& options,
                               const std::function<bool(double share)>& progress) {
-  // Shares of the time: the four runs that are shown, then the worlds.
+  // Shares of the time: the five runs that are shown, then the worlds.
   constexpr double share_of_run = 0.1;
   double done = 0.0;
   double part = share_of_run;
@@ -173,9 +181,15 @@ GaitConfirmation confirm_gait(const sim::Scenario& scenario, const ConfirmationO
   };
   add(scenario, "as it is");
   add(with_finer_step(scenario), "a finer step");
-  const sim::Scenario elsewhere = with_engine(scenario, other(scenario.environment.engine));
+  const std::vector<PhysicsEngine> others = engines_beside(scenario.environment.engine);
+  const sim::Scenario elsewhere = with_engine(scenario, others.front());
   add(elsewhere, "the other engine");
-  add(with_finer_step(elsewhere), "the other engine, a finer step");
+  if (!result.runs.back().is_refused) {
+    add(with_finer_step(elsewhere), "the other engine, a finer step");
+  }
+  for (const PhysicsEngine third : std::span(others).subspan(1)) {
+    add(with_engine(scenario, third), std::string(sim::title_of(third)));
+  }
   // The reduced engine is twenty times as fast; what it does not have runs in ODE.
   const bool has_reduced = std::ranges::any_of(
       result.runs, [](const ConfirmedRun& its) { return its.engine == PhysicsEngine::reduced && its.failure.empty(); });

@@ -5,10 +5,10 @@
 
 #include "shared/computer/text/table_line.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/environment/physics_engine.hpp"
 #include "sim/optimize/evaluation/rating.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/scores.hpp"
-#include "sim/scenario/overrides.hpp"
 #include "sim/scenario/settings.hpp"
 
 namespace proleg::optimize {

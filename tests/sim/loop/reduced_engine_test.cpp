@@ -5,31 +5,13 @@
 #include <cmath>
 #include <string>
 
-#include "shipped.hpp"
+#include "engine_run.hpp"
 #include "sim/loop/simulation_batch.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "tests/support/message_of.hpp"
 
 namespace proleg::sim {
 namespace {
-
-constexpr double whole_run_s = 30;
-
-struct EngineRun {
-  double distance;  // m
-  std::string setpoints;
-  std::optional<std::string> world;
-};
-
-EngineRun run_in(PhysicsEngine engine, const std::string& name) {
-  Scenario scenario = shipped(name);
-  scenario.environment.engine = engine;
-  Simulation simulation(scenario);
-  while (simulation.time_s() < whole_run_s - 1e-9) {
-    simulation.advance();
-  }
-  return {simulation.plant().displacement(), simulation.setpoint_hash().hex(), simulation.world_hash()};
-}
 
 TEST(ReducedEngine, TheShippedGaitsCrawlAsFarAsInOde) {
   for (const char* name : {"travelling_wave/uniform", "travelling_wave/tail_fixed"}) {

@@ -347,7 +347,7 @@ const auto cases = testing::Values(
     BadInput{"RobotInEnvironment", "environment.xml", "</Environment>", "<Robot/></Environment>",
              "environment.xml:17: found <Robot> in <Environment>, expected <physicsengine>, <KinBody>"},
     BadInput{"OtherPhysicsEngine", "environment.xml", "type=\"ode\"", "type=\"bullet\"",
-             "environment.xml:2: found type 'bullet' in <physicsengine>, expected 'ode' or 'reduced'"},
+             "environment.xml:2: found type 'bullet' in <physicsengine>, expected 'ode', 'reduced' or 'mujoco'"},
     BadInput{"PropertiesOfBothEngines", "environment.xml", "</odeproperties>", "</odeproperties><reducedproperties/>",
              "environment.xml:6: found <reducedproperties> beside <odeproperties>, expected one of them"},
     BadInput{"Gravity", "environment.xml", "0 0 -9.81", "0 0 -9.81e9",

@@ -40,15 +40,18 @@ TEST(Environment, ARobotAboveTheGroundIsNotMoved) {
   EXPECT_EQ(scenario.remarks.size(), 1U) << "only the joint map";
 }
 
-TEST(Environment, TheReducedEngineHasThePropertiesOfOde) {
-  for (const char* properties : {"odeproperties", "reducedproperties"}) {
+TEST(Environment, TheOtherEnginesHaveThePropertiesOfOde) {
+  const std::pair<const char*, PhysicsEngine> reduced{"Reduced", PhysicsEngine::reduced};
+  const std::pair<const char*, PhysicsEngine> mujoco{"mujoco", PhysicsEngine::mujoco};
+  for (const auto& [properties, engine] : {std::pair("odeproperties", reduced), std::pair("reducedproperties", reduced),
+                                           std::pair("odeproperties", mujoco), std::pair("mujocoproperties", mujoco)}) {
     MemoryFiles files = small_scenario();
-    files.replace("environment.xml", "type=\"ode\"", "type=\"Reduced\"")
+    files.replace("environment.xml", "type=\"ode\"", "type=\"" + std::string(engine.first) + "\"")
         .replace("environment.xml", "<odeproperties>", "<" + std::string(properties) + ">")
         .replace("environment.xml", "</odeproperties>", "</" + std::string(properties) + ">")
         .replace("environment.xml", "0 0 -9.81", "0 0 -1.62");
     const Scenario scenario = files.scenario();
-    EXPECT_EQ(scenario.environment.engine, PhysicsEngine::reduced);
+    EXPECT_EQ(scenario.environment.engine, engine.second);
     EXPECT_EQ(scenario.environment.gravity, Eigen::Vector3d(0, 0, -1.62)) << properties;
     EXPECT_TRUE(scenario.environment.self_collision) << properties;
   }

@@ -101,7 +101,7 @@ TEST(Overrides, RefuseBadWords) {
       EXPECT_EQ(message, option + ": found '" + value + "', expected " + expected);
     }
   };
-  expect_refused(&OverrideWords::engine, "--engine", {"", "ODE", "bullet", "reduced "}, "'ode' or 'reduced'");
+  expect_refused(&OverrideWords::engine, "--engine", {"", "ODE", "bullet", "reduced "}, "'ode', 'reduced' or 'mujoco'");
   expect_refused(&OverrideWords::seed, "--seed", {"", "-1", "1.5", "one", "18446744073709551616"},
                  "a whole number from 0 to 18446744073709551615");
   expect_refused(&OverrideWords::friction, "--friction", {"", "-0.1", "1001", "nan", "inf", "ice"}, "0 to 1000");

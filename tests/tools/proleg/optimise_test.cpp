@@ -249,7 +249,7 @@ TEST_F(Optimise, RefusesBadInputAndStartsNothing) {
   refuse({"--trials", "0"}, {"--trials", "'0'", "1 to 1000"});
   refuse({"--trials", "1001"}, {"--trials", "'1001'"});
   refuse({"--trials", "many"}, {"--trials", "'many'"});
-  refuse({"--engine", "mujoco"}, {"--engine", "'mujoco'", "'ode' or 'reduced'"});
+  refuse({"--engine", "bullet"}, {"--engine", "'bullet'", "'ode', 'reduced' or 'mujoco'"});
   expect_refused({"optimise", "/nowhere/x.optimise.xml"}, {"/nowhere/x.optimise.xml"});
   expect_refused({"optimise", scenario("uniform")}, {"uniform.simulation.xml", "greatDeluge"});
   expect_refused(words("great_deluge", "", {"--resume", file("nothing").string()}), {"nothing", "store.sqlite"});

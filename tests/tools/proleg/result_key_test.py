@@ -14,7 +14,8 @@ SCRIPT = pathlib.Path(sys.argv.pop(1)).resolve()
 
 DETERMINE_A_RESULT = [
     "shared/fixed", "shared/gait", "shared/kernel", "sim/robot", "sim/environment", "sim/scenario", "sim/physics",
-    "sim/ode", "sim/reduced", "sim/measure", "sim/loop", "sim/optimize/experiment", "sim/optimize/evaluation", "sim/optimize/method"]
+    "sim/mujoco", "sim/ode", "sim/reduced", "sim/measure", "sim/loop", "sim/optimize/experiment", "sim/optimize/evaluation",
+    "sim/optimize/method"]
 OTHERS = [
     "docs", "firmware/module", "shared/canopen", "shared/master", "sim/bus", "sim/mcu/cpu", "sim/optimize/mpi",
     "sim/optimize/report", "sim/record", "sim/scenarios/travelling_wave", "tests/sim/ode", "tools/proleg"]

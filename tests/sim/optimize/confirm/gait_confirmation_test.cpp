@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <string>
+#include <tuple>
 
+#include "sim/mujoco/mujoco_world.hpp"
+#include "sim/optimize/confirm/doubts.hpp"
 #include "sim/optimize/evaluation/fitness_source.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/settings.hpp"
@@ -34,7 +37,7 @@ const ConfirmationFinding& finding(const GaitConfirmation& confirmation, const s
 TEST(GaitConfirmation, HasNothingAgainstTheTravellingWave) {
   const GaitConfirmation confirmation = confirm(travelling_wave(6.0));
   EXPECT_TRUE(confirmation.is_real()) << confirmation_text(confirmation);
-  ASSERT_EQ(confirmation.runs.size(), 4U);
+  ASSERT_EQ(confirmation.runs.size(), 5U);
   EXPECT_EQ(confirmation.runs[1].step_s, 0.0005);
   EXPECT_NE(confirmation.runs[2].engine, confirmation.runs[0].engine);
   EXPECT_EQ(confirmation.perturbed.size(), few.worlds);
@@ -43,6 +46,10 @@ TEST(GaitConfirmation, HasNothingAgainstTheTravellingWave) {
 
 TEST(GaitConfirmation, TheEnergyOfARunIsAccountedFor) {
   for (const ConfirmedRun& run : confirm(travelling_wave(4.0)).runs) {
+    if (run.is_refused) {
+      EXPECT_FALSE(sim::mujoco::is_built_in()) << run.name;
+      continue;
+    }
     EXPECT_NEAR(run.energy.unexplained, run.energy.stored - run.energy.motors + run.energy.friction, 1e-9) << run.name;
     EXPECT_GT(run.energy.motors, run.energy.friction) << run.name;
     EXPECT_GT(run.energy.friction, 0.0) << run.name;
@@ -92,6 +99,39 @@ TEST(GaitConfirmation, SaysWhatTheOtherEngineDoesNotHave) {
   EXPECT_NE(other.text.find("not compared"), std::string::npos) << other.text;
   EXPECT_NE(other.text.find("axis"), std::string::npos) << other.text;
   EXPECT_EQ(confirmation.perturbed_engine, sim::PhysicsEngine::ode);
+}
+
+TEST(GaitConfirmation, AsksMujocoTooWhereItIsBuiltIn) {
+  if (!sim::mujoco::is_built_in()) {
+    GTEST_SKIP() << "built without MuJoCo";
+  }
+  const sim::Scenario scenario = travelling_wave(6.0);
+  const GaitConfirmation confirmation = confirm(scenario);
+  EXPECT_TRUE(finding(confirmation, "MuJoCo").is_good) << confirmation_text(confirmation);
+  const ConfirmedRun& mujoco = confirmation.runs.back();
+  EXPECT_EQ(mujoco.engine, sim::PhysicsEngine::mujoco);
+  EXPECT_NEAR(mujoco.distance, confirmation.runs.front().distance, 0.05);
+  EXPECT_NEAR(mujoco.energy.motors, confirmation.runs.front().energy.motors, 0.1);
+  EXPECT_NEAR(mujoco.energy.friction, confirmation.runs.front().energy.friction, 0.05);
+}
+
+TEST(GaitConfirmation, ADistanceThatMujocoDoesNotGiveIsADoubt) {
+  GaitConfirmation confirmation;
+  for (const auto& [name, engine, distance] :
+       {std::tuple("as it is", sim::PhysicsEngine::ode, 1.0), std::tuple("MuJoCo", sim::PhysicsEngine::mujoco, 0.7)}) {
+    ConfirmedRun run{name, engine, 0.001};
+    run.distance = distance;
+    run.first_share = 0.1;
+    run.first_second = 0.1 * distance;
+    run.energy.motors = 1.0;
+    confirmation.runs.push_back(run);
+  }
+  confirmation.perturbed = {1.0};
+  confirmation.findings = find_doubts(confirmation);
+  EXPECT_FALSE(finding(confirmation, "MuJoCo").is_good);
+  EXPECT_FALSE(confirmation.is_real()) << confirmation_text(confirmation);
+  confirmation.runs.back().distance = 0.9;
+  EXPECT_TRUE(std::ranges::all_of(find_doubts(confirmation), &ConfirmationFinding::is_good));
 }
 
 TEST(GaitConfirmation, IsTheSameForTheSameSeed) {

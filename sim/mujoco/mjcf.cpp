@@ -1,5 +1,6 @@
-#include "tests/bench/mujoco/mjcf.hpp"
+#include "sim/mujoco/mjcf.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -8,11 +9,10 @@
 #include <string_view>
 #include <vector>
 
-namespace proleg::bench {
-namespace {
+#include "sim/robot/friction.hpp"
 
-using sim::Geometry;
-using sim::Pose;
+namespace proleg::sim::mujoco {
+namespace {
 
 /// How hard a constraint is (dmin, dmax, width): 1 would be rigid, and MuJoCo cuts at 0.9999.
 constexpr std::string_view hard_contact = "0.9999 0.9999 0.001";
@@ -24,20 +24,20 @@ class Writer {
  public:
   Writer() { text_.precision(std::numeric_limits<double>::max_digits10); }
 
-  void write(const sim::RobotModel& robot, const sim::EnvironmentModel& environment, double step_s,
-             MujocoIntegrator integrator) {
+  void write(const RobotModel& robot, const EnvironmentModel& environment, double step_s, Integrator integrator) {
     text_ << "<mujoco>\n"
           << "<compiler angle='radian' inertiafromgeom='false'/>\n"
-          << "<option solver='Newton' cone='pyramidal' collision='predefined' integrator='"
-          << (integrator == MujocoIntegrator::implicit ? "implicit" : "Euler") << "' timestep='" << step_s << "'"
-          << vector("gravity", environment.gravity) << "/>\n";
+          << "<option solver='Newton' cone='elliptic' collision='predefined' integrator='"
+          << (integrator == Integrator::implicit ? "implicit" : "Euler") << "' timestep='" << step_s << "'"
+          << vector("gravity", environment.gravity) << "><flag energy='enable' multiccd='enable'/></option>\n";
+    write_sizes(robot);
     text_ << "<default>\n"
           << "<joint limited='true' solimpfriction='" << hard_motor << "' solimplimit='" << hard_contact
           << "' solreflimit='" << reference(step_s) << "'/>\n"
           << "<pair condim='3' solimp='" << hard_contact << "' solref='" << reference(step_s) << "'/>\n"
           << "</default>\n"
           << "<worldbody>\n";
-    for (const sim::StaticObject& object : environment.objects) {
+    for (const StaticObject& object : environment.objects) {
       for (const Geometry& geometry : object.geometries) {
         write_geometry(geometry, object.pose * geometry.pose, environment_owner);
       }
@@ -83,22 +83,17 @@ class Writer {
     return text.str();
   }
 
-  static Pose inverse(const Pose& pose) {
-    const Eigen::Quaterniond back = pose.orientation.conjugate();
-    return {back * -pose.position, back};
-  }
-
   void write_geometry(const Geometry& geometry, Pose pose, std::ptrdiff_t owner) {
     text_ << "<geom name='" << written_.size() << "' contype='0' conaffinity='0'";
     const Eigen::Vector3d& extents = geometry.extents;
     switch (geometry.shape) {
-      case sim::Shape::box:
+      case Shape::box:
         text_ << " type='box'" << vector("size", extents);
         break;
-      case sim::Shape::sphere:
+      case Shape::sphere:
         text_ << " type='sphere' size='" << extents.x() << "'";
         break;
-      case sim::Shape::cylinder:  // MuJoCo's lie along z, those of the model along y
+      case Shape::cylinder:  // MuJoCo's lie along z, those of the model along y
         text_ << " type='cylinder' size='" << extents.x() << ' ' << extents.y() << "'";
         pose.orientation =
             pose.orientation * Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
@@ -108,15 +103,28 @@ class Writer {
     written_.push_back({owner, geometry.friction});
   }
 
-  void write_links(const sim::RobotModel& robot, const Pose& robot_pose) {
+  /// Of the memory for contacts and constraints. A world that needs more ends with a PhysicsError.
+  void write_sizes(const RobotModel& robot) {
+    constexpr std::size_t points = 8;  // of two boxes
+    std::size_t contacts = 100;
+    for (const Link& link : robot.links) {
+      contacts += points * link.geometries.size();
+    }
+    constexpr std::size_t rows_of_contact = 3;
+    constexpr std::size_t rows_of_joint = 2;  // motor and stop
+    text_ << "<size nconmax='" << contacts << "' njmax='"
+          << rows_of_contact * contacts + rows_of_joint * robot.joints.size() << "'/>\n";
+  }
+
+  void write_links(const RobotModel& robot, const Pose& robot_pose) {
     for (std::size_t i = 0; i < robot.links.size(); ++i) {
-      const sim::Link& link = robot.links[i];
-      const Pose pose = i == 0 ? robot_pose * link.pose : inverse(robot.links[i - 1].pose) * link.pose;
+      const Link& link = robot.links[i];
+      const Pose pose = i == 0 ? robot_pose * link.pose : robot.links[i - 1].pose.inverse() * link.pose;
       text_ << "<body" << place(pose) << ">\n";
       if (i == 0) {
         text_ << "<freejoint/>\n";
       } else {
-        write_hinge(robot.joints[i - 1], i - 1, link);
+        write_hinge(robot.joints[i - 1], link);
       }
       const Eigen::Matrix3d& inertia = link.mass.inertia;
       text_ << "<inertial mass='" << link.mass.mass << "'" << vector("pos", link.mass.center) << " fullinertia='"
@@ -131,23 +139,17 @@ class Writer {
     }
   }
 
-  void write_hinge(const sim::Joint& joint, std::size_t number, const sim::Link& link) {
-    const Pose to_link = inverse(link.pose);
+  void write_hinge(const Joint& joint, const Link& link) {
+    const Pose to_link = link.pose.inverse();
     // MuJoCo turns the child against its parent; our angle is that of the link towards the head, here the parent.
     const Eigen::Vector3d axis = to_link.orientation * -joint.axis;
-    text_ << "<joint name='joint " << number << "' type='hinge'" << vector("pos", to_link * joint.anchor)
-          << vector("axis", axis) << " range='" << joint.lower_limit << ' ' << joint.upper_limit << "' frictionloss='"
-          << joint.max_torque << "'/>\n";
+    constexpr double min_range = 1e-6;  // rad; MuJoCo refuses joints that cannot turn
+    text_ << "<joint type='hinge'" << vector("pos", to_link * joint.anchor) << vector("axis", axis) << " range='"
+          << joint.lower_limit << ' ' << std::max(joint.upper_limit, joint.lower_limit + min_range)
+          << "' frictionloss='" << joint.max_torque << "'/>\n";
   }
 
-  static double friction(const Written& a, const Written& b, double unspecified) {
-    if (a.friction && b.friction) {
-      return std::sqrt(*a.friction * *b.friction);
-    }
-    return a.friction.value_or(b.friction.value_or(unspecified));
-  }
-
-  void write_pairs(const sim::EnvironmentModel& environment) {
+  void write_pairs(const EnvironmentModel& environment) {
     for (std::size_t a = 0; a < written_.size(); ++a) {
       for (std::size_t b = a + 1; b < written_.size(); ++b) {
         const std::ptrdiff_t owner = written_[a].owner;
@@ -155,7 +157,7 @@ class Writer {
         const bool touches = owner == environment_owner ? other != environment_owner
                                                         : environment.self_collision && std::abs(owner - other) > 1;
         if (touches) {
-          const double mu = friction(written_[a], written_[b], environment.unspecified_friction);
+          const double mu = friction_of(written_[a].friction, written_[b].friction, environment.unspecified_friction);
           text_ << "<pair geom1='" << a << "' geom2='" << b << "' friction='" << mu << ' ' << mu << " 0 0 0'/>\n";
         }
       }
@@ -168,11 +170,11 @@ class Writer {
 
 }  // namespace
 
-std::string write_mjcf(const sim::RobotModel& robot, const sim::EnvironmentModel& environment, double step_s,
-                       MujocoIntegrator integrator) {
+std::string write_mjcf(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
+                       Integrator integrator) {
   Writer writer;
   writer.write(robot, environment, step_s, integrator);
   return writer.text();
 }
 
-}  // namespace proleg::bench
+}  // namespace proleg::sim::mujoco

@@ -1,0 +1,275 @@
+#include "sim/mujoco/mujoco_world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sim/mujoco/mjcf.hpp"
+#include "sim/mujoco/mujoco_model.hpp"
+#include "sim/physics/physics_error.hpp"
+#include "sim/robot/bounds.hpp"
+#include "sim/robot/touch_sensor_frame.hpp"
+
+namespace proleg::sim::mujoco {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+// Places in MuJoCo's arrays (write_mjcf).
+constexpr int free_joint_positions = 7;
+constexpr int free_joint_speeds = 6;
+int position_of(std::size_t joint) { return free_joint_positions + static_cast<int>(joint); }
+int speed_of(std::size_t joint) { return free_joint_speeds + static_cast<int>(joint); }
+int body_of(std::size_t link) { return static_cast<int>(link) + 1; }
+
+Eigen::Map<const Vector> vector_at(const mjtNum* numbers, int row) {
+  return Eigen::Map<const Vector>(numbers + 3 * row);
+}
+
+/// The motor of a joint is to reach its speed by the end of the step with the torque it has, as in ODE. MuJoCo has a
+/// constraint that does this for the speed 0: dry friction of a joint. Here it gets the speed. (A velocity actuator
+/// with a force range is not the same: its force is computed from the speed at the start of the step, so it is either
+/// soft or always at its limit.)
+class MujocoWorld final : public World {
+ public:
+  MujocoWorld(const RobotModel& robot, const EnvironmentModel& environment, double step_s, const std::string& file,
+              Integrator integrator)
+      : model_(compile_mjcf(write_mjcf(robot, environment, step_s, integrator), file)),
+        data_(mj_makeData(model_.get())),
+        speeds_(robot.joints.size()),
+        torques_(robot.joints.size()),
+        contact_forces_(robot.links.size()),
+        pressed_(robot.links.size()) {
+    if (data_ == nullptr) {
+      throw PhysicsError("MuJoCo finds no memory for a world");
+    }
+    for (std::size_t link = 0; link < robot.links.size(); ++link) {
+      touch_sensors_.push_back(touch_sensor_frame(robot, link));
+    }
+    for (const StaticObject& object : environment.objects) {
+      for (const Geometry& geometry : object.geometries) {
+        const double lowest = bounds_of(geometry, object.pose).lowest.z();
+        lowest_ground_ = std::min(lowest_ground_.value_or(lowest), lowest);
+      }
+    }
+    prepare_step();
+  }
+
+  void set_joint_speed(std::size_t joint, double speed) override { speeds_[joint] = speed; }
+  void set_joint_torque(std::size_t joint, double torque) override {
+    model_->dof_frictionloss[speed_of(joint)] = torque;
+    is_prepared_ = false;
+  }
+
+  void move_robot(const Pose& motion) override {
+    const Pose moved = motion * link_pose(0);
+    const Eigen::Quaterniond& turn = moved.orientation;
+    const double place[free_joint_positions] = {
+        moved.position.x(), moved.position.y(), moved.position.z(), turn.w(), turn.x(), turn.y(), turn.z()};
+    std::ranges::copy(place, data_->qpos);
+    std::fill_n(data_->qvel, model_->nv, 0.0);
+    std::fill_n(data_->qacc_warmstart, model_->nv, 0.0);
+    std::ranges::fill(pressed_, std::uint8_t{0});
+    std::ranges::fill(contact_forces_, 0.0);
+    prepare_step();
+  }
+
+  void step() override {
+    if (has_failed_) {
+      throw PhysicsError("the simulation failed at an earlier step");
+    }
+    has_failed_ = true;
+    if (!is_prepared_) {
+      prepare_step();
+    }
+    aim_motors();
+    keep_sliding_contacts_closed();
+    mj_step2(model_.get(), data_.get());
+    note_torques();
+    note_contacts();
+    prepare_step();
+    note_sliding();
+    has_failed_ = false;
+  }
+
+  [[nodiscard]] double joint_angle(std::size_t joint) const override { return data_->qpos[position_of(joint)]; }
+  [[nodiscard]] double motor_torque(std::size_t joint) const override { return torques_[joint]; }
+  [[nodiscard]] Pose link_pose(std::size_t link) const override {
+    const mjtNum* const turn = data_->xquat + 4 * body_of(link);
+    return {vector_at(data_->xpos, body_of(link)), {turn[0], turn[1], turn[2], turn[3]}};
+  }
+  [[nodiscard]] bool is_slower_than(double speed, double rotation) const override {
+    for (int body = 1; body < model_->nbody; ++body) {
+      if (velocity_of(body, vector_at(data_->xipos, body)).norm() >= speed || rotation_of(body).norm() >= rotation) {
+        return false;
+      }
+    }
+    return true;
+  }
+  [[nodiscard]] Vector center_of_mass() const override { return vector_at(data_->subtree_com, 1); }
+  [[nodiscard]] std::uint8_t link_contacts(std::size_t link) const override { return pressed_[link]; }
+  [[nodiscard]] double contact_force(std::size_t link) const override { return contact_forces_[link]; }
+  [[nodiscard]] std::size_t contact_count() const override { return contacts_.size(); }
+  [[nodiscard]] ContactSliding contact_sliding() const override { return sliding_; }
+  [[nodiscard]] double energy() const override { return data_->energy[0] + data_->energy[1]; }
+  [[nodiscard]] std::optional<double> lowest_ground() const override { return lowest_ground_; }
+  [[nodiscard]] std::size_t solver_messages() const override { return 0; }
+  [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return {}; }
+
+ private:
+  /// A contact at the start of the last step.
+  struct Contact {
+    int body;  ///< 0: the environment
+    int other;
+    Vector point;
+    Vector normal;
+    Vector force;     ///< N, between the two
+    Vector velocity;  ///< m/s, of one relative to the other, before the step
+  };
+
+  /// Everything that depends on positions and speeds, and the constraints of the next step.
+  void prepare_step() {
+    mj_step1(model_.get(), data_.get());
+    for (int warning = 0; warning < mjNWARNING; ++warning) {
+      if (data_->warning[warning].number > 0) {
+        throw PhysicsError(std::string("the simulation became unstable: MuJoCo warns: ") +
+                           mju_warningText(warning, data_->warning[warning].lastinfo));
+      }
+    }
+    is_prepared_ = true;
+  }
+
+  /// A constraint pulls towards a reference acceleration: here the one that leads to the wanted speed within the step.
+  void aim_motors() {
+    for (int row = data_->ne; row < data_->ne + data_->nf; ++row) {
+      const double wanted = speeds_[static_cast<std::size_t>(data_->efc_id[row] - free_joint_speeds)];
+      data_->efc_aref[row] = (wanted - data_->efc_vel[row]) / model_->opt.timestep;
+    }
+  }
+
+  /// In MuJoCo's model of friction, which is convex, a contact that slides also opens, with the friction coefficient
+  /// times its slip: the body hops, and its sensors are released. Here the reference takes that back with the slip
+  /// before the step. What remains is Coulomb's law.
+  void keep_sliding_contacts_closed() {
+    for (int i = 0; i < data_->ncon; ++i) {
+      const int row = data_->contact[i].efc_address;
+      if (row >= 0) {
+        const double slip = std::hypot(data_->efc_vel[row + 1], data_->efc_vel[row + 2]);
+        data_->efc_aref[row] -= data_->contact[i].friction[0] * slip / model_->opt.timestep;
+      }
+    }
+  }
+
+  void note_torques() {
+    std::ranges::fill(torques_, 0.0);
+    for (int row = data_->ne; row < data_->nefc; ++row) {
+      if (data_->efc_type[row] == mjCNSTR_FRICTION_DOF) {
+        torques_[static_cast<std::size_t>(data_->efc_id[row] - free_joint_speeds)] += data_->efc_force[row];
+      } else if (data_->efc_type[row] == mjCNSTR_LIMIT_JOINT) {
+        const auto joint = static_cast<std::size_t>(data_->efc_id[row] - 1);
+        const double* const range = model_->jnt_range + 2 * data_->efc_id[row];
+        const bool is_lower = data_->qpos[position_of(joint)] < 0.5 * (range[0] + range[1]);
+        torques_[joint] += is_lower ? data_->efc_force[row] : -data_->efc_force[row];
+      }
+    }
+    for (std::size_t joint = 0; joint < torques_.size(); ++joint) {
+      const double limit = model_->dof_frictionloss[speed_of(joint)];
+      torques_[joint] = std::clamp(torques_[joint], -limit, limit);
+    }
+  }
+
+  void note_contacts() {
+    contacts_.clear();
+    std::ranges::fill(contact_forces_, 0.0);
+    std::ranges::fill(pressed_, std::uint8_t{0});
+    for (int i = 0; i < data_->ncon; ++i) {
+      const mjContact& found = data_->contact[i];
+      mjtNum in_frame[6];  // normal, two tangents, three torques
+      mj_contactForce(model_.get(), data_.get(), i, in_frame);
+      Contact contact{model_->geom_bodyid[found.geom1],
+                      model_->geom_bodyid[found.geom2],
+                      vector_at(found.pos, 0),
+                      vector_at(found.frame, 0),
+                      Vector::Zero(),
+                      Vector::Zero()};
+      for (int axis = 0; axis < 3; ++axis) {
+        contact.force += in_frame[axis] * vector_at(found.frame, axis);
+      }
+      contact.velocity = relative_velocity(contact);
+      note_force(contact.body, in_frame[0]);
+      note_force(contact.other, in_frame[0]);
+      if (contact.body == 0 || contact.other == 0) {
+        note_touch(std::max(contact.body, contact.other), contact);
+      }
+      contacts_.push_back(contact);
+    }
+  }
+
+  void note_force(int body, double normal_force) {
+    if (body > 0) {
+      contact_forces_[static_cast<std::size_t>(body - 1)] += normal_force;
+    }
+  }
+
+  void note_touch(int body, const Contact& contact) {
+    const auto link = static_cast<std::size_t>(body - 1);
+    const Eigen::Quaterniond to_link = link_pose(link).orientation.conjugate();
+    pressed_[link] = static_cast<std::uint8_t>(
+        pressed_[link] | touch_sensors_[link].pressed_by(to_link * (contact.point - vector_at(data_->xipos, body)),
+                                                         to_link * contact.normal));
+  }
+
+  void note_sliding() {
+    sliding_ = {};
+    for (const Contact& contact : contacts_) {
+      if (contact.body != 0 && contact.other != 0) {
+        continue;
+      }
+      const auto along = [&](const Vector& vector) -> Vector {
+        return vector - vector.dot(contact.normal) * contact.normal;
+      };
+      const double normal_force = std::abs(contact.force.dot(contact.normal));
+      const Vector velocity = along(relative_velocity(contact));
+      sliding_.normal_force += normal_force;
+      sliding_.force_times_speed += normal_force * velocity.norm();
+      // As in ODE: friction takes a force times the mean of the speeds before and after the step.
+      sliding_.friction_power += std::abs(along(contact.force).dot(0.5 * (velocity + along(contact.velocity))));
+    }
+  }
+
+  /// MuJoCo has the velocities of the bodies at the robot's centre of mass: rotation, then translation.
+  [[nodiscard]] Vector rotation_of(int body) const { return vector_at(data_->cvel, 2 * body); }
+  [[nodiscard]] Vector velocity_of(int body, const Vector& point) const {
+    return vector_at(data_->cvel, 2 * body + 1) + rotation_of(body).cross(point - center_of_mass());
+  }
+  [[nodiscard]] Vector relative_velocity(const Contact& contact) const {
+    return velocity_of(contact.other, contact.point) - velocity_of(contact.body, contact.point);
+  }
+
+  Model model_;
+  Data data_;
+  std::vector<double> speeds_;   ///< rad/s, wanted, by joint
+  std::vector<double> torques_;  ///< Nm, by joint
+  std::vector<Contact> contacts_;
+  std::vector<double> contact_forces_;  ///< N, by link
+  std::vector<std::uint8_t> pressed_;   ///< by link
+  std::vector<TouchSensorFrame> touch_sensors_;
+  ContactSliding sliding_;
+  std::optional<double> lowest_ground_;
+  bool is_prepared_ = false;
+  bool has_failed_ = false;
+};
+
+}  // namespace
+
+bool is_built_in() { return true; }
+
+std::unique_ptr<World> make_mujoco_world(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
+                                         const std::string& file, Integrator integrator) {
+  return std::make_unique<MujocoWorld>(robot, environment, step_s, file, integrator);
+}
+
+}  // namespace proleg::sim::mujoco

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+#include "sim/robot/robot_model.hpp"
+
+namespace proleg::sim {
+
+/// The smallest axis-aligned box around a shape.
+struct Bounds {
+  Eigen::Vector3d lowest;
+  Eigen::Vector3d highest;
+};
+
+/// Bounds of a geometry; `frame` is the pose of its body.
+[[nodiscard]] inline Bounds bounds_of(const Geometry& geometry, const Pose& frame) {
+  const Pose pose = frame * geometry.pose;
+  const Eigen::Matrix3d rotation = pose.orientation.toRotationMatrix();
+  Eigen::Vector3d reach = Eigen::Vector3d::Constant(geometry.extents.x());  // of a sphere
+  switch (geometry.shape) {
+    case Shape::box:
+      reach = rotation.cwiseAbs() * geometry.extents;
+      break;
+    case Shape::sphere:
+      break;
+    case Shape::cylinder:
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        const double along = std::min(std::abs(rotation(i, 1)), 1.0);  // share of the cylinder's axis in this direction
+        reach[i] = geometry.extents.y() * along + geometry.extents.x() * std::sqrt(1.0 - along * along);
+      }
+      break;
+  }
+  return {pose.position - reach, pose.position + reach};
+}
+
+}  // namespace proleg::sim

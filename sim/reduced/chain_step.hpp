@@ -25,8 +25,9 @@
 #include "sim/reduced/contact_rows.hpp"
 #include "sim/reduced/contact_search.hpp"
 #include "sim/reduced/lanes.hpp"
+#include "sim/reduced/motors.hpp"
+#include "sim/reduced/planar_free_joints.hpp"
 #include "sim/reduced/sine.hpp"
-#include "sim/reduced/symmetric_inverse.hpp"
 
 namespace proleg::sim::reduced {
 namespace {  // of each instruction set its own
@@ -39,7 +40,13 @@ class ChainStep {
   using Vector = Plane<Number>;
 
   ChainStep(const ChainForm& form, const ChainMemory<Number>& memory, const ChainScratch<Number>& scratch)
-      : form_(form), m_(memory), s_(scratch), links_(form.counts.links), joints_(form.counts.joints) {}
+      : form_(form),
+        m_(memory),
+        s_(scratch),
+        links_(form.counts.links),
+        joints_(form.counts.joints),
+        motors_(form.step_s, memory, scratch),
+        free_(form, memory, scratch) {}
 
   /// Makes the step of the chains whose motors are all strong enough. Returns the lanes of the others: bit k for lane
   /// k. They have not changed, but is_free is set for their weak joints.
@@ -49,10 +56,10 @@ class ChainStep {
     for (std::size_t j = 0; j < joints_; ++j) {
       open |= m_.is_free[j] > 0.0;
     }
-    unknowns_ = 1;
+    free_.leave_out();
     solve();
     find_torques();
-    open |= free_weak_joints(~open);
+    open |= motors_.free_weak_joints(joints_, ~open);
     finish(~open);
     return bits_of(open);
   }
@@ -63,10 +70,10 @@ class ChainStep {
     Mask open = Lanes<width>::all();
     for (std::size_t round = 0; any(open); ++round) {
       const bool is_last = round > joints_;  // each round frees a joint
-      number_free_joints();
+      free_.list();
       solve();
       find_torques();
-      const Mask changed = is_last ? Lanes<width>::none() : free_weak_joints(open);
+      const Mask changed = is_last ? Lanes<width>::none() : motors_.free_weak_joints(joints_, open);
       finish(open & ~changed);
       open &= changed;
     }
@@ -97,7 +104,9 @@ class ChainStep {
 
   void prepare() {
     place_links();
-    bound_speeds();
+    for (std::size_t j = 0; j < joints_; ++j) {
+      motors_.bound_speed(j, form_.joints[j]);
+    }
     ContactSearch<width> search(form_, m_, s_);
     contacts_ = search.run();
     contact_count_ = search.counts();
@@ -143,17 +152,6 @@ class ChainStep {
     }
   }
 
-  void bound_speeds() {
-    const double steps_per_s = 1.0 / form_.step_s;
-    for (std::size_t j = 0; j < joints_; ++j) {
-      s_.lowest_speed[j] = (form_.joints[j].lower - m_.joint_angle[j]) * steps_per_s;
-      s_.highest_speed[j] = (form_.joints[j].upper - m_.joint_angle[j]) * steps_per_s;
-      s_.speed[j] = bounded(m_.wanted_speed[j], s_.lowest_speed[j], s_.highest_speed[j]);
-      // A limp joint is free from the start.
-      put_where(m_.max_torque[j] == 0.0, m_.is_free[j], Lanes<width>::number(1.0));
-    }
-  }
-
   /// Depths to speeds. Where two links touch, the joints between them are free: what they do moves the centre not at
   /// all.
   void prepare_contacts() {
@@ -182,16 +180,12 @@ class ChainStep {
     find_drift();
     find_free_motion();
     set_rows();
-    if (unknowns_ == 1) {
+    if (free_.unknowns() == 1) {
       solve_rows<false>();
     } else {
       solve_rows<true>();
     }
-    for (std::size_t i = 0; i + 1 < unknowns_; ++i) {
-      for (std::size_t j = 0; j < joints_; ++j) {
-        put_where(is_free_joint(i, j), s_.speed[j], s_.unknown[i + 1]);
-      }
-    }
+    free_.take_speeds();
     // All speeds are known now.
     find_drift_of_speeds();
     for (std::size_t i = 0; i < links_; ++i) {
@@ -202,38 +196,13 @@ class ChainStep {
 
   template <bool has_free_joints>
   void solve_rows() {
-    ContactRows<width, has_free_joints> rows(form_, s_, contacts_, unknowns_, m_.inverse_mass[0]);
+    ContactRows<width, has_free_joints> rows(form_, s_, contacts_, free_.unknowns(), m_.inverse_mass[0]);
     rows.prepare(contact_count_);
     base_ = {free_speed_, s_.unknown[0]};
     rows.solve(base_);
     for (std::size_t k = 0; k < contacts_; ++k) {
       s_.sliding_speed[k] = magnitude(rows.speed_of(2 * k + 1, base_));
     }
-  }
-
-  /// Whether joint j is number i of the free joints of a lane.
-  Mask is_free_joint(std::size_t i, std::size_t j) const { return s_.free_joint[i] == static_cast<double>(j); }
-
-  void number_free_joints() {
-    Number count{};
-    for (std::size_t j = 0; j < joints_; ++j) {
-      s_.free_joint[j] = Lanes<width>::number(-1.0);
-      const Mask is_free = m_.is_free[j] > 0.0;
-      if (!any(is_free)) {
-        continue;
-      }
-      for (std::size_t i = 0; i <= j; ++i) {
-        put_where(is_free & (count == static_cast<double>(i)), s_.free_joint[i],
-                  Lanes<width>::number(static_cast<double>(j)));
-      }
-      count = select(is_free, count + 1.0, count);
-    }
-    unknowns_ = 1;
-    for (int lane = 0; lane < width; ++lane) {
-      const auto own = static_cast<std::size_t>(count[lane]) + 1;
-      unknowns_ = own > unknowns_ ? own : unknowns_;
-    }
-    free_count_ = count;
   }
 
   /// Velocities of the links against the centre for the speeds of the joints, while the first link does not turn.
@@ -259,11 +228,7 @@ class ChainStep {
   }
 
   void find_drift() {
-    if (unknowns_ > 1) {
-      for (std::size_t j = 0; j < joints_; ++j) {
-        put_where(m_.is_free[j] > 0.0, s_.speed[j], Number{});
-      }
-    }
+    free_.stop();
     find_drift_of_speeds();
   }
 
@@ -279,7 +244,7 @@ class ChainStep {
       const Vector change = (vector(m_.link_speed, i) - vector(s_.drift, i)) * m_.mass[i];
       inertia += m_.inertia[i] + m_.mass[i] * dot(position, position);
       momentum += m_.inertia[i] * (m_.rotation[i] - s_.spin[i]) + cross(position, change);
-      if (i > 0 && unknowns_ > 1) {
+      if (i > 0 && free_.unknowns() > 1) {
         linear = linear + change;
         moment = moment + position * m_.mass[i];
         mass += m_.mass[i];
@@ -290,109 +255,12 @@ class ChainStep {
         s_.angular_behind[i - 1] = momentum;
       }
     }
-    if (unknowns_ == 1) {
+    if (free_.unknowns() == 1) {
       s_.inverse_matrix[0] = 1.0 / inertia;
       s_.unknown[0] = momentum * s_.inverse_matrix[0];
       return;
     }
-    gather_free_joints();
-    set_matrix(inertia);
-    s_.unknown[0] = momentum;
-    for (std::size_t i = 1; i < unknowns_; ++i) {
-      s_.unknown[i] = s_.free_momentum[i - 1];
-    }
-    invert_matrix();
-    start_motors();
-  }
-
-  /// What free joint i needs of its joint, by lane.
-  void gather_free_joints() {
-    for (std::size_t i = 0; i + 1 < unknowns_; ++i) {
-      Vector position{};
-      Vector moment{};
-      Number mass{};
-      Number inertia = Lanes<width>::number(1.0);
-      Number momentum{};
-      Number most{};
-      Number wanted{};
-      Number lowest{};
-      Number highest{};
-      Number start{};
-      for (std::size_t j = 0; j < joints_; ++j) {
-        const Mask is_this = is_free_joint(i, j);
-        if (!any(is_this)) {
-          continue;
-        }
-        const Vector joint = vector(s_.joint_position, j);
-        position = select(is_this, joint, position);
-        moment = select(is_this, vector(s_.moment_behind, j), moment);
-        put_where(is_this, mass, s_.mass_behind[j]);
-        put_where(is_this, inertia, s_.inertia_behind[j]);
-        put_where(is_this, momentum, s_.angular_behind[j] - cross(joint, vector(s_.momentum_behind, j)));
-        put_where(is_this, most, m_.max_torque[j] * form_.step_s);
-        put_where(is_this, wanted, m_.wanted_speed[j]);
-        put_where(is_this, lowest, s_.lowest_speed[j]);
-        put_where(is_this, highest, s_.highest_speed[j]);
-        put_where(is_this, start, m_.motor_torque[j] * form_.step_s);
-      }
-      put(s_.free_position, i, position);
-      put(s_.free_moment, i, moment);
-      s_.free_mass[i] = mass;
-      s_.free_inertia[i] = inertia;
-      s_.free_momentum[i] = momentum;
-      s_.free_max_impulse[i] = most;
-      s_.free_wanted[i] = wanted;
-      s_.free_lowest[i] = lowest;
-      s_.free_highest[i] = highest;
-      s_.motor_impulse[i] = bounded(start, -most, most);
-    }
-  }
-
-  /// kg m: mass times distance from the joint, of the links behind free joint i.
-  [[nodiscard]] Vector free_lever(std::size_t i) const {
-    return vector(s_.free_moment, i) - vector(s_.free_position, i) * s_.free_mass[i];
-  }
-
-  void set_matrix(Number inertia) {
-    const std::size_t stride = joints_ + 1;
-    s_.matrix[0] = inertia;
-    for (std::size_t a = 0; a + 1 < unknowns_; ++a) {
-      const Mask is_there = free_count_ > static_cast<double>(a);
-      const Vector joint = vector(s_.free_position, a);
-      const Number with_base = s_.free_inertia[a] - dot(vector(s_.free_moment, a), joint);
-      s_.matrix[(a + 1) * stride] = select(is_there, with_base, Number{});
-      // Free joints are in the order of the chain: the links behind b are also behind a.
-      for (std::size_t b = a; b + 1 < unknowns_; ++b) {
-        const Vector other = vector(s_.free_position, b);
-        const Number value = s_.free_inertia[b] - dot(vector(s_.free_moment, b), joint + other) +
-                             s_.free_mass[b] * dot(joint, other) -
-                             dot(free_lever(a), free_lever(b)) * m_.inverse_mass[0];
-        const Mask both = free_count_ > static_cast<double>(b);
-        s_.matrix[(b + 1) * stride + a + 1] = select(both, value, Lanes<width>::number(a == b ? 1.0 : 0.0));
-      }
-    }
-  }
-
-  /// And the unknowns from their momenta.
-  void invert_matrix() {
-    const std::size_t stride = joints_ + 1;
-    invert_symmetric(s_.matrix, s_.inverse_matrix, unknowns_, stride);
-    for (std::size_t i = 0; i < unknowns_; ++i) {
-      s_.matrix[i] = s_.unknown[i];  // the momenta; the first row of the factors is not needed any more
-    }
-    multiply(s_.inverse_matrix, s_.matrix, s_.unknown, unknowns_, stride);
-  }
-
-  /// The motors of free joints begin with the torque of the step before.
-  void start_motors() {
-    const std::size_t stride = joints_ + 1;
-    for (std::size_t motor = 0; motor + 1 < unknowns_; ++motor) {
-      const Mask is_there = free_count_ > static_cast<double>(motor);
-      s_.motor_inverse[motor] = select(is_there, 1.0 / s_.inverse_matrix[(motor + 1) * stride + motor + 1], Number{});
-      for (std::size_t i = 0; i < unknowns_; ++i) {
-        s_.unknown[i] += s_.inverse_matrix[i * stride + motor + 1] * s_.motor_impulse[motor];
-      }
-    }
+    free_.start(inertia, momentum);
   }
 
   void set_rows() {
@@ -410,12 +278,12 @@ class ChainStep {
         s_.bias[row] = dot(direction, given);
         s_.jacobian[row * stride] = cross(arm, direction) * ground;
       }
-      for (std::size_t i = 0; i + 1 < unknowns_; ++i) {
-        const Mask is_there = free_count_ > static_cast<double>(i);
+      for (std::size_t i = 0; i + 1 < free_.unknowns(); ++i) {
+        const Mask is_there = free_.has(i);
         const Vector lever = turned(arm - vector(s_.free_position, i));
         Vector velocity = select(s_.link[k] > s_.free_joint[i], lever, Vector{});
         velocity = select(s_.other_link[k] > s_.free_joint[i], velocity - lever, velocity);
-        velocity = select(is_terrain, velocity - turned(free_lever(i)) * m_.inverse_mass[0], velocity);
+        velocity = select(is_terrain, velocity - turned(free_.lever(i)) * m_.inverse_mass[0], velocity);
         velocity = select(is_there, velocity, Vector{});
         s_.jacobian[2 * k * stride + i + 1] = dot(normal, velocity);
         s_.jacobian[(2 * k + 1) * stride + i + 1] = dot(along, velocity);
@@ -465,23 +333,6 @@ class ChainStep {
       }
       s_.torque_impulse[i - 1] = angular - cross(vector(s_.joint_position, i - 1), linear);
     }
-  }
-
-  /// Frees the joints whose motors are too weak. Returns the lanes with such a joint.
-  Mask free_weak_joints(Mask open) {
-    Mask changed = Lanes<width>::none();
-    for (std::size_t j = 0; j < joints_; ++j) {
-      const Number most = m_.max_torque[j] * (form_.step_s * (1.0 + 1e-9));
-      const Number impulse = s_.torque_impulse[j];
-      // At a stop the stop gives what the motor lacks.
-      const Mask at_lower = m_.wanted_speed[j] < s_.lowest_speed[j];
-      const Mask at_upper = m_.wanted_speed[j] > s_.highest_speed[j];
-      const Mask is_weak = ((impulse > most) & ~at_lower) | ((impulse < -most) & ~at_upper);
-      const Mask is_new = open & is_weak & (m_.is_free[j] == 0.0);
-      put_where(is_new, m_.is_free[j], Lanes<width>::number(1.0));
-      changed |= is_new;
-    }
-    return changed;
   }
 
   /// The result of lanes that are solved becomes their state.
@@ -558,10 +409,10 @@ class ChainStep {
   const ChainScratch<Number>& s_;
   std::size_t links_;
   std::size_t joints_;
+  Motors<width, ChainMemory<Number>, ChainScratch<Number>> motors_;
+  PlanarFreeJoints<width> free_;
   std::size_t contacts_ = 0;  ///< most of a lane
   Number contact_count_{};
-  std::size_t unknowns_ = 1;  ///< most of a lane
-  Number free_count_{};
   Vector free_speed_;       ///< of the centre, without contacts
   BaseMotion<width> base_;  ///< after the step
 };

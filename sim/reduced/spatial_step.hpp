@@ -11,6 +11,7 @@
 #include "sim/reduced/floor_contact.hpp"
 #include "sim/reduced/free_joints.hpp"
 #include "sim/reduced/lanes.hpp"
+#include "sim/reduced/motors.hpp"
 #include "sim/reduced/sine.hpp"
 #include "sim/reduced/space.hpp"
 #include "sim/reduced/spatial_memory.hpp"
@@ -34,6 +35,7 @@ class SpatialStep {
         s_(scratch),
         links_(form.counts.links),
         joints_(form.counts.joints),
+        motors_(form.step_s, memory, scratch),
         free_(form, memory, scratch) {}
 
   /// As ChainStep::step_strong().
@@ -45,7 +47,7 @@ class SpatialStep {
     }
     solve<false>();
     find_torques();
-    open |= free_weak_joints(~open);
+    open |= motors_.free_weak_joints(joints_, ~open);
     finish(~open);
     unsigned lanes = 0;
     for (int lane = 0; lane < width; ++lane) {
@@ -63,7 +65,7 @@ class SpatialStep {
       free_.list();
       solve<true>();
       find_torques();
-      const Mask changed = is_last ? Lanes<width>::none() : free_weak_joints(open);
+      const Mask changed = is_last ? Lanes<width>::none() : motors_.free_weak_joints(joints_, open);
       finish(open & ~changed);
       open &= changed;
     }
@@ -86,7 +88,9 @@ class SpatialStep {
   void prepare() {
     place_links();
     find_inertia();
-    bound_speeds();
+    for (std::size_t j = 0; j < joints_; ++j) {
+      motors_.bound_speed(j, form_.joints[j].limits);
+    }
     FloorContact<width> floor(form_, m_, s_);
     contacts_ = floor.run();
     contact_count_ = floor.counts();
@@ -167,18 +171,6 @@ class SpatialStep {
       if (i > 0) {
         put(s_.inertia_behind, i - 1, inertia_);
       }
-    }
-  }
-
-  void bound_speeds() {
-    const double steps_per_s = 1.0 / form_.step_s;
-    for (std::size_t j = 0; j < joints_; ++j) {
-      const JointForm& limits = form_.joints[j].limits;
-      s_.lowest_speed[j] = (limits.lower - m_.joint_angle[j]) * steps_per_s;
-      s_.highest_speed[j] = (limits.upper - m_.joint_angle[j]) * steps_per_s;
-      s_.speed[j] = bounded(m_.wanted_speed[j], s_.lowest_speed[j], s_.highest_speed[j]);
-      // A limp joint is free from the start.
-      put_where(m_.max_torque[j] == 0.0, m_.is_free[j], Lanes<width>::number(1.0));
     }
   }
 
@@ -330,23 +322,6 @@ class SpatialStep {
     }
   }
 
-  /// Frees the joints whose motors are too weak. Returns the lanes with such a joint.
-  Mask free_weak_joints(Mask open) {
-    Mask changed = Lanes<width>::none();
-    for (std::size_t j = 0; j < joints_; ++j) {
-      const Number most = m_.max_torque[j] * (form_.step_s * (1.0 + 1e-9));
-      const Number impulse = s_.torque_impulse[j];
-      // At a stop the stop gives what the motor lacks.
-      const Mask at_lower = m_.wanted_speed[j] < s_.lowest_speed[j];
-      const Mask at_upper = m_.wanted_speed[j] > s_.highest_speed[j];
-      const Mask is_weak = ((impulse > most) & ~at_lower) | ((impulse < -most) & ~at_upper);
-      const Mask is_new = open & is_weak & (m_.is_free[j] == 0.0);
-      put_where(is_new, m_.is_free[j], Lanes<width>::number(1.0));
-      changed |= is_new;
-    }
-    return changed;
-  }
-
   /// The result of lanes that are solved becomes their state.
   void keep(Mask done) {
     const Number h = Lanes<width>::number(form_.step_s);
@@ -418,6 +393,7 @@ class SpatialStep {
   std::size_t joints_;
   std::size_t contacts_ = 0;  ///< most of a lane
   Number contact_count_{};
+  Motors<width, SpatialMemory<Number>, SpatialScratch<Number>> motors_;
   FreeJoints<width> free_;
   Inertia inertia_;              ///< of the chain, about its centre of mass
   Vector free_speed_;            ///< of the centre, without contacts

@@ -69,7 +69,7 @@ TEST_F(Engine, AWordThatIsNoEngineIsRefused) {
     for (const char* word : {"bullet", "ODE", ""}) {
       std::vector<std::string> words = command;
       words.insert(words.end(), {"--engine", word});
-      expect_refused(words, {"--engine", "'" + std::string(word) + "'", "expected 'ode' or 'reduced'"});
+      expect_refused(words, {"--engine", "'" + std::string(word) + "'", "expected 'ode', 'reduced' or 'mujoco'"});
     }
   }
   EXPECT_FALSE(fs::exists(file("out")));
@@ -142,7 +142,6 @@ TEST_F(Engine, WhatTheReducedEngineDoesNotHaveIsRefusedByNameBeforeAnythingIsWri
     const char* by;
     const char* found;
   };
-  const char* const robot = "caterpillar.robot.xml";
   const char* const segment = "modules/segment.kinbody.xml";
   const char* const floor = "flat.environment.xml";
   const char* const box =
@@ -156,8 +155,7 @@ TEST_F(Engine, WhatTheReducedEngineDoesNotHaveIsRefusedByNameBeforeAnythingIsWri
       "</RotationAxis><Geom type=\"box\"><extents>1 0.2 0.05</extents></Geom></Body></KinBody></Environment>";
   const std::string recording = file("run.proleg").string();
   for (const Refused& refused :
-       {Refused{robot, "<axis>1 0 0<", "<axis>0 0 1<", "joint 'J1', whose axis is not parallel to that of joint 'J5'"},
-        Refused{segment, box, sphere, "link '4Seg' with a sphere"},
+       {Refused{segment, box, sphere, "link '4Seg' with a sphere"},
         Refused{floor, "</Environment>", ball, "object 'ball' with a sphere"},
         Refused{floor, "</Environment>", ramp, "object 'ramp' with a box that is oblique"},
         Refused{floor, "<gravity>0 0 -9.81<", "<gravity>1 0 -9.81<", "gravity across the plane"}}) {
@@ -176,6 +174,24 @@ TEST_F(Engine, WhatTheReducedEngineDoesNotHaveIsRefusedByNameBeforeAnythingIsWri
     EXPECT_EQ(left_behind(), std::vector<std::string>{"wave"}) << refused.found;
     EXPECT_EQ(proleg({"simulate", edited(), "--seconds", "0.1"}).status, 0) << "ODE has it: " << refused.found;
   }
+}
+
+TEST_F(Engine, ARobotOfPitchAndYawJointsRunsInItOnALevelFloor) {
+  edit("caterpillar.robot.xml", "<axis>1 0 0<", "<axis>0 0 1<");
+  const std::vector<std::string> rest{"--seconds", "3", "--engine", "reduced", "--json"};
+  const auto run = [&](std::vector<std::string> words) {
+    words.insert(words.end(), rest.begin(), rest.end());
+    const Finished finished = proleg(words);
+    EXPECT_EQ(finished.status, 0) << finished.err;
+    return Json(finished.out);
+  };
+  const Json simulated = run({"simulate", edited()});
+  const Json driven = run({"hil", edited()});
+  EXPECT_EQ(simulated["world_hash"], driven["world_hash"]);
+  EXPECT_EQ(simulated["setpoint_hash"], driven["setpoint_hash"]);
+  EXPECT_GT(simulated["displacement_m"].number(), 0.01);
+  const Json confirmed = Json(proleg({"confirm", edited(), "--seconds", "3", "--worlds", "5", "--json"}).out);
+  EXPECT_EQ(confirmed["runs"][2]["failure"], "") << "the other engine has it";
 }
 
 // Links of 1 mg between ends of 50 g.

@@ -256,12 +256,15 @@ TEST_F(Optimise, RefusesBadInputAndStartsNothing) {
 }
 
 TEST_F(Optimise, RefusesAScenarioThatTheEngineDoesNotHave) {
-  const fs::path folder = file("yaw");
+  const fs::path folder = file("spheres");
   fs::copy(source_path("/sim/scenarios/travelling_wave"), folder, fs::copy_options::recursive);
-  std::string robot = read_file(folder / "caterpillar.robot.xml");
-  robot.replace(robot.find("<axis>1 0 0<"), 12, "<axis>0 0 1<");
-  std::ofstream(folder / "caterpillar.robot.xml") << robot;
-  const std::vector<std::string> refusal{"axis is not parallel", "reduced engine", "--engine ode"};
+  const std::string box =
+      "<Geom type=\"box\">\n      <translation>0 0.036 0</translation>\n      <extents>0.026 0.018 0.026</extents>";
+  std::string segment = read_file(folder / "modules/segment.kinbody.xml");
+  segment.replace(segment.find(box), box.size(),
+                  "<Geom type=\"sphere\"><translation>0 0.036 0</translation><radius>0.026</radius>");
+  std::ofstream(folder / "modules/segment.kinbody.xml") << segment;
+  const std::vector<std::string> refusal{"with a sphere", "reduced engine", "--engine ode"};
   expect_refused(
       {"optimise", (folder / "cma_es.optimise.xml").string(), "--engine", "reduced", "--out", file("out").string()},
       refusal);

@@ -103,15 +103,17 @@ class BadInput(PageTest):
         self.assertRegex(self.refused_for("--bus", "elsewhere:1"), "expected a bus: a CAN interface such as can0")
         self.assertRegex(self.refused_for("--bus", "sim:none.xml"), "^--bus: found 'sim:none.xml', expected sim:FILE")
         self.assertRegex(self.refused_for(".", "--paused"), "^found an option of a robot with .")
-        self.assertEqual(self.refused_for("--engine", "bullet"), "--engine: found 'bullet', expected 'ode' or 'reduced'")
+        self.assertEqual(self.refused_for("--engine", "bullet"), "--engine: found 'bullet', expected 'ode', 'reduced' or 'mujoco'")
 
     def test_a_robot_that_the_engine_does_not_have(self):
         wave = self.folder / "wave"
         shutil.copytree(Path(__file__).resolve().parents[3] / "sim/scenarios/travelling_wave", wave)
-        robot = wave / "caterpillar.robot.xml"
-        robot.write_text(robot.read_text().replace("<axis>1 0 0<", "<axis>0 0 1<", 1))
+        segment = wave / "modules/segment.kinbody.xml"
+        sphere = '<Geom type="sphere"><translation>0 0.036 0</translation><radius>0.026</radius>'
+        text = re.sub(r'<Geom type="box">\s*<translation>0 0.036 0</translation>\s*<extents>[^<]*</extents>', sphere, segment.read_text(), count=1)
+        segment.write_text(text)
         self.assertRegex(self.refused_for("wave/uniform.simulation.xml", "--engine", "reduced"),
-                         "found joint 'J1', whose axis is not parallel to that of joint 'J5', expected what the reduced engine has: .*--engine ode")
+                         "found link '4Seg' with a sphere, expected what the reduced engine has: .*--engine ode")
 
 
 unittest.main()

@@ -120,7 +120,7 @@ TEST(Batch, TakesScenariosThatDoNotFitTogetherOneAfterTheOther) {
 TEST(RequireEngine, RefusesARobotThatTheEngineDoesNotHave) {
   Experiment experiment = small_experiment();
   EXPECT_NO_THROW(require_engine(reduced(experiment)));
-  experiment.scenario.robot.joints[1].axis = {0.0, 0.0, 1.0};
+  experiment.scenario.robot.links[1].geometries[0].shape = sim::Shape::sphere;
   EXPECT_NO_THROW(require_engine(experiment));
   EXPECT_THROW(require_engine(reduced(experiment)), InputError);
 }

@@ -77,12 +77,13 @@ TEST(ShippedExperiments, GeneticHasTheSettingsOfTable63) {
   EXPECT_EQ(experiment.evaluations, 5000U) << "no run of the thesis made more (section 7)";
 }
 
-TEST(ShippedExperiments, CmaEsHasAFifthOfTheEvaluations) {
+TEST(ShippedExperiments, CmaEsHasHalfOfTheEvaluationsAndRestarts) {
   const Experiment experiment = shipped("cma_es");
   EXPECT_EQ(method_name(experiment.method), "cmaes");
-  EXPECT_EQ(experiment.evaluations, 1200U);
+  EXPECT_EQ(experiment.evaluations, 2000U);
   const auto& cma_es = std::get<PagmoSettings>(experiment.method);
-  EXPECT_EQ(cma_es.population, 32U) << "docs/optimisation.md has ten searches with these two";
+  EXPECT_EQ(cma_es.population, 32U) << "docs/optimisation.md has thirty searches with these three";
+  EXPECT_EQ(cma_es.restart_after, 5U);
   EXPECT_EQ(cma_es.sigma0, 0.7);
 }
 

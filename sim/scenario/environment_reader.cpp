@@ -26,10 +26,9 @@ constexpr std::array<std::string_view, 5> viewer_tags{"bkgndcolor", "camtrans", 
 
 void read_physics(const XmlElement& element, EnvironmentModel& environment, std::vector<std::string>& warnings) {
   constexpr std::array<std::string_view, 1> attributes{"type"};
-  std::vector<std::string> tags;
-  for (const PhysicsEngineName& engine : physics_engines) {
-    tags.push_back(std::string(engine.word) + "properties");
-  }
+  std::array<std::string, physics_engines.size()> tags;
+  std::ranges::transform(physics_engines, tags.begin(),
+                         [](const PhysicsEngineName& engine) { return std::string(engine.word) + "properties"; });
   element.allow(attributes, std::vector<std::string_view>(tags.begin(), tags.end()));
   const std::string type = element.required_attribute("type");
   const std::optional<PhysicsEngine> engine = engine_named(lower_case(type));

@@ -245,8 +245,8 @@ ContactSliding ChainBatch::sliding(std::size_t chain) const {
           implementation_->of(chain, memory.sliding, 2)};
 }
 
-bool ChainBatch::failed(std::size_t chain) const {
-  return implementation_->of(chain, implementation_->memory_of(chain).failed, 0) != 0.0;
+double ChainBatch::failure(std::size_t chain) const {
+  return implementation_->of(chain, implementation_->memory_of(chain).failed, 0);
 }
 
 std::vector<double> ChainBatch::state(std::size_t chain) const {

@@ -67,7 +67,9 @@ class ChainBatch {
   [[nodiscard]] double contact_force(std::size_t chain, std::size_t link) const;  ///< N
   [[nodiscard]] std::size_t contact_count(std::size_t chain) const;
   [[nodiscard]] ContactSliding sliding(std::size_t chain) const;
-  [[nodiscard]] bool failed(std::size_t chain) const;
+  /// 0, not_finite or too_many_contacts.
+  [[nodiscard]] double failure(std::size_t chain) const;
+  [[nodiscard]] bool failed(std::size_t chain) const { return failure(chain) != 0.0; }
   /// All numbers on which the next steps depend, but contacts.
   [[nodiscard]] std::vector<double> state(std::size_t chain) const;
 

@@ -31,6 +31,10 @@ struct LinkForm {
   bool operator==(const LinkForm&) const = default;
 };
 
+/// Why a chain is lost.
+inline constexpr double not_finite = 1.0;         ///< a position
+inline constexpr double too_many_contacts = 2.0;  ///< than ChainCounts::contacts
+
 /// The angle of a joint is that of the link behind it less that of the link before it.
 struct JointForm {
   double lower = 0.0;  ///< rad

@@ -36,7 +36,7 @@ struct ChainMemory {
   Number* contact_force;  ///< N, by link
   Number* pressed;        ///< touch sensors by link: bit 0 rear, bit 1 front
   Number* sliding;        ///< with the terrain: normal forces, N; forces times speed, N m/s; power of friction, W
-  Number* failed;         ///< not 0: the solver broke down
+  Number* failed;         ///< 0, or why the chain is lost: not_finite, too_many_contacts
   // Contacts of the last step, also part of the state.
   Number* contact_count;
   Number* contact_key;     ///< which corners touched, by contact, in the order of pairs of outlines

@@ -401,7 +401,7 @@ class ChainStep {
     for (std::size_t j = 0; j < joints_; ++j) {
       sum += m_.joint_angle[j];
     }
-    put_where(done & ~(sum * 0.0 == 0.0), m_.failed[0], Lanes<width>::number(1.0));
+    put_where(done & ~(sum * 0.0 == 0.0), m_.failed[0], Lanes<width>::number(not_finite));
   }
 
   const ChainForm& form_;

@@ -126,7 +126,7 @@ class ContactSearch {
           continue;
         }
         if (found_[lane] == form_.counts.contacts) {
-          m_.failed[0][lane] = 1.0;
+          m_.failed[0][lane] = too_many_contacts;
           continue;
         }
         const std::size_t contact = found_[lane]++;

@@ -60,8 +60,9 @@ class ReducedWorld final : public World {
     }
     if (batch_->failed(lane_)) {
       throw PhysicsError(
-          "the simulation became unstable: the position of a link is no longer a finite number, or it has "
-          "more contacts than the engine keeps");
+          batch_->failure(lane_) == too_many_contacts
+              ? "the robot has more contacts at once than the reduced engine keeps (--engine ode has them)"
+              : "the simulation became unstable: the position of a link is no longer a finite number");
     }
   }
 

@@ -383,7 +383,7 @@ class SpatialStep {
     for (std::size_t j = 0; j < joints_; ++j) {
       sum += m_.joint_angle[j];
     }
-    put_where(done & ~(sum * 0.0 == 0.0), m_.failed[0], Lanes<width>::number(1.0));
+    put_where(done & ~(sum * 0.0 == 0.0), m_.failed[0], Lanes<width>::number(not_finite));
   }
 
   const SpatialForm& form_;

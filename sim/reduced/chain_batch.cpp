@@ -50,9 +50,9 @@ class ChainBatch::Implementation {
         form_of_(*chains.front()),
         form_{counts_of(form_of_),     form_of_.links.data(),   form_of_.joints.data(), form_of_.shapes.data(),
               form_of_.terrain.data(), form_of_.self_collision, form_of_.step_s},
-        blocks_(chains.size(), static_cast<std::size_t>(kernel.width),
-                ChainMemory<double>::size(form_.counts) + ChainScratch<double>::size(form_.counts)),
-        memory_of_first_(blocks_.block(0), form_.counts, blocks_.width()) {
+        blocks_(chains.size(), static_cast<std::size_t>(kernel.width), ChainMemory<double>::size(form_.counts),
+                ChainScratch<double>::size(form_.counts)),
+        memory_(blocks_.block(0), form_.counts, static_cast<std::size_t>(kernel.width)) {
     for (std::size_t lane = 0; lane < blocks_.lanes(); ++lane) {
       set_constants(lane, *chains[std::min(lane, chains.size() - 1)]);
     }
@@ -60,9 +60,8 @@ class ChainBatch::Implementation {
     for (std::size_t lane = 0; lane < blocks_.lanes(); ++lane) {
       // Now the positions of the links from the centre of mass are known.
       const Point& first = chains[std::min(lane, chains.size() - 1)]->first_link;
-      const ChainMemory<double> memory = memory_of(lane);
-      of(lane, memory.center, 0) = first.x - of(lane, memory.link_position, 0);
-      of(lane, memory.center, 1) = first.z - of(lane, memory.link_position, 1);
+      of(lane, memory_.center, 0) = first.x - of(lane, memory_.link_position, 0);
+      of(lane, memory_.center, 1) = first.z - of(lane, memory_.link_position, 1);
     }
   }
 
@@ -71,8 +70,8 @@ class ChainBatch::Implementation {
   [[nodiscard]] const ChainCounts& counts() const { return form_.counts; }
 
   void step() {
-    blocks_.step([&](double* block) { return kernel_.step_strong(form_, block); },
-                 [&](double* block) { kernel_.step_weak(form_, block); },
+    blocks_.step([&](double* block) { return kernel_.step_strong(form_, block, blocks_.scratch()); },
+                 [&](double* block) { kernel_.step_weak(form_, block, blocks_.scratch()); },
                  [&](std::size_t from, std::size_t to) { copy(from, to); });
     forget_places();
   }
@@ -82,60 +81,49 @@ class ChainBatch::Implementation {
   void place() {
     if (!places_are_current_) {
       for (std::size_t block = 0; block < blocks_.blocks(); ++block) {
-        kernel_.place(form_, blocks_.block(block));
+        kernel_.place(form_, blocks_.block(block), blocks_.scratch());
       }
       places_are_current_ = true;
     }
   }
 
-  /// The first number of an array of a chain; the next ones follow at distances of stride().
-  [[nodiscard]] double* first_of(std::size_t chain, double* ChainMemory<double>::*array) const {
-    return blocks_.block_of(chain) + (memory_of_first_.*array - blocks_.block(0)) + chain % blocks_.width();
-  }
-  [[nodiscard]] std::size_t stride() const { return blocks_.width(); }
-  [[nodiscard]] ChainMemory<double> memory_of(std::size_t lane) const {
-    return {blocks_.block_of(lane), form_.counts, blocks_.width()};
-  }
-  [[nodiscard]] double& of(std::size_t lane, double* array, std::size_t i) const {
-    return array[i * blocks_.width() + lane % blocks_.width()];
+  /// Of the first block.
+  [[nodiscard]] const ChainMemory<double>& memory() const { return memory_; }
+  /// Number i of an array of memory(), but of this lane.
+  [[nodiscard]] double& of(std::size_t lane, const double* array, std::size_t i) const {
+    return blocks_.of(lane, array, i);
   }
 
  private:
   void copy(std::size_t from, std::size_t to) {
-    const std::size_t width = blocks_.width();
-    const ChainMemory<double> source = memory_of(from);
-    const ChainMemory<double> target = memory_of(to);
-    const auto copy_numbers = [&](const double* begin, double* out, std::size_t count) {
-      begin += from % width;
-      out += to % width;
-      for (std::size_t i = 0; i < count * width; i += width) {
-        out[i] = begin[i];
+    const auto copy_numbers = [&](const double* array, std::size_t count) {
+      for (std::size_t i = 0; i < count; ++i) {
+        of(to, array, i) = of(from, array, i);
       }
     };
-    const auto before_contacts = static_cast<std::size_t>(source.contact_key - source.mass) / width;
-    copy_numbers(source.mass, target.mass, before_contacts);
-    const auto contacts = static_cast<std::size_t>(of(from, source.contact_count, 0));
-    copy_numbers(source.contact_key, target.contact_key, contacts);
-    copy_numbers(source.normal_impulse, target.normal_impulse, contacts);
-    copy_numbers(source.friction_impulse, target.friction_impulse, contacts);
+    copy_numbers(memory_.mass, static_cast<std::size_t>(memory_.contact_key - memory_.mass) /
+                                   static_cast<std::size_t>(kernel_.width));
+    const auto contacts = static_cast<std::size_t>(of(from, memory_.contact_count, 0));
+    copy_numbers(memory_.contact_key, contacts);
+    copy_numbers(memory_.normal_impulse, contacts);
+    copy_numbers(memory_.friction_impulse, contacts);
   }
 
   void set_constants(std::size_t lane, const ChainModel& chain) {
-    const ChainMemory<double> memory = memory_of(lane);
     double mass = 0.0;
     for (std::size_t i = 0; i < chain.masses.size(); ++i) {
-      of(lane, memory.mass, i) = chain.masses[i];
-      of(lane, memory.inertia, i) = chain.inertias[i];
+      of(lane, memory_.mass, i) = chain.masses[i];
+      of(lane, memory_.inertia, i) = chain.inertias[i];
       mass += chain.masses[i];
     }
-    of(lane, memory.inverse_mass, 0) = 1.0 / mass;
-    of(lane, memory.gravity, 0) = chain.gravity.x;
-    of(lane, memory.gravity, 1) = chain.gravity.z;
+    of(lane, memory_.inverse_mass, 0) = 1.0 / mass;
+    of(lane, memory_.gravity, 0) = chain.gravity.x;
+    of(lane, memory_.gravity, 1) = chain.gravity.z;
     for (std::size_t i = 0; i < chain.terrain_friction.size(); ++i) {
-      of(lane, memory.terrain_friction, i) = chain.terrain_friction[i];
+      of(lane, memory_.terrain_friction, i) = chain.terrain_friction[i];
     }
     for (std::size_t i = 0; i < chain.self_friction.size(); ++i) {
-      of(lane, memory.self_friction, i) = chain.self_friction[i];
+      of(lane, memory_.self_friction, i) = chain.self_friction[i];
     }
   }
 
@@ -143,7 +131,7 @@ class ChainBatch::Implementation {
   ChainModel form_of_;  ///< owns what form_ points to
   ChainForm form_;
   LaneBlocks blocks_;
-  ChainMemory<double> memory_of_first_;
+  ChainMemory<double> memory_;  ///< of the first block
   bool places_are_current_ = false;
 };
 
@@ -157,56 +145,51 @@ const ChainKernel& ChainBatch::kernel() const { return implementation_->kernel()
 void ChainBatch::step() { implementation_->step(); }
 
 void ChainBatch::set_wanted_speed(std::size_t chain, std::size_t joint, double speed) {
-  implementation_->of(chain, implementation_->memory_of(chain).wanted_speed, joint) = speed;
+  implementation_->of(chain, implementation_->memory().wanted_speed, joint) = speed;
 }
 
 void ChainBatch::set_max_torque(std::size_t chain, std::size_t joint, double torque) {
-  implementation_->of(chain, implementation_->memory_of(chain).max_torque, joint) = torque;
+  implementation_->of(chain, implementation_->memory().max_torque, joint) = torque;
 }
 
 double ChainBatch::joint_angle(std::size_t chain, std::size_t joint) const {
-  return implementation_->of(chain, implementation_->memory_of(chain).joint_angle, joint);
+  return implementation_->of(chain, implementation_->memory().joint_angle, joint);
 }
 
 double ChainBatch::motor_torque(std::size_t chain, std::size_t joint) const {
-  return implementation_->of(chain, implementation_->memory_of(chain).motor_torque, joint);
+  return implementation_->of(chain, implementation_->memory().motor_torque, joint);
 }
 
 void ChainBatch::set_wanted_speeds(std::size_t chain, std::span<const double> signs, std::span<const double> speeds) {
-  double* const wanted = implementation_->first_of(chain, &ChainMemory<double>::wanted_speed);
-  const std::size_t stride = implementation_->stride();
+  const double* const wanted = implementation_->memory().wanted_speed;
   for (std::size_t joint = 0; joint < speeds.size(); ++joint) {
-    wanted[joint * stride] = signs[joint] * speeds[joint];
+    implementation_->of(chain, wanted, joint) = signs[joint] * speeds[joint];
   }
 }
 
 void ChainBatch::read_joints(std::size_t chain, std::span<const double> signs, std::span<double> angles,
                              std::span<double> torques) const {
-  const double* const angle = implementation_->first_of(chain, &ChainMemory<double>::joint_angle);
-  const double* const torque = implementation_->first_of(chain, &ChainMemory<double>::motor_torque);
-  const std::size_t stride = implementation_->stride();
+  const ChainMemory<double>& memory = implementation_->memory();
   for (std::size_t joint = 0; joint < angles.size(); ++joint) {
-    angles[joint] = signs[joint] * angle[joint * stride];
-    torques[joint] = signs[joint] * torque[joint * stride];
+    angles[joint] = signs[joint] * implementation_->of(chain, memory.joint_angle, joint);
+    torques[joint] = signs[joint] * implementation_->of(chain, memory.motor_torque, joint);
   }
 }
 
 void ChainBatch::add_contact_forces(std::size_t chain, std::span<double> sums) const {
-  const double* const force = implementation_->first_of(chain, &ChainMemory<double>::contact_force);
-  const std::size_t stride = implementation_->stride();
   for (std::size_t link = 0; link < sums.size(); ++link) {
-    sums[link] += force[link * stride];
+    sums[link] += contact_force(chain, link);
   }
 }
 
 Point ChainBatch::center(std::size_t chain) const {
-  const ChainMemory<double> memory = implementation_->memory_of(chain);
+  const ChainMemory<double>& memory = implementation_->memory();
   return {implementation_->of(chain, memory.center, 0), implementation_->of(chain, memory.center, 1)};
 }
 
 ChainBatch::LinkPlace ChainBatch::link_place(std::size_t chain, std::size_t link) const {
   implementation_->place();
-  const ChainMemory<double> memory = implementation_->memory_of(chain);
+  const ChainMemory<double>& memory = implementation_->memory();
   const auto of = [&](double* array, std::size_t i) { return implementation_->of(chain, array, i); };
   double angle = of(memory.angle, 0);
   for (std::size_t joint = 0; joint < link; ++joint) {
@@ -220,7 +203,7 @@ ChainBatch::LinkPlace ChainBatch::link_place(std::size_t chain, std::size_t link
 }
 
 ChainBatch::LinkMotion ChainBatch::link_motion(std::size_t chain, std::size_t link) const {
-  const ChainMemory<double> memory = implementation_->memory_of(chain);
+  const ChainMemory<double>& memory = implementation_->memory();
   const auto of = [&](double* array, std::size_t i) { return implementation_->of(chain, array, i); };
   return {{of(memory.center_speed, 0) + of(memory.link_speed, 2 * link),
            of(memory.center_speed, 1) + of(memory.link_speed, 2 * link + 1)},
@@ -228,29 +211,29 @@ ChainBatch::LinkMotion ChainBatch::link_motion(std::size_t chain, std::size_t li
 }
 
 std::uint8_t ChainBatch::pressed(std::size_t chain, std::size_t link) const {
-  return static_cast<std::uint8_t>(implementation_->of(chain, implementation_->memory_of(chain).pressed, link));
+  return static_cast<std::uint8_t>(implementation_->of(chain, implementation_->memory().pressed, link));
 }
 
 double ChainBatch::contact_force(std::size_t chain, std::size_t link) const {
-  return implementation_->of(chain, implementation_->memory_of(chain).contact_force, link);
+  return implementation_->of(chain, implementation_->memory().contact_force, link);
 }
 
 std::size_t ChainBatch::contact_count(std::size_t chain) const {
-  return static_cast<std::size_t>(implementation_->of(chain, implementation_->memory_of(chain).contact_count, 0));
+  return static_cast<std::size_t>(implementation_->of(chain, implementation_->memory().contact_count, 0));
 }
 
 ContactSliding ChainBatch::sliding(std::size_t chain) const {
-  const ChainMemory<double> memory = implementation_->memory_of(chain);
+  const ChainMemory<double>& memory = implementation_->memory();
   return {implementation_->of(chain, memory.sliding, 0), implementation_->of(chain, memory.sliding, 1),
           implementation_->of(chain, memory.sliding, 2)};
 }
 
 double ChainBatch::failure(std::size_t chain) const {
-  return implementation_->of(chain, implementation_->memory_of(chain).failed, 0);
+  return implementation_->of(chain, implementation_->memory().failed, 0);
 }
 
 std::vector<double> ChainBatch::state(std::size_t chain) const {
-  const ChainMemory<double> memory = implementation_->memory_of(chain);
+  const ChainMemory<double>& memory = implementation_->memory();
   const ChainCounts& counts = implementation_->counts();
   std::vector<double> state;
   const auto add = [&](double* array, std::size_t count) {
@@ -268,8 +251,8 @@ std::vector<double> ChainBatch::state(std::size_t chain) const {
 }
 
 void ChainBatch::place_like(std::size_t chain, const ChainBatch& other, std::size_t other_chain, const Point& center) {
-  const ChainMemory<double> memory = implementation_->memory_of(chain);
-  const ChainMemory<double> from = other.implementation_->memory_of(other_chain);
+  const ChainMemory<double>& memory = implementation_->memory();
+  const ChainMemory<double>& from = other.implementation_->memory();
   implementation_->of(chain, memory.angle, 0) = other.implementation_->of(other_chain, from.angle, 0);
   for (std::size_t joint = 0; joint < implementation_->counts().joints; ++joint) {
     implementation_->of(chain, memory.joint_angle, joint) = other.joint_angle(other_chain, joint);

@@ -6,20 +6,20 @@
 namespace proleg::sim::reduced {
 
 /// Steps the chains of a block, one in each lane, with the instructions of one kind of processor. All kernels give the
-/// same bits. The block has a ChainMemory and behind it a ChainScratch, aligned to 64 bytes.
+/// same bits. The block is a ChainMemory, `scratch` a ChainScratch, both aligned to 64 bytes.
 struct ChainKernel {
   const char* instructions;  ///< e.g. "AVX2"
   int width;                 ///< chains in a block
   /// ChainStep::step_strong().
-  unsigned (*step_strong)(const ChainForm& form, double* block);
+  unsigned (*step_strong)(const ChainForm& form, double* block, double* scratch);
   /// ChainStep::step_weak().
-  void (*step_weak)(const ChainForm& form, double* block);
+  void (*step_weak)(const ChainForm& form, double* block, double* scratch);
   /// Only computes where the links are.
-  void (*place)(const ChainForm& form, double* block);
-  // The same for chains with joints of any axis. The block has a SpatialMemory and behind it a SpatialScratch.
-  unsigned (*step_strong_in_space)(const SpatialForm& form, double* block);
-  void (*step_weak_in_space)(const SpatialForm& form, double* block);
-  void (*place_in_space)(const SpatialForm& form, double* block);
+  void (*place)(const ChainForm& form, double* block, double* scratch);
+  // The same for chains with joints of any axis. The block is a SpatialMemory, `scratch` a SpatialScratch.
+  unsigned (*step_strong_in_space)(const SpatialForm& form, double* block, double* scratch);
+  void (*step_weak_in_space)(const SpatialForm& form, double* block, double* scratch);
+  void (*place_in_space)(const SpatialForm& form, double* block, double* scratch);
 };
 
 /// For every processor.

@@ -42,6 +42,11 @@ class ContactSearch {
     for (int lane = 0; lane < width; ++lane) {
       most = found_[lane] > most ? found_[lane] : most;
     }
+    for (int lane = 0; lane < width; ++lane) {
+      for (std::size_t contact = found_[lane]; contact < most; ++contact) {
+        clear(contact, lane);
+      }
+    }
     return most;
   }
 
@@ -144,6 +149,20 @@ class ContactSearch {
           press(link, lane, ahead[lane] < 0.0 ? 1 : 2);
         }
       }
+    }
+  }
+
+  /// A contact that only other lanes have. What another chain has left in the scratch memory may be no number, and
+  /// then 0 times it is none either.
+  void clear(std::size_t contact, int lane) {
+    for (std::size_t i = 2 * contact; i < 2 * contact + 2; ++i) {
+      s_.arm[i][lane] = 0.0;
+      s_.normal[i][lane] = 0.0;
+    }
+    Number* const arrays[] = {s_.link, s_.other_link, s_.depth_speed, s_.friction,
+                              s_.key,  s_.old_normal, s_.old_friction};
+    for (Number* const array : arrays) {
+      array[contact][lane] = 0.0;
     }
   }
 

@@ -10,9 +10,9 @@ template <int width>
 struct Block {
   using Number = typename Lanes<width>::Number;
 
-  Block(const ChainForm& form, double* numbers)
-      : memory(reinterpret_cast<Number*>(numbers), form.counts),
-        scratch(reinterpret_cast<Number*>(numbers) + ChainMemory<Number>::size(form.counts), form.counts),
+  Block(const ChainForm& form, double* block, double* scratch_numbers)
+      : memory(reinterpret_cast<Number*>(block), form.counts),
+        scratch(reinterpret_cast<Number*>(scratch_numbers), form.counts),
         step(form, memory, scratch) {}
 
   ChainMemory<Number> memory;
@@ -21,27 +21,27 @@ struct Block {
 };
 
 template <int width>
-unsigned step_strong(const ChainForm& form, double* numbers) {
-  return Block<width>(form, numbers).step.step_strong();
+unsigned step_strong(const ChainForm& form, double* block, double* scratch) {
+  return Block<width>(form, block, scratch).step.step_strong();
 }
 
 template <int width>
-void step_weak(const ChainForm& form, double* numbers) {
-  Block<width>(form, numbers).step.step_weak();
+void step_weak(const ChainForm& form, double* block, double* scratch) {
+  Block<width>(form, block, scratch).step.step_weak();
 }
 
 template <int width>
-void place(const ChainForm& form, double* numbers) {
-  Block<width>(form, numbers).step.place();
+void place(const ChainForm& form, double* block, double* scratch) {
+  Block<width>(form, block, scratch).step.place();
 }
 
 template <int width>
 struct SpatialBlock {
   using Number = typename Lanes<width>::Number;
 
-  SpatialBlock(const SpatialForm& form, double* numbers)
-      : memory(reinterpret_cast<Number*>(numbers), form.counts),
-        scratch(reinterpret_cast<Number*>(numbers) + SpatialMemory<Number>::size(form.counts), form.counts),
+  SpatialBlock(const SpatialForm& form, double* block, double* scratch_numbers)
+      : memory(reinterpret_cast<Number*>(block), form.counts),
+        scratch(reinterpret_cast<Number*>(scratch_numbers), form.counts),
         step(form, memory, scratch) {}
 
   SpatialMemory<Number> memory;
@@ -50,18 +50,18 @@ struct SpatialBlock {
 };
 
 template <int width>
-unsigned step_strong_in_space(const SpatialForm& form, double* numbers) {
-  return SpatialBlock<width>(form, numbers).step.step_strong();
+unsigned step_strong_in_space(const SpatialForm& form, double* block, double* scratch) {
+  return SpatialBlock<width>(form, block, scratch).step.step_strong();
 }
 
 template <int width>
-void step_weak_in_space(const SpatialForm& form, double* numbers) {
-  SpatialBlock<width>(form, numbers).step.step_weak();
+void step_weak_in_space(const SpatialForm& form, double* block, double* scratch) {
+  SpatialBlock<width>(form, block, scratch).step.step_weak();
 }
 
 template <int width>
-void place_in_space(const SpatialForm& form, double* numbers) {
-  SpatialBlock<width>(form, numbers).step.place();
+void place_in_space(const SpatialForm& form, double* block, double* scratch) {
+  SpatialBlock<width>(form, block, scratch).step.place();
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <new>
 #include <span>
@@ -12,21 +14,31 @@
 namespace proleg::sim::reduced {
 
 /// The memory of the chains of a batch: blocks of as many chains as a vector has lanes, and one more block in which the
-/// chains with weak motors are stepped. Number i of a chain is the double at i * width() + its lane of its block.
+/// chains with weak motors are stepped. Number i of a chain is the double at i * width + its lane of its block. All
+/// blocks have one scratch memory, for what a step computes and nothing keeps: so it stays in the processor's cache.
 class LaneBlocks {
  public:
-  /// numbers: of a chain, with scratch memory. All are 0 at first.
-  LaneBlocks(std::size_t chains, std::size_t width, std::size_t numbers)
-      : size_(chains), width_(width), block_size_(numbers * width), numbers_(allocate(block_size_ * (blocks() + 1))) {}
+  /// width: a power of two. numbers: of a chain, at first 0. scratch_numbers: for a chain, at first not numbers: so a
+  /// step that reads what it has not computed gives wrong results at once.
+  LaneBlocks(std::size_t chains, std::size_t width, std::size_t numbers, std::size_t scratch_numbers)
+      : size_(chains),
+        width_(width),
+        log2_width_(static_cast<unsigned>(std::countr_zero(width))),
+        block_size_(numbers * width),
+        numbers_(allocate(block_size_ * (blocks() + 1), 0.0)),
+        scratch_(allocate(scratch_numbers * width, std::numeric_limits<double>::quiet_NaN())) {}
 
   [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] std::size_t width() const { return width_; }
   [[nodiscard]] std::size_t blocks() const { return (size_ + width_ - 1) / width_; }
   /// The lanes of the last block that have no chain are filled up with copies of a chain.
   [[nodiscard]] std::size_t lanes() const { return blocks() * width_; }
   [[nodiscard]] double* block(std::size_t number) const { return numbers_.get() + number * block_size_; }
-  /// lane: from 0, over all blocks.
-  [[nodiscard]] double* block_of(std::size_t lane) const { return block(lane / width_); }
+  [[nodiscard]] double* scratch() const { return scratch_.get(); }
+  /// Number i of an array of a lane. array: the array in block(0). lane: from 0, over all blocks.
+  [[nodiscard]] double& of(std::size_t lane, const double* array, std::size_t i) const {
+    const auto offset = static_cast<std::size_t>(array - numbers_.get());
+    return numbers_[(lane >> log2_width_) * block_size_ + offset + (i << log2_width_) + (lane & (width_ - 1))];
+  }
 
   /// strong(block): steps the chains of a block; the bits of those that have weak motors. weak(block): steps these.
   /// copy(from, to): copies the numbers of a lane to another one.
@@ -61,16 +73,18 @@ class LaneBlocks {
   };
   using Numbers = std::unique_ptr<double[], Free>;
 
-  static Numbers allocate(std::size_t count) {
+  static Numbers allocate(std::size_t count, double value) {
     Numbers numbers(static_cast<double*>(::operator new[](count * sizeof(double), std::align_val_t{alignment})));
-    std::fill_n(numbers.get(), count, 0.0);
+    std::fill_n(numbers.get(), count, value);
     return numbers;
   }
 
   std::size_t size_;
   std::size_t width_;
+  unsigned log2_width_;
   std::size_t block_size_;  ///< in numbers
   Numbers numbers_;
+  Numbers scratch_;
   std::vector<std::size_t> weak_;  ///< chains, in a step
 };
 

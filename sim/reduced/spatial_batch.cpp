@@ -23,8 +23,9 @@ class SpatialBatch::Implementation {
               form_of_.floor,
               form_of_.self_collision,
               form_of_.step_s},
-        blocks_(chains.size(), static_cast<std::size_t>(kernel.width),
-                SpatialMemory<double>::size(form_.counts) + SpatialScratch<double>::size(form_.counts)) {
+        blocks_(chains.size(), static_cast<std::size_t>(kernel.width), SpatialMemory<double>::size(form_.counts),
+                SpatialScratch<double>::size(form_.counts)),
+        memory_(blocks_.block(0), form_.counts, static_cast<std::size_t>(kernel.width)) {
     for (std::size_t lane = 0; lane < blocks_.lanes(); ++lane) {
       set_constants(lane, *chains[std::min(lane, chains.size() - 1)]);
     }
@@ -33,10 +34,9 @@ class SpatialBatch::Implementation {
     for (std::size_t lane = 0; lane < blocks_.lanes(); ++lane) {
       // Now the positions of the links from the centre of mass are known.
       const Point3& first = chains[std::min(lane, chains.size() - 1)]->first_link;
-      const SpatialMemory<double> memory = memory_of(lane);
-      of(lane, memory.center, 0) = first.x - of(lane, memory.link_position, 0);
-      of(lane, memory.center, 1) = first.y - of(lane, memory.link_position, 1);
-      of(lane, memory.center, 2) = first.z - of(lane, memory.link_position, 2);
+      of(lane, memory_.center, 0) = first.x - of(lane, memory_.link_position, 0);
+      of(lane, memory_.center, 1) = first.y - of(lane, memory_.link_position, 1);
+      of(lane, memory_.center, 2) = first.z - of(lane, memory_.link_position, 2);
     }
   }
 
@@ -45,8 +45,8 @@ class SpatialBatch::Implementation {
   [[nodiscard]] const BoxForm& box(std::size_t number) const { return form_.boxes[number]; }
 
   void step() {
-    blocks_.step([&](double* block) { return kernel_.step_strong_in_space(form_, block); },
-                 [&](double* block) { kernel_.step_weak_in_space(form_, block); },
+    blocks_.step([&](double* block) { return kernel_.step_strong_in_space(form_, block, blocks_.scratch()); },
+                 [&](double* block) { kernel_.step_weak_in_space(form_, block, blocks_.scratch()); },
                  [&](std::size_t from, std::size_t to) { copy(from, to); });
     forget_places();
   }
@@ -56,62 +56,60 @@ class SpatialBatch::Implementation {
   void place() {
     if (!places_are_current_) {
       for (std::size_t block = 0; block < blocks_.blocks(); ++block) {
-        kernel_.place_in_space(form_, blocks_.block(block));
+        kernel_.place_in_space(form_, blocks_.block(block), blocks_.scratch());
       }
       places_are_current_ = true;
     }
   }
 
-  [[nodiscard]] SpatialMemory<double> memory_of(std::size_t lane) const {
-    return {blocks_.block_of(lane), form_.counts, blocks_.width()};
+  /// Of the first block.
+  [[nodiscard]] const SpatialMemory<double>& memory() const { return memory_; }
+  /// Number i of an array of memory(), but of this lane.
+  [[nodiscard]] double& of(std::size_t lane, const double* array, std::size_t i) const {
+    return blocks_.of(lane, array, i);
   }
-  [[nodiscard]] double& of(std::size_t lane, double* array, std::size_t i) const {
-    return array[i * blocks_.width() + lane % blocks_.width()];
-  }
-  [[nodiscard]] Point3 point_of(std::size_t lane, double* array, std::size_t i) const {
+  [[nodiscard]] Point3 point_of(std::size_t lane, const double* array, std::size_t i) const {
     return {of(lane, array, 3 * i), of(lane, array, 3 * i + 1), of(lane, array, 3 * i + 2)};
   }
 
  private:
   void copy(std::size_t from, std::size_t to) {
-    const std::size_t width = blocks_.width();
-    const SpatialMemory<double> source = memory_of(from);
-    const SpatialMemory<double> target = memory_of(to);
-    const auto copy_numbers = [&](double* begin, double* out, std::size_t count) {
+    const auto copy_numbers = [&](const double* array, std::size_t count) {
       for (std::size_t i = 0; i < count; ++i) {
-        of(to, out, i) = of(from, begin, i);
+        of(to, array, i) = of(from, array, i);
       }
     };
-    copy_numbers(source.mass, target.mass, static_cast<std::size_t>(source.contact_corner - source.mass) / width);
-    const auto contacts = static_cast<std::size_t>(of(from, source.contact_count, 0));
-    copy_numbers(source.contact_corner, target.contact_corner, contacts);
-    copy_numbers(source.impulse, target.impulse, 3 * contacts);
+    copy_numbers(memory_.mass, static_cast<std::size_t>(memory_.contact_corner - memory_.mass) /
+                                   static_cast<std::size_t>(kernel_.width));
+    const auto contacts = static_cast<std::size_t>(of(from, memory_.contact_count, 0));
+    copy_numbers(memory_.contact_corner, contacts);
+    copy_numbers(memory_.impulse, 3 * contacts);
   }
 
   void set_constants(std::size_t lane, const SpatialModel& chain) {
-    const SpatialMemory<double> memory = memory_of(lane);
     const auto set = [&](double* array, std::span<const double> values) {
       for (std::size_t i = 0; i < values.size(); ++i) {
         of(lane, array, i) = values[i];
       }
     };
-    set(memory.mass, chain.masses);
-    set(memory.inertia, chain.inertias);
-    set(memory.friction, chain.friction);
-    set(memory.orientation, chain.orientation);
+    set(memory_.mass, chain.masses);
+    set(memory_.inertia, chain.inertias);
+    set(memory_.friction, chain.friction);
+    set(memory_.orientation, chain.orientation);
     const double gravity[] = {chain.gravity.x, chain.gravity.y, chain.gravity.z};
-    set(memory.gravity, gravity);
+    set(memory_.gravity, gravity);
     double mass = 0.0;
     for (const double of_link : chain.masses) {
       mass += of_link;
     }
-    of(lane, memory.inverse_mass, 0) = 1.0 / mass;
+    of(lane, memory_.inverse_mass, 0) = 1.0 / mass;
   }
 
   const ChainKernel& kernel_;
   SpatialModel form_of_;  ///< owns what form_ points to
   SpatialForm form_;
   LaneBlocks blocks_;
+  SpatialMemory<double> memory_;  ///< of the first block
   bool places_are_current_ = false;
 };
 
@@ -124,22 +122,22 @@ std::size_t SpatialBatch::size() const { return implementation_->size(); }
 void SpatialBatch::step() { implementation_->step(); }
 
 void SpatialBatch::set_wanted_speed(std::size_t chain, std::size_t joint, double speed) {
-  implementation_->of(chain, implementation_->memory_of(chain).wanted_speed, joint) = speed;
+  implementation_->of(chain, implementation_->memory().wanted_speed, joint) = speed;
 }
 
 void SpatialBatch::set_wanted_speeds(std::size_t chain, std::span<const double> speeds) {
-  const SpatialMemory<double> memory = implementation_->memory_of(chain);
+  const SpatialMemory<double>& memory = implementation_->memory();
   for (std::size_t joint = 0; joint < speeds.size(); ++joint) {
     implementation_->of(chain, memory.wanted_speed, joint) = speeds[joint];
   }
 }
 
 void SpatialBatch::set_max_torque(std::size_t chain, std::size_t joint, double torque) {
-  implementation_->of(chain, implementation_->memory_of(chain).max_torque, joint) = torque;
+  implementation_->of(chain, implementation_->memory().max_torque, joint) = torque;
 }
 
 void SpatialBatch::read_joints(std::size_t chain, std::span<double> angles, std::span<double> torques) const {
-  const SpatialMemory<double> memory = implementation_->memory_of(chain);
+  const SpatialMemory<double>& memory = implementation_->memory();
   for (std::size_t joint = 0; joint < angles.size(); ++joint) {
     angles[joint] = implementation_->of(chain, memory.joint_angle, joint);
     torques[joint] = implementation_->of(chain, memory.motor_torque, joint);
@@ -147,27 +145,27 @@ void SpatialBatch::read_joints(std::size_t chain, std::span<double> angles, std:
 }
 
 double SpatialBatch::joint_angle(std::size_t chain, std::size_t joint) const {
-  return implementation_->of(chain, implementation_->memory_of(chain).joint_angle, joint);
+  return implementation_->of(chain, implementation_->memory().joint_angle, joint);
 }
 
 double SpatialBatch::motor_torque(std::size_t chain, std::size_t joint) const {
-  return implementation_->of(chain, implementation_->memory_of(chain).motor_torque, joint);
+  return implementation_->of(chain, implementation_->memory().motor_torque, joint);
 }
 
 void SpatialBatch::add_contact_forces(std::size_t chain, std::span<double> sums) const {
-  const SpatialMemory<double> memory = implementation_->memory_of(chain);
+  const SpatialMemory<double>& memory = implementation_->memory();
   for (std::size_t link = 0; link < sums.size(); ++link) {
     sums[link] += implementation_->of(chain, memory.contact_force, link);
   }
 }
 
 Point3 SpatialBatch::center(std::size_t chain) const {
-  return implementation_->point_of(chain, implementation_->memory_of(chain).center, 0);
+  return implementation_->point_of(chain, implementation_->memory().center, 0);
 }
 
 SpatialBatch::LinkPlace SpatialBatch::link_place(std::size_t chain, std::size_t link) const {
   implementation_->place();
-  const SpatialMemory<double> memory = implementation_->memory_of(chain);
+  const SpatialMemory<double>& memory = implementation_->memory();
   const Point3 middle = center(chain);
   const Point3 from_middle = implementation_->point_of(chain, memory.link_position, link);
   LinkPlace place{{middle.x + from_middle.x, middle.y + from_middle.y, middle.z + from_middle.z}, {}};
@@ -178,7 +176,7 @@ SpatialBatch::LinkPlace SpatialBatch::link_place(std::size_t chain, std::size_t 
 }
 
 SpatialBatch::LinkMotion SpatialBatch::link_motion(std::size_t chain, std::size_t link) const {
-  const SpatialMemory<double> memory = implementation_->memory_of(chain);
+  const SpatialMemory<double>& memory = implementation_->memory();
   const Point3 of_center = implementation_->point_of(chain, memory.center_speed, 0);
   const Point3 own = implementation_->point_of(chain, memory.link_speed, link);
   return {{of_center.x + own.x, of_center.y + own.y, of_center.z + own.z},
@@ -187,24 +185,24 @@ SpatialBatch::LinkMotion SpatialBatch::link_motion(std::size_t chain, std::size_
 }
 
 std::uint8_t SpatialBatch::pressed(std::size_t chain, std::size_t link) const {
-  return static_cast<std::uint8_t>(implementation_->of(chain, implementation_->memory_of(chain).pressed, link));
+  return static_cast<std::uint8_t>(implementation_->of(chain, implementation_->memory().pressed, link));
 }
 
 double SpatialBatch::contact_force(std::size_t chain, std::size_t link) const {
-  return implementation_->of(chain, implementation_->memory_of(chain).contact_force, link);
+  return implementation_->of(chain, implementation_->memory().contact_force, link);
 }
 
 std::size_t SpatialBatch::contact_count(std::size_t chain) const {
-  return static_cast<std::size_t>(implementation_->of(chain, implementation_->memory_of(chain).contact_count, 0));
+  return static_cast<std::size_t>(implementation_->of(chain, implementation_->memory().contact_count, 0));
 }
 
 ContactSliding SpatialBatch::sliding(std::size_t chain) const {
-  const Point3 sliding = implementation_->point_of(chain, implementation_->memory_of(chain).sliding, 0);
+  const Point3 sliding = implementation_->point_of(chain, implementation_->memory().sliding, 0);
   return {sliding.x, sliding.y, sliding.z};
 }
 
 std::optional<std::pair<std::size_t, std::size_t>> SpatialBatch::touching_links(std::size_t chain) const {
-  const double code = implementation_->of(chain, implementation_->memory_of(chain).overlap, 0);
+  const double code = implementation_->of(chain, implementation_->memory().overlap, 0);
   if (code == 0.0) {
     return std::nullopt;
   }
@@ -214,11 +212,11 @@ std::optional<std::pair<std::size_t, std::size_t>> SpatialBatch::touching_links(
 }
 
 bool SpatialBatch::failed(std::size_t chain) const {
-  return implementation_->of(chain, implementation_->memory_of(chain).failed, 0) != 0.0;
+  return implementation_->of(chain, implementation_->memory().failed, 0) != 0.0;
 }
 
 std::vector<double> SpatialBatch::state(std::size_t chain) const {
-  const SpatialMemory<double> memory = implementation_->memory_of(chain);
+  const SpatialMemory<double>& memory = implementation_->memory();
   const SpatialCounts& counts = implementation_->counts();
   std::vector<double> state;
   const auto add = [&](double* array, std::size_t count) {
@@ -236,13 +234,13 @@ std::vector<double> SpatialBatch::state(std::size_t chain) const {
 }
 
 SpatialBatch::Orientation SpatialBatch::orientation(std::size_t chain) const {
-  double* const numbers = implementation_->memory_of(chain).orientation;
+  double* const numbers = implementation_->memory().orientation;
   return {implementation_->of(chain, numbers, 0), implementation_->of(chain, numbers, 1),
           implementation_->of(chain, numbers, 2), implementation_->of(chain, numbers, 3)};
 }
 
 void SpatialBatch::move(std::size_t chain, const Point3& center, const Orientation& orientation) {
-  const SpatialMemory<double> memory = implementation_->memory_of(chain);
+  const SpatialMemory<double>& memory = implementation_->memory();
   const SpatialCounts& counts = implementation_->counts();
   const auto set = [&](double* array, std::initializer_list<double> values) {
     std::size_t i = 0;

@@ -67,9 +67,9 @@ std::optional<std::string> position_text(const Overrides& overrides) {
 std::span<const OverrideDeclaration> override_declarations() {
   static const std::string engine_help =
       engine_words() +
-      ": what computes the motion, instead of the engine of the environment. The reduced engine has chains in a plane; "
-      "it "
-      "is faster and gives the same bits on every machine. MuJoCo is another opinion, if the program is built with it.";
+      ": what computes the motion, instead of the engine of the environment. The reduced engine has chains in a plane "
+      "or on a level floor; it is faster and gives the same bits on every machine. MuJoCo is another opinion, if the "
+      "program is built with it.";
   static const OverrideDeclaration declarations[] = {
       {"engine", &OverrideWords::engine, true, engine_help},
       {"seed", &OverrideWords::seed, false, "seed of the run instead of that of the scenario"},

@@ -38,18 +38,26 @@ double processor_time() {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) * 1e-9;
 }
 
-struct Evaluations {
-  std::vector<double> distances;  ///< m
-  double per_second = 0.0;
-};
+class Evaluations {
+ public:
+  /// What run() gives, the distances of some candidates; and its time counts.
+  template <typename Run>
+  std::vector<double> timed(const Run& run) {
+    const double start = processor_time();
+    std::vector<double> result = run();
+    seconds_ += processor_time() - start;
+    count_ += result.size();
+    return result;
+  }
+  void keep(const std::vector<double>& more) { distances_.insert(distances_.end(), more.begin(), more.end()); }
+  [[nodiscard]] const std::vector<double>& distances() const { return distances_; }  ///< m
+  [[nodiscard]] double per_second() const { return static_cast<double>(count_) / seconds_; }
 
-template <typename Run>
-Evaluations timed(const Run& run) {
-  const double start = processor_time();
-  Evaluations result{run()};
-  result.per_second = static_cast<double>(result.distances.size()) / (processor_time() - start);
-  return result;
-}
+ private:
+  std::vector<double> distances_;
+  std::size_t count_ = 0;
+  double seconds_ = 0.0;
+};
 
 bench::MakeWorld in_mujoco(sim::mujoco::Integrator integrator) {
   return [integrator](const sim::Scenario& scenario) {
@@ -96,43 +104,72 @@ sim::Scenario with_yaw_joints(sim::Scenario scenario) {
 
 void compare(const sim::Scenario& scenario, const char* robot, std::size_t count) {
   const std::vector<sim::Scenario> candidates = bench::candidates(scenario, count, bench::candidate_seed);
-  const std::vector<sim::Scenario> reduced = bench::with_engine(candidates, sim::PhysicsEngine::reduced);
-  const std::vector<sim::Scenario> in_ode = bench::with_engine(candidates, sim::PhysicsEngine::ode);
-  std::printf("%s: evaluations of %.0f s in a second of one core\n", robot, scenario.duration_s);
-  const Evaluations ode = timed([&] { return bench::distances_alone(in_ode); });
-  std::printf("  %-34s %6.2f\n", "ODE", ode.per_second);
-  const auto print = [&](const std::string& name, const Evaluations& result) {
-    std::printf("  %-34s %6.1f  %5.2f x ODE\n", name.c_str(), result.per_second, result.per_second / ode.per_second);
-  };
-  const std::span<const sim::Scenario> some = std::span(reduced).first(std::min(count, bench::batch_size));
-  print("reduced, one at a time", timed([&] { return bench::distances_alone(some); }));
-  Evaluations last;
-  for (const sim::reduced::ChainKernel* kernel : sim::reduced::supported_kernels()) {
-    last = timed([&] { return bench::distances_together(reduced, kernel); });
-    print("reduced, batches of " + std::to_string(bench::batch_size) + ", " + kernel->instructions, last);
+  const std::vector<sim::Scenario> all_reduced = bench::with_engine(candidates, sim::PhysicsEngine::reduced);
+  const std::vector<sim::Scenario> all_in_ode = bench::with_engine(candidates, sim::PhysicsEngine::ode);
+  const std::span<const sim::Scenario> reduced(all_reduced);
+  const std::span<const sim::Scenario> in_ode(all_in_ode);
+  const std::size_t some = std::min(count, bench::batch_size);
+
+  const std::vector<const sim::reduced::ChainKernel*> kernels = sim::reduced::supported_kernels();
+  Evaluations ode;
+  std::vector<Evaluations> together(kernels.size());
+  Evaluations alone;
+  Evaluations mujoco;
+  Evaluations mujoco_euler;
+  // The speed of a machine drifts, so the engines take turns, and the fast ones have several.
+  constexpr std::size_t turns = 4;
+  for (std::size_t first = 0; first < count; first += bench::batch_size) {
+    const std::size_t size = std::min(bench::batch_size, count - first);
+    const bool is_full = size == some;
+    for (std::size_t turn = 0; turn < turns; ++turn) {
+      const std::size_t from = first + turn * size / turns;
+      const std::size_t end = first + (turn + 1) * size / turns;
+      ode.keep(ode.timed([&] { return bench::distances_alone(in_ode.subspan(from, end - from)); }));
+      for (std::size_t i = 0; i < kernels.size() && is_full; ++i) {
+        together[i].timed([&] { return bench::distances_together(reduced.subspan(first, size), kernels[i]); });
+      }
+    }
+    together.back().keep(bench::distances_together(reduced.subspan(first, size), kernels.back()));
+    if (first > 0) {
+      continue;
+    }
+    alone.timed([&] { return bench::distances_alone(reduced.first(size)); });
+    if (sim::mujoco::is_built_in()) {
+      const auto run = [&](sim::mujoco::Integrator integrator) {
+        return bench::distances_alone(reduced.first(size), in_mujoco(integrator));
+      };
+      mujoco.keep(mujoco.timed([&] { return run(sim::mujoco::Integrator::implicit); }));
+      mujoco_euler.timed([&] { return run(sim::mujoco::Integrator::euler); });
+    }
   }
-  std::optional<Evaluations> mujoco;
+
+  std::printf("%s: evaluations of %.0f s in a second of one core\n", robot, scenario.duration_s);
+  std::printf("  %-34s %6.2f\n", "ODE", ode.per_second());
+  const auto print = [&](const std::string& name, const Evaluations& result) {
+    std::printf("  %-34s %6.1f  %5.2f x ODE\n", name.c_str(), result.per_second(),
+                result.per_second() / ode.per_second());
+  };
+  print("reduced, one at a time", alone);
+  for (std::size_t i = 0; i < kernels.size(); ++i) {
+    print("reduced, batches of " + std::to_string(bench::batch_size) + ", " + kernels[i]->instructions, together[i]);
+  }
   if (sim::mujoco::is_built_in()) {
-    const auto run = [&](sim::mujoco::Integrator integrator) {
-      return timed([&] { return bench::distances_alone(some, in_mujoco(integrator)); });
-    };
-    mujoco = run(sim::mujoco::Integrator::implicit);
-    print("MuJoCo, implicit integrator", *mujoco);
-    print("MuJoCo, Euler", run(sim::mujoco::Integrator::euler));
+    print("MuJoCo, implicit integrator", mujoco);
+    print("MuJoCo, Euler", mujoco_euler);
   } else {
     std::puts("  MuJoCo is not built in (libmujoco-dev)");
   }
-  std::printf("two cores against one: %.2f\n", gain_of_two_cores(some));
-  print_agreement("reduced engine", ode.distances, last.distances);
-  if (mujoco) {
-    print_agreement("MuJoCo", ode.distances, mujoco->distances);
+  std::printf("two cores against one: %.2f\n", gain_of_two_cores(reduced.first(some)));
+  print_agreement("reduced engine", ode.distances(), together.back().distances());
+  if (sim::mujoco::is_built_in()) {
+    print_agreement("MuJoCo", ode.distances(), mujoco.distances());
   }
   // How far the result depends on the step, which is no fault of an engine.
-  std::vector<sim::Scenario> finer(in_ode.begin(), in_ode.begin() + static_cast<std::ptrdiff_t>(some.size()));
+  std::vector<sim::Scenario> finer(in_ode.begin(), in_ode.begin() + static_cast<std::ptrdiff_t>(some));
   for (sim::Scenario& candidate : finer) {
     candidate.step_s /= 2.0;
   }
-  print_agreement("ODE with half the step", ode.distances, bench::distances_alone(finer));
+  print_agreement("ODE with half the step", ode.distances(), bench::distances_alone(finer));
 }
 
 /// The shipped gaits: does a resting tail help in each engine?

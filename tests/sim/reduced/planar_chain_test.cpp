@@ -16,7 +16,7 @@ PlanarChain planar(const RobotModel& robot, const EnvironmentModel& environment)
   return make_planar_chain(robot, environment, step_s, "top.xml");
 }
 
-Eigen::Quaterniond turn(double degrees, const Eigen::Vector3d& axis) {
+Eigen::Quaterniond turn_degrees(double degrees, const Eigen::Vector3d& axis) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(degrees / 180 * std::numbers::pi, axis));
 }
 
@@ -59,11 +59,11 @@ TEST(PlanarChain, RefusesByNameRobotsThatDoNotMoveInAVerticalPlane) {
   expect_refused("joint 'J1', whose axis is not parallel to that of joint 'J0'",
                  [](Case& c) { c.robot.joints[1].axis = Eigen::Vector3d::UnitZ(); });
   expect_refused("joint 'J0', whose axis is not horizontal",
-                 [](Case& c) { c.environment.robot_pose.orientation = turn(90, Eigen::Vector3d::UnitY()); });
+                 [](Case& c) { c.environment.robot_pose.orientation = turn_degrees(90, Eigen::Vector3d::UnitY()); });
   expect_refused("a robot without joints that stands on its side", [](Case& c) {
     c.robot.links.resize(1);
     c.robot.joints.clear();
-    c.environment.robot_pose.orientation = turn(90, Eigen::Vector3d::UnitY());
+    c.environment.robot_pose.orientation = turn_degrees(90, Eigen::Vector3d::UnitY());
   });
   expect_refused("the centre of mass of link 'L1', which is not in the plane in which the robot moves",
                  [](Case& c) { c.robot.links[1].mass.center.x() = 0.001; });
@@ -77,8 +77,9 @@ TEST(PlanarChain, RefusesByNameRobotsThatDoNotMoveInAVerticalPlane) {
 }
 
 TEST(PlanarChain, RefusesByNameLinksThatAreNoRectanglesInThePlane) {
-  expect_refused("link 'L1' with a box that is oblique to the plane in which the robot moves",
-                 [](Case& c) { c.robot.links[1].geometries[0].pose.orientation = turn(10, Eigen::Vector3d::UnitZ()); });
+  expect_refused("link 'L1' with a box that is oblique to the plane in which the robot moves", [](Case& c) {
+    c.robot.links[1].geometries[0].pose.orientation = turn_degrees(10, Eigen::Vector3d::UnitZ());
+  });
   expect_refused("link 'L1' with a sphere", [](Case& c) { c.robot.links[1].geometries[0].shape = Shape::sphere; });
   expect_refused("link 'L2' with a cylinder", [](Case& c) { c.robot.links[2].geometries[0].shape = Shape::cylinder; });
 }
@@ -93,9 +94,9 @@ TEST(PlanarChain, RefusesByNameObjectsInTheWayThatAreNoRectanglesInThePlane) {
   stone.geometries[0].shape = Shape::cylinder;
   expect_refused("object 'stone' with a cylinder", add(stone));
   StaticObject step = object("step", {0, 1, 0}, {1, 0.2, 0.05});
-  step.pose.orientation = turn(20, Eigen::Vector3d::UnitZ());
+  step.pose.orientation = turn_degrees(20, Eigen::Vector3d::UnitZ());
   expect_refused("object 'step' with a box that is oblique to the plane in which the robot moves", add(step));
-  step.pose.orientation = turn(20, Eigen::Vector3d::UnitY());
+  step.pose.orientation = turn_degrees(20, Eigen::Vector3d::UnitY());
   expect_refused("object 'step' with a box that is oblique to the plane in which the robot moves", add(step));
   // The robot is 40 mm wide.
   expect_refused("object 'wall', which is in the way of a part of the robot's width only",
@@ -122,7 +123,7 @@ TEST(PlanarChain, TheLowestGroundIsThatOfAllObjectsAlsoBesideTheWay) {
   log.geometries[0].shape = Shape::cylinder;  // its axis is y
   c.environment.objects.push_back(log);
   EXPECT_DOUBLE_EQ(planar(c.robot, c.environment).lowest_ground.value(), -2.25);
-  c.environment.objects[1].pose.orientation = turn(90, Eigen::Vector3d::UnitX());
+  c.environment.objects[1].pose.orientation = turn_degrees(90, Eigen::Vector3d::UnitX());
   EXPECT_NEAR(planar(c.robot, c.environment).lowest_ground.value(), -3.0, 1e-12);
 }
 
@@ -130,7 +131,7 @@ TEST(PlanarChain, TheLowestGroundIsThatOfAllObjectsAlsoBesideTheWay) {
 TEST(PlanarChain, ATurnedFloorEndsWhereItIsNoLongerUnderTheWholeRobot) {
   Case c;
   c.environment.objects[0] = object("floor", {0, 0, -0.5}, {2, 2, 0.5});
-  c.environment.robot_pose.orientation = turn(30, Eigen::Vector3d::UnitZ());
+  c.environment.robot_pose.orientation = turn_degrees(30, Eigen::Vector3d::UnitZ());
   const PlanarChain chain = planar(c.robot, c.environment);
   ASSERT_EQ(chain.terrain.size(), 1U);
   const Rectangle& floor = chain.terrain[0];
@@ -148,7 +149,8 @@ bool is_on_the_grid(double value, int bits) {
 
 TEST(PlanarChain, NumbersAreWholeMultiplesOfPowersOfTwo) {
   Case c;
-  c.environment.robot_pose = {{0.1, 0.2, 0.3}, turn(37, Eigen::Vector3d::UnitZ()) * turn(11, Eigen::Vector3d::UnitX())};
+  c.environment.robot_pose = {{0.1, 0.2, 0.3},
+                              turn_degrees(37, Eigen::Vector3d::UnitZ()) * turn_degrees(11, Eigen::Vector3d::UnitX())};
   c.environment.gravity = {0, 0, -9.80665};
   c.robot.links[1].mass.mass = 1.0 / 3.0;
   const PlanarChain chain = planar(c.robot, c.environment);

@@ -10,33 +10,14 @@
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "sim/ode/ode_world.hpp"
 #include "sim/physics/physics_error.hpp"
-#include "tests/sim/physics/small_world.hpp"
+#include "tests/sim/reduced/worlds.hpp"
 
 namespace proleg::sim::reduced {
 namespace {
 
 std::unique_ptr<World> reduced_world(const RobotModel& robot, const EnvironmentModel& environment) {
   return make_reduced_world(robot, environment, step_s, "test");
-}
-std::unique_ptr<World> ode_world(const RobotModel& robot, const EnvironmentModel& environment) {
-  return make_ode_world(robot, environment, step_s, Stepper::direct);
-}
-
-EnvironmentModel weightless() {
-  EnvironmentModel environment;
-  environment.gravity.setZero();
-  return environment;
-}
-
-Eigen::Quaterniond turn(double rad, const Eigen::Vector3d& axis) {
-  return Eigen::Quaterniond(Eigen::AngleAxisd(rad, axis));
-}
-
-void expect_near(const Pose& pose, const Pose& expected, double tolerance, const std::string& name) {
-  EXPECT_LT((pose.position - expected.position).norm(), tolerance) << name;
-  EXPECT_LT(pose.orientation.angularDistance(expected.orientation), tolerance) << name;
 }
 
 TEST(ReducedWorld, StartsWithTheLinksWhereTheModelPutsThem) {

@@ -15,11 +15,10 @@
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "sim/ode/ode_world.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/reduced/chain_batch.hpp"
 #include "sim/reduced/reduced_world.hpp"
-#include "tests/sim/physics/small_world.hpp"
+#include "tests/sim/reduced/worlds.hpp"
 
 namespace proleg::sim::reduced {
 namespace {
@@ -29,9 +28,6 @@ std::unique_ptr<World> spatial_world(const RobotModel& robot, const EnvironmentM
   auto batch = std::make_shared<SpatialBatch>(std::span(&chain, 1));
   return make_spatial_world(robot, std::move(chain), std::move(batch), 0);
 }
-std::unique_ptr<World> ode_world(const RobotModel& robot, const EnvironmentModel& environment) {
-  return make_ode_world(robot, environment, step_s, Stepper::direct);
-}
 
 /// Every second joint turns about z.
 RobotModel snake(std::size_t links) {
@@ -40,21 +36,6 @@ RobotModel snake(std::size_t links) {
     robot.joints[joint].axis = Eigen::Vector3d::UnitZ();
   }
   return robot;
-}
-
-EnvironmentModel weightless() {
-  EnvironmentModel environment;
-  environment.gravity.setZero();
-  return environment;
-}
-
-Eigen::Quaterniond turn(double rad, const Eigen::Vector3d& axis) {
-  return Eigen::Quaterniond(Eigen::AngleAxisd(rad, axis.normalized()));
-}
-
-void expect_near(const Pose& pose, const Pose& expected, double tolerance, const std::string& name) {
-  EXPECT_LT((pose.position - expected.position).norm(), tolerance) << name;
-  EXPECT_LT(pose.orientation.angularDistance(expected.orientation), tolerance) << name;
 }
 
 /// A gait of a snake: waves of both kinds of joints.

@@ -23,7 +23,7 @@ std::variant<Tcp, Tls> make_stream(boost::asio::ip::tcp::socket socket, boost::a
 
 struct ClientStream::Layers {
   std::variant<Tcp, Tls> stream;
-  Tls* tls = std::get_if<Tls>(&stream);
+  Tls* tls() { return std::get_if<Tls>(&stream); }
 };
 
 ClientStream::ClientStream(boost::asio::ip::tcp::socket socket, boost::asio::ssl::context* tls)
@@ -32,12 +32,13 @@ ClientStream::ClientStream(ClientStream&&) noexcept = default;
 ClientStream::~ClientStream() = default;
 
 boost::beast::tcp_stream& ClientStream::tcp() {
-  return layers_->tls == nullptr ? std::get<Tcp>(layers_->stream) : boost::beast::get_lowest_layer(*layers_->tls);
+  Tls* const tls = layers_->tls();
+  return tls == nullptr ? std::get<Tcp>(layers_->stream) : boost::beast::get_lowest_layer(*tls);
 }
 
 void ClientStream::async_handshake(std::function<void(const error_code&)> handler) {
-  if (layers_->tls != nullptr) {
-    layers_->tls->async_handshake(boost::asio::ssl::stream_base::server, std::move(handler));
+  if (Tls* const tls = layers_->tls()) {
+    tls->async_handshake(boost::asio::ssl::stream_base::server, std::move(handler));
   } else {
     handler(error_code());
   }
@@ -52,12 +53,11 @@ void ClientStream::write_some(const std::vector<boost::asio::const_buffer>& buff
 }
 
 void ClientStream::async_write_last(boost::asio::const_buffer bytes, std::function<void()> handler) {
-  if (layers_->tls != nullptr) {
-    boost::asio::async_write(*layers_->tls, bytes,
-                             [this, handler = std::move(handler)](const error_code&, std::size_t) {
-                               end_sending();
-                               handler();
-                             });
+  if (Tls* const tls = layers_->tls()) {
+    boost::asio::async_write(*tls, bytes, [this, handler = std::move(handler)](const error_code&, std::size_t) {
+      end_sending();
+      handler();
+    });
     return;
   }
   error_code ignored;
@@ -68,8 +68,8 @@ void ClientStream::async_write_last(boost::asio::const_buffer bytes, std::functi
 }
 
 void ClientStream::async_shutdown(std::function<void()> handler) {
-  if (layers_->tls != nullptr) {
-    layers_->tls->async_shutdown([this, handler = std::move(handler)](const error_code&) {
+  if (Tls* const tls = layers_->tls()) {
+    tls->async_shutdown([this, handler = std::move(handler)](const error_code&) {
       end_sending();
       handler();
     });

@@ -1,4 +1,5 @@
-// Boost.Beast and TLS take half a minute to compile: this source and viewer_connection.cpp are compiled by themselves.
+// Boost.Beast takes long to compile: this source, client_stream.cpp and viewer_connection.cpp are compiled by
+// themselves.
 
 #include "host/server/http_connection.hpp"
 

@@ -26,7 +26,7 @@ using namespace proleg::sim::reduced;
 using namespace proleg::sim::reduced::golden;
 
 constexpr std::size_t batch_sizes[] = {1, 2, 3, 7, 16, 64};
-constexpr std::size_t golden_steps[] = {500, 2000, 20000};
+constexpr std::size_t golden_steps[] = {500, 20000};
 constexpr std::size_t sample_steps = 100;
 constexpr std::size_t command_steps = 10;
 

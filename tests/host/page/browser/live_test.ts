@@ -153,8 +153,11 @@ describe('a live simulation', () => {
     await ui.viewer.button('Fastest').click();
     const tick = await ui.viewer.tick();
     await ui.viewer.waitForTick(tick + 500);
-    // On a busy computer the page may have had no time to show that it is there; then the program has paused already.
     await ui.viewer.button('Fastest').click();
+    // On a busy computer the page may have had no time to show that it is there; then the program pauses by itself.
+    const pauses = ui.viewer.button('Pause').click({ timeout: 2000 }).catch(() => undefined);
+    await ui.viewer.waitForState('paused');
+    await pauses;
   });
 });
 

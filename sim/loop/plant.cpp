@@ -267,8 +267,8 @@ void Plant::read_world() {
     joint_angles_[joint] = servos_[joint].angle;
     joint_targets_[joint] = servo_target(servos_[joint].command);
   }
-  for (std::size_t link = 0; link < link_poses_.size(); ++link) {
-    link_poses_[link] = world_->link_pose(link);
+  world_->read_links(link_poses_);
+  for (std::size_t link = 0; link < link_contacts_.size(); ++link) {
     link_contacts_[link] = world_->link_contacts(link);
   }
 }

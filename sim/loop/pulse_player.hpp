@@ -48,9 +48,10 @@ class PulsePlayer {
  private:
   /// The servos take the pulses on which they act by then.
   void take(std::uint64_t until_us) {
+    const std::uint64_t next_sync_us = start_us_ + schedule_.tick_period_us();
     for (; taken_ < pulses_.size(); ++taken_) {
       const ServoPulse& pulse = pulses_[taken_];
-      if (acting_time_us(pulse.time_us, schedule_.servo_period_us(), schedule_.tick_period_us()) > until_us) {
+      if (acting_time_before_sync_us(pulse.time_us, schedule_.servo_period_us(), next_sync_us) > until_us) {
         return;
       }
       plant_.set_command(pulse.joint, pulse.command);

@@ -31,8 +31,11 @@ class ServoPulses {
   /// Appends the pulses of the running joints in the last computed tick, in the order of time, then of joints. To be
   /// called once after each tick.
   void append(const KernelChain& chain, std::vector<ServoPulse>& pulses) {
+    ways_.clear();
     for (unsigned joint = 0; joint < chain.joint_count(); ++joint) {
-      if (!chain.is_running(joint)) {
+      if (chain.is_running(joint)) {
+        ways_.push_back({joint, chain.kernel(joint).previous_setpoint(joint), chain.kernel(joint).setpoint(joint)});
+      } else {
         limiters_[joint].release();
       }
     }
@@ -40,19 +43,24 @@ class ServoPulses {
     const std::uint64_t end = schedule_.first_interval(tick + 1);
     for (std::uint64_t interval = schedule_.first_interval(tick); interval < end; ++interval) {
       const std::int32_t fraction = schedule_.fraction(interval);
-      for (unsigned joint = 0; joint < chain.joint_count(); ++joint) {
-        if (chain.is_running(joint)) {
-          const Kernel& kernel = chain.kernel(joint);
-          const std::int32_t angle = interpolate(kernel.previous_setpoint(joint), kernel.setpoint(joint), fraction);
-          pulses.push_back({schedule_.start_us(interval), joint, servo_command(limiters_[joint].next(angle))});
-        }
+      for (const Way& way : ways_) {
+        const std::int32_t angle = interpolate(way.from, way.to, fraction);
+        pulses.push_back({schedule_.start_us(interval), way.joint, servo_command(limiters_[way.joint].next(angle))});
       }
     }
   }
 
  private:
+  /// Of a running joint, in the tick.
+  struct Way {
+    unsigned joint;
+    std::int32_t from;
+    std::int32_t to;
+  };
+
   ServoSchedule schedule_;
   std::vector<MotionLimiter> limiters_;  ///< by joint
+  std::vector<Way> ways_;                ///< in append()
 };
 
 }  // namespace proleg::sim

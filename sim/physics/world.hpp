@@ -56,6 +56,12 @@ class World {
   }
   /// Pose of the frame of a link in the world.
   [[nodiscard]] virtual Pose link_pose(std::size_t link) const = 0;
+  /// Those of all links.
+  virtual void read_links(std::span<Pose> poses) const {
+    for (std::size_t link = 0; link < poses.size(); ++link) {
+      poses[link] = link_pose(link);
+    }
+  }
   /// Whether no link is faster than the two given speeds: of its centre of mass in m/s, of its rotation in rad/s.
   [[nodiscard]] virtual bool is_slower_than(double speed, double rotation) const = 0;
   /// Centre of mass of the robot in the world.

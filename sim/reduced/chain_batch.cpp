@@ -72,7 +72,8 @@ class ChainBatch::Implementation {
   void step() {
     blocks_.step([&](double* block) { return kernel_.step_strong(form_, block, blocks_.scratch()); },
                  [&](double* block) { kernel_.step_weak(form_, block, blocks_.scratch()); },
-                 [&](std::size_t from, std::size_t to) { copy(from, to); });
+                 [&](std::size_t from, std::size_t to) { copy(memory_.mass, from, to); },
+                 [&](std::size_t from, std::size_t to) { copy(memory_.is_free, from, to); });
     forget_places();
   }
 
@@ -95,18 +96,13 @@ class ChainBatch::Implementation {
   }
 
  private:
-  void copy(std::size_t from, std::size_t to) {
-    const auto copy_numbers = [&](const double* array, std::size_t count) {
-      for (std::size_t i = 0; i < count; ++i) {
-        of(to, array, i) = of(from, array, i);
-      }
-    };
-    copy_numbers(memory_.mass, static_cast<std::size_t>(memory_.contact_key - memory_.mass) /
-                                   static_cast<std::size_t>(kernel_.width));
+  /// From this array on.
+  void copy(const double* first, std::size_t from, std::size_t to) {
+    blocks_.copy(from, to, first, blocks_.numbers_between(first, memory_.contact_key));
     const auto contacts = static_cast<std::size_t>(of(from, memory_.contact_count, 0));
-    copy_numbers(memory_.contact_key, contacts);
-    copy_numbers(memory_.normal_impulse, contacts);
-    copy_numbers(memory_.friction_impulse, contacts);
+    for (const double* const array : {memory_.contact_key, memory_.normal_impulse, memory_.friction_impulse}) {
+      blocks_.copy(from, to, array, contacts);
+    }
   }
 
   void set_constants(std::size_t lane, const ChainModel& chain) {
@@ -187,19 +183,28 @@ Point ChainBatch::center(std::size_t chain) const {
   return {implementation_->of(chain, memory.center, 0), implementation_->of(chain, memory.center, 1)};
 }
 
-ChainBatch::LinkPlace ChainBatch::link_place(std::size_t chain, std::size_t link) const {
+void ChainBatch::read_links(std::size_t chain, std::span<LinkPlace> places) const {
   implementation_->place();
   const ChainMemory<double>& memory = implementation_->memory();
   const auto of = [&](double* array, std::size_t i) { return implementation_->of(chain, array, i); };
+  const Point center = this->center(chain);
   double angle = of(memory.angle, 0);
-  for (std::size_t joint = 0; joint < link; ++joint) {
-    angle += of(memory.joint_angle, joint);
+  for (std::size_t link = 0; link < places.size(); link += 2) {
+    Lanes<2>::Number angles = Lanes<2>::number(angle);
+    if (link + 1 < places.size()) {
+      angles[1] += of(memory.joint_angle, link);
+    }
+    const auto half = sine_cosine<2>(angles * 0.5);
+    for (std::size_t lane = 0; lane < 2 && link + lane < places.size(); ++lane) {
+      places[link + lane] = {{center.x + of(memory.link_position, 2 * (link + lane)),
+                              center.z + of(memory.link_position, 2 * (link + lane) + 1)},
+                             half.sine[lane],
+                             half.cosine[lane]};
+    }
+    if (link + 2 < places.size()) {
+      angle = angles[1] + of(memory.joint_angle, link + 1);
+    }
   }
-  const auto half = sine_cosine<2>(Lanes<2>::number(angle * 0.5));
-  return {{of(memory.center, 0) + of(memory.link_position, 2 * link),
-           of(memory.center, 1) + of(memory.link_position, 2 * link + 1)},
-          half.sine[0],
-          half.cosine[0]};
 }
 
 ChainBatch::LinkMotion ChainBatch::link_motion(std::size_t chain, std::size_t link) const {

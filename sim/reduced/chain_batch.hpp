@@ -56,7 +56,13 @@ class ChainBatch {
     double half_sine;  ///< of half the angle
     double half_cosine;
   };
-  [[nodiscard]] LinkPlace link_place(std::size_t chain, std::size_t link) const;
+  /// Of the first links of a chain.
+  void read_links(std::size_t chain, std::span<LinkPlace> places) const;
+  [[nodiscard]] LinkPlace link_place(std::size_t chain, std::size_t link) const {
+    std::vector<LinkPlace> places(link + 1);
+    read_links(chain, places);
+    return places.back();
+  }
   /// Of its centre of mass, m/s; and its rotation, rad/s.
   struct LinkMotion {
     Point velocity;

@@ -40,10 +40,21 @@ class LaneBlocks {
     return numbers_[(lane >> log2_width_) * block_size_ + offset + (i << log2_width_) + (lane & (width_ - 1))];
   }
 
+  /// Copies the first numbers of an array from a lane to another one.
+  void copy(std::size_t from, std::size_t to, const double* array, std::size_t count) const {
+    for (std::size_t i = 0; i < count; ++i) {
+      of(to, array, i) = of(from, array, i);
+    }
+  }
+  /// How many numbers of a lane lie from one array to another one that follows.
+  [[nodiscard]] std::size_t numbers_between(const double* array, const double* next) const {
+    return static_cast<std::size_t>(next - array) >> log2_width_;
+  }
+
   /// strong(block): steps the chains of a block; the bits of those that have weak motors. weak(block): steps these.
-  /// copy(from, to): copies the numbers of a lane to another one.
-  template <typename Strong, typename Weak, typename Copy>
-  void step(Strong&& strong, Weak&& weak, Copy&& copy) {
+  /// copy(from, to): copies the numbers of a lane to another one; copy_back(from, to): those that a step changes.
+  template <typename Strong, typename Weak, typename Copy, typename CopyBack>
+  void step(Strong&& strong, Weak&& weak, Copy&& copy, CopyBack&& copy_back) {
     weak_.clear();
     for (std::size_t number = 0; number < blocks(); ++number) {
       const unsigned bits = strong(block(number));
@@ -61,7 +72,7 @@ class LaneBlocks {
       }
       weak(block(blocks()));
       for (std::size_t lane = 0; lane < chains.size(); ++lane) {
-        copy(lanes() + lane, chains[lane]);
+        copy_back(lanes() + lane, chains[lane]);
       }
     }
   }

@@ -22,7 +22,8 @@ class ReducedWorld final : public World {
         file_(input.file),
         chain_(std::move(chain)),
         batch_(std::move(batch)),
-        lane_(lane) {
+        lane_(lane),
+        places_(robot_.links.size()) {
     for (std::size_t joint = 0; joint < robot_.joints.size(); ++joint) {
       set_joint_torque(joint, robot_.joints[joint].max_torque);
     }
@@ -73,11 +74,14 @@ class ReducedWorld final : public World {
     return chain_.joint_signs[joint] * batch_->motor_torque(lane_, joint);
   }
   [[nodiscard]] Pose link_pose(std::size_t link) const override {
-    const ChainBatch::LinkPlace place = batch_->link_place(lane_, link);
-    const Eigen::Vector3d turn = -place.half_sine * chain_.plane.across;
-    const Eigen::Quaterniond orientation =
-        Eigen::Quaterniond(place.half_cosine, turn.x(), turn.y(), turn.z()) * chain_.start_orientations[link];
-    return {chain_.plane.lift(place.position) - orientation * chain_.mass_centers[link], orientation};
+    batch_->read_links(lane_, std::span(places_).first(link + 1));
+    return pose_of(link);
+  }
+  void read_links(std::span<Pose> poses) const override {
+    batch_->read_links(lane_, places_);
+    for (std::size_t link = 0; link < poses.size(); ++link) {
+      poses[link] = pose_of(link);
+    }
   }
   [[nodiscard]] bool is_slower_than(double speed, double rotation) const override {
     for (std::size_t link = 0; link < robot_.links.size(); ++link) {
@@ -95,10 +99,11 @@ class ReducedWorld final : public World {
   [[nodiscard]] std::size_t contact_count() const override { return batch_->contact_count(lane_); }
   [[nodiscard]] ContactSliding contact_sliding() const override { return batch_->sliding(lane_); }
   [[nodiscard]] double energy() const override {
+    batch_->read_links(lane_, places_);
     double energy = 0.0;
     for (std::size_t link = 0; link < chain_.masses.size(); ++link) {
       const ChainBatch::LinkMotion motion = batch_->link_motion(lane_, link);
-      const Point position = batch_->link_place(lane_, link).position;
+      const Point position = places_[link].position;
       const double squared_speed = motion.velocity.x * motion.velocity.x + motion.velocity.z * motion.velocity.z;
       const double fall = chain_.gravity.x * position.x + chain_.gravity.z * position.z;
       energy += chain_.masses[link] * (0.5 * squared_speed - fall) +
@@ -119,6 +124,15 @@ class ReducedWorld final : public World {
   }
 
  private:
+  /// The link's place must have been read.
+  [[nodiscard]] Pose pose_of(std::size_t link) const {
+    const ChainBatch::LinkPlace& place = places_[link];
+    const Eigen::Vector3d turn = -place.half_sine * chain_.plane.across;
+    const Eigen::Quaterniond orientation =
+        Eigen::Quaterniond(place.half_cosine, turn.x(), turn.y(), turn.z()) * chain_.start_orientations[link];
+    return {chain_.plane.lift(place.position) - orientation * chain_.mass_centers[link], orientation};
+  }
+
   RobotModel robot_;
   EnvironmentModel environment_;  ///< with the robot's pose after the moves so far
   double step_s_;
@@ -126,6 +140,7 @@ class ReducedWorld final : public World {
   PlanarChain chain_;
   std::shared_ptr<ChainBatch> batch_;
   std::size_t lane_;
+  mutable std::vector<ChainBatch::LinkPlace> places_;  ///< of the links, as they were read last
 };
 
 /// A batch for all chains of one form. use(i, batch, lane): chain i is in this lane; it is not needed any more.

@@ -47,7 +47,8 @@ class SpatialBatch::Implementation {
   void step() {
     blocks_.step([&](double* block) { return kernel_.step_strong_in_space(form_, block, blocks_.scratch()); },
                  [&](double* block) { kernel_.step_weak_in_space(form_, block, blocks_.scratch()); },
-                 [&](std::size_t from, std::size_t to) { copy(from, to); });
+                 [&](std::size_t from, std::size_t to) { copy(memory_.mass, from, to); },
+                 [&](std::size_t from, std::size_t to) { copy(memory_.is_free, from, to); });
     forget_places();
   }
 
@@ -73,17 +74,12 @@ class SpatialBatch::Implementation {
   }
 
  private:
-  void copy(std::size_t from, std::size_t to) {
-    const auto copy_numbers = [&](const double* array, std::size_t count) {
-      for (std::size_t i = 0; i < count; ++i) {
-        of(to, array, i) = of(from, array, i);
-      }
-    };
-    copy_numbers(memory_.mass, static_cast<std::size_t>(memory_.contact_corner - memory_.mass) /
-                                   static_cast<std::size_t>(kernel_.width));
+  /// From this array on.
+  void copy(const double* first, std::size_t from, std::size_t to) {
+    blocks_.copy(from, to, first, blocks_.numbers_between(first, memory_.contact_corner));
     const auto contacts = static_cast<std::size_t>(of(from, memory_.contact_count, 0));
-    copy_numbers(memory_.contact_corner, contacts);
-    copy_numbers(memory_.impulse, 3 * contacts);
+    blocks_.copy(from, to, memory_.contact_corner, contacts);
+    blocks_.copy(from, to, memory_.impulse, 3 * contacts);
   }
 
   void set_constants(std::size_t lane, const SpatialModel& chain) {

@@ -55,6 +55,7 @@ struct Surroundings {
   const Neighbour& ahead;   ///< nearest joint of the group towards the head
   const Neighbour& behind;  ///< nearest joint of the group towards the tail
   const Contacts& contacts;
+  std::int32_t setpoint;  ///< of the joint: the sum of all slots in state k, within the joint's limits
 };
 
 /// Basic interface: an algorithm that gives one joint an angle.

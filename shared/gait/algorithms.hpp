@@ -34,4 +34,14 @@ namespace proleg {
 /// is broadcast. Not the adaptive algorithm of the thesis (section 6.2), and simpler.
 [[nodiscard]] const ActuationModule& sensing_module_uneven_ground_reflex();
 
+/// The adaptive algorithm of the thesis (section 6.2, "Global Adaptive Touch"): offsets for the gait of another slot,
+/// from the contacts of all links. A joint is stuck while something touches the robot, but the touch of the four links
+/// around the joint has not changed for `stuck_threshold`. A stuck joint bends: up if the two outer links touch more
+/// than the two at the joint, down if they touch less, else further to the side of the gait. One of eight constants
+/// says how fast: four for bending up and four for bending down, by the touch of the two links at the joint. A joint
+/// that is not stuck returns to the gait. On flat ground the touch changes in each period. The thesis prints the names
+/// and ranges of the parameters and their effect, but no equations: this is a reading (docs/adaptive-touch.md).
+/// Nothing is broadcast.
+[[nodiscard]] const ActuationModule& sensing_module_global_adaptive_touch();
+
 }  // namespace proleg

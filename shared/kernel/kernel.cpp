@@ -99,7 +99,7 @@ void Kernel::rejoin() {
       SlotMemory& slot = joint.slots[s];
       if (slot.active) {
         const Contacts contacts({frames_[0].data(), slot.sensed_joints});
-        const Surroundings surroundings{tick_, slot.context, slot.ahead, slot.behind, contacts};
+        const Surroundings surroundings{tick_, slot.context, slot.ahead, slot.behind, contacts, joint.setpoint};
         configuration_.slots[s].algorithm->rejoin(surroundings, tuning(slot), current(slot).data());
       }
     }
@@ -116,7 +116,7 @@ void Kernel::compute_next_state(JointMemory& joint) {
     SlotMemory& slot = joint.slots[s];
     if (slot.active) {
       const Contacts contacts({frames_[0].data(), slot.sensed_joints});
-      const Surroundings surroundings{tick_, slot.context, slot.ahead, slot.behind, contacts};
+      const Surroundings surroundings{tick_, slot.context, slot.ahead, slot.behind, contacts, joint.setpoint};
       configuration_.slots[s].algorithm->advance(surroundings, tuning(slot), slot.values[tick_ & 1U].data(),
                                                  slot.values[(tick_ + 1) & 1U].data());
     }

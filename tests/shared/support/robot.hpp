@@ -38,6 +38,7 @@ inline constexpr std::string_view sinusoidal = "PatternGenerator_sinusoidal";
 inline constexpr std::string_view extended = "PatternGenerator_sinusoidal_extended";
 inline constexpr std::string_view coupled = "PatternGenerator_coupled_oscillator";
 inline constexpr std::string_view reflex = "SensingModule_uneven_ground_reflex";
+inline constexpr std::string_view adaptive_touch = "SensingModule_global_adaptive_touch";
 
 /// Joints and links of the robot that most tests of gaits use.
 inline constexpr unsigned robot_joints = 5;

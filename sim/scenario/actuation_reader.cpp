@@ -11,6 +11,7 @@
 #include "shared/gait/registry.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"
+#include "sim/scenario/thesis_names.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {
@@ -18,7 +19,7 @@ namespace {
 
 const ActuationModule& read_algorithm(const XmlElement& module) {
   const std::string name = module.required_attribute("name");
-  const ActuationModule* algorithm = find_algorithm(name);
+  const ActuationModule* algorithm = find_named_algorithm(name);
   if (algorithm == nullptr) {
     std::vector<std::string> known;
     for (std::size_t i = 0; i < algorithm_count(); ++i) {
@@ -52,7 +53,7 @@ ParameterEntry read_parameter(const XmlElement& element, const Scenario& scenari
   const Declaration& declaration = slot.algorithm->declaration();
   ParameterEntry entry;
   const std::string name = element.required_attribute("name");
-  const int index = find_parameter(declaration, name);
+  const int index = find_named_parameter(declaration, name);
   if (index < 0) {
     element.refuse("unknown parameter " + in_quotes(name) + " of " + std::string(declaration.name),
                    "one of " + listed(parameter_names(declaration)));

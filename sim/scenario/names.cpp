@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/scenario/thesis_names.hpp"
+
 namespace proleg::sim {
 
 std::vector<unsigned> used_slots(const Scenario& scenario) {
@@ -28,8 +30,10 @@ std::vector<std::string> slot_names(const Scenario& scenario) {
 
 std::vector<unsigned> find_slots(const Scenario& scenario, const std::string& module) {
   std::vector<unsigned> slots = used_slots(scenario);
+  const ActuationModule* const named = find_named_algorithm(module);
   std::erase_if(slots, [&](unsigned slot) {
-    return module != scenario.kernel.slots[slot].algorithm->declaration().name && module != std::to_string(slot + 1);
+    const ActuationModule* const algorithm = scenario.kernel.slots[slot].algorithm;
+    return algorithm != named && module != algorithm->declaration().name && module != std::to_string(slot + 1);
   });
   return slots;
 }

@@ -10,6 +10,7 @@
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/settings.hpp"
+#include "sim/scenario/thesis_names.hpp"
 #include "sim/scenario/tick_word.hpp"
 
 namespace proleg::sim {
@@ -126,7 +127,7 @@ class Resolver {
     std::vector<Meaning> meanings;
     for (const unsigned slot : slots) {
       const int index = internal ? find_internal_value(declaration(slot), word_->name)
-                                 : find_parameter(declaration(slot), word_->name);
+                                 : find_named_parameter(declaration(slot), word_->name);
       if (index >= 0) {
         meanings.push_back({slot, internal, static_cast<unsigned>(index)});
       }

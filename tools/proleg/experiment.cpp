@@ -16,10 +16,13 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/environment/physics_engine.hpp"
 #include "sim/optimize/method/pagmo_algorithms.hpp"
+#include "sim/optimize/report/crossing_figure.hpp"
 #include "sim/optimize/report/report.hpp"
 #include "sim/optimize/report/thesis_experiment.hpp"
+#include "sim/scenario/reader.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/gait_checks.hpp"
 #include "tools/proleg/json_output.hpp"
 #include "tools/proleg/optimisation.hpp"
 #include "tools/proleg/repetitions.hpp"
@@ -35,7 +38,7 @@ namespace fs = std::filesystem;
 
 struct Options : ExperimentOptions {
   std::string name;
-  std::string repetitions = "3";
+  std::optional<std::string> repetitions;
   std::vector<std::string> methods;
   std::optional<std::string> workers;
   std::optional<std::string> out;
@@ -43,23 +46,24 @@ struct Options : ExperimentOptions {
   bool json = false;
 };
 
-/// A method of the experiment: its name on the command line, its file, and the names of its table and figures.
+/// A method of the experiment, and whether its file is for it; else another algorithm of pagmo searches the file's
+/// space.
 struct Method {
   std::string name;
   std::string file;
   std::string table;
   std::string runs_figure;
   std::string spread_figure;
-  bool shipped = true;  ///< the file is for this method; else another algorithm of pagmo searches the file's space
+  bool shipped = true;
 };
 
 /// The methods of the experiment, and the other algorithms of pagmo that search for one objective.
-std::vector<Method> all_methods() {
-  std::vector<Method> methods{
-      {"great-deluge", "great_deluge.optimise.xml", "table_6_2.tsv", "figure_6_3.svg", "figure_6_4.svg"},
-      {"genetic", "genetic.optimise.xml", "table_6_4.tsv", "figure_6_5.svg", "figure_6_6.svg"},
-      {"cma-es", "cma_es.optimise.xml", "table_cma_es.tsv", "figure_cma_es_runs.svg", "figure_cma_es_spread.svg"},
-  };
+std::vector<Method> all_methods(const optimize::ThesisExperiment& thesis) {
+  std::vector<Method> methods;
+  for (const optimize::ThesisMethod& method : thesis.methods) {
+    methods.push_back({std::string(method.name), std::string(method.file), std::string(method.table),
+                       std::string(method.runs_figure), std::string(method.spread_figure)});
+  }
   for (const optimize::PagmoAlgorithm& algorithm : optimize::pagmo_algorithms()) {
     const std::string name(algorithm.name);
     if (algorithm.objectives != optimize::PagmoAlgorithm::Objectives::several && name != "cmaes") {
@@ -68,6 +72,17 @@ std::vector<Method> all_methods() {
     }
   }
   return methods;
+}
+
+const optimize::ThesisExperiment& find_experiment(const std::string& name) {
+  std::vector<std::string> names;
+  for (const optimize::ThesisExperiment* experiment : optimize::thesis_experiments()) {
+    if (experiment->name == name) {
+      return *experiment;
+    }
+    names.push_back(in_quotes(experiment->name));
+  }
+  throw InputError(name, 0, "unknown experiment " + in_quotes(name), listed(names));
 }
 
 /// Throws InputError unless there is a method of that name.
@@ -110,26 +125,40 @@ optimize::Experiment read(const Options& options, const fs::path& folder, const 
     settings.algorithm = method.name;
     experiment.method = settings;
   }
-  experiment.has_baseline = false;  // the thesis's searches have none; uniform_distance() is in the summary
+  experiment.has_baseline = false;  // the thesis's searches have none; the references are in the summary
   apply_options(options, experiment);
   return experiment;
 }
 
-/// The distance of the scenario without changes: all amplitudes are equal.
-struct UniformDistance {
-  double searched_m;  ///< in the engine of the searches
-  double judged_m;    ///< in the judging engine
-};
-
-UniformDistance uniform_distance(const optimize::Experiment& experiment) {
-  optimize::Task task;
-  task.candidate = experiment.space.nearest(experiment.scenario);
-  const double searched = optimize::run_trial(experiment, task).measures[sim::Measure::distance];
-  if (!optimize::is_judged(experiment)) {
-    return {searched, searched};
+/// A scenario of the experiment that has no search, in the engine of the searches.
+sim::Scenario reference_scenario(const optimize::ReferenceScenario& reference, const optimize::Experiment& experiment,
+                                 const fs::path& folder) {
+  if (reference.file.empty()) {
+    return experiment.scenario;
   }
-  task.trial = experiment.trials.count;
-  return {searched, optimize::run_trial(experiment, task).measures[sim::Measure::distance]};
+  sim::DiskFiles files;
+  sim::Scenario scenario = sim::read_scenario(folder / reference.file, files);
+  scenario.environment.engine = experiment.scenario.environment.engine;
+  return scenario;
+}
+
+std::vector<optimize::Reference> reference_distances(const optimize::ThesisExperiment& thesis,
+                                                     const optimize::Experiment& experiment, const fs::path& folder) {
+  std::vector<optimize::Reference> references;
+  for (const optimize::ReferenceScenario& reference : thesis.references) {
+    optimize::Experiment without_search = experiment;
+    without_search.scenario = reference_scenario(reference, experiment, folder);
+    without_search.space.dimensions.clear();
+    optimize::Task task;
+    const double searched = optimize::run_trial(without_search, task).measures[sim::Measure::distance];
+    double judged = searched;
+    if (optimize::is_judged(experiment)) {
+      task.trial = experiment.trials.count;
+      judged = optimize::run_trial(without_search, task).measures[sim::Measure::distance];
+    }
+    references.push_back({&reference, searched, judged});
+  }
+  return references;
 }
 
 /// Whether the store in a folder has all repetitions of this experiment. Its method is then part of the comparison,
@@ -157,7 +186,7 @@ Json course(const optimize::BestCurves& curves) {
   return means;
 }
 
-Json to_json(const MethodResult& result, const optimize::SearchSpace& space, double uniform_m) {
+Json to_json(const MethodResult& result, const optimize::SearchSpace& space, double reference_m) {
   Json runs = Json::empty_array();
   double sum = 0.0;
   for (std::size_t run = 0; run < result.runs.runs.size(); ++run) {
@@ -172,26 +201,63 @@ Json to_json(const MethodResult& result, const optimize::SearchSpace& space, dou
   return {{"method", result.runs.method},
           {"best_score", result.best->scores.front()},
           {"best_values", values_object(space, result.best->candidate)},
-          {"gain_over_uniform", result.best->scores.front() / uniform_m - 1.0},
+          {"gain", result.best->scores.front() / reference_m - 1.0},
           {"mean_best", sum / static_cast<double>(result.runs.runs.size())},
           {"runs", runs},
           {"wall_s", result.wall_s}};
 }
 
-int experiment(const Options& options) {
+/// The best of each method in other worlds, the crossing of the farthest one, and all distances on a ruler.
+std::vector<CheckedGait> check_gaits(const std::vector<optimize::Reference>& references,
+                                     const std::vector<MethodResult>& results, const fs::path& scenarios,
+                                     const std::vector<std::pair<const Method*, optimize::Experiment>>& chosen,
+                                     const fs::path& folder) {
+  const optimize::Experiment& first = chosen.front().second;
+  const sim::EnvironmentModel level = reference_scenario(*references.back().scenario, first, scenarios).environment;
+  std::vector<CheckedGait> gaits;
+  // The last reference is the level ground itself.
+  for (const optimize::Reference& reference : std::span(references).first(references.size() - 1)) {
+    gaits.push_back(check_gait(std::string(reference.scenario->short_name),
+                               reference_scenario(*reference.scenario, first, scenarios), level));
+  }
+  std::vector<optimize::RulerMark> marks;
+  const MethodResult* farthest = nullptr;
+  const optimize::Experiment* its_experiment = nullptr;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    sim::Scenario best = chosen[i].second.scenario;
+    chosen[i].second.space.apply(results[i].best->candidate, best);
+    gaits.push_back(check_gait(results[i].runs.method, best, level));
+    if (farthest == nullptr || results[i].best->scores.front() > farthest->best->scores.front()) {
+      farthest = &results[i];
+      its_experiment = &chosen[i].second;
+    }
+  }
+  for (const CheckedGait& gait : gaits) {
+    marks.push_back({gait.name, gait.distance_m});
+  }
+  sim::Scenario best = its_experiment->scenario;
+  its_experiment->space.apply(farthest->best->candidate, best);
+  write_file(folder / "figure_6_8.svg", optimize::draw_crossing(best, crossing_stages(best)));
+  write_file(folder / "figure_7_3.svg", optimize::draw_distances(best, marks));
+  return gaits;
+}
+
+int experiment(Options options) {
   if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) {
     throw BadInput(
         "found mpirun, expected none: an experiment runs on one computer; use 'proleg optimise' on a cluster");
   }
-  if (options.name != "travelling_wave") {
-    throw InputError(options.name, 0, "unknown experiment " + in_quotes(options.name), "'travelling_wave'");
-  }
-  const std::optional<std::uint32_t> repetitions = parse_whole<std::uint32_t>(options.repetitions);
+  const optimize::ThesisExperiment& thesis = find_experiment(options.name);
+  const std::string repetitions_word = options.repetitions.value_or(std::string(thesis.repetitions));
+  const std::optional<std::uint32_t> repetitions = parse_whole<std::uint32_t>(repetitions_word);
   if (!repetitions || *repetitions == 0 || *repetitions > 1000) {
-    throw InputError("--repetitions", 0, in_quotes(options.repetitions), "1 to 1000");
+    throw InputError("--repetitions", 0, in_quotes(repetitions_word), "1 to 1000");
+  }
+  if (!options.engine && !thesis.engine.empty()) {
+    options.engine = thesis.engine;
   }
   const std::uint32_t worker_count = parse_workers(options.workers);
-  const std::vector<Method> methods = all_methods();
+  const std::vector<Method> methods = all_methods(thesis);
   for (const std::string& name : options.methods) {
     check_method_name(methods, name);
   }
@@ -215,7 +281,8 @@ int experiment(const Options& options) {
 
   catch_interrupts();
   const auto started = std::chrono::steady_clock::now();
-  const UniformDistance uniform = uniform_distance(chosen.front().second);
+  const std::vector<optimize::Reference> references = reference_distances(thesis, chosen.front().second, scenarios);
+  const double reference_m = references.front().judged_m;
   std::vector<MethodResult> results;
   std::vector<optimize::MethodRuns> all_runs;
   for (const auto& [method, experiment] : chosen) {
@@ -224,14 +291,18 @@ int experiment(const Options& options) {
       std::cerr << "proleg experiment: interrupted; the same command continues in " << folder.string() << '\n';
       return exit_failed;
     }
-    write_file(folder / method->table, optimize::experiment_table(result.runs));
-    write_file(folder / method->runs_figure, optimize::draw_every_run(result.runs, uniform.searched_m));
-    write_file(folder / method->spread_figure, optimize::draw_run_spread(result.runs, uniform.searched_m));
+    write_file(folder / method->table, optimize::experiment_table(thesis, result.runs));
+    write_file(folder / method->runs_figure, optimize::draw_every_run(thesis, result.runs, references));
+    write_file(folder / method->spread_figure, optimize::draw_run_spread(thesis, result.runs, references));
     optimize::write_scenario(experiment, *result.best, folder / method->name, "best");
     all_runs.push_back(result.runs);
     results.push_back(std::move(result));
   }
-  write_file(folder / "figure_7_1.svg", optimize::draw_method_comparison(all_runs, uniform.searched_m));
+  write_file(folder / thesis.comparison_figure, optimize::draw_method_comparison(thesis, all_runs, references));
+  std::vector<CheckedGait> checks;
+  if (&thesis == &optimize::adaptive_touch_experiment()) {
+    checks = check_gaits(references, results, scenarios, chosen, folder);
+  }
   const std::string engine(sim::name_of(chosen.front().second.scenario.environment.engine));
   const std::string judge =
       optimize::is_judged(chosen.front().second)
@@ -240,8 +311,9 @@ int experiment(const Options& options) {
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   std::array<char, 64> time{};
   std::snprintf(time.data(), time.size(), "time: %.1f min with %u workers\n", wall_s / 60.0, worker_count);
-  const std::string summary =
-      optimize::experiment_summary(all_runs, uniform.judged_m) + "\nengine: " + engine + judge + "\n" + time.data();
+  const std::string summary = optimize::experiment_summary(thesis, all_runs, references) +
+                              (checks.empty() ? "" : "\n" + gait_checks_text(checks)) + "\nengine: " + engine + judge +
+                              "\n" + time.data();
   write_file(folder / "summary.txt", summary);
 
   if (!options.json) {
@@ -256,7 +328,7 @@ int experiment(const Options& options) {
   const auto genetic = curves.find("genetic");
   Json list = Json::empty_array();
   for (std::size_t i = 0; i < results.size(); ++i) {
-    Json entry = to_json(results[i], chosen[i].second.space, uniform.judged_m);
+    Json entry = to_json(results[i], chosen[i].second.space, reference_m);
     entry.add("mean_best_after", course(curves[results[i].runs.method]));
     if (deluge != curves.end()) {
       entry.add("reaches_mean_of_great_deluge_after",
@@ -271,9 +343,15 @@ int experiment(const Options& options) {
                         {"share_above", difference.share_above},
                         {"p_value", difference.p_value}});
   }
-  Json object{
-      {"experiment", options.name}, {"engine", engine}, {"uniform_m", uniform.judged_m}, {"methods", list},
-      {"differences", differences}, {"wall_s", wall_s}, {"out", folder.string()},        {"build_id", build_id}};
+  Json distances = Json::empty_object();
+  for (const optimize::Reference& reference : references) {
+    distances.add(std::string(reference.scenario->short_name), reference.judged_m);
+  }
+  Json object{{"experiment", options.name}, {"engine", engine}, {"references", distances}, {"methods", list},
+              {"differences", differences}, {"wall_s", wall_s}, {"out", folder.string()},  {"build_id", build_id}};
+  if (!checks.empty()) {
+    object.add("gaits", gait_checks_json(checks));
+  }
   if (deluge != curves.end() && genetic != curves.end()) {
     object.add("great_deluge_above_genetic_after", optimize::overtaking(deluge->second, genetic->second));
   }
@@ -289,12 +367,18 @@ int main(int argc, char** argv) {
       "Repeats an experiment of the thesis with several methods. Writes its tables and figures with the published "
       "numbers beside. Continues where it was interrupted.");
   Options options;
-  command_line.add_option("NAME", options.name, "travelling_wave: the amplitudes of section 6.1").required();
-  command_line.add_option("--repetitions", options.repetitions,
-                          "number of searches with each method; default: 3; the thesis made 30");
+  command_line
+      .add_option("NAME", options.name,
+                  "travelling_wave: the amplitudes of section 6.1; adaptive_touch: the constants of section 6.2")
+      .required();
+  command_line.add_option(
+      "--repetitions", options.repetitions,
+      "number of searches with each method; default: 3 of travelling_wave, where the thesis made 30; 20 of "
+      "adaptive_touch, as the thesis");
   command_line.add_option(
       "--method", options.methods,
-      "great-deluge, genetic, cma-es, or another algorithm of pagmo; may be repeated; default: the first three. "
+      "great-deluge, genetic, cma-es, or another algorithm of pagmo; adaptive_touch also has great-deluge-bounded; may "
+      "be repeated; default: those of the thesis, and cma-es. "
       "Methods that the folder already has are shown, too.");
   add_engine_option(command_line, options);
   command_line.add_option("--evaluations", options.evaluations,

@@ -1,18 +1,19 @@
-// proleg new: writes the files of a new robot.
+// proleg new: writes the files of a new robot or obstacle.
 
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <optional>
 #include <string>
-#include <system_error>
+#include <string_view>
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/joint_mask.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/new_files.hpp"
+#include "tools/proleg/new_obstacle.hpp"
 #include "tools/proleg/robot_files.hpp"
 
 namespace {
@@ -52,35 +53,13 @@ std::string axes_of_joints(const std::string& pattern, std::uint32_t joints) {
   return axes;
 }
 
-void create_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw BadInput("cannot create the folder " + folder.string() + ": " + error.message());
-  }
-}
-
 int write_robot(const NewOptions& options) {
   if (options.what != "robot") {
-    throw BadInput("found " + in_quotes(options.what) + ", expected 'robot'");
+    throw BadInput("found " + in_quotes(options.what) + ", expected 'robot' or 'obstacle'");
   }
   const std::vector<NewFile> files = robot_files(axes_of_joints(options.axes, parse_joints(options.joints)));
-  if (options.out.empty()) {
-    throw InputError("--out", 0, "an empty name", "the name of a folder");
-  }
   const std::filesystem::path folder = options.out;
-  for (const NewFile& file : files) {
-    if (std::filesystem::exists(folder / file.name)) {
-      throw BadInput((folder / file.name).string() +
-                     ": found an existing file, expected none; --out FOLDER names another folder");
-    }
-  }
-  for (const NewFile& file : files) {
-    const std::filesystem::path path = folder / file.name;
-    create_folder(path.parent_path());
-    write_file(path, file.text);
-    std::cout << "written  " << path.string() << '\n';
-  }
+  write_new_files(folder, files);
   std::cout << "run it:  proleg simulate " << (folder / files.front().name).string() << '\n';
   return exit_success;
 }
@@ -88,11 +67,15 @@ int write_robot(const NewOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "obstacle") {
+    return new_obstacle(argc - 1, argv + 1);
+  }
   CommandLine command_line("proleg new",
                            "Writes the files of a new robot: a chain of joints, a gait that moves it, a flat floor and "
-                           "the top-level file.\nThe modules are those of the shipped travelling_wave.");
+                           "the top-level file.\nThe modules are those of the shipped travelling_wave. `proleg new "
+                           "obstacle` writes an environment: see its own --help.");
   NewOptions options;
-  command_line.add_option("WHAT", options.what, "what to write: robot").required().value_name("");
+  command_line.add_option("WHAT", options.what, "what to write: robot, or obstacle").required().value_name("");
   command_line.add_option("--joints", options.joints, "number of joints, 1 to 64").required().value_name("N");
   command_line
       .add_option("--axes", options.axes,

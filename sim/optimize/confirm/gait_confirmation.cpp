@@ -7,19 +7,16 @@
 #include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "shared/fixed/random.hpp"
-#include "sim/loop/simulation_batch.hpp"
+#include "sim/loop/simulation.hpp"
 #include "sim/optimize/confirm/doubts.hpp"
+#include "sim/optimize/confirm/perturbed_worlds.hpp"
 #include "sim/optimize/evaluation/fitness_source.hpp"
 #include "sim/physics/physics_error.hpp"
-#include "sim/scenario/random_streams.hpp"
 
 namespace proleg::optimize {
 namespace {
 
 using sim::PhysicsEngine;
-
-constexpr std::size_t batch_size = 16;
 
 using Progress = std::function<void(double share)>;
 
@@ -82,83 +79,6 @@ std::vector<PhysicsEngine> engines_beside(PhysicsEngine engine) {
   return others;
 }
 
-sim::Scenario perturbed(sim::Scenario scenario, std::uint64_t seed) {
-  perturb(scenario, usual_spread(), seed);
-  Pcg32 random(seed, sim::random_stream::start);
-  for (Eigen::Index axis = 0; axis < 2; ++axis) {
-    const double draw = std::ldexp(static_cast<double>(random.next()), -31) - 1.0;  // -1 to 1
-    scenario.environment.robot_pose.position[axis] += draw * confirmation_start_m;
-  }
-  return scenario;
-}
-
-class OtherWorlds {
- public:
-  OtherWorlds(const sim::Scenario& scenario, const ConfirmationOptions& options, GaitConfirmation& result,
-              const Progress& progress)
-      : result_(result), progress_(progress) {
-    for (std::uint32_t world = 0; world < options.worlds; ++world) {
-      scenarios_.push_back(
-          perturbed(with_engine(scenario, result.perturbed_engine), trial_seed(options.seed, 0, 0, world)));
-    }
-  }
-
-  void run_all() {
-    for (std::size_t first = 0; first < scenarios_.size(); first += size_of_batch()) {
-      const std::size_t count = std::min(size_of_batch(), scenarios_.size() - first);
-      if (count == 1) {
-        run_alone(first);
-      } else {
-        run_together(first, count);
-      }
-    }
-    std::ranges::sort(result_.perturbed);
-  }
-
- private:
-  [[nodiscard]] std::size_t size_of_batch() const {
-    return result_.perturbed_engine == PhysicsEngine::reduced ? batch_size : 1;
-  }
-
-  void keep(double distance, bool has_failed) {
-    if (has_failed || !std::isfinite(distance)) {
-      ++result_.failed_worlds;
-    } else {
-      result_.perturbed.push_back(distance);
-    }
-  }
-
-  void show(std::size_t first, std::size_t count, double share) const {
-    progress_((static_cast<double>(first) + share * static_cast<double>(count)) /
-              static_cast<double>(scenarios_.size()));
-  }
-
-  void run_alone(std::size_t number) {
-    const ConfirmedRun result = run(scenarios_[number], "", [&](double share) { show(number, 1, share); });
-    keep(result.distance, !result.failure.empty());
-  }
-
-  void run_together(std::size_t first, std::size_t count) {
-    std::vector<const sim::Scenario*> members;
-    for (std::size_t i = first; i < first + count; ++i) {
-      members.push_back(&scenarios_[i]);
-    }
-    sim::SimulationBatch batch(members);
-    const std::uint32_t ticks = sim::tick_count(scenarios_.front());
-    for (std::uint32_t tick = 1; tick <= ticks; ++tick) {
-      batch.advance();
-      show(first, count, static_cast<double>(tick) / ticks);
-    }
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      keep(batch.simulation(i).plant().displacement(), !batch.failure(i).empty());
-    }
-  }
-
-  std::vector<sim::Scenario> scenarios_;
-  GaitConfirmation& result_;
-  const Progress& progress_;
-};
-
 }  // namespace
 
 bool GaitConfirmation::is_real() const { return std::ranges::all_of(findings, &ConfirmationFinding::is_good); }
@@ -195,7 +115,10 @@ GaitConfirmation confirm_gait(const sim::Scenario& scenario, const ConfirmationO
       result.runs, [](const ConfirmedRun& its) { return its.engine == PhysicsEngine::reduced && its.failure.empty(); });
   result.perturbed_engine = has_reduced ? PhysicsEngine::reduced : PhysicsEngine::ode;
   part = 1.0 - done;
-  OtherWorlds(scenario, options, result, show).run_all();
+  WorldDistances worlds = distances_in_worlds(with_engine(scenario, result.perturbed_engine), options.worlds,
+                                              options.seed, {usual_spread(), confirmation_start_m}, show);
+  result.perturbed = std::move(worlds.distances);
+  result.failed_worlds = worlds.failed;
   result.findings = find_doubts(result);
   return result;
 }

@@ -12,6 +12,7 @@
 #include "shared/computer/text/text.hpp"
 #include "sim/optimize/experiment/value_reader.hpp"
 #include "sim/scenario/names.hpp"
+#include "sim/scenario/thesis_names.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::optimize {
@@ -48,7 +49,7 @@ Registration read_registration(const XmlElement& element, const sim::Scenario& s
   const unsigned slot = read_slot(element, scenario);
   const Declaration& declaration = scenario.kernel.slots[slot].algorithm->declaration();
   const std::string name = element.required_attribute("parameter");
-  const int index = find_parameter(declaration, name);
+  const int index = sim::find_named_parameter(declaration, name);
   if (index < 0) {
     element.refuse("unknown parameter " + in_quotes(name) + " of " + std::string(declaration.name),
                    "one of " + listed(sim::parameter_names(declaration)));

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 
 #include "sim/optimize/report/rank_test.hpp"
 #include "sim/optimize/report/scores.hpp"
@@ -42,14 +41,6 @@ std::vector<const Evaluation*> best_of_runs(const MethodRuns& method) {
   }
   std::ranges::stable_sort(best, std::ranges::greater{}, [](const Evaluation* e) { return e->scores.front(); });
   return best;
-}
-
-/// Dimensions from head to tail: by the first joint that each sets.
-std::vector<std::size_t> dimensions_head_to_tail(const SearchSpace& space) {
-  std::vector<std::size_t> order(space.dimensions.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return space.dimensions[i].targets.front().joint; });
-  return order;
 }
 
 /// Pads a text with blanks, aligned left, or right if the width is below 0.
@@ -95,7 +86,7 @@ std::string gain_text(double distance, double uniform) {
 
 using Row = std::array<std::string, 8>;
 std::string row_text(const Row& row) {
-  constexpr std::array<int, 8> widths{14, -6, -14, -12, -9, -9, -11, -14};
+  constexpr std::array<int, 8> widths{21, -6, -14, -12, -9, -9, -11, -14};
   std::string text;
   for (std::size_t i = 0; i < row.size(); ++i) {
     text += padded(row[i], widths[i]);
@@ -103,7 +94,17 @@ std::string row_text(const Row& row) {
   return text + "\n";
 }
 
-Row method_row(const MethodRuns& method, double uniform_m) {
+/// Of the best: the value that the experiment shows.
+std::string shown_value(const ThesisExperiment& experiment, const MethodRuns& method, const Evaluation& best) {
+  const std::vector<ThesisRow> rows = experiment.rows(method.space);
+  if (experiment.shown_row >= rows.size()) {
+    return "-";
+  }
+  return method.space.value_text(best.candidate, rows[experiment.shown_row].dimension) + " " +
+         std::string(experiment.shown_unit);
+}
+
+Row method_row(const ThesisExperiment& experiment, const MethodRuns& method, double reference_m) {
   const std::vector<const Evaluation*> best = best_of_runs(method);
   if (best.empty()) {
     return {method.method, "0", "-", "-", "-", "-", "-", "-"};
@@ -111,15 +112,14 @@ Row method_row(const MethodRuns& method, double uniform_m) {
   const auto [min, max] = std::ranges::minmax(method.runs, {}, &std::vector<Evaluation>::size);
   const Statistics statistics = statistics_of(best);
   const double distance = best.front()->scores.front();
-  const std::vector<std::size_t> order = dimensions_head_to_tail(method.space);
   return {method.method,
           std::to_string(best.size()),
           std::to_string(min.size()) + (min.size() == max.size() ? "" : ".." + std::to_string(max.size())),
           number_or_dash(statistics.mean, distance_decimals),
           number_or_dash(statistics.deviation, distance_decimals),
           fixed_text(distance, distance_decimals),
-          gain_text(distance, uniform_m),
-          order.empty() ? "-" : method.space.value_text(best.front()->candidate, order.back()) + " deg"};
+          gain_text(distance, reference_m),
+          shown_value(experiment, method, *best.front())};
 }
 
 /// What the search said of its best, beside what the judging engine said.
@@ -136,15 +136,17 @@ Row search_row(const MethodRuns& method) {
           ""};
 }
 
-Row thesis_row(const ThesisResult& result) {
-  return {"  the thesis",
-          std::to_string(result.runs),
-          "",
-          "",
-          "",
-          fixed_text(result.displacements_m.front(), distance_decimals),
-          gain_text(result.displacements_m.front(), thesis_uniform_distance_m),
-          plain_number(result.amplitudes_deg.back().front(), 2) + " deg"};
+Row thesis_row(const ThesisExperiment& experiment, const ThesisResult& result) {
+  const double reference_m = experiment.references.front().thesis_m;
+  return {
+      "  the thesis",
+      std::to_string(result.runs),
+      "",
+      "",
+      "",
+      fixed_text(result.displacements_m.front(), distance_decimals),
+      reference_m > 0.0 ? gain_text(result.displacements_m.front(), reference_m) : "",
+      plain_number(result.rows.at(experiment.shown_row).values.front(), 2) + " " + std::string(experiment.shown_unit)};
 }
 
 std::string difference_text(const MethodDifference& difference) {
@@ -164,9 +166,9 @@ const MethodRuns* find_method(std::span<const MethodRuns> methods, std::string_v
   return found == methods.end() ? nullptr : &*found;
 }
 
-std::string overtaking_text(const BestCurves& deluge, const BestCurves& genetic) {
+std::string overtaking_text(const ThesisExperiment& experiment, const BestCurves& deluge, const BestCurves& genetic) {
   const std::string subject = "great deluge's mean ";
-  const std::string thesis = " (the thesis: at around 5000)\n";
+  const std::string thesis = " (the thesis: at around " + std::string(experiment.overtaking) + ")\n";
   const std::optional<std::size_t> evaluation = overtaking(deluge, genetic);
   if (!evaluation) {
     return subject + "does not overtake the genetic algorithm's" + thesis;
@@ -199,7 +201,7 @@ std::string reach_text(const MethodRuns& method, const MethodRuns& deluge, const
 
 }  // namespace
 
-std::string experiment_table(const MethodRuns& method) {
+std::string experiment_table(const ThesisExperiment& experiment, const MethodRuns& method) {
   std::string table = "source\tvalue";
   for (std::size_t column = 1; column <= thesis_columns; ++column) {
     table += "\t" + std::to_string(column);
@@ -215,24 +217,23 @@ std::string experiment_table(const MethodRuns& method) {
     }
     table += "\n";
   };
-  std::size_t joint = 0;
-  for (const std::size_t i : dimensions_head_to_tail(method.space)) {
-    add_row("Joint " + std::to_string(joint++),
-            [&](const Evaluation& evaluation) { return method.space.value_text(evaluation.candidate, i); });
+  for (const ThesisRow& row : experiment.rows(method.space)) {
+    add_row(row.name,
+            [&](const Evaluation& evaluation) { return method.space.value_text(evaluation.candidate, row.dimension); });
   }
-  add_row("Displacement [m]",
+  add_row(std::string(thesis_distance_row),
           [](const Evaluation& evaluation) { return fixed_text(evaluation.scores.front(), distance_decimals); });
 
-  if (const ThesisResult* thesis = find_thesis_result(method.method)) {
+  if (const ThesisResult* thesis = find_thesis_result(experiment.name, method.method)) {
     const std::string source = "thesis, " + std::string(thesis->table);
-    for (std::size_t j = 0; j < thesis->amplitudes_deg.size(); ++j) {
-      table += source + "\tJoint " + std::to_string(j);
-      for (const double amplitude : thesis->amplitudes_deg[j]) {
-        table += "\t" + plain_number(amplitude, 2);
+    for (const ThesisResult::Row& row : thesis->rows) {
+      table += source + "\t" + row.name;
+      for (const double value : row.values) {
+        table += "\t" + plain_number(value, 2);
       }
       table += "\n";
     }
-    table += source + "\tDisplacement [m]";
+    table += source + "\t" + std::string(thesis_distance_row);
     for (const double displacement : thesis->displacements_m) {
       table += "\t" + fixed_text(displacement, distance_decimals);
     }
@@ -241,22 +242,30 @@ std::string experiment_table(const MethodRuns& method) {
   return table;
 }
 
-std::string experiment_summary(std::span<const MethodRuns> methods, double uniform_m) {
-  std::string text = "uniform amplitudes of 40 deg: " + fixed_text(uniform_m, distance_decimals) +
-                     " m (the thesis: " + fixed_text(thesis_uniform_distance_m, 2) + " m)\n\n";
-  text += row_text({"method", "runs", "evaluations", "mean (m)", "sd (m)", "best (m)", "gain", "tail joint"});
+std::string experiment_summary(const ThesisExperiment& experiment, std::span<const MethodRuns> methods,
+                               std::span<const Reference> references) {
+  std::string text;
+  for (const Reference& reference : references) {
+    text += std::string(reference.scenario->name) + ": " + fixed_text(reference.judged_m, distance_decimals) + " m";
+    if (reference.scenario->thesis_m > 0.0) {
+      text += " (the thesis: " + fixed_text(reference.scenario->thesis_m, 2) + " m)";
+    }
+    text += "\n";
+  }
+  const double reference_m = references.empty() ? NAN : references.front().judged_m;
+  text += "\n" + row_text({"method", "runs", "evaluations", "mean (m)", "sd (m)", "best (m)", "gain",
+                           std::string(experiment.shown_value)});
   for (const MethodRuns& method : methods) {
-    text += row_text(method_row(method, uniform_m));
+    text += row_text(method_row(experiment, method, reference_m));
     if (!method.judged.empty()) {
       text += row_text(search_row(method));
     }
-    if (const ThesisResult* thesis = find_thesis_result(method.method)) {
-      text += row_text(thesis_row(*thesis));
+    if (const ThesisResult* thesis = find_thesis_result(experiment.name, method.method)) {
+      text += row_text(thesis_row(experiment, *thesis));
     }
   }
-  text +=
-      "\nmean and sd (standard deviation) are over the best of each run; gain and tail joint are those of the best "
-      "run\n";
+  text += "\nmean and sd (standard deviation) are over the best of each run; gain and " +
+          std::string(experiment.shown_value) + " are those of the best run\n";
   if (const std::vector<MethodDifference> differences = method_differences(methods); !differences.empty()) {
     text += "\ndifferences (rank-sum test of the best of each run, corrected after Holm):\n";
     for (const MethodDifference& difference : differences) {
@@ -272,7 +281,7 @@ std::string experiment_summary(std::span<const MethodRuns> methods, double unifo
   }
   if (const MethodRuns* const genetic = find_method(methods, "genetic")) {
     if (const BestCurves curves = best_curves(*genetic); !curves.mean.empty()) {
-      text += overtaking_text(deluge_curves, curves);
+      text += overtaking_text(experiment, deluge_curves, curves);
     }
   }
   for (const MethodRuns& method : methods) {

@@ -1,32 +1,45 @@
 #pragma once
 
-// Experiment 6.1 of the thesis, the amplitudes of a travelling wave: tables 6.2 and 6.4, figures 6.3 to 6.6 and 7.1,
-// made from our runs, with the thesis's numbers beside them. The score is the distance in metres, and more is better.
-// Tables have the judged distances, if there are any; the figures show the courses of the searches.
+// Tables and figures of an experiment of the thesis (thesis_experiments.hpp), made from our runs, with the thesis's
+// numbers beside them. The score is the distance in metres, and more is better. Tables have the judged distances, if
+// there are any; the figures show the courses of the searches.
 
 #include <span>
 #include <string>
 #include <vector>
 
 #include "sim/optimize/report/best_curves.hpp"
+#include "sim/optimize/report/thesis_experiments.hpp"
 
 namespace proleg::optimize {
 
-/// Tables 6.2 and 6.4, tab-separated: the values and distances of the ten best repetitions, best first, and below them
-/// the thesis's, if it has a table for the method. Columns: source, value, 1 to 10.
-[[nodiscard]] std::string experiment_table(const MethodRuns& method);
+/// The distance of a reference scenario here, in m.
+struct Reference {
+  const ReferenceScenario* scenario;
+  double searched_m;  ///< in the engine of the searches
+  double judged_m;    ///< in the judging engine
+};
 
-/// Figures 6.3 and 6.5, SVG: the best so far of every repetition. uniform_m: distance of 40 degrees on all joints here.
-[[nodiscard]] std::string draw_every_run(const MethodRuns& method, double uniform_m);
-/// Figures 6.4 and 6.6, SVG: lowest, mean and highest best so far over the repetitions.
-[[nodiscard]] std::string draw_run_spread(const MethodRuns& method, double uniform_m);
-/// Figure 7.1, SVG: (a) every repetition of every method, (b) the means.
-[[nodiscard]] std::string draw_method_comparison(std::span<const MethodRuns> methods, double uniform_m);
+/// Tab-separated: the values and distances of the ten best repetitions, best first, and below them the thesis's, if it
+/// has a table for the method. Columns: source, value, 1 to 10.
+[[nodiscard]] std::string experiment_table(const ThesisExperiment& experiment, const MethodRuns& method);
 
-/// A summary for people, a few dozen lines of at most 120 characters: each method's repetitions, evaluations, best,
-/// mean and gain over the uniform amplitudes; whether the methods differ; whether great deluge overtakes the genetic
-/// algorithm; after how many evaluations other methods reach great deluge's mean.
-[[nodiscard]] std::string experiment_summary(std::span<const MethodRuns> methods, double uniform_m);
+/// Figures 6.3, 6.5, 6.10 and 6.12, SVG: the best so far of every repetition.
+[[nodiscard]] std::string draw_every_run(const ThesisExperiment& experiment, const MethodRuns& method,
+                                         std::span<const Reference> references);
+/// Figures 6.4, 6.6, 6.11 and 6.13, SVG: lowest, mean and highest best so far over the repetitions.
+[[nodiscard]] std::string draw_run_spread(const ThesisExperiment& experiment, const MethodRuns& method,
+                                          std::span<const Reference> references);
+/// Figures 7.1 and 7.2, SVG: (a) every repetition of every method, (b) the means.
+[[nodiscard]] std::string draw_method_comparison(const ThesisExperiment& experiment,
+                                                 std::span<const MethodRuns> methods,
+                                                 std::span<const Reference> references);
+
+/// A summary for people, a few dozen lines of at most 120 characters: the references; each method's repetitions,
+/// evaluations, best, mean and gain over the first reference; whether the methods differ; whether great deluge
+/// overtakes the genetic algorithm; after how many evaluations other methods reach great deluge's mean.
+[[nodiscard]] std::string experiment_summary(const ThesisExperiment& experiment, std::span<const MethodRuns> methods,
+                                             std::span<const Reference> references);
 
 /// Of two methods: whether the best distances of their repetitions differ.
 struct MethodDifference {

@@ -43,10 +43,30 @@ std::string title_of(std::string_view method) {
   if (method == "great-deluge") {
     return "Great deluge";
   }
+  if (method == "great-deluge-bounded") {
+    return "Great deluge, bounded";
+  }
   return method == "genetic" ? "Genetic algorithm" : std::string(method);
 }
 
-Level uniform_level(double uniform_m) { return {uniform_m, "uniform " + rounded_text(uniform_m), "#000000", dotted}; }
+std::vector<Level> reference_levels(std::span<const Reference> references) {
+  std::vector<Level> levels;
+  for (const Reference& reference : references) {
+    levels.push_back({reference.searched_m,
+                      std::string(reference.scenario->short_name) + " " + rounded_text(reference.searched_m), "#000000",
+                      dotted});
+  }
+  return levels;
+}
+
+/// The names of the dotted lines, for the legend.
+std::string reference_names(const ThesisExperiment& experiment) {
+  std::string names;
+  for (const ReferenceScenario& reference : experiment.references) {
+    names += (names.empty() ? "" : ", ") + std::string(reference.short_name);
+  }
+  return names;
+}
 
 /// The best of all runs of a method.
 std::vector<Level> best_level(const BestCurves& curves, const std::string& colour) {
@@ -57,8 +77,9 @@ std::vector<Level> best_level(const BestCurves& curves, const std::string& colou
 }
 
 /// The best that the thesis has for a method.
-std::vector<Level> thesis_level(const MethodRuns& method, const std::string& colour) {
-  const ThesisResult* const thesis = find_thesis_result(method.method);
+std::vector<Level> thesis_level(const ThesisExperiment& experiment, const MethodRuns& method,
+                                const std::string& colour) {
+  const ThesisResult* const thesis = find_thesis_result(experiment.name, method.method);
   if (thesis == nullptr) {
     return {};
   }
@@ -72,13 +93,14 @@ std::string repetitions_text(const MethodRuns& method) {
 
 /// A figure of one method; `draw` draws its curves and returns their names.
 template <typename Draw>
-std::string draw_method(const MethodRuns& method, const std::string& title, const std::string& about,
-                        const std::vector<Level>& levels, const BestCurves& curves, const Draw& draw) {
+std::string draw_method(const ThesisExperiment& experiment, const MethodRuns& method, const std::string& title,
+                        const std::string& about, const std::vector<Level>& levels, const BestCurves& curves,
+                        const Draw& draw) {
   const CurvePanel panel = make_panel(sim::first_panel_top, single_panel_height, {&curves, 1}, levels);
   Svg svg(sim::page_width, sim::first_panel_top + single_panel_height + 56.0, title, about);
   sim::draw_title(svg, title, about);
-  std::vector<LegendEntry> legend{{"uniform amplitudes", line_style(sim::ink, 1.3, dotted), ""}};
-  if (find_thesis_result(method.method) != nullptr) {
+  std::vector<LegendEntry> legend{{reference_names(experiment), line_style(sim::ink, 1.3, dotted), ""}};
+  if (find_thesis_result(experiment.name, method.method) != nullptr) {
     legend.push_back({"the thesis's best", line_style(sim::ink, 1.3, dashed), ""});
   }
   sim::draw_legend(svg, plot_right, sim::first_panel_top - 16.0, legend);
@@ -96,12 +118,13 @@ void append(std::vector<Level>& levels, const std::vector<Level>& more) {
 
 }  // namespace
 
-std::string draw_every_run(const MethodRuns& method, double uniform_m) {
+std::string draw_every_run(const ThesisExperiment& experiment, const MethodRuns& method,
+                           std::span<const Reference> references) {
   const BestCurves curves = best_curves(method);
   const std::string colour = Palette().next(method.method);
-  std::vector<Level> levels = thesis_level(method, colour);
-  levels.push_back(uniform_level(uniform_m));
-  return draw_method(method, title_of(method.method) + ": every run",
+  std::vector<Level> levels = thesis_level(experiment, method, colour);
+  append(levels, reference_levels(references));
+  return draw_method(experiment, method, title_of(method.method) + ": every run",
                      repetitions_text(method) + ", the best distance of each so far", levels, curves,
                      [&](Svg& svg, const CurvePanel& panel) {
                        draw_every_curve(svg, panel, method, colour);
@@ -113,12 +136,13 @@ std::string draw_every_run(const MethodRuns& method, double uniform_m) {
                      });
 }
 
-std::string draw_run_spread(const MethodRuns& method, double uniform_m) {
+std::string draw_run_spread(const ThesisExperiment& experiment, const MethodRuns& method,
+                            std::span<const Reference> references) {
   const BestCurves curves = best_curves(method);
   const std::string colour = Palette().next(method.method);
-  std::vector<Level> levels = thesis_level(method, colour);
-  levels.push_back(uniform_level(uniform_m));
-  return draw_method(method, title_of(method.method) + ": lowest, mean and highest",
+  std::vector<Level> levels = thesis_level(experiment, method, colour);
+  append(levels, reference_levels(references));
+  return draw_method(experiment, method, title_of(method.method) + ": lowest, mean and highest",
                      repetitions_text(method) + "; a repetition that has ended keeps its best", levels, curves,
                      [&](Svg& svg, const CurvePanel& panel) {
                        std::vector<LineName> names;
@@ -138,7 +162,8 @@ std::string draw_run_spread(const MethodRuns& method, double uniform_m) {
                      });
 }
 
-std::string draw_method_comparison(std::span<const MethodRuns> methods, double uniform_m) {
+std::string draw_method_comparison(const ThesisExperiment& experiment, std::span<const MethodRuns> methods,
+                                   std::span<const Reference> references) {
   Palette palette;
   std::vector<BestCurves> curves;
   std::vector<std::string> colours;
@@ -151,26 +176,27 @@ std::string draw_method_comparison(std::span<const MethodRuns> methods, double u
     colours.push_back(colour);
     curves.push_back(best_curves(method));
     append(best, best_level(curves.back(), colour));
-    append(thesis, thesis_level(method, colour));
+    append(thesis, thesis_level(experiment, method, colour));
     method_legend.push_back({method.method, line_style(colour, 2.0), ""});
     if (!curves.back().mean.empty()) {
       const double mean = curves.back().mean.back();
       means.push_back({mean, method.method + " " + fixed_text(mean, 3), colour});
     }
   }
-  const Level uniform = uniform_level(uniform_m);
+  const bool has_thesis = !thesis.empty();
+  const std::vector<Level> levels = reference_levels(references);
   std::vector<Level> all = best;
   append(all, thesis);
-  all.push_back(uniform);
-  best.push_back(uniform);
-  thesis.push_back(uniform);
+  append(all, levels);
+  append(best, levels);
+  append(thesis, levels);
   const double second_top = sim::first_panel_top + double_panel_height + between_panels;
   const CurvePanel every = make_panel(sim::first_panel_top, double_panel_height, curves, all);
   const CurvePanel mean = make_panel(second_top, double_panel_height, curves, all);
 
   Svg svg(sim::page_width, second_top + double_panel_height + 56.0, "Comparison of methods",
           "Best distance so far of every repetition, and its mean, against evaluations.");
-  sim::draw_title(svg, "Travelling wave: methods compared", {});
+  sim::draw_title(svg, std::string(experiment.title) + ": methods compared", {});
   sim::draw_legend(svg, plot_right, 54.0, method_legend);
   std::vector<LegendEntry> level_legend{
       {"uniform amplitudes; best of all runs", line_style(sim::ink, 1.3, dotted), ""}};
@@ -184,8 +210,8 @@ std::string draw_method_comparison(std::span<const MethodRuns> methods, double u
   draw_names(svg, every, best, {});
 
   sim::draw_plot_grid(svg, mean.x, mean.y, "evaluations", "(b) Mean of the runs (m)");
-  level_legend.front().name = "uniform; best of all";
-  if (thesis.size() > 1) {
+  level_legend.front().name = reference_names(experiment) + "; best of all";
+  if (has_thesis) {
     level_legend.push_back({"the thesis's best", line_style(sim::ink, 1.3, dashed), ""});
   }
   sim::draw_legend(svg, plot_right, second_top - 16.0, level_legend);

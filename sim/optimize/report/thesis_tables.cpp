@@ -9,9 +9,8 @@
 namespace proleg::optimize {
 namespace {
 
-constexpr std::string_view header = "method\ttable\truns\tvalue\t1\t2\t3\t4\t5\t6\t7\t8\t9\t10";
-constexpr std::size_t name_cells = 4;  ///< method, table, runs, value
-constexpr std::size_t rows_of_table = thesis_joints + 1;
+constexpr std::string_view header = "experiment\tmethod\ttable\truns\tvalue\t1\t2\t3\t4\t5\t6\t7\t8\t9\t10";
+constexpr std::size_t name_cells = 5;  ///< experiment, method, table, runs, value
 
 /// The part of the text before the next separator, which is removed with it.
 std::string_view next_part(std::string_view& text, char separator) {
@@ -19,10 +18,6 @@ std::string_view next_part(std::string_view& text, char separator) {
   const std::string_view part = text.substr(0, end);
   text.remove_prefix(std::min(end + 1, text.size()));
   return part;
-}
-
-std::string row_name(std::size_t row) {
-  return row < thesis_joints ? "Joint " + std::to_string(row) : "Displacement [m]";
 }
 
 /// Reads the rows of one table after the other.
@@ -44,7 +39,7 @@ class TablesReader {
   }
 
   [[nodiscard]] std::vector<ThesisResult> finish() {
-    require(row_ == 0, "the end of the file", "a row '" + row_name(row_) + "'");
+    require(!in_table_, "the end of the file", "a row '" + std::string(thesis_distance_row) + "'");
     require(!results_.empty(), "no table", "at least one");
     return std::move(results_);
   }
@@ -63,29 +58,35 @@ class TablesReader {
     }
     require(cells.size() == name_cells + thesis_columns, std::to_string(cells.size()) + " cells",
             std::to_string(name_cells + thesis_columns) + ", separated by tabs");
-    const std::optional<unsigned> runs = parse_whole<unsigned>(cells[2]);
-    require(runs.has_value(), in_quotes(cells[2]) + " as the number of runs", "a whole number");
-    if (row_ == 0) {
-      results_.push_back({std::string(cells[0]), std::string(cells[1]), *runs, {}, {}});
+    const std::optional<unsigned> runs = parse_whole<unsigned>(cells[3]);
+    require(runs.has_value(), in_quotes(cells[3]) + " as the number of runs", "a whole number");
+    if (!in_table_) {
+      results_.push_back({std::string(cells[0]), std::string(cells[1]), std::string(cells[2]), *runs, {}, {}});
+      in_table_ = true;
     }
     ThesisResult& result = results_.back();
-    require(cells[0] == result.method && cells[1] == result.table && *runs == result.runs,
-            "a row of another table after " + std::to_string(row_) + " rows", std::to_string(rows_of_table) + " rows");
-    require(cells[3] == row_name(row_), "row " + in_quotes(cells[3]), "row '" + row_name(row_) + "'");
-    auto& numbers = row_ < thesis_joints ? result.amplitudes_deg[row_] : result.displacements_m;
+    require(
+        cells[0] == result.experiment && cells[1] == result.method && cells[2] == result.table && *runs == result.runs,
+        "a row of another table", "the row '" + std::string(thesis_distance_row) + "' of " + result.table);
+    std::array<double, thesis_columns> numbers{};
     for (std::size_t column = 0; column < thesis_columns; ++column) {
       const std::string_view cell = cells[name_cells + column];
       const std::optional<double> number = parse_number(cell);
       require(number.has_value(), in_quotes(cell) + " in column " + std::to_string(column + 1), "a number");
       numbers[column] = *number;
     }
-    row_ = (row_ + 1) % rows_of_table;
+    if (cells[4] == thesis_distance_row) {
+      result.displacements_m = numbers;
+      in_table_ = false;
+    } else {
+      result.rows.push_back({std::string(cells[4]), numbers});
+    }
   }
 
   std::string file_;
   int line_ = 0;
   bool has_header_ = false;
-  std::size_t row_ = 0;  ///< of the table that is read; 0: a table starts
+  bool in_table_ = false;  ///< its last row is still to come
   std::vector<ThesisResult> results_;
 };
 
@@ -104,9 +105,10 @@ std::span<const ThesisResult> thesis_results() {
   return results;
 }
 
-const ThesisResult* find_thesis_result(std::string_view method) {
+const ThesisResult* find_thesis_result(std::string_view experiment, std::string_view method) {
   const std::span<const ThesisResult> results = thesis_results();
-  const auto result = std::ranges::find(results, method, &ThesisResult::method);
+  const auto result = std::ranges::find_if(
+      results, [&](const ThesisResult& its) { return its.experiment == experiment && its.method == method; });
   return result == results.end() ? nullptr : &*result;
 }
 

@@ -4,6 +4,8 @@
 
 #include "command_line.hpp"
 #include "json_result.hpp"
+#include "sim/record/svg.hpp"
+#include "sim/scenario/reader.hpp"
 
 namespace proleg::test {
 namespace {
@@ -170,11 +172,68 @@ TEST_F(NewRobot, RefusesBadInputAndWritesNothing) {
   }
   expect_refused({"new", "robot", "--joints", "2", "--axes", "ppy", "--out", out}, {"--axes", "3 letters"});
   expect_refused({"new", "robot", "--out", out}, {"--joints"});
-  expect_refused({"new", "gait", "--joints", "5", "--out", out}, {"proleg new: found 'gait', expected 'robot'"});
+  expect_refused({"new", "gait", "--joints", "5", "--out", out},
+                 {"proleg new: found 'gait', expected 'robot' or 'obstacle'"});
   expect_refused({"new", "robot", "--joints", "5", "--out", ""}, {"--out"});
   std::ofstream(file("plain")) << "a file, not a folder\n";
   expect_refused({"new", "robot", "--joints", "5", "--out", file("plain").string()}, {"plain"});
   EXPECT_EQ(left_behind(), std::vector<std::string>{"plain"});
+}
+
+class NewObstacle : public CommandLine {};
+
+TEST_F(NewObstacle, IsTheShippedOneWithoutOptions) {
+  const Finished finished = proleg({"new", "obstacle", "--out", file("mine").string()});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  EXPECT_EQ(read_file(file("mine/obstacle.environment.xml")),
+            read_file(source_path("/sim/scenarios/adaptive_touch/obstacle.environment.xml")));
+}
+
+// A cosine of length L and height H: the top in the middle of each hill, the floor between them.
+TEST_F(NewObstacle, HasTheHeightsOfItsHillsWhereTheyAre) {
+  ASSERT_EQ(proleg({"new", "obstacle", "--heights", "30,-20", "--length", "200", "--start", "500", "--segments", "4",
+                    "--out", file("mine").string()})
+                .status,
+            0);
+  sim::DiskFiles files;
+  fs::create_directories(file("mine"));
+  std::ofstream(file("mine/a.simulation.xml"))
+      << "<simulation><robot>" << source_path("/sim/scenarios/travelling_wave/caterpillar.robot.xml")
+      << "</robot><actuation>" << source_path("/sim/scenarios/travelling_wave/uniform.actuation.xml")
+      << "</actuation><environment>obstacle.environment.xml</environment></simulation>";
+  const sim::Scenario scenario = sim::read_scenario(file("mine/a.simulation.xml"), files);
+  std::vector<sim::Point> surface;  // the upper corners of the pieces
+  for (const sim::StaticObject& object : scenario.environment.objects) {
+    if (object.name == "obstacle") {
+      for (const sim::Geometry& piece : object.geometries) {
+        const Eigen::Vector3d end =
+            piece.pose.position + piece.pose.orientation * Eigen::Vector3d(0.0, piece.extents.y(), piece.extents.z());
+        surface.push_back({end.y(), end.z()});
+      }
+    }
+  }
+  const std::vector<sim::Point> expected{{0.55, 0.015}, {0.6, 0.03},  {0.65, 0.015}, {0.7, 0.0},
+                                         {0.75, -0.01}, {0.8, -0.02}, {0.85, -0.01}, {0.9, 0.0}};
+  ASSERT_EQ(surface.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_NEAR(surface[i].x, expected[i].x, 2e-6) << i;
+    EXPECT_NEAR(surface[i].y, expected[i].y, 2e-6) << i;
+  }
+}
+
+TEST_F(NewObstacle, RefusesBadInputAndWritesNothing) {
+  const std::string out = file("mine").string();
+  for (const char* heights : {"", "30,", "30;40", "high", "501", "nan"}) {
+    expect_refused({"new", "obstacle", "--heights", heights, "--out", out}, {"--heights", "-500 to 500"});
+  }
+  expect_refused({"new", "obstacle", "--length", "0", "--out", out}, {"--length", "20 to 5000"});
+  expect_refused({"new", "obstacle", "--start", "-1", "--out", out}, {"--start"});
+  expect_refused({"new", "obstacle", "--width", "1", "--out", out}, {"--width"});
+  expect_refused({"new", "obstacle", "--segments", "1", "--out", out}, {"--segments", "2 to 100"});
+  expect_refused({"new", "obstacle", "--friction", "-0.1", "--out", out}, {"--friction"});
+  expect_refused({"new", "obstacle", "--floor-friction", "x", "--out", out}, {"--floor-friction"});
+  expect_refused({"new", "obstacle", "--out", ""}, {"--out"});
+  EXPECT_TRUE(left_behind().empty());
 }
 
 }  // namespace

@@ -108,6 +108,44 @@ TEST(ShippedExperiments, ParetoSetsSpeedAgainstTheCostOfTransport) {
   EXPECT_EQ(experiment.objectives[1].goal, Goal::minimise);
 }
 
+TEST(ShippedExperiments, OfTheAdaptiveAlgorithmHaveTheSearchSpaceOfTable65) {
+  for (const char* name : {"great_deluge_bounded", "genetic", "cma_es"}) {
+    sim::DiskFiles files;
+    const Experiment experiment =
+        read_experiment(source_path("/sim/scenarios/adaptive_touch/" + std::string(name) + ".optimise.xml"), files);
+    EXPECT_EQ(experiment.space.size(), 740e9) << name << ": thesis, section 6.2, footnote 10";
+    ASSERT_EQ(experiment.space.dimensions.size(), 10U);
+    EXPECT_EQ(experiment.space.dimensions[0].name, "stuck_threshold");
+    EXPECT_EQ(experiment.space.dimensions[0].values.size(), 37U);
+    EXPECT_EQ(experiment.space.dimensions[1].values.size(), 200U);
+    for (const Dimension& dimension : experiment.space.dimensions) {
+      EXPECT_EQ(dimension.targets.size(), 5U) << "the same on all joints";
+    }
+    EXPECT_EQ(experiment.scenario.duration_s, 90.0);
+  }
+}
+
+TEST(ShippedExperiments, OfTheAdaptiveAlgorithmHaveTheSettingsOfTables66And68) {
+  sim::DiskFiles files;
+  const std::string folder = source_path("/sim/scenarios/adaptive_touch/");
+  for (const char* name : {"great_deluge", "great_deluge_bounded"}) {
+    const Experiment experiment = read_experiment(folder + name + ".optimise.xml", files);
+    const auto& deluge = std::get<GreatDelugeSettings>(experiment.method);
+    EXPECT_EQ(deluge.water_level, 0.6);
+    EXPECT_EQ(deluge.rain, 0.02);
+    EXPECT_EQ(deluge.credits, 10U);
+    EXPECT_EQ(deluge.retries, 200U);
+    EXPECT_EQ(deluge.confidence, 20U);
+  }
+  const Experiment experiment = read_experiment(folder + "genetic.optimise.xml", files);
+  const auto& genetic = std::get<GeneticSettings>(experiment.method);
+  EXPECT_EQ(genetic.population, 40U);
+  EXPECT_EQ(genetic.mutation, 1.0);
+  EXPECT_EQ(genetic.crossover, 0.0);
+  EXPECT_EQ(genetic.generations_to_convergence, 50U);
+  EXPECT_EQ(genetic.convergence, 0.99);
+}
+
 TEST(ShippedExperiments, KeepEveryFileThatWasReadTheirOwnFirst) {
   const Experiment experiment = shipped("great_deluge");
   ASSERT_EQ(experiment.sources.size(), experiment.scenario.sources.size() + 1);
@@ -154,6 +192,22 @@ TEST(ThesisFile, NamesNoScenario) {
   EXPECT_EQ(message_of_reading([] { return thesis_experiment({}, std::nullopt); }),
             "MFIdemo.ga.xml:1: found no <simulation> in <geneticAlgorithm>, expected the scenario, named there or with "
             "--simulation");
+}
+
+TEST(ThesisFile, IsReadAsPrinted) {
+  const Experiment experiment = thesis_experiment({}, source_path("/sim/scenarios/adaptive_touch/reflex.simulation.xml"));
+  ASSERT_EQ(experiment.space.dimensions.size(), 2U);
+  const Dimension& first = experiment.space.dimensions[0];
+  EXPECT_EQ(first.name, "stuck_threshold");
+  // Between 50 and 800, both exclusive, in steps of 25.
+  ASSERT_EQ(first.values.size(), 29U);
+  EXPECT_EQ(first.values.front(), 75);
+  EXPECT_EQ(first.values.back(), 775);
+  const Dimension& second = experiment.space.dimensions[1];
+  EXPECT_EQ(second.name, "recovering");
+  ASSERT_EQ(second.values.size(), 98U);
+  EXPECT_EQ(second.values.front(), parse_decimal("0.02", Unit::degree).raw);
+  EXPECT_EQ(second.values.back(), parse_decimal("0.99", Unit::degree).raw);
 }
 
 TEST(ThesisFile, IsReadAsPrintedWithTheNamesOfAnAlgorithmThatShips) {

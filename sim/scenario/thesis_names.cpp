@@ -1,0 +1,47 @@
+#include "sim/scenario/thesis_names.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "shared/gait/registry.hpp"
+
+namespace proleg::sim {
+namespace {
+
+struct Name {
+  std::string_view thesis;
+  std::string_view proleg;
+};
+
+constexpr std::array<Name, 1> algorithm_names{{{"Global Adaptive Touch", "SensingModule_global_adaptive_touch"}}};
+
+constexpr std::array<Name, 10> parameter_names{{
+    {"Get-stuck-threshold", "stuck_threshold"},
+    {"back to zero constant", "recovering"},
+    {"Constant 1", "constant_1"},
+    {"Constant 2", "constant_2"},
+    {"Constant 3", "constant_3"},
+    {"Constant 4", "constant_4"},
+    {"Constant 5", "constant_5"},
+    {"Constant 6", "constant_6"},
+    {"Constant 7", "constant_7"},
+    {"Constant 8", "constant_8"},
+}};
+
+std::string_view translated(std::span<const Name> names, std::string_view name) {
+  const auto found = std::ranges::find(names, name, &Name::thesis);
+  return found == names.end() ? name : found->proleg;
+}
+
+}  // namespace
+
+const ActuationModule* find_named_algorithm(std::string_view name) {
+  return find_algorithm(translated(algorithm_names, name));
+}
+
+int find_named_parameter(const Declaration& declaration, std::string_view name) {
+  const int index = find_parameter(declaration, name);
+  return index >= 0 ? index : find_parameter(declaration, translated(parameter_names, name));
+}
+
+}  // namespace proleg::sim

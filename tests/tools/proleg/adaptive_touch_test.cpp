@@ -1,0 +1,63 @@
+// Experiment 6.2 of the thesis, with fewer repetitions than the thesis made: the reduced engine searches, ODE judges
+// the best and runs them in other worlds. Takes about forty minutes on two cores.
+
+#include <algorithm>
+#include <vector>
+
+#include "command_line.hpp"
+#include "json_result.hpp"
+#include "tests/support/files.hpp"
+
+namespace proleg::test {
+namespace {
+
+class AdaptiveTouchExperiment : public CommandLine {};
+
+Json named(const Json& list, const char* key, const std::string& name) {
+  for (const Json& each : list.elements()) {
+    if (each[key] == name) {
+      return each;
+    }
+  }
+  ADD_FAILURE() << "nothing with the name " << name;
+  return Json("null");
+}
+
+TEST_F(AdaptiveTouchExperiment, CrossesTheObstacleWithEveryMethod) {
+  const Finished finished = proleg({"experiment", "adaptive_touch", "--repetitions", "2", "--json", "--out",
+                                    file("out").string(), "--scenarios", source_path("/sim/scenarios/adaptive_touch")});
+  ASSERT_EQ(finished.status, 0) << finished.err;
+  const Json experiment(finished.out);
+  std::printf("%s%s\n", read_file(file("out/summary.txt")).c_str(), finished.out.c_str());
+
+  const double plain = experiment["references"]["no reflex"].number();
+  EXPECT_GE(plain, 0.6) << "it reaches the top of the first hill";
+  EXPECT_LE(plain, 1.5) << "and stays on the obstacle";
+  EXPECT_GE(experiment["references"]["set by hand"].number(), 2.3) << "the obstacle ends at 1.96 m";
+  const Json methods = experiment["methods"];
+  const Json deluge = named(methods, "method", "great-deluge");
+  EXPECT_GE(deluge["best_score"].number(), 3.5);
+  EXPECT_GE(named(methods, "method", "great-deluge-bounded")["best_score"].number(), 3.5);
+  EXPECT_GE(named(methods, "method", "genetic")["best_score"].number(), 3.0);
+  EXPECT_GE(named(methods, "method", "cma-es")["mean_best"].number(),
+            named(methods, "method", "great-deluge-bounded")["mean_best"].number())
+      << "with a third of the evaluations, in the same space";
+
+  const Json gaits = experiment["gaits"];
+  const double level = named(gaits, "name", "no reflex")["level_m"].number();
+  for (const char* method : {"great-deluge-bounded", "genetic", "cma-es"}) {
+    const Json gait = named(gaits, "name", method);
+    EXPECT_EQ(gait["worlds_m"].elements().size(), 20U);
+    for (const Json& world : gait["worlds_m"].elements()) {
+      EXPECT_GT(world.number(), 2.0) << method << " crosses in each world";
+    }
+    EXPECT_NEAR(gait["level_m"].number(), level, 0.15 * level) << method;
+  }
+  for (const char* made : {"table_6_7.tsv", "table_6_9.tsv", "figure_6_8.svg", "figure_6_10.svg", "figure_6_11.svg",
+                           "figure_6_12.svg", "figure_6_13.svg", "figure_7_2.svg", "figure_7_3.svg"}) {
+    EXPECT_TRUE(fs::exists(file("out") / made)) << made;
+  }
+}
+
+}  // namespace
+}  // namespace proleg::test

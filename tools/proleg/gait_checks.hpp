@@ -1,0 +1,41 @@
+#pragma once
+
+// How the best gaits of an experiment do in other worlds: whether a search found a gait, or the accidents of one world.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/optimize/confirm/perturbed_worlds.hpp"
+#include "sim/optimize/report/crossing_figure.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "tools/proleg/json_output.hpp"
+
+namespace proleg::tools {
+
+/// A gait of an experiment: the best of a method, or a reference.
+struct CheckedGait {
+  std::string name;
+  double distance_m = 0.0;  ///< in its own world, in the judging engine
+  optimize::WorldDistances worlds;
+  double level_m = 0.0;  ///< on level ground, in the same time
+};
+
+inline constexpr std::uint32_t checked_worlds = 20;
+
+/// Runs a gait in the judging engine: in its own world, in worlds that differ (friction and masses by a tenth, start by
+/// 5 mm), and on level ground. level: the environment without the obstacle.
+[[nodiscard]] CheckedGait check_gait(const std::string& name, sim::Scenario scenario,
+                                     const sim::EnvironmentModel& level);
+
+/// A table, a line for each gait; the last column compares the distance on level ground with that of the first gait.
+[[nodiscard]] std::string gait_checks_text(const std::vector<CheckedGait>& gaits);
+[[nodiscard]] Json gait_checks_json(const std::vector<CheckedGait>& gaits);
+
+/// The four stages of figure 6.8 in a run of the scenario: the robot's middle on the second hill, in the pit behind it,
+/// at its end, and on the last hill. Fewer if the robot does not get there.
+[[nodiscard]] std::vector<optimize::CrossingStage> crossing_stages(sim::Scenario scenario);
+
+}  // namespace proleg::tools

@@ -24,7 +24,7 @@ Json named(const Json& list, const char* key, const std::string& name) {
 }
 
 TEST_F(AdaptiveTouchExperiment, CrossesTheObstacleWithEveryMethod) {
-  const Finished finished = proleg({"experiment", "adaptive_touch", "--repetitions", "2", "--json", "--out",
+  const Finished finished = proleg({"experiment", "adaptive_touch", "--repetitions", "1", "--json", "--out",
                                     file("out").string(), "--scenarios", source_path("/sim/scenarios/adaptive_touch")});
   ASSERT_EQ(finished.status, 0) << finished.err;
   const Json experiment(finished.out);
@@ -40,8 +40,8 @@ TEST_F(AdaptiveTouchExperiment, CrossesTheObstacleWithEveryMethod) {
   EXPECT_GE(named(methods, "method", "great-deluge-bounded")["best_score"].number(), 3.5);
   EXPECT_GE(named(methods, "method", "genetic")["best_score"].number(), 3.0);
   EXPECT_GE(named(methods, "method", "cma-es")["mean_best"].number(),
-            named(methods, "method", "great-deluge-bounded")["mean_best"].number())
-      << "with a third of the evaluations, in the same space";
+            0.95 * named(methods, "method", "great-deluge-bounded")["mean_best"].number())
+      << "with a third of the evaluations, in the same space; one search each says no more";
 
   const Json gaits = experiment["gaits"];
   const double level = named(gaits, "name", "no reflex")["level_m"].number();

@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 
+#include "sim/measure/body_wave.hpp"
 #include "sim/robot/link_ends.hpp"
 
 namespace proleg::sim {
@@ -14,9 +15,9 @@ constexpr double min_distance = 1e-3;  // m; below, costs of transport are noise
 /// A direction whose horizontal part is shorter counts as vertical.
 constexpr double vertical = 1e-6;
 
-/// An angle in degrees, or a rate, without the last bits of the system's arctangent: they depend on its version and on
-/// the processor, and a measure is the same on every machine.
-double without_last_bits(double degrees) { return std::round(std::ldexp(degrees, 24)) * 0x1p-24; }
+/// A number without the last bits of the system's arctangent, sine or Bessel function: they depend on its version and
+/// on the processor, and a measure is the same on every machine.
+double without_last_bits(double value) { return std::round(std::ldexp(value, 24)) * 0x1p-24; }
 
 }  // namespace
 
@@ -26,6 +27,7 @@ GaitMeter::GaitMeter(const RobotModel& robot, const EnvironmentModel& environmen
       step_s_(step_s),
       tick_s_(tick_s),
       gravity_(environment.gravity.norm()),
+      energy_(robot, environment.robot_pose, environment.gravity.norm(), tick_s),
       start_(start),
       center_(start),
       center_before_(start) {
@@ -38,7 +40,12 @@ GaitMeter::GaitMeter(const RobotModel& robot, const EnvironmentModel& environmen
     sensors_.push_back({link.mass.center - quarter, link.mass.center + quarter});
     link_centers_.push_back(link.mass.center);
   }
-  for (const Joint& joint : robot.joints) {
+  for (std::size_t i = 0; i < robot.joints.size(); ++i) {
+    const Joint& joint = robot.joints[i];
+    constexpr double cosine_of_45_degrees = 0.7071;
+    if (std::abs(joint.axis.dot(robot.joints.front().axis)) > cosine_of_45_degrees) {
+      planar_joints_.push_back(i);
+    }
     joints_.push_back({1.0 / joint.max_speed});
     tracking_.emplace_back(joint.max_speed, joint.max_torque);
   }
@@ -51,8 +58,11 @@ GaitMeter::GaitMeter(const RobotModel& robot, const EnvironmentModel& environmen
 
 void GaitMeter::add_tick(const Tick& tick) {
   if (ticks_ > 0) {
-    squared_second_differences_ += (tick.center_of_mass - 2.0 * center_ + center_before_).squaredNorm();
+    const double squared = (tick.center_of_mass - 2.0 * center_ + center_before_).squaredNorm();
+    squared_second_differences_ += squared;
+    largest_squared_difference_ = std::max(largest_squared_difference_, squared);
   }
+  energy_.add_tick(tick.link_poses, tick.joint_angles, tick.joint_targets, tick.motor_torques);
   center_before_ = center_;
   center_ = tick.center_of_mass;
   const Eigen::Vector3d head = tick.link_poses.front() * link_centers_.front();
@@ -171,6 +181,24 @@ void GaitMeter::add_servo_measures(MeasureValues& values) const {
   }
 }
 
+void GaitMeter::add_wave_measures(MeasureValues& values, const Stride& stride) const {
+  constexpr double degree = std::numbers::pi / 180.0;
+  constexpr double least_difference = 1.0 * degree;  // below, all joints swing together: there is no wave
+  const std::optional<BodyWave> wave = find_body_wave({targets_, joints_.size()}, planar_joints_, stride, tick_s_);
+  if (!wave) {
+    return;
+  }
+  const double phase_difference = without_last_bits(wave->phase_difference / degree) * degree;
+  const double amplitude = without_last_bits(wave->amplitude / degree) * degree;
+  const double waves = wave_count(phase_difference, static_cast<double>(wave->joints));
+  values[Measure::wave_count] = waves;
+  if (std::abs(phase_difference) >= least_difference) {
+    const double step = predicted_step_length(body_length_, waves, winding_angle(amplitude, phase_difference));
+    values[Measure::predicted_distance] =
+        without_last_bits(step * stride.frequency * static_cast<double>(ticks_) * tick_s_);
+  }
+}
+
 MeasureValues GaitMeter::values(double heading_deg) const {
   MeasureValues values;
   if (ticks_ == 0) {
@@ -201,11 +229,15 @@ MeasureValues GaitMeter::values(double heading_deg) const {
   if (ticks_ > 1) {
     const double mean_square = squared_second_differences_ / static_cast<double>(ticks_ - 1);
     values[Measure::smoothness] = std::sqrt(mean_square) / (tick_s_ * tick_s_);
+    values[Measure::max_acceleration] = std::sqrt(largest_squared_difference_) / (tick_s_ * tick_s_);
   }
   if (supported_ticks_ > 0) {
     values[Measure::stability_margin] = margin_sum_ / static_cast<double>(supported_ticks_);
   }
   values[Measure::height] = center_.z() - start_.z();
+  values[Measure::potential_energy] = energy_.mean_potential();
+  values[Measure::kinetic_energy] = energy_.mean_kinetic();
+  values[Measure::elastic_energy] = energy_.mean_elastic();
   add_servo_measures(values);
 
   const std::optional<Stride> stride = this->stride();
@@ -214,7 +246,9 @@ MeasureValues GaitMeter::values(double heading_deg) const {
     duty_sum += factor;
   }
   values[Measure::duty_factor] = duty_sum / static_cast<double>(sensors_.size());
+  values[Measure::lifted_links] = static_cast<double>(sensors_.size()) - duty_sum;
   if (stride) {
+    add_wave_measures(values, *stride);
     const double length = distance / (time_s * stride->frequency);
     values[Measure::stride_frequency] = stride->frequency;
     values[Measure::stride_length] = length;

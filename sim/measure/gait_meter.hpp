@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "sim/environment/environment_model.hpp"
+#include "sim/measure/body_energy.hpp"
 #include "sim/measure/measure.hpp"
 #include "sim/measure/servo_tracking.hpp"
 #include "sim/measure/stride.hpp"
@@ -70,6 +71,7 @@ class GaitMeter {
     std::span<const double> joint_targets;  ///< rad, of the servos in the last step
     /// Per link, bit 0 rear, bit 1 front sensor: not debounced, without noise.
     std::span<const std::uint8_t> link_contacts;
+    std::span<const double> motor_torques{};  ///< Nm, mean over the tick; empty if they are not known
   };
   /// Must be called after the last step of every tick.
   void add_tick(const Tick& tick);
@@ -112,6 +114,7 @@ class GaitMeter {
   void drop_oldest_ticks();
   [[nodiscard]] double speed_along(double heading_deg) const;
   void add_servo_measures(MeasureValues& values) const;
+  void add_wave_measures(MeasureValues& values, const Stride& stride) const;
   [[nodiscard]] std::vector<double> duty_factors(const std::optional<Stride>& stride) const;
 
   ServoCurrent servo_;
@@ -123,6 +126,8 @@ class GaitMeter {
   double body_length_ = 0.0;
   Eigen::Vector2d forward_;  ///< direction of the head at the start; not numbers if the head points up or down
   std::vector<SensorPositions> sensors_;
+  std::vector<std::size_t> planar_joints_;  ///< those of the first joint's plane, from head to tail
+  BodyEnergy energy_;
   std::vector<Eigen::Vector3d> link_centers_;  ///< centres of mass, in the frames of the links
 
   std::vector<JointState> joints_;
@@ -140,6 +145,7 @@ class GaitMeter {
   Eigen::Vector3d center_;         ///< of mass, now
   Eigen::Vector3d center_before_;  ///< a tick before
   double squared_second_differences_ = 0.0;
+  double largest_squared_difference_ = 0.0;  ///< of the second differences
   Eigen::Vector2d span_;  ///< from tail to head, seen from above, when it was last long enough to have a direction
   double turn_ = 0.0;     ///< rad, of the span since the start
   double margin_sum_ = 0.0;

@@ -40,6 +40,18 @@ constexpr std::array<MeasureDeclaration, measure_count> declarations{{
      "share of the time in which a servo is at its speed limit"},
     {Measure::at_torque_limit, "at_torque_limit", "", false, false,
      "share of the time in which a servo is at its torque limit"},
+    {Measure::max_acceleration, "max_acceleration", "m/s^2", false, false,
+     "largest acceleration of the centre of mass"},
+    {Measure::potential_energy, "potential_energy", "J", false, true,
+     "potential energy against the start, mean over the time"},
+    {Measure::kinetic_energy, "kinetic_energy", "J", false, false, "kinetic energy of the links, mean over the time"},
+    {Measure::elastic_energy, "elastic_energy", "J", false, false,
+     "energy in the servos as if they were springs, mean over the time"},
+    {Measure::wave_count, "wave_count", "", true, false, "number k of waves on the body"},
+    {Measure::predicted_distance, "predicted_distance", "m", true, false,
+     "distance that the wave on the body goes without slip"},
+    {Measure::lifted_links, "lifted_links", "", true, false,
+     "number of links that do not touch the ground, mean over a stride"},
 }};
 
 constexpr bool in_order() {

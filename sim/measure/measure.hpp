@@ -38,8 +38,15 @@ enum class Measure : std::uint8_t {
   max_tracking_error,
   at_speed_limit,
   at_torque_limit,
+  max_acceleration,
+  potential_energy,
+  kinetic_energy,
+  elastic_energy,
+  wave_count,
+  predicted_distance,
+  lifted_links,
 };
-inline constexpr std::size_t measure_count = 22;
+inline constexpr std::size_t measure_count = 29;
 
 struct MeasureDeclaration {
   Measure measure;

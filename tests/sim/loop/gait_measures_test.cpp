@@ -7,10 +7,10 @@
 #include <numbers>
 #include <vector>
 
-#include "body_wave.hpp"
 #include "shipped.hpp"
 #include "sim/loop/hardware_loop.hpp"
 #include "sim/loop/simulation.hpp"
+#include "sim/measure/body_wave.hpp"
 #include "sim/measure/measure.hpp"
 
 namespace proleg::sim {
@@ -56,6 +56,8 @@ TEST(GaitMeasures, TheTravellingWaveTakesMoreThanHalfOfThePredictedStep) {
   EXPECT_LT(values[Measure::stride_length], predicted);
   EXPECT_GT(values[Measure::stride_length], 0.5 * predicted);
   EXPECT_NEAR(values[Measure::stride_frequency], 1.0, 1e-3);
+  EXPECT_NEAR(values[Measure::wave_count], 0.7639, 5e-4) << "thesis, section 6.2, footnote 8";
+  EXPECT_NEAR(values[Measure::predicted_distance], 30 * predicted, 0.02);
   EXPECT_EQ(values[Measure::distance], simulation.plant().displacement());
   EXPECT_NEAR(values[Measure::stride_length], values[Measure::distance] / 30, 1e-4);
   EXPECT_NEAR(values[Measure::froude_number],
@@ -128,6 +130,26 @@ TEST(GaitMeasures, CurrentsOfTheTicksAddUpToTheElectricalEnergyAndTorquesStayWit
   EXPECT_NEAR(charge * 6.0, energy, 1e-9 * energy);
   EXPECT_LE(largest_torque, 0.4 + 1e-12);
   EXPECT_GT(largest_torque, 0.1);
+}
+
+TEST(GaitMeasures, EnergiesOfTheBodyAddUpToThatOfTheWorld) {
+  const Scenario scenario = shipped("travelling_wave/uniform");
+  Simulation simulation(scenario);
+  double sum = 0.0;
+  int ticks = 0;
+  while (simulation.time_s() < 5.0 - 1e-9) {
+    simulation.advance();
+    sum += simulation.plant().energy_balance().stored;
+    ++ticks;
+  }
+  const MeasureValues values = simulation.measures();
+  const double both = values[Measure::potential_energy] + values[Measure::kinetic_energy];
+  // The engine's kinetic energy is that at the end of a tick, the measure's that of the tick's mean velocity.
+  EXPECT_NEAR(both, sum / ticks, 0.02 * sum / ticks);
+  EXPECT_GT(values[Measure::kinetic_energy], 0.0);
+  EXPECT_GT(values[Measure::elastic_energy], 0.0);
+  EXPECT_GE(values[Measure::max_acceleration], values[Measure::smoothness]);
+  EXPECT_NEAR(values[Measure::lifted_links], 6 * (1 - values[Measure::duty_factor]), 1e-9);
 }
 
 TEST(GaitMeasures, EnergiesNeverDecrease) {

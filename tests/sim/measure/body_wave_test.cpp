@@ -1,12 +1,13 @@
 // The figures are computed by hand from the equations of the thesis, for its gait of 40 and 30 degrees with 55 degrees
 // of phase difference.
 
-#include "body_wave.hpp"
+#include "sim/measure/body_wave.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "test_units.hpp"
 
@@ -51,6 +52,55 @@ TEST(BodyWave, PredictsTheStepOfTheGaitsOfTheThesis) {
   EXPECT_NEAR(step(30, 5), 0.0445, 5e-5);
   EXPECT_NEAR(step(30, 6), 0.0371, 5e-5);
   EXPECT_EQ(step(0, 5), 0.0) << "a straight robot makes no step";
+}
+
+/// Target angles of joints: amplitude * sin(2 pi f t + joint * phase difference), in ticks of 10 ms.
+std::vector<double> wave_angles(const std::vector<double>& amplitudes, double phase_difference, double frequency,
+                                int ticks) {
+  std::vector<double> angles;
+  for (int tick = 1; tick <= ticks; ++tick) {
+    for (std::size_t joint = 0; joint < amplitudes.size(); ++joint) {
+      angles.push_back(amplitudes[joint] * std::sin(2 * std::numbers::pi * frequency * tick * 0.01 +
+                                                    static_cast<double>(joint) * phase_difference));
+    }
+  }
+  return angles;
+}
+
+TEST(BodyWave, IsFoundInTheAnglesOfJoints) {
+  const std::vector<std::size_t> joints{0, 1, 2, 3, 4};
+  for (const double difference : {-120.0, -55.0, -5.0, 30.0, 90.0, 170.0}) {
+    const std::vector<double> angles = wave_angles({0.7, 0.7, 0.7, 0.7, 0.7}, difference * degree, 1.0, 1000);
+    const SignalTable table{angles, 5};
+    const std::optional<Stride> stride = find_stride(table, 0.01);
+    ASSERT_TRUE(stride);
+    const std::optional<BodyWave> wave = find_body_wave(table, joints, *stride, 0.01);
+    ASSERT_TRUE(wave);
+    EXPECT_NEAR(wave->phase_difference / degree, difference, 0.05);
+    EXPECT_NEAR(wave->amplitude, 0.7, 0.002);
+    EXPECT_EQ(wave->joints, 5U);
+  }
+}
+
+TEST(BodyWave, LeavesOutAJointAtRestAndJointsOfAnotherPlane) {
+  const std::vector<double> angles = wave_angles({0.5, 0.5, 0.0, 0.5, 0.5}, 40 * degree, 1.3, 1000);
+  const SignalTable table{angles, 5};
+  const std::optional<Stride> stride = find_stride(table, 0.01);
+  ASSERT_TRUE(stride);
+  const std::vector<std::size_t> all{0, 1, 2, 3, 4};
+  EXPECT_NEAR(find_body_wave(table, all, *stride, 0.01)->phase_difference / degree, 40, 0.3);
+  EXPECT_NEAR(find_body_wave(table, all, *stride, 0.01)->amplitude, 0.4, 0.004) << "the mean of all five";
+  const std::vector<std::size_t> every_second{1, 3};
+  EXPECT_NEAR(find_body_wave(table, every_second, *stride, 0.01)->phase_difference / degree, 80, 0.3);
+}
+
+TEST(BodyWave, IsNoneForOneJointOrJointsAtRest) {
+  const std::vector<double> angles = wave_angles({0.5, 0.0, 0.0}, 0.7, 1.0, 500);
+  const SignalTable table{angles, 3};
+  const std::optional<Stride> stride = find_stride(table, 0.01);
+  ASSERT_TRUE(stride);
+  EXPECT_FALSE(find_body_wave(table, std::vector<std::size_t>{0}, *stride, 0.01));
+  EXPECT_FALSE(find_body_wave(table, std::vector<std::size_t>{1, 2}, *stride, 0.01));
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ TEST(Measures, AreListedByName) {
   const std::vector<std::string> names = measure_names();
   ASSERT_EQ(names.size(), measure_count);
   EXPECT_EQ(names.front(), "distance");
-  EXPECT_EQ(names.back(), "at_torque_limit");
+  EXPECT_EQ(names.back(), "lifted_links");
 }
 
 TEST(Measures, StateWhetherHigherIsBetter) {
@@ -44,8 +44,9 @@ TEST(Measures, StateWhetherHigherIsBetter) {
 
 TEST(Measures, StateWhichMayBeNegative) {
   // By their definitions: projections, angles, a distance to an edge that may be behind, a difference.
-  const std::set<Measure> with_both_signs{Measure::speed,    Measure::sideways_speed,   Measure::heading,
-                                          Measure::yaw_rate, Measure::stability_margin, Measure::height};
+  const std::set<Measure> with_both_signs{Measure::speed,           Measure::sideways_speed,   Measure::heading,
+                                          Measure::yaw_rate,        Measure::stability_margin, Measure::height,
+                                          Measure::potential_energy};
   for (const MeasureDeclaration& declaration : measures()) {
     EXPECT_EQ(declaration.may_be_negative, with_both_signs.contains(declaration.measure)) << declaration.name;
   }

@@ -1,10 +1,15 @@
 #pragma once
 
-// The step of a body wave without slip (thesis, equation 3.2), which the tests compare with simulated gaits. SI units,
+// The wave that a gait sends along the body, and its step without slip (thesis, equations 2.14 and 3.2). SI units,
 // angles in radians.
 
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <optional>
+#include <span>
+
+#include "sim/measure/stride.hpp"
 
 namespace proleg::sim {
 
@@ -32,5 +37,17 @@ namespace proleg::sim {
 [[nodiscard]] inline double predicted_step_length(double body_length, double waves, double winding_angle) {
   return body_length / waves * (1.0 - serpenoid_shortening(winding_angle));
 }
+
+/// A wave of joint angles along the body.
+struct BodyWave {
+  double phase_difference = 0.0;  ///< between neighbouring joints, -pi to pi; the mean, weighted with the amplitudes
+  double amplitude = 0.0;         ///< mean of the joints
+  std::size_t joints = 0;         ///< that bend the body in the plane of the wave
+};
+
+/// The wave in the target angles of some joints over whole strides: the part of each angle that swings with the stride.
+/// joints: positions in the table, from head to tail. Nothing if there are fewer than two, or if they do not swing.
+[[nodiscard]] std::optional<BodyWave> find_body_wave(const SignalTable& angles, std::span<const std::size_t> joints,
+                                                     const Stride& stride, double tick_s);
 
 }  // namespace proleg::sim

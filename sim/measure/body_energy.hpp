@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "sim/robot/robot_model.hpp"
+
+namespace proleg::sim {
+
+/// The energies that a robot's body holds while it moves (thesis, equations 2.11 to 2.13), at the ends of the ticks.
+class BodyEnergy {
+ public:
+  /// All joint angles are 0 and the robot rests before the first tick, in the pose of the environment.
+  BodyEnergy(const RobotModel& robot, const Pose& start, double gravity, double tick_s);
+
+  /// link_poses: in the world. motor_torques: Nm, mean over the tick; empty if they are not known.
+  void add_tick(std::span<const Pose> link_poses, std::span<const double> joint_angles,
+                std::span<const double> joint_targets, std::span<const double> motor_torques);
+
+  // J, means over the ticks; not a number before the first tick.
+  /// m g h; h is the height of the centre of mass above that of the start.
+  [[nodiscard]] double mean_potential() const { return potential_sum_ / static_cast<double>(ticks_); }
+  /// Sum over the links of m v^2 / 2 and w I w / 2, with the mean velocities of the tick.
+  [[nodiscard]] double mean_kinetic() const { return kinetic_sum_ / static_cast<double>(ticks_); }
+  /// K x^2 / 2 of each joint, if its servo were a spring that has its torque at its distance from its target.
+  [[nodiscard]] double mean_elastic() const { return elastic_sum_ / static_cast<double>(ticks_); }
+
+ private:
+  struct Body {
+    MassProperties mass;
+    Eigen::Vector3d center;  ///< in the world, a tick before
+    Eigen::Quaterniond orientation;
+  };
+
+  double weight_per_mass_;  ///< m/s^2
+  double ticks_per_s_;
+  std::vector<Body> bodies_;
+  double start_moment_ = 0.0;  ///< kg m: sum of mass times height at the start
+  std::uint64_t ticks_ = 0;
+  double potential_sum_ = 0.0;
+  double kinetic_sum_ = 0.0;
+  double elastic_sum_ = 0.0;
+};
+
+}  // namespace proleg::sim

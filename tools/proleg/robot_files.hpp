@@ -5,15 +5,12 @@
 #include <string>
 #include <vector>
 
-namespace proleg::tools {
+#include "tools/proleg/robot_kinds.hpp"
 
-struct NewFile {
-  std::string name;  ///< relative to the folder of the robot
-  std::string text;
-};
+namespace proleg::tools {
 
 /// The files of a scenario: a robot with these joints, a gait that moves it, a flat floor. axes: for each joint from
 /// the tail 'p' (pitch) or 'y' (yaw); 1 to 64 characters. The top-level file is the first one.
-[[nodiscard]] std::vector<NewFile> robot_files(const std::string& axes);
+[[nodiscard]] std::vector<NewFile> robot_files(const RobotKind& kind, const std::string& axes);
 
 }  // namespace proleg::tools

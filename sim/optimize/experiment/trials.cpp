@@ -31,6 +31,9 @@ void perturb_friction(sim::Scenario& scenario, double factor) {
   for (sim::StaticObject& object : scenario.environment.objects) {
     scale_friction(object.geometries, factor);
   }
+  for (sim::MovingObject& object : scenario.environment.moving_objects) {
+    scale_friction(object.geometries, factor);
+  }
   for (sim::Link& link : scenario.robot.links) {
     scale_friction(link.geometries, factor);
   }

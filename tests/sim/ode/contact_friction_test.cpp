@@ -136,7 +136,7 @@ class PlateInTheEngine {
     const int count = dCollide(a, b, 8, &points[0].geom, sizeof(dContact));
     for (int i = 0; i < count; ++i) {
       dContact& point = points[static_cast<std::size_t>(i)];
-      friction_of_contacts_.set_surface(point, friction_, a, b);
+      friction_of_contacts_.set_surface(point, friction_, a, b, ContactFriction::Between::robot_and_world);
       const dJointID joint = dJointCreateContact(world_, contacts_, &point);
       dJointAttach(joint, dGeomGetBody(a), dGeomGetBody(b));
       friction_of_contacts_.observe(joint);

@@ -277,6 +277,17 @@ namespace {
                    "--engine ode)");
 }
 
+void require_known_friction(const RobotModel& robot, const std::string& file) {
+  for (const Link& link : robot.links) {
+    for (const Geometry& geometry : link.geometries) {
+      if (geometry.friction_across) {
+        throw InputError(file, 0, "link " + in_quotes(link.name) + " with another friction across it",
+                         "the same friction in every direction, as MuJoCo has it here (or --engine ode)");
+      }
+    }
+  }
+}
+
 void require_known_shapes(const EnvironmentModel& environment, const std::string& file) {
   if (!environment.moving_objects.empty()) {
     refuse(file, "object " + in_quotes(environment.moving_objects.front().name) + ", which moves");
@@ -295,6 +306,7 @@ void require_known_shapes(const EnvironmentModel& environment, const std::string
 std::unique_ptr<World> make_mujoco_world(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
                                          const std::string& file, Integrator integrator) {
   require_known_shapes(environment, file);
+  require_known_friction(robot, file);
   return std::make_unique<MujocoWorld>(robot, environment, step_s, file, integrator);
 }
 

@@ -66,16 +66,34 @@ std::size_t ContactFriction::pair_of(dGeomID a, dGeomID b, Between between) {
   return pairs_.size() - 1;
 }
 
+void ContactFriction::note_point(const dContact& contact, dGeomID a, dGeomID b, Between between) {
+  next_.pair = pair_of(a, b, between);
+  next_.position = {contact.geom.pos[0], contact.geom.pos[1], contact.geom.pos[2]};
+  next_.normal = {contact.geom.normal[0], contact.geom.normal[1], contact.geom.normal[2]};
+  next_.velocity = sliding_velocity(a, b, next_.position, next_.normal);
+}
+
+void ContactFriction::set_surface(dContact& contact, const Eigen::Vector3d& axis, double along, double across,
+                                  dGeomID a, dGeomID b, Between between) {
+  constexpr double least_projection = 0.1;
+  note_point(contact, a, b, between);
+  contact.surface.mode = dContactApprox1 | dContactMu2;
+  contact.surface.mu = along;
+  contact.surface.mu2 = across;
+  const Eigen::Vector3d direction = tangential(axis, next_.normal);
+  if (direction.norm() > least_projection) {
+    set_first_axis(contact, direction);
+  } else {
+    contact.surface.mu2 = along;  // a body that stands on its end
+  }
+}
+
 void ContactFriction::set_surface(dContact& contact, double coefficient, dGeomID a, dGeomID b, Between between) {
+  note_point(contact, a, b, between);
+  const Eigen::Vector3d& normal = next_.normal;
   // Without this mode mu would be a force.
   contact.surface.mode = dContactApprox1;
   contact.surface.mu = coefficient;
-  const Eigen::Vector3d position(contact.geom.pos[0], contact.geom.pos[1], contact.geom.pos[2]);
-  const Eigen::Vector3d normal(contact.geom.normal[0], contact.geom.normal[1], contact.geom.normal[2]);
-  next_.pair = pair_of(a, b, between);
-  next_.position = position;
-  next_.normal = normal;
-  next_.velocity = sliding_velocity(a, b, position, normal);
   if (coefficient <= 0.0) {
     return;
   }

@@ -37,6 +37,10 @@ class ContactFriction {
     links,            ///< counts for nothing
     objects,          ///< an object that moves, and another or the environment: only friction_power
   };
+  /// Sets the surface of a contact point whose friction is not the same in every direction: the engine limits it along
+  /// two fixed axes. axis: in the world, of the body; along it and across it are the coefficients.
+  void set_surface(dContact& contact, const Eigen::Vector3d& axis, double along, double across, dGeomID a, dGeomID b,
+                   Between between);
   /// Sets the surface of a contact point, without its geometry. a, b: the shapes that touch.
   void set_surface(dContact& contact, double coefficient, dGeomID a, dGeomID b, Between between);
   /// joint: of the contact of the last set_surface(), attached to its bodies.
@@ -54,6 +58,8 @@ class ContactFriction {
   }
 
  private:
+  void note_point(const dContact& contact, dGeomID a, dGeomID b, Between between);
+
   /// Two shapes that touch.
   struct Pair {
     dGeomID a;

@@ -47,6 +47,7 @@ void to_quaternion(const Eigen::Quaterniond& orientation, dQuaternion out) {
 struct GeometryData {
   int link = -1;  ///< or one of the two below
   std::optional<double> friction;
+  std::optional<double> friction_across;
   bool is_mesh = false;
 };
 constexpr int of_environment = -1;
@@ -292,7 +293,7 @@ class OdeWorld final : public World {
         shape = meshes_.try_emplace(geometry.mesh.get(), *geometry.mesh).first->second.make_shape(space);
         break;
     }
-    geometry_data_.push_back({link, geometry.friction, geometry.mesh != nullptr});
+    geometry_data_.push_back({link, geometry.friction, geometry.friction_across, geometry.mesh != nullptr});
     dGeomSetData(shape, &geometry_data_.back());
     return shape;
   }
@@ -423,8 +424,7 @@ class OdeWorld final : public World {
     for (const dContactGeom& point : points) {
       dContact contact;  // not initialised: the engine reads only what the mode of the surface names
       contact.geom = point;
-      contact_friction_.set_surface(contact, friction_of(data_a.friction, data_b.friction, unspecified_friction_), a, b,
-                                    between(data_a, data_b));
+      set_surface(contact, a, b, data_a, data_b);
       const dJointID joint = dJointCreateContact(world_.get(), contact_group_.get(), &contact);
       dJointAttach(joint, dGeomGetBody(a), dGeomGetBody(b));
       contact_friction_.observe(joint);
@@ -432,6 +432,21 @@ class OdeWorld final : public World {
       note_touch(data_b.link, data_a.link, contact);
     }
     contact_count_ += points.size();
+  }
+
+  void set_surface(dContact& contact, dGeomID a, dGeomID b, const GeometryData& data_a, const GeometryData& data_b) {
+    const double along = friction_of(data_a.friction, data_b.friction, unspecified_friction_);
+    const ContactFriction::Between who = between(data_a, data_b);
+    if (!data_a.friction_across && !data_b.friction_across) {
+      contact_friction_.set_surface(contact, along, a, b, who);
+      return;
+    }
+    // Of two such bodies, which scrape along each other, the first one decides.
+    const bool first = data_a.friction_across.has_value();
+    const double across = friction_of((first ? data_a : data_b).friction_across, (first ? data_b : data_a).friction,
+                                      unspecified_friction_);
+    const dReal* rotation = dBodyGetRotation(dGeomGetBody(first ? a : b));  // 3 rows of 4
+    contact_friction_.set_surface(contact, {rotation[1], rotation[5], rotation[9]}, along, across, a, b, who);
   }
 
   void note_touch(int link, int other, const dContact& contact) {

@@ -128,6 +128,9 @@ class Maker {
     const std::string name = "link '" + robot_.links[link].name + "'";
     const Pose pose = start * geometry.pose;
     require_in_plane(pose.position, "a shape of " + name);
+    if (geometry.friction_across) {
+      refuse(name + " with another friction across it");
+    }
     const std::optional<Rectangle> outline = section(geometry, {pose.position - center, pose.orientation});
     if (!outline) {
       refuse(geometry.shape == Shape::box ? name + " with a box that is oblique to the plane in which the robot moves"

@@ -119,6 +119,9 @@ class SpatialMaker {
     if (geometry.shape != Shape::box) {
       refuse("link '" + link.name + "' with " + std::string(with_article(geometry.shape)));
     }
+    if (geometry.friction_across) {
+      refuse("link '" + link.name + "' with another friction across it");
+    }
     const Eigen::Vector3d center = geometry.pose.position - link.mass.center;
     BoxForm box;
     box.link = i;

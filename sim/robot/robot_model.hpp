@@ -75,6 +75,9 @@ struct Geometry {
   /// Coulomb coefficient, not negative; without one that of the other geometry applies. Two of them: the geometric
   /// mean.
   std::optional<double> friction;
+  /// The coefficient across the body, as of a snake's belly: perpendicular to the y axis of its frame, along which
+  /// robots lie. `friction` then holds along this axis only. Without it friction is the same in every direction.
+  std::optional<double> friction_across;
   bool is_shown = true;  ///< false: a Look is shown in its place
 };
 

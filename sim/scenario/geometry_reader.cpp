@@ -152,7 +152,7 @@ ReadGeometry read_geometry(const XmlElement& element, BodyKind kind, SourceSet& 
   const std::string type = lower_case(element.required_attribute("type"));
   const auto allow_tags = [&element](std::initializer_list<std::string_view> size_tags) {
     constexpr std::array<std::string_view, 4> attributes{"type", "name", "render", "open"};
-    constexpr std::array<std::string_view, 1> friction{"friction"};
+    constexpr std::array<std::string_view, 2> friction{"friction", "frictionAcross"};
     const std::span<const std::string_view> sizes(size_tags.begin(), size_tags.size());
     element.allow(attributes, joined({sizes, pose_tags, friction, visual_tags}));
   };
@@ -200,6 +200,12 @@ ReadGeometry read_geometry(const XmlElement& element, BodyKind kind, SourceSet& 
   geometry.is_shown = !result.look;
   if (const auto friction = element.child("friction")) {
     geometry.friction = read_number(*friction, frictions);
+  }
+  if (const auto across = element.child("frictionAcross")) {
+    if (kind == BodyKind::fixed) {
+      across->refuse(across->label() + " in a static body", "it in a link of a robot, or in a body that moves");
+    }
+    geometry.friction_across = read_number(*across, frictions);
   }
   return result;
 }

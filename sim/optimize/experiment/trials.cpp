@@ -23,6 +23,9 @@ void scale_friction(std::vector<sim::Geometry>& geometries, double factor) {
     if (geometry.friction) {
       *geometry.friction *= factor;
     }
+    if (geometry.friction_across) {
+      *geometry.friction_across *= factor;
+    }
   }
 }
 

@@ -6,6 +6,7 @@ host_packages=(
   libode-dev libeigen3-dev libtinyxml2-dev libsqlite3-dev libsodium-dev zlib1g-dev libcli11-dev nlohmann-json3-dev
   libunicorn-dev libdw-dev
   libpagmo-dev libga-dev  # the optimiser
+  libassimp-dev libqhull-dev  # meshes of links and worlds
   libboost-dev  # Boost.Asio: serial lines, sockets
   libevdev-dev  # gamepads
   libssl-dev    # TLS of the page

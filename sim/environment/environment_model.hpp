@@ -15,6 +15,24 @@ struct StaticObject {
   std::string name;
   Pose pose;  ///< in the world
   std::vector<Geometry> geometries;
+  std::vector<Look> looks;  ///< shown beside the geometries
+};
+
+/// An object in the world that moves when something pushes it: a ball, a box. Its geometries are convex.
+struct MovingObject {
+  std::string name;
+  Pose pose;  ///< of its frame in the world, at the start
+  MassProperties mass;
+  std::vector<Geometry> geometries;
+  std::vector<Look> looks;  ///< shown beside the geometries
+};
+
+/// A scale on the ground, for the eye only: segments of equal length whose colours alternate.
+struct Ruler {
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< m, in the world
+  Eigen::Vector3d to = Eigen::Vector3d::Zero();    ///< not at `from`
+  double division = 1.0;                           ///< m, length of a segment; the last one may be shorter
+  double width = 0.1;                              ///< m
 };
 
 /// The world a robot crawls in.
@@ -25,6 +43,8 @@ struct EnvironmentModel {
   /// Coulomb coefficient between two geometries of which neither has one.
   double unspecified_friction = default_friction;
   std::vector<StaticObject> objects;
+  std::vector<MovingObject> moving_objects;
+  std::vector<Ruler> rulers;
   Pose robot_pose;  ///< where the robot starts
 };
 

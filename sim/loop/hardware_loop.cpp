@@ -98,7 +98,9 @@ class HardwareLoop::Implementation {
             plant_.motor_torques(),
             plant_.servo_currents(),
             plant_.contact_forces(),
-            first_fault_tick_ ? std::span<const Loss>() : reference_.chain().lost()};
+            first_fault_tick_ ? std::span<const Loss>() : reference_.chain().lost(),
+            {},
+            plant_.object_poses()};
   }
 
   [[nodiscard]] std::uint32_t tick() const { return tick_; }

@@ -62,6 +62,7 @@ Plant::Plant(const Scenario& scenario, std::unique_ptr<World> world)
       servos_(scenario.robot.joints.size(), Servo{servo_center}),
       contact_noise_(scenario.kernel.seed, random_stream::touch_sensors),
       link_poses_(scenario.robot.links.size()),
+      object_poses_(scenario.environment.moving_objects.size()),
       joint_angles_(scenario.robot.joints.size()),
       motor_torques_(scenario.robot.joints.size()),
       servo_currents_(scenario.robot.joints.size()),
@@ -268,6 +269,7 @@ void Plant::read_world() {
     joint_targets_[joint] = servo_target(servos_[joint].command);
   }
   world_->read_links(link_poses_);
+  world_->read_objects(object_poses_);
   for (std::size_t link = 0; link < link_contacts_.size(); ++link) {
     link_contacts_[link] = world_->link_contacts(link);
   }

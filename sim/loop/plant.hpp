@@ -62,6 +62,8 @@ class Plant {
   /// The last pulse of each servo; the middle position before the first one.
   [[nodiscard]] std::span<const std::int32_t> servo_commands() const { return servo_commands_; }
   [[nodiscard]] std::span<const Pose> link_poses() const { return link_poses_; }
+  /// Of the objects that move.
+  [[nodiscard]] std::span<const Pose> object_poses() const { return object_poses_; }
   [[nodiscard]] std::span<const double> joint_angles() const { return joint_angles_; }
   /// Torque of each motor in Nm, and current of each servo in mA (an estimate): means over the tick.
   [[nodiscard]] std::span<const double> motor_torques() const { return motor_torques_; }
@@ -153,6 +155,7 @@ class Plant {
   std::vector<Servo> servos_;  ///< by joint
   Pcg32 contact_noise_;
   std::vector<Pose> link_poses_;
+  std::vector<Pose> object_poses_;
   std::vector<double> joint_angles_;
   std::vector<double> motor_torques_;
   std::vector<double> servo_currents_;

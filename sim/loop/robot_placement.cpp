@@ -8,6 +8,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/robot/mesh_height.hpp"
 #include "sim/scenario/geometry_reader.hpp"
 #include "sim/scenario/plausibility.hpp"
 
@@ -57,6 +58,15 @@ Ground ground_at(const Eigen::Vector3d& point, const EnvironmentModel& environme
   const auto raise = [](std::optional<double>& top, double height) { top = std::max(top.value_or(height), height); };
   for (const StaticObject& object : environment.objects) {
     for (const Geometry& solid : object.geometries) {
+      if (solid.mesh) {
+        if (const auto top = highest_over(*solid.mesh, object.pose * solid.pose, point.head<2>(), point.head<2>())) {
+          raise(ground.highest, *top);
+          if (*top <= point.z()) {
+            raise(ground.below, *top);
+          }
+        }
+        continue;
+      }
       const Bounds bounds = bounds_of(solid, object.pose);
       if ((point.head<2>().array() >= bounds.lowest.head<2>().array()).all() &&
           (point.head<2>().array() <= bounds.highest.head<2>().array()).all()) {

@@ -97,7 +97,8 @@ TickSample Simulation::sample() {
           plant_.servo_currents(),
           plant_.contact_forces(),
           chain_.lost(),
-          std::span(scenario_.moves).subspan(last_first_move_, first_move_ - last_first_move_)};
+          std::span(scenario_.moves).subspan(last_first_move_, first_move_ - last_first_move_),
+          plant_.object_poses()};
 }
 
 }  // namespace proleg::sim

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -36,7 +37,9 @@ class Writer {
           << "' solreflimit='" << reference(step_s) << "'/>\n"
           << "<pair condim='3' solimp='" << hard_contact << "' solref='" << reference(step_s) << "'/>\n"
           << "</default>\n"
-          << "<worldbody>\n";
+          << "<asset>\n";
+    write_assets(robot, environment);
+    text_ << "</asset>\n<worldbody>\n";
     for (const StaticObject& object : environment.objects) {
       for (const Geometry& geometry : object.geometries) {
         write_geometry(geometry, object.pose * geometry.pose, environment_owner);
@@ -83,6 +86,28 @@ class Writer {
     return text.str();
   }
 
+  void write_assets(const RobotModel& robot, const EnvironmentModel& environment) {
+    for (const Link& link : robot.links) {
+      write_meshes(link.geometries);
+    }
+    for (const StaticObject& object : environment.objects) {
+      write_meshes(object.geometries);
+    }
+  }
+
+  /// MuJoCo makes the convex hull of the corners.
+  void write_meshes(const std::vector<Geometry>& geometries) {
+    for (const Geometry& geometry : geometries) {
+      if (geometry.shape == Shape::hull && meshes_.try_emplace(geometry.mesh.get(), meshes_.size()).second) {
+        text_ << "<mesh name='" << meshes_.at(geometry.mesh.get()) << "' vertex='";
+        for (const Eigen::Vector3d& vertex : geometry.mesh->vertices) {
+          text_ << vertex.x() << ' ' << vertex.y() << ' ' << vertex.z() << ' ';
+        }
+        text_ << "'/>\n";
+      }
+    }
+  }
+
   void write_geometry(const Geometry& geometry, Pose pose, std::ptrdiff_t owner) {
     text_ << "<geom name='" << written_.size() << "' contype='0' conaffinity='0'";
     const Eigen::Vector3d& extents = geometry.extents;
@@ -98,6 +123,12 @@ class Writer {
         pose.orientation =
             pose.orientation * Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
         break;
+      case Shape::hull:
+        text_ << " type='mesh' mesh='" << meshes_.at(geometry.mesh.get()) << "'";
+        break;
+      case Shape::surface:
+      case Shape::height_field:
+        break;  // mujoco_world.cpp refuses them
     }
     text_ << place(pose) << "/>\n";
     written_.push_back({owner, geometry.friction});
@@ -166,6 +197,7 @@ class Writer {
 
   std::ostringstream text_;
   std::vector<Written> written_;
+  std::map<const TriangleMesh*, std::size_t> meshes_;  ///< their names
 };
 
 }  // namespace

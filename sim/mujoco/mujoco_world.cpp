@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
 #include "sim/mujoco/mjcf.hpp"
 #include "sim/mujoco/mujoco_model.hpp"
 #include "sim/physics/physics_error.hpp"
@@ -267,8 +269,44 @@ class MujocoWorld final : public World {
 
 bool is_built_in() { return true; }
 
+namespace {
+
+[[noreturn]] void refuse(const std::string& file, const std::string& found) {
+  throw InputError(file, 0, found,
+                   "what MuJoCo has here: objects that do not move, of boxes, spheres, cylinders and convex meshes (or "
+                   "--engine ode)");
+}
+
+void require_known_friction(const RobotModel& robot, const std::string& file) {
+  for (const Link& link : robot.links) {
+    for (const Geometry& geometry : link.geometries) {
+      if (geometry.friction_across) {
+        throw InputError(file, 0, "link " + in_quotes(link.name) + " with another friction across it",
+                         "the same friction in every direction, as MuJoCo has it here (or --engine ode)");
+      }
+    }
+  }
+}
+
+void require_known_shapes(const EnvironmentModel& environment, const std::string& file) {
+  if (!environment.moving_objects.empty()) {
+    refuse(file, "object " + in_quotes(environment.moving_objects.front().name) + ", which moves");
+  }
+  for (const StaticObject& object : environment.objects) {
+    for (const Geometry& geometry : object.geometries) {
+      if (geometry.shape == Shape::surface || geometry.shape == Shape::height_field) {
+        refuse(file, "object " + in_quotes(object.name) + " with " + std::string(with_article(geometry.shape)));
+      }
+    }
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<World> make_mujoco_world(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
                                          const std::string& file, Integrator integrator) {
+  require_known_shapes(environment, file);
+  require_known_friction(robot, file);
   return std::make_unique<MujocoWorld>(robot, environment, step_s, file, integrator);
 }
 

@@ -58,24 +58,42 @@ const ContactFriction::Pair* ContactFriction::before(dGeomID a, dGeomID b) const
   return found == pairs_before_.end() ? nullptr : &*found;
 }
 
-std::size_t ContactFriction::pair_of(dGeomID a, dGeomID b) {
+std::size_t ContactFriction::pair_of(dGeomID a, dGeomID b, Between between) {
   // The engine reports all points of a pair one after another.
   if (pairs_.empty() || pairs_.back().a != a || pairs_.back().b != b) {
-    pairs_.push_back({a, b});
+    pairs_.push_back({a, b, between});
   }
   return pairs_.size() - 1;
 }
 
-void ContactFriction::set_surface(dContact& contact, double coefficient, dGeomID a, dGeomID b) {
+void ContactFriction::note_point(const dContact& contact, dGeomID a, dGeomID b, Between between) {
+  next_.pair = pair_of(a, b, between);
+  next_.position = {contact.geom.pos[0], contact.geom.pos[1], contact.geom.pos[2]};
+  next_.normal = {contact.geom.normal[0], contact.geom.normal[1], contact.geom.normal[2]};
+  next_.velocity = sliding_velocity(a, b, next_.position, next_.normal);
+}
+
+void ContactFriction::set_surface(dContact& contact, const Eigen::Vector3d& axis, double along, double across,
+                                  dGeomID a, dGeomID b, Between between) {
+  constexpr double least_projection = 0.1;
+  note_point(contact, a, b, between);
+  contact.surface.mode = dContactApprox1 | dContactMu2;
+  contact.surface.mu = along;
+  contact.surface.mu2 = across;
+  const Eigen::Vector3d direction = tangential(axis, next_.normal);
+  if (direction.norm() > least_projection) {
+    set_first_axis(contact, direction);
+  } else {
+    contact.surface.mu2 = along;  // a body that stands on its end
+  }
+}
+
+void ContactFriction::set_surface(dContact& contact, double coefficient, dGeomID a, dGeomID b, Between between) {
+  note_point(contact, a, b, between);
+  const Eigen::Vector3d& normal = next_.normal;
   // Without this mode mu would be a force.
   contact.surface.mode = dContactApprox1;
   contact.surface.mu = coefficient;
-  const Eigen::Vector3d position(contact.geom.pos[0], contact.geom.pos[1], contact.geom.pos[2]);
-  const Eigen::Vector3d normal(contact.geom.normal[0], contact.geom.normal[1], contact.geom.normal[2]);
-  next_.pair = pair_of(a, b);
-  next_.position = position;
-  next_.normal = normal;
-  next_.velocity = sliding_velocity(a, b, position, normal);
   if (coefficient <= 0.0) {
     return;
   }
@@ -117,11 +135,12 @@ void ContactFriction::end_step() {
     pair.points += 1;
     pair.normal_force += normal_force;
     pair.friction += tangential(force, point.normal);
-    const bool with_environment = dGeomGetBody(pair.a) == nullptr || dGeomGetBody(pair.b) == nullptr;
-    if (with_environment) {
+    if (pair.between != Between::links) {
       const Eigen::Vector3d velocity = sliding_velocity(pair.a, pair.b, point.position, point.normal);
-      sliding_.normal_force += normal_force;
-      sliding_.force_times_speed += normal_force * velocity.norm();
+      if (pair.between == Between::robot_and_world) {
+        sliding_.normal_force += normal_force;
+        sliding_.force_times_speed += normal_force * velocity.norm();
+      }
       // A force times the mean of the speeds before and after a step is the energy that the step takes. Friction takes;
       // the sign of the engine's force depends on the order of the bodies.
       sliding_.friction_power += std::abs(force.dot(0.5 * (velocity + point.velocity)));

@@ -3,6 +3,7 @@
 #include <ode/ode.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <vector>
 
@@ -30,13 +31,23 @@ class ContactFriction {
  public:
   /// Before the contacts of a step.
   void begin_step();
+  /// Who touches: it decides what the sums of sliding() count.
+  enum class Between : std::uint8_t {
+    robot_and_world,  ///< a link, and the environment or an object that moves
+    links,            ///< counts for nothing
+    objects,          ///< an object that moves, and another or the environment: only friction_power
+  };
+  /// Sets the surface of a contact point whose friction is not the same in every direction: the engine limits it along
+  /// two fixed axes. axis: in the world, of the body; along it and across it are the coefficients.
+  void set_surface(dContact& contact, const Eigen::Vector3d& axis, double along, double across, dGeomID a, dGeomID b,
+                   Between between);
   /// Sets the surface of a contact point, without its geometry. a, b: the shapes that touch.
-  void set_surface(dContact& contact, double coefficient, dGeomID a, dGeomID b);
+  void set_surface(dContact& contact, double coefficient, dGeomID a, dGeomID b, Between between);
   /// joint: of the contact of the last set_surface(), attached to its bodies.
   void observe(dJointID joint);
   /// After the step, before its contact joints are destroyed.
   void end_step();
-  /// Of the points with the environment, in the last step.
+  /// Of the robot's points with the world, in the last step.
   [[nodiscard]] const ContactSliding& sliding() const { return sliding_; }
   /// Calls visit(a, b, normal force in N) for each two shapes that touched in the last step.
   template <typename Visitor>
@@ -47,10 +58,13 @@ class ContactFriction {
   }
 
  private:
+  void note_point(const dContact& contact, dGeomID a, dGeomID b, Between between);
+
   /// Two shapes that touch.
   struct Pair {
     dGeomID a;
     dGeomID b;
+    Between between;
     std::size_t points = 0;
     double normal_force = 0.0;                           ///< N, sum of its points
     Eigen::Vector3d friction = Eigen::Vector3d::Zero();  ///< N, sum of its points; on either shape
@@ -65,7 +79,7 @@ class ContactFriction {
   };
 
   [[nodiscard]] const Pair* before(dGeomID a, dGeomID b) const;
-  [[nodiscard]] std::size_t pair_of(dGeomID a, dGeomID b);
+  [[nodiscard]] std::size_t pair_of(dGeomID a, dGeomID b, Between between);
 
   std::vector<Pair> pairs_before_;  ///< of the step before, with their forces
   std::vector<Pair> pairs_;         ///< of this step

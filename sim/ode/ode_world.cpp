@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <vector>
 
+#include "sim/ode/contact_choice.hpp"
 #include "sim/ode/contact_friction.hpp"
 #include "sim/ode/engine.hpp"
+#include "sim/ode/engine_mesh.hpp"
 #include "sim/ode/hinge_motor.hpp"
 #include "sim/ode/step_memory.hpp"
 #include "sim/ode/touch_sensors.hpp"
@@ -42,9 +45,21 @@ void to_quaternion(const Eigen::Quaterniond& orientation, dQuaternion out) {
 
 /// Properties of a geometry for the collision callback.
 struct GeometryData {
-  int link = -1;  ///< -1: the environment
+  int link = -1;  ///< or one of the two below
   std::optional<double> friction;
+  std::optional<double> friction_across;
+  bool is_mesh = false;
 };
+constexpr int of_environment = -1;
+constexpr int of_moving_object = -2;
+
+Eigen::Vector3d vector_of(const dReal* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
+
+/// Of the engine's frame, whose origin is the centre of mass.
+Pose pose_of(dBodyID body) {
+  const dReal* orientation = dBodyGetQuaternion(body);
+  return {vector_of(dBodyGetPosition(body)), {orientation[0], orientation[1], orientation[2], orientation[3]}};
+}
 
 class OdeWorld final : public World {
  public:
@@ -64,6 +79,7 @@ class OdeWorld final : public World {
     dRandSetSeed(0);  // dWorldQuickStep shuffles its rows with it
     robot_space_.reset(dSimpleSpaceCreate(nullptr));
     environment_space_.reset(dSimpleSpaceCreate(nullptr));
+    object_space_.reset(dSimpleSpaceCreate(nullptr));
     contact_group_.reset(dJointGroupCreate(0));
     dWorldSetGravity(world_.get(), environment.gravity.x(), environment.gravity.y(), environment.gravity.z());
 
@@ -74,11 +90,20 @@ class OdeWorld final : public World {
     for (const StaticObject& object : environment.objects) {
       geometry_count += object.geometries.size();
     }
+    for (const MovingObject& object : environment.moving_objects) {
+      geometry_count += object.geometries.size();
+    }
     geometry_data_.reserve(geometry_count);  // the engine keeps pointers into it
 
     add_environment(environment);
     add_links(robot, environment.robot_pose);
     add_joints(robot, environment.robot_pose);
+    for (const MovingObject& object : environment.moving_objects) {
+      objects_.push_back(add_body(object_space_.get(), object.pose, object.mass, object.geometries, of_moving_object));
+      object_centers_.push_back(object.mass.center);
+    }
+    all_bodies_ = bodies_;
+    all_bodies_.insert(all_bodies_.end(), objects_.begin(), objects_.end());
   }
 
   void set_joint_speed(std::size_t joint, double speed) override { motors_[joint].set_speed(speed); }
@@ -120,18 +145,20 @@ class OdeWorld final : public World {
   [[nodiscard]] double motor_torque(std::size_t joint) const override { return motors_[joint].torque(); }
 
   [[nodiscard]] Pose link_pose(std::size_t link) const override {
-    const dReal* position = dBodyGetPosition(bodies_[link]);
-    const dReal* orientation = dBodyGetQuaternion(bodies_[link]);
-    const Pose body{{position[0], position[1], position[2]},
-                    {orientation[0], orientation[1], orientation[2], orientation[3]}};
-    return body * Pose{-mass_centers_[link], Eigen::Quaterniond::Identity()};
+    return pose_of(bodies_[link]) * Pose{-mass_centers_[link], Eigen::Quaterniond::Identity()};
+  }
+
+  void read_objects(std::span<Pose> poses) const override {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      poses[i] = pose_of(objects_[i]) * Pose{-object_centers_[i], Eigen::Quaterniond::Identity()};
+    }
   }
 
   [[nodiscard]] bool is_slower_than(double speed, double rotation) const override {
     const auto is_below = [](const dReal* vector, double limit) {
       return vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2] < limit * limit;
     };
-    return std::ranges::all_of(bodies_, [&](dBodyID body) {
+    return std::ranges::all_of(all_bodies_, [&](dBodyID body) {
       return is_below(dBodyGetLinearVel(body), speed) && is_below(dBodyGetAngularVel(body), rotation);
     });
   }
@@ -155,7 +182,7 @@ class OdeWorld final : public World {
     std::array<dReal, 4> gravity{};
     dWorldGetGravity(world_.get(), gravity.data());
     double energy = 0.0;
-    for (const dBodyID body : bodies_) {
+    for (const dBodyID body : all_bodies_) {
       dMass mass;
       dBodyGetMass(body, &mass);
       const dReal* rotation = dBodyGetRotation(body);
@@ -191,6 +218,12 @@ class OdeWorld final : public World {
     if (self_collision_) {
       dSpaceCollide(robot_space_.get(), this, &OdeWorld::on_near);
     }
+    if (!objects_.empty()) {
+      const auto objects = reinterpret_cast<dGeomID>(object_space_.get());
+      dSpaceCollide2(reinterpret_cast<dGeomID>(robot_space_.get()), objects, this, &OdeWorld::on_near);
+      dSpaceCollide2(objects, reinterpret_cast<dGeomID>(environment_space_.get()), this, &OdeWorld::on_near);
+      dSpaceCollide(object_space_.get(), this, &OdeWorld::on_near);
+    }
     for (HingeMotor& motor : motors_) {
       motor.note_axis();
     }
@@ -219,6 +252,7 @@ class OdeWorld final : public World {
   /// destroying that would fail the next assertion. So it is never destroyed, only kept reachable: less than 1 kB.
   void abandon() {
     contact_group_.reset();
+    object_space_.reset();
     environment_space_.reset();
     robot_space_.reset();
     world_.reset();
@@ -231,12 +265,13 @@ class OdeWorld final : public World {
   /// One number that is not finite makes the sum not finite, so checking the sum checks all of them.
   void require_finite_positions() const {
     double sum = 0.0;
-    for (const dBodyID body : bodies_) {
+    for (const dBodyID body : all_bodies_) {
       const dReal* position = dBodyGetPosition(body);
       sum += position[0] + position[1] + position[2];
     }
     if (!std::isfinite(sum)) {
-      throw PhysicsError("the simulation became unstable: the position of a link is no longer a finite number");
+      throw PhysicsError(
+          "the simulation became unstable: the position of a link or an object is no longer a finite number");
     }
   }
 
@@ -252,8 +287,13 @@ class OdeWorld final : public World {
       case Shape::cylinder:
         shape = dCreateCylinder(space, geometry.extents.x(), 2 * geometry.extents.y());
         break;
+      case Shape::hull:
+      case Shape::surface:
+      case Shape::height_field:
+        shape = meshes_.try_emplace(geometry.mesh.get(), *geometry.mesh).first->second.make_shape(space);
+        break;
     }
-    geometry_data_.push_back({link, geometry.friction});
+    geometry_data_.push_back({link, geometry.friction, geometry.friction_across, geometry.mesh != nullptr});
     dGeomSetData(shape, &geometry_data_.back());
     return shape;
   }
@@ -269,7 +309,7 @@ class OdeWorld final : public World {
   void add_environment(const EnvironmentModel& environment) {
     for (const StaticObject& object : environment.objects) {
       for (const Geometry& geometry : object.geometries) {
-        const dGeomID shape = add_geometry(environment_space_.get(), geometry, -1);
+        const dGeomID shape = add_geometry(environment_space_.get(), geometry, of_environment);
         const Pose pose = object.pose * geometry.pose;
         dQuaternion orientation;
         to_quaternion(engine_orientation(geometry, pose.orientation), orientation);
@@ -282,34 +322,40 @@ class OdeWorld final : public World {
     }
   }
 
+  /// pose: of the frame of the body, in the world. owner: of its geometries.
+  dBodyID add_body(dxSpace* space, const Pose& pose, const MassProperties& properties,
+                   const std::vector<Geometry>& geometries, int owner) {
+    const dBodyID body = dBodyCreate(world_.get());
+    const Eigen::Matrix3d& inertia = properties.inertia;
+    dMass mass;
+    dMassSetParameters(&mass, properties.mass, 0, 0, 0, inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1),
+                       inertia(0, 2), inertia(1, 2));
+    dBodySetMass(body, &mass);
+
+    // The engine's body frame has its origin at the centre of mass.
+    const Eigen::Vector3d center = pose * properties.center;
+    dQuaternion orientation;
+    to_quaternion(pose.orientation, orientation);
+    dBodySetPosition(body, center.x(), center.y(), center.z());
+    dBodySetQuaternion(body, orientation);
+
+    for (const Geometry& geometry : geometries) {
+      const dGeomID shape = add_geometry(space, geometry, owner);
+      dGeomSetBody(shape, body);
+      const Eigen::Vector3d offset = geometry.pose.position - properties.center;
+      dQuaternion rotation;
+      to_quaternion(engine_orientation(geometry, geometry.pose.orientation), rotation);
+      dGeomSetOffsetPosition(shape, offset.x(), offset.y(), offset.z());
+      dGeomSetOffsetQuaternion(shape, rotation);
+    }
+    return body;
+  }
+
   void add_links(const RobotModel& robot, const Pose& robot_pose) {
     for (std::size_t i = 0; i < robot.links.size(); ++i) {
       const Link& link = robot.links[i];
-      const dBodyID body = dBodyCreate(world_.get());
-      const Eigen::Matrix3d& inertia = link.mass.inertia;
-      dMass mass;
-      dMassSetParameters(&mass, link.mass.mass, 0, 0, 0, inertia(0, 0), inertia(1, 1), inertia(2, 2), inertia(0, 1),
-                         inertia(0, 2), inertia(1, 2));
-      dBodySetMass(body, &mass);
-
-      // The engine's body frame has its origin at the centre of mass.
-      const Pose pose = robot_pose * link.pose;
-      const Eigen::Vector3d center = pose * link.mass.center;
-      dQuaternion orientation;
-      to_quaternion(pose.orientation, orientation);
-      dBodySetPosition(body, center.x(), center.y(), center.z());
-      dBodySetQuaternion(body, orientation);
-
-      for (const Geometry& geometry : link.geometries) {
-        const dGeomID shape = add_geometry(robot_space_.get(), geometry, static_cast<int>(i));
-        dGeomSetBody(shape, body);
-        const Eigen::Vector3d offset = geometry.pose.position - link.mass.center;
-        dQuaternion rotation;
-        to_quaternion(engine_orientation(geometry, geometry.pose.orientation), rotation);
-        dGeomSetOffsetPosition(shape, offset.x(), offset.y(), offset.z());
-        dGeomSetOffsetQuaternion(shape, rotation);
-      }
-      bodies_.push_back(body);
+      bodies_.push_back(
+          add_body(robot_space_.get(), robot_pose * link.pose, link.mass, link.geometries, static_cast<int>(i)));
       masses_.push_back(link.mass.mass);
       mass_centers_.push_back(link.mass.center);
       touch_sensors_.add_link(robot, i);
@@ -348,21 +394,59 @@ class OdeWorld final : public World {
     if (data_a.link >= 0 && data_b.link >= 0 && std::abs(data_a.link - data_b.link) <= 1) {
       return;
     }
-    constexpr int max_contacts = 8;
-    // Not initialised: the engine fills in the geometry, and reads only what the mode of the surface names.
-    std::array<dContact, max_contacts> contacts;
-    const int count = dCollide(a, b, max_contacts, &contacts[0].geom, sizeof(dContact));
-    for (int i = 0; i < count; ++i) {
-      dContact& contact = contacts[static_cast<std::size_t>(i)];
-      contact_friction_.set_surface(contact, friction_of(data_a.friction, data_b.friction, unspecified_friction_), a,
-                                    b);
+    constexpr std::size_t max_contacts = 8;
+    if (!data_a.is_mesh && !data_b.is_mesh) {
+      std::array<dContactGeom, max_contacts> points;
+      add_contacts(a, b, std::span(points).first(contact_points(a, b, points)));
+      return;
+    }
+    std::array<dContactGeom, max_mesh_points> points;
+    const auto found = std::span(points).first(contact_points(a, b, points));
+    add_contacts(a, b, found.first(choose_contacts(found, max_contacts)));
+  }
+
+  /// Not initialised: the engine fills them in.
+  static std::size_t contact_points(dGeomID a, dGeomID b, std::span<dContactGeom> points) {
+    return static_cast<std::size_t>(
+        dCollide(a, b, static_cast<int>(points.size()), points.data(), sizeof(dContactGeom)));
+  }
+
+  static ContactFriction::Between between(const GeometryData& a, const GeometryData& b) {
+    if (a.link >= 0 && b.link >= 0) {
+      return ContactFriction::Between::links;
+    }
+    return a.link >= 0 || b.link >= 0 ? ContactFriction::Between::robot_and_world : ContactFriction::Between::objects;
+  }
+
+  void add_contacts(dGeomID a, dGeomID b, std::span<const dContactGeom> points) {
+    const auto& data_a = *static_cast<const GeometryData*>(dGeomGetData(a));
+    const auto& data_b = *static_cast<const GeometryData*>(dGeomGetData(b));
+    for (const dContactGeom& point : points) {
+      dContact contact;  // not initialised: the engine reads only what the mode of the surface names
+      contact.geom = point;
+      set_surface(contact, a, b, data_a, data_b);
       const dJointID joint = dJointCreateContact(world_.get(), contact_group_.get(), &contact);
       dJointAttach(joint, dGeomGetBody(a), dGeomGetBody(b));
       contact_friction_.observe(joint);
       note_touch(data_a.link, data_b.link, contact);
       note_touch(data_b.link, data_a.link, contact);
     }
-    contact_count_ += static_cast<std::size_t>(count);
+    contact_count_ += points.size();
+  }
+
+  void set_surface(dContact& contact, dGeomID a, dGeomID b, const GeometryData& data_a, const GeometryData& data_b) {
+    const double along = friction_of(data_a.friction, data_b.friction, unspecified_friction_);
+    const ContactFriction::Between who = between(data_a, data_b);
+    if (!data_a.friction_across && !data_b.friction_across) {
+      contact_friction_.set_surface(contact, along, a, b, who);
+      return;
+    }
+    // Of two such bodies, which scrape along each other, the first one decides.
+    const bool first = data_a.friction_across.has_value();
+    const double across = friction_of((first ? data_a : data_b).friction_across, (first ? data_b : data_a).friction,
+                                      unspecified_friction_);
+    const dReal* rotation = dBodyGetRotation(dGeomGetBody(first ? a : b));  // 3 rows of 4
+    contact_friction_.set_surface(contact, {rotation[1], rotation[5], rotation[9]}, along, across, a, b, who);
   }
 
   void note_touch(int link, int other, const dContact& contact) {
@@ -374,13 +458,18 @@ class OdeWorld final : public World {
 
   // Declared in the order in which the engine needs them; destroyed in reverse.
   StepMemory step_memory_;
+  std::map<const TriangleMesh*, EngineMesh> meshes_;
   std::unique_ptr<dxThreadingImplementation, FreeThreading> threading_;
   std::unique_ptr<dxWorld, DestroyWorld> world_;
   std::unique_ptr<dxSpace, DestroySpace> robot_space_;
   std::unique_ptr<dxSpace, DestroySpace> environment_space_;
+  std::unique_ptr<dxSpace, DestroySpace> object_space_;
   std::unique_ptr<dxJointGroup, DestroyJointGroup> contact_group_;
   std::vector<GeometryData> geometry_data_;
-  std::vector<dBodyID> bodies_;
+  std::vector<dBodyID> bodies_;                  ///< of the links
+  std::vector<dBodyID> objects_;                 ///< of the objects that move
+  std::vector<dBodyID> all_bodies_;              ///< of both
+  std::vector<Eigen::Vector3d> object_centers_;  ///< of mass, in the frames of the objects
   std::vector<dJointID> joints_;
   std::vector<HingeMotor> motors_;  ///< by joint
   std::vector<double> masses_;

@@ -62,7 +62,9 @@ class World {
       poses[link] = link_pose(link);
     }
   }
-  /// Whether no link is faster than the two given speeds: of its centre of mass in m/s, of its rotation in rad/s.
+  /// Poses of the frames of the objects that move (EnvironmentModel::moving_objects), in the world.
+  virtual void read_objects(std::span<Pose> /*poses*/) const {}
+  /// Whether no link, and no object that moves, is faster than the two given speeds: of its centre of mass in m/s, of its rotation in rad/s.
   [[nodiscard]] virtual bool is_slower_than(double speed, double rotation) const = 0;
   /// Centre of mass of the robot in the world.
   [[nodiscard]] virtual Eigen::Vector3d center_of_mass() const = 0;
@@ -72,8 +74,8 @@ class World {
   /// robot's file at angles 0, or towards -y if the link is upright in the file; it turns with the link. The contacts
   /// are those at the start of the last step; before the first step no sensor is pressed.
   [[nodiscard]] virtual std::uint8_t link_contacts(std::size_t link) const = 0;
-  /// Sum of the normal forces, in N, of the link's contact points with the environment and with other links, in the
-  /// last step; 0 before the first.
+  /// Sum of the normal forces, in N, of the link's contact points with the environment, with objects that move and with
+  /// other links, in the last step; 0 before the first.
   [[nodiscard]] virtual double contact_force(std::size_t link) const = 0;
   /// Adds those of all links.
   virtual void add_contact_forces(std::span<double> sums) const {
@@ -85,7 +87,7 @@ class World {
   [[nodiscard]] virtual std::size_t contact_count() const = 0;
   /// In the last step; zeros before the first.
   [[nodiscard]] virtual ContactSliding contact_sliding() const = 0;
-  /// J: kinetic energy, and potential energy against the origin of the world.
+  /// J, of the robot and the objects that move: kinetic energy, and potential energy against the origin of the world.
   [[nodiscard]] virtual double energy() const = 0;
   /// Height of the lowest point of the environment; nothing if there is no environment.
   [[nodiscard]] virtual std::optional<double> lowest_ground() const = 0;

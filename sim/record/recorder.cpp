@@ -129,6 +129,12 @@ class Recorder::Storage {
       const std::uint32_t contacts = sample.latched_contacts[link];
       insert_contact_.run(tick, link, contacts & 1U, (contacts >> 1U) & 1U, sample.contact_forces[link]);
     }
+    for (std::uint32_t object = 0; object < sample.object_poses.size(); ++object) {
+      const Eigen::Vector3d& position = sample.object_poses[object].position;
+      const Eigen::Quaterniond& turn = sample.object_poses[object].orientation;
+      insert_object_pose_.run(tick, object, position.x(), position.y(), position.z(), turn.w(), turn.x(), turn.y(),
+                              turn.z());
+    }
     commit_if_due();
   }
 
@@ -174,7 +180,8 @@ class Recorder::Storage {
   void require_finite(const TickSample& sample) const {
     const bool finite = std::all_of(sample.joint_angles.begin(), sample.joint_angles.end(),
                                     [](double x) { return std::isfinite(x); }) &&
-                        std::all_of(sample.link_poses.begin(), sample.link_poses.end(), is_finite);
+                        std::all_of(sample.link_poses.begin(), sample.link_poses.end(), is_finite) &&
+                        std::all_of(sample.object_poses.begin(), sample.object_poses.end(), is_finite);
     if (!finite) {
       throw FileError(path_, "at tick " + std::to_string(sample.tick) +
                                  " a pose or joint angle is not a finite number: the simulation has become unstable");
@@ -217,6 +224,7 @@ class Recorder::Storage {
   Statement insert_value_{database_, "INSERT INTO internal_value VALUES(?1, ?2, ?3, ?4, ?5)"};
   Statement insert_pulse_{database_, "INSERT INTO servo VALUES(?1, ?2, ?3)"};
   Statement insert_pose_{database_, "INSERT INTO pose VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)"};
+  Statement insert_object_pose_{database_, "INSERT INTO object_pose VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)"};
   Statement insert_contact_{database_, "INSERT INTO contact VALUES(?1, ?2, ?3, ?4, ?5)"};
   Statement insert_move_{database_, "INSERT INTO move(tick, x_m, y_m, z_m, turn_deg) VALUES(?1, ?2, ?3, ?4, ?5)"};
   Statement insert_loss_{database_, "INSERT INTO loss VALUES(?1, ?2, ?3, ?4)"};

@@ -36,6 +36,7 @@ struct TickSample {
   std::span<const double> contact_forces;        ///< per link: N, normal forces of its contacts, means over the tick
   std::span<const Loss> lost;                    ///< frames labelled k that their receivers did not get
   std::span<const RobotMove> moves = {};         ///< that took effect at k
+  std::span<const Pose> object_poses = {};       ///< of the objects that move, in the world, at SYNC k + 1
 };
 
 /// Writes a run into an SQLite file (tables: schema.hpp) while it runs. Other programs may read the file at the same

@@ -21,6 +21,12 @@ struct ValueName {
   Unit unit;
 };
 
+/// From columns 2 to 8.
+Pose pose_of(const Statement& row) {
+  return {{finite(row, 2), finite(row, 3), finite(row, 4)},
+          {finite(row, 5), finite(row, 6), finite(row, 7), finite(row, 8)}};
+}
+
 }  // namespace
 
 class Recording::Tables {
@@ -109,6 +115,17 @@ void Recording::read_robot() {
       throw Damage("links that are not numbered from 0");
     }
     links_.push_back(link.text(1));
+  }
+  // A recording of an older program of this format has no such table (schema.hpp). One of a real robot has no poses.
+  if (Statement(tables_->database, "SELECT 1 FROM sqlite_schema WHERE name = 'object'").step() &&
+      Statement(tables_->database, "SELECT 1 FROM object_pose LIMIT 1").step()) {
+    Statement object(tables_->database, "SELECT object, name FROM object ORDER BY object");
+    while (object.step()) {
+      if (natural(object, 0) != objects_.size()) {
+        throw Damage("objects that are not numbered from 0");
+      }
+      objects_.push_back(object.text(1));
+    }
   }
   if (joints_.empty() || joints_.size() > max_joints || links_.size() != joints_.size() + 1) {
     throw Damage(std::to_string(joints_.size()) + " joints and " + std::to_string(links_.size()) + " links");
@@ -288,11 +305,13 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
   tick.link_poses.resize(links_.size());
   tick.latched_contacts.resize(links_.size());
   tick.contact_forces.resize(links_.size());
+  tick.object_poses.resize(objects_.size());
 
   std::optional<Rows> samples;
   std::optional<Rows> values;
   std::optional<Rows> poses;
   std::optional<Rows> contacts;
+  std::optional<Rows> objects;
   reading(path_, [&] {
     samples.emplace(
         database, "sample",
@@ -311,6 +330,12 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
                      "SELECT tick, link, rear, front, normal_force_n FROM contact "
                      "WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, link",
                      first, last);
+    if (!objects_.empty()) {
+      objects.emplace(database, "object_pose",
+                      "SELECT tick, object, x_m, y_m, z_m, qw, qx, qy, qz FROM object_pose "
+                      "WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, object",
+                      first, last);
+    }
   });
   for (tick.tick = first; tick.tick <= last; ++tick.tick) {
     reading(path_, [&] {
@@ -327,13 +352,14 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
         tick.internal_values[i] = raw(values->expect(tick.tick, value.slot, value.joint, value.number), 4);
       }
       for (std::uint32_t link = 0; link < links_.size(); ++link) {
-        const Statement& pose = poses->expect(tick.tick, link);
-        tick.link_poses[link].position = {finite(pose, 2), finite(pose, 3), finite(pose, 4)};
-        tick.link_poses[link].orientation = {finite(pose, 5), finite(pose, 6), finite(pose, 7), finite(pose, 8)};
+        tick.link_poses[link] = pose_of(poses->expect(tick.tick, link));
         const Statement& contact = contacts->expect(tick.tick, link);
         tick.latched_contacts[link] =
             static_cast<std::uint8_t>((natural(contact, 2) & 1U) | (natural(contact, 3) & 1U) << 1U);
         tick.contact_forces[link] = finite(contact, 4);
+      }
+      for (std::uint32_t object = 0; object < objects_.size(); ++object) {
+        tick.object_poses[object] = pose_of(objects->expect(tick.tick, object));
       }
     });
     use(tick);

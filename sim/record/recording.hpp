@@ -83,6 +83,7 @@ struct RecordedTick {
   std::vector<Pose> link_poses;                ///< in the world
   std::vector<std::uint8_t> latched_contacts;  ///< at SYNC tick; bit 0 rear, bit 1 front sensor
   std::vector<double> contact_forces;          ///< N, of each link, mean over the tick
+  std::vector<Pose> object_poses;              ///< of each object that moves, in the world
 };
 
 /// A recording as it was when it was opened; a recorder may write into the file meanwhile.
@@ -113,6 +114,8 @@ class Recording {
 
   [[nodiscard]] const std::vector<RecordedJoint>& joints() const { return joints_; }
   [[nodiscard]] const std::vector<std::string>& links() const { return links_; }
+  /// Names of the objects of the environment that move.
+  [[nodiscard]] const std::vector<std::string>& objects() const { return objects_; }
   [[nodiscard]] const std::vector<RecordedSlot>& slots() const { return slots_; }
   [[nodiscard]] const std::vector<RecordedInternalValue>& internal_values() const { return internal_values_; }
   [[nodiscard]] std::vector<RecordedSetting> parameters() const;
@@ -154,6 +157,7 @@ class Recording {
   std::vector<std::pair<std::string, std::string>> results_;
   std::vector<RecordedJoint> joints_;
   std::vector<std::string> links_;
+  std::vector<std::string> objects_;
   std::vector<RecordedSlot> slots_;
   std::vector<RecordedInternalValue> internal_values_;
 };

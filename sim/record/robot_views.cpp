@@ -45,10 +45,11 @@ std::vector<Snapshot> take_snapshots(const Recording& recording, const FigureCon
     const auto tick = static_cast<std::uint32_t>(
         std::clamp(std::round(tick_of(time_s, contents)), 1.0 * contents.first_tick, 1.0 * contents.last_tick));
     const std::uint32_t next = std::min(tick + 1, recording.last_tick());
-    Snapshot snapshot{recording.time_s(tick), {}, {}};
+    Snapshot snapshot{recording.time_s(tick), {}, {}, {}};
     recording.read_ticks(tick, next, [&](const RecordedTick& row) {
       if (row.tick == tick) {
         snapshot.link_poses = row.link_poses;
+        snapshot.object_poses = row.object_poses;
       }
       snapshot.contacts = row.latched_contacts;
     });
@@ -239,18 +240,83 @@ void draw_robot(Svg& svg, const Scenario& scenario, const RobotView& view, const
                    link == 0 ? R"(class="link" fill="#0072b2" fill-opacity="0.55" stroke="#004c77" stroke-width="1")"
                              : R"(class="link" fill="#0072b2" fill-opacity="0.2" stroke="#004c77" stroke-width="1")");
     }
+    for (const Look& look : model.looks) {
+      Geometry shown;
+      shown.shape = Shape::hull;
+      shown.pose = look.pose;
+      shown.mesh = look.mesh;
+      draw_polygon(svg, cell.pixels(outline_of(shown, pose, view.view)),
+                   R"(class="look" fill="none" stroke="#004c77" stroke-width="0.6" stroke-dasharray="2 2")");
+    }
     if (link + 1 < snapshot.link_poses.size()) {
       svg.circle(rear, 2.2, R"(fill="#ffffff" stroke="#004c77" stroke-width="1")");
     }
   }
 }
 
-void draw_terrain(Svg& svg, const Scenario& scenario, const RobotView& view, const Cell& cell) {
+constexpr std::string_view terrain_from_above = R"(class="terrain" fill="#f3eee4" stroke="#cfc4ad" stroke-width="1")";
+constexpr std::string_view terrain_from_side = R"(class="terrain" fill="#e9e1d0" stroke="#a89a7c" stroke-width="1")";
+
+/// A mesh may be concave: seen from the side it is cut near the robot.
+void draw_surface(Svg& svg, const Geometry& solid, const Pose& pose, const RobotView& view, const Snapshot& snapshot,
+                  const Cell& cell) {
+  constexpr double half_thickness = 0.02;  // m
+  const Eigen::Vector3d across = view.view.right.cross(view.view.up);
+  MeshSection section(view.view, across.dot(center_of(snapshot.link_poses)), half_thickness, cell.low.x, cell.high.x);
+  section.add(*solid.mesh, pose);
+  for (Polyline polygon : section.polygons()) {
+    for (Point& point : polygon) {
+      point = cell.pixel({point.x, std::clamp(point.y, cell.low.y, cell.high.y)});
+    }
+    draw_polygon(svg, polygon, terrain_from_side);
+  }
+}
+
+void draw_terrain(Svg& svg, const Scenario& scenario, const RobotView& view, const Snapshot& snapshot,
+                  const Cell& cell) {
   for (const StaticObject& object : scenario.environment.objects) {
     for (const Geometry& solid : object.geometries) {
-      draw_polygon(svg, cell.pixels(outline_of(solid, object.pose, view.view)),
-                   view.from_above ? R"(class="terrain" fill="#f3eee4" stroke="#cfc4ad" stroke-width="1")"
-                                   : R"(class="terrain" fill="#e9e1d0" stroke="#a89a7c" stroke-width="1")");
+      if (solid.mesh && !view.from_above) {
+        draw_surface(svg, solid, object.pose * solid.pose, view, snapshot, cell);
+      } else {
+        draw_polygon(svg, cell.pixels(outline_of(solid, object.pose, view.view)),
+                     view.from_above ? terrain_from_above : terrain_from_side);
+      }
+    }
+  }
+}
+
+/// Segments whose colours alternate: areas from above, a line from the side.
+void draw_rulers(Svg& svg, const Scenario& scenario, const RobotView& view, const Cell& cell) {
+  for (const Ruler& ruler : scenario.environment.rulers) {
+    const Eigen::Vector3d way = ruler.to - ruler.from;
+    const Eigen::Vector3d along = way.normalized();
+    const Eigen::Vector3d across = along.cross(Eigen::Vector3d::UnitZ()) * (ruler.width / 2.0);
+    const double length = way.norm();
+    bool is_red = false;
+    for (double at = 0.0; at < length; at += ruler.division, is_red = !is_red) {
+      const Eigen::Vector3d from = ruler.from + at * along;
+      const Eigen::Vector3d to = ruler.from + std::min(at + ruler.division, length) * along;
+      const double thickness = view.from_above ? 0.0 : 2.0 / cell.scale;
+      const Eigen::Vector3d up = view.view.up * thickness;
+      const Polyline polygon = view.from_above ? Polyline{view.view.of(from - across), view.view.of(from + across),
+                                                          view.view.of(to + across), view.view.of(to - across)}
+                                               : Polyline{view.view.of(from), view.view.of(to), view.view.of(to + up),
+                                                          view.view.of(from + up)};
+      draw_polygon(svg, cell.pixels(polygon),
+                   is_red ? R"(class="ruler" fill="#d1495b")" : R"(class="ruler" fill="#edae49")");
+    }
+  }
+}
+
+void draw_objects(Svg& svg, const Scenario& scenario, const RobotView& view, const Snapshot& snapshot,
+                  const Cell& cell) {
+  const std::vector<MovingObject>& objects = scenario.environment.moving_objects;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Pose& pose = i < snapshot.object_poses.size() ? snapshot.object_poses[i] : objects[i].pose;
+    for (const Geometry& solid : objects[i].geometries) {
+      draw_polygon(svg, cell.pixels(outline_of(solid, pose, view.view)),
+                   R"(class="object" fill="#009e73" fill-opacity="0.35" stroke="#00614a" stroke-width="1")");
     }
   }
 }
@@ -303,8 +369,10 @@ void draw_robot_views(Svg& svg, const Scenario& scenario, const RobotViews& view
       const Snapshot& snapshot = views.snapshots[i];
       const Cell cell = cell_of(view, snapshot, i);
       svg.begin_group("view");
-      draw_terrain(svg, scenario, view, cell);
+      draw_terrain(svg, scenario, view, snapshot, cell);
+      draw_rulers(svg, scenario, view, cell);
       draw_scale(svg, view, cell);
+      draw_objects(svg, scenario, view, snapshot, cell);
       draw_robot(svg, scenario, view, snapshot, cell);
       draw_contacts(svg, scenario, view, snapshot, cell);
       const double width = (cell.high.x - cell.low.x) * cell.scale;

@@ -17,6 +17,7 @@ struct Snapshot {
   double time_s;
   std::vector<Pose> link_poses;
   std::vector<std::uint8_t> contacts;  ///< per link: bit 0 rear, bit 1 front sensor
+  std::vector<Pose> object_poses;      ///< of the objects that move; empty: they were not simulated
 };
 
 /// The robot in a row of cells, one for each moment of a stride: seen from its side, or from above.

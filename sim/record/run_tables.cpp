@@ -73,6 +73,10 @@ void write_robot(Database& database, const Scenario& scenario) {
   for (std::size_t i = 0; i < scenario.robot.links.size(); ++i) {
     link.run(i, std::string_view(scenario.robot.links[i].name));
   }
+  Statement object(database, "INSERT INTO object VALUES(?1, ?2)");
+  for (std::size_t i = 0; i < scenario.environment.moving_objects.size(); ++i) {
+    object.run(i, std::string_view(scenario.environment.moving_objects[i].name));
+  }
 }
 
 void write_start_parameters(ParameterTable& table, const Scenario& scenario, std::uint32_t slot) {

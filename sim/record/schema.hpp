@@ -140,6 +140,27 @@ CREATE TABLE pose(
   PRIMARY KEY(tick, link)
 ) STRICT, WITHOUT ROWID;
 
+CREATE TABLE object(
+  -- Objects of the environment that move, in the order of its files.
+  object INTEGER PRIMARY KEY,
+  name TEXT NOT NULL
+) STRICT;
+
+CREATE TABLE object_pose(
+  -- Of the frame of an object that moves, as pose has those of the links. A recording of an older program of this format
+  -- has neither of the two tables: nothing but the robot moved.
+  tick INTEGER NOT NULL,
+  object INTEGER NOT NULL,
+  x_m REAL NOT NULL,
+  y_m REAL NOT NULL,
+  z_m REAL NOT NULL,
+  qw REAL NOT NULL,
+  qx REAL NOT NULL,
+  qy REAL NOT NULL,
+  qz REAL NOT NULL,
+  PRIMARY KEY(tick, object)
+) STRICT, WITHOUT ROWID;
+
 CREATE TABLE contact(
   -- Touch sensors under a link as the modules were given them at SYNC tick, tick * tick_us / 1000000 seconds after the
   -- start: the state frames labelled tick + 1 say the same. rear is nearer to the tail, front nearer to the head.

@@ -29,6 +29,9 @@ class Maker {
   }
 
   PlanarChain make() {
+    if (!environment_.moving_objects.empty()) {
+      refuse("object '" + environment_.moving_objects.front().name + "', which moves");
+    }
     set_plane();
     for (std::size_t i = 0; i < robot_.links.size(); ++i) {
       add_link(i);
@@ -125,11 +128,13 @@ class Maker {
     const std::string name = "link '" + robot_.links[link].name + "'";
     const Pose pose = start * geometry.pose;
     require_in_plane(pose.position, "a shape of " + name);
+    if (geometry.friction_across) {
+      refuse(name + " with another friction across it");
+    }
     const std::optional<Rectangle> outline = section(geometry, {pose.position - center, pose.orientation});
     if (!outline) {
-      refuse(geometry.shape == Shape::box
-                 ? name + " with a box that is oblique to the plane in which the robot moves"
-                 : name + (geometry.shape == Shape::sphere ? " with a sphere" : " with a cylinder"));
+      refuse(geometry.shape == Shape::box ? name + " with a box that is oblique to the plane in which the robot moves"
+                                          : name + " with " + std::string(with_article(geometry.shape)));
     }
     ShapeForm form{link, *outline, 0.0};
     form.radius = rounded(std::hypot(outline->center.x, outline->center.z) +
@@ -150,6 +155,15 @@ class Maker {
         return geometry.extents.x();
       case Shape::cylinder:
         return geometry.extents.x() * std::hypot(own.x(), own.z()) + geometry.extents.y() * std::abs(own.y());
+      case Shape::hull:
+      case Shape::surface:
+      case Shape::height_field: {
+        double farthest = 0.0;
+        for (const Eigen::Vector3d& vertex : geometry.mesh->vertices) {
+          farthest = std::max(farthest, std::abs(own.dot(vertex)));
+        }
+        return farthest;
+      }
     }
     return 0.0;
   }
@@ -208,9 +222,8 @@ class Maker {
     }
     if (!outline) {
       refuse("object '" + object.name + "' with " +
-             (geometry.shape == Shape::box      ? "a box that is oblique to the plane in which the robot moves"
-              : geometry.shape == Shape::sphere ? "a sphere"
-                                                : "a cylinder"));
+             (geometry.shape == Shape::box ? "a box that is oblique to the plane in which the robot moves"
+                                           : std::string(with_article(geometry.shape))));
     }
     chain_.terrain.push_back(*outline);
     solid_geometries_.push_back(&geometry);

@@ -27,6 +27,9 @@ class SpatialMaker {
   }
 
   SpatialChain make() {
+    if (!environment_.moving_objects.empty()) {
+      refuse("object '" + environment_.moving_objects.front().name + "', which moves");
+    }
     if (robot_.joints.size() > max_spatial_joints) {
       refuse("a robot of " + std::to_string(robot_.joints.size()) + " joints");
     }
@@ -66,7 +69,7 @@ class SpatialMaker {
       refuse("a second object, '" + object.name + "'");
     }
     if (geometry.shape != Shape::box) {
-      refuse(name + (geometry.shape == Shape::sphere ? " with a sphere" : " with a cylinder"));
+      refuse(name + " with " + std::string(with_article(geometry.shape)));
     }
     const Pose pose = object.pose * geometry.pose;
     Eigen::Index upright = 0;
@@ -114,7 +117,10 @@ class SpatialMaker {
   void add_box(std::size_t i, const Geometry& geometry, const TouchSensorFrame& sensors) {
     const Link& link = robot_.links[i];
     if (geometry.shape != Shape::box) {
-      refuse("link '" + link.name + "'" + (geometry.shape == Shape::sphere ? " with a sphere" : " with a cylinder"));
+      refuse("link '" + link.name + "' with " + std::string(with_article(geometry.shape)));
+    }
+    if (geometry.friction_across) {
+      refuse("link '" + link.name + "' with another friction across it");
     }
     const Eigen::Vector3d center = geometry.pose.position - link.mass.center;
     BoxForm box;

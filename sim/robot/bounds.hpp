@@ -15,12 +15,28 @@ struct Bounds {
   Eigen::Vector3d highest;
 };
 
+/// Bounds of a mesh, which has at least one vertex.
+[[nodiscard]] inline Bounds bounds_of(const TriangleMesh& mesh, const Pose& pose) {
+  const Eigen::Matrix3d rotation = pose.orientation.toRotationMatrix();
+  const Eigen::Vector3d first = rotation * mesh.vertices.front();
+  Bounds bounds{first, first};
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    const Eigen::Vector3d turned = rotation * vertex;
+    bounds = {bounds.lowest.cwiseMin(turned), bounds.highest.cwiseMax(turned)};
+  }
+  return {bounds.lowest + pose.position, bounds.highest + pose.position};
+}
+
 /// Bounds of a geometry; `frame` is the pose of its body.
 [[nodiscard]] inline Bounds bounds_of(const Geometry& geometry, const Pose& frame) {
   const Pose pose = frame * geometry.pose;
   const Eigen::Matrix3d rotation = pose.orientation.toRotationMatrix();
   Eigen::Vector3d reach = Eigen::Vector3d::Constant(geometry.extents.x());  // of a sphere
   switch (geometry.shape) {
+    case Shape::hull:
+    case Shape::surface:
+    case Shape::height_field:
+      return bounds_of(*geometry.mesh, pose);
     case Shape::box:
       reach = rotation.cwiseAbs() * geometry.extents;
       break;

@@ -5,13 +5,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Geometry>
 
 #include "shared/kernel/motion_limiter.hpp"
+#include "sim/robot/triangle_mesh.hpp"
 
 namespace proleg::sim {
 
@@ -34,18 +37,48 @@ struct Pose {
 enum class Shape : std::uint8_t {
   box,
   sphere,
-  cylinder,  ///< axis along y, as in OpenRAVE
+  cylinder,      ///< axis along y, as in OpenRAVE
+  hull,          ///< a convex solid: of links and of bodies that move
+  surface,       ///< triangles, of static objects only
+  height_field,  ///< of static objects only
 };
+
+/// "a box", for messages.
+[[nodiscard]] constexpr std::string_view with_article(Shape shape) {
+  switch (shape) {
+    case Shape::box:
+      return "a box";
+    case Shape::sphere:
+      return "a sphere";
+    case Shape::cylinder:
+      return "a cylinder";
+    case Shape::hull:
+      return "a convex mesh";
+    case Shape::surface:
+      return "a triangle mesh";
+    case Shape::height_field:
+      return "a height field";
+  }
+  return "";
+}
 
 /// A solid that collides.
 struct Geometry {
   Shape shape = Shape::box;
   Pose pose;  ///< in the frame of the link
-  /// box: half the side lengths; sphere: radius in x; cylinder: radius in x, half the height in y. All above 0.
+  /// box: half the side lengths; sphere: radius in x; cylinder: radius in x, half the height in y; others: half the
+  /// side lengths of the box around the mesh, about the origin of its frame. All above 0.
   Eigen::Vector3d extents = Eigen::Vector3d::Zero();
+  /// hull: its surface; surface, height_field: what is touched; others: null. Copies of a geometry share it.
+  std::shared_ptr<const TriangleMesh> mesh;
+  std::shared_ptr<const HeightField> heights;  ///< of a height field, otherwise null
   /// Coulomb coefficient, not negative; without one that of the other geometry applies. Two of them: the geometric
   /// mean.
   std::optional<double> friction;
+  /// The coefficient across the body, as of a snake's belly: perpendicular to the y axis of its frame, along which
+  /// robots lie. `friction` then holds along this axis only. Without it friction is the same in every direction.
+  std::optional<double> friction_across;
+  bool is_shown = true;  ///< false: a Look is shown in its place
 };
 
 /// Coefficient between two geometries of which neither has one.
@@ -57,11 +90,18 @@ struct MassProperties {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Identity();  ///< about the centre of mass, positive definite
 };
 
+/// What is shown and does not collide.
+struct Look {
+  Pose pose;  ///< in the frame of the link
+  std::shared_ptr<const TriangleMesh> mesh;
+};
+
 struct Link {
   std::string name;
   Pose pose;  ///< in the robot's frame when all joint angles are 0
   MassProperties mass;
   std::vector<Geometry> geometries;
+  std::vector<Look> looks;  ///< shown beside the geometries
 };
 
 /// Kernel joint j connects link j (towards the head) with link j + 1 (towards the tail).

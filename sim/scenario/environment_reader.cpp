@@ -9,6 +9,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/robot/mesh_height.hpp"
 #include "sim/scenario/geometry_reader.hpp"
 #include "sim/scenario/kinbody_reader.hpp"
 #include "sim/scenario/plausibility.hpp"
@@ -118,6 +119,42 @@ Pose read_robot_pose(const XmlDocument& document) {
   return pose.value_or(Pose{});
 }
 
+Ruler read_ruler(const XmlElement& element) {
+  element.allow({}, {"from", "to", "division", "width"});
+  Ruler ruler;
+  ruler.from = read_vector(element.required_child("from"), coordinates);
+  const XmlElement to = element.required_child("to");
+  ruler.to = read_vector(to, coordinates);
+  if (const auto division = element.child("division")) {
+    ruler.division = read_number(*division, lengths);
+  }
+  if (const auto width = element.child("width")) {
+    ruler.width = read_number(*width, lengths);
+  }
+  const double length = (ruler.to - ruler.from).norm();
+  constexpr double max_segments = 1000.0;
+  if (length < lengths.min || length > max_segments * ruler.division) {
+    to.refuse("a ruler of " + number_text(length) + " m with segments of " + number_text(ruler.division) + " m",
+              "1 to " + number_text(max_segments) + " segments");
+  }
+  return ruler;
+}
+
+void add_moving_object(BodyEntry body, EnvironmentModel& environment) {
+  constexpr std::size_t max_moving_objects = 200;
+  if (environment.moving_objects.size() == max_moving_objects) {
+    throw InputError(body.origin.file, body.origin.line,
+                     "more than " + std::to_string(max_moving_objects) + " bodies of type 'dynamic'", "at most that");
+  }
+  if (body.link.geometries.empty()) {
+    throw InputError(body.origin.file, body.origin.line,
+                     "body " + in_quotes(body.link.name) + " of type 'dynamic' without a <Geom> that touches",
+                     "at least one; otherwise it would fall for ever");
+  }
+  environment.moving_objects.push_back({std::move(body.link.name), body.link.pose, body.link.mass,
+                                        std::move(body.link.geometries), std::move(body.link.looks)});
+}
+
 /// Bounds of all geometries of a body; nothing if there are none.
 std::optional<Bounds> bounds_of_body(const std::vector<Geometry>& geometries, const Pose& frame) {
   std::optional<Bounds> whole;
@@ -128,38 +165,45 @@ std::optional<Bounds> bounds_of_body(const std::vector<Geometry>& geometries, co
   return whole;
 }
 
-}  // namespace
+/// How far the robot must be lifted so that none of its links is in the ground, and on which object it then rests. A
+/// shape without a mesh counts as high as its highest point wherever it is under the start; a mesh counts as it is
+/// under each link.
+struct Lift {
+  double height = 0.0;  ///< m
+  const StaticObject* ground = nullptr;
+};
 
-EnvironmentModel read_environment(const XmlDocument& document, SourceSet& sources, std::vector<std::string>& remarks,
-                                  std::vector<std::string>& warnings) {
-  const XmlElement root = document.root("Environment");
-  constexpr std::array<std::string_view, 2> attributes{"name", "type"};
-  constexpr std::array<std::string_view, 2> tags{"physicsengine", "KinBody"};
-  root.allow(attributes, joined({tags, viewer_tags}));
-
-  EnvironmentModel environment;
-  if (const auto physics = root.child("physicsengine")) {
-    read_physics(*physics, environment, warnings);
+void raise(Lift& lift, double height, const StaticObject& object) {
+  if (height > lift.height) {
+    lift = {height, &object};
   }
-  for (const XmlElement& child : root.children()) {
-    if (!child.is("KinBody")) {
-      continue;
-    }
-    KinBodyContents contents = read_kinbody(child, KinBodyUse::environment, sources, remarks);
-    for (BodyEntry& body : contents.bodies) {
-      environment.objects.push_back({std::move(body.link.name), body.link.pose, std::move(body.link.geometries)});
-    }
-  }
-  environment.robot_pose = read_robot_pose(document);
-  return environment;
 }
 
-void lift_onto_ground(const RobotModel& robot, EnvironmentModel& environment, std::vector<std::string>& remarks) {
+Lift lift_of_links(const RobotModel& robot, const EnvironmentModel& environment) {
+  Lift lift;
+  for (const Link& link : robot.links) {
+    const std::optional<Bounds> bounds = bounds_of_body(link.geometries, environment.robot_pose * link.pose);
+    for (const StaticObject& object : environment.objects) {
+      for (const Geometry& geometry : object.geometries) {
+        if (bounds && geometry.mesh) {
+          const std::optional<double> top = highest_over(*geometry.mesh, object.pose * geometry.pose,
+                                                         bounds->lowest.head<2>(), bounds->highest.head<2>());
+          raise(lift, top.value_or(bounds->lowest.z()) - bounds->lowest.z(), object);
+        }
+      }
+    }
+  }
+  return lift;
+}
+
+Lift lift_of_robot(const RobotModel& robot, const EnvironmentModel& environment) {
   const Eigen::Vector3d& start = environment.robot_pose.position;
   std::optional<double> top;
   const StaticObject* ground = nullptr;
   for (const StaticObject& object : environment.objects) {
-    const std::optional<Bounds> bounds = bounds_of_body(object.geometries, object.pose);
+    std::vector<Geometry> solids = object.geometries;
+    std::erase_if(solids, [](const Geometry& geometry) { return geometry.mesh != nullptr; });
+    const std::optional<Bounds> bounds = bounds_of_body(solids, object.pose);
     if (bounds && (start.head<2>().array() >= bounds->lowest.head<2>().array()).all() &&
         (start.head<2>().array() <= bounds->highest.head<2>().array()).all() && (!top || bounds->highest.z() > *top)) {
       top = bounds->highest.z();
@@ -172,13 +216,57 @@ void lift_onto_ground(const RobotModel& robot, EnvironmentModel& environment, st
       bottom = bottom ? std::min(*bottom, bounds->lowest.z()) : bounds->lowest.z();
     }
   }
+  return top && bottom ? Lift{*top - *bottom, ground} : Lift{};
+}
+
+}  // namespace
+
+EnvironmentModel read_environment(const XmlDocument& document, SourceSet& sources, std::vector<std::string>& remarks,
+                                  std::vector<std::string>& warnings) {
+  const XmlElement root = document.root("Environment");
+  constexpr std::array<std::string_view, 2> attributes{"name", "type"};
+  constexpr std::array<std::string_view, 3> tags{"physicsengine", "KinBody", "ruler"};
+  root.allow(attributes, joined({tags, viewer_tags}));
+
+  EnvironmentModel environment;
+  if (const auto physics = root.child("physicsengine")) {
+    read_physics(*physics, environment, warnings);
+  }
+  for (const XmlElement& child : root.children()) {
+    if (child.is("ruler")) {
+      environment.rulers.push_back(read_ruler(child));
+    }
+    if (!child.is("KinBody")) {
+      continue;
+    }
+    KinBodyContents contents = read_kinbody(child, KinBodyUse::environment, sources, remarks);
+    for (BodyEntry& body : contents.bodies) {
+      Link& link = body.link;
+      if (body.is_fixed) {
+        environment.objects.push_back(
+            {std::move(link.name), link.pose, std::move(link.geometries), std::move(link.looks)});
+      } else {
+        add_moving_object(std::move(body), environment);
+      }
+    }
+  }
+  environment.robot_pose = read_robot_pose(document);
+  return environment;
+}
+
+void lift_onto_ground(const RobotModel& robot, EnvironmentModel& environment, std::vector<std::string>& remarks) {
+  Lift lift = lift_of_robot(robot, environment);
+  if (const Lift onto_mesh = lift_of_links(robot, environment); onto_mesh.height > lift.height) {
+    lift = onto_mesh;
+  }
   constexpr double min_lift = 1e-9;  // m
-  if (!top || !bottom || *top - *bottom < min_lift) {
+  if (lift.height < min_lift) {
     return;
   }
-  environment.robot_pose.position.z() += *top - *bottom;
-  remarks.push_back(one_line("the robot starts " + number_text((*top - *bottom) * 1000.0) +
-                             " mm higher than its start pose says, so that it rests on " + in_quotes(ground->name)));
+  environment.robot_pose.position.z() += lift.height;
+  remarks.push_back(one_line("the robot starts " + number_text(lift.height * 1000.0) +
+                             " mm higher than its start pose says, so that it rests on " +
+                             in_quotes(lift.ground->name)));
 }
 
 }  // namespace proleg::sim

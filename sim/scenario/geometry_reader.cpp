@@ -4,8 +4,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "shared/computer/text/text.hpp"
+#include "sim/mesh/mesh_file.hpp"
+#include "sim/mesh/mesh_solid.hpp"
+#include "sim/scenario/mesh_reader.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {
@@ -17,6 +21,9 @@ using std::numbers::pi;
 constexpr std::array<std::string_view, 5> visual_tags{"diffuseColor", "ambientColor", "transparency", "render",
                                                       "visible"};
 
+/// 1 by default, for each of the three.
+constexpr Range colour_parts{0.0, 1.0, ""};
+
 double volume(const Geometry& geometry) {
   const Eigen::Vector3d& size = geometry.extents;
   switch (geometry.shape) {
@@ -26,6 +33,10 @@ double volume(const Geometry& geometry) {
       return 4.0 / 3.0 * pi * size.x() * size.x() * size.x();
     case Shape::cylinder:
       return pi * size.x() * size.x() * 2.0 * size.y();
+    case Shape::hull:
+    case Shape::surface:
+    case Shape::height_field:
+      return solid_of(*geometry.mesh).volume;
   }
   return 0.0;
 }
@@ -43,18 +54,105 @@ Eigen::Matrix3d shape_inertia(const Geometry& geometry) {
       const double across = radius_squared / 4.0 + size.y() * size.y() / 3.0;
       return Eigen::Vector3d(across, radius_squared / 2.0, across).asDiagonal();
     }
+    case Shape::hull:
+    case Shape::surface:
+    case Shape::height_field: {
+      const MeshSolid solid = solid_of(*geometry.mesh);
+      return solid.inertia / solid.volume;
+    }
   }
   return Eigen::Matrix3d::Zero();
 }
 
+void set_mesh(Geometry& geometry, Shape shape, std::shared_ptr<const TriangleMesh> mesh) {
+  geometry.shape = shape;
+  geometry.mesh = std::move(mesh);
+  for (const Eigen::Vector3d& vertex : geometry.mesh->vertices) {
+    geometry.extents = geometry.extents.cwiseMax(vertex.cwiseAbs());
+  }
+  geometry.extents = geometry.extents.cwiseMax(lengths.min);
+}
+
+bool read_open(const XmlElement& element) {
+  const std::string open = element.attribute("open").value_or("0");
+  if (open != "0" && open != "1") {
+    element.refuse("open " + in_quotes(open) + " in " + element.label(), "0 or 1");
+  }
+  return open == "1";
+}
+
+/// What is touched. A mesh of a file is also what is shown, with its colours; a <render> replaces it.
+void read_trimesh(const XmlElement& element, BodyKind kind, SourceSet& sources, std::vector<std::string>& remarks,
+                  ReadGeometry& result) {
+  const auto data = element.child("data");
+  const auto collision = element.child("collision");
+  const auto vertices = element.child("vertices");
+  const int count = (data ? 1 : 0) + (collision ? 1 : 0) + (vertices ? 1 : 0);
+  if (count == 0) {
+    result.solid.reset();
+    return;
+  }
+  if (count > 1) {
+    element.refuse("more than one of <data>, <collision> and <vertices> in " + element.label(), "one of them");
+  }
+  const Shape shape = kind == BodyKind::moving ? Shape::hull : Shape::surface;
+  const MeshUse use = kind == BodyKind::moving ? MeshUse::hull : MeshUse::surface;
+  const bool is_open = read_open(element);
+  if (vertices) {
+    set_mesh(*result.solid, shape, read_mesh_of_text(element, use, is_open, remarks));
+    return;
+  }
+  const XmlElement& file = data ? *data : *collision;
+  set_mesh(*result.solid, shape, read_mesh_of_file(file, use, is_open, sources, remarks));
+  if (shape == Shape::hull) {
+    result.look = Look{{}, read_mesh_of_file(file, MeshUse::look, true, sources, remarks)};
+  }
+}
+
+/// <diffuseColor> is the colour of a mesh that has none.
+void paint(const XmlElement& element, ReadGeometry& result) {
+  const auto colour = element.child("diffuseColor");
+  if (!colour || (!result.look && !(result.solid && result.solid->mesh))) {
+    return;  // other shapes have the colours of the page
+  }
+  const Eigen::Vector3f rgb = read_vector(*colour, colour_parts).cast<float>();
+  std::shared_ptr<const TriangleMesh>& mesh = result.look ? result.look->mesh : result.solid->mesh;
+  if (mesh->colours.empty()) {
+    mesh = painted(*mesh, rgb);
+  }
+}
+
+/// <render> is a mesh, or, as in the thesis's files, a switch of the viewer. A file of another kind, such as VRML, is
+/// not shown.
+bool is_mesh(const XmlElement& render, std::vector<std::string>& remarks) {
+  const std::string text = render.text();
+  const std::vector<std::string_view> parts = words(text);
+  if (parts.empty() || parts[0].find('.') == std::string_view::npos) {
+    return false;
+  }
+  if (is_mesh_file_name(parts[0])) {
+    return true;
+  }
+  remark_no_effect(remarks, render,
+                   "meshes that can be shown are files that end with " + std::string(mesh_file_endings));
+  return false;
+}
+
+/// Of volume, in the frame of the body.
+Eigen::Vector3d center_of(const Geometry& geometry) {
+  return geometry.mesh ? geometry.pose * solid_of(*geometry.mesh).center : geometry.pose.position;
+}
+
 }  // namespace
 
-Geometry read_geometry(const XmlElement& element) {
-  Geometry geometry;
+ReadGeometry read_geometry(const XmlElement& element, BodyKind kind, SourceSet& sources,
+                           std::vector<std::string>& remarks) {
+  ReadGeometry result;
+  Geometry& geometry = result.solid.emplace();
   const std::string type = lower_case(element.required_attribute("type"));
   const auto allow_tags = [&element](std::initializer_list<std::string_view> size_tags) {
-    constexpr std::array<std::string_view, 3> attributes{"type", "name", "render"};
-    constexpr std::array<std::string_view, 1> friction{"friction"};
+    constexpr std::array<std::string_view, 4> attributes{"type", "name", "render", "open"};
+    constexpr std::array<std::string_view, 2> friction{"friction", "frictionAcross"};
     const std::span<const std::string_view> sizes(size_tags.begin(), size_tags.size());
     element.allow(attributes, joined({sizes, pose_tags, friction, visual_tags}));
   };
@@ -71,14 +169,45 @@ Geometry read_geometry(const XmlElement& element) {
     geometry.shape = Shape::cylinder;
     geometry.extents.x() = read_number(element.required_child("radius"), lengths);
     geometry.extents.y() = read_number(element.required_child("height"), lengths) / 2.0;
+  } else if (type == "trimesh") {
+    allow_tags({"data", "collision", "vertices", "triangles"});
+    read_trimesh(element, kind, sources, remarks, result);
+  } else if (type == "heightfield") {
+    allow_tags({"extents", "columns", "rows", "heights", "data"});
+    if (kind != BodyKind::fixed) {
+      element.refuse("a height field in a body that moves", "one in a body of type 'static' of an environment");
+    }
+    read_height_field(element, sources, geometry);
   } else {
-    element.refuse("type " + in_quotes(type) + " in " + element.label(), "'box', 'sphere' or 'cylinder'");
+    element.refuse("type " + in_quotes(type) + " in " + element.label(),
+                   "'box', 'sphere', 'cylinder', 'trimesh' or 'heightfield'");
   }
-  geometry.pose = read_pose(element);
+  const Pose pose = read_pose(element);
+  if (const auto render = element.child("render"); render && is_mesh(*render, remarks)) {
+    result.look = Look{pose, read_mesh_of_file(*render, MeshUse::look, true, sources, remarks)};
+  }
+  paint(element, result);
+  if (result.look) {
+    result.look->pose = pose;
+  }
+  if (!result.solid) {
+    if (!result.look) {
+      element.refuse("no mesh in " + element.label(), "<data>, <vertices> or <render>");
+    }
+    return result;
+  }
+  geometry.pose = pose;
+  geometry.is_shown = !result.look;
   if (const auto friction = element.child("friction")) {
     geometry.friction = read_number(*friction, frictions);
   }
-  return geometry;
+  if (const auto across = element.child("frictionAcross")) {
+    if (kind == BodyKind::fixed) {
+      across->refuse(across->label() + " in a static body", "it in a link of a robot, or in a body that moves");
+    }
+    geometry.friction_across = read_number(*across, frictions);
+  }
+  return result;
 }
 
 Eigen::Matrix3d box_inertia(const Eigen::Vector3d& half_sides) {
@@ -90,7 +219,7 @@ SolidProperties solid_properties(const std::vector<Geometry>& geometries) {
   SolidProperties whole;
   for (const Geometry& geometry : geometries) {
     whole.volume += volume(geometry);
-    whole.center += volume(geometry) * geometry.pose.position;
+    whole.center += volume(geometry) * center_of(geometry);
   }
   if (geometries.empty()) {
     return whole;
@@ -98,7 +227,7 @@ SolidProperties solid_properties(const std::vector<Geometry>& geometries) {
   whole.center /= whole.volume;
   for (const Geometry& geometry : geometries) {
     const Eigen::Matrix3d rotation = geometry.pose.orientation.toRotationMatrix();
-    const Eigen::Vector3d arm = geometry.pose.position - whole.center;
+    const Eigen::Vector3d arm = center_of(geometry) - whole.center;
     const Eigen::Matrix3d parallel_axes = arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose();
     whole.inertia += volume(geometry) * (rotation * shape_inertia(geometry) * rotation.transpose() + parallel_axes);
   }

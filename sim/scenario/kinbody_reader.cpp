@@ -95,13 +95,13 @@ class KinBodyReader {
     constexpr std::array<std::string_view, 2> body_attributes{"name", "type"};
     constexpr std::array<std::string_view, 3> tags{"Geom", "Mass", "offsetfrom"};
     element.allow(body_attributes, joined({tags, pose_tags}));
-    check_type(element);
+    const bool is_fixed = read_type(element);
     const std::size_t max_bodies = use_ == KinBodyUse::robot ? max_joints + 1 : max_static_bodies;
     if (contents_.bodies.size() == max_bodies) {
       element.refuse("more than " + std::to_string(max_bodies) + " bodies", "at most " + std::to_string(max_bodies));
     }
 
-    BodyEntry entry{{element.document().name(), element.line()}, {}};
+    BodyEntry entry{{element.document().name(), element.line()}, {}, is_fixed};
     const std::optional<std::string> name = element.attribute("name");
     if (use_ == KinBodyUse::robot) {
       entry.link.name = scope.prefix + checked_name(element, element.required_attribute("name"));
@@ -114,10 +114,16 @@ class KinBodyReader {
     entry.link.pose = frame * read_pose(element);
     for (const XmlElement& child : element.children()) {
       if (child.is("Geom")) {
-        entry.link.geometries.push_back(read_geometry(child));
+        ReadGeometry read = read_geometry(child, is_fixed ? BodyKind::fixed : BodyKind::moving, *sources_, *remarks_);
+        if (read.solid) {
+          entry.link.geometries.push_back(std::move(*read.solid));
+        }
+        if (read.look) {
+          entry.link.looks.push_back(std::move(*read.look));
+        }
       }
     }
-    read_body_mass(element, entry.link);
+    read_body_mass(element, entry);
     if (use_ == KinBodyUse::robot) {
       const auto same = std::ranges::find(contents_.bodies, entry.link.name, name_of_body);
       if (same != contents_.bodies.end()) {
@@ -128,25 +134,28 @@ class KinBodyReader {
     contents_.bodies.push_back(std::move(entry));
   }
 
-  void check_type(const XmlElement& element) const {
-    const std::string type = lower_case(element.attribute("type").value_or("dynamic"));
+  /// Whether the body is fixed.
+  [[nodiscard]] bool read_type(const XmlElement& element) const {
+    const std::optional<std::string> written = element.attribute("type");
+    const std::string type = lower_case(written.value_or(use_ == KinBodyUse::robot ? "dynamic" : ""));
     if (use_ == KinBodyUse::robot && type != "dynamic") {
       element.refuse("type " + in_quotes(type) + " in " + element.label(), "'dynamic', because a robot moves");
     }
-    if (use_ == KinBodyUse::environment && type != "static") {
-      element.refuse("type " + in_quotes(type) + " in " + element.label(),
-                     "'static', because all objects of an environment are static");
+    if (type != "static" && type != "dynamic") {
+      element.refuse((written ? "type " + in_quotes(type) + " in " : "no type in ") + element.label(),
+                     "'static' for an object that stays where it is, or 'dynamic' for one that moves");
     }
+    return type == "static";
   }
 
-  void read_body_mass(const XmlElement& element, Link& link) {
-    if (use_ == KinBodyUse::environment) {
+  void read_body_mass(const XmlElement& element, BodyEntry& entry) {
+    if (entry.is_fixed) {
       if (const auto mass = element.child("Mass")) {
         remark_no_effect(*remarks_, *mass, "a static body does not move");
       }
       return;
     }
-    link.mass = read_mass(element.required_child("Mass"), link.geometries);
+    entry.link.mass = read_mass(element.required_child("Mass"), entry.link.geometries);
   }
 
   void read_joint_element(const XmlElement& element, const Scope& scope) {

@@ -22,7 +22,8 @@ struct Origin {
 
 struct BodyEntry {
   Origin origin;
-  Link link;
+  Link link;              ///< without mass if it is fixed
+  bool is_fixed = false;  ///< type="static": only in environments
 };
 
 struct JointEntry {
@@ -41,7 +42,7 @@ struct KinBodyContents {
 
 enum class KinBodyUse : std::uint8_t {
   robot,        ///< named dynamic bodies with mass, and joints
-  environment,  ///< static bodies, no joints
+  environment,  ///< bodies that are static or move, no joints
 };
 
 /// Reads a <KinBody>, or a <Robot>, which may hold the same. extra_tags: tags that the caller reads itself.

@@ -128,10 +128,16 @@ Overrides read_overrides(const OverrideWords& words) {
 }
 
 void set_friction(EnvironmentModel& environment, double friction) {
-  for (StaticObject& object : environment.objects) {
-    for (Geometry& geometry : object.geometries) {
+  const auto set = [friction](std::vector<Geometry>& geometries) {
+    for (Geometry& geometry : geometries) {
       geometry.friction = friction;
     }
+  };
+  for (StaticObject& object : environment.objects) {
+    set(object.geometries);
+  }
+  for (MovingObject& object : environment.moving_objects) {
+    set(object.geometries);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "shared/computer/text/text.hpp"
+#include "sim/robot/mesh_height.hpp"
 #include "sim/scenario/geometry_reader.hpp"
 
 namespace proleg::sim {
@@ -246,6 +247,12 @@ std::vector<std::string> check_gravity(const Eigen::Vector3d& gravity, const Ori
 }
 
 double overlap_depth(const Geometry& left, const Pose& left_body, const Geometry& right, const Pose& right_body) {
+  if (right.shape == Shape::surface || right.shape == Shape::height_field) {
+    const Bounds here = bounds_of(left, left_body);
+    const std::optional<double> top =
+        highest_over(*right.mesh, right_body * right.pose, here.lowest.head<2>(), here.highest.head<2>());
+    return top.value_or(here.lowest.z()) - here.lowest.z();
+  }
   return std::min(depth_along_axes(left, left_body, right, right_body),
                   depth_along_axes(right, right_body, left, left_body));
 }

@@ -19,8 +19,9 @@ namespace proleg::sim {
 [[nodiscard]] std::vector<std::string> check_gravity(const Eigen::Vector3d& gravity, const Origin& origin);
 
 /// How far two solids are in each other, in m: the shortest way out along an axis of one of them. Not above 0 if they
-/// are apart along one. Spheres and cylinders count as the boxes around them. Poses are those of the bodies in the
-/// world.
+/// are apart along one. Spheres, cylinders and hulls count as the boxes around them. If `right` is a mesh or a height
+/// field, it is how far the box around `left` must be lifted to be above all of it. Poses are those of the bodies in
+/// the world.
 [[nodiscard]] double overlap_depth(const Geometry& left, const Pose& left_body, const Geometry& right,
                                    const Pose& right_body);
 

@@ -8,6 +8,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/scenario/data_url.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -42,7 +43,7 @@ std::optional<std::string> DiskFiles::read(const std::filesystem::path& path) {
   return std::move(text).str();
 }
 
-const std::string* SourceSet::text_of(const std::filesystem::path& path) {
+const std::string* SourceSet::text_of(const std::filesystem::path& path, Contents contents) {
   const std::string name = name_of(path);
   if (const auto known = recorded_.find(name); known != recorded_.end()) {
     return &(*record_)[known->second].text;
@@ -52,12 +53,16 @@ const std::string* SourceSet::text_of(const std::filesystem::path& path) {
     return nullptr;
   }
   recorded_.emplace(name, record_->size());
+  // Recordings and documents keep sources as text.
+  if (contents == Contents::any && (find_invalid_utf8(*text) || text->find('\0') != std::string::npos)) {
+    text = data_url(*text);
+  }
   record_->push_back({name, std::move(*text)});
   return &record_->back().text;
 }
 
 std::unique_ptr<XmlDocument> SourceSet::open_top() {
-  const std::string* const text = text_of(top_);
+  const std::string* const text = text_of(top_, Contents::xml);
   if (text == nullptr) {
     throw InputError(name_of(top_), 0, "no file that can be read", readable_file);
   }
@@ -65,7 +70,7 @@ std::unique_ptr<XmlDocument> SourceSet::open_top() {
   return std::make_unique<XmlDocument>(top_, *text, nullptr);
 }
 
-std::unique_ptr<XmlDocument> SourceSet::open(const XmlElement& mention, const std::string& reference) {
+SourceSet::Found SourceSet::find(const XmlElement& mention, const std::string& reference, Contents contents) {
   if (reference.empty() || reference.size() > max_path_size) {
     mention.refuse(
         reference.empty() ? "an empty path" : "a path of " + std::to_string(reference.size()) + " characters",
@@ -73,16 +78,40 @@ std::unique_ptr<XmlDocument> SourceSet::open(const XmlElement& mention, const st
   }
   const XmlDocument& including = mention.document();
   std::filesystem::path path = including.path().parent_path() / reference;
-  const std::string* text = text_of(path);
+  const std::string* text = text_of(path, contents);
   if (text == nullptr) {
     path = top_.parent_path() / reference;
-    text = text_of(path);
+    text = text_of(path, contents);
   }
   if (text == nullptr) {
     mention.refuse("no such file " + in_quotes(reference),
                    readable_file + std::string(", relative to the folder of this file or of the top-level file"));
   }
+  return {std::move(path), text};
+}
 
+void SourceSet::count_bytes(const XmlElement& mention, std::size_t bytes) {
+  parsed_bytes_ += bytes;
+  if (++includes_ > max_includes || parsed_bytes_ > max_bytes) {
+    mention.refuse("more than " + std::to_string(max_includes) + " included files or 64 MiB",
+                   "at most that for all files of a scenario");
+  }
+}
+
+SourceSet::Bytes SourceSet::read_bytes(const XmlElement& mention, const std::string& reference) {
+  Found found = find(mention, reference, Contents::any);
+  count_bytes(mention, found.text->size());
+  return {std::move(found.path), bytes_of_source(*found.text)};
+}
+
+std::optional<std::string> SourceSet::companion(const std::filesystem::path& path) {
+  const std::string* const text = text_of(path, Contents::any);
+  return text == nullptr ? std::nullopt : std::optional(bytes_of_source(*text));
+}
+
+std::unique_ptr<XmlDocument> SourceSet::open(const XmlElement& mention, const std::string& reference) {
+  auto [path, text] = find(mention, reference, Contents::xml);
+  const XmlDocument& including = mention.document();
   int depth = 0;
   const std::string name = name_of(path);
   for (const XmlDocument* file = &including; file != nullptr; file = file->includer(), ++depth) {
@@ -94,11 +123,7 @@ std::unique_ptr<XmlDocument> SourceSet::open(const XmlElement& mention, const st
     mention.refuse("files nested deeper than " + std::to_string(max_include_depth),
                    "at most " + std::to_string(max_include_depth) + " levels");
   }
-  parsed_bytes_ += text->size();
-  if (++includes_ > max_includes || parsed_bytes_ > max_bytes) {
-    mention.refuse("more than " + std::to_string(max_includes) + " included files or 64 MiB",
-                   "at most that for all files of a scenario");
-  }
+  count_bytes(mention, text->size());
   return std::make_unique<XmlDocument>(std::move(path), *text, &including);
 }
 

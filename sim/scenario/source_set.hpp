@@ -6,9 +6,11 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sim/robot/triangle_mesh.hpp"
 #include "sim/scenario/reader.hpp"
 #include "sim/scenario/xml_document.hpp"
 
@@ -27,13 +29,35 @@ class SourceSet {
   /// more than 32 levels, more than 1000 includes, and more than 64 MiB in all.
   [[nodiscard]] std::unique_ptr<XmlDocument> open(const XmlElement& mention, const std::string& reference);
 
+  /// A file of any bytes, such as a mesh, that the element `mention` names as in open().
+  struct Bytes {
+    std::filesystem::path path;
+    std::string bytes;
+  };
+  [[nodiscard]] Bytes read_bytes(const XmlElement& mention, const std::string& reference);
+  /// A file of any bytes beside another; nothing if it is not there.
+  [[nodiscard]] std::optional<std::string> companion(const std::filesystem::path& path);
+
+  /// Meshes that were read, by file, scale and use: links that name the same file share one.
+  [[nodiscard]] std::map<std::string, std::shared_ptr<const TriangleMesh>>& meshes() { return meshes_; }
+
  private:
-  [[nodiscard]] const std::string* text_of(const std::filesystem::path& path);
+  struct Found {
+    std::filesystem::path path;
+    const std::string* text;
+  };
+
+  enum class Contents { xml, any };
+
+  [[nodiscard]] const std::string* text_of(const std::filesystem::path& path, Contents contents);
+  [[nodiscard]] Found find(const XmlElement& mention, const std::string& reference, Contents contents);
+  void count_bytes(const XmlElement& mention, std::size_t bytes);
 
   FileSource* files_;
   std::filesystem::path top_;
   std::vector<SourceFile>* record_;
   std::map<std::string, std::size_t> recorded_;  ///< name of a file: its position in the record
+  std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
   std::size_t includes_ = 0;
   std::size_t parsed_bytes_ = 0;
 };

@@ -3,7 +3,7 @@
 # Called at every build with SOURCE_DIR, SETTINGS and OUTPUT.
 set(rooms
   shared/fixed shared/gait shared/kernel shared/computer/text
-  sim/robot sim/environment sim/scenario sim/physics sim/mujoco sim/ode sim/reduced sim/measure sim/loop
+  sim/robot sim/mesh sim/environment sim/scenario sim/physics sim/mujoco sim/ode sim/reduced sim/measure sim/loop
   sim/optimize/experiment sim/optimize/evaluation sim/optimize/method)
 set(text "${SETTINGS}")
 foreach(room IN LISTS rooms)

@@ -55,6 +55,7 @@ sim::TickSample Mirror::follow(const sim::TickSample& real) {
   sample.motor_torques = plant_.motor_torques();
   sample.servo_currents = plant_.servo_currents();
   sample.contact_forces = plant_.contact_forces();
+  sample.object_poses = plant_.object_poses();
   return sample;
 }
 

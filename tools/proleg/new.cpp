@@ -23,10 +23,23 @@ using namespace proleg::tools;
 
 struct NewOptions {
   std::string what;
+  std::string kind;
   std::string joints;
-  std::string axes = "p";
+  std::optional<std::string> axes;
   std::string out = "robot";
 };
+
+const RobotKind& parse_kind(const std::string& word) {
+  const RobotKind* const kind = word.empty() ? &robot_kinds().front() : find_robot_kind(word);
+  if (kind == nullptr) {
+    std::vector<std::string> names;
+    for (const RobotKind& known : robot_kinds()) {
+      names.emplace_back(known.name);
+    }
+    throw InputError("--kind", 0, in_quotes(word), "one of " + listed(names));
+  }
+  return *kind;
+}
 
 std::uint32_t parse_joints(const std::string& word) {
   const std::optional<std::uint32_t> joints = parse_whole<std::uint32_t>(word);
@@ -57,7 +70,13 @@ int write_robot(const NewOptions& options) {
   if (options.what != "robot") {
     throw BadInput("found " + in_quotes(options.what) + ", expected 'robot' or 'obstacle'");
   }
-  const std::vector<NewFile> files = robot_files(axes_of_joints(options.axes, parse_joints(options.joints)));
+  if (options.joints.empty() && options.kind.empty()) {
+    throw BadInput("--joints is required without --kind");
+  }
+  const RobotKind& kind = parse_kind(options.kind);
+  const std::uint32_t joints = options.joints.empty() ? kind.joints : parse_joints(options.joints);
+  const std::string axes = options.axes.value_or(std::string(kind.axes.substr(0, joints)));
+  const std::vector<NewFile> files = robot_files(kind, axes_of_joints(axes, joints));
   const std::filesystem::path folder = options.out;
   write_new_files(folder, files);
   std::cout << "run it:  proleg simulate " << (folder / files.front().name).string() << '\n';
@@ -72,16 +91,23 @@ int main(int argc, char** argv) {
   }
   CommandLine command_line("proleg new",
                            "Writes the files of a new robot: a chain of joints, a gait that moves it, a flat floor and "
-                           "the top-level file.\nThe modules are those of the shipped travelling_wave. `proleg new "
-                           "obstacle` writes an environment: see its own --help.");
+                           "the top-level file.\nThe modules are those of the shipped travelling_wave, or of another "
+                           "kind of robot. `proleg new obstacle` writes an environment: see its own --help.");
   NewOptions options;
   command_line.add_option("WHAT", options.what, "what to write: robot, or obstacle").required().value_name("");
-  command_line.add_option("--joints", options.joints, "number of joints, 1 to 64").required().value_name("N");
+  std::string kinds = "kind of robot:";
+  for (const RobotKind& kind : robot_kinds()) {
+    kinds.append(&kind == &robot_kinds().front() ? " " : "; ").append(kind.name).append(" (").append(kind.help);
+    kinds += ")";
+  }
+  command_line.add_option("--kind", options.kind, kinds).value_name("KIND");
+  command_line.add_option("--joints", options.joints, "number of joints, 1 to 64; by default that of the kind")
+      .value_name("N");
   command_line
       .add_option("--axes", options.axes,
-                  "p for a pitch joint, y for a yaw joint; the letters are repeated along the chain, from the tail")
-      .value_name("LETTERS")
-      .shows_default();
+                  "p for a pitch joint, y for a yaw joint; the letters are repeated along the chain, from the tail; by "
+                  "default those of the kind, or p")
+      .value_name("LETTERS");
   command_line.add_option("--out", options.out, "folder for the files; none of them may exist")
       .value_name("FOLDER")
       .shows_default();

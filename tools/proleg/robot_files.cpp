@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <string_view>
+#include <utility>
 
 #include "tools/proleg/shipped_texts.hpp"
 
@@ -30,9 +31,8 @@ constexpr std::string_view simulation_text = R"(<!-- The top-level file: what is
 </simulation>
 )";
 
-/// The distance of a link's origin from that of the first segment: 72 mm for each joint between them, as metres.
-std::string position_text(std::size_t links) {
-  constexpr std::size_t module_mm = 72;
+/// The distance of a link's origin from that of the first segment, as metres.
+std::string position_text(std::size_t links, std::size_t module_mm) {
   std::array<char, 24> text{};
   std::snprintf(text.data(), text.size(), "%zu.%03zu", links * module_mm / 1000, links * module_mm % 1000);
   return text.data();
@@ -43,35 +43,33 @@ std::string link_name(std::size_t link, std::size_t joints) {
   return link == 0 ? "Tail" : link == joints ? "Head" : std::to_string(link) + "Seg";
 }
 
-std::string link_text(std::size_t link, std::size_t joints) {
+std::string link_text(const RobotKind& kind, std::size_t link, std::size_t joints) {
   std::string text = "    <KinBody ";
   if (link == 0) {
     return text + "file=\"modules/tail.kinbody.xml\"/>\n";
   }
   text += link == joints ? "file=\"modules/head.kinbody.xml\""
                          : "prefix=\"" + std::to_string(link) + "\" file=\"modules/segment.kinbody.xml\"";
-  return text + "><translation>0 " + position_text(link - 1) + " 0</translation></KinBody>\n";
+  return text + "><translation>0 " + position_text(link - 1, kind.module_mm) + " 0</translation></KinBody>\n";
 }
 
-std::string joint_text(std::size_t joint, char axis, std::size_t joints) {
+std::string joint_text(const RobotKind& kind, std::size_t joint, char axis, std::size_t joints) {
   const std::string front = link_name(joint + 1, joints);
   std::string text = "    <Joint name=\"J" + std::to_string(joint + 1) + "\" type=\"hinge\">\n";
   text += "      <body>" + link_name(joint, joints) + "</body>\n      <body>" + front + "</body>\n";
   text += "      <offsetfrom>" + front + "</offsetfrom>\n";
   text += std::string("      <axis>") + (axis == yaw ? "0 0 1" : "1 0 0") + "</axis>\n";
-  text += "      <maxtorque>0.4</maxtorque>\n      <maxvel>4.5</maxvel>\n      <limitsdeg>-90 90</limitsdeg>\n";
+  text.append("      <maxtorque>").append(kind.torque).append("</maxtorque>\n      <maxvel>").append(kind.speed);
+  text += "</maxvel>\n      <limitsdeg>-90 90</limitsdeg>\n";
   return text + "    </Joint>\n";
 }
 
-std::string robot_text(const std::string& axes) {
+std::string robot_text(const RobotKind& kind, const std::string& axes) {
   std::string text =
       "<!-- A chain of " + std::to_string(axes.size()) + " joints, from the tail: " + axes + " (p: pitch, y: yaw).";
-  text += R"( It lies along y, its head at the positive end.
-
-     The values are those of the shipped travelling_wave. From the 2013 thesis: 72 mm between joints, 0.4 Nm, 4.5 rad/s
-     and the limits. FITTED to the displacements that the thesis reports: the masses, the shape of what touches the
-     ground (modules/) and the gain of the servos.
-     Change one of the files in modules/ to change all links of that kind. -->
+  text += " It lies along y, its head at the positive end.\n\n";
+  text += kind.comment;
+  text += R"(     Change one of the files in modules/ to change all links of that kind. -->
 <Robot name="robot">
   <!-- An almost ideal servo: gain in 1/s, a new pulse every millisecond. -->
   <servo>
@@ -81,7 +79,7 @@ std::string robot_text(const std::string& axes) {
   <KinBody name="body">
 )";
   for (std::size_t link = 0; link <= axes.size(); ++link) {
-    text += link_text(link, axes.size());
+    text += link_text(kind, link, axes.size());
   }
   text +=
       R"(    <!-- The angle of a joint is the rotation of its second body relative to the first. The first body is the one
@@ -90,7 +88,7 @@ std::string robot_text(const std::string& axes) {
          sensors, faces the ground, also at a yaw joint. -->
 )";
   for (std::size_t joint = 0; joint < axes.size(); ++joint) {
-    text += joint_text(joint, axes[joint], axes.size());
+    text += joint_text(kind, joint, axes[joint], axes.size());
   }
   return text + "  </KinBody>\n</Robot>\n";
 }
@@ -185,14 +183,15 @@ std::string actuation_text(const std::string& axes) {
 
 }  // namespace
 
-std::vector<NewFile> robot_files(const std::string& axes) {
-  return {{"robot.simulation.xml", std::string(simulation_text)},
-          {"robot.robot.xml", robot_text(axes)},
-          {"robot.actuation.xml", actuation_text(axes)},
-          {"flat.environment.xml", std::string(floor_text())},
-          {"modules/tail.kinbody.xml", std::string(tail_text())},
-          {"modules/segment.kinbody.xml", std::string(segment_text())},
-          {"modules/head.kinbody.xml", std::string(head_text())}};
+std::vector<NewFile> robot_files(const RobotKind& kind, const std::string& axes) {
+  std::vector<NewFile> files{{"robot.simulation.xml", std::string(simulation_text)},
+                             {"robot.robot.xml", robot_text(kind, axes)},
+                             {"robot.actuation.xml", actuation_text(axes)},
+                             {"flat.environment.xml", std::string(floor_text())}};
+  for (NewFile& file : module_files(kind)) {
+    files.push_back(std::move(file));
+  }
+  return files;
 }
 
 }  // namespace proleg::tools

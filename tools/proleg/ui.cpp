@@ -68,7 +68,7 @@ class NewRobot final : public sim::FileSource {
   [[nodiscard]] const std::string& name() const { return files_.front().name; }
 
  private:
-  std::vector<NewFile> files_ = robot_files("ppppp");
+  std::vector<NewFile> files_ = robot_files(robot_kinds().front(), "ppppp");
 };
 
 /// The scenario; for a simulation as its files have it, because the session applies the settings.

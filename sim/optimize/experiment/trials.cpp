@@ -23,12 +23,18 @@ void scale_friction(std::vector<sim::Geometry>& geometries, double factor) {
     if (geometry.friction) {
       *geometry.friction *= factor;
     }
+    if (geometry.friction_across) {
+      *geometry.friction_across *= factor;
+    }
   }
 }
 
 void perturb_friction(sim::Scenario& scenario, double factor) {
   scenario.environment.unspecified_friction *= factor;
   for (sim::StaticObject& object : scenario.environment.objects) {
+    scale_friction(object.geometries, factor);
+  }
+  for (sim::MovingObject& object : scenario.environment.moving_objects) {
     scale_friction(object.geometries, factor);
   }
   for (sim::Link& link : scenario.robot.links) {

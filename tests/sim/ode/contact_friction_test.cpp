@@ -5,8 +5,10 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -50,6 +52,31 @@ Eigen::Vector2d position_after(World& world, double seconds) {
     world.step();
   }
   return world.center_of_mass().head<2>();
+}
+
+/// Along y the plate has the friction of the ground, along x another one.
+RobotModel plate_with_friction_across(double along, double across) {
+  RobotModel robot = plate();
+  robot.links[0].geometries[0].friction = along;
+  robot.links[0].geometries[0].friction_across = across;
+  return robot;
+}
+
+// A load between the two limits moves the plate along y and holds it along x; both follow Coulomb's law.
+TEST(FrictionAcross, HoldsInOneDirectionAndSlidesInTheOther) {
+  const double along = 0.1;
+  const double across = 0.6;
+  const double load = 0.3 * gravity;
+  for (const auto& [heading, coefficient] : {std::pair{0.0, across}, std::pair{90.0, along}, std::pair{270.0, along}}) {
+    EnvironmentModel environment = ground(0.0, load, heading);
+    environment.objects[0].geometries[0].friction.reset();  // then the plate's coefficient holds
+    const std::unique_ptr<World> world =
+        make_ode_world(plate_with_friction_across(along, across), environment, step_s, Stepper::direct);
+    const double seconds = 1.0;
+    const double distance = position_after(*world, seconds).norm();
+    const double acceleration = std::max(load - coefficient * gravity, 0.0);
+    EXPECT_NEAR(distance, 0.5 * acceleration * seconds * seconds, 0.01) << heading;
+  }
 }
 
 class Loads : public testing::TestWithParam<std::tuple<double, Stepper>> {
@@ -136,7 +163,7 @@ class PlateInTheEngine {
     const int count = dCollide(a, b, 8, &points[0].geom, sizeof(dContact));
     for (int i = 0; i < count; ++i) {
       dContact& point = points[static_cast<std::size_t>(i)];
-      friction_of_contacts_.set_surface(point, friction_, a, b);
+      friction_of_contacts_.set_surface(point, friction_, a, b, ContactFriction::Between::robot_and_world);
       const dJointID joint = dJointCreateContact(world_, contacts_, &point);
       dJointAttach(joint, dGeomGetBody(a), dGeomGetBody(b));
       friction_of_contacts_.observe(joint);

@@ -88,8 +88,14 @@ TEST(Remarks, AreNotMadeForColours) {
   MemoryFiles files = small_scenario();
   files.replace("robot.xml", "<radius>0.03</radius>",
                 "<radius>0.03</radius><diffuseColor>1 0 0</diffuseColor><ambientcolor>1 0 0</ambientcolor>"
-                "<TRANSPARENCY>0.5</TRANSPARENCY><render>ball.wrl</render>");
+                "<TRANSPARENCY>0.5</TRANSPARENCY><render>true</render>");
   EXPECT_EQ(files.scenario().remarks.size(), 1U);
+}
+
+TEST(Remarks, SayThatAMeshOfAnotherFormatIsNotShown) {
+  MemoryFiles files = small_scenario();
+  files.replace("robot.xml", "<radius>0.03</radius>", "<radius>0.03</radius><render>ball.wrl</render>");
+  EXPECT_TRUE(remarked(files.scenario(), "robot.xml:20: <render> has no effect: meshes that can be shown"));
 }
 
 }  // namespace

@@ -1,10 +1,15 @@
 #include "tools/proleg/ui/robot_document.hpp"
 
+#include <cmath>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <span>
+#include <utility>
 
+#include "sim/robot/bounds.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"
 #include "tools/proleg/ui/telemetry_row.hpp"
@@ -16,9 +21,62 @@ using nlohmann::json;
 
 json vector_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
-json shapes_json(std::span<const sim::Geometry> geometries) {
+/// To whole micrometres, in m.
+double to_micrometres(double metres) { return std::round(metres * 1e6) / 1e6; }
+
+/// The meshes of a document. Shapes that share one name it by its number.
+class Meshes {
+ public:
+  /// The shape of a mesh. Its origin is the middle of the box around the mesh, as of other shapes, and its size half of
+  /// that box. pose: of the mesh.
+  json shape(const std::shared_ptr<const sim::TriangleMesh>& mesh, const sim::Pose& pose) {
+    const auto [known, is_new] = numbers_.try_emplace(mesh.get(), documents_.size());
+    const sim::Bounds bounds = sim::bounds_of(*mesh, {});
+    const Eigen::Vector3d middle = (bounds.lowest + bounds.highest) / 2.0;
+    if (is_new) {
+      documents_.push_back(mesh_json(*mesh, middle));
+    }
+    return {{"kind", "mesh"},
+            {"pose", pose_json(pose * sim::Pose{middle, Eigen::Quaterniond::Identity()})},
+            {"size", vector_json((bounds.highest - bounds.lowest) / 2.0)},
+            {"mesh", known->second}};
+  }
+
+  json take() { return std::move(documents_); }
+
+ private:
+  static json mesh_json(const sim::TriangleMesh& mesh, const Eigen::Vector3d& middle) {
+    json vertices = json::array();
+    for (const Eigen::Vector3d& vertex : mesh.vertices) {
+      for (const double coordinate : Eigen::Vector3d(vertex - middle)) {
+        vertices.push_back(to_micrometres(coordinate));
+      }
+    }
+    json triangles = json::array();
+    for (const auto& triangle : mesh.triangles) {
+      for (const std::uint32_t corner : triangle) {
+        triangles.push_back(corner);
+      }
+    }
+    json colours = json::array();
+    for (const Eigen::Vector3f& colour : mesh.colours) {
+      for (const float part : colour) {
+        colours.push_back(std::lround(part * 255.0F));
+      }
+    }
+    return {{"vertices", std::move(vertices)}, {"triangles", std::move(triangles)}, {"colours", std::move(colours)}};
+  }
+
+  json documents_ = json::array();
+  std::map<const sim::TriangleMesh*, std::size_t> numbers_;
+};
+
+json shapes_json(std::span<const sim::Geometry> geometries, std::span<const sim::Look> looks, Meshes& meshes) {
   json shapes = json::array();
   for (const sim::Geometry& geometry : geometries) {
+    if (!geometry.is_shown) {
+      continue;
+    }
     const Eigen::Vector3d& extents = geometry.extents;
     json shape{{"pose", pose_json(geometry.pose)}};
     switch (geometry.shape) {
@@ -34,10 +92,46 @@ json shapes_json(std::span<const sim::Geometry> geometries) {
         shape["kind"] = "cylinder";
         shape["size"] = {extents.x(), extents.y(), 0.0};
         break;
+      case sim::Shape::hull:
+      case sim::Shape::surface:
+      case sim::Shape::height_field:
+        shape = meshes.shape(geometry.mesh, geometry.pose);
+        break;
     }
     shapes.push_back(std::move(shape));
   }
+  for (const sim::Look& look : looks) {
+    shapes.push_back(meshes.shape(look.mesh, look.pose));
+  }
   return shapes;
+}
+
+/// Of a link, a static object or one that moves.
+template <typename Body>
+json body_json(const Body& body, Meshes& meshes) {
+  return {{"name", body.name},
+          {"pose", pose_json(body.pose)},
+          {"shapes", shapes_json(body.geometries, body.looks, meshes)}};
+}
+
+template <typename Body>
+json bodies_json(const std::vector<Body>& bodies, Meshes& meshes) {
+  json result = json::array();
+  for (const Body& body : bodies) {
+    result.push_back(body_json(body, meshes));
+  }
+  return result;
+}
+
+json rulers_json(const std::vector<sim::Ruler>& rulers) {
+  json result = json::array();
+  for (const sim::Ruler& ruler : rulers) {
+    result.push_back({{"from", vector_json(ruler.from)},
+                      {"to", vector_json(ruler.to)},
+                      {"division", ruler.division},
+                      {"width", ruler.width}});
+  }
+  return result;
 }
 
 double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
@@ -57,14 +151,6 @@ json joints_json(const sim::Scenario& scenario) {
     joints.push_back(std::move(object));
   }
   return joints;
-}
-
-json links_json(const sim::RobotModel& robot) {
-  json links = json::array();
-  for (const sim::Link& link : robot.links) {
-    links.push_back({{"name", link.name}, {"pose", pose_json(link.pose)}, {"shapes", shapes_json(link.geometries)}});
-  }
-  return links;
 }
 
 json joints_of(JointMask group) {
@@ -124,11 +210,10 @@ json pose_json(const sim::Pose& pose) {
 }
 
 json robot_document(const sim::Scenario& scenario, std::string_view kind) {
-  json terrain = json::array();
-  for (const sim::StaticObject& object : scenario.environment.objects) {
-    terrain.push_back(
-        {{"name", object.name}, {"pose", pose_json(object.pose)}, {"shapes", shapes_json(object.geometries)}});
-  }
+  Meshes meshes;
+  json links = bodies_json(scenario.robot.links, meshes);
+  json terrain = bodies_json(scenario.environment.objects, meshes);
+  json objects = bodies_json(scenario.environment.moving_objects, meshes);
   json slots = json::array();
   for (const unsigned slot : sim::used_slots(scenario)) {
     slots.push_back({{"number", slot + 1},
@@ -140,8 +225,11 @@ json robot_document(const sim::Scenario& scenario, std::string_view kind) {
           {"file", std::filesystem::path(scenario.path).filename().string()},
           {"kind", kind},
           {"joints", joints_json(scenario)},
-          {"links", links_json(scenario.robot)},
+          {"links", std::move(links)},
           {"terrain", std::move(terrain)},
+          {"objects", std::move(objects)},
+          {"rulers", rulers_json(scenario.environment.rulers)},
+          {"meshes", meshes.take()},
           {"slots", std::move(slots)}};
 }
 

@@ -21,7 +21,18 @@ std::int32_t rounded(double value) {
 }
 
 constexpr double unit_quaternion = 1 << 30;
+constexpr std::size_t pose_values = 7;
 constexpr double raw_per_radian = (1 << 30) / (std::numbers::pi / 2);
+
+void append_pose(const sim::Pose& pose, std::vector<std::int32_t>& row) {
+  for (const double metres : {pose.position.x(), pose.position.y(), pose.position.z()}) {
+    row.push_back(rounded(metres * 1e6));
+  }
+  const Eigen::Quaterniond& turn = pose.orientation;
+  for (const double part : {turn.w(), turn.x(), turn.y(), turn.z()}) {
+    row.push_back(rounded(part * unit_quaternion));
+  }
+}
 
 }  // namespace
 
@@ -43,7 +54,10 @@ std::vector<host::Signal> signals_of(const sim::Scenario& scenario) {
                                     {"torque", "mNm", 1.0, joints, Of::joint},
                                     {"contact", "", 1.0, links, Of::link},
                                     {"force", "mN", 1.0, links, Of::link},
-                                    {"head", "", 1.0, 7, Of::robot}};
+                                    {"head", "", 1.0, pose_values, Of::robot}};
+  if (const std::size_t objects = scenario.environment.moving_objects.size(); objects > 0) {
+    signals.push_back({"object", "", 1.0, pose_values * objects, Of::robot});
+  }
   for (const unsigned slot : sim::used_slots(scenario)) {
     const Slot& used = scenario.kernel.slots[slot];
     for (const InternalValue& value : used.algorithm->declaration().internal_values) {
@@ -70,13 +84,14 @@ void fill_row(const sim::TickSample& sample, const sim::Scenario& scenario, std:
   for (const double force : sample.contact_forces) {
     row.push_back(rounded(force * 1e3));
   }
-  const sim::Pose& head = sample.link_poses.front();
-  for (const double metres : {head.position.x(), head.position.y(), head.position.z()}) {
-    row.push_back(rounded(metres * 1e6));
-  }
-  const Eigen::Quaterniond& turn = head.orientation;
-  for (const double part : {turn.w(), turn.x(), turn.y(), turn.z()}) {
-    row.push_back(rounded(part * unit_quaternion));
+  append_pose(sample.link_poses.front(), row);
+  const std::size_t objects = scenario.environment.moving_objects.size();
+  for (std::size_t object = 0; object < objects; ++object) {
+    if (object < sample.object_poses.size()) {
+      append_pose(sample.object_poses[object], row);
+    } else {
+      row.insert(row.end(), pose_values, host::no_value);  // not simulated
+    }
   }
   // A recording has all values of one joint behind each other, a signal one value of all joints.
   std::size_t begin = 0;
@@ -105,7 +120,9 @@ void fill_row(const sim::RecordedTick& tick, const sim::Scenario& scenario, std:
             .motor_torques = tick.motor_torques,
             .servo_currents = tick.servo_currents,
             .contact_forces = tick.contact_forces,
-            .lost = {}},
+            .lost = {},
+            .moves = {},
+            .object_poses = tick.object_poses},
            scenario, row);
 }
 

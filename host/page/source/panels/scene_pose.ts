@@ -47,6 +47,7 @@ export function poseAt(history: TelemetryHistory, tick: number, isLive: boolean,
     angles: anglesAt(history, ['angle', 'setpoint'], row),
     head: headAt(history, row),
     ghost: ghost ? anglesAt(history, ['simulated_angle'], row) : null,
+    objects: posesAt(history, 'object', row),
     contacts,
     run: history.run,
     isLive,
@@ -54,17 +55,21 @@ export function poseAt(history: TelemetryHistory, tick: number, isLive: boolean,
   };
 }
 
-// x, y, z in metres, then the quaternion; null if the row has none.
 function headAt(history: TelemetryHistory, row: number): Float64Array | null {
-  const head = new Float64Array(headValues);
-  for (let i = 0; i < headValues; i += 1) {
-    const raw = history.valueAt('head', i, row);
+  return posesAt(history, 'head', row);
+}
+
+// Of each pose x, y, z in metres, then the quaternion; null if the row has none.
+function posesAt(history: TelemetryHistory, signal: string, row: number): Float64Array | null {
+  const poses = new Float64Array(signal === 'head' ? headValues : (history.rings.get(signal)?.count ?? 0));
+  for (let i = 0; i < poses.length; i += 1) {
+    const raw = history.valueAt(signal, i, row);
     if (raw === noValue) {
       return null;
     }
-    head[i] = i < 3 ? raw * micrometre : raw / quaternionUnit;
+    poses[i] = i % headValues < 3 ? raw * micrometre : raw / quaternionUnit;
   }
-  return head;
+  return poses.length === 0 ? null : poses;
 }
 
 const cut: readonly number[] = new Array<number>(headValues).fill(NaN);

@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 import { ForwardKinematics } from '../geometry/forward_kinematics.js';
 import { compose, fromAxisAngle, multiply, poseFromArray, rotate, type Pose, type Vector } from '../geometry/quaternion.js';
-import type { Body, Joint, RobotDocument, Shape } from '../wire/messages.js';
+import type { Body, Joint, Mesh, RobotDocument, Ruler, Shape } from '../wire/messages.js';
 import { colours } from './scene_colours.js';
 
 // A shape of a body, or a mark on it.
@@ -12,7 +12,9 @@ interface Instance {
   scale: Vector;
 }
 
-const unitGeometry: Record<Shape['kind'], () => THREE.BufferGeometry> = {
+type Primitive = Exclude<Shape['kind'], 'mesh'>;
+
+const unitGeometry: Record<Primitive, () => THREE.BufferGeometry> = {
   box: () => new THREE.BoxGeometry(2, 2, 2),
   sphere: () => new THREE.SphereGeometry(1, 24, 16),
   cylinder: () => new THREE.CylinderGeometry(1, 1, 2, 24),
@@ -27,7 +29,31 @@ function scaleOf(shape: Shape): Vector {
       return [a, a, a];
     case 'cylinder':
       return [a, b, a];
+    case 'mesh':
+      return [1, 1, 1];
   }
+}
+
+// With a normal for each triangle, not for each vertex: edges are seen.
+function geometryOf(mesh: Mesh): THREE.BufferGeometry {
+  const geometry = new THREE.BufferGeometry();
+  const count = mesh.vertices.length / 3;
+  geometry.setAttribute('position', new THREE.Float32BufferAttribute(mesh.vertices, 3));
+  if (mesh.colours.length > 0) {
+    const colours = mesh.colours.length === 3 * count ? mesh.colours : [];
+    const linear = new THREE.Color();
+    const parts = new Float32Array(3 * count);
+    for (let i = 0; i < count; i += 1) {
+      const part = (k: number) => (colours[3 * i + k] ?? 160) / 255;
+      linear.setRGB(part(0), part(1), part(2), THREE.SRGBColorSpace).toArray(parts, 3 * i);
+    }
+    geometry.setAttribute('color', new THREE.BufferAttribute(parts, 3));
+  }
+  geometry.setIndex(mesh.triangles);
+  const apart = geometry.toNonIndexed();
+  geometry.dispose();
+  apart.computeVertexNormals();
+  return apart;
 }
 
 class InstanceSet {
@@ -41,6 +67,7 @@ class InstanceSet {
     geometry: THREE.BufferGeometry,
     readonly instances: readonly Instance[],
     material: THREE.Material,
+    readonly isColoured = false, // the shape has colours of its own
   ) {
     this.mesh = new THREE.InstancedMesh(geometry, material, instances.length);
     this.mesh.frustumCulled = false;
@@ -71,10 +98,10 @@ class InstanceSet {
   }
 }
 
-function instancesOf(bodies: readonly Body[], kind: Shape['kind'], areLinks: boolean): Instance[] {
+function instancesOf(bodies: readonly Body[], isWanted: (shape: Shape) => boolean, areLinks: boolean): Instance[] {
   return bodies.flatMap((body, link) =>
     body.shapes
-      .filter((shape) => shape.kind === kind)
+      .filter(isWanted)
       .map((shape) => {
         const local = poseFromArray(shape.pose);
         const pose = areLinks ? local : compose(poseFromArray(body.pose), local);
@@ -84,6 +111,27 @@ function instancesOf(bodies: readonly Body[], kind: Shape['kind'], areLinks: boo
 }
 
 const kinds = ['box', 'sphere', 'cylinder'] as const;
+
+const white = new THREE.Color(1, 1, 1);
+
+// Flat boxes, one for each segment.
+function rulerInstances(rulers: readonly Ruler[]): Instance[] {
+  return rulers.flatMap(({ from, to, division, width }, number) => {
+    const way: Vector = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
+    const length = Math.hypot(...way);
+    const orientation = fromYTo(way);
+    return Array.from({ length: Math.ceil(length / division - 1e-9) }, (_, i): Instance => {
+      const begin = i * division;
+      const end = Math.min(begin + division, length);
+      const middle = (begin + end) / 2 / length;
+      return {
+        link: -1 - number,
+        pose: { position: [from[0] + way[0] * middle, from[1] + way[1] * middle, from[2] + way[2] * middle], orientation },
+        scale: [width / 2, (end - begin) / 2, 0.001],
+      };
+    });
+  });
+}
 
 // Behind the robot where both are at the same place: the robot keeps its colours there.
 const ghostLook = {
@@ -112,6 +160,8 @@ export class RobotModel {
   private readonly kinematics: ForwardKinematics;
   private readonly links: InstanceSet[];
   private readonly terrain: InstanceSet[];
+  private readonly objects: InstanceSet[];
+  private readonly rulers: InstanceSet;
   private readonly joints: InstanceSet;
   private readonly contacts: InstanceSet;
   private readonly centres: Vector[]; // of the links, in their frames
@@ -130,17 +180,29 @@ export class RobotModel {
     this.kinematics = new ForwardKinematics(robot);
     const material = new THREE.MeshLambertMaterial(isGhost ? ghostLook : {});
     const marks = new THREE.MeshBasicMaterial();
-    const make = (bodies: readonly Body[], areLinks: boolean) =>
-      kinds
-        .map((kind) => ({ kind, instances: instancesOf(bodies, kind, areLinks) }))
+    const coloured = new THREE.MeshLambertMaterial({ ...(isGhost ? ghostLook : { vertexColors: true }), side: THREE.DoubleSide });
+    const plain = new THREE.MeshLambertMaterial({ ...(isGhost ? ghostLook : {}), side: THREE.DoubleSide });
+    const make = (bodies: readonly Body[], areLinks: boolean) => [
+      ...kinds
+        .map((kind) => ({ kind, instances: instancesOf(bodies, (shape) => shape.kind === kind, areLinks) }))
         .filter(({ instances }) => instances.length > 0)
-        .map(({ kind, instances }) => new InstanceSet(unitGeometry[kind](), instances, material));
+        .map(({ kind, instances }) => new InstanceSet(unitGeometry[kind](), instances, material)),
+      ...(robot.meshes ?? [])
+        .map((mesh, number) => ({ mesh, instances: instancesOf(bodies, (shape) => shape.mesh === number, areLinks) }))
+        .filter(({ instances }) => instances.length > 0)
+        .map(({ mesh, instances }) => {
+          const isColoured = mesh.colours.length > 0;
+          return new InstanceSet(geometryOf(mesh), instances, isColoured ? coloured : plain, isColoured);
+        }),
+    ];
     this.links = make(robot.links, true);
     this.terrain = isGhost ? [] : make(robot.terrain, false);
-    this.terrain.forEach((set) => {
+    this.rulers = new InstanceSet(unitGeometry.box(), isGhost ? [] : rulerInstances(robot.rulers ?? []), marks);
+    [...this.terrain, this.rulers].forEach((set) => {
       set.place([]);
       set.mesh.castShadow = false;
     });
+    this.objects = isGhost ? [] : make(robot.objects ?? [], true);
     this.centres = robot.links.map(centreOf);
     this.length = Math.max(0.1, this.chainLength(robot));
     const thickness = this.typicalThickness();
@@ -148,13 +210,27 @@ export class RobotModel {
     this.contacts = new InstanceSet(new THREE.BoxGeometry(2, 2, 2), isGhost ? [] : this.contactInstances(robot, thickness), marks);
     this.contacts.mesh.castShadow = false;
     this.floorHeight = floorHeight(robot);
-    for (const set of [...this.links, ...this.terrain, this.joints, this.contacts]) {
+    for (const set of this.all()) {
       set.mesh.castShadow &&= !isGhost;
       set.mesh.receiveShadow = !isGhost;
       this.group.add(set.mesh);
     }
     this.rest();
+    this.placeObjects(null);
     this.paint();
+  }
+
+  private all(): InstanceSet[] {
+    return [...this.links, ...this.terrain, ...this.objects, this.rulers, this.joints, this.contacts];
+  }
+
+  // `poses`: of each object that moves, x, y, z in metres, then the quaternion; null: where they were at the start.
+  placeObjects(poses: ArrayLike<number> | null): void {
+    const objects = this.robot.objects ?? [];
+    const at = objects.map((object, i) =>
+      poseFromArray(poses === null ? object.pose : Array.from({ length: 7 }, (_, k) => poses[7 * i + k] ?? 0)),
+    );
+    this.objects.forEach((set) => set.place(at));
   }
 
   move(head: Pose, angles: ArrayLike<number>, contactBits: ArrayLike<number>): void {
@@ -222,7 +298,7 @@ export class RobotModel {
   }
 
   dispose(): void {
-    for (const set of [...this.links, ...this.terrain, this.joints, this.contacts]) {
+    for (const set of this.all()) {
       set.mesh.geometry.dispose();
       set.mesh.dispose();
     }
@@ -236,10 +312,18 @@ export class RobotModel {
     }
     const isLit = (instance: Instance) => instance.link === this.highlighted;
     this.links.forEach((set) =>
-      set.paint((instance) => (isLit(instance) ? colour.highlight : instance.link === 0 ? colour.head : colour.link)),
+      set.paint((instance) => {
+        const own = set.isColoured ? white : instance.link === 0 ? colour.head : colour.link;
+        return isLit(instance) ? colour.highlight : own;
+      }),
     );
     this.joints.paint((instance) => (isLit(instance) ? colour.highlight : colour.joint));
-    this.terrain.forEach((set) => set.paint((_, i) => (i === 0 ? colour.floor : colour.obstacle)));
+    this.terrain.forEach((set) => set.paint((_, i) => (set.isColoured ? white : i === 0 ? colour.floor : colour.obstacle)));
+    this.objects.forEach((set) => set.paint(() => (set.isColoured ? white : colour.object)));
+    this.rulers.paint(({ link }, i) => {
+      const first = this.rulers.instances.findIndex((other) => other.link === link);
+      return (i - first) % 2 === 0 ? colour.rulerOdd : colour.rulerEven;
+    });
     this.paintContacts();
   }
 
@@ -266,7 +350,9 @@ export class RobotModel {
 
   // Half of the smallest side of a typical link.
   private typicalThickness(): number {
-    const sizes = this.links.flatMap((set) => set.instances.map((instance) => Math.min(...instance.scale))).sort((a, b) => a - b);
+    const sizes = this.robot.links
+      .flatMap((link) => link.shapes.map((shape) => Math.min(...(shape.kind === 'mesh' ? shape.size : scaleOf(shape)))))
+      .sort((a, b) => a - b);
     return sizes[Math.floor(sizes.length / 2)] ?? 0.02;
   }
 
@@ -325,9 +411,10 @@ function halfExtent(body: Body, direction: Vector): number {
   const reaches = body.shapes.map((shape) => {
     const { orientation } = compose(poseFromArray(body.pose), poseFromArray(shape.pose));
     const local = rotate([orientation[0], -orientation[1], -orientation[2], -orientation[3]], direction);
-    const scale = scaleOf(shape);
+    const isBox = shape.kind === 'box' || shape.kind === 'mesh';
+    const scale = isBox ? shape.size : scaleOf(shape);
     const reach = local.map((value, axis) => Math.abs(value) * (scale[axis] as number));
-    return shape.kind === 'box' ? reach.reduce((sum, value) => sum + value, 0) : Math.hypot(...reach);
+    return isBox ? reach.reduce((sum, value) => sum + value, 0) : Math.hypot(...reach);
   });
   return Math.max(0.001, ...reaches);
 }

@@ -140,6 +140,7 @@ export class RobotScene {
       return;
     }
     this.place(this.model, pose.head, pose.angles, pose.contacts);
+    this.model.placeObjects(pose.objects ?? null);
     if (this.ghost !== null) {
       this.ghost.group.visible = pose.ghost !== null;
       if (pose.ghost !== null) this.place(this.ghost, pose.ghostHead ?? pose.head, pose.ghost, []);

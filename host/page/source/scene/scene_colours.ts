@@ -5,6 +5,9 @@ export interface SceneColours {
   background: Color;
   floor: Color;
   obstacle: Color;
+  object: Color;
+  rulerOdd: Color;
+  rulerEven: Color;
   grid: Color;
   link: Color;
   head: Color;
@@ -23,6 +26,9 @@ const light = make({
   background: 0xe9edf2,
   floor: 0xd9dee5,
   obstacle: 0xb9a88a,
+  object: 0x3f9e6b,
+  rulerOdd: 0xedae49,
+  rulerEven: 0xd1495b,
   grid: 0xa9b2be,
   link: 0x6f8fb5,
   head: 0x2f6fbf,
@@ -38,6 +44,9 @@ const dark = make({
   background: 0x14181e,
   floor: 0x2a3038,
   obstacle: 0x6b5d45,
+  object: 0x58c98d,
+  rulerOdd: 0xd9a23f,
+  rulerEven: 0xc2404f,
   grid: 0x4a5461,
   link: 0x7f9fc6,
   head: 0x4d9bff,

@@ -7,6 +7,7 @@ export interface ScenePose {
   head: Float64Array | null; // x, y, z in metres, then the quaternion w, x, y, z; null: not known
   ghost: Float32Array | null; // angles of the simulation beside the robot, or of a second recording, radians
   ghostHead?: Float64Array | null; // of a second recording; not there: the ghost has the same head
+  objects?: Float64Array | null; // of each object that moves, as `head`; null or not there: where they were at the start
   contacts: Int32Array; // of each link: bit 0 rear, bit 1 front
   run: number;
   isLive: boolean; // only then the path grows

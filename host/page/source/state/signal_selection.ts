@@ -15,7 +15,7 @@ export interface LineGroup {
 export const mostLines = 8;
 
 // The 3D view and the table of joints need these.
-const baseSignals = ['angle', 'setpoint', 'head', 'contact', 'current', 'torque', 'simulated_angle'];
+const baseSignals = ['angle', 'setpoint', 'head', 'object', 'contact', 'current', 'torque', 'simulated_angle'];
 
 export class SignalSelection {
   readonly strip = signal('angle');

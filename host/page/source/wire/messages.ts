@@ -23,9 +23,25 @@ export interface TelemetryDocument {
 export type PoseArray = [number, number, number, number, number, number, number];
 
 export interface Shape {
-  kind: 'box' | 'sphere' | 'cylinder';
+  kind: 'box' | 'sphere' | 'cylinder' | 'mesh';
   pose: PoseArray;
-  size: [number, number, number]; // half sides; radius; radius and half height, along y
+  size: [number, number, number]; // half sides; radius; radius and half height, along y; half sides of the box around a mesh
+  mesh?: number; // of a mesh: its number in `meshes`
+}
+
+// A surface of triangles, about the middle of the box around it.
+export interface Mesh {
+  vertices: number[]; // x, y, z of each, metres
+  triangles: number[]; // three numbers of vertices of each
+  colours: number[]; // red, green, blue of each vertex, 0 to 255; empty: none
+}
+
+// A scale on the ground: segments whose colours alternate.
+export interface Ruler {
+  from: [number, number, number]; // metres, in the world
+  to: [number, number, number];
+  division: number; // metres, of a segment
+  width: number;
 }
 
 export interface Body {
@@ -57,6 +73,9 @@ export interface RobotDocument {
   joints: Joint[];
   links: Body[];
   terrain: Body[];
+  objects?: Body[]; // that move; the signal `object` has their poses
+  rulers?: Ruler[];
+  meshes?: Mesh[];
   slots: Slot[];
 }
 

@@ -69,10 +69,33 @@ void check_message(const InputError& error) {
   require(message.find(", expected ") != std::string_view::npos, "a message says what was expected");
 }
 
+void check_mesh(const TriangleMesh& mesh) {
+  require(!mesh.triangles.empty(), "a mesh has a triangle");
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) {
+      require(corner < mesh.vertices.size() && mesh.vertices[corner].allFinite(), "triangles have finite corners");
+    }
+  }
+}
+
+void check_mass(const MassProperties& mass) {
+  require(mass.mass > 0.0 && std::isfinite(mass.mass) && mass.center.allFinite(), "masses are above 0");
+  const Eigen::Matrix3d& inertia = mass.inertia;
+  require(inertia.allFinite() && inertia == inertia.transpose(), "inertias are symmetric");
+  require(inertia(0, 0) > 0.0 && inertia.topLeftCorner<2, 2>().determinant() > 0.0 && inertia.determinant() > 0.0,
+          "inertias are positive definite");
+}
+
 void check_geometries(const std::vector<Geometry>& geometries) {
   for (const Geometry& geometry : geometries) {
     require(geometry.pose.position.allFinite(), "geometries are finite");
     require(std::abs(geometry.pose.orientation.norm() - 1.0) < 1e-9, "orientations are unit quaternions");
+    const bool has_mesh =
+        geometry.shape == Shape::hull || geometry.shape == Shape::surface || geometry.shape == Shape::height_field;
+    require(has_mesh == (geometry.mesh != nullptr), "meshes have triangles, other shapes none");
+    if (has_mesh) {
+      check_mesh(*geometry.mesh);
+    }
     const Eigen::Vector3d& size = geometry.extents;
     const bool positive = geometry.shape == Shape::box      ? size.minCoeff() > 0.0
                           : geometry.shape == Shape::sphere ? size.x() > 0.0
@@ -90,11 +113,7 @@ void check_robot(const Scenario& scenario) {
   for (const Link& link : robot.links) {
     require(link.pose.position.allFinite() && link.mass.center.allFinite(), "links are finite");
     require(std::abs(link.pose.orientation.norm() - 1.0) < 1e-9, "orientations are unit quaternions");
-    require(link.mass.mass > 0.0 && std::isfinite(link.mass.mass), "masses are above 0");
-    const Eigen::Matrix3d& inertia = link.mass.inertia;
-    require(inertia.allFinite() && inertia == inertia.transpose(), "inertias are symmetric");
-    require(inertia(0, 0) > 0.0 && inertia.topLeftCorner<2, 2>().determinant() > 0.0 && inertia.determinant() > 0.0,
-            "inertias are positive definite");
+    check_mass(link.mass);
     check_geometries(link.geometries);
   }
   require(scenario.modules.size() == robot.joints.size(), "a module for each joint");
@@ -153,6 +172,13 @@ void check(const Scenario& scenario) {
   check_robot(scenario);
   for (const StaticObject& object : scenario.environment.objects) {
     check_geometries(object.geometries);
+  }
+  for (const MovingObject& object : scenario.environment.moving_objects) {
+    check_mass(object.mass);
+    check_geometries(object.geometries);
+  }
+  for (const Ruler& ruler : scenario.environment.rulers) {
+    require(ruler.division > 0.0 && (ruler.to - ruler.from).norm() / ruler.division <= 1001.0, "rulers have an end");
   }
   require(scenario.environment.robot_pose.position.allFinite(), "the start pose is finite");
   require(scenario.duration_s > 0.0 && scenario.step_s > 0.0, "times are above 0");

@@ -1,0 +1,225 @@
+#include "sim/mesh/mesh_file.hpp"
+
+#include <assimp/BaseImporter.h>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <array>
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+#include <assimp/ProgressHandler.hpp>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <set>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "shared/computer/text/text.hpp"
+#include "sim/mesh/mesh_error.hpp"
+
+namespace Assimp {
+
+/// Debian's Assimp has its assertions, and ends the process at a violation, which damaged files cause. This function
+/// stands in for the library's (the dynamic linker prefers that of the program), so that the file is refused instead.
+[[noreturn]] void aiAssertViolation(const char* expression, const char* file, int line);
+
+void aiAssertViolation(const char* expression, const char* /*file*/, int /*line*/) {
+  throw std::runtime_error("assertion " + std::string(expression));
+}
+
+}  // namespace Assimp
+
+namespace proleg::sim {
+namespace {
+
+constexpr std::array<std::string_view, 4> endings{".stl", ".obj", ".dae", ".off"};
+
+/// A file in memory, for reading.
+class MemoryStream final : public Assimp::IOStream {
+ public:
+  explicit MemoryStream(std::string bytes) : bytes_(std::move(bytes)) {}
+
+  std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
+    if (size == 0) {
+      return 0;
+    }
+    const std::size_t items = std::min(count, (bytes_.size() - place_) / size);
+    std::memcpy(buffer, bytes_.data() + place_, items * size);
+    place_ += items * size;
+    return items;
+  }
+  std::size_t Write(const void* /*buffer*/, std::size_t /*size*/, std::size_t /*count*/) override { return 0; }
+  aiReturn Seek(std::size_t offset, aiOrigin origin) override {
+    const std::size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? place_ : bytes_.size();
+    if (offset > bytes_.size() - from) {
+      return aiReturn_FAILURE;
+    }
+    place_ = from + offset;
+    return aiReturn_SUCCESS;
+  }
+  [[nodiscard]] std::size_t Tell() const override { return place_; }
+  [[nodiscard]] std::size_t FileSize() const override { return bytes_.size(); }
+  void Flush() override {}
+
+ private:
+  std::string bytes_;
+  std::size_t place_ = 0;
+};
+
+/// The files that Assimp may read: the mesh, and what the caller gives.
+class Files final : public Assimp::IOSystem {
+ public:
+  using Companion = std::function<std::optional<std::string>(const std::string& name)>;
+
+  Files(std::string name, const std::string& bytes, const Companion& companion)
+      : name_(std::move(name)), bytes_(bytes), companion_(companion) {}
+
+  bool Exists(const char* name) const override { return bytes_of(name).has_value(); }
+  [[nodiscard]] char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    if (mode != nullptr && std::strchr(mode, 'w') != nullptr) {
+      return nullptr;
+    }
+    std::optional<std::string> bytes = bytes_of(name);
+    return bytes ? new MemoryStream(std::move(*bytes)) : nullptr;
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+ private:
+  [[nodiscard]] std::optional<std::string> bytes_of(const std::string& name) const {
+    return name == name_ ? std::optional(bytes_) : companion_(name);
+  }
+
+  std::string name_;
+  const std::string& bytes_;
+  const Companion& companion_;
+};
+
+/// Assimp has importers for dozens of formats. Only those of the four endings may see the file.
+bool reads_ending(Assimp::BaseImporter& importer, const std::string& ending) {
+  std::set<std::string> extensions;
+  importer.GetExtensionList(extensions);
+  return extensions.contains(ending.substr(1));
+}
+
+[[noreturn]] void refuse(const std::string& name, const std::string& found) {
+  throw MeshError(found + " in " + in_quotes(name), "a mesh of triangles");
+}
+
+Eigen::Vector3f colour_of(const aiScene& scene, const aiMesh& mesh, unsigned vertex) {
+  aiColor4D colour(0.6F, 0.6F, 0.6F, 1.0F);
+  if (mesh.HasVertexColors(0)) {
+    colour = mesh.mColors[0][vertex];
+  } else if (mesh.mMaterialIndex < scene.mNumMaterials) {
+    scene.mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_COLOR_DIFFUSE, colour);
+  }
+  const Eigen::Vector3f read(colour.r, colour.g, colour.b);
+  return read.allFinite() ? read.cwiseMax(0.0F).cwiseMin(1.0F).eval() : Eigen::Vector3f(0.6F, 0.6F, 0.6F);
+}
+
+bool has_colour(const aiScene& scene, const aiMesh& mesh) {
+  if (mesh.HasVertexColors(0)) {
+    return true;
+  }
+  // Assimp gives a file without materials one without a name, or with this name.
+  aiString name;
+  aiColor4D colour;
+  return mesh.mMaterialIndex < scene.mNumMaterials &&
+         scene.mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_COLOR_DIFFUSE, colour) == aiReturn_SUCCESS &&
+         scene.mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS && name.length > 0 &&
+         std::string_view(name.C_Str()) != AI_DEFAULT_MATERIAL_NAME;
+}
+
+TriangleMesh joined_meshes(const aiScene& scene, const std::string& name) {
+  TriangleMesh result;
+  bool is_coloured = false;
+  for (unsigned number = 0; number < scene.mNumMeshes; ++number) {
+    const aiMesh& mesh = *scene.mMeshes[number];
+    is_coloured = is_coloured || has_colour(scene, mesh);
+    const auto first = static_cast<std::uint32_t>(result.vertices.size());
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+      const Eigen::Vector3d vertex(mesh.mVertices[i].x, mesh.mVertices[i].y, mesh.mVertices[i].z);
+      if (!vertex.allFinite()) {
+        refuse(name, "a coordinate that is not a finite number");
+      }
+      result.vertices.push_back(vertex);
+      result.colours.push_back(colour_of(scene, mesh, i));
+    }
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+      const aiFace& face = mesh.mFaces[i];
+      if (face.mNumIndices != 3) {
+        continue;  // points and lines
+      }
+      for (unsigned corner = 0; corner < 3; ++corner) {
+        if (face.mIndices[corner] >= mesh.mNumVertices) {
+          refuse(name, "a triangle with vertex " + std::to_string(face.mIndices[corner]) + " of " +
+                           std::to_string(mesh.mNumVertices));
+        }
+      }
+      result.triangles.push_back({first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]});
+    }
+    if (result.triangles.size() > max_triangles) {
+      throw MeshError("more than " + std::to_string(max_triangles) + " triangles in " + in_quotes(name),
+                      "at most that; programs for meshes can reduce it");
+    }
+  }
+  if (result.triangles.empty()) {
+    refuse(name, "no triangle");
+  }
+  if (!is_coloured) {
+    result.colours.clear();
+  }
+  return result;
+}
+
+}  // namespace
+
+bool is_mesh_file_name(std::string_view name) {
+  return std::ranges::find(endings, lower_case(std::filesystem::path(name).extension().string())) != endings.end();
+}
+
+TriangleMesh read_mesh_file(const std::string& name, const std::string& bytes, const Files::Companion& companion) {
+  const std::string ending = lower_case(std::filesystem::path(name).extension().string());
+  if (!is_mesh_file_name(name)) {
+    throw MeshError("a mesh file of another kind, " + in_quotes(name), std::string(mesh_file_endings));
+  }
+  try {
+    Assimp::Importer importer;
+    importer.SetIOHandler(new Files(name, bytes, companion));
+    std::vector<Assimp::BaseImporter*> others;
+    for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
+      if (Assimp::BaseImporter* const other = importer.GetImporter(i); !reads_ending(*other, ending)) {
+        others.push_back(other);
+      }
+    }
+    for (Assimp::BaseImporter* const other : others) {
+      importer.UnregisterLoader(other);
+      delete other;
+    }
+    // Robots have z upwards; the file's own axes are kept.
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+    constexpr unsigned steps = aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices;
+    const aiScene* const scene = importer.ReadFile(name, steps);
+    if (scene == nullptr) {
+      throw MeshError("a mesh that cannot be read, " + in_quotes(name) +
+                          " (Assimp: " + one_line(shortened(importer.GetErrorString(), 200)) + ")",
+                      "a file of the format that its ending says");
+    }
+    return joined_meshes(*scene, name);
+  } catch (const MeshError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw MeshError(
+        "a mesh that cannot be read, " + in_quotes(name) + " (Assimp: " + one_line(shortened(error.what(), 200)) + ")",
+        "a file of the format that its ending says");
+  }
+}
+
+}  // namespace proleg::sim

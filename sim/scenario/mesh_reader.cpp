@@ -1,0 +1,220 @@
+#include "sim/scenario/mesh_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "shared/computer/text/text.hpp"
+#include "sim/mesh/convex_hull.hpp"
+#include "sim/mesh/height_mesh.hpp"
+#include "sim/mesh/mesh_checks.hpp"
+#include "sim/mesh/mesh_error.hpp"
+#include "sim/mesh/mesh_file.hpp"
+#include "sim/mesh/mesh_solid.hpp"
+#include "sim/scenario/values.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr Range scales{1e-6, 1e6, ""};
+constexpr double least_size = 0.001;   // m
+constexpr double most_of_link = 5.0;   // m
+constexpr double most_of_world = 1e3;  // m
+constexpr std::uint64_t most_columns = 1024;
+
+/// The file and the scale that an element names.
+struct FileMention {
+  std::string file;
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();
+};
+
+FileMention read_mention(const XmlElement& element) {
+  const std::string text = element.text();
+  const std::vector<std::string_view> parts = words(text);
+  if (parts.empty() || parts.size() == 3 || parts.size() > 4) {
+    element.refuse(in_quotes(text) + " in " + element.label(), "a file, or a file and 1 or 3 scales");
+  }
+  FileMention mention{std::string(parts.front()), Eigen::Vector3d::Ones()};
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const std::optional<double> scale = parse_number_in(parts[i], scales);
+    if (!scale) {
+      element.refuse("the scale " + in_quotes(parts[i]) + " in " + element.label(),
+                     "a number from " + number_text(scales.min) + " to " + number_text(scales.max));
+    }
+    if (parts.size() == 2) {
+      mention.scale.setConstant(*scale);
+    } else {
+      mention.scale[static_cast<Eigen::Index>(i - 1)] = *scale;
+    }
+  }
+  return mention;
+}
+
+/// Turns a mesh into what its use needs. Throws MeshError.
+TriangleMesh made_for(TriangleMesh mesh, MeshUse use, bool is_open, const std::string& name,
+                      std::vector<std::string>& remarks) {
+  require_size(mesh, least_size, use == MeshUse::surface ? most_of_world : most_of_link);
+  switch (use) {
+    case MeshUse::look:
+      return without_slivers(std::move(mesh));
+    case MeshUse::hull: {
+      ConvexHull hull = convex_hull(mesh);
+      if (hull.deviation > 0.0) {
+        remarks.push_back(one_line(name + ": the convex hull keeps " + std::to_string(hull.mesh.vertices.size()) +
+                                   " corners; the mesh is at most " + number_text(hull.deviation * 1000.0) +
+                                   " mm outside of it"));
+      }
+      return std::move(hull.mesh);
+    }
+    case MeshUse::surface:
+      break;
+  }
+  require_area(mesh);
+  if (!is_open) {
+    require_closed(mesh);
+    if (solid_of(mesh).volume < 0.0) {
+      for (std::array<std::uint32_t, 3>& triangle : mesh.triangles) {
+        std::swap(triangle[1], triangle[2]);
+      }
+      remarks.push_back(one_line(name + ": the triangles face inwards; they are turned"));
+    }
+  }
+  return mesh;
+}
+
+template <typename Make>
+auto with_place(const XmlElement& element, const std::string& what, const Make& make) {
+  try {
+    return make();
+  } catch (const MeshError& error) {
+    element.refuse(error.found + (what.empty() ? "" : " in " + what), error.expected);
+  }
+}
+
+std::vector<double> all_numbers(const XmlElement& element, std::string_view text, const Range& range,
+                                std::size_t most) {
+  std::vector<double> numbers;
+  for (const std::string_view word : words(text)) {
+    const std::optional<double> number = parse_number_in(word, range);
+    if (!number) {
+      element.refuse(
+          in_quotes(word) + " in " + element.label(),
+          "numbers from " + number_text(range.min) + " to " + number_text(range.max) + ' ' + std::string(range.unit));
+    }
+    if (numbers.size() == most) {
+      element.refuse("more than " + std::to_string(most) + " numbers in " + element.label(), "at most that");
+    }
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+}  // namespace
+
+std::shared_ptr<const TriangleMesh> read_mesh_of_file(const XmlElement& element, MeshUse use, bool is_open,
+                                                      SourceSet& sources, std::vector<std::string>& remarks) {
+  const FileMention mention = read_mention(element);
+  const SourceSet::Bytes file = sources.read_bytes(element, mention.file);
+  const std::string name = name_of(file.path);
+  const std::string key = name + '\n' + exact_text(mention.scale.x()) + ' ' + exact_text(mention.scale.y()) + ' ' +
+                          exact_text(mention.scale.z()) + '\n' + std::to_string(static_cast<int>(use)) +
+                          (is_open ? " open" : "");
+  std::shared_ptr<const TriangleMesh>& known = sources.meshes()[key];
+  if (!known) {
+    TriangleMesh mesh = with_place(element, "", [&] {
+      return read_mesh_file(mention.file, file.bytes, [&](const std::string& beside) {
+        return sources.companion(file.path.parent_path() / std::filesystem::path(beside).filename());
+      });
+    });
+    for (Eigen::Vector3d& vertex : mesh.vertices) {
+      vertex = vertex.cwiseProduct(mention.scale);
+    }
+    known = with_place(element, in_quotes(mention.file), [&] {
+      return std::make_shared<const TriangleMesh>(made_for(std::move(mesh), use, is_open, name, remarks));
+    });
+  }
+  return known;
+}
+
+std::shared_ptr<const TriangleMesh> read_mesh_of_text(const XmlElement& element, MeshUse use, bool is_open,
+                                                      std::vector<std::string>& remarks) {
+  const XmlElement vertices = element.required_child("vertices");
+  const std::vector<double> numbers = all_numbers(vertices, vertices.text(), coordinates, 9 * max_triangles);
+  if (numbers.empty() || numbers.size() % 3 != 0) {
+    vertices.refuse(std::to_string(numbers.size()) + " numbers in " + vertices.label(), "x y z of each vertex");
+  }
+  TriangleMesh mesh;
+  for (std::size_t i = 0; i < numbers.size(); i += 3) {
+    mesh.vertices.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+  }
+  const auto triangles = element.child("triangles");
+  const XmlElement& place = triangles ? *triangles : vertices;
+  std::vector<std::uint32_t> corners;
+  if (triangles) {
+    const std::string text = triangles->text();
+    for (const std::string_view word : words(text)) {
+      const std::optional<std::uint32_t> corner = parse_whole<std::uint32_t>(word);
+      if (!corner || *corner >= mesh.vertices.size()) {
+        triangles->refuse(in_quotes(word) + " in " + triangles->label(),
+                          "numbers of vertices, 0 to " + std::to_string(mesh.vertices.size() - 1));
+      }
+      corners.push_back(*corner);
+    }
+  } else {
+    for (std::uint32_t corner = 0; corner < mesh.vertices.size(); ++corner) {
+      corners.push_back(corner);
+    }
+  }
+  if (corners.empty() || corners.size() % 3 != 0 || corners.size() > 3 * max_triangles) {
+    place.refuse(std::to_string(corners.size()) + " corners of triangles in " + place.label(),
+                 "three of each triangle, 1 to " + std::to_string(max_triangles) + " triangles");
+  }
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  }
+  const std::string name = vertices.document().name() + ':' + std::to_string(vertices.line());
+  return with_place(place, place.label(), [&] {
+    return std::make_shared<const TriangleMesh>(made_for(std::move(mesh), use, is_open, name, remarks));
+  });
+}
+
+void read_height_field(const XmlElement& element, SourceSet& sources, Geometry& geometry) {
+  HeightField field;
+  const std::vector<double> sides = read_numbers(element.required_child("extents"), 2, lengths);
+  field.half_x = sides[0];
+  field.half_y = sides[1];
+  field.columns = read_whole(element.required_child("columns"), 2, most_columns);
+  field.rows = read_whole(element.required_child("rows"), 2, most_columns);
+  const std::size_t count = field.columns * field.rows;
+  if (2 * (field.columns - 1) * (field.rows - 1) > max_triangles) {
+    element.refuse("a grid of " + std::to_string(field.columns) + " x " + std::to_string(field.rows) + " heights",
+                   "one of at most " + std::to_string(max_triangles / 2) + " cells");
+  }
+  const auto heights = element.child("heights");
+  const auto data = element.child("data");
+  if (heights.has_value() == data.has_value()) {
+    element.refuse((heights ? "both <heights> and <data> in " : "neither <heights> nor <data> in ") + element.label(),
+                   "one of them");
+  }
+  const XmlElement& place = heights ? *heights : *data;
+  const std::string text = heights ? heights->text() : sources.read_bytes(*data, data->text()).bytes;
+  field.heights = all_numbers(place, text, coordinates, count);
+  if (field.heights.size() != count) {
+    place.refuse(std::to_string(field.heights.size()) + " heights",
+                 std::to_string(count) + ", one for each column of " + "each row");
+  }
+  geometry.shape = Shape::height_field;
+  geometry.mesh = std::make_shared<const TriangleMesh>(surface_of(field));
+  const auto largest = std::ranges::max_element(field.heights, {}, [](double height) { return std::abs(height); });
+  geometry.extents = {field.half_x, field.half_y, std::max(std::abs(*largest), lengths.min)};
+  geometry.heights = std::make_shared<const HeightField>(std::move(field));
+}
+
+std::shared_ptr<const TriangleMesh> painted(const TriangleMesh& mesh, const Eigen::Vector3f& colour) {
+  TriangleMesh copy = mesh;
+  copy.colours.assign(copy.vertices.size(), colour);
+  return std::make_shared<const TriangleMesh>(std::move(copy));
+}
+
+}  // namespace proleg::sim

@@ -1,0 +1,195 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "sim/mesh/mesh_checks.hpp"
+#include "sim/mesh/mesh_error.hpp"
+#include "sim/mesh/mesh_file.hpp"
+#include "sim/mesh/mesh_solid.hpp"
+#include "tests/sim/mesh/mesh_shapes.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr const char* box_off = R"(OFF
+8 6 0
+-0.1 -0.2 -0.3
+-0.1 -0.2 0.3
+-0.1 0.2 -0.3
+-0.1 0.2 0.3
+0.1 -0.2 -0.3
+0.1 -0.2 0.3
+0.1 0.2 -0.3
+0.1 0.2 0.3
+4 0 1 3 2
+4 4 6 7 5
+4 0 4 5 1
+4 2 3 7 6
+4 0 2 6 4
+4 1 5 7 3
+)";
+
+constexpr const char* box_obj = R"(mtllib box.mtl
+v -0.1 -0.2 -0.3
+v -0.1 -0.2 0.3
+v -0.1 0.2 -0.3
+v -0.1 0.2 0.3
+v 0.1 -0.2 -0.3
+v 0.1 -0.2 0.3
+v 0.1 0.2 -0.3
+v 0.1 0.2 0.3
+usemtl red
+f 1 2 4 3
+f 5 7 8 6
+f 1 5 6 2
+f 3 4 8 7
+usemtl blue
+f 1 3 7 5
+f 2 6 8 4
+)";
+
+std::string binary_stl(const TriangleMesh& mesh) {
+  std::string bytes(80, ' ');
+  const auto append = [&bytes](const auto& value) {
+    std::string raw(sizeof value, '\0');
+    std::memcpy(raw.data(), &value, sizeof value);
+    bytes += raw;
+  };
+  append(static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const auto& triangle : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      append(0.0F);  // the normal
+    }
+    for (const std::uint32_t corner : triangle) {
+      for (const double coordinate : mesh.vertices[corner]) {
+        append(static_cast<float>(coordinate));
+      }
+    }
+    append(std::uint16_t{0});
+  }
+  return bytes;
+}
+
+std::string ascii_stl(const TriangleMesh& mesh) {
+  std::string text = "solid box\n";
+  for (const auto& triangle : mesh.triangles) {
+    text += "facet normal 0 0 0\nouter loop\n";
+    for (const std::uint32_t corner : triangle) {
+      const Eigen::Vector3d& vertex = mesh.vertices[corner];
+      text += "vertex " + std::to_string(vertex.x()) + ' ' + std::to_string(vertex.y()) + ' ' +
+              std::to_string(vertex.z()) + '\n';
+    }
+    text += "endloop\nendfacet\n";
+  }
+  return text + "endsolid box\n";
+}
+
+std::string collada(const std::string& unit, const std::string& up) {
+  return R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter=")" +
+         unit + R"("/><up_axis>)" + up + R"(</up_axis></asset>
+<library_effects><effect id="e"><profile_COMMON><technique sid="t"><lambert><diffuse><color>0.2 0.4 0.8 1</color></diffuse></lambert></technique></profile_COMMON></effect></library_effects>
+<library_materials><material id="m" name="m"><instance_effect url="#e"/></material></library_materials>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="12">0 0 0 3 0 0 0 2 0 0 0 1</float_array>
+<technique_common><accessor source="#pa" count="4" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="4" material="mm"><input semantic="VERTEX" source="#v" offset="0"/><p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"><bind_material><technique_common><instance_material symbol="mm" target="#m"/></technique_common></bind_material></instance_geometry></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+TriangleMesh read(const std::string& name, const std::string& bytes,
+                  const std::map<std::string, std::string>& beside = {}) {
+  return read_mesh_file(name, bytes, [&](const std::string& file) -> std::optional<std::string> {
+    const auto found = beside.find(file.substr(file.find_last_of('/') + 1));
+    return found == beside.end() ? std::nullopt : std::optional(found->second);
+  });
+}
+
+std::string refusal(const std::string& name, const std::string& bytes) {
+  try {
+    static_cast<void>(read(name, bytes));
+  } catch (const MeshError& error) {
+    EXPECT_EQ(error.found.find('\n'), std::string::npos);
+    return error.found;
+  }
+  return "nothing";
+}
+
+void expect_box(const TriangleMesh& mesh) {
+  require_closed(mesh);
+  EXPECT_NEAR(solid_of(mesh).volume, 0.048, 1e-7);
+}
+
+TEST(MeshFile, ReadsABoxFromEachFormat) {
+  expect_box(read("box.off", box_off));
+  expect_box(read("BOX.OBJ", box_obj));
+  const TriangleMesh box = box_mesh({0.1, 0.2, 0.3});
+  expect_box(read("box.stl", ascii_stl(box)));
+  expect_box(read("box.stl", binary_stl(box)));
+}
+
+TEST(MeshFile, ColladaKeepsItsAxesAndItsUnitBecomesMetres) {
+  for (const std::string up : {"Z_UP", "Y_UP"}) {
+    const TriangleMesh mesh = read("t.dae", collada("0.01", up));
+    EXPECT_NEAR(solid_of(mesh).volume, 1e-6, 1e-12) << up;
+    EXPECT_TRUE(solid_of(mesh).center.isApprox(Eigen::Vector3d(0.0075, 0.005, 0.0025), 1e-5)) << up;
+    ASSERT_EQ(mesh.colours.size(), mesh.vertices.size());
+    EXPECT_TRUE(mesh.colours[0].isApprox(Eigen::Vector3f(0.2F, 0.4F, 0.8F), 0.01F));
+  }
+}
+
+TEST(MeshFile, ColoursOfMaterialsAreKept) {
+  const TriangleMesh mesh = read("box.obj", box_obj, {{"box.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n"}});
+  ASSERT_EQ(mesh.colours.size(), mesh.vertices.size());
+  std::size_t red = 0;
+  std::size_t blue = 0;
+  for (const auto& triangle : mesh.triangles) {
+    red += mesh.colours[triangle[0]] == Eigen::Vector3f(1, 0, 0) ? 1U : 0U;
+    blue += mesh.colours[triangle[0]] == Eigen::Vector3f(0, 0, 1) ? 1U : 0U;
+  }
+  EXPECT_EQ(red, 8U);
+  EXPECT_EQ(blue, 4U);
+}
+
+TEST(MeshFile, AFileWithoutColoursHasNone) { EXPECT_TRUE(read("box.off", box_off).colours.empty()); }
+
+TEST(MeshFile, DamagedFilesAreRefusedInOneLine) {
+  const std::string stl = binary_stl(box_mesh({0.1, 0.2, 0.3}));
+  EXPECT_NE(refusal("a.stl", stl.substr(0, stl.size() / 2)), "nothing");
+  EXPECT_NE(refusal("a.stl", ""), "nothing");
+  EXPECT_NE(refusal("a.obj", "v 0 0 0\n"), "nothing");
+  EXPECT_NE(refusal("a.dae", collada("1", "Z_UP").substr(0, 900)), "nothing");
+  EXPECT_NE(refusal("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n"), "nothing");
+  // Assimp takes another vertex for one that is not there, and its assertions do not end the program.
+  static_cast<void>(refusal("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"));
+  static_cast<void>(refusal("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n"));
+}
+
+TEST(MeshFile, NumbersThatAreNotFiniteAreRefused) {
+  std::string text = box_obj;
+  text.replace(text.find("-0.1 -0.2 -0.3"), 4, "nan ");
+  EXPECT_NE(refusal("a.obj", text), "nothing");
+}
+
+TEST(MeshFile, OtherEndingsAreRefused) {
+  EXPECT_EQ(refusal("a.blend", "BLENDER"), "a mesh file of another kind, 'a.blend'");
+}
+
+TEST(MeshFile, TooManyTrianglesAreRefused) {
+  TriangleMesh mesh = box_mesh({0.1, 0.2, 0.3});
+  const std::size_t sides = mesh.triangles.size();
+  while (mesh.triangles.size() <= max_triangles) {
+    mesh.triangles.push_back(mesh.triangles[mesh.triangles.size() - sides]);
+  }
+  EXPECT_EQ(refusal("a.stl", binary_stl(mesh)), "more than 100000 triangles in 'a.stl'");
+}
+
+}  // namespace
+}  // namespace proleg::sim

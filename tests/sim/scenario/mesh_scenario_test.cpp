@@ -1,0 +1,283 @@
+// Meshes, height fields, bodies that move and rulers in the files of a scenario.
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "memory_files.hpp"
+#include "sim/scenario/data_url.hpp"
+#include "sim/scenario/source_texts.hpp"
+
+namespace proleg::sim {
+namespace {
+
+/// A closed box of 0.2 x 0.4 x 0.6, as text of an OFF file.
+constexpr const char* box_off = R"(OFF
+8 6 0
+-0.1 -0.2 -0.3
+-0.1 -0.2 0.3
+-0.1 0.2 -0.3
+-0.1 0.2 0.3
+0.1 -0.2 -0.3
+0.1 -0.2 0.3
+0.1 0.2 -0.3
+0.1 0.2 0.3
+4 0 1 3 2
+4 4 6 7 5
+4 0 4 5 1
+4 2 3 7 6
+4 0 2 6 4
+4 1 5 7 3
+)";
+
+constexpr const char* head_geometry = "<Geom type=\"sphere\">\n        <radius>0.03</radius>\n      </Geom>";
+
+MemoryFiles with_head(const std::string& geometry) {
+  MemoryFiles files = small_scenario();
+  files.texts["box.off"] = box_off;
+  files.replace("robot.xml", head_geometry, geometry);
+  return files;
+}
+
+MemoryFiles with_objects(const std::string& objects) {
+  MemoryFiles files = small_scenario();
+  files.texts["box.off"] = box_off;
+  files.replace("environment.xml", "</Environment>", objects + "</Environment>");
+  return files;
+}
+
+std::string body(const std::string& type, const std::string& contents) {
+  return "<KinBody name=\"thing\"><Body type=\"" + type + "\">" + contents + "</Body></KinBody>";
+}
+
+std::string refusal(MemoryFiles files) {
+  try {
+    static_cast<void>(files.scenario());
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    EXPECT_EQ(text.find('\n'), std::string::npos);
+    EXPECT_NE(text.find(", expected "), std::string::npos) << text;
+    return text;
+  }
+  return "nothing";
+}
+
+#define EXPECT_REFUSED(files, part) EXPECT_NE(refusal(files).find(part), std::string::npos) << refusal(files)
+
+const Geometry& head_solid(const Scenario& scenario) { return scenario.robot.links.front().geometries.at(0); }
+
+TEST(MeshScenario, AMeshOfALinkBecomesItsHullAndIsShownAsItIs) {
+  const Scenario scenario =
+      with_head("<Geom type=\"trimesh\"><data>box.off 0.1</data><friction>0.4</friction></Geom>").scenario();
+  const Geometry& solid = head_solid(scenario);
+  EXPECT_EQ(solid.shape, Shape::hull);
+  EXPECT_FALSE(solid.is_shown);
+  EXPECT_EQ(solid.friction, 0.4);
+  EXPECT_TRUE(solid.extents.isApprox(Eigen::Vector3d(0.01, 0.02, 0.03), 1e-6));
+  ASSERT_EQ(scenario.robot.links.front().looks.size(), 1U);
+  EXPECT_EQ(scenario.robot.links.front().looks[0].mesh->triangles.size(), 12U);
+}
+
+TEST(MeshScenario, AScaleOfThreeNumbersIsForEachAxis) {
+  const Scenario scenario = with_head("<Geom type=\"trimesh\"><data>box.off 0.1 0.2 0.3</data></Geom>").scenario();
+  EXPECT_TRUE(head_solid(scenario).extents.isApprox(Eigen::Vector3d(0.01, 0.04, 0.09), 1e-6));
+}
+
+TEST(MeshScenario, ARenderedMeshReplacesWhatIsShownAndNotWhatTouches) {
+  const Scenario scenario =
+      with_head("<Geom type=\"sphere\"><radius>0.03</radius><render>box.off 0.1</render></Geom>").scenario();
+  EXPECT_EQ(head_solid(scenario).shape, Shape::sphere);
+  EXPECT_FALSE(head_solid(scenario).is_shown);
+  EXPECT_EQ(scenario.robot.links.front().looks.size(), 1U);
+}
+
+TEST(MeshScenario, AMeshOnlyForTheEyeDoesNotTouch) {
+  const Scenario scenario = with_head(std::string(head_geometry) +
+                                      "<Geom type=\"trimesh\"><render>box.off 0.1</render>"
+                                      "<diffuseColor>1 0 0.5</diffuseColor></Geom>")
+                                .scenario();
+  EXPECT_EQ(scenario.robot.links.front().geometries.size(), 1U);
+  ASSERT_EQ(scenario.robot.links.front().looks.size(), 1U);
+  const TriangleMesh& mesh = *scenario.robot.links.front().looks[0].mesh;
+  ASSERT_EQ(mesh.colours.size(), mesh.vertices.size());
+  EXPECT_EQ(mesh.colours[0], Eigen::Vector3f(1.0F, 0.0F, 0.5F));
+}
+
+TEST(MeshScenario, TheMassOfAHullIsThatOfItsSolid) {
+  MemoryFiles files = with_objects(body(
+      "dynamic",
+      "<Geom type=\"trimesh\"><data>box.off</data></Geom><Mass type=\"mimicgeom\"><density>1000</density></Mass>"));
+  const MovingObject object = files.scenario().environment.moving_objects.at(0);
+  EXPECT_NEAR(object.mass.mass, 48.0, 1e-4);
+  EXPECT_NEAR(object.mass.center.norm(), 0.0, 1e-7);
+  EXPECT_NEAR(object.mass.inertia(0, 0), 48.0 / 12.0 * (0.16 + 0.36), 1e-4);
+}
+
+TEST(MeshScenario, LinksThatNameTheSameFileShareAMesh) {
+  const std::string geometry = "<Geom type=\"trimesh\"><data>box.off 0.1</data></Geom>";
+  const Scenario scenario = with_head(geometry + geometry).scenario();
+  const std::vector<Geometry>& solids = scenario.robot.links.front().geometries;
+  EXPECT_EQ(solids.at(0).mesh, solids.at(1).mesh);
+}
+
+TEST(MeshScenario, AStaticMeshStaysAsItIs) {
+  const Scenario scenario =
+      with_objects(body("static", "<Geom type=\"trimesh\"><data>box.off</data></Geom>")).scenario();
+  const StaticObject& object = scenario.environment.objects.back();
+  EXPECT_EQ(object.geometries.at(0).shape, Shape::surface);
+  EXPECT_TRUE(object.geometries[0].is_shown);
+  EXPECT_EQ(object.geometries[0].mesh->triangles.size(), 12U);
+}
+
+TEST(MeshScenario, AMeshCanBeTextAndFacesOutwards) {
+  // A tetrahedron whose triangles are listed inwards.
+  const Scenario scenario = with_objects(body("static",
+                                              "<Geom type=\"trimesh\"><vertices>0 0 0  1 0 0  0 1 0  0 0 1</vertices>"
+                                              "<triangles>0 1 2  0 3 1  0 2 3  1 3 2</triangles></Geom>"))
+                                .scenario();
+  const TriangleMesh& mesh = *scenario.environment.objects.back().geometries.at(0).mesh;
+  EXPECT_EQ(mesh.triangles[0], (std::array<std::uint32_t, 3>{0, 2, 1})) << "the lowest side faces down";
+}
+
+TEST(MeshScenario, ThreeVerticesAreATriangleWithoutNumbers) {
+  const Scenario scenario = with_objects(body("static",
+                                              "<Geom type=\"trimesh\" open=\"1\"><vertices>0 0 0  1 0 0  0 1 0  "
+                                              "1 0 0  1 1 0  0 1 0</vertices></Geom>"))
+                                .scenario();
+  EXPECT_EQ(scenario.environment.objects.back().geometries.at(0).mesh->triangles.size(), 2U);
+}
+
+TEST(MeshScenario, ARobotOnAMeshStartsAboveIt) {
+  // The top of the box is at 0.3; the bottom of the robot 0.03 below its origin.
+  MemoryFiles files = with_objects(body("static", "<Geom type=\"trimesh\"><data>box.off 10 10 1</data></Geom>"));
+  files.replace("environment.xml", "Pose: ,0 0 0.1,0 0 0,", "Pose: ,0 0 0,0 0 0,");
+  const Scenario scenario = files.scenario();
+  EXPECT_NEAR(scenario.environment.robot_pose.position.z(), 0.33, 1e-6);
+  EXPECT_NE(scenario.remarks.back().find("rests on 'thing'"), std::string::npos) << scenario.remarks.back();
+  EXPECT_TRUE(scenario.warnings.empty());
+}
+
+TEST(MeshScenario, AHeightFieldHasRowsAlongYAndColumnsAlongX) {
+  const Scenario scenario =
+      with_objects(body("static",
+                        "<Geom type=\"heightfield\"><extents>1 2</extents><columns>3</columns><rows>2</rows>"
+                        "<heights>0 0 0.1  0 0 0.2</heights></Geom>"))
+          .scenario();
+  const Geometry& field = scenario.environment.objects.back().geometries.at(0);
+  EXPECT_EQ(field.shape, Shape::height_field);
+  EXPECT_EQ(field.mesh->vertices.at(2), Eigen::Vector3d(1, -2, 0.1));
+  EXPECT_EQ(field.mesh->vertices.at(5), Eigen::Vector3d(1, 2, 0.2));
+}
+
+TEST(MeshScenario, HeightsMayBeInAFile) {
+  MemoryFiles files = with_objects(body("static",
+                                        "<Geom type=\"heightfield\"><extents>1 1</extents><columns>2</columns>"
+                                        "<rows>2</rows><data>heights.txt</data></Geom>"));
+  files.texts["heights.txt"] = "0.1 0.2\n0.3 0.4\n";
+  EXPECT_EQ(files.scenario().environment.objects.back().geometries.at(0).heights->heights,
+            (std::vector<double>{0.1, 0.2, 0.3, 0.4}));
+  files.texts["heights.txt"] = "0.1 0.2 0.3";
+  EXPECT_REFUSED(files, "3 heights, expected 4");
+  files.texts["heights.txt"] = "0.1 0.2 0.3 x";
+  EXPECT_REFUSED(files, "'x'");
+}
+
+TEST(MeshScenario, ABodyThatMovesHasItsPoseMassAndShape) {
+  const Scenario scenario = with_objects(
+                                "<KinBody name=\"ball\"><Body type=\"dynamic\"><translation>0 2 0.1"
+                                "</translation><Geom type=\"sphere\"><radius>0.1</radius><friction>0.3"
+                                "</friction></Geom><Mass type=\"mimicgeom\"><total>2</total></Mass></Body>"
+                                "</KinBody>")
+                                .scenario();
+  EXPECT_EQ(scenario.environment.objects.size(), 1U) << "only the floor stands still";
+  const MovingObject& ball = scenario.environment.moving_objects.at(0);
+  EXPECT_EQ(ball.name, "ball");
+  EXPECT_EQ(ball.pose.position, Eigen::Vector3d(0, 2, 0.1));
+  EXPECT_NEAR(ball.mass.inertia(0, 0), 0.4 * 2.0 * 0.01, 1e-12);
+  EXPECT_EQ(ball.geometries.at(0).friction, 0.3);
+}
+
+TEST(MeshScenario, ARulerHasItsEndsAndSegments) {
+  const Scenario scenario =
+      with_objects("<ruler><from>0 1 0</from><to>0 6 0</to><division>0.5</division></ruler>").scenario();
+  const Ruler& ruler = scenario.environment.rulers.at(0);
+  EXPECT_EQ(ruler.to, Eigen::Vector3d(0, 6, 0));
+  EXPECT_EQ(ruler.division, 0.5);
+  EXPECT_EQ(ruler.width, 0.1);
+}
+
+TEST(MeshScenario, BadMeshesAreRefusedWithFileAndLine) {
+  const auto of_link = [](const std::string& text) { return with_head("<Geom type=\"trimesh\">" + text + "</Geom>"); };
+  const auto of_world = [](const std::string& text) {
+    return with_objects(body("static", "<Geom type=\"trimesh\">" + text + "</Geom>"));
+  };
+  EXPECT_REFUSED(of_link("<data>missing.stl</data>"), "robot.xml:");
+  EXPECT_REFUSED(of_link("<data>missing.stl</data>"), "no such file 'missing.stl'");
+  EXPECT_REFUSED(of_link("<data>box.off 100</data>"), "a mesh of 20 x 40 x 60 m");
+  EXPECT_REFUSED(of_link("<data>box.off 100</data>"), "needs the scale 0.001");
+  EXPECT_REFUSED(of_link("<data>box.off 0.0001</data>"), "needs the scale 1000");
+  EXPECT_REFUSED(of_link("<data>box.off 1 2</data>"), "a file and 1 or 3 scales");
+  EXPECT_REFUSED(of_link("<data>box.off -1</data>"), "the scale '-1'");
+  EXPECT_REFUSED(of_link("<data>box.off</data><collision>box.off</collision>"), "more than one of");
+  EXPECT_REFUSED(of_link(""), "no mesh in <Geom>");
+  EXPECT_REFUSED(of_link("<vertices>0 0 0 1 0 0 0 1 0</vertices>"), "a flat mesh");
+  EXPECT_REFUSED(of_world("<vertices>0 0 0 1 0 0 0 1 0</vertices>"), "a mesh with holes: 3 of 3 edges");
+  EXPECT_REFUSED(of_world("<vertices>0 0 0 1 0 0 2 0 0</vertices>"), "without area");
+  EXPECT_REFUSED(of_world("<vertices>0 0 0 1 0</vertices>"), "5 numbers");
+  EXPECT_REFUSED(of_world("<vertices>0 0 0 1 0 0 0 1 nan</vertices>"), "'nan'");
+  EXPECT_REFUSED(of_world("<vertices>0 0 0 1 0 0 0 1 0</vertices><triangles>0 1 3</triangles>"), "'3' in <triangles>");
+  EXPECT_REFUSED(of_world("<vertices>0 0 0 1 0 0 0 1 0</vertices><triangles>0 1</triangles>"), "2 corners");
+}
+
+TEST(MeshScenario, ADamagedFileIsRefused) {
+  MemoryFiles files = with_head("<Geom type=\"trimesh\"><data>box.off</data></Geom>");
+  files.texts["box.off"] = "OFF\n8 6 0\n0 0";
+  EXPECT_REFUSED(files, "'box.off'");
+}
+
+TEST(MeshScenario, BadBodiesAndRulersAreRefused) {
+  const std::string ball = "<Geom type=\"sphere\"><radius>0.1</radius></Geom>";
+  const std::string mass = "<Mass type=\"mimicgeom\"><total>1</total></Mass>";
+  EXPECT_REFUSED(with_objects(body("dynamic", ball)), "<Mass>");
+  EXPECT_REFUSED(with_objects(body("dynamic", "<Mass type=\"box\"><total>1</total><extents>1 1 1</extents></Mass>")),
+                 "without a <Geom>");
+  EXPECT_REFUSED(with_objects(body("loose", ball + mass)), "'static' for an object that stays");
+  EXPECT_REFUSED(with_objects("<KinBody name=\"a\"><Body>" + ball + "</Body></KinBody>"), "no type in <Body>");
+  EXPECT_REFUSED(with_objects(body("dynamic",
+                                   "<Geom type=\"heightfield\"><extents>1 1</extents><columns>2</columns><rows>2"
+                                   "</rows><heights>0 0 0 0</heights></Geom>" +
+                                       mass)),
+                 "a height field in a body that moves");
+  EXPECT_REFUSED(with_objects("<ruler><from>0 0 0</from><to>0 0 0</to></ruler>"), "a ruler of 0 m");
+  EXPECT_REFUSED(with_objects("<ruler><from>0 0 0</from><to>0 9 0</to><division>0.001</division></ruler>"),
+                 "1 to 1000 segments");
+}
+
+TEST(MeshScenario, AFileOfBytesIsKeptAsTextAndReadAgain) {
+  std::string bytes(84, '\0');
+  bytes[83] = '\x01';
+  bytes += std::string("\xff\xfe\x00\x80", 4);
+  for (std::size_t cut = 0; cut < 3; ++cut) {
+    const std::string part = bytes.substr(0, bytes.size() - cut);
+    const std::string text = data_url(part);
+    EXPECT_EQ(bytes_of_source(text), part);
+    EXPECT_EQ(text.find('\0'), std::string::npos);
+  }
+  EXPECT_EQ(bytes_of_source("solid a"), "solid a");
+  EXPECT_EQ(data_url("Man"), "data:application/octet-stream;base64,TWFu");
+  EXPECT_EQ(data_url("Ma"), "data:application/octet-stream;base64,TWE=");
+}
+
+TEST(MeshScenario, TheSourcesOfAScenarioReadAgainAreTheSameScenario) {
+  MemoryFiles files = with_head("<Geom type=\"trimesh\"><data>box.off 0.1</data></Geom>");
+  const Scenario scenario = files.scenario();
+  SourceTexts again;
+  for (const SourceFile& source : scenario.sources) {
+    again.add(source.path, source.text);
+  }
+  const Scenario second = read_scenario("top.xml", again);
+  EXPECT_EQ(head_solid(second).mesh->vertices, head_solid(scenario).mesh->vertices);
+}
+
+}  // namespace
+}  // namespace proleg::sim

@@ -1,10 +1,11 @@
-// proleg new: writes the files of a new robot.
+// proleg new: writes the files of a new robot, or of an algorithm.
 
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/joint_mask.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/new_algorithm.hpp"
 #include "tools/proleg/robot_files.hpp"
 
 namespace {
@@ -62,7 +64,7 @@ void create_folder(const std::filesystem::path& folder) {
 
 int write_robot(const NewOptions& options) {
   if (options.what != "robot") {
-    throw BadInput("found " + in_quotes(options.what) + ", expected 'robot'");
+    throw BadInput("found " + in_quotes(options.what) + ", expected 'robot' or 'algorithm'");
   }
   const std::vector<NewFile> files = robot_files(axes_of_joints(options.axes, parse_joints(options.joints)));
   if (options.out.empty()) {
@@ -88,9 +90,14 @@ int write_robot(const NewOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "algorithm") {
+    return new_algorithm(argc - 1, argv + 1);
+  }
   CommandLine command_line("proleg new",
                            "Writes the files of a new robot: a chain of joints, a gait that moves it, a flat floor and "
-                           "the top-level file.\nThe modules are those of the shipped travelling_wave.");
+                           "the top-level file.\nThe modules are those of the shipped travelling_wave.\n'proleg new "
+                           "algorithm --help' explains how "
+                           "to write an algorithm of your own.");
   NewOptions options;
   command_line.add_option("WHAT", options.what, "what to write: robot").required().value_name("");
   command_line.add_option("--joints", options.joints, "number of joints, 1 to 64").required().value_name("N");

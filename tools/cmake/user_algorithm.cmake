@@ -57,6 +57,7 @@ function(proleg_user_algorithm_sources out)
     return()
   endif()
   set(build ${CMAKE_BINARY_DIR}/user_algorithms)
+  cmake_path(SET tree NORMALIZE ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/../..)
   set(files)
   set(names)
   set(declarations "")
@@ -79,7 +80,7 @@ function(proleg_user_algorithm_sources out)
 namespace proleg::user {
 ${declarations}}  // namespace proleg::user
 #define PROLEG_USER_ALGORITHMS${table}
-#include \"${CMAKE_SOURCE_DIR}/shared/gait/registry.cpp\"
+#include \"${tree}shared/gait/registry.cpp\"
 " @ONLY)
   list(JOIN names ", " listed)
   message(STATUS "Algorithms of users: ${listed}")

@@ -11,6 +11,7 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <mutex>
@@ -31,6 +32,7 @@ struct ThreadGuard {
   std::atomic<bool> is_active = false;
   std::atomic<std::uint64_t> call = 0;     ///< number of the present or last call
   std::atomic<std::uint64_t> expired = 0;  ///< number of the call that took too long
+  bool is_terminated = false;              ///< std::terminate() was called
   int signal = 0;
   const void* address = nullptr;
   std::array<char, 200> exception{};
@@ -61,6 +63,21 @@ void on_signal(int signal, siginfo_t* info, void* /*context*/) {
   if (info->si_code <= 0) {
     raise(signal);
   }
+}
+
+std::terminate_handler previous_terminate = nullptr;
+
+/// The usual handler would print a second line about what is reported anyway.
+[[noreturn]] void on_terminate() {
+  ThreadGuard* const guard = current_guard;
+  if (guard != nullptr && guard->is_active) {
+    guard->is_terminated = true;
+    std::abort();
+  }
+  if (previous_terminate != nullptr) {
+    previous_terminate();
+  }
+  std::abort();
 }
 
 double seconds(clockid_t clock) {
@@ -174,6 +191,7 @@ class Watchdog {
 void catch_signals() {
   static std::once_flag once;
   std::call_once(once, [] {
+    previous_terminate = std::set_terminate(on_terminate);
     struct sigaction action {};
     action.sa_sigaction = on_signal;
     // After a jump out of the handler the signal must not be blocked, and a full stack has no room for the handler.
@@ -243,7 +261,7 @@ std::string text_of(const ThreadGuard& guard) {
     case SIGILL:
       return "executes an instruction that this processor does not have";
     case SIGABRT:
-      return "calls abort()";
+      return guard.is_terminated ? "throws an exception out of a function that is noexcept" : "calls abort()";
     default:
       return "does not return within a second of processor time: an endless loop?";
   }
@@ -257,6 +275,7 @@ enum class End : std::uint8_t { returned, exception, signal };
     return End::signal;
   }
   ++guard.call;
+  guard.is_terminated = false;
   guard.is_active = true;
   try {
     function(context);

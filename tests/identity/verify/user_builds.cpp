@@ -67,8 +67,8 @@ void UserBuilds::run(const std::string& what, const std::vector<std::string>& co
   words.insert(words.end(), command.begin(), command.end());
   const tools::ProgramResult result = tools::run_program(words, tree_.string());
   if (result.status != 0) {
-    throw BuildError(
-        one_line("the build for " + what + " fails: " + first_error(log) + "; all of it is in " + log.string()));
+    throw BuildError(one_line((what == "test" ? "" : "the build for " + what + " fails: ") + first_error(log) +
+                              "; all of it is in " + log.string()));
   }
 }
 

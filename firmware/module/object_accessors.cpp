@@ -346,6 +346,12 @@ constexpr ObjectAccessor accessors[] = {
         object::ramp_in_speed.address, WritableIn::any_state,
         [](const Parts& parts) { return parts.drive.ramp_in_speed(); },
         [](Parts& parts, const ObjectWrite& write) { parts.drive.set_ramp_in_speed(write.value); }),
+    read_only(object::user_algorithm.first.address,
+              [](const Parts& /*parts*/, Position position) {
+                const ActuationModule* algorithm =
+                    find_algorithm(static_cast<std::uint8_t>(first_user_id + position.sub));
+                return algorithm == nullptr ? 0U : algorithm->declaration().sources;
+              }),
     own_frame<0, 0>(),
     own_frame<0, 1>(),
     own_frame<1, 0>(),

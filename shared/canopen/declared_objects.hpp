@@ -245,6 +245,17 @@ inline constexpr Object ramp_in_speed = in_unit(
     read_write({0x200E, 0}, "Ramp-in speed", DataType::unsigned16, 0, full_range(DataType::unsigned16),
                "from the measured angle to the start of the gait, in degrees a second, at most 0x6080; 0: off"));
 
+inline constexpr ObjectGroup user_algorithms{0x200F, ObjectCode::array, "Users' algorithms"};
+inline constexpr ObjectArray user_algorithm{
+    read_only(user_algorithms.at(1), "Sources of user's algorithm", DataType::unsigned32,
+              "with the id 95 + sub-index: the first 32 bits of their SHA-256; 0: the module does not have it"),
+    max_user_algorithms};
+static_assert(first_user_id == 96);
+/// The entry of an algorithm. id: of a user's algorithm.
+[[nodiscard]] constexpr Address user_algorithm_address(std::uint8_t id) {
+  return {user_algorithm.first.address.index, static_cast<std::uint8_t>(id - first_user_id + 1)};
+}
+
 inline constexpr ObjectGroup board{0x2020, ObjectCode::record, "Board"};
 inline constexpr Object gateway_role = read_write(board.at(1), "Gateway role", DataType::unsigned8, 0, {0, 1},
                                                   "1: slcan on the serial line; in force when saved, after a reset");

@@ -46,6 +46,11 @@ struct FrameField {
   std::uint8_t bytes;           ///< 1 to 4
 };
 
+/// Ids of algorithms that are outside of this tree (docs/user-algorithms.md). The core uses none of them.
+inline constexpr std::uint8_t first_user_id = 96;
+inline constexpr std::uint8_t last_user_id = 126;
+inline constexpr std::size_t max_user_algorithms = last_user_id - first_user_id + 1;
+
 struct Declaration {
   std::uint8_t id;  ///< 1 to 127, never reused: object dictionary index 0x3000 + 32 id + parameter number
   std::string_view name;
@@ -53,7 +58,12 @@ struct Declaration {
   std::span<const Parameter> parameters;
   std::span<const InternalValue> internal_values;
   std::span<const FrameField> frame;  ///< at most 6 bytes; empty if nothing is broadcast
+  /// Of a user's algorithm: the first 32 bits of the SHA-256 of its sources (tools/cmake/user_algorithm.cmake).
+  /// Programs with equal numbers compute with the same sources. 0 in the core, whose fingerprint says this.
+  std::uint32_t sources = 0;
 };
+
+[[nodiscard]] constexpr bool is_user_algorithm(std::uint8_t id) { return id >= first_user_id && id <= last_user_id; }
 
 /// Position of a parameter or internal value of that name, or -1.
 [[nodiscard]] int find_parameter(const Declaration& declaration, std::string_view name);

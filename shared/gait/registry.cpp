@@ -8,37 +8,48 @@ namespace proleg {
 namespace {
 
 // Functions and not objects, so that the table is a constant in flash and nothing has to run before main.
-constexpr const ActuationModule& (*algorithms[])() = {
-    direct_joint_access,
-    pattern_generator_sinusoidal,
-    pattern_generator_sinusoidal_extended,
-    pattern_generator_coupled_oscillator,
-    sensing_module_uneven_ground_reflex,
-    sensing_module_global_adaptive_touch,
+constexpr const ActuationModule& (*algorithms[])() = {direct_joint_access,
+                                                      pattern_generator_sinusoidal,
+                                                      pattern_generator_sinusoidal_extended,
+                                                      pattern_generator_coupled_oscillator,
+                                                      sensing_module_uneven_ground_reflex,
+                                                      sensing_module_global_adaptive_touch,
+#ifdef PROLEG_USER_ALGORITHMS  // by tools/cmake/user_algorithm.cmake: their functions, each with a comma
+                                                      PROLEG_USER_ALGORITHMS
+#endif
 };
+
+/// None in a module: there nothing calls set_loaded_algorithms().
+std::span<const ActuationModule* const> loaded_algorithms;
 
 }  // namespace
 
-std::size_t algorithm_count() { return std::size(algorithms); }
+std::size_t algorithm_count() { return std::size(algorithms) + loaded_algorithms.size(); }
 
-const ActuationModule& algorithm_at(std::size_t index) { return algorithms[index](); }
+const ActuationModule& algorithm_at(std::size_t index) {
+  return index < std::size(algorithms) ? algorithms[index]() : *loaded_algorithms[index - std::size(algorithms)];
+}
 
 const ActuationModule* find_algorithm(std::string_view name) {
-  for (const auto algorithm : algorithms) {
-    if (algorithm().declaration().name == name) {
-      return &algorithm();
+  for (std::size_t i = 0; i < algorithm_count(); ++i) {
+    if (algorithm_at(i).declaration().name == name) {
+      return &algorithm_at(i);
     }
   }
   return nullptr;
 }
 
 const ActuationModule* find_algorithm(std::uint8_t id) {
-  for (const auto algorithm : algorithms) {
-    if (algorithm().declaration().id == id) {
-      return &algorithm();
+  for (std::size_t i = 0; i < algorithm_count(); ++i) {
+    if (algorithm_at(i).declaration().id == id) {
+      return &algorithm_at(i);
     }
   }
   return nullptr;
+}
+
+void set_loaded_algorithms(std::span<const ActuationModule* const> algorithms_of_users) {
+  loaded_algorithms = algorithms_of_users;
 }
 
 }  // namespace proleg

@@ -226,6 +226,9 @@ class Master final : private SdoWork {
   [[nodiscard]] bool on_value(unsigned joint, std::size_t position, std::uint32_t value) override;
   void on_abort(unsigned joint, Address address, AbortCode code) override;
   [[nodiscard]] std::optional<SdoStep> set_up_step(unsigned joint, std::size_t position) const;
+  [[nodiscard]] std::size_t user_algorithm_count() const;
+  [[nodiscard]] const Declaration& user_algorithm(std::size_t position) const;
+  bool algorithm_missing(unsigned joint, const Declaration& algorithm, std::uint32_t found);
   [[nodiscard]] std::optional<SdoStep> checksum_step(std::size_t position) const;
   [[nodiscard]] std::optional<SdoStep> lease_step(std::size_t position) const;
   [[nodiscard]] bool on_lease(unsigned joint, std::uint32_t holder);

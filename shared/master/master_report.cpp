@@ -28,6 +28,8 @@ std::string_view describe(ProblemCode code) {
       return "wrong version of the protocol";
     case ProblemCode::wrong_fingerprint:
       return "wrong core fingerprint";
+    case ProblemCode::missing_algorithm:
+      return "the program of the module lacks an algorithm";
     case ProblemCode::refused:
       return "a module refuses its set-up";
     case ProblemCode::no_answer:

@@ -29,6 +29,7 @@ enum class ProblemCode : std::uint8_t {
   wrong_serial,         ///< serial number; `found` and `expected` as for all wrong_ codes
   wrong_protocol,       ///< version of docs/protocol.md
   wrong_fingerprint,    ///< the module computes with another core
+  missing_algorithm,    ///< the module has no `algorithm`, or one of other sources; `found` and `expected` as 0x200F
   refused,              ///< the module refused `address` with `abort_code`
   no_answer,            ///< the module did not answer a request for `address`
   wrong_configuration,  ///< after set-up, the configuration CRC of the module is not the master's
@@ -55,7 +56,8 @@ struct Problem {
   AbortCode abort_code = AbortCode::none;
   std::uint32_t found = 0;
   std::uint32_t expected = 0;
-  std::size_t change = 0;  ///< position in the list of changes
+  std::size_t change = 0;      ///< position in the list of changes
+  std::uint8_t algorithm = 0;  ///< id
 };
 
 enum class EventKind : std::uint8_t {

@@ -18,6 +18,10 @@ constexpr std::uint16_t enabling_controlwords[] = {shutdown_controlword, switch_
                                                    enable_operation_controlword};
 constexpr std::size_t enabling_count = 3;
 
+bool is_user_slot(const Slot& slot) {
+  return slot.algorithm != nullptr && is_user_algorithm(slot.algorithm->declaration().id);
+}
+
 }  // namespace
 
 std::optional<SdoStep> Master::step(unsigned joint, std::size_t position) {
@@ -73,6 +77,11 @@ std::optional<SdoStep> Master::set_up_step(unsigned joint, std::size_t position)
     return SdoStep{false, identity_entries[position]->address};
   }
   position -= identity_count;
+  const std::size_t users = user_algorithm_count();
+  if (position < users) {
+    return SdoStep{false, object::user_algorithm_address(user_algorithm(position).id)};
+  }
+  position -= users;
   const SetupList list(setup_, joint);
   std::optional<SdoWrite> next;
   if (position < list.size()) {
@@ -83,6 +92,24 @@ std::optional<SdoStep> Master::set_up_step(unsigned joint, std::size_t position)
     next = plan_.parameter_write(rejoin_from_, joint, position - list.size() - 1);
   }
   return next ? std::optional(SdoStep{true, next->address, next->size, next->value}) : std::nullopt;
+}
+
+/// Slots of the robot with users' algorithms.
+std::size_t Master::user_algorithm_count() const {
+  std::size_t count = 0;
+  for (const Slot& slot : setup_.kernel.slots) {
+    count += is_user_slot(slot) ? 1U : 0U;
+  }
+  return count;
+}
+
+/// position: below user_algorithm_count().
+const Declaration& Master::user_algorithm(std::size_t position) const {
+  const Slot* slot = setup_.kernel.slots.data();
+  while (!is_user_slot(*slot) || position-- > 0) {
+    ++slot;
+  }
+  return slot->algorithm->declaration();
 }
 
 /// Before the servos have power: whether the module measures its angle, and its speed. Afterwards: where it is.
@@ -194,6 +221,10 @@ bool Master::on_value(unsigned joint, std::size_t position, std::uint32_t value)
     case 4:
       return expect(options_.core_fingerprint, ProblemCode::wrong_fingerprint);
     default:
+      if (position - identity_count < user_algorithm_count()) {
+        const Declaration& algorithm = user_algorithm(position - identity_count);
+        return (value != 0 && value == algorithm.sources) || algorithm_missing(joint, algorithm, value);
+      }
       return expect(crc_, ProblemCode::wrong_configuration);
   }
 }
@@ -212,10 +243,29 @@ void Master::on_abort(unsigned joint, Address address, AbortCode code) {
     ramping_in_ -= JointMask::of(joint);  // its program is older
     return;
   }
+  if (phase_ == Phase::set_up && address.index == object::user_algorithms.index && code != AbortCode::timeout) {
+    // Its program is older than the object, so it has no algorithms of users.
+    for (std::size_t i = 0; i < user_algorithm_count(); ++i) {
+      if (object::user_algorithm_address(user_algorithm(i).id) == address) {
+        static_cast<void>(algorithm_missing(joint, user_algorithm(i), 0));
+        return;
+      }
+    }
+  }
   Problem problem = problem_of(code == AbortCode::timeout ? ProblemCode::no_answer : ProblemCode::refused, joint);
   problem.address = address;
   problem.abort_code = code;
   static_cast<void>(joint_failed(problem));
+}
+
+/// Always false.
+bool Master::algorithm_missing(unsigned joint, const Declaration& algorithm, std::uint32_t found) {
+  Problem problem = problem_of(ProblemCode::missing_algorithm, joint);
+  problem.address = object::user_algorithm_address(algorithm.id);
+  problem.found = found;
+  problem.expected = algorithm.sources;
+  problem.algorithm = algorithm.id;
+  return joint_failed(problem);
 }
 
 /// Ends the mission for the joint. Always false.

@@ -10,10 +10,8 @@ namespace {
 
 class CortexMPlayer final : public Player {
  public:
-  explicit CortexMPlayer(cortex_m::Cpu cpu)
-      : image_(cortex_m::core_image_file(cpu)),
-        machine_(image_, cpu),
-        trace_address_(image_.symbol("identity_trace").address) {}
+  CortexMPlayer(cortex_m::Cpu cpu, const std::filesystem::path& image)
+      : image_(image), machine_(image_, cpu), trace_address_(image_.symbol("identity_trace").address) {}
 
   const Trace& play(const ActuationModule& algorithm, std::uint32_t number) override {
     // Some thirty times what the dearest case needs on Cortex-M0.
@@ -43,6 +41,12 @@ class CortexMPlayer final : public Player {
 
 }  // namespace
 
-std::unique_ptr<Player> make_cortex_m_player(cortex_m::Cpu cpu) { return std::make_unique<CortexMPlayer>(cpu); }
+std::unique_ptr<Player> make_cortex_m_player(cortex_m::Cpu cpu) {
+  return make_cortex_m_player(cpu, cortex_m::core_image_file(cpu));
+}
+
+std::unique_ptr<Player> make_cortex_m_player(cortex_m::Cpu cpu, const std::filesystem::path& image) {
+  return std::make_unique<CortexMPlayer>(cpu, image);
+}
 
 }  // namespace proleg::identity

@@ -152,6 +152,7 @@ int main(int argc, char** argv) {
   bool measures = false;
   command_line.add_flag("--measures", measures, "list the measures of a run instead (docs/gait-measures.md)")
       .excludes("NAME");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv,
                           [&] { return measures ? list_measures(std::cout, markdown) : describe(name, markdown); });
 }

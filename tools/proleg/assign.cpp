@@ -322,5 +322,6 @@ int main(int argc, char** argv) {
       .value_name("DEGREES");
   command_line.add_flag("--yes", options.yes, "do not ask before the node ids are changed");
   command_line.add_flag("--json", options.json, "print one JSON object");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return assign(options); });
 }

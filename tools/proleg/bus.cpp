@@ -338,5 +338,6 @@ int main(int argc, char** argv) {
                           "seed of the crystals and unique ids, instead of that of the scenario");
   command_line.add_option("--can-log", options.can_log, "write all frames into this file, as 'candump -l' does");
   command_line.add_flag("--verbose", options.verbose, "print which programs come and go, and which joints have power");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return serve(options); });
 }

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <string>
 
+#include "shared/computer/algorithm_library/algorithm_library.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 
@@ -124,6 +125,13 @@ CommandLine::Option& CommandLine::Option::takes_several() {
   return *this;
 }
 
+void CommandLine::add_algorithms_option() {
+  add_option("--algorithms", algorithms_,
+             "load a library with an algorithm of your own, as 'proleg new algorithm' makes it; scenarios name it as "
+             "they name the built-in ones. May be repeated.")
+      .value_name("LIBRARY");
+}
+
 std::string CommandLine::name() const { return app_->get_name(); }
 
 int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
@@ -136,6 +144,7 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
     app_->parse(argc, argv);
   } catch (const CLI::Success& request) {  // --help
     app_->exit(request);
+    algorithms_.clear();
     action = [] { return exit_success; };
   } catch (const CLI::ParseError& error) {
     std::cerr << app_->get_name() << ": found " << one_line(describe(*app_, error))
@@ -144,6 +153,7 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
     return exit_bad_input;
   }
   try {
+    load_algorithms(algorithms_);
     const int status = action();
     if (!std::cout.flush()) {
       throw std::runtime_error("cannot write to standard output");

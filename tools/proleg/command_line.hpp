@@ -64,6 +64,9 @@ class CommandLine {
   /// An option without a value.
   Option add_flag(const std::string& name, bool& variable, const std::string& help);
 
+  /// --algorithms, for programs that read scenarios or name parameters. run() loads the libraries before the body.
+  void add_algorithms_option();
+
   [[nodiscard]] std::string name() const;
 
   /// Parses the arguments and runs the body; returns the exit status. An error is one line on standard error: bad
@@ -73,6 +76,7 @@ class CommandLine {
 
  private:
   std::unique_ptr<CLI::App> app_;
+  std::vector<std::string> algorithms_;
 };
 
 }  // namespace proleg::tools

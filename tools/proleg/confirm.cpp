@@ -91,5 +91,6 @@ int main(int argc, char** argv) {
   add_start_options(command_line, options);
   command_line.add_option("--worlds", options.worlds, "number of worlds that differ").shows_default();
   command_line.add_flag("--json", options.json, "print one JSON object");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return confirm(options); });
 }

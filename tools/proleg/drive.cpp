@@ -298,5 +298,6 @@ int main(int argc, char** argv) {
                   "and simulated angles beside it")
       .value_name("FILE");
   command_line.add_flag("--fast", options.fast, "with --bus sim:FILE: as fast as this computer simulates");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return drive(options); });
 }

@@ -389,5 +389,6 @@ int main(int argc, char** argv) {
   command_line.add_option("--out", options.out, "folder for stores, tables and figures; default: NAME_experiment");
   command_line.add_option("--scenarios", options.scenarios, "folder of the experiment's files");
   command_line.add_flag("--json", options.json, "print one JSON object");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return experiment(options); });
 }

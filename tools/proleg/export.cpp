@@ -151,5 +151,6 @@ int main(int argc, char** argv) {
                   "the file; by default run.tsv or run.html for run.proleg, run.1.tsv for run.1; - for standard output")
       .value_name("FILE");
   command_line.add_flag("--json", options.json, "print one JSON object");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return export_recording(command_line, options); });
 }

@@ -87,5 +87,6 @@ int main(int argc, char** argv) {
                         "with --schedule: the schedule of a run with --modules mcu, in which clocks fail too");
   command_line.add_option("--recording", options.recording, "RECORDING: print the schedule of a recorded run");
   command_line.add_flag("--markdown", options.markdown, "print the table of docs/faults.md");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return faults(options); });
 }

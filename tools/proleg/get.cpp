@@ -98,5 +98,6 @@ int main(int argc, char** argv) {
       .required();
   add_bus_option(command_line, options);
   command_line.add_flag("--json", options.json, "print one JSON object");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return get(options); });
 }

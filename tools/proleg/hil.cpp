@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "shared/computer/algorithm_library/guarded_algorithm.hpp"
 #include "sim/bus/candump_log.hpp"
 #include "sim/loop/hardware_loop.hpp"
 #include "sim/physics/physics_error.hpp"
@@ -223,6 +224,8 @@ int hil(const HilOptions& options) {
     finished = run_loop(run, modules, loop, files.recorder.get());
   } catch (const sim::PhysicsError& error) {
     throw std::runtime_error(error.what() + kept_in_recording(options));
+  } catch (const AlgorithmFailure& error) {
+    throw std::runtime_error(error.what() + kept_in_recording(options));
   }
   finished->faults = std::move(plan.schedule);
   const HilResult& result = *finished;
@@ -257,5 +260,6 @@ int main(int argc, char** argv) {
       "set-point and servo command with the same gait computed in memory; status 1 if one differs.");
   HilOptions options;
   add_hil_options(command_line, options);
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return hil(options); });
 }

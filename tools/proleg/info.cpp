@@ -240,5 +240,6 @@ int main(int argc, char** argv) {
   command_line.add_flag("--all", options.all,
                         "all objects that describe a module, and the internal values of its algorithms");
   command_line.add_flag("--json", options.json, "print one JSON object");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return info(options); });
 }

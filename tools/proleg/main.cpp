@@ -25,7 +25,8 @@ struct Subcommand {
 
 constexpr std::array subcommands{
     Subcommand{"algorithms", "list the algorithms that move a robot, and their parameters"},
-    Subcommand{"new", "write the files of a new robot"},
+    Subcommand{"new", "write the files of a new robot, or of an algorithm of your own"},
+    Subcommand{"verify", "prove that an algorithm of your own computes the same bits everywhere"},
     Subcommand{"simulate", "run a scenario in the physics simulation"},
     Subcommand{"ui", "show and drive a robot in the browser"},
     Subcommand{"sweep", "run a scenario with all combinations of some values"},

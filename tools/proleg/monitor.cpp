@@ -173,5 +173,6 @@ int main(int argc, char** argv) {
   add_bus_option(command_line, options);
   command_line.add_option("--seconds", options.seconds, "end after this time");
   command_line.add_flag("--json", options.json, "print one JSON object a second, each on a line");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return run(options); });
 }

@@ -1,4 +1,4 @@
-// proleg new: writes the files of a new robot or obstacle.
+// proleg new: writes the files of a new robot, obstacle or algorithm.
 
 #include <cstdint>
 #include <filesystem>
@@ -12,6 +12,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/joint_mask.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/new_algorithm.hpp"
 #include "tools/proleg/new_files.hpp"
 #include "tools/proleg/new_obstacle.hpp"
 #include "tools/proleg/robot_files.hpp"
@@ -68,7 +69,7 @@ std::string axes_of_joints(const std::string& pattern, std::uint32_t joints) {
 
 int write_robot(const NewOptions& options) {
   if (options.what != "robot") {
-    throw BadInput("found " + in_quotes(options.what) + ", expected 'robot' or 'obstacle'");
+    throw BadInput("found " + in_quotes(options.what) + ", expected 'robot', 'obstacle' or 'algorithm'");
   }
   if (options.joints.empty() && options.kind.empty()) {
     throw BadInput("--joints is required without --kind");
@@ -86,15 +87,22 @@ int write_robot(const NewOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc > 1 && std::string_view(argv[1]) == "obstacle") {
+  const std::string_view what = argc > 1 ? argv[1] : "";
+  if (what == "obstacle") {
     return new_obstacle(argc - 1, argv + 1);
+  }
+  if (what == "algorithm") {
+    return new_algorithm(argc - 1, argv + 1);
   }
   CommandLine command_line("proleg new",
                            "Writes the files of a new robot: a chain of joints, a gait that moves it, a flat floor and "
                            "the top-level file.\nThe modules are those of the shipped travelling_wave, or of another "
-                           "kind of robot. `proleg new obstacle` writes an environment: see its own --help.");
+                           "kind of robot.\n'proleg new obstacle' writes an environment, 'proleg new algorithm' an "
+                           "algorithm of your own: see their --help.");
   NewOptions options;
-  command_line.add_option("WHAT", options.what, "what to write: robot, or obstacle").required().value_name("");
+  command_line.add_option("WHAT", options.what, "what to write: robot, obstacle or algorithm")
+      .required()
+      .value_name("");
   std::string kinds = "kind of robot:";
   for (const RobotKind& kind : robot_kinds()) {
     kinds.append(&kind == &robot_kinds().front() ? " " : "; ").append(kind.name).append(" (").append(kind.help);

@@ -231,6 +231,7 @@ int main(int argc, char** argv) {
   command_line.add_option("--nodes", nodes, "for --dbc without FILE: node ids 1 to this; 5 by default")
       .value_name("N")
       .excludes("FILE");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] {
     if (!dbc && (!scenario.empty() || nodes)) {
       throw InputError(scenario.empty() ? "--nodes" : "FILE", 0, in_quotes(scenario.empty() ? *nodes : scenario),

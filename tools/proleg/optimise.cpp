@@ -250,6 +250,7 @@ int optimise_command(int argc, char** argv, const WorkersMaker& make_workers) {
       "Searches for the parameters of a gait: simulates candidates, stores all results, and writes the best scenario.");
   OptimiseOptions options;
   add_optimise_options(command_line, options);
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return optimise(options, make_workers); });
 }
 

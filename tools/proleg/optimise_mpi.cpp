@@ -36,6 +36,7 @@ int serve(int argc, char** argv, int rank) {
   bool understood = false;
   std::cout.setstate(std::ios::failbit);
   std::cerr.setstate(std::ios::failbit);
+  command_line.add_algorithms_option();
   const int read = command_line.run(argc, argv, [&] {
     understood = true;
     std::cout.clear();

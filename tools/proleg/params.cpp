@@ -260,5 +260,6 @@ int main(int argc, char** argv) {
   command_line.add_flag("--any-module", options.any_module,
                         "with load: also into modules with other serial numbers than in the file");
   add_bus_option(command_line, options);
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return run(options); });
 }

@@ -66,6 +66,7 @@ int main(int argc, char** argv) {
   command_line.add_option("--to", window.to_s, "end of the time axis in s; by default the end of the run")
       .value_name("SECONDS");
 
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] {
     require_finite("--from", window.from_s);
     require_finite("--to", window.to_s);

@@ -153,6 +153,7 @@ int main(int argc, char** argv) {
     command_line.add_option("FILE", options.file, "scenario, a *.simulation.xml file").required();
     command_line.add_option("RECEIPT", options.receipt, "the line that 'proleg receipt FILE' printed").takes_several();
     command_line.add_flag("--json", options.json, "print one JSON object");
+    command_line.add_algorithms_option();
     return command_line.run(argc - 1, argv + 1, [&] {
       if (options.receipt.empty()) {
         std::string line;
@@ -170,5 +171,6 @@ int main(int argc, char** argv) {
   command_line.add_option("--measure", options.measure, "the measure that the receipt states (docs/gait-measures.md)")
       .shows_default();
   command_line.add_flag("--json", options.json, "print one JSON object");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return print_receipt(options); });
 }

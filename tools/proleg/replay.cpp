@@ -117,5 +117,6 @@ int main(int argc, char** argv) {
       "compare every set-point, internal value and servo command, as without this option; exit status 1 if "
       "one differs");
   command_line.add_flag("--json", options.json, "print one JSON object");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return replay(options); });
 }

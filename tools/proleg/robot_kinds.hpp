@@ -9,12 +9,9 @@
 #include <string_view>
 #include <vector>
 
-namespace proleg::tools {
+#include "tools/proleg/new_files.hpp"
 
-struct NewFile {
-  std::string name;  ///< relative to the folder of the robot
-  std::string text;
-};
+namespace proleg::tools {
 
 /// A kind of modular robot: its modules, and how they are put together.
 struct RobotKind {

@@ -73,5 +73,6 @@ int main(int argc, char** argv) {
       .required();
   command_line.add_flag("--verbose", options.verbose, "print the time that each module took to answer");
   add_bus_option(command_line, options);
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return set(options); });
 }

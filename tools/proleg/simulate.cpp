@@ -5,6 +5,7 @@
 #include <iostream>
 #include <string>
 
+#include "shared/computer/algorithm_library/guarded_algorithm.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/loop/simulation.hpp"
 #include "sim/physics/physics_error.hpp"
@@ -126,6 +127,8 @@ int simulate(const ScenarioOptions& options) {
     finished = run(setup, simulation, recorder.get());
   } catch (const sim::PhysicsError& error) {
     throw std::runtime_error(error.what() + kept_in_recording(options));
+  } catch (const AlgorithmFailure& error) {
+    throw std::runtime_error(error.what() + kept_in_recording(options));
   }
   const Result& result = *finished;
   if (options.verbose) {
@@ -158,5 +161,6 @@ int main(int argc, char** argv) {
   ScenarioOptions options;
   add_scenario_options(command_line, options);
   add_move_option(command_line, options);
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return simulate(options); });
 }

@@ -329,5 +329,6 @@ int main(int argc, char** argv) {
   command_line.add_option("--out", options.out,
                           "folder for tables and picture; default: the name of FILE up to its first dot, and _sweep");
   command_line.add_flag("--json", options.json, "print one JSON object");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return sweep(options); });
 }

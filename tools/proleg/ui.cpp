@@ -258,5 +258,6 @@ int main(int argc, char** argv) {
   command_line.add_option("--page", options.page, "another page, a folder with index.html").value_name("FOLDER");
   command_line.add_flag("--no-browser", options.no_browser, "only print the address");
   command_line.add_flag("--paused", options.paused, "begin at tick 0, paused");
+  command_line.add_algorithms_option();
   return command_line.run(argc, argv, [&] { return serve(options); });
 }

@@ -2,12 +2,23 @@
 
 #include "shared/canopen/object_name.hpp"
 #include "shared/computer/text/text.hpp"
+#include "shared/gait/registry.hpp"
 
 namespace proleg {
 namespace {
 
 std::string in_text(canopen::Address address) {
   return hexadecimal(address.index, 4) + ":" + std::to_string(address.sub);
+}
+
+std::string algorithm_text(const canopen::Problem& problem) {
+  const ActuationModule* algorithm = find_algorithm(problem.algorithm);
+  const std::string name =
+      algorithm == nullptr ? "with id " + std::to_string(problem.algorithm) : in_quotes(algorithm->declaration().name);
+  const std::string found =
+      problem.found == 0 ? "none" : "one of other sources (" + hexadecimal(problem.found, 8) + ")";
+  return ": found " + found + ", expected the algorithm " + name + " with sources " + hexadecimal(problem.expected, 8) +
+         "; flash an image that is built with it (docs/user-algorithms.md)";
 }
 
 }  // namespace
@@ -26,6 +37,9 @@ std::string problem_text(const canopen::Problem& problem, const NodeName& name) 
     case ProblemCode::wrong_configuration:
     case ProblemCode::not_enabled:
       text += ": found " + hexadecimal(problem.found, 8) + ", expected " + hexadecimal(problem.expected, 8);
+      break;
+    case ProblemCode::missing_algorithm:
+      text += algorithm_text(problem);
       break;
     case ProblemCode::refused:
     case ProblemCode::change_refused:

@@ -50,6 +50,11 @@ void add_scenario(CanonicalText& text, const sim::Scenario& scenario) {
   text.add_all(scenario.duration_s, scenario.step_s, scenario.environment.engine, scenario.solver,
                scenario.contact_noise, scenario.kernel.tick_period_us, scenario.kernel.seed, scenario.settings.size(),
                scenario.changes.size());
+  for (const Slot& slot : scenario.kernel.slots) {
+    if (slot.algorithm != nullptr && slot.algorithm->declaration().sources != 0) {
+      text.add(slot.algorithm->declaration().sources);
+    }
+  }
   for (const sim::Setting& setting : scenario.settings) {
     add_setting(text, setting);
   }

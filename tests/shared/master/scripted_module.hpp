@@ -115,12 +115,13 @@ class ScriptedModule final : public sim::BusListener {
   std::uint32_t fingerprint = 0xF1A9;
   std::uint32_t configuration_crc = 0;
   Microseconds boot_delay_us = 3000;
-  Microseconds answer_delay_us = 0;  ///< of SDO
-  bool ignores_sdo = false;          ///< answers no SDO request
-  bool silent = false;               ///< sends no heartbeat
-  bool never_starts = false;         ///< stays in Pre-operational
-  std::size_t max_pending = 32;      ///< transactions
-  std::uint32_t lease = 0;           ///< whose the module is, 0x2002; a reset ends it
+  Microseconds answer_delay_us = 0;                       ///< of SDO
+  std::map<std::uint8_t, std::uint32_t> user_algorithms;  ///< 0x200F: by sub-index
+  bool ignores_sdo = false;                               ///< answers no SDO request
+  bool silent = false;                                    ///< sends no heartbeat
+  bool never_starts = false;                              ///< stays in Pre-operational
+  std::size_t max_pending = 32;                           ///< transactions
+  std::uint32_t lease = 0;                                ///< whose the module is, 0x2002; a reset ends it
   bool measures_angle = true;
   std::int32_t measured = 0;    ///< 0x6064
   Microseconds ramp_in_us = 0;  ///< from the power to the start of the gait
@@ -362,6 +363,10 @@ class ScriptedModule final : public sim::BusListener {
     }
     if (address == canopen::Address{0x2002, 0}) {
       return lease;
+    }
+    if (address.index == 0x200F) {
+      const auto found = user_algorithms.find(address.sub);
+      return found == user_algorithms.end() ? 0 : found->second;
     }
     if (address == canopen::Address{0x6064, 0}) {
       return static_cast<std::uint32_t>(measured);

@@ -173,7 +173,7 @@ TEST_F(NewRobot, RefusesBadInputAndWritesNothing) {
   expect_refused({"new", "robot", "--joints", "2", "--axes", "ppy", "--out", out}, {"--axes", "3 letters"});
   expect_refused({"new", "robot", "--out", out}, {"--joints"});
   expect_refused({"new", "gait", "--joints", "5", "--out", out},
-                 {"proleg new: found 'gait', expected 'robot' or 'obstacle'"});
+                 {"proleg new: found 'gait', expected 'robot', 'obstacle' or 'algorithm'"});
   expect_refused({"new", "robot", "--joints", "5", "--out", ""}, {"--out"});
   std::ofstream(file("plain")) << "a file, not a folder\n";
   expect_refused({"new", "robot", "--joints", "5", "--out", file("plain").string()}, {"plain"});

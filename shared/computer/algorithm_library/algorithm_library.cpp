@@ -1,0 +1,125 @@
+#include "shared/computer/algorithm_library/algorithm_library.hpp"
+
+#include <dlfcn.h>
+
+#include <filesystem>
+#include <system_error>
+
+#include "shared/computer/algorithm_library/guarded_call.hpp"
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/text/text.hpp"
+#include "shared/gait/registry.hpp"
+
+namespace proleg {
+namespace {
+
+constexpr const char* compile_again = "; compile the library again with this checkout of Proleg";
+
+/// Why dlopen() failed, without the path that the message already has.
+std::string loader_error(const std::string& path) {
+  const char* const text = dlerror();
+  std::string error = text == nullptr ? "unknown reason" : text;
+  if (error.starts_with(path + ": ")) {
+    error.erase(0, path.size() + 2);
+  }
+  return error;
+}
+
+void check(const AlgorithmInterface& interface, const std::string& file) {
+  if (interface.mark != AlgorithmInterface{.sources = 0, .layout = {}, .algorithm = nullptr}.mark) {
+    throw InputError(file, 0, std::string("another object with the name ") + algorithm_interface_symbol,
+                     std::string("the interface of an algorithm") + compile_again);
+  }
+  if (interface.version != algorithm_interface_version) {
+    throw InputError(file, 0, "version " + std::to_string(interface.version) + " of the interface of algorithms",
+                     "version " + std::to_string(algorithm_interface_version) + compile_again);
+  }
+  if (interface.size != sizeof(AlgorithmInterface)) {
+    throw InputError(file, 0, "an interface of " + std::to_string(interface.size) + " bytes",
+                     std::to_string(sizeof(AlgorithmInterface)) + compile_again);
+  }
+  for (std::size_t i = 0; i < algorithm_layout.size(); ++i) {
+    if (interface.layout[i] != algorithm_layout[i].value) {
+      throw InputError(file, 0, std::to_string(interface.layout[i]) + " " + algorithm_layout[i].name,
+                       std::to_string(algorithm_layout[i].value) + compile_again);
+    }
+  }
+  if (interface.core != core_fingerprint) {
+    throw InputError(file, 0, "a library for the core " + hexadecimal(interface.core, 8),
+                     "one for the core " + hexadecimal(core_fingerprint, 8) + compile_again);
+  }
+  if (interface.algorithm == nullptr || interface.sources == 0) {
+    throw InputError(file, 0, "an interface without an algorithm or its sources", std::string("both") + compile_again);
+  }
+}
+
+/// Runs a function of the library that has no tick yet.
+template <typename Function>
+void ask(const std::string& file, const char* what, Function&& function) {
+  CallFailure failure;
+  if (!run_guarded(function, failure)) {
+    throw InputError(file, 0, "a library that, " + std::string(what) + ", " + failure.text, "one that can be loaded");
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<const GuardedAlgorithm> make_algorithm(const AlgorithmInterface& interface, const std::string& file) {
+  check(interface, file);
+  const ActuationModule* foreign = nullptr;
+  bool senses_contacts = false;
+  const auto captured = std::make_unique<CapturedDeclaration>();
+  ask(file, "asked for its declaration", [&] {
+    foreign = &interface.algorithm();
+    captured->capture(foreign->declaration());
+    senses_contacts = foreign->senses_contacts();
+  });
+  if (captured->sources != interface.sources) {
+    throw InputError(file, 0, "sources " + hexadecimal(captured->sources, 8) + " in the declaration of the algorithm",
+                     "PROLEG_ALGORITHM_SOURCES, which is " + hexadecimal(interface.sources, 8));
+  }
+  return std::make_unique<const GuardedAlgorithm>(file, *foreign, *captured, senses_contacts);
+}
+
+std::unique_ptr<const GuardedAlgorithm> load_algorithm(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    throw InputError(path, 0, "no such file", "the library of an algorithm, as 'proleg new algorithm' makes it");
+  }
+  const std::string absolute = std::filesystem::absolute(path).string();  // otherwise the loader searches its folders
+  void* library = nullptr;
+  ask(path, "while it is loaded", [&] { library = dlopen(absolute.c_str(), RTLD_NOW | RTLD_LOCAL); });
+  if (library == nullptr) {
+    throw InputError(path, 0, "no library that can be loaded (" + loader_error(absolute) + ")",
+                     "a shared library for this computer");
+  }
+  const void* const interface = dlsym(library, algorithm_interface_symbol);
+  if (interface == nullptr) {
+    throw InputError(path, 0, std::string("no object ") + algorithm_interface_symbol,
+                     "that of an algorithm; is this another library?");
+  }
+  return make_algorithm(*static_cast<const AlgorithmInterface*>(interface), path);
+}
+
+void load_algorithms(std::span<const std::string> paths) {
+  static std::vector<std::unique_ptr<const GuardedAlgorithm>>& owned =
+      *new std::vector<std::unique_ptr<const GuardedAlgorithm>>;  // never destroyed: kernels name them until the end
+  static std::vector<const ActuationModule*>& registered = *new std::vector<const ActuationModule*>;
+  for (const std::string& path : paths) {
+    std::unique_ptr<const GuardedAlgorithm> algorithm = load_algorithm(path);
+    const Declaration& declaration = algorithm->declaration();
+    const ActuationModule* same = find_algorithm(declaration.name);
+    same = same == nullptr ? find_algorithm(declaration.id) : same;
+    if (same != nullptr) {
+      throw InputError(path, 0,
+                       "the algorithm " + in_quotes(declaration.name) + " with id " + std::to_string(declaration.id),
+                       "another name and id than those of " + in_quotes(same->declaration().name) + ", which has " +
+                           std::to_string(same->declaration().id));
+    }
+    registered.push_back(algorithm.get());
+    owned.push_back(std::move(algorithm));
+    set_loaded_algorithms(registered);
+  }
+}
+
+}  // namespace proleg

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "shared/computer/algorithm_library/algorithm_interface.hpp"
+#include "shared/computer/algorithm_library/guarded_algorithm.hpp"
+
+namespace proleg {
+
+/// Loads a library and checks it. Nothing of it is called before its interface has been read; what a library does when
+/// it is loaded is guarded too. The library stays loaded until the program ends. Throws InputError: there is no such
+/// file, it is no library for this computer, it has no interface or one of another version, core or layout, its
+/// declaration is wrong, or it fails while it is asked.
+[[nodiscard]] std::unique_ptr<const GuardedAlgorithm> load_algorithm(const std::string& path);
+
+/// Checks an interface and makes its algorithm. file: for messages. Throws InputError.
+[[nodiscard]] std::unique_ptr<const GuardedAlgorithm> make_algorithm(const AlgorithmInterface& interface,
+                                                                     const std::string& file);
+
+/// Loads libraries and adds their algorithms to the registry (shared/gait/registry.hpp), for the rest of the program.
+/// Call it once, before other threads start. Throws InputError, also if two algorithms have the same name or id.
+void load_algorithms(std::span<const std::string> paths);
+
+}  // namespace proleg

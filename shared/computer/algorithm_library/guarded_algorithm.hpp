@@ -1,0 +1,59 @@
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+
+#include "shared/computer/algorithm_library/declaration_copy.hpp"
+#include "shared/gait/actuation_module.hpp"
+
+namespace proleg {
+
+/// A user's algorithm has failed. what() is one line that names library, algorithm, function, tick and joint as far as
+/// they are known, and what it did.
+class AlgorithmFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A user's algorithm, called so that its mistakes are reported: it may throw, crash, loop, and write beside its
+/// arrays. Each function then throws AlgorithmFailure, through the core too, which has no code to clean up. Once it has
+/// failed, all later calls fail with the same text, without a call.
+///
+/// Threads may use it at the same time.
+class GuardedAlgorithm final : public ActuationModule {
+ public:
+  /// file: of the library, for messages. foreign: must outlive this object. captured: its declaration. Throws
+  /// InputError if that is wrong.
+  GuardedAlgorithm(std::string file, const ActuationModule& foreign, const CapturedDeclaration& captured,
+                   bool senses_contacts);
+  ~GuardedAlgorithm() = default;
+
+  [[nodiscard]] const Declaration& declaration() const override { return copy_.declaration(); }
+  [[nodiscard]] bool senses_contacts() const override { return senses_contacts_; }
+  void derive(const JointContext& context, const std::int32_t* parameters, std::int32_t* derived) const override;
+  void reset(const JointContext& context, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const override;
+  void rejoin(const Surroundings& surroundings, const Tuning& tuning, std::int32_t* state) const override;
+  void advance(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
+               std::int32_t* next) const override;
+  [[nodiscard]] std::int32_t output(const Tuning& tuning, const std::int32_t* state) const override;
+  void extrapolate(const Tuning& tuning, const std::int32_t* state, StateFrame& frame) const override;
+
+  [[nodiscard]] const std::string& file() const { return file_; }
+
+ private:
+  class Call;
+
+  [[noreturn]] void fail(const std::string& where, const std::string& what) const;
+
+  std::string file_;
+  const ActuationModule& foreign_;
+  DeclarationCopy copy_;
+  bool senses_contacts_;
+  mutable std::atomic<bool> has_failed_ = false;
+  mutable std::mutex mutex_;
+  mutable std::string failure_;
+};
+
+}  // namespace proleg

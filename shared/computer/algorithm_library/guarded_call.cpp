@@ -1,0 +1,315 @@
+#include "shared/computer/algorithm_library/guarded_call.hpp"
+
+#include <pthread.h>
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <csetjmp>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <exception>
+#include <mutex>
+#include <system_error>
+#include <thread>
+
+namespace proleg {
+namespace {
+
+/// Of the watchdog to a thread. No program of the tree uses it.
+constexpr int time_out_signal = SIGVTALRM;
+constexpr std::array caught_signals{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, time_out_signal};
+constexpr std::size_t signal_stack_size = 64 * 1024;
+
+/// What a thread needs to leave a call.
+struct ThreadGuard {
+  sigjmp_buf jump{};
+  std::atomic<bool> is_active = false;
+  std::atomic<std::uint64_t> call = 0;     ///< number of the present or last call
+  std::atomic<std::uint64_t> expired = 0;  ///< number of the call that took too long
+  bool is_terminated = false;              ///< std::terminate() was called
+  int signal = 0;
+  const void* address = nullptr;
+  std::array<char, 200> exception{};
+  pthread_t thread = pthread_self();
+  unsigned generation = 0;
+};
+
+constinit thread_local ThreadGuard* current_guard = nullptr;
+std::array<struct sigaction, NSIG> previous_actions;
+std::atomic<unsigned> generation = 1;
+
+void on_signal(int signal, siginfo_t* info, void* /*context*/) {
+  ThreadGuard* const guard = current_guard;
+  if (guard != nullptr && guard->is_active) {
+    if (signal == time_out_signal && guard->expired != guard->call) {
+      return;  // that call has just returned
+    }
+    guard->signal = signal;
+    guard->address = info->si_addr;
+    guard->is_active = false;
+    siglongjmp(guard->jump, 1);
+  }
+  if (signal == time_out_signal) {
+    return;
+  }
+  // It is not from a guarded call: what had been set before takes effect. A bad instruction is executed once more.
+  sigaction(signal, &previous_actions[static_cast<std::size_t>(signal)], nullptr);
+  if (info->si_code <= 0) {
+    raise(signal);
+  }
+}
+
+std::terminate_handler previous_terminate = nullptr;
+
+/// The usual handler would print a second line about what is reported anyway.
+[[noreturn]] void on_terminate() {
+  ThreadGuard* const guard = current_guard;
+  if (guard != nullptr && guard->is_active) {
+    guard->is_terminated = true;
+    std::abort();
+  }
+  if (previous_terminate != nullptr) {
+    previous_terminate();
+  }
+  std::abort();
+}
+
+double seconds(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// Ends calls that take too long. Its thread sends a signal to the thread of such a call, and none otherwise, so that
+/// no system call of the program is interrupted.
+class Watchdog {
+ public:
+  /// Never destroyed: its thread runs until the process ends.
+  static Watchdog& instance() {
+    static Watchdog& watchdog = *new Watchdog;
+    return watchdog;
+  }
+
+  void watch(ThreadGuard& guard) {
+    const std::lock_guard lock(mutex_);
+    for (Watched& watched : watched_) {
+      if (watched.guard == nullptr) {
+        watched = {&guard, 0, 0, 0};
+        break;
+      }
+    }
+    guard.generation = generation;
+    if (!runs_) {
+      start();
+    }
+  }
+
+  void forget(const ThreadGuard& guard) {
+    const std::lock_guard lock(mutex_);
+    for (Watched& watched : watched_) {
+      if (watched.guard == &guard) {
+        watched.guard = nullptr;
+      }
+    }
+  }
+
+ private:
+  struct Watched {
+    ThreadGuard* guard = nullptr;
+    std::uint64_t call = 0;  ///< seen last
+    double cpu_s = 0;        ///< when it was seen first
+    double wall_s = 0;
+  };
+
+  Watchdog() {
+    // A fork() copies the memory but not the thread.
+    pthread_atfork([] { instance().mutex_.lock(); }, [] { instance().mutex_.unlock(); },
+                   [] {
+                     instance().runs_ = false;
+                     instance().watched_ = {};
+                     ++generation;
+                     instance().mutex_.unlock();
+                   });
+  }
+
+  void start() {
+    sigset_t all;
+    sigset_t before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);  // the new thread takes no signal from the others
+    try {
+      std::thread([this] { run(); }).detach();
+      runs_ = true;
+    } catch (const std::system_error&) {
+      // Without a thread an endless loop is not found; all else works.
+    }
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  }
+
+  void run() {
+    while (true) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      const std::lock_guard lock(mutex_);
+      for (Watched& watched : watched_) {
+        if (watched.guard != nullptr) {
+          look_at(watched);
+        }
+      }
+    }
+  }
+
+  static void look_at(Watched& watched) {
+    ThreadGuard& guard = *watched.guard;
+    const std::uint64_t call = guard.call;
+    clockid_t clock = 0;
+    if (!guard.is_active || pthread_getcpuclockid(guard.thread, &clock) != 0) {
+      return;
+    }
+    const double cpu_s = seconds(clock);
+    const double wall_s = seconds(CLOCK_MONOTONIC);
+    if (call != watched.call) {
+      watched.call = call;
+      watched.cpu_s = cpu_s;
+      watched.wall_s = wall_s;
+    } else if (cpu_s - watched.cpu_s > longest_call_cpu_s || wall_s - watched.wall_s > longest_call_wall_s) {
+      guard.expired = call;
+      pthread_kill(guard.thread, time_out_signal);
+    }
+  }
+
+  std::mutex mutex_;
+  std::array<Watched, 64> watched_{};
+  bool runs_ = false;
+};
+
+void catch_signals() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    previous_terminate = std::set_terminate(on_terminate);
+    struct sigaction action {};
+    action.sa_sigaction = on_signal;
+    // After a jump out of the handler the signal must not be blocked, and a full stack has no room for the handler.
+    action.sa_flags = SA_SIGINFO | SA_ONSTACK | SA_NODEFER | SA_RESTART;
+    for (const int signal : caught_signals) {
+      sigaction(signal, &action, &previous_actions[static_cast<std::size_t>(signal)]);
+    }
+  });
+}
+
+/// The guard of a thread, from its first guarded call to its end.
+class GuardOwner {
+ public:
+  GuardOwner() {
+    catch_signals();
+    stack_t present{};
+    sigaltstack(nullptr, &present);
+    if ((present.ss_flags & SS_DISABLE) != 0) {
+      void* const memory = mmap(nullptr, signal_stack_size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+      if (memory != MAP_FAILED) {
+        stack_ = memory;
+        stack_t stack{};
+        stack.ss_sp = memory;
+        stack.ss_size = signal_stack_size;
+        sigaltstack(&stack, nullptr);
+      }
+    }
+    current_guard = &guard_;
+  }
+  ~GuardOwner() {
+    current_guard = nullptr;
+    Watchdog::instance().forget(guard_);
+    if (stack_ != nullptr) {
+      stack_t none{};
+      none.ss_flags = SS_DISABLE;
+      sigaltstack(&none, nullptr);
+      munmap(stack_, signal_stack_size);
+    }
+  }
+  GuardOwner(const GuardOwner&) = delete;
+  GuardOwner& operator=(const GuardOwner&) = delete;
+
+  ThreadGuard& guard() {
+    if (guard_.generation != generation) {
+      guard_.thread = pthread_self();
+      Watchdog::instance().watch(guard_);
+    }
+    return guard_;
+  }
+
+ private:
+  ThreadGuard guard_;
+  void* stack_ = nullptr;
+};
+
+std::string text_of(const ThreadGuard& guard) {
+  switch (guard.signal) {
+    case SIGSEGV:
+    case SIGBUS: {
+      std::array<char, 32> address{};
+      std::snprintf(address.data(), address.size(), "%p", guard.address);
+      return std::string("uses memory that does not exist or is not its own, at the address ") +
+             (guard.address == nullptr ? "0" : address.data());
+    }
+    case SIGFPE:
+      return "divides by zero, or the result of a division is too large";
+    case SIGILL:
+      return "executes an instruction that this processor does not have";
+    case SIGABRT:
+      return guard.is_terminated ? "throws an exception out of a function that is noexcept" : "calls abort()";
+    default:
+      return "does not return within a second of processor time: an endless loop?";
+  }
+}
+
+enum class End : std::uint8_t { returned, exception, signal };
+
+/// Has no objects with destructors: a signal leaves it in the middle.
+[[gnu::noinline]] End enter(ThreadGuard& guard, void (*function)(void*), void* context) {
+  if (sigsetjmp(guard.jump, 0) != 0) {
+    return End::signal;
+  }
+  ++guard.call;
+  guard.is_terminated = false;
+  guard.is_active = true;
+  try {
+    function(context);
+    guard.is_active = false;
+    return End::returned;
+  } catch (const std::exception& error) {
+    std::snprintf(guard.exception.data(), guard.exception.size(), "%s", error.what());
+  } catch (...) {
+    guard.exception[0] = '\0';
+  }
+  guard.is_active = false;
+  return End::exception;
+}
+
+}  // namespace
+
+unsigned process_generation() { return generation; }
+
+bool run_guarded(void (*function)(void*), void* context, CallFailure& failure) {
+  thread_local GuardOwner owner;
+  ThreadGuard& guard = owner.guard();
+  switch (enter(guard, function, context)) {
+    case End::returned:
+      return true;
+    case End::exception:
+      failure = {guard.exception[0] == '\0' ? "throws an exception"
+                                            : std::string("throws an exception: ") + guard.exception.data(),
+                 nullptr};
+      return false;
+    case End::signal:
+      break;
+  }
+  failure = {text_of(guard), guard.signal == SIGSEGV || guard.signal == SIGBUS ? guard.address : nullptr};
+  return false;
+}
+
+}  // namespace proleg

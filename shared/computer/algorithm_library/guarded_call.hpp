@@ -1,0 +1,35 @@
+#pragma once
+
+// Calls of code that nobody has checked: a mistake in it ends the call, not the program.
+
+#include <string>
+#include <type_traits>
+
+namespace proleg {
+
+/// How a call failed.
+struct CallFailure {
+  std::string text;               ///< "calls abort()"; without the name of what was called
+  const void* address = nullptr;  ///< of a bad access to memory
+};
+
+/// Processor time after which a call counts as an endless loop, and time after which it counts as stuck.
+inline constexpr double longest_call_cpu_s = 1.0;
+inline constexpr double longest_call_wall_s = 20.0;
+
+/// Increases in the child of a fork(): what a thread had set up in the parent is not valid there.
+[[nodiscard]] unsigned process_generation();
+
+/// Calls function(context). Returns false if it throws, breaks a rule of the processor (SIGSEGV, SIGBUS, SIGFPE,
+/// SIGILL), calls abort(), or takes too long; `failure` says which. What the function had locked or allocated is then
+/// lost: do not call its code again. Does not protect from code that overwrites memory of the program, or calls exit().
+/// Calls may not be nested. Any thread may call it.
+[[nodiscard]] bool run_guarded(void (*function)(void*), void* context, CallFailure& failure);
+
+template <typename Function>
+[[nodiscard]] bool run_guarded(Function&& function, CallFailure& failure) {
+  using Callable = std::remove_reference_t<Function>;
+  return run_guarded([](void* context) { (*static_cast<Callable*>(context))(); }, &function, failure);
+}
+
+}  // namespace proleg

@@ -1,0 +1,404 @@
+#!/usr/bin/env python3
+"""A user writes an algorithm outside of the tree, runs it, and makes every mistake that it can have.
+
+Usage: user_algorithms_test.py SOURCE_FOLDER PROGRAM_FOLDER
+"""
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SOURCE = Path(sys.argv[1])
+PROGRAMS = Path(sys.argv[2])
+LONGEST = 400  # seconds
+NAME = "steep_wave"
+BAD_TICK = 100
+BAD_JOINT = 2
+
+# What goes wrong in advance(), at one tick of one joint, and what the message says.
+MISTAKES = {
+    "throws": ("throw std::runtime_error(\"no idea\");", "throws an exception: no idea"),
+    "throws_a_number": ("throw 7;", "throws an exception"),
+    "null": ("*volatile_null = 1;", "uses memory that does not exist or is not its own, at the address 0"),
+    "loop": ("for (volatile int i = 0;; i = i + 1) {}", "does not return within a second of processor time"),
+    "writes_behind": ("for (int i = 0; i < 4; ++i) { next[i] = i; }",
+                      "uses elements of its array 'next' that do not exist (it has 3)"),
+    "writes_in_front": ("next[-1] = 1;", "writes in front of its array 'next'"),
+    "reads_behind": ("next[0] = state[5];", "uses elements of its array 'state' that do not exist (it has 3)"),
+    "reads_far_behind": ("next[0] = tuning.parameters[500];",
+                         "uses elements of its array 'parameters' that do not exist (it has 4)"),
+    "changes_its_state": ("const_cast<std::int32_t*>(state)[0] = 1;",
+                          "writes to its array 'state', which it may only read"),
+    "divides_by_zero": ("volatile int quotient = state[0] / volatile_zero;", "divides by zero"),
+    "aborts": ("std::abort();", "calls abort()"),
+    "overflows_the_stack": ("next[0] = deep(volatile_zero);", "uses memory that does not exist or is not its own"),
+    "ends_in_terminate": ("[]() noexcept { throw 7; }();", "throws an exception out of a function that is noexcept"),
+}
+
+TOOLS = """
+#include <cstdlib>
+#include <stdexcept>
+namespace {
+int* volatile volatile_null = nullptr;
+volatile int volatile_zero = 0;
+int deep(int n) { volatile char room[4096]; room[0] = 1; return n > 1'000'000'000 ? n : deep(n + room[0]) + room[0]; }
+}
+"""
+
+
+def proleg(name, *arguments, cwd=None):
+    return subprocess.run([PROGRAMS / f"proleg-{name}", *map(str, arguments)], capture_output=True, text=True,
+                          timeout=LONGEST, cwd=cwd)
+
+
+class UserAlgorithms(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+        cls.algorithm = cls.folder / NAME
+        made = proleg("new", "algorithm", NAME, "--out", cls.algorithm)
+        assert made.returncode == 0, made.stderr
+        cls.build = cls.algorithm / "build"
+        for command in (["cmake", "-S", cls.algorithm, "-B", cls.build, "-G", "Ninja"], ["cmake", "--build", cls.build]):
+            done = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST)
+            assert done.returncode == 0, done.stdout + done.stderr
+        cls.library = cls.build / f"{NAME}.so"
+        cls.scenario = cls.algorithm / "robot/robot.simulation.xml"
+        cls.source = (cls.algorithm / f"{NAME}.cpp").read_text()
+        cls.wrapper = (cls.build / f"{NAME}.algorithm.cpp").read_text()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def compile(self, name, source=None, wrapper=None):
+        """A library from other sources."""
+        file = self.folder / f"{name}.cpp"
+        file.write_text(self.source if source is None else source)
+        outer = self.folder / f"{name}.library.cpp"
+        outer.write_text((wrapper or self.wrapper).replace(str(self.algorithm / f"{NAME}.cpp"), str(file)))
+        library = self.folder / f"{name}.so"
+        done = subprocess.run(["g++", "-std=c++20", "-O1", "-fPIC", "-shared", "-fno-rtti", "-fvisibility=hidden", "-w",
+                               "-I", SOURCE, outer, self.build / "libproleg_core.a", "-Wl,--exclude-libs,ALL", "-o",
+                               library], capture_output=True, text=True, timeout=LONGEST)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return library
+
+    def with_mistake(self, name, mistake):
+        """The algorithm with a mistake at a tick of a joint."""
+        begin = "std::int32_t* next) const override {\n"
+        self.assertEqual(self.source.count(begin), 1)
+        source = self.source.replace("Surroundings& /*surroundings*/, const Tuning& tuning, const std::int32_t* state,\n",
+                                     "Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,\n")
+        source = source.replace(begin, begin + f"if (surroundings.tick == {BAD_TICK} && surroundings.context.joint == "
+                                               f"{BAD_JOINT}) {{ {mistake} }}\n")
+        return self.compile(name, TOOLS + source)
+
+    def simulate(self, library, *options, program="simulate"):
+        return proleg(program, self.scenario, "--algorithms", library, *options)
+
+    def assert_one_line(self, result, *parts):
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        for part in parts:
+            self.assertIn(str(part), result.stderr)
+
+    # The way of a user.
+
+    def test_the_template_moves_a_robot_and_follows_its_equation(self):
+        test = subprocess.run(["ctest", "--test-dir", self.build, "--output-on-failure"], capture_output=True, text=True,
+                              timeout=LONGEST)
+        self.assertEqual(test.returncode, 0, test.stdout)
+        result = self.simulate(self.library, "--seconds", "10", "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertGreater(json.loads(result.stdout)["displacement_m"], 0.3)
+
+    def test_modules_compute_what_the_simulation_does(self):
+        simulated = json.loads(self.simulate(self.library, "--seconds", "4", "--json").stdout)
+        result = self.simulate(self.library, "--seconds", "4", "--losses", "7:5%", "--json", program="hil")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        native = json.loads(self.simulate(self.library, "--seconds", "4", "--json", program="hil").stdout)
+        self.assertEqual(native["setpoint_hash"], simulated["setpoint_hash"])
+
+    def test_a_recording_is_recomputed_with_the_library_and_read_without(self):
+        recording = self.folder / "run.proleg"
+        self.assertEqual(self.simulate(self.library, "--seconds", "1", "--record", recording).returncode, 0)
+        replayed = proleg("replay", recording, "--algorithms", self.library)
+        self.assertEqual(replayed.returncode, 0, replayed.stderr)
+        self.assertIn("differences       0", replayed.stdout)
+        without = proleg("replay", recording)
+        self.assertEqual(without.returncode, 2)
+        self.assert_one_line(without, f"found algorithm '{NAME}'", "expected an algorithm that this program has")
+        self.assertEqual(proleg("plot", recording, "--out", self.folder / "run.svg").returncode, 0)
+        self.assertEqual(self.recorded_ticks(recording), 100)
+
+    def recorded_ticks(self, recording):
+        table = proleg("export", recording, "--out", "-")
+        self.assertEqual(table.returncode, 0, table.stderr)
+        return sum(line[0].isdigit() for line in table.stdout.splitlines())
+
+    def test_parameters_are_those_of_the_declaration(self):
+        listed = proleg("algorithms", NAME, "--algorithms", self.library)
+        self.assertIn("steepness, 0 to 1, default 0.25", listed.stdout)
+        result = self.simulate(self.library, "--seconds", "0.1", "--set", "steepness=2")
+        self.assertEqual(result.returncode, 2)
+        self.assert_one_line(result, "steepness")
+
+    def test_workers_of_a_search_have_it(self):
+        result = self.optimise(self.library, self.folder / "search")
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def optimise(self, library, out):
+        return proleg("optimise", self.experiment(), "--algorithms", library, "--workers", "2", "--out", out)
+
+    def experiment(self):
+        file = self.algorithm / "search.optimise.xml"
+        file.write_text(f"""<cmaEs>
+  <simulation>robot/robot.simulation.xml</simulation>
+  <properties>
+    <popsize>6</popsize>
+    <generations>2</generations>
+    <numOfParametersToOptimize>1</numOfParametersToOptimize>
+    <registeredParameters>
+      <parameter number="0" controlAlgorithm="{NAME}" parameter="steepness"/>
+    </registeredParameters>
+  </properties>
+  <genome>
+    <genomeConfig number="0" allJoints="1" genomeType="1" valueType="1" valueSpace="1" activeJoints="11111">
+      <lowerBounds>0</lowerBounds>
+      <upperBounds>1</upperBounds>
+      <boundsIncrements>0.1</boundsIncrements>
+      <lowerBoundTypes>1</lowerBoundTypes>
+      <upperBoundTypes>1</upperBoundTypes>
+      <uniform>0</uniform>
+    </genomeConfig>
+  </genome>
+  <fitness><objective measure="distance"/></fitness>
+  <evaluation>
+    <evaluations>12</evaluations>
+    <seed>1</seed>
+  </evaluation>
+</cmaEs>
+""")
+        return file
+
+    # Names and folders.
+
+    def test_new_refuses_what_it_cannot_make(self):
+        existing = self.folder / "existing"
+        existing.mkdir(exist_ok=True)
+        for arguments, part in ((("9lives",), "9lives"), (("a-b",), "a-b"), (("",), "NAME"), (("class",), "C++"),
+                                (("x" * 41,), "letters"), (("my_test",), "_test"),
+                                (("PatternGenerator_sinusoidal",), "built-in"), (("directjointaccess",), "built-in"),
+                                (("wave", "--out", existing), "existing"), (("wave", "--id", "95"), "96 to 126"),
+                                (("wave", "--id", "127"), "96 to 126"), (("wave", "--source", existing), "--source")):
+            with self.subTest(arguments):
+                result = proleg("new", "algorithm", *arguments, cwd=self.folder)
+                self.assertEqual(result.returncode, 2)
+                self.assert_one_line(result, part)
+        self.assertFalse((self.folder / "wave").exists(), "nothing was written")
+
+    def test_without_the_library_the_scenario_names_the_algorithm(self):
+        for program, options in (("simulate", ()), ("hil", ()), ("bus", ("--pty",))):
+            result = proleg(program, self.scenario, *options)
+            self.assertEqual(result.returncode, 2)
+            self.assert_one_line(result, "robot.actuation.xml:4", f"unknown algorithm '{NAME}'")
+
+    # Mistakes while the robot moves.
+
+    def test_each_mistake_is_one_line_and_keeps_the_run_before_it(self):
+        for name, (mistake, text) in MISTAKES.items():
+            with self.subTest(name):
+                library = self.with_mistake(name, mistake)
+                recording = self.folder / f"{name}.proleg"
+                result = self.simulate(library, "--seconds", "5", "--record", recording)
+                self.assertEqual(result.returncode, 1, result.stderr)
+                self.assert_one_line(result, f"proleg simulate: {library}: the algorithm '{NAME}' ", text,
+                                     f"in advance() at tick {BAD_TICK}, joint {BAD_JOINT} (0 is at the head)",
+                                     f"what was simulated is in {recording}")
+                self.assertEqual(self.recorded_ticks(recording), BAD_TICK, "the ticks before it")
+
+    def test_modules_report_it_too(self):
+        result = self.simulate(self.with_mistake("hil", MISTAKES["null"][0]), "--seconds", "5", program="hil")
+        self.assertEqual(result.returncode, 1)
+        self.assert_one_line(result, f"the algorithm '{NAME}' uses memory", f"at tick {BAD_TICK}, joint {BAD_JOINT}")
+
+    def test_a_mistake_in_output_names_the_joint(self):
+        begin = "const std::int32_t* state) const override {\n    const auto theta"
+        self.assertEqual(self.source.count(begin), 1)
+        library = self.compile("output", self.source.replace(
+            begin, begin.replace("\n", "\n    if (state[0] == state[40]) { return 1; }\n")))
+        result = self.simulate(library, "--seconds", "5")
+        self.assertEqual(result.returncode, 1)
+        self.assert_one_line(result, "uses elements of its array 'state'", "in output()", "joint 0")
+
+    def test_a_mistake_ends_a_search_and_keeps_its_store(self):
+        out = self.folder / "failed_search"
+        result = self.optimise(self.with_mistake("search", MISTAKES["throws"][0]), out)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn(f"the algorithm '{NAME}' throws an exception: no idea", result.stderr)
+        self.assertTrue(any(out.iterdir()))
+
+    # Libraries that cannot be used.
+
+    def test_bad_libraries_are_named_before_anything_runs(self):
+        export = "const proleg::AlgorithmInterface proleg_algorithm_interface ="
+        self.assertIn(export, self.wrapper)
+        text = self.folder / "text.so"
+        text.write_text("no library\n")
+        plain = self.folder / "plain.so"
+        subprocess.run(["g++", "-shared", "-fPIC", "-x", "c++", "/dev/null", "-o", plain], check=True)
+
+        def changed(name, change):
+            wrapper = re.sub(r"(const proleg::AlgorithmInterface proleg_algorithm_interface =)\s*(proleg::interface_of.*?);",
+                             r"\1 [] { auto made = \2; " + change + r" return made; }();", self.wrapper, flags=re.S)
+            return self.compile(name, wrapper=wrapper)
+
+        def other(name, old, new):
+            self.assertIn(old, self.source)
+            return self.compile(name, self.source.replace(old, new))
+
+        with_id = re.search(r"\n    (\d+), \"" + NAME, self.source).group(1)
+        cases = {
+            "missing": (self.folder / "missing.so", "found no such file"),
+            "folder": (self.folder, "found no such file"),
+            "text": (text, "found no library that can be loaded"),
+            "no_symbol": (plain, "found no object proleg_algorithm_interface"),
+            "version": (changed("version", "made.version = 2;"),
+                        "found version 2 of the interface of algorithms, expected version 1"),
+            "layout": (changed("layout", "made.layout[2] += 8;"), "bytes of Declaration, expected"),
+            "core": (changed("core", "made.core ^= 1;"), "found a library for the core"),
+            "mark": (changed("mark", "made.mark[0] = 'x';"), "found another object"),
+            "sources": (changed("sources", "made.sources ^= 1;"), "PROLEG_ALGORITHM_SOURCES"),
+            "id": (other("id", f"\n    {with_id}, \"{NAME}\"", f"\n    12, \"{NAME}\""), "found algorithm id 12"),
+            "built_in": (other("built_in", f"{with_id}, \"{NAME}\"", f"{with_id}, \"PatternGenerator_sinusoidal\""),
+                         "expected another name and id than those of 'PatternGenerator_sinusoidal'"),
+            "range": (other("range", "raw(Unit::ratio, 1, 4), 0,", "raw(Unit::ratio, 1, 4), raw(Unit::ratio, 1, 2),"),
+                      "parameter 'steepness' with minimum"),
+            "name": (other("name", '"steepness"', '"amplitude"'), "two parameters with the name 'amplitude'"),
+            "frame": (other("frame", "current_phase, 4}}", "current_phase, 4}, FrameField{9, 1}}"),
+                      "the internal value number 9"),
+            "constructor": (self.compile("constructor", self.source + "\n#include <cstdlib>\n"
+                                         "static const int dead = (std::abort(), 1);\n"),
+                            "found a library that, while it is loaded, calls abort()"),
+        }
+        for name, (library, text) in cases.items():
+            with self.subTest(name):
+                recording = self.folder / f"bad_{name}.proleg"
+                result = self.simulate(library, "--record", recording)
+                self.assertEqual(result.returncode, 2, result.stderr)
+                self.assert_one_line(result, f"proleg simulate: {library}: ", text)
+                self.assertFalse(recording.exists())
+        twice = self.simulate(self.library, "--algorithms", self.library)
+        self.assertEqual(twice.returncode, 2)
+        self.assert_one_line(twice, f"expected another name and id than those of '{NAME}'")
+
+
+class Verify(unittest.TestCase):
+    """Proofs take a quarter of a minute each, and more the first time."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.algorithm = Path(temporary.name) / NAME
+        self.assertEqual(proleg("new", "algorithm", NAME, "--out", self.algorithm).returncode, 0)
+        self.file = self.algorithm / f"{NAME}.cpp"
+
+    def change(self, old, new):
+        text = self.file.read_text()
+        self.assertEqual(text.count(old), 1, old)
+        self.file.write_text(text.replace(old, new))
+
+    def test_the_template_is_verified(self):
+        result = proleg("verify", self.algorithm, "--cases", "5")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        for row in ("g++ -O0", "g++ -O2", "clang++ -O0", "clang++ -O2", "Cortex-M4", "Cortex-M0"):
+            self.assertRegex(result.stdout, re.escape(row) + r" +five +[0-9a-f]{12} +[0-9a-f]{12} +equal")
+        self.assertRegex(result.stdout, r"cost +\d+ instructions a tick at worst")
+        self.assertRegex(result.stdout, r"stack +\d+ bytes at most")
+
+    def test_floating_point_and_variables_are_found(self):
+        self.change("next[current_phase] = add_wrapping(", "static int calls = 0;\n    calls += 1;\n    "
+                    "next[current_phase] = calls + static_cast<std::int32_t>(0.3F * static_cast<float>(state[0])) + "
+                    "add_wrapping(")
+        result = proleg("verify", self.algorithm, "--cases", "2")
+        self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
+        self.assertIn("uses floating point (__aeabi_f", result.stdout)
+        self.assertIn("keeps a value in the variable", result.stdout)
+        self.assertIn("NOT verified", result.stdout)
+
+    def test_random_numbers_of_the_library_are_found(self):
+        self.change("namespace proleg::user {\nnamespace {", "#include <cstdlib>\nnamespace proleg::user {\nnamespace {")
+        self.change("next[current_phase] = add_wrapping(", "next[current_phase] = std::rand() + add_wrapping(")
+        result = proleg("verify", self.algorithm, "--cases", "2")
+        self.assertEqual(result.returncode, 1, result.stdout + result.stderr)
+        self.assertIn("uses rand, which is not of the core", result.stdout)
+        self.assertIn("DIFFERS: case 0, tick ", result.stdout)
+
+    def test_a_source_that_does_not_compile_is_one_line(self):
+        self.change("return instance;", "return instanse;")
+        result = proleg("verify", self.algorithm)
+        self.assertEqual(result.returncode, 2)
+        line = [each for each in result.stderr.splitlines() if each.startswith("proleg verify:")]
+        self.assertEqual(len(line), 1, result.stderr)
+        self.assertIn(f"{NAME}.cpp:", line[0])
+
+    def test_a_missing_compiler_is_named(self):
+        tools = self.algorithm.parent / "tools"
+        tools.mkdir()
+        for name in ("cmake", "ninja", "sh", "g++", "c++", "cc", "gcc", "ld", "as", "ar", "ranlib"):
+            if path := shutil.which(name):
+                (tools / name).symlink_to(path)
+        for options, status in (((), 1), (("--leave-out-missing",), 0)):
+            result = subprocess.run([PROGRAMS / "proleg-verify", self.algorithm, "--cases", "1", *options],
+                                    capture_output=True, text=True, timeout=LONGEST, env={"PATH": str(tools)})
+            self.assertEqual(result.returncode, status, result.stdout + result.stderr)
+            self.assertRegex(result.stdout, r"clang\+\+ -O2 .* not run: no clang\+\+")
+            self.assertRegex(result.stdout, r"Cortex-M4 .* not run: no arm-none-eabi-g\+\+")
+
+
+class Image(unittest.TestCase):
+    """The algorithm in the image that is flashed."""
+
+    def build(self, folder, algorithms):
+        for command in (["cmake", "--preset", "stm32f405", "-B", folder, f"-DPROLEG_USER_ALGORITHMS={algorithms}"],
+                        ["cmake", "--build", folder, "--target", "proleg_stm32f405", "proleg_boot_stm32f405"]):
+            done = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST, cwd=SOURCE)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return folder / "bin/proleg_stm32f405.elf"
+
+    def test_virtual_chips_crawl_with_it_and_refuse_it_where_they_do_not_have_it(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            algorithm = folder / NAME
+            self.assertEqual(proleg("new", "algorithm", NAME, "--out", algorithm).returncode, 0)
+            for command in (["cmake", "-S", algorithm, "-B", algorithm / "build", "-G", "Ninja"],
+                            ["cmake", "--build", algorithm / "build"]):
+                subprocess.run(command, check=True, capture_output=True, timeout=LONGEST)
+            run = ("hil", algorithm / "robot/robot.simulation.xml", "--algorithms", algorithm / f"build/{NAME}.so",
+                   "--modules", "mcu", "--seconds", "3", "--image")
+            image = self.build(folder / "image", algorithm)
+            result = proleg(*run, image)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertIn("differences       0 against the gait in memory", result.stdout)
+
+            source = algorithm / f"{NAME}.cpp"
+            source.write_text(source.read_text().replace("a sine with a second harmonic", "another sine"))
+            subprocess.run(["cmake", "--build", algorithm / "build"], check=True, capture_output=True, timeout=LONGEST)
+            result = proleg(*run, image)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn("found one of other sources (0x", result.stderr)
+            self.assertIn(f"expected the algorithm '{NAME}'", result.stderr)
+
+            result = proleg(*run, self.build(folder / "image", ""))
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(f"found none, expected the algorithm '{NAME}'", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])

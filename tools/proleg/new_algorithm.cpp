@@ -1,0 +1,213 @@
+#include "tools/proleg/new_algorithm.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <span>
+#include <string>
+#include <system_error>
+
+#include "shared/computer/errors/input_error.hpp"
+#include "shared/computer/output/output.hpp"
+#include "shared/computer/text/text.hpp"
+#include "shared/fixed/crc32.hpp"
+#include "shared/gait/registry.hpp"
+#include "tools/proleg/algorithm_files.hpp"
+#include "tools/proleg/command_line.hpp"
+#include "tools/proleg/source_tree.hpp"
+
+namespace proleg::tools {
+namespace {
+
+struct AlgorithmOptions {
+  std::string name;
+  std::optional<std::string> out;
+  std::optional<std::string> id;
+  std::string source;
+};
+
+constexpr std::size_t longest_name = 40;
+
+/// Words that C++ or the example needs: a function of that name does not compile.
+constexpr std::array reserved{"about",
+                              "alignas",
+                              "alignof",
+                              "and",
+                              "asm",
+                              "auto",
+                              "bool",
+                              "break",
+                              "case",
+                              "catch",
+                              "char",
+                              "class",
+                              "concept",
+                              "const",
+                              "continue",
+                              "decltype",
+                              "default",
+                              "delete",
+                              "do",
+                              "double",
+                              "else",
+                              "enum",
+                              "explicit",
+                              "export",
+                              "extern",
+                              "false",
+                              "float",
+                              "for",
+                              "frame",
+                              "friend",
+                              "goto",
+                              "if",
+                              "inline",
+                              "instance",
+                              "int",
+                              "long",
+                              "main",
+                              "mutable",
+                              "namespace",
+                              "new",
+                              "noexcept",
+                              "not",
+                              "nullptr",
+                              "operator",
+                              "or",
+                              "private",
+                              "proleg",
+                              "protected",
+                              "public",
+                              "register",
+                              "requires",
+                              "return",
+                              "short",
+                              "signed",
+                              "sizeof",
+                              "static",
+                              "struct",
+                              "switch",
+                              "template",
+                              "this",
+                              "throw",
+                              "true",
+                              "try",
+                              "typedef",
+                              "typename",
+                              "union",
+                              "unsigned",
+                              "user",
+                              "using",
+                              "virtual",
+                              "void",
+                              "volatile",
+                              "while",
+                              "xor",
+                              "Algorithm",
+                              "Parameter",
+                              "amplitude",
+                              "frequency",
+                              "sine",
+                              "steepness",
+                              "parameters",
+                              "proleg_core",
+                              "tested_algorithm",
+                              "internal_values",
+                              "phase_difference",
+                              "test",
+                              "all",
+                              "clean",
+                              "help",
+                              "install"};
+
+void check_name(const std::string& name) {
+  const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
+  const bool well_formed =
+      !name.empty() && name.size() <= longest_name && is_letter(name.front()) &&
+      std::ranges::all_of(name, [&](char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_'; });
+  if (!well_formed || name.ends_with("_test") || name.find("__") != std::string::npos) {
+    throw InputError("NAME", 0, in_quotes(name),
+                     "a letter, then up to " + std::to_string(longest_name - 1) +
+                         " letters, digits and single _, that does not end in _test");
+  }
+  if (std::ranges::find(reserved, name) != reserved.end()) {
+    throw InputError("NAME", 0, in_quotes(name), "a name that C++ or the example does not use");
+  }
+  for (std::size_t i = 0; i < algorithm_count(); ++i) {
+    if (lower_case(algorithm_at(i).declaration().name) == lower_case(name)) {
+      throw InputError("NAME", 0, in_quotes(name) + ", a built-in algorithm", "another name");
+    }
+  }
+}
+
+/// By default a number that follows from the name, so that two algorithms seldom have the same one.
+std::uint8_t choose_id(const AlgorithmOptions& options) {
+  if (!options.id) {
+    const std::span bytes(reinterpret_cast<const std::uint8_t*>(options.name.data()), options.name.size());
+    return static_cast<std::uint8_t>(first_user_id + crc32(bytes) % max_user_algorithms);
+  }
+  const std::optional<unsigned> id = parse_whole<unsigned>(*options.id);
+  if (!id || *id > last_user_id || !is_user_algorithm(static_cast<std::uint8_t>(*id))) {
+    throw InputError("--id", 0, in_quotes(*options.id),
+                     std::to_string(first_user_id) + " to " + std::to_string(last_user_id));
+  }
+  return static_cast<std::uint8_t>(*id);
+}
+
+void create_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw BadInput("cannot create the folder " + folder.string() + ": " + error.message());
+  }
+}
+
+int write_algorithm(const AlgorithmOptions& options) {
+  check_name(options.name);
+  const std::string out = options.out.value_or(options.name);
+  if (out.empty()) {
+    throw InputError("--out", 0, "an empty name", "the name of a folder");
+  }
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::absolute(out).lexically_normal();
+  if (std::filesystem::exists(std::filesystem::symlink_status(folder, error))) {
+    throw BadInput(folder.string() + ": found an existing folder or file, expected none; --out FOLDER names another");
+  }
+  const std::filesystem::path tree = source_tree(options.source);
+  if (const std::string text = folder.string(); text.find_first_of(";\"\\$ \t\n") != std::string::npos) {
+    throw InputError("--out", 0, in_quotes(text),
+                     "a folder without blanks and ; \" \\ $, which CMake treats specially");
+  }
+  for (const NewFile& file : algorithm_files({options.name, choose_id(options), folder.string(), tree.string()})) {
+    const std::filesystem::path path = folder / file.name;
+    create_folder(path.parent_path());
+    write_file(path, file.text);
+    std::cout << "written  " << path.string() << '\n';
+  }
+  std::cout << "build it:  cmake -S " << folder.string() << " -B " << (folder / "build").string()
+            << " -G Ninja && cmake --build " << (folder / "build").string() << '\n'
+            << "then run:  proleg simulate " << (folder / "robot/robot.simulation.xml").string() << " --algorithms "
+            << (folder / "build" / (options.name + ".so")).string() << '\n';
+  return exit_success;
+}
+
+}  // namespace
+
+int new_algorithm(int argc, char** argv) {
+  CommandLine command_line("proleg new algorithm",
+                           "Writes the folder of an actuation algorithm of your own: one source with a small example, "
+                           "its test, a CMake file, and a robot that it moves (docs/user-algorithms.md).");
+  AlgorithmOptions options;
+  command_line.add_option("NAME", options.name, "of the algorithm: letters, digits and _").required().value_name("");
+  command_line.add_option("--out", options.out, "the folder, which must not exist; by default NAME")
+      .value_name("FOLDER");
+  command_line.add_option("--id", options.id, "of the algorithm, 96 to 126; by default one that follows from NAME")
+      .value_name("N");
+  command_line.add_option("--source", options.source, "checkout of Proleg; by default the one of this program")
+      .value_name("FOLDER");
+  return command_line.run(argc, argv, [&] { return write_algorithm(options); });
+}
+
+}  // namespace proleg::tools

@@ -14,6 +14,7 @@ constexpr const ActuationModule& (*algorithms[])() = {
     pattern_generator_sinusoidal_extended,
     pattern_generator_coupled_oscillator,
     sensing_module_uneven_ground_reflex,
+    pattern_generator_head_stimulus,
 };
 
 }  // namespace

@@ -40,6 +40,9 @@ constexpr std::array<MeasureDeclaration, measure_count> declarations{{
      "share of the time in which a servo is at its speed limit"},
     {Measure::at_torque_limit, "at_torque_limit", "", false, false,
      "share of the time in which a servo is at its torque limit"},
+    {Measure::largest_acceleration, "largest_acceleration", "m/s^2", false, false,
+     "largest acceleration of the centre of mass"},
+    {Measure::mean_current, "mean_current", "mA", false, false, "mean current of a servo; an estimate"},
 }};
 
 constexpr bool in_order() {

@@ -38,8 +38,10 @@ enum class Measure : std::uint8_t {
   max_tracking_error,
   at_speed_limit,
   at_torque_limit,
+  largest_acceleration,
+  mean_current,
 };
-inline constexpr std::size_t measure_count = 22;
+inline constexpr std::size_t measure_count = 24;
 
 struct MeasureDeclaration {
   Measure measure;

@@ -10,6 +10,7 @@
 #include "shared/kernel/kernel.hpp"
 #include "sim/record/internal_values.hpp"
 #include "sim/record/recording_rows.hpp"
+#include "sim/record/recording_sensors.hpp"
 #include "sim/record/schema.hpp"
 
 namespace proleg::sim {
@@ -69,6 +70,7 @@ Recording::Recording(const std::filesystem::path& path) : path_(path) {
     read_run();
     read_robot();
     read_slots();
+    sensors_ = read_sensor_tables(tables_->database, links_.size());
   });
 }
 
@@ -293,6 +295,8 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
   std::optional<Rows> values;
   std::optional<Rows> poses;
   std::optional<Rows> contacts;
+  std::optional<SensorRows> sensors;
+  std::optional<ReadingRows> readings;
   reading(path_, [&] {
     samples.emplace(
         database, "sample",
@@ -311,6 +315,8 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
                      "SELECT tick, link, rear, front, normal_force_n FROM contact "
                      "WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, link",
                      first, last);
+    sensors.emplace(database, sensors_, first, last, tick.sensor_values);
+    readings.emplace(database, joints_.size(), first, last, tick.readings);
   });
   for (tick.tick = first; tick.tick <= last; ++tick.tick) {
     reading(path_, [&] {
@@ -335,6 +341,8 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
             static_cast<std::uint8_t>((natural(contact, 2) & 1U) | (natural(contact, 3) & 1U) << 1U);
         tick.contact_forces[link] = finite(contact, 4);
       }
+      sensors->read(tick.tick, tick.sensor_values);
+      readings->read(tick.tick, tick.readings);
     });
     use(tick);
   }

@@ -55,6 +55,8 @@ sim::TickSample Mirror::follow(const sim::TickSample& real) {
   sample.motor_torques = plant_.motor_torques();
   sample.servo_currents = plant_.servo_currents();
   sample.contact_forces = plant_.contact_forces();
+  sample.sensor_values = plant_.sensors().values();
+  sample.measured_sensors = plant_.sensors().measured();
   return sample;
 }
 

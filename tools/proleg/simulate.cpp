@@ -68,7 +68,8 @@ Result run(const ScenarioRun& setup, sim::Simulation& simulation, sim::Recorder*
           measures_of(simulation.plant().meter())};
 }
 
-void print_json(const ScenarioOptions& options, const ScenarioRun& setup, const Result& result) {
+void print_json(const ScenarioOptions& options, const ScenarioRun& setup, const Result& result,
+                const sim::AttachedSensors& sensors) {
   const Json object{{"scenario", options.file},
                     {"seed", setup.scenario.kernel.seed},
                     {"overrides", overrides_object(setup.scenario.overrides)},
@@ -85,12 +86,13 @@ void print_json(const ScenarioOptions& options, const ScenarioRun& setup, const 
                     {"measures", measures_object(result.measures.values)},
                     {"link_duty_factors", result.measures.link_duty_factors},
                     {"servos", servos_array(result.measures, setup.scenario.robot)},
+                    {"sensors", sensors_array(sensors)},
                     {"recording", options.record.value_or("")},
                     {"build_id", build_id}};
   std::cout << object.text() << '\n';
 }
 
-void print_table(const ScenarioOptions& options, const Result& result) {
+void print_table(const ScenarioOptions& options, const Result& result, const sim::AttachedSensors& sensors) {
   std::printf("displacement      %.4f m in %.2f s\n", result.displacement_m, result.simulated_s);
   std::printf("real-time factor  %.1f\n", result.real_time_factor());
   std::printf("contacts          %.2f points in a physics step on average\n", result.contacts_mean);
@@ -109,6 +111,7 @@ void print_table(const ScenarioOptions& options, const Result& result) {
     std::printf("recording         %s\n", options.record->c_str());
   }
   print_measures(result.measures.values);
+  print_sensors(sensors);
 }
 
 int simulate(const ScenarioOptions& options) {
@@ -142,9 +145,9 @@ int simulate(const ScenarioOptions& options) {
     recorder->finish(results_of(simulation, setup.scenario, result.lost_frames));
   }
   if (options.json) {
-    print_json(options, setup, result);
+    print_json(options, setup, result, simulation.plant().sensors());
   } else {
-    print_table(options, result);
+    print_table(options, result, simulation.plant().sensors());
   }
   print_warning_on_servos("proleg simulate", result.measures, setup.scenario.robot);
   print_warning_on_clipping("proleg simulate", setup.scenario, simulation.chain().clipped_ticks(), simulation.tick());

@@ -19,9 +19,10 @@ void for_each_algorithm(Visit visit) {
   }
 }
 
-TEST(Registry, HoldsTheFiveAlgorithmsUnderTheirNamesInFiles) {
-  EXPECT_EQ(algorithm_count(), 5U);
-  for (const auto name : {test::direct, test::sinusoidal, test::extended, test::coupled, test::reflex}) {
+TEST(Registry, HoldsTheAlgorithmsUnderTheirNamesInFiles) {
+  EXPECT_EQ(algorithm_count(), 6U);
+  for (const auto name :
+       {test::direct, test::sinusoidal, test::extended, test::coupled, test::reflex, test::stimulus}) {
     EXPECT_NE(find_algorithm(name), nullptr) << name;
   }
 }
@@ -47,6 +48,7 @@ TEST(Registry, KeepsTheIdsOfTheProtocol) {
   EXPECT_EQ(find_algorithm(test::extended)->declaration().id, 3);
   EXPECT_EQ(find_algorithm(test::coupled)->declaration().id, 4);
   EXPECT_EQ(find_algorithm(test::reflex)->declaration().id, 5);
+  EXPECT_EQ(find_algorithm(test::stimulus)->declaration().id, 15);
 }
 
 TEST(Declaration, HasAnIdANameAndAHelpTextOfItsOwn) {
@@ -146,7 +148,7 @@ TEST(Declaration, OfAPatternGeneratorStartsWithPhaseFrequencyAndPhaseDifference)
     EXPECT_EQ(about.frame[0].internal_value, PatternGenerator::current_phase);
     EXPECT_EQ(about.frame[0].bytes, 4);
   });
-  EXPECT_EQ(generators, 3);
+  EXPECT_EQ(generators, 4);
 }
 
 }  // namespace

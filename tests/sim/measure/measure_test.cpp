@@ -31,7 +31,7 @@ TEST(Measures, AreListedByName) {
   const std::vector<std::string> names = measure_names();
   ASSERT_EQ(names.size(), measure_count);
   EXPECT_EQ(names.front(), "distance");
-  EXPECT_EQ(names.back(), "at_torque_limit");
+  EXPECT_EQ(names.back(), "mean_current");
 }
 
 TEST(Measures, StateWhetherHigherIsBetter) {

@@ -63,6 +63,7 @@ const Change* Simulation::begin_tick() {
   touch_.write_links(latched_contacts_);
   if (needs_readings_) {
     for (unsigned joint = 0; joint < chain_.joint_count(); ++joint) {
+      readings_[joint] = readings_[joint].only(chain_.kernel(joint).needed_readings(joint));
       chain_.set_readings(joint, readings_[joint]);
     }
     latched_readings_.swap(readings_);

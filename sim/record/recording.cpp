@@ -37,6 +37,7 @@ class Recording::Tables {
                    ", of another version of this program; this version reads format " +
                    std::to_string(recording_format));
     }
+    require_whole_file(database, path);
   }
 
   [[nodiscard]] std::string run_value(const std::string& key) {

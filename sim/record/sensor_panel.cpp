@@ -36,7 +36,7 @@ std::vector<SensorPanel> make_sensor_panels(const Recording& recording, const Fi
   std::vector<SensorPanel> panels;
   for (const SensorKind kind : {SensorKind::touch, SensorKind::laser, SensorKind::servo_current,
                                 SensorKind::inclinometer, SensorKind::accelerometer}) {
-    SensorPanel panel{heading_of(kind), {}, top, sensor_panel_height};
+    SensorPanel panel{heading_of(kind), {}, kind == SensorKind::touch, top, sensor_panel_height};
     std::size_t number = 0;  // of the quantity, over all sensors
     std::size_t left_out = 0;
     for (const RecordedSensor& sensor : recording.sensors()) {
@@ -67,8 +67,8 @@ std::vector<SensorPanel> make_sensor_panels(const Recording& recording, const Fi
 }
 
 void draw_sensors(Svg& svg, const SensorPanel& panel, const Axis& time) {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -low;
+  double low = panel.is_of_switches ? 0.0 : std::numeric_limits<double>::infinity();
+  double high = panel.is_of_switches ? 1.0 : -std::numeric_limits<double>::infinity();
   for (const SensorPanel::Line& line : panel.lines) {
     for (const Point& point : *line.values) {
       low = std::min(low, point.y);

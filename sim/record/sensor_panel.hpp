@@ -18,8 +18,9 @@ struct SensorPanel {
   };
   std::string heading;
   std::vector<Line> lines;
-  double top = 0.0;     ///< pixels
-  double height = 0.0;  ///< pixels
+  bool is_of_switches = false;  ///< values are 0 and 1
+  double top = 0.0;             ///< pixels
+  double height = 0.0;          ///< pixels
 };
 
 /// A panel for each kind of sensor that the recording has, one below the other from `top` on. contents: must outlive

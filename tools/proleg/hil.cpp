@@ -89,6 +89,7 @@ HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::Hardw
   result.ticks = loop.tick();
   result.simulated_s = loop.time_s();
   result.displacement_m = loop.plant().displacement();
+  result.sensors = loop.plant().sensors().summaries();
   result.contacts_mean = loop.plant().mean_contacts();
   result.differences = loop.differences();
   if (const auto& first = loop.first_difference()) {

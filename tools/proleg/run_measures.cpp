@@ -96,9 +96,9 @@ void print_measures(const sim::MeasureValues& values) {
   }
 }
 
-Json sensors_array(const sim::AttachedSensors& sensors) {
+Json sensors_array(const std::vector<sim::SensorSummary>& sensors) {
   Json array = Json::empty_array();
-  for (const sim::SensorSummary& summary : sensors.summaries()) {
+  for (const sim::SensorSummary& summary : sensors) {
     array.append(Json{{"sensor", summary.name},
                       {"type", std::string(sim::name_of(summary.kind))},
                       {"quantity", std::string(summary.quantity)},
@@ -110,12 +110,12 @@ Json sensors_array(const sim::AttachedSensors& sensors) {
   return array;
 }
 
-void print_sensors(const sim::AttachedSensors& sensors) {
-  if (sensors.summaries().empty()) {
+void print_sensors(const std::vector<sim::SensorSummary>& sensors) {
+  if (sensors.empty()) {
     return;
   }
   std::printf("sensors\n");
-  for (const sim::SensorSummary& summary : sensors.summaries()) {
+  for (const sim::SensorSummary& summary : sensors) {
     const std::string name = summary.name + ' ' + std::string(summary.quantity);
     if (summary.kind == sim::SensorKind::touch) {
       std::printf("  %-28s  %.3g %% of the time\n", name.c_str(), 100.0 * summary.mean());
@@ -126,8 +126,9 @@ void print_sensors(const sim::AttachedSensors& sensors) {
   }
 }
 
-void append_sensors(const sim::AttachedSensors& sensors, std::vector<std::pair<std::string, std::string>>& results) {
-  for (const sim::SensorSummary& summary : sensors.summaries()) {
+void append_sensors(const std::vector<sim::SensorSummary>& sensors,
+                    std::vector<std::pair<std::string, std::string>>& results) {
+  for (const sim::SensorSummary& summary : sensors) {
     const std::string name = "sensor." + summary.name + '.' + std::string(summary.quantity) + '.';
     if (summary.count > 0) {
       results.emplace_back(name + "least", exact_text(summary.least));

@@ -30,10 +30,10 @@ struct RunMeasures {
 [[nodiscard]] Json servos_array(const RunMeasures& measures, const sim::RobotModel& robot);
 
 /// An array with what the sensors of the robot's file measured: sensor, type, quantity, unit, least, greatest, mean.
-[[nodiscard]] Json sensors_array(const sim::AttachedSensors& sensors);
+[[nodiscard]] Json sensors_array(const std::vector<sim::SensorSummary>& sensors);
 
 /// The same on standard output, one quantity a line; nothing if there are no sensors.
-void print_sensors(const sim::AttachedSensors& sensors);
+void print_sensors(const std::vector<sim::SensorSummary>& sensors);
 
 /// Prints a warning if servos are at a limit for more than a fifth of the time and miss their angles
 /// by more than 5 degrees (root mean square). program: as the line begins.
@@ -43,7 +43,8 @@ void print_warning_on_servos(const std::string& program, const RunMeasures& meas
 void print_measures(const sim::MeasureValues& values);
 
 /// Adds least, greatest and mean value of the sensors' quantities to the results of a recording.
-void append_sensors(const sim::AttachedSensors& sensors, std::vector<std::pair<std::string, std::string>>& results);
+void append_sensors(const std::vector<sim::SensorSummary>& sensors,
+                    std::vector<std::pair<std::string, std::string>>& results);
 
 /// Adds the measures that the run defines, and the duty factors of the links, to the results of a recording.
 void append_results(const RunMeasures& measures, const sim::RobotModel& robot,

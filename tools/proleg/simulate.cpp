@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "shared/computer/text/text.hpp"
 #include "sim/loop/simulation.hpp"
@@ -69,7 +70,7 @@ Result run(const ScenarioRun& setup, sim::Simulation& simulation, sim::Recorder*
 }
 
 void print_json(const ScenarioOptions& options, const ScenarioRun& setup, const Result& result,
-                const sim::AttachedSensors& sensors) {
+                const std::vector<sim::SensorSummary>& sensors) {
   const Json object{{"scenario", options.file},
                     {"seed", setup.scenario.kernel.seed},
                     {"overrides", overrides_object(setup.scenario.overrides)},
@@ -92,7 +93,7 @@ void print_json(const ScenarioOptions& options, const ScenarioRun& setup, const 
   std::cout << object.text() << '\n';
 }
 
-void print_table(const ScenarioOptions& options, const Result& result, const sim::AttachedSensors& sensors) {
+void print_table(const ScenarioOptions& options, const Result& result, const std::vector<sim::SensorSummary>& sensors) {
   std::printf("displacement      %.4f m in %.2f s\n", result.displacement_m, result.simulated_s);
   std::printf("real-time factor  %.1f\n", result.real_time_factor());
   std::printf("contacts          %.2f points in a physics step on average\n", result.contacts_mean);
@@ -145,9 +146,9 @@ int simulate(const ScenarioOptions& options) {
     recorder->finish(results_of(simulation, setup.scenario, result.lost_frames));
   }
   if (options.json) {
-    print_json(options, setup, result, simulation.plant().sensors());
+    print_json(options, setup, result, simulation.plant().sensors().summaries());
   } else {
-    print_table(options, result, simulation.plant().sensors());
+    print_table(options, result, simulation.plant().sensors().summaries());
   }
   print_warning_on_servos("proleg simulate", result.measures, setup.scenario.robot);
   print_warning_on_clipping("proleg simulate", setup.scenario, simulation.chain().clipped_ticks(), simulation.tick());

@@ -83,7 +83,7 @@ void JointKernel::compute_tick() {
   checksum_.add(kernel_.setpoint(joint()));
 }
 
-void JointKernel::advance(unsigned missed, std::uint8_t sensors) {
+void JointKernel::advance(unsigned missed, std::uint8_t sensors, std::uint16_t current_ma) {
   const unsigned flags = missed == 0 ? 0U : unsigned{StateFrame::holdover};
   for (unsigned i = 0; i < missed; ++i) {
     set_flags(flags);
@@ -91,6 +91,11 @@ void JointKernel::advance(unsigned missed, std::uint8_t sensors) {
   }
   set_flags(flags);
   kernel_.set_contacts(joint(), debouncer_.sample(sensors));
+  JointReadings readings;
+  readings.present = JointReadings::servo_current;
+  readings.current_ma = current_ma;
+  kernel_.set_readings(joint(), readings);
+  record_.current_ma = current_ma;
   compute_tick();
   write_record();
 }

@@ -52,8 +52,8 @@ class JointKernel {
   /// As Kernel::join().
   void join(std::uint32_t tick);
   /// Computes a tick, after `missed` ones whose SYNC was not received; those have the contacts of the last tick before.
-  /// sensors: as they are at SYNC.
-  void advance(unsigned missed, std::uint8_t sensors);
+  /// sensors: as they are at SYNC. current_ma: of the servo, as it was read after the SYNC before.
+  void advance(unsigned missed, std::uint8_t sensors, std::uint16_t current_ma);
   /// The flag `fault` of the state frames from the next one on.
   void set_fault(bool fault) { fault_ = fault; }
   /// A state frame of another joint.

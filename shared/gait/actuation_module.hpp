@@ -11,6 +11,7 @@
 #include "shared/gait/contacts.hpp"
 #include "shared/gait/declaration.hpp"
 #include "shared/gait/joint_mask.hpp"
+#include "shared/gait/joint_readings.hpp"
 #include "shared/gait/state_frame.hpp"
 
 namespace proleg {
@@ -56,6 +57,7 @@ struct Surroundings {
   const Neighbour& behind;  ///< nearest joint of the group towards the tail
   const Contacts& contacts;
   std::int32_t setpoint;  ///< of the joint: the sum of all slots in state k, within the joint's limits
+  const JointReadings& readings;  ///< of the joint's own module; only those that senses_readings() names
 };
 
 /// Basic interface: an algorithm that gives one joint an angle.
@@ -70,6 +72,10 @@ class ActuationModule {
   /// Whether it reads the contacts of links. If not, it finds none pressed on every machine, so a module need not
   /// receive the frames of joints that it does not depend on.
   [[nodiscard]] virtual bool senses_contacts() const { return false; }
+
+  /// Which readings of its module it uses: bits of JointReadings::Sensor. The others are absent on every machine. A
+  /// host refuses to drive modules that do not have them.
+  [[nodiscard]] virtual std::uint8_t senses_readings() const { return 0; }
 
   /// Computes constants from the parameters. Called after each change of a parameter, never in a tick without one.
   virtual void derive(const JointContext& context, const std::int32_t* parameters, std::int32_t* derived) const;

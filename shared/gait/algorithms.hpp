@@ -26,6 +26,12 @@ namespace proleg {
 /// with r_i and X_i filtered as above. The phases start from noise.
 [[nodiscard]] const ActuationModule& pattern_generator_coupled_oscillator();
 
+/// The sine of eq. 3.1 whose wave runs the other way while something touches the head, and for `retreat` ticks after
+/// that: the robot crawls backwards (thesis section 4.3.1: caterpillars react to stimuli on their head; J. Brackenbury,
+/// J. Exp. Biol. 202, 1999). The phase is accumulated, so it is continuous at both turns and when the frequency
+/// changes. A joint takes phase and remaining retreat from the joint ahead; the first joint of the group leads.
+[[nodiscard]] const ActuationModule& pattern_generator_head_stimulus();
+
 /// An offset for the gait of another slot, from the contacts of all links. On flat ground the supports of a travelling
 /// wave lie almost a wavelength apart; where two links touch at most `reach` places apart, for `confirm` ticks in a
 /// row, something lies under the robot or bars its way. Every joint then moves to its angle `raise`, holds it until

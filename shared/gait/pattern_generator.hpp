@@ -38,7 +38,8 @@ class PatternGenerator : public ActuationModule {
   void reset(const JointContext& context, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const final;
   void advance(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
                std::int32_t* next) const final;
-  void extrapolate(const Tuning& tuning, const std::int32_t* state, StateFrame& frame) const final;
+  /// Moves the phase on by the increment.
+  void extrapolate(const Tuning& tuning, const std::int32_t* state, StateFrame& frame) const override;
 
  protected:
   ~PatternGenerator() = default;

@@ -14,6 +14,7 @@ constexpr const ActuationModule& (*algorithms[])() = {direct_joint_access,
                                                       pattern_generator_coupled_oscillator,
                                                       sensing_module_uneven_ground_reflex,
                                                       sensing_module_global_adaptive_touch,
+                                                      pattern_generator_head_stimulus,
 #ifdef PROLEG_USER_ALGORITHMS  // by tools/cmake/user_algorithm.cmake: their functions, each with a comma
                                                       PROLEG_USER_ALGORITHMS
 #endif

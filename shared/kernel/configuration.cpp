@@ -69,6 +69,7 @@ void Kernel::set_up(unsigned joint) {
                            configuration_.tick_period_us};
     slot_memory.channel = second_channel_[i].contains(joint) ? 1 : 0;
     slot_memory.sensed_joints = slot.algorithm->senses_contacts() ? configuration_.joint_count : std::uint8_t{0};
+    memory.needed_readings = static_cast<std::uint8_t>(memory.needed_readings | slot.algorithm->senses_readings());
     note_needed_frames(i, joint);
     if (slot.broadcasts()) {
       slot_memory.broadcast = &slot.algorithm->declaration();

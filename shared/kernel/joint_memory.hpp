@@ -50,6 +50,8 @@ struct JointMemory {
   std::int32_t setpoint;
   std::uint8_t contacts;
   bool limited;
+  std::uint8_t needed_readings;  ///< of all slots
+  JointReadings readings;
 };
 
 }  // namespace proleg

@@ -16,6 +16,13 @@ void Kernel::set_contacts(unsigned joint, std::uint8_t contacts) {
   }
 }
 
+void Kernel::set_readings(unsigned joint, const JointReadings& readings) {
+  if (is_local(joint)) {
+    JointMemory& memory = joint_memory(joint);
+    memory.readings = readings.only(memory.needed_readings);
+  }
+}
+
 void Kernel::reset() {
   tick_ = 0;
   missed_frames_ = 0;
@@ -26,6 +33,7 @@ void Kernel::reset() {
     const unsigned joint = first_joint_ + i;
     JointMemory& memory = memory_[i];
     memory.contacts = 0;
+    memory.readings = {};
     for (unsigned s = 0; s < max_slots; ++s) {
       SlotMemory& slot = memory.slots[s];
       slot.values = {};
@@ -78,6 +86,7 @@ void Kernel::join(std::uint32_t tick) {
   for (unsigned i = 0; i < memory_.size(); ++i) {
     JointMemory& joint = memory_[i];
     joint.contacts = 0;
+    joint.readings = {};
     joint.limited = false;
     for (unsigned s = 0; s < max_slots; ++s) {
       SlotMemory& slot = joint.slots[s];
@@ -99,7 +108,7 @@ void Kernel::rejoin() {
       SlotMemory& slot = joint.slots[s];
       if (slot.active) {
         const Contacts contacts({frames_[0].data(), slot.sensed_joints});
-        const Surroundings surroundings{tick_, slot.context, slot.ahead, slot.behind, contacts, joint.setpoint};
+        const Surroundings surroundings{tick_, slot.context, slot.ahead, slot.behind, contacts, joint.setpoint, joint.readings};
         configuration_.slots[s].algorithm->rejoin(surroundings, tuning(slot), current(slot).data());
       }
     }
@@ -116,7 +125,7 @@ void Kernel::compute_next_state(JointMemory& joint) {
     SlotMemory& slot = joint.slots[s];
     if (slot.active) {
       const Contacts contacts({frames_[0].data(), slot.sensed_joints});
-      const Surroundings surroundings{tick_, slot.context, slot.ahead, slot.behind, contacts, joint.setpoint};
+      const Surroundings surroundings{tick_, slot.context, slot.ahead, slot.behind, contacts, joint.setpoint, joint.readings};
       configuration_.slots[s].algorithm->advance(surroundings, tuning(slot), slot.values[tick_ & 1U].data(),
                                                  slot.values[(tick_ + 1) & 1U].data());
     }

@@ -75,6 +75,12 @@ class Kernel {
   /// joint 0, as in the state frame.
   void set_contacts(unsigned joint, std::uint8_t contacts);
 
+  /// What the module of a local joint measured, as of the SYNC before the coming one. Sensors that no slot of the joint
+  /// uses are left out.
+  void set_readings(unsigned joint, const JointReadings& readings);
+  /// The sensors that the slots of a local joint use: bits of JointReadings::Sensor.
+  [[nodiscard]] std::uint8_t needed_readings(unsigned joint) const { return joint_memory(joint).needed_readings; }
+
   /// Computes state tick() + 1 of all local joints.
   void advance();
 

@@ -100,7 +100,10 @@ class HardwareLoop::Implementation {
             plant_.contact_forces(),
             first_fault_tick_ ? std::span<const Loss>() : reference_.chain().lost(),
             {},
-            plant_.object_poses()};
+            plant_.object_poses(),
+            plant_.sensors().values(),
+            plant_.sensors().measured(),
+            reference_.readings()};
   }
 
   [[nodiscard]] std::uint32_t tick() const { return tick_; }
@@ -294,6 +297,9 @@ class HardwareLoop::Implementation {
       reference_.follow(joint,
                         {rack_.has_computed(joint, tick_), state_frames_.has_sent(joint), rack_.has_restarted(joint)},
                         report_);
+      if (rack_.has_computed(joint, tick_)) {
+        reference_.set_current(joint, rack_.record(joint).current_ma);
+      }
     }
     advance_reference();
     report_.lost_frames += reference_.chain().lost().size();

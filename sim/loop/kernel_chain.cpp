@@ -74,6 +74,14 @@ void KernelChain::join(unsigned joint) {
   running_.insert(joint);
 }
 
+bool KernelChain::needs_readings() const {
+  bool needs = false;
+  for (unsigned joint = 0; joint < joint_count(); ++joint) {
+    needs = needs || kernels_[joint]->needed_readings(joint) != 0;
+  }
+  return needs;
+}
+
 void KernelChain::exchange_frames() {
   lost_.clear();
   receptions_ = 0;

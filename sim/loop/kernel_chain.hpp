@@ -41,6 +41,15 @@ class KernelChain {
   void join(unsigned joint);
   [[nodiscard]] bool is_running(unsigned joint) const { return running_.contains(joint); }
 
+  /// What the module of a joint measured, for the coming tick (Kernel::set_readings).
+  void set_readings(unsigned joint, const JointReadings& readings) {
+    if (running_.contains(joint)) {
+      kernels_[joint]->set_readings(joint, readings);
+    }
+  }
+  /// Whether any joint uses readings of its module.
+  [[nodiscard]] bool needs_readings() const;
+
   /// The tick: delivers the frames labelled tick(), then every running joint computes state tick() + 1.
   /// contacts: of each joint, at this SYNC, in bits 0 to 3 as in the state frame.
   void advance(std::span<const std::uint8_t> contacts);

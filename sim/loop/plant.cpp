@@ -55,6 +55,9 @@ Plant::Plant(const Scenario& scenario, std::unique_ptr<World> world)
       start_(world_->center_of_mass()),
       start_energy_(world_->energy()),
       center_before_(start_),
+      sensors_(scenario.robot.sensors, scenario.environment.gravity, scenario.step_s, scenario.kernel.tick_period_us,
+               *world_),
+      module_readings_(scenario, *world_),
       meter_(scenario.robot, scenario.environment, start_, scenario.step_s, scenario.kernel.tick_period_us * 1e-6),
       latency_steps_(
           static_cast<std::uint64_t>(std::llround(scenario.robot.servo.latency_us * 1e-6 / scenario.step_s))),
@@ -131,6 +134,8 @@ void Plant::move_robot(const Pose& motion) {
   center_before_ = world_->center_of_mass();
   disturb();
   read_world();
+  sensors_.rest_at(link_poses_);
+  module_readings_.rest_at(link_poses_);
 }
 
 void Plant::disturb() {
@@ -212,6 +217,8 @@ void Plant::finish_step() {
     servo.current_sum += current;
     servo.drawn += current;
   }
+  sensors_.add_step(*world_);
+  module_readings_.add_step(*world_);
   world_->add_contact_forces(contact_force_sums_);
   const ContactSliding sliding = world_->contact_sliding();
   meter_.add_contacts(sliding.normal_force, sliding.force_times_speed, sliding.friction_power);
@@ -241,6 +248,9 @@ void Plant::finish_tick() {
   } else {
     meter_.add_tick({center, link_poses_, joint_angles_, joint_targets_, link_contacts_, motor_torques_});
   }
+  sensors_.finish_tick(*world_, link_poses_, servo_currents_);
+  module_readings_.finish_tick(*world_, link_poses_);
+  sensors_.replace_inputs(link_contacts_);
   add_contact_noise();
 }
 

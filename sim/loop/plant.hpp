@@ -10,9 +10,11 @@
 
 #include "firmware/module/ports.hpp"
 #include "shared/fixed/random.hpp"
+#include "sim/loop/module_readings.hpp"
 #include "sim/measure/gait_meter.hpp"
 #include "sim/physics/world.hpp"
 #include "sim/scenario/scenario.hpp"
+#include "sim/sensor/attached_sensors.hpp"
 
 namespace proleg::sim {
 
@@ -70,12 +72,21 @@ class Plant {
   [[nodiscard]] std::span<const double> servo_currents() const { return servo_currents_; }
   /// Of each link: N, normal forces of its contacts, mean over the last tick.
   [[nodiscard]] std::span<const double> contact_forces() const { return contact_forces_; }
-  /// Touch sensors per link: bit 0 rear, bit 1 front; not debounced, and with the scenario's contact noise.
+  /// What the sensors of the robot's file measure.
+  [[nodiscard]] const AttachedSensors& sensors() const { return sensors_; }
+  /// Touch sensors per link, as they are wired to the modules: bit 0 rear, bit 1 front; not debounced, and with the
+  /// scenario's contact noise.
   [[nodiscard]] std::span<const std::uint8_t> link_contacts() const { return link_contacts_; }
 
   /// What the module of a joint measures now: the current that its servo drew in the last step (an estimate,
   /// sim/robot/servo_current.hpp), the actual angle, and a chip at 25 degrees Celsius.
   [[nodiscard]] firmware::ServoReadings servo_readings(std::size_t joint) const;
+
+  /// What an algorithm on a joint can read of its module now (shared/gait/joint_readings.hpp), with sensors that no
+  /// real module has. Those that no algorithm of the scenario reads are absent.
+  [[nodiscard]] JointReadings joint_readings(std::size_t joint) const {
+    return module_readings_.of(joint, servo_readings(joint).current_ma);
+  }
 
   /// The current of a servo, in mA, summed over all steps so far.
   struct DrawnCurrent {
@@ -137,6 +148,8 @@ class Plant {
   Eigen::Vector3d center_before_;
   std::optional<Pose> unmoved_;           ///< from the world to where the robot would be without moves by hand
   std::vector<Pose> unmoved_link_poses_;  ///< of links, only with moves
+  AttachedSensors sensors_;
+  ModuleReadings module_readings_;
   GaitMeter meter_;
   std::uint64_t latency_steps_;
   std::deque<DelayedPulse> delayed_pulses_;

@@ -7,6 +7,7 @@ ReferenceGait::ReferenceGait(const Scenario& scenario, const Losses* losses)
       chain_(scenario.kernel, scenario.joint_limits, scenario.settings),
       touch_(scenario.robot.joints.size()),
       failed_(scenario.robot.joints.size()),
+      readings_(scenario.robot.joints.size()),
       pulse_source_({scenario.robot.servo.period_us, scenario.kernel.tick_period_us}, scenario.joint_limits,
                     scenario.robot.servo.command_speed) {
   chain_.set_losses(losses);
@@ -47,6 +48,14 @@ void ReferenceGait::stop(unsigned joint, HardwareReport& report) {
 std::optional<std::size_t> ReferenceGait::due_change() const {
   const bool is_due = next_change_ < scenario_.changes.size() && scenario_.changes[next_change_].tick == chain_.tick();
   return is_due ? std::optional(next_change_) : std::nullopt;
+}
+
+void ReferenceGait::set_current(unsigned joint, std::uint16_t current_ma) {
+  readings_[joint] = {};
+  readings_[joint].present = JointReadings::servo_current;
+  readings_[joint].current_ma = current_ma;
+  readings_[joint] = readings_[joint].only(chain_.kernel(joint).needed_readings(joint));
+  chain_.set_readings(joint, readings_[joint]);
 }
 
 const Change* ReferenceGait::advance(std::span<const std::uint8_t> link_contacts, bool is_change_made) {

@@ -32,6 +32,8 @@ class ReferenceGait {
   void follow(unsigned joint, const ModuleTick& module, HardwareReport& report);
   /// Position in the scenario of the change for the coming tick, if there is one.
   [[nodiscard]] std::optional<std::size_t> due_change() const;
+  /// Before advance(): the current that the module of a joint read for the tick, in mA.
+  void set_current(unsigned joint, std::uint16_t current_ma);
   /// Computes the tick. link_contacts: as they were at its SYNC. is_change_made: the modules have the due change; if
   /// not, it never takes effect. Returns the change that took effect, if any.
   const Change* advance(std::span<const std::uint8_t> link_contacts, bool is_change_made);
@@ -46,6 +48,8 @@ class ReferenceGait {
   [[nodiscard]] bool stands_in_for(unsigned joint) const { return failed_[joint] && chain_.is_running(joint); }
   /// Debounced touch sensors of a joint, in the bits of the state frame's flags.
   [[nodiscard]] std::uint8_t contacts(unsigned joint) const { return touch_.contacts()[joint]; }
+  /// By joint, what its algorithms got in the tick.
+  [[nodiscard]] std::span<const JointReadings> readings() const { return readings_; }
   [[nodiscard]] const KernelChain& chain() const { return chain_; }
 
  private:
@@ -56,6 +60,7 @@ class ReferenceGait {
   KernelChain chain_;
   TouchInputs touch_;
   std::vector<bool> failed_;  ///< by joint
+  std::vector<JointReadings> readings_;
   std::size_t next_change_ = 0;
   ServoPulses pulse_source_;
   std::vector<ServoPulse> expected_pulses_;

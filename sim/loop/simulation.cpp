@@ -20,8 +20,19 @@ Simulation::Simulation(const Scenario& scenario, const Losses* losses, std::uniq
       pulse_source_({scenario.robot.servo.period_us, scenario.kernel.tick_period_us}, scenario.joint_limits,
                     scenario.robot.servo.command_speed),
       pulse_player_(plant_, pulse_source_.schedule()),
-      latched_contacts_(scenario.robot.links.size()) {
+      latched_contacts_(scenario.robot.links.size()),
+      needs_readings_(chain_.needs_readings()) {
   chain_.set_losses(losses);
+  if (needs_readings_) {
+    read_modules();
+  }
+}
+
+void Simulation::read_modules() {
+  readings_.clear();
+  for (unsigned joint = 0; joint < chain_.joint_count(); ++joint) {
+    readings_.push_back(plant_.joint_readings(joint));
+  }
 }
 
 double Simulation::time_s() const { return tick() * (scenario_.kernel.tick_period_us * 1e-6); }
@@ -50,6 +61,14 @@ const Change* Simulation::begin_tick() {
     touch_.sample(plant_.link_contacts(), joint);
   }
   touch_.write_links(latched_contacts_);
+  if (needs_readings_) {
+    for (unsigned joint = 0; joint < chain_.joint_count(); ++joint) {
+      readings_[joint] = readings_[joint].only(chain_.kernel(joint).needed_readings(joint));
+      chain_.set_readings(joint, readings_[joint]);
+    }
+    latched_readings_.swap(readings_);
+    read_modules();
+  }
   const std::uint32_t present = tick();
   chain_.advance(touch_.contacts());
 
@@ -98,7 +117,10 @@ TickSample Simulation::sample() {
           plant_.contact_forces(),
           chain_.lost(),
           std::span(scenario_.moves).subspan(last_first_move_, first_move_ - last_first_move_),
-          plant_.object_poses()};
+          plant_.object_poses(),
+          plant_.sensors().values(),
+          plant_.sensors().measured(),
+          latched_readings_};
 }
 
 }  // namespace proleg::sim

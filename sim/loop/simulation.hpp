@@ -82,6 +82,7 @@ class Simulation {
 
  private:
   const Change* apply_changes();
+  void read_modules();
   Simulation(const Scenario& scenario, const Losses* losses, std::unique_ptr<World> world);
 
   const Scenario& scenario_;
@@ -95,6 +96,9 @@ class Simulation {
   std::size_t first_move_ = 0;       ///< of the present tick
   std::size_t last_first_move_ = 0;  ///< of the tick before
   std::vector<std::uint8_t> latched_contacts_;
+  bool needs_readings_;
+  std::vector<JointReadings> readings_;          ///< by joint, at the SYNC of this tick, for the next
+  std::vector<JointReadings> latched_readings_;  ///< those that the kernels got
   std::vector<std::int32_t> internal_values_;
   std::vector<ServoPulse> servo_pulses_;
   bool has_hashes_ = true;

@@ -240,6 +240,9 @@ Verification recompute(const Recording& recording, const RecordedGait& gait,
     for (std::size_t joint = 0; joint < contacts.size(); ++joint) {
       contacts[joint] = joint_contacts(tick.latched_contacts, joint);
     }
+    for (unsigned joint = 0; joint < chain.joint_count(); ++joint) {
+      chain.set_readings(joint, tick.readings[joint]);
+    }
     losses.take(tick.tick);
     chain.advance(contacts);
     setpoint_hash.append(chain.setpoints());

@@ -60,7 +60,7 @@ void GaitMeter::add_tick(const Tick& tick) {
   if (ticks_ > 0) {
     const double squared = (tick.center_of_mass - 2.0 * center_ + center_before_).squaredNorm();
     squared_second_differences_ += squared;
-    largest_squared_difference_ = std::max(largest_squared_difference_, squared);
+    largest_squared_second_difference_ = std::fmax(largest_squared_second_difference_, squared);
   }
   energy_.add_tick(tick.link_poses, tick.joint_angles, tick.joint_targets, tick.motor_torques);
   center_before_ = center_;
@@ -215,6 +215,9 @@ MeasureValues GaitMeter::values(double heading_deg) const {
   values[Measure::yaw_rate] = without_last_bits(turn_ * degrees / time_s);
   values[Measure::mechanical_energy] = mechanical;
   values[Measure::electrical_energy] = electrical;
+  if (joint_steps_ > 0) {
+    values[Measure::mean_current] = current_sum_ma_ / static_cast<double>(joint_steps_);
+  }
   if (distance >= min_distance) {
     values[Measure::heading] = without_last_bits(std::atan2(speed_along(90.0), speed_along(0.0)) * degrees);
     if (normal_force_sum_ > 0.0) {
@@ -229,7 +232,7 @@ MeasureValues GaitMeter::values(double heading_deg) const {
   if (ticks_ > 1) {
     const double mean_square = squared_second_differences_ / static_cast<double>(ticks_ - 1);
     values[Measure::smoothness] = std::sqrt(mean_square) / (tick_s_ * tick_s_);
-    values[Measure::max_acceleration] = std::sqrt(largest_squared_difference_) / (tick_s_ * tick_s_);
+    values[Measure::largest_acceleration] = std::sqrt(largest_squared_second_difference_) / (tick_s_ * tick_s_);
   }
   if (supported_ticks_ > 0) {
     values[Measure::stability_margin] = margin_sum_ / static_cast<double>(supported_ticks_);

@@ -55,6 +55,7 @@ class GaitMeter {
                                         : servo_current_ma(servo_, step.commanded_speed * state.per_max_speed,
                                                            speed * state.per_max_speed, 1.0);
     current_sum_ma_ += current_ma;
+    ++joint_steps_;
     return current_ma;
   }
   /// Must be called after every step. normal_force: N, sum over the contact points with the environment;
@@ -138,14 +139,15 @@ class GaitMeter {
   double mechanical_power_sum_ = 0.0;  ///< W, over all steps: what motors give, without what they take
   double motor_power_sum_ = 0.0;       ///< W, over all steps
   double friction_power_sum_ = 0.0;    ///< W, over all steps
-  double current_sum_ma_ = 0.0;        ///< over all steps
+  double current_sum_ma_ = 0.0;        ///< over all steps and joints
+  std::uint64_t joint_steps_ = 0;      ///< number of these
 
   std::uint64_t ticks_ = 0;
   Eigen::Vector3d start_;
   Eigen::Vector3d center_;         ///< of mass, now
   Eigen::Vector3d center_before_;  ///< a tick before
   double squared_second_differences_ = 0.0;
-  double largest_squared_difference_ = 0.0;  ///< of the second differences
+  double largest_squared_second_difference_ = 0.0;
   Eigen::Vector2d span_;  ///< from tail to head, seen from above, when it was last long enough to have a direction
   double turn_ = 0.0;     ///< rad, of the span since the start
   double margin_sum_ = 0.0;

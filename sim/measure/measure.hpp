@@ -38,7 +38,8 @@ enum class Measure : std::uint8_t {
   max_tracking_error,
   at_speed_limit,
   at_torque_limit,
-  max_acceleration,
+  largest_acceleration,
+  mean_current,
   potential_energy,
   kinetic_energy,
   elastic_energy,
@@ -46,7 +47,7 @@ enum class Measure : std::uint8_t {
   predicted_distance,
   lifted_links,
 };
-inline constexpr std::size_t measure_count = 29;
+inline constexpr std::size_t measure_count = 30;
 
 struct MeasureDeclaration {
   Measure measure;

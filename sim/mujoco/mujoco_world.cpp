@@ -76,6 +76,7 @@ class MujocoWorld final : public World {
     std::fill_n(data_->qacc_warmstart, model_->nv, 0.0);
     std::ranges::fill(pressed_, std::uint8_t{0});
     std::ranges::fill(contact_forces_, 0.0);
+    contact_points_.clear();
     prepare_step();
   }
 
@@ -117,6 +118,16 @@ class MujocoWorld final : public World {
   [[nodiscard]] std::size_t contact_count() const override { return contacts_.size(); }
   [[nodiscard]] ContactSliding contact_sliding() const override { return sliding_; }
   [[nodiscard]] double energy() const override { return data_->energy[0] + data_->energy[1]; }
+  void keep_contact_points() override { keeps_contact_points_ = true; }
+  [[nodiscard]] std::span<const LinkContact> contact_points() const override { return contact_points_; }
+  [[nodiscard]] std::optional<double> distance_along(const Vector& from, const Vector& direction, double range,
+                                                     std::size_t link) const override {
+    int shape = -1;
+    constexpr mjtByte with_environment = 1;
+    const double distance = mj_ray(model_.get(), data_.get(), from.data(), direction.data(), nullptr, with_environment,
+                                   body_of(link), &shape);
+    return shape >= 0 && distance >= 0.0 && distance <= range ? std::optional(distance) : std::nullopt;
+  }
   [[nodiscard]] std::optional<double> lowest_ground() const override { return lowest_ground_; }
   [[nodiscard]] std::size_t solver_messages() const override { return 0; }
   [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return {}; }
@@ -185,6 +196,7 @@ class MujocoWorld final : public World {
 
   void note_contacts() {
     contacts_.clear();
+    contact_points_.clear();
     std::ranges::fill(contact_forces_, 0.0);
     std::ranges::fill(pressed_, std::uint8_t{0});
     for (int i = 0; i < data_->ncon; ++i) {
@@ -205,6 +217,7 @@ class MujocoWorld final : public World {
       note_force(contact.other, in_frame[0]);
       if (contact.body == 0 || contact.other == 0) {
         note_touch(std::max(contact.body, contact.other), contact);
+        note_contact_point(contact);
       }
       contacts_.push_back(contact);
     }
@@ -222,6 +235,14 @@ class MujocoWorld final : public World {
     pressed_[link] = static_cast<std::uint8_t>(
         pressed_[link] | touch_sensors_[link].pressed_by(to_link * (contact.point - vector_at(data_->xipos, body)),
                                                          to_link * contact.normal));
+  }
+
+  /// MuJoCo's normal points from the first body to the other.
+  void note_contact_point(const Contact& contact) {
+    if (keeps_contact_points_) {
+      const auto link = static_cast<std::size_t>(std::max(contact.body, contact.other) - 1);
+      contact_points_.push_back({link, contact.point, contact.body == 0 ? contact.normal : Vector(-contact.normal)});
+    }
   }
 
   void note_sliding() {
@@ -259,6 +280,8 @@ class MujocoWorld final : public World {
   std::vector<double> contact_forces_;  ///< N, by link
   std::vector<std::uint8_t> pressed_;   ///< by link
   std::vector<TouchSensorFrame> touch_sensors_;
+  bool keeps_contact_points_ = false;
+  std::vector<LinkContact> contact_points_;
   ContactSliding sliding_;
   std::optional<double> lowest_ground_;
   bool is_prepared_ = false;

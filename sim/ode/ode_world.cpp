@@ -32,6 +32,9 @@ struct DestroySpace {
 struct DestroyJointGroup {
   void operator()(dxJointGroup* group) const { dJointGroupDestroy(group); }
 };
+struct DestroyGeometry {
+  void operator()(dxGeom* shape) const { dGeomDestroy(shape); }
+};
 struct FreeThreading {
   void operator()(dxThreadingImplementation* threading) const { dThreadingFreeImplementation(threading); }
 };
@@ -137,6 +140,7 @@ class OdeWorld final : public World {
       dBodySetAngularVel(body, 0.0, 0.0, 0.0);
     }
     touch_sensors_.release_all();
+    contact_points_.clear();
     std::ranges::fill(contact_forces_, 0.0);
   }
 
@@ -204,6 +208,19 @@ class OdeWorld final : public World {
     }
     return energy;
   }
+  void keep_contact_points() override { keeps_contact_points_ = true; }
+  [[nodiscard]] std::span<const LinkContact> contact_points() const override { return contact_points_; }
+  [[nodiscard]] std::optional<double> distance_along(const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
+                                                     double range, std::size_t link) const override {
+    const std::unique_ptr<dxGeom, DestroyGeometry> ray(dCreateRay(nullptr, range));
+    dGeomRaySet(ray.get(), from.x(), from.y(), from.z(), direction.x(), direction.y(), direction.z());
+    dGeomRaySetClosestHit(ray.get(), 1);
+    RayHit hit{ray.get(), static_cast<int>(link), std::nullopt};
+    for (dxSpace* const space : {environment_space_.get(), robot_space_.get()}) {
+      dSpaceCollide2(ray.get(), reinterpret_cast<dGeomID>(space), &hit, &OdeWorld::on_ray);
+    }
+    return hit.distance;
+  }
   [[nodiscard]] std::optional<double> lowest_ground() const override { return lowest_ground_; }
   [[nodiscard]] std::size_t solver_messages() const override { return engine_messages() - messages_before_; }
   [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return engine_message_texts(); }
@@ -211,6 +228,7 @@ class OdeWorld final : public World {
  private:
   void advance() {
     touch_sensors_.release_all();
+    contact_points_.clear();
     contact_friction_.begin_step();
     contact_count_ = 0;
     dSpaceCollide2(reinterpret_cast<dGeomID>(robot_space_.get()), reinterpret_cast<dGeomID>(environment_space_.get()),
@@ -449,11 +467,39 @@ class OdeWorld final : public World {
     contact_friction_.set_surface(contact, {rotation[1], rotation[5], rotation[9]}, along, across, a, b, who);
   }
 
+  /// A ray, and the nearest surface that it has met.
+  struct RayHit {
+    dGeomID ray;
+    int link;  ///< whose surfaces do not count
+    std::optional<double> distance;
+  };
+
+  static void on_ray(void* data, dGeomID a, dGeomID b) {
+    auto& hit = *static_cast<RayHit*>(data);
+    const dGeomID shape = a == hit.ray ? b : a;
+    dContactGeom contact;
+    if (static_cast<const GeometryData*>(dGeomGetData(shape))->link != hit.link &&
+        dCollide(hit.ray, shape, 1, &contact, sizeof(contact)) > 0) {
+      hit.distance = std::min(hit.distance.value_or(contact.depth), contact.depth);
+    }
+  }
+
   void note_touch(int link, int other, const dContact& contact) {
     if (link >= 0 && other < 0) {
       const auto index = static_cast<std::size_t>(link);
       touch_sensors_.press(index, bodies_[index], contact.geom);
+      if (keeps_contact_points_) {
+        note_contact_point(index, contact.geom);
+      }
     }
+  }
+
+  /// The engine's normal points into the first of the two shapes.
+  void note_contact_point(std::size_t link, const dContactGeom& contact) {
+    const bool link_is_first = static_cast<const GeometryData*>(dGeomGetData(contact.g1))->link >= 0;
+    const Eigen::Vector3d normal(contact.normal[0], contact.normal[1], contact.normal[2]);
+    contact_points_.push_back(
+        {link, {contact.pos[0], contact.pos[1], contact.pos[2]}, link_is_first ? normal : Eigen::Vector3d(-normal)});
   }
 
   // Declared in the order in which the engine needs them; destroyed in reverse.
@@ -477,6 +523,8 @@ class OdeWorld final : public World {
   TouchSensors touch_sensors_;
   ContactFriction contact_friction_;
   std::vector<double> contact_forces_;  ///< N, by link
+  bool keeps_contact_points_ = false;
+  std::vector<LinkContact> contact_points_;
   std::size_t contact_count_ = 0;
   std::optional<double> lowest_ground_;
   std::size_t messages_before_ = 0;

@@ -13,6 +13,13 @@
 
 namespace proleg::sim {
 
+/// A point at which a link touches the environment.
+struct LinkContact {
+  std::size_t link;
+  Eigen::Vector3d point;   ///< m, in the world
+  Eigen::Vector3d normal;  ///< unit vector in the world, out of the environment
+};
+
 /// A robot and its environment in a physics engine. Time passes in equal steps; a world of the same models repeats to
 /// the last bit.
 class World {
@@ -87,6 +94,17 @@ class World {
   [[nodiscard]] virtual std::size_t contact_count() const = 0;
   /// In the last step; zeros before the first.
   [[nodiscard]] virtual ContactSliding contact_sliding() const = 0;
+  /// The contact points of links with the environment at the start of the last step; none before the first, and none
+  /// unless keep_contact_points() was called before that step. The reduced engine has none.
+  virtual void keep_contact_points() {}
+  [[nodiscard]] virtual std::span<const LinkContact> contact_points() const { return {}; }
+  /// Distance, in m, from a point along a unit vector to the nearest surface of the environment or of a link other than
+  /// `link`; nothing if it is farther than `range`. The reduced engine never finds one.
+  [[nodiscard]] virtual std::optional<double> distance_along(const Eigen::Vector3d& /*from*/,
+                                                             const Eigen::Vector3d& /*direction*/, double /*range*/,
+                                                             std::size_t /*link*/) const {
+    return std::nullopt;
+  }
   /// J, of the robot and the objects that move: kinetic energy, and potential energy against the origin of the world.
   [[nodiscard]] virtual double energy() const = 0;
   /// Height of the lowest point of the environment; nothing if there is no environment.

@@ -17,6 +17,7 @@
 #include "sim/record/path_panel.hpp"
 #include "sim/record/recorded_scenario.hpp"
 #include "sim/record/robot_views.hpp"
+#include "sim/record/sensor_panel.hpp"
 #include "sim/record/svg.hpp"
 #include "sim/robot/joint_direction.hpp"
 
@@ -29,6 +30,7 @@ constexpr double between_panels = 44.0;
 struct Layout {
   std::vector<AnglePanel> angles;
   std::optional<double> losses_top;  ///< nothing if no state frame was lost
+  std::vector<SensorPanel> sensors;
   double contacts_top;
   double contacts_height;
 };
@@ -46,19 +48,23 @@ std::vector<Band> bands_of(const Layout& layout) {
   if (layout.losses_top) {
     bands.push_back({*layout.losses_top, loss_panel_height});
   }
+  for (const SensorPanel& panel : layout.sensors) {
+    bands.push_back({panel.top, panel.height});
+  }
   bands.push_back({layout.contacts_top, layout.contacts_height});
   return bands;
 }
 
 /// Joints that bend the robot up and down, and those that bend it to the sides, have a panel each.
-Layout make_layout(const Recording& recording, const std::optional<Scenario>& scenario, bool has_losses, double top) {
+Layout make_layout(const Recording& recording, const std::optional<Scenario>& scenario, const FigureContents& contents,
+                   bool has_losses, double top) {
   std::vector<std::size_t> pitch;
   std::vector<std::size_t> yaw;
   for (std::size_t joint = 0; joint < recording.joints().size(); ++joint) {
     const bool is_yaw = scenario && direction_of(scenario->robot.joints[joint]) == JointDirection::yaw;
     (is_yaw ? yaw : pitch).push_back(joint);
   }
-  Layout layout{{}, std::nullopt, top, contact_panel_height(recording)};
+  Layout layout{{}, std::nullopt, {}, top, contact_panel_height(recording)};
   const auto add = [&layout](const char* what, std::vector<std::size_t> joints) {
     layout.angles.push_back(make_angle_panel(what, std::move(joints), layout.contacts_top));
     layout.contacts_top += layout.angles.back().height + between_panels;
@@ -72,6 +78,10 @@ Layout make_layout(const Recording& recording, const std::optional<Scenario>& sc
   if (has_losses) {
     layout.losses_top = layout.contacts_top;
     layout.contacts_top += loss_panel_height + between_panels;
+  }
+  layout.sensors = make_sensor_panels(recording, contents, layout.contacts_top, between_panels);
+  if (!layout.sensors.empty()) {
+    layout.contacts_top = layout.sensors.back().top + layout.sensors.back().height + between_panels;
   }
   return layout;
 }
@@ -154,7 +164,7 @@ std::string draw_figure(const Recording& recording, const TimeWindow& window) {
     views = make_robot_views(recording, contents, *scenario, first_panel_top);
   }
   const Disturbances disturbances = collect_disturbances(recording);
-  const Layout layout = make_layout(recording, scenario, !disturbances.lost_in_ticks.empty(), views.bottom);
+  const Layout layout = make_layout(recording, scenario, contents, !disturbances.lost_in_ticks.empty(), views.bottom);
   const PathPanel panel = make_path_panel(contents, layout.contacts_top + layout.contacts_height + 84.0);
 
   Svg svg(page_width, panel.top + panel.height + 52.0, scenario_name(recording),
@@ -173,6 +183,9 @@ std::string draw_figure(const Recording& recording, const TimeWindow& window) {
   }
   if (layout.losses_top) {
     draw_loss_panel(svg, recording, disturbances, *layout.losses_top, time);
+  }
+  for (const SensorPanel& sensors : layout.sensors) {
+    draw_sensors(svg, sensors, time);
   }
   draw_contact_panel(svg, recording, contents, layout.contacts_top, time);
   draw_changes(svg, changes, time, layout);

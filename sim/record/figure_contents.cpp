@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/measure/stride.hpp"
 #include "sim/robot/link_ends.hpp"
+#include "sim/robot/sensor_quantity.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -116,6 +118,18 @@ FigureContents collect_figure_contents(const Recording& recording, const TimeWin
       contents.angles[joint].push_back({time, bounded(tick.joint_angles[joint] * 180.0 / std::numbers::pi)});
     }
   };
+  for (const RecordedSensor& sensor : recording.sensors()) {
+    contents.sensors.resize(contents.sensors.size() + quantities_of(sensor.kind).size());
+  }
+  const auto add_sensors = [&](const RecordedTick& tick, double time) {
+    std::size_t number = 0;
+    for (const RecordedSensor& sensor : recording.sensors()) {
+      const auto channels = std::span(tick.sensor_values).subspan(sensor.first_value, sensor.channels.size());
+      for (std::size_t quantity = 0; quantity < quantities_of(sensor.kind).size(); ++quantity) {
+        contents.sensors[number++].push_back({time, bounded(quantity_of(sensor.kind, quantity, channels))});
+      }
+    }
+  };
   // Contacts hold from the SYNC at which they were latched until the next.
   const auto add_contacts = [&contents](const RecordedTick& tick, double sync_time) {
     const double from = std::max(sync_time, contents.from_s);
@@ -153,6 +167,7 @@ FigureContents collect_figure_contents(const Recording& recording, const TimeWin
     }
     if (tick.tick >= contents.first_tick && tick.tick <= contents.last_tick) {
       add_angles(tick, recording.time_s(tick.tick));
+      add_sensors(tick, recording.time_s(tick.tick));
     }
     add_contacts(tick, recording.sync_time_s(tick.tick));
   });

@@ -26,9 +26,10 @@ struct FigureContents {
     double to_s;
   };
   std::vector<std::array<std::vector<Press>, 2>> presses;  ///< per link: of the rear and the front sensor
-  Polyline path;                                           ///< x, y of the centre after each tick of the run, in m
-  double path_from_s = 0.0;                                ///< when the path begins
-  Polyline first_chain;                                    ///< x, y of the ends of the links, head to tail
+  std::vector<Polyline> sensors;  ///< of each attached sensor all quantities (quantities_of); x: s
+  Polyline path;                  ///< x, y of the centre after each tick of the run, in m
+  double path_from_s = 0.0;       ///< when the path begins
+  Polyline first_chain;           ///< x, y of the ends of the links, head to tail
   Polyline last_chain;
 };
 

@@ -45,6 +45,9 @@ class Recorder::Storage {
     for_each_internal_value(scenario_.kernel, [this](unsigned slot, unsigned joint, unsigned number) {
       internal_values_.push_back({slot, joint, number});
     });
+    for (const AttachedSensor& sensor : scenario_.robot.sensors) {
+      sensor_channels_.push_back(static_cast<std::uint32_t>(channels_of(sensor).size()));
+    }
     database_.execute("COMMIT");
     // With a write-ahead log a reader never blocks the recorder, and a killed process leaves whole transactions.
     // synchronous = NORMAL flushes at checkpoints only: data that the system has survives the end of the process. A
@@ -135,6 +138,14 @@ class Recorder::Storage {
       insert_object_pose_.run(tick, object, position.x(), position.y(), position.z(), turn.w(), turn.x(), turn.y(),
                               turn.z());
     }
+    for (std::uint32_t joint = 0; joint < sample.readings.size(); ++joint) {
+      const JointReadings& read = sample.readings[joint];
+      if (read.present != 0) {
+        insert_reading_.run(tick, joint, std::uint32_t{read.present}, read.current_ma, read.pitch, read.roll,
+                            read.acceleration_mm_s2[0], read.acceleration_mm_s2[1], read.acceleration_mm_s2[2]);
+      }
+    }
+    write_sensors(sample);
     commit_if_due();
   }
 
@@ -168,6 +179,17 @@ class Recorder::Storage {
     std::uint32_t joint;
     std::uint32_t index;
   };
+
+  void write_sensors(const TickSample& sample) {
+    std::size_t position = 0;
+    for (std::uint32_t sensor = 0; sensor < sample.measured_sensors.size(); ++sensor) {
+      for (std::uint32_t channel = 0; channel < sensor_channels_[sensor]; ++channel, ++position) {
+        if (sample.measured_sensors[sensor] != 0) {
+          insert_sensor_value_.run(sample.tick, sensor, channel, sample.sensor_values[position]);
+        }
+      }
+    }
+  }
 
   void write_distortion(std::uint32_t tick, const Setting& setting) {
     const InternalValue& value =
@@ -215,6 +237,7 @@ class Recorder::Storage {
   std::filesystem::path path_;
   const Scenario& scenario_;
   std::vector<InternalValueKey> internal_values_;  ///< what TickSample::internal_values holds
+  std::vector<std::uint32_t> sensor_channels_;     ///< number, by sensor
   NewRecording database_;
   ParameterTable parameters_{database_, scenario_};
   Statement insert_distortion_{database_,
@@ -227,6 +250,8 @@ class Recorder::Storage {
   Statement insert_object_pose_{database_, "INSERT INTO object_pose VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)"};
   Statement insert_contact_{database_, "INSERT INTO contact VALUES(?1, ?2, ?3, ?4, ?5)"};
   Statement insert_move_{database_, "INSERT INTO move(tick, x_m, y_m, z_m, turn_deg) VALUES(?1, ?2, ?3, ?4, ?5)"};
+  Statement insert_reading_{database_, "INSERT INTO reading VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)"};
+  Statement insert_sensor_value_{database_, "INSERT INTO sensor_value VALUES(?1, ?2, ?3, ?4)"};
   Statement insert_loss_{database_, "INSERT INTO loss VALUES(?1, ?2, ?3, ?4)"};
   Statement insert_restart_{database_, "INSERT INTO restart VALUES(?1, ?2, ?3)"};
   Statement insert_event_{database_, "INSERT INTO module_event(time_us, joint, text) VALUES(?1, ?2, ?3)"};

@@ -37,6 +37,12 @@ struct TickSample {
   std::span<const Loss> lost;                    ///< frames labelled k that their receivers did not get
   std::span<const RobotMove> moves = {};         ///< that took effect at k
   std::span<const Pose> object_poses = {};       ///< of the objects that move, in the world, at SYNC k + 1
+  /// At SYNC k + 1, of each sensor of the robot's file all channels. measured_sensors: per sensor, 0 if its values are
+  /// older.
+  std::span<const double> sensor_values = {};
+  std::span<const std::uint8_t> measured_sensors = {};
+  std::span<const JointReadings> readings =
+      {};  ///< per joint, given to the kernels at k; empty: no algorithm reads them
 };
 
 /// Writes a run into an SQLite file (tables: schema.hpp) while it runs. Other programs may read the file at the same

@@ -10,6 +10,7 @@
 #include "shared/kernel/kernel.hpp"
 #include "sim/record/internal_values.hpp"
 #include "sim/record/recording_rows.hpp"
+#include "sim/record/recording_sensors.hpp"
 #include "sim/record/schema.hpp"
 
 namespace proleg::sim {
@@ -42,6 +43,7 @@ class Recording::Tables {
                    ", of another version of this program; this version reads format " +
                    std::to_string(recording_format));
     }
+    require_whole_file(database, path);
   }
 
   [[nodiscard]] std::string run_value(const std::string& key) {
@@ -75,6 +77,7 @@ Recording::Recording(const std::filesystem::path& path) : path_(path) {
     read_run();
     read_robot();
     read_slots();
+    sensors_ = read_sensor_tables(tables_->database, links_.size());
   });
 }
 
@@ -312,6 +315,8 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
   std::optional<Rows> poses;
   std::optional<Rows> contacts;
   std::optional<Rows> objects;
+  std::optional<SensorRows> sensors;
+  std::optional<ReadingRows> readings;
   reading(path_, [&] {
     samples.emplace(
         database, "sample",
@@ -336,6 +341,8 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
                       "WHERE tick BETWEEN ?1 AND ?2 ORDER BY tick, object",
                       first, last);
     }
+    sensors.emplace(database, sensors_, first, last, tick.sensor_values);
+    readings.emplace(database, joints_.size(), first, last, tick.readings);
   });
   for (tick.tick = first; tick.tick <= last; ++tick.tick) {
     reading(path_, [&] {
@@ -361,6 +368,8 @@ void Recording::read_ticks(std::uint32_t first, std::uint32_t last,
       for (std::uint32_t object = 0; object < objects_.size(); ++object) {
         tick.object_poses[object] = pose_of(objects->expect(tick.tick, object));
       }
+      sensors->read(tick.tick, tick.sensor_values);
+      readings->read(tick.tick, tick.readings);
     });
     use(tick);
   }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "shared/fixed/unit.hpp"
+#include "shared/gait/joint_readings.hpp"
 #include "sim/record/recorded_fault.hpp"
 #include "sim/robot/robot_model.hpp"
 #include "sim/robot/servo_pulse.hpp"
@@ -57,6 +58,19 @@ struct RecordedSetting {
   std::int32_t raw = 0;
 };
 
+/// A sensor that the robot's file attaches.
+struct RecordedSensor {
+  struct Channel {
+    std::string name;
+    std::string unit;
+  };
+  std::string name;
+  SensorKind kind = SensorKind::touch;
+  std::uint32_t part = 0;  ///< link, of a servo_current the joint; from the head
+  std::vector<Channel> channels;
+  std::size_t first_value = 0;  ///< of its channels in RecordedTick::sensor_values
+};
+
 /// A module that restarted.
 struct RecordedRestart {
   std::uint32_t tick = 0;
@@ -84,6 +98,8 @@ struct RecordedTick {
   std::vector<std::uint8_t> latched_contacts;  ///< at SYNC tick; bit 0 rear, bit 1 front sensor
   std::vector<double> contact_forces;          ///< N, of each link, mean over the tick
   std::vector<Pose> object_poses;              ///< of each object that moves, in the world
+  std::vector<JointReadings> readings;         ///< by joint, given to its algorithms at SYNC tick
+  std::vector<double> sensor_values;           ///< of all sensors, all channels; of a laser those of its last scan
 };
 
 /// A recording as it was when it was opened; a recorder may write into the file meanwhile.
@@ -118,6 +134,7 @@ class Recording {
   [[nodiscard]] const std::vector<std::string>& objects() const { return objects_; }
   [[nodiscard]] const std::vector<RecordedSlot>& slots() const { return slots_; }
   [[nodiscard]] const std::vector<RecordedInternalValue>& internal_values() const { return internal_values_; }
+  [[nodiscard]] const std::vector<RecordedSensor>& sensors() const { return sensors_; }
   [[nodiscard]] std::vector<RecordedSetting> parameters() const;
   [[nodiscard]] std::vector<RecordedSetting> distortions() const;
   [[nodiscard]] std::vector<RecordedRestart> restarts() const;
@@ -160,6 +177,7 @@ class Recording {
   std::vector<std::string> objects_;
   std::vector<RecordedSlot> slots_;
   std::vector<RecordedInternalValue> internal_values_;
+  std::vector<RecordedSensor> sensors_;
 };
 
 /// Reads the pulses of all servos one by one, in the order of time, then of joints. There is none while a module

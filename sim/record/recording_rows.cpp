@@ -77,4 +77,16 @@ void throw_for_user(const std::filesystem::path& path, const SqliteError& error)
   }
 }
 
+void require_whole_file(Database& database, const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error || std::filesystem::exists(path.string() + "-wal", error)) {
+    return;
+  }
+  Statement pages(database, "SELECT page_count * page_size FROM pragma_page_count, pragma_page_size");
+  if (pages.step() && static_cast<std::uint64_t>(pages.integer(0)) > size) {
+    throw Damage("a file of " + std::to_string(size) + " bytes of a database of " + std::to_string(pages.integer(0)));
+  }
+}
+
 }  // namespace proleg::sim

@@ -94,6 +94,19 @@ void write_robot(Database& database, const Scenario& scenario) {
   }
 }
 
+void write_sensors(Database& database, const RobotModel& robot) {
+  Statement sensor(database, "INSERT INTO sensor VALUES(?1, ?2, ?3, ?4)");
+  Statement channel(database, "INSERT INTO sensor_channel VALUES(?1, ?2, ?3, ?4)");
+  for (std::size_t i = 0; i < robot.sensors.size(); ++i) {
+    const AttachedSensor& attached = robot.sensors[i];
+    sensor.run(i, std::string_view(attached.name), name_of(attached.kind), attached.part);
+    const std::vector<SensorChannel> channels = channels_of(attached);
+    for (std::size_t number = 0; number < channels.size(); ++number) {
+      channel.run(i, number, std::string_view(channels[number].name), channels[number].unit);
+    }
+  }
+}
+
 void write_start_parameters(ParameterTable& table, const Scenario& scenario, std::uint32_t slot) {
   const Slot& used = scenario.kernel.slots[slot];
   const std::span<const Parameter> parameters = used.algorithm->declaration().parameters;
@@ -138,6 +151,7 @@ void write_run_tables(Database& database, const Scenario& scenario, const std::s
                       const std::string& build_id) {
   write_run(database, scenario, program, build_id);
   write_robot(database, scenario);
+  write_sensors(database, scenario.robot);
   write_slots(database, scenario);
 }
 

@@ -223,6 +223,50 @@ CREATE TABLE move(
   turn_deg REAL NOT NULL
 ) STRICT;
 
+CREATE TABLE reading(
+  -- What algorithms were given of the sensors of their joint's module at SYNC tick: servo current, pitch and roll of the
+  -- link behind the joint (90 degrees = 2^30), its acceleration less gravity, in its axes. present: the sum of 1 (current),
+  -- 2 (pitch and roll), 4 (acceleration); what is not present is 0. A joint without present sensors has no row. A
+  -- recording of an older program of this format has no such table.
+  tick INTEGER NOT NULL,
+  joint INTEGER NOT NULL,
+  present INTEGER NOT NULL,
+  current_ma INTEGER NOT NULL,
+  pitch_raw INTEGER NOT NULL,
+  roll_raw INTEGER NOT NULL,
+  acceleration_x_mm_s2 INTEGER NOT NULL,
+  acceleration_y_mm_s2 INTEGER NOT NULL,
+  acceleration_z_mm_s2 INTEGER NOT NULL,
+  PRIMARY KEY(tick, joint)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE sensor(
+  -- Sensors that the robot's file attaches, in its order. part: the link, of a ServoCurrent the joint; from the head. A
+  -- recording of an older program of this format has none of the tables whose names begin with sensor: no sensors.
+  sensor INTEGER PRIMARY KEY,
+  name TEXT NOT NULL,
+  type TEXT NOT NULL,
+  part INTEGER NOT NULL
+) STRICT;
+
+CREATE TABLE sensor_channel(
+  -- The numbers that a sensor gives. unit: empty for numbers without.
+  sensor INTEGER NOT NULL,
+  channel INTEGER NOT NULL,
+  name TEXT NOT NULL,
+  unit TEXT NOT NULL,
+  PRIMARY KEY(sensor, channel)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE sensor_value(
+  -- What a sensor measured at SYNC tick + 1. A laser has rows only for ticks with a scan; until the next its values hold.
+  tick INTEGER NOT NULL,
+  sensor INTEGER NOT NULL,
+  channel INTEGER NOT NULL,
+  value REAL NOT NULL,
+  PRIMARY KEY(tick, sensor, channel)
+) STRICT, WITHOUT ROWID;
+
 CREATE TABLE servo(
   -- Every pulse for a servo, in twelfths of a microsecond, and when its interval starts: microseconds after SYNC 0.
   time_us INTEGER NOT NULL,
@@ -240,6 +284,11 @@ CREATE VIEW internal_value_by_name AS
   SELECT tick, (tick + 1) * (SELECT value FROM run WHERE key = 'tick_us') / 1e6 AS time_s, slot, joint.name AS joint,
          internal_value_name.name AS name, raw * unit_per_step AS value, unit
   FROM internal_value JOIN joint USING (joint) JOIN internal_value_name USING (slot, value_index);
+
+CREATE VIEW sensor_value_by_name AS
+  SELECT tick, (tick + 1) * (SELECT value FROM run WHERE key = 'tick_us') / 1e6 AS time_s, sensor.name AS sensor,
+         sensor_channel.name AS channel, value, unit
+  FROM sensor_value JOIN sensor USING (sensor) JOIN sensor_channel USING (sensor, channel);
 )sql";
 
 }  // namespace proleg::sim

@@ -28,6 +28,11 @@ std::string unit_suffix(Unit unit) {
   return "";
 }
 
+/// A column's name has no slash and no circumflex.
+std::string sensor_unit_suffix(const std::string& unit) {
+  return unit.empty() ? "" : '_' + (unit == "m/s^2" ? std::string("m_per_s2") : unit);
+}
+
 /// Column names, with each used once.
 class Header {
  public:
@@ -73,6 +78,12 @@ void write_header(const Recording& recording, const std::function<void(std::stri
       header.add(quantity + name, ".link" + std::to_string(link));
     }
   }
+  for (std::size_t i = 0; i < recording.sensors().size(); ++i) {
+    const RecordedSensor& sensor = recording.sensors()[i];
+    for (const RecordedSensor::Channel& channel : sensor.channels) {
+      header.add(channel.name + sensor_unit_suffix(channel.unit) + '.' + sensor.name, ".sensor" + std::to_string(i));
+    }
+  }
   write(header.finish());
 }
 
@@ -113,6 +124,9 @@ void write_tsv(const Recording& recording, const std::function<void(std::string_
       line.add((tick.latched_contacts[link] & 1U) != 0 ? "1" : "0");
       line.add((tick.latched_contacts[link] & 2U) != 0 ? "1" : "0");
       line.add(tick.contact_forces[link]);
+    }
+    for (const double value : tick.sensor_values) {
+      line.add(value);
     }
     write(line.finish());
   });

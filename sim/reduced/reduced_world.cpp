@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "shared/computer/errors/input_error.hpp"
 #include "sim/physics/physics_error.hpp"
 #include "sim/reduced/planar_chain.hpp"
 #include "sim/reduced/spatial_chain.hpp"
@@ -143,6 +144,18 @@ class ReducedWorld final : public World {
   mutable std::vector<ChainBatch::LinkPlace> places_;  ///< of the links, as they were read last
 };
 
+/// Rays and single contact points are no part of this engine.
+void refuse_sensors(const RobotModel& robot) {
+  for (const AttachedSensor& sensor : robot.sensors) {
+    if (sensor.kind == SensorKind::laser || sensor.kind == SensorKind::touch) {
+      throw InputError(
+          sensor.file, sensor.line, "sensor '" + sensor.name + "', a " + std::string(name_of(sensor.kind)),
+          "what the reduced engine has: ServoCurrent, Inclinometer and Accelerometer (--engine ode has all "
+          "sensors)");
+    }
+  }
+}
+
 /// A batch for all chains of one form. use(i, batch, lane): chain i is in this lane; it is not needed any more.
 template <typename Batch, typename Chain, typename Use>
 std::vector<std::shared_ptr<Batch>> make_batches(const std::vector<Chain>& chains, const ChainKernel* kernel,
@@ -185,6 +198,7 @@ ReducedWorlds::ReducedWorlds(std::span<const WorldInput> inputs, const ChainKern
   std::vector<std::size_t> spatial_numbers;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const WorldInput& input = inputs[i];
+    refuse_sensors(*input.robot);
     if (needs_space(*input.robot, *input.environment)) {
       spatial_chains.push_back(make_spatial_chain(*input.robot, *input.environment, input.step_s, input.file));
       spatial_numbers.push_back(i);

@@ -14,25 +14,11 @@
 #include <Eigen/Geometry>
 
 #include "shared/kernel/motion_limiter.hpp"
+#include "sim/robot/attached_sensor.hpp"
+#include "sim/robot/pose.hpp"
 #include "sim/robot/triangle_mesh.hpp"
 
 namespace proleg::sim {
-
-/// Position and orientation of a frame.
-struct Pose {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
-
-  /// The pose in the outer frame of something that has the pose `inner` in this frame.
-  [[nodiscard]] Pose operator*(const Pose& inner) const {
-    return {position + orientation * inner.position, orientation * inner.orientation};
-  }
-  [[nodiscard]] Eigen::Vector3d operator*(const Eigen::Vector3d& point) const { return position + orientation * point; }
-  [[nodiscard]] Pose inverse() const {
-    const Eigen::Quaterniond back = orientation.conjugate();
-    return {-(back * position), back};
-  }
-};
 
 enum class Shape : std::uint8_t {
   box,
@@ -132,6 +118,7 @@ struct RobotModel {
   std::vector<Link> links;    ///< from head to tail; one more than joints
   std::vector<Joint> joints;  ///< kernel order: from head to tail
   ServoModel servo;
+  std::vector<AttachedSensor> sensors;  ///< beside the two touch sensors of every link; in the order of the file
 };
 
 }  // namespace proleg::sim

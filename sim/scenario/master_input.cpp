@@ -1,8 +1,11 @@
 #include "sim/scenario/master_input.hpp"
 
+#include "sim/scenario/module_sensors.hpp"
+
 namespace proleg::sim {
 
 MasterInput::MasterInput(const Scenario& scenario) {
+  require_sensors(scenario, sensors_of_modules, "a module");
   for (const ModulePlace& module : scenario.modules) {
     nodes_.push_back(module.node);
     serials.push_back(module.serial.value_or(0));

@@ -12,7 +12,7 @@ namespace proleg::sim {
 /// A scenario in the form that the master takes. Simulated and real robots are set up with it.
 class MasterInput {
  public:
-  /// scenario: must outlive this.
+  /// scenario: must outlive this. Throws InputError if an algorithm reads a sensor that modules do not have.
   explicit MasterInput(const Scenario& scenario);
   MasterInput(const MasterInput&) = delete;
   MasterInput& operator=(const MasterInput&) = delete;

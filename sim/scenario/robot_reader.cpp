@@ -8,6 +8,7 @@
 #include "sim/scenario/module_reader.hpp"
 #include "sim/scenario/plausibility.hpp"
 #include "sim/scenario/robot_control_reader.hpp"
+#include "sim/scenario/sensor_reader.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {
@@ -49,8 +50,8 @@ RobotDescription read_robot(const XmlDocument& document, double step_s, SourceSe
                                                        "AttachedSensor", "sensor", "Manipulator"};
   const KinBodyContents contents = read_kinbody(root, KinBodyUse::robot, sources, remarks, extra_tags);
   for (const XmlElement& child : root.children()) {
-    if (child.is("AttachedSensor") || child.is("sensor")) {
-      remark_no_effect(remarks, child, "every link has two touch sensors under it");
+    if (child.is("sensor")) {
+      remark_no_effect(remarks, child, "it is in no <AttachedSensor>");
     } else if (child.is("Manipulator")) {
       remark_no_effect(remarks, child, "a crawling robot has no manipulator");
     }
@@ -66,6 +67,7 @@ RobotDescription read_robot(const XmlDocument& document, double step_s, SourceSe
   robot.model.links = std::move(chain.links);
   robot.model.joints = std::move(chain.joints);
   robot.kernel_limits = std::move(chain.kernel_limits);
+  robot.model.sensors = read_sensors(root, robot.model, sources, remarks);
   robot.modules = read_modules(root, robot.model);
   robot.robot_control = read_robot_control(root, robot.model);
   remarks.push_back(one_line(chain.joint_map));

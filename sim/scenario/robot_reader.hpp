@@ -22,9 +22,9 @@ struct RobotDescription {
 
 /// Reads a robot file: <Robot> with KinBodies and joints as in OpenRAVE, and our
 ///   <servo><gain>50</gain><period unit="ms">1</period><latency unit="ms">0</latency></servo>
-/// (gain in 1/s; what is missing is as in ServoModel), the modules (module_reader.hpp) and
-/// the plug-in (robot_control_reader.hpp). Adds the joint map to the
-/// remarks. step_s: of the physics; bounds the gain.
+/// (gain in 1/s; what is missing is as in ServoModel), the modules (module_reader.hpp), the
+/// plug-in (robot_control_reader.hpp) and the sensors (sensor_reader.hpp). Adds the joint map to the remarks. step_s:
+/// of the physics; bounds the gain.
 [[nodiscard]] RobotDescription read_robot(const XmlDocument& document, double step_s, SourceSet& sources,
                                           std::vector<std::string>& remarks);
 

@@ -127,6 +127,7 @@ std::vector<unsigned> algorithm_ids() {
     ids.push_back(algorithm_at(i).declaration().id);
   }
   ids.push_back(sensing_probe().declaration().id);
+  ids.push_back(reading_probe().declaration().id);
   return ids;
 }
 

@@ -63,7 +63,10 @@ class Dice {
 class Run {
  public:
   Run(std::span<Kernel* const> kernels, const ActuationModule& algorithm, std::uint32_t number)
-      : kernels_(kernels), algorithm_(algorithm), dice_(Pcg32(number, algorithm.declaration().id)) {}
+      : kernels_(kernels),
+        algorithm_(algorithm),
+        dice_(Pcg32(number, algorithm.declaration().id)),
+        measured_(Pcg32(number, readings_stream)) {}
 
   void prepare() {
     configure();
@@ -92,6 +95,7 @@ class Run {
         distort();
       }
       touch();
+      measure();
       for (Kernel* kernel : kernels_) {
         kernel->advance();
       }
@@ -109,6 +113,7 @@ class Run {
  private:
   static constexpr std::uint32_t never = 0xFFFFFFFFU;
   static constexpr std::uint32_t max_wait = 50;
+  static constexpr std::uint64_t readings_stream = 1'000;  // beyond the ids of algorithms
   static constexpr std::uint32_t servo_period_us = 2'500;
 
   void expect_ok(Status status) {
@@ -238,6 +243,21 @@ class Run {
     }
   }
 
+  /// Now and then a sensor is absent.
+  void measure() {
+    for (unsigned joint = 0; joint < joint_count; ++joint) {
+      JointReadings readings;
+      readings.present = static_cast<std::uint8_t>(measured_.any_bits() & 7U);
+      readings.current_ma = static_cast<std::int32_t>(measured_.any_bits() >> 17U);
+      readings.pitch = static_cast<std::int32_t>(measured_.any_bits());
+      readings.roll = static_cast<std::int32_t>(measured_.any_bits());
+      for (std::int32_t& axis : readings.acceleration_mm_s2) {
+        axis = static_cast<std::int32_t>(measured_.any_bits());
+      }
+      kernel_of(joint).set_readings(joint, readings);
+    }
+  }
+
   void exchange(const FaultInjection& fault) {
     if (kernels_.size() == 1) {
       return;
@@ -296,6 +316,7 @@ class Run {
   std::span<Kernel* const> kernels_;
   const ActuationModule& algorithm_;
   Dice dice_;
+  Dice measured_;  ///< apart, so that the readings change nothing in the cases of algorithms that use none
   KernelConfiguration configuration_;
   std::array<Commit, 2> commits_;
   Distortion distortion_;
@@ -307,8 +328,12 @@ class Run {
 }  // namespace
 
 const ActuationModule* find_algorithm(std::uint8_t id) {
-  const ActuationModule& probe = sensing_probe();
-  return id == probe.declaration().id ? &probe : proleg::find_algorithm(id);
+  for (const ActuationModule* probe : {static_cast<const ActuationModule*>(&sensing_probe()), &reading_probe()}) {
+    if (id == probe->declaration().id) {
+      return probe;
+    }
+  }
+  return proleg::find_algorithm(id);
 }
 
 std::array<Kernel*, joint_count> Modules::kernels() {

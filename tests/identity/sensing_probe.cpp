@@ -42,8 +42,48 @@ class SensingProbe final : public SensingModule {
 
 constexpr SensingProbe instance;
 
+constexpr InternalValue reading_values[] = {
+    InternalValue{"mixture", Unit::phase_degree, 0, "scrambled history of the readings"},
+};
+constexpr Declaration about_readings{126,        "ReadingProbe", "set-points from readings, for tests",
+                                     parameters, reading_values, {}};
+
+class ReadingProbe final : public ActuationModule {
+ public:
+  [[nodiscard]] const Declaration& declaration() const override { return about_readings; }
+
+  [[nodiscard]] std::uint8_t senses_readings() const override {
+    return JointReadings::servo_current | JointReadings::inclination | JointReadings::acceleration;
+  }
+
+  void advance(const Surroundings& surroundings, const Tuning& /*tuning*/, const std::int32_t* state,
+               std::int32_t* next) const override {
+    const JointReadings& readings = surroundings.readings;
+    const std::int32_t values[] = {std::int32_t{readings.present},
+                                   readings.current_ma,
+                                   readings.pitch,
+                                   readings.roll,
+                                   readings.acceleration_mm_s2[0],
+                                   readings.acceleration_mm_s2[1],
+                                   readings.acceleration_mm_s2[2]};
+    auto mixed = static_cast<std::uint32_t>(state[mixture]);
+    for (const std::int32_t value : values) {
+      mixed = mixed * 1664525U + 1013904223U + static_cast<std::uint32_t>(value);
+    }
+    next[mixture] = static_cast<std::int32_t>(mixed);
+  }
+
+  [[nodiscard]] std::int32_t output(const Tuning& tuning, const std::int32_t* state) const override {
+    return multiply(tuning.parameters[amplitude], state[mixture], 31);
+  }
+};
+
+constexpr ReadingProbe reading_instance;
+
 }  // namespace
 
 const SensingModule& sensing_probe() { return instance; }
+
+const ActuationModule& reading_probe() { return reading_instance; }
 
 }  // namespace proleg::identity

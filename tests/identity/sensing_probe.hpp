@@ -8,4 +8,7 @@ namespace proleg::identity {
 /// contact of a wrong age shows in every later set-point.
 [[nodiscard]] const SensingModule& sensing_probe();
 
+/// The same for the readings of the joint's module.
+[[nodiscard]] const ActuationModule& reading_probe();
+
 }  // namespace proleg::identity

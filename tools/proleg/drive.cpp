@@ -15,6 +15,7 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output_check.hpp"
 #include "shared/computer/text/text.hpp"
+#include "sim/scenario/module_sensors.hpp"
 #include "tools/proleg/bus_access.hpp"
 #include "tools/proleg/drive_plugin.hpp"
 #include "tools/proleg/drive_report.hpp"
@@ -211,6 +212,9 @@ sim::Scenario simulated_robot(const BusOptions& bus) {
 int drive(const DriveOptions& options) {
   const ScenarioRun run = prepare_run(options);
   print_warnings("proleg drive", run.scenario);
+  const bool has_modules = !run.scenario.robot_control || options.bus.bus;
+  sim::require_sensors(run.scenario, has_modules ? sim::sensors_of_modules : std::uint8_t{0},
+                       has_modules ? "a module" : "a robot without modules");
   if (options.verbose) {
     print_setup(run.scenario);
   }

@@ -15,6 +15,7 @@
 #include "sim/bus/candump_log.hpp"
 #include "sim/loop/hardware_loop.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "sim/scenario/module_sensors.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/hil_faults.hpp"
 #include "tools/proleg/hil_modules.hpp"
@@ -89,6 +90,7 @@ HilResult run_loop(const ScenarioRun& run, const HilModules& modules, sim::Hardw
   result.ticks = loop.tick();
   result.simulated_s = loop.time_s();
   result.displacement_m = loop.plant().displacement();
+  result.sensors = loop.plant().sensors().summaries();
   result.contacts_mean = loop.plant().mean_contacts();
   result.differences = loop.differences();
   if (const auto& first = loop.first_difference()) {
@@ -188,6 +190,7 @@ int judge(const HilResult& result, std::uint32_t tick_period_us) {
 int hil(const HilOptions& options) {
   const ScenarioRun run = prepare_run(options);
   print_warnings("proleg hil", run.scenario);
+  sim::require_sensors(run.scenario, sim::sensors_of_modules, "a module");
   if (options.verbose) {
     print_setup(run.scenario);
   }

@@ -77,6 +77,7 @@ Json hil_json(const HilOptions& options, const ScenarioRun& run, const HilModule
           {"faults", result.faults.empty() ? Json() : fault_json(run, result)},
           {"link_duty_factors", result.measures.link_duty_factors},
           {"servos", servos_array(result.measures, run.scenario.robot)},
+          {"sensors", sensors_array(result.sensors)},
           {"recording", options.record.value_or("")},
           {"can_log", options.can_log.value_or("")},
           {"build_id", build_id}};
@@ -140,6 +141,7 @@ void print_hil_table(const HilOptions& options, const ScenarioRun& run, const Hi
     std::printf("CAN log           %s\n", options.can_log->c_str());
   }
   print_measures(result.measures.values);
+  print_sensors(result.sensors);
 }
 
 std::vector<std::pair<std::string, std::string>> hil_summary(const ScenarioRun& run, const HilResult& result) {
@@ -158,6 +160,7 @@ std::vector<std::pair<std::string, std::string>> hil_summary(const ScenarioRun& 
     summary.emplace_back("world_hash", *result.world_hash);
   }
   append_results(result.measures, run.scenario.robot, summary);
+  append_sensors(result.sensors, summary);
   return summary;
 }
 

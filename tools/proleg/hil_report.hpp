@@ -49,6 +49,7 @@ struct HilResult {
   std::optional<HilModules::CostliestTick> costliest_tick;
   Durations command_latency_ns;  ///< as HardwareLoop has it
   RunMeasures measures;
+  std::vector<sim::SensorSummary> sensors;
   // Of a run with faults.
   sim::FaultSchedule faults;
   std::optional<std::uint32_t> first_fault_tick;  ///< the first tick that was not compared

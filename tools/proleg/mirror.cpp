@@ -56,6 +56,8 @@ sim::TickSample Mirror::follow(const sim::TickSample& real) {
   sample.servo_currents = plant_.servo_currents();
   sample.contact_forces = plant_.contact_forces();
   sample.object_poses = plant_.object_poses();
+  sample.sensor_values = plant_.sensors().values();
+  sample.measured_sensors = plant_.sensors().measured();
   return sample;
 }
 

@@ -96,6 +96,48 @@ void print_measures(const sim::MeasureValues& values) {
   }
 }
 
+Json sensors_array(const std::vector<sim::SensorSummary>& sensors) {
+  Json array = Json::empty_array();
+  for (const sim::SensorSummary& summary : sensors) {
+    array.append(Json{{"sensor", summary.name},
+                      {"type", std::string(sim::name_of(summary.kind))},
+                      {"quantity", std::string(summary.quantity)},
+                      {"unit", std::string(summary.unit)},
+                      {"least", summary.least},
+                      {"greatest", summary.greatest},
+                      {"mean", summary.mean()}});
+  }
+  return array;
+}
+
+void print_sensors(const std::vector<sim::SensorSummary>& sensors) {
+  if (sensors.empty()) {
+    return;
+  }
+  std::printf("sensors\n");
+  for (const sim::SensorSummary& summary : sensors) {
+    const std::string name = summary.name + ' ' + std::string(summary.quantity);
+    if (summary.kind == sim::SensorKind::touch) {
+      std::printf("  %-28s  %.3g %% of the time\n", name.c_str(), 100.0 * summary.mean());
+    } else {
+      std::printf("  %-28s  %.4g to %.4g %s, mean %.4g\n", name.c_str(), summary.least, summary.greatest,
+                  std::string(summary.unit).c_str(), summary.mean());
+    }
+  }
+}
+
+void append_sensors(const std::vector<sim::SensorSummary>& sensors,
+                    std::vector<std::pair<std::string, std::string>>& results) {
+  for (const sim::SensorSummary& summary : sensors) {
+    const std::string name = "sensor." + summary.name + '.' + std::string(summary.quantity) + '.';
+    if (summary.count > 0) {
+      results.emplace_back(name + "least", exact_text(summary.least));
+      results.emplace_back(name + "greatest", exact_text(summary.greatest));
+      results.emplace_back(name + "mean", exact_text(summary.mean()));
+    }
+  }
+}
+
 void append_results(const RunMeasures& measures, const sim::RobotModel& robot,
                     std::vector<std::pair<std::string, std::string>>& results) {
   for (const sim::MeasureDeclaration& declaration : sim::measures()) {

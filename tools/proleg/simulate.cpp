@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "shared/computer/algorithm_library/guarded_algorithm.hpp"
 #include "shared/computer/text/text.hpp"
@@ -69,7 +70,8 @@ Result run(const ScenarioRun& setup, sim::Simulation& simulation, sim::Recorder*
           measures_of(simulation.plant().meter())};
 }
 
-void print_json(const ScenarioOptions& options, const ScenarioRun& setup, const Result& result) {
+void print_json(const ScenarioOptions& options, const ScenarioRun& setup, const Result& result,
+                const std::vector<sim::SensorSummary>& sensors) {
   const Json object{{"scenario", options.file},
                     {"seed", setup.scenario.kernel.seed},
                     {"overrides", overrides_object(setup.scenario.overrides)},
@@ -86,12 +88,13 @@ void print_json(const ScenarioOptions& options, const ScenarioRun& setup, const 
                     {"measures", measures_object(result.measures.values)},
                     {"link_duty_factors", result.measures.link_duty_factors},
                     {"servos", servos_array(result.measures, setup.scenario.robot)},
+                    {"sensors", sensors_array(sensors)},
                     {"recording", options.record.value_or("")},
                     {"build_id", build_id}};
   std::cout << object.text() << '\n';
 }
 
-void print_table(const ScenarioOptions& options, const Result& result) {
+void print_table(const ScenarioOptions& options, const Result& result, const std::vector<sim::SensorSummary>& sensors) {
   std::printf("displacement      %.4f m in %.2f s\n", result.displacement_m, result.simulated_s);
   std::printf("real-time factor  %.1f\n", result.real_time_factor());
   std::printf("contacts          %.2f points in a physics step on average\n", result.contacts_mean);
@@ -110,6 +113,7 @@ void print_table(const ScenarioOptions& options, const Result& result) {
     std::printf("recording         %s\n", options.record->c_str());
   }
   print_measures(result.measures.values);
+  print_sensors(sensors);
 }
 
 int simulate(const ScenarioOptions& options) {
@@ -145,9 +149,9 @@ int simulate(const ScenarioOptions& options) {
     recorder->finish(results_of(simulation, setup.scenario, result.lost_frames));
   }
   if (options.json) {
-    print_json(options, setup, result);
+    print_json(options, setup, result, simulation.plant().sensors().summaries());
   } else {
-    print_table(options, result);
+    print_table(options, result, simulation.plant().sensors().summaries());
   }
   print_warning_on_servos("proleg simulate", result.measures, setup.scenario.robot);
   print_warning_on_clipping("proleg simulate", setup.scenario, simulation.chain().clipped_ticks(), simulation.tick());

@@ -20,6 +20,7 @@ std::vector<std::pair<std::string, std::string>> results_of(const sim::Simulatio
     results.emplace_back("world_hash", *hash);
   }
   append_results(measures_of(plant.meter()), scenario.robot, results);
+  append_sensors(plant.sensors().summaries(), results);
   return results;
 }
 

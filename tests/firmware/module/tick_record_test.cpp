@@ -126,6 +126,17 @@ TEST(TickRecords, FollowTheKernelThroughStopsLossesAndRestarts) {
   EXPECT_GT(recorded, 100U);
 }
 
+TEST(TickRecords, HaveTheCurrentThatWasReadAfterTheSyncBefore) {
+  test::TestModule robot;
+  robot.set_up_and_start();
+  robot.run(9);
+  robot.it().meters.readings.current_ma = 777;
+  robot.sync(10);
+  EXPECT_NE(robot.module().last_tick().current_ma, 777U) << "it is read after the tick was computed";
+  robot.sync(11);
+  EXPECT_EQ(robot.module().last_tick().current_ma, 777U);
+}
+
 TEST(TickRecords, EndWithAReset) {
   test::TestModule robot;
   robot.set_up_and_start();

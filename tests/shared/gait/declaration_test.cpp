@@ -20,8 +20,8 @@ void for_each_algorithm(Visit visit) {
 }
 
 TEST(Registry, HoldsTheAlgorithmsUnderTheirNamesInFiles) {
-  for (const auto name :
-       {test::direct, test::sinusoidal, test::extended, test::coupled, test::reflex, test::adaptive_touch}) {
+  for (const auto name : {test::direct, test::sinusoidal, test::extended, test::coupled, test::reflex,
+                          test::adaptive_touch, test::stimulus}) {
     EXPECT_NE(find_algorithm(name), nullptr) << name;
   }
 }
@@ -48,6 +48,7 @@ TEST(Registry, KeepsTheIdsOfTheProtocol) {
   EXPECT_EQ(find_algorithm(test::coupled)->declaration().id, 4);
   EXPECT_EQ(find_algorithm(test::reflex)->declaration().id, 5);
   EXPECT_EQ(find_algorithm(test::adaptive_touch)->declaration().id, 14);
+  EXPECT_EQ(find_algorithm(test::stimulus)->declaration().id, 15);
 }
 
 TEST(Declaration, HasAnIdANameAndAHelpTextOfItsOwn) {
@@ -147,7 +148,7 @@ TEST(Declaration, OfAPatternGeneratorStartsWithPhaseFrequencyAndPhaseDifference)
     EXPECT_EQ(about.frame[0].internal_value, PatternGenerator::current_phase);
     EXPECT_EQ(about.frame[0].bytes, 4);
   });
-  EXPECT_EQ(generators, 3);
+  EXPECT_EQ(generators, 4);
 }
 
 }  // namespace

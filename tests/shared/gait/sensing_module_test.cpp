@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <random>
+#include <utility>
 
 #include "module_chain.hpp"
 #include "robot.hpp"
@@ -118,6 +119,94 @@ TEST(SensingModule, IgnoresBitsThatAreNoContacts) {
   kernel.set_contacts(1, 0xF1);
   kernel.advance();
   EXPECT_EQ(kernel.frame(1, 0).flags(), StateFrame::valid | StateFrame::contact_rear_link_rear);
+}
+
+constexpr InternalValue reading_values[] = {{"present", Unit::count, 0, "bits"},
+                                            {"current", Unit::count, 0, "mA"},
+                                            {"pitch", Unit::phase_degree, 0, "of the link"},
+                                            {"up", Unit::count, 0, "mm/s^2"}};
+constexpr Declaration about_readings{119, "ReadingProbe", "test", {}, reading_values, {}};
+
+/// Remembers the readings that it was given.
+class ReadingProbe final : public ActuationModule {
+ public:
+  explicit constexpr ReadingProbe(std::uint8_t sensors) : sensors_(sensors) {}
+  [[nodiscard]] const Declaration& declaration() const override { return about_readings; }
+  [[nodiscard]] std::uint8_t senses_readings() const override { return sensors_; }
+  void advance(const Surroundings& surroundings, const Tuning& /*tuning*/, const std::int32_t* /*state*/,
+               std::int32_t* next) const override {
+    next[0] = surroundings.readings.present;
+    next[1] = surroundings.readings.current_ma;
+    next[2] = surroundings.readings.pitch;
+    next[3] = surroundings.readings.acceleration_mm_s2[2];
+  }
+  [[nodiscard]] std::int32_t output(const Tuning& /*tuning*/, const std::int32_t* /*state*/) const override {
+    return 0;
+  }
+
+ private:
+  std::uint8_t sensors_;
+};
+
+constexpr std::uint8_t current_and_inclination = JointReadings::servo_current | JointReadings::inclination;
+constexpr ReadingProbe current_probe(JointReadings::servo_current);
+constexpr ReadingProbe reading_probe(current_and_inclination);
+constexpr ReadingProbe no_probe(0);
+
+JointReadings all_readings() { return {7, 321, 45, -6, {1, 2, 9810}}; }
+
+std::array<std::int32_t, 4> given_to(const Kernel& kernel, unsigned slot, unsigned joint) {
+  std::array<std::int32_t, 4> values{};
+  for (unsigned i = 0; i < values.size(); ++i) {
+    values[i] = kernel.internal_value(slot, joint, i);
+  }
+  return values;
+}
+
+TEST(Readings, AreThoseOfTheJointsOwnModule) {
+  KernelOf<robot_joints> kernel;
+  ASSERT_EQ(kernel.configure(test::one_slot(reading_probe, robot_joints), 0), Status::ok);
+  EXPECT_EQ(kernel.needed_readings(2), current_and_inclination);
+  kernel.set_readings(2, all_readings());
+  kernel.set_readings(robot_joints, all_readings());  // of no local joint: ignored
+  kernel.advance();
+  EXPECT_EQ(given_to(kernel, 0, 2), (std::array<std::int32_t, 4>{current_and_inclination, 321, 45, 0}));
+  EXPECT_EQ(given_to(kernel, 0, 1), (std::array<std::int32_t, 4>{})) << "another module's";
+}
+
+TEST(Readings, ThatNoSlotOfTheJointNamesAreAbsent) {
+  KernelOf<1> kernel;
+  for (const auto& [probe_in_slot, expected] :
+       {std::pair{&current_probe, std::array<std::int32_t, 4>{JointReadings::servo_current, 321, 0, 0}},
+        std::pair{&no_probe, std::array<std::int32_t, 4>{}}}) {
+    ASSERT_EQ(kernel.configure(test::one_slot(*probe_in_slot, 1), 0), Status::ok);
+    kernel.set_readings(0, all_readings());
+    kernel.advance();
+    EXPECT_EQ(given_to(kernel, 0, 0), expected);
+  }
+}
+
+TEST(Readings, ThatAModuleDoesNotHaveAreAbsent) {
+  KernelOf<1> kernel;
+  ASSERT_EQ(kernel.configure(test::one_slot(reading_probe, 1), 0), Status::ok);
+  JointReadings readings = all_readings();
+  readings.present = JointReadings::servo_current;
+  kernel.set_readings(0, readings);
+  kernel.advance();
+  EXPECT_EQ(given_to(kernel, 0, 0), (std::array<std::int32_t, 4>{JointReadings::servo_current, 321, 0, 0}));
+}
+
+TEST(Readings, FromBeforeAResetAreForgotten) {
+  KernelOf<1> kernel;
+  ASSERT_EQ(kernel.configure(test::one_slot(reading_probe, 1), 0), Status::ok);
+  kernel.set_readings(0, all_readings());
+  kernel.reset();
+  kernel.advance();
+  EXPECT_EQ(given_to(kernel, 0, 0), (std::array<std::int32_t, 4>{}));
+  kernel.set_readings(0, all_readings());
+  kernel.join(100);
+  kernel.advance();
+  EXPECT_EQ(given_to(kernel, 0, 0), (std::array<std::int32_t, 4>{}));
 }
 
 }  // namespace

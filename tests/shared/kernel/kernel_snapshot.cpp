@@ -174,6 +174,13 @@ void KernelSnapshot::visit_state(AnyKernel& kernel, Archive& archive) {
     archive.value(joint.previous_setpoint);
     archive.value(joint.setpoint);
     archive.value(joint.contacts);
+    archive.value(joint.readings.present);
+    archive.value(joint.readings.current_ma);
+    archive.value(joint.readings.pitch);
+    archive.value(joint.readings.roll);
+    for (auto& axis : joint.readings.acceleration_mm_s2) {
+      archive.value(axis);
+    }
     archive.value(joint.limited);
     visit_staged(kernel, joint, archive);
     for (unsigned s = 0; s < max_slots; ++s) {

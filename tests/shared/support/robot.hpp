@@ -37,6 +37,7 @@ inline constexpr std::string_view direct = "DirectJointAccess";
 inline constexpr std::string_view sinusoidal = "PatternGenerator_sinusoidal";
 inline constexpr std::string_view extended = "PatternGenerator_sinusoidal_extended";
 inline constexpr std::string_view coupled = "PatternGenerator_coupled_oscillator";
+inline constexpr std::string_view stimulus = "PatternGenerator_head_stimulus";
 inline constexpr std::string_view reflex = "SensingModule_uneven_ground_reflex";
 inline constexpr std::string_view adaptive_touch = "SensingModule_global_adaptive_touch";
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <random>
@@ -22,9 +23,11 @@
 namespace proleg::sim {
 namespace {
 
-/// A recording that has rows in every table: changes, a distortion, losses, a restart, faults, a move.
+/// A recording that has rows in every table: changes, a distortion, losses, a restart, faults, a move, sensors,
+/// readings.
 void record_eventful_run(const std::filesystem::path& path) {
   Scenario scenario = shipped("travelling_wave/coupled");
+  scenario.robot.sensors = shipped("retreat/wall").robot.sensors;
   apply_setting(scenario, "amplitude=20@3");
   apply_setting(scenario, "current_phase:J3=90@5");
   const Losses losses({{20, 0, 0, 1}, {21, 3, 0, 2}});
@@ -51,6 +54,8 @@ void record_eventful_run(const std::filesystem::path& path) {
     if (sample.tick == 10) {
       sample.moves = moves;
     }
+    const std::array<JointReadings, 5> readings{JointReadings{7, 50, 1 << 29, -(1 << 30), {1, 2, 9810}}};
+    sample.readings = readings;
     recorder.record_tick(sample);
   }
   recorder.finish({{"setpoint_hash", loop.setpoint_hash().hex()}, {"servo_hash", loop.servo_hash().hex()}});

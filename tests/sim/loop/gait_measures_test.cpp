@@ -148,7 +148,7 @@ TEST(GaitMeasures, EnergiesOfTheBodyAddUpToThatOfTheWorld) {
   EXPECT_NEAR(both, sum / ticks, 0.02 * sum / ticks);
   EXPECT_GT(values[Measure::kinetic_energy], 0.0);
   EXPECT_GT(values[Measure::elastic_energy], 0.0);
-  EXPECT_GE(values[Measure::max_acceleration], values[Measure::smoothness]);
+  EXPECT_GE(values[Measure::largest_acceleration], values[Measure::smoothness]);
   EXPECT_NEAR(values[Measure::lifted_links], 6 * (1 - values[Measure::duty_factor]), 1e-9);
 }
 

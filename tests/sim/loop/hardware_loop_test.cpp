@@ -91,7 +91,8 @@ TEST_P(EveryScenario, DoesSoWhenFivePercentOfTheStateFramesAreLost) {
 
 INSTANTIATE_TEST_SUITE_P(Shipped, EveryScenario,
                          testing::Values("travelling_wave/uniform", "travelling_wave/tail_fixed",
-                                         "travelling_wave/coupled", "obstacle/reflex", "obstacle/plain"));
+                                         "travelling_wave/coupled", "obstacle/reflex", "obstacle/plain",
+                                         "retreat/wall"));
 
 TEST(HardwareLoop, ChangesInFlightTakeEffectAtTheirTicksInEveryModule) {
   Scenario scenario = shipped("travelling_wave/coupled");

@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,15 @@
 namespace proleg::sim {
 namespace {
 
-/// The probe makes every single contact matter in all later set-points.
+/// The probes make every single contact and reading matter in all later set-points.
 const ActuationModule* algorithm_of(const std::string& name) {
-  const ActuationModule& probe = identity::sensing_probe();
-  return name == probe.declaration().name ? &probe : find_algorithm(name);
+  for (const ActuationModule* probe :
+       {static_cast<const ActuationModule*>(&identity::sensing_probe()), &identity::reading_probe()}) {
+    if (name == probe->declaration().name) {
+      return probe;
+    }
+  }
+  return find_algorithm(name);
 }
 
 /// Coupled oscillators, and the probe on some joints, with limits that bite, changes in flight and distortions.
@@ -32,6 +38,7 @@ Scenario eventful_scenario() {
   Scenario scenario = shipped("travelling_wave/coupled");
   scenario.kernel.seed = 18446744073709551557U;
   scenario.kernel.slots[2] = {&identity::sensing_probe(), JointMask(0b10110)};
+  scenario.kernel.slots[3] = {&identity::reading_probe(), JointMask(0b10110)};
   scenario.joint_limits[1] = {-200'000'000, 300'000'000};
   scenario.joint_limits[4].upper = 100'000'000;
   scenario.robot.servo.period_us = 3'000;
@@ -39,9 +46,9 @@ Scenario eventful_scenario() {
   for (const std::string& setting :
        {std::string("SensingProbe.amplitude=4"), std::string("SensingProbe.amplitude:J1=9"),
         oscillator + "amplitude:J3=25", oscillator + "amplitude=33@120", oscillator + "frequency=0.7@120",
-        std::string("SensingProbe.amplitude=6@120"), oscillator + "current_phase=77@0",
-        oscillator + "current_phase:J4=-140@200", std::string("SensingProbe.mixture:J4=90@200"),
-        std::string("SensingProbe.amplitude=3.5@201")}) {
+        std::string("ReadingProbe.amplitude=3"), std::string("SensingProbe.amplitude=6@120"),
+        oscillator + "current_phase=77@0", oscillator + "current_phase:J4=-140@200",
+        std::string("SensingProbe.mixture:J4=90@200"), std::string("SensingProbe.amplitude=3.5@201")}) {
     apply_setting(scenario, setting);
   }
   return scenario;
@@ -114,6 +121,7 @@ class Replay {
     for (unsigned joint = 0; joint < kernel_.local_joint_count(); ++joint) {
       const unsigned head = joint == 0 ? tick.latched_contacts[0] : 0U;
       kernel_.set_contacts(joint, static_cast<std::uint8_t>(tick.latched_contacts[joint + 1] | head << 2U));
+      kernel_.set_readings(joint, tick.readings[joint]);
     }
     kernel_.advance();
   }
@@ -176,6 +184,7 @@ TEST_F(ReplayedRecording, RepeatsEverySetpointInternalValueAndServoCommand) {
   ValueHash servo_hash;
   std::size_t pulse = 0;
   unsigned contacts = 0;
+  std::set<std::int32_t> pitches;
   unsigned limited = 0;
 
   recording.read_ticks(recording.first_tick(), recording.last_tick(), [&](const RecordedTick& tick) {
@@ -204,6 +213,9 @@ TEST_F(ReplayedRecording, RepeatsEverySetpointInternalValueAndServoCommand) {
         ++pulse;
       }
     }
+    EXPECT_EQ(tick.readings[0].present, 0) << "of a joint without the probe";
+    EXPECT_EQ(tick.readings[1].present, 7) << "a simulated module has all sensors";
+    pitches.insert(tick.readings[1].pitch);
     for (const std::uint8_t link : tick.latched_contacts) {
       contacts += link != 0 ? 1U : 0U;
     }
@@ -213,6 +225,7 @@ TEST_F(ReplayedRecording, RepeatsEverySetpointInternalValueAndServoCommand) {
   EXPECT_EQ(setpoint_hash.hex(), result(recording, "setpoint_hash"));
   EXPECT_EQ(servo_hash.hex(), result(recording, "servo_hash"));
   EXPECT_GT(contacts, 100U) << "the probe had something to react to";
+  EXPECT_GT(pitches.size(), ticks / 2) << "the link moved";
   EXPECT_GT(limited, 10U) << "the limits cut something off";
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -102,6 +103,18 @@ TEST(GaitMeter, SmoothnessIsTheRootMeanSquareOfTheAcceleration) {
   constexpr double w = 2 * std::numbers::pi;
   motion.path = [](double t) { return Eigen::Vector3d(0, 0.05 * std::sin(w * t), 0); };
   EXPECT_NEAR(motion.values_after(10)[Measure::smoothness], 0.05 * w * w / std::sqrt(2.0), 0.01);
+}
+
+TEST(GaitMeter, LargestAccelerationIsThatOfASingleJolt) {
+  Motion motion;
+  motion.path = [](double t) { return Eigen::Vector3d(0.3 * t, 0, t * t); };
+  EXPECT_NEAR(motion.values_after(2)[Measure::largest_acceleration], 2.0, 1e-8);
+  constexpr double w = 2 * std::numbers::pi;
+  motion.path = [](double t) { return Eigen::Vector3d(0, 0.05 * std::sin(w * t), 0); };
+  EXPECT_NEAR(motion.values_after(10)[Measure::largest_acceleration], 0.05 * w * w, 0.01);
+  // From 0.2 m/s to rest within a tick of 10 ms.
+  motion.path = [](double t) { return Eigen::Vector3d(0, 0.2 * std::min(t, 1.0), 0); };
+  EXPECT_NEAR(motion.values_after(2)[Measure::largest_acceleration], 0.2 / tick_s, 1e-6);
 }
 
 TEST(GaitMeter, TheStabilityMarginIsTheDistanceFromTheCentreOfMassToTheNearerOutermostSupport) {
@@ -337,6 +350,12 @@ TEST(GaitMeter, ElectricalEnergyIsWhatTheServosDrawAtSixVolts) {
   EXPECT_NEAR(energy(0, 4.5), 6 * 1.5, tolerance) << "held";
   EXPECT_NEAR(energy(0, -4.5), 6 * 1.5, tolerance);
   EXPECT_NEAR(energy(2.0, 4.5, true), 6 * 0.010, tolerance) << "without pulses";
+}
+
+TEST(GaitMeter, MeanCurrentIsThatOfAServo) {
+  const Motion motion(2);
+  EXPECT_NEAR(turning(motion, 0.1, 4.5, 4.5)[Measure::mean_current], 200.0, 0.5) << "free, at full speed";
+  EXPECT_NEAR(turning(motion, 0.1, 0, 4.5)[Measure::mean_current], 1500.0, 2.0) << "held";
 }
 
 TEST(GaitMeter, CostsOfTransportAreEnergyPerMassAndDistance) {

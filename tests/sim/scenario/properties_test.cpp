@@ -69,16 +69,16 @@ TEST(Remarks, NameTagsWithoutEffect) {
   files.replace("top.xml", "<robot>", "<sensor>tactile.sensor.xml</sensor><robot>")
       .replace("top.xml", "<duration>",
                "<parallelComputing>1</parallelComputing><mode>Optimization</mode><accuracy>30</accuracy><duration>")
-      .replace("robot.xml", "</KinBody>\n</Robot>", "</KinBody><AttachedSensor><any/></AttachedSensor></Robot>")
+      .replace("robot.xml", "</KinBody>\n</Robot>", "</KinBody><sensor><any/></sensor></Robot>")
       .replace("robot.xml", "<maxvel>5</maxvel>", "<maxvel>5</maxvel><maxaccel>1</maxaccel>")
       .replace("environment.xml", "</Body>",
                "<Mass type=\"box\"><total>1</total><extents>1 1 1</extents></Mass></Body>");
   const Scenario scenario = files.scenario();
-  for (const char* text : {"top.xml:2: <sensor> has no effect: every link has two touch sensors",
-                           "top.xml:6: <parallelComputing> has no effect", "top.xml:6: <mode> has no effect",
-                           "top.xml:6: <accuracy> has no effect",
-                           "robot.xml:45: <AttachedSensor> has no effect: every link has two touch sensors",
-                           "robot.xml:42: <maxaccel> has no effect", "environment.xml:15: <Mass> has no"}) {
+  for (const char* text :
+       {"top.xml:2: <sensor> has no effect: every link has two touch sensors",
+        "top.xml:6: <parallelComputing> has no effect", "top.xml:6: <mode> has no effect",
+        "top.xml:6: <accuracy> has no effect", "robot.xml:45: <sensor> has no effect: it is in no <AttachedSensor>",
+        "robot.xml:42: <maxaccel> has no effect", "environment.xml:15: <Mass> has no"}) {
     EXPECT_TRUE(remarked(scenario, text)) << text;
   }
   EXPECT_EQ(scenario.remarks.size(), 8U);

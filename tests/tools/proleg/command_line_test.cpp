@@ -107,6 +107,8 @@ TEST_F(CommandLine, SimulatePrintsTheMeasuresOfTheRun) {
                            "max_tracking_error",
                            "at_speed_limit",
                            "at_torque_limit",
+                           "largest_acceleration",
+                           "mean_current",
                            "mechanical_energy",
                            "electrical_energy",
                            "cost_of_transport",

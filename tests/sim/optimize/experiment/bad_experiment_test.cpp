@@ -40,7 +40,8 @@ const std::string all_measures =
     "distance, speed, sideways_speed, heading, yaw_rate, mechanical_energy, electrical_energy, cost_of_transport, "
     "electrical_cost_of_transport, "
     "specific_resistance, smoothness, stability_margin, height, slip, duty_factor, froude_number, stride_length, "
-    "stride_frequency, tracking_error, max_tracking_error, at_speed_limit, at_torque_limit";
+    "stride_frequency, tracking_error, max_tracking_error, at_speed_limit, at_torque_limit, largest_acceleration, "
+    "mean_current";
 const std::string racing_expects =
     "expected one objective, which is distance or speed with a weight above 0, to be maximised";
 

@@ -135,6 +135,21 @@ void check_robot(const Scenario& scenario) {
   }
 }
 
+void check_sensors(const RobotModel& robot) {
+  require(robot.sensors.size() <= max_attached_sensors, "not too many sensors");
+  for (const AttachedSensor& sensor : robot.sensors) {
+    const bool is_of_joint = sensor.kind == SensorKind::servo_current;
+    require(sensor.part < (is_of_joint ? robot.joints.size() : robot.links.size()),
+            "sensors are on parts of the robot");
+    require(sensor.pose.position.allFinite() && std::abs(sensor.pose.orientation.norm() - 1.0) < 1e-9,
+            "poses of sensors are finite");
+    require(!sensor.extents || sensor.extents->minCoeff() > 0.0, "boxes of touch sensors are above 0");
+    require(sensor.kind != SensorKind::laser || (sensor.scan.rays >= 1 && sensor.scan.rays <= max_laser_rays &&
+                                                 sensor.scan.range > 0.0 && std::isfinite(sensor.scan.angle_step)),
+            "scans are bounded");
+  }
+}
+
 void check_with_kernel(const Scenario& scenario) {
   std::vector<JointMemory> memory(scenario.kernel.joint_count);
   Kernel kernel(memory);
@@ -170,6 +185,7 @@ void check_with_kernel(const Scenario& scenario) {
 
 void check(const Scenario& scenario) {
   check_robot(scenario);
+  check_sensors(scenario.robot);
   for (const StaticObject& object : scenario.environment.objects) {
     check_geometries(object.geometries);
   }

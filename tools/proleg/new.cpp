@@ -58,7 +58,7 @@ std::string axes_of_joints(const std::string& pattern, std::uint32_t joints) {
                      std::to_string(pattern.size()) + " letters for a robot with --joints " + std::to_string(joints),
                      "at most one letter for each joint");
   }
-  std::optional<std::string> axes;
+  std::string axes;
   for (std::uint32_t joint = 0; joint < joints; ++joint) {
     axes += pattern[joint % pattern.size()];
   }

@@ -12,6 +12,8 @@
 #include <string>
 #include <utility>
 
+#include <Eigen/Geometry>
+
 #include "sim/mesh/mesh_error.hpp"
 
 namespace proleg::sim {

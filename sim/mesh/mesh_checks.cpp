@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
+
+#include <Eigen/Geometry>
 
 #include "shared/computer/text/text.hpp"
 #include "sim/mesh/mesh_error.hpp"

@@ -408,6 +408,50 @@ TEST(MujocoWorld, WhatMujocoRefusesIsNamedInOneLine) {
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;
 }
 
+TEST(MujocoWorld, RefusesByNameWhatItDoesNotHave) {
+  const auto refusal = [](const EnvironmentModel& environment) {
+    return message_of<InputError>([&] { static_cast<void>(mujoco_world(chain(1), environment)); });
+  };
+  EnvironmentModel environment = flat_ground(0.5, 0.02);
+  environment.objects[0].name = "hills";
+  const auto mesh = std::make_shared<TriangleMesh>();
+  mesh->vertices = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  mesh->triangles = {{0, 1, 2}};
+  environment.objects[0].geometries[0].mesh = mesh;
+  environment.objects[0].geometries[0].shape = Shape::surface;
+  EXPECT_NE(refusal(environment).find("found object 'hills' with a triangle mesh, expected what MuJoCo has"),
+            std::string::npos);
+  environment.objects[0].geometries[0].shape = Shape::height_field;
+  EXPECT_NE(refusal(environment).find("object 'hills' with a height field"), std::string::npos);
+  EnvironmentModel moving = flat_ground(0.5, 0.02);
+  moving.moving_objects.push_back({"ball", {}, {}, {}, {}});
+  EXPECT_NE(refusal(moving).find("object 'ball', which moves"), std::string::npos);
+}
+
+TEST(MujocoWorld, AConvexMeshRestsAndSlidesAsTheBoxThatItIs) {
+  EnvironmentModel environment = flat_ground(0.5, 0.02);
+  environment.gravity = gravity * Eigen::Vector3d(std::sin(0.6), 0.0, -std::cos(0.6));
+  RobotModel robot = chain(1);
+  const std::unique_ptr<World> box = mujoco_world(robot, environment);
+  Geometry& geometry = robot.links[0].geometries[0];
+  const auto mesh = std::make_shared<TriangleMesh>();
+  for (const double x : {-1.0, 1.0}) {
+    for (const double y : {-1.0, 1.0}) {
+      for (const double z : {-1.0, 1.0}) {
+        mesh->vertices.emplace_back(geometry.extents.cwiseProduct(Eigen::Vector3d(x, y, z)));
+      }
+    }
+  }
+  geometry.shape = Shape::hull;
+  geometry.mesh = mesh;
+  const std::unique_ptr<World> hull = mujoco_world(robot, environment);
+  run(*box, 0.5);
+  run(*hull, 0.5);
+  EXPECT_NEAR(hull->center_of_mass().x(), box->center_of_mass().x(), 0.01);
+  EXPECT_NEAR(hull->center_of_mass().z(), 0.02, 1e-3);
+  EXPECT_GT(box->center_of_mass().x(), 0.1);
+}
+
 TEST(MujocoWorld, ReturnsTheLowestPointOfItsEnvironmentAsOde) {
   for (const EnvironmentModel& environment : {EnvironmentModel{}, flat_ground(0.1, 0.026)}) {
     EXPECT_EQ(mujoco_world(chain(1), environment)->lowest_ground(), ode_world(chain(1), environment)->lowest_ground());

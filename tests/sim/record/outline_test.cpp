@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 
@@ -52,6 +53,47 @@ TEST(Outline, OfASphereIsACircleAndOfACylinderARectangleOrACircle) {
   EXPECT_NEAR(area(outline_of(cylinder, Pose{}, from_side)), 0.2 * 0.6, 1e-9) << "its axis is y";
   const View along_its_axis{Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitZ()};
   EXPECT_NEAR(area(outline_of(cylinder, Pose{}, along_its_axis)), std::numbers::pi * 0.01, 0.0005);
+}
+
+/// A prism across x, from -half to half, over a triangle with its tip up: 2 m wide along y, 1 m high.
+TriangleMesh roof(double half) {
+  TriangleMesh mesh;
+  for (const double x : {-half, half}) {
+    mesh.vertices.insert(mesh.vertices.end(), {{x, -1, 0}, {x, 1, 0}, {x, 0, 1}});
+  }
+  mesh.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  return mesh;
+}
+
+TEST(Outline, OfAHullIsThatOfItsCorners) {
+  Geometry hull = solid(Shape::hull, {1, 1, 1});
+  hull.mesh = std::make_shared<const TriangleMesh>(roof(0.3));
+  EXPECT_NEAR(area(outline_of(hull, Pose{}, from_side)), 1.0, 1e-9);
+}
+
+TEST(MeshSection, HasTheShapeOfTheMeshWithinTheSlab) {
+  MeshSection section(from_side, 0.0, 0.1, -2.0, 2.0);
+  section.add(roof(0.3), Pose{});
+  const std::vector<Polyline> polygons = section.polygons();
+  ASSERT_EQ(polygons.size(), 1U);
+  EXPECT_NEAR(std::abs(area(polygons[0])), 1.0, 0.05);
+  for (const Point& point : polygons[0]) {
+    EXPECT_LE(point.y, 1.0 - std::abs(point.x) + 1e-9) << "under the roof";
+    EXPECT_GE(point.y, -1e-9);
+  }
+}
+
+TEST(MeshSection, LeavesOutWhatIsBesideTheSlab) {
+  MeshSection section(from_side, 0.0, 0.1, -2.0, 2.0);
+  section.add(roof(0.3), {{0.5, 0, 0}, {1, 0, 0, 0}});
+  EXPECT_TRUE(section.polygons().empty());
+}
+
+TEST(MeshSection, TwoPartsWithAGapAreTwoPolygons) {
+  MeshSection section(from_side, 0.0, 0.1, -4.0, 4.0);
+  section.add(roof(0.3), {{0, -2.0, 0}, {1, 0, 0, 0}});
+  section.add(roof(0.3), {{0, 2.0, 0}, {1, 0, 0, 0}});
+  EXPECT_EQ(section.polygons().size(), 2U);
 }
 
 TEST(Clipped, HasTheAreaThatLiesInTheRectangle) {

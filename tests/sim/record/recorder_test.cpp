@@ -100,6 +100,51 @@ TEST(Recorder, KeepsEverySampleBitForBit) {
   });
 }
 
+TEST(Recorder, KeepsThePosesOfObjectsThatMove) {
+  const TemporaryFolder folder;
+  Scenario scenario = small_scenario();
+  scenario.environment.moving_objects.push_back({"ball", {}, {}, {}, {}});
+  scenario.environment.moving_objects.push_back({"crate", {}, {}, {}, {}});
+  {
+    Recorder recorder(folder / "run.sqlite", scenario, "test", "build");
+    run_small(scenario, 20, [&](const TickSample& sample, const Change* /*change*/) {
+      const std::array<Pose, 2> poses{made_up_pose(sample.tick, 5), made_up_pose(sample.tick, 6)};
+      TickSample with_objects = sample;
+      with_objects.object_poses = poses;
+      recorder.record_tick(with_objects);
+    });
+    recorder.finish({});
+  }
+  const Recording recording(folder / "run.sqlite");
+  EXPECT_EQ(recording.objects(), (std::vector<std::string>{"ball", "crate"}));
+  recording.read_ticks(0, 19, [](const RecordedTick& tick) {
+    ASSERT_EQ(tick.object_poses.size(), 2U);
+    for (std::size_t object = 0; object < 2; ++object) {
+      const Pose pose = made_up_pose(tick.tick, 5 + object);
+      EXPECT_EQ(tick.object_poses[object].position, pose.position);
+      EXPECT_EQ(tick.object_poses[object].orientation.coeffs(), pose.orientation.coeffs());
+    }
+  });
+}
+
+TEST(Recorder, OfARealRobotHasNoPosesOfObjects) {
+  const TemporaryFolder folder;
+  Scenario scenario = small_scenario();
+  scenario.environment.moving_objects.push_back({"ball", {}, {}, {}, {}});
+  record_small(folder / "run.sqlite", scenario, 3);  // samples without objects
+  const Recording recording(folder / "run.sqlite");
+  EXPECT_TRUE(recording.objects().empty());
+  recording.read_ticks(0, 2, [](const RecordedTick& tick) { EXPECT_TRUE(tick.object_poses.empty()); });
+}
+
+TEST(Recorder, ARecordingOfAnOlderProgramHasNoObjects) {
+  const TemporaryFolder folder;
+  record_small(folder / "run.sqlite", small_scenario(), 3);
+  Database(folder / "run.sqlite", SQLITE_OPEN_READWRITE).execute("DROP TABLE object; DROP TABLE object_pose");
+  const Recording recording(folder / "run.sqlite");
+  EXPECT_TRUE(recording.objects().empty());
+}
+
 TEST(Recorder, KeepsEveryServoPulseWithItsTime) {
   const TemporaryFolder folder;
   record_small(folder / "run.sqlite", small_scenario(), recorded_ticks);

@@ -84,6 +84,32 @@ TEST(PlanarChain, RefusesByNameLinksThatAreNoRectanglesInThePlane) {
   expect_refused("link 'L2' with a cylinder", [](Case& c) { c.robot.links[2].geometries[0].shape = Shape::cylinder; });
 }
 
+std::shared_ptr<const TriangleMesh> triangle() {
+  TriangleMesh mesh;
+  mesh.vertices = {{-1, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  return std::make_shared<const TriangleMesh>(mesh);
+}
+
+TEST(PlanarChain, RefusesByNameMeshesAndObjectsThatMove) {
+  expect_refused("link 'L1' with a convex mesh", [](Case& c) {
+    c.robot.links[1].geometries[0].shape = Shape::hull;
+    c.robot.links[1].geometries[0].mesh = triangle();
+  });
+  for (const auto& [shape, name] :
+       {std::pair(Shape::surface, "a triangle mesh"), std::pair(Shape::height_field, "a height field")}) {
+    expect_refused("object 'hills' with " + std::string(name), [shape = shape](Case& c) {
+      StaticObject hills = object("hills", {0, 1, 0}, {1, 1, 1});
+      hills.geometries[0].shape = shape;
+      hills.geometries[0].mesh = triangle();
+      c.environment.objects.push_back(hills);
+    });
+  }
+  expect_refused("object 'ball', which moves", [](Case& c) {
+    c.environment.moving_objects.push_back({"ball", {}, {}, {}, {}});
+  });
+}
+
 TEST(PlanarChain, RefusesByNameObjectsInTheWayThatAreNoRectanglesInThePlane) {
   const auto add = [](const StaticObject& added) {
     return [added](Case& c) { c.environment.objects.push_back(added); };

@@ -332,6 +332,11 @@ TEST(SpatialWorld, RefusesByNameWhatItDoesNotHave) {
   environment.objects[0].name = "ball";
   environment.objects[0].geometries[0].shape = Shape::sphere;
   EXPECT_NE(message(snake(3), environment).find("object 'ball' with a sphere"), std::string::npos);
+  environment.objects[0].geometries[0].shape = Shape::surface;
+  EXPECT_NE(message(snake(3), environment).find("object 'ball' with a triangle mesh"), std::string::npos);
+  environment = ground;
+  environment.moving_objects.push_back({"crate", {}, {}, {}, {}});
+  EXPECT_NE(message(snake(3), environment).find("object 'crate', which moves"), std::string::npos);
   RobotModel robot = snake(3);
   robot.links[1].name = "Seg";
   robot.links[1].geometries[0].shape = Shape::cylinder;

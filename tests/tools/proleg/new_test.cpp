@@ -47,6 +47,41 @@ TEST_F(NewRobot, FloorAndLinksAreTheShippedFiles) {
   }
 }
 
+TEST_F(NewRobot, TheShippedRobotsAreWhatTheKindsWrite) {
+  const std::pair<const char*, const char*> kinds[] = {
+      {"cubo", "cubo"}, {"cube-chain", "cube_chain"}, {"y1", "y1"}, {"snake", "snake"}};
+  for (const auto& [kind, folder] : kinds) {
+    const Finished finished = proleg({"new", "robot", "--kind", kind, "--out", file(kind).string()});
+    ASSERT_EQ(finished.status, 0) << finished.err;
+    const fs::path shipped = source_path(std::string("/sim/scenarios/robots/") + folder);
+    std::size_t files = 0;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(shipped)) {
+      if (entry.is_regular_file()) {
+        ++files;
+        EXPECT_EQ(read_file(file(kind) / fs::relative(entry.path(), shipped)), read_file(entry.path())) << entry.path();
+      }
+    }
+    EXPECT_GE(files, 7U) << kind;
+  }
+}
+
+TEST_F(NewRobot, AKindHasAsManyJointsAsItIsAskedFor) {
+  const std::string out = file("chain").string();
+  ASSERT_EQ(proleg({"new", "robot", "--kind", "cube-chain", "--joints", "11", "--out", out}).status, 0);
+  const Json result = run("chain", "1");
+  EXPECT_TRUE(result["displacement_m"].is_number());
+  EXPECT_NE(read_file(file("chain/robot.robot.xml")).find("A chain of 11 joints"), std::string::npos);
+}
+
+TEST_F(NewRobot, AnUnknownKindIsRefusedWithTheKnownOnes) {
+  const Finished finished = proleg({"new", "robot", "--kind", "spider", "--out", file("spider").string()});
+  EXPECT_EQ(finished.status, 2);
+  EXPECT_NE(finished.err.find("--kind: found 'spider', expected one of caterpillar, cubo, cube-chain, y1, snake"),
+            std::string::npos)
+      << finished.err;
+  EXPECT_EQ(proleg({"new", "robot", "--out", file("none").string()}).status, 2) << "neither kind nor joints";
+}
+
 TEST_F(NewRobot, EightJointsOfPitchAndYawMoveSideways) {
   write("eight", "8", "py");
   const Json measures = run("eight", "30")["measures"];

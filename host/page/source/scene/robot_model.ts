@@ -350,8 +350,10 @@ export class RobotModel {
 
   // Half of the smallest side of a typical link.
   private typicalThickness(): number {
+    // Of each link its thickest shape: others may be its feet.
     const sizes = this.robot.links
-      .flatMap((link) => link.shapes.map((shape) => Math.min(...(shape.kind === 'mesh' ? shape.size : scaleOf(shape)))))
+      .filter(({ shapes }) => shapes.length > 0)
+      .map(({ shapes }) => Math.max(...shapes.map((shape) => Math.min(...(shape.kind === 'mesh' ? shape.size : scaleOf(shape))))))
       .sort((a, b) => a - b);
     return sizes[Math.floor(sizes.length / 2)] ?? 0.02;
   }

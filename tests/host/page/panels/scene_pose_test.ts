@@ -45,5 +45,18 @@ describe('the pose at a tick', () => {
     const pose = poseAt(recorded(1, 5), 3, false, false);
     assert.equal(pose?.head?.[0], 3e-6);
     assert.ok(Math.abs((pose?.angles[0] ?? NaN) - (1.5 * Math.PI) / 180) < 1e-7);
+    assert.equal(pose?.objects, null, 'nothing but the robot moves');
+  });
+
+  it('has the poses of objects that move, one behind the other', () => {
+    const object: Signal = { name: 'object', unit: '', scale: 1, count: 14, of: 'robot' };
+    const history = new TelemetryHistory();
+    const values = Int32Array.from({ length: 21 }, (_, i) => (i % 7 === 3 ? 2 ** 30 : i));
+    history.append({ subscription: 0, tick: 0, rows: 1, stride: 1, run: 1, hasGap: false, width: 21, values }, rowLayout([head, object]));
+    const objects = poseAt(history, 0, false, false)?.objects ?? new Float64Array();
+    assert.equal(objects.length, 14);
+    assert.equal(objects[0], 7e-6, 'x of the first');
+    assert.equal(objects[3], 1);
+    assert.equal(objects[7], 14e-6, 'x of the second');
   });
 });

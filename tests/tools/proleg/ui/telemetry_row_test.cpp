@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "shipped.hpp"
@@ -101,6 +102,33 @@ TEST(TelemetryRow, PosesOfAllLinksFollowFromTheHeadAndTheAngles) {
     EXPECT_LT((link.translation() - expected.position).norm(), 0.002) << "link " << joint + 1;
     EXPECT_LT(Eigen::Quaterniond(link.rotation()).angularDistance(expected.orientation), 0.02) << "link " << joint + 1;
   }
+}
+
+TEST(TelemetryRow, HasThePosesOfObjectsThatMove) {
+  sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  EXPECT_EQ(std::ranges::count(signals_of(scenario), "object", &host::Signal::name), 0) << "there are none";
+  sim::Geometry ball;
+  ball.shape = sim::Shape::sphere;
+  ball.extents.x() = 0.05;
+  sim::MassProperties mass;
+  mass.mass = 0.1;
+  mass.inertia *= 1e-4;
+  scenario.environment.moving_objects.push_back({"ball", {{1, 2, 0.5}, {1, 0, 0, 0}}, mass, {ball}, {}});
+  sim::Simulation simulation(scenario);
+  for (int tick = 0; tick < 20; ++tick) {
+    simulation.advance();
+  }
+  std::vector<std::int32_t> row;
+  fill_row(simulation.sample(), scenario, row);
+  const std::vector<double> object = values(signals_of(scenario), row, "object");
+  ASSERT_EQ(object.size(), 7U);
+  EXPECT_NEAR(object[0] * 1e-6, 1.0, 1e-6);
+  EXPECT_NEAR(object[1] * 1e-6, 2.0, 1e-6);
+  EXPECT_NEAR(object[2] * 1e-6, 0.5 - 9.81 * 0.2 * 0.2 / 2.0, 2e-3) << "it falls";
+  sim::TickSample of_a_real_robot = simulation.sample();
+  of_a_real_robot.object_poses = {};
+  fill_row(of_a_real_robot, scenario, row);
+  EXPECT_EQ(values(signals_of(scenario), row, "object")[0], host::no_value);
 }
 
 }  // namespace

@@ -12,22 +12,6 @@
 namespace proleg::sim {
 namespace {
 
-std::string unit_suffix(Unit unit) {
-  switch (unit) {
-    case Unit::degree:
-    case Unit::phase_degree:
-      return "_deg";
-    case Unit::hertz:
-      return "_Hz";
-    case Unit::per_second:
-      return "_per_s";
-    case Unit::ratio:
-    case Unit::count:
-      break;
-  }
-  return "";
-}
-
 /// Column names, with each used once.
 class Header {
  public:
@@ -77,6 +61,22 @@ void write_header(const Recording& recording, const std::function<void(std::stri
 }
 
 }  // namespace
+
+std::string unit_suffix(Unit unit) {
+  switch (unit) {
+    case Unit::degree:
+    case Unit::phase_degree:
+      return "_deg";
+    case Unit::hertz:
+      return "_Hz";
+    case Unit::per_second:
+      return "_per_s";
+    case Unit::ratio:
+    case Unit::count:
+      break;
+  }
+  return "";
+}
 
 void write_tsv(const Recording& recording, const std::function<void(std::string_view)>& write) {
   write_header(recording, write);

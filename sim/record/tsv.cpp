@@ -12,22 +12,6 @@
 namespace proleg::sim {
 namespace {
 
-std::string unit_suffix(Unit unit) {
-  switch (unit) {
-    case Unit::degree:
-    case Unit::phase_degree:
-      return "_deg";
-    case Unit::hertz:
-      return "_Hz";
-    case Unit::per_second:
-      return "_per_s";
-    case Unit::ratio:
-    case Unit::count:
-      break;
-  }
-  return "";
-}
-
 /// A column's name has no slash and no circumflex.
 std::string sensor_unit_suffix(const std::string& unit) {
   return unit.empty() ? "" : '_' + (unit == "m/s^2" ? std::string("m_per_s2") : unit);
@@ -88,6 +72,22 @@ void write_header(const Recording& recording, const std::function<void(std::stri
 }
 
 }  // namespace
+
+std::string unit_suffix(Unit unit) {
+  switch (unit) {
+    case Unit::degree:
+    case Unit::phase_degree:
+      return "_deg";
+    case Unit::hertz:
+      return "_Hz";
+    case Unit::per_second:
+      return "_per_s";
+    case Unit::ratio:
+    case Unit::count:
+      break;
+  }
+  return "";
+}
 
 void write_tsv(const Recording& recording, const std::function<void(std::string_view)>& write) {
   write_header(recording, write);

@@ -1,11 +1,15 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <string_view>
 
 #include "sim/record/recording.hpp"
 
 namespace proleg::sim {
+
+/// What a column's name ends with: "_deg"; empty for numbers without unit.
+[[nodiscard]] std::string unit_suffix(Unit unit);
 
 /// Writes a recording as one wide table: a header line, then a line for each tick, columns separated by tabs.
 ///

@@ -1,0 +1,158 @@
+#include "sim/data_file/robot_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "shared/fixed/unit.hpp"
+
+namespace proleg::sim {
+namespace {
+
+constexpr double deg_per_rad = 180.0 / std::numbers::pi;
+
+std::vector<std::string> sensor_names(const Recording& recording, const FileOrder& order) {
+  std::vector<std::string> names;
+  for (const std::uint32_t link : order.links) {
+    names.push_back(recording.links()[link] + ".rear");
+    names.push_back(recording.links()[link] + ".front");
+  }
+  return names;
+}
+
+std::vector<std::string> link_names(const Recording& recording, const FileOrder& order) {
+  std::vector<std::string> names;
+  for (const std::uint32_t link : order.links) {
+    names.push_back(recording.links()[link]);
+  }
+  return names;
+}
+
+std::vector<std::string> joint_names_of(const Recording& recording, const FileOrder& order) {
+  std::vector<std::string> names;
+  for (const std::uint32_t joint : order.joints) {
+    names.push_back(recording.joints()[joint].name);
+  }
+  return names;
+}
+
+/// Angles about x, then y, then z of the world, in degrees, as in the comment Pose of an environment file.
+Eigen::Vector3d angles_of(const Eigen::Quaterniond& orientation) {
+  const Eigen::Matrix3d turn = orientation.normalized().toRotationMatrix();
+  return deg_per_rad * Eigen::Vector3d(std::atan2(turn(2, 1), turn(2, 2)),
+                                       std::asin(std::clamp(-turn(2, 0), -1.0, 1.0)),
+                                       std::atan2(turn(1, 0), turn(0, 0)));
+}
+
+}  // namespace
+
+FileOrder::FileOrder(const Recording& recording) : joints(recording.joints().size()), links(recording.links().size()) {
+  std::iota(joints.begin(), joints.end(), 0U);
+  std::ranges::stable_sort(joints, {}, [&](std::uint32_t joint) { return recording.joints()[joint].file_index; });
+  std::iota(links.begin(), links.end(), 0U);
+  if (recording.joints().back().file_index < recording.joints().front().file_index) {
+    std::ranges::reverse(links);
+  }
+}
+
+TactileFrames::TactileFrames(const Recording& recording, const FileOrder& order)
+    : order_(order), text_("tactile", {"x-normals", "y-normals", "z-normals"}, sensor_names(recording, order)) {}
+
+void TactileFrames::add(const RecordedTick& tick) {
+  std::array<std::vector<double>, 3> normals;
+  for (const std::uint32_t link : order_.links) {
+    // Recordings have no normals: the ground pushes along the upward axis of a link.
+    const Eigen::Vector3d up = tick.link_poses[link].orientation * Eigen::Vector3d::UnitZ();
+    for (const unsigned sensor : {1U, 2U}) {
+      const bool is_pressed = (tick.latched_contacts[link] & sensor) != 0;
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        normals[static_cast<std::size_t>(axis)].push_back(is_pressed ? up[axis] : 0.0);
+      }
+    }
+  }
+  for (const std::vector<double>& of_axis : normals) {
+    text_.add(of_axis);
+  }
+}
+
+RobotFrames::RobotFrames(const Recording& recording, const FileOrder& order, const std::optional<Scenario>& scenario)
+    : order_(order),
+      scenario_(scenario),
+      tick_s_(recording.tick_period_us() * 1e-6),
+      text_("robot_data",
+            {"speed", "x_pos", "y_pos", "z_pos", "alpha", "beta", "gamma", "potential_energy", "average_com_speed",
+             "desired_joint_positions", "real_joint_positions", "servo_currents", "servo_speeds"},
+            link_names(recording, order), joint_names_of(recording, order)) {}
+
+void RobotFrames::add(const RecordedTick& tick) {
+  std::vector<Eigen::Vector3d> centers;
+  for (std::size_t link = 0; link < tick.link_poses.size(); ++link) {
+    const Pose& pose = tick.link_poses[link];
+    centers.push_back(scenario_ ? pose * scenario_->robot.links[link].mass.center : pose.position);
+  }
+  add_links(tick, centers);
+  add_joints(tick);
+  centers_ = std::move(centers);
+  angles_ = tick.joint_angles;
+}
+
+void RobotFrames::add_links(const RecordedTick& tick, const std::vector<Eigen::Vector3d>& centers) {
+  double mass = 0.0;
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (std::size_t link = 0; link < centers.size(); ++link) {
+    const double of_link = scenario_ ? scenario_->robot.links[link].mass.mass : 1.0;
+    mass += of_link;
+    moment += of_link * centers[link];
+  }
+  if (centers_.empty()) {
+    first_center_ = moment / mass;
+    first_tick_ = tick.tick;
+  }
+  const double since = tick_s_ * (tick.tick - first_tick_);
+  const double average_speed = since > 0.0 ? (moment / mass - first_center_).norm() / since : 0.0;
+
+  std::array<std::vector<double>, 9> types;
+  for (const std::uint32_t link : order_.links) {
+    const Pose& pose = tick.link_poses[link];
+    const Eigen::Vector3d angles = angles_of(pose.orientation);
+    const double energy =
+        scenario_ ? -scenario_->robot.links[link].mass.mass * scenario_->environment.gravity.dot(centers[link])
+                  : std::numeric_limits<double>::quiet_NaN();
+    const std::array<double, 9> values{
+        centers_.empty() ? 0.0 : (centers[link] - centers_[link]).norm() / tick_s_,
+        pose.position.x(),
+        pose.position.y(),
+        pose.position.z(),
+        angles.x(),
+        angles.y(),
+        angles.z(),
+        energy,
+        average_speed,
+    };
+    for (std::size_t type = 0; type < values.size(); ++type) {
+      types[type].push_back(values[type]);
+    }
+  }
+  for (const std::vector<double>& numbers : types) {
+    text_.add(numbers);
+  }
+}
+
+void RobotFrames::add_joints(const RecordedTick& tick) {
+  const UnitScale degrees = scale_of(Unit::degree);
+  std::array<std::vector<double>, 4> types;
+  for (const std::uint32_t joint : order_.joints) {
+    const double angle = tick.joint_angles[joint];
+    types[0].push_back(static_cast<double>(tick.setpoints[joint]) * degrees.denominator / degrees.numerator);
+    types[1].push_back(angle * deg_per_rad);
+    types[2].push_back(tick.servo_currents[joint]);
+    types[3].push_back(angles_.empty() ? 0.0 : (angle - angles_[joint]) * deg_per_rad / tick_s_);
+  }
+  for (const std::vector<double>& numbers : types) {
+    text_.add(numbers);
+  }
+}
+
+}  // namespace proleg::sim

@@ -14,6 +14,14 @@ constexpr const ActuationModule& (*algorithms[])() = {
     pattern_generator_sinusoidal_extended,
     pattern_generator_coupled_oscillator,
     sensing_module_uneven_ground_reflex,
+    pattern_generator_serpenoid,
+    pattern_generator_compound_serpenoid,
+    pattern_generator_hopf,
+    pattern_generator_matsuoka,
+    pattern_generator_half_centre,
+    pattern_generator_push_pull,
+    pattern_generator_mtran,
+    pattern_generator_asymmetric_wave,
 };
 
 }  // namespace

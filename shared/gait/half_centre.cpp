@@ -158,10 +158,8 @@ class HalfCentre final : public PatternGenerator {
     next[current_phase] = static_cast<std::int32_t>(phase);
 
     const CriticalFilter filter = CriticalFilter::load(derived + filter_constants);
-    next[amplitude_rate] = state[amplitude_rate];
-    next[current_amplitude] = approach(filter, values[amplitude], state[current_amplitude], next[amplitude_rate]);
-    next[offset_rate] = state[offset_rate];
-    next[current_offset] = approach(filter, values[offset], state[current_offset], next[offset_rate]);
+    follow(filter, values[amplitude], state + current_amplitude, next + current_amplitude);
+    follow(filter, values[offset], state + current_offset, next + current_offset);
   }
 
   /// What a neighbour adds to the speed: more if it is further than the wanted phase.

@@ -158,11 +158,8 @@ class Hopf final : public PatternGenerator {
     next[radius] = place.length;
 
     const CriticalFilter filter = CriticalFilter::load(tuning.derived + filter_constants);
-    next[amplitude_rate] = state[amplitude_rate];
-    next[current_amplitude] =
-        approach(filter, tuning.parameters[amplitude], state[current_amplitude], next[amplitude_rate]);
-    next[offset_rate] = state[offset_rate];
-    next[current_offset] = approach(filter, tuning.parameters[offset], state[current_offset], next[offset_rate]);
+    follow(filter, tuning.parameters[amplitude], state + current_amplitude, next + current_amplitude);
+    follow(filter, tuning.parameters[offset], state + current_offset, next + current_offset);
   }
 
   /// Change of the phase in a tick. Between the half planes the speed changes over a band, as that of the logistic

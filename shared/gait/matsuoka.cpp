@@ -148,10 +148,8 @@ class Matsuoka final : public PatternGenerator {
     next[strength] = saturate(std::int64_t{place.length} * 2);
 
     const CriticalFilter filter = CriticalFilter::load(tuning.derived + filter_constants);
-    next[amplitude_rate] = state[amplitude_rate];
-    next[current_amplitude] = approach(filter, values[amplitude], state[current_amplitude], next[amplitude_rate]);
-    next[offset_rate] = state[offset_rate];
-    next[current_offset] = approach(filter, values[offset], state[current_offset], next[offset_rate]);
+    follow(filter, values[amplitude], state + current_amplitude, next + current_amplitude);
+    follow(filter, values[offset], state + current_offset, next + current_offset);
   }
 
   /// y1 - y2

@@ -29,10 +29,10 @@ enum Parameters : std::uint8_t {
   noise,
 };
 
-constexpr Parameter gain_of(std::string_view name, HelpText help) {
+constexpr Parameter gain_of(std::string_view name, HostText help) {
   return {name, Unit::degree, raw(Unit::degree, 80), 0, quarter_turn, help};
 }
-constexpr Parameter weight(std::string_view name, std::int32_t default_value, HelpText help) {
+constexpr Parameter weight(std::string_view name, std::int32_t default_value, HostText help) {
   return {name, Unit::ratio, default_value, raw(Unit::ratio, -1), raw(Unit::ratio, 1), help};
 }
 
@@ -169,16 +169,9 @@ class Mtran final : public PatternGenerator {
     next[current_phase] = polar(saturate(shift_right_rounding(across, 27)), along / 2).angle;
 
     const CriticalFilter filter = CriticalFilter::load(tuning.derived + filter_constants);
-    follow(filter, values[extensor_gain], current_extensor_gain, state, next);
-    follow(filter, values[flexor_gain], current_flexor_gain, state, next);
-    follow(filter, values[offset], current_offset, state, next);
-  }
-
-  /// Moves a filtered angle and the rate behind it.
-  static void follow(const CriticalFilter& filter, std::int32_t target, unsigned value, const std::int32_t* state,
-                     std::int32_t* next) {
-    next[value + 1] = state[value + 1];
-    next[value] = approach(filter, target, state[value], next[value + 1]);
+    follow(filter, values[extensor_gain], state + current_extensor_gain, next + current_extensor_gain);
+    follow(filter, values[flexor_gain], state + current_flexor_gain, next + current_flexor_gain);
+    follow(filter, values[offset], state + current_offset, next + current_offset);
   }
 
   static void add_inputs(const Neighbour& neighbour, std::int32_t same, std::int32_t opposite, std::int64_t& input1,

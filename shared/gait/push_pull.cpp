@@ -221,9 +221,9 @@ class PushPull final : public PatternGenerator {
     std::uint32_t release;
     bool was_active = false;
 
-    void iterate(std::int32_t inhibition, std::int32_t excitation, std::int32_t mu_value) {
+    void iterate(const rulkov::Synapses& open, std::int32_t mu_value) {
       const std::int32_t before = neuron.x;
-      neuron = rulkov::iterate(neuron, rulkov::synaptic_current(before, inhibition, excitation), mu_value);
+      neuron = rulkov::iterate(neuron, open, mu_value);
       if (before <= 0 && neuron.x > 0) {
         release = release_time;
       } else if (release > 0) {
@@ -253,14 +253,17 @@ class PushPull final : public PatternGenerator {
     Cell remotor = cell_from(state[remotor_x], state[remotor_y], (bits >> 5U) & 7U);
     Receptors own(state[own_receptors]);
     Receptors far(state[next_receptors]);
+    const std::uint32_t mutual = conductance_of(values[mutual_inhibition]);
+    const std::uint32_t next_inhibiting = conductance_of(values[next_inhibition]);
+    const std::uint32_t next_exciting = conductance_of(values[next_excitation]);
     for (std::int32_t i = 0; i < derived[iterations]; ++i) {
       // Mutual inhibition; from the driving joint, like excites like and inhibits its opponent.
-      const std::int32_t to_promotor =
-          conductance(values[mutual_inhibition], own.remotor) + conductance(values[next_inhibition], far.remotor);
-      const std::int32_t to_remotor =
-          conductance(values[mutual_inhibition], own.promotor) + conductance(values[next_inhibition], far.promotor);
-      promotor.iterate(to_promotor, conductance(values[next_excitation], far.promotor), derived[mu]);
-      remotor.iterate(to_remotor, conductance(values[next_excitation], far.remotor), derived[mu]);
+      const rulkov::Synapses to_promotor{conductance(mutual, own.remotor) + conductance(next_inhibiting, far.remotor),
+                                         conductance(next_exciting, far.promotor)};
+      const rulkov::Synapses to_remotor{conductance(mutual, own.promotor) + conductance(next_inhibiting, far.promotor),
+                                        conductance(next_exciting, far.remotor)};
+      promotor.iterate(to_promotor, derived[mu]);
+      remotor.iterate(to_remotor, derived[mu]);
       own.promotor = rulkov::receptors(own.promotor, promotor.release > 0);
       own.remotor = rulkov::receptors(own.remotor, remotor.release > 0);
       far.promotor = rulkov::receptors(far.promotor, next_promotor);
@@ -277,8 +280,11 @@ class PushPull final : public PatternGenerator {
     smooth((promotor.was_active ? one : 0) - (remotor.was_active ? one : 0), tuning, state, next);
   }
 
-  static std::int32_t conductance(std::int32_t largest_conductance, std::uint32_t share) {
-    return multiply(largest_conductance, static_cast<std::int32_t>(share), 16);
+  /// Of a parameter in Q28, in Q12: its product with a share of receptors has 32 bits.
+  static std::uint32_t conductance_of(std::int32_t parameter) { return static_cast<std::uint32_t>(parameter) >> 16U; }
+  /// Q28
+  static std::int32_t conductance(std::uint32_t largest_conductance, std::uint32_t share) {
+    return static_cast<std::int32_t>(largest_conductance * share);
   }
 
   /// Moves the driving joint's history on. Returns its activity the delay ago, as in `activity`.
@@ -318,11 +324,8 @@ class PushPull final : public PatternGenerator {
     next[current_phase] = polar(ahead, next[output_level] / 2).angle;
 
     const CriticalFilter filter = CriticalFilter::load(tuning.derived + filter_constants);
-    next[amplitude_rate] = state[amplitude_rate];
-    next[current_amplitude] =
-        approach(filter, tuning.parameters[amplitude], state[current_amplitude], next[amplitude_rate]);
-    next[offset_rate] = state[offset_rate];
-    next[current_offset] = approach(filter, tuning.parameters[offset], state[current_offset], next[offset_rate]);
+    follow(filter, tuning.parameters[amplitude], state + current_amplitude, next + current_amplitude);
+    follow(filter, tuning.parameters[offset], state + current_offset, next + current_offset);
   }
 };
 

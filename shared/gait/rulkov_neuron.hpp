@@ -32,27 +32,35 @@ inline constexpr std::int32_t largest = 16 * unit - 1;
   return static_cast<std::int32_t>(((coarse << 11U) + fine) << 4U);
 }
 
-/// One iteration. current: I in Q26. mu: Q31.
-[[nodiscard]] inline Neuron iterate(Neuron old, std::int32_t current, std::int32_t mu) {
+/// Synapses that reach a neuron, as conductances g in Q28, at most 3 and 1: I = inhibition (-7 - x) + excitation (1 -
+/// x).
+struct Synapses {
+  std::int32_t inhibition;
+  std::int32_t excitation;
+};
+
+/// I in Q24, at most 85 in size.
+[[nodiscard]] inline std::int32_t current_through(const Synapses& open, std::int32_t x) {
+  const std::int32_t reversal = (open.excitation >> 4U) - 7 * (open.inhibition >> 4U);
+  return reversal - multiply(open.inhibition + open.excitation, x, 30);
+}
+
+/// One iteration. mu: Q31.
+[[nodiscard]] inline Neuron iterate(Neuron old, const Synapses& open, std::int32_t mu) {
   constexpr std::int32_t alpha = 15 * unit;
-  constexpr std::int32_t tenth = 107374182;  // Q30
-  constexpr std::int32_t sigma = -22145925;  // -0.33
-  const std::int32_t u = std::clamp(add_saturating(old.y, multiply(current, tenth, 30)), -largest, largest);
+  constexpr std::int32_t four_tenths = 429496730;     // Q30: 0.1 for a current with two fraction bits less
+  constexpr std::int32_t sigma_less_one = -89254789;  // -0.33 - 1
+  const std::int32_t current = current_through(open, old.x);
+  const std::int32_t u = std::clamp(old.y + multiply(current, four_tenths, 30), -largest, largest);
   std::int32_t x = -unit;
   if (old.x <= 0) {
     x = std::clamp(recovery(old.x) + u, -largest, largest);
   } else if (old.x < alpha + u) {
     x = std::min(alpha + u, largest);
   }
-  const std::int64_t change = std::int64_t{sigma} - unit - old.x + current / 2;
-  const std::int32_t y = old.y + multiply(saturate(change), mu, 31);
+  const std::int64_t change = multiply_wide(sigma_less_one - old.x, mu) + 2 * multiply_wide(current, mu);
+  const std::int32_t y = old.y + static_cast<std::int32_t>(shift_right_rounding(change, 31));
   return {x, std::clamp(y, -largest, largest)};
-}
-
-/// Current through open synapses, I = inhibition (-7 - x) + excitation (1 - x), in Q26. The conductances are in Q28.
-[[nodiscard]] inline std::int32_t synaptic_current(std::int32_t x, std::int32_t inhibition, std::int32_t excitation) {
-  return saturate(
-      shift_right_rounding(multiply_wide(inhibition, -7 * unit - x) + multiply_wide(excitation, unit - x), 28));
 }
 
 /// Share r of open receptors, in 16 bits, after an iteration (A. Destexhe et al., Neural Computation 6, 1994):

@@ -50,8 +50,8 @@ void SmoothWave::advance_pattern(const Surroundings& /*surroundings*/, const Tun
                                  std::int32_t* next) const {
   const CriticalFilter filter = CriticalFilter::load(tuning.derived + filter_constants);
   const Target wave = target(tuning);
-  approach_in_state(filter, wave.amplitude, state + current_amplitude, next + current_amplitude);
-  approach_in_state(filter, wave.offset, state + current_offset, next + current_offset);
+  follow(filter, wave.amplitude, state + current_amplitude, next + current_amplitude);
+  follow(filter, wave.offset, state + current_offset, next + current_offset);
 
   next[shift_rate] = state[shift_rate];
   next[current_shift] = add_wrapping(

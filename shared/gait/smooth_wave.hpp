@@ -84,11 +84,4 @@ class SmoothWave : public PatternGenerator {
                        std::int32_t* next) const final;
 };
 
-/// One tick of an angle and its rate, which stand next to each other in a state.
-inline void approach_in_state(const CriticalFilter& filter, std::int32_t target, const std::int32_t* state,
-                              std::int32_t* next) {
-  next[1] = state[1];
-  next[0] = approach(filter, target, state[0], next[1]);
-}
-
 }  // namespace proleg

@@ -29,6 +29,6 @@ inline constexpr Sector bootloader_sector{0, 0x0800'0000, 16 * 1024};
 inline constexpr Sector image_sector_a{5, slot_a, 128 * 1024};
 inline constexpr Sector image_sector_b{8, 0x0808'0000, 128 * 1024};
 /// Of an image, with its header.
-inline constexpr std::uint32_t max_image_size = 64 * 1024;
+inline constexpr std::uint32_t max_image_size = 88 * 1024;
 
 }  // namespace proleg::stm32f405::flash_layout

@@ -15,8 +15,8 @@ namespace proleg::host {
 
 /// Bytes of a file that is read into memory: no chip of a module has more flash.
 inline constexpr std::size_t max_image_size = 1024 * 1024;
-/// Bytes of a body for which a slot of the reference board has room: 64 KiB, less the header (docs/board.md).
-inline constexpr std::uint32_t slot_room = 64 * 1024 - image::header_size;
+/// Bytes of a body for which a slot of the reference board has room: 88 KiB, less the header (docs/board.md).
+inline constexpr std::uint32_t slot_room = 88 * 1024 - image::header_size;
 
 struct ImageFile {
   image::Header header;

@@ -56,7 +56,7 @@ struct Surroundings {
   const Neighbour& ahead;   ///< nearest joint of the group towards the head
   const Neighbour& behind;  ///< nearest joint of the group towards the tail
   const Contacts& contacts;
-  std::int32_t setpoint;  ///< of the joint: the sum of all slots in state k, within the joint's limits
+  std::int32_t setpoint;          ///< of the joint: the sum of all slots in state k, within the joint's limits
   const JointReadings& readings;  ///< of the joint's own module; only those that senses_readings() names
 };
 

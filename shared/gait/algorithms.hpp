@@ -32,6 +32,46 @@ namespace proleg {
 /// changes. A joint takes phase and remaining retreat from the joint ahead; the first joint of the group leads.
 [[nodiscard]] const ActuationModule& pattern_generator_head_stimulus();
 
+/// Serpenoid curve (S. Hirose, "Biologically Inspired Robots", 1993): link l has the heading alpha cos(2 pi f t - l b),
+/// so joint i of the group has the angle A sin(2 pi f t - i b - b / 2) + turn, with b = 2 pi waves / joints of the
+/// group and A = 2 alpha sin(b / 2), at most 90 degrees. Changes are smooth, as in the extended sine.
+[[nodiscard]] const ActuationModule& pattern_generator_serpenoid();
+
+/// Compound serpenoid curve for chains whose joints pitch and yaw in turn (M. Tesch et al., Advanced Robotics 23,
+/// 2009): a wave beta + A sin(2 pi f t + n phase_difference) of the pitch joints and one of the yaw joints, which is
+/// yaw_phase ahead; n counts all joints from the head. How a joint is mounted is no concern of the algorithm.
+[[nodiscard]] const ActuationModule& pattern_generator_compound_serpenoid();
+
+/// Hopf oscillators (L. Righetti and A. J. Ijspeert, ICRA 2008; with different speeds of the two half periods),
+/// coupled to both neighbours by k (R z_j - z_i); R turns a state by the phase between the joints. The state first
+/// turns exactly, then relaxes: z += dt alpha (1 - |z|^2) z. The joint has the angle A x + O.
+[[nodiscard]] const ActuationModule& pattern_generator_hopf();
+
+/// Matsuoka oscillators (shared/gait/matsuoka_pair.hpp); the joint has the angle 2 A (y1 - y2) + O. A neighbour's y1 -
+/// y2 arrives as phase and amplitude; turned by the wanted phase difference, it inhibits the opposite neuron.
+[[nodiscard]] const ActuationModule& pattern_generator_matsuoka();
+
+/// Half-centres (T. Graham Brown, Proc. R. Soc. B 84, 1911): of two populations that inhibit each other one is active;
+/// it tires, and when its fatigue exceeds that of the other by h, the other takes over. tau s' = +-1 - s is the
+/// difference of the fatigues; the joint has the angle A s / h + O. The period is 2 tau ln((1 + h) / (1 - h)).
+/// Neighbours speed the fatigue up or slow it down until their phases fit.
+[[nodiscard]] const ActuationModule& pattern_generator_half_centre();
+
+/// Push-pull network (F. Herrero-Carron, F. B. Rodriguez, P. Varona, Bioinspir. Biomim. 6, 2011): promotor and remotor
+/// neuron of a joint (shared/gait/rulkov_neuron.hpp) inhibit each other and drive those of the next joint, a delay
+/// later. The joint follows the smoothed difference of their activities.
+[[nodiscard]] const ActuationModule& pattern_generator_push_pull();
+
+/// The generator of M-TRAN (A. Kamimura et al., IEEE/ASME Trans. Mechatronics 10, 2005): a Matsuoka oscillator that
+/// also receives the joint's own commanded angle, and the outputs of both neighbours, each through a weight. The joint
+/// has the angle m2 y2 - m1 y1 + O.
+[[nodiscard]] const ActuationModule& pattern_generator_mtran();
+
+/// The extended sine with a phase that runs at two speeds, so that the angle grows during rising_fraction of the period
+/// (after G. Li et al. on asymmetric oscillation, 2011; the equations are a reading). At 0.5 it is the extended sine,
+/// bit for bit.
+[[nodiscard]] const ActuationModule& pattern_generator_asymmetric_wave();
+
 /// An offset for the gait of another slot, from the contacts of all links. On flat ground the supports of a travelling
 /// wave lie almost a wavelength apart; where two links touch at most `reach` places apart, for `confirm` ticks in a
 /// row, something lies under the robot or bars its way. Every joint then moves to its angle `raise`, holds it until

@@ -17,4 +17,11 @@ CriticalFilter make_critical_filter(std::int32_t rate, std::uint32_t tick_period
   return {limited, decay, arrived};
 }
 
+[[gnu::noinline]] void follow(const CriticalFilter& filter, std::int32_t target, const std::int32_t* state,
+                              std::int32_t* next) {
+  std::int32_t rate = state[1];
+  next[0] = approach(filter, target, state[0], rate);
+  next[1] = rate;
+}
+
 }  // namespace proleg

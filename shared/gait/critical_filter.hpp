@@ -50,6 +50,10 @@ struct CriticalFilter {
   return next_distance;
 }
 
+/// One tick of a value and its rate, which stand next to each other in a state, in that order. Not inline: most
+/// generators filter two or three values, and the image is small.
+void follow(const CriticalFilter& filter, std::int32_t target, const std::int32_t* state, std::int32_t* next);
+
 /// One tick of a filtered value that saturates.
 [[nodiscard]] inline std::int32_t approach(const CriticalFilter& filter, std::int32_t target, std::int32_t value,
                                            std::int32_t& rate) {

@@ -16,8 +16,19 @@ namespace proleg {
 
 /// Capacities of one slot on one joint.
 inline constexpr std::size_t max_parameters = 16;
-inline constexpr std::size_t max_derived = 8;
-inline constexpr std::size_t max_internal_values = 12;
+inline constexpr std::size_t max_derived = 12;
+inline constexpr std::size_t max_internal_values = 20;
+
+/// Text for programs on a computer. The image of a module has none: nothing in it reads the text, and the flash is
+/// small.
+#ifdef __arm__
+struct HostText {
+  constexpr HostText(const char* /*text*/) {}  // NOLINT(google-explicit-constructor): as std::string_view on the host
+  constexpr operator std::string_view() const { return {}; }  // NOLINT(google-explicit-constructor)
+};
+#else
+using HostText = std::string_view;
+#endif
 
 /// A value that a user sets, uniform over the joints of a slot or for each joint.
 struct Parameter {
@@ -26,17 +37,17 @@ struct Parameter {
   std::int32_t default_value;
   std::int32_t minimum;
   std::int32_t maximum;
-  std::string_view help;
+  HostText help;
 };
 
 /// A value that the algorithm computes: its state, or a measurement of it.
 struct InternalValue {
-  std::string_view name;
+  HostText name;
   Unit unit;
   /// Standard deviation, in raw steps, of the noise that a pattern generator adds at reset when its parameter `noise`
   /// is 1; 0 for values that start without noise.
   std::int32_t noise_scale;
-  std::string_view help;
+  HostText help;
 };
 
 /// A part of the state frame: the leading bytes of an internal value, little-endian. Values with unit `count` send
@@ -54,7 +65,7 @@ inline constexpr std::size_t max_user_algorithms = last_user_id - first_user_id 
 struct Declaration {
   std::uint8_t id;  ///< 1 to 127, never reused: object dictionary index 0x3000 + 32 id + parameter number
   std::string_view name;
-  std::string_view help;
+  HostText help;
   std::span<const Parameter> parameters;
   std::span<const InternalValue> internal_values;
   std::span<const FrameField> frame;  ///< at most 6 bytes; empty if nothing is broadcast

@@ -47,7 +47,7 @@ TEST(Handover, AProgramThatStopsFiveTimesInARowBeforeItRunsWellIsGivenUp) {
 }
 
 TEST(Handover, AnImageInRamKeepsItsSizeItsSessionAndWhereItsHostIs) {
-  for (const ImageInRam image : {ImageInRam{0, 0, false}, ImageInRam{65'536, 255, true}, ImageInRam{73'728, 1, false},
+  for (const ImageInRam image : {ImageInRam{0, 0, false}, ImageInRam{65'536, 255, true}, ImageInRam{90'112, 1, false},
                                  ImageInRam{0x7F'FFFF, 128, true}}) {
     const ImageInRam read = ImageInRam::of(image.argument());
     EXPECT_EQ(read.size, image.size);

@@ -31,7 +31,7 @@ constexpr std::uint32_t ram = 0x2000'0000;
 constexpr std::uint32_t ram_size = 128 * 1024;
 
 // Limits of an image.
-constexpr std::uint32_t max_image_size = 64 * 1024;
+constexpr std::uint32_t max_image_size = 88 * 1024;
 constexpr std::uint32_t max_ram_size = 24 * 1024;
 
 std::filesystem::path built(const std::string& name) {

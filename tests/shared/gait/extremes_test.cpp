@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <random>
 #include <string>
+#include <vector>
 
 #include "robot.hpp"
+#include "wave_meter.hpp"
 
 namespace proleg {
 namespace {
@@ -14,6 +18,8 @@ namespace {
 class EveryAlgorithm : public testing::TestWithParam<std::size_t> {
  protected:
   static constexpr unsigned joints = 3;
+  /// With more parameters, as many corners are drawn as this many parameters have.
+  static constexpr std::size_t most_dimensions = 12;
 
   [[nodiscard]] static const ActuationModule& algorithm() { return algorithm_at(GetParam()); }
 };
@@ -21,7 +27,10 @@ class EveryAlgorithm : public testing::TestWithParam<std::size_t> {
 TEST_P(EveryAlgorithm, StaysWithinTheLimitsAtTheCornersOfItsParameterRanges) {
   const std::span<const Parameter> parameters = algorithm().declaration().parameters;
   for (const std::uint32_t tick_us : {1'000U, 100'000U}) {
-    for (unsigned corner = 0; corner < 1U << parameters.size(); ++corner) {
+    std::mt19937 random(1);
+    const std::size_t dimensions = std::min(parameters.size(), most_dimensions);
+    for (unsigned i = 0; i < 1U << dimensions; ++i) {
+      const auto corner = parameters.size() > dimensions ? static_cast<unsigned>(random()) : i;
       KernelOf<joints> kernel;
       ASSERT_EQ(kernel.configure(test::one_slot(algorithm(), joints, tick_us), 0), Status::ok);
       for (std::size_t p = 0; p < parameters.size(); ++p) {
@@ -40,7 +49,26 @@ TEST_P(EveryAlgorithm, StaysWithinTheLimitsAtTheCornersOfItsParameterRanges) {
   }
 }
 
+/// The angles between which joint 1 moves over two seconds from tick 1300 on.
+struct Range {
+  double lowest;
+  double highest;
+};
+
+Range range_of(Kernel& kernel) {
+  test::run(kernel, 1000);
+  const std::vector<test::WaveMeter> meters = test::meter(kernel, 200);
+  return {meters[1].lowest(), meters[1].highest()};
+}
+
 TEST_P(EveryAlgorithm, ReturnsToItsGaitAfterTheMostExtremeDistortion) {
+  KernelOf<joints> undisturbed;
+  ASSERT_EQ(undisturbed.configure(test::one_slot(algorithm(), joints), 0), Status::ok);
+  test::run(undisturbed, 300);
+  const Range expected = range_of(undisturbed);
+  // A steep crest between two ticks is seen lower. The bursts of the push-pull network are chaotic: they repeat only
+  // statistically.
+  const double tolerance = algorithm().declaration().name == test::push_pull ? 2.0 : 0.5;
   const std::span<const InternalValue> values = algorithm().declaration().internal_values;
   for (unsigned v = 0; v < values.size(); ++v) {
     for (const std::int32_t extreme :
@@ -49,17 +77,9 @@ TEST_P(EveryAlgorithm, ReturnsToItsGaitAfterTheMostExtremeDistortion) {
       ASSERT_EQ(kernel.configure(test::one_slot(algorithm(), joints), 0), Status::ok);
       test::run(kernel, 300);
       ASSERT_EQ(test::distort(kernel, 0, 1, v, extreme), Status::ok);
-      test::run(kernel, 1000);
-      std::int32_t lowest = std::numeric_limits<std::int32_t>::max();
-      std::int32_t highest = std::numeric_limits<std::int32_t>::min();
-      for (int tick = 0; tick < 100; ++tick) {
-        kernel.advance();
-        lowest = std::min(lowest, kernel.setpoint(1));
-        highest = std::max(highest, kernel.setpoint(1));
-      }
-      const double amplitude = find_parameter(algorithm().declaration(), "amplitude") >= 0 ? 40 : 0;
-      EXPECT_NEAR(test::in_degrees(highest), amplitude, 0.1) << values[v].name << " = " << extreme;
-      EXPECT_NEAR(test::in_degrees(lowest), -amplitude, 0.1) << values[v].name << " = " << extreme;
+      const Range found = range_of(kernel);
+      EXPECT_NEAR(found.highest, expected.highest, tolerance) << values[v].name << " = " << extreme;
+      EXPECT_NEAR(found.lowest, expected.lowest, tolerance) << values[v].name << " = " << extreme;
     }
   }
 }

@@ -40,6 +40,14 @@ inline constexpr std::string_view coupled = "PatternGenerator_coupled_oscillator
 inline constexpr std::string_view stimulus = "PatternGenerator_head_stimulus";
 inline constexpr std::string_view reflex = "SensingModule_uneven_ground_reflex";
 inline constexpr std::string_view adaptive_touch = "SensingModule_global_adaptive_touch";
+inline constexpr std::string_view serpenoid = "PatternGenerator_serpenoid";
+inline constexpr std::string_view compound = "PatternGenerator_compound_serpenoid";
+inline constexpr std::string_view hopf = "PatternGenerator_hopf";
+inline constexpr std::string_view matsuoka = "PatternGenerator_matsuoka";
+inline constexpr std::string_view half_centre = "PatternGenerator_half_centre";
+inline constexpr std::string_view push_pull = "PatternGenerator_push_pull";
+inline constexpr std::string_view mtran = "PatternGenerator_mtran";
+inline constexpr std::string_view asymmetric = "PatternGenerator_asymmetric_wave";
 
 /// Joints and links of the robot that most tests of gaits use.
 inline constexpr unsigned robot_joints = 5;

@@ -370,7 +370,7 @@ class FlashBare(unittest.TestCase):
     def test_bad_input_starts_nothing(self):
         self.write("other_board.pimg", image(board=2))
         self.write("slot_b.pimg", image(address=0x08080200))
-        self.write("large.pimg", image(size=65536 - 508))
+        self.write("large.pimg", image(size=90112 - 508))
         self.write("large.bin", program(FLASH, 16388, seed=4))
         self.write("slot_a.bin", program(SLOT_A, 1000, seed=4))
         self.write("slot_a.elf", elf([(SLOT_A, program(SLOT_A, 1000, seed=4))]))

@@ -44,7 +44,7 @@ def parse(image):
         "board": board, "lowest_revision": lowest, "highest_revision": highest, "version": f"{major}.{minor}.{patch}",
         "commit": commit.hex() if any(commit) else None, "changed_sources": flags == 1, "protocol": protocol,
         "core_fingerprint": fingerprint, "settings_schema": schema, "address": address, "length": length,
-        "slot_percent": 100 * length / (65536 - HEADER_SIZE), "crc32": crc, "sha256": digest.hex(),
+        "slot_percent": 100 * length / (90112 - HEADER_SIZE), "crc32": crc, "sha256": digest.hex(),
         "key_id": key or None}
 
 

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+
+#include "shared/gait/declaration.hpp"
+
+namespace proleg {
+
+/// Two neurons that inhibit each other and tire (K. Matsuoka, Biol. Cybern. 52, 1985, and 56, 1987):
+///   tau u1' = -u1 - w y2 - beta v1 + c + S1,   T v1' = -v1 + y1,   y1 = max(0, u1),   and the same with 1 and 2
+///   exchanged.
+/// All quantities are ratios in Q28.
+struct MatsuokaPair {
+  std::int32_t u1;  ///< membrane potentials
+  std::int32_t u2;
+  std::int32_t v1;  ///< fatigue
+  std::int32_t v2;
+
+  [[nodiscard]] std::int32_t y1() const { return u1 > 0 ? u1 : 0; }
+  [[nodiscard]] std::int32_t y2() const { return u2 > 0 ? u2 : 0; }
+};
+
+/// Constants of a pair, derived from people's parameters.
+struct MatsuokaConstants {
+  /// A tick has this many Euler steps. An input from outside is held over a tick.
+  static constexpr unsigned steps_in_a_tick = 4;
+  /// Number of derived constants that the first two take up.
+  static constexpr unsigned derived_size = 2;
+
+  std::int32_t fast_step;  ///< step / tau in Q30, at most 1/4
+  std::int32_t slow_step;  ///< step / T in Q30
+  std::int32_t x;          ///< omega T in Q24, omega: the natural frequency
+
+  /// Writes the two steps into derived constants; the pair's tick reads them there.
+  void store(std::int32_t* derived) const {
+    derived[0] = fast_step;
+    derived[1] = slow_step;
+  }
+};
+
+/// Time constants of a pair that oscillates at `frequency` (Q24 Hz), from K. Matsuoka, Biol. Cybern. 104 (2011):
+///   omega = (1 / T) sqrt(((tau + T) beta - tau w) / (tau w))
+/// time_ratio: T / tau; fatigue: beta; inhibition: w; all in Q28 and positive. The period is right to 1 % for
+/// w <= 1 + 0.6 beta. A pair oscillates for 1 + tau / T < w < 1 + beta. Where the root does not exist, 0.01 stands for
+/// its argument.
+[[nodiscard]] MatsuokaConstants make_matsuoka_constants(std::int32_t frequency, std::int32_t time_ratio,
+                                                        std::int32_t fatigue, std::int32_t inhibition,
+                                                        std::uint32_t tick_period_us);
+
+/// One tick. steps: where MatsuokaConstants::store wrote. input1, input2: c + S of each neuron in Q28. All values
+/// saturate at -8 and 8.
+[[nodiscard]] MatsuokaPair advance(const MatsuokaPair& pair, const std::int32_t* steps, std::int32_t fatigue,
+                                   std::int32_t inhibition, std::int32_t input1, std::int32_t input2);
+
+/// Parameters of both generators that consist of such pairs.
+namespace matsuoka_parameters {
+
+inline constexpr Parameter frequency{"frequency",         Unit::hertz,
+                                     raw(Unit::hertz, 1), 0,
+                                     raw(Unit::hertz, 5), "frequency of the gait; sets both time constants"};
+inline constexpr Parameter time_ratio{
+    "time_ratio",        Unit::ratio,         raw(Unit::ratio, 2),
+    raw(Unit::ratio, 1), raw(Unit::ratio, 7), "T / tau: time constant of the fatigue in those of the neuron"};
+inline constexpr Parameter fatigue{"fatigue",           Unit::ratio,         raw(Unit::ratio, 2),
+                                   raw(Unit::ratio, 1), raw(Unit::ratio, 6), "beta: how far activity tires a neuron"};
+inline constexpr Parameter inhibition{"inhibition",
+                                      Unit::ratio,
+                                      raw(Unit::ratio, 2),
+                                      raw(Unit::ratio, 1),
+                                      raw(Unit::ratio, 5),
+                                      "w: how strongly a neuron inhibits the other; it oscillates for w between "
+                                      "1 + 1 / time_ratio and 1 + fatigue"};
+
+}  // namespace matsuoka_parameters
+
+}  // namespace proleg

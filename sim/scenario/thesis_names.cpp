@@ -8,14 +8,14 @@
 namespace proleg::sim {
 namespace {
 
-struct Name {
+struct TwoNames {
   std::string_view thesis;
   std::string_view proleg;
 };
 
-constexpr std::array<Name, 1> algorithm_names{{{"Global Adaptive Touch", "SensingModule_global_adaptive_touch"}}};
+constexpr std::array<TwoNames, 1> thesis_algorithms{{{"Global Adaptive Touch", "SensingModule_global_adaptive_touch"}}};
 
-constexpr std::array<Name, 10> parameter_names{{
+constexpr std::array<TwoNames, 10> thesis_parameters{{
     {"Get-stuck-threshold", "stuck_threshold"},
     {"back to zero constant", "recovering"},
     {"Constant 1", "constant_1"},
@@ -28,20 +28,20 @@ constexpr std::array<Name, 10> parameter_names{{
     {"Constant 8", "constant_8"},
 }};
 
-std::string_view translated(std::span<const Name> names, std::string_view name) {
-  const auto found = std::ranges::find(names, name, &Name::thesis);
+std::string_view proleg_name(std::span<const TwoNames> names, std::string_view name) {
+  const auto found = std::ranges::find(names, name, &TwoNames::thesis);
   return found == names.end() ? name : found->proleg;
 }
 
 }  // namespace
 
 const ActuationModule* find_named_algorithm(std::string_view name) {
-  return find_algorithm(translated(algorithm_names, name));
+  return find_algorithm(proleg_name(thesis_algorithms, name));
 }
 
 int find_named_parameter(const Declaration& declaration, std::string_view name) {
   const int index = find_parameter(declaration, name);
-  return index >= 0 ? index : find_parameter(declaration, translated(parameter_names, name));
+  return index >= 0 ? index : find_parameter(declaration, proleg_name(thesis_parameters, name));
 }
 
 }  // namespace proleg::sim

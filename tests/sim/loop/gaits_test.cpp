@@ -85,6 +85,20 @@ TEST(Gaits, SidewindingGoesSideways) {
   EXPECT_GT(std::abs(values[Measure::sideways_speed]), 5.0 * std::abs(values[Measure::speed]));
 }
 
+TEST(Gaits, SerpentineLivesOnFrictionThatIsGreaterSidewaysThanForwards) {
+  Scenario scenario = shipped("gaits/serpentine");
+  const MeasureValues snake = measured(scenario);
+  EXPECT_GT(snake[Measure::speed], 0.2);
+  EXPECT_LT(std::abs(snake[Measure::heading]), 10.0);
+  for (Link& link : scenario.robot.links) {
+    for (Geometry& geometry : link.geometries) {
+      ASSERT_GT(geometry.friction_across.value(), geometry.friction.value());
+      geometry.friction_across.reset();
+    }
+  }
+  EXPECT_LT(measured(scenario)[Measure::distance], 0.2 * snake[Measure::distance]) << "the same in every direction";
+}
+
 Change change_of(const Scenario& scenario, std::uint32_t tick, unsigned slot, const char* name, double value) {
   Change change;
   change.tick = tick;

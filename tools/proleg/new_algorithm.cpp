@@ -10,12 +10,12 @@
 #include <system_error>
 
 #include "shared/computer/errors/input_error.hpp"
-#include "shared/computer/output/output.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/crc32.hpp"
 #include "shared/gait/registry.hpp"
 #include "tools/proleg/algorithm_files.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/new_files.hpp"
 #include "tools/proleg/source_tree.hpp"
 
 namespace proleg::tools {
@@ -156,14 +156,6 @@ std::uint8_t choose_id(const AlgorithmOptions& options) {
   return static_cast<std::uint8_t>(*id);
 }
 
-void create_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw BadInput("cannot create the folder " + folder.string() + ": " + error.message());
-  }
-}
-
 int write_algorithm(const AlgorithmOptions& options) {
   check_name(options.name);
   const std::string out = options.out.value_or(options.name);
@@ -180,12 +172,7 @@ int write_algorithm(const AlgorithmOptions& options) {
     throw InputError("--out", 0, in_quotes(text),
                      "a folder without blanks and ; \" \\ $, which CMake treats specially");
   }
-  for (const NewFile& file : algorithm_files({options.name, choose_id(options), folder.string(), tree.string()})) {
-    const std::filesystem::path path = folder / file.name;
-    create_folder(path.parent_path());
-    write_file(path, file.text);
-    std::cout << "written  " << path.string() << '\n';
-  }
+  write_new_files(folder, algorithm_files({options.name, choose_id(options), folder.string(), tree.string()}));
   std::cout << "build it:  cmake -S " << folder.string() << " -B " << (folder / "build").string()
             << " -G Ninja && cmake --build " << (folder / "build").string() << '\n'
             << "then run:  proleg simulate " << (folder / "robot/robot.simulation.xml").string() << " --algorithms "

@@ -1,6 +1,8 @@
 #include "tools/proleg/algorithm_files.hpp"
 
+#include <cstddef>
 #include <string_view>
+#include <utility>
 
 #include "tools/proleg/algorithm_texts.hpp"
 

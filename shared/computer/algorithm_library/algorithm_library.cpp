@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 #include "shared/computer/algorithm_library/guarded_call.hpp"
 #include "shared/computer/errors/input_error.hpp"

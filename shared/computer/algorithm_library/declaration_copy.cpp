@@ -1,6 +1,7 @@
 #include "shared/computer/algorithm_library/declaration_copy.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"

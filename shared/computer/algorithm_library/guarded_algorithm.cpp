@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -76,12 +78,14 @@ class GuardedAlgorithm::Call {
     if (!run_guarded(function, failure)) {
       const std::optional<std::string> missed =
           failure.address == nullptr ? std::nullopt : memory_.arrays.missed_by(failure.address);
+      memory_.arrays.repair();
       algorithm_.fail(where(), missed.value_or(failure.text));
     }
     for (std::size_t i = 0; i < given_count_; ++i) {
       const Given& given = given_[i];
       if (const auto damage = memory_.arrays.damage(
               given.array, given.back == nullptr ? given.values : std::span<const std::int32_t>())) {
+        memory_.arrays.repair();
         algorithm_.fail(where(), *damage);
       }
     }

@@ -31,8 +31,8 @@ GuardedArrays::GuardedArrays() : page_bytes_(static_cast<std::size_t>(sysconf(_S
       throw std::bad_alloc();
     }
     places_[i].page = static_cast<std::int32_t*>(page);
-    std::fill_n(places_[i].page, page_bytes_ / sizeof pattern, pattern);
   }
+  repair();
 }
 
 GuardedArrays::~GuardedArrays() { munmap(memory_, (2 * array_count + 1) * page_bytes_); }
@@ -64,6 +64,13 @@ std::optional<std::string> GuardedArrays::damage(Array array, std::span<const st
     return "writes to its array '" + name + "', which it may only read";
   }
   return std::nullopt;
+}
+
+void GuardedArrays::repair() {
+  for (Place& place : places_) {
+    place.count = 0;
+    std::fill_n(place.page, page_bytes_ / sizeof pattern, pattern);
+  }
 }
 
 std::optional<std::string> GuardedArrays::missed_by(const void* address) const {

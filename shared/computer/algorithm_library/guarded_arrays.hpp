@@ -33,6 +33,8 @@ class GuardedArrays {
   /// What is wrong with an array after a call: "writes in front of its array 'next'". read_only: values that it must
   /// have; empty if it may be written.
   [[nodiscard]] std::optional<std::string> damage(Array array, std::span<const std::int32_t> read_only) const;
+  /// Makes the arrays as they were before a call that has damaged them.
+  void repair();
   /// The array that was missed by an access to that address: "uses elements of its array 'state' that do not exist
   /// (it has 3)".
   [[nodiscard]] std::optional<std::string> missed_by(const void* address) const;

@@ -42,8 +42,8 @@ std::vector<std::string> forbidden_symbols(std::string_view listing) {
   std::istringstream lines{std::string(listing)};
   for (std::string line; std::getline(lines, line);) {
     // "00000000 T name", or "         U name"
-    const std::size_t letter = line.find_first_not_of(" 0123456789abcdef");
-    if (letter == std::string::npos || letter + 2 >= line.size() || line[letter + 1] != ' ') {
+    constexpr std::size_t letter = 9;
+    if (line.size() < letter + 3 || line[letter - 1] != ' ' || line[letter + 1] != ' ') {
       continue;
     }
     const std::string name = line.substr(letter + 2);
@@ -61,7 +61,7 @@ std::vector<std::string> forbidden_symbols(std::string_view listing) {
       case 'B':
       case 'C':
       case 'D':
-      case 'b':  // The hexadecimal digits before a name may end in b or d, but then no blank follows them.
+      case 'b':
       case 'd':
         found.push_back("keeps a value in the variable " + name + "; that belongs into an internal value");
         break;

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "shared/computer/text/text.hpp"
 #include "tools/proleg/program_run.hpp"

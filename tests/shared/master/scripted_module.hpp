@@ -233,6 +233,7 @@ class ScriptedModule final : public sim::BusListener {
       case 0x2007:
       case 0x2008:
       case 0x200D:
+      case 0x200F:
       case 0x6064:
       case 0x607A:
       case 0x6080:

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <string>
 
 #include "sim/record/internal_values.hpp"
+#include "sim/robot/sensor_quantity.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"
 
@@ -21,6 +24,8 @@ std::int32_t rounded(double value) {
 }
 
 constexpr double unit_quaternion = 1 << 30;
+/// Of a quantity of an attached sensor, in its unit.
+constexpr double sensor_step = 1e-3;
 constexpr double raw_per_radian = (1 << 30) / (std::numbers::pi / 2);
 
 }  // namespace
@@ -51,8 +56,33 @@ std::vector<host::Signal> signals_of(const sim::Scenario& scenario) {
                          value_of_step(value.unit), used.group.size(), Of::joint});
     }
   }
+  for (const sim::AttachedSensor& sensor : scenario.robot.sensors) {
+    for (const sim::SensorQuantity& quantity : sim::quantities_of(sensor.kind)) {
+      signals.push_back({"sensor/" + sensor.name + '/' + std::string(quantity.name), std::string(quantity.unit),
+                         sensor_step, 1, Of::robot});
+    }
+  }
   return signals;
 }
+
+namespace {
+
+/// Runs of real robots, and recordings of older programs, have no values.
+void fill_sensors(std::span<const double> values, const sim::RobotModel& robot, std::vector<std::int32_t>& row) {
+  std::size_t first = 0;
+  for (const sim::AttachedSensor& sensor : robot.sensors) {
+    const std::size_t channels = sim::channels_of(sensor).size();
+    const bool is_known = first + channels <= values.size();
+    for (std::size_t quantity = 0; quantity < sim::quantities_of(sensor.kind).size(); ++quantity) {
+      row.push_back(
+          is_known ? rounded(sim::quantity_of(sensor.kind, quantity, values.subspan(first, channels)) / sensor_step)
+                   : host::no_value);
+    }
+    first += channels;
+  }
+}
+
+}  // namespace
 
 void fill_row(const sim::TickSample& sample, const sim::Scenario& scenario, std::vector<std::int32_t>& row) {
   row.assign(sample.setpoints.begin(), sample.setpoints.end());
@@ -91,6 +121,7 @@ void fill_row(const sim::TickSample& sample, const sim::Scenario& scenario, std:
     }
     begin += values * joints;
   }
+  fill_sensors(sample.sensor_values, scenario.robot, row);
 }
 
 void fill_row(const sim::RecordedTick& tick, const sim::Scenario& scenario, std::vector<std::int32_t>& row) {
@@ -105,7 +136,8 @@ void fill_row(const sim::RecordedTick& tick, const sim::Scenario& scenario, std:
             .motor_torques = tick.motor_torques,
             .servo_currents = tick.servo_currents,
             .contact_forces = tick.contact_forces,
-            .lost = {}},
+            .lost = {},
+            .sensor_values = tick.sensor_values},
            scenario, row);
 }
 

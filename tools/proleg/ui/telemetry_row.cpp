@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <string>
 
 #include "sim/record/internal_values.hpp"
+#include "sim/robot/sensor_quantity.hpp"
 #include "sim/scenario/names.hpp"
 #include "sim/scenario/settings.hpp"
 
@@ -22,6 +25,8 @@ std::int32_t rounded(double value) {
 
 constexpr double unit_quaternion = 1 << 30;
 constexpr std::size_t pose_values = 7;
+/// Of a quantity of an attached sensor, in its unit.
+constexpr double sensor_step = 1e-3;
 constexpr double raw_per_radian = (1 << 30) / (std::numbers::pi / 2);
 
 void append_pose(const sim::Pose& pose, std::vector<std::int32_t>& row) {
@@ -65,8 +70,33 @@ std::vector<host::Signal> signals_of(const sim::Scenario& scenario) {
                          value_of_step(value.unit), used.group.size(), Of::joint});
     }
   }
+  for (const sim::AttachedSensor& sensor : scenario.robot.sensors) {
+    for (const sim::SensorQuantity& quantity : sim::quantities_of(sensor.kind)) {
+      signals.push_back({"sensor/" + sensor.name + '/' + std::string(quantity.name), std::string(quantity.unit),
+                         sensor_step, 1, Of::robot});
+    }
+  }
   return signals;
 }
+
+namespace {
+
+/// Runs of real robots, and recordings of older programs, have no values.
+void fill_sensors(std::span<const double> values, const sim::RobotModel& robot, std::vector<std::int32_t>& row) {
+  std::size_t first = 0;
+  for (const sim::AttachedSensor& sensor : robot.sensors) {
+    const std::size_t channels = sim::channels_of(sensor).size();
+    const bool is_known = first + channels <= values.size();
+    for (std::size_t quantity = 0; quantity < sim::quantities_of(sensor.kind).size(); ++quantity) {
+      row.push_back(
+          is_known ? rounded(sim::quantity_of(sensor.kind, quantity, values.subspan(first, channels)) / sensor_step)
+                   : host::no_value);
+    }
+    first += channels;
+  }
+}
+
+}  // namespace
 
 void fill_row(const sim::TickSample& sample, const sim::Scenario& scenario, std::vector<std::int32_t>& row) {
   row.assign(sample.setpoints.begin(), sample.setpoints.end());
@@ -106,6 +136,7 @@ void fill_row(const sim::TickSample& sample, const sim::Scenario& scenario, std:
     }
     begin += values * joints;
   }
+  fill_sensors(sample.sensor_values, scenario.robot, row);
 }
 
 void fill_row(const sim::RecordedTick& tick, const sim::Scenario& scenario, std::vector<std::int32_t>& row) {
@@ -122,7 +153,8 @@ void fill_row(const sim::RecordedTick& tick, const sim::Scenario& scenario, std:
             .contact_forces = tick.contact_forces,
             .lost = {},
             .moves = {},
-            .object_poses = tick.object_poses},
+            .object_poses = tick.object_poses,
+            .sensor_values = tick.sensor_values},
            scenario, row);
 }
 

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <span>
 
 #include "shipped.hpp"
 #include "sim/loop/simulation.hpp"
@@ -80,6 +82,32 @@ TEST(TelemetryRow, HasTheValuesOfTheRecordingInTheUnitsOfTheSignals) {
       }
     }
   }
+}
+
+TEST(TelemetryRow, HasTheQuantitiesOfAttachedSensors) {
+  const sim::Scenario scenario = sim::shipped("retreat/wall");
+  sim::Simulation simulation(scenario);
+  for (int tick = 0; tick < 42; ++tick) {
+    simulation.advance();
+  }
+  const std::vector<host::Signal> signals = signals_of(scenario);
+  std::vector<std::int32_t> row;
+  fill_row(simulation.sample(), scenario, row);
+  const std::span<const double> measured = simulation.plant().sensors().values();
+  const auto one = [&](const std::string& name) { return values(signals, row, name).at(0); };
+  EXPECT_EQ(one("sensor/bumper/pressed"), measured[0]);
+  EXPECT_NEAR(one("sensor/eye/nearest"), *std::ranges::min_element(measured.subspan(4, 13)), 5e-4);
+  EXPECT_NEAR(one("sensor/level/pitch"), measured[17], 5e-4);
+  EXPECT_NEAR(one("sensor/level/roll"), measured[18], 5e-4);
+  EXPECT_NEAR(one("sensor/shock/acceleration"), std::hypot(measured[19], measured[20], measured[21]), 5e-4);
+  EXPECT_NEAR(one("sensor/effort/current"), measured[22], 5e-4);
+
+  sim::TickSample of_a_real_robot = simulation.sample();
+  of_a_real_robot.sensor_values = {};
+  const std::size_t size = row.size();
+  fill_row(of_a_real_robot, scenario, row);
+  ASSERT_EQ(row.size(), size);
+  EXPECT_EQ(row.back(), host::no_value);
 }
 
 /// The page computes the poses of all links from the head's and the joint angles; this is its formula.

@@ -92,6 +92,24 @@ class Writer {
     }
     for (const StaticObject& object : environment.objects) {
       write_meshes(object.geometries);
+      for (const Geometry& geometry : object.geometries) {
+        if (geometry.heights) {
+          write_height_field(*geometry.heights);
+        }
+      }
+    }
+  }
+
+  static double lowest_of(const HeightField& field) { return *std::ranges::min_element(field.heights); }
+
+  /// MuJoCo's rows and columns are those of the model; fill_height_fields() gives it the heights.
+  void write_height_field(const HeightField& field) {
+    constexpr double least_range = 1e-6;  // m
+    constexpr double base = 0.1;          // m, of solid ground below the lowest point
+    if (height_fields_.try_emplace(&field, "h" + std::to_string(height_fields_.size())).second) {
+      const double range = std::max(*std::ranges::max_element(field.heights) - lowest_of(field), least_range);
+      text_ << "<hfield name='" << height_fields_.at(&field) << "' nrow='" << field.rows << "' ncol='" << field.columns
+            << "' size='" << field.half_x << ' ' << field.half_y << ' ' << range << ' ' << base << "'/>\n";
     }
   }
 
@@ -126,9 +144,12 @@ class Writer {
       case Shape::hull:
         text_ << " type='mesh' mesh='" << meshes_.at(geometry.mesh.get()) << "'";
         break;
-      case Shape::surface:
       case Shape::height_field:
-        break;  // mujoco_world.cpp refuses them
+        text_ << " type='hfield' hfield='" << height_fields_.at(geometry.heights.get()) << "'";
+        pose = pose * Pose{{0.0, 0.0, lowest_of(*geometry.heights)}, Eigen::Quaterniond::Identity()};
+        break;
+      case Shape::surface:
+        break;  // mujoco_world.cpp refuses it
     }
     text_ << place(pose) << "/>\n";
     written_.push_back({owner, geometry.friction});
@@ -197,7 +218,8 @@ class Writer {
 
   std::ostringstream text_;
   std::vector<Written> written_;
-  std::map<const TriangleMesh*, std::size_t> meshes_;  ///< their names
+  std::map<const TriangleMesh*, std::size_t> meshes_;        ///< their names
+  std::map<const HeightField*, std::string> height_fields_;  ///< their names
 };
 
 }  // namespace

@@ -45,6 +45,7 @@ class MujocoWorld final : public World {
         torques_(robot.joints.size()),
         contact_forces_(robot.links.size()),
         pressed_(robot.links.size()) {
+    fill_height_fields(environment);
     if (data_ == nullptr) {
       throw PhysicsError("MuJoCo finds no memory for a world");
     }
@@ -122,6 +123,25 @@ class MujocoWorld final : public World {
   [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return {}; }
 
  private:
+  /// MuJoCo has heights from 0 to 1, for each height field that the environment has in its order (mjcf.cpp).
+  void fill_height_fields(const EnvironmentModel& environment) {
+    std::vector<const HeightField*> filled;
+    for (const StaticObject& object : environment.objects) {
+      for (const Geometry& geometry : object.geometries) {
+        if (!geometry.heights || std::ranges::find(filled, geometry.heights.get()) != filled.end()) {
+          continue;
+        }
+        const auto number = static_cast<std::ptrdiff_t>(filled.size());
+        const std::vector<double>& heights = geometry.heights->heights;
+        const double lowest = *std::ranges::min_element(heights);
+        const double range = model_->hfield_size[4 * number + 2];
+        std::ranges::transform(heights, model_->hfield_data + model_->hfield_adr[number],
+                               [&](double height) { return static_cast<float>((height - lowest) / range); });
+        filled.push_back(geometry.heights.get());
+      }
+    }
+  }
+
   /// A contact at the start of the last step.
   struct Contact {
     int body;  ///< 0: the environment
@@ -273,7 +293,8 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& file, const std::string& found) {
   throw InputError(file, 0, found,
-                   "what MuJoCo has here: objects that do not move, of boxes, spheres, cylinders and convex meshes (or "
+                   "what MuJoCo has here: objects that do not move, of boxes, spheres, cylinders, convex meshes and "
+                   "height fields (or "
                    "--engine ode)");
 }
 
@@ -283,7 +304,7 @@ void require_known_shapes(const EnvironmentModel& environment, const std::string
   }
   for (const StaticObject& object : environment.objects) {
     for (const Geometry& geometry : object.geometries) {
-      if (geometry.shape == Shape::surface || geometry.shape == Shape::height_field) {
+      if (geometry.shape == Shape::surface) {
         refuse(file, "object " + in_quotes(object.name) + " with " + std::string(with_article(geometry.shape)));
       }
     }

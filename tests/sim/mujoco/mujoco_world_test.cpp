@@ -421,9 +421,45 @@ TEST(MujocoWorld, RefusesByNameWhatItDoesNotHave) {
   environment.objects[0].geometries[0].shape = Shape::surface;
   EXPECT_NE(refusal(environment).find("found object 'hills' with a triangle mesh, expected what MuJoCo has"),
             std::string::npos);
-  EnvironmentModel moving = flat_ground(0.5, 0.02);
-  moving.moving_objects.push_back({"ball", {}, {}, {}, {}});
-  EXPECT_NE(refusal(moving).find("object 'ball', which moves"), std::string::npos);
+}
+
+MovingObject box_object(const Eigen::Vector3d& position, double mass) {
+  const Link link = box_link(0.0, {0.05, 0.05, 0.05}, mass);
+  MovingObject object{"box", {}, link.mass, link.geometries, {}};
+  object.pose.position = position;
+  return object;
+}
+
+std::vector<Pose> objects_of(const World& world, std::size_t count) {
+  std::vector<Pose> poses(count);
+  world.read_objects(poses);
+  return poses;
+}
+
+TEST(MujocoWorld, ObjectsThatMoveRestStackAndBearWhatLiesOnThem) {
+  EnvironmentModel environment = flat_ground(0.5, 0.12);
+  environment.moving_objects.push_back(box_object({0, 0, 0.05}, 0.3));
+  environment.moving_objects.push_back(box_object({1, 0, 0.05}, 0.3));
+  environment.moving_objects.push_back(box_object({1, 0, 0.15}, 0.3));
+  const std::unique_ptr<World> world = mujoco_world(chain(1), environment);
+  EXPECT_LT((objects_of(*world, 3)[2].position - Eigen::Vector3d(1, 0, 0.15)).norm(), 1e-9);
+  run(*world, 1.0);
+  EXPECT_NEAR(world->center_of_mass().z(), 0.12, 1e-3) << "the robot lies on the first";
+  EXPECT_NEAR(world->contact_force(0), 0.1 * gravity, 0.02);
+  EXPECT_NE(world->link_contacts(0), 0U);
+  EXPECT_NEAR(objects_of(*world, 3)[2].position.z(), 0.15, 1e-3);
+  EXPECT_TRUE(world->is_slower_than(1e-3, 1e-2));
+}
+
+TEST(MujocoWorld, AnObjectThatFallsIsNotAtRestAndAMoveOfTheRobotLeavesItAlone) {
+  EnvironmentModel environment = flat_ground(0.5, 0.02);
+  environment.moving_objects.push_back(box_object({1, 0, 1.0}, 0.3));
+  const std::unique_ptr<World> world = mujoco_world(chain(2), environment);
+  run(*world, 0.2);
+  EXPECT_FALSE(world->is_slower_than(1e-3, 1e-2));
+  world->move_robot({{0, 0.1, 0}, Eigen::Quaterniond::Identity()});
+  run(*world, 0.1);
+  EXPECT_NEAR(objects_of(*world, 1)[0].position.z(), 1.0 - gravity * 0.3 * 0.3 / 2, 3e-3);
 }
 
 TEST(MujocoWorld, ABoxRestsOnAHeightFieldAtItsHeightAndASphereRollsDownItsSlope) {

@@ -31,7 +31,7 @@ class Writer {
           << "<option solver='Newton' cone='elliptic' collision='predefined' integrator='"
           << (integrator == Integrator::implicit ? "implicit" : "Euler") << "' timestep='" << step_s << "'"
           << vector("gravity", environment.gravity) << "><flag energy='enable' multiccd='enable'/></option>\n";
-    write_sizes(robot);
+    write_sizes(robot, environment);
     text_ << "<default>\n"
           << "<joint limited='true' solimpfriction='" << hard_motor << "' solimplimit='" << hard_contact
           << "' solreflimit='" << reference(step_s) << "'/>\n"
@@ -46,6 +46,9 @@ class Writer {
       }
     }
     write_links(robot, environment.robot_pose);
+    for (std::size_t i = 0; i < environment.moving_objects.size(); ++i) {
+      write_object(environment.moving_objects[i], first_object_owner - static_cast<std::ptrdiff_t>(i));
+    }
     text_ << "</worldbody>\n<contact>\n";
     write_pairs(environment);
     text_ << "</contact>\n</mujoco>\n";
@@ -54,11 +57,12 @@ class Writer {
   [[nodiscard]] std::string text() const { return text_.str(); }
 
  private:
-  static constexpr std::ptrdiff_t environment_owner = -2;  ///< no neighbour of any link
+  static constexpr std::ptrdiff_t environment_owner = -2;   ///< no neighbour of any link
+  static constexpr std::ptrdiff_t first_object_owner = -3;  ///< of the objects that move, downwards
 
   /// A geometry that was written; its name is its place in the list.
   struct Written {
-    std::ptrdiff_t owner;  ///< link, or environment_owner
+    std::ptrdiff_t owner;  ///< link, or one of those below 0
     std::optional<double> friction;
   };
 
@@ -90,8 +94,29 @@ class Writer {
     for (const Link& link : robot.links) {
       write_meshes(link.geometries);
     }
+    for (const MovingObject& object : environment.moving_objects) {
+      write_meshes(object.geometries);
+    }
     for (const StaticObject& object : environment.objects) {
       write_meshes(object.geometries);
+      for (const Geometry& geometry : object.geometries) {
+        if (geometry.heights) {
+          write_height_field(*geometry.heights);
+        }
+      }
+    }
+  }
+
+  static double lowest_of(const HeightField& field) { return *std::ranges::min_element(field.heights); }
+
+  /// MuJoCo's rows and columns are those of the model; fill_height_fields() gives it the heights.
+  void write_height_field(const HeightField& field) {
+    constexpr double least_range = 1e-6;  // m
+    constexpr double base = 0.1;          // m, of solid ground below the lowest point
+    if (height_fields_.try_emplace(&field, "h" + std::to_string(height_fields_.size())).second) {
+      const double range = std::max(*std::ranges::max_element(field.heights) - lowest_of(field), least_range);
+      text_ << "<hfield name='" << height_fields_.at(&field) << "' nrow='" << field.rows << "' ncol='" << field.columns
+            << "' size='" << field.half_x << ' ' << field.half_y << ' ' << range << ' ' << base << "'/>\n";
     }
   }
 
@@ -126,20 +151,26 @@ class Writer {
       case Shape::hull:
         text_ << " type='mesh' mesh='" << meshes_.at(geometry.mesh.get()) << "'";
         break;
-      case Shape::surface:
       case Shape::height_field:
-        break;  // mujoco_world.cpp refuses them
+        text_ << " type='hfield' hfield='" << height_fields_.at(geometry.heights.get()) << "'";
+        pose = pose * Pose{{0.0, 0.0, lowest_of(*geometry.heights)}, Eigen::Quaterniond::Identity()};
+        break;
+      case Shape::surface:
+        break;  // mujoco_world.cpp refuses it
     }
     text_ << place(pose) << "/>\n";
     written_.push_back({owner, geometry.friction});
   }
 
   /// Of the memory for contacts and constraints. A world that needs more ends with a PhysicsError.
-  void write_sizes(const RobotModel& robot) {
+  void write_sizes(const RobotModel& robot, const EnvironmentModel& environment) {
     constexpr std::size_t points = 8;  // of two boxes
     std::size_t contacts = 100;
     for (const Link& link : robot.links) {
       contacts += points * link.geometries.size();
+    }
+    for (const MovingObject& object : environment.moving_objects) {
+      contacts += points * object.geometries.size();
     }
     constexpr std::size_t rows_of_contact = 3;
     constexpr std::size_t rows_of_joint = 2;  // motor and stop
@@ -157,10 +188,7 @@ class Writer {
       } else {
         write_hinge(robot.joints[i - 1], link);
       }
-      const Eigen::Matrix3d& inertia = link.mass.inertia;
-      text_ << "<inertial mass='" << link.mass.mass << "'" << vector("pos", link.mass.center) << " fullinertia='"
-            << inertia(0, 0) << ' ' << inertia(1, 1) << ' ' << inertia(2, 2) << ' ' << inertia(0, 1) << ' '
-            << inertia(0, 2) << ' ' << inertia(1, 2) << "'/>\n";
+      write_mass(link.mass);
       for (const Geometry& geometry : link.geometries) {
         write_geometry(geometry, geometry.pose, static_cast<std::ptrdiff_t>(i));
       }
@@ -168,6 +196,22 @@ class Writer {
     for (std::size_t i = 0; i < robot.links.size(); ++i) {
       text_ << "</body>\n";
     }
+  }
+
+  void write_mass(const MassProperties& mass) {
+    const Eigen::Matrix3d& inertia = mass.inertia;
+    text_ << "<inertial mass='" << mass.mass << "'" << vector("pos", mass.center) << " fullinertia='" << inertia(0, 0)
+          << ' ' << inertia(1, 1) << ' ' << inertia(2, 2) << ' ' << inertia(0, 1) << ' ' << inertia(0, 2) << ' '
+          << inertia(1, 2) << "'/>\n";
+  }
+
+  void write_object(const MovingObject& object, std::ptrdiff_t owner) {
+    text_ << "<body" << place(object.pose) << ">\n<freejoint/>\n";
+    write_mass(object.mass);
+    for (const Geometry& geometry : object.geometries) {
+      write_geometry(geometry, geometry.pose, owner);
+    }
+    text_ << "</body>\n";
   }
 
   void write_hinge(const Joint& joint, const Link& link) {
@@ -185,8 +229,8 @@ class Writer {
       for (std::size_t b = a + 1; b < written_.size(); ++b) {
         const std::ptrdiff_t owner = written_[a].owner;
         const std::ptrdiff_t other = written_[b].owner;
-        const bool touches = owner == environment_owner ? other != environment_owner
-                                                        : environment.self_collision && std::abs(owner - other) > 1;
+        const bool are_links = owner >= 0 && other >= 0;
+        const bool touches = are_links ? environment.self_collision && std::abs(owner - other) > 1 : owner != other;
         if (touches) {
           const double mu = friction_of(written_[a].friction, written_[b].friction, environment.unspecified_friction);
           text_ << "<pair geom1='" << a << "' geom2='" << b << "' friction='" << mu << ' ' << mu << " 0 0 0'/>\n";
@@ -197,7 +241,8 @@ class Writer {
 
   std::ostringstream text_;
   std::vector<Written> written_;
-  std::map<const TriangleMesh*, std::size_t> meshes_;  ///< their names
+  std::map<const TriangleMesh*, std::size_t> meshes_;        ///< their names
+  std::map<const HeightField*, std::string> height_fields_;  ///< their names
 };
 
 }  // namespace

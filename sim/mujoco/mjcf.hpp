@@ -15,7 +15,7 @@ namespace proleg::sim::mujoco {
 /// - cones of friction, the same in every direction, and Newton's solver;
 /// - hinges whose dry friction is the motor: see mujoco_world.cpp.
 /// The world is MuJoCo's body 0. Link i is body i + 1; the head, body 1, has the free joint 0. Joint j is MuJoCo's
-/// joint j + 1.
+/// joint j + 1. The objects that move follow, each with a free joint.
 [[nodiscard]] std::string write_mjcf(const RobotModel& robot, const EnvironmentModel& environment, double step_s,
                                      Integrator integrator);
 

@@ -45,6 +45,7 @@ class MujocoWorld final : public World {
         torques_(robot.joints.size()),
         contact_forces_(robot.links.size()),
         pressed_(robot.links.size()) {
+    fill_height_fields(environment);
     if (data_ == nullptr) {
       throw PhysicsError("MuJoCo finds no memory for a world");
     }
@@ -72,7 +73,7 @@ class MujocoWorld final : public World {
     const double place[free_joint_positions] = {
         moved.position.x(), moved.position.y(), moved.position.z(), turn.w(), turn.x(), turn.y(), turn.z()};
     std::ranges::copy(place, data_->qpos);
-    std::fill_n(data_->qvel, model_->nv, 0.0);
+    std::fill_n(data_->qvel, free_joint_speeds + static_cast<int>(speeds_.size()), 0.0);
     std::fill_n(data_->qacc_warmstart, model_->nv, 0.0);
     std::ranges::fill(pressed_, std::uint8_t{0});
     std::ranges::fill(contact_forces_, 0.0);
@@ -104,6 +105,11 @@ class MujocoWorld final : public World {
     const mjtNum* const turn = data_->xquat + 4 * body_of(link);
     return {vector_at(data_->xpos, body_of(link)), {turn[0], turn[1], turn[2], turn[3]}};
   }
+  void read_objects(std::span<Pose> poses) const override {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      poses[i] = link_pose(pressed_.size() + i);  // their bodies follow those of the links
+    }
+  }
   [[nodiscard]] bool is_slower_than(double speed, double rotation) const override {
     for (int body = 1; body < model_->nbody; ++body) {
       if (velocity_of(body, vector_at(data_->xipos, body)).norm() >= speed || rotation_of(body).norm() >= rotation) {
@@ -133,9 +139,28 @@ class MujocoWorld final : public World {
   [[nodiscard]] std::span<const std::string> solver_message_texts() const override { return {}; }
 
  private:
+  /// MuJoCo has heights from 0 to 1, for each height field that the environment has in its order (mjcf.cpp).
+  void fill_height_fields(const EnvironmentModel& environment) {
+    std::vector<const HeightField*> filled;
+    for (const StaticObject& object : environment.objects) {
+      for (const Geometry& geometry : object.geometries) {
+        if (!geometry.heights || std::ranges::find(filled, geometry.heights.get()) != filled.end()) {
+          continue;
+        }
+        const auto number = static_cast<std::ptrdiff_t>(filled.size());
+        const std::vector<double>& heights = geometry.heights->heights;
+        const double lowest = *std::ranges::min_element(heights);
+        const double range = model_->hfield_size[4 * number + 2];
+        std::ranges::transform(heights, model_->hfield_data + model_->hfield_adr[number],
+                               [&](double height) { return static_cast<float>((height - lowest) / range); });
+        filled.push_back(geometry.heights.get());
+      }
+    }
+  }
+
   /// A contact at the start of the last step.
   struct Contact {
-    int body;  ///< 0: the environment
+    int body;  ///< of MuJoCo; 0: the environment
     int other;
     Vector point;
     Vector normal;
@@ -215,16 +240,19 @@ class MujocoWorld final : public World {
       contact.velocity = relative_velocity(contact);
       note_force(contact.body, in_frame[0]);
       note_force(contact.other, in_frame[0]);
-      if (contact.body == 0 || contact.other == 0) {
-        note_touch(std::max(contact.body, contact.other), contact);
+      if (is_link(contact.body) != is_link(contact.other)) {
+        note_touch(is_link(contact.body) ? contact.body : contact.other, contact);
         note_contact_point(contact);
       }
       contacts_.push_back(contact);
     }
   }
 
+  /// Or the environment, or an object that moves.
+  [[nodiscard]] bool is_link(int body) const { return body > 0 && body <= static_cast<int>(pressed_.size()); }
+
   void note_force(int body, double normal_force) {
-    if (body > 0) {
+    if (is_link(body)) {
       contact_forces_[static_cast<std::size_t>(body - 1)] += normal_force;
     }
   }
@@ -248,7 +276,7 @@ class MujocoWorld final : public World {
   void note_sliding() {
     sliding_ = {};
     for (const Contact& contact : contacts_) {
-      if (contact.body != 0 && contact.other != 0) {
+      if (is_link(contact.body) && is_link(contact.other)) {
         continue;
       }
       const auto along = [&](const Vector& vector) -> Vector {
@@ -256,17 +284,21 @@ class MujocoWorld final : public World {
       };
       const double normal_force = std::abs(contact.force.dot(contact.normal));
       const Vector velocity = along(relative_velocity(contact));
-      sliding_.normal_force += normal_force;
-      sliding_.force_times_speed += normal_force * velocity.norm();
+      if (is_link(contact.body) || is_link(contact.other)) {
+        sliding_.normal_force += normal_force;
+        sliding_.force_times_speed += normal_force * velocity.norm();
+      }
       // As in ODE: friction takes a force times the mean of the speeds before and after the step.
       sliding_.friction_power += std::abs(along(contact.force).dot(0.5 * (velocity + along(contact.velocity))));
     }
   }
 
-  /// MuJoCo has the velocities of the bodies at the robot's centre of mass: rotation, then translation.
+  /// MuJoCo has the velocities of the bodies at the centre of mass of the robot, or of the object: rotation, then
+  /// translation.
   [[nodiscard]] Vector rotation_of(int body) const { return vector_at(data_->cvel, 2 * body); }
   [[nodiscard]] Vector velocity_of(int body, const Vector& point) const {
-    return vector_at(data_->cvel, 2 * body + 1) + rotation_of(body).cross(point - center_of_mass());
+    return vector_at(data_->cvel, 2 * body + 1) +
+           rotation_of(body).cross(point - vector_at(data_->subtree_com, model_->body_rootid[body]));
   }
   [[nodiscard]] Vector relative_velocity(const Contact& contact) const {
     return velocity_of(contact.other, contact.point) - velocity_of(contact.body, contact.point);
@@ -296,7 +328,8 @@ namespace {
 
 [[noreturn]] void refuse(const std::string& file, const std::string& found) {
   throw InputError(file, 0, found,
-                   "what MuJoCo has here: objects that do not move, of boxes, spheres, cylinders and convex meshes (or "
+                   "what MuJoCo has here: objects that do not move, of boxes, spheres, cylinders, convex meshes and "
+                   "height fields (or "
                    "--engine ode)");
 }
 
@@ -312,12 +345,9 @@ void require_known_friction(const RobotModel& robot, const std::string& file) {
 }
 
 void require_known_shapes(const EnvironmentModel& environment, const std::string& file) {
-  if (!environment.moving_objects.empty()) {
-    refuse(file, "object " + in_quotes(environment.moving_objects.front().name) + ", which moves");
-  }
   for (const StaticObject& object : environment.objects) {
     for (const Geometry& geometry : object.geometries) {
-      if (geometry.shape == Shape::surface || geometry.shape == Shape::height_field) {
+      if (geometry.shape == Shape::surface) {
         refuse(file, "object " + in_quotes(object.name) + " with " + std::string(with_article(geometry.shape)));
       }
     }

@@ -6,8 +6,10 @@
 #include <map>
 #include <set>
 #include <string_view>
+#include <vector>
 
 #include "shared/computer/text/text.hpp"
+#include "sim/scenario/data_url.hpp"
 #include "sim/scenario/overrides.hpp"
 #include "sim/scenario/xml_document.hpp"
 
@@ -41,6 +43,18 @@ class Sources {
     return find(top_, document.root("simulation").required_child(tag).text());
   }
 
+  /// The files with materials that an OBJ file beside them may name.
+  [[nodiscard]] std::vector<fs::path> materials_beside(const fs::path& path) const {
+    std::vector<fs::path> found;
+    for (const auto& [other, text] : texts_) {
+      if (lower_case(path.extension().string()) == ".obj" && lower_case(other.extension().string()) == ".mtl" &&
+          other.parent_path() == path.parent_path()) {
+        found.push_back(other);
+      }
+    }
+    return found;
+  }
+
   [[nodiscard]] const std::string& text(const fs::path& path) const { return *texts_.at(path); }
 
  private:
@@ -50,31 +64,46 @@ class Sources {
   std::map<fs::path, const std::string*> texts_;
 };
 
-/// Calls use(element, attribute) for each attribute `file` of a document: these include other files.
+/// Whether the text of an element names a file: a mesh or heights.
+bool names_file_in_text(const tinyxml2::XMLElement& element) {
+  const std::string name = lower_case(element.Name());
+  return name == "data" || name == "collision" || name == "render";
+}
+
+/// Calls use(reference, replace) for each file that a document names: in an attribute `file`, or as the first word of
+/// the text of some elements. replace(text) writes another reference in its place.
 template <typename Use>
 void for_each_include(tinyxml2::XMLElement* element, const Use& use) {
   for (; element != nullptr; element = element->NextSiblingElement()) {
     for (const auto* attribute = element->FirstAttribute(); attribute != nullptr; attribute = attribute->Next()) {
       if (lower_case(attribute->Name()) == "file") {
-        use(*element, *attribute);
+        use(std::string(trimmed(attribute->Value())),
+            [&](const std::string& other) { element->SetAttribute(attribute->Name(), other.c_str()); });
       }
+    }
+    if (names_file_in_text(*element) && element->GetText() != nullptr) {
+      const std::string text(trimmed(element->GetText()));
+      const std::string reference = text.substr(0, text.find_first_of(" \t\r\n"));
+      use(reference,
+          [&](const std::string& other) { element->SetText((other + text.substr(reference.size())).c_str()); });
     }
     for_each_include(element->FirstChildElement(), use);
   }
 }
-
-std::string reference_of(const tinyxml2::XMLAttribute& attribute) { return std::string(trimmed(attribute.Value())); }
 
 /// Adds a file and, in turn, all that it includes.
 void add_with_includes(const Sources& sources, const fs::path& path, std::set<fs::path>& files) {
   if (path.empty() || !files.insert(path).second) {
     return;
   }
+  for (const fs::path& materials : sources.materials_beside(path)) {
+    files.insert(materials);
+  }
   tinyxml2::XMLDocument document;
   const std::string& text = sources.text(path);
   document.Parse(text.data(), text.size());
-  for_each_include(document.RootElement(), [&](tinyxml2::XMLElement&, const tinyxml2::XMLAttribute& attribute) {
-    add_with_includes(sources, sources.find(path, reference_of(attribute)), files);
+  for_each_include(document.RootElement(), [&](const std::string& reference, const auto& /*replace*/) {
+    add_with_includes(sources, sources.find(path, reference), files);
   });
 }
 
@@ -122,13 +151,15 @@ std::string text_to_write(const Sources& sources, const fs::path& path, std::str
   const std::string& text = sources.text(path);
   tinyxml2::XMLDocument document;
   document.Parse(text.data(), text.size());
+  if (document.Error()) {
+    return sim::bytes_of_source(text);  // a mesh, or heights
+  }
   bool changed = !engine.empty() && set_engine(*document.RootElement(), engine);
-  for_each_include(document.RootElement(), [&](tinyxml2::XMLElement& element, const tinyxml2::XMLAttribute& attribute) {
-    const std::string reference = reference_of(attribute);
+  for_each_include(document.RootElement(), [&](const std::string& reference, const auto& replace) {
     const fs::path target = sources.find(path, reference);
     const std::string wanted = target.lexically_relative(path.parent_path()).string();
     if (!target.empty() && reference != wanted) {
-      element.SetAttribute(attribute.Name(), wanted.c_str());
+      replace(wanted);
       changed = true;
     }
   });

@@ -421,11 +421,79 @@ TEST(MujocoWorld, RefusesByNameWhatItDoesNotHave) {
   environment.objects[0].geometries[0].shape = Shape::surface;
   EXPECT_NE(refusal(environment).find("found object 'hills' with a triangle mesh, expected what MuJoCo has"),
             std::string::npos);
-  environment.objects[0].geometries[0].shape = Shape::height_field;
-  EXPECT_NE(refusal(environment).find("object 'hills' with a height field"), std::string::npos);
-  EnvironmentModel moving = flat_ground(0.5, 0.02);
-  moving.moving_objects.push_back({"ball", {}, {}, {}, {}});
-  EXPECT_NE(refusal(moving).find("object 'ball', which moves"), std::string::npos);
+}
+
+MovingObject box_object(const Eigen::Vector3d& position, double mass) {
+  const Link link = box_link(0.0, {0.05, 0.05, 0.05}, mass);
+  MovingObject object{"box", {}, link.mass, link.geometries, {}};
+  object.pose.position = position;
+  return object;
+}
+
+std::vector<Pose> objects_of(const World& world, std::size_t count) {
+  std::vector<Pose> poses(count);
+  world.read_objects(poses);
+  return poses;
+}
+
+TEST(MujocoWorld, ObjectsThatMoveRestStackAndBearWhatLiesOnThem) {
+  EnvironmentModel environment = flat_ground(0.5, 0.12);
+  environment.moving_objects.push_back(box_object({0, 0, 0.05}, 0.3));
+  environment.moving_objects.push_back(box_object({1, 0, 0.05}, 0.3));
+  environment.moving_objects.push_back(box_object({1, 0, 0.15}, 0.3));
+  const std::unique_ptr<World> world = mujoco_world(chain(1), environment);
+  EXPECT_LT((objects_of(*world, 3)[2].position - Eigen::Vector3d(1, 0, 0.15)).norm(), 1e-9);
+  run(*world, 1.0);
+  EXPECT_NEAR(world->center_of_mass().z(), 0.12, 1e-3) << "the robot lies on the first";
+  EXPECT_NEAR(world->contact_force(0), 0.1 * gravity, 0.02);
+  EXPECT_NE(world->link_contacts(0), 0U);
+  EXPECT_NEAR(objects_of(*world, 3)[2].position.z(), 0.15, 1e-3);
+  EXPECT_TRUE(world->is_slower_than(1e-3, 1e-2));
+}
+
+TEST(MujocoWorld, AnObjectThatFallsIsNotAtRestAndAMoveOfTheRobotLeavesItAlone) {
+  EnvironmentModel environment = flat_ground(0.5, 0.02);
+  environment.moving_objects.push_back(box_object({1, 0, 1.0}, 0.3));
+  const std::unique_ptr<World> world = mujoco_world(chain(2), environment);
+  run(*world, 0.2);
+  EXPECT_FALSE(world->is_slower_than(1e-3, 1e-2));
+  world->move_robot({{0, 0.1, 0}, Eigen::Quaterniond::Identity()});
+  run(*world, 0.1);
+  EXPECT_NEAR(objects_of(*world, 1)[0].position.z(), 1.0 - gravity * 0.3 * 0.3 / 2, 3e-3);
+}
+
+TEST(MujocoWorld, ABoxRestsOnAHeightFieldAtItsHeightAndASphereRollsDownItsSlope) {
+  const auto field_of = [](auto height_at) {
+    HeightField field{.columns = 21, .rows = 31, .half_x = 1.0, .half_y = 1.5, .heights = {}};
+    for (int row = 0; row < 31; ++row) {
+      for (int column = 0; column < 21; ++column) {
+        field.heights.push_back(height_at(-1.0 + 0.1 * column, -1.5 + 0.1 * row));
+      }
+    }
+    EnvironmentModel environment = flat_ground(1.0, 0.0);
+    environment.objects[0].pose = {};
+    Geometry& geometry = environment.objects[0].geometries[0];
+    geometry.shape = Shape::height_field;
+    geometry.heights = std::make_shared<const HeightField>(field);
+    const auto mesh = std::make_shared<TriangleMesh>();
+    mesh->vertices = {{-1, -1.5, 0}};
+    geometry.mesh = mesh;
+    return environment;
+  };
+  EnvironmentModel level = field_of([](double x, double y) { return x > 0.95 && y > 1.45 ? 0.5 : 0.25; });
+  level.robot_pose.position.z() = 0.28;
+  const std::unique_ptr<World> box = mujoco_world(chain(1), level);
+  run(*box, 1.0);
+  EXPECT_NEAR(box->center_of_mass().z(), 0.27, 1e-3);
+  EnvironmentModel slope = field_of([](double /*x*/, double y) { return 0.2 * y; });
+  slope.robot_pose.position.z() = 0.06;
+  RobotModel robot = chain(1);
+  robot.links[0].geometries[0].shape = Shape::sphere;
+  robot.links[0].geometries[0].extents.x() = 0.05;
+  const std::unique_ptr<World> sphere = mujoco_world(robot, slope);
+  run(*sphere, 0.7);
+  EXPECT_LT(sphere->center_of_mass().y(), -0.1) << "down, towards -y";
+  EXPECT_NEAR(sphere->center_of_mass().x(), 0.0, 0.02);
 }
 
 TEST(MujocoWorld, AConvexMeshRestsAndSlidesAsTheBoxThatItIs) {

@@ -26,7 +26,7 @@ void describe(std::ostream& out, const sim::Pose& pose) {
 void describe(std::ostream& out, const std::vector<sim::Geometry>& geometries) {
   for (const sim::Geometry& geometry : geometries) {
     out << "geometry " << static_cast<int>(geometry.shape) << " " << geometry.extents.transpose() << " "
-        << geometry.friction.value_or(-1.0) << " ";
+        << geometry.friction.value_or(-1.0) << " " << (geometry.mesh ? geometry.mesh->triangles.size() : 0) << " ";
     describe(out, geometry.pose);
   }
 }
@@ -54,6 +54,12 @@ std::string description_of(const sim::Scenario& scenario) {
     describe(out, object.pose);
     describe(out, object.geometries);
   }
+  for (const sim::MovingObject& object : scenario.environment.moving_objects) {
+    out << object.name << " " << object.mass.mass << "\n";
+    describe(out, object.pose);
+    describe(out, object.geometries);
+  }
+  out << "rulers " << scenario.environment.rulers.size() << "\n";
   out << "kernel " << +scenario.kernel.joint_count << " " << scenario.kernel.tick_period_us << " "
       << scenario.kernel.seed << "\n";
   for (const Slot& slot : scenario.kernel.slots) {
@@ -211,6 +217,13 @@ TEST(WriteScenario, WhatComesBackMovesTheSame) {
     const sim::Scenario expected = expected_scenario(experiment, candidate);
     EXPECT_EQ(run(written, 0.5), run(expected, 0.5));
   }
+}
+
+TEST(WriteScenario, MeshesHeightsAndObjectsThatMoveComeBack) {
+  const sim::Scenario written =
+      expect_round_trip(experiment_of(shipped("robots/mesh_world/mesh_world.simulation.xml")), {});
+  const sim::Geometry& ridge = written.environment.objects.back().geometries.at(0);
+  EXPECT_FALSE(ridge.mesh->colours.empty()) << "the file of its materials, too";
 }
 
 TEST(WriteScenario, TheThesissFilesComeBack) {

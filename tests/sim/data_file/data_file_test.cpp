@@ -125,30 +125,30 @@ TEST(DataFile, AFileThatIsCutAnywhereGivesItsWholeFramesAndALine) {
 
 TEST(DataFile, WhatIsWrongIsOneLineWithFileAndLine) {
   const auto expect = [](const std::string& text, const std::string& expected) { EXPECT_EQ(message(text), expected); };
-  expect(replaced(printed, "-7.10298", "-7.1O298"), "some.data.xml:33: found '-7.1O298' in <Angle>, expected a number");
+  expect(replaced(printed, "-7.10298", "-7.1O298"), "some.data.xml:29: found '-7.1O298' in <Angle>, expected a number");
   expect(replaced(printed, "28.9827 8.38557", "28.9827"),
-         "some.data.xml:40: found 5 numbers in <Angle>, expected 4, as in the frames before");
+         "some.data.xml:35: found 5 numbers in <Angle>, expected 4, as in the frames before");
   expect(replaced(printed, "<Time>0.031 0", "<Time>0 0.031 0"),
-         "some.data.xml:34: found 6 numbers in <Time>, expected 1 to 5, the parts of PatternGenerator_sinusoidal");
-  expect(replaced(printed, "</Angle>", "</Angel>"), "some.data.xml:33: found '</Angel>', expected </Angle>");
+         "some.data.xml:30: found 6 numbers in <Time>, expected 1 to 5, the parts of PatternGenerator_sinusoidal");
+  expect(replaced(printed, "</Angle>", "</Angel>"), "some.data.xml:29: found '</Angel>', expected </Angle>");
   expect(replaced(printed, "simtime=\"61\"", "simtime=\"30\""),
-         "some.data.xml:27: found simtime 30 after 30, expected frames of a module in the order of time");
+         "some.data.xml:23: found simtime 30 after 30, expected frames of a module in the order of time");
   expect(
       replaced(printed, "simtime=\"30\"", ""),
-      "some.data.xml:24: found simtime='' in <frame>, expected index, realtime and simtime: the number of the frame, "
+      "some.data.xml:20: found simtime='' in <frame>, expected index, realtime and simtime: the number of the frame, "
       "and milliseconds");
   expect(replaced(printed, "index=\"0\"", "index=\"-1\""),
-         "some.data.xml:24: found index='-1' in <frame>, expected the number of the frame");
+         "some.data.xml:20: found index='-1' in <frame>, expected the number of the frame");
   expect(replaced(printed, "<tactile></tactile>", "<touch></touch>"),
-         "some.data.xml:46: found <touch>, expected a module of the header or </round>");
+         "some.data.xml:41: found <touch>, expected a module of the header or </round>");
   expect(replaced(printed, "<tactile parts=\"12\"", "<tactile parts=\"0\""),
          "some.data.xml:10: found parts='0' in <tactile>, expected 1 to 4096 parts");
   expect(replaced(printed, "</dataroot>", "</dataroot><more>"),
-         "some.data.xml:67: found <more>, expected nothing behind </dataroot>");
+         "some.data.xml:60: found <more>, expected nothing behind </dataroot>");
   expect(replaced(printed, "Phase_Difference Frequency realtime", "Frequency realtime"),
-         "some.data.xml:35: found <Phase_Difference> in <frame>, expected types: Angle, Time, Frequency");
+         "some.data.xml:31: found <Phase_Difference> in <frame>, expected types: Angle, Time, Frequency");
   expect(replaced(printed, "<typenames>Angle", "<typenames>Angle Bend"),
-         "some.data.xml:32: found a frame without <Bend>, expected every type of the header");
+         "some.data.xml:28: found a frame without <Bend>, expected every type of the header");
   expect("", "some.data.xml:1: found the end of the file, expected <dataroot>, as a data file begins");
   expect("<simulation/>", "some.data.xml:1: found <simulation>, expected <dataroot>, as a data file begins");
   expect("<dataroot>\n<header>\n</header>\n</dataroot>",

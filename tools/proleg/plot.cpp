@@ -146,8 +146,8 @@ int plot(const tools::CommandLine& command_line, const Options& options) {
     throw InputError("--x", 0, "no --series", "--series with the columns that are drawn over this one");
   }
   const std::filesystem::path picture = picture_of(options, is_data_file);
-  const Drawing drawing = is_data_file ? draw_data_file(options) : draw_recording(options);
   require_format(picture, options.png);
+  const Drawing drawing = is_data_file ? draw_data_file(options) : draw_recording(options);
   const std::array outputs{options.png ? PlannedOutput{"--out", picture, "PNG picture", starts_with("\x89PNG")}
                                        : PlannedOutput{"--out", picture, "SVG picture", is_svg}};
   check_outputs(outputs);

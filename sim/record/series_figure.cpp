@@ -220,7 +220,6 @@ std::string draw_series(const SeriesSet& set, std::string_view title, std::strin
   Svg svg(series_page_width, page_height + 56.0, title, "Columns of a recording, one over the other.");
   draw_title(svg, title, subtitle);
   double top = first_panel_top;
-  std::size_t number = 0;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const SeriesPanel& panel = panels[i];
     Span y_span;
@@ -241,6 +240,7 @@ std::string draw_series(const SeriesSet& set, std::string_view title, std::strin
     draw_plot_grid(svg, x, y, with_unit(x_name, x_quantity.unit), heading_of(panel));
     svg.begin_group("series");
     double row = top + 8.0;
+    std::size_t number = 0;
     for (const Series* series : panel.series) {
       const SeriesStyle style = style_of(number++);
       draw_one_series(svg, *series, x, y, over_time, style);

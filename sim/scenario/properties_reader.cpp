@@ -40,6 +40,19 @@ void remark_unless(const XmlElement& parent, std::string_view tag, std::string_v
   }
 }
 
+/// The command of this program that does what the thesis's simulation modes do (its section 4.3.3).
+std::string reason_for_mode(std::string_view mode) {
+  const std::string name = lower_case(mode);
+  const auto has = [&name](std::string_view word) { return name.find(word) != std::string::npos; };
+  if (has("real robot")) {
+    return "it is a command here: 'proleg drive' moves a robot";
+  }
+  if (has("genetic") || has("deluge") || has("optimi")) {
+    return "it is a command here: 'proleg optimise' searches, with an experiment file";
+  }
+  return "a scenario is a single run";
+}
+
 }  // namespace
 
 void read_simulation_properties(const XmlElement& element, Scenario& scenario) {
@@ -68,13 +81,15 @@ void read_simulation_properties(const XmlElement& element, Scenario& scenario) {
   }
 
   std::vector<std::string>& remarks = scenario.remarks;
-  remark_unless(element, "showViewer", "0", "a run has no viewer", remarks);
+  remark_unless(element, "showViewer", "0", "'proleg ui' shows a robot that moves", remarks);
   remark_unless(element, "parallelComputing", "0", "one run uses one processor", remarks);
   remark_unless(element, "storingData", "0", "use --record on the command line", remarks);
-  remark_unless(element, "mode", "Single Run Simulation", "a scenario is a single run", remarks);
+  if (const auto mode = element.child("mode")) {
+    remark_unless(element, "mode", "Single Run Simulation", reason_for_mode(mode->text()), remarks);
+  }
   if (const auto accuracy = element.child("accuracy")) {
     remark_no_effect(remarks, *accuracy,
-                     "it is the sampling time of the thesis's program in ms; this program uses <tick> and <stepWidth>");
+                     "it is how often the thesis's program samples; here every tick is recorded, and <tick> sets it");
   }
 }
 

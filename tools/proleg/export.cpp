@@ -14,7 +14,6 @@
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output.hpp"
 #include "shared/computer/output/output_check.hpp"
-#include "shared/computer/text/text.hpp"
 #include "sim/data_file/data_file.hpp"
 #include "sim/data_file/data_file_writer.hpp"
 #include "sim/record/recorded_scenario.hpp"
@@ -143,8 +142,8 @@ int write_export(const Options& options, const Export& planned, const std::funct
 
 int export_data_file(const CommandLine& command_line, const Options& options) {
   if (options.html || options.thesis) {
-    throw InputError(options.html ? "--html" : "--thesis", 0, "the XML file " + in_quotes(options.recording),
-                     "a recording; of a data file only the table can be written");
+    throw InputError(options.recording, 0, "an XML file",
+                     std::string("a recording, because of ") + (options.html ? "--html" : "--thesis"));
   }
   sim::DataFile data(options.recording);
   const std::filesystem::path file = options.out.empty()

@@ -91,20 +91,28 @@ std::vector<std::string> names_in(const std::string& list) {
   return names;
 }
 
-/// What of a data file is drawn without --series: the angles. A file without angles: the first type.
+/// What of a data file is drawn without --series: what its modules command; else what the joints do; else the first
+/// type.
 std::vector<std::string> usual_series(const sim::DataFile& data) {
   std::vector<std::string> names;
-  for (const char* type : {"Angle", "desired_angle", "real_joint_positions"}) {
+  const auto add = [&](const std::string& type) {
     for (const std::string& column : data.columns()) {
-      if (column.starts_with(std::string(type) + ".") && names.size() < sim::max_series) {
+      if (column.starts_with(type + ".") && names.size() < sim::max_series) {
         names.push_back(column);
       }
     }
+  };
+  add("Angle");
+  add("desired_angle");
+  if (names.empty()) {
+    add("real_joint_positions");
   }
-  constexpr std::size_t first_of_modules = 3;
-  return names.empty()
-             ? std::vector{data.columns()[first_of_modules].substr(0, data.columns()[first_of_modules].find('.'))}
-             : names;
+  if (names.empty()) {
+    constexpr std::size_t first_of_modules = 3;
+    const std::string& column = data.columns()[first_of_modules];
+    add(column.substr(0, column.find('.')));
+  }
+  return names;
 }
 
 std::string draw_table(const Options& options, std::vector<std::string> names, const sim::WriteTable& table) {
@@ -138,8 +146,8 @@ int plot(const tools::CommandLine& command_line, const Options& options) {
     throw InputError("--x", 0, "no --series", "--series with the columns that are drawn over this one");
   }
   const std::filesystem::path picture = picture_of(options, is_data_file);
-  const Drawing drawing = is_data_file ? draw_data_file(options) : draw_recording(options);
   require_format(picture, options.png);
+  const Drawing drawing = is_data_file ? draw_data_file(options) : draw_recording(options);
   const std::array outputs{options.png ? PlannedOutput{"--out", picture, "PNG picture", starts_with("\x89PNG")}
                                        : PlannedOutput{"--out", picture, "SVG picture", is_svg}};
   check_outputs(outputs);

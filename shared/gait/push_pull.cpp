@@ -28,7 +28,7 @@ enum Parameters : std::uint8_t {
 constexpr Parameter parameters[] = {
     Parameter{"amplitude", Unit::degree, raw(Unit::degree, 40), 0, quarter_turn,
               "amplitude of the joint angle at 1 Hz; slower bursts swing further, faster ones less far"},
-    Parameter{"frequency", Unit::hertz, raw(Unit::hertz, 1), raw(Unit::hertz, 1, 20), raw(Unit::hertz, 2),
+    Parameter{"frequency", Unit::hertz, raw(Unit::hertz, 1), raw(Unit::hertz, 1, 20), raw(Unit::hertz, 13, 10),
               "frequency of the bursts; acts as at most 0.0022 for an iteration of the neurons"},
     generator_parameters::phase_difference,
     generator_parameters::offset,
@@ -121,8 +121,8 @@ class PushPull final : public PatternGenerator {
   }
 
   [[nodiscard]] std::int32_t output(const Tuning& /*tuning*/, const std::int32_t* state) const override {
-    // The bursts of 1 Hz, with the pauses between them, have the amplitude 0.610 behind both filters.
-    constexpr std::int32_t inverse_gain = 440058124;  // 1 / 0.610 in Q28
+    // The bursts of 1 Hz, with the pauses between them, have the amplitude 0.570 behind both filters.
+    constexpr std::int32_t inverse_gain = 470939397;  // 1 / 0.570 in Q28
     const std::int32_t share = saturate(shift_right_rounding(multiply_wide(state[output_level], inverse_gain), 28));
     const std::int64_t swing = shift_right_rounding(multiply_wide(state[current_amplitude], share), 28);
     return saturate(swing + state[current_offset]);
@@ -146,8 +146,8 @@ class PushPull final : public PatternGenerator {
   }
 
   void derive_pattern(const JointContext& context, const std::int32_t* values, std::int32_t* derived) const override {
-    // About an iteration in a millisecond.
-    const std::uint32_t count = std::clamp<std::uint32_t>((context.tick_period_us + 500U) / 1000U, 1U, 10U);
+    // About an iteration in 1.7 ms: as many as a tick of 10 ms has instructions for.
+    const std::uint32_t count = std::clamp<std::uint32_t>((context.tick_period_us + 833U) / 1667U, 1U, 6U);
     derived[iterations] = static_cast<std::int32_t>(count);
 
     // Bursts in an iteration, Q36: at most 9 / 4096.

@@ -268,8 +268,9 @@ class MujocoWorld final : public World {
   /// MuJoCo's normal points from the first body to the other.
   void note_contact_point(const Contact& contact) {
     if (keeps_contact_points_) {
-      const auto link = static_cast<std::size_t>(std::max(contact.body, contact.other) - 1);
-      contact_points_.push_back({link, contact.point, contact.body == 0 ? contact.normal : Vector(-contact.normal)});
+      const bool is_first = is_link(contact.body);
+      const auto link = static_cast<std::size_t>((is_first ? contact.body : contact.other) - 1);
+      contact_points_.push_back({link, contact.point, is_first ? Vector(-contact.normal) : contact.normal});
     }
   }
 

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 
+#include "shared/gait/registry.hpp"
 #include "tests/cortex_m/core_image.hpp"
 
 namespace proleg::cortex_m {
@@ -28,6 +29,13 @@ TEST_F(CostOnCortexM4, ATickOfTheSinusoidalGeneratorTakesAtMost600Instructions) 
 
 TEST_F(CostOnCortexM4, ATickOfTheCoupledOscillatorTakesAtMost1500Instructions) {
   EXPECT_LE(measure_tick(machine_, coupled_oscillator, ticks).total.worst, 1500U);
+}
+
+TEST_F(CostOnCortexM4, ATickOfAnyAlgorithmTakesAtMost2500Instructions) {
+  for (std::size_t i = 0; i < algorithm_count(); ++i) {
+    const Declaration& declaration = algorithm_at(i).declaration();
+    EXPECT_LE(measure_tick(machine_, declaration.id, ticks).total.worst, 2500U) << declaration.name;
+  }
 }
 
 TEST_F(CostOnCortexM4, ASineTakesAtMost50Instructions) { EXPECT_LE(measure_sine(machine_).worst, 50U); }

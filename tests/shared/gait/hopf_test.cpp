@@ -20,7 +20,7 @@ namespace {
 using test::in_degrees;
 using test::robot_joints;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 struct Model {
   double frequency = 1;

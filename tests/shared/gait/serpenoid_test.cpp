@@ -16,7 +16,7 @@ namespace {
 using test::in_degrees;
 
 constexpr unsigned snake_joints = 8;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 class Serpenoid : public testing::Test {
  protected:

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "sim/loop/simulation.hpp"
 #include "sim/scenario/reader.hpp"
@@ -12,9 +14,9 @@
 namespace proleg::sim {
 namespace {
 
-Scenario shipped(const std::string& file, double seconds) {
+Scenario shipped_robot(const std::string& file, double seconds) {
   DiskFiles files;
-  Scenario scenario = read_scenario(test::source_path("/sim/scenarios/robots/" + file), files);
+  Scenario scenario = read_scenario(source_path("/sim/scenarios/robots/" + file), files);
   EXPECT_TRUE(scenario.warnings.empty()) << file << ": " << scenario.warnings.front();
   scenario.duration_s = seconds;
   return scenario;
@@ -32,12 +34,12 @@ double displacement(const Scenario& scenario) {
 TEST(ShippedRobots, EachKindMoves) {
   for (const char* kind : {"cubo", "cube_chain", "y1", "snake"}) {
     constexpr double seconds = 10.0;
-    EXPECT_GT(displacement(shipped(std::string(kind) + "/robot.simulation.xml", seconds)), 0.3) << kind;
+    EXPECT_GT(displacement(shipped_robot(std::string(kind) + "/robot.simulation.xml", seconds)), 0.3) << kind;
   }
 }
 
 TEST(ShippedRobots, TwentyLinksWithMeshesCrossAWorldOfMeshesAndPushItsObjects) {
-  const Scenario scenario = shipped("mesh_world/mesh_world.simulation.xml", 10.0);
+  const Scenario scenario = shipped_robot("mesh_world/mesh_world.simulation.xml", 10.0);
   ASSERT_EQ(scenario.robot.links.size(), 20U);
   for (const Link& link : scenario.robot.links) {
     EXPECT_EQ(link.geometries.at(0).shape, Shape::hull) << link.name;

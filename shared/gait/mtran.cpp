@@ -62,8 +62,8 @@ enum Values : std::uint8_t {
   u2,
   v1,
   v2,
-  y1,
-  y2,
+  y1_sent,
+  y2_sent,
   current_extensor_gain,
   extensor_gain_rate,
   current_flexor_gain,
@@ -80,8 +80,9 @@ constexpr InternalValue internal_values[] = {
     InternalValue{"u2", Unit::ratio, raw(Unit::ratio, 1, 20), "membrane potential of the flexor neuron"},
     InternalValue{"v1", Unit::ratio, 0, "fatigue of the extensor neuron"},
     InternalValue{"v2", Unit::ratio, 0, "fatigue of the flexor neuron"},
-    InternalValue{"y1", Unit::ratio, 0, "output of the extensor neuron"},
-    InternalValue{"y2", Unit::ratio, 0, "output of the flexor neuron"},
+    InternalValue{"y1_sent", Unit::count, 0,
+                  "output of the extensor neuron in 128ths, at most 255: what neighbours receive"},
+    InternalValue{"y2_sent", Unit::count, 0, "the same of the flexor neuron"},
     InternalValue{"current_extensor_gain", Unit::degree, 0, "filtered gain of the extensor neuron"},
     InternalValue{"extensor_gain_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
     InternalValue{"current_flexor_gain", Unit::degree, 0, "filtered gain of the flexor neuron"},
@@ -89,9 +90,9 @@ constexpr InternalValue internal_values[] = {
     InternalValue{"current_offset", Unit::degree, 0, "filtered offset"},
     InternalValue{"offset_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
 };
-enum Fields : std::uint8_t { phase_sent, y1_sent, y2_sent };
-// Both neurons' outputs leave two bytes for the phase, which no neighbour's motion depends on.
-constexpr FrameField frame[] = {FrameField{PatternGenerator::current_phase, 2}, FrameField{y1, 2}, FrameField{y2, 2}};
+enum Fields : std::uint8_t { phase_sent, y1_field, y2_field };
+constexpr FrameField frame[] = {FrameField{PatternGenerator::current_phase, 4}, FrameField{y1_sent, 1},
+                                FrameField{y2_sent, 1}};
 
 constexpr Declaration about{
     12,         "PatternGenerator_mtran", "pattern generator of M-TRAN: Matsuoka neurons that feel their joint",
@@ -111,8 +112,10 @@ class Mtran final : public PatternGenerator {
   }
 
   [[nodiscard]] std::int32_t output(const Tuning& /*tuning*/, const std::int32_t* state) const override {
-    const std::int64_t lowered = shift_right_rounding(multiply_wide(state[current_extensor_gain], state[y1]), 28);
-    const std::int64_t raised = shift_right_rounding(multiply_wide(state[current_flexor_gain], state[y2]), 28);
+    const std::int64_t lowered =
+        shift_right_rounding(multiply_wide(state[current_extensor_gain], std::max(state[u1], std::int32_t{0})), 28);
+    const std::int64_t raised =
+        shift_right_rounding(multiply_wide(state[current_flexor_gain], std::max(state[u2], std::int32_t{0})), 28);
     return saturate(state[current_offset] + raised - lowered);
   }
 
@@ -159,10 +162,10 @@ class Mtran final : public PatternGenerator {
     next[u2] = pair.u2;
     next[v1] = pair.v1;
     next[v2] = pair.v2;
-    next[y1] = pair.y1();
-    next[y2] = pair.y2();
+    next[y1_sent] = as_sent(pair.y1());
+    next[y2_sent] = as_sent(pair.y2());
     // T v' = -v + y: of two sines, v2 - v1 has the quadrature of y2 - y1.
-    const std::int32_t along = next[y2] - next[y1];
+    const std::int32_t along = pair.y2() - pair.y1();
     const std::int32_t behind = saturate(std::int64_t{pair.v2} - pair.v1);
     const std::int64_t across =
         multiply_wide(along, tuning.derived[inverse_x]) / 2 - multiply_wide(behind, tuning.derived[quadrature]) / 2;
@@ -174,11 +177,18 @@ class Mtran final : public PatternGenerator {
     follow(filter, values[offset], state + current_offset, next + current_offset);
   }
 
+  /// An output of Q28 in 128ths, which fit into a byte.
+  static constexpr unsigned sent_shift = 28 - 7;
+  static std::int32_t as_sent(std::int32_t output_of_neuron) {
+    constexpr std::int64_t most = 255;
+    return static_cast<std::int32_t>(std::min(shift_right_rounding(std::int64_t{output_of_neuron}, sent_shift), most));
+  }
+
   static void add_inputs(const Neighbour& neighbour, std::int32_t same, std::int32_t opposite, std::int64_t& input1,
                          std::int64_t& input2) {
     if (neighbour.present()) {
-      const std::int32_t its_y1 = neighbour.value(y1_sent);
-      const std::int32_t its_y2 = neighbour.value(y2_sent);
+      const std::int32_t its_y1 = neighbour.value(y1_field) << sent_shift;
+      const std::int32_t its_y2 = neighbour.value(y2_field) << sent_shift;
       input1 += shift_right_rounding(multiply_wide(same, its_y1) + multiply_wide(opposite, its_y2), 28);
       input2 += shift_right_rounding(multiply_wide(same, its_y2) + multiply_wide(opposite, its_y1), 28);
     }

@@ -10,8 +10,8 @@ namespace proleg {
 /// class measures frequency and phase difference to the next joint in each tick, adds seeded Gaussian noise to the
 /// internal values at reset, and extrapolates the phase of a neighbour whose frame is lost.
 ///
-/// In return its declaration starts with the three internal values below, its frame starts with the phase, on four
-/// bytes if there is room, and its first derived constant is the phase increment.
+/// In return its declaration starts with the three internal values below, its frame starts with the phase on four
+/// bytes, and its first derived constant is the phase increment.
 class PatternGenerator : public ActuationModule {
  public:
   /// The first internal values of every pattern generator.

@@ -155,7 +155,7 @@ TEST(Declaration, OfAPatternGeneratorStartsWithPhaseFrequencyAndPhaseDifference)
     EXPECT_EQ(about.internal_values[PatternGenerator::measured_phase_difference].unit, Unit::phase_degree);
     ASSERT_GE(about.frame.size(), 1U);
     EXPECT_EQ(about.frame[0].internal_value, PatternGenerator::current_phase);
-    EXPECT_GE(about.frame[0].bytes, 2);
+    EXPECT_EQ(about.frame[0].bytes, 4);
   });
   EXPECT_EQ(generators, 12);
 }

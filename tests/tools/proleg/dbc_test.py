@@ -263,10 +263,10 @@ class DbcTest(unittest.TestCase):
                 ("703 05", "Node3_Heartbeat", {"state": "Operational"}),
                 ("77F 05", "Host_Heartbeat", {"state": "Operational"}),
                 ("183 8E E3 38 4E 72 1C 83 2C", "Node3_State",
-                 {"current_phase": 110, "current_amplitude": 40.002, "valid": 1, "contact_rear_link_rear": 1,
+                 {"current_phase": 110, "valid": 1, "contact_rear_link_rear": 1,
                   "contact_rear_link_front": 1, "contact_far_link_rear": 0, "contact_far_link_front": 0, "fault": 0,
                   "holdover": 0, "limited": 0, "label": 300 % 256}),
-                ("283 00 00 00 20 00 00 83 2C", "Node3_SecondState", {"current_phase": 45, "current_amplitude": 0}),
+                ("283 00 00 00 20 00 00 83 2C", "Node3_SecondState", {"current_phase": 45}),
                 ("203 0F 00 00 00 00 20", "Node3_Command", {"controlword": "Enable operation", "target_position": 45}),
                 ("383 EE 1F 5E 01 1F 00", "Node3_Monitoring",
                  {"actual_angle": 44.9, "current_actual_value": 350, "temperature": 31, "error_register": 0}),
@@ -302,8 +302,7 @@ class DbcTest(unittest.TestCase):
         units = {(message.name.split("_")[-1], signal.name): signal.unit
                  for message in dbc.messages.values() for signal in message.signals.values() if signal.unit}
         self.assertEqual(units, {
-            ("State", "current_phase"): "deg", ("State", "current_amplitude"): "deg",
-            ("SecondState", "current_phase"): "deg", ("SecondState", "current_amplitude"): "deg",
+            ("State", "current_phase"): "deg", ("SecondState", "current_phase"): "deg",
             ("Command", "target_position"): "deg", ("Monitoring", "actual_angle"): "deg",
             ("Monitoring", "current_actual_value"): "mA", ("Monitoring", "temperature"): "degC",
             ("LssRequest", "switch_delay"): "ms"})

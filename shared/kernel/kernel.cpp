@@ -108,7 +108,8 @@ void Kernel::rejoin() {
       SlotMemory& slot = joint.slots[s];
       if (slot.active) {
         const Contacts contacts({frames_[0].data(), slot.sensed_joints});
-        const Surroundings surroundings{tick_, slot.context, slot.ahead, slot.behind, contacts, joint.setpoint, joint.readings};
+        const Surroundings surroundings{tick_,    slot.context,   slot.ahead,    slot.behind,
+                                        contacts, joint.setpoint, joint.readings};
         configuration_.slots[s].algorithm->rejoin(surroundings, tuning(slot), current(slot).data());
       }
     }
@@ -125,7 +126,8 @@ void Kernel::compute_next_state(JointMemory& joint) {
     SlotMemory& slot = joint.slots[s];
     if (slot.active) {
       const Contacts contacts({frames_[0].data(), slot.sensed_joints});
-      const Surroundings surroundings{tick_, slot.context, slot.ahead, slot.behind, contacts, joint.setpoint, joint.readings};
+      const Surroundings surroundings{tick_,    slot.context,   slot.ahead,    slot.behind,
+                                      contacts, joint.setpoint, joint.readings};
       configuration_.slots[s].algorithm->advance(surroundings, tuning(slot), slot.values[tick_ & 1U].data(),
                                                  slot.values[(tick_ + 1) & 1U].data());
     }

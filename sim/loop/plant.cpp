@@ -244,7 +244,8 @@ void Plant::finish_tick() {
     for (const Pose& pose : link_poses_) {
       unmoved_link_poses_.push_back(*unmoved_ * pose);
     }
-    meter_.add_tick({*unmoved_ * center, unmoved_link_poses_, joint_angles_, joint_targets_, link_contacts_, motor_torques_});
+    meter_.add_tick(
+        {*unmoved_ * center, unmoved_link_poses_, joint_angles_, joint_targets_, link_contacts_, motor_torques_});
   } else {
     meter_.add_tick({center, link_poses_, joint_angles_, joint_targets_, link_contacts_, motor_torques_});
   }

@@ -105,8 +105,7 @@ class Worlds {
 }  // namespace
 
 WorldDistances distances_in_worlds(const sim::Scenario& scenario, std::uint32_t count, std::uint64_t seed,
-                                   const WorldVariation& variation,
-                                   const std::function<void(double share)>& progress) {
+                                   const WorldVariation& variation, const std::function<void(double share)>& progress) {
   return Worlds(scenario, count, seed, variation, progress).run();
 }
 

@@ -195,7 +195,8 @@ TEST(ThesisFile, NamesNoScenario) {
 }
 
 TEST(ThesisFile, IsReadAsPrinted) {
-  const Experiment experiment = thesis_experiment({}, source_path("/sim/scenarios/adaptive_touch/reflex.simulation.xml"));
+  const Experiment experiment =
+      thesis_experiment({}, source_path("/sim/scenarios/adaptive_touch/reflex.simulation.xml"));
   ASSERT_EQ(experiment.space.dimensions.size(), 2U);
   const Dimension& first = experiment.space.dimensions[0];
   EXPECT_EQ(first.name, "stuck_threshold");

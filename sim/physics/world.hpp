@@ -64,7 +64,8 @@ class World {
   }
   /// Poses of the frames of the objects that move (EnvironmentModel::moving_objects), in the world.
   virtual void read_objects(std::span<Pose> /*poses*/) const {}
-  /// Whether no link, and no object that moves, is faster than the two given speeds: of its centre of mass in m/s, of its rotation in rad/s.
+  /// Whether no link, and no object that moves, is faster than the two given speeds: of its centre of mass in m/s, of
+  /// its rotation in rad/s.
   [[nodiscard]] virtual bool is_slower_than(double speed, double rotation) const = 0;
   /// Centre of mass of the robot in the world.
   [[nodiscard]] virtual Eigen::Vector3d center_of_mass() const = 0;

@@ -97,6 +97,13 @@ class HalfCentre final : public PatternGenerator {
   }
 
   void derive_pattern(const JointContext& context, const std::int32_t* values, std::int32_t* derived) const override {
+    derive_fatigue(context, values, derived);
+    make_critical_filter(values[rate], context.tick_period_us).store(derived + filter_constants);
+  }
+
+  /// Not inline: its variables would lie on the stack below those of the filter.
+  [[gnu::noinline]] static void derive_fatigue(const JointContext& context, const std::int32_t* values,
+                                               std::int32_t* derived) {
     // With L half a period in time constants: h = tanh(L / 2) = (1 - exp(-L)) / (1 + exp(-L)).
     const std::int32_t decay = exponential_decay(values[fatigue] >> 4);  // Q30, at least exp(-4)
     constexpr std::int64_t unit = 1 << 30;
@@ -121,7 +128,6 @@ class HalfCentre final : public PatternGenerator {
         shift_right_rounding(multiply_wide(derived[approach_step], one - derived[threshold]), 30);  // Q28
     derived[turns_per_excess] =
         saturate((std::int64_t{derived[phase_increment]} << 22U) / std::max(growth, std::int64_t{1}));
-    make_critical_filter(values[rate], context.tick_period_us).store(derived + filter_constants);
   }
 
   void reset_pattern(const JointContext& /*context*/, const Tuning& /*tuning*/,

@@ -182,9 +182,11 @@ class Hopf final : public PatternGenerator {
     return two_speeds.angle_of(two_speeds.phase_of(static_cast<std::uint32_t>(neighbour.value(phase_sent))) - wanted);
   }
 
-  /// Adds k (R z_j - z_i), where R turns the neighbour's state by the phase that lies between the two joints.
-  static void couple(const Neighbour& neighbour, const JointContext& context, const Tuning& tuning, std::int32_t old_x,
-                     std::int32_t old_y, std::int32_t& new_x, std::int32_t& new_y) {
+  /// Not inline, to need less stack. Adds k (R z_j - z_i), where R turns the neighbour's state by the phase that lies
+  /// between the two joints.
+  [[gnu::noinline]] static void couple(const Neighbour& neighbour, const JointContext& context, const Tuning& tuning,
+                                       std::int32_t old_x, std::int32_t old_y, std::int32_t& new_x,
+                                       std::int32_t& new_y) {
     if (!neighbour.present()) {
       return;
     }

@@ -146,6 +146,12 @@ class PushPull final : public PatternGenerator {
   }
 
   void derive_pattern(const JointContext& context, const std::int32_t* values, std::int32_t* derived) const override {
+    derive_network(context, values, derived);
+    make_critical_filter(values[rate], context.tick_period_us).store(derived + filter_constants);
+  }
+
+  [[gnu::noinline]] static void derive_network(const JointContext& context, const std::int32_t* values,
+                                               std::int32_t* derived) {
     // About an iteration in 1.7 ms: as many as a tick of 10 ms has instructions for.
     const std::uint32_t count = std::clamp<std::uint32_t>((context.tick_period_us + 833U) / 1667U, 1U, 6U);
     derived[iterations] = static_cast<std::int32_t>(count);
@@ -169,7 +175,6 @@ class PushPull final : public PatternGenerator {
     derived[filter_step] = (1 << 30) - exponential_decay(saturate(angle));
 
     set_delay(context, values, bursts, count, derived);
-    make_critical_filter(values[rate], context.tick_period_us).store(derived + filter_constants);
   }
 
   /// The wave reaches a joint from the side on which the phase is ahead.
@@ -242,6 +247,13 @@ class PushPull final : public PatternGenerator {
 
   void advance_pattern(const Surroundings& surroundings, const Tuning& tuning, const std::int32_t* state,
                        std::int32_t* next) const override {
+    smooth(fire(surroundings, tuning, state, next), tuning, state, next);
+  }
+
+  /// The iterations of a tick. Returns promotor's minus remotor's activity. Not inline: its variables would lie on the
+  /// stack below those of the filters.
+  [[gnu::noinline]] static std::int32_t fire(const Surroundings& surroundings, const Tuning& tuning,
+                                             const std::int32_t* state, std::int32_t* next) {
     const std::int32_t* values = tuning.parameters;
     const std::int32_t* derived = tuning.derived;
     const std::uint32_t driven = listen(surroundings, derived, state, next);
@@ -277,7 +289,7 @@ class PushPull final : public PatternGenerator {
     next[next_receptors] = far.packed();
     next[activity] = static_cast<std::int32_t>((promotor.was_active ? 1U : 0U) | (remotor.was_active ? 2U : 0U) |
                                                promotor.release << 2U | remotor.release << 5U);
-    smooth((promotor.was_active ? one : 0) - (remotor.was_active ? one : 0), tuning, state, next);
+    return (promotor.was_active ? one : 0) - (remotor.was_active ? one : 0);
   }
 
   /// Of a parameter in Q28, in Q12: its product with a share of receptors has 32 bits.
@@ -313,7 +325,8 @@ class PushPull final : public PatternGenerator {
     return ((bit < 32 ? recent >> bit : older >> (bit - 32)) & 1U);
   }
 
-  static void smooth(std::int32_t level, const Tuning& tuning, const std::int32_t* state, std::int32_t* next) {
+  [[gnu::noinline]] static void smooth(std::int32_t level, const Tuning& tuning, const std::int32_t* state,
+                                       std::int32_t* next) {
     const std::int32_t step = tuning.derived[filter_step];
     next[smoothed] =
         add_saturating(state[smoothed], multiply(saturate(std::int64_t{level} - state[smoothed]), step, 30));

@@ -132,8 +132,8 @@ class Matsuoka final : public PatternGenerator {
     const std::int32_t input1 = saturate(one + std::min(weighted, std::int64_t{0}));
     const std::int32_t input2 = saturate(one - std::max(weighted, std::int64_t{0}));
 
-    const MatsuokaPair pair = proleg::advance({state[u1], state[u2], state[v1], state[v2]}, tuning.derived + steps,
-                                              values[fatigue], values[inhibition], input1, input2);
+    MatsuokaPair pair{state[u1], state[u2], state[v1], state[v2]};
+    proleg::advance(pair, tuning.derived + steps, values[fatigue], values[inhibition], input1, input2);
     next[u1] = pair.u1;
     next[u2] = pair.u2;
     next[v1] = pair.v1;

@@ -45,11 +45,10 @@ MatsuokaConstants make_matsuoka_constants(std::int32_t frequency, std::int32_t t
   return {fast_step, slow_step, x};
 }
 
-MatsuokaPair advance(const MatsuokaPair& pair, const std::int32_t* steps, std::int32_t fatigue, std::int32_t inhibition,
-                     std::int32_t input1, std::int32_t input2) {
+void advance(MatsuokaPair& now, const std::int32_t* steps, std::int32_t fatigue, std::int32_t inhibition,
+             std::int32_t input1, std::int32_t input2) {
   const std::int32_t fast_step = steps[0];
   const std::int32_t slow_step = steps[1];
-  MatsuokaPair now = pair;
   for (unsigned i = 0; i < MatsuokaConstants::steps_in_a_tick; ++i) {
     const std::int32_t y1 = now.y1();
     const std::int32_t y2 = now.y2();
@@ -58,7 +57,6 @@ MatsuokaPair advance(const MatsuokaPair& pair, const std::int32_t* steps, std::i
     now.v1 = tiredness(now.v1, y1, slow_step);
     now.v2 = tiredness(now.v2, y2, slow_step);
   }
-  return now;
 }
 
 }  // namespace proleg

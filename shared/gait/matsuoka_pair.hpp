@@ -49,8 +49,8 @@ struct MatsuokaConstants {
 
 /// One tick. steps: where MatsuokaConstants::store wrote. input1, input2: c + S of each neuron in Q28. All values
 /// saturate at -8 and 8.
-[[nodiscard]] MatsuokaPair advance(const MatsuokaPair& pair, const std::int32_t* steps, std::int32_t fatigue,
-                                   std::int32_t inhibition, std::int32_t input1, std::int32_t input2);
+void advance(MatsuokaPair& pair, const std::int32_t* steps, std::int32_t fatigue, std::int32_t inhibition,
+             std::int32_t input1, std::int32_t input2);
 
 /// Parameters of both generators that consist of such pairs.
 namespace matsuoka_parameters {

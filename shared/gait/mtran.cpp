@@ -156,12 +156,20 @@ class Mtran final : public PatternGenerator {
     add_inputs(surroundings.ahead, values[ahead_same], values[ahead_opposite], input1, input2);
     add_inputs(surroundings.behind, values[behind_same], values[behind_opposite], input1, input2);
 
-    const MatsuokaPair pair = proleg::advance({state[u1], state[u2], state[v1], state[v2]}, tuning.derived + steps,
-                                              values[fatigue], values[inhibition], saturate(input1), saturate(input2));
+    MatsuokaPair pair{state[u1], state[u2], state[v1], state[v2]};
+    proleg::advance(pair, tuning.derived + steps, values[fatigue], values[inhibition], saturate(input1),
+                    saturate(input2));
     next[u1] = pair.u1;
     next[u2] = pair.u2;
     next[v1] = pair.v1;
     next[v2] = pair.v2;
+    send(pair, tuning, next);
+    follow_parameters(tuning, state, next);
+  }
+
+  // Parts of a tick that need no stack at the same time.
+
+  [[gnu::noinline]] static void send(const MatsuokaPair& pair, const Tuning& tuning, std::int32_t* next) {
     next[y1_sent] = as_sent(pair.y1());
     next[y2_sent] = as_sent(pair.y2());
     // T v' = -v + y: of two sines, v2 - v1 has the quadrature of y2 - y1.
@@ -170,7 +178,10 @@ class Mtran final : public PatternGenerator {
     const std::int64_t across =
         multiply_wide(along, tuning.derived[inverse_x]) / 2 - multiply_wide(behind, tuning.derived[quadrature]) / 2;
     next[current_phase] = polar(saturate(shift_right_rounding(across, 27)), along / 2).angle;
+  }
 
+  [[gnu::noinline]] static void follow_parameters(const Tuning& tuning, const std::int32_t* state, std::int32_t* next) {
+    const std::int32_t* values = tuning.parameters;
     const CriticalFilter filter = CriticalFilter::load(tuning.derived + filter_constants);
     follow(filter, values[extensor_gain], state + current_extensor_gain, next + current_extensor_gain);
     follow(filter, values[flexor_gain], state + current_flexor_gain, next + current_flexor_gain);
@@ -184,8 +195,8 @@ class Mtran final : public PatternGenerator {
     return static_cast<std::int32_t>(std::min(shift_right_rounding(std::int64_t{output_of_neuron}, sent_shift), most));
   }
 
-  static void add_inputs(const Neighbour& neighbour, std::int32_t same, std::int32_t opposite, std::int64_t& input1,
-                         std::int64_t& input2) {
+  [[gnu::noinline]] static void add_inputs(const Neighbour& neighbour, std::int32_t same, std::int32_t opposite,
+                                           std::int64_t& input1, std::int64_t& input2) {
     if (neighbour.present()) {
       const std::int32_t its_y1 = neighbour.value(y1_field) << sent_shift;
       const std::int32_t its_y2 = neighbour.value(y2_field) << sent_shift;

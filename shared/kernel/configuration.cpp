@@ -46,6 +46,17 @@ Status Kernel::configure(const KernelConfiguration& configuration, unsigned firs
   beside_ = {};
   for (unsigned i = 0; i < memory_.size(); ++i) {
     set_up(first_joint + i);
+    // Beside set_up() and not part of it: the two need no stack at the same time.
+    for (unsigned s = 0; s < slots_in_use; ++s) {
+      SlotMemory& slot_memory = memory_[i].slots[s];
+      if (slot_memory.active) {
+        const std::span<const Parameter> parameters = configuration_.slots[s].algorithm->declaration().parameters;
+        for (std::size_t p = 0; p < parameters.size(); ++p) {
+          slot_memory.parameters[p] = parameters[p].default_value;
+        }
+        derive(s, slot_memory);
+      }
+    }
   }
   staging_.clear(memory_);
   flags_ = 0;
@@ -76,11 +87,6 @@ void Kernel::set_up(unsigned joint) {
       slot_memory.ahead = neighbour(i, slot.group.before(joint));
       slot_memory.behind = neighbour(i, slot.group.after(joint));
     }
-    const std::span<const Parameter> parameters = slot.algorithm->declaration().parameters;
-    for (std::size_t p = 0; p < parameters.size(); ++p) {
-      slot_memory.parameters[p] = parameters[p].default_value;
-    }
-    derive(i, slot_memory);
   }
 }
 

@@ -20,7 +20,7 @@ struct SeriesRequest {
   /// Columns, or what comes before the dot of several: "angle_deg" means angle_deg.J1, angle_deg.J2 and so on.
   std::vector<std::string> names;
   std::string x = "time_s";
-  TimeWindow window;  ///< by default the whole table
+  TimeWindow window = {};  ///< by default the whole table
 };
 
 /// A column. What is empty in the table is not a number here.

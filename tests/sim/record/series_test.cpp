@@ -163,7 +163,8 @@ struct Picture {
 TEST(SeriesFigure, EachUnitHasAPanelAndEachSeriesAnEntryInTheLegend) {
   const SeriesSet set = collect_series(small_table(), {{"angle_deg.J1", "x_m.Head", "angle_degrees"}});
   const Picture picture(draw_series(set, "a title", "about"));
-  for (const char* text : {"a title", "about", "angle (deg)", "x (m)", "angle degrees", "angle_deg.J1", "x_m.Head"}) {
+  EXPECT_EQ(picture.count("a title"), 2) << "above the panels, and for programs that read pictures aloud";
+  for (const char* text : {"about", "angle (deg)", "x (m)", "angle degrees", "angle_deg.J1", "x_m.Head"}) {
     EXPECT_EQ(picture.count(text), 1) << text;
   }
   EXPECT_EQ(picture.count("time (s)"), 3) << "below each panel";

@@ -17,8 +17,12 @@ sim::Geometry box(double half_length) {
 /// A floor of 2 m, and an obstacle from y = 1 m to 1.5 m. The robot has two links.
 sim::Scenario small_scenario() {
   sim::Scenario scenario;
-  sim::StaticObject floor{"floor", {}, {box(2.0)}};
-  sim::StaticObject obstacle{"obstacle", {}, {box(0.25)}};
+  sim::StaticObject floor;
+  floor.name = "floor";
+  floor.geometries = {box(2.0)};
+  sim::StaticObject obstacle;
+  obstacle.name = "obstacle";
+  obstacle.geometries = {box(0.25)};
   obstacle.pose.position = {0.0, 1.25, 0.02};
   scenario.environment.objects = {floor, obstacle};
   scenario.robot.links.resize(2);

@@ -153,6 +153,7 @@ void write_data_file(const Recording& recording, const std::optional<Scenario>& 
   TactileFrames tactile(recording, order);
   RobotFrames robot(recording, order, scenario);
   std::vector<DataModuleText*> texts;
+  texts.reserve(modules.size() + 2);
   for (const auto& module : modules) {
     texts.push_back(&module->text());
   }

@@ -125,7 +125,8 @@ void print_index(std::ostream& out, std::uint16_t index, const Mapped& mapped) {
       << "\nObjectType=" << hexadecimal(static_cast<std::uint32_t>(info.code), 1) << "\nSubNumber=" << info.max_sub + 1
       << '\n';
   for (unsigned sub = 0; sub <= info.max_sub; ++sub) {
-    out << "\n[" << name << "sub" << sub << "]\n";
+    // CiA 306: in hexadecimal.
+    out << "\n[" << name << "sub" << hexadecimal(sub).substr(2) << "]\n";
     print_entry(out, *find_object({index, static_cast<std::uint8_t>(sub)}), mapped);
   }
 }

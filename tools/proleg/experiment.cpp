@@ -232,6 +232,7 @@ std::vector<CheckedGait> check_gaits(const std::vector<optimize::Reference>& ref
       its_experiment = &chosen[i].second;
     }
   }
+  marks.reserve(gaits.size());
   for (const CheckedGait& gait : gaits) {
     marks.push_back({gait.name, gait.distance_m});
   }

@@ -13,6 +13,7 @@ std::vector<ThesisRow> joint_rows(const SearchSpace& space) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return space.dimensions[i].targets.front().joint; });
   std::vector<ThesisRow> rows;
+  rows.reserve(order.size());
   for (const std::size_t dimension : order) {
     rows.push_back({"Joint " + std::to_string(rows.size()), dimension});
   }

@@ -25,7 +25,7 @@ using namespace proleg::tools;
 struct NewOptions {
   std::string what;
   std::string kind;
-  std::string joints;
+  std::optional<std::string> joints;
   std::optional<std::string> axes;
   std::string out = "robot";
 };
@@ -71,11 +71,11 @@ int write_robot(const NewOptions& options) {
   if (options.what != "robot") {
     throw BadInput("found " + in_quotes(options.what) + ", expected 'robot', 'obstacle' or 'algorithm'");
   }
-  if (options.joints.empty() && options.kind.empty()) {
+  if (!options.joints && options.kind.empty()) {
     throw BadInput("--joints is required without --kind");
   }
   const RobotKind& kind = parse_kind(options.kind);
-  const std::uint32_t joints = options.joints.empty() ? kind.joints : parse_joints(options.joints);
+  const std::uint32_t joints = options.joints ? parse_joints(*options.joints) : kind.joints;
   const std::string axes = options.axes.value_or(std::string(kind.axes.substr(0, joints)));
   const std::vector<NewFile> files = robot_files(kind, axes_of_joints(axes, joints));
   const std::filesystem::path folder = options.out;

@@ -35,12 +35,12 @@ TEST_F(CommandLine, VersionNamesTheBuild) {
 }
 
 TEST_F(CommandLine, RefusesUnknownWords) {
-  expect_refused(
-      {},
-      {"expected one of algorithms, new, simulate, ui, sweep, hil, faults, replay, receipt, export, plot, optimise, "
-       "confirm, experiment, bus, drive, scan, assign, doctor, info, get, set, monitor, params, nmt, flash, "
-       "recover, image, objects"});
-  expect_refused({"simulat"}, {"'simulat'", "expected one of algorithms, new, simulate"});
+  expect_refused({},
+                 {"expected one of algorithms, new, verify, simulate, ui, sweep, hil, faults, replay, receipt, export, "
+                  "plot, optimise, "
+                  "confirm, experiment, bus, drive, scan, assign, doctor, info, get, set, monitor, params, nmt, flash, "
+                  "recover, image, objects"});
+  expect_refused({"simulat"}, {"'simulat'", "expected one of algorithms, new, verify, simulate"});
   expect_refused({"../../bin/sh"}, {"expected one of"});
   expect_refused({"simulate\n\x1b[31m"}, {"'simulate  [31m'", "expected one of"});
   expect_refused({"simulate"}, {"found no FILE"});
@@ -124,7 +124,7 @@ TEST_F(CommandLine, SimulatePrintsTheMeasuresOfTheRun) {
                            "stride_frequency"}) {
     EXPECT_TRUE(measures[name].is_number()) << name;
   }
-  EXPECT_EQ(measures.size(), 22U);
+  EXPECT_EQ(measures.size(), 30U);
   ASSERT_EQ(object["link_duty_factors"].size(), 6U);
   double sum = 0.0;
   for (const Json& factor : object["link_duty_factors"].elements()) {

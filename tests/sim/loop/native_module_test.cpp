@@ -88,7 +88,7 @@ TEST_F(NativeModules, SendTheirBootUpMessageAfterALongFaultOfTheBus) {
 }
 
 TEST_F(NativeModules, StartWhenTheirBootloaderHasCheckedTheImage) {
-  constexpr BusTime start_time = 74 * ms;
+  constexpr BusTime start_time = 94 * ms;
   module.set_start_time(start_time / 1'000);
   for (const BusTime power_on : {BusTime{0}, 500 * ms}) {
     run_until(power_on);

@@ -242,7 +242,7 @@ TEST_F(NewObstacle, HasTheHeightsOfItsHillsWhereTheyAre) {
     if (object.name == "obstacle") {
       for (const sim::Geometry& piece : object.geometries) {
         const Eigen::Vector3d end =
-            piece.pose.position + piece.pose.orientation * Eigen::Vector3d(0.0, piece.extents.y(), piece.extents.z());
+            object.pose * piece.pose * Eigen::Vector3d(0.0, piece.extents.y(), piece.extents.z());
         surface.push_back({end.y(), end.z()});
       }
     }

@@ -134,7 +134,7 @@ module.pimg
   core fingerprint  0x87932128
   settings schema   2
   address           0x08020200
-  length            52460 bytes, 80.7 % of the 65024 of a slot
+  length            52460 bytes, 58.5 % of the 89600 of a slot
   CRC-32            0x{fields["crc32"]:08X}
   SHA-256           {fields["sha256"]}
   signature         none

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <numeric>
 #include <set>
 #include <string>
 #include <vector>
@@ -151,7 +152,10 @@ TEST(ObjectDictionary, HoldsWhatIsEnumeratedAndNothingElse) {
   }
   for (unsigned index = 0; index <= 0xFFFF; ++index) {
     bool any = false;
-    for (const unsigned sub : {0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 64U, 128U, 255U}) {
+    std::vector<unsigned> subs(33);  // the longest array has 31 elements
+    std::iota(subs.begin(), subs.end(), 0U);
+    subs.insert(subs.end(), {64U, 128U, 255U});
+    for (const unsigned sub : subs) {
       const Address address{static_cast<std::uint16_t>(index), static_cast<std::uint8_t>(sub)};
       const std::optional<Object> object = find_object(address);
       any = any || object.has_value();

@@ -109,12 +109,12 @@ TEST(GuardedAlgorithm, AnAccessBehindAnArrayNamesTheArray) {
             }),
             "counter.so: the algorithm 'counter' uses elements of its array 'parameters' that do not exist (it has 2)" +
                 where);
-  EXPECT_EQ(
-      failure_with([](const Tuning& tuning, const std::int32_t*, std::int32_t* next) {
-        const volatile std::int32_t* behind = tuning.derived + 8;
-        next[0] = *behind;
-      }),
-      "counter.so: the algorithm 'counter' uses elements of its array 'derived' that do not exist (it has 8)" + where);
+  EXPECT_EQ(failure_with([](const Tuning& tuning, const std::int32_t*, std::int32_t* next) {
+              const volatile std::int32_t* behind = tuning.derived + max_derived;
+              next[0] = *behind;
+            }),
+            "counter.so: the algorithm 'counter' uses elements of its array 'derived' that do not exist (it has " +
+                std::to_string(max_derived) + ")" + where);
 }
 
 TEST(GuardedAlgorithm, AWriteThatDoesNotCrashIsFoundWhenTheCallReturns) {

@@ -205,7 +205,9 @@ TriangleMesh read_mesh_file(const std::string& name, const std::string& bytes, c
     }
     // Robots have z upwards; the file's own axes are kept.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-    constexpr unsigned steps = aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices;
+    // The validation comes before all other steps, which trust the numbers of a file.
+    constexpr unsigned steps = aiProcess_ValidateDataStructure | aiProcess_Triangulate |
+                               aiProcess_PreTransformVertices | aiProcess_JoinIdenticalVertices;
     const aiScene* const scene = importer.ReadFile(name, steps);
     if (scene == nullptr) {
       throw MeshError("a mesh that cannot be read, " + in_quotes(name) +

@@ -294,8 +294,8 @@ const auto cases = testing::Values(
     BadInput{"BodyBesideFile", "robot.xml", "prefix=\"Tail\"/>", "prefix=\"Tail\"><Body name=\"x\"/></KinBody>",
              "robot.xml:7: found <Body> in <KinBody>, expected <translation>, <rotationaxis>, <quat>"},
     // Actuation.
-    BadInput{"UnknownAlgorithm", "actuation.xml", "DirectJointAccess", "Global Adaptive Touch",
-             "actuation.xml:8: found unknown algorithm 'Global Adaptive Touch', expected one of DirectJointAccess, "
+    BadInput{"UnknownAlgorithm", "actuation.xml", "DirectJointAccess", "Local Adaptive Touch",
+             "actuation.xml:8: found unknown algorithm 'Local Adaptive Touch', expected one of DirectJointAccess, "
              "PatternGenerator_sinusoidal, "},
     BadInput{"MaskTooLong", "actuation.xml", "joints=\"11\"", "joints=\"111\"",
              "actuation.xml:4: found joints '111', expected 2 characters 0 or 1"},

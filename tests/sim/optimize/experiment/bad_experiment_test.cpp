@@ -41,7 +41,7 @@ const std::string all_measures =
     "electrical_cost_of_transport, "
     "specific_resistance, smoothness, stability_margin, height, slip, duty_factor, froude_number, stride_length, "
     "stride_frequency, tracking_error, max_tracking_error, at_speed_limit, at_torque_limit, largest_acceleration, "
-    "mean_current";
+    "mean_current, potential_energy, kinetic_energy, elastic_energy, wave_count, predicted_distance, lifted_links";
 const std::string racing_expects =
     "expected one objective, which is distance or speed with a weight above 0, to be maximised";
 

@@ -31,10 +31,10 @@ constexpr InternalValue internal_values[] = {
                   "phase of the oscillator"},
     PatternGenerator::frequency_value,
     PatternGenerator::phase_difference_value,
-    InternalValue{"current_amplitude", Unit::degree, raw(Unit::degree, 1), "filtered amplitude"},
-    InternalValue{"amplitude_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
-    InternalValue{"current_offset", Unit::degree, raw(Unit::degree, 1), "filtered offset"},
-    InternalValue{"offset_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
+    generator_values::current_amplitude(raw(Unit::degree, 1)),
+    generator_values::amplitude_rate,
+    generator_values::current_offset(raw(Unit::degree, 1)),
+    generator_values::offset_rate,
 };
 constexpr FrameField frame[] = {FrameField{PatternGenerator::current_phase, 4}, FrameField{current_amplitude, 2}};
 
@@ -92,11 +92,8 @@ class CoupledOscillator final : public PatternGenerator {
     next[current_phase] = add_wrapping(state[current_phase], step);
 
     const CriticalFilter filter = CriticalFilter::load(tuning.derived + filter_constants);
-    next[amplitude_rate] = state[amplitude_rate];
-    next[current_amplitude] =
-        approach(filter, tuning.parameters[amplitude], state[current_amplitude], next[amplitude_rate]);
-    next[offset_rate] = state[offset_rate];
-    next[current_offset] = approach(filter, tuning.parameters[offset], state[current_offset], next[offset_rate]);
+    follow(filter, tuning.parameters[amplitude], state + current_amplitude, next + current_amplitude);
+    follow(filter, tuning.parameters[offset], state + current_offset, next + current_offset);
   }
 
   /// What a neighbour adds to the phase in a tick.
@@ -105,10 +102,7 @@ class CoupledOscillator final : public PatternGenerator {
     if (!neighbour.present()) {
       return 0;
     }
-    const std::uint32_t distance = neighbour.joint() - context.joint;
-    const std::uint32_t wanted = distance * static_cast<std::uint32_t>(tuning.parameters[phase_step]);
-    const std::uint32_t lead = static_cast<std::uint32_t>(neighbour.value(phase_field)) -
-                               static_cast<std::uint32_t>(state[current_phase]) - wanted;
+    const std::uint32_t lead = lead_of(neighbour, context, tuning.parameters[phase_step], state[current_phase]);
     return multiply(tuning.derived[gain], sine(lead), 30);
   }
 };

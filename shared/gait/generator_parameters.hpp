@@ -1,7 +1,7 @@
 #pragma once
 
-// Parameters that several pattern generators have in common. Ranges: thesis, table 3.1; defaults: the travelling wave
-// of thesis section 6.1 at the 1 Hz that its servo allows.
+// Parameters and internal values that several pattern generators have in common. Ranges: thesis, table 3.1; defaults:
+// the travelling wave of thesis section 6.1 at the 1 Hz that its servo allows.
 
 #include "shared/gait/declaration.hpp"
 
@@ -40,3 +40,19 @@ inline constexpr Parameter rate{"rate",
 }
 
 }  // namespace proleg::generator_parameters
+
+namespace proleg::generator_values {
+
+/// An amplitude and an offset that follow their parameters, each with its rate behind it (critical_filter.hpp).
+/// noise_scale: of the start state.
+[[nodiscard]] constexpr InternalValue current_amplitude(std::int32_t noise_scale = 0) {
+  return {"current_amplitude", Unit::degree, noise_scale, "filtered amplitude"};
+}
+inline constexpr InternalValue amplitude_rate{"amplitude_rate", Unit::degree, 0,
+                                              "its change in a second, times 2 / rate"};
+[[nodiscard]] constexpr InternalValue current_offset(std::int32_t noise_scale = 0) {
+  return {"current_offset", Unit::degree, noise_scale, "filtered offset"};
+}
+inline constexpr InternalValue offset_rate{"offset_rate", Unit::degree, 0, "its change in a second, times 2 / rate"};
+
+}  // namespace proleg::generator_values

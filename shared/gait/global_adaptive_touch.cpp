@@ -2,6 +2,7 @@
 
 #include "shared/fixed/arithmetic.hpp"
 #include "shared/gait/algorithms.hpp"
+#include "shared/gait/limited_step.hpp"
 #include "shared/gait/sensing_module.hpp"
 
 namespace proleg {
@@ -20,31 +21,25 @@ enum Parameters : std::uint8_t {
   give_up
 };
 
-constexpr std::int32_t constant_minimum = 0;
-constexpr std::int32_t constant_maximum = raw(Unit::degree, 45);
-constexpr std::int32_t constant_default = raw(Unit::degree, 1);
+constexpr std::int32_t greatest_constant = raw(Unit::degree, 45);
+
+constexpr Parameter constant(std::string_view name, HostText help) {
+  return {name, Unit::degree, raw(Unit::degree, 1), 0, greatest_constant, help};
+}
 
 constexpr Parameter parameters[] = {
     Parameter{"stuck_threshold", Unit::count, 150, 1, 10'000,
               "ms without a change of touch at the four links around the joint, after which the joint is stuck"},
-    Parameter{"recovering", Unit::degree, raw(Unit::degree, 3, 10), 0, constant_maximum,
+    Parameter{"recovering", Unit::degree, raw(Unit::degree, 3, 10), 0, greatest_constant,
               "degrees in 10 ms by which the offset returns to 0 while the joint is not stuck"},
-    Parameter{"constant_1", Unit::degree, constant_default, constant_minimum, constant_maximum,
-              "degrees in 10 ms by which a stuck joint bends up; neither link at it touches"},
-    Parameter{"constant_2", Unit::degree, constant_default, constant_minimum, constant_maximum,
-              "the same; only the link behind the joint touches"},
-    Parameter{"constant_3", Unit::degree, constant_default, constant_minimum, constant_maximum,
-              "the same; only the link in front of the joint touches"},
-    Parameter{"constant_4", Unit::degree, constant_default, constant_minimum, constant_maximum,
-              "the same; both links touch"},
-    Parameter{"constant_5", Unit::degree, constant_default, constant_minimum, constant_maximum,
-              "degrees in 10 ms by which a stuck joint bends down; neither link at it touches"},
-    Parameter{"constant_6", Unit::degree, constant_default, constant_minimum, constant_maximum,
-              "the same; only the link behind the joint touches"},
-    Parameter{"constant_7", Unit::degree, constant_default, constant_minimum, constant_maximum,
-              "the same; only the link in front of the joint touches"},
-    Parameter{"constant_8", Unit::degree, constant_default, constant_minimum, constant_maximum,
-              "the same; both links touch"},
+    constant("constant_1", "degrees in 10 ms by which a stuck joint bends up; neither link at it touches"),
+    constant("constant_2", "the same; only the link behind the joint touches"),
+    constant("constant_3", "the same; only the link in front of the joint touches"),
+    constant("constant_4", "the same; both links touch"),
+    constant("constant_5", "degrees in 10 ms by which a stuck joint bends down; neither link at it touches"),
+    constant("constant_6", "the same; only the link behind the joint touches"),
+    constant("constant_7", "the same; only the link in front of the joint touches"),
+    constant("constant_8", "the same; both links touch"),
     Parameter{"max_offset", Unit::degree, raw(Unit::degree, 45), 0, quarter_turn,
               "largest offset, upwards or downwards; 0: no reflex"},
     Parameter{"give_up", Unit::count, 10'000, 1, 600'000,
@@ -161,12 +156,7 @@ class GlobalAdaptiveTouch final : public SensingModule {
     } else {
       step = step_of(tuning, recovering);
     }
-    const std::int64_t distance = std::int64_t{target} - state[offset];
-    if (distance > step) {
-      next[offset] = state[offset] + step;
-    } else {
-      next[offset] = distance < -std::int64_t{step} ? state[offset] - step : target;
-    }
+    next[offset] = step_towards(target, state[offset], step);
   }
 };
 

@@ -40,10 +40,10 @@ constexpr InternalValue internal_values[] = {
     InternalValue{"tiredness", Unit::ratio, raw(Unit::ratio, 15, 100),
                   "fatigue of the half that raises the joint minus that of the other half"},
     InternalValue{"active", Unit::count, 0, "0: the half that raises the joint is active; 1: the other"},
-    InternalValue{"current_amplitude", Unit::degree, 0, "filtered amplitude"},
-    InternalValue{"amplitude_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
-    InternalValue{"current_offset", Unit::degree, 0, "filtered offset"},
-    InternalValue{"offset_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
+    generator_values::current_amplitude(),
+    generator_values::amplitude_rate,
+    generator_values::current_offset(),
+    generator_values::offset_rate,
 };
 constexpr FrameField frame[] = {FrameField{PatternGenerator::current_phase, 4}};
 
@@ -174,10 +174,7 @@ class HalfCentre final : public PatternGenerator {
     if (!neighbour.present()) {
       return 0;
     }
-    const std::uint32_t distance = neighbour.joint() - context.joint;
-    const std::uint32_t wanted = distance * static_cast<std::uint32_t>(tuning.parameters[phase_step]);
-    const std::uint32_t lead = static_cast<std::uint32_t>(neighbour.value(phase_field)) -
-                               static_cast<std::uint32_t>(state[current_phase]) - wanted;
+    const std::uint32_t lead = lead_of(neighbour, context, tuning.parameters[phase_step], state[current_phase]);
     return multiply(tuning.parameters[coupling], sine(lead), 30);
   }
 };

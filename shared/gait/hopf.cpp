@@ -54,10 +54,10 @@ constexpr InternalValue internal_values[] = {
     InternalValue{"x", Unit::ratio, raw(Unit::ratio, 1, 4), "first coordinate; 1 at the largest joint angle"},
     InternalValue{"y", Unit::ratio, raw(Unit::ratio, 1, 4), "second coordinate, a quarter of a period behind"},
     InternalValue{"radius", Unit::ratio, 0, "distance of (x, y) from the origin"},
-    InternalValue{"current_amplitude", Unit::degree, 0, "filtered amplitude"},
-    InternalValue{"amplitude_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
-    InternalValue{"current_offset", Unit::degree, 0, "filtered offset"},
-    InternalValue{"offset_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
+    generator_values::current_amplitude(),
+    generator_values::amplitude_rate,
+    generator_values::current_offset(),
+    generator_values::offset_rate,
 };
 enum Fields : std::uint8_t { phase_sent, radius_sent };
 constexpr FrameField frame[] = {FrameField{PatternGenerator::current_phase, 4}, FrameField{radius, 2}};

@@ -55,15 +55,15 @@ constexpr InternalValue internal_values[] = {
                   "phase of y1 - y2, estimated from it and from the fatigue"},
     PatternGenerator::frequency_value,
     PatternGenerator::phase_difference_value,
-    InternalValue{"u1", Unit::ratio, raw(Unit::ratio, 1, 20), "membrane potential of the extensor neuron"},
-    InternalValue{"u2", Unit::ratio, raw(Unit::ratio, 1, 20), "membrane potential of the flexor neuron"},
-    InternalValue{"v1", Unit::ratio, 0, "fatigue of the extensor neuron"},
-    InternalValue{"v2", Unit::ratio, 0, "fatigue of the flexor neuron"},
+    matsuoka_values::u1,
+    matsuoka_values::u2,
+    matsuoka_values::v1,
+    matsuoka_values::v2,
     InternalValue{"strength", Unit::ratio, 0, "amplitude that belongs to current_phase"},
-    InternalValue{"current_amplitude", Unit::degree, 0, "filtered amplitude"},
-    InternalValue{"amplitude_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
-    InternalValue{"current_offset", Unit::degree, 0, "filtered offset"},
-    InternalValue{"offset_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
+    generator_values::current_amplitude(),
+    generator_values::amplitude_rate,
+    generator_values::current_offset(),
+    generator_values::offset_rate,
 };
 enum Fields : std::uint8_t { phase_sent, strength_sent };
 constexpr FrameField frame[] = {FrameField{PatternGenerator::current_phase, 4}, FrameField{strength, 2}};

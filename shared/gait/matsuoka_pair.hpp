@@ -52,6 +52,18 @@ struct MatsuokaConstants {
 void advance(MatsuokaPair& pair, const std::int32_t* steps, std::int32_t fatigue, std::int32_t inhibition,
              std::int32_t input1, std::int32_t input2);
 
+/// Internal values of both generators that consist of such pairs.
+namespace matsuoka_values {
+
+inline constexpr InternalValue u1{"u1", Unit::ratio, raw(Unit::ratio, 1, 20),
+                                  "membrane potential of the extensor neuron"};
+inline constexpr InternalValue u2{"u2", Unit::ratio, raw(Unit::ratio, 1, 20),
+                                  "membrane potential of the flexor neuron"};
+inline constexpr InternalValue v1{"v1", Unit::ratio, 0, "fatigue of the extensor neuron"};
+inline constexpr InternalValue v2{"v2", Unit::ratio, 0, "fatigue of the flexor neuron"};
+
+}  // namespace matsuoka_values
+
 /// Parameters of both generators that consist of such pairs.
 namespace matsuoka_parameters {
 

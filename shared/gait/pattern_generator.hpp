@@ -49,6 +49,15 @@ class PatternGenerator : public ActuationModule {
   [[nodiscard]] static std::optional<std::int32_t> phase_beside_neighbour(const Surroundings& surroundings,
                                                                           std::int32_t phase_difference);
 
+  /// How far the phase of a neighbour, which must be present, is ahead of the one that belongs to the joint's own phase
+  /// when the phase grows by phase_difference from joint to joint.
+  [[nodiscard]] static std::uint32_t lead_of(const Neighbour& neighbour, const JointContext& context,
+                                             std::int32_t phase_difference, std::int32_t own_phase) {
+    const std::uint32_t distance = neighbour.joint() - context.joint;
+    const std::uint32_t wanted = distance * static_cast<std::uint32_t>(phase_difference);
+    return static_cast<std::uint32_t>(neighbour.value(phase_field)) - static_cast<std::uint32_t>(own_phase) - wanted;
+  }
+
  private:
   /// The generator's nominal frequency, in Q24 hertz.
   [[nodiscard]] virtual std::int32_t nominal_frequency(const std::int32_t* parameters) const = 0;

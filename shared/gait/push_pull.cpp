@@ -81,10 +81,10 @@ constexpr InternalValue internal_values[] = {
     InternalValue{"remotor_history_2", Unit::count, 0, "the 32 bits before"},
     InternalValue{"smoothed", Unit::ratio, 0, "promotor's minus remotor's activity, filtered once"},
     InternalValue{"output_level", Unit::ratio, 0, "filtered twice"},
-    InternalValue{"current_amplitude", Unit::degree, 0, "filtered amplitude"},
-    InternalValue{"amplitude_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
-    InternalValue{"current_offset", Unit::degree, 0, "filtered offset"},
-    InternalValue{"offset_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
+    generator_values::current_amplitude(),
+    generator_values::amplitude_rate,
+    generator_values::current_offset(),
+    generator_values::offset_rate,
 };
 static_assert(std::size(internal_values) <= max_internal_values);
 enum Fields : std::uint8_t { phase_sent, activity_sent };

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "shared/gait/critical_filter.hpp"
+#include "shared/gait/generator_parameters.hpp"
 #include "shared/gait/pattern_generator.hpp"
 
 namespace proleg {
@@ -43,12 +44,12 @@ class SmoothWave : public PatternGenerator {
       frequency_value,
       phase_difference_value,
       InternalValue{"clock", Unit::phase_degree, 0, "phase accumulated over the ticks"},
-      InternalValue{"current_amplitude", Unit::degree, raw(Unit::degree, 5), "filtered amplitude"},
-      InternalValue{"amplitude_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
+      generator_values::current_amplitude(raw(Unit::degree, 5)),
+      generator_values::amplitude_rate,
       InternalValue{"current_shift", Unit::phase_degree, raw(Unit::degree, 30), "filtered phase of the joint"},
       InternalValue{"shift_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
-      InternalValue{"current_offset", Unit::degree, raw(Unit::degree, 5), "filtered offset"},
-      InternalValue{"offset_rate", Unit::degree, 0, "its change in a second, times 2 / rate"},
+      generator_values::current_offset(raw(Unit::degree, 5)),
+      generator_values::offset_rate,
   };
   static constexpr FrameField wave_frame[] = {FrameField{current_phase, 4}};
 

@@ -2,6 +2,7 @@
 
 #include "shared/fixed/arithmetic.hpp"
 #include "shared/gait/algorithms.hpp"
+#include "shared/gait/limited_step.hpp"
 #include "shared/gait/sensing_module.hpp"
 
 namespace proleg {
@@ -51,16 +52,6 @@ bool ground_is_uneven(const Contacts& contacts, std::int32_t reach) {
   return false;
 }
 
-/// Towards the target by at most `step`.
-std::int32_t approach(std::int32_t target, std::int32_t value, std::int32_t step) {
-  const std::int64_t distance = std::int64_t{target} - value;
-  // A clamp of the distance in 64 bits takes more instructions.
-  if (distance > step) {
-    return value + step;
-  }
-  return distance < -step ? value - step : target;
-}
-
 class UnevenGroundReflex final : public SensingModule {
  public:
   [[nodiscard]] const Declaration& declaration() const override { return about; }
@@ -91,10 +82,10 @@ class UnevenGroundReflex final : public SensingModule {
     const std::int32_t left = std::clamp<std::int32_t>(state[hold_ticks], 0, tuning.parameters[hold]);
     if (sign || left > 0) {
       next[hold_ticks] = sign ? tuning.parameters[hold] : left - 1;
-      next[offset] = approach(tuning.parameters[raise], state[offset], tuning.derived[rise_step]);
+      next[offset] = step_towards(tuning.parameters[raise], state[offset], tuning.derived[rise_step]);
     } else {
       next[hold_ticks] = 0;
-      next[offset] = approach(0, state[offset], tuning.derived[fall_step]);
+      next[offset] = step_towards(0, state[offset], tuning.derived[fall_step]);
     }
   }
 };

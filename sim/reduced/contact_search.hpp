@@ -60,6 +60,16 @@ class ContactSearch {
   }
 
  private:
+  /// m, far more than rounding errors: what is farther apart than this cannot touch.
+  static constexpr double rounding_reach = 1e-6;
+
+  /// Half of what a rectangle covers along x.
+  [[nodiscard]] static double half_span(const Rectangle& rectangle) {
+    const double along_x = rectangle.along.x < 0.0 ? -rectangle.along.x : rectangle.along.x;
+    const double along_z = rectangle.along.z < 0.0 ? -rectangle.along.z : rectangle.along.z;
+    return along_x * rectangle.half_length + along_z * rectangle.half_height;
+  }
+
   [[nodiscard]] Plane<Number> position_of(std::size_t link) const {
     return {m_.link_position[2 * link], m_.link_position[2 * link + 1]};
   }
@@ -76,10 +86,17 @@ class ContactSearch {
   void search_terrain(std::size_t number) {
     const ShapeForm& shape = form_.shapes[number];
     const Plane<Number> center{m_.center[0], m_.center[1]};
+    const Number link_x = position_of(shape.link).x;
     const Outline<width> outline = outline_of(shape);
     for (std::size_t solid = 0; solid < form_.counts.solids; ++solid) {
       const Rectangle& rectangle = form_.terrain[solid];
-      const Outline<width> ground{Plane<Number>{rectangle.center.x - center.x, rectangle.center.z - center.z},
+      const Number ground_x = rectangle.center.x - center.x;
+      const double reach = shape.radius + half_span(rectangle) + rounding_reach;
+      const Number apart = link_x - ground_x;
+      if (!any(apart * apart < Lanes<width>::number(reach * reach))) {
+        continue;
+      }
+      const Outline<width> ground{Plane<Number>{ground_x, rectangle.center.z - center.z},
                                   {Lanes<width>::number(rectangle.along.x), Lanes<width>::number(rectangle.along.z)},
                                   Lanes<width>::number(rectangle.half_length),
                                   Lanes<width>::number(rectangle.half_height)};

@@ -19,6 +19,11 @@ std::vector<std::string> sensor_names(const Recording& recording, const FileOrde
     names.push_back(recording.links()[link] + ".rear");
     names.push_back(recording.links()[link] + ".front");
   }
+  for (const RecordedSensor& sensor : recording.sensors()) {
+    if (sensor.kind == SensorKind::touch) {
+      names.push_back(sensor.name);
+    }
+  }
   return names;
 }
 
@@ -58,18 +63,29 @@ FileOrder::FileOrder(const Recording& recording) : joints(recording.joints().siz
 }
 
 TactileFrames::TactileFrames(const Recording& recording, const FileOrder& order)
-    : order_(order), text_("tactile", {"x-normals", "y-normals", "z-normals"}, sensor_names(recording, order)) {}
+    : order_(order), text_("tactile", {"x-normals", "y-normals", "z-normals"}, sensor_names(recording, order)) {
+  for (const RecordedSensor& sensor : recording.sensors()) {
+    if (sensor.kind == SensorKind::touch) {
+      attached_.push_back(sensor.first_value);
+    }
+  }
+}
 
 void TactileFrames::add(const RecordedTick& tick) {
   std::array<std::vector<double>, 3> normals;
   for (const std::uint32_t link : order_.links) {
-    // Recordings have no normals: the ground pushes along the upward axis of a link.
+    // Recordings have no normals of these: the ground pushes along the upward axis of a link.
     const Eigen::Vector3d up = tick.link_poses[link].orientation * Eigen::Vector3d::UnitZ();
     for (const unsigned sensor : {1U, 2U}) {
       const bool is_pressed = (tick.latched_contacts[link] & sensor) != 0;
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         normals[static_cast<std::size_t>(axis)].push_back(is_pressed ? up[axis] : 0.0);
       }
+    }
+  }
+  for (const std::size_t first : attached_) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      normals[axis].push_back(tick.sensor_values[first + 1 + axis]);  // behind `pressed`
     }
   }
   for (const std::vector<double>& of_axis : normals) {

@@ -3,6 +3,7 @@
 // The touch sensors and the motion of a robot as a data file has them.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,7 +23,8 @@ struct FileOrder {
   std::vector<std::uint32_t> links;
 };
 
-/// `tactile`: two sensors of each link, the rear one first, with the direction in which the ground pushes.
+/// `tactile`: two sensors of each link, the rear one first, then the touch sensors that the robot's file attaches, with
+/// the direction in which the ground pushes.
 class TactileFrames {
  public:
   TactileFrames(const Recording& recording, const FileOrder& order);
@@ -31,6 +33,7 @@ class TactileFrames {
 
  private:
   const FileOrder& order_;
+  std::vector<std::size_t> attached_;  ///< first values of the attached ones, in RecordedTick::sensor_values
   DataModuleText text_;
 };
 

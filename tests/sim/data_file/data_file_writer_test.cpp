@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -90,6 +91,41 @@ TEST(DataFileWriter, TheHeaderIsThatOfTheThesis) {
       text.find("  <round number=\"0\">\n    <PatternGenerator_sinusoidal>\n      <frame index=\"0\" realtime=\"31\" "
                 "simtime=\"31\">\n        <Angle>"),
       std::string::npos);
+}
+
+TEST(DataFileWriter, AttachedTouchSensorsHaveTheNormalsThatTheyMeasured) {
+  Scenario scenario = small_scenario();
+  AttachedSensor level;
+  level.name = "level";
+  level.kind = SensorKind::inclinometer;
+  AttachedSensor bumper;
+  bumper.name = "bumper";
+  bumper.kind = SensorKind::touch;
+  scenario.robot.sensors = {level, bumper};
+
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder / "run.proleg";
+  Recorder recorder(path, scenario, "test", "build-7");
+  run_small(scenario, 3, [&](TickSample sample, const Change* /*change*/) {
+    const double x = 0.125 * sample.tick;
+    const std::array values{10.0, 20.0, 1.0, x, 0.25, -0.5};  // pitch and roll; pressed and the normal
+    const std::array<std::uint8_t, 2> measured{1, 1};
+    sample.sensor_values = values;
+    sample.measured_sensors = measured;
+    recorder.record_tick(sample);
+  });
+  recorder.finish({});
+  std::string text;
+  write_data_file(Recording(path), {}, [&](std::string_view part) { text += part; });
+
+  EXPECT_NE(text.find("<tactile parts=\"9\" "), std::string::npos) << "two of each link, and the bumper";
+  const ReadTable table = table_of_text(text);
+  ASSERT_EQ(table.rows.size(), 3U);
+  for (std::size_t row = 0; row < 3; ++row) {
+    EXPECT_EQ(table.number(row, "x-normals.bumper"), 0.125 * static_cast<double>(row));
+    EXPECT_EQ(table.number(row, "y-normals.bumper"), 0.25);
+    EXPECT_EQ(table.number(row, "z-normals.bumper"), -0.5);
+  }
 }
 
 TEST(DataFileWriter, WhatIsReadBackIsWhatWasRecorded) {

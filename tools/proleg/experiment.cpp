@@ -117,6 +117,12 @@ fs::path find_scenarios(const Options& options, const std::string& file) {
                    "the experiment's files; give their folder with --scenarios");
 }
 
+/// A method that takes part, and what it searches.
+struct ChosenMethod {
+  const Method* method;
+  optimize::Experiment experiment;
+};
+
 optimize::Experiment read(const Options& options, const fs::path& folder, const Method& method) {
   sim::DiskFiles files;
   optimize::Experiment experiment = optimize::read_experiment(folder / method.file, files);
@@ -150,15 +156,23 @@ std::vector<optimize::Reference> reference_distances(const optimize::ThesisExper
     without_search.scenario = reference_scenario(reference, experiment, folder);
     without_search.space.dimensions.clear();
     optimize::Task task;
-    const double searched = optimize::run_trial(without_search, task).measures[sim::Measure::distance];
+    const optimize::Objective& distance = experiment.objectives.front();
+    const double searched = distance.score(optimize::run_trial(without_search, task).measures);
     double judged = searched;
     if (optimize::is_judged(experiment)) {
       task.trial = experiment.trials.count;
-      judged = optimize::run_trial(without_search, task).measures[sim::Measure::distance];
+      judged = distance.score(optimize::run_trial(without_search, task).measures);
     }
     references.push_back({&reference, searched, judged});
   }
   return references;
+}
+
+/// The scenario with the best values that a method has found.
+sim::Scenario best_scenario(const optimize::Experiment& experiment, const MethodResult& result) {
+  sim::Scenario scenario = experiment.scenario;
+  experiment.space.apply(result.best->candidate, scenario);
+  return scenario;
 }
 
 /// Whether the store in a folder has all repetitions of this experiment. Its method is then part of the comparison,
@@ -207,40 +221,43 @@ Json to_json(const MethodResult& result, const optimize::SearchSpace& space, dou
           {"wall_s", result.wall_s}};
 }
 
-/// The best of each method in other worlds, the crossing of the farthest one, and all distances on a ruler.
-std::vector<CheckedGait> check_gaits(const std::vector<optimize::Reference>& references,
-                                     const std::vector<MethodResult>& results, const fs::path& scenarios,
-                                     const std::vector<std::pair<const Method*, optimize::Experiment>>& chosen,
-                                     const fs::path& folder) {
-  const optimize::Experiment& first = chosen.front().second;
-  const sim::EnvironmentModel level = reference_scenario(*references.back().scenario, first, scenarios).environment;
-  std::vector<CheckedGait> gaits;
-  // The last reference is the level ground itself.
-  for (const optimize::Reference& reference : std::span(references).first(references.size() - 1)) {
-    gaits.push_back(check_gait(std::string(reference.scenario->short_name),
-                               reference_scenario(*reference.scenario, first, scenarios), level));
-  }
-  std::vector<optimize::RulerMark> marks;
-  const MethodResult* farthest = nullptr;
-  const optimize::Experiment* its_experiment = nullptr;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    sim::Scenario best = chosen[i].second.scenario;
-    chosen[i].second.space.apply(results[i].best->candidate, best);
-    gaits.push_back(check_gait(results[i].runs.method, best, level));
-    if (farthest == nullptr || results[i].best->scores.front() > farthest->best->scores.front()) {
-      farthest = &results[i];
-      its_experiment = &chosen[i].second;
+/// The references on the obstacle, and the best of each method.
+std::vector<NamedGait> gaits_to_check(const optimize::ThesisExperiment& thesis,
+                                      const std::vector<MethodResult>& results, const std::vector<ChosenMethod>& chosen,
+                                      const fs::path& scenarios) {
+  std::vector<NamedGait> gaits;
+  for (const optimize::ReferenceScenario& reference : thesis.references) {
+    if (reference.file != thesis.level_ground) {
+      gaits.push_back(
+          {std::string(reference.short_name), reference_scenario(reference, chosen.front().experiment, scenarios)});
     }
   }
-  marks.reserve(gaits.size());
-  for (const CheckedGait& gait : gaits) {
-    marks.push_back({gait.name, gait.distance_m});
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    gaits.push_back({results[i].runs.method, best_scenario(chosen[i].experiment, results[i])});
   }
-  sim::Scenario best = its_experiment->scenario;
-  its_experiment->space.apply(farthest->best->candidate, best);
+  return gaits;
+}
+
+/// The best of each method in other worlds, the crossing of the farthest one, and all distances on a ruler.
+std::vector<CheckedGait> check_gaits(const optimize::ThesisExperiment& thesis, const std::vector<MethodResult>& results,
+                                     const std::vector<ChosenMethod>& chosen, const fs::path& scenarios,
+                                     const fs::path& folder) {
+  const optimize::Experiment& first = chosen.front().experiment;
+  const auto level = std::ranges::find(thesis.references, thesis.level_ground, &optimize::ReferenceScenario::file);
+  const sim::EnvironmentModel level_ground = reference_scenario(*level, first, scenarios).environment;
+  std::vector<CheckedGait> checks;
+  std::vector<optimize::RulerMark> marks;
+  for (NamedGait& gait : gaits_to_check(thesis, results, chosen, scenarios)) {
+    checks.push_back(check_gait(std::move(gait), level_ground, first.objectives.front()));
+    marks.push_back({checks.back().name, checks.back().distance_m});
+  }
+  const auto score = [](const MethodResult& result) { return result.best->scores.front(); };
+  const auto farthest = std::ranges::max_element(results, {}, score);
+  const sim::Scenario best =
+      best_scenario(chosen[static_cast<std::size_t>(farthest - results.begin())].experiment, *farthest);
   write_file(folder / "figure_6_8.svg", optimize::draw_crossing(best, crossing_stages(best)));
   write_file(folder / "figure_7_3.svg", optimize::draw_distances(best, marks));
-  return gaits;
+  return checks;
 }
 
 int experiment(Options options) {
@@ -251,8 +268,8 @@ int experiment(Options options) {
   const optimize::ThesisExperiment& thesis = find_experiment(options.name);
   const std::string repetitions_word = options.repetitions.value_or(std::string(thesis.repetitions));
   const std::optional<std::uint32_t> repetitions = parse_whole<std::uint32_t>(repetitions_word);
-  if (!repetitions || *repetitions == 0 || *repetitions > 1000) {
-    throw InputError("--repetitions", 0, in_quotes(repetitions_word), "1 to 1000");
+  if (!repetitions || *repetitions == 0 || *repetitions > max_repetitions) {
+    throw InputError("--repetitions", 0, in_quotes(repetitions_word), "1 to " + std::to_string(max_repetitions));
   }
   if (!options.engine && !thesis.engine.empty()) {
     options.engine = thesis.engine;
@@ -267,7 +284,7 @@ int experiment(Options options) {
   if (folder.empty()) {
     throw InputError("--out", 0, "an empty name", "the name of a folder");
   }
-  std::vector<std::pair<const Method*, optimize::Experiment>> chosen;
+  std::vector<ChosenMethod> chosen;
   for (const Method& method : methods) {
     const bool asked_for =
         options.methods.empty() ? method.shipped : std::ranges::count(options.methods, method.name) > 0;
@@ -275,14 +292,14 @@ int experiment(Options options) {
       optimize::Experiment experiment = read(options, scenarios, method);
       if (asked_for || is_complete(experiment, *repetitions, folder / method.name)) {
         refuse_overwriting(experiment, folder / method.name);
-        chosen.emplace_back(&method, std::move(experiment));
+        chosen.push_back({&method, std::move(experiment)});
       }
     }
   }
 
   catch_interrupts();
   const auto started = std::chrono::steady_clock::now();
-  const std::vector<optimize::Reference> references = reference_distances(thesis, chosen.front().second, scenarios);
+  const std::vector<optimize::Reference> references = reference_distances(thesis, chosen.front().experiment, scenarios);
   const double reference_m = references.front().judged_m;
   std::vector<MethodResult> results;
   std::vector<optimize::MethodRuns> all_runs;
@@ -301,12 +318,12 @@ int experiment(Options options) {
   }
   write_file(folder / thesis.comparison_figure, optimize::draw_method_comparison(thesis, all_runs, references));
   std::vector<CheckedGait> checks;
-  if (&thesis == &optimize::adaptive_touch_experiment()) {
-    checks = check_gaits(references, results, scenarios, chosen, folder);
+  if (!thesis.level_ground.empty()) {
+    checks = check_gaits(thesis, results, chosen, scenarios, folder);
   }
-  const std::string engine(sim::name_of(chosen.front().second.scenario.environment.engine));
+  const std::string engine(sim::name_of(chosen.front().experiment.scenario.environment.engine));
   const std::string judge =
-      optimize::is_judged(chosen.front().second)
+      optimize::is_judged(chosen.front().experiment)
           ? "; the best ten of each run were rated again in " + std::string(sim::name_of(optimize::judging_engine))
           : "";
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
@@ -329,7 +346,7 @@ int experiment(Options options) {
   const auto genetic = curves.find("genetic");
   Json list = Json::empty_array();
   for (std::size_t i = 0; i < results.size(); ++i) {
-    Json entry = to_json(results[i], chosen[i].second.space, reference_m);
+    Json entry = to_json(results[i], chosen[i].experiment.space, reference_m);
     entry.add("mean_best_after", course(curves[results[i].runs.method]));
     if (deluge != curves.end()) {
       entry.add("reaches_mean_of_great_deluge_after",

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <utility>
 
 #include "sim/loop/simulation.hpp"
 #include "sim/optimize/evaluation/task.hpp"
@@ -19,14 +20,14 @@ using optimize::CrossingStage;
 constexpr optimize::WorldVariation variation{.spread = {.friction = 0.1, .mass = 0.1}, .start_m = 0.005};
 constexpr std::uint64_t worlds_seed = 1;
 
-double distance_of(const sim::Scenario& scenario) {
+double run(const sim::Scenario& scenario, const optimize::DistanceOf& distance_of) {
   try {
     sim::Simulation simulation(scenario);
     simulation.leave_out_hashes();
     while (simulation.tick() < sim::tick_count(scenario)) {
       simulation.advance();
     }
-    return simulation.plant().displacement();
+    return distance_of(simulation.plant());
   } catch (const sim::PhysicsError&) {
     return NAN;
   }
@@ -62,14 +63,17 @@ double middle_of(const sim::Plant& plant) {
 
 }  // namespace
 
-CheckedGait check_gait(const std::string& name, sim::Scenario scenario, const sim::EnvironmentModel& level) {
+CheckedGait check_gait(NamedGait gait, const sim::EnvironmentModel& level, const optimize::Objective& distance) {
+  const auto distance_of = [&](const sim::Plant& plant) { return distance.score(plant.meter().values()); };
+  sim::Scenario& scenario = gait.scenario;
   scenario.environment.engine = optimize::judging_engine;
-  CheckedGait gait{name, distance_of(scenario), {}, 0.0};
-  gait.worlds = optimize::distances_in_worlds(scenario, checked_worlds, worlds_seed, variation, [](double) {});
+  CheckedGait checked{std::move(gait.name), run(scenario, distance_of), {}, 0.0};
+  checked.worlds = optimize::distances_in_worlds(
+      scenario, checked_worlds, worlds_seed, variation, [](double) {}, distance_of);
   scenario.environment = level;
   scenario.environment.engine = optimize::judging_engine;
-  gait.level_m = distance_of(scenario);
-  return gait;
+  checked.level_m = run(scenario, distance_of);
+  return checked;
 }
 
 std::string gait_checks_text(const std::vector<CheckedGait>& gaits) {

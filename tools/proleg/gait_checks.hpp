@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/optimize/confirm/perturbed_worlds.hpp"
+#include "sim/optimize/experiment/fitness.hpp"
 #include "sim/optimize/report/crossing_figure.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "tools/proleg/json_output.hpp"
@@ -16,19 +17,25 @@
 namespace proleg::tools {
 
 /// A gait of an experiment: the best of a method, or a reference.
+struct NamedGait {
+  std::string name;
+  sim::Scenario scenario;
+};
+
+/// How far a gait goes in the judging engine, in m.
 struct CheckedGait {
   std::string name;
-  double distance_m = 0.0;  ///< in its own world, in the judging engine
+  double distance_m = 0.0;  ///< in its own world
   optimize::WorldDistances worlds;
   double level_m = 0.0;  ///< on level ground, in the same time
 };
 
 inline constexpr std::uint32_t checked_worlds = 20;
 
-/// Runs a gait in the judging engine: in its own world, in worlds that differ (friction and masses by a tenth, start by
-/// 5 mm), and on level ground. level: the environment without the obstacle.
-[[nodiscard]] CheckedGait check_gait(const std::string& name, sim::Scenario scenario,
-                                     const sim::EnvironmentModel& level);
+/// Runs a gait in its own world, in worlds that differ (friction and masses by a tenth, start by 5 mm), and on level
+/// ground. level: the environment without the obstacle. distance: what the searches rate, in m.
+[[nodiscard]] CheckedGait check_gait(NamedGait gait, const sim::EnvironmentModel& level,
+                                     const optimize::Objective& distance);
 
 /// A table, a line for each gait; the last column compares the distance on level ground with that of the first gait.
 [[nodiscard]] std::string gait_checks_text(const std::vector<CheckedGait>& gaits);

@@ -28,8 +28,9 @@ sim::Scenario perturbed(sim::Scenario scenario, const WorldVariation& variation,
 class Worlds {
  public:
   Worlds(const sim::Scenario& scenario, std::uint32_t count, std::uint64_t seed, const WorldVariation& variation,
-         const std::function<void(double share)>& progress)
+         const std::function<void(double share)>& progress, const DistanceOf& distance_of)
       : progress_(progress),
+        distance_of_(distance_of),
         size_of_batch_(scenario.environment.engine == sim::PhysicsEngine::reduced ? most_in_batch : 1) {
     for (std::uint32_t world = 0; world < count; ++world) {
       scenarios_.push_back(perturbed(scenario, variation, trial_seed(seed, 0, 0, world)));
@@ -72,7 +73,7 @@ class Worlds {
         simulation.advance();
         show(number, 1, static_cast<double>(simulation.tick()) / ticks);
       }
-      keep(simulation.plant().displacement(), false);
+      keep(distance_of_(simulation.plant()), false);
     } catch (const sim::PhysicsError&) {
       keep(0.0, true);
     } catch (const InputError&) {
@@ -92,11 +93,12 @@ class Worlds {
       show(first, count, static_cast<double>(tick) / ticks);
     }
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      keep(batch.simulation(i).plant().displacement(), !batch.failure(i).empty());
+      keep(distance_of_(batch.simulation(i).plant()), !batch.failure(i).empty());
     }
   }
 
   const std::function<void(double share)>& progress_;
+  const DistanceOf& distance_of_;
   std::size_t size_of_batch_;
   std::vector<sim::Scenario> scenarios_;
   WorldDistances result_;
@@ -105,8 +107,9 @@ class Worlds {
 }  // namespace
 
 WorldDistances distances_in_worlds(const sim::Scenario& scenario, std::uint32_t count, std::uint64_t seed,
-                                   const WorldVariation& variation, const std::function<void(double share)>& progress) {
-  return Worlds(scenario, count, seed, variation, progress).run();
+                                   const WorldVariation& variation, const std::function<void(double share)>& progress,
+                                   const DistanceOf& distance_of) {
+  return Worlds(scenario, count, seed, variation, progress, distance_of).run();
 }
 
 }  // namespace proleg::optimize

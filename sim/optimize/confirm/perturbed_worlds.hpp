@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "sim/loop/plant.hpp"
 #include "sim/optimize/experiment/trials.hpp"
 #include "sim/scenario/scenario.hpp"
 
@@ -22,10 +23,14 @@ struct WorldDistances {
   std::uint32_t failed = 0;       ///< worlds without a distance
 };
 
+/// How far a robot has come at the end of a run, in m: by default in any direction.
+using DistanceOf = std::function<double(const sim::Plant&)>;
+
 /// Runs the scenario in `count` worlds, in the scenario's engine; the same seed gives the same worlds. progress: called
 /// often with the share that is done; it may throw.
 [[nodiscard]] WorldDistances distances_in_worlds(const sim::Scenario& scenario, std::uint32_t count, std::uint64_t seed,
                                                  const WorldVariation& variation,
-                                                 const std::function<void(double share)>& progress);
+                                                 const std::function<void(double share)>& progress,
+                                                 const DistanceOf& distance_of = &sim::Plant::displacement);
 
 }  // namespace proleg::optimize

@@ -51,10 +51,11 @@ constexpr std::array<ThesisMethod, 4> touch_methods{{
     {"genetic", "genetic.optimise.xml", "table_6_9.tsv", "figure_6_12.svg", "figure_6_13.svg"},
     {"cma-es", "cma_es.optimise.xml", "table_cma_es.tsv", "figure_cma_es_runs.svg", "figure_cma_es_spread.svg"},
 }};
+constexpr std::string_view touch_level_ground = "plain_level.simulation.xml";
 constexpr std::array<ReferenceScenario, 3> touch_references{{
     {"the sine without the reflex", "no reflex", "plain.simulation.xml", 0.0},
     {"the reflex as set by hand", "set by hand", "reflex.simulation.xml", 0.0},
-    {"the sine on level ground", "level ground", "plain_level.simulation.xml", 0.0},
+    {"the sine on level ground", "level ground", touch_level_ground, 0.0},
 }};
 
 }  // namespace
@@ -67,6 +68,7 @@ const ThesisExperiment& travelling_wave_experiment() {
                                                .engine = "",
                                                .methods = wave_methods,
                                                .references = wave_references,
+                                               .level_ground = "",
                                                .comparison_figure = "figure_7_1.svg",
                                                .overtaking = "5000",
                                                .shown_value = "tail joint",
@@ -84,6 +86,7 @@ const ThesisExperiment& adaptive_touch_experiment() {
                                                .engine = "reduced",
                                                .methods = touch_methods,
                                                .references = touch_references,
+                                               .level_ground = touch_level_ground,
                                                .comparison_figure = "figure_7_2.svg",
                                                .overtaking = "3000",
                                                .shown_value = "get-stuck",

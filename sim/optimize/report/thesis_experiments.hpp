@@ -45,6 +45,9 @@ struct ThesisExperiment {
   std::span<const ThesisMethod> methods;
   /// The first one is what gains are relative to.
   std::span<const ReferenceScenario> references;
+  /// The file of the reference without an obstacle. The best gaits are checked there and in perturbed worlds. Empty:
+  /// they are not.
+  std::string_view level_ground;
   std::string_view comparison_figure;
   std::string_view overtaking;   ///< evaluations after which the thesis's great deluge is above its genetic algorithm
   std::string_view shown_value;  ///< heading of the value of the best that the summary shows

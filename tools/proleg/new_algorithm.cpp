@@ -143,7 +143,7 @@ void check_name(const std::string& name) {
   }
 }
 
-/// By default a number that follows from the name, so that two algorithms seldom have the same one.
+/// By default a number that follows from the name: two algorithms with different names rarely have the same one.
 std::uint8_t choose_id(const AlgorithmOptions& options) {
   if (!options.id) {
     const std::span bytes(reinterpret_cast<const std::uint8_t*>(options.name.data()), options.name.size());

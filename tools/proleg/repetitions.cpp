@@ -1,11 +1,13 @@
 #include "tools/proleg/repetitions.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <stdexcept>
 #include <utility>
 
 #include "sim/optimize/evaluation/local_workers.hpp"
+#include "sim/optimize/evaluation/worker_pool.hpp"
 #include "tools/proleg/interrupt.hpp"
 #include "tools/proleg/optimisation.hpp"
 #include "tools/proleg/side_by_side.hpp"
@@ -31,27 +33,32 @@ class Repetitions {
   Repetitions(std::string name, const Experiment& experiment, std::uint32_t count, fs::path folder)
       : name_(std::move(name)), experiment_(experiment), count_(count), folder_(std::move(folder)) {}
 
-  /// Those of which the store has nothing. Takes what processes of an earlier program left. (What was interrupted is
-  /// continued from the store, by all workers.)
-  [[nodiscard]] std::vector<std::uint32_t> missing() const {
+  /// Those that have not ended. Takes what processes of an earlier program left.
+  [[nodiscard]] std::vector<std::uint32_t> unfinished() const {
     const std::unique_ptr<Store> store = open();
     add_parts(*store);
     std::vector<std::uint32_t> runs;
     for (std::uint32_t run = 0; run < count_; ++run) {
-      if (store->evaluation_count(run) == 0) {
+      if (!store->ending(run)) {
         runs.push_back(run);
       }
     }
     return runs;
   }
 
-  /// Each process has its own store, which then becomes part of that of the experiment.
-  void search_side_by_side(std::uint32_t processes, std::span<const std::uint32_t> runs) const {
-    work_side_by_side(processes, runs, [&](std::uint32_t process, const NextNumber& next) {
-      optimize::LocalWorkers worker(experiment_, 1);
-      const std::unique_ptr<Store> store = open_store(part(process), experiment_, Store::Opening::fresh);
+  /// Each search has a process and a store of its own, which then becomes part of that of the experiment.
+  void search_side_by_side(std::uint32_t worker_count, std::span<const std::uint32_t> runs) const {
+    for (const std::uint32_t run : runs) {
+      open_store(part(run), experiment_, Store::Opening::fresh)->add(store_path(folder_), run);
+    }
+    const auto at_once = static_cast<std::uint32_t>(
+        std::min(runs.size(), optimize::WorkerPool::useful_searches(experiment_, worker_count)));
+    const optimize::WorkerPool pool(experiment_, worker_count, at_once);
+    work_side_by_side(at_once, runs, [&](std::uint32_t process, const NextNumber& next) {
+      const std::unique_ptr<optimize::Workers> workers = pool.workers_of(process);
       while (const std::optional<std::uint32_t> run = next()) {
-        static_cast<void>(search(*run, worker, *store, std::cout));
+        const std::unique_ptr<Store> store = open_store(part(*run), experiment_, Store::Opening::resume);
+        static_cast<void>(search(*run, *workers, *store, std::cout));
       }
     });
   }
@@ -85,18 +92,18 @@ class Repetitions {
     return open_store(folder_, experiment_, exists ? Store::Opening::resume : Store::Opening::fresh);
   }
 
-  [[nodiscard]] fs::path part(std::uint32_t process) const { return folder_ / ("part" + std::to_string(process)); }
+  [[nodiscard]] fs::path part(std::uint32_t run) const { return folder_ / ("part" + std::to_string(run)); }
 
   void add_parts(Store& store) const {
-    for (std::uint32_t process = 0; process < max_workers; ++process) {
-      if (fs::exists(store_path(part(process)))) {
+    for (std::uint32_t run = 0; run < max_repetitions; ++run) {
+      if (fs::exists(store_path(part(run)))) {
         try {
-          store.add(store_path(part(process)));
+          store.add(store_path(part(run)));
         } catch (const optimize::StoreError& refused) {
           throw BadInput(refused.what());
         }
       }
-      fs::remove_all(part(process));
+      fs::remove_all(part(run));
     }
   }
 
@@ -143,10 +150,9 @@ MethodResult run_repetitions(const std::string& name, const Experiment& experime
                              std::uint32_t workers, const fs::path& folder) {
   const auto start = std::chrono::steady_clock::now();
   const Repetitions all(name, experiment, repetitions, folder);
-  const std::vector<std::uint32_t> missing = all.missing();
-  // With fewer repetitions than this, processors would have nothing to do while the last ones run.
-  if (workers > 1 && missing.size() >= 2 * std::size_t{workers}) {
-    all.search_side_by_side(workers, missing);
+  const std::vector<std::uint32_t> unfinished = all.unfinished();
+  if (unfinished.size() > 1) {
+    all.search_side_by_side(workers, unfinished);
   }
   MethodResult result = all.collect(workers);
   result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

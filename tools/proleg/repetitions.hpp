@@ -13,6 +13,8 @@
 
 namespace proleg::tools {
 
+inline constexpr std::uint32_t max_repetitions = 1000;
+
 struct MethodResult {
   optimize::MethodRuns runs;
   std::vector<std::string> endings;
@@ -20,10 +22,9 @@ struct MethodResult {
   double wall_s = 0.0;
 };
 
-/// Runs the repetitions; what the store in the folder has is not simulated again. Fewer if the user interrupts. If
-/// there are enough of them, each worker has repetitions of its own: a worker that serves one search alone waits less,
-/// and its batches are larger. The result does not depend on the number of workers. Throws BadInput, and
-/// std::runtime_error if no evaluation of a repetition has a score.
+/// Runs the repetitions side by side, with shared workers; what the store in the folder has is not simulated again.
+/// Fewer if the user interrupts. The result does not depend on the number of workers. repetitions: at most
+/// max_repetitions. Throws BadInput, and std::runtime_error if no evaluation of a repetition has a score.
 [[nodiscard]] MethodResult run_repetitions(const std::string& name, const optimize::Experiment& experiment,
                                            std::uint32_t repetitions, std::uint32_t workers,
                                            const std::filesystem::path& folder);

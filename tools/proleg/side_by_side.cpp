@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -219,6 +220,10 @@ class Relay {
         std::cerr << progress << std::flush;
       }
       all += (all.empty() || process->latest().empty() ? "" : " | ") + process->latest();
+    }
+    if (processes_.size() > 2) {
+      const auto running = std::ranges::count_if(processes_, [](const auto& each) { return !each->has_ended(); });
+      all = std::to_string(running) + " side by side: " + all;
     }
     if (terminal_line_.is_due()) {
       terminal_line_.draw(std::string_view(all).substr(0, TerminalLine::max_width()));

@@ -48,7 +48,7 @@ class Evaluator::Implementation {
   }
 
   [[nodiscard]] std::size_t lookahead() const {
-    const std::size_t ahead = std::min(sim::batch_size(experiment_.scenario), max_uncertain);
+    const std::size_t ahead = std::min({sim::batch_size(experiment_.scenario), max_uncertain, workers_.most_at_once()});
     return 2 * ahead * workers_.count();
   }
 

@@ -91,7 +91,7 @@ class Store::Implementation {
     guard([&] { Statement(*database_, "REPLACE INTO run VALUES(?1, ?2)").run(run, std::string_view(ending)); });
   }
 
-  void add(const std::filesystem::path& other) {
+  void add(const std::filesystem::path& other, std::optional<std::uint32_t> run) {
     guard([&] {
       const StoreLock lock = claim_store(other);
       {
@@ -100,10 +100,12 @@ class Store::Implementation {
       }
       const std::string path = other.string();
       Statement(*database_, "ATTACH DATABASE ?1 AS other").run(std::string_view(path));
-      database_->execute(
-          "BEGIN; REPLACE INTO trial SELECT * FROM other.trial; REPLACE INTO evaluation SELECT * FROM "
-          "other.evaluation; "
-          "REPLACE INTO run SELECT * FROM other.run; COMMIT; DETACH DATABASE other");
+      const std::string which = run ? " WHERE run = " + std::to_string(*run) : "";
+      std::string statements = "BEGIN;";
+      for (const char* table : {"trial", "evaluation", "run"}) {
+        statements += std::string(" REPLACE INTO ") + table + " SELECT * FROM other." + table + which + ";";
+      }
+      database_->execute((statements + " COMMIT; DETACH DATABASE other").c_str());
       read_last_numbers();
     });
   }
@@ -204,7 +206,9 @@ void Store::save(const Task& task, std::uint64_t seed, const TrialResult& result
 void Store::save(const Evaluation& evaluation) { implementation_->save(evaluation); }
 void Store::start_run(std::uint32_t run) { implementation_->start_run(run); }
 void Store::finish_run(std::uint32_t run, const std::string& reason) { implementation_->finish_run(run, reason); }
-void Store::add(const std::filesystem::path& other) { implementation_->add(other); }
+void Store::add(const std::filesystem::path& other, std::optional<std::uint32_t> run) {
+  implementation_->add(other, run);
+}
 std::uint64_t Store::evaluation_count(std::uint32_t run) { return implementation_->evaluation_count(run); }
 std::vector<Evaluation> Store::evaluations(std::uint32_t run) { return implementation_->evaluations(run); }
 std::optional<std::string> Store::ending(std::uint32_t run) { return implementation_->ending(run); }

@@ -1,8 +1,5 @@
 #include "sim/optimize/evaluation/worker_process.hpp"
 
-#include <fcntl.h>
-#include <sys/prctl.h>
-#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,6 +10,7 @@
 #include <system_error>
 
 #include "sim/optimize/evaluation/message.hpp"
+#include "sim/optimize/evaluation/message_socket.hpp"
 
 namespace proleg::optimize {
 namespace {
@@ -20,36 +18,6 @@ namespace {
 // First byte of a reply.
 constexpr std::byte is_result{0};
 constexpr std::byte is_failure{1};
-
-/// Bytes. The largest batch of candidates with the most dimensions takes a quarter of a million; the system's default
-/// is less.
-constexpr int max_message = 400'000;
-
-/// The next message; empty if the other end is closed. The sockets keep messages separate (SOCK_SEQPACKET), and no
-/// message is empty.
-Bytes receive_message(int socket) {
-  while (true) {
-    std::byte none{};
-    const ssize_t size = recv(socket, &none, 1, MSG_PEEK | MSG_TRUNC);
-    if (size > 0) {
-      Bytes message(static_cast<std::size_t>(size));
-      const ssize_t received = recv(socket, message.data(), message.size(), 0);
-      if (received == size) {
-        return message;
-      }
-    } else if (size == 0 || errno != EINTR) {
-      return {};
-    }
-  }
-}
-
-bool send_message(int socket, const Bytes& message) {
-  ssize_t sent = -1;
-  do {
-    sent = ::send(socket, message.data(), message.size(), MSG_NOSIGNAL);
-  } while (sent < 0 && errno == EINTR);
-  return sent == static_cast<ssize_t>(message.size());
-}
 
 Bytes reply_to(std::span<const Task> tasks, const Experiment& experiment, const RunTasks& run) {
   try {
@@ -63,29 +31,6 @@ Bytes reply_to(std::span<const Task> tasks, const Experiment& experiment, const 
       reply.push_back(static_cast<std::byte>(character));
     }
     return reply;
-  }
-}
-
-/// Separates this process from its parent: it shares no signals, files, database connections or terminal.
-void leave_parent(int socket, pid_t parent) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) {
-    _exit(0);  // the parent ended before prctl()
-  }
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
-    std::signal(signal, SIG_IGN);
-  }
-  sigset_t none;
-  sigemptyset(&none);
-  sigprocmask(SIG_SETMASK, &none, nullptr);
-  // Above all the other workers' sockets: while this process held them, those workers would not see the parent's end.
-  const auto kept = static_cast<unsigned>(socket);
-  close_range(3, kept - 1, 0);
-  close_range(kept + 1, ~0U, 0);
-  if (const int nothing = open("/dev/null", O_RDWR); nothing >= 0) {
-    dup2(nothing, STDIN_FILENO);
-    dup2(nothing, STDOUT_FILENO);
-    close(nothing);
   }
 }
 
@@ -103,22 +48,16 @@ void leave_parent(int socket, pid_t parent) {
 }  // namespace
 
 WorkerProcess::WorkerProcess(const Experiment& experiment, const RunTasks& run) {
-  std::array<int, 2> ends{};
-  if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    throw std::system_error(errno, std::generic_category());
-  }
-  for (const int end : ends) {
-    setsockopt(end, SOL_SOCKET, SO_SNDBUF, &max_message, sizeof max_message);
-  }
+  const auto [own_end, its_end] = make_message_sockets();
   const pid_t parent = getpid();
   process_ = fork();
   if (process_ == 0) {
-    leave_parent(ends[1], parent);
-    work(ends[1], experiment, run);
+    leave_parent(std::array{its_end}, parent);
+    work(its_end, experiment, run);
   }
   const int error = errno;
-  close(ends[1]);
-  socket_ = ends[0];
+  close(its_end);
+  socket_ = own_end;
   if (process_ < 0) {
     close(socket_);
     throw std::system_error(error, std::generic_category());

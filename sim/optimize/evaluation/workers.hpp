@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -33,6 +34,8 @@ class Workers {
   [[nodiscard]] virtual std::uint32_t count() const = 0;
   /// Workers without tasks.
   [[nodiscard]] virtual std::uint32_t idle() const = 0;
+  /// Tasks that a worker takes at once, at most; above 0. It may change with every result.
+  [[nodiscard]] virtual std::size_t most_at_once() const { return std::numeric_limits<std::size_t>::max(); }
   /// Gives an idle worker tasks, at least one, which it simulates together (sim::batch_size).
   virtual void start(std::span<const TicketedTask> batch) = 0;
   /// The next result, or nothing after the timeout. A worker that dies or hangs is replaced and its tasks are repeated,
@@ -48,7 +51,8 @@ class Workers {
 [[nodiscard]] inline std::size_t share_of_worker(const sim::Scenario& scenario, std::size_t waiting,
                                                  const Workers& workers) {
   const std::size_t count = std::max(workers.count(), 1U);
-  return std::clamp<std::size_t>((waiting + count - 1) / count, 1, sim::batch_size(scenario));
+  return std::clamp<std::size_t>((waiting + count - 1) / count, 1,
+                                 std::min(sim::batch_size(scenario), workers.most_at_once()));
 }
 
 }  // namespace proleg::optimize

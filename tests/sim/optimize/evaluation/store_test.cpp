@@ -80,6 +80,25 @@ TEST_F(StoreTest, TakesWhatAnotherStoreOfTheSameExperimentHas) {
   EXPECT_EQ(ask("SELECT count(*) FROM trial"), "3") << "once more changes nothing";
 }
 
+TEST_F(StoreTest, TakesWhatAnotherStoreHasOfOneRun) {
+  const std::filesystem::path other_path = folder_ / "other.sqlite";
+  const Task first{1, 5, 0, {2, 2, 2}, {}};
+  const Task second{2, 0, 0, {3, 3, 3}, {}};
+  {
+    Store other(other_path, experiment_, "build", Store::Opening::fresh);
+    other.save(first, 1, any_result(random_), 0);
+    other.save(second, 1, any_result(random_), 0);
+    other.finish_run(1, "converged");
+    other.finish_run(2, "no credit left");
+  }
+  const std::unique_ptr<Store> store = fresh();
+  store->add(other_path, 2);
+  EXPECT_FALSE(store->find(first));
+  EXPECT_TRUE(store->find(second));
+  EXPECT_FALSE(store->ending(1));
+  EXPECT_EQ(store->ending(2), "no credit left");
+}
+
 TEST_F(StoreTest, TakesNothingFromAStoreThatIsOpenOrOfAnotherExperiment) {
   const std::filesystem::path other_path = folder_ / "other.sqlite";
   const std::unique_ptr<Store> store = fresh();

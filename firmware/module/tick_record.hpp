@@ -18,7 +18,7 @@ struct TickRecord {
   std::uint8_t joint = 0;
   std::uint8_t flags = 0;  ///< of the state frame, byte 6
   std::uint8_t value_count = 0;
-  std::uint8_t power = 0;        ///< canopen::PowerState of the drive now; whoever keeps the record updates it
+  std::uint8_t power = 0;        ///< canopen::PowerState of the drive now; the owner of the record updates it
   std::uint16_t current_ma = 0;  ///< of the servo, as algorithms could read it
   std::uint16_t unused = 0;
   /// Internal values of the joint's algorithms, slot by slot, each in the order of its declaration.

@@ -32,8 +32,8 @@ class Damage : public std::runtime_error {
 /// The unit with this symbol. Phases are given as degrees, which have the same symbol and are written alike.
 [[nodiscard]] Unit unit_of(const std::string& symbol);
 
-/// Throws Damage if the file is shorter than the database says, which nobody may notice who does not read its last
-/// page. A file beside which there is a write-ahead log may be.
+/// Throws Damage if the file is shorter than the database says. (A query that does not read the last page would
+/// succeed.) A file with a write-ahead log beside it may be shorter.
 void require_whole_file(Database& database, const std::filesystem::path& path);
 
 /// A whole number; name: for the message.

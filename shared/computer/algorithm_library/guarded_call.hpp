@@ -1,6 +1,6 @@
 #pragma once
 
-// Calls of code that nobody has checked: a mistake in it ends the call, not the program.
+// Calls of code that has not been checked: a mistake in it ends the call, not the program.
 
 #include <string>
 #include <type_traits>

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -81,14 +82,19 @@ DataFile::DataFile(std::string name, const Open& open) : name_(std::move(name)) 
 void DataFile::name_columns() {
   columns_ = {"tick", "time_s", "realtime_ms"};
   std::set<std::string> used(columns_.begin(), columns_.end());
+  std::map<std::string, std::size_t> last_number;  // of columns with the same name, from 2
   for (std::size_t m = 0; m < modules_.size(); ++m) {
     const DataModule& module = modules_[m];
     const std::vector<std::size_t>& counts = frames_[m].counts();
     for (std::size_t type = 0; type < counts.size(); ++type) {
       for (std::size_t part = 0; part < counts[type]; ++part) {
         std::string name = one_line(module.types[type] + "." + part_name(module, part, counts[type]));
-        while (!used.insert(name).second) {
+        if (used.contains(name)) {
           name += "." + module.name;
+        }
+        const std::string without_number = name;
+        for (std::size_t& number = last_number[without_number]; !used.insert(name).second;) {
+          name = without_number + "." + std::to_string(++number + 1);
         }
         columns_.push_back(name);
       }

@@ -34,6 +34,8 @@ class Contacts {
   void find(dSpaceID a, dSpaceID b);
   /// After the step. Destroys the joints.
   void end_step();
+  /// Destroys the joints in the middle of a step that failed. What was found stays.
+  void abandon() { group_.reset(); }
   /// Nothing touches the robot: it was moved.
   void clear();
 

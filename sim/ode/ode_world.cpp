@@ -187,7 +187,7 @@ class OdeWorld final : public World {
     dGeomRaySet(ray.get(), from.x(), from.y(), from.z(), direction.x(), direction.y(), direction.z());
     dGeomRaySetClosestHit(ray.get(), 1);
     RayHit hit{ray.get(), static_cast<int>(link), std::nullopt};
-    for (dxSpace* const space : {environment_space_.get(), robot_space_.get()}) {
+    for (dxSpace* const space : {environment_space_.get(), object_space_.get(), robot_space_.get()}) {
       dSpaceCollide2(ray.get(), reinterpret_cast<dGeomID>(space), &hit, &OdeWorld::on_ray);
     }
     return hit.distance;
@@ -222,7 +222,7 @@ class OdeWorld final : public World {
   /// An error that the engine raises in the middle of a step leaves jobs in the world's threading implementation, and
   /// destroying that would fail the next assertion. So it is never destroyed, only kept reachable: less than 1 kB.
   void abandon() {
-    contacts_.reset();
+    contacts_->abandon();
     object_space_.reset();
     environment_space_.reset();
     robot_space_.reset();

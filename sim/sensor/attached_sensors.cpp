@@ -14,6 +14,15 @@ constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 /// Directions shorter than this have no direction.
 constexpr double shortest = 1e-9;
 
+/// The first scan sets the beat: the others follow it by whole periods, each at the end of the first tick that is not
+/// earlier. scheduled: when this one was due; 0: it is the first.
+std::uint64_t next_scan_after(std::uint64_t scheduled, std::uint64_t period, std::uint64_t now) {
+  if (scheduled == 0 || period == 0) {
+    return now + period;
+  }
+  return scheduled + ((now - scheduled) / period + 1) * period;
+}
+
 }  // namespace
 
 AttachedSensors::AttachedSensors(const std::vector<AttachedSensor>& sensors, const Eigen::Vector3d& gravity,
@@ -78,7 +87,7 @@ void AttachedSensors::finish_tick(const World& world, std::span<const Pose> link
         measured_[i] = now >= next_scan_us_[i] ? 1 : 0;
         if (measured_[i] != 0) {
           scan(sensor, pose, world, out);
-          next_scan_us_[i] = std::max(next_scan_us_[i], now) + sensor.scan.period_us;
+          next_scan_us_[i] = next_scan_after(next_scan_us_[i], sensor.scan.period_us, now);
         }
         break;
       }

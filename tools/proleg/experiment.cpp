@@ -181,7 +181,7 @@ bool is_complete(const optimize::Experiment& experiment, std::uint32_t repetitio
   try {
     optimize::Store store(store_path(folder), experiment, result_key, optimize::Store::Opening::resume);
     for (std::uint32_t run = 0; run < repetitions; ++run) {
-      if (!store.ending(run)) {
+      if (!has_ended(store, experiment, run)) {
         return false;
       }
     }
@@ -260,6 +260,11 @@ std::vector<CheckedGait> check_gaits(const optimize::ThesisExperiment& thesis, c
   return checks;
 }
 
+int say_interrupted(const fs::path& folder) {
+  std::cerr << "proleg experiment: interrupted; the same command continues in " << folder.string() << '\n';
+  return exit_failed;
+}
+
 int experiment(Options options) {
   if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) {
     throw BadInput(
@@ -306,8 +311,7 @@ int experiment(Options options) {
   for (const auto& [method, experiment] : chosen) {
     MethodResult result = run_repetitions(method->name, experiment, *repetitions, worker_count, folder / method->name);
     if (result.runs.runs.size() < *repetitions) {
-      std::cerr << "proleg experiment: interrupted; the same command continues in " << folder.string() << '\n';
-      return exit_failed;
+      return say_interrupted(folder);
     }
     write_file(folder / method->table, optimize::experiment_table(thesis, result.runs));
     write_file(folder / method->runs_figure, optimize::draw_every_run(thesis, result.runs, references));
@@ -319,7 +323,11 @@ int experiment(Options options) {
   write_file(folder / thesis.comparison_figure, optimize::draw_method_comparison(thesis, all_runs, references));
   std::vector<CheckedGait> checks;
   if (!thesis.level_ground.empty()) {
-    checks = check_gaits(thesis, results, chosen, scenarios, folder);
+    try {
+      checks = check_gaits(thesis, results, chosen, scenarios, folder);
+    } catch (const CheckInterrupted&) {
+      return say_interrupted(folder);
+    }
   }
   const std::string engine(sim::name_of(chosen.front().experiment.scenario.environment.engine));
   const std::string judge =

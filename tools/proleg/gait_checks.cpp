@@ -10,6 +10,7 @@
 #include "sim/loop/simulation.hpp"
 #include "sim/optimize/evaluation/task.hpp"
 #include "sim/physics/physics_error.hpp"
+#include "tools/proleg/interrupt.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -20,12 +21,19 @@ using optimize::CrossingStage;
 constexpr optimize::WorldVariation variation{.spread = {.friction = 0.1, .mass = 0.1}, .start_m = 0.005};
 constexpr std::uint64_t worlds_seed = 1;
 
+void stop_if_interrupted() {
+  if (interrupted()) {
+    throw CheckInterrupted();
+  }
+}
+
 double run(const sim::Scenario& scenario, const optimize::DistanceOf& distance_of) {
   try {
     sim::Simulation simulation(scenario);
     simulation.leave_out_hashes();
     while (simulation.tick() < sim::tick_count(scenario)) {
       simulation.advance();
+      stop_if_interrupted();
     }
     return distance_of(simulation.plant());
   } catch (const sim::PhysicsError&) {
@@ -69,7 +77,7 @@ CheckedGait check_gait(NamedGait gait, const sim::EnvironmentModel& level, const
   scenario.environment.engine = optimize::judging_engine;
   CheckedGait checked{std::move(gait.name), run(scenario, distance_of), {}, 0.0};
   checked.worlds = optimize::distances_in_worlds(
-      scenario, checked_worlds, worlds_seed, variation, [](double) {}, distance_of);
+      scenario, checked_worlds, worlds_seed, variation, [](double) { stop_if_interrupted(); }, distance_of);
   scenario.environment = level;
   scenario.environment.engine = optimize::judging_engine;
   checked.level_m = run(scenario, distance_of);
@@ -124,6 +132,7 @@ std::vector<CrossingStage> crossing_stages(sim::Scenario scenario) {
     simulation.leave_out_hashes();
     while (simulation.tick() < sim::tick_count(scenario) && stages.size() < places.size()) {
       simulation.advance();
+      stop_if_interrupted();
       const Place& next = places[stages.size()];
       if (middle_of(simulation.plant()) >= extent.from + next.share * (extent.to - extent.from)) {
         const auto poses = simulation.plant().link_poses();

@@ -32,8 +32,12 @@ struct CheckedGait {
 
 inline constexpr std::uint32_t checked_worlds = 20;
 
+/// The user has interrupted a check (tools/proleg/interrupt.hpp).
+class CheckInterrupted {};
+
 /// Runs a gait in its own world, in worlds that differ (friction and masses by a tenth, start by 5 mm), and on level
-/// ground. level: the environment without the obstacle. distance: what the searches rate, in m.
+/// ground. level: the environment without the obstacle. distance: what the searches rate, in m. Throws
+/// CheckInterrupted.
 [[nodiscard]] CheckedGait check_gait(NamedGait gait, const sim::EnvironmentModel& level,
                                      const optimize::Objective& distance);
 
@@ -42,7 +46,7 @@ inline constexpr std::uint32_t checked_worlds = 20;
 [[nodiscard]] Json gait_checks_json(const std::vector<CheckedGait>& gaits);
 
 /// The four stages of figure 6.8 in a run of the scenario: the robot's middle on the second hill, in the pit behind it,
-/// at its end, and on the last hill. Fewer if the robot does not get there.
+/// at its end, and on the last hill. Fewer if the robot does not get there. Throws CheckInterrupted.
 [[nodiscard]] std::vector<optimize::CrossingStage> crossing_stages(sim::Scenario scenario);
 
 }  // namespace proleg::tools

@@ -27,6 +27,11 @@ double own_cpu_s() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
+/// The ending of a search that has used up its evaluations.
+std::string budget_ending(std::uint64_t evaluations) {
+  return "all " + std::to_string(evaluations) + " evaluations made";
+}
+
 }  // namespace
 
 void add_engine_option(CommandLine& command_line, ExperimentOptions& options) {
@@ -116,7 +121,7 @@ SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t r
     throw;
   } catch (const optimize::SearchEnded&) {
     if (evaluator.budget_spent()) {
-      outcome.ending = "all " + std::to_string(experiment.evaluations) + " evaluations made";
+      outcome.ending = budget_ending(experiment.evaluations);
     }
   }
   print_messages();
@@ -127,6 +132,13 @@ SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t r
     store.finish_run(run, outcome.ending);
   }
   return outcome;
+}
+
+bool has_ended(optimize::Store& store, const optimize::Experiment& experiment, std::uint32_t run) {
+  const std::optional<std::string> ending = store.ending(run);
+  const std::uint64_t made = store.evaluation_count(run);
+  const bool may_go_on = experiment.evaluations == 0 || made < experiment.evaluations;
+  return ending && !(may_go_on && *ending == budget_ending(made));
 }
 
 std::vector<optimize::Confirmation> confirm_best(const optimize::Experiment& experiment, optimize::Workers& workers,

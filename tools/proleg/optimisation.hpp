@@ -55,6 +55,9 @@ struct SearchOutcome {
 [[nodiscard]] SearchOutcome run_search(const optimize::Experiment& experiment, std::uint32_t run,
                                        optimize::Workers& workers, optimize::Store& store, const std::string& label);
 
+/// Whether a run has ended: with more evaluations than it had, one that has used them up goes on.
+[[nodiscard]] bool has_ended(optimize::Store& store, const optimize::Experiment& experiment, std::uint32_t run);
+
 /// Rates the best candidates of a search again, if it has ended and needs_confirmation(); otherwise returns nothing.
 /// Best first. If the user interrupts, the result is empty, and the search counts as interrupted.
 [[nodiscard]] std::vector<optimize::Confirmation> confirm_best(const optimize::Experiment& experiment,

@@ -39,7 +39,7 @@ class Repetitions {
     add_parts(*store);
     std::vector<std::uint32_t> runs;
     for (std::uint32_t run = 0; run < count_; ++run) {
-      if (!store->ending(run)) {
+      if (!has_ended(*store, experiment_, run)) {
         runs.push_back(run);
       }
     }
@@ -151,7 +151,8 @@ MethodResult run_repetitions(const std::string& name, const Experiment& experime
   const auto start = std::chrono::steady_clock::now();
   const Repetitions all(name, experiment, repetitions, folder);
   const std::vector<std::uint32_t> unfinished = all.unfinished();
-  if (unfinished.size() > 1) {
+  // Fewer searches than workers would not keep them busy. (An engine with batches divides a search's share.)
+  if (unfinished.size() > 1 && unfinished.size() * optimize::WorkerPool::tasks_of_worker(experiment) >= workers) {
     all.search_side_by_side(workers, unfinished);
   }
   MethodResult result = all.collect(workers);

@@ -246,7 +246,14 @@ void work_side_by_side(std::uint32_t processes, std::span<const std::uint32_t> n
   std::fflush(stdout);
   std::vector<std::unique_ptr<Process>> all;
   for (std::uint32_t i = 0; i < processes; ++i) {
-    all.push_back(std::make_unique<Process>([&, i] { work(i, [&] { return take(pipe); }); }));
+    try {
+      all.push_back(std::make_unique<Process>([&, i] { work(i, [&] { return take(pipe); }); }));
+    } catch (const std::system_error&) {
+      if (all.empty()) {
+        throw;
+      }
+      break;  // those that did start do the work
+    }
   }
   Relay(all).run();
 }

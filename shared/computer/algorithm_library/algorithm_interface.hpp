@@ -35,6 +35,7 @@ inline constexpr std::array algorithm_layout{
     LayoutFact{"bytes of Tuning", sizeof(Tuning)},
     LayoutFact{"bytes of Neighbour", sizeof(Neighbour)},
     LayoutFact{"bytes of Contacts", sizeof(Contacts)},
+    LayoutFact{"bytes of JointReadings", sizeof(JointReadings)},
     LayoutFact{"bytes of Surroundings", sizeof(Surroundings)},
     LayoutFact{"bytes of StateFrame", sizeof(StateFrame)},
     LayoutFact{"bytes of Pcg32", sizeof(Pcg32)},

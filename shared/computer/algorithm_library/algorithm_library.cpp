@@ -68,18 +68,18 @@ void ask(const std::string& file, const char* what, Function&& function) {
 std::unique_ptr<const GuardedAlgorithm> make_algorithm(const AlgorithmInterface& interface, const std::string& file) {
   check(interface, file);
   const ActuationModule* foreign = nullptr;
-  bool senses_contacts = false;
+  Senses senses;
   const auto captured = std::make_unique<CapturedDeclaration>();
   ask(file, "asked for its declaration", [&] {
     foreign = &interface.algorithm();
     captured->capture(foreign->declaration());
-    senses_contacts = foreign->senses_contacts();
+    senses = {foreign->senses_contacts(), foreign->senses_readings()};
   });
   if (captured->sources != interface.sources) {
     throw InputError(file, 0, "sources " + hexadecimal(captured->sources, 8) + " in the declaration of the algorithm",
                      "PROLEG_ALGORITHM_SOURCES, which is " + hexadecimal(interface.sources, 8));
   }
-  return std::make_unique<const GuardedAlgorithm>(file, *foreign, *captured, senses_contacts);
+  return std::make_unique<const GuardedAlgorithm>(file, *foreign, *captured, senses);
 }
 
 std::unique_ptr<const GuardedAlgorithm> load_algorithm(const std::string& path) {

@@ -123,8 +123,8 @@ class GuardedAlgorithm::Call {
 };
 
 GuardedAlgorithm::GuardedAlgorithm(std::string file, const ActuationModule& foreign,
-                                   const CapturedDeclaration& captured, bool senses_contacts)
-    : file_(std::move(file)), foreign_(foreign), copy_(captured, file_), senses_contacts_(senses_contacts) {}
+                                   const CapturedDeclaration& captured, Senses senses)
+    : file_(std::move(file)), foreign_(foreign), copy_(captured, file_), senses_(senses) {}
 
 void GuardedAlgorithm::fail(const std::string& where, const std::string& what) const {
   const std::lock_guard lock(mutex_);

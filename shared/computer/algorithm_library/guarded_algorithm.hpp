@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -17,6 +18,12 @@ class AlgorithmFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What an algorithm reads of its module and its robot.
+struct Senses {
+  bool contacts = false;
+  std::uint8_t readings = 0;
+};
+
 /// A user's algorithm, called so that its mistakes are reported: it may throw, crash, loop, and write beside its
 /// arrays. Each function then throws AlgorithmFailure, through the core too, which has no code to clean up. Once it has
 /// failed, all later calls fail with the same text, without a call.
@@ -27,11 +34,12 @@ class GuardedAlgorithm final : public ActuationModule {
   /// file: of the library, for messages. foreign: must outlive this object. captured: its declaration. Throws
   /// InputError if that is wrong.
   GuardedAlgorithm(std::string file, const ActuationModule& foreign, const CapturedDeclaration& captured,
-                   bool senses_contacts);
+                   Senses senses);
   ~GuardedAlgorithm() = default;
 
   [[nodiscard]] const Declaration& declaration() const override { return copy_.declaration(); }
-  [[nodiscard]] bool senses_contacts() const override { return senses_contacts_; }
+  [[nodiscard]] bool senses_contacts() const override { return senses_.contacts; }
+  [[nodiscard]] std::uint8_t senses_readings() const override { return senses_.readings; }
   void derive(const JointContext& context, const std::int32_t* parameters, std::int32_t* derived) const override;
   void reset(const JointContext& context, const Tuning& tuning, Pcg32& noise, std::int32_t* state) const override;
   void rejoin(const Surroundings& surroundings, const Tuning& tuning, std::int32_t* state) const override;
@@ -50,7 +58,7 @@ class GuardedAlgorithm final : public ActuationModule {
   std::string file_;
   const ActuationModule& foreign_;
   DeclarationCopy copy_;
-  bool senses_contacts_;
+  Senses senses_;
   mutable std::atomic<bool> has_failed_ = false;
   mutable std::mutex mutex_;
   mutable std::string failure_;

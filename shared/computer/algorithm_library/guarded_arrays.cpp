@@ -13,6 +13,8 @@ namespace {
 constexpr std::int32_t pattern = 0x5A5AA5A5;
 /// Values before an array that are looked at: an index that is wrong by more is rare, and the look costs time.
 constexpr std::size_t front_values = 128;
+// The smallest page has 4096 bytes.
+static_assert((front_values + GuardedArrays::most_values) * sizeof(std::int32_t) <= 4096);
 constexpr std::array<const char*, GuardedArrays::array_count> names{"parameters", "derived", "state", "next", "frame"};
 
 }  // namespace

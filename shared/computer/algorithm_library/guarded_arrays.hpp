@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+
+#include "shared/gait/declaration.hpp"
 
 namespace proleg {
 
@@ -18,6 +21,8 @@ class GuardedArrays {
  public:
   enum class Array : std::uint8_t { parameters, derived, state, next, frame };
   static constexpr std::size_t array_count = 5;
+  static constexpr std::size_t most_values =
+      std::max({std::size_t{max_parameters}, std::size_t{max_derived}, max_internal_values});
 
   /// Throws std::bad_alloc.
   GuardedArrays();
@@ -25,7 +30,7 @@ class GuardedArrays {
   GuardedArrays(const GuardedArrays&) = delete;
   GuardedArrays& operator=(const GuardedArrays&) = delete;
 
-  /// Copies the values into the array; returns it. At most 16 values.
+  /// Copies the values into the array; returns it. At most `most_values`.
   std::int32_t* place(Array array, std::span<const std::int32_t> values);
   /// Of an array that was placed.
   [[nodiscard]] std::span<const std::int32_t> values(Array array) const;

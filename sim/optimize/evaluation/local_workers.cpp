@@ -108,7 +108,7 @@ class LocalWorkers::Implementation {
   struct Worker {
     std::unique_ptr<WorkerProcess> process;  ///< null: not replaced
     std::optional<Assignment> assignment;
-    Clock::duration busy{};    ///< with its tasks, while somebody waited
+    Clock::duration busy{};    ///< with its tasks; of the time between two calls of wait() at most a second
     unsigned idle_deaths = 0;  ///< since its last result
     bool readable = false;
   };
@@ -148,7 +148,6 @@ class LocalWorkers::Implementation {
     for (const Worker& worker : workers_) {
       sockets.push_back({worker.process != nullptr ? worker.process->socket() : -1, POLLIN, 0});
     }
-    const Clock::time_point start = Clock::now();
     const int ready = poll(sockets.data(), sockets.size(), static_cast<int>(timeout.count()));
     if (ready < 0) {
       if (errno != EINTR) {
@@ -156,7 +155,10 @@ class LocalWorkers::Implementation {
       }
       return std::nullopt;
     }
-    const auto passed = std::min<Clock::duration>(Clock::now() - start, max_poll_time);
+    // A second at most: a program that was stopped (Ctrl-Z) and continued keeps its workers.
+    const Clock::time_point now = Clock::now();
+    const auto passed = std::min<Clock::duration>(now - last_poll_, max_poll_time);
+    last_poll_ = now;
     for (std::size_t i = 0; i < workers_.size(); ++i) {
       workers_[i].readable = sockets[i].revents != 0;
       workers_[i].busy += passed;
@@ -258,6 +260,7 @@ class LocalWorkers::Implementation {
   RunTasks run_;
   Clock::duration limit_;
   std::vector<Worker> workers_;
+  Clock::time_point last_poll_ = Clock::now();
   std::deque<Assignment> orphaned_;  ///< tasks whose worker died, until one is idle
   std::deque<Done> finished_;        ///< results that nobody has received
   std::vector<std::string> messages_;

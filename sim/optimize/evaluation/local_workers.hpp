@@ -9,8 +9,9 @@
 
 namespace proleg::optimize {
 
-/// How long a task may take before its worker counts as hung; a batch, as long as its tasks one after the other. Only
-/// time within wait() counts: a program that was stopped (Ctrl-Z) and continued keeps its workers.
+/// How long a task may take before its worker counts as hung; a batch, as long as its tasks one after the other. Of the
+/// time between two calls of wait() a second counts at most: a program that was stopped (Ctrl-Z) and continued keeps
+/// its workers.
 struct TaskLimit {
   std::chrono::milliseconds fixed{60'000};
   double per_simulated_second = 50.0;  ///< s; a simulation runs about a hundred times faster than this robot crawls

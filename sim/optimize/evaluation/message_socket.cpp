@@ -37,7 +37,7 @@ void close_all_but(std::span<const int> kept) {
 std::pair<int, int> make_message_sockets() {
   std::array<int, 2> ends{};
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
-    throw std::system_error(errno, std::generic_category());
+    throw std::system_error(errno, std::generic_category(), "opening a socket");
   }
   for (const int end : ends) {
     setsockopt(end, SOL_SOCKET, SO_SNDBUF, &max_message, sizeof max_message);

@@ -33,6 +33,8 @@ constexpr milliseconds collecting_time{5};
 /// Without an idle worker nothing is urgent but results.
 constexpr milliseconds result_time{100};
 
+constexpr const char* pool_has_ended = "the process that simulates for all searches has ended";
+
 /// What a search sends when it has ended. No list of tasks is so short.
 const Bytes farewell{std::byte{0}};
 
@@ -58,9 +60,10 @@ Bytes reply_with(std::size_t share, std::span<const TrialResult> results) {
 /// The process of the pool.
 class Pool {
  public:
-  Pool(const Experiment& experiment, std::uint32_t workers, std::span<const int> sockets, const RunTasks& run)
+  Pool(const Experiment& experiment, std::uint32_t workers, std::span<const int> sockets, const RunTasks& run,
+       TaskLimit limit)
       : experiment_(experiment),
-        workers_(experiment, workers, run),
+        workers_(experiment, workers, run, limit),
         batch_size_(batch_of(experiment)),
         active_(sockets.size()) {
     for (const int socket : sockets) {
@@ -126,7 +129,7 @@ class Pool {
     Search& search = searches_[number];
     const Bytes message = receive_message(search.socket);
     const std::optional<std::vector<Task>> tasks = tasks_from(message);
-    if (!tasks) {  // the farewell, or the search has died
+    if (!tasks) {  // the farewell
       close(std::exchange(search.socket, -1));
       --active_;
       return;
@@ -175,7 +178,10 @@ class Pool {
         for (std::optional<TrialResult>& each : search.results) {
           results.push_back(std::move(*each));
         }
-        send_message(search.socket, reply_with(share_of_search(experiment_, workers_.count(), active_), results));
+        if (!send_message(search.socket,
+                          reply_with(share_of_search(experiment_, workers_.count(), active_), results))) {
+          throw std::runtime_error("the system cannot send results to a search");
+        }
       }
       collecting_until_ = Clock::now() + collecting_time;
     }
@@ -213,7 +219,9 @@ class PooledWorkers final : public Workers {
       tickets_.push_back(each.ticket);
       tasks.push_back(each.task);
     }
-    send_message(socket_, to_bytes(tasks));  // if the pool has ended, wait() says so
+    if (!send_message(socket_, to_bytes(tasks))) {
+      throw std::runtime_error(pool_has_ended);
+    }
   }
 
   std::optional<Done> wait(milliseconds timeout) override {
@@ -239,7 +247,7 @@ class PooledWorkers final : public Workers {
       results = results_from(std::span(reply).subspan(1));
     }
     if (!results || results->size() != tickets_.size()) {
-      throw std::runtime_error("the process that simulates for all searches has ended");
+      throw std::runtime_error(pool_has_ended);
     }
     share_ = std::to_integer<std::size_t>(reply.front());
     for (std::size_t i = 0; i < results->size(); ++i) {
@@ -255,10 +263,10 @@ class PooledWorkers final : public Workers {
 };
 
 [[noreturn]] void serve(const Experiment& experiment, std::uint32_t workers, std::span<const int> sockets,
-                        const RunTasks& run) {
+                        const RunTasks& run, TaskLimit limit) {
   int status = 0;
   try {
-    Pool(experiment, workers, sockets, run).run();
+    Pool(experiment, workers, sockets, run, limit).run();
   } catch (const std::exception& error) {
     std::cerr << std::string(error.what()) + "\n" << std::flush;
     status = 1;
@@ -268,7 +276,8 @@ class PooledWorkers final : public Workers {
 
 }  // namespace
 
-WorkerPool::WorkerPool(const Experiment& experiment, std::uint32_t workers, std::uint32_t searches, const RunTasks& run)
+WorkerPool::WorkerPool(const Experiment& experiment, std::uint32_t workers, std::uint32_t searches, const RunTasks& run,
+                       TaskLimit limit)
     : first_share_(share_of_search(experiment, workers, searches)) {
   std::vector<int> its_ends;
   for (std::uint32_t i = 0; i < searches; ++i) {
@@ -280,7 +289,7 @@ WorkerPool::WorkerPool(const Experiment& experiment, std::uint32_t workers, std:
   process_ = fork();
   if (process_ == 0) {
     leave_parent(its_ends, parent);
-    serve(experiment, workers, its_ends, run);
+    serve(experiment, workers, its_ends, run, limit);
   }
   const int error = errno;
   std::ranges::for_each(its_ends, close);
@@ -297,8 +306,11 @@ WorkerPool::~WorkerPool() {
   std::ranges::for_each(sockets_, close);
 }
 
+std::size_t WorkerPool::tasks_of_worker(const Experiment& experiment) { return batch_of(experiment); }
+
 std::size_t WorkerPool::useful_searches(const Experiment& experiment, std::uint32_t workers) {
-  return 2 * workers * batch_of(experiment);
+  constexpr std::size_t most_processes = 200;  // each takes three of the parent's files, of which it may have 1024
+  return std::min(2 * workers * batch_of(experiment), most_processes);
 }
 
 std::unique_ptr<Workers> WorkerPool::workers_of(std::uint32_t search) const {

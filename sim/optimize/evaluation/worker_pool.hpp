@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim/optimize/evaluation/worker_process.hpp"
+#include "sim/optimize/evaluation/local_workers.hpp"
 #include "sim/optimize/evaluation/workers.hpp"
 
 namespace proleg::optimize {
@@ -17,14 +17,16 @@ class WorkerPool {
  public:
   /// Forks the process of the pool, which forks the workers. It ends with this object, and with this process in any
   /// case. searches: number of processes that will use it; all must be forked from this one, after this. experiment:
-  /// must outlive this. run: what a worker does with its tasks. The process must have one thread. Throws
+  /// must outlive this. run, limit: as those of LocalWorkers. The process must have one thread. Throws
   /// std::system_error if the system cannot start a process.
   WorkerPool(const Experiment& experiment, std::uint32_t workers, std::uint32_t searches,
-             const RunTasks& run = run_trials);
+             const RunTasks& run = run_trials, TaskLimit limit = {});
   ~WorkerPool();
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
+  /// Tasks that a worker gets at once, at most: 1 if the engine has no batches.
+  [[nodiscard]] static std::size_t tasks_of_worker(const Experiment& experiment);
   /// More searches than this at the same time use the workers no better.
   [[nodiscard]] static std::size_t useful_searches(const Experiment& experiment, std::uint32_t workers);
 

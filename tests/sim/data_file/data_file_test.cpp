@@ -68,6 +68,16 @@ TEST(DataFile, PartsHaveTheNamesOfTheHeader) {
   EXPECT_EQ(table.rows[0].at("servo_currents.r"), "101");
 }
 
+TEST(DataFile, PartsWithOneNameHaveDifferentColumns) {
+  const ReadTable table =
+      table_of_text(replaced(printed, R"(sinusoidal parts="5")", R"(sinusoidal names="a a a b a" parts="5")"));
+  const std::string second = "Angle.a.PatternGenerator_sinusoidal";
+  EXPECT_EQ(table.rows[0].at("Angle.a"), "5.80648");
+  EXPECT_EQ(table.rows[0].at(second), "-29.297");
+  EXPECT_EQ(table.rows[0].count(second + ".2"), 1U);
+  EXPECT_EQ(table.rows[0].count(second + ".3"), 1U);
+}
+
 TEST(DataFile, TwoModulesWithOneTypeHaveDifferentColumns) {
   std::string text = replaced(printed, "<typenames>desired_angle", "<typenames>Angle");
   for (int i = 0; i < 2; ++i) {

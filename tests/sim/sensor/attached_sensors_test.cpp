@@ -183,6 +183,21 @@ TEST_P(Laser, SeesOtherLinksAndNotItsOwn) {
   EXPECT_NEAR(rig.values()[0], 0.1 - front_face, 1e-9) << "the rear face of the head";
 }
 
+TEST_P(Laser, SeesAnObjectThatMoves) {
+  EnvironmentModel environment = weightless();
+  MovingObject crate;
+  crate.name = "crate";
+  crate.pose.position = {2, 0, 0};
+  crate.geometries = box_at({}, {0.25, 0.25, 0.25}).geometries;
+  crate.mass.mass = 1.0;
+  crate.mass.inertia = Eigen::Matrix3d::Identity() * 0.01;
+  environment.moving_objects.push_back(crate);
+  Rig rig(GetParam(), {laser_of(0, {}, 0, 90, 2, 10)}, environment);
+  rig.run_ticks(1);
+  EXPECT_NEAR(rig.values()[0], 1.75, 1e-6);
+  EXPECT_EQ(rig.values()[1], 10.0);
+}
+
 TEST_P(Laser, ScansInItsPeriod) {
   AttachedSensor laser = laser_of(0, {}, 0, 1, 1, 10);
   laser.scan.period_us = 3 * tick_us;
@@ -193,6 +208,18 @@ TEST_P(Laser, ScansInItsPeriod) {
     scans += rig.sensors().measured()[0] != 0 ? '1' : '0';
   }
   EXPECT_EQ(scans, "100100100");
+}
+
+TEST_P(Laser, KeepsItsPeriodOnAverageIfThatIsNoMultipleOfTheTick) {
+  AttachedSensor laser = laser_of(0, {}, 0, 1, 1, 10);
+  laser.scan.period_us = 5 * tick_us / 2;
+  Rig rig(GetParam(), {laser}, weightless());
+  std::string scans;
+  for (int tick = 0; tick < 11; ++tick) {
+    rig.run_ticks(1);
+    scans += rig.sensors().measured()[0] != 0 ? '1' : '0';
+  }
+  EXPECT_EQ(scans, "10010100101") << "2.5 ticks after the first scan comes the next, at the end of the third";
 }
 
 INSTANTIATE_TEST_SUITE_P(Engines, Laser, testing::Values("ode", "mujoco"));

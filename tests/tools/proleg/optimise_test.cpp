@@ -362,6 +362,10 @@ TEST_F(Optimise, RepetitionsSideBySideGiveTheSameAlsoIfTheyAreInterrupted) {
   }
   const Json continued = json_of(proleg(words("parts", "2", "60")));
   EXPECT_EQ(one["methods"][0]["runs"], continued["methods"][0]["runs"]);
+
+  static_cast<void>(json_of(proleg(words("longer", "2", "30"))));
+  const Json longer = json_of(proleg(words("longer", "2", "60")));
+  EXPECT_EQ(one["methods"][0]["runs"], longer["methods"][0]["runs"]) << "more evaluations than the first time";
 }
 
 TEST_F(Optimise, AnExperimentWritesTheThesissTablesAndFiguresAndContinues) {

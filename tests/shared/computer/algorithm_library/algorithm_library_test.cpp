@@ -52,6 +52,7 @@ TEST_F(AlgorithmLibrary, TakesAnInterfaceOfThisCheckout) {
   ASSERT_EQ(declaration.frame.size(), 1U);
   EXPECT_EQ(declaration.frame[0].bytes, 2);
   EXPECT_FALSE(algorithm->senses_contacts());
+  EXPECT_EQ(algorithm->senses_readings(), JointReadings::inclination) << "as if it were built in";
 }
 
 TEST_F(AlgorithmLibrary, KeepsTheDeclarationAlthoughTheLibraryChangesIt) {

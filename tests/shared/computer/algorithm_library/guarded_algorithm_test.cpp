@@ -22,7 +22,7 @@ constexpr unsigned joints = 3;
 std::unique_ptr<GuardedAlgorithm> guarded(const ActuationModule& algorithm) {
   CapturedDeclaration captured;
   captured.capture(algorithm.declaration());
-  return std::make_unique<GuardedAlgorithm>("counter.so", algorithm, captured, false);
+  return std::make_unique<GuardedAlgorithm>("counter.so", algorithm, captured, Senses{});
 }
 
 KernelConfiguration configuration_of(const ActuationModule& algorithm) {

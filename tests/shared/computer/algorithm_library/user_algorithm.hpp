@@ -24,6 +24,7 @@ inline constexpr Declaration user_declaration{96,         "counter", "counts its
 class Counter : public ActuationModule {
  public:
   [[nodiscard]] const Declaration& declaration() const override { return user_declaration; }
+  [[nodiscard]] std::uint8_t senses_readings() const override { return JointReadings::inclination; }
   void derive(const JointContext& /*context*/, const std::int32_t* parameters, std::int32_t* derived) const override {
     derived[7] = 2 * parameters[0];
   }

@@ -148,6 +148,25 @@ TEST(WorkerPool, WorksForTheOthersWhenASearchIsKilled) {
   EXPECT_EQ(statuses, (std::vector<int>{-1, 0}));
 }
 
+TEST(WorkerPool, ReplacesAWorkerThatHangsWhileAnotherIsIdle) {
+  const TemporaryFolder folder;
+  const Experiment experiment = small_experiment();
+  const RunTasks run = one_by_one([&](const Experiment& its, const Task& task) {
+    if (!std::filesystem::exists(folder / "hung")) {
+      std::ofstream(folder / "hung") << '.';
+      std::this_thread::sleep_for(std::chrono::hours(1));
+    }
+    return made_up_trial(its, task);
+  });
+  const WorkerPool pool(experiment, 2, 1, run, {.fixed = milliseconds(300), .per_simulated_second = 0.0});
+  const std::vector<int> statuses =
+      statuses_of(pool, 1, [&](std::uint32_t /*search*/, const std::unique_ptr<Workers>& workers) {
+        const Task task{0, 3, 0, {1, 0, 0}, {}};
+        return exact(result_of(*workers, task)) == exact(made_up_trial(experiment, task)) ? 0 : 1;
+      });
+  EXPECT_EQ(statuses, (std::vector<int>{0}));
+}
+
 TEST(WorkerPool, RepeatsATaskWhoseWorkerDiedAndEndsWithOneThatCannotBeSimulated) {
   const TemporaryFolder folder;
   const Experiment experiment = small_experiment();

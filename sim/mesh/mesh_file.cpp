@@ -16,12 +16,14 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "shared/computer/text/text.hpp"
+#include "sim/mesh/import_process.hpp"
 #include "sim/mesh/mesh_error.hpp"
 
 namespace Assimp {
@@ -76,9 +78,7 @@ class MemoryStream final : public Assimp::IOStream {
 /// The files that Assimp may read: the mesh, and what the caller gives.
 class Files final : public Assimp::IOSystem {
  public:
-  using Companion = std::function<std::optional<std::string>(const std::string& name)>;
-
-  Files(std::string name, const std::string& bytes, const Companion& companion)
+  Files(std::string name, const std::string& bytes, const MeshCompanion& companion)
       : name_(std::move(name)), bytes_(bytes), companion_(companion) {}
 
   bool Exists(const char* name) const override { return bytes_of(name).has_value(); }
@@ -94,12 +94,18 @@ class Files final : public Assimp::IOSystem {
 
  private:
   [[nodiscard]] std::optional<std::string> bytes_of(const std::string& name) const {
-    return name == name_ ? std::optional(bytes_) : companion_(name);
+    if (name == name_) {
+      return bytes_;
+    }
+    const auto known = companions_.find(name);
+    return known != companions_.end() ? known->second : companions_.emplace(name, companion_(name)).first->second;
   }
 
   std::string name_;
   const std::string& bytes_;
-  const Companion& companion_;
+  const MeshCompanion& companion_;
+  /// Assimp first asks whether a file is there.
+  mutable std::map<std::string, std::optional<std::string>> companions_;
 };
 
 /// Assimp has importers for dozens of formats. Only those of the four endings may see the file.
@@ -169,6 +175,10 @@ TriangleMesh joined_meshes(const aiScene& scene, const std::string& name) {
       throw MeshError("more than " + std::to_string(max_triangles) + " triangles in " + in_quotes(name),
                       "at most that; programs for meshes can reduce it");
     }
+    if (result.vertices.size() > max_mesh_vertices) {
+      throw MeshError("more than " + std::to_string(max_mesh_vertices) + " vertices in " + in_quotes(name),
+                      "at most that; programs for meshes can reduce it");
+    }
   }
   if (result.triangles.empty()) {
     refuse(name, "no triangle");
@@ -185,7 +195,7 @@ bool is_mesh_file_name(std::string_view name) {
   return std::ranges::find(endings, lower_case(std::filesystem::path(name).extension().string())) != endings.end();
 }
 
-TriangleMesh read_mesh_file(const std::string& name, const std::string& bytes, const Files::Companion& companion) {
+TriangleMesh import_mesh(const std::string& name, const std::string& bytes, const MeshCompanion& companion) {
   const std::string ending = lower_case(std::filesystem::path(name).extension().string());
   if (!is_mesh_file_name(name)) {
     throw MeshError("a mesh file of another kind, " + in_quotes(name), std::string(mesh_file_endings));
@@ -222,6 +232,11 @@ TriangleMesh read_mesh_file(const std::string& name, const std::string& bytes, c
         "a mesh that cannot be read, " + in_quotes(name) + " (Assimp: " + one_line(shortened(error.what(), 200)) + ")",
         "a file of the format that its ending says");
   }
+}
+
+TriangleMesh read_mesh_file(const std::string& name, const std::string& bytes, const MeshCompanion& companion) {
+  return import_in_child(name, companion,
+                         [&](const MeshCompanion& beside) { return import_mesh(name, bytes, beside); });
 }
 
 }  // namespace proleg::sim

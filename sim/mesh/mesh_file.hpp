@@ -18,16 +18,27 @@ inline constexpr std::string_view mesh_file_endings = ".stl, .obj, .dae or .off"
 /// More triangles than any simulation of a link or an obstacle needs.
 inline constexpr std::size_t max_triangles = 100'000;
 
+/// More than so many triangles have; points and lines have vertices too.
+inline constexpr std::size_t max_mesh_vertices = 3 * max_triangles;
+
+/// Gives the bytes of a file beside a mesh file, such as the materials of an OBJ file, or nothing.
+using MeshCompanion = std::function<std::optional<std::string>(const std::string& name)>;
+
 /// Reads a mesh with the Open Asset Import Library (Assimp). All parts of the file become one mesh, in the coordinates
 /// of the file, or in metres if the file states a unit. Colours are those of its vertices or materials.
 ///
-/// name: of the file; its ending says the format. bytes: of the file. companion: gives the bytes of a file beside it,
-/// such as the materials of an OBJ file, or nothing.
+/// The library runs in a child of this process, which a damaged file can end (sim/mesh/import_process.hpp).
 ///
-/// Throws MeshError for a file that Assimp cannot read, without triangles, with more than max_triangles, or with a
-/// number that is not finite.
-[[nodiscard]] TriangleMesh read_mesh_file(
-    const std::string& name, const std::string& bytes,
-    const std::function<std::optional<std::string>(const std::string& name)>& companion);
+/// name: of the file; its ending says the format. bytes: of the file. companion: is called in this process.
+///
+/// Throws MeshError for a file that Assimp cannot read, at which it ends or needs too much memory or time, without
+/// triangles, with more than max_triangles or max_mesh_vertices, or with a number that is not finite; and what
+/// `companion` throws.
+[[nodiscard]] TriangleMesh read_mesh_file(const std::string& name, const std::string& bytes,
+                                          const MeshCompanion& companion);
+
+/// As read_mesh_file(), but in this process: a damaged file can end it. For fuzz tests.
+[[nodiscard]] TriangleMesh import_mesh(const std::string& name, const std::string& bytes,
+                                       const MeshCompanion& companion);
 
 }  // namespace proleg::sim

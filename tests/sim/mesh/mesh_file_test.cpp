@@ -191,5 +191,47 @@ TEST(MeshFile, TooManyTrianglesAreRefused) {
   EXPECT_EQ(refusal("a.stl", binary_stl(mesh)), "more than 100000 triangles in 'a.stl'");
 }
 
+/// A COLLADA file with other nodes beside those of its scene.
+std::string collada_with_nodes(const std::string& nodes, const std::string& scene) {
+  std::string text = collada("1", "Z_UP");
+  text.insert(text.find("<library_visual_scenes>"), "<library_nodes>" + nodes + "</library_nodes>");
+  const std::string node = R"(<node id="n">)";
+  return text.insert(text.find(node) + node.size(), scene);
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+constexpr const char* ends_assimp = "a file at which the mesh library ends with signal 11, 'a.dae'";
+
+TEST(MeshFile, AFileThatEndsAssimpIsRefused) {
+  const std::string cycle = R"(<node id="a0"><instance_node url="#a0"/></node>)";
+  EXPECT_EQ(refusal("a.dae", collada_with_nodes(cycle, R"(<instance_node url="#a0"/>)")), ends_assimp);
+  EXPECT_EQ(refusal("a.dae", replaced(collada("1", "Z_UP"), R"(stride="3")", R"(stride="3000000000")")), ends_assimp);
+  std::string open;
+  std::string close;
+  for (int level = 0; level < 60'000; ++level) {
+    open += "<node>";
+    close += "</node>";
+  }
+  EXPECT_EQ(refusal("a.dae", collada_with_nodes("", open + close)), ends_assimp);
+}
+
+TEST(MeshFile, AFileThatNeedsTooMuchMemoryIsRefused) {
+  const std::string too_much = "a file that needs more than 2 GiB of memory, ";
+  EXPECT_EQ(refusal("a.off", "OFF\n400000000 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), too_much + "'a.off'");
+  EXPECT_EQ(refusal("a.off", "OFF\n3 400000000 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"), too_much + "'a.off'");
+  std::string nodes;
+  for (int level = 0; level < 30; ++level) {
+    const std::string next = R"(<instance_node url="#a)" + std::to_string(level + 1) + R"("/>)";
+    nodes += R"(<node id="a)" + std::to_string(level) + R"(">)" + next + next + "</node>";
+  }
+  nodes += R"(<node id="a30"/>)";
+  EXPECT_EQ(refusal("a.dae", collada_with_nodes(nodes, R"(<instance_node url="#a0"/>)")), too_much + "'a.dae'");
+  // AddressSanitizer reserves the memory of these numbers, which are not there.
+  EXPECT_NE(refusal("a.dae", replaced(collada("1", "Z_UP"), R"(count="12")", R"(count="2000000000")")), "nothing");
+}
+
 }  // namespace
 }  // namespace proleg::sim

@@ -1,12 +1,20 @@
 // Reads arbitrary bytes as a mesh file. The first byte says the format. The reader must return a mesh that the checks,
 // the hull and the solid take, or throw a MeshError of one line.
+//
+// The import runs in this process, where the fuzzer sees what an input reaches and the sanitizers report errors in the
+// reader; a child for each input would take three times as long. So an input that ends Assimp ends this program too. If
+// the fault is in libassimp (look at the trace), that is no error of the reader, which runs the import in a child:
+// mesh_file_test and import_process_test show what becomes of one that ends. Inputs with large numbers are left out:
+// Assimp reserves memory for as many vertices as a file says.
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -42,6 +50,35 @@ void refusing(const Action& action) {
   }
 }
 
+void check_mesh(const TriangleMesh& mesh) {
+  require(!mesh.triangles.empty() && mesh.triangles.size() <= max_triangles, "a mesh has triangles, not too many");
+  require(mesh.vertices.size() <= max_mesh_vertices, "a mesh has not too many vertices");
+  require(mesh.colours.empty() || mesh.colours.size() == mesh.vertices.size(), "a colour for each vertex, or none");
+  for (const Eigen::Vector3d& vertex : mesh.vertices) {
+    require(vertex.allFinite(), "vertices are finite");
+  }
+  for (const auto& triangle : mesh.triangles) {
+    require(std::ranges::all_of(triangle, [&](std::uint32_t corner) { return corner < mesh.vertices.size(); }),
+            "triangles name vertices");
+  }
+  refusing([&] { require_size(mesh, 0.001, 5.0); });
+  refusing([&] { require_area(mesh); });
+  refusing([&] { require_closed(mesh); });
+  refusing([&] { static_cast<void>(without_slivers(mesh)); });
+  refusing([&] { require(convex_hull(mesh).mesh.vertices.size() <= max_hull_corners, "a hull has few corners"); });
+  static_cast<void>(solid_of(mesh));
+}
+
+std::optional<std::string> materials(const std::string& /*name*/) { return "newmtl a\nKd 1 0 0\n"; }
+
+bool has_large_number(const std::string& bytes) {
+  int digits = 0;
+  return std::ranges::any_of(bytes, [&digits](unsigned char c) {
+    digits = std::isdigit(c) != 0 ? digits + 1 : 0;
+    return digits > 6;
+  });
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -49,25 +86,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) {
     return 0;
   }
+  const char* const name = names[data[0] % names.size()];
   const std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
-  refusing([&] {
-    const TriangleMesh mesh = read_mesh_file(names[data[0] % names.size()], bytes,
-                                             [](const std::string&) { return std::optional("newmtl a\nKd 1 0 0\n"); });
-    require(!mesh.triangles.empty() && mesh.triangles.size() <= max_triangles, "a mesh has triangles, not too many");
-    require(mesh.colours.empty() || mesh.colours.size() == mesh.vertices.size(), "a colour for each vertex, or none");
-    for (const Eigen::Vector3d& vertex : mesh.vertices) {
-      require(vertex.allFinite(), "vertices are finite");
-    }
-    for (const auto& triangle : mesh.triangles) {
-      require(std::ranges::all_of(triangle, [&](std::uint32_t corner) { return corner < mesh.vertices.size(); }),
-              "triangles name vertices");
-    }
-    refusing([&] { require_size(mesh, 0.001, 5.0); });
-    refusing([&] { require_area(mesh); });
-    refusing([&] { require_closed(mesh); });
-    refusing([&] { static_cast<void>(without_slivers(mesh)); });
-    refusing([&] { require(convex_hull(mesh).mesh.vertices.size() <= max_hull_corners, "a hull has few corners"); });
-    static_cast<void>(solid_of(mesh));
-  });
+  if (!has_large_number(bytes)) {
+    refusing([&] { check_mesh(import_mesh(name, bytes, materials)); });
+  }
   return 0;
 }

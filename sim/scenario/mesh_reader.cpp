@@ -12,6 +12,7 @@
 #include "sim/mesh/mesh_error.hpp"
 #include "sim/mesh/mesh_file.hpp"
 #include "sim/mesh/mesh_solid.hpp"
+#include "sim/scenario/data_url.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {
@@ -115,7 +116,7 @@ std::vector<double> all_numbers(const XmlElement& element, std::string_view text
 std::shared_ptr<const TriangleMesh> read_mesh_of_file(const XmlElement& element, MeshUse use, bool is_open,
                                                       SourceSet& sources, std::vector<std::string>& remarks) {
   const FileMention mention = read_mention(element);
-  const SourceSet::Bytes file = sources.read_bytes(element, mention.file);
+  const SourceSet::Bytes file = sources.find_bytes(element, mention.file);
   const std::string name = name_of(file.path);
   const std::string key = name + '\n' + exact_text(mention.scale.x()) + ' ' + exact_text(mention.scale.y()) + ' ' +
                           exact_text(mention.scale.z()) + '\n' + std::to_string(static_cast<int>(use)) +
@@ -123,8 +124,8 @@ std::shared_ptr<const TriangleMesh> read_mesh_of_file(const XmlElement& element,
   std::shared_ptr<const TriangleMesh>& known = sources.meshes()[key];
   if (!known) {
     TriangleMesh mesh = with_place(element, "", [&] {
-      return read_mesh_file(mention.file, file.bytes, [&](const std::string& beside) {
-        return sources.companion(file.path.parent_path() / std::filesystem::path(beside).filename());
+      return read_mesh_file(mention.file, bytes_of_source(*file.source), [&](const std::string& beside) {
+        return sources.companion(element, file.path.parent_path() / std::filesystem::path(beside).filename());
       });
     });
     for (Eigen::Vector3d& vertex : mesh.vertices) {
@@ -198,7 +199,7 @@ void read_height_field(const XmlElement& element, SourceSet& sources, Geometry& 
                    "one of them");
   }
   const XmlElement& place = heights ? *heights : *data;
-  const std::string text = heights ? heights->text() : sources.read_bytes(*data, data->text()).bytes;
+  const std::string text = heights ? heights->text() : bytes_of_source(*sources.find_bytes(*data, data->text()).source);
   field.heights = all_numbers(place, text, coordinates, count);
   if (field.heights.size() != count) {
     place.refuse(std::to_string(field.heights.size()) + " heights",

@@ -98,15 +98,25 @@ void SourceSet::count_bytes(const XmlElement& mention, std::size_t bytes) {
   }
 }
 
-SourceSet::Bytes SourceSet::read_bytes(const XmlElement& mention, const std::string& reference) {
-  Found found = find(mention, reference, Contents::any);
-  count_bytes(mention, found.text->size());
-  return {std::move(found.path), bytes_of_source(*found.text)};
+void SourceSet::count_once(const XmlElement& mention, const std::filesystem::path& path, std::size_t bytes) {
+  if (counted_.insert(name_of(path)).second) {
+    count_bytes(mention, bytes);
+  }
 }
 
-std::optional<std::string> SourceSet::companion(const std::filesystem::path& path) {
+SourceSet::Bytes SourceSet::find_bytes(const XmlElement& mention, const std::string& reference) {
+  Found found = find(mention, reference, Contents::any);
+  count_once(mention, found.path, found.text->size());
+  return {std::move(found.path), found.text};
+}
+
+std::optional<std::string> SourceSet::companion(const XmlElement& mention, const std::filesystem::path& path) {
   const std::string* const text = text_of(path, Contents::any);
-  return text == nullptr ? std::nullopt : std::optional(bytes_of_source(*text));
+  if (text == nullptr) {
+    return std::nullopt;
+  }
+  count_once(mention, path, text->size());
+  return bytes_of_source(*text);
 }
 
 std::unique_ptr<XmlDocument> SourceSet::open(const XmlElement& mention, const std::string& reference) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -29,14 +30,16 @@ class SourceSet {
   /// more than 32 levels, more than 1000 includes, and more than 64 MiB in all.
   [[nodiscard]] std::unique_ptr<XmlDocument> open(const XmlElement& mention, const std::string& reference);
 
-  /// A file of any bytes, such as a mesh, that the element `mention` names as in open().
+  /// A file of any bytes, such as a mesh, that the element `mention` names as in open(). However often it is named, it
+  /// counts once towards the limits.
   struct Bytes {
     std::filesystem::path path;
-    std::string bytes;
+    const std::string* source;  ///< valid until another file is read; bytes_of_source() gives its bytes
   };
-  [[nodiscard]] Bytes read_bytes(const XmlElement& mention, const std::string& reference);
-  /// A file of any bytes beside another; nothing if it is not there.
-  [[nodiscard]] std::optional<std::string> companion(const std::filesystem::path& path);
+  [[nodiscard]] Bytes find_bytes(const XmlElement& mention, const std::string& reference);
+  /// A file of any bytes beside another, for the element `mention`; nothing if it is not there. Counts as in
+  /// find_bytes().
+  [[nodiscard]] std::optional<std::string> companion(const XmlElement& mention, const std::filesystem::path& path);
 
   /// Meshes that were read, by file, scale and use: links that name the same file share one.
   [[nodiscard]] std::map<std::string, std::shared_ptr<const TriangleMesh>>& meshes() { return meshes_; }
@@ -52,11 +55,14 @@ class SourceSet {
   [[nodiscard]] const std::string* text_of(const std::filesystem::path& path, Contents contents);
   [[nodiscard]] Found find(const XmlElement& mention, const std::string& reference, Contents contents);
   void count_bytes(const XmlElement& mention, std::size_t bytes);
+  /// For a file that counts once.
+  void count_once(const XmlElement& mention, const std::filesystem::path& path, std::size_t bytes);
 
   FileSource* files_;
   std::filesystem::path top_;
   std::vector<SourceFile>* record_;
   std::map<std::string, std::size_t> recorded_;  ///< name of a file: its position in the record
+  std::set<std::string> counted_;                ///< names of files that count once
   std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
   std::size_t includes_ = 0;
   std::size_t parsed_bytes_ = 0;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "memory_files.hpp"
@@ -118,6 +119,37 @@ TEST(MeshScenario, LinksThatNameTheSameFileShareAMesh) {
   const Scenario scenario = with_head(geometry + geometry).scenario();
   const std::vector<Geometry>& solids = scenario.robot.links.front().geometries;
   EXPECT_EQ(solids.at(0).mesh, solids.at(1).mesh);
+}
+
+TEST(MeshScenario, AMeshCountsOnceTowardsTheSizeOfAScenario) {
+  MemoryFiles files = small_scenario();
+  files.texts["box.off"] = box_off + std::string(8U << 20U, '\n');
+  std::string geometries;
+  for (int count = 0; count < 20; ++count) {
+    geometries += "<Geom type=\"trimesh\"><data>box.off 0.1</data></Geom>";
+  }
+  files.replace("robot.xml", head_geometry, geometries);
+  EXPECT_EQ(files.scenario().robot.links.front().geometries.size(), 20U);
+}
+
+TEST(MeshScenario, MaterialsAreRecordedAndCountTowardsTheSizeOfAScenario) {
+  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl m\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+  MemoryFiles files = with_head("<Geom type=\"trimesh\"><data>a.obj 0.1</data></Geom>");
+  files.texts["a.obj"] = "mtllib a.mtl\n" + mesh;
+  files.texts["a.mtl"] = "newmtl m\nKd 1 0 0\n";
+  const Scenario scenario = files.scenario();
+  EXPECT_TRUE(std::ranges::any_of(scenario.sources, [](const SourceFile& file) { return file.path == "a.mtl"; }));
+  EXPECT_EQ(scenario.robot.links.front().looks.at(0).mesh->colours.at(0), Eigen::Vector3f(1, 0, 0));
+
+  files.texts["a.obj"] = mesh;
+  for (const std::string name : {"1.mtl", "2.mtl", "3.mtl", "4.mtl"}) {
+    files.texts["a.obj"].insert(0, "mtllib " + name + '\n');
+    files.texts[name] = "newmtl m\n" + std::string((16U << 20U) - 10'000, '\n');
+  }
+  EXPECT_EQ(refusal(files), "nothing");
+  files.texts["a.obj"].insert(0, "mtllib a.mtl\n");
+  files.texts["a.mtl"].append(100'000, '\n');
+  EXPECT_REFUSED(files, "more than 1000 included files or 64 MiB");
 }
 
 TEST(MeshScenario, AStaticMeshStaysAsItIs) {

@@ -4,16 +4,16 @@
 // The import runs in this process, where the fuzzer sees what an input reaches and the sanitizers report errors in the
 // reader; a child for each input would take three times as long. So an input that ends Assimp ends this program too. If
 // the fault is in libassimp (look at the trace), that is no error of the reader, which runs the import in a child:
-// mesh_file_test and import_process_test show what becomes of one that ends. Inputs with large numbers are left out:
-// Assimp reserves memory for as many vertices as a file says.
+// mesh_file_test and import_process_test show what becomes of one that ends. Assimp reserves memory for as
+// many vertices as a file says: here a large block is refused, as the child's limit does.
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <new>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -71,15 +71,29 @@ void check_mesh(const TriangleMesh& mesh) {
 
 std::optional<std::string> materials(const std::string& /*name*/) { return "newmtl a\nKd 1 0 0\n"; }
 
-bool has_large_number(const std::string& bytes) {
-  int digits = 0;
-  return std::ranges::any_of(bytes, [&digits](unsigned char c) {
-    digits = std::isdigit(c) != 0 ? digits + 1 : 0;
-    return digits > 6;
-  });
+constexpr std::size_t largest_block = std::size_t{4} << 20U;
+
+bool is_importing = false;  ///< the fuzzer itself has larger blocks
+
+void* allocated(std::size_t size) {
+  void* const block = !is_importing || size <= largest_block ? std::malloc(size) : nullptr;
+  if (block == nullptr) {
+    throw std::bad_alloc();
+  }
+  return block;
 }
 
 }  // namespace
+
+// Those of the program stand in for those of all libraries. AddressSanitizer checks the memory of malloc() too.
+void* operator new(std::size_t size) { return allocated(size); }
+void* operator new[](std::size_t size) { return allocated(size); }
+void* operator new(std::size_t size, const std::nothrow_t& /*tag*/) noexcept { return std::malloc(size); }
+void* operator new[](std::size_t size, const std::nothrow_t& /*tag*/) noexcept { return std::malloc(size); }
+void operator delete(void* block) noexcept { std::free(block); }
+void operator delete[](void* block) noexcept { std::free(block); }
+void operator delete(void* block, std::size_t /*size*/) noexcept { std::free(block); }
+void operator delete[](void* block, std::size_t /*size*/) noexcept { std::free(block); }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::array<const char*, 4> names{"a.stl", "a.obj", "a.dae", "a.off"};
@@ -88,8 +102,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const char* const name = names[data[0] % names.size()];
   const std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
-  if (!has_large_number(bytes)) {
-    refusing([&] { check_mesh(import_mesh(name, bytes, materials)); });
-  }
+  refusing([&] {
+    is_importing = true;
+    check_mesh(import_mesh(name, bytes, materials));
+  });
+  is_importing = false;
   return 0;
 }

@@ -79,7 +79,8 @@ std::optional<List> receive_list(Stream& stream, std::uint64_t most) {
   if (size > most) {
     return std::nullopt;
   }
-  List list(size, typename List::value_type{});
+  List list;
+  list.resize(size);
   stream.read(list.data(), size * sizeof(typename List::value_type));
   return list;
 }

@@ -1,6 +1,5 @@
 #include "sim/mesh/import_process.hpp"
 
-#include <fcntl.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -21,6 +20,7 @@
 #include <thread>
 #include <vector>
 
+#include "shared/computer/child_process/leave_parent.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/mesh/mesh_error.hpp"
 
@@ -145,30 +145,13 @@ void lower_limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
 
 /// Makes a process of its own of the child: without the parent's files, signal handlers and terminal, and with limits.
 void prepare_child(int socket, pid_t parent, const Memory& before, const ImportLimits& limits) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) {
-    _exit(failed);  // the parent ended before prctl()
-  }
   for (int signal = 1; signal < NSIG; ++signal) {
     std::signal(signal, SIG_DFL);
   }
-  for (const int signal : {SIGINT, SIGQUIT, SIGTERM, SIGHUP}) {
-    std::signal(signal, SIG_IGN);  // at a key in the terminal the parent decides
-  }
-  sigset_t none;
-  sigemptyset(&none);
-  sigprocmask(SIG_SETMASK, &none, nullptr);
-  if (socket > 3) {
-    close_range(3, static_cast<unsigned>(socket) - 1, 0);
-  }
-  close_range(static_cast<unsigned>(socket) + 1, ~0U, 0);
-  if (const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC); nothing >= 0) {
-    dup2(nothing, STDIN_FILENO);
-    dup2(nothing, STDOUT_FILENO);
-    if (!has_shadow_memory) {
-      dup2(nothing, STDERR_FILENO);
-    }
-    close(nothing);
+  leave_parent(std::array{socket}, parent);
+  std::signal(SIGQUIT, SIG_IGN);
+  if (!has_shadow_memory) {
+    dup2(STDOUT_FILENO, STDERR_FILENO);  // to nowhere
   }
   prctl(PR_SET_DUMPABLE, 0);  // RLIMIT_CORE does not hold for a program that takes the cores
   lower_limit(RLIMIT_CORE, 0, 0);

@@ -262,7 +262,7 @@ class LocalWorkers::Implementation {
   std::vector<Worker> workers_;
   Clock::time_point last_poll_ = Clock::now();
   std::deque<Assignment> orphaned_;  ///< tasks whose worker died, until one is idle
-  std::deque<Done> finished_;        ///< results that nobody has received
+  std::deque<Done> finished_;        ///< results that wait() has not given yet
   std::vector<std::string> messages_;
 };
 

@@ -1,16 +1,10 @@
 #include "sim/optimize/evaluation/message_socket.hpp"
 
-#include <fcntl.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <csignal>
 #include <system_error>
-#include <vector>
 
 namespace proleg::optimize {
 namespace {
@@ -18,19 +12,6 @@ namespace {
 /// Bytes. The largest batch of candidates with the most dimensions takes a quarter of a million; the system's default
 /// is less.
 constexpr int max_message = 400'000;
-
-void close_all_but(std::span<const int> kept) {
-  std::vector<int> sorted(kept.begin(), kept.end());
-  std::ranges::sort(sorted);
-  unsigned first = 3;
-  for (const int each : sorted) {
-    if (static_cast<unsigned>(each) > first) {
-      close_range(first, static_cast<unsigned>(each) - 1, 0);
-    }
-    first = static_cast<unsigned>(each) + 1;
-  }
-  close_range(first, ~0U, 0);
-}
 
 }  // namespace
 
@@ -67,26 +48,6 @@ bool send_message(int socket, const Bytes& message) {
     sent = ::send(socket, message.data(), message.size(), MSG_NOSIGNAL);
   } while (sent < 0 && errno == EINTR);
   return sent == static_cast<ssize_t>(message.size());
-}
-
-void leave_parent(std::span<const int> sockets, pid_t parent) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) {
-    _exit(0);  // the parent ended before prctl()
-  }
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
-    std::signal(signal, SIG_IGN);
-  }
-  sigset_t none;
-  sigemptyset(&none);
-  sigprocmask(SIG_SETMASK, &none, nullptr);
-  // Above all the other children's sockets: while this process held them, those would not see the parent's end.
-  close_all_but(sockets);
-  if (const int nothing = open("/dev/null", O_RDWR); nothing >= 0) {
-    dup2(nothing, STDIN_FILENO);
-    dup2(nothing, STDOUT_FILENO);
-    close(nothing);
-  }
 }
 
 }  // namespace proleg::optimize

@@ -2,9 +2,6 @@
 
 // Messages between a process and the children that it forks.
 
-#include <sys/types.h>
-
-#include <span>
 #include <utility>
 
 #include "sim/optimize/evaluation/message.hpp"
@@ -18,9 +15,5 @@ namespace proleg::optimize {
 [[nodiscard]] Bytes receive_message(int socket);
 /// False if the other end is closed.
 bool send_message(int socket, const Bytes& message);
-
-/// In a child that was forked: separates it from its parent, with whom it shares no signals, files, database
-/// connections or terminal. It ends with the parent. sockets: those that stay open.
-void leave_parent(std::span<const int> sockets, pid_t parent);
 
 }  // namespace proleg::optimize

@@ -17,6 +17,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "shared/computer/child_process/leave_parent.hpp"
 #include "sim/loop/simulation_batch.hpp"
 #include "sim/optimize/evaluation/local_workers.hpp"
 #include "sim/optimize/evaluation/message_socket.hpp"
@@ -259,7 +260,7 @@ class PooledWorkers final : public Workers {
   int socket_;
   std::size_t share_;
   std::vector<std::uint64_t> tickets_;  ///< of the tasks that the pool has
-  std::deque<Done> finished_;           ///< results that nobody has received
+  std::deque<Done> finished_;           ///< results that wait() has not given yet
 };
 
 [[noreturn]] void serve(const Experiment& experiment, std::uint32_t workers, std::span<const int> sockets,

@@ -9,6 +9,7 @@
 #include <exception>
 #include <system_error>
 
+#include "shared/computer/child_process/leave_parent.hpp"
 #include "sim/optimize/evaluation/message.hpp"
 #include "sim/optimize/evaluation/message_socket.hpp"
 

@@ -200,7 +200,7 @@ class MpiWorkers::Implementation {
   MpiChannel channel_;
   std::vector<Rank> ranks_;
   std::vector<Batch> orphaned_;  ///< of lost ranks
-  std::deque<Done> finished_;    ///< results of other ranks that nobody has received
+  std::deque<Done> finished_;    ///< results of other ranks that wait() has not given yet
   Clock::duration max_silence_;
   std::vector<std::string> messages_;
 };

@@ -4,8 +4,8 @@
 // The import runs in this process, where the fuzzer sees what an input reaches and the sanitizers report errors in the
 // reader; a child for each input would take three times as long. So an input that ends Assimp ends this program too. If
 // the fault is in libassimp (look at the trace), that is no error of the reader, which runs the import in a child:
-// mesh_file_test and import_process_test show what becomes of one that ends. Assimp reserves memory for as
-// many vertices as a file says: here a large block is refused, as the child's limit does.
+// mesh_file_test and import_process_test show the error that a user gets then. Assimp reserves memory for as many
+// vertices as a file says. Here a large block is refused, as by the limit of the child.
 
 #include <algorithm>
 #include <array>

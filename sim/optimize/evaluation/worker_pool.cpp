@@ -39,16 +39,10 @@ constexpr const char* pool_has_ended = "the process that simulates for all searc
 /// What a search sends when it has ended. No list of tasks is so short.
 const Bytes farewell{std::byte{0}};
 
-/// Tasks that a worker gets at once: what the widest vectors hold. With more, some searches would wait longer for
-/// theirs, and nothing would be faster.
-std::size_t batch_of(const Experiment& experiment) {
-  constexpr std::size_t widest_vector = 8;
-  return std::min(sim::batch_size(experiment.scenario), widest_vector);
-}
-
 /// Tasks that a search may have at the pool, so that all together fill the batches of all workers.
 std::size_t share_of_search(const Experiment& experiment, std::uint32_t workers, std::size_t searches) {
-  return std::max<std::size_t>(workers * batch_of(experiment) / std::max<std::size_t>(searches, 1), 1);
+  return std::max<std::size_t>(workers * WorkerPool::tasks_of_worker(experiment) / std::max<std::size_t>(searches, 1),
+                               1);
 }
 
 /// Results, and the share of the search from now on, in front of them.
@@ -65,7 +59,7 @@ class Pool {
        TaskLimit limit)
       : experiment_(experiment),
         workers_(experiment, workers, run, limit),
-        batch_size_(batch_of(experiment)),
+        batch_size_(WorkerPool::tasks_of_worker(experiment)),
         active_(sockets.size()) {
     for (const int socket : sockets) {
       searches_.push_back({socket, {}, 0});
@@ -307,11 +301,14 @@ WorkerPool::~WorkerPool() {
   std::ranges::for_each(sockets_, close);
 }
 
-std::size_t WorkerPool::tasks_of_worker(const Experiment& experiment) { return batch_of(experiment); }
+std::size_t WorkerPool::tasks_of_worker(const Experiment& experiment) {
+  constexpr std::size_t widest_vector = 8;
+  return std::min(sim::batch_size(experiment.scenario), widest_vector);
+}
 
 std::size_t WorkerPool::useful_searches(const Experiment& experiment, std::uint32_t workers) {
   constexpr std::size_t most_processes = 200;  // each takes three of the parent's files, of which it may have 1024
-  return std::min(2 * workers * batch_of(experiment), most_processes);
+  return std::min(2 * workers * tasks_of_worker(experiment), most_processes);
 }
 
 std::unique_ptr<Workers> WorkerPool::workers_of(std::uint32_t search) const {

@@ -25,7 +25,8 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
-  /// Tasks that a worker gets at once, at most: 1 if the engine has no batches.
+  /// Tasks that a worker gets at once, at most: what the widest vectors hold, or 1 if the engine has no batches. With
+  /// more, some searches would wait longer for theirs, and nothing would be faster.
   [[nodiscard]] static std::size_t tasks_of_worker(const Experiment& experiment);
   /// More searches than this at the same time use the workers no better.
   [[nodiscard]] static std::size_t useful_searches(const Experiment& experiment, std::uint32_t workers);

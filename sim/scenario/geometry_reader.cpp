@@ -110,7 +110,7 @@ void read_trimesh(const XmlElement& element, BodyKind kind, SourceSet& sources, 
 }
 
 /// <diffuseColor> is the colour of a mesh that has none.
-void paint(const XmlElement& element, ReadGeometry& result) {
+void paint(const XmlElement& element, SourceSet& sources, ReadGeometry& result) {
   const auto colour = element.child("diffuseColor");
   if (!colour || (!result.look && !(result.solid && result.solid->mesh))) {
     return;  // other shapes have the colours of the page
@@ -118,7 +118,7 @@ void paint(const XmlElement& element, ReadGeometry& result) {
   const Eigen::Vector3f rgb = read_vector(*colour, colour_parts).cast<float>();
   std::shared_ptr<const TriangleMesh>& mesh = result.look ? result.look->mesh : result.solid->mesh;
   if (mesh->colours.empty()) {
-    mesh = painted(*mesh, rgb);
+    mesh = painted(mesh, rgb, sources);
   }
 }
 
@@ -186,7 +186,7 @@ ReadGeometry read_geometry(const XmlElement& element, BodyKind kind, SourceSet& 
   if (const auto render = element.child("render"); render && is_mesh(*render, remarks)) {
     result.look = Look{pose, read_mesh_of_file(*render, MeshUse::look, true, sources, remarks)};
   }
-  paint(element, result);
+  paint(element, sources, result);
   if (result.look) {
     result.look->pose = pose;
   }

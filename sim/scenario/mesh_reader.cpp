@@ -212,10 +212,15 @@ void read_height_field(const XmlElement& element, SourceSet& sources, Geometry& 
   geometry.heights = std::make_shared<const HeightField>(std::move(field));
 }
 
-std::shared_ptr<const TriangleMesh> painted(const TriangleMesh& mesh, const Eigen::Vector3f& colour) {
-  TriangleMesh copy = mesh;
-  copy.colours.assign(copy.vertices.size(), colour);
-  return std::make_shared<const TriangleMesh>(std::move(copy));
+std::shared_ptr<const TriangleMesh> painted(const std::shared_ptr<const TriangleMesh>& mesh,
+                                            const Eigen::Vector3f& colour, SourceSet& sources) {
+  std::shared_ptr<const TriangleMesh>& known = sources.painted_meshes()[{mesh, {colour.x(), colour.y(), colour.z()}}];
+  if (!known) {
+    TriangleMesh copy = *mesh;
+    copy.colours.assign(copy.vertices.size(), colour);
+    known = std::make_shared<const TriangleMesh>(std::move(copy));
+  }
+  return known;
 }
 
 }  // namespace proleg::sim

@@ -33,7 +33,8 @@ enum class MeshUse : std::uint8_t {
 /// A <Geom type="heightfield">: <extents> x y (half sides), <columns>, <rows>, and <heights> or the file of <data>.
 void read_height_field(const XmlElement& element, SourceSet& sources, Geometry& geometry);
 
-/// A copy of a mesh without colours, in one colour.
-[[nodiscard]] std::shared_ptr<const TriangleMesh> painted(const TriangleMesh& mesh, const Eigen::Vector3f& colour);
+/// A copy of a mesh without colours, in one colour; the same copy for the same mesh and colour.
+[[nodiscard]] std::shared_ptr<const TriangleMesh> painted(const std::shared_ptr<const TriangleMesh>& mesh,
+                                                          const Eigen::Vector3f& colour, SourceSet& sources);
 
 }  // namespace proleg::sim

@@ -2,6 +2,7 @@
 
 // The files of a scenario: finds the files that a file names, keeps their text, and limits their number and size.
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/robot/triangle_mesh.hpp"
@@ -44,6 +46,11 @@ class SourceSet {
   /// Meshes that were read, by file, scale and use: links that name the same file share one.
   [[nodiscard]] std::map<std::string, std::shared_ptr<const TriangleMesh>>& meshes() { return meshes_; }
 
+  /// Meshes in one colour, by the mesh and its red, green and blue: links share them, too.
+  using PaintedMeshes = std::map<std::pair<std::shared_ptr<const TriangleMesh>, std::array<float, 3>>,
+                                 std::shared_ptr<const TriangleMesh>>;
+  [[nodiscard]] PaintedMeshes& painted_meshes() { return painted_meshes_; }
+
  private:
   struct Found {
     std::filesystem::path path;
@@ -64,6 +71,7 @@ class SourceSet {
   std::map<std::string, std::size_t> recorded_;  ///< name of a file: its position in the record
   std::set<std::string> counted_;                ///< names of files that count once
   std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes_;
+  PaintedMeshes painted_meshes_;
   std::size_t includes_ = 0;
   std::size_t parsed_bytes_ = 0;
 };

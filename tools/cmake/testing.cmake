@@ -33,18 +33,21 @@ set(PROLEG_TEST_DATA ${CMAKE_SOURCE_DIR}/sim/scenarios ${CMAKE_SOURCE_DIR}/tests
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 
 # proleg_add_test(<name> COMMAND program [argument...] [PROGRAMS files...] [DATA paths...] [LABELS ...] [TIMEOUT seconds]
-#                 [COST core-seconds] [ENVIRONMENT NAME=VALUE...] [HALF_CORES n])
+#                 [COST core-seconds] [ENVIRONMENT NAME=VALUE...] [HALF_CORES n] [REAL_TIME])
 #   A ctest test whose result tools/check uses again while its inputs are the same (tools/run_test).
 #   PROGRAMS   what the program starts: files, or $<TARGET_FILE:...>; a change in them runs the test again
 #   DATA       what it reads, beside PROLEG_TEST_DATA: files, or folders with all that is below them
 #   COST       roughly, where it is many seconds: long tests start first
-#   HALF_CORES what it keeps busy: 2 by default, 1 for a test that mostly waits, for example for a robot that moves in real
-#              time. ctest starts as many as fit (tools/check). A test that needs more comes late, since smaller ones fit
-#              first.
+#   REAL_TIME  it keeps time, for example with a robot that moves as on the table: the other tests give way to it
+#   HALF_CORES what it keeps busy: 2 by default, 1 in real time, since such a test mostly waits. ctest starts as many as
+#              fit (tools/check). A test that needs more comes late, since smaller ones fit first.
 set(PROLEG_HALF_CORES 2)
 function(proleg_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;HALF_CORES" "COMMAND;PROGRAMS;DATA;LABELS;ENVIRONMENT")
+  cmake_parse_arguments(PARSE_ARGV 1 test "REAL_TIME" "TIMEOUT;COST;HALF_CORES" "COMMAND;PROGRAMS;DATA;LABELS;ENVIRONMENT")
   set(inputs)
+  if(test_REAL_TIME)
+    list(APPEND inputs --real-time)
+  endif()
   foreach(program IN LISTS test_PROGRAMS)
     list(APPEND inputs --program ${program})
   endforeach()
@@ -65,6 +68,9 @@ function(proleg_add_test name)
   endif()
   if(NOT test_HALF_CORES)
     set(test_HALF_CORES ${PROLEG_HALF_CORES})
+    if(test_REAL_TIME)
+      set(test_HALF_CORES 1)
+    endif()
   endif()
   set_tests_properties(${name} PROPERTIES PROCESSORS ${test_HALF_CORES})
   foreach(property IN ITEMS COST LABELS ENVIRONMENT)
@@ -81,7 +87,7 @@ endfunction()
 #   ROBOTS   a GoogleTest filter of cases that simulate whole robots. Under the sanitizers they take ten times as long:
 #            there they are slow tests. They run as built for users in every suite, also without PROLEG_UNIT_TESTS.
 function(proleg_test path)
-  cmake_parse_arguments(PARSE_ARGV 1 test "" "TIMEOUT;COST;SHARDS;ROBOTS;HALF_CORES" "SOURCES;DEPENDS;LIBRARIES;PROGRAMS;DATA;LABELS")
+  cmake_parse_arguments(PARSE_ARGV 1 test "REAL_TIME" "TIMEOUT;COST;SHARDS;ROBOTS;HALF_CORES" "SOURCES;DEPENDS;LIBRARIES;PROGRAMS;DATA;LABELS")
   string(REPLACE "/" "_" name ${path})
   add_executable(${name}_test ${test_SOURCES})
   foreach(dependency IN LISTS test_DEPENDS)
@@ -95,6 +101,9 @@ function(proleg_test path)
   endif()
   set(options PROGRAMS ${test_PROGRAMS} DATA ${test_DATA} LABELS ${test_LABELS} TIMEOUT ${test_TIMEOUT}
       COST ${test_COST} HALF_CORES ${test_HALF_CORES})
+  if(test_REAL_TIME)
+    list(APPEND options REAL_TIME)
+  endif()
   set(command $<TARGET_FILE:${name}_test> --gtest_brief=1)
   if(test_ROBOTS AND PROLEG_SANITIZE)
     proleg_add_test(${path}.robots COMMAND ${command} --gtest_filter=${test_ROBOTS} PROGRAMS ${test_PROGRAMS} DATA ${test_DATA}

@@ -121,6 +121,16 @@ TEST(MeshScenario, LinksThatNameTheSameFileShareAMesh) {
   EXPECT_EQ(solids.at(0).mesh, solids.at(1).mesh);
 }
 
+TEST(MeshScenario, LinksWithTheSameFileAndColourShareAMesh) {
+  const auto geometry = [](const std::string& colour) {
+    return "<Geom type=\"trimesh\"><data>box.off 0.1</data><diffuseColor>" + colour + "</diffuseColor></Geom>";
+  };
+  const Scenario scenario = with_head(geometry("1 0 0") + geometry("1 0 0") + geometry("0 0 1")).scenario();
+  const std::vector<Look>& looks = scenario.robot.links.front().looks;
+  EXPECT_EQ(looks.at(0).mesh, looks.at(1).mesh);
+  EXPECT_EQ(looks.at(2).mesh->colours.at(0), Eigen::Vector3f(0.0F, 0.0F, 1.0F));
+}
+
 TEST(MeshScenario, AMeshCountsOnceTowardsTheSizeOfAScenario) {
   MemoryFiles files = small_scenario();
   files.texts["box.off"] = box_off + std::string(8U << 20U, '\n');

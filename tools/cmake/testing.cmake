@@ -38,16 +38,18 @@ find_package(Python3 REQUIRED COMPONENTS Interpreter)
 #   PROGRAMS   what the program starts: files, or $<TARGET_FILE:...>; a change in them runs the test again
 #   DATA       what it reads, beside PROLEG_TEST_DATA: files, or folders with all that is below them
 #   COST       roughly, where it is many seconds: long tests start first
-#   REAL_TIME  it keeps time, for example with a robot that moves as on the table: the other tests give way to it
-#   HALF_CORES what it keeps busy: 2 by default, 1 in real time, since such a test mostly waits. ctest starts as many as
-#              fit (tools/check). A test that needs more comes late, since smaller ones fit first.
+#   REAL_TIME  it mostly waits, for example for a robot that moves as on the table, and must get its turn in time. One such
+#              test runs for each two cores, beside others that keep the cores busy. (Others at a lower priority would be
+#              no help: with groups of processes, Linux then holds frames on a pseudo terminal back for up to a second.)
+#   HALF_CORES what it keeps busy: 2 by default, 1 in real time. ctest starts as many as fit (tools/check). A test that
+#              needs more comes late, since smaller ones fit first.
 set(PROLEG_HALF_CORES 2)
+cmake_host_system_information(RESULT cores QUERY NUMBER_OF_LOGICAL_CORES)
+math(EXPR PROLEG_REAL_TIME_TESTS_AT_ONCE "(${cores} + 1) / 2")
+set_property(GLOBAL PROPERTY proleg_real_time_tests 0)
 function(proleg_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 test "REAL_TIME" "TIMEOUT;COST;HALF_CORES" "COMMAND;PROGRAMS;DATA;LABELS;ENVIRONMENT")
   set(inputs)
-  if(test_REAL_TIME)
-    list(APPEND inputs --real-time)
-  endif()
   foreach(program IN LISTS test_PROGRAMS)
     list(APPEND inputs --program ${program})
   endforeach()
@@ -71,6 +73,13 @@ function(proleg_add_test name)
     if(test_REAL_TIME)
       set(test_HALF_CORES 1)
     endif()
+  endif()
+  if(test_REAL_TIME)
+    get_property(number GLOBAL PROPERTY proleg_real_time_tests)
+    math(EXPR lane "${number} % ${PROLEG_REAL_TIME_TESTS_AT_ONCE}")
+    math(EXPR number "${number} + 1")
+    set_property(GLOBAL PROPERTY proleg_real_time_tests ${number})
+    set_tests_properties(${name} PROPERTIES RESOURCE_LOCK real_time_${lane})
   endif()
   set_tests_properties(${name} PROPERTIES PROCESSORS ${test_HALF_CORES})
   foreach(property IN ITEMS COST LABELS ENVIRONMENT)

@@ -90,6 +90,22 @@ def proleg(name, *arguments, text=""):
                           timeout=LONGEST)
 
 
+def proleg_json(name, *arguments):
+    """What a program prints for machines; what it says to a person if it prints nothing."""
+    finished = proleg(name, *arguments)
+    if not finished.stdout:
+        raise AssertionError(f"proleg {name} printed nothing; {finished.stderr}")
+    return json.loads(finished.stdout)
+
+
+def drive_json(drive):
+    """What a 'proleg drive' printed at its end."""
+    output, errors = drive.communicate(timeout=LONGEST)
+    if not output:
+        raise AssertionError(f"proleg drive printed nothing; {errors}")
+    return json.loads(output)
+
+
 def start_drive(bus, *options):
     return subprocess.Popen([PROGRAMS / "proleg-drive", SOURCE / SCENARIO, "--bus", bus, "--json", *options],
                             stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
@@ -97,7 +113,7 @@ def start_drive(bus, *options):
 
 def states(bus):
     """The states of the drives, by node."""
-    return {node["node"]: node["drive"] for node in json.loads(proleg("scan", "--bus", bus, "--json").stdout)["nodes"]}
+    return {node["node"]: node["drive"] for node in proleg_json("scan", "--bus", bus, "--json")["nodes"]}
 
 
 def wait_for_drives(bus, state):
@@ -110,7 +126,7 @@ def wait_for_drives(bus, state):
 
 
 def simulated(*options):
-    return json.loads(proleg("simulate", SOURCE / SCENARIO, "--json", *options).stdout)
+    return proleg_json("simulate", SOURCE / SCENARIO, "--json", *options)
 
 
 class RobotOnTheTable(unittest.TestCase):
@@ -134,7 +150,7 @@ class RobotOnTheTable(unittest.TestCase):
 
     def test_scan_info_get_set_and_nmt(self):
         with Bus() as bus:
-            scan = json.loads(proleg("scan", "--bus", bus.pty, "--json").stdout)
+            scan = proleg_json("scan", "--bus", bus.pty, "--json")
             self.assertEqual([node["node"] for node in scan["nodes"]], [1, 2, 3, 4, 5])
             self.assertTrue(all(node["joint_module"] for node in scan["nodes"]))
             info = proleg("info", "3", "--bus", bus.tcp).stdout
@@ -149,11 +165,11 @@ class RobotOnTheTable(unittest.TestCase):
             self.assertEqual(silent.stdout.splitlines()[:3], info.splitlines()[:3])
             self.assertIn("node 9: no answer", silent.stderr)
             self.assertEqual(proleg("set", "2-4", "0x6080", "300", "--bus", bus.tcp).returncode, 0)
-            values = json.loads(proleg("get", "all", "Max motor speed", "0x1018:1", "--bus", bus.pty, "--json").stdout)
+            values = proleg_json("get", "all", "Max motor speed", "0x1018:1", "--bus", bus.pty, "--json")
             speeds = [one["raw"] for one in values["values"] if one["object"] == "0x6080"]
             self.assertEqual(speeds, [720, 300, 300, 300, 720])
             self.assertIn("node 3 boots", proleg("nmt", "reset-node", "3", "--bus", bus.tcp).stdout)
-            speeds = json.loads(proleg("get", "2,3", "0x6080", "--bus", bus.tcp, "--json").stdout)["values"]
+            speeds = proleg_json("get", "2,3", "0x6080", "--bus", bus.tcp, "--json")["values"]
             self.assertEqual([one["raw"] for one in speeds], [300, 720], "the reset has restored it")
 
     def test_drive_ends_if_another_program_takes_the_power_of_a_joint(self):
@@ -172,8 +188,7 @@ class RobotOnTheTable(unittest.TestCase):
     def test_drive_computes_what_simulate_computes(self):
         with Bus() as bus:
             for address in (bus.tcp, bus.pty):
-                result = json.loads(start_drive(address, "--seconds", "2", "--set", "amplitude=20@1s").communicate(
-                    timeout=LONGEST)[0])
+                result = drive_json(start_drive(address, "--seconds", "2", "--set", "amplitude=20@1s"))
                 self.assertEqual(result["differences"], 0)
                 self.assertEqual(result["frames_compared"], 1000)
                 expected = simulated("--seconds", "2", "--set", "amplitude=20@1s")
@@ -186,9 +201,9 @@ class RobotOnTheTable(unittest.TestCase):
         for word, pattern in (("3=0", r"node 3: --bus (tcp:\S+)"), ("2", r"node 2: --bus (serial:\S+)")):
             with Bus("--gateway", word) as bus:
                 line = bus.find(pattern)
-                scan = json.loads(proleg("scan", "--bus", line, "--json").stdout)
+                scan = proleg_json("scan", "--bus", line, "--json")
                 self.assertEqual([node["node"] for node in scan["nodes"]], [1, 2, 3, 4, 5])
-                role = json.loads(proleg("get", "all", "0x2020:1", "--bus", line, "--json").stdout)["values"]
+                role = proleg_json("get", "all", "0x2020:1", "--bus", line, "--json")["values"]
                 self.assertEqual([one["raw"] for one in role], [int(node == int(word[0])) for node in range(1, 6)])
                 self.assertEqual(proleg("set", "3,4", "0x6080", "300", "--bus", line).returncode, 0)
                 drive = start_drive(line, "--seconds", "3")
@@ -263,7 +278,7 @@ class RobotOnTheTable(unittest.TestCase):
             self.assertIn("another host", second.stderr)
             self.assertEqual(proleg("nmt", "stop", "all", "--bus", bus.pty).returncode, 1)
             first.send_signal(signal.SIGINT)
-            result = json.loads(first.communicate(timeout=LONGEST)[0])
+            result = drive_json(first)
             self.assertEqual(first.returncode, 0)
             expected = simulated("--seconds", f"{result['driven_s']:.2f}")
             self.assertEqual(result["setpoint_hash"], expected["setpoint_hash"])
@@ -273,7 +288,7 @@ class RobotOnTheTable(unittest.TestCase):
             drive = start_drive(bus.tcp)
             wait_for_drives(bus.pty, "operation enabled")
             drive.send_signal(signal.SIGINT)
-            result = json.loads(drive.communicate(timeout=LONGEST)[0])
+            result = drive_json(drive)
             self.assertEqual(drive.returncode, 0)
             self.assertEqual(result["differences"], 0)
             self.assertEqual(set(states(bus.pty).values()), {"no power"})
@@ -285,7 +300,7 @@ class RobotOnTheTable(unittest.TestCase):
             drive.kill()
             drive.communicate(timeout=LONGEST)
             wait_for_drives(bus.pty, "quick stop")
-            result = json.loads(start_drive(bus.pty, "--seconds", "1").communicate(timeout=LONGEST)[0])
+            result = drive_json(start_drive(bus.pty, "--seconds", "1"))
             self.assertEqual(result["differences"], 0)
 
     def test_a_robot_that_is_not_the_one_of_the_file_does_not_move(self):
@@ -330,7 +345,7 @@ class RobotOnTheTable(unittest.TestCase):
             shutil.copytree((SOURCE / SCENARIO).parent, named)
             with Bus() as bus:
                 nodes = {node["node"]: node["serial"]
-                         for node in json.loads(proleg("scan", "--bus", bus.tcp, "--json").stdout)["nodes"]}
+                         for node in proleg_json("scan", "--bus", bus.tcp, "--json")["nodes"]}
                 robot = named / "caterpillar.robot.xml"
                 modules = f'<module joint="J5" node="1" serial="{nodes[1]:#x}"/>' + "".join(
                     f'<module joint="J{6 - node}" node="{node}"/>' for node in range(2, 6))
@@ -347,13 +362,13 @@ class RobotOnTheTable(unittest.TestCase):
 
     def test_assign_changes_nothing_if_it_is_not_told_the_places(self):
         with Bus("--shuffle", "7") as bus:
-            before = json.loads(proleg("scan", "--bus", bus.tcp, "--json").stdout)["nodes"]
+            before = proleg_json("scan", "--bus", bus.tcp, "--json")["nodes"]
             for text, expected in (("", "standard input has ended"), ("J1\nquit\n", "ended by the user")):
                 assign = proleg("assign", SOURCE / SCENARIO, "--bus", bus.tcp, text=text)
                 self.assertEqual(assign.returncode, 1, assign.stderr)
                 self.assertIn(expected, assign.stderr)
             wait_for_drives(bus.tcp, "no power")
-            after = json.loads(proleg("scan", "--bus", bus.tcp, "--json").stdout)["nodes"]
+            after = proleg_json("scan", "--bus", bus.tcp, "--json")["nodes"]
             self.assertEqual([node["serial"] for node in before], [node["serial"] for node in after])
 
     def test_params_keep_the_settings_of_modules(self):

@@ -20,7 +20,7 @@ using boost::system::error_code;
 using Request = beast::http::request<beast::http::string_body>;
 
 constexpr std::chrono::seconds upgrade_timeout{5};
-constexpr std::chrono::seconds close_timeout{1};
+constexpr std::chrono::seconds close_handshake_timeout{1};
 constexpr std::chrono::seconds silence_timeout{30};
 /// The system keeps as much for a viewer that does not read: the less, the fresher is what it reads at last.
 constexpr int send_buffer_bytes = 128 << 10;
@@ -58,10 +58,10 @@ class ViewerConnection final : public Connection, public std::enable_shared_from
 
 void ViewerConnection::open(Request request) {
   request_ = std::move(request);
-  beast::tcp_stream& tcp = beast::get_lowest_layer(socket_).tcp();
-  tcp.expires_never();  // the WebSocket has deadlines of its own
+  beast::tcp_stream& stream = beast::get_lowest_layer(socket_).tcp();
+  stream.expires_never();  // the WebSocket has deadlines of its own
   error_code ignored;
-  tcp.socket().set_option(asio::socket_base::send_buffer_size(send_buffer_bytes), ignored);
+  stream.socket().set_option(asio::socket_base::send_buffer_size(send_buffer_bytes), ignored);
   websocket::stream_base::timeout timeouts{};
   timeouts.handshake_timeout = upgrade_timeout;
   timeouts.idle_timeout = silence_timeout;
@@ -135,7 +135,7 @@ void ViewerConnection::close(const CloseReason& reason) {
   }
   close_reason_ = reason;
   // A viewer that does not read keeps the close frame from being sent.
-  close_timer_.expires_after(close_timeout);
+  close_timer_.expires_after(close_handshake_timeout);
   close_timer_.async_wait([self = shared_from_this()](const error_code& error) {
     if (!error) {
       self->leave();

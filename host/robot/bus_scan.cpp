@@ -27,7 +27,7 @@ BusScan::BusScan(CanPort& port, const BusScanOptions& options)
 
 void BusScan::start(Microseconds now) {
   is_started_ = true;
-  asks_lss_ = true;
+  fresh_at_ = now;
   listening_until_ = now + options_.listening_us;
   for (std::uint8_t node = canopen::min_node_id; node <= canopen::max_node_id; ++node) {
     probe(node);
@@ -51,6 +51,17 @@ void BusScan::ask(SdoQueue& queue, std::uint8_t node) {
     seen.info.device_type = result.number();
     inquire(node);
   });
+}
+
+void BusScan::ask_fresh(Microseconds now) {
+  constexpr Microseconds until_port_has_room = 1'000;
+  if (!port_.send(
+          canopen::lss::make(canopen::identifier::lss_request, canopen::lss::Service::identify_non_configured))) {
+    fresh_at_ = now + until_port_has_room;
+    return;
+  }
+  ++fresh_requests_;
+  fresh_at_ = fresh_requests_ < options_.fresh_attempts ? now + options_.listening_us / options_.fresh_attempts : never;
 }
 
 void BusScan::read_number(std::uint8_t node, canopen::Address address, const std::function<void(std::uint32_t)>& take) {
@@ -118,6 +129,7 @@ void BusScan::receive(Microseconds now, const CanFrame& frame) {
   } else if (frame.identifier == identifier::lss_answer && frame.length == 8 &&
              canopen::lss::service_of(frame) == canopen::lss::Service::identified_non_configured) {
     has_fresh_ = true;
+    fresh_at_ = never;
   } else if (const auto heartbeat = canopen::decode_heartbeat(frame)) {
     if (heartbeat->node == canopen::host_node) {
       has_host_ = true;
@@ -151,9 +163,8 @@ void BusScan::poll(Microseconds now) {
   if (!is_started_ || is_done_) {
     return;
   }
-  if (asks_lss_) {
-    asks_lss_ = !port_.send(
-        canopen::lss::make(canopen::identifier::lss_request, canopen::lss::Service::identify_non_configured));
+  if (now >= fresh_at_) {
+    ask_fresh(now);
   }
   probes_.poll(now);
   inquiries_.poll(now);
@@ -201,7 +212,7 @@ Microseconds BusScan::next_deadline() const {
   if (!is_started_ || is_done_) {
     return never;
   }
-  return std::min({probes_.next_deadline(), inquiries_.next_deadline(), listening_until_});
+  return std::min({probes_.next_deadline(), inquiries_.next_deadline(), listening_until_, fresh_at_});
 }
 
 std::vector<ScannedNode> BusScan::nodes() const {

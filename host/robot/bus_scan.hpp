@@ -42,6 +42,9 @@ struct BusScanOptions {
   Microseconds answer_timeout_us = 60'000;  ///< of each request
   unsigned attempts = 2;                    ///< of the first request to each node id
   unsigned further_attempts = 8;            ///< of requests to a node that has answered, or was heard
+  /// Of the request to modules without a node id, spread over the time that the scan listens: on most buses nobody
+  /// answers it, so its loss shows in nothing else.
+  unsigned fresh_attempts = 5;
 };
 
 class BusScan final : public BusUser {
@@ -80,6 +83,7 @@ class BusScan final : public BusUser {
 
   void probe(std::uint8_t node);
   void ask(SdoQueue& queue, std::uint8_t node);
+  void ask_fresh(Microseconds now);
   void inquire(std::uint8_t node);
   void inquire_texts(std::uint8_t node);
   void read_number(std::uint8_t node, canopen::Address address, const std::function<void(std::uint32_t)>& take);
@@ -93,7 +97,6 @@ class BusScan final : public BusUser {
   std::array<Seen, canopen::host_node> seen_{};  ///< by node
   bool is_started_ = false;
   bool is_done_ = false;
-  bool asks_lss_ = false;  ///< the request waits for the port
   bool has_host_ = false;
   bool has_fresh_ = false;
   bool has_asked_again_ = false;
@@ -102,6 +105,8 @@ class BusScan final : public BusUser {
   std::uint64_t frames_ = 0;
   bool has_listened_ = false;
   Microseconds listening_until_ = never;
+  unsigned fresh_requests_ = 0;  ///< that were sent
+  Microseconds fresh_at_ = never;
 };
 
 }  // namespace proleg::host

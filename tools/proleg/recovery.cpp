@@ -85,10 +85,11 @@ void Recovery::examine() {
 }
 
 void Recovery::wait() {
+  // On a bus that loses frames a look takes longer than such a module stays on the bus.
+  look();
   const Microseconds begin = bus_.connection().now();
   const Microseconds end = begin + settings_.wait_us;
   TerminalLine line(std::chrono::milliseconds(0));
-  look();
   for (Microseconds now = bus_.connection().now(); now < end; now = bus_.connection().now()) {
     if (line.is_due()) {
       line.draw("waits for modules whose program does not start: " + std::to_string((now - begin) / second) + " s of " +

@@ -142,5 +142,22 @@ TEST(BusScan, SaysThatModulesHaveNoNodeId) {
   EXPECT_TRUE(scan.has_fresh_modules());
 }
 
+TEST(BusScan, SaysThatAModuleHasNoNodeIdAlthoughATenthOfTheFramesIsLost) {
+  const sim::Scenario scenario = sim::shipped("travelling_wave/uniform");
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    sim::LiveRobotOptions options;
+    options.change_identity = [](unsigned joint, firmware::ModuleIdentity& identity) {
+      identity.node = joint < 1 ? 0 : identity.node;
+    };
+    LiveBus bus(scenario, std::move(options));
+    bus.run_for(100'000);
+    bus.lose(0.1, seed);
+    BusScan scan(bus);
+    ASSERT_TRUE(finish(bus, scan, 20 * second));
+    EXPECT_TRUE(scan.has_fresh_modules());
+  }
+}
+
 }  // namespace
 }  // namespace proleg::test

@@ -471,6 +471,9 @@ TEST(RecoveryTest, SucceedsAlthoughATenthOfTheFramesIsLost) {
     robot.spoil(0, sim::ProgramHealth::hangs);
     robot.give_newer_settings(1);
     robot.bus.lose(0.1, seed);
+    // The module that hangs is away for 5.5 s, then on the bus for 10 s, and so on.
+    constexpr Microseconds later_each_time = 1'100'000;
+    robot.bus.run_for(static_cast<Microseconds>(seed) * later_each_time);
     RecoverySettings settings = with_image();
     settings.resets_settings = true;
     const Recovered recovered(robot, settings);

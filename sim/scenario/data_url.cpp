@@ -1,5 +1,6 @@
 #include "sim/scenario/data_url.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -50,6 +51,14 @@ std::string bytes_of_source(const std::string& text) {
     }
   }
   return bytes;
+}
+
+std::size_t size_of_source(std::string_view text) {
+  if (!text.starts_with(head)) {
+    return text.size();
+  }
+  const std::string_view encoded = text.substr(head.size());
+  return std::min(encoded.size(), encoded.find('=')) * group_bytes / group_digits;
 }
 
 }  // namespace proleg::sim

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -11,5 +12,7 @@ namespace proleg::sim {
 
 /// The bytes of a source: those of a text that data_url() made, otherwise the text itself.
 [[nodiscard]] std::string bytes_of_source(const std::string& text);
+/// Their number.
+[[nodiscard]] std::size_t size_of_source(std::string_view text);
 
 }  // namespace proleg::sim

@@ -49,7 +49,7 @@ const std::string* SourceSet::text_of(const std::filesystem::path& path, Content
     return &(*record_)[known->second].text;
   }
   std::optional<std::string> text = files_->read(path);
-  if (!text || text->size() > max_file_bytes) {
+  if (!text || size_of_source(*text) > max_file_bytes) {
     return nullptr;
   }
   recorded_.emplace(name, record_->size());

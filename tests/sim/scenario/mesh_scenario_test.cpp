@@ -303,6 +303,7 @@ TEST(MeshScenario, AFileOfBytesIsKeptAsTextAndReadAgain) {
     const std::string part = bytes.substr(0, bytes.size() - cut);
     const std::string text = data_url(part);
     EXPECT_EQ(bytes_of_source(text), part);
+    EXPECT_EQ(size_of_source(text), part.size());
     EXPECT_EQ(text.find('\0'), std::string::npos);
   }
   EXPECT_EQ(bytes_of_source("solid a"), "solid a");
@@ -319,6 +320,16 @@ TEST(MeshScenario, TheSourcesOfAScenarioReadAgainAreTheSameScenario) {
   }
   const Scenario second = read_scenario("top.xml", again);
   EXPECT_EQ(head_solid(second).mesh->vertices, head_solid(scenario).mesh->vertices);
+}
+
+TEST(MeshScenario, ALargeFileOfBytesIsReadAgainThoughItsTextIsLonger) {
+  MemoryFiles files = with_head("<Geom type=\"trimesh\"><data>box.off 0.1</data></Geom>");
+  files.texts["box.off"] += std::string(std::size_t{13} << 20U, '\0');
+  SourceTexts again;
+  for (const SourceFile& source : files.scenario().sources) {
+    again.add(source.path, source.text);
+  }
+  EXPECT_EQ(head_solid(read_scenario("top.xml", again)).mesh->vertices.size(), 8U);
 }
 
 }  // namespace

@@ -1,0 +1,28 @@
+#pragma once
+
+// The gaits of an experiment of the thesis: those without a search, and the best of each method.
+
+#include <filesystem>
+#include <vector>
+
+#include "sim/optimize/report/thesis_experiment.hpp"
+#include "tools/proleg/experiment_methods.hpp"
+#include "tools/proleg/gait_checks.hpp"
+#include "tools/proleg/repetitions.hpp"
+
+namespace proleg::tools {
+
+[[nodiscard]] std::vector<optimize::Reference> reference_distances(const optimize::ThesisExperiment& thesis,
+                                                                   const optimize::Experiment& experiment,
+                                                                   const std::filesystem::path& scenarios);
+
+/// The references on the obstacle and the best of each method, each in its own world, in other worlds and on level
+/// ground. Writes figures 6.8, the crossing of the best, and 7.3, all distances on a ruler, to the folder. results: one
+/// for each chosen method. The experiment has a level ground. Throws CheckInterrupted.
+[[nodiscard]] std::vector<CheckedGait> check_gaits(const optimize::ThesisExperiment& thesis,
+                                                   const std::vector<ChosenMethod>& chosen,
+                                                   const std::vector<MethodResult>& results,
+                                                   const std::filesystem::path& scenarios,
+                                                   const std::filesystem::path& folder);
+
+}  // namespace proleg::tools

@@ -1,12 +1,21 @@
 #include "tools/proleg/experiment_gaits.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "shared/computer/output/output.hpp"
+#include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/report/crossing_figure.hpp"
+#include "sim/optimize/report/report.hpp"
 #include "sim/scenario/reader.hpp"
+#include "tools/proleg/terminal_line.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -32,20 +41,97 @@ sim::Scenario best_scenario(const optimize::Experiment& experiment, const Method
   return scenario;
 }
 
-std::vector<NamedGait> gaits_to_check(const optimize::ThesisExperiment& thesis, const std::vector<ChosenMethod>& chosen,
-                                      const std::vector<MethodResult>& results, const fs::path& scenarios) {
-  std::vector<NamedGait> gaits;
-  for (const optimize::ReferenceScenario& reference : thesis.references) {
-    if (reference.file != thesis.level_ground) {
-      gaits.push_back(
-          {std::string(reference.short_name), reference_scenario(reference, chosen.front().experiment, scenarios)});
+/// What an experiment asks of a gait on level ground.
+class LevelGround {
+ public:
+  LevelGround(const optimize::ThesisExperiment& thesis, const optimize::Experiment& experiment,
+              const fs::path& scenarios)
+      : distance_(experiment.objectives.front()) {
+    const auto level = std::ranges::find(thesis.references, thesis.level_ground, &optimize::ReferenceScenario::file);
+    plain_ = reference_scenario(*level, experiment, scenarios);
+  }
+  [[nodiscard]] const sim::EnvironmentModel& environment() const { return plain_.environment; }
+  /// Whether the scenario's gait goes about as far there as the plain one, in an engine.
+  [[nodiscard]] bool is_kept_by(sim::Scenario scenario, sim::PhysicsEngine engine) {
+    const double plain = plain_distance(engine);
+    scenario.environment = plain_.environment;
+    scenario.environment.engine = engine;
+    return std::abs(gait_distance(scenario, distance_) - plain) <= level_tolerance * plain;
+  }
+
+ private:
+  double plain_distance(sim::PhysicsEngine engine) {
+    const auto [known, is_new] = plain_m_.try_emplace(engine);
+    if (is_new) {
+      sim::Scenario scenario = plain_;
+      scenario.environment.engine = engine;
+      known->second = gait_distance(scenario, distance_);
+    }
+    return known->second;
+  }
+
+  const optimize::Objective& distance_;
+  sim::Scenario plain_;
+  std::map<sim::PhysicsEngine, double> plain_m_;
+};
+
+/// Best first; those that were simulated.
+std::vector<const optimize::Evaluation*> best_evaluations(const MethodResult& result, std::size_t count) {
+  std::vector<const optimize::Evaluation*> best;
+  for (const std::vector<optimize::Evaluation>& run : result.runs.runs) {
+    for (const optimize::Evaluation& evaluation : run) {
+      if (!evaluation.reused && !evaluation.given_up && evaluation.failure.empty()) {
+        best.push_back(&evaluation);
+      }
     }
   }
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    gaits.push_back({results[i].runs.method, best_scenario(chosen[i].experiment, results[i])});
-  }
-  return gaits;
+  std::ranges::stable_sort(best, std::ranges::greater(),
+                           [](const optimize::Evaluation* evaluation) { return evaluation->scores.front(); });
+  best.resize(std::min(best.size(), count));
+  return best;
 }
+
+/// The farthest gait of a method that keeps the level, by the judging engine.
+std::optional<optimize::Evaluation> best_that_keeps(LevelGround& level, const optimize::Experiment& experiment,
+                                                    const MethodResult& result) {
+  constexpr std::size_t most_looked_at = 200;
+  constexpr std::size_t most_judged = 5;
+  std::optional<optimize::Evaluation> best;
+  std::size_t judged = 0;
+  for (const optimize::Evaluation* const evaluation : best_evaluations(result, most_looked_at)) {
+    const sim::Scenario own = optimize::own_world(experiment, *evaluation);
+    // The engine of the search is the faster one.
+    if (!level.is_kept_by(own, experiment.scenario.environment.engine) ||
+        !level.is_kept_by(own, optimize::judging_engine)) {
+      continue;
+    }
+    optimize::Evaluation candidate = *evaluation;
+    candidate.scores.front() = gait_distance(own, experiment.objectives.front());
+    if (!best || candidate.scores.front() > best->scores.front()) {
+      best = std::move(candidate);
+    }
+    if (++judged == most_judged) {
+      break;
+    }
+  }
+  return best;
+}
+
+/// Tells a person which gait is checked; each takes half a minute.
+class CheckProgress {
+ public:
+  void show(const std::string& name) {
+    const std::string text = "checks " + name + " in other worlds";
+    if (line_.is_visible()) {
+      line_.draw(text);
+    } else {
+      std::cerr << text << '\n';
+    }
+  }
+
+ private:
+  TerminalLine line_{std::chrono::milliseconds(0)};
+};
 
 }  // namespace
 
@@ -74,13 +160,36 @@ std::vector<CheckedGait> check_gaits(const optimize::ThesisExperiment& thesis, c
                                      const std::vector<MethodResult>& results, const fs::path& scenarios,
                                      const fs::path& folder) {
   const optimize::Experiment& first = chosen.front().experiment;
-  const auto level = std::ranges::find(thesis.references, thesis.level_ground, &optimize::ReferenceScenario::file);
-  const sim::EnvironmentModel level_ground = reference_scenario(*level, first, scenarios).environment;
+  LevelGround level(thesis, first, scenarios);
+  CheckProgress progress;
   std::vector<CheckedGait> checks;
+  const auto check = [&](const std::string& name, sim::Scenario scenario) {
+    progress.show(name);
+    checks.push_back(check_gait({name, std::move(scenario)}, level.environment(), first.objectives.front()));
+  };
+  for (const optimize::ReferenceScenario& reference : thesis.references) {
+    if (reference.file != thesis.level_ground) {
+      check(std::string(reference.short_name), reference_scenario(reference, first, scenarios));
+    }
+  }
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const auto& [method, experiment] = chosen[i];
+    const MethodResult& result = results[i];
+    check(result.runs.method, best_scenario(experiment, result));
+    if (const std::optional<optimize::Evaluation> kept = best_that_keeps(level, experiment, result)) {
+      const std::string name = result.runs.method + ", level kept";
+      if (kept->candidate == result.best->candidate) {
+        checks.push_back(checks.back());
+        checks.back().name = name;
+      } else {
+        check(name, optimize::own_world(experiment, *kept));
+      }
+      optimize::write_scenario(experiment, *kept, folder / method.name, "level_kept");
+    }
+  }
   std::vector<optimize::RulerMark> marks;
-  for (NamedGait& gait : gaits_to_check(thesis, chosen, results, scenarios)) {
-    checks.push_back(check_gait(std::move(gait), level_ground, first.objectives.front()));
-    marks.push_back({checks.back().name, checks.back().distance_m});
+  for (const CheckedGait& gait : checks) {
+    marks.push_back({gait.name, gait.distance_m});
   }
   const auto score = [](const MethodResult& result) { return result.best->scores.front(); };
   const auto farthest = std::ranges::max_element(results, {}, score);

@@ -16,9 +16,10 @@ namespace proleg::tools {
                                                                    const optimize::Experiment& experiment,
                                                                    const std::filesystem::path& scenarios);
 
-/// The references on the obstacle and the best of each method, each in its own world, in other worlds and on level
-/// ground. Writes figures 6.8, the crossing of the best, and 7.3, all distances on a ruler, to the folder. results: one
-/// for each chosen method. The experiment has a level ground. Throws CheckInterrupted.
+/// The references on the obstacle, the best of each method, and its best that keeps the level, if there is one: each in
+/// its own world, in other worlds and on level ground. Writes figures 6.8, the crossing of the best, and 7.3, all
+/// distances on a ruler, to the folder, and the gaits that keep the level to those of the methods. results: one for
+/// each chosen method. The experiment has a level ground. Throws CheckInterrupted.
 [[nodiscard]] std::vector<CheckedGait> check_gaits(const optimize::ThesisExperiment& thesis,
                                                    const std::vector<ChosenMethod>& chosen,
                                                    const std::vector<MethodResult>& results,

@@ -27,20 +27,6 @@ void stop_if_interrupted() {
   }
 }
 
-double run(const sim::Scenario& scenario, const optimize::DistanceOf& distance_of) {
-  try {
-    sim::Simulation simulation(scenario);
-    simulation.leave_out_hashes();
-    while (simulation.tick() < sim::tick_count(scenario)) {
-      simulation.advance();
-      stop_if_interrupted();
-    }
-    return distance_of(simulation.plant());
-  } catch (const sim::PhysicsError&) {
-    return NAN;
-  }
-}
-
 double mean_of(const std::vector<double>& values) {
   return values.empty() ? NAN : std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -71,16 +57,30 @@ double middle_of(const sim::Plant& plant) {
 
 }  // namespace
 
+double gait_distance(const sim::Scenario& scenario, const optimize::Objective& distance) {
+  try {
+    sim::Simulation simulation(scenario);
+    simulation.leave_out_hashes();
+    while (simulation.tick() < sim::tick_count(scenario)) {
+      simulation.advance();
+      stop_if_interrupted();
+    }
+    return distance.score(simulation.plant().meter().values());
+  } catch (const sim::PhysicsError&) {
+    return NAN;
+  }
+}
+
 CheckedGait check_gait(NamedGait gait, const sim::EnvironmentModel& level, const optimize::Objective& distance) {
-  const auto distance_of = [&](const sim::Plant& plant) { return distance.score(plant.meter().values()); };
   sim::Scenario& scenario = gait.scenario;
   scenario.environment.engine = optimize::judging_engine;
-  CheckedGait checked{std::move(gait.name), run(scenario, distance_of), {}, 0.0};
+  CheckedGait checked{std::move(gait.name), gait_distance(scenario, distance), {}, 0.0};
   checked.worlds = optimize::distances_in_worlds(
-      scenario, checked_worlds, worlds_seed, variation, [](double) { stop_if_interrupted(); }, distance_of);
+      scenario, checked_worlds, worlds_seed, variation, [](double) { stop_if_interrupted(); },
+      [&](const sim::Plant& plant) { return distance.score(plant.meter().values()); });
   scenario.environment = level;
   scenario.environment.engine = optimize::judging_engine;
-  checked.level_m = run(scenario, distance_of);
+  checked.level_m = gait_distance(scenario, distance);
   return checked;
 }
 
@@ -88,13 +88,13 @@ std::string gait_checks_text(const std::vector<CheckedGait>& gaits) {
   std::string text = "the best gaits in " + std::to_string(checked_worlds) +
                      " worlds (friction and masses by a tenth, start by 5 mm), and on level ground:\n";
   std::array<char, 160> line{};
-  std::snprintf(line.data(), line.size(), "%-28s%10s%10s%9s%10s%10s%10s%11s\n", "gait", "own (m)", "mean (m)", "sd (m)",
+  std::snprintf(line.data(), line.size(), "%-33s%10s%10s%9s%10s%10s%10s%11s\n", "gait", "own (m)", "mean (m)", "sd (m)",
                 "lowest", "highest", "level (m)", "to plain");
   text += line.data();
   for (const CheckedGait& gait : gaits) {
     const std::vector<double>& worlds = gait.worlds.distances;
     const double to_plain = 100.0 * (gait.level_m / gaits.front().level_m - 1.0);
-    std::snprintf(line.data(), line.size(), "%-28s%10.3f%10.3f%9.3f%10.3f%10.3f%10.3f%+9.1f %%\n", gait.name.c_str(),
+    std::snprintf(line.data(), line.size(), "%-33s%10.3f%10.3f%9.3f%10.3f%10.3f%10.3f%+9.1f %%\n", gait.name.c_str(),
                   gait.distance_m, mean_of(worlds), deviation_of(worlds), lowest(worlds), highest(worlds), gait.level_m,
                   to_plain);
     text += line.data();
@@ -102,6 +102,9 @@ std::string gait_checks_text(const std::vector<CheckedGait>& gaits) {
       text += "  " + std::to_string(gait.worlds.failed) + " worlds without a distance\n";
     }
   }
+  const int percent = static_cast<int>(std::lround(100.0 * level_tolerance));
+  text += "level kept: the farthest gait of a method that on level ground is within " + std::to_string(percent) +
+          " % of the first one; farther there,\nthe reflex makes the gait larger where nothing is in the way\n";
   return text;
 }
 

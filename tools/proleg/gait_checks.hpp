@@ -32,16 +32,24 @@ struct CheckedGait {
 
 inline constexpr std::uint32_t checked_worlds = 20;
 
+/// A gait keeps the level if its distance on level ground differs from the plain gait's by at most this share. One that
+/// goes farther has a reflex that makes the gait larger, also where nothing is in the way.
+inline constexpr double level_tolerance = 0.15;
+
 /// The user has interrupted a check (tools/proleg/interrupt.hpp).
 class CheckInterrupted {};
 
+/// How far a scenario's robot comes, in m, in the scenario's engine; NaN if the physics failed. distance: what the
+/// searches rate, in m. Throws CheckInterrupted.
+[[nodiscard]] double gait_distance(const sim::Scenario& scenario, const optimize::Objective& distance);
+
 /// Runs a gait in its own world, in worlds that differ (friction and masses by a tenth, start by 5 mm), and on level
-/// ground. level: the environment without the obstacle. distance: what the searches rate, in m. Throws
-/// CheckInterrupted.
+/// ground. level: the environment without the obstacle. distance: as above. Throws CheckInterrupted.
 [[nodiscard]] CheckedGait check_gait(NamedGait gait, const sim::EnvironmentModel& level,
                                      const optimize::Objective& distance);
 
 /// A table, a line for each gait; the last column compares the distance on level ground with that of the first gait.
+/// Below it, what "level kept" in the name of a gait means.
 [[nodiscard]] std::string gait_checks_text(const std::vector<CheckedGait>& gaits);
 [[nodiscard]] Json gait_checks_json(const std::vector<CheckedGait>& gaits);
 

@@ -180,7 +180,7 @@ std::string draw_method_comparison(const ThesisExperiment& experiment, std::span
     method_legend.push_back({method.method, line_style(colour, 2.0), ""});
     if (!curves.back().mean.empty()) {
       const double mean = curves.back().mean.back();
-      means.push_back({mean, method.method + " " + fixed_text(mean, 3), colour});
+      means.push_back({mean, "mean " + fixed_text(mean, 3), colour});
     }
   }
   const bool has_thesis = !thesis.empty();
@@ -198,8 +198,7 @@ std::string draw_method_comparison(const ThesisExperiment& experiment, std::span
           "Best distance so far of every repetition, and its mean, against evaluations.");
   sim::draw_title(svg, std::string(experiment.title) + ": methods compared", {});
   sim::draw_legend(svg, plot_right, 54.0, method_legend);
-  std::vector<LegendEntry> level_legend{
-      {"uniform amplitudes; best of all runs", line_style(sim::ink, 1.3, dotted), ""}};
+  std::vector<LegendEntry> level_legend{{"without a search; best of all runs", line_style(sim::ink, 1.3, dotted), ""}};
   sim::draw_plot_grid(svg, every.x, every.y, "evaluations", "(a) Every run: best distance so far (m)");
   sim::draw_legend(svg, plot_right, sim::first_panel_top - 16.0, level_legend);
   draw_levels(svg, every, best);
@@ -210,7 +209,6 @@ std::string draw_method_comparison(const ThesisExperiment& experiment, std::span
   draw_names(svg, every, best, {});
 
   sim::draw_plot_grid(svg, mean.x, mean.y, "evaluations", "(b) Mean of the runs (m)");
-  level_legend.front().name = reference_names(experiment) + "; best of all";
   if (has_thesis) {
     level_legend.push_back({"the thesis's best", line_style(sim::ink, 1.3, dashed), ""});
   }

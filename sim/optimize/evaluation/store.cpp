@@ -101,11 +101,13 @@ class Store::Implementation {
       const std::string path = other.string();
       Statement(*database_, "ATTACH DATABASE ?1 AS other").run(std::string_view(path));
       const std::string which = run ? " WHERE run = " + std::to_string(*run) : "";
-      std::string statements = "BEGIN;";
+      // The caller may delete the other store then: this one must have reached the disk, which NORMAL does not wait
+      // for.
+      std::string statements = "PRAGMA synchronous = FULL; BEGIN;";
       for (const char* table : {"trial", "evaluation", "run"}) {
         statements += std::string(" REPLACE INTO ") + table + " SELECT * FROM other." + table + which + ";";
       }
-      database_->execute((statements + " COMMIT; DETACH DATABASE other").c_str());
+      database_->execute((statements + " COMMIT; DETACH DATABASE other; PRAGMA synchronous = NORMAL").c_str());
       read_last_numbers();
     });
   }

@@ -62,7 +62,8 @@ class Store {
   void finish_run(std::uint32_t run, const std::string& reason);
 
   /// Adds all that another store of the same experiment and result key has, or what it has of one run; its rows replace
-  /// those of the same run and number. Throws StoreError, also if another program writes to that store.
+  /// those of the same run and number. It is on the disk when this returns. Throws StoreError, also if another program
+  /// writes to that store.
   void add(const std::filesystem::path& other, std::optional<std::uint32_t> run = {});
 
   /// Number of the last evaluation of a run that was saved, plus 1.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -75,18 +76,19 @@ class LevelGround {
   std::map<sim::PhysicsEngine, double> plain_m_;
 };
 
-/// Best first; those that were simulated.
-std::vector<const optimize::Evaluation*> best_evaluations(const MethodResult& result, std::size_t count) {
-  std::vector<const optimize::Evaluation*> best;
-  for (const std::vector<optimize::Evaluation>& run : result.runs.runs) {
-    for (const optimize::Evaluation& evaluation : run) {
-      if (!evaluation.reused && !evaluation.given_up && evaluation.failure.empty()) {
-        best.push_back(&evaluation);
-      }
+double score_of(const optimize::Evaluation* evaluation) { return evaluation->scores.front(); }
+
+using EvaluationList = std::vector<const optimize::Evaluation*>;
+
+/// The best `count` of a repetition that were simulated, best first.
+EvaluationList best_of(const std::vector<optimize::Evaluation>& run, std::size_t count) {
+  EvaluationList best;
+  for (const optimize::Evaluation& evaluation : run) {
+    if (!evaluation.reused && !evaluation.given_up && evaluation.failure.empty()) {
+      best.push_back(&evaluation);
     }
   }
-  std::ranges::stable_sort(best, std::ranges::greater(),
-                           [](const optimize::Evaluation* evaluation) { return evaluation->scores.front(); });
+  std::ranges::stable_sort(best, std::ranges::greater(), score_of);
   best.resize(std::min(best.size(), count));
   return best;
 }
@@ -94,11 +96,16 @@ std::vector<const optimize::Evaluation*> best_evaluations(const MethodResult& re
 /// The farthest gait of a method that keeps the level, by the judging engine.
 std::optional<optimize::Evaluation> best_that_keeps(LevelGround& level, const optimize::Experiment& experiment,
                                                     const MethodResult& result) {
-  constexpr std::size_t most_looked_at = 200;
+  constexpr std::size_t most_of_a_repetition = 200;
   constexpr std::size_t most_judged = 5;
+  EvaluationList candidates;
+  for (const std::vector<optimize::Evaluation>& run : result.runs.runs) {
+    std::ranges::copy(best_of(run, most_of_a_repetition), std::back_inserter(candidates));
+  }
+  std::ranges::stable_sort(candidates, std::ranges::greater(), score_of);
   std::optional<optimize::Evaluation> best;
   std::size_t judged = 0;
-  for (const optimize::Evaluation* const evaluation : best_evaluations(result, most_looked_at)) {
+  for (const optimize::Evaluation* const evaluation : candidates) {
     const sim::Scenario own = optimize::own_world(experiment, *evaluation);
     // The engine of the search is the faster one.
     if (!level.is_kept_by(own, experiment.scenario.environment.engine) ||

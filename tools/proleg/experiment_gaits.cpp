@@ -195,6 +195,7 @@ std::vector<CheckedGait> check_gaits(const optimize::ThesisExperiment& thesis, c
     }
   }
   std::vector<optimize::RulerMark> marks;
+  marks.reserve(checks.size());
   for (const CheckedGait& gait : checks) {
     marks.push_back({gait.name, gait.distance_m});
   }

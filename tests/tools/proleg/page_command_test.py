@@ -4,11 +4,13 @@ import os
 import re
 import shutil
 import signal
+import socket
 import ssl
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 import urllib.request
 from pathlib import Path
 
@@ -49,6 +51,11 @@ class PageForOthers(PageTest):
         process = self.start("--lan", "--certificate", "page.pem")
         url = re.fullmatch("page: (https://localhost:[0-9]+)/#(.+)\n", process.stdout.readline())
         context = ssl.create_default_context(cafile=self.folder / "page.pem")
+        # A new machine may have no /etc/hosts, and then no localhost.
+        resolve = socket.getaddrinfo
+        local = unittest.mock.patch("socket.getaddrinfo", lambda host, *rest: resolve("127.0.0.1" if host == "localhost" else host, *rest))
+        self.addCleanup(local.stop)
+        local.start()
         with urllib.request.urlopen(url[1] + "/", context=context, timeout=WAIT_S) as page:
             self.assertIn(b"<title>page</title>", page.read())
             self.assertIn(url[1].replace("https", "wss"), page.headers["Content-Security-Policy"])

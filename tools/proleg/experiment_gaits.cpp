@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <iostream>
 #include <iterator>
 #include <map>
@@ -12,6 +11,7 @@
 #include <utility>
 
 #include "shared/computer/output/output.hpp"
+#include "sim/optimize/evaluation/confirmation.hpp"
 #include "sim/optimize/evaluation/task.hpp"
 #include "sim/optimize/report/crossing_figure.hpp"
 #include "sim/optimize/report/report.hpp"
@@ -76,69 +76,63 @@ class LevelGround {
   std::map<sim::PhysicsEngine, double> plain_m_;
 };
 
-double score_of(const optimize::Evaluation* evaluation) { return evaluation->scores.front(); }
-
-using EvaluationList = std::vector<const optimize::Evaluation*>;
-
-/// The best `count` of a repetition that were simulated, best first.
-EvaluationList best_of(const std::vector<optimize::Evaluation>& run, std::size_t count) {
-  EvaluationList best;
-  for (const optimize::Evaluation& evaluation : run) {
-    if (!evaluation.reused && !evaluation.given_up && evaluation.failure.empty()) {
-      best.push_back(&evaluation);
-    }
-  }
-  std::ranges::stable_sort(best, std::ranges::greater(), score_of);
-  best.resize(std::min(best.size(), count));
-  return best;
-}
-
-/// The farthest gait of a method that keeps the level, by the judging engine.
-std::optional<optimize::Evaluation> best_that_keeps(LevelGround& level, const optimize::Experiment& experiment,
-                                                    const MethodResult& result) {
-  constexpr std::size_t most_of_a_repetition = 200;
-  constexpr std::size_t most_judged = 5;
-  EvaluationList candidates;
-  for (const std::vector<optimize::Evaluation>& run : result.runs.runs) {
-    std::ranges::copy(best_of(run, most_of_a_repetition), std::back_inserter(candidates));
-  }
-  std::ranges::stable_sort(candidates, std::ranges::greater(), score_of);
-  std::optional<optimize::Evaluation> best;
-  std::size_t judged = 0;
-  for (const optimize::Evaluation* const evaluation : candidates) {
-    const sim::Scenario own = optimize::own_world(experiment, *evaluation);
-    // The engine of the search is the faster one.
-    if (!level.is_kept_by(own, experiment.scenario.environment.engine) ||
-        !level.is_kept_by(own, optimize::judging_engine)) {
-      continue;
-    }
-    optimize::Evaluation candidate = *evaluation;
-    candidate.scores.front() = gait_distance(own, experiment.objectives.front());
-    if (!best || candidate.scores.front() > best->scores.front()) {
-      best = std::move(candidate);
-    }
-    if (++judged == most_judged) {
-      break;
-    }
-  }
-  return best;
-}
-
-/// Tells a person which gait is checked; each takes half a minute.
+/// Tells a person what is done; each gait takes half a minute.
 class CheckProgress {
  public:
-  void show(const std::string& name) {
-    const std::string text = "checks " + name + " in other worlds";
-    if (line_.is_visible()) {
-      line_.draw(text);
-    } else {
-      std::cerr << text << '\n';
+  void begin_gait(const std::string& name) { begin("checks " + name + " in other worlds"); }
+  void begin_search(const std::string& method) { begin("looks for a gait of " + method + " that keeps the level"); }
+  void show_search(std::size_t done, std::size_t all) {
+    if (line_.is_due()) {
+      line_.draw(text_ + ": " + std::to_string(done) + " of at most " + std::to_string(all) + " candidates");
     }
   }
 
  private:
+  void begin(std::string text) {
+    text_ = std::move(text);
+    if (line_.is_visible()) {
+      line_.draw(text_);
+    } else {
+      std::cerr << text_ + "\n";
+    }
+  }
+
   TerminalLine line_{std::chrono::milliseconds(0)};
+  std::string text_;
 };
+
+/// The farthest gait of a method that keeps the level, by the judging engine.
+std::optional<optimize::Evaluation> best_that_keeps(LevelGround& level, const optimize::Experiment& experiment,
+                                                    const MethodResult& result, CheckProgress& progress) {
+  constexpr std::size_t most_of_a_repetition = 200;
+  constexpr std::size_t most_judged = 5;
+  const optimize::Objective& distance = experiment.objectives.front();
+  std::vector<optimize::Evaluation> candidates;
+  for (const std::vector<optimize::Evaluation>& run : result.runs.runs) {
+    std::ranges::move(optimize::best_candidates(experiment, run, most_of_a_repetition), std::back_inserter(candidates));
+  }
+  std::ranges::stable_sort(
+      candidates, [&](double left, double right) { return distance.better(left, right); },
+      [](const optimize::Evaluation& evaluation) { return evaluation.scores.front(); });
+  std::optional<optimize::Evaluation> best;
+  std::size_t judged = 0;
+  for (std::size_t i = 0; i < candidates.size() && judged < most_judged; ++i) {
+    progress.show_search(i, candidates.size());
+    optimize::Evaluation& candidate = candidates[i];
+    const sim::Scenario own = optimize::own_world(experiment, candidate);
+    // First in the engine of the search, if that is the faster one.
+    if ((optimize::is_judged(experiment) && !level.is_kept_by(own, experiment.scenario.environment.engine)) ||
+        !level.is_kept_by(own, optimize::judging_engine)) {
+      continue;
+    }
+    ++judged;
+    candidate.scores.front() = gait_distance(own, distance);
+    if (!best || distance.better(candidate.scores.front(), best->scores.front())) {
+      best = candidate;
+    }
+  }
+  return best;
+}
 
 }  // namespace
 
@@ -171,7 +165,7 @@ std::vector<CheckedGait> check_gaits(const optimize::ThesisExperiment& thesis, c
   CheckProgress progress;
   std::vector<CheckedGait> checks;
   const auto check = [&](const std::string& name, sim::Scenario scenario) {
-    progress.show(name);
+    progress.begin_gait(name);
     checks.push_back(check_gait({name, std::move(scenario)}, level.environment(), first.objectives.front()));
   };
   for (const optimize::ReferenceScenario& reference : thesis.references) {
@@ -183,7 +177,8 @@ std::vector<CheckedGait> check_gaits(const optimize::ThesisExperiment& thesis, c
     const auto& [method, experiment] = chosen[i];
     const MethodResult& result = results[i];
     check(result.runs.method, best_scenario(experiment, result));
-    if (const std::optional<optimize::Evaluation> kept = best_that_keeps(level, experiment, result)) {
+    progress.begin_search(result.runs.method);
+    if (const std::optional<optimize::Evaluation> kept = best_that_keeps(level, experiment, result, progress)) {
       const std::string name = result.runs.method + ", level kept";
       if (kept->candidate == result.best->candidate) {
         checks.push_back(checks.back());

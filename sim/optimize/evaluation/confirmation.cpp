@@ -55,7 +55,8 @@ bool needs_confirmation(const Experiment& experiment) {
                                    depends_on_seed(experiment.scenario, experiment.space, experiment.trials.spread));
 }
 
-std::vector<Evaluation> choose_finalists(const Experiment& experiment, std::span<const Evaluation> evaluations) {
+std::vector<Evaluation> best_candidates(const Experiment& experiment, std::span<const Evaluation> evaluations,
+                                        std::size_t count) {
   std::vector<const Evaluation*> order;
   for (const Evaluation& evaluation : evaluations) {
     if (is_better(experiment, evaluation, nullptr)) {
@@ -65,16 +66,21 @@ std::vector<Evaluation> choose_finalists(const Experiment& experiment, std::span
   std::ranges::stable_sort(order, [&](const Evaluation* left, const Evaluation* right) {
     return experiment.objectives.front().better(left->scores.front(), right->scores.front());
   });
-  const std::size_t wanted = fresh_runs(experiment).candidates;
-  std::vector<Evaluation> finalists;
+  std::vector<Evaluation> best;
   std::set<Candidate> chosen;
   for (const Evaluation* evaluation : order) {
-    if (finalists.size() < wanted && chosen.insert(evaluation->candidate).second) {
-      finalists.push_back(*evaluation);
+    if (best.size() < count && chosen.insert(evaluation->candidate).second) {
+      best.push_back(*evaluation);
     }
   }
+  return best;
+}
+
+std::vector<Evaluation> choose_finalists(const Experiment& experiment, std::span<const Evaluation> evaluations) {
+  std::vector<Evaluation> finalists = best_candidates(experiment, evaluations, fresh_runs(experiment).candidates);
   const Evaluation* const baseline = baseline_of(experiment, evaluations);
-  if (baseline != nullptr && is_better(experiment, *baseline, nullptr) && !chosen.contains(baseline->candidate)) {
+  if (baseline != nullptr && is_better(experiment, *baseline, nullptr) &&
+      std::ranges::count(finalists, baseline->candidate, &Evaluation::candidate) == 0) {
     finalists.push_back(*baseline);
   }
   return finalists;

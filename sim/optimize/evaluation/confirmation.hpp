@@ -4,6 +4,7 @@
 // too good: part of it is chance, and fresh runs do not have this bias. And what an engine that is not the judging one
 // found may live on its errors, so fresh runs are made in that one.
 
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <vector>
@@ -29,8 +30,12 @@ struct Confirmation {
 /// The fresh runs of the experiment. Of a judged search at least ten candidates have one: with equal runs, exactly one.
 [[nodiscard]] ConfirmationSettings fresh_runs(const Experiment& experiment);
 
-/// The best different candidates of a search, best first, as many as fresh_runs() says; and the baseline, if it has a
-/// score. evaluations: of one run, by number.
+/// The best different candidates of a search that have scores, best first, at most `count`. evaluations: of one run, by
+/// number.
+[[nodiscard]] std::vector<Evaluation> best_candidates(const Experiment& experiment,
+                                                      std::span<const Evaluation> evaluations, std::size_t count);
+
+/// As many of them as fresh_runs() says; and the baseline, if it has a score.
 [[nodiscard]] std::vector<Evaluation> choose_finalists(const Experiment& experiment,
                                                        std::span<const Evaluation> evaluations);
 

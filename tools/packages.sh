@@ -19,6 +19,7 @@ firmware_packages=(gcc-arm-none-eabi libstdc++-arm-none-eabi-newlib binutils-arm
 # Additional packages for the tests: a second compiler with its sanitizers, independent programs.
 test_packages=(
   clang libclang-rt-14-dev clang-format clang-tidy libgtest-dev
+  lld               # links the programs of the sanitizers
   llvm              # names of functions in reports of the sanitizers, which their suppressions need
   can-utils tshark  # independent readers of bus logs
   python3-can python3-serial  # an independent program that uses slcan adapters

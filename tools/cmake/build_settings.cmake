@@ -35,7 +35,8 @@ if(PROLEG_SANITIZE)
   # The check of virtual calls (vptr) needs run-time type information, which the core does not have.
   add_compile_options(-fsanitize=address,undefined -fno-sanitize=vptr -fno-sanitize-recover=all
                       -fno-omit-frame-pointer)
-  add_link_options(-fsanitize=address,undefined)
+  # lld links the programs of the sanitizers about six times as fast as the GNU linker, which most of them wait for.
+  add_link_options(-fsanitize=address,undefined -fuse-ld=lld)
 endif()
 
 # proleg_computer_code()

@@ -12,8 +12,9 @@ endif()
 # rooms themselves are optimised in every preset.
 set(PROLEG_TEST_OPTIONS -O1)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # At -O1 gcc 12 warns of std::string(n, c) + "text", which is right.
-  list(APPEND PROLEG_TEST_OPTIONS -Wno-array-bounds -Wno-stringop-overflow)
+  # At -O1 gcc 12 warns of std::string(n, c) + "text", which is right. It also warns of conversions of constants that fit,
+  # for which clang, which compiles each of these sources under the sanitizers, looks at the value.
+  list(APPEND PROLEG_TEST_OPTIONS -Wno-array-bounds -Wno-stringop-overflow -Wno-conversion -Wno-sign-conversion)
 endif()
 if(PROLEG_SANITIZE)
   set(PROLEG_TEST_OPTIONS -O0)
@@ -36,7 +37,8 @@ find_package(Python3 REQUIRED COMPONENTS Interpreter)
 #                 [COST core-seconds] [ENVIRONMENT NAME=VALUE...] [HALF_CORES n] [REAL_TIME])
 #   A ctest test whose result tools/check uses again while its inputs are the same (tools/run_test).
 #   PROGRAMS   what the program starts: files, or $<TARGET_FILE:...>; a change in them runs the test again
-#   DATA       what it reads, beside PROLEG_TEST_DATA: files, or folders with all that is below them
+#   DATA       what it reads, beside PROLEG_TEST_DATA: files, or folders with all that is below them but sources
+#   COMPILES   it compiles from the folders of DATA, so that their sources count too
 #   COST       roughly, where it is many seconds: long tests start first
 #   REAL_TIME  it mostly waits, for example for a robot that moves as on the table, and must get its turn in time. One such
 #              test runs for each two cores, beside others that keep the cores busy. (Others at a lower priority would be
@@ -48,7 +50,7 @@ cmake_host_system_information(RESULT cores QUERY NUMBER_OF_LOGICAL_CORES)
 math(EXPR PROLEG_REAL_TIME_TESTS_AT_ONCE "(${cores} + 1) / 2")
 set_property(GLOBAL PROPERTY proleg_real_time_tests 0)
 function(proleg_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 test "REAL_TIME" "TIMEOUT;COST;HALF_CORES" "COMMAND;PROGRAMS;DATA;LABELS;ENVIRONMENT")
+  cmake_parse_arguments(PARSE_ARGV 1 test "REAL_TIME;COMPILES" "TIMEOUT;COST;HALF_CORES" "COMMAND;PROGRAMS;DATA;LABELS;ENVIRONMENT")
   set(inputs)
   foreach(program IN LISTS test_PROGRAMS)
     list(APPEND inputs --program ${program})
@@ -56,6 +58,9 @@ function(proleg_add_test name)
   foreach(data IN LISTS PROLEG_TEST_DATA test_DATA)
     list(APPEND inputs --data ${data})
   endforeach()
+  if(test_COMPILES)
+    list(APPEND inputs --compiles)
+  endif()
   set(name ${PROLEG_TEST_PREFIX}${name})
   add_test(NAME ${name}
     COMMAND ${Python3_EXECUTABLE} ${CMAKE_SOURCE_DIR}/tools/run_test --name ${name}

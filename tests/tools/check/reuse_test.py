@@ -53,10 +53,10 @@ class TestResults(Folder):
     def build(self, *flags):
         subprocess.run(["g++", "-DMINIMUM=1", *flags, "program.cpp", "-o", "program"], cwd=self.folder, check=True)
 
-    def run_test(self, **environment):
+    def run_test(self, *options, **environment):
         return subprocess.run(
             [TOOLS / "run_test", "--name", "room/subject", "--results", "results", "--program", "reader",
-             "--data", "golden.tsv", "--", "./program"],
+             "--data", "golden.tsv", *options, "--", "./program"],
             cwd=self.folder, capture_output=True, text=True, check=False,
             env={**os.environ, "PROLEG_REUSE_RESULTS": "1", "PROLEG_AUDIT_INPUTS": "0", **environment})
 
@@ -64,14 +64,14 @@ class TestResults(Folder):
         runs = self.folder / "runs"
         return len(runs.read_text()) if runs.exists() else 0
 
-    def expect_new_run(self, **environment):
+    def expect_new_run(self, *options, **environment):
         before = self.runs()
-        self.run_test(**environment)
+        self.run_test(*options, **environment)
         self.assertEqual(self.runs(), before + 1)
 
-    def expect_reuse(self):
+    def expect_reuse(self, *options):
         before = self.runs()
-        finished = self.run_test()
+        finished = self.run_test(*options)
         self.assertEqual((finished.returncode, self.runs()), (0, before))
         self.assertIn("REUSED", finished.stdout)
 
@@ -121,6 +121,14 @@ class TestResults(Folder):
         subprocess.run(library, cwd=self.folder, check=True)
         self.expect_new_run()
 
+    def test_a_source_counts_where_the_test_compiles_it(self):
+        self.write("sources/room.cpp", "int one();\n")
+        for options, expect in ((("--data", "sources"), self.expect_reuse),
+                                (("--data", "sources", "--compiles"), self.expect_new_run)):
+            self.expect_new_run(*options)
+            self.write("sources/room.cpp", f"int two();  // {options}\n")
+            expect(*options)
+
     def test_another_environment_is_tested(self):
         self.expect_new_run()
         self.expect_new_run(GTEST_SHARD_INDEX="1")
@@ -151,6 +159,13 @@ class TestResults(Folder):
         finished = audit()
         self.assertEqual(finished.returncode, 1)
         self.assertIn("page.md is read", finished.stdout)
+
+        module = checkout / "page" / "node_modules" / "three" / "index.js"
+        module.parent.mkdir(parents=True)
+        module.write_text("text")
+        reads = ["--", shutil.which("cat"), str(module)]
+        self.assertEqual(audit("--data", str(checkout / "page" / "package-lock.json")).returncode, 0)
+        self.assertEqual(audit().returncode, 1)
 
 
 class TidyResults(Folder):

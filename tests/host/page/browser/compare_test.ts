@@ -89,8 +89,12 @@ describe('two recordings', () => {
     await viewer.screenshot('compared');
     await viewer.button('End').click();
     await page.locator('[data-testid=joints] td[data-value=lag]').first().waitFor();
-    await page.waitForTimeout(300);
-    const withoutGhost = countPixels(await pixelsOf(page, page.getByTestId('scene')), isGhost);
+    // Waits: the scene follows with the next frames.
+    let withoutGhost = withGhost;
+    for (let look = 0; look < 40 && withGhost <= withoutGhost + 200; look += 1) {
+      await page.waitForTimeout(100);
+      withoutGhost = countPixels(await pixelsOf(page, page.getByTestId('scene')), isGhost);
+    }
     assert.ok(withGhost > withoutGhost + 200, `${withGhost} green pixels with a ghost, ${withoutGhost} without`);
     await viewer.close();
   });

@@ -61,6 +61,18 @@ bool is_writable(const Parts& parts, WritableIn state) {
   return false;
 }
 
+/// What every module of this version has in front of the fingerprint of its core. Computed by the compiler: flash is
+/// short.
+constexpr ObjectText software_text = [] {
+  ObjectText text;
+  text.append("protocol ");
+  text.append_decimal(canopen::protocol_version >> 8U);
+  text.append('.');
+  text.append_decimal(canopen::protocol_version & 0xFFU);
+  text.append(", core ");
+  return text;
+}();
+
 }  // namespace
 
 AbortCode read_object(std::span<const ObjectAccessor> accessors, const Parts& parts, canopen::Address address,
@@ -93,33 +105,6 @@ AbortCode write_object(std::span<const ObjectAccessor> accessors, Parts& parts, 
   return found.accessor->set(parts, {found.position, value, now});
 }
 
-void ObjectText::append(std::string_view text) {
-  for (const char character : text) {
-    if (size_ < characters_.size()) {
-      characters_[size_++] = character;
-    }
-  }
-}
-
-void ObjectText::append_hex(std::uint32_t value) {
-  for (unsigned shift = 32; shift > 0;) {
-    shift -= 4;
-    constexpr std::string_view digits = "0123456789ABCDEF";
-    append({&digits[value >> shift & 0xFU], 1});
-  }
-}
-
-void ObjectText::append_decimal(unsigned value) {
-  unsigned power = 1;
-  while (value / power >= 10) {
-    power *= 10;
-  }
-  for (; power > 0; power /= 10) {
-    const auto digit = static_cast<char>('0' + value / power % 10);
-    append({&digit, 1});
-  }
-}
-
 std::optional<ObjectText> read_text(const ModuleIdentity& identity, canopen::Address address) {
   ObjectText text;
   if (address == canopen::object::device_name.address) {
@@ -128,11 +113,7 @@ std::optional<ObjectText> read_text(const ModuleIdentity& identity, canopen::Add
     text.append("board ");
     text.append_decimal(identity.board_id);
   } else if (address == canopen::object::software_version.address) {
-    text.append("protocol ");
-    text.append_decimal(canopen::protocol_version >> 8U);
-    text.append(".");
-    text.append_decimal(canopen::protocol_version & 0xFFU);
-    text.append(", core ");
+    text = software_text;
     text.append_hex(identity.core_fingerprint);
   } else {
     return std::nullopt;

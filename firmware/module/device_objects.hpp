@@ -19,9 +19,31 @@ namespace proleg::firmware {
 class ObjectText {
  public:
   [[nodiscard]] std::span<const char> characters() const { return {characters_.data(), size_}; }
-  void append(std::string_view text);
-  void append_hex(std::uint32_t value);
-  void append_decimal(unsigned value);
+  constexpr void append(char character) {
+    if (size_ < characters_.size()) {
+      characters_[size_++] = character;
+    }
+  }
+  constexpr void append(std::string_view text) {
+    for (const char character : text) {
+      append(character);
+    }
+  }
+  constexpr void append_hex(std::uint32_t value) {
+    for (unsigned shift = 32; shift > 0;) {
+      shift -= 4;
+      append("0123456789ABCDEF"[value >> shift & 0xFU]);
+    }
+  }
+  constexpr void append_decimal(unsigned value) {
+    unsigned power = 1;
+    while (value / power >= 10) {
+      power *= 10;
+    }
+    for (; power > 0; power /= 10) {
+      append(static_cast<char>('0' + value / power % 10));
+    }
+  }
 
  private:
   std::array<char, 32> characters_{};

@@ -1,5 +1,5 @@
 # Prints what the program of a module takes of flash and RAM, and writes it beside the image.
-# Called with PROGRAM, TOOL_PREFIX and OUTPUT.
+# Fails if the CANopen device is larger than its limit. Called with PROGRAM, TOOL_PREFIX, CANOPEN_LIMIT and OUTPUT.
 
 function(run result)
   execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
@@ -30,5 +30,8 @@ foreach(line IN LISTS names)
   endif()
 endforeach()
 message("firmware/module: ${flash} bytes code and constants, with all of shared that it needs; ${ram} bytes RAM (sizeof(Module))")
-message("CANopen device (shared/canopen, device_objects, object_accessors): ${canopen} bytes of it, limit 14336")
+message("CANopen device (shared/canopen, device_objects, object_accessors): ${canopen} bytes of it, limit ${CANOPEN_LIMIT}")
+if(canopen GREATER CANOPEN_LIMIT)
+  message(FATAL_ERROR "${PROGRAM}: found a CANopen device of ${canopen} bytes, expected at most ${CANOPEN_LIMIT}")
+endif()
 file(WRITE ${OUTPUT} "flash\t${flash}\nram\t${ram}\ncanopen\t${canopen}\n")

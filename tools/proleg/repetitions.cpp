@@ -53,14 +53,15 @@ class Repetitions {
     }
     const auto at_once = static_cast<std::uint32_t>(
         std::min(runs.size(), optimize::WorkerPool::useful_searches(experiment_, worker_count)));
-    const optimize::WorkerPool pool(experiment_, worker_count, at_once);
-    work_side_by_side(at_once, runs, [&](std::uint32_t process, const NextNumber& next) {
+    optimize::WorkerPool pool(experiment_, worker_count, at_once);
+    const auto work = [&](std::uint32_t process, const NextNumber& next) {
       const std::unique_ptr<optimize::Workers> workers = pool.workers_of(process);
       while (const std::optional<std::uint32_t> run = next()) {
         const std::unique_ptr<Store> store = open_store(part(*run), experiment_, Store::Opening::resume);
         static_cast<void>(search(*run, *workers, *store, std::cout));
       }
-    });
+    };
+    work_side_by_side(at_once, runs, work, [&] { pool.leave_to_searches(); });
   }
 
   [[nodiscard]] MethodResult collect(std::uint32_t worker_count) const {

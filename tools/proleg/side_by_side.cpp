@@ -239,7 +239,8 @@ class Relay {
 }  // namespace
 
 void work_side_by_side(std::uint32_t processes, std::span<const std::uint32_t> numbers,
-                       const std::function<void(std::uint32_t process, const NextNumber& next)>& work) {
+                       const std::function<void(std::uint32_t process, const NextNumber& next)>& work,
+                       const std::function<void()>& started) {
   Pipe pipe;
   fill(pipe, numbers);
   std::cout.flush();
@@ -255,6 +256,7 @@ void work_side_by_side(std::uint32_t processes, std::span<const std::uint32_t> n
       break;  // those that did start do the work
     }
   }
+  started();
   Relay(all).run();
 }
 

@@ -124,9 +124,8 @@ class Pool {
     Search& search = searches_[number];
     const Bytes message = receive_message(search.socket);
     const std::optional<std::vector<Task>> tasks = tasks_from(message);
-    if (!tasks) {  // the farewell
-      close(std::exchange(search.socket, -1));
-      --active_;
+    if (!tasks) {  // the farewell, or nothing of a search that was killed
+      end(search);
       return;
     }
     if (queue_.empty()) {
@@ -137,6 +136,11 @@ class Pool {
     for (std::size_t i = 0; i < tasks->size(); ++i) {
       queue_.push_back({{number, i}, (*tasks)[i]});
     }
+  }
+
+  void end(Search& search) {
+    close(std::exchange(search.socket, -1));
+    --active_;
   }
 
   void give_tasks() {
@@ -175,7 +179,7 @@ class Pool {
         }
         if (!send_message(search.socket,
                           reply_with(share_of_search(experiment_, workers_.count(), active_), results))) {
-          throw std::runtime_error("the system cannot send results to a search");
+          end(search);  // it was killed
         }
       }
       collecting_until_ = Clock::now() + collecting_time;
@@ -298,8 +302,10 @@ WorkerPool::~WorkerPool() {
   kill(process_, SIGKILL);
   while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
   }
-  std::ranges::for_each(sockets_, close);
+  leave_to_searches();
 }
+
+void WorkerPool::leave_to_searches() { std::ranges::for_each(std::exchange(sockets_, {}), close); }
 
 std::size_t WorkerPool::tasks_of_worker(const Experiment& experiment) {
   constexpr std::size_t widest_vector = 8;

@@ -35,10 +35,13 @@ class WorkerPool {
   /// process, from 0. Its wait() throws std::runtime_error if the pool has ended, because a task cannot be simulated;
   /// the pool then has said why on standard error.
   [[nodiscard]] std::unique_ptr<Workers> workers_of(std::uint32_t search) const;
+  /// In this process, when all searches are forked. From then on the pool sees the end of a search that is killed, and
+  /// gives its share to the others.
+  void leave_to_searches();
 
  private:
   pid_t process_ = -1;
-  std::vector<int> sockets_;  ///< by search
+  std::vector<int> sockets_;  ///< by search; none after leave_to_searches()
   std::size_t first_share_;
 };
 

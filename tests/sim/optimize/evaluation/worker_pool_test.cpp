@@ -19,7 +19,7 @@ using std::chrono::milliseconds;
 
 /// Forks a process for each search, which calls search(number, its workers); returns their exit statuses. 100: an
 /// exception.
-std::vector<int> statuses_of(const WorkerPool& pool, std::uint32_t searches,
+std::vector<int> statuses_of(WorkerPool& pool, std::uint32_t searches,
                              const std::function<int(std::uint32_t, std::unique_ptr<Workers>)>& search) {
   std::vector<pid_t> processes;
   for (std::uint32_t i = 0; i < searches; ++i) {
@@ -34,6 +34,7 @@ std::vector<int> statuses_of(const WorkerPool& pool, std::uint32_t searches,
       _exit(status);
     }
   }
+  pool.leave_to_searches();
   std::vector<int> statuses;
   for (const pid_t process : processes) {
     int status = 0;
@@ -78,7 +79,7 @@ std::vector<std::size_t> noted_batches(const std::filesystem::path& file) {
 
 TEST(WorkerPool, GivesEachSearchTheResultsThatRunTrialGives) {
   const Experiment noisy = noisy_experiment();
-  const WorkerPool pool(noisy, 2, 3);
+  WorkerPool pool(noisy, 2, 3);
   const std::vector<int> statuses =
       statuses_of(pool, 3, [&](std::uint32_t search, const std::unique_ptr<Workers>& workers) {
         int wrong = 0;
@@ -94,7 +95,7 @@ TEST(WorkerPool, GivesEachSearchTheResultsThatRunTrialGives) {
 TEST(WorkerPool, FillsBatchesWithTheTasksOfAllSearches) {
   const TemporaryFolder folder;
   const Experiment experiment = reduced_experiment();
-  const WorkerPool pool(experiment, 1, 8, noting_batches(folder / "batches"));
+  WorkerPool pool(experiment, 1, 8, noting_batches(folder / "batches"));
   const std::vector<int> statuses =
       statuses_of(pool, 8, [&](std::uint32_t search, const std::unique_ptr<Workers>& workers) {
         for (std::uint32_t i = 0; i < 20; ++i) {
@@ -112,7 +113,7 @@ TEST(WorkerPool, FillsBatchesWithTheTasksOfAllSearches) {
 TEST(WorkerPool, GivesTheLastSearchThePlacesOfThoseThatHaveEnded) {
   const TemporaryFolder folder;
   const Experiment experiment = reduced_experiment();
-  const WorkerPool pool(experiment, 1, 2, noting_batches(folder / "batches"));
+  WorkerPool pool(experiment, 1, 2, noting_batches(folder / "batches"));
   const std::vector<int> statuses =
       statuses_of(pool, 2, [&](std::uint32_t search, const std::unique_ptr<Workers>& workers) {
         int share = static_cast<int>(workers->most_at_once());
@@ -130,7 +131,7 @@ TEST(WorkerPool, GivesTheLastSearchThePlacesOfThoseThatHaveEnded) {
 
 TEST(WorkerPool, WorksForTheOthersWhenASearchIsKilled) {
   const Experiment experiment = small_experiment();
-  const WorkerPool pool(experiment, 1, 2, one_by_one(made_up_trial));
+  WorkerPool pool(experiment, 1, 2, one_by_one(made_up_trial));
   const std::vector<int> statuses =
       statuses_of(pool, 2, [&](std::uint32_t search, const std::unique_ptr<Workers>& workers) {
         if (search == 0) {
@@ -148,6 +149,25 @@ TEST(WorkerPool, WorksForTheOthersWhenASearchIsKilled) {
   EXPECT_EQ(statuses, (std::vector<int>{-1, 0}));
 }
 
+TEST(WorkerPool, GivesTheShareOfAKilledSearchToTheOthers) {
+  const TemporaryFolder folder;
+  const Experiment experiment = reduced_experiment();
+  WorkerPool pool(experiment, 1, 2, noting_batches(folder / "batches"));
+  const std::vector<int> statuses =
+      statuses_of(pool, 2, [&](std::uint32_t search, const std::unique_ptr<Workers>& workers) {
+        if (search == 0) {
+          raise(SIGKILL);
+        }
+        int share = static_cast<int>(workers->most_at_once());
+        for (std::uint32_t i = 0; share == 4 && i < 500; ++i) {
+          static_cast<void>(result_of(*workers, {search, i, 0, {i % 5, 0, 0}, {}}));
+          share = static_cast<int>(workers->most_at_once());
+        }
+        return share;
+      });
+  EXPECT_EQ(statuses, (std::vector<int>{-1, 8}));
+}
+
 TEST(WorkerPool, ReplacesAWorkerThatHangsWhileAnotherIsIdle) {
   const TemporaryFolder folder;
   const Experiment experiment = small_experiment();
@@ -158,7 +178,7 @@ TEST(WorkerPool, ReplacesAWorkerThatHangsWhileAnotherIsIdle) {
     }
     return made_up_trial(its, task);
   });
-  const WorkerPool pool(experiment, 2, 1, run, {.fixed = milliseconds(300), .per_simulated_second = 0.0});
+  WorkerPool pool(experiment, 2, 1, run, {.fixed = milliseconds(300), .per_simulated_second = 0.0});
   const std::vector<int> statuses =
       statuses_of(pool, 1, [&](std::uint32_t /*search*/, const std::unique_ptr<Workers>& workers) {
         const Task task{0, 3, 0, {1, 0, 0}, {}};
@@ -178,7 +198,7 @@ TEST(WorkerPool, RepeatsATaskWhoseWorkerDiedAndEndsWithOneThatCannotBeSimulated)
     }
     return made_up_trial(its, task);
   });
-  const WorkerPool pool(experiment, 1, 1, run);
+  WorkerPool pool(experiment, 1, 1, run);
   const std::vector<int> statuses =
       statuses_of(pool, 1, [&](std::uint32_t /*search*/, const std::unique_ptr<Workers>& workers) {
         const Task repeated{0, 3, 0, {1, 0, 0}, {}};

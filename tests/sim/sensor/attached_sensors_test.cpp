@@ -188,7 +188,7 @@ TEST_P(Laser, SeesAnObjectThatMoves) {
   MovingObject crate;
   crate.name = "crate";
   crate.pose.position = {2, 0, 0};
-  crate.geometries = box_at({}, {0.25, 0.25, 0.25}).geometries;
+  crate.geometries = box_at(Eigen::Vector3d::Zero(), {0.25, 0.25, 0.25}).geometries;
   crate.mass.mass = 1.0;
   crate.mass.inertia = Eigen::Matrix3d::Identity() * 0.01;
   environment.moving_objects.push_back(crate);

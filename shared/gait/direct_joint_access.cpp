@@ -1,6 +1,7 @@
 #include "shared/gait/algorithms.hpp"
 
 namespace proleg {
+namespace direct_access {
 namespace {
 
 enum Parameters : std::uint8_t { angle };
@@ -25,7 +26,8 @@ class DirectJointAccess final : public ActuationModule {
 constexpr DirectJointAccess instance;
 
 }  // namespace
+}  // namespace direct_access
 
-const ActuationModule& direct_joint_access() { return instance; }
+const ActuationModule& direct_joint_access() { return direct_access::instance; }
 
 }  // namespace proleg

@@ -6,6 +6,7 @@
 #include "shared/gait/sensing_module.hpp"
 
 namespace proleg {
+namespace global_adaptive_touch {
 namespace {
 
 /// The constants of the thesis, first those that raise, then those that lower; in each four by the touch of the links
@@ -163,7 +164,8 @@ class GlobalAdaptiveTouch final : public SensingModule {
 constexpr GlobalAdaptiveTouch instance;
 
 }  // namespace
+}  // namespace global_adaptive_touch
 
-const ActuationModule& sensing_module_global_adaptive_touch() { return instance; }
+const ActuationModule& sensing_module_global_adaptive_touch() { return global_adaptive_touch::instance; }
 
 }  // namespace proleg

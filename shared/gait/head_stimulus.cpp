@@ -7,6 +7,7 @@
 #include "shared/gait/pattern_generator.hpp"
 
 namespace proleg {
+namespace head_stimulus {
 namespace {
 
 enum Parameters : std::uint8_t { amplitude, frequency, phase_step, phase_shift, offset, retreat, sensor };
@@ -109,7 +110,8 @@ class HeadStimulus final : public PatternGenerator {
 constexpr HeadStimulus instance;
 
 }  // namespace
+}  // namespace head_stimulus
 
-const ActuationModule& pattern_generator_head_stimulus() { return instance; }
+const ActuationModule& pattern_generator_head_stimulus() { return head_stimulus::instance; }
 
 }  // namespace proleg

@@ -10,6 +10,7 @@
 #include "shared/gait/phase_warp.hpp"
 
 namespace proleg {
+namespace hopf {
 namespace {
 
 enum Parameters : std::uint8_t {
@@ -202,7 +203,8 @@ class Hopf final : public PatternGenerator {
 constexpr Hopf instance;
 
 }  // namespace
+}  // namespace hopf
 
-const ActuationModule& pattern_generator_hopf() { return instance; }
+const ActuationModule& pattern_generator_hopf() { return hopf::instance; }
 
 }  // namespace proleg

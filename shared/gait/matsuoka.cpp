@@ -10,6 +10,7 @@
 #include "shared/gait/pattern_generator.hpp"
 
 namespace proleg {
+namespace matsuoka {
 namespace {
 
 enum Parameters : std::uint8_t {
@@ -173,7 +174,8 @@ class Matsuoka final : public PatternGenerator {
 constexpr Matsuoka instance;
 
 }  // namespace
+}  // namespace matsuoka
 
-const ActuationModule& pattern_generator_matsuoka() { return instance; }
+const ActuationModule& pattern_generator_matsuoka() { return matsuoka::instance; }
 
 }  // namespace proleg

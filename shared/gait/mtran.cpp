@@ -9,6 +9,7 @@
 #include "shared/gait/pattern_generator.hpp"
 
 namespace proleg {
+namespace mtran {
 namespace {
 
 enum Parameters : std::uint8_t {
@@ -209,7 +210,8 @@ class Mtran final : public PatternGenerator {
 constexpr Mtran instance;
 
 }  // namespace
+}  // namespace mtran
 
-const ActuationModule& pattern_generator_mtran() { return instance; }
+const ActuationModule& pattern_generator_mtran() { return mtran::instance; }
 
 }  // namespace proleg

@@ -12,6 +12,7 @@
 #include "shared/gait/rulkov_neuron.hpp"
 
 namespace proleg {
+namespace push_pull {
 namespace {
 
 enum Parameters : std::uint8_t {
@@ -345,7 +346,8 @@ class PushPull final : public PatternGenerator {
 constexpr PushPull instance;
 
 }  // namespace
+}  // namespace push_pull
 
-const ActuationModule& pattern_generator_push_pull() { return instance; }
+const ActuationModule& pattern_generator_push_pull() { return push_pull::instance; }
 
 }  // namespace proleg

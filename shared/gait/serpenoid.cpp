@@ -7,6 +7,7 @@
 #include "shared/gait/smooth_wave.hpp"
 
 namespace proleg {
+namespace serpenoid {
 namespace {
 
 enum Parameters : std::uint8_t { winding_angle, frequency, waves, turn, rate, noise };
@@ -68,7 +69,8 @@ class Serpenoid final : public SmoothWave {
 constexpr Serpenoid instance;
 
 }  // namespace
+}  // namespace serpenoid
 
-const ActuationModule& pattern_generator_serpenoid() { return instance; }
+const ActuationModule& pattern_generator_serpenoid() { return serpenoid::instance; }
 
 }  // namespace proleg

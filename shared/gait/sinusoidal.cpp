@@ -5,6 +5,7 @@
 #include "shared/gait/pattern_generator.hpp"
 
 namespace proleg {
+namespace sinusoidal {
 namespace {
 
 enum Parameters : std::uint8_t { amplitude, frequency, phase_step, phase_shift, offset };
@@ -67,7 +68,8 @@ class Sinusoidal final : public PatternGenerator {
 constexpr Sinusoidal instance;
 
 }  // namespace
+}  // namespace sinusoidal
 
-const ActuationModule& pattern_generator_sinusoidal() { return instance; }
+const ActuationModule& pattern_generator_sinusoidal() { return sinusoidal::instance; }
 
 }  // namespace proleg

@@ -6,6 +6,7 @@
 #include "shared/gait/sensing_module.hpp"
 
 namespace proleg {
+namespace uneven_ground_reflex {
 namespace {
 
 enum Parameters : std::uint8_t { raise, reach, confirm, hold, rise_rate, fall_rate };
@@ -93,7 +94,8 @@ class UnevenGroundReflex final : public SensingModule {
 constexpr UnevenGroundReflex instance;
 
 }  // namespace
+}  // namespace uneven_ground_reflex
 
-const ActuationModule& sensing_module_uneven_ground_reflex() { return instance; }
+const ActuationModule& sensing_module_uneven_ground_reflex() { return uneven_ground_reflex::instance; }
 
 }  // namespace proleg

@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { after, before, describe, it } from 'node:test';
 import type { Browser } from 'playwright-core';
 import { launchBrowser } from './support/browser.js';
-import { countPixels, pixelsOf } from './support/pixels.js';
+import { countPixelsWhen } from './support/pixels.js';
 import { record, tableOf } from './support/recorded.js';
 import { UiProgram, uniform } from './support/ui_program.js';
 import { Viewer } from './support/viewer.js';
@@ -85,21 +85,12 @@ describe('two recordings', () => {
       expected.map((row) => row.join()).join(';'),
     );
     await page.locator('.line-chips .value').filter({ hasText: '|' }).first().waitFor();
-    const ghostPixels = async (): Promise<number> => countPixels(await pixelsOf(page, page.getByTestId('scene')), isGhost);
-    // The scene follows the tables with later frames: looks until the number is as expected.
-    const ghostPixelsWhen = async (isExpected: (pixels: number) => boolean): Promise<number> => {
-      let pixels = await ghostPixels();
-      for (let look = 0; look < 40 && !isExpected(pixels); look += 1) {
-        await page.waitForTimeout(100);
-        pixels = await ghostPixels();
-      }
-      return pixels;
-    };
-    const withGhost = await ghostPixelsWhen((pixels) => pixels > 200);
+    const scene = page.getByTestId('scene');
+    const withGhost = await countPixelsWhen(page, scene, isGhost, (count) => count > 200);
     await viewer.screenshot('compared');
     await viewer.button('End').click();
     await page.locator('[data-testid=joints] td[data-value=lag]').first().waitFor();
-    const withoutGhost = await ghostPixelsWhen((pixels) => pixels + 200 < withGhost);
+    const withoutGhost = await countPixelsWhen(page, scene, isGhost, (count) => count + 200 < withGhost);
     assert.ok(withGhost > withoutGhost + 200, `${withGhost} green pixels with a ghost, ${withoutGhost} without`);
     await viewer.close();
   });

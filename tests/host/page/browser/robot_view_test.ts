@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { beforeEach, describe, it } from 'node:test';
 import { seriousProblems } from './support/accessibility.js';
 import { assertNothingIsCut } from './support/layout.js';
-import { countPixels, pixelsOf } from './support/pixels.js';
+import { countPixelsWhen } from './support/pixels.js';
 import { moduleOf, ScriptedRobot } from './support/scripted_robot.js';
 import { useUi } from './support/ui_fixture.js';
 import type { Look } from './support/viewer.js';
@@ -117,18 +117,13 @@ describe('the page of a robot on a bus', () => {
   });
 
   it('shows the simulation as a ghost, until it is switched off', async () => {
-    const ghostPixels = async () => countPixels(await pixelsOf(ui.viewer.page, ui.viewer.page.locator('.scene')), isGhost);
-    // At most 100 looks: the view may need a while for its first picture.
+    const { page } = ui.viewer;
     const waitForGhost = async (isThere: boolean) => {
-      let count = await ghostPixels();
-      for (let look = 0; look < 100 && count > 500 !== isThere; look += 1) {
-        await ui.viewer.page.waitForTimeout(100);
-        count = await ghostPixels();
-      }
+      const count = await countPixelsWhen(page, page.locator('.scene'), isGhost, (pixels) => pixels > 500 === isThere);
       assert.equal(count > 500, isThere, `found ${count} pixels of the ghost`);
     };
     await waitForGhost(true);
-    await ui.viewer.page.keyboard.press('Shift+G');
+    await page.keyboard.press('Shift+G');
     await waitForGhost(false);
   });
 

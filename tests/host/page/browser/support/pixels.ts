@@ -36,6 +36,22 @@ export function countPixels({ data }: Pixels, matches: (red: number, green: numb
   return count;
 }
 
+// Looks until the number of pixels of the element that match is as expected, at most 100 times: a view may need a while for
+// its next picture. Returns the last number, expected or not.
+export async function countPixelsWhen(
+  page: Page,
+  element: Locator,
+  matches: (red: number, green: number, blue: number) => boolean,
+  isExpected: (count: number) => boolean,
+): Promise<number> {
+  let count = countPixels(await pixelsOf(page, element), matches);
+  for (let look = 0; look < 100 && !isExpected(count); look += 1) {
+    await page.waitForTimeout(100);
+    count = countPixels(await pixelsOf(page, element), matches);
+  }
+  return count;
+}
+
 // Pixels that fulfil the condition, and all others up to three pixels beside and above them.
 export function pixelsInside(
   { width, height, data }: Pixels,

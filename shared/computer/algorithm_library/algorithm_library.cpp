@@ -3,10 +3,11 @@
 #include <dlfcn.h>
 
 #include <filesystem>
-#include <system_error>
+#include <optional>
 #include <utility>
 
 #include "shared/computer/algorithm_library/guarded_call.hpp"
+#include "shared/computer/errors/file_kind.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
@@ -56,9 +57,9 @@ void check(const AlgorithmInterface& interface, const std::string& file) {
 
 /// Runs a function of the library that has no tick yet.
 template <typename Function>
-void ask(const std::string& file, const char* what, Function&& function) {
+void ask(const std::string& file, const char* name, const char* what, Function&& function) {
   CallFailure failure;
-  if (!run_guarded(function, failure)) {
+  if (!run_guarded({file.c_str(), name}, function, failure)) {
     throw InputError(file, 0, "a library that, " + std::string(what) + ", " + failure.text, "one that can be loaded");
   }
 }
@@ -70,7 +71,7 @@ std::unique_ptr<const GuardedAlgorithm> make_algorithm(const AlgorithmInterface&
   const ActuationModule* foreign = nullptr;
   Senses senses;
   const auto captured = std::make_unique<CapturedDeclaration>();
-  ask(file, "asked for its declaration", [&] {
+  ask(file, "declaration", "asked for its declaration", [&] {
     foreign = &interface.algorithm();
     captured->capture(foreign->declaration());
     senses = {foreign->senses_contacts(), foreign->senses_readings()};
@@ -83,13 +84,13 @@ std::unique_ptr<const GuardedAlgorithm> make_algorithm(const AlgorithmInterface&
 }
 
 std::unique_ptr<const GuardedAlgorithm> load_algorithm(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    throw InputError(path, 0, "no such file", "the library of an algorithm, as 'proleg new algorithm' makes it");
+  if (const std::optional<std::string> found = found_instead_of_file(path)) {
+    throw InputError(path.empty() ? in_quotes(path) : path, 0, *found,
+                     "the library of an algorithm, as 'proleg new algorithm' makes it");
   }
   const std::string absolute = std::filesystem::absolute(path).string();  // otherwise the loader searches its folders
   void* library = nullptr;
-  ask(path, "while it is loaded", [&] { library = dlopen(absolute.c_str(), RTLD_NOW | RTLD_LOCAL); });
+  ask(path, "dlopen", "while it is loaded", [&] { library = dlopen(absolute.c_str(), RTLD_NOW | RTLD_LOCAL); });
   if (library == nullptr) {
     throw InputError(path, 0, "no library that can be loaded (" + loader_error(absolute) + ")",
                      "a shared library for this computer");
@@ -117,6 +118,7 @@ void load_algorithms(std::span<const std::string> paths) {
                        "another name and id than those of " + in_quotes(same->declaration().name) + ", which has " +
                            std::to_string(same->declaration().id));
     }
+    blame_for_crashes(algorithm->file().c_str());
     registered.push_back(algorithm.get());
     owned.push_back(std::move(algorithm));
     set_loaded_algorithms(registered);

@@ -75,7 +75,7 @@ class GuardedAlgorithm::Call {
   template <typename Function>
   void run(Function&& function) {
     CallFailure failure;
-    if (!run_guarded(function, failure)) {
+    if (!run_guarded({algorithm_.subject_.c_str(), function_}, function, failure)) {
       const std::optional<std::string> missed =
           failure.address == nullptr ? std::nullopt : memory_.arrays.missed_by(failure.address);
       memory_.arrays.repair();
@@ -124,12 +124,16 @@ class GuardedAlgorithm::Call {
 
 GuardedAlgorithm::GuardedAlgorithm(std::string file, const ActuationModule& foreign,
                                    const CapturedDeclaration& captured, Senses senses)
-    : file_(std::move(file)), foreign_(foreign), copy_(captured, file_), senses_(senses) {}
+    : file_(std::move(file)),
+      foreign_(foreign),
+      copy_(captured, file_),
+      senses_(senses),
+      subject_(one_line(file_ + ": the algorithm " + in_quotes(declaration().name))) {}
 
 void GuardedAlgorithm::fail(const std::string& where, const std::string& what) const {
   const std::lock_guard lock(mutex_);
   if (!has_failed_) {
-    failure_ = one_line(file_ + ": the algorithm " + in_quotes(declaration().name) + " " + what + ", " + where);
+    failure_ = one_line(subject_ + " " + what + ", " + where);
     has_failed_ = true;
   }
   throw AlgorithmFailure(failure_);

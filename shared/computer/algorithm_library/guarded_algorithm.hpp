@@ -59,6 +59,7 @@ class GuardedAlgorithm final : public ActuationModule {
   const ActuationModule& foreign_;
   DeclarationCopy copy_;
   Senses senses_;
+  std::string subject_;  ///< of the messages
   mutable std::atomic<bool> has_failed_ = false;
   mutable std::mutex mutex_;
   mutable std::string failure_;

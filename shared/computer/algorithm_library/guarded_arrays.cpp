@@ -15,21 +15,25 @@ constexpr std::int32_t pattern = 0x5A5AA5A5;
 constexpr std::size_t front_values = 128;
 // The smallest page has 4096 bytes.
 static_assert((front_values + GuardedArrays::most_values) * sizeof(std::int32_t) <= 4096);
+/// Pages that do not exist, before and behind each array. In the first half of them an access is meant for the array
+/// before, in the second half for the array behind.
+constexpr std::size_t gap_pages = 16;
 constexpr std::array<const char*, GuardedArrays::array_count> names{"parameters", "derived", "state", "next", "frame"};
 
 }  // namespace
 
-GuardedArrays::GuardedArrays() : page_bytes_(static_cast<std::size_t>(sysconf(_SC_PAGESIZE))) {
-  void* const memory =
-      mmap(nullptr, (2 * array_count + 1) * page_bytes_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+GuardedArrays::GuardedArrays()
+    : page_bytes_(static_cast<std::size_t>(sysconf(_SC_PAGESIZE))),
+      memory_bytes_(((gap_pages + 1) * array_count + gap_pages) * page_bytes_) {
+  void* const memory = mmap(nullptr, memory_bytes_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) {
     throw std::bad_alloc();
   }
   memory_ = static_cast<std::byte*>(memory);
   for (std::size_t i = 0; i < array_count; ++i) {
-    void* const page = memory_ + (2 * i + 1) * page_bytes_;
+    void* const page = memory_ + (i * (gap_pages + 1) + gap_pages) * page_bytes_;
     if (mprotect(page, page_bytes_, PROT_READ | PROT_WRITE) != 0) {
-      munmap(memory_, (2 * array_count + 1) * page_bytes_);
+      munmap(memory_, memory_bytes_);
       throw std::bad_alloc();
     }
     places_[i].page = static_cast<std::int32_t*>(page);
@@ -37,7 +41,7 @@ GuardedArrays::GuardedArrays() : page_bytes_(static_cast<std::size_t>(sysconf(_S
   repair();
 }
 
-GuardedArrays::~GuardedArrays() { munmap(memory_, (2 * array_count + 1) * page_bytes_); }
+GuardedArrays::~GuardedArrays() { munmap(memory_, memory_bytes_); }
 
 std::int32_t* GuardedArrays::place(Array array, std::span<const std::int32_t> values) {
   Place& place = places_[static_cast<std::size_t>(array)];
@@ -78,14 +82,19 @@ void GuardedArrays::repair() {
 std::optional<std::string> GuardedArrays::missed_by(const void* address) const {
   const auto* const byte = static_cast<const std::byte*>(address);
   const std::less<> less;
-  if (less(byte, memory_) || !less(byte, memory_ + (2 * array_count + 1) * page_bytes_)) {
+  if (less(byte, memory_) || !less(byte, memory_ + memory_bytes_)) {
     return std::nullopt;
   }
-  // The page that does not exist belongs to the array that ends where it begins.
-  const std::size_t page = static_cast<std::size_t>(byte - memory_) / page_bytes_;
-  const std::size_t index = page == 0 ? 0 : (page - 1) / 2;
-  return "uses elements of its array '" + std::string(names[index]) + "' that do not exist (it has " +
-         std::to_string(places_[index].count) + ")";
+  const std::size_t period = (gap_pages + 1) * page_bytes_;
+  const auto offset = static_cast<std::size_t>(byte - memory_);
+  const std::size_t gap = offset / period;
+  const bool is_behind = offset % period < gap_pages * page_bytes_ / 2;
+  if (gap == array_count || (is_behind && gap > 0)) {
+    const std::size_t index = gap - 1;
+    return "uses elements of its array '" + std::string(names[index]) + "' that do not exist (it has " +
+           std::to_string(places_[index].count) + ")";
+  }
+  return "uses elements in front of its array '" + std::string(names[gap]) + "'";
 }
 
 }  // namespace proleg

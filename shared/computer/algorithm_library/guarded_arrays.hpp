@@ -12,7 +12,7 @@
 
 namespace proleg {
 
-/// The arrays that a user's algorithm is given, each at the end of a page of memory, between two pages that do not
+/// The arrays that a user's algorithm is given, each at the end of a page of memory, between pages that do not
 /// exist. An access behind the end of an array, or far from it, is a fault of the processor. What an algorithm writes
 /// before an array, or into one that it may only read, is found when the call has returned.
 ///
@@ -52,6 +52,7 @@ class GuardedArrays {
   [[nodiscard]] const Place& of(Array array) const { return places_[static_cast<std::size_t>(array)]; }
 
   std::size_t page_bytes_;
+  std::size_t memory_bytes_;
   std::byte* memory_;
   std::array<Place, array_count> places_;
 };

@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -25,6 +26,9 @@ namespace {
 constexpr int time_out_signal = SIGVTALRM;
 constexpr std::array caught_signals{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, time_out_signal};
 constexpr std::size_t signal_stack_size = 64 * 1024;
+constexpr auto watchdog_period = std::chrono::milliseconds(20);
+/// What an interrupted call may have left locked must be free after this time.
+constexpr double longest_check_s = 3.0;
 
 /// What a thread needs to leave a call.
 struct ThreadGuard {
@@ -32,17 +36,73 @@ struct ThreadGuard {
   std::atomic<bool> is_active = false;
   std::atomic<std::uint64_t> call = 0;     ///< number of the present or last call
   std::atomic<std::uint64_t> expired = 0;  ///< number of the call that took too long
-  bool is_terminated = false;              ///< std::terminate() was called
+  std::atomic<bool> is_checked = false;    ///< a signal has ended the call: is the C library usable?
+  std::atomic<bool> streams_are_free = false;
+  double checked_since_s = 0;
+  bool is_terminated = false;  ///< std::terminate() was called
   int signal = 0;
-  const void* address = nullptr;
+  bool has_address = false;
+  const void* address = nullptr;  ///< of a bad access to memory
+  CallSubject subject;
   std::array<char, 200> exception{};
   pthread_t thread = pthread_self();
   unsigned generation = 0;
+  bool is_watched = false;
 };
 
 constinit thread_local ThreadGuard* current_guard = nullptr;
 std::array<struct sigaction, NSIG> previous_actions;
 std::atomic<unsigned> generation = 1;
+
+/// One line on standard error, without a lock or memory of the C library.
+class LastLine {
+ public:
+  LastLine& operator<<(const char* text) {
+    while (*text != '\0' && length_ < text_.size() - 1) {
+      text_[length_++] = *text++;
+    }
+    return *this;
+  }
+
+  [[noreturn]] void end_program() {
+    text_[length_++] = '\n';
+    // There is nobody to whom an error could be reported.
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text_.data(), length_);
+    _exit(1);
+  }
+
+ private:
+  std::array<char, 1000> text_{};
+  std::size_t length_ = 0;
+};
+
+const char* text_of(const ThreadGuard& guard) {
+  switch (guard.signal) {
+    case SIGSEGV:
+    case SIGBUS:
+      return "uses memory that does not exist or is not its own";
+    case SIGFPE:
+      return "divides by zero, or the result of a division is too large";
+    case SIGILL:
+      return "executes an instruction that this processor does not have";
+    case SIGABRT:
+      return guard.is_terminated ? "throws an exception out of a function that is noexcept" : "calls abort()";
+    default:
+      return "does not return within a second of processor time: an endless loop?";
+  }
+}
+
+[[noreturn]] void end_program_after(const ThreadGuard& guard, const char* what, const char* consequence) {
+  LastLine line;
+  line << guard.subject.name << " " << what << ", in " << guard.subject.function << "()" << consequence;
+  line.end_program();
+}
+
+constexpr const char* left_damaged =
+    "; the C library is locked or damaged after that, so the program ends without its results";
+
+/// The file of a library that is loaded; a fault elsewhere can be the work of its threads. Set once.
+std::atomic<const char*> foreign_code = nullptr;
 
 void on_signal(int signal, siginfo_t* info, void* /*context*/) {
   ThreadGuard* const guard = current_guard;
@@ -51,15 +111,27 @@ void on_signal(int signal, siginfo_t* info, void* /*context*/) {
       return;  // that call has just returned
     }
     guard->signal = signal;
-    guard->address = info->si_addr;
+    // A process that sends itself the signal gives no address.
+    guard->address = (signal == SIGSEGV || signal == SIGBUS) && info->si_code > 0 ? info->si_addr : nullptr;
+    guard->has_address = (signal == SIGSEGV || signal == SIGBUS) && info->si_code > 0;
     guard->is_active = false;
     siglongjmp(guard->jump, 1);
   }
   if (signal == time_out_signal) {
     return;
   }
+  if (guard != nullptr && guard->is_checked) {
+    end_program_after(*guard, text_of(*guard), left_damaged);
+  }
+  const struct sigaction& previous = previous_actions[static_cast<std::size_t>(signal)];
+  if (const char* const file = foreign_code; file != nullptr && previous.sa_handler == SIG_DFL) {
+    LastLine line;
+    line << "proleg: the program has crashed (SIG" << sigabbrev_np(signal) << ") outside of a call of " << file
+         << ": a thread that this library started can be the reason, or memory that it has overwritten";
+    line.end_program();
+  }
   // It is not from a guarded call: what had been set before takes effect. A bad instruction is executed once more.
-  sigaction(signal, &previous_actions[static_cast<std::size_t>(signal)], nullptr);
+  sigaction(signal, &previous, nullptr);
   if (info->si_code <= 0) {
     raise(signal);
   }
@@ -87,7 +159,8 @@ double seconds(clockid_t clock) {
 }
 
 /// Ends calls that take too long. Its thread sends a signal to the thread of such a call, and none otherwise, so that
-/// no system call of the program is interrupted.
+/// no system call of the program is interrupted. It also ends the program if an interrupted call has left a lock of the
+/// C library behind: nobody could print the reason then, or end the program with SIGTERM.
 class Watchdog {
  public:
   /// Never destroyed: its thread runs until the process ends.
@@ -98,9 +171,11 @@ class Watchdog {
 
   void watch(ThreadGuard& guard) {
     const std::lock_guard lock(mutex_);
+    guard.is_watched = false;
     for (Watched& watched : watched_) {
       if (watched.guard == nullptr) {
         watched = {&guard, 0, 0, 0};
+        guard.is_watched = true;
         break;
       }
     }
@@ -108,6 +183,24 @@ class Watchdog {
     if (!runs_) {
       start();
     }
+  }
+
+  /// Waits until the C library is seen to be usable after a signal has ended a call of this thread. Ends the program if
+  /// it is not.
+  void check_after_signal(ThreadGuard& guard) {
+    guard.checked_since_s = seconds(CLOCK_MONOTONIC);
+    guard.streams_are_free = !runs_ || !guard.is_watched;
+    guard.is_checked = true;
+    // The locks of memory are those of this thread's arena. A damaged list ends in a signal.
+    for (const std::size_t size : {24U, 1000U, 100000U}) {
+      void* const volatile memory = std::malloc(size);
+      std::free(memory);
+    }
+    // A lock of a stream is taken again by the thread that has it: only another thread sees it.
+    while (!guard.streams_are_free) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    guard.is_checked = false;
   }
 
   void forget(const ThreadGuard& guard) {
@@ -154,7 +247,7 @@ class Watchdog {
 
   void run() {
     while (true) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      std::this_thread::sleep_for(watchdog_period);
       const std::lock_guard lock(mutex_);
       for (Watched& watched : watched_) {
         if (watched.guard != nullptr) {
@@ -164,8 +257,23 @@ class Watchdog {
     }
   }
 
+  static bool is_free(std::FILE* stream) {
+    if (ftrylockfile(stream) != 0) {
+      return false;
+    }
+    funlockfile(stream);
+    return true;
+  }
+
   static void look_at(Watched& watched) {
     ThreadGuard& guard = *watched.guard;
+    if (guard.is_checked) {
+      guard.streams_are_free = is_free(stdout) && is_free(stderr);
+      if (seconds(CLOCK_MONOTONIC) - guard.checked_since_s > longest_check_s) {
+        end_program_after(guard, text_of(guard), left_damaged);
+      }
+      return;
+    }
     const std::uint64_t call = guard.call;
     clockid_t clock = 0;
     if (!guard.is_active || pthread_getcpuclockid(guard.thread, &clock) != 0) {
@@ -185,7 +293,7 @@ class Watchdog {
 
   std::mutex mutex_;
   std::array<Watched, 64> watched_{};
-  bool runs_ = false;
+  std::atomic<bool> runs_ = false;
 };
 
 void catch_signals() {
@@ -222,6 +330,9 @@ class GuardOwner {
     current_guard = &guard_;
   }
   ~GuardOwner() {
+    if (guard_.is_active) {
+      end_program_after(guard_, "calls exit()", "; the program ends without its results");
+    }
     current_guard = nullptr;
     Watchdog::instance().forget(guard_);
     if (stack_ != nullptr) {
@@ -246,26 +357,6 @@ class GuardOwner {
   ThreadGuard guard_;
   void* stack_ = nullptr;
 };
-
-std::string text_of(const ThreadGuard& guard) {
-  switch (guard.signal) {
-    case SIGSEGV:
-    case SIGBUS: {
-      std::array<char, 32> address{};
-      std::snprintf(address.data(), address.size(), "%p", guard.address);
-      return std::string("uses memory that does not exist or is not its own, at the address ") +
-             (guard.address == nullptr ? "0" : address.data());
-    }
-    case SIGFPE:
-      return "divides by zero, or the result of a division is too large";
-    case SIGILL:
-      return "executes an instruction that this processor does not have";
-    case SIGABRT:
-      return guard.is_terminated ? "throws an exception out of a function that is noexcept" : "calls abort()";
-    default:
-      return "does not return within a second of processor time: an endless loop?";
-  }
-}
 
 enum class End : std::uint8_t { returned, exception, signal };
 
@@ -294,9 +385,15 @@ enum class End : std::uint8_t { returned, exception, signal };
 
 unsigned process_generation() { return generation; }
 
-bool run_guarded(void (*function)(void*), void* context, CallFailure& failure) {
+void blame_for_crashes(const char* file) {
+  const char* none = nullptr;
+  foreign_code.compare_exchange_strong(none, file);
+}
+
+bool run_guarded(const CallSubject& subject, void (*function)(void*), void* context, CallFailure& failure) {
   thread_local GuardOwner owner;
   ThreadGuard& guard = owner.guard();
+  guard.subject = subject;
   switch (enter(guard, function, context)) {
     case End::returned:
       return true;
@@ -308,7 +405,15 @@ bool run_guarded(void (*function)(void*), void* context, CallFailure& failure) {
     case End::signal:
       break;
   }
-  failure = {text_of(guard), guard.signal == SIGSEGV || guard.signal == SIGBUS ? guard.address : nullptr};
+  Watchdog::instance().check_after_signal(guard);
+  failure = {text_of(guard), guard.address};
+  if (guard.has_address) {
+    std::array<char, 32> address{};
+    std::snprintf(address.data(), address.size(), "%p", guard.address);
+    failure.text += std::string(", at the address ") + (guard.address == nullptr ? "0" : address.data());
+  } else if (guard.signal == SIGSEGV || guard.signal == SIGBUS) {
+    failure.text = std::string("sends itself the signal SIG") + sigabbrev_np(guard.signal);
+  }
   return false;
 }
 

@@ -7,6 +7,12 @@
 
 namespace proleg {
 
+/// What is called, for the one line that is printed if the program cannot continue. Both texts must outlive the call.
+struct CallSubject {
+  const char* name = "";      ///< subject of a sentence: "steep.so: the algorithm 'steep'"
+  const char* function = "";  ///< without brackets
+};
+
 /// How a call failed.
 struct CallFailure {
   std::string text;               ///< "calls abort()"; without the name of what was called
@@ -22,14 +28,21 @@ inline constexpr double longest_call_wall_s = 20.0;
 
 /// Calls function(context). Returns false if it throws, breaks a rule of the processor (SIGSEGV, SIGBUS, SIGFPE,
 /// SIGILL), calls abort(), or takes too long; `failure` says which. What the function had locked or allocated is then
-/// lost: do not call its code again. Does not protect from code that overwrites memory of the program, or calls exit().
-/// Calls may not be nested. Any thread may call it.
-[[nodiscard]] bool run_guarded(void (*function)(void*), void* context, CallFailure& failure);
+/// lost: do not call its code again. If that are locks of the C library, or its lists of memory are damaged, or the
+/// function calls exit(), one line is printed and the program ends with status 1. Does not protect from code that
+/// overwrites memory of the program, or calls _exit(). Calls may not be nested. Any thread may call it.
+[[nodiscard]] bool run_guarded(const CallSubject& subject, void (*function)(void*), void* context,
+                               CallFailure& failure);
 
 template <typename Function>
-[[nodiscard]] bool run_guarded(Function&& function, CallFailure& failure) {
+[[nodiscard]] bool run_guarded(const CallSubject& subject, Function&& function, CallFailure& failure) {
   using Callable = std::remove_reference_t<Function>;
-  return run_guarded([](void* context) { (*static_cast<Callable*>(context))(); }, &function, failure);
+  return run_guarded(
+      subject, [](void* context) { (*static_cast<Callable*>(context))(); }, &function, failure);
 }
+
+/// From now on, a crash outside of a guarded call prints one line that names this file and ends the program with status
+/// 1, after the first guarded call. The first file stays. file: must live until the program ends.
+void blame_for_crashes(const char* file);
 
 }  // namespace proleg

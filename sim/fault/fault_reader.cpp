@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <vector>
 
+#include "shared/computer/errors/file_kind.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/names.hpp"
@@ -313,12 +315,12 @@ FaultSchedule parse_faults(const std::string& text, const std::string& path, con
 
 FaultSchedule read_faults(const std::string& path, const RobotModel& robot, std::uint64_t run_us) {
   constexpr std::uintmax_t max_bytes = 16U << 20U;
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
-    throw InputError(in_quotes(path), 0, "no such file", "a fault schedule, or SEED or SEED:COUNT");
+  if (const std::optional<std::string> found = found_instead_of_file(path)) {
+    throw InputError(in_quotes(path), 0, *found, "a fault schedule, or SEED or SEED:COUNT");
   }
-  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) > max_bytes) {
-    throw InputError(path, 0, "something that is not a file, or a file above 16 MiB", "a fault schedule");
+  std::error_code error;
+  if (std::filesystem::file_size(path, error) > max_bytes) {
+    throw InputError(path, 0, "a file above 16 MiB", "a fault schedule");
   }
   std::ifstream file(path);
   std::ostringstream text;

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "shared/computer/errors/file_kind.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/random.hpp"
@@ -68,12 +69,12 @@ std::vector<Loss> read_list(const std::string& path, const RobotModel& robot) {
   constexpr std::uintmax_t max_bytes = 16U << 20U;
   std::string expected = "a list of losses, or ";
   expected += seed_form;
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
-    throw InputError(in_quotes(path), 0, "no such file", expected);
+  if (const std::optional<std::string> found = found_instead_of_file(path)) {
+    throw InputError(in_quotes(path), 0, *found, expected);
   }
-  if (!std::filesystem::is_regular_file(path, error) || std::filesystem::file_size(path, error) > max_bytes) {
-    throw InputError(path, 0, "something that is not a file, or a file above 16 MiB", expected);
+  std::error_code error;
+  if (std::filesystem::file_size(path, error) > max_bytes) {
+    throw InputError(path, 0, "a file above 16 MiB", expected);
   }
   std::ifstream file(path);
   if (!file) {

@@ -1,11 +1,13 @@
 #include "sim/scenario/source_set.hpp"
 
+#include <cstdint>
 #include <fstream>
 #include <optional>
 #include <sstream>
 #include <system_error>
 #include <utility>
 
+#include "shared/computer/errors/file_kind.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
 #include "sim/scenario/data_url.hpp"
@@ -24,7 +26,6 @@ constexpr const char* readable_file = "a readable file of at most 16 MiB";
 }  // namespace
 
 std::optional<std::string> DiskFiles::read(const std::filesystem::path& path) {
-  // Only regular files: a device or a pipe might never end.
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
     return std::nullopt;
@@ -41,6 +42,20 @@ std::optional<std::string> DiskFiles::read(const std::filesystem::path& path) {
     return std::nullopt;
   }
   return std::move(text).str();
+}
+
+std::optional<std::string> DiskFiles::found_instead(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    return std::nullopt;
+  }
+  if (const std::optional<std::string> found = found_instead_of_file(path)) {
+    return found;
+  }
+  constexpr std::uintmax_t mebibyte = 1U << 20U;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  return !error && size > max_file_bytes ? "a file of " + std::to_string((size + mebibyte - 1) / mebibyte) + " MiB"
+                                         : "a file that cannot be read";
 }
 
 const std::string* SourceSet::text_of(const std::filesystem::path& path, Contents contents) {
@@ -64,7 +79,7 @@ const std::string* SourceSet::text_of(const std::filesystem::path& path, Content
 std::unique_ptr<XmlDocument> SourceSet::open_top() {
   const std::string* const text = text_of(top_, Contents::xml);
   if (text == nullptr) {
-    throw InputError(name_of(top_), 0, "no file that can be read", readable_file);
+    throw InputError(name_of(top_), 0, files_->found_instead(top_).value_or("no file that can be read"), readable_file);
   }
   parsed_bytes_ += text->size();
   return std::make_unique<XmlDocument>(top_, *text, nullptr);
@@ -76,18 +91,16 @@ SourceSet::Found SourceSet::find(const XmlElement& mention, const std::string& r
         reference.empty() ? "an empty path" : "a path of " + std::to_string(reference.size()) + " characters",
         "a path of 1 to " + std::to_string(max_path_size) + " characters");
   }
-  const XmlDocument& including = mention.document();
-  std::filesystem::path path = including.path().parent_path() / reference;
-  const std::string* text = text_of(path, contents);
-  if (text == nullptr) {
-    path = top_.parent_path() / reference;
-    text = text_of(path, contents);
+  std::optional<std::string> instead;
+  for (const std::filesystem::path& base : {mention.document().path(), top_}) {
+    std::filesystem::path path = base.parent_path() / reference;
+    if (const std::string* const text = text_of(path, contents)) {
+      return {std::move(path), text};
+    }
+    instead = instead ? instead : files_->found_instead(path);
   }
-  if (text == nullptr) {
-    mention.refuse("no such file " + in_quotes(reference),
-                   readable_file + std::string(", relative to the folder of this file or of the top-level file"));
-  }
-  return {std::move(path), text};
+  mention.refuse((instead ? *instead + " at the path " : std::string("no such file ")) + in_quotes(reference),
+                 readable_file + std::string(", relative to the folder of this file or of the top-level file"));
 }
 
 void SourceSet::count_bytes(const XmlElement& mention, std::size_t bytes) {

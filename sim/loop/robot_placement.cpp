@@ -15,7 +15,6 @@
 namespace proleg::sim {
 namespace {
 
-constexpr double max_depth = 0.003;  // m; a robot that lies on the ground may be a little in it
 constexpr double min_lift = 0.001;   // m, of one attempt
 constexpr double max_lift = 1.0;     // m
 constexpr double max_height = 10.0;  // m, of the centre of mass above the ground
@@ -116,7 +115,7 @@ Pose placement(const RobotMove& move, std::span<const Pose> links, const Scenari
   if (const Ground here = ground(); here.highest && !here.below) {
     lift(*here.highest - lowest_point(motion, links, scenario));  // it would be below a thin floor
   }
-  for (double depth = deepest_overlap(motion, links, scenario); depth > max_depth;
+  for (double depth = deepest_overlap(motion, links, scenario); depth > largest_start_depth;
        depth = deepest_overlap(motion, links, scenario)) {
     lift(std::max(depth, min_lift));
   }

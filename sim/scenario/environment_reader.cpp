@@ -9,7 +9,6 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "sim/robot/mesh_height.hpp"
 #include "sim/scenario/geometry_reader.hpp"
 #include "sim/scenario/kinbody_reader.hpp"
 #include "sim/scenario/plausibility.hpp"
@@ -155,70 +154,6 @@ void add_moving_object(BodyEntry body, EnvironmentModel& environment) {
                                         std::move(body.link.geometries), std::move(body.link.looks)});
 }
 
-/// Bounds of all geometries of a body; nothing if there are none.
-std::optional<Bounds> bounds_of_body(const std::vector<Geometry>& geometries, const Pose& frame) {
-  std::optional<Bounds> whole;
-  for (const Geometry& geometry : geometries) {
-    const Bounds bounds = bounds_of(geometry, frame);
-    whole = whole ? Bounds{whole->lowest.cwiseMin(bounds.lowest), whole->highest.cwiseMax(bounds.highest)} : bounds;
-  }
-  return whole;
-}
-
-/// How far the robot must be lifted so that none of its links is in the ground, and on which object it then rests. A
-/// shape without a mesh counts as high as its highest point wherever it is under the start; a mesh counts as it is
-/// under each link.
-struct Lift {
-  double height = 0.0;  ///< m
-  const StaticObject* ground = nullptr;
-};
-
-void raise(Lift& lift, double height, const StaticObject& object) {
-  if (height > lift.height) {
-    lift = {height, &object};
-  }
-}
-
-Lift lift_of_links(const RobotModel& robot, const EnvironmentModel& environment) {
-  Lift lift;
-  for (const Link& link : robot.links) {
-    const std::optional<Bounds> bounds = bounds_of_body(link.geometries, environment.robot_pose * link.pose);
-    for (const StaticObject& object : environment.objects) {
-      for (const Geometry& geometry : object.geometries) {
-        if (bounds && geometry.mesh) {
-          const std::optional<double> top = highest_over(*geometry.mesh, object.pose * geometry.pose,
-                                                         bounds->lowest.head<2>(), bounds->highest.head<2>());
-          raise(lift, top.value_or(bounds->lowest.z()) - bounds->lowest.z(), object);
-        }
-      }
-    }
-  }
-  return lift;
-}
-
-Lift lift_of_robot(const RobotModel& robot, const EnvironmentModel& environment) {
-  const Eigen::Vector3d& start = environment.robot_pose.position;
-  std::optional<double> top;
-  const StaticObject* ground = nullptr;
-  for (const StaticObject& object : environment.objects) {
-    std::vector<Geometry> solids = object.geometries;
-    std::erase_if(solids, [](const Geometry& geometry) { return geometry.mesh != nullptr; });
-    const std::optional<Bounds> bounds = bounds_of_body(solids, object.pose);
-    if (bounds && (start.head<2>().array() >= bounds->lowest.head<2>().array()).all() &&
-        (start.head<2>().array() <= bounds->highest.head<2>().array()).all() && (!top || bounds->highest.z() > *top)) {
-      top = bounds->highest.z();
-      ground = &object;
-    }
-  }
-  std::optional<double> bottom;
-  for (const Link& link : robot.links) {
-    if (const auto bounds = bounds_of_body(link.geometries, environment.robot_pose * link.pose)) {
-      bottom = bottom ? std::min(*bottom, bounds->lowest.z()) : bounds->lowest.z();
-    }
-  }
-  return top && bottom ? Lift{*top - *bottom, ground} : Lift{};
-}
-
 }  // namespace
 
 EnvironmentModel read_environment(const XmlDocument& document, SourceSet& sources, std::vector<std::string>& remarks,
@@ -252,21 +187,6 @@ EnvironmentModel read_environment(const XmlDocument& document, SourceSet& source
   }
   environment.robot_pose = read_robot_pose(document);
   return environment;
-}
-
-void lift_onto_ground(const RobotModel& robot, EnvironmentModel& environment, std::vector<std::string>& remarks) {
-  Lift lift = lift_of_robot(robot, environment);
-  if (const Lift onto_mesh = lift_of_links(robot, environment); onto_mesh.height > lift.height) {
-    lift = onto_mesh;
-  }
-  constexpr double min_lift = 1e-9;  // m
-  if (lift.height < min_lift) {
-    return;
-  }
-  environment.robot_pose.position.z() += lift.height;
-  remarks.push_back(one_line("the robot starts " + number_text(lift.height * 1000.0) +
-                             " mm higher than its start pose says, so that it rests on " +
-                             in_quotes(lift.ground->name)));
 }
 
 }  // namespace proleg::sim

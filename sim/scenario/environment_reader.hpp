@@ -16,8 +16,4 @@ namespace proleg::sim {
 [[nodiscard]] EnvironmentModel read_environment(const XmlDocument& document, SourceSet& sources,
                                                 std::vector<std::string>& remarks, std::vector<std::string>& warnings);
 
-/// Raises the start pose until the robot, with all joint angles 0, rests on the highest of the objects below its start
-/// position (whose bounds, seen from above, contain that position). Never lowers it.
-void lift_onto_ground(const RobotModel& robot, EnvironmentModel& environment, std::vector<std::string>& remarks);
-
 }  // namespace proleg::sim

@@ -259,11 +259,10 @@ double overlap_depth(const Geometry& left, const Pose& left_body, const Geometry
 
 std::vector<std::string> check_start(const std::vector<Link>& links, const EnvironmentModel& environment,
                                      const std::string& environment_file) {
-  constexpr double max_depth = 0.003;  // m; a robot that lies on the ground may be a little in it
   std::vector<std::string> warnings;
   for (const Link& link : links) {
     const Pose link_pose = environment.robot_pose * link.pose;
-    double deepest = max_depth;
+    double deepest = largest_start_depth;
     const StaticObject* obstacle = nullptr;
     for (const StaticObject& object : environment.objects) {
       for (const Geometry& solid : object.geometries) {

@@ -18,6 +18,9 @@ namespace proleg::sim {
 /// A warning on gravity (m/s^2) that does not hold a robot on the ground. origin: where it is given.
 [[nodiscard]] std::vector<std::string> check_gravity(const Eigen::Vector3d& gravity, const Origin& origin);
 
+/// A robot that lies on the ground may be in it by this, in m.
+inline constexpr double largest_start_depth = 0.003;
+
 /// How far two solids are in each other, in m: the shortest way out along an axis of one of them. Not above 0 if they
 /// are apart along one. Spheres, cylinders and hulls count as the boxes around them. If `right` is a mesh or a height
 /// field, it is how far the box around `left` must be lifted to be above all of it. Poses are those of the bodies in

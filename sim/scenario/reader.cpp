@@ -10,6 +10,7 @@
 #include "sim/scenario/properties_reader.hpp"
 #include "sim/scenario/robot_reader.hpp"
 #include "sim/scenario/source_set.hpp"
+#include "sim/scenario/start_lift.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {

@@ -105,6 +105,32 @@ TEST(Environment, TheRobotRestsOnTheHighestObjectBelowItsStart) {
   EXPECT_NE(scenario.remarks.back().find("'step'"), std::string::npos);
 }
 
+/// A bar under the head and not under the robot's start position; its box reaches `half_height` (m) up and down from 0.
+MemoryFiles with_bar_under_head(const std::string& half_height) {
+  MemoryFiles files = small_scenario();
+  files.replace("environment.xml", "</Environment>",
+                "<KinBody name=\"bar\"><Body type=\"static\"><translation>0 0.2 0</translation><Geom type=\"box\">"
+                "<extents>1 0.15 " +
+                    half_height + "</extents></Geom></Body></KinBody></Environment>");
+  return files;
+}
+
+TEST(Environment, ARobotOfWhichOneLinkIsInAHillIsLifted) {
+  const Scenario flat = small_scenario().scenario();
+  const Scenario scenario = with_bar_under_head("0.15").scenario();
+  EXPECT_EQ(scenario.warnings, flat.warnings);
+  EXPECT_GT(scenario.environment.robot_pose.position.z(), flat.environment.robot_pose.position.z());
+  EXPECT_NE(scenario.remarks.back().find("so that it rests on 'bar'"), std::string::npos);
+}
+
+TEST(Environment, ARobotOfWhichOneLinkIsInAWallIsNotLifted) {
+  const Scenario flat = small_scenario().scenario();
+  const Scenario scenario = with_bar_under_head("0.8").scenario();
+  EXPECT_EQ(scenario.environment.robot_pose.position.z(), flat.environment.robot_pose.position.z());
+  ASSERT_GT(scenario.warnings.size(), flat.warnings.size());
+  EXPECT_NE(scenario.warnings.back().find("inside 'bar'"), std::string::npos);
+}
+
 TEST(Environment, ObjectsMayComeFromFilesAndKeepTheirPose) {
   MemoryFiles files = small_scenario();
   files.texts["step.xml"] =

@@ -5,6 +5,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/fixed/decimal.hpp"
 #include "shared/kernel/fingerprint.hpp"
+#include "sim/record/recorded_algorithms.hpp"
 #include "sim/record/schema.hpp"
 #include "sim/scenario/settings.hpp"
 
@@ -34,18 +35,6 @@ void write_overrides(const Overrides& overrides, const Put& put) {
   }
 }
 
-/// "steep_wave 0x12345678": the users' algorithms that run, with their sources as in the object 0x200F.
-std::string user_algorithms(const KernelConfiguration& kernel) {
-  std::string text;
-  for (const Slot& slot : kernel.slots) {
-    if (slot.algorithm != nullptr && is_user_algorithm(slot.algorithm->declaration().id)) {
-      const Declaration& declaration = slot.algorithm->declaration();
-      text += (text.empty() ? "" : ", ") + std::string(declaration.name) + ' ' + hexadecimal(declaration.sources, 8);
-    }
-  }
-  return text;
-}
-
 void write_run(Database& database, const Scenario& scenario, const std::string& program, const std::string& build_id) {
   Statement insert(database, "INSERT INTO run VALUES(?1, ?2)");
   const auto put = [&insert](std::string_view key, std::string_view value) { insert.run(key, value); };
@@ -53,7 +42,7 @@ void write_run(Database& database, const Scenario& scenario, const std::string& 
   put("program", program);
   put("build_id", build_id);
   put("core_fingerprint", hexadecimal(core_fingerprint, 8));
-  if (const std::string algorithms = user_algorithms(scenario.kernel); !algorithms.empty()) {
+  if (const std::string algorithms = user_algorithms_text(scenario.kernel); !algorithms.empty()) {
     put("user_algorithms", algorithms);
   }
   put("scenario", scenario.path);

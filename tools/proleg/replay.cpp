@@ -7,6 +7,7 @@
 #include "shared/computer/text/text.hpp"
 #include "shared/kernel/fingerprint.hpp"
 #include "sim/loop/verification.hpp"
+#include "sim/record/recorded_algorithms.hpp"
 #include "sim/record/recording.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
@@ -56,6 +57,7 @@ int replay(const Options& options) {
                            (setpoint_hash == verification.setpoint_hash && servo_hash == verification.servo_hash);
   const bool holds = verification.differences == 0 && same_hashes;
   const std::string core = recording.run_value("core_fingerprint");
+  const std::string user_algorithms = recording.run_value("user_algorithms");
   if (options.json) {
     const Json object{{"recording", options.file},
                       {"ticks", verification.ticks},
@@ -75,11 +77,13 @@ int replay(const Options& options) {
                       {"recorded_build_id", recording.run_value("build_id")},
                       {"recorded_core_fingerprint", core},
                       {"core_fingerprint", fingerprint_text()},
+                      {"recorded_user_algorithms", user_algorithms},
                       {"build_id", build_id}};
     std::cout << object.text() << '\n';
   } else {
-    std::printf("recorded by       %s, %s, core %s\n", recording.run_value("program").c_str(),
-                recording.run_value("build_id").c_str(), core.c_str());
+    std::printf("recorded by       %s, %s, core %s%s\n", recording.run_value("program").c_str(),
+                recording.run_value("build_id").c_str(), core.c_str(),
+                user_algorithms.empty() ? "" : (", " + one_line(user_algorithms)).c_str());
     std::printf("recomputed        %u ticks: %llu set-points, %llu servo commands, %llu internal values\n",
                 verification.ticks, static_cast<unsigned long long>(verification.setpoints),
                 static_cast<unsigned long long>(verification.servo_commands),
@@ -94,11 +98,13 @@ int replay(const Options& options) {
   if (!holds) {
     std::cerr << "proleg replay: " << options.file << ": "
               << (first.empty() ? "the tables do not have the hashes of the results" : first) << '\n';
-    if (core != fingerprint_text()) {
-      std::cerr << "proleg replay: the recording was made with core " << core << ", this program has core "
-                << fingerprint_text() << '\n';
+    for (const std::string& sentence : sim::other_algorithms(recording)) {
+      std::cerr << "proleg replay: " << one_line(sentence) << '\n';
     }
     return exit_failed;
+  }
+  for (const std::string& sentence : sim::other_algorithms(recording)) {
+    print_warning("proleg replay", sentence + "; both compute the same");
   }
   return exit_success;
 }

@@ -29,20 +29,25 @@ MISTAKES = {
     "writes_behind": ("for (int i = 0; i < 4; ++i) { next[i] = i; }",
                       "uses elements of its array 'next' that do not exist (it has 3)"),
     "writes_in_front": ("next[-1] = 1;", "writes in front of its array 'next'"),
+    "writes_far_in_front": ("next[-2000] = 1;", "uses elements in front of its array 'next'"),
     "reads_behind": ("next[0] = state[5];", "uses elements of its array 'state' that do not exist (it has 3)"),
     "reads_far_behind": ("next[0] = tuning.parameters[500];",
                          "uses elements of its array 'parameters' that do not exist (it has 4)"),
     "changes_its_state": ("const_cast<std::int32_t*>(state)[0] = 1;",
                           "writes to its array 'state', which it may only read"),
     "divides_by_zero": ("volatile int quotient = state[0] / volatile_zero;", "divides by zero"),
+    "sends_itself_a_signal": ("std::raise(SIGSEGV);", "sends itself the signal SIGSEGV"),
     "aborts": ("std::abort();", "calls abort()"),
     "overflows_the_stack": ("next[0] = deep(volatile_zero);", "uses memory that does not exist or is not its own"),
     "ends_in_terminate": ("[]() noexcept { throw 7; }();", "throws an exception out of a function that is noexcept"),
 }
 
 TOOLS = """
+#include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
+#include <thread>
 namespace {
 int* volatile volatile_null = nullptr;
 volatile int volatile_zero = 0;
@@ -134,6 +139,11 @@ class UserAlgorithms(unittest.TestCase):
         without = proleg("replay", recording)
         self.assertEqual(without.returncode, 2)
         self.assert_one_line(without, f"found algorithm '{NAME}'", "expected an algorithm that this program has")
+        other = self.compile("other", wrapper=re.sub(r"(#define PROLEG_ALGORITHM_SOURCES) \S+", r"\1 0xCAFEU", self.wrapper))
+        replayed = proleg("replay", recording, "--algorithms", other)
+        self.assertEqual(replayed.returncode, 0, replayed.stderr)
+        self.assert_one_line(replayed, f"the recording was made with the user's algorithm {NAME} 0x",
+                             f"this program has loaded {NAME} 0x0000CAFE; both compute the same")
         self.assertEqual(proleg("plot", recording, "--out", self.folder / "run.svg").returncode, 0)
         self.assertEqual(self.recorded_ticks(recording), 100)
 
@@ -223,6 +233,34 @@ class UserAlgorithms(unittest.TestCase):
                                      f"what was simulated is in {recording}")
                 self.assertEqual(self.recorded_ticks(recording), BAD_TICK, "the ticks before it")
 
+    def test_a_mistake_that_leaves_the_c_library_locked_ends_the_program(self):
+        for name, mistake, text in (("loop", "flockfile(stdout); for (volatile int i = 0;; i = i + 1) {}",
+                                     "does not return within a second of processor time"),
+                                    ("null", "flockfile(stdout); *volatile_null = 1;", "uses memory"),
+                                    ("error", "flockfile(stderr); *volatile_null = 1;", "uses memory")):
+            with self.subTest(name):
+                result = self.simulate(self.with_mistake(f"locks_{name}", mistake), "--seconds", "5")
+                self.assertEqual(result.returncode, 1, result.stderr)
+                self.assert_one_line(result, f"the algorithm '{NAME}' {text}", "in advance()", "the program ends")
+
+    def test_a_loop_that_prints_ends(self):
+        for attempt in range(3):  # where the loop is interrupted is chance
+            with self.subTest(attempt):
+                result = self.simulate(self.with_mistake("prints", "for (;;) { std::printf(\" \"); }"), "--seconds", "5")
+                self.assertEqual(result.returncode, 1, result.stderr)
+                self.assert_one_line(result, f"the algorithm '{NAME}' does not return within a second")
+
+    def test_exit_is_no_success(self):
+        result = self.simulate(self.with_mistake("exits", "std::exit(0);"), "--seconds", "5")
+        self.assertEqual(result.returncode, 1)
+        self.assert_one_line(result, f"the algorithm '{NAME}' calls exit(), in advance()")
+
+    def test_a_crash_of_a_thread_of_the_library_names_it(self):
+        library = self.with_mistake("thread", "std::thread([] { *volatile_null = 1; }).join();")
+        result = self.simulate(library, "--seconds", "5")
+        self.assertEqual(result.returncode, 1)
+        self.assert_one_line(result, "the program has crashed (SIGSEGV)", library, "a thread")
+
     def test_modules_report_it_too(self):
         result = self.simulate(self.with_mistake("hil", MISTAKES["null"][0]), "--seconds", "5", program="hil")
         self.assertEqual(result.returncode, 1)
@@ -266,7 +304,8 @@ class UserAlgorithms(unittest.TestCase):
         with_id = re.search(r"\n    (\d+), \"" + NAME, self.source).group(1)
         cases = {
             "missing": (self.folder / "missing.so", "found no such file"),
-            "folder": (self.folder, "found no such file"),
+            "folder": (self.folder, "found a folder"),
+            "device": ("/dev/zero", "found a device, a pipe or a socket"),
             "text": (text, "found no library that can be loaded"),
             "no_symbol": (plain, "found no object proleg_algorithm_interface"),
             "version": (changed("version", "made.version = 2;"),

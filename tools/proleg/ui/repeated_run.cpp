@@ -5,7 +5,7 @@
 
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/text/text.hpp"
-#include "shared/kernel/fingerprint.hpp"
+#include "sim/record/recorded_algorithms.hpp"
 #include "tools/proleg/simulate_command.hpp"
 #include "tools/proleg/ui/recording_document.hpp"
 
@@ -141,10 +141,12 @@ std::string RepeatedRun::verdict() const {
     return name() + ": computed again up to tick " + std::to_string(last_tick_) +
            ", with the same set-points and places of the head, bit for bit" + later;
   }
+  std::string other;
+  for (const std::string& sentence : sim::other_algorithms(*recording_)) {
+    other += "; " + one_line(sentence);
+  }
   return name() + ": found other values than the recorded ones from tick " + std::to_string(*first_difference_) +
-         " on, expected the same: it was recorded by " + recording_->run_value("build_id") + " with core " +
-         recording_->run_value("core_fingerprint") + ", this program has core " + hexadecimal(core_fingerprint, 8) +
-         later;
+         " on, expected the same: it was recorded by " + recording_->run_value("build_id") + other + later;
 }
 
 }  // namespace proleg::tools

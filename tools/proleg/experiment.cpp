@@ -8,6 +8,7 @@
 #include <iostream>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -24,6 +25,7 @@
 #include "tools/proleg/experiment_methods.hpp"
 #include "tools/proleg/interrupt.hpp"
 #include "tools/proleg/repetitions.hpp"
+#include "tools/proleg/result_folder.hpp"
 #include "tools/proleg/worker_count.hpp"
 
 namespace {
@@ -65,6 +67,23 @@ std::string conditions_text(const optimize::Experiment& experiment, double wall_
   return text + time.data();
 }
 
+/// The files at the top of the folder. Those of a folder in which a method has a store are an earlier experiment's.
+void check_folder(const fs::path& folder, const optimize::ThesisExperiment& thesis,
+                  const std::vector<ChosenMethod>& chosen) {
+  std::vector<std::string_view> files{thesis.comparison_figure, "summary.txt"};
+  if (!thesis.level_ground.empty()) {
+    files.insert(files.end(), gait_check_figures.begin(), gait_check_figures.end());
+  }
+  bool is_continued = false;
+  for (const auto& [method, experiment] : chosen) {
+    files.insert(files.end(), {method.table, method.runs_figure, method.spread_figure});
+    is_continued = is_continued || fs::exists(store_path(folder / method.name));
+  }
+  if (!is_continued) {
+    check_result_folder(folder, files);
+  }
+}
+
 int experiment(Options options) {
   if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) {
     throw BadInput(
@@ -83,6 +102,7 @@ int experiment(Options options) {
   }
   const std::vector<ChosenMethod> chosen =
       choose_methods(thesis, {options, options.methods, repetitions, scenarios, folder});
+  check_folder(folder, thesis, chosen);
   const optimize::Experiment& first = chosen.front().experiment;
 
   catch_interrupts();

@@ -198,8 +198,8 @@ std::vector<CheckedGait> check_gaits(const optimize::ThesisExperiment& thesis, c
   const auto farthest = std::ranges::max_element(results, {}, score);
   const sim::Scenario best =
       best_scenario(chosen[static_cast<std::size_t>(farthest - results.begin())].experiment, *farthest);
-  write_file(folder / "figure_6_8.svg", optimize::draw_crossing(best, crossing_stages(best)));
-  write_file(folder / "figure_7_3.svg", optimize::draw_distances(best, marks));
+  write_file(folder / gait_check_figures[0], optimize::draw_crossing(best, crossing_stages(best)));
+  write_file(folder / gait_check_figures[1], optimize::draw_distances(best, marks));
   return checks;
 }
 

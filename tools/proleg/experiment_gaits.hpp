@@ -2,7 +2,9 @@
 
 // The gaits of an experiment of the thesis: those without a search, and the best of each method.
 
+#include <array>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "sim/optimize/report/thesis_experiment.hpp"
@@ -11,6 +13,9 @@
 #include "tools/proleg/repetitions.hpp"
 
 namespace proleg::tools {
+
+/// The figures of check_gaits().
+inline constexpr std::array<std::string_view, 2> gait_check_figures{"figure_6_8.svg", "figure_7_3.svg"};
 
 [[nodiscard]] std::vector<optimize::Reference> reference_distances(const optimize::ThesisExperiment& thesis,
                                                                    const optimize::Experiment& experiment,

@@ -10,6 +10,7 @@
 #include "sim/optimize/method/pagmo_algorithms.hpp"
 #include "sim/scenario/reader.hpp"
 #include "tools/proleg/build_id.hpp"
+#include "tools/proleg/result_folder.hpp"
 #include "tools/proleg/search_result.hpp"
 
 namespace proleg::tools {
@@ -124,6 +125,9 @@ std::vector<ChosenMethod> choose_methods(const optimize::ThesisExperiment& thesi
     optimize::Experiment experiment = experiment_of(choice, method);
     if (is_asked_for || is_complete(experiment, choice.repetitions, folder)) {
       refuse_overwriting(experiment, folder);
+      if (!fs::exists(store_path(folder))) {
+        check_result_folder(folder, search_result_files);
+      }
       chosen.push_back({method, std::move(experiment)});
     }
   }

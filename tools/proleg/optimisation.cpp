@@ -11,6 +11,7 @@
 #include "sim/scenario/overrides.hpp"
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
+#include "tools/proleg/result_folder.hpp"
 #include "tools/proleg/run_progress.hpp"
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/search_display.hpp"
@@ -81,12 +82,8 @@ std::filesystem::path store_path(const std::filesystem::path& folder) { return f
 
 std::unique_ptr<optimize::Store> open_store(const std::filesystem::path& folder, const optimize::Experiment& experiment,
                                             optimize::Store::Opening opening) {
-  std::error_code error;
   if (opening == optimize::Store::Opening::fresh) {
-    std::filesystem::create_directories(folder, error);
-    if (error) {
-      throw BadInput("cannot create the folder " + folder.string() + ": " + error.message());
-    }
+    create_result_folder(folder);
   }
   try {
     return std::make_unique<optimize::Store>(store_path(folder), experiment, result_key, opening);

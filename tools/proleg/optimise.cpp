@@ -17,6 +17,7 @@
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/json_output.hpp"
+#include "tools/proleg/result_folder.hpp"
 #include "tools/proleg/run_measures.hpp"
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/search_result.hpp"
@@ -186,6 +187,9 @@ int optimise(const OptimiseOptions& options, const WorkersMaker& make_workers) {
   const std::filesystem::path folder = folder_of(options, experiment);
   print_warnings("proleg optimise", experiment.scenario);
   refuse_overwriting(experiment, folder);
+  if (!options.resume && !std::filesystem::exists(store_path(folder))) {  // otherwise the store says how to go on
+    check_result_folder(folder, search_result_files);
+  }
   if (options.verbose) {
     for (const std::string& remark : experiment.scenario.remarks) {
       std::cerr << remark << '\n';

@@ -261,13 +261,14 @@ SearchResult result_of(const Experiment& experiment, const SearchOutcome& outcom
 }
 
 void refuse_overwriting(const Experiment& experiment, const std::filesystem::path& folder) {
-  constexpr std::array names{"store.sqlite",        "store.sqlite.lock", "evaluations.tsv", "best.tsv",
-                             "learning_curve.svg",  "confirmation.tsv",  "pareto.tsv",      "pareto.svg",
-                             "best.simulation.xml", "best.actuation.xml"};
+  const auto is_written = [](const std::filesystem::path& inside) {
+    const std::string name = inside.empty() ? std::string() : inside.begin()->string();
+    return name == "store.sqlite" || name == "store.sqlite.lock" || std::ranges::count(search_result_files, name) > 0;
+  };
   for (const sim::SourceFile& source : experiment.sources) {
     const std::filesystem::path path = std::filesystem::weakly_canonical(source.path);
     const std::filesystem::path inside = path.lexically_relative(std::filesystem::weakly_canonical(folder));
-    if (std::ranges::count(names, inside) > 0 || (!inside.empty() && *inside.begin() == "best.files")) {
+    if (is_written(inside)) {
       throw BadInput(source.path +
                      ": found a file of the experiment that the search would write over, expected another "
                      "folder (--out) than " +

@@ -2,9 +2,11 @@
 
 // What a search found, for people and as JSON.
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/optimize/evaluation/confirmation.hpp"
@@ -36,6 +38,11 @@ struct SearchResult {
 /// if no trial did.
 [[nodiscard]] SearchResult result_of(const optimize::Experiment& experiment, const SearchOutcome& outcome,
                                      std::vector<optimize::Confirmation> confirmations);
+
+/// The files that a search leaves in its folder, beside its store.
+inline constexpr std::array<std::string_view, 9> search_result_files{
+    "evaluations.tsv",     "best.tsv",           "learning_curve.svg", "confirmation.tsv", "pareto.tsv", "pareto.svg",
+    "best.simulation.xml", "best.actuation.xml", "best.files"};
 
 /// Throws BadInput if a search in this folder would write over a file of its experiment.
 void refuse_overwriting(const optimize::Experiment& experiment, const std::filesystem::path& folder);

@@ -1,6 +1,7 @@
 // proleg sweep: runs a scenario with all combinations of some values.
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -8,7 +9,7 @@
 #include <iostream>
 #include <span>
 #include <string>
-#include <system_error>
+#include <string_view>
 #include <vector>
 
 #include "shared/computer/errors/input_error.hpp"
@@ -22,6 +23,7 @@
 #include "tools/proleg/build_id.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/json_output.hpp"
+#include "tools/proleg/result_folder.hpp"
 #include "tools/proleg/run_progress.hpp"
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/worker_count.hpp"
@@ -70,21 +72,9 @@ std::filesystem::path result_folder(const SweepOptions& options) {
   }
   const std::string file = std::filesystem::path(options.scenario.file).filename().string();
   std::filesystem::path folder = options.out.value_or(file.substr(0, file.find('.')) + "_sweep");
-  for (const char* name : {"sweep.tsv", "summary.tsv", "sweep.svg"}) {
-    if (std::filesystem::exists(folder / name)) {
-      throw BadInput((folder / name).string() +
-                     ": found an existing file, expected none; --out FOLDER names another folder");
-    }
-  }
+  constexpr std::array<std::string_view, 3> names{"sweep.tsv", "summary.tsv", "sweep.svg"};
+  check_result_folder(folder, names);
   return folder;
-}
-
-void create_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw BadInput("cannot create the folder " + folder.string() + ": " + error.message());
-  }
 }
 
 /// Several seeds of a gait without noise give equal runs.
@@ -283,7 +273,7 @@ int sweep(const SweepOptions& options) {
   const std::filesystem::path folder = result_folder(options);
   static_cast<void>(sim::Simulation(sweep.scenario));  // an engine that does not have the world refuses it now
   catch_interrupts();
-  create_folder(folder);
+  create_result_folder(folder);
   print_warnings("proleg sweep", sweep.scenario);
   warn_of_equal_runs(sweep);
   SweepResult result = run(sweep, worker_count);

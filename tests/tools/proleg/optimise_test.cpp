@@ -229,6 +229,21 @@ TEST_F(Optimise, NeverWritesOverAFileOfItsExperiment) {
   EXPECT_EQ(proleg(into(file("second").string())).status, 0);
 }
 
+TEST_F(Optimise, AFreshSearchReplacesNoFileOfAnother) {
+  for (const std::string name : {"best.tsv", "learning_curve.svg", "best.files"}) {
+    fs::create_directory(file("out"));
+    write("out/" + name, "of somebody else\n");
+    expect_refused(words("great_deluge", "out", {"--evaluations", "4"}), {name + ": found an existing file", "--out"});
+    EXPECT_EQ(read_file(file("out/" + name)), "of somebody else\n");
+    EXPECT_FALSE(fs::exists(file("out/store.sqlite")));
+    fs::remove_all(file("out"));
+  }
+  write("out", "a file\n");
+  expect_refused(words("great_deluge", "out", {"--evaluations", "4"}),
+                 {"out: found something that is not a folder, expected a folder for the results (--out)"});
+  expect_refused(words("great_deluge", "out/inside", {"--evaluations", "4"}), {"something that is not a folder"});
+}
+
 TEST_F(Optimise, SeveralObjectivesGiveAParetoFront) {
   const Json object = json_of(proleg(words("pareto", "out", {"--evaluations", "80"})));
   EXPECT_EQ(object["best_scores"].size(), 2U);
@@ -405,6 +420,16 @@ TEST_F(Optimise, AnExperimentWritesTheThesissTablesAndFiguresAndContinues) {
 
 TEST_F(Optimise, AnExperimentThatIsUnknownOrHasNoFilesIsRejected) {
   expect_refused({"experiment", "travelling_wave", "--out", ""}, {"--out", "an empty name"});
+  write("file", "of somebody else\n");
+  expect_refused({"experiment", "travelling_wave", "--out", file("file").string()},
+                 {"file: found something that is not a folder, expected a folder"});
+  fs::create_directories(file("out/genetic"));
+  write("out/summary.txt", "of somebody else\n");
+  expect_refused({"experiment", "travelling_wave", "--out", file("out").string()},
+                 {"summary.txt: found an existing file"});
+  fs::rename(file("out/summary.txt"), file("out/genetic/best.tsv"));
+  expect_refused({"experiment", "travelling_wave", "--out", file("out").string()},
+                 {"best.tsv: found an existing file"});
   expect_refused({"experiment", "swimming"}, {"'swimming'", "travelling_wave"});
   expect_refused({"experiment", "travelling_wave", "--repetitions", "0"}, {"--repetitions", "'0'"});
   expect_refused({"experiment", "travelling_wave", "--method", "magic"}, {"--method", "'magic'", "great-deluge"});

@@ -50,6 +50,10 @@ void require_size(const TriangleMesh& mesh, double least, double most) {
   if (longest >= least && longest <= most) {
     return;
   }
+  if (!(longest > 0.0)) {
+    throw MeshError("a mesh whose points are all at one place",
+                    "a longest side from " + number_text(least) + " to " + number_text(most) + " m");
+  }
   const char* const hint = longest > most ? "a file in millimetres needs the scale 0.001"
                                           : "a file in kilometres, or scaled twice, needs the scale 1000";
   throw MeshError(

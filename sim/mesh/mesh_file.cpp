@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <array>
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/Logger.hpp>
 #include <assimp/ProgressHandler.hpp>
 #include <cmath>
 #include <cstdint>
@@ -108,6 +110,57 @@ class Files final : public Assimp::IOSystem {
   mutable std::map<std::string, std::optional<std::string>> companions_;
 };
 
+/// Keeps the first error that Assimp logs while this object lives. Some importers log what is wrong with a file, put
+/// something else in its place and go on.
+class ErrorLog {
+ public:
+  ErrorLog() { Assimp::DefaultLogger::set(new Log(first_)); }  // which owns it
+  ~ErrorLog() { Assimp::DefaultLogger::set(nullptr); }
+  ErrorLog(const ErrorLog&) = delete;
+  ErrorLog& operator=(const ErrorLog&) = delete;
+
+  /// Empty: none.
+  [[nodiscard]] const std::string& first() const { return first_; }
+
+ private:
+  class Log final : public Assimp::Logger {
+   public:
+    explicit Log(std::string& first) : first_(first) {}
+    bool attachStream(Assimp::LogStream* /*stream*/, unsigned /*severity*/) override { return false; }
+    bool detachStream(Assimp::LogStream* /*stream*/, unsigned /*severity*/) override { return false; }
+
+   private:
+    void OnDebug(const char* /*message*/) override {}
+    void OnVerboseDebug(const char* /*message*/) override {}
+    void OnInfo(const char* /*message*/) override {}
+    void OnWarn(const char* /*message*/) override {}
+    void OnError(const char* message) override {
+      if (first_.empty()) {
+        first_ = message;
+      }
+    }
+    std::string& first_;
+  };
+
+  std::string first_;
+};
+
+/// Assimp takes every text for a scale: "abc" as 0, and -1, which turns the mesh inside out.
+void check_collada_unit(const std::string& name, const std::string& bytes) {
+  const std::size_t unit = bytes.find("<unit");
+  const std::size_t attribute = bytes.substr(0, bytes.find('>', std::min(unit, bytes.size()))).find("meter=", unit);
+  if (unit == std::string::npos || attribute == std::string::npos) {
+    return;
+  }
+  const std::size_t begin = attribute + std::string_view("meter=").size() + 1;  // behind the quote
+  const std::string text = bytes.substr(std::min(begin, bytes.size()), bytes.find_first_of("\"'>", begin) - begin);
+  const std::optional<double> metres = parse_number(trimmed(text));
+  if (!metres || !(*metres > 0.0)) {
+    throw MeshError("a <unit> of " + in_quotes(shortened(text)) + " metres in " + in_quotes(name),
+                    "a number above 0: the length of the file's unit in metres");
+  }
+}
+
 /// Assimp has importers for dozens of formats. Only those of the four endings may see the file.
 bool reads_ending(Assimp::BaseImporter& importer, const std::string& ending) {
   std::set<std::string> extensions;
@@ -200,7 +253,11 @@ TriangleMesh import_mesh(const std::string& name, const std::string& bytes, cons
   if (!is_mesh_file_name(name)) {
     throw MeshError("a mesh file of another kind, " + in_quotes(name), std::string(mesh_file_endings));
   }
+  if (ending == ".dae") {
+    check_collada_unit(name, bytes);
+  }
   try {
+    const ErrorLog log;
     Assimp::Importer importer;
     importer.SetIOHandler(new Files(name, bytes, companion));
     std::vector<Assimp::BaseImporter*> others;
@@ -222,6 +279,11 @@ TriangleMesh import_mesh(const std::string& name, const std::string& bytes, cons
     if (scene == nullptr) {
       throw MeshError("a mesh that cannot be read, " + in_quotes(name) +
                           " (Assimp: " + one_line(shortened(importer.GetErrorString(), 200)) + ")",
+                      "a file of the format that its ending says");
+    }
+    // Of a vertex that a face names and the file does not have, Assimp takes the last one.
+    if (ending == ".off" && !log.first().empty()) {
+      throw MeshError(in_quotes(name) + " with an error (Assimp: " + one_line(shortened(log.first(), 200)) + ")",
                       "a file of the format that its ending says");
     }
     return joined_meshes(*scene, name);

@@ -149,7 +149,7 @@ void refuse_sensors(const RobotModel& robot) {
   for (const AttachedSensor& sensor : robot.sensors) {
     if (sensor.kind == SensorKind::laser || sensor.kind == SensorKind::touch) {
       throw InputError(
-          sensor.file, sensor.line, "sensor '" + sensor.name + "', a " + std::string(name_of(sensor.kind)),
+          sensor.file, sensor.line, "sensor '" + sensor.name + "' of type " + std::string(name_of(sensor.kind)),
           "what the reduced engine has: ServoCurrent, Inclinometer and Accelerometer (--engine ode has all "
           "sensors)");
     }

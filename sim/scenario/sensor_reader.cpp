@@ -159,7 +159,8 @@ std::vector<AttachedSensor> read_sensors(const XmlElement& robot, const RobotMod
     const bool is_of_joint = sensor.kind == SensorKind::servo_current;
     const std::string_view wanted = is_of_joint ? "joint" : "link";
     if (const auto other = element.child(is_of_joint ? "link" : "joint")) {
-      other->refuse(other->label() + " of a " + std::string(name_of(sensor.kind)), "<" + std::string(wanted) + ">");
+      other->refuse(other->label() + " of a sensor of type " + std::string(name_of(sensor.kind)),
+                    "<" + std::string(wanted) + ">");
     }
     const XmlElement part = element.required_child(wanted);
     sensor.part = is_of_joint ? read_joint_name(part, model) : read_link(part, model);

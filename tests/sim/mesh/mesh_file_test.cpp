@@ -158,6 +158,12 @@ TEST(MeshFile, ColoursOfMaterialsAreKept) {
   EXPECT_EQ(blue, 4U);
 }
 
+TEST(MeshFile, AUnitOfAColladaFileIsANumberAboveZero) {
+  for (const char* unit : {"abc", "-1", "0", "", "1 2", "inf"}) {
+    EXPECT_NE(refusal("a.dae", collada(unit, "Z_UP")).find("a <unit> of "), std::string::npos) << unit;
+  }
+}
+
 TEST(MeshFile, AFileWithoutColoursHasNone) { EXPECT_TRUE(read("box.off", box_off).colours.empty()); }
 
 TEST(MeshFile, DamagedFilesAreRefusedInOneLine) {
@@ -168,7 +174,9 @@ TEST(MeshFile, DamagedFilesAreRefusedInOneLine) {
   EXPECT_NE(refusal("a.dae", collada("1", "Z_UP").substr(0, 900)), "nothing");
   EXPECT_NE(refusal("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n"), "nothing");
   // Assimp takes another vertex for one that is not there, and its assertions do not end the program.
-  static_cast<void>(refusal("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"));
+  EXPECT_NE(
+      refusal("a.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 7\n3 0 1 2\n").find("index is out of range"),
+      std::string::npos);
   static_cast<void>(refusal("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1\n"));
 }
 

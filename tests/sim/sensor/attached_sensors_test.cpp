@@ -372,7 +372,7 @@ TEST(ReducedEngine, RefusesSensorsThatItDoesNotHave) {
       const Rig rig("reduced", {sensor_of(kind, 0)}, flat_ground(0.5, 0.02));
       ADD_FAILURE() << name_of(kind);
     } catch (const InputError& error) {
-      EXPECT_EQ(std::string(error.what()), "robot.xml:12: found sensor 'sensor', a " + std::string(name_of(kind)) +
+      EXPECT_EQ(std::string(error.what()), "robot.xml:12: found sensor 'sensor' of type " + std::string(name_of(kind)) +
                                                ", expected what the reduced engine has: ServoCurrent, Inclinometer and "
                                                "Accelerometer (--engine ode has all sensors)");
     }

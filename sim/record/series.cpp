@@ -107,7 +107,16 @@ class SeriesCollector {
 
   [[nodiscard]] SeriesSet finish() {
     if (rows_ < 2) {
-      throw InputError("--from and --to", 0, std::to_string(rows_) + " rows of the table", "a window with two or more");
+      const auto& [from_s, to_s] = request_.window;
+      const std::string found = rows_ == 0 ? "no row of the table" : "one row of the table";
+      if (!from_s && !to_s) {
+        throw InputError(request_.file, 0, found, "two or more; a line needs two points");
+      }
+      if (from_s && to_s && *from_s > *to_s) {
+        throw InputError("--from and --to", 0, number_text(*from_s) + " s to " + number_text(*to_s) + " s",
+                         "a window that ends after it begins");
+      }
+      throw InputError("--from and --to", 0, found, "a window with two or more");
     }
     return std::move(set_);
   }

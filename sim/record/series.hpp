@@ -21,6 +21,7 @@ struct SeriesRequest {
   std::vector<std::string> names;
   std::string x = "time_s";
   TimeWindow window = {};  ///< by default the whole table
+  std::string file = {};   ///< of the table, for messages
 };
 
 /// A column. What is empty in the table is not a number here.

@@ -18,19 +18,42 @@ namespace proleg::tools {
 namespace {
 
 /// What is wrong with a command line that cannot be parsed.
-std::string describe(const CLI::App& app, const CLI::ParseError& error) {
+struct Complaint {
+  std::string found;
+  std::string expected;
+};
+
+Complaint describe(const CLI::App& app, const CLI::ParseError& error) {
+  const std::string usage = "the options and arguments that '" + app.get_name() + " --help' lists";
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     std::string words;
     for (const std::string& word : app.remaining()) {
       words += (words.empty() ? "" : " ") + in_quotes(word);
     }
-    return "unknown " + words;
+    return {"unknown " + words, usage};
   }
+  // The errors of CLI11 have the name of the option only as a part of their text.
   const std::string text = error.what();
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
-    return "no " + text.substr(0, text.find(' '));
+    return {"no " + text.substr(0, text.find(' ')), usage};
   }
-  return text;
+  if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
+    const std::size_t name = text.find(": ");
+    const std::size_t value = text.find(" = ", name);
+    if (value != std::string::npos) {
+      return {text.substr(name + 2, value - name - 2) + ' ' + in_quotes(text.substr(value + 3)), "a number"};
+    }
+  }
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
+    const std::string name = text.substr(0, text.find(": "));
+    if (text.find(": At Most 1 required") != std::string::npos) {
+      return {name + ' ' + text.substr(text.rfind(' ') + 1) + " times", "it at most once"};
+    }
+    if (text.ends_with(" missing")) {
+      return {"no value of " + name, usage};
+    }
+  }
+  return {text, usage};
 }
 
 /// "; did you mean --record?" for an unknown option that is much like a known one.
@@ -147,8 +170,8 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
     algorithms_.clear();
     action = [] { return exit_success; };
   } catch (const CLI::ParseError& error) {
-    std::cerr << app_->get_name() << ": found " << one_line(describe(*app_, error))
-              << ", expected the options and arguments that '" << app_->get_name() << " --help' lists"
+    const Complaint complaint = describe(*app_, error);
+    std::cerr << app_->get_name() << ": found " << one_line(complaint.found) << ", expected " << complaint.expected
               << hint(*app_, error) << '\n';
     return exit_bad_input;
   }

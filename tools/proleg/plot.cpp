@@ -37,6 +37,8 @@ struct Options {
   bool png = false;
 };
 
+constexpr const char* standard_output_name = "-";
+
 /// A picture, and what the user is told beside it.
 struct Drawing {
   std::string svg;
@@ -117,7 +119,7 @@ std::vector<std::string> usual_series(const sim::DataFile& data) {
 
 std::string draw_table(const Options& options, std::vector<std::string> names, const sim::WriteTable& table) {
   const sim::SeriesSet set =
-      sim::collect_series(table, {std::move(names), options.x.value_or("time_s"), options.window});
+      sim::collect_series(table, {std::move(names), options.x.value_or("time_s"), options.window, options.recording});
   const std::string about = number_text(set.from_s) + " to " + number_text(set.to_s) + " s" +
                             (options.x && *options.x != "time_s" ? "; a dot marks the first value" : "");
   return sim::draw_series(set, shortened(std::filesystem::path(options.recording).filename().string(), 55), about);
@@ -150,18 +152,23 @@ int plot(const tools::CommandLine& command_line, const Options& options) {
   const Drawing drawing = is_data_file ? draw_data_file(options) : draw_recording(options);
   const std::array outputs{options.png ? PlannedOutput{"--out", picture, "PNG picture", starts_with("\x89PNG")}
                                        : PlannedOutput{"--out", picture, "SVG picture", is_svg}};
-  check_outputs(outputs);
+  if (picture != standard_output_name) {
+    check_outputs(outputs);
+  }
   const std::string bytes = options.png ? tools::png_of(drawing.svg) : drawing.svg;
   if (!drawing.remark.empty()) {
     tools::print_warning(command_line.name(), drawing.remark);
   }
-  write_file(picture, bytes);
+  const bool is_standard_output = picture == standard_output_name;
+  if (!is_standard_output) {
+    write_file(picture, bytes);
+  }
   try {
     Output standard_output;
-    standard_output.write(picture.string() + "\n");
+    standard_output.write(is_standard_output ? bytes : picture.string() + "\n");
     standard_output.finish();
   } catch (const ReaderGone&) {
-    // The picture is complete; only its name could not be printed.
+    // Who reads has what it wanted: a part of the picture, or no name.
   }
   return tools::exit_success;
 }
@@ -189,7 +196,9 @@ int main(int argc, char** argv) {
       .value_name("NAME");
   command_line.add_flag("--png", options.png, "write a PNG, with the program rsvg-convert (Debian: librsvg2-bin)");
   command_line
-      .add_option("--out", options.out, "the picture; by default run.svg (run.png) for run.proleg, run.1.svg for run.1")
+      .add_option(
+          "--out", options.out,
+          "the picture, - for standard output; by default run.svg (run.png) for run.proleg, run.1.svg for run.1")
       .value_name("FILE");
   command_line
       .add_option(

@@ -88,7 +88,14 @@ TEST(Series, WhatTheTableLacksIsNamedWithWhatIsMostLikeIt) {
   EXPECT_EQ(message({{"tick"}, "tme_s", {}}),
             "--x: found 'tme_s', expected columns of the table of 'proleg export', for example time_s");
   EXPECT_EQ(message({{"tick"}, "time_s", {0.05, {}}}),
-            "--from and --to: found 1 rows of the table, expected a window with two or more");
+            "--from and --to: found one row of the table, expected a window with two or more");
+  EXPECT_EQ(message({{"tick"}, "time_s", {5.0, 3.0}}),
+            "--from and --to: found 5 s to 3 s, expected a window that ends after it begins");
+  const WriteTable cut = table_with("a", 1, [](std::uint32_t) { return "1"; });
+  EXPECT_EQ(message_of<InputError>([&] {
+              static_cast<void>(collect_series(cut, {{"a"}, "time_s", {}, "run.xml"}));
+            }),
+            "run.xml: found one row of the table, expected two or more; a line needs two points");
 }
 
 TEST(Series, MoreColumnsThanStylesAreRefused) {

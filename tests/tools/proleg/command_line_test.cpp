@@ -52,6 +52,9 @@ TEST_F(CommandLine, RefusesUnknownWords) {
   expect_refused({"simulate", scenario("uniform"), "--seconds"}, {"--seconds"});
   expect_refused({"export", "run", "--tsv", "--binary"}, {"--binary"});
   expect_refused({"plot"}, {"RUN"});
+  expect_refused({"plot", "run", "--from", "abc"}, {"found --from 'abc', expected a number"});
+  expect_refused({"plot", "run", "--from", "1", "--from", "2"}, {"found --from 2 times, expected it at most once"});
+  expect_refused({"plot", "run", "--out"}, {"found no value of --out, expected"});
 }
 
 TEST_F(CommandLine, RefusesBadInputAndWritesNothing) {

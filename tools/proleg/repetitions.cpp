@@ -69,6 +69,9 @@ class Repetitions {
     const std::unique_ptr<Store> store = open();
     add_parts(*store);
     MethodResult result{{name_, experiment_.space, {}}, {}, {}};
+    if (const auto engine = experiment_.scenario.environment.engine; engine != optimize::judging_engine) {
+      result.runs.engine = sim::name_of(engine);
+    }
     for (std::uint32_t run = 0; run < count_ && !interrupted(); ++run) {
       std::optional<Repetition> repetition = search(run, workers, *store, std::cerr);
       if (!repetition) {

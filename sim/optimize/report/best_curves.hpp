@@ -19,6 +19,7 @@ struct MethodRuns {
   std::vector<std::vector<Evaluation>> runs;  ///< the evaluations of each repetition, in order
   /// Of judged searches: the best of each repetition, with the score that the judging engine gave it. Otherwise empty.
   std::vector<Evaluation> judged{};
+  std::string engine{};  ///< that simulated the evaluations, if it is not the judging one
 };
 
 /// Best score so far after each evaluation of a run.

@@ -59,15 +59,6 @@ std::vector<Level> reference_levels(std::span<const Reference> references) {
   return levels;
 }
 
-/// The names of the dotted lines, for the legend.
-std::string reference_names(const ThesisExperiment& experiment) {
-  std::string names;
-  for (const ReferenceScenario& reference : experiment.references) {
-    names += (names.empty() ? "" : ", ") + std::string(reference.short_name);
-  }
-  return names;
-}
-
 /// The best of all runs of a method.
 std::vector<Level> best_level(const BestCurves& curves, const std::string& colour) {
   if (curves.max.empty()) {
@@ -91,15 +82,21 @@ std::string repetitions_text(const MethodRuns& method) {
   return std::to_string(method.runs.size()) + (method.runs.size() == 1 ? " repetition" : " repetitions");
 }
 
+/// For a subtitle: tables beside these figures have the distances of another engine. Empty if they have not.
+std::string engine_text(const MethodRuns& method) {
+  return method.engine.empty() ? "" : "Distances in the engine of the search, " + method.engine;
+}
+
 /// A figure of one method; `draw` draws its curves and returns their names.
 template <typename Draw>
 std::string draw_method(const ThesisExperiment& experiment, const MethodRuns& method, const std::string& title,
-                        const std::string& about, const std::vector<Level>& levels, const BestCurves& curves,
+                        const std::string& curves_text, const std::vector<Level>& levels, const BestCurves& curves,
                         const Draw& draw) {
+  const std::string about = curves_text + (method.engine.empty() ? "" : ". ") + engine_text(method);
   const CurvePanel panel = make_panel(sim::first_panel_top, single_panel_height, {&curves, 1}, levels);
   Svg svg(sim::page_width, sim::first_panel_top + single_panel_height + 56.0, title, about);
   sim::draw_title(svg, title, about);
-  std::vector<LegendEntry> legend{{reference_names(experiment), line_style(sim::ink, 1.3, dotted), ""}};
+  std::vector<LegendEntry> legend{{"without a search", line_style(sim::ink, 1.3, dotted), ""}};
   if (find_thesis_result(experiment.name, method.method) != nullptr) {
     legend.push_back({"the thesis's best", line_style(sim::ink, 1.3, dashed), ""});
   }
@@ -196,7 +193,8 @@ std::string draw_method_comparison(const ThesisExperiment& experiment, std::span
 
   Svg svg(sim::page_width, second_top + double_panel_height + 56.0, "Comparison of methods",
           "Best distance so far of every repetition, and its mean, against evaluations.");
-  sim::draw_title(svg, std::string(experiment.title) + ": methods compared", {});
+  sim::draw_title(svg, std::string(experiment.title) + ": methods compared",
+                  methods.empty() ? std::string() : engine_text(methods.front()));
   sim::draw_legend(svg, plot_right, 54.0, method_legend);
   std::vector<LegendEntry> level_legend{{"without a search; best of all runs", line_style(sim::ink, 1.3, dotted), ""}};
   sim::draw_plot_grid(svg, every.x, every.y, "evaluations", "(a) Every run: best distance so far (m)");

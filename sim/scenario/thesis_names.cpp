@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
 
 namespace proleg::sim {
@@ -29,7 +30,8 @@ constexpr std::array<TwoNames, 10> thesis_parameters{{
 }};
 
 std::string_view proleg_name(std::span<const TwoNames> names, std::string_view name) {
-  const auto found = std::ranges::find(names, name, &TwoNames::thesis);
+  const auto found =
+      std::ranges::find_if(names, [&](const TwoNames& each) { return lower_case(each.thesis) == lower_case(name); });
   return found == names.end() ? name : found->proleg;
 }
 

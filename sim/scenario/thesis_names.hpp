@@ -1,6 +1,7 @@
 #pragma once
 
-// The names that files of the 2013 thesis have for algorithms and parameters, beside those that Proleg declares.
+// The names that files of the 2013 thesis have for algorithms and parameters, beside those that Proleg declares. As in
+// tags, capital letters make no difference in them.
 
 #include <string_view>
 

@@ -82,17 +82,14 @@ std::string repetitions_text(const MethodRuns& method) {
   return std::to_string(method.runs.size()) + (method.runs.size() == 1 ? " repetition" : " repetitions");
 }
 
-/// For a subtitle: tables beside these figures have the distances of another engine. Empty if they have not.
-std::string engine_text(const MethodRuns& method) {
-  return method.engine.empty() ? "" : "Distances in the engine of the search, " + method.engine;
-}
-
 /// A figure of one method; `draw` draws its curves and returns their names.
 template <typename Draw>
 std::string draw_method(const ThesisExperiment& experiment, const MethodRuns& method, const std::string& title,
                         const std::string& curves_text, const std::vector<Level>& levels, const BestCurves& curves,
                         const Draw& draw) {
-  const std::string about = curves_text + (method.engine.empty() ? "" : ". ") + engine_text(method);
+  // Tables beside the figure have the distances of the judging engine.
+  const std::string about =
+      curves_text + (method.engine.empty() ? "" : ". Distances in the engine of the search, " + method.engine);
   const CurvePanel panel = make_panel(sim::first_panel_top, single_panel_height, {&curves, 1}, levels);
   Svg svg(sim::page_width, sim::first_panel_top + single_panel_height + 56.0, title, about);
   sim::draw_title(svg, title, about);
@@ -193,8 +190,11 @@ std::string draw_method_comparison(const ThesisExperiment& experiment, std::span
 
   Svg svg(sim::page_width, second_top + double_panel_height + 56.0, "Comparison of methods",
           "Best distance so far of every repetition, and its mean, against evaluations.");
-  sim::draw_title(svg, std::string(experiment.title) + ": methods compared",
-                  methods.empty() ? std::string() : engine_text(methods.front()));
+  // The legend takes the place of a subtitle.
+  const std::string engine = methods.empty() ? std::string() : methods.front().engine;
+  sim::draw_title(
+      svg, std::string(experiment.title) + ": methods compared" + (engine.empty() ? "" : " (" + engine + " engine)"),
+      {});
   sim::draw_legend(svg, plot_right, 54.0, method_legend);
   std::vector<LegendEntry> level_legend{{"without a search; best of all runs", line_style(sim::ink, 1.3, dotted), ""}};
   sim::draw_plot_grid(svg, every.x, every.y, "evaluations", "(a) Every run: best distance so far (m)");

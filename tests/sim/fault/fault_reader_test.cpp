@@ -127,7 +127,7 @@ TEST(FaultFile, ThatIsMissingOrEmptyIsRefused) {
     return message_of<InputError>([&] { static_cast<void>(read_faults(path, caterpillar().robot, run_us)); });
   };
   EXPECT_NE(read("no/such/file").find("no such file"), std::string::npos);
-  EXPECT_NE(read(source_path("/sim")).find("not a file"), std::string::npos);
+  EXPECT_NE(read(source_path("/sim")).find("found a folder"), std::string::npos);
   EXPECT_NE(read("/dev/null").find("found"), std::string::npos);
 }
 

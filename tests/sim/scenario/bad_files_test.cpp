@@ -31,7 +31,7 @@ TEST_F(DiskFilesTest, AMissingFileIsRefused) {
 }
 
 TEST_F(DiskFilesTest, AFolderIsRefused) {
-  EXPECT_NE(message_for(folder_.path()).find("found no file that can be read"), std::string::npos);
+  EXPECT_NE(message_for(folder_.path()).find("found a folder"), std::string::npos);
 }
 
 TEST_F(DiskFilesTest, APathThatIsTooLongOrEmptyIsRefused) {
@@ -42,7 +42,7 @@ TEST_F(DiskFilesTest, APathThatIsTooLongOrEmptyIsRefused) {
 TEST_F(DiskFilesTest, APipeIsRefusedWithoutWaitingForIt) {
   const std::filesystem::path path = folder_ / "pipe.simulation.xml";
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
-  EXPECT_NE(message_for(path).find("found no file that can be read"), std::string::npos);
+  EXPECT_NE(message_for(path).find("found a device, a pipe or a socket"), std::string::npos);
 }
 
 TEST_F(DiskFilesTest, AnEmptyFileIsMalformed) {

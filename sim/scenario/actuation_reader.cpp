@@ -53,10 +53,14 @@ ParameterEntry read_parameter(const XmlElement& element, const Scenario& scenari
   const Declaration& declaration = slot.algorithm->declaration();
   ParameterEntry entry;
   const std::string name = element.required_attribute("name");
-  const int index = find_named_parameter(declaration, name);
+  int index = find_named_parameter(declaration, name);
+  if (index < 0 && !element.attribute("joint")) {
+    entry.joint = find_joint_of_thesis(scenario.robot, name);
+    index = entry.joint < 0 ? -1 : find_parameter(declaration, "angle");
+  }
   if (index < 0) {
     element.refuse("unknown parameter " + in_quotes(name) + " of " + std::string(declaration.name),
-                   "one of " + listed(parameter_names(declaration)));
+                   "one of " + listed(parameter_names(declaration)) + hint_on_thesis_name(name));
   }
   entry.index = static_cast<unsigned>(index);
   const Parameter& parameter = declaration.parameters[entry.index];
@@ -68,11 +72,14 @@ ParameterEntry read_parameter(const XmlElement& element, const Scenario& scenari
       parse_parameter(parameter, element.required_attribute("value"), element.document().name(), element.line());
   if (const auto joint = element.attribute("joint")) {
     entry.joint = find_joint(scenario.robot, *joint);
-    if (entry.joint < 0 || !slot.group.contains(static_cast<unsigned>(entry.joint))) {
-      element.refuse(
-          (entry.joint < 0 ? "unknown joint " : "a joint that this module does not drive, ") + in_quotes(*joint),
-          "one of " + listed(joint_names(scenario.robot, slot.group)));
+    if (entry.joint < 0) {
+      element.refuse("unknown joint " + in_quotes(*joint), "one of " + listed(joint_names(scenario.robot, slot.group)));
     }
+  }
+  if (entry.joint >= 0 && !slot.group.contains(static_cast<unsigned>(entry.joint))) {
+    element.refuse("a joint that this module does not drive, " +
+                       in_quotes(scenario.robot.joints[static_cast<std::size_t>(entry.joint)].name),
+                   "one of " + listed(joint_names(scenario.robot, slot.group)));
   }
   return entry;
 }

@@ -43,7 +43,11 @@ SettingWord take_apart(const std::string& text) {
     word.tick = word.number.substr(at + 1);
     word.number.resize(at);
   }
-  if (const std::size_t colon = word.name.find(':'); colon != std::string::npos) {
+  std::size_t colon = word.name.find(':');
+  if (colon != std::string::npos && word.name.substr(colon).starts_with(": ")) {  // the thesis's "amplitude: a"
+    colon = word.name.find(':', colon + 1);
+  }
+  if (colon != std::string::npos) {
     word.joint = word.name.substr(colon + 1);
     word.name.resize(colon);
   }
@@ -153,7 +157,8 @@ class Resolver {
     }
     word_->refuse("unknown parameter " + in_quotes(word_->name),
                   "one of " + listed(parameters) +
-                      (internal_values.empty() ? "" : ", or of the internal values " + listed(internal_values)));
+                      (internal_values.empty() ? "" : ", or of the internal values " + listed(internal_values)) +
+                      hint_on_thesis_name(word_->name));
   }
 
   const Scenario* scenario_;
@@ -168,7 +173,21 @@ std::int32_t parse_internal_value(const InternalValue& internal, const SettingWo
   return result.raw;
 }
 
-SettingTarget target_of(const Scenario& scenario, const SettingWord& word) {
+/// "Joint_0" as the word that Proleg has for it, "angle:J1". A parameter that is called so comes first.
+SettingWord with_own_names(const Scenario& scenario, SettingWord word) {
+  const int joint = word.joint ? -1 : find_joint_of_thesis(scenario.robot, word.name);
+  const bool is_declared = std::ranges::any_of(used_slots(scenario), [&](unsigned slot) {
+    return find_parameter(scenario.kernel.slots[slot].algorithm->declaration(), word.name) >= 0;
+  });
+  if (joint >= 0 && !is_declared) {
+    word.name = "angle";
+    word.joint = scenario.robot.joints[static_cast<std::size_t>(joint)].name;
+  }
+  return word;
+}
+
+SettingTarget target_of(const Scenario& scenario, const SettingWord& given) {
+  const SettingWord word = with_own_names(scenario, given);
   const Resolver resolver(scenario, word);
   const int joint = resolver.joint();
   const Meaning meaning = resolver.meaning(joint);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <span>
 
 #include "shared/computer/text/text.hpp"
 #include "shared/gait/registry.hpp"
@@ -16,7 +18,13 @@ struct TwoNames {
 
 constexpr std::array<TwoNames, 1> thesis_algorithms{{{"Global Adaptive Touch", "SensingModule_global_adaptive_touch"}}};
 
-constexpr std::array<TwoNames, 10> thesis_parameters{{
+constexpr std::array<TwoNames, 15> thesis_parameters{{
+    // As the dialogues of figure 4.20 show them, and the command of figure 4.12.
+    {"amplitude: a", "amplitude"},
+    {"frequency: f", "frequency"},
+    {"phase: p", "phase_difference"},
+    {"offset: o", "offset"},
+    {"PhaseDifference", "phase_difference"},
     {"Get-stuck-threshold", "stuck_threshold"},
     {"back to zero constant", "recovering"},
     {"Constant 1", "constant_1"},
@@ -44,6 +52,20 @@ const ActuationModule* find_named_algorithm(std::string_view name) {
 int find_named_parameter(const Declaration& declaration, std::string_view name) {
   const int index = find_parameter(declaration, name);
   return index >= 0 ? index : find_parameter(declaration, proleg_name(thesis_parameters, name));
+}
+
+int find_joint_of_thesis(const RobotModel& robot, std::string_view name) {
+  const std::string word = lower_case(name);
+  constexpr std::string_view start = "joint_";
+  const std::optional<unsigned> number =
+      word.starts_with(start) ? parse_whole<unsigned>(word.substr(start.size())) : std::nullopt;
+  const auto found = number ? std::ranges::find(robot.joints, *number, &Joint::file_index) : robot.joints.end();
+  return found == robot.joints.end() ? -1 : static_cast<int>(found - robot.joints.begin());
+}
+
+std::string hint_on_thesis_name(std::string_view name) {
+  return lower_case(name).starts_with("timestep") ? "; the time step of all algorithms is <tick> of the simulation file"
+                                                  : "";
 }
 
 }  // namespace proleg::sim

@@ -3,9 +3,11 @@
 // The names that files of the 2013 thesis have for algorithms and parameters, beside those that Proleg declares. As in
 // tags, capital letters make no difference in them.
 
+#include <string>
 #include <string_view>
 
 #include "shared/gait/actuation_module.hpp"
+#include "sim/robot/robot_model.hpp"
 
 namespace proleg::sim {
 
@@ -13,7 +15,15 @@ namespace proleg::sim {
 [[nodiscard]] const ActuationModule* find_named_algorithm(std::string_view name);
 
 /// Position of the parameter that Proleg or the thesis calls so ("Get-stuck-threshold", "back to zero constant",
-/// "Constant 1"), or -1.
+/// "Constant 1", "phase: p" for phase_difference), or -1.
 [[nodiscard]] int find_named_parameter(const Declaration& declaration, std::string_view name);
+
+/// The kernel joint whose angle the thesis calls so in DirectJointAccess ("Joint_0": the first joint of the robot's
+/// file, as in the masks of <jointConfiguration>), or -1.
+[[nodiscard]] int find_joint_of_thesis(const RobotModel& robot, std::string_view name);
+
+/// What a message says after "expected ..." of a parameter of the thesis that has no counterpart ("timestep"); mostly
+/// empty.
+[[nodiscard]] std::string hint_on_thesis_name(std::string_view name);
 
 }  // namespace proleg::sim

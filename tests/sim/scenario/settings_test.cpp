@@ -174,6 +174,35 @@ TEST(SetOption, AJointThatOnlyOneModuleDrivesDecidesTheModule) {
   EXPECT_NE(refusal(small, "amplitude:J2=1").find("in several modules"), std::string::npos);
 }
 
+TEST(SetOption, TakesTheNamesOfTheThesis) {
+  Scenario small = small_scenario().scenario();
+  apply_setting(small, "amplitude: a=11");
+  apply_setting(small, "amplitude: a:J1=12");
+  apply_setting(small, "Phase: P=30");
+  apply_setting(small, "PhaseDifference:J2=31");
+  apply_setting(small, "Joint_1=7");  // the second joint of the robot's file
+  const auto joint = [&](const std::string& name) { return static_cast<unsigned>(find_joint(small.robot, name)); };
+  EXPECT_EQ(start(small, 0, joint("J1"), "amplitude"), degrees("12"));
+  EXPECT_EQ(start(small, 0, joint("J2"), "amplitude"), degrees("11"));
+  EXPECT_EQ(start(small, 1, joint("J2"), "angle"), degrees("7"));
+  EXPECT_NE(start(small, 0, joint("J1"), "phase_difference"), start(small, 0, joint("J2"), "phase_difference"));
+  EXPECT_EQ(refusal(small, "joint_0=7"),
+            "joint_0=7: found joint 'J1', which DirectJointAccess (2) does not drive, expected one of J2");
+  EXPECT_NE(refusal(small, "Joint_9=7").find("unknown parameter 'Joint_9'"), std::string::npos);
+  EXPECT_NE(refusal(small, "timestep=0.001").find("; the time step of all algorithms is <tick>"), std::string::npos);
+}
+
+TEST(ActuationFile, TakesTheNamesOfTheThesis) {
+  MemoryFiles files = small_scenario();
+  files.replace("actuation.xml", "name=\"angle\"", "name=\"Joint_1\"");
+  const Scenario own = small_scenario().scenario();
+  const Scenario thesis = files.scenario();
+  const auto j2 = static_cast<unsigned>(find_joint(own.robot, "J2"));
+  EXPECT_EQ(start(thesis, 1, j2, "angle"), start(own, 1, j2, "angle"));
+  files.replace("actuation.xml", "name=\"Joint_1\"", "name=\"Joint_0\"");
+  EXPECT_THROW(static_cast<void>(files.scenario()), InputError) << "the module does not drive J1";
+}
+
 struct Refusal {
   std::string word;
   std::string message;

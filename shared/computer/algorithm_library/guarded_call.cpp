@@ -27,8 +27,9 @@ constexpr int time_out_signal = SIGVTALRM;
 constexpr std::array caught_signals{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, time_out_signal};
 constexpr std::size_t signal_stack_size = 64 * 1024;
 constexpr auto watchdog_period = std::chrono::milliseconds(20);
-/// What an interrupted call may have left locked must be free after this time.
-constexpr double longest_check_s = 3.0;
+/// What an interrupted call may have left locked must be free after so many periods, 3 s. A clock would also count the
+/// time for which a whole computer was suspended.
+constexpr unsigned most_looks = 150;
 
 /// What a thread needs to leave a call.
 struct ThreadGuard {
@@ -37,9 +38,10 @@ struct ThreadGuard {
   std::atomic<std::uint64_t> call = 0;     ///< number of the present or last call
   std::atomic<std::uint64_t> expired = 0;  ///< number of the call that took too long
   std::atomic<bool> is_checked = false;    ///< a signal has ended the call: is the C library usable?
+  std::atomic<bool> memory_is_free = false;
   std::atomic<bool> streams_are_free = false;
-  double checked_since_s = 0;
-  bool is_terminated = false;  ///< std::terminate() was called
+  std::atomic<unsigned> looks = 0;  ///< of the watchdog during the check
+  bool is_terminated = false;       ///< std::terminate() was called
   int signal = 0;
   bool has_address = false;
   const void* address = nullptr;  ///< of a bad access to memory
@@ -94,7 +96,7 @@ const char* text_of(const ThreadGuard& guard) {
 
 [[noreturn]] void end_program_after(const ThreadGuard& guard, const char* what, const char* consequence) {
   LastLine line;
-  line << guard.subject.name << " " << what << ", in " << guard.subject.function << "()" << consequence;
+  line << "proleg: " << guard.subject.name << " " << what << ", in " << guard.subject.function << "()" << consequence;
   line.end_program();
 }
 
@@ -188,7 +190,8 @@ class Watchdog {
   /// Waits until the C library is seen to be usable after a signal has ended a call of this thread. Ends the program if
   /// it is not.
   void check_after_signal(ThreadGuard& guard) {
-    guard.checked_since_s = seconds(CLOCK_MONOTONIC);
+    guard.looks = 0;
+    guard.memory_is_free = false;
     guard.streams_are_free = !runs_ || !guard.is_watched;
     guard.is_checked = true;
     // The locks of memory are those of this thread's arena. A damaged list ends in a signal.
@@ -196,6 +199,7 @@ class Watchdog {
       void* const volatile memory = std::malloc(size);
       std::free(memory);
     }
+    guard.memory_is_free = true;
     // A lock of a stream is taken again by the thread that has it: only another thread sees it.
     while (!guard.streams_are_free) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -268,10 +272,11 @@ class Watchdog {
   static void look_at(Watched& watched) {
     ThreadGuard& guard = *watched.guard;
     if (guard.is_checked) {
-      guard.streams_are_free = is_free(stdout) && is_free(stderr);
-      if (seconds(CLOCK_MONOTONIC) - guard.checked_since_s > longest_check_s) {
+      const bool streams_are_free = is_free(stdout) && is_free(stderr);
+      if (!(streams_are_free && guard.memory_is_free) && ++guard.looks > most_looks) {
         end_program_after(guard, text_of(guard), left_damaged);
       }
+      guard.streams_are_free = streams_are_free;
       return;
     }
     const std::uint64_t call = guard.call;

@@ -20,6 +20,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -161,6 +162,40 @@ void check_collada_unit(const std::string& name, const std::string& bytes) {
   }
 }
 
+/// Assimp reads a negative number of a vertex as another vertex. What does not look like an OFF file is left to it.
+void check_off_faces(const std::string& name, const std::string& bytes) {
+  std::istringstream text(bytes);
+  std::string line;
+  const auto next = [&]() -> std::vector<std::string_view> {
+    while (std::getline(text, line)) {
+      const std::vector<std::string_view> tokens = words(std::string_view(line).substr(0, line.find('#')));
+      if (!tokens.empty()) {
+        return tokens;
+      }
+    }
+    return {};
+  };
+  std::vector<std::string_view> counts = next();
+  if (counts.size() == 1) {
+    counts = next();
+  } else if (!counts.empty()) {  // in the line of the word OFF
+    counts.erase(counts.begin());
+  }
+  const std::optional<unsigned> vertices = counts.empty() ? std::nullopt : parse_whole<unsigned>(counts.front());
+  for (unsigned i = 0; vertices && i < *vertices && text; ++i) {
+    next();
+  }
+  for (std::vector<std::string_view> face = next(); vertices && !face.empty(); face = next()) {
+    const std::size_t corners = parse_whole<std::size_t>(face.front()).value_or(0);
+    for (std::size_t i = 1; i < face.size() && i <= corners; ++i) {
+      if (face[i].starts_with('-')) {
+        throw MeshError("a face with the vertex " + in_quotes(shortened(face[i])) + " in " + in_quotes(name),
+                        "numbers of vertices from 0");
+      }
+    }
+  }
+}
+
 /// Assimp has importers for dozens of formats. Only those of the four endings may see the file.
 bool reads_ending(Assimp::BaseImporter& importer, const std::string& ending) {
   std::set<std::string> extensions;
@@ -255,6 +290,8 @@ TriangleMesh import_mesh(const std::string& name, const std::string& bytes, cons
   }
   if (ending == ".dae") {
     check_collada_unit(name, bytes);
+  } else if (ending == ".off") {
+    check_off_faces(name, bytes);
   }
   try {
     const ErrorLog log;

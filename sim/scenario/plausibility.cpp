@@ -231,6 +231,19 @@ double depth_along_axes(const Geometry& left, const Pose& left_body, const Geome
   return (here.highest - there.lowest).cwiseMin(there.highest - here.lowest).minCoeff();
 }
 
+/// How far a sphere is in another geometry, whose bounds along its own axes count unless it is a sphere.
+double depth_of_sphere(const Geometry& sphere, const Pose& sphere_body, const Geometry& other, const Pose& other_body) {
+  const Pose to_other = (other_body * other.pose).inverse();
+  const Eigen::Vector3d center = to_other * (sphere_body * sphere.pose.position);
+  if (other.shape == Shape::sphere) {
+    return sphere.extents.x() + other.extents.x() - center.norm();
+  }
+  const Bounds bounds = bounds_of(other, to_other * other_body);
+  const Eigen::Vector3d outside = (bounds.lowest - center).cwiseMax(center - bounds.highest);
+  const double distance = outside.maxCoeff() > 0.0 ? outside.cwiseMax(0.0).norm() : outside.maxCoeff();
+  return sphere.extents.x() - distance;
+}
+
 }  // namespace
 
 std::vector<std::string> check_robot(const Chain& chain) { return RobotCheck(chain).run(); }
@@ -252,6 +265,12 @@ double overlap_depth(const Geometry& left, const Pose& left_body, const Geometry
     const std::optional<double> top =
         highest_over(*right.mesh, right_body * right.pose, here.lowest.head<2>(), here.highest.head<2>());
     return top.value_or(here.lowest.z()) - here.lowest.z();
+  }
+  if (left.shape == Shape::sphere) {
+    return depth_of_sphere(left, left_body, right, right_body);
+  }
+  if (right.shape == Shape::sphere) {
+    return depth_of_sphere(right, right_body, left, left_body);
   }
   return std::min(depth_along_axes(left, left_body, right, right_body),
                   depth_along_axes(right, right_body, left, left_body));

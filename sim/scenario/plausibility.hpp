@@ -22,7 +22,7 @@ namespace proleg::sim {
 inline constexpr double largest_start_depth = 0.003;
 
 /// How far two solids are in each other, in m: the shortest way out along an axis of one of them. Not above 0 if they
-/// are apart along one. Spheres, cylinders and hulls count as the boxes around them. If `right` is a mesh or a height
+/// are apart along one. Cylinders and hulls count as the boxes around them. If `right` is a mesh or a height
 /// field, it is how far the box around `left` must be lifted to be above all of it. Poses are those of the bodies in
 /// the world.
 [[nodiscard]] double overlap_depth(const Geometry& left, const Pose& left_body, const Geometry& right,

@@ -48,7 +48,7 @@ SettingWord take_apart(const std::string& text) {
     colon = word.name.find(':', colon + 1);
   }
   if (colon != std::string::npos) {
-    word.joint = word.name.substr(colon + 1);
+    word.joint = std::string(trimmed(std::string_view(word.name).substr(colon + 1)));
     word.name.resize(colon);
   }
   if (const std::size_t dot = word.name.find('.'); dot != std::string::npos) {
@@ -176,10 +176,12 @@ std::int32_t parse_internal_value(const InternalValue& internal, const SettingWo
 /// "Joint_0" as the word that Proleg has for it, "angle:J1". A parameter that is called so comes first.
 SettingWord with_own_names(const Scenario& scenario, SettingWord word) {
   const int joint = word.joint ? -1 : find_joint_of_thesis(scenario.robot, word.name);
-  const bool is_declared = std::ranges::any_of(used_slots(scenario), [&](unsigned slot) {
-    return find_parameter(scenario.kernel.slots[slot].algorithm->declaration(), word.name) >= 0;
-  });
-  if (joint >= 0 && !is_declared) {
+  const auto is_declared = [&](std::string_view name) {
+    return std::ranges::any_of(used_slots(scenario), [&](unsigned slot) {
+      return find_parameter(scenario.kernel.slots[slot].algorithm->declaration(), name) >= 0;
+    });
+  };
+  if (joint >= 0 && !is_declared(word.name) && is_declared("angle")) {
     word.name = "angle";
     word.joint = scenario.robot.joints[static_cast<std::size_t>(joint)].name;
   }

@@ -11,7 +11,8 @@
 namespace proleg::sim {
 namespace {
 
-/// What is higher above the robot's lowest point is no ground but a wall: who starts inside it gets a warning.
+/// What is higher above the robot's lowest point, and not under its start position, is no ground but a wall: who starts
+/// inside it gets a warning.
 constexpr double highest_step = 0.5;  // m
 
 /// Bounds of all geometries of a body; nothing if there are none.
@@ -24,9 +25,7 @@ std::optional<Bounds> bounds_of_body(const std::vector<Geometry>& geometries, co
   return whole;
 }
 
-/// How far the robot must be lifted so that none of its links is in the ground, and on which object it then rests. A
-/// shape without a mesh counts as high as its highest point if it is under the start, and as it is where a link is in
-/// it; a mesh counts as it is under each link.
+/// How far the robot must be lifted so that none of its links is in the ground, and on which object it then rests.
 struct Lift {
   double height = 0.0;  ///< m
   const StaticObject* ground = nullptr;
@@ -38,6 +37,12 @@ void raise(Lift& lift, double height, const StaticObject& object) {
   }
 }
 
+bool is_above(const Eigen::Vector3d& point, const Bounds& bounds) {
+  return (point.head<2>().array() >= bounds.lowest.head<2>().array()).all() &&
+         (point.head<2>().array() <= bounds.highest.head<2>().array()).all();
+}
+
+/// A mesh counts as it is under each link.
 Lift lift_of_links(const RobotModel& robot, const EnvironmentModel& environment) {
   Lift lift;
   for (const Link& link : robot.links) {
@@ -55,27 +60,62 @@ Lift lift_of_links(const RobotModel& robot, const EnvironmentModel& environment)
   return lift;
 }
 
-Lift lift_of_robot(const RobotModel& robot, const EnvironmentModel& environment) {
-  const Eigen::Vector3d& start = environment.robot_pose.position;
-  std::optional<double> top;
-  const StaticObject* ground = nullptr;
-  for (const StaticObject& object : environment.objects) {
-    std::vector<Geometry> solids = object.geometries;
-    std::erase_if(solids, [](const Geometry& geometry) { return geometry.mesh != nullptr; });
-    const std::optional<Bounds> bounds = bounds_of_body(solids, object.pose);
-    if (bounds && (start.head<2>().array() >= bounds->lowest.head<2>().array()).all() &&
-        (start.head<2>().array() <= bounds->highest.head<2>().array()).all() && (!top || bounds->highest.z() > *top)) {
-      top = bounds->highest.z();
-      ground = &object;
-    }
-  }
-  std::optional<double> bottom;
+std::optional<double> lowest_point(const RobotModel& robot, const Pose& start) {
+  std::optional<double> lowest;
   for (const Link& link : robot.links) {
-    if (const auto bounds = bounds_of_body(link.geometries, environment.robot_pose * link.pose)) {
-      bottom = bottom ? std::min(*bottom, bounds->lowest.z()) : bounds->lowest.z();
+    if (const auto bounds = bounds_of_body(link.geometries, start * link.pose)) {
+      lowest = std::min(lowest.value_or(bounds->lowest.z()), bounds->lowest.z());
     }
   }
-  return top && bottom ? Lift{*top - *bottom, ground} : Lift{};
+  return lowest;
+}
+
+/// Of any link in a solid; at least 0.
+double depth_in(const Geometry& solid, const Pose& body, const RobotModel& robot, const Pose& start) {
+  double deepest = 0.0;
+  for (const Link& link : robot.links) {
+    for (const Geometry& geometry : link.geometries) {
+      deepest = std::max(deepest, overlap_depth(geometry, start * link.pose, solid, body));
+    }
+  }
+  return deepest;
+}
+
+/// A box one of whose axes is vertical, so that its highest point is its whole upper side.
+bool is_level_box(const Geometry& geometry, const Pose& body) {
+  constexpr double vertical = 1.0 - 1e-12;
+  const Eigen::Matrix3d axes = (body * geometry.pose).orientation.toRotationMatrix();
+  return geometry.shape == Shape::box && axes.row(2).cwiseAbs().maxCoeff() > vertical;
+}
+
+/// Onto the highest level box under the start position that a link is in. If there is nothing around or below the
+/// robot, which would fall for ever, onto the lowest of what is above it.
+Lift lift_onto_level_ground(const RobotModel& robot, const EnvironmentModel& environment) {
+  const std::optional<double> bottom = lowest_point(robot, environment.robot_pose);
+  if (!bottom) {
+    return {};
+  }
+  Lift lift;
+  Lift from_below;
+  bool has_ground = false;
+  for (const StaticObject& object : environment.objects) {
+    for (const Geometry& geometry : object.geometries) {
+      const Bounds bounds = bounds_of(geometry, object.pose);
+      if (!is_above(environment.robot_pose.position, bounds)) {
+        continue;
+      }
+      const double height = bounds.highest.z() - *bottom;
+      if (bounds.lowest.z() <= *bottom) {
+        has_ground = true;
+      } else if (from_below.ground == nullptr || height < from_below.height) {
+        from_below = {height, &object};
+      }
+      if (is_level_box(geometry, object.pose) && depth_in(geometry, object.pose, robot, environment.robot_pose) > 0.0) {
+        raise(lift, height, object);
+      }
+    }
+  }
+  return lift.ground == nullptr && !has_ground ? from_below : lift;
 }
 
 struct Overlap {
@@ -89,48 +129,46 @@ Overlap deepest_overlap(const RobotModel& robot, const EnvironmentModel& environ
   Overlap deepest;
   for (const StaticObject& object : environment.objects) {
     for (const Geometry& solid : object.geometries) {
-      if (solid.mesh || bounds_of(solid, object.pose).highest.z() > highest) {
+      const Bounds bounds = bounds_of(solid, object.pose);
+      if (solid.mesh || (bounds.highest.z() > highest && !is_above(start.position, bounds))) {
         continue;
       }
-      for (const Link& link : robot.links) {
-        for (const Geometry& geometry : link.geometries) {
-          if (const double depth = overlap_depth(geometry, start * link.pose, solid, object.pose);
-              depth > deepest.depth) {
-            deepest = {depth, &object};
-          }
-        }
+      if (const double depth = depth_in(solid, object.pose, robot, start); depth > deepest.depth) {
+        deepest = {depth, &object};
       }
     }
   }
   return deepest;
 }
 
+/// Of an object that is oblique or round, and of one that only some links are in.
 void lift_out_of_solids(const RobotModel& robot, const EnvironmentModel& environment, Lift& lift) {
-  constexpr double min_step = 0.001;  // m; each turn lifts by this at least, so the turns end
+  constexpr double rounding = 1e-9;   // m
+  constexpr double min_step = 0.001;  // m
+  constexpr int most_steps = 10'000;  // a thin wall needs many
   Pose start = environment.robot_pose;
   start.position.z() += lift.height;
-  std::optional<double> lowest;
-  for (const Link& link : robot.links) {
-    if (const auto bounds = bounds_of_body(link.geometries, start * link.pose)) {
-      lowest = std::min(lowest.value_or(bounds->lowest.z()), bounds->lowest.z());
-    }
-  }
+  const std::optional<double> lowest = lowest_point(robot, start);
   if (!lowest) {
     return;
   }
   const double highest = *lowest + highest_step;
-  for (Overlap overlap = deepest_overlap(robot, environment, start, highest); overlap.depth > largest_start_depth;
-       overlap = deepest_overlap(robot, environment, start, highest)) {
-    const double step = std::max(overlap.depth, min_step);
-    start.position.z() += step;
-    lift = {lift.height + step, overlap.object};
+  Overlap overlap = deepest_overlap(robot, environment, start, highest);
+  if (overlap.depth <= largest_start_depth) {
+    return;
+  }
+  for (int step = 0; step < most_steps && overlap.depth > rounding; ++step) {
+    const double height = std::max(overlap.depth, min_step);
+    start.position.z() += height;
+    lift = {lift.height + height, overlap.object};
+    overlap = deepest_overlap(robot, environment, start, highest);
   }
 }
 
 }  // namespace
 
 void lift_onto_ground(const RobotModel& robot, EnvironmentModel& environment, std::vector<std::string>& remarks) {
-  Lift lift = lift_of_robot(robot, environment);
+  Lift lift = lift_onto_level_ground(robot, environment);
   if (const Lift onto_mesh = lift_of_links(robot, environment); onto_mesh.height > lift.height) {
     lift = onto_mesh;
   }

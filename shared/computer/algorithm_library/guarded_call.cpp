@@ -105,6 +105,8 @@ constexpr const char* left_damaged =
 
 /// The file of a library that is loaded; a fault elsewhere can be the work of its threads. Set once.
 std::atomic<const char*> foreign_code = nullptr;
+/// exit() has been called: what the library destroys at the end is not guarded.
+std::atomic<bool> program_ends = false;
 
 void on_signal(int signal, siginfo_t* info, void* /*context*/) {
   ThreadGuard* const guard = current_guard;
@@ -128,6 +130,11 @@ void on_signal(int signal, siginfo_t* info, void* /*context*/) {
   const struct sigaction& previous = previous_actions[static_cast<std::size_t>(signal)];
   if (const char* const file = foreign_code; file != nullptr && previous.sa_handler == SIG_DFL) {
     LastLine line;
+    if (program_ends) {
+      line << "proleg: " << file << ": crashes (SIG" << sigabbrev_np(signal) << ") at the end of the program: "
+           << "the destructor of one of its objects?";
+      line.end_program();
+    }
     line << "proleg: the program has crashed (SIG" << sigabbrev_np(signal) << ") outside of a call of " << file
          << ": a thread that this library started can be the reason, or memory that it has overwritten";
     line.end_program();
@@ -252,12 +259,24 @@ class Watchdog {
   void run() {
     while (true) {
       std::this_thread::sleep_for(watchdog_period);
+      end_program_that_stays();
       const std::lock_guard lock(mutex_);
       for (Watched& watched : watched_) {
         if (watched.guard != nullptr) {
           look_at(watched);
         }
       }
+    }
+  }
+
+  /// Results are written before exit() is called, so what then still runs is of the library.
+  void end_program_that_stays() {
+    const char* const file = foreign_code;
+    if (program_ends && file != nullptr && ++looks_at_end_ > most_looks) {
+      LastLine line;
+      line << "proleg: " << file
+           << ": does not end with the program: an endless loop in the destructor of one of its objects?";
+      line.end_program();
     }
   }
 
@@ -299,6 +318,7 @@ class Watchdog {
   std::mutex mutex_;
   std::array<Watched, 64> watched_{};
   std::atomic<bool> runs_ = false;
+  unsigned looks_at_end_ = 0;
 };
 
 void catch_signals() {
@@ -392,7 +412,19 @@ unsigned process_generation() { return generation; }
 
 void blame_for_crashes(const char* file) {
   const char* none = nullptr;
-  foreign_code.compare_exchange_strong(none, file);
+  if (!foreign_code.compare_exchange_strong(none, file)) {
+    return;
+  }
+  // Called before the destructors of the library, which was loaded earlier.
+  std::atexit([] {
+    if (gettid() != getpid()) {  // programs of this tree end with the return from main()
+      LastLine line;
+      line << "proleg: " << foreign_code.load()
+           << ": a thread that this library started calls exit(); the program ends without its results";
+      line.end_program();
+    }
+    program_ends = true;
+  });
 }
 
 bool run_guarded(const CallSubject& subject, void (*function)(void*), void* context, CallFailure& failure) {

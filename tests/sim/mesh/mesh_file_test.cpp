@@ -158,6 +158,13 @@ TEST(MeshFile, ColoursOfMaterialsAreKept) {
   EXPECT_EQ(blue, 4U);
 }
 
+TEST(MeshFile, ANegativeVertexOfAnOffFileIsRefused) {
+  const std::string corners = "0 0 0\n1 0 0\n0 1 0\n0 0 -1\n";
+  for (const std::string start : {"OFF\n4 2 0\n", "OFF 4 2 0\n", "# a comment\nOFF\n\n4 2 0 # counts\n"}) {
+    EXPECT_EQ(refusal("a.off", start + corners + "3 0 1 2\n3 0 1 -3\n"), "a face with the vertex '-3' in 'a.off'");
+  }
+}
+
 TEST(MeshFile, AUnitOfAColladaFileIsANumberAboveZero) {
   for (const char* unit : {"abc", "-1", "0", "", "1 2", "inf"}) {
     EXPECT_NE(refusal("a.dae", collada(unit, "Z_UP")).find("a <unit> of "), std::string::npos) << unit;

@@ -131,6 +131,55 @@ TEST(Environment, ARobotOfWhichOneLinkIsInAWallIsNotLifted) {
   EXPECT_NE(scenario.warnings.back().find("inside 'bar'"), std::string::npos);
 }
 
+/// Where the robot starts with more objects in the world and its pose at this height.
+Scenario among(const std::string& geometries, const std::string& height = "0.03") {
+  MemoryFiles files = small_scenario();
+  files.replace("environment.xml", "0 0 0.1,", "0 0 " + height + ",");
+  files.replace("environment.xml", "</Environment>",
+                "<KinBody name=\"thing\"><Body type=\"static\">" + geometries + "</Body></KinBody></Environment>");
+  return files.scenario();
+}
+
+TEST(Environment, WhatIsAboveTheRobotOrBesideItDoesNotLiftIt) {
+  const double on_the_floor =
+      among("<Geom type=\"box\"><translation>9 9 0</translation><extents>1 1 1</extents></Geom>").environment.robot_pose.position.z();
+  for (const char* geometries :
+       {"<Geom type=\"box\"><translation>0 0 2.5</translation><extents>4 4 0.1</extents></Geom>",   // a ceiling
+        "<Geom type=\"box\"><translation>0 0 0.5</translation><extents>1 1 0.01</extents></Geom>",  // of a tunnel
+        "<Geom type=\"box\"><translation>0.5 0 0</translation><extents>0.1 2 0.3</extents></Geom>"  // a corridor
+        "<Geom type=\"box\"><translation>-0.5 0 0</translation><extents>0.1 2 0.3</extents></Geom>",
+        // A wall across the corner: only its bounds contain the robot.
+        "<Geom type=\"box\"><translation>0.8 0.8 0</translation><rotationaxis>0 0 1 45</rotationaxis>"
+        "<extents>0.05 2 0.2</extents></Geom>",
+        // A dome, beside which the floor is free.
+        "<Geom type=\"sphere\"><translation>1.5 1.5 -1.9</translation><radius>2</radius></Geom>"}) {
+    const Scenario scenario = among(geometries);
+    EXPECT_EQ(scenario.environment.robot_pose.position.z(), on_the_floor) << geometries;
+    EXPECT_TRUE(scenario.warnings.empty()) << geometries;
+  }
+}
+
+TEST(Environment, ARobotInASlopeIsLiftedUntilItIsOutAndNotOntoItsHighestPoint) {
+  // The slope rises towards the head, 20 degrees; its surface goes through the origin.
+  const std::string slope =
+      "<Geom type=\"box\"><translation>0 0.171 -0.4698</translation><rotationaxis>1 0 0 20</rotationaxis>"
+      "<extents>8 8 0.5</extents></Geom>";
+  const double tangent = std::tan(20.0 * std::numbers::pi / 180.0);
+  const Scenario scenario = among(slope, "0");
+  const double height = scenario.environment.robot_pose.position.z();
+  // The head is 0.2 m in front, with a radius of 0.03.
+  EXPECT_GT(height, 0.2 * tangent);
+  EXPECT_LT(height, 0.23 * tangent + 0.04);
+  EXPECT_TRUE(scenario.warnings.empty());
+  EXPECT_EQ(among(slope, "0.5").environment.robot_pose.position.z(), 0.5) << "above it";
+}
+
+TEST(Environment, ARobotBelowAllIsLiftedOntoTheLowestOfIt) {
+  MemoryFiles files = small_scenario();
+  files.replace("environment.xml", "0 0 0.1,", "0 0 -7,");
+  EXPECT_NEAR(files.scenario().environment.robot_pose.position.z(), 0.03, 1e-12);
+}
+
 TEST(Environment, ObjectsMayComeFromFilesAndKeepTheirPose) {
   MemoryFiles files = small_scenario();
   files.texts["step.xml"] =

@@ -255,6 +255,23 @@ class UserAlgorithms(unittest.TestCase):
         self.assertEqual(result.returncode, 1)
         self.assert_one_line(result, f"the algorithm '{NAME}' calls exit(), in advance()")
 
+    def test_exit_in_a_thread_of_the_library_is_no_success(self):
+        library = self.with_mistake("thread_exits", "std::thread([] { std::exit(0); }).join();")
+        result = self.simulate(library, "--seconds", "5")
+        self.assertEqual(result.returncode, 1)
+        self.assert_one_line(result, library, "a thread that this library started calls exit()")
+
+    def test_a_destructor_that_does_not_return_does_not_keep_the_program(self):
+        for name, body, text in (("loops", "for (volatile int i = 0;; i = i + 1) {}", "does not end with the program"),
+                                 ("crashes", "*volatile_null = 1;", "crashes (SIGSEGV) at the end of the program")):
+            with self.subTest(name):
+                library = self.compile(f"destructor_{name}", TOOLS + self.source + "namespace { struct Last { ~Last() { " +
+                                       body + " } } last; }\n")
+                result = self.simulate(library, "--seconds", "1")
+                self.assertEqual(result.returncode, 1, result.stderr)
+                self.assert_one_line(result, library, text)
+                self.assertIn("displacement", result.stdout, "the results are written before")
+
     def test_a_crash_of_a_thread_of_the_library_names_it(self):
         library = self.with_mistake("thread", "std::thread([] { *volatile_null = 1; }).join();")
         result = self.simulate(library, "--seconds", "5")

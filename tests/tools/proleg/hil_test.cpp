@@ -202,8 +202,8 @@ TEST_F(Hil, BadOptionsAreRefused) {
   for (const char* command : {"simulate", "hil"}) {
     expect_refused({command, file_name, "--losses", "7:500%"}, {"rate '500%'", "0 to 1"});
     expect_refused({command, file_name, "--losses", "7:5%@5000-6000"}, {"tick 5000", "0 to 2999"});
-    expect_refused({command, file_name, "--losses", "/dev/zero"}, {"/dev/zero: found something that is not a file"});
-    expect_refused({command, file_name, "--losses", "/"}, {"/: found something that is not a file"});
+    expect_refused({command, file_name, "--losses", "/dev/zero"}, {"'/dev/zero': found a device, a pipe or a socket"});
+    expect_refused({command, file_name, "--losses", "/"}, {"'/': found a folder"});
     expect_refused({command, file_name, "--losses", file("none").string()}, {"none': found no such file"});
   }
   EXPECT_TRUE(left_behind().empty());

@@ -142,7 +142,8 @@ Scenario among(const std::string& geometries, const std::string& height = "0.03"
 
 TEST(Environment, WhatIsAboveTheRobotOrBesideItDoesNotLiftIt) {
   const double on_the_floor =
-      among("<Geom type=\"box\"><translation>9 9 0</translation><extents>1 1 1</extents></Geom>").environment.robot_pose.position.z();
+      among("<Geom type=\"box\"><translation>9 9 0</translation><extents>1 1 1</extents></Geom>")
+          .environment.robot_pose.position.z();
   for (const char* geometries :
        {"<Geom type=\"box\"><translation>0 0 2.5</translation><extents>4 4 0.1</extents></Geom>",   // a ceiling
         "<Geom type=\"box\"><translation>0 0 0.5</translation><extents>1 1 0.01</extents></Geom>",  // of a tunnel

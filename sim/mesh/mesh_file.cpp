@@ -157,7 +157,7 @@ void check_collada_unit(const std::string& name, const std::string& bytes) {
   const std::string text = bytes.substr(std::min(begin, bytes.size()), bytes.find_first_of("\"'>", begin) - begin);
   const std::optional<double> metres = parse_number(trimmed(text));
   if (!metres || !(*metres > 0.0)) {
-    throw MeshError("a <unit> of " + in_quotes(shortened(text)) + " metres in " + in_quotes(name),
+    throw MeshError("a <unit> of " + in_quotes(one_line(shortened(text))) + " metres in " + in_quotes(name),
                     "a number above 0: the length of the file's unit in metres");
   }
 }
@@ -189,7 +189,7 @@ void check_off_faces(const std::string& name, const std::string& bytes) {
     const std::size_t corners = parse_whole<std::size_t>(face.front()).value_or(0);
     for (std::size_t i = 1; i < face.size() && i <= corners; ++i) {
       if (face[i].starts_with('-')) {
-        throw MeshError("a face with the vertex " + in_quotes(shortened(face[i])) + " in " + in_quotes(name),
+        throw MeshError("a face with the vertex " + in_quotes(one_line(shortened(face[i]))) + " in " + in_quotes(name),
                         "numbers of vertices from 0");
       }
     }

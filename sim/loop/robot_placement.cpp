@@ -23,11 +23,9 @@ double deepest_overlap(const Pose& motion, std::span<const Pose> links, const Sc
   double deepest = 0.0;
   for (std::size_t i = 0; i < links.size(); ++i) {
     const Pose link = motion * links[i];
-    for (const Geometry& geometry : scenario.robot.links[i].geometries) {
-      for (const StaticObject& object : scenario.environment.objects) {
-        for (const Geometry& solid : object.geometries) {
-          deepest = std::max(deepest, overlap_depth(geometry, link, solid, object.pose));
-        }
+    for (const StaticObject& object : scenario.environment.objects) {
+      for (const Geometry& solid : object.geometries) {
+        deepest = std::max(deepest, overlap_depth(scenario.robot.links[i].geometries, link, solid, object.pose));
       }
     }
   }
@@ -67,8 +65,7 @@ Ground ground_at(const Eigen::Vector3d& point, const EnvironmentModel& environme
         continue;
       }
       const Bounds bounds = bounds_of(solid, object.pose);
-      if ((point.head<2>().array() >= bounds.lowest.head<2>().array()).all() &&
-          (point.head<2>().array() <= bounds.highest.head<2>().array()).all()) {
+      if (contains_from_above(bounds, point)) {
         raise(ground.highest, bounds.highest.z());
         if (bounds.lowest.z() <= point.z()) {
           raise(ground.below, bounds.highest.z());

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include <Eigen/Geometry>
 
@@ -14,6 +16,17 @@ struct Bounds {
   Eigen::Vector3d lowest;
   Eigen::Vector3d highest;
 };
+
+/// Around both.
+[[nodiscard]] inline Bounds joined(const Bounds& one, const Bounds& other) {
+  return {one.lowest.cwiseMin(other.lowest), one.highest.cwiseMax(other.highest)};
+}
+
+/// Whether a point is above, in or below the box: seen from above, the box contains it.
+[[nodiscard]] inline bool contains_from_above(const Bounds& bounds, const Eigen::Vector3d& point) {
+  return (point.head<2>().array() >= bounds.lowest.head<2>().array()).all() &&
+         (point.head<2>().array() <= bounds.highest.head<2>().array()).all();
+}
 
 /// Bounds of a mesh, which has at least one vertex.
 [[nodiscard]] inline Bounds bounds_of(const TriangleMesh& mesh, const Pose& pose) {
@@ -50,6 +63,16 @@ struct Bounds {
       break;
   }
   return {pose.position - reach, pose.position + reach};
+}
+
+/// Bounds of all geometries of a body; nothing if there are none. frame: the pose of the body.
+[[nodiscard]] inline std::optional<Bounds> bounds_of(const std::vector<Geometry>& geometries, const Pose& frame) {
+  std::optional<Bounds> whole;
+  for (const Geometry& geometry : geometries) {
+    const Bounds bounds = bounds_of(geometry, frame);
+    whole = whole ? joined(*whole, bounds) : bounds;
+  }
+  return whole;
 }
 
 }  // namespace proleg::sim

@@ -20,20 +20,7 @@ std::string warning(const Origin& origin, const std::string& text) {
   return one_line(origin.file + ":" + std::to_string(origin.line) + ": " + text);
 }
 
-Bounds joined(const Bounds& left, const Bounds& right) {
-  return {left.lowest.cwiseMin(right.lowest), left.highest.cwiseMax(right.highest)};
-}
-
 double length_of(const Bounds& bounds) { return (bounds.highest - bounds.lowest).maxCoeff(); }
-
-std::optional<Bounds> bounds_of_geometries(const Link& link, const Pose& frame) {
-  std::optional<Bounds> whole;
-  for (const Geometry& geometry : link.geometries) {
-    const Bounds bounds = bounds_of(geometry, frame);
-    whole = whole ? joined(*whole, bounds) : bounds;
-  }
-  return whole;
-}
 
 /// The principal moments of inertia, ascending, and their axes.
 Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> principal_moments(const MassProperties& mass) {
@@ -57,7 +44,7 @@ Geometry equivalent_box(const MassProperties& mass) {
 /// Of everything that a link is known to have, in the robot's frame.
 Bounds bounds_of_link(const Link& link) {
   const Bounds box = bounds_of(equivalent_box(link.mass), link.pose);
-  const std::optional<Bounds> geometries = bounds_of_geometries(link, link.pose);
+  const std::optional<Bounds> geometries = bounds_of(link.geometries, link.pose);
   return geometries ? joined(*geometries, box) : box;
 }
 
@@ -173,7 +160,7 @@ class RobotCheck {
            body_name(link) +
                " has an inertia that no solid has: one principal moment is larger than the sum of the two others; "
                "usually a number in <inertia> is wrong");
-    } else if (const auto geometries = bounds_of_geometries(chain_->links[link], {})) {
+    } else if (const auto geometries = bounds_of(chain_->links[link].geometries, {})) {
       if (check_size(link, *geometries)) {
         check_density(link);
       }
@@ -276,6 +263,15 @@ double overlap_depth(const Geometry& left, const Pose& left_body, const Geometry
                   depth_along_axes(right, right_body, left, left_body));
 }
 
+double overlap_depth(const std::vector<Geometry>& left, const Pose& left_body, const Geometry& right,
+                     const Pose& right_body) {
+  double deepest = 0.0;
+  for (const Geometry& geometry : left) {
+    deepest = std::max(deepest, overlap_depth(geometry, left_body, right, right_body));
+  }
+  return deepest;
+}
+
 std::vector<std::string> check_start(const std::vector<Link>& links, const EnvironmentModel& environment,
                                      const std::string& environment_file) {
   std::vector<std::string> warnings;
@@ -285,11 +281,9 @@ std::vector<std::string> check_start(const std::vector<Link>& links, const Envir
     const StaticObject* obstacle = nullptr;
     for (const StaticObject& object : environment.objects) {
       for (const Geometry& solid : object.geometries) {
-        for (const Geometry& geometry : link.geometries) {
-          if (const double in = overlap_depth(geometry, link_pose, solid, object.pose); in > deepest) {
-            deepest = in;
-            obstacle = &object;
-          }
+        if (const double in = overlap_depth(link.geometries, link_pose, solid, object.pose); in > deepest) {
+          deepest = in;
+          obstacle = &object;
         }
       }
     }

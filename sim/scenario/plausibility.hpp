@@ -27,6 +27,9 @@ inline constexpr double largest_start_depth = 0.003;
 /// the world.
 [[nodiscard]] double overlap_depth(const Geometry& left, const Pose& left_body, const Geometry& right,
                                    const Pose& right_body);
+/// Of the geometry of a body that is deepest in `right`; 0 if none is in it.
+[[nodiscard]] double overlap_depth(const std::vector<Geometry>& left, const Pose& left_body, const Geometry& right,
+                                   const Pose& right_body);
 
 /// Warnings on links that start inside an object. environment_file: the file that gives the start pose.
 [[nodiscard]] std::vector<std::string> check_start(const std::vector<Link>& links, const EnvironmentModel& environment,

@@ -15,16 +15,6 @@ namespace {
 /// inside it gets a warning.
 constexpr double highest_step = 0.5;  // m
 
-/// Bounds of all geometries of a body; nothing if there are none.
-std::optional<Bounds> bounds_of_body(const std::vector<Geometry>& geometries, const Pose& frame) {
-  std::optional<Bounds> whole;
-  for (const Geometry& geometry : geometries) {
-    const Bounds bounds = bounds_of(geometry, frame);
-    whole = whole ? Bounds{whole->lowest.cwiseMin(bounds.lowest), whole->highest.cwiseMax(bounds.highest)} : bounds;
-  }
-  return whole;
-}
-
 /// How far the robot must be lifted so that none of its links is in the ground, and on which object it then rests.
 struct Lift {
   double height = 0.0;  ///< m
@@ -37,16 +27,11 @@ void raise(Lift& lift, double height, const StaticObject& object) {
   }
 }
 
-bool is_above(const Eigen::Vector3d& point, const Bounds& bounds) {
-  return (point.head<2>().array() >= bounds.lowest.head<2>().array()).all() &&
-         (point.head<2>().array() <= bounds.highest.head<2>().array()).all();
-}
-
-/// A mesh counts as it is under each link.
-Lift lift_of_links(const RobotModel& robot, const EnvironmentModel& environment) {
+/// Above all of each mesh that is under or over a link.
+Lift lift_onto_meshes(const RobotModel& robot, const EnvironmentModel& environment) {
   Lift lift;
   for (const Link& link : robot.links) {
-    const std::optional<Bounds> bounds = bounds_of_body(link.geometries, environment.robot_pose * link.pose);
+    const std::optional<Bounds> bounds = bounds_of(link.geometries, environment.robot_pose * link.pose);
     for (const StaticObject& object : environment.objects) {
       for (const Geometry& geometry : object.geometries) {
         if (bounds && geometry.mesh) {
@@ -63,7 +48,7 @@ Lift lift_of_links(const RobotModel& robot, const EnvironmentModel& environment)
 std::optional<double> lowest_point(const RobotModel& robot, const Pose& start) {
   std::optional<double> lowest;
   for (const Link& link : robot.links) {
-    if (const auto bounds = bounds_of_body(link.geometries, start * link.pose)) {
+    if (const auto bounds = bounds_of(link.geometries, start * link.pose)) {
       lowest = std::min(lowest.value_or(bounds->lowest.z()), bounds->lowest.z());
     }
   }
@@ -74,9 +59,7 @@ std::optional<double> lowest_point(const RobotModel& robot, const Pose& start) {
 double depth_in(const Geometry& solid, const Pose& body, const RobotModel& robot, const Pose& start) {
   double deepest = 0.0;
   for (const Link& link : robot.links) {
-    for (const Geometry& geometry : link.geometries) {
-      deepest = std::max(deepest, overlap_depth(geometry, start * link.pose, solid, body));
-    }
+    deepest = std::max(deepest, overlap_depth(link.geometries, start * link.pose, solid, body));
   }
   return deepest;
 }
@@ -101,7 +84,7 @@ Lift lift_onto_level_ground(const RobotModel& robot, const EnvironmentModel& env
   for (const StaticObject& object : environment.objects) {
     for (const Geometry& geometry : object.geometries) {
       const Bounds bounds = bounds_of(geometry, object.pose);
-      if (!is_above(environment.robot_pose.position, bounds)) {
+      if (!contains_from_above(bounds, environment.robot_pose.position)) {
         continue;
       }
       const double height = bounds.highest.z() - *bottom;
@@ -130,7 +113,7 @@ Overlap deepest_overlap(const RobotModel& robot, const EnvironmentModel& environ
   for (const StaticObject& object : environment.objects) {
     for (const Geometry& solid : object.geometries) {
       const Bounds bounds = bounds_of(solid, object.pose);
-      if (solid.mesh || (bounds.highest.z() > highest && !is_above(start.position, bounds))) {
+      if (solid.mesh || (bounds.highest.z() > highest && !contains_from_above(bounds, start.position))) {
         continue;
       }
       if (const double depth = depth_in(solid, object.pose, robot, start); depth > deepest.depth) {
@@ -169,7 +152,7 @@ void lift_out_of_solids(const RobotModel& robot, const EnvironmentModel& environ
 
 void lift_onto_ground(const RobotModel& robot, EnvironmentModel& environment, std::vector<std::string>& remarks) {
   Lift lift = lift_onto_level_ground(robot, environment);
-  if (const Lift onto_mesh = lift_of_links(robot, environment); onto_mesh.height > lift.height) {
+  if (const Lift onto_mesh = lift_onto_meshes(robot, environment); onto_mesh.height > lift.height) {
     lift = onto_mesh;
   }
   lift_out_of_solids(robot, environment, lift);

@@ -16,8 +16,11 @@
 #include <ctime>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <system_error>
 #include <thread>
+
+#include "shared/computer/algorithm_library/last_line.hpp"
 
 namespace proleg {
 namespace {
@@ -31,6 +34,8 @@ constexpr auto watchdog_period = std::chrono::milliseconds(20);
 /// time for which a whole computer was suspended.
 constexpr unsigned most_looks = 150;
 
+bool is_bad_access(int signal) { return signal == SIGSEGV || signal == SIGBUS; }
+
 /// What a thread needs to leave a call.
 struct ThreadGuard {
   sigjmp_buf jump{};
@@ -43,8 +48,7 @@ struct ThreadGuard {
   std::atomic<unsigned> looks = 0;  ///< of the watchdog during the check
   bool is_terminated = false;       ///< std::terminate() was called
   int signal = 0;
-  bool has_address = false;
-  const void* address = nullptr;  ///< of a bad access to memory
+  std::optional<const void*> address;  ///< of a bad access to memory; nothing if the process sent itself the signal
   CallSubject subject;
   std::array<char, 200> exception{};
   pthread_t thread = pthread_self();
@@ -55,28 +59,6 @@ struct ThreadGuard {
 constinit thread_local ThreadGuard* current_guard = nullptr;
 std::array<struct sigaction, NSIG> previous_actions;
 std::atomic<unsigned> generation = 1;
-
-/// One line on standard error, without a lock or memory of the C library.
-class LastLine {
- public:
-  LastLine& operator<<(const char* text) {
-    while (*text != '\0' && length_ < text_.size() - 1) {
-      text_[length_++] = *text++;
-    }
-    return *this;
-  }
-
-  [[noreturn]] void end_program() {
-    text_[length_++] = '\n';
-    // There is nobody to whom an error could be reported.
-    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text_.data(), length_);
-    _exit(1);
-  }
-
- private:
-  std::array<char, 1000> text_{};
-  std::size_t length_ = 0;
-};
 
 const char* text_of(const ThreadGuard& guard) {
   switch (guard.signal) {
@@ -108,6 +90,18 @@ std::atomic<const char*> foreign_code = nullptr;
 /// exit() has been called: what the library destroys at the end is not guarded.
 std::atomic<bool> program_ends = false;
 
+[[noreturn]] void end_program_after_crash(const char* file, int signal) {
+  LastLine line;
+  if (program_ends) {
+    line << "proleg: " << file << ": crashes (SIG" << sigabbrev_np(signal) << ") at the end of the program: "
+         << "the destructor of one of its objects?";
+  } else {
+    line << "proleg: the program has crashed (SIG" << sigabbrev_np(signal) << ") outside of a call of " << file
+         << ": a thread that this library started can be the reason, or memory that it has overwritten";
+  }
+  line.end_program();
+}
+
 void on_signal(int signal, siginfo_t* info, void* /*context*/) {
   ThreadGuard* const guard = current_guard;
   if (guard != nullptr && guard->is_active) {
@@ -115,9 +109,10 @@ void on_signal(int signal, siginfo_t* info, void* /*context*/) {
       return;  // that call has just returned
     }
     guard->signal = signal;
-    // A process that sends itself the signal gives no address.
-    guard->address = (signal == SIGSEGV || signal == SIGBUS) && info->si_code > 0 ? info->si_addr : nullptr;
-    guard->has_address = (signal == SIGSEGV || signal == SIGBUS) && info->si_code > 0;
+    guard->address.reset();
+    if (is_bad_access(signal) && info->si_code > 0) {
+      guard->address = info->si_addr;
+    }
     guard->is_active = false;
     siglongjmp(guard->jump, 1);
   }
@@ -129,15 +124,7 @@ void on_signal(int signal, siginfo_t* info, void* /*context*/) {
   }
   const struct sigaction& previous = previous_actions[static_cast<std::size_t>(signal)];
   if (const char* const file = foreign_code; file != nullptr && previous.sa_handler == SIG_DFL) {
-    LastLine line;
-    if (program_ends) {
-      line << "proleg: " << file << ": crashes (SIG" << sigabbrev_np(signal) << ") at the end of the program: "
-           << "the destructor of one of its objects?";
-      line.end_program();
-    }
-    line << "proleg: the program has crashed (SIG" << sigabbrev_np(signal) << ") outside of a call of " << file
-         << ": a thread that this library started can be the reason, or memory that it has overwritten";
-    line.end_program();
+    end_program_after_crash(file, signal);
   }
   // It is not from a guarded call: what had been set before takes effect. A bad instruction is executed once more.
   sigaction(signal, &previous, nullptr);
@@ -169,7 +156,7 @@ double seconds(clockid_t clock) {
 
 /// Ends calls that take too long. Its thread sends a signal to the thread of such a call, and none otherwise, so that
 /// no system call of the program is interrupted. It also ends the program if an interrupted call has left a lock of the
-/// C library behind: nobody could print the reason then, or end the program with SIGTERM.
+/// C library behind: printing the reason would wait for ever then, and SIGTERM would have no effect.
 class Watchdog {
  public:
   /// Never destroyed: its thread runs until the process ends.
@@ -443,12 +430,12 @@ bool run_guarded(const CallSubject& subject, void (*function)(void*), void* cont
       break;
   }
   Watchdog::instance().check_after_signal(guard);
-  failure = {text_of(guard), guard.address};
-  if (guard.has_address) {
+  failure = {text_of(guard), guard.address.value_or(nullptr)};
+  if (guard.address) {
     std::array<char, 32> address{};
-    std::snprintf(address.data(), address.size(), "%p", guard.address);
-    failure.text += std::string(", at the address ") + (guard.address == nullptr ? "0" : address.data());
-  } else if (guard.signal == SIGSEGV || guard.signal == SIGBUS) {
+    std::snprintf(address.data(), address.size(), "%p", *guard.address);
+    failure.text += std::string(", at the address ") + (*guard.address == nullptr ? "0" : address.data());
+  } else if (is_bad_access(guard.signal)) {
     failure.text = std::string("sends itself the signal SIG") + sigabbrev_np(guard.signal);
   }
   return false;

@@ -147,14 +147,19 @@ class ErrorLog {
 };
 
 /// Assimp takes every text for a scale: "abc" as 0, and -1, which turns the mesh inside out.
-void check_collada_unit(const std::string& name, const std::string& bytes) {
-  const std::size_t unit = bytes.find("<unit");
-  const std::size_t attribute = bytes.substr(0, bytes.find('>', std::min(unit, bytes.size()))).find("meter=", unit);
-  if (unit == std::string::npos || attribute == std::string::npos) {
+void check_collada_unit(const std::string& name, std::string_view bytes) {
+  constexpr std::string_view attribute = "meter=";
+  const std::size_t tag = bytes.find("<unit");
+  if (tag == std::string_view::npos) {
     return;
   }
-  const std::size_t begin = attribute + std::string_view("meter=").size() + 1;  // behind the quote
-  const std::string text = bytes.substr(std::min(begin, bytes.size()), bytes.find_first_of("\"'>", begin) - begin);
+  const std::string_view unit = bytes.substr(tag, bytes.find('>', tag) - tag);
+  const std::size_t begin = unit.find(attribute);
+  if (begin == std::string_view::npos || begin + attribute.size() >= unit.size()) {
+    return;
+  }
+  const std::string_view value = unit.substr(begin + attribute.size() + 1);  // behind the quote
+  const std::string_view text = value.substr(0, value.find_first_of("\"'"));
   const std::optional<double> metres = parse_number(trimmed(text));
   if (!metres || !(*metres > 0.0)) {
     throw MeshError("a <unit> of " + in_quotes(one_line(shortened(text))) + " metres in " + in_quotes(name),

@@ -18,12 +18,12 @@ namespace proleg::tools {
 namespace {
 
 /// What is wrong with a command line that cannot be parsed.
-struct Complaint {
+struct ParseFailure {
   std::string found;
   std::string expected;
 };
 
-Complaint describe(const CLI::App& app, const CLI::ParseError& error) {
+ParseFailure describe(const CLI::App& app, const CLI::ParseError& error) {
   const std::string usage = "the options and arguments that '" + app.get_name() + " --help' lists";
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     std::string words;
@@ -170,8 +170,8 @@ int CommandLine::run(int argc, char** argv, const std::function<int()>& body) {
     algorithms_.clear();
     action = [] { return exit_success; };
   } catch (const CLI::ParseError& error) {
-    const Complaint complaint = describe(*app_, error);
-    std::cerr << app_->get_name() << ": found " << one_line(complaint.found) << ", expected " << complaint.expected
+    const ParseFailure failure = describe(*app_, error);
+    std::cerr << app_->get_name() << ": found " << one_line(failure.found) << ", expected " << failure.expected
               << hint(*app_, error) << '\n';
     return exit_bad_input;
   }

@@ -37,8 +37,6 @@ struct Options {
   bool png = false;
 };
 
-constexpr const char* standard_output_name = "-";
-
 /// A picture, and what the user is told beside it.
 struct Drawing {
   std::string svg;
@@ -152,23 +150,23 @@ int plot(const tools::CommandLine& command_line, const Options& options) {
   const Drawing drawing = is_data_file ? draw_data_file(options) : draw_recording(options);
   const std::array outputs{options.png ? PlannedOutput{"--out", picture, "PNG picture", starts_with("\x89PNG")}
                                        : PlannedOutput{"--out", picture, "SVG picture", is_svg}};
-  if (picture != standard_output_name) {
+  const bool to_standard_output = options.out == "-";
+  if (!to_standard_output) {
     check_outputs(outputs);
   }
   const std::string bytes = options.png ? tools::png_of(drawing.svg) : drawing.svg;
   if (!drawing.remark.empty()) {
     tools::print_warning(command_line.name(), drawing.remark);
   }
-  const bool is_standard_output = picture == standard_output_name;
-  if (!is_standard_output) {
+  if (!to_standard_output) {
     write_file(picture, bytes);
   }
   try {
     Output standard_output;
-    standard_output.write(is_standard_output ? bytes : picture.string() + "\n");
+    standard_output.write(to_standard_output ? bytes : picture.string() + "\n");
     standard_output.finish();
   } catch (const ReaderGone&) {
-    // Who reads has what it wanted: a part of the picture, or no name.
+    // The program at the other end of the pipe needed no more of the picture, or not its name.
   }
   return tools::exit_success;
 }

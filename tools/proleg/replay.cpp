@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <iostream>
 #include <string>
+#include <vector>
 
 #include "shared/computer/text/text.hpp"
 #include "shared/kernel/fingerprint.hpp"
@@ -95,15 +96,16 @@ int replay(const Options& options) {
     std::printf("set-point hash    %s\n", verification.setpoint_hash.c_str());
     std::printf("servo hash        %s\n", verification.servo_hash.c_str());
   }
+  const std::vector<std::string> others = sim::other_algorithms(recording);
   if (!holds) {
     std::cerr << "proleg replay: " << options.file << ": "
               << (first.empty() ? "the tables do not have the hashes of the results" : first) << '\n';
-    for (const std::string& sentence : sim::other_algorithms(recording)) {
+    for (const std::string& sentence : others) {
       std::cerr << "proleg replay: " << one_line(sentence) << '\n';
     }
     return exit_failed;
   }
-  for (const std::string& sentence : sim::other_algorithms(recording)) {
+  for (const std::string& sentence : others) {
     print_warning("proleg replay", sentence + "; both compute the same");
   }
   return exit_success;

@@ -244,9 +244,10 @@ class UserAlgorithms(unittest.TestCase):
                 self.assert_one_line(result, f"the algorithm '{NAME}' {text}", "in advance()", "the program ends")
 
     def test_a_loop_that_prints_ends(self):
+        library = self.with_mistake("prints", "for (;;) { std::printf(\" \"); }")
         for attempt in range(3):  # where the loop is interrupted is chance
             with self.subTest(attempt):
-                result = self.simulate(self.with_mistake("prints", "for (;;) { std::printf(\" \"); }"), "--seconds", "5")
+                result = self.simulate(library, "--seconds", "5")
                 self.assertEqual(result.returncode, 1, result.stderr)
                 self.assert_one_line(result, f"the algorithm '{NAME}' does not return within a second")
 

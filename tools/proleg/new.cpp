@@ -16,6 +16,7 @@
 #include "tools/proleg/new_files.hpp"
 #include "tools/proleg/new_obstacle.hpp"
 #include "tools/proleg/robot_files.hpp"
+#include "tools/proleg/shell_words.hpp"
 
 namespace {
 
@@ -80,7 +81,7 @@ int write_robot(const NewOptions& options) {
   const std::vector<NewFile> files = robot_files(kind, axes_of_joints(axes, joints));
   const std::filesystem::path folder = options.out;
   write_new_files(folder, files);
-  std::cout << "run it:  proleg simulate " << (folder / files.front().name).string() << '\n';
+  std::cout << "run it:  proleg simulate " << shell_word((folder / files.front().name).string()) << '\n';
   return exit_success;
 }
 

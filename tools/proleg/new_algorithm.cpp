@@ -17,6 +17,7 @@
 #include "tools/proleg/algorithm_files.hpp"
 #include "tools/proleg/command_line.hpp"
 #include "tools/proleg/new_files.hpp"
+#include "tools/proleg/shell_words.hpp"
 #include "tools/proleg/source_tree.hpp"
 
 namespace proleg::tools {
@@ -206,10 +207,11 @@ int write_algorithm(const AlgorithmOptions& options) {
                      "a folder without blanks and ; \" \\ $, which CMake treats specially");
   }
   write_new_files(folder, algorithm_files({options.name, choose_id(options), folder.string(), tree.string()}));
-  std::cout << "build it:  cmake -S " << folder.string() << " -B " << (folder / "build").string()
-            << " -G Ninja && cmake --build " << (folder / "build").string() << '\n'
-            << "then run:  proleg simulate " << (folder / "robot/robot.simulation.xml").string() << " --algorithms "
-            << (folder / "build" / (options.name + ".so")).string() << '\n';
+  const auto inside = [&folder](const std::string& path) { return shell_word((folder / path).string()); };
+  std::cout << "build it:  cmake -S " << shell_word(folder.string()) << " -B " << inside("build")
+            << " -G Ninja && cmake --build " << inside("build") << '\n'
+            << "then run:  proleg simulate " << inside("robot/robot.simulation.xml") << " --algorithms "
+            << inside("build/" + options.name + ".so") << '\n';
   return exit_success;
 }
 

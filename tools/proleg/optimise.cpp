@@ -21,6 +21,7 @@
 #include "tools/proleg/run_measures.hpp"
 #include "tools/proleg/scenario_run.hpp"
 #include "tools/proleg/search_result.hpp"
+#include "tools/proleg/shell_words.hpp"
 
 namespace proleg::tools {
 namespace {
@@ -85,26 +86,12 @@ void print_text(const Experiment& experiment, const SearchOutcome& outcome, cons
   }
 }
 
-/// The word, quoted for a shell.
-std::string quoted(const std::string& word) {
-  if (!word.empty() &&
-      word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:=+,-") ==
-          std::string::npos) {
-    return word;
-  }
-  std::string text = "'";
-  for (const char character : word) {
-    text += character == '\'' ? "'\\''" : std::string(1, character);
-  }
-  return text + "'";
-}
-
 /// The command that continues this search, with all options that its store depends on.
 std::string command_to_continue(const OptimiseOptions& options, const std::filesystem::path& folder) {
-  std::string command = "proleg optimise" + (options.file ? " " + quoted(*options.file) : "");
+  std::string command = "proleg optimise" + (options.file ? " " + shell_word(*options.file) : "");
   const auto add = [&](const char* option, const std::optional<std::string>& value) {
     if (value) {
-      command += std::string(" ") + option + " " + quoted(*value);
+      command += std::string(" ") + option + " " + shell_word(*value);
     }
   };
   add("--simulation", options.simulation);
@@ -113,7 +100,7 @@ std::string command_to_continue(const OptimiseOptions& options, const std::files
   add("--evaluations", options.evaluations);
   add("--seed", options.seed);
   add("--resume", folder.string());
-  return command;
+  return command + algorithm_options();
 }
 
 /// A resumed search keeps all evaluations that its store has.

@@ -64,6 +64,11 @@ void ask(const std::string& file, const char* name, const char* what, Function&&
   }
 }
 
+std::vector<std::string>& loaded_paths() {
+  static std::vector<std::string>& paths = *new std::vector<std::string>;  // never destroyed, as what they name
+  return paths;
+}
+
 }  // namespace
 
 std::unique_ptr<const GuardedAlgorithm> make_algorithm(const AlgorithmInterface& interface, const std::string& file) {
@@ -103,6 +108,8 @@ std::unique_ptr<const GuardedAlgorithm> load_algorithm(const std::string& path) 
   return make_algorithm(*static_cast<const AlgorithmInterface*>(interface), path);
 }
 
+std::span<const std::string> loaded_libraries() { return loaded_paths(); }
+
 void load_algorithms(std::span<const std::string> paths) {
   static std::vector<std::unique_ptr<const GuardedAlgorithm>>& owned =
       *new std::vector<std::unique_ptr<const GuardedAlgorithm>>;  // never destroyed: kernels name them until the end
@@ -122,6 +129,7 @@ void load_algorithms(std::span<const std::string> paths) {
     registered.push_back(algorithm.get());
     owned.push_back(std::move(algorithm));
     set_loaded_algorithms(registered);
+    loaded_paths().push_back(path);
   }
 }
 

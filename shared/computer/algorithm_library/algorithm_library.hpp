@@ -25,4 +25,7 @@ namespace proleg {
 /// Call it once, before other threads start. Throws InputError, also if two algorithms have the same name or id.
 void load_algorithms(std::span<const std::string> paths);
 
+/// The paths of the libraries that load_algorithms() has loaded, in their order.
+[[nodiscard]] std::span<const std::string> loaded_libraries();
+
 }  // namespace proleg

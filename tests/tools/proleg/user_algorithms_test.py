@@ -7,14 +7,19 @@ Usage: user_algorithms_test.py SOURCE_FOLDER PROGRAM_FOLDER
 import json
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
 SOURCE = Path(sys.argv[1])
 PROGRAMS = Path(sys.argv[2])
+sys.path.insert(0, str(SOURCE / "tests/host/server"))
+from web_client import Viewer  # noqa: E402
+
 LONGEST = 1500  # seconds; a proof compiles the core six times
 NAME = "steep_wave"
 BAD_TICK = 100
@@ -163,6 +168,47 @@ class UserAlgorithms(unittest.TestCase):
         result = self.optimise(self.library, self.folder / "search")
         self.assertEqual(result.returncode, 0, result.stderr)
 
+    # Commands that are printed so that the user repeats them.
+
+    def run_printed(self, command):
+        """As a user pastes it."""
+        self.assertTrue(command.startswith("proleg "), command)
+        return subprocess.run([f"exec {PROGRAMS}/{command}"], shell=True, capture_output=True, text=True, timeout=LONGEST,
+                              cwd=self.folder)
+
+    def test_the_command_that_continues_a_search_loads_the_library(self):
+        experiment = self.experiment()
+        experiment.write_text(experiment.read_text().replace("<generations>2<", "<generations>100000<"))
+        search = subprocess.Popen([PROGRAMS / "proleg-optimise", experiment, "--algorithms", self.library, "--out", "parts",
+                                   "--evaluations", "100000"], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
+                                  cwd=self.folder)
+        self.addCleanup(search.kill)
+        while search.poll() is None and not (self.folder / "parts/store.sqlite").exists():
+            time.sleep(0.05)
+        search.send_signal(signal.SIGINT)
+        _, errors = search.communicate(timeout=LONGEST)
+        self.assertIn("continue with: ", errors)
+        command = errors.partition("continue with: ")[2].splitlines()[0]
+        continued = self.run_printed(command.replace(" 100000 ", " 20 ") + " --json")
+        self.assertEqual(continued.returncode, 0, continued.stderr)
+        self.assertGreaterEqual(json.loads(continued.stdout)["evaluations"], 20)
+
+    def test_the_command_that_the_page_shows_loads_the_library(self):
+        page = self.folder / "page"
+        page.mkdir()
+        (page / "index.html").write_text("<!doctype html><title>page</title>")
+        server = subprocess.Popen([PROGRAMS / "proleg-ui", self.scenario, "--algorithms", self.library, "--no-browser", "--page",
+                                   page], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=self.folder)
+        self.addCleanup(server.communicate)
+        self.addCleanup(server.kill)
+        address = re.search(r"http://127\.0\.0\.1:(\d+)/#(\S+)", server.stdout.readline())
+        with Viewer(int(address[1]), address[2]) as viewer:
+            command = "--seconds 0"
+            while command.endswith("--seconds 0"):
+                command = viewer.do("command_line")["value"]["text"]
+        repeated = self.run_printed(command)
+        self.assertEqual(repeated.returncode, 0, repeated.stderr)
+
     def optimise(self, library, out):
         return proleg("optimise", self.experiment(), "--algorithms", library, "--workers", "2", "--out", out)
 
@@ -217,7 +263,8 @@ class UserAlgorithms(unittest.TestCase):
         for program, options in (("simulate", ()), ("hil", ()), ("bus", ("--pty",))):
             result = proleg(program, self.scenario, *options)
             self.assertEqual(result.returncode, 2)
-            self.assert_one_line(result, "robot.actuation.xml:4", f"unknown algorithm '{NAME}'")
+            self.assert_one_line(result, "robot.actuation.xml:4", f"unknown algorithm '{NAME}'",
+                                 "or that of a library (--algorithms)")
 
     # Mistakes while the robot moves.
 

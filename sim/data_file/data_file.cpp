@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "shared/computer/errors/file_error.hpp"
+#include "shared/computer/errors/file_kind.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/output/output_check.hpp"
 #include "shared/computer/text/table_line.hpp"
@@ -22,10 +23,8 @@ namespace {
 constexpr const char* expected_file = "a data file (<dataroot>) as 'proleg export --thesis' writes it";
 
 DataFile::Open opener(const std::filesystem::path& path) {
-  std::error_code error;
-  if (const auto status = std::filesystem::status(path, error); !std::filesystem::is_regular_file(status)) {
-    throw InputError(path.string(), 0, std::filesystem::exists(status) ? "something that is not a file" : "no file",
-                     expected_file);
+  if (const std::optional<std::string> found = found_instead_of_file(path)) {
+    throw InputError(path.string(), 0, *found, expected_file);
   }
   return [path]() -> std::unique_ptr<std::istream> {
     auto stream = std::make_unique<std::ifstream>(path, std::ios::binary);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <sstream>
 
+#include "shared/computer/errors/file_kind.hpp"
 #include "shared/computer/errors/input_error.hpp"
 #include "shared/computer/sqlite/sqlite.hpp"
 #include "shared/kernel/kernel.hpp"
@@ -62,15 +63,12 @@ class Recording::Tables {
 };
 
 Recording::Recording(const std::filesystem::path& path) : path_(path) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) {
-    throw InputError(path.string(), 0,
-                     error && error != std::errc::no_such_file_or_directory ? error.message() : "no file",
-                     recording_expected);
+  if (const std::optional<std::string> found = found_instead_of_file(path)) {
+    throw InputError(path.string(), 0, *found, recording_expected);
   }
-  if (!std::filesystem::is_regular_file(status)) {
-    throw InputError(path.string(), 0, "something that is not a file", recording_expected);
+  std::error_code error;
+  if (std::filesystem::is_empty(path, error)) {  // which SQLite takes for a new database
+    throw InputError(path.string(), 0, "an empty file", recording_expected);
   }
   reading(path_, [&] {
     tables_ = std::make_unique<Tables>(path);

@@ -14,6 +14,7 @@ namespace proleg::sim {
 namespace {
 
 constexpr std::size_t max_points = 1U << 16U;  // of a series; a multiple of four
+constexpr std::string_view series_option = "--series";
 
 std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> cells;
@@ -56,13 +57,14 @@ void keep_every_second(Polyline& points) {
   points = std::move(kept);
 }
 
-/// Throws for a name that the table does not have.
+/// Throws for a name that the table does not have. --series also takes the name that columns of several joints share.
 [[noreturn]] void refuse_name(const std::string& option, const std::string& name,
                               const std::vector<std::string>& columns) {
   std::vector<std::string> known;
   for (const std::string& column : columns) {
     known.push_back(column);
-    if (const std::size_t dot = column.find('.'); dot != std::string::npos) {
+    const std::size_t dot = column.find('.');
+    if (dot != std::string::npos && option == series_option) {
       known.push_back(column.substr(0, dot));
     }
   }
@@ -79,8 +81,10 @@ void keep_every_second(Polyline& points) {
     similar.push_back(*next);
     std::erase(rest, *next);
   }
-  if (similar.empty()) {
+  if (similar.empty() && option == series_option) {
     std::erase_if(known, [](const std::string& word) { return word.find('.') != std::string::npos; });
+  }
+  if (similar.empty()) {
     similar = known;
   }
   throw InputError(option, 0, in_quotes(name),
@@ -177,7 +181,7 @@ class SeriesCollector {
         }
       }
       if (!is_known) {
-        refuse_name("--series", name, names);
+        refuse_name(std::string(series_option), name, names);
       }
     }
     if (columns_.size() > max_series) {

@@ -25,7 +25,8 @@ const ActuationModule& read_algorithm(const XmlElement& module) {
     for (std::size_t i = 0; i < algorithm_count(); ++i) {
       known.emplace_back(algorithm_at(i).declaration().name);
     }
-    module.refuse("unknown algorithm " + in_quotes(name), "one of " + listed(known));
+    module.refuse("unknown algorithm " + in_quotes(name),
+                  "one of " + listed(known) + ", or that of a library (--algorithms)");
   }
   return *algorithm;
 }
@@ -59,8 +60,9 @@ ParameterEntry read_parameter(const XmlElement& element, const Scenario& scenari
     index = entry.joint < 0 ? -1 : find_parameter(declaration, "angle");
   }
   if (index < 0) {
+    const std::vector<std::string> known = parameter_names(declaration);
     element.refuse("unknown parameter " + in_quotes(name) + " of " + std::string(declaration.name),
-                   "one of " + listed(parameter_names(declaration)) + hint_on_thesis_name(name));
+                   "one of " + listed(known) + hint_on_thesis_name(scenario.robot, known, name));
   }
   entry.index = static_cast<unsigned>(index);
   const Parameter& parameter = declaration.parameters[entry.index];
@@ -167,9 +169,14 @@ std::vector<ParameterEntry> read_parameter_entries(const XmlElement& module, con
     if (!child.is("parameter")) {
       continue;
     }
-    entries.push_back(read_parameter(child, scenario, scenario.kernel.slots[slot]));
-    if (!seen.insert({entries.back().index, entries.back().joint}).second) {
-      child.refuse("parameter " + in_quotes(child.required_attribute("name")) + " twice for the same joints",
+    const ParameterEntry& entry = entries.emplace_back(read_parameter(child, scenario, scenario.kernel.slots[slot]));
+    if (!seen.insert({entry.index, entry.joint}).second) {
+      const std::string name = child.required_attribute("name");
+      const std::string_view own_name =
+          scenario.kernel.slots[slot].algorithm->declaration().parameters[entry.index].name;
+      child.refuse("parameter " + in_quotes(name) +
+                       (lower_case(name) == lower_case(own_name) ? "" : ", which is " + std::string(own_name) + ",") +
+                       " twice for the same joints",
                    "it once");
     }
   }

@@ -93,22 +93,49 @@ auto with_place(const XmlElement& element, const std::string& what, const Make& 
   }
 }
 
-std::vector<double> all_numbers(const XmlElement& element, std::string_view text, const Range& range,
+/// A text of numbers: that of an element, or of the file that an element names.
+struct NumberText {
+  std::string text;
+  std::string file;  ///< empty: the text is that of the element
+
+  /// Where a word of the text is.
+  [[nodiscard]] std::string place_of(std::string_view word, const XmlElement& element) const {
+    if (file.empty()) {
+      return element.label();
+    }
+    const std::string_view before(text.data(), static_cast<std::size_t>(word.data() - text.data()));
+    return "line " + std::to_string(std::ranges::count(before, '\n') + 1) + " of " + in_quotes(file);
+  }
+  [[nodiscard]] std::string whole(const XmlElement& element) const {
+    return file.empty() ? element.label() : in_quotes(file);
+  }
+};
+
+std::vector<double> all_numbers(const XmlElement& element, const NumberText& source, const Range& range,
                                 std::size_t most) {
   std::vector<double> numbers;
-  for (const std::string_view word : words(text)) {
+  for (const std::string_view word : words(source.text)) {
     const std::optional<double> number = parse_number_in(word, range);
     if (!number) {
       element.refuse(
-          in_quotes(word) + " in " + element.label(),
+          in_quotes(word) + " in " + source.place_of(word, element),
           "numbers from " + number_text(range.min) + " to " + number_text(range.max) + ' ' + std::string(range.unit));
     }
     if (numbers.size() == most) {
-      element.refuse("more than " + std::to_string(most) + " numbers in " + element.label(), "at most that");
+      element.refuse("more than " + std::to_string(most) + " numbers in " + source.whole(element), "at most that");
     }
     numbers.push_back(*number);
   }
   return numbers;
+}
+
+NumberText heights_of_file(const XmlElement& data, SourceSet& sources) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // some editors of Windows put it in front of UTF-8
+  NumberText heights{bytes_of_source(*sources.find_bytes(data, data.text()).source), data.text()};
+  if (heights.text.starts_with(byte_order_mark)) {
+    heights.text.erase(0, byte_order_mark.size());
+  }
+  return heights;
 }
 
 }  // namespace
@@ -141,7 +168,7 @@ std::shared_ptr<const TriangleMesh> read_mesh_of_file(const XmlElement& element,
 std::shared_ptr<const TriangleMesh> read_mesh_of_text(const XmlElement& element, MeshUse use, bool is_open,
                                                       std::vector<std::string>& remarks) {
   const XmlElement vertices = element.required_child("vertices");
-  const std::vector<double> numbers = all_numbers(vertices, vertices.text(), coordinates, 9 * max_triangles);
+  const std::vector<double> numbers = all_numbers(vertices, {vertices.text(), ""}, coordinates, 9 * max_triangles);
   if (numbers.empty() || numbers.size() % 3 != 0) {
     vertices.refuse(std::to_string(numbers.size()) + " numbers in " + vertices.label(), "x y z of each vertex");
   }
@@ -199,11 +226,11 @@ void read_height_field(const XmlElement& element, SourceSet& sources, Geometry& 
                    "one of them");
   }
   const XmlElement& place = heights ? *heights : *data;
-  const std::string text = heights ? heights->text() : bytes_of_source(*sources.find_bytes(*data, data->text()).source);
-  field.heights = all_numbers(place, text, coordinates, count);
+  const NumberText source = heights ? NumberText{heights->text(), ""} : heights_of_file(*data, sources);
+  field.heights = all_numbers(place, source, coordinates, count);
   if (field.heights.size() != count) {
-    place.refuse(std::to_string(field.heights.size()) + " heights",
-                 std::to_string(count) + ", one for each column of " + "each row");
+    place.refuse(std::to_string(field.heights.size()) + " heights in " + source.whole(place),
+                 std::to_string(count) + ", one for each column of each row");
   }
   geometry.shape = Shape::height_field;
   geometry.mesh = std::make_shared<const TriangleMesh>(surface_of(field));

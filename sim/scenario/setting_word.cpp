@@ -158,7 +158,7 @@ class Resolver {
     word_->refuse("unknown parameter " + in_quotes(word_->name),
                   "one of " + listed(parameters) +
                       (internal_values.empty() ? "" : ", or of the internal values " + listed(internal_values)) +
-                      hint_on_thesis_name(word_->name));
+                      hint_on_thesis_name(scenario_->robot, parameters, word_->name));
   }
 
   const Scenario* scenario_;

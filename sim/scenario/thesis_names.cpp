@@ -37,6 +37,9 @@ constexpr std::array<TwoNames, 15> thesis_parameters{{
     {"Constant 8", "constant_8"},
 }};
 
+/// In front of the number of a joint, in small letters.
+constexpr std::string_view joint_of_thesis = "joint_";
+
 std::string_view proleg_name(std::span<const TwoNames> names, std::string_view name) {
   const auto found =
       std::ranges::find_if(names, [&](const TwoNames& each) { return lower_case(each.thesis) == lower_case(name); });
@@ -56,16 +59,23 @@ int find_named_parameter(const Declaration& declaration, std::string_view name) 
 
 int find_joint_of_thesis(const RobotModel& robot, std::string_view name) {
   const std::string word = lower_case(name);
-  constexpr std::string_view start = "joint_";
   const std::optional<unsigned> number =
-      word.starts_with(start) ? parse_whole<unsigned>(word.substr(start.size())) : std::nullopt;
+      word.starts_with(joint_of_thesis) ? parse_whole<unsigned>(word.substr(joint_of_thesis.size())) : std::nullopt;
   const auto found = number ? std::ranges::find(robot.joints, *number, &Joint::file_index) : robot.joints.end();
   return found == robot.joints.end() ? -1 : static_cast<int>(found - robot.joints.begin());
 }
 
-std::string hint_on_thesis_name(std::string_view name) {
-  return lower_case(name).starts_with("timestep") ? "; the time step of all algorithms is <tick> of the simulation file"
-                                                  : "";
+std::string hint_on_thesis_name(const RobotModel& robot, std::span<const std::string> parameters,
+                                std::string_view name) {
+  const std::string word = lower_case(name);
+  if (word.starts_with("timestep")) {
+    return "; the time step of all algorithms is <tick> of the simulation file";
+  }
+  const bool is_joint = word.starts_with(joint_of_thesis) && std::ranges::find(parameters, "angle") != parameters.end();
+  if (is_joint && !robot.joints.empty()) {
+    return "; the joints of this robot are Joint_0 to Joint_" + std::to_string(robot.joints.size() - 1);
+  }
+  return "";
 }
 
 }  // namespace proleg::sim

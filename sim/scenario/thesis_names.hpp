@@ -3,6 +3,7 @@
 // The names that files of the 2013 thesis have for algorithms and parameters, beside those that Proleg declares. As in
 // tags, capital letters make no difference in them.
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -22,8 +23,9 @@ namespace proleg::sim {
 /// file, as in the masks of <jointConfiguration>), or -1.
 [[nodiscard]] int find_joint_of_thesis(const RobotModel& robot, std::string_view name);
 
-/// What a message says after "expected ..." of a parameter of the thesis that has no counterpart ("timestep"); mostly
-/// empty.
-[[nodiscard]] std::string hint_on_thesis_name(std::string_view name);
+/// What a message on an unknown parameter says after "expected one of" `parameters`: where the thesis's "timestep"
+/// went, and which joints of the robot "Joint_9" could mean. Mostly empty.
+[[nodiscard]] std::string hint_on_thesis_name(const RobotModel& robot, std::span<const std::string> parameters,
+                                              std::string_view name);
 
 }  // namespace proleg::sim

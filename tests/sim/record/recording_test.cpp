@@ -53,13 +53,13 @@ class BadRecording : public testing::Test {
 };
 
 TEST_F(BadRecording, AMissingFileIsRefused) {
-  expect_refusal("no file");
+  expect_refusal("no such file");
   EXPECT_TRUE(folder_.names().empty());
 }
 
 TEST_F(BadRecording, AFolderIsRefused) {
   std::filesystem::create_directory(path_);
-  expect_refusal("not a file");
+  expect_refusal("a folder");
 }
 
 TEST_F(BadRecording, ATextFileIsRefused) {
@@ -69,7 +69,7 @@ TEST_F(BadRecording, ATextFileIsRefused) {
 
 TEST_F(BadRecording, AnEmptyFileIsRefused) {
   std::ofstream(path_).flush();
-  expect_refusal("a database of another program");
+  expect_refusal("an empty file");
 }
 
 TEST_F(BadRecording, AForeignDatabaseIsRefused) {

@@ -87,6 +87,10 @@ TEST(Series, WhatTheTableLacksIsNamedWithWhatIsMostLikeIt) {
             "angle_degrees, tick, time_s, x_m");
   EXPECT_EQ(message({{"tick"}, "tme_s", {}}),
             "--x: found 'tme_s', expected columns of the table of 'proleg export', for example time_s");
+  EXPECT_EQ(message({{"tick"}, "angle_deg", {}}),
+            "--x: found 'angle_deg', expected columns of the table of 'proleg export', for example "
+            "angle_deg.J1, angle_deg.J2")
+      << "one column is drawn over one";
   EXPECT_EQ(message({{"tick"}, "time_s", {0.05, {}}}),
             "--from and --to: found one row of the table, expected a window with two or more");
   EXPECT_EQ(message({{"tick"}, "time_s", {5.0, 3.0}}),

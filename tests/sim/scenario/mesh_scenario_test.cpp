@@ -219,9 +219,16 @@ TEST(MeshScenario, HeightsMayBeInAFile) {
   EXPECT_EQ(files.scenario().environment.objects.back().geometries.at(0).heights->heights,
             (std::vector<double>{0.1, 0.2, 0.3, 0.4}));
   files.texts["heights.txt"] = "0.1 0.2 0.3";
-  EXPECT_REFUSED(files, "3 heights, expected 4");
-  files.texts["heights.txt"] = "0.1 0.2 0.3 x";
-  EXPECT_REFUSED(files, "'x'");
+  EXPECT_REFUSED(files, "3 heights in 'heights.txt', expected 4, one for each column of each row");
+  files.texts["heights.txt"] = "0.1 0.2\n0.3 x\n";
+  EXPECT_REFUSED(files, "'x' in line 2 of 'heights.txt', expected numbers");
+  files.texts["heights.txt"] = "0.1 0.2\n0.3 0.4\n0.5 0.6\n";
+  EXPECT_REFUSED(files, "more than 4 numbers in 'heights.txt'");
+  files.texts["heights.txt"] =
+      "\xEF\xBB\xBF"
+      "0.1 0.2\r\n0.3 0.4\r\n";  // as Notepad writes it
+  EXPECT_EQ(files.scenario().environment.objects.back().geometries.at(0).heights->heights,
+            (std::vector<double>{0.1, 0.2, 0.3, 0.4}));
 }
 
 TEST(MeshScenario, ABodyThatMovesHasItsPoseMassAndShape) {

@@ -8,6 +8,7 @@
 
 #include "memory_files.hpp"
 #include "shared/fixed/decimal.hpp"
+#include "tests/support/message_of.hpp"
 
 namespace proleg::sim {
 namespace {
@@ -189,6 +190,8 @@ TEST(SetOption, TakesTheNamesOfTheThesis) {
   EXPECT_EQ(refusal(small, "joint_0=7"),
             "joint_0=7: found joint 'J1', which DirectJointAccess (2) does not drive, expected one of J2");
   EXPECT_NE(refusal(small, "Joint_9=7").find("unknown parameter 'Joint_9'"), std::string::npos);
+  EXPECT_NE(refusal(small, "Joint_9=7").find("; the joints of this robot are Joint_0 to Joint_1"), std::string::npos);
+  EXPECT_EQ(refusal(small, "1.Joint_9=7").find("Joint_0"), std::string::npos) << "the sine has no angles to set";
   EXPECT_NE(refusal(small, "timestep=0.001").find("; the time step of all algorithms is <tick>"), std::string::npos);
 }
 
@@ -201,6 +204,21 @@ TEST(ActuationFile, TakesTheNamesOfTheThesis) {
   EXPECT_EQ(start(thesis, 1, j2, "angle"), start(own, 1, j2, "angle"));
   files.replace("actuation.xml", "name=\"Joint_1\"", "name=\"Joint_0\"");
   EXPECT_THROW(static_cast<void>(files.scenario()), InputError) << "the module does not drive J1";
+  files.replace("actuation.xml", "name=\"Joint_0\"", "name=\"Joint_2\"");
+  EXPECT_NE(message_of<InputError>([&] {
+              static_cast<void>(files.scenario());
+            }).find("expected one of angle; the joints of this robot are Joint_0 to Joint_1"),
+            std::string::npos);
+}
+
+TEST(ActuationFile, TwoNamesOfOneParameterAreTheSameParameter) {
+  MemoryFiles files = small_scenario();
+  files.replace("actuation.xml", "name=\"amplitude\" value=\"10\"", "name=\"amplitude: a\" value=\"10\"");
+  files.replace("actuation.xml", " joint=\"J1\"", "");
+  EXPECT_EQ(
+      message_of<InputError>([&] { static_cast<void>(files.scenario()); }),
+      "actuation.xml:6: found parameter 'amplitude: a', which is amplitude, twice for the same joints, expected it "
+      "once");
 }
 
 struct Refusal {

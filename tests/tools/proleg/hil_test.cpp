@@ -358,7 +358,7 @@ TEST_F(Replay, ReportsResultsWhoseHashesAreNotThoseOfTheTables) {
 }
 
 TEST_F(Replay, RefusesAFileThatIsNoRecording) {
-  expect_refused({"replay", file("none").string(), "--verify"}, {"no file"});
+  expect_refused({"replay", file("none").string(), "--verify"}, {"no such file"});
   expect_refused({"replay", scenario("uniform"), "--verify"}, {"not a database"});
   expect_refused({"replay", scenario("uniform")}, {"not a database"});
 }

@@ -185,6 +185,7 @@ class UserAlgorithms(unittest.TestCase):
         self.addCleanup(search.kill)
         while search.poll() is None and not (self.folder / "parts/store.sqlite").exists():
             time.sleep(0.05)
+        time.sleep(2)  # it is in the middle of its simulations; the printed command is the same at any moment
         search.send_signal(signal.SIGINT)
         _, errors = search.communicate(timeout=LONGEST)
         self.assertIn("continue with: ", errors)

@@ -50,11 +50,8 @@ bool is_xml_file(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path, error)) {
     return false;
   }
-  std::string head = first_bytes(path, max_head);
-  if (head.starts_with("\xEF\xBB\xBF")) {
-    head.erase(0, 3);
-  }
-  return trimmed(head).starts_with('<');
+  const std::string head = first_bytes(path, max_head);
+  return trimmed(without_byte_order_mark(head)).starts_with('<');
 }
 
 DataFile::DataFile(const std::filesystem::path& path) : DataFile(path.string(), opener(path)) {}

@@ -28,11 +28,8 @@ bool is_of_name(int c) {
 
 MarkupScanner::MarkupScanner(std::string file, std::unique_ptr<std::istream> stream)
     : file_(std::move(file)), stream_(std::move(stream)), buffer_(buffer_size) {
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  if (peek() == static_cast<unsigned char>(byte_order_mark[0]) &&
-      std::string_view(buffer_.data(), size_).starts_with(byte_order_mark)) {
-    position_ = byte_order_mark.size();
-  }
+  static_cast<void>(peek());  // fills the buffer
+  position_ = size_ - without_byte_order_mark({buffer_.data(), size_}).size();
 }
 
 void MarkupScanner::refuse(int line, const std::string& found, const std::string& expected) const {

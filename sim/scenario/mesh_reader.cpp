@@ -13,6 +13,7 @@
 #include "sim/mesh/mesh_file.hpp"
 #include "sim/mesh/mesh_solid.hpp"
 #include "sim/scenario/data_url.hpp"
+#include "sim/scenario/tag_scanner.hpp"
 #include "sim/scenario/values.hpp"
 
 namespace proleg::sim {
@@ -96,20 +97,23 @@ auto with_place(const XmlElement& element, const std::string& what, const Make& 
 /// A text of numbers: that of an element, or of the file that an element names.
 struct NumberText {
   std::string text;
-  std::string file;  ///< empty: the text is that of the element
+  std::string name;  ///< in messages
+  bool is_file = false;
 
   /// Where a word of the text is.
-  [[nodiscard]] std::string place_of(std::string_view word, const XmlElement& element) const {
-    if (file.empty()) {
-      return element.label();
-    }
-    const std::string_view before(text.data(), static_cast<std::size_t>(word.data() - text.data()));
-    return "line " + std::to_string(std::ranges::count(before, '\n') + 1) + " of " + in_quotes(file);
-  }
-  [[nodiscard]] std::string whole(const XmlElement& element) const {
-    return file.empty() ? element.label() : in_quotes(file);
+  [[nodiscard]] std::string place_of(std::string_view word) const {
+    return is_file ? "line " + std::to_string(line_at(text, static_cast<std::size_t>(word.data() - text.data()))) +
+                         " of " + name
+                   : name;
   }
 };
+
+NumberText numbers_of(const XmlElement& element) { return {element.text(), element.label()}; }
+
+NumberText numbers_of_file(const XmlElement& data, SourceSet& sources) {
+  const std::string bytes = bytes_of_source(*sources.find_bytes(data, data.text()).source);
+  return {std::string(without_byte_order_mark(bytes)), in_quotes(data.text()), true};
+}
 
 std::vector<double> all_numbers(const XmlElement& element, const NumberText& source, const Range& range,
                                 std::size_t most) {
@@ -118,24 +122,15 @@ std::vector<double> all_numbers(const XmlElement& element, const NumberText& sou
     const std::optional<double> number = parse_number_in(word, range);
     if (!number) {
       element.refuse(
-          in_quotes(word) + " in " + source.place_of(word, element),
+          in_quotes(word) + " in " + source.place_of(word),
           "numbers from " + number_text(range.min) + " to " + number_text(range.max) + ' ' + std::string(range.unit));
     }
     if (numbers.size() == most) {
-      element.refuse("more than " + std::to_string(most) + " numbers in " + source.whole(element), "at most that");
+      element.refuse("more than " + std::to_string(most) + " numbers in " + source.name, "at most that");
     }
     numbers.push_back(*number);
   }
   return numbers;
-}
-
-NumberText heights_of_file(const XmlElement& data, SourceSet& sources) {
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // some editors of Windows put it in front of UTF-8
-  NumberText heights{bytes_of_source(*sources.find_bytes(data, data.text()).source), data.text()};
-  if (heights.text.starts_with(byte_order_mark)) {
-    heights.text.erase(0, byte_order_mark.size());
-  }
-  return heights;
 }
 
 }  // namespace
@@ -168,7 +163,7 @@ std::shared_ptr<const TriangleMesh> read_mesh_of_file(const XmlElement& element,
 std::shared_ptr<const TriangleMesh> read_mesh_of_text(const XmlElement& element, MeshUse use, bool is_open,
                                                       std::vector<std::string>& remarks) {
   const XmlElement vertices = element.required_child("vertices");
-  const std::vector<double> numbers = all_numbers(vertices, {vertices.text(), ""}, coordinates, 9 * max_triangles);
+  const std::vector<double> numbers = all_numbers(vertices, numbers_of(vertices), coordinates, 9 * max_triangles);
   if (numbers.empty() || numbers.size() % 3 != 0) {
     vertices.refuse(std::to_string(numbers.size()) + " numbers in " + vertices.label(), "x y z of each vertex");
   }
@@ -226,10 +221,10 @@ void read_height_field(const XmlElement& element, SourceSet& sources, Geometry& 
                    "one of them");
   }
   const XmlElement& place = heights ? *heights : *data;
-  const NumberText source = heights ? NumberText{heights->text(), ""} : heights_of_file(*data, sources);
+  const NumberText source = heights ? numbers_of(*heights) : numbers_of_file(*data, sources);
   field.heights = all_numbers(place, source, coordinates, count);
   if (field.heights.size() != count) {
-    place.refuse(std::to_string(field.heights.size()) + " heights in " + source.whole(place),
+    place.refuse(std::to_string(field.heights.size()) + " heights in " + source.name,
                  std::to_string(count) + ", one for each column of each row");
   }
   geometry.shape = Shape::height_field;

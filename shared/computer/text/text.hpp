@@ -34,6 +34,9 @@ namespace proleg {
 /// Without blanks at both ends. Blanks are those of XML: space, tab and line ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
+/// The text behind the byte order mark that some editors put in front of UTF-8.
+[[nodiscard]] std::string_view without_byte_order_mark(std::string_view text);
+
 /// The words between blanks.
 [[nodiscard]] std::vector<std::string_view> words(std::string_view text);
 

@@ -42,6 +42,14 @@ TEST(Text, LongTextIsCutBetweenCharacters) {
   EXPECT_EQ(shortened("abc", 3), "abc");
 }
 
+TEST(Text, OnlyAWholeByteOrderMarkAtTheStartIsLeftOut) {
+  EXPECT_EQ(without_byte_order_mark("\xEF\xBB\xBF<a/>"), "<a/>");
+  EXPECT_EQ(without_byte_order_mark("\xEF\xBB\xBF\xEF\xBB\xBF"), "\xEF\xBB\xBF");
+  for (const char* const other : {"", "<a/>", "\xEF\xBB", " \xEF\xBB\xBF"}) {
+    EXPECT_EQ(without_byte_order_mark(other), other);
+  }
+}
+
 TEST(Text, AWholeNumberIsAllOfTheTextAndFits) {
   EXPECT_EQ(parse_whole<std::uint8_t>("255"), 255);
   EXPECT_EQ(parse_whole<std::uint32_t>("fF", 16), 255U);

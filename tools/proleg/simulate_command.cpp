@@ -5,6 +5,7 @@
 #include "tools/proleg/shell_words.hpp"
 
 namespace proleg::tools {
+
 std::string simulate_command(const std::string& file, const sim::OverrideWords& overrides,
                              const std::vector<std::string>& settings, const std::vector<std::string>& moves) {
   std::string command = "proleg simulate " + shell_word(file) + algorithm_options();

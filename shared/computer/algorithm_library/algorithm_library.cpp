@@ -64,9 +64,9 @@ void ask(const std::string& file, const char* name, const char* what, Function&&
   }
 }
 
-std::vector<std::string>& loaded_paths() {
-  static std::vector<std::string>& paths = *new std::vector<std::string>;  // never destroyed, as what they name
-  return paths;
+std::vector<std::unique_ptr<const GuardedAlgorithm>>& loaded_algorithms() {
+  static auto& owned = *new std::vector<std::unique_ptr<const GuardedAlgorithm>>;
+  return owned;  // never destroyed: kernels name them until the end
 }
 
 }  // namespace
@@ -108,11 +108,15 @@ std::unique_ptr<const GuardedAlgorithm> load_algorithm(const std::string& path) 
   return make_algorithm(*static_cast<const AlgorithmInterface*>(interface), path);
 }
 
-std::span<const std::string> loaded_libraries() { return loaded_paths(); }
+std::vector<std::string> loaded_libraries() {
+  std::vector<std::string> files;
+  for (const auto& algorithm : loaded_algorithms()) {
+    files.push_back(algorithm->file());
+  }
+  return files;
+}
 
 void load_algorithms(std::span<const std::string> paths) {
-  static std::vector<std::unique_ptr<const GuardedAlgorithm>>& owned =
-      *new std::vector<std::unique_ptr<const GuardedAlgorithm>>;  // never destroyed: kernels name them until the end
   static std::vector<const ActuationModule*>& registered = *new std::vector<const ActuationModule*>;
   for (const std::string& path : paths) {
     std::unique_ptr<const GuardedAlgorithm> algorithm = load_algorithm(path);
@@ -127,9 +131,8 @@ void load_algorithms(std::span<const std::string> paths) {
     }
     blame_for_crashes(algorithm->file().c_str());
     registered.push_back(algorithm.get());
-    owned.push_back(std::move(algorithm));
+    loaded_algorithms().push_back(std::move(algorithm));
     set_loaded_algorithms(registered);
-    loaded_paths().push_back(path);
   }
 }
 

@@ -26,6 +26,6 @@ namespace proleg {
 void load_algorithms(std::span<const std::string> paths);
 
 /// The paths of the libraries that load_algorithms() has loaded, in their order.
-[[nodiscard]] std::span<const std::string> loaded_libraries();
+[[nodiscard]] std::vector<std::string> loaded_libraries();
 
 }  // namespace proleg

@@ -264,7 +264,7 @@ class ExportHtml(unittest.TestCase):
         self.refused(self.recording, [str(notes), "page of a recording"], "--out", notes)
         self.assertEqual(notes.read_text(), "<!doctype html>\n<p>precious\n")
         self.refused(notes, [str(notes)])
-        self.refused(self.folder / "missing.proleg", ["no file"])
+        self.refused(self.folder / "missing.proleg", ["no such file"])
         self.refused(self.changed_copy("bare.proleg", "DELETE FROM source"), ["scenario"])
         self.refused(self.changed_copy("slot.proleg", "UPDATE slot SET algorithm = 'Other'"), ["scenario"])
         renamed = "UPDATE internal_value_name SET name = 'other' WHERE value_index = 1"

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "shared/fixed/crc32.hpp"
+
 namespace proleg::broadcast {
 
 std::optional<CanFrame> ImageReceiver::receive(Microseconds now, const CanFrame& frame) {
@@ -16,7 +18,7 @@ std::optional<CanFrame> ImageReceiver::receive(Microseconds now, const CanFrame&
 }
 
 void ImageReceiver::receive_symbol(const CanFrame& frame) {
-  if (status_.state != ReceiverState::receiving || !has_block_) {
+  if (status_.state != ReceiverState::receiving || !has_block_ || (expects_checksums_ && !checksum_)) {
     return;
   }
   const unsigned number = frame.data[0];
@@ -27,7 +29,7 @@ void ImageReceiver::receive_symbol(const CanFrame& frame) {
   next_symbol_ = number + 1;
   Symbol symbol{};
   std::copy(frame.data.begin() + 1, frame.data.end(), symbol.begin());
-  const std::span<std::uint8_t> bytes = block_of(image_, block_);
+  const std::span<std::uint8_t> bytes = bytes_of(block_);
   SymbolSet& received = received_[block_];
   if (kind_ == BlockKind::repairs) {
     const unsigned missing = missing_in(block_);
@@ -42,26 +44,29 @@ void ImageReceiver::receive_symbol(const CanFrame& frame) {
 }
 
 std::optional<CanFrame> ImageReceiver::receive_request(Microseconds now, const CanFrame& frame) {
-  const auto has = [&frame](Code code, unsigned length) {
-    return frame.length == length && frame.data[0] == static_cast<std::uint8_t>(code);
-  };
+  const unsigned kind = unsigned{frame.data[0]} << 4U | frame.length;
+  const auto has = [kind](Code code, unsigned length) { return kind == (static_cast<unsigned>(code) << 4U | length); };
   const auto word = [&frame](std::size_t at, std::size_t size) { return read_little_endian(frame.data, at, size); };
-  if (has(Code::select, 6) && word(2, 4) == serial_) {
-    select(now, frame.data[1]);
-    return answer(Code::select);
-  }
-  if (has(Code::status, 5) && word(1, 4) == serial_) {
-    return answer(Code::status);
-  }
-  if (has(Code::header, 6) && word(2, 4) == serial_) {
-    return answer_frame(serial_, header_word(frame.data[1]));
-  }
-  if (has(Code::enter, 5) && word(1, 4) == serial_) {
-    enters_ = true;
-    return answer(Code::enter);
-  }
-  if (has(Code::report, 5) && word(1, 4) == serial_) {
-    return answer_frame(serial_, report());
+  // Requests to one module end with its serial number.
+  constexpr unsigned serial_size = 4;
+  if (frame.length > serial_size && word(frame.length - serial_size, serial_size) == serial_) {
+    if (has(Code::select, 6)) {
+      select(now, frame.data[1]);
+      return answer(Code::select);
+    }
+    if (has(Code::status, 5)) {
+      return answer(Code::status);
+    }
+    if (has(Code::header, 6)) {
+      return answer_frame(serial_, header_word(frame.data[1]));
+    }
+    if (has(Code::enter, 5)) {
+      enters_ = true;
+      return answer(Code::enter);
+    }
+    if (has(Code::report, 5)) {
+      return answer_frame(serial_, report());
+    }
   }
   if (status_.state == ReceiverState::idle || frame.data[1] != status_.session) {
     return std::nullopt;
@@ -70,6 +75,8 @@ std::optional<CanFrame> ImageReceiver::receive_request(Microseconds now, const C
     begin(word(2, 3));
   } else if (has(Code::block, 4)) {
     enter_block(frame.data[2], frame.data[3]);
+  } else if (has(Code::check, 7)) {
+    take_checksum(frame.data[2], word(3, 4));
   } else if (has(Code::install, 2)) {
     installs_ = installs_ || status_.state == ReceiverState::complete;
   } else if (has(Code::leave, 2)) {
@@ -116,6 +123,7 @@ void ImageReceiver::begin(std::uint32_t size) {
   received_.fill({});
   missing_ = symbols_of(size);
   has_block_ = false;
+  expects_checksums_ = false;
   installs_ = false;
   status_.state = ReceiverState::receiving;
 }
@@ -127,8 +135,11 @@ void ImageReceiver::enter_block(unsigned block, std::uint8_t kind) {
     return;
   }
   const bool is_repetition = has_block_ && block == block_ && kind == static_cast<std::uint8_t>(kind_);
-  if (!is_repetition && kind == static_cast<std::uint8_t>(BlockKind::repairs)) {
-    decoder_.start(block_of(image_, block), received_[block], block);
+  if (!is_repetition) {
+    checksum_.reset();
+    if (kind == static_cast<std::uint8_t>(BlockKind::repairs)) {
+      decoder_.start(bytes_of(block), received_[block], block);
+    }
   }
   has_block_ = true;
   block_ = block;
@@ -136,8 +147,19 @@ void ImageReceiver::enter_block(unsigned block, std::uint8_t kind) {
   next_symbol_ = 0;
 }
 
+/// It comes after the frame that begins the block. If it is for another block, that frame was lost.
+void ImageReceiver::take_checksum(unsigned block, std::uint32_t checksum) {
+  expects_checksums_ = true;
+  has_block_ = has_block_ && block == block_;
+  if (has_block_) {
+    checksum_ = checksum;
+  }
+}
+
+std::span<std::uint8_t> ImageReceiver::bytes_of(unsigned block) const { return block_of(image_, block); }
+
 unsigned ImageReceiver::missing_in(unsigned block) const {
-  const unsigned symbols = symbols_of(block_of(image_, block).size());
+  const unsigned symbols = symbols_of(bytes_of(block).size());
   return symbols - received_[block].count();
 }
 
@@ -166,8 +188,15 @@ ReportAnswer ImageReceiver::report() const {
   return answer;
 }
 
+/// Symbols of the present block are there now.
 void ImageReceiver::count_received(unsigned symbols) {
   missing_ -= symbols;
+  if (missing_in(block_) == 0 && checksum_ && crc32(bytes_of(block_)) != *checksum_) {
+    // Frames from the middle of one block to the middle of another were lost: symbols of the other one are in this one.
+    received_[block_] = {};
+    missing_ += missing_in(block_);
+    has_block_ = false;
+  }
   if (missing_ == 0) {
     status_.state = ReceiverState::complete;
   }

@@ -67,9 +67,11 @@ class ImageReceiver {
   void select(Microseconds now, std::uint8_t session);
   void begin(std::uint32_t size);
   void enter_block(unsigned block, std::uint8_t kind);
+  void take_checksum(unsigned block, std::uint32_t checksum);
   [[nodiscard]] CanFrame answer(Code code);
   [[nodiscard]] HeaderWord header_word(std::uint8_t number) const;
   [[nodiscard]] ReportAnswer report() const;
+  [[nodiscard]] std::span<std::uint8_t> bytes_of(unsigned block) const;
   [[nodiscard]] unsigned missing_in(unsigned block) const;
   void count_received(unsigned symbols);
 
@@ -86,7 +88,9 @@ class ImageReceiver {
   bool has_block_ = false;  ///< the block to which symbols belong is known
   unsigned block_ = 0;
   BlockKind kind_ = BlockKind::symbols;
-  unsigned next_symbol_ = 0;  ///< symbols of a block come in ascending order
+  unsigned next_symbol_ = 0;               ///< symbols of a block come in ascending order
+  std::optional<std::uint32_t> checksum_;  ///< of the present block, if it has come
+  bool expects_checksums_ = false;         ///< the host sends them: it has sent one
   bool installs_ = false;
   bool leaves_ = false;
   bool enters_ = false;

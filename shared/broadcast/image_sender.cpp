@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "shared/fixed/crc32.hpp"
+
 namespace proleg::broadcast {
 namespace {
 
@@ -73,7 +75,7 @@ void ImageSender::pump(Microseconds now) {
       deadline_ = now + options_.send_timeout_us;
       return;  // transmitted() goes on
     }
-    if (announced_ < repetitions) {
+    if (announced_ < announcements()) {
       ++announced_;
     } else {
       ++symbol_;
@@ -85,7 +87,7 @@ void ImageSender::pump(Microseconds now) {
 /// The next frame of this step; nothing at its end.
 std::optional<CanFrame> ImageSender::next_broadcast() {
   if (step_ != Step::send) {
-    return announced_ == repetitions ? std::nullopt
+    return announced_ == announcements() ? std::nullopt
            : step_ == Step::begin
                ? std::optional(begin_frame(options_.session, static_cast<std::uint32_t>(image_.size())))
                : std::optional(install_frame(options_.session));
@@ -98,10 +100,11 @@ std::optional<CanFrame> ImageSender::next_broadcast() {
     return std::nullopt;
   }
   const Plan& plan = plans_[block_];
-  if (announced_ < repetitions) {
-    return block_frame(options_.session, block_, plan.kind);
-  }
   const std::span<const std::uint8_t> bytes = block_of(image_, block_);
+  if (announced_ < announcements()) {
+    return announced_ % 2 == 0 ? block_frame(options_.session, block_, plan.kind)
+                               : check_frame(options_.session, block_, crc32(bytes));
+  }
   if (plan.kind == BlockKind::repairs) {
     return symbol_frame(symbol_, repair_symbol(bytes, block_, symbol_));
   }

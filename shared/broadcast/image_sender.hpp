@@ -73,6 +73,8 @@ class ImageSender {
   void enter(Microseconds now, Step step);
   void pump(Microseconds now);
   [[nodiscard]] std::optional<CanFrame> next_broadcast();
+  /// Frames that this step, or a block of it, begins with: a block has a checksum after each frame that begins it.
+  [[nodiscard]] unsigned announcements() const { return step_ == Step::send ? 2 * repetitions : repetitions; }
   void next_block();
   void plan_all_symbols();
   void plan_repairs();
@@ -109,7 +111,7 @@ class ImageSender {
 
   // Symbols of one block after the other.
   unsigned block_ = 0;
-  unsigned announced_ = 0;  ///< repetitions of the frame that begins the block, or of a request
+  unsigned announced_ = 0;  ///< of announcements()
   unsigned symbol_ = 0;     ///< the next one of the block
   /// By block: what to send in this round, from `first` to before `end`.
   struct Plan {

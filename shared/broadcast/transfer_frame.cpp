@@ -59,6 +59,13 @@ CanFrame block_frame(std::uint8_t session, unsigned block, BlockKind kind) {
   return frame;
 }
 
+CanFrame check_frame(std::uint8_t session, unsigned block, std::uint32_t checksum) {
+  CanFrame frame = request(Code::check, 7, session);
+  frame.data[2] = static_cast<std::uint8_t>(block);
+  write_little_endian(frame.data, 3, 4, checksum);
+  return frame;
+}
+
 CanFrame report_frame(std::uint32_t serial) { return request_to(serial, Code::report); }
 
 CanFrame install_frame(std::uint8_t session) { return request(Code::install, 2, session); }

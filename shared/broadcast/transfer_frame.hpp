@@ -14,6 +14,7 @@
 //   leave     2 bytes   7, u8 session: start the program
 //   header    6 bytes   8, u8 word, u32 serial number                                              answer: header
 //   enter     5 bytes   9, u32 serial number: restart, and stay in the bootloader                  answer: status
+//   check     7 bytes   10, u8 session, u8 block, u32 CRC-32 of the block's bytes, after `block`
 //
 // Answers have 8 bytes and begin with the code of the request and the low 16 bits of the serial number:
 //
@@ -41,7 +42,7 @@ inline constexpr std::uint8_t no_image = 0xFF;  ///< as the number of blocks in 
 inline constexpr std::uint8_t no_block = 0xFF;
 inline constexpr std::uint8_t needs_symbols = 0x80;  ///< with the number of a block in a report
 
-enum class Code : std::uint8_t { select = 1, begin, block, report, install, status, leave, header, enter };
+enum class Code : std::uint8_t { select = 1, begin, block, report, install, status, leave, header, enter, check };
 
 enum class BlockKind : std::uint8_t { symbols, repairs };
 
@@ -119,6 +120,7 @@ template <typename Byte>
 [[nodiscard]] CanFrame select_frame(std::uint8_t session, std::uint32_t serial);
 [[nodiscard]] CanFrame begin_frame(std::uint8_t session, std::uint32_t size);
 [[nodiscard]] CanFrame block_frame(std::uint8_t session, unsigned block, BlockKind kind);
+[[nodiscard]] CanFrame check_frame(std::uint8_t session, unsigned block, std::uint32_t checksum);
 [[nodiscard]] CanFrame report_frame(std::uint32_t serial);
 [[nodiscard]] CanFrame install_frame(std::uint8_t session);
 [[nodiscard]] CanFrame status_frame(std::uint32_t serial);

@@ -10,6 +10,7 @@
 
 #include "shared/broadcast/image_receiver.hpp"
 #include "shared/broadcast/image_sender.hpp"
+#include "shared/fixed/crc32.hpp"
 #include "sim/bus/bus.hpp"
 
 namespace proleg::broadcast {
@@ -159,6 +160,33 @@ TEST(ImageTransfer, CompletesWithAnySizeAndManyLosses) {
   }
 }
 
+TEST(ImageTransfer, CompletesWithBurstsOfLossThatAllModulesShare) {
+  // As an adapter whose queue is full: it drops frames of the host, of more than one block or of the end of a block
+  // and the beginning of the next.
+  constexpr unsigned longest_burst = 60'000;  // us: 400 symbols
+  for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    std::mt19937 random(seed);
+    const auto image = random_image(3'000 + random() % 30'000);
+    Transfer transfer(image, 2);
+    const unsigned longest = 1'000 + random() % longest_burst;
+    bool is_lost = false;
+    BusTime change_at = 0;
+    transfer.bus.set_frame_listener([&](const sim::Transmission& transmission) {
+      while (change_at <= transmission.end) {
+        is_lost = !is_lost;
+        change_at += (is_lost ? random() % longest : random() % (4 * longest)) * us;
+      }
+    });
+    transfer.bus.set_loss_rule([&](const CanFrame& frame, std::size_t /*receiver*/) {
+      return is_lost && frame.identifier == host_identifier;
+    });
+    transfer.send({.session = 9, .attempts = 100});
+    ASSERT_EQ(transfer.sender->state(), ImageSender::State::complete);
+    ASSERT_TRUE(transfer.have_all(image));
+  }
+}
+
 TEST(ImageTransfer, LeavesAModuleBehindThatVanishes) {
   const auto image = random_image(20'000);
   for (const unsigned percent : {0U, 30U, 60U, 99U}) {
@@ -259,6 +287,94 @@ TEST(ImageReception, AnswersWhoRunsWithWhichHeaderOnlyToAHostThatNamesTheModule)
   EXPECT_TRUE(receiver.receive(0, enter_frame(7)));
   EXPECT_TRUE(receiver.take_enter_request());
   EXPECT_FALSE(receiver.take_enter_request()) << "once";
+}
+
+/// A module that gets an image of two blocks, frame by frame.
+class BlockReception : public testing::Test {
+ protected:
+  static constexpr std::uint8_t session = 5;
+  static constexpr std::uint32_t serial = 7;
+
+  BlockReception() {
+    give(select_frame(session, serial));
+    give(begin_frame(session, static_cast<std::uint32_t>(image.size())));
+  }
+  void give(const CanFrame& frame) { static_cast<void>(receiver.receive(0, frame)); }
+  /// Symbols of a block.
+  void give_symbols(unsigned block, unsigned first = 0, unsigned end = block_symbols) {
+    const std::span<const std::uint8_t> bytes = block_of(std::span<const std::uint8_t>(image), block);
+    for (unsigned number = first; number < end; ++number) {
+      give(symbol_frame(number, symbol_of(bytes, number)));
+    }
+  }
+  void begin_block(unsigned block) { give(block_frame(session, block, BlockKind::symbols)); }
+  void give_checksum(unsigned block) {
+    give(check_frame(session, block, crc32(block_of(std::span<const std::uint8_t>(image), block))));
+  }
+  [[nodiscard]] ReportAnswer report() {
+    return decode_report(receiver.receive(0, report_frame(serial)).value(), serial).value();
+  }
+  [[nodiscard]] bool has_image() {
+    return receiver.state() == ReceiverState::complete && std::ranges::equal(receiver.image(), image);
+  }
+
+  const std::vector<std::uint8_t> image = random_image(2 * block_size);
+  std::vector<std::uint8_t> buffer = std::vector<std::uint8_t>(2 * block_size);
+  const Owner owner;
+  ImageReceiver receiver{buffer, serial, owner};
+};
+
+TEST_F(BlockReception, AsksForABlockAgainThatHasSymbolsOfAnother) {
+  begin_block(0);
+  give_checksum(0);
+  give_symbols(0, 0, 100);
+  give_symbols(1, 101);  // all frames between were lost
+  begin_block(0);
+  give_checksum(0);
+  give_symbols(0, 100, 101);
+  EXPECT_EQ(report().blocks, 2U);
+  EXPECT_EQ(report().some[0], 0U | needs_symbols);
+  for (const unsigned block : {0U, 1U}) {
+    begin_block(block);
+    give_checksum(block);
+    give_symbols(block);
+  }
+  EXPECT_TRUE(has_image());
+}
+
+TEST_F(BlockReception, IgnoresSymbolsAfterAChecksumOfAnotherBlock) {
+  begin_block(0);
+  give_checksum(0);
+  give_symbols(0, 0, 100);
+  give_checksum(1);  // the frame that begins block 1 was lost
+  give_symbols(1, 101);
+  begin_block(0);
+  give_checksum(0);
+  give_symbols(0, 100);
+  EXPECT_EQ(report().blocks, 1U);
+}
+
+TEST_F(BlockReception, TakesNoSymbolsBeforeTheChecksumOfAHostThatSendsThem) {
+  begin_block(0);
+  give_checksum(0);
+  give_symbols(0);
+  begin_block(1);
+  give_symbols(1, 0, 10);
+  give_checksum(1);
+  give_symbols(1, 10);
+  EXPECT_EQ(report().most, 10U);
+  begin_block(1);
+  give_checksum(1);
+  give_symbols(1, 0, 10);
+  EXPECT_TRUE(has_image());
+}
+
+TEST_F(BlockReception, NeedsNoChecksumsOfAHostThatSendsNone) {
+  for (const unsigned block : {0U, 1U}) {
+    begin_block(block);
+    give_symbols(block);
+  }
+  EXPECT_TRUE(has_image());
 }
 
 TEST(ImageTransfer, IsNotDisturbedByAnotherHost) {

@@ -147,6 +147,7 @@ class Session {
   /// A host that knows the protocol, with an image in which one byte may be wrong.
   void bring_image(FuzzInput& input) {
     std::vector<std::uint8_t> bytes = image_bytes(input.byte());
+    const std::uint32_t checksum = crc32(broadcast::block_of(std::span<const std::uint8_t>(bytes), 0));
     const std::uint8_t session = input.byte();
     const std::size_t wrong = input.byte() * 4U + input.byte();
     if (wrong < bytes.size()) {
@@ -155,6 +156,9 @@ class Session {
     receive(broadcast::select_frame(session, serial));
     receive(broadcast::begin_frame(session, static_cast<std::uint32_t>(bytes.size())));
     receive(broadcast::block_frame(session, 0, broadcast::BlockKind::symbols));
+    if (wrong % 2 == 0) {
+      receive(broadcast::check_frame(session, 0, checksum));
+    }
     for (unsigned number = 0; number < broadcast::symbols_of(bytes.size()); ++number) {
       receive(broadcast::symbol_frame(number, broadcast::symbol_of(bytes, number)));
     }
